@@ -1,0 +1,117 @@
+//! Loads and temperatures.
+
+/// FORCE or MOMENT: `scale * n` at a grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Force {
+    pub sid: u32,
+    pub grid: u32,
+    /// Coordinate system of `n`.
+    pub cid: u32,
+    pub scale: f64,
+    pub n: [f64; 3],
+}
+
+/// PLOAD: pressure on a face given by its grids.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Pload {
+    pub sid: u32,
+    pub pressure: f64,
+    /// The fourth is 0 for a triangle.
+    pub grids: [u32; 4],
+}
+
+/// PLOAD1: distributed or concentrated load on a bar or beam.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Pload1 {
+    pub sid: u32,
+    pub element: u32,
+    /// Direction and kind: `FX` .. `MZ` basic, `FXE` .. `MZE` element.
+    pub kind: [u8; 4],
+    /// `LE`, `FR`, `LEPR`, `FRPR`.
+    pub scale: [u8; 4],
+    pub x1: f64,
+    pub p1: f64,
+    pub x2: Option<f64>,
+    pub p2: Option<f64>,
+}
+
+/// PLOAD2: pressure on shells along their normal.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Pload2 {
+    pub sid: u32,
+    pub pressure: f64,
+    pub elements: super::IdList,
+}
+
+/// PLOAD4: pressure on faces of shells and solids.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Pload4 {
+    pub sid: u32,
+    /// One element, or `first THRU last`.
+    pub elements: super::IdList,
+    /// P1..P4; blanks of 2 to 4 take P1.
+    pub pressure: [Option<f64>; 4],
+    /// Solids: a corner of the face, and the corner opposite (or the one not on it, for tetrahedra).
+    pub face: [Option<u32>; 2],
+    /// Direction where it is not the normal: system and vector.
+    pub direction: Option<(u32, [f64; 3])>,
+    /// SORL and LDIR as written, upper case; empty where blank.
+    pub sorl: String,
+    pub ldir: String,
+}
+
+/// GRAV: acceleration `scale * n`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Grav {
+    pub sid: u32,
+    pub cid: u32,
+    pub scale: f64,
+    pub n: [f64; 3],
+}
+
+/// RFORCE: rotation about a grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Rforce {
+    pub sid: u32,
+    pub grid: u32,
+    pub cid: u32,
+    /// Revolutions per time.
+    pub speed: f64,
+    pub r: [f64; 3],
+    pub method: Option<u32>,
+    /// RACC: revolutions per time squared.
+    pub acceleration: f64,
+}
+
+/// LOAD: `scale` times the sum of `factor * set`.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct LoadSum {
+    pub sid: u32,
+    pub scale: f64,
+    pub terms: Vec<(f64, u32)>,
+}
+
+/// TEMP: one grid's temperature.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Temp {
+    pub sid: u32,
+    pub grid: u32,
+    pub t: f64,
+}
+
+/// TEMPD: the temperature of all grids without TEMP.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Tempd {
+    pub sid: u32,
+    pub t: f64,
+}

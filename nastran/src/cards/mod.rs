@@ -1,0 +1,87 @@
+//! One plain struct per card, as the file states it: ids are numbers, a blank field is `None`, nothing is resolved.
+
+mod constraint;
+mod geometry;
+mod line;
+mod load;
+mod mass;
+mod material;
+mod param;
+mod property;
+mod rigid;
+mod shell;
+mod solid;
+
+pub use constraint::*;
+pub use geometry::*;
+pub use line::*;
+pub use load::*;
+pub use mass::*;
+pub use material::*;
+pub use param::*;
+pub use property::*;
+pub use rigid::*;
+pub use shell::*;
+pub use solid::*;
+
+use crate::place::Placed;
+
+/// Every typed card of a deck or of the geometry blocks of an OP2, each list in file order.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[allow(missing_docs)] // the names are the card names
+pub struct Cards {
+    pub grids: Vec<Placed<Grid>>,
+    pub grdset: Option<Placed<Grdset>>,
+    pub coords: Vec<Placed<Coord>>,
+    pub shells: Vec<Placed<Shell>>,
+    pub shear_panels: Vec<Placed<ShearPanel>>,
+    pub bars: Vec<Placed<Bar>>,
+    pub baror: Option<Placed<BarDefaults>>,
+    pub beams: Vec<Placed<Beam>>,
+    pub beamor: Option<Placed<BarDefaults>>,
+    pub rods: Vec<Placed<Rod>>,
+    pub conrods: Vec<Placed<Conrod>>,
+    pub bushes: Vec<Placed<Bush>>,
+    pub springs: Vec<Placed<Spring>>,
+    pub solids: Vec<Placed<Solid>>,
+    pub conm1s: Vec<Placed<Conm1>>,
+    pub conm2s: Vec<Placed<Conm2>>,
+    pub rbe1s: Vec<Placed<Rbe1>>,
+    pub rbe2s: Vec<Placed<Rbe2>>,
+    pub rbe3s: Vec<Placed<Rbe3>>,
+    pub rbars: Vec<Placed<Rbar>>,
+    pub mpcs: Vec<Placed<Mpc>>,
+    pub mpcadds: Vec<Placed<SetSum>>,
+    pub spcs: Vec<Placed<Spc>>,
+    pub spc1s: Vec<Placed<Spc1>>,
+    pub spcadds: Vec<Placed<SetSum>>,
+    pub suports: Vec<Placed<Suport>>,
+    pub pshells: Vec<Placed<Pshell>>,
+    pub pcomps: Vec<Placed<Pcomp>>,
+    pub pshears: Vec<Placed<Pshear>>,
+    pub pbars: Vec<Placed<Pbar>>,
+    pub pbarls: Vec<Placed<Pbarl>>,
+    pub pbeams: Vec<Placed<Pbeam>>,
+    pub pbeamls: Vec<Placed<Pbeaml>>,
+    pub prods: Vec<Placed<Prod>>,
+    pub ptubes: Vec<Placed<Ptube>>,
+    pub pbushes: Vec<Placed<Pbush>>,
+    pub pelas: Vec<Placed<Pelas>>,
+    pub psolids: Vec<Placed<Psolid>>,
+    pub mat1s: Vec<Placed<Mat1>>,
+    pub mat2s: Vec<Placed<Mat2>>,
+    pub mat8s: Vec<Placed<Mat8>>,
+    pub mat9s: Vec<Placed<Mat9>>,
+    pub forces: Vec<Placed<Force>>,
+    pub moments: Vec<Placed<Force>>,
+    pub ploads: Vec<Placed<Pload>>,
+    pub pload1s: Vec<Placed<Pload1>>,
+    pub pload2s: Vec<Placed<Pload2>>,
+    pub pload4s: Vec<Placed<Pload4>>,
+    pub gravs: Vec<Placed<Grav>>,
+    pub rforces: Vec<Placed<Rforce>>,
+    pub loads: Vec<Placed<LoadSum>>,
+    pub temps: Vec<Placed<Temp>>,
+    pub tempds: Vec<Placed<Tempd>>,
+    pub params: Vec<Placed<Param>>,
+}

@@ -1,0 +1,30 @@
+//! Where an entry stands in its file, so that every message can name file and line.
+
+/// Which of the files that were read; an index into the list that the reader returns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub struct SourceIx(pub u32);
+
+/// A line of a text file, or a record of a binary one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub struct Place {
+    /// The file.
+    pub source: SourceIx,
+    /// Line, counted from 1; 0 for an entry of a binary file.
+    pub line: u32,
+}
+
+/// A card and where it stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placed<T> {
+    /// The card.
+    pub card: T,
+    /// Its first line.
+    pub at: Place,
+}
+
+impl<T> std::ops::Deref for Placed<T> {
+    type Target = T;
+    fn deref(&self) -> &T {
+        &self.card
+    }
+}

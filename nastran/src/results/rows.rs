@@ -1,0 +1,80 @@
+//! Decoded rows of one block.
+
+/// Which entity a row belongs to, and where on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct RowId {
+    /// Grid or element id (device code taken off).
+    pub entity: u32,
+    /// Shells and solids: corner grid, 0 the centre. Beams: station grid (0 between the ends). Nodal rows: grid type.
+    /// Plies: 0. Bars with stations: station number from 1. Grid point forces: the element (0 for totals).
+    pub at: u32,
+    /// Shells: 1 the first row (Z1 or mid-plane), 2 the second. Plies: ply number. Otherwise 0.
+    pub layer: u32,
+}
+
+/// Rows of one block: `values` is row-major, `ids.len()` rows by `columns.len()`.
+///
+/// Columns by quantity:
+/// - nodal vectors: `t1 t2 t3 r1 r2 r3`;
+/// - shell strain: `fiber exx eyy gxy angle emax emin vm` (vm: von Mises or maximum shear; gxy is engineering shear);
+///   shell stress: `fiber oxx oyy txy angle omax omin vm`;
+/// - bars: `s1a s2a s3a s4a axial smaxa smina mst s1b s2b s3b s4b smaxb sminb msc` (s1..s4 at recovery points C D E F);
+///   with stations: `x_xb s1 s2 s3 s4 axial smax smin ms`;
+/// - beams, a row a station: `x_xb sxc sxd sxe sxf smax smin mst msc`;
+/// - rods: `axial msa torsion mst`; springs: `value`; bushes: `t1 t2 t3 r1 r2 r3`; shear panels: `max average margin`;
+/// - solids, a row a location: `xx yy zz xy yz zx max mid min vm` (shear strain is engineering shear).
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Rows {
+    /// Column names.
+    pub columns: &'static [&'static str],
+    /// Row ids in file order.
+    pub ids: Vec<RowId>,
+    /// Row-major values.
+    pub values: Vec<f64>,
+    /// Bars, beams and others may carry text grid names or event words; labels of such rows, empty where none.
+    pub labels: Vec<String>,
+}
+
+impl Rows {
+    /// Values of row `i`.
+    pub fn row(&self, i: usize) -> &[f64] {
+        let w = self.columns.len();
+        self.values.get(i * w..(i + 1) * w).unwrap_or(&[])
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+}
+
+/// Grid point weight of a solver (table OGPWG).
+#[derive(Clone, Debug, PartialEq)]
+pub struct GridPointWeight {
+    /// Reference grid of PARAM,GRDPNT; 0 the origin.
+    pub reference: u32,
+    /// Rigid-body mass matrix about the reference point, 6 x 6 by rows.
+    pub mo: [[f64; 6]; 6],
+    /// S: axes of the principal mass frame.
+    pub s: [[f64; 3]; 3],
+    /// Mass in the three directions.
+    pub mass: [f64; 3],
+    /// Centre of gravity for the mass in each direction, from the reference point.
+    pub cg: [[f64; 3]; 3],
+    /// Inertia about the centre of gravity.
+    pub inertia_cg: [[f64; 3]; 3],
+}
+
+/// Something that was passed over, with its place in words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Note {
+    /// Table or record it is about.
+    pub subject: String,
+    /// What was found and what was done.
+    pub message: String,
+}

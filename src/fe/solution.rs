@@ -1,0 +1,73 @@
+//! Strain fields of load cases: one type, solved by us or read from a file.
+
+use crate::finding::Finding;
+use crate::model::{BeamIx, ShellIx, Vec3};
+use std::sync::Arc;
+
+/// Results of one or several load cases on one model.
+#[derive(Clone, Debug, Default)]
+pub struct Solution {
+    /// One entry a load case.
+    pub cases: Vec<CaseResult>,
+    /// Where they come from: the solver's name, or the file's.
+    pub source: String,
+    /// What was noticed.
+    pub findings: Vec<Finding>,
+}
+
+/// Results of one load case.
+#[derive(Clone, Debug, Default)]
+pub struct CaseResult {
+    /// Subcase id.
+    pub subcase: u32,
+    /// Label or subtitle, for people.
+    pub label: String,
+    /// Shell strain.
+    pub shells: ShellField,
+    /// Bar and beam strain.
+    pub beams: BeamField,
+    /// Displacements in the displacement frames as the file has them turned to basic: translation and rotation by grid index;
+    /// empty where absent, NaN where a grid has none.
+    pub displacement: Vec<[f64; 6]>,
+}
+
+/// In-plane strain at one fibre in the element's output frame: exx, eyy, gxy (engineering shear).
+pub type PlaneStrain = [f64; 3];
+
+/// Strain of shells at the surfaces Z1 and Z2, element output frame.
+#[derive(Clone, Debug, Default)]
+pub struct ShellField {
+    /// Elements with strain, ascending; shared between load cases that have the same.
+    pub elements: Arc<Vec<ShellIx>>,
+    /// By element: at the centre, bottom (Z1) and top (Z2).
+    pub centre: Vec<[PlaneStrain; 2]>,
+    /// By element and corner (G1..G4; a triangle's fourth is NaN); empty where the result has no corner rows.
+    pub corners: Vec<[[PlaneStrain; 2]; 4]>,
+    /// Strain was computed from stress and the isotropic material.
+    pub from_stress: bool,
+}
+
+/// Axial strain of bars and beams at the stress recovery points C D E F.
+#[derive(Clone, Debug, Default)]
+pub struct BeamField {
+    /// Elements with strain, ascending.
+    pub elements: Arc<Vec<BeamIx>>,
+    /// By element: stations (x/xb ascending), each with the strain at C D E F, axial strain included.
+    pub stations: Vec<Vec<(f64, [f64; 4])>>,
+}
+
+/// A unit load: what acts in one load case.
+#[derive(Clone, Debug, PartialEq)]
+pub enum UnitLoad {
+    /// A force and a moment at a grid, basic frame.
+    AtGrid {
+        /// Grid index.
+        grid: crate::model::GridIx,
+        /// Force.
+        force: Vec3,
+        /// Moment.
+        moment: Vec3,
+    },
+    /// A load set of the deck.
+    Set(u32),
+}

@@ -1,0 +1,67 @@
+//! What a stage has to say about its own result.
+
+use serde::Serialize;
+
+/// How much a finding matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// Worth knowing.
+    Info,
+    /// Look before you trust.
+    Warning,
+    /// The answer can't be relied on: exit code 1.
+    Error,
+}
+
+/// A measured fact about a result, its limit, and what to do.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    /// How much it matters.
+    pub severity: Severity,
+    /// Stable kebab-case code, such as `loads-not-separable`.
+    pub code: &'static str,
+    /// What it is about: a gauge, a load, a file, an element.
+    pub subject: String,
+    /// A plain sentence with the consequence.
+    pub message: String,
+    /// The measured number, where there is one.
+    pub measured: Option<f64>,
+    /// The limit it is held against.
+    pub limit: Option<f64>,
+    /// What the reader can do.
+    pub remedy: String,
+}
+
+impl Finding {
+    /// A finding without numbers.
+    pub fn new(
+        severity: Severity,
+        code: &'static str,
+        subject: impl Into<String>,
+        message: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self {
+            severity,
+            code,
+            subject: subject.into(),
+            message: message.into(),
+            measured: None,
+            limit: None,
+            remedy: remedy.into(),
+        }
+    }
+
+    /// The same with the measured number and its limit.
+    pub fn with_numbers(mut self, measured: f64, limit: f64) -> Self {
+        self.measured = Some(measured);
+        self.limit = Some(limit);
+        self
+    }
+}
+
+/// The worst severity of a list.
+pub fn worst(findings: &[Finding]) -> Option<Severity> {
+    findings.iter().map(|f| f.severity).max()
+}
