@@ -1,6 +1,7 @@
 //! Result tables as every reader gives them: an index of [`Block`]s, and [`Rows`] decoded one block at a time.
 
 mod block;
+pub mod columns;
 mod element;
 mod rows;
 
