@@ -23,7 +23,12 @@ impl LoadEstimate {
     /// One standard deviation of load `i`.
     pub fn sigma(&self, i: usize) -> f64 {
         let n = self.values.len();
-        self.covariance.get(i * n + i).copied().unwrap_or(f64::NAN).max(0.0).sqrt()
+        self.covariance
+            .get(i * n + i)
+            .copied()
+            .unwrap_or(f64::NAN)
+            .max(0.0)
+            .sqrt()
     }
 
     /// The 95 % interval of load `i`.

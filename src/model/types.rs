@@ -367,7 +367,15 @@ pub enum MaterialKind {
     /// MAT2: G11 G12 G13 G22 G23 G33.
     Anisotropic2d { g: [f64; 6], alpha: [f64; 3] },
     /// MAT8; transverse shear moduli of 0 mean rigid.
-    Orthotropic { e1: f64, e2: f64, nu12: f64, g12: f64, g1z: f64, g2z: f64, alpha: [f64; 2] },
+    Orthotropic {
+        e1: f64,
+        e2: f64,
+        nu12: f64,
+        g12: f64,
+        g1z: f64,
+        g2z: f64,
+        alpha: [f64; 2],
+    },
     /// MAT9: upper triangle by rows.
     Anisotropic3d { g: [f64; 21], alpha: [f64; 6] },
 }

@@ -106,5 +106,10 @@ pub enum CoordDefinition {
     /// CORD1x: three grids.
     Grids([u32; 3]),
     /// CORD2x: three points in system `rid`.
-    Points { rid: u32, a: [f64; 3], b: [f64; 3], c: [f64; 3] },
+    Points {
+        rid: u32,
+        a: [f64; 3],
+        b: [f64; 3],
+        c: [f64; 3],
+    },
 }

@@ -111,5 +111,9 @@ pub struct Spring {
 #[allow(missing_docs)]
 pub enum SpringStiffness {
     Property(Option<u32>),
-    Direct { k: f64, damping: f64, stress_coefficient: f64 },
+    Direct {
+        k: f64,
+        damping: f64,
+        stress_coefficient: f64,
+    },
 }

@@ -7,15 +7,22 @@ pub const SHELL_STRAIN: &[&str] = &["fiber", "exx", "eyy", "gxy", "angle", "emax
 /// Shell stress, a row a fibre.
 pub const SHELL_STRESS: &[&str] = &["fiber", "oxx", "oyy", "txy", "angle", "omax", "omin", "vm"];
 /// Ply strain or stress, a row a ply, in ply axes.
-pub const PLY: &[&str] = &["s11", "s22", "s12", "s1z", "s2z", "angle", "smax", "smin", "vm"];
+pub const PLY: &[&str] = &[
+    "s11", "s22", "s12", "s1z", "s2z", "angle", "smax", "smin", "vm",
+];
 /// CBAR: recovery points C D E F at both ends.
 pub const BAR: &[&str] = &[
-    "s1a", "s2a", "s3a", "s4a", "axial", "smaxa", "smina", "mst", "s1b", "s2b", "s3b", "s4b", "smaxb", "sminb", "msc",
+    "s1a", "s2a", "s3a", "s4a", "axial", "smaxa", "smina", "mst", "s1b", "s2b", "s3b", "s4b",
+    "smaxb", "sminb", "msc",
 ];
 /// CBAR with stations, a row a station.
-pub const BAR_STATION: &[&str] = &["x_xb", "s1", "s2", "s3", "s4", "axial", "smax", "smin", "ms"];
+pub const BAR_STATION: &[&str] = &[
+    "x_xb", "s1", "s2", "s3", "s4", "axial", "smax", "smin", "ms",
+];
 /// CBEAM, a row a station.
-pub const BEAM: &[&str] = &["x_xb", "sxc", "sxd", "sxe", "sxf", "smax", "smin", "mst", "msc"];
+pub const BEAM: &[&str] = &[
+    "x_xb", "sxc", "sxd", "sxe", "sxf", "smax", "smin", "mst", "msc",
+];
 /// CROD, CTUBE, CONROD.
 pub const ROD: &[&str] = &["axial", "msa", "torsion", "mst"];
 /// CELAS1 to CELAS4.
@@ -23,4 +30,6 @@ pub const SPRING: &[&str] = &["value"];
 /// CSHEAR.
 pub const SHEAR_PANEL: &[&str] = &["max", "average", "margin"];
 /// CTETRA, CPENTA, CHEXA, a row a location; shear strain is engineering shear.
-pub const SOLID: &[&str] = &["xx", "yy", "zz", "xy", "yz", "zx", "max", "mid", "min", "vm"];
+pub const SOLID: &[&str] = &[
+    "xx", "yy", "zz", "xy", "yz", "zx", "max", "mid", "min", "vm",
+];
