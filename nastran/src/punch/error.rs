@@ -1,0 +1,45 @@
+//! What can be wrong with a punch file.
+
+/// Why a punch file, or a block of one, could not be read.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PunchError {
+    /// The text has no `$` header that names a result.
+    #[error("no result block found: a punch file has headers such as `$DISPLACEMENTS` or `$ELEMENT STRAINS`; request output with (PUNCH)")]
+    NoBlocks,
+    /// The block index is out of range.
+    #[error("block {index} does not exist: the file has {blocks}")]
+    NoSuchBlock {
+        /// Asked for.
+        index: usize,
+        /// There are.
+        blocks: usize,
+    },
+    /// The block is complex, SORT2 or of a type that is not decoded.
+    #[error("block `{block}` is not decoded: {why}")]
+    NotDecoded {
+        /// Its table and element type.
+        block: String,
+        /// The reason.
+        why: String,
+    },
+    /// A field is not what the layout says.
+    #[error("line {line}: `{text}`: expected {expected}: write the file again, it is damaged or edited")]
+    BadField {
+        /// Line, from 1.
+        line: u32,
+        /// What stands there.
+        text: String,
+        /// What should.
+        expected: &'static str,
+    },
+    /// An entry has another number of words than its element type has.
+    #[error("line {line}: {found} words in the entry, expected {expected}: the file is cut or damaged")]
+    WordCount {
+        /// First line of the entry, from 1.
+        line: u32,
+        /// Words found.
+        found: usize,
+        /// Words of the element type.
+        expected: usize,
+    },
+}
