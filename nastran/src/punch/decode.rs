@@ -8,7 +8,11 @@ use std::ops::RangeInclusive;
 /// Table and element type, for messages.
 pub(super) fn name(block: &Block) -> String {
     match block.element {
-        Some(e) => format!("{} {}", block.table, e.name().map_or_else(|| e.0.to_string(), str::to_string)),
+        Some(e) => format!(
+            "{} {}",
+            block.table,
+            e.name().map_or_else(|| e.0.to_string(), str::to_string)
+        ),
         None => block.table.clone(),
     }
 }
@@ -29,14 +33,19 @@ pub(super) fn refusal(block: &Block) -> Option<String> {
 
 /// Whether the rows are shell strain or stress at fibres.
 pub(super) fn is_shell(block: &Block) -> bool {
-    matches!(layout(block), Some(Layout::ShellCentre | Layout::ShellCorner))
+    matches!(
+        layout(block),
+        Some(Layout::ShellCentre | Layout::ShellCorner)
+    )
 }
 
 /// Column names of a block.
 pub(super) fn columns(block: &Block) -> Option<&'static [&'static str]> {
     Some(match layout(block)? {
         Layout::Nodal | Layout::Bush => c::NODAL,
-        Layout::ShellCentre | Layout::ShellCorner if block.quantity == Quantity::Strain => c::SHELL_STRAIN,
+        Layout::ShellCentre | Layout::ShellCorner if block.quantity == Quantity::Strain => {
+            c::SHELL_STRAIN
+        }
         Layout::ShellCentre | Layout::ShellCorner => c::SHELL_STRESS,
         Layout::Ply => c::PLY,
         Layout::Bar => c::BAR,
@@ -68,7 +77,8 @@ enum Layout {
 fn layout(block: &Block) -> Option<Layout> {
     use Quantity::*;
     match block.quantity {
-        Displacement | Velocity | Acceleration | Eigenvector | SpcForce | MpcForce | AppliedLoad => Some(Layout::Nodal),
+        Displacement | Velocity | Acceleration | Eigenvector | SpcForce | MpcForce
+        | AppliedLoad => Some(Layout::Nodal),
         PlyStress | PlyStrain => Some(Layout::Ply),
         Stress | Strain => Some(match block.element?.0 {
             33 | 74 | 227 | 228 => Layout::ShellCentre,
@@ -90,7 +100,11 @@ fn layout(block: &Block) -> Option<Layout> {
 /// Adds the rows of one entry.
 pub(super) fn push(block: &Block, entry: &Entry, rows: &mut Rows) -> Result<(), PunchError> {
     let words = &entry.words;
-    let id = |at, layer| RowId { entity: entry.id, at, layer };
+    let id = |at, layer| RowId {
+        entity: entry.id,
+        at,
+        layer,
+    };
     match layout(block) {
         // A scalar point has one word; its other components stay zero.
         Some(Layout::Nodal) => {
@@ -98,7 +112,11 @@ pub(super) fn push(block: &Block, entry: &Entry, rows: &mut Rows) -> Result<(), 
                 Some(b'S') => 2,
                 _ => 1,
             };
-            let wanted = if kind == 2 { words.len().clamp(1, 6) } else { 6 };
+            let wanted = if kind == 2 {
+                words.len().clamp(1, 6)
+            } else {
+                6
+            };
             count(entry, wanted)?;
             let missing = 6 - wanted.min(6);
             push_row(rows, id(kind, 0), words);
@@ -134,13 +152,22 @@ pub(super) fn push(block: &Block, entry: &Entry, rows: &mut Rows) -> Result<(), 
             two_fibres(entry, 0, words.get(2..18).unwrap_or(&[]), rows);
             for corner in words.get(18..).unwrap_or(&[]).chunks_exact(17) {
                 let (grid, values) = corner.split_first().unwrap_or((&Word::Blank, &[]));
-                two_fibres(entry, grid.id().ok_or_else(|| not_an_id(entry))?, values, rows);
+                two_fibres(
+                    entry,
+                    grid.id().ok_or_else(|| not_an_id(entry))?,
+                    values,
+                    rows,
+                );
             }
         }
         Some(Layout::Beam) => {
             let stations = words.len().saturating_add(2) / 10;
             if words.len() < 8 || words.len() > 10 * stations {
-                return Err(PunchError::WordCount { line: entry.line, found: words.len(), expected: 10 * stations.max(1) });
+                return Err(PunchError::WordCount {
+                    line: entry.line,
+                    found: words.len(),
+                    expected: 10 * stations.max(1),
+                });
             }
             for (i, station) in words.chunks(10).enumerate() {
                 let (grid, values) = station.split_first().unwrap_or((&Word::Blank, &[]));
@@ -148,7 +175,10 @@ pub(super) fn push(block: &Block, entry: &Entry, rows: &mut Rows) -> Result<(), 
                 // Stations that were not asked for are rows of zeros.
                 if i == 0 || grid.id().unwrap_or(0) != 0 || x_xb != 0.0 {
                     push_row(rows, id(grid.id().unwrap_or(0), 0), values);
-                    rows.values.extend(std::iter::repeat_n(f64::NAN, 9_usize.saturating_sub(values.len())));
+                    rows.values.extend(std::iter::repeat_n(
+                        f64::NAN,
+                        9_usize.saturating_sub(values.len()),
+                    ));
                 }
             }
         }
@@ -158,8 +188,23 @@ pub(super) fn push(block: &Block, entry: &Entry, rows: &mut Rows) -> Result<(), 
             count(entry, 3 + 21 * locations)?;
             for location in words.get(3..).unwrap_or(&[]).chunks_exact(21) {
                 let w = |i: usize| location.get(i).copied().unwrap_or(Word::Blank);
-                let ordered = [w(1), w(9), w(15), w(2), w(10), w(16), w(3), w(11), w(17), w(8)];
-                push_row(rows, id(w(0).id().ok_or_else(|| not_an_id(entry))?, 0), &ordered);
+                let ordered = [
+                    w(1),
+                    w(9),
+                    w(15),
+                    w(2),
+                    w(10),
+                    w(16),
+                    w(3),
+                    w(11),
+                    w(17),
+                    w(8),
+                ];
+                push_row(
+                    rows,
+                    id(w(0).id().ok_or_else(|| not_an_id(entry))?, 0),
+                    &ordered,
+                );
             }
         }
         None => {}
@@ -167,23 +212,47 @@ pub(super) fn push(block: &Block, entry: &Entry, rows: &mut Rows) -> Result<(), 
     Ok(())
 }
 
-fn whole(entry: &Entry, wanted: RangeInclusive<usize>, id: RowId, rows: &mut Rows) -> Result<(), PunchError> {
+fn whole(
+    entry: &Entry,
+    wanted: RangeInclusive<usize>,
+    id: RowId,
+    rows: &mut Rows,
+) -> Result<(), PunchError> {
     let found = entry.words.len();
     if !wanted.contains(&found) {
-        return Err(PunchError::WordCount { line: entry.line, found, expected: *wanted.end() });
+        return Err(PunchError::WordCount {
+            line: entry.line,
+            found,
+            expected: *wanted.end(),
+        });
     }
     push_row(rows, id, &entry.words);
-    rows.values.extend(std::iter::repeat_n(f64::NAN, wanted.end().saturating_sub(found)));
+    rows.values.extend(std::iter::repeat_n(
+        f64::NAN,
+        wanted.end().saturating_sub(found),
+    ));
     Ok(())
 }
 
 fn count(entry: &Entry, expected: usize) -> Result<(), PunchError> {
     let found = entry.words.len();
-    if found == expected && expected > 0 { Ok(()) } else { Err(PunchError::WordCount { line: entry.line, found, expected }) }
+    if found == expected && expected > 0 {
+        Ok(())
+    } else {
+        Err(PunchError::WordCount {
+            line: entry.line,
+            found,
+            expected,
+        })
+    }
 }
 
 fn not_an_id(entry: &Entry) -> PunchError {
-    PunchError::BadField { line: entry.line, text: entry.id.to_string(), expected: "a grid id in the entry" }
+    PunchError::BadField {
+        line: entry.line,
+        text: entry.id.to_string(),
+        expected: "a grid id in the entry",
+    }
 }
 
 fn push_row(rows: &mut Rows, id: RowId, words: &[Word]) {
@@ -193,6 +262,14 @@ fn push_row(rows: &mut Rows, id: RowId, words: &[Word]) {
 
 fn two_fibres(entry: &Entry, at: u32, words: &[Word], rows: &mut Rows) {
     for (layer, fibre) in (1..).zip(words.chunks_exact(8)) {
-        push_row(rows, RowId { entity: entry.id, at, layer }, fibre);
+        push_row(
+            rows,
+            RowId {
+                entity: entry.id,
+                at,
+                layer,
+            },
+            fibre,
+        );
     }
 }

@@ -52,7 +52,11 @@ pub(super) fn is_continuation(line: &[u8]) -> bool {
 ///
 /// # Errors
 /// [`PunchError::BadField`] for an id or a slot that is neither number, text nor blank; whatever `each` returns.
-pub(super) fn each_entry(text: &[u8], first_line: u32, mut each: impl FnMut(&Entry) -> Result<(), PunchError>) -> Result<(), PunchError> {
+pub(super) fn each_entry(
+    text: &[u8],
+    first_line: u32,
+    mut each: impl FnMut(&Entry) -> Result<(), PunchError>,
+) -> Result<(), PunchError> {
     let mut entry = Entry::default();
     let mut open = false;
     for (i, line) in text.split(|&b| b == b'\n').enumerate() {
@@ -71,10 +75,16 @@ pub(super) fn each_entry(text: &[u8], first_line: u32, mut each: impl FnMut(&Ent
             return Err(bad(number, line, "an entry before its continuation"));
         }
         for slot in line.get(18..).unwrap_or(&[]).chunks(18) {
-            entry.words.push(word(slot).ok_or_else(|| bad(number, slot, "a number"))?);
+            entry
+                .words
+                .push(word(slot).ok_or_else(|| bad(number, slot, "a number"))?);
         }
     }
-    if open { close(&mut entry, &mut each) } else { Ok(()) }
+    if open {
+        close(&mut entry, &mut each)
+    } else {
+        Ok(())
+    }
 }
 
 fn begin(entry: &mut Entry, line: &[u8], number: u32) -> Result<(), PunchError> {
@@ -83,12 +93,18 @@ fn begin(entry: &mut Entry, line: &[u8], number: u32) -> Result<(), PunchError> 
     let head = line.get(..18).unwrap_or(line);
     let text = std::str::from_utf8(head).map_err(|_| bad(number, head, "an id"))?;
     let mut parts = text.split_whitespace();
-    entry.id = parts.next().and_then(|t| t.parse().ok()).ok_or_else(|| bad(number, head, "an id"))?;
+    entry.id = parts
+        .next()
+        .and_then(|t| t.parse().ok())
+        .ok_or_else(|| bad(number, head, "an id"))?;
     entry.letter = parts.next().and_then(|t| t.bytes().next());
     Ok(())
 }
 
-fn close(entry: &mut Entry, each: &mut impl FnMut(&Entry) -> Result<(), PunchError>) -> Result<(), PunchError> {
+fn close(
+    entry: &mut Entry,
+    each: &mut impl FnMut(&Entry) -> Result<(), PunchError>,
+) -> Result<(), PunchError> {
     while entry.words.last() == Some(&Word::Blank) {
         entry.words.pop();
     }
@@ -96,7 +112,11 @@ fn close(entry: &mut Entry, each: &mut impl FnMut(&Entry) -> Result<(), PunchErr
 }
 
 fn bad(line: u32, text: &[u8], expected: &'static str) -> PunchError {
-    PunchError::BadField { line, text: String::from_utf8_lossy(text).trim().to_string(), expected }
+    PunchError::BadField {
+        line,
+        text: String::from_utf8_lossy(text).trim().to_string(),
+        expected,
+    }
 }
 
 fn word(slot: &[u8]) -> Option<Word> {
@@ -110,21 +130,31 @@ fn word(slot: &[u8]) -> Option<Word> {
     if let Some(v) = real(text) {
         return Some(Word::Real(v));
     }
-    text.starts_with(|c: char| c.is_ascii_alphabetic()).then_some(Word::Text)
+    text.starts_with(|c: char| c.is_ascii_alphabetic())
+        .then_some(Word::Text)
 }
 
 /// A real, exponents of three digits without E (`1.234567-101`) and D exponents included; `None` for anything else.
 pub(super) fn real(text: &str) -> Option<f64> {
-    let starts_as_number = text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.'));
+    let starts_as_number =
+        text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.'));
     if !starts_as_number {
         return None;
     }
     if let Ok(v) = text.parse() {
         return Some(v);
     }
-    let sign = text.char_indices().skip(1).find(|&(i, c)| matches!(c, '+' | '-') && text.as_bytes().get(i.wrapping_sub(1)).is_some_and(u8::is_ascii_digit));
+    let sign = text.char_indices().skip(1).find(|&(i, c)| {
+        matches!(c, '+' | '-')
+            && text
+                .as_bytes()
+                .get(i.wrapping_sub(1))
+                .is_some_and(u8::is_ascii_digit)
+    });
     match sign {
-        Some((i, _)) => format!("{}e{}", text.get(..i)?, text.get(i..)?).parse().ok(),
+        Some((i, _)) => format!("{}e{}", text.get(..i)?, text.get(i..)?)
+            .parse()
+            .ok(),
         None => text.replace(['D', 'd'], "e").parse().ok(),
     }
 }

@@ -4,7 +4,9 @@
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PunchError {
     /// The text has no `$` header that names a result.
-    #[error("no result block found: a punch file has headers such as `$DISPLACEMENTS` or `$ELEMENT STRAINS`; request output with (PUNCH)")]
+    #[error(
+        "no result block found: a punch file has headers such as `$DISPLACEMENTS` or `$ELEMENT STRAINS`; request output with (PUNCH)"
+    )]
     NoBlocks,
     /// The block index is out of range.
     #[error("block {index} does not exist: the file has {blocks}")]
@@ -23,7 +25,9 @@ pub enum PunchError {
         why: String,
     },
     /// A field is not what the layout says.
-    #[error("line {line}: `{text}`: expected {expected}: write the file again, it is damaged or edited")]
+    #[error(
+        "line {line}: `{text}`: expected {expected}: write the file again, it is damaged or edited"
+    )]
     BadField {
         /// Line, from 1.
         line: u32,
@@ -33,7 +37,9 @@ pub enum PunchError {
         expected: &'static str,
     },
     /// An entry has another number of words than its element type has.
-    #[error("line {line}: {found} words in the entry, expected {expected}: the file is cut or damaged")]
+    #[error(
+        "line {line}: {found} words in the entry, expected {expected}: the file is cut or damaged"
+    )]
     WordCount {
         /// First line of the entry, from 1.
         line: u32,

@@ -30,7 +30,12 @@ impl<'a> Punch<'a> {
     /// # Errors
     /// [`PunchError::NoBlocks`] where no header names a result.
     pub fn read(bytes: &'a [u8]) -> Result<Self, PunchError> {
-        let mut this = Self { bytes, blocks: Vec::new(), notes: Vec::new(), spans: Vec::new() };
+        let mut this = Self {
+            bytes,
+            blocks: Vec::new(),
+            notes: Vec::new(),
+            spans: Vec::new(),
+        };
         let mut header = Header::default();
         let mut open = false;
         let (mut position, mut number) = (0_usize, 0_u32);
@@ -48,7 +53,11 @@ impl<'a> Punch<'a> {
                 if !open {
                     open = true;
                     this.blocks.push(block(&header));
-                    this.spans.push(Span { start: position, end: position, line: number });
+                    this.spans.push(Span {
+                        start: position,
+                        end: position,
+                        line: number,
+                    });
                 }
                 if let (Some(b), Some(s)) = (this.blocks.last_mut(), this.spans.last_mut()) {
                     s.end = next;
@@ -58,7 +67,11 @@ impl<'a> Punch<'a> {
             position = next;
         }
         // Text before the first header that names a result is no block of ours.
-        let known = this.blocks.iter().map(|b| !b.table.is_empty()).collect::<Vec<_>>();
+        let known = this
+            .blocks
+            .iter()
+            .map(|b| !b.table.is_empty())
+            .collect::<Vec<_>>();
         let mut keep = known.iter();
         this.blocks.retain(|_| *keep.next().unwrap_or(&false));
         let mut keep = known.iter();
@@ -73,13 +86,25 @@ impl<'a> Punch<'a> {
     /// Shell forms, which the header does not state, and notes on what is not decoded.
     fn finish(&mut self) {
         for i in 0..self.blocks.len() {
-            let (Some(block), Some(span)) = (self.blocks.get(i).cloned(), self.spans.get(i).copied()) else { continue };
+            let (Some(block), Some(span)) =
+                (self.blocks.get(i).cloned(), self.spans.get(i).copied())
+            else {
+                continue;
+            };
             if let Some(why) = decode::refusal(&block) {
-                let message = format!("line {}: {} entries left undecoded: {why}", span.line, block.entries);
-                self.notes.push(Note { subject: decode::name(&block), message });
+                let message = format!(
+                    "line {}: {} entries left undecoded: {why}",
+                    span.line, block.entries
+                );
+                self.notes.push(Note {
+                    subject: decode::name(&block),
+                    message,
+                });
                 continue;
             }
-            if matches!(block.quantity, Quantity::Strain | Quantity::Stress) && decode::is_shell(&block) {
+            if matches!(block.quantity, Quantity::Strain | Quantity::Stress)
+                && decode::is_shell(&block)
+            {
                 let form = self.shell_form(&block, span);
                 if let Some(b) = self.blocks.get_mut(i) {
                     b.form = Some(form);
@@ -99,12 +124,21 @@ impl<'a> Punch<'a> {
                 return Err(PunchError::NoBlocks);
             }
             seen = true;
-            let mut rows = Rows { columns: decode::columns(block).unwrap_or(&[]), ..Rows::default() };
+            let mut rows = Rows {
+                columns: decode::columns(block).unwrap_or(&[]),
+                ..Rows::default()
+            };
             decode::push(block, entry, &mut rows)?;
-            curvature = block.quantity == Quantity::Strain && rows.row(0).first() == Some(&0.0) && rows.row(1).first() == Some(&-1.0);
+            curvature = block.quantity == Quantity::Strain
+                && rows.row(0).first() == Some(&0.0)
+                && rows.row(1).first() == Some(&-1.0);
             Ok(())
         });
-        if curvature { ShellForm::Curvature } else { ShellForm::Fiber }
+        if curvature {
+            ShellForm::Curvature
+        } else {
+            ShellForm::Fiber
+        }
     }
 
     /// The rows of block `index`.
@@ -113,14 +147,25 @@ impl<'a> Punch<'a> {
     /// [`PunchError`]: no such block, a block that is not decoded, or damaged text with its line.
     pub fn rows(&self, index: usize) -> Result<Rows, PunchError> {
         let (Some(block), Some(span)) = (self.blocks.get(index), self.spans.get(index)) else {
-            return Err(PunchError::NoSuchBlock { index, blocks: self.blocks.len() });
+            return Err(PunchError::NoSuchBlock {
+                index,
+                blocks: self.blocks.len(),
+            });
         };
         if let Some(why) = decode::refusal(block) {
-            return Err(PunchError::NotDecoded { block: decode::name(block), why });
+            return Err(PunchError::NotDecoded {
+                block: decode::name(block),
+                why,
+            });
         }
-        let mut rows = Rows { columns: decode::columns(block).unwrap_or(&[]), ..Rows::default() };
+        let mut rows = Rows {
+            columns: decode::columns(block).unwrap_or(&[]),
+            ..Rows::default()
+        };
         let text = self.bytes.get(span.start..span.end).unwrap_or(&[]);
-        each_entry(text, span.line, |entry| decode::push(block, entry, &mut rows))?;
+        each_entry(text, span.line, |entry| {
+            decode::push(block, entry, &mut rows)
+        })?;
         Ok(rows)
     }
 }

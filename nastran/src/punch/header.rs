@@ -48,13 +48,22 @@ impl Header {
         let (key, value) = (key.trim(), value.trim());
         match key {
             // A title opens a header: what belongs to the last block only is forgotten.
-            "TITLE" => *self = Self { titles: [value.to_string(), String::new(), String::new()], subcase: self.subcase, ..Self::default() },
+            "TITLE" => {
+                *self = Self {
+                    titles: [value.to_string(), String::new(), String::new()],
+                    subcase: self.subcase,
+                    ..Self::default()
+                }
+            }
             "SUBTITLE" => self.titles[1] = value.to_string(),
             "LABEL" => self.titles[2] = value.to_string(),
             "SUBCASE ID" => self.subcase = first_number(value).unwrap_or(0),
             "ELEMENT TYPE" => {
                 self.element = first_number(value).map(ElementType);
-                self.element_words = value.trim_start_matches(|c: char| c.is_ascii_digit()).trim().to_string();
+                self.element_words = value
+                    .trim_start_matches(|c: char| c.is_ascii_digit())
+                    .trim()
+                    .to_string();
             }
             "POINT ID" | "ELEMENT ID" => self.sort2 = true,
             "EIGENVALUE" | "FREQUENCY" | "TIME" | "LOAD FACTOR" | "LOAD STEP" | "EIGR" => {
@@ -65,8 +74,14 @@ impl Header {
                     _ => Analysis::NonlinearStatics,
                 };
                 let mut parts = value.split_whitespace();
-                self.step = parts.next().and_then(super::entry::real).unwrap_or(f64::NAN);
-                self.mode = value.rsplit_once('=').and_then(|(_, n)| n.trim().parse().ok()).unwrap_or(0);
+                self.step = parts
+                    .next()
+                    .and_then(super::entry::real)
+                    .unwrap_or(f64::NAN);
+                self.mode = value
+                    .rsplit_once('=')
+                    .and_then(|(_, n)| n.trim().parse().ok())
+                    .unwrap_or(0);
             }
             _ => {}
         }
@@ -75,10 +90,13 @@ impl Header {
     fn take_word(&mut self, word: &str) {
         let quantity = match word {
             w if w.contains("OUTPUT") => {
-                self.complex = w.contains("IMAGINARY") || w.contains("PHASE") || w.contains("COMPLEX");
+                self.complex =
+                    w.contains("IMAGINARY") || w.contains("PHASE") || w.contains("COMPLEX");
                 return;
             }
-            w if w.contains("(SOLUTION SET)") || w.contains("RMS") || w.contains("PSD") => Quantity::Other,
+            w if w.contains("(SOLUTION SET)") || w.contains("RMS") || w.contains("PSD") => {
+                Quantity::Other
+            }
             w if w.starts_with("DISPLACEMENT") => Quantity::Displacement,
             w if w.starts_with("VELOCIT") => Quantity::Velocity,
             w if w.starts_with("ACCELERATION") => Quantity::Acceleration,
@@ -101,7 +119,9 @@ impl Header {
 
     /// The quantity with plies told apart.
     pub(super) fn quantity(&self) -> Quantity {
-        let plies = self.element.is_some_and(|e| matches!(e.0, 95..=98 | 232 | 233));
+        let plies = self
+            .element
+            .is_some_and(|e| matches!(e.0, 95..=98 | 232 | 233));
         match (self.quantity, plies) {
             (Quantity::Stress, true) => Quantity::PlyStress,
             (Quantity::Strain, true) => Quantity::PlyStrain,
