@@ -1,1 +1,29 @@
-//! To come.
+//! Sampled signals: what a data logger wrote, checked and made comparable.
+//!
+//! - [`channels`]: a record of equally long, equally sampled channels with units
+//! - [`csv`]: bytes of a CSV file to a record
+//! - [`quality`]: dead, clipped, spiky, drifting, reversed, wrongly scaled channels as findings
+//! - [`detrend`]: mean, line and zero-run removal
+//! - [`butterworth`], [`filtfilt`]: second-order sections, and filtering without phase
+//! - [`spectrum`]: zero-padded transforms, band limiting and integration in one pass
+//! - [`integrate`]: velocity and displacement from acceleration
+//! - [`welch`]: power and cross spectra, coherence
+//! - [`align`]: delay between channels, shifting by a part of a sample
+//! - [`resample`]: another sample rate
+
+pub mod align;
+pub mod butterworth;
+pub mod channels;
+pub mod csv;
+pub mod detrend;
+pub mod filtfilt;
+pub mod integrate;
+pub mod quality;
+pub mod resample;
+pub mod spectrum;
+pub mod welch;
+
+pub use channels::{Channel, Channels, SeriesError};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,315 @@
+//! What each channel's own samples say about its sensor.
+
+use super::channels::{Channel, Channels};
+use super::detrend::{line, mean};
+use crate::finding::{Finding, Severity};
+
+/// What a channel measures: decides which checks make sense.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Vertical acceleration; a DC-coupled sensor reads +g at rest.
+    Acceleration,
+    /// Force, static part included.
+    Force,
+    /// Strain or anything else.
+    Other,
+}
+
+/// Share of missing samples above which a channel can't be relied on.
+const MISSING_LIMIT: f64 = 0.05;
+/// Samples in a row at one value that no live sensor gives.
+const STUCK_RUN: usize = 25;
+/// A channel below this share of its peers' median variation is dead.
+const DEAD_SHARE: f64 = 0.01;
+/// A run of this many samples at the extreme is a clipped peak; at 500 Hz a 10 Hz peak stays within 0.1 % for one.
+const CLIP_RUN: usize = 4;
+/// Clipped peaks needed: the single largest peak may be flat by chance.
+const CLIP_PEAKS: usize = 3;
+/// Robust standard deviations of the second difference beyond which a sample is a spike.
+const SPIKE_SIGMA: f64 = 20.0;
+/// Relative tolerance on a mean that should be the acceleration of gravity.
+const GRAVITY_TOLERANCE: f64 = 0.15;
+
+/// Findings of every channel of a record; `gravity` in the record's units.
+pub fn check_channels(
+    record: &Channels,
+    gravity: f64,
+    kind_of: impl Fn(&str) -> Kind,
+) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let spreads: Vec<(Kind, f64)> = record
+        .list
+        .iter()
+        .map(|c| (kind_of(&c.name), spread(&c.samples)))
+        .collect();
+    for (i, channel) in record.list.iter().enumerate() {
+        let kind = spreads[i].0;
+        let peers: Vec<f64> = spreads
+            .iter()
+            .enumerate()
+            .filter(|(j, s)| *j != i && s.0 == kind)
+            .map(|(_, s)| s.1)
+            .collect();
+        let before = findings.len();
+        findings.extend(check_missing(channel));
+        findings.extend(check_dead(channel, spreads[i].1, &peers));
+        if findings[before..]
+            .iter()
+            .any(|f: &Finding| f.code == "dead-channel")
+        {
+            continue;
+        }
+        findings.extend(check_clipped(channel));
+        findings.extend(check_spikes(channel));
+        findings.extend(check_drift(channel, kind, gravity));
+        if kind == Kind::Acceleration {
+            findings.extend(check_gravity(channel, gravity));
+        }
+    }
+    findings
+}
+
+fn finite(x: &[f64]) -> Vec<f64> {
+    x.iter().copied().filter(|v| v.is_finite()).collect()
+}
+
+fn spread(x: &[f64]) -> f64 {
+    let x = finite(x);
+    let m = mean(&x);
+    (x.iter().map(|v| (v - m) * (v - m)).sum::<f64>() / x.len().max(1) as f64).sqrt()
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// Missing samples.
+fn check_missing(c: &Channel) -> Option<Finding> {
+    let missing = c.samples.iter().filter(|v| !v.is_finite()).count();
+    if missing == 0 {
+        return None;
+    }
+    let share = missing as f64 / c.samples.len().max(1) as f64;
+    let severity = if share > MISSING_LIMIT {
+        Severity::Error
+    } else {
+        Severity::Warning
+    };
+    let message = format!(
+        "{missing} of {} samples are missing; straight lines stand in for them.",
+        c.samples.len()
+    );
+    let remedy = "Use a stretch without gaps, or check cable and logger.";
+    Some(
+        Finding::new(severity, "missing-samples", &c.name, message, remedy)
+            .with_numbers(share, MISSING_LIMIT),
+    )
+}
+
+/// No signal, a frozen value, or a small fraction of what its peers show.
+fn check_dead(c: &Channel, own: f64, peers: &[f64]) -> Option<Finding> {
+    let peer = median(&mut peers.to_vec());
+    let scale = mean(&finite(&c.samples)).abs();
+    if own <= 1e-9 * scale || own == 0.0 || own < DEAD_SHARE * peer {
+        let message = "The channel carries no signal; nothing that needs it can be trusted.";
+        let remedy = "Check sensor, supply and cable; leave the channel out of the job.";
+        return Some(
+            Finding::new(Severity::Error, "dead-channel", &c.name, message, remedy)
+                .with_numbers(own, DEAD_SHARE * peer),
+        );
+    }
+    let (mut longest, mut run) = (0, 1);
+    for w in c.samples.windows(2) {
+        run = if w[0] == w[1] { run + 1 } else { 1 };
+        longest = longest.max(run);
+    }
+    // Values at an extreme that repeat are clipping, reported as such.
+    if longest >= STUCK_RUN && check_clipped(c).is_none() {
+        let message = format!(
+            "The value stays the same over {longest} samples: the sensor or logger froze for a while."
+        );
+        return Some(
+            Finding::new(
+                Severity::Warning,
+                "stuck-channel",
+                &c.name,
+                message,
+                "Use another stretch of the record.",
+            )
+            .with_numbers(longest as f64, STUCK_RUN as f64),
+        );
+    }
+    None
+}
+
+/// Flat peaks at the largest or smallest value.
+fn check_clipped(c: &Channel) -> Option<Finding> {
+    let x = finite(&c.samples);
+    let (lo, hi) = x
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| {
+            (l.min(v), h.max(v))
+        });
+    let near = 5e-4 * (hi - lo);
+    if near <= 0.0 || !near.is_finite() {
+        return None;
+    }
+    let peaks = |at: &dyn Fn(f64) -> bool| {
+        let (mut peaks, mut run, mut total) = (0, 0, 0);
+        for &v in &x {
+            run = if at(v) { run + 1 } else { 0 };
+            peaks += usize::from(run == CLIP_RUN);
+            total += usize::from(at(v));
+        }
+        (peaks, total)
+    };
+    let (top, top_total) = peaks(&|v| v > hi - near);
+    let (bottom, bottom_total) = peaks(&|v| v < lo + near);
+    if top.max(bottom) < CLIP_PEAKS {
+        return None;
+    }
+    let (level, total) = if top >= bottom {
+        (hi, top_total)
+    } else {
+        (lo, bottom_total)
+    };
+    let message = format!(
+        "{} peaks are cut flat at {level:.4} ({total} samples): the sensor or its amplifier saturated.",
+        top.max(bottom)
+    );
+    let remedy = "Measure again with a larger range; peaks and everything integrated from this channel are too small.";
+    Some(
+        Finding::new(
+            Severity::Error,
+            "saturated-channel",
+            &c.name,
+            message,
+            remedy,
+        )
+        .with_numbers(top.max(bottom) as f64, CLIP_PEAKS as f64),
+    )
+}
+
+/// Single samples far off the line through their neighbours.
+fn check_spikes(c: &Channel) -> Option<Finding> {
+    let x = &c.samples;
+    let bend: Vec<f64> = x
+        .windows(3)
+        .map(|w| w[1] - 0.5 * (w[0] + w[2]))
+        .filter(|v| v.is_finite())
+        .collect();
+    let mut sizes: Vec<f64> = bend.iter().map(|v| v.abs()).collect();
+    let sigma = 1.4826 * median(&mut sizes);
+    let count = bend
+        .windows(3)
+        .filter(|w| {
+            w[1].abs() > SPIKE_SIGMA * sigma && w[1].abs() > 1.5 * w[0].abs().max(w[2].abs())
+        })
+        .count();
+    if count == 0 || sigma == 0.0 {
+        return None;
+    }
+    let largest = bend.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let message =
+        format!("{count} single samples stand off their neighbours, by up to {largest:.4}.");
+    let remedy =
+        "Look for loose contacts; remove the spikes before band-limiting, which smears them.";
+    Some(
+        Finding::new(Severity::Warning, "spikes", &c.name, message, remedy)
+            .with_numbers(largest, SPIKE_SIGMA * sigma),
+    )
+}
+
+/// A trend of the block means that their scatter does not explain.
+fn check_drift(c: &Channel, kind: Kind, gravity: f64) -> Option<Finding> {
+    const BLOCKS: usize = 16;
+    let x = finite(&c.samples);
+    if x.len() < 10 * BLOCKS {
+        return None;
+    }
+    let means: Vec<f64> = x
+        .chunks_exact(x.len() / BLOCKS)
+        .take(BLOCKS)
+        .map(mean)
+        .collect();
+    let (offset, slope) = line(&means);
+    let n = means.len() as f64;
+    let rest = means
+        .iter()
+        .enumerate()
+        .map(|(i, m)| (m - offset - slope * i as f64).powi(2))
+        .sum::<f64>()
+        / (n - 2.0);
+    let sigma = (rest * 12.0 / (n * (n * n - 1.0))).sqrt();
+    let change = slope * n;
+    let material = match kind {
+        Kind::Acceleration => 0.02 * gravity,
+        Kind::Force => 0.05 * mean(&x).abs(),
+        Kind::Other => 0.2 * spread(&x),
+    };
+    if slope.abs() < 6.0 * sigma || change.abs() < material {
+        return None;
+    }
+    let message = format!("The mean moves by {change:.4} over the record.");
+    let remedy = "Temperature or a loose sensor for accelerations; for forces also load that is gained or lost.";
+    Some(
+        Finding::new(Severity::Warning, "drift", &c.name, message, remedy)
+            .with_numbers(change, material),
+    )
+}
+
+/// A DC-coupled accelerometer must read +g on the mean.
+fn check_gravity(c: &Channel, gravity: f64) -> Option<Finding> {
+    let m = mean(&finite(&c.samples));
+    let near = |target: f64| (m / target - 1.0).abs() < GRAVITY_TOLERANCE;
+    // Standard gravity as a pure number: the factor between g and m/s2.
+    let g_number = 9.80665;
+    if near(gravity) {
+        let off = m - gravity;
+        let limit = 0.05 * gravity;
+        return (off.abs() > limit).then(|| {
+            let message = format!("The mean is {m:.3}, gravity is {gravity:.3}: an offset of {off:.3}. Band-limiting removes it.");
+            Finding::new(Severity::Info, "offset", &c.name, message, "Zero the sensor on level ground.").with_numbers(off, limit)
+        });
+    }
+    if near(-gravity) || near(-gravity / g_number) {
+        let message = format!(
+            "The mean is {m:.3} where gravity should read {gravity:+.3}: the axis points down."
+        );
+        let remedy = "Turn the sign of this channel.";
+        return Some(
+            Finding::new(Severity::Error, "wrong-sign", &c.name, message, remedy)
+                .with_numbers(m, gravity),
+        );
+    }
+    for (factor, unit) in [(1.0 / g_number, "g"), (g_number, "m/s2 times 9.81")] {
+        if near(gravity * factor) {
+            let message = format!(
+                "The mean is {m:.3} where gravity should read {gravity:.3}: the channel is in {unit}, off by a factor 9.81."
+            );
+            let remedy = "Correct the unit of this channel.";
+            return Some(
+                Finding::new(Severity::Error, "wrong-units", &c.name, message, remedy)
+                    .with_numbers(m, gravity),
+            );
+        }
+    }
+    // Near zero is an AC-coupled sensor, which is fine; anything else is not explained by gravity.
+    let limit = 0.3 * gravity;
+    (m.abs() > limit).then(|| {
+        let message =
+            format!("The mean is {m:.3}: neither 0 (AC coupled) nor gravity {gravity:.3}.");
+        Finding::new(
+            Severity::Warning,
+            "offset",
+            &c.name,
+            message,
+            "Check zero and scale of this channel.",
+        )
+        .with_numbers(m, gravity)
+    })
+}

@@ -1,0 +1,89 @@
+//! Another sample rate.
+
+use super::channels::{Channel, Channels};
+use super::detrend::line;
+use std::f64::consts::PI;
+
+/// x at `to_hz` instead of `from_hz`, over the same span, by band-limited interpolation.
+///
+/// Downwards, a low-pass at 0.45 of the new rate goes first. Kernel: sinc under a Kaiser window, 32 zero crossings a side, whose
+/// error is below 1e-6 of the signal for content under 0.4 of the lower rate. Ends are extended by the record's own line.
+pub fn resampled(x: &[f64], from_hz: f64, to_hz: f64) -> Vec<f64> {
+    const CROSSINGS: f64 = 32.0;
+    if x.is_empty() || from_hz == to_hz {
+        return x.to_vec();
+    }
+    let ratio = to_hz / from_hz;
+    let n_out = ((x.len() - 1) as f64 * ratio + 1e-9).floor() as usize + 1;
+    let (offset, slope) = line(x);
+    let at = |i: isize| {
+        if i < 0 || i as usize >= x.len() {
+            0.0
+        } else {
+            x[i as usize] - offset - slope * i as f64
+        }
+    };
+    let cut = ratio.min(1.0) * 0.92;
+    let half = CROSSINGS / cut;
+    (0..n_out)
+        .map(|k| {
+            let t = k as f64 / ratio;
+            let (first, last) = ((t - half).ceil() as isize, (t + half).floor() as isize);
+            let (mut sum, mut weight) = (0.0, 0.0);
+            for i in first..=last {
+                let u = t - i as f64;
+                let w = sinc(cut * u) * kaiser(u / half);
+                sum += w * at(i);
+                weight += w;
+            }
+            offset + slope * t + sum / weight
+        })
+        .collect()
+}
+
+/// A record at another rate, every channel alike.
+pub fn record_resampled(record: &Channels, to_hz: f64) -> Channels {
+    let list = record
+        .list
+        .iter()
+        .map(|c| Channel {
+            samples: resampled(&c.samples, record.rate_hz, to_hz),
+            ..c.clone()
+        })
+        .collect();
+    Channels {
+        rate_hz: to_hz,
+        start_s: record.start_s,
+        list,
+    }
+}
+
+fn sinc(u: f64) -> f64 {
+    if u.abs() < 1e-12 {
+        1.0
+    } else {
+        (PI * u).sin() / (PI * u)
+    }
+}
+
+/// Kaiser window (beta 10) over -1 .. 1.
+fn kaiser(u: f64) -> f64 {
+    const BETA: f64 = 10.0;
+    if u.abs() >= 1.0 {
+        0.0
+    } else {
+        bessel_i0(BETA * (1.0 - u * u).sqrt()) / bessel_i0(BETA)
+    }
+}
+
+fn bessel_i0(x: f64) -> f64 {
+    let (mut term, mut sum, q) = (1.0, 1.0, x * x / 4.0);
+    for k in 1..60 {
+        term *= q / (k * k) as f64;
+        sum += term;
+        if term < 1e-17 * sum {
+            break;
+        }
+    }
+    sum
+}

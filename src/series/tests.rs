@@ -1,0 +1,361 @@
+use super::align::{delay_between, delayed};
+use super::butterworth::{Pass, butterworth, response};
+use super::channels::{Channel, Channels, SeriesError};
+use super::csv::read_csv;
+use super::detrend::{rms, without_line};
+use super::filtfilt::filtfilt;
+use super::integrate::integrated;
+use super::quality::{Kind, check_channels};
+use super::resample::resampled;
+use super::spectrum::Band;
+use super::welch::cross_spectra;
+use rand::{RngExt, SeedableRng};
+use std::f64::consts::PI;
+
+const RATE: f64 = 500.0;
+
+/// White noise of unit standard deviation (sum of uniforms), the same everywhere.
+fn noise(n: usize, seed: u64) -> Vec<f64> {
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+    (0..n)
+        .map(|_| (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0)
+        .collect()
+}
+
+fn record(list: &[(&str, Vec<f64>)]) -> Channels {
+    let list = list
+        .iter()
+        .map(|(n, s)| Channel {
+            name: (*n).into(),
+            unit: String::new(),
+            samples: s.clone(),
+        })
+        .collect();
+    Channels::from_list(RATE, list).unwrap()
+}
+
+fn codes(record: &Channels) -> Vec<(String, &'static str)> {
+    let kind = |n: &str| {
+        if n.starts_with("a_") {
+            Kind::Acceleration
+        } else {
+            Kind::Force
+        }
+    };
+    check_channels(record, 9.81, kind)
+        .into_iter()
+        .map(|f| (f.subject, f.code))
+        .collect()
+}
+
+/// A live body acceleration: band-limited noise on gravity.
+fn live(seed: u64) -> Vec<f64> {
+    let x = integrated(
+        &noise(16_000, seed),
+        RATE,
+        Band {
+            low_hz: 1.0,
+            high_hz: 15.0,
+        },
+        0,
+    );
+    let scale = 2.0 / rms(&x);
+    x.iter()
+        .zip(noise(16_000, seed + 99))
+        .map(|(v, e)| 9.81 + v * scale + 0.02 * e)
+        .collect()
+}
+
+#[test]
+fn a_band_pass_has_its_edges_at_3_db_and_unit_gain_between() {
+    for order in 1..=6 {
+        let s = butterworth(order, Pass::Band(0.7, 20.0), RATE).unwrap();
+        assert!((response(&s, 0.7, RATE).norm() - 0.5f64.sqrt()).abs() < 1e-9);
+        assert!((response(&s, 20.0, RATE).norm() - 0.5f64.sqrt()).abs() < 1e-9);
+        assert!(response(&s, 0.0, RATE).norm() < 1e-12);
+    }
+}
+
+#[test]
+fn integration_in_the_frequency_domain_returns_a_sine_and_ignores_an_offset() {
+    let (f, n) = (4.0, 10_000);
+    let w = 2.0 * PI * f;
+    let a: Vec<f64> = (0..n)
+        .map(|i| 9.81 - w * w * (w * i as f64 / RATE).sin())
+        .collect();
+    let d = integrated(
+        &a,
+        RATE,
+        Band {
+            low_hz: 0.3,
+            high_hz: f64::INFINITY,
+        },
+        2,
+    );
+    for i in 4000..6000 {
+        // The high-pass takes (0.3/4)^4 = 3e-5 of it.
+        assert!((d[i] - (w * i as f64 / RATE).sin()).abs() < 2e-3);
+    }
+}
+
+#[test]
+fn a_high_pass_keeps_the_double_integral_of_noise_small_where_detrending_does_not() {
+    let n = 32_000;
+    let w = 2.0 * PI * 2.0;
+    let a: Vec<f64> = noise(n, 5)
+        .iter()
+        .enumerate()
+        .map(|(i, e)| 0.05 * e - w * w * 0.01 * (w * i as f64 / RATE).sin())
+        .collect();
+    let truth = |i: usize| 0.01 * (w * i as f64 / RATE).sin();
+    let error = |d: &[f64]| {
+        rms(&(5000..27_000).map(|i| d[i] - truth(i)).collect::<Vec<_>>()) / (0.01 / 2f64.sqrt())
+    };
+    let open = without_line(&integrated(
+        &a,
+        RATE,
+        Band {
+            low_hz: 0.0,
+            high_hz: f64::INFINITY,
+        },
+        2,
+    ));
+    let banded = integrated(
+        &a,
+        RATE,
+        Band {
+            low_hz: 0.5,
+            high_hz: f64::INFINITY,
+        },
+        2,
+    );
+    assert!(error(&open) > 1.0, "{}", error(&open));
+    assert!(error(&banded) < 0.02, "{}", error(&banded));
+}
+
+#[test]
+fn a_shift_by_part_of_a_sample_is_found_again() {
+    let x = integrated(
+        &noise(16_000, 1),
+        RATE,
+        Band {
+            low_hz: 0.5,
+            high_hz: 40.0,
+        },
+        0,
+    );
+    for seconds in [0.0004, -0.005, 0.1234] {
+        let y: Vec<f64> = delayed(&x, RATE, seconds)
+            .iter()
+            .zip(noise(16_000, 2))
+            .map(|(v, e)| v + 0.02 * e * rms(&x))
+            .collect();
+        let d = delay_between(&x, &y, RATE, 1.0, 30.0).unwrap();
+        assert!(
+            (d.seconds - seconds).abs() < 5.0 * d.sigma_s.max(2e-6),
+            "{seconds} {d:?}"
+        );
+        assert!(d.sigma_s < 1e-4 && d.coherence > 0.9);
+    }
+}
+
+#[test]
+fn resampling_keeps_a_slow_sine() {
+    let f = 7.3;
+    let x: Vec<f64> = (0..6000)
+        .map(|i| 3.0 + (2.0 * PI * f * i as f64 / 600.0).sin())
+        .collect();
+    for to in [500.0, 250.0, 1024.0] {
+        let y = resampled(&x, 600.0, to);
+        for k in (y.len() / 4)..(y.len() * 3 / 4) {
+            assert!(
+                (y[k] - 3.0 - (2.0 * PI * f * k as f64 / to).sin()).abs() < 1e-4,
+                "{to} {k}"
+            );
+        }
+    }
+}
+
+#[test]
+fn white_noise_has_a_flat_density_and_no_coherence_with_another() {
+    let (x, y) = (noise(64_000, 3), noise(64_000, 4));
+    let s = cross_spectra(&x, &y, RATE, 512);
+    let level = s.xx[10..200].iter().sum::<f64>() / 190.0;
+    assert!((level * RATE / 2.0 - 1.0).abs() < 0.03, "{level}");
+    assert!(s.coherence()[10..200].iter().sum::<f64>() / 190.0 < 0.02);
+}
+
+#[test]
+fn sound_channels_give_no_finding() {
+    assert_eq!(
+        codes(&record(&[
+            ("a_body", live(10)),
+            ("a_wheel", live(20)),
+            ("f_wheel", live(30).iter().map(|v| v * 3000.0).collect())
+        ])),
+        vec![]
+    );
+}
+
+#[test]
+fn each_fault_of_a_channel_is_named() {
+    let sound = live(20);
+    let faulty = |f: &dyn Fn(usize, f64) -> f64| {
+        live(10)
+            .iter()
+            .enumerate()
+            .map(|(i, v)| f(i, *v))
+            .collect::<Vec<f64>>()
+    };
+    let cases: Vec<(&str, Vec<f64>)> = vec![
+        ("dead-channel", faulty(&|_, _| 9.81)),
+        ("dead-channel", faulty(&|_, v| 9.81 + 0.005 * (v - 9.81))),
+        ("saturated-channel", faulty(&|_, v| v.min(12.0))),
+        (
+            "spikes",
+            faulty(&|i, v| if i % 5000 == 77 { v + 30.0 } else { v }),
+        ),
+        ("drift", faulty(&|i, v| v + 1.0 * i as f64 / 16_000.0)),
+        ("wrong-sign", faulty(&|_, v| -v)),
+        ("wrong-units", faulty(&|_, v| v / 9.81)),
+        ("wrong-units", faulty(&|_, v| v * 9.81)),
+        (
+            "missing-samples",
+            faulty(&|i, v| if i == 500 { f64::NAN } else { v }),
+        ),
+        (
+            "stuck-channel",
+            faulty(&|i, v| if (600..700).contains(&i) { 9.9 } else { v }),
+        ),
+        ("offset", faulty(&|_, v| v + 0.8)),
+    ];
+    for (code, samples) in cases {
+        let found = codes(&record(&[("a_body", samples), ("a_wheel", sound.clone())]));
+        assert!(
+            found.iter().any(|(s, c)| s == "a_body" && *c == code),
+            "{code}: {found:?}"
+        );
+        assert!(
+            found.iter().all(|(s, _)| s == "a_body"),
+            "{code}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn missing_samples_are_bridged_by_straight_lines() {
+    let (filled, counts) =
+        record(&[("a", vec![f64::NAN, 1.0, f64::NAN, 3.0, f64::INFINITY])]).with_gaps_filled();
+    assert_eq!(filled.samples("a").unwrap(), [1.0, 1.0, 2.0, 3.0, 3.0]);
+    assert_eq!(counts, [3]);
+}
+
+#[test]
+fn a_csv_gives_rate_units_and_missing_samples() {
+    let text =
+        b"\xef\xbb\xbft;a_body [m/s2];f_wheel (N)\r\n0;1.5;2\r\n0.002;;3e3\r\n0.004;nan;-4\r\n";
+    let r = read_csv(text, None).unwrap();
+    assert!((r.rate_hz - 500.0).abs() < 1e-9);
+    assert_eq!(
+        (r.list[0].unit.as_str(), r.list[1].unit.as_str()),
+        ("m/s2", "N")
+    );
+    assert_eq!(r.samples("f_wheel").unwrap(), [2.0, 3000.0, -4.0]);
+    assert!(r.samples("a_body").unwrap()[1].is_nan());
+}
+
+#[test]
+fn bad_csv_names_the_line_and_the_remedy() {
+    let line = |t: &[u8], hz| read_csv(t, hz).unwrap_err();
+    assert!(matches!(
+        line(b"t,a\n0,1\n0.1\n", None),
+        SeriesError::Line { line: 3, .. }
+    ));
+    assert!(matches!(
+        line(b"t,a\n0,1\n0.1,x\n", None),
+        SeriesError::Line { line: 3, .. }
+    ));
+    assert!(matches!(
+        line(b"t,a\n0,1\n0.1,1\n0.2,1\n0.5,1\n0.6,1\n", None),
+        SeriesError::UnevenTime { line: 5, .. }
+    ));
+    assert!(matches!(
+        line(b"t,a\n0,1\n0.1,1\n0.2,1\n", Some(20.0)),
+        SeriesError::Rate { .. }
+    ));
+    assert!(matches!(line(b"a\n0\n", None), SeriesError::NoRate));
+    assert!(matches!(line(b"", None), SeriesError::Line { .. }));
+    assert!(matches!(
+        read_csv(b"a\n1\n", Some(5.0)).unwrap().samples("b"),
+        Err(SeriesError::Missing { .. })
+    ));
+}
+
+#[test]
+fn channels_of_different_length_are_refused_by_name() {
+    let list = vec![
+        Channel {
+            name: "a".into(),
+            unit: String::new(),
+            samples: vec![1.0; 5],
+        },
+        Channel {
+            name: "b".into(),
+            unit: String::new(),
+            samples: vec![1.0; 4],
+        },
+    ];
+    assert!(
+        Channels::from_list(1.0, list)
+            .unwrap_err()
+            .to_string()
+            .contains("`b` has 4")
+    );
+}
+
+/// Numbers by `tests/golden/scipy_series.py` (scipy 1.17.1).
+#[test]
+fn filters_and_spectra_agree_with_scipy() {
+    let text = include_str!("../../tests/golden/scipy_series.json");
+    let golden: serde_json::Value = serde_json::from_str(text).unwrap();
+    let numbers = |v: &serde_json::Value| {
+        v.as_array()
+            .unwrap()
+            .iter()
+            .map(|x| x.as_f64().unwrap())
+            .collect::<Vec<f64>>()
+    };
+    let close = |a: &[f64], b: &[f64], tolerance: f64| {
+        assert_eq!(a.len(), b.len());
+        let scale = b.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+        for (i, (x, y)) in a.iter().zip(b).enumerate() {
+            assert!((x - y).abs() < tolerance * scale, "{i}: {x} {y}");
+        }
+    };
+    let x = numbers(&golden["x"]);
+    let y = numbers(&golden["y"]);
+    for case in golden["sosfiltfilt"].as_array().unwrap() {
+        let edges = numbers(&case["edges"]);
+        let pass = match case["btype"].as_str().unwrap() {
+            "band" => Pass::Band(edges[0], edges[1]),
+            "low" => Pass::Low(edges[0]),
+            _ => Pass::High(edges[0]),
+        };
+        let sections = butterworth(case["order"].as_u64().unwrap() as usize, pass, 100.0).unwrap();
+        // Rounding grows with the closeness of the poles to the circle.
+        close(&filtfilt(&sections, &x), &numbers(&case["out"]), 1e-8);
+    }
+    let s = cross_spectra(&x, &y, 100.0, 64);
+    close(&s.xx, &numbers(&golden["welch_x"]), 1e-12);
+    close(&s.coherence(), &numbers(&golden["coherence"]), 1e-10);
+    close(
+        &s.xy.iter().map(|c| c.re).collect::<Vec<_>>(),
+        &numbers(&golden["csd_re"]),
+        1e-12,
+    );
+    close(
+        &s.xy.iter().map(|c| c.im).collect::<Vec<_>>(),
+        &numbers(&golden["csd_im"]),
+        1e-12,
+    );
+}
