@@ -1,1 +1,29 @@
-//! To come.
+//! OP2 files: result tables, geometry blocks and grid point weight, of MSC, NX/Simcenter, OptiStruct, Autodesk and MYSTRAN.
+//!
+//! [`Op2::read`] makes one cheap pass over the records and decodes nothing; [`Op2::rows`] decodes one block at a time, so a
+//! caller with many blocks may do them in parallel.
+//!
+//! - [`words`] 4 or 8 bytes a word, either byte order; text in both 64-bit spellings;
+//! - [`fortran`] the record marks around everything; [`container`] tables, trailers, records;
+//! - [`ident`] identification records; [`index`] result blocks; [`rows`] layouts of the rows and their decoding;
+//! - [`weight`] grid point weight.
+//!
+//! # Reference
+//!
+//! MSC Nastran DMAP programmer's guide, data blocks OUG, OQG, OPG, OES, OEF, OGPFB, OGPWG and module OUTPUT2; NX Nastran DMAP
+//! manual, the same blocks. Where files and manuals differ, the files decide.
+
+mod container;
+mod error;
+mod file;
+mod fortran;
+mod ident;
+mod index;
+mod rows;
+mod weight;
+mod words;
+
+pub use container::{TableEntry, TableKind};
+pub use error::{Op2Error, Unsupported};
+pub use file::{Op2, Solver};
+pub use words::ByteOrder;

@@ -125,7 +125,8 @@ pub struct Block {
     pub von_mises: bool,
     /// Complex numbers (rows are then not decoded).
     pub complex: bool,
-    /// SORT2 tables run over steps for one entity (rows are then not decoded).
+    /// SORT2 tables run over steps for one entity; rows are decoded in statics only, where there is one step and the same rows
+    /// often stand in a SORT1 block too.
     pub sort2: bool,
     /// Words a row in the file; 0 where it has no meaning.
     pub num_wide: u32,

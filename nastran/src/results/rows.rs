@@ -12,6 +12,24 @@ pub struct RowId {
     pub layer: u32,
 }
 
+/// A word of up to eight characters beside a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub struct Label([u8; 8]);
+
+impl Label {
+    /// From text; what is beyond eight bytes, or not ASCII, is left off.
+    pub fn new(text: &str) -> Self {
+        let mut word = [b' '; 8];
+        word.iter_mut().zip(text.bytes().filter(u8::is_ascii)).for_each(|(w, c)| *w = c);
+        Label(word)
+    }
+
+    /// The text, trimmed.
+    pub fn as_str(&self) -> &str {
+        std::str::from_utf8(&self.0).unwrap_or("").trim_end()
+    }
+}
+
 /// Rows of one block: `values` is row-major, `ids.len()` rows by `columns.len()`.
 ///
 /// Columns by quantity:
@@ -22,6 +40,12 @@ pub struct RowId {
 ///   with stations: `x_xb s1 s2 s3 s4 axial smax smin ms`;
 /// - beams, a row a station: `x_xb sxc sxd sxe sxf smax smin mst msc`;
 /// - rods: `axial msa torsion mst`; springs: `value`; bushes: `t1 t2 t3 r1 r2 r3`; shear panels: `max average margin`;
+/// - plies: `e11 e22 g12 g1z g2z angle emax emin max_shear` (strain, engineering shear), `o11 o22 t12 t1z t2z angle omax omin
+///   max_shear` (stress);
+/// - fasteners (CFAST): `t1 t2 t3 r1 r2 r3`; grid point forces: the same, with [`Rows::labels`];
+/// - forces of shells: `fx fy fxy mx my mxy qx qy` per length; of bars: `m1a m2a m1b m2b shear1 shear2 axial torque`, with
+///   stations: `x_xb m1 m2 shear1 shear2 axial torque`; of beams: `x_xb m1 m2 shear1 shear2 axial torque warping_torque`; of
+///   rods: `axial torque`;
 /// - solids, a row a location: `xx yy zz xy yz zx max mid min vm` (shear strain is engineering shear).
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Rows {
@@ -31,8 +55,8 @@ pub struct Rows {
     pub ids: Vec<RowId>,
     /// Row-major values.
     pub values: Vec<f64>,
-    /// Bars, beams and others may carry text grid names or event words; labels of such rows, empty where none.
-    pub labels: Vec<String>,
+    /// Grid point forces: what each row comes from (an element name, `APP-LOAD`, `F-OF-SPC`, `*TOTALS*`); otherwise empty.
+    pub labels: Vec<Label>,
 }
 
 impl Rows {

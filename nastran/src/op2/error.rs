@@ -1,0 +1,46 @@
+//! What can be wrong with an OP2.
+
+use crate::results::ElementType;
+
+/// Why an OP2, or a block of it, could not be read.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs)] // the messages say what the values are
+pub enum Op2Error {
+    /// The first record is not a key of one word.
+    #[error("not an OP2: the file begins with the bytes {first:02x?}, expected a record of 4 or 8 bytes; give the binary file that PARAM,POST writes")]
+    NotOp2 { first: Vec<u8> },
+
+    /// No table could be read at all.
+    #[error("damaged OP2: no table could be read, {what} at byte {offset}; export the results again")]
+    NoTable { offset: usize, what: String },
+
+    /// The caller asked for a block that does not exist.
+    #[error("block {block} does not exist: the file has {count}")]
+    NoBlock { block: usize, count: usize },
+
+    /// The block is listed, but its rows are not decoded.
+    #[error("table {table}, record {record} at byte {offset}: {why}")]
+    Unsupported { table: String, record: usize, offset: usize, why: Unsupported },
+
+    /// A row holds an id that no entity can have.
+    #[error("table {table}, record {record} at byte {offset}: row {row} has the id word {found}; the record is damaged, export the results again")]
+    BadId { table: String, record: usize, offset: usize, row: usize, found: i64 },
+}
+
+/// Why the rows of a block are not decoded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs)]
+pub enum Unsupported {
+    #[error("complex results are not decoded; ask for a static or modal run")]
+    Complex,
+    #[error("SORT2 results are not decoded; ask the solver for SORT1")]
+    Sort2,
+    #[error("random results are not decoded")]
+    Random,
+    #[error("the quantity (table code {table_code}) is not decoded")]
+    Quantity { table_code: i32 },
+    #[error("rows of element type {} ({}) with {num_wide} words are not decoded", .element.0, .element.name().unwrap_or("unknown"))]
+    Layout { element: ElementType, num_wide: u32 },
+    #[error("nodal rows with {num_wide} words are not decoded, expected 8")]
+    Nodal { num_wide: u32 },
+}

@@ -1,0 +1,180 @@
+//! An OP2 as a caller sees it.
+
+use std::borrow::Cow;
+
+use super::container::{Container, Piece, Record, TableEntry, read_container};
+use super::error::{Op2Error, Unsupported};
+use super::index::{Index, Span, index};
+use super::rows::decode;
+use super::weight::read_weight;
+use super::words::{ByteOrder, Format, Words};
+use crate::results::{Block, GridPointWeight, Note, Quantity, Rows};
+
+/// Who wrote a file, by its labels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs)]
+pub enum Solver {
+    Msc,
+    Nx,
+    Optistruct,
+    Autodesk,
+    Mystran,
+    /// No header, or a label we do not know.
+    Unknown,
+}
+
+/// An OP2 that was read once through; rows are decoded when asked for.
+#[derive(Clone, Debug)]
+pub struct Op2<'a> {
+    file: &'a [u8],
+    format: Format,
+    /// Who wrote it.
+    pub solver: Solver,
+    /// Version label of the header (`XXXXXXXX`, `NX2019.2`); `None` in files without header.
+    pub version_label: Option<String>,
+    /// 4 or 8.
+    pub word_bytes: usize,
+    /// Order of the bytes in a word.
+    pub byte_order: ByteOrder,
+    /// Every table, in file order.
+    pub tables: Vec<TableEntry>,
+    /// Every result block, in file order.
+    pub blocks: Vec<Block>,
+    /// What was passed over, and where a damaged file stops.
+    pub notes: Vec<Note>,
+    /// The file ends early or is damaged: tables may be missing, the last block may lack rows.
+    pub truncated: bool,
+    spans: Vec<Span>,
+    weight: Option<usize>,
+    records: Vec<Record>,
+    pieces: Vec<Piece>,
+}
+
+impl<'a> Op2<'a> {
+    /// Tables and blocks of a file; no row is decoded.
+    ///
+    /// A file that is cut short or damaged gives what could be read, a note, and [`Op2::truncated`].
+    ///
+    /// # Errors
+    ///
+    /// [`Op2Error::NotOp2`], or [`Op2Error::NoTable`] where not even one table could be read.
+    pub fn read(file: &'a [u8]) -> Result<Op2<'a>, Op2Error> {
+        let first = || file.get(..file.len().min(8)).unwrap_or(&[]).to_vec();
+        let format = Format::detect(file).ok_or_else(|| Op2Error::NotOp2 { first: first() })?;
+        let mut c: Container = read_container(file, format);
+        if c.tables.is_empty() {
+            if let Some((offset, what)) = c.stopped {
+                return Err(Op2Error::NoTable { offset, what });
+            }
+            if c.version_label.is_none() {
+                return Err(Op2Error::NotOp2 { first: first() });
+            }
+        }
+        let Index { blocks, spans, weight } = index(file, format, &mut c);
+        Ok(Op2 {
+            file,
+            format,
+            solver: solver(&c),
+            version_label: c.version_label,
+            word_bytes: format.bytes(),
+            byte_order: format.order,
+            tables: c.tables,
+            blocks,
+            notes: c.notes,
+            truncated: c.truncated,
+            spans,
+            weight,
+            records: c.records,
+            pieces: c.pieces,
+        })
+    }
+
+    /// Rows of block `block` (an index of [`Op2::blocks`]).
+    ///
+    /// # Errors
+    ///
+    /// [`Op2Error::Unsupported`] for complex, SORT2 and random results and for layouts we do not know; [`Op2Error::BadId`] in a
+    /// damaged record; [`Op2Error::NoBlock`].
+    pub fn rows(&self, block: usize) -> Result<Rows, Op2Error> {
+        let (Some(b), Some(span)) = (self.blocks.get(block), self.spans.get(block)) else {
+            return Err(Op2Error::NoBlock { block, count: self.blocks.len() });
+        };
+        let place = |why| self.unsupported(b, span, why);
+        if b.complex {
+            return Err(place(Unsupported::Complex));
+        }
+        if b.sort2 && span.entity.is_none() {
+            return Err(place(Unsupported::Sort2));
+        }
+        if span.random {
+            return Err(place(Unsupported::Random));
+        }
+        let Some(layout) = span.layout else {
+            return Err(place(match (b.quantity, b.element) {
+                (Quantity::Other, _) => Unsupported::Quantity { table_code: span.table_code },
+                (_, Some(element)) => Unsupported::Layout { element, num_wide: b.num_wide },
+                (_, None) => Unsupported::Nodal { num_wide: b.num_wide },
+            }));
+        };
+        let bytes = self.record_bytes(span.record);
+        decode(Words::new(&bytes, self.format), layout, span.entity).map_err(|bad| {
+            let (record, offset) = self.locate(span);
+            Op2Error::BadId { table: b.table.clone(), record, offset, row: bad.row, found: bad.found }
+        })
+    }
+
+    /// The solver's mass matrix, if table OGPWG is there.
+    pub fn grid_point_weight(&self) -> Option<GridPointWeight> {
+        let rows = self.weight?;
+        let ident = self.record_bytes(rows.checked_sub(1)?);
+        let reference = Words::new(&ident, self.format).int(2).and_then(|v| u32::try_from(v).ok()).unwrap_or(0);
+        read_weight(Words::new(&self.record_bytes(rows), self.format), reference)
+    }
+
+    /// The bytes of a record: as they stand where it is one piece, else put together.
+    fn record_bytes(&self, record: usize) -> Cow<'a, [u8]> {
+        let Some(r) = self.records.get(record) else { return Cow::Borrowed(&[]) };
+        let end = r.first_piece.saturating_add(r.pieces);
+        let pieces = self.pieces.get(r.first_piece..end).unwrap_or(&[]);
+        let bytes = |p: &Piece| self.file.get(p.offset..p.offset.saturating_add(p.len)).unwrap_or(&[]);
+        match pieces {
+            [] => Cow::Borrowed(&[]),
+            [one] => Cow::Borrowed(bytes(one)),
+            many => {
+                let mut all = Vec::with_capacity(r.bytes);
+                many.iter().for_each(|p| all.extend_from_slice(bytes(p)));
+                Cow::Owned(all)
+            }
+        }
+    }
+
+    /// Record number within the table (3 is the first after the sub-table name) and byte offset.
+    fn locate(&self, span: &Span) -> (usize, usize) {
+        let first = self.tables.get(span.table).map_or(0, |t| t.records.start);
+        let offset = self.records.get(span.record).and_then(|r| self.pieces.get(r.first_piece)).map_or(0, |p| p.offset);
+        (span.record.saturating_sub(first).saturating_add(3), offset)
+    }
+
+    fn unsupported(&self, block: &Block, span: &Span, why: Unsupported) -> Op2Error {
+        let (record, offset) = self.locate(span);
+        Op2Error::Unsupported { table: block.table.clone(), record, offset, why }
+    }
+}
+
+/// By the version label; MYSTRAN uses MSC's label and is known by its second records, which carry no name.
+fn solver(c: &Container) -> Solver {
+    let Some(label) = c.version_label.as_deref() else { return Solver::Unknown };
+    if label.starts_with("NX") || label.starts_with("MODEP") {
+        Solver::Nx
+    } else if label.starts_with("OS") {
+        Solver::Optistruct
+    } else if label.starts_with("NE ") {
+        Solver::Autodesk
+    } else if label.starts_with("MYSTRAN") || (!c.tables.is_empty() && c.tables.iter().all(|t| t.subtable.is_empty())) {
+        Solver::Mystran
+    } else if label.starts_with("XXXX") || label.starts_with('V') || label.starts_with("AERO") {
+        Solver::Msc
+    } else {
+        Solver::Unknown
+    }
+}
