@@ -71,7 +71,11 @@ pub(super) struct Container {
 /// Trouble within a table: the chain of records broke, or the keys do not make sense.
 enum Trouble {
     Stop(Stop),
-    Key { offset: usize, key: i64, expected: &'static str },
+    Key {
+        offset: usize,
+        key: i64,
+        expected: &'static str,
+    },
 }
 
 /// What stands between the ends of tables.
@@ -110,7 +114,10 @@ pub(super) fn read_container(file: &[u8], format: Format) -> Container {
                 if !closed {
                     // OUTPUT2 files without header may end like this
                     c.truncated = c.version_label.is_some();
-                    c.note("the file ends without the closing key 0; further tables may be missing".to_owned());
+                    c.note(
+                        "the file ends without the closing key 0; further tables may be missing"
+                            .to_owned(),
+                    );
                 }
                 break;
             }
@@ -118,7 +125,11 @@ pub(super) fn read_container(file: &[u8], format: Format) -> Container {
                 c.note_stop(file, &stop);
                 break;
             }
-            Err(Trouble::Key { offset, key, expected }) => {
+            Err(Trouble::Key {
+                offset,
+                key,
+                expected,
+            }) => {
                 c.note(format!("unexpected key {key} at byte {offset}, expected {expected}; went on with the next table"));
                 if !skip_to_table(&mut cursor, file, start) {
                     break;
@@ -137,7 +148,11 @@ impl Container {
             0 => Ok(Item::Zero),
             2 => self.read_table(cursor, start).map(|()| Item::Table),
             3 => self.read_header(cursor).map(|()| Item::Header),
-            key => Err(Trouble::Key { offset: start, key, expected: "0, 2 (table) or 3 (header)" }),
+            key => Err(Trouble::Key {
+                offset: start,
+                key,
+                expected: "0, 2 (table) or 3 (header)",
+            }),
         }
     }
 
@@ -156,7 +171,13 @@ impl Container {
                         _ => {}
                     }
                 }
-                key => return Err(Trouble::Key { offset: at, key, expected: "-1 after the header" }),
+                key => {
+                    return Err(Trouble::Key {
+                        offset: at,
+                        key,
+                        expected: "-1 after the header",
+                    });
+                }
             }
         }
     }
@@ -174,7 +195,9 @@ impl Container {
         };
         let outcome = self.read_records(cursor, &mut table);
         // an empty record stands before the key 0 that ends a table
-        if self.records.len() > table.records.start && self.records.last().is_some_and(|r| r.bytes == 0) {
+        if self.records.len() > table.records.start
+            && self.records.last().is_some_and(|r| r.bytes == 0)
+        {
             self.records.pop();
         }
         table.records.end = self.records.len();
@@ -182,7 +205,11 @@ impl Container {
         outcome
     }
 
-    fn read_records(&mut self, cursor: &mut Cursor<'_>, table: &mut TableEntry) -> Result<(), Trouble> {
+    fn read_records(
+        &mut self,
+        cursor: &mut Cursor<'_>,
+        table: &mut TableEntry,
+    ) -> Result<(), Trouble> {
         let format = cursor.format;
         let mut number = 0_i64;
         loop {
@@ -193,7 +220,11 @@ impl Container {
                     number = 1;
                     let key = cursor.key()?;
                     if key < 1 {
-                        return Err(Trouble::Key { offset: at, key, expected: "7 before the trailer" });
+                        return Err(Trouble::Key {
+                            offset: at,
+                            key,
+                            expected: "7 before the trailer",
+                        });
                     }
                     let words = Words::new(cursor.next()?.bytes, format);
                     for (i, t) in table.trailer.iter_mut().enumerate() {
@@ -202,19 +233,31 @@ impl Container {
                 }
                 key if key < 0 => {
                     if number == 0 || key == -1 {
-                        return Err(Trouble::Key { offset: at, key, expected: "-1 after the table name" });
+                        return Err(Trouble::Key {
+                            offset: at,
+                            key,
+                            expected: "-1 after the table name",
+                        });
                     }
                     number = key.unsigned_abs().try_into().unwrap_or(i64::MAX);
                     let one = cursor.key()?;
                     let kind = cursor.key()?;
                     if one != 1 {
-                        return Err(Trouble::Key { offset: at, key: one, expected: "1 at the start of a record" });
+                        return Err(Trouble::Key {
+                            offset: at,
+                            key: one,
+                            expected: "1 at the start of a record",
+                        });
                     }
                     if kind == 1 {
                         table.kind = TableKind::Matrix;
                     }
                     if number > 2 && table.kind != TableKind::Matrix {
-                        self.records.push(Record { first_piece: self.pieces.len(), pieces: 0, bytes: 0 });
+                        self.records.push(Record {
+                            first_piece: self.pieces.len(),
+                            pieces: 0,
+                            bytes: 0,
+                        });
                     }
                 }
                 _ => {
@@ -245,21 +288,28 @@ impl Container {
         if let Some(record) = self.records.last_mut() {
             record.pieces = record.pieces.saturating_add(1);
             record.bytes = record.bytes.saturating_add(len);
-            self.pieces.push(Piece { offset: piece.offset, len });
+            self.pieces.push(Piece {
+                offset: piece.offset,
+                len,
+            });
         }
     }
 
     fn note_stop(&mut self, file: &[u8], stop: &Stop) {
         let offset = stop.offset(file);
         self.truncated = true;
-        self.note(format!("{stop} at byte {offset} of {}; what stands before it was read", file.len()));
+        self.note(format!(
+            "{stop} at byte {offset} of {}; what stands before it was read",
+            file.len()
+        ));
         self.stopped = Some((offset, stop.to_string()));
     }
 
     fn note(&mut self, message: String) {
-        let subject = self.tables.last().map_or_else(|| "file".to_owned(), |t| {
-            format!("table {}, record {}", t.name, t.records.len())
-        });
+        let subject = self.tables.last().map_or_else(
+            || "file".to_owned(),
+            |t| format!("table {}, record {}", t.name, t.records.len()),
+        );
         self.notes.push(Note { subject, message });
     }
 }
@@ -274,7 +324,10 @@ fn skip_to_table(cursor: &mut Cursor<'_>, file: &[u8], from: usize) -> bool {
             return false;
         }
         let mut probe = *cursor;
-        if matches!(probe.key(), Ok(2)) && is_name(probe.next().ok(), cursor.format) && matches!(probe.key(), Ok(-1 | 6)) {
+        if matches!(probe.key(), Ok(2))
+            && is_name(probe.next().ok(), cursor.format)
+            && matches!(probe.key(), Ok(-1 | 6))
+        {
             cursor.pos = at;
             return true;
         }
@@ -290,6 +343,8 @@ fn is_name(record: Option<Physical<'_>>, format: Format) -> bool {
     record.is_some_and(|r| {
         r.bytes.len() == 2 * format.bytes()
             && r.bytes.first().is_some_and(u8::is_ascii_alphabetic)
-            && r.bytes.iter().all(|c| c.is_ascii_graphic() || matches!(c, b' ' | 0))
+            && r.bytes
+                .iter()
+                .all(|c| c.is_ascii_graphic() || matches!(c, b' ' | 0))
     })
 }

@@ -7,11 +7,15 @@ use crate::results::ElementType;
 #[allow(missing_docs)] // the messages say what the values are
 pub enum Op2Error {
     /// The first record is not a key of one word.
-    #[error("not an OP2: the file begins with the bytes {first:02x?}, expected a record of 4 or 8 bytes; give the binary file that PARAM,POST writes")]
+    #[error(
+        "not an OP2: the file begins with the bytes {first:02x?}, expected a record of 4 or 8 bytes; give the binary file that PARAM,POST writes"
+    )]
     NotOp2 { first: Vec<u8> },
 
     /// No table could be read at all.
-    #[error("damaged OP2: no table could be read, {what} at byte {offset}; export the results again")]
+    #[error(
+        "damaged OP2: no table could be read, {what} at byte {offset}; export the results again"
+    )]
     NoTable { offset: usize, what: String },
 
     /// The caller asked for a block that does not exist.
@@ -20,11 +24,24 @@ pub enum Op2Error {
 
     /// The block is listed, but its rows are not decoded.
     #[error("table {table}, record {record} at byte {offset}: {why}")]
-    Unsupported { table: String, record: usize, offset: usize, why: Unsupported },
+    Unsupported {
+        table: String,
+        record: usize,
+        offset: usize,
+        why: Unsupported,
+    },
 
     /// A row holds an id that no entity can have.
-    #[error("table {table}, record {record} at byte {offset}: row {row} has the id word {found}; the record is damaged, export the results again")]
-    BadId { table: String, record: usize, offset: usize, row: usize, found: i64 },
+    #[error(
+        "table {table}, record {record} at byte {offset}: row {row} has the id word {found}; the record is damaged, export the results again"
+    )]
+    BadId {
+        table: String,
+        record: usize,
+        offset: usize,
+        row: usize,
+        found: i64,
+    },
 }
 
 /// Why the rows of a block are not decoded.

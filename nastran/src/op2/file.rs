@@ -70,7 +70,11 @@ impl<'a> Op2<'a> {
                 return Err(Op2Error::NotOp2 { first: first() });
             }
         }
-        let Index { blocks, spans, weight } = index(file, format, &mut c);
+        let Index {
+            blocks,
+            spans,
+            weight,
+        } = index(file, format, &mut c);
         Ok(Op2 {
             file,
             format,
@@ -97,7 +101,10 @@ impl<'a> Op2<'a> {
     /// damaged record; [`Op2Error::NoBlock`].
     pub fn rows(&self, block: usize) -> Result<Rows, Op2Error> {
         let (Some(b), Some(span)) = (self.blocks.get(block), self.spans.get(block)) else {
-            return Err(Op2Error::NoBlock { block, count: self.blocks.len() });
+            return Err(Op2Error::NoBlock {
+                block,
+                count: self.blocks.len(),
+            });
         };
         let place = |why| self.unsupported(b, span, why);
         if b.complex {
@@ -111,15 +118,28 @@ impl<'a> Op2<'a> {
         }
         let Some(layout) = span.layout else {
             return Err(place(match (b.quantity, b.element) {
-                (Quantity::Other, _) => Unsupported::Quantity { table_code: span.table_code },
-                (_, Some(element)) => Unsupported::Layout { element, num_wide: b.num_wide },
-                (_, None) => Unsupported::Nodal { num_wide: b.num_wide },
+                (Quantity::Other, _) => Unsupported::Quantity {
+                    table_code: span.table_code,
+                },
+                (_, Some(element)) => Unsupported::Layout {
+                    element,
+                    num_wide: b.num_wide,
+                },
+                (_, None) => Unsupported::Nodal {
+                    num_wide: b.num_wide,
+                },
             }));
         };
         let bytes = self.record_bytes(span.record);
         decode(Words::new(&bytes, self.format), layout, span.entity).map_err(|bad| {
             let (record, offset) = self.locate(span);
-            Op2Error::BadId { table: b.table.clone(), record, offset, row: bad.row, found: bad.found }
+            Op2Error::BadId {
+                table: b.table.clone(),
+                record,
+                offset,
+                row: bad.row,
+                found: bad.found,
+            }
         })
     }
 
@@ -127,16 +147,25 @@ impl<'a> Op2<'a> {
     pub fn grid_point_weight(&self) -> Option<GridPointWeight> {
         let rows = self.weight?;
         let ident = self.record_bytes(rows.checked_sub(1)?);
-        let reference = Words::new(&ident, self.format).int(2).and_then(|v| u32::try_from(v).ok()).unwrap_or(0);
+        let reference = Words::new(&ident, self.format)
+            .int(2)
+            .and_then(|v| u32::try_from(v).ok())
+            .unwrap_or(0);
         read_weight(Words::new(&self.record_bytes(rows), self.format), reference)
     }
 
     /// The bytes of a record: as they stand where it is one piece, else put together.
     fn record_bytes(&self, record: usize) -> Cow<'a, [u8]> {
-        let Some(r) = self.records.get(record) else { return Cow::Borrowed(&[]) };
+        let Some(r) = self.records.get(record) else {
+            return Cow::Borrowed(&[]);
+        };
         let end = r.first_piece.saturating_add(r.pieces);
         let pieces = self.pieces.get(r.first_piece..end).unwrap_or(&[]);
-        let bytes = |p: &Piece| self.file.get(p.offset..p.offset.saturating_add(p.len)).unwrap_or(&[]);
+        let bytes = |p: &Piece| {
+            self.file
+                .get(p.offset..p.offset.saturating_add(p.len))
+                .unwrap_or(&[])
+        };
         match pieces {
             [] => Cow::Borrowed(&[]),
             [one] => Cow::Borrowed(bytes(one)),
@@ -151,26 +180,39 @@ impl<'a> Op2<'a> {
     /// Record number within the table (3 is the first after the sub-table name) and byte offset.
     fn locate(&self, span: &Span) -> (usize, usize) {
         let first = self.tables.get(span.table).map_or(0, |t| t.records.start);
-        let offset = self.records.get(span.record).and_then(|r| self.pieces.get(r.first_piece)).map_or(0, |p| p.offset);
+        let offset = self
+            .records
+            .get(span.record)
+            .and_then(|r| self.pieces.get(r.first_piece))
+            .map_or(0, |p| p.offset);
         (span.record.saturating_sub(first).saturating_add(3), offset)
     }
 
     fn unsupported(&self, block: &Block, span: &Span, why: Unsupported) -> Op2Error {
         let (record, offset) = self.locate(span);
-        Op2Error::Unsupported { table: block.table.clone(), record, offset, why }
+        Op2Error::Unsupported {
+            table: block.table.clone(),
+            record,
+            offset,
+            why,
+        }
     }
 }
 
 /// By the version label; MYSTRAN uses MSC's label and is known by its second records, which carry no name.
 fn solver(c: &Container) -> Solver {
-    let Some(label) = c.version_label.as_deref() else { return Solver::Unknown };
+    let Some(label) = c.version_label.as_deref() else {
+        return Solver::Unknown;
+    };
     if label.starts_with("NX") || label.starts_with("MODEP") {
         Solver::Nx
     } else if label.starts_with("OS") {
         Solver::Optistruct
     } else if label.starts_with("NE ") {
         Solver::Autodesk
-    } else if label.starts_with("MYSTRAN") || (!c.tables.is_empty() && c.tables.iter().all(|t| t.subtable.is_empty())) {
+    } else if label.starts_with("MYSTRAN")
+        || (!c.tables.is_empty() && c.tables.iter().all(|t| t.subtable.is_empty()))
+    {
         Solver::Mystran
     } else if label.starts_with("XXXX") || label.starts_with('V') || label.starts_with("AERO") {
         Solver::Msc

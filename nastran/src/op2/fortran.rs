@@ -26,7 +26,11 @@ pub(super) enum Stop {
     /// The file ends within a record, whose bytes run from `offset` to the end of the file.
     Short { offset: usize, stated: usize },
     /// A length that cannot be, or two lengths that differ.
-    Marks { offset: usize, before: i64, after: i64 },
+    Marks {
+        offset: usize,
+        before: i64,
+        after: i64,
+    },
     /// A key (a record of one word) was expected.
     NotKey { offset: usize, bytes: usize },
 }
@@ -36,7 +40,9 @@ impl Stop {
     pub(super) fn offset(&self, file: &[u8]) -> usize {
         match self {
             Self::End => file.len(),
-            Self::Short { offset, .. } | Self::Marks { offset, .. } | Self::NotKey { offset, .. } => *offset,
+            Self::Short { offset, .. }
+            | Self::Marks { offset, .. }
+            | Self::NotKey { offset, .. } => *offset,
         }
     }
 }
@@ -45,16 +51,27 @@ impl std::fmt::Display for Stop {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::End => f.write_str("the file ends"),
-            Self::Short { stated, .. } => write!(f, "the file ends within a record of {stated} bytes"),
-            Self::Marks { before, after, .. } => write!(f, "a record's two lengths are {before} and {after}"),
-            Self::NotKey { bytes, .. } => write!(f, "found a record of {bytes} bytes, expected a key of one word"),
+            Self::Short { stated, .. } => {
+                write!(f, "the file ends within a record of {stated} bytes")
+            }
+            Self::Marks { before, after, .. } => {
+                write!(f, "a record's two lengths are {before} and {after}")
+            }
+            Self::NotKey { bytes, .. } => write!(
+                f,
+                "found a record of {bytes} bytes, expected a key of one word"
+            ),
         }
     }
 }
 
 impl<'a> Cursor<'a> {
     pub(super) fn new(file: &'a [u8], format: Format) -> Self {
-        Cursor { file, pos: 0, format }
+        Cursor {
+            file,
+            pos: 0,
+            format,
+        }
     }
 
     /// The next record.
@@ -64,12 +81,19 @@ impl<'a> Cursor<'a> {
             return Err(Stop::End);
         }
         let Some(mark) = left.first_chunk::<4>() else {
-            return Err(Stop::Short { offset: self.pos, stated: 4 });
+            return Err(Stop::Short {
+                offset: self.pos,
+                stated: 4,
+            });
         };
         let before = self.format.mark(*mark);
         let offset = self.pos.saturating_add(4);
         let Ok(n) = usize::try_from(before) else {
-            return Err(Stop::Marks { offset: self.pos, before: before.into(), after: 0 });
+            return Err(Stop::Marks {
+                offset: self.pos,
+                before: before.into(),
+                after: 0,
+            });
         };
         let rest = left.get(4..).unwrap_or(&[]);
         let Some((bytes, after)) = rest.split_at_checked(n) else {
@@ -80,7 +104,11 @@ impl<'a> Cursor<'a> {
         };
         let after = self.format.mark(*after);
         if after != before {
-            return Err(Stop::Marks { offset: self.pos, before: before.into(), after: after.into() });
+            return Err(Stop::Marks {
+                offset: self.pos,
+                before: before.into(),
+                after: after.into(),
+            });
         }
         self.pos = offset.saturating_add(n).saturating_add(4);
         Ok(Physical { offset, bytes })
@@ -92,7 +120,10 @@ impl<'a> Cursor<'a> {
         let words = Words::new(record.bytes, self.format);
         match words.int(0) {
             Some(key) if record.bytes.len() == self.format.bytes() => Ok(key),
-            _ => Err(Stop::NotKey { offset: record.offset, bytes: record.bytes.len() }),
+            _ => Err(Stop::NotKey {
+                offset: record.offset,
+                bytes: record.bytes.len(),
+            }),
         }
     }
 

@@ -38,8 +38,12 @@ pub(super) fn read_ident(w: Words<'_>) -> Option<Ident> {
     let sort = code / 1000;
     let format = small(8).unwrap_or(0);
     let (mode, step) = match analysis {
-        Analysis::Modes | Analysis::PostBuckling | Analysis::ComplexEigen => (small(4).unwrap_or(0), w.real(5).unwrap_or(0.0)),
-        Analysis::Frequency | Analysis::Transient | Analysis::NonlinearStatics => (0, w.real(4).unwrap_or(0.0)),
+        Analysis::Modes | Analysis::PostBuckling | Analysis::ComplexEigen => {
+            (small(4).unwrap_or(0), w.real(5).unwrap_or(0.0))
+        }
+        Analysis::Frequency | Analysis::Transient | Analysis::NonlinearStatics => {
+            (0, w.real(4).unwrap_or(0.0))
+        }
         _ => (0, 0.0),
     };
     Some(Ident {
@@ -55,7 +59,9 @@ pub(super) fn read_ident(w: Words<'_>) -> Option<Ident> {
         num_wide: small(9).and_then(|v| u32::try_from(v).ok()).unwrap_or(0),
         stress_code: w.int(10).unwrap_or(0),
         thermal: w.int(22).unwrap_or(0),
-        entity: matches!(sort, 2 | 3 | 5 | 6).then(|| w.int(4).and_then(|v| u32::try_from(v / 10).ok())).flatten(),
+        entity: matches!(sort, 2 | 3 | 5 | 6)
+            .then(|| w.int(4).and_then(|v| u32::try_from(v / 10).ok()))
+            .flatten(),
         titles: [w.text(50, 32), w.text(82, 32), w.text(114, 32)],
     })
 }
@@ -102,7 +108,10 @@ impl Ident {
     /// The element type of element results.
     pub(super) fn element_type(&self, quantity: Quantity) -> Option<ElementType> {
         use Quantity as Q;
-        let of_elements = matches!(quantity, Q::ElementForce | Q::Stress | Q::Strain | Q::PlyStress | Q::PlyStrain | Q::Other);
+        let of_elements = matches!(
+            quantity,
+            Q::ElementForce | Q::Stress | Q::Strain | Q::PlyStress | Q::PlyStrain | Q::Other
+        );
         (of_elements && self.element != 0).then_some(ElementType(self.element))
     }
 }
@@ -119,6 +128,12 @@ fn is_mpc_force(table: &str) -> bool {
 /// Tables that share codes with plain results but hold something else: random results, response spectra, contributions, and
 /// contact and glue forces.
 fn is_derived(table: &str) -> bool {
-    ["PSD", "ATO", "RMS", "CRM", "NO1", "NO2", "XNO"].iter().any(|part| table.contains(part))
-        || ["OUGMC", "OUGPC", "OUGGC", "OUGRC", "OQGCF", "OQGGF", "OFCON", "OPNL", "OCPSDF"].iter().any(|head| table.starts_with(head))
+    ["PSD", "ATO", "RMS", "CRM", "NO1", "NO2", "XNO"]
+        .iter()
+        .any(|part| table.contains(part))
+        || [
+            "OUGMC", "OUGPC", "OUGGC", "OUGRC", "OQGCF", "OQGGF", "OFCON", "OPNL", "OCPSDF",
+        ]
+        .iter()
+        .any(|head| table.starts_with(head))
 }

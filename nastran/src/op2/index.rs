@@ -2,7 +2,7 @@
 
 use super::container::{Container, TableEntry, TableKind};
 use super::ident::{IDENT_WORDS, Ident, read_ident};
-use super::rows::{layout, Layout};
+use super::rows::{Layout, layout};
 use super::words::{Format, Words};
 use crate::results::{Analysis, Block, Note, Quantity};
 
@@ -51,7 +51,14 @@ pub(super) fn index(file: &[u8], format: Format, c: &mut Container) -> Index {
 }
 
 /// Adds the blocks of one table; false if it has no identification record.
-fn index_table(file: &[u8], format: Format, c: &mut Container, out: &mut Index, t: usize, table: &TableEntry) -> bool {
+fn index_table(
+    file: &[u8],
+    format: Format,
+    c: &mut Container,
+    out: &mut Index,
+    t: usize,
+    table: &TableEntry,
+) -> bool {
     let mut found = false;
     let mut r = table.records.start;
     while r < table.records.end {
@@ -62,7 +69,10 @@ fn index_table(file: &[u8], format: Format, c: &mut Container, out: &mut Index, 
         found = true;
         let rows = r.saturating_add(1);
         r = r.saturating_add(2);
-        let Some(record) = (rows < table.records.end).then(|| c.records.get(rows)).flatten() else {
+        let Some(record) = (rows < table.records.end)
+            .then(|| c.records.get(rows))
+            .flatten()
+        else {
             c.notes.push(Note {
                 subject: format!("table {}, subcase {}", table.name, ident.subcase),
                 message: "an identification record without rows; skipped".to_owned(),
@@ -94,7 +104,13 @@ fn ident_at(file: &[u8], format: Format, c: &Container, record: usize) -> Option
     read_ident(Words::new(bytes, format))
 }
 
-fn describe(table: &TableEntry, t: usize, record: usize, words: usize, ident: Ident) -> (Block, Span) {
+fn describe(
+    table: &TableEntry,
+    t: usize,
+    record: usize,
+    words: usize,
+    ident: Ident,
+) -> (Block, Span) {
     let quantity = ident.quantity(&table.name);
     let element = ident.element_type(quantity);
     let layout = layout(quantity, element, ident.num_wide);
@@ -115,8 +131,20 @@ fn describe(table: &TableEntry, t: usize, record: usize, words: usize, ident: Id
         entries: words.checked_div(wide).unwrap_or(0),
         titles: ident.titles,
     };
-    let entity = ident.entity.filter(|_| block.sort2 && block.analysis == Analysis::Statics);
-    (block, Span { table: t, record, table_code: ident.table_code, random: ident.random, entity, layout })
+    let entity = ident
+        .entity
+        .filter(|_| block.sort2 && block.analysis == Analysis::Statics);
+    (
+        block,
+        Span {
+            table: t,
+            record,
+            table_code: ident.table_code,
+            random: ident.random,
+            entity,
+            layout,
+        },
+    )
 }
 
 /// Why a block's rows will not be decoded; `None` if they will.
@@ -126,10 +154,16 @@ fn passed_over(block: &Block, span: &Span) -> Option<String> {
     } else if block.sort2 && span.entity.is_none() {
         Some("SORT2 results; listed, not decoded".to_owned())
     } else if block.quantity == Quantity::Other {
-        Some(format!("results of table code {}; listed, not decoded", span.table_code))
+        Some(format!(
+            "results of table code {}; listed, not decoded",
+            span.table_code
+        ))
     } else if span.layout.is_none() {
         let element = block.element.map_or(0, |e| e.0);
-        Some(format!("rows of element type {element} with {} words; listed, not decoded", block.num_wide))
+        Some(format!(
+            "rows of element type {element} with {} words; listed, not decoded",
+            block.num_wide
+        ))
     } else {
         None
     }
@@ -137,21 +171,55 @@ fn passed_over(block: &Block, span: &Span) -> Option<String> {
 
 fn note_once(c: &mut Container, table: &str, message: &str) {
     let subject = format!("table {table}");
-    if !c.notes.iter().any(|n| n.subject == subject && n.message == message) {
-        c.notes.push(Note { subject, message: message.to_owned() });
+    if !c
+        .notes
+        .iter()
+        .any(|n| n.subject == subject && n.message == message)
+    {
+        c.notes.push(Note {
+            subject,
+            message: message.to_owned(),
+        });
     }
 }
 
 /// Bulk data tables, with the suffixes of the solvers (`GEOM1S` after superelement partitioning, `GEOM1N` ..).
 fn is_geometry(name: &str) -> bool {
-    ["GEOM1", "GEOM2", "GEOM3", "GEOM4"].iter().any(|head| name.starts_with(head)) || matches!(name, "EPT" | "EPTS" | "MPT" | "MPTS")
+    ["GEOM1", "GEOM2", "GEOM3", "GEOM4"]
+        .iter()
+        .any(|head| name.starts_with(head))
+        || matches!(name, "EPT" | "EPTS" | "MPT" | "MPTS")
 }
 
 /// Tables that carry no results and nothing a deck would miss; skipped without a note.
 fn is_known(name: &str) -> bool {
     matches!(
         name,
-        "PVT0" | "PVT" | "CASECC" | "CASEXX" | "EQEXIN" | "EQEXINS" | "GPL" | "GPLS" | "GPDT" | "GPDTS" | "BGPDT" | "BGPDTS" | "CSTM" | "CSTMS"
-            | "DYNAMIC" | "DYNAMICS" | "DIT" | "DITS" | "EDT" | "EDTS" | "EDOM" | "CONTACT" | "VIEWTB" | "QUALINFO" | "SIL" | "SILS"
+        "PVT0"
+            | "PVT"
+            | "CASECC"
+            | "CASEXX"
+            | "EQEXIN"
+            | "EQEXINS"
+            | "GPL"
+            | "GPLS"
+            | "GPDT"
+            | "GPDTS"
+            | "BGPDT"
+            | "BGPDTS"
+            | "CSTM"
+            | "CSTMS"
+            | "DYNAMIC"
+            | "DYNAMICS"
+            | "DIT"
+            | "DITS"
+            | "EDT"
+            | "EDTS"
+            | "EDOM"
+            | "CONTACT"
+            | "VIEWTB"
+            | "QUALINFO"
+            | "SIL"
+            | "SILS"
     )
 }

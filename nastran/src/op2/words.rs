@@ -25,10 +25,22 @@ impl Format {
     pub(super) fn detect(file: &[u8]) -> Option<Format> {
         let first = *file.first_chunk::<4>()?;
         match (u32::from_le_bytes(first), u32::from_be_bytes(first)) {
-            (4, _) => Some(Format { order: ByteOrder::Little, wide: false }),
-            (8, _) => Some(Format { order: ByteOrder::Little, wide: true }),
-            (_, 4) => Some(Format { order: ByteOrder::Big, wide: false }),
-            (_, 8) => Some(Format { order: ByteOrder::Big, wide: true }),
+            (4, _) => Some(Format {
+                order: ByteOrder::Little,
+                wide: false,
+            }),
+            (8, _) => Some(Format {
+                order: ByteOrder::Little,
+                wide: true,
+            }),
+            (_, 4) => Some(Format {
+                order: ByteOrder::Big,
+                wide: false,
+            }),
+            (_, 8) => Some(Format {
+                order: ByteOrder::Big,
+                wide: true,
+            }),
             _ => None,
         }
     }
@@ -53,7 +65,10 @@ impl<'a> Words<'a> {
     /// The whole words of `bytes`; a rest shorter than a word is left off.
     pub(super) fn new(bytes: &'a [u8], format: Format) -> Self {
         let whole = bytes.len() - bytes.len() % format.bytes();
-        Words { bytes: bytes.get(..whole).unwrap_or(bytes), format }
+        Words {
+            bytes: bytes.get(..whole).unwrap_or(bytes),
+            format,
+        }
     }
 
     /// Number of words.
@@ -66,20 +81,28 @@ impl<'a> Words<'a> {
         let w = self.format.bytes();
         let a = from.checked_mul(w)?;
         let b = n.checked_mul(w)?.checked_add(a)?;
-        Some(Words { bytes: self.bytes.get(a..b)?, format: self.format })
+        Some(Words {
+            bytes: self.bytes.get(a..b)?,
+            format: self.format,
+        })
     }
 
     /// Words from `from` on; empty past the end.
     pub(super) fn rest(&self, from: usize) -> Words<'a> {
         let a = from.saturating_mul(self.format.bytes());
-        Words { bytes: self.bytes.get(a..).unwrap_or(&[]), format: self.format }
+        Words {
+            bytes: self.bytes.get(a..).unwrap_or(&[]),
+            format: self.format,
+        }
     }
 
     /// Pieces of `n` words each; a shorter rest is left off.
     pub(super) fn entries(&self, n: usize) -> impl ExactSizeIterator<Item = Words<'a>> + use<'a> {
         let format = self.format;
         let size = n.max(1).saturating_mul(format.bytes());
-        self.bytes.chunks_exact(size).map(move |bytes| Words { bytes, format })
+        self.bytes
+            .chunks_exact(size)
+            .map(move |bytes| Words { bytes, format })
     }
 
     /// The bytes of word `i`.
@@ -94,10 +117,22 @@ impl<'a> Words<'a> {
     pub(super) fn int(&self, i: usize) -> Option<i64> {
         let raw = self.raw(i)?;
         Some(match self.format {
-            Format { order: ByteOrder::Little, wide: false } => i64::from(i32::from_le_bytes(*raw.first_chunk()?)),
-            Format { order: ByteOrder::Big, wide: false } => i64::from(i32::from_be_bytes(*raw.first_chunk()?)),
-            Format { order: ByteOrder::Little, wide: true } => i64::from_le_bytes(*raw.first_chunk()?),
-            Format { order: ByteOrder::Big, wide: true } => i64::from_be_bytes(*raw.first_chunk()?),
+            Format {
+                order: ByteOrder::Little,
+                wide: false,
+            } => i64::from(i32::from_le_bytes(*raw.first_chunk()?)),
+            Format {
+                order: ByteOrder::Big,
+                wide: false,
+            } => i64::from(i32::from_be_bytes(*raw.first_chunk()?)),
+            Format {
+                order: ByteOrder::Little,
+                wide: true,
+            } => i64::from_le_bytes(*raw.first_chunk()?),
+            Format {
+                order: ByteOrder::Big,
+                wide: true,
+            } => i64::from_be_bytes(*raw.first_chunk()?),
         })
     }
 
@@ -106,10 +141,22 @@ impl<'a> Words<'a> {
     pub(super) fn real(&self, i: usize) -> Option<f64> {
         let raw = self.raw(i)?;
         Some(match self.format {
-            Format { order: ByteOrder::Little, wide: false } => f64::from(f32::from_le_bytes(*raw.first_chunk()?)),
-            Format { order: ByteOrder::Big, wide: false } => f64::from(f32::from_be_bytes(*raw.first_chunk()?)),
-            Format { order: ByteOrder::Little, wide: true } => f64::from_le_bytes(*raw.first_chunk()?),
-            Format { order: ByteOrder::Big, wide: true } => f64::from_be_bytes(*raw.first_chunk()?),
+            Format {
+                order: ByteOrder::Little,
+                wide: false,
+            } => f64::from(f32::from_le_bytes(*raw.first_chunk()?)),
+            Format {
+                order: ByteOrder::Big,
+                wide: false,
+            } => f64::from(f32::from_be_bytes(*raw.first_chunk()?)),
+            Format {
+                order: ByteOrder::Little,
+                wide: true,
+            } => f64::from_le_bytes(*raw.first_chunk()?),
+            Format {
+                order: ByteOrder::Big,
+                wide: true,
+            } => f64::from_be_bytes(*raw.first_chunk()?),
         })
     }
 
@@ -126,18 +173,44 @@ impl<'a> Words<'a> {
     /// Appends words `from .. from + n` as reals; fewer where the words end.
     #[inline]
     pub(super) fn push_reals(&self, from: usize, n: usize, out: &mut Vec<f64>) {
-        let Some(Words { bytes, .. }) = self.part(from, n) else { return };
+        let Some(Words { bytes, .. }) = self.part(from, n) else {
+            return;
+        };
         match self.format {
-            Format { order: ByteOrder::Little, wide: false } => {
-                out.extend(bytes.as_chunks().0.iter().map(|b| f64::from(f32::from_le_bytes(*b))));
+            Format {
+                order: ByteOrder::Little,
+                wide: false,
+            } => {
+                out.extend(
+                    bytes
+                        .as_chunks()
+                        .0
+                        .iter()
+                        .map(|b| f64::from(f32::from_le_bytes(*b))),
+                );
             }
-            Format { order: ByteOrder::Big, wide: false } => {
-                out.extend(bytes.as_chunks().0.iter().map(|b| f64::from(f32::from_be_bytes(*b))));
+            Format {
+                order: ByteOrder::Big,
+                wide: false,
+            } => {
+                out.extend(
+                    bytes
+                        .as_chunks()
+                        .0
+                        .iter()
+                        .map(|b| f64::from(f32::from_be_bytes(*b))),
+                );
             }
-            Format { order: ByteOrder::Little, wide: true } => {
+            Format {
+                order: ByteOrder::Little,
+                wide: true,
+            } => {
                 out.extend(bytes.as_chunks().0.iter().map(|b| f64::from_le_bytes(*b)));
             }
-            Format { order: ByteOrder::Big, wide: true } => {
+            Format {
+                order: ByteOrder::Big,
+                wide: true,
+            } => {
                 out.extend(bytes.as_chunks().0.iter().map(|b| f64::from_be_bytes(*b)));
             }
         }
@@ -146,12 +219,27 @@ impl<'a> Words<'a> {
     /// The characters of words `from .. from + n`, trimmed. In 64-bit files either 4 characters a word and 4 blanks
     /// (`XXXX    XXXX    `), or all 8; what is not printable becomes a blank.
     pub(super) fn text(&self, from: usize, n: usize) -> String {
-        let Some(Words { bytes, .. }) = self.part(from, n) else { return String::new() };
+        let Some(Words { bytes, .. }) = self.part(from, n) else {
+            return String::new();
+        };
         let (words, _) = bytes.as_chunks::<8>();
-        let spread = self.format.wide && words.iter().all(|w| w.iter().skip(4).all(|c| matches!(c, b' ' | 0)));
-        let printable = |c: &u8| if c.is_ascii_graphic() { char::from(*c) } else { ' ' };
+        let spread = self.format.wide
+            && words
+                .iter()
+                .all(|w| w.iter().skip(4).all(|c| matches!(c, b' ' | 0)));
+        let printable = |c: &u8| {
+            if c.is_ascii_graphic() {
+                char::from(*c)
+            } else {
+                ' '
+            }
+        };
         let text: String = if spread {
-            words.iter().flat_map(|w| w.iter().take(4)).map(printable).collect()
+            words
+                .iter()
+                .flat_map(|w| w.iter().take(4))
+                .map(printable)
+                .collect()
         } else {
             bytes.iter().map(printable).collect()
         };

@@ -20,7 +20,9 @@ impl Label {
     /// From text; what is beyond eight bytes, or not ASCII, is left off.
     pub fn new(text: &str) -> Self {
         let mut word = [b' '; 8];
-        word.iter_mut().zip(text.bytes().filter(u8::is_ascii)).for_each(|(w, c)| *w = c);
+        word.iter_mut()
+            .zip(text.bytes().filter(u8::is_ascii))
+            .for_each(|(w, c)| *w = c);
         Label(word)
     }
 

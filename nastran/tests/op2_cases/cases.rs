@@ -15,8 +15,15 @@ pub fn each_op2(mut check: impl FnMut(&str, &Op2<'_>, &Value)) {
     let mut folders: Vec<_> = folders.flatten().map(|f| f.path()).collect();
     folders.sort();
     for folder in folders {
-        let (Some(case), Some(expected)) = (json(&folder.join("case.json")), json(&folder.join("expected.json"))) else { continue };
-        let Some(name) = case["op2"].as_str() else { continue };
+        let (Some(case), Some(expected)) = (
+            json(&folder.join("case.json")),
+            json(&folder.join("expected.json")),
+        ) else {
+            continue;
+        };
+        let Some(name) = case["op2"].as_str() else {
+            continue;
+        };
         let bytes = std::fs::read(folder.join(name)).unwrap();
         let label = folder.file_name().unwrap().to_string_lossy().into_owned();
         let op2 = Op2::read(&bytes).unwrap_or_else(|e| panic!("{label}: {e}"));

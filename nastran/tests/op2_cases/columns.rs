@@ -19,7 +19,9 @@ pub fn quantity(result: &str) -> Quantity {
             Some(("strain", _)) => Quantity::Strain,
             Some(("stress", _)) => Quantity::Stress,
             Some(("force", _)) => Quantity::ElementForce,
-            _ => panic!("no quantity for pyNastran's {result}: add it to tests/op2_cases/columns.rs"),
+            _ => {
+                panic!("no quantity for pyNastran's {result}: add it to tests/op2_cases/columns.rs")
+            }
         },
     }
 }
@@ -31,8 +33,16 @@ pub fn positions(result: &str, theirs: &[&str], ours: &[&str]) -> Vec<usize> {
         .map(|name| {
             let alias = alias(result, name);
             ours.iter()
-                .position(|o| if alias.is_empty() { o == name } else { alias.contains(o) })
-                .unwrap_or_else(|| panic!("{result}: no column for pyNastran's {name} among {ours:?}"))
+                .position(|o| {
+                    if alias.is_empty() {
+                        o == name
+                    } else {
+                        alias.contains(o)
+                    }
+                })
+                .unwrap_or_else(|| {
+                    panic!("{result}: no column for pyNastran's {name} among {ours:?}")
+                })
         })
         .collect()
 }
@@ -40,7 +50,9 @@ pub fn positions(result: &str, theirs: &[&str], ours: &[&str]) -> Vec<usize> {
 /// Our names of one of pyNastran's columns, where they differ.
 fn alias(result: &str, name: &str) -> &'static [&'static str] {
     let force = result.starts_with("force");
-    let solid = ["ctetra", "cpenta", "chexa", "cpyram"].iter().any(|e| result.contains(e));
+    let solid = ["ctetra", "cpenta", "chexa", "cpyram"]
+        .iter()
+        .any(|e| result.contains(e));
     match name {
         "fiber_curvature" | "fiber_distance" => &["fiber"],
         "exy" => &["gxy", "xy"],
@@ -86,7 +98,9 @@ fn alias(result: &str, name: &str) -> &'static [&'static str] {
         "sxd" if result.contains("10nodes") => &["s2"],
         "sxe" if result.contains("10nodes") => &["s3"],
         "sxf" if result.contains("10nodes") => &["s4"],
-        "mx" | "bmx" | "my" | "bmy" | "mxy" | "bmxy" if result.contains("cquad4_force") => shell_force(name),
+        "mx" | "bmx" | "my" | "bmy" | "mxy" | "bmxy" if result.contains("cquad4_force") => {
+            shell_force(name)
+        }
         "tx" if force => &["qx"],
         "ty" if force => &["qy"],
         "fx" => &["t1"],

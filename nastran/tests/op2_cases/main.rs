@@ -12,12 +12,25 @@ use nastran::op2::{ByteOrder, Op2};
 fn byte_order_word_size_label_and_table_names_agree() {
     each_op2(|case, op2, expected| {
         let layout = &expected["op2"];
-        let order = if op2.byte_order == ByteOrder::Little { "little" } else { "big" };
+        let order = if op2.byte_order == ByteOrder::Little {
+            "little"
+        } else {
+            "big"
+        };
         assert_eq!(layout["byte_order"], order, "{case}");
         assert_eq!(layout["word_bytes"], op2.word_bytes, "{case}");
-        assert_eq!(layout["version_label"].as_str(), op2.version_label.as_deref(), "{case}");
+        assert_eq!(
+            layout["version_label"].as_str(),
+            op2.version_label.as_deref(),
+            "{case}"
+        );
         let names: Vec<&str> = op2.tables.iter().map(|t| t.name.as_str()).collect();
-        let want: Vec<&str> = layout["tables"].as_array().unwrap().iter().map(|t| t.as_str().unwrap()).collect();
+        let want: Vec<&str> = layout["tables"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|t| t.as_str().unwrap())
+            .collect();
         assert_eq!(want, names, "{case}");
         assert!(!op2.truncated, "{case}: {:?}", op2.notes);
     });
@@ -39,16 +52,31 @@ fn shell_strain_in_a_table_named_for_stress_agrees() {
 fn grid_point_weight_agrees() {
     each_op2(|case, op2, expected| {
         let want = &expected["op2"]["grid_point_weight"];
-        let Some((_, want)) = want.as_object().and_then(|o| o.iter().next()) else { return };
-        let got = op2.grid_point_weight().unwrap_or_else(|| panic!("{case}: no grid point weight"));
+        let Some((_, want)) = want.as_object().and_then(|o| o.iter().next()) else {
+            return;
+        };
+        let got = op2
+            .grid_point_weight()
+            .unwrap_or_else(|| panic!("{case}: no grid point weight"));
         assert_eq!(want["reference_point"], got.reference, "{case}");
         let same = |name: &str, got: &[f64]| {
-            let want: Vec<f64> = want[name].as_array().unwrap().iter().flat_map(|r| match r.as_array() {
-                Some(row) => row.iter().map(|v| v.as_f64().unwrap()).collect(),
-                None => vec![r.as_f64().unwrap()],
-            }).collect();
-            let same = want.iter().zip(got).all(|(w, g)| (w - g).abs() <= 1e-15 * w.abs());
-            assert!(same && want.len() == got.len(), "{case} {name}: {got:?}, pyNastran {want:?}");
+            let want: Vec<f64> = want[name]
+                .as_array()
+                .unwrap()
+                .iter()
+                .flat_map(|r| match r.as_array() {
+                    Some(row) => row.iter().map(|v| v.as_f64().unwrap()).collect(),
+                    None => vec![r.as_f64().unwrap()],
+                })
+                .collect();
+            let same = want
+                .iter()
+                .zip(got)
+                .all(|(w, g)| (w - g).abs() <= 1e-15 * w.abs());
+            assert!(
+                same && want.len() == got.len(),
+                "{case} {name}: {got:?}, pyNastran {want:?}"
+            );
         };
         same("MO", got.mo.as_flattened());
         same("mass", &got.mass);

@@ -17,11 +17,18 @@ pub fn compare(case: &str, op2: &Op2<'_>, expected: &Value) -> usize {
         let steps = want["shape"][0].as_u64().unwrap() as usize;
         let mut blocks = matching(op2, want);
         // the same key may stand for several runs of blocks (buckling loops): take them in file order
-        let key = format!("{}{}{}{}", want["result"], want["subcase_key"], want["table_name"], want["element_type"]);
+        let key = format!(
+            "{}{}{}{}",
+            want["result"], want["subcase_key"], want["table_name"], want["element_type"]
+        );
         let skip = used.entry(key).or_default();
         blocks.drain(..(*skip).min(blocks.len()));
         *skip += steps;
-        assert!(blocks.len() >= steps, "{place}: {} blocks for {steps} steps", blocks.len());
+        assert!(
+            blocks.len() >= steps,
+            "{place}: {} blocks for {steps} steps",
+            blocks.len()
+        );
         compare_table(&place, op2, want, &blocks[..steps]);
     }
     results.len()
@@ -31,7 +38,12 @@ pub fn compare(case: &str, op2: &Op2<'_>, expected: &Value) -> usize {
 fn matching(op2: &Op2<'_>, want: &Value) -> Vec<usize> {
     let quantity = columns::quantity(want["result"].as_str().unwrap());
     let int = |name: &str| want[name].as_i64();
-    let sort2 = want["subcase_key"].as_str().unwrap().split(',').nth(2).is_some_and(|s| s.trim() == "2");
+    let sort2 = want["subcase_key"]
+        .as_str()
+        .unwrap()
+        .split(',')
+        .nth(2)
+        .is_some_and(|s| s.trim() == "2");
     (0..op2.blocks.len())
         .filter(|i| {
             let b = &op2.blocks[*i];
@@ -41,24 +53,41 @@ fn matching(op2: &Op2<'_>, want: &Value) -> Vec<usize> {
                 && int("isubcase") == Some(i64::from(b.subcase))
                 && int("analysis_code").map(|c| Analysis::from_code(c as i32)) == Some(b.analysis)
                 && int("num_wide") == Some(i64::from(b.num_wide))
-                && (int("element_type").is_none() || int("element_type") == b.element.map(|e| i64::from(e.0)))
+                && (int("element_type").is_none()
+                    || int("element_type") == b.element.map(|e| i64::from(e.0)))
                 && (sort2 || want["table_name"].as_str() == Some(b.table.as_str()))
         })
         .collect()
 }
 
 fn compare_table(place: &str, op2: &Op2<'_>, want: &Value, blocks: &[usize]) {
-    let rows: Vec<Rows> = blocks.iter().map(|b| op2.rows(*b).unwrap_or_else(|e| panic!("{place}: {e}"))).collect();
-    let theirs: Vec<&str> = want["columns"].as_array().unwrap().iter().map(|c| c.as_str().unwrap()).collect();
+    let rows: Vec<Rows> = blocks
+        .iter()
+        .map(|b| op2.rows(*b).unwrap_or_else(|e| panic!("{place}: {e}")))
+        .collect();
+    let theirs: Vec<&str> = want["columns"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|c| c.as_str().unwrap())
+        .collect();
     let at = columns::positions(want["result"].as_str().unwrap(), &theirs, rows[0].columns);
     // pyNastran keeps nodal tables of 64-bit files as float32
-    let tolerance = if want["dtype"] == "float64" { 1e-12 } else { 1e-6 };
+    let tolerance = if want["dtype"] == "float64" {
+        1e-12
+    } else {
+        1e-6
+    };
     let n = want["shape"][1].as_u64().unwrap() as usize;
     for r in &rows {
         assert_eq!(r.len(), n, "{place}: rows");
     }
     for (c, &column) in at.iter().enumerate() {
-        let value = |r: &Rows, i: usize| Some(r.row(i)[column]).filter(|v| !v.is_nan()).unwrap_or(0.0);
+        let value = |r: &Rows, i: usize| {
+            Some(r.row(i)[column])
+                .filter(|v| !v.is_nan())
+                .unwrap_or(0.0)
+        };
         let (mut l2, mut sum, mut abs, mut weighted, mut largest) = (0.0, 0.0, 0.0, 0.0, 0.0_f64);
         for r in &rows {
             for i in 0..n {
@@ -70,9 +99,18 @@ fn compare_table(place: &str, op2: &Op2<'_>, want: &Value, blocks: &[usize]) {
                 largest = largest.max(x.abs());
             }
         }
-        for (name, got, scale) in [("l2", f64::sqrt(l2), l2.sqrt()), ("sum", sum, abs), ("sum_abs", abs, abs), ("sum_weighted_row_over_n", weighted, abs)] {
+        for (name, got, scale) in [
+            ("l2", f64::sqrt(l2), l2.sqrt()),
+            ("sum", sum, abs),
+            ("sum_abs", abs, abs),
+            ("sum_weighted_row_over_n", weighted, abs),
+        ] {
             let w = want[name][c].as_f64().unwrap();
-            assert!((w - got).abs() <= tolerance * scale, "{place}: {name} of {} is {got}, pyNastran {w}", theirs[c]);
+            assert!(
+                (w - got).abs() <= tolerance * scale,
+                "{place}: {name} of {} is {got}, pyNastran {w}",
+                theirs[c]
+            );
         }
         let id_columns = want["id_columns"].as_array().unwrap().len();
         for sample in want["rows"].as_array().unwrap() {
@@ -80,7 +118,11 @@ fn compare_table(place: &str, op2: &Op2<'_>, want: &Value, blocks: &[usize]) {
             let i = sample[1].as_u64().unwrap() as usize;
             if let Some(w) = sample[2 + id_columns + c].as_f64() {
                 let got = rows[step].row(i)[column];
-                assert!((w - got).abs() <= tolerance * largest, "{place}: step {step} row {i} {}: {got}, pyNastran {w}", theirs[c]);
+                assert!(
+                    (w - got).abs() <= tolerance * largest,
+                    "{place}: step {step} row {i} {}: {got}, pyNastran {w}",
+                    theirs[c]
+                );
             }
         }
     }
@@ -88,9 +130,17 @@ fn compare_table(place: &str, op2: &Op2<'_>, want: &Value, blocks: &[usize]) {
 }
 
 fn compare_ids(place: &str, want: &Value, rows: &[Rows]) {
-    let kinds: Vec<&str> = want["id_columns"].as_array().unwrap().iter().map(|c| c.as_str().unwrap()).collect();
+    let kinds: Vec<&str> = want["id_columns"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|c| c.as_str().unwrap())
+        .collect();
     for sample in want["rows"].as_array().unwrap() {
-        let (step, i) = (sample[0].as_u64().unwrap() as usize, sample[1].as_u64().unwrap() as usize);
+        let (step, i) = (
+            sample[0].as_u64().unwrap() as usize,
+            sample[1].as_u64().unwrap() as usize,
+        );
         let id = rows[step].ids[i];
         for (k, kind) in kinds.iter().enumerate() {
             let got = match (k, *kind) {

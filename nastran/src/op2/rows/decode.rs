@@ -17,7 +17,11 @@ pub(in crate::op2) struct BadId {
 /// # Errors
 ///
 /// [`BadId`] for a negative id, or one of more than 32 bits.
-pub(in crate::op2) fn decode(words: Words<'_>, layout: Layout, entity: Option<u32>) -> Result<Rows, BadId> {
+pub(in crate::op2) fn decode(
+    words: Words<'_>,
+    layout: Layout,
+    entity: Option<u32>,
+) -> Result<Rows, BadId> {
     let entries = words.len() / layout.wide.max(1);
     let per_entry = rows_per_entry(layout);
     let n = entries.saturating_mul(per_entry);
@@ -50,7 +54,12 @@ fn rows_per_entry(layout: Layout) -> usize {
 }
 
 /// Adds the rows of one entry; the word found where an id cannot be.
-fn push_entry(w: Words<'_>, layout: Layout, entity: Option<u32>, rows: &mut Rows) -> Result<(), i64> {
+fn push_entry(
+    w: Words<'_>,
+    layout: Layout,
+    entity: Option<u32>,
+    rows: &mut Rows,
+) -> Result<(), i64> {
     let entity = entity.map_or_else(|| leading_id(w), Ok)?;
     let id = |at: u32, layer: u32| RowId { entity, at, layer };
     let grid = |i: usize| narrow(w.int(i).unwrap_or(0));
@@ -79,14 +88,22 @@ fn push_entry(w: Words<'_>, layout: Layout, entity: Option<u32>, rows: &mut Rows
         }
         Shape::ShellCorners => {
             for (i, place) in w.rest(2).entries(17).enumerate() {
-                let at = if i == 0 { 0 } else { narrow(place.int(0).unwrap_or(0))? };
+                let at = if i == 0 {
+                    0
+                } else {
+                    narrow(place.int(0).unwrap_or(0))?
+                };
                 rows.ids.extend([id(at, 1), id(at, 2)]);
                 place.push_reals(1, 2 * columns, &mut rows.values);
             }
         }
         Shape::ForceCorners => {
             for (i, place) in w.rest(2).entries(9).enumerate() {
-                let at = if i == 0 { 0 } else { narrow(place.int(0).unwrap_or(0))? };
+                let at = if i == 0 {
+                    0
+                } else {
+                    narrow(place.int(0).unwrap_or(0))?
+                };
                 rows.ids.push(id(at, 0));
                 place.push_reals(1, columns, &mut rows.values);
             }
@@ -137,7 +154,11 @@ fn narrow(word: i64) -> Result<u32, i64> {
 fn number_stations(ids: &mut [RowId]) {
     let mut last = (None, 0_u32);
     for id in ids {
-        let n = if last.0 == Some(id.entity) { last.1.saturating_add(1) } else { 1 };
+        let n = if last.0 == Some(id.entity) {
+            last.1.saturating_add(1)
+        } else {
+            1
+        };
         last = (Some(id.entity), n);
         id.at = n;
     }

@@ -39,37 +39,92 @@ pub(in crate::op2) struct Layout {
 const NODAL: &[&str] = &["t1", "t2", "t3", "r1", "r2", "r3"];
 const SHELL_STRAIN: &[&str] = &["fiber", "exx", "eyy", "gxy", "angle", "emax", "emin", "vm"];
 const SHELL_STRESS: &[&str] = &["fiber", "oxx", "oyy", "txy", "angle", "omax", "omin", "vm"];
-const PLY_STRAIN: &[&str] = &["e11", "e22", "g12", "g1z", "g2z", "angle", "emax", "emin", "max_shear"];
-const PLY_STRESS: &[&str] = &["o11", "o22", "t12", "t1z", "t2z", "angle", "omax", "omin", "max_shear"];
-const BAR: &[&str] =
-    &["s1a", "s2a", "s3a", "s4a", "axial", "smaxa", "smina", "mst", "s1b", "s2b", "s3b", "s4b", "smaxb", "sminb", "msc"];
-const BAR_STATION: &[&str] = &["x_xb", "s1", "s2", "s3", "s4", "axial", "smax", "smin", "ms"];
-const BEAM: &[&str] = &["x_xb", "sxc", "sxd", "sxe", "sxf", "smax", "smin", "mst", "msc"];
+const PLY_STRAIN: &[&str] = &[
+    "e11",
+    "e22",
+    "g12",
+    "g1z",
+    "g2z",
+    "angle",
+    "emax",
+    "emin",
+    "max_shear",
+];
+const PLY_STRESS: &[&str] = &[
+    "o11",
+    "o22",
+    "t12",
+    "t1z",
+    "t2z",
+    "angle",
+    "omax",
+    "omin",
+    "max_shear",
+];
+const BAR: &[&str] = &[
+    "s1a", "s2a", "s3a", "s4a", "axial", "smaxa", "smina", "mst", "s1b", "s2b", "s3b", "s4b",
+    "smaxb", "sminb", "msc",
+];
+const BAR_STATION: &[&str] = &[
+    "x_xb", "s1", "s2", "s3", "s4", "axial", "smax", "smin", "ms",
+];
+const BEAM: &[&str] = &[
+    "x_xb", "sxc", "sxd", "sxe", "sxf", "smax", "smin", "mst", "msc",
+];
 const ROD: &[&str] = &["axial", "msa", "torsion", "mst"];
 const VALUE: &[&str] = &["value"];
 const SHEAR: &[&str] = &["max", "average", "margin"];
-const SOLID: &[&str] = &["xx", "yy", "zz", "xy", "yz", "zx", "max", "mid", "min", "vm"];
+const SOLID: &[&str] = &[
+    "xx", "yy", "zz", "xy", "yz", "zx", "max", "mid", "min", "vm",
+];
 const SHELL_FORCE: &[&str] = &["fx", "fy", "fxy", "mx", "my", "mxy", "qx", "qy"];
-const BAR_FORCE: &[&str] = &["m1a", "m2a", "m1b", "m2b", "shear1", "shear2", "axial", "torque"];
+const BAR_FORCE: &[&str] = &[
+    "m1a", "m2a", "m1b", "m2b", "shear1", "shear2", "axial", "torque",
+];
 const BAR_STATION_FORCE: &[&str] = &["x_xb", "m1", "m2", "shear1", "shear2", "axial", "torque"];
-const BEAM_FORCE: &[&str] = &["x_xb", "m1", "m2", "shear1", "shear2", "axial", "torque", "warping_torque"];
+const BEAM_FORCE: &[&str] = &[
+    "x_xb",
+    "m1",
+    "m2",
+    "shear1",
+    "shear2",
+    "axial",
+    "torque",
+    "warping_torque",
+];
 const ROD_FORCE: &[&str] = &["axial", "torque"];
 
 /// The layout of real SORT1 rows; `None` where we have none for this element type and width.
-pub(in crate::op2) fn layout(quantity: Quantity, element: Option<ElementType>, num_wide: u32) -> Option<Layout> {
+pub(in crate::op2) fn layout(
+    quantity: Quantity,
+    element: Option<ElementType>,
+    num_wide: u32,
+) -> Option<Layout> {
     use Quantity as Q;
     use Shape as S;
     let e = element.map_or(0, |e| e.0);
     let (shape, columns) = match (quantity, e, num_wide) {
-        (Q::Displacement | Q::Velocity | Q::Acceleration | Q::Eigenvector | Q::SpcForce | Q::MpcForce | Q::AppliedLoad, _, 8) => {
-            (S::Nodal, NODAL)
-        }
+        (
+            Q::Displacement
+            | Q::Velocity
+            | Q::Acceleration
+            | Q::Eigenvector
+            | Q::SpcForce
+            | Q::MpcForce
+            | Q::AppliedLoad,
+            _,
+            8,
+        ) => (S::Nodal, NODAL),
         (Q::GridPointForce, _, 10) => (S::GridPoint, NODAL),
 
         (Q::Strain, 33 | 74 | 227 | 228, 17) => (S::ShellCentre, SHELL_STRAIN),
         (Q::Stress, 33 | 74 | 227 | 228, 17) => (S::ShellCentre, SHELL_STRESS),
-        (Q::Strain, 64 | 82 | 144, 87) | (Q::Strain, 70 | 75, 70) => (S::ShellCorners, SHELL_STRAIN),
-        (Q::Stress, 64 | 82 | 144, 87) | (Q::Stress, 70 | 75, 70) => (S::ShellCorners, SHELL_STRESS),
+        (Q::Strain, 64 | 82 | 144, 87) | (Q::Strain, 70 | 75, 70) => {
+            (S::ShellCorners, SHELL_STRAIN)
+        }
+        (Q::Stress, 64 | 82 | 144, 87) | (Q::Stress, 70 | 75, 70) => {
+            (S::ShellCorners, SHELL_STRESS)
+        }
         (Q::PlyStrain, 95..=98 | 232 | 233, 11) => (S::Ply, PLY_STRAIN),
         (Q::PlyStress, 95..=98 | 232 | 233, 11) => (S::Ply, PLY_STRESS),
 
@@ -84,7 +139,9 @@ pub(in crate::op2) fn layout(quantity: Quantity, element: Option<ElementType>, n
         (Q::Strain | Q::Stress, 68, 151) | (Q::Strain | Q::Stress, 67, 193) => (S::Solid, SOLID),
 
         (Q::ElementForce, 33 | 74 | 227 | 228, 9) => (S::Plain, SHELL_FORCE),
-        (Q::ElementForce, 64 | 82 | 144, 47) | (Q::ElementForce, 70 | 75, 38) => (S::ForceCorners, SHELL_FORCE),
+        (Q::ElementForce, 64 | 82 | 144, 47) | (Q::ElementForce, 70 | 75, 38) => {
+            (S::ForceCorners, SHELL_FORCE)
+        }
         (Q::ElementForce, 34, 9) => (S::Plain, BAR_FORCE),
         (Q::ElementForce, 100, 8) => (S::Stations, BAR_STATION_FORCE),
         (Q::ElementForce, 2, 100) => (S::Beam, BEAM_FORCE),
@@ -93,5 +150,9 @@ pub(in crate::op2) fn layout(quantity: Quantity, element: Option<ElementType>, n
         (Q::ElementForce, 102 | 126, 7) => (S::Plain, NODAL),
         _ => return None,
     };
-    Some(Layout { shape, wide: usize::try_from(num_wide).ok()?, columns })
+    Some(Layout {
+        shape,
+        wide: usize::try_from(num_wide).ok()?,
+        columns,
+    })
 }
