@@ -1,0 +1,49 @@
+//! What can be wrong with an HDF5 result file.
+
+/// Why an HDF5 file, or a block of one, could not be read.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum H5Error {
+    /// The container is damaged or uses a feature that is not read.
+    #[error("`{path}`: {reason}: the file is cut or damaged, write it again (MDLPRM,HDF5)")]
+    Container {
+        /// Where in the file.
+        path: String,
+        /// What the HDF5 layer says.
+        reason: String,
+    },
+    /// It is HDF5, but without `/NASTRAN/RESULT`.
+    #[error("no group `/NASTRAN/RESULT`: this is not a Nastran result file, or it holds input only")]
+    NoResults,
+    /// A table without a field that its kind needs.
+    #[error("`{path}`: field `{field}` is missing or not a number: schema not supported")]
+    MissingField {
+        /// The table.
+        path: String,
+        /// The field.
+        field: &'static str,
+    },
+    /// A table claims more than the file can hold.
+    #[error("`{path}`: {claimed} bytes claimed, at most {possible} possible: the file is damaged")]
+    TooLarge {
+        /// The table.
+        path: String,
+        /// Records times record size.
+        claimed: u64,
+        /// From the file's size.
+        possible: u64,
+    },
+    /// The block index is out of range.
+    #[error("block {index} does not exist: the file has {blocks}")]
+    NoSuchBlock {
+        /// Asked for.
+        index: usize,
+        /// There are.
+        blocks: usize,
+    },
+    /// A table of a kind that is not decoded.
+    #[error("`{path}` is not decoded: no layout is known for it")]
+    NotDecoded {
+        /// The table.
+        path: String,
+    },
+}
