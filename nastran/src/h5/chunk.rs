@@ -23,29 +23,58 @@ pub(super) struct Chunks {
 
 impl Chunks {
     /// `None` where the table is not chunked, or is packed with other filters than deflate, shuffle and Fletcher's checksum.
-    pub(super) fn of(dataset: &Dataset, rows_a_chunk: u64) -> Result<Option<Self>, hdf5_pure::Error> {
+    pub(super) fn of(
+        dataset: &Dataset,
+        rows_a_chunk: u64,
+    ) -> Result<Option<Self>, hdf5_pure::Error> {
         let filters = dataset.filter_pipeline();
-        let ours = filters.iter().all(|f| matches!(f.id, DEFLATE | SHUFFLE | FLETCHER32));
+        let ours = filters
+            .iter()
+            .all(|f| matches!(f.id, DEFLATE | SHUFFLE | FLETCHER32));
         if !dataset.is_chunked() || !ours || rows_a_chunk == 0 {
             return Ok(None);
         }
         let mut list = dataset.chunks()?;
         list.sort_by_key(|c| c.offset.first().copied());
-        Ok(Some(Self { filters, rows_a_chunk, list }))
+        Ok(Some(Self {
+            filters,
+            rows_a_chunk,
+            list,
+        }))
     }
 
     /// The records of rows `start .. end` of the chunk that holds row `start`, and that `end`.
     ///
     /// # Errors
     /// [`H5Error::Container`] where no chunk holds the row, or its bytes do not unpack to a chunk of records.
-    pub(super) fn records(&self, file: &[u8], path: &str, start: u64, record: usize) -> Result<(Vec<u8>, u64), H5Error> {
-        let damaged = |reason: &str| H5Error::Container { path: path.to_string(), reason: format!("row {start}: {reason}") };
+    pub(super) fn records(
+        &self,
+        file: &[u8],
+        path: &str,
+        start: u64,
+        record: usize,
+    ) -> Result<(Vec<u8>, u64), H5Error> {
+        let damaged = |reason: &str| H5Error::Container {
+            path: path.to_string(),
+            reason: format!("row {start}: {reason}"),
+        };
         let first = start / self.rows_a_chunk * self.rows_a_chunk;
-        let at = self.list.binary_search_by_key(&Some(first), |c| c.offset.first().copied());
-        let chunk = at.ok().and_then(|i| self.list.get(i)).ok_or_else(|| damaged("no chunk is stored for it"))?;
-        let stored = usize::try_from(chunk.address).ok().zip(usize::try_from(chunk.storage_size).ok());
-        let stored = stored.and_then(|(a, n)| file.get(a..a.checked_add(n)?)).ok_or_else(|| damaged("its chunk is outside the file"))?;
-        let whole = usize::try_from(self.rows_a_chunk).unwrap_or(usize::MAX).saturating_mul(record);
+        let at = self
+            .list
+            .binary_search_by_key(&Some(first), |c| c.offset.first().copied());
+        let chunk = at
+            .ok()
+            .and_then(|i| self.list.get(i))
+            .ok_or_else(|| damaged("no chunk is stored for it"))?;
+        let stored = usize::try_from(chunk.address)
+            .ok()
+            .zip(usize::try_from(chunk.storage_size).ok());
+        let stored = stored
+            .and_then(|(a, n)| file.get(a..a.checked_add(n)?))
+            .ok_or_else(|| damaged("its chunk is outside the file"))?;
+        let whole = usize::try_from(self.rows_a_chunk)
+            .unwrap_or(usize::MAX)
+            .saturating_mul(record);
         let mut bytes = stored.to_vec();
         for (i, filter) in self.filters.iter().enumerate().rev() {
             if chunk.filter_mask.checked_shr(i as u32).unwrap_or(0) & 1 == 1 {
@@ -53,16 +82,28 @@ impl Chunks {
             }
             bytes = match filter.id {
                 // Fletcher's four bytes may still follow the content.
-                DEFLATE => inflate(&bytes, whole.saturating_add(4)).ok_or_else(|| damaged("its chunk does not inflate"))?,
-                SHUFFLE => unshuffle(&bytes, filter.client_data.first().map_or(0, |&n| n as usize)),
-                _ => bytes.get(..bytes.len().saturating_sub(4)).unwrap_or(&[]).to_vec(),
+                DEFLATE => inflate(&bytes, whole.saturating_add(4))
+                    .ok_or_else(|| damaged("its chunk does not inflate"))?,
+                SHUFFLE => unshuffle(
+                    &bytes,
+                    filter.client_data.first().map_or(0, |&n| n as usize),
+                ),
+                _ => bytes
+                    .get(..bytes.len().saturating_sub(4))
+                    .unwrap_or(&[])
+                    .to_vec(),
             };
         }
         if bytes.len() != whole {
             return Err(damaged("its chunk has another size than declared"));
         }
-        let skipped = usize::try_from(start - first).unwrap_or(usize::MAX).saturating_mul(record);
-        Ok((bytes.split_off(skipped.min(whole)), first.saturating_add(self.rows_a_chunk)))
+        let skipped = usize::try_from(start - first)
+            .unwrap_or(usize::MAX)
+            .saturating_mul(record);
+        Ok((
+            bytes.split_off(skipped.min(whole)),
+            first.saturating_add(self.rows_a_chunk),
+        ))
     }
 }
 
@@ -70,7 +111,10 @@ impl Chunks {
 fn inflate(packed: &[u8], limit: usize) -> Option<Vec<u8>> {
     let mut out = Vec::new();
     let most = u64::try_from(limit).ok()?.checked_add(1)?;
-    flate2::read::ZlibDecoder::new(packed).take(most).read_to_end(&mut out).ok()?;
+    flate2::read::ZlibDecoder::new(packed)
+        .take(most)
+        .read_to_end(&mut out)
+        .ok()?;
     (out.len() <= limit).then_some(out)
 }
 
@@ -83,7 +127,11 @@ fn unshuffle(data: &[u8], element: usize) -> Vec<u8> {
     let (planes, rest) = data.split_at(n * element);
     let mut out = vec![0; planes.len()];
     for (j, plane) in planes.chunks_exact(n).enumerate() {
-        out.iter_mut().skip(j).step_by(element).zip(plane).for_each(|(o, &b)| *o = b);
+        out.iter_mut()
+            .skip(j)
+            .step_by(element)
+            .zip(plane)
+            .for_each(|(o, &b)| *o = b);
     }
     out.extend_from_slice(rest);
     out

@@ -6,18 +6,36 @@ use super::table::{Field, Table};
 use crate::results::{RowId, Rows};
 
 /// The rows of records `start .. start + count`.
-pub(super) fn rows(table: &Table<'_>, layout: &Layout, start: u64, count: u64) -> Result<Rows, H5Error> {
+pub(super) fn rows(
+    table: &Table<'_>,
+    layout: &Layout,
+    start: u64,
+    count: u64,
+) -> Result<Rows, H5Error> {
     let id = table.need(layout.id)?;
-    let fields = layout.fields.iter().map(|&name| if name.is_empty() { Ok(None) } else { table.need(name).map(Some) });
+    let fields = layout.fields.iter().map(|&name| {
+        if name.is_empty() {
+            Ok(None)
+        } else {
+            table.need(name).map(Some)
+        }
+    });
     let fields = fields.collect::<Result<Vec<Option<Field>>, _>>()?;
     let grid = match layout.kind {
         Kind::ShellCorner | Kind::Beam | Kind::Solid => Some(table.need("GRID")?),
         _ => None,
     };
-    let ply = if layout.kind == Kind::Ply { Some(table.need("PLY")?) } else { None };
+    let ply = if layout.kind == Kind::Ply {
+        Some(table.need("PLY")?)
+    } else {
+        None
+    };
     // Damaged fields could claim any array length; the record bounds what each holds, so places are bounded too.
     let places = grid.map_or(1, |g| g.count);
-    let mut out = Rows { columns: layout.columns, ..Rows::default() };
+    let mut out = Rows {
+        columns: layout.columns,
+        ..Rows::default()
+    };
     table.each_record(start, count, |r| {
         let entity = id.id(r, 0);
         let value = |f: &Option<Field>, k: usize| f.map_or(f64::NAN, |f| f.real(r, k));
@@ -25,20 +43,31 @@ pub(super) fn rows(table: &Table<'_>, layout: &Layout, start: u64, count: u64) -
             Kind::Plain | Kind::Station | Kind::Ply => {
                 let at = match (layout.kind, layout.element, out.ids.last()) {
                     (Kind::Plain, None, _) => 1,
-                    (Kind::Station, _, Some(last)) if last.entity == entity => last.at.saturating_add(1),
+                    (Kind::Station, _, Some(last)) if last.entity == entity => {
+                        last.at.saturating_add(1)
+                    }
                     (Kind::Station, ..) => 1,
                     _ => 0,
                 };
-                out.ids.push(RowId { entity, at, layer: ply.map_or(0, |p| p.id(r, 0)) });
+                out.ids.push(RowId {
+                    entity,
+                    at,
+                    layer: ply.map_or(0, |p| p.id(r, 0)),
+                });
                 out.values.extend(fields.iter().map(|f| value(f, 0)));
             }
             Kind::ShellCentre | Kind::ShellCorner => {
                 for k in 0..places {
                     // The first GRID word is not a grid at the centre (it counts the corners).
-                    let at = if k == 0 { 0 } else { grid.map_or(0, |g| g.id(r, k)) };
+                    let at = if k == 0 {
+                        0
+                    } else {
+                        grid.map_or(0, |g| g.id(r, k))
+                    };
                     for (layer, fibre) in (1..).zip(fields.chunks(4)) {
                         out.ids.push(RowId { entity, at, layer });
-                        out.values.extend(fibre.iter().map(|f| value(f, k)).chain([f64::NAN; 4]));
+                        out.values
+                            .extend(fibre.iter().map(|f| value(f, k)).chain([f64::NAN; 4]));
                     }
                 }
             }
@@ -48,14 +77,22 @@ pub(super) fn rows(table: &Table<'_>, layout: &Layout, start: u64, count: u64) -
                     let x_xb = fields.first().map_or(0.0, |f| value(f, k));
                     // Stations that were not asked for are zeros.
                     if k == 0 || at != 0 || x_xb != 0.0 {
-                        out.ids.push(RowId { entity, at, layer: 0 });
+                        out.ids.push(RowId {
+                            entity,
+                            at,
+                            layer: 0,
+                        });
                         out.values.extend(fields.iter().map(|f| value(f, k)));
                     }
                 }
             }
             Kind::Solid => {
                 for k in 0..places {
-                    out.ids.push(RowId { entity, at: grid.map_or(0, |g| g.id(r, k)), layer: 0 });
+                    out.ids.push(RowId {
+                        entity,
+                        at: grid.map_or(0, |g| g.id(r, k)),
+                        layer: 0,
+                    });
                     out.values.extend(fields.iter().map(|f| value(f, k)));
                 }
             }

@@ -16,7 +16,11 @@ pub(super) struct Domain {
 
 /// Domains by id.
 pub(super) fn domains(table: &Table<'_>) -> Result<BTreeMap<i64, Domain>, H5Error> {
-    let (id, subcase, analysis) = (table.need("ID")?, table.need("SUBCASE")?, table.need("ANALYSIS")?);
+    let (id, subcase, analysis) = (
+        table.need("ID")?,
+        table.need("SUBCASE")?,
+        table.need("ANALYSIS")?,
+    );
     let (mode, value) = (table.field("MODE"), table.field("TIME_FREQ_EIGR"));
     let mut all = BTreeMap::new();
     table.each_record(0, table.rows, |r| {

@@ -12,7 +12,9 @@ pub enum H5Error {
         reason: String,
     },
     /// It is HDF5, but without `/NASTRAN/RESULT`.
-    #[error("no group `/NASTRAN/RESULT`: this is not a Nastran result file, or it holds input only")]
+    #[error(
+        "no group `/NASTRAN/RESULT`: this is not a Nastran result file, or it holds input only"
+    )]
     NoResults,
     /// A table without a field that its kind needs.
     #[error("`{path}`: field `{field}` is missing or not a number: schema not supported")]

@@ -39,7 +39,10 @@ impl H5 {
     /// # Errors
     /// [`H5Error`] where the container is damaged or holds no Nastran results. A damaged table alone is a note.
     pub fn read(bytes: &[u8]) -> Result<Self, H5Error> {
-        let fail = |e: hdf5_pure::Error| H5Error::Container { path: "/".to_string(), reason: e.to_string() };
+        let fail = |e: hdf5_pure::Error| H5Error::Container {
+            path: "/".to_string(),
+            reason: e.to_string(),
+        };
         let file = File::from_bytes(bytes.to_vec()).map_err(fail)?;
         let attributes = file.root().attrs().unwrap_or_default();
         let schema = attributes.get("SCHEMA").and_then(|v| match v {
@@ -70,9 +73,17 @@ impl H5 {
 
     /// Names of the tables and groups in a group, sorted; none where it does not exist.
     fn children(&self, path: &str) -> Result<(Vec<String>, Vec<String>), H5Error> {
-        let Ok(group) = self.file.group(path) else { return Ok((Vec::new(), Vec::new())) };
-        let fail = |e: hdf5_pure::Error| H5Error::Container { path: path.to_string(), reason: e.to_string() };
-        let (mut tables, mut groups) = (group.datasets().map_err(fail)?, group.groups().map_err(fail)?);
+        let Ok(group) = self.file.group(path) else {
+            return Ok((Vec::new(), Vec::new()));
+        };
+        let fail = |e: hdf5_pure::Error| H5Error::Container {
+            path: path.to_string(),
+            reason: e.to_string(),
+        };
+        let (mut tables, mut groups) = (
+            group.datasets().map_err(fail)?,
+            group.groups().map_err(fail)?,
+        );
         tables.sort();
         groups.sort();
         Ok((tables, groups))
@@ -92,7 +103,9 @@ impl H5 {
             }
             self.index(&path, domains, |_| nodal(&name));
         }
-        groups.iter().for_each(|g| self.note(&format!("{group}/{g}"), "not read".to_string()));
+        groups
+            .iter()
+            .for_each(|g| self.note(&format!("{group}/{g}"), "not read".to_string()));
         Ok(())
     }
 
@@ -110,23 +123,39 @@ impl H5 {
                 }
             };
             for name in self.children(&path)?.0 {
-                self.index(&format!("{path}/{name}"), domains, |table| elemental(quantity, &name, table));
+                self.index(&format!("{path}/{name}"), domains, |table| {
+                    elemental(quantity, &name, table)
+                });
             }
         }
         Ok(())
     }
 
     fn note(&mut self, subject: &str, message: String) {
-        self.notes.push(Note { subject: subject.to_string(), message });
+        self.notes.push(Note {
+            subject: subject.to_string(),
+            message,
+        });
     }
 
     /// Adds the blocks of a table, one a run of equal DOMAIN_ID, or a note.
-    fn index(&mut self, path: &str, domains: &BTreeMap<i64, Domain>, layout: impl FnOnce(&Table<'_>) -> Option<Layout>) {
+    fn index(
+        &mut self,
+        path: &str,
+        domains: &BTreeMap<i64, Domain>,
+        layout: impl FnOnce(&Table<'_>) -> Option<Layout>,
+    ) {
         let result = self.table(path).and_then(|table| {
-            let Some(layout) = layout(&table) else { return Ok(Vec::new()) };
+            let Some(layout) = layout(&table) else {
+                return Ok(Vec::new());
+            };
             // Asked now rather than when rows are: a field that is missing is a note on the table.
             table.need(layout.id)?;
-            layout.fields.iter().filter(|f| !f.is_empty()).try_for_each(|f| table.need(f).map(|_| ()))?;
+            layout
+                .fields
+                .iter()
+                .filter(|f| !f.is_empty())
+                .try_for_each(|f| table.need(f).map(|_| ()))?;
             let domain = table.need("DOMAIN_ID")?;
             let mut runs: Vec<(i64, Span)> = Vec::new();
             let mut row = 0_u64;
@@ -134,7 +163,14 @@ impl H5 {
                 let id = domain.integer(r, 0);
                 match runs.last_mut() {
                     Some((last, span)) if *last == id => span.count += 1,
-                    _ => runs.push((id, Span { layout, start: row, count: 1 })),
+                    _ => runs.push((
+                        id,
+                        Span {
+                            layout,
+                            start: row,
+                            count: 1,
+                        },
+                    )),
                 }
                 row += 1;
                 Ok(())
@@ -147,19 +183,35 @@ impl H5 {
             Ok(blocks)
         });
         let blocks = match result {
-            Ok(blocks) if blocks.is_empty() => return self.note(path, "not read: no layout is known, or no records".to_string()),
+            Ok(blocks) if blocks.is_empty() => {
+                return self.note(
+                    path,
+                    "not read: no layout is known, or no records".to_string(),
+                );
+            }
             Ok(blocks) => blocks,
             Err(e) => return self.note(path, e.to_string()),
         };
         for (id, span, form) in blocks {
             let Some(d) = domains.get(&id) else {
-                self.note(path, format!("{} records with DOMAIN_ID {id}, which DOMAINS does not list, left out", span.count));
+                self.note(
+                    path,
+                    format!(
+                        "{} records with DOMAIN_ID {id}, which DOMAINS does not list, left out",
+                        span.count
+                    ),
+                );
                 continue;
             };
-            let modal = span.layout.quantity == Quantity::Displacement && d.analysis == Analysis::Modes;
+            let modal =
+                span.layout.quantity == Quantity::Displacement && d.analysis == Analysis::Modes;
             self.blocks.push(Block {
                 table: path.to_string(),
-                quantity: if modal { Quantity::Eigenvector } else { span.layout.quantity },
+                quantity: if modal {
+                    Quantity::Eigenvector
+                } else {
+                    span.layout.quantity
+                },
                 analysis: d.analysis,
                 subcase: d.subcase,
                 mode: d.mode,
@@ -183,9 +235,17 @@ impl H5 {
     /// [`H5Error`]: no such block, or damage found while reading.
     pub fn rows(&self, index: usize) -> Result<Rows, H5Error> {
         let (Some(block), Some(span)) = (self.blocks.get(index), self.spans.get(index)) else {
-            return Err(H5Error::NoSuchBlock { index, blocks: self.blocks.len() });
+            return Err(H5Error::NoSuchBlock {
+                index,
+                blocks: self.blocks.len(),
+            });
         };
-        decode::rows(&self.table(&block.table)?, &span.layout, span.start, span.count)
+        decode::rows(
+            &self.table(&block.table)?,
+            &span.layout,
+            span.start,
+            span.count,
+        )
     }
 }
 
@@ -197,11 +257,18 @@ fn form(table: &Table<'_>, span: &Span) -> Result<Option<ShellForm>, H5Error> {
     let rows = decode::rows(table, &span.layout, span.start, 1)?;
     let curvature = rows.row(0).first() == Some(&0.0) && rows.row(1).first() == Some(&-1.0);
     let curvature = curvature && span.layout.quantity == Quantity::Strain;
-    Ok(Some(if curvature { ShellForm::Curvature } else { ShellForm::Fiber }))
+    Ok(Some(if curvature {
+        ShellForm::Curvature
+    } else {
+        ShellForm::Fiber
+    }))
 }
 
 impl std::fmt::Debug for H5 {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("H5").field("schema", &self.schema).field("blocks", &self.blocks.len()).finish_non_exhaustive()
+        f.debug_struct("H5")
+            .field("schema", &self.schema)
+            .field("blocks", &self.blocks.len())
+            .finish_non_exhaustive()
     }
 }

@@ -50,7 +50,14 @@ pub(super) fn nodal(name: &str) -> Option<Layout> {
         "APPLIED_LOAD" => Quantity::AppliedLoad,
         _ => return None,
     };
-    Some(Layout { kind: Kind::Plain, quantity, element: None, id: "ID", fields: NODAL, columns: c::NODAL })
+    Some(Layout {
+        kind: Kind::Plain,
+        quantity,
+        element: None,
+        id: "ID",
+        fields: NODAL,
+        columns: c::NODAL,
+    })
 }
 
 /// The layout of `/NASTRAN/RESULT/ELEMENTAL/STRAIN/<name>` or `STRESS`.
@@ -93,28 +100,66 @@ pub(super) fn elemental(quantity: Quantity, name: &str, table: &Table<'_>) -> Op
     };
     let (kind, fields, columns): (_, &[&str], _) = match number {
         33 | 64 | 70 | 74 | 75 | 82 | 144 | 227 | 228 => {
-            let kind = if with_corners { Kind::ShellCorner } else { Kind::ShellCentre };
-            (kind, SHELL, if strain { c::SHELL_STRAIN } else { c::SHELL_STRESS })
+            let kind = if with_corners {
+                Kind::ShellCorner
+            } else {
+                Kind::ShellCentre
+            };
+            (
+                kind,
+                SHELL,
+                if strain {
+                    c::SHELL_STRAIN
+                } else {
+                    c::SHELL_STRESS
+                },
+            )
         }
-        95..=98 | 232 | 233 => (Kind::Ply, &["X1", "Y1", "T1", "L1", "L2", "", "", "", ""], c::PLY),
+        95..=98 | 232 | 233 => (
+            Kind::Ply,
+            &["X1", "Y1", "T1", "L1", "L2", "", "", "", ""],
+            c::PLY,
+        ),
         34 => (
             Kind::Plain,
-            &["X1A", "X2A", "X3A", "X4A", "AX", "MAXA", "MINA", "MST", "X1B", "X2B", "X3B", "X4B", "MAXB", "MINB", "MSC"],
+            &[
+                "X1A", "X2A", "X3A", "X4A", "AX", "MAXA", "MINA", "MST", "X1B", "X2B", "X3B",
+                "X4B", "MAXB", "MINB", "MSC",
+            ],
             c::BAR,
         ),
-        100 => (Kind::Station, &["SD", "XC", "XD", "XE", "XF", "AX", "MAX", "MIN", "MS"], c::BAR_STATION),
-        2 => (Kind::Beam, &["SD", "XC", "XD", "XE", "XF", "MAX", "MIN", "MST", "MSC"], c::BEAM),
+        100 => (
+            Kind::Station,
+            &["SD", "XC", "XD", "XE", "XF", "AX", "MAX", "MIN", "MS"],
+            c::BAR_STATION,
+        ),
+        2 => (
+            Kind::Beam,
+            &["SD", "XC", "XD", "XE", "XF", "MAX", "MIN", "MST", "MSC"],
+            c::BEAM,
+        ),
         3 => (Kind::Plain, &["AS", "MSA", "TS", "MST"], c::ROD),
         1 | 10 => (Kind::Plain, &["A", "MSA", "T", "MST"], c::ROD),
         11..=14 => (Kind::Plain, &["S"], c::SPRING),
         102 => (Kind::Plain, &["TX", "TY", "TZ", "RX", "RY", "RZ"], c::NODAL),
         4 => (Kind::Plain, &["TMAX", "TAVG", "MS"], c::SHEAR_PANEL),
-        _ => (Kind::Solid, &["X", "Y", "Z", "TXY", "TYZ", "TZX", "", "", "", ""], c::SOLID),
+        _ => (
+            Kind::Solid,
+            &["X", "Y", "Z", "TXY", "TYZ", "TZX", "", "", "", ""],
+            c::SOLID,
+        ),
     };
     let quantity = match (kind, strain) {
         (Kind::Ply, true) => Quantity::PlyStrain,
         (Kind::Ply, false) => Quantity::PlyStress,
         _ => quantity,
     };
-    Some(Layout { kind, quantity, element: Some(ElementType(number)), id: "EID", fields, columns })
+    Some(Layout {
+        kind,
+        quantity,
+        element: Some(ElementType(number)),
+        id: "EID",
+        fields,
+        columns,
+    })
 }

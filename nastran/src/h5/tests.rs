@@ -4,23 +4,43 @@ use serde_json::Value;
 
 fn shared(path: &str) -> Option<Vec<u8>> {
     let full = format!("{}/../../shared/nastran/{path}", env!("CARGO_MANIFEST_DIR"));
-    std::fs::read(&full).map_err(|_| eprintln!("skipped: {full} is absent")).ok()
+    std::fs::read(&full)
+        .map_err(|_| eprintln!("skipped: {full} is absent"))
+        .ok()
 }
 
 /// The oracle's table of that name: rows of (ids, values).
 fn expected(case: &str, result: &str, n_ids: usize) -> Option<Vec<(Vec<u32>, Vec<f64>)>> {
     let json: Value = serde_json::from_slice(&shared(&format!("{case}/expected.json"))?).unwrap();
-    let table = json["op2"]["results"].as_array().unwrap().iter().find(|r| r["result"] == result).unwrap().clone();
+    let table = json["op2"]["results"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|r| r["result"] == result)
+        .unwrap()
+        .clone();
     let row = |r: &Value| {
         let r = r.as_array().unwrap();
-        let ids = r[2..2 + n_ids].iter().map(|v| v.as_u64().unwrap() as u32).collect();
-        (ids, r[2 + n_ids..].iter().map(|v| v.as_f64().unwrap_or(f64::NAN)).collect())
+        let ids = r[2..2 + n_ids]
+            .iter()
+            .map(|v| v.as_u64().unwrap() as u32)
+            .collect();
+        (
+            ids,
+            r[2 + n_ids..]
+                .iter()
+                .map(|v| v.as_f64().unwrap_or(f64::NAN))
+                .collect(),
+        )
     };
     Some(table["rows"].as_array().unwrap().iter().map(row).collect())
 }
 
 fn block(h5: &H5, quantity: Quantity, element: Option<u32>) -> usize {
-    h5.blocks.iter().position(|b| b.quantity == quantity && b.element == element.map(ElementType)).unwrap()
+    h5.blocks
+        .iter()
+        .position(|b| b.quantity == quantity && b.element == element.map(ElementType))
+        .unwrap()
 }
 
 /// Largest difference of the columns `cols` relative to the largest oracle value in them.
@@ -33,41 +53,91 @@ fn difference(rows: &Rows, wanted: &[(Vec<u32>, Vec<f64>)], cols: std::ops::Rang
             largest[j] = largest[j].max(values[c].abs());
         }
     }
-    worst.iter().zip(&largest).map(|(w, l)| if *w == 0.0 { 0.0 } else { w / l }).fold(0.0, f64::max)
+    worst
+        .iter()
+        .zip(&largest)
+        .map(|(w, l)| if *w == 0.0 { 0.0 } else { w / l })
+        .fold(0.0, f64::max)
 }
 
 #[test]
 fn the_double_precision_h5_of_the_svanberg_beam_agrees_with_the_op2_of_the_same_run() {
-    let Some(bytes) = shared("msc_svanberg_beam/static.h5") else { return };
+    let Some(bytes) = shared("msc_svanberg_beam/static.h5") else {
+        return;
+    };
     let h5 = H5::read(&bytes).unwrap();
     assert_eq!(h5.schema, Some(20190));
-    for (quantity, name) in [(Quantity::Displacement, "displacements"), (Quantity::SpcForce, "spc_forces")] {
+    for (quantity, name) in [
+        (Quantity::Displacement, "displacements"),
+        (Quantity::SpcForce, "spc_forces"),
+    ] {
         let ix = block(&h5, quantity, None);
-        assert_eq!((h5.blocks[ix].subcase, h5.blocks[ix].analysis), (1, Analysis::Statics));
+        assert_eq!(
+            (h5.blocks[ix].subcase, h5.blocks[ix].analysis),
+            (1, Analysis::Statics)
+        );
         let rows = h5.rows(ix).unwrap();
         let wanted = expected("msc_svanberg_beam", name, 2).unwrap();
-        assert_eq!(rows.ids.iter().map(|id| vec![id.entity, id.at]).collect::<Vec<_>>(), wanted.iter().map(|w| w.0.clone()).collect::<Vec<_>>());
+        assert_eq!(
+            rows.ids
+                .iter()
+                .map(|id| vec![id.entity, id.at])
+                .collect::<Vec<_>>(),
+            wanted.iter().map(|w| w.0.clone()).collect::<Vec<_>>()
+        );
         // The OP2 is single precision.
         assert!(difference(&rows, &wanted, 0..6) < 1e-7, "{name}");
     }
-    for (quantity, name) in [(Quantity::Strain, "strain.cbeam_strain"), (Quantity::Stress, "stress.cbeam_stress")] {
+    for (quantity, name) in [
+        (Quantity::Strain, "strain.cbeam_strain"),
+        (Quantity::Stress, "stress.cbeam_stress"),
+    ] {
         let rows = h5.rows(block(&h5, quantity, Some(2))).unwrap();
         let wanted = expected("msc_svanberg_beam", name, 2).unwrap();
-        assert_eq!(rows.ids.iter().map(|id| vec![id.entity, id.at]).collect::<Vec<_>>(), wanted.iter().map(|w| w.0.clone()).collect::<Vec<_>>());
+        assert_eq!(
+            rows.ids
+                .iter()
+                .map(|id| vec![id.entity, id.at])
+                .collect::<Vec<_>>(),
+            wanted.iter().map(|w| w.0.clone()).collect::<Vec<_>>()
+        );
         // pyNastran's columns are sxc .. smin, mst, msc: without the station.
-        let shifted: Vec<_> = wanted.into_iter().map(|(ids, v)| (ids, [vec![0.0], v].concat())).collect();
+        let shifted: Vec<_> = wanted
+            .into_iter()
+            .map(|(ids, v)| (ids, [vec![0.0], v].concat()))
+            .collect();
         assert!(difference(&rows, &shifted, 1..7) < 2e-7, "{name}");
     }
 }
 
 #[test]
 fn the_grid_point_weight_of_the_svanberg_beam_is_that_of_its_printed_output() {
-    let (Some(bytes), Some(f06)) = (shared("msc_svanberg_beam/static.h5"), shared("msc_svanberg_beam/static.f06")) else { return };
+    let (Some(bytes), Some(f06)) = (
+        shared("msc_svanberg_beam/static.h5"),
+        shared("msc_svanberg_beam/static.f06"),
+    ) else {
+        return;
+    };
     let weight = H5::read(&bytes).unwrap().grid_point_weight.unwrap();
     let text = String::from_utf8_lossy(&f06);
-    let first = text.lines().skip_while(|l| !l.contains("MASS AXIS SYSTEM")).nth(1).unwrap();
-    let numbers: Vec<f64> = first.split_whitespace().filter_map(|t| t.parse().ok()).collect();
-    for (got, want) in [weight.mass[0], weight.cg[0][0], weight.cg[0][1], weight.cg[0][2]].iter().zip(&numbers) {
+    let first = text
+        .lines()
+        .skip_while(|l| !l.contains("MASS AXIS SYSTEM"))
+        .nth(1)
+        .unwrap();
+    let numbers: Vec<f64> = first
+        .split_whitespace()
+        .filter_map(|t| t.parse().ok())
+        .collect();
+    for (got, want) in [
+        weight.mass[0],
+        weight.cg[0][0],
+        weight.cg[0][1],
+        weight.cg[0][2],
+    ]
+    .iter()
+    .zip(&numbers)
+    {
         assert!((got - want).abs() <= 1e-6 * weight.mass[0], "{got} {want}");
     }
     // The mean position of the mass: five equal beams from 0 to 5.
@@ -76,7 +146,9 @@ fn the_grid_point_weight_of_the_svanberg_beam_is_that_of_its_printed_output() {
 
 #[test]
 fn compressed_tables_of_msc_agree_with_the_op2_that_nx_wrote_for_the_same_deck() {
-    let Some(bytes) = shared("nx_static_shell_bar/static_solid_shell_bar.h5") else { return };
+    let Some(bytes) = shared("nx_static_shell_bar/static_solid_shell_bar.h5") else {
+        return;
+    };
     let h5 = H5::read(&bytes).unwrap();
     // Measured: the two solvers agree to single precision on this deck.
     for (quantity, element, name, n_ids, cols, tolerance) in [
@@ -84,27 +156,78 @@ fn compressed_tables_of_msc_agree_with_the_op2_that_nx_wrote_for_the_same_deck()
         // A component whose reactions nearly cancel is known to fewer digits.
         (Quantity::SpcForce, None, "spc_forces", 2, 0..6, 2e-3),
         (Quantity::AppliedLoad, None, "load_vectors", 2, 0..6, 1e-6),
-        (Quantity::Strain, Some(1), "strain.crod_strain", 1, 0..1, 1e-6),
-        (Quantity::Strain, Some(34), "strain.cbar_strain", 1, 0..7, 1e-6),
-        (Quantity::Strain, Some(74), "strain.ctria3_strain", 2, 0..4, 1e-6),
-        (Quantity::Strain, Some(144), "strain.cquad4_strain", 2, 0..4, 1e-6),
-        (Quantity::Stress, Some(144), "stress.cquad4_stress", 2, 0..4, 1e-6),
+        (
+            Quantity::Strain,
+            Some(1),
+            "strain.crod_strain",
+            1,
+            0..1,
+            1e-6,
+        ),
+        (
+            Quantity::Strain,
+            Some(34),
+            "strain.cbar_strain",
+            1,
+            0..7,
+            1e-6,
+        ),
+        (
+            Quantity::Strain,
+            Some(74),
+            "strain.ctria3_strain",
+            2,
+            0..4,
+            1e-6,
+        ),
+        (
+            Quantity::Strain,
+            Some(144),
+            "strain.cquad4_strain",
+            2,
+            0..4,
+            1e-6,
+        ),
+        (
+            Quantity::Stress,
+            Some(144),
+            "stress.cquad4_stress",
+            2,
+            0..4,
+            1e-6,
+        ),
     ] {
         let rows = h5.rows(block(&h5, quantity, element)).unwrap();
         let wanted = expected("nx_static_shell_bar", name, n_ids).unwrap();
         assert_eq!(rows.len(), wanted.len(), "{name}");
-        let ids: Vec<_> = rows.ids.iter().map(|id| [id.entity, id.at][..n_ids].to_vec()).collect();
-        assert_eq!(ids, wanted.iter().map(|w| w.0.clone()).collect::<Vec<_>>(), "{name}");
+        let ids: Vec<_> = rows
+            .ids
+            .iter()
+            .map(|id| [id.entity, id.at][..n_ids].to_vec())
+            .collect();
+        assert_eq!(
+            ids,
+            wanted.iter().map(|w| w.0.clone()).collect::<Vec<_>>(),
+            "{name}"
+        );
         let d = difference(&rows, &wanted, cols);
         assert!(d < tolerance, "{name}: {d}");
     }
-    assert_eq!(h5.blocks[block(&h5, Quantity::Strain, Some(144))].form, Some(ShellForm::Curvature));
-    assert_eq!(h5.blocks[block(&h5, Quantity::Stress, Some(144))].form, Some(ShellForm::Fiber));
+    assert_eq!(
+        h5.blocks[block(&h5, Quantity::Strain, Some(144))].form,
+        Some(ShellForm::Curvature)
+    );
+    assert_eq!(
+        h5.blocks[block(&h5, Quantity::Stress, Some(144))].form,
+        Some(ShellForm::Fiber)
+    );
 }
 
 #[test]
 fn every_table_of_the_element_zoo_is_read_or_noted() {
-    let Some(bytes) = shared("nx_static_elements/static_elements.h5") else { return };
+    let Some(bytes) = shared("nx_static_elements/static_elements.h5") else {
+        return;
+    };
     let h5 = H5::read(&bytes).unwrap();
     for ix in 0..h5.blocks.len() {
         let (rows, b) = (h5.rows(ix).unwrap(), &h5.blocks[ix]);
@@ -115,15 +238,31 @@ fn every_table_of_the_element_zoo_is_read_or_noted() {
     assert_eq!(bars.ids.iter().map(|id| id.at).collect::<Vec<_>>(), [1, 2]);
     assert_eq!(bars.row(1)[0], 1.0);
     let quad8 = h5.rows(block(&h5, Quantity::Strain, Some(64))).unwrap();
-    assert_eq!(quad8.ids[2], RowId { entity: 60, at: 4, layer: 1 });
+    assert_eq!(
+        quad8.ids[2],
+        RowId {
+            entity: 60,
+            at: 4,
+            layer: 1
+        }
+    );
     let subjects: Vec<_> = h5.notes.iter().map(|n| n.subject.as_str()).collect();
-    assert!(subjects.contains(&"/NASTRAN/RESULT/ELEMENTAL/ENERGY"), "{subjects:?}");
-    assert!(subjects.contains(&"/NASTRAN/RESULT/NODAL/GRID_FORCE"), "{subjects:?}");
+    assert!(
+        subjects.contains(&"/NASTRAN/RESULT/ELEMENTAL/ENERGY"),
+        "{subjects:?}"
+    );
+    assert!(
+        subjects.contains(&"/NASTRAN/RESULT/NODAL/GRID_FORCE"),
+        "{subjects:?}"
+    );
 }
 
 #[test]
 fn a_file_that_is_no_nastran_result_is_refused_with_the_reason() {
-    assert!(matches!(H5::read(b"not hdf5 at all"), Err(H5Error::Container { .. })));
+    assert!(matches!(
+        H5::read(b"not hdf5 at all"),
+        Err(H5Error::Container { .. })
+    ));
     let mut other = hdf5_pure::FileBuilder::new();
     other.create_dataset("strain").with_f64_data(&[1.0, 2.0]);
     let bytes = other.finish().unwrap();
@@ -133,7 +272,9 @@ fn a_file_that_is_no_nastran_result_is_refused_with_the_reason() {
 
 #[test]
 fn truncated_and_mutated_files_give_an_answer_or_an_error_but_no_panic() {
-    let Some(bytes) = shared("nx_static_shell_bar/static_solid_shell_bar.h5") else { return };
+    let Some(bytes) = shared("nx_static_shell_bar/static_solid_shell_bar.h5") else {
+        return;
+    };
     let read_all = |bytes: &[u8]| {
         if let Ok(h5) = H5::read(bytes) {
             for ix in 0..=h5.blocks.len() {
@@ -147,14 +288,20 @@ fn truncated_and_mutated_files_give_an_answer_or_an_error_but_no_panic() {
     // A small linear congruential generator (Knuth's constants): the same mutations on every machine.
     let mut state = 20_261_121_u64;
     let mut next = move |n: usize| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) as usize % n
     };
     for _ in 0..N_MUTATIONS {
         let mut damaged = bytes.clone();
         for _ in 0..=next(8) {
             // The superblock and root, or the last part, where result tables and their headers stand.
-            let at = if next(4) == 0 { next(4096) } else { RESULTS_FROM + next(damaged.len() - RESULTS_FROM) };
+            let at = if next(4) == 0 {
+                next(4096)
+            } else {
+                RESULTS_FROM + next(damaged.len() - RESULTS_FROM)
+            };
             damaged[at] = if next(3) == 0 { 0xff } else { next(256) as u8 };
         }
         read_all(&damaged);

@@ -6,7 +6,12 @@ use crate::results::GridPointWeight;
 
 /// The first record of the table; `None` where it is empty.
 pub(super) fn grid_point_weight(table: &Table<'_>) -> Result<Option<GridPointWeight>, H5Error> {
-    let (id, mo, s, inertia) = (table.need("ID")?, table.need("MO")?, table.need("S")?, table.need("I")?);
+    let (id, mo, s, inertia) = (
+        table.need("ID")?,
+        table.need("MO")?,
+        table.need("S")?,
+        table.need("I")?,
+    );
     let mass = [table.need("MX")?, table.need("MY")?, table.need("MZ")?];
     let cg = [
         [table.need("XX")?, table.need("YX")?, table.need("ZX")?],
@@ -21,7 +26,9 @@ pub(super) fn grid_point_weight(table: &Table<'_>) -> Result<Option<GridPointWei
             s: std::array::from_fn(|i| std::array::from_fn(|j| s.real(r, 3 * i + j))),
             mass: mass.map(|f| f.real(r, 0)),
             cg: cg.map(|row| row.map(|f| f.real(r, 0))),
-            inertia_cg: std::array::from_fn(|i| std::array::from_fn(|j| inertia.real(r, 3 * i + j))),
+            inertia_cg: std::array::from_fn(|i| {
+                std::array::from_fn(|j| inertia.real(r, 3 * i + j))
+            }),
         });
         Ok(())
     })?;
