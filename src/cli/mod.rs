@@ -1,1 +1,27 @@
-//! The command line.
+//! The command line: the only place that reads files, writes files and prints.
+//!
+//! One file a command; what they share:
+//! [`Session`] (options, inputs, stages, findings, output of one command), [`files`] (reading), [`output`] (writing),
+//! [`fault`] (bad input), [`job`] (job.toml and the tables it names).
+
+mod arguments;
+mod check;
+pub mod fault;
+pub mod files;
+pub mod job;
+pub mod output;
+mod progress;
+mod session;
+mod words;
+
+pub use arguments::*;
+pub use session::*;
+
+use std::process::ExitCode;
+
+/// Runs the command and returns the exit code: 0 done, 1 done with error findings, 2 bad input.
+pub fn run(arguments: Arguments) -> ExitCode {
+    match arguments.command {
+        Command::Check(a) => Session::run("check", &a.common, |s| check::run(&a, s)),
+    }
+}

@@ -1,0 +1,69 @@
+//! Arguments as the user types them.
+
+use std::path::PathBuf;
+
+/// Strain gauges and a finite element model in, wheel loads with intervals out.
+#[derive(clap::Parser, Debug)]
+#[command(name = "strainbridge", version, about, arg_required_else_help = true)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands; each has its file beside this one.
+#[derive(clap::Subcommand, Debug)]
+pub enum Command {
+    /// Read decks, results or jobs; report what is in them and every fault
+    Check(FilesArguments),
+}
+
+/// Options of every command.
+#[derive(clap::Args, Debug, Clone, Default)]
+pub struct CommonArguments {
+    /// Folder for result.json, tables and report (default: <job name>.out; `check` writes only with it)
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print result.json, and nothing else, on standard output
+    #[arg(long)]
+    pub json: bool,
+    /// Threads for parallel work (default: all cores)
+    #[arg(long, value_name = "N")]
+    pub threads: Option<usize>,
+}
+
+/// A command on a job.
+#[derive(clap::Args, Debug)]
+pub struct JobArguments {
+    /// The job
+    #[arg(value_name = "JOB.toml")]
+    pub job: PathBuf,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub common: CommonArguments,
+}
+
+/// A command on files.
+#[derive(clap::Args, Debug)]
+pub struct FilesArguments {
+    /// Decks, OP2, punch or H5 files, jobs
+    #[arg(value_name = "FILE", required = true)]
+    pub files: Vec<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub common: CommonArguments,
+}
+
+/// A command on a deck and its results.
+#[derive(clap::Args, Debug)]
+pub struct DeckArguments {
+    /// The deck, or an OP2 that holds the mesh
+    #[arg(value_name = "DECK")]
+    pub deck: PathBuf,
+    /// Result files
+    #[arg(value_name = "RESULTS")]
+    pub results: Vec<PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub common: CommonArguments,
+}

@@ -1,0 +1,71 @@
+//! Bad input: what is wrong, where, and what to do about it.
+
+use std::fmt;
+
+/// One fault, printed as `file:line: field: what is wrong: what to do`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// File as given.
+    pub file: String,
+    /// Line, counted from 1; `None` where the fault is the file's as a whole.
+    pub line: Option<u32>,
+    /// Key, card field or column.
+    pub field: String,
+    /// What is wrong: expected and found.
+    pub wrong: String,
+    /// What to do.
+    pub remedy: String,
+}
+
+impl Fault {
+    /// A fault at a line of a file.
+    pub fn at(
+        file: impl Into<String>,
+        line: u32,
+        field: impl Into<String>,
+        wrong: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        let line = (line > 0).then_some(line);
+        Self {
+            file: file.into(),
+            line,
+            field: field.into(),
+            wrong: wrong.into(),
+            remedy: remedy.into(),
+        }
+    }
+
+    /// A fault of a whole file.
+    pub fn of(
+        file: impl Into<String>,
+        field: impl Into<String>,
+        wrong: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self {
+            file: file.into(),
+            line: None,
+            field: field.into(),
+            wrong: wrong.into(),
+            remedy: remedy.into(),
+        }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{}:{}: {}: {}: {}",
+            self.file,
+            self.line.unwrap_or(1),
+            self.field,
+            self.wrong,
+            self.remedy
+        )
+    }
+}
+
+/// Every fault that was found; never empty where it is an error.
+pub type Faults = Vec<Fault>;

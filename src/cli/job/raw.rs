@@ -1,0 +1,253 @@
+//! The job as written: every key of every section, each value with its place in the text, nothing required here.
+
+use super::shapes::{Counts, Ids, NumberOrWord, Texts};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use toml::Spanned;
+
+/// A value with its place, `None` where the key is absent.
+pub(super) type S<T> = Option<Spanned<T>>;
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawJob {
+    pub title: S<String>,
+    pub units: S<String>,
+    pub report_units: Option<RawUnits>,
+    pub model: S<RawModel>,
+    pub load: Vec<Spanned<RawLoad>>,
+    pub gauge: Vec<Spanned<RawGauge>>,
+    pub gauges: S<RawGauges>,
+    pub candidates: S<RawCandidates>,
+    pub placement: S<RawPlacement>,
+    pub measured: S<RawMeasured>,
+    pub runs: S<RawRuns>,
+    pub ballast: S<RawBallast>,
+    pub payload: S<RawPayload>,
+    pub respond: S<RawRespond>,
+    pub study: S<RawStudy>,
+    pub vehicle: S<RawVehicle>,
+    pub reconcile: S<RawReconcile>,
+    pub sensitivity: S<RawSensitivity>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawUnits {
+    pub force: S<String>,
+    pub moment: S<String>,
+    pub length: S<String>,
+    pub mass: S<String>,
+    pub stress: S<String>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawModel {
+    pub deck: S<String>,
+    pub results: Vec<Spanned<String>>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawLoad {
+    pub name: S<String>,
+    pub grid: S<u32>,
+    pub load_set: S<u32>,
+    pub component: S<String>,
+    pub cid: S<u32>,
+    pub applied: S<f64>,
+    pub result: S<String>,
+    pub subcase: S<u32>,
+    pub role: S<String>,
+    pub expected: S<f64>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawGauge {
+    pub name: S<String>,
+    pub element: S<u32>,
+    pub position: S<[f64; 3]>,
+    pub cid: S<u32>,
+    pub surface: S<String>,
+    pub direction: S<[f64; 3]>,
+    pub angle_deg: S<f64>,
+    pub bridge: S<String>,
+    pub bridge_factor: S<f64>,
+    pub grid_length: S<f64>,
+    pub element2: S<u32>,
+    pub surface2: S<String>,
+    pub rosette: S<String>,
+    pub point: S<String>,
+    pub station: S<f64>,
+    pub transverse_sensitivity: S<f64>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawGauges {
+    pub file: S<String>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawCandidates {
+    pub properties: S<Ids>,
+    pub elements: S<Ids>,
+    pub surfaces: S<Vec<Spanned<String>>>,
+    pub angle_step_deg: S<NumberOrWord>,
+    pub grid_length: S<f64>,
+    pub bridge: S<String>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawPlacement {
+    pub gauges: S<u32>,
+    pub criterion: S<String>,
+    pub spacing: S<f64>,
+    pub noise_microstrain: S<f64>,
+    pub angle_tolerance_deg: S<f64>,
+    pub model_uncertainty_rel: S<f64>,
+    pub seed: S<u64>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawMeasured {
+    pub strain: S<String>,
+    pub zero: S<String>,
+    pub reference: S<NumberOrWord>,
+    pub noise_microstrain: S<f64>,
+    pub model_uncertainty_rel: S<f64>,
+    pub hold_out: S<Texts>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawRuns {
+    pub file: S<String>,
+    pub columns: BTreeMap<Spanned<String>, Spanned<String>>,
+    pub units: Option<RawUnits>,
+    pub noise: Option<RawRunNoise>,
+    pub wheel_forces: S<String>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawRunNoise {
+    pub force: S<f64>,
+    pub moment: S<f64>,
+    pub mass: S<f64>,
+    pub length: S<f64>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawBallast {
+    pub masses: S<u32>,
+    pub region: S<Vec<[f64; 2]>>,
+    pub max_mass: S<f64>,
+    pub run: S<String>,
+    pub gravity: S<f64>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawPayload {
+    pub grid: S<u32>,
+    pub position: S<String>,
+    pub gravity: S<f64>,
+    pub weight_in_model: S<bool>,
+    pub region: S<Vec<[f64; 2]>>,
+    #[serde(rename = "use")]
+    pub sources: S<Vec<Spanned<String>>>,
+    pub nominal_x: S<f64>,
+    pub nominal_y: S<f64>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawRespond {
+    pub elements: S<Ids>,
+    pub hottest: S<u32>,
+    pub loads: S<String>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawStudy {
+    pub layouts: S<Vec<Spanned<String>>>,
+    pub gauges: S<Counts>,
+    pub errors: Vec<Spanned<RawError>>,
+    pub trials: S<u32>,
+    pub seed: S<u64>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawError {
+    pub kind: S<String>,
+    pub size: S<f64>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawVehicle {
+    pub model: S<String>,
+    pub terms: S<Vec<Spanned<String>>>,
+    pub data: S<String>,
+    pub hold_out: S<String>,
+    pub sample_rate: S<f64>,
+    pub known: BTreeMap<String, f64>,
+    pub noise: Option<RawVehicleNoise>,
+    pub tolerance: Option<RawTolerance>,
+    pub band_hz: S<[f64; 2]>,
+    pub columns: BTreeMap<String, String>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawVehicleNoise {
+    pub acc: S<f64>,
+    pub force: S<f64>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawTolerance {
+    pub gain: S<f64>,
+    pub sync: S<f64>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawReconcile {
+    pub path: S<String>,
+    pub zones: BTreeMap<String, Ids>,
+    pub places: BTreeMap<String, u32>,
+    #[serde(rename = "thermal_microstrain_per_degC")]
+    pub thermal: BTreeMap<Spanned<String>, f64>,
+    pub effects: S<Texts>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawSensitivity {
+    pub file: S<String>,
+    pub per: Option<RawUnits>,
+    pub columns: BTreeMap<Spanned<String>, Spanned<String>>,
+    pub signatures: Option<RawSignatures>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawSignatures {
+    pub lateral_wheel_loads: S<String>,
+    pub thermal: S<String>,
+    pub payload: S<String>,
+    pub unaccounted_mass: S<String>,
+    pub gauge_angle: S<String>,
+    pub rail_stiffness: BTreeMap<String, Spanned<String>>,
+}

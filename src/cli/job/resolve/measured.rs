@@ -1,0 +1,199 @@
+//! `[measured]`, `[runs]`, `[ballast]`, `[payload]`, `[respond]`.
+
+use super::super::faults::Collector;
+use super::super::raw::{RawBallast, RawMeasured, RawPayload, RawRespond, RawRuns, S};
+use super::super::shapes::{NumberOrWord, Texts};
+use super::super::types::*;
+use super::placement::DEFAULT_NOISE_MICROSTRAIN;
+use super::units::units;
+use crate::units::ReportUnits;
+use toml::Spanned;
+
+/// Elements that `respond` reports where the job says nothing.
+const DEFAULT_HOTTEST: usize = 20;
+
+pub(super) fn measured(c: &mut Collector, raw: Option<&Spanned<RawMeasured>>) -> Option<Measured> {
+    let section = raw?;
+    let raw = section.get_ref();
+    let reference = match raw.reference.as_ref().map(|r| (r, r.get_ref())) {
+        None => Reference::None,
+        Some((_, NumberOrWord::Number(n))) if *n >= 1.0 && n.fract() == 0.0 => {
+            Reference::Subcase(*n as u32)
+        }
+        Some((_, NumberOrWord::Word(w))) if w == "none" => Reference::None,
+        Some((_, NumberOrWord::Word(w))) if w == "gravity" => Reference::Gravity,
+        Some((at, _)) => {
+            let wrong = "expected \"none\", \"gravity\" or the number of a subcase";
+            c.fault(at, "measured.reference", wrong, "write one of these");
+            Reference::None
+        }
+    };
+    let hold_out = match raw.hold_out.as_ref().map(|h| (h, h.get_ref())) {
+        None => HoldOut::None,
+        Some((_, Texts::Many(runs))) => HoldOut::Runs(runs.clone()),
+        Some((at, Texts::One(file))) => HoldOut::File(NamedFile {
+            given: file.clone(),
+            key: "measured.hold_out".into(),
+            line: c.line(at),
+        }),
+    };
+    c.require(
+        &raw.strain,
+        section,
+        "measured.strain",
+        "strain = \"strain.csv\"",
+    )?;
+    Some(Measured {
+        strain: c.named(&raw.strain, "measured.strain")?,
+        zero: c.named(&raw.zero, "measured.zero"),
+        reference,
+        noise_microstrain: c
+            .positive(&raw.noise_microstrain, "measured.noise_microstrain")
+            .unwrap_or(DEFAULT_NOISE_MICROSTRAIN),
+        model_uncertainty_rel: c
+            .at_least_zero(&raw.model_uncertainty_rel, "measured.model_uncertainty_rel")
+            .unwrap_or(0.0),
+        hold_out,
+        line: c.line(section),
+    })
+}
+
+pub(super) fn runs(
+    c: &mut Collector,
+    raw: Option<&Spanned<RawRuns>>,
+    default: ReportUnits,
+) -> Option<Runs> {
+    let section = raw?;
+    let raw = section.get_ref();
+    c.require(&raw.file, section, "runs.file", "file = \"runs.csv\"")?;
+    let noise = raw
+        .noise
+        .as_ref()
+        .map_or(RunNoise::default(), |n| RunNoise {
+            force: c.at_least_zero(&n.force, "runs.noise.force"),
+            moment: c.at_least_zero(&n.moment, "runs.noise.moment"),
+            mass: c.at_least_zero(&n.mass, "runs.noise.mass"),
+            length: c.at_least_zero(&n.length, "runs.noise.length"),
+        });
+    let sources = [
+        ("measured", WheelForces::Measured),
+        ("flat_ground_model", WheelForces::FlatGroundModel),
+    ];
+    Some(Runs {
+        file: c.named(&raw.file, "runs.file")?,
+        columns: raw
+            .columns
+            .iter()
+            .map(|(k, v)| (k.get_ref().clone(), v.get_ref().clone()))
+            .collect(),
+        units: units(c, raw.units.as_ref(), default, "runs.units"),
+        noise,
+        wheel_forces: c.choose(
+            &raw.wheel_forces,
+            "runs.wheel_forces",
+            &sources,
+            WheelForces::Measured,
+        ),
+        line: c.line(section),
+    })
+}
+
+fn region(c: &mut Collector, raw: &S<Vec<[f64; 2]>>, key: &str) -> Option<Region> {
+    let value = raw.as_ref()?;
+    let axes = value.get_ref();
+    if !(2..=3).contains(&axes.len()) {
+        c.fault(
+            value,
+            key,
+            format!("{} ranges, expected 2 or 3", axes.len()),
+            "write [[x0, x1], [y0, y1]]",
+        );
+        return None;
+    }
+    if axes.iter().any(|[a, b]| !(a <= b)) {
+        c.fault(value, key, "a range runs downward", "write low before high");
+        return None;
+    }
+    Some(axes.clone())
+}
+
+pub(super) fn ballast(c: &mut Collector, raw: Option<&Spanned<RawBallast>>) -> Option<Ballast> {
+    let section = raw?;
+    let raw = section.get_ref();
+    Some(Ballast {
+        masses: c.count(&raw.masses, "ballast.masses").unwrap_or(1),
+        region: region(c, &raw.region, "ballast.region"),
+        max_mass: c.positive(&raw.max_mass, "ballast.max_mass"),
+        run: raw.run.as_ref().map(|r| r.get_ref().clone()),
+        gravity_m_s2: c.positive(&raw.gravity, "ballast.gravity"),
+        line: c.line(section),
+    })
+}
+
+pub(super) fn payload(c: &mut Collector, raw: Option<&Spanned<RawPayload>>) -> Option<Payload> {
+    let section = raw?;
+    let raw = section.get_ref();
+    let positions = [
+        ("known", PayloadPosition::Known),
+        ("free", PayloadPosition::Free),
+    ];
+    let (mut use_strain, mut use_reactions) = (true, true);
+    if let Some(list) = &raw.sources {
+        let words: Vec<&str> = list
+            .get_ref()
+            .iter()
+            .filter_map(|w| {
+                c.choose_at(
+                    w,
+                    "payload.use",
+                    &[("strain", "strain"), ("reactions", "reactions")],
+                )
+            })
+            .collect();
+        use_strain = words.contains(&"strain");
+        use_reactions = words.contains(&"reactions");
+        if list.get_ref().is_empty() {
+            c.fault(
+                list,
+                "payload.use",
+                "the list is empty",
+                "name `strain`, `reactions` or both",
+            );
+        }
+    }
+    Some(Payload {
+        grid: raw.grid.as_ref().map(|g| *g.get_ref()),
+        position: c.choose(
+            &raw.position,
+            "payload.position",
+            &positions,
+            PayloadPosition::Known,
+        ),
+        gravity_m_s2: c.positive(&raw.gravity, "payload.gravity"),
+        weight_in_model: raw.weight_in_model.as_ref().is_none_or(|w| *w.get_ref()),
+        region: region(c, &raw.region, "payload.region"),
+        use_strain,
+        use_reactions,
+        nominal_x: c.number(&raw.nominal_x, "payload.nominal_x", "a number", |_| true),
+        nominal_y: c.number(&raw.nominal_y, "payload.nominal_y", "a number", |_| true),
+        line: c.line(section),
+    })
+}
+
+pub(super) fn respond(c: &mut Collector, raw: Option<&Spanned<RawRespond>>) -> Respond {
+    let mut out = Respond {
+        elements: None,
+        hottest: DEFAULT_HOTTEST,
+        loads: None,
+        line: 0,
+    };
+    let Some(section) = raw else { return out };
+    let raw = section.get_ref();
+    out.elements = raw.elements.as_ref().map(|e| e.get_ref().clone());
+    out.hottest = c
+        .count(&raw.hottest, "respond.hottest")
+        .unwrap_or(DEFAULT_HOTTEST);
+    out.loads = c.named(&raw.loads, "respond.loads");
+    out.line = c.line(section);
+    out
+}

@@ -1,0 +1,168 @@
+//! `[vehicle]`, `[reconcile]`, `[sensitivity]`.
+
+use super::super::faults::Collector;
+use super::super::raw::{RawReconcile, RawSensitivity, RawVehicle};
+use super::super::shapes::Texts;
+use super::super::types::*;
+use super::units::units;
+use crate::units::{ReportUnits, UnitSystem};
+use toml::Spanned;
+
+const MODELS: [&str; 6] = ["front2", "rear3", "front_pair", "half", "full2", "full3"];
+
+pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> Option<Vehicle> {
+    let section = raw?;
+    let raw = section.get_ref();
+    let model = c.require(&raw.model, section, "vehicle.model", "model = \"front2\"");
+    c.choose(&raw.model, "vehicle.model", &MODELS.map(|m| (m, ())), ());
+    let data = c.require(&raw.data, section, "vehicle.data", "data = \"data.csv\"");
+    let noise = raw.noise.as_ref();
+    let tolerance = raw.tolerance.as_ref();
+    let band_hz = raw.band_hz.as_ref().and_then(|b| {
+        let [low, high] = *b.get_ref();
+        if 0.0 <= low && low < high {
+            return Some([low, high]);
+        }
+        c.fault(
+            b,
+            "vehicle.band_hz",
+            format!("[{low}, {high}] is no band"),
+            "write [low, high] in Hz, such as [0.7, 20.0]",
+        );
+        None
+    });
+    let mut noise_acc = None;
+    let mut noise_force = None;
+    if let Some(n) = noise {
+        noise_acc = c.at_least_zero(&n.acc, "vehicle.noise.acc");
+        noise_force = c.at_least_zero(&n.force, "vehicle.noise.force");
+    }
+    let mut gain = None;
+    let mut sync = None;
+    if let Some(t) = tolerance {
+        gain = c.at_least_zero(&t.gain, "vehicle.tolerance.gain");
+        sync = c.at_least_zero(&t.sync, "vehicle.tolerance.sync");
+    }
+    let sample_rate = c.positive(&raw.sample_rate, "vehicle.sample_rate");
+    model.as_ref().zip(data.as_ref())?;
+    Some(Vehicle {
+        model: model?,
+        terms: raw.terms.as_ref().map_or_else(Vec::new, |t| {
+            t.get_ref().iter().map(|w| w.get_ref().clone()).collect()
+        }),
+        data: c.named(&raw.data, "vehicle.data")?,
+        hold_out: c.named(&raw.hold_out, "vehicle.hold_out"),
+        sample_rate,
+        known: raw.known.clone(),
+        noise_acc,
+        noise_force,
+        tolerance_gain: gain,
+        tolerance_sync: sync,
+        band_hz,
+        columns: raw.columns.clone(),
+        line: c.line(section),
+    })
+}
+
+pub(super) fn reconcile(
+    c: &mut Collector,
+    raw: Option<&Spanned<RawReconcile>>,
+) -> Option<Reconcile> {
+    let section = raw?;
+    let raw = section.get_ref();
+    c.require(&raw.path, section, "reconcile.path", "path = \"static\"");
+    let paths = [
+        ("static", ReconcilePath::Static),
+        ("dynamic", ReconcilePath::Dynamic),
+    ];
+    let effects = match raw.effects.as_ref().map(|e| (e, e.get_ref())) {
+        None => None,
+        Some((_, Texts::Many(list))) => Some(list.clone()),
+        Some((at, Texts::One(word))) => {
+            c.choose_at(
+                &Spanned::new(at.span(), word.clone()),
+                "reconcile.effects",
+                &[("all", ())],
+            );
+            None
+        }
+    };
+    let bridges: Vec<(&str, ())> = Bridge::ALL
+        .into_iter()
+        .map(|b| (b.name(), ()))
+        .chain([("full", ()), ("half", ())])
+        .collect();
+    for bridge in raw.thermal.keys() {
+        c.choose_at(bridge, "reconcile.thermal_microstrain_per_degC", &bridges);
+    }
+    Some(Reconcile {
+        path: c.choose(&raw.path, "reconcile.path", &paths, ReconcilePath::Static),
+        zones: raw.zones.clone(),
+        places: raw.places.clone(),
+        thermal_microstrain_per_degc: raw
+            .thermal
+            .iter()
+            .map(|(k, v)| (k.get_ref().clone(), *v))
+            .collect(),
+        effects,
+        line: c.line(section),
+    })
+}
+
+pub(super) fn sensitivity(
+    c: &mut Collector,
+    raw: Option<&Spanned<RawSensitivity>>,
+    system: UnitSystem,
+) -> Option<GivenSensitivity> {
+    let section = raw?;
+    let raw = section.get_ref();
+    c.require(
+        &raw.file,
+        section,
+        "sensitivity.file",
+        "file = \"A_vertical.csv\"",
+    )?;
+    let signatures = raw
+        .signatures
+        .as_ref()
+        .map_or_else(Signatures::default, |s| Signatures {
+            lateral_wheel_loads: c.named(
+                &s.lateral_wheel_loads,
+                "sensitivity.signatures.lateral_wheel_loads",
+            ),
+            thermal: c.named(&s.thermal, "sensitivity.signatures.thermal"),
+            payload: c.named(&s.payload, "sensitivity.signatures.payload"),
+            unaccounted_mass: c.named(
+                &s.unaccounted_mass,
+                "sensitivity.signatures.unaccounted_mass",
+            ),
+            gauge_angle: c.named(&s.gauge_angle, "sensitivity.signatures.gauge_angle"),
+            rail_stiffness: s
+                .rail_stiffness
+                .iter()
+                .map(|(zone, f)| {
+                    (
+                        zone.clone(),
+                        c.named_at(f, &format!("sensitivity.signatures.rail_stiffness.{zone}")),
+                    )
+                })
+                .collect(),
+        });
+    let mut columns: Vec<_> = raw.columns.iter().collect();
+    columns.sort_by_key(|(k, _)| k.span().start);
+    Some(GivenSensitivity {
+        file: c.named(&raw.file, "sensitivity.file")?,
+        per: units(
+            c,
+            raw.per.as_ref(),
+            ReportUnits::of(system),
+            "sensitivity.per",
+        ),
+        columns: columns
+            .into_iter()
+            .map(|(k, v)| (k.get_ref().clone(), v.get_ref().clone()))
+            .collect(),
+        signatures,
+        line: c.line(section),
+    })
+}

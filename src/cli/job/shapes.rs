@@ -1,0 +1,164 @@
+//! Values that may be written in more than one way.
+
+use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
+use std::fmt;
+
+/// Ids: a number, a list, or text such as `"1 THRU 5000"` or `"1, 7, 20 THRU 30"`.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct Ids(pub Vec<[u32; 2]>);
+
+impl Ids {
+    /// Whether `id` is among them.
+    pub fn contains(&self, id: u32) -> bool {
+        self.0.iter().any(|[a, b]| (*a..=*b).contains(&id))
+    }
+}
+
+fn ids_from_text(text: &str) -> Option<Ids> {
+    let words: Vec<String> = text
+        .split([',', ' ', ';', '\t'])
+        .filter(|w| !w.is_empty())
+        .map(str::to_uppercase)
+        .collect();
+    let mut out = Vec::new();
+    let mut i = 0;
+    while let Some(word) = words.get(i) {
+        let a = word.parse::<u32>().ok()?;
+        if words.get(i + 1).map(String::as_str) == Some("THRU") {
+            let b = words.get(i + 2)?.parse::<u32>().ok()?;
+            if b < a {
+                return None;
+            }
+            out.push([a, b]);
+            i += 3;
+        } else {
+            out.push([a, a]);
+            i += 1;
+        }
+    }
+    (!out.is_empty()).then_some(Ids(out))
+}
+
+impl<'de> Deserialize<'de> for Ids {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        struct V;
+        impl<'de> Visitor<'de> for V {
+            type Value = Ids;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("ids: a number, a list of numbers, or text such as \"1 THRU 5000\"")
+            }
+            fn visit_i64<E: Error>(self, v: i64) -> Result<Ids, E> {
+                let id = u32::try_from(v)
+                    .map_err(|_| E::custom("an id must be a whole number above 0"))?;
+                Ok(Ids(vec![[id, id]]))
+            }
+            fn visit_str<E: Error>(self, v: &str) -> Result<Ids, E> {
+                ids_from_text(v).ok_or_else(|| {
+                    E::custom(format!(
+                        "`{v}` is no list of ids, expected text such as \"1 THRU 5000\""
+                    ))
+                })
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut s: A) -> Result<Ids, A::Error> {
+                let mut out = Ids::default();
+                while let Some(id) = s.next_element::<u32>()? {
+                    out.0.push([id, id]);
+                }
+                Ok(out)
+            }
+        }
+        d.deserialize_any(V)
+    }
+}
+
+/// One text, or a list of texts; which of them it was is kept.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Texts {
+    /// `"all"`, a file name.
+    One(String),
+    /// A list.
+    Many(Vec<String>),
+}
+
+impl<'de> Deserialize<'de> for Texts {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        struct V;
+        impl<'de> Visitor<'de> for V {
+            type Value = Texts;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("text, or a list of texts")
+            }
+            fn visit_str<E: Error>(self, v: &str) -> Result<Texts, E> {
+                Ok(Texts::One(v.to_owned()))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut s: A) -> Result<Texts, A::Error> {
+                let mut out = Vec::new();
+                while let Some(t) = s.next_element::<String>()? {
+                    out.push(t);
+                }
+                Ok(Texts::Many(out))
+            }
+        }
+        d.deserialize_any(V)
+    }
+}
+
+/// A number, or a word.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NumberOrWord {
+    /// A number.
+    Number(f64),
+    /// A word.
+    Word(String),
+}
+
+impl<'de> Deserialize<'de> for NumberOrWord {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        struct V;
+        impl Visitor<'_> for V {
+            type Value = NumberOrWord;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a number or a word")
+            }
+            fn visit_i64<E: Error>(self, v: i64) -> Result<NumberOrWord, E> {
+                Ok(NumberOrWord::Number(v as f64))
+            }
+            fn visit_f64<E: Error>(self, v: f64) -> Result<NumberOrWord, E> {
+                Ok(NumberOrWord::Number(v))
+            }
+            fn visit_str<E: Error>(self, v: &str) -> Result<NumberOrWord, E> {
+                Ok(NumberOrWord::Word(v.to_owned()))
+            }
+        }
+        d.deserialize_any(V)
+    }
+}
+
+/// One whole number, or a list of them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Counts(pub Vec<u32>);
+
+impl<'de> Deserialize<'de> for Counts {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        struct V;
+        impl<'de> Visitor<'de> for V {
+            type Value = Counts;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a whole number, or a list of whole numbers")
+            }
+            fn visit_i64<E: Error>(self, v: i64) -> Result<Counts, E> {
+                u32::try_from(v)
+                    .map(|n| Counts(vec![n]))
+                    .map_err(|_| E::custom("a count must be 0 or more"))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut s: A) -> Result<Counts, A::Error> {
+                let mut out = Vec::new();
+                while let Some(n) = s.next_element::<u32>()? {
+                    out.push(n);
+                }
+                Ok(Counts(out))
+            }
+        }
+        d.deserialize_any(V)
+    }
+}

@@ -1,0 +1,90 @@
+//! Writing: files appear under their names only when all of them are complete.
+
+use super::fault::Fault;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// The output folder of one command. Files are written under temporary names and renamed by [`Output::commit`]; dropped
+/// without it, nothing is left behind.
+pub struct Output {
+    folder: PathBuf,
+    pending: Vec<(PathBuf, PathBuf)>,
+}
+
+impl Output {
+    /// An output folder, created where missing.
+    ///
+    /// # Errors
+    /// A fault where it can't be created.
+    pub fn begin(folder: &Path) -> Result<Self, Fault> {
+        std::fs::create_dir_all(folder).map_err(|e| unwritable(folder, &e))?;
+        Ok(Self {
+            folder: folder.to_owned(),
+            pending: Vec::new(),
+        })
+    }
+
+    /// The folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Writes file `name` by `fill`, buffered.
+    ///
+    /// # Errors
+    /// A fault where it can't be written.
+    pub fn write(
+        &mut self,
+        name: &str,
+        fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+    ) -> Result<(), Fault> {
+        let target = self.folder.join(name);
+        let part = self.folder.join(format!(".{name}.part"));
+        let write = || -> std::io::Result<()> {
+            let mut file =
+                std::io::BufWriter::with_capacity(1 << 18, std::fs::File::create(&part)?);
+            fill(&mut file)?;
+            file.flush()
+        };
+        let written = write();
+        self.pending.push((part, target.clone()));
+        written.map_err(|e| unwritable(&target, &e))
+    }
+
+    /// Writes file `name` from bytes.
+    ///
+    /// # Errors
+    /// A fault where it can't be written.
+    pub fn write_bytes(&mut self, name: &str, bytes: &[u8]) -> Result<(), Fault> {
+        self.write(name, |w| w.write_all(bytes))
+    }
+
+    /// Renames every file to its name.
+    ///
+    /// # Errors
+    /// A fault for the first that can't be renamed.
+    pub fn commit(mut self) -> Result<(), Fault> {
+        while let Some((part, target)) = self.pending.first().cloned() {
+            std::fs::rename(&part, &target).map_err(|e| unwritable(&target, &e))?;
+            self.pending.remove(0);
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Output {
+    fn drop(&mut self) {
+        for (part, _) in &self.pending {
+            let _ = std::fs::remove_file(part);
+        }
+    }
+}
+
+fn unwritable(path: &Path, e: &std::io::Error) -> Fault {
+    Fault::of(
+        path.display().to_string(),
+        "output",
+        format!("can't be written ({e})"),
+        "choose another folder with `--out`",
+    )
+}

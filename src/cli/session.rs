@@ -1,0 +1,246 @@
+//! What one run of a command carries: options, inputs, stages with their times, findings, and what goes into `result.json`.
+
+use super::CommonArguments;
+use super::fault::{Fault, Faults};
+use super::files::{Input, Inputs};
+use super::output::Output;
+use super::progress::Progress;
+use super::words::finding_text;
+use crate::finding::{Finding, Severity, worst};
+use crate::units::{ReportUnits, UnitSystem};
+use serde::Serialize;
+use serde_json::{Map, Value};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// One run of a command.
+pub struct Session {
+    command: &'static str,
+    common: CommonArguments,
+    /// Files read so far.
+    pub inputs: Inputs,
+    /// What the stages had to say.
+    pub findings: Vec<Finding>,
+    units: Value,
+    body: Map<String, Value>,
+    seconds: Map<String, Value>,
+    output: Option<Output>,
+    text: String,
+}
+
+/// `result.json`.
+#[derive(Serialize)]
+struct ResultFile<'a> {
+    command: &'a str,
+    version: &'a str,
+    units: &'a Value,
+    inputs: &'a [Input],
+    findings: &'a [Finding],
+    #[serde(flatten)]
+    body: &'a Map<String, Value>,
+    seconds: &'a Map<String, Value>,
+}
+
+impl Session {
+    /// Runs a command and reports: text or `result.json` on standard output, findings and faults on standard error.
+    pub fn run(
+        command: &'static str,
+        common: &CommonArguments,
+        work: impl FnOnce(&mut Session) -> Result<(), Faults> + Send,
+    ) -> ExitCode {
+        let mut session = Session {
+            command,
+            common: common.clone(),
+            inputs: Inputs::default(),
+            findings: Vec::new(),
+            units: Value::Null,
+            body: Map::new(),
+            seconds: Map::new(),
+            output: None,
+            text: String::new(),
+        };
+        let start = Instant::now();
+        let done = match common.threads {
+            Some(n) => match rayon::ThreadPoolBuilder::new()
+                .num_threads(n.max(1))
+                .build()
+            {
+                Ok(pool) => pool.install(|| work(&mut session)),
+                Err(e) => Err(vec![Fault::of(
+                    "--threads",
+                    "threads",
+                    e.to_string(),
+                    "ask for fewer threads",
+                )]),
+            },
+            None => work(&mut session),
+        };
+        session.note_seconds("total", start);
+        match done.and_then(|()| session.finish()) {
+            Ok(code) => code,
+            Err(faults) => {
+                print_faults(&faults);
+                ExitCode::from(2)
+            }
+        }
+    }
+
+    /// Runs a stage: timed under its name, with a progress line on a terminal where it takes over a second.
+    pub fn stage<T>(&mut self, name: &str, work: impl FnOnce(&mut Session) -> T) -> T {
+        let start = Instant::now();
+        let progress = Progress::start(name);
+        let out = work(self);
+        drop(progress);
+        self.note_seconds(name, start);
+        out
+    }
+
+    fn note_seconds(&mut self, name: &str, start: Instant) {
+        let before = self
+            .seconds
+            .get(name)
+            .and_then(Value::as_f64)
+            .unwrap_or(0.0);
+        let s = before + start.elapsed().as_secs_f64();
+        self.seconds
+            .insert(name.to_owned(), Value::from((s * 1e6).round() / 1e6));
+    }
+
+    /// Puts a key into `result.json`.
+    ///
+    /// # Errors
+    /// A fault where the value has no JSON form, which is a mistake of the program.
+    pub fn put(&mut self, key: &str, value: impl Serialize) -> Result<(), Faults> {
+        let value = serde_json::to_value(value).map_err(|e| {
+            vec![Fault::of(
+                "result.json",
+                key,
+                e.to_string(),
+                "report this as an error of the program",
+            )]
+        })?;
+        self.body.insert(key.to_owned(), value);
+        Ok(())
+    }
+
+    /// States the units of the answer.
+    pub fn put_units(&mut self, system: UnitSystem, report: &ReportUnits) {
+        self.units = serde_json::json!({
+            "system": system.name(),
+            "force": report.force.name,
+            "moment": report.moment.name,
+            "length": report.length.name,
+            "mass": report.mass.name,
+            "stress": report.stress.name,
+            "strain": "microstrain",
+        });
+    }
+
+    /// Adds lines to the text that the user reads on standard output (nothing of it with `--json`).
+    pub fn say(&mut self, line: impl AsRef<str>) {
+        self.text.push_str(line.as_ref());
+        self.text.push('\n');
+    }
+
+    /// The output folder: `--out`, else `<name of the file>.out` in the current folder's reach beside the file.
+    ///
+    /// # Errors
+    /// A fault where it can't be created.
+    pub fn output_for(&mut self, main_input: &Path) -> Result<&mut Output, Faults> {
+        let folder = self
+            .common
+            .out
+            .clone()
+            .unwrap_or_else(|| default_folder(main_input));
+        self.open(&folder)
+    }
+
+    /// The output folder where `--out` names one, `None` otherwise (`check`).
+    ///
+    /// # Errors
+    /// A fault where it can't be created.
+    pub fn output_if_asked(&mut self) -> Result<Option<&mut Output>, Faults> {
+        match self.common.out.clone() {
+            Some(folder) => self.open(&folder).map(Some),
+            None => Ok(None),
+        }
+    }
+
+    fn open(&mut self, folder: &Path) -> Result<&mut Output, Faults> {
+        if self.output.is_none() {
+            self.output = Some(Output::begin(folder).map_err(|f| vec![f])?);
+        }
+        self.output.as_mut().ok_or_else(Vec::new)
+    }
+
+    fn finish(self) -> Result<ExitCode, Faults> {
+        let inputs = self.inputs.finish();
+        let mut findings = self.findings;
+        // The worst first; the order of stages within a severity.
+        findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
+        let result = ResultFile {
+            command: self.command,
+            version: env!("CARGO_PKG_VERSION"),
+            units: &self.units,
+            inputs: &inputs,
+            findings: &findings,
+            body: &self.body,
+            seconds: &self.seconds,
+        };
+        let mut json = serde_json::to_string_pretty(&result).map_err(|e| {
+            vec![Fault::of(
+                "result.json",
+                "result",
+                e.to_string(),
+                "report this as an error of the program",
+            )]
+        })?;
+        json.push('\n');
+        let mut folder = None;
+        if let Some(mut output) = self.output {
+            output
+                .write_bytes("result.json", json.as_bytes())
+                .map_err(|f| vec![f])?;
+            folder = Some(output.folder().to_owned());
+            output.commit().map_err(|f| vec![f])?;
+        }
+        let text = if self.common.json { json } else { self.text };
+        // A closed pipe (`| head`) is no fault of ours.
+        let _ = std::io::stdout().write_all(text.as_bytes());
+        let mut notes = String::new();
+        findings
+            .iter()
+            .for_each(|f| notes.push_str(&(finding_text(f) + "\n")));
+        if let Some(folder) = folder {
+            notes.push_str(&format!("written to `{}`\n", folder.display()));
+        }
+        let _ = std::io::stderr().write_all(notes.as_bytes());
+        Ok(if worst(&findings) == Some(Severity::Error) {
+            ExitCode::from(1)
+        } else {
+            ExitCode::SUCCESS
+        })
+    }
+}
+
+/// `<stem>.out` beside the file.
+fn default_folder(main_input: &Path) -> PathBuf {
+    let mut name = main_input
+        .file_stem()
+        .map(|s| s.to_owned())
+        .unwrap_or_else(|| "strainbridge".into());
+    name.push(".out");
+    main_input.with_file_name(name)
+}
+
+fn print_faults(faults: &Faults) {
+    let mut text: String = faults.iter().map(|f| format!("{f}\n")).collect();
+    let n = faults.len();
+    text.push_str(&format!(
+        "{n} fault{} found; nothing was written\n",
+        if n == 1 { "" } else { "s" }
+    ));
+    let _ = std::io::stderr().write_all(text.as_bytes());
+}

@@ -1,0 +1,14 @@
+//! Units at the door: the unit system of a model, the units of reports and of measured files, and factors between them.
+//!
+//! Inside, a model keeps the units of its deck; a number is converted once on reading and once in a report.
+
+mod plausible;
+mod system;
+mod unit;
+
+#[cfg(test)]
+mod tests;
+
+pub use plausible::*;
+pub use system::*;
+pub use unit::*;

@@ -1,0 +1,116 @@
+//! Whether declared units agree with what the deck says.
+
+use super::{Quantity, UnitSystem};
+use crate::finding::{Finding, Severity};
+
+/// Limits of a plausible Young's modulus, GPa: from soft plastics to the stiffest ceramics.
+pub const MODULUS_LIMITS_GPA: [f64; 2] = [1.0, 1000.0];
+/// Limits of a plausible density, kg/m^3: from foam cores to tungsten.
+pub const DENSITY_LIMITS: [f64; 2] = [20.0, 25_000.0];
+
+/// Findings where PARAM,UNITSYS, Young's moduli or densities (id, value; densities times WTMASS) contradict the declared system.
+///
+/// Dummy materials exist in honest decks: some implausible values are a warning, all of them an error.
+pub fn check_units(
+    system: UnitSystem,
+    unitsys: Option<&str>,
+    moduli: &[(u32, f64)],
+    densities: &[(u32, f64)],
+) -> Vec<Finding> {
+    let mut out = Vec::new();
+    if let Some(text) = unitsys {
+        if UnitSystem::from_unitsys(text) != Some(system) {
+            let severity = if UnitSystem::from_unitsys(text).is_some() {
+                Severity::Error
+            } else {
+                Severity::Warning
+            };
+            out.push(Finding::new(
+                severity,
+                "units-contradict-unitsys",
+                "PARAM,UNITSYS",
+                format!(
+                    "The job says `{}`, the deck says PARAM,UNITSYS,{}",
+                    system.name(),
+                    text.trim()
+                ),
+                "state the deck's units in `units` of the job, or correct the parameter",
+            ));
+        }
+    }
+    let gpa = system.si(Quantity::Stress) / 1e9;
+    out.extend(implausible(
+        "Young's modulus",
+        "GPa",
+        "units-modulus",
+        moduli,
+        gpa,
+        MODULUS_LIMITS_GPA,
+        system,
+    ));
+    let density = system.mass_kg() / system.length_m().powi(3);
+    out.extend(implausible(
+        "density",
+        "kg/m3",
+        "units-density",
+        densities,
+        density,
+        DENSITY_LIMITS,
+        system,
+    ));
+    out
+}
+
+fn implausible(
+    what: &str,
+    unit: &str,
+    code: &'static str,
+    values: &[(u32, f64)],
+    factor: f64,
+    limits: [f64; 2],
+    system: UnitSystem,
+) -> Option<Finding> {
+    let stated: Vec<(u32, f64)> = values
+        .iter()
+        .filter(|v| v.1 != 0.0)
+        .map(|v| (v.0, v.1 * factor))
+        .collect();
+    let bad: Vec<(u32, f64)> = stated
+        .iter()
+        .copied()
+        .filter(|v| !(limits[0]..=limits[1]).contains(&v.1))
+        .collect();
+    let first = bad.first()?;
+    let severity = if bad.len() == stated.len() {
+        Severity::Error
+    } else {
+        Severity::Warning
+    };
+    let others = if bad.len() > 1 {
+        format!(" (and {} more)", bad.len() - 1)
+    } else {
+        String::new()
+    };
+    let limit = if first.1 < limits[0] {
+        limits[0]
+    } else {
+        limits[1]
+    };
+    Some(
+        Finding::new(
+            severity,
+            code,
+            format!("material {}", first.0),
+            format!(
+                "In `{}` the {what} of material {}{others} is {:.3e} {unit}, outside {} to {} {unit}",
+                system.name(),
+                first.0,
+                first.1,
+                limits[0],
+                limits[1]
+            ),
+            "check `units` of the job against the deck; for weight densities PARAM,WTMASS must be set",
+        )
+        .with_numbers(first.1, limit),
+    )
+}

@@ -1,0 +1,122 @@
+//! Consistent unit systems a deck can be written in.
+
+use super::{Quantity, Unit};
+
+/// A consistent unit system; time is in seconds in all of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnitSystem {
+    /// metre, kilogram, second: newton, pascal.
+    MKgS,
+    /// millimetre, tonne, second: newton, megapascal.
+    MmTS,
+    /// millimetre, kilogram, second: millinewton, kilopascal.
+    MmKgS,
+    /// inch, pound-force, second: mass in lbf s^2 / in.
+    InLbfS,
+}
+
+/// Metres in an inch (exact).
+const INCH_M: f64 = 0.0254;
+/// Newtons in a pound-force (exact: 0.45359237 kg times 9.80665 m/s^2).
+pub(super) const POUND_FORCE_N: f64 = 4.448_221_615_260_5;
+
+impl UnitSystem {
+    /// All of them, as a job may name them.
+    pub const ALL: [UnitSystem; 4] = [Self::MKgS, Self::MmTS, Self::MmKgS, Self::InLbfS];
+
+    /// The name used in a job.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::MKgS => "m-kg-s",
+            Self::MmTS => "mm-t-s",
+            Self::MmKgS => "mm-kg-s",
+            Self::InLbfS => "in-lbf-s",
+        }
+    }
+
+    /// The system of that name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|s| s.name() == name)
+    }
+
+    /// The system that PARAM,UNITSYS names, `None` for one we have no name for.
+    ///
+    /// # Reference
+    /// Simcenter writes `MN-MM` for millinewton and millimetre.
+    pub fn from_unitsys(text: &str) -> Option<Self> {
+        match text.trim().to_ascii_uppercase().as_str() {
+            "N-M" | "M-N" => Some(Self::MKgS),
+            "N-MM" | "MM-N" => Some(Self::MmTS),
+            "MN-MM" | "MM-MN" => Some(Self::MmKgS),
+            "LBF-IN" | "IN-LBF" => Some(Self::InLbfS),
+            _ => None,
+        }
+    }
+
+    /// Metres in its unit of length.
+    pub fn length_m(self) -> f64 {
+        match self {
+            Self::MKgS => 1.0,
+            Self::MmTS | Self::MmKgS => 1e-3,
+            Self::InLbfS => INCH_M,
+        }
+    }
+
+    /// Kilograms in its unit of mass.
+    pub fn mass_kg(self) -> f64 {
+        match self {
+            Self::MKgS | Self::MmKgS => 1.0,
+            Self::MmTS => 1e3,
+            Self::InLbfS => POUND_FORCE_N / INCH_M,
+        }
+    }
+
+    /// The SI value of its unit of a quantity (`kg m / s^2` and so on): multiply by this to get SI.
+    pub fn si(self, quantity: Quantity) -> f64 {
+        let (l, m) = (self.length_m(), self.mass_kg());
+        match quantity {
+            Quantity::Force => m * l,
+            Quantity::Moment => m * l * l,
+            Quantity::Length => l,
+            Quantity::Mass => m,
+            Quantity::Stress => m / l,
+            Quantity::Acceleration => l,
+        }
+    }
+
+    /// Its own unit of a quantity, named as reports name it.
+    pub fn unit(self, quantity: Quantity) -> Unit {
+        let name = match (self, quantity) {
+            (Self::MKgS, Quantity::Force) | (Self::MmTS, Quantity::Force) => "N",
+            (Self::MmKgS, Quantity::Force) => "mN",
+            (Self::InLbfS, Quantity::Force) => "lbf",
+            (Self::MKgS, Quantity::Moment) => "N m",
+            (Self::MmTS, Quantity::Moment) => "N mm",
+            (Self::MmKgS, Quantity::Moment) => "mN mm",
+            (Self::InLbfS, Quantity::Moment) => "lbf in",
+            (Self::MKgS, Quantity::Length) => "m",
+            (Self::MmTS | Self::MmKgS, Quantity::Length) => "mm",
+            (Self::InLbfS, Quantity::Length) => "in",
+            (Self::MKgS | Self::MmKgS, Quantity::Mass) => "kg",
+            (Self::MmTS, Quantity::Mass) => "t",
+            (Self::InLbfS, Quantity::Mass) => "lbf s2/in",
+            (Self::MKgS, Quantity::Stress) => "Pa",
+            (Self::MmTS, Quantity::Stress) => "MPa",
+            (Self::MmKgS, Quantity::Stress) => "kPa",
+            (Self::InLbfS, Quantity::Stress) => "psi",
+            (Self::MKgS, Quantity::Acceleration) => "m/s2",
+            (Self::MmTS | Self::MmKgS, Quantity::Acceleration) => "mm/s2",
+            (Self::InLbfS, Quantity::Acceleration) => "in/s2",
+        };
+        Unit {
+            name,
+            quantity,
+            si: self.si(quantity),
+        }
+    }
+
+    /// Standard gravity (9.80665 m/s^2) in this system.
+    pub fn standard_gravity(self) -> f64 {
+        9.806_65 / self.length_m()
+    }
+}

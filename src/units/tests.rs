@@ -1,0 +1,81 @@
+use super::*;
+
+#[test]
+fn every_system_is_consistent_force_is_mass_times_acceleration() {
+    for s in UnitSystem::ALL {
+        let f = s.mass_kg() * s.length_m();
+        assert!(
+            (s.unit(Quantity::Force).si / f - 1.0).abs() < 1e-15,
+            "{}",
+            s.name()
+        );
+        for q in [
+            Quantity::Force,
+            Quantity::Moment,
+            Quantity::Length,
+            Quantity::Mass,
+            Quantity::Stress,
+        ] {
+            let named = find_unit(q, s.unit(q).name).unwrap();
+            assert!(
+                (named.si / s.unit(q).si - 1.0).abs() < 1e-14,
+                "{} {}",
+                s.name(),
+                q.word()
+            );
+        }
+    }
+}
+
+#[test]
+fn steel_is_plausible_in_its_own_units_and_only_there() {
+    // Steel: 210 GPa, 7850 kg/m^3 in each system (in-lbf-s: 30.46e6 psi, 7.345e-4 lbf s^2/in^4).
+    let steel = [
+        (UnitSystem::MKgS, 210e9, 7850.0),
+        (UnitSystem::MmTS, 210e3, 7.85e-9),
+        (UnitSystem::MmKgS, 210e6, 7.85e-6),
+        (UnitSystem::InLbfS, 30.46e6, 7.345e-4),
+    ];
+    for (system, e, rho) in steel {
+        for other in UnitSystem::ALL {
+            let found = check_units(other, None, &[(1, e)], &[(1, rho)]);
+            assert_eq!(
+                found.is_empty(),
+                other == system,
+                "{} read as {}: {found:?}",
+                system.name(),
+                other.name()
+            );
+        }
+    }
+}
+
+#[test]
+fn a_contradiction_with_unitsys_is_an_error() {
+    let found = check_units(UnitSystem::MmTS, Some("MN-MM"), &[], &[]);
+    assert_eq!(found.len(), 1);
+    assert_eq!(found[0].code, "units-contradict-unitsys");
+    assert!(check_units(UnitSystem::MmKgS, Some("MN-MM"), &[], &[]).is_empty());
+}
+
+#[test]
+fn factors_go_from_model_to_report_units() {
+    assert_eq!(
+        factor(UnitSystem::MmTS, find_unit(Quantity::Force, "kN").unwrap()),
+        1e-3
+    );
+    assert!(
+        (factor(
+            UnitSystem::MmTS,
+            find_unit(Quantity::Moment, "kN m").unwrap()
+        ) - 1e-6)
+            .abs()
+            < 1e-20
+    );
+    assert!(
+        (factor(UnitSystem::MmKgS, find_unit(Quantity::Force, "N").unwrap()) - 1e-3).abs() < 1e-18
+    );
+    // 1 lbf s^2/in weighs 386.0886 lb.
+    let lb = factor(UnitSystem::InLbfS, find_unit(Quantity::Mass, "lb").unwrap());
+    assert!((lb - 386.0886).abs() < 1e-3, "{lb}");
+}

@@ -1,0 +1,151 @@
+//! Single units and what a report uses.
+
+use super::UnitSystem;
+use super::system::POUND_FORCE_N;
+
+/// What a unit measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Quantity {
+    Force,
+    Moment,
+    Length,
+    Mass,
+    Stress,
+    Acceleration,
+}
+
+impl Quantity {
+    /// The word a job uses.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Force => "force",
+            Self::Moment => "moment",
+            Self::Length => "length",
+            Self::Mass => "mass",
+            Self::Stress => "stress",
+            Self::Acceleration => "acceleration",
+        }
+    }
+}
+
+/// A unit: `value_si = value * si`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    /// As written.
+    pub name: &'static str,
+    /// What it measures.
+    pub quantity: Quantity,
+    /// SI units in one of it.
+    pub si: f64,
+}
+
+/// Every unit that a job may name.
+pub const UNITS: [Unit; 33] = {
+    use Quantity::*;
+    const fn u(name: &'static str, quantity: Quantity, si: f64) -> Unit {
+        Unit { name, quantity, si }
+    }
+    [
+        u("N", Force, 1.0),
+        u("kN", Force, 1e3),
+        u("MN", Force, 1e6),
+        u("mN", Force, 1e-3),
+        u("lbf", Force, POUND_FORCE_N),
+        u("kip", Force, 1e3 * POUND_FORCE_N),
+        u("kgf", Force, 9.806_65),
+        u("N m", Moment, 1.0),
+        u("kN m", Moment, 1e3),
+        u("N mm", Moment, 1e-3),
+        u("kN mm", Moment, 1.0),
+        u("mN mm", Moment, 1e-6),
+        u("lbf in", Moment, POUND_FORCE_N * 0.0254),
+        u("lbf ft", Moment, POUND_FORCE_N * 0.3048),
+        u("m", Length, 1.0),
+        u("cm", Length, 1e-2),
+        u("mm", Length, 1e-3),
+        u("in", Length, 0.0254),
+        u("ft", Length, 0.3048),
+        u("kg", Mass, 1.0),
+        u("g", Mass, 1e-3),
+        u("t", Mass, 1e3),
+        u("lb", Mass, 0.453_592_37),
+        u("lbf s2/in", Mass, POUND_FORCE_N / 0.0254),
+        u("slug", Mass, POUND_FORCE_N / 0.3048),
+        u("Pa", Stress, 1.0),
+        u("kPa", Stress, 1e3),
+        u("MPa", Stress, 1e6),
+        u("GPa", Stress, 1e9),
+        u("psi", Stress, POUND_FORCE_N / (0.0254 * 0.0254)),
+        u("m/s2", Acceleration, 1.0),
+        u("mm/s2", Acceleration, 1e-3),
+        u("in/s2", Acceleration, 0.0254),
+    ]
+};
+
+/// The unit of that name for that quantity. Moments may be written `kN m`, `kN*m`, `kN.m`, `kNm`.
+pub fn find_unit(quantity: Quantity, name: &str) -> Option<Unit> {
+    let plain = |s: &str| {
+        s.chars()
+            .filter(|c| !matches!(c, ' ' | '*' | '.' | '-' | '^'))
+            .collect::<String>()
+    };
+    let wanted = plain(name);
+    UNITS
+        .into_iter()
+        .find(|u| u.quantity == quantity && plain(u.name) == wanted)
+}
+
+/// Names of the units of a quantity, for messages.
+pub fn unit_names(quantity: Quantity) -> Vec<&'static str> {
+    UNITS
+        .iter()
+        .filter(|u| u.quantity == quantity)
+        .map(|u| u.name)
+        .collect()
+}
+
+/// The units of a report, and of the files a job names.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct ReportUnits {
+    pub force: Unit,
+    pub moment: Unit,
+    pub length: Unit,
+    pub mass: Unit,
+    pub stress: Unit,
+}
+
+impl ReportUnits {
+    /// The system's own units.
+    pub fn of(system: UnitSystem) -> Self {
+        Self {
+            force: system.unit(Quantity::Force),
+            moment: system.unit(Quantity::Moment),
+            length: system.unit(Quantity::Length),
+            mass: system.unit(Quantity::Mass),
+            stress: system.unit(Quantity::Stress),
+        }
+    }
+
+    /// The unit of a quantity; accelerations are reported in SI.
+    pub fn unit(&self, quantity: Quantity) -> Unit {
+        match quantity {
+            Quantity::Force => self.force,
+            Quantity::Moment => self.moment,
+            Quantity::Length => self.length,
+            Quantity::Mass => self.mass,
+            Quantity::Stress => self.stress,
+            Quantity::Acceleration => Unit {
+                name: "m/s2",
+                quantity,
+                si: 1.0,
+            },
+        }
+    }
+}
+
+/// Factor from model units to a unit: `value_in_unit = value_in_system * factor`.
+pub fn factor(from: UnitSystem, to: Unit) -> f64 {
+    from.si(to.quantity) / to.si
+}

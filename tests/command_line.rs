@@ -1,0 +1,108 @@
+//! The command line as a user meets it: exit codes, standard output, standard error, files.
+
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+/// Runs the program.
+fn strainbridge(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+/// A fresh folder for one test.
+fn folder(name: &str) -> PathBuf {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+        .join("command_line")
+        .join(name);
+    let _ = std::fs::remove_dir_all(&path);
+    std::fs::create_dir_all(&path).unwrap();
+    path
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[test]
+fn a_bad_job_exits_with_2_and_lists_every_fault_with_file_and_line() {
+    let dir = folder("bad_job");
+    let job = dir.join("job.toml");
+    std::fs::write(&job, "unit = \"m-kg-s\"\n[placement]\ngauges = \"ten\"\n").unwrap();
+    let out = strainbridge(&["check", job.to_str().unwrap()]);
+    assert_eq!(out.status.code(), Some(2));
+    assert!(out.stdout.is_empty());
+    let err = text(&out.stderr);
+    let name = job.display().to_string();
+    assert!(
+        err.contains(&format!("{name}:1: unit: ")) && err.contains("did you mean `units`?"),
+        "{err}"
+    );
+    assert!(
+        err.contains(&format!("{name}:3: placement.gauges: ")),
+        "{err}"
+    );
+}
+
+#[test]
+fn a_missing_file_is_bad_input() {
+    let out = strainbridge(&["check", "no-such-file.bdf", "neither.toml"]);
+    assert_eq!(out.status.code(), Some(2));
+    let err = text(&out.stderr);
+    assert!(
+        err.contains("no-such-file.bdf:1: file: no such file") && err.contains("neither.toml"),
+        "{err}"
+    );
+}
+
+#[test]
+fn json_prints_the_result_and_nothing_else() {
+    let dir = folder("json");
+    let job = dir.join("job.toml");
+    std::fs::write(&job, "units = \"m-kg-s\"\n").unwrap();
+    let out = strainbridge(&["check", job.to_str().unwrap(), "--json"]);
+    assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+    let result: serde_json::Value = serde_json::from_slice(&out.stdout).unwrap();
+    for key in [
+        "command", "version", "units", "inputs", "findings", "seconds", "decks", "results",
+    ] {
+        assert!(result.get(key).is_some(), "{key} in {result}");
+    }
+    // SHA-256 of `units = "m-kg-s"` and a line feed, by sha256sum.
+    let expected = "a3e0fc98c56fd9dcc4d3f3f1d1888b26ca71269bd9af4fa73aaa9fe6defa5846";
+    assert_eq!(result["inputs"][0]["sha256"], expected);
+    assert!(
+        std::fs::read_dir(&dir).unwrap().count() == 1,
+        "check writes only with --out"
+    );
+}
+
+#[test]
+fn two_runs_write_the_same_bytes_but_for_the_seconds() {
+    let dir = folder("same_bytes");
+    let job = dir.join("job.toml");
+    std::fs::write(&job, "units = \"m-kg-s\"\n").unwrap();
+    let run = |out: &str| {
+        let out = dir.join(out);
+        let done = strainbridge(&[
+            "check",
+            job.to_str().unwrap(),
+            "--out",
+            out.to_str().unwrap(),
+        ]);
+        assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+        let json = std::fs::read_to_string(out.join("result.json")).unwrap();
+        assert_eq!(
+            std::fs::read_dir(&out)
+                .unwrap()
+                .filter(
+                    |e| text(e.as_ref().unwrap().file_name().as_encoded_bytes()).ends_with(".part")
+                )
+                .count(),
+            0
+        );
+        json.split("\"seconds\"").next().unwrap().to_owned()
+    };
+    assert_eq!(run("a"), run("b"));
+}
