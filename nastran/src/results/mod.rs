@@ -3,8 +3,10 @@
 mod block;
 pub mod columns;
 mod element;
+mod file;
 mod rows;
 
 pub use block::*;
 pub use element::*;
+pub use file::*;
 pub use rows::*;

@@ -1,0 +1,148 @@
+//! One front for every kind of result file.
+
+use super::{Block, GridPointWeight, Note, Rows};
+use crate::h5::{H5, H5Error, is_h5};
+use crate::op2::{Op2, Op2Error, Solver};
+use crate::punch::{Punch, PunchError};
+
+/// A result file of any kind that is read, told apart by content.
+#[derive(Debug)]
+pub enum ResultsFile<'a> {
+    /// OP2.
+    Op2(Box<Op2<'a>>),
+    /// Punch.
+    Punch(Punch<'a>),
+    /// HDF5.
+    H5(Box<H5>),
+}
+
+/// Why a result file, or a block of one, could not be read.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ResultsError {
+    /// No kind of result file begins like this.
+    #[error("`{name}`: neither OP2 nor punch nor HDF5 results: give a file with result output (PARAM,POST,-1 or (PUNCH) or MDLPRM,HDF5)")]
+    UnknownKind {
+        /// The file's name, as the caller gave it.
+        name: String,
+    },
+    /// OP2.
+    #[error(transparent)]
+    Op2(#[from] Op2Error),
+    /// Punch.
+    #[error(transparent)]
+    Punch(#[from] PunchError),
+    /// HDF5.
+    #[error(transparent)]
+    H5(#[from] H5Error),
+}
+
+impl<'a> ResultsFile<'a> {
+    /// Reads the index of a result file; `name` is only used in messages and to break ties.
+    ///
+    /// # Errors
+    /// [`ResultsError`]: a kind that is not known, or what its reader says.
+    pub fn read(bytes: &'a [u8], name: &str) -> Result<Self, ResultsError> {
+        if is_h5(bytes) {
+            return Ok(Self::H5(Box::new(H5::read(bytes)?)));
+        }
+        if looks_like_punch(bytes) {
+            return Ok(Self::Punch(Punch::read(bytes)?));
+        }
+        match Op2::read(bytes) {
+            Ok(op2) => Ok(Self::Op2(Box::new(op2))),
+            Err(Op2Error::NotOp2 { .. }) if !name.to_ascii_lowercase().ends_with(".op2") => {
+                Err(ResultsError::UnknownKind { name: name.to_string() })
+            }
+            Err(e) => Err(e.into()),
+        }
+    }
+
+    /// The solver, with the version where the file states it.
+    pub fn solver(&self) -> String {
+        match self {
+            Self::Op2(op2) => {
+                let name = match op2.solver {
+                    Solver::Msc => "MSC Nastran",
+                    Solver::Nx => "NX/Simcenter Nastran",
+                    Solver::Optistruct => "OptiStruct",
+                    Solver::Autodesk => "Autodesk Nastran",
+                    Solver::Mystran => "MYSTRAN",
+                    Solver::Unknown => "unknown solver",
+                };
+                match op2.version_label.as_deref() {
+                    Some(label) if !label.is_empty() && !label.starts_with("XXXX") => format!("{name} ({label})"),
+                    _ => name.to_string(),
+                }
+            }
+            Self::Punch(_) => "punch file (solver not stated)".to_string(),
+            Self::H5(h5) => match h5.schema {
+                Some(schema) => format!("MSC Nastran (HDF5 schema {schema})"),
+                None => "MSC Nastran (HDF5)".to_string(),
+            },
+        }
+    }
+
+    /// Bytes a number: 4 or 8 for OP2, 8 for HDF5, 0 for the text of a punch file.
+    pub fn word_bytes(&self) -> usize {
+        match self {
+            Self::Op2(op2) => op2.word_bytes,
+            Self::Punch(_) => 0,
+            Self::H5(_) => 8,
+        }
+    }
+
+    /// Relative rounding of the numbers as the file holds them: single or double precision, or the seven digits of a punch file.
+    pub fn precision(&self) -> f64 {
+        match self {
+            Self::Op2(op2) if op2.word_bytes == 4 => f64::from(f32::EPSILON) / 2.0,
+            Self::Punch(_) => 5e-7,
+            Self::Op2(_) | Self::H5(_) => f64::EPSILON / 2.0,
+        }
+    }
+
+    /// The index of results, in file order.
+    pub fn blocks(&self) -> &[Block] {
+        match self {
+            Self::Op2(op2) => &op2.blocks,
+            Self::Punch(punch) => &punch.blocks,
+            Self::H5(h5) => &h5.blocks,
+        }
+    }
+
+    /// The rows of block `index`.
+    ///
+    /// # Errors
+    /// What the reader says: the block does not exist, is not decoded, or is damaged.
+    pub fn rows(&self, index: usize) -> Result<Rows, ResultsError> {
+        Ok(match self {
+            Self::Op2(op2) => op2.rows(index)?,
+            Self::Punch(punch) => punch.rows(index)?,
+            Self::H5(h5) => h5.rows(index)?,
+        })
+    }
+
+    /// What was passed over.
+    pub fn notes(&self) -> &[Note] {
+        match self {
+            Self::Op2(op2) => &op2.notes,
+            Self::Punch(punch) => &punch.notes,
+            Self::H5(h5) => &h5.notes,
+        }
+    }
+
+    /// The solver's grid point weight, where the file has it.
+    pub fn grid_point_weight(&self) -> Option<GridPointWeight> {
+        match self {
+            Self::Op2(op2) => op2.grid_point_weight(),
+            Self::Punch(_) => None,
+            Self::H5(h5) => h5.grid_point_weight.clone(),
+        }
+    }
+}
+
+/// Text whose first line that is not blank is a `$` line (punch files open with `$TITLE`).
+fn looks_like_punch(bytes: &[u8]) -> bool {
+    let start = bytes.get(..bytes.len().min(400)).unwrap_or(&[]);
+    let text = start.iter().position(|b| !b.is_ascii_whitespace()).and_then(|i| start.get(i..)).unwrap_or(&[]);
+    text.starts_with(b"$") && text.iter().all(|&b| b == b'\t' || b == b'\r' || b == b'\n' || b >= b' ')
+}
