@@ -12,8 +12,16 @@ fn every_op2_punch_and_h5_of_the_set_opens_and_each_block_decodes_or_says_why_no
     };
     let mut n_files = 0;
     for case in cases.flatten().filter(|c| c.path().is_dir()) {
-        for file in std::fs::read_dir(case.path()).unwrap().flatten().map(|f| f.path()) {
-            let extension = file.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+        for file in std::fs::read_dir(case.path())
+            .unwrap()
+            .flatten()
+            .map(|f| f.path())
+        {
+            let extension = file
+                .extension()
+                .and_then(|e| e.to_str())
+                .unwrap_or("")
+                .to_ascii_lowercase();
             let kind = match extension.as_str() {
                 "op2" => "OP2",
                 "pch" => "punch",
@@ -31,7 +39,13 @@ fn every_op2_punch_and_h5_of_the_set_opens_and_each_block_decodes_or_says_why_no
             assert_eq!(found, kind, "{}", file.display());
             for (ix, block) in results.blocks().iter().enumerate() {
                 match results.rows(ix) {
-                    Ok(rows) => assert_eq!(rows.values.len(), rows.len() * rows.columns.len(), "{} {}", file.display(), block.table),
+                    Ok(rows) => assert_eq!(
+                        rows.values.len(),
+                        rows.len() * rows.columns.len(),
+                        "{} {}",
+                        file.display(),
+                        block.table
+                    ),
                     Err(e) => assert!(!e.to_string().is_empty()),
                 }
             }
@@ -43,5 +57,10 @@ fn every_op2_punch_and_h5_of_the_set_opens_and_each_block_decodes_or_says_why_no
 #[test]
 fn other_text_is_no_result_file() {
     let error = ResultsFile::read(b"CEND\nBEGIN BULK\n", "frame.bdf").unwrap_err();
-    assert_eq!(error, ResultsError::UnknownKind { name: "frame.bdf".to_string() });
+    assert_eq!(
+        error,
+        ResultsError::UnknownKind {
+            name: "frame.bdf".to_string()
+        }
+    );
 }

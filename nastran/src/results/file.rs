@@ -20,7 +20,9 @@ pub enum ResultsFile<'a> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ResultsError {
     /// No kind of result file begins like this.
-    #[error("`{name}`: neither OP2 nor punch nor HDF5 results: give a file with result output (PARAM,POST,-1 or (PUNCH) or MDLPRM,HDF5)")]
+    #[error(
+        "`{name}`: neither OP2 nor punch nor HDF5 results: give a file with result output (PARAM,POST,-1 or (PUNCH) or MDLPRM,HDF5)"
+    )]
     UnknownKind {
         /// The file's name, as the caller gave it.
         name: String,
@@ -51,7 +53,9 @@ impl<'a> ResultsFile<'a> {
         match Op2::read(bytes) {
             Ok(op2) => Ok(Self::Op2(Box::new(op2))),
             Err(Op2Error::NotOp2 { .. }) if !name.to_ascii_lowercase().ends_with(".op2") => {
-                Err(ResultsError::UnknownKind { name: name.to_string() })
+                Err(ResultsError::UnknownKind {
+                    name: name.to_string(),
+                })
             }
             Err(e) => Err(e.into()),
         }
@@ -70,7 +74,9 @@ impl<'a> ResultsFile<'a> {
                     Solver::Unknown => "unknown solver",
                 };
                 match op2.version_label.as_deref() {
-                    Some(label) if !label.is_empty() && !label.starts_with("XXXX") => format!("{name} ({label})"),
+                    Some(label) if !label.is_empty() && !label.starts_with("XXXX") => {
+                        format!("{name} ({label})")
+                    }
                     _ => name.to_string(),
                 }
             }
@@ -143,6 +149,13 @@ impl<'a> ResultsFile<'a> {
 /// Text whose first line that is not blank is a `$` line (punch files open with `$TITLE`).
 fn looks_like_punch(bytes: &[u8]) -> bool {
     let start = bytes.get(..bytes.len().min(400)).unwrap_or(&[]);
-    let text = start.iter().position(|b| !b.is_ascii_whitespace()).and_then(|i| start.get(i..)).unwrap_or(&[]);
-    text.starts_with(b"$") && text.iter().all(|&b| b == b'\t' || b == b'\r' || b == b'\n' || b >= b' ')
+    let text = start
+        .iter()
+        .position(|b| !b.is_ascii_whitespace())
+        .and_then(|i| start.get(i..))
+        .unwrap_or(&[]);
+    text.starts_with(b"$")
+        && text
+            .iter()
+            .all(|&b| b == b'\t' || b == b'\r' || b == b'\n' || b >= b' ')
 }
