@@ -1,4 +1,7 @@
 //! From a model and loads, or from a result file, to strain fields.
 
+pub mod shell_frame;
 mod solution;
+pub mod strain_tensor;
+
 pub use solution::*;

@@ -1,0 +1,90 @@
+//! From strain in an element's output frame to the tensor in the basic frame, to other fibres and to a direction.
+
+use super::PlaneStrain;
+use crate::model::{Mat3, MaterialKind, Model, ShellKind, ShellProperty, Vec3};
+
+/// A face of a shell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Surface {
+    /// Fibre distance Z1.
+    Bottom,
+    /// Fibre distance Z2.
+    Top,
+}
+
+impl Surface {
+    /// Both, bottom first.
+    pub const BOTH: [Surface; 2] = [Surface::Bottom, Surface::Top];
+
+    /// The word of files and reports.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Bottom => "bottom",
+            Self::Top => "top",
+        }
+    }
+
+    /// 0 bottom, 1 top.
+    pub fn ix(self) -> usize {
+        match self {
+            Self::Bottom => 0,
+            Self::Top => 1,
+        }
+    }
+}
+
+/// The symmetric strain tensor in the basic frame, tensor shear: `E = R' e R`.
+///
+/// `strain` is exx, eyy, gxy in the frame with rows `axes` (R); gxy is engineering shear and is halved here; `ezz` is the normal strain
+/// across the thickness, see [`normal_strain_ratio`]. Shear across the thickness is zero at a free surface.
+pub fn basic_tensor(strain: PlaneStrain, ezz: f64, axes: &Mat3) -> Mat3 {
+    let [exx, eyy, gxy] = strain;
+    let local = Mat3::new(exx, gxy / 2.0, 0.0, gxy / 2.0, eyy, 0.0, 0.0, 0.0, ezz);
+    axes.transpose() * local * axes
+}
+
+/// Normal strain along `direction` (any length) of tensor `e`: `n' E n`.
+pub fn strain_along(e: &Mat3, direction: &Vec3) -> f64 {
+    let n = direction.normalize();
+    n.dot(&(e * n))
+}
+
+/// Strain at fibre `z` from strain at fibres `z1` and `z2`, linear through the thickness; the mean where the fibres coincide.
+pub fn strain_at_fibre(strain: [PlaneStrain; 2], fibres: [f64; 2], z: f64) -> PlaneStrain {
+    let span = fibres[1] - fibres[0];
+    let w = if span == 0.0 { 0.5 } else { (z - fibres[0]) / span };
+    std::array::from_fn(|i| strain[0][i] * (1.0 - w) + strain[1][i] * w)
+}
+
+/// Strain at fibre `z` from curvature form: `row1 - z row2`, row2 being MINUS the derivative along z.
+pub fn strain_from_curvature(row1: PlaneStrain, row2: PlaneStrain, z: f64) -> PlaneStrain {
+    std::array::from_fn(|i| row1[i] - z * row2[i])
+}
+
+/// Strain of plane stress from stress in an isotropic material: `exx = (oxx - nu oyy) / e`, `gxy = txy / g`. No thermal strain.
+pub fn strain_from_stress(stress: PlaneStrain, e: f64, g: f64, nu: f64) -> PlaneStrain {
+    let [oxx, oyy, txy] = stress;
+    [(oxx - nu * oyy) / e, (oyy - nu * oxx) / e, txy / g]
+}
+
+/// `ezz / (exx + eyy)` at a surface of a shell: `-nu / (1 - nu)` of plane stress in the isotropic material there.
+///
+/// Laminates take the ply at the surface. 0 for plane strain (MID2 -1). `None` for materials whose law along the thickness is not given
+/// (MAT2, MAT8, MAT9) and for shells without material.
+pub fn normal_strain_ratio(model: &Model, property: &ShellProperty, surface: Surface) -> Option<f64> {
+    let material = match &property.kind {
+        ShellKind::Homogeneous { plane_strain: true, .. } => return Some(0.0),
+        ShellKind::Homogeneous { membrane, bending, .. } => membrane.or(*bending)?,
+        ShellKind::Laminate { plies, .. } => match surface {
+            Surface::Bottom => plies.first()?.material,
+            Surface::Top => plies.last()?.material,
+        },
+    };
+    match model.materials.get(material.us())?.kind {
+        MaterialKind::Isotropic { nu, .. } => Some(-nu / (1.0 - nu)),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests;
