@@ -62,7 +62,9 @@ pub fn shell_axes(model: &Model, shell: &Shell, place: ShellPlace) -> Option<Mat
     }
     match shell.shape {
         ShellShape::Quad4 | ShellShape::QuadR => quad_axes([x(0)?, x(1)?, x(2)?, x(3)?]),
-        ShellShape::Tria3 | ShellShape::TriaR | ShellShape::Tria6 => tria_axes([x(0)?, x(1)?, x(2)?]),
+        ShellShape::Tria3 | ShellShape::TriaR | ShellShape::Tria6 => {
+            tria_axes([x(0)?, x(1)?, x(2)?])
+        }
         ShellShape::Quad8 => {
             let p: Option<Vec<Vec3>> = (0..8).map(x).collect();
             let [r, s] = quad8_tangents(&p?, place)?;

@@ -52,7 +52,11 @@ pub fn strain_along(e: &Mat3, direction: &Vec3) -> f64 {
 /// Strain at fibre `z` from strain at fibres `z1` and `z2`, linear through the thickness; the mean where the fibres coincide.
 pub fn strain_at_fibre(strain: [PlaneStrain; 2], fibres: [f64; 2], z: f64) -> PlaneStrain {
     let span = fibres[1] - fibres[0];
-    let w = if span == 0.0 { 0.5 } else { (z - fibres[0]) / span };
+    let w = if span == 0.0 {
+        0.5
+    } else {
+        (z - fibres[0]) / span
+    };
     std::array::from_fn(|i| strain[0][i] * (1.0 - w) + strain[1][i] * w)
 }
 
@@ -71,10 +75,18 @@ pub fn strain_from_stress(stress: PlaneStrain, e: f64, g: f64, nu: f64) -> Plane
 ///
 /// Laminates take the ply at the surface. 0 for plane strain (MID2 -1). `None` for materials whose law along the thickness is not given
 /// (MAT2, MAT8, MAT9) and for shells without material.
-pub fn normal_strain_ratio(model: &Model, property: &ShellProperty, surface: Surface) -> Option<f64> {
+pub fn normal_strain_ratio(
+    model: &Model,
+    property: &ShellProperty,
+    surface: Surface,
+) -> Option<f64> {
     let material = match &property.kind {
-        ShellKind::Homogeneous { plane_strain: true, .. } => return Some(0.0),
-        ShellKind::Homogeneous { membrane, bending, .. } => membrane.or(*bending)?,
+        ShellKind::Homogeneous {
+            plane_strain: true, ..
+        } => return Some(0.0),
+        ShellKind::Homogeneous {
+            membrane, bending, ..
+        } => membrane.or(*bending)?,
         ShellKind::Laminate { plies, .. } => match surface {
             Surface::Bottom => plies.first()?.material,
             Surface::Top => plies.last()?.material,

@@ -10,7 +10,11 @@ fn quad() -> ([Vec3; 4], Vec3, Vec3) {
     let a = v(2.0, 1.0, -1.0).normalize();
     let b = a.cross(&v(0.3, -1.0, 0.8)).normalize();
     let at = |x: f64, y: f64| v(1.0, -2.0, 0.5) + a * x + b * y;
-    ([at(0.0, 0.0), at(2.0, 0.3), at(2.4, 1.7), at(-0.4, 1.1)], a, b)
+    (
+        [at(0.0, 0.0), at(2.0, 0.3), at(2.4, 1.7), at(-0.4, 1.1)],
+        a,
+        b,
+    )
 }
 
 /// Strain of a given symmetric tensor in a frame: exx, eyy, gxy (engineering shear).
@@ -22,7 +26,11 @@ fn in_frame(tensor: &Mat3, axes: &Mat3) -> [f64; 3] {
 #[test]
 fn axes_are_orthonormal_and_right_handed() {
     let (p, a, b) = quad();
-    for axes in [quad_axes(p).unwrap(), tria_axes([p[0], p[1], p[2]]).unwrap(), balanced_axes(a, b + 0.4 * a).unwrap()] {
+    for axes in [
+        quad_axes(p).unwrap(),
+        tria_axes([p[0], p[1], p[2]]).unwrap(),
+        balanced_axes(a, b + 0.4 * a).unwrap(),
+    ] {
         assert!((axes * axes.transpose() - Mat3::identity()).norm() < 1e-15);
         assert!((axes.determinant() - 1.0).abs() < 1e-15);
         assert!((axes.row(2).transpose() - a.cross(&b)).norm() < 1e-15);
@@ -32,7 +40,13 @@ fn axes_are_orthonormal_and_right_handed() {
 #[test]
 fn the_x_axis_of_a_rectangle_is_side_1_2_whatever_its_aspect() {
     for h in [0.1, 1.0, 7.0] {
-        let axes = quad_axes([v(0.0, 0.0, 0.0), v(2.0, 0.0, 0.0), v(2.0, h, 0.0), v(0.0, h, 0.0)]).unwrap();
+        let axes = quad_axes([
+            v(0.0, 0.0, 0.0),
+            v(2.0, 0.0, 0.0),
+            v(2.0, h, 0.0),
+            v(0.0, h, 0.0),
+        ])
+        .unwrap();
         assert!((axes - Mat3::identity()).norm() < 1e-15);
     }
 }
@@ -63,7 +77,8 @@ fn renumbering_the_corners_of_a_quad_leaves_the_basic_tensor_unchanged() {
     // A plane strain state in the quad's plane plus a normal strain: what any correct output must give back.
     let n = a.cross(&b);
     let shear = (a * b.transpose() + b * a.transpose()) * 1.5e-4;
-    let truth: Mat3 = a * a.transpose() * 4e-4 - b * b.transpose() * 1e-4 + shear - n * n.transpose() * 9e-5;
+    let truth: Mat3 =
+        a * a.transpose() * 4e-4 - b * b.transpose() * 1e-4 + shear - n * n.transpose() * 9e-5;
     let mut frames = Vec::new();
     for start in 0..4 {
         for forward in [1, 3] {

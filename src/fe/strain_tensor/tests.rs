@@ -7,7 +7,9 @@ fn extrapolation_is_linear_and_honours_fibres_that_are_not_symmetric() {
     let fibres = [0.0, 0.02];
     for z in [-0.02, 0.0, 0.01, 0.02] {
         let got = strain_at_fibre([at(fibres[0]), at(fibres[1])], fibres, z);
-        got.iter().zip(at(z)).for_each(|(g, w)| assert!((g - w).abs() < 1e-18));
+        got.iter()
+            .zip(at(z))
+            .for_each(|(g, w)| assert!((g - w).abs() < 1e-18));
     }
 }
 
