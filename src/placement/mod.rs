@@ -1,1 +1,28 @@
-//! To come.
+//! Where to put gauges: D-optimal layouts with a certificate of how far from the best possible they are.
+//!
+//! A layout `S` of `s` gauges has the information matrix `M_S = P + sum a_i a_i'`, with `a_i` the sensitivity row of a gauge over the
+//! standard deviation of its reading, columns times the expected size of their load, and `P` prior information (kept gauges, known
+//! load sizes). The best layout has the largest `log det M_S`.
+//!
+//! Order of work: [`candidates`] (rows, or strain tensors that stand for all angles at a place), [`relax`] (weights between 0 and 1),
+//! [`columns`] (the same over millions of rows; gives the bound), [`exchange`] (rounding and local search), [`spacing`], [`quality`].
+//!
+//! Certificate: for any positive definite `M` and any layout of distinct rows
+//! `log det M_S <= log det M + k ln((tr(M^-1 P) + T) / k)`, `T` the sum of the `s` largest `d_i = a_i' M^-1 a_i`, because the arithmetic mean
+//! of the eigenvalues of `M^-1 M_S` is not below their geometric mean. Where at most one row of a group can be used (one angle a place, one
+//! gauge within a spacing) `T` counts the largest of each group only.
+
+pub mod candidates;
+pub mod columns;
+pub mod exchange;
+pub mod kernel;
+mod layout;
+pub mod quality;
+pub mod quartic;
+pub mod relax;
+pub mod spacing;
+
+pub use layout::{Layout, Spec, place};
+
+#[cfg(test)]
+mod tests;

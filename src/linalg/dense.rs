@@ -1,0 +1,76 @@
+//! Dense matrices: singular values, condition, least squares.
+
+use nalgebra::{DMatrix, DVector};
+
+/// A dense matrix.
+pub type Matrix = DMatrix<f64>;
+/// A dense vector.
+pub type Vector = DVector<f64>;
+
+/// A thin singular value decomposition `a = u diag(s) v'`, `s` descending.
+#[derive(Clone, Debug)]
+pub struct Svd {
+    /// Left vectors, `rows x r`.
+    pub u: Matrix,
+    /// Singular values, `r = min(rows, columns)`.
+    pub s: Vec<f64>,
+    /// Right vectors, `columns x r`.
+    pub v: Matrix,
+}
+
+/// Relative size under which a singular value counts as zero: what single-precision result files can tell from rounding.
+pub const RANK_TOLERANCE: f64 = 1e-6;
+
+/// The singular value decomposition; `None` where `a` holds numbers that are not finite.
+pub fn svd(a: &Matrix) -> Option<Svd> {
+    if a.iter().any(|v| !v.is_finite()) {
+        return None;
+    }
+    // Tall and wide alike: the right vectors must span the column space only, which the thin form gives.
+    let d = a.clone().svd(true, true);
+    let (u, vt) = (d.u?, d.v_t?);
+    let mut order: Vec<usize> = (0..d.singular_values.len()).collect();
+    order.sort_by(|&i, &j| d.singular_values[j].total_cmp(&d.singular_values[i]));
+    let s = order.iter().map(|&i| d.singular_values[i]).collect();
+    let pick_u = Matrix::from_fn(u.nrows(), order.len(), |r, c| u[(r, order[c])]);
+    let pick_v = Matrix::from_fn(vt.ncols(), order.len(), |r, c| vt[(order[c], r)]);
+    Some(Svd {
+        u: pick_u,
+        s,
+        v: pick_v,
+    })
+}
+
+/// Largest over smallest singular value of a matrix with at least as many rows as columns; infinite where fewer or singular.
+pub fn condition(a: &Matrix) -> f64 {
+    if a.nrows() < a.ncols() {
+        return f64::INFINITY;
+    }
+    match svd(a) {
+        Some(d) => match (d.s.first(), d.s.last()) {
+            (Some(&hi), Some(&lo)) if lo > 0.0 => hi / lo,
+            _ => f64::INFINITY,
+        },
+        None => f64::NAN,
+    }
+}
+
+/// Number of singular values above [`RANK_TOLERANCE`] times the largest.
+pub fn rank(a: &Matrix) -> usize {
+    svd(a).map_or(0, |d| {
+        let limit = d.s.first().copied().unwrap_or(0.0) * RANK_TOLERANCE;
+        d.s.iter().filter(|&&s| s > limit && s > 0.0).count()
+    })
+}
+
+/// Columns divided by their norm; a zero column stays.
+pub fn unit_columns(a: &Matrix) -> Matrix {
+    let mut m = a.clone();
+    for mut c in m.column_iter_mut() {
+        let n = c.norm();
+        if n > 0.0 {
+            c /= n;
+        }
+    }
+    m
+}

@@ -1,0 +1,94 @@
+//! Small symmetric positive definite matrices, `k x k` by rows in a slice: Cholesky, inverse, rank-one changes.
+//!
+//! Used where a placement changes its information matrix thousands of times; `k` is the number of loads (6 to 60).
+
+/// Lower Cholesky factor `L` with `L L' = a`, or `None` where `a` is not positive definite to working precision.
+pub fn cholesky(a: &[f64], k: usize) -> Option<Vec<f64>> {
+    let mut l = vec![0.0; k * k];
+    for i in 0..k {
+        for j in 0..=i {
+            let mut sum = a[i * k + j];
+            for p in 0..j {
+                sum -= l[i * k + p] * l[j * k + p];
+            }
+            if i == j {
+                // A pivot this far below its diagonal entry is rounding error of the subtraction, not information.
+                if sum.is_nan() || sum <= PIVOT_FLOOR * a[i * k + i].abs() {
+                    return None;
+                }
+                l[i * k + i] = sum.sqrt();
+            } else {
+                l[i * k + j] = sum / l[j * k + j];
+            }
+        }
+    }
+    Some(l)
+}
+
+/// Relative size under which a Cholesky pivot counts as zero.
+const PIVOT_FLOOR: f64 = 1e-14;
+
+/// `ln det(L L')`.
+pub fn log_det(l: &[f64], k: usize) -> f64 {
+    2.0 * (0..k).map(|i| l[i * k + i].ln()).sum::<f64>()
+}
+
+/// Inverse of a lower triangular matrix.
+pub fn inverse_lower(l: &[f64], k: usize) -> Vec<f64> {
+    let mut inv = vec![0.0; k * k];
+    for j in 0..k {
+        inv[j * k + j] = 1.0 / l[j * k + j];
+        for i in j + 1..k {
+            let sum: f64 = (j..i).map(|p| l[i * k + p] * inv[p * k + j]).sum();
+            inv[i * k + j] = -sum / l[i * k + i];
+        }
+    }
+    inv
+}
+
+/// `inv' inv` for a lower triangular `inv`: the inverse of `L L'` from the inverse of `L`.
+pub fn gram_of_lower(inv: &[f64], k: usize) -> Vec<f64> {
+    let mut g = vec![0.0; k * k];
+    for p in 0..k {
+        for i in 0..=p {
+            let x = inv[p * k + i];
+            for j in 0..=i {
+                g[i * k + j] += x * inv[p * k + j];
+            }
+        }
+    }
+    for i in 0..k {
+        for j in 0..i {
+            g[j * k + i] = g[i * k + j];
+        }
+    }
+    g
+}
+
+/// `a += weight x x'`.
+pub fn add_outer(a: &mut [f64], x: &[f64], weight: f64) {
+    let k = x.len();
+    for (row, &xi) in a.chunks_exact_mut(k).zip(x) {
+        let w = weight * xi;
+        for (v, &xj) in row.iter_mut().zip(x) {
+            *v += w * xj;
+        }
+    }
+}
+
+/// `y = a x`.
+pub fn times(a: &[f64], x: &[f64], y: &mut [f64]) {
+    for (row, v) in a.chunks_exact(x.len()).zip(y) {
+        *v = dot(row, x);
+    }
+}
+
+/// Scalar product.
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// `trace(a b)` of symmetric matrices.
+pub fn trace_of_product(a: &[f64], b: &[f64]) -> f64 {
+    dot(a, b)
+}

@@ -1,0 +1,269 @@
+//! Where gauges can go: rows, or strain tensors that stand for every angle at a place.
+
+use super::quartic::{self, Form, Trig};
+use rayon::prelude::*;
+
+/// Places handled together by the kernel.
+pub const LANES: usize = 8;
+
+/// Angles a gauge may have at a place.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Angles {
+    /// A place is one fixed row.
+    Fixed,
+    /// These angles, radians from the element x axis; each is a candidate of its own.
+    Grid(Vec<f64>),
+    /// Any angle; at most one gauge a place.
+    Continuous,
+}
+
+/// Standard deviation of a reading: `sd^2 = noise^2 + extra + (angle_sd |d row / d angle|)^2`, the row in strain at the expected loads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scatter {
+    /// Noise, 1 sd, in the unit of the rows.
+    pub noise: f64,
+    /// Angle tolerance, 1 sd, radians; needs tensors.
+    pub angle_sd: f64,
+    /// A variance of its own for each place (position tolerance, gradient over the grid); empty: none.
+    pub extra: Vec<f64>,
+}
+
+impl Scatter {
+    /// The same noise everywhere.
+    pub fn uniform(noise: f64) -> Self {
+        Self {
+            noise,
+            angle_sd: 0.0,
+            extra: Vec::new(),
+        }
+    }
+}
+
+/// A gauge among the candidates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Choice {
+    /// Index of the place.
+    pub place: u32,
+    /// Index into the angle grid, 0 otherwise.
+    pub step: u16,
+    /// Angle, radians from the element x axis; 0 for fixed rows.
+    pub angle: f64,
+}
+
+/// All candidates of a problem with `k` loads.
+#[derive(Clone, Debug)]
+pub struct Candidates {
+    k: usize,
+    n: usize,
+    angles: Angles,
+    /// By block of [`LANES`] places, load, component (1 for rows; exx, eyy, gxy for tensors), lane. Columns are times `expected`.
+    blocks: Vec<f64>,
+    scatter: Scatter,
+    /// `angle_sd^2` times the Gram form of the loads, by place; empty without an angle tolerance.
+    slopes: Vec<Form>,
+    /// Basic-frame positions, for spacing; empty: none known.
+    positions: Vec<[f64; 3]>,
+}
+
+impl Candidates {
+    /// Candidates with fixed rows: `fill(place, row)` writes the row of a place (strain per unit of each column).
+    pub fn from_rows(
+        k: usize,
+        n: usize,
+        scatter: Scatter,
+        fill: impl Fn(usize, &mut [f64]) + Sync,
+    ) -> Self {
+        let blocks = fill_blocks(n, k, &fill);
+        Self {
+            k,
+            n,
+            angles: Angles::Fixed,
+            blocks,
+            scatter,
+            slopes: Vec::new(),
+            positions: Vec::new(),
+        }
+    }
+
+    /// Candidates from tensors: `fill(place, t)` writes `t[3 load + component]`, components exx, eyy, gxy (engineering shear) in the
+    /// element frame, for each load times its expected size.
+    pub fn from_tensors(
+        k: usize,
+        n: usize,
+        angles: Angles,
+        scatter: Scatter,
+        fill: impl Fn(usize, &mut [f64]) + Sync,
+    ) -> Self {
+        let blocks = fill_blocks(n, 3 * k, &fill);
+        let mut c = Self {
+            k,
+            n,
+            angles,
+            blocks,
+            scatter,
+            slopes: Vec::new(),
+            positions: Vec::new(),
+        };
+        if c.scatter.angle_sd > 0.0 {
+            let tau2 = c.scatter.angle_sd * c.scatter.angle_sd;
+            c.slopes = (0..n)
+                .into_par_iter()
+                .map(|p| {
+                    let mut g = [0.0; 6];
+                    for l in 0..k {
+                        let [x, y, s] = c.tensor(p, l);
+                        for (v, a) in g.iter_mut().zip([x * x, y * y, s * s, x * y, x * s, y * s]) {
+                            *v += tau2 * a;
+                        }
+                    }
+                    g
+                })
+                .collect();
+        }
+        c
+    }
+
+    /// The same with a position for each place.
+    pub fn with_positions(mut self, positions: Vec<[f64; 3]>) -> Self {
+        self.positions = positions;
+        self
+    }
+
+    /// Number of columns.
+    pub fn n_loads(&self) -> usize {
+        self.k
+    }
+
+    /// Number of places.
+    pub fn n_places(&self) -> usize {
+        self.n
+    }
+
+    /// Number of rows: places times angles (places where the angle is continuous).
+    pub fn n_rows(&self) -> usize {
+        match &self.angles {
+            Angles::Grid(a) => self.n * a.len(),
+            _ => self.n,
+        }
+    }
+
+    /// The angles at a place.
+    pub fn angles(&self) -> &Angles {
+        &self.angles
+    }
+
+    /// Positions of the places, where known.
+    pub fn positions(&self) -> &[[f64; 3]] {
+        &self.positions
+    }
+
+    /// Components a load has in the blocks: 1 for rows, 3 for tensors.
+    pub fn components(&self) -> usize {
+        if self.angles == Angles::Fixed { 1 } else { 3 }
+    }
+
+    /// Blocks of [`LANES`] places, each `n_loads x components x LANES`.
+    pub fn blocks(&self) -> &[f64] {
+        &self.blocks
+    }
+
+    fn tensor(&self, place: usize, load: usize) -> [f64; 3] {
+        let (b, lane) = (place / LANES, place % LANES);
+        let at = (b * self.k + load) * 3 * LANES + lane;
+        std::array::from_fn(|c| self.blocks[at + c * LANES])
+    }
+
+    /// Variance of a reading at a place as a function of the angle.
+    pub fn variance(&self, place: usize) -> Trig {
+        let mut v = self.slopes.get(place).map_or([0.0; 5], quartic::of_slope);
+        v[0] += self.fixed_variance(place);
+        v
+    }
+
+    /// The part of the variance that the angle does not change.
+    pub fn fixed_variance(&self, place: usize) -> f64 {
+        self.scatter.noise * self.scatter.noise
+            + self.scatter.extra.get(place).copied().unwrap_or(0.0)
+    }
+
+    /// True where the variance depends on the angle.
+    pub fn has_slopes(&self) -> bool {
+        !self.slopes.is_empty()
+    }
+
+    /// The row of a gauge over the standard deviation of its reading.
+    pub fn row(&self, choice: Choice) -> Vec<f64> {
+        let p = choice.place as usize;
+        if self.angles == Angles::Fixed {
+            let w = 1.0 / self.fixed_variance(p).sqrt();
+            let (b, lane) = (p / LANES, p % LANES);
+            return (0..self.k)
+                .map(|l| w * self.blocks[(b * self.k + l) * LANES + lane])
+                .collect();
+        }
+        let w = 1.0 / quartic::value(&self.variance(p), &quartic::phases(choice.angle)).sqrt();
+        let (s, c) = choice.angle.sin_cos();
+        (0..self.k)
+            .map(|l| {
+                let [x, y, g] = self.tensor(p, l);
+                w * (c * c * x + s * s * y + s * c * g)
+            })
+            .collect()
+    }
+
+    /// A smaller problem: these places only (indices ascending), positions and scatter kept.
+    pub fn subset(&self, places: &[u32]) -> Self {
+        let kc = self.k * self.components();
+        let blocks = fill_blocks(places.len(), kc, &|i: usize, out: &mut [f64]| {
+            let p = places[i] as usize;
+            let (b, lane) = (p / LANES, p % LANES);
+            for (j, v) in out.iter_mut().enumerate() {
+                *v = self.blocks[(b * kc + j) * LANES + lane];
+            }
+        });
+        let pick = |v: &[f64]| -> Vec<f64> {
+            places
+                .iter()
+                .filter_map(|&p| v.get(p as usize).copied())
+                .collect()
+        };
+        Self {
+            k: self.k,
+            n: places.len(),
+            angles: self.angles.clone(),
+            blocks,
+            scatter: Scatter {
+                extra: pick(&self.scatter.extra),
+                ..self.scatter.clone()
+            },
+            slopes: places
+                .iter()
+                .filter_map(|&p| self.slopes.get(p as usize).copied())
+                .collect(),
+            positions: places
+                .iter()
+                .filter_map(|&p| self.positions.get(p as usize).copied())
+                .collect(),
+        }
+    }
+}
+
+fn fill_blocks(n: usize, width: usize, fill: &(impl Fn(usize, &mut [f64]) + Sync)) -> Vec<f64> {
+    let mut blocks = vec![0.0; n.div_ceil(LANES) * width * LANES];
+    blocks
+        .par_chunks_mut((width * LANES).max(1))
+        .enumerate()
+        .for_each_init(
+            || vec![0.0; width],
+            |row, (b, block)| {
+                for lane in 0..LANES.min(n - b * LANES) {
+                    row.fill(0.0);
+                    fill(b * LANES + lane, row);
+                    for (j, &v) in row.iter().enumerate() {
+                        block[j * LANES + lane] = v;
+                    }
+                }
+            },
+        );
+    blocks
+}

@@ -1,0 +1,56 @@
+//! What a layout is worth: leverages, standard deviations of the loads, loss of a gauge.
+
+use super::candidates::{Candidates, Choice};
+use crate::linalg::spd;
+
+/// A layout judged.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quality {
+    /// `h_i = a_i' M^-1 a_i`: the share of its own reading that a gauge decides; losing it multiplies `det` by `1 - h_i`.
+    pub leverage: Vec<f64>,
+    /// Standard deviation of each load, in shares of the column's scale (`expected`).
+    pub sigma: Vec<f64>,
+    /// `(1 - max h)^(1/k)`: efficiency left, relative to now, after the worst loss of one gauge; 0: none may fail.
+    pub worst_loss: f64,
+    /// Which gauge that is.
+    pub worst: usize,
+}
+
+/// Leverages and standard deviations of a layout with prior information `prior` (`k x k`); `None` where it is singular.
+pub fn judge(c: &Candidates, gauges: &[Choice], prior: &[f64]) -> Option<Quality> {
+    let rows: Vec<Vec<f64>> = gauges.iter().map(|&g| c.row(g)).collect();
+    judge_rows(&rows, prior, c.n_loads())
+}
+
+/// The same for rows over their standard deviation, columns times `expected`.
+pub fn judge_rows(rows: &[Vec<f64>], prior: &[f64], k: usize) -> Option<Quality> {
+    let mut m = prior.to_vec();
+    for r in rows {
+        spd::add_outer(&mut m, r, 1.0);
+    }
+    let l = spd::cholesky(&m, k)?;
+    let inv = spd::gram_of_lower(&spd::inverse_lower(&l, k), k);
+    let mut u = vec![0.0; k];
+    let leverage: Vec<f64> = rows
+        .iter()
+        .map(|r| {
+            spd::times(&inv, r, &mut u);
+            spd::dot(r, &u)
+        })
+        .collect();
+    let worst =
+        (0..leverage.len()).max_by(|&a, &b| leverage[a].total_cmp(&leverage[b]).then(b.cmp(&a)))?;
+    // Leverages of exactly 1 come out of the arithmetic a rounding error away from it.
+    let left = (1.0 - leverage[worst]).max(0.0);
+    let worst_loss = if left < 1e-9 {
+        0.0
+    } else {
+        left.powf(1.0 / k as f64)
+    };
+    Some(Quality {
+        leverage,
+        sigma: (0..k).map(|i| inv[i * k + i].sqrt()).collect(),
+        worst_loss,
+        worst,
+    })
+}
