@@ -30,6 +30,7 @@ pub mod finding;
 pub mod gauge;
 pub mod linalg;
 pub mod model;
+pub mod payload;
 pub mod placement;
 pub mod recovery;
 pub mod report;
