@@ -1,1 +1,30 @@
-//! To come.
+//! Nastran decks: reads executive and case control and bulk data, keeps every byte, edits and writes back.
+
+mod assemble;
+mod card;
+mod case;
+mod chunk;
+mod deck;
+mod defer;
+mod fault;
+mod fields;
+mod include;
+mod line;
+mod merge;
+mod names;
+mod number;
+mod read;
+mod replicate;
+mod split;
+mod walk;
+
+#[cfg(test)]
+mod tests;
+
+pub use case::{CaseControl, CaseLine, Request, Selection, Set, SetItem, Subcase, SubcaseKind};
+pub use deck::{Deck, Note, OtherCard, Source};
+pub use fault::{Fault, FieldName, Wrong};
+pub use include::{IncludeRequest, Loaded, Loader, MemoryLoader};
+pub use names::{Label, Named};
+pub use number::{Number, read_number};
+pub use read::read_deck;

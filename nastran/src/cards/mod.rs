@@ -32,6 +32,7 @@ use crate::place::Placed;
 pub struct Cards {
     pub grids: Vec<Placed<Grid>>,
     pub grdset: Option<Placed<Grdset>>,
+    pub spoints: Vec<Placed<IdList>>,
     pub coords: Vec<Placed<Coord>>,
     pub shells: Vec<Placed<Shell>>,
     pub shear_panels: Vec<Placed<ShearPanel>>,

@@ -1,0 +1,464 @@
+//! Puts physical lines together to cards: continuations, replication.
+
+use std::sync::atomic::AtomicUsize;
+
+use super::card::read_card;
+use super::deck::{Note, OtherCard};
+use super::defer::{Deferred, Orphan, Span};
+use super::fault::{Fault, Wrong};
+use super::fields::{Fields, excerpt, note_fault};
+use super::line::{Line, trim, without_comment};
+use super::names::{Label, NameReader};
+use super::replicate::{self, Template};
+use super::split::{Cut, Lead, cut, is_list_word};
+use crate::cards::Cards;
+use crate::place::{Place, SourceIx};
+
+/// A card name in upper case, padded with zeros.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub(super) struct Name(pub [u8; 8]);
+
+impl Name {
+    /// `None` where it is no name: letters and digits, at most 8, a letter first.
+    pub(super) fn new(head: &[u8]) -> Option<Name> {
+        if head.is_empty() || head.len() > 8 || !head.first().is_some_and(u8::is_ascii_alphabetic) {
+            return None;
+        }
+        let mut name = [0; 8];
+        for (to, &from) in name.iter_mut().zip(head) {
+            if !from.is_ascii_alphanumeric() && from != b'_' {
+                return None;
+            }
+            *to = from.to_ascii_uppercase();
+        }
+        Some(Name(name))
+    }
+
+    pub(super) fn as_bytes(&self) -> &[u8] {
+        let n = self.0.iter().position(|&c| c == 0).unwrap_or(8);
+        self.0.get(..n).unwrap_or_default()
+    }
+}
+
+/// What a piece of bulk data holds.
+#[derive(Debug, Default)]
+pub(super) struct Part {
+    pub cards: Cards,
+    pub counts: Vec<(Name, usize)>,
+    pub others: Vec<OtherCard>,
+    pub faults: Vec<Fault>,
+    pub notes: Vec<Note>,
+    pub labels: Vec<Label>,
+    pub deferred: Vec<Deferred>,
+    pub orphans: Vec<Orphan>,
+}
+
+impl Part {
+    fn count(&mut self, name: Name) {
+        // cards of one name follow each other: the last used is moved to the end
+        match self.counts.iter().rposition(|(n, _)| *n == name) {
+            Some(i) => {
+                if let Some((_, n)) = self.counts.get_mut(i) {
+                    *n += 1;
+                }
+                let last = self.counts.len() - 1;
+                self.counts.swap(i, last);
+            }
+            None => self.counts.push((name, 1)),
+        }
+    }
+}
+
+/// What the lines since the last finished card make.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Open {
+    Nothing,
+    Card,
+    /// Fields with `=` and `*(n)`, to be filled from the card before.
+    Replica,
+    /// Continuation lines whose card stands elsewhere.
+    Orphan,
+}
+
+/// Takes lines one after the other and fills a [`Part`].
+pub(super) struct Assembler<'a, 'b> {
+    source: SourceIx,
+    budget: &'b AtomicUsize,
+    pub part: Part,
+    open: Open,
+    name: Name,
+    fields: Vec<&'a [u8]>,
+    /// Name in field 10 of the last line.
+    label: &'a [u8],
+    /// The last line ended in a comma.
+    comma: bool,
+    spans: Vec<Span>,
+    /// The finished card before, for replication.
+    before_name: Name,
+    before: Vec<&'a [u8]>,
+    template: Option<Template>,
+    names: NameReader,
+    /// The deferred card that the next orphan follows.
+    last_deferred: Option<usize>,
+}
+
+/// Without the leading mark: names match by what follows.
+pub(super) fn bare(label: &[u8]) -> &[u8] {
+    match label {
+        [b'+' | b'*', rest @ ..] => trim(rest),
+        other => other,
+    }
+}
+
+impl<'a, 'b> Assembler<'a, 'b> {
+    pub(super) fn new(source: SourceIx, budget: &'b AtomicUsize) -> Self {
+        Assembler {
+            source,
+            budget,
+            part: Part::default(),
+            open: Open::Nothing,
+            name: Name::default(),
+            fields: Vec::with_capacity(64),
+            label: &[],
+            comma: false,
+            spans: Vec::new(),
+            before_name: Name::default(),
+            before: Vec::with_capacity(64),
+            template: None,
+            names: NameReader::default(),
+            last_deferred: None,
+        }
+    }
+
+    fn span(&self, line: &Line) -> Span {
+        Span {
+            at: Place {
+                source: self.source,
+                line: line.number,
+            },
+            start: line.start,
+            end: line.start + line.text.len(),
+        }
+    }
+
+    /// The next line.
+    #[inline]
+    pub(super) fn line(&mut self, line: Line<'a>) {
+        let body = without_comment(line.text);
+        if body.iter().all(|&c| c <= b' ') {
+            if body.len() < line.text.len() {
+                let at = Place {
+                    source: self.source,
+                    line: line.number,
+                };
+                self.names.comment(
+                    line.text.get(body.len()..).unwrap_or_default(),
+                    at,
+                    &mut self.part.labels,
+                );
+            }
+            return;
+        }
+        let cut = cut(body);
+        match cut.lead {
+            Lead::Name if self.comma && is_list_word(cut.head) => self.data(&cut, &line),
+            Lead::Name => self.card(&cut, &line),
+            Lead::Continuation => self.continuation(&cut, &line),
+            Lead::Replica => self.replica(&cut, &line),
+            Lead::Data => self.data(&cut, &line),
+        }
+    }
+
+    fn card(&mut self, cut: &Cut<'a>, line: &Line) {
+        self.finish();
+        let Some(name) = Name::new(cut.head) else {
+            return self.not_a_card(line);
+        };
+        self.open = Open::Card;
+        self.name = name;
+        self.spans.push(self.span(line));
+        self.label = cut.fields(&mut self.fields);
+        self.comma = cut.is_open();
+    }
+
+    fn not_a_card(&mut self, line: &Line) {
+        let what = Wrong::NotACard {
+            found: excerpt(trim(line.text)),
+        };
+        let at = Place {
+            source: self.source,
+            line: line.number,
+        };
+        note_fault(
+            &mut self.part.faults,
+            Fault {
+                at,
+                card: String::new(),
+                field: None,
+                what,
+            },
+        );
+    }
+
+    fn continuation(&mut self, cut: &Cut<'a>, line: &Line) {
+        let (wanted, have) = (bare(cut.head), bare(self.label));
+        let named = matches!(self.label.first(), Some(b'+' | b'*'));
+        let fits = wanted.is_empty() || have.is_empty() || wanted == have;
+        match self.open {
+            Open::Card | Open::Replica if fits || !named => self.attach(cut, line),
+            Open::Orphan if wanted.is_empty() || wanted == have => self.extend_orphan(cut, line),
+            _ => self.orphan(cut, line),
+        }
+    }
+
+    /// Appends a continuation to the card that is open.
+    pub(super) fn attach(&mut self, cut: &Cut<'a>, line: &Line) {
+        let width = cut.width();
+        while self.fields.len() % width != 0 {
+            self.fields.push(&[]);
+        }
+        self.spans.push(self.span(line));
+        self.label = cut.fields(&mut self.fields);
+        self.comma = cut.is_open();
+    }
+
+    /// Attaches without looking at names.
+    pub(super) fn attach_line(&mut self, line: Line<'a>) {
+        let cut = cut(without_comment(line.text));
+        self.attach(&cut, &line);
+    }
+
+    fn orphan(&mut self, cut: &Cut<'a>, line: &Line) {
+        let follows = if self.open == Open::Card {
+            Some(())
+        } else {
+            None
+        };
+        self.finish();
+        let follows = follows.and(self.last_deferred.take());
+        let label = bare(cut.head).to_vec();
+        let mut scratch = Vec::new();
+        self.label = cut.fields(&mut scratch);
+        let next = bare(self.label).to_vec();
+        self.part.orphans.push(Orphan {
+            label,
+            next,
+            lines: vec![self.span(line)],
+            follows,
+            used: false,
+        });
+        self.open = Open::Orphan;
+    }
+
+    fn extend_orphan(&mut self, cut: &Cut<'a>, line: &Line) {
+        let mut scratch = Vec::new();
+        self.label = cut.fields(&mut scratch);
+        let span = self.span(line);
+        if let Some(orphan) = self.part.orphans.last_mut() {
+            orphan.lines.push(span);
+            orphan.next = bare(self.label).to_vec();
+        }
+    }
+
+    /// A line that begins with data goes on where the line before ended in a comma.
+    fn data(&mut self, cut: &Cut<'a>, line: &Line) {
+        if self.open != Open::Card || !self.comma {
+            self.finish();
+            return self.not_a_card(line);
+        }
+        if self.fields.last().is_some_and(|f| f.is_empty()) {
+            self.fields.pop();
+        }
+        self.spans.push(self.span(line));
+        cut.data(&mut self.fields);
+        self.label = &[];
+        self.comma = self.fields.last().is_some_and(|f| f.is_empty());
+    }
+
+    fn replica(&mut self, cut: &Cut<'a>, line: &Line) {
+        self.finish();
+        if self.before_name == Name::default() {
+            let what = Wrong::Replication {
+                found: excerpt(trim(line.text)),
+                why: "no card stands before it",
+            };
+            let at = Place {
+                source: self.source,
+                line: line.number,
+            };
+            return note_fault(
+                &mut self.part.faults,
+                Fault {
+                    at,
+                    card: String::new(),
+                    field: None,
+                    what,
+                },
+            );
+        }
+        self.spans.push(self.span(line));
+        match replicate::count(cut.head) {
+            Some(n) => self.repeat(n),
+            None => {
+                self.open = Open::Replica;
+                self.label = cut.fields(&mut self.fields);
+                self.comma = cut.is_open();
+            }
+        }
+    }
+
+    /// Ends the card that is open, if one is.
+    pub(super) fn finish(&mut self) {
+        match std::mem::replace(&mut self.open, Open::Nothing) {
+            Open::Nothing | Open::Orphan => {}
+            Open::Card => {
+                if matches!(self.label, [b'+' | b'*', rest @ ..] if !rest.is_empty()) {
+                    self.last_deferred = Some(self.part.deferred.len());
+                    self.part.deferred.push(Deferred {
+                        label: bare(self.label).to_vec(),
+                        lines: self.spans.clone(),
+                    });
+                } else {
+                    self.last_deferred = None;
+                    self.emit();
+                }
+                self.before_name = self.name;
+                std::mem::swap(&mut self.before, &mut self.fields);
+                self.template = None;
+            }
+            Open::Replica => {
+                let before = match self.template.take() {
+                    Some(t) => t.card,
+                    None => self.before.iter().map(|f| f.to_vec()).collect(),
+                };
+                let steps = self.fields.iter().map(|f| f.to_vec()).collect();
+                self.template = Some(Template {
+                    card: before,
+                    steps,
+                });
+                self.repeat(1);
+            }
+        }
+        self.fields.clear();
+        self.spans.clear();
+        self.label = &[];
+        self.comma = false;
+    }
+
+    /// Makes `n` cards from the template, each from the one before.
+    fn repeat(&mut self, n: usize) {
+        let at = self.spans.first().map_or(
+            Place {
+                source: self.source,
+                line: 0,
+            },
+            |s| s.at,
+        );
+        let card = super::line::text_of(self.before_name.as_bytes());
+        let Some(mut template) = self.template.take() else {
+            let what = Wrong::Replication {
+                found: "=(n)".to_owned(),
+                why: "no line with increments stands before it",
+            };
+            note_fault(
+                &mut self.part.faults,
+                Fault {
+                    at,
+                    card: card.clone(),
+                    field: None,
+                    what,
+                },
+            );
+            self.spans.clear();
+            return;
+        };
+        for _ in 0..n {
+            if let Err(what) = replicate::spend(self.budget, &template) {
+                note_fault(
+                    &mut self.part.faults,
+                    Fault {
+                        at,
+                        card: card.clone(),
+                        field: None,
+                        what,
+                    },
+                );
+                break;
+            }
+            if let Err(what) = template.advance() {
+                note_fault(
+                    &mut self.part.faults,
+                    Fault {
+                        at,
+                        card: card.clone(),
+                        field: None,
+                        what,
+                    },
+                );
+                break;
+            }
+            let list: Vec<&[u8]> = template.card.iter().map(Vec::as_slice).collect();
+            emit(
+                &mut self.part,
+                &mut self.names,
+                self.before_name,
+                at,
+                &list,
+                &self.spans,
+            );
+        }
+        self.template = Some(template);
+        self.spans.clear();
+    }
+
+    /// Adds the open card to the part.
+    pub(super) fn emit(&mut self) {
+        let at = self.spans.first().map_or(
+            Place {
+                source: self.source,
+                line: 0,
+            },
+            |s| s.at,
+        );
+        emit(
+            &mut self.part,
+            &mut self.names,
+            self.name,
+            at,
+            &self.fields,
+            &self.spans,
+        );
+    }
+}
+
+fn emit(
+    part: &mut Part,
+    names: &mut NameReader,
+    name: Name,
+    at: Place,
+    list: &[&[u8]],
+    spans: &[Span],
+) {
+    part.count(name);
+    names.card(
+        name.as_bytes(),
+        list.first().copied().unwrap_or_default(),
+        &mut part.labels,
+    );
+    let mut fields = Fields::new(name.as_bytes(), at, list, &mut part.faults);
+    if !read_card(&mut fields, &mut part.cards)
+        && let (Some(first), Some(last)) = (spans.first(), spans.last())
+    {
+        let end = if last.end > first.start {
+            last.end
+        } else {
+            first.end
+        };
+        part.others.push(OtherCard {
+            name: super::line::text_of(name.as_bytes()),
+            at,
+            start: first.start,
+            end,
+        });
+    }
+}

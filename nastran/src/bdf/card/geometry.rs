@@ -1,0 +1,78 @@
+//! GRID, GRDSET, SPOINT, CORD1x, CORD2x.
+
+use super::super::fields::Fields;
+use crate::cards::{Cards, Coord, CoordDefinition, CoordKind, Grdset, Grid};
+use crate::place::Placed;
+
+pub(super) fn grid(f: &mut Fields) -> Grid {
+    Grid {
+        id: f.id(0, "ID"),
+        cp: f.opt_id(1, "CP"),
+        x: f.reals(2, ["X1", "X2", "X3"]),
+        cd: f.opt_signed(5, "CD"),
+        ps: f.opt_dofs(6, "PS"),
+        seid: f.opt_id(7, "SEID"),
+    }
+}
+
+pub(super) fn grdset(f: &mut Fields) -> Grdset {
+    Grdset {
+        cp: f.opt_id(1, "CP"),
+        cd: f.opt_signed(5, "CD"),
+        ps: f.opt_dofs(6, "PS"),
+        seid: f.opt_id(7, "SEID"),
+    }
+}
+
+pub(super) fn spoint(f: &mut Fields, cards: &mut Cards) {
+    for card in super::ids::id_lists(f, 0, "ID1") {
+        cards.spoints.push(Placed { card, at: f.at });
+    }
+}
+
+fn kind(name: &[u8]) -> CoordKind {
+    match name.last() {
+        Some(b'C') => CoordKind::Cylindrical,
+        Some(b'S') => CoordKind::Spherical,
+        _ => CoordKind::Rectangular,
+    }
+}
+
+pub(super) fn cord2(f: &mut Fields) -> Coord {
+    let id = f.id(0, "CID");
+    let definition = CoordDefinition::Points {
+        rid: f.opt_id(1, "RID").unwrap_or(0),
+        a: f.reals(2, ["A1", "A2", "A3"]),
+        b: f.reals(5, ["B1", "B2", "B3"]),
+        c: f.reals(8, ["C1", "C2", "C3"]),
+    };
+    Coord {
+        id,
+        kind: kind(f.name),
+        definition,
+    }
+}
+
+/// A card holds up to two systems.
+pub(super) fn cord1(f: &mut Fields, cards: &mut Cards) {
+    for first in [0, 4] {
+        if first > 0 && (first..first + 4).all(|i| f.is_blank(i)) {
+            break;
+        }
+        f.unusable = false;
+        let id = f.id(first, "CID");
+        let grids = [
+            f.id(first + 1, "G1"),
+            f.id(first + 2, "G2"),
+            f.id(first + 3, "G3"),
+        ];
+        if !f.unusable {
+            let card = Coord {
+                id,
+                kind: kind(f.name),
+                definition: CoordDefinition::Grids(grids),
+            };
+            cards.coords.push(Placed { card, at: f.at });
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Lists of ids: one by one, and ranges with THRU and BY.
+
+use super::super::fault::Wrong;
+use super::super::fields::{Fields, Value};
+use crate::cards::IdList;
+
+/// Most ids a range with BY is written out to; more are a mistake in the card.
+const MAX_WRITTEN_OUT: i64 = 1_000_000;
+
+/// The ids from field `first` on. A plain range stays a range, so the result has more than one part where a card
+/// mixes single ids and ranges. Blank fields are skipped.
+pub(super) fn id_lists(f: &mut Fields, first: usize, name: &'static str) -> Vec<IdList> {
+    let mut lists = Vec::new();
+    let mut each: Vec<u32> = Vec::new();
+    let end = f.len();
+    let mut i = first;
+    while i < end {
+        match f.value(i) {
+            Value::Blank => {}
+            Value::Integer(n) => match u32::try_from(n) {
+                Ok(id @ 1..) => each.push(id),
+                _ => out_of_range(f, i, name),
+            },
+            Value::Text if f.is_word(i, "THRU") => {
+                i = range(f, i, name, &mut each, &mut lists);
+                continue;
+            }
+            // ALL GRIDS and the like: kept by nobody, said so
+            _ => {
+                f.integer(i, name);
+            }
+        }
+        i += 1;
+    }
+    if !each.is_empty() {
+        lists.push(IdList::Each(each));
+    }
+    lists
+}
+
+fn out_of_range(f: &mut Fields, i: usize, name: &'static str) {
+    let found = f.word(i);
+    f.fault(
+        i,
+        name,
+        Wrong::OutOfRange {
+            found,
+            allowed: "1 and more",
+        },
+    );
+}
+
+/// Reads `THRU b [BY n]` at field `i`, the lower end being the last of `each`; the index after it.
+fn range(
+    f: &mut Fields,
+    i: usize,
+    name: &'static str,
+    each: &mut Vec<u32>,
+    lists: &mut Vec<IdList>,
+) -> usize {
+    let next = (i + 1..f.len()).find(|&k| !f.is_blank(k)).unwrap_or(i + 1);
+    let upper = match f.value(next) {
+        Value::Integer(n) => u32::try_from(n).ok(),
+        _ => None,
+    };
+    let (Some(lower), Some(upper)) = (each.last().copied(), upper) else {
+        if f.is_blank(next) {
+            f.fault(next, name, Wrong::Missing);
+        } else {
+            f.integer(next, name);
+        }
+        return next + 1;
+    };
+    if upper < lower {
+        out_of_range(f, next, name);
+        return next + 1;
+    }
+    let by = if f.is_word(next + 1, "BY") {
+        f.integer(next + 2, name).filter(|&n| n > 0)
+    } else {
+        None
+    };
+    let Some(by) = by else {
+        each.pop();
+        if !each.is_empty() {
+            lists.push(IdList::Each(std::mem::take(each)));
+        }
+        lists.push(IdList::Thru(lower, upper));
+        return next + if f.is_word(next + 1, "BY") { 3 } else { 1 };
+    };
+    if i64::from(upper - lower) / by > MAX_WRITTEN_OUT {
+        out_of_range(f, next, name);
+    } else {
+        let step = usize::try_from(by).unwrap_or(1);
+        each.extend((lower..=upper).step_by(step).skip(1));
+    }
+    next + 3
+}
+
+/// The ids as a single list, ranges written out where there are several parts.
+pub(super) fn joined(f: &mut Fields, first: usize, name: &'static str) -> IdList {
+    let mut lists = id_lists(f, first, name);
+    if lists.len() == 1 {
+        return lists.pop().unwrap_or(IdList::Each(Vec::new()));
+    }
+    let mut all = Vec::new();
+    for list in lists {
+        match list {
+            IdList::Each(ids) => all.extend(ids),
+            IdList::Thru(a, b) if i64::from(b - a) <= MAX_WRITTEN_OUT => all.extend(a..=b),
+            IdList::Thru(..) => out_of_range(f, first, name),
+        }
+    }
+    IdList::Each(all)
+}

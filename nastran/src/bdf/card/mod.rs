@@ -1,0 +1,103 @@
+//! Reads one card's fields into its struct, a file a family.
+
+mod constraint;
+mod geometry;
+mod ids;
+mod line;
+mod load;
+mod mass;
+mod material;
+mod param;
+mod pbeam;
+mod property;
+mod rigid;
+mod section;
+mod shell;
+mod solid;
+mod springs;
+
+use super::fields::Fields;
+use crate::cards::Cards;
+use crate::place::Placed;
+
+/// Adds the card to its list; false where no struct exists for it.
+///
+/// `name` is in upper case and without `*`.
+pub(super) fn read_card(f: &mut Fields, cards: &mut Cards) -> bool {
+    match f.name {
+        b"GRID" => keep(&mut cards.grids, f, geometry::grid),
+        b"GRDSET" => keep_one(&mut cards.grdset, f, geometry::grdset),
+        b"CORD2R" | b"CORD2C" | b"CORD2S" => keep(&mut cards.coords, f, geometry::cord2),
+        b"CORD1R" | b"CORD1C" | b"CORD1S" => geometry::cord1(f, cards),
+        b"SPOINT" => geometry::spoint(f, cards),
+        b"CQUAD4" | b"CQUADR" | b"CQUAD8" | b"CTRIA3" | b"CTRIAR" | b"CTRIA6" => {
+            keep(&mut cards.shells, f, shell::shell)
+        }
+        b"CSHEAR" => keep(&mut cards.shear_panels, f, shell::shear_panel),
+        b"CBAR" => keep(&mut cards.bars, f, line::bar),
+        b"CBEAM" => keep(&mut cards.beams, f, line::beam),
+        b"BAROR" => keep_one(&mut cards.baror, f, line::bar_defaults),
+        b"BEAMOR" => keep_one(&mut cards.beamor, f, line::bar_defaults),
+        b"CROD" | b"CTUBE" => keep(&mut cards.rods, f, line::rod),
+        b"CONROD" => keep(&mut cards.conrods, f, line::conrod),
+        b"CBUSH" => keep(&mut cards.bushes, f, springs::bush),
+        b"CELAS1" | b"CELAS2" => keep(&mut cards.springs, f, springs::spring),
+        b"CTETRA" | b"CPENTA" | b"CHEXA" | b"CPYRAM" => keep(&mut cards.solids, f, solid::solid),
+        b"CONM1" => keep(&mut cards.conm1s, f, mass::conm1),
+        b"CONM2" => keep(&mut cards.conm2s, f, mass::conm2),
+        b"RBE1" => keep(&mut cards.rbe1s, f, rigid::rbe1),
+        b"RBE2" => keep(&mut cards.rbe2s, f, rigid::rbe2),
+        b"RBE3" => keep(&mut cards.rbe3s, f, rigid::rbe3),
+        b"RBAR" => keep(&mut cards.rbars, f, rigid::rbar),
+        b"MPC" => keep(&mut cards.mpcs, f, constraint::mpc),
+        b"MPCADD" => keep(&mut cards.mpcadds, f, constraint::set_sum),
+        b"SPC" => keep(&mut cards.spcs, f, constraint::spc),
+        b"SPC1" => constraint::spc1(f, cards),
+        b"SPCADD" => keep(&mut cards.spcadds, f, constraint::set_sum),
+        b"SUPORT" | b"SUPORT1" | b"SUPPORT" => keep(&mut cards.suports, f, constraint::suport),
+        b"PSHELL" => keep(&mut cards.pshells, f, property::pshell),
+        b"PCOMP" | b"PCOMPG" => keep(&mut cards.pcomps, f, property::pcomp),
+        b"PSHEAR" => keep(&mut cards.pshears, f, property::pshear),
+        b"PBAR" => keep(&mut cards.pbars, f, property::pbar),
+        b"PBARL" => keep(&mut cards.pbarls, f, section::pbarl),
+        b"PBEAM" => keep(&mut cards.pbeams, f, pbeam::pbeam),
+        b"PBEAML" => keep(&mut cards.pbeamls, f, section::pbeaml),
+        b"PROD" => keep(&mut cards.prods, f, property::prod),
+        b"PTUBE" => keep(&mut cards.ptubes, f, property::ptube),
+        b"PBUSH" => keep(&mut cards.pbushes, f, springs::pbush),
+        b"PELAS" => springs::pelas(f, cards),
+        b"PSOLID" => keep(&mut cards.psolids, f, property::psolid),
+        b"MAT1" => keep(&mut cards.mat1s, f, material::mat1),
+        b"MAT2" => keep(&mut cards.mat2s, f, material::mat2),
+        b"MAT8" => keep(&mut cards.mat8s, f, material::mat8),
+        b"MAT9" => keep(&mut cards.mat9s, f, material::mat9),
+        b"FORCE" => keep(&mut cards.forces, f, load::force),
+        b"MOMENT" => keep(&mut cards.moments, f, load::force),
+        b"PLOAD" => keep(&mut cards.ploads, f, load::pload),
+        b"PLOAD1" => keep(&mut cards.pload1s, f, load::pload1),
+        b"PLOAD2" => load::pload2(f, cards),
+        b"PLOAD4" => keep(&mut cards.pload4s, f, load::pload4),
+        b"GRAV" => keep(&mut cards.gravs, f, load::grav),
+        b"RFORCE" => keep(&mut cards.rforces, f, load::rforce),
+        b"LOAD" => keep(&mut cards.loads, f, load::load),
+        b"TEMP" => load::temp(f, cards),
+        b"TEMPD" => load::tempd(f, cards),
+        b"PARAM" => keep(&mut cards.params, f, param::param),
+        _ => return false,
+    }
+    true
+}
+
+fn keep<T>(list: &mut Vec<Placed<T>>, f: &mut Fields, read: impl FnOnce(&mut Fields) -> T) {
+    let card = read(f);
+    if !f.unusable {
+        list.push(Placed { card, at: f.at });
+    }
+}
+
+fn keep_one<T>(place: &mut Option<Placed<T>>, f: &mut Fields, read: impl FnOnce(&mut Fields) -> T) {
+    let card = read(f);
+    if !f.unusable {
+        *place = Some(Placed { card, at: f.at });
+    }
+}

@@ -1,0 +1,155 @@
+//! RBE1, RBE2, RBE3, RBAR.
+
+use super::super::fault::Wrong;
+use super::super::fields::{Fields, Value};
+use super::ids::id_lists;
+use crate::cards::{Dofs, IdList, Rbar, Rbe1, Rbe2, Rbe3, Rbe3Group};
+
+/// Grids up to the first real, which is ALPHA.
+pub(super) fn rbe2(f: &mut Fields) -> Rbe2 {
+    let id = f.id(0, "EID");
+    let independent = f.id(1, "GN");
+    let dofs = f.dofs(2, "CM");
+    let end = (3..f.len())
+        .find(|&i| matches!(f.value(i), Value::Real(_)))
+        .unwrap_or(f.len());
+    let alpha = f.real_or(end, "ALPHA", 0.0);
+    let mut dependent = Vec::with_capacity(end.saturating_sub(3));
+    if (3..end).any(|i| f.is_text(i)) {
+        for list in id_lists(f, 3, "GM") {
+            match list {
+                IdList::Each(ids) => dependent.extend(ids),
+                IdList::Thru(a, b) => dependent.extend((a..=b).take(100_000)),
+            }
+        }
+    } else {
+        for i in 3..end {
+            if !f.is_blank(i) {
+                dependent.push(f.id(i, "GM"));
+            }
+        }
+    }
+    Rbe2 {
+        id,
+        independent,
+        dofs,
+        dependent,
+        alpha,
+    }
+}
+
+pub(super) fn rbe3(f: &mut Fields) -> Rbe3 {
+    let id = f.id(0, "EID");
+    let reference = f.id(2, "REFGRID");
+    let refc = f.dofs(3, "REFC");
+    let mut groups: Vec<Rbe3Group> = Vec::new();
+    let end = f.len();
+    let mut i = 4;
+    while i < end && !f.is_word(i, "UM") && !f.is_word(i, "ALPHA") {
+        match f.value(i) {
+            Value::Blank => i += 1,
+            Value::Real(weight) => {
+                groups.push(Rbe3Group {
+                    weight,
+                    dofs: f.dofs(i + 1, "C"),
+                    grids: Vec::new(),
+                });
+                i += 2;
+            }
+            Value::Integer(_) => {
+                let grid = f.id(i, "G");
+                match groups.last_mut() {
+                    Some(group) => group.grids.push(grid),
+                    None => {
+                        f.real(i, "WT1");
+                    }
+                }
+                i += 1;
+            }
+            Value::Text if f.is_word(i, "THRU") => {
+                let upper = f.opt_id(i + 1, "G").unwrap_or(0);
+                if let Some(group) = groups.last_mut()
+                    && let Some(&lower) = group.grids.last()
+                {
+                    group
+                        .grids
+                        .extend((lower.saturating_add(1)..=upper).take(100_000));
+                }
+                i += 2;
+            }
+            Value::Text => {
+                f.opt_real(i, "WT");
+                i += 1;
+            }
+        }
+    }
+    if groups.iter().all(|g| g.grids.is_empty()) {
+        f.fault(6, "G1,1", Wrong::Missing);
+    }
+    let mut um = Vec::new();
+    let mut alpha = 0.0;
+    while i < end {
+        if f.is_blank(i) || f.is_word(i, "UM") {
+            i += 1;
+        } else if f.is_word(i, "ALPHA") {
+            alpha = f.real_or(i + 1, "ALPHA", 0.0);
+            break;
+        } else {
+            um.push((f.id(i, "GM"), f.dofs(i + 1, "CM")));
+            i += 2;
+        }
+    }
+    Rbe3 {
+        id,
+        reference,
+        refc,
+        groups,
+        um,
+        alpha,
+    }
+}
+
+pub(super) fn rbe1(f: &mut Fields) -> Rbe1 {
+    let mut card = Rbe1 {
+        id: f.id(0, "EID"),
+        independent: Vec::new(),
+        dependent: Vec::new(),
+        alpha: 0.0,
+    };
+    let mut in_um = false;
+    let mut i = 1;
+    while i < f.len() {
+        match f.value(i) {
+            Value::Blank => i += 1,
+            Value::Text if f.is_word(i, "UM") => {
+                in_um = true;
+                i += 1;
+            }
+            Value::Text if f.is_word(i, "ALPHA") => i += 1,
+            Value::Real(alpha) => {
+                card.alpha = alpha;
+                break;
+            }
+            _ => {
+                let term: (u32, Dofs) = (f.id(i, "G"), f.dofs(i + 1, "C"));
+                if in_um {
+                    card.dependent.push(term)
+                } else {
+                    card.independent.push(term)
+                }
+                i += 2;
+            }
+        }
+    }
+    card
+}
+
+pub(super) fn rbar(f: &mut Fields) -> Rbar {
+    Rbar {
+        id: f.id(0, "EID"),
+        grids: [f.id(1, "GA"), f.id(2, "GB")],
+        independent: [f.dofs(3, "CNA"), f.dofs(4, "CNB")],
+        dependent: [f.dofs(5, "CMA"), f.dofs(6, "CMB")],
+        alpha: f.real_or(7, "ALPHA", 0.0),
+    }
+}

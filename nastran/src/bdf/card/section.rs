@@ -1,0 +1,113 @@
+//! PBARL and PBEAML: bars and beams by cross-section.
+
+use super::super::fault::Wrong;
+use super::super::fields::Fields;
+use crate::cards::{BeamlStation, Pbarl, Pbeaml};
+
+/// Number of dimensions of a section type; `None` where unknown.
+fn n_dims(section: &str) -> Option<usize> {
+    Some(match section {
+        "ROD" => 1,
+        "TUBE" | "TUBE2" | "BAR" => 2,
+        "HEXA" => 3,
+        "CHAN" | "T" | "BOX" | "CROSS" | "H" | "T1" | "I1" | "CHAN1" | "Z" | "CHAN2" | "T2"
+        | "HAT" | "L" => 4,
+        "HAT1" => 5,
+        "I" | "BOX1" => 6,
+        "DBOX" => 10,
+        _ => return None,
+    })
+}
+
+/// Dimensions from field `first` on. A blank inner radius of a TUBE is 0.
+fn dims(
+    f: &mut Fields,
+    first: usize,
+    section: &str,
+    n: usize,
+    of_end_a: Option<&[f64]>,
+) -> Vec<f64> {
+    (0..n)
+        .map(|k| {
+            let given = f.opt_real(first + k, "DIM");
+            let default = of_end_a
+                .and_then(|a| a.get(k).copied())
+                .or((section == "TUBE" && k == 1).then_some(0.0));
+            if given.is_none() && default.is_none() && f.is_blank(first + k) {
+                f.fault(first + k, "DIM", Wrong::Missing);
+            }
+            given.or(default).unwrap_or(0.0)
+        })
+        .collect()
+}
+
+/// Dimensions a section has: of an unknown type, up to the last field.
+fn count(f: &mut Fields, section: &str) -> usize {
+    if section.is_empty() {
+        f.fault(3, "TYPE", Wrong::Missing);
+    }
+    n_dims(section).unwrap_or_else(|| f.len().saturating_sub(8))
+}
+
+pub(super) fn pbarl(f: &mut Fields) -> Pbarl {
+    let id = f.id(0, "PID");
+    let mid = f.id(1, "MID");
+    let section = f.word(3);
+    let n = count(f, &section);
+    let dims = dims(f, 8, &section, n, None);
+    let nsm = f.real_or(8 + n, "NSM", 0.0);
+    Pbarl {
+        id,
+        mid,
+        section,
+        dims,
+        nsm,
+    }
+}
+
+/// End A, then for every station SO, X/XB, dimensions and NSM; blank dimensions are those of end A.
+pub(super) fn pbeaml(f: &mut Fields) -> Pbeaml {
+    let id = f.id(0, "PID");
+    let mid = f.id(1, "MID");
+    let section = f.word(3);
+    let n = count(f, &section);
+    let dims_a = dims(f, 8, &section, n, None);
+    let nsm = f.real_or(8 + n, "NSM(A)", 0.0);
+    let mut stations = vec![BeamlStation {
+        x_xb: 0.0,
+        output: true,
+        dims: dims_a.clone(),
+        nsm,
+    }];
+    let mut i = 9 + n;
+    while i < f.len() {
+        let output = !f.is_word(i, "NO");
+        if !f.is_blank(i) && !f.is_text(i) {
+            let found = f.word(i);
+            f.fault(
+                i,
+                "SO",
+                Wrong::NotOneOf {
+                    found,
+                    allowed: "YES, NO",
+                },
+            );
+        }
+        let x_xb = f.real_or(i + 1, "X/XB", 1.0);
+        let dims = dims(f, i + 2, &section, n, Some(&dims_a));
+        stations.push(BeamlStation {
+            x_xb,
+            output,
+            dims,
+            nsm: f.real_or(i + 2 + n, "NSM", 0.0),
+        });
+        i += 3 + n;
+    }
+    stations.sort_by(|a, b| a.x_xb.total_cmp(&b.x_xb));
+    Pbeaml {
+        id,
+        mid,
+        section,
+        stations,
+    }
+}

@@ -1,0 +1,180 @@
+//! Case control: subcases, what loads and holds each, and what is put out.
+
+mod read;
+mod set;
+
+pub(super) use read::read_case_control;
+pub use set::{Set, SetItem};
+
+use std::collections::BTreeMap;
+
+use crate::cards::Param;
+use crate::place::Place;
+
+/// Case control as it is written; [`CaseControl::effective`] applies what subcases inherit.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CaseControl {
+    /// What stands above the first subcase; its id is 0.
+    pub global: Subcase,
+    /// SUBCASE, SUBCOM, SYM .. in file order.
+    pub subcases: Vec<Subcase>,
+    /// Every statement, comments left out, for edits.
+    pub lines: Vec<CaseLine>,
+}
+
+/// A statement of case control.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CaseLine {
+    /// Its first line.
+    pub at: Place,
+    /// The subcase it stands in, an index of [`CaseControl::subcases`]; `None` above the first.
+    pub subcase: Option<usize>,
+    /// Its first word, upper case, as written.
+    pub name: String,
+    /// The statement without comments, its lines joined.
+    pub text: String,
+    /// Offsets of its first byte and after its last line.
+    pub(super) start: usize,
+    pub(super) end: usize,
+}
+
+/// What begins a subcase.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum SubcaseKind {
+    /// SUBCASE.
+    #[default]
+    Subcase,
+    /// SUBCOM: a combination of the subcases above by SUBSEQ.
+    Subcom,
+    /// SYM.
+    Sym,
+    /// SYMCOM: a combination of the SYMs above by SYMSEQ.
+    Symcom,
+    /// REPCASE: other output of the subcase above.
+    Repcase,
+}
+
+/// A subcase as written: a `None` is inherited.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Subcase {
+    /// Number; 0 for the part above all subcases.
+    pub id: u32,
+    /// What begins it.
+    pub kind: SubcaseKind,
+    /// Where it begins.
+    pub at: Place,
+    /// TITLE.
+    pub title: Option<String>,
+    /// SUBTITLE.
+    pub subtitle: Option<String>,
+    /// LABEL.
+    pub label: Option<String>,
+    /// LOAD.
+    pub load: Option<u32>,
+    /// SPC.
+    pub spc: Option<u32>,
+    /// MPC.
+    pub mpc: Option<u32>,
+    /// SUPORT1.
+    pub suport1: Option<u32>,
+    /// TEMPERATURE(LOAD), or without an option.
+    pub temperature_load: Option<u32>,
+    /// TEMPERATURE(INITIAL), or (BOTH).
+    pub temperature_initial: Option<u32>,
+    /// DEFORM.
+    pub deform: Option<u32>,
+    /// METHOD.
+    pub method: Option<u32>,
+    /// ANALYSIS, upper case.
+    pub analysis: Option<String>,
+    /// SUBSEQ or SYMSEQ.
+    pub sequence: Vec<f64>,
+    /// Output requests, the last of a name counts.
+    pub requests: Vec<Request>,
+    /// SETs defined here.
+    pub sets: BTreeMap<u32, Set>,
+    /// PARAMs given here.
+    pub params: Vec<Param>,
+}
+
+/// An output request, such as `STRAIN(PLOT,FIBER) = ALL`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Request {
+    /// Full upper-case name: `DISPLACEMENT`, `STRAIN`, `STRESS`, `FORCE`, `SPCFORCES`, `MPCFORCES`, `OLOAD`, `GPFORCE` ..
+    pub what: String,
+    /// Options in brackets, upper case.
+    pub options: Vec<String>,
+    /// For which grids or elements.
+    pub value: Selection,
+}
+
+/// What a request is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Selection {
+    /// ALL (or YES).
+    All,
+    /// NONE (or NO).
+    None,
+    /// A SET.
+    Set(u32),
+}
+
+impl Request {
+    /// Whether an option is given.
+    pub fn has(&self, option: &str) -> bool {
+        self.options.iter().any(|o| o.eq_ignore_ascii_case(option))
+    }
+}
+
+impl Subcase {
+    /// The request of this full name.
+    pub fn request(&self, what: &str) -> Option<&Request> {
+        self.requests.iter().rev().find(|r| r.what == what)
+    }
+}
+
+impl CaseControl {
+    /// The subcase with what it inherits from above the subcases filled in. Without any subcase: the global part, as id 1.
+    pub fn effective(&self, subcase: &Subcase) -> Subcase {
+        let global = &self.global;
+        let mut full = subcase.clone();
+        full.title = subcase.title.clone().or_else(|| global.title.clone());
+        full.subtitle = subcase.subtitle.clone().or_else(|| global.subtitle.clone());
+        full.label = subcase.label.clone().or_else(|| global.label.clone());
+        full.load = subcase.load.or(global.load);
+        full.spc = subcase.spc.or(global.spc);
+        full.mpc = subcase.mpc.or(global.mpc);
+        full.suport1 = subcase.suport1.or(global.suport1);
+        full.temperature_load = subcase.temperature_load.or(global.temperature_load);
+        full.temperature_initial = subcase.temperature_initial.or(global.temperature_initial);
+        full.deform = subcase.deform.or(global.deform);
+        full.method = subcase.method.or(global.method);
+        full.analysis = subcase.analysis.clone().or_else(|| global.analysis.clone());
+        let inherited = global
+            .requests
+            .iter()
+            .filter(|r| subcase.request(&r.what).is_none())
+            .cloned();
+        full.requests = inherited.chain(subcase.requests.iter().cloned()).collect();
+        for (id, set) in &global.sets {
+            full.sets.entry(*id).or_insert_with(|| set.clone());
+        }
+        let params = global
+            .params
+            .iter()
+            .filter(|p| subcase.params.iter().all(|own| own.name != p.name))
+            .cloned();
+        full.params = params.chain(subcase.params.iter().cloned()).collect();
+        full
+    }
+
+    /// All subcases with what they inherit; a deck without SUBCASE has one, number 1.
+    pub fn effective_subcases(&self) -> Vec<Subcase> {
+        if self.subcases.is_empty() {
+            let mut only = self.global.clone();
+            only.id = 1;
+            return vec![only];
+        }
+        self.subcases.iter().map(|s| self.effective(s)).collect()
+    }
+}

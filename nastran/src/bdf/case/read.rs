@@ -1,0 +1,335 @@
+//! Reads the statements of case control.
+
+use super::super::fault::{Fault, Wrong};
+use super::super::fields::note_fault;
+use super::super::number::{Number, read_number};
+use super::super::walk::Statement;
+use super::{CaseControl, CaseLine, Request, Selection, Set, Subcase, SubcaseKind};
+use crate::cards::{Param, ParamValue};
+
+/// Longest statement, its continuation lines joined.
+const MAX_STATEMENT: usize = 4 << 20;
+
+/// Case control in statements of one line each.
+pub(in super::super) fn read_case_control(
+    statements: &[Statement],
+    faults: &mut Vec<Fault>,
+) -> CaseControl {
+    let mut case = CaseControl::default();
+    let mut in_packet = false;
+    let mut rest = statements;
+    while let Some((first, more)) = rest.split_first() {
+        let (text, end, used) = joined(first, more);
+        rest = more.get(used..).unwrap_or_default();
+        let text = text.trim();
+        let name: String = text
+            .chars()
+            .take_while(|c| c.is_ascii_alphanumeric())
+            .collect::<String>()
+            .to_ascii_uppercase();
+        let mut read = Reader {
+            case: &mut case,
+            first,
+            faults,
+        };
+        if let Some(kind) = subcase_kind(&name) {
+            in_packet = false;
+            read.begin(kind, &name, text);
+        } else if name.starts_with("OUTP") && text.contains('(') {
+            // OUTPUT(PLOT), (XYPLOT), (POST): a language of its own up to the end of case control
+            in_packet = true;
+        } else if !in_packet {
+            read.statement(&name, text);
+        }
+        let subcase = case.subcases.len().checked_sub(1);
+        case.lines.push(CaseLine {
+            at: first.at,
+            subcase,
+            name,
+            text: text.to_owned(),
+            start: first.start,
+            end,
+        });
+    }
+    case
+}
+
+/// The statement with the lines that continue it, where the last ends, and how many they are.
+fn joined(first: &Statement, more: &[Statement]) -> (String, usize, usize) {
+    let mut text = first.text.trim_end().to_owned();
+    let mut end = first.end;
+    let mut used = 0;
+    let word = text.trim_start().to_ascii_uppercase();
+    if ["TITLE", "SUBT", "LABE"]
+        .iter()
+        .any(|t| word.starts_with(t))
+    {
+        return (text, end, used);
+    }
+    while text.ends_with(',')
+        && text.len() < MAX_STATEMENT
+        && let Some(next) = more.get(used)
+        && next.at.source == first.at.source
+    {
+        text.push(' ');
+        text.push_str(next.text.trim());
+        end = next.end;
+        used += 1;
+    }
+    (text, end, used)
+}
+
+fn subcase_kind(name: &str) -> Option<SubcaseKind> {
+    Some(match name {
+        "SYM" => SubcaseKind::Sym,
+        n if n.starts_with("SUBCO") => SubcaseKind::Subcom,
+        n if n.starts_with("SUBCA") => SubcaseKind::Subcase,
+        n if n.starts_with("SYMC") => SubcaseKind::Symcom,
+        n if n.starts_with("REPC") => SubcaseKind::Repcase,
+        _ => return None,
+    })
+}
+
+/// Full names of the output requests by their first letters; Nastran looks at four.
+const REQUESTS: [(&str, &str); 26] = [
+    ("DISP", "DISPLACEMENT"),
+    ("VECT", "DISPLACEMENT"),
+    ("PRES", "DISPLACEMENT"),
+    ("VELO", "VELOCITY"),
+    ("ACCE", "ACCELERATION"),
+    ("SPCF", "SPCFORCES"),
+    ("MPCF", "MPCFORCES"),
+    ("OLOA", "OLOAD"),
+    ("STRE", "STRESS"),
+    ("ELST", "STRESS"),
+    ("STRA", "STRAIN"),
+    ("STRF", "STRFIELD"),
+    ("FORC", "FORCE"),
+    ("ELFO", "FORCE"),
+    ("GPFO", "GPFORCE"),
+    ("GPSTRE", "GPSTRESS"),
+    ("GPSTRA", "GPSTRAIN"),
+    ("GPST", "GPSTRESS"),
+    ("GPKE", "GPKE"),
+    ("ESE", "ESE"),
+    ("EKE", "EKE"),
+    ("EDE", "EDE"),
+    ("ELSD", "ELSDCON"),
+    ("SDIS", "SDISPLACEMENT"),
+    ("THER", "THERMAL"),
+    ("OTEM", "OTEMP"),
+];
+
+struct Reader<'a> {
+    case: &'a mut CaseControl,
+    first: &'a Statement,
+    faults: &'a mut Vec<Fault>,
+}
+
+impl Reader<'_> {
+    fn fault(&mut self, name: &str, found: &str, why: &'static str) {
+        let found: String = found.chars().take(60).collect();
+        let what = Wrong::Statement { found, why };
+        note_fault(
+            self.faults,
+            Fault {
+                at: self.first.at,
+                card: name.to_owned(),
+                field: None,
+                what,
+            },
+        );
+    }
+
+    fn current(&mut self) -> &mut Subcase {
+        match self.case.subcases.last_mut() {
+            Some(subcase) => subcase,
+            None => &mut self.case.global,
+        }
+    }
+
+    fn begin(&mut self, kind: SubcaseKind, name: &str, text: &str) {
+        let value = value_of(text, name.len());
+        let id = value
+            .split([' ', '\t', ','])
+            .find(|w| !w.is_empty())
+            .and_then(|w| w.parse().ok());
+        if id.is_none() && kind != SubcaseKind::Sym && kind != SubcaseKind::Symcom {
+            self.fault(name, text, "the subcase has no number");
+        }
+        let next = self
+            .case
+            .subcases
+            .last()
+            .map_or(1, |s| s.id.saturating_add(1));
+        let id = id.unwrap_or(next);
+        self.case.subcases.push(Subcase {
+            id,
+            kind,
+            at: self.first.at,
+            ..Subcase::default()
+        });
+    }
+
+    fn statement(&mut self, name: &str, text: &str) {
+        let value = value_of(text, name.len());
+        match name {
+            n if n.starts_with("TITL") => self.current().title = Some(value.to_owned()),
+            n if n.starts_with("SUBT") => self.current().subtitle = Some(value.to_owned()),
+            n if n.starts_with("LABE") => self.current().label = Some(value.to_owned()),
+            "LOAD" => self.current().load = self.number(name, value),
+            "SPC" => self.current().spc = self.number(name, value),
+            "MPC" => self.current().mpc = self.number(name, value),
+            "SUPORT1" | "SUPPORT1" => self.current().suport1 = self.number(name, value),
+            "DEFORM" => self.current().deform = self.number(name, value),
+            n if n.starts_with("METH") => self.current().method = self.number(name, value),
+            n if n.starts_with("ANAL") => {
+                self.current().analysis = Some(value.to_ascii_uppercase())
+            }
+            n if n.starts_with("TEMP") => self.temperature(name, text, value),
+            n if n.starts_with("SUBS") || n.starts_with("SYMS") => self.sequence(name, value),
+            "SET" => self.set(text),
+            "PARAM" => self.param(text),
+            _ => self.request(name, text, value),
+        }
+    }
+
+    /// A set number; 0 or NONE is none.
+    fn number(&mut self, name: &str, value: &str) -> Option<u32> {
+        match value.parse::<u32>() {
+            Ok(n) => Some(n),
+            Err(_) if value.eq_ignore_ascii_case("NONE") => Some(0),
+            Err(_) => {
+                self.fault(name, value, "a set number is needed");
+                None
+            }
+        }
+    }
+
+    fn temperature(&mut self, name: &str, text: &str, value: &str) {
+        let id = self.number(name, value);
+        let options = options_of(text);
+        let is = |o: &str| options.iter().any(|have| have.starts_with(o));
+        let current = self.current();
+        if is("INIT") || is("BOTH") {
+            current.temperature_initial = id;
+        }
+        if !is("INIT") && !is("MATE") {
+            current.temperature_load = id;
+        }
+    }
+
+    fn sequence(&mut self, name: &str, value: &str) {
+        let mut numbers = Vec::new();
+        for word in value.split([',', ' ', '\t']).filter(|w| !w.is_empty()) {
+            match read_number(word.as_bytes()) {
+                Some(Number::Integer(n)) => numbers.push(n as f64),
+                Some(Number::Real(x)) => numbers.push(x),
+                None => return self.fault(name, word, "a coefficient is needed"),
+            }
+        }
+        self.current().sequence = numbers;
+    }
+
+    fn set(&mut self, text: &str) {
+        let (head, items) = text.split_once('=').unwrap_or((text, ""));
+        let id = head.get(3..).unwrap_or_default().trim().parse::<u32>();
+        match (id, Set::from_text(items)) {
+            (Ok(id), Ok(set)) => {
+                self.current().sets.insert(id, set);
+            }
+            // sets of times, grid components or named sets: kept in the deck, not read
+            (Ok(_), Err(word)) if word.contains(['.', '/', '(']) => {}
+            (Ok(_), Err(word)) => self.fault("SET", &word, "the item of the set is no id"),
+            (Err(_), _) => self.fault("SET", head, "the set has no number"),
+        }
+    }
+
+    /// `PARAM,POST,-1`.
+    fn param(&mut self, text: &str) {
+        let mut words = text
+            .split([',', ' ', '\t', '='])
+            .filter(|w| !w.is_empty())
+            .skip(1);
+        let Some(name) = words.next() else {
+            return;
+        };
+        let values = words
+            .take(2)
+            .map(|w| match read_number(w.as_bytes()) {
+                Some(Number::Integer(n)) => ParamValue::Integer(n),
+                Some(Number::Real(x)) => ParamValue::Real(x),
+                None => ParamValue::Text(w.to_ascii_uppercase()),
+            })
+            .collect();
+        self.current().params.push(Param {
+            name: name.to_ascii_uppercase(),
+            values,
+        });
+    }
+
+    /// An output request; other statements are kept in the deck and not read.
+    fn request(&mut self, name: &str, text: &str, value: &str) {
+        let Some((_, full)) = REQUESTS.iter().find(|(head, _)| name.starts_with(head)) else {
+            return;
+        };
+        let value = match value.to_ascii_uppercase().as_str() {
+            "ALL" | "YES" | "" => Selection::All,
+            "NONE" | "NO" => Selection::None,
+            number => match number.parse() {
+                Ok(set) => Selection::Set(set),
+                Err(_) => return self.fault(name, value, "ALL, NONE or a set number is needed"),
+            },
+        };
+        let options = options_of(text);
+        let current = self.current();
+        current.requests.retain(|r| r.what != *full);
+        current.requests.push(Request {
+            what: (*full).to_owned(),
+            options,
+            value,
+        });
+    }
+}
+
+/// What stands behind `=`, or behind the name where there is no `=`.
+fn value_of(text: &str, name: usize) -> &str {
+    let rest = text.get(name..).unwrap_or_default();
+    let rest = match rest.trim_start().strip_prefix('(') {
+        Some(inner) => close(inner).map_or("", |i| inner.get(i + 1..).unwrap_or_default()),
+        None => rest,
+    };
+    rest.trim_start_matches([' ', '\t', ','])
+        .trim_start_matches('=')
+        .trim()
+}
+
+/// Offset of the bracket that closes.
+fn close(inner: &str) -> Option<usize> {
+    let mut depth = 1;
+    for (i, c) in inner.char_indices() {
+        match c {
+            '(' => depth += 1,
+            ')' => depth -= 1,
+            _ => {}
+        }
+        if depth == 0 {
+            return Some(i);
+        }
+    }
+    None
+}
+
+/// The words in brackets behind the name, upper case.
+fn options_of(text: &str) -> Vec<String> {
+    let before = text.split('=').next().unwrap_or_default();
+    let Some((_, inner)) = text.split_once('(').filter(|_| before.contains('(')) else {
+        return Vec::new();
+    };
+    let inner = close(inner).and_then(|i| inner.get(..i)).unwrap_or(inner);
+    inner
+        .split(',')
+        .map(|w| w.trim().to_ascii_uppercase())
+        .filter(|w| !w.is_empty())
+        .collect()
+}

@@ -1,0 +1,62 @@
+//! Reads pieces of bulk data, many at once.
+
+use std::sync::atomic::AtomicUsize;
+
+use rayon::prelude::*;
+
+use super::assemble::{Assembler, Part};
+use super::deck::Source;
+use super::line::Lines;
+use super::merge::append;
+use crate::place::SourceIx;
+
+/// Lines of bulk data that begin with a card and hold no INCLUDE, BEGIN or ENDDATA.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chunk {
+    pub source: u32,
+    pub start: usize,
+    pub end: usize,
+    /// Number of the first line.
+    pub line: u32,
+}
+
+/// Bytes after which a chunk ends at the next card.
+pub(super) const CHUNK_BYTES: usize = 192 << 10;
+
+/// Chunks that are in memory beside the cards they join.
+const BATCH: usize = 32;
+
+/// Reads all chunks; the parts are joined in order.
+pub(super) fn read_chunks(chunks: &[Chunk], sources: &[Source], budget: &AtomicUsize) -> Part {
+    let mut all = Part::default();
+    for batch in chunks.chunks(BATCH) {
+        let parts: Vec<Part> = if batch.len() == 1 {
+            batch
+                .iter()
+                .map(|c| read_chunk(c, sources, budget))
+                .collect()
+        } else {
+            batch
+                .par_iter()
+                .map(|c| read_chunk(c, sources, budget))
+                .collect()
+        };
+        for part in parts {
+            append(&mut all, part);
+        }
+    }
+    all
+}
+
+fn read_chunk(chunk: &Chunk, sources: &[Source], budget: &AtomicUsize) -> Part {
+    let bytes = sources
+        .get(chunk.source as usize)
+        .map(|s| s.bytes.as_slice())
+        .unwrap_or_default();
+    let mut assembler = Assembler::new(SourceIx(chunk.source), budget);
+    for line in Lines::new(bytes, chunk.start, chunk.end, chunk.line) {
+        assembler.line(line);
+    }
+    assembler.finish();
+    assembler.part
+}

@@ -1,0 +1,127 @@
+//! A deck as it was read.
+
+use std::collections::BTreeMap;
+
+use super::case::CaseControl;
+use super::fault::Fault;
+use super::names::{Label, Named};
+use crate::cards::{Cards, Param};
+use crate::place::Place;
+
+/// A file of a deck.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Source {
+    /// As the loader names it.
+    pub path: String,
+    /// Its bytes, unchanged.
+    pub bytes: Vec<u8>,
+}
+
+/// A card without a struct of its own, kept word for word.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OtherCard {
+    /// Upper case, without `*`.
+    pub name: String,
+    /// Its first line.
+    pub at: Place,
+    /// Bytes of its first line to the end of its last, comments between included.
+    pub(super) start: usize,
+    pub(super) end: usize,
+}
+
+/// Something worth saying that is no fault.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Note {
+    pub at: Place,
+    pub text: String,
+}
+
+/// A position between bytes of a source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Position {
+    pub source: usize,
+    pub offset: usize,
+}
+
+/// Where the sections of the deck meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub(super) struct Seams {
+    /// Start of the line after CEND, or of the deck.
+    pub case_start: Option<Position>,
+    /// Start of the line `BEGIN BULK`.
+    pub bulk_line: Option<Position>,
+    /// Start of the line ENDDATA.
+    pub enddata: Option<Position>,
+}
+
+/// A deck: its bytes, its typed cards, and everything that is wrong with it.
+#[derive(Clone, Debug, Default)]
+pub struct Deck {
+    /// The files, the first deck first; places point here.
+    pub sources: Vec<Source>,
+    /// Typed cards.
+    pub cards: Cards,
+    /// Number of cards by name, replicated cards included; ENDDATA counts 1.
+    pub counts: BTreeMap<String, usize>,
+    /// Cards without a struct, in file order.
+    pub others: Vec<OtherCard>,
+    /// Case control.
+    pub case_control: CaseControl,
+    /// Solution number, also where SOL names it (`SESTATIC` is 101).
+    pub sol: Option<u32>,
+    /// SOL as written.
+    pub sol_text: Option<String>,
+    /// Everything that is wrong.
+    pub faults: Vec<Fault>,
+    /// What else is worth saying.
+    pub notes: Vec<Note>,
+    /// Names in comments.
+    pub labels: Vec<Label>,
+    pub(super) seams: Seams,
+}
+
+impl Deck {
+    /// The text of a card that has no struct; bytes that are not UTF-8 as Latin-1.
+    pub fn text(&self, card: &OtherCard) -> String {
+        let source = self.sources.get(card.at.source.0 as usize);
+        super::line::text_of(
+            source
+                .and_then(|s| s.bytes.get(card.start..card.end))
+                .unwrap_or_default(),
+        )
+    }
+
+    /// The file's path at a place.
+    pub fn path(&self, at: Place) -> &str {
+        self.sources
+            .get(at.source.0 as usize)
+            .map_or("", |s| s.path.as_str())
+    }
+
+    /// The name that a comment gives this property, component or material.
+    pub fn label(&self, kind: Named, id: u32) -> Option<&str> {
+        self.labels
+            .iter()
+            .find(|l| l.kind == kind && l.id == id)
+            .map(|l| l.name.as_str())
+    }
+
+    /// The value of a parameter: case control above the subcases wins over bulk data, later over earlier.
+    pub fn param(&self, name: &str) -> Option<&Param> {
+        let bulk = self
+            .cards
+            .params
+            .iter()
+            .rev()
+            .find(|p| p.name == name)
+            .map(|p| &p.card);
+        self.case_control
+            .global
+            .params
+            .iter()
+            .rev()
+            .find(|p| p.name == name)
+            .or(bulk)
+    }
+}

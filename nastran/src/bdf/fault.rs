@@ -1,0 +1,243 @@
+//! What is wrong with a deck, where, and what to do about it.
+
+use std::fmt;
+
+use super::deck::Source;
+use crate::place::Place;
+
+/// A fault of a deck.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// First line of the card.
+    pub at: Place,
+    /// Card name, or the statement; empty where there is none.
+    pub card: String,
+    /// The field, where one is to blame.
+    pub field: Option<FieldName>,
+    /// What is wrong.
+    pub what: Wrong,
+}
+
+/// A field of a card.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FieldName {
+    /// As the quick reference guides count: 2 to 9 on the first line, 12 to 19 on the second ..
+    pub number: u32,
+    /// Its name in the guides.
+    pub name: &'static str,
+}
+
+/// What is wrong.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub enum Wrong {
+    /// A required field is blank.
+    Missing,
+    NotInteger {
+        found: String,
+    },
+    NotReal {
+        found: String,
+    },
+    /// An integer stands where a solver needs a real; it was read as that real.
+    IntegerForReal {
+        found: String,
+    },
+    NotDofs {
+        found: String,
+    },
+    OutOfRange {
+        found: String,
+        allowed: &'static str,
+    },
+    NotOneOf {
+        found: String,
+        allowed: &'static str,
+    },
+    /// A line that is neither a card nor a continuation.
+    NotACard {
+        found: String,
+    },
+    /// A continuation whose card is nowhere.
+    Orphan {
+        label: String,
+    },
+    /// A replicated line without a card before it, or a field it cannot repeat.
+    Replication {
+        found: String,
+        why: &'static str,
+    },
+    /// More generated cards than a deck of this size plausibly needs.
+    TooManyReplicated {
+        limit: usize,
+    },
+    IncludeNotFound {
+        name: String,
+        why: String,
+    },
+    IncludeCycle {
+        name: String,
+    },
+    IncludeDepth {
+        limit: usize,
+    },
+    IncludeCount {
+        limit: usize,
+    },
+    /// An INCLUDE without a file name or closing quote.
+    IncludeName {
+        found: String,
+    },
+    /// A case control or executive line that cannot be read.
+    Statement {
+        found: String,
+        why: &'static str,
+    },
+}
+
+impl Wrong {
+    /// The text that was found, where there is one.
+    pub fn found(&self) -> Option<&str> {
+        match self {
+            Self::NotInteger { found }
+            | Self::NotReal { found }
+            | Self::IntegerForReal { found }
+            | Self::NotDofs { found }
+            | Self::OutOfRange { found, .. }
+            | Self::NotOneOf { found, .. }
+            | Self::NotACard { found }
+            | Self::Replication { found, .. }
+            | Self::IncludeName { found }
+            | Self::Statement { found, .. } => Some(found),
+            Self::Orphan { label } => Some(label),
+            Self::IncludeNotFound { name, .. } | Self::IncludeCycle { name } => Some(name),
+            Self::Missing
+            | Self::TooManyReplicated { .. }
+            | Self::IncludeDepth { .. }
+            | Self::IncludeCount { .. } => None,
+        }
+    }
+
+    /// What is wrong, in a few words.
+    pub fn message(&self) -> String {
+        match self {
+            Self::Missing => "the field is blank".to_owned(),
+            Self::NotInteger { found } => format!("an integer is needed, found: {found}"),
+            Self::NotReal { found } => format!("a real number is needed, found: {found}"),
+            Self::IntegerForReal { found } => {
+                format!("a real number is needed, found the integer: {found}")
+            }
+            Self::NotDofs { found } => {
+                format!("degrees of freedom (digits 1 to 6) are needed, found: {found}")
+            }
+            Self::OutOfRange { found, allowed } => {
+                format!("the number is not allowed here ({allowed}), found: {found}")
+            }
+            Self::NotOneOf { found, allowed } => {
+                format!("one of {allowed} is needed, found: {found}")
+            }
+            Self::NotACard { found } => {
+                format!("the line is neither a card nor a continuation: {found}")
+            }
+            Self::Orphan { label } if label.is_empty() => {
+                "the continuation belongs to no card".to_owned()
+            }
+            Self::Orphan { label } => format!("the continuation belongs to no card: {label}"),
+            Self::Replication { found, why } => {
+                format!("the replicated field cannot be filled ({why}): {found}")
+            }
+            Self::TooManyReplicated { limit } => {
+                format!("replication makes more cards than the limit: {limit}")
+            }
+            Self::IncludeNotFound { name, why } => {
+                format!("the included file cannot be read: {name} ({why})")
+            }
+            Self::IncludeCycle { name } => format!("the file includes itself: {name}"),
+            Self::IncludeDepth { limit } => {
+                format!("files are included deeper than the limit: {limit}")
+            }
+            Self::IncludeCount { limit } => {
+                format!("more INCLUDE statements than the limit: {limit}")
+            }
+            Self::IncludeName { found } => {
+                format!("the file name of INCLUDE cannot be read: {found}")
+            }
+            Self::Statement { found, why } => format!("{why}: {found}"),
+        }
+    }
+
+    /// What to do.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::Missing => "fill in the field",
+            Self::NotInteger { .. } => {
+                "write an integer without point or exponent, and check that fields start in columns 1, 9, 17 .."
+            }
+            Self::NotReal { .. } => {
+                "write a number such as 1.5 or 1.5-3, and check that fields start in columns 1, 9, 17 .."
+            }
+            Self::IntegerForReal { .. } => "write the number with a decimal point",
+            Self::NotDofs { .. } => "write digits 1 to 6 without blanks, such as 123",
+            Self::OutOfRange { .. } => "correct the number",
+            Self::NotOneOf { .. } => "write one of the allowed words",
+            Self::NotACard { .. } => "begin cards with a name in column 1, comments with $",
+            Self::Orphan { .. } => {
+                "put the continuation below its card, or give both the same name in columns 73-80 and 1-8"
+            }
+            Self::Replication { .. } => {
+                "write the card out, or put the card that is to be repeated above"
+            }
+            Self::TooManyReplicated { .. } => {
+                "correct the count in =(n), or write the cards to a file"
+            }
+            Self::IncludeNotFound { .. } => {
+                "put the file where INCLUDE says, relative to the first deck, or define the symbol as an environment variable"
+            }
+            Self::IncludeCycle { .. } => "remove the INCLUDE that leads back",
+            Self::IncludeDepth { .. } | Self::IncludeCount { .. } => {
+                "join some of the included files"
+            }
+            Self::IncludeName { .. } => "write INCLUDE 'file' with both quotes",
+            Self::Statement { .. } => "correct the statement",
+        }
+    }
+}
+
+impl Fault {
+    /// `file:line: field: what is wrong: what to do`.
+    pub fn show<'a>(&'a self, sources: &'a [Source]) -> impl fmt::Display + 'a {
+        Shown {
+            fault: self,
+            sources,
+        }
+    }
+}
+
+struct Shown<'a> {
+    fault: &'a Fault,
+    sources: &'a [Source],
+}
+
+impl fmt::Display for Shown<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let path = self
+            .sources
+            .get(self.fault.at.source.0 as usize)
+            .map_or("deck", |s| s.path.as_str());
+        write!(f, "{path}:{}: ", self.fault.at.line)?;
+        write!(f, "{}", self.fault)
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.card.is_empty() {
+            write!(f, "`{}`", self.card)?;
+            if let Some(field) = self.field {
+                write!(f, " field {} ({})", field.number, field.name)?;
+            }
+            f.write_str(": ")?;
+        }
+        write!(f, "{}: {}", self.what.message(), self.what.remedy())
+    }
+}

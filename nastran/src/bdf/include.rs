@@ -1,0 +1,161 @@
+//! INCLUDE: which paths a name may stand for, and who reads them.
+
+use std::collections::BTreeMap;
+
+/// An INCLUDE statement.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct IncludeRequest {
+    /// The name as written, without quotes, lines joined.
+    pub name: String,
+    /// Path of the first deck.
+    pub first_deck: String,
+    /// Path of the file that holds the statement.
+    pub includer: String,
+}
+
+/// A file as the loader found it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Loaded {
+    /// Its path; the same file must always get the same path.
+    pub path: String,
+    /// Its bytes.
+    pub bytes: Vec<u8>,
+}
+
+/// Reads included files for [`super::read_deck`], which opens none itself.
+pub trait Loader {
+    /// The file, or why there is none.
+    ///
+    /// # Errors
+    ///
+    /// A few words for the message of the fault.
+    fn load(&mut self, request: &IncludeRequest) -> Result<Loaded, String>;
+}
+
+impl IncludeRequest {
+    /// Paths to try, in this order: the first deck's folder, the including file's folder, then both with `\` for `/`.
+    ///
+    /// `symbol` gives the value of a logical symbol or environment variable, which stands in `SYMBOL:path`,
+    /// `$SYMBOL/path`, `${SYMBOL}/path` and `%SYMBOL%/path`. `Err` holds a symbol that has no value.
+    ///
+    /// # Errors
+    ///
+    /// The name of the symbol that has no value.
+    pub fn candidates(
+        &self,
+        symbol: impl Fn(&str) -> Option<String>,
+    ) -> Result<Vec<String>, String> {
+        let name = expand(self.name.trim(), &symbol)?;
+        let mut paths = Vec::new();
+        let mut push = |p: String| {
+            if !paths.contains(&p) {
+                paths.push(p);
+            }
+        };
+        for name in [name.clone(), name.replace('\\', "/")] {
+            if is_absolute(&name) {
+                push(name);
+            } else {
+                push(join(&self.first_deck, &name));
+                push(join(&self.includer, &name));
+            }
+        }
+        Ok(paths)
+    }
+}
+
+/// `/x`, `\x`, `C:\x`, `C:/x`.
+fn is_absolute(name: &str) -> bool {
+    let b = name.as_bytes();
+    matches!(b, [b'/' | b'\\', ..])
+        || matches!(b, [d, b':', b'/' | b'\\', ..] if d.is_ascii_alphabetic())
+}
+
+/// `name` in the folder of the file `beside`.
+fn join(beside: &str, name: &str) -> String {
+    match beside.rfind(['/', '\\']) {
+        Some(i) => format!("{}{name}", beside.get(..=i).unwrap_or_default()),
+        None => name.to_owned(),
+    }
+}
+
+fn expand(name: &str, symbol: &impl Fn(&str) -> Option<String>) -> Result<String, String> {
+    let value = |s: &str| {
+        symbol(s)
+            .or_else(|| symbol(&s.to_ascii_uppercase()))
+            .ok_or_else(|| s.to_owned())
+    };
+    let with_slash = |mut head: String, tail: &str| {
+        if !head.ends_with(['/', '\\']) && !tail.starts_with(['/', '\\']) && !tail.is_empty() {
+            head.push('/');
+        }
+        head + tail
+    };
+    if let Some(rest) = name.strip_prefix("${")
+        && let Some((s, tail)) = rest.split_once('}')
+    {
+        return Ok(value(s)? + tail);
+    }
+    if let Some(rest) = name.strip_prefix('$') {
+        let end = rest
+            .find(|c: char| !c.is_ascii_alphanumeric() && c != '_')
+            .unwrap_or(rest.len());
+        let (s, tail) = rest.split_at(end);
+        return Ok(value(s)? + tail);
+    }
+    if let Some(rest) = name.strip_prefix('%')
+        && let Some((s, tail)) = rest.split_once('%')
+    {
+        return Ok(value(s)? + tail);
+    }
+    // a single letter before the colon is a drive
+    if let Some((s, tail)) = name.split_once(':')
+        && s.len() > 1
+        && s.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+    {
+        return Ok(with_slash(value(s)?, tail));
+    }
+    Ok(name.to_owned())
+}
+
+/// Files held in memory, by path.
+#[derive(Clone, Debug, Default)]
+pub struct MemoryLoader {
+    /// Path and bytes; `..` in requests is resolved.
+    pub files: BTreeMap<String, Vec<u8>>,
+    /// Values of symbols.
+    pub symbols: BTreeMap<String, String>,
+}
+
+impl Loader for MemoryLoader {
+    fn load(&mut self, request: &IncludeRequest) -> Result<Loaded, String> {
+        let paths = request
+            .candidates(|s| self.symbols.get(s).cloned())
+            .map_err(|s| format!("the symbol {s} has no value"))?;
+        for path in paths {
+            let path = without_dots(&path);
+            if let Some(bytes) = self.files.get(&path) {
+                return Ok(Loaded {
+                    path,
+                    bytes: bytes.clone(),
+                });
+            }
+        }
+        Err("no such file".to_owned())
+    }
+}
+
+/// The path with `.` and `a/..` taken out.
+fn without_dots(path: &str) -> String {
+    let mut parts: Vec<&str> = Vec::new();
+    for part in path.split('/') {
+        match part {
+            "." => {}
+            ".." if parts.last().is_some_and(|p| *p != ".." && !p.is_empty()) => {
+                parts.pop();
+            }
+            _ => parts.push(part),
+        }
+    }
+    parts.join("/")
+}

@@ -1,0 +1,143 @@
+//! Numbers as Nastran writes them: `1`, `1.5-3`, `.5`, `-0.`, `1.D-3`.
+
+/// A field that is a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Number {
+    /// No point and no exponent.
+    Integer(i64),
+    /// With a point or an exponent.
+    Real(f64),
+}
+
+/// The number in a trimmed field, correctly rounded; `None` where the field is no finite number.
+///
+/// A real has a point or an exponent letter (E or D); the letter may be missing before a signed exponent when
+/// there is a point (`1.5-3`). A blank is allowed after a leading sign and before the exponent.
+pub fn read_number(field: &[u8]) -> Option<Number> {
+    let mut at = 0;
+    let mut negative = false;
+    if let Some(&sign @ (b'+' | b'-')) = field.first() {
+        negative = sign == b'-';
+        at = skip_blanks(field, 1);
+    }
+    let mut mantissa = 0_u64;
+    let mut digits = 0_usize; // significant digits taken into `mantissa`
+    let mut any = false;
+    let mut scale = 0_i64; // digits after the point
+    let mut point = false;
+    while let Some(&c) = field.get(at) {
+        match c {
+            b'0'..=b'9' => {
+                any = true;
+                if digits > 0 || c != b'0' {
+                    digits += 1;
+                }
+                if digits <= 19 {
+                    mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(c - b'0'));
+                }
+                scale += i64::from(point);
+            }
+            b'.' if !point => point = true,
+            _ => break,
+        }
+        at += 1;
+    }
+    if !any {
+        return None;
+    }
+    if at == field.len() && !point {
+        return integer(mantissa, digits, negative);
+    }
+    let exponent = if at == field.len() {
+        0
+    } else {
+        exponent(field, at, point)?
+    };
+    if digits <= 19 && mantissa <= 1 << 53 {
+        let power = exponent - scale;
+        if let Some(value) = exact(mantissa, power) {
+            return Some(Number::Real(if negative { -value } else { value }));
+        }
+    }
+    slow(field)
+}
+
+fn skip_blanks(field: &[u8], mut at: usize) -> usize {
+    while field.get(at) == Some(&b' ') {
+        at += 1;
+    }
+    at
+}
+
+fn integer(mantissa: u64, digits: usize, negative: bool) -> Option<Number> {
+    if digits > 18 {
+        return None;
+    }
+    let value = i64::try_from(mantissa).ok()?;
+    Some(Number::Integer(if negative { -value } else { value }))
+}
+
+/// The exponent that begins at `at`, which must fill the rest of the field.
+fn exponent(field: &[u8], at: usize, point: bool) -> Option<i64> {
+    let mut at = skip_blanks(field, at);
+    let letter = matches!(field.get(at), Some(b'e' | b'E' | b'd' | b'D'));
+    if letter {
+        at = skip_blanks(field, at + 1);
+    }
+    let mut negative = false;
+    let signed = matches!(field.get(at), Some(b'+' | b'-'));
+    if signed {
+        negative = field.get(at) == Some(&b'-');
+        at += 1;
+    }
+    if !letter && !(signed && point) {
+        return None;
+    }
+    let digits = field.get(at..)?;
+    if digits.is_empty() || digits.len() > 6 {
+        return None;
+    }
+    let mut value = 0_i64;
+    for &c in digits {
+        if !c.is_ascii_digit() {
+            return None;
+        }
+        value = value * 10 + i64::from(c - b'0');
+    }
+    Some(if negative { -value } else { value })
+}
+
+/// `mantissa * 10^power` where one rounding suffices: both factors are exact doubles.
+fn exact(mantissa: u64, power: i64) -> Option<f64> {
+    const POWERS: [f64; 23] = [
+        1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
+        1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
+    ];
+    let factor = *POWERS.get(usize::try_from(power.unsigned_abs()).ok()?)?;
+    let m = mantissa as f64;
+    Some(if power < 0 { m / factor } else { m * factor })
+}
+
+/// By the standard library, for long mantissas and large exponents.
+fn slow(field: &[u8]) -> Option<Number> {
+    let mut text = String::with_capacity(field.len() + 1);
+    let mut digit_seen = false;
+    for &c in field {
+        match c {
+            b' ' => {}
+            b'd' | b'D' | b'E' => text.push('e'),
+            b'+' | b'-' if digit_seen && !text.ends_with('e') => {
+                text.push('e');
+                text.push(char::from(c));
+            }
+            _ => {
+                digit_seen |= c.is_ascii_digit() || c == b'.';
+                text.push(char::from(c));
+            }
+        }
+    }
+    text.parse::<f64>()
+        .ok()
+        .filter(|x| x.is_finite())
+        .map(Number::Real)
+}

@@ -1,0 +1,107 @@
+//! Reads a deck.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::AtomicUsize;
+
+use super::assemble::Part;
+use super::case;
+use super::chunk::read_chunks;
+use super::deck::Deck;
+use super::defer::resolve;
+use super::include::Loader;
+use super::line::text_of;
+use super::merge::append;
+use super::replicate::BUDGET;
+use super::walk::{Statement, walk};
+
+/// The deck in `bytes` with all files it includes. What cannot be read is in [`Deck::faults`].
+///
+/// `main_path` is how messages call the first deck, and where relative INCLUDE names start.
+pub fn read_deck(main_path: &str, bytes: Vec<u8>, loader: &mut dyn Loader) -> Deck {
+    let walked = walk(main_path, bytes, loader);
+    let budget = AtomicUsize::new(BUDGET);
+    let mut part = read_chunks(&walked.chunks, &walked.sources, &budget);
+    if !part.deferred.is_empty() || !part.orphans.is_empty() {
+        let deferred = std::mem::take(&mut part.deferred);
+        let mut orphans = std::mem::take(&mut part.orphans);
+        let late = resolve(&deferred, &mut orphans, &walked.sources, &budget);
+        append(&mut part, late);
+    }
+    let Part {
+        cards,
+        counts,
+        others,
+        faults,
+        notes,
+        labels,
+        ..
+    } = part;
+    let mut deck = Deck {
+        cards,
+        counts: counts
+            .iter()
+            .map(|(name, n)| (text_of(name.as_bytes()), *n))
+            .collect::<BTreeMap<_, _>>(),
+        others,
+        labels,
+        seams: walked.seams,
+        ..Deck::default()
+    };
+    if walked.seams.enddata.is_some() {
+        deck.counts.insert("ENDDATA".to_owned(), 1);
+    }
+    read_sol(&walked.executive, &mut deck);
+    read_sol(&walked.case, &mut deck);
+    deck.case_control = case::read_case_control(&walked.case, &mut deck.faults);
+    deck.faults.extend(walked.faults);
+    deck.faults.extend(faults);
+    deck.notes = walked.notes;
+    deck.notes.extend(notes);
+    deck.sources = walked.sources;
+    deck
+}
+
+/// Takes the solution from `SOL 101`, `SOL 2,1`, `SOL SESTATIC`.
+fn read_sol(statements: &[Statement], deck: &mut Deck) {
+    for statement in statements {
+        let text = statement.text.trim();
+        let Some(rest) = text
+            .get(3..)
+            .filter(|_| text.get(..3).is_some_and(|s| s.eq_ignore_ascii_case("SOL")))
+        else {
+            continue;
+        };
+        if !rest.starts_with([' ', '\t', ',', '=']) || deck.sol_text.is_some() {
+            continue;
+        }
+        let value = rest.trim_start_matches([' ', '\t', ',', '=']).trim();
+        let word = value
+            .split([',', ' ', '\t'])
+            .next()
+            .unwrap_or_default()
+            .to_ascii_uppercase();
+        deck.sol = word.parse().ok().or_else(|| named_solution(&word));
+        deck.sol_text = Some(value.to_owned());
+    }
+}
+
+fn named_solution(name: &str) -> Option<u32> {
+    Some(match name {
+        "SESTATIC" | "SESTATICS" | "STATIC" | "STATICS" => 101,
+        "SEMODES" | "MODES" => 103,
+        "SEBUCKL" | "BUCKLING" => 105,
+        "NLSTATIC" | "NLSTATICS" => 106,
+        "SEDCEIG" => 107,
+        "SEDFREQ" => 108,
+        "SEDTRAN" => 109,
+        "SEMCEIG" => 110,
+        "SEMFREQ" => 111,
+        "SEMTRAN" => 112,
+        "CYCSTATX" | "CYCSTAT" => 114,
+        "CYCMODE" | "CYCMODES" => 115,
+        "NLTRAN" => 129,
+        "SEFLUTTR" => 145,
+        "NONLIN" => 400,
+        _ => return None,
+    })
+}

@@ -1,0 +1,109 @@
+//! Replication: `=`, `==`, `*(n)` in fields, `=(n)` in field 1.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::fault::Wrong;
+use super::fields::excerpt;
+use super::number::{Number, read_number};
+
+/// Bytes of generated cards that a deck may have.
+pub(super) const BUDGET: usize = 48 << 20;
+
+/// A card and the steps that make the next from it.
+#[derive(Clone, Debug)]
+pub(super) struct Template {
+    pub card: Vec<Vec<u8>>,
+    pub steps: Vec<Vec<u8>>,
+}
+
+/// The count of `=(n)` or `=n`.
+pub(super) fn count(head: &[u8]) -> Option<usize> {
+    let rest = head.strip_prefix(b"=")?;
+    let digits = rest
+        .strip_prefix(b"(")
+        .map_or(rest, |r| r.strip_suffix(b")").unwrap_or(r));
+    match read_number(digits)? {
+        Number::Integer(n) => usize::try_from(n).ok(),
+        Number::Real(_) => None,
+    }
+}
+
+/// Takes the memory of one more card off the budget.
+pub(super) fn spend(budget: &AtomicUsize, template: &Template) -> Result<(), Wrong> {
+    let cost = 200 + 16 * template.card.len().max(template.steps.len());
+    let taken = budget.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| {
+        left.checked_sub(cost)
+    });
+    taken.map(|_| ()).map_err(|_| Wrong::TooManyReplicated {
+        limit: BUDGET / 200,
+    })
+}
+
+impl Template {
+    /// Turns the card into the next one.
+    pub(super) fn advance(&mut self) -> Result<(), Wrong> {
+        let mut next = Vec::with_capacity(self.card.len());
+        let steps = self
+            .steps
+            .iter()
+            .rposition(|s| !s.is_empty())
+            .map_or(0, |i| i + 1);
+        for (i, step) in self.steps.iter().take(steps).enumerate() {
+            let above = self.card.get(i).map(Vec::as_slice).unwrap_or_default();
+            match step.as_slice() {
+                b"=" => next.push(above.to_vec()),
+                b"==" => {
+                    next.extend(self.card.iter().skip(i).cloned());
+                    self.card = next;
+                    return Ok(());
+                }
+                [b'*', increment @ ..] => next.push(increased(above, increment, step)?),
+                text => next.push(text.to_vec()),
+            }
+        }
+        self.card = next;
+        Ok(())
+    }
+}
+
+fn increased(above: &[u8], increment: &[u8], step: &[u8]) -> Result<Vec<u8>, Wrong> {
+    let wrong = |why| Wrong::Replication {
+        found: excerpt(step),
+        why,
+    };
+    let inner = increment
+        .strip_prefix(b"(")
+        .map_or(increment, |r| r.strip_suffix(b")").unwrap_or(r));
+    let by =
+        read_number(super::line::trim(inner)).ok_or_else(|| wrong("the increment is no number"))?;
+    let from = if above.is_empty() {
+        Some(zero_like(by))
+    } else {
+        read_number(above)
+    };
+    match (
+        from.ok_or_else(|| wrong("the field above is no number"))?,
+        by,
+    ) {
+        (Number::Integer(a), Number::Integer(b)) => Ok(a
+            .checked_add(b)
+            .ok_or_else(|| wrong("the number is too large"))?
+            .to_string()
+            .into_bytes()),
+        (Number::Real(a), Number::Real(b)) => Ok(real(a + b)),
+        (Number::Real(a), Number::Integer(b)) => Ok(real(a + b as f64)),
+        (Number::Integer(_), Number::Real(_)) => Err(wrong("a real is added to an integer")),
+    }
+}
+
+fn zero_like(n: Number) -> Number {
+    match n {
+        Number::Integer(_) => Number::Integer(0),
+        Number::Real(_) => Number::Real(0.0),
+    }
+}
+
+/// Every digit of the number, with a point or exponent.
+fn real(x: f64) -> Vec<u8> {
+    format!("{x:?}").into_bytes()
+}

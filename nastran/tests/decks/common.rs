@@ -1,0 +1,91 @@
+//! What the tests share: the real cases, and a loader that reads their files.
+
+#![allow(dead_code)] // each test binary uses its part
+
+use std::path::{Path, PathBuf};
+
+use nastran::bdf::{Deck, IncludeRequest, Loaded, Loader, read_deck};
+
+/// The folder of real cases, where it is present.
+pub(crate) fn cases_folder() -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/nastran");
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    eprintln!("skipped: ../shared/nastran is absent");
+    None
+}
+
+/// A case: its folder, and its `case.json` and `expected.json`.
+pub(crate) struct Case {
+    pub(crate) name: String,
+    pub(crate) folder: PathBuf,
+    pub(crate) case: serde_json::Value,
+    pub(crate) expected: serde_json::Value,
+}
+
+/// Every case of the folder.
+pub(crate) fn cases() -> Vec<Case> {
+    let Some(folder) = cases_folder() else {
+        return Vec::new();
+    };
+    let mut list = Vec::new();
+    for entry in std::fs::read_dir(folder).expect("readable folder") {
+        let folder = entry.expect("readable entry").path();
+        let json = |name: &str| {
+            let text = std::fs::read_to_string(folder.join(name)).ok()?;
+            serde_json::from_str(&text).ok()
+        };
+        if let Some(case) = json("case.json") {
+            let name = folder
+                .file_name()
+                .map(|n| n.to_string_lossy().into_owned())
+                .unwrap_or_default();
+            list.push(Case {
+                name,
+                expected: json("expected.json").unwrap_or_default(),
+                case,
+                folder,
+            });
+        }
+    }
+    list.sort_by(|a, b| a.name.cmp(&b.name));
+    list
+}
+
+impl Case {
+    /// Path of the case's deck.
+    pub(crate) fn deck_path(&self) -> Option<PathBuf> {
+        Some(self.folder.join(self.case["bdf"].as_str()?))
+    }
+
+    /// The case's deck.
+    pub(crate) fn deck(&self) -> Option<Deck> {
+        self.deck_path().map(|p| read_file(&p))
+    }
+}
+
+/// Reads included files from disk.
+pub(crate) struct Disk;
+
+impl Loader for Disk {
+    fn load(&mut self, request: &IncludeRequest) -> Result<Loaded, String> {
+        let paths = request
+            .candidates(|s| std::env::var(s).ok())
+            .map_err(|s| format!("no value: {s}"))?;
+        paths
+            .into_iter()
+            .find_map(|path| {
+                std::fs::read(&path)
+                    .ok()
+                    .map(|bytes| Loaded { path, bytes })
+            })
+            .ok_or_else(|| "no such file".to_owned())
+    }
+}
+
+/// Reads a deck from disk.
+pub(crate) fn read_file(path: &Path) -> Deck {
+    let bytes = std::fs::read(path).expect("readable deck");
+    read_deck(&path.to_string_lossy(), bytes, &mut Disk)
+}
