@@ -1,5 +1,7 @@
 //! From a model and loads, or from a result file, to strain fields.
 
+pub mod belongs;
+pub mod from_results;
 pub mod shell_frame;
 mod solution;
 pub mod strain_tensor;

@@ -1,0 +1,32 @@
+//! Do deck and results belong together?
+//!
+//! - [`ids`] elements and grids that one has and the other lacks;
+//! - [`coordinates`] grids that stand elsewhere;
+//! - [`output`] strain that was not asked for, PARAM,OMID;
+//! - [`freedom`] reactions in a job that should have none.
+
+mod coordinates;
+mod freedom;
+mod ids;
+mod output;
+
+pub use coordinates::check_coordinates;
+pub use freedom::{Supports, check_free};
+pub use ids::check_ids;
+pub use output::check_output;
+
+use crate::finding::Finding;
+use crate::model::Model;
+use nastran::results::ResultsFile;
+
+/// Every check that needs no more than the model and one result file. Coordinates are compared by [`check_coordinates`], where the file
+/// has geometry.
+pub fn check_belongs(model: &Model, name: &str, file: &ResultsFile, supports: Supports) -> Vec<Finding> {
+    let mut findings = check_ids(model, name, file);
+    findings.extend(check_output(model, name, file));
+    findings.extend(check_free(model, name, file, supports));
+    findings
+}
+
+#[cfg(test)]
+mod tests;

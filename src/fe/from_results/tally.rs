@@ -1,0 +1,133 @@
+//! What was met on the way, counted, so that each kind makes one finding.
+
+use crate::finding::{Finding, Severity};
+use std::collections::BTreeMap;
+
+/// What can be met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Met {
+    /// Corner rows of a grid that is no corner of the element.
+    ForeignCorner,
+    /// Fibre rows at other distances than the deck's Z1, Z2.
+    OtherFibres,
+    /// Strain taken from stress.
+    ShellFromStress,
+    BeamFromStress,
+    /// Stress that could not be turned: the material is not isotropic.
+    NotIsotropic,
+    /// Shell rows that do not come in pairs.
+    Unpaired,
+    /// Ply results without element strain.
+    PliesOnly,
+}
+
+/// Counts by kind with the first ids and the largest number.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Tally(BTreeMap<Met, Entry>);
+
+#[derive(Clone, Debug, Default)]
+struct Entry {
+    ids: Vec<u32>,
+    count: usize,
+    measured: Option<(f64, f64)>,
+}
+
+const IDS_SHOWN: usize = 5;
+
+impl Tally {
+    pub(super) fn add(&mut self, met: Met, id: u32) {
+        let entry = self.0.entry(met).or_default();
+        entry.count += 1;
+        if entry.ids.len() < IDS_SHOWN && !entry.ids.contains(&id) {
+            entry.ids.push(id);
+        }
+    }
+
+    /// The same with a measured number and what it should be; the worst stays.
+    pub(super) fn add_measured(&mut self, met: Met, id: u32, measured: f64, wanted: f64) {
+        self.add(met, id);
+        if let Some(entry) = self.0.get_mut(&met) {
+            let worse = entry.measured.is_none_or(|(m, w)| (measured - wanted).abs() > (m - w).abs());
+            if worse {
+                entry.measured = Some((measured, wanted));
+            }
+        }
+    }
+
+    pub(super) fn merge(&mut self, other: Tally) {
+        for (met, theirs) in other.0 {
+            let ours = self.0.entry(met).or_default();
+            // Subcases usually repeat one another's elements: the largest count says more than the sum.
+            ours.count = ours.count.max(theirs.count);
+            for id in theirs.ids {
+                if ours.ids.len() < IDS_SHOWN && !ours.ids.contains(&id) {
+                    ours.ids.push(id);
+                }
+            }
+            ours.measured = ours.measured.or(theirs.measured);
+        }
+    }
+
+    /// One finding a kind about the file `name`.
+    pub(super) fn findings(&self, name: &str) -> Vec<Finding> {
+        self.0.iter().map(|(&met, entry)| finding(met, entry, name)).collect()
+    }
+}
+
+fn finding(met: Met, entry: &Entry, name: &str) -> Finding {
+    let n = entry.count;
+    let mut ids = entry.ids.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
+    if n > entry.ids.len() {
+        ids += ", ..";
+    }
+    use Severity::{Info, Warning};
+    let (severity, code, message, remedy) = match met {
+        Met::ForeignCorner => (
+            Warning,
+            "corner-not-of-element",
+            format!("{n} corner rows name a grid that is no corner of their element in the deck: elements {ids}"),
+            "give the deck of this run: its connectivity differs",
+        ),
+        Met::OtherFibres => (
+            Warning,
+            "fibre-distance-differs",
+            format!("{n} shells have strain at other fibre distances than Z1 and Z2 of the deck; they are used as they are: elements {ids}"),
+            "give the deck of this run: thickness or Z1, Z2 differ",
+        ),
+        Met::ShellFromStress => (
+            Info,
+            "strain-from-stress",
+            format!("no shell strain in the file: strain of {n} shells comes from stress and the isotropic material, without thermal strain"),
+            "request STRAIN(FIBER) output",
+        ),
+        Met::BeamFromStress => (
+            Info,
+            "bar-strain-from-stress",
+            format!("no bar strain in the file: strain of {n} bars comes from stress divided by E, without thermal strain"),
+            "request STRAIN output",
+        ),
+        Met::NotIsotropic => (
+            Warning,
+            "stress-not-turned-to-strain",
+            format!("{n} elements have stress only and no isotropic material; they were left out: {ids}"),
+            "request STRAIN(FIBER) output",
+        ),
+        Met::Unpaired => (
+            Warning,
+            "shell-rows-unpaired",
+            format!("{n} shell rows have no second fibre and were left out: elements {ids}"),
+            "export the results again",
+        ),
+        Met::PliesOnly => (
+            Info,
+            "plies-only",
+            format!("{n} laminates have ply results only, no strain at their surfaces: elements {ids}"),
+            "request homogeneous strain output of laminates (LAM, or PARAM,NOCOMPS,0 or -1)",
+        ),
+    };
+    let finding = Finding::new(severity, code, name, message, remedy);
+    match entry.measured {
+        Some((measured, wanted)) => finding.with_numbers(measured, wanted),
+        None => finding,
+    }
+}
