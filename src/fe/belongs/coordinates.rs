@@ -12,7 +12,9 @@ pub fn check_coordinates(model: &Model, name: &str, geometry: &Model) -> Vec<Fin
     let limit = COORDINATE_TOLERANCE * size;
     let (mut count, mut worst) = (0_usize, (0.0_f64, 0_u32));
     for grid in &geometry.grids {
-        let Ok(ix) = model.grids.binary_search_by_key(&grid.id, |g| g.id) else { continue };
+        let Ok(ix) = model.grids.binary_search_by_key(&grid.id, |g| g.id) else {
+            continue;
+        };
         let distance = model.grids.get(ix).map_or(0.0, |g| (g.x - grid.x).norm());
         if distance > limit {
             count += 1;
@@ -24,15 +26,23 @@ pub fn check_coordinates(model: &Model, name: &str, geometry: &Model) -> Vec<Fin
     if count == 0 {
         return Vec::new();
     }
-    let message = format!("{count} grids stand elsewhere in the results than in the deck; grid {} by {:.3e}", worst.1, worst.0);
+    let message = format!(
+        "{count} grids stand elsewhere in the results than in the deck; grid {} by {:.3e}",
+        worst.1, worst.0
+    );
     let remedy = "give the deck of this run, or run the deck again";
-    vec![Finding::new(Severity::Error, "coordinates-differ", name, message, remedy).with_numbers(worst.0, limit)]
+    vec![
+        Finding::new(Severity::Error, "coordinates-differ", name, message, remedy)
+            .with_numbers(worst.0, limit),
+    ]
 }
 
 /// The diagonal of the box around all grids.
 fn size(model: &Model) -> f64 {
     let mut grids = model.grids.iter().map(|g| g.x);
-    let Some(first) = grids.next() else { return 0.0 };
+    let Some(first) = grids.next() else {
+        return 0.0;
+    };
     let (low, high) = grids.fold((first, first), |(l, h), x| (l.inf(&x), h.sup(&x)));
     (high - low).norm()
 }

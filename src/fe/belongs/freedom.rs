@@ -21,14 +21,21 @@ const REACTION_TOLERANCE: f64 = 1e-3;
 ///
 /// Measured: the largest SPC force of all subcases. Limit: 1e-3 of the largest applied force (the file's OLOAD output, else the deck's
 /// FORCE cards).
-pub fn check_free(model: &Model, name: &str, file: &ResultsFile, supports: Supports) -> Vec<Finding> {
+pub fn check_free(
+    model: &Model,
+    name: &str,
+    file: &ResultsFile,
+    supports: Supports,
+) -> Vec<Finding> {
     if supports == Supports::AsDeck && model.params.inrel == 0 {
         return Vec::new();
     }
     let mut reaction = (0.0_f64, 0_u32, 0_u32);
     let mut applied = 0.0_f64;
     for (ix, block) in file.blocks().iter().enumerate() {
-        if block.analysis != Analysis::Statics || !matches!(block.quantity, Quantity::SpcForce | Quantity::AppliedLoad) {
+        if block.analysis != Analysis::Statics
+            || !matches!(block.quantity, Quantity::SpcForce | Quantity::AppliedLoad)
+        {
             continue;
         }
         let Ok(rows) = file.rows(ix) else { continue };
@@ -41,7 +48,15 @@ pub fn check_free(model: &Model, name: &str, file: &ResultsFile, supports: Suppo
     }
     if applied == 0.0 {
         let forces = model.load_sets.iter().flat_map(|s| &s.loads);
-        applied = forces.filter_map(|(w, l)| if let Load::Force(_, f) = l { Some((f * *w).norm()) } else { None }).fold(0.0, f64::max);
+        applied = forces
+            .filter_map(|(w, l)| {
+                if let Load::Force(_, f) = l {
+                    Some((f * *w).norm())
+                } else {
+                    None
+                }
+            })
+            .fold(0.0, f64::max);
     }
     let limit = REACTION_TOLERANCE * applied;
     if reaction.0 <= limit {
@@ -52,7 +67,10 @@ pub fn check_free(model: &Model, name: &str, file: &ResultsFile, supports: Suppo
         reaction.0, reaction.1, reaction.2
     );
     let remedy = "run with inertia relief (SUPORT and PARAM,INREL,-1, or INREL,-2) and without other constraints";
-    vec![Finding::new(Severity::Warning, "not-free", name, message, remedy).with_numbers(reaction.0, limit)]
+    vec![
+        Finding::new(Severity::Warning, "not-free", name, message, remedy)
+            .with_numbers(reaction.0, limit),
+    ]
 }
 
 /// Largest force (not moment) of nodal rows and its grid.

@@ -14,9 +14,15 @@ pub fn check_ids(model: &Model, name: &str, file: &ResultsFile) -> Vec<Finding> 
     let mut elements: BTreeSet<u32> = BTreeSet::new();
     let mut grids: BTreeSet<u32> = BTreeSet::new();
     for ix in largest_blocks(file.blocks()) {
-        let (Some(block), Ok(rows)) = (file.blocks().get(ix), file.rows(ix)) else { continue };
+        let (Some(block), Ok(rows)) = (file.blocks().get(ix), file.rows(ix)) else {
+            continue;
+        };
         let ids = rows.ids.iter().map(|id| id.entity);
-        if block.element.is_some() { elements.extend(ids) } else { grids.extend(ids) }
+        if block.element.is_some() {
+            elements.extend(ids)
+        } else {
+            grids.extend(ids)
+        }
     }
     let ours_e = element_ids(model);
     let ours_g: BTreeSet<u32> = model.grids.iter().map(|g| g.id).collect();
@@ -26,18 +32,45 @@ pub fn check_ids(model: &Model, name: &str, file: &ResultsFile) -> Vec<Finding> 
     if !grids.is_empty() && !grids.is_disjoint(&ours_g) {
         let absent: Vec<u32> = ours_g.difference(&grids).copied().collect();
         if !absent.is_empty() {
-            let message = format!("{} of {} grids of the deck have no displacements in the file: {}", absent.len(), ours_g.len(), some(&absent));
-            let remedy = "request DISPLACEMENT = ALL if the deck is the run's deck; else give that deck";
+            let message = format!(
+                "{} of {} grids of the deck have no displacements in the file: {}",
+                absent.len(),
+                ours_g.len(),
+                some(&absent)
+            );
+            let remedy =
+                "request DISPLACEMENT = ALL if the deck is the run's deck; else give that deck";
             findings.push(
-                Finding::new(Severity::Info, "grid-not-in-results", name, message, remedy).with_numbers(absent.len() as f64, 0.0),
+                Finding::new(Severity::Info, "grid-not-in-results", name, message, remedy)
+                    .with_numbers(absent.len() as f64, 0.0),
             );
         }
     }
-    let shells: Vec<u32> = model.shells.iter().map(|s| s.id).filter(|id| !elements.contains(id)).collect();
+    let shells: Vec<u32> = model
+        .shells
+        .iter()
+        .map(|s| s.id)
+        .filter(|id| !elements.contains(id))
+        .collect();
     if !shells.is_empty() && elements.iter().any(|id| ours_e.contains(id)) {
-        let message = format!("{} of {} shells of the deck have no results in the file: {}", shells.len(), model.shells.len(), some(&shells));
-        let remedy = "request STRAIN(FIBER) = ALL, or a SET with the elements that may carry gauges";
-        findings.push(Finding::new(Severity::Info, "shell-not-in-results", name, message, remedy).with_numbers(shells.len() as f64, 0.0));
+        let message = format!(
+            "{} of {} shells of the deck have no results in the file: {}",
+            shells.len(),
+            model.shells.len(),
+            some(&shells)
+        );
+        let remedy =
+            "request STRAIN(FIBER) = ALL, or a SET with the elements that may carry gauges";
+        findings.push(
+            Finding::new(
+                Severity::Info,
+                "shell-not-in-results",
+                name,
+                message,
+                remedy,
+            )
+            .with_numbers(shells.len() as f64, 0.0),
+        );
     }
     findings
 }
@@ -46,17 +79,29 @@ pub fn check_ids(model: &Model, name: &str, file: &ResultsFile) -> Vec<Finding> 
 fn largest_blocks(blocks: &[Block]) -> Vec<usize> {
     let mut best: BTreeMap<(Option<u32>, Quantity), (usize, usize)> = BTreeMap::new();
     for (ix, b) in blocks.iter().enumerate() {
-        let wanted = matches!(b.quantity, Quantity::Strain | Quantity::Stress | Quantity::Displacement);
+        let wanted = matches!(
+            b.quantity,
+            Quantity::Strain | Quantity::Stress | Quantity::Displacement
+        );
         if !wanted || b.analysis != Analysis::Statics || b.complex || b.sort2 {
             continue;
         }
-        let entry = best.entry((b.element.map(|e| e.0), b.quantity)).or_insert((b.entries, ix));
+        let entry = best
+            .entry((b.element.map(|e| e.0), b.quantity))
+            .or_insert((b.entries, ix));
         if b.entries > entry.0 {
             *entry = (b.entries, ix);
         }
     }
-    let with_strain: BTreeSet<Option<u32>> = best.keys().filter(|k| k.1 == Quantity::Strain).map(|k| k.0).collect();
-    best.into_iter().filter(|(k, _)| k.1 != Quantity::Stress || !with_strain.contains(&k.0)).map(|(_, (_, ix))| ix).collect()
+    let with_strain: BTreeSet<Option<u32>> = best
+        .keys()
+        .filter(|k| k.1 == Quantity::Strain)
+        .map(|k| k.0)
+        .collect();
+    best.into_iter()
+        .filter(|(k, _)| k.1 != Quantity::Stress || !with_strain.contains(&k.0))
+        .map(|(_, (_, ix))| ix)
+        .collect()
 }
 
 fn element_ids(model: &Model) -> BTreeSet<u32> {
@@ -71,7 +116,13 @@ fn element_ids(model: &Model) -> BTreeSet<u32> {
 }
 
 /// A finding for what the file has and the deck lacks: an error where they have nothing in common.
-fn lacking(findings: &mut Vec<Finding>, name: &str, what: &str, theirs: &BTreeSet<u32>, ours: &BTreeSet<u32>) {
+fn lacking(
+    findings: &mut Vec<Finding>,
+    name: &str,
+    what: &str,
+    theirs: &BTreeSet<u32>,
+    ours: &BTreeSet<u32>,
+) {
     let absent: Vec<u32> = theirs.difference(ours).copied().collect();
     if absent.is_empty() {
         return;
@@ -82,14 +133,24 @@ fn lacking(findings: &mut Vec<Finding>, name: &str, what: &str, theirs: &BTreeSe
         ("element", false) => (Severity::Warning, "element-not-in-deck"),
         (_, false) => (Severity::Warning, "grid-not-in-deck"),
     };
-    let message = format!("{} of {} {what}s with results are not in the deck: {}", absent.len(), theirs.len(), some(&absent));
+    let message = format!(
+        "{} of {} {what}s with results are not in the deck: {}",
+        absent.len(),
+        theirs.len(),
+        some(&absent)
+    );
     let finding = Finding::new(severity, code, name, message, "give the deck of this run");
     findings.push(finding.with_numbers(absent.len() as f64, 0.0));
 }
 
 /// The first ids of a list, in words.
 fn some(ids: &[u32]) -> String {
-    let mut text = ids.iter().take(IDS_SHOWN).map(u32::to_string).collect::<Vec<_>>().join(", ");
+    let mut text = ids
+        .iter()
+        .take(IDS_SHOWN)
+        .map(u32::to_string)
+        .collect::<Vec<_>>()
+        .join(", ");
     if ids.len() > IDS_SHOWN {
         text += ", ..";
     }

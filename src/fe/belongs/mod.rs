@@ -21,7 +21,12 @@ use nastran::results::ResultsFile;
 
 /// Every check that needs no more than the model and one result file. Coordinates are compared by [`check_coordinates`], where the file
 /// has geometry.
-pub fn check_belongs(model: &Model, name: &str, file: &ResultsFile, supports: Supports) -> Vec<Finding> {
+pub fn check_belongs(
+    model: &Model,
+    name: &str,
+    file: &ResultsFile,
+    supports: Supports,
+) -> Vec<Finding> {
     let mut findings = check_ids(model, name, file);
     findings.extend(check_output(model, name, file));
     findings.extend(check_free(model, name, file, supports));

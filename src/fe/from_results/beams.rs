@@ -20,7 +20,10 @@ pub(super) struct BeamCollector<'m> {
 
 impl<'m> BeamCollector<'m> {
     pub(super) fn new(model: &'m Model) -> Self {
-        Self { model, stations: BTreeMap::new() }
+        Self {
+            model,
+            stations: BTreeMap::new(),
+        }
     }
 
     /// Whether the rows are those of bars or beams.
@@ -38,12 +41,21 @@ impl<'m> BeamCollector<'m> {
         for (i, id) in rows.ids.iter().enumerate() {
             let new = last.replace(id.entity) != Some(id.entity);
             // Elements that the model lacks are told of by `belongs`.
-            let Some(ix) = ids.find(id.entity) else { continue };
+            let Some(ix) = ids.find(id.entity) else {
+                continue;
+            };
             let scale = match block.quantity {
                 Quantity::Stress => {
                     let e = modulus(self.model, ix);
                     if new {
-                        tally.add(if e.is_some() { Met::BeamFromStress } else { Met::NotIsotropic }, id.entity);
+                        tally.add(
+                            if e.is_some() {
+                                Met::BeamFromStress
+                            } else {
+                                Met::NotIsotropic
+                            },
+                            id.entity,
+                        );
                     }
                     match e {
                         Some(e) => 1.0 / e,
@@ -53,7 +65,9 @@ impl<'m> BeamCollector<'m> {
                 _ => 1.0,
             };
             let mut found = stations(rows.columns, rows.row(i));
-            found.iter_mut().for_each(|(_, s)| *s = s.map(|v| v * scale));
+            found
+                .iter_mut()
+                .for_each(|(_, s)| *s = s.map(|v| v * scale));
             let Ok(ix) = u32::try_from(ix) else { continue };
             let list = self.stations.entry(BeamIx(ix)).or_default();
             if new {
@@ -65,9 +79,15 @@ impl<'m> BeamCollector<'m> {
 
     /// The field, elements and stations ascending.
     pub(super) fn finish(self) -> BeamField {
-        let (elements, mut stations): (Vec<_>, Vec<Vec<Station>>) = self.stations.into_iter().unzip();
-        stations.iter_mut().for_each(|s| s.sort_by(|a, b| a.0.total_cmp(&b.0)));
-        BeamField { elements: Arc::new(elements), stations }
+        let (elements, mut stations): (Vec<_>, Vec<Vec<Station>>) =
+            self.stations.into_iter().unzip();
+        stations
+            .iter_mut()
+            .for_each(|s| s.sort_by(|a, b| a.0.total_cmp(&b.0)));
+        BeamField {
+            elements: Arc::new(elements),
+            stations,
+        }
     }
 }
 
@@ -76,14 +96,24 @@ fn stations(names: &[&str], row: &[f64]) -> Vec<Station> {
     match *row {
         // s1a s2a s3a s4a axial smaxa smina mst s1b s2b s3b s4b smaxb sminb msc.
         [a1, a2, a3, a4, axial, _, _, _, b1, b2, b3, b4, _, _, _] if names == columns::BAR => {
-            vec![(0.0, [a1, a2, a3, a4].map(|s| s + axial)), (1.0, [b1, b2, b3, b4].map(|s| s + axial))]
+            vec![
+                (0.0, [a1, a2, a3, a4].map(|s| s + axial)),
+                (1.0, [b1, b2, b3, b4].map(|s| s + axial)),
+            ]
         }
         // x_xb s1 s2 s3 s4 axial smax smin ms.
         [x, s1, s2, s3, s4, axial, smax, _, _] if names == columns::BAR_STATION => {
             let points = [s1, s2, s3, s4];
             let largest = points.into_iter().fold(f64::NEG_INFINITY, f64::max);
             let bending_alone = (largest + axial - smax).abs() < (largest - smax).abs();
-            vec![(x, if bending_alone { points.map(|s| s + axial) } else { points })]
+            vec![(
+                x,
+                if bending_alone {
+                    points.map(|s| s + axial)
+                } else {
+                    points
+                },
+            )]
         }
         // x_xb sxc sxd sxe sxf smax smin mst msc.
         [x, c, d, e, f, ..] if names == columns::BEAM => vec![(x, [c, d, e, f])],
@@ -92,7 +122,9 @@ fn stations(names: &[&str], row: &[f64]) -> Vec<Station> {
 }
 
 fn modulus(model: &Model, beam: usize) -> Option<f64> {
-    let property = model.beam_properties.get(model.beams.get(beam)?.property.us())?;
+    let property = model
+        .beam_properties
+        .get(model.beams.get(beam)?.property.us())?;
     match model.materials.get(property.material.us())?.kind {
         MaterialKind::Isotropic { e, .. } => Some(e),
         _ => None,

@@ -39,8 +39,17 @@ pub struct ReadOptions {
 ///
 /// A subcase found in two files is one case where each has what the other lacks (strain in one, displacements in the other); where both
 /// have the same quantity there are two cases and a finding.
-pub fn solution_from_results(model: &Model, files: &[(&str, &ResultsFile)], options: &ReadOptions) -> Solution {
-    merge(files.iter().map(|(name, file)| solution_from_file(model, name, file, options)).collect())
+pub fn solution_from_results(
+    model: &Model,
+    files: &[(&str, &ResultsFile)],
+    options: &ReadOptions,
+) -> Solution {
+    merge(
+        files
+            .iter()
+            .map(|(name, file)| solution_from_file(model, name, file, options))
+            .collect(),
+    )
 }
 
 /// The static subcases of one result file, subcases ascending; other analyses are named in a finding.
@@ -48,19 +57,33 @@ pub fn solution_from_results(model: &Model, files: &[(&str, &ResultsFile)], opti
 /// Shell strain is at Z1 and Z2 in the output frame of [`crate::fe::shell_frame`]. A subcase without shell strain takes shell stress and
 /// the isotropic material; the same holds for bars. Blocks that can't be decoded become findings, and so does what
 /// [`check_belongs`] sees.
-pub fn solution_from_file(model: &Model, name: &str, file: &ResultsFile, options: &ReadOptions) -> Solution {
+pub fn solution_from_file(
+    model: &Model,
+    name: &str,
+    file: &ResultsFile,
+    options: &ReadOptions,
+) -> Solution {
     let mut by_subcase: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     let mut passed_over: BTreeSet<&'static str> = BTreeSet::new();
     for (ix, block) in file.blocks().iter().enumerate() {
         if block.analysis != Analysis::Statics || block.complex || block.sort2 {
             passed_over.insert(block.analysis.word());
-        } else if options.subcases.as_ref().is_none_or(|s| s.contains(&block.subcase)) {
+        } else if options
+            .subcases
+            .as_ref()
+            .is_none_or(|s| s.contains(&block.subcase))
+        {
             by_subcase.entry(block.subcase).or_default().push(ix);
         }
     }
-    let read: Vec<(CaseResult, Tally, Vec<Finding>)> =
-        by_subcase.par_iter().map(|(&subcase, blocks)| read_case(model, name, file, options, subcase, blocks)).collect();
-    let mut solution = Solution { source: format!("{}: {name}", file.solver()), ..Solution::default() };
+    let read: Vec<(CaseResult, Tally, Vec<Finding>)> = by_subcase
+        .par_iter()
+        .map(|(&subcase, blocks)| read_case(model, name, file, options, subcase, blocks))
+        .collect();
+    let mut solution = Solution {
+        source: format!("{}: {name}", file.solver()),
+        ..Solution::default()
+    };
     let mut tally = Tally::default();
     for (case, case_tally, findings) in read {
         tally.merge(case_tally);
@@ -69,15 +92,36 @@ pub fn solution_from_file(model: &Model, name: &str, file: &ResultsFile, options
     }
     share_element_lists(&mut solution.cases);
     solution.findings.extend(tally.findings(name));
-    solution.findings.extend(check_belongs(model, name, file, options.supports));
+    solution
+        .findings
+        .extend(check_belongs(model, name, file, options.supports));
     if solution.cases.is_empty() {
-        let what = if passed_over.is_empty() { "no results".to_string() } else { list(&passed_over) };
+        let what = if passed_over.is_empty() {
+            "no results".to_string()
+        } else {
+            list(&passed_over)
+        };
         let message = format!("no static subcase in the file; it holds: {what}");
         let remedy = "give the results of a static run (SOL 101)";
-        solution.findings.push(Finding::new(Severity::Error, "no-static-results", name, message, remedy));
+        solution.findings.push(Finding::new(
+            Severity::Error,
+            "no-static-results",
+            name,
+            message,
+            remedy,
+        ));
     } else if !passed_over.is_empty() {
-        let message = format!("only static subcases are read; passed over: {}", list(&passed_over));
-        solution.findings.push(Finding::new(Severity::Info, "not-static", name, message, "nothing to do if the static subcases are meant"));
+        let message = format!(
+            "only static subcases are read; passed over: {}",
+            list(&passed_over)
+        );
+        solution.findings.push(Finding::new(
+            Severity::Info,
+            "not-static",
+            name,
+            message,
+            "nothing to do if the static subcases are meant",
+        ));
     }
     solution
 }
@@ -96,15 +140,35 @@ fn read_case(
     blocks: &[usize],
 ) -> (CaseResult, Tally, Vec<Finding>) {
     let block = |ix: usize| file.blocks().get(ix);
-    let of = |q: Quantity| blocks.iter().copied().filter(move |&ix| block(ix).is_some_and(|b| b.quantity == q));
-    let label = blocks.iter().filter_map(|&ix| block(ix)).map(label).find(|l| !l.is_empty()).unwrap_or_default();
+    let of = |q: Quantity| {
+        blocks
+            .iter()
+            .copied()
+            .filter(move |&ix| block(ix).is_some_and(|b| b.quantity == q))
+    };
+    let label = blocks
+        .iter()
+        .filter_map(|&ix| block(ix))
+        .map(label)
+        .find(|l| !l.is_empty())
+        .unwrap_or_default();
     let (mut tally, mut findings) = (Tally::default(), Vec::new());
-    let mut case = CaseResult { subcase, label, ..CaseResult::default() };
+    let mut case = CaseResult {
+        subcase,
+        label,
+        ..CaseResult::default()
+    };
     let mut decode = |ix: usize| match file.rows(ix) {
         Ok(rows) => Some(rows),
         Err(e) => {
             let remedy = "export the results again if this block is needed";
-            findings.push(Finding::new(Severity::Warning, "block-not-read", name, e.to_string(), remedy));
+            findings.push(Finding::new(
+                Severity::Warning,
+                "block-not-read",
+                name,
+                e.to_string(),
+                remedy,
+            ));
             None
         }
     };
@@ -113,7 +177,9 @@ fn read_case(
     let mut beams = BeamCollector::new(model);
     let (mut shell_strain, mut beam_strain) = (false, false);
     for ix in of(Quantity::Strain).filter(|&ix| block(ix).is_some_and(is_shell_or_bar)) {
-        let (Some(b), Some(rows)) = (block(ix), decode(ix)) else { continue };
+        let (Some(b), Some(rows)) = (block(ix), decode(ix)) else {
+            continue;
+        };
         if ShellCollector::takes(&rows) {
             shell_strain = true;
             shells.add(b, &rows, &mut tally);
@@ -136,7 +202,9 @@ fn read_case(
     }
     case.shells = shells.finish();
     case.beams = beams.finish();
-    if let Some(ix) = of(Quantity::PlyStrain).next().or_else(|| of(Quantity::PlyStress).next())
+    if let Some(ix) = of(Quantity::PlyStrain)
+        .next()
+        .or_else(|| of(Quantity::PlyStress).next())
         && let Some(rows) = decode(ix)
     {
         note_plies(model, &rows, &case, &mut tally);
@@ -151,7 +219,13 @@ fn read_case(
 
 /// LABEL, else SUBTITLE, else TITLE.
 fn label(block: &Block) -> String {
-    block.titles.iter().rev().find(|t| !t.is_empty()).cloned().unwrap_or_default()
+    block
+        .titles
+        .iter()
+        .rev()
+        .find(|t| !t.is_empty())
+        .cloned()
+        .unwrap_or_default()
 }
 
 fn is_bar(block: &Block) -> bool {
@@ -159,7 +233,10 @@ fn is_bar(block: &Block) -> bool {
 }
 
 fn is_shell_or_bar(block: &Block) -> bool {
-    is_bar(block) || block.element.is_some_and(|e| matches!(e.0, 33 | 64 | 70 | 74 | 75 | 82 | 144 | 227 | 228))
+    is_bar(block)
+        || block
+            .element
+            .is_some_and(|e| matches!(e.0, 33 | 64 | 70 | 74 | 75 | 82 | 144 | 227 | 228))
 }
 
 /// Laminates with ply rows only.
@@ -169,9 +246,17 @@ fn note_plies(model: &Model, rows: &Rows, case: &CaseResult, tally: &mut Tally) 
         if last.replace(id.entity) == Some(id.entity) {
             continue;
         }
-        let known = model.shells.binary_search_by_key(&id.entity, |s| s.id).ok().and_then(|i| u32::try_from(i).ok());
+        let known = model
+            .shells
+            .binary_search_by_key(&id.entity, |s| s.id)
+            .ok()
+            .and_then(|i| u32::try_from(i).ok());
         if let Some(ix) = known
-            && case.shells.elements.binary_search(&crate::model::ShellIx(ix)).is_err()
+            && case
+                .shells
+                .elements
+                .binary_search(&crate::model::ShellIx(ix))
+                .is_err()
         {
             tally.add(Met::PliesOnly, id.entity);
         }
@@ -182,11 +267,21 @@ fn note_plies(model: &Model, rows: &Rows, case: &CaseResult, tally: &mut Tally) 
 fn share_element_lists(cases: &mut [CaseResult]) {
     for i in 1..cases.len() {
         let (before, after) = cases.split_at_mut(i);
-        let Some(case) = after.first_mut() else { continue };
-        if let Some(same) = before.iter().rev().find(|b| b.shells.elements == case.shells.elements) {
+        let Some(case) = after.first_mut() else {
+            continue;
+        };
+        if let Some(same) = before
+            .iter()
+            .rev()
+            .find(|b| b.shells.elements == case.shells.elements)
+        {
             case.shells.elements = Arc::clone(&same.shells.elements);
         }
-        if let Some(same) = before.iter().rev().find(|b| b.beams.elements == case.beams.elements) {
+        if let Some(same) = before
+            .iter()
+            .rev()
+            .find(|b| b.beams.elements == case.beams.elements)
+        {
             case.beams.elements = Arc::clone(&same.beams.elements);
         }
     }

@@ -52,7 +52,8 @@ impl<'m> ShellCollector<'m> {
         let mut i = 0;
         while let Some(first) = rows.ids.get(i) {
             let pair = rows.ids.get(i + 1).filter(|second| {
-                (first.layer, second.layer) == (1, 2) && (first.entity, first.at) == (second.entity, second.at)
+                (first.layer, second.layer) == (1, 2)
+                    && (first.entity, first.at) == (second.entity, second.at)
             });
             if pair.is_none() {
                 tally.add(Met::Unpaired, first.entity);
@@ -65,7 +66,9 @@ impl<'m> ShellCollector<'m> {
                 Some((entity, target)) if entity == first.entity => target,
                 _ => {
                     // Elements that the model lacks are told of by `belongs`.
-                    let target = ids.find(first.entity).and_then(|ix| self.target(ix, block, &fibres, tally));
+                    let target = ids
+                        .find(first.entity)
+                        .and_then(|ix| self.target(ix, block, &fibres, tally));
                     current = Some((first.entity, target));
                     target
                 }
@@ -76,13 +79,26 @@ impl<'m> ShellCollector<'m> {
     }
 
     /// Where and how rows of shell `ix` go; `None` where they can't be used.
-    fn target(&mut self, ix: usize, block: &Block, fibres: &[[f64; 4]; 2], tally: &mut Tally) -> Option<Target> {
+    fn target(
+        &mut self,
+        ix: usize,
+        block: &Block,
+        fibres: &[[f64; 4]; 2],
+        tally: &mut Tally,
+    ) -> Option<Target> {
         let shell = self.model.shells.get(ix)?;
         let z = surface_z(self.model, shell);
         let law = match block.quantity {
             Quantity::Stress => {
                 let law = isotropic(self.model, shell);
-                tally.add(if law.is_some() { Met::ShellFromStress } else { Met::NotIsotropic }, shell.id);
+                tally.add(
+                    if law.is_some() {
+                        Met::ShellFromStress
+                    } else {
+                        Met::NotIsotropic
+                    },
+                    shell.id,
+                );
                 Law::Stress(law?)
             }
             _ if block.form == Some(ShellForm::Curvature) => Law::Curvature(z),
@@ -105,7 +121,10 @@ impl<'m> ShellCollector<'m> {
             self.centre.push(NO_STRAIN);
             self.corners.push([NO_STRAIN; 4]);
         }
-        Some(Target { slot: *slot as usize, law })
+        Some(Target {
+            slot: *slot as usize,
+            law,
+        })
     }
 
     fn put(&mut self, target: Target, at: u32, strain: [PlaneStrain; 2], tally: &mut Tally) {
@@ -115,12 +134,28 @@ impl<'m> ShellCollector<'m> {
             }
             return;
         }
-        let Some(shell) = self.elements.get(target.slot).and_then(|e| self.model.shells.get(e.us())) else { return };
-        let id = |i: usize| shell.grids.get(i).and_then(|g| self.model.grids.get(g.us())).map(|g| g.id);
+        let Some(shell) = self
+            .elements
+            .get(target.slot)
+            .and_then(|e| self.model.shells.get(e.us()))
+        else {
+            return;
+        };
+        let id = |i: usize| {
+            shell
+                .grids
+                .get(i)
+                .and_then(|g| self.model.grids.get(g.us()))
+                .map(|g| g.id)
+        };
         match (0..shell.shape.n_corners()).find(|&i| id(i) == Some(at)) {
             Some(corner) => {
                 self.has_corners = true;
-                if let Some(place) = self.corners.get_mut(target.slot).and_then(|c| c.get_mut(corner)) {
+                if let Some(place) = self
+                    .corners
+                    .get_mut(target.slot)
+                    .and_then(|c| c.get_mut(corner))
+                {
                     *place = strain;
                 }
             }
@@ -137,14 +172,33 @@ impl<'m> ShellCollector<'m> {
         }
         let pick = |i: &usize| self.elements.get(*i).copied();
         let (centre, corners) = if sorted {
-            (self.centre, if self.has_corners { self.corners } else { Vec::new() })
+            (
+                self.centre,
+                if self.has_corners {
+                    self.corners
+                } else {
+                    Vec::new()
+                },
+            )
         } else {
-            let centre = order.iter().filter_map(|&i| self.centre.get(i).copied()).collect();
-            let corners = order.iter().filter(|_| self.has_corners).filter_map(|&i| self.corners.get(i).copied()).collect();
+            let centre = order
+                .iter()
+                .filter_map(|&i| self.centre.get(i).copied())
+                .collect();
+            let corners = order
+                .iter()
+                .filter(|_| self.has_corners)
+                .filter_map(|&i| self.corners.get(i).copied())
+                .collect();
             (centre, corners)
         };
         let elements = Arc::new(order.iter().filter_map(pick).collect());
-        ShellField { elements, centre, corners, from_stress: self.from_stress }
+        ShellField {
+            elements,
+            centre,
+            corners,
+            from_stress: self.from_stress,
+        }
     }
 }
 
@@ -185,7 +239,12 @@ impl Target {
 /// E, G, nu of a shell that is one isotropic material in membrane and bending.
 fn isotropic(model: &Model, shell: &Shell) -> Option<[f64; 3]> {
     let property = model.shell_properties.get(shell.property.us())?;
-    let ShellKind::Homogeneous { membrane, bending, .. } = property.kind else { return None };
+    let ShellKind::Homogeneous {
+        membrane, bending, ..
+    } = property.kind
+    else {
+        return None;
+    };
     let law = |ix: crate::model::MaterialIx| match model.materials.get(ix.us())?.kind {
         MaterialKind::Isotropic { e, g, nu, .. } => Some([e, g, nu]),
         _ => None,

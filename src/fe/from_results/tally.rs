@@ -47,7 +47,9 @@ impl Tally {
     pub(super) fn add_measured(&mut self, met: Met, id: u32, measured: f64, wanted: f64) {
         self.add(met, id);
         if let Some(entry) = self.0.get_mut(&met) {
-            let worse = entry.measured.is_none_or(|(m, w)| (measured - wanted).abs() > (m - w).abs());
+            let worse = entry
+                .measured
+                .is_none_or(|(m, w)| (measured - wanted).abs() > (m - w).abs());
             if worse {
                 entry.measured = Some((measured, wanted));
             }
@@ -70,13 +72,21 @@ impl Tally {
 
     /// One finding a kind about the file `name`.
     pub(super) fn findings(&self, name: &str) -> Vec<Finding> {
-        self.0.iter().map(|(&met, entry)| finding(met, entry, name)).collect()
+        self.0
+            .iter()
+            .map(|(&met, entry)| finding(met, entry, name))
+            .collect()
     }
 }
 
 fn finding(met: Met, entry: &Entry, name: &str) -> Finding {
     let n = entry.count;
-    let mut ids = entry.ids.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
+    let mut ids = entry
+        .ids
+        .iter()
+        .map(u32::to_string)
+        .collect::<Vec<_>>()
+        .join(", ");
     if n > entry.ids.len() {
         ids += ", ..";
     }
@@ -85,31 +95,41 @@ fn finding(met: Met, entry: &Entry, name: &str) -> Finding {
         Met::ForeignCorner => (
             Warning,
             "corner-not-of-element",
-            format!("{n} corner rows name a grid that is no corner of their element in the deck: elements {ids}"),
+            format!(
+                "{n} corner rows name a grid that is no corner of their element in the deck: elements {ids}"
+            ),
             "give the deck of this run: its connectivity differs",
         ),
         Met::OtherFibres => (
             Warning,
             "fibre-distance-differs",
-            format!("{n} shells have strain at other fibre distances than Z1 and Z2 of the deck; they are used as they are: elements {ids}"),
+            format!(
+                "{n} shells have strain at other fibre distances than Z1 and Z2 of the deck; they are used as they are: elements {ids}"
+            ),
             "give the deck of this run: thickness or Z1, Z2 differ",
         ),
         Met::ShellFromStress => (
             Info,
             "strain-from-stress",
-            format!("no shell strain in the file: strain of {n} shells comes from stress and the isotropic material, without thermal strain"),
+            format!(
+                "no shell strain in the file: strain of {n} shells comes from stress and the isotropic material, without thermal strain"
+            ),
             "request STRAIN(FIBER) output",
         ),
         Met::BeamFromStress => (
             Info,
             "bar-strain-from-stress",
-            format!("no bar strain in the file: strain of {n} bars comes from stress divided by E, without thermal strain"),
+            format!(
+                "no bar strain in the file: strain of {n} bars comes from stress divided by E, without thermal strain"
+            ),
             "request STRAIN output",
         ),
         Met::NotIsotropic => (
             Warning,
             "stress-not-turned-to-strain",
-            format!("{n} elements have stress only and no isotropic material; they were left out: {ids}"),
+            format!(
+                "{n} elements have stress only and no isotropic material; they were left out: {ids}"
+            ),
             "request STRAIN(FIBER) output",
         ),
         Met::Unpaired => (
@@ -121,7 +141,9 @@ fn finding(met: Met, entry: &Entry, name: &str) -> Finding {
         Met::PliesOnly => (
             Info,
             "plies-only",
-            format!("{n} laminates have ply results only, no strain at their surfaces: elements {ids}"),
+            format!(
+                "{n} laminates have ply results only, no strain at their surfaces: elements {ids}"
+            ),
             "request homogeneous strain output of laminates (LAM, or PARAM,NOCOMPS,0 or -1)",
         ),
     };
