@@ -1,4 +1,28 @@
 //! What a deck means: ids resolved, coordinates in the basic frame, defaults applied, faults found.
+//!
+//! [`Model::from_cards`] builds it, one file a kind of card; [`ModelFault`] says what is wrong; `mass` weighs it.
 
+mod beam;
+mod beam_property;
+mod build;
+mod constraint;
+mod face;
+mod fault;
+mod frame;
+mod grids;
+mod line;
+mod load;
+mod material;
+mod params;
+mod point_mass;
+mod rigid;
+mod section;
+mod shell;
+mod solid;
 mod types;
+
+#[cfg(test)]
+mod tests;
+
+pub use fault::*;
 pub use types::*;

@@ -77,6 +77,8 @@ pub struct Model {
     pub suports: Vec<(Option<u32>, Vec<(GridIx, Dofs)>)>,
     /// Load sets by id, LOAD combinations resolved to weighted primitive loads.
     pub load_sets: Vec<LoadSet>,
+    /// Temperature sets by id: default, grid values.
+    pub temperatures: Vec<TemperatureSet>,
     /// Parameters that change what the model means.
     pub params: Params,
     /// Names of properties and components from comments: (`property id`, name).
@@ -453,6 +455,17 @@ pub struct LoadSet {
     pub loads: Vec<(f64, Load)>,
 }
 
+/// One temperature set (TEMP, TEMPD): what TEMPERATURE(LOAD) selects.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct TemperatureSet {
+    pub sid: u32,
+    /// TEMPD: temperature of grids that `grids` leaves out.
+    pub default: Option<f64>,
+    pub grids: Vec<(GridIx, f64)>,
+    pub at: Place,
+}
+
 /// A primitive load, vectors in the basic frame.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Load {
@@ -505,6 +518,8 @@ pub struct Params {
     pub post: Option<i64>,
     /// OMID yes: element output in the material frame.
     pub omid: bool,
+    /// UNITSYS as written.
+    pub unitsys: Option<String>,
 }
 
 impl Default for Params {
@@ -519,6 +534,7 @@ impl Default for Params {
             coupmass: false,
             post: None,
             omid: false,
+            unitsys: None,
         }
     }
 }

@@ -1,0 +1,108 @@
+//! CBAR and CBEAM: axes, offsets, pins.
+
+use super::build::Builder;
+use super::fault::FaultKind;
+use super::frame::unit;
+use super::types::*;
+use nastran::cards::{Bar, BarDefaults, Orientation};
+use nastran::place::Placed;
+use std::collections::HashMap;
+
+/// Sine of the angle between orientation vector and element under which they count as parallel.
+const PARALLEL: f64 = 1e-6;
+
+impl Builder<'_> {
+    pub(super) fn beams(&mut self) {
+        let (properties, ix) = self.beam_properties();
+        self.model.beam_properties = properties;
+        let cards = self.cards;
+        let mut out = Vec::with_capacity(cards.bars.len() + cards.beams.len());
+        let bars = cards.bars.iter().map(|b| (b.at, &b.card, "CBAR", &cards.baror));
+        let beams = cards.beams.iter().map(|b| (b.at, &b.card.bar, "CBEAM", &cards.beamor));
+        for (at, bar, card, defaults) in bars.chain(beams) {
+            if !self.element(bar.id, card, at) {
+                continue;
+            }
+            let placed = Placed { card: *bar, at };
+            out.extend(self.beam(&placed, card, defaults.as_ref().map(|d| &d.card), &ix));
+        }
+        out.sort_by_key(|b: &Beam| b.id);
+        self.model.beams = out;
+    }
+
+    fn beam(
+        &mut self,
+        b: &Placed<Bar>,
+        card: &'static str,
+        defaults: Option<&BarDefaults>,
+        ix: &HashMap<u32, BeamPropertyIx>,
+    ) -> Option<Beam> {
+        let name = format!("{card} {}", b.id);
+        let at = b.at;
+        let pid = b.pid.or(defaults.and_then(|d| d.pid)).unwrap_or(b.id);
+        let property = ix.get(&pid).copied();
+        if property.is_none() {
+            let what = if card == "CBAR" { "bar property" } else { "beam property" };
+            self.fault(name.clone(), "PID", at, FaultKind::Missing { what, id: pid.into() });
+        }
+        let ga = self.grid(b.grids[0], &name, "GA", at);
+        let gb = self.grid(b.grids[1], &name, "GB", at);
+        let (ga, gb) = (ga?, gb?);
+        let offt = b.offt.or(defaults.and_then(|d| d.offt)).unwrap_or(*b"GGG");
+        if !(matches!(offt[0], b'G' | b'B') && offt[1..].iter().all(|c| matches!(c, b'G' | b'O'))) {
+            let found = String::from_utf8_lossy(&offt).into_owned();
+            let kind = FaultKind::Unsupported { what: format!("OFFT {found}"), remedy: "use G, B for the vector and G, O for the offsets" };
+            self.fault(name.clone(), "OFFT", at, kind);
+        }
+        let orientation = match b.orientation {
+            Orientation::Blank => defaults.map_or(Orientation::Blank, |d| d.orientation),
+            stated => stated,
+        };
+        let (xa, xb) = (self.x(ga), self.x(gb));
+        let v = match orientation {
+            Orientation::Vector(v) if offt[0] == b'B' => Some(Vec3::from(v)),
+            Orientation::Vector(v) => Some(self.cd_axes(ga).tr_mul(&Vec3::from(v))),
+            Orientation::Grid(g0) => self.grid(g0, &name, "G0", at).map(|g0| self.x(g0) - xa),
+            Orientation::Blank => {
+                self.fault(name.clone(), "X1", at, FaultKind::Orientation);
+                None
+            }
+        }?;
+        let mut offsets = [Vec3::zeros(); 2];
+        for (i, (w, g)) in b.offsets.iter().zip([ga, gb]).enumerate() {
+            if *w == [0.0; 3] {
+                continue;
+            }
+            let axes = match offt[i + 1] {
+                b'O' => line_axes(xa, xb, v).unwrap_or_else(Mat3::identity),
+                _ => self.cd_axes(g),
+            };
+            offsets[i] = axes.tr_mul(&Vec3::from(*w));
+        }
+        let (a, e) = (xa + offsets[0], xb + offsets[1]);
+        let length = (e - a).norm();
+        let scale = xa.norm().max(xb.norm());
+        if !(length > 1e-12 * scale && length > 0.0) {
+            self.fault(name, "GB", at, FaultKind::ZeroLength { length });
+            return None;
+        }
+        let Some(axes) = line_axes(a, e, v) else {
+            self.fault(name, "X1", at, FaultKind::Orientation);
+            return None;
+        };
+        Some(Beam { id: b.id, is_beam: card == "CBEAM", grids: [ga, gb], property: property?, offsets, axes, pins: b.pins, at })
+    }
+}
+
+/// Axes of a line element by rows: x from A to B, z = x cross v, y = z cross x; `None` where v is parallel to the line.
+pub(super) fn line_axes(a: Vec3, b: Vec3, v: Vec3) -> Option<Mat3> {
+    let x = unit(b - a)?;
+    let v = unit(v)?;
+    let z = x.cross(&v);
+    if !(z.norm() > PARALLEL) {
+        return None;
+    }
+    let z = unit(z)?;
+    let y = z.cross(&x);
+    Some(Mat3::from_rows(&[x.transpose(), y.transpose(), z.transpose()]))
+}

@@ -1,0 +1,165 @@
+//! PBAR, PBARL, PBEAM, PBEAML.
+
+use super::build::Builder;
+use super::fault::FaultKind;
+use super::section::{SectionFault, bar_section};
+use super::types::*;
+use nastran::cards::{BeamStation, Pbar, Pbarl, Pbeam, Pbeaml};
+use nastran::place::{Place, Placed};
+use std::collections::HashMap;
+
+impl Builder<'_> {
+    /// Properties by ascending id, and where each id is. CBAR and CBEAM share ids here as they do in the file.
+    pub(super) fn beam_properties(&mut self) -> (Vec<BeamProperty>, HashMap<u32, BeamPropertyIx>) {
+        let cards = self.cards;
+        let mut out: Vec<BeamProperty> = Vec::new();
+        for p in &cards.pbars {
+            out.extend(self.pbar(p));
+        }
+        for p in &cards.pbarls {
+            out.extend(self.pbarl(p));
+        }
+        for p in &cards.pbeams {
+            out.extend(self.pbeam(p));
+        }
+        for p in &cards.pbeamls {
+            out.extend(self.pbeaml(p));
+        }
+        out.sort_by_key(|p| (p.id, p.at));
+        for pair in out.windows(2) {
+            if let [a, b] = pair {
+                if a.id == b.id {
+                    let kind = FaultKind::Duplicate { what: "bar or beam property id", first: a.at };
+                    self.faults.push(super::ModelFault { card: format!("property {}", b.id), field: "PID", at: b.at, kind });
+                }
+            }
+        }
+        out.dedup_by_key(|p| p.id);
+        let ix = out.iter().enumerate().map(|(i, p)| (p.id, BeamPropertyIx(i as u32))).collect();
+        (out, ix)
+    }
+
+    fn positive(&mut self, what: &'static str, value: f64, card: &str, field: &'static str, at: Place) {
+        if !(value > 0.0) {
+            self.fault(card.to_owned(), field, at, FaultKind::NotPositive { what, value });
+        }
+    }
+
+    fn pbar(&mut self, p: &Placed<Pbar>) -> Option<BeamProperty> {
+        let name = format!("PBAR {}", p.id);
+        let material = self.material(p.mid, &name, "MID", p.at)?;
+        self.positive("area", p.area, &name, "A", p.at);
+        let s = Section {
+            area: p.area,
+            i1: p.i1,
+            i2: p.i2,
+            i12: p.i12,
+            j: p.j,
+            nsm: p.nsm,
+            recovery: p.recovery,
+            ..Section::default()
+        };
+        let k = p.k.map(|k| k.unwrap_or(0.0));
+        Some(BeamProperty { id: p.id, material, sections: vec![(0.0, s), (1.0, s)], k, section_type: String::new(), at: p.at })
+    }
+
+    fn pbarl(&mut self, p: &Placed<Pbarl>) -> Option<BeamProperty> {
+        let name = format!("PBARL {}", p.id);
+        let material = self.material(p.mid, &name, "MID", p.at)?;
+        let shape = self.section(&p.section, &p.dims, &name, p.at)?;
+        // A bar has its shear centre and neutral axis on the element axis, whatever the section.
+        let s = Section { nsm: p.nsm, neutral: [0.0; 2], ..shape.section };
+        let section_type = p.section.clone();
+        Some(BeamProperty { id: p.id, material, sections: vec![(0.0, s), (1.0, s)], k: shape.k, section_type, at: p.at })
+    }
+
+    fn pbeam(&mut self, p: &Placed<Pbeam>) -> Option<BeamProperty> {
+        let name = format!("PBEAM {}", p.id);
+        let material = self.material(p.mid, &name, "MID", p.at)?;
+        let end = |pair: &[Option<f64>; 2], other: &[Option<f64>; 2]| -> [f64; 2] {
+            [pair[0].or(other[0]).unwrap_or(0.0), pair[1].or(other[1]).unwrap_or(0.0)]
+        };
+        let nsi_a = p.nsi[0].unwrap_or(0.0);
+        let at_ends = |v: &[[Option<f64>; 2]; 2]| [end(&v[0], &[None, None]), end(&v[1], &v[0])];
+        let (m, n) = (at_ends(&p.m), at_ends(&p.n));
+        let nsi = [nsi_a, p.nsi[1].unwrap_or(nsi_a)];
+        let blend = |v: [[f64; 2]; 2], x: f64| [0, 1].map(|i| v[0][i] + x * (v[1][i] - v[0][i]));
+        let mut sections: Vec<(f64, Section)> = p
+            .stations
+            .iter()
+            .map(|s: &BeamStation| {
+                let x = s.x_xb;
+                let section = Section {
+                    area: s.area,
+                    i1: s.i1,
+                    i2: s.i2,
+                    i12: s.i12,
+                    j: s.j,
+                    nsm: s.nsm,
+                    recovery: s.recovery,
+                    neutral: blend(n, x),
+                    nsm_centre: blend(m, x),
+                    nsi: nsi[0] + x * (nsi[1] - nsi[0]),
+                };
+                (x, section)
+            })
+            .collect();
+        self.close(&mut sections, &name, p.at)?;
+        // Blank K1 and K2 of a PBEAM are 1, stated zeros mean rigid in shear.
+        let k = p.k.map(|k| k.unwrap_or(1.0));
+        Some(BeamProperty { id: p.id, material, sections, k, section_type: String::new(), at: p.at })
+    }
+
+    fn pbeaml(&mut self, p: &Placed<Pbeaml>) -> Option<BeamProperty> {
+        let name = format!("PBEAML {}", p.id);
+        let material = self.material(p.mid, &name, "MID", p.at)?;
+        let mut sections = Vec::new();
+        let mut k = [1.0; 2];
+        for (i, s) in p.stations.iter().enumerate() {
+            let shape = self.section(&p.section, &s.dims, &name, p.at)?;
+            if i == 0 {
+                k = shape.k;
+            }
+            sections.push((s.x_xb, Section { nsm: s.nsm, ..shape.section }));
+        }
+        self.close(&mut sections, &name, p.at)?;
+        Some(BeamProperty { id: p.id, material, sections, k, section_type: p.section.clone(), at: p.at })
+    }
+
+    /// Sections by ascending station, with one at each end.
+    fn close(&mut self, sections: &mut Vec<(f64, Section)>, name: &str, at: Place) -> Option<()> {
+        sections.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (first, last) = (*sections.first()?, *sections.last()?);
+        if first.0 > 0.0 {
+            sections.insert(0, (0.0, first.1));
+        }
+        if last.0 < 1.0 {
+            sections.push((1.0, last.1));
+        }
+        for (_, s) in sections.iter() {
+            if !(s.area > 0.0) {
+                self.positive("area", s.area, name, "A", at);
+                break;
+            }
+        }
+        Some(())
+    }
+
+    fn section(&mut self, section: &str, dims: &[f64], name: &str, at: Place) -> Option<super::section::Shape> {
+        match bar_section(section, dims) {
+            Ok(s) => Some(s),
+            Err(e) => {
+                let section = section.to_owned();
+                let kind = match e {
+                    SectionFault::Unknown => FaultKind::UnknownSection { section },
+                    SectionFault::Count { expected } => {
+                        FaultKind::SectionDimensions { section, expected, found: dims.len() }
+                    }
+                    SectionFault::Shape => FaultKind::SectionShape { section },
+                };
+                self.fault(name.to_owned(), "TYPE", at, kind);
+                None
+            }
+        }
+    }
+}

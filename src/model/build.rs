@@ -1,0 +1,162 @@
+//! From cards to a model: every list in turn, faults collected.
+
+use super::fault::{FaultKind, ModelFault};
+use super::types::*;
+use nastran::cards::Cards;
+use nastran::place::Place;
+use std::collections::HashMap;
+
+/// What is known while the model is being built.
+pub(super) struct Builder<'a> {
+    pub cards: &'a Cards,
+    pub model: Model,
+    pub faults: Vec<ModelFault>,
+    pub frame_ix: HashMap<u32, FrameIx>,
+    pub grid_ix: HashMap<u32, GridIx>,
+    pub material_ix: HashMap<u32, MaterialIx>,
+    pub element_ids: HashMap<u32, (&'static str, Place)>,
+}
+
+impl Model {
+    /// The model that the cards mean, and every fault found.
+    ///
+    /// Elements whose grids are missing are left out; a shell whose property is missing stays in the mesh without stiffness. A
+    /// model with a fault of weight [`super::FaultWeight::Error`] is good for looking at, not for solving.
+    pub fn from_cards(cards: &Cards) -> (Model, Vec<ModelFault>) {
+        let mut b = Builder {
+            cards,
+            model: Model::default(),
+            faults: Vec::new(),
+            frame_ix: HashMap::new(),
+            grid_ix: HashMap::new(),
+            material_ix: HashMap::new(),
+            element_ids: HashMap::new(),
+        };
+        b.params();
+        b.frames_and_grids();
+        b.materials();
+        b.shells();
+        b.beams();
+        b.rods();
+        b.bushes();
+        b.springs();
+        b.solids();
+        b.shear_panels();
+        b.masses();
+        b.rigids();
+        b.constraints();
+        b.loads();
+        b.attachments();
+        b.faults.sort_by_key(|f| f.at);
+        (b.model, b.faults)
+    }
+
+    /// The same model with names of properties and components.
+    pub fn with_property_names(mut self, names: Vec<(u32, String)>) -> Model {
+        self.property_names = names;
+        self
+    }
+}
+
+impl Builder<'_> {
+    pub(super) fn fault(&mut self, card: String, field: &'static str, at: Place, kind: FaultKind) {
+        self.faults.push(ModelFault { card, field, at, kind });
+    }
+
+    /// The grid of that id; a fault where there is none.
+    pub(super) fn grid(&mut self, id: u32, card: &str, field: &'static str, at: Place) -> Option<GridIx> {
+        let found = self.grid_ix.get(&id).copied();
+        if found.is_none() {
+            self.fault(card.to_owned(), field, at, FaultKind::Missing { what: "grid", id: id.into() });
+        }
+        found
+    }
+
+    /// The coordinate system of that id; a fault where there is none.
+    pub(super) fn frame(&mut self, id: i64, card: &str, field: &'static str, at: Place) -> Option<FrameIx> {
+        let found = u32::try_from(id).ok().and_then(|id| self.frame_ix.get(&id).copied());
+        if found.is_none() {
+            self.fault(card.to_owned(), field, at, FaultKind::Missing { what: "coordinate system", id });
+        }
+        found
+    }
+
+    /// The material of that id; a fault where there is none.
+    pub(super) fn material(&mut self, id: u32, card: &str, field: &'static str, at: Place) -> Option<MaterialIx> {
+        let found = self.material_ix.get(&id).copied();
+        if found.is_none() {
+            self.fault(card.to_owned(), field, at, FaultKind::Missing { what: "material", id: id.into() });
+        }
+        found
+    }
+
+    /// Notes an element id. False, with a fault, where an element of the same card has it already.
+    pub(super) fn element(&mut self, id: u32, card: &'static str, at: Place) -> bool {
+        match self.element_ids.get(&id).copied() {
+            None => {
+                self.element_ids.insert(id, (card, at));
+                true
+            }
+            Some((other, first)) if other == card => {
+                self.fault(format!("{card} {id}"), "EID", at, FaultKind::Duplicate { what: "element id", first });
+                false
+            }
+            Some((other, first)) => {
+                let other = format!("{other} {id}");
+                self.fault(format!("{card} {id}"), "EID", at, FaultKind::SharedId { other, first });
+                true
+            }
+        }
+    }
+
+    /// Location of a grid.
+    pub(super) fn x(&self, g: GridIx) -> Vec3 {
+        self.model.grids.get(g.us()).map_or_else(Vec3::zeros, |g| g.x)
+    }
+
+    /// Displacement frame of a grid at its place, by rows.
+    pub(super) fn cd_axes(&self, g: GridIx) -> Mat3 {
+        self.model.cd_axes(g)
+    }
+}
+
+impl Model {
+    /// Axes of a grid's displacement frame at the grid, by rows: `components = axes * basic`.
+    pub fn cd_axes(&self, g: GridIx) -> Mat3 {
+        let Some(grid) = self.grids.get(g.us()) else { return Mat3::identity() };
+        self.frames.get(grid.cd.us()).map_or_else(Mat3::identity, |f| f.axes_at(grid.x))
+    }
+
+    /// The grid of that id.
+    pub fn grid_ix(&self, id: u32) -> Option<GridIx> {
+        self.grids.binary_search_by_key(&id, |g| g.id).ok().map(|i| GridIx(i as u32))
+    }
+
+    /// The shell of that id.
+    pub fn shell_ix(&self, id: u32) -> Option<ShellIx> {
+        self.shells.binary_search_by_key(&id, |s| s.id).ok().map(|i| ShellIx(i as u32))
+    }
+
+    /// The CBAR or CBEAM of that id.
+    pub fn beam_ix(&self, id: u32) -> Option<BeamIx> {
+        self.beams.binary_search_by_key(&id, |s| s.id).ok().map(|i| BeamIx(i as u32))
+    }
+
+    /// The coordinate system of that id.
+    pub fn frame_ix(&self, id: u32) -> Option<FrameIx> {
+        self.frames.iter().position(|f| f.id == id).map(|i| FrameIx(i as u32))
+    }
+
+    /// Number of elements: shells, beams, rods, bushes, springs, solids, shear panels, masses and rigid elements.
+    pub fn n_elements(&self) -> usize {
+        self.shells.len()
+            + self.beams.len()
+            + self.rods.len()
+            + self.bushes.len()
+            + self.springs.len()
+            + self.solids.len()
+            + self.shear_panels.len()
+            + self.masses.len()
+            + self.rigids.len()
+    }
+}

@@ -1,0 +1,49 @@
+//! Faces of solids as PLOAD4 tells them.
+
+use super::types::{GridIx, Solid};
+use nastran::cards::SolidShape;
+
+/// Faces by corner, each in an order whose right-hand normal points into the element.
+fn faces(shape: SolidShape) -> &'static [&'static [usize]] {
+    match shape {
+        SolidShape::Tetra => &[&[0, 1, 2], &[0, 3, 1], &[1, 3, 2], &[2, 3, 0]],
+        SolidShape::Penta => &[&[0, 1, 2], &[3, 5, 4], &[0, 3, 4, 1], &[1, 4, 5, 2], &[2, 5, 3, 0]],
+        SolidShape::Hexa => {
+            &[&[0, 1, 2, 3], &[4, 7, 6, 5], &[0, 4, 5, 1], &[1, 5, 6, 2], &[2, 6, 7, 3], &[3, 7, 4, 0]]
+        }
+        SolidShape::Pyram => &[&[0, 1, 2, 3], &[0, 4, 1], &[1, 4, 2], &[2, 4, 3], &[3, 4, 0]],
+    }
+}
+
+/// Corners of the face that PLOAD4 names by `corner`: G1 on the face and, opposite on it, G3; for a tetrahedron the corner that
+/// is not on it; G1 alone for a triangular face of a wedge. The right-hand normal of their order points into the element, as
+/// positive pressure does. The first is G1, so that corner pressures follow.
+pub(super) fn solid_face(s: &Solid, corner: [Option<GridIx>; 2]) -> Option<[Option<GridIx>; 4]> {
+    let place = |g: Option<GridIx>| {
+        let g = g?;
+        s.grids.iter().take(s.shape.n_corners()).position(|c| *c == Some(g))
+    };
+    let first = place(corner[0])?;
+    let second = place(corner[1]);
+    if corner[1].is_some() && second.is_none() {
+        return None;
+    }
+    let face = faces(s.shape).iter().find(|f| {
+        let Some(i) = f.iter().position(|c| *c == first) else { return false };
+        match (s.shape, f.len(), second) {
+            (SolidShape::Tetra, _, Some(off)) => !f.contains(&off),
+            (_, 3, None) => true,
+            (_, 4, Some(opposite)) => f.get((i + 2) % 4) == Some(&opposite),
+            // A pyramid's triangular face: G1 and G3 both on it.
+            (SolidShape::Pyram, 3, Some(other)) => f.contains(&other),
+            _ => false,
+        }
+    })?;
+    let start = face.iter().position(|c| *c == first)?;
+    let mut out = [None; 4];
+    for (k, slot) in out.iter_mut().enumerate().take(face.len()) {
+        let c = *face.get((start + k) % face.len())?;
+        *slot = *s.grids.get(c)?;
+    }
+    Some(out)
+}

@@ -1,0 +1,145 @@
+//! What is wrong with a deck as a model.
+
+use nastran::place::Place;
+use std::fmt;
+
+/// A fault of the model, with the card and its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelFault {
+    /// Card, such as `CQUAD4 12`.
+    pub card: String,
+    /// Field, such as `PID`; `card` where it is the card as a whole.
+    pub field: &'static str,
+    /// Where it stands.
+    pub at: Place,
+    /// What is wrong.
+    pub kind: FaultKind,
+}
+
+/// Whether a fault stops a solution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum FaultWeight {
+    /// Worth knowing: the model is complete.
+    Note,
+    /// The model can't be trusted: refuse to solve it.
+    Error,
+}
+
+/// What is wrong, with the numbers.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub enum FaultKind {
+    /// Another card that is referred to is missing.
+    Missing { what: &'static str, id: i64 },
+    /// An id stands twice.
+    Duplicate { what: &'static str, first: Place },
+    /// An element id is shared by elements of unlike kind.
+    SharedId { other: String, first: Place },
+    /// A number that must be above 0 isn't.
+    NotPositive { what: &'static str, value: f64 },
+    /// Two ends of a line element coincide.
+    ZeroLength { length: f64 },
+    /// A shell without area, or folded over itself.
+    Degenerate { what: &'static str },
+    /// An orientation vector is parallel to the element or has no length.
+    Orientation,
+    /// The points of a coordinate system don't define axes.
+    CollinearFrame,
+    /// Coordinate systems refer to each other in a circle.
+    FrameCycle,
+    /// The arms of an RBE3 can't carry a moment about some axis.
+    CollinearArms,
+    /// A dof is dependent in two places.
+    DependentTwice { grid: u32, dof: u8, first: Place },
+    /// A dof is dependent and constrained.
+    DependentAndIndependent { grid: u32, dof: u8 },
+    /// A rigid element whose independent dofs aren't the six of a rigid body.
+    NotSixIndependent { n: usize },
+    /// A number of section dimensions that the type doesn't have.
+    SectionDimensions { section: String, expected: usize, found: usize },
+    /// Section dimensions that give no section.
+    SectionShape { section: String },
+    /// A section type that isn't known.
+    UnknownSection { section: String },
+    /// Poisson's ratio outside -1 to 0.5.
+    Poisson { nu: f64 },
+    /// E, G and nu don't fix an isotropic material.
+    Underdetermined,
+    /// Something the model can't carry yet.
+    Unsupported { what: String, remedy: &'static str },
+    /// A grid that no element uses.
+    Unattached,
+    /// A word that isn't one of the card's.
+    Word { found: String, expected: &'static str },
+}
+
+impl ModelFault {
+    /// Whether it stops a solution.
+    pub fn weight(&self) -> FaultWeight {
+        match self.kind {
+            FaultKind::Unattached | FaultKind::SharedId { .. } => FaultWeight::Note,
+            _ => FaultWeight::Error,
+        }
+    }
+
+    /// What to do about it.
+    pub fn remedy(&self) -> String {
+        use FaultKind::*;
+        match &self.kind {
+            Missing { what, .. } => format!("add the {what}, or correct the id"),
+            Duplicate { .. } => "delete one of them, or renumber".into(),
+            SharedId { .. } => "renumber one of them, so that results tell them apart".into(),
+            NotPositive { what, .. } => format!("give a {what} above 0"),
+            ZeroLength { .. } => "merge the ends by an RBE2, or correct grids and offsets".into(),
+            Degenerate { .. } => "correct the order of its grids, or delete the element".into(),
+            Orientation => "give an orientation vector that isn't parallel to the element".into(),
+            CollinearFrame => "move point C off the line A B, and B off A".into(),
+            FrameCycle => "define one of the systems of the circle in the basic system".into(),
+            CollinearArms => "add a grid off the line, or add rotations 456 to the connected dofs".into(),
+            DependentTwice { .. } => "leave the dof to one of the two".into(),
+            DependentAndIndependent { .. } => "take the dof out of one of the two lists".into(),
+            NotSixIndependent { .. } => "name six independent dofs that fix a rigid body".into(),
+            SectionDimensions { expected, .. } => format!("give {expected} dimensions"),
+            SectionShape { .. } => "correct the dimensions: walls thinner than the outline, all above 0".into(),
+            UnknownSection { .. } => "use a section of the manual, or PBAR / PBEAM with numbers".into(),
+            Poisson { .. } => "give a ratio above -1 and up to 0.5".into(),
+            Underdetermined => "give two of E, G and NU".into(),
+            Unsupported { remedy, .. } => (*remedy).into(),
+            Unattached => "delete it, attach it, or leave it to AUTOSPC".into(),
+            Word { expected, .. } => format!("write {expected}"),
+        }
+    }
+}
+
+impl fmt::Display for ModelFault {
+    /// What is wrong, without file, line and remedy.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        use FaultKind::*;
+        write!(f, "{}: ", self.card)?;
+        match &self.kind {
+            Missing { what, id } => write!(f, "{what} {id} is missing"),
+            Duplicate { what, first } => write!(f, "the {what} stands twice, first on line {}", first.line),
+            SharedId { other, first } => write!(f, "the id is also that of {other} on line {}", first.line),
+            NotPositive { what, value } => write!(f, "the {what} is {value}"),
+            ZeroLength { length } => write!(f, "the length is {length:e}"),
+            Degenerate { what } => write!(f, "the element has no {what}"),
+            Orientation => write!(f, "the orientation vector has no part across the element"),
+            CollinearFrame => write!(f, "points A, B, C lie on a line"),
+            FrameCycle => write!(f, "the system is defined by itself through others"),
+            CollinearArms => write!(f, "the connected grids lie on a line and carry no rotation about it"),
+            DependentTwice { grid, dof, first } => {
+                write!(f, "dof {dof} of grid {grid} is dependent already on line {}", first.line)
+            }
+            DependentAndIndependent { grid, dof } => write!(f, "dof {dof} of grid {grid} is dependent and independent"),
+            NotSixIndependent { n } => write!(f, "{n} independent dofs, a rigid body has 6"),
+            SectionDimensions { section, found, .. } => write!(f, "section {section} with {found} dimensions"),
+            SectionShape { section } => write!(f, "the dimensions give no {section} section"),
+            UnknownSection { section } => write!(f, "section type {section} is not known"),
+            Poisson { nu } => write!(f, "Poisson's ratio is {nu}"),
+            Underdetermined => write!(f, "E, G and NU don't fix the material"),
+            Unsupported { what, .. } => write!(f, "{what} is not supported"),
+            Unattached => write!(f, "no element uses it"),
+            Word { found, .. } => write!(f, "`{found}` is not known"),
+        }
+    }
+}

@@ -1,0 +1,239 @@
+//! Rods, bushes, springs.
+
+use super::beam::line_axes;
+use super::build::Builder;
+use super::fault::FaultKind;
+use super::types::*;
+use nastran::cards::{self, Orientation, Pbush, Prod, Ptube, SpringStiffness};
+use nastran::place::{Place, Placed};
+use std::collections::HashMap;
+use std::f64::consts::PI;
+
+impl<'a> Builder<'a> {
+    /// Cards by id; a second card of one id is a fault.
+    pub(super) fn by_id<T>(&mut self, list: &'a [Placed<T>], id: impl Fn(&T) -> u32, card: &str) -> HashMap<u32, &'a Placed<T>> {
+        let mut out: HashMap<u32, &'a Placed<T>> = HashMap::with_capacity(list.len());
+        for p in list {
+            let key = id(&p.card);
+            match out.get(&key).map(|f| f.at) {
+                None => {
+                    out.insert(key, p);
+                }
+                Some(first) => {
+                    let kind = FaultKind::Duplicate { what: "property id", first };
+                    self.fault(format!("{card} {key}"), "PID", p.at, kind);
+                }
+            }
+        }
+        out
+    }
+
+    pub(super) fn rods(&mut self) {
+        let cards = self.cards;
+        let prods = self.by_id(&cards.prods, |p: &Prod| p.id, "PROD");
+        let ptubes = self.by_id(&cards.ptubes, |p: &Ptube| p.id, "PTUBE");
+        let mut out = Vec::new();
+        for r in &cards.rods {
+            let (card, kind) = if r.is_tube { ("CTUBE", RodCard::Ctube) } else { ("CROD", RodCard::Crod) };
+            if !self.element(r.id, card, r.at) {
+                continue;
+            }
+            let name = format!("{card} {}", r.id);
+            let pid = r.pid.unwrap_or(r.id);
+            let section = if r.is_tube {
+                ptubes.get(&pid).map(|p| tube(p))
+            } else {
+                prods.get(&pid).map(|p| (p.mid, p.area, p.j, p.c, p.nsm))
+            };
+            let Some((mid, area, torsion, c, nsm)) = section else {
+                let what = if r.is_tube { "PTUBE" } else { "PROD" };
+                self.fault(name, "PID", r.at, FaultKind::Missing { what, id: pid.into() });
+                continue;
+            };
+            let Some(grids) = self.ends(r.grids, &name, r.at) else { continue };
+            let Some(material) = self.material(mid, &name, "MID", r.at) else { continue };
+            out.push(Rod { id: r.id, card: kind, grids, material, area, torsion, c, nsm, at: r.at });
+        }
+        for r in &cards.conrods {
+            if !self.element(r.id, "CONROD", r.at) {
+                continue;
+            }
+            let name = format!("CONROD {}", r.id);
+            let Some(grids) = self.ends(r.grids, &name, r.at) else { continue };
+            let Some(material) = self.material(r.mid, &name, "MID", r.at) else { continue };
+            let (area, torsion, c, nsm) = (r.area, r.torsion, r.c, r.nsm);
+            out.push(Rod { id: r.id, card: RodCard::Conrod, grids, material, area, torsion, c, nsm, at: r.at });
+        }
+        out.sort_by_key(|r| r.id);
+        self.model.rods = out;
+    }
+
+    /// Two grids that are apart.
+    fn ends(&mut self, grids: [u32; 2], name: &str, at: Place) -> Option<[GridIx; 2]> {
+        let a = self.grid(grids[0], name, "G1", at);
+        let b = self.grid(grids[1], name, "G2", at);
+        let (a, b) = (a?, b?);
+        let length = (self.x(b) - self.x(a)).norm();
+        if !(length > 0.0) {
+            self.fault(name.to_owned(), "G2", at, FaultKind::ZeroLength { length });
+            return None;
+        }
+        Some([a, b])
+    }
+
+    pub(super) fn springs(&mut self) {
+        let cards = self.cards;
+        let pelas = self.by_id(&cards.pelas, |p| p.id, "PELAS");
+        let mut out = Vec::new();
+        for s in &cards.springs {
+            let card = match s.stiffness {
+                SpringStiffness::Property(_) => "CELAS1",
+                SpringStiffness::Direct { .. } => "CELAS2",
+            };
+            if !self.element(s.id, card, s.at) {
+                continue;
+            }
+            let name = format!("{card} {}", s.id);
+            let (k, stress_coefficient) = match s.stiffness {
+                SpringStiffness::Direct { k, stress_coefficient, .. } => (k, stress_coefficient),
+                SpringStiffness::Property(pid) => {
+                    let pid = pid.unwrap_or(s.id);
+                    match pelas.get(&pid) {
+                        Some(p) => (p.k, p.s),
+                        None => {
+                            self.fault(name, "PID", s.at, FaultKind::Missing { what: "PELAS", id: pid.into() });
+                            continue;
+                        }
+                    }
+                }
+            };
+            let mut ends = [None; 2];
+            let mut complete = true;
+            for (end, slot) in s.ends.iter().zip(&mut ends) {
+                let Some((grid, component)) = *end else { continue };
+                match (self.grid(grid, &name, "G", s.at), component) {
+                    (Some(g), c @ 1..=6) => *slot = Some((g, c - 1)),
+                    (Some(_), c) => {
+                        let kind = FaultKind::Word { found: c.to_string(), expected: "a component 1 to 6 of a grid" };
+                        self.fault(name.clone(), "C", s.at, kind);
+                        complete = false;
+                    }
+                    (None, _) => complete = false,
+                }
+            }
+            if complete {
+                out.push(Spring { id: s.id, k, stress_coefficient, ends, at: s.at });
+            }
+        }
+        out.sort_by_key(|s| s.id);
+        self.model.springs = out;
+    }
+
+    pub(super) fn bushes(&mut self) {
+        let cards = self.cards;
+        let properties = self.by_id(&cards.pbushes, |p: &Pbush| p.id, "PBUSH");
+        let mut out = Vec::new();
+        for b in &cards.bushes {
+            if !self.element(b.id, "CBUSH", b.at) {
+                continue;
+            }
+            let name = format!("CBUSH {}", b.id);
+            let pid = b.pid.unwrap_or(b.id);
+            let Some(p) = properties.get(&pid).copied() else {
+                self.fault(name, "PID", b.at, FaultKind::Missing { what: "PBUSH", id: pid.into() });
+                continue;
+            };
+            if p.rigid.iter().any(|r| *r) {
+                let what = "RIGID on a PBUSH".to_owned();
+                let kind = FaultKind::Unsupported { what, remedy: "give a stiffness, or use an RBE2 or RBAR" };
+                self.fault(format!("PBUSH {pid}"), "K", p.at, kind);
+            }
+            out.extend(self.bush(b, p, &name));
+        }
+        out.sort_by_key(|b: &Bush| b.id);
+        self.model.bushes = out;
+    }
+
+    /// The frame of a bush: CID where stated; else from the line and the orientation; else the line alone, which is enough for
+    /// stiffness along and about it only.
+    ///
+    /// # Reference
+    /// MSC Nastran Quick Reference Guide, CBUSH, remarks 3 to 7.
+    fn bush(&mut self, b: &Placed<cards::Bush>, p: &Pbush, name: &str) -> Option<Bush> {
+        let ga = self.grid(b.grids.0, name, "GA", b.at)?;
+        let gb = match b.grids.1 {
+            Some(g) => Some(self.grid(g, name, "GB", b.at)?),
+            None => None,
+        };
+        let xa = self.x(ga);
+        let xb = gb.map_or(xa, |g| self.x(g));
+        let length = (xb - xa).norm();
+        let apart = length > 1e-9 * xa.norm().max(xb.norm());
+        let v = match b.orientation {
+            Orientation::Vector(v) => Some(self.cd_axes(ga).tr_mul(&Vec3::from(v))),
+            Orientation::Grid(g0) => {
+                let g0 = self.grid(g0, name, "GO", b.at)?;
+                Some(self.x(g0) - xa)
+            }
+            Orientation::Blank => None,
+        };
+        let axes = match (b.cid, v) {
+            (Some(cid), _) => {
+                let f = self.frame(cid.into(), name, "CID", b.at)?;
+                self.model.frames.get(f.us())?.axes_at(xa)
+            }
+            (None, Some(v)) if apart => match line_axes(xa, xb, v) {
+                Some(axes) => axes,
+                None => {
+                    self.fault(name.to_owned(), "X1", b.at, FaultKind::Orientation);
+                    return None;
+                }
+            },
+            (None, None) if apart => {
+                let across = [1, 2, 4, 5].iter().any(|i| p.k.get(*i).is_some_and(|k| *k != 0.0));
+                if across {
+                    self.fault(name.to_owned(), "X1", b.at, FaultKind::Orientation);
+                    return None;
+                }
+                any_axes(xb - xa)?
+            }
+            _ => {
+                let kind = FaultKind::Unsupported {
+                    what: "a bush between coincident grids, or to ground, without CID".into(),
+                    remedy: "state CID (0 for the basic system)",
+                };
+                self.fault(name.to_owned(), "CID", b.at, kind);
+                return None;
+            }
+        };
+        let location = match b.ocid {
+            Some(cid) if cid >= 0 => {
+                let f = self.frame(cid.into(), name, "OCID", b.at)?;
+                xa + self.model.frames.get(f.us())?.vector_to_basic(b.offset, xa)
+            }
+            _ => xa + b.s.unwrap_or(0.5) * (xb - xa),
+        };
+        Some(Bush { id: b.id, grids: (ga, gb), axes, location, k: p.k, recovery: p.recovery, at: b.at })
+    }
+}
+
+/// Material, area, torsion constant, torsional stress coefficient and non-structural mass of a tube; a tapered one counts with
+/// its mean outer diameter.
+fn tube(p: &Ptube) -> (u32, f64, f64, f64, f64) {
+    let od = (p.od + p.od2.unwrap_or(p.od)) / 2.0;
+    let id = match p.t {
+        Some(t) if t > 0.0 => (od - 2.0 * t).max(0.0),
+        _ => 0.0,
+    };
+    let area = PI / 4.0 * (od * od - id * id);
+    let torsion = PI / 32.0 * (od.powi(4) - id.powi(4));
+    (p.mid, area, torsion, od / 2.0, p.nsm)
+}
+
+/// Axes with x along `line`; y across it, wherever.
+fn any_axes(line: Vec3) -> Option<Mat3> {
+    let smallest = line.iamin();
+    let mut v = Vec3::zeros();
+    v[smallest] = 1.0;
+    line_axes(Vec3::zeros(), line, v)
+}

@@ -1,0 +1,191 @@
+//! Load sets: primitive loads in the basic frame, LOAD combinations written out, temperatures apart.
+
+use super::build::Builder;
+use super::face::solid_face;
+use super::fault::FaultKind;
+use super::frame::unit;
+use super::types::*;
+use nastran::cards::{IdList, Pload4};
+use nastran::place::{Place, Placed};
+use std::collections::BTreeMap;
+
+type Sets = BTreeMap<u32, Vec<(f64, Load)>>;
+
+impl Builder<'_> {
+    pub(super) fn loads(&mut self) {
+        let mut sets: Sets = BTreeMap::new();
+        self.nodal(&mut sets);
+        self.pressures(&mut sets);
+        self.body_forces(&mut sets);
+        let sums = self.combinations(&sets);
+        for (sid, loads) in sums {
+            sets.entry(sid).or_default().extend(loads);
+        }
+        self.model.load_sets = sets.into_iter().map(|(sid, loads)| LoadSet { sid, loads }).collect();
+        self.temperatures();
+    }
+
+    fn nodal(&mut self, sets: &mut Sets) {
+        let cards = self.cards;
+        let forces = cards.forces.iter().map(|f| ("FORCE", f));
+        for (card, f) in forces.chain(cards.moments.iter().map(|f| ("MOMENT", f))) {
+            let name = format!("{card} {}", f.sid);
+            let Some(g) = self.grid(f.grid, &name, "G", f.at) else { continue };
+            let Some(frame) = self.frame(f.cid.into(), &name, "CID", f.at) else { continue };
+            let x = self.x(g);
+            let v = self.model.frames.get(frame.us()).map_or_else(Vec3::zeros, |fr| fr.vector_to_basic(f.n, x)) * f.scale;
+            let load = if card == "FORCE" { Load::Force(g, v) } else { Load::Moment(g, v) };
+            sets.entry(f.sid).or_default().push((1.0, load));
+        }
+    }
+
+    fn pressures(&mut self, sets: &mut Sets) {
+        let cards = self.cards;
+        for p in &cards.ploads {
+            let name = format!("PLOAD {}", p.sid);
+            let mut grids = [None; 4];
+            for (id, slot) in p.grids.iter().zip(&mut grids) {
+                *slot = if *id == 0 { None } else { self.grid(*id, &name, "G", p.at) };
+            }
+            if grids.iter().take(3).all(Option::is_some) {
+                let load = Load::FacePressure { grids, pressure: [p.pressure; 4], direction: None };
+                sets.entry(p.sid).or_default().push((1.0, load));
+            }
+        }
+        for p in &cards.pload2s {
+            let name = format!("PLOAD2 {}", p.sid);
+            let shells = self.shells_of(&p.elements, &name, p.at);
+            let load = Load::ShellPressure { shells, pressure: [p.pressure; 4], direction: None };
+            sets.entry(p.sid).or_default().push((1.0, load));
+        }
+        for p in &cards.pload4s {
+            let loads = self.pload4(p);
+            sets.entry(p.sid).or_default().extend(loads.into_iter().map(|l| (1.0, l)));
+        }
+        for p in &cards.pload1s {
+            sets.entry(p.sid).or_default().push((1.0, Load::Unsupported("PLOAD1", p.at)));
+        }
+    }
+
+    /// The shells of a list: each named one must exist, of a range those that do.
+    fn shells_of(&mut self, ids: &IdList, name: &str, at: Place) -> Vec<ShellIx> {
+        match ids {
+            IdList::Thru(a, b) => {
+                let from = self.model.shells.partition_point(|s| s.id < *a);
+                let to = self.model.shells.partition_point(|s| s.id <= *b);
+                (from..to).map(|i| ShellIx(i as u32)).collect()
+            }
+            IdList::Each(list) => {
+                let mut out = Vec::with_capacity(list.len());
+                for id in list {
+                    match self.model.shell_ix(*id) {
+                        Some(ix) => out.push(ix),
+                        None => self.fault(name.to_owned(), "EID", at, FaultKind::Missing { what: "shell", id: (*id).into() }),
+                    }
+                }
+                out
+            }
+        }
+    }
+
+    fn pload4(&mut self, p: &Placed<Pload4>) -> Vec<Load> {
+        let name = format!("PLOAD4 {}", p.sid);
+        if !(p.sorl.is_empty() || p.sorl == "SURF") {
+            return vec![Load::Unsupported("PLOAD4 with SORL", p.at)];
+        }
+        let p1 = p.pressure[0].unwrap_or(0.0);
+        let pressure = p.pressure.map(|x| x.unwrap_or(p1));
+        let direction = match p.direction {
+            Some((cid, n)) if n != [0.0; 3] => {
+                let Some(f) = self.frame(cid.into(), &name, "CID", p.at) else { return Vec::new() };
+                let Some(frame) = self.model.frames.get(f.us()) else { return Vec::new() };
+                if frame.kind != nastran::cards::CoordKind::Rectangular {
+                    return vec![Load::Unsupported("PLOAD4 in a cylindrical or spherical system", p.at)];
+                }
+                unit(frame.vector_to_basic(n, Vec3::zeros()))
+            }
+            _ => None,
+        };
+        let mut shells = Vec::new();
+        let mut out = Vec::new();
+        let ids: Vec<u32> = match &p.elements {
+            IdList::Each(ids) => ids.clone(),
+            IdList::Thru(a, b) => {
+                let range = |id: &u32| (*a..=*b).contains(id);
+                let solids = self.model.solids.iter().map(|s| s.id).filter(range);
+                self.model.shells.iter().map(|s| s.id).filter(range).chain(solids).collect()
+            }
+        };
+        for id in ids {
+            if let Some(ix) = self.model.shell_ix(id) {
+                shells.push(ix);
+                continue;
+            }
+            let Ok(solid) = self.model.solids.binary_search_by_key(&id, |s| s.id) else {
+                self.fault(name.clone(), "EID", p.at, FaultKind::Missing { what: "shell or solid", id: id.into() });
+                continue;
+            };
+            let corner = p.face.map(|g| g.and_then(|g| self.grid_ix.get(&g).copied()));
+            let face = self.model.solids.get(solid).and_then(|s| solid_face(s, corner));
+            match face {
+                Some(grids) => out.push(Load::FacePressure { grids, pressure, direction }),
+                None => {
+                    let found = format!("G1 {:?}, G3 or G4 {:?}", p.face[0], p.face[1]);
+                    let kind = FaultKind::Word { found, expected: "corners that tell a face of the element" };
+                    self.fault(name.clone(), "G1", p.at, kind);
+                }
+            }
+        }
+        if !shells.is_empty() {
+            out.push(Load::ShellPressure { shells, pressure, direction });
+        }
+        out
+    }
+
+    fn body_forces(&mut self, sets: &mut Sets) {
+        let cards = self.cards;
+        for g in &cards.gravs {
+            let name = format!("GRAV {}", g.sid);
+            let Some(f) = self.frame(g.cid.into(), &name, "CID", g.at) else { continue };
+            let n = self.model.frames.get(f.us()).map_or_else(Vec3::zeros, |f| f.axes.tr_mul(&Vec3::from(g.n)));
+            sets.entry(g.sid).or_default().push((1.0, Load::Gravity(n * g.scale)));
+        }
+        for r in &cards.rforces {
+            sets.entry(r.sid).or_default().push((1.0, Load::Unsupported("RFORCE", r.at)));
+        }
+    }
+
+    fn combinations(&mut self, sets: &Sets) -> Sets {
+        let cards = self.cards;
+        let mut out: Sets = BTreeMap::new();
+        for l in &cards.loads {
+            let to = out.entry(l.sid).or_default();
+            let mut missing = Vec::new();
+            for (factor, sid) in &l.terms {
+                match sets.get(sid) {
+                    Some(loads) => to.extend(loads.iter().map(|(f, load)| (f * factor * l.scale, load.clone()))),
+                    None => missing.push(*sid),
+                }
+            }
+            for sid in missing {
+                let kind = FaultKind::Missing { what: "load set", id: sid.into() };
+                self.fault(format!("LOAD {}", l.sid), "L", l.at, kind);
+            }
+        }
+        out
+    }
+
+    fn temperatures(&mut self) {
+        let cards = self.cards;
+        let mut sets: BTreeMap<u32, TemperatureSet> = BTreeMap::new();
+        let fresh = |sid: u32, at: Place| TemperatureSet { sid, default: None, grids: Vec::new(), at };
+        for t in &cards.tempds {
+            sets.entry(t.sid).or_insert_with(|| fresh(t.sid, t.at)).default = Some(t.t);
+        }
+        for t in &cards.temps {
+            let Some(g) = self.grid(t.grid, &format!("TEMP {}", t.sid), "G", t.at) else { continue };
+            sets.entry(t.sid).or_insert_with(|| fresh(t.sid, t.at)).grids.push((g, t.t));
+        }
+        self.model.temperatures = sets.into_values().collect();
+    }
+}

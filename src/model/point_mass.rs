@@ -1,0 +1,74 @@
+//! CONM1 and CONM2 as 6 x 6 matrices in the basic frame.
+
+use super::build::Builder;
+use super::fault::FaultKind;
+use super::types::*;
+use nalgebra::Matrix6;
+
+/// Mass matrix about the grid of a rigid body: mass, centre of gravity from the grid, inertia tensor about the centre of gravity.
+///
+/// M = [[m I, -m [r]x], [m [r]x, J + m (r.r I - r r')]], displacement then rotation.
+pub(crate) fn rigid_body_matrix(mass: f64, r: Vec3, inertia: Mat3) -> Matrix6<f64> {
+    let cross = Mat3::new(0.0, -r.z, r.y, r.z, 0.0, -r.x, -r.y, r.x, 0.0);
+    let mut m = Matrix6::zeros();
+    m.fixed_view_mut::<3, 3>(0, 0).copy_from(&(Mat3::identity() * mass));
+    m.fixed_view_mut::<3, 3>(0, 3).copy_from(&(-cross * mass));
+    m.fixed_view_mut::<3, 3>(3, 0).copy_from(&(cross * mass));
+    m.fixed_view_mut::<3, 3>(3, 3).copy_from(&(inertia - cross * cross * mass));
+    m
+}
+
+impl Builder<'_> {
+    pub(super) fn masses(&mut self) {
+        let cards = self.cards;
+        let mut out = Vec::new();
+        for c in &cards.conm2s {
+            if !self.element(c.id, "CONM2", c.at) {
+                continue;
+            }
+            let name = format!("CONM2 {}", c.id);
+            if c.mass < 0.0 {
+                self.fault(name.clone(), "M", c.at, FaultKind::NotPositive { what: "mass", value: c.mass });
+            }
+            let Some(grid) = self.grid(c.grid, &name, "G", c.at) else { continue };
+            let x = self.x(grid);
+            let (axes, offset) = if c.cid == -1 {
+                // The centre of gravity is a location in the basic system.
+                (Mat3::identity(), Vec3::from(c.offset) - x)
+            } else {
+                let Some(f) = self.frame(c.cid.into(), &name, "CID", c.at) else { continue };
+                let axes = self.model.frames.get(f.us()).map_or_else(Mat3::identity, |f| f.axes_at(x));
+                (axes, axes.tr_mul(&Vec3::from(c.offset)))
+            };
+            let [i11, i21, i22, i31, i32, i33] = c.inertia;
+            let local = Mat3::new(i11, -i21, -i31, -i21, i22, -i32, -i31, -i32, i33);
+            let inertia = axes.tr_mul(&local) * axes;
+            out.push(PointMass { id: c.id, grid, matrix: rigid_body_matrix(c.mass, offset, inertia), offset, at: c.at });
+        }
+        for c in &cards.conm1s {
+            if !self.element(c.id, "CONM1", c.at) {
+                continue;
+            }
+            let name = format!("CONM1 {}", c.id);
+            let Some(grid) = self.grid(c.grid, &name, "G", c.at) else { continue };
+            let Some(f) = self.frame(c.cid.into(), &name, "CID", c.at) else { continue };
+            let axes = self.model.frames.get(f.us()).map_or_else(Mat3::identity, |f| f.axes_at(self.x(grid)));
+            let mut local = Matrix6::zeros();
+            let mut terms = c.m.iter();
+            for i in 0..6 {
+                for j in 0..=i {
+                    let v = terms.next().copied().unwrap_or(0.0);
+                    local[(i, j)] = v;
+                    local[(j, i)] = v;
+                }
+            }
+            let mut t = Matrix6::zeros();
+            t.fixed_view_mut::<3, 3>(0, 0).copy_from(&axes);
+            t.fixed_view_mut::<3, 3>(3, 3).copy_from(&axes);
+            let matrix = t.transpose() * local * t;
+            out.push(PointMass { id: c.id, grid, matrix, offset: Vec3::zeros(), at: c.at });
+        }
+        out.sort_by_key(|m| m.id);
+        self.model.masses = out;
+    }
+}

@@ -1,0 +1,163 @@
+//! RBE1, RBE2, RBE3, RBAR.
+
+use super::build::Builder;
+use super::fault::FaultKind;
+use super::types::*;
+use nastran::cards::{Dofs, Rbe3};
+use nastran::place::{Place, Placed};
+use std::collections::HashMap;
+
+impl Builder<'_> {
+    pub(super) fn rigids(&mut self) {
+        let cards = self.cards;
+        let mut out: Vec<Rigid> = Vec::new();
+        for r in &cards.rbe2s {
+            if !self.element(r.id, "RBE2", r.at) {
+                continue;
+            }
+            let name = format!("RBE2 {}", r.id);
+            let independent = self.grid(r.independent, &name, "GN", r.at);
+            let list: Vec<(u32, Dofs)> = r.dependent.iter().map(|g| (*g, r.dofs)).collect();
+            let dependent = self.grid_dofs(&list, &name, "GM", r.at);
+            let Some(g) = independent else { continue };
+            out.push(body(r.id, vec![(g, Dofs::ALL)], dependent, r.alpha, r.at));
+        }
+        for r in &cards.rbars {
+            if !self.element(r.id, "RBAR", r.at) {
+                continue;
+            }
+            let name = format!("RBAR {}", r.id);
+            let pair = |d: [Dofs; 2]| [(r.grids[0], d[0]), (r.grids[1], d[1])].into_iter().filter(|t| !t.1.is_empty()).collect::<Vec<_>>();
+            let mut m = r.dependent;
+            if m.iter().all(|d| d.is_empty()) {
+                m = r.independent.map(|d| Dofs(Dofs::ALL.0 & !d.0));
+            }
+            let independent = self.grid_dofs(&pair(r.independent), &name, "CNA", r.at);
+            let dependent = self.grid_dofs(&pair(m), &name, "CMA", r.at);
+            self.six(&independent, &name, r.at);
+            out.push(body(r.id, independent, dependent, r.alpha, r.at));
+        }
+        for r in &cards.rbe1s {
+            if !self.element(r.id, "RBE1", r.at) {
+                continue;
+            }
+            let name = format!("RBE1 {}", r.id);
+            let independent = self.grid_dofs(&r.independent, &name, "GN", r.at);
+            let dependent = self.grid_dofs(&r.dependent, &name, "GM", r.at);
+            self.six(&independent, &name, r.at);
+            out.push(body(r.id, independent, dependent, r.alpha, r.at));
+        }
+        for r in &cards.rbe3s {
+            if self.element(r.id, "RBE3", r.at) {
+                out.extend(self.rbe3(r));
+            }
+        }
+        out.sort_by_key(|r| r.id);
+        self.check_dependents(&out);
+        self.model.rigids = out;
+    }
+
+    fn grid_dofs(&mut self, list: &[(u32, Dofs)], name: &str, field: &'static str, at: Place) -> Vec<(GridIx, Dofs)> {
+        list.iter().filter_map(|(g, d)| Some((self.grid(*g, name, field, at)?, *d))).collect()
+    }
+
+    fn six(&mut self, independent: &[(GridIx, Dofs)], name: &str, at: Place) {
+        let n = independent.iter().map(|t| t.1.len()).sum();
+        if n != 6 {
+            self.fault(name.to_owned(), "CNA", at, FaultKind::NotSixIndependent { n });
+        }
+    }
+
+    fn rbe3(&mut self, r: &Placed<Rbe3>) -> Option<Rigid> {
+        let name = format!("RBE3 {}", r.id);
+        let reference = self.grid(r.reference, &name, "REFGRID", r.at);
+        let mut arms = Vec::new();
+        for group in &r.groups {
+            for g in &group.grids {
+                if let Some(g) = self.grid(*g, &name, "G", r.at) {
+                    arms.push((group.weight, group.dofs, g));
+                }
+            }
+        }
+        let um = self.grid_dofs(&r.um, &name, "UM", r.at);
+        let reference = reference?;
+        if self.collinear(&arms, reference, r.refc) {
+            self.fault(name, "G", r.at, FaultKind::CollinearArms);
+        }
+        let kind = RigidKind::Mean { reference, refc: r.refc, arms, um };
+        Some(Rigid { id: r.id, kind, at: r.at })
+    }
+
+    /// Whether the arms leave a rotation free that the reference grid is asked to follow: the weighted sum of their rigid-body
+    /// rows, scaled to lengths about 1, has no full rank.
+    fn collinear(&self, arms: &[(f64, Dofs, GridIx)], reference: GridIx, refc: Dofs) -> bool {
+        let x0 = self.x(reference);
+        let reach = arms.iter().map(|a| (self.x(a.2) - x0).norm()).fold(0.0, f64::max);
+        let scale = if reach > 0.0 { reach } else { 1.0 };
+        let mut sum = nalgebra::Matrix6::<f64>::zeros();
+        for (w, dofs, g) in arms {
+            let r = (self.x(*g) - x0) / scale;
+            let axes = self.cd_axes(*g);
+            for i in dofs.iter0() {
+                let a = axes.row(i % 3).transpose();
+                let mut row = nalgebra::Vector6::zeros();
+                if i < 3 {
+                    row.fixed_rows_mut::<3>(0).copy_from(&a);
+                    row.fixed_rows_mut::<3>(3).copy_from(&r.cross(&a));
+                } else {
+                    row.fixed_rows_mut::<3>(3).copy_from(&a);
+                }
+                sum += row * row.transpose() * *w;
+            }
+        }
+        let eigen = nalgebra::SymmetricEigen::new(sum);
+        let largest = eigen.eigenvalues.amax();
+        if !(largest > 0.0) {
+            return true;
+        }
+        // A direction without stiffness matters where the reference grid's own dofs move along it.
+        let axes = self.cd_axes(reference);
+        (0..6).filter(|k| eigen.eigenvalues[*k] < 1e-10 * largest).any(|k| {
+            let v = eigen.eigenvectors.column(k);
+            refc.iter0().any(|i| {
+                let a = axes.row(i % 3);
+                let base = if i < 3 { 0 } else { 3 };
+                (0..3).map(|j| a[j] * v[base + j]).sum::<f64>().abs() > 1e-6
+            })
+        })
+    }
+
+    /// A dof may be dependent once, in all rigid elements together, and not independent in the same one.
+    fn check_dependents(&mut self, rigids: &[Rigid]) {
+        let mut first: HashMap<(GridIx, usize), Place> = HashMap::new();
+        let mut found = Vec::new();
+        for r in rigids {
+            let (dependent, independent): (Vec<(GridIx, Dofs)>, &[(GridIx, Dofs)]) = match &r.kind {
+                RigidKind::Body { dependent, independent, .. } => (dependent.clone(), independent),
+                RigidKind::Mean { reference, refc, um, .. } if um.is_empty() => (vec![(*reference, *refc)], &[]),
+                RigidKind::Mean { um, .. } => (um.clone(), &[]),
+            };
+            for (g, dofs) in dependent {
+                for i in dofs.iter0() {
+                    let id = self.model.grids.get(g.us()).map_or(0, |g| g.id);
+                    if independent.iter().any(|(h, d)| *h == g && d.has(i as u8 + 1)) {
+                        found.push((r, FaultKind::DependentAndIndependent { grid: id, dof: i as u8 + 1 }));
+                    }
+                    match first.get(&(g, i)) {
+                        Some(at) => found.push((r, FaultKind::DependentTwice { grid: id, dof: i as u8 + 1, first: *at })),
+                        None => {
+                            first.insert((g, i), r.at);
+                        }
+                    }
+                }
+            }
+        }
+        for (r, kind) in found {
+            self.fault(format!("rigid element {}", r.id), "GM", r.at, kind);
+        }
+    }
+}
+
+fn body(id: u32, independent: Vec<(GridIx, Dofs)>, dependent: Vec<(GridIx, Dofs)>, alpha: f64, at: Place) -> Rigid {
+    Rigid { id, kind: RigidKind::Body { independent, dependent, alpha }, at }
+}
