@@ -17,8 +17,14 @@ impl Builder<'_> {
         self.model.beam_properties = properties;
         let cards = self.cards;
         let mut out = Vec::with_capacity(cards.bars.len() + cards.beams.len());
-        let bars = cards.bars.iter().map(|b| (b.at, &b.card, "CBAR", &cards.baror));
-        let beams = cards.beams.iter().map(|b| (b.at, &b.card.bar, "CBEAM", &cards.beamor));
+        let bars = cards
+            .bars
+            .iter()
+            .map(|b| (b.at, &b.card, "CBAR", &cards.baror));
+        let beams = cards
+            .beams
+            .iter()
+            .map(|b| (b.at, &b.card.bar, "CBEAM", &cards.beamor));
         for (at, bar, card, defaults) in bars.chain(beams) {
             if !self.element(bar.id, card, at) {
                 continue;
@@ -42,8 +48,20 @@ impl Builder<'_> {
         let pid = b.pid.or(defaults.and_then(|d| d.pid)).unwrap_or(b.id);
         let property = ix.get(&pid).copied();
         if property.is_none() {
-            let what = if card == "CBAR" { "bar property" } else { "beam property" };
-            self.fault(name.clone(), "PID", at, FaultKind::Missing { what, id: pid.into() });
+            let what = if card == "CBAR" {
+                "bar property"
+            } else {
+                "beam property"
+            };
+            self.fault(
+                name.clone(),
+                "PID",
+                at,
+                FaultKind::Missing {
+                    what,
+                    id: pid.into(),
+                },
+            );
         }
         let ga = self.grid(b.grids[0], &name, "GA", at);
         let gb = self.grid(b.grids[1], &name, "GB", at);
@@ -51,7 +69,10 @@ impl Builder<'_> {
         let offt = b.offt.or(defaults.and_then(|d| d.offt)).unwrap_or(*b"GGG");
         if !(matches!(offt[0], b'G' | b'B') && offt[1..].iter().all(|c| matches!(c, b'G' | b'O'))) {
             let found = String::from_utf8_lossy(&offt).into_owned();
-            let kind = FaultKind::Unsupported { what: format!("OFFT {found}"), remedy: "use G, B for the vector and G, O for the offsets" };
+            let kind = FaultKind::Unsupported {
+                what: format!("OFFT {found}"),
+                remedy: "use G, B for the vector and G, O for the offsets",
+            };
             self.fault(name.clone(), "OFFT", at, kind);
         }
         let orientation = match b.orientation {
@@ -90,7 +111,16 @@ impl Builder<'_> {
             self.fault(name, "X1", at, FaultKind::Orientation);
             return None;
         };
-        Some(Beam { id: b.id, is_beam: card == "CBEAM", grids: [ga, gb], property: property?, offsets, axes, pins: b.pins, at })
+        Some(Beam {
+            id: b.id,
+            is_beam: card == "CBEAM",
+            grids: [ga, gb],
+            property: property?,
+            offsets,
+            axes,
+            pins: b.pins,
+            at,
+        })
     }
 }
 
@@ -104,5 +134,9 @@ pub(super) fn line_axes(a: Vec3, b: Vec3, v: Vec3) -> Option<Mat3> {
     }
     let z = unit(z)?;
     let y = z.cross(&x);
-    Some(Mat3::from_rows(&[x.transpose(), y.transpose(), z.transpose()]))
+    Some(Mat3::from_rows(&[
+        x.transpose(),
+        y.transpose(),
+        z.transpose(),
+    ]))
 }

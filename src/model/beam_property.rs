@@ -29,19 +29,43 @@ impl Builder<'_> {
         for pair in out.windows(2) {
             if let [a, b] = pair {
                 if a.id == b.id {
-                    let kind = FaultKind::Duplicate { what: "bar or beam property id", first: a.at };
-                    self.faults.push(super::ModelFault { card: format!("property {}", b.id), field: "PID", at: b.at, kind });
+                    let kind = FaultKind::Duplicate {
+                        what: "bar or beam property id",
+                        first: a.at,
+                    };
+                    self.faults.push(super::ModelFault {
+                        card: format!("property {}", b.id),
+                        field: "PID",
+                        at: b.at,
+                        kind,
+                    });
                 }
             }
         }
         out.dedup_by_key(|p| p.id);
-        let ix = out.iter().enumerate().map(|(i, p)| (p.id, BeamPropertyIx(i as u32))).collect();
+        let ix = out
+            .iter()
+            .enumerate()
+            .map(|(i, p)| (p.id, BeamPropertyIx(i as u32)))
+            .collect();
         (out, ix)
     }
 
-    fn positive(&mut self, what: &'static str, value: f64, card: &str, field: &'static str, at: Place) {
+    fn positive(
+        &mut self,
+        what: &'static str,
+        value: f64,
+        card: &str,
+        field: &'static str,
+        at: Place,
+    ) {
         if !(value > 0.0) {
-            self.fault(card.to_owned(), field, at, FaultKind::NotPositive { what, value });
+            self.fault(
+                card.to_owned(),
+                field,
+                at,
+                FaultKind::NotPositive { what, value },
+            );
         }
     }
 
@@ -60,7 +84,14 @@ impl Builder<'_> {
             ..Section::default()
         };
         let k = p.k.map(|k| k.unwrap_or(0.0));
-        Some(BeamProperty { id: p.id, material, sections: vec![(0.0, s), (1.0, s)], k, section_type: String::new(), at: p.at })
+        Some(BeamProperty {
+            id: p.id,
+            material,
+            sections: vec![(0.0, s), (1.0, s)],
+            k,
+            section_type: String::new(),
+            at: p.at,
+        })
     }
 
     fn pbarl(&mut self, p: &Placed<Pbarl>) -> Option<BeamProperty> {
@@ -68,16 +99,30 @@ impl Builder<'_> {
         let material = self.material(p.mid, &name, "MID", p.at)?;
         let shape = self.section(&p.section, &p.dims, &name, p.at)?;
         // A bar has its shear centre and neutral axis on the element axis, whatever the section.
-        let s = Section { nsm: p.nsm, neutral: [0.0; 2], ..shape.section };
+        let s = Section {
+            nsm: p.nsm,
+            neutral: [0.0; 2],
+            ..shape.section
+        };
         let section_type = p.section.clone();
-        Some(BeamProperty { id: p.id, material, sections: vec![(0.0, s), (1.0, s)], k: shape.k, section_type, at: p.at })
+        Some(BeamProperty {
+            id: p.id,
+            material,
+            sections: vec![(0.0, s), (1.0, s)],
+            k: shape.k,
+            section_type,
+            at: p.at,
+        })
     }
 
     fn pbeam(&mut self, p: &Placed<Pbeam>) -> Option<BeamProperty> {
         let name = format!("PBEAM {}", p.id);
         let material = self.material(p.mid, &name, "MID", p.at)?;
         let end = |pair: &[Option<f64>; 2], other: &[Option<f64>; 2]| -> [f64; 2] {
-            [pair[0].or(other[0]).unwrap_or(0.0), pair[1].or(other[1]).unwrap_or(0.0)]
+            [
+                pair[0].or(other[0]).unwrap_or(0.0),
+                pair[1].or(other[1]).unwrap_or(0.0),
+            ]
         };
         let nsi_a = p.nsi[0].unwrap_or(0.0);
         let at_ends = |v: &[[Option<f64>; 2]; 2]| [end(&v[0], &[None, None]), end(&v[1], &v[0])];
@@ -107,7 +152,14 @@ impl Builder<'_> {
         self.close(&mut sections, &name, p.at)?;
         // Blank K1 and K2 of a PBEAM are 1, stated zeros mean rigid in shear.
         let k = p.k.map(|k| k.unwrap_or(1.0));
-        Some(BeamProperty { id: p.id, material, sections, k, section_type: String::new(), at: p.at })
+        Some(BeamProperty {
+            id: p.id,
+            material,
+            sections,
+            k,
+            section_type: String::new(),
+            at: p.at,
+        })
     }
 
     fn pbeaml(&mut self, p: &Placed<Pbeaml>) -> Option<BeamProperty> {
@@ -120,10 +172,23 @@ impl Builder<'_> {
             if i == 0 {
                 k = shape.k;
             }
-            sections.push((s.x_xb, Section { nsm: s.nsm, ..shape.section }));
+            sections.push((
+                s.x_xb,
+                Section {
+                    nsm: s.nsm,
+                    ..shape.section
+                },
+            ));
         }
         self.close(&mut sections, &name, p.at)?;
-        Some(BeamProperty { id: p.id, material, sections, k, section_type: p.section.clone(), at: p.at })
+        Some(BeamProperty {
+            id: p.id,
+            material,
+            sections,
+            k,
+            section_type: p.section.clone(),
+            at: p.at,
+        })
     }
 
     /// Sections by ascending station, with one at each end.
@@ -145,16 +210,24 @@ impl Builder<'_> {
         Some(())
     }
 
-    fn section(&mut self, section: &str, dims: &[f64], name: &str, at: Place) -> Option<super::section::Shape> {
+    fn section(
+        &mut self,
+        section: &str,
+        dims: &[f64],
+        name: &str,
+        at: Place,
+    ) -> Option<super::section::Shape> {
         match bar_section(section, dims) {
             Ok(s) => Some(s),
             Err(e) => {
                 let section = section.to_owned();
                 let kind = match e {
                     SectionFault::Unknown => FaultKind::UnknownSection { section },
-                    SectionFault::Count { expected } => {
-                        FaultKind::SectionDimensions { section, expected, found: dims.len() }
-                    }
+                    SectionFault::Count { expected } => FaultKind::SectionDimensions {
+                        section,
+                        expected,
+                        found: dims.len(),
+                    },
                     SectionFault::Shape => FaultKind::SectionShape { section },
                 };
                 self.fault(name.to_owned(), "TYPE", at, kind);

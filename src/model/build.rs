@@ -60,32 +60,81 @@ impl Model {
 
 impl Builder<'_> {
     pub(super) fn fault(&mut self, card: String, field: &'static str, at: Place, kind: FaultKind) {
-        self.faults.push(ModelFault { card, field, at, kind });
+        self.faults.push(ModelFault {
+            card,
+            field,
+            at,
+            kind,
+        });
     }
 
     /// The grid of that id; a fault where there is none.
-    pub(super) fn grid(&mut self, id: u32, card: &str, field: &'static str, at: Place) -> Option<GridIx> {
+    pub(super) fn grid(
+        &mut self,
+        id: u32,
+        card: &str,
+        field: &'static str,
+        at: Place,
+    ) -> Option<GridIx> {
         let found = self.grid_ix.get(&id).copied();
         if found.is_none() {
-            self.fault(card.to_owned(), field, at, FaultKind::Missing { what: "grid", id: id.into() });
+            self.fault(
+                card.to_owned(),
+                field,
+                at,
+                FaultKind::Missing {
+                    what: "grid",
+                    id: id.into(),
+                },
+            );
         }
         found
     }
 
     /// The coordinate system of that id; a fault where there is none.
-    pub(super) fn frame(&mut self, id: i64, card: &str, field: &'static str, at: Place) -> Option<FrameIx> {
-        let found = u32::try_from(id).ok().and_then(|id| self.frame_ix.get(&id).copied());
+    pub(super) fn frame(
+        &mut self,
+        id: i64,
+        card: &str,
+        field: &'static str,
+        at: Place,
+    ) -> Option<FrameIx> {
+        let found = u32::try_from(id)
+            .ok()
+            .and_then(|id| self.frame_ix.get(&id).copied());
         if found.is_none() {
-            self.fault(card.to_owned(), field, at, FaultKind::Missing { what: "coordinate system", id });
+            self.fault(
+                card.to_owned(),
+                field,
+                at,
+                FaultKind::Missing {
+                    what: "coordinate system",
+                    id,
+                },
+            );
         }
         found
     }
 
     /// The material of that id; a fault where there is none.
-    pub(super) fn material(&mut self, id: u32, card: &str, field: &'static str, at: Place) -> Option<MaterialIx> {
+    pub(super) fn material(
+        &mut self,
+        id: u32,
+        card: &str,
+        field: &'static str,
+        at: Place,
+    ) -> Option<MaterialIx> {
         let found = self.material_ix.get(&id).copied();
         if found.is_none() {
-            self.fault(card.to_owned(), field, at, FaultKind::Missing { what: "material", id: id.into() });
+            self.fault(
+                card.to_owned(),
+                field,
+                at,
+                FaultKind::Missing {
+                    what: "material",
+                    id: id.into(),
+                },
+            );
         }
         found
     }
@@ -98,12 +147,25 @@ impl Builder<'_> {
                 true
             }
             Some((other, first)) if other == card => {
-                self.fault(format!("{card} {id}"), "EID", at, FaultKind::Duplicate { what: "element id", first });
+                self.fault(
+                    format!("{card} {id}"),
+                    "EID",
+                    at,
+                    FaultKind::Duplicate {
+                        what: "element id",
+                        first,
+                    },
+                );
                 false
             }
             Some((other, first)) => {
                 let other = format!("{other} {id}");
-                self.fault(format!("{card} {id}"), "EID", at, FaultKind::SharedId { other, first });
+                self.fault(
+                    format!("{card} {id}"),
+                    "EID",
+                    at,
+                    FaultKind::SharedId { other, first },
+                );
                 true
             }
         }
@@ -111,7 +173,10 @@ impl Builder<'_> {
 
     /// Location of a grid.
     pub(super) fn x(&self, g: GridIx) -> Vec3 {
-        self.model.grids.get(g.us()).map_or_else(Vec3::zeros, |g| g.x)
+        self.model
+            .grids
+            .get(g.us())
+            .map_or_else(Vec3::zeros, |g| g.x)
     }
 
     /// Displacement frame of a grid at its place, by rows.
@@ -123,28 +188,44 @@ impl Builder<'_> {
 impl Model {
     /// Axes of a grid's displacement frame at the grid, by rows: `components = axes * basic`.
     pub fn cd_axes(&self, g: GridIx) -> Mat3 {
-        let Some(grid) = self.grids.get(g.us()) else { return Mat3::identity() };
-        self.frames.get(grid.cd.us()).map_or_else(Mat3::identity, |f| f.axes_at(grid.x))
+        let Some(grid) = self.grids.get(g.us()) else {
+            return Mat3::identity();
+        };
+        self.frames
+            .get(grid.cd.us())
+            .map_or_else(Mat3::identity, |f| f.axes_at(grid.x))
     }
 
     /// The grid of that id.
     pub fn grid_ix(&self, id: u32) -> Option<GridIx> {
-        self.grids.binary_search_by_key(&id, |g| g.id).ok().map(|i| GridIx(i as u32))
+        self.grids
+            .binary_search_by_key(&id, |g| g.id)
+            .ok()
+            .map(|i| GridIx(i as u32))
     }
 
     /// The shell of that id.
     pub fn shell_ix(&self, id: u32) -> Option<ShellIx> {
-        self.shells.binary_search_by_key(&id, |s| s.id).ok().map(|i| ShellIx(i as u32))
+        self.shells
+            .binary_search_by_key(&id, |s| s.id)
+            .ok()
+            .map(|i| ShellIx(i as u32))
     }
 
     /// The CBAR or CBEAM of that id.
     pub fn beam_ix(&self, id: u32) -> Option<BeamIx> {
-        self.beams.binary_search_by_key(&id, |s| s.id).ok().map(|i| BeamIx(i as u32))
+        self.beams
+            .binary_search_by_key(&id, |s| s.id)
+            .ok()
+            .map(|i| BeamIx(i as u32))
     }
 
     /// The coordinate system of that id.
     pub fn frame_ix(&self, id: u32) -> Option<FrameIx> {
-        self.frames.iter().position(|f| f.id == id).map(|i| FrameIx(i as u32))
+        self.frames
+            .iter()
+            .position(|f| f.id == id)
+            .map(|i| FrameIx(i as u32))
     }
 
     /// Number of elements: shells, beams, rods, bushes, springs, solids, shear panels, masses and rigid elements.

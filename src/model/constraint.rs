@@ -16,7 +16,11 @@ impl Builder<'_> {
         self.spcs();
         let cards = self.cards;
         for s in &cards.suports {
-            let terms = s.terms.iter().filter_map(|(g, d)| Some((self.grid(*g, "SUPORT", "ID", s.at)?, *d))).collect();
+            let terms = s
+                .terms
+                .iter()
+                .filter_map(|(g, d)| Some((self.grid(*g, "SUPORT", "ID", s.at)?, *d)))
+                .collect();
             self.model.suports.push((s.sid, terms));
         }
     }
@@ -28,18 +32,26 @@ impl Builder<'_> {
             let name = format!("MPC {}", m.sid);
             let mut terms = Vec::with_capacity(m.terms.len());
             for (grid, component, a) in &m.terms {
-                let Some(g) = self.grid(*grid, &name, "G", m.at) else { continue };
+                let Some(g) = self.grid(*grid, &name, "G", m.at) else {
+                    continue;
+                };
                 match component {
                     1..=6 => terms.push((g, component - 1, *a)),
                     c => {
-                        let kind = FaultKind::Word { found: c.to_string(), expected: "a component 1 to 6 of a grid" };
+                        let kind = FaultKind::Word {
+                            found: c.to_string(),
+                            expected: "a component 1 to 6 of a grid",
+                        };
                         self.fault(name.clone(), "C", m.at, kind);
                     }
                 }
             }
             if let Some((_, _, a)) = terms.first() {
                 if *a == 0.0 {
-                    let kind = FaultKind::Word { found: "0".into(), expected: "a coefficient other than 0 for the first term" };
+                    let kind = FaultKind::Word {
+                        found: "0".into(),
+                        expected: "a coefficient other than 0 for the first term",
+                    };
                     self.fault(name.clone(), "A1", m.at, kind);
                 }
             }
@@ -47,7 +59,10 @@ impl Builder<'_> {
         }
         let sums = self.sums(&cards.mpcadds, "MPCADD", &sets);
         sets.extend(sums);
-        self.model.mpcs = sets.into_iter().map(|(sid, equations)| MpcSet { sid, equations }).collect();
+        self.model.mpcs = sets
+            .into_iter()
+            .map(|(sid, equations)| MpcSet { sid, equations })
+            .collect();
     }
 
     fn spcs(&mut self) {
@@ -64,14 +79,22 @@ impl Builder<'_> {
         for s in &cards.spc1s {
             let name = format!("SPC1 {}", s.sid);
             let grids: Vec<GridIx> = match &s.grids {
-                IdList::Each(ids) => ids.iter().filter_map(|id| self.grid(*id, &name, "G", s.at)).collect(),
+                IdList::Each(ids) => ids
+                    .iter()
+                    .filter_map(|id| self.grid(*id, &name, "G", s.at))
+                    .collect(),
                 IdList::Thru(a, b) => self.grids_thru(*a, *b),
             };
-            sets.entry(s.sid).or_default().extend(grids.into_iter().map(|g| (g, s.dofs, 0.0)));
+            sets.entry(s.sid)
+                .or_default()
+                .extend(grids.into_iter().map(|g| (g, s.dofs, 0.0)));
         }
         let sums = self.sums(&cards.spcadds, "SPCADD", &sets);
         sets.extend(sums);
-        self.model.spcs = sets.into_iter().map(|(sid, terms)| SpcSet { sid, terms }).collect();
+        self.model.spcs = sets
+            .into_iter()
+            .map(|(sid, terms)| SpcSet { sid, terms })
+            .collect();
     }
 
     /// Grids with ids from a to b.
@@ -82,14 +105,25 @@ impl Builder<'_> {
     }
 
     /// The sets that sums stand for.
-    fn sums<T: Clone>(&mut self, cards: &[Placed<SetSum>], card: &str, sets: &BTreeMap<u32, Vec<T>>) -> BTreeMap<u32, Vec<T>> {
+    fn sums<T: Clone>(
+        &mut self,
+        cards: &[Placed<SetSum>],
+        card: &str,
+        sets: &BTreeMap<u32, Vec<T>>,
+    ) -> BTreeMap<u32, Vec<T>> {
         let mut out: BTreeMap<u32, Vec<T>> = BTreeMap::new();
         for sum in cards {
             for sid in &sum.sets {
                 match sets.get(sid) {
-                    Some(terms) => out.entry(sum.sid).or_default().extend(terms.iter().cloned()),
+                    Some(terms) => out
+                        .entry(sum.sid)
+                        .or_default()
+                        .extend(terms.iter().cloned()),
                     None => {
-                        let kind = FaultKind::Missing { what: "set", id: (*sid).into() };
+                        let kind = FaultKind::Missing {
+                            what: "set",
+                            id: (*sid).into(),
+                        };
                         self.fault(format!("{card} {}", sum.sid), "S", sum.at, kind);
                     }
                 }
@@ -107,27 +141,64 @@ impl Builder<'_> {
                 *u = true;
             }
         };
-        m.shells.iter().for_each(|s| s.grids.iter().take(s.shape.n_grids()).for_each(|g| mark(*g)));
-        m.beams.iter().for_each(|b| b.grids.iter().for_each(|g| mark(*g)));
-        m.rods.iter().for_each(|b| b.grids.iter().for_each(|g| mark(*g)));
-        m.bushes.iter().for_each(|b| std::iter::once(b.grids.0).chain(b.grids.1).for_each(&mut mark));
-        m.springs.iter().for_each(|b| b.ends.iter().flatten().for_each(|e| mark(e.0)));
-        m.solids.iter().for_each(|s| s.grids.iter().flatten().for_each(|g| mark(*g)));
-        m.shear_panels.iter().for_each(|s| s.grids.iter().for_each(|g| mark(*g)));
+        m.shells.iter().for_each(|s| {
+            s.grids
+                .iter()
+                .take(s.shape.n_grids())
+                .for_each(|g| mark(*g))
+        });
+        m.beams
+            .iter()
+            .for_each(|b| b.grids.iter().for_each(|g| mark(*g)));
+        m.rods
+            .iter()
+            .for_each(|b| b.grids.iter().for_each(|g| mark(*g)));
+        m.bushes.iter().for_each(|b| {
+            std::iter::once(b.grids.0)
+                .chain(b.grids.1)
+                .for_each(&mut mark)
+        });
+        m.springs
+            .iter()
+            .for_each(|b| b.ends.iter().flatten().for_each(|e| mark(e.0)));
+        m.solids
+            .iter()
+            .for_each(|s| s.grids.iter().flatten().for_each(|g| mark(*g)));
+        m.shear_panels
+            .iter()
+            .for_each(|s| s.grids.iter().for_each(|g| mark(*g)));
         m.masses.iter().for_each(|c| mark(c.grid));
-        m.mpcs.iter().flat_map(|s| &s.equations).flat_map(|e| &e.0).for_each(|t| mark(t.0));
+        m.mpcs
+            .iter()
+            .flat_map(|s| &s.equations)
+            .flat_map(|e| &e.0)
+            .for_each(|t| mark(t.0));
         for r in &m.rigids {
             match &r.kind {
-                RigidKind::Body { independent, dependent, .. } => independent.iter().chain(dependent).for_each(|t| mark(t.0)),
-                RigidKind::Mean { reference, arms, um, .. } => {
+                RigidKind::Body {
+                    independent,
+                    dependent,
+                    ..
+                } => independent.iter().chain(dependent).for_each(|t| mark(t.0)),
+                RigidKind::Mean {
+                    reference,
+                    arms,
+                    um,
+                    ..
+                } => {
                     mark(*reference);
                     arms.iter().for_each(|a| mark(a.2));
                     um.iter().for_each(|t| mark(t.0));
                 }
             }
         }
-        let free: Vec<(u32, Place)> =
-            m.grids.iter().zip(used).filter(|(g, used)| !used && g.ps != Dofs::ALL).map(|(g, _)| (g.id, g.at)).collect();
+        let free: Vec<(u32, Place)> = m
+            .grids
+            .iter()
+            .zip(used)
+            .filter(|(g, used)| !used && g.ps != Dofs::ALL)
+            .map(|(g, _)| (g.id, g.at))
+            .collect();
         for (id, at) in free {
             self.fault(format!("GRID {id}"), "ID", at, FaultKind::Unattached);
         }

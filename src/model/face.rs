@@ -7,11 +7,28 @@ use nastran::cards::SolidShape;
 fn faces(shape: SolidShape) -> &'static [&'static [usize]] {
     match shape {
         SolidShape::Tetra => &[&[0, 1, 2], &[0, 3, 1], &[1, 3, 2], &[2, 3, 0]],
-        SolidShape::Penta => &[&[0, 1, 2], &[3, 5, 4], &[0, 3, 4, 1], &[1, 4, 5, 2], &[2, 5, 3, 0]],
-        SolidShape::Hexa => {
-            &[&[0, 1, 2, 3], &[4, 7, 6, 5], &[0, 4, 5, 1], &[1, 5, 6, 2], &[2, 6, 7, 3], &[3, 7, 4, 0]]
-        }
-        SolidShape::Pyram => &[&[0, 1, 2, 3], &[0, 4, 1], &[1, 4, 2], &[2, 4, 3], &[3, 4, 0]],
+        SolidShape::Penta => &[
+            &[0, 1, 2],
+            &[3, 5, 4],
+            &[0, 3, 4, 1],
+            &[1, 4, 5, 2],
+            &[2, 5, 3, 0],
+        ],
+        SolidShape::Hexa => &[
+            &[0, 1, 2, 3],
+            &[4, 7, 6, 5],
+            &[0, 4, 5, 1],
+            &[1, 5, 6, 2],
+            &[2, 6, 7, 3],
+            &[3, 7, 4, 0],
+        ],
+        SolidShape::Pyram => &[
+            &[0, 1, 2, 3],
+            &[0, 4, 1],
+            &[1, 4, 2],
+            &[2, 4, 3],
+            &[3, 4, 0],
+        ],
     }
 }
 
@@ -21,7 +38,10 @@ fn faces(shape: SolidShape) -> &'static [&'static [usize]] {
 pub(super) fn solid_face(s: &Solid, corner: [Option<GridIx>; 2]) -> Option<[Option<GridIx>; 4]> {
     let place = |g: Option<GridIx>| {
         let g = g?;
-        s.grids.iter().take(s.shape.n_corners()).position(|c| *c == Some(g))
+        s.grids
+            .iter()
+            .take(s.shape.n_corners())
+            .position(|c| *c == Some(g))
     };
     let first = place(corner[0])?;
     let second = place(corner[1]);
@@ -29,7 +49,9 @@ pub(super) fn solid_face(s: &Solid, corner: [Option<GridIx>; 2]) -> Option<[Opti
         return None;
     }
     let face = faces(s.shape).iter().find(|f| {
-        let Some(i) = f.iter().position(|c| *c == first) else { return false };
+        let Some(i) = f.iter().position(|c| *c == first) else {
+            return false;
+        };
         match (s.shape, f.len(), second) {
             (SolidShape::Tetra, _, Some(off)) => !f.contains(&off),
             (_, 3, None) => true,

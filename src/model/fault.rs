@@ -56,7 +56,11 @@ pub enum FaultKind {
     /// A rigid element whose independent dofs aren't the six of a rigid body.
     NotSixIndependent { n: usize },
     /// A number of section dimensions that the type doesn't have.
-    SectionDimensions { section: String, expected: usize, found: usize },
+    SectionDimensions {
+        section: String,
+        expected: usize,
+        found: usize,
+    },
     /// Section dimensions that give no section.
     SectionShape { section: String },
     /// A section type that isn't known.
@@ -70,7 +74,10 @@ pub enum FaultKind {
     /// A grid that no element uses.
     Unattached,
     /// A word that isn't one of the card's.
-    Word { found: String, expected: &'static str },
+    Word {
+        found: String,
+        expected: &'static str,
+    },
 }
 
 impl ModelFault {
@@ -95,13 +102,19 @@ impl ModelFault {
             Orientation => "give an orientation vector that isn't parallel to the element".into(),
             CollinearFrame => "move point C off the line A B, and B off A".into(),
             FrameCycle => "define one of the systems of the circle in the basic system".into(),
-            CollinearArms => "add a grid off the line, or add rotations 456 to the connected dofs".into(),
+            CollinearArms => {
+                "add a grid off the line, or add rotations 456 to the connected dofs".into()
+            }
             DependentTwice { .. } => "leave the dof to one of the two".into(),
             DependentAndIndependent { .. } => "take the dof out of one of the two lists".into(),
             NotSixIndependent { .. } => "name six independent dofs that fix a rigid body".into(),
             SectionDimensions { expected, .. } => format!("give {expected} dimensions"),
-            SectionShape { .. } => "correct the dimensions: walls thinner than the outline, all above 0".into(),
-            UnknownSection { .. } => "use a section of the manual, or PBAR / PBEAM with numbers".into(),
+            SectionShape { .. } => {
+                "correct the dimensions: walls thinner than the outline, all above 0".into()
+            }
+            UnknownSection { .. } => {
+                "use a section of the manual, or PBAR / PBEAM with numbers".into()
+            }
             Poisson { .. } => "give a ratio above -1 and up to 0.5".into(),
             Underdetermined => "give two of E, G and NU".into(),
             Unsupported { remedy, .. } => (*remedy).into(),
@@ -118,21 +131,36 @@ impl fmt::Display for ModelFault {
         write!(f, "{}: ", self.card)?;
         match &self.kind {
             Missing { what, id } => write!(f, "{what} {id} is missing"),
-            Duplicate { what, first } => write!(f, "the {what} stands twice, first on line {}", first.line),
-            SharedId { other, first } => write!(f, "the id is also that of {other} on line {}", first.line),
+            Duplicate { what, first } => {
+                write!(f, "the {what} stands twice, first on line {}", first.line)
+            }
+            SharedId { other, first } => {
+                write!(f, "the id is also that of {other} on line {}", first.line)
+            }
             NotPositive { what, value } => write!(f, "the {what} is {value}"),
             ZeroLength { length } => write!(f, "the length is {length:e}"),
             Degenerate { what } => write!(f, "the element has no {what}"),
             Orientation => write!(f, "the orientation vector has no part across the element"),
             CollinearFrame => write!(f, "points A, B, C lie on a line"),
             FrameCycle => write!(f, "the system is defined by itself through others"),
-            CollinearArms => write!(f, "the connected grids lie on a line and carry no rotation about it"),
+            CollinearArms => write!(
+                f,
+                "the connected grids lie on a line and carry no rotation about it"
+            ),
             DependentTwice { grid, dof, first } => {
-                write!(f, "dof {dof} of grid {grid} is dependent already on line {}", first.line)
+                write!(
+                    f,
+                    "dof {dof} of grid {grid} is dependent already on line {}",
+                    first.line
+                )
             }
-            DependentAndIndependent { grid, dof } => write!(f, "dof {dof} of grid {grid} is dependent and independent"),
+            DependentAndIndependent { grid, dof } => {
+                write!(f, "dof {dof} of grid {grid} is dependent and independent")
+            }
             NotSixIndependent { n } => write!(f, "{n} independent dofs, a rigid body has 6"),
-            SectionDimensions { section, found, .. } => write!(f, "section {section} with {found} dimensions"),
+            SectionDimensions { section, found, .. } => {
+                write!(f, "section {section} with {found} dimensions")
+            }
             SectionShape { section } => write!(f, "the dimensions give no {section} section"),
             UnknownSection { section } => write!(f, "section type {section} is not known"),
             Poisson { nu } => write!(f, "Poisson's ratio is {nu}"),

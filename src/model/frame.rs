@@ -9,7 +9,12 @@ const ON_AXIS: f64 = 1e-12;
 impl Frame {
     /// The basic frame.
     pub fn basic() -> Frame {
-        Frame { id: 0, kind: CoordKind::Rectangular, origin: Vec3::zeros(), axes: Mat3::identity() }
+        Frame {
+            id: 0,
+            kind: CoordKind::Rectangular,
+            origin: Vec3::zeros(),
+            axes: Mat3::identity(),
+        }
     }
 
     /// Frame from origin A, a point B on z and a point C in the x-z plane, all basic; `None` where they lie on a line.
@@ -23,7 +28,12 @@ impl Frame {
         }
         let y = unit(y)?;
         let x = y.cross(&z);
-        Some(Frame { id, kind, origin: a, axes: Mat3::from_rows(&[x.transpose(), y.transpose(), z.transpose()]) })
+        Some(Frame {
+            id,
+            kind,
+            origin: a,
+            axes: Mat3::from_rows(&[x.transpose(), y.transpose(), z.transpose()]),
+        })
     }
 
     /// Basic location of a point given in this system's coordinates; angles in degrees: theta of a cylindrical system about z,
@@ -53,12 +63,20 @@ impl Frame {
         }
         let p = self.axes * (x - self.origin);
         let r = p.x.hypot(p.y);
-        let (cp, sp) = if r > ON_AXIS * p.norm() { (p.x / r, p.y / r) } else { (1.0, 0.0) };
+        let (cp, sp) = if r > ON_AXIS * p.norm() {
+            (p.x / r, p.y / r)
+        } else {
+            (1.0, 0.0)
+        };
         let local = match self.kind {
             CoordKind::Cylindrical => Mat3::new(cp, sp, 0.0, -sp, cp, 0.0, 0.0, 0.0, 1.0),
             _ => {
                 let n = p.norm();
-                let (ct, st) = if n > 0.0 { (p.z / n, r / n) } else { (1.0, 0.0) };
+                let (ct, st) = if n > 0.0 {
+                    (p.z / n, r / n)
+                } else {
+                    (1.0, 0.0)
+                };
                 Mat3::new(st * cp, st * sp, ct, ct * cp, ct * sp, -st, -sp, cp, 0.0)
             }
         };

@@ -11,7 +11,8 @@ impl<'a> Builder<'a> {
     pub(super) fn frames_and_grids(&mut self) {
         let cards = self.cards;
         let grids = self.unique_grids();
-        let grid_of: HashMap<u32, &Placed<cards::Grid>> = grids.iter().map(|g| (g.id, *g)).collect();
+        let grid_of: HashMap<u32, &Placed<cards::Grid>> =
+            grids.iter().map(|g| (g.id, *g)).collect();
         let default_cp = cards.grdset.as_ref().and_then(|g| g.cp).unwrap_or(0);
         let cp = |g: &cards::Grid| g.cp.unwrap_or(default_cp);
         self.frames(&grid_of, &cp);
@@ -19,15 +20,34 @@ impl<'a> Builder<'a> {
         let mut out = Vec::with_capacity(grids.len());
         for g in &grids {
             let name = || format!("GRID {}", g.id);
-            let x = match self.frame_ix.get(&cp(g)).and_then(|f| self.model.frames.get(f.us())) {
+            let x = match self
+                .frame_ix
+                .get(&cp(g))
+                .and_then(|f| self.model.frames.get(f.us()))
+            {
                 Some(f) => f.to_basic(g.x),
                 None => {
-                    self.fault(name(), "CP", g.at, FaultKind::Missing { what: "coordinate system", id: cp(g).into() });
+                    self.fault(
+                        name(),
+                        "CP",
+                        g.at,
+                        FaultKind::Missing {
+                            what: "coordinate system",
+                            id: cp(g).into(),
+                        },
+                    );
                     Vec3::from(g.x)
                 }
             };
             if !x.iter().all(|v| v.is_finite()) {
-                self.fault(name(), "X1", g.at, FaultKind::Degenerate { what: "finite location" });
+                self.fault(
+                    name(),
+                    "X1",
+                    g.at,
+                    FaultKind::Degenerate {
+                        what: "finite location",
+                    },
+                );
             }
             let cd = g.cd.or(default.cd).unwrap_or(0);
             let mut ps = g.ps.or(default.ps).unwrap_or_default();
@@ -36,19 +56,31 @@ impl<'a> Builder<'a> {
                 ps = Dofs::ALL;
                 FrameIx(0)
             } else {
-                self.frame(cd.into(), &name(), "CD", g.at).unwrap_or(FrameIx(0))
+                self.frame(cd.into(), &name(), "CD", g.at)
+                    .unwrap_or(FrameIx(0))
             };
-            out.push(Grid { id: g.id, x, cd, ps, at: g.at });
+            out.push(Grid {
+                id: g.id,
+                x,
+                cd,
+                ps,
+                at: g.at,
+            });
         }
         out.sort_by_key(|g: &Grid| g.id);
-        self.grid_ix = out.iter().enumerate().map(|(i, g)| (g.id, GridIx(i as u32))).collect();
+        self.grid_ix = out
+            .iter()
+            .enumerate()
+            .map(|(i, g)| (g.id, GridIx(i as u32)))
+            .collect();
         self.model.grids = out;
     }
 
     /// Grids in file order, the first of each id; a second one must say the same.
     fn unique_grids(&mut self) -> Vec<&'a Placed<cards::Grid>> {
         let cards = self.cards;
-        let mut first: HashMap<u32, &Placed<cards::Grid>> = HashMap::with_capacity(cards.grids.len());
+        let mut first: HashMap<u32, &Placed<cards::Grid>> =
+            HashMap::with_capacity(cards.grids.len());
         let mut out = Vec::with_capacity(cards.grids.len());
         for g in &cards.grids {
             match first.get(&g.id) {
@@ -58,7 +90,10 @@ impl<'a> Builder<'a> {
                 }
                 Some(f) if f.card == g.card => {}
                 Some(f) => {
-                    let kind = FaultKind::Duplicate { what: "grid id", first: f.at };
+                    let kind = FaultKind::Duplicate {
+                        what: "grid id",
+                        first: f.at,
+                    };
                     self.fault(format!("GRID {}", g.id), "ID", g.at, kind);
                 }
             }
@@ -67,7 +102,11 @@ impl<'a> Builder<'a> {
     }
 
     /// Every coordinate system to basic, those first that others are defined in.
-    fn frames(&mut self, grid_of: &HashMap<u32, &Placed<cards::Grid>>, cp: &dyn Fn(&cards::Grid) -> u32) {
+    fn frames(
+        &mut self,
+        grid_of: &HashMap<u32, &Placed<cards::Grid>>,
+        cp: &dyn Fn(&cards::Grid) -> u32,
+    ) {
         self.model.frames.push(Frame::basic());
         self.frame_ix.insert(0, FrameIx(0));
         let mut card_of: HashMap<u32, &'a Placed<cards::Coord>> = HashMap::new();
@@ -79,7 +118,10 @@ impl<'a> Builder<'a> {
                 }
                 Some(f) if f.card == c.card => {}
                 Some(f) => {
-                    let kind = FaultKind::Duplicate { what: "coordinate system id", first: f.at };
+                    let kind = FaultKind::Duplicate {
+                        what: "coordinate system id",
+                        first: f.at,
+                    };
                     self.fault(format!("coordinate system {}", c.id), "CID", c.at, kind);
                 }
             }
@@ -95,9 +137,20 @@ impl<'a> Builder<'a> {
                 CoordDefinition::Points { rid, .. } => vec![rid],
                 CoordDefinition::Grids(ids) => {
                     for id in ids.iter().filter(|id| !grid_of.contains_key(id)) {
-                        self.fault(name.clone(), "G", c.at, FaultKind::Missing { what: "grid", id: (*id).into() });
+                        self.fault(
+                            name.clone(),
+                            "G",
+                            c.at,
+                            FaultKind::Missing {
+                                what: "grid",
+                                id: (*id).into(),
+                            },
+                        );
                     }
-                    ids.iter().filter_map(|id| grid_of.get(id)).map(|g| cp(g)).collect()
+                    ids.iter()
+                        .filter_map(|id| grid_of.get(id))
+                        .map(|g| cp(g))
+                        .collect()
                 }
             };
             needs.retain(|id| *id != 0);
@@ -105,7 +158,10 @@ impl<'a> Builder<'a> {
             needs.dedup();
             for id in &needs {
                 if !card_of.contains_key(id) {
-                    let kind = FaultKind::Missing { what: "coordinate system", id: (*id).into() };
+                    let kind = FaultKind::Missing {
+                        what: "coordinate system",
+                        id: (*id).into(),
+                    };
                     self.fault(name.clone(), "RID", c.at, kind);
                 }
                 users.entry(*id).or_default().push(c.id);
@@ -135,13 +191,24 @@ impl<'a> Builder<'a> {
         for c in order.iter().filter(|c| waiting.contains_key(&c.id)) {
             // What waits for a missing system has its fault already; the others wait for each other.
             if circle(c.id, &card_of, grid_of, cp) {
-                self.fault(format!("coordinate system {}", c.id), "RID", c.at, FaultKind::FrameCycle);
+                self.fault(
+                    format!("coordinate system {}", c.id),
+                    "RID",
+                    c.at,
+                    FaultKind::FrameCycle,
+                );
             }
         }
         // By ascending id, so that the order does not depend on who refers to whom.
         done.sort_by_key(|f| f.id);
         self.model.frames.extend(done);
-        self.frame_ix = self.model.frames.iter().enumerate().map(|(i, f)| (f.id, FrameIx(i as u32))).collect();
+        self.frame_ix = self
+            .model
+            .frames
+            .iter()
+            .enumerate()
+            .map(|(i, f)| (f.id, FrameIx(i as u32)))
+            .collect();
     }
 
     fn resolve(
@@ -154,7 +221,10 @@ impl<'a> Builder<'a> {
         let basic = Frame::basic();
         let frame = |id: u32| match id {
             0 => Some(&basic),
-            _ => self.frame_ix.get(&id).and_then(|ix| done.get(ix.us().checked_sub(1)?)),
+            _ => self
+                .frame_ix
+                .get(&id)
+                .and_then(|ix| done.get(ix.us().checked_sub(1)?)),
         };
         let [a, b, p] = match c.definition {
             CoordDefinition::Points { rid, a, b, c } => {
@@ -171,7 +241,12 @@ impl<'a> Builder<'a> {
         };
         let made = Frame::from_points(c.id, c.kind, a, b, p);
         if made.is_none() {
-            self.fault(format!("coordinate system {}", c.id), "C", c.at, FaultKind::CollinearFrame);
+            self.fault(
+                format!("coordinate system {}", c.id),
+                "C",
+                c.at,
+                FaultKind::CollinearFrame,
+            );
         }
         made
     }
@@ -190,7 +265,11 @@ fn circle(
         let next: Vec<u32> = match card_of.get(&id).map(|c| c.definition) {
             None => continue,
             Some(CoordDefinition::Points { rid, .. }) => vec![rid],
-            Some(CoordDefinition::Grids(ids)) => ids.iter().filter_map(|g| grid_of.get(g)).map(|g| cp(g)).collect(),
+            Some(CoordDefinition::Grids(ids)) => ids
+                .iter()
+                .filter_map(|g| grid_of.get(g))
+                .map(|g| cp(g))
+                .collect(),
         };
         for n in next {
             if n == start {

@@ -11,7 +11,12 @@ use std::f64::consts::PI;
 
 impl<'a> Builder<'a> {
     /// Cards by id; a second card of one id is a fault.
-    pub(super) fn by_id<T>(&mut self, list: &'a [Placed<T>], id: impl Fn(&T) -> u32, card: &str) -> HashMap<u32, &'a Placed<T>> {
+    pub(super) fn by_id<T>(
+        &mut self,
+        list: &'a [Placed<T>],
+        id: impl Fn(&T) -> u32,
+        card: &str,
+    ) -> HashMap<u32, &'a Placed<T>> {
         let mut out: HashMap<u32, &'a Placed<T>> = HashMap::with_capacity(list.len());
         for p in list {
             let key = id(&p.card);
@@ -20,7 +25,10 @@ impl<'a> Builder<'a> {
                     out.insert(key, p);
                 }
                 Some(first) => {
-                    let kind = FaultKind::Duplicate { what: "property id", first };
+                    let kind = FaultKind::Duplicate {
+                        what: "property id",
+                        first,
+                    };
                     self.fault(format!("{card} {key}"), "PID", p.at, kind);
                 }
             }
@@ -34,7 +42,11 @@ impl<'a> Builder<'a> {
         let ptubes = self.by_id(&cards.ptubes, |p: &Ptube| p.id, "PTUBE");
         let mut out = Vec::new();
         for r in &cards.rods {
-            let (card, kind) = if r.is_tube { ("CTUBE", RodCard::Ctube) } else { ("CROD", RodCard::Crod) };
+            let (card, kind) = if r.is_tube {
+                ("CTUBE", RodCard::Ctube)
+            } else {
+                ("CROD", RodCard::Crod)
+            };
             if !self.element(r.id, card, r.at) {
                 continue;
             }
@@ -47,22 +59,58 @@ impl<'a> Builder<'a> {
             };
             let Some((mid, area, torsion, c, nsm)) = section else {
                 let what = if r.is_tube { "PTUBE" } else { "PROD" };
-                self.fault(name, "PID", r.at, FaultKind::Missing { what, id: pid.into() });
+                self.fault(
+                    name,
+                    "PID",
+                    r.at,
+                    FaultKind::Missing {
+                        what,
+                        id: pid.into(),
+                    },
+                );
                 continue;
             };
-            let Some(grids) = self.ends(r.grids, &name, r.at) else { continue };
-            let Some(material) = self.material(mid, &name, "MID", r.at) else { continue };
-            out.push(Rod { id: r.id, card: kind, grids, material, area, torsion, c, nsm, at: r.at });
+            let Some(grids) = self.ends(r.grids, &name, r.at) else {
+                continue;
+            };
+            let Some(material) = self.material(mid, &name, "MID", r.at) else {
+                continue;
+            };
+            out.push(Rod {
+                id: r.id,
+                card: kind,
+                grids,
+                material,
+                area,
+                torsion,
+                c,
+                nsm,
+                at: r.at,
+            });
         }
         for r in &cards.conrods {
             if !self.element(r.id, "CONROD", r.at) {
                 continue;
             }
             let name = format!("CONROD {}", r.id);
-            let Some(grids) = self.ends(r.grids, &name, r.at) else { continue };
-            let Some(material) = self.material(r.mid, &name, "MID", r.at) else { continue };
+            let Some(grids) = self.ends(r.grids, &name, r.at) else {
+                continue;
+            };
+            let Some(material) = self.material(r.mid, &name, "MID", r.at) else {
+                continue;
+            };
             let (area, torsion, c, nsm) = (r.area, r.torsion, r.c, r.nsm);
-            out.push(Rod { id: r.id, card: RodCard::Conrod, grids, material, area, torsion, c, nsm, at: r.at });
+            out.push(Rod {
+                id: r.id,
+                card: RodCard::Conrod,
+                grids,
+                material,
+                area,
+                torsion,
+                c,
+                nsm,
+                at: r.at,
+            });
         }
         out.sort_by_key(|r| r.id);
         self.model.rods = out;
@@ -95,13 +143,25 @@ impl<'a> Builder<'a> {
             }
             let name = format!("{card} {}", s.id);
             let (k, stress_coefficient) = match s.stiffness {
-                SpringStiffness::Direct { k, stress_coefficient, .. } => (k, stress_coefficient),
+                SpringStiffness::Direct {
+                    k,
+                    stress_coefficient,
+                    ..
+                } => (k, stress_coefficient),
                 SpringStiffness::Property(pid) => {
                     let pid = pid.unwrap_or(s.id);
                     match pelas.get(&pid) {
                         Some(p) => (p.k, p.s),
                         None => {
-                            self.fault(name, "PID", s.at, FaultKind::Missing { what: "PELAS", id: pid.into() });
+                            self.fault(
+                                name,
+                                "PID",
+                                s.at,
+                                FaultKind::Missing {
+                                    what: "PELAS",
+                                    id: pid.into(),
+                                },
+                            );
                             continue;
                         }
                     }
@@ -110,11 +170,16 @@ impl<'a> Builder<'a> {
             let mut ends = [None; 2];
             let mut complete = true;
             for (end, slot) in s.ends.iter().zip(&mut ends) {
-                let Some((grid, component)) = *end else { continue };
+                let Some((grid, component)) = *end else {
+                    continue;
+                };
                 match (self.grid(grid, &name, "G", s.at), component) {
                     (Some(g), c @ 1..=6) => *slot = Some((g, c - 1)),
                     (Some(_), c) => {
-                        let kind = FaultKind::Word { found: c.to_string(), expected: "a component 1 to 6 of a grid" };
+                        let kind = FaultKind::Word {
+                            found: c.to_string(),
+                            expected: "a component 1 to 6 of a grid",
+                        };
                         self.fault(name.clone(), "C", s.at, kind);
                         complete = false;
                     }
@@ -122,7 +187,13 @@ impl<'a> Builder<'a> {
                 }
             }
             if complete {
-                out.push(Spring { id: s.id, k, stress_coefficient, ends, at: s.at });
+                out.push(Spring {
+                    id: s.id,
+                    k,
+                    stress_coefficient,
+                    ends,
+                    at: s.at,
+                });
             }
         }
         out.sort_by_key(|s| s.id);
@@ -140,12 +211,23 @@ impl<'a> Builder<'a> {
             let name = format!("CBUSH {}", b.id);
             let pid = b.pid.unwrap_or(b.id);
             let Some(p) = properties.get(&pid).copied() else {
-                self.fault(name, "PID", b.at, FaultKind::Missing { what: "PBUSH", id: pid.into() });
+                self.fault(
+                    name,
+                    "PID",
+                    b.at,
+                    FaultKind::Missing {
+                        what: "PBUSH",
+                        id: pid.into(),
+                    },
+                );
                 continue;
             };
             if p.rigid.iter().any(|r| *r) {
                 let what = "RIGID on a PBUSH".to_owned();
-                let kind = FaultKind::Unsupported { what, remedy: "give a stiffness, or use an RBE2 or RBAR" };
+                let kind = FaultKind::Unsupported {
+                    what,
+                    remedy: "give a stiffness, or use an RBE2 or RBAR",
+                };
                 self.fault(format!("PBUSH {pid}"), "K", p.at, kind);
             }
             out.extend(self.bush(b, p, &name));
@@ -190,7 +272,9 @@ impl<'a> Builder<'a> {
                 }
             },
             (None, None) if apart => {
-                let across = [1, 2, 4, 5].iter().any(|i| p.k.get(*i).is_some_and(|k| *k != 0.0));
+                let across = [1, 2, 4, 5]
+                    .iter()
+                    .any(|i| p.k.get(*i).is_some_and(|k| *k != 0.0));
                 if across {
                     self.fault(name.to_owned(), "X1", b.at, FaultKind::Orientation);
                     return None;
@@ -213,7 +297,15 @@ impl<'a> Builder<'a> {
             }
             _ => xa + b.s.unwrap_or(0.5) * (xb - xa),
         };
-        Some(Bush { id: b.id, grids: (ga, gb), axes, location, k: p.k, recovery: p.recovery, at: b.at })
+        Some(Bush {
+            id: b.id,
+            grids: (ga, gb),
+            axes,
+            location,
+            k: p.k,
+            recovery: p.recovery,
+            at: b.at,
+        })
     }
 }
 

@@ -21,7 +21,10 @@ impl Builder<'_> {
         for (sid, loads) in sums {
             sets.entry(sid).or_default().extend(loads);
         }
-        self.model.load_sets = sets.into_iter().map(|(sid, loads)| LoadSet { sid, loads }).collect();
+        self.model.load_sets = sets
+            .into_iter()
+            .map(|(sid, loads)| LoadSet { sid, loads })
+            .collect();
         self.temperatures();
     }
 
@@ -30,11 +33,24 @@ impl Builder<'_> {
         let forces = cards.forces.iter().map(|f| ("FORCE", f));
         for (card, f) in forces.chain(cards.moments.iter().map(|f| ("MOMENT", f))) {
             let name = format!("{card} {}", f.sid);
-            let Some(g) = self.grid(f.grid, &name, "G", f.at) else { continue };
-            let Some(frame) = self.frame(f.cid.into(), &name, "CID", f.at) else { continue };
+            let Some(g) = self.grid(f.grid, &name, "G", f.at) else {
+                continue;
+            };
+            let Some(frame) = self.frame(f.cid.into(), &name, "CID", f.at) else {
+                continue;
+            };
             let x = self.x(g);
-            let v = self.model.frames.get(frame.us()).map_or_else(Vec3::zeros, |fr| fr.vector_to_basic(f.n, x)) * f.scale;
-            let load = if card == "FORCE" { Load::Force(g, v) } else { Load::Moment(g, v) };
+            let v = self
+                .model
+                .frames
+                .get(frame.us())
+                .map_or_else(Vec3::zeros, |fr| fr.vector_to_basic(f.n, x))
+                * f.scale;
+            let load = if card == "FORCE" {
+                Load::Force(g, v)
+            } else {
+                Load::Moment(g, v)
+            };
             sets.entry(f.sid).or_default().push((1.0, load));
         }
     }
@@ -45,25 +61,41 @@ impl Builder<'_> {
             let name = format!("PLOAD {}", p.sid);
             let mut grids = [None; 4];
             for (id, slot) in p.grids.iter().zip(&mut grids) {
-                *slot = if *id == 0 { None } else { self.grid(*id, &name, "G", p.at) };
+                *slot = if *id == 0 {
+                    None
+                } else {
+                    self.grid(*id, &name, "G", p.at)
+                };
             }
             if grids.iter().take(3).all(Option::is_some) {
-                let load = Load::FacePressure { grids, pressure: [p.pressure; 4], direction: None };
+                let load = Load::FacePressure {
+                    grids,
+                    pressure: [p.pressure; 4],
+                    direction: None,
+                };
                 sets.entry(p.sid).or_default().push((1.0, load));
             }
         }
         for p in &cards.pload2s {
             let name = format!("PLOAD2 {}", p.sid);
             let shells = self.shells_of(&p.elements, &name, p.at);
-            let load = Load::ShellPressure { shells, pressure: [p.pressure; 4], direction: None };
+            let load = Load::ShellPressure {
+                shells,
+                pressure: [p.pressure; 4],
+                direction: None,
+            };
             sets.entry(p.sid).or_default().push((1.0, load));
         }
         for p in &cards.pload4s {
             let loads = self.pload4(p);
-            sets.entry(p.sid).or_default().extend(loads.into_iter().map(|l| (1.0, l)));
+            sets.entry(p.sid)
+                .or_default()
+                .extend(loads.into_iter().map(|l| (1.0, l)));
         }
         for p in &cards.pload1s {
-            sets.entry(p.sid).or_default().push((1.0, Load::Unsupported("PLOAD1", p.at)));
+            sets.entry(p.sid)
+                .or_default()
+                .push((1.0, Load::Unsupported("PLOAD1", p.at)));
         }
     }
 
@@ -80,7 +112,15 @@ impl Builder<'_> {
                 for id in list {
                     match self.model.shell_ix(*id) {
                         Some(ix) => out.push(ix),
-                        None => self.fault(name.to_owned(), "EID", at, FaultKind::Missing { what: "shell", id: (*id).into() }),
+                        None => self.fault(
+                            name.to_owned(),
+                            "EID",
+                            at,
+                            FaultKind::Missing {
+                                what: "shell",
+                                id: (*id).into(),
+                            },
+                        ),
                     }
                 }
                 out
@@ -97,10 +137,17 @@ impl Builder<'_> {
         let pressure = p.pressure.map(|x| x.unwrap_or(p1));
         let direction = match p.direction {
             Some((cid, n)) if n != [0.0; 3] => {
-                let Some(f) = self.frame(cid.into(), &name, "CID", p.at) else { return Vec::new() };
-                let Some(frame) = self.model.frames.get(f.us()) else { return Vec::new() };
+                let Some(f) = self.frame(cid.into(), &name, "CID", p.at) else {
+                    return Vec::new();
+                };
+                let Some(frame) = self.model.frames.get(f.us()) else {
+                    return Vec::new();
+                };
                 if frame.kind != nastran::cards::CoordKind::Rectangular {
-                    return vec![Load::Unsupported("PLOAD4 in a cylindrical or spherical system", p.at)];
+                    return vec![Load::Unsupported(
+                        "PLOAD4 in a cylindrical or spherical system",
+                        p.at,
+                    )];
                 }
                 unit(frame.vector_to_basic(n, Vec3::zeros()))
             }
@@ -113,7 +160,13 @@ impl Builder<'_> {
             IdList::Thru(a, b) => {
                 let range = |id: &u32| (*a..=*b).contains(id);
                 let solids = self.model.solids.iter().map(|s| s.id).filter(range);
-                self.model.shells.iter().map(|s| s.id).filter(range).chain(solids).collect()
+                self.model
+                    .shells
+                    .iter()
+                    .map(|s| s.id)
+                    .filter(range)
+                    .chain(solids)
+                    .collect()
             }
         };
         for id in ids {
@@ -122,22 +175,47 @@ impl Builder<'_> {
                 continue;
             }
             let Ok(solid) = self.model.solids.binary_search_by_key(&id, |s| s.id) else {
-                self.fault(name.clone(), "EID", p.at, FaultKind::Missing { what: "shell or solid", id: id.into() });
+                self.fault(
+                    name.clone(),
+                    "EID",
+                    p.at,
+                    FaultKind::Missing {
+                        what: "shell or solid",
+                        id: id.into(),
+                    },
+                );
                 continue;
             };
-            let corner = p.face.map(|g| g.and_then(|g| self.grid_ix.get(&g).copied()));
-            let face = self.model.solids.get(solid).and_then(|s| solid_face(s, corner));
+            let corner = p
+                .face
+                .map(|g| g.and_then(|g| self.grid_ix.get(&g).copied()));
+            let face = self
+                .model
+                .solids
+                .get(solid)
+                .and_then(|s| solid_face(s, corner));
             match face {
-                Some(grids) => out.push(Load::FacePressure { grids, pressure, direction }),
+                Some(grids) => out.push(Load::FacePressure {
+                    grids,
+                    pressure,
+                    direction,
+                }),
                 None => {
                     let found = format!("G1 {:?}, G3 or G4 {:?}", p.face[0], p.face[1]);
-                    let kind = FaultKind::Word { found, expected: "corners that tell a face of the element" };
+                    let kind = FaultKind::Word {
+                        found,
+                        expected: "corners that tell a face of the element",
+                    };
                     self.fault(name.clone(), "G1", p.at, kind);
                 }
             }
         }
         if !shells.is_empty() {
-            out.push(Load::ShellPressure { shells, pressure, direction });
+            out.push(Load::ShellPressure {
+                shells,
+                pressure,
+                direction,
+            });
         }
         out
     }
@@ -146,12 +224,22 @@ impl Builder<'_> {
         let cards = self.cards;
         for g in &cards.gravs {
             let name = format!("GRAV {}", g.sid);
-            let Some(f) = self.frame(g.cid.into(), &name, "CID", g.at) else { continue };
-            let n = self.model.frames.get(f.us()).map_or_else(Vec3::zeros, |f| f.axes.tr_mul(&Vec3::from(g.n)));
-            sets.entry(g.sid).or_default().push((1.0, Load::Gravity(n * g.scale)));
+            let Some(f) = self.frame(g.cid.into(), &name, "CID", g.at) else {
+                continue;
+            };
+            let n = self
+                .model
+                .frames
+                .get(f.us())
+                .map_or_else(Vec3::zeros, |f| f.axes.tr_mul(&Vec3::from(g.n)));
+            sets.entry(g.sid)
+                .or_default()
+                .push((1.0, Load::Gravity(n * g.scale)));
         }
         for r in &cards.rforces {
-            sets.entry(r.sid).or_default().push((1.0, Load::Unsupported("RFORCE", r.at)));
+            sets.entry(r.sid)
+                .or_default()
+                .push((1.0, Load::Unsupported("RFORCE", r.at)));
         }
     }
 
@@ -163,12 +251,19 @@ impl Builder<'_> {
             let mut missing = Vec::new();
             for (factor, sid) in &l.terms {
                 match sets.get(sid) {
-                    Some(loads) => to.extend(loads.iter().map(|(f, load)| (f * factor * l.scale, load.clone()))),
+                    Some(loads) => to.extend(
+                        loads
+                            .iter()
+                            .map(|(f, load)| (f * factor * l.scale, load.clone())),
+                    ),
                     None => missing.push(*sid),
                 }
             }
             for sid in missing {
-                let kind = FaultKind::Missing { what: "load set", id: sid.into() };
+                let kind = FaultKind::Missing {
+                    what: "load set",
+                    id: sid.into(),
+                };
                 self.fault(format!("LOAD {}", l.sid), "L", l.at, kind);
             }
         }
@@ -178,13 +273,25 @@ impl Builder<'_> {
     fn temperatures(&mut self) {
         let cards = self.cards;
         let mut sets: BTreeMap<u32, TemperatureSet> = BTreeMap::new();
-        let fresh = |sid: u32, at: Place| TemperatureSet { sid, default: None, grids: Vec::new(), at };
+        let fresh = |sid: u32, at: Place| TemperatureSet {
+            sid,
+            default: None,
+            grids: Vec::new(),
+            at,
+        };
         for t in &cards.tempds {
-            sets.entry(t.sid).or_insert_with(|| fresh(t.sid, t.at)).default = Some(t.t);
+            sets.entry(t.sid)
+                .or_insert_with(|| fresh(t.sid, t.at))
+                .default = Some(t.t);
         }
         for t in &cards.temps {
-            let Some(g) = self.grid(t.grid, &format!("TEMP {}", t.sid), "G", t.at) else { continue };
-            sets.entry(t.sid).or_insert_with(|| fresh(t.sid, t.at)).grids.push((g, t.t));
+            let Some(g) = self.grid(t.grid, &format!("TEMP {}", t.sid), "G", t.at) else {
+                continue;
+            };
+            sets.entry(t.sid)
+                .or_insert_with(|| fresh(t.sid, t.at))
+                .grids
+                .push((g, t.t));
         }
         self.model.temperatures = sets.into_values().collect();
     }

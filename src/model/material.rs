@@ -39,18 +39,46 @@ impl Builder<'_> {
                 }
             };
             if m.e.is_some_and(|e| e < 0.0) {
-                self.fault(name.clone(), "E", m.at, FaultKind::NotPositive { what: "Young's modulus", value: e });
+                self.fault(
+                    name.clone(),
+                    "E",
+                    m.at,
+                    FaultKind::NotPositive {
+                        what: "Young's modulus",
+                        value: e,
+                    },
+                );
             }
             // A stated nu is what the card says; with E and G both stated too it may be anything that the solver accepts.
             if !(-1.0 < nu && nu <= 0.5) && m.g.is_none() {
                 self.fault(name, "NU", m.at, FaultKind::Poisson { nu });
             }
-            let kind = MaterialKind::Isotropic { e, g, nu, alpha: m.alpha };
-            out.push(Material { id: m.id, kind, rho: m.rho, tref: m.tref, at: m.at });
+            let kind = MaterialKind::Isotropic {
+                e,
+                g,
+                nu,
+                alpha: m.alpha,
+            };
+            out.push(Material {
+                id: m.id,
+                kind,
+                rho: m.rho,
+                tref: m.tref,
+                at: m.at,
+            });
         }
         for m in &cards.mat2s {
-            let kind = MaterialKind::Anisotropic2d { g: m.g, alpha: m.alpha };
-            out.push(Material { id: m.id, kind, rho: m.rho, tref: m.tref, at: m.at });
+            let kind = MaterialKind::Anisotropic2d {
+                g: m.g,
+                alpha: m.alpha,
+            };
+            out.push(Material {
+                id: m.id,
+                kind,
+                rho: m.rho,
+                tref: m.tref,
+                at: m.at,
+            });
         }
         for m in &cards.mat8s {
             let kind = MaterialKind::Orthotropic {
@@ -62,23 +90,45 @@ impl Builder<'_> {
                 g2z: m.g2z.unwrap_or(0.0),
                 alpha: m.alpha,
             };
-            out.push(Material { id: m.id, kind, rho: m.rho, tref: m.tref, at: m.at });
+            out.push(Material {
+                id: m.id,
+                kind,
+                rho: m.rho,
+                tref: m.tref,
+                at: m.at,
+            });
         }
         for m in &cards.mat9s {
-            let kind = MaterialKind::Anisotropic3d { g: m.g, alpha: m.alpha };
-            out.push(Material { id: m.id, kind, rho: m.rho, tref: m.tref, at: m.at });
+            let kind = MaterialKind::Anisotropic3d {
+                g: m.g,
+                alpha: m.alpha,
+            };
+            out.push(Material {
+                id: m.id,
+                kind,
+                rho: m.rho,
+                tref: m.tref,
+                at: m.at,
+            });
         }
         out.sort_by_key(|m| (m.id, m.at));
         for pair in out.windows(2) {
             if let [a, b] = pair {
                 if a.id == b.id {
-                    let kind = FaultKind::Duplicate { what: "material id", first: a.at };
+                    let kind = FaultKind::Duplicate {
+                        what: "material id",
+                        first: a.at,
+                    };
                     self.fault(format!("material {}", b.id), "MID", b.at, kind);
                 }
             }
         }
         out.dedup_by_key(|m| m.id);
-        self.material_ix = out.iter().enumerate().map(|(i, m)| (m.id, MaterialIx(i as u32))).collect();
+        self.material_ix = out
+            .iter()
+            .enumerate()
+            .map(|(i, m)| (m.id, MaterialIx(i as u32)))
+            .collect();
         self.model.materials = out;
     }
 }

@@ -8,7 +8,9 @@ impl Builder<'_> {
     pub(super) fn params(&mut self) {
         let cards = self.cards;
         for p in &cards.params {
-            let Some(value) = p.values.first() else { continue };
+            let Some(value) = p.values.first() else {
+                continue;
+            };
             let number = value.as_f64();
             let yes = matches!(value, ParamValue::Text(t) if t.eq_ignore_ascii_case("YES"));
             let no = matches!(value, ParamValue::Text(t) if t.eq_ignore_ascii_case("NO"));
@@ -35,7 +37,10 @@ impl Builder<'_> {
                 _ => {}
             }
             if let Some(expected) = wrong {
-                let kind = FaultKind::Word { found: format!("{value:?}"), expected };
+                let kind = FaultKind::Word {
+                    found: format!("{value:?}"),
+                    expected,
+                };
                 self.fault(format!("PARAM,{}", p.name), "V1", p.at, kind);
             }
         }

@@ -11,10 +11,12 @@ use nalgebra::Matrix6;
 pub(crate) fn rigid_body_matrix(mass: f64, r: Vec3, inertia: Mat3) -> Matrix6<f64> {
     let cross = Mat3::new(0.0, -r.z, r.y, r.z, 0.0, -r.x, -r.y, r.x, 0.0);
     let mut m = Matrix6::zeros();
-    m.fixed_view_mut::<3, 3>(0, 0).copy_from(&(Mat3::identity() * mass));
+    m.fixed_view_mut::<3, 3>(0, 0)
+        .copy_from(&(Mat3::identity() * mass));
     m.fixed_view_mut::<3, 3>(0, 3).copy_from(&(-cross * mass));
     m.fixed_view_mut::<3, 3>(3, 0).copy_from(&(cross * mass));
-    m.fixed_view_mut::<3, 3>(3, 3).copy_from(&(inertia - cross * cross * mass));
+    m.fixed_view_mut::<3, 3>(3, 3)
+        .copy_from(&(inertia - cross * cross * mass));
     m
 }
 
@@ -28,31 +30,61 @@ impl Builder<'_> {
             }
             let name = format!("CONM2 {}", c.id);
             if c.mass < 0.0 {
-                self.fault(name.clone(), "M", c.at, FaultKind::NotPositive { what: "mass", value: c.mass });
+                self.fault(
+                    name.clone(),
+                    "M",
+                    c.at,
+                    FaultKind::NotPositive {
+                        what: "mass",
+                        value: c.mass,
+                    },
+                );
             }
-            let Some(grid) = self.grid(c.grid, &name, "G", c.at) else { continue };
+            let Some(grid) = self.grid(c.grid, &name, "G", c.at) else {
+                continue;
+            };
             let x = self.x(grid);
             let (axes, offset) = if c.cid == -1 {
                 // The centre of gravity is a location in the basic system.
                 (Mat3::identity(), Vec3::from(c.offset) - x)
             } else {
-                let Some(f) = self.frame(c.cid.into(), &name, "CID", c.at) else { continue };
-                let axes = self.model.frames.get(f.us()).map_or_else(Mat3::identity, |f| f.axes_at(x));
+                let Some(f) = self.frame(c.cid.into(), &name, "CID", c.at) else {
+                    continue;
+                };
+                let axes = self
+                    .model
+                    .frames
+                    .get(f.us())
+                    .map_or_else(Mat3::identity, |f| f.axes_at(x));
                 (axes, axes.tr_mul(&Vec3::from(c.offset)))
             };
             let [i11, i21, i22, i31, i32, i33] = c.inertia;
             let local = Mat3::new(i11, -i21, -i31, -i21, i22, -i32, -i31, -i32, i33);
             let inertia = axes.tr_mul(&local) * axes;
-            out.push(PointMass { id: c.id, grid, matrix: rigid_body_matrix(c.mass, offset, inertia), offset, at: c.at });
+            out.push(PointMass {
+                id: c.id,
+                grid,
+                matrix: rigid_body_matrix(c.mass, offset, inertia),
+                offset,
+                at: c.at,
+            });
         }
         for c in &cards.conm1s {
             if !self.element(c.id, "CONM1", c.at) {
                 continue;
             }
             let name = format!("CONM1 {}", c.id);
-            let Some(grid) = self.grid(c.grid, &name, "G", c.at) else { continue };
-            let Some(f) = self.frame(c.cid.into(), &name, "CID", c.at) else { continue };
-            let axes = self.model.frames.get(f.us()).map_or_else(Mat3::identity, |f| f.axes_at(self.x(grid)));
+            let Some(grid) = self.grid(c.grid, &name, "G", c.at) else {
+                continue;
+            };
+            let Some(f) = self.frame(c.cid.into(), &name, "CID", c.at) else {
+                continue;
+            };
+            let axes = self
+                .model
+                .frames
+                .get(f.us())
+                .map_or_else(Mat3::identity, |f| f.axes_at(self.x(grid)));
             let mut local = Matrix6::zeros();
             let mut terms = c.m.iter();
             for i in 0..6 {
@@ -66,7 +98,13 @@ impl Builder<'_> {
             t.fixed_view_mut::<3, 3>(0, 0).copy_from(&axes);
             t.fixed_view_mut::<3, 3>(3, 3).copy_from(&axes);
             let matrix = t.transpose() * local * t;
-            out.push(PointMass { id: c.id, grid, matrix, offset: Vec3::zeros(), at: c.at });
+            out.push(PointMass {
+                id: c.id,
+                grid,
+                matrix,
+                offset: Vec3::zeros(),
+                at: c.at,
+            });
         }
         out.sort_by_key(|m| m.id);
         self.model.masses = out;

@@ -27,7 +27,12 @@ impl Builder<'_> {
                 continue;
             }
             let name = format!("RBAR {}", r.id);
-            let pair = |d: [Dofs; 2]| [(r.grids[0], d[0]), (r.grids[1], d[1])].into_iter().filter(|t| !t.1.is_empty()).collect::<Vec<_>>();
+            let pair = |d: [Dofs; 2]| {
+                [(r.grids[0], d[0]), (r.grids[1], d[1])]
+                    .into_iter()
+                    .filter(|t| !t.1.is_empty())
+                    .collect::<Vec<_>>()
+            };
             let mut m = r.dependent;
             if m.iter().all(|d| d.is_empty()) {
                 m = r.independent.map(|d| Dofs(Dofs::ALL.0 & !d.0));
@@ -57,14 +62,27 @@ impl Builder<'_> {
         self.model.rigids = out;
     }
 
-    fn grid_dofs(&mut self, list: &[(u32, Dofs)], name: &str, field: &'static str, at: Place) -> Vec<(GridIx, Dofs)> {
-        list.iter().filter_map(|(g, d)| Some((self.grid(*g, name, field, at)?, *d))).collect()
+    fn grid_dofs(
+        &mut self,
+        list: &[(u32, Dofs)],
+        name: &str,
+        field: &'static str,
+        at: Place,
+    ) -> Vec<(GridIx, Dofs)> {
+        list.iter()
+            .filter_map(|(g, d)| Some((self.grid(*g, name, field, at)?, *d)))
+            .collect()
     }
 
     fn six(&mut self, independent: &[(GridIx, Dofs)], name: &str, at: Place) {
         let n = independent.iter().map(|t| t.1.len()).sum();
         if n != 6 {
-            self.fault(name.to_owned(), "CNA", at, FaultKind::NotSixIndependent { n });
+            self.fault(
+                name.to_owned(),
+                "CNA",
+                at,
+                FaultKind::NotSixIndependent { n },
+            );
         }
     }
 
@@ -84,15 +102,27 @@ impl Builder<'_> {
         if self.collinear(&arms, reference, r.refc) {
             self.fault(name, "G", r.at, FaultKind::CollinearArms);
         }
-        let kind = RigidKind::Mean { reference, refc: r.refc, arms, um };
-        Some(Rigid { id: r.id, kind, at: r.at })
+        let kind = RigidKind::Mean {
+            reference,
+            refc: r.refc,
+            arms,
+            um,
+        };
+        Some(Rigid {
+            id: r.id,
+            kind,
+            at: r.at,
+        })
     }
 
     /// Whether the arms leave a rotation free that the reference grid is asked to follow: the weighted sum of their rigid-body
     /// rows, scaled to lengths about 1, has no full rank.
     fn collinear(&self, arms: &[(f64, Dofs, GridIx)], reference: GridIx, refc: Dofs) -> bool {
         let x0 = self.x(reference);
-        let reach = arms.iter().map(|a| (self.x(a.2) - x0).norm()).fold(0.0, f64::max);
+        let reach = arms
+            .iter()
+            .map(|a| (self.x(a.2) - x0).norm())
+            .fold(0.0, f64::max);
         let scale = if reach > 0.0 { reach } else { 1.0 };
         let mut sum = nalgebra::Matrix6::<f64>::zeros();
         for (w, dofs, g) in arms {
@@ -117,14 +147,16 @@ impl Builder<'_> {
         }
         // A direction without stiffness matters where the reference grid's own dofs move along it.
         let axes = self.cd_axes(reference);
-        (0..6).filter(|k| eigen.eigenvalues[*k] < 1e-10 * largest).any(|k| {
-            let v = eigen.eigenvectors.column(k);
-            refc.iter0().any(|i| {
-                let a = axes.row(i % 3);
-                let base = if i < 3 { 0 } else { 3 };
-                (0..3).map(|j| a[j] * v[base + j]).sum::<f64>().abs() > 1e-6
+        (0..6)
+            .filter(|k| eigen.eigenvalues[*k] < 1e-10 * largest)
+            .any(|k| {
+                let v = eigen.eigenvectors.column(k);
+                refc.iter0().any(|i| {
+                    let a = axes.row(i % 3);
+                    let base = if i < 3 { 0 } else { 3 };
+                    (0..3).map(|j| a[j] * v[base + j]).sum::<f64>().abs() > 1e-6
+                })
             })
-        })
     }
 
     /// A dof may be dependent once, in all rigid elements together, and not independent in the same one.
@@ -133,18 +165,43 @@ impl Builder<'_> {
         let mut found = Vec::new();
         for r in rigids {
             let (dependent, independent): (Vec<(GridIx, Dofs)>, &[(GridIx, Dofs)]) = match &r.kind {
-                RigidKind::Body { dependent, independent, .. } => (dependent.clone(), independent),
-                RigidKind::Mean { reference, refc, um, .. } if um.is_empty() => (vec![(*reference, *refc)], &[]),
+                RigidKind::Body {
+                    dependent,
+                    independent,
+                    ..
+                } => (dependent.clone(), independent),
+                RigidKind::Mean {
+                    reference,
+                    refc,
+                    um,
+                    ..
+                } if um.is_empty() => (vec![(*reference, *refc)], &[]),
                 RigidKind::Mean { um, .. } => (um.clone(), &[]),
             };
             for (g, dofs) in dependent {
                 for i in dofs.iter0() {
                     let id = self.model.grids.get(g.us()).map_or(0, |g| g.id);
-                    if independent.iter().any(|(h, d)| *h == g && d.has(i as u8 + 1)) {
-                        found.push((r, FaultKind::DependentAndIndependent { grid: id, dof: i as u8 + 1 }));
+                    if independent
+                        .iter()
+                        .any(|(h, d)| *h == g && d.has(i as u8 + 1))
+                    {
+                        found.push((
+                            r,
+                            FaultKind::DependentAndIndependent {
+                                grid: id,
+                                dof: i as u8 + 1,
+                            },
+                        ));
                     }
                     match first.get(&(g, i)) {
-                        Some(at) => found.push((r, FaultKind::DependentTwice { grid: id, dof: i as u8 + 1, first: *at })),
+                        Some(at) => found.push((
+                            r,
+                            FaultKind::DependentTwice {
+                                grid: id,
+                                dof: i as u8 + 1,
+                                first: *at,
+                            },
+                        )),
                         None => {
                             first.insert((g, i), r.at);
                         }
@@ -158,6 +215,20 @@ impl Builder<'_> {
     }
 }
 
-fn body(id: u32, independent: Vec<(GridIx, Dofs)>, dependent: Vec<(GridIx, Dofs)>, alpha: f64, at: Place) -> Rigid {
-    Rigid { id, kind: RigidKind::Body { independent, dependent, alpha }, at }
+fn body(
+    id: u32,
+    independent: Vec<(GridIx, Dofs)>,
+    dependent: Vec<(GridIx, Dofs)>,
+    alpha: f64,
+    at: Place,
+) -> Rigid {
+    Rigid {
+        id,
+        kind: RigidKind::Body {
+            independent,
+            dependent,
+            alpha,
+        },
+        at,
+    }
 }

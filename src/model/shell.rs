@@ -14,11 +14,19 @@ const SHEAR_RATIO: f64 = 0.833333;
 impl Builder<'_> {
     pub(super) fn shells(&mut self) {
         let mut properties = self.shell_properties();
-        let mut ix: HashMap<u32, ShellPropertyIx> =
-            properties.iter().enumerate().map(|(i, p)| (p.id, ShellPropertyIx(i as u32))).collect();
+        let mut ix: HashMap<u32, ShellPropertyIx> = properties
+            .iter()
+            .enumerate()
+            .map(|(i, p)| (p.id, ShellPropertyIx(i as u32)))
+            .collect();
         let first_thickness = self.first_corner_thickness();
         let cards = self.cards;
-        let blank_t: HashSet<u32> = cards.pshells.iter().filter(|p| p.t.is_none()).map(|p| p.id).collect();
+        let blank_t: HashSet<u32> = cards
+            .pshells
+            .iter()
+            .filter(|p| p.t.is_none())
+            .map(|p| p.id)
+            .collect();
         let mut out = Vec::with_capacity(cards.shells.len());
         for s in &cards.shells {
             let card = s.shape.card();
@@ -28,8 +36,16 @@ impl Builder<'_> {
             let name = format!("{card} {}", s.id);
             let pid = s.pid.unwrap_or(s.id);
             let property = *ix.entry(pid).or_insert_with(|| {
-                let kind = FaultKind::Missing { what: "shell property", id: pid.into() };
-                self.faults.push(super::ModelFault { card: name.clone(), field: "PID", at: s.at, kind });
+                let kind = FaultKind::Missing {
+                    what: "shell property",
+                    id: pid.into(),
+                };
+                self.faults.push(super::ModelFault {
+                    card: name.clone(),
+                    field: "PID",
+                    at: s.at,
+                    kind,
+                });
                 properties.push(without_stiffness(pid, s.at));
                 ShellPropertyIx(properties.len() as u32 - 1)
             });
@@ -52,7 +68,9 @@ impl Builder<'_> {
         properties.sort_by_key(|p| p.id);
         for p in &mut properties {
             // Z1 and Z2 of a PSHELL without T follow from the thickness of its elements.
-            if let (ShellKind::Homogeneous { t, .. }, Some(te)) = (&p.kind, first_thickness.get(&p.id)) {
+            if let (ShellKind::Homogeneous { t, .. }, Some(te)) =
+                (&p.kind, first_thickness.get(&p.id))
+            {
                 if *t == 0.0 && p.z == [0.0, 0.0] {
                     p.z = [-te / 2.0, te / 2.0];
                 }
@@ -69,7 +87,8 @@ impl Builder<'_> {
         for s in &self.cards.shells {
             let stated: Vec<f64> = s.thickness.iter().flatten().copied().collect();
             if !stated.is_empty() && !s.tflag {
-                out.entry(s.pid.unwrap_or(s.id)).or_insert(stated.iter().sum::<f64>() / stated.len() as f64);
+                out.entry(s.pid.unwrap_or(s.id))
+                    .or_insert(stated.iter().sum::<f64>() / stated.len() as f64);
             }
         }
         out
@@ -104,7 +123,12 @@ impl Builder<'_> {
         }
         let x: Vec<Vec3> = grids.iter().take(corners).map(|g| self.x(*g)).collect();
         let Some(normal) = shell_normal(&x) else {
-            self.fault(name.to_owned(), "G", s.at, FaultKind::Degenerate { what: "area" });
+            self.fault(
+                name.to_owned(),
+                "G",
+                s.at,
+                FaultKind::Degenerate { what: "area" },
+            );
             return None;
         };
         let p = properties.get(property.us());
@@ -118,11 +142,17 @@ impl Builder<'_> {
             if let Some(ti) = ti {
                 *slot = if s.tflag { ti * t } else { *ti };
                 if !(*slot > 0.0) {
-                    let kind = FaultKind::NotPositive { what: "thickness", value: *slot };
+                    let kind = FaultKind::NotPositive {
+                        what: "thickness",
+                        value: *slot,
+                    };
                     self.fault(name.to_owned(), "T", s.at, kind);
                 }
             } else if blank_t.contains(&pid) {
-                let kind = FaultKind::NotPositive { what: "thickness", value: 0.0 };
+                let kind = FaultKind::NotPositive {
+                    what: "thickness",
+                    value: 0.0,
+                };
                 self.fault(name.to_owned(), "T", s.at, kind);
                 break;
             }
@@ -130,9 +160,15 @@ impl Builder<'_> {
         let material_angle_rad = match s.angle {
             MaterialAngle::Theta(deg) => deg.to_radians(),
             MaterialAngle::Mcid(cid) => {
-                let frame = self.frame(cid.into(), name, "MCID", s.at).unwrap_or(FrameIx(0));
+                let frame = self
+                    .frame(cid.into(), name, "MCID", s.at)
+                    .unwrap_or(FrameIx(0));
                 let centre = x.iter().sum::<Vec3>() / x.len() as f64;
-                let axes = self.model.frames.get(frame.us()).map_or_else(Mat3::identity, |f| f.axes_at(centre));
+                let axes = self
+                    .model
+                    .frames
+                    .get(frame.us())
+                    .map_or_else(Mat3::identity, |f| f.axes_at(centre));
                 projected_angle(&axes, &x, normal)
             }
         };
@@ -161,7 +197,10 @@ impl Builder<'_> {
         for pair in out.windows(2) {
             if let [a, b] = pair {
                 if a.id == b.id {
-                    let kind = FaultKind::Duplicate { what: "shell property id", first: a.at };
+                    let kind = FaultKind::Duplicate {
+                        what: "shell property id",
+                        first: a.at,
+                    };
                     self.faults.push(super::ModelFault {
                         card: format!("shell property {}", b.id),
                         field: "PID",
@@ -178,16 +217,33 @@ impl Builder<'_> {
     fn pshell(&mut self, p: &Placed<Pshell>) -> ShellProperty {
         let name = format!("PSHELL {}", p.id);
         if let Some(value) = p.t.filter(|t| !(*t > 0.0)) {
-            self.fault(name.clone(), "T", p.at, FaultKind::NotPositive { what: "thickness", value });
+            self.fault(
+                name.clone(),
+                "T",
+                p.at,
+                FaultKind::NotPositive {
+                    what: "thickness",
+                    value,
+                },
+            );
         }
         let t = p.t.unwrap_or(0.0);
         let membrane = p.mid1.and_then(|m| self.material(m, &name, "MID1", p.at));
         let plane_strain = p.mid2 == Some(-1);
-        let bending = p.mid2.and_then(|m| u32::try_from(m).ok()).filter(|m| *m > 0);
+        let bending = p
+            .mid2
+            .and_then(|m| u32::try_from(m).ok())
+            .filter(|m| *m > 0);
         let bending = bending.and_then(|m| self.material(m, &name, "MID2", p.at));
         // Transverse shear belongs to bending: without MID2 a MID3 has nothing to act on.
-        let shear = p.mid3.filter(|m| *m > 0).and_then(|m| self.material(m, &name, "MID3", p.at));
-        let coupling = p.mid4.filter(|m| *m > 0).and_then(|m| self.material(m, &name, "MID4", p.at));
+        let shear = p
+            .mid3
+            .filter(|m| *m > 0)
+            .and_then(|m| self.material(m, &name, "MID3", p.at));
+        let coupling = p
+            .mid4
+            .filter(|m| *m > 0)
+            .and_then(|m| self.material(m, &name, "MID4", p.at));
         let kind = ShellKind::Homogeneous {
             t,
             membrane,
@@ -199,7 +255,13 @@ impl Builder<'_> {
             shear_ratio: p.shear_ratio.unwrap_or(SHEAR_RATIO),
         };
         let z = [p.z1.unwrap_or(-t / 2.0), p.z2.unwrap_or(t / 2.0)];
-        ShellProperty { id: p.id, kind, nsm: p.nsm.unwrap_or(0.0), z, at: p.at }
+        ShellProperty {
+            id: p.id,
+            kind,
+            nsm: p.nsm.unwrap_or(0.0),
+            z,
+            at: p.at,
+        }
     }
 
     fn pcomp(&mut self, p: &Placed<Pcomp>) -> ShellProperty {
@@ -207,11 +269,18 @@ impl Builder<'_> {
         let mut plies = Vec::with_capacity(2 * p.plies.len());
         for ply in &p.plies {
             if !(ply.t > 0.0) {
-                let kind = FaultKind::NotPositive { what: "ply thickness", value: ply.t };
+                let kind = FaultKind::NotPositive {
+                    what: "ply thickness",
+                    value: ply.t,
+                };
                 self.fault(name.clone(), "T", p.at, kind);
             }
             if let Some(material) = self.material(ply.mid, &name, "MID", p.at) {
-                plies.push(ModelPly { material, t: ply.t, theta_rad: ply.theta_deg.to_radians() });
+                plies.push(ModelPly {
+                    material,
+                    t: ply.t,
+                    theta_rad: ply.theta_deg.to_radians(),
+                });
             }
         }
         if p.symmetric {
@@ -220,8 +289,18 @@ impl Builder<'_> {
         }
         let total: f64 = plies.iter().map(|p| p.t).sum();
         let z0 = p.z0.unwrap_or(-total / 2.0);
-        let kind = ShellKind::Laminate { z0, plies, lam: p.lam.clone() };
-        ShellProperty { id: p.id, kind, nsm: p.nsm, z: [z0, z0 + total], at: p.at }
+        let kind = ShellKind::Laminate {
+            z0,
+            plies,
+            lam: p.lam.clone(),
+        };
+        ShellProperty {
+            id: p.id,
+            kind,
+            nsm: p.nsm,
+            z: [z0, z0 + total],
+            at: p.at,
+        }
     }
 }
 
@@ -237,7 +316,13 @@ fn without_stiffness(id: u32, at: Place) -> ShellProperty {
         bending_ratio: 1.0,
         shear_ratio: SHEAR_RATIO,
     };
-    ShellProperty { id, kind, nsm: 0.0, z: [0.0, 0.0], at }
+    ShellProperty {
+        id,
+        kind,
+        nsm: 0.0,
+        z: [0.0, 0.0],
+        at,
+    }
 }
 
 /// Unit normal of a shell's corners: d13 x d24 of a quad, side 12 x side 13 of a triangle; `None` without area.
@@ -249,19 +334,31 @@ pub(crate) fn shell_normal(x: &[Vec3]) -> Option<Vec3> {
     };
     let n = u.cross(&v);
     // Against the rounding of coordinates far from the origin.
-    if n.norm() > 1e-12 * u.norm() * v.norm() { unit(n) } else { None }
+    if n.norm() > 1e-12 * u.norm() * v.norm() {
+        unit(n)
+    } else {
+        None
+    }
 }
 
 /// Angle from side 1-2 to the first of the axes projected on the element, right-handed about the normal. Where the first axis
 /// stands on the element (a cylinder meshed on its own system), the second is taken.
 fn projected_angle(axes: &Mat3, x: &[Vec3], normal: Vec3) -> f64 {
-    let (Some(a), Some(b)) = (x.first(), x.get(1)) else { return 0.0 };
+    let (Some(a), Some(b)) = (x.first(), x.get(1)) else {
+        return 0.0;
+    };
     let flat = |v: Vec3| v - normal * v.dot(&normal);
-    let Some(e1) = unit(flat(b - a)) else { return 0.0 };
+    let Some(e1) = unit(flat(b - a)) else {
+        return 0.0;
+    };
     let e2 = normal.cross(&e1);
     // Under half a degree from the normal a projected direction means nothing.
     const STANDS: f64 = 0.01;
     let first = flat(axes.row(0).transpose());
-    let axis = if first.norm() > STANDS { first } else { flat(axes.row(1).transpose()) };
+    let axis = if first.norm() > STANDS {
+        first
+    } else {
+        flat(axes.row(1).transpose())
+    };
     axis.dot(&e2).atan2(axis.dot(&e1))
 }

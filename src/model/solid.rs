@@ -15,10 +15,18 @@ impl Builder<'_> {
         let mut ix: HashMap<u32, u32> = HashMap::new();
         for id in ids {
             let Some(p) = by_id.get(&id) else { continue };
-            let Some(material) = self.material(p.mid, &format!("PSOLID {id}"), "MID", p.at) else { continue };
+            let Some(material) = self.material(p.mid, &format!("PSOLID {id}"), "MID", p.at) else {
+                continue;
+            };
             ix.insert(id, self.model.solid_properties.len() as u32);
             let options = p.options.clone();
-            self.model.solid_properties.push(SolidProperty { id, material, cordm: p.cordm, options, at: p.at });
+            self.model.solid_properties.push(SolidProperty {
+                id,
+                material,
+                cordm: p.cordm,
+                options,
+                at: p.at,
+            });
         }
         let mut out = Vec::with_capacity(cards.solids.len());
         for s in &cards.solids {
@@ -29,7 +37,15 @@ impl Builder<'_> {
             let name = format!("{card} {}", s.id);
             let pid = s.pid.unwrap_or(s.id);
             if !by_id.contains_key(&pid) {
-                self.fault(name.clone(), "PID", s.at, FaultKind::Missing { what: "PSOLID", id: pid.into() });
+                self.fault(
+                    name.clone(),
+                    "PID",
+                    s.at,
+                    FaultKind::Missing {
+                        what: "PSOLID",
+                        id: pid.into(),
+                    },
+                );
             }
             let mut grids = [None; 20];
             let mut complete = true;
@@ -42,7 +58,13 @@ impl Builder<'_> {
                 complete &= slot.is_some();
             }
             if let (Some(property), true) = (ix.get(&pid).copied(), complete) {
-                out.push(Solid { id: s.id, shape: s.shape, grids, property, at: s.at });
+                out.push(Solid {
+                    id: s.id,
+                    shape: s.shape,
+                    grids,
+                    property,
+                    at: s.at,
+                });
             }
         }
         out.sort_by_key(|s| s.id);
@@ -60,21 +82,50 @@ impl Builder<'_> {
             let name = format!("CSHEAR {}", s.id);
             let pid = s.pid.unwrap_or(s.id);
             let Some(p) = properties.get(&pid).copied() else {
-                self.fault(name, "PID", s.at, FaultKind::Missing { what: "PSHEAR", id: pid.into() });
+                self.fault(
+                    name,
+                    "PID",
+                    s.at,
+                    FaultKind::Missing {
+                        what: "PSHEAR",
+                        id: pid.into(),
+                    },
+                );
                 continue;
             };
             if !(p.t > 0.0) {
-                self.fault(format!("PSHEAR {pid}"), "T", p.at, FaultKind::NotPositive { what: "thickness", value: p.t });
+                self.fault(
+                    format!("PSHEAR {pid}"),
+                    "T",
+                    p.at,
+                    FaultKind::NotPositive {
+                        what: "thickness",
+                        value: p.t,
+                    },
+                );
             }
             let found = s.grids.map(|id| self.grid(id, &name, "G", s.at));
-            let [Some(a), Some(b), Some(c), Some(d)] = found else { continue };
+            let [Some(a), Some(b), Some(c), Some(d)] = found else {
+                continue;
+            };
             let grids = [a, b, c, d];
             if shell_normal(&grids.map(|g| self.x(g))).is_none() {
                 self.fault(name, "G", s.at, FaultKind::Degenerate { what: "area" });
                 continue;
             }
-            let Some(material) = self.material(p.mid, &name, "MID", s.at) else { continue };
-            out.push(ShearPanel { id: s.id, grids, material, t: p.t, nsm: p.nsm, f1: p.f1, f2: p.f2, at: s.at });
+            let Some(material) = self.material(p.mid, &name, "MID", s.at) else {
+                continue;
+            };
+            out.push(ShearPanel {
+                id: s.id,
+                grids,
+                material,
+                t: p.t,
+                nsm: p.nsm,
+                f1: p.f1,
+                f2: p.f2,
+                at: s.at,
+            });
         }
         out.sort_by_key(|s| s.id);
         self.model.shear_panels = out;
