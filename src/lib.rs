@@ -37,3 +37,4 @@ pub mod report;
 pub mod sensitivity;
 pub mod series;
 pub mod units;
+pub mod vehicle;

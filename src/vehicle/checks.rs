@@ -1,0 +1,131 @@
+//! Checks on identified parameters that no fit makes by itself.
+
+use super::layout::Parameter;
+use crate::finding::{Finding, Severity};
+use serde::Serialize;
+
+/// Identified mass against weighed mass.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MassClosure {
+    /// Sprung and unsprung mass identified.
+    pub identified: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+    /// Mean wheel force over gravity.
+    pub weighed: f64,
+    /// identified / weighed: 1 when dynamics and statics agree.
+    pub ratio: f64,
+}
+
+/// Departure of the mass ratio from 1 worth a word.
+const CLOSURE_LIMIT: f64 = 0.05;
+/// Difference between sides of a vehicle worth a word.
+const SIDES_LIMIT: f64 = 0.2;
+
+/// Compares identified sprung and unsprung mass with the mean wheel force over gravity.
+///
+/// The mean vertical force on a vehicle that goes nowhere up or down is its weight. `None` without a static part.
+pub fn check_mass_closure(
+    identified: f64,
+    sigma: f64,
+    mean_force: f64,
+    gravity: f64,
+) -> Option<(MassClosure, Option<Finding>)> {
+    let weighed = mean_force / gravity;
+    // A mean of less than a twentieth of the identified weight is a zeroed channel, not a vehicle.
+    if !(weighed > 0.05 * identified && identified > 0.0) {
+        return None;
+    }
+    let ratio = identified / weighed;
+    let closure = MassClosure {
+        identified,
+        sigma,
+        weighed,
+        ratio,
+    };
+    if (ratio - 1.0).abs() < CLOSURE_LIMIT.max(3.0 * sigma / weighed) {
+        return Some((closure, None));
+    }
+    let g = 9.80665;
+    let units = [g, 1.0 / g].iter().any(|f| (ratio / f - 1.0).abs() < 0.15);
+    let message = if units {
+        format!(
+            "Identified mass is {ratio:.2} times the weighed mass {weighed:.1}: close to 9.81, so a unit is wrong."
+        )
+    } else {
+        format!(
+            "Identified sprung and unsprung mass {identified:.1} is {:+.0} % off the mean wheel force over gravity, {weighed:.1}. \
+             Masses, stiffness and forces share that error.",
+            100.0 * (ratio - 1.0)
+        )
+    };
+    let remedy = if units {
+        "Declare accelerations in the job's unit, not in g."
+    } else {
+        "Possible causes: accelerometers that read low (gain), a wheel force channel that reads high or was zeroed under load, load \
+         carried over from the other side or axle (roll, pitch), friction or a delay taken for mass. Weigh the axle; check gains."
+    };
+    let severity = if units {
+        Severity::Error
+    } else {
+        Severity::Warning
+    };
+    let finding = Finding::new(severity, "mass-closure", "wheel forces", message, remedy)
+        .with_numbers(ratio, 1.0 + CLOSURE_LIMIT);
+    Some((closure, Some(finding)))
+}
+
+/// Parameters of the two sides of a vehicle that differ by more than wear would explain.
+///
+/// Pairs are names that differ by `_other`, or by `l` against `r` before the axle letter.
+pub fn check_sides(parameters: &[Parameter], values: &[f64], sigmas: &[f64]) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for (i, p) in parameters.iter().enumerate() {
+        let Some(j) = mirrored(&p.name).and_then(|m| parameters.iter().position(|q| q.name == m))
+        else {
+            continue;
+        };
+        let (a, b) = (values[i], values[j]);
+        let spread = sigmas[i].hypot(sigmas[j]);
+        let share = 2.0 * (a - b) / (a.abs() + b.abs());
+        if share.abs() > SIDES_LIMIT && (a - b).abs() > 3.0 * spread {
+            let message = format!(
+                "{} is {a:.5e}, {} is {b:.5e}: {:.0} % apart.",
+                p.name,
+                parameters[j].name,
+                100.0 * share.abs()
+            );
+            let remedy = "Sides of one axle are usually alike: check gain and place of the sensors of either side, or a worn part.";
+            findings.push(
+                Finding::new(Severity::Warning, "sides-differ", &p.name, message, remedy)
+                    .with_numbers(share.abs(), SIDES_LIMIT),
+            );
+        }
+    }
+    findings
+}
+
+fn mirrored(name: &str) -> Option<String> {
+    if !name.ends_with("_other") && !name.contains("_sl") {
+        return Some(format!("{name}_other"));
+    }
+    name.contains("_sl").then(|| name.replacen("_sl", "_sr", 1))
+}
+
+/// A parameter that ended at its bound: the data ask for a value against nature.
+pub fn at_bound(name: &str, bound: f64, is_damping: bool) -> Finding {
+    let what = if is_damping {
+        "Damping can't be told from zero, or something else moves the phase."
+    } else {
+        "The data ask for a value beyond it."
+    };
+    let remedy = "Look for a delay between channels, friction taken for damping, a wrong sign or gain; run `reconcile`.";
+    Finding::new(
+        Severity::Warning,
+        "parameter-at-bound",
+        name,
+        format!("`{name}` ended at its bound {bound}. {what}"),
+        remedy,
+    )
+    .with_numbers(bound, bound)
+}

@@ -1,0 +1,74 @@
+//! What a record can't tell about a model, in words.
+
+use super::fit::Fit;
+use super::layout::Parameter;
+
+/// A parameter is known when one standard deviation is below this share of it ..
+const KNOWN_SHARE: f64 = 0.5;
+/// .. or moves the equations by less than this share of their forces (a damper that is truly zero).
+const IMMATERIAL_SHARE: f64 = 0.05;
+
+/// Whether a parameter with this value, standard deviation and effect of one sigma (share of the forces in its equations) is known.
+pub fn is_known(value: f64, sigma: f64, effect_of_sigma: f64) -> bool {
+    value.is_finite()
+        && sigma.is_finite()
+        && (sigma <= KNOWN_SHARE * value.abs() || effect_of_sigma <= IMMATERIAL_SHARE)
+}
+
+/// The sentence for a group of parameters that scale together, given the reference.
+pub fn scale_sentence(group: &[String], reference: &str, springs: &[String]) -> String {
+    let list = group.join(", ");
+    let spring = springs.first().map_or("a spring rate", String::as_str);
+    format!(
+        "{list} are known only up to one common factor: without a wheel force no equation holds a force, and all of them can be \
+         doubled without a trace in the accelerations. The ratios to {reference} are known. One more number fixes all: {reference} \
+         itself (weigh the axle and take the unsprung mass off), or {spring} (deflection under a known load), or a wheel force."
+    )
+}
+
+/// The sentence for parameters that no equation holds.
+pub fn absent_sentence(names: &[String], channels: &[String]) -> String {
+    format!(
+        "{} can't be found: every equation with it also holds an unmeasured wheel force ({}). Measure that force, or weigh the part.",
+        names.join(", "),
+        channels.join(", ")
+    )
+}
+
+/// Sentences for combinations of parameters that act alike in the record, from the weak directions of a fit, and the sigmas that
+/// make them so.
+pub fn weak_sentences(fit: &Fit, parameters: &[Parameter], unknown: &[usize]) -> Vec<String> {
+    /// Share of a direction above which a parameter takes part in it.
+    const PART: f64 = 0.3;
+    let mut sentences = Vec::new();
+    let mut said: Vec<usize> = Vec::new();
+    for direction in fit.solution.directions.iter().rev() {
+        let members: Vec<usize> = direction
+            .iter()
+            .enumerate()
+            .filter(|(_, v)| v.abs() > PART)
+            .filter_map(|(k, _)| fit.free.get(k).copied())
+            .collect();
+        if !members
+            .iter()
+            .any(|m| unknown.contains(m) && !said.contains(m))
+        {
+            continue;
+        }
+        said.extend(&members);
+        let names: Vec<&str> = members
+            .iter()
+            .filter_map(|&i| parameters.get(i))
+            .map(|p| p.name.as_str())
+            .collect();
+        sentences.push(if let [one] = names.as_slice() {
+            format!("{one} hardly acts in this record: its interval holds everything. Drive so that it works, or state it as known.")
+        } else {
+            format!(
+                "{} act alike in this record: only a combination of them is known. State one of them as known, or record a drive that moves them apart.",
+                names.join(" and ")
+            )
+        });
+    }
+    sentences
+}

@@ -1,0 +1,277 @@
+//! A vehicle seen from the side of mechanics: rigid bodies that heave, pitch and roll, and what joins them.
+
+use super::term::{Quantity, Term};
+
+/// Which small rigid motions a body has; vertical displacement at (x, y) is q0 + x q_pitch + y q_roll.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// Up and down.
+    Heave,
+    /// And slope along x.
+    HeavePitch,
+    /// And slope along y.
+    HeaveRoll,
+    /// All three.
+    HeavePitchRoll,
+}
+
+impl Shape {
+    /// The functions 1, x, y that apply, at a place.
+    pub fn functions(self, x: f64, y: f64) -> Vec<f64> {
+        match self {
+            Self::Heave => vec![1.0],
+            Self::HeavePitch => vec![1.0, x],
+            Self::HeaveRoll => vec![1.0, y],
+            Self::HeavePitchRoll => vec![1.0, x, y],
+        }
+    }
+
+    /// Letters of those functions: "", "x", "y".
+    pub fn letters(self) -> &'static [&'static str] {
+        match self {
+            Self::Heave => &[""],
+            Self::HeavePitch => &["", "x"],
+            Self::HeaveRoll => &["", "y"],
+            Self::HeavePitchRoll => &["", "x", "y"],
+        }
+    }
+
+    /// Number of motions.
+    pub fn n(self) -> usize {
+        self.letters().len()
+    }
+}
+
+/// A rigid body; its inertia is the integral of phi phi' dm over the functions phi of its shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// Suffix of its parameters, such as `b` in `m_b`.
+    pub name: String,
+    /// Its motions.
+    pub shape: Shape,
+    /// Where motions that it has not take place (an axle's x).
+    pub x: f64,
+    /// As `x`, across.
+    pub y: f64,
+    /// Whether springs carry it.
+    pub sprung: bool,
+}
+
+/// A place on a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Index of the body.
+    pub body: usize,
+    /// Along.
+    pub x: f64,
+    /// Across.
+    pub y: f64,
+}
+
+/// What a sensor gives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measures {
+    /// Vertical acceleration.
+    Acceleration,
+    /// Vertical displacement.
+    Displacement,
+}
+
+/// A sensor on a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensor {
+    /// Channel name.
+    pub channel: String,
+    /// Where.
+    pub at: Point,
+    /// What.
+    pub measures: Measures,
+}
+
+/// A vertical force from outside: the road on a wheel, a shaker.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wheel {
+    /// Channel name of its force, whether measured or not.
+    pub channel: String,
+    /// Where.
+    pub at: Point,
+}
+
+/// A spring and damper; stretch d = sum of weight times displacement of its ends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Link {
+    /// Suffix of its parameters, such as `s` in `k_s`.
+    pub name: String,
+    /// Ends with weights: +1 body, -1 wheel.
+    pub ends: Vec<(f64, Point)>,
+    /// Terms of its force; the force on each end is -weight times their sum.
+    pub terms: Vec<Term>,
+}
+
+/// Bodies, sensors, wheels and links.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Vehicle {
+    /// Name of the model, such as `front2`.
+    pub name: String,
+    /// Bodies.
+    pub bodies: Vec<Body>,
+    /// Sensors.
+    pub sensors: Vec<Sensor>,
+    /// Wheels.
+    pub wheels: Vec<Wheel>,
+    /// Links.
+    pub links: Vec<Link>,
+}
+
+/// A parameter of a vehicle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Name, such as `m_b` or `k_s`.
+    pub name: String,
+    /// What it is measured in.
+    pub quantity: Quantity,
+    /// Whether a negative value is against nature.
+    pub positive: bool,
+}
+
+impl Vehicle {
+    /// All parameters: inertias body by body (upper triangle by rows), then coefficients link by link.
+    pub fn parameters(&self) -> Vec<Parameter> {
+        let mut out = Vec::new();
+        for body in &self.bodies {
+            let letters = body.shape.letters();
+            for i in 0..letters.len() {
+                for j in i..letters.len() {
+                    let quantity = match (i, j) {
+                        (0, 0) => Quantity::Mass,
+                        (0, _) => Quantity::FirstMoment,
+                        _ => Quantity::Inertia,
+                    };
+                    let name = format!("m{}{}_{}", letters[i], letters[j], body.name);
+                    out.push(Parameter {
+                        name,
+                        quantity,
+                        positive: i == j,
+                    });
+                }
+            }
+        }
+        for link in &self.links {
+            for term in &link.terms {
+                out.push(Parameter {
+                    name: format!("{}_{}", term.symbol(), link.name),
+                    quantity: term.quantity(),
+                    positive: term.is_positive(),
+                });
+            }
+        }
+        out
+    }
+
+    /// Index of the parameter M(i, j) of a body.
+    pub fn inertia_index(&self, body: usize, i: usize, j: usize) -> usize {
+        let before: usize = self
+            .bodies
+            .iter()
+            .take(body)
+            .map(|b| b.shape.n() * (b.shape.n() + 1) / 2)
+            .sum();
+        let (i, j) = (i.min(j), i.max(j));
+        let n = self.bodies.get(body).map_or(1, |b| b.shape.n());
+        before + i * n - i * (i + 1) / 2 + i + (j - i)
+    }
+
+    /// Index of the parameter of a term of a link.
+    pub fn term_index(&self, link: usize, term: usize) -> usize {
+        let inertias: usize = self
+            .bodies
+            .iter()
+            .map(|b| b.shape.n() * (b.shape.n() + 1) / 2)
+            .sum();
+        inertias
+            + self
+                .links
+                .iter()
+                .take(link)
+                .map(|l| l.terms.len())
+                .sum::<usize>()
+            + term
+    }
+
+    /// Functions of a point's body at the point.
+    pub fn functions(&self, p: &Point) -> Vec<f64> {
+        self.bodies
+            .get(p.body)
+            .map_or(vec![], |b| b.shape.functions(p.x, p.y))
+    }
+
+    /// Bodies in groups that links join, each group ascending, groups in order of their first body.
+    pub fn components(&self) -> Vec<Vec<usize>> {
+        let mut group: Vec<usize> = (0..self.bodies.len()).collect();
+        for link in &self.links {
+            let members: Vec<usize> = link.ends.iter().map(|(_, p)| group[p.body]).collect();
+            if let Some(&low) = members.iter().min() {
+                group
+                    .iter_mut()
+                    .filter(|g| members.contains(g))
+                    .for_each(|g| *g = low);
+            }
+        }
+        let mut heads: Vec<usize> = group.clone();
+        heads.sort_unstable();
+        heads.dedup();
+        heads
+            .iter()
+            .map(|h| (0..group.len()).filter(|&i| group[i] == *h).collect())
+            .collect()
+    }
+
+    /// The part of the vehicle made of the given bodies.
+    pub fn part(&self, bodies: &[usize]) -> Self {
+        let to = |p: &Point| {
+            bodies
+                .iter()
+                .position(|b| *b == p.body)
+                .map(|body| Point { body, ..*p })
+        };
+        Self {
+            name: self.name.clone(),
+            bodies: bodies
+                .iter()
+                .filter_map(|&b| self.bodies.get(b).cloned())
+                .collect(),
+            sensors: self
+                .sensors
+                .iter()
+                .filter_map(|s| {
+                    Some(Sensor {
+                        at: to(&s.at)?,
+                        ..s.clone()
+                    })
+                })
+                .collect(),
+            wheels: self
+                .wheels
+                .iter()
+                .filter_map(|w| {
+                    Some(Wheel {
+                        at: to(&w.at)?,
+                        ..w.clone()
+                    })
+                })
+                .collect(),
+            links: self
+                .links
+                .iter()
+                .filter_map(|l| {
+                    let ends: Option<Vec<(f64, Point)>> =
+                        l.ends.iter().map(|(w, p)| Some((*w, to(p)?))).collect();
+                    Some(Link {
+                        ends: ends?,
+                        ..l.clone()
+                    })
+                })
+                .collect(),
+        }
+    }
+}

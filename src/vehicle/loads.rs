@@ -1,0 +1,239 @@
+//! Wheel and chassis forces from a fitted vehicle and measured motion.
+
+use super::layout::Vehicle;
+use super::motion::Motion;
+use crate::linalg::tall::{left_inverse, solve, triangle};
+
+/// How much of each sprung equation's residual goes to each wheel force: `share[wheel][equation]`.
+pub type Blend = Vec<Vec<f64>>;
+
+/// A history of recovered loads, each with one standard deviation for all samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadHistory {
+    /// Samples per second.
+    pub rate_hz: f64,
+    /// Time of the first sample, s.
+    pub start_s: f64,
+    /// Load names.
+    pub names: Vec<String>,
+    /// Samples, a list a load.
+    pub values: Vec<Vec<f64>>,
+    /// One standard deviation of a sample of each load.
+    pub sigma: Vec<f64>,
+}
+
+/// Force of each link: the sum of its terms, positive when it pulls its ends together.
+pub fn link_forces(vehicle: &Vehicle, values: &[f64], motion: &Motion) -> Vec<Vec<f64>> {
+    let mut out = Vec::new();
+    for (l, terms) in motion.terms.iter().enumerate() {
+        let mut force = vec![0.0; motion.n_samples()];
+        for (t, column) in terms.iter().enumerate() {
+            let c = values
+                .get(vehicle.term_index(l, t))
+                .copied()
+                .unwrap_or(f64::NAN);
+            force.iter_mut().zip(column).for_each(|(f, x)| *f += c * x);
+        }
+        out.push(force);
+    }
+    out
+}
+
+/// M q'' + sum of link forces on each motion of a body: the outside force it needs (0 for a sprung body in a perfect model).
+pub fn needed_forces(
+    vehicle: &Vehicle,
+    values: &[f64],
+    motion: &Motion,
+    links: &[Vec<f64>],
+    body: usize,
+) -> Vec<Vec<f64>> {
+    let motions = &motion.bodies[body];
+    (0..motions.len())
+        .map(|j| {
+            let mut g = vec![0.0; motion.n_samples()];
+            for (i, q) in motions.iter().enumerate() {
+                let m = values
+                    .get(vehicle.inertia_index(body, i, j))
+                    .copied()
+                    .unwrap_or(f64::NAN);
+                g.iter_mut().zip(q).for_each(|(g, a)| *g += m * a);
+            }
+            for (link, force) in vehicle.links.iter().zip(links) {
+                let w: f64 = link
+                    .ends
+                    .iter()
+                    .filter(|e| e.1.body == body)
+                    .map(|(w, p)| w * vehicle.functions(p)[j])
+                    .sum();
+                if w != 0.0 {
+                    g.iter_mut().zip(force).for_each(|(g, f)| *g += w * f);
+                }
+            }
+            g
+        })
+        .collect()
+}
+
+/// Residuals of the equations of bodies without wheels.
+pub fn sprung_residuals(
+    vehicle: &Vehicle,
+    values: &[f64],
+    motion: &Motion,
+    links: &[Vec<f64>],
+) -> Vec<Vec<f64>> {
+    let free = |b: usize| vehicle.wheels.iter().all(|w| w.at.body != b);
+    (0..vehicle.bodies.len())
+        .filter(|b| free(*b))
+        .flat_map(|b| needed_forces(vehicle, values, motion, links, b))
+        .collect()
+}
+
+/// Force of each wheel in the band: unsprung inertia plus link forces (thesis 5.7), plus the blended share of what the sprung
+/// equations leave over. With a blend of 0 it is the spring path; with shares that sum to 1 total momentum (sum of m a).
+/// NaN where a body carries more wheels than it has motions.
+pub fn wheel_forces(
+    vehicle: &Vehicle,
+    values: &[f64],
+    motion: &Motion,
+    blend: &Blend,
+) -> Vec<Vec<f64>> {
+    let links = link_forces(vehicle, values, motion);
+    let mut out = vec![vec![f64::NAN; motion.n_samples()]; vehicle.wheels.len()];
+    for b in 0..vehicle.bodies.len() {
+        let own: Vec<usize> = (0..vehicle.wheels.len())
+            .filter(|&w| vehicle.wheels[w].at.body == b)
+            .collect();
+        if own.is_empty() {
+            continue;
+        }
+        let needed = needed_forces(vehicle, values, motion, &links, b);
+        let columns: Vec<Vec<f64>> = own
+            .iter()
+            .map(|&w| vehicle.functions(&vehicle.wheels[w].at))
+            .collect();
+        let rows: Vec<Vec<f64>> = (0..needed.len())
+            .map(|j| columns.iter().map(|c| c[j]).collect())
+            .collect();
+        let Some(inverse) = left_inverse(&rows) else {
+            continue;
+        };
+        for (row, &w) in inverse.iter().zip(&own) {
+            out[w] = (0..motion.n_samples())
+                .map(|t| row.iter().zip(&needed).map(|(r, g)| r * g[t]).sum())
+                .collect();
+        }
+    }
+    if blend.iter().flatten().any(|s| *s != 0.0) {
+        let residuals = sprung_residuals(vehicle, values, motion, &links);
+        for (force, shares) in out.iter_mut().zip(blend) {
+            for (r, s) in residuals.iter().zip(shares) {
+                force.iter_mut().zip(r).for_each(|(f, r)| *f += s * r);
+            }
+        }
+    }
+    out
+}
+
+/// The blend that fits measured wheel forces best (all zero where none is measured): spring path and momentum path weighted by
+/// what each leaves over.
+pub fn best_blend(vehicle: &Vehicle, values: &[f64], motion: &Motion) -> Blend {
+    let links = link_forces(vehicle, values, motion);
+    let residuals = sprung_residuals(vehicle, values, motion, &links);
+    let zero = vec![vec![0.0; residuals.len()]; vehicle.wheels.len()];
+    let spring_path = wheel_forces(vehicle, values, motion, &zero);
+    let n = residuals.len();
+    let share = |w: usize| -> Option<Vec<f64>> {
+        let measured = motion.forces.get(w)?.as_ref()?;
+        let gap: Vec<f64> = measured
+            .iter()
+            .zip(&spring_path[w])
+            .map(|(m, s)| m - s)
+            .collect();
+        let mut columns: Vec<(usize, &[f64])> = residuals
+            .iter()
+            .enumerate()
+            .map(|(i, r)| (i, r.as_slice()))
+            .collect();
+        columns.push((n, &gap));
+        let x = solve(&[(1.0, &triangle(&columns))], n).x;
+        x.iter().all(|v| v.is_finite()).then_some(x)
+    };
+    (0..vehicle.wheels.len())
+        .map(|w| share(w).unwrap_or_else(|| vec![0.0; n]))
+        .collect()
+}
+
+/// Force on the chassis from all links of a body, by the body's inertia: M q'' in heave (thesis 5.8, 5.11).
+pub fn chassis_force_by_mass(
+    vehicle: &Vehicle,
+    values: &[f64],
+    motion: &Motion,
+    body: usize,
+) -> Vec<f64> {
+    let mut out = vec![0.0; motion.n_samples()];
+    for (i, q) in motion.bodies[body].iter().enumerate() {
+        let m = values
+            .get(vehicle.inertia_index(body, i, 0))
+            .copied()
+            .unwrap_or(f64::NAN);
+        out.iter_mut().zip(q).for_each(|(f, a)| *f += m * a);
+    }
+    out
+}
+
+/// The same by the links' own terms: minus the sum of link forces (thesis 5.9, 5.12).
+pub fn chassis_force_by_spring(
+    vehicle: &Vehicle,
+    values: &[f64],
+    motion: &Motion,
+    body: usize,
+) -> Vec<f64> {
+    let links = link_forces(vehicle, values, motion);
+    let mut out = vec![0.0; motion.n_samples()];
+    for (link, force) in vehicle.links.iter().zip(&links) {
+        let w: f64 = link
+            .ends
+            .iter()
+            .filter(|e| e.1.body == body)
+            .map(|e| e.0)
+            .sum();
+        out.iter_mut().zip(force).for_each(|(o, f)| *o -= w * f);
+    }
+    out
+}
+
+/// Force on the chassis from a single accelerometer and a stated sprung mass: m a, with the standard deviation that the mass
+/// (one sd), sensor noise and the part of the motion not straight above the wheel (share of the signal) leave.
+pub fn chassis_force_single(
+    acceleration: &[f64],
+    mass: f64,
+    mass_sigma: f64,
+    noise: f64,
+) -> (Vec<f64>, f64) {
+    let force: Vec<f64> = acceleration.iter().map(|a| mass * a).collect();
+    let rms = crate::series::detrend::rms(acceleration);
+    (force, (mass_sigma * rms).hypot(mass * noise))
+}
+
+/// Where a leaf spring stands on the frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeafSeat {
+    /// From the fixed hanger to the axle, along the spring.
+    pub hanger_to_axle: f64,
+    /// From the axle to the shackle.
+    pub axle_to_shackle: f64,
+    /// Angle of the shackle from the vertical, radians, positive when it pulls the spring's end away from the hanger.
+    pub shackle_angle_rad: f64,
+}
+
+/// Vertical force at hanger and shackle and horizontal force at both, from the vertical force on the chassis: the leaf is a beam
+/// on a hinge and a roller whose reaction is along the shackle.
+pub fn split_leaf(force: f64, seat: LeafSeat) -> [f64; 3] {
+    let length = seat.hanger_to_axle + seat.axle_to_shackle;
+    let shackle = force * seat.hanger_to_axle / length;
+    [
+        force - shackle,
+        shackle,
+        shackle * seat.shackle_angle_rad.tan(),
+    ]
+}

@@ -1,0 +1,29 @@
+//! Vehicles as rigid bodies on springs: parameters and wheel loads from accelerations.
+//!
+//! - [`layout`]: bodies, accelerometers, wheels and links of a vehicle; [`term`]: what a link does; [`preset`]: the vehicles that
+//!   a job can name
+//! - [`motion`]: measured channels made comparable; [`equations`]: the equations of motion, linear in the parameters
+//! - [`fit`]: weighted least squares with bounds; [`interval`]: covariance under coloured residuals
+//! - [`identify`]: all of it, with [`identifiability`] in words and [`checks`]
+//! - [`loads`]: wheel and chassis forces; [`fusion`]: axle bridge and hub accelerometer together
+//! - [`simulate`]: forward in time; [`refine`]: nonlinear parameters by simulation error
+//! - [`swarm`]: particle swarm, for comparison with the thesis
+
+pub mod checks;
+pub mod equations;
+pub mod fit;
+pub mod fusion;
+pub mod identifiability;
+pub mod identify;
+pub mod interval;
+pub mod layout;
+pub mod loads;
+pub mod motion;
+pub mod preset;
+pub mod refine;
+pub mod simulate;
+pub mod swarm;
+pub mod term;
+
+#[cfg(test)]
+mod tests;

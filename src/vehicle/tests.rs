@@ -1,0 +1,31 @@
+use super::identify::{Identification, Question, identify};
+use super::preset::{Wish, vehicle};
+use super::term::UnitNames;
+use crate::series::channels::Channels;
+use crate::series::csv::read_csv;
+use crate::series::spectrum::Band;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+mod shared_cases;
+
+fn question(model: &str, terms: &[&str], band: (f64, f64)) -> Question {
+    let wish = Wish {
+        model: model.into(),
+        terms: terms.iter().map(|t| (*t).to_owned()).collect(),
+        ..Wish::default()
+    };
+    Question {
+        vehicle: vehicle(&wish).unwrap(),
+        known: BTreeMap::new(),
+        bounds: BTreeMap::new(),
+        band: Band {
+            low_hz: band.0,
+            high_hz: band.1,
+        },
+        gravity: 9.81,
+        gain_tolerance: 0.0,
+        sync_tolerance_s: 0.0,
+        units: UnitNames::si(),
+    }
+}
