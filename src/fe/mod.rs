@@ -4,6 +4,7 @@ pub mod belongs;
 pub mod from_results;
 pub mod shell_frame;
 mod solution;
+pub mod strain_rows;
 pub mod strain_tensor;
 
 pub use solution::*;

@@ -1,1 +1,5 @@
-//! To come.
+//! From plain results to bytes: text, json, csv, html. Nothing is computed here.
+
+mod strains;
+
+pub use strains::{STRAINS_HEADER, write_strains};

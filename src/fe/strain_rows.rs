@@ -1,0 +1,121 @@
+//! Strain of a solution place by place, in the element frame and as a tensor in the basic frame.
+
+use super::shell_frame::{ShellPlace, shell_axes};
+use super::strain_tensor::{Surface, basic_tensor, normal_strain_ratio};
+use super::{CaseResult, PlaneStrain};
+use crate::model::{BeamIx, Mat3, Model, ShellIx, Vec3};
+use std::ops::Range;
+
+/// Strain at one place of one element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrainRow {
+    /// Element id.
+    pub element: u32,
+    /// Card name: `CQUAD4`, `CBAR` ..
+    pub card: &'static str,
+    /// Where along or on the element.
+    pub location: Location,
+    /// Which face or recovery point.
+    pub point: Point,
+    /// Element frame: exx, eyy, gxy (engineering shear). Bars: exx along the bar, the others NaN.
+    pub local: PlaneStrain,
+    /// Basic frame, tensor shear: xx, yy, zz, xy, yz, zx. Shells: with the normal strain of plane stress; all NaN where the material does
+    /// not give it. Bars: exx along the axis alone, no lateral contraction.
+    pub basic: [f64; 6],
+}
+
+/// Where along or on an element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Location {
+    /// Centre of a shell.
+    Centre,
+    /// A corner or an end.
+    Grid(u32),
+    /// Between the ends of a bar: x/xb.
+    Station(f64),
+}
+
+/// A face of a shell, or a stress recovery point of a bar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Point {
+    /// Bottom (Z1) or top (Z2).
+    Surface(Surface),
+    /// C, D, E, F (0 to 3).
+    Recovery(usize),
+}
+
+/// Number of elements with strain in a case: shells, then bars.
+pub fn n_elements(case: &CaseResult) -> usize {
+    case.shells.elements.len() + case.beams.elements.len()
+}
+
+/// Calls `each` with the rows of elements `range` of a case, numbered as [`n_elements`] counts.
+///
+/// Order: shells by id, then bars by id; a shell's centre, then its corners G1 to G4, bottom before top; a bar's stations from A to B,
+/// points C D E F. Places without strain are left out.
+pub fn each_row(model: &Model, case: &CaseResult, range: Range<usize>, mut each: impl FnMut(&StrainRow)) {
+    for i in range {
+        match i.checked_sub(case.shells.elements.len()) {
+            None => shell_rows(model, case, i, &mut each),
+            Some(beam) => beam_rows(model, case, beam, &mut each),
+        }
+    }
+}
+
+fn shell_rows(model: &Model, case: &CaseResult, i: usize, each: &mut impl FnMut(&StrainRow)) {
+    let field = &case.shells;
+    let Some(&ShellIx(ix)) = field.elements.get(i) else { return };
+    let Some(shell) = model.shells.get(ix as usize) else { return };
+    let ratio = Surface::BOTH.map(|s| {
+        let property = model.shell_properties.get(shell.property.us());
+        property.and_then(|p| normal_strain_ratio(model, p, s)).unwrap_or(f64::NAN)
+    });
+    let mut put = |place: ShellPlace, location: Location, strain: &[PlaneStrain; 2]| {
+        if strain.iter().flatten().all(|v| v.is_nan()) {
+            return;
+        }
+        let axes = shell_axes(model, shell, place).unwrap_or_else(|| Mat3::repeat(f64::NAN));
+        for (surface, &local) in Surface::BOTH.into_iter().zip(strain) {
+            let ezz = ratio[surface.ix()] * (local[0] + local[1]);
+            let basic = components(&basic_tensor(local, ezz, &axes));
+            let point = Point::Surface(surface);
+            each(&StrainRow { element: shell.id, card: shell.shape.card(), location, point, local, basic });
+        }
+    };
+    if let Some(strain) = field.centre.get(i) {
+        put(ShellPlace::Centre, Location::Centre, strain);
+    }
+    let Some(corners) = field.corners.get(i) else { return };
+    for (c, strain) in corners.iter().enumerate().take(shell.shape.n_corners()) {
+        if let Some(grid) = shell.grids.get(c).and_then(|g| model.grids.get(g.us())) {
+            put(ShellPlace::Corner(c), Location::Grid(grid.id), strain);
+        }
+    }
+}
+
+fn beam_rows(model: &Model, case: &CaseResult, i: usize, each: &mut impl FnMut(&StrainRow)) {
+    let field = &case.beams;
+    let (Some(&BeamIx(ix)), Some(stations)) = (field.elements.get(i), field.stations.get(i)) else { return };
+    let Some(beam) = model.beams.get(ix as usize) else { return };
+    let axis: Vec3 = beam.axes.row(0).transpose();
+    let end = |e: usize| beam.grids.get(e).and_then(|g| model.grids.get(g.us())).map(|g| Location::Grid(g.id));
+    let card = if beam.is_beam { "CBEAM" } else { "CBAR" };
+    for &(x_xb, points) in stations {
+        let location = match x_xb {
+            0.0 => end(0),
+            1.0 => end(1),
+            _ => None,
+        };
+        let location = location.unwrap_or(Location::Station(x_xb));
+        for (p, exx) in points.into_iter().enumerate() {
+            let basic = components(&(axis * axis.transpose() * exx));
+            let local = [exx, f64::NAN, f64::NAN];
+            each(&StrainRow { element: beam.id, card, location, point: Point::Recovery(p), local, basic });
+        }
+    }
+}
+
+/// xx, yy, zz, xy, yz, zx of a symmetric tensor.
+pub fn components(e: &Mat3) -> [f64; 6] {
+    [e[(0, 0)], e[(1, 1)], e[(2, 2)], e[(0, 1)], e[(1, 2)], e[(2, 0)]]
+}
