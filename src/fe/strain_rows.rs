@@ -53,7 +53,12 @@ pub fn n_elements(case: &CaseResult) -> usize {
 ///
 /// Order: shells by id, then bars by id; a shell's centre, then its corners G1 to G4, bottom before top; a bar's stations from A to B,
 /// points C D E F. Places without strain are left out.
-pub fn each_row(model: &Model, case: &CaseResult, range: Range<usize>, mut each: impl FnMut(&StrainRow)) {
+pub fn each_row(
+    model: &Model,
+    case: &CaseResult,
+    range: Range<usize>,
+    mut each: impl FnMut(&StrainRow),
+) {
     for i in range {
         match i.checked_sub(case.shells.elements.len()) {
             None => shell_rows(model, case, i, &mut each),
@@ -64,11 +69,17 @@ pub fn each_row(model: &Model, case: &CaseResult, range: Range<usize>, mut each:
 
 fn shell_rows(model: &Model, case: &CaseResult, i: usize, each: &mut impl FnMut(&StrainRow)) {
     let field = &case.shells;
-    let Some(&ShellIx(ix)) = field.elements.get(i) else { return };
-    let Some(shell) = model.shells.get(ix as usize) else { return };
+    let Some(&ShellIx(ix)) = field.elements.get(i) else {
+        return;
+    };
+    let Some(shell) = model.shells.get(ix as usize) else {
+        return;
+    };
     let ratio = Surface::BOTH.map(|s| {
         let property = model.shell_properties.get(shell.property.us());
-        property.and_then(|p| normal_strain_ratio(model, p, s)).unwrap_or(f64::NAN)
+        property
+            .and_then(|p| normal_strain_ratio(model, p, s))
+            .unwrap_or(f64::NAN)
     });
     let mut put = |place: ShellPlace, location: Location, strain: &[PlaneStrain; 2]| {
         if strain.iter().flatten().all(|v| v.is_nan()) {
@@ -79,13 +90,22 @@ fn shell_rows(model: &Model, case: &CaseResult, i: usize, each: &mut impl FnMut(
             let ezz = ratio[surface.ix()] * (local[0] + local[1]);
             let basic = components(&basic_tensor(local, ezz, &axes));
             let point = Point::Surface(surface);
-            each(&StrainRow { element: shell.id, card: shell.shape.card(), location, point, local, basic });
+            each(&StrainRow {
+                element: shell.id,
+                card: shell.shape.card(),
+                location,
+                point,
+                local,
+                basic,
+            });
         }
     };
     if let Some(strain) = field.centre.get(i) {
         put(ShellPlace::Centre, Location::Centre, strain);
     }
-    let Some(corners) = field.corners.get(i) else { return };
+    let Some(corners) = field.corners.get(i) else {
+        return;
+    };
     for (c, strain) in corners.iter().enumerate().take(shell.shape.n_corners()) {
         if let Some(grid) = shell.grids.get(c).and_then(|g| model.grids.get(g.us())) {
             put(ShellPlace::Corner(c), Location::Grid(grid.id), strain);
@@ -95,10 +115,19 @@ fn shell_rows(model: &Model, case: &CaseResult, i: usize, each: &mut impl FnMut(
 
 fn beam_rows(model: &Model, case: &CaseResult, i: usize, each: &mut impl FnMut(&StrainRow)) {
     let field = &case.beams;
-    let (Some(&BeamIx(ix)), Some(stations)) = (field.elements.get(i), field.stations.get(i)) else { return };
-    let Some(beam) = model.beams.get(ix as usize) else { return };
+    let (Some(&BeamIx(ix)), Some(stations)) = (field.elements.get(i), field.stations.get(i)) else {
+        return;
+    };
+    let Some(beam) = model.beams.get(ix as usize) else {
+        return;
+    };
     let axis: Vec3 = beam.axes.row(0).transpose();
-    let end = |e: usize| beam.grids.get(e).and_then(|g| model.grids.get(g.us())).map(|g| Location::Grid(g.id));
+    let end = |e: usize| {
+        beam.grids
+            .get(e)
+            .and_then(|g| model.grids.get(g.us()))
+            .map(|g| Location::Grid(g.id))
+    };
     let card = if beam.is_beam { "CBEAM" } else { "CBAR" };
     for &(x_xb, points) in stations {
         let location = match x_xb {
@@ -110,12 +139,26 @@ fn beam_rows(model: &Model, case: &CaseResult, i: usize, each: &mut impl FnMut(&
         for (p, exx) in points.into_iter().enumerate() {
             let basic = components(&(axis * axis.transpose() * exx));
             let local = [exx, f64::NAN, f64::NAN];
-            each(&StrainRow { element: beam.id, card, location, point: Point::Recovery(p), local, basic });
+            each(&StrainRow {
+                element: beam.id,
+                card,
+                location,
+                point: Point::Recovery(p),
+                local,
+                basic,
+            });
         }
     }
 }
 
 /// xx, yy, zz, xy, yz, zx of a symmetric tensor.
 pub fn components(e: &Mat3) -> [f64; 6] {
-    [e[(0, 0)], e[(1, 1)], e[(2, 2)], e[(0, 1)], e[(1, 2)], e[(2, 0)]]
+    [
+        e[(0, 0)],
+        e[(1, 1)],
+        e[(2, 2)],
+        e[(0, 1)],
+        e[(1, 2)],
+        e[(2, 0)],
+    ]
 }

@@ -8,7 +8,8 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 
 /// First line of `strains.csv`. Lower case: element frame, engineering shear; upper case: basic frame, tensor shear.
-pub const STRAINS_HEADER: &str = "subcase,element,type,location,surface,exx,eyy,gxy,Exx,Eyy,Ezz,Exy,Eyz,Ezx";
+pub const STRAINS_HEADER: &str =
+    "subcase,element,type,location,surface,exx,eyy,gxy,Exx,Eyy,Ezz,Exy,Eyz,Ezx";
 
 /// Elements a piece of text: pieces are made in parallel and written in order.
 const PIECE: usize = 2048;
@@ -23,12 +24,20 @@ const POINTS: [&str; 4] = ["C", "D", "E", "F"];
 ///
 /// # Errors
 /// What `out` says.
-pub fn write_strains(model: &Model, solution: &Solution, out: &mut impl Write) -> io::Result<usize> {
+pub fn write_strains(
+    model: &Model,
+    solution: &Solution,
+    out: &mut impl Write,
+) -> io::Result<usize> {
     writeln!(out, "{STRAINS_HEADER}")?;
     let mut pieces = Vec::new();
     for case in &solution.cases {
         let n = n_elements(case);
-        pieces.extend((0..n).step_by(PIECE).map(|start| (case, start..(start + PIECE).min(n))));
+        pieces.extend(
+            (0..n)
+                .step_by(PIECE)
+                .map(|start| (case, start..(start + PIECE).min(n))),
+        );
     }
     let mut n_rows = 0;
     for group in pieces.chunks(PIECES) {
