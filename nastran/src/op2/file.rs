@@ -1,13 +1,17 @@
 //! An OP2 as a caller sees it.
 
 use std::borrow::Cow;
+use std::collections::HashSet;
+use std::hash::{DefaultHasher, Hash, Hasher};
 
-use super::container::{Container, Piece, Record, TableEntry, read_container};
+use super::container::{Container, Piece, Record, TableEntry, TableKind, read_container};
 use super::error::{Op2Error, Unsupported};
+use super::geom::{Geometry, read_params, read_record, tidy};
 use super::index::{Index, Span, index};
 use super::rows::decode;
 use super::weight::read_weight;
 use super::words::{ByteOrder, Format, Words};
+use crate::cards::Cards;
 use crate::results::{Block, GridPointWeight, Note, Quantity, Rows};
 
 /// Who wrote a file, by its labels.
@@ -154,6 +158,29 @@ impl<'a> Op2<'a> {
         read_weight(Words::new(&self.record_bytes(rows), self.format), reference)
     }
 
+    /// The cards of the geometry blocks, and what was passed over in them. A card that stands in two tables (`GEOM1` and `GEOM1S`) is
+    /// taken once; what the solver derives from other cards (PSHELL of a PCOMP, PBAR of a PBARL) is left out.
+    pub fn cards(&self) -> (Cards, Vec<Note>) {
+        let mut out = Geometry::default();
+        let mut seen: HashSet<(usize, u64)> = HashSet::new();
+        for table in &self.tables {
+            let parameters = matches!(table.name.as_str(), "PVT0" | "PVT" | "PVTS");
+            for record in table.records.clone() {
+                let bytes = self.record_bytes(record);
+                let words = Words::new(&bytes, self.format);
+                if parameters {
+                    read_params(words, &mut out);
+                } else if table.kind == TableKind::Geometry
+                    && seen.insert((bytes.len(), fingerprint(&bytes)))
+                {
+                    read_record(&table.name, words, &mut out);
+                }
+            }
+        }
+        tidy(&mut out);
+        (out.cards, out.notes)
+    }
+
     /// The bytes of a record: as they stand where it is one piece, else put together.
     fn record_bytes(&self, record: usize) -> Cow<'a, [u8]> {
         let Some(r) = self.records.get(record) else {
@@ -197,6 +224,13 @@ impl<'a> Op2<'a> {
             why,
         }
     }
+}
+
+/// Tells records apart, so that one that is written twice is read once.
+fn fingerprint(bytes: &[u8]) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    bytes.hash(&mut hasher);
+    hasher.finish()
 }
 
 /// By the version label; MYSTRAN uses MSC's label and is known by its second records, which carry no name.

@@ -6,7 +6,7 @@
 //! - [`words`] 4 or 8 bytes a word, either byte order; text in both 64-bit spellings;
 //! - [`fortran`] the record marks around everything; [`container`] tables, trailers, records;
 //! - [`ident`] identification records; [`index`] result blocks; [`rows`] layouts of the rows and their decoding;
-//! - [`weight`] grid point weight.
+//! - [`weight`] grid point weight; [`geom`] cards out of the geometry blocks.
 //!
 //! # Reference
 //!
@@ -17,6 +17,7 @@ mod container;
 mod error;
 mod file;
 mod fortran;
+mod geom;
 mod ident;
 mod index;
 mod rows;

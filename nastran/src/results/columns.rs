@@ -33,3 +33,24 @@ pub const SHEAR_PANEL: &[&str] = &["max", "average", "margin"];
 pub const SOLID: &[&str] = &[
     "xx", "yy", "zz", "xy", "yz", "zx", "max", "mid", "min", "vm",
 ];
+/// Forces and moments of a shell per length: membrane, bending, transverse shear.
+pub const SHELL_FORCE: &[&str] = &["fx", "fy", "fxy", "mx", "my", "mxy", "qx", "qy"];
+/// CBAR forces: bending in planes 1 and 2 at both ends.
+pub const BAR_FORCE: &[&str] = &[
+    "m1a", "m2a", "m1b", "m2b", "shear1", "shear2", "axial", "torque",
+];
+/// CBAR forces with stations, a row a station.
+pub const BAR_STATION_FORCE: &[&str] = &["x_xb", "m1", "m2", "shear1", "shear2", "axial", "torque"];
+/// CBEAM forces, a row a station.
+pub const BEAM_FORCE: &[&str] = &[
+    "x_xb",
+    "m1",
+    "m2",
+    "shear1",
+    "shear2",
+    "axial",
+    "torque",
+    "warping_torque",
+];
+/// CROD, CTUBE, CONROD forces.
+pub const ROD_FORCE: &[&str] = &["axial", "torque"];

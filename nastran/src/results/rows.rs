@@ -42,8 +42,7 @@ impl Label {
 ///   with stations: `x_xb s1 s2 s3 s4 axial smax smin ms`;
 /// - beams, a row a station: `x_xb sxc sxd sxe sxf smax smin mst msc`;
 /// - rods: `axial msa torsion mst`; springs: `value`; bushes: `t1 t2 t3 r1 r2 r3`; shear panels: `max average margin`;
-/// - plies: `e11 e22 g12 g1z g2z angle emax emin max_shear` (strain, engineering shear), `o11 o22 t12 t1z t2z angle omax omin
-///   max_shear` (stress);
+/// - plies: `s11 s22 s12 s1z s2z angle smax smin vm` in ply axes (strains are engineering shear);
 /// - fasteners (CFAST): `t1 t2 t3 r1 r2 r3`; grid point forces: the same, with [`Rows::labels`];
 /// - forces of shells: `fx fy fxy mx my mxy qx qy` per length; of bars: `m1a m2a m1b m2b shear1 shear2 axial torque`, with
 ///   stations: `x_xb m1 m2 shear1 shear2 axial torque`; of beams: `x_xb m1 m2 shear1 shear2 axial torque warping_torque`; of

@@ -2,6 +2,7 @@
 
 mod cases;
 mod columns;
+mod mesh;
 mod raw_strain;
 mod tables;
 
@@ -89,4 +90,11 @@ fn a_file_that_is_no_op2_is_refused_with_its_first_bytes() {
     let err = Op2::read(b"$ a deck\nCEND\nBEGIN BULK\n").unwrap_err();
     assert!(err.to_string().contains("not an OP2"), "{err}");
     assert!(Op2::read(b"").is_err());
+}
+
+#[test]
+fn cards_of_the_geometry_blocks_agree_with_the_mesh() {
+    let mut compared = 0;
+    each_op2(|case, op2, expected| compared += usize::from(mesh::compare(case, op2, expected)));
+    eprintln!("{compared} meshes compared");
 }

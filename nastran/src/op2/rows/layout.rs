@@ -1,6 +1,6 @@
 //! Which words of a row are what, by quantity, element type and words a row.
 
-use crate::results::{ElementType, Quantity};
+use crate::results::{ElementType, Quantity, columns as c};
 
 /// How an entry of the file becomes rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,64 +36,6 @@ pub(in crate::op2) struct Layout {
     pub columns: &'static [&'static str],
 }
 
-const NODAL: &[&str] = &["t1", "t2", "t3", "r1", "r2", "r3"];
-const SHELL_STRAIN: &[&str] = &["fiber", "exx", "eyy", "gxy", "angle", "emax", "emin", "vm"];
-const SHELL_STRESS: &[&str] = &["fiber", "oxx", "oyy", "txy", "angle", "omax", "omin", "vm"];
-const PLY_STRAIN: &[&str] = &[
-    "e11",
-    "e22",
-    "g12",
-    "g1z",
-    "g2z",
-    "angle",
-    "emax",
-    "emin",
-    "max_shear",
-];
-const PLY_STRESS: &[&str] = &[
-    "o11",
-    "o22",
-    "t12",
-    "t1z",
-    "t2z",
-    "angle",
-    "omax",
-    "omin",
-    "max_shear",
-];
-const BAR: &[&str] = &[
-    "s1a", "s2a", "s3a", "s4a", "axial", "smaxa", "smina", "mst", "s1b", "s2b", "s3b", "s4b",
-    "smaxb", "sminb", "msc",
-];
-const BAR_STATION: &[&str] = &[
-    "x_xb", "s1", "s2", "s3", "s4", "axial", "smax", "smin", "ms",
-];
-const BEAM: &[&str] = &[
-    "x_xb", "sxc", "sxd", "sxe", "sxf", "smax", "smin", "mst", "msc",
-];
-const ROD: &[&str] = &["axial", "msa", "torsion", "mst"];
-const VALUE: &[&str] = &["value"];
-const SHEAR: &[&str] = &["max", "average", "margin"];
-const SOLID: &[&str] = &[
-    "xx", "yy", "zz", "xy", "yz", "zx", "max", "mid", "min", "vm",
-];
-const SHELL_FORCE: &[&str] = &["fx", "fy", "fxy", "mx", "my", "mxy", "qx", "qy"];
-const BAR_FORCE: &[&str] = &[
-    "m1a", "m2a", "m1b", "m2b", "shear1", "shear2", "axial", "torque",
-];
-const BAR_STATION_FORCE: &[&str] = &["x_xb", "m1", "m2", "shear1", "shear2", "axial", "torque"];
-const BEAM_FORCE: &[&str] = &[
-    "x_xb",
-    "m1",
-    "m2",
-    "shear1",
-    "shear2",
-    "axial",
-    "torque",
-    "warping_torque",
-];
-const ROD_FORCE: &[&str] = &["axial", "torque"];
-
 /// The layout of real SORT1 rows; `None` where we have none for this element type and width.
 pub(in crate::op2) fn layout(
     quantity: Quantity,
@@ -114,40 +56,42 @@ pub(in crate::op2) fn layout(
             | Q::AppliedLoad,
             _,
             8,
-        ) => (S::Nodal, NODAL),
-        (Q::GridPointForce, _, 10) => (S::GridPoint, NODAL),
+        ) => (S::Nodal, c::NODAL),
+        (Q::GridPointForce, _, 10) => (S::GridPoint, c::NODAL),
 
-        (Q::Strain, 33 | 74 | 227 | 228, 17) => (S::ShellCentre, SHELL_STRAIN),
-        (Q::Stress, 33 | 74 | 227 | 228, 17) => (S::ShellCentre, SHELL_STRESS),
+        (Q::Strain, 33 | 74 | 227 | 228, 17) => (S::ShellCentre, c::SHELL_STRAIN),
+        (Q::Stress, 33 | 74 | 227 | 228, 17) => (S::ShellCentre, c::SHELL_STRESS),
         (Q::Strain, 64 | 82 | 144, 87) | (Q::Strain, 70 | 75, 70) => {
-            (S::ShellCorners, SHELL_STRAIN)
+            (S::ShellCorners, c::SHELL_STRAIN)
         }
         (Q::Stress, 64 | 82 | 144, 87) | (Q::Stress, 70 | 75, 70) => {
-            (S::ShellCorners, SHELL_STRESS)
+            (S::ShellCorners, c::SHELL_STRESS)
         }
-        (Q::PlyStrain, 95..=98 | 232 | 233, 11) => (S::Ply, PLY_STRAIN),
-        (Q::PlyStress, 95..=98 | 232 | 233, 11) => (S::Ply, PLY_STRESS),
+        (Q::PlyStrain, 95..=98 | 232 | 233, 11) => (S::Ply, c::PLY),
+        (Q::PlyStress, 95..=98 | 232 | 233, 11) => (S::Ply, c::PLY),
 
-        (Q::Strain | Q::Stress, 34, 16) => (S::Plain, BAR),
-        (Q::Strain | Q::Stress, 100, 10) => (S::Stations, BAR_STATION),
-        (Q::Strain | Q::Stress, 2, 111) => (S::Beam, BEAM),
-        (Q::Strain | Q::Stress, 1 | 3 | 10, 5) => (S::Plain, ROD),
-        (Q::Strain | Q::Stress, 11..=14, 2) => (S::Plain, VALUE),
-        (Q::Strain | Q::Stress, 4, 4) => (S::Plain, SHEAR),
-        (Q::Strain | Q::Stress, 102 | 126, 7) => (S::Plain, NODAL),
-        (Q::Strain | Q::Stress, 39, 109) | (Q::Strain | Q::Stress, 255, 130) => (S::Solid, SOLID),
-        (Q::Strain | Q::Stress, 68, 151) | (Q::Strain | Q::Stress, 67, 193) => (S::Solid, SOLID),
+        (Q::Strain | Q::Stress, 34, 16) => (S::Plain, c::BAR),
+        (Q::Strain | Q::Stress, 100, 10) => (S::Stations, c::BAR_STATION),
+        (Q::Strain | Q::Stress, 2, 111) => (S::Beam, c::BEAM),
+        (Q::Strain | Q::Stress, 1 | 3 | 10, 5) => (S::Plain, c::ROD),
+        (Q::Strain | Q::Stress, 11..=14, 2) => (S::Plain, c::SPRING),
+        (Q::Strain | Q::Stress, 4, 4) => (S::Plain, c::SHEAR_PANEL),
+        (Q::Strain | Q::Stress, 102 | 126, 7) => (S::Plain, c::NODAL),
+        (Q::Strain | Q::Stress, 39, 109) | (Q::Strain | Q::Stress, 255, 130) => {
+            (S::Solid, c::SOLID)
+        }
+        (Q::Strain | Q::Stress, 68, 151) | (Q::Strain | Q::Stress, 67, 193) => (S::Solid, c::SOLID),
 
-        (Q::ElementForce, 33 | 74 | 227 | 228, 9) => (S::Plain, SHELL_FORCE),
+        (Q::ElementForce, 33 | 74 | 227 | 228, 9) => (S::Plain, c::SHELL_FORCE),
         (Q::ElementForce, 64 | 82 | 144, 47) | (Q::ElementForce, 70 | 75, 38) => {
-            (S::ForceCorners, SHELL_FORCE)
+            (S::ForceCorners, c::SHELL_FORCE)
         }
-        (Q::ElementForce, 34, 9) => (S::Plain, BAR_FORCE),
-        (Q::ElementForce, 100, 8) => (S::Stations, BAR_STATION_FORCE),
-        (Q::ElementForce, 2, 100) => (S::Beam, BEAM_FORCE),
-        (Q::ElementForce, 1 | 3 | 10, 3) => (S::Plain, ROD_FORCE),
-        (Q::ElementForce, 11..=14, 2) => (S::Plain, VALUE),
-        (Q::ElementForce, 102 | 126, 7) => (S::Plain, NODAL),
+        (Q::ElementForce, 34, 9) => (S::Plain, c::BAR_FORCE),
+        (Q::ElementForce, 100, 8) => (S::Stations, c::BAR_STATION_FORCE),
+        (Q::ElementForce, 2, 100) => (S::Beam, c::BEAM_FORCE),
+        (Q::ElementForce, 1 | 3 | 10, 3) => (S::Plain, c::ROD_FORCE),
+        (Q::ElementForce, 11..=14, 2) => (S::Plain, c::SPRING),
+        (Q::ElementForce, 102 | 126, 7) => (S::Plain, c::NODAL),
         _ => return None,
     };
     Some(Layout {

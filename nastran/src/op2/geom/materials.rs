@@ -1,0 +1,64 @@
+//! Materials.
+
+use super::fields::Fields;
+use crate::cards::{Mat1, Mat2, Mat8, Mat9};
+
+/// MAT1: `mid e g nu rho a tref ge st sc ss mcsid`.
+pub(super) fn mat1(f: &mut Fields<'_>) -> Option<Mat1> {
+    Some(Mat1 {
+        id: f.id()?,
+        e: f.blank_or_real()?,
+        g: f.blank_or_real()?,
+        nu: f.blank_or_real()?,
+        rho: f.real()?,
+        alpha: f.real()?,
+        tref: f.real()?,
+        ge: f.real()?,
+        limits: [limit(f)?, limit(f)?, limit(f)?],
+    })
+}
+
+/// MAT2: `mid g11 g12 g13 g22 g23 g33 rho a1 a2 a3 tref ge st sc ss mcsid`, 17 words; 23 with six damping terms.
+pub(super) fn mat2(f: &mut Fields<'_>) -> Option<Mat2> {
+    Some(Mat2 {
+        id: f.id()?,
+        g: f.reals()?,
+        rho: f.real()?,
+        alpha: f.reals()?,
+        tref: f.real()?,
+        ge: f.real()?,
+    })
+}
+
+/// MAT8: `mid e1 e2 nu12 g12 g1z g2z rho a1 a2 tref` and strengths.
+pub(super) fn mat8(f: &mut Fields<'_>) -> Option<Mat8> {
+    Some(Mat8 {
+        id: f.id()?,
+        e1: f.real()?,
+        e2: f.real()?,
+        nu12: f.real()?,
+        g12: f.real()?,
+        g1z: limit(f)?,
+        g2z: limit(f)?,
+        rho: f.real()?,
+        alpha: f.reals()?,
+        tref: f.real()?,
+    })
+}
+
+/// MAT9: `mid g1..g21 rho a1..a6 tref ge`, 35 words; 56 with 21 damping terms.
+pub(super) fn mat9(f: &mut Fields<'_>) -> Option<Mat9> {
+    Some(Mat9 {
+        id: f.id()?,
+        g: f.reals()?,
+        rho: f.real()?,
+        alpha: f.reals()?,
+        tref: f.real()?,
+        ge: f.real()?,
+    })
+}
+
+/// A real where 0 means blank.
+fn limit(f: &mut Fields<'_>) -> Option<Option<f64>> {
+    Some(f.blank_or_real()?.filter(|x| *x != 0.0))
+}

@@ -1,0 +1,133 @@
+//! Records of cards: cards of fixed length in one of several widths, cards of varying length.
+
+use super::fields::Fields;
+use crate::cards::Cards;
+use crate::op2::words::Words;
+use crate::place::{Place, Placed};
+use crate::results::Note;
+
+/// Cards read so far, and what was passed over.
+#[derive(Clone, Debug, Default)]
+pub(in crate::op2) struct Geometry {
+    pub(in crate::op2) cards: Cards,
+    pub(in crate::op2) notes: Vec<Note>,
+}
+
+/// A record without its code.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Record<'a> {
+    pub(super) words: Words<'a>,
+    pub(super) table: &'a str,
+    /// Words a card, and double precision, where the code says so.
+    pub(super) stated: Option<(usize, bool)>,
+}
+
+impl<'a> Record<'a> {
+    fn double(&self) -> bool {
+        self.stated.is_some_and(|s| s.1)
+    }
+
+    /// All words as fields, for cards of varying length.
+    pub(super) fn fields(&self) -> Fields<'a> {
+        Fields::new(self.words, self.double())
+    }
+
+    /// Words after the last `mark` in the record: what a card holds behind its terminator, at most two.
+    pub(super) fn tail(&self, mark: i64) -> usize {
+        let n = self.words.len();
+        (0..n.min(3))
+            .find(|back| n.checked_sub(back + 1).and_then(|i| self.words.int(i)) == Some(mark))
+            .unwrap_or(0)
+    }
+}
+
+impl Geometry {
+    pub(super) fn note(&mut self, table: &str, message: String) {
+        self.notes.push(Note {
+            subject: format!("table {table}"),
+            message,
+        });
+    }
+
+    pub(super) fn place<T>(card: T) -> Placed<T> {
+        Placed {
+            card,
+            at: Place::default(),
+        }
+    }
+
+    /// Adds cards of a fixed number of words. Solvers and versions differ in it: of `widths` the first one with which all cards
+    /// make sense is taken, else the one with which most do; cards that do not are left out with a note.
+    pub(super) fn fixed<T>(
+        &mut self,
+        record: Record<'_>,
+        card: &str,
+        widths: &[usize],
+        parse: impl Fn(&mut Fields<'_>) -> Option<T>,
+        list: impl Fn(&mut Cards) -> &mut Vec<Placed<T>>,
+    ) {
+        let n_words = record.words.len();
+        let stated = record
+            .stated
+            .map(|s| s.0)
+            .filter(|w| *w > 0 && n_words.is_multiple_of(*w));
+        let widths: Vec<(usize, bool)> = match stated {
+            Some(width) => vec![(width, record.double())],
+            None => widths.iter().map(|w| (*w, record.double())).collect(),
+        };
+        let mut best: Option<(usize, Vec<Placed<T>>)> = None;
+        for (width, double) in widths {
+            let left_over = usize::from(!n_words.is_multiple_of(width.max(1)));
+            let mut failed = left_over;
+            let mut cards = Vec::with_capacity(n_words / width.max(1));
+            for words in record.words.entries(width) {
+                match parse(&mut Fields::new(words, double)) {
+                    Some(card) => cards.push(Self::place(card)),
+                    None => failed = failed.saturating_add(1),
+                }
+            }
+            if best.as_ref().is_none_or(|b| failed < b.0) {
+                best = Some((failed, cards));
+            }
+            if failed == 0 {
+                break;
+            }
+        }
+        let Some((failed, mut cards)) = best else {
+            return;
+        };
+        if failed > 0 {
+            let message = format!(
+                "{card}: {failed} of {} cards do not make sense and were left out",
+                cards.len().saturating_add(failed)
+            );
+            self.note(record.table, message);
+        }
+        list(&mut self.cards).append(&mut cards);
+    }
+
+    /// Adds cards of varying length; stops with a note at the first that does not make sense.
+    pub(super) fn varying<T>(
+        &mut self,
+        record: Record<'_>,
+        card: &str,
+        parse: impl Fn(&mut Fields<'_>) -> Option<T>,
+        list: impl Fn(&mut Cards) -> &mut Vec<Placed<T>>,
+    ) {
+        let mut fields = record.fields();
+        while fields.left() > 0 {
+            match parse(&mut fields) {
+                Some(card) => list(&mut self.cards).push(Self::place(card)),
+                None => {
+                    let message = format!(
+                        "{card}: the record makes no sense from word {} of {} on; the rest was left out",
+                        record.words.len().saturating_sub(fields.left()),
+                        record.words.len()
+                    );
+                    self.note(record.table, message);
+                    return;
+                }
+            }
+        }
+    }
+}
