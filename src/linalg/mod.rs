@@ -1,11 +1,14 @@
 //! Linear algebra: the only place that names outside linear-algebra crates.
 //!
+//! - [`sparse`]: large symmetric positive definite systems
 //! - [`tall`]: least squares with many rows and few columns
 //! - [`levenberg`]: nonlinear least squares
 
 pub mod dense;
 pub mod levenberg;
+pub mod sparse;
 pub mod spd;
 pub mod tall;
 
 pub use dense::{Matrix, Vector};
+pub use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Matrix6, SMatrix, SVector, Vector3, Vector6};

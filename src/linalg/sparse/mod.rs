@@ -1,0 +1,21 @@
+//! Sparse symmetric positive definite systems whose unknowns come in small groups (six to a grid): ordering, factor, solution.
+//!
+//! Everything symbolic happens on the graph of groups, which has six times fewer vertices than the matrix has rows.
+
+mod block_matrix;
+mod factor;
+mod front;
+mod graph;
+mod order;
+mod solve;
+mod supernode;
+mod symbolic;
+
+pub use block_matrix::{BlockMatrix, DenseTerm};
+pub use factor::{Factor, FactorError};
+pub use graph::BlockGraph;
+pub use order::OrderingMethod;
+pub use symbolic::Symbolic;
+
+#[cfg(test)]
+mod tests;

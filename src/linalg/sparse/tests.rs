@@ -1,0 +1,130 @@
+use super::block_matrix::DenseTerm;
+use super::*;
+
+/// A grid of springs, `side` squared groups of `m` unknowns each, every neighbour pair joined by a stiffness, corner held.
+fn lattice(side: usize, m: usize, held: bool) -> (BlockGraph, Vec<u8>, Vec<(Vec<u32>, Vec<f64>)>) {
+    let n = side * side;
+    let mut terms = Vec::new();
+    for i in 0..side {
+        for j in 0..side {
+            let v = (i * side + j) as u32;
+            if i + 1 < side {
+                terms.push(vec![v, v + side as u32]);
+            }
+            if j + 1 < side {
+                terms.push(vec![v, v + 1]);
+            }
+        }
+    }
+    let pair = |w: f64| {
+        let mut k = vec![0.0; 4 * m * m];
+        for a in 0..m {
+            for b in 0..m {
+                let v = if a == b { w } else { 0.1 * w / m as f64 };
+                k[a * 2 * m + b] += v;
+                k[(m + a) * 2 * m + m + b] += v;
+                k[a * 2 * m + m + b] -= v;
+                k[(m + a) * 2 * m + b] -= v;
+            }
+        }
+        k
+    };
+    let mut all: Vec<(Vec<u32>, Vec<f64>)> = terms
+        .iter()
+        .enumerate()
+        .map(|(i, t)| (t.clone(), pair(1.0 + (i % 7) as f64)))
+        .collect();
+    if held {
+        let mut k = vec![0.0; m * m];
+        (0..m).for_each(|a| k[a * m + a] = 3.0);
+        all.push((vec![0], k));
+    }
+    (
+        BlockGraph::from_cliques(n, || terms.iter().map(Vec::as_slice)),
+        vec![m as u8; n],
+        all,
+    )
+}
+
+fn assemble(
+    symbolic: &Symbolic,
+    graph: &BlockGraph,
+    terms: &[(Vec<u32>, Vec<f64>)],
+    m: usize,
+) -> BlockMatrix {
+    let mut matrix = BlockMatrix::zeros(symbolic, graph);
+    let offsets = [0, m];
+    let dense: Vec<DenseTerm<'_>> = terms
+        .iter()
+        .map(|(g, k)| DenseTerm {
+            groups: g,
+            offsets: &offsets[..g.len()],
+            n: g.len() * m,
+            matrix: k,
+        })
+        .collect();
+    matrix.add(symbolic, &dense);
+    matrix
+}
+
+#[test]
+fn the_solution_of_many_right_hand_sides_satisfies_the_equations() {
+    for (side, m) in [(1, 3), (2, 6), (23, 6), (60, 2)] {
+        let (graph, sizes, terms) = lattice(side, m, true);
+        let symbolic = Symbolic::analyse(&graph, &sizes);
+        let matrix = assemble(&symbolic, &graph, &terms, m);
+        let factor = Factor::new(&symbolic, &matrix).unwrap();
+        assert!(factor.lost.is_empty());
+        let n = symbolic.n_unknowns();
+        let b: Vec<f64> = (0..5 * n)
+            .map(|i| ((i * 37 + 11) % 101) as f64 / 50.0 - 1.0)
+            .collect();
+        let mut x = b.clone();
+        factor.solve(&mut x);
+        for (x, b) in x.chunks(n).zip(b.chunks(n)) {
+            let r = matrix.times(&symbolic, x);
+            let worst = r
+                .iter()
+                .zip(b)
+                .map(|(r, b)| (r - b).abs())
+                .fold(0.0, f64::max);
+            assert!(worst < 1e-9, "side {side}: residual {worst:e}");
+        }
+    }
+}
+
+#[test]
+fn every_unknown_that_nothing_holds_is_reported_and_stays_at_zero() {
+    let (graph, sizes, terms) = lattice(12, 3, false);
+    let symbolic = Symbolic::analyse(&graph, &sizes);
+    let matrix = assemble(&symbolic, &graph, &terms, 3);
+    let factor = Factor::new(&symbolic, &matrix).unwrap();
+    assert_eq!(
+        factor.lost.len(),
+        3,
+        "three free translations, smallest pivot {:e}",
+        factor.smallest_pivot
+    );
+    let mut x = vec![0.0; symbolic.n_unknowns()];
+    x[0] = 1.0;
+    x[3 * 143] = -1.0;
+    let b = x.clone();
+    factor.solve(&mut x);
+    let r = matrix.times(&symbolic, &x);
+    assert!(r.iter().zip(&b).all(|(r, b)| (r - b).abs() < 1e-9));
+}
+
+#[test]
+fn the_factor_has_no_more_entries_than_a_band_would() {
+    let (graph, sizes, _) = lattice(60, 2, true);
+    let symbolic = Symbolic::analyse(&graph, &sizes);
+    let n = symbolic.n_unknowns();
+    assert!(symbolic.factor_nonzeros() < n * 2 * 60 / 2);
+}
+
+#[test]
+fn components_are_counted() {
+    let cliques: [&[u32]; 2] = [&[0, 2], &[1, 3, 4]];
+    let (of, count) = BlockGraph::from_cliques(6, || cliques.iter().copied()).components();
+    assert_eq!((of, count), (vec![0, 1, 0, 1, 1, 2], 3));
+}
