@@ -1,5 +1,6 @@
 //! From a model and loads, or from a result file, to strain fields.
 
+mod element;
 pub mod belongs;
 pub mod from_results;
 pub mod shell_frame;

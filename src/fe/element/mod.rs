@@ -1,0 +1,6 @@
+//! Elements: stiffness, mass and strain, one formulation a file.
+//!
+//! Every element works in the basic frame with six unknowns a grid: three translations, then three rotations. Its stiffness K
+//! satisfies K R = 0 for the six rigid motions R of its grids.
+
+pub(crate) mod shell;

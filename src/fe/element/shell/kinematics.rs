@@ -1,0 +1,292 @@
+//! Covariant strains of a shell with nodal directors.
+//!
+//! Position x(r, s, z) = sum h_k (x_k + z d_k), displacement u = sum h_k (u_k + z theta_k x d_k). With g_r = x,r and D = sum h_k d_k the
+//! strains linear in z are e_rr = g_r . u,r + z (g_r . q,r + D,r . u,r) with q = sum h_k theta_k x d_k, and so on. Every one of
+//! them vanishes for u_k = c + w x x_k, theta_k = w, whatever the shape: a x (b x c) products cancel in pairs.
+
+use super::{BadShape, ShellLaw};
+use crate::model::Vec3;
+
+/// A linear form on the element's unknowns.
+pub(super) type Row<const M: usize> = [f64; M];
+
+/// Shape functions and their derivatives at a point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shape<const N: usize> {
+    pub(super) h: [f64; N],
+    pub(super) hr: [f64; N],
+    pub(super) hs: [f64; N],
+}
+
+/// Tangents, director and its derivatives at a point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tangents {
+    pub(super) gr: Vec3,
+    pub(super) gs: Vec3,
+    d: Vec3,
+    dr: Vec3,
+    ds: Vec3,
+}
+
+impl Tangents {
+    pub(super) fn new<const N: usize>(x: &[Vec3; N], d: &[Vec3; N], shape: &Shape<N>) -> Self {
+        let sum = |h: &[f64; N], v: &[Vec3; N]| {
+            h.iter().zip(v).fold(Vec3::zeros(), |a, (h, v)| a + v * *h)
+        };
+        Self {
+            gr: sum(&shape.hr, x),
+            gs: sum(&shape.hs, x),
+            d: sum(&shape.h, d),
+            dr: sum(&shape.hr, d),
+            ds: sum(&shape.hs, d),
+        }
+    }
+}
+
+/// Orthonormal axes in the tangent plane, x nearest to a given direction, and derivatives of r, s along them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Local {
+    pub(super) e1: Vec3,
+    pub(super) e2: Vec3,
+    pub(super) n: Vec3,
+    pub(super) rx: f64,
+    pub(super) sx: f64,
+    pub(super) ry: f64,
+    pub(super) sy: f64,
+    /// Area per dr ds.
+    pub(super) area: f64,
+}
+
+impl Local {
+    pub(super) fn new(t: &Tangents, x_axis: &Vec3) -> Result<Self, BadShape> {
+        let normal = t.gr.cross(&t.gs);
+        let area = normal.norm();
+        let n = normal.try_normalize(0.0).ok_or(BadShape)?;
+        let e1 = (x_axis - n * x_axis.dot(&n))
+            .try_normalize(0.0)
+            .ok_or(BadShape)?;
+        let e2 = n.cross(&e1);
+        let (a, b, c, d) = (t.gr.dot(&e1), t.gr.dot(&e2), t.gs.dot(&e1), t.gs.dot(&e2));
+        let det = a * d - b * c;
+        if !(det > 0.0) {
+            return Err(BadShape);
+        }
+        Ok(Self {
+            e1,
+            e2,
+            n,
+            rx: d / det,
+            sx: -b / det,
+            ry: -c / det,
+            sy: a / det,
+            area,
+        })
+    }
+
+    /// Rows xx, yy, xy from covariant rows rr, ss, 2 rs.
+    pub(super) fn strain<const M: usize>(&self, [rr, ss, rs]: &[Row<M>; 3]) -> [Row<M>; 3] {
+        let (rx, sx, ry, sy) = (self.rx, self.sx, self.ry, self.sy);
+        let mut out = [[0.0; M]; 3];
+        for i in 0..M {
+            out[0][i] = rx * rx * rr[i] + sx * sx * ss[i] + rx * sx * rs[i];
+            out[1][i] = ry * ry * rr[i] + sy * sy * ss[i] + ry * sy * rs[i];
+            out[2][i] = 2.0 * rx * ry * rr[i] + 2.0 * sx * sy * ss[i] + (rx * sy + ry * sx) * rs[i];
+        }
+        out
+    }
+
+    /// Rows xz, yz from covariant rows r, s.
+    pub(super) fn shear<const M: usize>(&self, r: &Row<M>, s: &Row<M>) -> [Row<M>; 2] {
+        let mut out = [[0.0; M]; 2];
+        for i in 0..M {
+            out[0][i] = self.rx * r[i] + self.sx * s[i];
+            out[1][i] = self.ry * r[i] + self.sy * s[i];
+        }
+        out
+    }
+}
+
+fn put<const M: usize>(row: &mut Row<M>, at: usize, v: &Vec3) {
+    row[at] += v.x;
+    row[at + 1] += v.y;
+    row[at + 2] += v.z;
+}
+
+/// Mid-surface strains rr, ss, 2 rs.
+pub(super) fn membrane<const N: usize, const M: usize>(
+    t: &Tangents,
+    shape: &Shape<N>,
+) -> [Row<M>; 3] {
+    let mut rows = [[0.0; M]; 3];
+    for k in 0..N {
+        let (hr, hs) = (shape.hr[k], shape.hs[k]);
+        put(&mut rows[0], 6 * k, &(t.gr * hr));
+        put(&mut rows[1], 6 * k, &(t.gs * hs));
+        put(&mut rows[2], 6 * k, &(t.gr * hs + t.gs * hr));
+    }
+    rows
+}
+
+/// Coefficients of z in the strains rr, ss, 2 rs.
+pub(super) fn curvature<const N: usize, const M: usize>(
+    t: &Tangents,
+    shape: &Shape<N>,
+    d: &[Vec3; N],
+) -> [Row<M>; 3] {
+    let mut rows = [[0.0; M]; 3];
+    for k in 0..N {
+        let (hr, hs) = (shape.hr[k], shape.hs[k]);
+        let (dr, ds) = (d[k].cross(&t.gr), d[k].cross(&t.gs));
+        put(&mut rows[0], 6 * k, &(t.dr * hr));
+        put(&mut rows[1], 6 * k, &(t.ds * hs));
+        put(&mut rows[2], 6 * k, &(t.dr * hs + t.ds * hr));
+        put(&mut rows[0], 6 * k + 3, &(dr * hr));
+        put(&mut rows[1], 6 * k + 3, &(ds * hs));
+        put(&mut rows[2], 6 * k + 3, &(dr * hs + ds * hr));
+    }
+    rows
+}
+
+/// Transverse shear strains r, s.
+pub(super) fn shear<const N: usize, const M: usize>(
+    t: &Tangents,
+    shape: &Shape<N>,
+    d: &[Vec3; N],
+) -> [Row<M>; 2] {
+    let mut rows = [[0.0; M]; 2];
+    for k in 0..N {
+        put(&mut rows[0], 6 * k, &(t.d * shape.hr[k]));
+        put(&mut rows[1], 6 * k, &(t.d * shape.hs[k]));
+        put(&mut rows[0], 6 * k + 3, &(d[k].cross(&t.gr) * shape.h[k]));
+        put(&mut rows[1], 6 * k + 3, &(d[k].cross(&t.gs) * shape.h[k]));
+    }
+    rows
+}
+
+/// Rotation about the surface normal less half the curl of the displacements about the same normal.
+pub(super) fn drilling<const N: usize, const M: usize>(local: &Local, shape: &Shape<N>) -> Row<M> {
+    let mut row = [0.0; M];
+    for k in 0..N {
+        let hx = local.rx * shape.hr[k] + local.sx * shape.hs[k];
+        let hy = local.ry * shape.hr[k] + local.sy * shape.hs[k];
+        put(
+            &mut row,
+            6 * k,
+            &(local.e1 * (0.5 * hy) - local.e2 * (0.5 * hx)),
+        );
+        put(&mut row, 6 * k + 3, &(local.n * shape.h[k]));
+    }
+    row
+}
+
+/// Adds weight * (strain rows)' law (strain rows) to the stiffness; rows are membrane, curvature, shear, drilling.
+pub(super) struct Section<'a> {
+    pub(super) law: &'a ShellLaw,
+    pub(super) t: f64,
+    pub(super) k6rot: f64,
+}
+
+impl Section<'_> {
+    pub(super) fn membrane_matrix(&self) -> Option<[[f64; 3]; 3]> {
+        self.law
+            .membrane
+            .map(|g| g.map(|row| row.map(|v| v * self.t)))
+    }
+
+    /// Drilling stiffness per area: 1e-6 K6ROT G t.
+    fn drilling(&self) -> f64 {
+        let g = self
+            .law
+            .membrane
+            .or(self.law.bending)
+            .map_or(0.0, |g| g[2][2]);
+        1e-6 * self.k6rot * g * self.t
+    }
+
+    pub(super) fn add<const M: usize>(
+        &self,
+        k: &mut [[f64; M]; M],
+        weight: f64,
+        membrane: &[Row<M>; 3],
+        curvature: &[Row<M>; 3],
+        drilling: &Row<M>,
+    ) {
+        let t = self.t;
+        let scaled = |g: &Option<[[f64; 3]; 3]>, by: f64| {
+            g.map(|g| g.map(|row| row.map(|v| v * by * weight)))
+        };
+        if let Some(a) = scaled(&self.law.membrane, t) {
+            add_pair(k, membrane, &a, membrane);
+        }
+        if let Some(d) = scaled(&self.law.bending, t * t * t / 12.0) {
+            add_pair(k, curvature, &d, curvature);
+        }
+        if let Some(b) = scaled(&self.law.coupling, t * t) {
+            add_pair(k, membrane, &b, curvature);
+            add_pair(k, curvature, &b, membrane);
+        }
+        add_pair(k, &[*drilling], &[[self.drilling() * weight]], &[*drilling]);
+    }
+
+    pub(super) fn add_shear<const M: usize>(
+        &self,
+        k: &mut [[f64; M]; M],
+        weight: f64,
+        shear: &[Row<M>; 2],
+    ) {
+        if let Some(s) = self.law.shear {
+            add_pair(
+                k,
+                shear,
+                &s.map(|row| row.map(|v| v * self.t * weight)),
+                shear,
+            );
+        }
+    }
+}
+
+/// K += a' D b.
+fn add_pair<const R: usize, const M: usize>(
+    k: &mut [[f64; M]; M],
+    a: &[Row<M>; R],
+    law: &[[f64; R]; R],
+    b: &[Row<M>; R],
+) {
+    let mut product = [[0.0; M]; R];
+    for (p, row) in product.iter_mut().zip(law) {
+        for (c, b) in row.iter().zip(b) {
+            for i in 0..M {
+                p[i] += c * b[i];
+            }
+        }
+    }
+    for (a, p) in a.iter().zip(&product) {
+        for i in 0..M {
+            let v = a[i];
+            for j in 0..M {
+                k[i][j] += v * p[j];
+            }
+        }
+    }
+}
+
+/// Moves the unknowns from the reference plane to grids that lie `offset` below it: u_mid = u + theta x offset.
+pub(super) fn shift<const M: usize>(row: &mut Row<M>, offset: &Vec3) {
+    for k in 0..M / 6 {
+        let u = Vec3::new(row[6 * k], row[6 * k + 1], row[6 * k + 2]);
+        put(row, 6 * k + 3, &offset.cross(&u));
+    }
+}
+
+/// The same for a stiffness: L' K L.
+pub(super) fn shift_stiffness<const M: usize>(k: &mut [[f64; M]; M], offset: &Vec3) {
+    k.iter_mut().for_each(|row| shift(row, offset));
+    let mut t = [[0.0; M]; M];
+    for i in 0..M {
+        for j in 0..M {
+            t[i][j] = k[j][i];
+        }
+    }
+    t.iter_mut().for_each(|row| shift(row, offset));
+    *k = t;
+}

@@ -1,0 +1,156 @@
+//! The plane-stress law of a shell in its output frame, by the MID1 to MID4 rules of PSHELL.
+
+use crate::model::{Material, MaterialKind, Model, ShellKind, ShellProperty};
+
+/// A shell without MID3 is rigid in transverse shear: this many times its elastic shear stiffness.
+const RIGID_SHEAR: f64 = 1e3;
+
+/// Matrices of stress = G strain (engineering shear) in the output frame; scaled by thickness where they are used.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ShellLaw {
+    /// Membrane; `None`: no membrane stiffness.
+    pub(crate) membrane: Option<[[f64; 3]; 3]>,
+    /// Bending, 12 I / t^3 included.
+    pub(crate) bending: Option<[[f64; 3]; 3]>,
+    /// Membrane-bending coupling (MID4).
+    pub(crate) coupling: Option<[[f64; 3]; 3]>,
+    /// Transverse shear, ts / t included.
+    pub(crate) shear: Option<[[f64; 2]; 2]>,
+}
+
+impl ShellLaw {
+    /// The law of a PSHELL whose material x axis lies at `angle_rad` from the element's output x axis.
+    ///
+    /// `None` for laminates and materials that aren't plane-stress laws: refused before.
+    pub(crate) fn new(model: &Model, property: &ShellProperty, angle_rad: f64) -> Option<Self> {
+        let ShellKind::Homogeneous {
+            membrane,
+            bending,
+            plane_strain,
+            shear,
+            coupling,
+            bending_ratio,
+            shear_ratio,
+            ..
+        } = &property.kind
+        else {
+            return None;
+        };
+        let material = |m: &crate::model::MaterialIx| model.materials.get(m.us());
+        let plane = |m: &Option<crate::model::MaterialIx>| match m {
+            None => Some(None),
+            Some(m) => Some(Some(rotate(&plane_stress(material(m)?)?, angle_rad))),
+        };
+        let membrane_matrix = match (membrane, plane_strain) {
+            (Some(m), true) => Some(plane_strain_matrix(material(m)?)?),
+            _ => plane(membrane)?,
+        };
+        let bending_matrix = plane(bending)?.map(|g| g.map(|row| row.map(|v| v * bending_ratio)));
+        let shear_matrix = match (shear, &bending_matrix) {
+            (_, None) => None,
+            (Some(m), Some(_)) => {
+                let g = rotate_shear(&transverse_shear(material(m)?)?, angle_rad);
+                Some(g.map(|row| row.map(|v| v * shear_ratio)))
+            }
+            (None, Some(b)) => Some([[RIGID_SHEAR * b[2][2], 0.0], [0.0, RIGID_SHEAR * b[2][2]]]),
+        };
+        // Nastran writes strain = e - z chi; our curvature is -chi.
+        let coupling_matrix = plane(coupling)?.map(|g| g.map(|row| row.map(|v| -v)));
+        Some(Self {
+            membrane: membrane_matrix,
+            bending: bending_matrix,
+            coupling: coupling_matrix,
+            shear: shear_matrix,
+        })
+    }
+}
+
+/// G11 G12 G13 / G22 G23 / G33 of plane stress.
+fn plane_stress(m: &Material) -> Option<[[f64; 3]; 3]> {
+    Some(match m.kind {
+        MaterialKind::Isotropic { e, g, nu, .. } => {
+            let c = e / (1.0 - nu * nu);
+            [[c, nu * c, 0.0], [nu * c, c, 0.0], [0.0, 0.0, g]]
+        }
+        MaterialKind::Anisotropic2d {
+            g: [a, b, c, d, e, f],
+            ..
+        } => [[a, b, c], [b, d, e], [c, e, f]],
+        MaterialKind::Orthotropic {
+            e1, e2, nu12, g12, ..
+        } => {
+            let c = 1.0 / (1.0 - nu12 * nu12 * e2 / e1);
+            [
+                [e1 * c, nu12 * e2 * c, 0.0],
+                [nu12 * e2 * c, e2 * c, 0.0],
+                [0.0, 0.0, g12],
+            ]
+        }
+        MaterialKind::Anisotropic3d { .. } => return None,
+    })
+}
+
+fn plane_strain_matrix(m: &Material) -> Option<[[f64; 3]; 3]> {
+    let MaterialKind::Isotropic { e, g, nu, .. } = m.kind else {
+        return None;
+    };
+    let c = e / ((1.0 + nu) * (1.0 - 2.0 * nu));
+    Some([
+        [c * (1.0 - nu), c * nu, 0.0],
+        [c * nu, c * (1.0 - nu), 0.0],
+        [0.0, 0.0, g],
+    ])
+}
+
+fn transverse_shear(m: &Material) -> Option<[[f64; 2]; 2]> {
+    Some(match m.kind {
+        MaterialKind::Isotropic { g, .. } => [[g, 0.0], [0.0, g]],
+        // As MID3 a MAT2 gives G11 G12 G22 of the transverse shear.
+        MaterialKind::Anisotropic2d {
+            g: [a, b, _, d, ..],
+            ..
+        } => [[a, b], [b, d]],
+        MaterialKind::Orthotropic { g12, g1z, g2z, .. } => {
+            let or_rigid = |g: f64| if g > 0.0 { g } else { RIGID_SHEAR * g12 };
+            [[or_rigid(g1z), 0.0], [0.0, or_rigid(g2z)]]
+        }
+        MaterialKind::Anisotropic3d { .. } => return None,
+    })
+}
+
+/// T' G T with T the strain transformation to axes turned by `angle`.
+fn rotate(g: &[[f64; 3]; 3], angle: f64) -> [[f64; 3]; 3] {
+    let (s, c) = angle.sin_cos();
+    let t = [
+        [c * c, s * s, c * s],
+        [s * s, c * c, -c * s],
+        [-2.0 * c * s, 2.0 * c * s, c * c - s * s],
+    ];
+    let mut out = [[0.0; 3]; 3];
+    for (i, row) in out.iter_mut().enumerate() {
+        for (j, v) in row.iter_mut().enumerate() {
+            for k in 0..3 {
+                for l in 0..3 {
+                    *v += t[k][i] * g[k][l] * t[l][j];
+                }
+            }
+        }
+    }
+    out
+}
+
+fn rotate_shear(g: &[[f64; 2]; 2], angle: f64) -> [[f64; 2]; 2] {
+    let (s, c) = angle.sin_cos();
+    let t = [[c, s], [-s, c]];
+    let mut out = [[0.0; 2]; 2];
+    for (i, row) in out.iter_mut().enumerate() {
+        for (j, v) in row.iter_mut().enumerate() {
+            for k in 0..2 {
+                for l in 0..2 {
+                    *v += t[k][i] * g[k][l] * t[l][j];
+                }
+            }
+        }
+    }
+    out
+}

@@ -1,0 +1,70 @@
+//! Directors: the shell normal at each corner, shared by the shells of a grid that meet smoothly (PARAM,SNORM).
+
+use crate::model::{Model, Shell, Vec3};
+
+/// Director at each corner of a shell; a triangle's fourth repeats its third.
+pub(crate) type CornerDirectors = [Vec3; 4];
+
+/// Normals of the element's own surface at its corners; zero where the shape is degenerate.
+fn corner_normals(model: &Model, shell: &Shell) -> CornerDirectors {
+    let n = shell.shape.n_corners();
+    let x = |k: usize| model.grids[shell.grids[k % n].us()].x;
+    let mut normals = [Vec3::zeros(); 4];
+    for (k, normal) in normals.iter_mut().enumerate().take(n) {
+        *normal = (x(k + 1) - x(k))
+            .cross(&(x(k + n - 1) - x(k)))
+            .try_normalize(0.0)
+            .unwrap_or_else(Vec3::zeros);
+    }
+    if n == 3 {
+        normals[3] = normals[2];
+    }
+    normals
+}
+
+/// Directors of every shell: the mean normal of the shells at a grid where all of them lie within `snorm_rad` of it, else the shell's own.
+///
+/// Shells of opposite orientation share a normal too, each with its own sign. An angle of zero or less keeps all normals apart.
+pub(crate) fn shared_normals(model: &Model) -> Vec<CornerDirectors> {
+    let own: Vec<CornerDirectors> = model
+        .shells
+        .iter()
+        .map(|s| corner_normals(model, s))
+        .collect();
+    if model.params.snorm_rad <= 0.0 {
+        return own;
+    }
+    let limit = model.params.snorm_rad.cos();
+    let mut reference = vec![Vec3::zeros(); model.grids.len()];
+    let mut sum = vec![Vec3::zeros(); model.grids.len()];
+    let corners = |shell: &Shell| shell.grids.into_iter().take(shell.shape.n_corners());
+    for (shell, normals) in model.shells.iter().zip(&own) {
+        for (g, n) in corners(shell).zip(normals) {
+            let (reference, sum) = (&mut reference[g.us()], &mut sum[g.us()]);
+            if *reference == Vec3::zeros() {
+                *reference = *n;
+            }
+            *sum += n * reference.dot(n).signum();
+        }
+    }
+    sum.iter_mut()
+        .for_each(|s| *s = s.try_normalize(0.0).unwrap_or_else(Vec3::zeros));
+    let mut shared = vec![true; model.grids.len()];
+    for (shell, normals) in model.shells.iter().zip(&own) {
+        for (g, n) in corners(shell).zip(normals) {
+            shared[g.us()] &= sum[g.us()].dot(n).abs() >= limit;
+        }
+    }
+    let mut result = own;
+    for (shell, normals) in model.shells.iter().zip(&mut result) {
+        for (g, n) in corners(shell).zip(normals.iter_mut()) {
+            if shared[g.us()] {
+                *n = sum[g.us()] * sum[g.us()].dot(n).signum();
+            }
+        }
+        if shell.shape.n_corners() == 3 {
+            normals[3] = normals[2];
+        }
+    }
+    result
+}

@@ -1,0 +1,167 @@
+//! CTRIA3: MITC3+ bending and shear, constant-strain membrane, drilling stiffness.
+
+use super::kinematics::{
+    Local, Row, Section, Shape, Tangents, curvature, drilling, membrane, shear, shift,
+    shift_stiffness,
+};
+use super::{BadShape, ShellInput, ShellMatrices, StrainRows, output_frame};
+use crate::linalg::SMatrix;
+
+/// Degree 5 on the triangle (Radon 1948): r, s, weight; weights sum to 1/2.
+const POINTS: [(f64, f64, f64); 7] = {
+    const A: f64 = 0.101_286_507_323_456_3;
+    const B: f64 = 0.470_142_064_105_115_1;
+    const WA: f64 = 0.062_969_590_272_413_6;
+    const WB: f64 = 0.066_197_076_394_253_1;
+    [
+        (1.0 / 3.0, 1.0 / 3.0, 0.1125),
+        (A, A, WA),
+        (1.0 - 2.0 * A, A, WA),
+        (A, 1.0 - 2.0 * A, WA),
+        (B, B, WB),
+        (1.0 - 2.0 * B, B, WB),
+        (B, 1.0 - 2.0 * B, WB),
+    ]
+};
+/// Distance of the inner tying points from the centre in MITC3+.
+const TYING: f64 = 1.0e-4;
+/// Unknowns with the two of the bubble.
+const WITH_BUBBLE: usize = 20;
+
+fn shape(r: f64, s: f64) -> Shape<3> {
+    Shape {
+        h: [1.0 - r - s, r, s],
+        hr: [-1.0, 1.0, 0.0],
+        hs: [-1.0, 0.0, 1.0],
+    }
+}
+
+/// Stiffness and strain of a three-node shell. The rotation has a cubic bubble whose two amplitudes are eliminated.
+///
+/// # Reference
+/// Lee, Lee and Bathe, The MITC3+ shell element and its performance, Computers and Structures 138 (2014) 12.
+///
+/// # Errors
+/// The corners lie on a line.
+pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, BadShape> {
+    let frame = output_frame(&input.x).ok_or(BadShape)?;
+    let (x_axis, normal) = (frame.row(0).transpose(), frame.row(2).transpose());
+    let offset = normal * input.zoffs;
+    let x = input.x.map(|x| x + offset);
+    let d = &input.directors;
+    let centre_shape = shape(1.0 / 3.0, 1.0 / 3.0);
+    let centre_tangents = Tangents::new(&x, d, &centre_shape);
+    let local = Local::new(&centre_tangents, &x_axis)?;
+    let (gr, gs) = (centre_tangents.gr, centre_tangents.gs);
+    // q = bubble (b1 e1 + b2 e2)
+    let along = |g: &crate::model::Vec3| [g.dot(&local.e1), g.dot(&local.e2)];
+    let (br, bs) = (along(&gr), along(&gs));
+
+    let covariant = |r: f64, s: f64| -> [Row<WITH_BUBBLE>; 2] {
+        let shape = shape(r, s);
+        let mut rows = shear::<3, WITH_BUBBLE>(&Tangents::new(&x, d, &shape), &shape, d);
+        let bubble = 27.0 * r * s * (1.0 - r - s);
+        for c in 0..2 {
+            rows[0][18 + c] = bubble * br[c];
+            rows[1][18 + c] = bubble * bs[c];
+        }
+        rows
+    };
+    let (a, b, c) = (
+        covariant(1.0 / 6.0, 2.0 / 3.0),
+        covariant(2.0 / 3.0, 1.0 / 6.0),
+        covariant(1.0 / 6.0, 1.0 / 6.0),
+    );
+    let third = 1.0 / 3.0;
+    let e = covariant(third - 2.0 * TYING, third + TYING);
+    let f = covariant(third + TYING, third + TYING);
+    let g = covariant(third + TYING, third - 2.0 * TYING);
+
+    let mut big = [[0.0; WITH_BUBBLE]; WITH_BUBBLE];
+    let mut corner_area = [0.0; 3];
+    let mut corner_volume = [0.0; 3];
+    for (r, s, w) in POINTS {
+        let shape = shape(r, s);
+        let t = Tangents::new(&x, d, &shape);
+        let thickness = shape
+            .h
+            .iter()
+            .zip(&input.thickness)
+            .map(|(h, t)| h * t)
+            .sum();
+        let section = Section {
+            law: input.law,
+            t: thickness,
+            k6rot: input.k6rot,
+        };
+        let weight = w * local.area;
+        let mut bend = curvature::<3, WITH_BUBBLE>(&t, &shape, d);
+        let (fr, fs) = (
+            27.0 * s * (1.0 - 2.0 * r - s),
+            27.0 * r * (1.0 - r - 2.0 * s),
+        );
+        for k in 0..2 {
+            bend[0][18 + k] = fr * br[k];
+            bend[1][18 + k] = fs * bs[k];
+            bend[2][18 + k] = fs * br[k] + fr * bs[k];
+        }
+        let mut rows_r = [0.0; WITH_BUBBLE];
+        let mut rows_s = [0.0; WITH_BUBBLE];
+        for i in 0..WITH_BUBBLE {
+            let twist = f[0][i] - g[0][i] - f[1][i] + e[1][i];
+            let mean = (c[0][i] + c[1][i]) / 3.0;
+            rows_r[i] = (2.0 * b[0][i] - b[1][i]) / 3.0 + mean + twist * (3.0 * s - 1.0) / 3.0;
+            rows_s[i] = (2.0 * a[1][i] - a[0][i]) / 3.0 + mean + twist * (1.0 - 3.0 * r) / 3.0;
+        }
+        section.add_shear(&mut big, weight, &local.shear(&rows_r, &rows_s));
+        section.add(
+            &mut big,
+            weight,
+            &local.strain(&membrane::<3, WITH_BUBBLE>(&t, &shape)),
+            &local.strain(&bend),
+            &drilling::<3, WITH_BUBBLE>(&local, &shape),
+        );
+        for k in 0..3 {
+            corner_area[k] += shape.h[k] * weight;
+            corner_volume[k] += shape.h[k] * weight * thickness;
+        }
+    }
+    let mut stiffness = condense_bubble(&big);
+    let mut centre = StrainRows {
+        membrane: local.strain(&membrane::<3, 18>(&centre_tangents, &centre_shape)),
+        curvature: local.strain(&curvature::<3, 18>(&centre_tangents, &centre_shape, d)),
+    };
+    if input.zoffs != 0.0 {
+        shift_stiffness(&mut stiffness, &offset);
+        centre
+            .membrane
+            .iter_mut()
+            .chain(&mut centre.curvature)
+            .for_each(|row| shift(row, &offset));
+    }
+    Ok(ShellMatrices {
+        stiffness,
+        centre,
+        corners: [centre; 3],
+        corner_area,
+        corner_volume,
+    })
+}
+
+fn condense_bubble(big: &[[f64; WITH_BUBBLE]; WITH_BUBBLE]) -> [[f64; 18]; 18] {
+    let mut k = [[0.0; 18]; 18];
+    let own = SMatrix::<f64, 2, 2>::new(big[18][18], big[18][19], big[19][18], big[19][19]);
+    let inverse = own.try_inverse().unwrap_or_else(SMatrix::zeros);
+    for i in 0..18 {
+        for j in 0..18 {
+            let mut v = big[i][j];
+            for m in 0..2 {
+                for n in 0..2 {
+                    v -= big[i][18 + m] * inverse[(m, n)] * big[18 + n][j];
+                }
+            }
+            k[i][j] = v;
+        }
+    }
+    k
+}
