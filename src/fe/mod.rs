@@ -1,11 +1,29 @@
 //! From a model and loads, or from a result file, to strain fields.
 
-mod element;
+mod assembly;
+mod autospc;
+mod beam_strain;
 pub mod belongs;
+mod constraint;
+mod element;
+mod error;
 pub mod from_results;
+mod grid_frames;
+mod load;
+mod mass;
+mod relief;
+mod rigid_motion;
 pub mod shell_frame;
+mod shell_strain;
 mod solution;
 pub mod strain_rows;
+mod solve;
 pub mod strain_tensor;
+mod unsupported;
 
+pub use error::{FeError, FreeDof, Refusal};
+pub use mass::MassProperties;
+pub use relief::Balance;
+pub use shell_strain::Corners;
 pub use solution::*;
+pub use solve::{LoadCase, Relief, SolveOptions, SolveReport, relief_of, solve_cases, solve_unit_loads};

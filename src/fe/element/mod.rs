@@ -3,4 +3,9 @@
 //! Every element works in the basic frame with six unknowns a grid: three translations, then three rotations. Its stiffness K
 //! satisfies K R = 0 for the six rigid motions R of its grids.
 
+mod list;
+mod matrix;
 pub(crate) mod shell;
+
+pub(crate) use list::{ElementRef, Prepared};
+pub(crate) use matrix::ElementMatrix;

@@ -192,3 +192,21 @@ impl BlockMatrix {
         all
     }
 }
+
+impl BlockMatrix {
+    /// The diagonal block of a group (caller's numbering), row by row.
+    pub fn diagonal_block(&self, symbolic: &Symbolic, group: usize) -> &[f64] {
+        let g = symbolic.position[group] as usize;
+        let b = self.column[g];
+        &self.values[self.value_start[b]..self.value_start[b + 1]]
+    }
+
+    /// Adds to the diagonal at an unknown (caller's numbering).
+    pub fn add_to_diagonal(&mut self, symbolic: &Symbolic, unknown: usize, value: f64) {
+        let group = symbolic.old_start.partition_point(|&s| s <= unknown) - 1;
+        let m = symbolic.old_start[group + 1] - symbolic.old_start[group];
+        let i = unknown - symbolic.old_start[group];
+        let b = self.column[symbolic.position[group] as usize];
+        self.values[self.value_start[b] + i * m + i] += value;
+    }
+}

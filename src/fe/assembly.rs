@@ -1,0 +1,284 @@
+//! The stiffness of a constrained model, in blocks of a grid's free dofs.
+
+use super::constraint::{Reduction, State};
+use super::element::{ElementMatrix, ElementRef, Prepared};
+use super::error::{FeError, Refusal};
+use crate::linalg::sparse::{BlockGraph, BlockMatrix, DenseTerm, Symbolic};
+use crate::model::{GridIx, Mat3};
+use rayon::prelude::*;
+
+/// Elements formed at a time: bounds the memory of their matrices.
+const BATCH: usize = 8192;
+
+/// Numbering of the unknowns: groups are the grids with a free dof that an element touches.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Numbering {
+    /// Group of each grid; `None`: no unknown there.
+    pub(crate) group: Vec<Option<u32>>,
+    /// Grid of each group.
+    pub(crate) grid: Vec<u32>,
+    /// Free dofs (0 to 5) of each group, a bit each.
+    pub(crate) free: Vec<u8>,
+}
+
+impl Numbering {
+    /// Unknowns in each group.
+    pub(crate) fn sizes(&self) -> Vec<u8> {
+        self.free.iter().map(|b| b.count_ones() as u8).collect()
+    }
+
+    /// Grid and dof (0 to 5) of an unknown; `start` is the first unknown of each group.
+    pub(crate) fn dof_of(&self, unknown: usize, start: &[usize]) -> (usize, usize) {
+        let g = start.partition_point(|&s| s <= unknown) - 1;
+        let dof = (0..6)
+            .filter(|i| self.free[g] >> i & 1 == 1)
+            .nth(unknown - start[g])
+            .unwrap_or(0);
+        (self.grid[g] as usize, dof)
+    }
+
+    /// Values at the unknowns of a field over all dofs.
+    pub(crate) fn pack(&self, field: &[[f64; 6]], out: &mut [f64]) {
+        let mut at = 0;
+        for (g, free) in self.grid.iter().zip(&self.free) {
+            for i in (0..6).filter(|i| free >> i & 1 == 1) {
+                out[at] = field[*g as usize][i];
+                at += 1;
+            }
+        }
+    }
+
+    /// A field over all dofs, zero where there is no unknown.
+    pub(crate) fn unpack(&self, values: &[f64]) -> Vec<[f64; 6]> {
+        let mut field = vec![[0.0; 6]; self.group.len()];
+        let mut at = 0;
+        for (g, free) in self.grid.iter().zip(&self.free) {
+            for i in (0..6).filter(|i| free >> i & 1 == 1) {
+                field[*g as usize][i] = values[at];
+                at += 1;
+            }
+        }
+        field
+    }
+}
+
+/// Stiffness of the free dofs and its symbolic factor.
+#[derive(Debug)]
+pub(crate) struct Assembled {
+    pub(crate) numbering: Numbering,
+    pub(crate) graph: BlockGraph,
+    pub(crate) symbolic: Symbolic,
+    pub(crate) stiffness: BlockMatrix,
+}
+
+/// Grids whose free dofs an element's stiffness falls on.
+fn reached(reduction: &Reduction, grids: &[GridIx]) -> Vec<u32> {
+    let mut list = Vec::with_capacity(grids.len());
+    for g in grids {
+        for dof in 6 * g.us()..6 * g.us() + 6 {
+            match reduction.state[dof] {
+                State::Free => list.push(g.0),
+                State::Held => {}
+                State::Dependent(r) => {
+                    list.extend(reduction.rows[r as usize].0.iter().map(|t| t.0 / 6))
+                }
+            }
+        }
+    }
+    list.sort_unstable();
+    list.dedup();
+    list
+}
+
+/// The assembled stiffness T' K T.
+///
+/// # Errors
+/// Elements that can't be formed; nothing to solve.
+pub(crate) fn assemble(
+    prepared: &Prepared<'_>,
+    reduction: &Reduction,
+) -> Result<Assembled, FeError> {
+    let model = prepared.model;
+    let elements = prepared.elements();
+    let cliques: Vec<Vec<u32>> = elements
+        .par_iter()
+        .map(|e| reached(reduction, &prepared.grids(*e)))
+        .collect();
+    let mut free = vec![0_u8; model.grids.len()];
+    for &g in cliques.iter().flatten() {
+        free[g as usize] = 1;
+    }
+    let mut numbering = Numbering {
+        group: vec![None; model.grids.len()],
+        ..Numbering::default()
+    };
+    for (g, flag) in free.into_iter().enumerate().filter(|f| f.1 == 1) {
+        debug_assert_eq!(flag, 1);
+        let bits = (0..6)
+            .filter(|i| reduction.state[6 * g + i] == State::Free)
+            .fold(0_u8, |b, i| b | 1 << i);
+        numbering.group[g] = Some(numbering.grid.len() as u32);
+        numbering.grid.push(g as u32);
+        numbering.free.push(bits);
+    }
+    if elements.is_empty() {
+        return Err(FeError::Empty);
+    }
+    let groups: Vec<Vec<u32>> = cliques
+        .into_par_iter()
+        .map(|c| {
+            c.into_iter()
+                .filter_map(|g| numbering.group[g as usize])
+                .collect()
+        })
+        .collect();
+    let graph = BlockGraph::from_cliques(numbering.grid.len(), || groups.iter().map(Vec::as_slice));
+    let symbolic = Symbolic::analyse(&graph, &numbering.sizes());
+    let mut stiffness = BlockMatrix::zeros(&symbolic, &graph);
+    let mut refused: Vec<Refusal> = Vec::new();
+    for (batch, groups) in elements.chunks(BATCH).zip(groups.chunks(BATCH)) {
+        let terms: Vec<Result<Term<'_>, Refusal>> = batch
+            .par_iter()
+            .zip(groups)
+            .map(|(e, groups)| {
+                Ok(reduced(
+                    prepared,
+                    reduction,
+                    &numbering,
+                    prepared.stiffness(*e)?,
+                    groups,
+                ))
+            })
+            .collect();
+        let (mut good, mut dense) = (
+            Vec::with_capacity(terms.len()),
+            Vec::with_capacity(terms.len()),
+        );
+        for term in terms {
+            match term {
+                Ok(term) => good.push(term),
+                Err(refusal) => refused.push(refusal),
+            }
+        }
+        dense.extend(good.iter().map(|t| DenseTerm {
+            groups: t.groups,
+            offsets: &t.offsets,
+            n: t.n,
+            matrix: &t.matrix,
+        }));
+        stiffness.add(&symbolic, &dense);
+    }
+    if refused.is_empty() {
+        Ok(Assembled {
+            numbering,
+            graph,
+            symbolic,
+            stiffness,
+        })
+    } else {
+        Err(FeError::Refused(refused))
+    }
+}
+
+struct Term<'a> {
+    groups: &'a [u32],
+    offsets: Vec<usize>,
+    n: usize,
+    matrix: Vec<f64>,
+}
+
+/// Turns an element's matrix to the displacement frames of its grids.
+pub(crate) fn to_displacement_frames(axes: &[Option<Mat3>], k: &mut ElementMatrix) {
+    let n = k.n();
+    for (b, g) in k.grids.iter().enumerate() {
+        let Some(r) = &axes[g.us()] else { continue };
+        for half in 0..2 {
+            let at = 6 * b + 3 * half;
+            for j in 0..n {
+                let v = r * crate::model::Vec3::new(
+                    k.values[at * n + j],
+                    k.values[(at + 1) * n + j],
+                    k.values[(at + 2) * n + j],
+                );
+                (0..3).for_each(|i| k.values[(at + i) * n + j] = v[i]);
+            }
+            for row in k.values.chunks_exact_mut(n) {
+                let v = r * crate::model::Vec3::new(row[at], row[at + 1], row[at + 2]);
+                (0..3).for_each(|i| row[at + i] = v[i]);
+            }
+        }
+    }
+}
+
+/// T' K T of one element over its groups.
+fn reduced<'a>(
+    prepared: &Prepared<'_>,
+    reduction: &Reduction,
+    numbering: &Numbering,
+    mut k: ElementMatrix,
+    groups: &'a [u32],
+) -> Term<'a> {
+    to_displacement_frames(&prepared.axes, &mut k);
+    let mut offsets = Vec::with_capacity(groups.len());
+    let mut n = 0;
+    for &g in groups {
+        offsets.push(n);
+        n += numbering.free[g as usize].count_ones() as usize;
+    }
+    let column = |dof: usize| {
+        let group = numbering.group[dof / 6]?;
+        let at = groups.iter().position(|&g| g == group)?;
+        let below = numbering.free[group as usize] & ((1_u8 << (dof % 6)) - 1);
+        Some(offsets[at] + below.count_ones() as usize)
+    };
+    let rows: Vec<Vec<(usize, f64)>> = k
+        .grids
+        .iter()
+        .flat_map(|g| 6 * g.us()..6 * g.us() + 6)
+        .map(|dof| match reduction.state[dof] {
+            State::Free => column(dof).map(|c| (c, 1.0)).into_iter().collect(),
+            State::Held => Vec::new(),
+            State::Dependent(r) => reduction.rows[r as usize]
+                .0
+                .iter()
+                .filter_map(|(d, c)| Some((column(*d as usize)?, *c)))
+                .collect(),
+        })
+        .collect();
+    if n == k.n()
+        && rows
+            .iter()
+            .enumerate()
+            .all(|(i, r)| r.len() == 1 && r[0] == (i, 1.0))
+    {
+        return Term {
+            groups,
+            offsets,
+            n,
+            matrix: k.values,
+        };
+    }
+    let size = k.n();
+    let mut half = vec![0.0; size * n];
+    for (i, values) in k.values.chunks_exact(size).enumerate() {
+        for (v, row) in values.iter().zip(&rows) {
+            for (c, t) in row {
+                half[i * n + c] += v * t;
+            }
+        }
+    }
+    let mut matrix = vec![0.0; n * n];
+    for (i, row) in rows.iter().enumerate() {
+        for (r, t) in row {
+            for j in 0..n {
+                matrix[r * n + j] += t * half[i * n + j];
+            }
+        }
+    }
+    Term {
+        groups,
+        offsets,
+        n,
+        matrix,
+    }
+}

@@ -1,0 +1,289 @@
+//! All constraints of a load case together: which dofs are free, which are held, which follow others.
+
+use super::{Claim, Relation, body, mean};
+use crate::fe::error::{FeError, Refusal};
+use crate::model::{Mat3, Model, RigidKind};
+use std::collections::HashMap;
+
+/// What a dof is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum State {
+    /// An unknown.
+    Free,
+    /// Held at zero or at an enforced value.
+    Held,
+    /// Given by a row of others.
+    Dependent(u32),
+}
+
+/// u = T q + u0 over all dofs, numbered 6 * grid index + (0 to 5), displacement frames.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Reduction {
+    pub(crate) state: Vec<State>,
+    /// Rows of dependent dofs, in free dofs only, and their constants.
+    pub(crate) rows: Vec<(Vec<(u32, f64)>, f64)>,
+    /// Enforced displacements that are not zero.
+    pub(crate) enforced: HashMap<u32, f64>,
+}
+
+impl Default for State {
+    fn default() -> Self {
+        Self::Free
+    }
+}
+
+impl Reduction {
+    /// u from q; both over all dofs, entries of q at other than free dofs are not read.
+    pub(crate) fn expand(&self, q: &[[f64; 6]]) -> Vec<[f64; 6]> {
+        let value = |dof: u32| q[(dof / 6) as usize][(dof % 6) as usize];
+        let one = |dof: usize| match self.state[dof] {
+            State::Free => value(dof as u32),
+            State::Held => self.enforced.get(&(dof as u32)).copied().unwrap_or(0.0),
+            State::Dependent(r) => {
+                let (row, constant) = &self.rows[r as usize];
+                constant + row.iter().map(|(d, c)| c * value(*d)).sum::<f64>()
+            }
+        };
+        (0..q.len())
+            .map(|g| std::array::from_fn(|i| one(6 * g + i)))
+            .collect()
+    }
+
+    /// T' f: forces at dependent dofs carried to the free ones; entries of held and dependent dofs are zero after.
+    pub(crate) fn gather(&self, mut f: Vec<[f64; 6]>) -> Vec<[f64; 6]> {
+        for (dof, state) in self.state.iter().enumerate() {
+            if *state == State::Held {
+                f[dof / 6][dof % 6] = 0.0;
+            }
+        }
+        for (dof, state) in self.state.iter().enumerate() {
+            if let State::Dependent(r) = state {
+                let v = std::mem::replace(&mut f[dof / 6][dof % 6], 0.0);
+                if v != 0.0 {
+                    for (d, c) in &self.rows[*r as usize].0 {
+                        f[(*d / 6) as usize][(*d % 6) as usize] += c * v;
+                    }
+                }
+            }
+        }
+        f
+    }
+
+    /// Whether no dof of a grid depends on others.
+    pub(crate) fn is_plain(&self, grid: usize) -> bool {
+        self.state[6 * grid..6 * grid + 6]
+            .iter()
+            .all(|s| !matches!(s, State::Dependent(_)))
+    }
+}
+
+/// The constraints of one SPC and one MPC set, with rigid elements and permanent supports.
+///
+/// # Errors
+/// Unusable rigid elements; a dof claimed twice; circles.
+pub(crate) fn reduce(
+    model: &Model,
+    axes: &[Option<Mat3>],
+    spc: Option<u32>,
+    mpc: Option<u32>,
+) -> Result<Reduction, FeError> {
+    let mut claims: Vec<Claim> = Vec::new();
+    let mut relations: Vec<Relation> = Vec::new();
+    let mut refused: Vec<Refusal> = Vec::new();
+    for rigid in &model.rigids {
+        let claim = claims.len() as u32;
+        let (name, result) = match &rigid.kind {
+            RigidKind::Body {
+                independent,
+                dependent,
+                ..
+            } => (
+                "rigid element",
+                body::relations(model, axes, rigid, independent, dependent, claim),
+            ),
+            RigidKind::Mean {
+                reference,
+                refc,
+                arms,
+                um,
+            } => (
+                "RBE3",
+                mean::relations(model, axes, rigid, (*reference, *refc), arms, um, claim),
+            ),
+        };
+        claims.push(Claim {
+            card: format!("{name} {}", rigid.id),
+            at: rigid.at,
+        });
+        match result {
+            Ok(mut list) => relations.append(&mut list),
+            Err(refusal) => refused.push(refusal),
+        }
+    }
+    for set in model.mpcs.iter().filter(|s| Some(s.sid) == mpc) {
+        for (terms, at) in &set.equations {
+            let claim = claims.len() as u32;
+            claims.push(Claim {
+                card: format!("MPC {}", set.sid),
+                at: *at,
+            });
+            match terms.split_first() {
+                Some((&(g, i, a), rest)) if a != 0.0 => relations.push(Relation {
+                    dependent: 6 * g.0 + u32::from(i),
+                    terms: rest
+                        .iter()
+                        .map(|&(g, i, c)| (6 * g.0 + u32::from(i), -c / a))
+                        .collect(),
+                    claim,
+                }),
+                _ => refused.push(Refusal {
+                    card: format!("MPC {}", set.sid),
+                    at: *at,
+                    reason: "coefficient of the first, dependent, term: 0".to_owned(),
+                    remedy: "give the first term a coefficient".to_owned(),
+                }),
+            }
+        }
+    }
+    if !refused.is_empty() {
+        return Err(FeError::Refused(refused));
+    }
+    resolve(model, &relations, &claims, spc)
+}
+
+fn resolve(
+    model: &Model,
+    relations: &[Relation],
+    claims: &[Claim],
+    spc: Option<u32>,
+) -> Result<Reduction, FeError> {
+    let n = 6 * model.grids.len();
+    let mut state = vec![State::Free; n];
+    let mut held_by: HashMap<u32, String> = HashMap::new();
+    let mut enforced = HashMap::new();
+    for (g, grid) in model.grids.iter().enumerate() {
+        for i in grid.ps.iter0() {
+            state[6 * g + i] = State::Held;
+        }
+    }
+    for set in model.spcs.iter().filter(|s| Some(s.sid) == spc) {
+        for (g, dofs, value) in &set.terms {
+            for i in dofs.iter0() {
+                let dof = 6 * g.0 + i as u32;
+                state[dof as usize] = State::Held;
+                held_by.insert(dof, format!("SPC {}", set.sid));
+                if *value != 0.0 {
+                    enforced.insert(dof, *value);
+                }
+            }
+        }
+    }
+    for (r, relation) in relations.iter().enumerate() {
+        let dof = relation.dependent;
+        let grid = &model.grids[(dof / 6) as usize];
+        let claim = &claims[relation.claim as usize];
+        let earlier = match state[dof as usize] {
+            State::Free => None,
+            State::Held => Some(
+                held_by
+                    .get(&dof)
+                    .cloned()
+                    .unwrap_or_else(|| format!("PS of GRID {}", grid.id)),
+            ),
+            State::Dependent(other) => Some(
+                claims[relations[other as usize].claim as usize]
+                    .card
+                    .clone(),
+            ),
+        };
+        if let Some(earlier) = earlier {
+            return Err(FeError::DependentTwice {
+                grid: grid.id,
+                dof: (dof % 6) as u8 + 1,
+                claims: vec![earlier, claim.card.clone()],
+                at: claim.at,
+            });
+        }
+        state[dof as usize] = State::Dependent(r as u32);
+    }
+    // Depth first: a row is final when all dependent dofs in it have been replaced.
+    #[derive(Clone, Copy, PartialEq)]
+    enum Mark {
+        New,
+        Open,
+        Done,
+    }
+    let mut mark = vec![Mark::New; relations.len()];
+    let mut rows: Vec<(Vec<(u32, f64)>, f64)> = vec![(Vec::new(), 0.0); relations.len()];
+    let mut stack = Vec::new();
+    for r in 0..relations.len() {
+        stack.push(r);
+        while let Some(&r) = stack.last() {
+            if mark[r] == Mark::Done {
+                stack.pop();
+                continue;
+            }
+            let waits: Vec<usize> = relations[r]
+                .terms
+                .iter()
+                .filter_map(|(d, _)| match state[*d as usize] {
+                    State::Dependent(o) if mark[o as usize] != Mark::Done => Some(o as usize),
+                    _ => None,
+                })
+                .collect();
+            if waits.is_empty() {
+                rows[r] = substitute(&relations[r].terms, &state, &rows, &enforced);
+                mark[r] = Mark::Done;
+                stack.pop();
+            } else {
+                if mark[r] == Mark::Open || waits.contains(&r) {
+                    let dof = relations[r].dependent;
+                    let grid = &model.grids[(dof / 6) as usize];
+                    return Err(FeError::CircularDependence {
+                        grid: grid.id,
+                        dof: (dof % 6) as u8 + 1,
+                        at: claims[relations[r].claim as usize].at,
+                    });
+                }
+                mark[r] = Mark::Open;
+                stack.extend(waits);
+            }
+        }
+    }
+    Ok(Reduction {
+        state,
+        rows,
+        enforced,
+    })
+}
+
+fn substitute(
+    terms: &[(u32, f64)],
+    state: &[State],
+    rows: &[(Vec<(u32, f64)>, f64)],
+    enforced: &HashMap<u32, f64>,
+) -> (Vec<(u32, f64)>, f64) {
+    let mut constant = 0.0;
+    let mut sum: Vec<(u32, f64)> = Vec::with_capacity(terms.len());
+    for &(dof, c) in terms {
+        match state[dof as usize] {
+            State::Free => sum.push((dof, c)),
+            State::Held => constant += c * enforced.get(&dof).copied().unwrap_or(0.0),
+            State::Dependent(o) => {
+                let (row, k) = &rows[o as usize];
+                constant += c * k;
+                sum.extend(row.iter().map(|(d, v)| (*d, c * v)));
+            }
+        }
+    }
+    sum.sort_by_key(|t| t.0);
+    sum.dedup_by(|later, first| {
+        let same = later.0 == first.0;
+        if same {
+            first.1 += later.1;
+        }
+        same
+    });
+    sum.retain(|t| t.1 != 0.0);
+    (sum, constant)
+}

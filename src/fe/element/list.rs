@@ -1,0 +1,86 @@
+//! All stiff elements of a model as one list.
+
+use super::matrix::ElementMatrix;
+use super::shell::{CornerDirectors, shared_normals, shell_stiffness};
+use crate::fe::error::Refusal;
+use crate::fe::grid_frames::grid_axes;
+use crate::model::{GridIx, Mat3, Model};
+
+/// One element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ElementRef {
+    Shell(usize),
+    Beam(usize),
+    Rod(usize),
+    Bush(usize),
+    Spring(usize),
+}
+
+/// A model with what its elements need beyond it.
+#[derive(Debug)]
+pub(crate) struct Prepared<'a> {
+    pub(crate) model: &'a Model,
+    /// Displacement frames of the grids.
+    pub(crate) axes: Vec<Option<Mat3>>,
+    /// Directors by shell.
+    pub(crate) directors: Vec<CornerDirectors>,
+}
+
+impl<'a> Prepared<'a> {
+    pub(crate) fn new(model: &'a Model) -> Self {
+        Self {
+            model,
+            axes: grid_axes(model),
+            directors: shared_normals(model),
+        }
+    }
+
+    /// Every element with stiffness.
+    pub(crate) fn elements(&self) -> Vec<ElementRef> {
+        let m = self.model;
+        let shells = (0..m.shells.len()).map(ElementRef::Shell);
+        let beams = (0..m.beams.len()).map(ElementRef::Beam);
+        let rods = (0..m.rods.len()).map(ElementRef::Rod);
+        let bushes = (0..m.bushes.len()).map(ElementRef::Bush);
+        shells
+            .chain(beams)
+            .chain(rods)
+            .chain(bushes)
+            .chain((0..m.springs.len()).map(ElementRef::Spring))
+            .collect()
+    }
+
+    /// Its grids.
+    pub(crate) fn grids(&self, element: ElementRef) -> Vec<GridIx> {
+        let m = self.model;
+        match element {
+            ElementRef::Shell(i) => m.shells[i].grids[..m.shells[i].shape.n_corners()].to_vec(),
+            ElementRef::Beam(i) => m.beams[i].grids.to_vec(),
+            ElementRef::Rod(i) => m.rods[i].grids.to_vec(),
+            ElementRef::Bush(i) => [Some(m.bushes[i].grids.0), m.bushes[i].grids.1]
+                .into_iter()
+                .flatten()
+                .collect(),
+            ElementRef::Spring(i) => {
+                let mut list: Vec<GridIx> =
+                    m.springs[i].ends.iter().flatten().map(|e| e.0).collect();
+                list.dedup();
+                list
+            }
+        }
+    }
+
+    /// Its stiffness.
+    ///
+    /// # Errors
+    /// A shape or property that makes no element.
+    pub(crate) fn stiffness(&self, element: ElementRef) -> Result<ElementMatrix, Refusal> {
+        match element {
+            ElementRef::Shell(i) => shell_stiffness(self, i),
+            ElementRef::Beam(_)
+            | ElementRef::Rod(_)
+            | ElementRef::Bush(_)
+            | ElementRef::Spring(_) => Ok(ElementMatrix::zeros(self.grids(element))),
+        }
+    }
+}

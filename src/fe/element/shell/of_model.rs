@@ -1,0 +1,162 @@
+//! Shells of a model: stiffness, strain rows, mass by corner.
+
+use super::{BadShape, ShellInput, ShellLaw, StrainRows, output_frame, quad4, tria3};
+use crate::fe::element::{ElementMatrix, Prepared};
+use crate::fe::error::Refusal;
+use crate::model::{Model, Shell, ShellKind, Vec3};
+
+/// What a shell gives, whatever its number of corners.
+#[derive(Clone, Debug)]
+pub(crate) enum AnyShell {
+    Quad(Box<super::ShellMatrices<4, 24>>),
+    Tria(Box<super::ShellMatrices<3, 18>>),
+}
+
+fn corners<const N: usize>(model: &Model, shell: &Shell) -> [Vec3; N] {
+    std::array::from_fn(|k| model.grids[shell.grids[k].us()].x)
+}
+
+fn refuse(shell: &Shell, reason: &str, remedy: &str) -> Refusal {
+    Refusal {
+        card: format!("{} {}", shell.shape.card(), shell.id),
+        at: shell.at,
+        reason: reason.to_owned(),
+        remedy: remedy.to_owned(),
+    }
+}
+
+/// Angle of the material x axis from the output x axis, radians.
+pub(crate) fn material_angle(model: &Model, shell: &Shell) -> Option<f64> {
+    let n = shell.shape.n_corners();
+    let x: Vec<Vec3> = shell.grids[..n]
+        .iter()
+        .map(|g| model.grids[g.us()].x)
+        .collect();
+    let frame = output_frame(&x)?;
+    let side = frame * (x[1] - x[0]);
+    Some(side.y.atan2(side.x) + shell.material_angle_rad)
+}
+
+/// Matrices of shell `i`.
+///
+/// # Errors
+/// Shapes, thicknesses and properties that make no element.
+pub(crate) fn shell_matrices(prepared: &Prepared<'_>, i: usize) -> Result<AnyShell, Refusal> {
+    let model = prepared.model;
+    let shell = &model.shells[i];
+    let n = shell.shape.n_corners();
+    let bad = |_: BadShape| {
+        refuse(
+            shell,
+            "its corners span no area or make a re-entrant shape",
+            "move its grids or delete it",
+        )
+    };
+    if !shell.thickness[..n]
+        .iter()
+        .all(|t| *t > 0.0 && t.is_finite())
+    {
+        return Err(refuse(
+            shell,
+            &format!("thickness: {:?}", &shell.thickness[..n]),
+            "give a thickness above zero",
+        ));
+    }
+    let property = model
+        .shell_properties
+        .get(shell.property.us())
+        .ok_or_else(|| refuse(shell, "no property", "give it a PSHELL"))?;
+    let angle = material_angle(model, shell).ok_or(BadShape).map_err(bad)?;
+    let law = ShellLaw::new(model, property, angle).ok_or_else(|| {
+        refuse(
+            shell,
+            "its property has no plane-stress law",
+            "use a PSHELL with MAT1, MAT2 or MAT8",
+        )
+    })?;
+    let d = &prepared.directors[i];
+    let (zoffs, k6rot, t) = (shell.zoffs, model.params.k6rot, shell.thickness);
+    if n == 4 {
+        let input = ShellInput {
+            x: corners(model, shell),
+            directors: *d,
+            thickness: t,
+            law: &law,
+            zoffs,
+            k6rot,
+        };
+        Ok(AnyShell::Quad(Box::new(quad4(&input).map_err(bad)?)))
+    } else {
+        let (directors, thickness) = ([d[0], d[1], d[2]], [t[0], t[1], t[2]]);
+        let input = ShellInput {
+            x: corners(model, shell),
+            directors,
+            thickness,
+            law: &law,
+            zoffs,
+            k6rot,
+        };
+        Ok(AnyShell::Tria(Box::new(tria3(&input).map_err(bad)?)))
+    }
+}
+
+/// Stiffness of shell `i`.
+///
+/// # Errors
+/// As `shell_matrices`.
+pub(crate) fn shell_stiffness(prepared: &Prepared<'_>, i: usize) -> Result<ElementMatrix, Refusal> {
+    let grids = &prepared.model.shells[i].grids;
+    Ok(match shell_matrices(prepared, i)? {
+        AnyShell::Quad(m) => ElementMatrix::from_rows(&grids[..4], &m.stiffness),
+        AnyShell::Tria(m) => ElementMatrix::from_rows(&grids[..3], &m.stiffness),
+    })
+}
+
+/// Mass of each corner, before WTMASS: integral of shape function times (density * thickness + NSM).
+///
+/// # Errors
+/// As `shell_matrices`.
+pub(crate) fn shell_mass(prepared: &Prepared<'_>, i: usize) -> Result<Vec<f64>, Refusal> {
+    let model = prepared.model;
+    let shell = &model.shells[i];
+    let Some(property) = model.shell_properties.get(shell.property.us()) else {
+        return Ok(Vec::new());
+    };
+    let rho = match &property.kind {
+        ShellKind::Homogeneous {
+            membrane,
+            bending,
+            shear,
+            ..
+        } => membrane
+            .or(*bending)
+            .or(*shear)
+            .and_then(|m| model.materials.get(m.us()))
+            .map_or(0.0, |m| m.rho),
+        ShellKind::Laminate { .. } => 0.0,
+    };
+    let sum = |area: &[f64], volume: &[f64]| {
+        area.iter()
+            .zip(volume)
+            .map(|(a, v)| rho * v + property.nsm * a)
+            .collect()
+    };
+    Ok(match shell_matrices(prepared, i)? {
+        AnyShell::Quad(m) => sum(&m.corner_area, &m.corner_volume),
+        AnyShell::Tria(m) => sum(&m.corner_area, &m.corner_volume),
+    })
+}
+
+/// Strain at both surfaces from rows and displacements: bottom (Z1), top (Z2).
+pub(crate) fn surfaces<const M: usize>(
+    rows: &StrainRows<M>,
+    z: [f64; 2],
+    u: &[f64; M],
+) -> [[f64; 3]; 2] {
+    let dot = |row: &[f64; M]| row.iter().zip(u).map(|(a, b)| a * b).sum::<f64>();
+    let (membrane, curvature) = (
+        rows.membrane.each_ref().map(dot),
+        rows.curvature.each_ref().map(dot),
+    );
+    z.map(|z| std::array::from_fn(|c| membrane[c] + z * curvature[c]))
+}

@@ -1,0 +1,310 @@
+//! Why a model can't be solved.
+
+use crate::model::Model;
+use nastran::place::Place;
+use std::fmt;
+
+/// A card that the solver does not carry, or whose content it can't use.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refusal {
+    /// Card name with its id, such as `CHEXA 12`.
+    pub card: String,
+    /// Where it stands.
+    pub at: Place,
+    /// What is wrong with it.
+    pub reason: String,
+    /// What to do.
+    pub remedy: String,
+}
+
+/// A degree of freedom that nothing holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FreeDof {
+    /// Grid id.
+    pub grid: u32,
+    /// Degree of freedom, 1 to 6.
+    pub dof: u8,
+    /// What hangs there: elements with this grid.
+    pub hangs: String,
+    /// Where the grid stands.
+    pub at: Place,
+}
+
+/// What stops the solver.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FeError {
+    /// Cards that it does not carry, or can't use.
+    Refused(Vec<Refusal>),
+    /// A dof is made dependent twice, or both dependent and held.
+    DependentTwice {
+        /// Grid id.
+        grid: u32,
+        /// 1 to 6.
+        dof: u8,
+        /// The cards that claim it.
+        claims: Vec<String>,
+        /// Where the second claim stands.
+        at: Place,
+    },
+    /// Dependent dofs that depend on themselves in a circle.
+    CircularDependence {
+        /// Grid id.
+        grid: u32,
+        /// 1 to 6.
+        dof: u8,
+        /// Where the grid stands.
+        at: Place,
+    },
+    /// Dofs that nothing holds although the supports should: mechanisms.
+    Mechanism {
+        /// The first of them.
+        dofs: Vec<FreeDof>,
+        /// How many there are.
+        count: usize,
+        /// In words: parts that are not joined to the rest.
+        parts: Vec<String>,
+    },
+    /// A load acts on a dof that no element holds.
+    LoadOnNothing {
+        /// Grid id.
+        grid: u32,
+        /// 1 to 6.
+        dof: u8,
+        /// Subcase id.
+        subcase: u32,
+        /// Where the grid stands.
+        at: Place,
+    },
+    /// A set that a load case names is not in the deck.
+    MissingSet {
+        /// `LOAD`, `SPC`, `MPC`.
+        kind: &'static str,
+        /// Its id.
+        sid: u32,
+        /// Subcase id.
+        subcase: u32,
+    },
+    /// Inertia relief was asked for, but the structure is tied to ground.
+    TiedToGround {
+        /// What ties it.
+        what: String,
+    },
+    /// SUPORT does not hold the rigid motions exactly once.
+    Suport {
+        /// Rigid motions that are free.
+        free_motions: usize,
+        /// Dofs on the SUPORT cards.
+        dofs: usize,
+    },
+    /// The structure has no mass, so nothing balances the loads.
+    NoMass,
+    /// A number that is infinite or not a number came out of an element.
+    NotANumber {
+        /// Grid id.
+        grid: u32,
+        /// Where it stands.
+        at: Place,
+    },
+    /// The model has nothing to solve.
+    Empty,
+}
+
+impl FeError {
+    /// Each fault on its own: where it stands, what it is about, what is wrong, what to do.
+    pub fn faults(&self) -> Vec<Refusal> {
+        let one = |card: String, at: Place, reason: String, remedy: &str| {
+            vec![Refusal {
+                card,
+                at,
+                reason,
+                remedy: remedy.to_owned(),
+            }]
+        };
+        let nowhere = Place::default();
+        match self {
+            Self::Refused(list) => list.clone(),
+            Self::DependentTwice {
+                grid,
+                dof,
+                claims,
+                at,
+            } => one(
+                format!("grid {grid}"),
+                *at,
+                format!("dof {dof} is claimed by: {}", claims.join(", ")),
+                "let one card only make this dof dependent, and do not hold it",
+            ),
+            Self::CircularDependence { grid, dof, at } => one(
+                format!("grid {grid}"),
+                *at,
+                format!(
+                    "dof {dof} depends on itself through a chain of rigid elements or MPC equations"
+                ),
+                "break the circle",
+            ),
+            Self::Mechanism { dofs, count, parts } => {
+                let mut list: Vec<Refusal> = dofs
+                    .iter()
+                    .map(|d| Refusal {
+                        card: format!("grid {}", d.grid),
+                        at: d.at,
+                        reason: format!("dof {} is held by nothing; here hang: {}", d.dof, d.hangs),
+                        remedy: "connect or hold it".to_owned(),
+                    })
+                    .collect();
+                list.extend(parts.iter().map(|p| {
+                    Refusal {
+                        card: "model".to_owned(),
+                        at: nowhere,
+                        reason: p.clone(),
+                        remedy:
+                            "join the part to the structure (RBE2, RBE3, shared grids) or delete it"
+                                .to_owned(),
+                    }
+                }));
+                if *count > dofs.len() {
+                    list.push(Refusal {
+                        card: "model".to_owned(),
+                        at: nowhere,
+                        reason: format!("{count} dofs in all are held by nothing"),
+                        remedy: "the first are listed".to_owned(),
+                    });
+                }
+                list
+            }
+            Self::LoadOnNothing {
+                grid,
+                dof,
+                subcase,
+                at,
+            } => one(
+                format!("grid {grid}"),
+                *at,
+                format!("subcase {subcase} loads dof {dof}, which no element holds"),
+                "connect the grid, or move the load",
+            ),
+            Self::MissingSet { kind, sid, subcase } => one(
+                format!("{kind} = {sid}"),
+                nowhere,
+                format!("subcase {subcase} names it, but the deck has no such set"),
+                "add the set or correct the number",
+            ),
+            Self::TiedToGround { what } => one(
+                "PARAM,INREL".to_owned(),
+                nowhere,
+                format!("inertia relief needs a free structure, but {what}"),
+                "take the tie away, or solve without inertia relief",
+            ),
+            Self::Suport { free_motions, dofs } => one(
+                "SUPORT".to_owned(),
+                nowhere,
+                format!(
+                    "{dofs} dofs for {free_motions} free rigid motions, or dofs that do not hold them all"
+                ),
+                "name as many dofs as there are rigid motions, able to hold each of them, or use PARAM,INREL,-2",
+            ),
+            Self::NoMass => one(
+                "model".to_owned(),
+                nowhere,
+                "no mass, so nothing balances the loads of a free structure".to_owned(),
+                "give the materials a density or add CONM2",
+            ),
+            Self::NotANumber { grid, at } => one(
+                format!("grid {grid}"),
+                *at,
+                "the stiffness at this grid is not a number".to_owned(),
+                "look for zero or huge property values of the elements there",
+            ),
+            Self::Empty => one(
+                "model".to_owned(),
+                nowhere,
+                "no element to solve".to_owned(),
+                "add elements",
+            ),
+        }
+    }
+}
+
+impl fmt::Display for FeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, fault) in self.faults().iter().enumerate() {
+            let separator = if i > 0 { "\n" } else { "" };
+            write!(
+                f,
+                "{separator}line {}: {}: {}: {}",
+                fault.at.line, fault.card, fault.reason, fault.remedy
+            )?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for FeError {}
+
+/// Elements with a grid, in words, at most four named.
+pub(crate) fn what_hangs(model: &Model, grid: crate::model::GridIx) -> String {
+    let mut all: Vec<String> = Vec::new();
+    let has = |list: &[crate::model::GridIx]| list.contains(&grid);
+    for s in &model.shells {
+        if has(&s.grids[..s.shape.n_corners()]) {
+            all.push(format!("{} {}", s.shape.card(), s.id));
+        }
+    }
+    for b in model.beams.iter().filter(|b| has(&b.grids)) {
+        all.push(format!(
+            "{} {}",
+            if b.is_beam { "CBEAM" } else { "CBAR" },
+            b.id
+        ));
+    }
+    all.extend(
+        model
+            .rods
+            .iter()
+            .filter(|r| has(&r.grids))
+            .map(|r| format!("rod {}", r.id)),
+    );
+    all.extend(
+        model
+            .bushes
+            .iter()
+            .filter(|b| b.grids.0 == grid || b.grids.1 == Some(grid))
+            .map(|b| format!("CBUSH {}", b.id)),
+    );
+    all.extend(
+        model
+            .springs
+            .iter()
+            .filter(|s| s.ends.iter().flatten().any(|e| e.0 == grid))
+            .map(|s| format!("spring {}", s.id)),
+    );
+    all.extend(
+        model
+            .masses
+            .iter()
+            .filter(|m| m.grid == grid)
+            .map(|m| format!("mass {}", m.id)),
+    );
+    for r in &model.rigids {
+        let touches = match &r.kind {
+            crate::model::RigidKind::Body {
+                independent,
+                dependent,
+                ..
+            } => independent.iter().chain(dependent).any(|(g, _)| *g == grid),
+            crate::model::RigidKind::Mean {
+                reference, arms, ..
+            } => *reference == grid || arms.iter().any(|a| a.2 == grid),
+        };
+        if touches {
+            all.push(format!("rigid element {}", r.id));
+        }
+    }
+    let more = all.len().saturating_sub(4);
+    all.truncate(4);
+    match (all.is_empty(), more) {
+        (true, _) => "no element".to_owned(),
+        (false, 0) => all.join(", "),
+        (false, more) => format!("{} and {more} more", all.join(", ")),
+    }
+}

@@ -1,0 +1,101 @@
+//! Nodal forces of loads.
+
+use super::mass::Mass;
+use crate::model::{GridIx, Load, LoadSet, Model, Vec3};
+
+/// Forces and moments at all grids, basic frame, of one load set.
+pub(crate) fn load_vector(model: &Model, mass: &Mass, set: &LoadSet) -> Vec<[f64; 6]> {
+    let mut f = vec![[0.0; 6]; model.grids.len()];
+    for (factor, load) in &set.loads {
+        add(model, mass, *factor, load, &mut f);
+    }
+    f
+}
+
+fn push(f: &mut [[f64; 6]], grid: GridIx, at: usize, v: &Vec3) {
+    for i in 0..3 {
+        f[grid.us()][at + i] += v[i];
+    }
+}
+
+fn add(model: &Model, mass: &Mass, factor: f64, load: &Load, f: &mut [[f64; 6]]) {
+    match load {
+        Load::Force(g, v) => push(f, *g, 0, &(v * factor)),
+        Load::Moment(g, v) => push(f, *g, 3, &(v * factor)),
+        Load::ShellPressure {
+            shells,
+            pressure,
+            direction,
+        } => {
+            for s in shells {
+                let shell = &model.shells[s.us()];
+                pressure_on(
+                    model,
+                    &shell.grids[..shell.shape.n_corners()],
+                    pressure,
+                    direction,
+                    factor,
+                    f,
+                );
+            }
+        }
+        Load::FacePressure {
+            grids,
+            pressure,
+            direction,
+        } => {
+            let corners: Vec<GridIx> = grids.iter().flatten().copied().collect();
+            pressure_on(model, &corners, pressure, direction, factor, f);
+        }
+        Load::Gravity(a) => {
+            let field =
+                vec![[a.x * factor, a.y * factor, a.z * factor, 0.0, 0.0, 0.0]; model.grids.len()];
+            for (f, m) in f.iter_mut().zip(mass.times(&field)) {
+                f.iter_mut().zip(m).for_each(|(f, m)| *f += m);
+            }
+        }
+        Load::Unsupported(..) => {}
+    }
+}
+
+/// Consistent forces of a pressure over a triangle or a quadrilateral: integral of shape function, pressure and area vector.
+fn pressure_on(
+    model: &Model,
+    corners: &[GridIx],
+    pressure: &[f64; 4],
+    direction: &Option<Vec3>,
+    factor: f64,
+    f: &mut [[f64; 6]],
+) {
+    let x: Vec<Vec3> = corners.iter().map(|g| model.grids[g.us()].x).collect();
+    let mut at_point = |h: &[f64], area: Vec3| {
+        let p: f64 = h.iter().zip(pressure).map(|(h, p)| h * p).sum::<f64>() * factor;
+        let along = direction.map_or(area, |d| d * area.norm());
+        for (g, h) in corners.iter().zip(h) {
+            push(f, *g, 0, &(along * (p * h)));
+        }
+    };
+    match x.as_slice() {
+        [a, b, c] => {
+            let area = (b - a).cross(&(c - a)) / 6.0;
+            for h in [[0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]] {
+                at_point(&h, area);
+            }
+        }
+        [a, b, c, d] => {
+            let g = 1.0 / 3.0_f64.sqrt();
+            for (r, s) in [(-g, -g), (g, -g), (g, g), (-g, g)] {
+                let h = [
+                    (1.0 - r) * (1.0 - s),
+                    (1.0 + r) * (1.0 - s),
+                    (1.0 + r) * (1.0 + s),
+                    (1.0 - r) * (1.0 + s),
+                ];
+                let xr = (b - a) * (1.0 - s) + (c - d) * (1.0 + s);
+                let xs = (d - a) * (1.0 - r) + (c - b) * (1.0 + r);
+                at_point(&h.map(|h| h / 4.0), xr.cross(&xs) / 16.0);
+            }
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,172 @@
+//! The mass of a model.
+
+use super::element::shell::{output_frame, shell_mass};
+use super::element::{ElementMatrix, Prepared};
+use super::error::Refusal;
+use super::rigid_motion::rigid;
+use crate::linalg::Matrix6;
+use crate::model::{GridIx, Vec3};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Mass matrix over all grids, basic frame, WTMASS applied.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Mass {
+    /// Translational mass by grid.
+    point: Vec<f64>,
+    /// Further 6 x 6 blocks of single grids.
+    blocks: BTreeMap<GridIx, Matrix6<f64>>,
+    /// Coupled masses of elements.
+    coupled: Vec<ElementMatrix>,
+}
+
+/// Mass, centre of gravity and the 6 x 6 matrix of rigid motions about it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MassProperties {
+    /// Mass of the model; where it differs by direction (CONM1), the mean.
+    pub mass: f64,
+    /// Centre of gravity, basic frame.
+    pub cg: Vec3,
+    /// Rigid mass matrix about the centre of gravity: translations, then rotations.
+    pub matrix: Matrix6<f64>,
+}
+
+impl Mass {
+    /// Lumped mass of all elements and concentrated masses.
+    ///
+    /// # Errors
+    /// Elements that can't be formed.
+    pub(crate) fn new(prepared: &Prepared<'_>) -> Result<Self, Vec<Refusal>> {
+        let model = prepared.model;
+        let mut mass = Self {
+            point: vec![0.0; model.grids.len()],
+            ..Self::default()
+        };
+        let shells: Vec<Result<Vec<f64>, Refusal>> = (0..model.shells.len())
+            .into_par_iter()
+            .map(|i| shell_mass(prepared, i))
+            .collect();
+        let mut refused = Vec::new();
+        for (shell, result) in model.shells.iter().zip(shells) {
+            match result {
+                Err(refusal) => refused.push(refusal),
+                Ok(corners) => {
+                    let n = shell.shape.n_corners();
+                    let offset = if shell.zoffs == 0.0 {
+                        Vec3::zeros()
+                    } else {
+                        let x: Vec<Vec3> = shell.grids[..n]
+                            .iter()
+                            .map(|g| model.grids[g.us()].x)
+                            .collect();
+                        output_frame(&x)
+                            .map_or_else(Vec3::zeros, |f| f.row(2).transpose() * shell.zoffs)
+                    };
+                    for (g, m) in shell.grids.iter().zip(corners) {
+                        mass.add_point(*g, m, &offset);
+                    }
+                }
+            }
+        }
+        for m in &model.masses {
+            *mass.blocks.entry(m.grid).or_insert_with(Matrix6::zeros) += m.matrix;
+        }
+        if !refused.is_empty() {
+            return Err(refused);
+        }
+        let w = model.params.wtmass;
+        mass.point.iter_mut().for_each(|m| *m *= w);
+        mass.blocks.values_mut().for_each(|m| *m *= w);
+        mass.coupled
+            .iter_mut()
+            .flat_map(|m| &mut m.values)
+            .for_each(|v| *v *= w);
+        Ok(mass)
+    }
+
+    /// A point mass at an offset from a grid.
+    pub(crate) fn add_point(&mut self, grid: GridIx, m: f64, offset: &Vec3) {
+        if *offset == Vec3::zeros() {
+            self.point[grid.us()] += m;
+        } else {
+            *self.blocks.entry(grid).or_insert_with(Matrix6::zeros) += point_mass(m, offset);
+        }
+    }
+
+    /// M u.
+    pub(crate) fn times(&self, u: &[[f64; 6]]) -> Vec<[f64; 6]> {
+        let mut f: Vec<[f64; 6]> = self
+            .point
+            .iter()
+            .zip(u)
+            .map(|(m, u)| [m * u[0], m * u[1], m * u[2], 0.0, 0.0, 0.0])
+            .collect();
+        for (g, m) in &self.blocks {
+            for i in 0..6 {
+                f[g.us()][i] += (0..6).map(|j| m[(i, j)] * u[g.us()][j]).sum::<f64>();
+            }
+        }
+        for m in &self.coupled {
+            let local: Vec<f64> = m.grids.iter().flat_map(|g| u[g.us()]).collect();
+            for (g, v) in m.grids.iter().zip(m.times(&local).chunks_exact(6)) {
+                f[g.us()].iter_mut().zip(v).for_each(|(f, v)| *f += v);
+            }
+        }
+        f
+    }
+
+    /// R' M R about a point.
+    pub(crate) fn rigid(&self, x: &[Vec3], centre: &Vec3) -> Matrix6<f64> {
+        let mut matrix = Matrix6::zeros();
+        for mode in 0..6 {
+            let u: Vec<[f64; 6]> = x.iter().map(|x| rigid(mode, x, centre)).collect();
+            matrix.set_column(mode, &resultant(x, &self.times(&u), centre).into());
+        }
+        matrix
+    }
+
+    /// Mass and centre of gravity; `None` without mass.
+    pub(crate) fn properties(&self, x: &[Vec3]) -> Option<MassProperties> {
+        let near = x.first().copied().unwrap_or_else(Vec3::zeros);
+        let first = self.rigid(x, &near);
+        let mass = (first[(0, 0)] + first[(1, 1)] + first[(2, 2)]) / 3.0;
+        if !(mass > 0.0) {
+            return None;
+        }
+        let cg = near
+            + Vec3::new(
+                (first[(1, 5)] - first[(2, 4)]) / (first[(1, 1)] + first[(2, 2)]),
+                (first[(2, 3)] - first[(0, 5)]) / (first[(0, 0)] + first[(2, 2)]),
+                (first[(0, 4)] - first[(1, 3)]) / (first[(0, 0)] + first[(1, 1)]),
+            );
+        Some(MassProperties {
+            mass,
+            cg,
+            matrix: self.rigid(x, &cg),
+        })
+    }
+}
+
+/// Force and moment about a point of nodal forces.
+pub(crate) fn resultant(x: &[Vec3], f: &[[f64; 6]], centre: &Vec3) -> [f64; 6] {
+    let mut sum = [0.0; 6];
+    for (x, f) in x.iter().zip(f) {
+        let moment = (x - centre).cross(&Vec3::new(f[0], f[1], f[2]));
+        for i in 0..3 {
+            sum[i] += f[i];
+            sum[3 + i] += f[3 + i] + moment[i];
+        }
+    }
+    sum
+}
+
+/// 6 x 6 mass of a point at an offset, referred to its grid.
+pub(crate) fn point_mass(m: f64, offset: &Vec3) -> Matrix6<f64> {
+    let c = offset.cross_matrix();
+    let mut matrix = Matrix6::zeros();
+    matrix.fixed_view_mut::<3, 3>(0, 0).fill_diagonal(m);
+    matrix.fixed_view_mut::<3, 3>(0, 3).copy_from(&(c * -m));
+    matrix.fixed_view_mut::<3, 3>(3, 0).copy_from(&(c * m));
+    matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&(c * c * -m));
+    matrix
+}

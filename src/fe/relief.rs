@@ -1,0 +1,269 @@
+//! Inertia relief: loads of a free structure balanced by its own inertia.
+
+use super::assembly::Numbering;
+use super::constraint::{Reduction, State};
+use super::error::FeError;
+use super::grid_frames::to_local;
+use super::mass::{Mass, MassProperties, resultant};
+use super::rigid_motion::rigid;
+use crate::linalg::{DMatrix, DVector, Matrix6};
+use crate::model::{GridIx, Mat3, Vec3};
+use nastran::cards::Dofs;
+use serde::Serialize;
+
+/// A rigid motion counts as free when held dofs resist it by less than this share.
+const FREE_MOTION: f64 = 1e-10;
+
+/// The free rigid motions of a model and what balances loads on them.
+#[derive(Clone, Debug)]
+pub(crate) struct RigidBody {
+    /// Grid locations.
+    x: Vec<Vec3>,
+    pub(crate) properties: MassProperties,
+    /// Columns: free motions as combinations of three translations and three rotations about the centre of gravity.
+    basis: DMatrix<f64>,
+    /// Modal mass of the free motions.
+    modal: DMatrix<f64>,
+}
+
+/// Applied and inertia loads of a case about the centre of gravity, basic frame: three forces, three moments.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Balance {
+    /// Subcase id.
+    pub subcase: u32,
+    /// Resultant of the applied loads.
+    pub applied: [f64; 6],
+    /// Resultant of the inertia loads that balance them.
+    pub inertia: [f64; 6],
+    /// Rigid acceleration: three translations of the centre of gravity, three rotations.
+    pub acceleration: [f64; 6],
+    /// Largest unbalanced share left.
+    pub residual: f64,
+}
+
+impl RigidBody {
+    /// The free motions of a model with the given mass; `touched` are the grids that belong to the structure.
+    ///
+    /// # Errors
+    /// No mass.
+    pub(crate) fn new(
+        x: Vec<Vec3>,
+        axes: &[Option<Mat3>],
+        mass: &Mass,
+        reduction: &Reduction,
+        touched: &[bool],
+    ) -> Result<Self, FeError> {
+        let properties = mass.properties(&x).ok_or(FeError::NoMass)?;
+        let size = x
+            .iter()
+            .zip(touched)
+            .filter(|t| *t.1)
+            .map(|(x, _)| (x - properties.cg).norm())
+            .fold(0.0, f64::max);
+        let size = if size > 0.0 { size } else { 1.0 };
+        let mut resisted = Matrix6::<f64>::zeros();
+        for (g, x) in x.iter().enumerate().filter(|(g, _)| touched[*g]) {
+            for i in (0..6).filter(|i| reduction.state[6 * g + i] == State::Held) {
+                let row: [f64; 6] = std::array::from_fn(|mode| {
+                    let u = to_local(&axes[g], rigid(mode, x, &properties.cg))[i];
+                    let dof_scale = if i >= 3 { size } else { 1.0 };
+                    u * dof_scale / if mode >= 3 { size } else { 1.0 }
+                });
+                let row = crate::linalg::Vector6::from(row);
+                resisted += row * row.transpose();
+            }
+        }
+        let eigen = resisted.symmetric_eigen();
+        let largest = eigen.eigenvalues.max();
+        let free: Vec<usize> = (0..6)
+            .filter(|&i| eigen.eigenvalues[i] <= FREE_MOTION * largest)
+            .collect();
+        let basis = if largest == 0.0 {
+            DMatrix::identity(6, 6)
+        } else {
+            DMatrix::from_fn(6, free.len(), |r, c| {
+                eigen.eigenvectors[(r, free[c])] / if r >= 3 { size } else { 1.0 }
+            })
+        };
+        let rigid_mass = DMatrix::from_fn(6, 6, |r, c| properties.matrix[(r, c)]);
+        let modal = basis.transpose() * rigid_mass * &basis;
+        Ok(Self {
+            x,
+            properties,
+            basis,
+            modal,
+        })
+    }
+
+    /// How many motions are free.
+    pub(crate) fn n_free(&self) -> usize {
+        self.basis.ncols()
+    }
+
+    /// The displacement field of a free motion, basic frame.
+    pub(crate) fn motion(&self, column: usize) -> Vec<[f64; 6]> {
+        self.field(&self.basis.column(column).into_owned())
+    }
+
+    fn field(&self, amounts: &DVector<f64>) -> Vec<[f64; 6]> {
+        let (t, w) = (
+            Vec3::new(amounts[0], amounts[1], amounts[2]),
+            Vec3::new(amounts[3], amounts[4], amounts[5]),
+        );
+        self.x
+            .iter()
+            .map(|x| {
+                let u = t + w.cross(&(x - self.properties.cg));
+                [u.x, u.y, u.z, w.x, w.y, w.z]
+            })
+            .collect()
+    }
+
+    /// f - M R a with a = (R'MR)^-1 R'f over the free motions, and what it amounts to.
+    pub(crate) fn balance(&self, subcase: u32, mass: &Mass, f: &mut [[f64; 6]]) -> Balance {
+        let applied = resultant(&self.x, f, &self.properties.cg);
+        let generalized = self.basis.transpose() * DVector::from_column_slice(&applied);
+        let amounts = match self.modal.clone().cholesky() {
+            Some(c) => &self.basis * c.solve(&generalized),
+            None => DVector::zeros(6),
+        };
+        let inertia_field = mass.times(&self.field(&amounts));
+        for (f, m) in f.iter_mut().zip(&inertia_field) {
+            f.iter_mut().zip(m).for_each(|(f, m)| *f -= m);
+        }
+        let inertia = resultant(&self.x, &inertia_field, &self.properties.cg).map(|v| -v);
+        let left = self.basis.transpose()
+            * DVector::from_column_slice(&resultant(&self.x, f, &self.properties.cg));
+        let scale = generalized.amax().max(f64::MIN_POSITIVE);
+        Balance {
+            subcase,
+            applied,
+            inertia,
+            acceleration: std::array::from_fn(|i| amounts[i]),
+            residual: left.amax() / scale,
+        }
+    }
+
+    /// Takes the free motions out of a displacement field so that R'M u = 0.
+    pub(crate) fn take_out(&self, mass: &Mass, u: &mut [[f64; 6]]) {
+        let momentum = resultant(&self.x, &mass.times(u), &self.properties.cg);
+        let generalized = self.basis.transpose() * DVector::from_column_slice(&momentum);
+        let Some(c) = self.modal.clone().cholesky() else {
+            return;
+        };
+        let field = self.field(&(&self.basis * c.solve(&generalized)));
+        for (u, r) in u.iter_mut().zip(field) {
+            u.iter_mut().zip(r).for_each(|(u, r)| *u -= r);
+        }
+    }
+
+    /// A statically determinate set of translations that holds every free motion: at each step the dof that moves most under
+    /// the motions not yet held (QR with row pivoting), which spreads it over far grids. Unknown numbers.
+    pub(crate) fn choose_supports(
+        &self,
+        axes: &[Option<Mat3>],
+        numbering: &Numbering,
+    ) -> Vec<usize> {
+        let fields: Vec<Vec<f64>> = (0..self.n_free())
+            .map(|c| self.packed(axes, numbering, c))
+            .collect();
+        let n = fields.first().map_or(0, Vec::len);
+        let translation: Vec<bool> = {
+            let mut flags = vec![[0.0; 6]; numbering.group.len()];
+            flags.iter_mut().for_each(|f| f[..3].fill(1.0));
+            let mut packed = vec![0.0; n];
+            numbering.pack(&flags, &mut packed);
+            packed.iter().map(|v| *v == 1.0).collect()
+        };
+        let mut chosen = Vec::new();
+        let mut held: Vec<DVector<f64>> = Vec::new();
+        let row = |i: usize| DVector::from_iterator(fields.len(), fields.iter().map(|f| f[i]));
+        while chosen.len() < self.n_free() {
+            let rest = |i: usize| {
+                let mut r = row(i);
+                for h in &held {
+                    let along = h.dot(&r);
+                    r.axpy(-along, h, 1.0);
+                }
+                r
+            };
+            let best = (0..n)
+                .filter(|&i| translation[i])
+                .map(|i| (rest(i).norm_squared(), i))
+                .fold((0.0, usize::MAX), |a, b| if b.0 > a.0 { b } else { a });
+            if best.1 == usize::MAX {
+                break;
+            }
+            chosen.push(best.1);
+            held.push(rest(best.1).normalize());
+        }
+        chosen
+    }
+
+    /// The unknowns of SUPORT dofs, if they hold every free motion once.
+    ///
+    /// # Errors
+    /// Another number of dofs than free motions, dofs that are no unknowns, or that leave a motion free.
+    pub(crate) fn given_supports(
+        &self,
+        axes: &[Option<Mat3>],
+        numbering: &Numbering,
+        start: &[usize],
+        dofs: &[(GridIx, Dofs)],
+    ) -> Result<Vec<usize>, FeError> {
+        let count = dofs.iter().map(|d| d.1.len()).sum();
+        let fault = || FeError::Suport {
+            free_motions: self.n_free(),
+            dofs: count,
+        };
+        let mut unknowns = Vec::new();
+        for (g, set) in dofs {
+            let group = numbering.group[g.us()].ok_or_else(fault)? as usize;
+            for i in set.iter0() {
+                if numbering.free[group] >> i & 1 == 0 {
+                    return Err(fault());
+                }
+                let below = numbering.free[group] & ((1_u8 << i) - 1);
+                unknowns.push(start[group] + below.count_ones() as usize);
+            }
+        }
+        if count != self.n_free() {
+            return Err(fault());
+        }
+        let fields: Vec<Vec<f64>> = (0..self.n_free())
+            .map(|c| self.packed(axes, numbering, c))
+            .collect();
+        let mut rows = DMatrix::from_fn(count, count, |r, c| fields[c][unknowns[r]]);
+        for mut row in rows.row_iter_mut() {
+            let norm = row.norm();
+            row /= if norm > 0.0 { norm } else { 1.0 };
+        }
+        let singular = rows.singular_values();
+        if count == 0 || singular.min() > 1e-9 * singular.max() {
+            Ok(unknowns)
+        } else {
+            Err(fault())
+        }
+    }
+
+    /// A free motion at the unknowns; translations of the order of one.
+    pub(crate) fn packed(
+        &self,
+        axes: &[Option<Mat3>],
+        numbering: &Numbering,
+        column: usize,
+    ) -> Vec<f64> {
+        let mut field = self.motion(column);
+        let largest = field
+            .iter()
+            .flat_map(|u| &u[..3])
+            .fold(0.0_f64, |a, v| a.max(v.abs()))
+            .max(f64::MIN_POSITIVE);
+        for (u, axes) in field.iter_mut().zip(axes) {
+            *u = to_local(axes, *u).map(|v| v / largest);
+        }
+        let mut out = vec![0.0; numbering.free.iter().map(|b| b.count_ones() as usize).sum()];
+        numbering.pack(&field, &mut out);
+        out
+    }
+}

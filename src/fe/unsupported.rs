@@ -1,0 +1,105 @@
+//! Cards that the solver does not carry: all of them are named before anything is solved.
+
+use super::UnitLoad;
+use super::error::Refusal;
+use super::solve::LoadCase;
+use crate::model::{Load, MaterialKind, Model, ShellKind};
+use nastran::cards::ShellShape;
+use nastran::place::Place;
+
+/// Every entry of the model, or load of the cases, that would be left out of the answer.
+pub(crate) fn unsupported(model: &Model, cases: &[LoadCase]) -> Vec<Refusal> {
+    let mut all = Vec::new();
+    let mut refuse = |card: String, at: Place, reason: &str, remedy: &str| {
+        all.push(Refusal {
+            card,
+            at,
+            reason: reason.to_owned(),
+            remedy: remedy.to_owned(),
+        });
+    };
+    const ELSEWHERE: &str = "solve with Nastran and name its results in the job";
+    for s in &model.shells {
+        if !matches!(s.shape, ShellShape::Quad4 | ShellShape::Tria3) {
+            refuse(
+                format!("{} {}", s.shape.card(), s.id),
+                s.at,
+                "the built-in solver has no such element yet",
+                "use CQUAD4 or CTRIA3, or solve with Nastran",
+            );
+        }
+    }
+    for p in &model.shell_properties {
+        let used = || {
+            model
+                .shells
+                .iter()
+                .any(|s| model.shell_properties[s.property.us()].id == p.id)
+        };
+        match &p.kind {
+            ShellKind::Laminate { .. } if used() => {
+                refuse(
+                    format!("PCOMP {}", p.id),
+                    p.at,
+                    "the built-in solver has no laminates yet",
+                    ELSEWHERE,
+                );
+            }
+            ShellKind::Homogeneous {
+                membrane,
+                bending,
+                shear,
+                coupling,
+                ..
+            } => {
+                for m in [membrane, bending, shear, coupling].into_iter().flatten() {
+                    let material = &model.materials[m.us()];
+                    if matches!(material.kind, MaterialKind::Anisotropic3d { .. }) {
+                        refuse(
+                            format!("MAT9 {}", material.id),
+                            material.at,
+                            "a PSHELL needs a plane-stress law",
+                            "use MAT1, MAT2 or MAT8",
+                        );
+                    }
+                }
+            }
+            ShellKind::Laminate { .. } => {}
+        }
+    }
+    for s in &model.solids {
+        refuse(
+            format!("solid {}", s.id),
+            s.at,
+            "the built-in solver has no solids yet",
+            ELSEWHERE,
+        );
+    }
+    for s in &model.shear_panels {
+        refuse(
+            format!("CSHEAR {}", s.id),
+            s.at,
+            "the built-in solver has no shear panels yet",
+            "use CQUAD4, or solve with Nastran",
+        );
+    }
+    for case in cases {
+        for load in &case.loads {
+            let UnitLoad::Set(sid) = load else { continue };
+            for set in model.load_sets.iter().filter(|s| s.sid == *sid) {
+                for (_, load) in &set.loads {
+                    if let Load::Unsupported(card, at) = load {
+                        refuse(
+                            format!("{card} {sid}"),
+                            *at,
+                            "the built-in solver does not carry this load",
+                            "replace it by FORCE, MOMENT, PLOAD4 or GRAV, or solve with Nastran",
+                        );
+                    }
+                }
+            }
+        }
+    }
+    all.truncate(200);
+    all
+}
