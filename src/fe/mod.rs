@@ -16,8 +16,8 @@ mod rigid_motion;
 pub mod shell_frame;
 mod shell_strain;
 mod solution;
-pub mod strain_rows;
 mod solve;
+pub mod strain_rows;
 pub mod strain_tensor;
 mod unsupported;
 
@@ -26,4 +26,6 @@ pub use mass::MassProperties;
 pub use relief::Balance;
 pub use shell_strain::Corners;
 pub use solution::*;
-pub use solve::{LoadCase, Relief, SolveOptions, SolveReport, relief_of, solve_cases, solve_unit_loads};
+pub use solve::{
+    LoadCase, Relief, SolveOptions, SolveReport, relief_of, solve_cases, solve_unit_loads,
+};

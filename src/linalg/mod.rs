@@ -11,4 +11,6 @@ pub mod spd;
 pub mod tall;
 
 pub use dense::{Matrix, Vector};
-pub use nalgebra::{DMatrix, DVector, Matrix3, Matrix4, Matrix6, SMatrix, SVector, Vector3, Vector6};
+pub use nalgebra::{
+    DMatrix, DVector, Matrix3, Matrix4, Matrix6, SMatrix, SVector, Vector3, Vector6,
+};
