@@ -1,1 +1,10 @@
-//! To come.
+//! Sensitivity `S` in `eps = S f`: what each gauge reads per unit of each load, and what that can tell apart.
+
+mod separate;
+mod types;
+
+pub use separate::*;
+pub use types::*;
+
+#[cfg(test)]
+mod tests;

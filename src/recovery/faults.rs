@@ -1,0 +1,126 @@
+//! Gauges that look wired backwards, dead, or wrong: each one tried, exactly, on all runs together.
+
+use super::errors::ErrorModel;
+use super::runs::{Readings, estimate};
+use crate::finding::{Finding, Severity};
+use crate::sensitivity::Sensitivity;
+use rayon::prelude::*;
+
+/// `chi2 / dof` that a repaired set of readings must fall under, as a share of what it was.
+const REPAIR: f64 = 0.2;
+/// A dead gauge reads less than this many noise sd while the others expect more than [`LIVE`].
+const DEAD: f64 = 3.0;
+/// See [`DEAD`].
+const LIVE: f64 = 10.0;
+/// Faults looked for one after the other.
+const MOST: usize = 3;
+
+struct Trial {
+    gauge: usize,
+    flip: f64,
+    drop: f64,
+    /// Root mean squares over runs: reading, and what the other gauges predict.
+    reading: f64,
+    predicted: f64,
+}
+
+/// Findings that name gauges whose reading, turned or left out, makes the rest agree.
+pub fn check(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let mut readings = readings.to_vec();
+    for _ in 0..MOST {
+        let (chi2, dof) = total(s, &readings, errors);
+        if dof == 0 {
+            break;
+        }
+        let base = chi2 / dof as f64;
+        if base < 2.0 {
+            break;
+        }
+        let trials: Vec<Trial> = (0..s.gauges.len()).into_par_iter().map(|g| try_gauge(s, &readings, errors, g)).collect();
+        let Some(best) = trials.iter().min_by(|a, b| a.flip.min(a.drop).total_cmp(&b.flip.min(b.drop))) else { break };
+        let name = &s.gauges[best.gauge];
+        let dead = best.reading < DEAD * errors.noise && best.predicted > LIVE * errors.noise;
+        if dead && best.drop < REPAIR * base {
+            findings.push(
+                Finding::new(
+                    Severity::Error,
+                    "gauge-dead",
+                    name,
+                    format!(
+                        "gauge `{name}` reads nothing ({:.1} microstrain) where the other gauges expect {:.1} microstrain",
+                        best.reading * 1e6,
+                        best.predicted * 1e6
+                    ),
+                    "check its wiring, or leave its column blank",
+                )
+                .with_numbers(best.reading * 1e6, DEAD * errors.noise * 1e6),
+            );
+            silence(&mut readings, best.gauge);
+        } else if best.flip < REPAIR * base && best.flip < 2.0 * best.drop.max(1.0) {
+            findings.push(
+                Finding::new(
+                    Severity::Error,
+                    "gauge-wired-backwards",
+                    name,
+                    format!(
+                        "gauge `{name}` looks wired backwards: with its sign turned the residual sum of squares falls to {:.1} % of what it is",
+                        100.0 * best.flip / base
+                    ),
+                    "check the wiring; if so, turn the sign of its column",
+                )
+                .with_numbers(best.flip / base, REPAIR),
+            );
+            for r in &mut readings {
+                r.strain[best.gauge] = -r.strain[best.gauge];
+            }
+        } else if best.drop < REPAIR * base {
+            findings.push(
+                Finding::new(
+                    Severity::Warning,
+                    "gauge-suspect",
+                    name,
+                    format!(
+                        "gauge `{name}` contradicts the others: without it the residual sum of squares falls to {:.1} % of what it is",
+                        100.0 * best.drop / base
+                    ),
+                    "check its position, direction, bridge factor and wiring, or leave its column blank",
+                )
+                .with_numbers(best.drop / base, REPAIR),
+            );
+            silence(&mut readings, best.gauge);
+        } else {
+            break;
+        }
+    }
+    findings
+}
+
+fn silence(readings: &mut [Readings], gauge: usize) {
+    readings.iter_mut().for_each(|r| r.strain[gauge] = f64::NAN);
+}
+
+fn total(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> (f64, usize) {
+    readings.iter().map(|r| estimate(s, r, errors)).fold((0.0, 0), |a, e| (a.0 + e.chi2, a.1 + e.dof))
+}
+
+fn try_gauge(s: &Sensitivity, readings: &[Readings], errors: ErrorModel, gauge: usize) -> Trial {
+    let mut turned = readings.to_vec();
+    turned.iter_mut().for_each(|r| r.strain[gauge] = -r.strain[gauge]);
+    let (flip, flip_dof) = total(s, &turned, errors);
+    silence(&mut turned, gauge);
+    let (mut drop, mut drop_dof, mut reading, mut predicted, mut n) = (0.0, 0, 0.0, 0.0, 0usize);
+    for (without, r) in turned.iter().zip(readings) {
+        let e = estimate(s, without, errors);
+        drop += e.chi2;
+        drop_dof += e.dof;
+        if r.strain[gauge].is_finite() && e.predicted[gauge].is_finite() {
+            reading += r.strain[gauge].powi(2);
+            predicted += e.predicted[gauge].powi(2);
+            n += 1;
+        }
+    }
+    let per = |chi2: f64, dof: usize| if dof > 0 { chi2 / dof as f64 } else { f64::INFINITY };
+    let rms = |q: f64| if n > 0 { (q / n as f64).sqrt() } else { 0.0 };
+    Trial { gauge, flip: per(flip, flip_dof), drop: per(drop, drop_dof), reading: rms(reading), predicted: rms(predicted) }
+}

@@ -1,0 +1,138 @@
+//! Which loads a set of gauges can't tell apart, in words.
+
+use super::Sensitivity;
+use crate::finding::{Finding, Severity};
+use crate::linalg::dense::{self, RANK_TOLERANCE};
+
+/// Condition number (scaled) up to which small errors stay small: the usual rule of thumb calls 10 stable and 50 the most that is acceptable.
+pub const CONDITION_LIMIT: f64 = 50.0;
+
+/// Share of the largest coefficient under which a load is left out of a combination's words.
+const NAMED_SHARE: f64 = 0.1;
+
+/// Findings on loads that cause no strain, loads and combinations that can't be separated (`error`) or only weakly (`warning`).
+///
+/// A combination is a right singular vector of S with scaled columns: a set of loads that together strain the gauges (almost) not at all.
+pub fn check_separability(s: &Sensitivity) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    if s.loads.is_empty() || s.gauges.is_empty() {
+        return findings;
+    }
+    let largest = s.values.amax();
+    for (load, column) in s.loads.iter().zip(s.values.column_iter()) {
+        if column.amax() <= RANK_TOLERANCE * largest {
+            findings.push(Finding::new(
+                Severity::Error,
+                "load-without-strain",
+                &load.name,
+                format!("load `{}` strains none of the gauges: it can't be recovered", load.name),
+                "check its subcase and its `applied`, or add a gauge that it strains",
+            ));
+        }
+    }
+    let unit = dense::unit_columns(&s.values);
+    let (n, k) = (s.gauges.len(), s.loads.len());
+    if n < k {
+        findings.push(
+            Finding::new(
+                Severity::Error,
+                "fewer-gauges-than-loads",
+                "gauges",
+                format!("{n} gauges can't separate {k} loads"),
+                format!("add at least {} gauges, or drop loads", k - n),
+            )
+            .with_numbers(n as f64, k as f64),
+        );
+    }
+    // Zero rows below make the right vectors span all loads where gauges are few.
+    let mut square = unit.clone();
+    if n < k {
+        square = square.resize_vertically(k, 0.0);
+    }
+    let Some(d) = dense::svd(&square) else { return findings };
+    let Some(&first) = d.s.first() else { return findings };
+    let scaled_condition = s.condition_number_scaled();
+    for (i, &value) in d.s.iter().enumerate() {
+        let ratio = if first > 0.0 { value / first } else { 0.0 };
+        let coefficients: Vec<f64> = (0..k)
+            .map(|l| {
+                let norm = s.values.column(l).norm();
+                d.v[(l, i)] / if norm > 0.0 { norm } else { 1.0 }
+            })
+            .collect();
+        let shares: Vec<f64> = (0..k).map(|l| d.v[(l, i)]).collect();
+        if ratio <= RANK_TOLERANCE {
+            if shares.iter().filter(|v| v.abs() > 0.5).count() == 1
+                && shares.iter().zip(s.values.column_iter()).any(|(v, c)| v.abs() > 0.99 && c.amax() == 0.0)
+            {
+                continue;
+            }
+            let (names, words) = combination(s, &shares, &coefficients);
+            findings.push(
+                Finding::new(
+                    Severity::Error,
+                    "loads-not-separable",
+                    names.join(", "),
+                    format!("these gauges can't separate {}: the combination {words} strains none of them", list(&names)),
+                    "add a gauge that this combination strains (`place` finds one), or drop or combine these loads",
+                )
+                .with_numbers(ratio, RANK_TOLERANCE),
+            );
+        } else if i + 1 == d.s.len() && scaled_condition > CONDITION_LIMIT && scaled_condition.is_finite() {
+            let (names, words) = combination(s, &shares, &coefficients);
+            findings.push(
+                Finding::new(
+                    Severity::Warning,
+                    "loads-weakly-separable",
+                    names.join(", "),
+                    format!(
+                        "the loads are hard to separate: the combination {words} strains the gauges {:.0} times less than the best \
+                         separated one, and errors of the readings grow as much in it",
+                        1.0 / ratio
+                    ),
+                    "add gauges where this combination strains the structure (`place` chooses them)",
+                )
+                .with_numbers(scaled_condition, CONDITION_LIMIT),
+            );
+        }
+    }
+    findings
+}
+
+/// Names of the loads in a combination, and the combination as a sum, its largest term first with coefficient 1.
+fn combination(s: &Sensitivity, shares: &[f64], coefficients: &[f64]) -> (Vec<String>, String) {
+    let top = shares.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
+    let mut order: Vec<usize> = (0..shares.len()).filter(|&l| shares[l].abs() >= NAMED_SHARE * top).collect();
+    order.sort_by(|&a, &b| shares[b].abs().total_cmp(&shares[a].abs()).then(a.cmp(&b)));
+    let base = order.first().map_or(1.0, |&l| coefficients[l]);
+    let mut words = String::new();
+    for (i, &l) in order.iter().enumerate() {
+        let c = if base == 0.0 { 0.0 } else { coefficients[l] / base };
+        let sign = if c < 0.0 { "-" } else { "+" };
+        let size = c.abs();
+        let number = if (size - 1.0).abs() < 5e-4 { String::new() } else { format!("{} ", digits(size)) };
+        match (i, c < 0.0) {
+            (0, false) => words.push_str(&format!("{number}{}", s.loads[l].name)),
+            (0, true) => words.push_str(&format!("-{number}{}", s.loads[l].name)),
+            _ => words.push_str(&format!(" {sign} {number}{}", s.loads[l].name)),
+        }
+    }
+    (order.iter().map(|&l| s.loads[l].name.clone()).collect(), words)
+}
+
+/// Three significant digits.
+fn digits(x: f64) -> String {
+    if !(1e-3..1e5).contains(&x) {
+        return format!("{x:.2e}");
+    }
+    let decimals = (2 - x.log10().floor() as i32).clamp(0, 6) as usize;
+    format!("{x:.decimals$}")
+}
+
+fn list(names: &[String]) -> String {
+    match names {
+        [one] => format!("`{one}` from nothing at all"),
+        [rest @ .., last] => format!("{} and {last}", rest.join(", ")),
+        [] => String::new(),
+    }
+}

@@ -1,0 +1,72 @@
+//! The matrix with its names and scales.
+
+use crate::linalg::{Matrix, dense};
+
+/// A column of S.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Load {
+    /// Name.
+    pub name: String,
+    /// Its size, 1 sd, job units, where stated.
+    pub expected: Option<f64>,
+    /// Asked for, or present but not asked for.
+    pub wanted: bool,
+}
+
+impl Load {
+    /// A wanted load without a stated size.
+    pub fn named(name: impl Into<String>) -> Self {
+        Self { name: name.into(), expected: None, wanted: true }
+    }
+}
+
+/// `S`, `n_gauges x n_loads`, strain (not microstrain) per job unit of load.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensitivity {
+    /// Row names.
+    pub gauges: Vec<String>,
+    /// Columns.
+    pub loads: Vec<Load>,
+    /// Values.
+    pub values: Matrix,
+}
+
+impl Sensitivity {
+    /// Column scales: `expected` where every load states it, else 1 over the column's norm (1 for a zero column).
+    pub fn scales(&self) -> Vec<f64> {
+        let stated: Option<Vec<f64>> = self.loads.iter().map(|l| l.expected.filter(|e| *e > 0.0)).collect();
+        stated.unwrap_or_else(|| {
+            self.values
+                .column_iter()
+                .map(|c| {
+                    let n = c.norm();
+                    if n > 0.0 { 1.0 / n } else { 1.0 }
+                })
+                .collect()
+        })
+    }
+
+    /// S with its columns times [`Self::scales`].
+    pub fn scaled(&self) -> Matrix {
+        let mut m = self.values.clone();
+        for (mut c, s) in m.column_iter_mut().zip(self.scales()) {
+            c *= s;
+        }
+        m
+    }
+
+    /// Condition number of S in microstrain per job unit; infinite where loads can't be separated.
+    pub fn condition_number(&self) -> f64 {
+        dense::condition(&self.values)
+    }
+
+    /// The same with scaled columns.
+    pub fn condition_number_scaled(&self) -> f64 {
+        dense::condition(&self.scaled())
+    }
+
+    /// Rank, judged on columns of unit norm.
+    pub fn rank(&self) -> usize {
+        dense::rank(&dense::unit_columns(&self.values))
+    }
+}
