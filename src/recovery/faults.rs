@@ -37,8 +37,16 @@ pub fn check(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Vec<
         if base < 2.0 {
             break;
         }
-        let trials: Vec<Trial> = (0..s.gauges.len()).into_par_iter().map(|g| try_gauge(s, &readings, errors, g)).collect();
-        let Some(best) = trials.iter().min_by(|a, b| a.flip.min(a.drop).total_cmp(&b.flip.min(b.drop))) else { break };
+        let trials: Vec<Trial> = (0..s.gauges.len())
+            .into_par_iter()
+            .map(|g| try_gauge(s, &readings, errors, g))
+            .collect();
+        let Some(best) = trials
+            .iter()
+            .min_by(|a, b| a.flip.min(a.drop).total_cmp(&b.flip.min(b.drop)))
+        else {
+            break;
+        };
         let name = &s.gauges[best.gauge];
         let dead = best.reading < DEAD * errors.noise && best.predicted > LIVE * errors.noise;
         if dead && best.drop < REPAIR * base {
@@ -101,12 +109,17 @@ fn silence(readings: &mut [Readings], gauge: usize) {
 }
 
 fn total(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> (f64, usize) {
-    readings.iter().map(|r| estimate(s, r, errors)).fold((0.0, 0), |a, e| (a.0 + e.chi2, a.1 + e.dof))
+    readings
+        .iter()
+        .map(|r| estimate(s, r, errors))
+        .fold((0.0, 0), |a, e| (a.0 + e.chi2, a.1 + e.dof))
 }
 
 fn try_gauge(s: &Sensitivity, readings: &[Readings], errors: ErrorModel, gauge: usize) -> Trial {
     let mut turned = readings.to_vec();
-    turned.iter_mut().for_each(|r| r.strain[gauge] = -r.strain[gauge]);
+    turned
+        .iter_mut()
+        .for_each(|r| r.strain[gauge] = -r.strain[gauge]);
     let (flip, flip_dof) = total(s, &turned, errors);
     silence(&mut turned, gauge);
     let (mut drop, mut drop_dof, mut reading, mut predicted, mut n) = (0.0, 0, 0.0, 0.0, 0usize);
@@ -120,7 +133,19 @@ fn try_gauge(s: &Sensitivity, readings: &[Readings], errors: ErrorModel, gauge: 
             n += 1;
         }
     }
-    let per = |chi2: f64, dof: usize| if dof > 0 { chi2 / dof as f64 } else { f64::INFINITY };
+    let per = |chi2: f64, dof: usize| {
+        if dof > 0 {
+            chi2 / dof as f64
+        } else {
+            f64::INFINITY
+        }
+    };
     let rms = |q: f64| if n > 0 { (q / n as f64).sqrt() } else { 0.0 };
-    Trial { gauge, flip: per(flip, flip_dof), drop: per(drop, drop_dof), reading: rms(reading), predicted: rms(predicted) }
+    Trial {
+        gauge,
+        flip: per(flip, flip_dof),
+        drop: per(drop, drop_dof),
+        reading: rms(reading),
+        predicted: rms(predicted),
+    }
 }

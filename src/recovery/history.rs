@@ -69,8 +69,14 @@ impl Sums {
         self.samples += other.samples;
         self.gaps += other.gaps;
         let add = |a: &mut Vec<f64>, b: &[f64]| a.iter_mut().zip(b).for_each(|(x, y)| *x += y);
-        self.min.iter_mut().zip(&other.min).for_each(|(x, y)| *x = x.min(*y));
-        self.max.iter_mut().zip(&other.max).for_each(|(x, y)| *x = x.max(*y));
+        self.min
+            .iter_mut()
+            .zip(&other.min)
+            .for_each(|(x, y)| *x = x.min(*y));
+        self.max
+            .iter_mut()
+            .zip(&other.max)
+            .for_each(|(x, y)| *x = x.max(*y));
         add(&mut self.sum, &other.sum);
         add(&mut self.sum_of_squares, &other.sum_of_squares);
         add(&mut self.residual, &other.residual);
@@ -84,12 +90,30 @@ const PAD: usize = 8;
 impl Filter {
     /// The filter for `s` with `zero` (strain by gauge) subtracted; weights are those of the model error at `typical` loads.
     /// `None` where numbers are not finite.
-    pub fn new(s: &Sensitivity, zero: Vec<f64>, errors: ErrorModel, noise_factor: f64, typical: &[f64]) -> Option<Self> {
+    pub fn new(
+        s: &Sensitivity,
+        zero: Vec<f64>,
+        errors: ErrorModel,
+        noise_factor: f64,
+        typical: &[f64],
+    ) -> Option<Self> {
         let (n, k) = (s.gauges.len(), s.loads.len());
-        let variances: Vec<f64> =
-            errors.variances(&s.values, typical, noise_factor).iter().map(|v| v.max(f64::MIN_POSITIVE)).collect();
-        let priors: Vec<Option<f64>> =
-            s.loads.iter().map(|l| if l.wanted { None } else { l.expected.filter(|e| *e > 0.0) }).collect();
+        let variances: Vec<f64> = errors
+            .variances(&s.values, typical, noise_factor)
+            .iter()
+            .map(|v| v.max(f64::MIN_POSITIVE))
+            .collect();
+        let priors: Vec<Option<f64>> = s
+            .loads
+            .iter()
+            .map(|l| {
+                if l.wanted {
+                    None
+                } else {
+                    l.expected.filter(|e| *e > 0.0)
+                }
+            })
+            .collect();
         let fit = fit(&s.values, &vec![0.0; n], &variances, &priors, &s.scales())?;
         let kp = k.div_ceil(PAD) * PAD;
         let mut gain_t = vec![0.0; n * kp];
@@ -102,12 +126,18 @@ impl Filter {
         let noise_variance: Vec<f64> = (0..k)
             .map(|l| {
                 let unseen = fit.covariance[(l, l)].is_infinite();
-                if unseen { f64::INFINITY } else { own * (0..n).map(|g| fit.gain[(l, g)].powi(2)).sum::<f64>() }
+                if unseen {
+                    f64::INFINITY
+                } else {
+                    own * (0..n).map(|g| fit.gain[(l, g)].powi(2)).sum::<f64>()
+                }
             })
             .collect();
         let rel2 = errors.model_rel * errors.model_rel;
         let model_variance = Matrix::from_fn(k, k, |l, m| {
-            let single: f64 = (0..n).map(|g| (fit.gain[(l, g)] * s.values[(g, m)]).powi(2)).sum();
+            let single: f64 = (0..n)
+                .map(|g| (fit.gain[(l, g)] * s.values[(g, m)]).powi(2))
+                .sum();
             rel2 * (single + if l == m { 1.0 } else { 0.0 })
         });
         Some(Self {
@@ -115,7 +145,10 @@ impl Filter {
             k,
             kp,
             gain_t,
-            s_t: (0..k).flat_map(|l| (0..n).map(move |g| (l, g))).map(|(l, g)| s.values[(g, l)]).collect(),
+            s_t: (0..k)
+                .flat_map(|l| (0..n).map(move |g| (l, g)))
+                .map(|(l, g)| s.values[(g, l)])
+                .collect(),
             zero,
             noise_variance,
             model_variance: model_variance.transpose().iter().copied().collect(),
@@ -172,8 +205,11 @@ impl Filter {
     pub fn sigma(&self, f: &[f64]) -> Vec<f64> {
         (0..self.k)
             .map(|l| {
-                let model: f64 =
-                    self.model_variance[l * self.k..(l + 1) * self.k].iter().zip(f).map(|(b, v)| b * v * v).sum();
+                let model: f64 = self.model_variance[l * self.k..(l + 1) * self.k]
+                    .iter()
+                    .zip(f)
+                    .map(|(b, v)| b * v * v)
+                    .sum();
                 (self.noise_variance[l] + model).sqrt()
             })
             .collect()

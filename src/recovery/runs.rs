@@ -73,12 +73,19 @@ pub fn student_95(dof: usize) -> f64 {
 /// # Reference
 /// R. T. Birge, Phys. Rev. 40 (1932) 207; A. C. Aitken, Proc. R. Soc. Edinburgh 55 (1935) 42.
 pub fn recover(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Recovery {
-    let mut runs: Vec<RunEstimate> = readings.par_iter().map(|r| estimate(s, r, errors)).collect();
+    let mut runs: Vec<RunEstimate> = readings
+        .par_iter()
+        .map(|r| estimate(s, r, errors))
+        .collect();
     let mut findings = verdict::check(s, readings, &runs, errors);
     if findings.iter().any(|f| verdict::CODES.contains(&f.code)) {
         findings.extend(faults::check(s, readings, errors));
         for r in &mut runs {
-            let birge = if r.dof > 0 { r.chi2 / r.dof as f64 } else { 1.0 };
+            let birge = if r.dof > 0 {
+                r.chi2 / r.dof as f64
+            } else {
+                1.0
+            };
             if birge > 1.0 {
                 r.estimate.covariance.iter_mut().for_each(|v| *v *= birge);
                 r.estimate.coverage_factor = student_95(r.dof);
@@ -101,8 +108,15 @@ pub fn recover(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Re
     }
     Recovery {
         runs,
-        residual_rms: if dof > 0 { (sum / dof as f64).sqrt() } else { 0.0 },
-        gauge_residual_rms: by_gauge.iter().map(|(q, m)| if *m > 0 { (q / *m as f64).sqrt() } else { 0.0 }).collect(),
+        residual_rms: if dof > 0 {
+            (sum / dof as f64).sqrt()
+        } else {
+            0.0
+        },
+        gauge_residual_rms: by_gauge
+            .iter()
+            .map(|(q, m)| if *m > 0 { (q / *m as f64).sqrt() } else { 0.0 })
+            .collect(),
         gauge_leverage: leverage,
         findings,
     }
@@ -114,21 +128,40 @@ const ITERATIONS: usize = 4;
 /// One run: weights depend on the loads through the model error, so solution and weights alternate.
 pub fn estimate(s: &Sensitivity, r: &Readings, errors: ErrorModel) -> RunEstimate {
     let (n, k) = (s.gauges.len(), s.loads.len());
-    let used: Vec<usize> = (0..n).filter(|&g| r.strain.get(g).is_some_and(|v| v.is_finite())).collect();
+    let used: Vec<usize> = (0..n)
+        .filter(|&g| r.strain.get(g).is_some_and(|v| v.is_finite()))
+        .collect();
     let a = Matrix::from_fn(used.len(), k, |i, l| s.values[(used[i], l)]);
     let y: Vec<f64> = used.iter().map(|&g| r.strain[g]).collect();
-    let priors: Vec<Option<f64>> =
-        s.loads.iter().map(|l| if l.wanted { None } else { l.expected.filter(|e| *e > 0.0) }).collect();
+    let priors: Vec<Option<f64>> = s
+        .loads
+        .iter()
+        .map(|l| {
+            if l.wanted {
+                None
+            } else {
+                l.expected.filter(|e| *e > 0.0)
+            }
+        })
+        .collect();
     let scales = s.scales();
     let mut f = vec![0.0; k];
     let mut variances = vec![1.0; used.len()];
     let mut solved = None;
-    let rounds = if errors.model_rel > 0.0 { ITERATIONS } else { 1 };
+    let rounds = if errors.model_rel > 0.0 {
+        ITERATIONS
+    } else {
+        1
+    };
     for round in 0..rounds {
         variances = if round == 0 {
             vec![(errors.noise * errors.noise * r.noise_factor).max(f64::MIN_POSITIVE); used.len()]
         } else {
-            errors.variances(&a, &f, r.noise_factor).iter().map(|v| v.max(f64::MIN_POSITIVE)).collect()
+            errors
+                .variances(&a, &f, r.noise_factor)
+                .iter()
+                .map(|v| v.max(f64::MIN_POSITIVE))
+                .collect()
         };
         solved = fit(&a, &y, &variances, &priors, &scales);
         match &solved {
@@ -137,7 +170,11 @@ pub fn estimate(s: &Sensitivity, r: &Readings, errors: ErrorModel) -> RunEstimat
         }
     }
     if errors.model_rel > 0.0 {
-        variances = errors.variances(&a, &f, r.noise_factor).iter().map(|v| v.max(f64::MIN_POSITIVE)).collect();
+        variances = errors
+            .variances(&a, &f, r.noise_factor)
+            .iter()
+            .map(|v| v.max(f64::MIN_POSITIVE))
+            .collect();
     }
     let mut out = RunEstimate {
         estimate: LoadEstimate {

@@ -22,9 +22,19 @@ pub struct Fit {
 ///
 /// `s` is `n x k`; `variances` of the readings; `prior_sd`: what is known of a load beforehand (mean 0), `None` for wanted loads.
 /// `scales` bring the columns to comparable size. `None` where numbers are not finite.
-pub fn fit(s: &Matrix, y: &[f64], variances: &[f64], prior_sd: &[Option<f64>], scales: &[f64]) -> Option<Fit> {
+pub fn fit(
+    s: &Matrix,
+    y: &[f64],
+    variances: &[f64],
+    prior_sd: &[Option<f64>],
+    scales: &[f64],
+) -> Option<Fit> {
     let (n, k) = s.shape();
-    let priors: Vec<(usize, f64)> = prior_sd.iter().enumerate().filter_map(|(l, p)| p.map(|p| (l, p))).collect();
+    let priors: Vec<(usize, f64)> = prior_sd
+        .iter()
+        .enumerate()
+        .filter_map(|(l, p)| p.map(|p| (l, p)))
+        .collect();
     let rows = (n + priors.len()).max(k);
     let mut a = Matrix::zeros(rows, k);
     for g in 0..n {
@@ -53,7 +63,8 @@ pub fn fit(s: &Matrix, y: &[f64], variances: &[f64], prior_sd: &[Option<f64>], s
         }
         for l in 0..k {
             for m in 0..k {
-                covariance[(l, m)] += scales[l] * scales[m] * d.v[(l, i)] * d.v[(m, i)] / (d.s[i] * d.s[i]);
+                covariance[(l, m)] +=
+                    scales[l] * scales[m] * d.v[(l, i)] * d.v[(m, i)] / (d.s[i] * d.s[i]);
             }
         }
     }
@@ -65,8 +76,17 @@ pub fn fit(s: &Matrix, y: &[f64], variances: &[f64], prior_sd: &[Option<f64>], s
             }
         }
     }
-    let f = (&gain * Vector::from_column_slice(y)).iter().copied().collect();
-    Some(Fit { f, covariance, gain, leverage, rank })
+    let f = (&gain * Vector::from_column_slice(y))
+        .iter()
+        .copied()
+        .collect();
+    Some(Fit {
+        f,
+        covariance,
+        gain,
+        leverage,
+        rank,
+    })
 }
 
 /// Share of a load in a combination that the readings don't see, from which the load counts as unknown.

@@ -28,7 +28,12 @@ pub fn chance(chi2: f64, dof: usize) -> f64 {
 }
 
 /// Findings on rank, redundancy and the size of the residuals.
-pub fn check(s: &Sensitivity, readings: &[Readings], runs: &[RunEstimate], errors: ErrorModel) -> Vec<Finding> {
+pub fn check(
+    s: &Sensitivity,
+    readings: &[Readings],
+    runs: &[RunEstimate],
+    errors: ErrorModel,
+) -> Vec<Finding> {
     let mut findings = Vec::new();
     let dof: usize = runs.iter().map(|r| r.dof).sum();
     let chi2: f64 = runs.iter().map(|r| r.chi2).sum();
@@ -57,19 +62,31 @@ pub fn check(s: &Sensitivity, readings: &[Readings], runs: &[RunEstimate], error
         let (mut r2, mut y2, mut n, mut free) = (0.0, 0.0, 0usize, 0usize);
         for (y, r) in pairs {
             free += r.dof;
-            for (v, e) in y.strain.iter().zip(&r.residual).filter(|(v, _)| v.is_finite()) {
+            for (v, e) in y
+                .strain
+                .iter()
+                .zip(&r.residual)
+                .filter(|(v, _)| v.is_finite())
+            {
                 y2 += v * v;
                 r2 += e * e;
                 n += 1;
             }
         }
-        if y2 > 0.0 && free > 0 { (r2 / y2 * n as f64 / free as f64).sqrt() } else { 0.0 }
+        if y2 > 0.0 && free > 0 {
+            (r2 / y2 * n as f64 / free as f64).sqrt()
+        } else {
+            0.0
+        }
     };
     let pairs: Vec<(&Readings, &RunEstimate)> = readings.iter().zip(runs).collect();
     let all = share(&pairs);
     let noise = errors.noise * 1e6;
     let stated = match errors.model_rel {
-        r if r > 0.0 => format!("noise of {noise} microstrain and a model uncertainty of {} %", r * 100.0),
+        r if r > 0.0 => format!(
+            "noise of {noise} microstrain and a model uncertainty of {} %",
+            r * 100.0
+        ),
         _ => format!("noise of {noise} microstrain"),
     };
     let patterns = patterns(runs);
@@ -82,12 +99,19 @@ pub fn check(s: &Sensitivity, readings: &[Readings], runs: &[RunEstimate], error
     };
     let bad: Vec<&str> = pairs
         .iter()
-        .filter(|(_, r)| chance(r.chi2, r.dof) < BEYOND_DOUBT && (r.chi2 / r.dof.max(1) as f64).sqrt() > BIRGE_LIMIT)
+        .filter(|(_, r)| {
+            chance(r.chi2, r.dof) < BEYOND_DOUBT
+                && (r.chi2 / r.dof.max(1) as f64).sqrt() > BIRGE_LIMIT
+        })
         .filter(|pair| share(&[**pair]) > EXPLAINED_LIMIT)
         .map(|(_, r)| r.estimate.run.as_str())
         .collect();
     if p < BEYOND_DOUBT && birge > BIRGE_LIMIT && (all > EXPLAINED_LIMIT || !bad.is_empty()) {
-        let subject = if bad.is_empty() || bad.len() == runs.len() { "all runs".to_owned() } else { bad.join(", ") };
+        let subject = if bad.is_empty() || bad.len() == runs.len() {
+            "all runs".to_owned()
+        } else {
+            bad.join(", ")
+        };
         findings.push(
             Finding::new(
                 Severity::Error,
@@ -135,8 +159,18 @@ pub fn check(s: &Sensitivity, readings: &[Readings], runs: &[RunEstimate], error
 fn patterns(runs: &[RunEstimate]) -> usize {
     let Some(first) = runs.first() else { return 0 };
     let (n, m) = (first.residual.len(), runs.len());
-    let std = |g: usize, r: &RunEstimate| if r.residual[g].is_finite() && r.sd[g] > 0.0 { r.residual[g] / r.sd[g] } else { 0.0 };
-    let a = Matrix::from_fn(n.max(m), m, |g, i| if g < n { std(g, &runs[i]) } else { 0.0 });
+    let std = |g: usize, r: &RunEstimate| {
+        if r.residual[g].is_finite() && r.sd[g] > 0.0 {
+            r.residual[g] / r.sd[g]
+        } else {
+            0.0
+        }
+    };
+    let a = Matrix::from_fn(
+        n.max(m),
+        m,
+        |g, i| if g < n { std(g, &runs[i]) } else { 0.0 },
+    );
     let edge = (n as f64).sqrt() + (m as f64).sqrt() + 3.0;
     dense::svd(&a).map_or(0, |d| d.s.iter().filter(|&&s| s > edge).count())
 }

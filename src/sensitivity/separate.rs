@@ -25,7 +25,10 @@ pub fn check_separability(s: &Sensitivity) -> Vec<Finding> {
                 Severity::Error,
                 "load-without-strain",
                 &load.name,
-                format!("load `{}` strains none of the gauges: it can't be recovered", load.name),
+                format!(
+                    "load `{}` strains none of the gauges: it can't be recovered",
+                    load.name
+                ),
                 "check its subcase and its `applied`, or add a gauge that it strains",
             ));
         }
@@ -49,8 +52,12 @@ pub fn check_separability(s: &Sensitivity) -> Vec<Finding> {
     if n < k {
         square = square.resize_vertically(k, 0.0);
     }
-    let Some(d) = dense::svd(&square) else { return findings };
-    let Some(&first) = d.s.first() else { return findings };
+    let Some(d) = dense::svd(&square) else {
+        return findings;
+    };
+    let Some(&first) = d.s.first() else {
+        return findings;
+    };
     let scaled_condition = s.condition_number_scaled();
     for (i, &value) in d.s.iter().enumerate() {
         let ratio = if first > 0.0 { value / first } else { 0.0 };
@@ -63,7 +70,10 @@ pub fn check_separability(s: &Sensitivity) -> Vec<Finding> {
         let shares: Vec<f64> = (0..k).map(|l| d.v[(l, i)]).collect();
         if ratio <= RANK_TOLERANCE {
             if shares.iter().filter(|v| v.abs() > 0.5).count() == 1
-                && shares.iter().zip(s.values.column_iter()).any(|(v, c)| v.abs() > 0.99 && c.amax() == 0.0)
+                && shares
+                    .iter()
+                    .zip(s.values.column_iter())
+                    .any(|(v, c)| v.abs() > 0.99 && c.amax() == 0.0)
             {
                 continue;
             }
@@ -78,7 +88,10 @@ pub fn check_separability(s: &Sensitivity) -> Vec<Finding> {
                 )
                 .with_numbers(ratio, RANK_TOLERANCE),
             );
-        } else if i + 1 == d.s.len() && scaled_condition > CONDITION_LIMIT && scaled_condition.is_finite() {
+        } else if i + 1 == d.s.len()
+            && scaled_condition > CONDITION_LIMIT
+            && scaled_condition.is_finite()
+        {
             let (names, words) = combination(s, &shares, &coefficients);
             findings.push(
                 Finding::new(
@@ -102,22 +115,35 @@ pub fn check_separability(s: &Sensitivity) -> Vec<Finding> {
 /// Names of the loads in a combination, and the combination as a sum, its largest term first with coefficient 1.
 fn combination(s: &Sensitivity, shares: &[f64], coefficients: &[f64]) -> (Vec<String>, String) {
     let top = shares.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
-    let mut order: Vec<usize> = (0..shares.len()).filter(|&l| shares[l].abs() >= NAMED_SHARE * top).collect();
+    let mut order: Vec<usize> = (0..shares.len())
+        .filter(|&l| shares[l].abs() >= NAMED_SHARE * top)
+        .collect();
     order.sort_by(|&a, &b| shares[b].abs().total_cmp(&shares[a].abs()).then(a.cmp(&b)));
     let base = order.first().map_or(1.0, |&l| coefficients[l]);
     let mut words = String::new();
     for (i, &l) in order.iter().enumerate() {
-        let c = if base == 0.0 { 0.0 } else { coefficients[l] / base };
+        let c = if base == 0.0 {
+            0.0
+        } else {
+            coefficients[l] / base
+        };
         let sign = if c < 0.0 { "-" } else { "+" };
         let size = c.abs();
-        let number = if (size - 1.0).abs() < 5e-4 { String::new() } else { format!("{} ", digits(size)) };
+        let number = if (size - 1.0).abs() < 5e-4 {
+            String::new()
+        } else {
+            format!("{} ", digits(size))
+        };
         match (i, c < 0.0) {
             (0, false) => words.push_str(&format!("{number}{}", s.loads[l].name)),
             (0, true) => words.push_str(&format!("-{number}{}", s.loads[l].name)),
             _ => words.push_str(&format!(" {sign} {number}{}", s.loads[l].name)),
         }
     }
-    (order.iter().map(|&l| s.loads[l].name.clone()).collect(), words)
+    (
+        order.iter().map(|&l| s.loads[l].name.clone()).collect(),
+        words,
+    )
 }
 
 /// Three significant digits.

@@ -16,7 +16,11 @@ pub struct Load {
 impl Load {
     /// A wanted load without a stated size.
     pub fn named(name: impl Into<String>) -> Self {
-        Self { name: name.into(), expected: None, wanted: true }
+        Self {
+            name: name.into(),
+            expected: None,
+            wanted: true,
+        }
     }
 }
 
@@ -34,7 +38,11 @@ pub struct Sensitivity {
 impl Sensitivity {
     /// Column scales: `expected` where every load states it, else 1 over the column's norm (1 for a zero column).
     pub fn scales(&self) -> Vec<f64> {
-        let stated: Option<Vec<f64>> = self.loads.iter().map(|l| l.expected.filter(|e| *e > 0.0)).collect();
+        let stated: Option<Vec<f64>> = self
+            .loads
+            .iter()
+            .map(|l| l.expected.filter(|e| *e > 0.0))
+            .collect();
         stated.unwrap_or_else(|| {
             self.values
                 .column_iter()
