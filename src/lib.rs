@@ -6,6 +6,7 @@
 //! |---|---|---|---|
 //! | 9 | [`cli`] | arguments and files (the only input and output) | exit code |
 //! | 8 | [`report`] | plain results | text, json, csv, html |
+//! | 7 | [`reconcile`] | measured and predicted channels, a library of effects | the effect that parts them, the gap before and after |
 //! | 6 | [`placement`], [`recovery`] | a [`sensitivity::Sensitivity`], strain | gauge layouts, [`estimate::LoadEstimate`]s |
 //! | 5 | [`sensitivity`] | [`fe::Solution`]s and [`gauge::Gauge`]s | S in eps = S f |
 //! | 4 | [`gauge`] | strain at a place | what that gauge reads |
@@ -32,6 +33,7 @@ pub mod linalg;
 pub mod model;
 pub mod payload;
 pub mod placement;
+pub mod reconcile;
 pub mod recovery;
 pub mod report;
 pub mod sensitivity;

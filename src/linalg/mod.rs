@@ -3,9 +3,11 @@
 //! - [`sparse`]: large symmetric positive definite systems
 //! - [`tall`]: least squares with many rows and few columns
 //! - [`levenberg`]: nonlinear least squares
+//! - [`precision`]: the inverse of a dense covariance
 
 pub mod dense;
 pub mod levenberg;
+pub mod precision;
 pub mod sparse;
 pub mod spd;
 pub mod tall;

@@ -1,0 +1,69 @@
+//! `payload_offset`: the payload lies elsewhere than written down.
+
+use super::{Extension, Parameter, Stage, StrainEffect};
+use crate::reconcile::strain::{PayloadWeight, StrainFrame, StrainState};
+
+/// Which way it may be off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// Forward or back.
+    Along,
+    /// To a side.
+    Across,
+    /// Both.
+    Both,
+}
+
+/// The payload acts at (x + dx, dy) in all runs.
+#[derive(Clone, Debug)]
+pub struct PayloadOffset {
+    /// Which way.
+    pub axis: Axis,
+}
+
+impl PayloadOffset {
+    /// Every way, where the model holds a payload.
+    pub fn all(frame: &StrainFrame) -> Vec<Self> {
+        let carries = frame.payload.iter().any(|p| p[0] > 0.0);
+        if frame.payload_weight == PayloadWeight::Missing || !carries {
+            return Vec::new();
+        }
+        [Axis::Along, Axis::Across, Axis::Both].map(|axis| Self { axis }).to_vec()
+    }
+
+    fn offset(&self, parameters: &[f64]) -> [f64; 2] {
+        let first = parameters.first().copied().unwrap_or(0.0);
+        match self.axis {
+            Axis::Along => [first, 0.0],
+            Axis::Across => [0.0, first],
+            Axis::Both => [first, parameters.get(1).copied().unwrap_or(0.0)],
+        }
+    }
+}
+
+impl StrainEffect for PayloadOffset {
+    fn id(&self) -> &'static str {
+        "payload_offset"
+    }
+    fn stage(&self) -> Stage {
+        Stage::Loads
+    }
+    fn parameters(&self) -> Vec<Parameter> {
+        let one = Parameter { unit: "m", neutral: 0.0, prior_sd: 0.3, step: 0.01, starts: vec![0.0], plausible: 2.0 };
+        match self.axis {
+            Axis::Along | Axis::Across => vec![one],
+            Axis::Both => vec![one.clone(), one],
+        }
+    }
+    fn alter(&self, frame: &StrainFrame, parameters: &[f64], state: &mut StrainState) {
+        let [dx, dy] = self.offset(parameters);
+        state.set_payload(frame, dx, dy);
+    }
+    fn extension(&self, _frame: &StrainFrame, parameters: &[f64]) -> Extension {
+        let [dx, dy] = self.offset(parameters);
+        Extension::PayloadOffset { dx, dy }
+    }
+    fn separate_by(&self, _frame: &StrainFrame) -> String {
+        "measure where the payload lies, or lift it off and repeat: an offset goes with it".into()
+    }
+}

@@ -1,0 +1,14 @@
+//! Find where simulation and measurement disagree, name the missing effect, judge, add it, show the gap shrink.
+//!
+//! One frame for strain and acceleration: observations by run and channel, a prediction that can be evaluated again with any effect
+//! on, a covariance of what noise and stated model uncertainty leave, a library of effects, evidence, a verdict.
+
+pub mod effect;
+mod observation;
+mod outcome;
+mod search;
+pub mod strain;
+
+pub use observation::Observations;
+pub use outcome::{ChannelGap, Detectable, Gap, LoadShift, Misfit, NamedEffect, Outcome, Rival, Verdict};
+pub use search::{Breadth, Scored, Scorer, search, settle};

@@ -1,0 +1,175 @@
+//! What the workflow has to say, for strain and acceleration alike.
+
+use crate::reconcile::effect::Extension;
+
+/// The verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Effects are named: decisive, at the floor, plausible.
+    Named,
+    /// Model and measurement agree within noise and stated uncertainty.
+    None,
+    /// There is a gap, and nothing in the library closes it.
+    Unknown,
+    /// There is a hint of an effect, too small for these data to name.
+    BelowDetectability,
+}
+
+impl Verdict {
+    /// The word in results.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Named => "named",
+            Self::None => "none",
+            Self::Unknown => "unknown",
+            Self::BelowDetectability => "below-detectability",
+        }
+    }
+}
+
+/// A named effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedEffect {
+    /// Id with place.
+    pub id: String,
+    /// Place alone.
+    pub place: Option<String>,
+    /// Sizes, one a parameter (or a kind of amplitude: its root mean square over runs).
+    pub size: Vec<f64>,
+    /// One standard deviation of each.
+    pub sigma: Vec<f64>,
+    /// Their unit.
+    pub unit: &'static str,
+    /// Is the size one that occurs?
+    pub plausible: bool,
+    /// What the model must be given.
+    pub extension: Extension,
+}
+
+/// Another explanation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rival {
+    /// Ids with places.
+    pub ids: Vec<String>,
+    /// Log evidence of the named set less that of this one.
+    pub evidence_difference: f64,
+    /// Gap that it leaves on held-out runs.
+    pub gap_after: f64,
+    /// These data can't tell it from what was named.
+    pub indistinguishable: bool,
+}
+
+/// The gap on held-out runs: RMS(reading - model) / RMS(reading).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap {
+    /// The analyst's model.
+    pub before: f64,
+    /// With the named effects; amplitudes of a run found from one half of the channels and judged on the other.
+    pub after: f64,
+    /// What noise and stated model uncertainty leave.
+    pub floor: f64,
+}
+
+impl Gap {
+    /// (before^2 - after^2) / (before^2 - floor^2); zero where there is nothing to close.
+    pub fn explained_share(&self) -> f64 {
+        let closable = self.before * self.before - self.floor * self.floor;
+        if closable > 0.0 { (self.before * self.before - self.after * self.after) / closable } else { 0.0 }
+    }
+}
+
+/// The gap at one channel, in the channel's unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelGap {
+    /// Channel.
+    pub channel: String,
+    /// RMS residual on held-out runs before.
+    pub before: f64,
+    /// After.
+    pub after: f64,
+    /// Floor.
+    pub floor: f64,
+    /// RMS reading.
+    pub reading: f64,
+}
+
+/// A load recovered from held-out strain without and with the named effects.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadShift {
+    /// Run.
+    pub run: String,
+    /// Load.
+    pub load: String,
+    /// As measured or computed for the run, kN.
+    pub stated: f64,
+    /// Recovered by the analyst's model, kN.
+    pub before: f64,
+    /// Recovered with the effects in, kN.
+    pub after: f64,
+    /// One standard deviation of `after`, kN.
+    pub sigma: f64,
+}
+
+impl LoadShift {
+    /// Has it moved by more than two standard deviations?
+    pub fn moved(&self) -> bool {
+        (self.after - self.before).abs() > 2.0 * self.sigma
+    }
+}
+
+/// Smallest size of an effect that these data would show.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Detectable {
+    /// Id with place.
+    pub id: String,
+    /// Size.
+    pub size: f64,
+    /// Unit.
+    pub unit: &'static str,
+}
+
+/// How far something lies from its floor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Misfit {
+    /// Gauge or run.
+    pub name: String,
+    /// Chi-square by number of readings: 1 at the floor.
+    pub reduced_chi2: f64,
+    /// The same as a standard normal deviate.
+    pub deviate: f64,
+}
+
+/// Everything.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// Verdict.
+    pub verdict: Verdict,
+    /// Named effects; empty unless named.
+    pub effects: Vec<NamedEffect>,
+    /// What would have been named, had it reached the floor, been decisive or plausible.
+    pub best_attempt: Vec<NamedEffect>,
+    /// Other explanations, nearest first.
+    pub rivals: Vec<Rival>,
+    /// Log evidence of the named set (or best attempt) less that of no effect.
+    pub evidence: f64,
+    /// Gap.
+    pub gap: Gap,
+    /// By channel.
+    pub channels: Vec<ChannelGap>,
+    /// Loads before and after.
+    pub loads: Vec<LoadShift>,
+    /// Reduced chi-square: fit runs before, fit runs after, held-out runs after.
+    pub reduced_chi2: [f64; 3],
+    /// Gauges beyond their own floor before any effect, worst first.
+    pub gauges_off_before: Vec<Misfit>,
+    /// Gauges beyond their own floor after: the second pass.
+    pub gauges_off: Vec<Misfit>,
+    /// Runs beyond the floor after.
+    pub runs_off: Vec<Misfit>,
+    /// What remains, in words; where it sits and how it grows.
+    pub remains: String,
+    /// What would separate the first two explanations.
+    pub next_measurement: String,
+    /// Smallest sizes that would have been seen.
+    pub detectable: Vec<Detectable>,
+}

@@ -1,0 +1,128 @@
+//! Which set of effects explains most for what it costs: forward, backward, exchanged. Knows nothing of strain or acceleration.
+
+use std::collections::BTreeMap;
+
+/// A set of effects with its evidence.
+#[derive(Clone, Debug)]
+pub struct Scored<F> {
+    /// Candidate numbers, ascending.
+    pub set: Vec<usize>,
+    /// Log evidence, prior weights included.
+    pub log_evidence: f64,
+    /// Parameters and whatever else the fit found.
+    pub fit: F,
+}
+
+/// A way to judge sets of effects.
+pub trait Scorer {
+    /// What a fit leaves behind.
+    type Fit: Clone;
+    /// Fits `set` exactly.
+    fn score(&mut self, set: &[usize]) -> Option<Scored<Self::Fit>>;
+    /// Candidates worth adding to `base` with the approximate gain of log evidence, prior weight included, best first.
+    fn screen(&mut self, base: &Scored<Self::Fit>) -> Vec<(usize, f64)>;
+    /// Can the two be in one set?
+    fn compatible(&self, a: usize, b: usize) -> bool;
+    /// Candidates that differ in nothing that matters share a number: the screen keeps few of each.
+    fn kin(&self, candidate: usize) -> usize;
+}
+
+/// How far the search looks.
+#[derive(Clone, Copy, Debug)]
+pub struct Breadth {
+    /// Largest number of effects in a set.
+    pub largest: usize,
+    /// Sets kept from level to level.
+    pub beam: usize,
+    /// Additions tried exactly for each.
+    pub tries: usize,
+    /// A set must raise the log evidence by this over the same set less one.
+    pub decisive: f64,
+}
+
+/// Every set that was scored, best first; the empty set is always among them.
+pub fn search<S: Scorer>(scorer: &mut S, breadth: Breadth) -> Vec<Scored<S::Fit>> {
+    let mut seen: BTreeMap<Vec<usize>, Option<Scored<S::Fit>>> = BTreeMap::new();
+    let Some(null) = scorer.score(&[]) else { return Vec::new() };
+    seen.insert(Vec::new(), Some(null.clone()));
+    let mut level = vec![null];
+    for _ in 0..breadth.largest {
+        let mut next = Vec::new();
+        for base in &level {
+            next.extend(extend(scorer, base, breadth, &mut seen));
+        }
+        next.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+        next.dedup_by(|a, b| a.set == b.set);
+        next.truncate(breadth.beam);
+        // No addition pays: larger sets won't either.
+        let best_before = level.iter().map(|s| s.log_evidence).fold(f64::NEG_INFINITY, f64::max);
+        let pays = next.first().is_some_and(|s| s.log_evidence > best_before + breadth.decisive);
+        level = next;
+        if !pays {
+            break;
+        }
+    }
+    exchange(scorer, breadth, &mut seen);
+    let mut all: Vec<_> = seen.into_values().flatten().collect();
+    all.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+    all
+}
+
+/// The best set each member of which is decisive: dropping any costs at least `decisive`.
+pub fn settle<F: Clone>(all: &[Scored<F>], decisive: f64) -> Option<Scored<F>> {
+    let penalised = |s: &Scored<F>| s.log_evidence - decisive * s.set.len() as f64;
+    all.iter().max_by(|a, b| penalised(a).total_cmp(&penalised(b))).cloned()
+}
+
+type Seen<F> = BTreeMap<Vec<usize>, Option<Scored<F>>>;
+
+fn extend<S: Scorer>(scorer: &mut S, base: &Scored<S::Fit>, breadth: Breadth, seen: &mut Seen<S::Fit>) -> Vec<Scored<S::Fit>> {
+    /// Of candidates that touch the same gauges, this many are tried.
+    const PER_KIN: usize = 3;
+    let mut out = Vec::new();
+    let mut kin_count: BTreeMap<usize, usize> = BTreeMap::new();
+    for (candidate, _gain) in scorer.screen(base) {
+        if out.len() >= breadth.tries {
+            break;
+        }
+        if base.set.contains(&candidate) || base.set.iter().any(|&m| !scorer.compatible(m, candidate)) {
+            continue;
+        }
+        let count = kin_count.entry(scorer.kin(candidate)).or_insert(0);
+        if *count >= PER_KIN {
+            continue;
+        }
+        *count += 1;
+        let mut set = base.set.clone();
+        set.push(candidate);
+        set.sort_unstable();
+        let scored = seen.entry(set.clone()).or_insert_with(|| scorer.score(&set)).clone();
+        out.extend(scored);
+    }
+    out
+}
+
+/// Replaces each member of the best set by what explains its absence best, until nothing improves.
+fn exchange<S: Scorer>(scorer: &mut S, breadth: Breadth, seen: &mut Seen<S::Fit>) {
+    /// Rounds: each strictly improves; two are seen in practice.
+    const ROUNDS: usize = 4;
+    for _ in 0..ROUNDS {
+        let all: Vec<_> = seen.values().flatten().cloned().collect();
+        let Some(best) = settle(&all, breadth.decisive) else { return };
+        if best.set.len() < 2 {
+            return;
+        }
+        for skip in 0..best.set.len() {
+            let mut reduced = best.set.clone();
+            reduced.remove(skip);
+            let scored = seen.entry(reduced.clone()).or_insert_with(|| scorer.score(&reduced)).clone();
+            if let Some(base) = scored {
+                extend(scorer, &base, breadth, seen);
+            }
+        }
+        let all: Vec<_> = seen.values().flatten().cloned().collect();
+        if settle(&all, breadth.decisive).is_none_or(|s| s.set == best.set) {
+            return;
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Is a set of effects enough? Chi-square against what noise and stated uncertainty allow: over all, by gauge, by run, held out.
+
+use super::covariance::{Selection, SizedAmplitudes, covariance};
+use super::frame::StrainFrame;
+use super::state::predict;
+use crate::linalg::precision::Precision;
+use crate::reconcile::effect::Member;
+use crate::reconcile::outcome::Misfit;
+
+/// Chi-squares of a set of effects.
+#[derive(Clone, Debug)]
+pub struct Adequacy {
+    /// Reduced chi-square of the fit runs.
+    pub fit: f64,
+    /// Its standard normal deviate.
+    pub fit_deviate: f64,
+    /// Reduced chi-square of the held-out runs given the fit runs.
+    pub held_out: f64,
+    /// Its standard normal deviate.
+    pub held_out_deviate: f64,
+    /// By gauge over the fit runs.
+    pub gauges: Vec<Misfit>,
+    /// By run over the fit runs.
+    pub runs: Vec<Misfit>,
+}
+
+/// Standard normal deviate of a chi-square of `n` degrees of freedom (Wilson and Hilferty 1931).
+pub fn deviate(chi2: f64, n: f64) -> f64 {
+    if n <= 0.0 {
+        return 0.0;
+    }
+    let spread = 2.0 / (9.0 * n);
+    ((chi2.max(0.0) / n).cbrt() - (1.0 - spread)) / spread.sqrt()
+}
+
+fn residual(frame: &StrainFrame, members: &[Member<'_>], selection: &Selection) -> Vec<f64> {
+    let n_g = frame.n_gauges();
+    let predicted = selection.pick(&predict(frame, members), n_g);
+    selection.pick(&frame.observations.values, n_g).iter().zip(predicted).map(|(y, p)| y - p).collect()
+}
+
+fn chi2(cov: &[f64], r: &[f64]) -> f64 {
+    let Some(p) = Precision::of(cov, r.len()) else { return f64::NAN };
+    p.apply(r).iter().zip(r).map(|(a, b)| a * b).sum()
+}
+
+/// Judges `members` with amplitudes of the sizes of `unknown`; `n_parameters` were fitted.
+pub fn adequacy(frame: &StrainFrame, members: &[Member<'_>], unknown: &[SizedAmplitudes], n_parameters: usize) -> Adequacy {
+    let fit_runs = frame.observations.fit_runs();
+    let proof_runs = frame.observations.proof_runs();
+    let fit = Selection::of_runs(frame, &fit_runs);
+    let r = residual(frame, members, &fit);
+    let cov = covariance(frame, members, &fit, unknown);
+    let fit_chi2 = chi2(&cov, &r);
+    let n_fit = fit.len() as f64 - n_parameters as f64;
+    let (held_chi2, n_held) = if proof_runs == fit_runs {
+        (fit_chi2, fit.len() as f64)
+    } else {
+        // Chain rule of Gaussians: what the held-out runs add, given the fit runs.
+        let all = Selection::of_runs(frame, &[fit_runs, proof_runs].concat());
+        let total = chi2(&covariance(frame, members, &all, unknown), &residual(frame, members, &all));
+        (total - fit_chi2, (all.len() - fit.len()) as f64)
+    };
+    let part = |name: &str, keep: &dyn Fn((usize, usize)) -> bool| {
+        let at: Vec<usize> = fit.0.iter().enumerate().filter(|(_, e)| keep(**e)).map(|(i, _)| i).collect();
+        let n = fit.len();
+        let block: Vec<f64> = at.iter().flat_map(|&i| at.iter().map(move |&j| (i, j))).map(|(i, j)| cov[i * n + j]).collect();
+        let here: Vec<f64> = at.iter().map(|&i| r[i]).collect();
+        let c = chi2(&block, &here);
+        let count = here.len() as f64;
+        Misfit { name: name.to_string(), reduced_chi2: c / count.max(1.0), deviate: deviate(c, count) }
+    };
+    let gauges = frame.gauges.iter().enumerate().map(|(g, f)| part(&f.name, &|e| e.1 == g)).collect();
+    let runs = frame.observations.fit_runs().iter().map(|&k| part(&frame.observations.runs[k], &|e| e.0 == k)).collect();
+    Adequacy {
+        fit: fit_chi2 / n_fit.max(1.0),
+        fit_deviate: deviate(fit_chi2, n_fit),
+        held_out: held_chi2 / n_held.max(1.0),
+        held_out_deviate: deviate(held_chi2, n_held),
+        gauges,
+        runs,
+    }
+}

@@ -1,0 +1,111 @@
+//! What noise and stated model uncertainty do to the residual, runs and gauges together.
+
+use super::frame::StrainFrame;
+use super::state::{Part, StrainState, read_all};
+use crate::reconcile::effect::{Amplitudes, Member};
+
+/// Amplitudes with the size (variance root) of each of their kinds.
+#[derive(Clone, Debug)]
+pub struct SizedAmplitudes {
+    /// Patterns.
+    pub amplitudes: Amplitudes,
+    /// By kind: standard deviation.
+    pub sizes: Vec<f64>,
+}
+
+/// Readings under consideration: (run, gauge), in a fixed order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Selection(pub Vec<(usize, usize)>);
+
+impl Selection {
+    /// All readings of `runs`.
+    pub fn of_runs(frame: &StrainFrame, runs: &[usize]) -> Self {
+        Self(frame.observations.entries(runs))
+    }
+
+    /// Number of readings.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// No reading at all.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The selected entries of an `n_runs x n_gauges` table.
+    pub fn pick(&self, table: &[f64], n_gauges: usize) -> Vec<f64> {
+        self.0.iter().map(|&(r, g)| table.get(r * n_gauges + g).copied().unwrap_or(f64::NAN)).collect()
+    }
+}
+
+/// Patterns as the gauges read them: the linear part of the reading effects of `members` applied.
+pub fn read_patterns(frame: &StrainFrame, members: &[Member<'_>], patterns: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let read = |pattern: &Vec<f64>| {
+        let mut row = pattern.clone();
+        read_all(frame, members, 0, &mut row, Part::Linear);
+        row
+    };
+    patterns.iter().map(read).collect()
+}
+
+/// Covariance of the residual of `selection`, `n x n` by rows, microstrain^2.
+///
+/// C = noise^2 I + load_noise^2 S S' (run by run: an error of a measured wheel force enters all gauges at once) + model_rel^2 m m'
+/// (gauge by gauge, all runs together: a wrong influence stays wrong) + entry_rel^2 sum over columns of (a f)(a f)' (the same, column
+/// by column) + V (amplitudes unknown in every run, run by run), with S, m, a as read with `members` on.
+pub fn covariance(frame: &StrainFrame, members: &[Member<'_>], selection: &Selection, unknown: &[SizedAmplitudes]) -> Vec<f64> {
+    let state = StrainState::with(frame, members);
+    let [n_g, n_r, n_c] = state.shape;
+    let column = |c: usize| -> Vec<f64> { (0..n_g).map(|g| state.influence[g * n_c + c]).collect() };
+    let columns: Vec<Vec<f64>> = (0..n_c).map(column).collect();
+    let columns = read_patterns(frame, members, &columns);
+    let mut predicted = Vec::with_capacity(n_r * n_g);
+    for run in 0..n_r {
+        let mut row = state.strain(run);
+        read_all(frame, members, run, &mut row, Part::Linear);
+        predicted.extend(row);
+    }
+    // Within a run: noise, wheel forces, unknown amplitudes; the same block for every run.
+    let mut block = vec![0.0; n_g * n_g];
+    let mut add = |pattern: &[f64], variance: f64| {
+        for g in 0..n_g {
+            for h in 0..n_g {
+                block[g * n_g + h] += variance * pattern[g] * pattern[h];
+            }
+        }
+    };
+    for pattern in columns.iter().take(frame.n_loads()) {
+        add(pattern, frame.load_noise * frame.load_noise);
+    }
+    for u in unknown {
+        let read = read_patterns(frame, members, &u.amplitudes.patterns);
+        for (pattern, &kind) in read.iter().zip(&u.amplitudes.kinds) {
+            let size = u.sizes.get(kind).copied().unwrap_or(0.0);
+            add(pattern, size * size);
+        }
+    }
+    for g in 0..n_g {
+        block[g * n_g + g] += frame.noise * frame.noise;
+    }
+    let (model, entry) = (frame.model_rel * frame.model_rel, frame.entry_rel * frame.entry_rel);
+    let across = |g: usize, r: usize, s: usize| {
+        let common = model * predicted[r * n_g + g] * predicted[s * n_g + g];
+        if entry == 0.0 {
+            return common;
+        }
+        let term = |(c, pattern): (usize, &Vec<f64>)| pattern[g] * pattern[g] * state.columns[r * n_c + c] * state.columns[s * n_c + c];
+        common + entry * columns.iter().enumerate().map(term).sum::<f64>()
+    };
+    let n = selection.len();
+    let mut out = vec![0.0; n * n];
+    for (i, &(r, g)) in selection.0.iter().enumerate() {
+        for (j, &(s, h)) in selection.0.iter().enumerate().take(i + 1) {
+            let within = if r == s { block[g * n_g + h] } else { 0.0 };
+            let persistent = if g == h { across(g, r, s) } else { 0.0 };
+            out[i * n + j] = within + persistent;
+            out[j * n + i] = within + persistent;
+        }
+    }
+    out
+}

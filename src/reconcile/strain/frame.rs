@@ -1,0 +1,152 @@
+//! The static strain problem as numbers: influence of every load on every gauge, what acted in every run, what was read.
+//!
+//! Units throughout this module: microstrain, kN, kN m, kg, m, degrees Celsius, degrees of angle, percent of stiffness.
+
+use crate::reconcile::Observations;
+
+/// How a gauge's arms are wired, as far as an angle error is concerned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wiring {
+    /// One active arm.
+    Quarter,
+    /// Arms on both sides: bending doubles, in-plane shear cancels.
+    Bending,
+    /// Arms at plus and minus 45 degrees.
+    Shear,
+}
+
+/// What is known of a gauge.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GaugeFacts {
+    /// Name: the channel's.
+    pub name: String,
+    /// Wiring.
+    pub wiring: Wiring,
+    /// Angle from the direction its `tensor` refers to, degrees.
+    pub angle_deg: f64,
+    /// Place, metres, where known: gauges at one place form a rosette.
+    pub position: Option<[f64; 3]>,
+}
+
+/// In-plane strain at a gauge per unit of every column, in the frame that `angle_deg` counts from: exx, eyy, gxy (engineering shear).
+pub type PlaneStrainRow = Vec<[f64; 3]>;
+
+/// A change of stiffness somewhere: what it does to the influence matrix.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StiffnessSignature {
+    /// Effect id with its place: `rail_stiffness:L4`, `joint_stiffness:12`.
+    pub id: String,
+    /// Changes of the influence matrix (`n_gauges x n_columns`) at sizes in percent, ascending in size, zero left out.
+    pub at_percent: Vec<(f64, Vec<f64>)>,
+    /// Prior standard deviation of the size in percent (of its natural log times 100 for joints).
+    pub prior_percent: f64,
+}
+
+/// An extra mass at a place: microstrain per kg at every gauge.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MassSignature {
+    /// Place.
+    pub place: String,
+    /// By gauge.
+    pub per_kg: Vec<f64>,
+}
+
+/// Where the wheel forces of the runs come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WheelForces {
+    /// Measured, with the stated noise.
+    Measured,
+    /// Computed for flat ground: the ground itself may differ.
+    FlatGroundModel,
+}
+
+/// Whether the analyst's model lets the payload's weight act at its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PayloadWeight {
+    /// It acts as a point load.
+    InModel,
+    /// It is missing (gravity as a body force cancels under inertia relief).
+    Missing,
+}
+
+/// Number of payload columns that follow the load columns: weight, weight times dx, times dy, times dx dy.
+pub const N_PAYLOAD_COLUMNS: usize = 4;
+
+/// The whole static problem.
+#[derive(Clone, Debug)]
+pub struct StrainFrame {
+    /// Readings, microstrain.
+    pub observations: Observations,
+    /// Gauges, in channel order.
+    pub gauges: Vec<GaugeFacts>,
+    /// Names of the wheel loads: the first columns.
+    pub load_names: Vec<String>,
+    /// Plan position (x forward or back, y left), metres, of each wheel load, where known.
+    pub load_positions: Option<Vec<[f64; 2]>>,
+    /// Microstrain per kN of each wheel load, then per kg of payload: 1, dx, dy, dx dy; `n_gauges x (n_loads + 4)` by rows.
+    pub influence: Vec<f64>,
+    /// In-plane strain behind each row of `influence`; empty where unknown, then an angle error of that gauge can't be named.
+    pub tensors: Vec<PlaneStrainRow>,
+    /// Change of `influence` per mm along the gauge axis, where known.
+    pub per_mm: Option<Vec<f64>>,
+    /// Wheel loads by run, kN, `n_runs x n_loads`.
+    pub loads: Vec<f64>,
+    /// Payload by run: mass in kg, distance in x from its nominal place in m.
+    pub payload: Vec<[f64; 2]>,
+    /// Does the analyst's model hold the payload's weight?
+    pub payload_weight: PayloadWeight,
+    /// Where the wheel forces come from.
+    pub wheel_forces: WheelForces,
+    /// Forces and moments at the wheels that the model leaves out: (name `FY_LF`, microstrain per kN or kN m by gauge).
+    pub other_loads: Vec<(String, Vec<f64>)>,
+    /// Microstrain per degree of a uniform temperature change, by gauge.
+    pub thermal_uniform: Option<Vec<f64>>,
+    /// Microstrain per degree of a temperature gradient, by gauge.
+    pub thermal_gradient: Option<Vec<f64>>,
+    /// Places where a mass may have been left out.
+    pub masses: Vec<MassSignature>,
+    /// Zones and joints whose stiffness may be wrong.
+    pub stiffness: Vec<StiffnessSignature>,
+    /// Strain noise of a mean, microstrain, 1 sd.
+    pub noise: f64,
+    /// Noise of a measured wheel load, kN, 1 sd.
+    pub load_noise: f64,
+    /// Model uncertainty, relative to the predicted strain of a gauge and common to all its runs, 1 sd.
+    pub model_rel: f64,
+    /// Model uncertainty of single influence coefficients, relative, 1 sd: what a coarse mesh does besides a common factor.
+    pub entry_rel: f64,
+}
+
+impl StrainFrame {
+    /// Number of gauges.
+    pub fn n_gauges(&self) -> usize {
+        self.gauges.len()
+    }
+
+    /// Number of runs.
+    pub fn n_runs(&self) -> usize {
+        self.observations.runs.len()
+    }
+
+    /// Number of wheel loads.
+    pub fn n_loads(&self) -> usize {
+        self.load_names.len()
+    }
+
+    /// Number of columns of `influence`.
+    pub fn n_columns(&self) -> usize {
+        self.load_names.len() + N_PAYLOAD_COLUMNS
+    }
+
+    /// Gauges that share the place of `gauge`: the legs of its rosette, itself included, in file order.
+    pub fn rosette(&self, gauge: usize) -> Vec<usize> {
+        /// Legs of a stacked or planar rosette lie within a few millimetres.
+        const SAME_PLACE_M: f64 = 0.005;
+        let Some(here) = self.gauges.get(gauge).and_then(|g| g.position) else { return vec![gauge] };
+        let near = |p: [f64; 3]| p.iter().zip(&here).all(|(a, b)| (a - b).abs() < SAME_PLACE_M);
+        let wiring = self.gauges.get(gauge).map(|g| g.wiring);
+        (0..self.gauges.len())
+            .filter(|&g| self.gauges.get(g).is_some_and(|f| Some(f.wiring) == wiring && f.position.is_some_and(near)))
+            .collect()
+    }
+}

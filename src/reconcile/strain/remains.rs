@@ -1,0 +1,57 @@
+//! What remains after the best explanation, in words: which gauges, which runs, how it grows with load.
+
+use super::adequacy::Adequacy;
+use super::covariance::Selection;
+use super::frame::StrainFrame;
+use super::gap::rms;
+use super::state::predict;
+use crate::reconcile::effect::Member;
+use crate::reconcile::outcome::Misfit;
+
+/// A sentence or two on what `members` leave of the fit runs.
+pub fn remains(frame: &StrainFrame, members: &[Member<'_>], after: &Adequacy) -> String {
+    let list = |parts: &[Misfit]| {
+        let mut sorted: Vec<&Misfit> = parts.iter().filter(|m| m.deviate > 3.0).collect();
+        sorted.sort_by(|a, b| b.deviate.total_cmp(&a.deviate));
+        sorted.iter().take(4).map(|m| format!("{} (reduced chi-square {:.1})", m.name, m.reduced_chi2)).collect::<Vec<_>>().join(", ")
+    };
+    let (gauges, runs) = (list(&after.gauges), list(&after.runs));
+    if gauges.is_empty() && runs.is_empty() {
+        return format!("nothing above the floor at any gauge or in any run (reduced chi-square {:.2})", after.fit);
+    }
+    let mut out = format!("reduced chi-square {:.2} over all", after.fit);
+    if !gauges.is_empty() {
+        out += &format!("; gauges: {gauges}");
+    }
+    if !runs.is_empty() {
+        out += &format!("; runs: {runs}");
+    }
+    let n_g = frame.n_gauges();
+    let predicted = predict(frame, members);
+    let points: Vec<(f64, f64)> = frame
+        .observations
+        .fit_runs()
+        .iter()
+        .map(|&r| {
+            let s = Selection::of_runs(frame, &[r]);
+            let p = s.pick(&predicted, n_g);
+            let y = s.pick(&frame.observations.values, n_g);
+            (rms(p.iter().copied()), rms(y.iter().zip(&p).map(|(a, b)| a - b)))
+        })
+        .collect();
+    match correlation(&points) {
+        Some(c) if c > 0.7 => out + "; it grows with the load",
+        Some(c) if c < 0.3 => out + "; it does not grow with the load",
+        _ => out,
+    }
+}
+
+/// Pearson's correlation; `None` for constant data.
+fn correlation(points: &[(f64, f64)]) -> Option<f64> {
+    let n = points.len() as f64;
+    let (mx, my) = (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);
+    let sxy: f64 = points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum();
+    let sxx: f64 = points.iter().map(|p| (p.0 - mx).powi(2)).sum();
+    let syy: f64 = points.iter().map(|p| (p.1 - my).powi(2)).sum();
+    (sxx > 0.0 && syy > 0.0).then(|| sxy / (sxx * syy).sqrt())
+}

@@ -1,0 +1,100 @@
+//! The prediction, evaluated exactly with any set of effects on.
+
+use crate::reconcile::effect::{Member, Stage};
+use crate::reconcile::strain::frame::{PayloadWeight, StrainFrame};
+
+/// The model with effects on: influence, what acts, and strain that no load explains.
+#[derive(Clone, Debug)]
+pub struct StrainState {
+    /// `n_gauges x n_columns`.
+    pub influence: Vec<f64>,
+    /// `n_runs x n_columns`: wheel loads, then payload mass times 1, dx, dy, dx dy.
+    pub columns: Vec<f64>,
+    /// Strain besides, `n_runs x n_gauges`: a mass left out.
+    pub extra: Vec<f64>,
+    /// Number of gauges, runs, columns.
+    pub shape: [usize; 3],
+}
+
+impl StrainState {
+    /// The analyst's own model.
+    pub fn nominal(frame: &StrainFrame) -> Self {
+        let (n_g, n_r, n_c, n_l) = (frame.n_gauges(), frame.n_runs(), frame.n_columns(), frame.n_loads());
+        let mut state = Self {
+            influence: frame.influence.clone(),
+            columns: vec![0.0; n_r * n_c],
+            extra: vec![0.0; n_r * n_g],
+            shape: [n_g, n_r, n_c],
+        };
+        for run in 0..n_r {
+            for load in 0..n_l {
+                state.columns[run * n_c + load] = frame.loads[run * n_l + load];
+            }
+        }
+        if frame.payload_weight == PayloadWeight::InModel {
+            state.set_payload(frame, 0.0, 0.0);
+        }
+        state
+    }
+
+    /// The model with `members` on, each with its parameters: structure first, then loads; readings are left to [`read_all`].
+    pub fn with(frame: &StrainFrame, members: &[Member<'_>]) -> Self {
+        let mut state = Self::nominal(frame);
+        for stage in [Stage::Structure, Stage::Loads] {
+            for m in members.iter().filter(|m| m.effect.stage() == stage) {
+                m.effect.alter(frame, m.parameters, &mut state);
+            }
+        }
+        state
+    }
+
+    /// Lets the payload act, moved by `dx`, `dy` metres from where the analyst believes it.
+    pub fn set_payload(&mut self, frame: &StrainFrame, dx: f64, dy: f64) {
+        let [_, n_r, n_c] = self.shape;
+        for run in 0..n_r {
+            let [mass, x] = frame.payload.get(run).copied().unwrap_or([0.0; 2]);
+            let first = run * n_c + frame.n_loads();
+            let terms = [1.0, x + dx, dy, (x + dx) * dy];
+            for (cell, t) in self.columns[first..first + terms.len()].iter_mut().zip(terms) {
+                *cell = mass * t;
+            }
+        }
+    }
+
+    /// Strain of every gauge in `run`, before any reading effect.
+    pub fn strain(&self, run: usize) -> Vec<f64> {
+        let [n_g, _, n_c] = self.shape;
+        let acts = &self.columns[run * n_c..(run + 1) * n_c];
+        let extra = &self.extra[run * n_g..(run + 1) * n_g];
+        let rows = self.influence.chunks_exact(n_c);
+        rows.zip(extra).map(|(row, e)| e + row.iter().zip(acts).map(|(a, f)| a * f).sum::<f64>()).collect()
+    }
+}
+
+/// Which part of a reading effect applies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// All of it, offsets and limits included: for predictions.
+    Whole,
+    /// The linear part: for columns of unknown amplitude and for noise.
+    Linear,
+}
+
+/// What the gauges read of `strain` (one row of gauges in `run`) with the reading effects of `members`.
+pub fn read_all(frame: &StrainFrame, members: &[Member<'_>], run: usize, strain: &mut [f64], part: Part) {
+    for m in members.iter().filter(|m| m.effect.stage() == Stage::Reading) {
+        m.effect.read(frame, m.parameters, run, strain, part);
+    }
+}
+
+/// Predicted readings of every run, `n_runs x n_gauges`, with `members` on.
+pub fn predict(frame: &StrainFrame, members: &[Member<'_>]) -> Vec<f64> {
+    let state = StrainState::with(frame, members);
+    let mut out = Vec::with_capacity(frame.n_runs() * frame.n_gauges());
+    for run in 0..frame.n_runs() {
+        let mut row = state.strain(run);
+        read_all(frame, members, run, &mut row, Part::Whole);
+        out.extend(row);
+    }
+    out
+}

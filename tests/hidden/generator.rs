@@ -1,0 +1,409 @@
+//! Hides an effect in the readings of a frame: seeded, own physics, so that the search is not asked to undo itself.
+//!
+//! The base frame lends its influence matrices, gauges and load columns; runs, loads, noise, background and effect are new. The
+//! background of a messy case is 1 % of gain scatter, 1 degree of placement scatter (the model error that the job declares) and
+//! influence coefficients that are off by a fraction of a percent each, as on another mesh.
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use strainbridge::reconcile::effect::{Member, StrainEffect, library};
+use strainbridge::reconcile::strain::{PayloadWeight, StrainFrame, WheelForces, predict};
+
+/// What lies behind a case.
+pub struct Hidden {
+    /// Case as the analyst sees it.
+    pub frame: StrainFrame,
+    /// Ids with places; `none`, `unknown`.
+    pub truth: Vec<String>,
+    /// Root mean square of the effect on the readings over what noise allows.
+    pub signal: f64,
+}
+
+/// How good the model is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Background {
+    /// Exact.
+    Clean,
+    /// Gains, angles and coefficients are off as stated above.
+    Messy,
+}
+
+/// Effects with five sizes each.
+pub const EFFECTS: [(&str, [f64; 5]); 17] = [
+    ("lateral_wheel_loads", [0.1, 0.2, 0.4, 0.8, 1.5]),
+    ("thermal_uniform", [2.0, 5.0, 10.0, 18.0, 30.0]),
+    ("thermal_gradient", [1.0, 2.0, 4.0, 8.0, 12.0]),
+    ("zero_drift", [5.0, 10.0, 20.0, 40.0, 80.0]),
+    ("sign_flip", [1.0, 1.0, 1.0, 1.0, 1.0]),
+    ("gauge_gain", [0.7, 0.85, 1.15, 1.3, 2.0]),
+    ("gauge_swap", [1.0, 1.0, 1.0, 1.0, 1.0]),
+    ("gauge_angle", [5.0, 10.0, 15.0, 30.0, 90.0]),
+    ("payload_offset", [0.05, 0.1, 0.2, 0.35, 0.5]),
+    ("unaccounted_mass", [50.0, 100.0, 250.0, 500.0, 900.0]),
+    ("rail_stiffness", [5.0, 10.0, 15.0, 20.0, 30.0]),
+    ("global_scale", [3.0, 5.0, 8.0, 12.0, 20.0]),
+    ("payload_gravity_missing", [1.0, 1.0, 1.0, 1.0, 1.0]),
+    ("uneven_ground", [0.3, 0.6, 1.0, 2.0, 4.0]),
+    ("dead_channel", [1.0, 1.0, 1.0, 1.0, 1.0]),
+    ("saturated_channel", [0.3, 0.4, 0.5, 0.6, 0.7]),
+    ("zero_drift_creep", [10.0, 20.0, 40.0, 60.0, 80.0]),
+];
+
+/// Strangers: discrepancies that no effect of the library makes.
+pub const STRANGERS: [&str; 8] =
+    ["hysteresis", "hardening", "unknown_load", "one_run", "gain_creep", "cross_talk", "warm_spot", "loose_joint"];
+
+/// A standard normal number.
+fn normal(rng: &mut ChaCha8Rng) -> f64 {
+    let (u, v): (f64, f64) = (rng.random::<f64>().max(1e-300), rng.random());
+    (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+}
+
+fn pick<T: Copy>(rng: &mut ChaCha8Rng, from: &[T]) -> T {
+    from[rng.random_range(0..from.len())]
+}
+
+/// Wheel forces on flat ground as the base case has them: linear in the payload and its moment, by least squares per wheel.
+fn flat_ground(base: &StrainFrame) -> Vec<[f64; 2]> {
+    let n_l = base.n_loads();
+    (0..n_l)
+        .map(|l| {
+            let (mut a, mut b, mut c, mut p, mut q) = (0.0, 0.0, 0.0, 0.0, 0.0);
+            for r in 0..base.n_runs() {
+                let [m, x] = base.payload[r];
+                let f = base.loads[r * n_l + l];
+                (a, b, c) = (a + m * m, b + m * m * x, c + m * m * x * x);
+                (p, q) = (p + m * f, q + m * x * f);
+            }
+            let det = a * c - b * b;
+            [(p * c - q * b) / det, (a * q - b * p) / det]
+        })
+        .collect()
+}
+
+/// A case with the given effect (`none`, a stranger, or several joined by `+`) of the given size.
+pub fn hide(base: &StrainFrame, effect: &str, size: f64, background: Background, seed: u64) -> Hidden {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let (n_g, n_l) = (base.n_gauges(), base.n_loads());
+    let n_r = base.n_runs();
+    let n_c = base.n_columns();
+    let mut frame = base.clone();
+    frame.noise = pick(&mut rng, &[1.0, 1.5, 2.0]);
+    frame.load_noise = 0.06;
+    frame.payload_weight = PayloadWeight::InModel;
+    frame.wheel_forces = WheelForces::Measured;
+    frame.model_rel = if background == Background::Messy { 0.01 } else { 0.0 };
+    let flat = flat_ground(base);
+    let mut loads = vec![0.0; n_r * n_l];
+    for r in 0..n_r {
+        let mass = pick(&mut rng, &[0.0, 1500.0, 2400.0, 3700.0, 5500.0, 6800.0, 8000.0]);
+        let x = rng.random_range(-0.4..0.45);
+        frame.payload[r] = [mass, x];
+        for l in 0..n_l {
+            loads[r * n_l + l] = mass * (flat[l][0] + x * flat[l][1]);
+        }
+    }
+    // The analyst's model as it stands, and the truth: gains, angles, coefficients off.
+    frame.loads = loads;
+    let mut truth = frame.clone();
+    if background == Background::Messy {
+        let angles: Vec<f64> = (0..n_g).map(|_| normal(&mut rng)).collect();
+        for g in 0..n_g {
+            let gain = 1.0 + 0.01 * normal(&mut rng);
+            let facts = &frame.gauges[g];
+            let (drawn, glued) = (facts.angle_deg.to_radians(), (facts.angle_deg + angles[g]).to_radians());
+            for c in 0..n_c {
+                let at = g * n_c + c;
+                if let Some(t) = frame.tensors[g].get(c) {
+                    truth.influence[at] += seen(*t, glued, facts) - seen(*t, drawn, facts);
+                }
+                truth.influence[at] *= gain * (1.0 + 0.001 * normal(&mut rng));
+            }
+        }
+    }
+    let clean = predict(&truth, &[]);
+    let mut parts: Vec<String> = Vec::new();
+    let mut readings = clean.clone();
+    for one in effect.split('+') {
+        // Without a size: the fourth of its five.
+        let usual = EFFECTS.iter().find(|e| e.0 == one).map_or(1.0, |e| e.1[3]);
+        let size = if size.is_nan() { usual } else { size };
+        apply(one, size, &mut rng, &mut frame, &mut truth, &mut readings, &mut parts);
+    }
+    let expected = predict(&frame, &[]);
+    let difference: f64 = readings.iter().zip(&expected).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / readings.len() as f64;
+    let signal = difference.sqrt() / frame.noise;
+    for v in &mut readings {
+        *v += frame.noise * normal(&mut rng);
+    }
+    if frame.wheel_forces == WheelForces::Measured {
+        for f in &mut frame.loads {
+            *f += frame.load_noise * normal(&mut rng);
+        }
+    }
+    frame.observations.values = readings;
+    if parts.is_empty() {
+        parts.push("none".into());
+    }
+    parts.sort();
+    Hidden { frame, truth: parts, signal }
+}
+
+fn seen([exx, eyy, gxy]: [f64; 3], angle: f64, facts: &strainbridge::reconcile::strain::GaugeFacts) -> f64 {
+    let (s, c) = angle.sin_cos();
+    let shear = if facts.wiring == strainbridge::reconcile::strain::Wiring::Quarter { gxy } else { 0.0 };
+    exx * c * c + eyy * s * s + shear * s * c
+}
+
+/// Adds what `effect` of `size` does to `readings`, and writes its name down.
+fn apply(
+    effect: &str,
+    size: f64,
+    rng: &mut ChaCha8Rng,
+    frame: &mut StrainFrame,
+    truth: &mut StrainFrame,
+    readings: &mut [f64],
+    parts: &mut Vec<String>,
+) {
+    let (n_g, n_r, n_c) = (frame.n_gauges(), frame.n_runs(), frame.n_columns());
+    let strength = |t: &StrainFrame, g: usize| {
+        let p = predict(t, &[]);
+        ((0..n_r).map(|r| p[r * n_g + g].powi(2)).sum::<f64>() / n_r as f64).sqrt()
+    };
+    // Faults of a gauge that reads next to nothing can't be found: take one of the better half.
+    let mut order: Vec<usize> = (0..n_g).collect();
+    order.sort_by(|&a, &b| strength(truth, b).total_cmp(&strength(truth, a)));
+    let g = order[rng.random_range(0..n_g * 3 / 4)];
+    let name = frame.gauges[g].name.clone();
+    let sign = pick(rng, &[-1.0, 1.0]);
+    let on = |readings: &mut [f64], g: usize, f: &mut dyn FnMut(usize, f64) -> f64| {
+        for r in 0..n_r {
+            readings[r * n_g + g] = f(r, readings[r * n_g + g]);
+        }
+    };
+    let mut with = |effect: &dyn StrainEffect, parameters: &[f64]| {
+        let now = predict(truth, &[Member { effect, parameters }]);
+        let before = predict(truth, &[]);
+        for (v, (a, b)) in readings.iter_mut().zip(now.iter().zip(&before)) {
+            *v += a - b;
+        }
+    };
+    match effect {
+        "none" => {}
+        "zero_drift" => {
+            on(readings, g, &mut |_, v| v + sign * size);
+            parts.push(format!("zero_drift:{name}"));
+        }
+        "zero_drift_creep" => {
+            on(readings, g, &mut |r, v| v + sign * size * (r + 1) as f64 / n_r as f64);
+            parts.push(format!("zero_drift:{name}"));
+        }
+        "sign_flip" => {
+            on(readings, g, &mut |_, v| -v);
+            parts.push(format!("sign_flip:{name}"));
+        }
+        "gauge_gain" => {
+            on(readings, g, &mut |_, v| size * v);
+            parts.push(format!("gauge_gain:{name}"));
+        }
+        "dead_channel" => {
+            on(readings, g, &mut |_, _| 0.0);
+            parts.push(format!("dead_channel:{name}"));
+        }
+        "saturated_channel" => {
+            let top = (0..n_r).map(|r| readings[r * n_g + g].abs()).fold(0.0, f64::max);
+            on(readings, g, &mut |_, v| v.clamp(-size * top, size * top));
+            parts.push(format!("saturated_channel:{name}"));
+        }
+        "gauge_swap" => {
+            let mut h = g;
+            while h == g {
+                h = order[rng.random_range(0..n_g * 3 / 4)];
+            }
+            for r in 0..n_r {
+                readings.swap(r * n_g + g, r * n_g + h);
+            }
+            parts.push(format!("gauge_swap:{}+{}", frame.gauges[g.min(h)].name, frame.gauges[g.max(h)].name));
+        }
+        "gauge_angle" => {
+            let facts = frame.gauges[g].clone();
+            let (drawn, glued) = (facts.angle_deg.to_radians(), (facts.angle_deg + sign * size).to_radians());
+            let mut moved = truth.clone();
+            for c in 0..n_c {
+                if let Some(t) = frame.tensors[g].get(c) {
+                    moved.influence[g * n_c + c] += seen(*t, glued, &facts) - seen(*t, drawn, &facts);
+                }
+            }
+            let (now, before) = (predict(&moved, &[]), predict(truth, &[]));
+            on(readings, g, &mut |r, v| v + now[r * n_g + g] - before[r * n_g + g]);
+            parts.push(format!("gauge_angle:{name}"));
+        }
+        "payload_offset" => {
+            let (dx, dy) = (sign * size * rng.random::<f64>(), size * normal(rng).clamp(-1.5, 1.5));
+            for r in 0..n_r {
+                let [m, x] = frame.payload[r];
+                for h in 0..n_g {
+                    let b = &truth.influence[h * n_c + n_c - 4..h * n_c + n_c];
+                    readings[r * n_g + h] += m * (dx * b[1] + dy * b[2] + (x + dx) * dy * b[3]);
+                }
+            }
+            parts.push("payload_offset".into());
+        }
+        "unaccounted_mass" => {
+            let k = rng.random_range(0..frame.masses.len());
+            for r in 0..n_r {
+                for h in 0..n_g {
+                    readings[r * n_g + h] += size * frame.masses[k].per_kg[h];
+                }
+            }
+            parts.push(format!("unaccounted_mass:{}", frame.masses[k].place));
+        }
+        "global_scale" => {
+            readings.iter_mut().for_each(|v| *v *= 1.0 + sign * size / 100.0);
+            parts.push("global_scale".into());
+        }
+        "payload_gravity_missing" => {
+            frame.payload_weight = PayloadWeight::Missing;
+            parts.push("payload_gravity_missing".into());
+        }
+        "rail_stiffness" => {
+            let all = library(frame, &["rail_stiffness".into()]);
+            let c = &all[rng.random_range(0..all.len())];
+            with(c.effect.as_ref(), &[sign * size]);
+            parts.push(format!("rail_stiffness:{}", c.effect.place().expect("a zone")));
+        }
+        "thermal_uniform" | "thermal_gradient" => {
+            let pattern = if effect == "thermal_uniform" { &frame.thermal_uniform } else { &frame.thermal_gradient };
+            let pattern = pattern.clone().expect("a pattern");
+            for r in 0..n_r {
+                let degrees = size * rng.random_range(-0.5..1.7);
+                for h in 0..n_g {
+                    readings[r * n_g + h] += degrees * pattern[h];
+                }
+            }
+            parts.push(effect.into());
+        }
+        "lateral_wheel_loads" => {
+            for r in 0..n_r {
+                let scrub: Vec<f64> = (0..3).map(|_| 2.5 * normal(rng)).collect();
+                for (k, (load, pattern)) in frame.other_loads.iter().enumerate() {
+                    let a = match &load[..2] {
+                        "FY" => scrub[[0, 1, 2, 2, 1, 0][(k / 5) % 6]] + 0.2 * normal(rng),
+                        "FX" => normal(rng),
+                        "MX" => 0.9 * normal(rng),
+                        _ => 0.25 * normal(rng),
+                    };
+                    for h in 0..n_g {
+                        readings[r * n_g + h] += size * a * pattern[h];
+                    }
+                }
+            }
+            parts.push(effect.into());
+        }
+        "uneven_ground" => {
+            frame.wheel_forces = WheelForces::FlatGroundModel;
+            for r in 0..n_r {
+                // A twist of the ground: every axle turns the other way, the sum over each side stays.
+                let twist = [normal(rng), normal(rng)];
+                let change = [twist[0], twist[1], -twist[0] - twist[1]];
+                for (l, sign) in [-1.0, -1.0, -1.0, 1.0, 1.0, 1.0].into_iter().enumerate() {
+                    let axle = [0, 1, 2, 2, 1, 0][l];
+                    for h in 0..n_g {
+                        readings[r * n_g + h] += size * sign * change[axle] * truth.influence[h * n_c + l];
+                    }
+                }
+            }
+            parts.push(effect.into());
+        }
+        stranger => {
+            strange(stranger, size, rng, frame, truth, readings, &order);
+            parts.push("unknown".into());
+        }
+    }
+}
+
+fn strange(
+    which: &str,
+    size: f64,
+    rng: &mut ChaCha8Rng,
+    frame: &StrainFrame,
+    truth: &StrainFrame,
+    readings: &mut [f64],
+    order: &[usize],
+) {
+    let (n_g, n_r) = (frame.n_gauges(), frame.n_runs());
+    let clean = predict(truth, &[]);
+    let top = clean.iter().fold(0.0f64, |a, v| a.max(v.abs()));
+    let scale = (clean.iter().map(|v| v * v).sum::<f64>() / clean.len() as f64).sqrt();
+    match which {
+        // What is left of the run before stays in part.
+        "hysteresis" => {
+            for r in 1..n_r {
+                for g in 0..n_g {
+                    readings[r * n_g + g] += 0.25 * size * (clean[(r - 1) * n_g + g] - clean[r * n_g + g]);
+                }
+            }
+        }
+        // Joints that close under load: strain grows less than in proportion.
+        "hardening" => {
+            for r in 0..n_r {
+                let load = (0..n_g).map(|g| clean[r * n_g + g].abs()).fold(0.0, f64::max) / top;
+                for g in 0..n_g {
+                    readings[r * n_g + g] *= 1.0 - 0.5 * size * load;
+                }
+            }
+        }
+        // A force at a place nobody thinks of: one pattern, another size in every run.
+        "unknown_load" => {
+            let pattern: Vec<f64> = (0..n_g).map(|_| 0.5 * size * scale * normal(rng)).collect();
+            for r in 0..n_r {
+                let a = normal(rng);
+                for g in 0..n_g {
+                    readings[r * n_g + g] += a * pattern[g];
+                }
+            }
+        }
+        // Something happened in one run.
+        "one_run" => {
+            let r = rng.random_range(0..n_r * 2 / 3);
+            for g in 0..n_g {
+                readings[r * n_g + g] += size * scale * normal(rng);
+            }
+        }
+        // All gains creep with time.
+        "gain_creep" => {
+            for r in 0..n_r {
+                for g in 0..n_g {
+                    readings[r * n_g + g] *= 1.0 + 0.4 * size * r as f64 / n_r as f64;
+                }
+            }
+        }
+        // Channels leak into their neighbours.
+        "cross_talk" => {
+            for r in 0..n_r {
+                for g in 1..n_g {
+                    readings[r * n_g + g] += 0.2 * size * clean[r * n_g + g - 1];
+                }
+            }
+        }
+        // Sun on a part of the frame.
+        "warm_spot" => {
+            let centre = rng.random_range(0.0..n_g as f64);
+            for r in 0..n_r {
+                let a = 60.0 * size * rng.random_range(-0.3..1.0);
+                for g in 0..n_g {
+                    readings[r * n_g + g] += a * (-((g as f64 - centre) / 4.0).powi(2)).exp();
+                }
+            }
+        }
+        // A few gauges lose contact above a load.
+        _ => {
+            for &g in order.iter().take(8) {
+                for r in 0..n_r {
+                    let v = clean[r * n_g + g];
+                    readings[r * n_g + g] -= size * v * (v.abs() / scale).min(2.0) * 0.3;
+                }
+            }
+        }
+    }
+}
