@@ -77,13 +77,31 @@ fn line(name: &str, c: &Count) {
     );
 }
 
-fn run(base: &[StrainFrame], effect: &str, size: f64, background: Background, seed: u64, count: &mut Count, show: bool) {
-    let case = hide(&base[seed as usize % base.len()], effect, size, background, seed);
+fn run(
+    base: &[StrainFrame],
+    effect: &str,
+    size: f64,
+    background: Background,
+    seed: u64,
+    count: &mut Count,
+    show: bool,
+) {
+    let case = hide(
+        &base[seed as usize % base.len()],
+        effect,
+        size,
+        background,
+        seed,
+    );
     let start = std::time::Instant::now();
     let o = examine(&case.frame, &[]);
     let word = judge(count, &case, &o);
     if show || !["hit", "alias"].contains(&word) {
-        let ids: Vec<String> = o.best_attempt.iter().map(|e| format!("{} {:.2?}", e.id, e.size)).collect();
+        let ids: Vec<String> = o
+            .best_attempt
+            .iter()
+            .map(|e| format!("{} {:.2?}", e.id, e.size))
+            .collect();
         println!(
             "   {word:8} {effect} {size} {background:?} seed {seed} truth {:?} signal {:.2} -> {:?} {ids:?} dE {:.1} chi2 {:.2?} share {:.2} rivals {:?} off {:?} {:?} {:.1}s",
             case.truth,
@@ -92,9 +110,21 @@ fn run(base: &[StrainFrame], effect: &str, size: f64, background: Background, se
             o.evidence,
             o.reduced_chi2,
             o.gap.explained_share(),
-            o.rivals.iter().take(2).map(|r| format!("{:?} {:.1}", r.ids, r.evidence_difference)).collect::<Vec<_>>(),
-            o.gauges_off.iter().take(2).map(|m| format!("{} {:.1}", m.name, m.deviate)).collect::<Vec<_>>(),
-            o.runs_off.iter().take(2).map(|m| format!("{} {:.1}", m.name, m.deviate)).collect::<Vec<_>>(),
+            o.rivals
+                .iter()
+                .take(2)
+                .map(|r| format!("{:?} {:.1}", r.ids, r.evidence_difference))
+                .collect::<Vec<_>>(),
+            o.gauges_off
+                .iter()
+                .take(2)
+                .map(|m| format!("{} {:.1}", m.name, m.deviate))
+                .collect::<Vec<_>>(),
+            o.runs_off
+                .iter()
+                .take(2)
+                .map(|m| format!("{} {:.1}", m.name, m.deviate))
+                .collect::<Vec<_>>(),
             start.elapsed().as_secs_f64()
         );
     }
@@ -107,13 +137,29 @@ fn main() {
     let (controls, seeds) = (number(1, 20), number(2, 1));
     let only = args.get(3).cloned().unwrap_or_default();
     let wanted = |name: &str| only.is_empty() || only.split(',').any(|o| o == name);
-    let base: Vec<StrainFrame> = ["dev-s1", "dev-s2"].iter().map(|c| hidden::frame_of(&dir.join("static").join(c))).collect();
+    let base: Vec<StrainFrame> = ["dev-s1", "dev-s2"]
+        .iter()
+        .map(|c| hidden::frame_of(&dir.join("static").join(c)))
+        .collect();
     if wanted("given") {
         for case in ["dev-s1", "dev-s2", "dev-s3", "dev-s4"] {
             let start = std::time::Instant::now();
             let o = examine(&hidden::frame_of(&dir.join("static").join(case)), &[]);
-            println!("{case} {:?} {:?} {:.1?} {:?} share {:.2} chi2 {:.2?} next: {} remains: {} {:.2} s", o.verdict,
-                o.effects.iter().map(|e| (&e.id, &e.size)).collect::<Vec<_>>(), o.evidence, o.gap, o.gap.explained_share(), o.reduced_chi2, o.next_measurement, o.remains, start.elapsed().as_secs_f64());
+            println!(
+                "{case} {:?} {:?} {:.1?} {:?} share {:.2} chi2 {:.2?} next: {} remains: {} {:.2} s",
+                o.verdict,
+                o.effects
+                    .iter()
+                    .map(|e| (&e.id, &e.size))
+                    .collect::<Vec<_>>(),
+                o.evidence,
+                o.gap,
+                o.gap.explained_share(),
+                o.reduced_chi2,
+                o.next_measurement,
+                o.remains,
+                start.elapsed().as_secs_f64()
+            );
         }
     }
     for background in [Background::Clean, Background::Messy] {
@@ -132,11 +178,27 @@ fn main() {
             let mut c = Count::default();
             for (i, size) in sizes.into_iter().enumerate() {
                 for k in 0..seeds {
-                    run(&base, effect, size, background, 100 * (i as u64) + k, &mut c, false);
+                    run(
+                        &base,
+                        effect,
+                        size,
+                        background,
+                        100 * (i as u64) + k,
+                        &mut c,
+                        false,
+                    );
                 }
             }
             line(&format!("{effect} {background:?}"), &c);
-            for (t, v) in [(&mut total.n, c.n), (&mut total.hit, c.hit), (&mut total.alias, c.alias), (&mut total.partial, c.partial), (&mut total.none, c.none), (&mut total.unknown, c.unknown), (&mut total.wrong, c.wrong)] {
+            for (t, v) in [
+                (&mut total.n, c.n),
+                (&mut total.hit, c.hit),
+                (&mut total.alias, c.alias),
+                (&mut total.partial, c.partial),
+                (&mut total.none, c.none),
+                (&mut total.unknown, c.unknown),
+                (&mut total.wrong, c.wrong),
+            ] {
                 *t += v;
             }
             total.share += c.share;
@@ -148,22 +210,59 @@ fn main() {
                 let mut c = Count::default();
                 for (i, size) in [0.3, 0.6, 1.0].into_iter().enumerate() {
                     for k in 0..seeds {
-                        run(&base, s, size, background, 5000 + 100 * (i as u64) + k, &mut c, false);
+                        run(
+                            &base,
+                            s,
+                            size,
+                            background,
+                            5000 + 100 * (i as u64) + k,
+                            &mut c,
+                            false,
+                        );
                     }
                 }
                 line(&format!("{s} {background:?}"), &c);
-                strangers.n += c.n; strangers.hit += c.hit; strangers.none += c.none; strangers.wrong += c.wrong;
+                strangers.n += c.n;
+                strangers.hit += c.hit;
+                strangers.none += c.none;
+                strangers.wrong += c.wrong;
             }
         }
-        if strangers.n > 0 { line("strangers", &strangers); }
+        if strangers.n > 0 {
+            line("strangers", &strangers);
+        }
         if wanted("pairs") {
             let mut c = Count::default();
-            let kinds: Vec<&str> = EFFECTS.iter().map(|e| e.0).filter(|e| !["payload_gravity_missing", "uneven_ground", "zero_drift_creep"].contains(e)).collect();
+            let kinds: Vec<&str> = EFFECTS
+                .iter()
+                .map(|e| e.0)
+                .filter(|e| {
+                    ![
+                        "payload_gravity_missing",
+                        "uneven_ground",
+                        "zero_drift_creep",
+                    ]
+                    .contains(e)
+                })
+                .collect();
             for k in 0..10 * seeds {
-                let (a, b) = (kinds[(k * 7 + 1) as usize % kinds.len()], kinds[(k * 11 + 5 + k / 13) as usize % kinds.len()]);
-                if a == b { continue; }
+                let (a, b) = (
+                    kinds[(k * 7 + 1) as usize % kinds.len()],
+                    kinds[(k * 11 + 5 + k / 13) as usize % kinds.len()],
+                );
+                if a == b {
+                    continue;
+                }
                 // Sizes are those of the first: of common magnitude per kind is asked of `hide` by a size each.
-                run(&base, &format!("{a}+{b}"), f64::NAN, background, 9000 + k, &mut c, false);
+                run(
+                    &base,
+                    &format!("{a}+{b}"),
+                    f64::NAN,
+                    background,
+                    9000 + k,
+                    &mut c,
+                    false,
+                );
             }
             line(&format!("pairs {background:?}"), &c);
         }

@@ -21,25 +21,49 @@ impl Precision {
         if covariance.len() != n * n {
             return None;
         }
-        if n <= SMALL { Self::of_small(covariance, n) } else { Self::of_large(covariance, n) }
+        if n <= SMALL {
+            Self::of_small(covariance, n)
+        } else {
+            Self::of_large(covariance, n)
+        }
     }
 
     /// One thread: callers judge many small problems side by side, and thread start-up costs more than it gains at a few hundred.
     fn of_large(covariance: &[f64], n: usize) -> Option<Self> {
-        let mut lower = Mat::from_fn(n, n, |i, j| if j <= i { covariance[i * n + j] } else { 0.0 });
+        let mut lower = Mat::from_fn(
+            n,
+            n,
+            |i, j| if j <= i { covariance[i * n + j] } else { 0.0 },
+        );
         let scratch = factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, Default::default());
         let mut buffer = MemBuffer::new(scratch);
         let stack = MemStack::new(&mut buffer);
-        factor::cholesky_in_place(lower.as_mut(), Default::default(), Par::Seq, stack, Default::default()).ok()?;
+        factor::cholesky_in_place(
+            lower.as_mut(),
+            Default::default(),
+            Par::Seq,
+            stack,
+            Default::default(),
+        )
+        .ok()?;
         let log_det = (0..n).map(|i| 2.0 * lower[(i, i)].ln()).sum();
         let mut dense = Mat::<f64>::zeros(n, n);
         let mut buffer = MemBuffer::new(inverse::inverse_scratch::<f64>(n, Par::Seq));
-        inverse::inverse(dense.as_mut(), lower.as_ref(), Par::Seq, MemStack::new(&mut buffer));
+        inverse::inverse(
+            dense.as_mut(),
+            lower.as_ref(),
+            Par::Seq,
+            MemStack::new(&mut buffer),
+        );
         let mut entries = Vec::with_capacity(n * n);
         for i in 0..n {
             entries.extend((0..n).map(|j| if j <= i { dense[(i, j)] } else { dense[(j, i)] }));
         }
-        Some(Self { n, inverse: entries, log_det })
+        Some(Self {
+            n,
+            inverse: entries,
+            log_det,
+        })
     }
 
     /// Cholesky and inverse by plain loops: P = L^-T L^-1.
@@ -49,7 +73,8 @@ impl Precision {
         for i in 0..n {
             for j in 0..=i {
                 let (row_i, row_j) = (&lower[i * n..i * n + j], &lower[j * n..j * n + j]);
-                let rest = lower[i * n + j] - row_i.iter().zip(row_j).map(|(a, b)| a * b).sum::<f64>();
+                let rest =
+                    lower[i * n + j] - row_i.iter().zip(row_j).map(|(a, b)| a * b).sum::<f64>();
                 if i == j {
                     if rest.is_nan() || rest <= 0.0 {
                         return None;
@@ -67,19 +92,29 @@ impl Precision {
             for i in c..n {
                 let unit = if i == c { 1.0 } else { 0.0 };
                 let known = &columns[c * n + c..c * n + i];
-                let sum: f64 = lower[i * n + c..i * n + i].iter().zip(known).map(|(a, b)| a * b).sum();
+                let sum: f64 = lower[i * n + c..i * n + i]
+                    .iter()
+                    .zip(known)
+                    .map(|(a, b)| a * b)
+                    .sum();
                 columns[c * n + i] = (unit - sum) / lower[i * n + i];
             }
         }
         let mut inverse = vec![0.0; n * n];
         for i in 0..n {
             for j in 0..=i {
-                let v: f64 = (i..n).map(|k| columns[i * n + k] * columns[j * n + k]).sum();
+                let v: f64 = (i..n)
+                    .map(|k| columns[i * n + k] * columns[j * n + k])
+                    .sum();
                 inverse[i * n + j] = v;
                 inverse[j * n + i] = v;
             }
         }
-        Some(Self { n, inverse, log_det })
+        Some(Self {
+            n,
+            inverse,
+            log_det,
+        })
     }
 
     /// Order.
@@ -94,12 +129,19 @@ impl Precision {
 
     /// Entry (`i`, `j`) of the inverse; zero outside.
     pub fn entry(&self, i: usize, j: usize) -> f64 {
-        if i < self.n { self.inverse.get(i * self.n + j).copied().unwrap_or(0.0) } else { 0.0 }
+        if i < self.n {
+            self.inverse.get(i * self.n + j).copied().unwrap_or(0.0)
+        } else {
+            0.0
+        }
     }
 
     /// `P x`.
     pub fn apply(&self, x: &[f64]) -> Vec<f64> {
-        self.inverse.chunks_exact(self.n.max(1)).map(|row| row.iter().zip(x).map(|(a, b)| a * b).sum()).collect()
+        self.inverse
+            .chunks_exact(self.n.max(1))
+            .map(|row| row.iter().zip(x).map(|(a, b)| a * b).sum())
+            .collect()
     }
 
     /// `P x` for an `x` given by its few entries (index, value).
@@ -137,17 +179,27 @@ mod tests {
         // [[4, 1], [1, 3]]: determinant 11, inverse [[3, -1], [-1, 4]] / 11.
         let p = Precision::of(&[4.0, 1.0, 1.0, 3.0], 2).expect("positive definite");
         assert!((p.log_det() - 11f64.ln()).abs() < 1e-12);
-        assert!((p.entry(0, 0) - 3.0 / 11.0).abs() < 1e-14 && (p.entry(1, 0) + 1.0 / 11.0).abs() < 1e-14);
-        assert!((p.quadratic_sparse(&[(0, 2.0), (1, 1.0)]) - (12.0 - 4.0 + 4.0) / 11.0).abs() < 1e-14);
+        assert!(
+            (p.entry(0, 0) - 3.0 / 11.0).abs() < 1e-14
+                && (p.entry(1, 0) + 1.0 / 11.0).abs() < 1e-14
+        );
+        assert!(
+            (p.quadratic_sparse(&[(0, 2.0), (1, 1.0)]) - (12.0 - 4.0 + 4.0) / 11.0).abs() < 1e-14
+        );
         assert_eq!(p.apply(&[2.0, 1.0]), p.apply_sparse(&[(0, 2.0), (1, 1.0)]));
     }
 
     #[test]
     fn small_and_large_paths_agree_and_invert() {
         let n = 60;
-        let entry = |i: usize, j: usize| (-(i.abs_diff(j) as f64) / 7.0).exp() + if i == j { 0.5 } else { 0.0 };
+        let entry = |i: usize, j: usize| {
+            (-(i.abs_diff(j) as f64) / 7.0).exp() + if i == j { 0.5 } else { 0.0 }
+        };
         let a: Vec<f64> = (0..n * n).map(|k| entry(k / n, k % n)).collect();
-        let (small, large) = (Precision::of_small(&a, n).expect("definite"), Precision::of_large(&a, n).expect("definite"));
+        let (small, large) = (
+            Precision::of_small(&a, n).expect("definite"),
+            Precision::of_large(&a, n).expect("definite"),
+        );
         assert!((small.log_det() - large.log_det()).abs() < 1e-10);
         for i in 0..n {
             for j in 0..n {

@@ -10,5 +10,7 @@ mod search;
 pub mod strain;
 
 pub use observation::Observations;
-pub use outcome::{ChannelGap, Detectable, Gap, LoadShift, Misfit, NamedEffect, Outcome, Rival, Verdict};
+pub use outcome::{
+    ChannelGap, Detectable, Gap, LoadShift, Misfit, NamedEffect, Outcome, Rival, Verdict,
+};
 pub use search::{Breadth, Scored, Scorer, search, settle};

@@ -21,7 +21,10 @@ impl Observations {
 
     /// The reading of `channel` in `run`, NaN where there is none.
     pub fn value(&self, run: usize, channel: usize) -> f64 {
-        self.values.get(run * self.channels.len() + channel).copied().unwrap_or(f64::NAN)
+        self.values
+            .get(run * self.channels.len() + channel)
+            .copied()
+            .unwrap_or(f64::NAN)
     }
 
     /// Runs used for fitting, in file order.
@@ -32,18 +35,28 @@ impl Observations {
     /// Runs kept for the proof, in file order; those used for fitting where none was kept.
     pub fn proof_runs(&self) -> Vec<usize> {
         let kept = self.runs_where(true);
-        if kept.is_empty() { self.fit_runs() } else { kept }
+        if kept.is_empty() {
+            self.fit_runs()
+        } else {
+            kept
+        }
     }
 
     fn runs_where(&self, held_out: bool) -> Vec<usize> {
-        (0..self.runs.len()).filter(|&r| self.held_out.get(r).copied().unwrap_or(false) == held_out).collect()
+        (0..self.runs.len())
+            .filter(|&r| self.held_out.get(r).copied().unwrap_or(false) == held_out)
+            .collect()
     }
 
     /// The (run, channel) pairs of `runs` that have a reading, run by run.
     pub fn entries(&self, runs: &[usize]) -> Vec<(usize, usize)> {
         let mut out = Vec::with_capacity(runs.len() * self.channels.len());
         for &r in runs {
-            out.extend((0..self.channels.len()).filter(|&c| self.value(r, c).is_finite()).map(|c| (r, c)));
+            out.extend(
+                (0..self.channels.len())
+                    .filter(|&c| self.value(r, c).is_finite())
+                    .map(|c| (r, c)),
+            );
         }
         out
     }

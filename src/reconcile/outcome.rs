@@ -74,7 +74,11 @@ impl Gap {
     /// (before^2 - after^2) / (before^2 - floor^2); zero where there is nothing to close.
     pub fn explained_share(&self) -> f64 {
         let closable = self.before * self.before - self.floor * self.floor;
-        if closable > 0.0 { (self.before * self.before - self.after * self.after) / closable } else { 0.0 }
+        if closable > 0.0 {
+            (self.before * self.before - self.after * self.after) / closable
+        } else {
+            0.0
+        }
     }
 }
 

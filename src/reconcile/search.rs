@@ -43,7 +43,9 @@ pub struct Breadth {
 /// Every set that was scored, best first; the empty set is always among them.
 pub fn search<S: Scorer>(scorer: &mut S, breadth: Breadth) -> Vec<Scored<S::Fit>> {
     let mut seen: BTreeMap<Vec<usize>, Option<Scored<S::Fit>>> = BTreeMap::new();
-    let Some(null) = scorer.score(&[]) else { return Vec::new() };
+    let Some(null) = scorer.score(&[]) else {
+        return Vec::new();
+    };
     seen.insert(Vec::new(), Some(null.clone()));
     let mut level = vec![null];
     for _ in 0..breadth.largest {
@@ -55,8 +57,13 @@ pub fn search<S: Scorer>(scorer: &mut S, breadth: Breadth) -> Vec<Scored<S::Fit>
         next.dedup_by(|a, b| a.set == b.set);
         next.truncate(breadth.beam);
         // No addition pays: larger sets won't either.
-        let best_before = level.iter().map(|s| s.log_evidence).fold(f64::NEG_INFINITY, f64::max);
-        let pays = next.first().is_some_and(|s| s.log_evidence > best_before + breadth.decisive);
+        let best_before = level
+            .iter()
+            .map(|s| s.log_evidence)
+            .fold(f64::NEG_INFINITY, f64::max);
+        let pays = next
+            .first()
+            .is_some_and(|s| s.log_evidence > best_before + breadth.decisive);
         level = next;
         if !pays {
             break;
@@ -71,12 +78,19 @@ pub fn search<S: Scorer>(scorer: &mut S, breadth: Breadth) -> Vec<Scored<S::Fit>
 /// The best set each member of which is decisive: dropping any costs at least `decisive`.
 pub fn settle<F: Clone>(all: &[Scored<F>], decisive: f64) -> Option<Scored<F>> {
     let penalised = |s: &Scored<F>| s.log_evidence - decisive * s.set.len() as f64;
-    all.iter().max_by(|a, b| penalised(a).total_cmp(&penalised(b))).cloned()
+    all.iter()
+        .max_by(|a, b| penalised(a).total_cmp(&penalised(b)))
+        .cloned()
 }
 
 type Seen<F> = BTreeMap<Vec<usize>, Option<Scored<F>>>;
 
-fn extend<S: Scorer>(scorer: &mut S, base: &Scored<S::Fit>, breadth: Breadth, seen: &mut Seen<S::Fit>) -> Vec<Scored<S::Fit>> {
+fn extend<S: Scorer>(
+    scorer: &mut S,
+    base: &Scored<S::Fit>,
+    breadth: Breadth,
+    seen: &mut Seen<S::Fit>,
+) -> Vec<Scored<S::Fit>> {
     /// Of candidates that touch the same gauges, this many are tried.
     const PER_KIN: usize = 3;
     let mut out = Vec::new();
@@ -85,7 +99,9 @@ fn extend<S: Scorer>(scorer: &mut S, base: &Scored<S::Fit>, breadth: Breadth, se
         if out.len() >= breadth.tries {
             break;
         }
-        if base.set.contains(&candidate) || base.set.iter().any(|&m| !scorer.compatible(m, candidate)) {
+        if base.set.contains(&candidate)
+            || base.set.iter().any(|&m| !scorer.compatible(m, candidate))
+        {
             continue;
         }
         let count = kin_count.entry(scorer.kin(candidate)).or_insert(0);
@@ -96,7 +112,10 @@ fn extend<S: Scorer>(scorer: &mut S, base: &Scored<S::Fit>, breadth: Breadth, se
         let mut set = base.set.clone();
         set.push(candidate);
         set.sort_unstable();
-        let scored = seen.entry(set.clone()).or_insert_with(|| scorer.score(&set)).clone();
+        let scored = seen
+            .entry(set.clone())
+            .or_insert_with(|| scorer.score(&set))
+            .clone();
         out.extend(scored);
     }
     out
@@ -108,14 +127,19 @@ fn exchange<S: Scorer>(scorer: &mut S, breadth: Breadth, seen: &mut Seen<S::Fit>
     const ROUNDS: usize = 4;
     for _ in 0..ROUNDS {
         let all: Vec<_> = seen.values().flatten().cloned().collect();
-        let Some(best) = settle(&all, breadth.decisive) else { return };
+        let Some(best) = settle(&all, breadth.decisive) else {
+            return;
+        };
         if best.set.len() < 2 {
             return;
         }
         for skip in 0..best.set.len() {
             let mut reduced = best.set.clone();
             reduced.remove(skip);
-            let scored = seen.entry(reduced.clone()).or_insert_with(|| scorer.score(&reduced)).clone();
+            let scored = seen
+                .entry(reduced.clone())
+                .or_insert_with(|| scorer.score(&reduced))
+                .clone();
             if let Some(base) = scored {
                 extend(scorer, &base, breadth, seen);
             }

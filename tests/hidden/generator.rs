@@ -50,8 +50,16 @@ pub const EFFECTS: [(&str, [f64; 5]); 17] = [
 ];
 
 /// Strangers: discrepancies that no effect of the library makes.
-pub const STRANGERS: [&str; 8] =
-    ["hysteresis", "hardening", "unknown_load", "one_run", "gain_creep", "cross_talk", "warm_spot", "loose_joint"];
+pub const STRANGERS: [&str; 8] = [
+    "hysteresis",
+    "hardening",
+    "unknown_load",
+    "one_run",
+    "gain_creep",
+    "cross_talk",
+    "warm_spot",
+    "loose_joint",
+];
 
 /// A standard normal number.
 fn normal(rng: &mut ChaCha8Rng) -> f64 {
@@ -82,7 +90,13 @@ fn flat_ground(base: &StrainFrame) -> Vec<[f64; 2]> {
 }
 
 /// A case with the given effect (`none`, a stranger, or several joined by `+`) of the given size.
-pub fn hide(base: &StrainFrame, effect: &str, size: f64, background: Background, seed: u64) -> Hidden {
+pub fn hide(
+    base: &StrainFrame,
+    effect: &str,
+    size: f64,
+    background: Background,
+    seed: u64,
+) -> Hidden {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let (n_g, n_l) = (base.n_gauges(), base.n_loads());
     let n_r = base.n_runs();
@@ -92,11 +106,18 @@ pub fn hide(base: &StrainFrame, effect: &str, size: f64, background: Background,
     frame.load_noise = 0.06;
     frame.payload_weight = PayloadWeight::InModel;
     frame.wheel_forces = WheelForces::Measured;
-    frame.model_rel = if background == Background::Messy { 0.01 } else { 0.0 };
+    frame.model_rel = if background == Background::Messy {
+        0.01
+    } else {
+        0.0
+    };
     let flat = flat_ground(base);
     let mut loads = vec![0.0; n_r * n_l];
     for r in 0..n_r {
-        let mass = pick(&mut rng, &[0.0, 1500.0, 2400.0, 3700.0, 5500.0, 6800.0, 8000.0]);
+        let mass = pick(
+            &mut rng,
+            &[0.0, 1500.0, 2400.0, 3700.0, 5500.0, 6800.0, 8000.0],
+        );
         let x = rng.random_range(-0.4..0.45);
         frame.payload[r] = [mass, x];
         for l in 0..n_l {
@@ -111,7 +132,10 @@ pub fn hide(base: &StrainFrame, effect: &str, size: f64, background: Background,
         for g in 0..n_g {
             let gain = 1.0 + 0.01 * normal(&mut rng);
             let facts = &frame.gauges[g];
-            let (drawn, glued) = (facts.angle_deg.to_radians(), (facts.angle_deg + angles[g]).to_radians());
+            let (drawn, glued) = (
+                facts.angle_deg.to_radians(),
+                (facts.angle_deg + angles[g]).to_radians(),
+            );
             for c in 0..n_c {
                 let at = g * n_c + c;
                 if let Some(t) = frame.tensors[g].get(c) {
@@ -128,10 +152,23 @@ pub fn hide(base: &StrainFrame, effect: &str, size: f64, background: Background,
         // Without a size: the fourth of its five.
         let usual = EFFECTS.iter().find(|e| e.0 == one).map_or(1.0, |e| e.1[3]);
         let size = if size.is_nan() { usual } else { size };
-        apply(one, size, &mut rng, &mut frame, &mut truth, &mut readings, &mut parts);
+        apply(
+            one,
+            size,
+            &mut rng,
+            &mut frame,
+            &mut truth,
+            &mut readings,
+            &mut parts,
+        );
     }
     let expected = predict(&frame, &[]);
-    let difference: f64 = readings.iter().zip(&expected).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / readings.len() as f64;
+    let difference: f64 = readings
+        .iter()
+        .zip(&expected)
+        .map(|(a, b)| (a - b).powi(2))
+        .sum::<f64>()
+        / readings.len() as f64;
     let signal = difference.sqrt() / frame.noise;
     for v in &mut readings {
         *v += frame.noise * normal(&mut rng);
@@ -146,12 +183,24 @@ pub fn hide(base: &StrainFrame, effect: &str, size: f64, background: Background,
         parts.push("none".into());
     }
     parts.sort();
-    Hidden { frame, truth: parts, signal }
+    Hidden {
+        frame,
+        truth: parts,
+        signal,
+    }
 }
 
-fn seen([exx, eyy, gxy]: [f64; 3], angle: f64, facts: &strainbridge::reconcile::strain::GaugeFacts) -> f64 {
+fn seen(
+    [exx, eyy, gxy]: [f64; 3],
+    angle: f64,
+    facts: &strainbridge::reconcile::strain::GaugeFacts,
+) -> f64 {
     let (s, c) = angle.sin_cos();
-    let shear = if facts.wiring == strainbridge::reconcile::strain::Wiring::Quarter { gxy } else { 0.0 };
+    let shear = if facts.wiring == strainbridge::reconcile::strain::Wiring::Quarter {
+        gxy
+    } else {
+        0.0
+    };
     exx * c * c + eyy * s * s + shear * s * c
 }
 
@@ -195,7 +244,9 @@ fn apply(
             parts.push(format!("zero_drift:{name}"));
         }
         "zero_drift_creep" => {
-            on(readings, g, &mut |r, v| v + sign * size * (r + 1) as f64 / n_r as f64);
+            on(readings, g, &mut |r, v| {
+                v + sign * size * (r + 1) as f64 / n_r as f64
+            });
             parts.push(format!("zero_drift:{name}"));
         }
         "sign_flip" => {
@@ -211,7 +262,9 @@ fn apply(
             parts.push(format!("dead_channel:{name}"));
         }
         "saturated_channel" => {
-            let top = (0..n_r).map(|r| readings[r * n_g + g].abs()).fold(0.0, f64::max);
+            let top = (0..n_r)
+                .map(|r| readings[r * n_g + g].abs())
+                .fold(0.0, f64::max);
             on(readings, g, &mut |_, v| v.clamp(-size * top, size * top));
             parts.push(format!("saturated_channel:{name}"));
         }
@@ -223,23 +276,36 @@ fn apply(
             for r in 0..n_r {
                 readings.swap(r * n_g + g, r * n_g + h);
             }
-            parts.push(format!("gauge_swap:{}+{}", frame.gauges[g.min(h)].name, frame.gauges[g.max(h)].name));
+            parts.push(format!(
+                "gauge_swap:{}+{}",
+                frame.gauges[g.min(h)].name,
+                frame.gauges[g.max(h)].name
+            ));
         }
         "gauge_angle" => {
             let facts = frame.gauges[g].clone();
-            let (drawn, glued) = (facts.angle_deg.to_radians(), (facts.angle_deg + sign * size).to_radians());
+            let (drawn, glued) = (
+                facts.angle_deg.to_radians(),
+                (facts.angle_deg + sign * size).to_radians(),
+            );
             let mut moved = truth.clone();
             for c in 0..n_c {
                 if let Some(t) = frame.tensors[g].get(c) {
-                    moved.influence[g * n_c + c] += seen(*t, glued, &facts) - seen(*t, drawn, &facts);
+                    moved.influence[g * n_c + c] +=
+                        seen(*t, glued, &facts) - seen(*t, drawn, &facts);
                 }
             }
             let (now, before) = (predict(&moved, &[]), predict(truth, &[]));
-            on(readings, g, &mut |r, v| v + now[r * n_g + g] - before[r * n_g + g]);
+            on(readings, g, &mut |r, v| {
+                v + now[r * n_g + g] - before[r * n_g + g]
+            });
             parts.push(format!("gauge_angle:{name}"));
         }
         "payload_offset" => {
-            let (dx, dy) = (sign * size * rng.random::<f64>(), size * normal(rng).clamp(-1.5, 1.5));
+            let (dx, dy) = (
+                sign * size * rng.random::<f64>(),
+                size * normal(rng).clamp(-1.5, 1.5),
+            );
             for r in 0..n_r {
                 let [m, x] = frame.payload[r];
                 for h in 0..n_g {
@@ -259,7 +325,9 @@ fn apply(
             parts.push(format!("unaccounted_mass:{}", frame.masses[k].place));
         }
         "global_scale" => {
-            readings.iter_mut().for_each(|v| *v *= 1.0 + sign * size / 100.0);
+            readings
+                .iter_mut()
+                .for_each(|v| *v *= 1.0 + sign * size / 100.0);
             parts.push("global_scale".into());
         }
         "payload_gravity_missing" => {
@@ -270,10 +338,17 @@ fn apply(
             let all = library(frame, &["rail_stiffness".into()]);
             let c = &all[rng.random_range(0..all.len())];
             with(c.effect.as_ref(), &[sign * size]);
-            parts.push(format!("rail_stiffness:{}", c.effect.place().expect("a zone")));
+            parts.push(format!(
+                "rail_stiffness:{}",
+                c.effect.place().expect("a zone")
+            ));
         }
         "thermal_uniform" | "thermal_gradient" => {
-            let pattern = if effect == "thermal_uniform" { &frame.thermal_uniform } else { &frame.thermal_gradient };
+            let pattern = if effect == "thermal_uniform" {
+                &frame.thermal_uniform
+            } else {
+                &frame.thermal_gradient
+            };
             let pattern = pattern.clone().expect("a pattern");
             for r in 0..n_r {
                 let degrees = size * rng.random_range(-0.5..1.7);
@@ -309,7 +384,8 @@ fn apply(
                 for (l, sign) in [-1.0, -1.0, -1.0, 1.0, 1.0, 1.0].into_iter().enumerate() {
                     let axle = [0, 1, 2, 2, 1, 0][l];
                     for h in 0..n_g {
-                        readings[r * n_g + h] += size * sign * change[axle] * truth.influence[h * n_c + l];
+                        readings[r * n_g + h] +=
+                            size * sign * change[axle] * truth.influence[h * n_c + l];
                     }
                 }
             }
@@ -340,14 +416,18 @@ fn strange(
         "hysteresis" => {
             for r in 1..n_r {
                 for g in 0..n_g {
-                    readings[r * n_g + g] += 0.25 * size * (clean[(r - 1) * n_g + g] - clean[r * n_g + g]);
+                    readings[r * n_g + g] +=
+                        0.25 * size * (clean[(r - 1) * n_g + g] - clean[r * n_g + g]);
                 }
             }
         }
         // Joints that close under load: strain grows less than in proportion.
         "hardening" => {
             for r in 0..n_r {
-                let load = (0..n_g).map(|g| clean[r * n_g + g].abs()).fold(0.0, f64::max) / top;
+                let load = (0..n_g)
+                    .map(|g| clean[r * n_g + g].abs())
+                    .fold(0.0, f64::max)
+                    / top;
                 for g in 0..n_g {
                     readings[r * n_g + g] *= 1.0 - 0.5 * size * load;
                 }

@@ -10,8 +10,15 @@ use strainbridge::reconcile::strain::{
 
 /// Folder of the shared material, where present.
 pub fn shared() -> Option<PathBuf> {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/hidden_effects"));
-    let path = if path.is_dir() { path.to_path_buf() } else { PathBuf::from("/work/shared/hidden_effects") };
+    let path = Path::new(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../shared/hidden_effects"
+    ));
+    let path = if path.is_dir() {
+        path.to_path_buf()
+    } else {
+        PathBuf::from("/work/shared/hidden_effects")
+    };
     path.is_dir().then_some(path)
 }
 
@@ -22,9 +29,16 @@ struct Table {
 
 fn table(path: &Path) -> Table {
     let text = std::fs::read_to_string(path).expect("a table of the case");
-    let mut lines = text.lines().map(|l| l.split(',').map(|c| c.trim().to_string()).collect::<Vec<_>>());
+    let mut lines = text.lines().map(|l| {
+        l.split(',')
+            .map(|c| c.trim().to_string())
+            .collect::<Vec<_>>()
+    });
     let header = lines.next().expect("a header");
-    Table { header, rows: lines.filter(|r| r.len() > 1).collect() }
+    Table {
+        header,
+        rows: lines.filter(|r| r.len() > 1).collect(),
+    }
 }
 
 impl Table {
@@ -32,7 +46,11 @@ impl Table {
         self.rows[row][column].parse().expect("a number")
     }
     fn column(&self, name: &str) -> Vec<f64> {
-        let c = self.header.iter().position(|h| h == name).expect("the column");
+        let c = self
+            .header
+            .iter()
+            .position(|h| h == name)
+            .expect("the column");
         (0..self.rows.len()).map(|r| self.number(r, c)).collect()
     }
 }
@@ -40,7 +58,8 @@ impl Table {
 /// The frame of a case folder in matrix form.
 pub fn frame_of(dir: &Path) -> StrainFrame {
     let meta: serde_json::Value =
-        serde_json::from_str(&std::fs::read_to_string(dir.join("meta.json")).expect("meta.json")).expect("valid json");
+        serde_json::from_str(&std::fs::read_to_string(dir.join("meta.json")).expect("meta.json"))
+            .expect("valid json");
     let number = |k: &str| meta[k].as_f64().expect("a number in meta.json");
     let strain = table(&dir.join("strain.csv"));
     let runs = table(&dir.join("runs.csv"));
@@ -50,7 +69,12 @@ pub fn frame_of(dir: &Path) -> StrainFrame {
     let tensor = table(&dir.join("tensor.csv"));
     let n_g = gauges.rows.len();
     let n_l = vertical.header.len() - 1;
-    let held: Vec<&str> = meta["holdout_runs"].as_array().expect("runs").iter().filter_map(|v| v.as_str()).collect();
+    let held: Vec<&str> = meta["holdout_runs"]
+        .as_array()
+        .expect("runs")
+        .iter()
+        .filter_map(|v| v.as_str())
+        .collect();
     let n_c = n_l + 4;
     let mut influence = Vec::new();
     let mut tensors = Vec::new();
@@ -58,7 +82,11 @@ pub fn frame_of(dir: &Path) -> StrainFrame {
     for g in 0..n_g {
         let mut row: Vec<f64> = (1..=n_l).map(|c| vertical.number(g, c)).collect();
         row.extend((1..=4).map(|c| payload.number(g, c)));
-        let wiring = if gauges.rows[g][4].starts_with("full") { Wiring::Bending } else { Wiring::Quarter };
+        let wiring = if gauges.rows[g][4].starts_with("full") {
+            Wiring::Bending
+        } else {
+            Wiring::Quarter
+        };
         let plane = match wiring {
             Wiring::Quarter => (0..n_l + 2)
                 .map(|c| {
@@ -66,14 +94,22 @@ pub fn frame_of(dir: &Path) -> StrainFrame {
                     [exx, -0.29 * exx, gxy]
                 })
                 .collect(),
-            _ => row.iter().take(n_l + 2).map(|a| [*a, -0.29 * a, 0.0]).collect(),
+            _ => row
+                .iter()
+                .take(n_l + 2)
+                .map(|a| [*a, -0.29 * a, 0.0])
+                .collect(),
         };
         tensors.push(plane);
         facts.push(GaugeFacts {
             name: gauges.rows[g][0].clone(),
             wiring,
             angle_deg: gauges.column("angle_deg")[g],
-            position: Some([gauges.number(g, 1), gauges.number(g, 2), gauges.number(g, 3)]),
+            position: Some([
+                gauges.number(g, 1),
+                gauges.number(g, 2),
+                gauges.number(g, 3),
+            ]),
         });
         influence.extend(row);
     }
@@ -90,33 +126,68 @@ pub fn frame_of(dir: &Path) -> StrainFrame {
                 change[g * n_c + c] = t.number(g, c + 1);
             }
         }
-        StiffnessSignature { id: format!("rail_stiffness:Z{k}"), at_percent: vec![(1.0, change)], prior_percent: 15.0 }
+        StiffnessSignature {
+            id: format!("rail_stiffness:Z{k}"),
+            at_percent: vec![(1.0, change)],
+            prior_percent: 15.0,
+        }
     };
     StrainFrame {
         observations: Observations {
             channels: strain.header[1..].to_vec(),
             runs: strain.rows.iter().map(|r| r[0].clone()).collect(),
-            values: strain.rows.iter().flat_map(|r| r[1..].iter().map(|v| v.parse::<f64>().expect("a reading"))).collect(),
-            held_out: strain.rows.iter().map(|r| held.contains(&r[0].as_str())).collect(),
+            values: strain
+                .rows
+                .iter()
+                .flat_map(|r| r[1..].iter().map(|v| v.parse::<f64>().expect("a reading")))
+                .collect(),
+            held_out: strain
+                .rows
+                .iter()
+                .map(|r| held.contains(&r[0].as_str()))
+                .collect(),
         },
         gauges: facts,
-        load_names: vertical.header[1..].iter().map(|h| format!("{}.FZ", h.trim_start_matches("FZ_"))).collect(),
+        load_names: vertical.header[1..]
+            .iter()
+            .map(|h| format!("{}.FZ", h.trim_start_matches("FZ_")))
+            .collect(),
         load_positions: None,
         influence,
         tensors,
         per_mm: None,
-        loads: (0..runs.rows.len()).flat_map(|r| (3..3 + n_l).map(move |c| (r, c))).map(|(r, c)| runs.number(r, c)).collect(),
-        payload: kg.iter().zip(&x).map(|(m, x)| [*m, x - number("nominal_payload_x_m")]).collect(),
+        loads: (0..runs.rows.len())
+            .flat_map(|r| (3..3 + n_l).map(move |c| (r, c)))
+            .map(|(r, c)| runs.number(r, c))
+            .collect(),
+        payload: kg
+            .iter()
+            .zip(&x)
+            .map(|(m, x)| [*m, x - number("nominal_payload_x_m")])
+            .collect(),
         payload_weight: if meta["analyst_includes_payload_gravity"].as_bool() == Some(false) {
             PayloadWeight::Missing
         } else {
             PayloadWeight::InModel
         },
-        wheel_forces: if meta["fz_source"] == "flat_ground_model" { WheelForces::FlatGroundModel } else { WheelForces::Measured },
-        other_loads: other.header[1..].iter().map(|h| (h.clone(), other.column(h))).collect(),
+        wheel_forces: if meta["fz_source"] == "flat_ground_model" {
+            WheelForces::FlatGroundModel
+        } else {
+            WheelForces::Measured
+        },
+        other_loads: other.header[1..]
+            .iter()
+            .map(|h| (h.clone(), other.column(h)))
+            .collect(),
         thermal_uniform: Some(thermal.column("thermal_uniform")),
         thermal_gradient: Some(thermal.column("thermal_gradient")),
-        masses: mass.header[1..].iter().map(|h| MassSignature { place: h.clone(), per_kg: mass.column(h) }).collect(),
+        masses: mass.header[1..]
+            .iter()
+            .map(|h| MassSignature {
+                place: h.clone(),
+                per_kg: mass.column(h),
+            })
+            .collect(),
         stiffness: (1..=4).map(zone).collect(),
         noise: number("strain_noise_ue"),
         load_noise: number("fz_noise_kN"),

@@ -15,7 +15,12 @@ pub struct DeadChannel {
 impl DeadChannel {
     /// One on every gauge.
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
-        (0..frame.n_gauges()).map(|gauge| Self { gauge, name: gauge_name(frame, gauge) }).collect()
+        (0..frame.n_gauges())
+            .map(|gauge| Self {
+                gauge,
+                name: gauge_name(frame, gauge),
+            })
+            .collect()
     }
 }
 
@@ -29,16 +34,31 @@ impl StrainEffect for DeadChannel {
     fn stage(&self) -> Stage {
         Stage::Reading
     }
-    fn read(&self, _frame: &StrainFrame, _parameters: &[f64], _run: usize, row: &mut [f64], _part: Part) {
+    fn read(
+        &self,
+        _frame: &StrainFrame,
+        _parameters: &[f64],
+        _run: usize,
+        row: &mut [f64],
+        _part: Part,
+    ) {
         if let Some(cell) = row.get_mut(self.gauge) {
             *cell = 0.0;
         }
     }
     fn extension(&self, _frame: &StrainFrame, _parameters: &[f64]) -> Extension {
-        Extension::Channel { id: self.id(), gauge: self.name.clone(), size: 0.0, unit: "1" }
+        Extension::Channel {
+            id: self.id(),
+            gauge: self.name.clone(),
+            size: 0.0,
+            unit: "1",
+        }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
-        format!("check the leads and the insulation of gauge {}; a shunt moves a live channel", self.name)
+        format!(
+            "check the leads and the insulation of gauge {}; a shunt moves a live channel",
+            self.name
+        )
     }
     fn gauges(&self) -> Vec<usize> {
         vec![self.gauge]

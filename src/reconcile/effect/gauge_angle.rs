@@ -16,7 +16,13 @@ impl GaugeAngle {
     /// One on every gauge whose in-plane strain is known.
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
         let known = |g: &usize| frame.tensors.get(*g).is_some_and(|t| !t.is_empty());
-        (0..frame.n_gauges()).filter(known).map(|gauge| Self { gauge, name: gauge_name(frame, gauge) }).collect()
+        (0..frame.n_gauges())
+            .filter(known)
+            .map(|gauge| Self {
+                gauge,
+                name: gauge_name(frame, gauge),
+            })
+            .collect()
     }
 }
 
@@ -32,9 +38,17 @@ fn reading([exx, eyy, gxy]: [f64; 3], angle_rad: f64, wiring: Wiring) -> f64 {
 
 /// Change of influence of one gauge when its angle differs by `degrees`, by column.
 pub fn angle_change(frame: &StrainFrame, gauge: usize, degrees: f64) -> Vec<f64> {
-    let (Some(facts), Some(tensors)) = (frame.gauges.get(gauge), frame.tensors.get(gauge)) else { return Vec::new() };
-    let (drawn, glued) = (facts.angle_deg.to_radians(), (facts.angle_deg + degrees).to_radians());
-    tensors.iter().map(|&t| reading(t, glued, facts.wiring) - reading(t, drawn, facts.wiring)).collect()
+    let (Some(facts), Some(tensors)) = (frame.gauges.get(gauge), frame.tensors.get(gauge)) else {
+        return Vec::new();
+    };
+    let (drawn, glued) = (
+        facts.angle_deg.to_radians(),
+        (facts.angle_deg + degrees).to_radians(),
+    );
+    tensors
+        .iter()
+        .map(|&t| reading(t, glued, facts.wiring) - reading(t, drawn, facts.wiring))
+        .collect()
 }
 
 impl StrainEffect for GaugeAngle {
@@ -59,7 +73,9 @@ impl StrainEffect for GaugeAngle {
         }]
     }
     fn alter(&self, frame: &StrainFrame, parameters: &[f64], state: &mut StrainState) {
-        let Some(&degrees) = parameters.first() else { return };
+        let Some(&degrees) = parameters.first() else {
+            return;
+        };
         let n_c = state.shape[2];
         let row = &mut state.influence[self.gauge * n_c..(self.gauge + 1) * n_c];
         for (cell, d) in row.iter_mut().zip(angle_change(frame, self.gauge, degrees)) {
@@ -68,10 +84,18 @@ impl StrainEffect for GaugeAngle {
     }
     fn extension(&self, _frame: &StrainFrame, parameters: &[f64]) -> Extension {
         let size = parameters.first().copied().unwrap_or(0.0);
-        Extension::Channel { id: self.id(), gauge: self.name.clone(), size, unit: "degree" }
+        Extension::Channel {
+            id: self.id(),
+            gauge: self.name.clone(),
+            size,
+            unit: "degree",
+        }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
-        format!("photograph gauge {} with a protractor; a load that shears the member there shows an angle, not a gain", self.name)
+        format!(
+            "photograph gauge {} with a protractor; a load that shears the member there shows an angle, not a gain",
+            self.name
+        )
     }
     fn gauges(&self) -> Vec<usize> {
         vec![self.gauge]

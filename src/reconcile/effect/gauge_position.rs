@@ -15,10 +15,22 @@ pub struct GaugePosition {
 impl GaugePosition {
     /// One on every gauge whose gradient is known.
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
-        let Some(per_mm) = &frame.per_mm else { return Vec::new() };
+        let Some(per_mm) = &frame.per_mm else {
+            return Vec::new();
+        };
         let n_c = frame.n_columns();
-        let known = |g: &usize| per_mm.get(g * n_c..(g + 1) * n_c).is_some_and(|r| r.iter().any(|v| *v != 0.0));
-        (0..frame.n_gauges()).filter(known).map(|gauge| Self { gauge, name: gauge_name(frame, gauge) }).collect()
+        let known = |g: &usize| {
+            per_mm
+                .get(g * n_c..(g + 1) * n_c)
+                .is_some_and(|r| r.iter().any(|v| *v != 0.0))
+        };
+        (0..frame.n_gauges())
+            .filter(known)
+            .map(|gauge| Self {
+                gauge,
+                name: gauge_name(frame, gauge),
+            })
+            .collect()
     }
 }
 
@@ -33,10 +45,19 @@ impl StrainEffect for GaugePosition {
         Stage::Structure
     }
     fn parameters(&self) -> Vec<Parameter> {
-        vec![Parameter { unit: "mm", neutral: 0.0, prior_sd: 15.0, step: 0.5, starts: vec![0.0], plausible: 60.0 }]
+        vec![Parameter {
+            unit: "mm",
+            neutral: 0.0,
+            prior_sd: 15.0,
+            step: 0.5,
+            starts: vec![0.0],
+            plausible: 60.0,
+        }]
     }
     fn alter(&self, frame: &StrainFrame, parameters: &[f64], state: &mut StrainState) {
-        let (Some(mm), Some(per_mm)) = (parameters.first(), &frame.per_mm) else { return };
+        let (Some(mm), Some(per_mm)) = (parameters.first(), &frame.per_mm) else {
+            return;
+        };
         let n_c = state.shape[2];
         let at = self.gauge * n_c..(self.gauge + 1) * n_c;
         if let Some(gradient) = per_mm.get(at.clone()) {
@@ -47,7 +68,12 @@ impl StrainEffect for GaugePosition {
     }
     fn extension(&self, _frame: &StrainFrame, parameters: &[f64]) -> Extension {
         let size = parameters.first().copied().unwrap_or(0.0);
-        Extension::Channel { id: self.id(), gauge: self.name.clone(), size, unit: "mm" }
+        Extension::Channel {
+            id: self.id(),
+            gauge: self.name.clone(),
+            size,
+            unit: "mm",
+        }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
         format!("measure where gauge {} sits", self.name)

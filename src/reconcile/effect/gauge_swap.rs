@@ -20,7 +20,10 @@ impl GaugeSwap {
         for a in 0..n {
             let legs = frame.rosette(a);
             for b in (a + 1..n).filter(|b| !legs.contains(b)) {
-                out.push(Self { pair: [a, b], name: format!("{}+{}", gauge_name(frame, a), gauge_name(frame, b)) });
+                out.push(Self {
+                    pair: [a, b],
+                    name: format!("{}+{}", gauge_name(frame, a), gauge_name(frame, b)),
+                });
             }
         }
         out
@@ -37,17 +40,32 @@ impl StrainEffect for GaugeSwap {
     fn stage(&self) -> Stage {
         Stage::Reading
     }
-    fn read(&self, _frame: &StrainFrame, _parameters: &[f64], _run: usize, row: &mut [f64], _part: Part) {
+    fn read(
+        &self,
+        _frame: &StrainFrame,
+        _parameters: &[f64],
+        _run: usize,
+        row: &mut [f64],
+        _part: Part,
+    ) {
         let [a, b] = self.pair;
         if a < row.len() && b < row.len() {
             row.swap(a, b);
         }
     }
     fn extension(&self, _frame: &StrainFrame, _parameters: &[f64]) -> Extension {
-        Extension::Channel { id: self.id(), gauge: self.name.clone(), size: 1.0, unit: "1" }
+        Extension::Channel {
+            id: self.id(),
+            gauge: self.name.clone(),
+            size: 1.0,
+            unit: "1",
+        }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
-        format!("warm one of the gauges {} with a hand and see which channel moves", self.name.replace('+', " and "))
+        format!(
+            "warm one of the gauges {} with a hand and see which channel moves",
+            self.name.replace('+', " and ")
+        )
     }
     fn gauges(&self) -> Vec<usize> {
         self.pair.to_vec()

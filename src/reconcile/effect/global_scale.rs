@@ -15,7 +15,14 @@ impl StrainEffect for GlobalScale {
         Stage::Structure
     }
     fn parameters(&self) -> Vec<Parameter> {
-        vec![Parameter { unit: "percent", neutral: 0.0, prior_sd: 8.0, step: 0.5, starts: vec![0.0], plausible: 50.0 }]
+        vec![Parameter {
+            unit: "percent",
+            neutral: 0.0,
+            prior_sd: 8.0,
+            step: 0.5,
+            starts: vec![0.0],
+            plausible: 50.0,
+        }]
     }
     fn alter(&self, _frame: &StrainFrame, parameters: &[f64], state: &mut StrainState) {
         let factor = 1.0 + parameters.first().copied().unwrap_or(0.0) / 100.0;

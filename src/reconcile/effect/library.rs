@@ -32,7 +32,10 @@ pub struct Candidate {
 pub fn library(frame: &StrainFrame, only: &[String]) -> Vec<Candidate> {
     let mut groups: Vec<Vec<Box<dyn StrainEffect>>> = Vec::new();
     fn boxed<E: StrainEffect + 'static>(effects: Vec<E>) -> Vec<Box<dyn StrainEffect>> {
-        effects.into_iter().map(|e| Box::new(e) as Box<dyn StrainEffect>).collect()
+        effects
+            .into_iter()
+            .map(|e| Box::new(e) as Box<dyn StrainEffect>)
+            .collect()
     }
     groups.push(boxed(ZeroDrift::all(frame)));
     groups.push(boxed(SignFlip::all(frame)));
@@ -47,7 +50,9 @@ pub fn library(frame: &StrainFrame, only: &[String]) -> Vec<Candidate> {
     groups.push(boxed(PayloadOffset::all(frame)));
     groups.push(boxed(UnaccountedMass::all(frame)));
     groups.push(boxed(UnevenGround::all(frame)));
-    let (uniform, gradient): (Vec<_>, Vec<_>) = Thermal::all(frame).into_iter().partition(|t| t.id() == "thermal_uniform");
+    let (uniform, gradient): (Vec<_>, Vec<_>) = Thermal::all(frame)
+        .into_iter()
+        .partition(|t| t.id() == "thermal_uniform");
     groups.push(boxed(uniform));
     groups.push(boxed(gradient));
     groups.push(boxed(LateralWheelLoads::all(frame)));
@@ -59,7 +64,9 @@ pub fn library(frame: &StrainFrame, only: &[String]) -> Vec<Candidate> {
     for group in groups {
         let log_prior = -(n_groups * group.len() as f64).ln();
         for effect in group {
-            let wanted = only.iter().any(|w| w == effect.id() || *w == super::full_id(effect.as_ref()));
+            let wanted = only
+                .iter()
+                .any(|w| w == effect.id() || *w == super::full_id(effect.as_ref()));
             if only.is_empty() || wanted {
                 out.push(Candidate { effect, log_prior });
             }

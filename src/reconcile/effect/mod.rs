@@ -75,7 +75,15 @@ pub trait StrainEffect: Send + Sync {
     /// Changes structure or loads.
     fn alter(&self, _frame: &StrainFrame, _parameters: &[f64], _state: &mut StrainState) {}
     /// Changes the readings of one run, a row of gauges.
-    fn read(&self, _frame: &StrainFrame, _parameters: &[f64], _run: usize, _row: &mut [f64], _part: Part) {}
+    fn read(
+        &self,
+        _frame: &StrainFrame,
+        _parameters: &[f64],
+        _run: usize,
+        _row: &mut [f64],
+        _part: Part,
+    ) {
+    }
     /// Amplitudes that differ from run to run.
     fn amplitudes(&self, _frame: &StrainFrame) -> Option<Amplitudes> {
         None
@@ -108,5 +116,9 @@ pub fn full_id(effect: &dyn StrainEffect) -> String {
 }
 
 fn gauge_name(frame: &StrainFrame, gauge: usize) -> String {
-    frame.gauges.get(gauge).map(|g| g.name.clone()).unwrap_or_default()
+    frame
+        .gauges
+        .get(gauge)
+        .map(|g| g.name.clone())
+        .unwrap_or_default()
 }

@@ -11,7 +11,11 @@ impl PayloadGravityMissing {
     /// Itself where the analyst's model lacks the weight.
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
         let carries = frame.payload.iter().any(|p| p[0] > 0.0);
-        if frame.payload_weight == PayloadWeight::Missing && carries { vec![Self] } else { Vec::new() }
+        if frame.payload_weight == PayloadWeight::Missing && carries {
+            vec![Self]
+        } else {
+            Vec::new()
+        }
     }
 }
 

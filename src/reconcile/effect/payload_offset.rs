@@ -28,7 +28,9 @@ impl PayloadOffset {
         if frame.payload_weight == PayloadWeight::Missing || !carries {
             return Vec::new();
         }
-        [Axis::Along, Axis::Across, Axis::Both].map(|axis| Self { axis }).to_vec()
+        [Axis::Along, Axis::Across, Axis::Both]
+            .map(|axis| Self { axis })
+            .to_vec()
     }
 
     fn offset(&self, parameters: &[f64]) -> [f64; 2] {
@@ -49,7 +51,14 @@ impl StrainEffect for PayloadOffset {
         Stage::Loads
     }
     fn parameters(&self) -> Vec<Parameter> {
-        let one = Parameter { unit: "m", neutral: 0.0, prior_sd: 0.3, step: 0.01, starts: vec![0.0], plausible: 2.0 };
+        let one = Parameter {
+            unit: "m",
+            neutral: 0.0,
+            prior_sd: 0.3,
+            step: 0.01,
+            starts: vec![0.0],
+            plausible: 2.0,
+        };
         match self.axis {
             Axis::Along | Axis::Across => vec![one],
             Axis::Both => vec![one.clone(), one],

@@ -26,7 +26,11 @@ impl RosetteLegs {
             }
             let name = gauge_name(frame, first);
             match legs.len() {
-                2 => out.push(Self { order: vec![legs[1], legs[0]], legs, name }),
+                2 => out.push(Self {
+                    order: vec![legs[1], legs[0]],
+                    legs,
+                    name,
+                }),
                 3 => out.extend(ORDERS.iter().map(|o| Self {
                     order: o.iter().map(|&i| legs[i]).collect(),
                     legs: legs.clone(),
@@ -49,8 +53,19 @@ impl StrainEffect for RosetteLegs {
     fn stage(&self) -> Stage {
         Stage::Reading
     }
-    fn read(&self, _frame: &StrainFrame, _parameters: &[f64], _run: usize, row: &mut [f64], _part: Part) {
-        let read: Vec<f64> = self.order.iter().map(|&g| row.get(g).copied().unwrap_or(f64::NAN)).collect();
+    fn read(
+        &self,
+        _frame: &StrainFrame,
+        _parameters: &[f64],
+        _run: usize,
+        row: &mut [f64],
+        _part: Part,
+    ) {
+        let read: Vec<f64> = self
+            .order
+            .iter()
+            .map(|&g| row.get(g).copied().unwrap_or(f64::NAN))
+            .collect();
         for (&leg, value) in self.legs.iter().zip(read) {
             if let Some(cell) = row.get_mut(leg) {
                 *cell = value;
@@ -59,10 +74,18 @@ impl StrainEffect for RosetteLegs {
     }
     fn extension(&self, frame: &StrainFrame, _parameters: &[f64]) -> Extension {
         let order: Vec<String> = self.order.iter().map(|&g| gauge_name(frame, g)).collect();
-        Extension::Channel { id: self.id(), gauge: order.join("+"), size: 1.0, unit: "1" }
+        Extension::Channel {
+            id: self.id(),
+            gauge: order.join("+"),
+            size: 1.0,
+            unit: "1",
+        }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
-        format!("follow the leads of the rosette at {}, or shunt one leg and see which channel moves", self.name)
+        format!(
+            "follow the leads of the rosette at {}, or shunt one leg and see which channel moves",
+            self.name
+        )
     }
     fn gauges(&self) -> Vec<usize> {
         self.legs.clone()

@@ -20,15 +20,27 @@ impl SaturatedChannel {
         let predicted = predict(frame, &[]);
         let mut out = Vec::new();
         for gauge in 0..frame.n_gauges() {
-            let read: Vec<f64> =
-                (0..frame.n_runs()).map(|r| frame.observations.value(r, gauge).abs()).filter(|v| v.is_finite()).collect();
+            let read: Vec<f64> = (0..frame.n_runs())
+                .map(|r| frame.observations.value(r, gauge).abs())
+                .filter(|v| v.is_finite())
+                .collect();
             let largest = read.iter().copied().fold(0.0, f64::max);
             // Readings held at a limit differ by noise only.
-            let at_limit = read.iter().filter(|v| **v > largest - 5.0 * frame.noise).count();
-            let expected = (0..frame.n_runs()).filter_map(|r| predicted.get(r * frame.n_gauges() + gauge));
-            let beyond = expected.filter(|p| p.abs() > largest + 5.0 * frame.noise).count();
+            let at_limit = read
+                .iter()
+                .filter(|v| **v > largest - 5.0 * frame.noise)
+                .count();
+            let expected =
+                (0..frame.n_runs()).filter_map(|r| predicted.get(r * frame.n_gauges() + gauge));
+            let beyond = expected
+                .filter(|p| p.abs() > largest + 5.0 * frame.noise)
+                .count();
             if largest > 10.0 * frame.noise && at_limit >= 2 && beyond >= 1 {
-                out.push(Self { gauge, name: gauge_name(frame, gauge), largest });
+                out.push(Self {
+                    gauge,
+                    name: gauge_name(frame, gauge),
+                    largest,
+                });
             }
         }
         out
@@ -55,18 +67,35 @@ impl StrainEffect for SaturatedChannel {
             plausible: f64::INFINITY,
         }]
     }
-    fn read(&self, _frame: &StrainFrame, parameters: &[f64], _run: usize, row: &mut [f64], part: Part) {
-        let (Part::Whole, [limit, ..]) = (part, parameters) else { return };
+    fn read(
+        &self,
+        _frame: &StrainFrame,
+        parameters: &[f64],
+        _run: usize,
+        row: &mut [f64],
+        part: Part,
+    ) {
+        let (Part::Whole, [limit, ..]) = (part, parameters) else {
+            return;
+        };
         if let Some(cell) = row.get_mut(self.gauge) {
             *cell = cell.clamp(-limit.abs(), limit.abs());
         }
     }
     fn extension(&self, _frame: &StrainFrame, parameters: &[f64]) -> Extension {
         let size = parameters.first().copied().unwrap_or(0.0);
-        Extension::Channel { id: self.id(), gauge: self.name.clone(), size, unit: "microstrain" }
+        Extension::Channel {
+            id: self.id(),
+            gauge: self.name.clone(),
+            size,
+            unit: "microstrain",
+        }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
-        format!("lower the amplifier's gain of gauge {} and repeat the heaviest run", self.name)
+        format!(
+            "lower the amplifier's gain of gauge {} and repeat the heaviest run",
+            self.name
+        )
     }
     fn gauges(&self) -> Vec<usize> {
         vec![self.gauge]

@@ -15,7 +15,12 @@ pub struct SignFlip {
 impl SignFlip {
     /// One on every gauge.
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
-        (0..frame.n_gauges()).map(|gauge| Self { gauge, name: gauge_name(frame, gauge) }).collect()
+        (0..frame.n_gauges())
+            .map(|gauge| Self {
+                gauge,
+                name: gauge_name(frame, gauge),
+            })
+            .collect()
     }
 }
 
@@ -29,16 +34,31 @@ impl StrainEffect for SignFlip {
     fn stage(&self) -> Stage {
         Stage::Reading
     }
-    fn read(&self, _frame: &StrainFrame, _parameters: &[f64], _run: usize, row: &mut [f64], _part: Part) {
+    fn read(
+        &self,
+        _frame: &StrainFrame,
+        _parameters: &[f64],
+        _run: usize,
+        row: &mut [f64],
+        _part: Part,
+    ) {
         if let Some(cell) = row.get_mut(self.gauge) {
             *cell = -*cell;
         }
     }
     fn extension(&self, _frame: &StrainFrame, _parameters: &[f64]) -> Extension {
-        Extension::Channel { id: self.id(), gauge: self.name.clone(), size: -1.0, unit: "1" }
+        Extension::Channel {
+            id: self.id(),
+            gauge: self.name.clone(),
+            size: -1.0,
+            unit: "1",
+        }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
-        format!("press or warm the structure by hand at gauge {} and look at the sign, or shunt one arm", self.name)
+        format!(
+            "press or warm the structure by hand at gauge {} and look at the sign, or shunt one arm",
+            self.name
+        )
     }
     fn gauges(&self) -> Vec<usize> {
         vec![self.gauge]

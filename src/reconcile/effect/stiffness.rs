@@ -19,8 +19,16 @@ impl Stiffness {
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
         let named = frame.stiffness.iter().enumerate().map(|(signature, s)| {
             let (id, place) = s.id.split_once(':').unwrap_or((&s.id, ""));
-            let id = if id == "joint_stiffness" { "joint_stiffness" } else { "rail_stiffness" };
-            Self { signature, id, name: place.to_string() }
+            let id = if id == "joint_stiffness" {
+                "joint_stiffness"
+            } else {
+                "rail_stiffness"
+            };
+            Self {
+                signature,
+                id,
+                name: place.to_string(),
+            }
         });
         named.collect()
     }
@@ -50,10 +58,21 @@ impl StrainEffect for Stiffness {
         Stage::Structure
     }
     fn parameters(&self) -> Vec<Parameter> {
-        vec![Parameter { unit: "percent", neutral: 0.0, prior_sd: 15.0, step: 0.5, starts: vec![0.0], plausible: 60.0 }]
+        vec![Parameter {
+            unit: "percent",
+            neutral: 0.0,
+            prior_sd: 15.0,
+            step: 0.5,
+            starts: vec![0.0],
+            plausible: 60.0,
+        }]
     }
     fn alter(&self, frame: &StrainFrame, parameters: &[f64], state: &mut StrainState) {
-        let (Some(&percent), Some(signature)) = (parameters.first(), frame.stiffness.get(self.signature)) else { return };
+        let (Some(&percent), Some(signature)) =
+            (parameters.first(), frame.stiffness.get(self.signature))
+        else {
+            return;
+        };
         let sizes: Vec<f64> = signature.at_percent.iter().map(|p| p.0).collect();
         for (w, (_, change)) in weights(&sizes, percent).iter().zip(&signature.at_percent) {
             for (cell, d) in state.influence.iter_mut().zip(change) {
@@ -63,9 +82,16 @@ impl StrainEffect for Stiffness {
     }
     fn extension(&self, _frame: &StrainFrame, parameters: &[f64]) -> Extension {
         let percent = parameters.first().copied().unwrap_or(0.0);
-        Extension::Stiffness { id: self.id, place: self.name.clone(), percent }
+        Extension::Stiffness {
+            id: self.id,
+            place: self.name.clone(),
+            percent,
+        }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
-        format!("measure the thickness at {}, or add a gauge inside and one outside that zone", self.name)
+        format!(
+            "measure the thickness at {}, or add a gauge inside and one outside that zone",
+            self.name
+        )
     }
 }

@@ -23,7 +23,12 @@ impl Thermal {
     /// Every pattern the frame knows.
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
         let both = [Pattern::Uniform, Pattern::Gradient].map(|pattern| Self { pattern });
-        both.into_iter().filter(|t| t.signature(frame).is_some_and(|s| s.iter().any(|v| *v != 0.0))).collect()
+        both.into_iter()
+            .filter(|t| {
+                t.signature(frame)
+                    .is_some_and(|s| s.iter().any(|v| *v != 0.0))
+            })
+            .collect()
     }
 
     fn signature<'a>(&self, frame: &'a StrainFrame) -> Option<&'a Vec<f64>> {
@@ -62,7 +67,11 @@ impl StrainEffect for Thermal {
         })
     }
     fn extension(&self, _frame: &StrainFrame, _parameters: &[f64]) -> Extension {
-        Extension::NuisanceLoads { id: self.id(), loads: vec![(self.id().into(), self.usual_degrees())], unit: "degC" }
+        Extension::NuisanceLoads {
+            id: self.id(),
+            loads: vec![(self.id().into(), self.usual_degrees())],
+            unit: "degC",
+        }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
         match self.pattern {

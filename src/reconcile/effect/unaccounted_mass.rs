@@ -15,7 +15,15 @@ pub struct UnaccountedMass {
 impl UnaccountedMass {
     /// One at every place.
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
-        frame.masses.iter().enumerate().map(|(mass, m)| Self { mass, name: m.place.clone() }).collect()
+        frame
+            .masses
+            .iter()
+            .enumerate()
+            .map(|(mass, m)| Self {
+                mass,
+                name: m.place.clone(),
+            })
+            .collect()
     }
 }
 
@@ -30,10 +38,19 @@ impl StrainEffect for UnaccountedMass {
         Stage::Loads
     }
     fn parameters(&self) -> Vec<Parameter> {
-        vec![Parameter { unit: "kg", neutral: 0.0, prior_sd: 400.0, step: 5.0, starts: vec![0.0], plausible: 5000.0 }]
+        vec![Parameter {
+            unit: "kg",
+            neutral: 0.0,
+            prior_sd: 400.0,
+            step: 5.0,
+            starts: vec![0.0],
+            plausible: 5000.0,
+        }]
     }
     fn alter(&self, frame: &StrainFrame, parameters: &[f64], state: &mut StrainState) {
-        let (Some(kg), Some(signature)) = (parameters.first(), frame.masses.get(self.mass)) else { return };
+        let (Some(kg), Some(signature)) = (parameters.first(), frame.masses.get(self.mass)) else {
+            return;
+        };
         for row in state.extra.chunks_exact_mut(frame.n_gauges().max(1)) {
             for (cell, per_kg) in row.iter_mut().zip(&signature.per_kg) {
                 *cell += kg * per_kg;
@@ -41,9 +58,15 @@ impl StrainEffect for UnaccountedMass {
         }
     }
     fn extension(&self, _frame: &StrainFrame, parameters: &[f64]) -> Extension {
-        Extension::Mass { place: self.name.clone(), kilogram: parameters.first().copied().unwrap_or(0.0) }
+        Extension::Mass {
+            place: self.name.clone(),
+            kilogram: parameters.first().copied().unwrap_or(0.0),
+        }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
-        format!("weigh the empty truck axle by axle, or put a known mass at {} and repeat", self.name)
+        format!(
+            "weigh the empty truck axle by axle, or put a known mass at {} and repeat",
+            self.name
+        )
     }
 }

@@ -14,7 +14,11 @@ impl UnevenGround {
     /// Itself where the wheel forces are computed, not measured.
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
         let warps = frame.n_loads() > constraints(frame).len();
-        if frame.wheel_forces == WheelForces::FlatGroundModel && warps { vec![Self] } else { Vec::new() }
+        if frame.wheel_forces == WheelForces::FlatGroundModel && warps {
+            vec![Self]
+        } else {
+            Vec::new()
+        }
     }
 }
 
@@ -25,9 +29,19 @@ fn constraints(frame: &StrainFrame) -> Vec<Vec<f64>> {
     if let Some(places) = &frame.load_positions {
         out.push(places.iter().map(|p| p[0]).collect());
         out.push(places.iter().map(|p| p[1]).collect());
-    } else if frame.load_names.iter().all(|name| name.starts_with(['L', 'R'])) {
+    } else if frame
+        .load_names
+        .iter()
+        .all(|name| name.starts_with(['L', 'R']))
+    {
         // Named by side, as LF and RF are: the moment about the long axis is all that is known.
-        out.push(frame.load_names.iter().map(|name| if name.starts_with('L') { 1.0 } else { -1.0 }).collect());
+        out.push(
+            frame
+                .load_names
+                .iter()
+                .map(|name| if name.starts_with('L') { 1.0 } else { -1.0 })
+                .collect(),
+        );
     }
     out
 }
@@ -41,7 +55,11 @@ fn warps(frame: &StrainFrame) -> Vec<Vec<f64>> {
     let fixed = constraints(frame);
     let n_fixed_given = fixed.len();
     let mut n_fixed = 0;
-    let units = (0..n).map(|i| (0..n).map(|j| if i == j { 1.0 } else { 0.0 }).collect::<Vec<f64>>());
+    let units = (0..n).map(|i| {
+        (0..n)
+            .map(|j| if i == j { 1.0 } else { 0.0 })
+            .collect::<Vec<f64>>()
+    });
     for (k, mut v) in fixed.into_iter().chain(units).enumerate() {
         let before = v.iter().map(|x| x * x).sum::<f64>().sqrt();
         for b in &basis {
@@ -69,14 +87,29 @@ impl StrainEffect for UnevenGround {
         let n_c = frame.n_columns();
         let pattern = |w: &Vec<f64>| {
             let rows = frame.influence.chunks_exact(n_c);
-            rows.map(|row| row.iter().zip(w).map(|(a, b)| a * b).sum()).collect()
+            rows.map(|row| row.iter().zip(w).map(|(a, b)| a * b).sum())
+                .collect()
         };
         let patterns: Vec<Vec<f64>> = warps(frame).iter().map(pattern).collect();
-        Some(Amplitudes { kinds: vec![0; patterns.len()], patterns, usual: vec![USUAL_KN], unit: "kN", plausible: 60.0 })
+        Some(Amplitudes {
+            kinds: vec![0; patterns.len()],
+            patterns,
+            usual: vec![USUAL_KN],
+            unit: "kN",
+            plausible: 60.0,
+        })
     }
     fn extension(&self, frame: &StrainFrame, _parameters: &[f64]) -> Extension {
-        let loads = frame.load_names.iter().map(|n| (n.clone(), USUAL_KN)).collect();
-        Extension::NuisanceLoads { id: self.id(), loads, unit: "kN" }
+        let loads = frame
+            .load_names
+            .iter()
+            .map(|n| (n.clone(), USUAL_KN))
+            .collect();
+        Extension::NuisanceLoads {
+            id: self.id(),
+            loads,
+            unit: "kN",
+        }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
         "weigh every wheel where it stands, or turn the truck end for end on the same ground".into()

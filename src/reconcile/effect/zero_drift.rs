@@ -26,8 +26,14 @@ pub struct ZeroDrift {
 impl ZeroDrift {
     /// Both kinds on every gauge.
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
-        let on = |gauge, drift| Self { gauge, name: gauge_name(frame, gauge), drift };
-        (0..frame.n_gauges()).flat_map(|g| [on(g, Drift::Step), on(g, Drift::Creep)]).collect()
+        let on = |gauge, drift| Self {
+            gauge,
+            name: gauge_name(frame, gauge),
+            drift,
+        };
+        (0..frame.n_gauges())
+            .flat_map(|g| [on(g, Drift::Step), on(g, Drift::Creep)])
+            .collect()
     }
 }
 
@@ -51,8 +57,17 @@ impl StrainEffect for ZeroDrift {
             plausible: 1000.0,
         }]
     }
-    fn read(&self, frame: &StrainFrame, parameters: &[f64], run: usize, row: &mut [f64], part: Part) {
-        let (Part::Whole, [size, ..]) = (part, parameters) else { return };
+    fn read(
+        &self,
+        frame: &StrainFrame,
+        parameters: &[f64],
+        run: usize,
+        row: &mut [f64],
+        part: Part,
+    ) {
+        let (Part::Whole, [size, ..]) = (part, parameters) else {
+            return;
+        };
         let share = match self.drift {
             Drift::Step => 1.0,
             Drift::Creep => (run + 1) as f64 / frame.n_runs().max(1) as f64,
@@ -63,10 +78,18 @@ impl StrainEffect for ZeroDrift {
     }
     fn extension(&self, _frame: &StrainFrame, parameters: &[f64]) -> Extension {
         let size = parameters.first().copied().unwrap_or(0.0);
-        Extension::Channel { id: self.id(), gauge: self.name.clone(), size, unit: "microstrain" }
+        Extension::Channel {
+            id: self.id(),
+            gauge: self.name.clone(),
+            size,
+            unit: "microstrain",
+        }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
-        format!("read gauge {} in the installation state again (empty, level, reference temperature): a drifted zero stays", self.name)
+        format!(
+            "read gauge {} in the installation state again (empty, level, reference temperature): a drifted zero stays",
+            self.name
+        )
     }
     fn gauges(&self) -> Vec<usize> {
         vec![self.gauge]

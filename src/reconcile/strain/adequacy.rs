@@ -36,16 +36,28 @@ pub fn deviate(chi2: f64, n: f64) -> f64 {
 fn residual(frame: &StrainFrame, members: &[Member<'_>], selection: &Selection) -> Vec<f64> {
     let n_g = frame.n_gauges();
     let predicted = selection.pick(&predict(frame, members), n_g);
-    selection.pick(&frame.observations.values, n_g).iter().zip(predicted).map(|(y, p)| y - p).collect()
+    selection
+        .pick(&frame.observations.values, n_g)
+        .iter()
+        .zip(predicted)
+        .map(|(y, p)| y - p)
+        .collect()
 }
 
 fn chi2(cov: &[f64], r: &[f64]) -> f64 {
-    let Some(p) = Precision::of(cov, r.len()) else { return f64::NAN };
+    let Some(p) = Precision::of(cov, r.len()) else {
+        return f64::NAN;
+    };
     p.apply(r).iter().zip(r).map(|(a, b)| a * b).sum()
 }
 
 /// Judges `members` with amplitudes of the sizes of `unknown`; `n_parameters` were fitted.
-pub fn adequacy(frame: &StrainFrame, members: &[Member<'_>], unknown: &[SizedAmplitudes], n_parameters: usize) -> Adequacy {
+pub fn adequacy(
+    frame: &StrainFrame,
+    members: &[Member<'_>],
+    unknown: &[SizedAmplitudes],
+    n_parameters: usize,
+) -> Adequacy {
     let fit_runs = frame.observations.fit_runs();
     let proof_runs = frame.observations.proof_runs();
     let fit = Selection::of_runs(frame, &fit_runs);
@@ -58,20 +70,47 @@ pub fn adequacy(frame: &StrainFrame, members: &[Member<'_>], unknown: &[SizedAmp
     } else {
         // Chain rule of Gaussians: what the held-out runs add, given the fit runs.
         let all = Selection::of_runs(frame, &[fit_runs, proof_runs].concat());
-        let total = chi2(&covariance(frame, members, &all, unknown), &residual(frame, members, &all));
+        let total = chi2(
+            &covariance(frame, members, &all, unknown),
+            &residual(frame, members, &all),
+        );
         (total - fit_chi2, (all.len() - fit.len()) as f64)
     };
     let part = |name: &str, keep: &dyn Fn((usize, usize)) -> bool| {
-        let at: Vec<usize> = fit.0.iter().enumerate().filter(|(_, e)| keep(**e)).map(|(i, _)| i).collect();
+        let at: Vec<usize> = fit
+            .0
+            .iter()
+            .enumerate()
+            .filter(|(_, e)| keep(**e))
+            .map(|(i, _)| i)
+            .collect();
         let n = fit.len();
-        let block: Vec<f64> = at.iter().flat_map(|&i| at.iter().map(move |&j| (i, j))).map(|(i, j)| cov[i * n + j]).collect();
+        let block: Vec<f64> = at
+            .iter()
+            .flat_map(|&i| at.iter().map(move |&j| (i, j)))
+            .map(|(i, j)| cov[i * n + j])
+            .collect();
         let here: Vec<f64> = at.iter().map(|&i| r[i]).collect();
         let c = chi2(&block, &here);
         let count = here.len() as f64;
-        Misfit { name: name.to_string(), reduced_chi2: c / count.max(1.0), deviate: deviate(c, count) }
+        Misfit {
+            name: name.to_string(),
+            reduced_chi2: c / count.max(1.0),
+            deviate: deviate(c, count),
+        }
     };
-    let gauges = frame.gauges.iter().enumerate().map(|(g, f)| part(&f.name, &|e| e.1 == g)).collect();
-    let runs = frame.observations.fit_runs().iter().map(|&k| part(&frame.observations.runs[k], &|e| e.0 == k)).collect();
+    let gauges = frame
+        .gauges
+        .iter()
+        .enumerate()
+        .map(|(g, f)| part(&f.name, &|e| e.1 == g))
+        .collect();
+    let runs = frame
+        .observations
+        .fit_runs()
+        .iter()
+        .map(|&k| part(&frame.observations.runs[k], &|e| e.0 == k))
+        .collect();
     Adequacy {
         fit: fit_chi2 / n_fit.max(1.0),
         fit_deviate: deviate(fit_chi2, n_fit),

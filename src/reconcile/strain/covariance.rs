@@ -35,12 +35,19 @@ impl Selection {
 
     /// The selected entries of an `n_runs x n_gauges` table.
     pub fn pick(&self, table: &[f64], n_gauges: usize) -> Vec<f64> {
-        self.0.iter().map(|&(r, g)| table.get(r * n_gauges + g).copied().unwrap_or(f64::NAN)).collect()
+        self.0
+            .iter()
+            .map(|&(r, g)| table.get(r * n_gauges + g).copied().unwrap_or(f64::NAN))
+            .collect()
     }
 }
 
 /// Patterns as the gauges read them: the linear part of the reading effects of `members` applied.
-pub fn read_patterns(frame: &StrainFrame, members: &[Member<'_>], patterns: &[Vec<f64>]) -> Vec<Vec<f64>> {
+pub fn read_patterns(
+    frame: &StrainFrame,
+    members: &[Member<'_>],
+    patterns: &[Vec<f64>],
+) -> Vec<Vec<f64>> {
     let read = |pattern: &Vec<f64>| {
         let mut row = pattern.clone();
         read_all(frame, members, 0, &mut row, Part::Linear);
@@ -54,10 +61,16 @@ pub fn read_patterns(frame: &StrainFrame, members: &[Member<'_>], patterns: &[Ve
 /// C = noise^2 I + load_noise^2 S S' (run by run: an error of a measured wheel force enters all gauges at once) + model_rel^2 m m'
 /// (gauge by gauge, all runs together: a wrong influence stays wrong) + entry_rel^2 sum over columns of (a f)(a f)' (the same, column
 /// by column) + V (amplitudes unknown in every run, run by run), with S, m, a as read with `members` on.
-pub fn covariance(frame: &StrainFrame, members: &[Member<'_>], selection: &Selection, unknown: &[SizedAmplitudes]) -> Vec<f64> {
+pub fn covariance(
+    frame: &StrainFrame,
+    members: &[Member<'_>],
+    selection: &Selection,
+    unknown: &[SizedAmplitudes],
+) -> Vec<f64> {
     let state = StrainState::with(frame, members);
     let [n_g, n_r, n_c] = state.shape;
-    let column = |c: usize| -> Vec<f64> { (0..n_g).map(|g| state.influence[g * n_c + c]).collect() };
+    let column =
+        |c: usize| -> Vec<f64> { (0..n_g).map(|g| state.influence[g * n_c + c]).collect() };
     let columns: Vec<Vec<f64>> = (0..n_c).map(column).collect();
     let columns = read_patterns(frame, members, &columns);
     let mut predicted = Vec::with_capacity(n_r * n_g);
@@ -88,13 +101,18 @@ pub fn covariance(frame: &StrainFrame, members: &[Member<'_>], selection: &Selec
     for g in 0..n_g {
         block[g * n_g + g] += frame.noise * frame.noise;
     }
-    let (model, entry) = (frame.model_rel * frame.model_rel, frame.entry_rel * frame.entry_rel);
+    let (model, entry) = (
+        frame.model_rel * frame.model_rel,
+        frame.entry_rel * frame.entry_rel,
+    );
     let across = |g: usize, r: usize, s: usize| {
         let common = model * predicted[r * n_g + g] * predicted[s * n_g + g];
         if entry == 0.0 {
             return common;
         }
-        let term = |(c, pattern): (usize, &Vec<f64>)| pattern[g] * pattern[g] * state.columns[r * n_c + c] * state.columns[s * n_c + c];
+        let term = |(c, pattern): (usize, &Vec<f64>)| {
+            pattern[g] * pattern[g] * state.columns[r * n_c + c] * state.columns[s * n_c + c]
+        };
         common + entry * columns.iter().enumerate().map(term).sum::<f64>()
     };
     let n = selection.len();

@@ -13,7 +13,9 @@ pub const DECISIVE: f64 = 3.0;
 /// Sizes at which the expected gain of evidence pays for the effect's prior weight, its width and [`DECISIVE`].
 pub fn detectable(frame: &StrainFrame, candidates: &[Candidate]) -> Vec<Detectable> {
     let fit = Selection::of_runs(frame, &frame.observations.fit_runs());
-    let Some(precision) = Precision::of(&covariance(frame, &[], &fit, &[]), fit.len()) else { return Vec::new() };
+    let Some(precision) = Precision::of(&covariance(frame, &[], &fit, &[]), fit.len()) else {
+        return Vec::new();
+    };
     let n_g = frame.n_gauges();
     let nominal = fit.pick(&predict(frame, &[]), n_g);
     let mut out = Vec::new();
@@ -27,33 +29,63 @@ pub fn detectable(frame: &StrainFrame, candidates: &[Candidate]) -> Vec<Detectab
             for run in frame.observations.fit_runs() {
                 for (pattern, &kind) in read.iter().zip(&a.kinds) {
                     let usual = a.usual.get(kind).copied().unwrap_or(0.0);
-                    let x: Vec<(usize, f64)> =
-                        fit.0.iter().enumerate().filter(|(_, e)| e.0 == run).map(|(i, e)| (i, usual * pattern[e.1])).collect();
+                    let x: Vec<(usize, f64)> = fit
+                        .0
+                        .iter()
+                        .enumerate()
+                        .filter(|(_, e)| e.0 == run)
+                        .map(|(i, e)| (i, usual * pattern[e.1]))
+                        .collect();
                     strengths.push(precision.quadratic_sparse(&x));
                 }
             }
             // In a family the patterns share what they explain: the strongest of each run stands for it.
             let per_run = read.len().max(1);
-            let strongest: Vec<f64> = strengths.chunks(per_run).map(|s| s.iter().copied().fold(0.0, f64::max)).collect();
-            let expected = |s: f64| 0.5 * strongest.iter().map(|l| s * s * l - (s * s * l).ln_1p()).sum::<f64>();
+            let strongest: Vec<f64> = strengths
+                .chunks(per_run)
+                .map(|s| s.iter().copied().fold(0.0, f64::max))
+                .collect();
+            let expected = |s: f64| {
+                0.5 * strongest
+                    .iter()
+                    .map(|l| s * s * l - (s * s * l).ln_1p())
+                    .sum::<f64>()
+            };
             let needed = DECISIVE - c.log_prior;
             let (mut low, mut high) = (1e-6, 1e3);
             for _ in 0..60 {
                 let middle = f64::sqrt(low * high);
-                if expected(middle) < needed { low = middle } else { high = middle }
+                if expected(middle) < needed {
+                    low = middle
+                } else {
+                    high = middle
+                }
             }
             let usual = a.usual.iter().copied().fold(0.0, f64::max);
-            out.push(Detectable { id, size: high * usual, unit: a.unit });
+            out.push(Detectable {
+                id,
+                size: high * usual,
+                unit: a.unit,
+            });
         } else if let [p] = effect.parameters().as_slice() {
-            let size = smallest(frame, c, &fit, &nominal, &precision, p.neutral, p.step, p.prior_sd);
-            out.push(Detectable { id, size, unit: p.unit });
+            let size = smallest(
+                frame, c, &fit, &nominal, &precision, p.neutral, p.step, p.prior_sd,
+            );
+            out.push(Detectable {
+                id,
+                size,
+                unit: p.unit,
+            });
         }
     }
     out
 }
 
 /// Bisection on the exact change of the prediction, on the side where less is needed.
-#[allow(clippy::too_many_arguments, reason = "one call site, all of it the state of a loop")]
+#[allow(
+    clippy::too_many_arguments,
+    reason = "one call site, all of it the state of a loop"
+)]
 fn smallest(
     frame: &StrainFrame,
     c: &Candidate,
@@ -67,10 +99,20 @@ fn smallest(
     let gauges = c.effect.gauges();
     let power = |size: f64| {
         let parameters = [neutral + size];
-        let changed = predict(frame, &[Member { effect: c.effect.as_ref(), parameters: &parameters }]);
+        let changed = predict(
+            frame,
+            &[Member {
+                effect: c.effect.as_ref(),
+                parameters: &parameters,
+            }],
+        );
         let changed = fit.pick(&changed, frame.n_gauges());
-        let touched = |i: &usize| gauges.is_empty() || fit.0.get(*i).is_some_and(|e| gauges.contains(&e.1));
-        let x: Vec<(usize, f64)> = (0..fit.len()).filter(touched).map(|i| (i, changed[i] - nominal[i])).collect();
+        let touched =
+            |i: &usize| gauges.is_empty() || fit.0.get(*i).is_some_and(|e| gauges.contains(&e.1));
+        let x: Vec<(usize, f64)> = (0..fit.len())
+            .filter(touched)
+            .map(|i| (i, changed[i] - nominal[i]))
+            .collect();
         if gauges.is_empty() {
             let px = precision.apply_sparse(&x);
             return 0.5 * x.iter().map(|&(i, v)| v * px[i]).sum::<f64>();

@@ -13,7 +13,12 @@ use crate::reconcile::outcome::{Misfit, NamedEffect, Outcome, Rival, Verdict};
 use crate::reconcile::search::{Breadth, Scored, search, settle};
 
 /// How far the search looks in static problems: three effects at once are as many as a few runs can part.
-const BREADTH: Breadth = Breadth { largest: 3, beam: 4, tries: 6, decisive: DECISIVE };
+const BREADTH: Breadth = Breadth {
+    largest: 3,
+    beam: 4,
+    tries: 6,
+    decisive: DECISIVE,
+};
 /// Rivals within this log evidence can't be told apart: even odds and their usual scatter.
 const INDISTINGUISHABLE: f64 = 3.0;
 /// Rivals beyond this log evidence are not worth naming.
@@ -37,26 +42,47 @@ pub fn examine(frame: &StrainFrame, only: &[String]) -> Outcome {
             (Some(new), None) => new.set.is_empty(),
             _ => true,
         };
-        reference = found.iter().flat_map(|s| s.set.iter().copied().zip(s.fit.parameters.clone())).collect();
+        reference = found
+            .iter()
+            .flat_map(|s| s.set.iter().copied().zip(s.fit.parameters.clone()))
+            .collect();
         best = found;
         if stable {
             break;
         }
     }
-    let empty = Scored { set: Vec::new(), log_evidence: 0.0, fit: Fit::default() };
+    let empty = Scored {
+        set: Vec::new(),
+        log_evidence: 0.0,
+        fit: Fit::default(),
+    };
     let best = best.unwrap_or(empty);
     judge(frame, &candidates, &all, &best)
 }
 
 fn members_of<'a>(candidates: &'a [Candidate], scored: &'a Scored<Fit>) -> Vec<Member<'a>> {
     let pairs = scored.set.iter().zip(&scored.fit.parameters);
-    pairs.filter_map(|(&c, p)| candidates.get(c).map(|c| Member { effect: c.effect.as_ref(), parameters: p })).collect()
+    pairs
+        .filter_map(|(&c, p)| {
+            candidates.get(c).map(|c| Member {
+                effect: c.effect.as_ref(),
+                parameters: p,
+            })
+        })
+        .collect()
 }
 
-fn unknown_of(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) -> Vec<SizedAmplitudes> {
+fn unknown_of(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    scored: &Scored<Fit>,
+) -> Vec<SizedAmplitudes> {
     let sized = |(c, sizes): &(usize, Vec<f64>)| {
         let amplitudes = candidates.get(*c)?.effect.amplitudes(frame)?;
-        Some(SizedAmplitudes { amplitudes, sizes: sizes.clone() })
+        Some(SizedAmplitudes {
+            amplitudes,
+            sizes: sizes.clone(),
+        })
     };
     scored.fit.sizes.iter().filter_map(sized).collect()
 }
@@ -64,11 +90,18 @@ fn unknown_of(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit
 fn named(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) -> Vec<NamedEffect> {
     let mut out = Vec::new();
     for (m, &c) in scored.set.iter().enumerate() {
-        let Some(candidate) = candidates.get(c) else { continue };
+        let Some(candidate) = candidates.get(c) else {
+            continue;
+        };
         let effect = candidate.effect.as_ref();
         let parameters = scored.fit.parameters.get(m).cloned().unwrap_or_default();
         let described = effect.parameters();
-        let sizes = scored.fit.sizes.iter().find(|s| s.0 == c).map(|s| s.1.clone());
+        let sizes = scored
+            .fit
+            .sizes
+            .iter()
+            .find(|s| s.0 == c)
+            .map(|s| s.1.clone());
         let (size, sigma, unit, plausible) = match (effect.amplitudes(frame), sizes) {
             (Some(a), Some(sizes)) => {
                 // A size from n amplitudes is known to one part in the root of 2 n.
@@ -78,19 +111,39 @@ fn named(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) ->
                 (sizes, sigma, a.unit, plausible)
             }
             _ => {
-                let plausible = described.iter().zip(&parameters).all(|(p, v)| (v - p.neutral).abs() <= p.plausible);
+                let plausible = described
+                    .iter()
+                    .zip(&parameters)
+                    .all(|(p, v)| (v - p.neutral).abs() <= p.plausible);
                 let sigma = scored.fit.sigma.get(m).cloned().unwrap_or_default();
-                (parameters.clone(), sigma, described.first().map_or("1", |p| p.unit), plausible)
+                (
+                    parameters.clone(),
+                    sigma,
+                    described.first().map_or("1", |p| p.unit),
+                    plausible,
+                )
             }
         };
         let extension = effect.extension(frame, &parameters);
-        out.push(NamedEffect { id: full_id(effect), place: effect.place(), size, sigma, unit, plausible, extension });
+        out.push(NamedEffect {
+            id: full_id(effect),
+            place: effect.place(),
+            size,
+            sigma,
+            unit,
+            plausible,
+            extension,
+        });
     }
     out
 }
 
 fn worst_first(parts: &[Misfit], limit: f64) -> Vec<Misfit> {
-    let mut off: Vec<Misfit> = parts.iter().filter(|m| m.deviate > limit).cloned().collect();
+    let mut off: Vec<Misfit> = parts
+        .iter()
+        .filter(|m| m.deviate > limit)
+        .cloned()
+        .collect();
     off.sort_by(|a, b| b.deviate.total_cmp(&a.deviate));
     off
 }
@@ -110,23 +163,39 @@ mod limit {
 fn at_floor(a: &Adequacy) -> bool {
     let overall = a.fit <= limit::FIT || a.fit_deviate <= limit::DEVIATE;
     let held = a.held_out <= limit::HELD_OUT || a.held_out_deviate <= limit::DEVIATE;
-    let parts = a.gauges.iter().chain(&a.runs).all(|m| m.deviate <= limit::PART);
+    let parts = a
+        .gauges
+        .iter()
+        .chain(&a.runs)
+        .all(|m| m.deviate <= limit::PART);
     overall && held && parts
 }
 
-fn judge(frame: &StrainFrame, candidates: &[Candidate], all: &[Scored<Fit>], best: &Scored<Fit>) -> Outcome {
+fn judge(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    all: &[Scored<Fit>],
+    best: &Scored<Fit>,
+) -> Outcome {
     let members = members_of(candidates, best);
     let unknown = unknown_of(frame, candidates, best);
     let n_parameters: usize = best.fit.parameters.iter().map(Vec::len).sum();
     let before = adequacy(frame, &[], &[], 0);
-    let after = if best.set.is_empty() { before.clone() } else { adequacy(frame, &members, &unknown, n_parameters) };
+    let after = if best.set.is_empty() {
+        before.clone()
+    } else {
+        adequacy(frame, &members, &unknown, n_parameters)
+    };
     let attempt = named(frame, candidates, best);
     let (gap_now, channels) = gap(frame, &members, &unknown);
     let reached = at_floor(&after);
     let plausible = attempt.iter().all(|e| e.plausible);
     let null = all.iter().find(|s| s.set.is_empty());
     let null_evidence = null.map_or(0.0, |s| s.log_evidence);
-    let hint = all.iter().filter(|s| !s.set.is_empty()).max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence));
+    let hint = all
+        .iter()
+        .filter(|s| !s.set.is_empty())
+        .max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence));
     let hinted = hint.is_some_and(|s| s.log_evidence > null_evidence);
     let verdict = match (best.set.is_empty(), reached) {
         (true, true) if hinted => Verdict::BelowDetectability,
@@ -138,24 +207,45 @@ fn judge(frame: &StrainFrame, candidates: &[Candidate], all: &[Scored<Fit>], bes
     let rivals: Vec<Rival> = second
         .iter()
         .map(|s| Rival {
-            ids: s.set.iter().filter_map(|&c| candidates.get(c)).map(|c| full_id(c.effect.as_ref())).collect(),
+            ids: s
+                .set
+                .iter()
+                .filter_map(|&c| candidates.get(c))
+                .map(|c| full_id(c.effect.as_ref()))
+                .collect(),
             evidence_difference: best.log_evidence - s.log_evidence,
-            gap_after: gap(frame, &members_of(candidates, s), &unknown_of(frame, candidates, s)).0.after,
+            gap_after: gap(
+                frame,
+                &members_of(candidates, s),
+                &unknown_of(frame, candidates, s),
+            )
+            .0
+            .after,
             indistinguishable: best.log_evidence - s.log_evidence < INDISTINGUISHABLE,
         })
         .collect();
     let explanation = |s: &'_ Scored<Fit>| unknown_of(frame, candidates, s);
-    let first = Explanation { members: members_of(candidates, best), unknown: explanation(best) };
+    let first = Explanation {
+        members: members_of(candidates, best),
+        unknown: explanation(best),
+    };
     let next = match second.first().copied().or(hint) {
         Some(s) => {
-            let other = Explanation { members: members_of(candidates, s), unknown: explanation(s) };
+            let other = Explanation {
+                members: members_of(candidates, s),
+                unknown: explanation(s),
+            };
             next_measurement(frame, &first, &other)
         }
         None => "none needed".into(),
     };
     Outcome {
         verdict,
-        effects: if verdict == Verdict::Named { attempt.clone() } else { Vec::new() },
+        effects: if verdict == Verdict::Named {
+            attempt.clone()
+        } else {
+            Vec::new()
+        },
         best_attempt: attempt,
         rivals,
         evidence: best.log_evidence - null_evidence,

@@ -142,11 +142,21 @@ impl StrainFrame {
     pub fn rosette(&self, gauge: usize) -> Vec<usize> {
         /// Legs of a stacked or planar rosette lie within a few millimetres.
         const SAME_PLACE_M: f64 = 0.005;
-        let Some(here) = self.gauges.get(gauge).and_then(|g| g.position) else { return vec![gauge] };
-        let near = |p: [f64; 3]| p.iter().zip(&here).all(|(a, b)| (a - b).abs() < SAME_PLACE_M);
+        let Some(here) = self.gauges.get(gauge).and_then(|g| g.position) else {
+            return vec![gauge];
+        };
+        let near = |p: [f64; 3]| {
+            p.iter()
+                .zip(&here)
+                .all(|(a, b)| (a - b).abs() < SAME_PLACE_M)
+        };
         let wiring = self.gauges.get(gauge).map(|g| g.wiring);
         (0..self.gauges.len())
-            .filter(|&g| self.gauges.get(g).is_some_and(|f| Some(f.wiring) == wiring && f.position.is_some_and(near)))
+            .filter(|&g| {
+                self.gauges
+                    .get(g)
+                    .is_some_and(|f| Some(f.wiring) == wiring && f.position.is_some_and(near))
+            })
             .collect()
     }
 }

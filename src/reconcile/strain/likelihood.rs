@@ -43,11 +43,29 @@ const SIZE_STEP: f64 = 0.35;
 
 impl<'a> Likelihood<'a> {
     /// A likelihood over `runs` with the covariance of the prediction with `reference` (candidates with parameters) on.
-    pub fn new(frame: &'a StrainFrame, candidates: &'a [Candidate], runs: &[usize], reference: Vec<(usize, Vec<f64>)>) -> Self {
+    pub fn new(
+        frame: &'a StrainFrame,
+        candidates: &'a [Candidate],
+        runs: &[usize],
+        reference: Vec<(usize, Vec<f64>)>,
+    ) -> Self {
         let selection = Selection::of_runs(frame, runs);
         let readings = selection.pick(&frame.observations.values, frame.n_gauges());
-        let index = selection.0.iter().enumerate().map(|(i, &e)| (e, i)).collect();
-        Self { frame, candidates, selection, readings, reference, cache: BTreeMap::new(), index }
+        let index = selection
+            .0
+            .iter()
+            .enumerate()
+            .map(|(i, &e)| (e, i))
+            .collect();
+        Self {
+            frame,
+            candidates,
+            selection,
+            readings,
+            reference,
+            cache: BTreeMap::new(),
+            index,
+        }
     }
 
     /// The selection.
@@ -58,7 +76,10 @@ impl<'a> Likelihood<'a> {
     /// Members of `set` with `parameters`.
     pub fn members<'b>(&'b self, set: &[usize], parameters: &'b [Vec<f64>]) -> Vec<Member<'b>> {
         let member = |(&c, p): (&usize, &'b Vec<f64>)| {
-            self.candidates.get(c).map(|c| Member { effect: c.effect.as_ref(), parameters: p.as_slice() })
+            self.candidates.get(c).map(|c| Member {
+                effect: c.effect.as_ref(),
+                parameters: p.as_slice(),
+            })
         };
         set.iter().zip(parameters).filter_map(member).collect()
     }
@@ -67,13 +88,20 @@ impl<'a> Likelihood<'a> {
     pub fn residual(&self, set: &[usize], parameters: &[Vec<f64>]) -> Vec<f64> {
         let predicted = predict(self.frame, &self.members(set, parameters));
         let picked = self.selection.pick(&predicted, self.frame.n_gauges());
-        self.readings.iter().zip(picked).map(|(y, p)| y - p).collect()
+        self.readings
+            .iter()
+            .zip(picked)
+            .map(|(y, p)| y - p)
+            .collect()
     }
 
     /// Precision of the residual with amplitudes of these sizes unknown.
     pub fn precision(&mut self, sizes: &[(usize, Vec<f64>)]) -> Option<Rc<Precision>> {
         let rounded = |v: &f64| (v.max(f64::MIN_POSITIVE).ln() / SIZE_STEP).round() as i64;
-        let key: Vec<(usize, Vec<i64>)> = sizes.iter().map(|(c, s)| (*c, s.iter().map(rounded).collect())).collect();
+        let key: Vec<(usize, Vec<i64>)> = sizes
+            .iter()
+            .map(|(c, s)| (*c, s.iter().map(rounded).collect()))
+            .collect();
         if let Some(known) = self.cache.get(&key) {
             return known.clone();
         }
@@ -81,7 +109,10 @@ impl<'a> Likelihood<'a> {
         let mut unknown = Vec::new();
         for (c, ks) in &key {
             let amplitudes = self.candidates.get(*c)?.effect.amplitudes(self.frame)?;
-            unknown.push(SizedAmplitudes { amplitudes, sizes: ks.iter().map(unrounded).collect() });
+            unknown.push(SizedAmplitudes {
+                amplitudes,
+                sizes: ks.iter().map(unrounded).collect(),
+            });
         }
         let reference: Vec<usize> = self.reference.iter().map(|r| r.0).collect();
         let parameters: Vec<Vec<f64>> = self.reference.iter().map(|r| r.1.clone()).collect();
@@ -93,23 +124,41 @@ impl<'a> Likelihood<'a> {
     }
 
     fn parameters_of(&self, set: &[usize]) -> Vec<Vec<Parameter>> {
-        set.iter().map(|&c| self.candidates.get(c).map(|c| c.effect.parameters()).unwrap_or_default()).collect()
+        set.iter()
+            .map(|&c| {
+                self.candidates
+                    .get(c)
+                    .map(|c| c.effect.parameters())
+                    .unwrap_or_default()
+            })
+            .collect()
     }
 
     /// Parameters of `set` that maximise the posterior, by Gauss-Newton from `start` with step halving.
-    fn optimise(&self, set: &[usize], start: Vec<Vec<f64>>, precision: &Precision) -> Option<Optimum> {
+    fn optimise(
+        &self,
+        set: &[usize],
+        start: Vec<Vec<f64>>,
+        precision: &Precision,
+    ) -> Option<Optimum> {
         /// Steps: a quadratic objective needs two.
         const STEPS: usize = 12;
         /// Gain of log posterior below which the optimum is reached.
         const SETTLED: f64 = 1e-6;
         let described = self.parameters_of(set);
-        let flat: Vec<(usize, usize, &Parameter)> =
-            described.iter().enumerate().flat_map(|(m, ps)| ps.iter().enumerate().map(move |(k, p)| (m, k, p))).collect();
+        let flat: Vec<(usize, usize, &Parameter)> = described
+            .iter()
+            .enumerate()
+            .flat_map(|(m, ps)| ps.iter().enumerate().map(move |(k, p)| (m, k, p)))
+            .collect();
         let objective = |theta: &[Vec<f64>]| {
             let r = self.residual(set, theta);
             let pr = precision.apply(&r);
             let fit: f64 = r.iter().zip(&pr).map(|(a, b)| a * b).sum();
-            let prior: f64 = flat.iter().map(|&(m, k, p)| ((theta[m][k] - p.neutral) / p.prior_sd).powi(2)).sum();
+            let prior: f64 = flat
+                .iter()
+                .map(|&(m, k, p)| ((theta[m][k] - p.neutral) / p.prior_sd).powi(2))
+                .sum();
             (0.5 * (fit + prior), fit, r, pr)
         };
         let mut theta = start;
@@ -123,7 +172,12 @@ impl<'a> Likelihood<'a> {
                 let mut moved = theta.clone();
                 moved[m][k] += p.step;
                 let rm = self.residual(set, &moved);
-                columns.push(r.iter().zip(&rm).map(|(a, b)| (a - b) / p.step).collect::<Vec<f64>>());
+                columns.push(
+                    r.iter()
+                        .zip(&rm)
+                        .map(|(a, b)| (a - b) / p.step)
+                        .collect::<Vec<f64>>(),
+                );
             }
             let weighted: Vec<Vec<f64>> = columns.iter().map(|c| precision.apply(c)).collect();
             hessian = vec![0.0; n * n];
@@ -159,7 +213,13 @@ impl<'a> Likelihood<'a> {
                 break;
             }
         }
-        Some(Optimum { theta, value, chi2, residual: r, hessian })
+        Some(Optimum {
+            theta,
+            value,
+            chi2,
+            residual: r,
+            hessian,
+        })
     }
 
     /// Every combination of the starts of the members' parameters, at most a dozen.
@@ -169,26 +229,53 @@ impl<'a> Likelihood<'a> {
         for parameters in self.parameters_of(set) {
             let mut here: Vec<Vec<f64>> = vec![Vec::new()];
             for p in &parameters {
-                here = here.iter().flat_map(|h| p.starts.iter().map(move |s| [h.as_slice(), &[*s]].concat())).collect();
+                here = here
+                    .iter()
+                    .flat_map(|h| p.starts.iter().map(move |s| [h.as_slice(), &[*s]].concat()))
+                    .collect();
             }
-            out = out.iter().flat_map(|o| here.iter().map(move |h| [o.as_slice(), std::slice::from_ref(h)].concat())).collect();
+            out = out
+                .iter()
+                .flat_map(|o| {
+                    here.iter()
+                        .map(move |h| [o.as_slice(), std::slice::from_ref(h)].concat())
+                })
+                .collect();
             out.truncate(MOST);
         }
         out
     }
 
     fn best_of_starts(&self, set: &[usize], precision: &Precision) -> Option<Optimum> {
-        let found = self.starts(set).into_iter().filter_map(|s| self.optimise(set, s, precision));
+        let found = self
+            .starts(set)
+            .into_iter()
+            .filter_map(|s| self.optimise(set, s, precision));
         found.min_by(|a, b| a.value.total_cmp(&b.value))
     }
 
     fn with_amplitudes(&self, set: &[usize]) -> Vec<usize> {
-        set.iter().copied().filter(|&c| self.candidates.get(c).is_some_and(|c| c.effect.amplitudes(self.frame).is_some())).collect()
+        set.iter()
+            .copied()
+            .filter(|&c| {
+                self.candidates
+                    .get(c)
+                    .is_some_and(|c| c.effect.amplitudes(self.frame).is_some())
+            })
+            .collect()
     }
 
     /// Usual sizes of the amplitudes of the members that have some, refined by what `residual` shows.
-    fn sizes_from(&self, families: &[usize], members: &[Member<'_>], residual: &[f64]) -> Vec<(usize, Vec<f64>)> {
-        let list: Vec<_> = families.iter().filter_map(|&c| self.candidates.get(c)?.effect.amplitudes(self.frame)).collect();
+    fn sizes_from(
+        &self,
+        families: &[usize],
+        members: &[Member<'_>],
+        residual: &[f64],
+    ) -> Vec<(usize, Vec<f64>)> {
+        let list: Vec<_> = families
+            .iter()
+            .filter_map(|&c| self.candidates.get(c)?.effect.amplitudes(self.frame))
+            .collect();
         let read: Vec<_> = list
             .into_iter()
             .map(|mut a| {
@@ -198,7 +285,13 @@ impl<'a> Likelihood<'a> {
             .collect();
         let reference: Vec<usize> = self.reference.iter().map(|r| r.0).collect();
         let parameters: Vec<Vec<f64>> = self.reference.iter().map(|r| r.1.clone()).collect();
-        let sizes = usual_sizes(self.frame, &self.members(&reference, &parameters), &self.selection, residual, &read);
+        let sizes = usual_sizes(
+            self.frame,
+            &self.members(&reference, &parameters),
+            &self.selection,
+            residual,
+            &read,
+        );
         families.iter().copied().zip(sizes).collect()
     }
 }
@@ -218,7 +311,10 @@ impl Scorer for Likelihood<'_> {
         let families = self.with_amplitudes(set);
         let mut sizes: Vec<(usize, Vec<f64>)> = Vec::new();
         for &c in &families {
-            sizes.push((c, self.candidates.get(c)?.effect.amplitudes(self.frame)?.usual));
+            sizes.push((
+                c,
+                self.candidates.get(c)?.effect.amplitudes(self.frame)?.usual,
+            ));
         }
         let mut precision = self.precision(&sizes)?;
         let mut best = self.best_of_starts(set, &precision)?;
@@ -243,25 +339,49 @@ impl Scorer for Likelihood<'_> {
                 }
             }
         }
-        let runs = self.selection.0.iter().map(|e| e.0).collect::<std::collections::BTreeSet<_>>().len();
+        let runs = self
+            .selection
+            .0
+            .iter()
+            .map(|e| e.0)
+            .collect::<std::collections::BTreeSet<_>>()
+            .len();
         for (_, s) in &sizes {
             // Each size is a parameter, known to a factor from as many runs.
             log_evidence -= 0.5 * (runs.max(1) as f64).ln() * s.len() as f64;
         }
-        log_evidence += set.iter().filter_map(|&c| self.candidates.get(c)).map(|c| c.log_prior).sum::<f64>();
-        let fit = Fit { parameters: best.theta, sigma, sizes, residual: best.residual, chi2: best.chi2 };
-        Some(Scored { set: set.to_vec(), log_evidence, fit })
+        log_evidence += set
+            .iter()
+            .filter_map(|&c| self.candidates.get(c))
+            .map(|c| c.log_prior)
+            .sum::<f64>();
+        let fit = Fit {
+            parameters: best.theta,
+            sigma,
+            sizes,
+            residual: best.residual,
+            chi2: best.chi2,
+        };
+        Some(Scored {
+            set: set.to_vec(),
+            log_evidence,
+            fit,
+        })
     }
 
     fn screen(&mut self, base: &Scored<Fit>) -> Vec<(usize, f64)> {
-        let Some(precision) = self.precision(&base.fit.sizes) else { return Vec::new() };
+        let Some(precision) = self.precision(&base.fit.sizes) else {
+            return Vec::new();
+        };
         let pr = precision.apply(&base.fit.residual);
         let mut out = Vec::new();
         for c in 0..self.candidates.len() {
             if base.set.contains(&c) {
                 continue;
             }
-            let Some(candidate) = self.candidates.get(c) else { continue };
+            let Some(candidate) = self.candidates.get(c) else {
+                continue;
+            };
             let gain = match candidate.effect.amplitudes(self.frame) {
                 Some(_) => self.screen_amplitudes(c, base),
                 None => self.screen_parameters(c, base, &precision, &pr),
@@ -274,7 +394,9 @@ impl Scorer for Likelihood<'_> {
     }
 
     fn compatible(&self, a: usize, b: usize) -> bool {
-        let (Some(a), Some(b)) = (self.candidates.get(a), self.candidates.get(b)) else { return false };
+        let (Some(a), Some(b)) = (self.candidates.get(a), self.candidates.get(b)) else {
+            return false;
+        };
         let (a, b) = (&a.effect, &b.effect);
         if full_id(a.as_ref()) == full_id(b.as_ref()) {
             return false;
@@ -287,7 +409,9 @@ impl Scorer for Likelihood<'_> {
     }
 
     fn kin(&self, candidate: usize) -> usize {
-        let Some(c) = self.candidates.get(candidate) else { return usize::MAX };
+        let Some(c) = self.candidates.get(candidate) else {
+            return usize::MAX;
+        };
         match c.effect.gauges().as_slice() {
             [one] => *one,
             _ => self.frame.n_gauges() + candidate,
@@ -304,16 +428,27 @@ impl Likelihood<'_> {
         parameters.push(theta.to_vec());
         let predicted = predict(self.frame, &self.members(&set, &parameters));
         let n_g = self.frame.n_gauges();
-        let gauges = self.candidates.get(c).map(|c| c.effect.gauges()).unwrap_or_default();
+        let gauges = self
+            .candidates
+            .get(c)
+            .map(|c| c.effect.gauges())
+            .unwrap_or_default();
         let difference = |i: usize, (r, g): (usize, usize)| {
             let now = predicted.get(r * n_g + g).copied().unwrap_or(f64::NAN);
             let before = self.readings[i] - base.fit.residual[i];
             (i, now - before)
         };
         if gauges.is_empty() {
-            return self.selection.0.iter().enumerate().map(|(i, &e)| difference(i, e)).collect();
+            return self
+                .selection
+                .0
+                .iter()
+                .enumerate()
+                .map(|(i, &e)| difference(i, e))
+                .collect();
         }
-        let runs: std::collections::BTreeSet<usize> = self.selection.0.iter().map(|e| e.0).collect();
+        let runs: std::collections::BTreeSet<usize> =
+            self.selection.0.iter().map(|e| e.0).collect();
         let mut out = Vec::new();
         for r in runs {
             for &g in &gauges {
@@ -326,8 +461,16 @@ impl Likelihood<'_> {
     }
 
     /// Approximate gain of log evidence by adding candidate `c`: one Newton step per parameter from each start, then exact.
-    fn screen_parameters(&self, c: usize, base: &Scored<Fit>, precision: &Precision, pr: &[f64]) -> f64 {
-        let Some(candidate) = self.candidates.get(c) else { return f64::NEG_INFINITY };
+    fn screen_parameters(
+        &self,
+        c: usize,
+        base: &Scored<Fit>,
+        precision: &Precision,
+        pr: &[f64],
+    ) -> f64 {
+        let Some(candidate) = self.candidates.get(c) else {
+            return f64::NEG_INFINITY;
+        };
         let described = candidate.effect.parameters();
         let gain = |change: &[(usize, f64)]| {
             let along: f64 = change.iter().map(|&(i, v)| v * pr[i]).sum();
@@ -339,7 +482,11 @@ impl Likelihood<'_> {
         let mut best = f64::NEG_INFINITY;
         let starts: Vec<Vec<f64>> = match described.as_slice() {
             [one] => one.starts.iter().map(|s| vec![*s]).collect(),
-            many => vec![many.iter().map(|p| p.starts.first().copied().unwrap_or(p.neutral)).collect()],
+            many => vec![
+                many.iter()
+                    .map(|p| p.starts.first().copied().unwrap_or(p.neutral))
+                    .collect(),
+            ],
         };
         for mut theta in starts {
             let mut log_width = 0.0;
@@ -351,9 +498,14 @@ impl Likelihood<'_> {
                     let mut moved = theta.clone();
                     moved[k] += p.step;
                     let there = self.change(c, base, &moved);
-                    let slope: Vec<(usize, f64)> = here.iter().zip(&there).map(|(a, b)| (a.0, (b.1 - a.1) / p.step)).collect();
+                    let slope: Vec<(usize, f64)> = here
+                        .iter()
+                        .zip(&there)
+                        .map(|(a, b)| (a.0, (b.1 - a.1) / p.step))
+                        .collect();
                     let p_slope = precision_times(precision, &slope);
-                    let curvature: f64 = slope.iter().map(|&(i, v)| v * p_slope[i]).sum::<f64>() + 1.0 / (p.prior_sd * p.prior_sd);
+                    let curvature: f64 = slope.iter().map(|&(i, v)| v * p_slope[i]).sum::<f64>()
+                        + 1.0 / (p.prior_sd * p.prior_sd);
                     let pull: f64 = slope.iter().map(|&(i, v)| v * pr[i]).sum::<f64>()
                         - here.iter().map(|&(i, v)| v * p_slope[i]).sum::<f64>()
                         - (theta[k] - p.neutral) / (p.prior_sd * p.prior_sd);
@@ -361,7 +513,11 @@ impl Likelihood<'_> {
                     log_width += 0.5 * curvature.ln() + p.prior_sd.ln();
                 }
             }
-            let prior: f64 = described.iter().zip(&theta).map(|(p, t)| 0.5 * ((t - p.neutral) / p.prior_sd).powi(2)).sum();
+            let prior: f64 = described
+                .iter()
+                .zip(&theta)
+                .map(|(p, t)| 0.5 * ((t - p.neutral) / p.prior_sd).powi(2))
+                .sum();
             best = best.max(gain(&self.change(c, base, &theta)) - prior - log_width);
         }
         best
@@ -377,12 +533,21 @@ impl Likelihood<'_> {
     }
 
     fn run_by_run(&self, families: &[usize], members: &[Member<'_>], base: &Scored<Fit>) -> f64 {
-        let list: Vec<_> = families.iter().filter_map(|&c| self.candidates.get(c)?.effect.amplitudes(self.frame)).collect();
+        let list: Vec<_> = families
+            .iter()
+            .filter_map(|&c| self.candidates.get(c)?.effect.amplitudes(self.frame))
+            .collect();
         let sized = self.sizes_from(families, members, &base.fit.residual);
         let reference: Vec<usize> = self.reference.iter().map(|r| r.0).collect();
         let parameters: Vec<Vec<f64>> = self.reference.iter().map(|r| r.1.clone()).collect();
-        let unknown: Vec<SizedAmplitudes> =
-            list.into_iter().zip(&sized).map(|(amplitudes, s)| SizedAmplitudes { amplitudes, sizes: s.1.clone() }).collect();
+        let unknown: Vec<SizedAmplitudes> = list
+            .into_iter()
+            .zip(&sized)
+            .map(|(amplitudes, s)| SizedAmplitudes {
+                amplitudes,
+                sizes: s.1.clone(),
+            })
+            .collect();
         super::size::run_by_run_log_likelihood(
             self.frame,
             &self.members(&reference, &parameters),

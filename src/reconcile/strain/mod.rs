@@ -17,7 +17,8 @@ pub use covariance::{Selection, SizedAmplitudes, covariance, read_patterns};
 pub use detect::DECISIVE;
 pub use examine::examine;
 pub use frame::{
-    GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, PayloadWeight, PlaneStrainRow, StiffnessSignature, StrainFrame, WheelForces, Wiring,
+    GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, PayloadWeight, PlaneStrainRow,
+    StiffnessSignature, StrainFrame, WheelForces, Wiring,
 };
 pub use gap::{gap, held_out_residual, loads_before_after};
 pub use likelihood::{Fit, Likelihood};

@@ -31,9 +31,16 @@ fn designs(frame: &StrainFrame) -> Vec<Design> {
     let Some(heaviest) = heaviest else { return out };
     let loads = frame.loads[heaviest * n_l..(heaviest + 1) * n_l].to_vec();
     let payload = frame.payload.get(heaviest).copied().unwrap_or([0.0; 2]);
-    out.push(Design { words: "the empty truck again".into(), loads: vec![0.0; n_l], payload: [0.0, payload[1]] });
     out.push(Design {
-        words: format!("twice the payload of the heaviest run ({:.0} kg) at the same place", 2.0 * payload[0]),
+        words: "the empty truck again".into(),
+        loads: vec![0.0; n_l],
+        payload: [0.0, payload[1]],
+    });
+    out.push(Design {
+        words: format!(
+            "twice the payload of the heaviest run ({:.0} kg) at the same place",
+            2.0 * payload[0]
+        ),
         loads: loads.iter().map(|f| 2.0 * f).collect(),
         payload: [2.0 * payload[0], payload[1]],
     });
@@ -42,18 +49,28 @@ fn designs(frame: &StrainFrame) -> Vec<Design> {
     for (l, name) in frame.load_names.iter().enumerate() {
         let mut jacked = vec![0.0; n_l];
         jacked[l] = JACK_KN;
-        out.push(Design { words: format!("the empty truck with {name} raised by {JACK_KN:.0} kN on a jack"), loads: jacked, payload: [0.0, payload[1]] });
+        out.push(Design {
+            words: format!("the empty truck with {name} raised by {JACK_KN:.0} kN on a jack"),
+            loads: jacked,
+            payload: [0.0, payload[1]],
+        });
     }
     out
 }
 
 /// An instruction; quantified where a run with other loads does it, else the first effect's own test.
-pub fn next_measurement(frame: &StrainFrame, first: &Explanation<'_>, second: &Explanation<'_>) -> String {
+pub fn next_measurement(
+    frame: &StrainFrame,
+    first: &Explanation<'_>,
+    second: &Explanation<'_>,
+) -> String {
     /// Expected difference of log evidence from one run that is worth a run.
     const WORTH: f64 = 5.0;
     let own = || {
         let say = |e: &Explanation<'_>| e.members.first().map(|m| m.effect.separate_by(frame));
-        say(first).or_else(|| say(second)).unwrap_or_else(|| "none needed".into())
+        say(first)
+            .or_else(|| say(second))
+            .unwrap_or_else(|| "none needed".into())
     };
     let mut best: Option<(f64, String)> = None;
     for design in designs(frame) {
@@ -68,17 +85,31 @@ pub fn next_measurement(frame: &StrainFrame, first: &Explanation<'_>, second: &E
         let b = predict(&trial, &second.members);
         let difference: Vec<f64> = a.iter().zip(&b).map(|(x, y)| x - y).collect();
         let power = |e: &Explanation<'_>| {
-            let p = Precision::of(&covariance(&trial, &e.members, &selection, &e.unknown), selection.len())?;
-            Some(0.5 * p.apply(&difference).iter().zip(&difference).map(|(x, y)| x * y).sum::<f64>())
+            let p = Precision::of(
+                &covariance(&trial, &e.members, &selection, &e.unknown),
+                selection.len(),
+            )?;
+            Some(
+                0.5 * p
+                    .apply(&difference)
+                    .iter()
+                    .zip(&difference)
+                    .map(|(x, y)| x * y)
+                    .sum::<f64>(),
+            )
         };
-        let worth = power(first).unwrap_or(0.0).min(power(second).unwrap_or(0.0));
+        let worth = power(first)
+            .unwrap_or(0.0)
+            .min(power(second).unwrap_or(0.0));
         if worth > WORTH && best.as_ref().is_none_or(|b| worth > b.0) {
             best = Some((worth, design.words));
         }
     }
     match best {
-        Some((worth, words)) => format!("{words} (expected difference of log evidence: {worth:.0}); or {}", own()),
+        Some((worth, words)) => format!(
+            "{words} (expected difference of log evidence: {worth:.0}); or {}",
+            own()
+        ),
         None => own(),
     }
 }
-

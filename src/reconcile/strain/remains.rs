@@ -13,11 +13,19 @@ pub fn remains(frame: &StrainFrame, members: &[Member<'_>], after: &Adequacy) ->
     let list = |parts: &[Misfit]| {
         let mut sorted: Vec<&Misfit> = parts.iter().filter(|m| m.deviate > 3.0).collect();
         sorted.sort_by(|a, b| b.deviate.total_cmp(&a.deviate));
-        sorted.iter().take(4).map(|m| format!("{} (reduced chi-square {:.1})", m.name, m.reduced_chi2)).collect::<Vec<_>>().join(", ")
+        sorted
+            .iter()
+            .take(4)
+            .map(|m| format!("{} (reduced chi-square {:.1})", m.name, m.reduced_chi2))
+            .collect::<Vec<_>>()
+            .join(", ")
     };
     let (gauges, runs) = (list(&after.gauges), list(&after.runs));
     if gauges.is_empty() && runs.is_empty() {
-        return format!("nothing above the floor at any gauge or in any run (reduced chi-square {:.2})", after.fit);
+        return format!(
+            "nothing above the floor at any gauge or in any run (reduced chi-square {:.2})",
+            after.fit
+        );
     }
     let mut out = format!("reduced chi-square {:.2} over all", after.fit);
     if !gauges.is_empty() {
@@ -36,7 +44,10 @@ pub fn remains(frame: &StrainFrame, members: &[Member<'_>], after: &Adequacy) ->
             let s = Selection::of_runs(frame, &[r]);
             let p = s.pick(&predicted, n_g);
             let y = s.pick(&frame.observations.values, n_g);
-            (rms(p.iter().copied()), rms(y.iter().zip(&p).map(|(a, b)| a - b)))
+            (
+                rms(p.iter().copied()),
+                rms(y.iter().zip(&p).map(|(a, b)| a - b)),
+            )
         })
         .collect();
     match correlation(&points) {
@@ -49,7 +60,10 @@ pub fn remains(frame: &StrainFrame, members: &[Member<'_>], after: &Adequacy) ->
 /// Pearson's correlation; `None` for constant data.
 fn correlation(points: &[(f64, f64)]) -> Option<f64> {
     let n = points.len() as f64;
-    let (mx, my) = (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);
+    let (mx, my) = (
+        points.iter().map(|p| p.0).sum::<f64>() / n,
+        points.iter().map(|p| p.1).sum::<f64>() / n,
+    );
     let sxy: f64 = points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum();
     let sxx: f64 = points.iter().map(|p| (p.0 - mx).powi(2)).sum();
     let syy: f64 = points.iter().map(|p| (p.1 - my).powi(2)).sum();

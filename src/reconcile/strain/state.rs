@@ -19,7 +19,12 @@ pub struct StrainState {
 impl StrainState {
     /// The analyst's own model.
     pub fn nominal(frame: &StrainFrame) -> Self {
-        let (n_g, n_r, n_c, n_l) = (frame.n_gauges(), frame.n_runs(), frame.n_columns(), frame.n_loads());
+        let (n_g, n_r, n_c, n_l) = (
+            frame.n_gauges(),
+            frame.n_runs(),
+            frame.n_columns(),
+            frame.n_loads(),
+        );
         let mut state = Self {
             influence: frame.influence.clone(),
             columns: vec![0.0; n_r * n_c],
@@ -55,7 +60,10 @@ impl StrainState {
             let [mass, x] = frame.payload.get(run).copied().unwrap_or([0.0; 2]);
             let first = run * n_c + frame.n_loads();
             let terms = [1.0, x + dx, dy, (x + dx) * dy];
-            for (cell, t) in self.columns[first..first + terms.len()].iter_mut().zip(terms) {
+            for (cell, t) in self.columns[first..first + terms.len()]
+                .iter_mut()
+                .zip(terms)
+            {
                 *cell = mass * t;
             }
         }
@@ -67,7 +75,9 @@ impl StrainState {
         let acts = &self.columns[run * n_c..(run + 1) * n_c];
         let extra = &self.extra[run * n_g..(run + 1) * n_g];
         let rows = self.influence.chunks_exact(n_c);
-        rows.zip(extra).map(|(row, e)| e + row.iter().zip(acts).map(|(a, f)| a * f).sum::<f64>()).collect()
+        rows.zip(extra)
+            .map(|(row, e)| e + row.iter().zip(acts).map(|(a, f)| a * f).sum::<f64>())
+            .collect()
     }
 }
 
@@ -81,8 +91,17 @@ pub enum Part {
 }
 
 /// What the gauges read of `strain` (one row of gauges in `run`) with the reading effects of `members`.
-pub fn read_all(frame: &StrainFrame, members: &[Member<'_>], run: usize, strain: &mut [f64], part: Part) {
-    for m in members.iter().filter(|m| m.effect.stage() == Stage::Reading) {
+pub fn read_all(
+    frame: &StrainFrame,
+    members: &[Member<'_>],
+    run: usize,
+    strain: &mut [f64],
+    part: Part,
+) {
+    for m in members
+        .iter()
+        .filter(|m| m.effect.stage() == Stage::Reading)
+    {
         m.effect.read(frame, m.parameters, run, strain, part);
     }
 }
