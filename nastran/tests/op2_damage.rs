@@ -1,0 +1,194 @@
+//! Damaged OP2 files: every truncation and thousands of seeded mutations give an error or a partial answer, never a panic.
+
+use nastran::op2::Op2;
+use std::path::PathBuf;
+
+const SHARED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/nastran");
+
+/// Files of the shared set up to a size, smallest first.
+fn files(largest: u64) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut found = Vec::new();
+    for folder in std::fs::read_dir(SHARED).into_iter().flatten().flatten() {
+        for file in std::fs::read_dir(folder.path())
+            .into_iter()
+            .flatten()
+            .flatten()
+        {
+            let path = file.path();
+            if path.extension().is_some_and(|e| e == "op2")
+                && file.metadata().is_ok_and(|m| m.len() <= largest)
+            {
+                found.push((path.clone(), std::fs::read(&path).unwrap()));
+            }
+        }
+    }
+    if found.is_empty() {
+        eprintln!("skipped: {SHARED} is not here");
+    }
+    found.sort_by_key(|(path, bytes)| (bytes.len(), path.clone()));
+    found
+}
+
+/// Reads everything a file holds; the number of rows that came out.
+fn read_all(bytes: &[u8]) -> usize {
+    let Ok(op2) = Op2::read(bytes) else { return 0 };
+    let rows = (0..op2.blocks.len())
+        .filter_map(|b| op2.rows(b).ok())
+        .map(|r| r.len())
+        .sum();
+    let (cards, _) = op2.cards();
+    let _ = op2.grid_point_weight();
+    let n: usize = rows;
+    n.saturating_add(cards.grids.len())
+}
+
+/// A small generator, the same everywhere (xorshift; Marsaglia 2003).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        (self.next() % n.max(1) as u64) as usize
+    }
+}
+
+/// Ends of the physical records, in the word order of the file.
+fn record_ends(bytes: &[u8]) -> Vec<usize> {
+    let little = matches!(u32::from_le_bytes(bytes[..4].try_into().unwrap()), 4 | 8);
+    let (mut at, mut ends) = (0, Vec::new());
+    while at + 8 <= bytes.len() {
+        let mark = bytes[at..at + 4].try_into().unwrap();
+        at += 8 + if little {
+            u32::from_le_bytes(mark)
+        } else {
+            u32::from_be_bytes(mark)
+        } as usize;
+        ends.push(at);
+    }
+    ends
+}
+
+#[test]
+fn a_file_cut_after_any_record_or_within_one_is_read_as_far_as_it_goes() {
+    for (path, bytes) in files(120_000) {
+        let whole = read_all(&bytes);
+        for end in record_ends(&bytes) {
+            for cut in [end, end.saturating_sub(3), end.saturating_sub(9)] {
+                let rows = read_all(&bytes[..cut.min(bytes.len())]);
+                assert!(
+                    rows <= whole,
+                    "{}: cut at {cut} gives more than the whole file",
+                    path.display()
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_large_file_cut_after_any_record_keeps_the_blocks_before_it() {
+    for (path, bytes) in files(20_000_000) {
+        let whole = Op2::read(&bytes).unwrap().blocks.len();
+        let ends = record_ends(&bytes);
+        let (step, mut before) = (ends.len() / 100 + 1, 0);
+        for end in ends.into_iter().step_by(step) {
+            let Ok(op2) = Op2::read(&bytes[..end]) else {
+                continue;
+            };
+            let n = op2.blocks.len();
+            assert!(
+                n >= before && n <= whole,
+                "{}: {n} blocks at {end}",
+                path.display()
+            );
+            before = n;
+            if let Some(last) = n.checked_sub(1) {
+                let _ = op2.rows(last);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_cut_file_says_so() {
+    for (path, bytes) in files(120_000) {
+        let op2 = Op2::read(&bytes).unwrap();
+        assert!(!op2.truncated, "{}", path.display());
+        let middle = record_ends(&bytes)[record_ends(&bytes).len() / 2];
+        if let Ok(op2) = Op2::read(&bytes[..middle]) {
+            assert!(
+                op2.truncated
+                    && op2
+                        .notes
+                        .iter()
+                        .any(|n| n.message.contains("the file ends")),
+                "{}: {:?}",
+                path.display(),
+                op2.notes
+            );
+        }
+    }
+}
+
+#[test]
+fn six_thousand_mutations_end_in_an_error_or_a_partial_answer() {
+    let files = files(60_000);
+    if files.is_empty() {
+        return;
+    }
+    let mut random = Random(0x0002_2026);
+    for i in 0..6_000 {
+        let (_, original) = &files[i % files.len()];
+        let mut bytes = original.clone();
+        for _ in 0..=random.below(6) {
+            mutate(&mut bytes, &mut random);
+        }
+        read_all(&bytes);
+    }
+}
+
+/// One change: a byte, a word set to a number that hurts, a piece taken out, doubled or moved.
+fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
+    const WORDS: [u32; 10] = [
+        0,
+        1,
+        2,
+        4,
+        8,
+        0x7fff_ffff,
+        0x8000_0000,
+        0xffff_ffff,
+        0xffff_fffe,
+        584,
+    ];
+    let n = bytes.len();
+    if n < 16 {
+        return;
+    }
+    let at = random.below(n - 8);
+    let len = random.below(64.min(n - at));
+    match random.below(6) {
+        0 | 1 => bytes[at] ^= 1 << random.below(8),
+        2 | 3 => {
+            let word = WORDS[random.below(WORDS.len())];
+            let at = at / 4 * 4;
+            bytes[at..at + 4].copy_from_slice(&if random.below(2) == 0 {
+                word.to_le_bytes()
+            } else {
+                word.to_be_bytes()
+            });
+        }
+        4 => drop(bytes.drain(at..at + len)),
+        _ => {
+            let piece = bytes[at..at + len].to_vec();
+            let to = random.below(n);
+            bytes.splice(to..to, piece);
+        }
+    }
+}
