@@ -8,6 +8,8 @@
 //! - [`ident`] identification records; [`index`] result blocks; [`rows`] layouts of the rows and their decoding;
 //! - [`weight`] grid point weight; [`geom`] cards out of the geometry blocks.
 //!
+//! [`Op2Writer`] writes result tables, a block at a time.
+//!
 //! # Reference
 //!
 //! MSC Nastran DMAP programmer's guide, data blocks OUG, OQG, OPG, OES, OEF, OGPFB, OGPWG and module OUTPUT2; NX Nastran DMAP
@@ -23,8 +25,10 @@ mod index;
 mod rows;
 mod weight;
 mod words;
+mod write;
 
 pub use container::{TableEntry, TableKind};
 pub use error::{Op2Error, Unsupported};
 pub use file::{Op2, Solver};
 pub use words::ByteOrder;
+pub use write::{Op2Writer, WriteError, write_blocks};

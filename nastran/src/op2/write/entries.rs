@@ -1,0 +1,147 @@
+//! Rows into the words of entries: the inverse of decoding.
+
+use super::error::WriteError;
+use crate::op2::rows::{Layout, Shape};
+use crate::results::{Block, RowId, Rows};
+
+/// Stations a beam has in the file.
+const BEAM_STATIONS: usize = 11;
+
+/// The words of all entries of a block.
+pub(super) fn entries(block: &Block, rows: &Rows, layout: Layout) -> Result<Vec<u8>, WriteError> {
+    if rows.columns.len() != layout.columns.len() {
+        return Err(WriteError::Columns {
+            found: rows.columns.len(),
+            expected: layout.columns.len(),
+        });
+    }
+    let mut out = Vec::with_capacity(rows.values.len().saturating_mul(5));
+    let mut at = 0;
+    while at < rows.len() {
+        let n = rows_of_entry(block, rows, layout, at)?;
+        let ids = rows.ids.get(at..at.saturating_add(n)).unwrap_or(&[]);
+        let row = |i: usize| rows.row(at.saturating_add(i));
+        push_entry(&mut out, layout, ids, row)?;
+        at = at.saturating_add(n);
+    }
+    Ok(out)
+}
+
+/// Rows from `at` on that make one entry.
+fn rows_of_entry(
+    block: &Block,
+    rows: &Rows,
+    layout: Layout,
+    at: usize,
+) -> Result<usize, WriteError> {
+    let entity = rows.ids.get(at).map_or(0, |id| id.entity);
+    let same = rows
+        .ids
+        .iter()
+        .skip(at)
+        .take_while(|id| id.entity == entity)
+        .count();
+    let expected = match layout.shape {
+        Shape::Nodal | Shape::Plain | Shape::Stations | Shape::Ply => return Ok(1),
+        Shape::Beam => same.clamp(2, BEAM_STATIONS),
+        Shape::ShellCentre => 2,
+        Shape::ShellCorners => layout.wide.saturating_sub(2) / 17 * 2,
+        Shape::ForceCorners => layout.wide.saturating_sub(2) / 9,
+        Shape::Solid | Shape::GridPoint => {
+            return Err(WriteError::Unsupported {
+                quantity: block.quantity,
+                element: block.element,
+            });
+        }
+    };
+    if same < expected || (layout.shape == Shape::Beam && same > BEAM_STATIONS) {
+        return Err(WriteError::Rows {
+            quantity: block.quantity,
+            entity,
+            found: same,
+            expected,
+        });
+    }
+    Ok(expected)
+}
+
+fn push_entry<'r>(
+    out: &mut Vec<u8>,
+    layout: Layout,
+    ids: &[RowId],
+    row: impl Fn(usize) -> &'r [f64],
+) -> Result<(), WriteError> {
+    let Some(first) = ids.first() else {
+        return Ok(());
+    };
+    let word = i32::try_from(first.entity)
+        .ok()
+        .and_then(|id| id.checked_mul(10)?.checked_add(1))
+        .ok_or(WriteError::Id(first.entity))?;
+    int(out, word)?;
+    match layout.shape {
+        Shape::Nodal => {
+            int(out, first.at.max(1))?;
+            reals(out, row(0));
+        }
+        Shape::Ply => {
+            int(out, first.layer)?;
+            reals(out, row(0));
+        }
+        Shape::ShellCorners | Shape::ForceCorners => {
+            let layers = if layout.shape == Shape::ShellCorners {
+                2
+            } else {
+                1
+            };
+            let corners = (ids.len() / layers).saturating_sub(1);
+            out.extend_from_slice(b"CEN/");
+            for (i, id) in ids.iter().enumerate() {
+                if i == 0 {
+                    int(out, corners)?;
+                } else if i.is_multiple_of(layers) {
+                    int(out, id.at)?;
+                }
+                reals(out, row(i));
+            }
+        }
+        Shape::Beam => {
+            // end A stands first and end B last, the stations between them follow end A
+            let last = ids.len().saturating_sub(1);
+            for slot in 0..BEAM_STATIONS {
+                let i = if slot.saturating_add(1) == BEAM_STATIONS {
+                    last
+                } else {
+                    slot
+                };
+                match ids
+                    .get(i)
+                    .filter(|_| i < last || slot.saturating_add(1) == BEAM_STATIONS)
+                {
+                    Some(id) => {
+                        int(out, id.at)?;
+                        reals(out, row(i));
+                    }
+                    None => out.resize(
+                        out.len().saturating_add(
+                            layout.columns.len().saturating_add(1).saturating_mul(4),
+                        ),
+                        0,
+                    ),
+                }
+            }
+        }
+        _ => (0..ids.len()).for_each(|i| reals(out, row(i))),
+    }
+    Ok(())
+}
+
+fn int(out: &mut Vec<u8>, value: impl TryInto<i32> + Copy) -> Result<(), WriteError> {
+    let value: i32 = value.try_into().map_err(|_| WriteError::Id(u32::MAX))?;
+    out.extend_from_slice(&value.to_le_bytes());
+    Ok(())
+}
+
+fn reals(out: &mut Vec<u8>, values: &[f64]) {
+    out.extend(values.iter().flat_map(|v| (*v as f32).to_le_bytes()));
+}

@@ -1,0 +1,141 @@
+//! Writes blocks one after the other.
+
+use std::io::Write;
+
+use super::error::WriteError;
+use super::stream::Stream;
+use super::{entries, head};
+use crate::op2::rows::layout;
+use crate::results::{Block, Quantity, Rows};
+
+/// Version label of the header: the one most readers take for an MSC file.
+const LABEL: &str = "XXXXXXXX";
+
+/// Writes an OP2 a block at a time; only the block at hand is in memory.
+///
+/// Blocks of one kind (displacements; stress; strain ..) that follow each other share a table, so give all subcases of a kind
+/// together. Values become 32-bit reals. What readers want of a [`Block`]: `quantity`, `analysis`, `subcase`, `element` (33 CQUAD4
+/// and 74 CTRIA3 with two rows an element; 144 CQUAD4 with centre and corners; 34 CBAR; 2 CBEAM ..), `form`, `von_mises`, `titles`;
+/// `table`, `num_wide` and `entries` are the writer's own.
+#[derive(Debug)]
+pub struct Op2Writer<W: Write> {
+    stream: Stream<W>,
+    date: [u32; 3],
+    open: Option<&'static str>,
+}
+
+impl<W: Write> Op2Writer<W> {
+    /// Begins a file; `date` is month, day, year.
+    ///
+    /// # Errors
+    ///
+    /// What `out` gives.
+    pub fn new(out: W, date: [u32; 3]) -> Result<Self, WriteError> {
+        let mut stream = Stream::new(out);
+        stream.header(date, LABEL)?;
+        Ok(Op2Writer {
+            stream,
+            date,
+            open: None,
+        })
+    }
+
+    /// Adds a block. Rows are those that [`Op2::rows`](crate::op2::Op2::rows) gives: of shells first and second row of the centre,
+    /// then of each corner; of beams end A, stations between, end B.
+    ///
+    /// # Errors
+    ///
+    /// [`WriteError::Unsupported`] for solids, grid point forces and element types without a layout; [`WriteError::Rows`] where an
+    /// element lacks rows; [`WriteError::Id`]; [`WriteError::Columns`]; what the output gives.
+    pub fn write_block(&mut self, block: &Block, rows: &Rows) -> Result<(), WriteError> {
+        let unsupported = || WriteError::Unsupported {
+            quantity: block.quantity,
+            element: block.element,
+        };
+        let (table, subtable) = head::names(block.quantity).ok_or_else(unsupported)?;
+        let layout = num_wide(block)
+            .and_then(|wide| layout(block.quantity, block.element, wide))
+            .ok_or_else(unsupported)?;
+        let bytes = entries::entries(block, rows, layout)?;
+        if self.open != Some(table) {
+            self.close()?;
+            self.stream.open_table(table, subtable, self.date)?;
+            self.open = Some(table);
+        }
+        let ident = head::ident(block, layout.wide);
+        self.stream.record(&ident, ident.len() / 4)?;
+        self.stream.record(&bytes, layout.wide)?;
+        Ok(())
+    }
+
+    /// Ends the file and gives the output back.
+    ///
+    /// # Errors
+    ///
+    /// What the output gives.
+    pub fn finish(mut self) -> Result<W, WriteError> {
+        self.close()?;
+        Ok(self.stream.finish()?)
+    }
+
+    fn close(&mut self) -> Result<(), WriteError> {
+        if self.open.take().is_some() {
+            self.stream.close_table()?;
+        }
+        Ok(())
+    }
+}
+
+/// All blocks as the bytes of a file; `date` is month, day, year.
+///
+/// # Errors
+///
+/// As [`Op2Writer::write_block`].
+pub fn write_blocks<'b>(
+    blocks: impl IntoIterator<Item = (&'b Block, &'b Rows)>,
+    date: [u32; 3],
+) -> Result<Vec<u8>, WriteError> {
+    let mut writer = Op2Writer::new(Vec::new(), date)?;
+    for (block, rows) in blocks {
+        writer.write_block(block, rows)?;
+    }
+    writer.finish()
+}
+
+/// Words of an entry.
+fn num_wide(block: &Block) -> Option<u32> {
+    use Quantity as Q;
+    let element = block.element.map_or(0, |e| e.0);
+    Some(match (block.quantity, element) {
+        (Q::Stress | Q::Strain, 33 | 74 | 227 | 228) => 17,
+        (Q::Stress | Q::Strain, 64 | 82 | 144) => 87,
+        (Q::Stress | Q::Strain, 70 | 75) => 70,
+        (Q::Stress | Q::Strain, 34) => 16,
+        (Q::Stress | Q::Strain, 100) => 10,
+        (Q::Stress | Q::Strain, 2) => 111,
+        (Q::Stress | Q::Strain, 1 | 3 | 10) => 5,
+        (Q::Stress | Q::Strain, 4) => 4,
+        (Q::Stress | Q::Strain | Q::ElementForce, 11..=14) => 2,
+        (Q::Stress | Q::Strain | Q::ElementForce, 102) => 7,
+        (Q::Stress, 126) => 7,
+        (Q::PlyStress | Q::PlyStrain, _) => 11,
+        (Q::ElementForce, 33 | 74 | 227 | 228) => 9,
+        (Q::ElementForce, 64 | 82 | 144) => 47,
+        (Q::ElementForce, 70 | 75) => 38,
+        (Q::ElementForce, 34) => 9,
+        (Q::ElementForce, 100) => 8,
+        (Q::ElementForce, 2) => 100,
+        (Q::ElementForce, 1 | 3 | 10) => 3,
+        (
+            Q::Displacement
+            | Q::Velocity
+            | Q::Acceleration
+            | Q::Eigenvector
+            | Q::SpcForce
+            | Q::MpcForce
+            | Q::AppliedLoad,
+            _,
+        ) => 8,
+        _ => return None,
+    })
+}
