@@ -6,6 +6,7 @@
 
 mod arguments;
 mod check;
+pub mod deck;
 pub mod fault;
 pub mod files;
 pub mod job;

@@ -23,6 +23,7 @@ pub struct Session {
     pub inputs: Inputs,
     /// What the stages had to say.
     pub findings: Vec<Finding>,
+    faults: Faults,
     units: Value,
     body: Map<String, Value>,
     seconds: Map<String, Value>,
@@ -55,6 +56,7 @@ impl Session {
             common: common.clone(),
             inputs: Inputs::default(),
             findings: Vec::new(),
+            faults: Vec::new(),
             units: Value::Null,
             body: Map::new(),
             seconds: Map::new(),
@@ -82,6 +84,7 @@ impl Session {
             Ok(code) => code,
             Err(faults) => {
                 print_faults(&faults);
+                let _ = std::io::stderr().write_all(b"nothing was written\n");
                 ExitCode::from(2)
             }
         }
@@ -123,6 +126,11 @@ impl Session {
         })?;
         self.body.insert(key.to_owned(), value);
         Ok(())
+    }
+
+    /// Notes faults of the input that leave an answer all the same (`check`): they are listed, and the exit code is 2.
+    pub fn put_faults(&mut self, faults: Faults) {
+        self.faults.extend(faults);
     }
 
     /// States the units of the answer.
@@ -175,7 +183,11 @@ impl Session {
         self.output.as_mut().ok_or_else(Vec::new)
     }
 
-    fn finish(self) -> Result<ExitCode, Faults> {
+    fn finish(mut self) -> Result<ExitCode, Faults> {
+        if self.command == "check" {
+            let lines: Vec<String> = self.faults.iter().map(Fault::to_string).collect();
+            self.put("faults", lines)?;
+        }
         let inputs = self.inputs.finish();
         let mut findings = self.findings;
         // The worst first; the order of stages within a severity.
@@ -217,6 +229,10 @@ impl Session {
             notes.push_str(&format!("written to `{}`\n", folder.display()));
         }
         let _ = std::io::stderr().write_all(notes.as_bytes());
+        if !self.faults.is_empty() {
+            print_faults(&self.faults);
+            return Ok(ExitCode::from(2));
+        }
         Ok(if worst(&findings) == Some(Severity::Error) {
             ExitCode::from(1)
         } else {
@@ -239,7 +255,7 @@ fn print_faults(faults: &Faults) {
     let mut text: String = faults.iter().map(|f| format!("{f}\n")).collect();
     let n = faults.len();
     text.push_str(&format!(
-        "{n} fault{} found; nothing was written\n",
+        "{n} fault{} found\n",
         if n == 1 { "" } else { "s" }
     ));
     let _ = std::io::stderr().write_all(text.as_bytes());

@@ -14,5 +14,5 @@ pub mod tall;
 
 pub use dense::{Matrix, Vector};
 pub use nalgebra::{
-    DMatrix, DVector, Matrix3, Matrix4, Matrix6, SMatrix, SVector, Vector3, Vector6,
+    DMatrix, DVector, Matrix3, Matrix4, Matrix6, SMatrix, SVector, SymmetricEigen, Vector3, Vector6,
 };

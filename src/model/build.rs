@@ -2,13 +2,15 @@
 
 use super::fault::{FaultKind, ModelFault};
 use super::types::*;
-use nastran::cards::Cards;
+use nastran::bdf::{Deck, Named};
+use nastran::cards::{Cards, Param};
 use nastran::place::Place;
 use std::collections::HashMap;
 
 /// What is known while the model is being built.
 pub(super) struct Builder<'a> {
     pub cards: &'a Cards,
+    pub case_params: &'a [Param],
     pub model: Model,
     pub faults: Vec<ModelFault>,
     pub frame_ix: HashMap<u32, FrameIx>,
@@ -23,8 +25,24 @@ impl Model {
     /// Elements whose grids are missing are left out; a shell whose property is missing stays in the mesh without stiffness. A
     /// model with a fault of weight [`super::FaultWeight::Error`] is good for looking at, not for solving.
     pub fn from_cards(cards: &Cards) -> (Model, Vec<ModelFault>) {
+        Self::build(cards, &[])
+    }
+
+    /// The model that a deck means: its cards, PARAMs of case control (which win), names of properties and components.
+    pub fn from_deck(deck: &Deck) -> (Model, Vec<ModelFault>) {
+        let (mut model, faults) = Self::build(&deck.cards, &deck.case_control.global.params);
+        let named = deck
+            .labels
+            .iter()
+            .filter(|l| matches!(l.kind, Named::Property | Named::Component));
+        model.property_names = named.map(|l| (l.id, l.name.clone())).collect();
+        (model, faults)
+    }
+
+    fn build(cards: &Cards, case_params: &[Param]) -> (Model, Vec<ModelFault>) {
         let mut b = Builder {
             cards,
+            case_params,
             model: Model::default(),
             faults: Vec::new(),
             frame_ix: HashMap::new(),
@@ -49,12 +67,6 @@ impl Model {
         b.attachments();
         b.faults.sort_by_key(|f| f.at);
         (b.model, b.faults)
-    }
-
-    /// The same model with names of properties and components.
-    pub fn with_property_names(mut self, names: Vec<(u32, String)>) -> Model {
-        self.property_names = names;
-        self
     }
 }
 

@@ -125,11 +125,17 @@ impl ModelFault {
 }
 
 impl fmt::Display for ModelFault {
-    /// What is wrong, without file, line and remedy.
+    /// What is wrong with the card, without file, line and remedy.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.card, self.kind)
+    }
+}
+
+impl fmt::Display for FaultKind {
+    /// What is wrong.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         use FaultKind::*;
-        write!(f, "{}: ", self.card)?;
-        match &self.kind {
+        match self {
             Missing { what, id } => write!(f, "{what} {id} is missing"),
             Duplicate { what, first } => {
                 write!(f, "the {what} stands twice, first on line {}", first.line)

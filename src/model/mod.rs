@@ -1,6 +1,6 @@
 //! What a deck means: ids resolved, coordinates in the basic frame, defaults applied, faults found.
 //!
-//! [`Model::from_cards`] builds it, one file a kind of card; [`ModelFault`] says what is wrong; `mass` weighs it.
+//! [`Model::from_cards`] builds it, one file a kind of card; [`ModelFault`] says what is wrong; [`Model::weight`] weighs it.
 
 mod beam;
 mod beam_property;
@@ -12,6 +12,7 @@ mod frame;
 mod grids;
 mod line;
 mod load;
+mod mass;
 mod material;
 mod params;
 mod point_mass;
@@ -25,4 +26,5 @@ mod types;
 mod tests;
 
 pub use fault::*;
+pub use mass::Weight;
 pub use types::*;

@@ -3,11 +3,13 @@
 use super::build::Builder;
 use super::fault::FaultKind;
 use nastran::cards::ParamValue;
+use nastran::place::Place;
 
 impl Builder<'_> {
     pub(super) fn params(&mut self) {
         let cards = self.cards;
-        for p in &cards.params {
+        let bulk = cards.params.iter().map(|p| (&p.card, p.at));
+        for (p, at) in bulk.chain(self.case_params.iter().map(|p| (p, Place::default()))) {
             let Some(value) = p.values.first() else {
                 continue;
             };
@@ -41,7 +43,7 @@ impl Builder<'_> {
                     found: format!("{value:?}"),
                     expected,
                 };
-                self.fault(format!("PARAM,{}", p.name), "V1", p.at, kind);
+                self.fault(format!("PARAM,{}", p.name), "V1", at, kind);
             }
         }
     }

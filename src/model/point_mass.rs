@@ -3,7 +3,7 @@
 use super::build::Builder;
 use super::fault::FaultKind;
 use super::types::*;
-use nalgebra::Matrix6;
+use crate::linalg::Matrix6;
 
 /// Mass matrix about the grid of a rigid body: mass, centre of gravity from the grid, inertia tensor about the centre of gravity.
 ///

@@ -3,6 +3,7 @@
 use super::build::Builder;
 use super::fault::FaultKind;
 use super::types::*;
+use crate::linalg::{Matrix6, SymmetricEigen, Vector6};
 use nastran::cards::{Dofs, Rbe3};
 use nastran::place::{Place, Placed};
 use std::collections::HashMap;
@@ -124,13 +125,13 @@ impl Builder<'_> {
             .map(|a| (self.x(a.2) - x0).norm())
             .fold(0.0, f64::max);
         let scale = if reach > 0.0 { reach } else { 1.0 };
-        let mut sum = nalgebra::Matrix6::<f64>::zeros();
+        let mut sum = Matrix6::<f64>::zeros();
         for (w, dofs, g) in arms {
             let r = (self.x(*g) - x0) / scale;
             let axes = self.cd_axes(*g);
             for i in dofs.iter0() {
                 let a = axes.row(i % 3).transpose();
-                let mut row = nalgebra::Vector6::zeros();
+                let mut row = Vector6::zeros();
                 if i < 3 {
                     row.fixed_rows_mut::<3>(0).copy_from(&a);
                     row.fixed_rows_mut::<3>(3).copy_from(&r.cross(&a));
@@ -140,7 +141,7 @@ impl Builder<'_> {
                 sum += row * row.transpose() * *w;
             }
         }
-        let eigen = nalgebra::SymmetricEigen::new(sum);
+        let eigen = SymmetricEigen::new(sum);
         let largest = eigen.eigenvalues.amax();
         if !(largest > 0.0) {
             return true;

@@ -4,9 +4,9 @@ use nastran::cards::{Dofs, ShellShape, SolidShape};
 use nastran::place::Place;
 
 /// A point or vector in the basic frame unless said otherwise.
-pub type Vec3 = nalgebra::Vector3<f64>;
+pub type Vec3 = crate::linalg::Vector3<f64>;
 /// Rows are the axes of a local frame in the basic frame: `local = R * basic`.
-pub type Mat3 = nalgebra::Matrix3<f64>;
+pub type Mat3 = crate::linalg::Matrix3<f64>;
 
 macro_rules! index {
     ($($(#[$doc:meta])* $name:ident),+) => {$(
@@ -390,7 +390,7 @@ pub struct PointMass {
     /// Grid.
     pub grid: GridIx,
     /// Mass matrix in the basic frame, referred to the grid.
-    pub matrix: nalgebra::Matrix6<f64>,
+    pub matrix: crate::linalg::Matrix6<f64>,
     /// Offset of the centre of gravity from the grid, basic frame (0 for CONM1).
     pub offset: Vec3,
     /// Where it stands.

@@ -37,7 +37,8 @@ pub(in super::super) fn bar_section(kind: &str, dims: &[f64]) -> Result<Shape, S
         "ROD" => 1,
         "TUBE" | "TUBE2" | "BAR" => 2,
         "HEXA" => 3,
-        "BOX" | "CHAN" | "CHAN1" | "CHAN2" | "T" | "T1" | "T2" | "L" | "H" | "Z" | "HAT" | "CROSS" | "I1" => 4,
+        "BOX" | "CHAN" | "CHAN1" | "CHAN2" | "T" | "T1" | "T2" | "L" | "H" | "Z" | "HAT"
+        | "CROSS" | "I1" => 4,
         "BOX1" | "I" => 6,
         _ => return Err(SectionFault::Unknown),
     };
@@ -46,7 +47,11 @@ pub(in super::super) fn bar_section(kind: &str, dims: &[f64]) -> Result<Shape, S
     }
     let d = |i: usize| dims.get(i).copied().unwrap_or(0.0);
     let inner_may_be_zero = kind == "TUBE";
-    let positive = dims.iter().take(expected).enumerate().all(|(i, x)| *x > 0.0 || (inner_may_be_zero && i == 1 && *x == 0.0));
+    let positive = dims
+        .iter()
+        .take(expected)
+        .enumerate()
+        .all(|(i, x)| *x > 0.0 || (inner_may_be_zero && i == 1 && *x == 0.0));
     if !positive || !dims.iter().all(|x| x.is_finite()) {
         return Err(SectionFault::Shape);
     }
@@ -119,9 +124,21 @@ fn circle(outer: f64, inner: f64) -> Option<Shape> {
         return None;
     }
     let i = PI / 4.0 * (outer.powi(4) - inner.powi(4));
-    let a = Area { area: PI * (outer * outer - inner * inner), centroid: [0.0; 2], yy: i, zz: i, yz: 0.0 };
+    let a = Area {
+        area: PI * (outer * outer - inner * inner),
+        centroid: [0.0; 2],
+        yy: i,
+        zz: i,
+        yz: 0.0,
+    };
     let k = if inner > 0.0 { 0.5 } else { 0.9 };
-    finish(a, [0.0; 2], 2.0 * i, [k, k], [[outer, 0.0], [0.0, outer], [-outer, 0.0], [0.0, -outer]])
+    finish(
+        a,
+        [0.0; 2],
+        2.0 * i,
+        [k, k],
+        [[outer, 0.0], [0.0, outer], [-outer, 0.0], [0.0, -outer]],
+    )
 }
 
 /// Corners: C upper right, D lower right, E lower left, F upper left.
@@ -132,7 +149,13 @@ fn corners(y: [f64; 2], z: [f64; 2]) -> [[f64; 2]; 4] {
 fn bar(w: f64, h: f64) -> Option<Shape> {
     let (y, z) = ([-h / 2.0, h / 2.0], [-w / 2.0, w / 2.0]);
     let a = of_rectangles(&[rectangle(y, z)]);
-    finish(a, [0.0; 2], rectangle_torsion(w, h), [RECTANGLE_SHEAR; 2], corners(y, z))
+    finish(
+        a,
+        [0.0; 2],
+        rectangle_torsion(w, h),
+        [RECTANGLE_SHEAR; 2],
+        corners(y, z),
+    )
 }
 
 /// Width, height, thickness of top, bottom, right, left wall.
@@ -148,14 +171,22 @@ fn box1([w, h, top, bottom, right, left]: [f64; 6]) -> Option<Shape> {
     ]);
     let (hm, wm) = (h - (top + bottom) / 2.0, w - (left + right) / 2.0);
     let enclosed = hm * wm;
-    let j = 4.0 * enclosed * enclosed / (hm * (1.0 / left + 1.0 / right) + wm * (1.0 / top + 1.0 / bottom));
+    let j = 4.0 * enclosed * enclosed
+        / (hm * (1.0 / left + 1.0 / right) + wm * (1.0 / top + 1.0 / bottom));
     let k = [hm * (left + right) / a.area, wm * (top + bottom) / a.area];
     // Closed walls of like thickness: the shear centre is the centroid.
     finish(a, a.centroid, j, k, corners([0.0, h], [0.0, w]))
 }
 
 /// Height, width of bottom and top flange, thickness of web, bottom and top flange.
-fn i_section(h: f64, bottom_w: f64, top_w: f64, web: f64, bottom_t: f64, top_t: f64) -> Option<Shape> {
+fn i_section(
+    h: f64,
+    bottom_w: f64,
+    top_w: f64,
+    web: f64,
+    bottom_t: f64,
+    top_t: f64,
+) -> Option<Shape> {
     if !(h > bottom_t + top_t && bottom_w > web && top_w > web && bottom_t > 0.0) {
         return None;
     }
@@ -166,14 +197,35 @@ fn i_section(h: f64, bottom_w: f64, top_w: f64, web: f64, bottom_t: f64, top_t: 
         rectangle([h - top_t, h], across(top_w)),
     ]);
     let (y0, y1) = (bottom_t / 2.0, h - top_t / 2.0);
-    let points = [[y0, 0.0], [y1, 0.0], [y0, bottom_w / 2.0], [y0, -bottom_w / 2.0], [y1, top_w / 2.0], [y1, -top_w / 2.0]];
+    let points = [
+        [y0, 0.0],
+        [y1, 0.0],
+        [y0, bottom_w / 2.0],
+        [y0, -bottom_w / 2.0],
+        [y1, top_w / 2.0],
+        [y1, -top_w / 2.0],
+    ];
     let wall = |from, to, t| Wall { from, to, t };
-    let walls = [wall(0, 1, web), wall(0, 2, bottom_t), wall(0, 3, bottom_t), wall(1, 4, top_t), wall(1, 5, top_t)];
+    let walls = [
+        wall(0, 1, web),
+        wall(0, 2, bottom_t),
+        wall(0, 3, bottom_t),
+        wall(1, 4, top_t),
+        wall(1, 5, top_t),
+    ];
     let centre = shear_centre(&points, &walls)?;
     let j = open_torsion(&[(bottom_w, bottom_t), (top_w, top_t), (y1 - y0, web)]);
     let flanges = bottom_w * bottom_t + top_w * top_t;
-    let k = [(a.area - flanges) / a.area, RECTANGLE_SHEAR * flanges / a.area];
-    let recovery = [[h, top_w / 2.0], [0.0, bottom_w / 2.0], [0.0, -bottom_w / 2.0], [h, -top_w / 2.0]];
+    let k = [
+        (a.area - flanges) / a.area,
+        RECTANGLE_SHEAR * flanges / a.area,
+    ];
+    let recovery = [
+        [h, top_w / 2.0],
+        [0.0, bottom_w / 2.0],
+        [0.0, -bottom_w / 2.0],
+        [h, -top_w / 2.0],
+    ];
     finish(a, centre, j, k, recovery)
 }
 
@@ -190,10 +242,29 @@ fn channel(w: f64, h: f64, web: f64, flange: f64) -> Option<Shape> {
     let (y0, y1, z0) = (flange / 2.0, h - flange / 2.0, web / 2.0);
     let centre = shear_centre(
         &[[y0, w], [y0, z0], [y1, z0], [y1, w]],
-        &[Wall { from: 0, to: 1, t: flange }, Wall { from: 1, to: 2, t: web }, Wall { from: 2, to: 3, t: flange }],
+        &[
+            Wall {
+                from: 0,
+                to: 1,
+                t: flange,
+            },
+            Wall {
+                from: 1,
+                to: 2,
+                t: web,
+            },
+            Wall {
+                from: 2,
+                to: 3,
+                t: flange,
+            },
+        ],
     )?;
     let j = open_torsion(&[(w - z0, flange), (w - z0, flange), (y1 - y0, web)]);
-    let k = [(y1 - y0) * web / a.area, RECTANGLE_SHEAR * 2.0 * w * flange / a.area];
+    let k = [
+        (y1 - y0) * web / a.area,
+        RECTANGLE_SHEAR * 2.0 * w * flange / a.area,
+    ];
     finish(a, centre, j, k, corners([0.0, h], [0.0, w]))
 }
 
@@ -211,10 +282,29 @@ fn channel2(leg: f64, web: f64, h: f64, w: f64) -> Option<Shape> {
     let (y0, z1) = (web / 2.0, half - leg / 2.0);
     let centre = shear_centre(
         &[[h, -z1], [y0, -z1], [y0, z1], [h, z1]],
-        &[Wall { from: 0, to: 1, t: leg }, Wall { from: 1, to: 2, t: web }, Wall { from: 2, to: 3, t: leg }],
+        &[
+            Wall {
+                from: 0,
+                to: 1,
+                t: leg,
+            },
+            Wall {
+                from: 1,
+                to: 2,
+                t: web,
+            },
+            Wall {
+                from: 2,
+                to: 3,
+                t: leg,
+            },
+        ],
     )?;
     let j = open_torsion(&[(h - y0, leg), (h - y0, leg), (2.0 * z1, web)]);
-    let k = [RECTANGLE_SHEAR * 2.0 * h * leg / a.area, 2.0 * z1 * web / a.area];
+    let k = [
+        RECTANGLE_SHEAR * 2.0 * h * leg / a.area,
+        2.0 * z1 * web / a.area,
+    ];
     finish(a, centre, j, k, corners([0.0, h], [-half, half]))
 }
 
@@ -229,8 +319,17 @@ fn tee(w: f64, h: f64, flange: f64, web: f64) -> Option<Shape> {
     ]);
     let centre = [h - flange / 2.0, 0.0];
     let j = open_torsion(&[(w, flange), (h - flange / 2.0, web)]);
-    let k = [(h - flange / 2.0) * web / a.area, RECTANGLE_SHEAR * w * flange / a.area];
-    finish(a, centre, j, k, [[h, 0.0], [h, w / 2.0], [0.0, 0.0], [h, -w / 2.0]])
+    let k = [
+        (h - flange / 2.0) * web / a.area,
+        RECTANGLE_SHEAR * w * flange / a.area,
+    ];
+    finish(
+        a,
+        centre,
+        j,
+        k,
+        [[h, 0.0], [h, w / 2.0], [0.0, 0.0], [h, -w / 2.0]],
+    )
 }
 
 /// Flange standing on the right, web to the left: height of the flange, length of the web, thickness of flange and web.
@@ -244,9 +343,23 @@ fn tee1(h: f64, reach: f64, flange: f64, web: f64) -> Option<Shape> {
     ]);
     let centre = [0.0, reach + flange / 2.0];
     let j = open_torsion(&[(h, flange), (reach + flange / 2.0, web)]);
-    let k = [RECTANGLE_SHEAR * h * flange / a.area, (reach + flange / 2.0) * web / a.area];
+    let k = [
+        RECTANGLE_SHEAR * h * flange / a.area,
+        (reach + flange / 2.0) * web / a.area,
+    ];
     let right = reach + flange;
-    finish(a, centre, j, k, [[0.0, right], [-h / 2.0, right], [0.0, 0.0], [h / 2.0, right]])
+    finish(
+        a,
+        centre,
+        j,
+        k,
+        [
+            [0.0, right],
+            [-h / 2.0, right],
+            [0.0, 0.0],
+            [h / 2.0, right],
+        ],
+    )
 }
 
 /// Flange at the bottom: width, height, thickness of flange and web.
@@ -260,8 +373,22 @@ fn tee2(w: f64, h: f64, flange: f64, web: f64) -> Option<Shape> {
     ]);
     let centre = [flange / 2.0, 0.0];
     let j = open_torsion(&[(w, flange), (h - flange / 2.0, web)]);
-    let k = [(h - flange / 2.0) * web / a.area, RECTANGLE_SHEAR * w * flange / a.area];
-    finish(a, centre, j, k, [[h, web / 2.0], [0.0, w / 2.0], [0.0, -w / 2.0], [h, -web / 2.0]])
+    let k = [
+        (h - flange / 2.0) * web / a.area,
+        RECTANGLE_SHEAR * w * flange / a.area,
+    ];
+    finish(
+        a,
+        centre,
+        j,
+        k,
+        [
+            [h, web / 2.0],
+            [0.0, w / 2.0],
+            [0.0, -w / 2.0],
+            [h, -web / 2.0],
+        ],
+    )
 }
 
 /// Corner at the lower left: width, height, thickness of the lying and of the standing leg.
@@ -269,12 +396,24 @@ fn angle(w: f64, h: f64, lying: f64, standing: f64) -> Option<Shape> {
     if !(w > standing && h > lying) {
         return None;
     }
-    let a = of_rectangles(&[rectangle([0.0, h], [0.0, standing]), rectangle([0.0, lying], [standing, w])]);
+    let a = of_rectangles(&[
+        rectangle([0.0, h], [0.0, standing]),
+        rectangle([0.0, lying], [standing, w]),
+    ]);
     let centre = [lying / 2.0, standing / 2.0];
     let (long_y, long_z) = (h - lying / 2.0, w - standing / 2.0);
     let j = open_torsion(&[(long_y, standing), (long_z, lying)]);
-    let k = [RECTANGLE_SHEAR * h * standing / a.area, RECTANGLE_SHEAR * w * lying / a.area];
-    finish(a, centre, j, k, [[h, standing], [0.0, w], [0.0, 0.0], [h, 0.0]])
+    let k = [
+        RECTANGLE_SHEAR * h * standing / a.area,
+        RECTANGLE_SHEAR * w * lying / a.area,
+    ];
+    finish(
+        a,
+        centre,
+        j,
+        k,
+        [[h, standing], [0.0, w], [0.0, 0.0], [h, 0.0]],
+    )
 }
 
 /// Two standing flanges joined by a lying web: inner width, thickness of a flange, height, thickness of the web.
@@ -289,8 +428,17 @@ fn h_section(inner: f64, flange: f64, h: f64, web: f64) -> Option<Shape> {
         rectangle([-web / 2.0, web / 2.0], [-half, half]),
     ]);
     let j = open_torsion(&[(h, flange), (h, flange), (inner + flange, web)]);
-    let k = [RECTANGLE_SHEAR * 2.0 * h * flange / a.area, inner * web / a.area];
-    finish(a, [0.0; 2], j, k, corners(y, [-half - flange, half + flange]))
+    let k = [
+        RECTANGLE_SHEAR * 2.0 * h * flange / a.area,
+        inner * web / a.area,
+    ];
+    finish(
+        a,
+        [0.0; 2],
+        j,
+        k,
+        corners(y, [-half - flange, half + flange]),
+    )
 }
 
 /// Top flange to the left, bottom flange to the right: free width of a flange, thickness of the web, inner and outer height.
@@ -307,8 +455,22 @@ fn z_section(free: f64, web: f64, inner: f64, h: f64) -> Option<Shape> {
     ]);
     let j = open_torsion(&[(free + half, t), (free + half, t), (h - t, web)]);
     let flanges = 2.0 * (free + web) * t;
-    let k = [(a.area - flanges) / a.area, RECTANGLE_SHEAR * flanges / a.area];
-    finish(a, [0.0; 2], j, k, [[top, half], [-top, half + free], [-top, -half], [top, -half - free]])
+    let k = [
+        (a.area - flanges) / a.area,
+        RECTANGLE_SHEAR * flanges / a.area,
+    ];
+    finish(
+        a,
+        [0.0; 2],
+        j,
+        k,
+        [
+            [top, half],
+            [-top, half + free],
+            [-top, -half],
+            [top, -half - free],
+        ],
+    )
 }
 
 /// Crown on top, brims at the bottom: height, wall thickness, width of the crown, width of a brim.
@@ -325,14 +487,34 @@ fn hat(h: f64, t: f64, crown: f64, brim: f64) -> Option<Shape> {
         rectangle([0.0, t], [half, wide]),
     ]);
     let (y0, y1, z) = (t / 2.0, h - t / 2.0, half - t / 2.0);
-    let wall = |from| Wall { from, to: from + 1, t };
+    let wall = |from| Wall {
+        from,
+        to: from + 1,
+        t,
+    };
     let centre = shear_centre(
-        &[[y0, -wide], [y0, -z], [y1, -z], [y1, z], [y0, z], [y0, wide]],
+        &[
+            [y0, -wide],
+            [y0, -z],
+            [y1, -z],
+            [y1, z],
+            [y0, z],
+            [y0, wide],
+        ],
         &[wall(0), wall(1), wall(2), wall(3), wall(4)],
     )?;
     let j = open_torsion(&[(2.0 * (wide - z) + 2.0 * (y1 - y0) + 2.0 * z, t)]);
-    let k = [2.0 * (y1 - y0) * t / a.area, RECTANGLE_SHEAR * (crown + 2.0 * brim) * t / a.area];
-    finish(a, centre, j, k, [[h, half], [0.0, wide], [0.0, -wide], [h, -half]])
+    let k = [
+        2.0 * (y1 - y0) * t / a.area,
+        RECTANGLE_SHEAR * (crown + 2.0 * brim) * t / a.area,
+    ];
+    finish(
+        a,
+        centre,
+        j,
+        k,
+        [[h, half], [0.0, wide], [0.0, -wide], [h, -half]],
+    )
 }
 
 /// Free width of the lying bar (both sides together), thickness of the standing one, height, thickness of the lying one.
@@ -348,8 +530,17 @@ fn cross(free: f64, standing: f64, h: f64, lying: f64) -> Option<Shape> {
         rectangle(y, [z0, z1]),
     ]);
     let j = open_torsion(&[(h, standing), (free, lying)]);
-    let k = [RECTANGLE_SHEAR * h * standing / a.area, RECTANGLE_SHEAR * 2.0 * z1 * lying / a.area];
-    finish(a, [0.0; 2], j, k, [[h / 2.0, 0.0], [0.0, z1], [-h / 2.0, 0.0], [0.0, -z1]])
+    let k = [
+        RECTANGLE_SHEAR * h * standing / a.area,
+        RECTANGLE_SHEAR * 2.0 * z1 * lying / a.area,
+    ];
+    finish(
+        a,
+        [0.0; 2],
+        j,
+        k,
+        [[h / 2.0, 0.0], [0.0, z1], [-h / 2.0, 0.0], [0.0, -z1]],
+    )
 }
 
 /// Width of a pointed side, overall width, height. Torsion as the rectangle of the mean width.
@@ -358,8 +549,21 @@ fn hexagon(point: f64, w: f64, h: f64) -> Option<Shape> {
         return None;
     }
     let (half, inner, top) = (w / 2.0, w / 2.0 - point, h / 2.0);
-    let outline = vec![[top, inner], [0.0, half], [-top, inner], [-top, -inner], [0.0, -half], [top, -inner]];
+    let outline = vec![
+        [top, inner],
+        [0.0, half],
+        [-top, inner],
+        [-top, -inner],
+        [0.0, -half],
+        [top, -inner],
+    ];
     let a = of_polygons(&[outline]);
     let j = rectangle_torsion(w - point, h);
-    finish(a, [0.0; 2], j, [RECTANGLE_SHEAR; 2], [[top, 0.0], [-top, 0.0], [0.0, half], [0.0, -half]])
+    finish(
+        a,
+        [0.0; 2],
+        j,
+        [RECTANGLE_SHEAR; 2],
+        [[top, 0.0], [-top, 0.0], [0.0, half], [0.0, -half]],
+    )
 }

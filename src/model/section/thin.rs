@@ -32,7 +32,11 @@ pub(super) fn shear_centre(points: &[[f64; 2]], walls: &[Wall]) -> Option<[f64; 
         (0..2).for_each(|k| first[k] += da * (a[k] + b[k]) / 2.0);
     }
     let centroid = first.map(|s| s / area);
-    let at = |i: usize| -> Option<[f64; 2]> { points.get(i).map(|p| [p[0] - centroid[0], p[1] - centroid[1]]) };
+    let at = |i: usize| -> Option<[f64; 2]> {
+        points
+            .get(i)
+            .map(|p| [p[0] - centroid[0], p[1] - centroid[1]])
+    };
     // Pole B: the first point.
     let pole = at(walls.first()?.from)?;
     let mut sectorial = vec![0.0; points.len()];
@@ -42,7 +46,9 @@ pub(super) fn shear_centre(points: &[[f64; 2]], walls: &[Wall]) -> Option<[f64; 
         *sectorial.get_mut(w.to)? = sectorial.get(w.from)? + swept;
     }
     // Products of two linear functions along a wall.
-    let product = |l: f64, u: [f64; 2], v: [f64; 2]| l / 6.0 * (2.0 * u[0] * v[0] + u[0] * v[1] + u[1] * v[0] + 2.0 * u[1] * v[1]);
+    let product = |l: f64, u: [f64; 2], v: [f64; 2]| {
+        l / 6.0 * (2.0 * u[0] * v[0] + u[0] * v[1] + u[1] * v[0] + 2.0 * u[1] * v[1])
+    };
     let (mut yy, mut zz, mut yz, mut wy, mut wz) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for w in walls {
         let (a, b) = (at(w.from)?, at(w.to)?);
