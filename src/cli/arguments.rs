@@ -16,6 +16,8 @@ pub struct Arguments {
 pub enum Command {
     /// Read decks, results or jobs; report what is in them and every fault
     Check(FilesArguments),
+    /// Vehicle parameters and wheel loads from accelerations
+    Identify(JobArguments),
 }
 
 /// Options of every command.

@@ -9,10 +9,12 @@ mod check;
 pub mod deck;
 pub mod fault;
 pub mod files;
+mod identify;
 pub mod job;
 pub mod output;
 mod progress;
 mod session;
+pub mod vehicle;
 mod words;
 
 pub use arguments::*;
@@ -24,5 +26,6 @@ use std::process::ExitCode;
 pub fn run(arguments: Arguments) -> ExitCode {
     match arguments.command {
         Command::Check(a) => Session::run("check", &a.common, |s| check::run(&a, s)),
+        Command::Identify(a) => Session::run("identify", &a.common, |s| identify::run(&a, s)),
     }
 }

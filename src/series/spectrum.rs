@@ -175,3 +175,25 @@ impl Fourier {
         self.samples(&whole, 1)
     }
 }
+
+impl Fourier {
+    /// The padded signal of a spectrum at `factor` times its rate.
+    pub fn denser_samples(&mut self, s: &Spectrum, factor: usize) -> Vec<f64> {
+        let n = s.n_padded * factor.max(1);
+        let plan = self.planner.plan_fft_inverse(n);
+        let mut bins = vec![Complex64::default(); n / 2 + 1];
+        bins[..s.bins.len()].copy_from_slice(&s.bins);
+        if factor > 1 {
+            // The bin at the old half rate stands for both its signs.
+            bins[s.bins.len() - 1] *= 0.5;
+        }
+        bins[0].im = 0.0;
+        bins[n / 2].im = 0.0;
+        let mut out = plan.make_output_vec();
+        let done = plan.process(&mut bins, &mut out);
+        debug_assert!(done.is_ok());
+        let scale = 1.0 / s.n_padded as f64;
+        out.iter_mut().for_each(|v| *v *= scale);
+        out
+    }
+}

@@ -1,7 +1,9 @@
 //! Wheel and chassis forces from a fitted vehicle and measured motion.
 
+use super::identify::Identification;
 use super::layout::Vehicle;
 use super::motion::Motion;
+use crate::estimate::LoadEstimate;
 use crate::linalg::tall::{left_inverse, solve, triangle};
 
 /// How much of each sprung equation's residual goes to each wheel force: `share[wheel][equation]`.
@@ -236,4 +238,78 @@ pub fn split_leaf(force: f64, seat: LeafSeat) -> [f64; 3] {
         shackle,
         shackle * seat.shackle_angle_rad.tan(),
     ]
+}
+
+/// Wheel forces of a record in the band, one sigma a sample from what the identification left over.
+pub fn wheel_force_history(found: &Identification, motion: &Motion) -> LoadHistory {
+    let v = &found.vehicle;
+    LoadHistory {
+        rate_hz: motion.rate_hz,
+        start_s: motion.start_s,
+        names: v.wheels.iter().map(|w| w.channel.clone()).collect(),
+        values: scaled_wheel_forces(found, motion),
+        sigma: (0..v.wheels.len()).map(|w| found.wheel_force_sigma[w].unwrap_or(f64::NAN)).collect(),
+    }
+}
+
+/// Wheel forces where the identification carries the scale of forces; NaN elsewhere.
+fn scaled_wheel_forces(found: &Identification, motion: &Motion) -> Vec<Vec<f64>> {
+    let v = &found.vehicle;
+    let n_residuals = sprung_residuals(v, &found.values, motion, &link_forces(v, &found.values, motion)).len();
+    // Blends are kept part by part; a whole-vehicle blend needs the place of each part's residuals.
+    let mut blend = vec![vec![0.0; n_residuals]; v.wheels.len()];
+    let free = |b: usize| v.wheels.iter().all(|w| w.at.body != b);
+    let mut order: Vec<(usize, usize)> = Vec::new();
+    for b in (0..v.bodies.len()).filter(|b| free(*b)) {
+        order.extend((0..v.bodies[b].shape.n()).map(|j| (b, j)));
+    }
+    let mut next = 0;
+    for bodies in v.components() {
+        let wheels: Vec<usize> = (0..v.wheels.len()).filter(|&w| bodies.contains(&v.wheels[w].at.body)).collect();
+        let columns: Vec<usize> = (0..order.len()).filter(|&k| bodies.contains(&order[k].0)).collect();
+        for w in wheels {
+            for (share, &column) in found.blend.get(next).into_iter().flatten().zip(&columns) {
+                blend[w][column] = *share;
+            }
+            next += 1;
+        }
+    }
+    let mut forces = wheel_forces(v, &found.values, motion, &blend);
+    for (w, wheel) in v.wheels.iter().enumerate() {
+        if !found.scaled.get(v.inertia_index(wheel.at.body, 0, 0)).copied().unwrap_or(false) {
+            forces[w].fill(f64::NAN);
+        }
+    }
+    forces
+}
+
+/// Mean load of each wheel that carries a part of the vehicle alone, (sprung + unsprung mass) g, from identified masses: the
+/// same type as loads recovered from strain, to be compared with them.
+pub fn static_loads(found: &Identification, gravity: f64, run: &str) -> LoadEstimate {
+    let v = &found.vehicle;
+    let mut loads: Vec<(String, f64, Vec<usize>)> = Vec::new();
+    for bodies in v.components() {
+        let wheels: Vec<&str> = v.wheels.iter().filter(|w| bodies.contains(&w.at.body)).map(|w| w.channel.as_str()).collect();
+        let masses: Vec<usize> = bodies.iter().map(|&b| v.inertia_index(b, 0, 0)).collect();
+        let told = masses.iter().all(|&i| found.scaled[i] && found.values[i].is_finite());
+        if let ([wheel], true) = (wheels.as_slice(), told) {
+            let value = masses.iter().map(|&i| found.values[i]).sum::<f64>() * gravity;
+            loads.push(((*wheel).to_owned(), value, masses));
+        }
+    }
+    let mut covariance = Vec::new();
+    for a in &loads {
+        for b in &loads {
+            let sum: f64 = a.2.iter().map(|&i| b.2.iter().map(|&j| found.covariance[i][j]).sum::<f64>()).sum();
+            covariance.push(sum * gravity * gravity);
+        }
+    }
+    LoadEstimate {
+        run: run.to_owned(),
+        names: loads.iter().map(|l| l.0.clone()).collect(),
+        values: loads.iter().map(|l| l.1).collect(),
+        covariance,
+        coverage_factor: found.coverage_factor,
+        findings: found.findings.clone(),
+    }
 }

@@ -7,7 +7,10 @@ use crate::series::spectrum::Band;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+mod full_truck;
 mod shared_cases;
+mod silverbox;
+mod truck_simulator;
 
 fn question(model: &str, terms: &[&str], band: (f64, f64)) -> Question {
     let wish = Wish {

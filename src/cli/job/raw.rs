@@ -205,6 +205,8 @@ pub(super) struct RawVehicle {
     pub tolerance: Option<RawTolerance>,
     pub band_hz: S<[f64; 2]>,
     pub columns: BTreeMap<String, String>,
+    pub places: BTreeMap<String, [f64; 2]>,
+    pub bounds: BTreeMap<String, [f64; 2]>,
 }
 
 #[derive(Deserialize, Default, Debug)]

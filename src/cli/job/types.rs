@@ -539,6 +539,10 @@ pub struct Vehicle {
     pub band_hz: Option<[f64; 2]>,
     /// Channel to column, where the file names them otherwise.
     pub columns: BTreeMap<String, String>,
+    /// Places (x, y) of wheels (`lf`), springs (`spring_lf`) and body accelerometers (`body_lf`).
+    pub places: BTreeMap<String, [f64; 2]>,
+    /// Limits of parameters.
+    pub bounds: BTreeMap<String, [f64; 2]>,
     /// Line of the job.
     pub line: u32,
 }

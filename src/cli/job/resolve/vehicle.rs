@@ -8,7 +8,7 @@ use super::units::units;
 use crate::units::{ReportUnits, UnitSystem};
 use toml::Spanned;
 
-const MODELS: [&str; 6] = ["front2", "rear3", "front_pair", "half", "full2", "full3"];
+use crate::vehicle::preset::MODELS;
 
 pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> Option<Vehicle> {
     let section = raw?;
@@ -60,6 +60,8 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
         tolerance_sync: sync,
         band_hz,
         columns: raw.columns.clone(),
+        places: raw.places.clone(),
+        bounds: raw.bounds.clone(),
         line: c.line(section),
     })
 }

@@ -1,0 +1,144 @@
+//! The vehicle of a job and its records, in the job's units: what `identify` and `reconcile` start from.
+
+use super::Session;
+use super::fault::{Fault, Faults};
+use super::job::{Job, NamedFile, Vehicle as VehicleJob};
+use crate::finding::{Finding, Severity};
+use crate::series::channels::Channels;
+use crate::series::csv::read_csv;
+use crate::series::quality::{Kind, check_channels};
+use crate::series::spectrum::Band;
+use crate::units::{Quantity, find_unit};
+use crate::vehicle::identify::Question;
+use crate::vehicle::motion::VehicleError;
+use crate::vehicle::preset::{PresetError, Wish, vehicle};
+use crate::vehicle::term::UnitNames;
+
+/// Band where the job names none, Hz: rigid-body and axle motion of a truck.
+const DEFAULT_BAND_HZ: [f64; 2] = [0.7, 20.0];
+
+/// A question with its records.
+pub struct VehicleRecords {
+    /// What is asked.
+    pub question: Question,
+    /// The record to fit.
+    pub data: Channels,
+    /// The record to judge by.
+    pub hold_out: Option<Channels>,
+}
+
+/// Reads `[vehicle]`, its records, converts units, and checks every channel; findings go to the session.
+///
+/// # Errors
+/// Every fault of section, files and model.
+pub fn read_vehicle(session: &mut Session, job: &Job) -> Result<VehicleRecords, Faults> {
+    let Some(section) = &job.vehicle else {
+        return Err(vec![Fault::of(&*job.file, "vehicle", "the job has no [vehicle] section", "add one with `model` and `data`")]);
+    };
+    let data = read_record(session, job, section, &section.data)?;
+    let hold_out = section.hold_out.as_ref().map(|h| read_record(session, job, section, h)).transpose()?;
+    let mut band = section.band_hz.unwrap_or(DEFAULT_BAND_HZ);
+    if section.band_hz.is_none() {
+        band[1] = band[1].min(0.4 * data.rate_hz);
+        let message = format!("The job names no band; {} to {} Hz is used for every channel.", band[0], band[1]);
+        session.findings.push(Finding::new(Severity::Info, "default-band", "vehicle.band_hz", message, "State `band_hz` in [vehicle]."));
+    }
+    let wish = Wish {
+        model: section.model.clone(),
+        terms: section.terms.clone(),
+        places: section.places.clone(),
+        channels: section.columns.clone(),
+    };
+    let model = vehicle(&wish).map_err(|e| vec![preset_fault(job, section, &e)])?;
+    let gravity = job.units.standard_gravity();
+    for (named, record) in [(Some(&section.data), Some(&data)), (section.hold_out.as_ref(), hold_out.as_ref())] {
+        if let (Some(named), Some(record)) = (named, record) {
+            let used = |name: &str| {
+                if model.wheels.iter().any(|w| w.channel == name) {
+                    Kind::Force
+                } else if model.sensors.iter().any(|s| s.channel == name) || name.starts_with("a_") {
+                    Kind::Acceleration
+                } else {
+                    Kind::Other
+                }
+            };
+            let findings = check_channels(record, gravity, used);
+            session.findings.extend(findings.into_iter().map(|f| Finding { subject: format!("{}: {}", named.given, f.subject), ..f }));
+        }
+    }
+    let unit = |q: Quantity| job.units.unit(q).name.to_owned();
+    let question = Question {
+        vehicle: model,
+        known: section.known.clone(),
+        bounds: section.bounds.clone(),
+        band: Band { low_hz: band[0], high_hz: band[1] },
+        gravity,
+        gain_tolerance: section.tolerance_gain.unwrap_or(0.0),
+        sync_tolerance_s: section.tolerance_sync.unwrap_or(0.0),
+        units: UnitNames { mass: unit(Quantity::Mass), length: unit(Quantity::Length), force: unit(Quantity::Force) },
+    };
+    Ok(VehicleRecords { question, data, hold_out })
+}
+
+/// A fault at the line of the job for what the vehicle layer refuses.
+pub fn vehicle_fault(job: &Job, file: &str, e: &VehicleError) -> Fault {
+    let line = job.vehicle.as_ref().map_or(0, |v| v.line);
+    let (wrong, remedy) = split_message(&e.to_string());
+    match e {
+        VehicleError::Series(_) => Fault::of(file, "record", wrong, remedy),
+        _ => Fault::at(&*job.file, line, "vehicle", wrong, remedy),
+    }
+}
+
+fn preset_fault(job: &Job, section: &VehicleJob, e: &PresetError) -> Fault {
+    let key = match e {
+        PresetError::Model { .. } => "vehicle.model",
+        PresetError::Term { .. } => "vehicle.terms",
+        PresetError::Place { .. } => "vehicle.places",
+    };
+    let (wrong, remedy) = split_message(&e.to_string());
+    Fault::at(&*job.file, section.line, key, wrong, remedy)
+}
+
+/// What is wrong and what to do, around the last colon of a message.
+fn split_message(text: &str) -> (String, String) {
+    text.rsplit_once(": ").map_or_else(|| (text.to_owned(), "see the message".to_owned()), |(a, b)| (a.to_owned(), b.to_owned()))
+}
+
+fn read_record(session: &mut Session, job: &Job, section: &VehicleJob, named: &NamedFile) -> Result<Channels, Faults> {
+    let bytes = session.inputs.read_named(job, named).map_err(|f| vec![f])?;
+    let mut record = read_csv(&bytes, section.sample_rate).map_err(|e| {
+        let (wrong, remedy) = split_message(&e.to_string());
+        match &e {
+            crate::series::SeriesError::Line { line, what, remedy } => vec![Fault::at(&*named.given, *line as u32, "table", what, *remedy)],
+            crate::series::SeriesError::UnevenTime { line, .. } => vec![Fault::at(&*named.given, *line as u32, "time", wrong, remedy)],
+            _ => vec![Fault::of(&*named.given, "table", wrong, remedy)],
+        }
+    })?;
+    let mut faults = Faults::new();
+    for channel in record.list.iter_mut().filter(|c| !c.unit.is_empty()) {
+        match factor(job, &channel.unit) {
+            Some(f) => channel.samples.iter_mut().for_each(|v| *v *= f),
+            None => faults.push(Fault::at(
+                &*named.given,
+                1,
+                channel.name.clone(),
+                format!("`{}` is no unit of acceleration or force", channel.unit),
+                "write m/s2, mm/s2, g, N, kN or another unit that the job may use",
+            )),
+        }
+    }
+    if faults.is_empty() { Ok(record) } else { Err(faults) }
+}
+
+/// What a number in that unit is multiplied by to be in the job's units.
+fn factor(job: &Job, unit: &str) -> Option<f64> {
+    if matches!(unit, "g" | "G" | "g0") {
+        return Some(job.units.standard_gravity());
+    }
+    // A voltage, say, is taken as it is.
+    if matches!(unit, "-" | "1" | "V") {
+        return Some(1.0);
+    }
+    [Quantity::Acceleration, Quantity::Force].into_iter().find_map(|q| Some(find_unit(q, unit)?.si / job.units.si(q)))
+}

@@ -1,0 +1,97 @@
+//! Tables of an identification.
+
+use crate::vehicle::identify::Identification;
+use crate::vehicle::loads::{LoadHistory, link_forces};
+use crate::vehicle::motion::Motion;
+use std::fmt::Write;
+
+/// `parameters.csv`: name, value, sigma, low, high, unit, identifiable; blank where not told.
+pub fn write_parameters(found: &Identification) -> String {
+    let mut out = String::from("name,value,sigma,low,high,unit,identifiable\n");
+    let number = |v: Option<f64>| v.map_or(String::new(), |v| format!("{v:.9e}"));
+    for p in &found.parameters {
+        let (low, high) = (p.interval.map(|i| i[0]), p.interval.map(|i| i[1]));
+        let _ = writeln!(
+            out,
+            "{},{},{},{},{},{},{}",
+            p.name,
+            number(p.value),
+            number(p.sigma),
+            number(low),
+            number(high),
+            p.unit,
+            p.identifiable
+        );
+    }
+    out
+}
+
+/// `loads.csv`: time, then each wheel force in the band (about its mean) with its 95 % interval, and what was measured.
+pub fn write_wheel_forces(found: &Identification, history: &LoadHistory, measured: &Motion) -> String {
+    let mut out = String::from("time");
+    let used: Vec<usize> = (0..history.names.len()).filter(|&i| history.values[i].iter().any(|v| v.is_finite())).collect();
+    for &i in &used {
+        let n = &history.names[i];
+        let _ = write!(out, ",{n},{n}.low,{n}.high");
+        if measured.forces[i].is_some() {
+            let _ = write!(out, ",{n}.measured");
+        }
+    }
+    out.push('\n');
+    if used.is_empty() {
+        return out;
+    }
+    for t in 0..measured.n_samples() {
+        let _ = write!(out, "{:.6}", history.start_s + t as f64 / history.rate_hz);
+        for &i in &used {
+            let v = history.values[i][t];
+            let half = found.coverage_factor * history.sigma[i];
+            if half.is_finite() {
+                let _ = write!(out, ",{v:.6e},{:.6e},{:.6e}", v - half, v + half);
+            } else {
+                let _ = write!(out, ",{v:.6e},,");
+            }
+            if let Some(m) = &measured.forces[i] {
+                let _ = write!(out, ",{:.6e}", m[t]);
+            }
+        }
+        out.push('\n');
+    }
+    out
+}
+
+/// `restoring_force.csv`: mean link force by bins of stretch and its rate, from the model and as the motion of the body asks
+/// for it (where a single link carries the body), with the number of samples.
+pub fn write_restoring_force(found: &Identification, motion: &Motion) -> String {
+    const BINS: usize = 15;
+    let mut out = String::from("link,stretch,rate,force_model,force_measured,samples\n");
+    let v = &found.vehicle;
+    let forces = link_forces(v, &found.values, motion);
+    for (l, link) in v.links.iter().enumerate() {
+        let (d, r) = (&motion.stretch[l], &motion.rate[l]);
+        let largest = |x: &[f64]| x.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+        let (dm, rm) = (largest(d), largest(r));
+        let carried: Vec<usize> =
+            link.ends.iter().filter(|e| e.0 > 0.0 && v.bodies[e.1.body].shape.n() == 1).map(|e| e.1.body).collect();
+        let alone = carried.first().copied().filter(|b| v.links.iter().filter(|k| k.ends.iter().any(|e| e.1.body == *b)).count() == 1);
+        let measured = |t: usize| alone.map_or(f64::NAN, |b| -found.values[v.inertia_index(b, 0, 0)] * motion.bodies[b][0][t]);
+        let bin = |x: f64, m: f64| (((x / m + 1.0) / 2.0 * BINS as f64) as usize).min(BINS - 1);
+        let mut cells = vec![(0.0, 0.0, 0usize); BINS * BINS];
+        if dm <= 0.0 || rm <= 0.0 {
+            continue;
+        }
+        for t in 0..d.len() {
+            let cell = &mut cells[bin(d[t], dm) * BINS + bin(r[t], rm)];
+            cell.0 += forces[l][t];
+            cell.1 += measured(t);
+            cell.2 += 1;
+        }
+        let centre = |i: usize, m: f64| ((i as f64 + 0.5) / BINS as f64 * 2.0 - 1.0) * m;
+        for (i, (model, seen, n)) in cells.iter().enumerate().filter(|(_, c)| c.2 > 0) {
+            let n_f = *n as f64;
+            let seen = if seen.is_finite() { format!("{:.6e}", seen / n_f) } else { String::new() };
+            let _ = writeln!(out, "{},{:.6e},{:.6e},{:.6e},{seen},{n}", link.name, centre(i / BINS, dm), centre(i % BINS, rm), model / n_f);
+        }
+    }
+    out
+}
