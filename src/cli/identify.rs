@@ -29,7 +29,11 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     let job = session.stage("read", |s| job::read_job(&mut s.inputs, &arguments.job))?;
     session.put_units(job.units, &ReportUnits::of(job.units));
     let records = session.stage("read", |s| read_vehicle(s, &job))?;
-    let VehicleRecords { question, data, hold_out } = &records;
+    let VehicleRecords {
+        question,
+        data,
+        hold_out,
+    } = &records;
     let data_name = job.vehicle.as_ref().map_or("", |v| v.data.given.as_str());
     let found = session
         .stage("identify", |_| identify(question, data, hold_out.as_ref()))
@@ -47,15 +51,35 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     session.put("conditioning", found.conditioning)?;
 
     let history = |record: &Channels| {
-        let treatment = Treatment { band: question.band, keep_every: 1, adjust: vec![] };
+        let treatment = Treatment {
+            band: question.band,
+            keep_every: 1,
+            adjust: vec![],
+        };
         motion(&found.vehicle, record, &treatment).map(|m| (wheel_force_history(&found, &m), m))
     };
     let (loads, measured) = history(data).map_err(|e| vec![vehicle_fault(&job, data_name, &e)])?;
-    let mut rows = load_rows(&found, question.gravity, &question.units.force, data_name, &loads);
-    let held = match (hold_out, job.vehicle.as_ref().and_then(|v| v.hold_out.as_ref())) {
+    let mut rows = load_rows(
+        &found,
+        question.gravity,
+        &question.units.force,
+        data_name,
+        &loads,
+    );
+    let held = match (
+        hold_out,
+        job.vehicle.as_ref().and_then(|v| v.hold_out.as_ref()),
+    ) {
         (Some(record), Some(named)) => {
-            let (h, m) = history(record).map_err(|e| vec![vehicle_fault(&job, &named.given, &e)])?;
-            rows.extend(load_rows(&found, question.gravity, &question.units.force, &named.given, &h));
+            let (h, m) =
+                history(record).map_err(|e| vec![vehicle_fault(&job, &named.given, &e)])?;
+            rows.extend(load_rows(
+                &found,
+                question.gravity,
+                &question.units.force,
+                &named.given,
+                &h,
+            ));
             Some((h, m))
         }
         _ => None,
@@ -63,16 +87,22 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     session.put("loads", rows)?;
 
     let out = session.output_for(&arguments.job)?;
-    let mut write = |name: &str, text: String| out.write_bytes(name, text.as_bytes()).map_err(|f| vec![f]);
+    let mut write =
+        |name: &str, text: String| out.write_bytes(name, text.as_bytes()).map_err(|f| vec![f]);
     write("parameters.csv", write_parameters(&found))?;
     write("loads.csv", write_wheel_forces(&found, &loads, &measured))?;
     if let Some((h, m)) = &held {
         write("loads_hold_out.csv", write_wheel_forces(&found, h, m))?;
     }
-    write("restoring_force.csv", write_restoring_force(&found, &measured))?;
+    write(
+        "restoring_force.csv",
+        write_restoring_force(&found, &measured),
+    )?;
     for p in &found.parameters {
         match (p.value, p.sigma) {
-            (Some(v), Some(s)) => session.say(format!("{:12} {v:>14.6e} +- {s:.2e} {}", p.name, p.unit)),
+            (Some(v), Some(s)) => {
+                session.say(format!("{:12} {v:>14.6e} +- {s:.2e} {}", p.name, p.unit))
+            }
             _ => session.say(format!("{:12} {:>14} {}", p.name, "not told", p.unit)),
         }
     }
@@ -80,7 +110,12 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         session.say(sentence);
     }
     for f in &found.fit {
-        session.say(format!("{:12} left over {:.2} % ({})", f.channel, 100.0 * f.relative_rms, f.on));
+        session.say(format!(
+            "{:12} left over {:.2} % ({})",
+            f.channel,
+            100.0 * f.relative_rms,
+            f.on
+        ));
     }
     if let Some(m) = found.mass_closure {
         session.say(format!("identified mass / weighed mass: {:.4}", m.ratio));
@@ -88,7 +123,13 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     Ok(())
 }
 
-fn load_rows(found: &Identification, gravity: f64, unit: &str, run: &str, history: &LoadHistory) -> Vec<LoadRow> {
+fn load_rows(
+    found: &Identification,
+    gravity: f64,
+    unit: &str,
+    run: &str,
+    history: &LoadHistory,
+) -> Vec<LoadRow> {
     let statics = static_loads(found, gravity, run);
     history
         .names
@@ -97,7 +138,13 @@ fn load_rows(found: &Identification, gravity: f64, unit: &str, run: &str, histor
         .filter(|(i, _)| history.values[*i].iter().any(|v| v.is_finite()))
         .map(|(i, name)| {
             let at = statics.names.iter().position(|n| n == name);
-            let extreme = |pick: fn(f64, f64) -> f64| history.values[i].iter().copied().reduce(pick).unwrap_or(f64::NAN);
+            let extreme = |pick: fn(f64, f64) -> f64| {
+                history.values[i]
+                    .iter()
+                    .copied()
+                    .reduce(pick)
+                    .unwrap_or(f64::NAN)
+            };
             LoadRow {
                 run: run.to_owned(),
                 name: name.clone(),

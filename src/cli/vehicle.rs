@@ -33,15 +33,33 @@ pub struct VehicleRecords {
 /// Every fault of section, files and model.
 pub fn read_vehicle(session: &mut Session, job: &Job) -> Result<VehicleRecords, Faults> {
     let Some(section) = &job.vehicle else {
-        return Err(vec![Fault::of(&*job.file, "vehicle", "the job has no [vehicle] section", "add one with `model` and `data`")]);
+        return Err(vec![Fault::of(
+            &*job.file,
+            "vehicle",
+            "the job has no [vehicle] section",
+            "add one with `model` and `data`",
+        )]);
     };
     let data = read_record(session, job, section, &section.data)?;
-    let hold_out = section.hold_out.as_ref().map(|h| read_record(session, job, section, h)).transpose()?;
+    let hold_out = section
+        .hold_out
+        .as_ref()
+        .map(|h| read_record(session, job, section, h))
+        .transpose()?;
     let mut band = section.band_hz.unwrap_or(DEFAULT_BAND_HZ);
     if section.band_hz.is_none() {
         band[1] = band[1].min(0.4 * data.rate_hz);
-        let message = format!("The job names no band; {} to {} Hz is used for every channel.", band[0], band[1]);
-        session.findings.push(Finding::new(Severity::Info, "default-band", "vehicle.band_hz", message, "State `band_hz` in [vehicle]."));
+        let message = format!(
+            "The job names no band; {} to {} Hz is used for every channel.",
+            band[0], band[1]
+        );
+        session.findings.push(Finding::new(
+            Severity::Info,
+            "default-band",
+            "vehicle.band_hz",
+            message,
+            "State `band_hz` in [vehicle].",
+        ));
     }
     let wish = Wish {
         model: section.model.clone(),
@@ -51,19 +69,28 @@ pub fn read_vehicle(session: &mut Session, job: &Job) -> Result<VehicleRecords, 
     };
     let model = vehicle(&wish).map_err(|e| vec![preset_fault(job, section, &e)])?;
     let gravity = job.units.standard_gravity();
-    for (named, record) in [(Some(&section.data), Some(&data)), (section.hold_out.as_ref(), hold_out.as_ref())] {
+    for (named, record) in [
+        (Some(&section.data), Some(&data)),
+        (section.hold_out.as_ref(), hold_out.as_ref()),
+    ] {
         if let (Some(named), Some(record)) = (named, record) {
             let used = |name: &str| {
                 if model.wheels.iter().any(|w| w.channel == name) {
                     Kind::Force
-                } else if model.sensors.iter().any(|s| s.channel == name) || name.starts_with("a_") {
+                } else if model.sensors.iter().any(|s| s.channel == name) || name.starts_with("a_")
+                {
                     Kind::Acceleration
                 } else {
                     Kind::Other
                 }
             };
             let findings = check_channels(record, gravity, used);
-            session.findings.extend(findings.into_iter().map(|f| Finding { subject: format!("{}: {}", named.given, f.subject), ..f }));
+            session
+                .findings
+                .extend(findings.into_iter().map(|f| Finding {
+                    subject: format!("{}: {}", named.given, f.subject),
+                    ..f
+                }));
         }
     }
     let unit = |q: Quantity| job.units.unit(q).name.to_owned();
@@ -71,13 +98,24 @@ pub fn read_vehicle(session: &mut Session, job: &Job) -> Result<VehicleRecords, 
         vehicle: model,
         known: section.known.clone(),
         bounds: section.bounds.clone(),
-        band: Band { low_hz: band[0], high_hz: band[1] },
+        band: Band {
+            low_hz: band[0],
+            high_hz: band[1],
+        },
         gravity,
         gain_tolerance: section.tolerance_gain.unwrap_or(0.0),
         sync_tolerance_s: section.tolerance_sync.unwrap_or(0.0),
-        units: UnitNames { mass: unit(Quantity::Mass), length: unit(Quantity::Length), force: unit(Quantity::Force) },
+        units: UnitNames {
+            mass: unit(Quantity::Mass),
+            length: unit(Quantity::Length),
+            force: unit(Quantity::Force),
+        },
     };
-    Ok(VehicleRecords { question, data, hold_out })
+    Ok(VehicleRecords {
+        question,
+        data,
+        hold_out,
+    })
 }
 
 /// A fault at the line of the job for what the vehicle layer refuses.
@@ -102,16 +140,36 @@ fn preset_fault(job: &Job, section: &VehicleJob, e: &PresetError) -> Fault {
 
 /// What is wrong and what to do, around the last colon of a message.
 fn split_message(text: &str) -> (String, String) {
-    text.rsplit_once(": ").map_or_else(|| (text.to_owned(), "see the message".to_owned()), |(a, b)| (a.to_owned(), b.to_owned()))
+    text.rsplit_once(": ").map_or_else(
+        || (text.to_owned(), "see the message".to_owned()),
+        |(a, b)| (a.to_owned(), b.to_owned()),
+    )
 }
 
-fn read_record(session: &mut Session, job: &Job, section: &VehicleJob, named: &NamedFile) -> Result<Channels, Faults> {
+fn read_record(
+    session: &mut Session,
+    job: &Job,
+    section: &VehicleJob,
+    named: &NamedFile,
+) -> Result<Channels, Faults> {
     let bytes = session.inputs.read_named(job, named).map_err(|f| vec![f])?;
     let mut record = read_csv(&bytes, section.sample_rate).map_err(|e| {
         let (wrong, remedy) = split_message(&e.to_string());
         match &e {
-            crate::series::SeriesError::Line { line, what, remedy } => vec![Fault::at(&*named.given, *line as u32, "table", what, *remedy)],
-            crate::series::SeriesError::UnevenTime { line, .. } => vec![Fault::at(&*named.given, *line as u32, "time", wrong, remedy)],
+            crate::series::SeriesError::Line { line, what, remedy } => vec![Fault::at(
+                &*named.given,
+                *line as u32,
+                "table",
+                what,
+                *remedy,
+            )],
+            crate::series::SeriesError::UnevenTime { line, .. } => vec![Fault::at(
+                &*named.given,
+                *line as u32,
+                "time",
+                wrong,
+                remedy,
+            )],
             _ => vec![Fault::of(&*named.given, "table", wrong, remedy)],
         }
     })?;
@@ -128,7 +186,11 @@ fn read_record(session: &mut Session, job: &Job, section: &VehicleJob, named: &N
             )),
         }
     }
-    if faults.is_empty() { Ok(record) } else { Err(faults) }
+    if faults.is_empty() {
+        Ok(record)
+    } else {
+        Err(faults)
+    }
 }
 
 /// What a number in that unit is multiplied by to be in the job's units.
@@ -140,5 +202,7 @@ fn factor(job: &Job, unit: &str) -> Option<f64> {
     if matches!(unit, "-" | "1" | "V") {
         return Some(1.0);
     }
-    [Quantity::Acceleration, Quantity::Force].into_iter().find_map(|q| Some(find_unit(q, unit)?.si / job.units.si(q)))
+    [Quantity::Acceleration, Quantity::Force]
+        .into_iter()
+        .find_map(|q| Some(find_unit(q, unit)?.si / job.units.si(q)))
 }

@@ -94,14 +94,27 @@ fn bessel_i0(x: f64) -> f64 {
 pub fn upsampled(x: &[f64], factor: usize) -> Vec<f64> {
     let n = x.len();
     let factor = factor.max(1);
-    let (Some(first), Some(last)) = (x.first(), x.last()) else { return vec![] };
+    let (Some(first), Some(last)) = (x.first(), x.last()) else {
+        return vec![];
+    };
     if n < 3 || factor == 1 {
-        return (0..(n - 1) * factor + 1).map(|i| first + (last - first) * i as f64 / ((n - 1) * factor).max(1) as f64).collect();
+        return (0..(n - 1) * factor + 1)
+            .map(|i| first + (last - first) * i as f64 / ((n - 1) * factor).max(1) as f64)
+            .collect();
     }
     let slope = (last - first) / (n - 1) as f64;
-    let flat: Vec<f64> = x.iter().enumerate().map(|(i, v)| v - first - slope * i as f64).collect();
+    let flat: Vec<f64> = x
+        .iter()
+        .enumerate()
+        .map(|(i, v)| v - first - slope * i as f64)
+        .collect();
     let mut fourier = super::spectrum::Fourier::default();
     let spectrum = fourier.spectrum(&flat, 1.0);
     let dense = fourier.denser_samples(&spectrum, factor);
-    dense.into_iter().take((n - 1) * factor + 1).enumerate().map(|(i, v)| v + first + slope * i as f64 / factor as f64).collect()
+    dense
+        .into_iter()
+        .take((n - 1) * factor + 1)
+        .enumerate()
+        .map(|(i, v)| v + first + slope * i as f64 / factor as f64)
+        .collect()
 }

@@ -248,14 +248,22 @@ pub fn wheel_force_history(found: &Identification, motion: &Motion) -> LoadHisto
         start_s: motion.start_s,
         names: v.wheels.iter().map(|w| w.channel.clone()).collect(),
         values: scaled_wheel_forces(found, motion),
-        sigma: (0..v.wheels.len()).map(|w| found.wheel_force_sigma[w].unwrap_or(f64::NAN)).collect(),
+        sigma: (0..v.wheels.len())
+            .map(|w| found.wheel_force_sigma[w].unwrap_or(f64::NAN))
+            .collect(),
     }
 }
 
 /// Wheel forces where the identification carries the scale of forces; NaN elsewhere.
 fn scaled_wheel_forces(found: &Identification, motion: &Motion) -> Vec<Vec<f64>> {
     let v = &found.vehicle;
-    let n_residuals = sprung_residuals(v, &found.values, motion, &link_forces(v, &found.values, motion)).len();
+    let n_residuals = sprung_residuals(
+        v,
+        &found.values,
+        motion,
+        &link_forces(v, &found.values, motion),
+    )
+    .len();
     // Blends are kept part by part; a whole-vehicle blend needs the place of each part's residuals.
     let mut blend = vec![vec![0.0; n_residuals]; v.wheels.len()];
     let free = |b: usize| v.wheels.iter().all(|w| w.at.body != b);
@@ -265,8 +273,12 @@ fn scaled_wheel_forces(found: &Identification, motion: &Motion) -> Vec<Vec<f64>>
     }
     let mut next = 0;
     for bodies in v.components() {
-        let wheels: Vec<usize> = (0..v.wheels.len()).filter(|&w| bodies.contains(&v.wheels[w].at.body)).collect();
-        let columns: Vec<usize> = (0..order.len()).filter(|&k| bodies.contains(&order[k].0)).collect();
+        let wheels: Vec<usize> = (0..v.wheels.len())
+            .filter(|&w| bodies.contains(&v.wheels[w].at.body))
+            .collect();
+        let columns: Vec<usize> = (0..order.len())
+            .filter(|&k| bodies.contains(&order[k].0))
+            .collect();
         for w in wheels {
             for (share, &column) in found.blend.get(next).into_iter().flatten().zip(&columns) {
                 blend[w][column] = *share;
@@ -276,7 +288,12 @@ fn scaled_wheel_forces(found: &Identification, motion: &Motion) -> Vec<Vec<f64>>
     }
     let mut forces = wheel_forces(v, &found.values, motion, &blend);
     for (w, wheel) in v.wheels.iter().enumerate() {
-        if !found.scaled.get(v.inertia_index(wheel.at.body, 0, 0)).copied().unwrap_or(false) {
+        if !found
+            .scaled
+            .get(v.inertia_index(wheel.at.body, 0, 0))
+            .copied()
+            .unwrap_or(false)
+        {
             forces[w].fill(f64::NAN);
         }
     }
@@ -289,9 +306,16 @@ pub fn static_loads(found: &Identification, gravity: f64, run: &str) -> LoadEsti
     let v = &found.vehicle;
     let mut loads: Vec<(String, f64, Vec<usize>)> = Vec::new();
     for bodies in v.components() {
-        let wheels: Vec<&str> = v.wheels.iter().filter(|w| bodies.contains(&w.at.body)).map(|w| w.channel.as_str()).collect();
+        let wheels: Vec<&str> = v
+            .wheels
+            .iter()
+            .filter(|w| bodies.contains(&w.at.body))
+            .map(|w| w.channel.as_str())
+            .collect();
         let masses: Vec<usize> = bodies.iter().map(|&b| v.inertia_index(b, 0, 0)).collect();
-        let told = masses.iter().all(|&i| found.scaled[i] && found.values[i].is_finite());
+        let told = masses
+            .iter()
+            .all(|&i| found.scaled[i] && found.values[i].is_finite());
         if let ([wheel], true) = (wheels.as_slice(), told) {
             let value = masses.iter().map(|&i| found.values[i]).sum::<f64>() * gravity;
             loads.push(((*wheel).to_owned(), value, masses));
@@ -300,7 +324,10 @@ pub fn static_loads(found: &Identification, gravity: f64, run: &str) -> LoadEsti
     let mut covariance = Vec::new();
     for a in &loads {
         for b in &loads {
-            let sum: f64 = a.2.iter().map(|&i| b.2.iter().map(|&j| found.covariance[i][j]).sum::<f64>()).sum();
+            let sum: f64 =
+                a.2.iter()
+                    .map(|&i| b.2.iter().map(|&j| found.covariance[i][j]).sum::<f64>())
+                    .sum();
             covariance.push(sum * gravity * gravity);
         }
     }

@@ -1,7 +1,7 @@
 //! Parameters by the error of simulation: the last word on nonlinear terms, since stretch is simulated, not integrated.
 
 use super::layout::{Measures, Vehicle};
-use super::simulate::{Drive, SimulationError, Simulated, simulate};
+use super::simulate::{Drive, Simulated, SimulationError, simulate};
 use crate::linalg::levenberg::{Minimum, levenberg_marquardt};
 use crate::series::channels::{Channels, SeriesError};
 use crate::series::detrend::{rms, without_mean};
@@ -32,21 +32,41 @@ pub struct Refinement {
 }
 
 /// A band that lets everything through: residuals are taken as they are.
-pub const OPEN: Band = Band { low_hz: 0.0, high_hz: f64::INFINITY };
+pub const OPEN: Band = Band {
+    low_hz: 0.0,
+    high_hz: f64::INFINITY,
+};
 
 /// Sets up what to simulate from a record: bodies whose wheels are all measured are driven by them; the motion of a body with an
 /// unmeasured wheel is given, integrated from its accelerometer down to half the band's lower edge.
 ///
 /// # Errors
 /// [`SeriesError`] when a channel is missing or the record is too short for the band.
-pub fn comparison(vehicle: &Vehicle, record: &Channels, band: Band) -> Result<Comparison, SeriesError> {
+pub fn comparison(
+    vehicle: &Vehicle,
+    record: &Channels,
+    band: Band,
+) -> Result<Comparison, SeriesError> {
     let (record, _) = record.with_gaps_filled();
-    let trim = if band == OPEN { 0 } else { (1.5 * band.settling_s() * record.rate_hz) as usize };
+    let trim = if band == OPEN {
+        0
+    } else {
+        (1.5 * band.settling_s() * record.rate_hz) as usize
+    };
     if record.n_samples() < 3 * trim + 10 {
         let needed_s = 3.0 * trim as f64 / record.rate_hz;
-        return Err(SeriesError::TooShort { found_s: record.duration_s(), needed_s, low_hz: band.low_hz });
+        return Err(SeriesError::TooShort {
+            found_s: record.duration_s(),
+            needed_s,
+            low_hz: band.low_hz,
+        });
     }
-    let measured_wheels = |b: usize| vehicle.wheels.iter().all(|w| w.at.body != b || record.has(&w.channel));
+    let measured_wheels = |b: usize| {
+        vehicle
+            .wheels
+            .iter()
+            .all(|w| w.at.body != b || record.has(&w.channel))
+    };
     let mut drive = Drive {
         rate_hz: record.rate_hz,
         forces: vec![],
@@ -54,29 +74,61 @@ pub fn comparison(vehicle: &Vehicle, record: &Channels, band: Band) -> Result<Co
         constant: vec![0.0; vehicle.bodies.len()],
         steps: 2,
     };
-    let absolute = vehicle.sensors.iter().any(|s| s.measures == Measures::Displacement);
+    let absolute = vehicle
+        .sensors
+        .iter()
+        .any(|s| s.measures == Measures::Displacement);
     for w in &vehicle.wheels {
-        let force = record.samples(&w.channel).ok().map(|x| if absolute { x.to_vec() } else { without_mean(x) });
+        let force = record.samples(&w.channel).ok().map(|x| {
+            if absolute {
+                x.to_vec()
+            } else {
+                without_mean(x)
+            }
+        });
         drive.forces.push(force);
     }
-    let wide = Band { low_hz: 0.5 * band.low_hz, high_hz: f64::INFINITY };
+    let wide = Band {
+        low_hz: 0.5 * band.low_hz,
+        high_hz: f64::INFINITY,
+    };
     for (b, body) in vehicle.bodies.iter().enumerate() {
-        let own = vehicle.sensors.iter().find(|s| s.at.body == b && body.shape.n() == 1);
+        let own = vehicle
+            .sensors
+            .iter()
+            .find(|s| s.at.body == b && body.shape.n() == 1);
         drive.given.push(match own {
             Some(s) if !measured_wheels(b) => {
                 let a = record.samples(&s.channel)?;
-                Some(vec![[integrated(a, record.rate_hz, wide, 2), integrated(a, record.rate_hz, wide, 1)]])
+                Some(vec![[
+                    integrated(a, record.rate_hz, wide, 2),
+                    integrated(a, record.rate_hz, wide, 1),
+                ]])
             }
             _ => None,
         });
     }
     let mut measured = Vec::new();
-    for (i, s) in vehicle.sensors.iter().enumerate().filter(|(_, s)| drive.given[s.at.body].is_none()) {
+    for (i, s) in vehicle
+        .sensors
+        .iter()
+        .enumerate()
+        .filter(|(_, s)| drive.given[s.at.body].is_none())
+    {
         let x = record.samples(&s.channel)?;
-        let x = if absolute { x.to_vec() } else { without_mean(x) };
+        let x = if absolute {
+            x.to_vec()
+        } else {
+            without_mean(x)
+        };
         measured.push((i, in_band(&x, record.rate_hz, band, trim)));
     }
-    Ok(Comparison { drive, measured, band, trim })
+    Ok(Comparison {
+        drive,
+        measured,
+        band,
+        trim,
+    })
 }
 
 fn in_band(x: &[f64], rate_hz: f64, band: Band, trim: usize) -> Vec<f64> {
@@ -94,14 +146,27 @@ impl Comparison {
     ///
     /// # Errors
     /// [`SimulationError`].
-    pub fn errors(&self, vehicle: &Vehicle, values: &[f64], constant: &[f64]) -> Result<Vec<(usize, Vec<f64>)>, SimulationError> {
-        let drive = Drive { constant: constant.to_vec(), ..self.drive.clone() };
+    pub fn errors(
+        &self,
+        vehicle: &Vehicle,
+        values: &[f64],
+        constant: &[f64],
+    ) -> Result<Vec<(usize, Vec<f64>)>, SimulationError> {
+        let drive = Drive {
+            constant: constant.to_vec(),
+            ..self.drive.clone()
+        };
         let s = simulate(vehicle, values, &drive)?;
         Ok(self
             .measured
             .iter()
             .map(|(i, y)| {
-                let x = in_band(&sensor_signal(vehicle, &s, *i), self.drive.rate_hz, self.band, self.trim);
+                let x = in_band(
+                    &sensor_signal(vehicle, &s, *i),
+                    self.drive.rate_hz,
+                    self.band,
+                    self.trim,
+                );
                 (*i, x.iter().zip(y).map(|(a, b)| a - b).collect())
             })
             .collect())
@@ -110,7 +175,9 @@ impl Comparison {
     /// Samples at the start that are not compared (a simulation from rest needs time to forget it).
     pub fn forget(&mut self, samples: usize) {
         let n = samples.min(self.measured.first().map_or(0, |m| m.1.len()) / 2);
-        self.measured.iter_mut().for_each(|m| m.1.iter_mut().take(n).for_each(|v| *v = f64::NAN));
+        self.measured
+            .iter_mut()
+            .for_each(|m| m.1.iter_mut().take(n).for_each(|v| *v = f64::NAN));
     }
 }
 
@@ -123,7 +190,9 @@ pub fn sensor_signal(vehicle: &Vehicle, s: &Simulated, sensor: usize) -> Vec<f64
     };
     let phi = vehicle.functions(at);
     let n = motions.first().map_or(0, Vec::len);
-    (0..n).map(|t| phi.iter().zip(motions).map(|(p, q)| p * q[t]).sum()).collect()
+    (0..n)
+        .map(|t| phi.iter().zip(motions).map(|(p, q)| p * q[t]).sum())
+        .collect()
 }
 
 /// Minimises the simulation error over the parameters `free`, starting at `values`; with displacement sensors also over a
@@ -131,36 +200,84 @@ pub fn sensor_signal(vehicle: &Vehicle, s: &Simulated, sensor: usize) -> Vec<f64
 ///
 /// # Errors
 /// [`SimulationError`] when even the start can't be simulated.
-pub fn refine(vehicle: &Vehicle, values: &[f64], free: &[usize], comparison: &Comparison) -> Result<Refinement, SimulationError> {
-    let absolute = vehicle.sensors.iter().any(|s| s.measures == Measures::Displacement);
+pub fn refine(
+    vehicle: &Vehicle,
+    values: &[f64],
+    free: &[usize],
+    comparison: &Comparison,
+) -> Result<Refinement, SimulationError> {
+    let absolute = vehicle
+        .sensors
+        .iter()
+        .any(|s| s.measures == Measures::Displacement);
     let n_bodies = if absolute { vehicle.bodies.len() } else { 0 };
-    let finite = |x: &[f64]| x.iter().copied().filter(|v| v.is_finite()).collect::<Vec<f64>>();
-    let sizes: Vec<f64> = comparison.measured.iter().map(|(_, y)| rms(&finite(y)).max(f64::MIN_POSITIVE)).collect();
+    let finite = |x: &[f64]| {
+        x.iter()
+            .copied()
+            .filter(|v| v.is_finite())
+            .collect::<Vec<f64>>()
+    };
+    let sizes: Vec<f64> = comparison
+        .measured
+        .iter()
+        .map(|(_, y)| rms(&finite(y)).max(f64::MIN_POSITIVE))
+        .collect();
     let at = |u: &[f64]| {
         let mut v = values.to_vec();
         free.iter().zip(u).for_each(|(&i, x)| v[i] = *x);
         let mut constant = vec![0.0; vehicle.bodies.len()];
-        constant.iter_mut().zip(&u[free.len()..]).for_each(|(c, x)| *c = *x);
+        constant
+            .iter_mut()
+            .zip(&u[free.len()..])
+            .for_each(|(c, x)| *c = *x);
         (v, constant)
     };
     let error_rms = |u: &[f64]| -> Result<Vec<f64>, SimulationError> {
         let (v, c) = at(u);
-        Ok(comparison.errors(vehicle, &v, &c)?.iter().map(|(_, e)| rms(&finite(e))).collect())
+        Ok(comparison
+            .errors(vehicle, &v, &c)?
+            .iter()
+            .map(|(_, e)| rms(&finite(e)))
+            .collect())
     };
     let residuals = |u: &[f64]| -> Option<Vec<f64>> {
         let (v, c) = at(u);
         let errors = comparison.errors(vehicle, &v, &c).ok()?;
-        Some(errors.iter().zip(&sizes).flat_map(|((_, e), s)| finite(e).into_iter().map(move |x| x / s)).collect())
+        Some(
+            errors
+                .iter()
+                .zip(&sizes)
+                .flat_map(|((_, e), s)| finite(e).into_iter().map(move |x| x / s))
+                .collect(),
+        )
     };
     let mut start: Vec<f64> = free.iter().map(|&i| values[i]).collect();
-    let largest_force = comparison.drive.forces.iter().flatten().map(|f| rms(f)).fold(0.0, f64::max);
+    let largest_force = comparison
+        .drive
+        .forces
+        .iter()
+        .flatten()
+        .map(|f| rms(f))
+        .fold(0.0, f64::max);
     let mut scale: Vec<f64> = start.iter().map(|v| v.abs()).collect();
     start.extend(vec![0.0; n_bodies]);
     scale.extend(vec![largest_force; n_bodies]);
     let before = error_rms(&start)?;
     let minimum = levenberg_marquardt(residuals, &start, &scale);
     let after = error_rms(&minimum.x)?;
-    let names = comparison.measured.iter().map(|(i, _)| vehicle.sensors[*i].channel.clone());
+    let names = comparison
+        .measured
+        .iter()
+        .map(|(i, _)| vehicle.sensors[*i].channel.clone());
     let (values, constant) = at(&minimum.x);
-    Ok(Refinement { values, constant, error_rms: names.zip(before).zip(after).map(|((n, b), a)| (n, b, a)).collect(), minimum })
+    Ok(Refinement {
+        values,
+        constant,
+        error_rms: names
+            .zip(before)
+            .zip(after)
+            .map(|((n, b), a)| (n, b, a))
+            .collect(),
+        minimum,
+    })
 }

@@ -36,16 +36,22 @@ pub struct Simulated {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SimulationError {
     /// A body without usable inertia.
-    #[error("the inertia of body `{0}` is unknown or singular: state it as known, or give the body's motion")]
+    #[error(
+        "the inertia of body `{0}` is unknown or singular: state it as known, or give the body's motion"
+    )]
     Inertia(String),
     /// The motion grew beyond bounds.
-    #[error("the motion ran away at {at_s:.3} s: a parameter has the wrong sign or the steps are too long")]
+    #[error(
+        "the motion ran away at {at_s:.3} s: a parameter has the wrong sign or the steps are too long"
+    )]
     Diverged {
         /// When.
         at_s: f64,
     },
     /// Histories of different length.
-    #[error("histories that drive the simulation have {found} and {expected} samples: cut them to one length")]
+    #[error(
+        "histories that drive the simulation have {found} and {expected} samples: cut them to one length"
+    )]
     Length {
         /// Length found.
         found: usize,
@@ -81,17 +87,35 @@ struct Machine<'a> {
 ///
 /// # Errors
 /// [`SimulationError`] when inertia is missing, histories differ in length, or the motion runs away.
-pub fn simulate(vehicle: &Vehicle, values: &[f64], drive: &Drive) -> Result<Simulated, SimulationError> {
+pub fn simulate(
+    vehicle: &Vehicle,
+    values: &[f64],
+    drive: &Drive,
+) -> Result<Simulated, SimulationError> {
     let steps = drive.steps.max(1);
     let n = samples(drive)?;
     let machine = machine(vehicle, values, drive, 2 * steps)?;
     let h = 1.0 / (drive.rate_hz * steps as f64);
     let m = machine.n_state;
     let mut y = vec![0.0; 2 * m];
-    let (mut k1, mut k2, mut k3, mut k4) = (vec![0.0; 2 * m], vec![0.0; 2 * m], vec![0.0; 2 * m], vec![0.0; 2 * m]);
+    let (mut k1, mut k2, mut k3, mut k4) = (
+        vec![0.0; 2 * m],
+        vec![0.0; 2 * m],
+        vec![0.0; 2 * m],
+        vec![0.0; 2 * m],
+    );
     let mut mid = vec![0.0; 2 * m];
-    let empty = |v: &Vehicle| v.bodies.iter().map(|b| vec![Vec::with_capacity(n); b.shape.n()]).collect::<Vec<_>>();
-    let mut out = Simulated { displacement: empty(vehicle), velocity: empty(vehicle), acceleration: empty(vehicle) };
+    let empty = |v: &Vehicle| {
+        v.bodies
+            .iter()
+            .map(|b| vec![Vec::with_capacity(n); b.shape.n()])
+            .collect::<Vec<_>>()
+    };
+    let mut out = Simulated {
+        displacement: empty(vehicle),
+        velocity: empty(vehicle),
+        acceleration: empty(vehicle),
+    };
     for i in 0..n {
         machine.rates(&y, 2 * steps * i, &mut k1);
         for f in &machine.free {
@@ -102,7 +126,9 @@ pub fn simulate(vehicle: &Vehicle, values: &[f64], drive: &Drive) -> Result<Simu
             }
         }
         if y.iter().any(|v| !v.is_finite() || v.abs() > 1e12) {
-            return Err(SimulationError::Diverged { at_s: i as f64 / drive.rate_hz });
+            return Err(SimulationError::Diverged {
+                at_s: i as f64 / drive.rate_hz,
+            });
         }
         if i + 1 == n {
             break;
@@ -134,11 +160,22 @@ pub fn simulate(vehicle: &Vehicle, values: &[f64], drive: &Drive) -> Result<Simu
 }
 
 fn step(y: &[f64], k: &[f64], h: f64, out: &mut [f64]) {
-    out.iter_mut().zip(y).zip(k).for_each(|((o, y), k)| *o = y + h * k);
+    out.iter_mut()
+        .zip(y)
+        .zip(k)
+        .for_each(|((o, y), k)| *o = y + h * k);
 }
 
 fn samples(drive: &Drive) -> Result<usize, SimulationError> {
-    let lengths = drive.forces.iter().flatten().map(Vec::len).chain(drive.given.iter().flatten().flatten().flatten().map(Vec::len));
+    let lengths = drive.forces.iter().flatten().map(Vec::len).chain(
+        drive
+            .given
+            .iter()
+            .flatten()
+            .flatten()
+            .flatten()
+            .map(Vec::len),
+    );
     let mut expected = None;
     for found in lengths {
         match expected {
@@ -150,40 +187,92 @@ fn samples(drive: &Drive) -> Result<usize, SimulationError> {
     Ok(expected.unwrap_or(0))
 }
 
-fn machine<'a>(vehicle: &Vehicle, values: &[f64], drive: &'a Drive, dense: usize) -> Result<Machine<'a>, SimulationError> {
-    let mut out =
-        Machine { free: vec![], n_state: 0, ends: vec![], terms: vec![], wheels: vec![], given: vec![], constant: &drive.constant };
+fn machine<'a>(
+    vehicle: &Vehicle,
+    values: &[f64],
+    drive: &'a Drive,
+    dense: usize,
+) -> Result<Machine<'a>, SimulationError> {
+    let mut out = Machine {
+        free: vec![],
+        n_state: 0,
+        ends: vec![],
+        terms: vec![],
+        wheels: vec![],
+        given: vec![],
+        constant: &drive.constant,
+    };
     // Index of each body's first motion, in the state or in the list of given motions.
     let mut place = Vec::new();
     for (b, body) in vehicle.bodies.iter().enumerate() {
         let n = body.shape.n();
         if let Some(Some(given)) = drive.given.get(b) {
             place.push((out.given.len(), true));
-            out.given.extend(given.iter().map(|[d, v]| [upsampled(d, dense), upsampled(v, dense)]));
+            out.given.extend(
+                given
+                    .iter()
+                    .map(|[d, v]| [upsampled(d, dense), upsampled(v, dense)]),
+            );
             continue;
         }
-        let value = |i: usize, j: usize| values.get(vehicle.inertia_index(b, i, j)).copied().unwrap_or(f64::NAN);
-        let inertia: Vec<Vec<f64>> = (0..n).map(|i| (0..n).map(|j| value(i, j)).collect()).collect();
+        let value = |i: usize, j: usize| {
+            values
+                .get(vehicle.inertia_index(b, i, j))
+                .copied()
+                .unwrap_or(f64::NAN)
+        };
+        let inertia: Vec<Vec<f64>> = (0..n)
+            .map(|i| (0..n).map(|j| value(i, j)).collect())
+            .collect();
         let usable = inertia.iter().flatten().all(|v| v.is_finite());
-        let inverse = left_inverse(&inertia).filter(|_| usable).ok_or_else(|| SimulationError::Inertia(body.name.clone()))?;
+        let inverse = left_inverse(&inertia)
+            .filter(|_| usable)
+            .ok_or_else(|| SimulationError::Inertia(body.name.clone()))?;
         place.push((out.n_state, false));
-        out.free.push(Free { body: b, at: out.n_state, n, inverse });
+        out.free.push(Free {
+            body: b,
+            at: out.n_state,
+            n,
+            inverse,
+        });
         out.n_state += n;
     }
     for (l, link) in vehicle.links.iter().enumerate() {
         let mut ends = Vec::new();
         for (w, p) in &link.ends {
             let (first, given) = place[p.body];
-            ends.extend(vehicle.functions(p).iter().enumerate().map(|(j, phi)| (first + j, w * phi, given)));
+            ends.extend(
+                vehicle
+                    .functions(p)
+                    .iter()
+                    .enumerate()
+                    .map(|(j, phi)| (first + j, w * phi, given)),
+            );
         }
         out.ends.push(ends);
-        let coefficient = |t: usize| values.get(vehicle.term_index(l, t)).copied().unwrap_or(f64::NAN);
-        out.terms.push(link.terms.iter().enumerate().map(|(t, term)| (*term, coefficient(t))).collect());
+        let coefficient = |t: usize| {
+            values
+                .get(vehicle.term_index(l, t))
+                .copied()
+                .unwrap_or(f64::NAN)
+        };
+        out.terms.push(
+            link.terms
+                .iter()
+                .enumerate()
+                .map(|(t, term)| (*term, coefficient(t)))
+                .collect(),
+        );
     }
     for (wheel, force) in vehicle.wheels.iter().zip(&drive.forces) {
         let (first, given) = place[wheel.at.body];
         if let (Some(force), false) = (force, given) {
-            let phi = vehicle.functions(&wheel.at).iter().enumerate().map(|(j, p)| (first + j, *p)).collect();
+            let phi = vehicle
+                .functions(&wheel.at)
+                .iter()
+                .enumerate()
+                .map(|(j, p)| (first + j, *p))
+                .collect();
             out.wheels.push((phi, upsampled(force, dense)));
         }
     }
@@ -212,7 +301,9 @@ impl Machine<'_> {
                 }
             }
             let pull: f64 = terms.iter().map(|(t, c)| c * t.basis(d, v)).sum();
-            ends.iter().filter(|e| !e.2).for_each(|&(i, w, _)| force[i] -= w * pull);
+            ends.iter()
+                .filter(|e| !e.2)
+                .for_each(|&(i, w, _)| force[i] -= w * pull);
         }
         for (phi, history) in &self.wheels {
             phi.iter().for_each(|&(i, p)| force[i] += p * history[at]);
@@ -222,7 +313,11 @@ impl Machine<'_> {
                 force[f.at] *= row[0];
                 continue;
             }
-            let load = [force[f.at], force[f.at + 1], if f.n > 2 { force[f.at + 2] } else { 0.0 }];
+            let load = [
+                force[f.at],
+                force[f.at + 1],
+                if f.n > 2 { force[f.at + 2] } else { 0.0 },
+            ];
             for (j, row) in f.inverse.iter().enumerate() {
                 force[f.at + j] = row.iter().zip(&load).map(|(a, b)| a * b).sum();
             }

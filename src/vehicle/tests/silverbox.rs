@@ -10,14 +10,21 @@ const RATE_HZ: f64 = 610.35;
 const FITTED: usize = 20_000;
 
 fn record() -> Option<(Channels, Channels)> {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/hidden_effects/real/silverbox_estimation.csv");
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../shared/hidden_effects/real/silverbox_estimation.csv"
+    );
     let Ok(bytes) = std::fs::read(path) else {
         eprintln!("skipped: {path} is absent");
         return None;
     };
     let all = read_csv(&bytes, Some(RATE_HZ)).unwrap();
     let part = |from: usize, to: usize| {
-        let channel = |name: &str, new: &str| Channel { name: new.into(), unit: "V".into(), samples: all.samples(name).unwrap()[from..to].to_vec() };
+        let channel = |name: &str, new: &str| Channel {
+            name: new.into(),
+            unit: "V".into(),
+            samples: all.samples(name).unwrap()[from..to].to_vec(),
+        };
         Channels::from_list(RATE_HZ, vec![channel("u_V", "u"), channel("y_V", "y")]).unwrap()
     };
     Some((part(0, FITTED), part(FITTED, all.n_samples())))
@@ -33,17 +40,43 @@ fn held_out_mv(terms: &[&str], fitted: &Channels, rest: &Channels) -> f64 {
     let refined = refine(&q.vehicle, &start.values, &free, &c).unwrap();
     let mut judge = comparison(&q.vehicle, rest, OPEN).unwrap();
     judge.forget(200);
-    let errors = judge.errors(&q.vehicle, &refined.values, &refined.constant).unwrap();
-    let e: Vec<f64> = errors[0].1.iter().copied().filter(|v| v.is_finite()).collect();
-    eprintln!("{terms:?} start {:?} end {:?} {:?} {:?} {} {:?}", start.values, refined.values, refined.constant, refined.error_rms, refined.minimum.evaluations, refined.minimum.stop);
+    let errors = judge
+        .errors(&q.vehicle, &refined.values, &refined.constant)
+        .unwrap();
+    let e: Vec<f64> = errors[0]
+        .1
+        .iter()
+        .copied()
+        .filter(|v| v.is_finite())
+        .collect();
+    eprintln!(
+        "{terms:?} start {:?} end {:?} {:?} {:?} {} {:?}",
+        start.values,
+        refined.values,
+        refined.constant,
+        refined.error_rms,
+        refined.minimum.evaluations,
+        refined.minimum.stop
+    );
     1000.0 * rms(&e)
 }
 
 #[test]
 fn silverbox() {
-    let Some((fitted, rest)) = record() else { return };
-    for t in [vec!["k", "c"], vec!["k", "c", "k3"], vec!["k", "c", "k2", "k3"]] {
+    let Some((fitted, rest)) = record() else {
+        return;
+    };
+    for t in [
+        vec!["k", "c"],
+        vec!["k", "c", "k3"],
+        vec!["k", "c", "k2", "k3"],
+    ] {
         let s = std::time::Instant::now();
-        eprintln!("== {:?} {} mV  {:?}", t, held_out_mv(&t, &fitted, &rest), s.elapsed());
+        eprintln!(
+            "== {:?} {} mV  {:?}",
+            t,
+            held_out_mv(&t, &fitted, &rest),
+            s.elapsed()
+        );
     }
 }

@@ -100,7 +100,14 @@ fn height(track: &[f64], x: f64, dx: f64) -> f64 {
 /// State: heave, pitch, roll of the body, heave and roll of each axle; their rates; friction states.
 type State = Vec<f64>;
 
-pub(super) fn drive(truck: &Truck, seconds: f64, speed: f64, roughness: f64, seed: u64, noise: [f64; 2]) -> Readings {
+pub(super) fn drive(
+    truck: &Truck,
+    seconds: f64,
+    speed: f64,
+    roughness: f64,
+    seed: u64,
+    noise: [f64; 2],
+) -> Readings {
     let dx = 0.05;
     let ahead = 10.0;
     let tracks = road(seconds * speed + 2.0 * ahead, dx, roughness, seed);
@@ -111,7 +118,12 @@ pub(super) fn drive(truck: &Truck, seconds: f64, speed: f64, roughness: f64, see
     // Start: settled on the level of the road's start.
     let mut y: State = vec![0.0; 2 * n + corners];
     let statics = static_forces(truck);
-    let mut out = Readings { body: vec![vec![]; corners], hub: vec![vec![]; corners], force: vec![vec![]; corners], lifted_share: 0.0 };
+    let mut out = Readings {
+        body: vec![vec![]; corners],
+        hub: vec![vec![]; corners],
+        force: vec![vec![]; corners],
+        lifted_share: 0.0,
+    };
     let mut g = Gauss(ChaCha8Rng::seed_from_u64(seed + 1000));
     let mut lifted = 0usize;
     let samples = (seconds * RATE_HZ) as usize;
@@ -131,13 +143,17 @@ pub(super) fn drive(truck: &Truck, seconds: f64, speed: f64, roughness: f64, see
         }
         for s in 0..SUBSTEPS {
             let t = t + s as f64 * h;
-            let f = |y: &State, t: f64| rates_only(truck, y, t, speed, &tracks, dx, ahead, &statics);
-            let add = |k: &State, w: f64| y.iter().zip(k).map(|(a, b)| a + w * b).collect::<State>();
+            let f =
+                |y: &State, t: f64| rates_only(truck, y, t, speed, &tracks, dx, ahead, &statics);
+            let add =
+                |k: &State, w: f64| y.iter().zip(k).map(|(a, b)| a + w * b).collect::<State>();
             let k1 = f(&y, t);
             let k2 = f(&add(&k1, h / 2.0), t + h / 2.0);
             let k3 = f(&add(&k2, h / 2.0), t + h / 2.0);
             let k4 = f(&add(&k3, h), t + h);
-            y = (0..y.len()).map(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i])).collect();
+            y = (0..y.len())
+                .map(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]))
+                .collect();
         }
     }
     out.lifted_share = lifted as f64 / (samples * corners) as f64;
@@ -156,15 +172,37 @@ fn static_forces(truck: &Truck) -> Vec<f64> {
     let weight = truck.mass * G;
     let det = a * c - b * b;
     let (s0, s1) = (weight * c / det, -weight * b / det);
-    truck.axles.iter().map(|x| x.k * (s0 + s1 * x.x) + x.mass * G / 2.0).collect()
+    truck
+        .axles
+        .iter()
+        .map(|x| x.k * (s0 + s1 * x.x) + x.mass * G / 2.0)
+        .collect()
 }
 
-fn rates_only(truck: &Truck, y: &State, t: f64, speed: f64, tracks: &[Vec<f64>; 2], dx: f64, ahead: f64, statics: &[f64]) -> State {
+fn rates_only(
+    truck: &Truck,
+    y: &State,
+    t: f64,
+    speed: f64,
+    tracks: &[Vec<f64>; 2],
+    dx: f64,
+    ahead: f64,
+    statics: &[f64],
+) -> State {
     rates(truck, y, t, speed, tracks, dx, ahead, statics).0
 }
 
 #[allow(clippy::too_many_arguments)]
-fn rates(truck: &Truck, y: &State, t: f64, speed: f64, tracks: &[Vec<f64>; 2], dx: f64, ahead: f64, statics: &[f64]) -> (State, Vec<f64>) {
+fn rates(
+    truck: &Truck,
+    y: &State,
+    t: f64,
+    speed: f64,
+    tracks: &[Vec<f64>; 2],
+    dx: f64,
+    ahead: f64,
+    statics: &[f64],
+) -> (State, Vec<f64>) {
     let n = 3 + 2 * truck.axles.len();
     let mut out = vec![0.0; y.len()];
     let mut forces = Vec::with_capacity(2 * truck.axles.len());
@@ -176,8 +214,12 @@ fn rates(truck: &Truck, y: &State, t: f64, speed: f64, tracks: &[Vec<f64>; 2], d
         for s in 0..2 {
             let side = if s == 0 { 1.0 } else { -1.0 };
             let corner = 2 * i + s;
-            let stretch = y[0] + axle.x * y[1] + side * axle.half_spring * y[2] - y[z] - side * axle.half_spring * y[zr];
-            let rate = y[n] + axle.x * y[n + 1] + side * axle.half_spring * y[n + 2] - y[n + z] - side * axle.half_spring * y[n + zr];
+            let stretch = y[0] + axle.x * y[1] + side * axle.half_spring * y[2]
+                - y[z]
+                - side * axle.half_spring * y[zr];
+            let rate = y[n] + axle.x * y[n + 1] + side * axle.half_spring * y[n + 2]
+                - y[n + z]
+                - side * axle.half_spring * y[n + zr];
             // Dahl friction: full after about 2 mm of travel.
             let q = y[2 * n + corner];
             out[2 * n + corner] = (rate - rate.abs() * q) / 0.002;
@@ -185,10 +227,14 @@ fn rates(truck: &Truck, y: &State, t: f64, speed: f64, tracks: &[Vec<f64>; 2], d
             let place = ahead + axle.x + speed * t;
             let track = &tracks[s];
             let ground = height(track, place, dx) - height(track, ahead + axle.x, dx);
-            let slope = (height(track, place + dx, dx) - height(track, place - dx, dx)) / (2.0 * dx) * speed;
+            let slope = (height(track, place + dx, dx) - height(track, place - dx, dx))
+                / (2.0 * dx)
+                * speed;
             let wheel = y[z] + side * axle.half_track * y[zr];
             let wheel_rate = y[n + z] + side * axle.half_track * y[n + zr];
-            let tyre = (statics[i] + axle.tyre_k * (ground - wheel) + axle.tyre_c * (slope - wheel_rate)).max(0.0);
+            let tyre =
+                (statics[i] + axle.tyre_k * (ground - wheel) + axle.tyre_c * (slope - wheel_rate))
+                    .max(0.0);
             forces.push(tyre);
             body_force -= pull;
             pitch_moment -= axle.x * pull;
