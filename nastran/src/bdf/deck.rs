@@ -53,6 +53,8 @@ pub(super) struct Seams {
     pub bulk_line: Option<Position>,
     /// Start of the line ENDDATA.
     pub enddata: Option<Position>,
+    /// Start of the line SOL, and its end.
+    pub(super) sol: Option<(Position, usize)>,
 }
 
 /// A deck: its bytes, its typed cards, and everything that is wrong with it.

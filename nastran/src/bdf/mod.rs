@@ -17,6 +17,7 @@ mod read;
 mod replicate;
 mod split;
 mod walk;
+mod write;
 
 #[cfg(test)]
 mod tests;
@@ -28,3 +29,7 @@ pub use include::{IncludeRequest, Loaded, Loader, MemoryLoader};
 pub use names::{Label, Named};
 pub use number::{Number, read_number};
 pub use read::read_deck;
+pub use write::{
+    EditError, Edits, Field, ToFields, format_card, format_real, shortest_real, write_deck,
+    write_edited,
+};

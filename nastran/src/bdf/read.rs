@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicUsize;
 use super::assemble::Part;
 use super::case;
 use super::chunk::read_chunks;
-use super::deck::Deck;
+use super::deck::{Deck, Position};
 use super::defer::resolve;
 use super::include::Loader;
 use super::line::text_of;
@@ -82,6 +82,14 @@ fn read_sol(statements: &[Statement], deck: &mut Deck) {
             .to_ascii_uppercase();
         deck.sol = word.parse().ok().or_else(|| named_solution(&word));
         deck.sol_text = Some(value.to_owned());
+        let source = statement.at.source.0 as usize;
+        deck.seams.sol = Some((
+            Position {
+                source,
+                offset: statement.start,
+            },
+            statement.end,
+        ));
     }
 }
 

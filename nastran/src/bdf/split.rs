@@ -51,6 +51,15 @@ pub(super) fn cut(body: &[u8]) -> Cut<'_> {
             return free(body, head, comma + 1);
         }
     }
+    if let Some(head) = repetition(body) {
+        return Cut {
+            format: Format::Small,
+            lead: Lead::Replica,
+            head,
+            body,
+            rest: 0,
+        };
+    }
     let tabs = memchr::memchr(b'\t', body.get(..8.min(body.len())).unwrap_or_default());
     let head = trim(
         body.get(..tabs.unwrap_or(8).min(body.len()))
@@ -87,6 +96,12 @@ pub(super) fn cut(body: &[u8]) -> Cut<'_> {
             rest: 0,
         },
     }
+}
+
+/// `=(n)` or `=n`, which may be longer than a field.
+fn repetition(body: &[u8]) -> Option<&[u8]> {
+    let token = body.split(|&c| is_blank(c)).find(|t| !t.is_empty())?;
+    matches!(token, [b'=', b'(' | b'0'..=b'9', ..]).then_some(token)
 }
 
 fn free<'a>(body: &'a [u8], head: &'a [u8], rest: usize) -> Cut<'a> {

@@ -161,3 +161,73 @@ fn numbers_of_grids_elements_and_masses_agree_with_another_reader() {
         );
     }
 }
+
+#[test]
+fn every_deck_is_written_as_it_was_read() {
+    for case in common::cases() {
+        let Some(deck) = case.deck() else { continue };
+        for (path, bytes) in nastran::bdf::write_deck(&deck) {
+            assert_eq!(bytes, std::fs::read(&path).unwrap(), "{path}");
+        }
+    }
+}
+
+#[test]
+fn the_replicated_cards_of_a_real_deck_are_made() {
+    for case in common::cases() {
+        let Some(deck) = case.deck() else { continue };
+        if case.name == "nx_quad8_replicated_deck" {
+            // one card written out, nine by `=,=,107,=`
+            assert_eq!(deck.counts["DEFORM"], 10);
+        }
+    }
+}
+
+#[test]
+fn quads_agree_with_another_reader() {
+    for case in common::cases() {
+        let Some(deck) = case.deck() else { continue };
+        let Some(quads) = case.expected["mesh"]["cquad4_frames"].as_array() else {
+            continue;
+        };
+        for quad in quads {
+            let shell = deck
+                .cards
+                .shells
+                .iter()
+                .find(|s| u64::from(s.id) == quad["eid"].as_u64().unwrap())
+                .unwrap();
+            assert_eq!(
+                shell.pid.map(u64::from),
+                quad["pid"].as_u64(),
+                "{}",
+                case.name
+            );
+            let grids: Vec<u64> = quad["nodes"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .filter_map(|n| n.as_u64())
+                .collect();
+            assert!(
+                shell
+                    .grids
+                    .iter()
+                    .map(|&g| u64::from(g))
+                    .zip(grids)
+                    .all(|(a, b)| a == b),
+                "{}",
+                case.name
+            );
+            let angle = &quad["theta_mcid"];
+            match shell.angle {
+                nastran::cards::MaterialAngle::Theta(t) => {
+                    assert_eq!(angle.as_f64(), Some(t), "{}", case.name)
+                }
+                nastran::cards::MaterialAngle::Mcid(c) => {
+                    assert_eq!(angle.as_u64(), Some(u64::from(c)), "{}", case.name)
+                }
+            }
+        }
+    }
+}

@@ -33,6 +33,8 @@ pub struct CaseLine {
     pub name: String,
     /// The statement without comments, its lines joined.
     pub text: String,
+    /// It stands in or below OUTPUT(PLOT), OUTPUT(POST) and the like, which is no case control.
+    pub in_packet: bool,
     /// Offsets of its first byte and after its last line.
     pub(super) start: usize,
     pub(super) end: usize,

@@ -47,6 +47,7 @@ pub(in super::super) fn read_case_control(
             subcase,
             name,
             text: text.to_owned(),
+            in_packet,
             start: first.start,
             end,
         });

@@ -1,0 +1,144 @@
+use super::super::{Selection, SubcaseKind};
+use super::{bulk, clean, shown};
+
+const DECK: &str = "\
+NASTRAN SYSTEM(442)=-1
+ID A,B
+SOL SESTATIC $ statics
+TIME 5
+CEND
+TITLE = Truck, frame
+  ECHO = NONE
+SPC = 1
+SET 1 = 1, 5 THRU 9 EXCEPT 6,7, 20,
+        30 THRU 40 BY 5
+SET 2 = ALL EXCEPT 3
+STRAIN(PLOT,FIBER) = ALL
+DISP(PLOT)=2
+TEMP(INIT)=4
+PARAM,POST,-1
+SUBCASE 11 $ front left
+  SUBTITLE=front
+  LABEL = LF.FZ
+  LOAD=101
+  STRAIN(PLOT,STRCUR,CORNER) = 1
+  spcforces = none
+SUBCASE 12
+  LOAD 102
+  SPC=2
+  SET 1 = 99
+  MPC = 7
+  SUPORT1 = 3
+  TEMPERATURE(LOAD) = 8
+  DEFORM = 9
+SUBCOM 20
+  SUBSEQ = 1., -1.
+OUTPUT(PLOT)
+  SET 1=ALL EXCEPT PLOTEL
+  PLOT SET 1
+BEGIN BULK
+GRID,1
+ENDDATA
+";
+
+#[test]
+fn subcases_hold_what_they_select() {
+    let deck = clean(DECK);
+    assert_eq!(
+        (deck.sol, deck.sol_text.as_deref()),
+        (Some(101), Some("SESTATIC"))
+    );
+    let case = &deck.case_control;
+    assert_eq!(case.global.title.as_deref(), Some("Truck, frame"));
+    let [a, b, c] = case.subcases.as_slice() else {
+        panic!("{:?}", case.subcases)
+    };
+    assert_eq!(
+        (
+            a.id,
+            a.load,
+            a.spc,
+            a.subtitle.as_deref(),
+            a.label.as_deref()
+        ),
+        (11, Some(101), None, Some("front"), Some("LF.FZ"))
+    );
+    assert_eq!(
+        (b.id, b.load, b.spc, b.mpc, b.suport1),
+        (12, Some(102), Some(2), Some(7), Some(3))
+    );
+    assert_eq!(
+        (b.temperature_load, b.temperature_initial, b.deform),
+        (Some(8), None, Some(9))
+    );
+    assert_eq!(
+        (c.id, c.kind, c.sequence.as_slice()),
+        (20, SubcaseKind::Subcom, [1.0, -1.0].as_slice())
+    );
+    assert_eq!(deck.cards.grids.len(), 1);
+}
+
+#[test]
+fn a_subcase_inherits_what_it_does_not_state() {
+    let deck = clean(DECK);
+    let case = &deck.case_control;
+    let a = case.effective(&case.subcases[0]);
+    assert_eq!(
+        (a.spc, a.temperature_initial, a.title.as_deref()),
+        (Some(1), Some(4), Some("Truck, frame"))
+    );
+    let strain = a.request("STRAIN").unwrap();
+    assert_eq!(strain.value, Selection::Set(1));
+    assert!(strain.has("STRCUR") && !strain.has("FIBER"));
+    assert_eq!(a.request("DISPLACEMENT").unwrap().value, Selection::Set(2));
+    assert_eq!(a.request("SPCFORCES").unwrap().value, Selection::None);
+    let b = case.effective(&case.subcases[1]);
+    assert_eq!(b.spc, Some(2));
+    assert!(b.request("STRAIN").unwrap().has("FIBER"));
+    assert!(b.sets[&1].has(99) && !b.sets[&1].has(5));
+    assert_eq!(deck.param("POST").unwrap().values[0].as_f64(), Some(-1.0));
+}
+
+#[test]
+fn sets_list_ids_ranges_and_exceptions() {
+    let deck = clean(DECK);
+    let one = &deck.case_control.global.sets[&1];
+    let have: Vec<u32> = (0..50).filter(|&id| one.has(id)).collect();
+    assert_eq!(have, [1, 5, 8, 9, 20, 30, 35, 40]);
+    let two = &deck.case_control.global.sets[&2];
+    assert!(two.has(1) && !two.has(3));
+}
+
+#[test]
+fn a_deck_without_subcases_has_one() {
+    let deck = clean("SOL 101\nCEND\nLOAD=5\nBEGIN BULK\nGRID,1\n");
+    let all = deck.case_control.effective_subcases();
+    assert_eq!((all.len(), all[0].id, all[0].load), (1, 1, Some(5)));
+}
+
+#[test]
+fn bulk_data_alone_is_recognised() {
+    let deck = clean("$ from a mesher\nGRID,1,,0.,0.,0.\nLOAD,5,1.,1.,2\nPARAM,POST,-1\n");
+    assert_eq!(
+        (
+            deck.cards.grids.len(),
+            deck.cards.loads.len(),
+            deck.cards.params.len()
+        ),
+        (1, 1, 1)
+    );
+    assert_eq!(deck.sol, None);
+}
+
+#[test]
+fn a_deck_may_begin_with_begin_bulk() {
+    let deck = clean("BEGIN BULK\nGRID,1\nENDDATA\n");
+    assert_eq!(deck.cards.grids.len(), 1);
+}
+
+#[test]
+fn faults_of_case_control_name_the_statement() {
+    let deck = bulk("SOL 101\nCEND\nLOAD = FIVE\nSUBCASE\nSET 3 = 1 THRU X\nBEGIN BULK\n");
+    assert_eq!(shown(&deck).len(), 3);
+    assert!(shown(&deck)[0].starts_with("test.bdf:3: `LOAD`: a set number is needed: FIVE"));
+}

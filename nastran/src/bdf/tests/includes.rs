@@ -1,0 +1,145 @@
+use super::super::{Deck, IncludeRequest, MemoryLoader, read_deck};
+use super::shown;
+
+fn loader(files: &[(&str, &str)]) -> MemoryLoader {
+    let files = files
+        .iter()
+        .map(|(p, t)| ((*p).to_owned(), t.as_bytes().to_vec()))
+        .collect();
+    MemoryLoader {
+        files,
+        symbols: [("BULKDIR".to_owned(), "a".to_owned())].into(),
+    }
+}
+
+fn read(main: &str, files: &[(&str, &str)]) -> Deck {
+    read_deck(
+        "jobs/run/main.bdf",
+        main.as_bytes().to_vec(),
+        &mut loader(files),
+    )
+}
+
+#[test]
+fn include_names_are_quoted_or_not_and_may_take_two_lines() {
+    let statements = [
+        "INCLUDE 'a/b.inc'\n",
+        "include \"a/b.inc\" $ note\n",
+        "INCLUDE a/b.inc\n",
+        "INCLUDE a/b.inc $ note\n",
+        "INCLUDE 'a/\nb.inc'\n",
+        "INCLUDE 'a/\r\n  b.inc'\r\n",
+        "  INCLUDE='a\\b.inc'\n",
+        "INCLUDE 'BULKDIR:b.inc'\n",
+        "INCLUDE '$BULKDIR/b.inc'\n",
+        "INCLUDE '%BULKDIR%/b.inc'\n",
+        "INCLUDE '${BULKDIR}/b.inc'\n",
+    ];
+    for statement in statements {
+        let deck = read(
+            &format!("GRID,1\n{statement}GRID,3\n"),
+            &[("jobs/run/a/b.inc", "GRID,2\n")],
+        );
+        assert_eq!(shown(&deck), Vec::<String>::new(), "{statement}");
+        let ids: Vec<u32> = deck.cards.grids.iter().map(|g| g.id).collect();
+        assert_eq!(ids, [1, 2, 3], "{statement}");
+        assert_eq!(deck.cards.grids[1].at.source.0, 1);
+    }
+}
+
+#[test]
+fn the_first_decks_folder_comes_before_that_of_the_including_file() {
+    let files = [
+        ("jobs/run/sub/one.inc", "INCLUDE 'two.inc'\n"),
+        ("jobs/run/two.inc", "GRID,1\n"),
+        ("jobs/run/sub/two.inc", "GRID,2\n"),
+    ];
+    let deck = read("INCLUDE 'sub/one.inc'\n", &files);
+    assert_eq!(deck.cards.grids[0].id, 1);
+    let beside = read("INCLUDE 'sub/one.inc'\n", &[files[0], files[2]]);
+    assert_eq!(beside.cards.grids[0].id, 2);
+}
+
+#[test]
+fn absolute_paths_of_both_systems_are_tried_as_they_are() {
+    for name in ["/abs/x.inc", "C:\\abs\\x.inc", "C:/abs/x.inc"] {
+        let request = IncludeRequest {
+            name: name.to_owned(),
+            first_deck: "d/main.bdf".to_owned(),
+            includer: "e/sub.bdf".to_owned(),
+        };
+        assert_eq!(request.candidates(|_| None).unwrap()[0], name);
+    }
+    let request = IncludeRequest {
+        name: "NOWHERE:x".to_owned(),
+        first_deck: String::new(),
+        includer: String::new(),
+    };
+    assert_eq!(request.candidates(|_| None), Err("NOWHERE".to_owned()));
+}
+
+#[test]
+fn a_missing_file_is_a_note_before_bulk_data_and_a_fault_in_it() {
+    let deck = read(
+        "SOL 101\nINCLUDE 'dmap.alt'\nCEND\nINCLUDE 'case.inc'\nBEGIN BULK\nINCLUDE 'gone.inc'\nGRID,1\n",
+        &[],
+    );
+    assert_eq!(deck.notes.len(), 2);
+    assert_eq!(deck.faults.len(), 1);
+    assert!(
+        shown(&deck)[0].starts_with(
+            "jobs/run/main.bdf:6: `INCLUDE`: the included file cannot be read: gone.inc"
+        )
+    );
+    assert_eq!(deck.cards.grids.len(), 1);
+}
+
+#[test]
+fn a_file_that_includes_itself_is_a_fault() {
+    let deck = read(
+        "INCLUDE 'a.inc'\nGRID,1\n",
+        &[
+            ("jobs/run/a.inc", "GRID,2\nINCLUDE 'b.inc'\n"),
+            ("jobs/run/b.inc", "INCLUDE 'a.inc'\n"),
+        ],
+    );
+    assert_eq!(deck.faults.len(), 1);
+    assert!(
+        shown(&deck)[0].contains("jobs/run/b.inc:1: `INCLUDE`: the file includes itself: a.inc")
+    );
+    assert_eq!(deck.cards.grids.len(), 2);
+}
+
+#[test]
+fn executive_case_and_bulk_may_each_be_included() {
+    let files = [
+        ("jobs/run/exec.inc", "SOL 101\nCEND\n"),
+        ("jobs/run/case.inc", "SPC = 3\nSUBCASE 1\n LOAD = 4\n"),
+        ("jobs/run/bulk.inc", "GRID,1\nENDDATA\n"),
+    ];
+    let deck = read(
+        "INCLUDE 'exec.inc'\nINCLUDE 'case.inc'\nBEGIN BULK\nINCLUDE 'bulk.inc'\nGRID,2\n",
+        &files,
+    );
+    assert_eq!(shown(&deck), Vec::<String>::new());
+    assert_eq!(
+        (
+            deck.sol,
+            deck.case_control.subcases[0].load,
+            deck.cards.grids.len()
+        ),
+        (Some(101), Some(4), 1)
+    );
+    assert!(
+        deck.notes
+            .iter()
+            .any(|n| n.text.contains("ENDDATA of an included file"))
+    );
+}
+
+#[test]
+fn an_unclosed_name_is_a_fault() {
+    let deck = read("GRID,1\nINCLUDE 'a.inc\nGRID,2\n", &[]);
+    assert!(!deck.faults.is_empty());
+    assert_eq!(deck.cards.grids[0].id, 1);
+}

@@ -1,0 +1,37 @@
+//! Decks written for one rule each; the rules are those of the quick reference guides.
+
+mod cards;
+mod case_control;
+mod continuations;
+mod edits;
+mod faults;
+mod fields;
+mod includes;
+mod names;
+mod numbers;
+mod replication;
+
+use super::{Deck, MemoryLoader, read_deck};
+
+/// Reads bulk data alone.
+fn bulk(text: &str) -> Deck {
+    read_deck(
+        "test.bdf",
+        text.as_bytes().to_vec(),
+        &mut MemoryLoader::default(),
+    )
+}
+
+/// Reads bulk data that must be free of faults.
+fn clean(text: &str) -> Deck {
+    let deck = bulk(text);
+    assert_eq!(shown(&deck), Vec::<String>::new());
+    deck
+}
+
+fn shown(deck: &Deck) -> Vec<String> {
+    deck.faults
+        .iter()
+        .map(|f| f.show(&deck.sources).to_string())
+        .collect()
+}

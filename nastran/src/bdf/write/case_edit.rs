@@ -1,0 +1,89 @@
+//! Edits of case control and of the executive section.
+
+use super::super::case::CaseLine;
+use super::super::deck::{Deck, Position};
+use super::edit::Edits;
+
+impl Edits {
+    /// Adds lines at the end of case control, so after the last subcase.
+    ///
+    /// A deck of bulk data alone gets the sections `SOL 101`, `CEND`, these lines and `BEGIN BULK` in front, and ENDDATA.
+    pub fn insert_case_end(&mut self, deck: &Deck, text: &str) {
+        let packet = deck.case_control.lines.iter().find(|l| l.in_packet);
+        match packet.map(position).or(deck.seams.bulk_line) {
+            Some(p) => self.patch(p.source, p.offset, p.offset, text),
+            None => self.add_sections(deck, text),
+        }
+    }
+
+    /// Adds lines above the first subcase.
+    pub fn insert_case_global(&mut self, deck: &Deck, text: &str) {
+        match deck
+            .case_control
+            .lines
+            .iter()
+            .find(|l| l.subcase.is_some() && !l.in_packet)
+        {
+            Some(line) => {
+                let p = position(line);
+                self.patch(p.source, p.offset, p.offset, text);
+            }
+            None => self.insert_case_end(deck, text),
+        }
+    }
+
+    /// Takes out the case control statements for which `is_unwanted` holds.
+    pub fn remove_case_lines(&mut self, deck: &Deck, is_unwanted: impl Fn(&CaseLine) -> bool) {
+        for line in deck.case_control.lines.iter().filter(|l| is_unwanted(l)) {
+            self.patch(line.at.source.0 as usize, line.start, line.end, "");
+        }
+    }
+
+    /// Takes out all subcases with their statements; comments stay.
+    pub fn remove_subcases(&mut self, deck: &Deck) {
+        self.remove_case_lines(deck, |l| l.subcase.is_some() && !l.in_packet);
+    }
+
+    /// Puts `text` in place of a case control statement.
+    pub fn replace_case_line(&mut self, line: &CaseLine, text: &str) {
+        self.patch(line.at.source.0 as usize, line.start, line.end, text);
+    }
+
+    /// Writes `SOL text` in place of the deck's SOL statement; a deck without one stays as it is.
+    pub fn replace_sol(&mut self, deck: &Deck, text: &str) {
+        if let Some((p, end)) = deck.seams.sol {
+            self.patch(p.source, p.offset, end, &format!("SOL {text}"));
+        }
+    }
+
+    fn add_sections(&mut self, deck: &Deck, text: &str) {
+        let start = deck.sources.first().map_or(0, |s| {
+            if s.bytes.starts_with(&[0xEF, 0xBB, 0xBF]) {
+                3
+            } else {
+                0
+            }
+        });
+        let gap = if text.is_empty() || text.ends_with('\n') {
+            ""
+        } else {
+            "\n"
+        };
+        self.patch(
+            0,
+            start,
+            start,
+            &format!("SOL 101\nCEND\n{text}{gap}BEGIN BULK\n"),
+        );
+        if deck.seams.enddata.is_none() {
+            self.end_with_enddata(deck);
+        }
+    }
+}
+
+fn position(line: &CaseLine) -> Position {
+    Position {
+        source: line.at.source.0 as usize,
+        offset: line.start,
+    }
+}

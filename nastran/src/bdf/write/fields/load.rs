@@ -1,0 +1,177 @@
+//! Loads. FORCE and MOMENT share a struct: [`Force::to_force_card`] and [`Force::to_moment_card`].
+
+use super::super::card::format_card;
+use super::rigid::ids;
+use super::{Field, Row, ToFields, id_or_blank};
+use crate::cards::*;
+
+impl Force {
+    /// Fields of FORCE and of MOMENT.
+    fn fields(&self) -> Vec<Field> {
+        Row::default()
+            .add(self.sid)
+            .add(self.grid)
+            .add(self.cid)
+            .add(self.scale)
+            .all(self.n)
+            .end()
+    }
+
+    /// The lines of a FORCE card.
+    pub fn to_force_card(&self) -> String {
+        format_card("FORCE", &self.fields())
+    }
+
+    /// The lines of a MOMENT card.
+    pub fn to_moment_card(&self) -> String {
+        format_card("MOMENT", &self.fields())
+    }
+}
+
+impl ToFields for LoadSum {
+    fn card_name(&self) -> &'static str {
+        "LOAD"
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        let row = Row::default().add(self.sid).add(self.scale);
+        self.terms
+            .iter()
+            .fold(row, |row, (factor, set)| row.add(*factor).add(*set))
+            .end()
+    }
+}
+
+impl ToFields for Pload {
+    fn card_name(&self) -> &'static str {
+        "PLOAD"
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        Row::default()
+            .add(self.sid)
+            .add(self.pressure)
+            .all(self.grids.map(id_or_blank))
+            .end()
+    }
+}
+
+fn word(letters: &[u8; 4]) -> String {
+    letters
+        .iter()
+        .map(|&c| char::from(c))
+        .collect::<String>()
+        .trim_end()
+        .to_owned()
+}
+
+impl ToFields for Pload1 {
+    fn card_name(&self) -> &'static str {
+        "PLOAD1"
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        let row = Row::default()
+            .add(self.sid)
+            .add(self.element)
+            .add(word(&self.kind).as_str());
+        row.add(word(&self.scale).as_str())
+            .add(self.x1)
+            .add(self.p1)
+            .add(self.x2)
+            .add(self.p2)
+            .end()
+    }
+}
+
+impl ToFields for Pload2 {
+    fn card_name(&self) -> &'static str {
+        "PLOAD2"
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        ids(
+            Row::default().add(self.sid).add(self.pressure),
+            &self.elements,
+        )
+        .end()
+    }
+}
+
+impl ToFields for Pload4 {
+    fn card_name(&self) -> &'static str {
+        "PLOAD4"
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        let (first, last) = match &self.elements {
+            IdList::Thru(a, b) => (Some(*a), Some(*b)),
+            IdList::Each(ids) => (ids.first().copied(), None),
+        };
+        let row = Row::default().add(self.sid).add(first).all(self.pressure);
+        let row = match last {
+            Some(last) => row.add("THRU").add(last),
+            None => row.all(self.face),
+        };
+        let row = match self.direction {
+            Some((cid, n)) => row.add(cid).all(n),
+            None => row.blank(4),
+        };
+        row.add(self.sorl.as_str()).add(self.ldir.as_str()).end()
+    }
+}
+
+impl ToFields for Grav {
+    fn card_name(&self) -> &'static str {
+        "GRAV"
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        Row::default()
+            .add(self.sid)
+            .add(self.cid)
+            .add(self.scale)
+            .all(self.n)
+            .end()
+    }
+}
+
+impl ToFields for Rforce {
+    fn card_name(&self) -> &'static str {
+        "RFORCE"
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        let row = Row::default()
+            .add(self.sid)
+            .add(self.grid)
+            .add(self.cid)
+            .add(self.speed)
+            .all(self.r);
+        row.add(self.method).real(self.acceleration, 0.0).end()
+    }
+}
+
+impl ToFields for Temp {
+    fn card_name(&self) -> &'static str {
+        "TEMP"
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        Row::default()
+            .add(self.sid)
+            .add(self.grid)
+            .add(self.t)
+            .end()
+    }
+}
+
+impl ToFields for Tempd {
+    fn card_name(&self) -> &'static str {
+        "TEMPD"
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        Row::default().add(self.sid).add(self.t).end()
+    }
+}

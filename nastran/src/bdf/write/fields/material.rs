@@ -1,0 +1,82 @@
+//! MAT1, MAT2, MAT8, MAT9, PARAM.
+
+use super::{Field, Row, ToFields};
+use crate::cards::*;
+
+impl ToFields for Mat1 {
+    fn card_name(&self) -> &'static str {
+        "MAT1"
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        let row = Row::default()
+            .add(self.id)
+            .add(self.e)
+            .add(self.g)
+            .add(self.nu);
+        row.reals(&[self.rho, self.alpha, self.tref, self.ge], 0.0)
+            .all(self.limits)
+            .end()
+    }
+}
+
+impl ToFields for Mat2 {
+    fn card_name(&self) -> &'static str {
+        "MAT2"
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        let row = Row::default().add(self.id).all(self.g).real(self.rho, 0.0);
+        row.reals(&self.alpha, 0.0)
+            .reals(&[self.tref, self.ge], 0.0)
+            .end()
+    }
+}
+
+impl ToFields for Mat8 {
+    fn card_name(&self) -> &'static str {
+        "MAT8"
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        let row = Row::default()
+            .add(self.id)
+            .all([self.e1, self.e2, self.nu12, self.g12]);
+        let row = row.add(self.g1z).add(self.g2z).real(self.rho, 0.0);
+        row.reals(&self.alpha, 0.0).real(self.tref, 0.0).end()
+    }
+}
+
+impl ToFields for Mat9 {
+    fn card_name(&self) -> &'static str {
+        "MAT9"
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        let row = Row::default()
+            .add(self.id)
+            .reals(&self.g, 0.0)
+            .real(self.rho, 0.0);
+        row.reals(&self.alpha, 0.0)
+            .reals(&[self.tref, self.ge], 0.0)
+            .end()
+    }
+}
+
+impl ToFields for Param {
+    fn card_name(&self) -> &'static str {
+        "PARAM"
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        let value = |v: &ParamValue| match v {
+            ParamValue::Integer(n) => Field::Integer(*n),
+            ParamValue::Real(x) => Field::Real(*x),
+            ParamValue::Text(t) => Field::Text(t.clone()),
+        };
+        Row::default()
+            .add(self.name.as_str())
+            .all(self.values.iter().map(value))
+            .end()
+    }
+}

@@ -1,0 +1,12 @@
+//! Writes cards, and decks with edits; what is not edited stays as it was, byte for byte.
+
+mod card;
+mod case_edit;
+mod edit;
+mod fields;
+mod real;
+
+pub use card::{Field, format_card};
+pub use edit::{EditError, Edits, write_deck, write_edited};
+pub use fields::ToFields;
+pub use real::{format_real, shortest_real};
