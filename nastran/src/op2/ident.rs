@@ -74,10 +74,10 @@ impl Ident {
             return Quantity::Other;
         }
         match self.table_code {
-            1 | 15 => Quantity::Displacement,
-            7 | 14 => Quantity::Eigenvector,
-            10 | 16 => Quantity::Velocity,
-            11 | 17 => Quantity::Acceleration,
+            1 => Quantity::Displacement,
+            7 => Quantity::Eigenvector,
+            10 => Quantity::Velocity,
+            11 => Quantity::Acceleration,
             2 => Quantity::AppliedLoad,
             3 | 39 if is_mpc_force(table) => Quantity::MpcForce,
             3 => Quantity::SpcForce,
@@ -90,6 +90,7 @@ impl Ident {
             },
             19 => Quantity::GridPointForce,
             39 => Quantity::SpcForce,
+            // 14 to 17 are the same of the solution set, whose ids are no grids
             _ => Quantity::Other,
         }
     }
@@ -128,7 +129,7 @@ fn is_mpc_force(table: &str) -> bool {
 /// Tables that share codes with plain results but hold something else: random results, response spectra, contributions, and
 /// contact and glue forces.
 fn is_derived(table: &str) -> bool {
-    ["PSD", "ATO", "RMS", "CRM", "NO1", "NO2", "XNO"]
+    ["PSD", "ATO", "RMS", "CRM", "NO1", "NO2", "XNO", "XRM"]
         .iter()
         .any(|part| table.contains(part))
         || [

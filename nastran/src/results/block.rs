@@ -105,7 +105,8 @@ pub enum ShellForm {
 /// A block of rows: one quantity, one subcase, one step, one element type.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
-    /// Table name as in the file (`OUGV1`, `OSTR1X`); an HDF5 path.
+    /// Table name as in the file (`OUGV1`, `OSTR1X`); an HDF5 path. Vectors of tables `BOUGV1` and `BOUG1` are in the basic frame
+    /// ([`Block::is_in_basic`]), others in the displacement frames of the grids.
     pub table: String,
     /// What it holds. Strain or stress is told by the stress code, not by the table name.
     pub quantity: Quantity,
@@ -134,4 +135,11 @@ pub struct Block {
     pub entries: usize,
     /// TITLE, SUBTITLE, LABEL, trimmed.
     pub titles: [String; 3],
+}
+
+impl Block {
+    /// Whether nodal vectors are in the basic frame instead of the grids' displacement frames (CD).
+    pub fn is_in_basic(&self) -> bool {
+        self.table.starts_with("BOUG")
+    }
 }

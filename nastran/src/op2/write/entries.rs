@@ -21,7 +21,7 @@ pub(super) fn entries(block: &Block, rows: &Rows, layout: Layout) -> Result<Vec<
         let n = rows_of_entry(block, rows, layout, at)?;
         let ids = rows.ids.get(at..at.saturating_add(n)).unwrap_or(&[]);
         let row = |i: usize| rows.row(at.saturating_add(i));
-        push_entry(&mut out, layout, ids, row)?;
+        push_entry(&mut out, layout, corner_word(block), ids, row)?;
         at = at.saturating_add(n);
     }
     Ok(out)
@@ -65,9 +65,20 @@ fn rows_of_entry(
     Ok(expected)
 }
 
+/// The word behind `CEN/`: the element's number of grids.
+fn corner_word(block: &Block) -> i32 {
+    match block.element.map(|e| e.0) {
+        Some(64) => 8,
+        Some(75) => 6,
+        Some(70) => 3,
+        _ => 4,
+    }
+}
+
 fn push_entry<'r>(
     out: &mut Vec<u8>,
     layout: Layout,
+    corner_word: i32,
     ids: &[RowId],
     row: impl Fn(usize) -> &'r [f64],
 ) -> Result<(), WriteError> {
@@ -94,11 +105,10 @@ fn push_entry<'r>(
             } else {
                 1
             };
-            let corners = (ids.len() / layers).saturating_sub(1);
             out.extend_from_slice(b"CEN/");
             for (i, id) in ids.iter().enumerate() {
                 if i == 0 {
-                    int(out, corners)?;
+                    int(out, corner_word)?;
                 } else if i.is_multiple_of(layers) {
                     int(out, id.at)?;
                 }
