@@ -1,5 +1,6 @@
 //! From plain results to bytes: text, json, csv, html. Nothing is computed here.
 
 mod strains;
+pub mod vehicle;
 
 pub use strains::{STRAINS_HEADER, write_strains};
