@@ -27,9 +27,15 @@ pub fn write_parameters(found: &Identification) -> String {
 }
 
 /// `loads.csv`: time, then each wheel force in the band (about its mean) with its 95 % interval, and what was measured.
-pub fn write_wheel_forces(found: &Identification, history: &LoadHistory, measured: &Motion) -> String {
+pub fn write_wheel_forces(
+    found: &Identification,
+    history: &LoadHistory,
+    measured: &Motion,
+) -> String {
     let mut out = String::from("time");
-    let used: Vec<usize> = (0..history.names.len()).filter(|&i| history.values[i].iter().any(|v| v.is_finite())).collect();
+    let used: Vec<usize> = (0..history.names.len())
+        .filter(|&i| history.values[i].iter().any(|v| v.is_finite()))
+        .collect();
     for &i in &used {
         let n = &history.names[i];
         let _ = write!(out, ",{n},{n}.low,{n}.high");
@@ -71,10 +77,24 @@ pub fn write_restoring_force(found: &Identification, motion: &Motion) -> String 
         let (d, r) = (&motion.stretch[l], &motion.rate[l]);
         let largest = |x: &[f64]| x.iter().fold(0.0f64, |a, b| a.max(b.abs()));
         let (dm, rm) = (largest(d), largest(r));
-        let carried: Vec<usize> =
-            link.ends.iter().filter(|e| e.0 > 0.0 && v.bodies[e.1.body].shape.n() == 1).map(|e| e.1.body).collect();
-        let alone = carried.first().copied().filter(|b| v.links.iter().filter(|k| k.ends.iter().any(|e| e.1.body == *b)).count() == 1);
-        let measured = |t: usize| alone.map_or(f64::NAN, |b| -found.values[v.inertia_index(b, 0, 0)] * motion.bodies[b][0][t]);
+        let carried: Vec<usize> = link
+            .ends
+            .iter()
+            .filter(|e| e.0 > 0.0 && v.bodies[e.1.body].shape.n() == 1)
+            .map(|e| e.1.body)
+            .collect();
+        let alone = carried.first().copied().filter(|b| {
+            v.links
+                .iter()
+                .filter(|k| k.ends.iter().any(|e| e.1.body == *b))
+                .count()
+                == 1
+        });
+        let measured = |t: usize| {
+            alone.map_or(f64::NAN, |b| {
+                -found.values[v.inertia_index(b, 0, 0)] * motion.bodies[b][0][t]
+            })
+        };
         let bin = |x: f64, m: f64| (((x / m + 1.0) / 2.0 * BINS as f64) as usize).min(BINS - 1);
         let mut cells = vec![(0.0, 0.0, 0usize); BINS * BINS];
         if dm <= 0.0 || rm <= 0.0 {
@@ -89,8 +109,19 @@ pub fn write_restoring_force(found: &Identification, motion: &Motion) -> String 
         let centre = |i: usize, m: f64| ((i as f64 + 0.5) / BINS as f64 * 2.0 - 1.0) * m;
         for (i, (model, seen, n)) in cells.iter().enumerate().filter(|(_, c)| c.2 > 0) {
             let n_f = *n as f64;
-            let seen = if seen.is_finite() { format!("{:.6e}", seen / n_f) } else { String::new() };
-            let _ = writeln!(out, "{},{:.6e},{:.6e},{:.6e},{seen},{n}", link.name, centre(i / BINS, dm), centre(i % BINS, rm), model / n_f);
+            let seen = if seen.is_finite() {
+                format!("{:.6e}", seen / n_f)
+            } else {
+                String::new()
+            };
+            let _ = writeln!(
+                out,
+                "{},{:.6e},{:.6e},{:.6e},{seen},{n}",
+                link.name,
+                centre(i / BINS, dm),
+                centre(i % BINS, rm),
+                model / n_f
+            );
         }
     }
     out
