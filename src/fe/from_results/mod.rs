@@ -14,6 +14,5 @@ mod shells;
 mod surface_z;
 mod tally;
 
-pub use displacement::local_axes;
 pub use read::{Displacements, ReadOptions, solution_from_file, solution_from_results};
 pub use surface_z::surface_z;
