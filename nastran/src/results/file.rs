@@ -1,6 +1,7 @@
 //! One front for every kind of result file.
 
 use super::{Block, GridPointWeight, Note, Rows};
+use crate::cards::Cards;
 use crate::h5::{H5, H5Error, is_h5};
 use crate::op2::{Op2, Op2Error, Solver};
 use crate::punch::{Punch, PunchError};
@@ -133,6 +134,14 @@ impl<'a> ResultsFile<'a> {
             Self::Op2(op2) => &op2.notes,
             Self::Punch(punch) => &punch.notes,
             Self::H5(h5) => &h5.notes,
+        }
+    }
+
+    /// The cards of the geometry blocks with notes on what was passed over; `None` where the file holds no grids.
+    pub fn cards(&self) -> Option<(Cards, Vec<Note>)> {
+        match self {
+            Self::Op2(op2) => Some(op2.cards()).filter(|(cards, _)| !cards.grids.is_empty()),
+            Self::Punch(_) | Self::H5(_) => None,
         }
     }
 

@@ -19,8 +19,7 @@ use crate::finding::Finding;
 use crate::model::Model;
 use nastran::results::ResultsFile;
 
-/// Every check that needs no more than the model and one result file. Coordinates are compared by [`check_coordinates`], where the file
-/// has geometry.
+/// Every check that needs no more than the tables of one result file; [`check_coordinates`] compares with its geometry.
 pub fn check_belongs(
     model: &Model,
     name: &str,

@@ -16,3 +16,6 @@ mod tally;
 
 pub use read::{Displacements, ReadOptions, solution_from_file, solution_from_results};
 pub use surface_z::surface_z;
+
+#[cfg(test)]
+mod tests;
