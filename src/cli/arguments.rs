@@ -16,6 +16,8 @@ pub struct Arguments {
 pub enum Command {
     /// Read decks, results or jobs; report what is in them and every fault
     Check(FilesArguments),
+    /// Shell and bar strain of every static subcase, in the element and the basic frame, to strains.csv
+    Strains(DeckArguments),
     /// Vehicle parameters and wheel loads from accelerations
     Identify(JobArguments),
 }

@@ -14,6 +14,7 @@ pub mod job;
 pub mod output;
 mod progress;
 mod session;
+mod strains;
 pub mod vehicle;
 mod words;
 
@@ -25,6 +26,7 @@ use std::process::ExitCode;
 /// Runs the command and returns the exit code: 0 done, 1 done with error findings, 2 bad input.
 pub fn run(arguments: Arguments) -> ExitCode {
     match arguments.command {
+        Command::Strains(a) => Session::run("strains", &a.common, |s| strains::run(&a, s)),
         Command::Check(a) => Session::run("check", &a.common, |s| check::run(&a, s)),
         Command::Identify(a) => Session::run("identify", &a.common, |s| identify::run(&a, s)),
     }
