@@ -29,7 +29,13 @@ fn cases() -> Vec<(PathBuf, Value, Value)> {
     let mut all: Vec<_> = entries
         .flatten()
         .map(|e| e.path())
-        .filter_map(|p| Some((p.clone(), json(p.join("case.json"))?, json(p.join("expected.json"))?)))
+        .filter_map(|p| {
+            Some((
+                p.clone(),
+                json(p.join("case.json"))?,
+                json(p.join("expected.json"))?,
+            ))
+        })
         .collect();
     all.sort_by(|a, b| a.0.cmp(&b.0));
     all
@@ -39,8 +45,15 @@ fn cases() -> Vec<(PathBuf, Value, Value)> {
 struct Disk;
 impl Loader for Disk {
     fn load(&mut self, request: &IncludeRequest) -> Result<Loaded, String> {
-        let paths = request.candidates(|_| None).map_err(|s| format!("no value for {s}"))?;
-        let found = paths.into_iter().find_map(|path| Some(Loaded { bytes: std::fs::read(&path).ok()?, path }));
+        let paths = request
+            .candidates(|_| None)
+            .map_err(|s| format!("no value for {s}"))?;
+        let found = paths.into_iter().find_map(|path| {
+            Some(Loaded {
+                bytes: std::fs::read(&path).ok()?,
+                path,
+            })
+        });
         found.ok_or_else(|| "no such file".to_string())
     }
 }
@@ -48,7 +61,11 @@ impl Loader for Disk {
 /// The model of a case's deck.
 fn model(folder: &Path, case: &Value) -> Option<Model> {
     let path = folder.join(case["bdf"].as_str()?);
-    let deck = read_deck(&path.display().to_string(), std::fs::read(&path).unwrap(), &mut Disk);
+    let deck = read_deck(
+        &path.display().to_string(),
+        std::fs::read(&path).unwrap(),
+        &mut Disk,
+    );
     Some(Model::from_cards(&deck.cards).0)
 }
 
@@ -58,7 +75,10 @@ struct Columns(BTreeMap<String, Vec<(f64, f64)>>);
 
 impl Columns {
     fn push(&mut self, column: &str, ours: f64, theirs: &Value) {
-        self.0.entry(column.to_string()).or_default().push((ours, theirs.as_f64().unwrap()));
+        self.0
+            .entry(column.to_string())
+            .or_default()
+            .push((ours, theirs.as_f64().unwrap()));
     }
 
     /// Largest difference of any column relative to that column's largest value, with its name.
@@ -69,7 +89,11 @@ impl Columns {
             for (ours, theirs) in pairs {
                 let d = (ours - theirs).abs();
                 // A column of zeros must be zero to the rounding of a turned tensor of order one thousandth.
-                let relative = if largest > 1e-20 { d / largest } else { d * 1e3 };
+                let relative = if largest > 1e-20 {
+                    d / largest
+                } else {
+                    d * 1e3
+                };
                 if relative > worst.0 || relative.is_nan() {
                     worst = (relative, name.clone());
                 }
@@ -80,7 +104,11 @@ impl Columns {
 }
 
 fn case_of(solution: &Solution, subcase: u64) -> &CaseResult {
-    solution.cases.iter().find(|c| u64::from(c.subcase) == subcase).unwrap_or_else(|| panic!("no subcase {subcase}"))
+    solution
+        .cases
+        .iter()
+        .find(|c| u64::from(c.subcase) == subcase)
+        .unwrap_or_else(|| panic!("no subcase {subcase}"))
 }
 
 /// Strain at the surfaces of a shell: at the centre, or at a corner grid.
@@ -91,7 +119,9 @@ fn at(model: &Model, case: &CaseResult, element: u32, grid: u32) -> [PlaneStrain
         return case.shells.centre[i];
     }
     let shell = &model.shells[ix.us()];
-    let corner = (0..shell.shape.n_corners()).find(|&c| model.grids[shell.grids[c].us()].id == grid).unwrap();
+    let corner = (0..shell.shape.n_corners())
+        .find(|&c| model.grids[shell.grids[c].us()].id == grid)
+        .unwrap();
     case.shells.corners[i][corner]
 }
 
@@ -117,17 +147,26 @@ fn solve(folder: &Path, case: &Value) -> Option<(Model, Solution)> {
 fn shell_strain_of_every_case_agrees_in_the_element_frame() {
     let mut n_tables = 0;
     for (folder, case, expected) in cases() {
-        let tables = expected["op2"]["results"].as_array().cloned().unwrap_or_default();
+        let tables = expected["op2"]["results"]
+            .as_array()
+            .cloned()
+            .unwrap_or_default();
         let shell = |t: &&Value| {
             let name = t["result"].as_str().unwrap();
-            let known = ["cquad4", "ctria3", "cquad8", "ctria6", "cquadr", "ctriar"].iter().any(|e| name == format!("strain.{e}_strain"));
-            known && t["analysis_code"] == 1 && t["id_columns"] == serde_json::json!(["element", "node"])
+            let known = ["cquad4", "ctria3", "cquad8", "ctria6", "cquadr", "ctriar"]
+                .iter()
+                .any(|e| name == format!("strain.{e}_strain"));
+            known
+                && t["analysis_code"] == 1
+                && t["id_columns"] == serde_json::json!(["element", "node"])
         };
         let tables: Vec<&Value> = tables.iter().filter(shell).collect();
         if tables.is_empty() {
             continue;
         }
-        let Some((model, solution)) = solve(&folder, &case) else { continue };
+        let Some((model, solution)) = solve(&folder, &case) else {
+            continue;
+        };
         for table in tables {
             let result = case_of(&solution, table["isubcase"].as_u64().unwrap());
             let is_fibre = table["is_fiber_distance"].as_bool().unwrap();
@@ -146,7 +185,12 @@ fn shell_strain_of_every_case_agrees_in_the_element_frame() {
             }
             let (worst, column) = columns.worst();
             let limit = tolerance(expected["op2"]["word_bytes"].as_u64().unwrap());
-            assert!(worst <= limit, "{} {} {column}: {worst:.2e}", folder.display(), table["result"]);
+            assert!(
+                worst <= limit,
+                "{} {} {column}: {worst:.2e}",
+                folder.display(),
+                table["result"]
+            );
             n_tables += 1;
         }
     }
@@ -157,8 +201,15 @@ fn shell_strain_of_every_case_agrees_in_the_element_frame() {
 fn strain_of_quads_in_the_basic_frame_agrees_in_every_case() {
     let mut n_cases = 0;
     for (folder, case, expected) in cases() {
-        let Some(rows) = expected["cquad4_global"].as_array().filter(|r| !r.is_empty()) else { continue };
-        let Some((model, solution)) = solve(&folder, &case) else { continue };
+        let Some(rows) = expected["cquad4_global"]
+            .as_array()
+            .filter(|r| !r.is_empty())
+        else {
+            continue;
+        };
+        let Some((model, solution)) = solve(&folder, &case) else {
+            continue;
+        };
         let mut columns = Columns::default();
         for row in rows {
             let subcase = row["subcase_key"].as_str().unwrap().parse().unwrap();
@@ -175,7 +226,11 @@ fn strain_of_quads_in_the_basic_frame_agrees_in_every_case() {
             // The oracle leaves the normal strain out.
             let ours = components(&basic_tensor(strain, 0.0, &axes));
             for (k, name) in ["xx", "yy", "zz", "xy", "yz", "zx"].iter().enumerate() {
-                columns.push(&format!("{name} row {which}"), ours[k], &row["xx_yy_zz_xy_yz_zx"][k]);
+                columns.push(
+                    &format!("{name} row {which}"),
+                    ours[k],
+                    &row["xx_yy_zz_xy_yz_zx"][k],
+                );
             }
         }
         let (worst, column) = columns.worst();
@@ -190,8 +245,12 @@ fn strain_of_quads_in_the_basic_frame_agrees_in_every_case() {
 fn strain_hidden_in_a_stress_table_is_found_by_its_code() {
     let mut n = 0;
     for (folder, case, expected) in cases() {
-        let Some(tables) = expected["raw_shell_strain"].as_array() else { continue };
-        let Some((model, solution)) = solve(&folder, &case) else { continue };
+        let Some(tables) = expected["raw_shell_strain"].as_array() else {
+            continue;
+        };
+        let Some((model, solution)) = solve(&folder, &case) else {
+            continue;
+        };
         for table in tables {
             let result = case_of(&solution, table["subcase"].as_u64().unwrap());
             assert!(!result.shells.from_stress);
@@ -204,12 +263,20 @@ fn strain_hidden_in_a_stress_table_is_found_by_its_code() {
                     }
                 }
             }
-            for row in table["global_xx_yy_zz_xy_yz_zx"].as_array().into_iter().flatten() {
+            for row in table["global_xx_yy_zz_xy_yz_zx"]
+                .as_array()
+                .into_iter()
+                .flatten()
+            {
                 let element = row[0].as_u64().unwrap() as u32;
                 let surface = row[1].as_u64().unwrap() as usize - 1;
                 let shell = &model.shells[model.shell_ix(element).unwrap().us()];
                 let axes = shell_axes(&model, shell, ShellPlace::Centre).unwrap();
-                let ours = components(&basic_tensor(at(&model, result, element, 0)[surface], 0.0, &axes));
+                let ours = components(&basic_tensor(
+                    at(&model, result, element, 0)[surface],
+                    0.0,
+                    &axes,
+                ));
                 (0..6).for_each(|k| basic.push(&format!("{k} {surface}"), ours[k], &row[2 + k]));
             }
             let limit = tolerance(expected["op2"]["word_bytes"].as_u64().unwrap());
@@ -225,17 +292,27 @@ fn strain_hidden_in_a_stress_table_is_found_by_its_code() {
 #[test]
 fn displacements_of_every_case_turned_back_to_their_frames_are_those_of_the_file() {
     for (folder, case, expected) in cases() {
-        let tables = expected["op2"]["results"].as_array().cloned().unwrap_or_default();
-        let tables: Vec<_> = tables.iter().filter(|t| t["result"] == "displacements" && t["analysis_code"] == 1).collect();
+        let tables = expected["op2"]["results"]
+            .as_array()
+            .cloned()
+            .unwrap_or_default();
+        let tables: Vec<_> = tables
+            .iter()
+            .filter(|t| t["result"] == "displacements" && t["analysis_code"] == 1)
+            .collect();
         if tables.is_empty() {
             continue;
         }
-        let Some((model, solution)) = solve(&folder, &case) else { continue };
+        let Some((model, solution)) = solve(&folder, &case) else {
+            continue;
+        };
         for table in tables {
             let result = case_of(&solution, table["isubcase"].as_u64().unwrap());
             let mut columns = Columns::default();
             for row in table["rows"].as_array().unwrap() {
-                let Some(GridIx(ix)) = model.grid_ix(row[2].as_u64().unwrap() as u32) else { continue };
+                let Some(GridIx(ix)) = model.grid_ix(row[2].as_u64().unwrap() as u32) else {
+                    continue;
+                };
                 let u = result.displacement[ix as usize];
                 let axes = model.cd_axes(GridIx(ix));
                 let t = axes * Vec3::new(u[0], u[1], u[2]);
@@ -246,25 +323,50 @@ fn displacements_of_every_case_turned_back_to_their_frames_are_those_of_the_file
             }
             // pyNastran holds nodal tables in single precision even where the file is double.
             let (worst, column) = columns.worst();
-            assert!(worst <= 1e-6, "{} subcase {} {column}: {worst:.2e}", folder.display(), table["isubcase"]);
+            assert!(
+                worst <= 1e-6,
+                "{} subcase {} {column}: {worst:.2e}",
+                folder.display(),
+                table["isubcase"]
+            );
         }
     }
 }
 
 #[test]
 fn the_same_run_read_from_hdf5_gives_the_same_bar_strain_in_double_precision() {
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/nastran/msc_svanberg_beam"));
-    let Ok(h5) = std::fs::read(folder.join("static.h5")) else { return };
+    let folder = Path::new(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../shared/nastran/msc_svanberg_beam"
+    ));
+    let Ok(h5) = std::fs::read(folder.join("static.h5")) else {
+        return;
+    };
     let op2 = std::fs::read(folder.join("static.op2")).unwrap();
     let model = model(folder, &serde_json::json!({"bdf": "static.dat"})).unwrap();
-    let (h5, op2) = (ResultsFile::read(&h5, "static.h5").unwrap(), ResultsFile::read(&op2, "static.op2").unwrap());
-    let read = |f: &ResultsFile| solution_from_results(&model, &[("run", f)], &ReadOptions::default()).cases.remove(0);
+    let (h5, op2) = (
+        ResultsFile::read(&h5, "static.h5").unwrap(),
+        ResultsFile::read(&op2, "static.op2").unwrap(),
+    );
+    let read = |f: &ResultsFile| {
+        solution_from_results(&model, &[("run", f)], &ReadOptions::default())
+            .cases
+            .remove(0)
+    };
     let (a, b) = (read(&h5), read(&op2));
     assert_eq!(a.beams.elements, b.beams.elements);
     assert_eq!(a.beams.elements.len(), 5);
-    for (x, y) in a.beams.stations.iter().flatten().zip(b.beams.stations.iter().flatten()) {
+    for (x, y) in a
+        .beams
+        .stations
+        .iter()
+        .flatten()
+        .zip(b.beams.stations.iter().flatten())
+    {
         assert_eq!(x.0, y.0);
-        x.1.iter().zip(&y.1).for_each(|(p, q)| assert!((p - q).abs() <= 1e-7 * 1.5e-4));
+        x.1.iter()
+            .zip(&y.1)
+            .for_each(|(p, q)| assert!((p - q).abs() <= 1e-7 * 1.5e-4));
     }
     assert!(a.shells.elements.iter().all(|ShellIx(i)| *i < 1));
 }

@@ -12,7 +12,9 @@ use std::path::Path;
 /// Reads deck and results and writes `strains.csv`.
 pub fn run(arguments: &DeckArguments, session: &mut Session) -> Result<(), Faults> {
     let given = arguments.deck.display().to_string();
-    let deck = session.stage("deck", |s| read_model(&mut s.inputs, Path::new(""), &given)).map_err(|f| vec![f])?;
+    let deck = session
+        .stage("deck", |s| read_model(&mut s.inputs, Path::new(""), &given))
+        .map_err(|f| vec![f])?;
     session.findings.extend(deck.findings);
     session.put_faults(deck.faults);
     let files = session.stage("read", |s| result_bytes(arguments, &given, s))?;
@@ -20,15 +22,26 @@ pub fn run(arguments: &DeckArguments, session: &mut Session) -> Result<(), Fault
     for (name, bytes) in &files {
         match ResultsFile::read(bytes, name) {
             Ok(file) => opened.push((name.as_str(), file)),
-            Err(e) => faults.push(Fault::of(name, "results", e.to_string(), "give a result file of this deck")),
+            Err(e) => faults.push(Fault::of(
+                name,
+                "results",
+                e.to_string(),
+                "give a result file of this deck",
+            )),
         }
     }
     if !faults.is_empty() {
         return Err(faults);
     }
-    let options = ReadOptions { displacements: Displacements::Leave, ..ReadOptions::default() };
-    let named: Vec<(&str, &ResultsFile)> = opened.iter().map(|(name, file)| (*name, file)).collect();
-    let mut solution = session.stage("strain", |_| solution_from_results(&deck.model, &named, &options));
+    let options = ReadOptions {
+        displacements: Displacements::Leave,
+        ..ReadOptions::default()
+    };
+    let named: Vec<(&str, &ResultsFile)> =
+        opened.iter().map(|(name, file)| (*name, file)).collect();
+    let mut solution = session.stage("strain", |_| {
+        solution_from_results(&deck.model, &named, &options)
+    });
     session.findings.append(&mut solution.findings);
     let mut rows = 0;
     session.stage("write", |s| -> Result<(), Faults> {
@@ -40,15 +53,27 @@ pub fn run(arguments: &DeckArguments, session: &mut Session) -> Result<(), Fault
         output.write("strains.csv", write).map_err(|f| vec![f])
     })?;
     let subcases: Vec<u32> = solution.cases.iter().map(|c| c.subcase).collect();
-    session.say(format!("{rows} rows of strain in {} static subcases, from {}", subcases.len(), solution.source));
+    session.say(format!(
+        "{rows} rows of strain in {} static subcases, from {}",
+        subcases.len(),
+        solution.source
+    ));
     session.put("rows", rows)?;
     session.put("subcases", subcases.len())?;
     session.put("subcase_ids", subcases)
 }
 
 /// Name and bytes of every result file; the deck itself where it is an OP2 and no other file is given.
-fn result_bytes(arguments: &DeckArguments, deck: &str, session: &mut Session) -> Result<Vec<(String, FileBytes)>, Faults> {
-    let mut names: Vec<String> = arguments.results.iter().map(|p| p.display().to_string()).collect();
+fn result_bytes(
+    arguments: &DeckArguments,
+    deck: &str,
+    session: &mut Session,
+) -> Result<Vec<(String, FileBytes)>, Faults> {
+    let mut names: Vec<String> = arguments
+        .results
+        .iter()
+        .map(|p| p.display().to_string())
+        .collect();
     let from_deck = names.is_empty();
     if from_deck {
         names.push(deck.to_owned());
@@ -57,11 +82,20 @@ fn result_bytes(arguments: &DeckArguments, deck: &str, session: &mut Session) ->
     for name in names {
         match session.inputs.read(Path::new(""), &name) {
             Ok(bytes) if from_deck && !looks_like_op2(&bytes) => {
-                faults.push(Fault::of(&name, "results", "no result file given", "name the OP2, punch or H5 file after the deck"));
+                faults.push(Fault::of(
+                    &name,
+                    "results",
+                    "no result file given",
+                    "name the OP2, punch or H5 file after the deck",
+                ));
             }
             Ok(bytes) => files.push((name, bytes)),
             Err(fault) => faults.push(fault),
         }
     }
-    if faults.is_empty() { Ok(files) } else { Err(faults) }
+    if faults.is_empty() {
+        Ok(files)
+    } else {
+        Err(faults)
+    }
 }

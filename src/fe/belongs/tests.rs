@@ -20,7 +20,10 @@ fn grids_that_moved_are_an_error_with_the_worst_named() {
     let mut moved = there.clone();
     moved.grids[1].x.z += 0.5;
     let findings = check_coordinates(&here, "run.op2", &moved);
-    assert_eq!((findings.len(), findings[0].code, findings[0].measured), (1, "coordinates-differ", Some(0.5)));
+    assert_eq!(
+        (findings.len(), findings[0].code, findings[0].measured),
+        (1, "coordinates-differ", Some(0.5))
+    );
     // Single precision of the geometry blocks is no difference.
     moved.grids[1].x = here.grids[1].x.map(|v| f64::from((v * 1.000_000_1) as f32));
     assert!(check_coordinates(&here, "run.op2", &moved).is_empty());
@@ -33,9 +36,15 @@ fn reactions_are_told_where_the_structure_should_be_free() {
     let m = model("");
     assert!(check_free(&m, "run.pch", &file, Supports::AsDeck).is_empty());
     let findings = check_free(&m, "run.pch", &file, Supports::Free);
-    assert_eq!((findings[0].code, findings[0].measured, findings[0].limit), ("not-free", Some(1000.0), Some(1.0)));
+    assert_eq!(
+        (findings[0].code, findings[0].measured, findings[0].limit),
+        ("not-free", Some(1000.0), Some(1.0))
+    );
     let inertia_relief = model("PARAM,INREL,-2\n");
-    assert_eq!(check_free(&inertia_relief, "run.pch", &file, Supports::AsDeck).len(), 1);
+    assert_eq!(
+        check_free(&inertia_relief, "run.pch", &file, Supports::AsDeck).len(),
+        1
+    );
     let quiet = nodal("OLOADS", 1, 1000.0) + &nodal("SPCF", 2, 1e-4);
     let file = ResultsFile::read(quiet.as_bytes(), "run.pch").unwrap();
     assert!(check_free(&m, "run.pch", &file, Supports::Free).is_empty());
@@ -46,5 +55,9 @@ fn material_frame_output_is_warned_of() {
     let text = nodal("DISPLACEMENTS", 1, 0.0);
     let file = ResultsFile::read(text.as_bytes(), "run.pch").unwrap();
     let m = model("PARAM,OMID,YES\n");
-    assert!(check_output(&m, "run.pch", &file).iter().any(|f| f.code == "omid"));
+    assert!(
+        check_output(&m, "run.pch", &file)
+            .iter()
+            .any(|f| f.code == "omid")
+    );
 }

@@ -24,13 +24,19 @@ ENDDATA
 ";
 
 fn model() -> Model {
-    let deck = read_deck("plate.bdf", DECK.as_bytes().to_vec(), &mut MemoryLoader::default());
+    let deck = read_deck(
+        "plate.bdf",
+        DECK.as_bytes().to_vec(),
+        &mut MemoryLoader::default(),
+    );
     Model::from_cards(&deck.cards).0
 }
 
 /// A punch block: header, then entries of an id and reals.
 fn block(subcase: u32, quantity: &str, element: &str, entries: &[(&str, Vec<f64>)]) -> String {
-    let mut text = format!("$TITLE   = T\n$SUBTITLE=\n$LABEL   = PULL\n${quantity}\n$REAL OUTPUT\n$SUBCASE ID = {subcase}\n");
+    let mut text = format!(
+        "$TITLE   = T\n$SUBTITLE=\n$LABEL   = PULL\n${quantity}\n$REAL OUTPUT\n$SUBCASE ID = {subcase}\n"
+    );
     if !element.is_empty() {
         text += &format!("$ELEMENT TYPE = {element}\n");
     }
@@ -46,7 +52,11 @@ fn block(subcase: u32, quantity: &str, element: &str, entries: &[(&str, Vec<f64>
 
 /// Two fibres of fibre distance and three components; the other words are zero.
 fn shell(z: [f64; 2], a: [f64; 3], b: [f64; 3]) -> Vec<f64> {
-    [[z[0], a[0], a[1], a[2], 0.0, 0.0, 0.0, 0.0], [z[1], b[0], b[1], b[2], 0.0, 0.0, 0.0, 0.0]].concat()
+    [
+        [z[0], a[0], a[1], a[2], 0.0, 0.0, 0.0, 0.0],
+        [z[1], b[0], b[1], b[2], 0.0, 0.0, 0.0, 0.0],
+    ]
+    .concat()
 }
 
 fn solve(text: &str) -> Solution {
@@ -59,15 +69,27 @@ fn codes(solution: &Solution) -> Vec<&str> {
 }
 
 fn close(a: [f64; 3], b: [f64; 3]) {
-    a.iter().zip(b).for_each(|(x, y)| assert!((x - y).abs() < 1e-12, "{a:?} {b:?}"));
+    a.iter()
+        .zip(b)
+        .for_each(|(x, y)| assert!((x - y).abs() < 1e-12, "{a:?} {b:?}"));
 }
 
 #[test]
 fn fibre_and_curvature_form_of_one_state_give_the_same_strain_at_the_surfaces() {
     let (mid, slope) = ([1e-4, -2e-4, 3e-4], [1e-3, 2e-3, -1e-3]);
     let at = |z: f64| std::array::from_fn(|i| mid[i] + z * slope[i]);
-    let fibre = block(1, "ELEMENT STRAINS", "33 QUAD4", &[("        11", shell([-0.2, 0.2], at(-0.2), at(0.2)))]);
-    let curvature = block(1, "ELEMENT STRAINS", "33 QUAD4", &[("        11", shell([0.0, -1.0], mid, slope.map(|s| -s)))]);
+    let fibre = block(
+        1,
+        "ELEMENT STRAINS",
+        "33 QUAD4",
+        &[("        11", shell([-0.2, 0.2], at(-0.2), at(0.2)))],
+    );
+    let curvature = block(
+        1,
+        "ELEMENT STRAINS",
+        "33 QUAD4",
+        &[("        11", shell([0.0, -1.0], mid, slope.map(|s| -s)))],
+    );
     let (a, b) = (solve(&fibre), solve(&curvature));
     for s in [&a, &b] {
         let [bottom, top] = s.cases[0].shells.centre[0];
@@ -80,8 +102,17 @@ fn fibre_and_curvature_form_of_one_state_give_the_same_strain_at_the_surfaces() 
 
 #[test]
 fn elements_come_out_ascending_whatever_the_order_of_blocks() {
-    let text = block(1, "ELEMENT STRAINS", "74 TRIA3", &[("        12", shell([-0.2, 0.2], [2e-4; 3], [2e-4; 3]))])
-        + &block(1, "ELEMENT STRAINS", "33 QUAD4", &[("        11", shell([-0.2, 0.2], [1e-4; 3], [1e-4; 3]))]);
+    let text = block(
+        1,
+        "ELEMENT STRAINS",
+        "74 TRIA3",
+        &[("        12", shell([-0.2, 0.2], [2e-4; 3], [2e-4; 3]))],
+    ) + &block(
+        1,
+        "ELEMENT STRAINS",
+        "33 QUAD4",
+        &[("        11", shell([-0.2, 0.2], [1e-4; 3], [1e-4; 3]))],
+    );
     let shells = &solve(&text).cases[0].shells;
     assert!(shells.elements.is_sorted());
     close(shells.centre[0][0], [1e-4; 3]);
@@ -90,12 +121,25 @@ fn elements_come_out_ascending_whatever_the_order_of_blocks() {
 
 #[test]
 fn strain_comes_from_stress_only_where_there_is_no_strain_and_says_so() {
-    let stress = block(1, "ELEMENT STRESSES", "33 QUAD4", &[("        11", shell([-0.2, 0.2], [200.0, 0.0, 80.0], [0.0, 200.0, 0.0]))]);
+    let stress = block(
+        1,
+        "ELEMENT STRESSES",
+        "33 QUAD4",
+        &[(
+            "        11",
+            shell([-0.2, 0.2], [200.0, 0.0, 80.0], [0.0, 200.0, 0.0]),
+        )],
+    );
     let alone = solve(&stress);
     assert!(alone.cases[0].shells.from_stress && codes(&alone).contains(&"strain-from-stress"));
     // E 200000, nu 0.25, G 80000.
     close(alone.cases[0].shells.centre[0][0], [1e-3, -2.5e-4, 1e-3]);
-    let strain = block(1, "ELEMENT STRAINS", "33 QUAD4", &[("        11", shell([-0.2, 0.2], [5e-4; 3], [5e-4; 3]))]);
+    let strain = block(
+        1,
+        "ELEMENT STRAINS",
+        "33 QUAD4",
+        &[("        11", shell([-0.2, 0.2], [5e-4; 3], [5e-4; 3]))],
+    );
     let both = solve(&(stress + &strain));
     assert!(!both.cases[0].shells.from_stress);
     close(both.cases[0].shells.centre[0][0], [5e-4; 3]);
@@ -104,17 +148,35 @@ fn strain_comes_from_stress_only_where_there_is_no_strain_and_says_so() {
 #[test]
 fn bending_of_a_bar_takes_its_axial_strain() {
     let row = (1..=15).map(|i| f64::from(i) * 1e-5).collect();
-    let solution = solve(&block(1, "ELEMENT STRAINS", "34 BAR", &[("        21", row)]));
+    let solution = solve(&block(
+        1,
+        "ELEMENT STRAINS",
+        "34 BAR",
+        &[("        21", row)],
+    ));
     let stations = &solution.cases[0].beams.stations[0];
     assert_eq!((stations[0].0, stations[1].0), (0.0, 1.0));
-    for (got, want) in stations[0].1.iter().chain(&stations[1].1).zip([6e-5, 7e-5, 8e-5, 9e-5, 14e-5, 15e-5, 16e-5, 17e-5]) {
+    for (got, want) in stations[0]
+        .1
+        .iter()
+        .chain(&stations[1].1)
+        .zip([6e-5, 7e-5, 8e-5, 9e-5, 14e-5, 15e-5, 16e-5, 17e-5])
+    {
         assert!((got - want).abs() < 1e-15);
     }
 }
 
 #[test]
 fn displacements_turn_from_a_cylindrical_frame_to_basic() {
-    let text = block(1, "DISPLACEMENTS", "", &[("         5       G", vec![1.0, 2.0, 3.0, 0.0, 0.0, 4.0]), ("         1       G", vec![1.0, 2.0, 3.0, 0.0, 0.0, 0.0])]);
+    let text = block(
+        1,
+        "DISPLACEMENTS",
+        "",
+        &[
+            ("         5       G", vec![1.0, 2.0, 3.0, 0.0, 0.0, 4.0]),
+            ("         1       G", vec![1.0, 2.0, 3.0, 0.0, 0.0, 0.0]),
+        ],
+    );
     let solution = solve(&text);
     let u = &solution.cases[0].displacement;
     let ix = |id: u32| model().grid_ix(id).unwrap().us();
@@ -131,23 +193,68 @@ fn displacements_turn_from_a_cylindrical_frame_to_basic() {
 #[test]
 fn what_does_not_fit_is_told_once_each() {
     let entry = |z: f64| shell([-z, z], [1e-4; 3], [1e-4; 3]);
-    let text = block(1, "ELEMENT STRAINS", "33 QUAD4", &[("        11", entry(0.5)), ("        99", entry(0.2))])
-        + &block(2, "ELEMENT STRAINS", "33 QUAD4", &[("        11", entry(0.5))])
-        + &block(3, "DISPLACEMENTS", "", &[("        77       G", vec![0.0; 6])])
-        + &block(4, "EIGENVECTOR", "", &[("         1       G", vec![0.0; 6])]);
+    let text = block(
+        1,
+        "ELEMENT STRAINS",
+        "33 QUAD4",
+        &[("        11", entry(0.5)), ("        99", entry(0.2))],
+    ) + &block(
+        2,
+        "ELEMENT STRAINS",
+        "33 QUAD4",
+        &[("        11", entry(0.5))],
+    ) + &block(
+        3,
+        "DISPLACEMENTS",
+        "",
+        &[("        77       G", vec![0.0; 6])],
+    ) + &block(
+        4,
+        "EIGENVECTOR",
+        "",
+        &[("         1       G", vec![0.0; 6])],
+    );
     let solution = solve(&text);
-    for code in ["fibre-distance-differs", "element-not-in-deck", "no-grid-in-deck", "no-strain-output", "not-static"] {
-        assert_eq!(codes(&solution).iter().filter(|c| **c == code).count(), 1, "{code}: {:?}", codes(&solution));
+    for code in [
+        "fibre-distance-differs",
+        "element-not-in-deck",
+        "no-grid-in-deck",
+        "no-strain-output",
+        "not-static",
+    ] {
+        assert_eq!(
+            codes(&solution).iter().filter(|c| **c == code).count(),
+            1,
+            "{code}: {:?}",
+            codes(&solution)
+        );
     }
-    let fibres = solution.findings.iter().find(|f| f.code == "fibre-distance-differs").unwrap();
+    let fibres = solution
+        .findings
+        .iter()
+        .find(|f| f.code == "fibre-distance-differs")
+        .unwrap();
     assert_eq!((fibres.measured, fibres.limit), (Some(-0.5), Some(-0.2)));
 }
 
 #[test]
 fn strain_of_one_file_and_displacements_of_another_make_one_case() {
-    let strain = block(1, "ELEMENT STRAINS", "33 QUAD4", &[("        11", shell([-0.2, 0.2], [1e-4; 3], [1e-4; 3]))]);
-    let moved = block(1, "DISPLACEMENTS", "", &[("         1       G", vec![1.0; 6])]);
-    let (a, b) = (ResultsFile::read(strain.as_bytes(), "a").unwrap(), ResultsFile::read(moved.as_bytes(), "b").unwrap());
+    let strain = block(
+        1,
+        "ELEMENT STRAINS",
+        "33 QUAD4",
+        &[("        11", shell([-0.2, 0.2], [1e-4; 3], [1e-4; 3]))],
+    );
+    let moved = block(
+        1,
+        "DISPLACEMENTS",
+        "",
+        &[("         1       G", vec![1.0; 6])],
+    );
+    let (a, b) = (
+        ResultsFile::read(strain.as_bytes(), "a").unwrap(),
+        ResultsFile::read(moved.as_bytes(), "b").unwrap(),
+    );
     let both = solution_from_results(&model(), &[("a", &a), ("b", &b)], &ReadOptions::default());
     assert_eq!(both.cases.len(), 1);
     assert!(!both.cases[0].shells.elements.is_empty() && !both.cases[0].displacement.is_empty());
@@ -158,17 +265,49 @@ fn strain_of_one_file_and_displacements_of_another_make_one_case() {
 
 #[test]
 fn rows_carry_the_normal_strain_of_plane_stress_and_bars_lie_along_their_axis() {
-    let text = block(1, "ELEMENT STRAINS", "33 QUAD4", &[("        11", shell([-0.2, 0.2], [3e-4, 0.0, 2e-4], [0.0; 3]))])
-        + &block(1, "ELEMENT STRAINS", "34 BAR", &[("        21", vec![0.0, 0.0, 0.0, 0.0, 5e-4, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])]);
+    let text = block(
+        1,
+        "ELEMENT STRAINS",
+        "33 QUAD4",
+        &[(
+            "        11",
+            shell([-0.2, 0.2], [3e-4, 0.0, 2e-4], [0.0; 3]),
+        )],
+    ) + &block(
+        1,
+        "ELEMENT STRAINS",
+        "34 BAR",
+        &[(
+            "        21",
+            vec![
+                0.0, 0.0, 0.0, 0.0, 5e-4, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+            ],
+        )],
+    );
     let (solution, m) = (solve(&text), model());
     let mut rows = Vec::new();
-    each_row(&m, &solution.cases[0], 0..n_elements(&solution.cases[0]), |r| rows.push(*r));
+    each_row(
+        &m,
+        &solution.cases[0],
+        0..n_elements(&solution.cases[0]),
+        |r| rows.push(*r),
+    );
     assert_eq!(rows.len(), 2 + 8);
     // The quad lies in basic x-y with x along side 1-2: ezz = -nu / (1 - nu) exx, tensor shear is half the engineering shear.
     let want = [3e-4, 0.0, -1e-4, 1e-4, 0.0, 0.0];
-    rows[0].basic.iter().zip(want).for_each(|(g, w)| assert!((g - w).abs() < 1e-15));
+    rows[0]
+        .basic
+        .iter()
+        .zip(want)
+        .for_each(|(g, w)| assert!((g - w).abs() < 1e-15));
     // The bar runs along basic y from grid 1 to grid 4.
     let bar = rows[2];
-    assert_eq!((bar.card, bar.location, bar.point), ("CBAR", Location::Grid(1), Point::Recovery(0)));
-    bar.basic.iter().zip([0.0, 5e-4, 0.0, 0.0, 0.0, 0.0]).for_each(|(g, w)| assert!((g - w).abs() < 1e-15));
+    assert_eq!(
+        (bar.card, bar.location, bar.point),
+        ("CBAR", Location::Grid(1), Point::Recovery(0))
+    );
+    bar.basic
+        .iter()
+        .zip([0.0, 5e-4, 0.0, 0.0, 0.0, 0.0])
+        .for_each(|(g, w)| assert!((g - w).abs() < 1e-15));
 }
