@@ -1,1 +1,18 @@
-//! To come.
+//! What a gauge reads of a strain field.
+//!
+//! [`GaugeSpec`] says where it is glued and how it is wired; [`build`] lays it onto the model's surface and gives [`Gauge`]s: lists of arms,
+//! each a linear functional of the strain at one place, so that `reading = sum coefficient . strain`.
+
+mod arms;
+mod build;
+mod grid_average;
+mod spec;
+mod surface;
+
+pub use arms::{Arm, Gauge, Spot, reading, shell_strain};
+pub use build::{CornerRows, GaugeError, build};
+pub use spec::{Bridge, GaugePlace, GaugeSpec, Rosette};
+pub use surface::{Foot, centre, nearest, to_side};
+
+#[cfg(test)]
+mod tests;

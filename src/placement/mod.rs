@@ -20,6 +20,7 @@ mod layout;
 pub mod quality;
 pub mod quartic;
 pub mod relax;
+pub mod sites;
 pub mod spacing;
 
 pub use layout::{Layout, Spec, place};

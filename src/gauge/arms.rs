@@ -1,0 +1,117 @@
+//! A gauge as a linear functional of a strain field.
+
+use crate::fe::shell_frame::ShellPlace;
+use crate::fe::strain_tensor::Surface;
+use crate::fe::{CaseResult, PlaneStrain};
+use crate::model::{BeamIx, ShellIx, Vec3};
+
+/// Where an arm takes its strain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Spot {
+    /// A shell's surface, at its centre or a corner.
+    Shell {
+        /// Which.
+        shell: ShellIx,
+        /// Side.
+        surface: Surface,
+        /// Centre or corner.
+        place: ShellPlace,
+    },
+    /// A recovery point of a bar or beam.
+    Beam {
+        /// Which.
+        beam: BeamIx,
+        /// 0 to 3: C D E F.
+        point: usize,
+        /// x/xb.
+        station: f64,
+    },
+}
+
+/// `coefficient . (exx, eyy, gxy)` at a spot, in the output frame of that spot; a beam's arm counts the first alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arm {
+    /// Where.
+    pub spot: Spot,
+    /// Weight and direction together: `w (cos^2 t, sin^2 t, sin t cos t)` for a plain grid.
+    pub coefficient: [f64; 3],
+}
+
+/// A channel: what it reads, and what a drawing or a gluing sheet shows of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gauge {
+    /// Channel name.
+    pub name: String,
+    /// Arms.
+    pub arms: Vec<Arm>,
+    /// Id of the element it sits on.
+    pub element: u32,
+    /// Side; beams count as top.
+    pub surface: Surface,
+    /// Basic frame, on the surface.
+    pub position: Vec3,
+    /// Unit vector of the axis, basic frame.
+    pub direction: Vec3,
+    /// Outward normal of the element (its z axis), basic frame.
+    pub normal: Vec3,
+    /// Angle of the axis from the element x axis, radians, in (-pi/2, pi/2].
+    pub angle_rad: f64,
+}
+
+/// What a gauge reads in a load case, strain; `None` where the case has no strain at one of its spots.
+pub fn reading(gauge: &Gauge, case: &CaseResult) -> Option<f64> {
+    gauge.arms.iter().map(|arm| arm_reading(arm, case)).sum()
+}
+
+fn arm_reading(arm: &Arm, case: &CaseResult) -> Option<f64> {
+    let [a, b, c] = arm.coefficient;
+    match arm.spot {
+        Spot::Shell {
+            shell,
+            surface,
+            place,
+        } => {
+            let [x, y, g] = shell_strain(case, shell, surface, place)?;
+            Some(a * x + b * y + c * g)
+        }
+        Spot::Beam {
+            beam,
+            point,
+            station,
+        } => Some(a * beam_strain(case, beam, point, station)?),
+    }
+}
+
+/// Strain of a shell at a place, output frame; `None` where the case has none.
+pub fn shell_strain(
+    case: &CaseResult,
+    shell: ShellIx,
+    surface: Surface,
+    place: ShellPlace,
+) -> Option<PlaneStrain> {
+    let row = case.shells.elements.binary_search(&shell).ok()?;
+    let strain = match place {
+        ShellPlace::Centre => case.shells.centre.get(row)?[surface.ix()],
+        ShellPlace::Corner(c) => case.shells.corners.get(row)?.get(c)?[surface.ix()],
+    };
+    strain.iter().all(|v| v.is_finite()).then_some(strain)
+}
+
+/// Linear between the stations of a bar or beam.
+fn beam_strain(case: &CaseResult, beam: BeamIx, point: usize, station: f64) -> Option<f64> {
+    let row = case.beams.elements.binary_search(&beam).ok()?;
+    let stations = case.beams.stations.get(row)?;
+    let at = |i: usize| Some((stations.get(i)?.0, *stations.get(i)?.1.get(point)?));
+    let after = stations
+        .iter()
+        .position(|s| s.0 >= station)
+        .unwrap_or(stations.len().saturating_sub(1));
+    let (x1, e1) = at(after)?;
+    let (x0, e0) = at(after.saturating_sub(1))?;
+    let strain = if x1 > x0 {
+        e0 + (e1 - e0) * ((station - x0) / (x1 - x0)).clamp(0.0, 1.0)
+    } else {
+        e1
+    };
+    strain.is_finite().then_some(strain)
+}

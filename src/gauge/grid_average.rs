@@ -1,0 +1,108 @@
+//! The mean strain over a gauge's grid.
+//!
+//! The strain along the axis is sampled at points over the grid length, each on the shell that lies there, and averaged. Where the result
+//! has corner rows it is bilinear in each shell. Where it has centres only, it is linear about each centre with the gradient along the axis
+//! that fits the neighbours across the shell's edges (least squares); neighbours at an angle of more than 20 degrees lie round a bend and
+//! are left out.
+
+use super::surface::{Foot, centre, foot_on, nearest};
+use crate::fe::shell_frame::{ShellPlace, shell_axes};
+use crate::model::{Model, ShellIx, Vec3};
+
+/// Points over the grid: Gauss-Legendre abscissae on [-1, 1] and weights (sum 1).
+pub const POINTS: [(f64, f64); 5] = [
+    (-0.906_179_845_938_664, 0.118_463_442_528_094_5),
+    (-0.538_469_310_105_683, 0.239_314_335_249_683_2),
+    (0.0, 0.284_444_444_444_444_4),
+    (0.538_469_310_105_683, 0.239_314_335_249_683_2),
+    (0.906_179_845_938_664, 0.118_463_442_528_094_5),
+];
+
+/// Cosine of the angle beyond which a neighbour lies round a bend: that of PARAM,SNORM's default, 20 degrees.
+const SMOOTH: f64 = 0.939_692_620_785_908_4;
+
+/// Shells that share an edge with `shell` and go on smoothly.
+pub fn neighbours(model: &Model, shell: ShellIx) -> Vec<ShellIx> {
+    let Some(me) = model.shells.get(shell.us()) else {
+        return Vec::new();
+    };
+    let normal = |ix: ShellIx| {
+        shell_axes(model, model.shells.get(ix.us())?, ShellPlace::Centre)
+            .map(|a| a.row(2).transpose())
+    };
+    let Some(n) = normal(shell) else {
+        return Vec::new();
+    };
+    let mine = &me.grids[..me.shape.n_corners()];
+    (0..model.shells.len() as u32)
+        .map(ShellIx)
+        .filter(|&ix| ix != shell)
+        .filter(|ix| {
+            model.shells.get(ix.us()).is_some_and(|s| {
+                s.grids[..s.shape.n_corners()]
+                    .iter()
+                    .filter(|g| mine.contains(g))
+                    .count()
+                    >= 2
+            })
+        })
+        .filter(|&ix| normal(ix).is_some_and(|m| m.dot(&n).abs() >= SMOOTH))
+        .collect()
+}
+
+/// Weights of the centres of `shell` and its neighbours in the strain at `x` on it: value and gradient along `axis`.
+pub fn about_centre(model: &Model, shell: ShellIx, x: Vec3, axis: Vec3) -> Vec<(ShellIx, f64)> {
+    let Some(c) = model.shells.get(shell.us()).and_then(|s| centre(model, s)) else {
+        return vec![(shell, 1.0)];
+    };
+    let along = (x - c).dot(&axis);
+    let near: Vec<(ShellIx, f64)> = neighbours(model, shell)
+        .into_iter()
+        .filter_map(|ix| {
+            Some((
+                ix,
+                (centre(model, model.shells.get(ix.us())?)? - c).dot(&axis),
+            ))
+        })
+        .collect();
+    let spread: f64 = near.iter().map(|(_, t)| t * t).sum();
+    if spread <= 0.0 {
+        return vec![(shell, 1.0)];
+    }
+    let mut own = 1.0;
+    let mut out = Vec::new();
+    for (ix, t) in near {
+        let w = along * t / spread;
+        own -= w;
+        out.push((ix, w));
+    }
+    out.push((shell, own));
+    out
+}
+
+/// The place on the shells at `x`, seen from `home`: on it or on a smooth neighbour within a few steps.
+pub fn place_at(model: &Model, home: ShellIx, x: Vec3) -> Option<Foot> {
+    let mut best = foot_on(model, home, x)?;
+    let mut seen = vec![home];
+    for _ in 0..STEPS {
+        if best.distance < 1e-9 * best.point.norm().max(1.0) {
+            break;
+        }
+        let next = neighbours(model, best.shell)
+            .into_iter()
+            .filter(|ix| !seen.contains(ix))
+            .collect::<Vec<_>>();
+        seen.extend(&next);
+        let Some(found) = nearest(model, x, |ix| next.contains(&ix)) else {
+            break;
+        };
+        if found.distance >= best.distance {
+            break;
+        }
+        best = found;
+    }
+    Some(best)
+}
+
+/// Shells a grid may reach over from its middle.
+const STEPS: usize = 8;

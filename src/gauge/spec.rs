@@ -1,0 +1,106 @@
+//! A gauge as its user describes it, ids resolved.
+
+use crate::fe::strain_tensor::Surface;
+use crate::model::{BeamIx, ShellIx, Vec3};
+
+/// How the arms are wired. `eps(d)` is the strain along direction `d`; readings are divided by the bridge factor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bridge {
+    /// One grid: `eps`.
+    Quarter,
+    /// Two grids in adjacent arms: `eps(here) - eps(pair)`, pure bending doubled, axial strain and temperature cancelled.
+    HalfBending,
+    /// Four grids: `2 eps(here) - 2 eps(pair)`.
+    FullBending,
+    /// Two grids at +45 and -45 degrees from the axis in adjacent arms: `eps(+45) - eps(-45)`, the engineering shear strain in the frame of the
+    /// axis; with a pair, the sum of both places (four grids).
+    Shear,
+}
+
+/// Three grids at one place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rosette {
+    /// Legs a, b, c at 0, 45, 90 degrees from the axis.
+    Rectangular,
+    /// Legs a, b, c at 0, 60, 120 degrees.
+    Delta,
+}
+
+impl Rosette {
+    /// Leg names and angles, radians, right-handed about the element normal.
+    pub fn legs(self) -> [(&'static str, f64); 3] {
+        let step = match self {
+            Self::Rectangular => 45_f64,
+            Self::Delta => 60_f64,
+        };
+        [
+            ("a", 0.0),
+            ("b", step.to_radians()),
+            ("c", (2.0 * step).to_radians()),
+        ]
+    }
+}
+
+/// Where a gauge is glued.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GaugePlace {
+    /// At the centre of a shell.
+    Shell(ShellIx),
+    /// At the point of the shells' surfaces nearest to this one, basic frame.
+    Nearest(Vec3),
+    /// At recovery point 0 to 3 (C D E F) of a bar or beam, at a share of its length from end A; reads along the axis.
+    Beam {
+        /// Which.
+        beam: BeamIx,
+        /// 0 to 3.
+        point: usize,
+        /// x/xb.
+        station: f64,
+    },
+}
+
+/// A gauge.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GaugeSpec {
+    /// Name; a rosette's channels are `name.a`, `name.b`, `name.c`.
+    pub name: String,
+    /// Where.
+    pub place: GaugePlace,
+    /// Side; `None`: top, or the nearer one for a point.
+    pub surface: Option<Surface>,
+    /// Laid onto the surface gives the direction from which `angle_rad` counts; `None`: the element x axis.
+    pub direction: Option<Vec3>,
+    /// Right-handed about the element normal, on both sides.
+    pub angle_rad: f64,
+    /// Wiring.
+    pub bridge: Bridge,
+    /// Divides the signed sum.
+    pub bridge_factor: f64,
+    /// Length of the grid along its axis; 0: a point.
+    pub grid_length: f64,
+    /// Shell and side of the other pair; `None`: the other side of the same shell (bending), none (shear).
+    pub pair: Option<(ShellIx, Surface)>,
+    /// Three channels instead of one.
+    pub rosette: Option<Rosette>,
+    /// Kt, a fraction; readings are taken as corrected for a Poisson ratio of 0.285 by the maker's gauge factor.
+    pub transverse_sensitivity: f64,
+}
+
+impl GaugeSpec {
+    /// A quarter bridge on the top of a shell along its x axis.
+    pub fn on(name: impl Into<String>, shell: ShellIx) -> Self {
+        Self {
+            name: name.into(),
+            place: GaugePlace::Shell(shell),
+            surface: None,
+            direction: None,
+            angle_rad: 0.0,
+            bridge: Bridge::Quarter,
+            bridge_factor: 1.0,
+            grid_length: 0.0,
+            pair: None,
+            rosette: None,
+            transverse_sensitivity: 0.0,
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! S from the strain fields of unit loads, and the shells that every one of them has.
+
+use super::{Load, Sensitivity};
+use crate::fe::CaseResult;
+use crate::finding::{Finding, Severity};
+use crate::gauge::{Gauge, reading};
+use crate::linalg::Matrix;
+use crate::model::ShellIx;
+use std::collections::BTreeSet;
+
+/// A load and the case in which it acts with the size `applied` (job units, signed).
+#[derive(Clone, Debug)]
+pub struct LoadCaseOf<'a> {
+    /// The column.
+    pub load: Load,
+    /// Size in that case.
+    pub applied: f64,
+    /// Its strain.
+    pub case: &'a CaseResult,
+}
+
+/// A gauge without strain in some case.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "gauge `{gauge}` on element {element} has no strain in subcase {subcase} (load `{load}`): ask for STRAIN of that element in every subcase, or move the gauge"
+)]
+pub struct NoStrain {
+    /// Gauge.
+    pub gauge: String,
+    /// Element id.
+    pub element: u32,
+    /// Subcase id.
+    pub subcase: u32,
+    /// Load.
+    pub load: String,
+}
+
+/// `S[g][l] = reading of gauge g in the case of load l / applied`.
+///
+/// # Errors
+/// Every gauge that has no strain in some case.
+pub fn from_cases(gauges: &[Gauge], loads: &[LoadCaseOf]) -> Result<Sensitivity, Vec<NoStrain>> {
+    let mut missing = Vec::new();
+    let mut values = Matrix::zeros(gauges.len(), loads.len());
+    for (g, gauge) in gauges.iter().enumerate() {
+        for (l, load) in loads.iter().enumerate() {
+            match reading(gauge, load.case) {
+                Some(v) => values[(g, l)] = v / load.applied,
+                None => missing.push(NoStrain {
+                    gauge: gauge.name.clone(),
+                    element: gauge.element,
+                    subcase: load.case.subcase,
+                    load: load.load.name.clone(),
+                }),
+            }
+        }
+    }
+    if !missing.is_empty() {
+        return Err(missing);
+    }
+    Ok(Sensitivity {
+        gauges: gauges.iter().map(|g| g.name.clone()).collect(),
+        loads: loads.iter().map(|l| l.load.clone()).collect(),
+        values,
+    })
+}
+
+/// Shells with strain in every load's case, ascending, and a finding that counts the others.
+pub fn common_shells(loads: &[LoadCaseOf]) -> (Vec<ShellIx>, Vec<Finding>) {
+    let Some((first, rest)) = loads.split_first() else {
+        return (Vec::new(), Vec::new());
+    };
+    let mut common: Vec<ShellIx> = first.case.shells.elements.to_vec();
+    let mut any: BTreeSet<ShellIx> = common.iter().copied().collect();
+    for l in rest {
+        if std::sync::Arc::ptr_eq(&l.case.shells.elements, &first.case.shells.elements) {
+            continue;
+        }
+        any.extend(l.case.shells.elements.iter());
+        common.retain(|ix| l.case.shells.elements.binary_search(ix).is_ok());
+    }
+    let left_out = any.len() - common.len();
+    let mut findings = Vec::new();
+    if left_out > 0 {
+        findings.push(
+            Finding::new(
+                Severity::Info,
+                "elements-not-in-every-subcase",
+                "candidates",
+                format!(
+                    "{left_out} shells have strain in some loads' subcases and not in others: they are no candidates ({} are)",
+                    common.len()
+                ),
+                "ask for STRAIN(FIBER,CENTER) = ALL in every subcase",
+            )
+            .with_numbers(left_out as f64, 0.0),
+        );
+    }
+    (common, findings)
+}
