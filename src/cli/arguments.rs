@@ -18,6 +18,12 @@ pub enum Command {
     Check(FilesArguments),
     /// Shell and bar strain of every static subcase, in the element and the basic frame, to strains.csv
     Strains(DeckArguments),
+    /// Compute S of the job's gauges, or of its candidates: what each reads per unit of each load
+    Sensitivity(JobArguments),
+    /// Choose gauges, with a certificate of how far from the best possible they are
+    Place(JobArguments),
+    /// Recover loads from measured strain, with intervals
+    Recover(JobArguments),
     /// Vehicle parameters and wheel loads from accelerations
     Identify(JobArguments),
 }

@@ -12,9 +12,13 @@ pub mod files;
 mod identify;
 pub mod job;
 pub mod output;
+mod place;
 mod progress;
+mod recover;
+mod sensitivity;
 mod session;
 mod strains;
+mod strain;
 pub mod vehicle;
 mod words;
 
@@ -28,6 +32,11 @@ pub fn run(arguments: Arguments) -> ExitCode {
     match arguments.command {
         Command::Strains(a) => Session::run("strains", &a.common, |s| strains::run(&a, s)),
         Command::Check(a) => Session::run("check", &a.common, |s| check::run(&a, s)),
+        Command::Place(a) => Session::run("place", &a.common, |s| place::run(&a, s)),
+        Command::Recover(a) => Session::run("recover", &a.common, |s| recover::run(&a, s)),
+        Command::Sensitivity(a) => {
+            Session::run("sensitivity", &a.common, |s| sensitivity::run(&a, s))
+        }
         Command::Identify(a) => Session::run("identify", &a.common, |s| identify::run(&a, s)),
     }
 }

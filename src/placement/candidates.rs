@@ -17,13 +17,16 @@ pub enum Angles {
     Continuous,
 }
 
-/// Standard deviation of a reading: `sd^2 = noise^2 + extra + (angle_sd |d row / d angle|)^2`, the row in strain at the expected loads.
+/// Standard deviation of a reading: `sd^2 = noise^2 + extra + (angle_sd |d row / d angle|)^2 + (model_rel |row|)^2`, the row in strain at
+/// the expected loads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scatter {
     /// Noise, 1 sd, in the unit of the rows.
     pub noise: f64,
     /// Angle tolerance, 1 sd, radians; needs tensors.
     pub angle_sd: f64,
+    /// Model uncertainty of each load's part of the reading, 1 sd, a fraction; needs tensors.
+    pub model_rel: f64,
     /// A variance of its own for each place (position tolerance, gradient over the grid); empty: none.
     pub extra: Vec<f64>,
 }
@@ -34,6 +37,7 @@ impl Scatter {
         Self {
             noise,
             angle_sd: 0.0,
+            model_rel: 0.0,
             extra: Vec::new(),
         }
     }
@@ -59,7 +63,7 @@ pub struct Candidates {
     /// By block of [`LANES`] places, load, component (1 for rows; exx, eyy, gxy for tensors), lane. Columns are times `expected`.
     blocks: Vec<f64>,
     scatter: Scatter,
-    /// `angle_sd^2` times the Gram form of the loads, by place; empty without an angle tolerance.
+    /// The Gram form of the loads, by place; empty where the variance does not depend on the angle.
     slopes: Vec<Form>,
     /// Basic-frame positions, for spacing; empty: none known.
     positions: Vec<[f64; 3]>,
@@ -104,8 +108,7 @@ impl Candidates {
             slopes: Vec::new(),
             positions: Vec::new(),
         };
-        if c.scatter.angle_sd > 0.0 {
-            let tau2 = c.scatter.angle_sd * c.scatter.angle_sd;
+        if c.scatter.angle_sd > 0.0 || c.scatter.model_rel > 0.0 {
             c.slopes = (0..n)
                 .into_par_iter()
                 .map(|p| {
@@ -113,7 +116,7 @@ impl Candidates {
                     for l in 0..k {
                         let [x, y, s] = c.tensor(p, l);
                         for (v, a) in g.iter_mut().zip([x * x, y * y, s * s, x * y, x * s, y * s]) {
-                            *v += tau2 * a;
+                            *v += a;
                         }
                     }
                     g
@@ -175,9 +178,24 @@ impl Candidates {
 
     /// Variance of a reading at a place as a function of the angle.
     pub fn variance(&self, place: usize) -> Trig {
-        let mut v = self.slopes.get(place).map_or([0.0; 5], quartic::of_slope);
+        let mut v = [0.0; 5];
+        if let Some(form) = self.slopes.get(place) {
+            let (turn, model) = (
+                self.scatter.angle_sd.powi(2),
+                self.scatter.model_rel.powi(2),
+            );
+            let (slope, row) = (quartic::of_slope(form), quartic::of_row(form));
+            v = std::array::from_fn(|i| turn * slope[i] + model * row[i]);
+        }
         v[0] += self.fixed_variance(place);
         v
+    }
+
+    /// The same candidates with noise as the only error.
+    pub fn with_noise_only(mut self) -> Self {
+        self.scatter = Scatter::uniform(self.scatter.noise);
+        self.slopes = Vec::new();
+        self
     }
 
     /// The part of the variance that the angle does not change.

@@ -17,6 +17,8 @@ pub struct Spec {
     pub spacing: f64,
     /// Information already there, `k x k` by rows (zeros: none): gauges kept, known load sizes.
     pub prior: Vec<f64>,
+    /// Columns that are present but not asked for; empty: none.
+    pub nuisance: Vec<bool>,
     /// Gap, per load, to which the relaxation is solved; the certificate is as much looser.
     pub tolerance: f64,
     /// How hard to search.
@@ -30,6 +32,7 @@ impl Spec {
             gauges,
             spacing: 0.0,
             prior: vec![0.0; loads * loads],
+            nuisance: Vec::new(),
             tolerance: 5e-4,
             effort: Effort {
                 starts: 8,

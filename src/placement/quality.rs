@@ -54,3 +54,12 @@ pub fn judge_rows(rows: &[Vec<f64>], prior: &[f64], k: usize) -> Option<Quality>
         worst,
     })
 }
+
+/// `log det` of the information of these rows with the prior; `None` where singular (a number that JSON has no form for otherwise).
+pub fn log_det(rows: &[Vec<f64>], prior: &[f64], k: usize) -> Option<f64> {
+    let mut m = prior.to_vec();
+    for r in rows {
+        spd::add_outer(&mut m, r, 1.0);
+    }
+    spd::cholesky(&m, k).map(|l| spd::log_det(&l, k))
+}

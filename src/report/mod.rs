@@ -1,5 +1,6 @@
 //! From plain results to bytes: text, json, csv, html. Nothing is computed here.
 
+pub mod strain;
 mod strains;
 pub mod vehicle;
 

@@ -1,0 +1,125 @@
+//! `recover`: loads from measured strain.
+//!
+//! [`runs`] static states, a row each; [`stream`] records of any length, CSV or binary ([`binary`]), at constant memory.
+
+mod binary;
+mod csv_record;
+mod runs;
+mod stream;
+
+use super::fault::{Fault, Faults};
+use super::job::{self, Job, Measured, Reference};
+use super::strain::{Prepared, prepare, put_conditioning};
+use super::{JobArguments, Session};
+use crate::finding::{Finding, Severity};
+use crate::gauge::reading;
+use crate::recovery::ErrorModel;
+
+/// Strain in one microstrain.
+const MICRO: f64 = 1e-6;
+
+/// What runs and records share.
+struct Task<'a> {
+    job: &'a Job,
+    measured: &'a Measured,
+    prepared: &'a Prepared,
+    errors: ErrorModel,
+    /// Strain subtracted from readings, by gauge of S.
+    zero: Vec<f64>,
+    /// Noise variance of a reading less zero, in units of that of a reading.
+    noise_factor: f64,
+}
+
+/// Reads, recovers, writes `loads.csv` and the report.
+pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
+    let job = session.stage("read job", |s| job::read_job(&mut s.inputs, &arguments.job))?;
+    session.put_units(job.units, &job.report_units);
+    let Some(measured) = &job.measured else {
+        return Err(vec![Fault::of(
+            &*job.file,
+            "measured",
+            "the job has no [measured]",
+            "name the strain file: [measured] strain = \"strain.csv\"",
+        )]);
+    };
+    let prepared = prepare(session, &job)?;
+    put_conditioning(session, &prepared.sensitivity)?;
+    let (mut zero, n_zero) = runs::zero_of(session, &job, measured, &prepared.sensitivity.gauges)?;
+    for (z, r) in zero
+        .iter_mut()
+        .zip(reference_strain(&job, measured, &prepared)?)
+    {
+        *z -= r;
+    }
+    let task = Task {
+        job: &job,
+        measured,
+        prepared: &prepared,
+        errors: ErrorModel {
+            noise: measured.noise_microstrain * MICRO,
+            model_rel: measured.model_uncertainty_rel,
+        },
+        zero,
+        noise_factor: 1.0 + n_zero.map_or(0.0, |n| 1.0 / n),
+    };
+    if measured.reference == Reference::None {
+        session.findings.push(Finding::new(
+            Severity::Info,
+            "loads-are-changes",
+            "measured.reference",
+            "loads are changes from the state at which the gauges read zero",
+            "state `reference` to get totals",
+        ));
+    }
+    let bytes = session
+        .inputs
+        .read_named(&job, &measured.strain)
+        .map_err(|f| vec![f])?;
+    if binary::is_record(&bytes) || csv_record::is_record(&bytes) {
+        stream::run(session, arguments, &task, bytes)
+    } else {
+        runs::run(session, arguments, &task)
+    }
+}
+
+/// Strain of the reference state by gauge: it is added to the readings, so that loads are totals.
+fn reference_strain(
+    job: &Job,
+    measured: &Measured,
+    prepared: &Prepared,
+) -> Result<Vec<f64>, Faults> {
+    let n = prepared.sensitivity.gauges.len();
+    let fault = |wrong: String, remedy: &str| {
+        vec![Fault::at(
+            &*job.file,
+            measured.line,
+            "measured.reference",
+            wrong,
+            remedy,
+        )]
+    };
+    match (measured.reference, &prepared.fields) {
+        (Reference::None, _) => Ok(vec![0.0; n]),
+        (Reference::Subcase(id), Some(fields)) => {
+            let case = fields
+                .subcase(id)
+                .ok_or_else(|| fault(format!("the results have no subcase {id}"), "name the subcase of the reference state"))?;
+            prepared
+                .gauges
+                .iter()
+                .map(|g| {
+                    reading(g, case).ok_or_else(|| {
+                        fault(format!("gauge `{}` has no strain in subcase {id}", g.name), "ask for STRAIN of its element there")
+                    })
+                })
+                .collect()
+        }
+        (Reference::Gravity, _) => Err(fault(
+            "\"gravity\" can't be computed here: under inertia relief the weight of a free structure strains nothing".to_owned(),
+            "solve the structure on its wheels under GRAV, and name that subcase",
+        )),
+        (Reference::Subcase(_), None) => {
+            Err(fault("a given S has no subcases".to_owned(), "write reference = \"none\", or give a [model] instead of [sensitivity]"))
+        }
+    }
+}

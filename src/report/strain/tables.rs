@@ -1,0 +1,204 @@
+//! CSV and markdown.
+
+use crate::fe::strain_tensor::Surface;
+use crate::gauge::Gauge;
+use crate::model::Model;
+use crate::sensitivity::Sensitivity;
+use std::io::{self, Write};
+
+/// A gauge that placement chose.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlacedGauge {
+    /// Where it sits.
+    pub gauge: Gauge,
+    /// Its leverage.
+    pub leverage: f64,
+    /// Sum of its strains under the expected loads, microstrain.
+    pub expected_microstrain: f64,
+    /// Nearest grid at which a load acts, and the way from there, basic frame.
+    pub reference: Option<(u32, [f64; 3])>,
+}
+
+impl PlacedGauge {
+    /// The angle as the technician sees that side: on the bottom it turns the other way.
+    pub fn angle_seen_deg(&self) -> f64 {
+        let deg = self.gauge.angle_rad.to_degrees();
+        match self.gauge.surface {
+            Surface::Top => deg,
+            Surface::Bottom if deg == 90.0 => deg,
+            Surface::Bottom => -deg,
+        }
+    }
+}
+
+/// S in microstrain per job unit: `gauge`, then a column a load.
+///
+/// # Errors
+/// What `out` says.
+pub fn sensitivity_csv(out: &mut dyn Write, s: &Sensitivity) -> io::Result<()> {
+    write!(out, "gauge")?;
+    for l in &s.loads {
+        write!(out, ",{}", l.name)?;
+    }
+    writeln!(out)?;
+    for (g, name) in s.gauges.iter().enumerate() {
+        write!(out, "{name}")?;
+        for l in 0..s.loads.len() {
+            write!(out, ",{}", s.values[(g, l)] * 1e6)?;
+        }
+        writeln!(out)?;
+    }
+    Ok(())
+}
+
+/// Gauges as a job can name them: `dir` is the axis itself, so that `angle_deg` is 0.
+///
+/// # Errors
+/// What `out` says.
+pub fn gauges_csv(out: &mut dyn Write, placed: &[PlacedGauge]) -> io::Result<()> {
+    writeln!(
+        out,
+        "name,element,surface,dir_x,dir_y,dir_z,angle_deg,x,y,z,angle_from_element_x_deg,angle_seen_deg,leverage"
+    )?;
+    for p in placed {
+        let g = &p.gauge;
+        let (d, x) = (g.direction, g.position);
+        writeln!(
+            out,
+            "{},{},{},{},{},{},0,{},{},{},{:.4},{:.4},{:.6}",
+            g.name,
+            g.element,
+            g.surface.word(),
+            d.x,
+            d.y,
+            d.z,
+            x.x,
+            x.y,
+            x.z,
+            g.angle_rad.to_degrees(),
+            p.angle_seen_deg(),
+            p.leverage
+        )?;
+    }
+    Ok(())
+}
+
+/// Grids of the element under a gauge, with its distance from each.
+fn corner_distances(model: &Model, g: &Gauge) -> Vec<(u32, f64)> {
+    let Some(shell) = model
+        .shell_ix(g.element)
+        .and_then(|ix| model.shells.get(ix.us()))
+    else {
+        return Vec::new();
+    };
+    shell
+        .grids
+        .iter()
+        .take(shell.shape.n_corners())
+        .filter_map(|ix| model.grids.get(ix.us()))
+        .map(|grid| (grid.id, (grid.x - g.position).norm()))
+        .collect()
+}
+
+/// What the technician takes to the structure, as CSV.
+///
+/// # Errors
+/// What `out` says.
+pub fn gluing_sheet_csv(
+    out: &mut dyn Write,
+    placed: &[PlacedGauge],
+    model: &Model,
+) -> io::Result<()> {
+    writeln!(
+        out,
+        "name,element,side,x,y,z,from_grid,dx,dy,dz,axis_x,axis_y,axis_z,outward_x,outward_y,outward_z,angle_seen_deg,expected_microstrain,corner_grids,corner_distances"
+    )?;
+    for p in placed {
+        let g = &p.gauge;
+        let outward = match g.surface {
+            Surface::Top => g.normal,
+            Surface::Bottom => -g.normal,
+        };
+        let (grid, way) = p
+            .reference
+            .map_or((String::new(), [f64::NAN; 3]), |(id, v)| {
+                (id.to_string(), v)
+            });
+        let way = way.map(|v| {
+            if v.is_finite() {
+                format!("{v:.2}")
+            } else {
+                String::new()
+            }
+        });
+        let corners = corner_distances(model, g);
+        let ids: Vec<String> = corners.iter().map(|c| c.0.to_string()).collect();
+        let far: Vec<String> = corners.iter().map(|c| format!("{:.2}", c.1)).collect();
+        writeln!(
+            out,
+            "{},{},{},{:.3},{:.3},{:.3},{grid},{},{},{},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5},{:.1},{:.1},{},{}",
+            g.name,
+            g.element,
+            g.surface.word(),
+            g.position.x,
+            g.position.y,
+            g.position.z,
+            way[0],
+            way[1],
+            way[2],
+            g.direction.x,
+            g.direction.y,
+            g.direction.z,
+            outward.x,
+            outward.y,
+            outward.z,
+            p.angle_seen_deg(),
+            p.expected_microstrain,
+            ids.join(" "),
+            far.join(" ")
+        )?;
+    }
+    Ok(())
+}
+
+/// The same to print.
+pub fn gluing_sheet_md(title: &str, placed: &[PlacedGauge], model: &Model) -> String {
+    let mut t = format!("# Gluing sheet: {title}\n\n");
+    t.push_str("Positions and directions in the basic frame and in the model's units; the side is the one the arrow `outward` leaves.\n");
+    t.push_str(
+        "Strain is what the expected loads add up to: choose the amplifier's range above it.\n\n",
+    );
+    t.push_str("| gauge | element | side | position | from grid | axis | outward | angle seen, deg | strain, microstrain |\n|---|---|---|---|---|---|---|---|---|\n");
+    for p in placed {
+        let g = &p.gauge;
+        let outward = match g.surface {
+            Surface::Top => g.normal,
+            Surface::Bottom => -g.normal,
+        };
+        let from = p.reference.map_or(String::new(), |(id, v)| {
+            format!("{id}: {:+.1} {:+.1} {:+.1}", v[0], v[1], v[2])
+        });
+        let three =
+            |v: crate::model::Vec3, d: usize| format!("{:.d$} {:.d$} {:.d$}", v.x, v.y, v.z);
+        t.push_str(&format!(
+            "| {} | {} | {} | {} | {from} | {} | {} | {:.1} | {:.0} |\n",
+            g.name,
+            g.element,
+            g.surface.word(),
+            three(g.position, 1),
+            three(g.direction, 3),
+            three(outward, 3),
+            p.angle_seen_deg(),
+            p.expected_microstrain
+        ));
+    }
+    t.push_str("\nDistance of each gauge from the corners of its element (grid: distance):\n\n");
+    for p in placed {
+        let list: Vec<String> = corner_distances(model, &p.gauge)
+            .iter()
+            .map(|(id, d)| format!("{id}: {d:.1}"))
+            .collect();
+        t.push_str(&format!("- {}: {}\n", p.gauge.name, list.join(", ")));
+    }
+    t
+}
