@@ -18,6 +18,10 @@ pub enum Command {
     Check(FilesArguments),
     /// Shell and bar strain of every static subcase, in the element and the basic frame, to strains.csv
     Strains(DeckArguments),
+    /// Write a commented job.toml from a deck and its results
+    Init(DeckArguments),
+    /// Write unit_loads.bdf: the job's deck with one unit-load subcase a load, ready for Nastran
+    Cases(JobArguments),
     /// Compute S of the job's gauges, or of its candidates: what each reads per unit of each load
     Sensitivity(JobArguments),
     /// Choose gauges, with a certificate of how far from the best possible they are

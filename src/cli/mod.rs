@@ -5,11 +5,13 @@
 //! [`fault`] (bad input), [`job`] (job.toml and the tables it names).
 
 mod arguments;
+mod cases;
 mod check;
 pub mod deck;
 pub mod fault;
 pub mod files;
 mod identify;
+mod init;
 pub mod job;
 pub mod output;
 mod place;
@@ -32,6 +34,8 @@ pub fn run(arguments: Arguments) -> ExitCode {
     match arguments.command {
         Command::Strains(a) => Session::run("strains", &a.common, |s| strains::run(&a, s)),
         Command::Check(a) => Session::run("check", &a.common, |s| check::run(&a, s)),
+        Command::Init(a) => Session::run("init", &a.common, |s| init::run(&a, s)),
+        Command::Cases(a) => Session::run("cases", &a.common, |s| cases::run(&a, s)),
         Command::Place(a) => Session::run("place", &a.common, |s| place::run(&a, s)),
         Command::Recover(a) => Session::run("recover", &a.common, |s| recover::run(&a, s)),
         Command::Sensitivity(a) => {

@@ -23,7 +23,7 @@ pub mod relax;
 pub mod sites;
 pub mod spacing;
 
-pub use layout::{Layout, Spec, place};
+pub use layout::{Layout, PlaceError, Spec, place};
 
 #[cfg(test)]
 mod tests;

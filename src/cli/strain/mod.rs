@@ -5,8 +5,8 @@ mod gauges;
 mod given;
 mod units;
 
-pub use fields::{Fields, read_fields};
-pub use gauges::lay_gauges;
+pub use fields::{Fields, read_fields, unit_loads};
+pub use gauges::{lay_gauges, side};
 pub use given::read_given;
 pub use units::{LoadUnits, load_units};
 
