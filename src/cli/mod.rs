@@ -19,8 +19,8 @@ mod progress;
 mod recover;
 mod sensitivity;
 mod session;
-mod strains;
 mod strain;
+mod strains;
 pub mod vehicle;
 mod words;
 
