@@ -25,6 +25,8 @@ const DEAD_SHARE: f64 = 0.01;
 const CLIP_RUN: usize = 4;
 /// Clipped peaks needed: the single largest peak may be flat by chance.
 const CLIP_PEAKS: usize = 3;
+/// Between the 2 of a round peak and the 1 of a flat one.
+const ROUND_RATIO: f64 = 1.6;
 /// Robust standard deviations of the second difference beyond which a sample is a spike.
 const SPIKE_SIGMA: f64 = 20.0;
 /// Relative tolerance on a mean that should be the acceleration of gravity.
@@ -52,14 +54,14 @@ pub fn check_channels(
             .collect();
         let before = findings.len();
         findings.extend(check_missing(channel));
-        findings.extend(check_dead(channel, spreads[i].1, &peers));
+        findings.extend(check_dead(channel, kind, spreads[i].1, &peers));
         if findings[before..]
             .iter()
             .any(|f: &Finding| f.code == "dead-channel")
         {
             continue;
         }
-        findings.extend(check_clipped(channel));
+        findings.extend(check_clipped(channel, kind));
         findings.extend(check_spikes(channel));
         findings.extend(check_drift(channel, kind, gravity));
         if kind == Kind::Acceleration {
@@ -111,7 +113,7 @@ fn check_missing(c: &Channel) -> Option<Finding> {
 }
 
 /// No signal, a frozen value, or a small fraction of what its peers show.
-fn check_dead(c: &Channel, own: f64, peers: &[f64]) -> Option<Finding> {
+fn check_dead(c: &Channel, kind: Kind, own: f64, peers: &[f64]) -> Option<Finding> {
     let peer = median(&mut peers.to_vec());
     let scale = mean(&finite(&c.samples)).abs();
     if own <= 1e-9 * scale || own == 0.0 || own < DEAD_SHARE * peer {
@@ -124,11 +126,12 @@ fn check_dead(c: &Channel, own: f64, peers: &[f64]) -> Option<Finding> {
     }
     let (mut longest, mut run) = (0, 1);
     for w in c.samples.windows(2) {
-        run = if w[0] == w[1] { run + 1 } else { 1 };
+        let lifted = kind == Kind::Force && w[0] == 0.0;
+        run = if w[0] == w[1] && !lifted { run + 1 } else { 1 };
         longest = longest.max(run);
     }
     // Values at an extreme that repeat are clipping, reported as such.
-    if longest >= STUCK_RUN && check_clipped(c).is_none() {
+    if longest >= STUCK_RUN && check_clipped(c, kind).is_none() {
         let message = format!(
             "The value stays the same over {longest} samples: the sensor or logger froze for a while."
         );
@@ -146,18 +149,31 @@ fn check_dead(c: &Channel, own: f64, peers: &[f64]) -> Option<Finding> {
     None
 }
 
-/// Flat peaks at the largest or smallest value.
-fn check_clipped(c: &Channel) -> Option<Finding> {
+/// Robust standard deviation of what differs between neighbouring samples: noise, and a little of the signal.
+fn unrest(x: &[f64]) -> f64 {
+    let mut bends: Vec<f64> = x
+        .windows(3)
+        .map(|w| (w[1] - 0.5 * (w[0] + w[2])).abs())
+        .filter(|v| v.is_finite())
+        .collect();
+    // Of white noise the bend has 1.22 times the standard deviation.
+    1.4826 * median(&mut bends) / 1.22
+}
+
+/// Flat peaks at the largest or smallest value. A wheel force that stops at zero is a tyre off the ground, no fault.
+fn check_clipped(c: &Channel, kind: Kind) -> Option<Finding> {
     let x = finite(&c.samples);
     let (lo, hi) = x
         .iter()
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| {
             (l.min(v), h.max(v))
         });
-    let near = 5e-4 * (hi - lo);
+    // Noise that is added after the limit spreads the flat part.
+    let near = (8.0 * unrest(&x)).clamp(5e-4 * (hi - lo), 0.01 * (hi - lo));
     if near <= 0.0 || !near.is_finite() {
         return None;
     }
+    let lifts = kind == Kind::Force && lo.abs() < 0.02 * hi;
     let peaks = |at: &dyn Fn(f64) -> bool| {
         let (mut peaks, mut run, mut total) = (0, 0, 0);
         for &v in &x {
@@ -168,15 +184,24 @@ fn check_clipped(c: &Channel) -> Option<Finding> {
         (peaks, total)
     };
     let (top, top_total) = peaks(&|v| v > hi - near);
-    let (bottom, bottom_total) = peaks(&|v| v < lo + near);
-    if top.max(bottom) < CLIP_PEAKS {
-        return None;
-    }
+    let (bottom, bottom_total) = if lifts {
+        (0, 0)
+    } else {
+        peaks(&|v| v < lo + near)
+    };
     let (level, total) = if top >= bottom {
         (hi, top_total)
     } else {
         (lo, bottom_total)
     };
+    // Of a round peak twice as many samples lie within four times the depth; of a flat one hardly more.
+    let deeper = x
+        .iter()
+        .filter(|v| (**v - level).abs() < 4.0 * near)
+        .count();
+    if top.max(bottom) < CLIP_PEAKS || deeper as f64 > ROUND_RATIO * total as f64 {
+        return None;
+    }
     let message = format!(
         "{} peaks are cut flat at {level:.4} ({total} samples): the sensor or its amplifier saturated.",
         top.max(bottom)

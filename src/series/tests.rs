@@ -198,6 +198,33 @@ fn sound_channels_give_no_finding() {
 }
 
 #[test]
+fn a_steady_sine_and_a_wheel_off_the_ground_are_no_saturation() {
+    let sine: Vec<f64> = (0..20_000)
+        .map(|i| 9.81 + 3.0 * (2.0 * PI * 5.0 * i as f64 / 1000.0).sin())
+        .collect();
+    let lifting: Vec<f64> = live(31)
+        .iter()
+        .zip(noise(20_000, 8))
+        .map(|(v, e)| (20_000.0 + 15_000.0 * (v - 9.81)).max(0.0) + 10.0 * e)
+        .collect();
+    assert_eq!(codes(&record(&[("a_1", sine)])), vec![]);
+    assert_eq!(codes(&record(&[("f_wheel", lifting)])), vec![]);
+}
+
+#[test]
+fn saturation_before_the_noise_is_seen_through_it() {
+    let clipped: Vec<f64> = live(10)
+        .iter()
+        .zip(noise(16_000, 9))
+        .map(|(v, e)| v.clamp(6.0, 13.0) + 0.02 * e)
+        .collect();
+    assert_eq!(
+        codes(&record(&[("a_body", clipped)])),
+        vec![("a_body".to_owned(), "saturated-channel")]
+    );
+}
+
+#[test]
 fn each_fault_of_a_channel_is_named() {
     let sound = live(20);
     let faulty = |f: &dyn Fn(usize, f64) -> f64| {

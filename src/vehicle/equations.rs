@@ -1,6 +1,6 @@
 //! The equations of motion of a record, linear in the parameters.
 
-use super::layout::Vehicle;
+use super::layout::{Point, Vehicle};
 use super::motion::Motion;
 
 /// One equation over all samples: sum of parameter times column = target.
@@ -20,7 +20,7 @@ pub struct Equation {
 ///
 /// Body: M q'' + sum over link ends of weight phi F_link = sum over wheels of phi F_wheel, one equation a motion (thesis 5.1 to
 /// 5.5 for bodies that only heave). Total: their sum (heave), moments about y and x where the sprung body turns; link forces
-/// cancel in it. Totals need every wheel force. The vehicle should be one piece ([`Vehicle::components`]).
+/// cancel in it (a total in which they don't is left out). Totals need every wheel force. The vehicle should be one piece ([`Vehicle::components`]).
 pub fn equations(vehicle: &Vehicle, motion: &Motion) -> Vec<Equation> {
     let measured = |b: usize| {
         vehicle
@@ -62,14 +62,33 @@ pub fn equations(vehicle: &Vehicle, motion: &Motion) -> Vec<Equation> {
             .map(|b| b.shape.letters())
             .max_by_key(|l| l.len())
             .unwrap_or(&[""]);
-        out.extend(
-            letters
-                .iter()
-                .map(|letter| total_equation(vehicle, motion, letter)),
-        );
+        let whole = letters
+            .iter()
+            .filter(|letter| links_cancel(vehicle, letter));
+        out.extend(whole.map(|letter| total_equation(vehicle, motion, letter)));
     }
     out.retain(|e| !e.columns.is_empty());
     out
+}
+
+/// Whether link forces cancel in the total of a motion: not where a spring bears on the frame ahead of its axle.
+fn links_cancel(vehicle: &Vehicle, letter: &str) -> bool {
+    vehicle.links.iter().all(|link| {
+        let arm = |p: &Point| {
+            let own = vehicle.bodies[p.body].shape.letters().contains(&letter);
+            match (letter, own) {
+                ("", _) => 1.0,
+                ("x", true) => p.x,
+                ("x", false) => vehicle.bodies[p.body].x,
+                (_, true) => p.y,
+                (_, false) => vehicle.bodies[p.body].y,
+            }
+        };
+        let (sum, size) = link.ends.iter().fold((0.0, 0.0f64), |(s, m), (w, p)| {
+            (s + w * arm(p), m.max((w * arm(p)).abs()))
+        });
+        sum.abs() <= 1e-9 * size.max(1.0)
+    })
 }
 
 /// The equation of motion j of body b.

@@ -156,7 +156,7 @@ pub fn identify(
         unidentifiable: vec![],
         fit: vec![],
         mass_closure: None,
-        blend: vec![],
+        blend: vec![vec![]; vehicle.wheels.len()],
         wheel_force_sigma: vec![None; vehicle.wheels.len()],
         conditioning: 1.0,
         findings: vec![],
@@ -501,7 +501,6 @@ fn collect(
         }
     }
     if part.fit.is_none() {
-        answer.blend.extend(part.part.wheels.iter().map(|_| vec![]));
         return;
     }
     let fitted = channel_misfits(&part.part, &part.values, &part.motion, &part.blend);
@@ -531,11 +530,16 @@ fn collect(
             answer.wheel_force_sigma[w] = Some(error.max(on_hold_out.map_or(0.0, |h| h.1)));
         }
     }
-    answer.blend.extend(if part.blend.is_empty() {
-        part.part.wheels.iter().map(|_| vec![]).collect()
-    } else {
-        part.blend
-    });
+    for (wheel, shares) in part.part.wheels.iter().zip(part.blend) {
+        if let Some(w) = answer
+            .vehicle
+            .wheels
+            .iter()
+            .position(|x| x.channel == wheel.channel)
+        {
+            answer.blend[w] = shares;
+        }
+    }
 }
 
 /// Channel, RMS of measured less predicted, RMS of measured: every measured wheel force, then the accelerometers of every body

@@ -6,7 +6,7 @@ use super::motion::Motion;
 use crate::estimate::LoadEstimate;
 use crate::linalg::tall::{left_inverse, solve, triangle};
 
-/// How much of each sprung equation's residual goes to each wheel force: `share[wheel][equation]`.
+/// What is added to the spring path of each wheel force: `share[wheel][signal]` over [`signals`], missing shares being 0.
 pub type Blend = Vec<Vec<f64>>;
 
 /// A history of recovered loads, each with one standard deviation for all samples.
@@ -126,9 +126,9 @@ pub fn wheel_forces(
         }
     }
     if blend.iter().flatten().any(|s| *s != 0.0) {
-        let residuals = sprung_residuals(vehicle, values, motion, &links);
+        let signals = signals(vehicle, values, motion, &links);
         for (force, shares) in out.iter_mut().zip(blend) {
-            for (r, s) in residuals.iter().zip(shares) {
+            for (r, s) in signals.iter().zip(shares).filter(|(_, s)| **s != 0.0) {
                 force.iter_mut().zip(r).for_each(|(f, r)| *f += s * r);
             }
         }
@@ -136,14 +136,51 @@ pub fn wheel_forces(
     out
 }
 
-/// The blend that fits measured wheel forces best (all zero where none is measured): spring path and momentum path weighted by
-/// what each leaves over.
+/// What a blend is over: residuals of the sprung equations, then the accelerations of all bodies, then all link terms for a
+/// coefficient of one.
+fn signals(
+    vehicle: &Vehicle,
+    values: &[f64],
+    motion: &Motion,
+    links: &[Vec<f64>],
+) -> Vec<Vec<f64>> {
+    let mut out = sprung_residuals(vehicle, values, motion, links);
+    out.extend(motion.bodies.iter().flatten().cloned());
+    out.extend(motion.terms.iter().flatten().cloned());
+    out
+}
+
+/// A free combination of all signals replaces the physical blend when it leaves less than this share of its error.
+const FREE_GAIN: f64 = 0.85;
+
+/// The blend that fits measured wheel forces best; empty shares where none is measured.
+///
+/// First choice: shares of the sprung residuals, which weigh the spring path against the momentum path and keep the physical
+/// parameters. Where the model misses something that the same sensors see (the other side of a beam axle, friction), a free
+/// combination of all accelerations and link terms, a calibrated transfer from motion to force, takes over.
 pub fn best_blend(vehicle: &Vehicle, values: &[f64], motion: &Motion) -> Blend {
     let links = link_forces(vehicle, values, motion);
-    let residuals = sprung_residuals(vehicle, values, motion, &links);
-    let zero = vec![vec![0.0; residuals.len()]; vehicle.wheels.len()];
-    let spring_path = wheel_forces(vehicle, values, motion, &zero);
-    let n = residuals.len();
+    let signals = signals(vehicle, values, motion, &links);
+    let n_residuals = sprung_residuals(vehicle, values, motion, &links).len();
+    let spring_path = wheel_forces(vehicle, values, motion, &vec![vec![]; vehicle.wheels.len()]);
+    let fitted = |gap: &[f64], range: std::ops::Range<usize>| -> Option<(Vec<f64>, f64)> {
+        let n = range.len();
+        let mut columns: Vec<(usize, &[f64])> = signals[range.clone()]
+            .iter()
+            .enumerate()
+            .map(|(i, r)| (i, r.as_slice()))
+            .collect();
+        columns.push((n, gap));
+        let t = triangle(&columns);
+        let x = solve(&[(1.0, &t)], n).x;
+        let mut all = x.clone();
+        all.push(-1.0);
+        let mut shares = vec![0.0; range.start];
+        shares.extend(&x);
+        x.iter()
+            .all(|v| v.is_finite())
+            .then(|| (shares, t.norm(&all)))
+    };
     let share = |w: usize| -> Option<Vec<f64>> {
         let measured = motion.forces.get(w)?.as_ref()?;
         let gap: Vec<f64> = measured
@@ -151,17 +188,14 @@ pub fn best_blend(vehicle: &Vehicle, values: &[f64], motion: &Motion) -> Blend {
             .zip(&spring_path[w])
             .map(|(m, s)| m - s)
             .collect();
-        let mut columns: Vec<(usize, &[f64])> = residuals
-            .iter()
-            .enumerate()
-            .map(|(i, r)| (i, r.as_slice()))
-            .collect();
-        columns.push((n, &gap));
-        let x = solve(&[(1.0, &triangle(&columns))], n).x;
-        x.iter().all(|v| v.is_finite()).then_some(x)
+        let (physical, error) = fitted(&gap, 0..n_residuals)?;
+        match fitted(&gap, n_residuals..signals.len()) {
+            Some((free, left)) if left < FREE_GAIN * error => Some(free),
+            _ => Some(physical),
+        }
     };
     (0..vehicle.wheels.len())
-        .map(|w| share(w).unwrap_or_else(|| vec![0.0; n]))
+        .map(|w| share(w).unwrap_or_default())
         .collect()
 }
 
@@ -257,47 +291,31 @@ pub fn wheel_force_history(found: &Identification, motion: &Motion) -> LoadHisto
 /// Wheel forces where the identification carries the scale of forces; NaN elsewhere.
 fn scaled_wheel_forces(found: &Identification, motion: &Motion) -> Vec<Vec<f64>> {
     let v = &found.vehicle;
-    let n_residuals = sprung_residuals(
-        v,
-        &found.values,
-        motion,
-        &link_forces(v, &found.values, motion),
-    )
-    .len();
-    // Blends are kept part by part; a whole-vehicle blend needs the place of each part's residuals.
-    let mut blend = vec![vec![0.0; n_residuals]; v.wheels.len()];
-    let free = |b: usize| v.wheels.iter().all(|w| w.at.body != b);
-    let mut order: Vec<(usize, usize)> = Vec::new();
-    for b in (0..v.bodies.len()).filter(|b| free(*b)) {
-        order.extend((0..v.bodies[b].shape.n()).map(|j| (b, j)));
-    }
-    let mut next = 0;
+    let all = v.parameters();
+    let mut out = vec![vec![f64::NAN; motion.n_samples()]; v.wheels.len()];
     for bodies in v.components() {
+        let part = v.part(&bodies);
+        let index: Vec<usize> = part
+            .parameters()
+            .iter()
+            .filter_map(|p| all.iter().position(|q| q.name == p.name))
+            .collect();
+        let values: Vec<f64> = index.iter().map(|&i| found.values[i]).collect();
         let wheels: Vec<usize> = (0..v.wheels.len())
             .filter(|&w| bodies.contains(&v.wheels[w].at.body))
             .collect();
-        let columns: Vec<usize> = (0..order.len())
-            .filter(|&k| bodies.contains(&order[k].0))
-            .collect();
-        for w in wheels {
-            for (share, &column) in found.blend.get(next).into_iter().flatten().zip(&columns) {
-                blend[w][column] = *share;
-            }
-            next += 1;
+        let blend: Blend = wheels.iter().map(|&w| found.blend[w].clone()).collect();
+        if index.iter().any(|&i| !found.scaled[i]) {
+            continue;
         }
-    }
-    let mut forces = wheel_forces(v, &found.values, motion, &blend);
-    for (w, wheel) in v.wheels.iter().enumerate() {
-        if !found
-            .scaled
-            .get(v.inertia_index(wheel.at.body, 0, 0))
-            .copied()
-            .unwrap_or(false)
+        for (force, &w) in wheel_forces(&part, &values, &motion.part(v, &bodies), &blend)
+            .into_iter()
+            .zip(&wheels)
         {
-            forces[w].fill(f64::NAN);
+            out[w] = force;
         }
     }
-    forces
+    out
 }
 
 /// Mean load of each wheel that carries a part of the vehicle alone, (sprung + unsprung mass) g, from identified masses: the

@@ -98,6 +98,50 @@ impl Motion {
     }
 }
 
+impl Motion {
+    /// The motion of the part of the vehicle made of the given bodies, in the order of [`Vehicle::part`].
+    pub fn part(&self, vehicle: &Vehicle, bodies: &[usize]) -> Self {
+        let kept = |flags: Vec<bool>| {
+            (0..flags.len())
+                .filter(|&i| flags[i])
+                .collect::<Vec<usize>>()
+        };
+        let sensors = kept(
+            vehicle
+                .sensors
+                .iter()
+                .map(|s| bodies.contains(&s.at.body))
+                .collect(),
+        );
+        let wheels = kept(
+            vehicle
+                .wheels
+                .iter()
+                .map(|w| bodies.contains(&w.at.body))
+                .collect(),
+        );
+        let links = kept(
+            vehicle
+                .links
+                .iter()
+                .map(|l| l.ends.iter().all(|e| bodies.contains(&e.1.body)))
+                .collect(),
+        );
+        Self {
+            rate_hz: self.rate_hz,
+            start_s: self.start_s,
+            sensors: sensors.iter().map(|&i| self.sensors[i].clone()).collect(),
+            bodies: bodies.iter().map(|&i| self.bodies[i].clone()).collect(),
+            stretch: links.iter().map(|&i| self.stretch[i].clone()).collect(),
+            rate: links.iter().map(|&i| self.rate[i].clone()).collect(),
+            terms: links.iter().map(|&i| self.terms[i].clone()).collect(),
+            forces: wheels.iter().map(|&i| self.forces[i].clone()).collect(),
+            mean_forces: wheels.iter().map(|&i| self.mean_forces[i]).collect(),
+            findings: self.findings.clone(),
+        }
+    }
+}
+
 /// Wide-band signals of links reach down to this share of the lower band edge.
 const WIDE: f64 = 0.5;
 /// Redundant accelerometers may miss the rigid motion by this share of their signal before it is reported.

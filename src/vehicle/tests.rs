@@ -8,6 +8,8 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 mod full_truck;
+mod parts;
+mod rig;
 mod shared_cases;
 mod silverbox;
 mod truck_simulator;

@@ -49,34 +49,17 @@ fn held_out_mv(terms: &[&str], fitted: &Channels, rest: &Channels) -> f64 {
         .copied()
         .filter(|v| v.is_finite())
         .collect();
-    eprintln!(
-        "{terms:?} start {:?} end {:?} {:?} {:?} {} {:?}",
-        start.values,
-        refined.values,
-        refined.constant,
-        refined.error_rms,
-        refined.minimum.evaluations,
-        refined.minimum.stop
-    );
     1000.0 * rms(&e)
 }
 
+/// Linear models of this circuit stay at about 7 mV; 37 parameters reach 0.26 mV on its hardest part.
 #[test]
-fn silverbox() {
+fn silverbox_is_explained_by_a_cubic_and_a_quadratic_spring() {
     let Some((fitted, rest)) = record() else {
         return;
     };
-    for t in [
-        vec!["k", "c"],
-        vec!["k", "c", "k3"],
-        vec!["k", "c", "k2", "k3"],
-    ] {
-        let s = std::time::Instant::now();
-        eprintln!(
-            "== {:?} {} mV  {:?}",
-            t,
-            held_out_mv(&t, &fitted, &rest),
-            s.elapsed()
-        );
-    }
+    let linear = held_out_mv(&["k", "c"], &fitted, &rest);
+    assert!((5.0..9.0).contains(&linear), "{linear}");
+    let nonlinear = held_out_mv(&["k", "c", "k2", "k3"], &fitted, &rest);
+    assert!(nonlinear < 0.4, "{nonlinear}");
 }

@@ -1,7 +1,7 @@
 //! A three-axle truck simulated by means of its own: shares no code with the vehicle models.
 //!
-//! Rigid body with heave, pitch and roll; beam axles with heave and roll; springs inboard of the wheels with friction that has a
-//! memory (Dahl); tyres that can only push; a road of random waves, left and right tracks alike where waves are long.
+//! Rigid body with heave, pitch and roll; beam axles with heave and roll, the rear two hung from the frame near a common trunnion;
+//! springs inboard of the wheels with friction that has a memory (Dahl); tyres that can only push; a road of random waves, left and right tracks alike where waves are long.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -12,6 +12,8 @@ const G: f64 = 9.81;
 
 pub(super) struct Axle {
     pub x: f64,
+    /// Where its springs bear on the frame.
+    pub seat: f64,
     pub mass: f64,
     pub roll_inertia: f64,
     pub half_track: f64,
@@ -39,10 +41,11 @@ pub(super) struct Readings {
 }
 
 pub(super) fn roll_off() -> Truck {
-    let axle = |x, mass, half_spring, k, c, friction, tyre_k| Axle {
+    let axle = |x, seat, mass, half_spring, k, c, friction, tyre_k| Axle {
         x,
+        seat,
         mass,
-        roll_inertia: 0.45 * mass,
+        roll_inertia: 0.9 * mass,
         half_track: 1.02,
         half_spring,
         k,
@@ -54,11 +57,11 @@ pub(super) fn roll_off() -> Truck {
     Truck {
         mass: 10_500.0,
         roll_inertia: 9_000.0,
-        pitch_inertia: 38_000.0,
+        pitch_inertia: 60_000.0,
         axles: vec![
-            axle(2.6, 800.0, 0.80, 280e3, 11e3, 500.0, 950e3),
-            axle(-1.2, 1100.0, 0.80, 520e3, 12e3, 700.0, 1600e3),
-            axle(-2.5, 1050.0, 0.80, 520e3, 12e3, 700.0, 1600e3),
+            axle(2.6, 2.6, 800.0, 0.9, 280e3, 11e3, 300.0, 950e3),
+            axle(-1.2, -1.83, 1100.0, 0.9, 520e3, 12e3, 420.0, 1600e3),
+            axle(-2.5, -1.87, 1050.0, 0.9, 520e3, 12e3, 420.0, 1600e3),
         ],
     }
 }
@@ -82,7 +85,7 @@ fn road(length_m: f64, dx: f64, roughness: f64, seed: u64) -> [Vec<f64>; 2] {
         // Long waves common to both tracks (leak over 30 m), short ones of each track (leak over 2.5 m).
         common += -common * dx / 30.0 + roughness * dx.sqrt() * g.next();
         for s in 0..2 {
-            own[s] += -own[s] * dx / 2.5 + 0.6 * roughness * dx.sqrt() * g.next();
+            own[s] += -own[s] * dx / 2.5 + 0.3 * roughness * dx.sqrt() * g.next();
             // The tyre's footprint evens out 0.2 m.
             smooth[s] += (common + own[s] - smooth[s]) * dx / 0.2;
             tracks[s].push(smooth[s]);
@@ -133,7 +136,7 @@ pub(super) fn drive(
         for c in 0..corners {
             let axle = &truck.axles[c / 2];
             let side = if c % 2 == 0 { 1.0 } else { -1.0 };
-            let body = rates[n] + axle.x * rates[n + 1] + side * axle.half_spring * rates[n + 2];
+            let body = rates[n] + axle.seat * rates[n + 1] + side * axle.half_spring * rates[n + 2];
             let j = n + 3 + 2 * (c / 2);
             let hub = rates[j] + side * axle.half_track * rates[j + 1];
             out.body[c].push(G + body + noise[0] * g.next());
@@ -166,8 +169,8 @@ fn static_forces(truck: &Truck) -> Vec<f64> {
     let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
     for axle in &truck.axles {
         a += 2.0 * axle.k;
-        b += 2.0 * axle.k * axle.x;
-        c += 2.0 * axle.k * axle.x * axle.x;
+        b += 2.0 * axle.k * axle.seat;
+        c += 2.0 * axle.k * axle.seat * axle.seat;
     }
     let weight = truck.mass * G;
     let det = a * c - b * b;
@@ -175,7 +178,7 @@ fn static_forces(truck: &Truck) -> Vec<f64> {
     truck
         .axles
         .iter()
-        .map(|x| x.k * (s0 + s1 * x.x) + x.mass * G / 2.0)
+        .map(|x| x.k * (s0 + s1 * x.seat) + x.mass * G / 2.0)
         .collect()
 }
 
@@ -214,10 +217,10 @@ fn rates(
         for s in 0..2 {
             let side = if s == 0 { 1.0 } else { -1.0 };
             let corner = 2 * i + s;
-            let stretch = y[0] + axle.x * y[1] + side * axle.half_spring * y[2]
+            let stretch = y[0] + axle.seat * y[1] + side * axle.half_spring * y[2]
                 - y[z]
                 - side * axle.half_spring * y[zr];
-            let rate = y[n] + axle.x * y[n + 1] + side * axle.half_spring * y[n + 2]
+            let rate = y[n] + axle.seat * y[n + 1] + side * axle.half_spring * y[n + 2]
                 - y[n + z]
                 - side * axle.half_spring * y[n + zr];
             // Dahl friction: full after about 2 mm of travel.
@@ -237,7 +240,7 @@ fn rates(
                     .max(0.0);
             forces.push(tyre);
             body_force -= pull;
-            pitch_moment -= axle.x * pull;
+            pitch_moment -= axle.seat * pull;
             roll_moment -= side * axle.half_spring * pull;
             axle_force += pull + tyre - statics[i];
             axle_moment += side * (axle.half_spring * pull + axle.half_track * (tyre - statics[i]));

@@ -1,0 +1,106 @@
+//! 64 s of a quarter truck at 500 Hz: identification, and the swarm of the thesis on the same equations.
+//!
+//! Run: `cargo bench --bench identify`. The record is a sum of sines that follows the model exactly.
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use strainbridge::series::channels::{Channel, Channels};
+use strainbridge::series::spectrum::Band;
+use strainbridge::vehicle::equations::equations;
+use strainbridge::vehicle::identify::{Question, identify};
+use strainbridge::vehicle::motion::{Treatment, motion};
+use strainbridge::vehicle::preset::{Wish, vehicle};
+use strainbridge::vehicle::swarm::{Flight, ThesisObjective, swarm};
+use strainbridge::vehicle::term::UnitNames;
+
+fn main() {
+    divan::main();
+}
+
+const RATE_HZ: f64 = 500.0;
+
+/// Stretch is 60 sines between 0.9 and 18 Hz; body and wheel follow from m_b a_b = -(k d + c v), F = m_b a_b + m_f a_w.
+fn record() -> Channels {
+    let (m_b, m_f, k, c) = (3200.0, 1100.0, 490e3, 8000.0);
+    let (mut body, mut wheel, mut force) = (vec![], vec![], vec![]);
+    for i in 0..32_000 {
+        let t = i as f64 / RATE_HZ;
+        let (mut d, mut v, mut a) = (0.0, 0.0, 0.0);
+        for s in 0..60 {
+            let f = 0.9 + 17.1 * f64::from(s) / 59.0 + 0.013 * f64::from(s % 7);
+            let (w, phase) = (2.0 * PI * f, 2.4 * f64::from(s * s));
+            let size = 0.02 / (1.0 + f * f);
+            d += size * (w * t + phase).sin();
+            v += size * w * (w * t + phase).cos();
+            a -= size * w * w * (w * t + phase).sin();
+        }
+        let a_b = -(k * d + c * v) / m_b;
+        let a_w = a_b - a;
+        // A little deterministic unrest stands for sensor noise.
+        let unrest = |p: f64| 0.02 * (i as f64 * p).sin() * (i as f64 * 0.7 * p).cos();
+        body.push(9.81 + a_b + unrest(1.1));
+        wheel.push(9.81 + a_w + unrest(1.3));
+        force.push((m_b + m_f) * 9.81 + m_b * a_b + m_f * a_w + 3000.0 * unrest(1.7));
+    }
+    let channel = |n: &str, s| Channel {
+        name: n.into(),
+        unit: String::new(),
+        samples: s,
+    };
+    Channels {
+        rate_hz: RATE_HZ,
+        start_s: 0.0,
+        list: vec![
+            channel("a_body", body),
+            channel("a_wheel", wheel),
+            channel("f_wheel", force),
+        ],
+    }
+}
+
+fn question() -> Option<Question> {
+    Some(Question {
+        vehicle: vehicle(&Wish {
+            model: "front2".into(),
+            ..Wish::default()
+        })
+        .ok()?,
+        known: BTreeMap::new(),
+        bounds: BTreeMap::new(),
+        band: Band {
+            low_hz: 0.7,
+            high_hz: 20.0,
+        },
+        gravity: 9.81,
+        gain_tolerance: 0.0,
+        sync_tolerance_s: 0.0,
+        units: UnitNames::si(),
+    })
+}
+
+#[divan::bench]
+fn least_squares(bencher: divan::Bencher) {
+    let (Some(q), r) = (question(), record()) else {
+        return;
+    };
+    bencher.bench(|| identify(&q, &r, None).map(|id| id.values));
+}
+
+/// The equations of all 32,000 samples, as the thesis evaluates them.
+#[divan::bench(sample_count = 3, sample_size = 1)]
+fn swarm_of_40(bencher: divan::Bencher) {
+    let (Some(q), r) = (question(), record()) else {
+        return;
+    };
+    let treatment = Treatment {
+        band: q.band,
+        keep_every: 1,
+        adjust: vec![],
+    };
+    let Ok(m) = motion(&q.vehicle, &r, &treatment) else {
+        return;
+    };
+    let objective = ThesisObjective::of(&equations(&q.vehicle, &m), 2);
+    let bounds = [[100.0, 10_000.0], [100.0, 5000.0], [1e4, 2e6], [0.0, 5e4]];
+    bencher.bench(|| swarm(|x| objective.value(x), &bounds, &Flight::of(4, 1)));
+}
