@@ -2,8 +2,25 @@
 
 use super::BeamField;
 use super::element::Prepared;
+use super::element::beam::beam_strain;
+use super::error::{FeError, Refusal};
+use crate::model::BeamIx;
+use rayon::prelude::*;
+use std::sync::Arc;
 
-/// Strain at C, D, E, F of every bar and beam from displacements (basic frame, by grid).
-pub(crate) fn beam_field(_prepared: &Prepared<'_>, _u: &[[f64; 6]]) -> BeamField {
-    BeamField::default()
+/// Strain at C, D, E, F of every bar and beam, one field a displacement field (basic frame, by grid).
+///
+/// # Errors
+/// Beams that can't be formed.
+pub(crate) fn beam_fields(prepared: &Prepared<'_>, u: &[Vec<[f64; 6]>]) -> Result<Vec<BeamField>, FeError> {
+    let model = prepared.model;
+    let elements = Arc::new((0..model.beams.len() as u32).map(BeamIx).collect::<Vec<_>>());
+    u.iter()
+        .map(|u| {
+            let stations: Result<Vec<_>, Refusal> =
+                (0..model.beams.len()).into_par_iter().map(|i| beam_strain(model, i, u)).collect();
+            let stations = stations.map_err(|r| FeError::Refused(vec![r]))?;
+            Ok(BeamField { elements: elements.clone(), stations })
+        })
+        .collect()
 }

@@ -54,6 +54,12 @@ fn add(model: &Model, mass: &Mass, factor: f64, load: &Load, f: &mut [[f64; 6]])
                 f.iter_mut().zip(m).for_each(|(f, m)| *f += m);
             }
         }
+        Load::Spin { centre, omega } => {
+            let x: Vec<Vec3> = model.grids.iter().map(|g| g.x).collect();
+            for (f, m) in f.iter_mut().zip(mass.centrifugal(&x, centre, omega)) {
+                f.iter_mut().zip(m).for_each(|(f, m)| *f += factor * m);
+            }
+        }
         Load::Unsupported(..) => {}
     }
 }

@@ -1,7 +1,8 @@
 //! The mass of a model.
 
+use super::element::beam::{beam_coupled_mass, beam_lumped_mass};
 use super::element::shell::{output_frame, shell_mass};
-use super::element::{ElementMatrix, Prepared};
+use super::element::{ElementMatrix, Prepared, rod_mass};
 use super::error::Refusal;
 use super::rigid_motion::rigid;
 use crate::linalg::Matrix6;
@@ -68,6 +69,19 @@ impl Mass {
                 }
             }
         }
+        for (i, beam) in model.beams.iter().enumerate() {
+            if model.params.coupmass {
+                mass.coupled.push(beam_coupled_mass(model, i));
+            } else {
+                for (g, m) in beam.grids.iter().zip(beam_lumped_mass(model, i)) {
+                    *mass.blocks.entry(*g).or_insert_with(Matrix6::zeros) += m;
+                }
+            }
+        }
+        for (i, rod) in model.rods.iter().enumerate() {
+            let half = 0.5 * rod_mass(model, i);
+            rod.grids.iter().for_each(|g| mass.point[g.us()] += half);
+        }
         for m in &model.masses {
             *mass.blocks.entry(m.grid).or_insert_with(Matrix6::zeros) += m.matrix;
         }
@@ -115,6 +129,34 @@ impl Mass {
         f
     }
 
+    /// Centrifugal forces -m w x (w x r) of a rotation `omega` about `centre`; masses off their grids count where they are.
+    pub(crate) fn centrifugal(&self, x: &[Vec3], centre: &Vec3, omega: &Vec3) -> Vec<[f64; 6]> {
+        let spin = omega.cross_matrix();
+        let gradient = -(spin * spin);
+        let field: Vec<[f64; 6]> = x
+            .iter()
+            .map(|x| {
+                let a = gradient * (x - centre);
+                [a.x, a.y, a.z, 0.0, 0.0, 0.0]
+            })
+            .collect();
+        let mut f = self.times(&field);
+        for (g, m) in &self.blocks {
+            // First moment m o and second moment J = tr(I)/2 - I of the mass about its grid.
+            let first = Vec3::new(m[(1, 5)], m[(2, 3)], m[(0, 4)]);
+            let inertia = m.fixed_view::<3, 3>(3, 3).into_owned();
+            let second = crate::model::Mat3::from_diagonal_element(0.5 * inertia.trace()) - inertia;
+            let force = gradient * first;
+            let moments = second * gradient.transpose();
+            for i in 0..3 {
+                f[g.us()][i] += force[i];
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                f[g.us()][3 + i] += moments[(j, k)] - moments[(k, j)];
+            }
+        }
+        f
+    }
+
     /// R' M R about a point.
     pub(crate) fn rigid(&self, x: &[Vec3], centre: &Vec3) -> Matrix6<f64> {
         let mut matrix = Matrix6::zeros();
@@ -145,6 +187,17 @@ impl Mass {
             matrix: self.rigid(x, &cg),
         })
     }
+}
+
+/// Mass, centre of gravity and rigid mass matrix of a model, WTMASS applied; `None` without mass.
+///
+/// # Errors
+/// Elements that can't be formed.
+pub fn mass_properties(model: &crate::model::Model) -> Result<Option<MassProperties>, super::error::FeError> {
+    let prepared = Prepared::new(model);
+    let mass = Mass::new(&prepared).map_err(super::error::FeError::Refused)?;
+    let x: Vec<Vec3> = model.grids.iter().map(|g| g.x).collect();
+    Ok(mass.properties(&x))
 }
 
 /// Force and moment about a point of nodal forces.

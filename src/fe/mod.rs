@@ -16,13 +16,16 @@ mod rigid_motion;
 pub mod shell_frame;
 mod shell_strain;
 mod solution;
+mod modes;
 mod solve;
+mod system;
 pub mod strain_rows;
 pub mod strain_tensor;
 mod unsupported;
 
 pub use error::{FeError, FreeDof, Refusal};
-pub use mass::MassProperties;
+pub use mass::{MassProperties, mass_properties};
+pub use modes::{Mode, free_modes};
 pub use relief::Balance;
 pub use shell_strain::Corners;
 pub use solution::*;

@@ -1,18 +1,15 @@
 //! Linear statics: load cases in, strain fields out.
 
-use super::assembly::{Assembled, assemble};
-use super::autospc::weak_unknowns;
-use super::constraint::{Reduction, State, reduce};
 use super::element::Prepared;
-use super::error::{FeError, FreeDof, what_hangs};
-use super::grid_frames::{to_basic, to_local};
+use super::error::FeError;
 use super::load::load_vector;
 use super::mass::{Mass, MassProperties};
-use super::relief::{Balance, RigidBody};
+use super::relief::Balance;
 use super::shell_strain::{Corners, shell_fields};
+use super::system::System;
 use super::{CaseResult, Solution, UnitLoad};
 use crate::finding::{Finding, Severity};
-use crate::linalg::sparse::{Factor, FactorError, OrderingMethod};
+use crate::linalg::sparse::OrderingMethod;
 use crate::model::Model;
 
 /// How the loads of a case are held in balance.
@@ -138,13 +135,14 @@ pub fn solve_cases(
         group.iter().for_each(|&i| done[i] = true);
         let members: Vec<&LoadCase> = group.iter().map(|&i| &cases[i]).collect();
         let solved = solve_group(&prepared, &mass, &members, &mut report, &mut findings)?;
-        let fields = shell_fields(&prepared, &solved, options.corners)?;
-        for (((i, case), u), shells) in group.iter().zip(members).zip(solved).zip(fields) {
+        let shells = shell_fields(&prepared, &solved, options.corners)?;
+        let beams = super::beam_strain::beam_fields(&prepared, &solved)?;
+        for ((((i, case), u), shells), beams) in group.iter().zip(members).zip(solved).zip(shells).zip(beams) {
             results[*i] = Some(CaseResult {
                 subcase: case.subcase,
                 label: case.label.clone(),
                 shells,
-                beams: super::beam_strain::beam_field(&prepared, &u),
+                beams,
                 displacement: u,
             });
         }
@@ -169,65 +167,15 @@ fn solve_group(
     findings: &mut Vec<Finding>,
 ) -> Result<Vec<Vec<[f64; 6]>>, FeError> {
     let model = prepared.model;
-    let Some(case) = cases.first() else {
-        return Ok(Vec::new());
-    };
+    let Some(case) = cases.first() else { return Ok(Vec::new()) };
     check_sets(model, cases)?;
-    let reduction = reduce(model, &prepared.axes, case.spc, case.mpc)?;
-    let mut assembled = assemble(prepared, &reduction)?;
-    let body = match case.relief {
-        Relief::None => None,
-        _ => {
-            let x = model.grids.iter().map(|g| g.x).collect();
-            Some(RigidBody::new(
-                x,
-                &prepared.axes,
-                mass,
-                &reduction,
-                &touched(prepared, &reduction),
-            )?)
-        }
-    };
-    if let Some(body) = &body {
-        findings.extend(ties(prepared, &assembled, body));
-    }
-    let weak = if model.params.autospc {
-        weak_unknowns(&assembled)
-    } else {
-        Vec::new()
-    };
-    for (unknown, k) in &weak {
-        assembled
-            .stiffness
-            .add_to_diagonal(&assembled.symbolic, *unknown, *k);
-    }
-    findings.extend(autospc_finding(model, &assembled, &weak));
-    let start = assembled.symbolic.unknown_start().to_vec();
-    let supports = match (&body, case.relief) {
-        (Some(body), Relief::Suport(set)) => {
-            let dofs: Vec<_> = model
-                .suports
-                .iter()
-                .filter(|(sid, _)| sid.is_none() || *sid == set)
-                .flat_map(|(_, list)| list.iter().copied())
-                .collect();
-            body.given_supports(&prepared.axes, &assembled.numbering, &start, &dofs)?
-        }
-        (Some(body), _) => body.choose_supports(&prepared.axes, &assembled.numbering),
-        (None, _) => Vec::new(),
-    };
-    let diagonal = assembled.stiffness.diagonal_values(&assembled.symbolic);
-    for unknown in &supports {
-        assembled
-            .stiffness
-            .add_to_diagonal(&assembled.symbolic, *unknown, diagonal[*unknown]);
-    }
-    let n = assembled.symbolic.n_unknowns();
+    let mut system = System::new(prepared, mass, (case.spc, case.mpc), case.relief, findings)?;
+    let n = system.symbolic.n_unknowns();
     let mut columns = vec![0.0; n * cases.len()];
     for (case, column) in cases.iter().zip(columns.chunks_exact_mut(n.max(1))) {
         let mut f = applied_forces(model, mass, case)?;
-        loads_on_nothing(model, &reduction, &assembled, &weak, case, &f)?;
-        if let Some(body) = &body {
+        system.loads_on_nothing(model, case.subcase, &f)?;
+        if let Some(body) = &system.body {
             let before = largest(&f);
             let balance = body.balance(case.subcase, mass, &mut f);
             if largest(&f) <= 1e-9 * before && before > 0.0 {
@@ -241,47 +189,23 @@ fn solve_group(
             }
             report.balance.push(balance);
         }
-        for (f, axes) in f.iter_mut().zip(&prepared.axes) {
-            *f = to_local(axes, *f);
-        }
-        if !reduction.enforced.is_empty() {
-            subtract_enforced(prepared, &reduction, &mut f)?;
-        }
-        assembled.numbering.pack(&reduction.gather(f), column);
+        system.pack(prepared, f, column)?;
     }
     if report.dofs < n {
         report.dofs = n;
-        report.factor_nonzeros = assembled.symbolic.factor_nonzeros();
-        report.ordering = Some(assembled.symbolic.method());
+        report.factor_nonzeros = system.symbolic.factor_nonzeros();
+        report.ordering = Some(system.symbolic.method());
     }
-    let Assembled {
-        numbering,
-        symbolic,
-        stiffness,
-        graph,
-    } = assembled;
-    let factor =
-        Factor::new(&symbolic, &stiffness).map_err(|FactorError::NotANumber { unknown }| {
-            let grid = &model.grids[numbering.dof_of(unknown, &start).0];
-            FeError::NotANumber {
-                grid: grid.id,
-                at: grid.at,
-            }
-        })?;
+    let stiffness = std::mem::take(&mut system.stiffness);
+    let factor = system.factor(model, &stiffness)?;
     drop(stiffness);
     report.smallest_pivot = factor.smallest_pivot;
-    if !factor.lost.is_empty() {
-        return Err(mechanism(model, &factor.lost, &start, &numbering, &graph));
-    }
     factor.solve(&mut columns);
     drop(factor);
     let mut all = Vec::with_capacity(cases.len());
     for column in columns.chunks_exact(n.max(1)) {
-        let mut u = reduction.expand(&numbering.unpack(column));
-        for (u, axes) in u.iter_mut().zip(&prepared.axes) {
-            *u = to_basic(axes, *u);
-        }
-        if let (Some(body), Relief::Automatic) = (&body, case.relief) {
+        let mut u = system.unpack(prepared, column);
+        if let (Some(body), Relief::Automatic) = (&system.body, case.relief) {
             body.take_out(mass, &mut u);
         }
         all.push(u);
@@ -289,7 +213,7 @@ fn solve_group(
     Ok(all)
 }
 
-fn largest(f: &[[f64; 6]]) -> f64 {
+pub(super) fn largest(f: &[[f64; 6]]) -> f64 {
     f.iter().flatten().fold(0.0, |a, v| a.max(v.abs()))
 }
 
@@ -360,178 +284,8 @@ fn applied_forces(model: &Model, mass: &Mass, case: &LoadCase) -> Result<Vec<[f6
     Ok(f)
 }
 
-/// Grids that belong to the structure: of an element, or tied to it.
-fn touched(prepared: &Prepared<'_>, reduction: &Reduction) -> Vec<bool> {
-    let mut touched = vec![false; prepared.model.grids.len()];
-    for element in prepared.elements() {
-        for g in prepared.grids(element) {
-            touched[g.us()] = true;
-        }
-    }
-    for (dof, state) in reduction.state.iter().enumerate() {
-        if matches!(state, State::Dependent(_)) {
-            touched[dof / 6] = true;
-        }
-    }
-    touched
-}
 
-/// f - K u0 for enforced displacements, displacement frames.
-fn subtract_enforced(
-    prepared: &Prepared<'_>,
-    reduction: &Reduction,
-    f: &mut [[f64; 6]],
-) -> Result<(), FeError> {
-    let u0 = reduction.expand(&vec![[0.0; 6]; prepared.model.grids.len()]);
-    for element in prepared.elements() {
-        let grids = prepared.grids(element);
-        if grids.iter().all(|g| u0[g.us()] == [0.0; 6]) {
-            continue;
-        }
-        let mut k = prepared
-            .stiffness(element)
-            .map_err(|r| FeError::Refused(vec![r]))?;
-        super::assembly::to_displacement_frames(&prepared.axes, &mut k);
-        let local: Vec<f64> = k.grids.iter().flat_map(|g| u0[g.us()]).collect();
-        for (g, v) in k.grids.iter().zip(k.times(&local).chunks_exact(6)) {
-            f[g.us()].iter_mut().zip(v).for_each(|(f, v)| *f -= v);
-        }
-    }
-    Ok(())
-}
 
-fn ties(prepared: &Prepared<'_>, assembled: &Assembled, body: &RigidBody) -> Option<Finding> {
-    let diagonal = assembled.stiffness.diagonal_values(&assembled.symbolic);
-    let mut worst = (0.0, 0);
-    for column in 0..body.n_free() {
-        let motion = body.packed(&prepared.axes, &assembled.numbering, column);
-        let force = assembled.stiffness.times(&assembled.symbolic, &motion);
-        for (i, (f, d)) in force.iter().zip(&diagonal).enumerate() {
-            let share = f.abs() / d.max(f64::MIN_POSITIVE);
-            if share > worst.0 && *d > 0.0 {
-                worst = (share, i);
-            }
-        }
-    }
-    let limit = 1e-7;
-    let (grid, dof) = assembled
-        .numbering
-        .dof_of(worst.1, assembled.symbolic.unknown_start());
-    (worst.0 > limit).then(|| {
-        Finding::new(
-            Severity::Error,
-            "tied-to-ground",
-            format!("grid {}", prepared.model.grids[grid].id),
-            format!("a rigid motion of the structure is resisted here (dof {}): something ties it to ground, and strain depends on it", dof + 1),
-            "look for CELAS or CBUSH to ground, springs between grids that don't coincide, or MPC equations that forbid rigid motion",
-        )
-        .with_numbers(worst.0, limit)
-    })
-}
 
-fn autospc_finding(model: &Model, assembled: &Assembled, weak: &[(usize, f64)]) -> Option<Finding> {
-    let start = assembled.symbolic.unknown_start();
-    let names: Vec<String> = weak
-        .iter()
-        .take(5)
-        .map(|(unknown, _)| {
-            let (g, dof) = assembled.numbering.dof_of(*unknown, start);
-            format!("{}/{}", model.grids[g].id, dof + 1)
-        })
-        .collect();
-    (!weak.is_empty()).then(|| {
-        Finding::new(
-            Severity::Info,
-            "autospc",
-            format!("grid/dof {}", names.join(", ")),
-            format!("{} dofs without stiffness were held (AUTOSPC)", weak.len()),
-            "nothing, if no load is meant to act there",
-        )
-    })
-}
 
-fn loads_on_nothing(
-    model: &Model,
-    reduction: &Reduction,
-    assembled: &Assembled,
-    weak: &[(usize, f64)],
-    case: &LoadCase,
-    f: &[[f64; 6]],
-) -> Result<(), FeError> {
-    let fault = |g: usize, dof: usize| FeError::LoadOnNothing {
-        grid: model.grids[g].id,
-        dof: dof as u8 + 1,
-        subcase: case.subcase,
-        at: model.grids[g].at,
-    };
-    let limit = 1e-9 * largest(f);
-    for (g, f) in f.iter().enumerate() {
-        let loose = |i: usize| {
-            reduction.state[6 * g + i] == State::Free && assembled.numbering.group[g].is_none()
-        };
-        if let Some(i) = (0..6).find(|&i| f[i].abs() > limit && loose(i)) {
-            return Err(fault(g, i));
-        }
-    }
-    for (unknown, _) in weak {
-        let (g, dof) = assembled
-            .numbering
-            .dof_of(*unknown, assembled.symbolic.unknown_start());
-        if f[g][dof].abs() > limit && reduction.is_plain(g) && model.grids[g].cd.0 == 0 {
-            return Err(fault(g, dof));
-        }
-    }
-    Ok(())
-}
 
-fn mechanism(
-    model: &Model,
-    lost: &[usize],
-    start: &[usize],
-    numbering: &super::assembly::Numbering,
-    graph: &crate::linalg::sparse::BlockGraph,
-) -> FeError {
-    const SHOWN: usize = 8;
-    let dofs = lost
-        .iter()
-        .take(SHOWN)
-        .map(|&unknown| {
-            let (g, dof) = numbering.dof_of(unknown, start);
-            let grid = &model.grids[g];
-            FreeDof {
-                grid: grid.id,
-                dof: dof as u8 + 1,
-                hangs: what_hangs(model, crate::model::GridIx(g as u32)),
-                at: grid.at,
-            }
-        })
-        .collect();
-    let (of, count) = graph.components();
-    let mut sizes = vec![0_usize; count];
-    of.iter().for_each(|c| sizes[*c as usize] += 1);
-    let main = sizes.iter().copied().max().unwrap_or(0);
-    let mut parts = Vec::new();
-    for (c, size) in sizes
-        .iter()
-        .enumerate()
-        .filter(|(_, s)| count > 1 && **s < main)
-        .take(SHOWN)
-    {
-        let ids: Vec<String> = of
-            .iter()
-            .zip(&numbering.grid)
-            .filter(|(o, _)| **o as usize == c)
-            .take(3)
-            .map(|(_, g)| model.grids[*g as usize].id.to_string())
-            .collect();
-        parts.push(format!(
-            "a part of {size} grids (grid {} ..) is not joined to the rest",
-            ids.join(", ")
-        ));
-    }
-    FeError::Mechanism {
-        dofs,
-        count: lost.len(),
-        parts,
-    }
-}

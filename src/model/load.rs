@@ -237,9 +237,19 @@ impl Builder<'_> {
                 .push((1.0, Load::Gravity(n * g.scale)));
         }
         for r in &cards.rforces {
-            sets.entry(r.sid)
-                .or_default()
-                .push((1.0, Load::Unsupported("RFORCE", r.at)));
+            let axes = self.frame_ix.get(&r.cid).and_then(|f| self.model.frames.get(f.us()));
+            let centre = match r.grid {
+                0 => Some(Vec3::zeros()),
+                id => self.grid_ix.get(&id).map(|g| self.model.grids[g.us()].x),
+            };
+            let load = match (axes, centre) {
+                (Some(frame), Some(centre)) if r.acceleration == 0.0 => Load::Spin {
+                    centre,
+                    omega: frame.axes.tr_mul(&Vec3::from(r.r)) * (r.speed * std::f64::consts::TAU),
+                },
+                _ => Load::Unsupported("RFORCE", r.at),
+            };
+            sets.entry(r.sid).or_default().push((1.0, load));
         }
     }
 

@@ -493,6 +493,13 @@ pub enum Load {
     },
     /// Acceleration field of GRAV.
     Gravity(Vec3),
+    /// Centrifugal forces of RFORCE.
+    Spin {
+        /// A point on the axis.
+        centre: Vec3,
+        /// Angular velocity, radians per unit of time.
+        omega: Vec3,
+    },
     /// A load that the solver does not carry yet: the card's name and place, so that it can be refused by name.
     Unsupported(&'static str, Place),
 }

@@ -1,7 +1,11 @@
 //! All stiff elements of a model as one list.
 
+use super::beam::beam_stiffness;
+use super::bush::bush_stiffness;
 use super::matrix::ElementMatrix;
+use super::rod::rod_stiffness;
 use super::shell::{CornerDirectors, shared_normals, shell_stiffness};
+use super::spring::spring_stiffness;
 use crate::fe::error::Refusal;
 use crate::fe::grid_frames::grid_axes;
 use crate::model::{GridIx, Mat3, Model};
@@ -77,10 +81,10 @@ impl<'a> Prepared<'a> {
     pub(crate) fn stiffness(&self, element: ElementRef) -> Result<ElementMatrix, Refusal> {
         match element {
             ElementRef::Shell(i) => shell_stiffness(self, i),
-            ElementRef::Beam(_)
-            | ElementRef::Rod(_)
-            | ElementRef::Bush(_)
-            | ElementRef::Spring(_) => Ok(ElementMatrix::zeros(self.grids(element))),
+            ElementRef::Beam(i) => beam_stiffness(self.model, i),
+            ElementRef::Rod(i) => rod_stiffness(self.model, i),
+            ElementRef::Bush(i) => Ok(bush_stiffness(self.model, i)),
+            ElementRef::Spring(i) => Ok(spring_stiffness(self, i)),
         }
     }
 }

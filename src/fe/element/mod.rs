@@ -3,9 +3,14 @@
 //! Every element works in the basic frame with six unknowns a grid: three translations, then three rotations. Its stiffness K
 //! satisfies K R = 0 for the six rigid motions R of its grids.
 
+pub(crate) mod beam;
+mod bush;
 mod list;
 mod matrix;
+mod rod;
 pub(crate) mod shell;
+mod spring;
 
 pub(crate) use list::{ElementRef, Prepared};
 pub(crate) use matrix::ElementMatrix;
+pub(crate) use rod::rod_mass;

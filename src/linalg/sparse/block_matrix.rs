@@ -5,7 +5,7 @@ use super::symbolic::Symbolic;
 use rayon::prelude::*;
 
 /// Lower triangle of a symmetric matrix by block columns; a block is stored by columns, diagonal blocks in full.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct BlockMatrix {
     /// First block of each block column, and the total.
     pub(super) column: Vec<usize>,

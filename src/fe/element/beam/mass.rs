@@ -1,0 +1,85 @@
+//! Mass of beams.
+
+use super::flexibility::section_at;
+use super::of_model::{length, to_element};
+use crate::fe::element::ElementMatrix;
+use crate::fe::mass::point_mass;
+use crate::linalg::{Matrix6, SMatrix, Vector3};
+use crate::model::{Beam, Model, Section};
+
+const GAUSS: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+
+/// Integrates f(share of the length, section, length element) along a beam.
+fn along(model: &Model, beam: &Beam, mut f: impl FnMut(f64, &Section, f64)) {
+    let Some(property) = model.beam_properties.get(beam.property.us()) else { return };
+    let length = length(model, beam);
+    for w in property.sections.windows(2) {
+        let span = w[1].0 - w[0].0;
+        if span > 0.0 {
+            for (x, weight) in GAUSS {
+                let xi = w[0].0 + span * x;
+                f(xi, &section_at(&property.sections, xi), weight * span * length);
+            }
+        }
+    }
+}
+
+fn density(model: &Model, beam: &Beam) -> f64 {
+    let property = model.beam_properties.get(beam.property.us());
+    property.and_then(|p| model.materials.get(p.material.us())).map_or(0.0, |m| m.rho)
+}
+
+/// Mass lumped at the two ends, 6 x 6 about each grid, basic frame, before WTMASS.
+///
+/// A CBAR puts half its mass at each offset end. A CBEAM puts it on its neutral axis, non-structural mass at its own centre, and
+/// adds the polar inertia of the section and NSI about its axis.
+pub(crate) fn beam_lumped_mass(model: &Model, i: usize) -> [Matrix6<f64>; 2] {
+    let beam = &model.beams[i];
+    let rho = density(model, beam);
+    let mut ends = [Matrix6::zeros(); 2];
+    along(model, beam, |xi, s, dx| {
+        for (end, share) in [(0, 1.0 - xi), (1, xi)] {
+            let at = |[y, z]: [f64; 2]| beam.offsets[end] + beam.axes.transpose() * Vector3::new(0.0, y, z);
+            if beam.is_beam {
+                ends[end] += point_mass(rho * s.area * share * dx, &at(s.neutral));
+                ends[end] += point_mass(s.nsm * share * dx, &at(s.nsm_centre));
+                let polar = (rho * (s.i1 + s.i2) + s.nsi) * share * dx;
+                let x = beam.axes.row(0).transpose();
+                let spin = x * x.transpose() * polar;
+                let mut block = ends[end].fixed_view_mut::<3, 3>(3, 3);
+                block += spin;
+            } else {
+                ends[end] += point_mass((rho * s.area + s.nsm) * share * dx, &beam.offsets[end]);
+            }
+        }
+    });
+    ends
+}
+
+/// Coupled mass (PARAM,COUPMASS) with the cubic shape functions of a slender beam, basic frame, before WTMASS.
+pub(crate) fn beam_coupled_mass(model: &Model, i: usize) -> ElementMatrix {
+    let beam = &model.beams[i];
+    let (rho, l) = (density(model, beam), length(model, beam));
+    let mut m = SMatrix::<f64, 12, 12>::zeros();
+    // Degree six: the three-point rule on halves is exact enough for uniform beams and keeps rigid motions exact.
+    along(model, beam, |xi, s, dx| {
+        let per_length = rho * s.area + s.nsm;
+        let (x, x2, x3) = (xi, xi * xi, xi * xi * xi);
+        let (h1, h2, h3, h4) = (1.0 - 3.0 * x2 + 2.0 * x3, l * (x - 2.0 * x2 + x3), 3.0 * x2 - 2.0 * x3, l * (x3 - x2));
+        let mut n = SMatrix::<f64, 3, 12>::zeros();
+        (n[(0, 0)], n[(0, 6)]) = (1.0 - x, x);
+        (n[(1, 1)], n[(1, 5)], n[(1, 7)], n[(1, 11)]) = (h1, h2, h3, h4);
+        (n[(2, 2)], n[(2, 4)], n[(2, 8)], n[(2, 10)]) = (h1, -h2, h3, -h4);
+        m += n.transpose() * n * (per_length * dx);
+        let polar = (rho * (s.i1 + s.i2) + s.nsi) * dx;
+        for (a, p) in [(3, 1.0 - x), (9, x)] {
+            for (b, q) in [(3, 1.0 - x), (9, x)] {
+                m[(a, b)] += polar * p * q;
+            }
+        }
+    });
+    let t = to_element(beam);
+    let m = t.transpose() * m * t;
+    ElementMatrix { grids: beam.grids.to_vec(), values: m.transpose().as_slice().to_vec() }
+}

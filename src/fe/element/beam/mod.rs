@@ -1,0 +1,13 @@
+//! CBAR and CBEAM: Timoshenko beams by the flexibility method, exact for end loads, tapered ones by integration along the beam.
+//!
+//! The reference line joins the offset ends; for a CBEAM it is the line of shear centres. Element frame x, y, z; plane 1 is x-y.
+
+mod flexibility;
+mod mass;
+mod of_model;
+
+pub(crate) use mass::{beam_coupled_mass, beam_lumped_mass};
+pub(crate) use of_model::{beam_stiffness, beam_strain};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,29 @@
+//! CELAS1, CELAS2: a spring between two dofs, or a dof and ground.
+
+use super::{ElementMatrix, Prepared};
+use crate::fe::grid_frames::to_basic;
+
+/// Stiffness of spring `i`, basic frame; its dofs are those of the grids' displacement frames.
+pub(crate) fn spring_stiffness(prepared: &Prepared<'_>, i: usize) -> ElementMatrix {
+    let spring = &prepared.model.springs[i];
+    let mut grids: Vec<_> = spring.ends.iter().flatten().map(|e| e.0).collect();
+    grids.dedup();
+    let n = 6 * grids.len();
+    let mut row = vec![0.0; n];
+    for (end, sign) in spring.ends.iter().zip([1.0, -1.0]) {
+        let Some((g, dof)) = end else { continue };
+        let mut unit = [0.0; 6];
+        unit[usize::from(*dof).min(5)] = sign;
+        let at = grids.iter().position(|x| x == g).unwrap_or(0);
+        for (r, v) in row[6 * at..6 * at + 6].iter_mut().zip(to_basic(&prepared.axes[g.us()], unit)) {
+            *r += v;
+        }
+    }
+    let mut k = ElementMatrix::zeros(grids);
+    for a in 0..n {
+        for b in 0..n {
+            k.values[a * n + b] = spring.k * row[a] * row[b];
+        }
+    }
+    k
+}

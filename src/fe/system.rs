@@ -1,0 +1,289 @@
+//! The constrained stiffness of a model, ready to be factored: what statics and free modes share.
+
+use super::assembly::{Assembled, Numbering, assemble};
+use super::autospc::weak_unknowns;
+use super::constraint::{Reduction, State, reduce};
+use super::element::Prepared;
+use super::error::{FeError, FreeDof, what_hangs};
+use super::grid_frames::{to_basic, to_local};
+use super::mass::Mass;
+use super::relief::RigidBody;
+use super::solve::{Relief, largest};
+use crate::finding::{Finding, Severity};
+use crate::linalg::sparse::{BlockGraph, BlockMatrix, Factor, FactorError, Symbolic};
+use crate::model::{GridIx, Model};
+
+/// Everything between a model and its factor.
+pub(super) struct System {
+    pub(super) reduction: Reduction,
+    numbering: Numbering,
+    graph: BlockGraph,
+    pub(super) symbolic: Symbolic,
+    pub(super) stiffness: BlockMatrix,
+    /// The free rigid motions, where inertia balances the loads.
+    pub(super) body: Option<RigidBody>,
+    weak: Vec<(usize, f64)>,
+}
+
+impl System {
+    /// The stiffness under an SPC and an MPC set, held determinately where inertia balances the loads.
+    ///
+    /// Determinate supports and dofs without stiffness are held by a spring of the size of their stiffness: a balanced load puts no
+    /// force into it, so the answer is that of a rigid support.
+    ///
+    /// # Errors
+    /// See [`FeError`].
+    pub(super) fn new(
+        prepared: &Prepared<'_>,
+        mass: &Mass,
+        (spc, mpc): (Option<u32>, Option<u32>),
+        relief: Relief,
+        findings: &mut Vec<Finding>,
+    ) -> Result<Self, FeError> {
+        let model = prepared.model;
+        let reduction = reduce(model, &prepared.axes, spc, mpc)?;
+        let mut assembled = assemble(prepared, &reduction)?;
+        let body = match relief {
+            Relief::None => None,
+            _ => {
+                let x = model.grids.iter().map(|g| g.x).collect();
+                Some(RigidBody::new(x, &prepared.axes, mass, &reduction, &touched(prepared, &reduction))?)
+            }
+        };
+        if let Some(body) = &body {
+            findings.extend(ties(prepared, &assembled, body));
+        }
+        let weak = if model.params.autospc { weak_unknowns(&assembled) } else { Vec::new() };
+        for (unknown, k) in &weak {
+            assembled.stiffness.add_to_diagonal(&assembled.symbolic, *unknown, *k);
+        }
+        findings.extend(autospc_finding(model, &assembled, &weak));
+        let supports = match (&body, relief) {
+            (Some(body), Relief::Suport(set)) => {
+                let dofs: Vec<_> = model
+                    .suports
+                    .iter()
+                    .filter(|(sid, _)| sid.is_none() || *sid == set)
+                    .flat_map(|(_, list)| list.iter().copied())
+                    .collect();
+                body.given_supports(&prepared.axes, &assembled.numbering, assembled.symbolic.unknown_start(), &dofs)?
+            }
+            (Some(body), _) => body.choose_supports(&prepared.axes, &assembled.numbering),
+            (None, _) => Vec::new(),
+        };
+        let diagonal = assembled.stiffness.diagonal_values(&assembled.symbolic);
+        for unknown in &supports {
+            assembled.stiffness.add_to_diagonal(&assembled.symbolic, *unknown, diagonal[*unknown]);
+        }
+        let Assembled { numbering, graph, symbolic, stiffness } = assembled;
+        Ok(Self { reduction, numbering, graph, symbolic, stiffness, body, weak })
+    }
+
+    /// The factor.
+    ///
+    /// # Errors
+    /// Mechanisms, each dof named; entries that are not numbers.
+    pub(super) fn factor(&self, model: &Model, stiffness: &BlockMatrix) -> Result<Factor<'_>, FeError> {
+        let start = self.symbolic.unknown_start();
+        let factor = Factor::new(&self.symbolic, stiffness).map_err(|FactorError::NotANumber { unknown }| {
+            let grid = &model.grids[self.numbering.dof_of(unknown, start).0];
+            FeError::NotANumber { grid: grid.id, at: grid.at }
+        })?;
+        if factor.lost.is_empty() {
+            Ok(factor)
+        } else {
+            Err(mechanism(model, &factor.lost, start, &self.numbering, &self.graph))
+        }
+    }
+
+    /// T' (f - K u0) at the unknowns, from forces at all grids in the basic frame.
+    ///
+    /// # Errors
+    /// Elements that can't be formed.
+    pub(super) fn pack(&self, prepared: &Prepared<'_>, mut f: Vec<[f64; 6]>, out: &mut [f64]) -> Result<(), FeError> {
+        for (f, axes) in f.iter_mut().zip(&prepared.axes) {
+            *f = to_local(axes, *f);
+        }
+        if !self.reduction.enforced.is_empty() {
+            subtract_enforced(prepared, &self.reduction, &mut f)?;
+        }
+        self.numbering.pack(&self.reduction.gather(f), out);
+        Ok(())
+    }
+
+    /// Displacements of all grids, basic frame, from the unknowns.
+    pub(super) fn unpack(&self, prepared: &Prepared<'_>, values: &[f64]) -> Vec<[f64; 6]> {
+        let mut u = self.reduction.expand(&self.numbering.unpack(values));
+        for (u, axes) in u.iter_mut().zip(&prepared.axes) {
+            *u = to_basic(axes, *u);
+        }
+        u
+    }
+
+    /// # Errors
+    /// A load on a dof that no element holds.
+    pub(super) fn loads_on_nothing(&self, model: &Model, subcase: u32, f: &[[f64; 6]]) -> Result<(), FeError> {
+        let fault = |g: usize, dof: usize| FeError::LoadOnNothing {
+            grid: model.grids[g].id,
+            dof: dof as u8 + 1,
+            subcase,
+            at: model.grids[g].at,
+        };
+        let limit = 1e-9 * largest(f);
+        for (g, f) in f.iter().enumerate() {
+            let loose = |i: usize| self.reduction.state[6 * g + i] == State::Free && self.numbering.group[g].is_none();
+            if let Some(i) = (0..6).find(|&i| f[i].abs() > limit && loose(i)) {
+                return Err(fault(g, i));
+            }
+        }
+        for (unknown, _) in &self.weak {
+            let (g, dof) = self.numbering.dof_of(*unknown, self.symbolic.unknown_start());
+            if f[g][dof].abs() > limit && model.grids[g].cd.0 == 0 {
+                return Err(fault(g, dof));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Grids that belong to the structure: of an element, or tied to it.
+fn touched(prepared: &Prepared<'_>, reduction: &Reduction) -> Vec<bool> {
+    let mut touched = vec![false; prepared.model.grids.len()];
+    for element in prepared.elements() {
+        for g in prepared.grids(element) {
+            touched[g.us()] = true;
+        }
+    }
+    for (dof, state) in reduction.state.iter().enumerate() {
+        if matches!(state, State::Dependent(_)) {
+            touched[dof / 6] = true;
+        }
+    }
+    touched
+}
+
+/// f - K u0 for enforced displacements, displacement frames.
+fn subtract_enforced(
+    prepared: &Prepared<'_>,
+    reduction: &Reduction,
+    f: &mut [[f64; 6]],
+) -> Result<(), FeError> {
+    let u0 = reduction.expand(&vec![[0.0; 6]; prepared.model.grids.len()]);
+    for element in prepared.elements() {
+        let grids = prepared.grids(element);
+        if grids.iter().all(|g| u0[g.us()] == [0.0; 6]) {
+            continue;
+        }
+        let mut k = prepared
+            .stiffness(element)
+            .map_err(|r| FeError::Refused(vec![r]))?;
+        super::assembly::to_displacement_frames(&prepared.axes, &mut k);
+        let local: Vec<f64> = k.grids.iter().flat_map(|g| u0[g.us()]).collect();
+        for (g, v) in k.grids.iter().zip(k.times(&local).chunks_exact(6)) {
+            f[g.us()].iter_mut().zip(v).for_each(|(f, v)| *f -= v);
+        }
+    }
+    Ok(())
+}
+
+fn ties(prepared: &Prepared<'_>, assembled: &Assembled, body: &RigidBody) -> Option<Finding> {
+    let diagonal = assembled.stiffness.diagonal_values(&assembled.symbolic);
+    let mut worst = (0.0, 0);
+    for column in 0..body.n_free() {
+        let motion = body.packed(&prepared.axes, &assembled.numbering, column);
+        let force = assembled.stiffness.times(&assembled.symbolic, &motion);
+        for (i, (f, d)) in force.iter().zip(&diagonal).enumerate() {
+            let share = f.abs() / d.max(f64::MIN_POSITIVE);
+            if share > worst.0 && *d > 0.0 {
+                worst = (share, i);
+            }
+        }
+    }
+    let limit = 1e-7;
+    let (grid, dof) = assembled
+        .numbering
+        .dof_of(worst.1, assembled.symbolic.unknown_start());
+    (worst.0 > limit).then(|| {
+        Finding::new(
+            Severity::Error,
+            "tied-to-ground",
+            format!("grid {}", prepared.model.grids[grid].id),
+            format!("a rigid motion of the structure is resisted here (dof {}): something ties it to ground, and strain depends on it", dof + 1),
+            "look for CELAS or CBUSH to ground, springs between grids that don't coincide, or MPC equations that forbid rigid motion",
+        )
+        .with_numbers(worst.0, limit)
+    })
+}
+
+fn autospc_finding(model: &Model, assembled: &Assembled, weak: &[(usize, f64)]) -> Option<Finding> {
+    let start = assembled.symbolic.unknown_start();
+    let names: Vec<String> = weak
+        .iter()
+        .take(5)
+        .map(|(unknown, _)| {
+            let (g, dof) = assembled.numbering.dof_of(*unknown, start);
+            format!("{}/{}", model.grids[g].id, dof + 1)
+        })
+        .collect();
+    (!weak.is_empty()).then(|| {
+        Finding::new(
+            Severity::Info,
+            "autospc",
+            format!("grid/dof {}", names.join(", ")),
+            format!("{} dofs without stiffness were held (AUTOSPC)", weak.len()),
+            "nothing, if no load is meant to act there",
+        )
+    })
+}
+
+fn mechanism(
+    model: &Model,
+    lost: &[usize],
+    start: &[usize],
+    numbering: &Numbering,
+    graph: &BlockGraph,
+) -> FeError {
+    const SHOWN: usize = 8;
+    let dofs = lost
+        .iter()
+        .take(SHOWN)
+        .map(|&unknown| {
+            let (g, dof) = numbering.dof_of(unknown, start);
+            let grid = &model.grids[g];
+            FreeDof {
+                grid: grid.id,
+                dof: dof as u8 + 1,
+                hangs: what_hangs(model, GridIx(g as u32)),
+                at: grid.at,
+            }
+        })
+        .collect();
+    let (of, count) = graph.components();
+    let mut sizes = vec![0_usize; count];
+    of.iter().for_each(|c| sizes[*c as usize] += 1);
+    let main = sizes.iter().copied().max().unwrap_or(0);
+    let mut parts = Vec::new();
+    for (c, size) in sizes
+        .iter()
+        .enumerate()
+        .filter(|(_, s)| count > 1 && **s < main)
+        .take(SHOWN)
+    {
+        let ids: Vec<String> = of
+            .iter()
+            .zip(&numbering.grid)
+            .filter(|(o, _)| **o as usize == c)
+            .take(3)
+            .map(|(_, g)| model.grids[*g as usize].id.to_string())
+            .collect();
+        parts.push(format!(
+            "a part of {size} grids (grid {} ..) is not joined to the rest",
+            ids.join(", ")
+        ));
+    }
+    FeError::Mechanism {
+        dofs,
+        count: lost.len(),
+        parts,
+    }
+}

@@ -1,0 +1,107 @@
+//! VTU (VTK XML unstructured grid) that ParaView opens: mesh, displacements and shell strain of load cases.
+
+use crate::fe::CaseResult;
+use crate::model::{GridIx, Model};
+use std::io::{Result, Write};
+
+const LINE: u8 = 3;
+const TRIANGLE: u8 = 5;
+const QUAD: u8 = 9;
+
+/// Arrays are appended to the XML as raw little-endian bytes, each after its length in bytes (64 bit).
+struct Appended {
+    xml: String,
+    offset: u64,
+    blocks: Vec<Vec<u8>>,
+}
+
+impl Appended {
+    fn array(&mut self, name: &str, kind: &str, components: usize, bytes: Vec<u8>) {
+        self.xml += &format!(
+            "<DataArray type=\"{kind}\" Name=\"{}\" NumberOfComponents=\"{components}\" format=\"appended\" offset=\"{}\"/>\n",
+            escape(name),
+            self.offset
+        );
+        self.offset += 8 + bytes.len() as u64;
+        self.blocks.push(bytes);
+    }
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+fn floats(values: impl Iterator<Item = f64>) -> Vec<u8> {
+    values.flat_map(|v| (v as f32).to_le_bytes()).collect()
+}
+
+/// Writes the mesh of shells, bars and rods with each case's displacement, and per shell, at bottom and top, strain in the element
+/// frame (exx, eyy, gxy, engineering shear) and the largest principal strain by magnitude, in strain. Values are 32-bit reals.
+///
+/// # Errors
+/// What `out` gives.
+pub fn write_vtu(model: &Model, cases: &[CaseResult], out: &mut dyn Write) -> Result<()> {
+    let mut cells: Vec<(u8, u32, Vec<GridIx>)> = Vec::new();
+    for s in &model.shells {
+        let n = s.shape.n_corners();
+        cells.push((if n == 4 { QUAD } else { TRIANGLE }, s.id, s.grids[..n].to_vec()));
+    }
+    cells.extend(model.beams.iter().map(|b| (LINE, b.id, b.grids.to_vec())));
+    cells.extend(model.rods.iter().map(|r| (LINE, r.id, r.grids.to_vec())));
+    let mut a = Appended { xml: String::new(), offset: 0, blocks: Vec::new() };
+    a.xml += "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n";
+    a.xml += &format!(
+        "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<Points>\n",
+        model.grids.len(),
+        cells.len()
+    );
+    a.array("Points", "Float64", 3, model.grids.iter().flat_map(|g| [g.x.x, g.x.y, g.x.z]).flat_map(f64::to_le_bytes).collect());
+    a.xml += "</Points>\n<Cells>\n";
+    a.array("connectivity", "Int64", 1, cells.iter().flat_map(|c| &c.2).flat_map(|g| i64::from(g.0).to_le_bytes()).collect());
+    let mut end = 0_i64;
+    let ends = cells.iter().flat_map(|c| {
+        end += c.2.len() as i64;
+        end.to_le_bytes()
+    });
+    let ends = ends.collect();
+    a.array("offsets", "Int64", 1, ends);
+    a.array("types", "UInt8", 1, cells.iter().map(|c| c.0).collect());
+    a.xml += "</Cells>\n<PointData>\n";
+    a.array("grid", "Int32", 1, model.grids.iter().flat_map(|g| (g.id as i32).to_le_bytes()).collect());
+    for case in cases.iter().filter(|c| c.displacement.len() == model.grids.len()) {
+        let u = case.displacement.iter().flat_map(|u| [u[0], u[1], u[2]]);
+        a.array(&format!("displacement {}", title(case)), "Float32", 3, floats(u));
+    }
+    a.xml += "</PointData>\n<CellData>\n";
+    a.array("element", "Int32", 1, cells.iter().flat_map(|c| (c.1 as i32).to_le_bytes()).collect());
+    for case in cases {
+        let mut by_shell = vec![[[f64::NAN; 3]; 2]; cells.len()];
+        for (ix, strain) in case.shells.elements.iter().zip(&case.shells.centre) {
+            if let Some(slot) = by_shell.get_mut(ix.us()) {
+                *slot = *strain;
+            }
+        }
+        for (surface, name) in ["bottom", "top"].iter().enumerate() {
+            let strain = by_shell.iter().flat_map(|s| s[surface]);
+            a.array(&format!("strain {name} {}", title(case)), "Float32", 3, floats(strain));
+            let largest = by_shell.iter().map(|s| largest_principal(s[surface]));
+            a.array(&format!("largest strain {name} {}", title(case)), "Float32", 1, floats(largest));
+        }
+    }
+    a.xml += "</CellData>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
+    out.write_all(a.xml.as_bytes())?;
+    for block in &a.blocks {
+        out.write_all(&(block.len() as u64).to_le_bytes())?;
+        out.write_all(block)?;
+    }
+    out.write_all(b"\n</AppendedData>\n</VTKFile>\n")
+}
+
+fn title(case: &CaseResult) -> String {
+    if case.label.is_empty() { case.subcase.to_string() } else { format!("{} {}", case.subcase, case.label) }
+}
+
+fn largest_principal([ex, ey, g]: [f64; 3]) -> f64 {
+    let (mean, radius) = ((ex + ey) / 2.0, ((ex - ey) / 2.0).hypot(g / 2.0));
+    if mean < 0.0 { mean - radius } else { mean + radius }
+}

@@ -1,0 +1,36 @@
+//! Decks of `../shared`, read and turned into models.
+
+use nastran::bdf::{IncludeRequest, Loaded, Loader, read_deck};
+use std::path::PathBuf;
+use strainbridge::model::Model;
+
+struct Files;
+
+impl Loader for Files {
+    fn load(&mut self, request: &IncludeRequest) -> Result<Loaded, String> {
+        for path in request.candidates(|_| None)? {
+            if let Ok(bytes) = std::fs::read(&path) {
+                return Ok(Loaded { path, bytes });
+            }
+        }
+        Err("not found".to_owned())
+    }
+}
+
+/// A file of the shared material; `None` (with a message) where it is absent.
+pub fn shared(path: &str) -> Option<PathBuf> {
+    let full = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared")).join(path);
+    let found = full.exists();
+    if !found {
+        eprintln!("skipped: {} is absent", full.display());
+    }
+    found.then_some(full)
+}
+
+/// The model of a deck and its case control; faults of weight error fail the test.
+pub fn model_of(path: &std::path::Path) -> (Model, nastran::bdf::CaseControl) {
+    let bytes = std::fs::read(path).unwrap();
+    let deck = read_deck(&path.to_string_lossy(), bytes, &mut Files);
+    let (model, _) = Model::from_cards(&deck.cards);
+    (model, deck.case_control)
+}
