@@ -28,6 +28,8 @@ pub enum Command {
     Place(JobArguments),
     /// Recover loads from measured strain, with intervals
     Recover(JobArguments),
+    /// Strain of a job's unit loads, or of a deck's static subcases, by the built-in solver
+    Solve(JobArguments),
     /// Vehicle parameters and wheel loads from accelerations
     Identify(JobArguments),
 }

@@ -19,6 +19,7 @@ mod progress;
 mod recover;
 mod sensitivity;
 mod session;
+mod solve;
 mod strain;
 mod strains;
 pub mod vehicle;
@@ -41,6 +42,7 @@ pub fn run(arguments: Arguments) -> ExitCode {
         Command::Sensitivity(a) => {
             Session::run("sensitivity", &a.common, |s| sensitivity::run(&a, s))
         }
+        Command::Solve(a) => Session::run("solve", &a.common, |s| solve::run(&a, s)),
         Command::Identify(a) => Session::run("identify", &a.common, |s| identify::run(&a, s)),
     }
 }

@@ -30,5 +30,5 @@ pub use relief::Balance;
 pub use shell_strain::Corners;
 pub use solution::*;
 pub use solve::{
-    LoadCase, Relief, SolveOptions, SolveReport, relief_of, solve_cases, solve_unit_loads,
+    LoadCase, Relief, SolveOptions, SolveReport, relief_of, solve_cases, solve_unit_loads, supported_stiffness,
 };

@@ -24,6 +24,8 @@ pub(crate) struct RigidBody {
     basis: DMatrix<f64>,
     /// Modal mass of the free motions.
     modal: DMatrix<f64>,
+    /// Largest distance of a grid from the centre of gravity.
+    size: f64,
 }
 
 /// Applied and inertia loads of a case about the centre of gravity, basic frame: three forces, three moments.
@@ -92,6 +94,7 @@ impl RigidBody {
             properties,
             basis,
             modal,
+            size,
         })
     }
 
@@ -123,10 +126,7 @@ impl RigidBody {
     pub(crate) fn balance(&self, subcase: u32, mass: &Mass, f: &mut [[f64; 6]]) -> Balance {
         let applied = resultant(&self.x, f, &self.properties.cg);
         let generalized = self.basis.transpose() * DVector::from_column_slice(&applied);
-        let amounts = match self.modal.clone().cholesky() {
-            Some(c) => &self.basis * c.solve(&generalized),
-            None => DVector::zeros(6),
-        };
+        let amounts = &self.basis * self.modal_solve(&generalized);
         let inertia_field = mass.times(&self.field(&amounts));
         for (f, m) in f.iter_mut().zip(&inertia_field) {
             f.iter_mut().zip(m).for_each(|(f, m)| *f -= m);
@@ -144,14 +144,32 @@ impl RigidBody {
         }
     }
 
+    /// Modal mass solved for; a motion without mass (a straight bar about its own axis) is left out.
+    fn modal_solve(&self, generalized: &DVector<f64>) -> DVector<f64> {
+        let n = self.modal.nrows();
+        let scale: Vec<f64> = (0..n)
+            .map(|c| {
+                let b = self.basis.column(c);
+                let square = b.rows(0, 3).norm_squared() + b.rows(3, 3).norm_squared() * self.size * self.size;
+                1.0 / (self.properties.mass * square).sqrt()
+            })
+            .collect();
+        let eigen = DMatrix::from_fn(n, n, |i, j| self.modal[(i, j)] * scale[i] * scale[j]).symmetric_eigen();
+        let mut x = DVector::zeros(n);
+        for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+            if *value > 1e-12 {
+                let along: f64 = (0..n).map(|i| vector[i] * scale[i] * generalized[i]).sum::<f64>() / value;
+                (0..n).for_each(|i| x[i] += along * vector[i] * scale[i]);
+            }
+        }
+        x
+    }
+
     /// Takes the free motions out of a displacement field so that R'M u = 0.
     pub(crate) fn take_out(&self, mass: &Mass, u: &mut [[f64; 6]]) {
         let momentum = resultant(&self.x, &mass.times(u), &self.properties.cg);
         let generalized = self.basis.transpose() * DVector::from_column_slice(&momentum);
-        let Some(c) = self.modal.clone().cholesky() else {
-            return;
-        };
-        let field = self.field(&(&self.basis * c.solve(&generalized)));
+        let field = self.field(&(&self.basis * self.modal_solve(&generalized)));
         for (u, r) in u.iter_mut().zip(field) {
             u.iter_mut().zip(r).for_each(|(u, r)| *u -= r);
         }
@@ -187,10 +205,17 @@ impl RigidBody {
                 }
                 r
             };
-            let best = (0..n)
-                .filter(|&i| translation[i])
-                .map(|i| (rest(i).norm_squared(), i))
-                .fold((0.0, usize::MAX), |a, b| if b.0 > a.0 { b } else { a });
+            let farthest = |pick: bool| {
+                (0..n)
+                    .filter(|&i| translation[i] == pick)
+                    .map(|i| (rest(i).norm_squared(), i))
+                    .fold((1e-12, usize::MAX), |a, b| if b.0 > a.0 { b } else { a })
+            };
+            // A straight bar turns about its own axis without a translation anywhere.
+            let mut best = farthest(true);
+            if best.1 == usize::MAX {
+                best = farthest(false);
+            }
             if best.1 == usize::MAX {
                 break;
             }
@@ -246,24 +271,36 @@ impl RigidBody {
         }
     }
 
-    /// A free motion at the unknowns; translations of the order of one.
-    pub(crate) fn packed(
-        &self,
-        axes: &[Option<Mat3>],
-        numbering: &Numbering,
-        column: usize,
-    ) -> Vec<f64> {
-        let mut field = self.motion(column);
+    /// A free motion at the unknowns, of the order of one: rotations times the size of the model.
+    pub(crate) fn packed(&self, axes: &[Option<Mat3>], numbering: &Numbering, column: usize) -> Vec<f64> {
+        let mut field = self.turned(axes, column);
         let largest = field
             .iter()
-            .flat_map(|u| &u[..3])
-            .fold(0.0_f64, |a, v| a.max(v.abs()))
-            .max(f64::MIN_POSITIVE);
-        for (u, axes) in field.iter_mut().zip(axes) {
-            *u = to_local(axes, *u).map(|v| v / largest);
+            .flat_map(|u| (0..6).map(|i| if i < 3 { u[i].abs() } else { u[i].abs() * self.size }))
+            .fold(f64::MIN_POSITIVE, f64::max);
+        for u in &mut field {
+            *u = std::array::from_fn(|i| u[i] * if i < 3 { 1.0 } else { self.size } / largest);
         }
         let mut out = vec![0.0; numbering.free.iter().map(|b| b.count_ones() as usize).sum()];
         numbering.pack(&field, &mut out);
         out
+    }
+
+    /// A free motion at the unknowns as it is.
+    pub(crate) fn packed_motion(&self, axes: &[Option<Mat3>], numbering: &Numbering, column: usize) -> Vec<f64> {
+        let mut out = vec![0.0; numbering.free.iter().map(|b| b.count_ones() as usize).sum()];
+        numbering.pack(&self.turned(axes, column), &mut out);
+        let largest = out.iter().fold(f64::MIN_POSITIVE, |a, v| a.max(v.abs()));
+        out.iter_mut().for_each(|v| *v /= largest);
+        out
+    }
+
+    /// A free motion in the displacement frames of the grids.
+    fn turned(&self, axes: &[Option<Mat3>], column: usize) -> Vec<[f64; 6]> {
+        let mut field = self.motion(column);
+        for (u, axes) in field.iter_mut().zip(axes) {
+            *u = to_local(axes, *u);
+        }
+        field
     }
 }

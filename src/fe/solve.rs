@@ -284,8 +284,14 @@ fn applied_forces(model: &Model, mass: &Mass, case: &LoadCase) -> Result<Vec<[f6
     Ok(f)
 }
 
-
-
-
-
-
+/// The stiffness of the free structure, supported determinately, as its order and the lower triangle by row, column, value: for
+/// comparing factorisations with other programs.
+///
+/// # Errors
+/// See [`FeError`].
+pub fn supported_stiffness(model: &Model) -> Result<(usize, Vec<(usize, usize, f64)>), FeError> {
+    let prepared = Prepared::new(model);
+    let mass = Mass::new(&prepared).map_err(FeError::Refused)?;
+    let system = System::new(&prepared, &mass, (None, None), Relief::Automatic, &mut Vec::new())?;
+    Ok((system.symbolic.n_unknowns(), system.stiffness.lower_triplets(&system.symbolic)))
+}

@@ -190,7 +190,7 @@ fn ties(prepared: &Prepared<'_>, assembled: &Assembled, body: &RigidBody) -> Opt
     let diagonal = assembled.stiffness.diagonal_values(&assembled.symbolic);
     let mut worst = (0.0, 0);
     for column in 0..body.n_free() {
-        let motion = body.packed(&prepared.axes, &assembled.numbering, column);
+        let motion = body.packed_motion(&prepared.axes, &assembled.numbering, column);
         let force = assembled.stiffness.times(&assembled.symbolic, &motion);
         for (i, (f, d)) in force.iter().zip(&diagonal).enumerate() {
             let share = f.abs() / d.max(f64::MIN_POSITIVE);

@@ -1,10 +1,9 @@
 //! From plain results to bytes: text, json, csv, html. Nothing is computed here.
 
+mod result_blocks;
 pub mod strain;
 mod strains;
 pub mod vehicle;
-mod result_blocks;
-mod strains;
 mod vtu;
 
 pub use result_blocks::for_each_block;

@@ -21,14 +21,13 @@ fn folded(turn: f64) -> (Bulk, impl Fn([f64; 3]) -> [f64; 3]) {
         rotate([300.0 * a.sin(), y, 300.0 * (1.0 - a.cos()) + if v > 0.6 { 100.0 * (v - 0.6) } else { 0.0 }])
     });
     for i in 0..4 {
-        let [a, c, d] = [ids[i][4], ids[i + 1][4], 0];
-        let _ = d;
+        let [a, c] = [ids[i][4], ids[i + 1][4]];
         let top = b.grid(rotate([300.0 * (0.12 * (i as f64 + 0.5)).sin(), 75.0, 60.0 + 12.0 * i as f64]));
         b.tria([a, c, top]);
     }
     let point = b.grid(rotate([150.0, 30.0, 160.0]));
     b.card(&format!("RBE3,901,,{point},123456,1.0,123,{},{},\n,{},{},{}", ids[3][1], ids[3][3], ids[6][1], ids[6][3], ids[8][2]));
-    b.card(&format!("CONM2,902,{point},,2-4"));
+    b.card(&format!("CONM2,902,{point},,2.-4"));
     let up = rotate([0.0, 0.0, 1.0]);
     b.card(&format!("CBAR,903,2,{},{},{:.6},{:.6},{:.6}", ids[0][2], ids[10][2], up[0], up[1], up[2]));
     (b, rotate)

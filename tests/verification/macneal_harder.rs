@@ -116,8 +116,8 @@ fn curved(n: usize, m: usize, direction: [f64; 3]) -> f64 {
         b.force(ids[i][n], direction.map(|c| c * share));
     }
     let s = b.solve();
-    let u = s.at(ids[m / 2][n]);
-    (0..3).map(|i| u[i] * direction[i]).sum()
+    let mean = |i: usize| (0..=m).map(|j| s.at(ids[j][n])[i]).sum::<f64>() / (m + 1) as f64;
+    (0..3).map(|i| mean(i) * direction[i]).sum()
 }
 
 #[test]

@@ -59,13 +59,13 @@ fn the_displacements_of_a_cbeam_cantilever_agree() {
     let (solution, _) = solve_cases(&model, &cases, &SolveOptions::default()).unwrap_or_else(|e| panic!("{e}"));
     let results = e["op2"]["results"].as_array().unwrap();
     let table = results.iter().find(|r| r["result"] == "displacements").unwrap();
-    compare_rows(&model, &solution.cases[0], table, 1e-5);
+    compare_rows(&model, &solution.cases[0], table, 6, 1e-5);
 }
 
-fn compare_rows(model: &strainbridge::model::Model, case: &CaseResult, table: &Value, tolerance: f64) {
+fn compare_rows(model: &strainbridge::model::Model, case: &CaseResult, table: &Value, components: usize, tolerance: f64) {
     let rows: Vec<(u32, Vec<f64>)> = displacement_rows(table);
     assert!(!rows.is_empty(), "{table}");
-    for c in 0..6 {
+    for c in 0..components {
         let largest = rows.iter().map(|r| r.1[c].abs()).fold(0.0, f64::max);
         for (id, row) in &rows {
             let got = case.displacement[model.grid_ix(*id).unwrap().us()][c];
@@ -117,5 +117,6 @@ fn a_plate_in_tension_and_shear_agrees_with_msc() {
     let (solution, _) = solve_cases(&model, &cases, &SolveOptions::default()).unwrap_or_else(|e| panic!("{e}"));
     let results = e["op2"]["results"].as_array().unwrap();
     let table = results.iter().find(|r| r["result"] == "displacements").unwrap();
-    compare_rows(&model, &solution.cases[0], table, 0.02);
+    // Translations: the rotation about the normal is a quantity of each program's own drilling stiffness.
+    compare_rows(&model, &solution.cases[0], table, 3, 0.02);
 }
