@@ -5,6 +5,7 @@ use super::fault::{Fault, Faults};
 use super::files::FileBytes;
 use super::{DeckArguments, Session};
 use crate::fe::from_results::{Displacements, ReadOptions, solution_from_results};
+use crate::finding::{Finding, Severity};
 use crate::report::write_strains;
 use nastran::results::ResultsFile;
 use std::path::Path;
@@ -16,7 +17,12 @@ pub fn run(arguments: &DeckArguments, session: &mut Session) -> Result<(), Fault
         .stage("deck", |s| read_model(&mut s.inputs, Path::new(""), &given))
         .map_err(|f| vec![f])?;
     session.findings.extend(deck.findings);
-    session.put_faults(deck.faults);
+    // Without elements nothing can be placed. Else the run was possible, and a fault elsewhere (an unused set, say) is worth a warning.
+    if deck.model.shells.is_empty() && deck.model.beams.is_empty() && !deck.faults.is_empty() {
+        return Err(deck.faults);
+    }
+    let warn = |f: &Fault| Finding::new(Severity::Warning, "deck-fault", given.as_str(), f.to_string(), "see `check`; the mesh is used as it is");
+    session.findings.extend(deck.faults.iter().map(warn));
     let files = session.stage("read", |s| result_bytes(arguments, &given, s))?;
     let (mut opened, mut faults) = (Vec::new(), Faults::new());
     for (name, bytes) in &files {

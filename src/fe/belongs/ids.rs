@@ -17,11 +17,12 @@ pub fn check_ids(model: &Model, name: &str, file: &ResultsFile) -> Vec<Finding> 
         let (Some(block), Ok(rows)) = (file.blocks().get(ix), file.rows(ix)) else {
             continue;
         };
-        let ids = rows.ids.iter().map(|id| id.entity);
         if block.element.is_some() {
-            elements.extend(ids)
+            elements.extend(rows.ids.iter().map(|id| id.entity))
         } else {
-            grids.extend(ids)
+            // Scalar points (grid type 2) are no grids of the model.
+            let grid_rows = rows.ids.iter().filter(|id| id.at == 1);
+            grids.extend(grid_rows.map(|id| id.entity))
         }
     }
     let ours_e = element_ids(model);
@@ -81,9 +82,14 @@ fn largest_blocks(blocks: &[Block]) -> Vec<usize> {
     for (ix, b) in blocks.iter().enumerate() {
         let wanted = matches!(
             b.quantity,
-            Quantity::Strain | Quantity::Stress | Quantity::Displacement
+            Quantity::Strain
+                | Quantity::Stress
+                | Quantity::PlyStrain
+                | Quantity::PlyStress
+                | Quantity::Displacement
         );
-        if !wanted || b.analysis != Analysis::Statics || b.complex || b.sort2 {
+        let modelled = b.element.is_none_or(|e| is_modelled(e.0));
+        if !wanted || !modelled || b.analysis != Analysis::Statics || b.complex || b.sort2 {
             continue;
         }
         let entry = best
@@ -102,6 +108,14 @@ fn largest_blocks(blocks: &[Block]) -> Vec<usize> {
         .filter(|(k, _)| k.1 != Quantity::Stress || !with_strain.contains(&k.0))
         .map(|(_, (_, ix))| ix)
         .collect()
+}
+
+/// Element types whose cards the model holds; fasteners, scalar springs on points and the like are no sign of a foreign deck.
+fn is_modelled(element: u32) -> bool {
+    matches!(
+        element,
+        1..=4 | 10 | 33 | 34 | 39 | 64 | 67 | 68 | 70 | 74 | 75 | 82 | 95..=98 | 100 | 102 | 144 | 227 | 228 | 232 | 233
+    )
 }
 
 fn element_ids(model: &Model) -> BTreeSet<u32> {

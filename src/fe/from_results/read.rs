@@ -67,8 +67,12 @@ pub fn solution_from_file(
     let mut by_subcase: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     let mut passed_over: BTreeSet<&'static str> = BTreeSet::new();
     for (ix, block) in file.blocks().iter().enumerate() {
-        if block.analysis != Analysis::Statics || block.complex || block.sort2 {
+        if block.analysis != Analysis::Statics {
             passed_over.insert(block.analysis.word());
+        } else if block.complex {
+            passed_over.insert("complex statics");
+        } else if block.sort2 {
+            passed_over.insert("statics in SORT2");
         } else if options
             .subcases
             .as_ref()
@@ -96,6 +100,17 @@ pub fn solution_from_file(
     solution
         .findings
         .extend(check_belongs(model, name, file, options.supports));
+    if let Some((cards, _)) = file.cards() {
+        // Grids and their frames are enough to compare coordinates.
+        let cards = Cards {
+            grids: cards.grids,
+            grdset: cards.grdset,
+            coords: cards.coords,
+            ..Cards::default()
+        };
+        let (geometry, _) = Model::from_cards(&cards);
+        solution.findings.extend(check_coordinates(model, name, &geometry));
+    }
     if solution.cases.is_empty() {
         let what = if passed_over.is_empty() {
             "no results".to_string()
@@ -113,7 +128,7 @@ pub fn solution_from_file(
         ));
     } else if !passed_over.is_empty() {
         let message = format!(
-            "only static subcases are read; passed over: {}",
+            "only real static subcases in SORT1 are read; passed over: {}",
             list(&passed_over)
         );
         solution.findings.push(Finding::new(
