@@ -13,4 +13,4 @@ pub use observation::Observations;
 pub use outcome::{
     ChannelGap, Detectable, Gap, LoadShift, Misfit, NamedEffect, Outcome, Rival, Verdict,
 };
-pub use search::{Breadth, Scored, Scorer, search, settle};
+pub use search::{Addition, Breadth, Scored, Scorer, search, search_near, settle};

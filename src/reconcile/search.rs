@@ -13,14 +13,27 @@ pub struct Scored<F> {
     pub fit: F,
 }
 
+/// A candidate that might join a set.
+#[derive(Clone, Debug)]
+pub struct Addition {
+    /// Candidate number.
+    pub candidate: usize,
+    /// Approximate gain of log evidence, prior weight included.
+    pub gain: f64,
+    /// Where its parameters would start.
+    pub parameters: Vec<f64>,
+    /// Sizes of its amplitudes.
+    pub sizes: Vec<f64>,
+}
+
 /// A way to judge sets of effects.
 pub trait Scorer {
     /// What a fit leaves behind.
     type Fit: Clone;
-    /// Fits `set` exactly.
-    fn score(&mut self, set: &[usize]) -> Option<Scored<Self::Fit>>;
-    /// Candidates worth adding to `base` with the approximate gain of log evidence, prior weight included, best first.
-    fn screen(&mut self, base: &Scored<Self::Fit>) -> Vec<(usize, f64)>;
+    /// Fits `set` exactly, from scratch or from a fit of its neighbour.
+    fn score(&mut self, set: &[usize], from: Option<(&Scored<Self::Fit>, Option<&Addition>)>) -> Option<Scored<Self::Fit>>;
+    /// Candidates to add to `base`, best first.
+    fn screen(&mut self, base: &Scored<Self::Fit>) -> Vec<Addition>;
     /// Can the two be in one set?
     fn compatible(&self, a: usize, b: usize) -> bool;
     /// Candidates that differ in nothing that matters share a number: the screen keeps few of each.
@@ -42,10 +55,8 @@ pub struct Breadth {
 
 /// Every set that was scored, best first; the empty set is always among them.
 pub fn search<S: Scorer>(scorer: &mut S, breadth: Breadth) -> Vec<Scored<S::Fit>> {
-    let mut seen: BTreeMap<Vec<usize>, Option<Scored<S::Fit>>> = BTreeMap::new();
-    let Some(null) = scorer.score(&[]) else {
-        return Vec::new();
-    };
+    let mut seen: Seen<S::Fit> = BTreeMap::new();
+    let Some(null) = scorer.score(&[], None) else { return Vec::new() };
     seen.insert(Vec::new(), Some(null.clone()));
     let mut level = vec![null];
     for _ in 0..breadth.largest {
@@ -57,19 +68,35 @@ pub fn search<S: Scorer>(scorer: &mut S, breadth: Breadth) -> Vec<Scored<S::Fit>
         next.dedup_by(|a, b| a.set == b.set);
         next.truncate(breadth.beam);
         // No addition pays: larger sets won't either.
-        let best_before = level
-            .iter()
-            .map(|s| s.log_evidence)
-            .fold(f64::NEG_INFINITY, f64::max);
-        let pays = next
-            .first()
-            .is_some_and(|s| s.log_evidence > best_before + breadth.decisive);
+        let best_before = level.iter().map(|s| s.log_evidence).fold(f64::NEG_INFINITY, f64::max);
+        let pays = next.first().is_some_and(|s| s.log_evidence > best_before + breadth.decisive);
         level = next;
         if !pays {
             break;
         }
     }
     exchange(scorer, breadth, &mut seen);
+    best_first(seen)
+}
+
+/// The same from sets known to be good: they, the best one extended, its members exchanged.
+pub fn search_near<S: Scorer>(scorer: &mut S, breadth: Breadth, known: &[Scored<S::Fit>]) -> Vec<Scored<S::Fit>> {
+    let mut seen: Seen<S::Fit> = BTreeMap::new();
+    seen.insert(Vec::new(), scorer.score(&[], None));
+    for old in known {
+        seen.entry(old.set.clone()).or_insert_with(|| scorer.score(&old.set, Some((old, None))));
+    }
+    let all: Vec<_> = seen.values().flatten().cloned().collect();
+    if let Some(best) = settle(&all, breadth.decisive)
+        && best.set.len() < breadth.largest
+    {
+        extend(scorer, &best, breadth, &mut seen);
+    }
+    exchange(scorer, breadth, &mut seen);
+    best_first(seen)
+}
+
+fn best_first<F>(seen: Seen<F>) -> Vec<Scored<F>> {
     let mut all: Vec<_> = seen.into_values().flatten().collect();
     all.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
     all
@@ -93,10 +120,15 @@ fn extend<S: Scorer>(
 ) -> Vec<Scored<S::Fit>> {
     /// Of candidates that touch the same gauges, this many are tried.
     const PER_KIN: usize = 3;
+    /// Approximate gains below this have not been seen to turn into decisive ones.
+    const HOPELESS: f64 = -3.0;
     let mut out = Vec::new();
     let mut kin_count: BTreeMap<usize, usize> = BTreeMap::new();
-    for (candidate, _gain) in scorer.screen(base) {
-        if out.len() >= breadth.tries {
+    for addition in scorer.screen(base) {
+        let candidate = addition.candidate;
+        // Two are always tried, for rivals and hints; more only where they may pay.
+        let enough = if addition.gain < HOPELESS { 2 } else { breadth.tries };
+        if out.len() >= enough {
             break;
         }
         if base.set.contains(&candidate)
@@ -114,7 +146,7 @@ fn extend<S: Scorer>(
         set.sort_unstable();
         let scored = seen
             .entry(set.clone())
-            .or_insert_with(|| scorer.score(&set))
+            .or_insert_with(|| scorer.score(&set, Some((base, Some(&addition)))))
             .clone();
         out.extend(scored);
     }
@@ -138,7 +170,7 @@ fn exchange<S: Scorer>(scorer: &mut S, breadth: Breadth, seen: &mut Seen<S::Fit>
             reduced.remove(skip);
             let scored = seen
                 .entry(reduced.clone())
-                .or_insert_with(|| scorer.score(&reduced))
+                .or_insert_with(|| scorer.score(&reduced, Some((&best, None))))
                 .clone();
             if let Some(base) = scored {
                 extend(scorer, &base, breadth, seen);

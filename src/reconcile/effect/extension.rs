@@ -41,6 +41,8 @@ pub enum Extension {
     PayloadWeight,
     /// All strain of the model times a factor.
     Scale(f64),
+    /// Nothing can be added: no effect of the library.
+    Nothing,
     /// Nuisance loads to be found in every run.
     NuisanceLoads {
         /// Effect id.

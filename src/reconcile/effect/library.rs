@@ -14,6 +14,7 @@ use super::rosette_legs::RosetteLegs;
 use super::saturated_channel::SaturatedChannel;
 use super::sign_flip::SignFlip;
 use super::stiffness::Stiffness;
+use super::stranger::Stranger;
 use super::thermal::Thermal;
 use super::unaccounted_mass::UnaccountedMass;
 use super::uneven_ground::UnevenGround;
@@ -58,6 +59,7 @@ pub fn library(frame: &StrainFrame, only: &[String]) -> Vec<Candidate> {
     groups.push(boxed(LateralWheelLoads::all(frame)));
     groups.push(boxed(Stiffness::all(frame)));
     groups.push(boxed(vec![GlobalScale]));
+    groups.push(boxed(Stranger::all()));
     groups.retain(|g| !g.is_empty());
     let n_groups = groups.len().max(1) as f64;
     let mut out = Vec::new();
@@ -67,7 +69,7 @@ pub fn library(frame: &StrainFrame, only: &[String]) -> Vec<Candidate> {
             let wanted = only
                 .iter()
                 .any(|w| w == effect.id() || *w == super::full_id(effect.as_ref()));
-            if only.is_empty() || wanted {
+            if only.is_empty() || wanted || effect.outside().is_some() {
                 out.push(Candidate { effect, log_prior });
             }
         }

@@ -19,6 +19,7 @@ mod rosette_legs;
 mod saturated_channel;
 mod sign_flip;
 mod stiffness;
+mod stranger;
 mod thermal;
 mod unaccounted_mass;
 mod uneven_ground;
@@ -64,6 +65,10 @@ pub trait StrainEffect: Send + Sync {
     fn id(&self) -> &'static str;
     /// The place: a gauge, a zone, `a+b`.
     fn place(&self) -> Option<String> {
+        None
+    }
+    /// For a general form that is no effect of the library: what it says of the gap.
+    fn outside(&self) -> Option<&'static str> {
         None
     }
     /// Where it acts.

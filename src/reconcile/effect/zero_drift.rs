@@ -37,6 +37,15 @@ impl ZeroDrift {
     }
 }
 
+impl ZeroDrift {
+    fn unit(&self) -> &'static str {
+        match self.drift {
+            Drift::Step => "microstrain",
+            Drift::Creep => "microstrain at the last run",
+        }
+    }
+}
+
 impl StrainEffect for ZeroDrift {
     fn id(&self) -> &'static str {
         "zero_drift"
@@ -49,7 +58,7 @@ impl StrainEffect for ZeroDrift {
     }
     fn parameters(&self) -> Vec<Parameter> {
         vec![Parameter {
-            unit: "microstrain",
+            unit: self.unit(),
             neutral: 0.0,
             prior_sd: 40.0,
             step: 0.5,
@@ -82,7 +91,7 @@ impl StrainEffect for ZeroDrift {
             id: self.id(),
             gauge: self.name.clone(),
             size,
-            unit: "microstrain",
+            unit: self.unit(),
         }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {

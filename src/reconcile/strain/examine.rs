@@ -8,9 +8,9 @@ use super::gap::{gap, loads_before_after};
 use super::likelihood::{Fit, Likelihood};
 use super::next::{Explanation, next_measurement};
 use super::remains::remains;
-use crate::reconcile::effect::{Candidate, Member, full_id, library};
+use crate::reconcile::effect::{Candidate, Extension, Member, full_id, library};
 use crate::reconcile::outcome::{Misfit, NamedEffect, Outcome, Rival, Verdict};
-use crate::reconcile::search::{Breadth, Scored, search, settle};
+use crate::reconcile::search::{Breadth, Scored, search, search_near, settle};
 
 /// How far the search looks in static problems: three effects at once are as many as a few runs can part.
 const BREADTH: Breadth = Breadth {
@@ -34,8 +34,13 @@ pub fn examine(frame: &StrainFrame, only: &[String]) -> Outcome {
     /// The covariance follows the best prediction; the set is stable after two passes in practice.
     const PASSES: usize = 3;
     for _ in 0..PASSES {
-        let mut likelihood = Likelihood::new(frame, &candidates, &fit_runs, reference.clone());
-        all = search(&mut likelihood, BREADTH);
+        let mut likelihood = Likelihood::new(frame, &candidates, &fit_runs, &reference);
+        /// Of the sets of a pass, those that the next one begins with.
+        const KEPT: usize = 8;
+        all = match all.len() {
+            0 => search(&mut likelihood, BREADTH),
+            n => search_near(&mut likelihood, BREADTH, &all[..n.min(KEPT)]),
+        };
         let found = settle(&all, DECISIVE);
         let stable = match (&found, &best) {
             (Some(new), Some(old)) => new.set == old.set,
@@ -57,7 +62,37 @@ pub fn examine(frame: &StrainFrame, only: &[String]) -> Outcome {
         fit: Fit::default(),
     };
     let best = best.unwrap_or(empty);
+    let best = without_needless_strangers(frame, &candidates, &all, best);
     judge(frame, &candidates, &all, &best)
+}
+
+fn is_strange(candidates: &[Candidate], c: usize) -> bool {
+    candidates.get(c).is_some_and(|c| c.effect.outside().is_some())
+}
+
+/// The set without its general forms, where that reaches the floor as well.
+fn without_needless_strangers(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    all: &[Scored<Fit>],
+    best: Scored<Fit>,
+) -> Scored<Fit> {
+    let kept: Vec<usize> = best
+        .set
+        .iter()
+        .copied()
+        .filter(|&c| !is_strange(candidates, c))
+        .collect();
+    if kept.len() == best.set.len() {
+        return best;
+    }
+    let Some(plain) = all.iter().find(|s| s.set == kept) else {
+        return best;
+    };
+    let n_parameters: usize = plain.fit.parameters.iter().map(Vec::len).sum();
+    let members = members_of(candidates, plain);
+    let judged = adequacy(frame, &members, &unknown_of(frame, candidates, plain), n_parameters);
+    if at_floor(&judged) { plain.clone() } else { best }
 }
 
 fn members_of<'a>(candidates: &'a [Candidate], scored: &'a Scored<Fit>) -> Vec<Member<'a>> {
@@ -194,16 +229,26 @@ fn judge(
     let null_evidence = null.map_or(0.0, |s| s.log_evidence);
     let hint = all
         .iter()
-        .filter(|s| !s.set.is_empty())
+        .filter(|s| !s.set.is_empty() && !s.set.iter().any(|&c| is_strange(candidates, c)))
         .max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence));
     let hinted = hint.is_some_and(|s| s.log_evidence > null_evidence);
+    let strange = best
+        .set
+        .iter()
+        .find_map(|&c| candidates.get(c).and_then(|c| c.effect.outside()));
+    // Three effects at once that are not all faults of channels are a stranger taken apart.
+    let channels_only = attempt
+        .iter()
+        .all(|e| matches!(e.extension, Extension::Channel { .. }));
+    let too_many = best.set.len() > 2 && !channels_only;
+    let named = reached && plausible && strange.is_none() && !too_many;
     let verdict = match (best.set.is_empty(), reached) {
         (true, true) if hinted => Verdict::BelowDetectability,
         (true, true) => Verdict::None,
-        (false, true) if plausible => Verdict::Named,
+        (false, _) if named => Verdict::Named,
         _ => Verdict::Unknown,
     };
-    let second = rival_sets(all, best);
+    let second = rival_sets(candidates, all, best);
     let rivals: Vec<Rival> = second
         .iter()
         .map(|s| Rival {
@@ -256,17 +301,22 @@ fn judge(
         gauges_off_before: worst_first(&before.gauges, limit::PART),
         gauges_off: worst_first(&after.gauges, limit::PART),
         runs_off: worst_first(&after.runs, limit::PART),
-        remains: remains(frame, &members, &after),
+        remains: remains(frame, &members, &after, strange),
         next_measurement: next,
         detectable: detectable(frame, candidates),
     }
 }
 
 /// Other sets of at most the same number of effects, nearest first, that do not contain the best one.
-fn rival_sets<'a>(all: &'a [Scored<Fit>], best: &Scored<Fit>) -> Vec<&'a Scored<Fit>> {
+fn rival_sets<'a>(
+    candidates: &[Candidate],
+    all: &'a [Scored<Fit>],
+    best: &Scored<Fit>,
+) -> Vec<&'a Scored<Fit>> {
     const MOST: usize = 5;
     let other = |s: &&Scored<Fit>| {
         !s.set.is_empty()
+            && !s.set.iter().any(|&c| is_strange(candidates, c))
             && s.set != best.set
             && s.set.len() <= best.set.len().max(1)
             && best.log_evidence - s.log_evidence < WORTH_NAMING

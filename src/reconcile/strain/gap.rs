@@ -7,79 +7,64 @@ use crate::linalg::precision::Precision;
 use crate::reconcile::effect::Member;
 use crate::reconcile::outcome::{ChannelGap, Gap, LoadShift};
 
-/// Residuals of the proof runs with `members` on; amplitudes found from odd gauges (in file order) and judged on even ones, and the
-/// other way round.
-pub fn held_out_residual(
-    frame: &StrainFrame,
-    members: &[Member<'_>],
-    unknown: &[SizedAmplitudes],
-) -> (Selection, Vec<f64>) {
-    let runs = frame.observations.proof_runs();
-    let all = Selection::of_runs(frame, &runs);
+/// Residuals of the proof runs by the analyst's model as it stands.
+fn plain_residual(frame: &StrainFrame, members: &[Member<'_>], selection: &Selection) -> Vec<f64> {
     let n_g = frame.n_gauges();
-    let predicted = predict(frame, members);
-    let measured = &frame.observations.values;
-    let plain = |e: &(usize, usize)| measured[e.0 * n_g + e.1] - predicted[e.0 * n_g + e.1];
-    if unknown.is_empty() {
-        let r = all.0.iter().map(plain).collect();
-        return (all, r);
+    let predicted = selection.pick(&predict(frame, members), n_g);
+    selection.pick(&frame.observations.values, n_g).iter().zip(predicted).map(|(y, p)| y - p).collect()
+}
+
+/// Patterns over the gauges with their variances: errors of the wheel forces, and unknown amplitudes.
+fn run_patterns(frame: &StrainFrame, members: &[Member<'_>], unknown: &[SizedAmplitudes]) -> Vec<(Vec<f64>, f64)> {
+    let state = StrainState::with(frame, members);
+    let [n_g, _, n_c] = state.shape;
+    let column = |l: usize| (0..n_g).map(|g| state.influence[g * n_c + l]).collect::<Vec<f64>>();
+    let columns: Vec<Vec<f64>> = (0..frame.n_loads()).map(column).collect();
+    let noise = frame.load_noise * frame.load_noise;
+    let mut out: Vec<(Vec<f64>, f64)> = read_patterns(frame, members, &columns).into_iter().map(|c| (c, noise)).collect();
+    for u in unknown {
+        let read = read_patterns(frame, members, &u.amplitudes.patterns);
+        let size = |k: &usize| u.sizes.get(*k).copied().unwrap_or(0.0);
+        out.extend(read.into_iter().zip(u.amplitudes.kinds.iter().map(|k| size(k).powi(2))));
     }
-    let patterns: Vec<(Vec<f64>, f64)> = unknown
-        .iter()
-        .flat_map(|u| {
-            let read = read_patterns(frame, members, &u.amplitudes.patterns);
-            let sizes = u
-                .amplitudes
-                .kinds
-                .iter()
-                .map(|&k| u.sizes.get(k).copied().unwrap_or(0.0))
-                .collect::<Vec<_>>();
-            read.into_iter().zip(sizes)
-        })
-        .collect();
-    let mut out = vec![f64::NAN; all.len()];
-    for &run in &runs {
+    out
+}
+
+/// Residuals of the proof runs with `members` on, and the variance that noise leaves in each.
+///
+/// What differs from run to run (amplitudes of the effects, the errors of the wheel forces) is found from the odd gauges in file order
+/// and judged on the even ones, and the other way round.
+pub fn held_out_residual(frame: &StrainFrame, members: &[Member<'_>], unknown: &[SizedAmplitudes]) -> (Selection, Vec<f64>, Vec<f64>) {
+    let all = Selection::of_runs(frame, &frame.observations.proof_runs());
+    let mut residual = plain_residual(frame, members, &all);
+    let plain = residual.clone();
+    let n = all.len();
+    let allowed = covariance(frame, members, &all, &[]);
+    let mut floor: Vec<f64> = (0..n).map(|i| allowed[i * n + i]).collect();
+    let patterns = run_patterns(frame, members, unknown);
+    for &run in &frame.observations.proof_runs() {
         for half in [0, 1] {
-            let used = Selection(
-                all.0
-                    .iter()
-                    .copied()
-                    .filter(|e| e.0 == run && e.1 % 2 == half)
-                    .collect(),
-            );
-            let r: Vec<f64> = used.0.iter().map(plain).collect();
-            let Some(p) = Precision::of(&covariance(frame, members, &used, unknown), used.len())
-            else {
-                continue;
-            };
-            let pr = p.apply(&r);
-            // Conditional mean of each amplitude: V J' (J V J' + C)^-1 r.
-            let amplitude = |(pattern, size): &(Vec<f64>, f64)| {
-                size * size
-                    * used
-                        .0
-                        .iter()
-                        .zip(&pr)
-                        .map(|(e, w)| pattern[e.1] * w)
-                        .sum::<f64>()
-            };
-            let found: Vec<f64> = patterns.iter().map(amplitude).collect();
-            for (i, e) in all
-                .0
-                .iter()
-                .enumerate()
-                .filter(|(_, e)| e.0 == run && e.1 % 2 != half)
-            {
-                out[i] = plain(e)
-                    - patterns
-                        .iter()
-                        .zip(&found)
-                        .map(|((pattern, _), a)| pattern[e.1] * a)
-                        .sum::<f64>();
+            let of = |even: usize| (0..n).filter(|&i| all.0[i].0 == run && all.0[i].1 % 2 == even).collect::<Vec<usize>>();
+            let (used, judged) = (of(half), of(1 - half));
+            let part = Selection(used.iter().map(|&i| all.0[i]).collect());
+            let Some(p) = Precision::of(&covariance(frame, members, &part, unknown), part.len()) else { continue };
+            let pr = p.apply(&used.iter().map(|&i| plain[i]).collect::<Vec<f64>>());
+            // Conditional mean of the judged readings: J V J' (J V J' + C)^-1 r.
+            for &i in &judged {
+                let shared = |&j: &usize| patterns.iter().map(|(p, v)| v * p[all.0[i].1] * p[all.0[j].1]).sum::<f64>();
+                residual[i] -= used.iter().zip(&pr).map(|(j, w)| shared(j) * w).sum::<f64>();
+            }
+            // Floor: the same with the errors of the wheel forces alone.
+            let Some(p) = Precision::of(&covariance(frame, members, &part, &[]), part.len()) else { continue };
+            for &i in &judged {
+                let forces = &patterns[..frame.n_loads().min(patterns.len())];
+                let shared = |&j: &usize| forces.iter().map(|(p, v)| v * p[all.0[i].1] * p[all.0[j].1]).sum::<f64>();
+                let c: Vec<f64> = used.iter().map(shared).collect();
+                floor[i] -= c.iter().zip(p.apply(&c)).map(|(a, b)| a * b).sum::<f64>();
             }
         }
     }
-    (all, out)
+    (all, residual, floor)
 }
 
 /// Root mean square of some numbers; zero of none.
@@ -92,18 +77,21 @@ pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
     if n == 0 { 0.0 } else { (sum / n as f64).sqrt() }
 }
 
-/// Gap over all and by gauge.
-pub fn gap(
-    frame: &StrainFrame,
-    members: &[Member<'_>],
-    unknown: &[SizedAmplitudes],
-) -> (Gap, Vec<ChannelGap>) {
-    let (all, before) = held_out_residual(frame, &[], &[]);
-    let (_, after) = held_out_residual(frame, members, unknown);
+/// Gap over all and by gauge. Without effects nothing is found anew in a run: before and after are the same, the floor is that of
+/// the model as it stands.
+pub fn gap(frame: &StrainFrame, members: &[Member<'_>], unknown: &[SizedAmplitudes]) -> (Gap, Vec<ChannelGap>) {
+    let all = Selection::of_runs(frame, &frame.observations.proof_runs());
+    let before = plain_residual(frame, &[], &all);
     let readings = all.pick(&frame.observations.values, frame.n_gauges());
-    let n = all.len();
-    let allowed = covariance(frame, members, &all, &[]);
-    let floor: Vec<f64> = (0..n).map(|i| allowed[i * n + i].max(0.0).sqrt()).collect();
+    let (after, variance) = if members.is_empty() {
+        let n = all.len();
+        let allowed = covariance(frame, &[], &all, &[]);
+        (before.clone(), (0..n).map(|i| allowed[i * n + i]).collect())
+    } else {
+        let (_, after, variance) = held_out_residual(frame, members, unknown);
+        (after, variance)
+    };
+    let floor: Vec<f64> = variance.iter().map(|v: &f64| v.max(0.0).sqrt()).collect();
     let scale = rms(readings.iter().copied());
     let relative = |v: &[f64]| {
         if scale > 0.0 {

@@ -2,11 +2,11 @@
 
 use super::covariance::{Selection, SizedAmplitudes, covariance, read_patterns};
 use super::frame::StrainFrame;
-use super::size::usual_sizes;
-use super::state::predict;
+use super::size::{RunBlocks, run_by_run_log_likelihood, usual_sizes};
+use super::state::{Part, predict};
 use crate::linalg::precision::Precision;
-use crate::reconcile::effect::{Candidate, Member, Parameter, full_id};
-use crate::reconcile::search::{Scored, Scorer};
+use crate::reconcile::effect::{Candidate, Member, Parameter, Stage, full_id};
+use crate::reconcile::search::{Addition, Scored, Scorer};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
@@ -32,10 +32,14 @@ pub struct Likelihood<'a> {
     selection: Selection,
     readings: Vec<f64>,
     /// The covariance is that of the prediction with these effects on.
-    reference: Vec<(usize, Vec<f64>)>,
+    reference: &'a [(usize, Vec<f64>)],
     cache: BTreeMap<Vec<(usize, Vec<i64>)>, Option<Rc<Precision>>>,
-    /// Where a (run, gauge) sits in the selection.
-    index: BTreeMap<(usize, usize), usize>,
+    /// Where a (run, gauge) sits in the selection, by run times gauges plus gauge.
+    index: Vec<Option<usize>>,
+    /// Runs of the selection.
+    runs: Vec<usize>,
+    /// Covariance run by run.
+    blocks: RunBlocks,
 }
 
 /// Sizes of amplitudes are rounded to this step of their natural log, so that sets share a factorisation.
@@ -47,16 +51,23 @@ impl<'a> Likelihood<'a> {
         frame: &'a StrainFrame,
         candidates: &'a [Candidate],
         runs: &[usize],
-        reference: Vec<(usize, Vec<f64>)>,
+        reference: &'a [(usize, Vec<f64>)],
     ) -> Self {
         let selection = Selection::of_runs(frame, runs);
         let readings = selection.pick(&frame.observations.values, frame.n_gauges());
-        let index = selection
-            .0
-            .iter()
-            .enumerate()
-            .map(|(i, &e)| (e, i))
-            .collect();
+        let mut index = vec![None; frame.n_runs() * frame.n_gauges()];
+        for (i, &(r, g)) in selection.0.iter().enumerate() {
+            index[r * frame.n_gauges() + g] = Some(i);
+        }
+        let member = |r: &'a (usize, Vec<f64>)| {
+            let effect = candidates.get(r.0)?.effect.as_ref();
+            Some(Member {
+                effect,
+                parameters: &r.1,
+            })
+        };
+        let members: Vec<Member<'_>> = reference.iter().filter_map(member).collect();
+        let blocks = RunBlocks::of(frame, &members, &selection);
         Self {
             frame,
             candidates,
@@ -65,6 +76,8 @@ impl<'a> Likelihood<'a> {
             reference,
             cache: BTreeMap::new(),
             index,
+            runs: runs.to_vec(),
+            blocks,
         }
     }
 
@@ -179,7 +192,7 @@ impl<'a> Likelihood<'a> {
                         .collect::<Vec<f64>>(),
                 );
             }
-            let weighted: Vec<Vec<f64>> = columns.iter().map(|c| precision.apply(c)).collect();
+            let weighted: Vec<Vec<f64>> = columns.iter().map(|c| apply_few(precision, c)).collect();
             hessian = vec![0.0; n * n];
             let mut gradient = vec![0.0; n];
             for (i, &(m, k, p)) in flat.iter().enumerate() {
@@ -246,6 +259,16 @@ impl<'a> Likelihood<'a> {
         out
     }
 
+    /// Parameters of `set` from a fit of a neighbour and of what is added; `None` where a member is in neither.
+    fn start_near(&self, set: &[usize], near: &Scored<Fit>, addition: Option<&Addition>) -> Option<Vec<Vec<f64>>> {
+        let known = |c: &usize| {
+            let at = near.set.iter().position(|n| n == c);
+            let from_near = at.and_then(|k| near.fit.parameters.get(k).cloned());
+            from_near.or_else(|| addition.filter(|a| a.candidate == *c).map(|a| a.parameters.clone()))
+        };
+        set.iter().map(known).collect()
+    }
+
     fn best_of_starts(&self, set: &[usize], precision: &Precision) -> Option<Optimum> {
         let found = self
             .starts(set)
@@ -283,15 +306,7 @@ impl<'a> Likelihood<'a> {
                 a
             })
             .collect();
-        let reference: Vec<usize> = self.reference.iter().map(|r| r.0).collect();
-        let parameters: Vec<Vec<f64>> = self.reference.iter().map(|r| r.1.clone()).collect();
-        let sizes = usual_sizes(
-            self.frame,
-            &self.members(&reference, &parameters),
-            &self.selection,
-            residual,
-            &read,
-        );
+        let sizes = usual_sizes(&self.blocks, residual, &read);
         families.iter().copied().zip(sizes).collect()
     }
 }
@@ -307,17 +322,20 @@ struct Optimum {
 impl Scorer for Likelihood<'_> {
     type Fit = Fit;
 
-    fn score(&mut self, set: &[usize]) -> Option<Scored<Fit>> {
+    fn score(&mut self, set: &[usize], from: Option<(&Scored<Fit>, Option<&Addition>)>) -> Option<Scored<Fit>> {
         let families = self.with_amplitudes(set);
         let mut sizes: Vec<(usize, Vec<f64>)> = Vec::new();
         for &c in &families {
-            sizes.push((
-                c,
-                self.candidates.get(c)?.effect.amplitudes(self.frame)?.usual,
-            ));
+            let known = from.and_then(|(near, _)| near.fit.sizes.iter().find(|s| s.0 == c).map(|s| s.1.clone()));
+            let added = from.and_then(|(_, a)| a.filter(|a| a.candidate == c).map(|a| a.sizes.clone()));
+            let usual = self.candidates.get(c)?.effect.amplitudes(self.frame)?.usual;
+            sizes.push((c, known.or(added).filter(|s| s.len() == usual.len()).unwrap_or(usual)));
         }
         let mut precision = self.precision(&sizes)?;
-        let mut best = self.best_of_starts(set, &precision)?;
+        let mut best = match from.and_then(|(near, addition)| self.start_near(set, near, addition)) {
+            Some(start) => self.optimise(set, start, &precision)?,
+            None => self.best_of_starts(set, &precision)?,
+        };
         if !families.is_empty() {
             let members = self.members(set, &best.theta);
             sizes = self.sizes_from(&families, &members, &best.residual);
@@ -339,13 +357,7 @@ impl Scorer for Likelihood<'_> {
                 }
             }
         }
-        let runs = self
-            .selection
-            .0
-            .iter()
-            .map(|e| e.0)
-            .collect::<std::collections::BTreeSet<_>>()
-            .len();
+        let runs = self.runs.len();
         for (_, s) in &sizes {
             // Each size is a parameter, known to a factor from as many runs.
             log_evidence -= 0.5 * (runs.max(1) as f64).ln() * s.len() as f64;
@@ -369,27 +381,32 @@ impl Scorer for Likelihood<'_> {
         })
     }
 
-    fn screen(&mut self, base: &Scored<Fit>) -> Vec<(usize, f64)> {
+    fn screen(&mut self, base: &Scored<Fit>) -> Vec<Addition> {
         let Some(precision) = self.precision(&base.fit.sizes) else {
             return Vec::new();
         };
         let pr = precision.apply(&base.fit.residual);
+        let members = self.members(&base.set, &base.fit.parameters);
+        let predicted = predict(self.frame, &members);
+        let families: Vec<usize> = base.fit.sizes.iter().map(|s| s.0).collect();
+        let mut without = None;
         let mut out = Vec::new();
-        for c in 0..self.candidates.len() {
+        for (c, candidate) in self.candidates.iter().enumerate() {
             if base.set.contains(&c) {
                 continue;
             }
-            let Some(candidate) = self.candidates.get(c) else {
-                continue;
+            let (gain, parameters, sizes) = if candidate.effect.amplitudes(self.frame).is_some() {
+                let before = *without.get_or_insert_with(|| self.run_by_run(&families, &members, base).0);
+                let (after, sizes) = self.run_by_run(&[families.as_slice(), &[c]].concat(), &members, base);
+                (after - before, Vec::new(), sizes)
+            } else {
+                let (gain, theta) = self.screen_parameters(c, base, &predicted, &precision, &pr);
+                (gain, theta, Vec::new())
             };
-            let gain = match candidate.effect.amplitudes(self.frame) {
-                Some(_) => self.screen_amplitudes(c, base),
-                None => self.screen_parameters(c, base, &precision, &pr),
-            };
-            out.push((c, gain + candidate.log_prior));
+            out.push(Addition { candidate: c, gain: gain + candidate.log_prior, parameters, sizes });
         }
-        out.retain(|g| g.1.is_finite());
-        out.sort_by(|a, b| b.1.total_cmp(&a.1));
+        out.retain(|a| a.gain.is_finite());
+        out.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         out
     }
 
@@ -420,42 +437,34 @@ impl Scorer for Likelihood<'_> {
 }
 
 impl Likelihood<'_> {
-    /// Change of the prediction of the selection from that of `base`, as few entries where the effect touches few gauges.
-    fn change(&self, c: usize, base: &Scored<Fit>, theta: &[f64]) -> Vec<(usize, f64)> {
+    /// Change of the prediction of the selection from `predicted` (that of `base`), as few entries where the effect touches few gauges.
+    fn change(&self, c: usize, base: &Scored<Fit>, predicted: &[f64], theta: &[f64]) -> Vec<(usize, f64)> {
+        let Some(candidate) = self.candidates.get(c) else { return Vec::new() };
+        let n_g = self.frame.n_gauges();
+        let gauges = candidate.effect.gauges();
+        let mut out = Vec::new();
+        if candidate.effect.stage() == Stage::Reading {
+            // Reading effects come last: they act on what is predicted.
+            let gauges = if gauges.is_empty() { (0..n_g).collect() } else { gauges };
+            for &run in &self.runs {
+                let Some(before) = predicted.get(run * n_g..(run + 1) * n_g) else { continue };
+                let mut row = before.to_vec();
+                candidate.effect.read(self.frame, theta, run, &mut row, Part::Whole);
+                out.extend(gauges.iter().filter_map(|&g| Some((*self.index.get(run * n_g + g)?.as_ref()?, row[g] - before[g]))));
+            }
+            return out;
+        }
         let mut set = base.set.clone();
         let mut parameters = base.fit.parameters.clone();
         set.push(c);
         parameters.push(theta.to_vec());
-        let predicted = predict(self.frame, &self.members(&set, &parameters));
-        let n_g = self.frame.n_gauges();
-        let gauges = self
-            .candidates
-            .get(c)
-            .map(|c| c.effect.gauges())
-            .unwrap_or_default();
-        let difference = |i: usize, (r, g): (usize, usize)| {
-            let now = predicted.get(r * n_g + g).copied().unwrap_or(f64::NAN);
-            let before = self.readings[i] - base.fit.residual[i];
-            (i, now - before)
-        };
+        let now = predict(self.frame, &self.members(&set, &parameters));
         if gauges.is_empty() {
-            return self
-                .selection
-                .0
-                .iter()
-                .enumerate()
-                .map(|(i, &e)| difference(i, e))
-                .collect();
+            return self.selection.0.iter().enumerate().map(|(i, &(r, g))| (i, now[r * n_g + g] - predicted[r * n_g + g])).collect();
         }
-        let runs: std::collections::BTreeSet<usize> =
-            self.selection.0.iter().map(|e| e.0).collect();
-        let mut out = Vec::new();
-        for r in runs {
-            for &g in &gauges {
-                if let Some(&i) = self.index.get(&(r, g)) {
-                    out.push(difference(i, (r, g)));
-                }
-            }
+        for &run in &self.runs {
+            let at = |&g: &usize| Some((*self.index.get(run * n_g + g)?.as_ref()?, now[run * n_g + g] - predicted[run * n_g + g]));
+            out.extend(gauges.iter().filter_map(at));
         }
         out
     }
@@ -465,11 +474,12 @@ impl Likelihood<'_> {
         &self,
         c: usize,
         base: &Scored<Fit>,
+        predicted: &[f64],
         precision: &Precision,
         pr: &[f64],
-    ) -> f64 {
+    ) -> (f64, Vec<f64>) {
         let Some(candidate) = self.candidates.get(c) else {
-            return f64::NEG_INFINITY;
+            return (f64::NEG_INFINITY, Vec::new());
         };
         let described = candidate.effect.parameters();
         let gain = |change: &[(usize, f64)]| {
@@ -477,9 +487,9 @@ impl Likelihood<'_> {
             along - 0.5 * quadratic(precision, change)
         };
         if described.is_empty() {
-            return gain(&self.change(c, base, &[]));
+            return (gain(&self.change(c, base, predicted, &[])), Vec::new());
         }
-        let mut best = f64::NEG_INFINITY;
+        let mut best = (f64::NEG_INFINITY, Vec::new());
         let starts: Vec<Vec<f64>> = match described.as_slice() {
             [one] => one.starts.iter().map(|s| vec![*s]).collect(),
             many => vec![
@@ -494,20 +504,19 @@ impl Likelihood<'_> {
             for _ in 0..2 {
                 log_width = 0.0;
                 for (k, p) in described.iter().enumerate() {
-                    let here = self.change(c, base, &theta);
+                    let here = self.change(c, base, predicted, &theta);
                     let mut moved = theta.clone();
                     moved[k] += p.step;
-                    let there = self.change(c, base, &moved);
+                    let there = self.change(c, base, predicted, &moved);
                     let slope: Vec<(usize, f64)> = here
                         .iter()
                         .zip(&there)
                         .map(|(a, b)| (a.0, (b.1 - a.1) / p.step))
                         .collect();
-                    let p_slope = precision_times(precision, &slope);
-                    let curvature: f64 = slope.iter().map(|&(i, v)| v * p_slope[i]).sum::<f64>()
-                        + 1.0 / (p.prior_sd * p.prior_sd);
+                    let (own, cross) = products(precision, &slope, &here);
+                    let curvature = own + 1.0 / (p.prior_sd * p.prior_sd);
                     let pull: f64 = slope.iter().map(|&(i, v)| v * pr[i]).sum::<f64>()
-                        - here.iter().map(|&(i, v)| v * p_slope[i]).sum::<f64>()
+                        - cross
                         - (theta[k] - p.neutral) / (p.prior_sd * p.prior_sd);
                     theta[k] += pull / curvature;
                     log_width += 0.5 * curvature.ln() + p.prior_sd.ln();
@@ -518,28 +527,21 @@ impl Likelihood<'_> {
                 .zip(&theta)
                 .map(|(p, t)| 0.5 * ((t - p.neutral) / p.prior_sd).powi(2))
                 .sum();
-            best = best.max(gain(&self.change(c, base, &theta)) - prior - log_width);
+            let value = gain(&self.change(c, base, predicted, &theta)) - prior - log_width;
+            if value > best.0 {
+                best = (value, theta);
+            }
         }
         best
     }
 
-    /// Approximate gain of log evidence by adding amplitudes: run by run.
-    fn screen_amplitudes(&self, c: usize, base: &Scored<Fit>) -> f64 {
-        let members = self.members(&base.set, &base.fit.parameters);
-        let mut families: Vec<usize> = base.fit.sizes.iter().map(|s| s.0).collect();
-        let without = self.run_by_run(&families, &members, base);
-        families.push(c);
-        self.run_by_run(&families, &members, base) - without
-    }
-
-    fn run_by_run(&self, families: &[usize], members: &[Member<'_>], base: &Scored<Fit>) -> f64 {
+    /// Log likelihood with the amplitudes of `families`, run by run, and the sizes of the last of them.
+    fn run_by_run(&self, families: &[usize], members: &[Member<'_>], base: &Scored<Fit>) -> (f64, Vec<f64>) {
         let list: Vec<_> = families
             .iter()
             .filter_map(|&c| self.candidates.get(c)?.effect.amplitudes(self.frame))
             .collect();
         let sized = self.sizes_from(families, members, &base.fit.residual);
-        let reference: Vec<usize> = self.reference.iter().map(|r| r.0).collect();
-        let parameters: Vec<Vec<f64>> = self.reference.iter().map(|r| r.1.clone()).collect();
         let unknown: Vec<SizedAmplitudes> = list
             .into_iter()
             .zip(&sized)
@@ -548,24 +550,33 @@ impl Likelihood<'_> {
                 sizes: s.1.clone(),
             })
             .collect();
-        super::size::run_by_run_log_likelihood(
-            self.frame,
-            &self.members(&reference, &parameters),
-            &self.selection,
-            &base.fit.residual,
-            &unknown,
-        )
+        let last = sized.last().map(|s| s.1.clone()).unwrap_or_default();
+        let value = run_by_run_log_likelihood(&self.blocks, &base.fit.residual, &unknown);
+        (value, last)
     }
 }
 
-fn precision_times(precision: &Precision, x: &[(usize, f64)]) -> Vec<f64> {
-    precision.apply_sparse(x)
+/// x' P x and x' P y of few entries at the same places.
+fn products(precision: &Precision, x: &[(usize, f64)], y: &[(usize, f64)]) -> (f64, f64) {
+    if x.len() < precision.n() / 3 {
+        let (mut own, mut cross) = (0.0, 0.0);
+        for (&(i, a), &(_, b)) in x.iter().zip(y) {
+            let row: f64 = x.iter().map(|&(j, v)| v * precision.entry(i, j)).sum();
+            own += a * row;
+            cross += b * row;
+        }
+        return (own, cross);
+    }
+    let px = precision.apply_sparse(x);
+    (x.iter().map(|&(i, v)| v * px[i]).sum(), y.iter().map(|&(i, v)| v * px[i]).sum())
 }
 
 fn quadratic(precision: &Precision, x: &[(usize, f64)]) -> f64 {
-    if x.len() < precision.n() / 3 {
-        return precision.quadratic_sparse(x);
-    }
-    let px = precision.apply_sparse(x);
-    x.iter().map(|&(i, v)| v * px[i]).sum()
+    products(precision, x, x).0
+}
+
+/// `P x`, quicker where most of `x` is zero.
+fn apply_few(precision: &Precision, x: &[f64]) -> Vec<f64> {
+    let few: Vec<(usize, f64)> = x.iter().copied().enumerate().filter(|e| e.1 != 0.0).collect();
+    if few.len() * 2 < x.len() { precision.apply_sparse(&few) } else { precision.apply(x) }
 }

@@ -4,6 +4,7 @@ mod adequacy;
 mod covariance;
 mod detect;
 mod examine;
+mod extended;
 mod frame;
 mod gap;
 mod likelihood;
@@ -16,6 +17,7 @@ pub use adequacy::{Adequacy, adequacy, deviate};
 pub use covariance::{Selection, SizedAmplitudes, covariance, read_patterns};
 pub use detect::DECISIVE;
 pub use examine::examine;
+pub use extended::{Correction, corrected_readings, extended_influence};
 pub use frame::{
     GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, PayloadWeight, PlaneStrainRow,
     StiffnessSignature, StrainFrame, WheelForces, Wiring,

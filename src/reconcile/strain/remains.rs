@@ -9,7 +9,20 @@ use crate::reconcile::effect::Member;
 use crate::reconcile::outcome::Misfit;
 
 /// A sentence or two on what `members` leave of the fit runs.
-pub fn remains(frame: &StrainFrame, members: &[Member<'_>], after: &Adequacy) -> String {
+pub fn remains(
+    frame: &StrainFrame,
+    members: &[Member<'_>],
+    after: &Adequacy,
+    strange: Option<&str>,
+) -> String {
+    match strange {
+        Some(words) => format!("{words}; then: {}", beyond(frame, members, after)),
+        None => beyond(frame, members, after),
+    }
+}
+
+/// What is left above the floor.
+fn beyond(frame: &StrainFrame, members: &[Member<'_>], after: &Adequacy) -> String {
     let list = |parts: &[Misfit]| {
         let mut sorted: Vec<&Misfit> = parts.iter().filter(|m| m.deviate > 3.0).collect();
         sorted.sort_by(|a, b| b.deviate.total_cmp(&a.deviate));

@@ -1,0 +1,188 @@
+//! Strangers: discrepancies that no named effect makes, in general forms. Where one of them explains most, the verdict is `unknown`
+//! and its words say what remains. They also keep flexible effects honest: side loads must beat plain scatter.
+
+use super::{Amplitudes, Extension, Parameter, Stage, StrainEffect};
+use crate::reconcile::strain::{Part, StrainFrame, StrainState};
+
+/// The forms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stranger {
+    /// All strain grows more, or less, than in proportion to the load of the run.
+    LoadDependent,
+    /// Every gauge for itself reads more, or less, than in proportion.
+    StrainDependent,
+    /// Strain follows the load of the run before in part.
+    Memory,
+    /// All gains creep from run to run.
+    Creep,
+    /// Channels leak into their neighbours in file order.
+    CrossTalk,
+    /// Scatter of the same size at all gauges that no load explains.
+    Scatter,
+    /// Scatter in proportion to what a gauge usually reads.
+    RelativeScatter,
+}
+
+impl Stranger {
+    /// All of them.
+    pub fn all() -> Vec<Self> {
+        vec![
+            Self::LoadDependent,
+            Self::StrainDependent,
+            Self::Memory,
+            Self::Creep,
+            Self::CrossTalk,
+            Self::Scatter,
+            Self::RelativeScatter,
+        ]
+    }
+
+    /// What it says of the gap.
+    fn words(self) -> &'static str {
+        match self {
+            Self::LoadDependent => "strain is not in proportion to the load (a joint that closes, a spring that stiffens)",
+            Self::StrainDependent => "readings are not in proportion to strain (range, yielding, bonding)",
+            Self::Memory => "strain depends on the run before (friction, hysteresis)",
+            Self::Creep => "all gains creep with time (supply voltage, bonding)",
+            Self::CrossTalk => "channels leak into their neighbours (wiring, multiplexer)",
+            Self::Scatter => "readings scatter from run to run as no load explains",
+            Self::RelativeScatter => "readings scatter from run to run in proportion to their size",
+        }
+    }
+}
+
+/// How much acts in each run, 1 for the most.
+fn load_level(state: &StrainState, run: usize) -> f64 {
+    let [_, n_r, n_c] = state.shape;
+    let size = |r: usize| {
+        let row = &state.columns[r * n_c..(r + 1) * n_c];
+        row.iter().take(n_c.saturating_sub(4)).map(|f| f.abs()).sum::<f64>()
+    };
+    let most = (0..n_r).map(size).fold(0.0, f64::max);
+    if most > 0.0 { size(run) / most } else { 0.0 }
+}
+
+impl StrainEffect for Stranger {
+    fn id(&self) -> &'static str {
+        match self {
+            Self::LoadDependent => "load_dependent",
+            Self::StrainDependent => "strain_dependent",
+            Self::Memory => "memory",
+            Self::Creep => "gain_creep",
+            Self::CrossTalk => "cross_talk",
+            Self::Scatter => "scatter",
+            Self::RelativeScatter => "relative_scatter",
+        }
+    }
+    fn outside(&self) -> Option<&'static str> {
+        Some(self.words())
+    }
+    fn stage(&self) -> Stage {
+        match self {
+            Self::CrossTalk => Stage::Structure,
+            Self::StrainDependent => Stage::Reading,
+            _ => Stage::Loads,
+        }
+    }
+    fn parameters(&self) -> Vec<Parameter> {
+        match self {
+            Self::Scatter | Self::RelativeScatter => Vec::new(),
+            _ => vec![Parameter {
+                unit: "1",
+                neutral: 0.0,
+                prior_sd: 0.2,
+                step: 0.005,
+                starts: vec![0.0],
+                plausible: 2.0,
+            }],
+        }
+    }
+    fn alter(&self, _frame: &StrainFrame, parameters: &[f64], state: &mut StrainState) {
+        let Some(&size) = parameters.first() else {
+            return;
+        };
+        let [n_g, n_r, n_c] = state.shape;
+        match self {
+            Self::LoadDependent => {
+                let levels: Vec<f64> = (0..n_r).map(|r| load_level(state, r)).collect();
+                for (row, level) in state.columns.chunks_exact_mut(n_c).zip(levels) {
+                    row.iter_mut().for_each(|f| *f *= 1.0 + size * level);
+                }
+            }
+            Self::Memory => {
+                let before = state.columns.clone();
+                for r in 1..n_r {
+                    for c in 0..n_c {
+                        let change = before[(r - 1) * n_c + c] - before[r * n_c + c];
+                        state.columns[r * n_c + c] += size * change;
+                    }
+                }
+            }
+            Self::Creep => {
+                for (r, row) in state.columns.chunks_exact_mut(n_c).enumerate() {
+                    let share = r as f64 / n_r.max(1) as f64;
+                    row.iter_mut().for_each(|f| *f *= 1.0 + size * share);
+                }
+            }
+            Self::CrossTalk => {
+                let before = state.influence.clone();
+                for g in 1..n_g {
+                    for c in 0..n_c {
+                        state.influence[g * n_c + c] += size * before[(g - 1) * n_c + c];
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    fn read(&self, frame: &StrainFrame, parameters: &[f64], _run: usize, row: &mut [f64], part: Part) {
+        let (Self::StrainDependent, Part::Whole, [size, ..]) = (self, part, parameters) else {
+            return;
+        };
+        let n_g = frame.n_gauges();
+        for (g, cell) in row.iter_mut().enumerate() {
+            let most = (0..frame.n_runs())
+                .map(|r| frame.observations.values.get(r * n_g + g).map_or(0.0, |v| v.abs()))
+                .fold(0.0, f64::max);
+            if most > 0.0 {
+                *cell *= 1.0 + size * (cell.abs() / most).min(2.0);
+            }
+        }
+    }
+    fn amplitudes(&self, frame: &StrainFrame) -> Option<Amplitudes> {
+        let n_g = frame.n_gauges();
+        let usual = |g: usize| {
+            let read = (0..frame.n_runs()).map(|r| frame.observations.value(r, g));
+            let kept: Vec<f64> = read.filter(|v| v.is_finite()).collect();
+            (kept.iter().map(|v| v * v).sum::<f64>() / kept.len().max(1) as f64).sqrt()
+        };
+        let height: Vec<f64> = match self {
+            Self::Scatter => vec![1.0; n_g],
+            Self::RelativeScatter => (0..n_g).map(usual).collect(),
+            _ => return None,
+        };
+        let pattern = |(g, h): (usize, &f64)| {
+            (0..n_g).map(|k| if k == g { *h } else { 0.0 }).collect::<Vec<f64>>()
+        };
+        let size = if *self == Self::Scatter { 3.0 * frame.noise.max(0.5) } else { 0.1 };
+        Some(Amplitudes {
+            patterns: height.iter().enumerate().map(pattern).collect(),
+            kinds: vec![0; n_g],
+            usual: vec![size],
+            unit: if *self == Self::Scatter { "microstrain" } else { "1" },
+            plausible: f64::INFINITY,
+        })
+    }
+    fn extension(&self, _frame: &StrainFrame, _parameters: &[f64]) -> Extension {
+        Extension::Nothing
+    }
+    fn separate_by(&self, _frame: &StrainFrame) -> String {
+        match self {
+            Self::Memory => "approach one load from below and from above: friction shows as a loop".into(),
+            Self::Creep => "repeat the first run at the end".into(),
+            Self::CrossTalk => "shunt one gauge and look at its neighbours".into(),
+            Self::LoadDependent | Self::StrainDependent => "load in equal steps to the full payload and back".into(),
+            Self::Scatter | Self::RelativeScatter => "repeat one run three times: scatter shows, an effect of the loads repeats".into(),
+        }
+    }
+}
