@@ -30,6 +30,8 @@ pub enum Command {
     Recover(JobArguments),
     /// Strain of a job's unit loads, or of a deck's static subcases, by the built-in solver
     Solve(JobArguments),
+    /// Find where simulation and measurement disagree, name the missing effect, add it, show the gap shrink
+    Reconcile(JobArguments),
     /// Vehicle parameters and wheel loads from accelerations
     Identify(JobArguments),
 }

@@ -16,6 +16,7 @@ pub mod job;
 pub mod output;
 mod place;
 mod progress;
+mod reconcile;
 mod recover;
 mod sensitivity;
 mod session;
@@ -43,6 +44,7 @@ pub fn run(arguments: Arguments) -> ExitCode {
             Session::run("sensitivity", &a.common, |s| sensitivity::run(&a, s))
         }
         Command::Solve(a) => Session::run("solve", &a.common, |s| solve::run(&a, s)),
+        Command::Reconcile(a) => Session::run("reconcile", &a.common, |s| reconcile::run(&a, s)),
         Command::Identify(a) => Session::run("identify", &a.common, |s| identify::run(&a, s)),
     }
 }

@@ -31,7 +31,11 @@ pub trait Scorer {
     /// What a fit leaves behind.
     type Fit: Clone;
     /// Fits `set` exactly, from scratch or from a fit of its neighbour.
-    fn score(&mut self, set: &[usize], from: Option<(&Scored<Self::Fit>, Option<&Addition>)>) -> Option<Scored<Self::Fit>>;
+    fn score(
+        &mut self,
+        set: &[usize],
+        from: Option<(&Scored<Self::Fit>, Option<&Addition>)>,
+    ) -> Option<Scored<Self::Fit>>;
     /// Candidates to add to `base`, best first.
     fn screen(&mut self, base: &Scored<Self::Fit>) -> Vec<Addition>;
     /// Can the two be in one set?
@@ -56,7 +60,9 @@ pub struct Breadth {
 /// Every set that was scored, best first; the empty set is always among them.
 pub fn search<S: Scorer>(scorer: &mut S, breadth: Breadth) -> Vec<Scored<S::Fit>> {
     let mut seen: Seen<S::Fit> = BTreeMap::new();
-    let Some(null) = scorer.score(&[], None) else { return Vec::new() };
+    let Some(null) = scorer.score(&[], None) else {
+        return Vec::new();
+    };
     seen.insert(Vec::new(), Some(null.clone()));
     let mut level = vec![null];
     for _ in 0..breadth.largest {
@@ -68,8 +74,13 @@ pub fn search<S: Scorer>(scorer: &mut S, breadth: Breadth) -> Vec<Scored<S::Fit>
         next.dedup_by(|a, b| a.set == b.set);
         next.truncate(breadth.beam);
         // No addition pays: larger sets won't either.
-        let best_before = level.iter().map(|s| s.log_evidence).fold(f64::NEG_INFINITY, f64::max);
-        let pays = next.first().is_some_and(|s| s.log_evidence > best_before + breadth.decisive);
+        let best_before = level
+            .iter()
+            .map(|s| s.log_evidence)
+            .fold(f64::NEG_INFINITY, f64::max);
+        let pays = next
+            .first()
+            .is_some_and(|s| s.log_evidence > best_before + breadth.decisive);
         level = next;
         if !pays {
             break;
@@ -80,11 +91,16 @@ pub fn search<S: Scorer>(scorer: &mut S, breadth: Breadth) -> Vec<Scored<S::Fit>
 }
 
 /// The same from sets known to be good: they, the best one extended, its members exchanged.
-pub fn search_near<S: Scorer>(scorer: &mut S, breadth: Breadth, known: &[Scored<S::Fit>]) -> Vec<Scored<S::Fit>> {
+pub fn search_near<S: Scorer>(
+    scorer: &mut S,
+    breadth: Breadth,
+    known: &[Scored<S::Fit>],
+) -> Vec<Scored<S::Fit>> {
     let mut seen: Seen<S::Fit> = BTreeMap::new();
     seen.insert(Vec::new(), scorer.score(&[], None));
     for old in known {
-        seen.entry(old.set.clone()).or_insert_with(|| scorer.score(&old.set, Some((old, None))));
+        seen.entry(old.set.clone())
+            .or_insert_with(|| scorer.score(&old.set, Some((old, None))));
     }
     let all: Vec<_> = seen.values().flatten().cloned().collect();
     if let Some(best) = settle(&all, breadth.decisive)
@@ -127,7 +143,11 @@ fn extend<S: Scorer>(
     for addition in scorer.screen(base) {
         let candidate = addition.candidate;
         // Two are always tried, for rivals and hints; more only where they may pay.
-        let enough = if addition.gain < HOPELESS { 2 } else { breadth.tries };
+        let enough = if addition.gain < HOPELESS {
+            2
+        } else {
+            breadth.tries
+        };
         if out.len() >= enough {
             break;
         }

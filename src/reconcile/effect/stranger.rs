@@ -40,8 +40,12 @@ impl Stranger {
     /// What it says of the gap.
     fn words(self) -> &'static str {
         match self {
-            Self::LoadDependent => "strain is not in proportion to the load (a joint that closes, a spring that stiffens)",
-            Self::StrainDependent => "readings are not in proportion to strain (range, yielding, bonding)",
+            Self::LoadDependent => {
+                "strain is not in proportion to the load (a joint that closes, a spring that stiffens)"
+            }
+            Self::StrainDependent => {
+                "readings are not in proportion to strain (range, yielding, bonding)"
+            }
             Self::Memory => "strain depends on the run before (friction, hysteresis)",
             Self::Creep => "all gains creep with time (supply voltage, bonding)",
             Self::CrossTalk => "channels leak into their neighbours (wiring, multiplexer)",
@@ -56,7 +60,10 @@ fn load_level(state: &StrainState, run: usize) -> f64 {
     let [_, n_r, n_c] = state.shape;
     let size = |r: usize| {
         let row = &state.columns[r * n_c..(r + 1) * n_c];
-        row.iter().take(n_c.saturating_sub(4)).map(|f| f.abs()).sum::<f64>()
+        row.iter()
+            .take(n_c.saturating_sub(4))
+            .map(|f| f.abs())
+            .sum::<f64>()
     };
     let most = (0..n_r).map(size).fold(0.0, f64::max);
     if most > 0.0 { size(run) / most } else { 0.0 }
@@ -135,14 +142,27 @@ impl StrainEffect for Stranger {
             _ => {}
         }
     }
-    fn read(&self, frame: &StrainFrame, parameters: &[f64], _run: usize, row: &mut [f64], part: Part) {
+    fn read(
+        &self,
+        frame: &StrainFrame,
+        parameters: &[f64],
+        _run: usize,
+        row: &mut [f64],
+        part: Part,
+    ) {
         let (Self::StrainDependent, Part::Whole, [size, ..]) = (self, part, parameters) else {
             return;
         };
         let n_g = frame.n_gauges();
         for (g, cell) in row.iter_mut().enumerate() {
             let most = (0..frame.n_runs())
-                .map(|r| frame.observations.values.get(r * n_g + g).map_or(0.0, |v| v.abs()))
+                .map(|r| {
+                    frame
+                        .observations
+                        .values
+                        .get(r * n_g + g)
+                        .map_or(0.0, |v| v.abs())
+                })
                 .fold(0.0, f64::max);
             if most > 0.0 {
                 *cell *= 1.0 + size * (cell.abs() / most).min(2.0);
@@ -162,14 +182,24 @@ impl StrainEffect for Stranger {
             _ => return None,
         };
         let pattern = |(g, h): (usize, &f64)| {
-            (0..n_g).map(|k| if k == g { *h } else { 0.0 }).collect::<Vec<f64>>()
+            (0..n_g)
+                .map(|k| if k == g { *h } else { 0.0 })
+                .collect::<Vec<f64>>()
         };
-        let size = if *self == Self::Scatter { 3.0 * frame.noise.max(0.5) } else { 0.1 };
+        let size = if *self == Self::Scatter {
+            3.0 * frame.noise.max(0.5)
+        } else {
+            0.1
+        };
         Some(Amplitudes {
             patterns: height.iter().enumerate().map(pattern).collect(),
             kinds: vec![0; n_g],
             usual: vec![size],
-            unit: if *self == Self::Scatter { "microstrain" } else { "1" },
+            unit: if *self == Self::Scatter {
+                "microstrain"
+            } else {
+                "1"
+            },
             plausible: f64::INFINITY,
         })
     }
@@ -178,11 +208,17 @@ impl StrainEffect for Stranger {
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
         match self {
-            Self::Memory => "approach one load from below and from above: friction shows as a loop".into(),
+            Self::Memory => {
+                "approach one load from below and from above: friction shows as a loop".into()
+            }
             Self::Creep => "repeat the first run at the end".into(),
             Self::CrossTalk => "shunt one gauge and look at its neighbours".into(),
-            Self::LoadDependent | Self::StrainDependent => "load in equal steps to the full payload and back".into(),
-            Self::Scatter | Self::RelativeScatter => "repeat one run three times: scatter shows, an effect of the loads repeats".into(),
+            Self::LoadDependent | Self::StrainDependent => {
+                "load in equal steps to the full payload and back".into()
+            }
+            Self::Scatter | Self::RelativeScatter => {
+                "repeat one run three times: scatter shows, an effect of the loads repeats".into()
+            }
         }
     }
 }

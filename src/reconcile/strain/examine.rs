@@ -67,7 +67,9 @@ pub fn examine(frame: &StrainFrame, only: &[String]) -> Outcome {
 }
 
 fn is_strange(candidates: &[Candidate], c: usize) -> bool {
-    candidates.get(c).is_some_and(|c| c.effect.outside().is_some())
+    candidates
+        .get(c)
+        .is_some_and(|c| c.effect.outside().is_some())
 }
 
 /// The set without its general forms, where that reaches the floor as well.
@@ -91,8 +93,17 @@ fn without_needless_strangers(
     };
     let n_parameters: usize = plain.fit.parameters.iter().map(Vec::len).sum();
     let members = members_of(candidates, plain);
-    let judged = adequacy(frame, &members, &unknown_of(frame, candidates, plain), n_parameters);
-    if at_floor(&judged) { plain.clone() } else { best }
+    let judged = adequacy(
+        frame,
+        &members,
+        &unknown_of(frame, candidates, plain),
+        n_parameters,
+    );
+    if at_floor(&judged) {
+        plain.clone()
+    } else {
+        best
+    }
 }
 
 fn members_of<'a>(candidates: &'a [Candidate], scored: &'a Scored<Fit>) -> Vec<Member<'a>> {

@@ -56,7 +56,11 @@ impl Correction {
                             let n = frame.n_runs();
                             let creeps = unit.ends_with("last run");
                             let share = |r: usize| {
-                                if creeps { (r + 1) as f64 / n.max(1) as f64 } else { 1.0 }
+                                if creeps {
+                                    (r + 1) as f64 / n.max(1) as f64
+                                } else {
+                                    1.0
+                                }
                             };
                             out.push(affine((0..n).map(|r| size * share(r)).collect(), 1.0));
                         }
@@ -114,8 +118,10 @@ pub fn corrected_readings(frame: &StrainFrame, corrections: &[Correction]) -> Ve
                     }
                 }
                 Correction::Permute { to, from } => {
-                    let read: Vec<f64> =
-                        from.iter().map(|&g| row.get(g).copied().unwrap_or(f64::NAN)).collect();
+                    let read: Vec<f64> = from
+                        .iter()
+                        .map(|&g| row.get(g).copied().unwrap_or(f64::NAN))
+                        .collect();
                     for (&g, v) in to.iter().zip(read) {
                         if let Some(cell) = row.get_mut(g) {
                             *cell = v;
@@ -160,7 +166,9 @@ pub fn extended_influence(frame: &StrainFrame, extensions: &[&Extension]) -> Opt
     let candidates = library(frame, &ids);
     let mut members = Vec::new();
     for (id, parameters) in &wanted {
-        let found = candidates.iter().find(|c| full_id(c.effect.as_ref()) == *id)?;
+        let found = candidates
+            .iter()
+            .find(|c| full_id(c.effect.as_ref()) == *id)?;
         members.push(Member {
             effect: found.effect.as_ref(),
             parameters,

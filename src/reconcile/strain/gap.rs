@@ -11,21 +11,40 @@ use crate::reconcile::outcome::{ChannelGap, Gap, LoadShift};
 fn plain_residual(frame: &StrainFrame, members: &[Member<'_>], selection: &Selection) -> Vec<f64> {
     let n_g = frame.n_gauges();
     let predicted = selection.pick(&predict(frame, members), n_g);
-    selection.pick(&frame.observations.values, n_g).iter().zip(predicted).map(|(y, p)| y - p).collect()
+    selection
+        .pick(&frame.observations.values, n_g)
+        .iter()
+        .zip(predicted)
+        .map(|(y, p)| y - p)
+        .collect()
 }
 
 /// Patterns over the gauges with their variances: errors of the wheel forces, and unknown amplitudes.
-fn run_patterns(frame: &StrainFrame, members: &[Member<'_>], unknown: &[SizedAmplitudes]) -> Vec<(Vec<f64>, f64)> {
+fn run_patterns(
+    frame: &StrainFrame,
+    members: &[Member<'_>],
+    unknown: &[SizedAmplitudes],
+) -> Vec<(Vec<f64>, f64)> {
     let state = StrainState::with(frame, members);
     let [n_g, _, n_c] = state.shape;
-    let column = |l: usize| (0..n_g).map(|g| state.influence[g * n_c + l]).collect::<Vec<f64>>();
+    let column = |l: usize| {
+        (0..n_g)
+            .map(|g| state.influence[g * n_c + l])
+            .collect::<Vec<f64>>()
+    };
     let columns: Vec<Vec<f64>> = (0..frame.n_loads()).map(column).collect();
     let noise = frame.load_noise * frame.load_noise;
-    let mut out: Vec<(Vec<f64>, f64)> = read_patterns(frame, members, &columns).into_iter().map(|c| (c, noise)).collect();
+    let mut out: Vec<(Vec<f64>, f64)> = read_patterns(frame, members, &columns)
+        .into_iter()
+        .map(|c| (c, noise))
+        .collect();
     for u in unknown {
         let read = read_patterns(frame, members, &u.amplitudes.patterns);
         let size = |k: &usize| u.sizes.get(*k).copied().unwrap_or(0.0);
-        out.extend(read.into_iter().zip(u.amplitudes.kinds.iter().map(|k| size(k).powi(2))));
+        out.extend(
+            read.into_iter()
+                .zip(u.amplitudes.kinds.iter().map(|k| size(k).powi(2))),
+        );
     }
     out
 }
@@ -34,7 +53,11 @@ fn run_patterns(frame: &StrainFrame, members: &[Member<'_>], unknown: &[SizedAmp
 ///
 /// What differs from run to run (amplitudes of the effects, the errors of the wheel forces) is found from the odd gauges in file order
 /// and judged on the even ones, and the other way round.
-pub fn held_out_residual(frame: &StrainFrame, members: &[Member<'_>], unknown: &[SizedAmplitudes]) -> (Selection, Vec<f64>, Vec<f64>) {
+pub fn held_out_residual(
+    frame: &StrainFrame,
+    members: &[Member<'_>],
+    unknown: &[SizedAmplitudes],
+) -> (Selection, Vec<f64>, Vec<f64>) {
     let all = Selection::of_runs(frame, &frame.observations.proof_runs());
     let mut residual = plain_residual(frame, members, &all);
     let plain = residual.clone();
@@ -44,21 +67,44 @@ pub fn held_out_residual(frame: &StrainFrame, members: &[Member<'_>], unknown: &
     let patterns = run_patterns(frame, members, unknown);
     for &run in &frame.observations.proof_runs() {
         for half in [0, 1] {
-            let of = |even: usize| (0..n).filter(|&i| all.0[i].0 == run && all.0[i].1 % 2 == even).collect::<Vec<usize>>();
+            let of = |even: usize| {
+                (0..n)
+                    .filter(|&i| all.0[i].0 == run && all.0[i].1 % 2 == even)
+                    .collect::<Vec<usize>>()
+            };
             let (used, judged) = (of(half), of(1 - half));
             let part = Selection(used.iter().map(|&i| all.0[i]).collect());
-            let Some(p) = Precision::of(&covariance(frame, members, &part, unknown), part.len()) else { continue };
+            let Some(p) = Precision::of(&covariance(frame, members, &part, unknown), part.len())
+            else {
+                continue;
+            };
             let pr = p.apply(&used.iter().map(|&i| plain[i]).collect::<Vec<f64>>());
             // Conditional mean of the judged readings: J V J' (J V J' + C)^-1 r.
             for &i in &judged {
-                let shared = |&j: &usize| patterns.iter().map(|(p, v)| v * p[all.0[i].1] * p[all.0[j].1]).sum::<f64>();
-                residual[i] -= used.iter().zip(&pr).map(|(j, w)| shared(j) * w).sum::<f64>();
+                let shared = |&j: &usize| {
+                    patterns
+                        .iter()
+                        .map(|(p, v)| v * p[all.0[i].1] * p[all.0[j].1])
+                        .sum::<f64>()
+                };
+                residual[i] -= used
+                    .iter()
+                    .zip(&pr)
+                    .map(|(j, w)| shared(j) * w)
+                    .sum::<f64>();
             }
             // Floor: the same with the errors of the wheel forces alone.
-            let Some(p) = Precision::of(&covariance(frame, members, &part, &[]), part.len()) else { continue };
+            let Some(p) = Precision::of(&covariance(frame, members, &part, &[]), part.len()) else {
+                continue;
+            };
             for &i in &judged {
                 let forces = &patterns[..frame.n_loads().min(patterns.len())];
-                let shared = |&j: &usize| forces.iter().map(|(p, v)| v * p[all.0[i].1] * p[all.0[j].1]).sum::<f64>();
+                let shared = |&j: &usize| {
+                    forces
+                        .iter()
+                        .map(|(p, v)| v * p[all.0[i].1] * p[all.0[j].1])
+                        .sum::<f64>()
+                };
                 let c: Vec<f64> = used.iter().map(shared).collect();
                 floor[i] -= c.iter().zip(p.apply(&c)).map(|(a, b)| a * b).sum::<f64>();
             }
@@ -79,7 +125,11 @@ pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
 
 /// Gap over all and by gauge. Without effects nothing is found anew in a run: before and after are the same, the floor is that of
 /// the model as it stands.
-pub fn gap(frame: &StrainFrame, members: &[Member<'_>], unknown: &[SizedAmplitudes]) -> (Gap, Vec<ChannelGap>) {
+pub fn gap(
+    frame: &StrainFrame,
+    members: &[Member<'_>],
+    unknown: &[SizedAmplitudes],
+) -> (Gap, Vec<ChannelGap>) {
     let all = Selection::of_runs(frame, &frame.observations.proof_runs());
     let before = plain_residual(frame, &[], &all);
     let readings = all.pick(&frame.observations.values, frame.n_gauges());

@@ -260,11 +260,20 @@ impl<'a> Likelihood<'a> {
     }
 
     /// Parameters of `set` from a fit of a neighbour and of what is added; `None` where a member is in neither.
-    fn start_near(&self, set: &[usize], near: &Scored<Fit>, addition: Option<&Addition>) -> Option<Vec<Vec<f64>>> {
+    fn start_near(
+        &self,
+        set: &[usize],
+        near: &Scored<Fit>,
+        addition: Option<&Addition>,
+    ) -> Option<Vec<Vec<f64>>> {
         let known = |c: &usize| {
             let at = near.set.iter().position(|n| n == c);
             let from_near = at.and_then(|k| near.fit.parameters.get(k).cloned());
-            from_near.or_else(|| addition.filter(|a| a.candidate == *c).map(|a| a.parameters.clone()))
+            from_near.or_else(|| {
+                addition
+                    .filter(|a| a.candidate == *c)
+                    .map(|a| a.parameters.clone())
+            })
         };
         set.iter().map(known).collect()
     }
@@ -322,17 +331,35 @@ struct Optimum {
 impl Scorer for Likelihood<'_> {
     type Fit = Fit;
 
-    fn score(&mut self, set: &[usize], from: Option<(&Scored<Fit>, Option<&Addition>)>) -> Option<Scored<Fit>> {
+    fn score(
+        &mut self,
+        set: &[usize],
+        from: Option<(&Scored<Fit>, Option<&Addition>)>,
+    ) -> Option<Scored<Fit>> {
         let families = self.with_amplitudes(set);
         let mut sizes: Vec<(usize, Vec<f64>)> = Vec::new();
         for &c in &families {
-            let known = from.and_then(|(near, _)| near.fit.sizes.iter().find(|s| s.0 == c).map(|s| s.1.clone()));
-            let added = from.and_then(|(_, a)| a.filter(|a| a.candidate == c).map(|a| a.sizes.clone()));
+            let known = from.and_then(|(near, _)| {
+                near.fit
+                    .sizes
+                    .iter()
+                    .find(|s| s.0 == c)
+                    .map(|s| s.1.clone())
+            });
+            let added =
+                from.and_then(|(_, a)| a.filter(|a| a.candidate == c).map(|a| a.sizes.clone()));
             let usual = self.candidates.get(c)?.effect.amplitudes(self.frame)?.usual;
-            sizes.push((c, known.or(added).filter(|s| s.len() == usual.len()).unwrap_or(usual)));
+            sizes.push((
+                c,
+                known
+                    .or(added)
+                    .filter(|s| s.len() == usual.len())
+                    .unwrap_or(usual),
+            ));
         }
         let mut precision = self.precision(&sizes)?;
-        let mut best = match from.and_then(|(near, addition)| self.start_near(set, near, addition)) {
+        let mut best = match from.and_then(|(near, addition)| self.start_near(set, near, addition))
+        {
             Some(start) => self.optimise(set, start, &precision)?,
             None => self.best_of_starts(set, &precision)?,
         };
@@ -396,14 +423,21 @@ impl Scorer for Likelihood<'_> {
                 continue;
             }
             let (gain, parameters, sizes) = if candidate.effect.amplitudes(self.frame).is_some() {
-                let before = *without.get_or_insert_with(|| self.run_by_run(&families, &members, base).0);
-                let (after, sizes) = self.run_by_run(&[families.as_slice(), &[c]].concat(), &members, base);
+                let before =
+                    *without.get_or_insert_with(|| self.run_by_run(&families, &members, base).0);
+                let (after, sizes) =
+                    self.run_by_run(&[families.as_slice(), &[c]].concat(), &members, base);
                 (after - before, Vec::new(), sizes)
             } else {
                 let (gain, theta) = self.screen_parameters(c, base, &predicted, &precision, &pr);
                 (gain, theta, Vec::new())
             };
-            out.push(Addition { candidate: c, gain: gain + candidate.log_prior, parameters, sizes });
+            out.push(Addition {
+                candidate: c,
+                gain: gain + candidate.log_prior,
+                parameters,
+                sizes,
+            });
         }
         out.retain(|a| a.gain.is_finite());
         out.sort_by(|a, b| b.gain.total_cmp(&a.gain));
@@ -438,19 +472,40 @@ impl Scorer for Likelihood<'_> {
 
 impl Likelihood<'_> {
     /// Change of the prediction of the selection from `predicted` (that of `base`), as few entries where the effect touches few gauges.
-    fn change(&self, c: usize, base: &Scored<Fit>, predicted: &[f64], theta: &[f64]) -> Vec<(usize, f64)> {
-        let Some(candidate) = self.candidates.get(c) else { return Vec::new() };
+    fn change(
+        &self,
+        c: usize,
+        base: &Scored<Fit>,
+        predicted: &[f64],
+        theta: &[f64],
+    ) -> Vec<(usize, f64)> {
+        let Some(candidate) = self.candidates.get(c) else {
+            return Vec::new();
+        };
         let n_g = self.frame.n_gauges();
         let gauges = candidate.effect.gauges();
         let mut out = Vec::new();
         if candidate.effect.stage() == Stage::Reading {
             // Reading effects come last: they act on what is predicted.
-            let gauges = if gauges.is_empty() { (0..n_g).collect() } else { gauges };
+            let gauges = if gauges.is_empty() {
+                (0..n_g).collect()
+            } else {
+                gauges
+            };
             for &run in &self.runs {
-                let Some(before) = predicted.get(run * n_g..(run + 1) * n_g) else { continue };
+                let Some(before) = predicted.get(run * n_g..(run + 1) * n_g) else {
+                    continue;
+                };
                 let mut row = before.to_vec();
-                candidate.effect.read(self.frame, theta, run, &mut row, Part::Whole);
-                out.extend(gauges.iter().filter_map(|&g| Some((*self.index.get(run * n_g + g)?.as_ref()?, row[g] - before[g]))));
+                candidate
+                    .effect
+                    .read(self.frame, theta, run, &mut row, Part::Whole);
+                out.extend(gauges.iter().filter_map(|&g| {
+                    Some((
+                        *self.index.get(run * n_g + g)?.as_ref()?,
+                        row[g] - before[g],
+                    ))
+                }));
             }
             return out;
         }
@@ -460,10 +515,21 @@ impl Likelihood<'_> {
         parameters.push(theta.to_vec());
         let now = predict(self.frame, &self.members(&set, &parameters));
         if gauges.is_empty() {
-            return self.selection.0.iter().enumerate().map(|(i, &(r, g))| (i, now[r * n_g + g] - predicted[r * n_g + g])).collect();
+            return self
+                .selection
+                .0
+                .iter()
+                .enumerate()
+                .map(|(i, &(r, g))| (i, now[r * n_g + g] - predicted[r * n_g + g]))
+                .collect();
         }
         for &run in &self.runs {
-            let at = |&g: &usize| Some((*self.index.get(run * n_g + g)?.as_ref()?, now[run * n_g + g] - predicted[run * n_g + g]));
+            let at = |&g: &usize| {
+                Some((
+                    *self.index.get(run * n_g + g)?.as_ref()?,
+                    now[run * n_g + g] - predicted[run * n_g + g],
+                ))
+            };
             out.extend(gauges.iter().filter_map(at));
         }
         out
@@ -536,7 +602,12 @@ impl Likelihood<'_> {
     }
 
     /// Log likelihood with the amplitudes of `families`, run by run, and the sizes of the last of them.
-    fn run_by_run(&self, families: &[usize], members: &[Member<'_>], base: &Scored<Fit>) -> (f64, Vec<f64>) {
+    fn run_by_run(
+        &self,
+        families: &[usize],
+        members: &[Member<'_>],
+        base: &Scored<Fit>,
+    ) -> (f64, Vec<f64>) {
         let list: Vec<_> = families
             .iter()
             .filter_map(|&c| self.candidates.get(c)?.effect.amplitudes(self.frame))
@@ -568,7 +639,10 @@ fn products(precision: &Precision, x: &[(usize, f64)], y: &[(usize, f64)]) -> (f
         return (own, cross);
     }
     let px = precision.apply_sparse(x);
-    (x.iter().map(|&(i, v)| v * px[i]).sum(), y.iter().map(|&(i, v)| v * px[i]).sum())
+    (
+        x.iter().map(|&(i, v)| v * px[i]).sum(),
+        y.iter().map(|&(i, v)| v * px[i]).sum(),
+    )
 }
 
 fn quadratic(precision: &Precision, x: &[(usize, f64)]) -> f64 {
@@ -577,6 +651,15 @@ fn quadratic(precision: &Precision, x: &[(usize, f64)]) -> f64 {
 
 /// `P x`, quicker where most of `x` is zero.
 fn apply_few(precision: &Precision, x: &[f64]) -> Vec<f64> {
-    let few: Vec<(usize, f64)> = x.iter().copied().enumerate().filter(|e| e.1 != 0.0).collect();
-    if few.len() * 2 < x.len() { precision.apply_sparse(&few) } else { precision.apply(x) }
+    let few: Vec<(usize, f64)> = x
+        .iter()
+        .copied()
+        .enumerate()
+        .filter(|e| e.1 != 0.0)
+        .collect();
+    if few.len() * 2 < x.len() {
+        precision.apply_sparse(&few)
+    } else {
+        precision.apply(x)
+    }
 }

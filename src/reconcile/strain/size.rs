@@ -95,11 +95,7 @@ pub fn run_by_run_log_likelihood(
 /// By family and kind: the size (standard deviation) that explains `residual` best, drawn towards the usual one.
 ///
 /// Expectation maximisation: with a_r the amplitudes of run r given its residual, size_k^2 = (sum E[a^2] + nu usual_k^2) / (count + nu).
-pub fn usual_sizes(
-    blocks: &RunBlocks,
-    residual: &[f64],
-    families: &[Amplitudes],
-) -> Vec<Vec<f64>> {
+pub fn usual_sizes(blocks: &RunBlocks, residual: &[f64], families: &[Amplitudes]) -> Vec<Vec<f64>> {
     /// The usual size counts as much as this many amplitudes seen.
     const NU: f64 = 1.0;
     /// Weight of the common scale of a family against the amplitudes of one kind.
@@ -116,8 +112,10 @@ pub fn usual_sizes(
         let usual = |f: &Amplitudes| f.usual.iter().map(|u| NU * u * u).collect();
         let mut sums: Vec<Vec<f64>> = families.iter().map(usual).collect();
         let mut counts: Vec<Vec<f64>> = families.iter().map(|f| vec![NU; f.usual.len()]).collect();
-        let sized: Vec<(&Amplitudes, &[f64])> =
-            families.iter().zip(sizes.iter().map(Vec::as_slice)).collect();
+        let sized: Vec<(&Amplitudes, &[f64])> = families
+            .iter()
+            .zip(sizes.iter().map(Vec::as_slice))
+            .collect();
         let added = blocks.added(&sized);
         for block in &blocks.blocks {
             let Some(p) = block.precision(&added, blocks.n_gauges) else {
@@ -145,7 +143,11 @@ pub fn usual_sizes(
             // All kinds of a family share one scale, and each its own size in part: side forces bring their moments along.
             let usual = &families[f].usual;
             let free = |k: usize| sums[f][k] / counts[f][k].max(1.0);
-            let logs = (0..usual.len()).map(|k| 0.5 * (free(k) / (usual[k] * usual[k])).max(f64::MIN_POSITIVE).ln());
+            let logs = (0..usual.len()).map(|k| {
+                0.5 * (free(k) / (usual[k] * usual[k]))
+                    .max(f64::MIN_POSITIVE)
+                    .ln()
+            });
             let scale = (logs.sum::<f64>() / usual.len().max(1) as f64).exp();
             for (kind, size) in s.iter_mut().enumerate() {
                 let drawn = SHARED * counts[f][kind];

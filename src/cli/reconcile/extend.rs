@@ -1,0 +1,336 @@
+//! The extended model: a copy of the job whose files hold the named effects, so that every command runs it as it is.
+//!
+//! Effects of a channel go into the readings (`strain_extended.csv`), effects of structure into S (`sensitivity_extended.csv`), loads that
+//! were left out become columns of S, the payload's place goes into `runs_extended.csv`.
+
+use super::relative::relative;
+use crate::cli::Session;
+use crate::cli::fault::{Fault, Faults};
+use crate::cli::job::Job;
+use crate::reconcile::effect::Extension;
+use crate::reconcile::strain::{Correction, StrainFrame, corrected_readings, extended_influence};
+use crate::reconcile::{NamedEffect, Outcome};
+use std::fmt::Write;
+use std::path::Path;
+use toml::{Table, Value};
+
+const JOB: &str = "job_extended.toml";
+const STRAIN: &str = "strain_extended.csv";
+const SENSITIVITY: &str = "sensitivity_extended.csv";
+const PAYLOAD: &str = "payload_extended.csv";
+const RUNS: &str = "runs_extended.csv";
+
+/// Writes the extended job of a job in matrix form; its path, relative to the folder the command was called in.
+pub(super) fn write(
+    job: &Job,
+    path: &Path,
+    session: &mut Session,
+    frame: &StrainFrame,
+    outcome: &Outcome,
+) -> Result<Option<String>, Faults> {
+    let text = session
+        .inputs
+        .read_text(Path::new(""), &job.file)
+        .map_err(|f| vec![f])?;
+    let malformed = |e: toml::de::Error| {
+        vec![Fault::of(
+            &*job.file,
+            "job",
+            e.to_string(),
+            "write valid TOML",
+        )]
+    };
+    let mut table: Table = text.parse().map_err(malformed)?;
+    let folder = session.output_for(path)?.folder().to_owned();
+    let from_output = relative(&folder, &job.folder);
+    redirect(&mut table, &from_output);
+    let title = table
+        .get("title")
+        .and_then(Value::as_str)
+        .unwrap_or("job")
+        .to_owned();
+    let names: Vec<&str> = outcome.effects.iter().map(|e| e.id.as_str()).collect();
+    table.insert(
+        "title".into(),
+        Value::String(format!("{title}, with {}", names.join(" and "))),
+    );
+    let extensions: Vec<&Extension> = outcome.effects.iter().map(|e| &e.extension).collect();
+    let mut files: Vec<(&str, String)> = Vec::new();
+    let corrections = Correction::of(frame, &extensions);
+    if !corrections.is_empty() {
+        files.push((
+            STRAIN,
+            strain_csv(frame, &corrected_readings(frame, &corrections)),
+        ));
+        set(&mut table, "measured", "strain", STRAIN);
+    }
+    let influence = extended_influence(frame, &extensions);
+    let nuisance: Vec<(String, Vec<f64>)> = nuisance(frame, &extensions);
+    if job.sensitivity.is_some() && (influence.is_some() || !nuisance.is_empty()) {
+        let values = influence.as_deref().unwrap_or(&frame.influence);
+        files.push((SENSITIVITY, sensitivity_csv(frame, values, &nuisance)));
+        set(&mut table, "sensitivity", "file", SENSITIVITY);
+        if let Some(Value::Table(s)) = table.get_mut("sensitivity") {
+            // The extended files count in kN, kN m and kg.
+            let mut per = Table::new();
+            for (k, v) in [
+                ("force", "kN"),
+                ("moment", "kN m"),
+                ("mass", "kg"),
+                ("length", "m"),
+            ] {
+                per.insert(k.into(), Value::String(v.into()));
+            }
+            s.insert("per".into(), Value::Table(per));
+            let columns = frame.load_names.iter().chain(nuisance.iter().map(|n| &n.0));
+            let columns: Table = columns
+                .map(|n| (n.clone(), Value::String(n.clone())))
+                .collect();
+            s.insert("columns".into(), Value::Table(columns));
+        }
+    }
+    if let Some(values) = influence.as_ref().filter(|_| job.sensitivity.is_some()) {
+        files.push((PAYLOAD, payload_csv(frame, values)));
+        if let Some(Value::Table(signatures)) = table
+            .get_mut("sensitivity")
+            .and_then(|s| s.get_mut("signatures"))
+        {
+            signatures.insert("payload".into(), Value::String(PAYLOAD.into()));
+        }
+    }
+    if let Some((dx, dy)) = extensions.iter().find_map(|e| {
+        if let Extension::PayloadOffset { dx, dy } = e {
+            Some((*dx, *dy))
+        } else {
+            None
+        }
+    }) {
+        files.push((RUNS, runs_csv(frame, job, dx, dy)));
+        set(&mut table, "runs", "file", RUNS);
+        if let Some(Value::Table(runs)) = table.get_mut("runs") {
+            runs.remove("columns");
+            let units: Table = [("force", "kN"), ("mass", "kg"), ("length", "m")]
+                .iter()
+                .map(|(k, v)| ((*k).to_owned(), Value::String((*v).into())))
+                .collect();
+            runs.insert("units".into(), Value::Table(units));
+        }
+    }
+    if extensions
+        .iter()
+        .any(|e| matches!(e, Extension::PayloadWeight))
+    {
+        let payload = table
+            .entry("payload")
+            .or_insert_with(|| Value::Table(Table::new()));
+        if let Value::Table(p) = payload {
+            p.insert("weight_in_model".into(), Value::Boolean(true));
+        }
+    }
+    let mut job_text =
+        String::from("# The job with the named effects in it; `size` and `sigma` as found.\n");
+    for e in &outcome.effects {
+        let _ = writeln!(job_text, "# {}", in_words(e));
+    }
+    let body = toml::to_string(&table).map_err(|e| {
+        vec![Fault::of(
+            JOB,
+            "job",
+            e.to_string(),
+            "report this as an error of the program",
+        )]
+    })?;
+    job_text.push_str(&body);
+    let output = session.output_for(path)?;
+    for (name, content) in &files {
+        output
+            .write_bytes(name, content.as_bytes())
+            .map_err(|f| vec![f])?;
+    }
+    output
+        .write_bytes(JOB, job_text.as_bytes())
+        .map_err(|f| vec![f])?;
+    Ok(Some(
+        folder.join(JOB).display().to_string().replace('\\', "/"),
+    ))
+}
+
+fn in_words(e: &NamedEffect) -> String {
+    let sizes: Vec<String> = e
+        .size
+        .iter()
+        .zip(&e.sigma)
+        .map(|(v, s)| format!("{v:.6} +- {s:.6}"))
+        .collect();
+    if sizes.is_empty() {
+        e.id.clone()
+    } else {
+        format!("{}: {} {}", e.id, sizes.join(", "), e.unit)
+    }
+}
+
+fn set(table: &mut Table, section: &str, key: &str, value: &str) {
+    if let Some(Value::Table(t)) = table.get_mut(section) {
+        t.insert(key.into(), Value::String(value.into()));
+    }
+}
+
+/// Makes every file name of the job relative to the output folder.
+fn redirect(table: &mut Table, prefix: &str) {
+    const FILE_KEYS: [&str; 8] = [
+        "file", "deck", "strain", "zero", "data", "loads", "result", "results",
+    ];
+    let join = |name: &str| {
+        if Path::new(name).is_absolute() {
+            name.to_owned()
+        } else {
+            format!("{prefix}/{name}")
+        }
+    };
+    for (key, value) in table.iter_mut() {
+        match value {
+            Value::String(s) if FILE_KEYS.contains(&key.as_str()) => *s = join(s.as_str()),
+            Value::String(s) if key == "hold_out" => *s = join(s.as_str()),
+            Value::Array(items) if key == "results" => {
+                for item in items.iter_mut() {
+                    if let Value::String(s) = item {
+                        *s = join(s.as_str());
+                    }
+                }
+            }
+            Value::Array(items) => items.iter_mut().for_each(|i| {
+                if let Value::Table(t) = i {
+                    redirect(t, prefix);
+                }
+            }),
+            Value::Table(t) if key == "signatures" || key == "rail_stiffness" => {
+                redirect_all(t, &join)
+            }
+            Value::Table(t) if key != "columns" => redirect(t, prefix),
+            _ => {}
+        }
+    }
+}
+
+fn redirect_all(table: &mut Table, join: &dyn Fn(&str) -> String) {
+    for (_, value) in table.iter_mut() {
+        match value {
+            Value::String(s) => *s = join(s.as_str()),
+            Value::Table(t) => redirect_all(t, join),
+            _ => {}
+        }
+    }
+}
+
+/// Columns of loads that were left out.
+fn nuisance(frame: &StrainFrame, extensions: &[&Extension]) -> Vec<(String, Vec<f64>)> {
+    let mut out = Vec::new();
+    for e in extensions {
+        let Extension::NuisanceLoads { id, .. } = e else {
+            continue;
+        };
+        match *id {
+            "lateral_wheel_loads" => out.extend(frame.other_loads.clone()),
+            "thermal_uniform" => {
+                out.extend(frame.thermal_uniform.clone().map(|t| ((*id).to_owned(), t)))
+            }
+            "thermal_gradient" => out.extend(
+                frame
+                    .thermal_gradient
+                    .clone()
+                    .map(|t| ((*id).to_owned(), t)),
+            ),
+            _ => {}
+        }
+    }
+    out
+}
+
+fn strain_csv(frame: &StrainFrame, values: &[f64]) -> String {
+    let mut out = format!("run,{}\n", frame.observations.channels.join(","));
+    for (run, row) in frame
+        .observations
+        .runs
+        .iter()
+        .zip(values.chunks_exact(frame.n_gauges().max(1)))
+    {
+        let cells: Vec<String> = row
+            .iter()
+            .map(|v| {
+                if v.is_finite() {
+                    format!("{v:.4}")
+                } else {
+                    String::new()
+                }
+            })
+            .collect();
+        let _ = writeln!(out, "{run},{}", cells.join(","));
+    }
+    out
+}
+
+fn sensitivity_csv(
+    frame: &StrainFrame,
+    influence: &[f64],
+    nuisance: &[(String, Vec<f64>)],
+) -> String {
+    let names: Vec<&str> = frame
+        .load_names
+        .iter()
+        .chain(nuisance.iter().map(|n| &n.0))
+        .map(String::as_str)
+        .collect();
+    let mut out = format!("gauge,{}\n", names.join(","));
+    for (g, gauge) in frame.gauges.iter().enumerate() {
+        let row = influence
+            .iter()
+            .skip(g * frame.n_columns())
+            .take(frame.n_loads());
+        let more = nuisance.iter().filter_map(|n| n.1.get(g));
+        let cells: Vec<String> = row.chain(more).map(|v| format!("{v:.9e}")).collect();
+        let _ = writeln!(out, "{},{}", gauge.name, cells.join(","));
+    }
+    out
+}
+
+fn payload_csv(frame: &StrainFrame, influence: &[f64]) -> String {
+    let mut out = String::from("gauge,b0,b_dx,b_dy,b_dxdy\n");
+    for (gauge, row) in frame
+        .gauges
+        .iter()
+        .zip(influence.chunks_exact(frame.n_columns()))
+    {
+        let cells: Vec<String> = row
+            .iter()
+            .skip(frame.n_loads())
+            .map(|v| format!("{v:.9e}"))
+            .collect();
+        let _ = writeln!(out, "{},{}", gauge.name, cells.join(","));
+    }
+    out
+}
+
+fn runs_csv(frame: &StrainFrame, job: &Job, dx: f64, dy: f64) -> String {
+    let nominal = super::matrix_frame::nominal_x_m(job).unwrap_or(0.0);
+    let mut out = format!(
+        "run,payload_mass,payload_x,payload_y,{}\n",
+        frame.load_names.join(",")
+    );
+    for (r, run) in frame.observations.runs.iter().enumerate() {
+        let [mass, x] = frame.payload.get(r).copied().unwrap_or([0.0; 2]);
+        let loads: Vec<String> = frame
+            .loads
+            .iter()
+            .skip(r * frame.n_loads())
+            .take(frame.n_loads())
+            .map(|f| format!("{f:.6}"))
+            .collect();
+        let _ = writeln!(
+            out,
+            "{run},{mass:.6},{:.6},{dy:.6},{}",
+            nominal + x + dx,
+            loads.join(",")
+        );
+    }
+    out
+}

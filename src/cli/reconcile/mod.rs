@@ -1,0 +1,35 @@
+//! `reconcile`: where simulation and measurement disagree, which effect is missing, and the model with the effect in it.
+
+mod extend;
+mod matrix_frame;
+mod relative;
+mod signature_table;
+mod static_path;
+mod tables;
+
+use super::fault::{Fault, Faults};
+use super::job::{ReconcilePath, read_job};
+use super::{JobArguments, Session};
+
+/// Runs the workflow of the job's path.
+///
+/// # Errors
+/// Faults of the job and of the files it names.
+pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
+    let job = read_job(&mut session.inputs, &arguments.job)?;
+    session.put_units(job.units, &job.report_units);
+    match job
+        .reconcile
+        .as_ref()
+        .map_or(ReconcilePath::Static, |r| r.path)
+    {
+        ReconcilePath::Static => static_path::run(&job, &arguments.job, session),
+        ReconcilePath::Dynamic => Err(vec![Fault::at(
+            &*job.file,
+            job.reconcile.as_ref().map_or(1, |r| r.line),
+            "reconcile.path",
+            "the dynamic path is not there yet",
+            "write `path = \"static\"`, or use `identify` on the record",
+        )]),
+    }
+}

@@ -1,0 +1,448 @@
+//! The static path: frame, verdict, tables, extended model.
+
+use super::matrix_frame::{self, ModelPart};
+use super::{extend, tables};
+use crate::cli::Session;
+use crate::cli::fault::{Fault, Faults};
+use crate::cli::job::runs::{RunRow, read_runs};
+use crate::cli::job::strain::{StrainRows, StrainTable, read_strain};
+use crate::cli::job::{HoldOut, Job, WheelForces as JobWheelForces};
+use crate::finding::{Finding, Severity};
+use crate::reconcile::effect::Extension;
+use crate::reconcile::strain::{PayloadWeight, StrainFrame, WheelForces, examine};
+use crate::reconcile::{NamedEffect, Observations, Outcome, Verdict};
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// Noise of a measured wheel force where the runs file states none: nothing is assumed better than this, kN.
+const LOAD_NOISE_KN: f64 = 0.05;
+
+pub(super) fn run(job: &Job, path: &Path, session: &mut Session) -> Result<(), Faults> {
+    let observations = observations(job, session)?;
+    let channels = observations.channels.clone();
+    let part = session.stage("signatures", |s| match (&job.sensitivity, &job.model) {
+        (Some(given), _) => matrix_frame::read(&mut s.inputs, job, given, &channels),
+        (None, Some(_)) => Err(vec![Fault::of(
+            &*job.file,
+            "sensitivity",
+            "no S is given",
+            "add `[sensitivity]`",
+        )]),
+        (None, None) => Err(vec![Fault::of(
+            &*job.file,
+            "model",
+            "neither `[model]` nor `[sensitivity]`",
+            "name the deck, or the CSV file with S",
+        )]),
+    })?;
+    let frame = frame(job, session, observations, part)?;
+    let only = job
+        .reconcile
+        .as_ref()
+        .and_then(|r| r.effects.clone())
+        .unwrap_or_default();
+    let outcome = session.stage("search", |_| examine(&frame, &only));
+    report(job, path, session, &frame, &outcome)
+}
+
+/// Readings of the strain file and of a held-out file, runs by name.
+fn observations(job: &Job, session: &mut Session) -> Result<Observations, Faults> {
+    let Some(measured) = &job.measured else {
+        return Err(vec![Fault::of(
+            &*job.file,
+            "measured",
+            "no `[measured]`",
+            "name the strain file",
+        )]);
+    };
+    let table = read_strain(&mut session.inputs, job, &measured.strain)?;
+    let runs_of = |t: &StrainTable| match &t.rows {
+        StrainRows::Runs(runs) => Ok(runs.clone()),
+        StrainRows::Times(_) => {
+            let wrong = "rows are samples of one record";
+            Err(vec![Fault::of(
+                &*t.file,
+                "run",
+                wrong,
+                "give the means of static runs, a row each, with a column `run`",
+            )])
+        }
+    };
+    let mut out = Observations {
+        runs: runs_of(&table)?,
+        channels: table.gauges.clone(),
+        values: table.microstrain.clone(),
+        held_out: Vec::new(),
+    };
+    out.held_out = match &measured.hold_out {
+        HoldOut::Runs(names) => {
+            let unknown: Faults = names
+                .iter()
+                .filter(|n| !out.runs.contains(n))
+                .map(|n| {
+                    let wrong = format!("`{}` has no run `{n}`", table.file);
+                    Fault::at(
+                        &*job.file,
+                        measured.line,
+                        "measured.hold_out",
+                        wrong,
+                        "name runs of the strain file",
+                    )
+                })
+                .collect();
+            if !unknown.is_empty() {
+                return Err(unknown);
+            }
+            out.runs.iter().map(|r| names.contains(r)).collect()
+        }
+        _ => vec![false; out.runs.len()],
+    };
+    if let HoldOut::File(named) = &measured.hold_out {
+        let kept = read_strain(&mut session.inputs, job, named)?;
+        if kept.gauges != out.channels {
+            return Err(vec![Fault::of(
+                &*kept.file,
+                "header",
+                "other gauges than the strain file",
+                "give the same columns",
+            )]);
+        }
+        let names = runs_of(&kept)?;
+        out.held_out.extend(vec![true; names.len()]);
+        out.runs.extend(names);
+        out.values.extend(&kept.microstrain);
+    }
+    if out.held_out.iter().all(|h| *h) || out.runs.len() < 2 {
+        let wrong = "fewer than one run to fit and one to prove";
+        return Err(vec![Fault::of(
+            &*table.file,
+            "run",
+            wrong,
+            "measure more runs, keep some from `hold_out`",
+        )]);
+    }
+    if !out.held_out.iter().any(|h| *h) {
+        session.findings.push(Finding::new(
+            Severity::Warning,
+            "no-hold-out",
+            &*table.file,
+            "no run is held out: the gap is judged on the runs that were fitted",
+            "keep a third of the runs with `hold_out`",
+        ));
+    }
+    Ok(out)
+}
+
+/// Joins what the model says with what was measured.
+fn frame(
+    job: &Job,
+    session: &mut Session,
+    observations: Observations,
+    part: ModelPart,
+) -> Result<StrainFrame, Faults> {
+    /// The frame counts in kN.
+    const KILO: f64 = 1e3;
+    let Some(runs) = &job.runs else {
+        let remedy = "add `[runs]` with the wheel forces and the payload of each run";
+        return Err(vec![Fault::of(&*job.file, "runs", "no `[runs]`", remedy)]);
+    };
+    let rows = read_runs(&mut session.inputs, job, runs)?;
+    let gravity = job
+        .payload
+        .as_ref()
+        .and_then(|p| p.gravity_m_s2)
+        .unwrap_or(9.806_65);
+    let mut faults = Faults::new();
+    let (mut loads, mut payload) = (Vec::new(), Vec::new());
+    for run in &observations.runs {
+        let Some(row) = rows.iter().find(|r| r.run == *run) else {
+            faults.push(Fault::of(
+                &*runs.file.given,
+                "run",
+                format!("no row for run `{run}`"),
+                "give every run of the strain file a row",
+            ));
+            continue;
+        };
+        for name in &part.load_names {
+            match row.loads_si.get(name) {
+                Some(n) => loads.push(n / KILO),
+                None => faults.push(Fault::at(
+                    &*runs.file.given,
+                    row.line,
+                    name.clone(),
+                    format!("run `{run}` has no value for load `{name}`"),
+                    "give the load in the runs file, and its column in `runs.columns`",
+                )),
+            }
+        }
+        payload.push(payload_of(row, gravity, part.nominal_x_m));
+    }
+    if !faults.is_empty() {
+        return Err(faults);
+    }
+    let load_noise = runs
+        .noise
+        .force
+        .map_or(LOAD_NOISE_KN, |f| f * runs.units.force.si / KILO);
+    let measured = job.measured.as_ref();
+    Ok(StrainFrame {
+        observations,
+        gauges: part.gauges,
+        load_names: part.load_names,
+        load_positions: part.load_positions,
+        influence: part.influence,
+        tensors: part.tensors,
+        per_mm: part.per_mm,
+        loads,
+        payload,
+        payload_weight: if job.payload.as_ref().is_none_or(|p| p.weight_in_model) {
+            PayloadWeight::InModel
+        } else {
+            PayloadWeight::Missing
+        },
+        wheel_forces: match runs.wheel_forces {
+            JobWheelForces::Measured => WheelForces::Measured,
+            JobWheelForces::FlatGroundModel => WheelForces::FlatGroundModel,
+        },
+        other_loads: part.other_loads,
+        thermal_uniform: part.thermal_uniform,
+        thermal_gradient: part.thermal_gradient,
+        masses: part.masses,
+        stiffness: part.stiffness,
+        noise: measured.map_or(1.0, |m| m.noise_microstrain),
+        load_noise,
+        model_rel: measured.map_or(0.0, |m| m.model_uncertainty_rel),
+        entry_rel: part.entry_rel,
+    })
+}
+
+fn payload_of(row: &RunRow, gravity: f64, nominal_x_m: f64) -> [f64; 2] {
+    let mass = row
+        .payload_mass_kg
+        .or(row.payload_force_n.map(|f| f / gravity))
+        .unwrap_or(0.0);
+    [mass, row.payload_x_m.map_or(0.0, |x| x - nominal_x_m)]
+}
+
+/// The size of a fault that has no parameter: -1 for a turned sign.
+fn channel_size(e: &NamedEffect) -> Option<f64> {
+    match e.extension {
+        Extension::Channel { size, .. } => Some(size),
+        _ => None,
+    }
+}
+
+fn effect_json(e: &NamedEffect) -> Value {
+    let first = |v: &[f64]| v.first().copied().filter(|x| x.is_finite());
+    json!({
+        "id": e.id,
+        "where": e.place,
+        "size": first(&e.size).or(channel_size(e)),
+        "sigma": first(&e.sigma),
+        "unit": e.unit,
+        "sizes": e.size,
+        "sigmas": e.sigma,
+        "plausible": e.plausible,
+    })
+}
+
+fn report(
+    job: &Job,
+    path: &Path,
+    session: &mut Session,
+    frame: &StrainFrame,
+    outcome: &Outcome,
+) -> Result<(), Faults> {
+    session.put("verdict", outcome.verdict.word())?;
+    session.put(
+        "named",
+        outcome
+            .effects
+            .iter()
+            .map(|e| e.id.clone())
+            .collect::<Vec<_>>(),
+    )?;
+    session.put(
+        "effects",
+        outcome.effects.iter().map(effect_json).collect::<Vec<_>>(),
+    )?;
+    session.put(
+        "best_attempt",
+        outcome
+            .best_attempt
+            .iter()
+            .map(effect_json)
+            .collect::<Vec<_>>(),
+    )?;
+    let rivals: Vec<Value> = outcome
+        .rivals
+        .iter()
+        .map(|r| {
+            let place = |id: &String| id.split_once(':').map(|p| p.1.to_owned());
+            json!({
+                "id": r.ids.join(" + "),
+                "where": r.ids.iter().filter_map(place).collect::<Vec<_>>().join(" + "),
+                "evidence_difference": r.evidence_difference,
+                "gap_after": r.gap_after,
+                "indistinguishable": r.indistinguishable,
+            })
+        })
+        .collect();
+    session.put("rivals", rivals)?;
+    session.put(
+        "gap",
+        json!({
+            "metric": "RMS(reading - model) / RMS(reading) over held-out runs; after, what differs from run to run is found from one half \
+                       of the gauges and judged on the other",
+            "before": outcome.gap.before,
+            "after": outcome.gap.after,
+            "floor": outcome.gap.floor,
+            "explained_share": outcome.gap.explained_share(),
+        }),
+    )?;
+    session.put("evidence", outcome.evidence)?;
+    let [before, after, held_out] = outcome.reduced_chi2;
+    session.put(
+        "reduced_chi2",
+        json!({ "before": before, "after": after, "held_out": held_out }),
+    )?;
+    session.put("remains", &outcome.remains)?;
+    session.put("next_measurement", &outcome.next_measurement)?;
+    session.put(
+        "detectable",
+        outcome
+            .detectable
+            .iter()
+            .map(|d| json!({ "id": d.id, "size": d.size, "unit": d.unit }))
+            .collect::<Vec<_>>(),
+    )?;
+    let off = |m: &crate::reconcile::Misfit| json!({ "name": m.name, "reduced_chi2": m.reduced_chi2, "deviate": m.deviate });
+    session.put(
+        "gauges_off_before",
+        outcome
+            .gauges_off_before
+            .iter()
+            .map(off)
+            .collect::<Vec<_>>(),
+    )?;
+    session.put(
+        "gauges_off",
+        outcome.gauges_off.iter().map(off).collect::<Vec<_>>(),
+    )?;
+    session.put(
+        "runs_off",
+        outcome.runs_off.iter().map(off).collect::<Vec<_>>(),
+    )?;
+    findings(session, outcome);
+    tables::write(session, path, outcome)?;
+    let extended = if outcome.verdict == Verdict::Named {
+        extend::write(job, path, session, frame, outcome)?
+    } else {
+        None
+    };
+    session.put("extended_model", extended)?;
+    say(session, outcome);
+    Ok(())
+}
+
+fn findings(session: &mut Session, outcome: &Outcome) {
+    match outcome.verdict {
+        Verdict::Unknown => session.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "gap-unexplained",
+                "model",
+                format!(
+                    "there is a gap that nothing in the library closes: {}",
+                    outcome.remains
+                ),
+                outcome.next_measurement.clone(),
+            )
+            .with_numbers(outcome.reduced_chi2[1], 1.0),
+        ),
+        Verdict::BelowDetectability => {
+            let hint = outcome
+                .rivals
+                .first()
+                .map(|r| r.ids.join(" + "))
+                .unwrap_or_default();
+            let size = outcome.detectable.iter().find(|d| d.id == hint).map(|d| {
+                format!(
+                    "; the smallest that would be seen: {:.3} {}",
+                    d.size, d.unit
+                )
+            });
+            session.findings.push(Finding::new(
+                Severity::Info,
+                "below-detectability",
+                hint,
+                format!(
+                    "a hint of an effect, too small to name{}",
+                    size.unwrap_or_default()
+                ),
+                outcome.next_measurement.clone(),
+            ));
+        }
+        Verdict::Named => {
+            for r in outcome.rivals.iter().filter(|r| r.indistinguishable) {
+                session.findings.push(
+                    Finding::new(
+                        Severity::Warning,
+                        "rival",
+                        r.ids.join(" + "),
+                        "explains these data as well as what was named",
+                        outcome.next_measurement.clone(),
+                    )
+                    .with_numbers(r.evidence_difference, 3.0),
+                );
+            }
+            for l in outcome.loads.iter().filter(|l| l.moved()) {
+                session.findings.push(
+                    Finding::new(
+                        Severity::Info,
+                        "load-moved",
+                        format!("{} in {}", l.load, l.run),
+                        format!(
+                            "the recovered load moves from {:.2} to {:.2} kN with the effect in",
+                            l.before, l.after
+                        ),
+                        "use the extended model",
+                    )
+                    .with_numbers((l.after - l.before).abs(), 2.0 * l.sigma),
+                );
+            }
+        }
+        Verdict::None => {}
+    }
+}
+
+fn say(session: &mut Session, outcome: &Outcome) {
+    session.say(format!("verdict: {}", outcome.verdict.word()));
+    for e in &outcome.effects {
+        let sizes: Vec<String> = e
+            .size
+            .iter()
+            .zip(&e.sigma)
+            .map(|(v, s)| format!("{v:.3} +- {s:.3}"))
+            .collect();
+        session.say(format!("  {} {} {}", e.id, sizes.join(", "), e.unit));
+    }
+    let g = &outcome.gap;
+    session.say(format!(
+        "gap on held-out runs: {:.2} % before, {:.2} % after, floor {:.2} %, explained {:.0} %",
+        100.0 * g.before,
+        100.0 * g.after,
+        100.0 * g.floor,
+        100.0 * g.explained_share()
+    ));
+    for r in outcome.rivals.iter().filter(|r| r.indistinguishable) {
+        session.say(format!(
+            "  can't be told from: {} (log evidence {:.1} behind)",
+            r.ids.join(" + "),
+            r.evidence_difference
+        ));
+    }
+    session.say(format!("left: {}", outcome.remains));
+    session.say(format!("next measurement: {}", outcome.next_measurement));
+}
