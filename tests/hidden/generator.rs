@@ -335,7 +335,8 @@ fn apply(
             parts.push("payload_gravity_missing".into());
         }
         "rail_stiffness" => {
-            let all = library(frame, &["rail_stiffness".into()]);
+            let mut all = library(frame, &["rail_stiffness".into()]);
+            all.retain(|c| c.effect.id() == "rail_stiffness");
             let c = &all[rng.random_range(0..all.len())];
             with(c.effect.as_ref(), &[sign * size]);
             parts.push(format!(

@@ -13,15 +13,17 @@ pub struct GaugeAngle {
 }
 
 impl GaugeAngle {
-    /// One on every gauge whose in-plane strain is known.
+    /// Askew and across on every gauge whose in-plane strain is known.
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
         let known = |g: &usize| frame.tensors.get(*g).is_some_and(|t| !t.is_empty());
+        let on = |gauge, turn| Self {
+            gauge,
+            name: gauge_name(frame, gauge),
+            turn,
+        };
         (0..frame.n_gauges())
             .filter(known)
-            .map(|gauge| Self {
-                gauge,
-                name: gauge_name(frame, gauge),
-            })
+            .flat_map(|g| [on(g, Turn::Askew), on(g, Turn::Across)])
             .collect()
     }
 }
@@ -62,14 +64,18 @@ impl StrainEffect for GaugeAngle {
         Stage::Structure
     }
     fn parameters(&self) -> Vec<Parameter> {
-        // A first-order step is zero for a gauge along a principal direction: start on both sides.
+        let (neutral, prior_sd, starts, plausible) = match self.turn {
+            // A first-order step is zero for a gauge along a principal direction: start on both sides.
+            Turn::Askew => (0.0, 15.0, vec![-30.0, -8.0, 8.0, 30.0], 60.0),
+            Turn::Across => (90.0, 8.0, vec![82.0, 98.0], 30.0),
+        };
         vec![Parameter {
             unit: "degree",
-            neutral: 0.0,
-            prior_sd: 10.0,
+            neutral,
+            prior_sd,
             step: 0.25,
-            starts: vec![-30.0, -8.0, 8.0, 30.0],
-            plausible: 95.0,
+            starts,
+            plausible,
         }]
     }
     fn alter(&self, frame: &StrainFrame, parameters: &[f64], state: &mut StrainState) {
