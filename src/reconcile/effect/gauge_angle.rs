@@ -10,6 +10,17 @@ pub struct GaugeAngle {
     pub gauge: usize,
     /// Its name.
     pub name: String,
+    /// How far.
+    pub turn: Turn,
+}
+
+/// What may have happened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turn {
+    /// Glued askew.
+    Askew,
+    /// Glued, or its leg connected, across: near 90 degrees off.
+    Across,
 }
 
 impl GaugeAngle {
