@@ -133,7 +133,10 @@ pub(crate) fn assemble(
         })
         .collect();
     let graph = BlockGraph::from_cliques(numbering.grid.len(), || groups.iter().map(Vec::as_slice));
-    let symbolic = Symbolic::analyse(&graph, &numbering.sizes());
+    let sizes = numbering.sizes();
+    let symbolic = Symbolic::analyse(&graph, &sizes).map_err(|_| FeError::TooLarge {
+        unknowns: sizes.iter().map(|s| usize::from(*s)).sum(),
+    })?;
     let mut stiffness = BlockMatrix::zeros(&symbolic, &graph);
     let mut refused: Vec<Refusal> = Vec::new();
     for (batch, groups) in elements.chunks(BATCH).zip(groups.chunks(BATCH)) {

@@ -105,6 +105,11 @@ pub enum FeError {
         /// Where it stands.
         at: Place,
     },
+    /// The factor doesn't fit memory or 32-bit indices.
+    TooLarge {
+        /// Unknowns of the system.
+        unknowns: usize,
+    },
     /// The model has nothing to solve.
     Empty,
 }
@@ -214,6 +219,12 @@ impl FeError {
                 *at,
                 "the stiffness at this grid is not a number".to_owned(),
                 "look for zero or huge property values of the elements there",
+            ),
+            Self::TooLarge { unknowns } => one(
+                "model".to_owned(),
+                nowhere,
+                format!("the factor of {unknowns} unknowns does not fit this machine's memory"),
+                "mesh more coarsely, or solve it on a machine with more memory",
             ),
             Self::Empty => one(
                 "model".to_owned(),

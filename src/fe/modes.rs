@@ -71,7 +71,7 @@ pub fn free_modes(
         for (f, column) in forces.iter().zip(columns.chunks_exact_mut(n.max(1))) {
             system.pack(&prepared, f.clone(), column)?;
         }
-        factor.solve(&mut columns);
+        factor.solve(&mut columns).map_err(|e| system.refused(model, e))?;
         let moved: Vec<Vec<[f64; 6]>> = columns
             .par_chunks_exact(n.max(1))
             .map(|c| {

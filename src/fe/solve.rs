@@ -200,7 +200,7 @@ fn solve_group(
     let factor = system.factor(model, &stiffness)?;
     drop(stiffness);
     report.smallest_pivot = factor.smallest_pivot;
-    factor.solve(&mut columns);
+    factor.solve(&mut columns).map_err(|e| system.refused(model, e))?;
     drop(factor);
     let mut all = Vec::with_capacity(cases.len());
     for column in columns.chunks_exact(n.max(1)) {

@@ -85,14 +85,23 @@ impl System {
     /// Mechanisms, each dof named; entries that are not numbers.
     pub(super) fn factor(&self, model: &Model, stiffness: &BlockMatrix) -> Result<Factor<'_>, FeError> {
         let start = self.symbolic.unknown_start();
-        let factor = Factor::new(&self.symbolic, stiffness).map_err(|FactorError::NotANumber { unknown }| {
-            let grid = &model.grids[self.numbering.dof_of(unknown, start).0];
-            FeError::NotANumber { grid: grid.id, at: grid.at }
-        })?;
+        let factor = Factor::new(&self.symbolic, stiffness).map_err(|e| self.refused(model, e))?;
         if factor.lost.is_empty() {
             Ok(factor)
         } else {
             Err(mechanism(model, &factor.lost, start, &self.numbering, &self.graph))
+        }
+    }
+
+    /// A failure of the factor in the words of the model.
+    pub(super) fn refused(&self, model: &Model, error: FactorError) -> FeError {
+        match error {
+            FactorError::NotANumber { unknown } => {
+                let start = self.symbolic.unknown_start();
+                let grid = &model.grids[self.numbering.dof_of(unknown, start).0];
+                FeError::NotANumber { grid: grid.id, at: grid.at }
+            }
+            FactorError::TooLarge => FeError::TooLarge { unknowns: self.symbolic.n_unknowns() },
         }
     }
 

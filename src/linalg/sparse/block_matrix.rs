@@ -120,6 +120,56 @@ impl BlockMatrix {
         });
     }
 
+    /// Column starts, rows and values of the lower triangle by unknowns in elimination order, rows and columns scaled.
+    pub(super) fn lower_columns(
+        &self,
+        symbolic: &Symbolic,
+        scale: &[f64],
+    ) -> (Vec<u32>, Vec<u32>, Vec<f64>) {
+        let n_groups = symbolic.order.len();
+        let mut columns = Vec::with_capacity(symbolic.n_unknowns() + 1);
+        let mut total = 0_u32;
+        columns.push(total);
+        for g in 0..n_groups {
+            let m = symbolic.start[g + 1] - symbolic.start[g];
+            let all = self.value_start[self.column[g + 1]] - self.value_start[self.column[g]];
+            for j in 0..m {
+                // The symbolic factor of the same pattern was counted with 32-bit indices before.
+                total += (all / m - j) as u32;
+                columns.push(total);
+            }
+        }
+        let (mut rows, mut values) = (vec![0_u32; total as usize], vec![0.0; total as usize]);
+        let (mut rest_rows, mut rest_values) = (rows.as_mut_slice(), values.as_mut_slice());
+        let mut pieces = Vec::with_capacity(n_groups);
+        for g in 0..n_groups {
+            let (from, to) = (symbolic.start[g], symbolic.start[g + 1]);
+            let length = (columns[to] - columns[from]) as usize;
+            let (r, tail_rows) = rest_rows.split_at_mut(length);
+            let (v, tail_values) = rest_values.split_at_mut(length);
+            pieces.push((g, r, v));
+            (rest_rows, rest_values) = (tail_rows, tail_values);
+        }
+        pieces.into_par_iter().for_each(|(g, rows, values)| {
+            let (from, to) = (symbolic.start[g], symbolic.start[g + 1]);
+            let mut at = 0;
+            for j in 0..to - from {
+                for b in self.column[g]..self.column[g + 1] {
+                    let h = self.row[b] as usize;
+                    let (first, m) = (symbolic.start[h], symbolic.start[h + 1] - symbolic.start[h]);
+                    for i in if h == g { j } else { 0 }..m {
+                        rows[at] = (first + i) as u32;
+                        values[at] = self.values[self.value_start[b] + j * m + i]
+                            * scale[first + i]
+                            * scale[from + j];
+                        at += 1;
+                    }
+                }
+            }
+        });
+        (columns, rows, values)
+    }
+
     /// The diagonal in elimination order.
     pub(super) fn diagonal(&self, symbolic: &Symbolic) -> Vec<f64> {
         let mut d = Vec::with_capacity(symbolic.n_unknowns());

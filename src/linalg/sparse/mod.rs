@@ -1,14 +1,13 @@
 //! Sparse symmetric positive definite systems whose unknowns come in small groups (six to a grid): ordering, factor, solution.
 //!
-//! Everything symbolic happens on the graph of groups, which has six times fewer vertices than the matrix has rows.
+//! Orders are found and compared on the graph of groups, which has six times fewer vertices than the matrix has rows; the factor
+//! itself is faer's supernodal Cholesky.
 
 mod block_matrix;
 mod factor;
-mod front;
 mod graph;
 mod order;
 mod solve;
-mod supernode;
 mod symbolic;
 
 pub use block_matrix::{BlockMatrix, DenseTerm};
