@@ -19,9 +19,15 @@ impl Loader for NoFiles {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut out = std::io::stdout();
-    let arguments: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).collect();
+    let arguments: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|a| !a.starts_with("--"))
+        .collect();
     let Some(path) = arguments.first() else {
-        writeln!(out, "give a deck: cargo bench --bench solve -- DECK [LOADS] [MATRIX.mtx]")?;
+        writeln!(
+            out,
+            "give a deck: cargo bench --bench solve -- DECK [LOADS] [MATRIX.mtx]"
+        )?;
         return Ok(());
     };
     let count: usize = arguments.get(1).and_then(|a| a.parse().ok()).unwrap_or(18);
@@ -32,11 +38,21 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let loads: Vec<UnitLoad> = (0..count)
         .map(|i| {
             let shell = &model.shells[i * model.shells.len() / count];
-            UnitLoad::AtGrid { grid: GridIx(shell.grids[0].0), force: Vec3::z(), moment: Vec3::zeros() }
+            UnitLoad::AtGrid {
+                grid: GridIx(shell.grids[0].0),
+                force: Vec3::z(),
+                moment: Vec3::zeros(),
+            }
         })
         .collect();
     let start = Instant::now();
-    let (_, report) = solve_unit_loads(&model, &loads, &SolveOptions { corners: Corners::Compute })?;
+    let (_, report) = solve_unit_loads(
+        &model,
+        &loads,
+        &SolveOptions {
+            corners: Corners::Compute,
+        },
+    )?;
     writeln!(
         out,
         "solve {count} loads {:.2} s: {} unknowns, {} entries, {:?}",
@@ -48,7 +64,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     if let Some(matrix) = arguments.get(2) {
         let (n, entries) = supported_stiffness(&model)?;
         let mut file = std::io::BufWriter::new(std::fs::File::create(matrix)?);
-        writeln!(file, "%%MatrixMarket matrix coordinate real symmetric\n{n} {n} {}", entries.len())?;
+        writeln!(
+            file,
+            "%%MatrixMarket matrix coordinate real symmetric\n{n} {n} {}",
+            entries.len()
+        )?;
         for (r, c, v) in entries {
             writeln!(file, "{} {} {v:e}", r + 1, c + 1)?;
         }

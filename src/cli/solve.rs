@@ -4,7 +4,8 @@ use super::deck::{DeckModel, read_model};
 use super::fault::{Fault, Faults};
 use super::{JobArguments, Session, job};
 use crate::fe::{
-    FeError, LoadCase, Relief, Solution, SolveOptions, SolveReport, UnitLoad, free_modes, relief_of, solve_cases,
+    FeError, LoadCase, Relief, Solution, SolveOptions, SolveReport, UnitLoad, free_modes,
+    relief_of, solve_cases,
 };
 use crate::finding::{Finding, Severity};
 use crate::model::Model;
@@ -26,9 +27,22 @@ struct Task {
 
 /// Reads the job or deck, solves, writes `results.op2`, `results.vtu` and the report.
 pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
-    let is_job = arguments.job.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
-    let task = session.stage("read", |s| if is_job { of_job(s, &arguments.job) } else { of_deck(s, &arguments.job) })?;
-    let Task { read, cases, left_out } = task;
+    let is_job = arguments
+        .job
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("toml"));
+    let task = session.stage("read", |s| {
+        if is_job {
+            of_job(s, &arguments.job)
+        } else {
+            of_deck(s, &arguments.job)
+        }
+    })?;
+    let Task {
+        read,
+        cases,
+        left_out,
+    } = task;
     for why in left_out {
         session.findings.push(Finding::new(
             Severity::Warning,
@@ -39,27 +53,46 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         ));
     }
     let (solution, report) = session
-        .stage("solve", |_| solve_cases(&read.model, &cases, &SolveOptions::default()))
+        .stage("solve", |_| {
+            solve_cases(&read.model, &cases, &SolveOptions::default())
+        })
         .map_err(|e| faults_of(&e, &read))?;
     session.findings.extend(solution.findings.iter().cloned());
     let free = cases.iter().find(|c| c.relief != Relief::None);
     let frequencies = match free {
         Some(case) => session
-            .stage("free modes", |_| free_modes(&read.model, case.spc, case.mpc, MODES))
+            .stage("free modes", |_| {
+                free_modes(&read.model, case.spc, case.mpc, MODES)
+            })
             .map(|(modes, _)| modes.iter().map(|m| m.frequency).collect())
             .map_err(|e| faults_of(&e, &read))?,
         None => Vec::new(),
     };
-    session.stage("write", |s| write(s, &arguments.job, &read.model, &solution, &report, &frequencies))
+    session.stage("write", |s| {
+        write(
+            s,
+            &arguments.job,
+            &read.model,
+            &solution,
+            &report,
+            &frequencies,
+        )
+    })
 }
 
 fn of_job(session: &mut Session, path: &Path) -> Result<Task, Faults> {
     let job = job::read_job(&mut session.inputs, path)?;
     session.put_units(job.units, &job.report_units);
     let Some(files) = &job.model else {
-        return Err(vec![Fault::of(&*job.file, "model", "the job has no [model]", "name the deck: [model] deck = \"model.bdf\"")]);
+        return Err(vec![Fault::of(
+            &*job.file,
+            "model",
+            "the job has no [model]",
+            "name the deck: [model] deck = \"model.bdf\"",
+        )]);
     };
-    let read = read_model(&mut session.inputs, &job.folder, &files.deck.given).map_err(|f| vec![f])?;
+    let read =
+        read_model(&mut session.inputs, &job.folder, &files.deck.given).map_err(|f| vec![f])?;
     session.findings.extend(read.findings.iter().cloned());
     if !read.faults.is_empty() {
         return Err(read.faults);
@@ -79,7 +112,11 @@ fn of_job(session: &mut Session, path: &Path) -> Result<Task, Faults> {
             relief,
         })
         .collect();
-    Ok(Task { read, cases, left_out: Vec::new() })
+    Ok(Task {
+        read,
+        cases,
+        left_out: Vec::new(),
+    })
 }
 
 fn of_deck(session: &mut Session, path: &Path) -> Result<Task, Faults> {
@@ -95,7 +132,10 @@ fn of_deck(session: &mut Session, path: &Path) -> Result<Task, Faults> {
     for s in read.deck.case_control.effective_subcases() {
         let thermal = s.temperature_load.is_some() || s.deform.is_some();
         match s.load {
-            _ if thermal => left_out.push(format!("subcase {}: thermal loads and DEFORM are not carried", s.id)),
+            _ if thermal => left_out.push(format!(
+                "subcase {}: thermal loads and DEFORM are not carried",
+                s.id
+            )),
             Some(load) => cases.push(LoadCase {
                 subcase: s.id,
                 label: s.label.clone().or(s.subtitle.clone()).unwrap_or_default(),
@@ -123,11 +163,18 @@ fn of_deck(session: &mut Session, path: &Path) -> Result<Task, Faults> {
             "add `LOAD = n` to a subcase, or give a job with [[load]] entries",
         )]);
     }
-    Ok(Task { read, cases, left_out })
+    Ok(Task {
+        read,
+        cases,
+        left_out,
+    })
 }
 
 fn has_enforced(model: &Model, spc: Option<u32>) -> bool {
-    model.spcs.iter().any(|s| Some(s.sid) == spc && s.terms.iter().any(|t| t.2 != 0.0))
+    model
+        .spcs
+        .iter()
+        .any(|s| Some(s.sid) == spc && s.terms.iter().any(|t| t.2 != 0.0))
 }
 
 /// The solver's faults with file and line.
@@ -159,7 +206,12 @@ fn write(
     session.put("ordering", report.ordering)?;
     session.put("smallest_pivot", report.smallest_pivot)?;
     session.put("balance", &report.balance)?;
-    session.put("mass", report.mass.map(|m| json!({ "mass": m.mass, "cg": [m.cg.x, m.cg.y, m.cg.z] })))?;
+    session.put(
+        "mass",
+        report
+            .mass
+            .map(|m| json!({ "mass": m.mass, "cg": [m.cg.x, m.cg.y, m.cg.z] })),
+    )?;
     session.put("elastic_modes_hz", frequencies)?;
     session.put("peak_memory_bytes", peak_memory())?;
     session.say(format!(
@@ -170,19 +222,33 @@ fn write(
         report.factor_nonzeros
     ));
     if let Some(first) = frequencies.first() {
-        session.say(format!("first elastic mode of the free structure: {first:.4} per unit of time"));
+        session.say(format!(
+            "first elastic mode of the free structure: {first:.4} per unit of time"
+        ));
     }
     let out = session.output_for(input)?;
     out.write("results.op2", |w| {
         let mut op2 = Op2Writer::new(w, [1, 1, 2000]).map_err(std::io::Error::other)?;
-        for_each_block(model, solution, |block, rows| op2.write_block(block, rows)).map_err(std::io::Error::other)?;
+        for_each_block(model, solution, |block, rows| op2.write_block(block, rows))
+            .map_err(std::io::Error::other)?;
         op2.finish().map(|_| ()).map_err(std::io::Error::other)
     })
     .map_err(|f| vec![f])?;
-    out.write("results.vtu", |w| write_vtu(model, &solution.cases, w)).map_err(|f| vec![f])?;
-    let title = input.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    let page = crate::report::strain::page(&title, "Solution of the built-in solver", &session.findings, Vec::new());
-    session.output_for(input)?.write_bytes("report.html", page.as_bytes()).map_err(|f| vec![f])
+    out.write("results.vtu", |w| write_vtu(model, &solution.cases, w))
+        .map_err(|f| vec![f])?;
+    let title = input
+        .file_stem()
+        .map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    let page = crate::report::strain::page(
+        &title,
+        "Solution of the built-in solver",
+        &session.findings,
+        Vec::new(),
+    );
+    session
+        .output_for(input)?
+        .write_bytes("report.html", page.as_bytes())
+        .map_err(|f| vec![f])
 }
 
 /// Largest resident memory of this process so far, bytes; `None` where the system does not tell.

@@ -21,7 +21,15 @@ pub fn run(arguments: &DeckArguments, session: &mut Session) -> Result<(), Fault
     if deck.model.shells.is_empty() && deck.model.beams.is_empty() && !deck.faults.is_empty() {
         return Err(deck.faults);
     }
-    let warn = |f: &Fault| Finding::new(Severity::Warning, "deck-fault", given.as_str(), f.to_string(), "see `check`; the mesh is used as it is");
+    let warn = |f: &Fault| {
+        Finding::new(
+            Severity::Warning,
+            "deck-fault",
+            given.as_str(),
+            f.to_string(),
+            "see `check`; the mesh is used as it is",
+        )
+    };
     session.findings.extend(deck.faults.iter().map(warn));
     let files = session.stage("read", |s| result_bytes(arguments, &given, s))?;
     let (mut opened, mut faults) = (Vec::new(), Faults::new());

@@ -12,15 +12,27 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// Beams that can't be formed.
-pub(crate) fn beam_fields(prepared: &Prepared<'_>, u: &[Vec<[f64; 6]>]) -> Result<Vec<BeamField>, FeError> {
+pub(crate) fn beam_fields(
+    prepared: &Prepared<'_>,
+    u: &[Vec<[f64; 6]>],
+) -> Result<Vec<BeamField>, FeError> {
     let model = prepared.model;
-    let elements = Arc::new((0..model.beams.len() as u32).map(BeamIx).collect::<Vec<_>>());
+    let elements = Arc::new(
+        (0..model.beams.len() as u32)
+            .map(BeamIx)
+            .collect::<Vec<_>>(),
+    );
     u.iter()
         .map(|u| {
-            let stations: Result<Vec<_>, Refusal> =
-                (0..model.beams.len()).into_par_iter().map(|i| beam_strain(model, i, u)).collect();
+            let stations: Result<Vec<_>, Refusal> = (0..model.beams.len())
+                .into_par_iter()
+                .map(|i| beam_strain(model, i, u))
+                .collect();
             let stations = stations.map_err(|r| FeError::Refused(vec![r]))?;
-            Ok(BeamField { elements: elements.clone(), stations })
+            Ok(BeamField {
+                elements: elements.clone(),
+                stations,
+            })
         })
         .collect()
 }

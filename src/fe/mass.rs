@@ -193,7 +193,9 @@ impl Mass {
 ///
 /// # Errors
 /// Elements that can't be formed.
-pub fn mass_properties(model: &crate::model::Model) -> Result<Option<MassProperties>, super::error::FeError> {
+pub fn mass_properties(
+    model: &crate::model::Model,
+) -> Result<Option<MassProperties>, super::error::FeError> {
     let prepared = Prepared::new(model);
     let mass = Mass::new(&prepared).map_err(super::error::FeError::Refused)?;
     let x: Vec<Vec3> = model.grids.iter().map(|g| g.x).collect();

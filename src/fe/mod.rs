@@ -11,16 +11,16 @@ pub mod from_results;
 mod grid_frames;
 mod load;
 mod mass;
+mod modes;
 mod relief;
 mod rigid_motion;
 pub mod shell_frame;
 mod shell_strain;
 mod solution;
-mod modes;
 mod solve;
-mod system;
 pub mod strain_rows;
 pub mod strain_tensor;
+mod system;
 mod unsupported;
 
 pub use error::{FeError, FreeDof, Refusal};
@@ -30,5 +30,6 @@ pub use relief::Balance;
 pub use shell_strain::Corners;
 pub use solution::*;
 pub use solve::{
-    LoadCase, Relief, SolveOptions, SolveReport, relief_of, solve_cases, solve_unit_loads, supported_stiffness,
+    LoadCase, Relief, SolveOptions, SolveReport, relief_of, solve_cases, solve_unit_loads,
+    supported_stiffness,
 };

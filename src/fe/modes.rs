@@ -46,7 +46,13 @@ pub fn free_modes(
     let prepared = Prepared::new(model);
     let mass = Mass::new(&prepared).map_err(FeError::Refused)?;
     let mut findings = Vec::new();
-    let system = System::new(&prepared, &mass, (spc, mpc), Relief::Automatic, &mut findings)?;
+    let system = System::new(
+        &prepared,
+        &mass,
+        (spc, mpc),
+        Relief::Automatic,
+        &mut findings,
+    )?;
     let factor = system.factor(model, &system.stiffness)?;
     let n = system.symbolic.n_unknowns();
     let p = (2 * count).min(count + 8).min(n);
@@ -71,7 +77,9 @@ pub fn free_modes(
         for (f, column) in forces.iter().zip(columns.chunks_exact_mut(n.max(1))) {
             system.pack(&prepared, f.clone(), column)?;
         }
-        factor.solve(&mut columns).map_err(|e| system.refused(model, e))?;
+        factor
+            .solve(&mut columns)
+            .map_err(|e| system.refused(model, e))?;
         let moved: Vec<Vec<[f64; 6]>> = columns
             .par_chunks_exact(n.max(1))
             .map(|c| {
@@ -83,10 +91,18 @@ pub fn free_modes(
         let with_mass: Vec<Vec<[f64; 6]>> = moved.par_iter().map(|u| mass.times(u)).collect();
         let stiffness = gram(&moved, &forces);
         let weight = gram(&moved, &with_mass);
-        let Some((lambda, vectors)) = generalized(&stiffness, &weight) else { break };
-        shapes = (0..lambda.len()).into_par_iter().map(|c| combine(&moved, |r| vectors[(r, c)])).collect();
+        let Some((lambda, vectors)) = generalized(&stiffness, &weight) else {
+            break;
+        };
+        shapes = (0..lambda.len())
+            .into_par_iter()
+            .map(|c| combine(&moved, |r| vectors[(r, c)]))
+            .collect();
         values = lambda;
-        let done = values.iter().zip(&before).all(|(a, b)| (a - b).abs() <= CONVERGED * a.abs());
+        let done = values
+            .iter()
+            .zip(&before)
+            .all(|(a, b)| (a - b).abs() <= CONVERGED * a.abs());
         before = values.iter().take(count).copied().collect();
         if done && !before.is_empty() {
             break;
@@ -96,7 +112,10 @@ pub fn free_modes(
         .iter()
         .zip(shapes)
         .take(count)
-        .map(|(l, shape)| Mode { frequency: l.max(0.0).sqrt() / std::f64::consts::TAU, shape })
+        .map(|(l, shape)| Mode {
+            frequency: l.max(0.0).sqrt() / std::f64::consts::TAU,
+            shape,
+        })
         .collect();
     Ok((modes, findings))
 }
@@ -120,7 +139,13 @@ fn gram(a: &[Vec<[f64; 6]>], b: &[Vec<[f64; 6]>]) -> DMatrix<f64> {
     let pairs: Vec<(usize, usize)> = (0..p).flat_map(|i| (0..=i).map(move |j| (i, j))).collect();
     let dots: Vec<f64> = pairs
         .par_iter()
-        .map(|&(i, j)| a[i].iter().flatten().zip(b[j].iter().flatten()).map(|(x, y)| x * y).sum())
+        .map(|&(i, j)| {
+            a[i].iter()
+                .flatten()
+                .zip(b[j].iter().flatten())
+                .map(|(x, y)| x * y)
+                .sum()
+        })
         .collect();
     let mut m = DMatrix::zeros(p, p);
     for ((i, j), v) in pairs.into_iter().zip(dots) {
@@ -143,10 +168,22 @@ fn combine(fields: &[Vec<[f64; 6]>], amount: impl Fn(usize) -> f64) -> Vec<[f64;
 
 /// Eigenvalues, ascending, and vectors of K x = lambda M x with x'Mx = 1; directions almost without mass are dropped.
 fn generalized(k: &DMatrix<f64>, m: &DMatrix<f64>) -> Option<(Vec<f64>, DMatrix<f64>)> {
-    let scale: Vec<f64> = (0..m.nrows()).map(|i| if m[(i, i)] > 0.0 { 1.0 / m[(i, i)].sqrt() } else { 0.0 }).collect();
-    let scaled = |a: &DMatrix<f64>| DMatrix::from_fn(a.nrows(), a.ncols(), |i, j| a[(i, j)] * scale[i] * scale[j]);
+    let scale: Vec<f64> = (0..m.nrows())
+        .map(|i| {
+            if m[(i, i)] > 0.0 {
+                1.0 / m[(i, i)].sqrt()
+            } else {
+                0.0
+            }
+        })
+        .collect();
+    let scaled = |a: &DMatrix<f64>| {
+        DMatrix::from_fn(a.nrows(), a.ncols(), |i, j| a[(i, j)] * scale[i] * scale[j])
+    };
     let eigen = scaled(m).symmetric_eigen();
-    let kept: Vec<usize> = (0..m.nrows()).filter(|&i| eigen.eigenvalues[i] > 1e-12).collect();
+    let kept: Vec<usize> = (0..m.nrows())
+        .filter(|&i| eigen.eigenvalues[i] > 1e-12)
+        .collect();
     if kept.is_empty() {
         return None;
     }
@@ -157,6 +194,9 @@ fn generalized(k: &DMatrix<f64>, m: &DMatrix<f64>) -> Option<(Vec<f64>, DMatrix<
     let mut order: Vec<usize> = (0..kept.len()).collect();
     order.sort_by(|&a, &b| reduced.eigenvalues[a].total_cmp(&reduced.eigenvalues[b]));
     let values = order.iter().map(|&i| reduced.eigenvalues[i]).collect();
-    let vectors = &whiten * DMatrix::from_fn(kept.len(), kept.len(), |r, c| reduced.eigenvectors[(r, order[c])]);
+    let vectors = &whiten
+        * DMatrix::from_fn(kept.len(), kept.len(), |r, c| {
+            reduced.eigenvectors[(r, order[c])]
+        });
     Some((values, vectors))
 }

@@ -150,15 +150,24 @@ impl RigidBody {
         let scale: Vec<f64> = (0..n)
             .map(|c| {
                 let b = self.basis.column(c);
-                let square = b.rows(0, 3).norm_squared() + b.rows(3, 3).norm_squared() * self.size * self.size;
+                let square = b.rows(0, 3).norm_squared()
+                    + b.rows(3, 3).norm_squared() * self.size * self.size;
                 1.0 / (self.properties.mass * square).sqrt()
             })
             .collect();
-        let eigen = DMatrix::from_fn(n, n, |i, j| self.modal[(i, j)] * scale[i] * scale[j]).symmetric_eigen();
+        let eigen = DMatrix::from_fn(n, n, |i, j| self.modal[(i, j)] * scale[i] * scale[j])
+            .symmetric_eigen();
         let mut x = DVector::zeros(n);
-        for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+        for (value, vector) in eigen
+            .eigenvalues
+            .iter()
+            .zip(eigen.eigenvectors.column_iter())
+        {
             if *value > 1e-12 {
-                let along: f64 = (0..n).map(|i| vector[i] * scale[i] * generalized[i]).sum::<f64>() / value;
+                let along: f64 = (0..n)
+                    .map(|i| vector[i] * scale[i] * generalized[i])
+                    .sum::<f64>()
+                    / value;
                 (0..n).for_each(|i| x[i] += along * vector[i] * scale[i]);
             }
         }
@@ -272,11 +281,24 @@ impl RigidBody {
     }
 
     /// A free motion at the unknowns, of the order of one: rotations times the size of the model.
-    pub(crate) fn packed(&self, axes: &[Option<Mat3>], numbering: &Numbering, column: usize) -> Vec<f64> {
+    pub(crate) fn packed(
+        &self,
+        axes: &[Option<Mat3>],
+        numbering: &Numbering,
+        column: usize,
+    ) -> Vec<f64> {
         let mut field = self.turned(axes, column);
         let largest = field
             .iter()
-            .flat_map(|u| (0..6).map(|i| if i < 3 { u[i].abs() } else { u[i].abs() * self.size }))
+            .flat_map(|u| {
+                (0..6).map(|i| {
+                    if i < 3 {
+                        u[i].abs()
+                    } else {
+                        u[i].abs() * self.size
+                    }
+                })
+            })
             .fold(f64::MIN_POSITIVE, f64::max);
         for u in &mut field {
             *u = std::array::from_fn(|i| u[i] * if i < 3 { 1.0 } else { self.size } / largest);
@@ -287,7 +309,12 @@ impl RigidBody {
     }
 
     /// A free motion at the unknowns as it is.
-    pub(crate) fn packed_motion(&self, axes: &[Option<Mat3>], numbering: &Numbering, column: usize) -> Vec<f64> {
+    pub(crate) fn packed_motion(
+        &self,
+        axes: &[Option<Mat3>],
+        numbering: &Numbering,
+        column: usize,
+    ) -> Vec<f64> {
         let mut out = vec![0.0; numbering.free.iter().map(|b| b.count_ones() as usize).sum()];
         numbering.pack(&self.turned(axes, column), &mut out);
         let largest = out.iter().fold(f64::MIN_POSITIVE, |a, v| a.max(v.abs()));

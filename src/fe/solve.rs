@@ -137,7 +137,9 @@ pub fn solve_cases(
         let solved = solve_group(&prepared, &mass, &members, &mut report, &mut findings)?;
         let shells = shell_fields(&prepared, &solved, options.corners)?;
         let beams = super::beam_strain::beam_fields(&prepared, &solved)?;
-        for ((((i, case), u), shells), beams) in group.iter().zip(members).zip(solved).zip(shells).zip(beams) {
+        for ((((i, case), u), shells), beams) in
+            group.iter().zip(members).zip(solved).zip(shells).zip(beams)
+        {
             results[*i] = Some(CaseResult {
                 subcase: case.subcase,
                 label: case.label.clone(),
@@ -167,7 +169,9 @@ fn solve_group(
     findings: &mut Vec<Finding>,
 ) -> Result<Vec<Vec<[f64; 6]>>, FeError> {
     let model = prepared.model;
-    let Some(case) = cases.first() else { return Ok(Vec::new()) };
+    let Some(case) = cases.first() else {
+        return Ok(Vec::new());
+    };
     check_sets(model, cases)?;
     let mut system = System::new(prepared, mass, (case.spc, case.mpc), case.relief, findings)?;
     let n = system.symbolic.n_unknowns();
@@ -200,7 +204,9 @@ fn solve_group(
     let factor = system.factor(model, &stiffness)?;
     drop(stiffness);
     report.smallest_pivot = factor.smallest_pivot;
-    factor.solve(&mut columns).map_err(|e| system.refused(model, e))?;
+    factor
+        .solve(&mut columns)
+        .map_err(|e| system.refused(model, e))?;
     drop(factor);
     let mut all = Vec::with_capacity(cases.len());
     for column in columns.chunks_exact(n.max(1)) {
@@ -292,6 +298,15 @@ fn applied_forces(model: &Model, mass: &Mass, case: &LoadCase) -> Result<Vec<[f6
 pub fn supported_stiffness(model: &Model) -> Result<(usize, Vec<(usize, usize, f64)>), FeError> {
     let prepared = Prepared::new(model);
     let mass = Mass::new(&prepared).map_err(FeError::Refused)?;
-    let system = System::new(&prepared, &mass, (None, None), Relief::Automatic, &mut Vec::new())?;
-    Ok((system.symbolic.n_unknowns(), system.stiffness.lower_triplets(&system.symbolic)))
+    let system = System::new(
+        &prepared,
+        &mass,
+        (None, None),
+        Relief::Automatic,
+        &mut Vec::new(),
+    )?;
+    Ok((
+        system.symbolic.n_unknowns(),
+        system.stiffness.lower_triplets(&system.symbolic),
+    ))
 }

@@ -47,15 +47,27 @@ impl System {
             Relief::None => None,
             _ => {
                 let x = model.grids.iter().map(|g| g.x).collect();
-                Some(RigidBody::new(x, &prepared.axes, mass, &reduction, &touched(prepared, &reduction))?)
+                Some(RigidBody::new(
+                    x,
+                    &prepared.axes,
+                    mass,
+                    &reduction,
+                    &touched(prepared, &reduction),
+                )?)
             }
         };
         if let Some(body) = &body {
             findings.extend(ties(prepared, &assembled, body));
         }
-        let weak = if model.params.autospc { weak_unknowns(&assembled) } else { Vec::new() };
+        let weak = if model.params.autospc {
+            weak_unknowns(&assembled)
+        } else {
+            Vec::new()
+        };
         for (unknown, k) in &weak {
-            assembled.stiffness.add_to_diagonal(&assembled.symbolic, *unknown, *k);
+            assembled
+                .stiffness
+                .add_to_diagonal(&assembled.symbolic, *unknown, *k);
         }
         findings.extend(autospc_finding(model, &assembled, &weak));
         let supports = match (&body, relief) {
@@ -66,30 +78,60 @@ impl System {
                     .filter(|(sid, _)| sid.is_none() || *sid == set)
                     .flat_map(|(_, list)| list.iter().copied())
                     .collect();
-                body.given_supports(&prepared.axes, &assembled.numbering, assembled.symbolic.unknown_start(), &dofs)?
+                body.given_supports(
+                    &prepared.axes,
+                    &assembled.numbering,
+                    assembled.symbolic.unknown_start(),
+                    &dofs,
+                )?
             }
             (Some(body), _) => body.choose_supports(&prepared.axes, &assembled.numbering),
             (None, _) => Vec::new(),
         };
         let diagonal = assembled.stiffness.diagonal_values(&assembled.symbolic);
         for unknown in &supports {
-            assembled.stiffness.add_to_diagonal(&assembled.symbolic, *unknown, diagonal[*unknown]);
+            assembled
+                .stiffness
+                .add_to_diagonal(&assembled.symbolic, *unknown, diagonal[*unknown]);
         }
-        let Assembled { numbering, graph, symbolic, stiffness } = assembled;
-        Ok(Self { reduction, numbering, graph, symbolic, stiffness, body, weak })
+        let Assembled {
+            numbering,
+            graph,
+            symbolic,
+            stiffness,
+        } = assembled;
+        Ok(Self {
+            reduction,
+            numbering,
+            graph,
+            symbolic,
+            stiffness,
+            body,
+            weak,
+        })
     }
 
     /// The factor.
     ///
     /// # Errors
     /// Mechanisms, each dof named; entries that are not numbers.
-    pub(super) fn factor(&self, model: &Model, stiffness: &BlockMatrix) -> Result<Factor<'_>, FeError> {
+    pub(super) fn factor(
+        &self,
+        model: &Model,
+        stiffness: &BlockMatrix,
+    ) -> Result<Factor<'_>, FeError> {
         let start = self.symbolic.unknown_start();
         let factor = Factor::new(&self.symbolic, stiffness).map_err(|e| self.refused(model, e))?;
         if factor.lost.is_empty() {
             Ok(factor)
         } else {
-            Err(mechanism(model, &factor.lost, start, &self.numbering, &self.graph))
+            Err(mechanism(
+                model,
+                &factor.lost,
+                start,
+                &self.numbering,
+                &self.graph,
+            ))
         }
     }
 
@@ -99,9 +141,14 @@ impl System {
             FactorError::NotANumber { unknown } => {
                 let start = self.symbolic.unknown_start();
                 let grid = &model.grids[self.numbering.dof_of(unknown, start).0];
-                FeError::NotANumber { grid: grid.id, at: grid.at }
+                FeError::NotANumber {
+                    grid: grid.id,
+                    at: grid.at,
+                }
             }
-            FactorError::TooLarge => FeError::TooLarge { unknowns: self.symbolic.n_unknowns() },
+            FactorError::TooLarge => FeError::TooLarge {
+                unknowns: self.symbolic.n_unknowns(),
+            },
         }
     }
 
@@ -109,7 +156,12 @@ impl System {
     ///
     /// # Errors
     /// Elements that can't be formed.
-    pub(super) fn pack(&self, prepared: &Prepared<'_>, mut f: Vec<[f64; 6]>, out: &mut [f64]) -> Result<(), FeError> {
+    pub(super) fn pack(
+        &self,
+        prepared: &Prepared<'_>,
+        mut f: Vec<[f64; 6]>,
+        out: &mut [f64],
+    ) -> Result<(), FeError> {
         for (f, axes) in f.iter_mut().zip(&prepared.axes) {
             *f = to_local(axes, *f);
         }
@@ -131,7 +183,12 @@ impl System {
 
     /// # Errors
     /// A load on a dof that no element holds.
-    pub(super) fn loads_on_nothing(&self, model: &Model, subcase: u32, f: &[[f64; 6]]) -> Result<(), FeError> {
+    pub(super) fn loads_on_nothing(
+        &self,
+        model: &Model,
+        subcase: u32,
+        f: &[[f64; 6]],
+    ) -> Result<(), FeError> {
         let fault = |g: usize, dof: usize| FeError::LoadOnNothing {
             grid: model.grids[g].id,
             dof: dof as u8 + 1,
@@ -140,13 +197,17 @@ impl System {
         };
         let limit = 1e-9 * largest(f);
         for (g, f) in f.iter().enumerate() {
-            let loose = |i: usize| self.reduction.state[6 * g + i] == State::Free && self.numbering.group[g].is_none();
+            let loose = |i: usize| {
+                self.reduction.state[6 * g + i] == State::Free && self.numbering.group[g].is_none()
+            };
             if let Some(i) = (0..6).find(|&i| f[i].abs() > limit && loose(i)) {
                 return Err(fault(g, i));
             }
         }
         for (unknown, _) in &self.weak {
-            let (g, dof) = self.numbering.dof_of(*unknown, self.symbolic.unknown_start());
+            let (g, dof) = self
+                .numbering
+                .dof_of(*unknown, self.symbolic.unknown_start());
             if f[g][dof].abs() > limit && model.grids[g].cd.0 == 0 {
                 return Err(fault(g, dof));
             }

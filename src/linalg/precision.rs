@@ -43,7 +43,10 @@ impl Precision {
         let mut inverse = vec![0.0; n * n];
         for i in 0..n {
             for j in 0..=i {
-                let v = dot(&columns[i * n + i..(i + 1) * n], &columns[j * n + i..(j + 1) * n]);
+                let v = dot(
+                    &columns[i * n + i..(i + 1) * n],
+                    &columns[j * n + i..(j + 1) * n],
+                );
                 inverse[i * n + j] = v;
                 inverse[j * n + i] = v;
             }

@@ -237,7 +237,10 @@ impl Builder<'_> {
                 .push((1.0, Load::Gravity(n * g.scale)));
         }
         for r in &cards.rforces {
-            let axes = self.frame_ix.get(&r.cid).and_then(|f| self.model.frames.get(f.us()));
+            let axes = self
+                .frame_ix
+                .get(&r.cid)
+                .and_then(|f| self.model.frames.get(f.us()));
             let centre = match r.grid {
                 0 => Some(Vec3::zeros()),
                 id => self.grid_ix.get(&id).map(|g| self.model.grids[g.us()].x),

@@ -8,9 +8,12 @@ use nastran::results::{Analysis, Block, ElementType, Quantity, RowId, Rows, Shel
 const NODAL: &[&str] = &["t1", "t2", "t3", "r1", "r2", "r3"];
 const SHELL: &[&str] = &["fiber", "exx", "eyy", "gxy", "angle", "emax", "emin", "vm"];
 const BAR: &[&str] = &[
-    "s1a", "s2a", "s3a", "s4a", "axial", "smaxa", "smina", "mst", "s1b", "s2b", "s3b", "s4b", "smaxb", "sminb", "msc",
+    "s1a", "s2a", "s3a", "s4a", "axial", "smaxa", "smina", "mst", "s1b", "s2b", "s3b", "s4b",
+    "smaxb", "sminb", "msc",
 ];
-const BEAM: &[&str] = &["x_xb", "sxc", "sxd", "sxe", "sxf", "smax", "smin", "mst", "msc"];
+const BEAM: &[&str] = &[
+    "x_xb", "sxc", "sxd", "sxe", "sxf", "smax", "smin", "mst", "msc",
+];
 
 /// Hands every block of a solution to `write`: displacements of all cases (displacement frames of the grids), then shell strain at
 /// both fibres (CQUAD4 with corners where they are known, CTRIA3), then strain of bars and beams.
@@ -23,14 +26,26 @@ pub fn for_each_block<E>(
     mut write: impl FnMut(&Block, &Rows) -> Result<(), E>,
 ) -> Result<(), E> {
     for case in solution.cases.iter().filter(|c| !c.displacement.is_empty()) {
-        write(&block(case, Quantity::Displacement, None), &displacement(model, case))?;
+        write(
+            &block(case, Quantity::Displacement, None),
+            &displacement(model, case),
+        )?;
     }
-    for (shape, with_corners, centre_only) in [(ShellShape::Quad4, 144, 33), (ShellShape::Tria3, 74, 74)] {
+    for (shape, with_corners, centre_only) in
+        [(ShellShape::Quad4, 144, 33), (ShellShape::Tria3, 74, 74)]
+    {
         for case in &solution.cases {
             let corners = shape == ShellShape::Quad4 && !case.shells.corners.is_empty();
             let rows = shells(model, case, shape, corners);
             if !rows.is_empty() {
-                write(&block(case, Quantity::Strain, Some(if corners { with_corners } else { centre_only })), &rows)?;
+                write(
+                    &block(
+                        case,
+                        Quantity::Strain,
+                        Some(if corners { with_corners } else { centre_only }),
+                    ),
+                    &rows,
+                )?;
             }
         }
     }
@@ -65,22 +80,43 @@ fn block(case: &CaseResult, quantity: Quantity, element: Option<u32>) -> Block {
 }
 
 fn displacement(model: &Model, case: &CaseResult) -> Rows {
-    let mut rows = Rows { columns: NODAL, ..Rows::default() };
+    let mut rows = Rows {
+        columns: NODAL,
+        ..Rows::default()
+    };
     for (g, u) in (0..).map(crate::model::GridIx).zip(&case.displacement) {
-        let Some(grid) = model.grids.get(g.us()) else { break };
+        let Some(grid) = model.grids.get(g.us()) else {
+            break;
+        };
         let axes = model.cd_axes(g);
-        let (t, r) = (axes * Vec3::new(u[0], u[1], u[2]), axes * Vec3::new(u[3], u[4], u[5]));
-        rows.ids.push(RowId { entity: grid.id, at: 1, layer: 0 });
+        let (t, r) = (
+            axes * Vec3::new(u[0], u[1], u[2]),
+            axes * Vec3::new(u[3], u[4], u[5]),
+        );
+        rows.ids.push(RowId {
+            entity: grid.id,
+            at: 1,
+            layer: 0,
+        });
         rows.values.extend([t.x, t.y, t.z, r.x, r.y, r.z]);
     }
     rows
 }
 
 fn shells(model: &Model, case: &CaseResult, shape: ShellShape, corners: bool) -> Rows {
-    let mut rows = Rows { columns: SHELL, ..Rows::default() };
+    let mut rows = Rows {
+        columns: SHELL,
+        ..Rows::default()
+    };
     let none = Vec::new();
     let corner_field = if corners { &case.shells.corners } else { &none };
-    for (i, (ix, centre)) in case.shells.elements.iter().zip(&case.shells.centre).enumerate() {
+    for (i, (ix, centre)) in case
+        .shells
+        .elements
+        .iter()
+        .zip(&case.shells.centre)
+        .enumerate()
+    {
         let shell = &model.shells[ix.us()];
         if shell.shape != shape {
             continue;
@@ -88,13 +124,21 @@ fn shells(model: &Model, case: &CaseResult, shape: ShellShape, corners: bool) ->
         let z = model.shell_properties[shell.property.us()].z;
         let mut push = |at: u32, strain: &[[f64; 3]; 2]| {
             for layer in 0..2 {
-                rows.ids.push(RowId { entity: shell.id, at, layer: layer as u32 + 1 });
+                rows.ids.push(RowId {
+                    entity: shell.id,
+                    at,
+                    layer: layer as u32 + 1,
+                });
                 rows.values.push(z[layer]);
                 rows.values.extend(with_invariants(strain[layer]));
             }
         };
         push(0, centre);
-        for (g, strain) in shell.grids.iter().zip(corner_field.get(i).into_iter().flatten()) {
+        for (g, strain) in shell
+            .grids
+            .iter()
+            .zip(corner_field.get(i).into_iter().flatten())
+        {
             push(model.grids[g.us()].id, strain);
         }
     }
@@ -110,8 +154,16 @@ fn with_invariants([ex, ey, g]: [f64; 3]) -> [f64; 7] {
 }
 
 fn beams(model: &Model, case: &CaseResult, is_beam: bool) -> Rows {
-    let mut rows = Rows { columns: if is_beam { BEAM } else { BAR }, ..Rows::default() };
-    let extremes = |s: &[f64; 4]| s.iter().fold((f64::NEG_INFINITY, f64::INFINITY), |(a, b), v| (a.max(*v), b.min(*v)));
+    let mut rows = Rows {
+        columns: if is_beam { BEAM } else { BAR },
+        ..Rows::default()
+    };
+    let extremes = |s: &[f64; 4]| {
+        s.iter()
+            .fold((f64::NEG_INFINITY, f64::INFINITY), |(a, b), v| {
+                (a.max(*v), b.min(*v))
+            })
+    };
     for (ix, stations) in case.beams.elements.iter().zip(&case.beams.stations) {
         let beam = &model.beams[ix.us()];
         if beam.is_beam != is_beam {
@@ -125,15 +177,24 @@ fn beams(model: &Model, case: &CaseResult, is_beam: bool) -> Rows {
                     _ => 0,
                 };
                 let (largest, smallest) = extremes(s);
-                rows.ids.push(RowId { entity: beam.id, at, layer: 0 });
-                rows.values.extend([*xi, s[0], s[1], s[2], s[3], largest, smallest, 0.0, 0.0]);
+                rows.ids.push(RowId {
+                    entity: beam.id,
+                    at,
+                    layer: 0,
+                });
+                rows.values
+                    .extend([*xi, s[0], s[1], s[2], s[3], largest, smallest, 0.0, 0.0]);
             }
         } else if let (Some((_, a)), Some((_, b))) = (stations.first(), stations.last()) {
             // Bending and axial parts are told apart by the mean over the points; readers add them.
             let axial = a.iter().sum::<f64>() / 4.0;
             let (bend_a, bend_b) = (a.map(|s| s - axial), b.map(|s| s - axial));
             let ((amax, amin), (bmax, bmin)) = (extremes(a), extremes(b));
-            rows.ids.push(RowId { entity: beam.id, at: 0, layer: 0 });
+            rows.ids.push(RowId {
+                entity: beam.id,
+                at: 0,
+                layer: 0,
+            });
             rows.values.extend(bend_a);
             rows.values.extend([axial, amax, amin, 0.0]);
             rows.values.extend(bend_b);

@@ -28,7 +28,10 @@ impl Appended {
 }
 
 fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
 }
 
 fn floats(values: impl Iterator<Item = f64>) -> Vec<u8> {
@@ -44,20 +47,47 @@ pub fn write_vtu(model: &Model, cases: &[CaseResult], out: &mut dyn Write) -> Re
     let mut cells: Vec<(u8, u32, Vec<GridIx>)> = Vec::new();
     for s in &model.shells {
         let n = s.shape.n_corners();
-        cells.push((if n == 4 { QUAD } else { TRIANGLE }, s.id, s.grids[..n].to_vec()));
+        cells.push((
+            if n == 4 { QUAD } else { TRIANGLE },
+            s.id,
+            s.grids[..n].to_vec(),
+        ));
     }
     cells.extend(model.beams.iter().map(|b| (LINE, b.id, b.grids.to_vec())));
     cells.extend(model.rods.iter().map(|r| (LINE, r.id, r.grids.to_vec())));
-    let mut a = Appended { xml: String::new(), offset: 0, blocks: Vec::new() };
+    let mut a = Appended {
+        xml: String::new(),
+        offset: 0,
+        blocks: Vec::new(),
+    };
     a.xml += "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n";
     a.xml += &format!(
         "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<Points>\n",
         model.grids.len(),
         cells.len()
     );
-    a.array("Points", "Float64", 3, model.grids.iter().flat_map(|g| [g.x.x, g.x.y, g.x.z]).flat_map(f64::to_le_bytes).collect());
+    a.array(
+        "Points",
+        "Float64",
+        3,
+        model
+            .grids
+            .iter()
+            .flat_map(|g| [g.x.x, g.x.y, g.x.z])
+            .flat_map(f64::to_le_bytes)
+            .collect(),
+    );
     a.xml += "</Points>\n<Cells>\n";
-    a.array("connectivity", "Int64", 1, cells.iter().flat_map(|c| &c.2).flat_map(|g| i64::from(g.0).to_le_bytes()).collect());
+    a.array(
+        "connectivity",
+        "Int64",
+        1,
+        cells
+            .iter()
+            .flat_map(|c| &c.2)
+            .flat_map(|g| i64::from(g.0).to_le_bytes())
+            .collect(),
+    );
     let mut end = 0_i64;
     let ends = cells.iter().flat_map(|c| {
         end += c.2.len() as i64;
@@ -67,13 +97,38 @@ pub fn write_vtu(model: &Model, cases: &[CaseResult], out: &mut dyn Write) -> Re
     a.array("offsets", "Int64", 1, ends);
     a.array("types", "UInt8", 1, cells.iter().map(|c| c.0).collect());
     a.xml += "</Cells>\n<PointData>\n";
-    a.array("grid", "Int32", 1, model.grids.iter().flat_map(|g| (g.id as i32).to_le_bytes()).collect());
-    for case in cases.iter().filter(|c| c.displacement.len() == model.grids.len()) {
+    a.array(
+        "grid",
+        "Int32",
+        1,
+        model
+            .grids
+            .iter()
+            .flat_map(|g| (g.id as i32).to_le_bytes())
+            .collect(),
+    );
+    for case in cases
+        .iter()
+        .filter(|c| c.displacement.len() == model.grids.len())
+    {
         let u = case.displacement.iter().flat_map(|u| [u[0], u[1], u[2]]);
-        a.array(&format!("displacement {}", title(case)), "Float32", 3, floats(u));
+        a.array(
+            &format!("displacement {}", title(case)),
+            "Float32",
+            3,
+            floats(u),
+        );
     }
     a.xml += "</PointData>\n<CellData>\n";
-    a.array("element", "Int32", 1, cells.iter().flat_map(|c| (c.1 as i32).to_le_bytes()).collect());
+    a.array(
+        "element",
+        "Int32",
+        1,
+        cells
+            .iter()
+            .flat_map(|c| (c.1 as i32).to_le_bytes())
+            .collect(),
+    );
     for case in cases {
         let mut by_shell = vec![[[f64::NAN; 3]; 2]; cells.len()];
         for (ix, strain) in case.shells.elements.iter().zip(&case.shells.centre) {
@@ -83,9 +138,19 @@ pub fn write_vtu(model: &Model, cases: &[CaseResult], out: &mut dyn Write) -> Re
         }
         for (surface, name) in ["bottom", "top"].iter().enumerate() {
             let strain = by_shell.iter().flat_map(|s| s[surface]);
-            a.array(&format!("strain {name} {}", title(case)), "Float32", 3, floats(strain));
+            a.array(
+                &format!("strain {name} {}", title(case)),
+                "Float32",
+                3,
+                floats(strain),
+            );
             let largest = by_shell.iter().map(|s| largest_principal(s[surface]));
-            a.array(&format!("largest strain {name} {}", title(case)), "Float32", 1, floats(largest));
+            a.array(
+                &format!("largest strain {name} {}", title(case)),
+                "Float32",
+                1,
+                floats(largest),
+            );
         }
     }
     a.xml += "</CellData>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
@@ -98,10 +163,18 @@ pub fn write_vtu(model: &Model, cases: &[CaseResult], out: &mut dyn Write) -> Re
 }
 
 fn title(case: &CaseResult) -> String {
-    if case.label.is_empty() { case.subcase.to_string() } else { format!("{} {}", case.subcase, case.label) }
+    if case.label.is_empty() {
+        case.subcase.to_string()
+    } else {
+        format!("{} {}", case.subcase, case.label)
+    }
 }
 
 fn largest_principal([ex, ey, g]: [f64; 3]) -> f64 {
     let (mean, radius) = ((ex + ey) / 2.0, ((ex - ey) / 2.0).hypot(g / 2.0));
-    if mean < 0.0 { mean - radius } else { mean + radius }
+    if mean < 0.0 {
+        mean - radius
+    } else {
+        mean + radius
+    }
 }

@@ -10,7 +10,9 @@ use strainbridge::model::{Model, RigidKind, Vec3};
 fn footprint(model: &Model, loaded: strainbridge::model::GridIx) -> Vec<Vec3> {
     let mut x = vec![model.grids[loaded.us()].x];
     for r in &model.rigids {
-        if let RigidKind::Mean { reference, arms, .. } = &r.kind
+        if let RigidKind::Mean {
+            reference, arms, ..
+        } = &r.kind
             && *reference == loaded
         {
             x.extend(arms.iter().map(|a| model.grids[a.2.us()].x));
@@ -25,8 +27,12 @@ fn principal([ex, ey, g]: [f64; 3]) -> f64 {
 
 #[test]
 fn vertical_wheel_loads_on_a_ladder_frame_strain_it_as_mystran_says() {
-    let Some(deck) = shared("nastran/mystran_frame_units/frame.bdf") else { return };
-    let Some(op2) = shared("nastran/mystran_frame_units/frame.op2") else { return };
+    let Some(deck) = shared("nastran/mystran_frame_units/frame.bdf") else {
+        return;
+    };
+    let Some(op2) = shared("nastran/mystran_frame_units/frame.op2") else {
+        return;
+    };
     let (model, control) = model_of(&deck);
     let bytes = std::fs::read(op2).unwrap();
     let file = ResultsFile::read(&bytes, "frame.op2").unwrap();
@@ -44,18 +50,33 @@ fn vertical_wheel_loads_on_a_ladder_frame_strain_it_as_mystran_says() {
             relief: Relief::Automatic,
         })
         .collect();
-    let (ours, report) = solve_cases(&model, &cases, &SolveOptions::default()).unwrap_or_else(|e| panic!("{e}"));
+    let (ours, report) =
+        solve_cases(&model, &cases, &SolveOptions::default()).unwrap_or_else(|e| panic!("{e}"));
     assert!(report.balance.iter().all(|b| b.residual < 1e-10));
     for (case, ours) in cases.iter().zip(&ours.cases) {
-        let theirs = theirs.cases.iter().find(|c| c.subcase == case.subcase).unwrap();
-        let set = model.load_sets.iter().find(|s| UnitLoad::Set(s.sid) == case.loads[0]).unwrap();
-        let strainbridge::model::Load::Force(grid, _) = set.loads[0].1 else { panic!("a force") };
+        let theirs = theirs
+            .cases
+            .iter()
+            .find(|c| c.subcase == case.subcase)
+            .unwrap();
+        let set = model
+            .load_sets
+            .iter()
+            .find(|s| UnitLoad::Set(s.sid) == case.loads[0])
+            .unwrap();
+        let strainbridge::model::Load::Force(grid, _) = set.loads[0].1 else {
+            panic!("a force")
+        };
         let near = footprint(&model, grid);
         let (mut difference, mut size) = (0.0, 0.0);
         let mut hot: Vec<(f64, f64)> = Vec::new();
         for (shell, reference) in theirs.shells.elements.iter().zip(&theirs.shells.centre) {
             let s = &model.shells[shell.us()];
-            let centre = s.grids[..4].iter().map(|g| model.grids[g.us()].x).sum::<Vec3>() / 4.0;
+            let centre = s.grids[..4]
+                .iter()
+                .map(|g| model.grids[g.us()].x)
+                .sum::<Vec3>()
+                / 4.0;
             if near.iter().any(|x| (x - centre).norm() <= 200.0) {
                 continue;
             }
@@ -70,9 +91,16 @@ fn vertical_wheel_loads_on_a_ladder_frame_strain_it_as_mystran_says() {
         let rms = (difference / size).sqrt();
         assert!(rms < 0.05, "subcase {}: rms {rms}", case.subcase);
         hot.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let mut relative: Vec<f64> = hot[..hot.len() / 10].iter().map(|(r, g)| (g / r - 1.0).abs()).collect();
+        let mut relative: Vec<f64> = hot[..hot.len() / 10]
+            .iter()
+            .map(|(r, g)| (g / r - 1.0).abs())
+            .collect();
         relative.sort_by(f64::total_cmp);
         let median = relative[relative.len() / 2];
-        assert!(median < 0.015, "subcase {}: median of the hottest tenth {median}", case.subcase);
+        assert!(
+            median < 0.015,
+            "subcase {}: median of the hottest tenth {median}",
+            case.subcase
+        );
     }
 }

@@ -18,18 +18,32 @@ fn folded(turn: f64) -> (Bulk, impl Fn([f64; 3]) -> [f64; 3]) {
     b.card("PBAR,2,1,200.,9000.,4000.,8000.");
     let ids = b.patch(10, 4, |u, v| {
         let (a, y) = (1.2 * u, 60.0 * v);
-        rotate([300.0 * a.sin(), y, 300.0 * (1.0 - a.cos()) + if v > 0.6 { 100.0 * (v - 0.6) } else { 0.0 }])
+        rotate([
+            300.0 * a.sin(),
+            y,
+            300.0 * (1.0 - a.cos()) + if v > 0.6 { 100.0 * (v - 0.6) } else { 0.0 },
+        ])
     });
     for i in 0..4 {
         let [a, c] = [ids[i][4], ids[i + 1][4]];
-        let top = b.grid(rotate([300.0 * (0.12 * (i as f64 + 0.5)).sin(), 75.0, 60.0 + 12.0 * i as f64]));
+        let top = b.grid(rotate([
+            300.0 * (0.12 * (i as f64 + 0.5)).sin(),
+            75.0,
+            60.0 + 12.0 * i as f64,
+        ]));
         b.tria([a, c, top]);
     }
     let point = b.grid(rotate([150.0, 30.0, 160.0]));
-    b.card(&format!("RBE3,901,,{point},123456,1.0,123,{},{},\n,{},{},{}", ids[3][1], ids[3][3], ids[6][1], ids[6][3], ids[8][2]));
+    b.card(&format!(
+        "RBE3,901,,{point},123456,1.0,123,{},{},\n,{},{},{}",
+        ids[3][1], ids[3][3], ids[6][1], ids[6][3], ids[8][2]
+    ));
     b.card(&format!("CONM2,902,{point},,2.-4"));
     let up = rotate([0.0, 0.0, 1.0]);
-    b.card(&format!("CBAR,903,2,{},{},{:.6},{:.6},{:.6}", ids[0][2], ids[10][2], up[0], up[1], up[2]));
+    b.card(&format!(
+        "CBAR,903,2,{},{},{:.6},{:.6},{:.6}",
+        ids[0][2], ids[10][2], up[0], up[1], up[2]
+    ));
     (b, rotate)
 }
 
@@ -38,11 +52,21 @@ fn strains(model: &Model, loads: &[UnitLoad]) -> (Solution, SolveReport) {
 }
 
 fn load(model: &Model, grid: u32, force: [f64; 3], moment: [f64; 3]) -> UnitLoad {
-    UnitLoad::AtGrid { grid: model.grid_ix(grid).unwrap(), force: force.into(), moment: moment.into() }
+    UnitLoad::AtGrid {
+        grid: model.grid_ix(grid).unwrap(),
+        force: force.into(),
+        moment: moment.into(),
+    }
 }
 
 fn flat(case: &CaseResult) -> Vec<f64> {
-    case.shells.centre.iter().flatten().flatten().copied().collect()
+    case.shells
+        .centre
+        .iter()
+        .flatten()
+        .flatten()
+        .copied()
+        .collect()
 }
 
 fn largest(v: &[f64]) -> f64 {
@@ -51,7 +75,11 @@ fn largest(v: &[f64]) -> f64 {
 
 fn worst_difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
-    a.iter().zip(b).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max) / largest(a)
+    a.iter()
+        .zip(b)
+        .map(|(x, y)| (x - y).abs())
+        .fold(0.0, f64::max)
+        / largest(a)
 }
 
 #[test]
@@ -72,9 +100,17 @@ fn strains_from_two_supports_agree() {
     b.card("SUPORT1,8,12,123456");
     let model = b.model();
     let at = load(&model, 33, rotate([100.0, -40.0, 70.0]), [0.0; 3]);
-    let case = |relief| LoadCase { subcase: 1, label: String::new(), loads: vec![at.clone()], spc: None, mpc: None, relief };
+    let case = |relief| LoadCase {
+        subcase: 1,
+        label: String::new(),
+        loads: vec![at.clone()],
+        spc: None,
+        mpc: None,
+        relief,
+    };
     let solve = |relief| {
-        let (s, r) = solve_cases(&model, &[case(relief)], &SolveOptions::default()).unwrap_or_else(|e| panic!("{e}"));
+        let (s, r) = solve_cases(&model, &[case(relief)], &SolveOptions::default())
+            .unwrap_or_else(|e| panic!("{e}"));
         assert!(r.balance[0].residual < 1e-10, "{:?}", r.balance);
         flat(&s.cases[0])
     };
@@ -92,12 +128,27 @@ fn gravity_alone_strains_a_free_structure_nowhere_and_a_finding_says_so() {
     b.card("FORCE,6,20,0,1.0,0.0,0.0,100.0");
     let model = b.model();
     let (s, report) = strains(&model, &[UnitLoad::Set(5), UnitLoad::Set(6)]);
-    assert!(s.findings.iter().any(|f| f.code == "load-is-inertia-only" && f.subject == "subcase 1"), "{:?}", s.findings);
+    assert!(
+        s.findings
+            .iter()
+            .any(|f| f.code == "load-is-inertia-only" && f.subject == "subcase 1"),
+        "{:?}",
+        s.findings
+    );
     let (weight, force) = (largest(&flat(&s.cases[0])), largest(&flat(&s.cases[1])));
     assert!(weight < 1e-8 * force, "{weight:e} {force:e}");
     let mass = report.mass.unwrap().mass;
-    near("gravity resultant", report.balance[0].applied[2], -9810.0 * mass, 1e-9);
-    for (a, i) in report.balance[1].applied.iter().zip(report.balance[1].inertia) {
+    near(
+        "gravity resultant",
+        report.balance[0].applied[2],
+        -9810.0 * mass,
+        1e-9,
+    );
+    for (a, i) in report.balance[1]
+        .applied
+        .iter()
+        .zip(report.balance[1].inertia)
+    {
         assert!((a + i).abs() < 1e-7 * 100.0, "{:?}", report.balance[1]);
     }
 }
@@ -105,12 +156,26 @@ fn gravity_alone_strains_a_free_structure_nowhere_and_a_finding_says_so() {
 #[test]
 fn a_part_that_nothing_joins_is_named() {
     let (mut b, _) = folded(0.0);
-    let far = [b.grid([900.0, 0.0, 0.0]), b.grid([950.0, 0.0, 0.0]), b.grid([950.0, 50.0, 0.0])];
+    let far = [
+        b.grid([900.0, 0.0, 0.0]),
+        b.grid([950.0, 0.0, 0.0]),
+        b.grid([950.0, 50.0, 0.0]),
+    ];
     b.tria(far);
     let model = b.model();
-    let error = solve_unit_loads(&model, &[load(&model, 20, [0.0, 0.0, 1.0], [0.0; 3])], &SolveOptions::default()).unwrap_err();
-    let FeError::Mechanism { parts, .. } = &error else { panic!("{error}") };
-    assert!(parts.iter().any(|p| p.contains(&far[0].to_string())), "{error}");
+    let error = solve_unit_loads(
+        &model,
+        &[load(&model, 20, [0.0, 0.0, 1.0], [0.0; 3])],
+        &SolveOptions::default(),
+    )
+    .unwrap_err();
+    let FeError::Mechanism { parts, .. } = &error else {
+        panic!("{error}")
+    };
+    assert!(
+        parts.iter().any(|p| p.contains(&far[0].to_string())),
+        "{error}"
+    );
 }
 
 #[test]
@@ -118,16 +183,27 @@ fn a_hinge_without_torsion_support_is_named_with_what_hangs_there() {
     let mut b = Bulk::default();
     b.card("MAT1,1,210000.,,.3,7.85-9");
     b.card("PBAR,2,1,200.,9000.,4000.,8000.");
-    let g: Vec<u32> = (0..4).map(|i| b.grid([100.0 * f64::from(i), 0.0, 0.0])).collect();
+    let g: Vec<u32> = (0..4)
+        .map(|i| b.grid([100.0 * f64::from(i), 0.0, 0.0]))
+        .collect();
     b.card(&format!("CBAR,1,2,{},{},0.,1.,0.", g[0], g[1]));
     b.card(&format!("CBAR,2,2,{},{},0.,1.,0.,\n,,45", g[1], g[2]));
     b.card(&format!("CBAR,3,2,{},{},0.,1.,0.,\n,,5", g[2], g[3]));
     b.hold("1234", [g[0]]);
     b.force(g[3], [0.0, 0.0, 1.0]);
     let model = b.model();
-    let case = LoadCase { subcase: 1, label: String::new(), loads: vec![UnitLoad::Set(1)], spc: Some(1), mpc: None, relief: Relief::None };
+    let case = LoadCase {
+        subcase: 1,
+        label: String::new(),
+        loads: vec![UnitLoad::Set(1)],
+        spc: Some(1),
+        mpc: None,
+        relief: Relief::None,
+    };
     let error = solve_cases(&model, &[case], &SolveOptions::default()).unwrap_err();
-    let FeError::Mechanism { dofs, .. } = &error else { panic!("{error}") };
+    let FeError::Mechanism { dofs, .. } = &error else {
+        panic!("{error}")
+    };
     assert!(dofs.iter().all(|d| d.hangs.contains("CBAR")), "{error}");
 }
 
@@ -138,14 +214,17 @@ fn an_rbe3_on_a_line_and_a_dof_dependent_twice_are_refused_by_name() {
     b.card(&format!("RBE3,911,,{point},123456,1.0,123,1,2,\n,3"));
     let model = b.model();
     let at = load(&model, 20, [0.0, 0.0, 1.0], [0.0; 3]);
-    let error = solve_unit_loads(&model, std::slice::from_ref(&at), &SolveOptions::default()).unwrap_err();
+    let error =
+        solve_unit_loads(&model, std::slice::from_ref(&at), &SolveOptions::default()).unwrap_err();
     assert!(error.to_string().contains("RBE3 911"), "{error}");
 
     let (mut b, _) = folded(0.0);
     b.card("RBE2,921,1,123456,12");
     b.card("RBE2,922,2,123,12");
     let error = solve_unit_loads(&b.model(), &[at], &SolveOptions::default()).unwrap_err();
-    let FeError::DependentTwice { claims, .. } = &error else { panic!("{error}") };
+    let FeError::DependentTwice { claims, .. } = &error else {
+        panic!("{error}")
+    };
     assert!(claims.iter().any(|c| c.contains("922")), "{error}");
 }
 
@@ -155,14 +234,23 @@ fn free_modes_of_a_uniform_beam_follow_euler() {
     b.card("MAT1,1,210000.,,.3,7.85-9");
     b.card("PBAR,2,1,200.,9000.,4000.,8000.");
     let n = 40;
-    let g: Vec<u32> = (0..=n).map(|i| b.grid([50.0 * f64::from(i), 0.0, 0.0])).collect();
+    let g: Vec<u32> = (0..=n)
+        .map(|i| b.grid([50.0 * f64::from(i), 0.0, 0.0]))
+        .collect();
     for i in 0..n as usize {
         b.card(&format!("CBAR,{},2,{},{},0.,1.,0.", i + 1, g[i], g[i + 1]));
     }
     let (modes, _) = free_modes(&b.model(), None, None, 4).unwrap_or_else(|e| panic!("{e}"));
     let l = 50.0 * f64::from(n);
-    let exact = |k: f64, i: f64| k * k / (l * l) * (210_000.0 * i / (7.85e-9 * 200.0_f64)).sqrt() / std::f64::consts::TAU;
-    for (mode, expected) in modes.iter().zip([exact(4.73004, 4000.0), exact(4.73004, 9000.0), exact(7.8532, 4000.0), exact(7.8532, 9000.0)]) {
+    let exact = |k: f64, i: f64| {
+        k * k / (l * l) * (210_000.0 * i / (7.85e-9 * 200.0_f64)).sqrt() / std::f64::consts::TAU
+    };
+    for (mode, expected) in modes.iter().zip([
+        exact(4.73004, 4000.0),
+        exact(4.73004, 9000.0),
+        exact(7.8532, 4000.0),
+        exact(7.8532, 9000.0),
+    ]) {
         near("frequency", mode.frequency, expected, 0.01);
     }
 }

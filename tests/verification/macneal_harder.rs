@@ -6,9 +6,27 @@ use crate::mesh::{Bulk, near};
 /// The five-element patch: grids 1 to 8, inner ones 5 to 8, quadrilaterals or each split into triangles.
 fn patch(split: bool) -> (Bulk, Vec<(u32, f64, f64)>) {
     let mut b = Bulk::shell(1e6, 0.25, 0.001);
-    let xy = [(0.0, 0.0), (0.24, 0.0), (0.24, 0.12), (0.0, 0.12), (0.04, 0.02), (0.18, 0.03), (0.16, 0.08), (0.08, 0.08)];
-    let grids: Vec<(u32, f64, f64)> = xy.iter().map(|&(x, y)| (b.grid([x, y, 0.0]), x, y)).collect();
-    for q in [[1, 2, 6, 5], [2, 3, 7, 6], [3, 4, 8, 7], [4, 1, 5, 8], [5, 6, 7, 8]] {
+    let xy = [
+        (0.0, 0.0),
+        (0.24, 0.0),
+        (0.24, 0.12),
+        (0.0, 0.12),
+        (0.04, 0.02),
+        (0.18, 0.03),
+        (0.16, 0.08),
+        (0.08, 0.08),
+    ];
+    let grids: Vec<(u32, f64, f64)> = xy
+        .iter()
+        .map(|&(x, y)| (b.grid([x, y, 0.0]), x, y))
+        .collect();
+    for q in [
+        [1, 2, 6, 5],
+        [2, 3, 7, 6],
+        [3, 4, 8, 7],
+        [4, 1, 5, 8],
+        [5, 6, 7, 8],
+    ] {
         if split {
             b.tria([q[0], q[1], q[2]]);
             b.tria([q[0], q[2], q[3]]);
@@ -33,7 +51,9 @@ fn membrane_patch_test_is_exact() {
             b.hold("3456", [g]);
         }
         b.force(5, [0.0; 3]);
-        b.text = b.text.replace("FORCE,1,5,0,1.0,0.0,0.0,0.0", "FORCE,1,1,0,0.0,1.0,0.0,0.0");
+        b.text = b
+            .text
+            .replace("FORCE,1,5,0,1.0,0.0,0.0,0.0", "FORCE,1,1,0,0.0,1.0,0.0,0.0");
         let s = b.solve();
         for centre in &s.case.shells.centre {
             for surface in centre {
@@ -64,7 +84,10 @@ fn bending_patch_test_is_exact() {
                 let [ex, ey, g] = *surface;
                 assert!(((ex + ey) / (-2e-3 * z) - 1.0).abs() < 1e-8, "{surface:?}");
                 let radius = ((ex - ey) / 2.0).hypot(g / 2.0);
-                assert!((radius / (5e-4 * z.abs()) - 1.0).abs() < 1e-8, "{surface:?}");
+                assert!(
+                    (radius / (5e-4 * z.abs()) - 1.0).abs() < 1e-8,
+                    "{surface:?}"
+                );
             }
         }
     }
@@ -75,7 +98,11 @@ fn cantilever(slant: impl Fn(usize) -> f64) -> (Bulk, [u32; 2]) {
     let mut b = Bulk::shell(1e7, 0.3, 0.1);
     let ids = b.patch(6, 1, |u, v| {
         let i = (u * 6.0).round() as usize;
-        let shift = if i == 0 || i == 6 { 0.0 } else { slant(i) * (v - 0.5) * 0.2 };
+        let shift = if i == 0 || i == 6 {
+            0.0
+        } else {
+            slant(i) * (v - 0.5) * 0.2
+        };
         [6.0 * u + shift, 0.2 * v, 0.0]
     });
     b.hold("123456", ids[0].clone());
@@ -84,9 +111,16 @@ fn cantilever(slant: impl Fn(usize) -> f64) -> (Bulk, [u32; 2]) {
 
 fn tip(slant: impl Fn(usize) -> f64, direction: [f64; 3]) -> f64 {
     let (mut b, ends) = cantilever(slant);
-    ends.iter().for_each(|g| b.force(*g, direction.map(|c| 0.5 * c)));
+    ends.iter()
+        .for_each(|g| b.force(*g, direction.map(|c| 0.5 * c)));
     let s = b.solve();
-    ends.iter().map(|g| (0..3).map(|i| 0.5 * s.at(*g)[i] * direction[i]).sum::<f64>()).sum()
+    ends.iter()
+        .map(|g| {
+            (0..3)
+                .map(|i| 0.5 * s.at(*g)[i] * direction[i])
+                .sum::<f64>()
+        })
+        .sum()
 }
 
 #[test]
@@ -123,8 +157,18 @@ fn curved(n: usize, m: usize, direction: [f64; 3]) -> f64 {
 #[test]
 fn curved_cantilever() {
     // At the tip the beam points along -x: a load along +-x is along the beam, one along y is tangential; vertical (MH) is radial.
-    near("in-plane, 48 x 2", curved(48, 2, [0.0, 1.0, 0.0]), 0.08734, 0.02);
-    near("out-of-plane, 6 x 1", curved(6, 1, [0.0, 0.0, 1.0]), 0.5022, 0.07);
+    near(
+        "in-plane, 48 x 2",
+        curved(48, 2, [0.0, 1.0, 0.0]),
+        0.08734,
+        0.02,
+    );
+    near(
+        "out-of-plane, 6 x 1",
+        curved(6, 1, [0.0, 0.0, 1.0]),
+        0.5022,
+        0.07,
+    );
 }
 
 fn twisted(t: f64, load: f64, width: bool) -> f64 {
@@ -135,7 +179,11 @@ fn twisted(t: f64, load: f64, width: bool) -> f64 {
     });
     b.hold("123456", ids[0].clone());
     // The tip's width lies along z.
-    let direction = if width { [0.0, 0.0, load] } else { [0.0, load, 0.0] };
+    let direction = if width {
+        [0.0, 0.0, load]
+    } else {
+        [0.0, load, 0.0]
+    };
     for (g, share) in ids[12].iter().zip([0.25, 0.5, 0.25]) {
         b.force(*g, direction.map(|c| c * share));
     }
@@ -145,10 +193,25 @@ fn twisted(t: f64, load: f64, width: bool) -> f64 {
 
 #[test]
 fn twisted_cantilever_of_warped_elements() {
-    near("in the plane of the tip", twisted(0.32, 1.0, true), 0.005424, 0.03);
+    near(
+        "in the plane of the tip",
+        twisted(0.32, 1.0, true),
+        0.005424,
+        0.03,
+    );
     near("normal to it", twisted(0.32, 1.0, false), 0.001754, 0.03);
-    near("thin, in the plane of the tip", twisted(0.0032, 1e-6, true), 0.005256, 0.05);
-    near("thin, normal to it", twisted(0.0032, 1e-6, false), 0.001294, 0.05);
+    near(
+        "thin, in the plane of the tip",
+        twisted(0.0032, 1e-6, true),
+        0.005256,
+        0.05,
+    );
+    near(
+        "thin, normal to it",
+        twisted(0.0032, 1e-6, false),
+        0.001294,
+        0.05,
+    );
 }
 
 /// Quarter of a plate 2 x `length`, `n` elements a half side: deflection of the centre.
@@ -159,7 +222,11 @@ fn plate(length: f64, n: usize, clamped: bool, point: bool) -> f64 {
     b.hold("15", (0..=n).map(|j| ids[0][j]));
     b.hold("24", (0..=n).map(|i| ids[i][0]));
     b.hold("126", ids.iter().flatten().copied());
-    let (x_edge, y_edge) = if clamped { ("345", "345") } else { ("34", "35") };
+    let (x_edge, y_edge) = if clamped {
+        ("345", "345")
+    } else {
+        ("34", "35")
+    };
     b.hold(x_edge, (0..=n).map(|j| ids[n][j]));
     b.hold(y_edge, (0..=n).map(|i| ids[i][n]));
     if point {
@@ -184,7 +251,12 @@ fn rectangular_plate() {
     ] {
         let tolerance = if length < 5.0 { 0.015 } else { 0.06 };
         let what = format!("length {length}, clamped {clamped}, point {point}");
-        near(&what, plate(length, 8, clamped, point), reference, tolerance);
+        near(
+            &what,
+            plate(length, 8, clamped, point),
+            reference,
+            tolerance,
+        );
     }
 }
 
@@ -208,14 +280,21 @@ fn scordelis_lo_roof() {
     let (coarse, fine) = (scordelis_lo(8) / 0.3024, scordelis_lo(16) / 0.3024);
     near("8", coarse, 1.0, 0.02);
     near("16", fine, 0.995, 0.01);
-    assert!((fine - 0.995).abs() <= (coarse - 0.995).abs(), "{coarse} {fine}");
+    assert!(
+        (fine - 0.995).abs() <= (coarse - 0.995).abs(),
+        "{coarse} {fine}"
+    );
 }
 
 fn hemisphere(n: usize) -> f64 {
     let mut b = Bulk::shell(6.825e7, 0.3, 0.04);
     let ids = b.patch(n, n, |u, v| {
         let (a, p) = (90.0_f64.to_radians() * u, (72.0 * v).to_radians());
-        [10.0 * p.cos() * a.cos(), 10.0 * p.cos() * a.sin(), 10.0 * p.sin()]
+        [
+            10.0 * p.cos() * a.cos(),
+            10.0 * p.cos() * a.sin(),
+            10.0 * p.sin(),
+        ]
     });
     b.hold("246", ids[0].clone());
     b.hold("156", ids[n].clone());
@@ -263,7 +342,10 @@ fn raasch(n: usize, m: usize) -> f64 {
         } else {
             // Centre of the second arc on the far side of the joint.
             let (a, b) = (60.0_f64.to_radians(), (s - first) / 46.0);
-            let (cx, cz) = (14.0 * a.sin() + 46.0 * a.sin(), 14.0 * (1.0 - a.cos()) - 46.0 * a.cos());
+            let (cx, cz) = (
+                14.0 * a.sin() + 46.0 * a.sin(),
+                14.0 * (1.0 - a.cos()) - 46.0 * a.cos(),
+            );
             (cx - 46.0 * (a - b).sin(), cz + 46.0 * (a - b).cos())
         };
         [x, 20.0 * v, z]
@@ -278,8 +360,14 @@ fn raasch(n: usize, m: usize) -> f64 {
 
 #[test]
 fn raasch_hook_converges_with_shared_normals() {
-    let ratios: Vec<f64> = [(7, 1), (14, 3), (28, 5), (70, 10)].iter().map(|&(n, m)| raasch(n, m)).collect();
-    assert!((ratios[2] - 1.0).abs() < 0.03 && ratios.windows(2).all(|w| w[1] > w[0]), "{ratios:?}");
+    let ratios: Vec<f64> = [(7, 1), (14, 3), (28, 5), (70, 10)]
+        .iter()
+        .map(|&(n, m)| raasch(n, m))
+        .collect();
+    assert!(
+        (ratios[2] - 1.0).abs() < 0.03 && ratios.windows(2).all(|w| w[1] > w[0]),
+        "{ratios:?}"
+    );
     assert!((ratios[3] - 1.0).abs() < 0.02, "{ratios:?}");
 }
 
@@ -288,7 +376,9 @@ fn an_in_plane_cantilever_converges_with_the_square_of_the_mesh_size() {
     // Depth 0.5, length 2, end shear: against a fine mesh of the same elements (closed form needs parabolic end shear).
     let tip = |n: usize| {
         let mut b = Bulk::shell(1e4, 0.3, 0.1);
-        let ids = b.patch(4 * n, n, |u, v| [2.0 * u, 0.5 * v + 0.05 * u * (v - 0.5), 0.0]);
+        let ids = b.patch(4 * n, n, |u, v| {
+            [2.0 * u, 0.5 * v + 0.05 * u * (v - 0.5), 0.0]
+        });
         b.hold("123456", ids[0].clone());
         for (j, g) in ids[4 * n].iter().enumerate() {
             let share = if j == 0 || j == n { 0.5 } else { 1.0 } / n as f64;
@@ -298,5 +388,10 @@ fn an_in_plane_cantilever_converges_with_the_square_of_the_mesh_size() {
     };
     let (a, b, c, fine) = (tip(2), tip(4), tip(8), tip(32));
     let order = |p: f64, q: f64| ((p - fine).abs() / (q - fine).abs()).log2();
-    assert!(order(a, b) > 1.3 && order(b, c) > 1.3, "orders {} {}", order(a, b), order(b, c));
+    assert!(
+        order(a, b) > 1.3 && order(b, c) > 1.3,
+        "orders {} {}",
+        order(a, b),
+        order(b, c)
+    );
 }

@@ -42,14 +42,30 @@ impl Bulk {
             format!("{s:>16}")
         };
         let id = self.grids;
-        let _ = writeln!(self.text, "GRID*   {id:16}{:16}{}{}\n*       {}", "", f(x[0]), f(x[1]), f(x[2]));
+        let _ = writeln!(
+            self.text,
+            "GRID*   {id:16}{:16}{}{}\n*       {}",
+            "",
+            f(x[0]),
+            f(x[1]),
+            f(x[2])
+        );
         id
     }
 
     /// A lattice of (n + 1) x (m + 1) grids and n x m quadrilaterals; ids by [i][j].
-    pub fn patch(&mut self, n: usize, m: usize, at: impl Fn(f64, f64) -> [f64; 3]) -> Vec<Vec<u32>> {
+    pub fn patch(
+        &mut self,
+        n: usize,
+        m: usize,
+        at: impl Fn(f64, f64) -> [f64; 3],
+    ) -> Vec<Vec<u32>> {
         let ids: Vec<Vec<u32>> = (0..=n)
-            .map(|i| (0..=m).map(|j| self.grid(at(i as f64 / n as f64, j as f64 / m as f64))).collect())
+            .map(|i| {
+                (0..=m)
+                    .map(|j| self.grid(at(i as f64 / n as f64, j as f64 / m as f64)))
+                    .collect()
+            })
             .collect();
         for i in 0..n {
             for j in 0..m {
@@ -61,12 +77,18 @@ impl Bulk {
 
     pub fn quad(&mut self, g: [u32; 4]) {
         self.elements += 1;
-        self.card(&format!("CQUAD4,{},1,{},{},{},{}", self.elements, g[0], g[1], g[2], g[3]));
+        self.card(&format!(
+            "CQUAD4,{},1,{},{},{},{}",
+            self.elements, g[0], g[1], g[2], g[3]
+        ));
     }
 
     pub fn tria(&mut self, g: [u32; 3]) {
         self.elements += 1;
-        self.card(&format!("CTRIA3,{},1,{},{},{}", self.elements, g[0], g[1], g[2]));
+        self.card(&format!(
+            "CTRIA3,{},1,{},{},{}",
+            self.elements, g[0], g[1], g[2]
+        ));
     }
 
     pub fn hold(&mut self, dofs: &str, grids: impl IntoIterator<Item = u32>) {
@@ -76,11 +98,18 @@ impl Bulk {
     }
 
     pub fn force(&mut self, grid: u32, f: [f64; 3]) {
-        self.card(&format!("FORCE,1,{grid},0,1.0,{:?},{:?},{:?}", f[0], f[1], f[2]));
+        self.card(&format!(
+            "FORCE,1,{grid},0,1.0,{:?},{:?},{:?}",
+            f[0], f[1], f[2]
+        ));
     }
 
     pub fn model(&self) -> Model {
-        let deck = read_deck("test.bdf", format!("BEGIN BULK\n{}ENDDATA\n", self.text).into_bytes(), &mut NoFiles);
+        let deck = read_deck(
+            "test.bdf",
+            format!("BEGIN BULK\n{}ENDDATA\n", self.text).into_bytes(),
+            &mut NoFiles,
+        );
         assert!(deck.faults.is_empty(), "{:?}", deck.faults);
         Model::from_cards(&deck.cards).0
     }
@@ -96,8 +125,12 @@ impl Bulk {
             mpc: None,
             relief: Relief::None,
         };
-        let (mut solution, _) = solve_cases(&model, &[case], &SolveOptions::default()).unwrap_or_else(|e| panic!("{e}"));
-        Solved { case: solution.cases.remove(0), model }
+        let (mut solution, _) = solve_cases(&model, &[case], &SolveOptions::default())
+            .unwrap_or_else(|e| panic!("{e}"));
+        Solved {
+            case: solution.cases.remove(0),
+            model,
+        }
     }
 }
 
@@ -118,5 +151,8 @@ impl Solved {
 #[track_caller]
 pub fn near(what: &str, got: f64, reference: f64, tolerance: f64) {
     let ratio = got / reference;
-    assert!((ratio - 1.0).abs() <= tolerance, "{what}: {ratio:.4} of the reference {reference}, tolerance {tolerance}");
+    assert!(
+        (ratio - 1.0).abs() <= tolerance,
+        "{what}: {ratio:.4} of the reference {reference}, tolerance {tolerance}"
+    );
 }

@@ -29,12 +29,23 @@ fn deck_cases(deck: &str) -> Option<(strainbridge::model::Model, Vec<LoadCase>)>
 /// Grid point weight of the solver against our rigid mass about the origin.
 #[test]
 fn mass_agrees_with_the_grid_point_weight_generator() {
-    for (folder, deck) in [("nx_gpwg_1", "rdop2gpwg_1.dat"), ("nx_opg_1", "rdop2opg_1.dat")] {
+    for (folder, deck) in [
+        ("nx_gpwg_1", "rdop2gpwg_1.dat"),
+        ("nx_opg_1", "rdop2opg_1.dat"),
+    ] {
         let Some(e) = expected(folder) else { return };
-        let Some(path) = shared(&format!("nastran/{folder}/{deck}")) else { return };
+        let Some(path) = shared(&format!("nastran/{folder}/{deck}")) else {
+            return;
+        };
         let (model, _) = model_of(&path);
         let p = mass_properties(&model).unwrap().unwrap();
-        let mo = e["op2"]["grid_point_weight"].as_object().unwrap().values().next().unwrap()["MO"].clone();
+        let mo = e["op2"]["grid_point_weight"]
+            .as_object()
+            .unwrap()
+            .values()
+            .next()
+            .unwrap()["MO"]
+            .clone();
         // Weight: mass over WTMASS; moved from the centre of gravity to the origin.
         let c = p.cg.cross_matrix();
         let mut shift = nalgebra::Matrix6::<f64>::identity();
@@ -46,7 +57,10 @@ fn mass_agrees_with_the_grid_point_weight_generator() {
             for j in 0..6 {
                 let reference = mo[i][j].as_f64().unwrap();
                 let got = about_origin[(i, j)];
-                assert!((got - reference).abs() < 1e-6 * largest, "{folder} MO[{i}][{j}]: {got} for {reference}");
+                assert!(
+                    (got - reference).abs() < 1e-6 * largest,
+                    "{folder} MO[{i}][{j}]: {got} for {reference}"
+                );
             }
         }
     }
@@ -54,22 +68,40 @@ fn mass_agrees_with_the_grid_point_weight_generator() {
 
 #[test]
 fn the_displacements_of_a_cbeam_cantilever_agree() {
-    let Some(e) = expected("msc_svanberg_beam") else { return };
-    let Some((model, cases)) = deck_cases("nastran/msc_svanberg_beam/static.dat") else { return };
-    let (solution, _) = solve_cases(&model, &cases, &SolveOptions::default()).unwrap_or_else(|e| panic!("{e}"));
+    let Some(e) = expected("msc_svanberg_beam") else {
+        return;
+    };
+    let Some((model, cases)) = deck_cases("nastran/msc_svanberg_beam/static.dat") else {
+        return;
+    };
+    let (solution, _) =
+        solve_cases(&model, &cases, &SolveOptions::default()).unwrap_or_else(|e| panic!("{e}"));
     let results = e["op2"]["results"].as_array().unwrap();
-    let table = results.iter().find(|r| r["result"] == "displacements").unwrap();
+    let table = results
+        .iter()
+        .find(|r| r["result"] == "displacements")
+        .unwrap();
     compare_rows(&model, &solution.cases[0], table, 6, 1e-5);
 }
 
-fn compare_rows(model: &strainbridge::model::Model, case: &CaseResult, table: &Value, components: usize, tolerance: f64) {
+fn compare_rows(
+    model: &strainbridge::model::Model,
+    case: &CaseResult,
+    table: &Value,
+    components: usize,
+    tolerance: f64,
+) {
     let rows: Vec<(u32, Vec<f64>)> = displacement_rows(table);
     assert!(!rows.is_empty(), "{table}");
     for c in 0..components {
         let largest = rows.iter().map(|r| r.1[c].abs()).fold(0.0, f64::max);
         for (id, row) in &rows {
             let got = case.displacement[model.grid_ix(*id).unwrap().us()][c];
-            assert!((got - row[c]).abs() <= tolerance * largest.max(1e-12), "grid {id} {c}: {got} for {}", row[c]);
+            assert!(
+                (got - row[c]).abs() <= tolerance * largest.max(1e-12),
+                "grid {id} {c}: {got} for {}",
+                row[c]
+            );
         }
     }
 }
@@ -83,18 +115,28 @@ fn displacement_rows(table: &Value) -> Vec<(u32, Vec<f64>)> {
             let n = r.len();
             // A table row: time, row, grid, grid type, six values; a printed one: grid, six values.
             let grid = if n > 7 { 2 } else { 0 };
-            (r[grid].as_u64().unwrap() as u32, r[n - 6..].iter().map(|v| v.as_f64().unwrap()).collect())
+            (
+                r[grid].as_u64().unwrap() as u32,
+                r[n - 6..].iter().map(|v| v.as_f64().unwrap()).collect(),
+            )
         })
         .collect()
 }
 
 #[test]
 fn a_free_ring_under_a_force_and_rotation_moves_as_nastran_95_printed() {
-    let Some(e) = expected("n95_inertia_relief_ring") else { return };
-    let Some((model, mut cases)) = deck_cases("nastran/n95_inertia_relief_ring/d02011a.dat") else { return };
+    let Some(e) = expected("n95_inertia_relief_ring") else {
+        return;
+    };
+    let Some((model, mut cases)) = deck_cases("nastran/n95_inertia_relief_ring/d02011a.dat") else {
+        return;
+    };
     // Rigid format 2 is inertia relief by itself.
-    cases.iter_mut().for_each(|c| c.relief = Relief::Suport(None));
-    let (solution, _) = solve_cases(&model, &cases, &SolveOptions::default()).unwrap_or_else(|e| panic!("{e}"));
+    cases
+        .iter_mut()
+        .for_each(|c| c.relief = Relief::Suport(None));
+    let (solution, _) =
+        solve_cases(&model, &cases, &SolveOptions::default()).unwrap_or_else(|e| panic!("{e}"));
     let case = &solution.cases[0];
     let rows = displacement_rows(&serde_json::json!({ "rows": e["printed"]["displacements"] }));
     for c in [0, 1, 5] {
@@ -105,18 +147,30 @@ fn a_free_ring_under_a_force_and_rotation_moves_as_nastran_95_printed() {
             let half = if c < 3 { 0 } else { 3 };
             let local = axes * nalgebra::Vector3::new(u[half], u[half + 1], u[half + 2]);
             let got = local[c - half];
-            assert!((got - row[c]).abs() <= 5e-4 * largest, "grid {id} component {c}: {got} for {}", row[c]);
+            assert!(
+                (got - row[c]).abs() <= 5e-4 * largest,
+                "grid {id} component {c}: {got} for {}",
+                row[c]
+            );
         }
     }
 }
 
 #[test]
 fn a_plate_in_tension_and_shear_agrees_with_msc() {
-    let Some(e) = expected("msc_plate") else { return };
-    let Some((model, cases)) = deck_cases("nastran/msc_plate/plate.bdf") else { return };
-    let (solution, _) = solve_cases(&model, &cases, &SolveOptions::default()).unwrap_or_else(|e| panic!("{e}"));
+    let Some(e) = expected("msc_plate") else {
+        return;
+    };
+    let Some((model, cases)) = deck_cases("nastran/msc_plate/plate.bdf") else {
+        return;
+    };
+    let (solution, _) =
+        solve_cases(&model, &cases, &SolveOptions::default()).unwrap_or_else(|e| panic!("{e}"));
     let results = e["op2"]["results"].as_array().unwrap();
-    let table = results.iter().find(|r| r["result"] == "displacements").unwrap();
+    let table = results
+        .iter()
+        .find(|r| r["result"] == "displacements")
+        .unwrap();
     // Translations: the rotation about the normal is a quantity of each program's own drilling stiffness.
     compare_rows(&model, &solution.cases[0], table, 3, 0.02);
 }

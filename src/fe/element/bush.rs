@@ -6,7 +6,10 @@ use crate::model::Model;
 /// Stiffness of bush `i`, basic frame. The springs act at its location; rigid arms join it to the grids.
 pub(crate) fn bush_stiffness(model: &Model, i: usize) -> ElementMatrix {
     let bush = &model.bushes[i];
-    let grids: Vec<_> = [Some(bush.grids.0), bush.grids.1].into_iter().flatten().collect();
+    let grids: Vec<_> = [Some(bush.grids.0), bush.grids.1]
+        .into_iter()
+        .flatten()
+        .collect();
     let n = 6 * grids.len();
     // Relative displacement at the location, element axes: B - A.
     let mut rows = vec![[0.0; 12]; 6];

@@ -27,10 +27,18 @@ pub(crate) fn rod_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, Re
     let d = model.grids[rod.grids[1].us()].x - model.grids[rod.grids[0].us()].x;
     let length = d.norm();
     if !(length > 0.0) {
-        return Err(refuse(format!("length: {length}"), "its grids must not coincide"));
+        return Err(refuse(
+            format!("length: {length}"),
+            "its grids must not coincide",
+        ));
     }
-    let Some(MaterialKind::Isotropic { e, g, .. }) = model.materials.get(rod.material.us()).map(|m| m.kind) else {
-        return Err(refuse("its material is no MAT1".to_owned(), "rods need a MAT1"));
+    let Some(MaterialKind::Isotropic { e, g, .. }) =
+        model.materials.get(rod.material.us()).map(|m| m.kind)
+    else {
+        return Err(refuse(
+            "its material is no MAT1".to_owned(),
+            "rods need a MAT1",
+        ));
     };
     let x = d / length;
     let mut k = ElementMatrix::zeros(rod.grids.to_vec());
@@ -52,6 +60,9 @@ pub(crate) fn rod_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, Re
 pub(crate) fn rod_mass(model: &Model, i: usize) -> f64 {
     let rod = &model.rods[i];
     let length = (model.grids[rod.grids[1].us()].x - model.grids[rod.grids[0].us()].x).norm();
-    let rho = model.materials.get(rod.material.us()).map_or(0.0, |m| m.rho);
+    let rho = model
+        .materials
+        .get(rod.material.us())
+        .map_or(0.0, |m| m.rho);
     (rho * rod.area + rod.nsm) * length
 }

@@ -15,7 +15,10 @@ pub(crate) fn spring_stiffness(prepared: &Prepared<'_>, i: usize) -> ElementMatr
         let mut unit = [0.0; 6];
         unit[usize::from(*dof).min(5)] = sign;
         let at = grids.iter().position(|x| x == g).unwrap_or(0);
-        for (r, v) in row[6 * at..6 * at + 6].iter_mut().zip(to_basic(&prepared.axes[g.us()], unit)) {
+        for (r, v) in row[6 * at..6 * at + 6]
+            .iter_mut()
+            .zip(to_basic(&prepared.axes[g.us()], unit))
+        {
             *r += v;
         }
     }

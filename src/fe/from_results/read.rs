@@ -109,7 +109,9 @@ pub fn solution_from_file(
             ..Cards::default()
         };
         let (geometry, _) = Model::from_cards(&cards);
-        solution.findings.extend(check_coordinates(model, name, &geometry));
+        solution
+            .findings
+            .extend(check_coordinates(model, name, &geometry));
     }
     if solution.cases.is_empty() {
         let what = if passed_over.is_empty() {

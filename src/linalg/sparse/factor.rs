@@ -70,7 +70,10 @@ impl<'a> Factor<'a> {
                 SymbolicSparseColMatRef::new_checked(n, n, &columns, None, &rows),
                 &entries,
             );
-            let (par, parameters) = (Par::rayon(0), Spec::<LltParams, f64>::new(<LltParams as Auto<f64>>::auto()));
+            let (par, parameters) = (
+                Par::rayon(0),
+                Spec::<LltParams, f64>::new(<LltParams as Auto<f64>>::auto()),
+            );
             let scratch = cholesky.factorize_numeric_llt_scratch::<f64>(par, parameters);
             let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::TooLarge)?;
             let regularisation = LltRegularization {

@@ -4,8 +4,11 @@ use crate::linalg::{Matrix3, Matrix6, SMatrix};
 use crate::model::Section;
 
 /// Three-point Gauss rule on 0..1.
-const GAUSS: [(f64, f64); 3] =
-    [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+const GAUSS: [(f64, f64); 3] = [
+    (0.112_701_665_379_258_31, 5.0 / 18.0),
+    (0.5, 8.0 / 18.0),
+    (0.887_298_334_620_741_7, 5.0 / 18.0),
+];
 /// A section without stiffness in a direction is integrated with this share of the others, and its rows are cleared after.
 const ALMOST_NOTHING: f64 = 1e-9;
 
@@ -23,9 +26,15 @@ pub(super) struct LocalBeam<'a> {
 /// Properties between stations, linear in x.
 pub(super) fn section_at(sections: &[(f64, Section)], xi: f64) -> Section {
     let last = sections.last().map(|s| s.1).unwrap_or_default();
-    let Some(i) = sections.windows(2).position(|w| xi <= w[1].0) else { return last };
+    let Some(i) = sections.windows(2).position(|w| xi <= w[1].0) else {
+        return last;
+    };
     let ((x0, a), (x1, b)) = (sections[i], sections[i + 1]);
-    let s = if x1 > x0 { ((xi - x0) / (x1 - x0)).clamp(0.0, 1.0) } else { 1.0 };
+    let s = if x1 > x0 {
+        ((xi - x0) / (x1 - x0)).clamp(0.0, 1.0)
+    } else {
+        1.0
+    };
     let mix = |p: f64, q: f64| p + (q - p) * s;
     let mix2 = |p: [f64; 2], q: [f64; 2]| [mix(p[0], q[0]), mix(p[1], q[1])];
     Section {
@@ -49,7 +58,12 @@ impl LocalBeam<'_> {
     pub(super) fn compliance(&self, s: &Section) -> Matrix3<f64> {
         let tiny = ALMOST_NOTHING;
         let l2 = self.length * self.length;
-        let largest = s.area.max(s.i1 / l2).max(s.i2 / l2).max(s.j / l2).max(f64::MIN_POSITIVE);
+        let largest = s
+            .area
+            .max(s.i1 / l2)
+            .max(s.i2 / l2)
+            .max(s.j / l2)
+            .max(f64::MIN_POSITIVE);
         let a = s.area.max(tiny * largest);
         let (i1, i2) = (s.i1.max(tiny * largest * l2), s.i2.max(tiny * largest * l2));
         let [yn, zn] = s.neutral;
@@ -85,7 +99,12 @@ impl LocalBeam<'_> {
                     }
                 }
                 let l2 = l * l;
-                let largest = s.area.max(s.i1 / l2).max(s.i2 / l2).max(s.j / l2).max(f64::MIN_POSITIVE);
+                let largest = s
+                    .area
+                    .max(s.i1 / l2)
+                    .max(s.i2 / l2)
+                    .max(s.j / l2)
+                    .max(f64::MIN_POSITIVE);
                 f[(3, 3)] += dx / (self.g * s.j.max(ALMOST_NOTHING * largest * l2));
             }
         }
@@ -101,9 +120,11 @@ impl LocalBeam<'_> {
         g[(4, 2)] = -self.length;
         g[(5, 1)] = self.length;
         let mut k = SMatrix::<f64, 12, 12>::zeros();
-        k.fixed_view_mut::<6, 6>(0, 0).copy_from(&(g * kb * g.transpose()));
+        k.fixed_view_mut::<6, 6>(0, 0)
+            .copy_from(&(g * kb * g.transpose()));
         k.fixed_view_mut::<6, 6>(0, 6).copy_from(&(-g * kb));
-        k.fixed_view_mut::<6, 6>(6, 0).copy_from(&(-kb * g.transpose()));
+        k.fixed_view_mut::<6, 6>(6, 0)
+            .copy_from(&(-kb * g.transpose()));
         k.fixed_view_mut::<6, 6>(6, 6).copy_from(&kb);
         let lacks = |f: fn(&Section) -> f64| self.sections.iter().all(|s| f(&s.1) <= 0.0);
         let mut clear = |dofs: &[usize]| {

@@ -7,19 +7,28 @@ use crate::fe::mass::point_mass;
 use crate::linalg::{Matrix6, SMatrix, Vector3};
 use crate::model::{Beam, Model, Section};
 
-const GAUSS: [(f64, f64); 3] =
-    [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+const GAUSS: [(f64, f64); 3] = [
+    (0.112_701_665_379_258_31, 5.0 / 18.0),
+    (0.5, 8.0 / 18.0),
+    (0.887_298_334_620_741_7, 5.0 / 18.0),
+];
 
 /// Integrates f(share of the length, section, length element) along a beam.
 fn along(model: &Model, beam: &Beam, mut f: impl FnMut(f64, &Section, f64)) {
-    let Some(property) = model.beam_properties.get(beam.property.us()) else { return };
+    let Some(property) = model.beam_properties.get(beam.property.us()) else {
+        return;
+    };
     let length = length(model, beam);
     for w in property.sections.windows(2) {
         let span = w[1].0 - w[0].0;
         if span > 0.0 {
             for (x, weight) in GAUSS {
                 let xi = w[0].0 + span * x;
-                f(xi, &section_at(&property.sections, xi), weight * span * length);
+                f(
+                    xi,
+                    &section_at(&property.sections, xi),
+                    weight * span * length,
+                );
             }
         }
     }
@@ -27,7 +36,9 @@ fn along(model: &Model, beam: &Beam, mut f: impl FnMut(f64, &Section, f64)) {
 
 fn density(model: &Model, beam: &Beam) -> f64 {
     let property = model.beam_properties.get(beam.property.us());
-    property.and_then(|p| model.materials.get(p.material.us())).map_or(0.0, |m| m.rho)
+    property
+        .and_then(|p| model.materials.get(p.material.us()))
+        .map_or(0.0, |m| m.rho)
 }
 
 /// Mass lumped at the two ends, 6 x 6 about each grid, basic frame, before WTMASS.
@@ -40,7 +51,9 @@ pub(crate) fn beam_lumped_mass(model: &Model, i: usize) -> [Matrix6<f64>; 2] {
     let mut ends = [Matrix6::zeros(); 2];
     along(model, beam, |xi, s, dx| {
         for (end, share) in [(0, 1.0 - xi), (1, xi)] {
-            let at = |[y, z]: [f64; 2]| beam.offsets[end] + beam.axes.transpose() * Vector3::new(0.0, y, z);
+            let at = |[y, z]: [f64; 2]| {
+                beam.offsets[end] + beam.axes.transpose() * Vector3::new(0.0, y, z)
+            };
             if beam.is_beam {
                 ends[end] += point_mass(rho * s.area * share * dx, &at(s.neutral));
                 ends[end] += point_mass(s.nsm * share * dx, &at(s.nsm_centre));
@@ -66,7 +79,12 @@ pub(crate) fn beam_coupled_mass(model: &Model, i: usize) -> ElementMatrix {
     along(model, beam, |xi, s, dx| {
         let per_length = rho * s.area + s.nsm;
         let (x, x2, x3) = (xi, xi * xi, xi * xi * xi);
-        let (h1, h2, h3, h4) = (1.0 - 3.0 * x2 + 2.0 * x3, l * (x - 2.0 * x2 + x3), 3.0 * x2 - 2.0 * x3, l * (x3 - x2));
+        let (h1, h2, h3, h4) = (
+            1.0 - 3.0 * x2 + 2.0 * x3,
+            l * (x - 2.0 * x2 + x3),
+            3.0 * x2 - 2.0 * x3,
+            l * (x3 - x2),
+        );
         let mut n = SMatrix::<f64, 3, 12>::zeros();
         (n[(0, 0)], n[(0, 6)]) = (1.0 - x, x);
         (n[(1, 1)], n[(1, 5)], n[(1, 7)], n[(1, 11)]) = (h1, h2, h3, h4);
@@ -81,5 +99,8 @@ pub(crate) fn beam_coupled_mass(model: &Model, i: usize) -> ElementMatrix {
     });
     let t = to_element(beam);
     let m = t.transpose() * m * t;
-    ElementMatrix { grids: beam.grids.to_vec(), values: m.transpose().as_slice().to_vec() }
+    ElementMatrix {
+        grids: beam.grids.to_vec(),
+        values: m.transpose().as_slice().to_vec(),
+    }
 }

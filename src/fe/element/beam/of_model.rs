@@ -10,7 +10,12 @@ type Matrix12 = SMatrix<f64, 12, 12>;
 
 fn refuse(beam: &Beam, reason: String, remedy: &str) -> Refusal {
     let card = if beam.is_beam { "CBEAM" } else { "CBAR" };
-    Refusal { card: format!("{card} {}", beam.id), at: beam.at, reason, remedy: remedy.to_owned() }
+    Refusal {
+        card: format!("{card} {}", beam.id),
+        at: beam.at,
+        reason,
+        remedy: remedy.to_owned(),
+    }
 }
 
 /// Length between the offset ends.
@@ -19,26 +24,62 @@ pub(super) fn length(model: &Model, beam: &Beam) -> f64 {
     (end(1) - end(0)).norm()
 }
 
-pub(super) fn local<'a>(model: &'a Model, beam: &Beam) -> Result<(LocalBeam<'a>, &'a BeamProperty), Refusal> {
+pub(super) fn local<'a>(
+    model: &'a Model,
+    beam: &Beam,
+) -> Result<(LocalBeam<'a>, &'a BeamProperty), Refusal> {
     let length = length(model, beam);
     if !(length > 0.0) {
-        return Err(refuse(beam, format!("length: {length}"), "its ends (offsets included) must not coincide"));
+        return Err(refuse(
+            beam,
+            format!("length: {length}"),
+            "its ends (offsets included) must not coincide",
+        ));
     }
     let property = model
         .beam_properties
         .get(beam.property.us())
-        .ok_or_else(|| refuse(beam, "no property".to_owned(), "give it a PBAR, PBARL, PBEAM or PBEAML"))?;
+        .ok_or_else(|| {
+            refuse(
+                beam,
+                "no property".to_owned(),
+                "give it a PBAR, PBARL, PBEAM or PBEAML",
+            )
+        })?;
     let material = model.materials.get(property.material.us());
     let Some(MaterialKind::Isotropic { e, g, .. }) = material.map(|m| m.kind) else {
-        return Err(refuse(beam, "its material is no MAT1".to_owned(), "beams need a MAT1"));
+        return Err(refuse(
+            beam,
+            "its material is no MAT1".to_owned(),
+            "beams need a MAT1",
+        ));
     };
     if !(e > 0.0 && g > 0.0) {
-        return Err(refuse(beam, format!("E: {e}, G: {g}"), "give both a value above zero"));
+        return Err(refuse(
+            beam,
+            format!("E: {e}, G: {g}"),
+            "give both a value above zero",
+        ));
     }
-    if property.sections.len() < 2 || property.sections.iter().any(|s| s.1.area < 0.0 || s.1.i1 < 0.0 || s.1.i2 < 0.0) {
-        return Err(refuse(beam, "a section property is negative or missing".to_owned(), "correct the property card"));
+    if property.sections.len() < 2
+        || property
+            .sections
+            .iter()
+            .any(|s| s.1.area < 0.0 || s.1.i1 < 0.0 || s.1.i2 < 0.0)
+    {
+        return Err(refuse(
+            beam,
+            "a section property is negative or missing".to_owned(),
+            "correct the property card",
+        ));
     }
-    let local = LocalBeam { sections: &property.sections, e, g, length, k: property.k };
+    let local = LocalBeam {
+        sections: &property.sections,
+        e,
+        g,
+        length,
+        k: property.k,
+    };
     Ok((local, property))
 }
 
@@ -48,7 +89,8 @@ pub(super) fn to_element(beam: &Beam) -> Matrix12 {
     for end in 0..2 {
         let at = 6 * end;
         t.fixed_view_mut::<3, 3>(at, at).copy_from(&beam.axes);
-        t.fixed_view_mut::<3, 3>(at + 3, at + 3).copy_from(&beam.axes);
+        t.fixed_view_mut::<3, 3>(at + 3, at + 3)
+            .copy_from(&beam.axes);
         // u_end = u + theta x offset
         let arm = -(beam.axes * beam.offsets[end].cross_matrix());
         t.fixed_view_mut::<3, 3>(at, at + 3).copy_from(&arm);
@@ -59,9 +101,16 @@ pub(super) fn to_element(beam: &Beam) -> Matrix12 {
 fn pinned(model: &Model, beam: &Beam) -> Result<Matrix12, Refusal> {
     let (local, _) = local(model, beam)?;
     let mut k = local.stiffness().ok_or_else(|| {
-        refuse(beam, "its sections give no stiffness".to_owned(), "correct area, inertia and torsion constant")
+        refuse(
+            beam,
+            "its sections give no stiffness".to_owned(),
+            "correct area, inertia and torsion constant",
+        )
     })?;
-    release(&mut k, u16::from(beam.pins[0].0) | u16::from(beam.pins[1].0) << 6);
+    release(
+        &mut k,
+        u16::from(beam.pins[0].0) | u16::from(beam.pins[1].0) << 6,
+    );
     Ok(k)
 }
 
@@ -73,25 +122,41 @@ pub(crate) fn beam_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, R
     let beam = &model.beams[i];
     let t = to_element(beam);
     let k = t.transpose() * pinned(model, beam)? * t;
-    Ok(ElementMatrix { grids: beam.grids.to_vec(), values: k.transpose().as_slice().to_vec() })
+    Ok(ElementMatrix {
+        grids: beam.grids.to_vec(),
+        values: k.transpose().as_slice().to_vec(),
+    })
 }
 
 /// Axial strain at C, D, E, F of the stations of beam `i` (ends of a CBAR, all sections of a CBEAM) from displacements (basic).
 ///
 /// # Errors
 /// As `beam_stiffness`.
-pub(crate) fn beam_strain(model: &Model, i: usize, u: &[[f64; 6]]) -> Result<Vec<(f64, [f64; 4])>, Refusal> {
+pub(crate) fn beam_strain(
+    model: &Model,
+    i: usize,
+    u: &[[f64; 6]],
+) -> Result<Vec<(f64, [f64; 4])>, Refusal> {
     let beam = &model.beams[i];
     let (local, property) = local(model, beam)?;
     let grid: Vec<f64> = beam.grids.iter().flat_map(|g| u[g.us()]).collect();
-    let force = pinned(model, beam)? * (to_element(beam) * SVector::<f64, 12>::from_column_slice(&grid));
-    let stations = if beam.is_beam { property.sections.iter().map(|s| s.0).collect() } else { vec![0.0, 1.0] };
+    let force =
+        pinned(model, beam)? * (to_element(beam) * SVector::<f64, 12>::from_column_slice(&grid));
+    let stations = if beam.is_beam {
+        property.sections.iter().map(|s| s.0).collect()
+    } else {
+        vec![0.0, 1.0]
+    };
     Ok(stations
         .into_iter()
         .map(|xi| {
             let s = section_at(&property.sections, xi);
             let arm = local.length * (1.0 - xi);
-            let at_section = Vector3::new(force[6], force[10] - arm * force[8], force[11] + arm * force[7]);
+            let at_section = Vector3::new(
+                force[6],
+                force[10] - arm * force[8],
+                force[11] + arm * force[7],
+            );
             let c = local.compliance(&s) * at_section;
             (xi, s.recovery.map(|[y, z]| c[0] + z * c[1] - y * c[2]))
         })
