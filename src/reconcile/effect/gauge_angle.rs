@@ -10,31 +10,18 @@ pub struct GaugeAngle {
     pub gauge: usize,
     /// Its name.
     pub name: String,
-    /// How far.
-    pub turn: Turn,
-}
-
-/// What may have happened.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Turn {
-    /// Glued askew.
-    Askew,
-    /// Glued, or its leg connected, across: near 90 degrees off.
-    Across,
 }
 
 impl GaugeAngle {
-    /// Askew and across on every gauge whose in-plane strain is known.
+    /// One on every gauge whose in-plane strain is known.
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
         let known = |g: &usize| frame.tensors.get(*g).is_some_and(|t| !t.is_empty());
-        let on = |gauge, turn| Self {
-            gauge,
-            name: gauge_name(frame, gauge),
-            turn,
-        };
         (0..frame.n_gauges())
             .filter(known)
-            .flat_map(|g| [on(g, Turn::Askew), on(g, Turn::Across)])
+            .map(|gauge| Self {
+                gauge,
+                name: gauge_name(frame, gauge),
+            })
             .collect()
     }
 }
@@ -75,18 +62,14 @@ impl StrainEffect for GaugeAngle {
         Stage::Structure
     }
     fn parameters(&self) -> Vec<Parameter> {
-        let (neutral, prior_sd, starts, plausible) = match self.turn {
-            // A first-order step is zero for a gauge along a principal direction: start on both sides.
-            Turn::Askew => (0.0, 15.0, vec![-30.0, -8.0, 8.0, 30.0], 60.0),
-            Turn::Across => (90.0, 8.0, vec![82.0, 98.0], 30.0),
-        };
+        // A first-order step is zero for a gauge along a principal direction: start on both sides.
         vec![Parameter {
             unit: "degree",
-            neutral,
-            prior_sd,
+            neutral: 0.0,
+            prior_sd: 15.0,
             step: 0.25,
-            starts,
-            plausible,
+            starts: vec![-30.0, -8.0, 8.0, 30.0],
+            plausible: 95.0,
         }]
     }
     fn alter(&self, frame: &StrainFrame, parameters: &[f64], state: &mut StrainState) {

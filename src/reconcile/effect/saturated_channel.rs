@@ -35,7 +35,7 @@ impl SaturatedChannel {
             let beyond = expected
                 .filter(|p| p.abs() > largest + 5.0 * frame.noise)
                 .count();
-            if largest > 10.0 * frame.noise && at_limit >= 2 && beyond >= 1 {
+            if largest > 4.0 * frame.noise && at_limit >= 2 && beyond >= 1 {
                 out.push(Self {
                     gauge,
                     name: gauge_name(frame, gauge),

@@ -60,7 +60,7 @@ pub fn read_patterns(
 ///
 /// C = noise^2 I + load_noise^2 S S' (run by run: an error of a measured wheel force enters all gauges at once) + model_rel^2 m m'
 /// (gauge by gauge, all runs together: a wrong influence stays wrong) + entry_rel^2 sum over columns of (a f)(a f)' (the same, column
-/// by column) + V (amplitudes unknown in every run, run by run), with S, m, a as read with `members` on.
+/// by column) + V (amplitudes unknown in every run, run by run, and model_rel of them), with S, m, a as read with `members` on.
 pub fn covariance(
     frame: &StrainFrame,
     members: &[Member<'_>],
@@ -91,15 +91,20 @@ pub fn covariance(
     for pattern in columns.iter().take(frame.n_loads()) {
         add(pattern, frame.load_noise * frame.load_noise);
     }
+    let mut own = vec![frame.noise * frame.noise; n_g];
     for u in unknown {
         let read = read_patterns(frame, members, &u.amplitudes.patterns);
         for (pattern, &kind) in read.iter().zip(&u.amplitudes.kinds) {
             let size = u.sizes.get(kind).copied().unwrap_or(0.0);
             add(pattern, size * size);
+            // The model errs in these patterns as in all others.
+            for (cell, p) in own.iter_mut().zip(pattern) {
+                *cell += (frame.model_rel * size * p).powi(2);
+            }
         }
     }
-    for g in 0..n_g {
-        block[g * n_g + g] += frame.noise * frame.noise;
+    for (g, variance) in own.iter().enumerate() {
+        block[g * n_g + g] += variance;
     }
     let (model, entry) = (
         frame.model_rel * frame.model_rel,

@@ -8,7 +8,7 @@ use crate::reconcile::effect::{Candidate, Member, full_id};
 use crate::reconcile::outcome::Detectable;
 
 /// Log evidence beyond its prior cost that an effect must raise to be named.
-pub const DECISIVE: f64 = 3.0;
+pub const DECISIVE: f64 = 5.0;
 
 /// Sizes at which the expected gain of evidence pays for the effect's prior weight, its width and [`DECISIVE`].
 pub fn detectable(frame: &StrainFrame, candidates: &[Candidate]) -> Vec<Detectable> {

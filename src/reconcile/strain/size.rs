@@ -9,6 +9,7 @@ use crate::reconcile::effect::{Amplitudes, Member};
 pub struct RunBlocks {
     blocks: Vec<RunBlock>,
     n_gauges: usize,
+    model_rel: f64,
 }
 
 /// Readings of one run: their places in the selection, their gauges, their covariance.
@@ -36,6 +37,7 @@ impl RunBlocks {
         Self {
             blocks: runs.iter().map(block).collect(),
             n_gauges: frame.n_gauges(),
+            model_rel: frame.model_rel,
         }
     }
 
@@ -46,9 +48,13 @@ impl RunBlocks {
         for (f, sizes) in families {
             for (pattern, &kind) in f.patterns.iter().zip(&f.kinds) {
                 let variance = sizes.get(kind).map_or(0.0, |s| s * s);
-                for (row, a) in out.chunks_exact_mut(n.max(1)).zip(pattern) {
-                    let pairs = row.iter_mut().zip(pattern);
-                    pairs.for_each(|(cell, b)| *cell += variance * a * b);
+                for (g, (row, a)) in out.chunks_exact_mut(n.max(1)).zip(pattern).enumerate() {
+                    for (cell, b) in row.iter_mut().zip(pattern) {
+                        *cell += variance * a * b;
+                    }
+                    if let Some(own) = row.get_mut(g) {
+                        *own += variance * (self.model_rel * a).powi(2);
+                    }
                 }
             }
         }
