@@ -203,21 +203,22 @@ impl RigidBody {
             packed.iter().map(|v| *v == 1.0).collect()
         };
         let mut chosen = Vec::new();
-        let mut held: Vec<DVector<f64>> = Vec::new();
-        let row = |i: usize| DVector::from_iterator(fields.len(), fields.iter().map(|f| f[i]));
+        let mut held: Vec<[f64; 6]> = Vec::new();
+        let dot = |a: &[f64; 6], b: &[f64; 6]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         while chosen.len() < self.n_free() {
             let rest = |i: usize| {
-                let mut r = row(i);
+                let mut r = [0.0; 6];
+                fields.iter().zip(&mut r).for_each(|(f, r)| *r = f[i]);
                 for h in &held {
-                    let along = h.dot(&r);
-                    r.axpy(-along, h, 1.0);
+                    let along = dot(h, &r);
+                    r.iter_mut().zip(h).for_each(|(r, h)| *r -= along * h);
                 }
                 r
             };
             let farthest = |pick: bool| {
                 (0..n)
                     .filter(|&i| translation[i] == pick)
-                    .map(|i| (rest(i).norm_squared(), i))
+                    .map(|i| (dot(&rest(i), &rest(i)), i))
                     .fold((1e-12, usize::MAX), |a, b| if b.0 > a.0 { b } else { a })
             };
             // A straight bar turns about its own axis without a translation anywhere.
@@ -229,7 +230,8 @@ impl RigidBody {
                 break;
             }
             chosen.push(best.1);
-            held.push(rest(best.1).normalize());
+            let norm = best.0.sqrt();
+            held.push(rest(best.1).map(|v| v / norm));
         }
         chosen
     }

@@ -2,7 +2,7 @@
 
 use super::ShellField;
 use super::element::Prepared;
-use super::element::shell::{AnyShell, shell_matrices, surfaces};
+use super::element::shell::{AnyShell, Parts, shell_matrices, surfaces};
 use super::error::{FeError, Refusal};
 use crate::model::{GridIx, ShellIx};
 use rayon::prelude::*;
@@ -58,7 +58,7 @@ pub(crate) fn shell_fields(
             .map(|&i| {
                 let shell = &model.shells[i];
                 let z = model.shell_properties[shell.property.us()].z;
-                Ok(match shell_matrices(prepared, i)? {
+                Ok(match shell_matrices(prepared, i, Parts::WithoutStiffness)? {
                     AnyShell::Quad(m) => u
                         .iter()
                         .map(|u| {

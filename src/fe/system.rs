@@ -12,6 +12,7 @@ use super::solve::{Relief, largest};
 use crate::finding::{Finding, Severity};
 use crate::linalg::sparse::{BlockGraph, BlockMatrix, Factor, FactorError, Symbolic};
 use crate::model::{GridIx, Model};
+use rayon::prelude::*;
 
 /// Everything between a model and its factor.
 pub(super) struct System {
@@ -258,17 +259,15 @@ fn subtract_enforced(
 
 fn ties(prepared: &Prepared<'_>, assembled: &Assembled, body: &RigidBody) -> Option<Finding> {
     let diagonal = assembled.stiffness.diagonal_values(&assembled.symbolic);
-    let mut worst = (0.0, 0);
-    for column in 0..body.n_free() {
-        let motion = body.packed_motion(&prepared.axes, &assembled.numbering, column);
-        let force = assembled.stiffness.times(&assembled.symbolic, &motion);
-        for (i, (f, d)) in force.iter().zip(&diagonal).enumerate() {
-            let share = f.abs() / d.max(f64::MIN_POSITIVE);
-            if share > worst.0 && *d > 0.0 {
-                worst = (share, i);
-            }
-        }
-    }
+    let worst = (0..body.n_free())
+        .into_par_iter()
+        .map(|column| {
+            let motion = body.packed_motion(&prepared.axes, &assembled.numbering, column);
+            let force = assembled.stiffness.times(&assembled.symbolic, &motion);
+            let shares = force.iter().zip(&diagonal).map(|(f, d)| if *d > 0.0 { f.abs() / d } else { 0.0 });
+            shares.zip(0..).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a })
+        })
+        .reduce(|| (0.0, 0), |a, b| if b.0 > a.0 { b } else { a });
     let limit = 1e-7;
     let (grid, dof) = assembled
         .numbering

@@ -39,6 +39,16 @@ pub(crate) struct ShellInput<'a, const N: usize> {
     pub(crate) zoffs: f64,
     /// K6ROT.
     pub(crate) k6rot: f64,
+    /// What is wanted.
+    pub(crate) parts: Parts,
+}
+
+/// What is wanted of a shell: forming its stiffness is most of the work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Parts {
+    All,
+    /// Strain rows and corner areas; the stiffness stays zero.
+    WithoutStiffness,
 }
 
 /// Stiffness and strain of a shell with `M` = 6 N unknowns, basic frame.

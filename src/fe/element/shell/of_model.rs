@@ -1,6 +1,6 @@
 //! Shells of a model: stiffness, strain rows, mass by corner.
 
-use super::{BadShape, ShellInput, ShellLaw, StrainRows, output_frame, quad4, tria3};
+use super::{BadShape, Parts, ShellInput, ShellLaw, StrainRows, output_frame, quad4, tria3};
 use crate::fe::element::{ElementMatrix, Prepared};
 use crate::fe::error::Refusal;
 use crate::model::{Model, Shell, ShellKind, Vec3};
@@ -41,7 +41,7 @@ pub(crate) fn material_angle(model: &Model, shell: &Shell) -> Option<f64> {
 ///
 /// # Errors
 /// Shapes, thicknesses and properties that make no element.
-pub(crate) fn shell_matrices(prepared: &Prepared<'_>, i: usize) -> Result<AnyShell, Refusal> {
+pub(crate) fn shell_matrices(prepared: &Prepared<'_>, i: usize, parts: Parts) -> Result<AnyShell, Refusal> {
     let model = prepared.model;
     let shell = &model.shells[i];
     let n = shell.shape.n_corners();
@@ -83,7 +83,7 @@ pub(crate) fn shell_matrices(prepared: &Prepared<'_>, i: usize) -> Result<AnyShe
             thickness: t,
             law: &law,
             zoffs,
-            k6rot,
+            k6rot, parts
         };
         Ok(AnyShell::Quad(Box::new(quad4(&input).map_err(bad)?)))
     } else {
@@ -94,7 +94,7 @@ pub(crate) fn shell_matrices(prepared: &Prepared<'_>, i: usize) -> Result<AnyShe
             thickness,
             law: &law,
             zoffs,
-            k6rot,
+            k6rot, parts
         };
         Ok(AnyShell::Tria(Box::new(tria3(&input).map_err(bad)?)))
     }
@@ -106,7 +106,7 @@ pub(crate) fn shell_matrices(prepared: &Prepared<'_>, i: usize) -> Result<AnyShe
 /// As `shell_matrices`.
 pub(crate) fn shell_stiffness(prepared: &Prepared<'_>, i: usize) -> Result<ElementMatrix, Refusal> {
     let grids = &prepared.model.shells[i].grids;
-    Ok(match shell_matrices(prepared, i)? {
+    Ok(match shell_matrices(prepared, i, Parts::All)? {
         AnyShell::Quad(m) => ElementMatrix::from_rows(&grids[..4], &m.stiffness),
         AnyShell::Tria(m) => ElementMatrix::from_rows(&grids[..3], &m.stiffness),
     })
@@ -141,7 +141,7 @@ pub(crate) fn shell_mass(prepared: &Prepared<'_>, i: usize) -> Result<Vec<f64>, 
             .map(|(a, v)| rho * v + property.nsm * a)
             .collect()
     };
-    Ok(match shell_matrices(prepared, i)? {
+    Ok(match shell_matrices(prepared, i, Parts::WithoutStiffness)? {
         AnyShell::Quad(m) => sum(&m.corner_area, &m.corner_volume),
         AnyShell::Tria(m) => sum(&m.corner_area, &m.corner_volume),
     })

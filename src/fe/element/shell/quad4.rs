@@ -4,7 +4,7 @@ use super::kinematics::{
     Local, Row, Section, Shape, Tangents, curvature, drilling, membrane, shear, shift,
     shift_stiffness,
 };
-use super::{BadShape, ShellInput, ShellMatrices, StrainRows, output_frame};
+use super::{BadShape, Parts, ShellInput, ShellMatrices, StrainRows, output_frame};
 use crate::linalg::Matrix4;
 
 const CORNERS: [(f64, f64); 4] = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
@@ -91,7 +91,9 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
             t: thickness,
             k6rot: input.k6rot,
         };
-        section.add_shear(&mut stiffness, local.area, &local.shear(&rows_r, &rows_s));
+        if input.parts == Parts::All {
+            section.add_shear(&mut stiffness, local.area, &local.shear(&rows_r, &rows_s));
+        }
         points.push(Point {
             membrane: local.strain(&membrane(&t, &shape)),
             curvature: local.strain(&curvature(&t, &shape, d)),
@@ -114,13 +116,15 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
             t: p.t,
             k6rot: input.k6rot,
         };
-        section.add(
+        if input.parts == Parts::All {
+            section.add(
             &mut stiffness,
             p.local.area,
             &p.membrane,
             &p.curvature,
             &drilling(&p.local, &p.shape),
         );
+        }
         for k in 0..4 {
             corner_area[k] += p.shape.h[k] * p.local.area;
             corner_volume[k] += p.shape.h[k] * p.local.area * p.t;

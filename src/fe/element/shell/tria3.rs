@@ -4,7 +4,7 @@ use super::kinematics::{
     Local, Row, Section, Shape, Tangents, curvature, drilling, membrane, shear, shift,
     shift_stiffness,
 };
-use super::{BadShape, ShellInput, ShellMatrices, StrainRows, output_frame};
+use super::{BadShape, Parts, ShellInput, ShellMatrices, StrainRows, output_frame};
 use crate::linalg::SMatrix;
 
 /// Degree 5 on the triangle (Radon 1948): r, s, weight; weights sum to 1/2.
@@ -113,14 +113,18 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
             rows_r[i] = (2.0 * b[0][i] - b[1][i]) / 3.0 + mean + twist * (3.0 * s - 1.0) / 3.0;
             rows_s[i] = (2.0 * a[1][i] - a[0][i]) / 3.0 + mean + twist * (1.0 - 3.0 * r) / 3.0;
         }
-        section.add_shear(&mut big, weight, &local.shear(&rows_r, &rows_s));
-        section.add(
+        if input.parts == Parts::All {
+            section.add_shear(&mut big, weight, &local.shear(&rows_r, &rows_s));
+        }
+        if input.parts == Parts::All {
+            section.add(
             &mut big,
             weight,
             &local.strain(&membrane::<3, WITH_BUBBLE>(&t, &shape)),
             &local.strain(&bend),
             &drilling::<3, WITH_BUBBLE>(&local, &shape),
         );
+        }
         for k in 0..3 {
             corner_area[k] += shape.h[k] * weight;
             corner_volume[k] += shape.h[k] * weight * thickness;
