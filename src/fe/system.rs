@@ -264,8 +264,13 @@ fn ties(prepared: &Prepared<'_>, assembled: &Assembled, body: &RigidBody) -> Opt
         .map(|column| {
             let motion = body.packed_motion(&prepared.axes, &assembled.numbering, column);
             let force = assembled.stiffness.times(&assembled.symbolic, &motion);
-            let shares = force.iter().zip(&diagonal).map(|(f, d)| if *d > 0.0 { f.abs() / d } else { 0.0 });
-            shares.zip(0..).fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a })
+            let shares = force
+                .iter()
+                .zip(&diagonal)
+                .map(|(f, d)| if *d > 0.0 { f.abs() / d } else { 0.0 });
+            shares
+                .zip(0..)
+                .fold((0.0, 0), |a, b| if b.0 > a.0 { b } else { a })
         })
         .reduce(|| (0.0, 0), |a, b| if b.0 > a.0 { b } else { a });
     let limit = 1e-7;

@@ -3,7 +3,8 @@
 use super::block_matrix::BlockMatrix;
 use super::symbolic::Symbolic;
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{LltParams, LltRegularization};
+use faer::linalg::cholesky::llt::factor::{LltError as Pivot, LltParams, LltRegularization};
+use faer::sparse::linalg::LltError;
 use faer::sparse::linalg::cholesky::SymbolicCholeskyRaw;
 use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
@@ -11,8 +12,8 @@ use faer::{Auto, Par, Side, Spec};
 
 /// Pivots of the matrix scaled to a unit diagonal below this are lost to rounding: the unknown is held by nothing.
 const TINY_PIVOT: f64 = 1e-13;
-/// What a lost pivot is replaced by, so that its unknown stays at zero and the factorisation goes on.
-const HUGE_PIVOT: f64 = 1e30;
+/// Lost pivots that are looked for, each by one more factorisation.
+const MOST_LOST: usize = 12;
 
 /// Why a factor could not be made.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -63,54 +64,50 @@ impl<'a> Factor<'a> {
             .try_reserve_exact(cholesky.len_val())
             .map_err(|_| FactorError::TooLarge)?;
         values.resize(cholesky.len_val(), 0.0);
-        {
-            let (columns, rows, entries) = matrix.lower_columns(symbolic, &scale);
-            let n = symbolic.n_unknowns();
-            let lower = SparseColMatRef::new(
-                SymbolicSparseColMatRef::new_checked(n, n, &columns, None, &rows),
-                &entries,
-            );
-            let (par, parameters) = (
-                Par::rayon(0),
-                Spec::<LltParams, f64>::new(<LltParams as Auto<f64>>::auto()),
-            );
-            let scratch = cholesky.factorize_numeric_llt_scratch::<f64>(par, parameters);
-            let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::TooLarge)?;
-            let regularisation = LltRegularization {
-                dynamic_regularization_delta: HUGE_PIVOT,
-                dynamic_regularization_epsilon: TINY_PIVOT,
-            };
-            cholesky
+        let (columns, rows, mut entries) = matrix.lower_columns(symbolic, &scale);
+        let n = symbolic.n_unknowns();
+        let pattern = SymbolicSparseColMatRef::new_checked(n, n, &columns, None, &rows);
+        let (par, parameters) = (
+            Par::rayon(0),
+            Spec::<LltParams, f64>::new(<LltParams as Auto<f64>>::auto()),
+        );
+        let scratch = cholesky.factorize_numeric_llt_scratch::<f64>(par, parameters);
+        let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::TooLarge)?;
+        let (mut lost, mut smallest_pivot) = (Vec::new(), f64::INFINITY);
+        // A lost pivot is held by a spring and the factorisation repeated: only for structures that are refused anyway. (faer's own
+        // regularisation leaves the unregularised diagonal in L.)
+        while lost.len() < MOST_LOST {
+            let done = cholesky
                 .factorize_numeric_llt(
                     &mut values,
-                    lower,
+                    SparseColMatRef::new(pattern, &entries),
                     Side::Lower,
-                    regularisation,
+                    LltRegularization::default(),
                     par,
                     MemStack::new(&mut memory),
                     parameters,
                 )
-                .map_err(|_| FactorError::NotANumber { unknown: 0 })?;
-        }
-        let (mut lost, mut smallest_pivot) = (Vec::new(), f64::INFINITY);
-        if let SymbolicCholeskyRaw::Supernodal(supernodes) = cholesky.raw() {
-            let factor = SupernodalLltRef::new(supernodes, &values);
-            for s in 0..supernodes.n_supernodes() {
-                let node = factor.supernode(s);
-                for j in 0..node.val().ncols() {
-                    let pivot = node.val()[(j, j)].powi(2);
-                    let unknown = node.start() + j;
-                    if pivot.is_nan() {
-                        return Err(FactorError::NotANumber {
-                            unknown: symbolic.old_unknown(unknown),
-                        });
-                    } else if pivot >= 0.5 * HUGE_PIVOT {
-                        lost.push(symbolic.old_unknown(unknown));
-                    } else {
-                        smallest_pivot = smallest_pivot.min(pivot);
-                    }
+                .map(|_| ());
+            let bad = match done {
+                Ok(_) => {
+                    let pivots = pivots(cholesky.raw(), &values);
+                    smallest_pivot = pivots.iter().fold(f64::INFINITY, |a, p| a.min(*p));
+                    pivots.iter().position(|p| !(*p > TINY_PIVOT))
                 }
+                Err(LltError::Numeric(Pivot::NonPositivePivot { index })) => Some(index),
+                Err(LltError::Generic(_)) => return Err(FactorError::TooLarge),
+            };
+            let Some(bad) = bad else { break };
+            let unknown = symbolic.old_unknown(bad);
+            let column = columns[bad] as usize..columns[bad + 1] as usize;
+            let Some(at) = column.into_iter().find(|&i| rows[i] as usize == bad) else {
+                break;
+            };
+            if lost.contains(&unknown) || !entries[at].is_finite() {
+                return Err(FactorError::NotANumber { unknown });
             }
+            entries[at] += 1.0;
+            lost.push(unknown);
         }
         lost.sort_unstable();
         Ok(Self {
@@ -121,4 +118,18 @@ impl<'a> Factor<'a> {
             smallest_pivot,
         })
     }
+}
+
+/// Squares of the diagonal of L, elimination order.
+fn pivots(raw: &SymbolicCholeskyRaw<u32>, values: &[f64]) -> Vec<f64> {
+    let SymbolicCholeskyRaw::Supernodal(supernodes) = raw else {
+        return Vec::new();
+    };
+    let factor = SupernodalLltRef::new(supernodes, values);
+    let mut all = Vec::with_capacity(supernodes.nrows());
+    for s in 0..supernodes.n_supernodes() {
+        let node = factor.supernode(s);
+        all.extend((0..node.val().ncols()).map(|j| node.val()[(j, j)].powi(2)));
+    }
+    all
 }

@@ -41,7 +41,11 @@ pub(crate) fn material_angle(model: &Model, shell: &Shell) -> Option<f64> {
 ///
 /// # Errors
 /// Shapes, thicknesses and properties that make no element.
-pub(crate) fn shell_matrices(prepared: &Prepared<'_>, i: usize, parts: Parts) -> Result<AnyShell, Refusal> {
+pub(crate) fn shell_matrices(
+    prepared: &Prepared<'_>,
+    i: usize,
+    parts: Parts,
+) -> Result<AnyShell, Refusal> {
     let model = prepared.model;
     let shell = &model.shells[i];
     let n = shell.shape.n_corners();
@@ -83,7 +87,8 @@ pub(crate) fn shell_matrices(prepared: &Prepared<'_>, i: usize, parts: Parts) ->
             thickness: t,
             law: &law,
             zoffs,
-            k6rot, parts
+            k6rot,
+            parts,
         };
         Ok(AnyShell::Quad(Box::new(quad4(&input).map_err(bad)?)))
     } else {
@@ -94,7 +99,8 @@ pub(crate) fn shell_matrices(prepared: &Prepared<'_>, i: usize, parts: Parts) ->
             thickness,
             law: &law,
             zoffs,
-            k6rot, parts
+            k6rot,
+            parts,
         };
         Ok(AnyShell::Tria(Box::new(tria3(&input).map_err(bad)?)))
     }
@@ -141,10 +147,12 @@ pub(crate) fn shell_mass(prepared: &Prepared<'_>, i: usize) -> Result<Vec<f64>, 
             .map(|(a, v)| rho * v + property.nsm * a)
             .collect()
     };
-    Ok(match shell_matrices(prepared, i, Parts::WithoutStiffness)? {
-        AnyShell::Quad(m) => sum(&m.corner_area, &m.corner_volume),
-        AnyShell::Tria(m) => sum(&m.corner_area, &m.corner_volume),
-    })
+    Ok(
+        match shell_matrices(prepared, i, Parts::WithoutStiffness)? {
+            AnyShell::Quad(m) => sum(&m.corner_area, &m.corner_volume),
+            AnyShell::Tria(m) => sum(&m.corner_area, &m.corner_volume),
+        },
+    )
 }
 
 /// Strain at both surfaces from rows and displacements: bottom (Z1), top (Z2).

@@ -118,12 +118,12 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
         };
         if input.parts == Parts::All {
             section.add(
-            &mut stiffness,
-            p.local.area,
-            &p.membrane,
-            &p.curvature,
-            &drilling(&p.local, &p.shape),
-        );
+                &mut stiffness,
+                p.local.area,
+                &p.membrane,
+                &p.curvature,
+                &drilling(&p.local, &p.shape),
+            );
         }
         for k in 0..4 {
             corner_area[k] += p.shape.h[k] * p.local.area;

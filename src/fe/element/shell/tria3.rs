@@ -118,12 +118,12 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
         }
         if input.parts == Parts::All {
             section.add(
-            &mut big,
-            weight,
-            &local.strain(&membrane::<3, WITH_BUBBLE>(&t, &shape)),
-            &local.strain(&bend),
-            &drilling::<3, WITH_BUBBLE>(&local, &shape),
-        );
+                &mut big,
+                weight,
+                &local.strain(&membrane::<3, WITH_BUBBLE>(&t, &shape)),
+                &local.strain(&bend),
+                &drilling::<3, WITH_BUBBLE>(&local, &shape),
+            );
         }
         for k in 0..3 {
             corner_area[k] += shape.h[k] * weight;
