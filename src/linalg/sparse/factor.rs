@@ -3,8 +3,7 @@
 use super::block_matrix::BlockMatrix;
 use super::symbolic::Symbolic;
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{LltError as Pivot, LltParams, LltRegularization};
-use faer::sparse::linalg::LltError;
+use faer::linalg::cholesky::llt::factor::{LltError, LltParams, LltRegularization};
 use faer::sparse::linalg::cholesky::SymbolicCholeskyRaw;
 use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
@@ -94,8 +93,7 @@ impl<'a> Factor<'a> {
                     smallest_pivot = pivots.iter().fold(f64::INFINITY, |a, p| a.min(*p));
                     pivots.iter().position(|p| !(*p > TINY_PIVOT))
                 }
-                Err(LltError::Numeric(Pivot::NonPositivePivot { index })) => Some(index),
-                Err(LltError::Generic(_)) => return Err(FactorError::TooLarge),
+                Err(LltError::NonPositivePivot { index }) => Some(index),
             };
             let Some(bad) = bad else { break };
             let unknown = symbolic.old_unknown(bad);
