@@ -41,12 +41,12 @@ impl Builder<'_> {
         b: &Placed<Bar>,
         card: &'static str,
         defaults: Option<&BarDefaults>,
-        ix: &HashMap<u32, BeamPropertyIx>,
+        ix: &HashMap<(bool, u32), BeamPropertyIx>,
     ) -> Option<Beam> {
         let name = format!("{card} {}", b.id);
         let at = b.at;
         let pid = b.pid.or(defaults.and_then(|d| d.pid)).unwrap_or(b.id);
-        let property = ix.get(&pid).copied();
+        let property = ix.get(&(card == "CBEAM", pid)).copied();
         if property.is_none() {
             let what = if card == "CBAR" {
                 "bar property"

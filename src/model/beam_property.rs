@@ -9,32 +9,35 @@ use nastran::place::{Place, Placed};
 use std::collections::HashMap;
 
 impl Builder<'_> {
-    /// Properties by ascending id, and where each id is. CBAR and CBEAM share ids here as they do in the file.
-    pub(super) fn beam_properties(&mut self) -> (Vec<BeamProperty>, HashMap<u32, BeamPropertyIx>) {
+    /// Properties by ascending id, and where each is by family (beam or not) and id: a PBAR and a PBEAM may share one.
+    pub(super) fn beam_properties(
+        &mut self,
+    ) -> (Vec<BeamProperty>, HashMap<(bool, u32), BeamPropertyIx>) {
         let cards = self.cards;
-        let mut out: Vec<BeamProperty> = Vec::new();
+        let mut out: Vec<(bool, BeamProperty)> = Vec::new();
         for p in &cards.pbars {
-            out.extend(self.pbar(p));
+            out.extend(self.pbar(p).map(|p| (false, p)));
         }
         for p in &cards.pbarls {
-            out.extend(self.pbarl(p));
+            out.extend(self.pbarl(p).map(|p| (false, p)));
         }
         for p in &cards.pbeams {
-            out.extend(self.pbeam(p));
+            out.extend(self.pbeam(p).map(|p| (true, p)));
         }
         for p in &cards.pbeamls {
-            out.extend(self.pbeaml(p));
+            out.extend(self.pbeaml(p).map(|p| (true, p)));
         }
-        out.sort_by_key(|p| (p.id, p.at));
+        out.sort_by_key(|(beam, p)| (p.id, *beam, p.at));
         for pair in out.windows(2) {
-            if let [a, b] = pair {
-                if a.id == b.id {
+            if let [(a_beam, a), (b_beam, b)] = pair {
+                if a.id == b.id && a_beam == b_beam {
                     let kind = FaultKind::Duplicate {
                         what: "bar or beam property id",
                         first: a.at,
                     };
+                    let card = format!("property {}", b.id);
                     self.faults.push(super::ModelFault {
-                        card: format!("property {}", b.id),
+                        card,
                         field: "PID",
                         at: b.at,
                         kind,
@@ -42,13 +45,13 @@ impl Builder<'_> {
                 }
             }
         }
-        out.dedup_by_key(|p| p.id);
+        out.dedup_by_key(|(beam, p)| (*beam, p.id));
         let ix = out
             .iter()
             .enumerate()
-            .map(|(i, p)| (p.id, BeamPropertyIx(i as u32)))
+            .map(|(i, (beam, p))| ((*beam, p.id), BeamPropertyIx(i as u32)))
             .collect();
-        (out, ix)
+        (out.into_iter().map(|o| o.1).collect(), ix)
     }
 
     fn positive(

@@ -158,14 +158,19 @@ impl Builder<'_> {
         let ids: Vec<u32> = match &p.elements {
             IdList::Each(ids) => ids.clone(),
             IdList::Thru(a, b) => {
-                let range = |id: &u32| (*a..=*b).contains(id);
-                let solids = self.model.solids.iter().map(|s| s.id).filter(range);
-                self.model
-                    .shells
-                    .iter()
-                    .map(|s| s.id)
-                    .filter(range)
-                    .chain(solids)
+                let (shells, solids) = (&self.model.shells, &self.model.solids);
+                let range = |from: usize, to: usize| from..to.max(from);
+                let shells_in = range(
+                    shells.partition_point(|s| s.id < *a),
+                    shells.partition_point(|s| s.id <= *b),
+                );
+                let solids_in = range(
+                    solids.partition_point(|s| s.id < *a),
+                    solids.partition_point(|s| s.id <= *b),
+                );
+                let shell_ids = shells.get(shells_in).unwrap_or(&[]).iter().map(|s| s.id);
+                shell_ids
+                    .chain(solids.get(solids_in).unwrap_or(&[]).iter().map(|s| s.id))
                     .collect()
             }
         };

@@ -5,18 +5,16 @@ use super::fault::FaultKind;
 use super::types::*;
 use nastran::cards::Mat1;
 
-/// E, G and nu of a MAT1 whose blank one follows from the other two: E = 2 (1 + nu) G. A card with E alone means nu = 0, with G
-/// alone E = nu = 0.
+/// E, G and nu of a MAT1 whose blank one follows from the other two: E = 2 (1 + nu) G. With E alone G and nu are 0, with G
+/// alone E and nu are.
 ///
 /// # Reference
 /// MSC Nastran Quick Reference Guide, MAT1, remarks on blank fields.
 fn isotropic(m: &Mat1) -> Option<(f64, f64, f64)> {
     match (m.e, m.g, m.nu) {
         (Some(e), Some(g), Some(nu)) => Some((e, g, nu)),
-        (Some(e), None, nu) => {
-            let nu = nu.unwrap_or(0.0);
-            Some((e, e / (2.0 * (1.0 + nu)), nu))
-        }
+        (Some(e), None, Some(nu)) => Some((e, e / (2.0 * (1.0 + nu)), nu)),
+        (Some(e), None, None) => Some((e, 0.0, 0.0)),
         (Some(e), Some(g), None) if g != 0.0 => Some((e, g, e / (2.0 * g) - 1.0)),
         (Some(e), Some(g), None) => Some((e, g, 0.0)),
         (None, Some(g), Some(nu)) => Some((2.0 * (1.0 + nu) * g, g, nu)),
