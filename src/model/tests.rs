@@ -1,1 +1,342 @@
+use super::*;
+use nastran::bdf::{MemoryLoader, read_deck};
+use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
+/// The model of a bulk data text in free format, and its faults.
+fn model(bulk: &str) -> (Model, Vec<ModelFault>) {
+    let text = format!("BEGIN BULK\n{bulk}\nENDDATA\n");
+    let deck = read_deck("test.bdf", text.into_bytes(), &mut MemoryLoader::default());
+    assert!(deck.faults.is_empty(), "{:?}", deck.faults);
+    Model::from_deck(&deck)
+}
+
+/// The faults that stop a solution, in words.
+fn errors(bulk: &str) -> Vec<(u32, String)> {
+    let (_, faults) = model(bulk);
+    faults
+        .iter()
+        .filter(|f| f.weight() == FaultWeight::Error)
+        .map(|f| (f.at.line, f.to_string()))
+        .collect()
+}
+
+fn near(a: Vec3, b: [f64; 3]) -> bool {
+    (a - Vec3::from(b)).amax() < 1e-12
+}
+
+const QUAD: &str = "GRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nMAT1,1,2.+11,,.3,7850.\nPSHELL,1,1,.01,1,,1\n";
+
+#[test]
+fn chained_coordinate_systems_of_all_kinds_end_in_basic() {
+    // Cylindrical 2 stands in rectangular 1 (origin 10,0,0, x along basic y); spherical 3 is given by grids placed in 2.
+    let (m, faults) = model(
+        "CORD2C,2,1,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\nCORD2R,1,,10.,0.,0.,10.,0.,1.\n,10.,1.,0.\n\
+         GRID,1,2,2.,90.,5.\nGRID,2,2,2.,90.,6.\nGRID,3,2,3.,90.,5.\nCORD1S,3,1,2,3\nGRID,4,3,2.,90.,0.\nGRID,5,3,2.,0.,0.,2",
+    );
+    assert!(
+        faults.iter().all(|f| f.weight() == FaultWeight::Note),
+        "{faults:?}"
+    );
+    let at = |id: u32| m.grids[m.grid_ix(id).unwrap().us()];
+    // Theta 90 degrees of system 2 is along the y axis of system 1, which is minus basic x.
+    assert!(near(at(1).x, [8.0, 0.0, 5.0]), "{}", at(1).x);
+    // System 3: origin grid 1, z up, x along grid 3 (minus basic x). Theta 90, phi 0: along its x.
+    assert!(near(at(4).x, [6.0, 0.0, 5.0]), "{}", at(4).x);
+    assert!(near(at(5).x, [8.0, 0.0, 7.0]), "{}", at(5).x);
+    // Grid 5 moves in system 2: radial at (8, 0) is minus basic x.
+    let axes = m.cd_axes(m.grid_ix(5).unwrap());
+    assert!(near(axes.row(0).transpose(), [-1.0, 0.0, 0.0]), "{axes}");
+}
+
+#[test]
+fn systems_in_a_circle_and_on_a_line_are_faults() {
+    let found =
+        errors("CORD2R,1,2,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\nCORD2R,2,1,0.,0.,0.,0.,0.,1.\n,1.,0.,0.");
+    assert_eq!(found.len(), 2, "{found:?}");
+    assert!(
+        found.iter().all(|f| f.1.contains("defined by itself")),
+        "{found:?}"
+    );
+    let found = errors("CORD2R,1,,0.,0.,0.,0.,0.,1.\n,0.,0.,3.");
+    assert!(found[0].1.contains("lie on a line"), "{found:?}");
+    let found = errors("GRID,1,7,0.,0.,0.");
+    assert!(
+        found[0].1.contains("coordinate system 7 is missing"),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn a_blank_field_takes_grdset_and_a_stated_zero_does_not() {
+    let (m, _) = model(
+        "CORD2R,1,,0.,0.,5.,0.,0.,6.\n,1.,0.,5.\nGRDSET,,1,,,,1,456\nGRID,1,,0.,0.,0.\nGRID,2,0,0.,0.,0.,0",
+    );
+    assert!(near(m.grids[0].x, [0.0, 0.0, 5.0]));
+    assert_eq!(
+        m.grids[0].ps,
+        nastran::cards::Dofs::from_digits(456).unwrap()
+    );
+    assert!(near(m.grids[1].x, [0.0; 3]));
+    assert_eq!(m.frames[m.grids[0].cd.us()].id, 1);
+    assert_eq!(m.grids[1].cd, FrameIx(0));
+}
+
+#[test]
+fn mcid_is_projected_on_the_element_and_theta_is_in_degrees() {
+    let shell = |field: &str| {
+        model(&format!("{QUAD}CQUAD4,1,1,1,2,3,4,{field}")).0.shells[0].material_angle_rad
+    };
+    assert!((shell("30.") - 30_f64.to_radians()).abs() < 1e-15);
+    assert_eq!(
+        shell("0"),
+        0.0,
+        "an integer 0 is the basic system, whose x is side 1-2 here"
+    );
+    let cord = "CORD2R,5,,0.,0.,0.,0.,0.,1.\n,0.,1.,1.\n";
+    let angle = model(&format!("{QUAD}{cord}CQUAD4,1,1,1,2,3,4,5")).0.shells[0].material_angle_rad;
+    assert!((angle - FRAC_PI_2).abs() < 1e-12, "{angle}");
+}
+
+#[test]
+fn default_fibre_distances_are_half_the_thickness() {
+    let (m, _) = model(&format!("{QUAD}CQUAD4,1,1,1,2,3,4"));
+    assert_eq!(m.shell_properties[0].z, [-0.005, 0.005]);
+    let (m, _) = model("MAT1,1,2.+11,,.3\nPCOMP,1,,,,,,,SYM\n,1,.1,45.,,1,.2,0.");
+    let p = &m.shell_properties[0];
+    assert!((p.z[0] + 0.3).abs() < 1e-15 && (p.z[1] - 0.3).abs() < 1e-15, "{:?}", p.z);
+    let ShellKind::Laminate { plies, .. } = &p.kind else {
+        panic!()
+    };
+    assert_eq!(
+        plies.iter().map(|p| p.t).collect::<Vec<_>>(),
+        [0.1, 0.2, 0.2, 0.1]
+    );
+}
+
+const BAR: &str =
+    "MAT1,1,2.+11,,.3,1.\nPBAR,1,1,2.,1.,1.,1.\nCORD2C,9,,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\n";
+
+#[test]
+fn offsets_and_orientation_are_counted_in_the_displacement_frames() {
+    // Both grids at 45 degrees of a cylindrical system, one above the other; the offset is radial.
+    let (m, faults) = model(&format!(
+        "{BAR}GRID,1,9,1.,45.,0.,9\nGRID,2,9,1.,45.,2.,9\nCBAR,1,1,1,2,1.,0.,0.,GGG\n,,,-1.,0.,0.,-1.,0.,0."
+    ));
+    assert!(faults.is_empty(), "{faults:?}");
+    let b = &m.beams[0];
+    let s = 1.0 / SQRT_2;
+    assert!(near(b.offsets[0], [-s, -s, 0.0]), "{}", b.offsets[0]);
+    assert!(near(b.axes.row(0).transpose(), [0.0, 0.0, 1.0]));
+    assert!(
+        near(b.axes.row(1).transpose(), [s, s, 0.0]),
+        "y along the radial orientation vector"
+    );
+    let w = m.weight();
+    assert!(
+        (w.mass - 4.0).abs() < 1e-12 && near(w.cg, [0.0, 0.0, 1.0]),
+        "{w:?}"
+    );
+}
+
+#[test]
+fn an_offset_with_o_is_counted_along_the_element() {
+    let (m, _) = model(&format!(
+        "{BAR}GRID,1,,0.,0.,0.\nGRID,2,,0.,0.,2.\nCBAR,1,1,1,2,0.,1.,0.,GOO\n,,,.5,.1,0.,-.5,.1,0."
+    ));
+    assert!(
+        near(m.beams[0].offsets[0], [0.0, 0.1, 0.5]),
+        "{}",
+        m.beams[0].offsets[0]
+    );
+    let found = errors(&format!(
+        "{BAR}GRID,1,,0.,0.,0.\nGRID,2,,0.,0.,0.\nCBAR,1,1,1,2,0.,1.,0."
+    ));
+    assert!(found[0].1.contains("length"), "{found:?}");
+    let found = errors(&format!(
+        "{BAR}GRID,1,,0.,0.,0.\nGRID,2,,0.,0.,1.\nCBAR,1,1,1,2,0.,0.,1."
+    ));
+    assert!(found[0].1.contains("orientation"), "{found:?}");
+}
+
+#[test]
+fn a_bush_takes_its_frame_from_cid_then_orientation_then_the_line() {
+    let bush = |card: &str, k: &str| {
+        model(&format!(
+            "GRID,1,,0.,0.,0.\nGRID,2,,0.,3.,0.\nPBUSH,1,K,{k}\nCORD2R,4,,0.,0.,0.,1.,0.,0.\n,0.,1.,0.\n{card}"
+        ))
+    };
+    let (m, _) = bush("CBUSH,1,1,1,2,1.,0.,0.,4", "1.,1.,1.");
+    assert!(
+        near(m.bushes[0].axes.row(0).transpose(), [0.0, 1.0, 0.0]),
+        "x of system 4"
+    );
+    let (m, _) = bush("CBUSH,1,1,1,2,0.,0.,1.", "1.,1.,1.");
+    assert!(near(m.bushes[0].axes.row(1).transpose(), [0.0, 0.0, 1.0]));
+    assert!(near(m.bushes[0].location, [0.0, 1.5, 0.0]));
+    let (m, faults) = bush("CBUSH,1,1,1,2", "5.,,,7.");
+    assert!(
+        faults.is_empty() && near(m.bushes[0].axes.row(0).transpose(), [0.0, 1.0, 0.0]),
+        "{faults:?}"
+    );
+    let (_, faults) = bush("CBUSH,1,1,1,2", "5.,3.");
+    assert!(
+        faults.iter().any(|f| f.kind == FaultKind::Orientation),
+        "{faults:?}"
+    );
+    let (_, faults) = bush("CBUSH,1,1,1", "5.,3.");
+    assert!(
+        faults
+            .iter()
+            .any(|f| matches!(f.kind, FaultKind::Unsupported { .. })),
+        "{faults:?}"
+    );
+}
+
+#[test]
+fn a_conm2_with_cid_minus_1_states_a_location_and_its_products_of_inertia_change_sign() {
+    let (m, _) = model("GRID,1,,1.,2.,3.\nCONM2,1,1,-1,2.,1.,2.,4.\n,10.,1.,20.,2.,3.,30.");
+    let c = &m.masses[0];
+    assert!(near(c.offset, [0.0, 0.0, 1.0]));
+    assert_eq!(c.matrix[(3, 4)], -1.0);
+    assert_eq!(c.matrix[(3, 5)], -2.0);
+    // Parallel axes: two units of mass one above the grid.
+    assert_eq!(
+        (c.matrix[(3, 3)], c.matrix[(4, 4)], c.matrix[(5, 5)]),
+        (12.0, 22.0, 30.0)
+    );
+    let w = m.weight();
+    assert!(near(w.cg, [1.0, 2.0, 4.0]) && w.mass == 2.0);
+}
+
+#[test]
+fn wtmass_scales_mass_once() {
+    let (m, _) = model(&format!("{QUAD}CQUAD4,1,1,1,2,3,4\nPARAM,WTMASS,.5"));
+    assert!((m.weight().mass - 0.5 * 78.5).abs() < 1e-12);
+    assert!(near(m.weight().cg, [0.5, 0.5, 0.0]));
+}
+
+#[test]
+fn volumes_of_solids_are_exact() {
+    let corners = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,2.,1.,0.\nGRID,4,,0.,1.,0.\nGRID,5,,0.,0.,3.\nGRID,6,,2.,0.,3.\nGRID,7,,2.,1.,3.\nGRID,8,,0.,1.,3.\nMAT1,1,1.,,.3,1.\nPSOLID,1,1\n";
+    for (card, volume) in [
+        ("CHEXA,1,1,1,2,3,4,5,6\n,7,8", 6.0),
+        ("CPENTA,1,1,1,2,3,5,6,7", 3.0),
+        ("CTETRA,1,1,1,2,3,5", 1.0),
+    ] {
+        let (m, _) = model(&format!("{corners}{card}"));
+        assert!(
+            (m.weight().mass - volume).abs() < 1e-12,
+            "{card}: {}",
+            m.weight().mass
+        );
+    }
+}
+
+#[test]
+fn pressure_on_a_solid_points_into_it() {
+    let corners = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,2.,1.,0.\nGRID,4,,0.,1.,0.\nGRID,5,,0.,0.,3.\nGRID,6,,2.,0.,3.\nGRID,7,,2.,1.,3.\nGRID,8,,0.,1.,3.\nMAT1,1,1.,,.3,1.\nPSOLID,1,1\nCHEXA,1,1,1,2,3,4,5,6\n,7,8\nCTETRA,2,1,1,2,3,5\n";
+    for (face, element, inward) in [
+        ("5,7", 1, [0.0, 0.0, -1.0]),
+        ("1,3", 1, [0.0, 0.0, 1.0]),
+        ("2,7", 1, [-1.0, 0.0, 0.0]),
+        ("1,5", 2, [0.0, 0.0, 1.0]),
+    ] {
+        let (m, faults) = model(&format!("{corners}PLOAD4,1,{element},2.,,,,{face}"));
+        assert!(
+            faults.iter().all(|f| f.weight() == FaultWeight::Note),
+            "{faults:?}"
+        );
+        let Load::FacePressure {
+            grids, pressure, ..
+        } = &m.load_sets[0].loads[0].1
+        else {
+            panic!()
+        };
+        assert_eq!(*pressure, [2.0; 4]);
+        let x: Vec<Vec3> = grids.iter().flatten().map(|g| m.grids[g.us()].x).collect();
+        let n = (x[1] - x[0]).cross(&(x[2] - x[0]));
+        assert!(near(n / n.norm(), inward), "{face}: {n}");
+    }
+}
+
+#[test]
+fn load_sums_scale_their_sets() {
+    let (m, faults) = model(
+        "GRID,1,,0.,0.,0.\nCONM2,1,1,,1.\nFORCE,1,1,,2.,1.,0.,0.\nMOMENT,2,1,,1.,0.,3.,0.\nLOAD,5,2.,1.5,1,-1.,2",
+    );
+    assert!(faults.is_empty(), "{faults:?}");
+    let set = m.load_sets.iter().find(|s| s.sid == 5).unwrap();
+    assert_eq!(
+        set.loads.iter().map(|l| l.0).collect::<Vec<_>>(),
+        [3.0, -2.0]
+    );
+    assert_eq!(
+        set.loads[0].1,
+        Load::Force(GridIx(0), Vec3::new(2.0, 0.0, 0.0))
+    );
+    let found = errors("LOAD,5,1.,1.,77");
+    assert!(found[0].1.contains("load set 77 is missing"), "{found:?}");
+}
+
+#[test]
+fn each_kind_of_bad_input_has_its_own_message_with_the_line() {
+    let quad = format!("{QUAD}CQUAD4,1,1,1,2,3,4\n");
+    let cases: [(&str, u32, &str); 12] = [
+        ("CQUAD4,1,1,1,2,3,4", 9, "element id stands twice"),
+        ("CQUAD4,2,7,1,2,3,4", 9, "shell property 7 is missing"),
+        ("CQUAD4,2,1,1,2,3,99", 9, "grid 99 is missing"),
+        (
+            "PSHELL,2,5,.01\nCQUAD4,2,2,1,2,3,4",
+            9,
+            "material 5 is missing",
+        ),
+        (
+            "PSHELL,2,1,-.01\nCQUAD4,2,2,1,2,3,4",
+            9,
+            "thickness is -0.01",
+        ),
+        ("PSHELL,2,1\nCQUAD4,2,2,1,2,3,4", 10, "thickness is 0"),
+        ("GRID,1,,5.,0.,0.", 9, "grid id stands twice"),
+        ("CQUAD4,2,1,1,2,2,1", 9, "no area"),
+        (
+            "RBE2,5,1,123456,2\nRBE2,6,3,1,2",
+            10,
+            "dof 1 of grid 2 is dependent already on line 9",
+        ),
+        (
+            "GRID,7,,.5,0.,0.\nRBE3,5,,7,123456,1.,123,1,2",
+            10,
+            "lie on a line",
+        ),
+        ("MAT1,1,1.,,.3", 9, "material id stands twice"),
+        ("SPC1,1,123,99", 9, "grid 99 is missing"),
+    ];
+    for (more, line, message) in cases {
+        let found = errors(&format!("{quad}{more}"));
+        assert!(
+            found.iter().any(|f| f.0 == line && f.1.contains(message)),
+            "{more}: {found:?}"
+        );
+    }
+    assert!(
+        errors(&format!("{quad}GRID,1,,0.,0.,0.")).is_empty(),
+        "the same grid twice is no fault"
+    );
+}
+
+#[test]
+fn an_rbe3_with_arms_off_a_line_or_without_the_rotation_is_accepted() {
+    let grids = format!("{QUAD}CQUAD4,1,1,1,2,3,4\nGRID,7,,.5,.5,1.\nGRID,8,,.5,.5,0.\n");
+    assert!(errors(&format!("{grids}RBE3,5,,7,123456,1.,123,1,2\n,3,4")).is_empty());
+    assert!(errors(&format!("{grids}RBE3,5,,8,123,1.,123,1,3")).is_empty());
+}
+
+#[test]
+fn a_grid_without_element_is_a_note() {
+    let (_, faults) = model(&format!("{QUAD}CQUAD4,1,1,1,2,3,4\nGRID,9,,5.,5.,5."));
+    assert_eq!(faults.len(), 1);
+    assert_eq!(
+        (faults[0].weight(), &faults[0].kind),
+        (FaultWeight::Note, &FaultKind::Unattached)
+    );
+}

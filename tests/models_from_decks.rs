@@ -1,0 +1,256 @@
+//! Every case of the shared set as a model: ids, places, frames, masses against what another reader and the solvers say.
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use strainbridge::cli::deck::{DeckModel, read_model};
+use strainbridge::cli::files::Inputs;
+use strainbridge::fe::shell_frame::quad_axes;
+use strainbridge::model::{GridIx, Model, Vec3};
+
+fn shared() -> Option<PathBuf> {
+    let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/nastran"));
+    if !path.is_dir() {
+        eprintln!("skipped: no ../shared/nastran");
+        return None;
+    }
+    Some(path)
+}
+
+fn json(path: &Path) -> Option<Value> {
+    serde_json::from_slice(&std::fs::read(path).ok()?).ok()
+}
+
+/// Name, expected mesh and our model of every case with a mesh.
+fn cases() -> Vec<(String, Value, DeckModel)> {
+    let Some(folder) = shared() else {
+        return Vec::new();
+    };
+    let mut names: Vec<PathBuf> = std::fs::read_dir(folder)
+        .unwrap()
+        .flatten()
+        .map(|e| e.path())
+        .collect();
+    names.sort();
+    let mut out = Vec::new();
+    for path in names {
+        let (Some(case), Some(expected)) = (
+            json(&path.join("case.json")),
+            json(&path.join("expected.json")),
+        ) else {
+            continue;
+        };
+        let Some(mesh) = expected.get("mesh") else {
+            continue;
+        };
+        let from_op2 = expected["mesh_source"]
+            .as_str()
+            .unwrap_or("")
+            .starts_with("op2");
+        let file = if from_op2 { &case["op2"] } else { &case["bdf"] };
+        let read = read_model(&mut Inputs::default(), &path, file.as_str().unwrap())
+            .unwrap_or_else(|f| panic!("{f}"));
+        out.push((
+            path.file_name().unwrap().to_string_lossy().into_owned(),
+            mesh.clone(),
+            read,
+        ));
+    }
+    out
+}
+
+fn vec3(v: &Value) -> Vec3 {
+    let x: Vec<f64> = v
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|x| x.as_f64().unwrap())
+        .collect();
+    Vec3::new(x[0], x[1], x[2])
+}
+
+/// Largest coordinate of a model.
+fn size(m: &Model) -> f64 {
+    m.grids.iter().map(|g| g.x.amax()).fold(1e-30, f64::max)
+}
+
+#[test]
+fn every_real_deck_is_a_model_without_faults() {
+    let mut wrong = String::new();
+    for (name, _, read) in cases() {
+        for f in read.faults.iter().take(5) {
+            wrong.push_str(&format!("{name}: {f}\n"));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+#[test]
+fn grids_stand_where_another_reader_puts_them() {
+    let mut wrong = String::new();
+    for (name, mesh, read) in cases() {
+        let m = &read.model;
+        // Coordinates of a 32-bit OP2 are exact singles on both sides; what remains is the arithmetic of frames.
+        let tolerance = 1e-9 * size(m);
+        if m.grids.len() as u64 != mesh["nodes"].as_u64().unwrap() {
+            wrong.push_str(&format!(
+                "{name}: {} grids, expected {}\n",
+                m.grids.len(),
+                mesh["nodes"]
+            ));
+        }
+        for g in mesh["grids"].as_array().unwrap() {
+            let id = g["id"].as_u64().unwrap() as u32;
+            let Some(ix) = m.grid_ix(id) else {
+                wrong.push_str(&format!("{name}: no grid {id}\n"));
+                continue;
+            };
+            let ours = &m.grids[ix.us()];
+            let d = (ours.x - vec3(&g["xyz_basic"])).amax();
+            if d > tolerance {
+                wrong.push_str(&format!("{name}: grid {id} off by {d:e}\n"));
+            }
+            let cd = m.frames[ours.cd.us()].id;
+            if cd as u64 != g["cd"].as_u64().unwrap_or(0) {
+                wrong.push_str(&format!(
+                    "{name}: grid {id} cd {cd}, expected {}\n",
+                    g["cd"]
+                ));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+#[test]
+fn shells_have_the_output_frames_and_material_axes_of_the_oracle() {
+    let mut wrong = String::new();
+    for (name, mesh, read) in cases() {
+        let m = &read.model;
+        for f in mesh["cquad4_frames"].as_array().into_iter().flatten() {
+            let id = f["eid"].as_u64().unwrap() as u32;
+            let s = &m.shells[m
+                .shell_ix(id)
+                .unwrap_or_else(|| panic!("{name}: shell {id}"))
+                .us()];
+            let x: Vec<Vec3> = s.grids[..4]
+                .iter()
+                .map(|g: &GridIx| m.grids[g.us()].x)
+                .collect();
+            let frame = quad_axes([x[0], x[1], x[2], x[3]]).unwrap();
+            let axes = f["element"].as_array().unwrap();
+            for k in 0..3 {
+                let d = (frame.row(k).transpose() - vec3(&axes[k])).amax();
+                if d > 1e-9 {
+                    wrong.push_str(&format!("{name}: element {id} axis {k} off by {d:e}\n"));
+                }
+            }
+            // Material x from side 1-2 turned about the normal of the diagonals.
+            let z: Vec3 = frame.row(2).transpose();
+            let side = x[1] - x[0];
+            let e1 = (side - z * side.dot(&z)).normalize();
+            let e2 = z.cross(&e1);
+            let (sin, cos) = s.material_angle_rad.sin_cos();
+            let ours = e1 * cos + e2 * sin;
+            let d = (ours - vec3(&f["material"].as_array().unwrap()[0])).amax();
+            if d > 1e-6 {
+                wrong.push_str(&format!(
+                    "{name}: element {id} material axis off by {d:e} theta_mcid {}\n",
+                    f["theta_mcid"]
+                ));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+#[test]
+fn masses_agree_with_another_reader_where_it_is_right() {
+    let mut wrong = String::new();
+    for (name, mesh, read) in cases() {
+        // The other reader ignores offsets of CBARs; the printed mass of the ring has a test of its own.
+        if name == "n95_inertia_relief_ring" {
+            continue;
+        }
+        let Some(expected) = mesh["mass"]["mass"].as_f64() else {
+            continue;
+        };
+        let w = read.model.weight();
+        if (w.mass - expected).abs() > 1e-6 * expected {
+            wrong.push_str(&format!("{name}: mass {} expected {expected}\n", w.mass));
+            continue;
+        }
+        let d = (w.cg - vec3(&mesh["mass"]["cg"])).amax();
+        if d > 1e-5 * size(&read.model) {
+            wrong.push_str(&format!(
+                "{name}: cg off by {d:e} of {}\n",
+                size(&read.model)
+            ));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+#[test]
+fn the_ring_weighs_what_its_solver_printed_about_grid_19() {
+    let Some((_, _, read)) = cases()
+        .into_iter()
+        .find(|c| c.0 == "n95_inertia_relief_ring")
+    else {
+        return;
+    };
+    let expected = json(
+        &shared()
+            .unwrap()
+            .join("n95_inertia_relief_ring/expected.json"),
+    )
+    .unwrap();
+    let m = &read.model;
+    let about = m.grids[m.grid_ix(m.params.grdpnt.unwrap()).unwrap().us()].x;
+    let ours = m.rigid_body_mass(about);
+    let printed = expected["printed"]["rigid_body_mass"].as_array().unwrap();
+    for i in 0..6 {
+        for j in 0..6 {
+            let p = printed[i].as_array().unwrap()[j].as_f64().unwrap();
+            // Nine printed digits; rotations about the cg in units of mass times length squared.
+            let scale = if i < 3 && j < 3 {
+                31326.285
+            } else {
+                6923109.19
+            };
+            assert!(
+                (ours[(i, j)] - p).abs() < 2e-8 * scale,
+                "({i}, {j}): {} printed {p}",
+                ours[(i, j)]
+            );
+        }
+    }
+}
+
+#[test]
+fn grid_point_weight_of_the_solver_is_ours() {
+    for name in ["nx_gpwg_1", "nx_opg_1"] {
+        let Some((_, _, read)) = cases().into_iter().find(|c| c.0 == name) else {
+            return;
+        };
+        let expected = json(&shared().unwrap().join(name).join("expected.json")).unwrap();
+        let mo = &expected["op2"]["grid_point_weight"][""]["MO"];
+        let m = &read.model;
+        // OGPWG is printed without WTMASS.
+        let ours = m.rigid_body_mass(Vec3::zeros()) / m.params.wtmass;
+        let largest = 1122.4;
+        for i in 0..6 {
+            for j in 0..6 {
+                let p = mo.as_array().unwrap()[i].as_array().unwrap()[j]
+                    .as_f64()
+                    .unwrap();
+                // Inertia: beams weigh 1/1000 of the points; their own sections' inertia is not lumped by us.
+                let tolerance = if i < 3 || j < 3 { 1e-6 } else { 1e-5 };
+                assert!(
+                    (ours[(i, j)] - p).abs() < tolerance * largest,
+                    "{name} ({i}, {j}): {} file {p}",
+                    ours[(i, j)]
+                );
+            }
+        }
+    }
+}

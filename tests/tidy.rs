@@ -1,0 +1,215 @@
+//! The rules of the house as tests: layers, who may print, open files or be unsafe, what must have a README.
+
+use std::path::{Path, PathBuf};
+
+/// Row of each module of the root crate; imports go strictly downward. `finding` and `linalg` are below all others of row 1:
+/// estimates carry findings, series use linear algebra.
+const ROWS: [(&str, f64); 19] = [
+    ("cli", 9.0),
+    ("report", 8.0),
+    ("reconcile", 7.0),
+    ("study", 7.0),
+    ("payload", 7.0),
+    ("placement", 6.0),
+    ("recovery", 6.0),
+    ("respond", 6.0),
+    ("vehicle", 6.0),
+    ("sensitivity", 5.0),
+    ("gauge", 4.0),
+    ("fe", 3.0),
+    ("model", 2.0),
+    ("units", 1.0),
+    ("series", 1.0),
+    ("estimate", 1.0),
+    ("linalg", 0.5),
+    ("finding", 0.5),
+    ("lib", 10.0),
+];
+
+/// Linear-algebra crates that only `linalg` names.
+const LINEAR_ALGEBRA: [&str; 4] = ["faer", "nalgebra", "feral_metis", "levenberg_marquardt"];
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn rust_files(folder: &Path, out: &mut Vec<PathBuf>) {
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return;
+    };
+    for path in entries.flatten().map(|e| e.path()) {
+        if path.is_dir() {
+            rust_files(&path, out);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            out.push(path);
+        }
+    }
+}
+
+/// Source files of both crates: path from the root with `/`, and lines of code (comments cut off).
+fn sources() -> Vec<(String, Vec<String>)> {
+    let mut files = Vec::new();
+    rust_files(&root().join("src"), &mut files);
+    rust_files(&root().join("nastran/src"), &mut files);
+    files.sort();
+    let name = |p: &Path| {
+        p.strip_prefix(root())
+            .unwrap()
+            .to_string_lossy()
+            .replace('\\', "/")
+    };
+    let code = |p: &Path| {
+        let text = std::fs::read_to_string(p).unwrap();
+        text.lines()
+            .map(|l| l.split("//").next().unwrap_or("").to_owned())
+            .collect()
+    };
+    files.iter().map(|p| (name(p), code(p))).collect()
+}
+
+fn is_test(path: &str) -> bool {
+    path.ends_with("/tests.rs") || path.contains("/tests/")
+}
+
+/// Module of the root crate that a file belongs to.
+fn module(path: &str) -> Option<&str> {
+    let rest = path.strip_prefix("src/")?;
+    let first = rest.split('/').next()?;
+    Some(first.strip_suffix(".rs").unwrap_or(first))
+}
+
+fn row(module: &str) -> Option<f64> {
+    ROWS.iter().find(|r| r.0 == module).map(|r| r.1)
+}
+
+#[test]
+fn imports_go_strictly_downward() {
+    let mut wrong = String::new();
+    for (path, lines) in sources() {
+        let Some(own) = module(&path).filter(|m| *m != "main" && *m != "lib") else {
+            continue;
+        };
+        let Some(own_row) = row(own) else {
+            wrong.push_str(&format!(
+                "{path}: module `{own}` has no row in tests/tidy.rs\n"
+            ));
+            continue;
+        };
+        for (n, line) in lines.iter().enumerate() {
+            for part in line.split("crate::").skip(1) {
+                let names = part
+                    .strip_prefix('{')
+                    .map_or(vec![part], |list| list.split(',').collect());
+                for name in names {
+                    let name: String = name
+                        .trim()
+                        .chars()
+                        .take_while(|c| c.is_alphanumeric() || *c == '_')
+                        .collect();
+                    let Some(other) = row(&name) else { continue };
+                    let vehicle = own == "vehicle" && other > 1.0 && !is_test(&path);
+                    if name != own && (other >= own_row || vehicle) {
+                        wrong.push_str(&format!("{path}:{}: `{own}` imports `{name}`\n", n + 1));
+                    }
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "imports must go to lower rows:\n{wrong}");
+}
+
+#[test]
+fn linear_algebra_crates_are_named_in_linalg_alone() {
+    let mut wrong = String::new();
+    for (path, lines) in sources() {
+        if is_test(&path) || module(&path) == Some("linalg") {
+            continue;
+        }
+        for (n, line) in lines.iter().enumerate() {
+            for name in LINEAR_ALGEBRA {
+                if line.contains(&format!("{name}::")) {
+                    wrong.push_str(&format!("{path}:{}: `{name}`\n", n + 1));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "take these from crate::linalg:\n{wrong}");
+}
+
+#[test]
+fn only_the_command_line_prints_and_touches_files() {
+    let forbidden = [
+        "println!",
+        "print!(",
+        "eprint",
+        "dbg!",
+        "std::fs",
+        "File::open",
+        "std::env::var",
+        "std::process",
+    ];
+    let mut wrong = String::new();
+    for (path, lines) in sources() {
+        if is_test(&path) || module(&path) == Some("cli") || path == "src/main.rs" {
+            continue;
+        }
+        for (n, line) in lines.iter().enumerate() {
+            if let Some(word) = forbidden.iter().find(|w| line.contains(**w)) {
+                wrong.push_str(&format!("{path}:{}: `{word}`\n", n + 1));
+            }
+        }
+    }
+    assert!(
+        wrong.is_empty(),
+        "input and output belong in src/cli:\n{wrong}"
+    );
+}
+
+#[test]
+fn one_function_is_unsafe_and_it_maps_files() {
+    let places: Vec<String> = sources()
+        .into_iter()
+        .flat_map(|(path, lines)| {
+            lines
+                .into_iter()
+                .filter(|l| l.contains("allow(unsafe_code)"))
+                .map(move |_| path.clone())
+        })
+        .collect();
+    assert_eq!(places, ["src/cli/files.rs"]);
+}
+
+#[test]
+fn no_test_is_ignored() {
+    let mut files = Vec::new();
+    for folder in ["src", "nastran/src", "tests", "nastran/tests"] {
+        rust_files(&root().join(folder), &mut files);
+    }
+    let mark = concat!("#[", "ignore");
+    for path in files {
+        assert!(
+            !std::fs::read_to_string(&path).unwrap().contains(mark),
+            "{}",
+            path.display()
+        );
+    }
+}
+
+#[test]
+fn main_is_a_summary_and_every_model_says_what_it_proves() {
+    let main = std::fs::read_to_string(root().join("src/main.rs")).unwrap();
+    assert!(main.lines().count() < 60);
+    for entry in std::fs::read_dir(root().join("models"))
+        .into_iter()
+        .flatten()
+        .flatten()
+    {
+        if entry.path().is_dir() {
+            assert!(
+                entry.path().join("README.md").is_file(),
+                "{} has no README.md",
+                entry.path().display()
+            );
+        }
+    }
+}
