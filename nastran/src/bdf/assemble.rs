@@ -399,6 +399,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
             }
             let list: Vec<&[u8]> = template.card.iter().map(Vec::as_slice).collect();
             emit(
+                self.budget,
                 &mut self.part,
                 &mut self.names,
                 self.before_name,
@@ -421,6 +422,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
             |s| s.at,
         );
         emit(
+            self.budget,
             &mut self.part,
             &mut self.names,
             self.name,
@@ -432,6 +434,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
 }
 
 fn emit(
+    budget: &AtomicUsize,
     part: &mut Part,
     names: &mut NameReader,
     name: Name,
@@ -445,7 +448,7 @@ fn emit(
         list.first().copied().unwrap_or_default(),
         &mut part.labels,
     );
-    let mut fields = Fields::new(name.as_bytes(), at, list, &mut part.faults);
+    let mut fields = Fields::new(name.as_bytes(), at, list, &mut part.faults, budget);
     if !read_card(&mut fields, &mut part.cards)
         && let (Some(first), Some(last)) = (spans.first(), spans.last())
     {

@@ -1,5 +1,7 @@
 //! Reads typed values out of the fields of one card, noting every fault.
 
+use std::sync::atomic::AtomicUsize;
+
 use super::fault::{Fault, FieldName, Wrong};
 use super::number::{Number, read_number};
 use crate::cards::Dofs;
@@ -21,12 +23,14 @@ pub(super) struct Fields<'a, 'f> {
     pub at: Place,
     list: &'a [&'a [u8]],
     faults: &'f mut Vec<Fault>,
+    /// Bytes left for what the deck makes of few letters.
+    budget: &'f AtomicUsize,
     /// An id could not be read: the card is left out.
     pub unusable: bool,
 }
 
 /// At most this many faults are kept of a part of a deck: beyond, the file is not a deck.
-const MAX_FAULTS: usize = 2_000;
+pub(super) const MAX_FAULTS: usize = 2_000;
 
 /// The field as a message shows it.
 pub(super) fn excerpt(field: &[u8]) -> String {
@@ -53,12 +57,14 @@ impl<'a, 'f> Fields<'a, 'f> {
         at: Place,
         list: &'a [&'a [u8]],
         faults: &'f mut Vec<Fault>,
+        budget: &'f AtomicUsize,
     ) -> Self {
         Fields {
             name,
             at,
             list,
             faults,
+            budget,
             unusable: false,
         }
     }
@@ -278,6 +284,25 @@ impl<'a, 'f> Fields<'a, 'f> {
                 0
             }
         }
+    }
+
+    /// The ids of a range written out; a range too long for the deck's memory is a fault at field `i`.
+    pub(super) fn written_out(
+        &mut self,
+        i: usize,
+        name: &'static str,
+        range: std::ops::RangeInclusive<u32>,
+        step: u32,
+    ) -> Vec<u32> {
+        let step = usize::try_from(step.max(1)).unwrap_or(1);
+        let length = range.end().saturating_sub(*range.start()) as usize / step + 1;
+        if super::replicate::take(self.budget, length.saturating_mul(4)) {
+            return range.step_by(step).collect();
+        }
+        let found = excerpt(self.raw(i));
+        let allowed = "a shorter range";
+        self.fault(i, name, Wrong::OutOfRange { found, allowed });
+        Vec::new()
     }
 
     /// The field in upper case.

@@ -6,13 +6,15 @@ use std::sync::atomic::AtomicUsize;
 use super::assemble::Part;
 use super::case;
 use super::chunk::read_chunks;
-use super::deck::{Deck, Position};
+use super::deck::{Deck, Note, Position};
 use super::defer::resolve;
+use super::fields::MAX_FAULTS;
 use super::include::Loader;
 use super::line::text_of;
 use super::merge::append;
 use super::replicate::BUDGET;
 use super::walk::{Statement, walk};
+use crate::place::Place;
 
 /// The deck in `bytes` with all files it includes. What cannot be read is in [`Deck::faults`].
 ///
@@ -57,6 +59,13 @@ pub fn read_deck(main_path: &str, bytes: Vec<u8>, loader: &mut dyn Loader) -> De
     deck.faults.extend(faults);
     deck.notes = walked.notes;
     deck.notes.extend(notes);
+    if deck.faults.len() >= MAX_FAULTS {
+        let text = format!("only {MAX_FAULTS} faults are listed, there are more");
+        deck.notes.push(Note {
+            at: Place::default(),
+            text,
+        });
+    }
     deck.sources = walked.sources;
     deck
 }
@@ -95,8 +104,9 @@ fn read_sol(statements: &[Statement], deck: &mut Deck) {
 
 fn named_solution(name: &str) -> Option<u32> {
     Some(match name {
-        "SESTATIC" | "SESTATICS" | "STATIC" | "STATICS" => 101,
-        "SEMODES" | "MODES" => 103,
+        // LINEAR STATIC and NORMAL MODES: Autodesk
+        "SESTATIC" | "SESTATICS" | "STATIC" | "STATICS" | "LINEAR" => 101,
+        "SEMODES" | "MODES" | "NORMAL" | "MODAL" => 103,
         "SEBUCKL" | "BUCKLING" => 105,
         "NLSTATIC" | "NLSTATICS" => 106,
         "SEDCEIG" => 107,

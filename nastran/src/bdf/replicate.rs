@@ -31,12 +31,20 @@ pub(super) fn count(head: &[u8]) -> Option<usize> {
 /// Takes the memory of one more card off the budget.
 pub(super) fn spend(budget: &AtomicUsize, template: &Template) -> Result<(), Wrong> {
     let cost = 200 + 16 * template.card.len().max(template.steps.len());
-    let taken = budget.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| {
-        left.checked_sub(cost)
-    });
-    taken.map(|_| ()).map_err(|_| Wrong::TooManyReplicated {
+    if take(budget, cost) {
+        return Ok(());
+    }
+    Err(Wrong::TooManyReplicated {
         limit: BUDGET / 200,
     })
+}
+
+/// Takes bytes off the budget; false where too few are left.
+pub(super) fn take(budget: &AtomicUsize, bytes: usize) -> bool {
+    let taken = budget.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| {
+        left.checked_sub(bytes)
+    });
+    taken.is_ok()
 }
 
 impl Template {

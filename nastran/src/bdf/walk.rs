@@ -14,6 +14,8 @@ use crate::place::{Place, SourceIx};
 const MAX_DEPTH: usize = 32;
 /// INCLUDE statements of a deck.
 const MAX_INCLUDES: usize = 10_000;
+/// Bytes of files that are included more than once, counted from the second time.
+const MAX_REPEATED: usize = 16 << 20;
 /// Lines of one INCLUDE statement.
 const MAX_NAME_LINES: usize = 16;
 
@@ -55,6 +57,7 @@ pub(super) struct Walk<'l> {
     stack: Vec<u32>,
     by_path: BTreeMap<String, u32>,
     includes: usize,
+    repeated: usize,
     done: bool,
 }
 
@@ -83,6 +86,7 @@ pub(super) fn walk<'l>(main_path: &str, bytes: Vec<u8>, loader: &'l mut dyn Load
         stack: Vec::new(),
         by_path: BTreeMap::from([(main_path.to_owned(), 0)]),
         includes: 0,
+        repeated: 0,
         done: false,
     };
     walk.file(0);
@@ -308,7 +312,10 @@ impl Walk<'_> {
         match self.loader.load(&request) {
             Ok(loaded) => {
                 let ix = match self.by_path.get(&loaded.path) {
-                    Some(&ix) => ix,
+                    Some(&ix) => {
+                        self.repeated = self.repeated.saturating_add(loaded.bytes.len());
+                        ix
+                    }
                     None => {
                         let ix = u32::try_from(self.sources.len()).unwrap_or(u32::MAX);
                         self.by_path.insert(loaded.path.clone(), ix);
@@ -321,6 +328,13 @@ impl Walk<'_> {
                 };
                 if self.stack.contains(&ix) {
                     self.fault(place, Wrong::IncludeCycle { name: request.name });
+                } else if self.repeated > MAX_REPEATED {
+                    self.fault(
+                        place,
+                        Wrong::IncludeCount {
+                            limit: MAX_INCLUDES,
+                        },
+                    );
                 } else {
                     self.file(ix);
                 }

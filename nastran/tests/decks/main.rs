@@ -1,6 +1,7 @@
 //! The decks of the real cases against another program's reading of them.
 
 mod common;
+mod robust;
 
 use std::collections::BTreeMap;
 

@@ -55,7 +55,7 @@ pub(super) fn set_sum(f: &mut Fields) -> SetSum {
     let sid = f.id(0, "SID");
     let sets = match super::ids::joined(f, 1, "S") {
         IdList::Each(ids) => ids,
-        IdList::Thru(a, b) => (a..=b).take(100_000).collect(),
+        IdList::Thru(a, b) => f.written_out(1, "S", a..=b, 1),
     };
     SetSum { sid, sets }
 }

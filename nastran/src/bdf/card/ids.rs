@@ -4,9 +4,6 @@ use super::super::fault::Wrong;
 use super::super::fields::{Fields, Value};
 use crate::cards::IdList;
 
-/// Most ids a range with BY is written out to; more are a mistake in the card.
-const MAX_WRITTEN_OUT: i64 = 1_000_000;
-
 /// The ids from field `first` on. A plain range stays a range, so the result has more than one part where a card
 /// mixes single ids and ranges. Blank fields are skipped.
 pub(super) fn id_lists(f: &mut Fields, first: usize, name: &'static str) -> Vec<IdList> {
@@ -88,12 +85,9 @@ fn range(
         lists.push(IdList::Thru(lower, upper));
         return next + if f.is_word(next + 1, "BY") { 3 } else { 1 };
     };
-    if i64::from(upper - lower) / by > MAX_WRITTEN_OUT {
-        out_of_range(f, next, name);
-    } else {
-        let step = usize::try_from(by).unwrap_or(1);
-        each.extend((lower..=upper).step_by(step).skip(1));
-    }
+    each.pop();
+    let step = u32::try_from(by).unwrap_or(u32::MAX);
+    each.extend(f.written_out(next, name, lower..=upper, step));
     next + 3
 }
 
@@ -107,8 +101,7 @@ pub(super) fn joined(f: &mut Fields, first: usize, name: &'static str) -> IdList
     for list in lists {
         match list {
             IdList::Each(ids) => all.extend(ids),
-            IdList::Thru(a, b) if i64::from(b - a) <= MAX_WRITTEN_OUT => all.extend(a..=b),
-            IdList::Thru(..) => out_of_range(f, first, name),
+            IdList::Thru(a, b) => all.extend(f.written_out(first, name, a..=b, 1)),
         }
     }
     IdList::Each(all)

@@ -19,7 +19,7 @@ pub(super) fn rbe2(f: &mut Fields) -> Rbe2 {
         for list in id_lists(f, 3, "GM") {
             match list {
                 IdList::Each(ids) => dependent.extend(ids),
-                IdList::Thru(a, b) => dependent.extend((a..=b).take(100_000)),
+                IdList::Thru(a, b) => dependent.extend(f.written_out(3, "GM", a..=b, 1)),
             }
         }
     } else {
@@ -71,9 +71,11 @@ pub(super) fn rbe3(f: &mut Fields) -> Rbe3 {
                 if let Some(group) = groups.last_mut()
                     && let Some(&lower) = group.grids.last()
                 {
-                    group
-                        .grids
-                        .extend((lower.saturating_add(1)..=upper).take(100_000));
+                    if upper > lower {
+                        group
+                            .grids
+                            .extend(f.written_out(i + 1, "G", lower + 1..=upper, 1));
+                    }
                 }
                 i += 2;
             }

@@ -12,12 +12,14 @@ pub struct Set {
 pub enum SetItem {
     /// An id.
     One(u32),
-    /// `first THRU last EXCEPT ..`, both ends included.
+    /// `first THRU last BY n EXCEPT ..`, both ends included.
     Thru {
         /// First id.
         first: u32,
         /// Last id.
         last: u32,
+        /// Step, 1 or more.
+        by: u32,
         /// Ids left out.
         except: Vec<u32>,
     },
@@ -36,8 +38,13 @@ impl Set {
             SetItem::Thru {
                 first,
                 last,
+                by,
                 except,
-            } => (*first..=*last).contains(&id) && !except.contains(&id),
+            } => {
+                (*first..=*last).contains(&id)
+                    && (id - first) % (*by).max(1) == 0
+                    && !except.contains(&id)
+            }
             SetItem::All { except } => !except.contains(&id),
         })
     }
@@ -68,6 +75,7 @@ impl Set {
                             items.push(SetItem::Thru {
                                 first,
                                 last,
+                                by: 1,
                                 except: Vec::new(),
                             });
                         }
@@ -101,23 +109,14 @@ impl Set {
     }
 }
 
-/// Leaves out of the last range what BY steps over.
+/// Gives the last range its step.
 fn by(items: &mut [SetItem], step: Option<&&str>) -> Result<(), String> {
-    let step: u32 = step
-        .and_then(|w| w.parse().ok())
-        .filter(|&s| s > 0)
-        .ok_or_else(|| "BY".to_owned())?;
-    if let Some(SetItem::Thru {
-        first,
-        last,
-        except,
-    }) = items.last_mut()
-    {
-        if *last - *first > 10_000_000 {
-            return Err("BY".to_owned());
+    let step = step.and_then(|w| w.parse::<u32>().ok()).filter(|&s| s > 0);
+    match (items.last_mut(), step) {
+        (Some(SetItem::Thru { by, .. }), Some(step)) => {
+            *by = step;
+            Ok(())
         }
-        let start = *first;
-        except.extend((*first..=*last).filter(|id| (id - start) % step != 0));
+        _ => Err("BY".to_owned()),
     }
-    Ok(())
 }
