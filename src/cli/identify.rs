@@ -3,12 +3,15 @@
 use super::fault::Faults;
 use super::vehicle::{VehicleRecords, read_vehicle, vehicle_fault};
 use super::{JobArguments, Session, job};
-use crate::report::vehicle::{write_parameters, write_restoring_force, write_wheel_forces};
+use crate::report::vehicle::{
+    Curve, identify_page, write_parameters, write_restoring_force, write_wheel_forces,
+};
 use crate::series::channels::Channels;
+use crate::series::welch::cross_spectra;
 use crate::units::ReportUnits;
 use crate::vehicle::identify::{Identification, identify};
-use crate::vehicle::loads::{LoadHistory, static_loads, wheel_force_history};
-use crate::vehicle::motion::{Treatment, motion};
+use crate::vehicle::loads::{LoadHistory, link_forces, static_loads, wheel_force_history};
+use crate::vehicle::motion::{Motion, Treatment, motion};
 use serde::Serialize;
 
 /// A recovered load in `result.json`: dynamic part of a wheel force over its record, and its mean where masses tell it.
@@ -98,6 +101,19 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         "restoring_force.csv",
         write_restoring_force(&found, &measured),
     )?;
+    let (shown, shown_motion) = held.as_ref().map_or((&loads, &measured), |(h, m)| (h, m));
+    let html = identify_page(
+        &job.title,
+        &found,
+        &session.findings,
+        &history_curves(shown, shown_motion),
+        &spectrum_curves(shown, shown_motion),
+        &restoring_curves(&found, shown_motion),
+    );
+    session
+        .output_for(&arguments.job)?
+        .write_bytes("report.html", html.as_bytes())
+        .map_err(|f| vec![f])?;
     for p in &found.parameters {
         match (p.value, p.sigma) {
             (Some(v), Some(s)) => {
@@ -157,4 +173,76 @@ fn load_rows(
             }
         })
         .collect()
+}
+
+/// Seconds of wheel force that the page shows.
+const SHOWN_S: f64 = 8.0;
+
+fn told(history: &LoadHistory) -> impl Iterator<Item = usize> + '_ {
+    (0..history.names.len()).filter(|&i| history.values[i].iter().any(|v| v.is_finite()))
+}
+
+fn history_curves(history: &LoadHistory, motion: &Motion) -> Vec<Curve> {
+    let n = ((SHOWN_S * history.rate_hz) as usize).min(motion.n_samples());
+    let cut = |x: &[f64]| x.iter().take(n).copied().collect::<Vec<f64>>();
+    told(history)
+        .map(|i| Curve {
+            name: history.names[i].clone(),
+            x: (0..n)
+                .map(|t| history.start_s + t as f64 / history.rate_hz)
+                .collect(),
+            recovered: cut(&history.values[i]),
+            measured: motion.forces[i].as_deref().map_or(vec![], cut),
+        })
+        .collect()
+}
+
+fn spectrum_curves(history: &LoadHistory, motion: &Motion) -> Vec<Curve> {
+    let segment = (4.0 * history.rate_hz) as usize;
+    told(history)
+        .map(|i| {
+            let measured = motion.forces[i].as_ref();
+            let s = cross_spectra(
+                &history.values[i],
+                measured.unwrap_or(&history.values[i]),
+                history.rate_hz,
+                segment,
+            );
+            let measured = measured.map_or(vec![], |_| s.yy);
+            Curve {
+                name: history.names[i].clone(),
+                x: s.f_hz,
+                recovered: s.xx,
+                measured,
+            }
+        })
+        .collect()
+}
+
+/// Mean link force over bins of stretch.
+fn restoring_curves(found: &Identification, motion: &Motion) -> Vec<Curve> {
+    const BINS: usize = 41;
+    let forces = link_forces(&found.vehicle, &found.values, motion);
+    let mut out = Vec::new();
+    for (l, link) in found.vehicle.links.iter().enumerate() {
+        let d = &motion.stretch[l];
+        let largest = d.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+        let mut sums = vec![(0.0, 0usize); BINS];
+        for (d, f) in d.iter().zip(&forces[l]).filter(|(_, f)| f.is_finite()) {
+            let bin = (((d / largest + 1.0) / 2.0 * BINS as f64) as usize).min(BINS - 1);
+            sums[bin].0 += f;
+            sums[bin].1 += 1;
+        }
+        let used: Vec<usize> = (0..BINS).filter(|&i| sums[i].1 > 0).collect();
+        out.push(Curve {
+            name: link.name.clone(),
+            x: used
+                .iter()
+                .map(|&i| ((i as f64 + 0.5) / BINS as f64 * 2.0 - 1.0) * largest)
+                .collect(),
+            recovered: used.iter().map(|&i| sums[i].0 / sums[i].1 as f64).collect(),
+            measured: vec![],
+        });
+    }
+    out
 }
