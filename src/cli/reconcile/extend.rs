@@ -3,6 +3,7 @@
 //! Effects of a channel go into the readings (`strain_extended.csv`), effects of structure into S (`sensitivity_extended.csv`), loads that
 //! were left out become columns of S, the payload's place goes into `runs_extended.csv`.
 
+use super::deck_frame::DeckFrame;
 use super::relative::relative;
 use crate::cli::Session;
 use crate::cli::fault::{Fault, Faults};
@@ -14,6 +15,7 @@ use std::fmt::Write;
 use std::path::Path;
 use toml::{Table, Value};
 
+const DECK: &str = "deck_extended.bdf";
 const JOB: &str = "job_extended.toml";
 const STRAIN: &str = "strain_extended.csv";
 const SENSITIVITY: &str = "sensitivity_extended.csv";
@@ -27,6 +29,7 @@ pub(super) fn write(
     session: &mut Session,
     frame: &StrainFrame,
     outcome: &Outcome,
+    deck: Option<&DeckFrame>,
 ) -> Result<Option<String>, Faults> {
     let text = session
         .inputs
@@ -127,6 +130,24 @@ pub(super) fn write(
             p.insert("weight_in_model".into(), Value::Boolean(true));
         }
     }
+    let zones: Vec<(String, f64)> = extensions
+        .iter()
+        .filter_map(|e| match e {
+            Extension::Stiffness { place, percent, .. } => Some((place.clone(), *percent)),
+            _ => None,
+        })
+        .collect();
+    let masses: Vec<(String, f64)> = extensions
+        .iter()
+        .filter_map(|e| match e {
+            Extension::Mass { place, kilogram } => Some((place.clone(), *kilogram)),
+            _ => None,
+        })
+        .collect();
+    let extended_deck = deck.and_then(|d| d.extended(job, &zones, &masses));
+    if extended_deck.is_some() {
+        set(&mut table, "model", "deck", DECK);
+    }
     let mut job_text =
         String::from("# The job with the named effects in it; `size` and `sigma` as found.\n");
     for e in &outcome.effects {
@@ -146,6 +167,9 @@ pub(super) fn write(
         output
             .write_bytes(name, content.as_bytes())
             .map_err(|f| vec![f])?;
+    }
+    if let Some(bytes) = &extended_deck {
+        output.write_bytes(DECK, bytes).map_err(|f| vec![f])?;
     }
     output
         .write_bytes(JOB, job_text.as_bytes())

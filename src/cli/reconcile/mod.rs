@@ -1,5 +1,6 @@
 //! `reconcile`: where simulation and measurement disagree, which effect is missing, and the model with the effect in it.
 
+mod deck_frame;
 mod extend;
 mod matrix_frame;
 mod relative;

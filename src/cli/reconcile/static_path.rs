@@ -1,5 +1,6 @@
 //! The static path: frame, verdict, tables, extended model.
 
+use super::deck_frame::{self, DeckFrame};
 use super::matrix_frame::{self, ModelPart};
 use super::{extend, tables};
 use crate::cli::Session;
@@ -20,29 +21,82 @@ const LOAD_NOISE_KN: f64 = 0.05;
 pub(super) fn run(job: &Job, path: &Path, session: &mut Session) -> Result<(), Faults> {
     let observations = observations(job, session)?;
     let channels = observations.channels.clone();
-    let part = session.stage("signatures", |s| match (&job.sensitivity, &job.model) {
-        (Some(given), _) => matrix_frame::read(&mut s.inputs, job, given, &channels),
-        (None, Some(_)) => Err(vec![Fault::of(
-            &*job.file,
-            "sensitivity",
-            "no S is given",
-            "add `[sensitivity]`",
-        )]),
-        (None, None) => Err(vec![Fault::of(
-            &*job.file,
-            "model",
-            "neither `[model]` nor `[sensitivity]`",
-            "name the deck, or the CSV file with S",
-        )]),
-    })?;
-    let frame = frame(job, session, observations, part)?;
+    let (part, deck) = match (&job.sensitivity, &job.model) {
+        (Some(given), _) => {
+            let read = |s: &mut Session| matrix_frame::read(&mut s.inputs, job, given, &channels);
+            (session.stage("signatures", read)?, None)
+        }
+        (None, Some(_)) => {
+            let (part, deck) = deck_frame::read(session, job, &channels)?;
+            (part, Some(deck))
+        }
+        (None, None) => {
+            return Err(vec![Fault::of(
+                &*job.file,
+                "model",
+                "neither `[model]` nor `[sensitivity]`",
+                "name the deck, or the CSV file with S",
+            )]);
+        }
+    };
+    let mut frame = frame(job, session, observations, part)?;
     let only = job
         .reconcile
         .as_ref()
         .and_then(|r| r.effects.clone())
         .unwrap_or_default();
-    let outcome = session.stage("search", |_| examine(&frame, &only));
-    report(job, path, session, &frame, &outcome)
+    let mut outcome = session.stage("search", |_| examine(&frame, &only));
+    if let Some(deck) = &deck {
+        // A stiffness is solved again at the size that was found, until it stays.
+        for _ in 0..RESOLVED {
+            if !resolve_stiffness(job, session, deck, &mut frame, &outcome)? {
+                break;
+            }
+            outcome = session.stage("search", |_| examine(&frame, &only));
+        }
+    }
+    report(job, path, session, &frame, &outcome, deck.as_ref())
+}
+
+/// Solutions at a size that was found: the second is at the size to a few thousandths.
+const RESOLVED: usize = 2;
+
+/// Adds to the signature of a named stiffness the solution at its size; false where nothing new is to be solved.
+fn resolve_stiffness(
+    job: &Job,
+    session: &mut Session,
+    deck: &DeckFrame,
+    frame: &mut StrainFrame,
+    outcome: &Outcome,
+) -> Result<bool, Faults> {
+    /// Percent of stiffness: nearer to a known size the interpolation is exact.
+    const NEAR: f64 = 1.0;
+    /// A thickness can't be taken away.
+    const LEAST: f64 = -80.0;
+    let mut added = false;
+    for e in &outcome.best_attempt {
+        let Extension::Stiffness { id, place, percent } = &e.extension else {
+            continue;
+        };
+        let name = format!("{id}:{place}");
+        let Some(signature) = frame.stiffness.iter_mut().find(|s| s.id == name) else {
+            continue;
+        };
+        let known = signature
+            .at_percent
+            .iter()
+            .any(|p| (p.0 - percent).abs() < NEAR);
+        if known || percent.abs() < NEAR || *percent < LEAST {
+            continue;
+        }
+        let change = session.stage("solve zones", |_| {
+            deck.stiffness_change(job, place, *percent)
+        })?;
+        signature.at_percent.push((*percent, change));
+        signature.at_percent.sort_by(|a, b| a.0.total_cmp(&b.0));
+        added = true;
+    }
+    Ok(added)
 }
 
 /// Readings of the strain file and of a held-out file, runs by name.
@@ -253,6 +307,7 @@ fn report(
     session: &mut Session,
     frame: &StrainFrame,
     outcome: &Outcome,
+    deck: Option<&DeckFrame>,
 ) -> Result<(), Faults> {
     session.put("verdict", outcome.verdict.word())?;
     session.put(
@@ -337,7 +392,7 @@ fn report(
     findings(session, outcome);
     tables::write(session, path, outcome)?;
     let extended = if outcome.verdict == Verdict::Named {
-        extend::write(job, path, session, frame, outcome)?
+        extend::write(job, path, session, frame, outcome, deck)?
     } else {
         None
     };

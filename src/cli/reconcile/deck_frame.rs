@@ -1,0 +1,437 @@
+//! The static frame of a job with a deck: signatures of loads, masses, stiffness and gauge angles from the built-in solver.
+
+use super::matrix_frame::{ModelPart, facts, nominal_x_m};
+use crate::cli::Session;
+use crate::cli::fault::{Fault, Faults};
+use crate::cli::job::{Component, Job, LoadActs};
+use crate::cli::strain::{Fields, lay_gauges, read_fields};
+use crate::fe::{Solution, SolveOptions, UnitLoad, solve_unit_loads};
+use crate::gauge::{Gauge, reading};
+use crate::model::{GridIx, Model, Vec3};
+use crate::reconcile::strain::{MassSignature, N_PAYLOAD_COLUMNS, StiffnessSignature, Wiring};
+use crate::units::Quantity;
+use nastran::bdf::{Edits, Field, format_card, write_edited};
+use rayon::prelude::*;
+
+/// Thickness change at which a zone's signature is computed first, percent.
+const FIRST_PERCENT: f64 = 10.0;
+/// Share of the stated model uncertainty that single influence coefficients have on top of the common factor of a gauge: a coarse
+/// mesh errs differently in every load.
+const ENTRY_SHARE: f64 = 0.3;
+/// Strain in microstrain.
+const MICRO: f64 = 1e6;
+
+/// The model with everything needed to solve it again.
+pub(super) struct DeckFrame {
+    pub(super) fields: Fields,
+    gauges: Vec<Gauge>,
+    columns: Vec<UnitLoad>,
+    base: Vec<f64>,
+}
+
+/// Solves all signatures. `channels` are the gauges in the order of the strain file.
+pub(super) fn read(
+    session: &mut Session,
+    job: &Job,
+    channels: &[String],
+) -> Result<(ModelPart, DeckFrame), Faults> {
+    let fields = read_fields(session, job)?;
+    let gauges = in_order(job, lay_gauges(session, job, &fields)?, channels)?;
+    // The same gauges turned: what they read at three angles holds their in-plane strain.
+    let noted = session.findings.len();
+    let mut turned = Vec::new();
+    for degrees in [45.0, 90.0] {
+        let mut other = job.clone();
+        other.gauges.iter_mut().for_each(|g| g.angle_deg += degrees);
+        turned.push(in_order(
+            job,
+            lay_gauges(session, &other, &fields)?,
+            channels,
+        )?);
+    }
+    session.findings.truncate(noted);
+    let model = fields.model();
+    let (wheels, columns) = columns(job, model)?;
+    let mut loads = columns.clone();
+    let components = [
+        Component::FX,
+        Component::FY,
+        Component::MX,
+        Component::MY,
+        Component::MZ,
+    ];
+    let mut other_names = Vec::new();
+    for (name, grid) in &wheels {
+        for c in components {
+            other_names.push(format!(
+                "{}_{}",
+                c.name(),
+                name.split('.').next().unwrap_or(name)
+            ));
+            loads.push(unit(job, *grid, c, 1.0));
+        }
+    }
+    let reconcile = job.reconcile.as_ref();
+    let gravity = gravity(job);
+    let mut places = Vec::new();
+    for (place, id) in reconcile.iter().flat_map(|r| &r.places) {
+        let grid = grid_of(job, model, *id)?;
+        places.push(place.clone());
+        loads.push(unit(job, grid, Component::FZ, -gravity / KILO));
+    }
+    let solution = session.stage("solve signatures", |_| solve(job, model, &loads))?;
+    let n_c = columns.len();
+    let table = influence(job, model, &gauges, &solution, n_c);
+    let at_45 = influence(job, model, &turned[0], &solution, n_c);
+    let at_90 = influence(job, model, &turned[1], &solution, n_c);
+    let n_g = gauges.len();
+    let plane = |g: usize| {
+        let one = |c: usize| {
+            let i = g * n_c + c;
+            [table[i], at_90[i], 2.0 * at_45[i] - table[i] - at_90[i]]
+        };
+        (0..n_c).map(one).collect()
+    };
+    let column = |c: usize| readings(&gauges, &solution, c..c + 1);
+    let length_m = job.units.length_m();
+    let place_of = |grid: &GridIx| {
+        let x = model.grids.get(grid.us()).map_or(Vec3::zeros(), |g| g.x);
+        [x[0] * length_m, x[1] * length_m]
+    };
+    let payload_x = payload_grid(job, model).map(|g| place_of(&g)[0]);
+    let mut part = ModelPart {
+        gauges: channels.iter().map(|c| facts(job, c)).collect(),
+        load_names: wheels.iter().map(|w| w.0.clone()).collect(),
+        load_positions: Some(wheels.iter().map(|w| place_of(&w.1)).collect()),
+        influence: table.clone(),
+        tensors: (0..n_g).map(plane).collect(),
+        nominal_x_m: nominal_x_m(job).or(payload_x).unwrap_or(0.0),
+        ..ModelPart::default()
+    };
+    for g in &mut part.gauges {
+        // In-plane strain is in the axes of the gauge itself, its wiring included.
+        g.angle_deg = 0.0;
+        g.wiring = Wiring::Quarter;
+    }
+    part.other_loads = other_names
+        .into_iter()
+        .enumerate()
+        .map(|(k, n)| (n, column(n_c + k)))
+        .collect();
+    let first_mass = n_c + part.other_loads.len();
+    part.masses = places
+        .into_iter()
+        .enumerate()
+        .map(|(k, place)| MassSignature {
+            place,
+            per_kg: column(first_mass + k),
+        })
+        .collect();
+    if let Some(r) = reconcile.filter(|r| !r.thermal_microstrain_per_degc.is_empty()) {
+        let of = |name: &String| {
+            let bridge = job
+                .gauges
+                .iter()
+                .find(|g| g.name == *name)
+                .map_or("quarter", |g| g.bridge.name());
+            r.thermal_microstrain_per_degc
+                .get(bridge)
+                .copied()
+                .unwrap_or(0.0)
+        };
+        part.thermal_uniform = Some(channels.iter().map(of).collect());
+    }
+    part.entry_rel = ENTRY_SHARE
+        * job
+            .measured
+            .as_ref()
+            .map_or(0.0, |m| m.model_uncertainty_rel);
+    let deck = DeckFrame {
+        fields,
+        gauges,
+        columns,
+        base: table,
+    };
+    let zones: Vec<String> = reconcile
+        .iter()
+        .flat_map(|r| r.zones.keys().cloned())
+        .collect();
+    let solved: Result<Vec<Vec<f64>>, Faults> = session.stage("solve zones", |_| {
+        zones
+            .par_iter()
+            .map(|z| deck.stiffness_change(job, z, FIRST_PERCENT))
+            .collect()
+    });
+    for (zone, change) in zones.into_iter().zip(solved?) {
+        part.stiffness.push(StiffnessSignature {
+            id: format!("rail_stiffness:{zone}"),
+            at_percent: vec![(FIRST_PERCENT, change)],
+            prior_percent: 15.0,
+        });
+    }
+    Ok((part, deck))
+}
+
+/// The frame counts in kN.
+const KILO: f64 = 1e3;
+
+impl DeckFrame {
+    /// Change of the influence matrix when the thickness of `zone` grows by `percent`, from a solution of the changed model.
+    pub(super) fn stiffness_change(
+        &self,
+        job: &Job,
+        zone: &str,
+        percent: f64,
+    ) -> Result<Vec<f64>, Faults> {
+        let Some(ids) = job.reconcile.as_ref().and_then(|r| r.zones.get(zone)) else {
+            return Err(vec![Fault::of(
+                &*job.file,
+                "reconcile.zones",
+                format!("no zone `{zone}`"),
+                "name its properties",
+            )]);
+        };
+        let factor = 1.0 + percent / 100.0;
+        let mut deck = self.fields.deck.deck.clone();
+        let mut changed = 0;
+        for p in deck
+            .cards
+            .pshells
+            .iter_mut()
+            .filter(|p| ids.contains(p.card.id))
+        {
+            p.card.t = p.card.t.map(|t| t * factor);
+            p.card.z1 = p.card.z1.map(|z| z * factor);
+            p.card.z2 = p.card.z2.map(|z| z * factor);
+            changed += 1;
+        }
+        if changed == 0 {
+            let wrong = format!("zone `{zone}` names no PSHELL of the deck");
+            return Err(vec![Fault::of(
+                &*job.file,
+                "reconcile.zones",
+                wrong,
+                "name PSHELL ids",
+            )]);
+        }
+        let (model, _) = Model::from_deck(&deck);
+        let solution = solve(job, &model, &self.columns)?;
+        let now = influence(job, &model, &self.gauges, &solution, self.columns.len());
+        Ok(now.iter().zip(&self.base).map(|(a, b)| a - b).collect())
+    }
+}
+
+impl DeckFrame {
+    /// The deck with zones thickened and masses added, `None` where it is spread over several files or nothing changes.
+    pub(super) fn extended(
+        &self,
+        job: &Job,
+        zones: &[(String, f64)],
+        masses: &[(String, f64)],
+    ) -> Option<Vec<u8>> {
+        let deck = &self.fields.deck.deck;
+        let reconcile = job.reconcile.as_ref()?;
+        if deck.sources.len() != 1 || (zones.is_empty() && masses.is_empty()) {
+            return None;
+        }
+        let mut edits = Edits::default();
+        for (zone, percent) in zones {
+            let ids = reconcile.zones.get(zone)?;
+            let factor = 1.0 + percent / 100.0;
+            for p in deck
+                .cards
+                .pshells
+                .iter()
+                .filter(|p| ids.contains(p.card.id))
+            {
+                let c = &p.card;
+                let scaled = |v: Option<f64>| v.map(|v| v * factor);
+                let fields = [
+                    Field::from(c.id),
+                    c.mid1.into(),
+                    scaled(c.t).into(),
+                    c.mid2.into(),
+                    c.bending_ratio.into(),
+                    c.mid3.into(),
+                    c.shear_ratio.into(),
+                    c.nsm.into(),
+                    scaled(c.z1).into(),
+                    scaled(c.z2).into(),
+                    c.mid4.into(),
+                ];
+                edits
+                    .replace_card(deck, p.at, &format_card("PSHELL", &fields))
+                    .ok()?;
+            }
+        }
+        let highest = self
+            .fields
+            .model()
+            .shells
+            .iter()
+            .map(|s| s.id)
+            .max()
+            .unwrap_or(0);
+        let taken = deck
+            .cards
+            .conm2s
+            .iter()
+            .map(|c| c.card.id)
+            .max()
+            .unwrap_or(0)
+            .max(highest);
+        for (k, (place, kilogram)) in (1u32..).zip(masses) {
+            let grid = *reconcile.places.get(place)?;
+            let mass = kilogram / job.units.mass_kg();
+            let fields = [
+                Field::from(taken.checked_add(k)?),
+                grid.into(),
+                Field::Blank,
+                mass.into(),
+            ];
+            edits.insert_cards(deck, &format_card("CONM2", &fields));
+        }
+        write_edited(deck, &edits).into_iter().next().map(|f| f.1)
+    }
+}
+
+/// Channels in the order of the strain file.
+fn in_order(job: &Job, laid: Vec<Gauge>, channels: &[String]) -> Result<Vec<Gauge>, Faults> {
+    let find = |name: &String| {
+        laid.iter()
+            .find(|g| g.name == *name)
+            .cloned()
+            .ok_or_else(|| {
+                let wrong = format!("the strain file has a column `{name}`, the job no such gauge");
+                Fault::of(&*job.file, "gauge", wrong, "name the gauges as the columns")
+            })
+    };
+    let (mut out, mut faults) = (Vec::new(), Faults::new());
+    for name in channels {
+        match find(name) {
+            Ok(g) => out.push(g),
+            Err(f) => faults.push(f),
+        }
+    }
+    if faults.is_empty() {
+        Ok(out)
+    } else {
+        Err(faults)
+    }
+}
+
+/// Influence of the columns, `n_gauges x n_columns`, those that stand for nothing zero.
+fn influence(
+    job: &Job,
+    model: &Model,
+    gauges: &[Gauge],
+    solution: &Solution,
+    n_columns: usize,
+) -> Vec<f64> {
+    let mut out = readings(gauges, solution, 0..n_columns);
+    let blank = if payload_grid(job, model).is_some() {
+        1
+    } else {
+        N_PAYLOAD_COLUMNS
+    };
+    for row in out.chunks_exact_mut(n_columns.max(1)) {
+        row.iter_mut().rev().take(blank).for_each(|v| *v = 0.0);
+    }
+    out
+}
+
+/// Microstrain per unit of each case of `range`, `n_gauges x n_cases` by rows; NaN where there is no strain.
+fn readings(gauges: &[Gauge], solution: &Solution, range: std::ops::Range<usize>) -> Vec<f64> {
+    let mut out = Vec::with_capacity(gauges.len() * range.len());
+    for g in gauges {
+        for c in range.clone() {
+            let value = solution.cases.get(c).and_then(|case| reading(g, case));
+            out.push(MICRO * value.unwrap_or(f64::NAN));
+        }
+    }
+    out
+}
+
+fn solve(job: &Job, model: &Model, loads: &[UnitLoad]) -> Result<Solution, Faults> {
+    let remedy = "repair the deck, or give S as CSV files in `[sensitivity]`";
+    let solved = solve_unit_loads(model, loads, &SolveOptions::default());
+    solved
+        .map(|s| s.0)
+        .map_err(|e| vec![Fault::of(&*job.file, "model", e.to_string(), remedy)])
+}
+
+fn gravity(job: &Job) -> f64 {
+    job.payload
+        .as_ref()
+        .and_then(|p| p.gravity_m_s2)
+        .unwrap_or(9.806_65)
+}
+
+fn grid_of(job: &Job, model: &Model, id: u32) -> Result<GridIx, Faults> {
+    let wrong = || {
+        vec![Fault::of(
+            &*job.file,
+            "grid",
+            format!("the deck has no grid {id}"),
+            "correct the id",
+        )]
+    };
+    model.grid_ix(id).ok_or_else(wrong)
+}
+
+fn payload_grid(job: &Job, model: &Model) -> Option<GridIx> {
+    model.grid_ix(job.payload.as_ref()?.grid?)
+}
+
+/// `size` kN or kN m at a grid, in the deck's units.
+fn unit(job: &Job, grid: GridIx, component: Component, size: f64) -> UnitLoad {
+    let quantity = if component.dof() < 3 {
+        Quantity::Force
+    } else {
+        Quantity::Moment
+    };
+    let mut v = Vec3::zeros();
+    v[component.dof() % 3] = size * KILO / job.units.si(quantity);
+    let (force, moment) = if component.dof() < 3 {
+        (v, Vec3::zeros())
+    } else {
+        (Vec3::zeros(), v)
+    };
+    UnitLoad::AtGrid {
+        grid,
+        force,
+        moment,
+    }
+}
+
+/// The wheels (name, grid) and the columns of the influence matrix: each wheel load, then the payload per kg: its weight, and the
+/// moments that moving it by a metre forward and to the left brings (W dx about y, -W dy about x).
+#[allow(
+    clippy::type_complexity,
+    reason = "a list of names with grids, and the loads"
+)]
+fn columns(job: &Job, model: &Model) -> Result<(Vec<(String, GridIx)>, Vec<UnitLoad>), Faults> {
+    let mut wheels = Vec::new();
+    let mut loads = Vec::new();
+    for l in &job.loads {
+        let LoadActs::AtGrid {
+            grid, component, ..
+        } = l.acts
+        else {
+            continue;
+        };
+        let ix = grid_of(job, model, grid)?;
+        wheels.push((l.name.clone(), ix));
+        loads.push(unit(job, ix, component, 1.0));
+    }
+    let weight = gravity(job) / KILO;
+    // Without a payload grid its columns stand for nothing and are blanked.
+    let first = wheels.first().map_or(GridIx(0), |w| w.1);
+    let at = payload_grid(job, model).unwrap_or(first);
+    loads.push(unit(job, at, Component::FZ, -weight));
+    loads.push(unit(job, at, Component::MY, weight));
+    loads.push(unit(job, at, Component::MX, -weight));
+    // Bending is linear in the place: the product term stands for nothing and is blanked.
+    loads.push(unit(job, at, Component::MX, -weight));
+    Ok((wheels, loads))
+}
