@@ -8,7 +8,9 @@ use crate::cli::strain::{Fields, lay_gauges, read_fields};
 use crate::fe::{Solution, SolveOptions, UnitLoad, solve_unit_loads};
 use crate::gauge::{Gauge, reading};
 use crate::model::{GridIx, Model, Vec3};
-use crate::reconcile::strain::{MassSignature, N_PAYLOAD_COLUMNS, StiffnessSignature, Wiring};
+use crate::reconcile::strain::{
+    MassSignature, N_PAYLOAD_COLUMNS, PlaneStrainRow, StiffnessSignature, Wiring,
+};
 use crate::units::Quantity;
 use nastran::bdf::{Edits, Field, format_card, write_edited};
 use rayon::prelude::*;
@@ -85,7 +87,7 @@ pub(super) fn read(
     let at_45 = influence(job, model, &turned[0], &solution, n_c);
     let at_90 = influence(job, model, &turned[1], &solution, n_c);
     let n_g = gauges.len();
-    let plane = |g: usize| {
+    let plane = |g: usize| -> PlaneStrainRow {
         let one = |c: usize| {
             let i = g * n_c + c;
             [table[i], at_90[i], 2.0 * at_45[i] - table[i] - at_90[i]]
