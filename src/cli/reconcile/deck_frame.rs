@@ -19,7 +19,7 @@ use rayon::prelude::*;
 const FIRST_PERCENT: f64 = 10.0;
 /// Share of the stated model uncertainty that single influence coefficients have on top of the common factor of a gauge: a coarse
 /// mesh errs differently in every load.
-const ENTRY_SHARE: f64 = 0.3;
+const ENTRY_SHARE: f64 = 0.5;
 /// Strain in microstrain.
 const MICRO: f64 = 1e6;
 
