@@ -33,6 +33,10 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     let sites = allowed_sites(&job, fields.model(), &common)?;
     let k = cases.len();
     let scales = scales(session, &cases, &common);
+    // Nuisance loads lead where the criterion is Ds.
+    let order = column_order(&job);
+    let (led, led_scales): (Vec<LoadCaseOf>, Vec<f64>) =
+        order.iter().map(|&l| (cases[l].clone(), scales[l])).unzip();
     let c = session.stage("candidates", |_| {
         let scatter = Scatter {
             noise: job.placement.noise_microstrain,
@@ -43,8 +47,8 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         candidates(
             fields.model(),
             &sites,
-            &cases,
-            &scales,
+            &led,
+            &led_scales,
             angles(job.candidates.angles),
             scatter,
         )
@@ -56,7 +60,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     let gauges = gauges_of(fields.model(), &sites, &layout, job.candidates.grid_length);
     let s = from_cases(&gauges, &cases).map_err(|_| Vec::new())?;
     let rows: Vec<Vec<f64>> = layout.gauges.iter().map(|&g| c.row(g)).collect();
-    let Some(quality) = judge_rows(&rows, &spec.prior, k) else {
+    let Some(quality) = judge_rows(&rows, &spec.prior, k).map(|q| in_job_order(q, &order)) else {
         return Err(vec![refusal(
             &job,
             &PlaceError::Singular {
@@ -220,19 +224,33 @@ fn spec_of(session: &mut Session, job: &Job, k: usize) -> Spec {
     let mut spec = Spec::new(gauges, k);
     spec.spacing = job.placement.spacing;
     spec.effort.seed = job.placement.seed;
-    if job.placement.criterion == Criterion::Ds {
-        for (l, load) in job.loads.iter().enumerate() {
-            if load.role == job::Role::Nuisance && load.expected.is_some() {
-                spec.prior[l * k + l] = 1.0;
-            }
+    let order = column_order(job);
+    for (l, &from) in order.iter().enumerate() {
+        // What is known of a nuisance load: its expected size, 1 in these columns.
+        if job.loads[from].role == job::Role::Nuisance && job.loads[from].expected.is_some() {
+            spec.prior[l * k + l] = 1.0;
         }
-        spec.nuisance = job
-            .loads
-            .iter()
-            .map(|l| l.role == job::Role::Nuisance)
-            .collect();
+    }
+    if job.placement.criterion == Criterion::Ds {
+        spec.nuisance = job.loads.iter().filter(|l| l.role == job::Role::Nuisance).count();
     }
     spec
+}
+
+/// Loads in the order of the candidates' columns: nuisance loads first.
+fn column_order(job: &Job) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..job.loads.len()).collect();
+    order.sort_by_key(|&l| job.loads[l].role == job::Role::Wanted);
+    order
+}
+
+/// The standard deviations in job order.
+fn in_job_order(mut q: Quality, order: &[usize]) -> Quality {
+    let led = q.sigma.clone();
+    for (i, &l) in order.iter().enumerate() {
+        q.sigma[l] = led[i];
+    }
+    q
 }
 
 fn refusal(job: &Job, e: &PlaceError) -> Fault {
@@ -313,14 +331,15 @@ fn installed(
     };
     let k = cases.len();
     let noise = job.placement.noise_microstrain * MICRO;
+    let order = column_order(job);
     let rows: Vec<Vec<f64>> = (0..gauges.len())
         .map(|g| {
             (0..k)
-                .map(|l| s.values[(g, l)] * scales[l] / noise)
+                .map(|l| s.values[(g, order[l])] * scales[order[l]] / noise)
                 .collect()
         })
         .collect();
-    let Some(q) = judge_rows(&rows, &spec.prior, k) else {
+    let Some(q) = judge_rows(&rows, &spec.prior, k).map(|q| in_job_order(q, &order)) else {
         return Ok(Some(json!({ "gauges": gauges.len(), "rank": s.rank() })));
     };
     let bound = if gauges.len() == spec.gauges && !c.has_slopes() {
@@ -338,7 +357,7 @@ fn installed(
         };
         place(&plain, &other).ok().map(|l| l.upper_bound)
     };
-    let log_det = crate::placement::quality::log_det(&rows, &spec.prior, k);
+    let log_det = crate::placement::quality::log_det(&rows, &spec.prior, k, spec.nuisance);
     Ok(Some(json!({
         "gauges": gauges.len(),
         "log_det": log_det,

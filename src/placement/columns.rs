@@ -64,12 +64,14 @@ pub fn solve(
     c: &Candidates,
     s: usize,
     prior: &[f64],
+    nuisance: usize,
     groups: &Groups,
     tolerance: f64,
     warm: &[Choice],
 ) -> Option<Columns> {
     let k = c.n_loads();
-    let mut set = RowSet::new(k);
+    let wanted = (k - nuisance) as f64;
+    let mut set = RowSet::new(k, nuisance);
     for &w in warm {
         set.add(c, w, groups);
     }
@@ -109,8 +111,8 @@ pub fn solve(
         let mut priced = price(c, &relaxed.linv, threshold, groups.report(), keep);
         passes += 1;
         let top = top_of(&priced, groups, s, threshold);
-        let gap = ((relaxed.prior_trace + top.0) / k as f64).ln();
-        upper_bound = upper_bound.min(relaxed.log_det + k as f64 * gap);
+        let gap = ((relaxed.prior_trace + top.0) / wanted).ln();
+        upper_bound = upper_bound.min(relaxed.log_det + wanted * gap);
         if gap <= tolerance || passes >= MAX_PASSES {
             return Some(Columns {
                 active: set.active,
@@ -224,12 +226,9 @@ struct RowSet {
 }
 
 impl RowSet {
-    fn new(k: usize) -> Self {
+    fn new(k: usize, nuisance: usize) -> Self {
         Self {
-            active: Active {
-                k,
-                ..Active::default()
-            },
+            active: Active { k, nuisance, ..Active::default() },
             choices: Vec::new(),
             seen: HashMap::new(),
             groups: HashMap::new(),
@@ -264,6 +263,7 @@ impl RowSet {
         let k = self.active.k;
         let old = std::mem::take(&mut self.active);
         self.active.k = k;
+        self.active.nuisance = old.nuisance;
         self.seen.clear();
         let (old_groups, mut renumber) = (std::mem::take(&mut self.groups), HashMap::new());
         let choices = std::mem::take(&mut self.choices);

@@ -3,7 +3,7 @@
 //! Exchanging gauge `j` for row `i` multiplies `det M` by `(1 + d_i)(1 - d_j) + d_ij^2` (Fedorov, Theory of Optimal Experiments, 1972,
 //! eq. 3.2.4). Several starts and kicks, all from a fixed seed.
 
-use super::relax::Active;
+use super::relax::{Active, criterion};
 use crate::linalg::spd;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -231,17 +231,52 @@ fn complete(
 /// Gain in `det` under which an exchange is rounding error.
 const LEAST_GAIN: f64 = 1e-9;
 
-fn log_det_of(active: &Active, prior: &[f64], chosen: &[usize]) -> Option<(f64, Vec<f64>)> {
-    let k = active.k;
+/// An inverse with the variances of all rows, and their cross variances with the chosen ones (by slot).
+struct Table {
+    inverse: Vec<f64>,
+    d: Vec<f64>,
+    cross: Vec<f64>,
+}
+
+impl Table {
+    fn new(active: &Active, inverse: Vec<f64>, chosen: &[usize]) -> Self {
+        let n = active.len();
+        let mut u = vec![0.0; active.k];
+        let mut t = Self {
+            inverse,
+            d: vec![0.0; n],
+            cross: vec![0.0; n * chosen.len()],
+        };
+        for i in 0..n {
+            let ai = active.row(i);
+            spd::times(&t.inverse, ai, &mut u);
+            t.d[i] = spd::dot(ai, &u);
+            for (c, &j) in chosen.iter().enumerate() {
+                t.cross[c * n + i] = spd::dot(active.row(j), &u);
+            }
+        }
+        t
+    }
+
+    /// Factor on the determinant when row `i` takes the place of row `j` in `slot`.
+    fn ratio(&self, slot: usize, i: usize, j: usize) -> f64 {
+        let cross = self.cross[slot * self.d.len() + i];
+        (1.0 + self.d[i]) * (1.0 - self.d[j]) + cross * cross
+    }
+}
+
+/// Criterion and tables (of `M`, and of `M_nn` where there are nuisance columns) of a choice.
+fn tables(active: &Active, prior: &[f64], chosen: &[usize]) -> Option<(f64, Vec<Table>)> {
     let mut m = prior.to_vec();
     for &i in chosen {
         spd::add_outer(&mut m, active.row(i), 1.0);
     }
-    let l = spd::cholesky(&m, k)?;
-    Some((
-        spd::log_det(&l, k),
-        spd::gram_of_lower(&spd::inverse_lower(&l, k), k),
-    ))
+    let (value, _, minv, ninv) = criterion(&m, active.k, active.nuisance)?;
+    let mut list = vec![Table::new(active, minv, chosen)];
+    if !ninv.is_empty() {
+        list.push(Table::new(active, ninv, chosen));
+    }
+    Some((value, list))
 }
 
 /// Exchanges single rows until none gains. Starts regularised by `ridge` where the rows alone are singular.
@@ -252,38 +287,28 @@ fn improve(
     mut chosen: Vec<usize>,
     excludes: &(impl Fn(usize, usize) -> bool + Sync),
 ) -> Option<Chosen> {
-    let (n, k, s) = (active.len(), active.k, chosen.len());
+    let (n, s) = (active.len(), chosen.len());
     let mut blocked = vec![0u32; n];
     for (i, b) in blocked.iter_mut().enumerate() {
         *b = chosen.iter().filter(|&&j| excludes(i, j)).count() as u32;
     }
     let mut base = prior;
-    let mut state = log_det_of(active, base, &chosen);
+    let mut state = tables(active, base, &chosen);
     if state.is_none() {
         base = ridge;
-        state = log_det_of(active, base, &chosen);
+        state = tables(active, base, &chosen);
     }
-    let (mut log_det, mut minv) = state?;
-    let mut u = vec![0.0; k];
-    let mut d = vec![0.0; n];
-    let mut cross = vec![0.0; n * s];
+    let (mut log_det, mut list) = state?;
     for _ in 0..MAX_SWEEPS {
-        for i in 0..n {
-            let ai = active.row(i);
-            spd::times(&minv, ai, &mut u);
-            d[i] = spd::dot(ai, &u);
-            for (c, &j) in chosen.iter().enumerate() {
-                cross[c * n + i] = spd::dot(active.row(j), &u);
-            }
-        }
         let mut gained = false;
         for slot in 0..s {
             let j = chosen[slot];
-            let dj = d[j];
-            let column = &cross[slot * n..(slot + 1) * n];
             let mut best = (1.0 + LEAST_GAIN, usize::MAX);
             for i in 0..n {
-                let ratio = (1.0 + d[i]) * (1.0 - dj) + column[i] * column[i];
+                let mut ratio = list[0].ratio(slot, i, j);
+                if let Some(part) = list.get(1) {
+                    ratio /= part.ratio(slot, i, j).max(LEAST_PART);
+                }
                 if ratio > best.0
                     && (blocked[i] == 0 || (blocked[i] == 1 && excludes(i, j) && i != j))
                 {
@@ -295,8 +320,9 @@ fn improve(
                 continue;
             }
             gained = true;
-            log_det += best.0.ln();
-            swap(active, &mut minv, &mut d, &mut cross, &chosen, slot, i);
+            for t in &mut list {
+                swap(active, t, &chosen, slot, i);
+            }
             for (x, b) in blocked.iter_mut().enumerate() {
                 *b += u32::from(excludes(x, i));
                 *b -= u32::from(excludes(x, j));
@@ -310,10 +336,10 @@ fn improve(
         if !gained {
             break;
         }
-        (log_det, minv) = log_det_of(active, base, &chosen)?;
+        (log_det, list) = tables(active, base, &chosen)?;
     }
     if !std::ptr::eq(base, prior) {
-        log_det = log_det_of(active, prior, &chosen)?.0;
+        log_det = tables(active, prior, &chosen)?.0;
     }
     Some(Chosen {
         rows: chosen,
@@ -321,45 +347,38 @@ fn improve(
     })
 }
 
+/// Share of its determinant under which the nuisance block counts as lost by an exchange.
+const LEAST_PART: f64 = 1e-9;
+
 /// Sweeps after which the search gives up; it stops by itself long before.
 const MAX_SWEEPS: usize = 200;
 
-/// Brings `M^-1`, the variances and the cross variances up to date for row `i` in place of the gauge in `slot`.
-fn swap(
-    active: &Active,
-    minv: &mut [f64],
-    d: &mut [f64],
-    cross: &mut [f64],
-    chosen: &[usize],
-    slot: usize,
-    i: usize,
-) {
+/// Brings a table up to date for row `i` in place of the gauge in `slot`.
+fn swap(active: &Active, t: &mut Table, chosen: &[usize], slot: usize, i: usize) {
     let (n, k) = (active.len(), active.k);
     let mut ui = vec![0.0; k];
-    spd::times(minv, active.row(i), &mut ui);
+    spd::times(&t.inverse, active.row(i), &mut ui);
     let x: Vec<f64> = (0..n).map(|p| spd::dot(active.row(p), &ui)).collect();
-    let add = 1.0 / (1.0 + d[i]);
+    let add = 1.0 / (1.0 + t.d[i]);
     let j = chosen[slot];
     let xj = x[j];
     let y: Vec<f64> = (0..n)
-        .map(|p| cross[slot * n + p] - add * x[p] * xj)
+        .map(|p| t.cross[slot * n + p] - add * x[p] * xj)
         .collect();
     let drop = 1.0 / (1.0 - y[j]);
     let mut uj = vec![0.0; k];
-    spd::times(minv, active.row(j), &mut uj);
+    spd::times(&t.inverse, active.row(j), &mut uj);
     for (a, b) in uj.iter_mut().zip(&ui) {
         *a -= add * xj * b;
     }
-    spd::add_outer(minv, &ui, -add);
-    spd::add_outer(minv, &uj, drop);
-    let di = x[i] - add * x[i] * x[i] + drop * y[i] * y[i];
+    spd::add_outer(&mut t.inverse, &ui, -add);
+    spd::add_outer(&mut t.inverse, &uj, drop);
     for p in 0..n {
-        d[p] += drop * y[p] * y[p] - add * x[p] * x[p];
+        t.d[p] += drop * y[p] * y[p] - add * x[p] * x[p];
     }
-    d[i] = di;
     for (c, &q) in chosen.iter().enumerate() {
         let (xq, yq) = (x[q], y[q]);
-        let column = &mut cross[c * n..(c + 1) * n];
+        let column = &mut t.cross[c * n..(c + 1) * n];
         if c == slot {
             for (p, v) in column.iter_mut().enumerate() {
                 *v = x[p] - add * x[p] * x[i] + drop * y[p] * y[i];

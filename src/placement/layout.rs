@@ -4,7 +4,7 @@ use super::candidates::{Angles, Candidates, Choice};
 use super::columns::{self, Columns, Groups};
 use super::exchange::{self, Effort};
 use super::kernel::{Priced, Report, price};
-use super::relax::Active;
+use super::relax::{Active, criterion};
 use super::spacing;
 use crate::linalg::spd;
 
@@ -17,8 +17,8 @@ pub struct Spec {
     pub spacing: f64,
     /// Information already there, `k x k` by rows (zeros: none): gauges kept, known load sizes.
     pub prior: Vec<f64>,
-    /// Columns that are present but not asked for; empty: none.
-    pub nuisance: Vec<bool>,
+    /// Leading columns that are present but not asked for (Ds); 0: D over all.
+    pub nuisance: usize,
     /// Gap, per load, to which the relaxation is solved; the certificate is as much looser.
     pub tolerance: f64,
     /// How hard to search.
@@ -32,7 +32,7 @@ impl Spec {
             gauges,
             spacing: 0.0,
             prior: vec![0.0; loads * loads],
-            nuisance: Vec::new(),
+            nuisance: 0,
             tolerance: 5e-4,
             effort: Effort {
                 starts: 8,
@@ -48,7 +48,7 @@ impl Spec {
 pub struct Layout {
     /// The gauges, by place and angle.
     pub gauges: Vec<Choice>,
-    /// `log det` of its information matrix.
+    /// `log det` of its information matrix; with nuisance loads, less that of their block.
     pub log_det: f64,
     /// No layout that keeps the rules has a larger `log det`.
     pub upper_bound: f64,
@@ -104,7 +104,10 @@ const LIST: usize = 1000;
 /// # Errors
 /// Where there are too few places, or the loads can't be separated by that many gauges.
 pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
-    let (k, s) = (c.n_loads(), spec.gauges);
+    let (loads, s) = (c.n_loads(), spec.gauges);
+    let q = spec.nuisance.min(loads.saturating_sub(1));
+    // The degree of the criterion: loads asked for.
+    let k = loads - q;
     let spaced = spec.spacing > 0.0 && !c.positions().is_empty();
     let mut groups = if spaced || *c.angles() == Angles::Continuous {
         Groups::Places
@@ -121,9 +124,9 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
     }
     let singular = PlaceError::Singular {
         gauges: s,
-        loads: k,
+        loads,
     };
-    let mut col = columns::solve(c, s, &spec.prior, &groups, spec.tolerance, &[])
+    let mut col = columns::solve(c, s, &spec.prior, q, &groups, spec.tolerance, &[])
         .ok_or_else(|| singular.clone())?;
     let mut upper = col.upper_bound;
     let mut passes = col.passes;
@@ -141,7 +144,7 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
             let of = spacing::cliques(c.n_places(), &priced, c.positions(), spec.spacing);
             groups = Groups::Cliques(of);
             let Some(next) =
-                columns::solve(c, s, &spec.prior, &groups, spec.tolerance, &col.choices)
+                columns::solve(c, s, &spec.prior, q, &groups, spec.tolerance, &col.choices)
             else {
                 break;
             };
@@ -293,6 +296,7 @@ fn run(
     let rows = choices.iter().flat_map(|&p| c.row(p)).collect();
     let active = Active {
         k,
+        nuisance: spec.nuisance.min(k.saturating_sub(1)),
         rows,
         group: (0..choices.len() as u32).collect(),
         n_groups: choices.len(),
@@ -342,7 +346,8 @@ fn polish(c: &Candidates, spec: &Spec, mut gauges: Vec<Choice>, mut log_det: f64
             let Some(l) = spd::cholesky(&m, k) else {
                 continue;
             };
-            let linv = spd::inverse_lower(&l, k);
+            let mut linv = spd::inverse_lower(&l, k);
+            linv[..spec.nuisance.min(k - 1) * k].fill(0.0);
             let one = c.subset(&[gauges[i].place]);
             let Some(p) = price(&one, &linv, 0.0, Report::BestOfPlace, usize::MAX)
                 .first()
@@ -354,21 +359,11 @@ fn polish(c: &Candidates, spec: &Spec, mut gauges: Vec<Choice>, mut log_det: f64
                 angle: p.choice.angle,
                 ..gauges[i]
             };
-            let v = spd::dot(
-                &apply(&linv, &c.row(gauges[i])),
-                &apply(&linv, &c.row(gauges[i])),
-            );
-            let w = spd::dot(&apply(&linv, &c.row(turned)), &apply(&linv, &c.row(turned)));
-            if w > v {
-                gauges[i] = turned;
+            let old = std::mem::replace(&mut gauges[i], turned);
+            match value_of(c, spec, &gauges) {
+                Some(v) if v > log_det => log_det = v,
+                _ => gauges[i] = old,
             }
-        }
-        let mut m = spec.prior.clone();
-        for &g in &gauges {
-            spd::add_outer(&mut m, &c.row(g), 1.0);
-        }
-        if let Some(l) = spd::cholesky(&m, k) {
-            log_det = spd::log_det(&l, k);
         }
         if log_det - before < 1e-9 {
             break;
@@ -377,8 +372,12 @@ fn polish(c: &Candidates, spec: &Spec, mut gauges: Vec<Choice>, mut log_det: f64
     (gauges, log_det)
 }
 
-fn apply(linv: &[f64], a: &[f64]) -> Vec<f64> {
-    let mut y = vec![0.0; a.len()];
-    spd::times(linv, a, &mut y);
-    y
+/// The criterion of a layout; `None` where it is singular.
+fn value_of(c: &Candidates, spec: &Spec, gauges: &[Choice]) -> Option<f64> {
+    let k = c.n_loads();
+    let mut m = spec.prior.clone();
+    for &g in gauges {
+        spd::add_outer(&mut m, &c.row(g), 1.0);
+    }
+    criterion(&m, k, spec.nuisance.min(k.saturating_sub(1))).map(|v| v.0)
 }

@@ -12,6 +12,8 @@ use crate::linalg::spd;
 pub struct Active {
     /// Number of columns.
     pub k: usize,
+    /// Leading columns that are nuisance loads: the criterion is `log det M - log det M_nn` (Ds); 0: `log det M` (D).
+    pub nuisance: usize,
     /// `n x k` by rows.
     pub rows: Vec<f64>,
     /// Group of each row, `0 .. n_groups`.
@@ -21,6 +23,11 @@ pub struct Active {
 }
 
 impl Active {
+    /// Number of columns asked for: the degree of the criterion.
+    pub fn wanted(&self) -> usize {
+        self.k - self.nuisance
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.group.len()
@@ -42,13 +49,15 @@ impl Active {
 pub struct Relaxed {
     /// Weights.
     pub weights: Vec<f64>,
-    /// Inverse of the lower Cholesky factor of `M`.
+    /// Inverse of the lower Cholesky factor of `M`, rows of nuisance columns zeroed: `d = |linv a|^2` is the slope of the criterion.
     pub linv: Vec<f64>,
     /// `M^-1`.
     pub minv: Vec<f64>,
-    /// `log det M`.
+    /// `M_nn^-1`, padded with zeros to `k x k`; empty without nuisance columns.
+    pub ninv: Vec<f64>,
+    /// The criterion.
     pub log_det: f64,
-    /// `tr(M^-1 P)`.
+    /// `tr(G P)`, `G = linv' linv`.
     pub prior_trace: f64,
     /// Variances of the rows.
     pub d: Vec<f64>,
@@ -86,6 +95,7 @@ pub fn relax(
     let mut slack = vec![1.0; active.n_groups];
     let mut u = vec![0.0; k];
     let mut v = vec![0.0; k];
+    let (mut nu, mut nv) = (vec![0.0; k], vec![0.0; k]);
     for _ in 0..sweeps {
         if state.gap <= tolerance {
             break;
@@ -113,11 +123,10 @@ pub fn relax(
             .collect();
         outgoing.sort_unstable_by(|a, b| by_d(b, a));
         let mut minv = std::mem::take(&mut state.minv);
+        let mut ninv = std::mem::take(&mut state.ninv);
         for &i in &incoming {
             let (i, gi) = (i as usize, active.group[i as usize] as usize);
             let ai = active.row(i);
-            spd::times(&minv, ai, &mut u);
-            let mut di = spd::dot(ai, &u);
             let mut tried = 0;
             for &j in &outgoing {
                 let (j, gj) = (j as usize, active.group[j as usize] as usize);
@@ -137,30 +146,15 @@ pub fn relax(
                 }
                 tried += 1;
                 let aj = active.row(j);
-                spd::times(&minv, aj, &mut v);
-                let (dj, dij) = (spd::dot(aj, &v), spd::dot(aj, &u));
-                if di <= dj {
+                let full = Pair::new(&minv, ai, aj, &mut u, &mut v);
+                let part = (!ninv.is_empty()).then(|| Pair::new(&ninv, ai, aj, &mut nu, &mut nv));
+                let step = best_step(&full, part.as_ref(), cap);
+                if step <= 0.0 || full.det(step) <= 0.0 {
                     continue;
                 }
-                let curvature = di * dj - dij * dij;
-                let step = if curvature > 0.0 {
-                    ((di - dj) / (2.0 * curvature)).min(cap)
-                } else {
-                    cap
-                };
-                // (M + step (a_i a_i' - a_j a_j'))^-1 by the formula of Sherman, Morrison and Woodbury for two columns.
-                let (p, q) = (1.0 + step * di, 1.0 - step * dj);
-                let det = p * q + step * step * dij * dij;
-                if det <= 0.0 {
-                    continue;
-                }
-                let (cu, cv, cx) = (step * q / det, -step * p / det, step * step * dij / det);
-                for r in 0..k {
-                    let (ur, vr) = (u[r], v[r]);
-                    let (x, y) = (cu * ur + cx * vr, cv * vr + cx * ur);
-                    for (c, m) in minv[r * k..(r + 1) * k].iter_mut().enumerate() {
-                        *m -= x * u[c] + y * v[c];
-                    }
+                full.apply(&mut minv, step, &u, &v);
+                if let Some(part) = part {
+                    part.apply(&mut ninv, step, &nu, &nv);
                 }
                 weights[i] += step;
                 weights[j] = if step >= weights[j] {
@@ -170,8 +164,6 @@ pub fn relax(
                 };
                 slack[gi] -= step;
                 slack[gj] += step;
-                spd::times(&minv, ai, &mut u);
-                di = spd::dot(ai, &u);
             }
         }
         state = measure(active, s, prior, &weights)?;
@@ -185,6 +177,102 @@ const FULL: f64 = 1e-12;
 /// Partners a row tries in one sweep; the next sweep sorts again.
 const MAX_TRIES: usize = 48;
 
+/// Two rows under an inverse: what moving weight from `j` to `i` does to the determinant.
+struct Pair {
+    di: f64,
+    dj: f64,
+    dij: f64,
+}
+
+impl Pair {
+    /// Fills `u = inverse a_i`, `v = inverse a_j`.
+    fn new(inverse: &[f64], ai: &[f64], aj: &[f64], u: &mut [f64], v: &mut [f64]) -> Self {
+        spd::times(inverse, ai, u);
+        spd::times(inverse, aj, v);
+        Self {
+            di: spd::dot(ai, u),
+            dj: spd::dot(aj, v),
+            dij: spd::dot(aj, u),
+        }
+    }
+
+    /// `det(M + t (a_i a_i' - a_j a_j')) / det M`.
+    fn det(&self, t: f64) -> f64 {
+        (1.0 + t * self.di) * (1.0 - t * self.dj) + t * t * self.dij * self.dij
+    }
+
+    /// Derivative of its logarithm.
+    fn slope(&self, t: f64) -> f64 {
+        let curvature = self.di * self.dj - self.dij * self.dij;
+        (self.di - self.dj - 2.0 * t * curvature) / self.det(t)
+    }
+
+    /// The inverse after the move, by the formula of Sherman, Morrison and Woodbury for two columns.
+    fn apply(&self, inverse: &mut [f64], t: f64, u: &[f64], v: &[f64]) {
+        let k = u.len();
+        let det = self.det(t);
+        let (cu, cv) = (t * (1.0 - t * self.dj) / det, -t * (1.0 + t * self.di) / det);
+        let cx = t * t * self.dij / det;
+        for r in 0..k {
+            let (x, y) = (cu * u[r] + cx * v[r], cv * v[r] + cx * u[r]);
+            for (c, m) in inverse[r * k..(r + 1) * k].iter_mut().enumerate() {
+                *m -= x * u[c] + y * v[c];
+            }
+        }
+    }
+}
+
+/// The weight in `0 .. cap` whose move raises the criterion most.
+fn best_step(full: &Pair, nuisance: Option<&Pair>, cap: f64) -> f64 {
+    let Some(part) = nuisance else {
+        let curvature = full.di * full.dj - full.dij * full.dij;
+        if full.di <= full.dj {
+            return 0.0;
+        }
+        return if curvature > 0.0 {
+            ((full.di - full.dj) / (2.0 * curvature)).min(cap)
+        } else {
+            cap
+        };
+    };
+    let slope = |t: f64| full.slope(t) - part.slope(t);
+    if slope(0.0) <= 0.0 {
+        return 0.0;
+    }
+    // The determinants stay positive below this step.
+    let safe = cap.min(0.999 / full.dj.max(f64::MIN_POSITIVE));
+    if slope(safe) >= 0.0 {
+        return safe;
+    }
+    let (mut low, mut high) = (0.0, safe);
+    for _ in 0..40 {
+        let mid = 0.5 * (low + high);
+        if slope(mid) > 0.0 {
+            low = mid;
+        } else {
+            high = mid;
+        }
+    }
+    low
+}
+
+/// `log det M - log det M_nn` with the factors it takes: `linv` (nuisance rows zeroed), `M^-1`, `M_nn^-1` padded.
+pub fn criterion(m: &[f64], k: usize, nuisance: usize) -> Option<(f64, Vec<f64>, Vec<f64>, Vec<f64>)> {
+    let l = spd::cholesky(m, k)?;
+    let mut linv = spd::inverse_lower(&l, k);
+    let minv = spd::gram_of_lower(&linv, k);
+    if nuisance == 0 {
+        return Some((spd::log_det(&l, k), linv, minv, Vec::new()));
+    }
+    // The leading block of the factor is the factor of the leading block.
+    let mut head = linv.clone();
+    head[nuisance * k..].fill(0.0);
+    let ninv = spd::gram_of_lower(&head, k);
+    linv[..nuisance * k].fill(0.0);
+    let value = 2.0 * (nuisance..k).map(|i| l[i * k + i].ln()).sum::<f64>();
+    Some((value, linv, minv, ninv))
+}
+
 fn measure(active: &Active, s: usize, prior: &[f64], weights: &[f64]) -> Option<Relaxed> {
     let k = active.k;
     let mut m = prior.to_vec();
@@ -193,28 +281,32 @@ fn measure(active: &Active, s: usize, prior: &[f64], weights: &[f64]) -> Option<
             spd::add_outer(&mut m, active.row(i), w);
         }
     }
-    let l = spd::cholesky(&m, k)?;
-    let linv = spd::inverse_lower(&l, k);
-    let minv = spd::gram_of_lower(&linv, k);
+    let (value, linv, minv, ninv) = criterion(&m, k, active.nuisance)?;
+    let slope = if active.nuisance > 0 {
+        spd::gram_of_lower(&linv, k)
+    } else {
+        minv.clone()
+    };
     let mut u = vec![0.0; k];
     let d: Vec<f64> = (0..active.len())
         .map(|i| {
-            spd::times(&minv, active.row(i), &mut u);
+            spd::times(&slope, active.row(i), &mut u);
             spd::dot(active.row(i), &u)
         })
         .collect();
-    let prior_trace = spd::trace_of_product(&minv, prior);
+    let prior_trace = spd::trace_of_product(&slope, prior);
     let (top, _) = top_sum(
         active.group.iter().copied().zip(d.iter().copied()),
         active.n_groups,
         s,
     );
-    let gap = ((prior_trace + top) / k as f64).ln();
+    let gap = ((prior_trace + top) / active.wanted() as f64).ln();
     Some(Relaxed {
         weights: Vec::new(),
         linv,
         minv,
-        log_det: spd::log_det(&l, k),
+        ninv,
+        log_det: value,
         prior_trace,
         d,
         gap,

@@ -186,6 +186,30 @@ fn edits_of(session: &mut Session, job: &Job, deck: &Deck) -> Result<(Edits, Vec
     let mut case = String::from(
         "$ Unit loads, one subcase each, in the order of the job\nSTRAIN(FIBER,CENTER) = ALL\n",
     );
+    // Subcases go, and what they select of the structure itself stays.
+    let kept: std::collections::BTreeSet<u32> = deck
+        .case_control
+        .subcases
+        .iter()
+        .filter_map(|c| c.mpc)
+        .collect();
+    if deck.case_control.global.mpc.is_none()
+        && let Some(mpc) = kept.first()
+    {
+        case.push_str(&format!("MPC = {mpc}\n"));
+    }
+    if kept.len() > 1 {
+        session.findings.push(Finding::new(
+            Severity::Warning,
+            "several-mpc-sets",
+            "MPC",
+            format!(
+                "the deck's subcases select several MPC sets: the unit loads take {}",
+                kept.first().copied().unwrap_or_default()
+            ),
+            "correct MPC in unit_loads.bdf if another set holds while the gauges are read",
+        ));
+    }
     let mut bulk = String::from("$ Unit loads\nPARAM,POST,-1\nPARAM,INREL,-2\n");
     let mut rows = Vec::new();
     for l in &job.loads {

@@ -1,0 +1,67 @@
+//! Runs the program on a copy of a case.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// A file or folder of the shared reference material; `None`, with a message, where it is absent.
+pub fn shared(path: &str) -> Option<PathBuf> {
+    let full = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared")).join(path);
+    if !full.exists() {
+        eprintln!("skipped: {} is not there", full.display());
+        return None;
+    }
+    std::fs::canonicalize(full).ok()
+}
+
+/// An empty folder for one test.
+pub fn scratch(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// What a run gave.
+pub struct Outcome {
+    /// Exit code.
+    pub code: i32,
+    /// `result.json`; null where none was written.
+    pub result: serde_json::Value,
+    /// Standard error.
+    pub stderr: String,
+}
+
+impl Outcome {
+    /// Codes of the findings of one severity.
+    pub fn codes(&self, severity: &str) -> Vec<String> {
+        let findings = self.result["findings"].as_array().cloned().unwrap_or_default();
+        findings
+            .iter()
+            .filter(|f| f["severity"] == severity)
+            .filter_map(|f| f["code"].as_str().map(str::to_owned))
+            .collect()
+    }
+
+    /// A number of the result.
+    pub fn number(&self, key: &str) -> f64 {
+        self.result[key].as_f64().unwrap_or(f64::NAN)
+    }
+}
+
+/// Runs `strainbridge` with output to `out`.
+pub fn run(arguments: &[&str], out: &Path) -> Outcome {
+    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge")).args(arguments).arg("--out").arg(out).output().unwrap();
+    let text = std::fs::read_to_string(out.join("result.json")).unwrap_or_default();
+    Outcome {
+        code: done.status.code().unwrap_or(-1),
+        result: serde_json::from_str(&text).unwrap_or_default(),
+        stderr: String::from_utf8_lossy(&done.stderr).into_owned(),
+    }
+}
+
+/// Rows of a CSV file: header, then fields.
+pub fn csv(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut lines = text.lines().map(|l| l.split(',').map(str::to_owned).collect::<Vec<String>>());
+    (lines.next().unwrap_or_default(), lines.collect())
+}
