@@ -37,7 +37,11 @@ fn tensors(places: usize, loads: usize, angles: Angles) -> Candidates {
 }
 
 fn grid() -> Angles {
-    Angles::Grid((0..12).map(|i| (15.0 * f64::from(i)).to_radians()).collect())
+    Angles::Grid(
+        (0..12)
+            .map(|i| (15.0 * f64::from(i)).to_radians())
+            .collect(),
+    )
 }
 
 fn spec(gauges: usize, loads: usize) -> Spec {

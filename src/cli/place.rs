@@ -232,7 +232,11 @@ fn spec_of(session: &mut Session, job: &Job, k: usize) -> Spec {
         }
     }
     if job.placement.criterion == Criterion::Ds {
-        spec.nuisance = job.loads.iter().filter(|l| l.role == job::Role::Nuisance).count();
+        spec.nuisance = job
+            .loads
+            .iter()
+            .filter(|l| l.role == job::Role::Nuisance)
+            .count();
     }
     spec
 }

@@ -58,25 +58,28 @@ pub(crate) fn shell_fields(
             .map(|&i| {
                 let shell = &model.shells[i];
                 let z = model.shell_properties[shell.property.us()].z;
-                Ok(match shell_matrices(prepared, i, Parts::WithoutStiffness)? {
-                    AnyShell::Quad(m) => u
-                        .iter()
-                        .map(|u| {
-                            let local = local::<24>(u, &shell.grids[..4]);
-                            (
-                                surfaces(&m.centre, z, &local),
-                                m.corners.each_ref().map(|rows| surfaces(rows, z, &local)),
-                            )
-                        })
-                        .collect(),
-                    AnyShell::Tria(m) => u
-                        .iter()
-                        .map(|u| {
-                            let centre = surfaces(&m.centre, z, &local::<18>(u, &shell.grids[..3]));
-                            (centre, [centre, centre, centre, [[f64::NAN; 3]; 2]])
-                        })
-                        .collect(),
-                })
+                Ok(
+                    match shell_matrices(prepared, i, Parts::WithoutStiffness)? {
+                        AnyShell::Quad(m) => u
+                            .iter()
+                            .map(|u| {
+                                let local = local::<24>(u, &shell.grids[..4]);
+                                (
+                                    surfaces(&m.centre, z, &local),
+                                    m.corners.each_ref().map(|rows| surfaces(rows, z, &local)),
+                                )
+                            })
+                            .collect(),
+                        AnyShell::Tria(m) => u
+                            .iter()
+                            .map(|u| {
+                                let centre =
+                                    surfaces(&m.centre, z, &local::<18>(u, &shell.grids[..3]));
+                                (centre, [centre, centre, centre, [[f64::NAN; 3]; 2]])
+                            })
+                            .collect(),
+                    },
+                )
             })
             .collect();
         for row in rows {

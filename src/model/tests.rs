@@ -103,7 +103,11 @@ fn default_fibre_distances_are_half_the_thickness() {
     assert_eq!(m.shell_properties[0].z, [-0.005, 0.005]);
     let (m, _) = model("MAT1,1,2.+11,,.3\nPCOMP,1,,,,,,,SYM\n,1,.1,45.,,1,.2,0.");
     let p = &m.shell_properties[0];
-    assert!((p.z[0] + 0.3).abs() < 1e-15 && (p.z[1] - 0.3).abs() < 1e-15, "{:?}", p.z);
+    assert!(
+        (p.z[0] + 0.3).abs() < 1e-15 && (p.z[1] - 0.3).abs() < 1e-15,
+        "{:?}",
+        p.z
+    );
     let ShellKind::Laminate { plies, .. } = &p.kind else {
         panic!()
     };

@@ -228,7 +228,11 @@ struct RowSet {
 impl RowSet {
     fn new(k: usize, nuisance: usize) -> Self {
         Self {
-            active: Active { k, nuisance, ..Active::default() },
+            active: Active {
+                k,
+                nuisance,
+                ..Active::default()
+            },
             choices: Vec::new(),
             seen: HashMap::new(),
             groups: HashMap::new(),

@@ -122,10 +122,7 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
     if places < s || s == 0 {
         return Err(PlaceError::TooFewPlaces { gauges: s, places });
     }
-    let singular = PlaceError::Singular {
-        gauges: s,
-        loads,
-    };
+    let singular = PlaceError::Singular { gauges: s, loads };
     let mut col = columns::solve(c, s, &spec.prior, q, &groups, spec.tolerance, &[])
         .ok_or_else(|| singular.clone())?;
     let mut upper = col.upper_bound;

@@ -211,7 +211,10 @@ impl Pair {
     fn apply(&self, inverse: &mut [f64], t: f64, u: &[f64], v: &[f64]) {
         let k = u.len();
         let det = self.det(t);
-        let (cu, cv) = (t * (1.0 - t * self.dj) / det, -t * (1.0 + t * self.di) / det);
+        let (cu, cv) = (
+            t * (1.0 - t * self.dj) / det,
+            -t * (1.0 + t * self.di) / det,
+        );
         let cx = t * t * self.dij / det;
         for r in 0..k {
             let (x, y) = (cu * u[r] + cx * v[r], cv * v[r] + cx * u[r]);
@@ -257,7 +260,11 @@ fn best_step(full: &Pair, nuisance: Option<&Pair>, cap: f64) -> f64 {
 }
 
 /// `log det M - log det M_nn` with the factors it takes: `linv` (nuisance rows zeroed), `M^-1`, `M_nn^-1` padded.
-pub fn criterion(m: &[f64], k: usize, nuisance: usize) -> Option<(f64, Vec<f64>, Vec<f64>, Vec<f64>)> {
+pub fn criterion(
+    m: &[f64],
+    k: usize,
+    nuisance: usize,
+) -> Option<(f64, Vec<f64>, Vec<f64>, Vec<f64>)> {
     let l = spd::cholesky(m, k)?;
     let mut linv = spd::inverse_lower(&l, k);
     let minv = spd::gram_of_lower(&linv, k);

@@ -354,13 +354,24 @@ fn ds_layouts_reach_the_best_of_all_subsets_and_their_bound_holds() {
         let (k, n) = (3 + trial % 2, 9 + trial % 3);
         let (q, s) = (1 + trial % 2, k + trial % 3);
         let c = rows_of(&random_rows(&mut rng, n, k));
-        let mut spec = Spec { nuisance: q, ..Spec::new(s, k) };
+        let mut spec = Spec {
+            nuisance: q,
+            ..Spec::new(s, k)
+        };
         if trial % 3 == 0 {
             (0..q).for_each(|i| spec.prior[i * k + i] = 1.0);
         }
         let value = |places: &[usize]| {
-            let rows: Vec<Vec<f64>> =
-                places.iter().map(|&p| c.row(Choice { place: p as u32, step: 0, angle: 0.0 })).collect();
+            let rows: Vec<Vec<f64>> = places
+                .iter()
+                .map(|&p| {
+                    c.row(Choice {
+                        place: p as u32,
+                        step: 0,
+                        angle: 0.0,
+                    })
+                })
+                .collect();
             quality::log_det(&rows, &spec.prior, k, q).unwrap_or(f64::NEG_INFINITY)
         };
         let best = (0..1_u32 << n)
@@ -370,7 +381,11 @@ fn ds_layouts_reach_the_best_of_all_subsets_and_their_bound_holds() {
         let got = place(&c, &spec).unwrap();
         let own: Vec<usize> = got.gauges.iter().map(|g| g.place as usize).collect();
         assert!((value(&own) - got.log_det).abs() < 1e-9);
-        assert!(got.upper_bound >= best - 1e-9, "trial {trial}: {} under {best}", got.upper_bound);
+        assert!(
+            got.upper_bound >= best - 1e-9,
+            "trial {trial}: {} under {best}",
+            got.upper_bound
+        );
         reached += usize::from(got.log_det >= best - 1e-9);
     }
     assert!(reached >= 196, "{reached} of 200");

@@ -34,7 +34,10 @@ pub struct Outcome {
 impl Outcome {
     /// Codes of the findings of one severity.
     pub fn codes(&self, severity: &str) -> Vec<String> {
-        let findings = self.result["findings"].as_array().cloned().unwrap_or_default();
+        let findings = self.result["findings"]
+            .as_array()
+            .cloned()
+            .unwrap_or_default();
         findings
             .iter()
             .filter(|f| f["severity"] == severity)
@@ -50,7 +53,12 @@ impl Outcome {
 
 /// Runs `strainbridge` with output to `out`.
 pub fn run(arguments: &[&str], out: &Path) -> Outcome {
-    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge")).args(arguments).arg("--out").arg(out).output().unwrap();
+    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .args(arguments)
+        .arg("--out")
+        .arg(out)
+        .output()
+        .unwrap();
     let text = std::fs::read_to_string(out.join("result.json")).unwrap_or_default();
     Outcome {
         code: done.status.code().unwrap_or(-1),
@@ -62,6 +70,8 @@ pub fn run(arguments: &[&str], out: &Path) -> Outcome {
 /// Rows of a CSV file: header, then fields.
 pub fn csv(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {
     let text = std::fs::read_to_string(path).unwrap();
-    let mut lines = text.lines().map(|l| l.split(',').map(str::to_owned).collect::<Vec<String>>());
+    let mut lines = text
+        .lines()
+        .map(|l| l.split(',').map(str::to_owned).collect::<Vec<String>>());
     (lines.next().unwrap_or_default(), lines.collect())
 }

@@ -26,12 +26,22 @@ gauges = 6
 
 #[test]
 fn six_gauges_on_the_wing_recover_a_known_mix_of_the_files_own_strain() {
-    let Some(case) = shared("nastran/msc64_two_cases") else { return };
+    let Some(case) = shared("nastran/msc64_two_cases") else {
+        return;
+    };
     let folder = scratch("wing");
     let deck_bytes = std::fs::read(case.join("d173.bdf")).unwrap();
-    let deck = nastran::bdf::read_deck("d173.bdf", deck_bytes, &mut nastran::bdf::MemoryLoader::default());
-    let subcases: Vec<(u32, u32)> =
-        deck.case_control.effective_subcases().iter().filter_map(|s| Some((s.id, s.load?))).collect();
+    let deck = nastran::bdf::read_deck(
+        "d173.bdf",
+        deck_bytes,
+        &mut nastran::bdf::MemoryLoader::default(),
+    );
+    let subcases: Vec<(u32, u32)> = deck
+        .case_control
+        .effective_subcases()
+        .iter()
+        .filter_map(|s| Some((s.id, s.load?)))
+        .collect();
     assert_eq!(subcases.len(), 2);
     let path = |f: &str| case.join(f).display().to_string().replace('\\', "/");
     let text = JOB
@@ -52,16 +62,31 @@ fn six_gauges_on_the_wing_recover_a_known_mix_of_the_files_own_strain() {
     // 3.5 A - 1.25 B, in the file's own strain.
     let (_, s) = csv(&folder.join("placed/sensitivity.csv"));
     let names: Vec<&str> = s.iter().map(|r| r[0].as_str()).collect();
-    let mix: Vec<String> =
-        s.iter().map(|r| (3.5 * r[1].parse::<f64>().unwrap() - 1.25 * r[2].parse::<f64>().unwrap()).to_string()).collect();
-    std::fs::write(folder.join("strain.csv"), format!("run,{}\nR1,{}\n", names.join(","), mix.join(","))).unwrap();
+    let mix: Vec<String> = s
+        .iter()
+        .map(|r| {
+            (3.5 * r[1].parse::<f64>().unwrap() - 1.25 * r[2].parse::<f64>().unwrap()).to_string()
+        })
+        .collect();
+    std::fs::write(
+        folder.join("strain.csv"),
+        format!("run,{}\nR1,{}\n", names.join(","), mix.join(",")),
+    )
+    .unwrap();
     let more = "[gauges]\nfile = \"placed/gauges.csv\"\n[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 1.0\n";
     std::fs::write(&job, format!("{text}{more}")).unwrap();
     let got = run(&["recover", job.to_str().unwrap()], &folder.join("out"));
     assert_ne!(got.code, 2, "{}", got.stderr);
     let value = |name: &str| {
         let loads = got.result["loads"].as_array().unwrap();
-        loads.iter().find(|l| l["name"] == name).unwrap()["value"].as_f64().unwrap()
+        loads.iter().find(|l| l["name"] == name).unwrap()["value"]
+            .as_f64()
+            .unwrap()
     };
-    assert!((value("A") / 3.5 - 1.0).abs() < 1e-6 && (value("B") / -1.25 - 1.0).abs() < 1e-6, "{} {}", value("A"), value("B"));
+    assert!(
+        (value("A") / 3.5 - 1.0).abs() < 1e-6 && (value("B") / -1.25 - 1.0).abs() < 1e-6,
+        "{} {}",
+        value("A"),
+        value("B")
+    );
 }

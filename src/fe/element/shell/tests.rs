@@ -43,7 +43,8 @@ fn input<'a, const N: usize>(
         thickness: [6.0; N],
         law,
         zoffs,
-        k6rot: 100.0, parts: Parts::All
+        k6rot: 100.0,
+        parts: Parts::All,
     }
 }
 
