@@ -163,6 +163,10 @@ fn sort_out(
             "element-id-shared",
             notes(|k| matches!(k, FaultKind::SharedId { .. })),
         ),
+        (
+            "set-missing",
+            notes(|k| matches!(k, FaultKind::Missing { what: "set", .. })),
+        ),
     ] {
         let Some(first) = list.first() else { continue };
         let more = if list.len() > 1 {

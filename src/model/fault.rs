@@ -85,6 +85,8 @@ impl ModelFault {
     pub fn weight(&self) -> FaultWeight {
         match self.kind {
             FaultKind::Unattached | FaultKind::SharedId { .. } => FaultWeight::Note,
+            // Solvers pass over a set of SPCADD or MPCADD that has no cards.
+            FaultKind::Missing { what: "set", .. } => FaultWeight::Note,
             _ => FaultWeight::Error,
         }
     }

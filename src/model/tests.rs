@@ -278,6 +278,19 @@ fn load_sums_scale_their_sets() {
         set.loads[0].1,
         Load::Force(GridIx(0), Vec3::new(2.0, 0.0, 0.0))
     );
+    let (m, faults) = model(
+        "GRID,1,,0.,0.,0.\nCONM2,1,1,,1.\nFORCE,1,1,,2.,1.,0.,0.\nLOAD,8,10.,2.,7\nLOAD,7,5.,7.,1",
+    );
+    assert!(faults.is_empty(), "{faults:?}");
+    assert_eq!(
+        m.load_sets.iter().find(|s| s.sid == 8).unwrap().loads[0].0,
+        700.0,
+        "a sum of a sum"
+    );
+    assert!(
+        !errors("LOAD,7,1.,1.,8\nLOAD,8,1.,1.,7").is_empty(),
+        "a circle"
+    );
     let found = errors("LOAD,5,1.,1.,77");
     assert!(found[0].1.contains("load set 77 is missing"), "{found:?}");
 }
