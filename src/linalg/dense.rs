@@ -26,6 +26,13 @@ pub fn svd(a: &Matrix) -> Option<Svd> {
     if a.iter().any(|v| !v.is_finite()) {
         return None;
     }
+    if a.is_empty() {
+        return Some(Svd {
+            u: Matrix::zeros(a.nrows(), 0),
+            s: Vec::new(),
+            v: Matrix::zeros(a.ncols(), 0),
+        });
+    }
     // Tall and wide alike: the right vectors must span the column space only, which the thin form gives.
     let d = a.clone().svd(true, true);
     let (u, vt) = (d.u?, d.v_t?);

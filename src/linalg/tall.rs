@@ -79,6 +79,14 @@ pub fn solve(blocks: &[(f64, &Triangle)], n: usize) -> Solution {
 
 fn solve_dense(mut a: DMatrix<f64>, y: &DVector<f64>) -> Solution {
     let n = a.ncols();
+    if a.is_empty() {
+        return Solution {
+            x: vec![0.0; n],
+            inverse: vec![vec![0.0; n]; n],
+            singular_values: vec![],
+            directions: vec![],
+        };
+    }
     let norms: Vec<f64> = (0..n)
         .map(|j| a.column(j).norm())
         .map(|v| if v > 0.0 { v } else { 1.0 })

@@ -25,7 +25,7 @@ gauges = 6
 "#;
 
 #[test]
-fn six_gauges_on_the_wing_recover_a_known_mix_of_the_files_own_strain() {
+fn two_load_cases_with_the_same_strain_everywhere_are_refused_as_inseparable() {
     let Some(case) = shared("nastran/msc64_two_cases") else {
         return;
     };
@@ -54,39 +54,18 @@ fn six_gauges_on_the_wing_recover_a_known_mix_of_the_files_own_strain() {
     let job = folder.join("job.toml");
     std::fs::write(&job, &text).unwrap();
     let placed = run(&["place", job.to_str().unwrap()], &folder.join("placed"));
-    assert_ne!(placed.code, 2, "{}", placed.stderr);
-    assert_eq!(placed.result["gauges"].as_array().unwrap().len(), 6);
-    assert_eq!(placed.result["candidates"]["places"], 200);
-    assert_eq!(placed.result["candidates"]["rows"], 2400);
-    assert!(placed.number("efficiency_bound") > 0.95);
-    // 3.5 A - 1.25 B, in the file's own strain.
-    let (_, s) = csv(&folder.join("placed/sensitivity.csv"));
-    let names: Vec<&str> = s.iter().map(|r| r[0].as_str()).collect();
-    let mix: Vec<String> = s
-        .iter()
-        .map(|r| {
-            (3.5 * r[1].parse::<f64>().unwrap() - 1.25 * r[2].parse::<f64>().unwrap()).to_string()
-        })
-        .collect();
-    std::fs::write(
-        folder.join("strain.csv"),
-        format!("run,{}\nR1,{}\n", names.join(","), mix.join(",")),
-    )
-    .unwrap();
-    let more = "[gauges]\nfile = \"placed/gauges.csv\"\n[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 1.0\n";
-    std::fs::write(&job, format!("{text}{more}")).unwrap();
-    let got = run(&["recover", job.to_str().unwrap()], &folder.join("out"));
-    assert_ne!(got.code, 2, "{}", got.stderr);
-    let value = |name: &str| {
-        let loads = got.result["loads"].as_array().unwrap();
-        loads.iter().find(|l| l["name"] == name).unwrap()["value"]
-            .as_f64()
-            .unwrap()
-    };
+    // Both subcases put the same strain into every shell of this file (`raw_shell_strain` of the oracle is the same to the last digit):
+    // no layout separates them, and the program must say so instead of inverting rounding.
+    assert_eq!(placed.code, 2, "{}", placed.stderr);
     assert!(
-        (value("A") / 3.5 - 1.0).abs() < 1e-6 && (value("B") / -1.25 - 1.0).abs() < 1e-6,
-        "{} {}",
-        value("A"),
-        value("B")
+        placed.stderr.contains("separate the 2 loads"),
+        "{}",
+        placed.stderr
     );
+    let sensitivity = run(&["sensitivity", job.to_str().unwrap()], &folder.join("s"));
+    assert_eq!(sensitivity.code, 1, "{}", sensitivity.stderr);
+    assert_eq!(sensitivity.result["rank"], 1);
+    // 100 CQUAD4 and 16 CTRIA3, two surfaces, twelve angles.
+    let (_, rows) = csv(&folder.join("s/sensitivity.csv"));
+    assert_eq!(rows.len(), 116 * 2 * 12);
 }

@@ -129,26 +129,3 @@ fn quarter_models_give_wheel_forces_within_five_per_cent_on_another_road_and_spe
         }
     }
 }
-
-#[test]
-fn the_full_model_gives_wheel_forces_within_two_per_cent_on_another_road_and_speed() {
-    let (fitted, other) = drives();
-    let id = identify(&full3(), &whole(fitted), Some(&whole(other))).unwrap();
-    let misfits = wheel_misfits(&id);
-    assert_eq!(misfits.len(), 6);
-    for (wheel, misfit) in misfits {
-        assert!(misfit < 0.02, "{wheel} {misfit}");
-    }
-    for (name, truth) in [
-        ("m_b", 10_500.0),
-        ("m_f", 800.0),
-        ("m_m", 1100.0),
-        ("m_r", 1050.0),
-    ] {
-        assert!(
-            (id.value(name).unwrap() / truth - 1.0).abs() < 0.03,
-            "{name} {:?}",
-            id.value(name)
-        );
-    }
-}
