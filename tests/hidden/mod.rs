@@ -14,12 +14,7 @@ pub fn shared() -> Option<PathBuf> {
         env!("CARGO_MANIFEST_DIR"),
         "/../shared/hidden_effects"
     ));
-    let path = if path.is_dir() {
-        path.to_path_buf()
-    } else {
-        PathBuf::from("/work/shared/hidden_effects")
-    };
-    path.is_dir().then_some(path)
+    path.is_dir().then(|| path.to_path_buf())
 }
 
 struct Table {
