@@ -177,7 +177,7 @@ fn masses_agree_with_another_reader_where_it_is_right() {
     for (name, mesh, read) in cases() {
         // The other reader ignores offsets of CBARs; the printed mass of the ring has a test of its own.
         // Where the mesh oracle is the geometry of an OP2, its mass is not the solver's (radial_cd: 3.41 against 2.56 of the same mesh
-        // read from its sister decks).
+        // read from its sister decks). Ours of nx_quad8_replicated_deck, 3.442, is off as well: its OGPWG says 3.486.
         if [
             "n95_inertia_relief_ring",
             "nx_radial_cd",

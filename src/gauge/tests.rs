@@ -310,7 +310,7 @@ fn a_grid_averages_over_its_length() {
     });
     let mean = read(&m, &long, CornerRows::Present, &square)[0];
     // Mean of the square over +-15 is 75; chords of the corners add a sixth of the side squared (10^2 / 6): 91.7. A five-point rule over
-    // the kinks at the corners is good to the weight of one end point times a kink: 6 %.
+    // the kinks at the corners is not exact; 6 % is an estimate, still to be derived.
     assert!((mean - 91.7e-8).abs() < 0.06 * 91.7e-8, "{mean}");
 }
 
