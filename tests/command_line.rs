@@ -106,3 +106,95 @@ fn two_runs_write_the_same_bytes_but_for_the_seconds() {
     };
     assert_eq!(run("a"), run("b"));
 }
+
+const PLATE: &str = "SOL 101\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\n\
+    MAT1,1,2.+11,,.3,7850.\nPSHELL,1,1,.01,1,,1\nCQUAD4,9,1,1,2,3,4\nENDDATA\n";
+
+#[test]
+fn check_and_strains_write_a_page_beside_their_result() {
+    use nastran::op2::write_blocks;
+    use nastran::results::{
+        Analysis, Block, ElementType, Quantity, RowId, Rows, ShellForm, columns,
+    };
+    let dir = folder("pages");
+    let path = |name: &str| dir.join(name).to_str().unwrap().to_owned();
+    std::fs::write(path("plate.bdf"), PLATE).unwrap();
+    let block = Block {
+        table: String::new(),
+        quantity: Quantity::Strain,
+        analysis: Analysis::Statics,
+        subcase: 3,
+        mode: 0,
+        step: 0.0,
+        element: Some(ElementType(33)),
+        form: Some(ShellForm::Fiber),
+        von_mises: true,
+        complex: false,
+        sort2: false,
+        num_wide: 0,
+        entries: 0,
+        titles: Default::default(),
+    };
+    // Fibre distance, exx, eyy, gxy, then what follows from them: 1000 microstrain along x at the top, half of it at the bottom.
+    let n = columns::SHELL_STRAIN.len();
+    let mut values = vec![0.0; 2 * n];
+    let place = |name: &str| {
+        columns::SHELL_STRAIN
+            .iter()
+            .position(|c| *c == name)
+            .unwrap()
+    };
+    values[place("fiber")] = -0.005;
+    values[n + place("fiber")] = 0.005;
+    values[place("exx")] = 0.0005;
+    values[n + place("exx")] = 0.001;
+    let rows = Rows {
+        columns: columns::SHELL_STRAIN,
+        ids: [1, 2]
+            .map(|layer| RowId {
+                entity: 9,
+                at: 0,
+                layer,
+            })
+            .to_vec(),
+        values,
+        labels: Vec::new(),
+    };
+    std::fs::write(
+        path("plate.op2"),
+        write_blocks([(&block, &rows)], [11, 21, 2026]).unwrap(),
+    )
+    .unwrap();
+
+    let out = strainbridge(&[
+        "strains",
+        &path("plate.bdf"),
+        &path("plate.op2"),
+        "--out",
+        &path("s"),
+    ]);
+    assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+    let page = std::fs::read_to_string(dir.join("s/report.html")).unwrap();
+    // The hotter surface of element 9.
+    assert!(
+        page.contains("<td>top</td>") && page.contains("<td>1.000e-3</td>")
+            || page.contains("0.001000"),
+        "{page}"
+    );
+    let csv = std::fs::read_to_string(dir.join("s/strains.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 3, "{csv}");
+
+    let out = strainbridge(&[
+        "check",
+        &path("plate.bdf"),
+        &path("plate.op2"),
+        "--out",
+        &path("c"),
+    ]);
+    assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+    let page = std::fs::read_to_string(dir.join("c/report.html")).unwrap();
+    assert!(
+        page.contains("CQUAD4 1") && page.contains("plate.op2"),
+        "{page}"
+    );
+}

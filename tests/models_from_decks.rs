@@ -76,9 +76,7 @@ fn size(m: &Model) -> f64 {
 #[test]
 fn every_real_deck_is_a_model_without_faults() {
     let mut wrong = String::new();
-    // Its CELAS2 hang on scalar points, which the model does not carry: the fault is the right answer there.
-    let scalar_points = "nx_static_elements";
-    for (name, _, read) in cases().into_iter().filter(|c| c.0 != scalar_points) {
+    for (name, _, read) in cases() {
         for f in read.faults.iter().take(5) {
             wrong.push_str(&format!("{name}: {f}\n"));
         }
@@ -93,10 +91,10 @@ fn grids_stand_where_another_reader_puts_them() {
         let m = &read.model;
         // Coordinates of a 32-bit OP2 are exact singles on both sides; what remains is the arithmetic of frames.
         let tolerance = 1e-9 * size(m);
-        if m.grids.len() as u64 != mesh["nodes"].as_u64().unwrap() {
+        let geometric = m.grids.iter().filter(|g| !g.is_scalar()).count();
+        if geometric as u64 != mesh["nodes"].as_u64().unwrap() {
             wrong.push_str(&format!(
-                "{name}: {} grids, expected {}\n",
-                m.grids.len(),
+                "{name}: {geometric} grids, expected {}\n",
                 mesh["nodes"]
             ));
         }
@@ -177,7 +175,7 @@ fn masses_agree_with_another_reader_where_it_is_right() {
     for (name, mesh, read) in cases() {
         // The other reader ignores offsets of CBARs; the printed mass of the ring has a test of its own.
         // Where the mesh oracle is the geometry of an OP2, its mass is not the solver's (radial_cd: 3.41 against 2.56 of the same mesh
-        // read from its sister decks). Ours of nx_quad8_replicated_deck, 3.442, is off as well: its OGPWG says 3.486.
+        // read from its sister decks). It takes curved elements by their corners; the next tests hold us to OGPWG there.
         if [
             "n95_inertia_relief_ring",
             "nx_radial_cd",
@@ -269,4 +267,23 @@ fn grid_point_weight_of_the_solver_is_ours() {
             }
         }
     }
+}
+
+#[test]
+fn curved_elements_weigh_what_the_solver_says() {
+    let name = "nx_quad8_replicated_deck";
+    let Some((_, _, read)) = cases().into_iter().find(|c| c.0 == name) else {
+        return;
+    };
+    let expected = json(&shared().unwrap().join(name).join("expected.json")).unwrap();
+    let printed = expected["op2"]["grid_point_weight"][""]["mass"][0]
+        .as_f64()
+        .unwrap();
+    let ours = read.model.weight().mass;
+    // One CQUADR carries 60 % of the mass and is warped: from the area of its mean plane (ours) to that of two triangles it weighs
+    // 2.112 to 2.119, 0.19 % of the whole; which of them the solver takes is not documented.
+    assert!(
+        (ours - printed).abs() < 1.9e-3 * printed,
+        "{ours} printed {printed}"
+    );
 }

@@ -5,7 +5,9 @@ use super::fault::{Fault, Faults};
 use super::files::FileBytes;
 use super::{DeckArguments, Session};
 use crate::fe::from_results::{Displacements, ReadOptions, solution_from_results};
+use crate::fe::strain_rows::without_normal_strain;
 use crate::finding::{Finding, Severity};
+use crate::report::strain::strains_page;
 use crate::report::write_strains;
 use nastran::results::ResultsFile;
 use std::path::Path;
@@ -57,6 +59,17 @@ pub fn run(arguments: &DeckArguments, session: &mut Session) -> Result<(), Fault
         solution_from_results(&deck.model, &named, &options)
     });
     session.findings.append(&mut solution.findings);
+    let silent = without_normal_strain(&deck.model, &solution.cases);
+    if !silent.is_empty() {
+        let ids: Vec<String> = silent.iter().map(u32::to_string).collect();
+        session.findings.push(Finding::new(
+            Severity::Info,
+            "normal-strain-unknown",
+            format!("properties {}", ids.join(", ")),
+            "their material does not give the strain along the thickness: the basic-frame tensor holds the part in the surface alone",
+            "",
+        ));
+    }
     let mut rows = 0;
     session.stage("write", |s| -> Result<(), Faults> {
         let output = s.output_for(&arguments.deck)?;
@@ -64,7 +77,13 @@ pub fn run(arguments: &DeckArguments, session: &mut Session) -> Result<(), Fault
             rows = write_strains(&deck.model, &solution, &mut w)?;
             Ok(())
         };
-        output.write("strains.csv", write).map_err(|f| vec![f])
+        output.write("strains.csv", write).map_err(|f| vec![f])?;
+        let title = format!("Strain of {given}");
+        let page = strains_page(&title, &deck.model, &solution, &s.findings);
+        let output = s.output_for(&arguments.deck)?;
+        output
+            .write_bytes("report.html", page.as_bytes())
+            .map_err(|f| vec![f])
     })?;
     let subcases: Vec<u32> = solution.cases.iter().map(|c| c.subcase).collect();
     session.say(format!(

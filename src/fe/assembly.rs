@@ -1,7 +1,7 @@
 //! The stiffness of a constrained model, in blocks of a grid's free dofs.
 
 use super::constraint::{Reduction, State};
-use super::element::{ElementMatrix, ElementRef, Prepared};
+use super::element::{ElementMatrix, Prepared};
 use super::error::{FeError, Refusal};
 use crate::linalg::sparse::{BlockGraph, BlockMatrix, DenseTerm, Symbolic};
 use crate::model::{GridIx, Mat3};

@@ -19,8 +19,9 @@ pub struct StrainRow {
     pub point: Point,
     /// Element frame: exx, eyy, gxy (engineering shear). Bars: exx along the bar, the others NaN.
     pub local: PlaneStrain,
-    /// Basic frame, tensor shear: xx, yy, zz, xy, yz, zx. Shells: with the normal strain of plane stress; all NaN where the material does
-    /// not give it. Bars: exx along the axis alone, no lateral contraction.
+    /// Basic frame, tensor shear: xx, yy, zz, xy, yz, zx. Shells: with the normal strain of plane stress; where the material does not
+    /// give it ([`without_normal_strain`]) the part in the surface alone, which is all that a gauge sees. Bars: exx along the axis
+    /// alone, no lateral contraction.
     pub basic: [f64; 6],
 }
 
@@ -79,7 +80,7 @@ fn shell_rows(model: &Model, case: &CaseResult, i: usize, each: &mut impl FnMut(
         let property = model.shell_properties.get(shell.property.us());
         property
             .and_then(|p| normal_strain_ratio(model, p, s))
-            .unwrap_or(f64::NAN)
+            .unwrap_or(0.0)
     });
     let mut put = |place: ShellPlace, location: Location, strain: &[PlaneStrain; 2]| {
         if strain.iter().flatten().all(|v| v.is_nan()) {
@@ -149,6 +150,68 @@ fn beam_rows(model: &Model, case: &CaseResult, i: usize, each: &mut impl FnMut(&
             });
         }
     }
+}
+
+/// Largest strain in any direction of the surface, or along the bar, without sign: `|m| + r` of Mohr's circle.
+pub fn largest_strain(row: &StrainRow) -> f64 {
+    let [exx, eyy, gxy] = row.local;
+    match row.point {
+        Point::Recovery(_) => exx.abs(),
+        Point::Surface(_) => ((exx + eyy) / 2.0).abs() + ((exx - eyy) / 2.0).hypot(gxy / 2.0),
+    }
+}
+
+/// The `n` rows of a case with the largest strain ([`largest_strain`]), one an element, largest first: centres of shells and ends of
+/// bars.
+pub fn hottest(model: &Model, case: &CaseResult, n: usize) -> Vec<StrainRow> {
+    let mut best: Vec<StrainRow> = Vec::new();
+    for i in 0..n_elements(case) {
+        let mut top: Option<StrainRow> = None;
+        each_row(model, case, i..i + 1, |row| {
+            let corner = matches!(
+                (row.point, row.location),
+                (Point::Surface(_), Location::Grid(_))
+            );
+            let larger = |t: &StrainRow| largest_strain(row) > largest_strain(t);
+            if !corner && top.as_ref().is_none_or(larger) {
+                top = Some(*row);
+            }
+        });
+        best.extend(top.filter(|t| largest_strain(t).is_finite()));
+        if best.len() >= 4 * n.max(256) {
+            keep_largest(&mut best, n);
+        }
+    }
+    keep_largest(&mut best, n);
+    best
+}
+
+fn keep_largest(rows: &mut Vec<StrainRow>, n: usize) {
+    rows.sort_by(|a, b| largest_strain(b).total_cmp(&largest_strain(a)));
+    rows.truncate(n);
+}
+
+/// Ids of the shell properties with strain whose material says nothing of the strain along the thickness (MAT2, MAT8, MAT9).
+pub fn without_normal_strain(model: &Model, cases: &[CaseResult]) -> Vec<u32> {
+    let mut seen = vec![false; model.shell_properties.len()];
+    for case in cases {
+        for &ShellIx(ix) in case.shells.elements.iter() {
+            let shell = model.shells.get(ix as usize);
+            if let Some(s) = shell.and_then(|s| seen.get_mut(s.property.us())) {
+                *s = true;
+            }
+        }
+    }
+    let silent = |p: &&crate::model::ShellProperty| {
+        Surface::BOTH
+            .iter()
+            .any(|s| normal_strain_ratio(model, p, *s).is_none())
+    };
+    let used = model.shell_properties.iter().zip(seen);
+    used.filter_map(|(p, seen)| seen.then_some(p))
+        .filter(silent)
+        .map(|p| p.id)
+        .collect()
 }
 
 /// xx, yy, zz, xy, yz, zx of a symmetric tensor.

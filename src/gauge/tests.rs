@@ -17,6 +17,7 @@ fn plate(nx: u32, ny: u32, start: usize) -> Model {
             let x = Vec3::new(10.0 * f64::from(i), 10.0 * f64::from(j), 0.0);
             m.grids.push(Grid {
                 id: 1 + j * (nx + 1) + i,
+                kind: crate::model::PointKind::Grid,
                 x,
                 cd: FrameIx(0),
                 ps: Default::default(),

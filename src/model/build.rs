@@ -191,6 +191,11 @@ impl Builder<'_> {
             .map_or_else(Vec3::zeros, |g| g.x)
     }
 
+    /// Whether it is a scalar point.
+    pub(super) fn is_scalar(&self, g: GridIx) -> bool {
+        self.model.grids.get(g.us()).is_some_and(Grid::is_scalar)
+    }
+
     /// Displacement frame of a grid at its place, by rows.
     pub(super) fn cd_axes(&self, g: GridIx) -> Mat3 {
         self.model.cd_axes(g)

@@ -37,6 +37,7 @@ impl Builder<'_> {
                 };
                 match component {
                     1..=6 => terms.push((g, component - 1, *a)),
+                    0 if self.is_scalar(g) => terms.push((g, 0, *a)),
                     c => {
                         let kind = FaultKind::Word {
                             found: c.to_string(),
@@ -72,7 +73,8 @@ impl Builder<'_> {
             let name = format!("SPC {}", s.sid);
             for (grid, dofs, value) in &s.terms {
                 if let Some(g) = self.grid(*grid, &name, "G", s.at) {
-                    sets.entry(s.sid).or_default().push((g, *dofs, *value));
+                    let dofs = self.dofs_of_point(g, *dofs);
+                    sets.entry(s.sid).or_default().push((g, dofs, *value));
                 }
             }
         }
@@ -85,9 +87,11 @@ impl Builder<'_> {
                     .collect(),
                 IdList::Thru(a, b) => self.grids_thru(*a, *b),
             };
-            sets.entry(s.sid)
-                .or_default()
-                .extend(grids.into_iter().map(|g| (g, s.dofs, 0.0)));
+            let terms: Vec<_> = grids
+                .into_iter()
+                .map(|g| (g, self.dofs_of_point(g, s.dofs), 0.0))
+                .collect();
+            sets.entry(s.sid).or_default().extend(terms);
         }
         let sums = self.sums(&cards.spcadds, "SPCADD", &sets);
         sets.extend(sums);
@@ -95,6 +99,14 @@ impl Builder<'_> {
             .into_iter()
             .map(|(sid, terms)| SpcSet { sid, terms })
             .collect();
+    }
+
+    /// The dofs that a constraint means: those of a scalar point are written as none.
+    fn dofs_of_point(&self, g: GridIx, dofs: Dofs) -> Dofs {
+        match self.is_scalar(g) {
+            true => Dofs::from_digits(1).unwrap_or(dofs),
+            false => dofs,
+        }
     }
 
     /// Grids with ids from a to b.
@@ -196,7 +208,7 @@ impl Builder<'_> {
             .grids
             .iter()
             .zip(used)
-            .filter(|(g, used)| !used && g.ps != Dofs::ALL)
+            .filter(|(g, used)| !used && g.ps != Dofs::ALL && !g.is_scalar())
             .map(|(g, _)| (g.id, g.at))
             .collect();
         for (id, at) in free {

@@ -3,9 +3,19 @@
 use super::build::Builder;
 use super::fault::FaultKind;
 use super::types::*;
-use nastran::cards::{self, CoordDefinition, Dofs};
-use nastran::place::Placed;
-use std::collections::{HashMap, VecDeque};
+use nastran::cards::{self, CoordDefinition, Dofs, IdList};
+use nastran::place::{Place, Placed};
+use std::collections::{BTreeMap, HashMap, VecDeque};
+
+/// Longest SPOINT range that is written out; a longer one is a slip of the pen.
+const MOST_SCALAR_POINTS: u32 = 100_000;
+
+impl Grid {
+    /// Whether it is a scalar point.
+    pub fn is_scalar(&self) -> bool {
+        self.kind == PointKind::Scalar
+    }
+}
 
 impl<'a> Builder<'a> {
     pub(super) fn frames_and_grids(&mut self) {
@@ -61,12 +71,14 @@ impl<'a> Builder<'a> {
             };
             out.push(Grid {
                 id: g.id,
+                kind: PointKind::Grid,
                 x,
                 cd,
                 ps,
                 at: g.at,
             });
         }
+        self.scalar_points(&grid_of, &mut out);
         out.sort_by_key(|g: &Grid| g.id);
         self.grid_ix = out
             .iter()
@@ -74,6 +86,57 @@ impl<'a> Builder<'a> {
             .map(|(i, g)| (g.id, GridIx(i as u32)))
             .collect();
         self.model.grids = out;
+    }
+
+    /// Scalar points: of SPOINT, and those that springs name without a component where there is no grid of that id.
+    fn scalar_points(&mut self, grid_of: &HashMap<u32, &Placed<cards::Grid>>, out: &mut Vec<Grid>) {
+        let cards = self.cards;
+        let mut named: BTreeMap<u32, Place> = BTreeMap::new();
+        for s in &cards.spoints {
+            let ids = match &s.card {
+                IdList::Each(ids) => ids.clone(),
+                IdList::Thru(a, b) if b.saturating_sub(*a) < MOST_SCALAR_POINTS => {
+                    (*a..=*b).collect()
+                }
+                IdList::Thru(a, b) => {
+                    let kind = FaultKind::Unsupported {
+                        what: format!("a range of {} scalar points", b - a),
+                        remedy: "name the points that are used",
+                    };
+                    self.fault("SPOINT".into(), "THRU", s.at, kind);
+                    continue;
+                }
+            };
+            for id in ids {
+                match grid_of.get(&id) {
+                    None => {
+                        named.entry(id).or_insert(s.at);
+                    }
+                    Some(g) => {
+                        let kind = FaultKind::Duplicate {
+                            what: "id of a grid and a scalar point",
+                            first: g.at,
+                        };
+                        self.fault(format!("SPOINT {id}"), "ID", s.at, kind);
+                    }
+                }
+            }
+        }
+        for s in &cards.springs {
+            for (id, component) in s.ends.iter().flatten() {
+                if *component == 0 && !grid_of.contains_key(id) {
+                    named.entry(*id).or_insert(s.at);
+                }
+            }
+        }
+        out.extend(named.into_iter().map(|(id, at)| Grid {
+            id,
+            kind: PointKind::Scalar,
+            x: Vec3::zeros(),
+            cd: FrameIx(0),
+            ps: Dofs::from_digits(23456).unwrap_or_default(),
+            at,
+        }));
     }
 
     /// Grids in file order, the first of each id; a second one must say the same.

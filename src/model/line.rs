@@ -175,6 +175,7 @@ impl<'a> Builder<'a> {
                 };
                 match (self.grid(grid, &name, "G", s.at), component) {
                     (Some(g), c @ 1..=6) => *slot = Some((g, c - 1)),
+                    (Some(g), 0) if self.is_scalar(g) => *slot = Some((g, 0)),
                     (Some(_), c) => {
                         let kind = FaultKind::Word {
                             found: c.to_string(),

@@ -1,6 +1,7 @@
 //! Mass, centre of gravity and rigid-body mass matrix, from masses lumped at grids.
 //!
-//! Line elements lump by linear weights at their ends, offsets included; shells, panels and solids in equal parts at their corners.
+//! Line elements lump by linear weights at their ends, offsets included; shells, panels and solids in equal parts at their corners, those
+//! with mid-side grids at the points of a Gauss rule.
 
 use super::point_mass::rigid_body_matrix;
 use super::types::*;
@@ -79,13 +80,37 @@ impl Model {
             };
             let n = s.shape.n_corners();
             let x: Vec<Vec3> = s.grids.iter().take(n).map(|g| self.at(*g)).collect();
-            let t = s.thickness.iter().take(n).sum::<f64>() / n as f64;
-            let mass = self.shell_mass(p, t) * area(&x);
             let offset = match (s.zoffs, super::shell::shell_normal(&x)) {
                 (z, Some(normal)) if z != 0.0 => normal * z,
                 _ => Vec3::zeros(),
             };
-            x.iter().for_each(|x| point(mass / n as f64, x + offset));
+            // A missing mid-side grid repeats the first corner of its edge.
+            let all: Vec<Option<Vec3>> = (0..s.shape.n_grids())
+                .map(|i| {
+                    s.grids
+                        .get(i)
+                        .filter(|g| i < n || s.grids.get(i - n) != Some(g))
+                })
+                .map(|g| g.map(|g| self.at(*g)))
+                .collect();
+            match super::curved::shell_parts(s.shape, &all) {
+                Some(parts) => {
+                    for part in parts {
+                        let t = part
+                            .corners
+                            .iter()
+                            .zip(s.thickness)
+                            .map(|(n, t)| n * t)
+                            .sum();
+                        point(self.shell_mass(p, t) * part.measure, part.x + offset);
+                    }
+                }
+                None => {
+                    let t = s.thickness.iter().take(n).sum::<f64>() / n as f64;
+                    let mass = self.shell_mass(p, t) * area(&x);
+                    x.iter().for_each(|x| point(mass / n as f64, x + offset));
+                }
+            }
         }
         for s in &self.shear_panels {
             let x = s.grids.map(|g| self.at(g));
@@ -137,6 +162,11 @@ impl Model {
                 .solid_properties
                 .get(s.property as usize)
                 .map_or(0.0, |p| self.density(p.material));
+            let all: Vec<Option<Vec3>> = s.grids.iter().map(|g| g.map(|g| self.at(g))).collect();
+            if let Some(parts) = super::curved::solid_parts(s.shape, &all) {
+                parts.iter().for_each(|p| point(rho * p.measure, p.x));
+                continue;
+            }
             let x: Vec<Vec3> = s
                 .grids
                 .iter()

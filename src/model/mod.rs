@@ -6,6 +6,7 @@ mod beam;
 mod beam_property;
 mod build;
 mod constraint;
+mod curved;
 mod face;
 mod fault;
 mod frame;

@@ -1,5 +1,6 @@
 use super::*;
 use nastran::bdf::{MemoryLoader, read_deck};
+use nastran::cards::Dofs;
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 /// The model of a bulk data text in free format, and its faults.
@@ -355,5 +356,41 @@ fn a_grid_without_element_is_a_note() {
     assert_eq!(
         (faults[0].weight(), &faults[0].kind),
         (FaultWeight::Note, &FaultKind::Unattached)
+    );
+}
+
+#[test]
+fn scalar_points_are_carried_by_springs_constraints_and_equations() {
+    // Grid 1 - spring 2 N/m - point 10 - spring 3 N/m - point 11 (named by the spring alone), which SPC1 holds.
+    let (m, faults) = model(
+        "GRID,1,,0.,0.,0.\nSPOINT,10\nCELAS2,1,2.,1,3,10\nCELAS2,2,3.,10,,11\nSPC1,5,0,11\nMPC,6,10,0,1.,1,3,-2.",
+    );
+    assert!(faults.is_empty(), "{faults:?}");
+    let point = |id: u32| m.grid_ix(id).unwrap();
+    assert!(m.grids[point(10).us()].is_scalar() && m.grids[point(11).us()].is_scalar());
+    assert_eq!(
+        m.springs[0].ends,
+        [Some((point(1), 2)), Some((point(10), 0))]
+    );
+    assert_eq!(
+        m.springs[1].ends,
+        [Some((point(10), 0)), Some((point(11), 0))]
+    );
+    let dof_1 = Dofs::from_digits(1).unwrap();
+    assert_eq!(m.spcs[0].terms, [(point(11), dof_1, 0.0)]);
+    assert_eq!(
+        m.mpcs[0].equations[0].0,
+        [(point(10), 0, 1.0), (point(1), 2, -2.0)]
+    );
+    assert_eq!(m.weight().mass, 0.0);
+}
+
+#[test]
+fn a_scalar_point_with_the_id_of_a_grid_and_an_endless_range_are_faults() {
+    let found = errors("GRID,7,,0.,0.,0.\nSPOINT,7\nSPOINT,1000,THRU,99999999\nCELAS2,1,1.,7,1");
+    assert_eq!(
+        found.iter().map(|f| f.0).collect::<Vec<_>>(),
+        [3, 4],
+        "{found:?}"
     );
 }

@@ -85,11 +85,23 @@ pub struct Model {
     pub property_names: Vec<(u32, String)>,
 }
 
-/// A grid.
+/// What a point of the model is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PointKind {
+    /// GRID: a place and six dofs.
+    Grid,
+    /// SPOINT, or the end of a spring without a component: one dof and no place. It is carried as a grid at the origin of the basic
+    /// frame whose dofs 2 to 6 are constrained, so that the whole path from cards to answer is that of grids.
+    Scalar,
+}
+
+/// A grid, or a scalar point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     /// Id in the file.
     pub id: u32,
+    /// Which of the two.
+    pub kind: PointKind,
     /// Location, basic frame.
     pub x: Vec3,
     /// Displacement coordinate system.

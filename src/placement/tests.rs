@@ -84,7 +84,6 @@ fn layouts_are_never_below_the_published_optfederov_and_reference_values_nor_abo
         let s: usize = f[3].parse().unwrap();
         let start = std::time::Instant::now();
         let got = place(&c, &Spec::new(s, c.n_loads())).unwrap();
-        let seconds = start.elapsed().as_secs_f64();
         let num = |i: usize| f[i].parse::<f64>().ok();
         for known in [num(4), num(6)].into_iter().flatten() {
             assert!(

@@ -61,7 +61,7 @@ impl DeckEntry {
         let counted: usize = ELEMENTS.iter().filter_map(|e| cards.get(*e)).sum();
         Self {
             path: d.given,
-            grids: m.grids.len(),
+            grids: m.grids.iter().filter(|g| !g.is_scalar()).count(),
             // Where the mesh came from an OP2 there are no cards to count.
             elements: if cards.is_empty() { in_mesh } else { counted },
             cards,

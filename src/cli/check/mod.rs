@@ -11,8 +11,11 @@ mod together;
 
 use super::fault::Faults;
 use super::{FilesArguments, Session};
+use crate::finding::Finding;
+use crate::report::strain::{Section, page, table};
 use decks::DeckEntry;
 use kind::{Kind, kind_of};
+use maud::html;
 use results::ResultEntry;
 use std::path::Path;
 
@@ -36,9 +39,33 @@ pub fn run(arguments: &FilesArguments, session: &mut Session) -> Result<(), Faul
     found.results.iter().for_each(|r| session.say(r.text()));
     session.put("decks", &found.decks)?;
     session.put("results", &found.results)?;
-    session.output_if_asked()?;
+    let page = page_of(&found, &session.findings);
+    if let Some(output) = session.output_if_asked()? {
+        output
+            .write_bytes("report.html", page.as_bytes())
+            .map_err(|f| vec![f])?;
+    }
     session.put_faults(found.faults);
     Ok(())
+}
+
+/// `report.html`: faults, then every file as on the terminal.
+fn page_of(found: &Found, findings: &[Finding]) -> String {
+    let faults: Vec<Vec<String>> = found.faults.iter().map(|f| vec![f.to_string()]).collect();
+    let mut sections = vec![Section {
+        title: "Faults".into(),
+        body: match faults.is_empty() {
+            true => html! { p { "None." } },
+            false => table(&["file:line: field: what is wrong: what to do"], &faults),
+        },
+    }];
+    let decks = found.decks.iter().map(|d| ("Deck", d.text()));
+    let results = found.results.iter().map(|r| ("Results", r.text()));
+    sections.extend(decks.chain(results).map(|(title, text)| Section {
+        title: title.into(),
+        body: html! { pre { (text) } },
+    }));
+    page("Check", "What is in the files", findings, sections)
 }
 
 /// Looks into one file.

@@ -11,6 +11,6 @@ mod rod;
 pub(crate) mod shell;
 mod spring;
 
-pub(crate) use list::{ElementRef, Prepared};
+pub(crate) use list::Prepared;
 pub(crate) use matrix::ElementMatrix;
 pub(crate) use rod::rod_mass;

@@ -15,9 +15,7 @@ mod tria3;
 
 pub(crate) use law::ShellLaw;
 pub(crate) use normals::{CornerDirectors, shared_normals};
-pub(crate) use of_model::{
-    AnyShell, material_angle, shell_mass, shell_matrices, shell_stiffness, surfaces,
-};
+pub(crate) use of_model::{AnyShell, shell_mass, shell_matrices, shell_stiffness, surfaces};
 pub(crate) use output_frame::output_frame;
 pub(crate) use quad4::quad4;
 pub(crate) use tria3::tria3;

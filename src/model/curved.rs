@@ -1,0 +1,344 @@
+//! Elements with mid-side grids: where their mass lies.
+//!
+//! The map from parameters to space is isoparametric serendipity, written as the linear map of the corners plus, for every edge with
+//! a mid-side grid, its edge function times the grid's distance from the middle of the edge,
+//! `x(p) = sum N_c(p) x_c + sum 4 N_edge(p) (x_m - (x_a + x_b) / 2)`. It is of second degree at most in every single parameter, so a
+//! central difference over a whole step is its exact derivative.
+//!
+//! # Reference
+//! O. C. Zienkiewicz, R. L. Taylor, The Finite Element Method, volume 1, chapter 8: serendipity families.
+
+use super::types::Vec3;
+use nastran::cards::{ShellShape, SolidShape};
+
+/// Parameter domains: products of segments, triangles and a tetrahedron, all with coordinates from 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Domain {
+    Triangle,
+    Square,
+    Tetrahedron,
+    Wedge,
+    Cube,
+}
+
+/// Edges by their corners, in the order of the mid-side grids on the card.
+const TRIANGLE: [(usize, usize); 3] = [(0, 1), (1, 2), (2, 0)];
+const SQUARE: [(usize, usize); 4] = [(0, 1), (1, 2), (2, 3), (3, 0)];
+const TETRAHEDRON: [(usize, usize); 6] = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)];
+const WEDGE: [(usize, usize); 9] = [
+    (0, 1),
+    (1, 2),
+    (2, 0),
+    (0, 3),
+    (1, 4),
+    (2, 5),
+    (3, 4),
+    (4, 5),
+    (5, 3),
+];
+const CUBE: [(usize, usize); 12] = [
+    (0, 1),
+    (1, 2),
+    (2, 3),
+    (3, 0),
+    (0, 4),
+    (1, 5),
+    (2, 6),
+    (3, 7),
+    (4, 5),
+    (5, 6),
+    (6, 7),
+    (7, 4),
+];
+
+/// An element as its map: corners, and for every edge the way from its middle to its mid-side grid.
+struct Map {
+    domain: Domain,
+    corners: Vec<Vec3>,
+    edges: Vec<(usize, usize, Vec3)>,
+}
+
+/// A piece of an element, a point of its Gauss rule.
+pub(super) struct Part {
+    /// Area or volume.
+    pub measure: f64,
+    /// Where it lies.
+    pub x: Vec3,
+    /// Linear shape functions of the first four corners there: what interpolates corner thicknesses of a shell.
+    pub corners: [f64; 4],
+}
+
+/// The parts of a shell with mid-side grids; `None` for other shells. `x`: corners, then mid-side grids (`None`: a straight edge).
+pub(super) fn shell_parts(shape: ShellShape, x: &[Option<Vec3>]) -> Option<Vec<Part>> {
+    let (domain, edges): (_, &[_]) = match shape {
+        ShellShape::Tria6 => (Domain::Triangle, &TRIANGLE),
+        ShellShape::Quad8 => (Domain::Square, &SQUARE),
+        _ => return None,
+    };
+    Some(Map::of(domain, edges, x)?.parts())
+}
+
+/// The parts of a solid with at least one mid-side grid, given as in [`shell_parts`]; `None` for straight ones and pyramids.
+pub(super) fn solid_parts(shape: SolidShape, x: &[Option<Vec3>]) -> Option<Vec<Part>> {
+    let (domain, edges): (_, &[_]) = match shape {
+        SolidShape::Tetra => (Domain::Tetrahedron, &TETRAHEDRON),
+        SolidShape::Penta => (Domain::Wedge, &WEDGE),
+        SolidShape::Hexa => (Domain::Cube, &CUBE),
+        SolidShape::Pyram => return None,
+    };
+    let map = Map::of(domain, edges, x)?;
+    (!map.edges.is_empty()).then(|| map.parts())
+}
+
+impl Map {
+    fn of(domain: Domain, edges: &[(usize, usize)], x: &[Option<Vec3>]) -> Option<Self> {
+        let n = domain.corners();
+        let corners: Vec<Vec3> = x.iter().take(n).flatten().copied().collect();
+        if corners.len() != n {
+            return None;
+        }
+        let bent = edges.iter().zip(x.get(n..)?).filter_map(|((a, b), m)| {
+            let middle = (corners.get(*a)? + corners.get(*b)?) / 2.0;
+            Some((*a, *b, (*m)? - middle))
+        });
+        Some(Map {
+            domain,
+            edges: bent.collect(),
+            corners,
+        })
+    }
+
+    fn at(&self, p: [f64; 3]) -> Vec3 {
+        let shape = |c: usize| self.domain.shape(c, p);
+        let straight: Vec3 = self
+            .corners
+            .iter()
+            .enumerate()
+            .map(|(c, x)| x * shape(c))
+            .sum();
+        let edge = |(a, b, d): &(usize, usize, Vec3)| d * (4.0 * self.domain.edge(*a, *b, p));
+        straight + self.edges.iter().map(edge).sum::<Vec3>()
+    }
+
+    fn parts(&self) -> Vec<Part> {
+        let slope = |p: [f64; 3], k: usize| {
+            let (mut a, mut b) = (p, p);
+            a[k] += 0.5;
+            b[k] -= 0.5;
+            self.at(a) - self.at(b)
+        };
+        let measure = |p: [f64; 3]| {
+            let (r, s) = (slope(p, 0), slope(p, 1));
+            match self.domain {
+                Domain::Triangle | Domain::Square => r.cross(&s).norm(),
+                _ => r.cross(&s).dot(&slope(p, 2)),
+            }
+        };
+        let part = |(w, p): (f64, [f64; 3])| Part {
+            measure: w * measure(p),
+            x: self.at(p),
+            corners: [0, 1, 2, 3].map(|c| self.domain.shape(c, p)),
+        };
+        self.domain.points().into_iter().map(part).collect()
+    }
+}
+
+impl Domain {
+    fn corners(self) -> usize {
+        match self {
+            Domain::Triangle => 3,
+            Domain::Square | Domain::Tetrahedron => 4,
+            Domain::Wedge => 6,
+            Domain::Cube => 8,
+        }
+    }
+
+    /// Linear shape function of a corner.
+    fn shape(self, corner: usize, [r, s, t]: [f64; 3]) -> f64 {
+        let square = |c: usize| match c {
+            0 => (1.0 - r) * (1.0 - s),
+            1 => r * (1.0 - s),
+            2 => r * s,
+            _ => (1.0 - r) * s,
+        };
+        let triangle = |c: usize| [1.0 - r - s, r, s].get(c).copied().unwrap_or(0.0);
+        let level = |top: bool| if top { t } else { 1.0 - t };
+        match self {
+            Domain::Triangle => triangle(corner),
+            Domain::Square => square(corner),
+            Domain::Tetrahedron => [1.0 - r - s - t, r, s, t]
+                .get(corner)
+                .copied()
+                .unwrap_or(0.0),
+            Domain::Wedge => triangle(corner % 3) * level(corner >= 3),
+            Domain::Cube => square(corner % 4) * level(corner >= 4),
+        }
+    }
+
+    /// Edge function: quadratic along the edge, linear away from it, a quarter in its middle.
+    fn edge(self, a: usize, b: usize, [r, s, t]: [f64; 3]) -> f64 {
+        let bottom = |c: usize| match self {
+            Domain::Wedge => c % 3,
+            Domain::Cube => c % 4,
+            _ => c,
+        };
+        // A corner of the triangle or square seen at the middle height: shape functions of the bottom alone.
+        let flat = |c: usize| match self {
+            Domain::Wedge => Domain::Triangle.shape(c, [r, s, 0.0]),
+            Domain::Cube => Domain::Square.shape(c, [r, s, 0.0]),
+            _ => self.shape(c, [r, s, t]),
+        };
+        let (i, j) = (bottom(a), bottom(b));
+        let tall = matches!(self, Domain::Wedge | Domain::Cube);
+        if tall && i == j {
+            return flat(i) * t * (1.0 - t);
+        }
+        let along = match self {
+            // Shape functions of two neighbours of a square share the factor across the edge, counted once.
+            Domain::Square | Domain::Cube => match (i, j) {
+                (0, 1) => r * (1.0 - r) * (1.0 - s),
+                (1, 2) => s * (1.0 - s) * r,
+                (2, 3) => r * (1.0 - r) * s,
+                _ => s * (1.0 - s) * (1.0 - r),
+            },
+            _ => flat(i) * flat(j),
+        };
+        match (tall, a >= self.corners() / 2) {
+            (false, _) => along,
+            (true, false) => along * (1.0 - t),
+            (true, true) => along * t,
+        }
+    }
+
+    /// Gauss rule: four points a direction, triangles and tetrahedra as collapsed squares and cubes.
+    fn points(self) -> Vec<(f64, [f64; 3])> {
+        let mut out = Vec::new();
+        let third: &[(f64, f64)] = match self {
+            Domain::Triangle | Domain::Square => &[(0.0, 1.0)],
+            _ => &GAUSS_4,
+        };
+        for (u, wu) in GAUSS_4 {
+            for (v, wv) in GAUSS_4 {
+                for (t, wt) in third.iter().copied() {
+                    let w = wu * wv * wt;
+                    out.push(match self {
+                        Domain::Square | Domain::Cube => (w, [u, v, t]),
+                        Domain::Triangle | Domain::Wedge => (w * (1.0 - u), [u, v * (1.0 - u), t]),
+                        Domain::Tetrahedron => {
+                            let rest = (1.0 - u) * (1.0 - v);
+                            (w * (1.0 - u) * rest, [u, v * (1.0 - u), t * rest])
+                        }
+                    });
+                }
+            }
+        }
+        out
+    }
+}
+
+/// Abscissae and weights on 0..1 (Gauss-Legendre, Abramowitz and Stegun table 25.4).
+const GAUSS_4: [(f64, f64); 4] = [
+    (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+    (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+    (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+    (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    fn close(a: f64, b: f64, tolerance: f64) {
+        assert!((a - b).abs() < tolerance, "{a} against {b}");
+    }
+
+    /// Corners and exact mid-side places of a straight element: the edge terms vanish.
+    fn straight(edges: &[(usize, usize)], corners: &[[f64; 3]]) -> Vec<Option<Vec3>> {
+        let x: Vec<Vec3> = corners.iter().map(|c| Vec3::from(*c)).collect();
+        let mid = edges.iter().map(|(a, b)| (x[*a] + x[*b]) / 2.0);
+        x.iter().copied().chain(mid).map(Some).collect()
+    }
+
+    #[test]
+    fn straight_solids_have_the_volume_of_their_shape() {
+        let cube = [
+            [0., 0., 0.],
+            [2., 0., 0.],
+            [2., 3., 0.],
+            [0., 3., 0.],
+            [0., 0., 4.],
+            [2., 0., 4.],
+            [2., 3., 4.],
+            [0., 3., 4.],
+        ];
+        let sum = |p: Vec<Part>| p.iter().map(|p| p.measure).sum::<f64>();
+        close(
+            sum(solid_parts(SolidShape::Hexa, &straight(&CUBE, &cube)).unwrap()),
+            24.0,
+            1e-12,
+        );
+        let wedge = [
+            [0., 0., 0.],
+            [2., 0., 0.],
+            [0., 3., 0.],
+            [0., 0., 4.],
+            [2., 0., 4.],
+            [0., 3., 4.],
+        ];
+        close(
+            sum(solid_parts(SolidShape::Penta, &straight(&WEDGE, &wedge)).unwrap()),
+            12.0,
+            1e-12,
+        );
+        let tetra = [[0., 0., 0.], [2., 0., 0.], [0., 3., 0.], [0., 0., 4.]];
+        close(
+            sum(solid_parts(SolidShape::Tetra, &straight(&TETRAHEDRON, &tetra)).unwrap()),
+            4.0,
+            1e-12,
+        );
+    }
+
+    #[test]
+    fn a_bent_edge_adds_the_area_under_its_parabola() {
+        // The parabola through (0,0), (1/2,-h), (1,0) has area 2/3 h; so have the mid-side grids of a square and a triangle.
+        let h = 0.3;
+        let mut x = straight(
+            &SQUARE,
+            &[[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]],
+        );
+        x[4] = Some(Vec3::new(0.5, -h, 0.0));
+        let area: f64 = shell_parts(ShellShape::Quad8, &x)
+            .unwrap()
+            .iter()
+            .map(|p| p.measure)
+            .sum();
+        close(area, 1.0 + 2.0 / 3.0 * h, 1e-12);
+        let mut x = straight(&TRIANGLE, &[[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]]);
+        x[3] = Some(Vec3::new(0.5, -h, 0.0));
+        let area: f64 = shell_parts(ShellShape::Tria6, &x)
+            .unwrap()
+            .iter()
+            .map(|p| p.measure)
+            .sum();
+        close(area, 0.5 + 2.0 / 3.0 * h, 1e-12);
+    }
+
+    #[test]
+    fn a_brick_bent_around_an_axis_fills_its_sector() {
+        // A block of a tube, radii 1 and 2, height 1, angle a, its arcs parabolas through three points: under the chord of radius r a
+        // triangle r^2 sin(a) / 2, above it two thirds of chord times height.
+        let at = |r: f64, a: f64, z: f64| Some(Vec3::new(r * a.cos(), r * a.sin(), z));
+        let (a, m) = (PI / 6.0, PI / 12.0);
+        let ring = |z: f64| [at(1., 0., z), at(2., 0., z), at(2., a, z), at(1., a, z)];
+        let middle = |z: f64| [at(1.5, 0., z), at(2., m, z), at(1.5, a, z), at(1., m, z)];
+        let x: Vec<Option<Vec3>> = [ring(0.), ring(1.), middle(0.), ring(0.5), middle(1.)].concat();
+        let volume: f64 = solid_parts(SolidShape::Hexa, &x)
+            .unwrap()
+            .iter()
+            .map(|p| p.measure)
+            .sum();
+        let sector = a.sin() / 2.0 + 2.0 / 3.0 * 2.0 * m.sin() * (1.0 - m.cos());
+        close(volume, (4.0 - 1.0) * sector, 1e-12);
+    }
+}
