@@ -83,6 +83,15 @@ pub(crate) fn unsupported(model: &Model, cases: &[LoadCase]) -> Vec<Refusal> {
             "use CQUAD4, or solve with Nastran",
         );
     }
+    for c in &model.uncarried {
+        let id = c.id.map_or(String::new(), |id| format!(" {id}"));
+        refuse(
+            format!("{}{id}", c.card),
+            c.at,
+            "the built-in solver does not carry this card",
+            "delete it if it does not matter here, or solve with Nastran and name its results in the job",
+        );
+    }
     for case in cases {
         for load in &case.loads {
             let UnitLoad::Set(sid) = load else { continue };

@@ -11,6 +11,7 @@ use std::collections::HashMap;
 pub(super) struct Builder<'a> {
     pub cards: &'a Cards,
     pub case_params: &'a [Param],
+    pub uncarried_loads: &'a [Uncarried],
     pub model: Model,
     pub faults: Vec<ModelFault>,
     pub frame_ix: HashMap<u32, FrameIx>,
@@ -25,12 +26,15 @@ impl Model {
     /// Elements whose grids are missing are left out; a shell whose property is missing stays in the mesh without stiffness. A
     /// model with a fault of weight [`super::FaultWeight::Error`] is good for looking at, not for solving.
     pub fn from_cards(cards: &Cards) -> (Model, Vec<ModelFault>) {
-        Self::build(cards, &[])
+        Self::build(cards, &[], &[])
     }
 
     /// The model that a deck means: its cards, PARAMs of case control (which win), names of properties and components.
     pub fn from_deck(deck: &Deck) -> (Model, Vec<ModelFault>) {
-        let (mut model, faults) = Self::build(&deck.cards, &deck.case_control.global.params);
+        let (structure, loads) = super::uncarried::of_deck(deck);
+        let (mut model, faults) =
+            Self::build(&deck.cards, &deck.case_control.global.params, &loads);
+        model.uncarried = structure;
         let named = deck
             .labels
             .iter()
@@ -39,10 +43,15 @@ impl Model {
         (model, faults)
     }
 
-    fn build(cards: &Cards, case_params: &[Param]) -> (Model, Vec<ModelFault>) {
+    fn build(
+        cards: &Cards,
+        case_params: &[Param],
+        uncarried_loads: &[Uncarried],
+    ) -> (Model, Vec<ModelFault>) {
         let mut b = Builder {
             cards,
             case_params,
+            uncarried_loads,
             model: Model::default(),
             faults: Vec::new(),
             frame_ix: HashMap::new(),

@@ -17,6 +17,12 @@ impl Builder<'_> {
         self.nodal(&mut sets);
         self.pressures(&mut sets);
         self.body_forces(&mut sets);
+        for card in self.uncarried_loads.iter() {
+            if let Some(sid) = card.id {
+                let load = Load::Unsupported(card.card.clone(), card.at);
+                sets.entry(sid).or_default().push((1.0, load));
+            }
+        }
         let sums = self.combinations(&sets);
         for (sid, loads) in sums {
             sets.entry(sid).or_default().extend(loads);
@@ -95,7 +101,7 @@ impl Builder<'_> {
         for p in &cards.pload1s {
             sets.entry(p.sid)
                 .or_default()
-                .push((1.0, Load::Unsupported("PLOAD1", p.at)));
+                .push((1.0, Load::Unsupported("PLOAD1".into(), p.at)));
         }
     }
 
@@ -131,7 +137,7 @@ impl Builder<'_> {
     fn pload4(&mut self, p: &Placed<Pload4>) -> Vec<Load> {
         let name = format!("PLOAD4 {}", p.sid);
         if !(p.sorl.is_empty() || p.sorl == "SURF") {
-            return vec![Load::Unsupported("PLOAD4 with SORL", p.at)];
+            return vec![Load::Unsupported("PLOAD4 with SORL".into(), p.at)];
         }
         let p1 = p.pressure[0].unwrap_or(0.0);
         let pressure = p.pressure.map(|x| x.unwrap_or(p1));
@@ -145,7 +151,7 @@ impl Builder<'_> {
                 };
                 if frame.kind != nastran::cards::CoordKind::Rectangular {
                     return vec![Load::Unsupported(
-                        "PLOAD4 in a cylindrical or spherical system",
+                        "PLOAD4 in a cylindrical or spherical system".into(),
                         p.at,
                     )];
                 }
@@ -255,7 +261,7 @@ impl Builder<'_> {
                     centre,
                     omega: frame.axes.tr_mul(&Vec3::from(r.r)) * (r.speed * std::f64::consts::TAU),
                 },
-                _ => Load::Unsupported("RFORCE", r.at),
+                _ => Load::Unsupported("RFORCE".into(), r.at),
             };
             sets.entry(r.sid).or_default().push((1.0, load));
         }

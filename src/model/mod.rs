@@ -22,6 +22,7 @@ mod section;
 mod shell;
 mod solid;
 mod types;
+mod uncarried;
 
 #[cfg(test)]
 mod tests;

@@ -79,6 +79,8 @@ pub struct Model {
     pub load_sets: Vec<LoadSet>,
     /// Temperature sets by id: default, grid values.
     pub temperatures: Vec<TemperatureSet>,
+    /// Cards of the deck that change stiffness, mass, constraints or loads and have no place above: a solver must refuse them.
+    pub uncarried: Vec<Uncarried>,
     /// Parameters that change what the model means.
     pub params: Params,
     /// Names of properties and components from comments: (`property id`, name).
@@ -478,6 +480,17 @@ pub struct TemperatureSet {
     pub at: Place,
 }
 
+/// A card that the model does not carry.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Uncarried {
+    /// Its name.
+    pub card: String,
+    /// Its element id or set id.
+    pub id: Option<u32>,
+    /// Where it stands.
+    pub at: Place,
+}
+
 /// A primitive load, vectors in the basic frame.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Load {
@@ -513,7 +526,7 @@ pub enum Load {
         omega: Vec3,
     },
     /// A load that the solver does not carry yet: the card's name and place, so that it can be refused by name.
-    Unsupported(&'static str, Place),
+    Unsupported(String, Place),
 }
 
 /// Parameters that change what the model means, with the deck's value or the default.

@@ -6,7 +6,7 @@ use super::card::read_card;
 use super::deck::{Note, OtherCard};
 use super::defer::{Deferred, Orphan, Span};
 use super::fault::{Fault, Wrong};
-use super::fields::{Fields, excerpt, note_fault};
+use super::fields::{Fields, Value, excerpt, note_fault};
 use super::line::{Line, trim, without_comment};
 use super::names::{Label, NameReader};
 use super::replicate::{self, Template};
@@ -449,6 +449,10 @@ fn emit(
         &mut part.labels,
     );
     let mut fields = Fields::new(name.as_bytes(), at, list, &mut part.faults, budget);
+    let id = match fields.value(0) {
+        Value::Integer(n) => u32::try_from(n).ok(),
+        _ => None,
+    };
     if !read_card(&mut fields, &mut part.cards)
         && let (Some(first), Some(last)) = (spans.first(), spans.last())
     {
@@ -459,6 +463,7 @@ fn emit(
         };
         part.others.push(OtherCard {
             name: super::line::text_of(name.as_bytes()),
+            first: id,
             at,
             start: first.start,
             end,

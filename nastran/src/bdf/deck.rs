@@ -22,6 +22,8 @@ pub struct Source {
 pub struct OtherCard {
     /// Upper case, without `*`.
     pub name: String,
+    /// Its first field where that is an integer from 0: the id of an element or a set.
+    pub first: Option<u32>,
     /// Its first line.
     pub at: Place,
     /// Bytes of its first line to the end of its last, comments between included.

@@ -1,0 +1,56 @@
+//! Cards that no part of the model stands for, told apart by what leaving them out would change.
+//!
+//! Dampers, plot elements, heat transfer, output, optimisation and dynamics change nothing in linear statics and are not listed.
+
+use super::types::Uncarried;
+use nastran::bdf::Deck;
+
+/// Stiffness, mass and constraints.
+const STRUCTURE: [&str; 52] = [
+    "CBEAM3", "CBEND", "CBUSH1D", "CBUSH2D", "CCONEAX", "CELAS3", "CELAS4", "CFAST", "CGAP",
+    "CMASS1", "CMASS2", "CMASS3", "CMASS4", "CPLSTN3", "CPLSTN4", "CPLSTN6", "CPLSTN8", "CPLSTS3",
+    "CPLSTS4", "CPLSTS6", "CPLSTS8", "CQUAD", "CQUADX", "CQUADX4", "CQUADX8", "CRAC2D", "CRAC3D",
+    "CSEAM", "CTRAX3", "CTRAX6", "CTRIAX", "CTRIAX6", "CWELD", "CYSYM", "GENEL", "NSM", "NSM1",
+    "NSMADD", "NSML", "NSML1", "RBAR1", "RJOINT", "RROD", "RSPLINE", "RSSCON", "RTRPLT", "RTRPLT1",
+    "RBE2GS", "BEDGE", "CHACAB", "CINTC", "SNORM",
+];
+
+/// Structure that acts only where case control selects it, by the word that does.
+const SELECTED: [(&str, &str); 4] = [
+    ("DMIG", "K2GG"),
+    ("BGSET", "BGSET"),
+    ("BCTSET", "BCSET"),
+    ("BCONTACT", "BCONTACT"),
+];
+
+/// Loads, their set id in the first field.
+const LOADS: [&str; 16] = [
+    "ACCEL", "ACCEL1", "CLOAD", "DEFORM", "FORCE1", "FORCE2", "FORCEAX", "GMLOAD", "MOMENT1",
+    "MOMENT2", "MOMAX", "PLOADE1", "PLOADX1", "PRESAX", "SLOAD", "SPCD",
+];
+
+/// Elements, masses and constraints, then loads, in the order of the deck.
+pub(super) fn of_deck(deck: &Deck) -> (Vec<Uncarried>, Vec<Uncarried>) {
+    let listed = |names: &[&str]| {
+        let cards = deck
+            .others
+            .iter()
+            .filter(|c| names.contains(&c.name.as_str()));
+        cards
+            .map(|c| Uncarried {
+                card: c.name.clone(),
+                id: c.first,
+                at: c.at,
+            })
+            .collect()
+    };
+    let selected = |word: &str| {
+        deck.case_control
+            .lines
+            .iter()
+            .any(|l| !l.in_packet && l.name == word)
+    };
+    let mut structure: Vec<&str> = STRUCTURE.to_vec();
+    structure.extend(SELECTED.iter().filter(|s| selected(s.1)).map(|s| s.0));
+    (listed(&structure), listed(&LOADS))
+}
