@@ -53,10 +53,15 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
             scatter,
         )
     });
-    let spec = spec_of(session, &job, k);
-    let layout = session
-        .stage("place", |_| place(&c, &spec))
-        .map_err(|e| vec![refusal(&job, &e)])?;
+    let mut spec = spec_of(session, &job, k);
+    let found = session.stage("place", |s| match place(&c, &spec) {
+        Err(PlaceError::Singular { gauges, loads }) => {
+            know_the_loads(s, &mut spec, gauges, loads);
+            place(&c, &spec)
+        }
+        other => other,
+    });
+    let layout = found.map_err(|e| vec![refusal(&job, &e)])?;
     let gauges = gauges_of(fields.model(), &sites, &layout, job.candidates.grid_length);
     let s = from_cases(&gauges, &cases).map_err(|_| Vec::new())?;
     let rows: Vec<Vec<f64>> = layout.gauges.iter().map(|&g| c.row(g)).collect();
@@ -239,6 +244,29 @@ fn spec_of(session: &mut Session, job: &Job, k: usize) -> Spec {
             .count();
     }
     spec
+}
+
+/// Where no layout separates the loads, the best one for loads that are each known to their expected size (1 in these columns), with
+/// the finding that the measurement alone does not give them.
+fn know_the_loads(session: &mut Session, spec: &mut Spec, gauges: usize, loads: usize) {
+    for l in 0..loads {
+        if let Some(p) = spec.prior.get_mut(l * loads + l) {
+            *p = p.max(1.0);
+        }
+    }
+    session.findings.push(
+        Finding::new(
+            Severity::Error,
+            "loads-not-separable",
+            "placement",
+            format!(
+                "no {gauges} gauges among these candidates separate the {loads} loads: the layout is the best for loads known \
+                 beforehand to their expected size, and so are its sigmas"
+            ),
+            format!("ask for at least {loads} gauges, drop loads that act alike, or widen [candidates]"),
+        )
+        .with_numbers(gauges as f64, loads as f64),
+    );
 }
 
 /// Loads in the order of the candidates' columns: nuisance loads first.

@@ -10,7 +10,8 @@ pub const DENSITY_LIMITS: [f64; 2] = [20.0, 25_000.0];
 
 /// Findings where PARAM,UNITSYS, Young's moduli or densities (id, value; densities times WTMASS) contradict the declared system.
 ///
-/// Dummy materials exist in honest decks: some implausible values are a warning, all of them an error.
+/// Dummy materials exist in honest decks: some implausible values are a warning, all of them an error; for densities still a warning,
+/// because a common factor of all masses leaves the strain of a balanced structure unchanged.
 pub fn check_units(
     system: UnitSystem,
     unitsys: Option<&str>,
@@ -46,6 +47,7 @@ pub fn check_units(
         moduli,
         gpa,
         MODULUS_LIMITS_GPA,
+        Severity::Error,
         system,
     ));
     let density = system.mass_kg() / system.length_m().powi(3);
@@ -56,11 +58,13 @@ pub fn check_units(
         densities,
         density,
         DENSITY_LIMITS,
+        Severity::Warning,
         system,
     ));
     out
 }
 
+#[allow(clippy::too_many_arguments)]
 fn implausible(
     what: &str,
     unit: &str,
@@ -68,6 +72,7 @@ fn implausible(
     values: &[(u32, f64)],
     factor: f64,
     limits: [f64; 2],
+    where_all_are: Severity,
     system: UnitSystem,
 ) -> Option<Finding> {
     let stated: Vec<(u32, f64)> = values
@@ -82,7 +87,7 @@ fn implausible(
         .collect();
     let first = bad.first()?;
     let severity = if bad.len() == stated.len() {
-        Severity::Error
+        where_all_are
     } else {
         Severity::Warning
     };
