@@ -14,6 +14,8 @@ pub struct Arguments {
 /// The commands; each has its file beside this one.
 #[derive(clap::Subcommand, Debug)]
 pub enum Command {
+    /// The truck story in a folder: solve, place, recover, reconcile, weigh, report
+    Demo(DemoArguments),
     /// Read decks, results or jobs; report what is in them and every fault
     Check(FilesArguments),
     /// Shell and bar strain of every static subcase, in the element and the basic frame, to strains.csv
@@ -28,6 +30,14 @@ pub enum Command {
     Place(JobArguments),
     /// Recover loads from measured strain, with intervals
     Recover(JobArguments),
+    /// Repeat recovery under stated errors for a range of gauge counts and layouts
+    Study(JobArguments),
+    /// Strain and stress anywhere on the structure from recovered loads, by superposition: envelope, hot spots, histories
+    Respond(JobArguments),
+    /// Mass and, where it can be told, position of a payload, from strain, wheel forces or both
+    Payload(JobArguments),
+    /// Size and place lumped masses that bring the model's reactions to the measured ones; write the completed deck
+    Ballast(JobArguments),
     /// Strain of a job's unit loads, or of a deck's static subcases, by the built-in solver
     Solve(JobArguments),
     /// Find where simulation and measurement disagree, name the missing effect, add it, show the gap shrink
@@ -56,6 +66,17 @@ pub struct JobArguments {
     /// The job
     #[arg(value_name = "JOB.toml")]
     pub job: PathBuf,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub common: CommonArguments,
+}
+
+/// The story.
+#[derive(clap::Args, Debug)]
+pub struct DemoArguments {
+    /// Folder for the story (default: strainbridge-demo)
+    #[arg(value_name = "DIR")]
+    pub folder: Option<PathBuf>,
     #[command(flatten)]
     #[allow(missing_docs)]
     pub common: CommonArguments,

@@ -5,25 +5,31 @@
 //! [`fault`] (bad input), [`job`] (job.toml and the tables it names).
 
 mod arguments;
+mod ballast;
 mod cases;
 mod check;
 pub mod deck;
+mod demo;
 pub mod fault;
 pub mod files;
 mod identify;
 mod init;
 pub mod job;
 pub mod output;
+mod payload;
 mod place;
 mod progress;
 mod reconcile;
 mod recover;
+mod respond;
 mod sensitivity;
 mod session;
 mod solve;
 mod strain;
 mod strains;
+mod study;
 pub mod vehicle;
+mod wheels;
 mod words;
 
 pub use arguments::*;
@@ -43,6 +49,11 @@ pub fn run(arguments: Arguments) -> ExitCode {
         Command::Sensitivity(a) => {
             Session::run("sensitivity", &a.common, |s| sensitivity::run(&a, s))
         }
+        Command::Ballast(a) => Session::run("ballast", &a.common, |s| ballast::run(&a, s)),
+        Command::Payload(a) => Session::run("payload", &a.common, |s| payload::run(&a, s)),
+        Command::Respond(a) => Session::run("respond", &a.common, |s| respond::run(&a, s)),
+        Command::Study(a) => Session::run("study", &a.common, |s| study::run(&a, s)),
+        Command::Demo(a) => Session::run("demo", &a.common, |s| demo::run(&a, s)),
         Command::Solve(a) => Session::run("solve", &a.common, |s| solve::run(&a, s)),
         Command::Reconcile(a) => Session::run("reconcile", &a.common, |s| reconcile::run(&a, s)),
         Command::Identify(a) => Session::run("identify", &a.common, |s| identify::run(&a, s)),

@@ -162,7 +162,7 @@ pub fn allowed_sites(job: &Job, model: &Model, common: &[ShellIx]) -> Result<Vec
 }
 
 /// The angles of a job.
-fn angles(step: AngleStep) -> Angles {
+pub(super) fn angles(step: AngleStep) -> Angles {
     match step {
         AngleStep::Continuous => Angles::Continuous,
         AngleStep::Degrees(d) => {
@@ -173,7 +173,7 @@ fn angles(step: AngleStep) -> Angles {
 }
 
 /// Column scales: `expected`; where a load states none, the size that strains the candidates by [`ASSUMED_STRAIN`] rms.
-fn scales(session: &mut Session, cases: &[LoadCaseOf], common: &[ShellIx]) -> Vec<f64> {
+pub(super) fn scales(session: &mut Session, cases: &[LoadCaseOf], common: &[ShellIx]) -> Vec<f64> {
     let mut assumed = Vec::new();
     let scales = cases
         .iter()
@@ -270,7 +270,7 @@ fn know_the_loads(session: &mut Session, spec: &mut Spec, gauges: usize, loads: 
 }
 
 /// Loads in the order of the candidates' columns: nuisance loads first.
-fn column_order(job: &Job) -> Vec<usize> {
+pub(super) fn column_order(job: &Job) -> Vec<usize> {
     let mut order: Vec<usize> = (0..job.loads.len()).collect();
     order.sort_by_key(|&l| job.loads[l].role == job::Role::Wanted);
     order

@@ -44,6 +44,29 @@ struct ResultFile<'a> {
     seconds: &'a Map<String, Value>,
 }
 
+/// What a closed session leaves.
+struct Closed {
+    json: String,
+    text: String,
+    findings: Vec<Finding>,
+    folder: Option<PathBuf>,
+    faults: Faults,
+}
+
+/// A command that ran as a step of another.
+pub struct Step {
+    /// Its name.
+    pub command: &'static str,
+    /// Its part of `result.json`.
+    pub result: Value,
+    /// What it had to say.
+    pub findings: Vec<Finding>,
+    /// Its words for standard output.
+    pub text: String,
+    /// How long it took.
+    pub seconds: f64,
+}
+
 impl Session {
     /// Runs a command and reports: text or `result.json` on standard output, findings and faults on standard error.
     pub fn run(
@@ -51,18 +74,7 @@ impl Session {
         common: &CommonArguments,
         work: impl FnOnce(&mut Session) -> Result<(), Faults> + Send,
     ) -> ExitCode {
-        let mut session = Session {
-            command,
-            common: common.clone(),
-            inputs: Inputs::default(),
-            findings: Vec::new(),
-            faults: Vec::new(),
-            units: Value::Null,
-            body: Map::new(),
-            seconds: Map::new(),
-            output: None,
-            text: String::new(),
-        };
+        let mut session = Session::new(command, common);
         let start = Instant::now();
         let done = match common.threads {
             Some(n) => match rayon::ThreadPoolBuilder::new()
@@ -88,6 +100,53 @@ impl Session {
                 ExitCode::from(2)
             }
         }
+    }
+
+    fn new(command: &'static str, common: &CommonArguments) -> Self {
+        Session {
+            command,
+            common: common.clone(),
+            inputs: Inputs::default(),
+            findings: Vec::new(),
+            faults: Vec::new(),
+            units: Value::Null,
+            body: Map::new(),
+            seconds: Map::new(),
+            output: None,
+            text: String::new(),
+        }
+    }
+
+    /// Runs a command as a step of this one, on the same threads: its files go to `out`, its words and findings come back unprinted.
+    ///
+    /// # Errors
+    /// The faults that the command alone would have listed.
+    pub fn step(
+        &mut self,
+        command: &'static str,
+        out: &Path,
+        work: impl FnOnce(&mut Session) -> Result<(), Faults>,
+    ) -> Result<Step, Faults> {
+        let common = CommonArguments {
+            out: Some(out.to_owned()),
+            ..CommonArguments::default()
+        };
+        let mut session = Session::new(command, &common);
+        let start = Instant::now();
+        let progress = Progress::start(command);
+        work(&mut session)?;
+        drop(progress);
+        session.note_seconds("total", start);
+        self.note_seconds(command, start);
+        let result = Value::Object(session.body.clone());
+        let findings = session.findings.clone();
+        session.close().map(|closed| Step {
+            command,
+            result,
+            findings,
+            text: closed.text,
+            seconds: start.elapsed().as_secs_f64(),
+        })
     }
 
     /// Runs a stage: timed under its name, with a progress line on a terminal where it takes over a second.
@@ -176,6 +235,14 @@ impl Session {
         }
     }
 
+    /// The output folder, named by the command itself.
+    ///
+    /// # Errors
+    /// A fault where it can't be created.
+    pub fn output_at(&mut self, folder: &Path) -> Result<&mut Output, Faults> {
+        self.open(folder)
+    }
+
     fn open(&mut self, folder: &Path) -> Result<&mut Output, Faults> {
         if self.output.is_none() {
             self.output = Some(Output::begin(folder).map_err(|f| vec![f])?);
@@ -183,7 +250,8 @@ impl Session {
         self.output.as_mut().ok_or_else(Vec::new)
     }
 
-    fn finish(mut self) -> Result<ExitCode, Faults> {
+    /// Writes and commits the files.
+    fn close(mut self) -> Result<Closed, Faults> {
         if self.command == "check" {
             let lines: Vec<String> = self.faults.iter().map(Fault::to_string).collect();
             self.put("faults", lines)?;
@@ -218,7 +286,26 @@ impl Session {
             folder = Some(output.folder().to_owned());
             output.commit().map_err(|f| vec![f])?;
         }
-        let text = if self.common.json { json } else { self.text };
+        Ok(Closed {
+            json,
+            text: self.text,
+            findings,
+            folder,
+            faults: self.faults,
+        })
+    }
+
+    /// Closes and prints.
+    fn finish(self) -> Result<ExitCode, Faults> {
+        let as_json = self.common.json;
+        let Closed {
+            json,
+            text,
+            findings,
+            folder,
+            faults,
+        } = self.close()?;
+        let text = if as_json { json } else { text };
         // A closed pipe (`| head`) is no fault of ours.
         let _ = std::io::stdout().write_all(text.as_bytes());
         let mut notes = String::new();
@@ -229,8 +316,8 @@ impl Session {
             notes.push_str(&format!("written to `{}`\n", folder.display()));
         }
         let _ = std::io::stderr().write_all(notes.as_bytes());
-        if !self.faults.is_empty() {
-            print_faults(&self.faults);
+        if !faults.is_empty() {
+            print_faults(&faults);
             return Ok(ExitCode::from(2));
         }
         Ok(if worst(&findings) == Some(Severity::Error) {

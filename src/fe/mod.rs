@@ -7,6 +7,7 @@ pub mod belongs;
 mod constraint;
 mod element;
 mod error;
+pub mod floor;
 pub mod from_results;
 mod grid_frames;
 mod load;

@@ -1,9 +1,20 @@
 //! The size and place of one load that is not measured directly: a payload, or the masses that a model lacks.
 
+mod ballast;
+mod carrier;
+mod evidence;
+mod locate;
 mod robust;
 #[cfg(test)]
 mod tests;
+mod weigh;
 
+pub use ballast::{BallastFit, BallastMass, BallastSpec, size_ballast};
+pub use carrier::{Carriers, spread};
+pub use evidence::{
+    PayloadModel, PayloadRun, Place, Refusal, Support, WeighSpec, WeighedRun,
+};
 pub use robust::{
     GaugeEstimates, GaugeVerdict, RobustPayload, RobustSpec, RunPayload, robust_payload,
 };
+pub use weigh::{Weighing, weigh};

@@ -72,6 +72,8 @@ const N_STARTS: usize = 5;
 const USED_ABOVE: f64 = 0.5;
 /// A gauge is good when its noise is at most this factor above the stated one, or above the scatter that all gauges have.
 const GOOD_FACTOR: f64 = 3.0;
+/// A negative estimate counts against a gauge from this many of its standard deviations on.
+pub(super) const SIGN_SIGMAS: f64 = 3.0;
 
 /// The posterior of the payload force of every run.
 ///
@@ -285,8 +287,24 @@ fn verdict(gauge: &GaugeEstimates, spec: &RobustSpec, f: &[f64]) -> GaugeVerdict
         .take_while(|k| level(gauge, spec, 0, *k).0 <= limit * (1.0 + 1e-9))
         .count();
     let probability_good = (log_sum(&terms[..n_good]) - log_sum(&terms)).exp();
-    let finite: Vec<(usize, f64)> = gauge
-        .estimates
+    // With stated noise a sign is against a gauge only where noise can't have made it.
+    let slack: Vec<f64> = match &gauge.sigma {
+        Some(s) => s.iter().map(|s| SIGN_SIGMAS * s).collect(),
+        None => vec![0.0; gauge.estimates.len()],
+    };
+    verdict_words(&gauge.name, &gauge.estimates, &slack, f, probability_good)
+}
+
+/// Whether a gauge is used, and why, from its own estimates by run, the answers `f` and how probable it is that the gauge is good.
+/// An estimate below zero by more than its `slack` rejects the gauge.
+pub(super) fn verdict_words(
+    name: &str,
+    estimates: &[f64],
+    slack: &[f64],
+    f: &[f64],
+    probability_good: f64,
+) -> GaugeVerdict {
+    let finite: Vec<(usize, f64)> = estimates
         .iter()
         .copied()
         .enumerate()
@@ -294,7 +312,9 @@ fn verdict(gauge: &GaugeEstimates, spec: &RobustSpec, f: &[f64]) -> GaugeVerdict
         .collect();
     let (positive, negative) = (
         finite.iter().any(|p| p.1 > 0.0),
-        finite.iter().any(|p| p.1 < 0.0),
+        finite
+            .iter()
+            .any(|p| p.1 < -slack.get(p.0).copied().unwrap_or(0.0)),
     );
     let list = || {
         finite
@@ -332,7 +352,7 @@ fn verdict(gauge: &GaugeEstimates, spec: &RobustSpec, f: &[f64]) -> GaugeVerdict
         )
     };
     GaugeVerdict {
-        name: gauge.name.clone(),
+        name: name.to_owned(),
         used,
         probability_good,
         reason,

@@ -8,4 +8,4 @@ mod vtu;
 
 pub use result_blocks::for_each_block;
 pub use strains::{STRAINS_HEADER, write_strains};
-pub use vtu::write_vtu;
+pub use vtu::{write_cells_vtu, write_vtu};

@@ -44,7 +44,76 @@ fn floats(values: impl Iterator<Item = f64>) -> Vec<u8> {
 /// # Errors
 /// What `out` gives.
 pub fn write_vtu(model: &Model, cases: &[CaseResult], out: &mut dyn Write) -> Result<()> {
-    let mut cells: Vec<(u8, u32, Vec<GridIx>)> = Vec::new();
+    let (mut a, cells) = mesh(model);
+    for case in cases
+        .iter()
+        .filter(|c| c.displacement.len() == model.grids.len())
+    {
+        let u = case.displacement.iter().flat_map(|u| [u[0], u[1], u[2]]);
+        a.array(
+            &format!("displacement {}", title(case)),
+            "Float32",
+            3,
+            floats(u),
+        );
+    }
+    begin_cell_data(&mut a, &cells);
+    for case in cases {
+        let mut by_shell = vec![[[f64::NAN; 3]; 2]; cells.len()];
+        for (ix, strain) in case.shells.elements.iter().zip(&case.shells.centre) {
+            if let Some(slot) = by_shell.get_mut(ix.us()) {
+                *slot = *strain;
+            }
+        }
+        for (surface, name) in ["bottom", "top"].iter().enumerate() {
+            let strain = by_shell.iter().flat_map(|s| s[surface]);
+            a.array(
+                &format!("strain {name} {}", title(case)),
+                "Float32",
+                3,
+                floats(strain),
+            );
+            let largest = by_shell.iter().map(|s| largest_principal(s[surface]));
+            a.array(
+                &format!("largest strain {name} {}", title(case)),
+                "Float32",
+                1,
+                floats(largest),
+            );
+        }
+    }
+    finish(a, out)
+}
+
+/// Writes the mesh with numbers by shell (indexed as in the model) and by bar or beam; rods have none. Values are 32-bit reals.
+///
+/// # Errors
+/// What `out` gives.
+pub fn write_cells_vtu(
+    model: &Model,
+    arrays: &[(String, Vec<f64>, Vec<f64>)],
+    out: &mut dyn Write,
+) -> Result<()> {
+    let (mut a, cells) = mesh(model);
+    begin_cell_data(&mut a, &cells);
+    for (name, shells, beams) in arrays {
+        let of = |list: &[f64], i: usize| list.get(i).copied().unwrap_or(f64::NAN);
+        let values = (0..cells.len()).map(|i| match i.checked_sub(model.shells.len()) {
+            None => of(shells, i),
+            Some(b) if b < model.beams.len() => of(beams, b),
+            Some(_) => f64::NAN,
+        });
+        a.array(name, "Float32", 1, floats(values));
+    }
+    finish(a, out)
+}
+
+/// Cells of the mesh: VTK type, element id, grids.
+type Cells = Vec<(u8, u32, Vec<GridIx>)>;
+
+/// The document up to the grid numbers among the point data.
+fn mesh(model: &Model) -> (Appended, Cells) {
+    let mut cells: Cells = Vec::new();
     for s in &model.shells {
         let n = s.shape.n_corners();
         cells.push((
@@ -107,18 +176,11 @@ pub fn write_vtu(model: &Model, cases: &[CaseResult], out: &mut dyn Write) -> Re
             .flat_map(|g| (g.id as i32).to_le_bytes())
             .collect(),
     );
-    for case in cases
-        .iter()
-        .filter(|c| c.displacement.len() == model.grids.len())
-    {
-        let u = case.displacement.iter().flat_map(|u| [u[0], u[1], u[2]]);
-        a.array(
-            &format!("displacement {}", title(case)),
-            "Float32",
-            3,
-            floats(u),
-        );
-    }
+    (a, cells)
+}
+
+/// Ends the point data, begins the cell data with the element numbers.
+fn begin_cell_data(a: &mut Appended, cells: &Cells) {
     a.xml += "</PointData>\n<CellData>\n";
     a.array(
         "element",
@@ -129,30 +191,9 @@ pub fn write_vtu(model: &Model, cases: &[CaseResult], out: &mut dyn Write) -> Re
             .flat_map(|c| (c.1 as i32).to_le_bytes())
             .collect(),
     );
-    for case in cases {
-        let mut by_shell = vec![[[f64::NAN; 3]; 2]; cells.len()];
-        for (ix, strain) in case.shells.elements.iter().zip(&case.shells.centre) {
-            if let Some(slot) = by_shell.get_mut(ix.us()) {
-                *slot = *strain;
-            }
-        }
-        for (surface, name) in ["bottom", "top"].iter().enumerate() {
-            let strain = by_shell.iter().flat_map(|s| s[surface]);
-            a.array(
-                &format!("strain {name} {}", title(case)),
-                "Float32",
-                3,
-                floats(strain),
-            );
-            let largest = by_shell.iter().map(|s| largest_principal(s[surface]));
-            a.array(
-                &format!("largest strain {name} {}", title(case)),
-                "Float32",
-                1,
-                floats(largest),
-            );
-        }
-    }
+}
+
+fn finish(mut a: Appended, out: &mut dyn Write) -> Result<()> {
     a.xml += "</CellData>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
     out.write_all(a.xml.as_bytes())?;
     for block in &a.blocks {

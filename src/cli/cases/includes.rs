@@ -17,11 +17,12 @@ struct Statement {
     name: String,
 }
 
-/// Files to write into `folder`: name and bytes, the deck first. `edited` are the deck's files in its order.
-pub(super) fn relocated(
+/// Files to write into `folder`: name and bytes, the deck first and as `<stem>.bdf`. `edited` are the deck's files in its order.
+pub(in crate::cli) fn relocated(
     deck: &Deck,
     edited: Vec<(String, Vec<u8>)>,
     folder: &Path,
+    stem: &str,
 ) -> Vec<(String, Vec<u8>)> {
     let first = edited.first().map(|f| f.0.clone()).unwrap_or_default();
     let statements: Vec<Vec<Statement>> = edited.iter().map(|f| includes(&f.1)).collect();
@@ -31,13 +32,13 @@ pub(super) fn relocated(
         .collect();
     let name_of = |i: usize| -> String {
         if i == 0 {
-            return "unit_loads.bdf".into();
+            return format!("{stem}.bdf");
         }
         let file = Path::new(&edited[i].0)
             .file_name()
             .map(|n| n.to_string_lossy().into_owned())
             .unwrap_or_default();
-        format!("unit_loads_{i}_{file}")
+        format!("{stem}_{i}_{file}")
     };
     let mut out = Vec::new();
     for i in (0..edited.len()).filter(|i| copied[*i]) {

@@ -2,7 +2,7 @@
 
 mod includes;
 
-pub(in crate::cli) use includes::from_folder;
+pub(in crate::cli) use includes::{from_folder, relocated};
 
 use super::deck::read_model;
 use super::fault::{Fault, Faults};
@@ -99,7 +99,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     session.put("subcases", rows)?;
     let edited = write_edited(&read.deck, &edits);
     let folder = session.output_for(&arguments.job)?.folder().to_owned();
-    let files = includes::relocated(&read.deck, edited, &folder);
+    let files = includes::relocated(&read.deck, edited, &folder, "unit_loads");
     session.say(format!("unit_loads.bdf: {} subcases", job.loads.len()));
     let out = session.output_for(&arguments.job)?;
     for (name, bytes) in files {

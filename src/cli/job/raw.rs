@@ -148,6 +148,7 @@ pub(super) struct RawRunNoise {
 pub(super) struct RawBallast {
     pub masses: S<u32>,
     pub region: S<Vec<[f64; 2]>>,
+    pub properties: S<Ids>,
     pub max_mass: S<f64>,
     pub run: S<String>,
     pub gravity: S<f64>,
@@ -160,6 +161,7 @@ pub(super) struct RawPayload {
     pub position: S<String>,
     pub gravity: S<f64>,
     pub weight_in_model: S<bool>,
+    pub unloaded: S<String>,
     pub region: S<Vec<[f64; 2]>>,
     #[serde(rename = "use")]
     pub sources: S<Vec<Spanned<String>>>,

@@ -439,6 +439,8 @@ pub struct Ballast {
     pub masses: usize,
     /// Where they may sit.
     pub region: Option<Region>,
+    /// Properties whose grids may carry them; `None`: all shells (bars where there are none).
+    pub properties: Option<Ids>,
     /// The largest one.
     pub max_mass: Option<f64>,
     /// Run whose reactions count; default the first.
@@ -474,6 +476,8 @@ pub struct Payload {
     pub use_strain: bool,
     /// Use reactions.
     pub use_reactions: bool,
+    /// Run without payload: its wheel forces (and its strain, without a zero file) are subtracted.
+    pub unloaded: Option<String>,
     /// Nominal position, job units.
     pub nominal_x: Option<f64>,
     /// Likewise across.

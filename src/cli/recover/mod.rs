@@ -13,7 +13,7 @@ use super::strain::{Prepared, prepare, put_conditioning};
 use super::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::gauge::reading;
-use crate::recovery::ErrorModel;
+use crate::recovery::{ErrorModel, Readings, Recovery};
 
 /// Strain in one microstrain.
 const MICRO: f64 = 1e-6;
@@ -44,24 +44,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     };
     let prepared = prepare(session, &job)?;
     put_conditioning(session, &prepared.sensitivity)?;
-    let (mut zero, n_zero) = runs::zero_of(session, &job, measured, &prepared.sensitivity.gauges)?;
-    for (z, r) in zero
-        .iter_mut()
-        .zip(reference_strain(&job, measured, &prepared)?)
-    {
-        *z -= r;
-    }
-    let task = Task {
-        job: &job,
-        measured,
-        prepared: &prepared,
-        errors: ErrorModel {
-            noise: measured.noise_microstrain * MICRO,
-            model_rel: measured.model_uncertainty_rel,
-        },
-        zero,
-        noise_factor: 1.0 + n_zero.map_or(0.0, |n| 1.0 / n),
-    };
+    let task = task_of(session, &job, measured, &prepared)?;
     if measured.reference == Reference::None {
         session.findings.push(Finding::new(
             Severity::Info,
@@ -80,6 +63,47 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     } else {
         runs::run(session, arguments, &task)
     }
+}
+
+/// What runs and records share: zero, reference, stated errors.
+fn task_of<'a>(
+    session: &mut Session,
+    job: &'a Job,
+    measured: &'a Measured,
+    prepared: &'a Prepared,
+) -> Result<Task<'a>, Faults> {
+    let (mut zero, n_zero) = runs::zero_of(session, job, measured, &prepared.sensitivity.gauges)?;
+    for (z, r) in zero
+        .iter_mut()
+        .zip(reference_strain(job, measured, prepared)?)
+    {
+        *z -= r;
+    }
+    Ok(Task {
+        job,
+        measured,
+        prepared,
+        errors: ErrorModel {
+            noise: measured.noise_microstrain * MICRO,
+            model_rel: measured.model_uncertainty_rel,
+        },
+        zero,
+        noise_factor: 1.0 + n_zero.map_or(0.0, |n| 1.0 / n),
+    })
+}
+
+/// Readings and recovered loads of the job's static runs, for commands that go on from there.
+///
+/// # Errors
+/// Unreadable tables; a record, which `recover` streams.
+pub(super) fn recovered_runs(
+    session: &mut Session,
+    job: &Job,
+    measured: &Measured,
+    prepared: &Prepared,
+) -> Result<(Vec<Readings>, Recovery), Faults> {
+    let task = task_of(session, job, measured, prepared)?;
+    runs::solve(session, &task)
 }
 
 /// Strain of the reference state by gauge: it is added to the readings, so that loads are totals.

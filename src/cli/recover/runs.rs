@@ -7,6 +7,7 @@ use crate::cli::job::{Job, LoadActs, Measured, NamedFile};
 use crate::cli::strain::{LoadUnits, load_units};
 use crate::cli::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
+use crate::recovery::net::effective_samples;
 use crate::recovery::{Readings, Recovery, recover};
 use crate::report::strain::{RecoveredRun, recover_page};
 use serde_json::{Value, json};
@@ -88,25 +89,11 @@ pub(super) fn zero_of(
     Ok((zero, effective.is_finite().then_some(effective)))
 }
 
-/// Samples of white noise whose mean scatters as much as this record's: `n (1 - r) / (1 + r)`, r the correlation of neighbours.
-fn effective_samples(v: &[f64]) -> f64 {
-    let n = v.len() as f64;
-    let mean = v.iter().sum::<f64>() / n;
-    let var: f64 = v.iter().map(|x| (x - mean).powi(2)).sum();
-    let lag: f64 = v.windows(2).map(|w| (w[0] - mean) * (w[1] - mean)).sum();
-    let r = if var > 0.0 {
-        (lag / var).clamp(0.0, 0.999)
-    } else {
-        0.0
-    };
-    (n * (1.0 - r) / (1.0 + r)).max(1.0)
-}
-
-pub(super) fn run(
+/// Reads the strain of the runs and recovers their loads.
+pub(super) fn solve(
     session: &mut Session,
-    arguments: &JobArguments,
     task: &Task,
-) -> Result<(), Faults> {
+) -> Result<(Vec<Readings>, Recovery), Faults> {
     let s = &task.prepared.sensitivity;
     let named = &task.measured.strain;
     let table = session.stage("read strain", |x| {
@@ -133,6 +120,16 @@ pub(super) fn run(
     let readings = readings_of(&table, names, &columns, task);
     let recovery = session.stage("recover", |_| recover(s, &readings, task.errors));
     session.findings.extend(recovery.findings.iter().cloned());
+    Ok((readings, recovery))
+}
+
+pub(super) fn run(
+    session: &mut Session,
+    arguments: &JobArguments,
+    task: &Task,
+) -> Result<(), Faults> {
+    let s = &task.prepared.sensitivity;
+    let (readings, recovery) = solve(session, task)?;
     let units = load_units(
         task.job,
         &s.loads.iter().map(|l| l.name.clone()).collect::<Vec<_>>(),

@@ -50,7 +50,11 @@ pub fn side(s: job::Surface) -> Surface {
     }
 }
 
-fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
+/// A gauge of the job with its ids resolved on the model.
+///
+/// # Errors
+/// Ids that the deck lacks.
+pub fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
     let fault = |field: &str, wrong: String, remedy: &str| {
         Fault::at(&*g.file, g.line, field, wrong, remedy)
     };

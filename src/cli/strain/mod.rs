@@ -6,7 +6,7 @@ mod given;
 mod units;
 
 pub use fields::{Fields, read_fields, unit_loads};
-pub use gauges::{lay_gauges, side};
+pub use gauges::{lay_gauges, side, spec_of};
 pub use given::read_given;
 pub use units::{LoadUnits, load_units};
 

@@ -7,6 +7,7 @@ mod svg;
 mod tables;
 
 pub use fields::strains_page;
-pub use page::{Section, page, table};
+pub use page::{Section, drawing_section, number, page, table, table_section};
 pub use pages::{RecoveredRun, place_page, recover_page, sensitivity_page};
+pub use svg::{interval_bars, measured_against_predicted, model_with_gauges};
 pub use tables::{PlacedGauge, gauges_csv, gluing_sheet_csv, gluing_sheet_md, sensitivity_csv};

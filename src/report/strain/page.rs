@@ -11,6 +11,25 @@ pub struct Section {
     pub body: Markup,
 }
 
+/// A part that is a table with a note under it.
+pub fn table_section(title: &str, header: &[&str], rows: &[Vec<String>], note: &str) -> Section {
+    Section {
+        title: title.to_owned(),
+        body: html! {
+            (table(header, rows))
+            @if !note.is_empty() { p.muted { (note) } }
+        },
+    }
+}
+
+/// A part that is a drawing with a note under it.
+pub fn drawing_section(title: &str, svg: String, note: &str) -> Section {
+    Section {
+        title: title.to_owned(),
+        body: html! { (PreEscaped(svg)) @if !note.is_empty() { p.muted { (note) } } },
+    }
+}
+
 const STYLE: &str = "body{font:15px/1.45 system-ui,sans-serif;color:#1c2530;max-width:1100px;margin:2em auto;padding:0 1.2em}\
 h1{font-size:1.6em;margin:0 0 .2em}h2{font-size:1.15em;margin:1.8em 0 .5em;border-bottom:1px solid #d6dce3;padding-bottom:.2em}\
 table{border-collapse:collapse;font-size:.92em}td,th{padding:.22em .7em;text-align:right;border-bottom:1px solid #e6eaef}\

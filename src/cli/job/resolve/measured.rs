@@ -123,6 +123,7 @@ pub(super) fn ballast(c: &mut Collector, raw: Option<&Spanned<RawBallast>>) -> O
     Some(Ballast {
         masses: c.count(&raw.masses, "ballast.masses").unwrap_or(1),
         region: region(c, &raw.region, "ballast.region"),
+        properties: raw.properties.as_ref().map(|p| p.get_ref().clone()),
         max_mass: c.positive(&raw.max_mass, "ballast.max_mass"),
         run: raw.run.as_ref().map(|r| r.get_ref().clone()),
         gravity_m_s2: c.positive(&raw.gravity, "ballast.gravity"),
@@ -174,6 +175,7 @@ pub(super) fn payload(c: &mut Collector, raw: Option<&Spanned<RawPayload>>) -> O
         region: region(c, &raw.region, "payload.region"),
         use_strain,
         use_reactions,
+        unloaded: raw.unloaded.as_ref().map(|r| r.get_ref().clone()),
         nominal_x: c.number(&raw.nominal_x, "payload.nominal_x", "a number", |_| true),
         nominal_y: c.number(&raw.nominal_y, "payload.nominal_y", "a number", |_| true),
         line: c.line(section),

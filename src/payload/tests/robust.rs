@@ -1,6 +1,6 @@
 //! Thesis tables C.1 and C.2, and seeded cases with a third of the gauges bad.
 
-use super::*;
+use crate::payload::*;
 use rand::RngExt;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

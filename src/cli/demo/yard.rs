@@ -1,0 +1,282 @@
+//! The truck in the yard: what its gauges and wheel transducers would have read.
+
+use super::DECK;
+use super::jobs::{NOISE, PAYLOAD, WHEELS, ZONES};
+use crate::cli::fault::{Fault, Faults};
+use crate::fe::floor::{FloorLoad, Standing, solve_standing};
+use crate::fe::strain_tensor::Surface;
+use crate::fe::{CaseResult, UnitLoad};
+use crate::gauge::{CornerRows, Gauge, GaugeSpec, build, reading};
+use crate::model::{GridIx, Model, Vec3};
+use nastran::bdf::{Edits, Field, MemoryLoader, format_card, read_deck, write_edited};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use serde_json::Value;
+use std::f64::consts::TAU;
+use std::fmt::Write;
+
+/// A gauge as the gluing sheet says it.
+pub(super) struct Glued {
+    name: String,
+    element: u32,
+    surface: Surface,
+    direction: Vec3,
+}
+
+impl Glued {
+    /// The gauges of a placement's result.
+    pub(super) fn of(result: &Value) -> Vec<Self> {
+        let number = |v: &Value| v.as_f64().unwrap_or(f64::NAN);
+        result["gauges"]
+            .as_array()
+            .into_iter()
+            .flatten()
+            .map(|g| Glued {
+                name: g["name"].as_str().unwrap_or_default().to_owned(),
+                element: g["element"].as_u64().unwrap_or(0) as u32,
+                surface: if g["surface"] == "bottom" { Surface::Bottom } else { Surface::Top },
+                direction: Vec3::new(
+                    number(&g["direction"][0]),
+                    number(&g["direction"][1]),
+                    number(&g["direction"][2]),
+                ),
+            })
+            .collect()
+    }
+}
+
+/// What was measured, and the truth that nobody in the yard knows.
+pub(super) struct Yard {
+    pub strain_csv: String,
+    pub runs_csv: String,
+    /// The effect that was hidden.
+    pub hidden: String,
+    /// By run: wheel loads, kN, and payload, kN.
+    truth: Vec<(String, Vec<f64>, f64)>,
+}
+
+impl Yard {
+    /// Root mean square error of the recovered wheel loads over that of the loads.
+    pub(super) fn error_of(&self, result: &Value) -> f64 {
+        let (mut off, mut size) = (0.0, 0.0);
+        for load in result["loads"].as_array().into_iter().flatten() {
+            let wheel = WHEELS
+                .iter()
+                .position(|(w, _)| load["name"] == format!("{w}.FZ"));
+            let run = self.truth.iter().find(|t| load["run"] == t.0);
+            if let (Some(w), Some(run), Some(v)) = (wheel, run, load["value"].as_f64()) {
+                off += (v - run.1[w]).powi(2);
+                size += run.1[w].powi(2);
+            }
+        }
+        (off / size).sqrt()
+    }
+
+    /// The same for the payload.
+    pub(super) fn payload_error_of(&self, result: &Value) -> f64 {
+        let (mut off, mut n) = (0.0, 0.0);
+        for p in result["payload"].as_array().into_iter().flatten() {
+            let run = self.truth.iter().find(|t| p["run"] == t.0);
+            if let (Some(run), Some(v)) = (run, p["force"].as_f64()) {
+                off += (v / run.2 - 1.0).powi(2);
+                n += 1.0;
+            }
+        }
+        f64::sqrt(off / n)
+    }
+}
+
+/// Payload by run: mass in kg, shift from the nominal place in mm.
+const RUNS: [(f64, f64, f64); 12] = [
+    (3700.0, -300.0, 40.0),
+    (5500.0, 250.0, -90.0),
+    (1500.0, 400.0, 60.0),
+    (6800.0, -150.0, 20.0),
+    (2400.0, -500.0, -50.0),
+    (8000.0, 100.0, 80.0),
+    (4600.0, 550.0, -30.0),
+    (6100.0, -420.0, 110.0),
+    (3100.0, 180.0, -120.0),
+    (5000.0, -60.0, 70.0),
+    (7200.0, 320.0, -60.0),
+    (2900.0, -250.0, 90.0),
+];
+/// Unevenness of the ground under a wheel, mm, 1 sd.
+const GROUND: f64 = 4.0;
+/// Scatter of rail thickness between zones and of gauge factors, 1 sd.
+const SCATTER: (f64, f64) = (0.015, 0.005);
+/// The gauge whose wires are swapped.
+const FLIPPED: usize = 4;
+const SEED: u64 = 11;
+const GRAVITY: f64 = 9.806_65;
+const KILO: f64 = 1e3;
+const MICRO: f64 = 1e-6;
+
+/// Drives twelve runs.
+///
+/// # Errors
+/// Mistakes of the program only: the deck is its own.
+pub(super) fn drive(glued: &[Glued]) -> Result<Yard, Faults> {
+    let program = |wrong: String| {
+        vec![Fault::of(
+            "truck.bdf",
+            "demo",
+            wrong,
+            "report this as an error of the program",
+        )]
+    };
+    let mut random = ChaCha8Rng::seed_from_u64(SEED);
+    let mut normal = move || {
+        let (u, v): (f64, f64) = (
+            random.random_range(1e-300..1.0),
+            random.random_range(0.0..1.0),
+        );
+        (-2.0 * u.ln()).sqrt() * (TAU * v).cos()
+    };
+    let factors: Vec<f64> = ZONES.iter().map(|_| 1.0 + SCATTER.0 * normal()).collect();
+    let model = built(&factors).ok_or_else(|| program("the deck can't be edited".into()))?;
+    let missing = || program("a grid of the story is gone".into());
+    let wheels: Vec<GridIx> = WHEELS
+        .iter()
+        .map(|w| model.grid_ix(w.1))
+        .collect::<Option<_>>()
+        .ok_or_else(missing)?;
+    let payload = model.grid_ix(PAYLOAD).ok_or_else(missing)?;
+    let (none, up) = (Vec3::zeros(), Vec3::new(0.0, 0.0, 1.0));
+    let turns = [
+        (up, none),
+        (none, Vec3::new(1.0, 0.0, 0.0)),
+        (none, Vec3::new(0.0, 1.0, 0.0)),
+    ];
+    let loads: Vec<UnitLoad> = turns
+        .iter()
+        .map(|(force, moment)| UnitLoad::AtGrid {
+            grid: payload,
+            force: *force,
+            moment: *moment,
+        })
+        .collect();
+    let standing = solve_standing(&model, 2, &wheels, &loads, None)
+        .map_err(|e| program(e.to_string()))?;
+    let gauges: Vec<Gauge> = glued
+        .iter()
+        .map(|g| {
+            let spec = GaugeSpec {
+                surface: Some(g.surface),
+                direction: Some(g.direction),
+                ..GaugeSpec::on(g.name.clone(), model.shell_ix(g.element)?)
+            };
+            build(&model, &spec, CornerRows::Absent).ok()?.0.into_iter().next()
+        })
+        .collect::<Option<_>>()
+        .ok_or_else(|| program("a gauge can't be laid".into()))?;
+    let gains: Vec<f64> = gauges
+        .iter()
+        .enumerate()
+        .map(|(g, _)| (1.0 + SCATTER.1 * normal()) * if g == FLIPPED { -1.0 } else { 1.0 })
+        .collect();
+    let at = model.grids.get(payload.us()).map_or(none, |g| g.x);
+    let mut yard = Yard {
+        strain_csv: "run".into(),
+        runs_csv: "run,payload_mass,payload_x,payload_y".into(),
+        hidden: format!(
+            "sign_flip:{}",
+            glued.get(FLIPPED).map_or("", |g| g.name.as_str())
+        ),
+        truth: Vec::new(),
+    };
+    glued.iter().for_each(|g| {
+        let _ = write!(yard.strain_csv, ",{}", g.name);
+    });
+    WHEELS.iter().for_each(|w| {
+        let _ = write!(yard.runs_csv, ",{}.FZ", w.0);
+    });
+    for (i, (kilogram, dx, dy)) in RUNS.into_iter().enumerate() {
+        let run = format!("R{:02}", i + 1);
+        let weight = kilogram * GRAVITY;
+        let amounts = [-weight, -weight * dy, weight * dx];
+        let heights: Vec<f64> = WHEELS.iter().map(|_| GROUND * normal()).collect();
+        let reactions = reactions(&standing, &turns, at, &amounts, &heights);
+        let _ = write!(yard.strain_csv, "\n{run}");
+        for (gauge, gain) in gauges.iter().zip(&gains) {
+            let strain = superposed(gauge, &standing.contacts, &reactions)
+                + superposed(gauge, &standing.others, &amounts);
+            let read = gain * strain / MICRO + NOISE.0 * normal();
+            let _ = write!(yard.strain_csv, ",{read:.2}");
+        }
+        let _ = write!(
+            yard.runs_csv,
+            "\n{run},{kilogram:.1},{:.3},{:.3}",
+            (at.x + dx) / KILO,
+            (at.y + dy) / KILO
+        );
+        for r in &reactions {
+            let _ = write!(yard.runs_csv, ",{:.3}", r / KILO + NOISE.1 * normal());
+        }
+        let truth = reactions.iter().map(|r| r / KILO).collect();
+        yard.truth.push((run, truth, weight / KILO));
+    }
+    yard.strain_csv.push('\n');
+    yard.runs_csv.push('\n');
+    Ok(yard)
+}
+
+/// The truck with the thickness of each rail zone times its factor.
+fn built(factors: &[f64]) -> Option<Model> {
+    let read = |bytes: Vec<u8>| read_deck("truck.bdf", bytes, &mut MemoryLoader::default());
+    let deck = read(DECK.as_bytes().to_vec());
+    let mut edits = Edits::default();
+    for p in &deck.cards.pshells {
+        let zone = ZONES.iter().position(|z| z.1 == p.card.id);
+        let Some(factor) = zone.and_then(|z| factors.get(z)) else {
+            continue;
+        };
+        let fields = [
+            Field::from(p.card.id),
+            p.card.mid1.into(),
+            p.card.t.map(|t| t * factor).into(),
+            p.card.mid2.into(),
+            p.card.bending_ratio.into(),
+            p.card.mid3.into(),
+        ];
+        edits
+            .replace_card(&deck, p.at, &format_card("PSHELL", &fields))
+            .ok()?;
+    }
+    let bytes = write_edited(&deck, &edits).into_iter().next()?.1;
+    Some(Model::from_deck(&read(bytes)).0)
+}
+
+/// Reactions to the payload on ground of these heights.
+fn reactions(
+    standing: &Standing,
+    turns: &[(Vec3, Vec3); 3],
+    at: Vec3,
+    amounts: &[f64; 3],
+    heights: &[f64],
+) -> Vec<f64> {
+    let n = heights.len();
+    let mut sum = standing.floor.reactions(&FloorLoad {
+        force: 0.0,
+        moment: [0.0; 2],
+        lift: heights.iter().map(|h| -h).collect(),
+    });
+    for (((force, moment), case), amount) in turns.iter().zip(&standing.others).zip(amounts) {
+        let load = standing
+            .floor
+            .load(at, *force, *moment, standing.lift(case));
+        for (s, r) in sum.iter_mut().zip(standing.floor.reactions(&load)) {
+            *s += amount * r;
+        }
+    }
+    sum.truncate(n);
+    sum
+}
+
+fn superposed(gauge: &Gauge, cases: &[CaseResult], amounts: &[f64]) -> f64 {
+    cases
+        .iter()
+        .zip(amounts)
+        .map(|(c, a)| a * reading(gauge, c).unwrap_or(0.0))
+        .sum()
+}

@@ -1,0 +1,183 @@
+//! Reactions from the flexibility of the free structure.
+
+use crate::linalg::{Matrix, Vector, dense};
+use crate::model::{GridIx, Model, Vec3};
+
+/// How a structure stands: contacts, and the displacement of each under a unit force up at each.
+///
+/// With `C` (`n x n`) the displacement along `axis` of contact j under a unit force at contact i of the free structure (balanced by its
+/// inertia), `k` the rate of what stands between a contact and the floor, and a rigid motion `t + theta x r`, the reactions `R` obey
+///
+/// `sum_i C_ji R_i + R_j / k + t + theta_b r_c - theta_c r_b = -lift_j` at every contact,
+/// `sum R = -F`, `sum r_c R = -M_b`, `-sum r_b R = -M_c`,
+///
+/// `lift_j` the displacement that all other loads give the contact on the free structure, `F`, `M` their resultant, `(axis, b, c)` a
+/// right-handed turn of the basic axes. Exact for any rigid motion in the free solutions. The floor can pull here: a negative reaction
+/// means that the wheel lifts off and that the linear answer ends there.
+#[derive(Clone, Debug)]
+pub struct Floor {
+    axis: usize,
+    contacts: Vec<GridIx>,
+    /// Locations, basic frame.
+    x: Vec<Vec3>,
+    centre: Vec3,
+    /// Inverse of the system: reactions and rigid motion from right-hand sides.
+    inverse: Matrix,
+    /// Scale of the equilibrium rows and of the rigid motion's columns: displacement, length.
+    scale: (f64, f64),
+}
+
+/// Loads other than the reactions: their resultant about the centre of the contacts and the lift of the contacts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FloorLoad {
+    /// Force along the axis.
+    pub force: f64,
+    /// Moments about the two other axes, at the centre of the contacts.
+    pub moment: [f64; 2],
+    /// Displacement of each contact along the axis on the free structure.
+    pub lift: Vec<f64>,
+}
+
+/// Why there are no reactions.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FloorError {
+    /// Contacts on a line.
+    #[error(
+        "the {contacts} contacts lie on a line or at a point: they can't carry the weight without falling over; name the wheels on both sides"
+    )]
+    OnALine {
+        /// How many.
+        contacts: usize,
+    },
+    /// A case without displacements.
+    #[error("no displacement of the contacts: solve with the built-in solver, or ask for DISPLACEMENT = ALL")]
+    NoDisplacement,
+    /// The solver refused.
+    #[error(transparent)]
+    Solver(#[from] crate::fe::FeError),
+}
+
+/// Spread of the contacts across, as a share of their spread along, under which they count as a line.
+const LINE: f64 = 1e-6;
+
+impl Floor {
+    /// The floor under `contacts`, `lifts[i][j]` the displacement along `axis` (0 x, 1 y, 2 z; up) of contact j under a unit force at i.
+    ///
+    /// `rate` of what is between contact and floor (a tyre), force per length; `None`: rigid.
+    ///
+    /// # Errors
+    /// Contacts on a line.
+    pub fn new(
+        model: &Model,
+        axis: usize,
+        contacts: &[GridIx],
+        lifts: &[Vec<f64>],
+        rate: Option<f64>,
+    ) -> Result<Self, FloorError> {
+        let n = contacts.len();
+        let x: Vec<Vec3> = contacts
+            .iter()
+            .filter_map(|g| model.grids.get(g.us()).map(|g| g.x))
+            .collect();
+        let centre = x.iter().sum::<Vec3>() / n.max(1) as f64;
+        let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+        let spread = Matrix::from_fn(n.max(2), 2, |i, k| {
+            x.get(i)
+                .map_or(0.0, |x| (x - centre)[if k == 0 { b } else { c }])
+        });
+        let shape = dense::svd(&spread).ok_or(FloorError::NoDisplacement)?;
+        let (long, short) = (
+            shape.s.first().copied().unwrap_or(0.0),
+            shape.s.last().copied().unwrap_or(0.0),
+        );
+        if x.len() != n || n < 3 || !(short > LINE * long) {
+            return Err(FloorError::OnALine { contacts: n });
+        }
+        if lifts.len() != n || lifts.iter().flatten().any(|v| !v.is_finite()) {
+            return Err(FloorError::NoDisplacement);
+        }
+        let own = (0..n).filter_map(|i| lifts[i].get(i)).map(|v| v.abs());
+        let soft = own.fold(0.0, f64::max);
+        let scale = (
+            if soft > 0.0 { soft } else { 1.0 },
+            long / (n as f64).sqrt(),
+        );
+        let mut a = Matrix::zeros(n + 3, n + 3);
+        for j in 0..n {
+            for i in 0..n {
+                a[(j, i)] = lifts[i].get(j).copied().unwrap_or(0.0);
+            }
+            a[(j, j)] += rate.map_or(0.0, |k| 1.0 / k);
+            let r = x[j] - centre;
+            for (k, v) in [1.0, r[c] / scale.1, -r[b] / scale.1].into_iter().enumerate() {
+                a[(j, n + k)] = v * scale.0;
+                a[(n + k, j)] = v * scale.0;
+            }
+        }
+        let inverse = a
+            .try_inverse()
+            .ok_or(FloorError::OnALine { contacts: n })?;
+        Ok(Self {
+            axis,
+            contacts: contacts.to_vec(),
+            x,
+            centre,
+            inverse,
+            scale,
+        })
+    }
+
+    /// The contacts, in the order of [`Self::reactions`].
+    pub fn contacts(&self) -> &[GridIx] {
+        &self.contacts
+    }
+
+    /// Locations of the contacts, basic frame.
+    pub fn positions(&self) -> &[Vec3] {
+        &self.x
+    }
+
+    /// The axis that points up: 0 x, 1 y, 2 z.
+    pub fn axis(&self) -> usize {
+        self.axis
+    }
+
+    /// Reactions (up positive) under a load; linear in it.
+    pub fn reactions(&self, load: &FloorLoad) -> Vec<f64> {
+        let n = self.contacts.len();
+        let mut right = Vector::zeros(n + 3);
+        for j in 0..n {
+            right[j] = -load.lift.get(j).copied().unwrap_or(0.0);
+        }
+        right[n] = -load.force * self.scale.0;
+        right[n + 1] = -load.moment[0] * self.scale.0 / self.scale.1;
+        right[n + 2] = -load.moment[1] * self.scale.0 / self.scale.1;
+        let all = &self.inverse * right;
+        all.iter().take(n).copied().collect()
+    }
+
+    /// A force and a moment at a point as a load, `lift` the displacement of the contacts on the free structure.
+    pub fn load(&self, at: Vec3, force: Vec3, moment: Vec3, lift: Vec<f64>) -> FloorLoad {
+        let m = moment + (at - self.centre).cross(&force);
+        let (b, c) = ((self.axis + 1) % 3, (self.axis + 2) % 3);
+        FloorLoad {
+            force: force[self.axis],
+            moment: [m[b], m[c]],
+            lift,
+        }
+    }
+
+    /// The structure's own weight under gravity `g` (positive, model units) against the axis. On the free structure gravity moves every
+    /// grid alike, so it lifts nothing.
+    pub fn weight(&self, model: &Model, g: f64) -> FloorLoad {
+        let weight = model.weight();
+        let mut force = Vec3::zeros();
+        force[self.axis] = -weight.mass * g;
+        self.load(
+            weight.cg,
+            force,
+            Vec3::zeros(),
+            vec![0.0; self.contacts.len()],
+        )
+    }
+}

@@ -1,0 +1,155 @@
+//! What is known of a payload before it is weighed: how gauges and wheels answer to it, and what they read.
+
+use crate::linalg::Matrix;
+
+/// How gauges and wheels answer, by unit of weight (model units) and weight times shift from the nominal place.
+///
+/// A payload of weight `F` at a shift `(dx, dy)` in plan gives, with `p = (F, F dx, F dy)` and wheel forces `R` (changes, up):
+/// `strain = wheels R + payload p`, and on a flat floor `R = floor p`; equilibrium: `sum R = F`, `sum R arm = F (dx, dy)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PayloadModel {
+    /// Gauge names.
+    pub gauges: Vec<String>,
+    /// `n_gauges x n_wheels`, strain per unit force up.
+    pub wheels: Matrix,
+    /// `n_gauges x 3`, strain per unit of `p` with the wheels unloaded.
+    pub payload: Matrix,
+    /// `n_wheels x 3`, reactions on a flat floor per unit of `p`; `None` where no model tells.
+    pub floor: Option<Matrix>,
+    /// Wheels from the nominal place, in plan; `None` where unknown.
+    pub arms: Option<Vec<[f64; 2]>>,
+}
+
+/// What one run read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PayloadRun {
+    /// Name.
+    pub run: String,
+    /// Net strain by gauge; NaN where a gauge gave nothing, empty without strain.
+    pub strain: Vec<f64>,
+    /// Its standard deviation by gauge.
+    pub sigma: Vec<f64>,
+    /// Changes of the wheel forces, up; NaN where not measured, empty where none is.
+    pub reactions: Vec<f64>,
+    /// Shift of the payload where its place is known.
+    pub shift: [f64; 2],
+}
+
+/// Whether the place is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// [`PayloadRun::shift`].
+    Known,
+    /// To be found.
+    Free,
+}
+
+/// Settings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WeighSpec {
+    /// Place.
+    pub place: Place,
+    /// Model uncertainty: of each influence coefficient and of the whole, 1 sd, a fraction.
+    pub model_rel: f64,
+    /// Standard deviation of a measured wheel force.
+    pub reaction_sigma: f64,
+    /// Largest weight that is possible.
+    pub largest: f64,
+    /// Where the payload may be, as shifts; `None`: anywhere between the wheels.
+    pub region: Option<[[f64; 2]; 2]>,
+}
+
+/// Why an answer is refused.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Refusal {
+    /// The payload would have to pull the structure up.
+    Negative {
+        /// Weight found.
+        force: f64,
+    },
+    /// It lies outside the region by so many standard deviations.
+    OutsideRegion {
+        /// How far over sigma.
+        sigmas: f64,
+    },
+    /// Strain and wheel forces say different weights.
+    OutOfBalance {
+        /// From strain with the wheel forces as measured.
+        strain: f64,
+        /// Sum of the wheel forces.
+        wheels: f64,
+        /// Their difference over sigma.
+        sigmas: f64,
+    },
+    /// Nothing that was read tells the weight.
+    Undetermined,
+}
+
+/// The payload of one run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WeighedRun {
+    /// Name.
+    pub run: String,
+    /// Weight; as found even where it is refused.
+    pub force: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+    /// 95 %.
+    pub interval: [f64; 2],
+    /// Shift from the nominal place: known or found.
+    pub shift: [f64; 2],
+    /// Covariance of the shift by rows; zeros where known.
+    pub shift_covariance: [f64; 4],
+    /// Why the answer can't be used.
+    pub refused: Option<Refusal>,
+    /// What each gauge alone says; NaN where it can't.
+    pub estimates: Vec<f64>,
+    /// Standard deviation of that.
+    pub estimate_sigma: Vec<f64>,
+}
+
+impl WeighedRun {
+    /// Half axes (long, short) of the 95 % region of the place and the angle of the long one from the first plan axis, radians.
+    pub fn ellipse(&self) -> ([f64; 2], f64) {
+        /// 95 % point of chi-square with two degrees of freedom.
+        const CHI2_95: f64 = 5.991;
+        let [a, b, _, d] = self.shift_covariance;
+        let (mean, half) = ((a + d) / 2.0, ((a - d) / 2.0).hypot(b));
+        let axes = [mean + half, (mean - half).max(0.0)].map(|v| (CHI2_95 * v).sqrt());
+        (axes, 0.5 * (2.0 * b).atan2(a - d))
+    }
+}
+
+impl PayloadModel {
+    /// Strain by gauge per unit weight at a shift, on the floor (`true` answer of the standing structure) or by the payload alone.
+    pub fn unit_strain(&self, shift: [f64; 2], support: Support) -> Vec<f64> {
+        let p = [1.0, shift[0], shift[1]];
+        let direct = |g: usize| (0..3).map(|k| self.payload[(g, k)] * p[k]).sum::<f64>();
+        match (support, &self.floor) {
+            (Support::Floor, Some(floor)) => {
+                let r: Vec<f64> = (0..floor.nrows())
+                    .map(|w| (0..3).map(|k| floor[(w, k)] * p[k]).sum())
+                    .collect();
+                (0..self.gauges.len())
+                    .map(|g| {
+                        direct(g)
+                            + r.iter()
+                                .enumerate()
+                                .map(|(w, r)| self.wheels[(g, w)] * r)
+                                .sum::<f64>()
+                    })
+                    .collect()
+            }
+            _ => (0..self.gauges.len()).map(direct).collect(),
+        }
+    }
+}
+
+/// What carries the payload in a unit response.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Support {
+    /// The wheels on a flat floor.
+    Floor,
+    /// Nothing: wheel forces are accounted for apart.
+    Free,
+}

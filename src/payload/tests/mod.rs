@@ -1,0 +1,5 @@
+//! Tests of this layer.
+
+mod ballast;
+mod robust;
+mod weigh;

@@ -1,0 +1,196 @@
+//! Stress per unit load.
+
+use crate::fe::strain_tensor::Surface;
+use crate::finding::{Finding, Severity};
+use crate::model::{BeamIx, MaterialIx, MaterialKind, Model, ShellIx, ShellKind};
+use crate::sensitivity::LoadCaseOf;
+
+/// A place with stress.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    /// Centre of a shell's surface.
+    Shell {
+        /// Which.
+        shell: ShellIx,
+        /// Side.
+        surface: Surface,
+    },
+    /// Recovery point 0 to 3 (C D E F) of a bar or beam, at a share of its length.
+    Beam {
+        /// Which.
+        beam: BeamIx,
+        /// Point.
+        point: usize,
+        /// x/xb.
+        station: f64,
+    },
+}
+
+/// A row of the load-to-response matrix: `sxx, syy, sxy` in the element's output frame per unit of each load (a bar has `sxx` alone),
+/// model stress over job unit of load; and the strain `exx, eyy, gxy` behind it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResponseRow {
+    /// Where.
+    pub place: Place,
+    /// Element id.
+    pub element: u32,
+    /// By load.
+    pub stress: Vec<[f64; 3]>,
+    /// By load.
+    pub strain: Vec<[f64; 3]>,
+}
+
+impl ResponseRow {
+    /// The side of a shell, the recovery point of a bar.
+    pub fn surface_word(&self) -> String {
+        match self.place {
+            Place::Shell { surface, .. } => surface.word().to_owned(),
+            Place::Beam { point, station, .. } => {
+                format!("{} x={station}", ["C", "D", "E", "F"][point.min(3)])
+            }
+        }
+    }
+}
+
+/// Rows of every shell and bar that has strain in all cases and an isotropic material; others are counted in a finding.
+///
+/// Plane stress: `sxx = E/(1-nu^2) (exx + nu eyy)`, `sxy = G gxy`. A bar's stress is `E exx`: shear and torsion are not in it.
+pub fn response_rows(
+    model: &Model,
+    loads: &[LoadCaseOf],
+    among: impl Fn(u32) -> bool,
+) -> (Vec<ResponseRow>, Vec<Finding>) {
+    let mut rows = Vec::new();
+    let (mut anisotropic, mut absent) = (0_usize, 0_usize);
+    for (i, shell) in model.shells.iter().enumerate() {
+        if !among(shell.id) {
+            continue;
+        }
+        let ix = ShellIx(i as u32);
+        let places: Option<Vec<usize>> = loads
+            .iter()
+            .map(|l| l.case.shells.elements.binary_search(&ix).ok())
+            .collect();
+        let Some(places) = places else {
+            absent += 1;
+            continue;
+        };
+        let Some((e, g, nu)) = shell_material(model, ix).and_then(|m| isotropic(model, m)) else {
+            anisotropic += 1;
+            continue;
+        };
+        for surface in [Surface::Bottom, Surface::Top] {
+            let strain: Vec<[f64; 3]> = loads
+                .iter()
+                .zip(&places)
+                .map(|(l, row)| {
+                    let v = l.case.shells.centre.get(*row);
+                    v.map_or([f64::NAN; 3], |v| v[surface.ix()].map(|v| v / l.applied))
+                })
+                .collect();
+            let stress = strain
+                .iter()
+                .map(|[ex, ey, s]| {
+                    let plane = e / (1.0 - nu * nu);
+                    [plane * (ex + nu * ey), plane * (ey + nu * ex), g * s]
+                })
+                .collect();
+            rows.push(ResponseRow {
+                place: Place::Shell { shell: ix, surface },
+                element: shell.id,
+                stress,
+                strain,
+            });
+        }
+    }
+    for (i, beam) in model.beams.iter().enumerate() {
+        if !among(beam.id) {
+            continue;
+        }
+        let ix = BeamIx(i as u32);
+        let fields: Option<Vec<&Vec<(f64, [f64; 4])>>> = loads
+            .iter()
+            .map(|l| {
+                let row = l.case.beams.elements.binary_search(&ix).ok()?;
+                l.case.beams.stations.get(row)
+            })
+            .collect();
+        let Some(fields) = fields else {
+            absent += 1;
+            continue;
+        };
+        let property = model.beam_properties.get(beam.property.us());
+        let Some((e, _, _)) = property.and_then(|p| isotropic(model, p.material)) else {
+            anisotropic += 1;
+            continue;
+        };
+        let Some(first) = fields.first() else { continue };
+        for (s, (station, _)) in first.iter().enumerate() {
+            for point in 0..4 {
+                let strain: Vec<[f64; 3]> = loads
+                    .iter()
+                    .zip(&fields)
+                    .map(|(l, f)| [f.get(s).map_or(f64::NAN, |v| v.1[point] / l.applied), 0.0, 0.0])
+                    .collect();
+                rows.push(ResponseRow {
+                    place: Place::Beam {
+                        beam: ix,
+                        point,
+                        station: *station,
+                    },
+                    element: beam.id,
+                    stress: strain.iter().map(|v| [e * v[0], 0.0, 0.0]).collect(),
+                    strain,
+                });
+            }
+        }
+    }
+    rows.retain(|r| r.stress.iter().flatten().all(|v| v.is_finite()));
+    let mut findings = Vec::new();
+    if anisotropic > 0 {
+        findings.push(
+            Finding::new(
+                Severity::Warning,
+                "stress-not-formed",
+                "elements",
+                format!("{anisotropic} elements are not of one isotropic material: they have strain, and no von Mises stress here"),
+                "judge them by strain",
+            )
+            .with_numbers(anisotropic as f64, 0.0),
+        );
+    }
+    if absent > 0 {
+        findings.push(
+            Finding::new(
+                Severity::Info,
+                "elements-without-strain",
+                "elements",
+                format!("{absent} elements have no strain in some load's subcase and are left out"),
+                "ask for STRAIN(FIBER,CENTER) = ALL in every subcase",
+            )
+            .with_numbers(absent as f64, 0.0),
+        );
+    }
+    (rows, findings)
+}
+
+fn shell_material(model: &Model, ix: ShellIx) -> Option<MaterialIx> {
+    let shell = model.shells.get(ix.us())?;
+    match &model.shell_properties.get(shell.property.us())?.kind {
+        ShellKind::Homogeneous {
+            membrane, bending, ..
+        } => match (membrane, bending) {
+            (Some(m), Some(b)) if m != b => None,
+            (m, b) => m.or(*b),
+        },
+        _ => None,
+    }
+}
+
+/// E, G, nu.
+fn isotropic(model: &Model, material: MaterialIx) -> Option<(f64, f64, f64)> {
+    match model.materials.get(material.us())?.kind {
+        MaterialKind::Isotropic { e, g, nu, .. } => Some((e, g, nu)),
+        _ => None,
+    }
+}

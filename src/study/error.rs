@@ -1,0 +1,66 @@
+//! Kinds of error.
+
+/// What is wrong with each gauge, drawn anew in every trial.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ErrorKind {
+    /// Reading times 1 + e, e uniform in +-size.
+    RelativeUniform,
+    /// Reading times 1 + e, e normal, sd size.
+    RelativeNormal,
+    /// Reading plus e microstrain, uniform in +-size.
+    AbsoluteUniform,
+    /// Reading plus e microstrain, normal, sd size.
+    AbsoluteNormal,
+    /// Glued elsewhere on its surface: normal, sd size along both surface directions, job length.
+    Position,
+    /// Glued at another angle: normal, sd size degrees.
+    Angle,
+    /// Gauge or bridge factor: reading times 1 + e, e normal, sd size.
+    Factor,
+}
+
+impl ErrorKind {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::RelativeUniform,
+        Self::RelativeNormal,
+        Self::AbsoluteUniform,
+        Self::AbsoluteNormal,
+        Self::Position,
+        Self::Angle,
+        Self::Factor,
+    ];
+
+    /// As a job names it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::RelativeUniform => "relative-uniform",
+            Self::RelativeNormal => "relative-normal",
+            Self::AbsoluteUniform => "absolute-uniform",
+            Self::AbsoluteNormal => "absolute-normal",
+            Self::Position => "position",
+            Self::Angle => "angle",
+            Self::Factor => "factor",
+        }
+    }
+
+    /// From a job; `relative`, `absolute`, `uniform`, `normal` alone mean relative-uniform, absolute-normal and so on.
+    pub fn from_word(word: &str) -> Option<Self> {
+        match word {
+            "relative" | "uniform" => Some(Self::RelativeUniform),
+            "absolute" | "noise" => Some(Self::AbsoluteNormal),
+            "normal" => Some(Self::RelativeNormal),
+            "gain" | "gauge-factor" => Some(Self::Factor),
+            _ => Self::ALL.into_iter().find(|k| k.word() == word),
+        }
+    }
+}
+
+/// A kind and its size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StudyError {
+    /// Kind.
+    pub kind: ErrorKind,
+    /// Size: a fraction, microstrain, job length or degrees.
+    pub size: f64,
+}

@@ -1,0 +1,10 @@
+//! What errors of readings and gluing do to recovered loads: recovery repeated under stated errors.
+
+mod error;
+mod trials;
+
+pub use error::{ErrorKind, StudyError};
+pub use trials::{PoolGauge, StudyRow, StudySpec, study_layout};
+
+#[cfg(test)]
+mod tests;
