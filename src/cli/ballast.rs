@@ -44,7 +44,10 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         )]
     };
     let ballast = job.ballast.as_ref().ok_or_else(|| {
-        missing("ballast", "state what is looked for: [ballast] masses = 2, region = [[x0, x1], [y0, y1]]")
+        missing(
+            "ballast",
+            "state what is looked for: [ballast] masses = 2, region = [[x0, x1], [y0, y1]]",
+        )
     })?;
     let files = job
         .model
@@ -85,7 +88,10 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     };
     let (run, measured, sigma) = measured(session, &task)?;
     let carriers = Carriers::of(&read.model, task.wheels.axis, |p| {
-        ballast.properties.as_ref().is_none_or(|ids| ids.contains(p))
+        ballast
+            .properties
+            .as_ref()
+            .is_none_or(|ids| ids.contains(p))
     });
     let (region, height) = region(&task, &carriers)?;
     let before = task.standing.under_weight(&read.model, task.gravity);
@@ -146,8 +152,12 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     let edited = write_edited(&read.deck, &edits);
     let after = session.stage("solve completed deck", |s| after(s, &task, &edited))?;
     findings(session, &task, &run, &measured, &sigma, &after, &fit, &spec);
-    put(session, &task, &run, &measured, &sigma, &before, &after, &fit, &cards)?;
-    write(session, arguments, &task, &measured, &before, &after, &fit, height)?;
+    put(
+        session, &task, &run, &measured, &sigma, &before, &after, &fit, &cards,
+    )?;
+    write(
+        session, arguments, &task, &measured, &before, &after, &fit, height,
+    )?;
     let folder = session.output_for(&arguments.job)?.folder().to_owned();
     let files = super::cases::relocated(&read.deck, edited, &folder, DECK);
     let out = session.output_for(&arguments.job)?;
@@ -278,7 +288,12 @@ struct MassCards {
 }
 
 /// Cards of the masses: a grid, an RBE3 that ties it to the carriers, a CONM2.
-fn cards(task: &Task, carriers: &Carriers, fit: &BallastFit, height: f64) -> (Vec<MassCards>, String) {
+fn cards(
+    task: &Task,
+    carriers: &Carriers,
+    fit: &BallastFit,
+    height: f64,
+) -> (Vec<MassCards>, String) {
     let m = &task.read.model;
     let mut grid = m.grids.iter().map(|g| g.id).max().unwrap_or(0);
     let elements = [
@@ -305,7 +320,14 @@ fn cards(task: &Task, carriers: &Carriers, fit: &BallastFit, height: f64) -> (Ve
         text += &format!("$ Ballast {} of {}\n", k + 1, fit.masses.len());
         text += &format_card(
             "GRID",
-            &[own.grid.into(), 0_u32.into(), x.x.into(), x.y.into(), x.z.into(), 0_u32.into()],
+            &[
+                own.grid.into(),
+                0_u32.into(),
+                x.x.into(),
+                x.y.into(),
+                x.z.into(),
+                0_u32.into(),
+            ],
         );
         let mut fields: Vec<Field> = vec![
             own.rbe3.into(),
@@ -351,7 +373,12 @@ fn after(
         .first()
         .map(|f| f.1.clone())
         .ok_or_else(|| program("no file".into()))?;
-    let completed = model_of_deck(&mut session.inputs, &task.job.folder, &task.read.given, &bytes);
+    let completed = model_of_deck(
+        &mut session.inputs,
+        &task.job.folder,
+        &task.read.given,
+        &bytes,
+    );
     if let Some(f) = completed.faults.first() {
         return Err(program(f.to_string()));
     }
@@ -359,7 +386,11 @@ fn after(
         .wheels
         .grids
         .iter()
-        .map(|g| completed.model.grid_ix(task.read.model.grids.get(g.us())?.id))
+        .map(|g| {
+            completed
+                .model
+                .grid_ix(task.read.model.grids.get(g.us())?.id)
+        })
         .collect();
     let grids = grids.ok_or_else(|| program("a wheel is gone".into()))?;
     let standing = solve_standing(&completed.model, task.wheels.axis, &grids, &[], None)
@@ -574,7 +605,8 @@ fn write(
         .iter()
         .enumerate()
         .map(|(k, b)| {
-            let range = |r: [f64; 2], u: f64| format!("{} to {}", number(r[0] * u), number(r[1] * u));
+            let range =
+                |r: [f64; 2], u: f64| format!("{} to {}", number(r[0] * u), number(r[1] * u));
             vec![
                 (k + 1).to_string(),
                 number(b.weight / task.gravity * m),
@@ -635,13 +667,19 @@ fn write(
     })
     .map_err(|f| vec![f])?;
     out.write("masses.csv", |w| {
-        writeln!(w, "mass,mass.low,mass.high,along,along.low,along.high,across,across.low,across.high")?;
+        writeln!(
+            w,
+            "mass,mass.low,mass.high,along,along.low,along.high,across,across.low,across.high"
+        )?;
         for b in &fit.masses {
             let g = task.gravity;
             let line: Vec<String> = [b.weight, b.weight_range[0], b.weight_range[1]]
                 .map(|v| v / g * m)
                 .into_iter()
-                .chain((0..2).flat_map(|k| [b.at[k], b.at_range[k][0], b.at_range[k][1]].map(|v| v * l)))
+                .chain(
+                    (0..2)
+                        .flat_map(|k| [b.at[k], b.at_range[k][0], b.at_range[k][1]].map(|v| v * l)),
+                )
                 .map(|v| v.to_string())
                 .collect();
             writeln!(w, "{}", line.join(","))?;

@@ -53,7 +53,10 @@ pub fn wheels_of(job: &Job, model: &Model) -> Result<Wheels, Faults> {
                 && l.role == super::job::Role::Wanted
         })
     };
-    for (i, id, _) in wanted.into_iter().filter(|w| w.2 == axis && !has_moment(w.1)) {
+    for (i, id, _) in wanted
+        .into_iter()
+        .filter(|w| w.2 == axis && !has_moment(w.1))
+    {
         match model.grid_ix(id) {
             Some(g) => {
                 out.loads.push(i);

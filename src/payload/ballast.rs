@@ -86,7 +86,12 @@ pub fn size_ballast(
     let scale = |k: usize, v: f64| problem.physical(k, v);
     let mut masses: Vec<BallastMass> = (0..spec.masses)
         .map(|m| {
-            let pair = |k: usize| [scale(3 * m + k, ranges[3 * m + k][0]), scale(3 * m + k, ranges[3 * m + k][1])];
+            let pair = |k: usize| {
+                [
+                    scale(3 * m + k, ranges[3 * m + k][0]),
+                    scale(3 * m + k, ranges[3 * m + k][1]),
+                ]
+            };
             BallastMass {
                 weight: scale(3 * m, best[3 * m]),
                 weight_range: pair(0),
@@ -213,7 +218,10 @@ impl<'a> Problem<'a> {
     }
 
     fn objective(&self, p: &[f64]) -> f64 {
-        let tie = p.iter().zip(self.even()).map(|(p, e)| (TIE * (p - e)).powi(2));
+        let tie = p
+            .iter()
+            .zip(self.even())
+            .map(|(p, e)| (TIE * (p - e)).powi(2));
         self.chi2(p) + tie.sum::<f64>()
     }
 

@@ -77,7 +77,10 @@ pub fn locate(
     let unknown = if spec.place == Place::Free { 3 } else { 1 };
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let readable: Vec<usize> = (0..n)
-        .filter(|g| runs.iter().any(|r| r.strain.get(*g).is_some_and(|v| v.is_finite())))
+        .filter(|g| {
+            runs.iter()
+                .any(|r| r.strain.get(*g).is_some_and(|v| v.is_finite()))
+        })
         .collect();
     let mut starts: Vec<Vec<f64>> = vec![vec![1.0; n]];
     if runs.iter().any(|r| !r.reactions.is_empty()) {
@@ -86,9 +89,7 @@ pub fn locate(
     for _ in 0..STARTS {
         let mut w = vec![DOUBTED; n];
         for _ in 0..unknown + 2 {
-            if let Some(g) = readable
-                .get(random.random_range(0..readable.len().max(1)))
-            {
+            if let Some(g) = readable.get(random.random_range(0..readable.len().max(1))) {
                 w[*g] = 1.0;
             }
         }
@@ -145,7 +146,9 @@ fn climb(
             *old = solved.found;
         }
         let log_likelihood = wheels + terms.iter().map(|t| log_sum(t)).sum::<f64>();
-        let good_levels = (0..N_LEVELS).take_while(|k| level(*k) <= GOOD_FACTOR).count();
+        let good_levels = (0..N_LEVELS)
+            .take_while(|k| level(*k) <= GOOD_FACTOR)
+            .count();
         let mut good = Vec::with_capacity(terms.len());
         for (w, t) in weights.iter_mut().zip(&terms) {
             let total = log_sum(t);

@@ -11,9 +11,7 @@ mod weigh;
 
 pub use ballast::{BallastFit, BallastMass, BallastSpec, size_ballast};
 pub use carrier::{Carriers, spread};
-pub use evidence::{
-    PayloadModel, PayloadRun, Place, Refusal, Support, WeighSpec, WeighedRun,
-};
+pub use evidence::{PayloadModel, PayloadRun, Place, Refusal, Support, WeighSpec, WeighedRun};
 pub use robust::{
     GaugeEstimates, GaugeVerdict, RobustPayload, RobustSpec, RunPayload, robust_payload,
 };

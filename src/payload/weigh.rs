@@ -92,16 +92,18 @@ fn alone(
     spec: &WeighSpec,
 ) -> (Vec<f64>, Vec<f64>) {
     let measured = !run.reactions.is_empty();
-    let support = if measured { Support::Free } else { Support::Floor };
+    let support = if measured {
+        Support::Free
+    } else {
+        Support::Floor
+    };
     let unit = model.unit_strain(shift, support);
     let p = [1.0, shift[0], shift[1]];
     (0..model.gauges.len())
         .map(|g| {
             let y = run.strain.get(g).copied().unwrap_or(f64::NAN);
             let own = run.sigma.get(g).copied().unwrap_or(f64::NAN);
-            let wheel = |w: usize| {
-                model.wheels[(g, w)] * reactions.get(w).copied().unwrap_or(0.0)
-            };
+            let wheel = |w: usize| model.wheels[(g, w)] * reactions.get(w).copied().unwrap_or(0.0);
             let by_wheels: f64 = (0..model.wheels.ncols()).map(wheel).sum();
             let parts: f64 = (0..model.wheels.ncols())
                 .map(|w| wheel(w).powi(2))
@@ -176,8 +178,11 @@ fn by_strain(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
             .iter()
             .zip(singles)
             .map(|(r, (estimates, estimate_sigma))| {
-                let mut finite: Vec<f64> =
-                    estimates.iter().copied().filter(|v| v.is_finite()).collect();
+                let mut finite: Vec<f64> = estimates
+                    .iter()
+                    .copied()
+                    .filter(|v| v.is_finite())
+                    .collect();
                 finite.sort_by(f64::total_cmp);
                 let middle = finite.get(finite.len() / 2).copied();
                 WeighedRun {
@@ -268,11 +273,10 @@ fn weighed(
     if free {
         for i in 0..2 {
             for j in 0..2 {
-                shift_covariance[2 * i + j] = (c[3 * (i + 1) + j + 1]
-                    - shift[i] * c[j + 1]
-                    - shift[j] * c[i + 1]
-                    + shift[i] * shift[j] * c[0])
-                    / (force * force);
+                shift_covariance[2 * i + j] =
+                    (c[3 * (i + 1) + j + 1] - shift[i] * c[j + 1] - shift[j] * c[i + 1]
+                        + shift[i] * shift[j] * c[0])
+                        / (force * force);
             }
         }
     }

@@ -124,13 +124,21 @@ pub fn response_rows(
             anisotropic += 1;
             continue;
         };
-        let Some(first) = fields.first() else { continue };
+        let Some(first) = fields.first() else {
+            continue;
+        };
         for (s, (station, _)) in first.iter().enumerate() {
             for point in 0..4 {
                 let strain: Vec<[f64; 3]> = loads
                     .iter()
                     .zip(&fields)
-                    .map(|(l, f)| [f.get(s).map_or(f64::NAN, |v| v.1[point] / l.applied), 0.0, 0.0])
+                    .map(|(l, f)| {
+                        [
+                            f.get(s).map_or(f64::NAN, |v| v.1[point] / l.applied),
+                            0.0,
+                            0.0,
+                        ]
+                    })
                     .collect();
                 rows.push(ResponseRow {
                     place: Place::Beam {

@@ -13,7 +13,11 @@ use std::sync::Arc;
 fn model() -> Model {
     let text = "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nGRID,3,,1.,1.,0.\nGRID,4,,0.,1.,0.\nCQUAD4,7,1,1,2,3,4\n\
                 PSHELL,1,1,0.1,1\nMAT1,1,200000.,,0.3\nENDDATA\n";
-    let deck = read_deck("one.bdf", text.as_bytes().to_vec(), &mut MemoryLoader::default());
+    let deck = read_deck(
+        "one.bdf",
+        text.as_bytes().to_vec(),
+        &mut MemoryLoader::default(),
+    );
     Model::from_deck(&deck).0
 }
 
@@ -63,13 +67,19 @@ fn uniaxial_and_shear_strain_give_the_von_mises_stress_of_the_textbook() {
 #[test]
 fn states_superpose_and_the_envelope_names_the_worst() {
     let m = model();
-    let (a, b) = (case([4e-4, 1e-4, 2e-4], [0.0; 3]), case([-2e-4, 5e-4, -1e-4], [0.0; 3]));
+    let (a, b) = (
+        case([4e-4, 1e-4, 2e-4], [0.0; 3]),
+        case([-2e-4, 5e-4, -1e-4], [0.0; 3]),
+    );
     // Loads of size 2 and -4 in their subcases.
     let loads = [load("A", 2.0, &a), load("B", -4.0, &b)];
     let (rows, _) = response_rows(&m, &loads, |_| true);
     let sum = case([4e-4 + 2e-4, 1e-4 - 5e-4, 2e-4 + 1e-4], [0.0; 3]);
     let (direct, _) = response_rows(&m, &[load("both", 1.0, &sum)], |_| true);
-    let states = [state("r1", &[0.5, 0.5], &[0.0; 2]), state("r2", &[2.0, 4.0], &[0.0; 2])];
+    let states = [
+        state("r1", &[0.5, 0.5], &[0.0; 2]),
+        state("r2", &[2.0, 4.0], &[0.0; 2]),
+    ];
     let peak = envelope(&rows, &states)[0];
     let expected = envelope(&direct, &[state("one", &[1.0], &[0.0])])[0];
     assert_eq!(peak.at, 1);
@@ -82,7 +92,10 @@ fn states_superpose_and_the_envelope_names_the_worst() {
 #[test]
 fn the_interval_of_the_stress_is_what_sampling_the_loads_gives() {
     let m = model();
-    let (a, b) = (case([4e-4, 1e-4, 2e-4], [0.0; 3]), case([-2e-4, 5e-4, -1e-4], [0.0; 3]));
+    let (a, b) = (
+        case([4e-4, 1e-4, 2e-4], [0.0; 3]),
+        case([-2e-4, 5e-4, -1e-4], [0.0; 3]),
+    );
     let loads = [load("A", 1.0, &a), load("B", 1.0, &b)];
     let (rows, _) = response_rows(&m, &loads, |_| true);
     // Correlated: 0.04, 0.06 sd, correlation -0.8.
@@ -95,7 +108,10 @@ fn the_interval_of_the_stress_is_what_sampling_the_loads_gives() {
     let peak = envelope(&rows, &[s])[0];
     let mut random = ChaCha8Rng::seed_from_u64(2);
     let mut normal = || {
-        let (u, v): (f64, f64) = (random.random_range(1e-12..1.0), random.random_range(0.0..1.0));
+        let (u, v): (f64, f64) = (
+            random.random_range(1e-12..1.0),
+            random.random_range(0.0..1.0),
+        );
         (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
     };
     let n = 20_000;
@@ -108,5 +124,9 @@ fn the_interval_of_the_stress_is_what_sampling_the_loads_gives() {
         .collect();
     let mean = values.iter().sum::<f64>() / f64::from(n);
     let sd = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / f64::from(n)).sqrt();
-    assert!((sd / peak.sigma - 1.0).abs() < 0.03, "{sd} against {}", peak.sigma);
+    assert!(
+        (sd / peak.sigma - 1.0).abs() < 0.03,
+        "{sd} against {}",
+        peak.sigma
+    );
 }

@@ -10,7 +10,10 @@ fn pool() -> Vec<PoolGauge> {
             let a = f64::from(i) * 0.7;
             PoolGauge {
                 row: vec![1e-6 * (2.0 + a.cos()), 1e-6 * a.sin()],
-                turned: Some([vec![1e-6 * 0.3, 1e-6 * 0.8], vec![-0.3e-6 * (2.0 + a.cos()), 0.1e-6]]),
+                turned: Some([
+                    vec![1e-6 * 0.3, 1e-6 * 0.8],
+                    vec![-0.3e-6 * (2.0 + a.cos()), 0.1e-6],
+                ]),
                 slope: Some([vec![2e-9, 0.0], vec![0.0, -1e-9]]),
             }
         })
@@ -44,7 +47,12 @@ fn inverse() -> Matrix {
 
 #[test]
 fn normal_noise_scatters_the_loads_as_the_covariance_says_and_intervals_cover() {
-    let row = study_layout(&pool(), &all(), error(ErrorKind::AbsoluteNormal, 3.0), &spec(20_000));
+    let row = study_layout(
+        &pool(),
+        &all(),
+        error(ErrorKind::AbsoluteNormal, 3.0),
+        &spec(20_000),
+    );
     let a = inverse();
     for l in 0..2 {
         let expected = 3e-6 * a.row(l).norm();
@@ -57,7 +65,12 @@ fn normal_noise_scatters_the_loads_as_the_covariance_says_and_intervals_cover() 
 
 #[test]
 fn uniform_errors_scatter_as_a_third_of_their_square() {
-    let row = study_layout(&pool(), &all(), error(ErrorKind::RelativeUniform, 0.1), &spec(20_000));
+    let row = study_layout(
+        &pool(),
+        &all(),
+        error(ErrorKind::RelativeUniform, 0.1),
+        &spec(20_000),
+    );
     let (a, p) = (inverse(), pool());
     for l in 0..2 {
         let variance: f64 = (0..8)
@@ -66,7 +79,10 @@ fn uniform_errors_scatter_as_a_third_of_their_square() {
                 (a[(l, g)] * 0.1 * y).powi(2) / 3.0
             })
             .sum();
-        assert!((row.sigma[l] / variance.sqrt() - 1.0).abs() < 0.02, "{row:?}");
+        assert!(
+            (row.sigma[l] / variance.sqrt() - 1.0).abs() < 0.02,
+            "{row:?}"
+        );
     }
 }
 
@@ -86,14 +102,25 @@ fn a_wrong_angle_shortens_the_reading_and_leaves_a_bias() {
             variance += (a[(l, g)] * 2.0 * sd.to_radians() * (e45 - (e0 + e90) / 2.0)).powi(2);
         }
         let scatter = variance.sqrt();
-        assert!((row.sigma[l] / scatter - 1.0).abs() < 0.03, "{row:?} {scatter}");
-        assert!((row.bias[l] - bias).abs() < 4.0 * scatter / 200.0, "{row:?} {bias}");
+        assert!(
+            (row.sigma[l] / scatter - 1.0).abs() < 0.03,
+            "{row:?} {scatter}"
+        );
+        assert!(
+            (row.bias[l] - bias).abs() < 4.0 * scatter / 200.0,
+            "{row:?} {bias}"
+        );
     }
 }
 
 #[test]
 fn places_scatter_by_the_slope_of_the_strain() {
-    let row = study_layout(&pool(), &all(), error(ErrorKind::Position, 2.0), &spec(20_000));
+    let row = study_layout(
+        &pool(),
+        &all(),
+        error(ErrorKind::Position, 2.0),
+        &spec(20_000),
+    );
     let a = inverse();
     for l in 0..2 {
         let per = f64::hypot(2e-9 * 100.0, 1e-9 * 40.0) * 2.0;
@@ -104,7 +131,10 @@ fn places_scatter_by_the_slope_of_the_strain() {
 
 #[test]
 fn the_same_seed_gives_the_same_bits_on_any_number_of_threads() {
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread");
+    let one = rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build()
+        .expect("one thread");
     let e = error(ErrorKind::Factor, 0.01);
     let layouts = vec![vec![0, 2, 4, 6], vec![1, 3, 5, 7]];
     let a = one.install(|| study_layout(&pool(), &layouts, e, &spec(500)));
@@ -115,7 +145,12 @@ fn the_same_seed_gives_the_same_bits_on_any_number_of_threads() {
 #[test]
 fn layouts_that_do_not_separate_the_loads_are_counted_and_left_out() {
     let layouts = vec![vec![0], vec![0, 1, 2]];
-    let row = study_layout(&pool(), &layouts, error(ErrorKind::Factor, 0.01), &spec(100));
+    let row = study_layout(
+        &pool(),
+        &layouts,
+        error(ErrorKind::Factor, 0.01),
+        &spec(100),
+    );
     assert_eq!(row.singular, 1);
     assert!(row.sigma.iter().all(|s| s.is_finite()));
 }
@@ -140,6 +175,9 @@ fn nuisance_loads_are_drawn_and_their_prior_is_used() {
     };
     // A noise far above the readings' makes the prior strong: as if the load were left out.
     let left_out = study_layout(&p, &all(), error(ErrorKind::AbsoluteNormal, 1.0), &without);
-    assert!(known.sigma[0] < 0.5 * left_out.sigma[0], "{known:?} {left_out:?}");
+    assert!(
+        known.sigma[0] < 0.5 * left_out.sigma[0],
+        "{known:?} {left_out:?}"
+    );
     assert!((known.coverage[0] - 0.95).abs() < 0.02, "{known:?}");
 }

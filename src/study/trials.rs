@@ -58,16 +58,16 @@ pub fn study_layout(
     spec: &StudySpec,
 ) -> StudyRow {
     let k = spec.truth.len();
-    let solved: Vec<Option<(Matrix, Fit)>> = layouts
-        .par_iter()
-        .map(|l| solver(pool, l, spec))
-        .collect();
+    let solved: Vec<Option<(Matrix, Fit)>> =
+        layouts.par_iter().map(|l| solver(pool, l, spec)).collect();
     let mut conditions: Vec<f64> = layouts
         .iter()
         .map(|l| dense::condition(&Matrix::from_fn(l.len(), k, |g, c| pool[l[g]].row[c])))
         .collect();
     conditions.sort_by(f64::total_cmp);
-    let usable: Vec<usize> = (0..layouts.len()).filter(|i| solved[*i].is_some()).collect();
+    let usable: Vec<usize> = (0..layouts.len())
+        .filter(|i| solved[*i].is_some())
+        .collect();
     let mut row = StudyRow {
         condition_number: conditions
             .get(conditions.len() / 2)
@@ -175,7 +175,12 @@ fn trial(
         .collect();
     let k = truth.len();
     let found: Vec<f64> = (0..k)
-        .map(|l| y.iter().enumerate().map(|(g, y)| fit.gain[(l, g)] * y).sum())
+        .map(|l| {
+            y.iter()
+                .enumerate()
+                .map(|(g, y)| fit.gain[(l, g)] * y)
+                .sum()
+        })
         .collect();
     let wanted = spec.prior.iter().filter(|p| p.is_none()).count();
     let spare = layout.len().saturating_sub(wanted);

@@ -132,7 +132,9 @@ pub(super) fn payload(strain: &str) -> String {
         + &payload_loads()
         + &measured(strain)
         + &runs()
-        + &format!("[payload]\ngrid = {PAYLOAD}\nposition = \"free\"\nuse = [\"strain\", \"reactions\"]\n")
+        + &format!(
+            "[payload]\ngrid = {PAYLOAD}\nposition = \"free\"\nuse = [\"strain\", \"reactions\"]\n"
+        )
 }
 
 /// Stress under the recovered loads.

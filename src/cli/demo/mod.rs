@@ -100,20 +100,34 @@ pub fn run(arguments: &DemoArguments, session: &mut Session) -> Result<(), Fault
         words: format!(
             "Hidden was {}. Named: {}. Gap on runs never fitted: {:.1} % before, {:.1} % after.",
             yard.hidden,
-            if named.is_empty() { "nothing".to_owned() } else { named.join(", ") },
+            if named.is_empty() {
+                "nothing".to_owned()
+            } else {
+                named.join(", ")
+            },
             100.0 * gap["before"].as_f64().unwrap_or(f64::NAN),
             100.0 * gap["after"].as_f64().unwrap_or(f64::NAN)
         ),
         step,
     });
-    let corrected = folder.join("4-reconcile").join("strain_extended.csv").is_file();
-    let strain = if corrected { "4-reconcile/strain_extended.csv" } else { "strain.csv" };
+    let corrected = folder
+        .join("4-reconcile")
+        .join("strain_extended.csv")
+        .is_file();
+    let strain = if corrected {
+        "4-reconcile/strain_extended.csv"
+    } else {
+        "strain.csv"
+    };
     let job = write("recover_again.toml", &jobs::recover(strain))?;
     let step = play(session, "recover", &folder, "5-recover-again", &job)?;
     let after = yard.error_of(&step.result);
     story.push(Chapter {
         folder: "5-recover-again",
-        words: format!("With the effect in the model the wheel loads are off by {:.1} %.", 100.0 * after),
+        words: format!(
+            "With the effect in the model the wheel loads are off by {:.1} %.",
+            100.0 * after
+        ),
         step,
     });
     let job = write("payload.toml", &jobs::payload(strain))?;
@@ -142,12 +156,12 @@ pub fn run(arguments: &DemoArguments, session: &mut Session) -> Result<(), Fault
         step,
     });
     for c in &story {
-        session.say(format!("{:<16} {:>6.1} s  {}", c.folder, c.step.seconds, c.words));
+        session.say(format!(
+            "{:<16} {:>6.1} s  {}",
+            c.folder, c.step.seconds, c.words
+        ));
     }
-    session.say(format!(
-        "open {}",
-        folder.join("report.html").display()
-    ));
+    session.say(format!("open {}", folder.join("report.html").display()));
     let steps: Vec<Value> = story
         .iter()
         .map(|c| json!({ "command": c.step.command, "folder": c.folder, "words": c.words }))

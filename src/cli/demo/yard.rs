@@ -34,7 +34,11 @@ impl Glued {
             .map(|g| Glued {
                 name: g["name"].as_str().unwrap_or_default().to_owned(),
                 element: g["element"].as_u64().unwrap_or(0) as u32,
-                surface: if g["surface"] == "bottom" { Surface::Bottom } else { Surface::Top },
+                surface: if g["surface"] == "bottom" {
+                    Surface::Bottom
+                } else {
+                    Surface::Top
+                },
                 direction: Vec3::new(
                     number(&g["direction"][0]),
                     number(&g["direction"][1]),
@@ -156,8 +160,8 @@ pub(super) fn drive(glued: &[Glued]) -> Result<Yard, Faults> {
             moment: *moment,
         })
         .collect();
-    let standing = solve_standing(&model, 2, &wheels, &loads, None)
-        .map_err(|e| program(e.to_string()))?;
+    let standing =
+        solve_standing(&model, 2, &wheels, &loads, None).map_err(|e| program(e.to_string()))?;
     let gauges: Vec<Gauge> = glued
         .iter()
         .map(|g| {
@@ -166,7 +170,11 @@ pub(super) fn drive(glued: &[Glued]) -> Result<Yard, Faults> {
                 direction: Some(g.direction),
                 ..GaugeSpec::on(g.name.clone(), model.shell_ix(g.element)?)
             };
-            build(&model, &spec, CornerRows::Absent).ok()?.0.into_iter().next()
+            build(&model, &spec, CornerRows::Absent)
+                .ok()?
+                .0
+                .into_iter()
+                .next()
         })
         .collect::<Option<_>>()
         .ok_or_else(|| program("a gauge can't be laid".into()))?;

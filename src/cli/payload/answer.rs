@@ -7,7 +7,9 @@ use crate::cli::words::short;
 use crate::cli::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::payload::{PayloadRun, Place, Refusal, WeighSpec, WeighedRun, Weighing};
-use crate::report::strain::{drawing_section, interval_bars, model_with_gauges, number, page, table_section};
+use crate::report::strain::{
+    drawing_section, interval_bars, model_with_gauges, number, page, table_section,
+};
 use serde_json::{Value, json};
 
 /// A share of the weight that an interval leaves open from which the answer says little.
@@ -191,9 +193,9 @@ fn findings(
         }
         if spec.place == Place::Free {
             let (axes, _) = r.ellipse();
-            let room = spec
-                .region
-                .map_or(f64::INFINITY, |v| (v[0][1] - v[0][0]).max(v[1][1] - v[1][0]) / 2.0);
+            let room = spec.region.map_or(f64::INFINITY, |v| {
+                (v[0][1] - v[0][0]).max(v[1][1] - v[1][0]) / 2.0
+            });
             if axes[0] > room {
                 session.findings.push(
                     Finding::new(
@@ -210,7 +212,12 @@ fn findings(
             // Moments of measured wheel forces against the place that the job states.
             let sum: f64 = run.reactions.iter().sum();
             let at = [0, 1].map(|k| {
-                run.reactions.iter().zip(arms).map(|(r, a)| r * a[k]).sum::<f64>() / sum
+                run.reactions
+                    .iter()
+                    .zip(arms)
+                    .map(|(r, a)| r * a[k])
+                    .sum::<f64>()
+                    / sum
             });
             let sd = [0, 1].map(|k| {
                 arms.iter()
@@ -297,7 +304,11 @@ pub(super) fn write(
             let (axes, angle) = r.ellipse();
             vec![
                 r.run.clone(),
-                if r.refused.is_some() { "refused".into() } else { number(r.force) },
+                if r.refused.is_some() {
+                    "refused".into()
+                } else {
+                    number(r.force)
+                },
                 format!("{} to {}", number(r.interval[0]), number(r.interval[1])),
                 number(r.force / task.weight_of_mass),
                 format!(
@@ -306,7 +317,12 @@ pub(super) fn write(
                     number(task.nominal[1] + r.shift[1])
                 ),
                 if r.shift_covariance[0] > 0.0 {
-                    format!("{} x {} at {:.0}°", number(axes[0]), number(axes[1]), angle.to_degrees())
+                    format!(
+                        "{} x {} at {:.0}°",
+                        number(axes[0]),
+                        number(axes[1]),
+                        angle.to_degrees()
+                    )
                 } else {
                     "known".into()
                 },
@@ -338,7 +354,11 @@ pub(super) fn write(
                     .iter()
                     .map(|r| number(r.estimates.get(g).copied().unwrap_or(f64::NAN))),
             );
-            row.push(if v.used { "used".into() } else { "not used".into() });
+            row.push(if v.used {
+                "used".into()
+            } else {
+                "not used".into()
+            });
             row.push(v.reason.clone());
             row
         })
@@ -390,7 +410,10 @@ pub(super) fn write(
     let html = page(&task.job.title, "Payload", &session.findings, sections);
     let out = session.output_for(&arguments.job)?;
     out.write("payload.csv", |w| {
-        writeln!(w, "run,force,force.low,force.high,mass,x,y,x.sigma,y.sigma,refused")?;
+        writeln!(
+            w,
+            "run,force,force.low,force.high,mass,x,y,x.sigma,y.sigma,refused"
+        )?;
         for r in &weighing.runs {
             let c = |v: Option<f64>| v.map_or(String::new(), |v| v.to_string());
             let fields = [

@@ -94,16 +94,24 @@ fn spec_of(task: &Task, model: &PayloadModel, runs: &[PayloadRun]) -> WeighSpec 
     // Without a region: between the wheels.
     let between = model.arms.as_ref().map(|arms| {
         [0, 1].map(|k| {
-            arms.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |r, a| {
-                [r[0].min(a[k]), r[1].max(a[k])]
-            })
+            arms.iter()
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |r, a| {
+                    [r[0].min(a[k]), r[1].max(a[k])]
+                })
         })
     });
     WeighSpec {
         place,
-        model_rel: job.measured.as_ref().map_or(0.0, |m| m.model_uncertainty_rel),
+        model_rel: job
+            .measured
+            .as_ref()
+            .map_or(0.0, |m| m.model_uncertainty_rel),
         reaction_sigma: stated.unwrap_or(readings::ASSUMED_NOISE * largest_reaction),
-        largest: if empty > 0.0 { 10.0 * empty } else { FAR * largest_reaction.max(1.0) },
+        largest: if empty > 0.0 {
+            10.0 * empty
+        } else {
+            FAR * largest_reaction.max(1.0)
+        },
         region: region
             .map(|r| [0, 1].map(|k| r[k].map(|v| v - task.nominal[k])))
             .or(between),

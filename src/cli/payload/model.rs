@@ -181,7 +181,8 @@ fn standing(
         Some(p) => {
             let s = &p.sensitivity;
             let rows = s.gauges.len();
-            let columns = Matrix::from_fn(rows, n, |g, w| s.values[(g, wheels.loads[w])] / task.force);
+            let columns =
+                Matrix::from_fn(rows, n, |g, w| s.values[(g, wheels.loads[w])] / task.force);
             let mut direct = Matrix::zeros(rows, 3);
             for k in 0..3 {
                 // The job's own column where it has one, else the solution made here.
@@ -201,7 +202,11 @@ fn standing(
         }
     };
     // Shifts count in report lengths.
-    let per = [1.0 / task.force, 1.0 / (task.force * task.length), 1.0 / (task.force * task.length)];
+    let per = [
+        1.0 / task.force,
+        1.0 / (task.force * task.length),
+        1.0 / (task.force * task.length),
+    ];
     let payload = Matrix::from_fn(gauges.len(), 3, |g, k| payload_columns[(g, k)] * per[k]);
     let floor = Matrix::from_fn(n, 3, |w, k| {
         floor[(w, k)] / if k == 0 { 1.0 } else { task.length }
@@ -271,7 +276,9 @@ fn given(session: &mut Session, task: &mut Task, use_strain: bool) -> Result<Par
                 continue;
             };
             for (k, column) in ["b0", "b_dx", "b_dy"].into_iter().enumerate() {
-                let Some(c) = table.column(&[column]) else { continue };
+                let Some(c) = table.column(&[column]) else {
+                    continue;
+                };
                 match table.number(row, c) {
                     Ok(v) => {
                         let per = MICRO * mass / task.weight_of_mass;
@@ -287,11 +294,19 @@ fn given(session: &mut Session, task: &mut Task, use_strain: bool) -> Result<Par
         }
     }
     let model = PayloadModel {
-        gauges: if use_strain { s.gauges.clone() } else { Vec::new() },
+        gauges: if use_strain {
+            s.gauges.clone()
+        } else {
+            Vec::new()
+        },
         wheels: Matrix::from_fn(if use_strain { n } else { 0 }, vertical.len(), |g, w| {
             s.values[(g, vertical[w])] / task.force
         }),
-        payload: if use_strain { payload } else { Matrix::zeros(0, 3) },
+        payload: if use_strain {
+            payload
+        } else {
+            Matrix::zeros(0, 3)
+        },
         floor: None,
         arms: None,
     };

@@ -338,4 +338,3 @@ fn say_net(
         .collect();
     session.put("net", rows)
 }
-

@@ -50,9 +50,11 @@ pub(super) fn check(
         csv: String::new(),
     };
     let s = &prepared.sensitivity;
-    let Some(measured) = job.measured.as_ref().filter(|m| {
-        !s.gauges.is_empty() && m.reference == Reference::None
-    }) else {
+    let Some(measured) = job
+        .measured
+        .as_ref()
+        .filter(|m| !s.gauges.is_empty() && m.reference == Reference::None)
+    else {
         return Ok(out);
     };
     let table = read_strain(&mut session.inputs, job, &measured.strain)?;
@@ -83,7 +85,9 @@ pub(super) fn check(
             .map(|s| {
                 let at: f64 = s.label.parse().ok()?;
                 let i = t.partition_point(|x| *x < at - 1e-9);
-                t.get(i).filter(|x| (**x - at).abs() < 1e-6 * at.abs().max(1.0)).map(|_| i)
+                t.get(i)
+                    .filter(|x| (**x - at).abs() < 1e-6 * at.abs().max(1.0))
+                    .map(|_| i)
             })
             .collect(),
     };

@@ -9,7 +9,9 @@ use super::strain::{Prepared, prepare, read_fields};
 use super::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::model::{GridIx, Model, RigidKind};
-use crate::report::strain::{drawing_section, measured_against_predicted, number, page, table_section};
+use crate::report::strain::{
+    drawing_section, measured_against_predicted, number, page, table_section,
+};
 use crate::report::write_cells_vtu;
 use crate::respond::{
     LoadState, Peak, Place, ResponseRow, envelope, hot_spots, response_rows, von_mises_history,
@@ -84,7 +86,18 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     say_findings(session, &job, fields.model(), &rows, &peaks, &order);
     let check = gauges::check(session, &job, &prepared, &states)?;
     put(session, &job, &rows, &peaks, &order, &spots, &states)?;
-    write(session, arguments, &job, fields.model(), &rows, &peaks, &order, &spots, &states, &check)
+    write(
+        session,
+        arguments,
+        &job,
+        fields.model(),
+        &rows,
+        &peaks,
+        &order,
+        &spots,
+        &states,
+        &check,
+    )
 }
 
 fn stress_unit(job: &Job) -> f64 {
@@ -230,7 +243,9 @@ fn write(
                     r.surface_word(),
                     number(p.von_mises * u),
                     format!("± {}", number(1.959_964 * p.sigma * u)),
-                    states.get(p.at).map_or_else(String::new, |s| s.label.clone()),
+                    states
+                        .get(p.at)
+                        .map_or_else(String::new, |s| s.label.clone()),
                 ]
             })
             .collect()
@@ -286,7 +301,12 @@ fn write(
             "",
         ));
     }
-    let html = page(&job.title, "Stress from recovered loads", &session.findings, sections);
+    let html = page(
+        &job.title,
+        "Stress from recovered loads",
+        &session.findings,
+        sections,
+    );
     let out = session.output_for(&arguments.job)?;
     let write = |f: Result<(), Fault>| f.map_err(|f| vec![f]);
     write(out.write("elements.csv", |w| {
@@ -323,11 +343,25 @@ fn histories(
     states: &[LoadState],
     u: f64,
 ) -> std::io::Result<()> {
-    let list: Vec<&ResponseRow> = order.iter().take(MOST_HISTORIES).map(|i| &rows[*i]).collect();
+    let list: Vec<&ResponseRow> = order
+        .iter()
+        .take(MOST_HISTORIES)
+        .map(|i| &rows[*i])
+        .collect();
     write!(w, "state")?;
     for r in &list {
         let place = format!("{}.{}", r.element, r.surface_word().replace(' ', "."));
-        for c in ["exx", "eyy", "gxy", "sxx", "syy", "sxy", "von_mises", "von_mises.low", "von_mises.high"] {
+        for c in [
+            "exx",
+            "eyy",
+            "gxy",
+            "sxx",
+            "syy",
+            "sxy",
+            "von_mises",
+            "von_mises.low",
+            "von_mises.high",
+        ] {
             write!(w, ",{place}.{c}")?;
         }
     }
@@ -339,7 +373,10 @@ fn histories(
         for (row, column) in list.iter().zip(&columns) {
             let mut strain = [0.0; 3];
             for (e, f) in row.strain.iter().zip(&state.values) {
-                strain.iter_mut().zip(e).for_each(|(s, e)| *s += e * f * 1e6);
+                strain
+                    .iter_mut()
+                    .zip(e)
+                    .for_each(|(s, e)| *s += e * f * 1e6);
             }
             let (stress, v, sigma) = column[i];
             for x in strain {
@@ -349,7 +386,13 @@ fn histories(
                 write!(w, ",{}", x * u)?;
             }
             let half = 1.959_964 * sigma;
-            write!(w, ",{},{},{}", v * u, (v - half).max(0.0) * u, (v + half) * u)?;
+            write!(
+                w,
+                ",{},{},{}",
+                v * u,
+                (v - half).max(0.0) * u,
+                (v + half) * u
+            )?;
         }
         writeln!(w)?;
     }
@@ -364,7 +407,12 @@ fn arrays(
     u: f64,
     unit: &str,
 ) -> Vec<(String, Vec<f64>, Vec<f64>)> {
-    let blank = || (vec![f64::NAN; model.shells.len()], vec![f64::NAN; model.beams.len()]);
+    let blank = || {
+        (
+            vec![f64::NAN; model.shells.len()],
+            vec![f64::NAN; model.beams.len()],
+        )
+    };
     let (mut bottom, mut top, mut sigma, mut state) = (blank(), blank(), blank(), blank());
     let mut most = blank();
     for (r, p) in rows.iter().zip(peaks) {
@@ -377,7 +425,11 @@ fn arrays(
         let larger = |slot: Option<&f64>| slot.is_none_or(|s| s.is_nan() || v > *s);
         match r.place {
             Place::Shell { shell, surface } => {
-                let side = if surface.ix() == 0 { &mut bottom.0 } else { &mut top.0 };
+                let side = if surface.ix() == 0 {
+                    &mut bottom.0
+                } else {
+                    &mut top.0
+                };
                 put(side.get_mut(shell.us()), v);
                 if larger(most.0.get(shell.us())) {
                     put(most.0.get_mut(shell.us()), v);
@@ -399,7 +451,10 @@ fn arrays(
         (format!("largest von Mises bottom, {unit}"), bottom),
         (format!("largest von Mises top, {unit}"), top),
         (format!("its standard deviation, {unit}"), sigma),
-        ("state of the largest (row of the loads, from 0)".to_owned(), state),
+        (
+            "state of the largest (row of the loads, from 0)".to_owned(),
+            state,
+        ),
     ]
     .into_iter()
     .map(|(name, (shells, beams))| (name, shells, beams))

@@ -41,7 +41,9 @@ pub(super) fn read(
             LoadState {
                 label: r.estimate.run,
                 values: r.estimate.values,
-                spread: Spread::Covariance(r.estimate.covariance.iter().map(|c| c * widen).collect()),
+                spread: Spread::Covariance(
+                    r.estimate.covariance.iter().map(|c| c * widen).collect(),
+                ),
             }
         })
         .collect())
@@ -65,7 +67,11 @@ fn from_table(
     let mut columns = Vec::new();
     let mut without_interval = Vec::new();
     for name in &names {
-        let of = |suffix: &str| t.header.iter().position(|h| *h == format!("{name}{suffix}"));
+        let of = |suffix: &str| {
+            t.header
+                .iter()
+                .position(|h| *h == format!("{name}{suffix}"))
+        };
         match of("") {
             Some(c) => {
                 let interval = of(".low").zip(of(".high"));

@@ -40,15 +40,24 @@ pub(super) fn of(
 ) -> Result<Vec<LayoutOf>, Faults> {
     let counts = if study.gauges.is_empty() {
         let all = prepared.pool.len();
-        vec![if all > 0 { all } else { 2 * prepared.loads.len() }]
+        vec![if all > 0 {
+            all
+        } else {
+            2 * prepared.loads.len()
+        }]
     } else {
         study.gauges.clone()
     };
     // The job's gauges are the pool unless it says where others could go.
-    let from_model = prepared.fields.is_some() && (job.candidates.line > 0 || prepared.pool.is_empty());
+    let from_model =
+        prepared.fields.is_some() && (job.candidates.line > 0 || prepared.pool.is_empty());
     let mut out = Vec::new();
     let mut skipped: Vec<String> = Vec::new();
-    let wide = if from_model { Some(Wide::new(session, job, prepared)?) } else { None };
+    let wide = if from_model {
+        Some(Wide::new(session, job, prepared)?)
+    } else {
+        None
+    };
     for name in &study.layouts {
         for &n in &counts {
             let layout = match (name.as_str(), &wide) {
@@ -67,7 +76,9 @@ pub(super) fn of(
                 ("random", Some(w)) => w.random(job, prepared, n, study.seed),
                 ("random", None) => None,
                 (_, Some(w)) => Some(w.best(job, prepared, name, n)?),
-                (_, None) if n <= prepared.pool.len() => Some(best_of_pool(job, prepared, name, n)?),
+                (_, None) if n <= prepared.pool.len() => {
+                    Some(best_of_pool(job, prepared, name, n)?)
+                }
                 _ => None,
             };
             match layout {
@@ -81,7 +92,10 @@ pub(super) fn of(
             Severity::Warning,
             "layouts-skipped",
             skipped.join(", "),
-            format!("the job has {} gauges: these layouts need more", prepared.pool.len()),
+            format!(
+                "the job has {} gauges: these layouts need more",
+                prepared.pool.len()
+            ),
             "name more gauges, or a [candidates] section",
         ));
     }
@@ -121,7 +135,11 @@ fn spec_of(job: &Job, name: &str, n: usize, k: usize, order: &[usize]) -> Spec {
         }
     }
     if name == "Ds" || job.placement.criterion == Criterion::Ds {
-        spec.nuisance = job.loads.iter().filter(|l| l.role == Role::Nuisance).count();
+        spec.nuisance = job
+            .loads
+            .iter()
+            .filter(|l| l.role == Role::Nuisance)
+            .count();
     }
     spec
 }
@@ -147,8 +165,15 @@ fn best_of_pool(job: &Job, prepared: &Prepared, name: &str, n: usize) -> Result<
         .iter()
         .enumerate()
         .map(|(l, load)| {
-            let norm = prepared.pool.iter().map(|g| g.row[l].powi(2)).sum::<f64>().sqrt();
-            load.expected.filter(|e| *e > 0.0).unwrap_or(if norm > 0.0 { 1.0 / norm } else { 1.0 })
+            let norm = prepared
+                .pool
+                .iter()
+                .map(|g| g.row[l].powi(2))
+                .sum::<f64>()
+                .sqrt();
+            load.expected
+                .filter(|e| *e > 0.0)
+                .unwrap_or(if norm > 0.0 { 1.0 / norm } else { 1.0 })
         })
         .collect();
     let c = Candidates::from_rows(k, prepared.pool.len(), Scatter::uniform(noise), |g, out| {
@@ -219,7 +244,13 @@ impl Wide {
         on_model(fields, job, &fields.load_cases(job), &spec)
     }
 
-    fn best(&self, job: &Job, prepared: &Prepared, name: &str, n: usize) -> Result<LayoutOf, Faults> {
+    fn best(
+        &self,
+        job: &Job,
+        prepared: &Prepared,
+        name: &str,
+        n: usize,
+    ) -> Result<LayoutOf, Faults> {
         let spec = spec_of(job, name, n, prepared.loads.len(), &self.order);
         let layout = place(&self.candidates, &spec).map_err(|e| refused(job, name, e))?;
         let pool: Vec<PoolGauge> = layout

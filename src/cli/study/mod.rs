@@ -87,7 +87,9 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     }
     findings(session, &lines, loads);
     put(session, &lines, loads, &units, &truth)?;
-    write(session, arguments, &job, study, &lines, loads, &units, &truth)
+    write(
+        session, arguments, &job, study, &lines, loads, &units, &truth,
+    )
 }
 
 fn errors(job: &Job, study: &Study) -> Result<Vec<(StudyError, String)>, Faults> {
@@ -117,7 +119,11 @@ fn errors(job: &Job, study: &Study) -> Result<Vec<(StudyError, String)>, Faults>
             )),
         }
     }
-    if faults.is_empty() { Ok(out) } else { Err(faults) }
+    if faults.is_empty() {
+        Ok(out)
+    } else {
+        Err(faults)
+    }
 }
 
 /// True loads: those of the first run of the runs file that has all wanted ones, else their expected sizes.
@@ -129,7 +135,10 @@ fn truth(
 ) -> Result<Vec<f64>, Faults> {
     if let Some(runs) = &job.runs {
         let rows = read_runs(&mut session.inputs, job, runs)?;
-        let (n, nm) = (job.units.si(Quantity::Force), job.units.si(Quantity::Moment));
+        let (n, nm) = (
+            job.units.si(Quantity::Force),
+            job.units.si(Quantity::Moment),
+        );
         let of = |row: &job::runs::RunRow| -> Option<Vec<f64>> {
             loads
                 .iter()
@@ -280,7 +289,11 @@ fn write(
     truth: &[f64],
 ) -> Result<(), Faults> {
     let wanted: Vec<usize> = (0..loads.len())
-        .filter(|l| job.loads.iter().all(|j| j.name != loads[*l].name || j.role == Role::Wanted))
+        .filter(|l| {
+            job.loads
+                .iter()
+                .all(|j| j.name != loads[*l].name || j.role == Role::Wanted)
+        })
         .collect();
     let shown: Vec<Vec<String>> = lines
         .iter()
@@ -290,7 +303,10 @@ fn write(
                 line.gauges.to_string(),
                 line.error.clone(),
                 number(line.row.condition_number),
-                format!("{} %", number(100.0 * mean_relative(&line.row, truth, loads))),
+                format!(
+                    "{} %",
+                    number(100.0 * mean_relative(&line.row, truth, loads))
+                ),
             ];
             cells.extend(wanted.iter().map(|l| {
                 format!(
@@ -323,7 +339,10 @@ fn write(
         "What errors do to recovered loads",
         &session.findings,
         vec![table_section(
-            &format!("{} trials each, seed {}: bias ± 1 sd", study.trials, study.seed),
+            &format!(
+                "{} trials each, seed {}: bias ± 1 sd",
+                study.trials, study.seed
+            ),
             &header,
             &shown,
             "The same seed gives the same numbers on any machine and any number of threads. Layout `random`: the trials are dealt over 50 of them.",

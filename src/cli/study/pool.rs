@@ -61,13 +61,17 @@ pub(super) fn prepare(
     if !job.gauges.is_empty() {
         let specs = crate::cli::strain::lay_gauges(session, job, &fields)?;
         let cases = fields.load_cases(job);
-        let s = crate::sensitivity::from_cases(&specs, &cases)
-            .map_err(|m| vec![crate::cli::fault::Fault::of(
+        let s = crate::sensitivity::from_cases(&specs, &cases).map_err(|m| {
+            vec![crate::cli::fault::Fault::of(
                 &*job.file,
                 "gauge",
-                m.iter().map(|m| m.to_string()).collect::<Vec<_>>().join("; "),
+                m.iter()
+                    .map(|m| m.to_string())
+                    .collect::<Vec<_>>()
+                    .join("; "),
                 "move the gauge",
-            )])?;
+            )]
+        })?;
         let mut channel = 0;
         for g in &job.gauges {
             let spec = spec_of(fields.model(), g).map_err(|f| vec![f])?;
@@ -135,7 +139,9 @@ fn variants(
     let turned = if is_beam {
         None
     } else {
-        turned(quarter).zip(turned(2.0 * quarter)).map(|(a, b)| [a, b])
+        turned(quarter)
+            .zip(turned(2.0 * quarter))
+            .map(|(a, b)| [a, b])
     };
     let here = laid(spec);
     let slope = here.filter(|_| !is_beam).and_then(|g| {
@@ -167,7 +173,8 @@ fn slope(
         .filter_map(|g| model.grids.get(g.us()).map(|g| g.x))
         .collect();
     let reach = corners.iter().map(|x| x.dot(&along));
-    let size = reach.clone().fold(f64::NEG_INFINITY, f64::max) - reach.fold(f64::INFINITY, f64::min);
+    let size =
+        reach.clone().fold(f64::NEG_INFINITY, f64::max) - reach.fold(f64::INFINITY, f64::min);
     let middle = corners.iter().sum::<Vec3>() / corners.len() as f64;
     let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
     for sign in [-1.0, 1.0] {
@@ -185,7 +192,9 @@ fn slope(
             continue;
         }
         // With centre strain a gauge reads its element's centre: the distance is that of the centres.
-        let other = model.shell_ix(g.element).and_then(|i| model.shells.get(i.us()));
+        let other = model
+            .shell_ix(g.element)
+            .and_then(|i| model.shells.get(i.us()));
         let centre = other.map(|s| {
             let n = s.shape.n_corners();
             let sum: Vec3 = s.grids[..n]

@@ -50,7 +50,9 @@ pub enum FloorError {
         contacts: usize,
     },
     /// A case without displacements.
-    #[error("no displacement of the contacts: solve with the built-in solver, or ask for DISPLACEMENT = ALL")]
+    #[error(
+        "no displacement of the contacts: solve with the built-in solver, or ask for DISPLACEMENT = ALL"
+    )]
     NoDisplacement,
     /// The solver refused.
     #[error(transparent)]
@@ -109,14 +111,15 @@ impl Floor {
             }
             a[(j, j)] += rate.map_or(0.0, |k| 1.0 / k);
             let r = x[j] - centre;
-            for (k, v) in [1.0, r[c] / scale.1, -r[b] / scale.1].into_iter().enumerate() {
+            for (k, v) in [1.0, r[c] / scale.1, -r[b] / scale.1]
+                .into_iter()
+                .enumerate()
+            {
                 a[(j, n + k)] = v * scale.0;
                 a[(n + k, j)] = v * scale.0;
             }
         }
-        let inverse = a
-            .try_inverse()
-            .ok_or(FloorError::OnALine { contacts: n })?;
+        let inverse = a.try_inverse().ok_or(FloorError::OnALine { contacts: n })?;
         Ok(Self {
             axis,
             contacts: contacts.to_vec(),

@@ -6,7 +6,11 @@ use crate::model::{GridIx, Model, Vec3};
 use nastran::bdf::{MemoryLoader, read_deck};
 
 fn model(text: &str) -> Model {
-    let deck = read_deck("test.bdf", text.as_bytes().to_vec(), &mut MemoryLoader::default());
+    let deck = read_deck(
+        "test.bdf",
+        text.as_bytes().to_vec(),
+        &mut MemoryLoader::default(),
+    );
     let (model, faults) = Model::from_deck(&deck);
     assert!(
         faults
@@ -24,7 +28,13 @@ fn grid(model: &Model, id: u32) -> GridIx {
 /// A stiff square table of side 2 with legs 1 2 3 4 at (+-1, +-1) about the point mass 5 at the origin.
 fn table() -> Model {
     let mut t = String::from("BEGIN BULK\n");
-    for (id, x, y) in [(1, -1.0, -1.0), (2, 1.0, -1.0), (3, 1.0, 1.0), (4, -1.0, 1.0), (5, 0.0, 0.0)] {
+    for (id, x, y) in [
+        (1, -1.0, -1.0),
+        (2, 1.0, -1.0),
+        (3, 1.0, 1.0),
+        (4, -1.0, 1.0),
+        (5, 0.0, 0.0),
+    ] {
         t += &format!("GRID,{id},,{x:.1},{y:.1},0.0\n");
     }
     for id in 1..=4 {

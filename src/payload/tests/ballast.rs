@@ -36,7 +36,10 @@ fn one_mass_is_found_with_its_place_and_a_range_that_holds_the_truth() {
     let fit = size_ballast(&before, &m, unit, &spec(1, 0.05));
     let b = fit.masses[0];
     assert!((b.weight - 40.0).abs() < 1e-3, "{b:?}");
-    assert!((b.at[0] - 7.0).abs() < 1e-3 && (b.at[1] - 0.3).abs() < 1e-3, "{b:?}");
+    assert!(
+        (b.at[0] - 7.0).abs() < 1e-3 && (b.at[1] - 0.3).abs() < 1e-3,
+        "{b:?}"
+    );
     assert_eq!(fit.fixed, 3);
     // The total is the sum of four readings: 95 % is 1.96 * 0.05 * 2 either way, on the grid of the walk.
     assert!(b.weight_range[0] < 40.0 && b.weight_range[1] > 40.0 - 1e-3);
@@ -58,10 +61,16 @@ fn two_masses_match_every_reaction_and_only_total_and_centre_count_as_fixed() {
     assert!((total - 80.0).abs() < 1e-2, "{total}");
     assert!((along - 5.75).abs() < 1e-2, "{along}");
     assert!((across - (-0.175)).abs() < 1e-2, "{across}");
-    assert_eq!(fit.fixed, 3, "a rigid frame tells three things of any number of masses");
+    assert_eq!(
+        fit.fixed, 3,
+        "a rigid frame tells three things of any number of masses"
+    );
     for (b, (w, at)) in fit.masses.iter().zip(truth) {
         assert!(b.weight_range[0] <= w && w <= b.weight_range[1], "{b:?}");
-        assert!(b.at_range[0][0] <= at[0] && at[0] <= b.at_range[0][1], "{b:?}");
+        assert!(
+            b.at_range[0][0] <= at[0] && at[0] <= b.at_range[0][1],
+            "{b:?}"
+        );
     }
 }
 
@@ -71,6 +80,12 @@ fn bounds_are_kept_where_the_data_ask_for_more() {
     let m = measured(&[(40.0, [14.0, 0.0])], &before);
     let fit = size_ballast(&before, &m, unit, &spec(1, 0.05));
     let b = fit.masses[0];
-    assert!(b.at[0] <= 10.0 && b.weight <= 100.0 && b.weight >= 0.0, "{b:?}");
-    assert!(fit.chi2 > 100.0, "a mass beyond the region can't be matched");
+    assert!(
+        b.at[0] <= 10.0 && b.weight <= 100.0 && b.weight >= 0.0,
+        "{b:?}"
+    );
+    assert!(
+        fit.chi2 > 100.0,
+        "a mass beyond the region can't be matched"
+    );
 }

@@ -74,7 +74,9 @@ fn clean(model: &PayloadModel, force: f64, shift: [f64; 2]) -> PayloadRun {
     let strain = (0..model.gauges.len())
         .map(|g| {
             (0..3).map(|k| model.payload[(g, k)] * p[k]).sum::<f64>()
-                + (0..6).map(|w| model.wheels[(g, w)] * reactions[w]).sum::<f64>()
+                + (0..6)
+                    .map(|w| model.wheels[(g, w)] * reactions[w])
+                    .sum::<f64>()
         })
         .collect();
     PayloadRun {
@@ -87,8 +89,12 @@ fn clean(model: &PayloadModel, force: f64, shift: [f64; 2]) -> PayloadRun {
 }
 
 fn noisy(lot: &mut Lot, mut run: PayloadRun) -> PayloadRun {
-    run.strain.iter_mut().for_each(|v| *v += MICRO * lot.normal());
-    run.reactions.iter_mut().for_each(|v| *v += 0.1 * lot.normal());
+    run.strain
+        .iter_mut()
+        .for_each(|v| *v += MICRO * lot.normal());
+    run.reactions
+        .iter_mut()
+        .for_each(|v| *v += 0.1 * lot.normal());
     run
 }
 
@@ -109,7 +115,10 @@ fn readings_without_error_give_weight_and_place_back_from_each_source() {
     for r in [run, strain_alone, wheels_alone] {
         let w = &weigh(&model, &[r], &spec(Place::Free)).runs[0];
         assert!((w.force - 54.414).abs() < 0.01, "{w:?}");
-        assert!((w.shift[0] + 0.3).abs() < 0.01 && (w.shift[1] - 0.12).abs() < 0.01, "{w:?}");
+        assert!(
+            (w.shift[0] + 0.3).abs() < 0.01 && (w.shift[1] - 0.12).abs() < 0.01,
+            "{w:?}"
+        );
         assert_eq!(w.refused, None);
     }
 }
@@ -122,7 +131,10 @@ fn intervals_and_regions_cover_as_stated_whatever_the_source() {
         let (mut held, mut region) = (0, 0);
         for _ in 0..trials {
             let model = truck(&mut lot, 14);
-            let truth = (lot.between(20.0, 90.0), [lot.between(-1.0, 1.0), lot.between(-0.3, 0.3)]);
+            let truth = (
+                lot.between(20.0, 90.0),
+                [lot.between(-1.0, 1.0), lot.between(-0.3, 0.3)],
+            );
             let mut run = noisy(&mut lot, clean(&model, truth.0, truth.1));
             match source {
                 0 => run.reactions.clear(),
@@ -137,8 +149,14 @@ fn intervals_and_regions_cover_as_stated_whatever_the_source() {
             region += usize::from(q < 5.991);
         }
         // 95 % of 400: 380 +- 4.4; gauges in doubt by chance widen a little.
-        assert!((362..=396).contains(&held), "source {source}: {held} of {trials}");
-        assert!((358..=396).contains(&region), "source {source}: {region} of {trials}");
+        assert!(
+            (362..=396).contains(&held),
+            "source {source}: {held} of {trials}"
+        );
+        assert!(
+            (358..=396).contains(&region),
+            "source {source}: {region} of {trials}"
+        );
     }
 }
 
@@ -182,8 +200,14 @@ fn with_a_third_of_the_gauges_bad_weight_and_place_stay_and_the_bad_ones_are_nam
         }
     }
     assert!(held >= 108, "{held} of 120 inside");
-    assert!(named * 100 >= bad_all * 90, "{named} of {bad_all} bad gauges found");
-    assert!(good_lost * 100 <= trials * 14 * 3, "{good_lost} good gauges lost");
+    assert!(
+        named * 100 >= bad_all * 90,
+        "{named} of {bad_all} bad gauges found"
+    );
+    assert!(
+        good_lost * 100 <= trials * 14 * 3,
+        "{good_lost} good gauges lost"
+    );
 }
 
 #[test]
@@ -215,7 +239,10 @@ fn strain_and_wheels_that_disagree_break_equilibrium() {
     let mut run = noisy(&mut lot, clean(&model, 50.0, [0.2, 0.0]));
     run.strain.iter_mut().for_each(|v| *v *= 1.4);
     let w = &weigh(&model, &[run], &spec(Place::Known)).runs[0];
-    assert!(matches!(w.refused, Some(Refusal::OutOfBalance { .. })), "{w:?}");
+    assert!(
+        matches!(w.refused, Some(Refusal::OutOfBalance { .. })),
+        "{w:?}"
+    );
 }
 
 #[test]
@@ -224,5 +251,8 @@ fn a_place_outside_the_region_is_refused() {
     let model = truck(&mut lot, 15);
     let run = noisy(&mut lot, clean(&model, 50.0, [0.2, 0.9]));
     let w = &weigh(&model, &[run], &spec(Place::Free)).runs[0];
-    assert!(matches!(w.refused, Some(Refusal::OutsideRegion { .. })), "{w:?}");
+    assert!(
+        matches!(w.refused, Some(Refusal::OutsideRegion { .. })),
+        "{w:?}"
+    );
 }
