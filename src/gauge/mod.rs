@@ -6,11 +6,15 @@
 mod arms;
 mod build;
 mod grid_average;
+mod moved;
+mod on_refined;
 mod spec;
 mod surface;
 
 pub use arms::{Arm, Gauge, Spot, reading, shell_strain};
 pub use build::{CornerRows, GaugeError, build};
+pub use moved::moved;
+pub use on_refined::on_refined;
 pub use spec::{Bridge, GaugePlace, GaugeSpec, Rosette};
 pub use surface::{Foot, centre, nearest, to_side};
 

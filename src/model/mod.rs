@@ -17,6 +17,7 @@ mod mass;
 mod material;
 mod params;
 mod point_mass;
+mod refine;
 mod rigid;
 mod section;
 mod shell;
@@ -29,4 +30,5 @@ mod tests;
 
 pub use fault::*;
 pub use mass::Weight;
+pub use refine::RefinedModel;
 pub use types::*;

@@ -66,8 +66,10 @@ pub struct Gap {
     pub before: f64,
     /// With the named effects; amplitudes of a run found from one half of the channels and judged on the other.
     pub after: f64,
-    /// What noise and stated model uncertainty leave.
+    /// What noise, stated model uncertainty and the mesh leave.
     pub floor: f64,
+    /// What the mesh alone makes: the difference from a mesh half as wide; zero where none was solved.
+    pub mesh: f64,
 }
 
 impl Gap {

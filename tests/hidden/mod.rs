@@ -187,6 +187,7 @@ pub fn frame_of(dir: &Path) -> StrainFrame {
         noise: number("strain_noise_ue"),
         load_noise: number("fz_noise_kN"),
         model_rel: number("model_uncertainty_rel"),
-        entry_rel: 0.0,
+        as_modelled: None,
+        scatter: Vec::new(),
     }
 }

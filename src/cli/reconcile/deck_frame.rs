@@ -1,5 +1,7 @@
 //! The static frame of a job with a deck: signatures of loads, masses, stiffness and gauge angles from the built-in solver.
 
+use super::background::{Axis, background, gradients};
+use super::finer::Finer;
 use super::matrix_frame::{ModelPart, facts, nominal_x_m};
 use crate::cli::Session;
 use crate::cli::fault::{Fault, Faults};
@@ -17,9 +19,6 @@ use rayon::prelude::*;
 
 /// Thickness change at which a zone's signature is computed first, percent.
 const FIRST_PERCENT: f64 = 10.0;
-/// Share of the stated model uncertainty that single influence coefficients have on top of the common factor of a gauge: a coarse
-/// mesh errs differently in every load.
-const ENTRY_SHARE: f64 = 0.5;
 /// Strain in microstrain.
 const MICRO: f64 = 1e6;
 
@@ -81,11 +80,23 @@ pub(super) fn read(
         places.push(place.clone());
         loads.push(unit(job, grid, Component::FZ, -gravity / KILO));
     }
-    let solution = session.stage("solve signatures", |_| solve(job, model, &loads))?;
+    // Signatures come from a mesh half as wide, where that can be made: what the mesh makes is computed, not guessed.
+    let laid = [&gauges, &turned[0], &turned[1]];
+    let finer = session.stage("refine", |_| Finer::of(model, laid));
+    let solution = session.stage("solve signatures", |_| match &finer {
+        Some(f) => solve(job, &f.refined.model, &loads),
+        None => solve(job, model, &loads),
+    })?;
     let n_c = columns.len();
-    let table = influence(job, model, &gauges, &solution, n_c);
-    let at_45 = influence(job, model, &turned[0], &solution, n_c);
-    let at_90 = influence(job, model, &turned[1], &solution, n_c);
+    let [seen, seen_45, seen_90] = match &finer {
+        Some(f) => f.laid.each_ref(),
+        None => laid,
+    };
+    let table = influence(job, model, seen, &solution, n_c);
+    let at_45 = influence(job, model, seen_45, &solution, n_c);
+    let at_90 = influence(job, model, seen_90, &solution, n_c);
+    let own = session.stage("solve signatures", |_| solve(job, model, &columns))?;
+    let base = influence(job, model, &gauges, &own, n_c);
     let n_g = gauges.len();
     let plane = |g: usize| -> PlaneStrainRow {
         let one = |c: usize| {
@@ -94,7 +105,7 @@ pub(super) fn read(
         };
         (0..n_c).map(one).collect()
     };
-    let column = |c: usize| readings(&gauges, &solution, c..c + 1);
+    let column = |c: usize| readings(seen, &solution, c..c + 1);
     let length_m = job.units.length_m();
     let place_of = |grid: &GridIx| {
         let x = model.grids.get(grid.us()).map_or(Vec3::zeros(), |g| g.x);
@@ -110,10 +121,11 @@ pub(super) fn read(
         nominal_x_m: nominal_x_m(job).or(payload_x).unwrap_or(0.0),
         ..ModelPart::default()
     };
-    for g in &mut part.gauges {
+    for (g, laid) in part.gauges.iter_mut().zip(&gauges) {
         // In-plane strain is in the axes of the gauge itself, its wiring included.
         g.angle_deg = 0.0;
         g.wiring = Wiring::Quarter;
+        g.position = Some([0, 1, 2].map(|k| laid.position[k] * length_m));
     }
     part.other_loads = other_names
         .into_iter()
@@ -143,16 +155,16 @@ pub(super) fn read(
         };
         part.thermal_uniform = Some(channels.iter().map(of).collect());
     }
-    part.entry_rel = ENTRY_SHARE
-        * job
-            .measured
-            .as_ref()
-            .map_or(0.0, |m| m.model_uncertainty_rel);
+    let along = gradients(job, model, &gauges, &own, n_c, Axis::Along);
+    let across = gradients(job, model, &gauges, &own, n_c, Axis::Across);
+    part.scatter = background(job, &part, finer.is_some().then_some(&base), [&along, &across]);
+    part.per_mm = Some(along);
+    part.as_modelled = finer.is_some().then(|| base.clone());
     let deck = DeckFrame {
         fields,
         gauges,
         columns,
-        base: table,
+        base,
     };
     let zones: Vec<String> = reconcile
         .iter()
@@ -323,7 +335,7 @@ fn in_order(job: &Job, laid: Vec<Gauge>, channels: &[String]) -> Result<Vec<Gaug
 }
 
 /// Influence of the columns, `n_gauges x n_columns`, those that stand for nothing zero.
-fn influence(
+pub(super) fn influence(
     job: &Job,
     model: &Model,
     gauges: &[Gauge],

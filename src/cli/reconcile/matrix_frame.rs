@@ -5,7 +5,8 @@ use crate::cli::fault::{Fault, Faults};
 use crate::cli::files::Inputs;
 use crate::cli::job::{Bridge, GivenSensitivity, Job};
 use crate::reconcile::strain::{
-    GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, PlaneStrainRow, StiffnessSignature, Wiring,
+    GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, PlaneStrainRow, Scatter, StiffnessSignature,
+    Wiring,
 };
 
 /// What the model says, however it was computed: the part of a frame that no run enters.
@@ -22,8 +23,10 @@ pub(super) struct ModelPart {
     pub(super) thermal_gradient: Option<Vec<f64>>,
     pub(super) masses: Vec<MassSignature>,
     pub(super) stiffness: Vec<StiffnessSignature>,
-    /// Model uncertainty of single coefficients.
-    pub(super) entry_rel: f64,
+    /// Influence on the analyst's own mesh, where `influence` is that of a finer one.
+    pub(super) as_modelled: Option<Vec<f64>>,
+    /// Errors that every gauge may have.
+    pub(super) scatter: Vec<Scatter>,
     /// Nominal place of the payload, m.
     pub(super) nominal_x_m: f64,
 }

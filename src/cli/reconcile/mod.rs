@@ -1,7 +1,9 @@
 //! `reconcile`: where simulation and measurement disagree, which effect is missing, and the model with the effect in it.
 
+mod background;
 mod deck_frame;
 mod extend;
+mod finer;
 mod matrix_frame;
 mod relative;
 mod signature_table;

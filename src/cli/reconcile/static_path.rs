@@ -267,7 +267,8 @@ fn frame(
         noise: measured.map_or(1.0, |m| m.noise_microstrain),
         load_noise,
         model_rel: measured.map_or(0.0, |m| m.model_uncertainty_rel),
-        entry_rel: part.entry_rel,
+        as_modelled: part.as_modelled,
+        scatter: part.scatter,
     })
 }
 
@@ -353,6 +354,7 @@ fn report(
             "before": outcome.gap.before,
             "after": outcome.gap.after,
             "floor": outcome.gap.floor,
+            "mesh": outcome.gap.mesh,
             "explained_share": outcome.gap.explained_share(),
         }),
     )?;

@@ -1,6 +1,6 @@
 //! What noise and stated model uncertainty do to the residual, runs and gauges together.
 
-use super::frame::StrainFrame;
+use super::frame::{Scatter, StrainFrame};
 use super::state::{Part, StrainState, read_all};
 use crate::reconcile::effect::{Amplitudes, Member};
 
@@ -59,8 +59,9 @@ pub fn read_patterns(
 /// Covariance of the residual of `selection`, `n x n` by rows, microstrain^2.
 ///
 /// C = noise^2 I + load_noise^2 S S' (run by run: an error of a measured wheel force enters all gauges at once) + model_rel^2 m m'
-/// (gauge by gauge, all runs together: a wrong influence stays wrong) + entry_rel^2 sum over columns of (a f)(a f)' (the same, column
-/// by column) + V (amplitudes unknown in every run, run by run, and model_rel of them), with S, m, a as read with `members` on.
+/// (gauge by gauge, all runs together: a wrong influence stays wrong) + sum over `scatter` of b b' (the same, with b the strain that an
+/// error of one standard deviation makes) + V (amplitudes unknown in every run, run by run, and model_rel of them), with S, m, b as read
+/// with `members` on.
 pub fn covariance(
     frame: &StrainFrame,
     members: &[Member<'_>],
@@ -106,19 +107,15 @@ pub fn covariance(
     for (g, variance) in own.iter().enumerate() {
         block[g * n_g + g] += variance;
     }
-    let (model, entry) = (
-        frame.model_rel * frame.model_rel,
-        frame.entry_rel * frame.entry_rel,
-    );
+    let model = frame.model_rel * frame.model_rel;
+    let errors = scattered(frame, members, &state);
     let across = |g: usize, r: usize, s: usize| {
         let common = model * predicted[r * n_g + g] * predicted[s * n_g + g];
-        if entry == 0.0 {
-            return common;
-        }
-        let term = |(c, pattern): (usize, &Vec<f64>)| {
-            pattern[g] * pattern[g] * state.columns[r * n_c + c] * state.columns[s * n_c + c]
-        };
-        common + entry * columns.iter().enumerate().map(term).sum::<f64>()
+        common
+            + errors
+                .iter()
+                .map(|e| e[r * n_g + g] * e[s * n_g + g])
+                .sum::<f64>()
     };
     let n = selection.len();
     let mut out = vec![0.0; n * n];
@@ -130,5 +127,30 @@ pub fn covariance(
             out[j * n + i] = within + persistent;
         }
     }
+    out
+}
+
+/// Strain, `n_runs x n_gauges`, that each independent error of the influence makes, as read with `members` on.
+fn scattered(frame: &StrainFrame, members: &[Member<'_>], state: &StrainState) -> Vec<Vec<f64>> {
+    let [n_g, n_r, n_c] = state.shape;
+    let strain = |error: &[f64], columns: std::ops::Range<usize>| {
+        let mut out = Vec::with_capacity(n_r * n_g);
+        for run in 0..n_r {
+            let acts = &state.columns[run * n_c..(run + 1) * n_c];
+            let of = |g: usize| columns.clone().map(|c| error[g * n_c + c] * acts[c]).sum();
+            let mut row: Vec<f64> = (0..n_g).map(of).collect();
+            read_all(frame, members, run, &mut row, Part::Linear);
+            out.extend(row);
+        }
+        out
+    };
+    let mut out = Vec::new();
+    for s in &frame.scatter {
+        match s {
+            Scatter::Together(error) => out.push(strain(error, 0..n_c)),
+            Scatter::Single(error) => out.extend((0..n_c).map(|c| strain(error, c..c + 1))),
+        }
+    }
+    out.retain(|e| e.iter().any(|v| *v != 0.0));
     out
 }

@@ -69,6 +69,15 @@ pub enum PayloadWeight {
     Missing,
 }
 
+/// An error of every gauge's influence, one standard deviation, `n_gauges x n_columns`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Scatter {
+    /// The columns of a gauge err together: its angle, its place.
+    Together(Vec<f64>),
+    /// Each coefficient errs by itself: the mesh.
+    Single(Vec<f64>),
+}
+
 /// Number of payload columns that follow the load columns: weight, weight times dx, times dy, times dx dy.
 pub const N_PAYLOAD_COLUMNS: usize = 4;
 
@@ -113,8 +122,11 @@ pub struct StrainFrame {
     pub load_noise: f64,
     /// Model uncertainty, relative to the predicted strain of a gauge and common to all its runs, 1 sd.
     pub model_rel: f64,
-    /// Model uncertainty of single influence coefficients, relative, 1 sd: what a coarse mesh does besides a common factor.
-    pub entry_rel: f64,
+    /// Influence on the analyst's own mesh, where `influence` comes from a finer one: the gap is judged on the analyst's, effects on the finer.
+    pub as_modelled: Option<Vec<f64>>,
+    /// What else leaves each gauge's influence in doubt, each an error of one standard deviation (`n_gauges x n_columns`), independent
+    /// from gauge to gauge and common to all runs: an angle, a place, an influence coefficient on the mesh.
+    pub scatter: Vec<Scatter>,
 }
 
 impl StrainFrame {
@@ -138,10 +150,19 @@ impl StrainFrame {
         self.load_names.len() + N_PAYLOAD_COLUMNS
     }
 
+    /// The same problem with the analyst's own mesh.
+    pub fn as_modelled(&self) -> Self {
+        let mut own = self.clone();
+        if let Some(influence) = own.as_modelled.take() {
+            own.influence = influence;
+        }
+        own
+    }
+
     /// Gauges that share the place of `gauge`: the legs of its rosette, itself included, in file order.
     pub fn rosette(&self, gauge: usize) -> Vec<usize> {
-        /// Legs of a stacked or planar rosette lie within a few millimetres.
-        const SAME_PLACE_M: f64 = 0.005;
+        /// Legs of a stacked or planar rosette are drawn at one place; the two sides of a plate lie further apart.
+        const SAME_PLACE_M: f64 = 0.0025;
         let Some(here) = self.gauges.get(gauge).and_then(|g| g.position) else {
             return vec![gauge];
         };

@@ -123,14 +123,17 @@ pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
     if n == 0 { 0.0 } else { (sum / n as f64).sqrt() }
 }
 
-/// Gap over all and by gauge. Without effects nothing is found anew in a run: before and after are the same, the floor is that of
-/// the model as it stands.
+/// Gap over all and by gauge, of the model on the analyst's own mesh. Without effects nothing is found anew in a run: before and after
+/// are the same, the floor is that of the model as it stands. What the mesh makes belongs to the floor.
 pub fn gap(
-    frame: &StrainFrame,
+    finer: &StrainFrame,
     members: &[Member<'_>],
     unknown: &[SizedAmplitudes],
 ) -> (Gap, Vec<ChannelGap>) {
+    let frame = &finer.as_modelled();
     let all = Selection::of_runs(frame, &frame.observations.proof_runs());
+    let on = |f: &StrainFrame| all.pick(&predict(f, members), f.n_gauges());
+    let mesh: Vec<f64> = on(finer).iter().zip(on(frame)).map(|(a, b)| a - b).collect();
     let before = plain_residual(frame, &[], &all);
     let readings = all.pick(&frame.observations.values, frame.n_gauges());
     let (after, variance) = if members.is_empty() {
@@ -141,7 +144,11 @@ pub fn gap(
         let (_, after, variance) = held_out_residual(frame, members, unknown);
         (after, variance)
     };
-    let floor: Vec<f64> = variance.iter().map(|v: &f64| v.max(0.0).sqrt()).collect();
+    let floor: Vec<f64> = variance
+        .iter()
+        .zip(&mesh)
+        .map(|(v, m): (&f64, &f64)| (v.max(0.0) + m * m).sqrt())
+        .collect();
     let scale = rms(readings.iter().copied());
     let relative = |v: &[f64]| {
         if scale > 0.0 {
@@ -154,6 +161,7 @@ pub fn gap(
         before: relative(&before),
         after: relative(&after),
         floor: relative(&floor),
+        mesh: relative(&mesh),
     };
     let of = |g: usize, v: &[f64]| {
         rms(all
@@ -185,7 +193,7 @@ pub fn loads_before_after(
     let mut out = Vec::new();
     for run in frame.observations.proof_runs() {
         let (Some(before), Some(after)) = (
-            recover(frame, &[], &[], run),
+            recover(&frame.as_modelled(), &[], &[], run),
             recover(frame, members, unknown, run),
         ) else {
             continue;

@@ -19,7 +19,7 @@ pub use detect::DECISIVE;
 pub use examine::examine;
 pub use extended::{Correction, corrected_readings, extended_influence};
 pub use frame::{
-    GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, PayloadWeight, PlaneStrainRow,
+    GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, PayloadWeight, PlaneStrainRow, Scatter,
     StiffnessSignature, StrainFrame, WheelForces, Wiring,
 };
 pub use gap::{gap, held_out_residual, loads_before_after};

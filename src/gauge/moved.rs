@@ -1,0 +1,68 @@
+//! What a gauge reads more when it is glued a little way off.
+
+use super::arms::{Arm, Gauge, Spot};
+use super::grid_average::about_centre;
+use super::on_refined::turned;
+use super::surface::centre;
+use crate::fe::shell_frame::{ShellPlace, shell_axes};
+use crate::model::{Model, ShellIx, Vec3};
+
+/// A gauge that reads the change of `gauge` per unit of length (that of the deck) when all its arms move along `direction` (basic frame,
+/// laid onto each arm's shell): the gradient that fits the neighbours of the shell best. `None` for arms on bars, at corners of shells, and
+/// on shells without neighbours in that direction.
+pub fn moved(gauge: &Gauge, model: &Model, direction: Vec3) -> Option<Gauge> {
+    let mut arms = Vec::new();
+    for arm in &gauge.arms {
+        let Spot::Shell {
+            shell,
+            surface,
+            place: ShellPlace::Centre,
+        } = arm.spot
+        else {
+            return None;
+        };
+        let here = model.shells.get(shell.us())?;
+        let normal = shell_axes(model, here, ShellPlace::Centre)?.row(2).transpose();
+        let axis = (direction - normal * direction.dot(&normal)).try_normalize(0.0)?;
+        let weights = about_centre(model, shell, centre(model, here)? + axis, axis);
+        if weights.len() < 2 {
+            return None;
+        }
+        for (ix, w) in weights {
+            // At its own shell the value itself is not part of the change.
+            let w = if ix == shell { w - 1.0 } else { w };
+            arms.push(Arm {
+                spot: Spot::Shell {
+                    shell: ix,
+                    surface: same_side(model, shell, ix, surface)?,
+                    place: ShellPlace::Centre,
+                },
+                coefficient: turned(model, (shell, ShellPlace::Centre), model, (ix, ShellPlace::Centre), arm.coefficient)?
+                    .map(|c| w * c),
+            });
+        }
+    }
+    Some(Gauge {
+        arms,
+        ..gauge.clone()
+    })
+}
+
+/// The side of `other` that faces where `surface` of `shell` does.
+fn same_side(
+    model: &Model,
+    shell: ShellIx,
+    other: ShellIx,
+    surface: crate::fe::strain_tensor::Surface,
+) -> Option<crate::fe::strain_tensor::Surface> {
+    use crate::fe::strain_tensor::Surface::{Bottom, Top};
+    let z = |ix: ShellIx| {
+        let s = model.shells.get(ix.us())?;
+        Some(shell_axes(model, s, ShellPlace::Centre)?.row(2).transpose())
+    };
+    Some(match (z(shell)?.dot(&z(other)?) >= 0.0, surface) {
+        (true, s) => s,
+        (false, Top) => Bottom,
+        (false, Bottom) => Top,
+    })
+}

@@ -1,0 +1,156 @@
+//! The same model on a mesh half as wide: how much of an answer is the mesh.
+
+use super::types::{FrameIx, Grid, GridIx, Model, Shell, ShellIx};
+use nastran::cards::{Dofs, ShellShape};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A model whose shells are divided in four, and where each went.
+#[derive(Clone, Debug)]
+pub struct RefinedModel {
+    /// The finer model. Load and temperature sets are left out: they would have to be divided too.
+    pub model: Model,
+    /// By shell of the coarse model: the shells it was divided into. Child k of a quadrilateral has its corner k, child k of a
+    /// triangle (k < 3) too; a triangle's fourth is the middle one.
+    pub children: Vec<[ShellIx; 4]>,
+}
+
+impl Model {
+    /// Every shell divided in four at the middles of its sides; `None` where that would tear the mesh or leave it as it is: solids, shear
+    /// panels, shells with mid-side grids, bars along the sides of shells, no shells at all.
+    ///
+    /// Grids keep their index, so loads, masses and rigid elements stay where they are. New grids lie on the straight sides: a curved
+    /// surface keeps its facets. They are constrained where both ends of their side are.
+    pub fn refined(&self) -> Option<RefinedModel> {
+        if !self.can_be_refined() {
+            return None;
+        }
+        let mut builder = Builder {
+            grids: self.grids.clone(),
+            middles: BTreeMap::new(),
+            next_id: self.grids.last()?.id,
+        };
+        let mut shells = Vec::with_capacity(self.shells.len().checked_mul(4)?);
+        let mut children = Vec::with_capacity(self.shells.len());
+        let mut next_id = self.shells.last()?.id;
+        for shell in &self.shells {
+            let parts = builder.divide(shell)?;
+            let mut here = [ShellIx(0); 4];
+            for (slot, (grids, thickness)) in here.iter_mut().zip(parts) {
+                next_id = next_id.checked_add(1)?;
+                *slot = ShellIx(u32::try_from(shells.len()).ok()?);
+                shells.push(Shell {
+                    id: next_id,
+                    grids,
+                    thickness,
+                    ..*shell
+                });
+            }
+            children.push(here);
+        }
+        let model = Self {
+            grids: builder.grids,
+            shells,
+            load_sets: Vec::new(),
+            temperatures: Vec::new(),
+            ..self.clone()
+        };
+        Some(RefinedModel { model, children })
+    }
+
+    fn can_be_refined(&self) -> bool {
+        let plain = |s: &Shell| {
+            use ShellShape::{Quad4, QuadR, Tria3, TriaR};
+            matches!(s.shape, Quad4 | QuadR | Tria3 | TriaR)
+        };
+        if self.shells.is_empty() || !self.solids.is_empty() || !self.shear_panels.is_empty() {
+            return false;
+        }
+        let mut sides = BTreeSet::new();
+        for s in &self.shells {
+            let n = s.shape.n_corners();
+            for i in 0..n {
+                sides.insert(side(s.grids[i], s.grids[(i + 1) % n]));
+            }
+        }
+        let along = |a: GridIx, b: GridIx| sides.contains(&side(a, b));
+        self.shells.iter().all(plain)
+            && !self.beams.iter().any(|b| along(b.grids[0], b.grids[1]))
+            && !self.rods.iter().any(|r| along(r.grids[0], r.grids[1]))
+    }
+}
+
+fn side(a: GridIx, b: GridIx) -> (GridIx, GridIx) {
+    (a.min(b), a.max(b))
+}
+
+struct Builder {
+    grids: Vec<Grid>,
+    middles: BTreeMap<(GridIx, GridIx), GridIx>,
+    next_id: u32,
+}
+
+/// Grids and corner thicknesses of a child.
+type Part = ([GridIx; 8], [f64; 4]);
+
+impl Builder {
+    fn add(&mut self, of: &[GridIx]) -> Option<GridIx> {
+        let parents: Option<Vec<Grid>> = of.iter().map(|g| self.grids.get(g.us()).copied()).collect();
+        let parents = parents?;
+        let first = *parents.first()?;
+        let sum = parents.iter().fold(first.x * 0.0, |s, g| s + g.x);
+        self.next_id = self.next_id.checked_add(1)?;
+        let same_frame = parents.iter().all(|g| g.cd == first.cd);
+        let constrained = same_frame && parents.iter().all(|g| g.ps == first.ps);
+        let ix = GridIx(u32::try_from(self.grids.len()).ok()?);
+        self.grids.push(Grid {
+            id: self.next_id,
+            x: sum / parents.len() as f64,
+            cd: if constrained { first.cd } else { FrameIx(0) },
+            ps: if constrained { first.ps } else { Dofs(0) },
+            at: first.at,
+        });
+        Some(ix)
+    }
+
+    fn middle(&mut self, a: GridIx, b: GridIx) -> Option<GridIx> {
+        if let Some(&known) = self.middles.get(&side(a, b)) {
+            return Some(known);
+        }
+        let made = self.add(&[a, b])?;
+        self.middles.insert(side(a, b), made);
+        Some(made)
+    }
+
+    fn divide(&mut self, shell: &Shell) -> Option<[Part; 4]> {
+        let [p0, p1, p2, p3, ..] = shell.grids;
+        let [t0, t1, t2, t3] = shell.thickness;
+        let mean = |a: f64, b: f64| 0.5 * (a + b);
+        let four = |g: [GridIx; 4]| [g[0], g[1], g[2], g[3], g[0], g[1], g[2], g[3]];
+        if shell.shape.n_corners() == 3 {
+            let (a, b, c) = (self.middle(p0, p1)?, self.middle(p1, p2)?, self.middle(p2, p0)?);
+            let (ta, tb, tc) = (mean(t0, t1), mean(t1, t2), mean(t2, t0));
+            let three = |g: [GridIx; 3]| [g[0], g[1], g[2], g[0], g[1], g[2], g[0], g[1]];
+            return Some([
+                (three([p0, a, c]), [t0, ta, tc, tc]),
+                (three([a, p1, b]), [ta, t1, tb, tb]),
+                (three([c, b, p2]), [tc, tb, t2, t2]),
+                (three([b, c, a]), [tb, tc, ta, ta]),
+            ]);
+        }
+        let (a, b, c, d) = (
+            self.middle(p0, p1)?,
+            self.middle(p1, p2)?,
+            self.middle(p2, p3)?,
+            self.middle(p3, p0)?,
+        );
+        let m = self.add(&[p0, p1, p2, p3])?;
+        let (ta, tb, tc, td) = (mean(t0, t1), mean(t1, t2), mean(t2, t3), mean(t3, t0));
+        let tm = 0.25 * (t0 + t1 + t2 + t3);
+        Some([
+            (four([p0, a, m, d]), [t0, ta, tm, td]),
+            (four([a, p1, b, m]), [ta, t1, tb, tm]),
+            (four([m, b, p2, c]), [tm, tb, t2, tc]),
+            (four([d, m, c, p3]), [td, tm, tc, t3]),
+        ])
+    }
+}
