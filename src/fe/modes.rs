@@ -73,7 +73,8 @@ pub fn free_modes(
     let mut values = Vec::new();
     for _ in 0..ROUNDS {
         let forces: Vec<Vec<[f64; 6]>> = shapes.par_iter().map(|u| mass.times(u)).collect();
-        let mut columns = vec![0.0; n * p];
+        // Shapes that turned out alike were dropped.
+        let mut columns = vec![0.0; n * shapes.len()];
         for (f, column) in forces.iter().zip(columns.chunks_exact_mut(n.max(1))) {
             system.pack(&prepared, f.clone(), column)?;
         }

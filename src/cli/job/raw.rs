@@ -234,6 +234,15 @@ pub(super) struct RawReconcile {
     #[serde(rename = "thermal_microstrain_per_degC")]
     pub thermal: BTreeMap<Spanned<String>, f64>,
     pub effects: S<Texts>,
+    pub joints: Option<Ids>,
+    pub tolerance: Option<RawGluing>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawGluing {
+    pub angle_deg: S<f64>,
+    pub position_mm: S<f64>,
 }
 
 #[derive(Deserialize, Default, Debug)]

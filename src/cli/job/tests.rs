@@ -201,6 +201,8 @@ zones = { L4 = [14] }
 places = { rear = 9204 }
 thermal_microstrain_per_degC = { quarter = 1.404, full-bending = 0.0 }
 effects = "all"
+joints = [7]
+tolerance = { angle_deg = 1.0, position_mm = 2.0 }
 [sensitivity]
 file = "A_vertical.csv"
 per = { force = "kN", moment = "kN m", mass = "kg" }

@@ -572,6 +572,12 @@ pub struct Reconcile {
     pub thermal_microstrain_per_degc: BTreeMap<String, f64>,
     /// Effect ids; `None`: all.
     pub effects: Option<Vec<String>>,
+    /// Bushes whose stiffness may be wrong; `None`: all, where they are few.
+    pub joints: Option<Ids>,
+    /// Gluing tolerance of angles, degrees, 1 sd.
+    pub angle_tolerance_deg: Option<f64>,
+    /// Gluing tolerance of places, mm, 1 sd.
+    pub position_tolerance_mm: Option<f64>,
     /// Line of the job.
     pub line: u32,
 }

@@ -8,10 +8,9 @@ use crate::gauge::{Gauge, moved};
 use crate::model::Model;
 use crate::reconcile::strain::Scatter;
 
-/// A technician glues to a degree, 1 sd, where the job states no tolerance.
-const ANGLE_DEG: f64 = 1.0;
-/// And to two millimetres, 1 sd.
-const PLACE_MM: f64 = 2.0;
+/// A technician glues to half a degree, 1 sd, where the job states no tolerance. Of places nothing is assumed: near a bracket a
+/// millimetre is worth several percent, and a floor that high hides everything else.
+const ANGLE_DEG: f64 = 0.5;
 /// Of what halving the mesh changed, this much is still to come: errors fall with the square of the width, so a third of it.
 const STILL_TO_COME: f64 = 1.0 / 3.0;
 /// Where no finer mesh was solved: share of the stated model uncertainty that single coefficients have besides the common factor.
@@ -63,18 +62,24 @@ pub(super) fn background(
     if model_rel == 0.0 {
         return Vec::new();
     }
-    let stated = job.placement.angle_tolerance_deg;
-    let angle = if stated > 0.0 { stated } else { ANGLE_DEG }.to_radians();
+    let reconcile = job.reconcile.as_ref();
+    let placement = Some(job.placement.angle_tolerance_deg).filter(|a| *a > 0.0);
+    let angle = reconcile.and_then(|r| r.angle_tolerance_deg).or(placement);
+    let angle = angle.unwrap_or(ANGLE_DEG).to_radians();
+    let place = reconcile.and_then(|r| r.position_tolerance_mm).unwrap_or(0.0);
     // Along the axis of a gauge the derivative by its angle is the shear there.
     let turned = part.tensors.iter().flatten().map(|t| angle * t[2]).collect();
     let mut out = vec![Scatter::Together(turned)];
     for gradient in per_mm {
-        out.push(Scatter::Together(gradient.iter().map(|v| PLACE_MM * v).collect()));
+        out.push(Scatter::Together(gradient.iter().map(|v| place * v).collect()));
     }
-    let mesh = part.influence.iter().enumerate().map(|(i, a)| match own.and_then(|o| o.get(i)) {
-        Some(own) => STILL_TO_COME * (a - own),
-        None => ENTRY_SHARE * model_rel * a,
+    out.push(match own {
+        // The remainder has the pattern of what was found: loads that cancel in the strain cancel in its error.
+        Some(own) => {
+            let rest = part.influence.iter().zip(own);
+            Scatter::Together(rest.map(|(a, own)| STILL_TO_COME * (a - own)).collect())
+        }
+        None => Scatter::Single(part.influence.iter().map(|a| ENTRY_SHARE * model_rel * a).collect()),
     });
-    out.push(Scatter::Single(mesh.collect()));
     out
 }

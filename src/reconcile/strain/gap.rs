@@ -49,7 +49,43 @@ fn run_patterns(
     out
 }
 
-/// Residuals of the proof runs with `members` on, and the variance that noise leaves in each.
+/// What the errors that stay from run to run (influence, gains) make of each reading of `proof`, mean and variance, as the fit runs tell,
+/// and with the variance of noise and wheel forces in it: the conditional Gaussian of the proof runs given the fit runs.
+fn learned(
+    frame: &StrainFrame,
+    members: &[Member<'_>],
+    unknown: &[SizedAmplitudes],
+    proof: &Selection,
+) -> (Vec<f64>, Vec<f64>) {
+    let n = proof.len();
+    let alone = covariance(frame, members, proof, &[]);
+    let prior: Vec<f64> = (0..n).map(|i| alone[i * n + i]).collect();
+    let nothing = (vec![0.0; n], prior.clone());
+    let fit_runs = frame.observations.fit_runs();
+    if frame.observations.proof_runs() == fit_runs {
+        return nothing;
+    }
+    let fit = Selection::of_runs(frame, &fit_runs);
+    let Some(precision) = Precision::of(&covariance(frame, members, &fit, unknown), fit.len())
+    else {
+        return nothing;
+    };
+    let both = Selection([fit.0.as_slice(), proof.0.as_slice()].concat());
+    let joint = covariance(frame, members, &both, unknown);
+    let weighted = precision.apply(&plain_residual(frame, members, &fit));
+    let (mut mean, mut variance) = (Vec::with_capacity(n), Vec::with_capacity(n));
+    for (i, before) in prior.iter().enumerate() {
+        let row = (fit.len() + i) * both.len();
+        let shared = &joint[row..row + fit.len()];
+        mean.push(shared.iter().zip(&weighted).map(|(a, b)| a * b).sum());
+        let told = precision.apply(shared);
+        variance.push(before - shared.iter().zip(&told).map(|(a, b)| a * b).sum::<f64>());
+    }
+    (mean, variance)
+}
+
+/// Residuals of the proof runs with `members` on, and by how much the variance of each falls when the errors of the wheel forces are
+/// found from the other half of the gauges.
 ///
 /// What differs from run to run (amplitudes of the effects, the errors of the wheel forces) is found from the odd gauges in file order
 /// and judged on the even ones, and the other way round.
@@ -62,8 +98,7 @@ pub fn held_out_residual(
     let mut residual = plain_residual(frame, members, &all);
     let plain = residual.clone();
     let n = all.len();
-    let allowed = covariance(frame, members, &all, &[]);
-    let mut floor: Vec<f64> = (0..n).map(|i| allowed[i * n + i]).collect();
+    let mut found = vec![0.0; n];
     let patterns = run_patterns(frame, members, unknown);
     for &run in &frame.observations.proof_runs() {
         for half in [0, 1] {
@@ -106,11 +141,11 @@ pub fn held_out_residual(
                         .sum::<f64>()
                 };
                 let c: Vec<f64> = used.iter().map(shared).collect();
-                floor[i] -= c.iter().zip(p.apply(&c)).map(|(a, b)| a * b).sum::<f64>();
+                found[i] += c.iter().zip(p.apply(&c)).map(|(a, b)| a * b).sum::<f64>();
             }
         }
     }
-    (all, residual, floor)
+    (all, residual, found)
 }
 
 /// Root mean square of some numbers; zero of none.
@@ -124,7 +159,7 @@ pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Gap over all and by gauge, of the model on the analyst's own mesh. Without effects nothing is found anew in a run: before and after
-/// are the same, the floor is that of the model as it stands. What the mesh makes belongs to the floor.
+/// are the same. The floor holds noise, errors of the influence as the fit runs tell of them, and the mesh.
 pub fn gap(
     finer: &StrainFrame,
     members: &[Member<'_>],
@@ -136,18 +171,18 @@ pub fn gap(
     let mesh: Vec<f64> = on(finer).iter().zip(on(frame)).map(|(a, b)| a - b).collect();
     let before = plain_residual(frame, &[], &all);
     let readings = all.pick(&frame.observations.values, frame.n_gauges());
-    let (after, variance) = if members.is_empty() {
-        let n = all.len();
-        let allowed = covariance(frame, &[], &all, &[]);
-        (before.clone(), (0..n).map(|i| allowed[i * n + i]).collect())
+    let (after, found) = if members.is_empty() {
+        (before.clone(), vec![0.0; all.len()])
     } else {
-        let (_, after, variance) = held_out_residual(frame, members, unknown);
-        (after, variance)
+        let (_, after, found) = held_out_residual(frame, members, unknown);
+        (after, found)
     };
-    let floor: Vec<f64> = variance
-        .iter()
-        .zip(&mesh)
-        .map(|(v, m): (&f64, &f64)| (v.max(0.0) + m * m).sqrt())
+    let (mean, variance) = learned(finer, members, unknown, &all);
+    let floor: Vec<f64> = (0..all.len())
+        .map(|i| {
+            let known = (variance[i] - found[i]).max(0.0);
+            (known + (mean[i] + mesh[i]).powi(2)).sqrt()
+        })
         .collect();
     let scale = rms(readings.iter().copied());
     let relative = |v: &[f64]| {

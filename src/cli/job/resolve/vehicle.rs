@@ -97,6 +97,10 @@ pub(super) fn reconcile(
     for bridge in raw.thermal.keys() {
         c.choose_at(bridge, "reconcile.thermal_microstrain_per_degC", &bridges);
     }
+    let gluing = raw.tolerance.as_ref();
+    let angle = gluing.and_then(|t| c.at_least_zero(&t.angle_deg, "reconcile.tolerance.angle_deg"));
+    let place =
+        gluing.and_then(|t| c.at_least_zero(&t.position_mm, "reconcile.tolerance.position_mm"));
     Some(Reconcile {
         path: c.choose(&raw.path, "reconcile.path", &paths, ReconcilePath::Static),
         zones: raw.zones.clone(),
@@ -107,6 +111,9 @@ pub(super) fn reconcile(
             .map(|(k, v)| (k.get_ref().clone(), *v))
             .collect(),
         effects,
+        joints: raw.joints.clone(),
+        angle_tolerance_deg: angle,
+        position_tolerance_mm: place,
         line: c.line(section),
     })
 }
