@@ -389,3 +389,45 @@ fn a_gauge_on_a_bar_reads_at_its_recovery_point_and_station() {
     assert!((at(0, 0.25, Bridge::Quarter) - 1.5e-6).abs() < 1e-18);
     assert!((at(2, 1.0, Bridge::Quarter) + 3e-6).abs() < 1e-18);
 }
+
+#[test]
+fn a_gauge_on_the_refined_mesh_reads_the_same_even_strain_and_the_same_mean_of_a_linear_one() {
+    for start in 0..4 {
+        let m = plate(2, 2, start);
+        let fine = m.refined().unwrap();
+        let even = field(&fine.model, CornerRows::Absent, |_, _| E);
+        let linear = |x: Vec3, z: f64| E.map(|e| e * (1.0 + 0.03 * x.x - 0.02 * x.y) * z);
+        let bent = field(&fine.model, CornerRows::Absent, linear);
+        for bridge in [Bridge::Quarter, Bridge::Shear] {
+            let spec = GaugeSpec {
+                direction: Some(Vec3::new(1.0, 0.4, 0.0)),
+                surface: Some(Surface::Bottom),
+                bridge,
+                ..GaugeSpec::on("a", ShellIx(0))
+            };
+            let (coarse, _) = build(&m, &spec, CornerRows::Absent).unwrap();
+            let on = on_refined(&coarse[0], &m, &fine).unwrap();
+            let same = read(&m, &spec, CornerRows::Absent, &field(&m, CornerRows::Absent, |_, _| E));
+            assert!((reading(&on, &even).unwrap() - same[0]).abs() < 1e-15);
+            let same = read(&m, &spec, CornerRows::Absent, &field(&m, CornerRows::Absent, linear));
+            assert!((reading(&on, &bent).unwrap() - same[0]).abs() < 1e-15);
+        }
+    }
+}
+
+#[test]
+fn a_moved_gauge_reads_the_slope_of_a_linear_field_along_the_way_it_moves() {
+    let m = plate(3, 3, 0);
+    let slope = |x: Vec3, _: f64| E.map(|e| e * (0.03 * x.x - 0.02 * x.y));
+    let case = field(&m, CornerRows::Absent, slope);
+    // The middle of nine: neighbours on all sides.
+    let spec = GaugeSpec {
+        direction: Some(Vec3::x()),
+        ..GaugeSpec::on("a", ShellIx(4))
+    };
+    let (gauges, _) = build(&m, &spec, CornerRows::Absent).unwrap();
+    for (way, expected) in [(Vec3::x(), 0.03), (Vec3::y(), -0.02), (-Vec3::x(), -0.03)] {
+        let change = reading(&moved(&gauges[0], &m, way).unwrap(), &case).unwrap();
+        assert!((change - E[0] * expected).abs() < 1e-12, "{way}: {change}");
+    }
+}

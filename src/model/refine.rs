@@ -107,7 +107,7 @@ impl Builder {
             x: sum / parents.len() as f64,
             cd: if constrained { first.cd } else { FrameIx(0) },
             ps: if constrained { first.ps } else { Dofs(0) },
-            at: first.at,
+            ..first
         });
         Some(ix)
     }

@@ -415,3 +415,33 @@ fn cards_that_the_model_does_not_carry_are_told_and_their_loads_are_no_part_of_a
     }
     assert_eq!(m.load_sets.len(), 2);
 }
+
+#[test]
+fn a_refined_mesh_weighs_the_same_and_divides_every_shell_at_the_middles_of_its_sides() {
+    let (m, _) = model(&format!(
+        "{QUAD}GRID,5,,2.,0.,0.\nCQUAD4,1,1,1,2,3,4\nCTRIA3,2,1,2,5,3\nCONM2,9,2,,5."
+    ));
+    let fine = m.refined().unwrap();
+    // A square and a triangle on one of its sides: five corners, seven sides, a middle of the square.
+    assert_eq!(fine.model.grids.len(), 5 + 7 + 1 - 1);
+    assert_eq!(fine.model.shells.len(), 8);
+    let (before, after) = (m.weight(), fine.model.weight());
+    assert!((before.mass - after.mass).abs() < 1e-12 * before.mass);
+    assert!((before.cg - after.cg).amax() < 1e-12);
+    for (parent, children) in m.shells.iter().zip(&fine.children) {
+        for (k, child) in children.iter().enumerate().take(parent.shape.n_corners()) {
+            assert_eq!(fine.model.shells[child.us()].grids[k], parent.grids[k]);
+        }
+    }
+    assert!(fine.model.grids.windows(2).all(|g| g[0].id < g[1].id));
+}
+
+#[test]
+fn a_mesh_with_bars_along_its_shells_is_not_refined() {
+    let bar = "CROD,7,3,1,2\nPROD,3,1,1.-4";
+    let (m, _) = model(&format!("{QUAD}CQUAD4,1,1,1,2,3,4\n{bar}"));
+    assert!(m.refined().is_none());
+    // Across, it ties two corners that share no side.
+    let (m, _) = model(&format!("{QUAD}CQUAD4,1,1,1,2,3,4\n{}", bar.replace("1,2", "1,3")));
+    assert!(m.refined().is_some());
+}

@@ -11,23 +11,20 @@ use crate::fe::{Solution, SolveOptions, UnitLoad, solve_unit_loads};
 use crate::gauge::{Gauge, reading};
 use crate::model::{GridIx, Model, Vec3};
 use crate::reconcile::strain::{
-    MassSignature, N_PAYLOAD_COLUMNS, PlaneStrainRow, StiffnessSignature, Wiring,
+    MassSignature, N_PAYLOAD_COLUMNS, PlaneStrainRow, Wiring,
 };
 use crate::units::Quantity;
-use nastran::bdf::{Edits, Field, format_card, write_edited};
-use rayon::prelude::*;
 
-/// Thickness change at which a zone's signature is computed first, percent.
-const FIRST_PERCENT: f64 = 10.0;
 /// Strain in microstrain.
 const MICRO: f64 = 1e6;
 
 /// The model with everything needed to solve it again.
 pub(super) struct DeckFrame {
     pub(super) fields: Fields,
-    gauges: Vec<Gauge>,
-    columns: Vec<UnitLoad>,
-    base: Vec<f64>,
+    pub(super) gauges: Vec<Gauge>,
+    pub(super) columns: Vec<UnitLoad>,
+    /// Influence on the mesh as it stands.
+    pub(super) base: Vec<f64>,
 }
 
 /// Solves all signatures. `channels` are the gauges in the order of the strain file.
@@ -166,148 +163,12 @@ pub(super) fn read(
         columns,
         base,
     };
-    let zones: Vec<String> = reconcile
-        .iter()
-        .flat_map(|r| r.zones.keys().cloned())
-        .collect();
-    let solved: Result<Vec<Vec<f64>>, Faults> = session.stage("solve zones", |_| {
-        zones
-            .par_iter()
-            .map(|z| deck.stiffness_change(job, z, FIRST_PERCENT))
-            .collect()
-    });
-    for (zone, change) in zones.into_iter().zip(solved?) {
-        part.stiffness.push(StiffnessSignature {
-            id: format!("rail_stiffness:{zone}"),
-            at_percent: vec![(FIRST_PERCENT, change)],
-            prior_percent: 15.0,
-        });
-    }
+    part.stiffness = session.stage("solve zones", |_| deck.signatures(job))?;
     Ok((part, deck))
 }
 
 /// The frame counts in kN.
 const KILO: f64 = 1e3;
-
-impl DeckFrame {
-    /// Change of the influence matrix when the thickness of `zone` grows by `percent`, from a solution of the changed model.
-    pub(super) fn stiffness_change(
-        &self,
-        job: &Job,
-        zone: &str,
-        percent: f64,
-    ) -> Result<Vec<f64>, Faults> {
-        let Some(ids) = job.reconcile.as_ref().and_then(|r| r.zones.get(zone)) else {
-            return Err(vec![Fault::of(
-                &*job.file,
-                "reconcile.zones",
-                format!("no zone `{zone}`"),
-                "name its properties",
-            )]);
-        };
-        let factor = 1.0 + percent / 100.0;
-        let mut deck = self.fields.deck.deck.clone();
-        let mut changed = 0;
-        for p in deck
-            .cards
-            .pshells
-            .iter_mut()
-            .filter(|p| ids.contains(p.card.id))
-        {
-            p.card.t = p.card.t.map(|t| t * factor);
-            p.card.z1 = p.card.z1.map(|z| z * factor);
-            p.card.z2 = p.card.z2.map(|z| z * factor);
-            changed += 1;
-        }
-        if changed == 0 {
-            let wrong = format!("zone `{zone}` names no PSHELL of the deck");
-            return Err(vec![Fault::of(
-                &*job.file,
-                "reconcile.zones",
-                wrong,
-                "name PSHELL ids",
-            )]);
-        }
-        let (model, _) = Model::from_deck(&deck);
-        let solution = solve(job, &model, &self.columns)?;
-        let now = influence(job, &model, &self.gauges, &solution, self.columns.len());
-        Ok(now.iter().zip(&self.base).map(|(a, b)| a - b).collect())
-    }
-}
-
-impl DeckFrame {
-    /// The deck with zones thickened and masses added, `None` where it is spread over several files or nothing changes.
-    pub(super) fn extended(
-        &self,
-        job: &Job,
-        zones: &[(String, f64)],
-        masses: &[(String, f64)],
-    ) -> Option<Vec<u8>> {
-        let deck = &self.fields.deck.deck;
-        let reconcile = job.reconcile.as_ref()?;
-        if deck.sources.len() != 1 || (zones.is_empty() && masses.is_empty()) {
-            return None;
-        }
-        let mut edits = Edits::default();
-        for (zone, percent) in zones {
-            let ids = reconcile.zones.get(zone)?;
-            let factor = 1.0 + percent / 100.0;
-            for p in deck
-                .cards
-                .pshells
-                .iter()
-                .filter(|p| ids.contains(p.card.id))
-            {
-                let c = &p.card;
-                let scaled = |v: Option<f64>| v.map(|v| v * factor);
-                let fields = [
-                    Field::from(c.id),
-                    c.mid1.into(),
-                    scaled(c.t).into(),
-                    c.mid2.into(),
-                    c.bending_ratio.into(),
-                    c.mid3.into(),
-                    c.shear_ratio.into(),
-                    c.nsm.into(),
-                    scaled(c.z1).into(),
-                    scaled(c.z2).into(),
-                    c.mid4.into(),
-                ];
-                edits
-                    .replace_card(deck, p.at, &format_card("PSHELL", &fields))
-                    .ok()?;
-            }
-        }
-        let highest = self
-            .fields
-            .model()
-            .shells
-            .iter()
-            .map(|s| s.id)
-            .max()
-            .unwrap_or(0);
-        let taken = deck
-            .cards
-            .conm2s
-            .iter()
-            .map(|c| c.card.id)
-            .max()
-            .unwrap_or(0)
-            .max(highest);
-        for (k, (place, kilogram)) in (1u32..).zip(masses) {
-            let grid = *reconcile.places.get(place)?;
-            let mass = kilogram / job.units.mass_kg();
-            let fields = [
-                Field::from(taken.checked_add(k)?),
-                grid.into(),
-                Field::Blank,
-                mass.into(),
-            ];
-            edits.insert_cards(deck, &format_card("CONM2", &fields));
-        }
-        write_edited(deck, &edits).into_iter().next().map(|f| f.1)
-    }
-}
 
 /// Channels in the order of the strain file.
 fn in_order(job: &Job, laid: Vec<Gauge>, channels: &[String]) -> Result<Vec<Gauge>, Faults> {
@@ -366,7 +227,7 @@ fn readings(gauges: &[Gauge], solution: &Solution, range: std::ops::Range<usize>
     out
 }
 
-fn solve(job: &Job, model: &Model, loads: &[UnitLoad]) -> Result<Solution, Faults> {
+pub(super) fn solve(job: &Job, model: &Model, loads: &[UnitLoad]) -> Result<Solution, Faults> {
     let remedy = "repair the deck, or give S as CSV files in `[sensitivity]`";
     let solved = solve_unit_loads(model, loads, &SolveOptions::default());
     solved

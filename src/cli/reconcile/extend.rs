@@ -4,6 +4,7 @@
 //! were left out become columns of S, the payload's place goes into `runs_extended.csv`.
 
 use super::deck_frame::DeckFrame;
+use super::extended_deck::NamedStiffness;
 use super::relative::relative;
 use crate::cli::Session;
 use crate::cli::fault::{Fault, Faults};
@@ -130,10 +131,10 @@ pub(super) fn write(
             p.insert("weight_in_model".into(), Value::Boolean(true));
         }
     }
-    let zones: Vec<(String, f64)> = extensions
+    let stiffness: Vec<NamedStiffness> = extensions
         .iter()
         .filter_map(|e| match e {
-            Extension::Stiffness { place, percent, .. } => Some((place.clone(), *percent)),
+            Extension::Stiffness { id, place, percent } => Some((*id, place.clone(), *percent)),
             _ => None,
         })
         .collect();
@@ -144,7 +145,7 @@ pub(super) fn write(
             _ => None,
         })
         .collect();
-    let extended_deck = deck.and_then(|d| d.extended(job, &zones, &masses));
+    let extended_deck = deck.and_then(|d| d.extended(job, &stiffness, &masses));
     if extended_deck.is_some() {
         set(&mut table, "model", "deck", DECK);
     }

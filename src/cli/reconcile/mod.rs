@@ -3,11 +3,13 @@
 mod background;
 mod deck_frame;
 mod extend;
+mod extended_deck;
 mod finer;
 mod matrix_frame;
 mod relative;
 mod signature_table;
 mod static_path;
+mod stiffness;
 mod tables;
 
 use super::fault::{Fault, Faults};

@@ -2,7 +2,7 @@
 
 use super::deck_frame::{self, DeckFrame};
 use super::matrix_frame::{self, ModelPart};
-use super::{extend, tables};
+use super::{extend, stiffness, tables};
 use crate::cli::Session;
 use crate::cli::fault::{Fault, Faults};
 use crate::cli::job::runs::{RunRow, read_runs};
@@ -86,11 +86,12 @@ fn resolve_stiffness(
             .at_percent
             .iter()
             .any(|p| (p.0 - percent).abs() < NEAR);
-        if known || percent.abs() < NEAR || *percent < LEAST {
+        let thickness = *id == stiffness::ZONE;
+        if known || percent.abs() < NEAR || (thickness && *percent < LEAST) {
             continue;
         }
         let change = session.stage("solve zones", |_| {
-            deck.stiffness_change(job, place, *percent)
+            deck.stiffness_change(job, id, place, *percent)
         })?;
         signature.at_percent.push((*percent, change));
         signature.at_percent.sort_by(|a, b| a.0.total_cmp(&b.0));

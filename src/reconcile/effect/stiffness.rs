@@ -12,6 +12,8 @@ pub struct Stiffness {
     pub id: &'static str,
     /// Zone or joint.
     pub name: String,
+    /// Prior standard deviation of its size.
+    pub prior_percent: f64,
 }
 
 impl Stiffness {
@@ -28,6 +30,7 @@ impl Stiffness {
                 signature,
                 id,
                 name: place.to_string(),
+                prior_percent: s.prior_percent,
             }
         });
         named.collect()
@@ -58,13 +61,18 @@ impl StrainEffect for Stiffness {
         Stage::Structure
     }
     fn parameters(&self) -> Vec<Parameter> {
+        // Four times the prior: a plate of half or one and a half times its thickness, a joint twenty times as stiff.
         vec![Parameter {
-            unit: "percent",
+            unit: if self.id == "joint_stiffness" {
+                "percent (natural log times 100)"
+            } else {
+                "percent"
+            },
             neutral: 0.0,
-            prior_sd: 15.0,
+            prior_sd: self.prior_percent,
             step: 0.5,
             starts: vec![0.0],
-            plausible: 60.0,
+            plausible: 4.0 * self.prior_percent,
         }]
     }
     fn alter(&self, frame: &StrainFrame, parameters: &[f64], state: &mut StrainState) {
@@ -89,6 +97,12 @@ impl StrainEffect for Stiffness {
         }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
+        if self.id == "joint_stiffness" {
+            return format!(
+                "measure how far the two sides of joint {} move against each other under load",
+                self.name
+            );
+        }
         format!(
             "measure the thickness at {}, or add a gauge inside and one outside that zone",
             self.name

@@ -60,7 +60,7 @@ pub fn read_patterns(
 ///
 /// C = noise^2 I + load_noise^2 S S' (run by run: an error of a measured wheel force enters all gauges at once) + model_rel^2 m m'
 /// (gauge by gauge, all runs together: a wrong influence stays wrong) + sum over `scatter` of b b' (the same, with b the strain that an
-/// error of one standard deviation makes) + V (amplitudes unknown in every run, run by run, and model_rel of them), with S, m, b as read
+/// error of one standard deviation makes) + V (amplitudes unknown in every run, run by run, and their part in doubt), with S, m, b as read
 /// with `members` on.
 pub fn covariance(
     frame: &StrainFrame,
@@ -93,14 +93,15 @@ pub fn covariance(
         add(pattern, frame.load_noise * frame.load_noise);
     }
     let mut own = vec![frame.noise * frame.noise; n_g];
+    let doubt = frame.relative_doubt();
     for u in unknown {
         let read = read_patterns(frame, members, &u.amplitudes.patterns);
         for (pattern, &kind) in read.iter().zip(&u.amplitudes.kinds) {
             let size = u.sizes.get(kind).copied().unwrap_or(0.0);
             add(pattern, size * size);
             // The model errs in these patterns as in all others.
-            for (cell, p) in own.iter_mut().zip(pattern) {
-                *cell += (frame.model_rel * size * p).powi(2);
+            for ((cell, p), doubt) in own.iter_mut().zip(pattern).zip(&doubt) {
+                *cell += (doubt * size * p).powi(2);
             }
         }
     }

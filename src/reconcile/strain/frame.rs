@@ -150,6 +150,25 @@ impl StrainFrame {
         self.load_names.len() + N_PAYLOAD_COLUMNS
     }
 
+    /// By gauge: relative error, 1 sd, of the strain that a load of its own makes there: stated uncertainty and `scatter` over the wheel
+    /// loads.
+    pub fn relative_doubt(&self) -> Vec<f64> {
+        let (n_c, n_l) = (self.n_columns(), self.n_loads());
+        let power = |m: &[f64], g: usize| -> f64 {
+            let row = m.iter().skip(g * n_c).take(n_l);
+            row.map(|v| v * v).sum()
+        };
+        let doubt = |g: usize| {
+            let own = power(&self.influence, g);
+            let scatter = self.scatter.iter().map(|s| match s {
+                Scatter::Together(m) | Scatter::Single(m) => power(m, g),
+            });
+            let relative = if own > 0.0 { scatter.sum::<f64>() / own } else { 0.0 };
+            (self.model_rel * self.model_rel + relative).sqrt()
+        };
+        (0..self.n_gauges()).map(doubt).collect()
+    }
+
     /// The same problem with the analyst's own mesh.
     pub fn as_modelled(&self) -> Self {
         let mut own = self.clone();

@@ -9,7 +9,7 @@ use crate::reconcile::effect::{Amplitudes, Member};
 pub struct RunBlocks {
     blocks: Vec<RunBlock>,
     n_gauges: usize,
-    model_rel: f64,
+    doubt: Vec<f64>,
 }
 
 /// Readings of one run: their places in the selection, their gauges, their covariance.
@@ -37,7 +37,7 @@ impl RunBlocks {
         Self {
             blocks: runs.iter().map(block).collect(),
             n_gauges: frame.n_gauges(),
-            model_rel: frame.model_rel,
+            doubt: frame.relative_doubt(),
         }
     }
 
@@ -52,8 +52,8 @@ impl RunBlocks {
                     for (cell, b) in row.iter_mut().zip(pattern) {
                         *cell += variance * a * b;
                     }
-                    if let Some(own) = row.get_mut(g) {
-                        *own += variance * (self.model_rel * a).powi(2);
+                    if let (Some(own), Some(doubt)) = (row.get_mut(g), self.doubt.get(g)) {
+                        *own += variance * (doubt * a).powi(2);
                     }
                 }
             }
