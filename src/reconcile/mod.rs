@@ -3,12 +3,14 @@
 //! One frame for strain and acceleration: observations by run and channel, a prediction that can be evaluated again with any effect
 //! on, a covariance of what noise and stated model uncertainty leave, a library of effects, evidence, a verdict.
 
+mod cause;
 pub mod effect;
 mod observation;
 mod outcome;
 mod search;
 pub mod strain;
 
+pub use cause::{Cause, CauseOutcome, CauseSet, weigh_causes};
 pub use observation::Observations;
 pub use outcome::{
     ChannelGap, Detectable, Gap, LoadShift, Misfit, NamedEffect, Outcome, Rival, Verdict,

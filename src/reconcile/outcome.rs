@@ -160,6 +160,8 @@ pub struct Outcome {
     pub evidence: f64,
     /// Gap.
     pub gap: Gap,
+    /// Where the gap sits, in words.
+    pub sits: String,
     /// By channel.
     pub channels: Vec<ChannelGap>,
     /// Loads before and after.

@@ -235,6 +235,7 @@ pub(super) struct RawReconcile {
     pub thermal: BTreeMap<Spanned<String>, f64>,
     pub effects: S<Texts>,
     pub joints: Option<Ids>,
+    pub causes: BTreeMap<String, String>,
     pub tolerance: Option<RawGluing>,
 }
 

@@ -1,6 +1,7 @@
 //! `reconcile`: where simulation and measurement disagree, which effect is missing, and the model with the effect in it.
 
 mod background;
+mod causes;
 mod deck_frame;
 mod extend;
 mod extended_deck;

@@ -2,7 +2,7 @@
 
 use super::deck_frame::{self, DeckFrame};
 use super::matrix_frame::{self, ModelPart};
-use super::{extend, stiffness, tables};
+use super::{causes, extend, stiffness, tables};
 use crate::cli::Session;
 use crate::cli::fault::{Fault, Faults};
 use crate::cli::job::runs::{RunRow, read_runs};
@@ -10,8 +10,12 @@ use crate::cli::job::strain::{StrainRows, StrainTable, read_strain};
 use crate::cli::job::{HoldOut, Job, WheelForces as JobWheelForces};
 use crate::finding::{Finding, Severity};
 use crate::reconcile::effect::Extension;
-use crate::reconcile::strain::{PayloadWeight, StrainFrame, WheelForces, examine};
+use crate::reconcile::strain::{
+    PayloadWeight, StrainFrame, WheelForces, angle_scatter, examine,
+};
 use crate::reconcile::{NamedEffect, Observations, Outcome, Verdict};
+use crate::model::Vec3;
+use crate::report::strain::{GapMark, reconcile_page};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -21,6 +25,11 @@ const LOAD_NOISE_KN: f64 = 0.05;
 pub(super) fn run(job: &Job, path: &Path, session: &mut Session) -> Result<(), Faults> {
     let observations = observations(job, session)?;
     let channels = observations.channels.clone();
+    if let (Some(r), None, None) = (&job.reconcile, &job.sensitivity, &job.model)
+        && !r.causes.is_empty()
+    {
+        return causes::run(job, r, path, session, &observations);
+    }
     let (part, deck) = match (&job.sensitivity, &job.model) {
         (Some(given), _) => {
             let read = |s: &mut Session| matrix_frame::read(&mut s.inputs, job, given, &channels);
@@ -241,7 +250,7 @@ fn frame(
         .force
         .map_or(LOAD_NOISE_KN, |f| f * runs.units.force.si / KILO);
     let measured = job.measured.as_ref();
-    Ok(StrainFrame {
+    let mut frame = StrainFrame {
         observations,
         gauges: part.gauges,
         load_names: part.load_names,
@@ -270,7 +279,14 @@ fn frame(
         model_rel: measured.map_or(0.0, |m| m.model_uncertainty_rel),
         as_modelled: part.as_modelled,
         scatter: part.scatter,
-    })
+    };
+    // From a deck it is known at the gauges themselves, and there already.
+    let stated = job.reconcile.as_ref().and_then(|r| r.angle_tolerance_deg);
+    if let (Some(_), Some(degrees)) = (&job.sensitivity, stated.filter(|d| *d > 0.0)) {
+        let scatter = angle_scatter(&frame, degrees);
+        frame.scatter.push(scatter);
+    }
+    Ok(frame)
 }
 
 fn payload_of(row: &RunRow, gravity: f64, nominal_x_m: f64) -> [f64; 2] {
@@ -365,6 +381,7 @@ fn report(
         "reduced_chi2",
         json!({ "before": before, "after": after, "held_out": held_out }),
     )?;
+    session.put("sits", &outcome.sits)?;
     session.put("remains", &outcome.remains)?;
     session.put("next_measurement", &outcome.next_measurement)?;
     session.put(
@@ -401,7 +418,22 @@ fn report(
     };
     session.put("extended_model", extended)?;
     say(session, outcome);
-    Ok(())
+    let model = deck.map(|d| d.fields.model());
+    let metres = if model.is_some() { job.units.length_m() } else { 1.0 };
+    let marks: Vec<GapMark<'_>> = frame
+        .gauges
+        .iter()
+        .zip(&outcome.channels)
+        .filter_map(|(g, gap)| {
+            let at = Vec3::from(g.position?) / metres;
+            Some(GapMark { at, gap })
+        })
+        .collect();
+    let page = reconcile_page(&job.title, outcome, model, &marks, &session.findings);
+    let output = session.output_for(path)?;
+    output
+        .write_bytes("report.html", page.as_bytes())
+        .map_err(|f| vec![f])
 }
 
 fn findings(session: &mut Session, outcome: &Outcome) {
@@ -501,6 +533,7 @@ fn say(session: &mut Session, outcome: &Outcome) {
             r.evidence_difference
         ));
     }
+    session.say(format!("where: {}", outcome.sits));
     session.say(format!("left: {}", outcome.remains));
     session.say(format!("next measurement: {}", outcome.next_measurement));
 }

@@ -7,7 +7,7 @@ use super::frame::StrainFrame;
 use super::gap::{gap, loads_before_after};
 use super::likelihood::{Fit, Likelihood};
 use super::next::{Explanation, next_measurement};
-use super::remains::remains;
+use super::remains::{remains, sits};
 use crate::reconcile::effect::{Candidate, Extension, Member, full_id, library};
 use crate::reconcile::outcome::{Misfit, NamedEffect, Outcome, Rival, Verdict};
 use crate::reconcile::search::{Breadth, Scored, search, search_near, settle};
@@ -306,6 +306,7 @@ fn judge(
         rivals,
         evidence: best.log_evidence - null_evidence,
         gap: gap_now,
+        sits: sits(&channels, &worst_first(&before.gauges, limit::PART)),
         channels,
         loads: loads_before_after(frame, &members, &unknown),
         reduced_chi2: [before.fit, after.fit, after.held_out],

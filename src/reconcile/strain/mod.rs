@@ -12,6 +12,7 @@ mod next;
 mod remains;
 mod size;
 mod state;
+mod tolerance;
 
 pub use adequacy::{Adequacy, adequacy, deviate};
 pub use covariance::{Selection, SizedAmplitudes, covariance, read_patterns};
@@ -25,3 +26,4 @@ pub use frame::{
 pub use gap::{gap, held_out_residual, loads_before_after};
 pub use likelihood::{Fit, Likelihood};
 pub use state::{Part, StrainState, predict, read_all};
+pub use tolerance::angle_scatter;

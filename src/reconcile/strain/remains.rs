@@ -6,7 +6,7 @@ use super::frame::StrainFrame;
 use super::gap::rms;
 use super::state::predict;
 use crate::reconcile::effect::Member;
-use crate::reconcile::outcome::Misfit;
+use crate::reconcile::outcome::{ChannelGap, Misfit};
 
 /// A sentence or two on what `members` leave of the fit runs.
 pub fn remains(
@@ -18,6 +18,37 @@ pub fn remains(
     match strange {
         Some(words) => format!("{words}; then: {}", beyond(frame, members, after)),
         None => beyond(frame, members, after),
+    }
+}
+
+/// Which gauges make the gap, by their share of its square, and which of them lie above their own floor.
+pub fn sits(channels: &[ChannelGap], off: &[Misfit]) -> String {
+    /// As many gauges as a sentence holds.
+    const MOST: usize = 5;
+    /// Shares below this are not worth a name.
+    const SHARE: f64 = 0.05;
+    let total: f64 = channels.iter().map(|c| c.before * c.before).sum();
+    if total <= 0.0 {
+        return "there is no gap at any gauge".into();
+    }
+    let share = |c: &ChannelGap| c.before * c.before / total;
+    let mut sorted: Vec<&ChannelGap> = channels.iter().filter(|c| share(c) >= SHARE).collect();
+    sorted.sort_by(|a, b| share(b).total_cmp(&share(a)));
+    let named: Vec<String> = sorted
+        .iter()
+        .take(MOST)
+        .map(|c| format!("{} {:.0} %", c.channel, 100.0 * share(c)))
+        .collect();
+    let spread = if named.is_empty() {
+        "the gap is spread over all gauges".to_owned()
+    } else {
+        format!("of the gap (squared): {}", named.join(", "))
+    };
+    let beyond: Vec<&str> = off.iter().take(MOST).map(|m| m.name.as_str()).collect();
+    if beyond.is_empty() {
+        format!("{spread}; no gauge lies beyond its own floor")
+    } else {
+        format!("{spread}; beyond their own floor: {}", beyond.join(", "))
     }
 }
 

@@ -1,12 +1,16 @@
 //! Tables and pages of the strain commands.
 
 mod fields;
+mod gap_page;
+mod gap_svg;
 mod page;
 mod pages;
 mod svg;
 mod tables;
 
 pub use fields::strains_page;
+pub use gap_page::reconcile_page;
+pub use gap_svg::GapMark;
 pub use page::{Section, drawing_section, number, page, table, table_section};
 pub use pages::{RecoveredRun, place_page, recover_page, sensitivity_page};
 pub use svg::{interval_bars, measured_against_predicted, model_with_gauges};

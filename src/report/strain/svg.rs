@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 const MOST_EDGES: usize = 12_000;
 
 /// Edges of shells at which the outline shows: free edges, edges of three and more shells, folds; and all beams.
-fn outline(model: &Model) -> Vec<[Vec3; 2]> {
+pub(super) fn outline(model: &Model) -> Vec<[Vec3; 2]> {
     let mut edges: BTreeMap<[u32; 2], (usize, Vec3, bool)> = BTreeMap::new();
     for s in &model.shells {
         let n = s.shape.n_corners();
@@ -111,7 +111,7 @@ pub fn model_with_gauges(model: &Model, gauges: &[&Gauge]) -> String {
 }
 
 /// Text inside an SVG.
-fn escaped(s: &str) -> String {
+pub(super) fn escaped(s: &str) -> String {
     s.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")

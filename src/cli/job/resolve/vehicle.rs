@@ -112,6 +112,7 @@ pub(super) fn reconcile(
             .collect(),
         effects,
         joints: raw.joints.clone(),
+        causes: raw.causes.clone(),
         angle_tolerance_deg: angle,
         position_tolerance_mm: place,
         line: c.line(section),

@@ -1,6 +1,7 @@
 //! Cases of `../shared/hidden_effects/static` as frames, and a seeded generator that hides effects in them.
 
 pub mod generator;
+pub mod judge;
 
 use std::path::{Path, PathBuf};
 use strainbridge::reconcile::Observations;

@@ -7,7 +7,9 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use strainbridge::reconcile::effect::{Member, StrainEffect, library};
-use strainbridge::reconcile::strain::{PayloadWeight, StrainFrame, WheelForces, predict};
+use strainbridge::reconcile::strain::{
+    PayloadWeight, StrainFrame, WheelForces, angle_scatter, predict,
+};
 
 /// What lies behind a case.
 pub struct Hidden {
@@ -111,6 +113,10 @@ pub fn hide(
     } else {
         0.0
     };
+    if background == Background::Messy {
+        // The tolerance that the job declares.
+        frame.scatter.push(angle_scatter(&frame, 1.0));
+    }
     let flat = flat_ground(base);
     let mut loads = vec![0.0; n_r * n_l];
     for r in 0..n_r {

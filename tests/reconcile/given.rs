@@ -1,8 +1,8 @@
 //! The static workflow on cases whose hidden effect is known, and on seeded ones of our own.
 
-mod hidden;
-
-use hidden::generator::{Background, hide};
+use super::hidden;
+use super::hidden::generator::{Background, EFFECTS, STRANGERS, hide};
+use super::hidden::judge::{Answer, judge};
 use strainbridge::reconcile::strain::{StrainFrame, examine};
 use strainbridge::reconcile::{Outcome, Verdict};
 
@@ -95,4 +95,37 @@ fn a_drifted_zero_is_found_to_a_few_microstrain_and_a_swap_by_its_two_gauges() {
     assert!((outcome.effects[0].size[0].abs() - 40.0).abs() < 2.0);
     let swap = hide(&base, "gauge_swap", 1.0, Background::Clean, 100);
     assert_eq!(named(&examine(&swap.frame, &[])), swap.truth);
+}
+
+#[test]
+fn every_effect_of_the_library_at_its_fourth_size_is_named_on_an_exact_model() {
+    let Some((base, _)) = case("dev-s2") else {
+        return;
+    };
+    for (effect, sizes) in EFFECTS {
+        let hidden = hide(&base, effect, sizes[3], Background::Clean, 302);
+        assert!(hidden.signal > 0.5, "{effect} is hidden in the noise");
+        let outcome = examine(&hidden.frame, &[]);
+        // A rival that the program itself lists as not to be told apart counts.
+        let answer = judge(&hidden, &outcome);
+        assert!(
+            matches!(answer, Answer::Hit | Answer::Alias),
+            "{effect}: {answer:?} {:?} for {:?}",
+            named(&outcome),
+            hidden.truth
+        );
+    }
+}
+
+#[test]
+fn what_no_effect_of_the_library_makes_is_called_unknown_and_described() {
+    let Some((base, _)) = case("dev-s1") else {
+        return;
+    };
+    for stranger in STRANGERS {
+        let hidden = hide(&base, stranger, 1.0, Background::Messy, 5200);
+        let outcome = examine(&hidden.frame, &[]);
+        assert_eq!(named(&outcome), ["unknown"], "{stranger}");
+        assert!(!outcome.remains.is_empty(), "{stranger}");
+    }
 }

@@ -1,0 +1,6 @@
+//! Find the gap, name the missing effect, add it, show the gap shrink: cases whose effect is known.
+
+mod deck;
+mod given;
+mod hidden;
+mod real;
