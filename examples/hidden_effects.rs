@@ -20,13 +20,23 @@ struct Line {
     share: f64,
 }
 
-fn answer(bases: &[StrainFrame], effect: &str, size: f64, background: Background, seed: u64) -> Line {
+fn answer(
+    bases: &[StrainFrame],
+    effect: &str,
+    size: f64,
+    background: Background,
+    seed: u64,
+) -> Line {
     let base = &bases[seed as usize % bases.len()];
     let case = hide(base, effect, size, background, seed);
     let outcome = examine(&case.frame, &[]);
     let answer = judge(&case, &outcome);
     if !matches!(answer, Answer::Hit | Answer::Alias) {
-        let tried: Vec<_> = outcome.best_attempt.iter().map(|e| (&e.id, &e.size)).collect();
+        let tried: Vec<_> = outcome
+            .best_attempt
+            .iter()
+            .map(|e| (&e.id, &e.size))
+            .collect();
         eprintln!(
             "{answer:?}: {effect} {size} {background:?} seed {seed}, truth {:?}, signal {:.2} noise sd, answer {} {tried:?}, chi2 {:.2?}",
             case.truth,
@@ -50,16 +60,26 @@ fn percent(lines: &[Line], wanted: &[Answer]) -> f64 {
 
 /// The smallest size from which on every case was hit.
 fn always_hit(lines: &[Line], sizes: &[f64; 5]) -> String {
-    let missed = |size: f64| lines.iter().any(|l| l.size == size && !matches!(l.answer, Answer::Hit | Answer::Alias));
+    let missed = |size: f64| {
+        lines
+            .iter()
+            .any(|l| l.size == size && !matches!(l.answer, Answer::Hit | Answer::Alias))
+    };
     match sizes.iter().rposition(|s| missed(*s)) {
         None => format!("{}", sizes[0]),
-        Some(i) => sizes.get(i + 1).map_or("above all".into(), |s| format!("{s}")),
+        Some(i) => sizes
+            .get(i + 1)
+            .map_or("above all".into(), |s| format!("{s}")),
     }
 }
 
 fn row(name: &str, lines: &[Line], detectable: &str) {
     use Answer::{Alias, False, Hit, None, Partial, Unknown};
-    let hits: Vec<f64> = lines.iter().filter(|l| l.answer == Hit).map(|l| l.share).collect();
+    let hits: Vec<f64> = lines
+        .iter()
+        .filter(|l| l.answer == Hit)
+        .map(|l| l.share)
+        .collect();
     let share = 100.0 * hits.iter().sum::<f64>() / hits.len().max(1) as f64;
     println!(
         "| {name} | {} | {:.0} | {:.0} | {:.0} | {:.0} | {:.1} | {share:.0} | {detectable} |",
@@ -81,9 +101,14 @@ fn main() {
     let wanted = |name: &str| only.is_empty() || only.split(',').any(|o| o == name);
     let bases = ["dev-s1", "dev-s2"].map(|c| hidden::frame_of(&dir.join("static").join(c)));
     let run = |cases: Vec<(&str, f64, Background, u64)>| -> Vec<Line> {
-        cases.into_par_iter().map(|(e, s, b, k)| answer(&bases, e, s, b, k)).collect()
+        cases
+            .into_par_iter()
+            .map(|(e, s, b, k)| answer(&bases, e, s, b, k))
+            .collect()
     };
-    println!("| effect, background | cases | named % | rival named % | none % | unknown % | false % | gap closed % | found from size |");
+    println!(
+        "| effect, background | cases | named % | rival named % | none % | unknown % | false % | gap closed % | found from size |"
+    );
     println!("|---|---|---|---|---|---|---|---|---|");
     for background in [Background::Clean, Background::Messy] {
         let say = |name: &str| format!("{name}, {background:?}").to_lowercase();
@@ -98,16 +123,25 @@ fn main() {
             let lines = run(each.collect());
             row(&say(effect), &lines, &always_hit(&lines, sizes));
         }
-        for stranger in STRANGERS.iter().filter(|s| wanted(s) || wanted("strangers")) {
+        for stranger in STRANGERS
+            .iter()
+            .filter(|s| wanted(s) || wanted("strangers"))
+        {
             let sizes = [0.3, 0.6, 1.0];
             let each = sizes.iter().enumerate().flat_map(|(i, s)| {
                 (0..seeds).map(move |k| (*stranger, *s, background, 5000 + 100 * (i as u64) + k))
             });
-            row(&say(&format!("stranger: {stranger}")), &run(each.collect()), "");
+            row(
+                &say(&format!("stranger: {stranger}")),
+                &run(each.collect()),
+                "",
+            );
         }
         if wanted("pairs") {
             let names = pairs(10 * seeds);
-            let cases = (9000..).zip(&names).map(|(k, n)| (n.as_str(), f64::NAN, background, k));
+            let cases = (9000..)
+                .zip(&names)
+                .map(|(k, n)| (n.as_str(), f64::NAN, background, k));
             row(&say("two effects at once"), &run(cases.collect()), "");
         }
     }
@@ -116,9 +150,19 @@ fn main() {
 /// Pairs of effects, joined by `+`.
 fn pairs(n: u64) -> Vec<String> {
     // Those that change what the analyst's model is can't be put on top of another.
-    let alone = ["payload_gravity_missing", "uneven_ground", "zero_drift_creep"];
-    let kinds: Vec<&str> = EFFECTS.iter().map(|e| e.0).filter(|e| !alone.contains(e)).collect();
+    let alone = [
+        "payload_gravity_missing",
+        "uneven_ground",
+        "zero_drift_creep",
+    ];
+    let kinds: Vec<&str> = EFFECTS
+        .iter()
+        .map(|e| e.0)
+        .filter(|e| !alone.contains(e))
+        .collect();
     let at = |k: u64| kinds[k as usize % kinds.len()];
     let both = (0..n).map(|k| (at(k * 7 + 1), at(k * 11 + 5 + k / 13)));
-    both.filter(|(a, b)| a != b).map(|(a, b)| format!("{a}+{b}")).collect()
+    both.filter(|(a, b)| a != b)
+        .map(|(a, b)| format!("{a}+{b}"))
+        .collect()
 }

@@ -22,7 +22,9 @@ pub fn moved(gauge: &Gauge, model: &Model, direction: Vec3) -> Option<Gauge> {
             return None;
         };
         let here = model.shells.get(shell.us())?;
-        let normal = shell_axes(model, here, ShellPlace::Centre)?.row(2).transpose();
+        let normal = shell_axes(model, here, ShellPlace::Centre)?
+            .row(2)
+            .transpose();
         let axis = (direction - normal * direction.dot(&normal)).try_normalize(0.0)?;
         let weights = about_centre(model, shell, centre(model, here)? + axis, axis);
         if weights.len() < 2 {
@@ -37,8 +39,14 @@ pub fn moved(gauge: &Gauge, model: &Model, direction: Vec3) -> Option<Gauge> {
                     surface: same_side(model, shell, ix, surface)?,
                     place: ShellPlace::Centre,
                 },
-                coefficient: turned(model, (shell, ShellPlace::Centre), model, (ix, ShellPlace::Centre), arm.coefficient)?
-                    .map(|c| w * c),
+                coefficient: turned(
+                    model,
+                    (shell, ShellPlace::Centre),
+                    model,
+                    (ix, ShellPlace::Centre),
+                    arm.coefficient,
+                )?
+                .map(|c| w * c),
             });
         }
     }

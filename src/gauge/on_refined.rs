@@ -24,7 +24,13 @@ pub fn on_refined(gauge: &Gauge, coarse: &Model, fine: &RefinedModel) -> Option<
             ShellPlace::Corner(c) => vec![(*parts.get(c)?, 1.0)],
         };
         for (part, weight) in taken {
-            let coefficient = turned(coarse, (shell, place), &fine.model, (part, place), arm.coefficient)?;
+            let coefficient = turned(
+                coarse,
+                (shell, place),
+                &fine.model,
+                (part, place),
+                arm.coefficient,
+            )?;
             arms.push(Arm {
                 spot: Spot::Shell {
                     shell: part,

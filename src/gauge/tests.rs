@@ -407,9 +407,19 @@ fn a_gauge_on_the_refined_mesh_reads_the_same_even_strain_and_the_same_mean_of_a
             };
             let (coarse, _) = build(&m, &spec, CornerRows::Absent).unwrap();
             let on = on_refined(&coarse[0], &m, &fine).unwrap();
-            let same = read(&m, &spec, CornerRows::Absent, &field(&m, CornerRows::Absent, |_, _| E));
+            let same = read(
+                &m,
+                &spec,
+                CornerRows::Absent,
+                &field(&m, CornerRows::Absent, |_, _| E),
+            );
             assert!((reading(&on, &even).unwrap() - same[0]).abs() < 1e-15);
-            let same = read(&m, &spec, CornerRows::Absent, &field(&m, CornerRows::Absent, linear));
+            let same = read(
+                &m,
+                &spec,
+                CornerRows::Absent,
+                &field(&m, CornerRows::Absent, linear),
+            );
             assert!((reading(&on, &bent).unwrap() - same[0]).abs() < 1e-15);
         }
     }

@@ -94,7 +94,8 @@ type Part = ([GridIx; 8], [f64; 4]);
 
 impl Builder {
     fn add(&mut self, of: &[GridIx]) -> Option<GridIx> {
-        let parents: Option<Vec<Grid>> = of.iter().map(|g| self.grids.get(g.us()).copied()).collect();
+        let parents: Option<Vec<Grid>> =
+            of.iter().map(|g| self.grids.get(g.us()).copied()).collect();
         let parents = parents?;
         let first = *parents.first()?;
         let sum = parents.iter().fold(first.x * 0.0, |s, g| s + g.x);
@@ -127,7 +128,11 @@ impl Builder {
         let mean = |a: f64, b: f64| 0.5 * (a + b);
         let four = |g: [GridIx; 4]| [g[0], g[1], g[2], g[3], g[0], g[1], g[2], g[3]];
         if shell.shape.n_corners() == 3 {
-            let (a, b, c) = (self.middle(p0, p1)?, self.middle(p1, p2)?, self.middle(p2, p0)?);
+            let (a, b, c) = (
+                self.middle(p0, p1)?,
+                self.middle(p1, p2)?,
+                self.middle(p2, p0)?,
+            );
             let (ta, tb, tc) = (mean(t0, t1), mean(t1, t2), mean(t2, t0));
             let three = |g: [GridIx; 3]| [g[0], g[1], g[2], g[0], g[1], g[2], g[0], g[1]];
             return Some([

@@ -442,6 +442,9 @@ fn a_mesh_with_bars_along_its_shells_is_not_refined() {
     let (m, _) = model(&format!("{QUAD}CQUAD4,1,1,1,2,3,4\n{bar}"));
     assert!(m.refined().is_none());
     // Across, it ties two corners that share no side.
-    let (m, _) = model(&format!("{QUAD}CQUAD4,1,1,1,2,3,4\n{}", bar.replace("1,2", "1,3")));
+    let (m, _) = model(&format!(
+        "{QUAD}CQUAD4,1,1,1,2,3,4\n{}",
+        bar.replace("1,2", "1,3")
+    ));
     assert!(m.refined().is_some());
 }

@@ -57,8 +57,15 @@ pub fn weigh_causes(observations: &Observations, noise: &[f64], causes: &[Cause]
     let causes = &causes[..causes.len().min(MOST)];
     let mut sets: Vec<CauseSet> = (0..1usize << causes.len())
         .map(|mask| {
-            let chosen = causes.iter().enumerate().filter(|(k, _)| mask >> k & 1 == 1);
-            weigh(observations, noise, &chosen.map(|c| c.1).collect::<Vec<_>>())
+            let chosen = causes
+                .iter()
+                .enumerate()
+                .filter(|(k, _)| mask >> k & 1 == 1);
+            weigh(
+                observations,
+                noise,
+                &chosen.map(|c| c.1).collect::<Vec<_>>(),
+            )
         })
         .collect();
     // Each cause costs what any effect costs that is to be named: fewer explain as well.
@@ -81,7 +88,11 @@ pub fn weigh_causes(observations: &Observations, noise: &[f64], causes: &[Cause]
         (false, 1) => Verdict::Named,
         _ => Verdict::Unknown,
     };
-    let rivals = if verdict == Verdict::Unknown { rivals } else { Vec::new() };
+    let rivals = if verdict == Verdict::Unknown {
+        rivals
+    } else {
+        Vec::new()
+    };
     CauseOutcome {
         verdict,
         next_measurement: next(observations, causes, &rivals),
@@ -116,7 +127,10 @@ fn next(observations: &Observations, causes: &[Cause], rivals: &[CauseSet]) -> S
 fn correlation(observations: &Observations, a: &Cause, b: &Cause) -> Option<f64> {
     let runs = observations.fit_runs();
     let of = |c: &Cause| -> Vec<f64> {
-        let v: Vec<f64> = runs.iter().filter_map(|&r| c.values.get(r).copied()).collect();
+        let v: Vec<f64> = runs
+            .iter()
+            .filter_map(|&r| c.values.get(r).copied())
+            .collect();
         let mean = v.iter().sum::<f64>() / v.len().max(1) as f64;
         v.iter().map(|x| x - mean).collect()
     };
@@ -159,7 +173,10 @@ fn scaled(cause: &Cause) -> (Vec<f64>, f64) {
     let least = finite().fold(f64::INFINITY, f64::min);
     let range = if most > least { most - least } else { 1.0 };
     let middle = 0.5 * (most + least);
-    (cause.values.iter().map(|v| (v - middle) / range).collect(), range)
+    (
+        cause.values.iter().map(|v| (v - middle) / range).collect(),
+        range,
+    )
 }
 
 fn weigh(observations: &Observations, noise: &[f64], causes: &[&Cause]) -> CauseSet {
@@ -201,7 +218,11 @@ fn weigh(observations: &Observations, noise: &[f64], causes: &[&Cause]) -> Cause
         for (k, slopes) in out.slopes.iter_mut().enumerate() {
             let column: Vec<f64> = ch.runs.iter().map(|&r| slope_variance * at(k, r)).collect();
             let value: f64 = column.iter().zip(&weighted).map(|(a, b)| a * b).sum();
-            let told: f64 = column.iter().zip(p.apply(&column)).map(|(a, b)| a * b).sum();
+            let told: f64 = column
+                .iter()
+                .zip(p.apply(&column))
+                .map(|(a, b)| a * b)
+                .sum();
             let left = (slope_variance - told).max(0.0).sqrt();
             slopes.push((value / x[k].1, left / x[k].1));
         }
@@ -210,7 +231,12 @@ fn weigh(observations: &Observations, noise: &[f64], causes: &[&Cause]) -> Cause
             if !reading.is_finite() {
                 continue;
             }
-            let predicted: f64 = ch.runs.iter().zip(&weighted).map(|(&s, w)| shared(run, s) * w).sum();
+            let predicted: f64 = ch
+                .runs
+                .iter()
+                .zip(&weighted)
+                .map(|(&s, w)| shared(run, s) * w)
+                .sum();
             missed += ((reading - predicted) / ch.range).powi(2);
             seen += (reading / ch.range).powi(2);
         }

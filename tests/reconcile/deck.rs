@@ -28,8 +28,16 @@ fn reconciled(case: &str) -> Option<(Value, PathBuf, Value)> {
     };
     let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("reconcile_{case}"));
     let _ = std::fs::remove_dir_all(&out);
-    let done = run("reconcile", &dir.join("deck").join(case).join("job.toml"), &out);
-    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let done = run(
+        "reconcile",
+        &dir.join("deck").join(case).join("job.toml"),
+        &out,
+    );
+    assert!(
+        done.status.success(),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
     let truth = std::fs::read_to_string(dir.join("deck/truth").join(format!("{case}.json")));
     let truth = serde_json::from_str(&truth.expect("the truth")).expect("valid json");
     Some((result(&out), out, truth))
@@ -53,12 +61,18 @@ fn a_zone_15_percent_thicker_is_found_through_the_solver_and_its_deck_solves_and
     let (size, sigma) = (effect["size"].as_f64(), effect["sigma"].as_f64());
     let (size, sigma) = (size.expect("a size"), sigma.expect("its sigma"));
     // The truth is a thickness times 1.15.
-    assert!((size - 15.0).abs() < 3.0 * sigma && sigma < 3.0, "{size} +- {sigma}");
+    assert!(
+        (size - 15.0).abs() < 3.0 * sigma && sigma < 3.0,
+        "{size} +- {sigma}"
+    );
     assert!(closed(&found, &truth) > 0.7, "{}", found["gap"]);
     assert!(found["gap"]["explained_share"].as_f64().expect("a share") > 0.7);
     let job = out.join("job_extended.toml");
     let deck = std::fs::read_to_string(out.join("deck_extended.bdf")).expect("the extended deck");
-    assert!(deck.lines().any(|l| l.starts_with("PSHELL*") && l.contains("14")));
+    assert!(
+        deck.lines()
+            .any(|l| l.starts_with("PSHELL*") && l.contains("14"))
+    );
     for (command, table) in [("solve", "results.op2"), ("recover", "loads.csv")] {
         let folder = out.join(command);
         let done = run(command, &job, &folder);
@@ -83,11 +97,19 @@ fn a_turned_sign_is_found_on_a_deck_whose_mesh_makes_two_percent_and_nothing_els
     let mesh = found["gap"]["mesh"].as_f64().expect("a number");
     let known = truth["model_error_gap"].as_f64().expect("a number");
     assert!((mesh - known).abs() < 0.3 * known, "{mesh} {known}");
-    let done = run("recover", &out.join("job_extended.toml"), &out.join("recover"));
+    let done = run(
+        "recover",
+        &out.join("job_extended.toml"),
+        &out.join("recover"),
+    );
     assert!(done.status.code().is_some_and(|c| c < 2));
     // The channel reads the other way round in the extended readings.
     let strain = std::fs::read_to_string(out.join("strain_extended.csv")).expect("readings");
-    let own = std::fs::read_to_string(hidden::shared().expect("shared").join("deck/dev-f2/strain.csv"));
+    let own = std::fs::read_to_string(
+        hidden::shared()
+            .expect("shared")
+            .join("deck/dev-f2/strain.csv"),
+    );
     let first = |text: &str| -> f64 {
         let cell = text.lines().nth(1).and_then(|l| l.split(',').nth(9));
         cell.expect("G09").parse().expect("a number")

@@ -11,7 +11,11 @@ use strainbridge::reconcile::{Cause, Observations, Verdict, weigh_causes};
 fn record(dir: &Path, file: &str) -> (Vec<String>, Vec<Vec<f64>>) {
     let text = std::fs::read_to_string(dir.join("real").join(file)).expect("a record");
     let mut lines = text.lines();
-    let header = lines.next().expect("a header").split(',').map(str::to_owned);
+    let header = lines
+        .next()
+        .expect("a header")
+        .split(',')
+        .map(str::to_owned);
     let row = |l: &str| l.split(',').map(|v| v.parse().expect("a number")).collect();
     (header.collect(), lines.map(row).collect())
 }
@@ -61,7 +65,10 @@ fn bridge(dir: &Path, windows: &[Window], held_out: &[usize]) -> (Observations, 
     };
     (
         observations,
-        [cause("settlement", settlement), cause("air temperature", air)],
+        [
+            cause("settlement", settlement),
+            cause("air temperature", air),
+        ],
     )
 }
 
@@ -110,9 +117,20 @@ fn with_the_lowering_record_the_settlement_is_named_and_the_temperature_is_not()
         Window(BEFORE, 0.0, 1e9, false),
         Window(AFTER, 0.0, 1e9, true),
     ];
-    windows.extend((0..6).map(|k| Window(LOWERING, 60.0 * f64::from(k), 60.0 * f64::from(k + 1), false)));
-    windows.extend((16..20).map(|k| Window(LOWERING, 60.0 * f64::from(k), 60.0 * f64::from(k + 1), true)));
-    windows.extend((1..7).map(|k| Window(LOWERED, 60.0 * f64::from(k), 60.0 * f64::from(k + 1), true)));
+    windows.extend((0..6).map(|k| {
+        Window(
+            LOWERING,
+            60.0 * f64::from(k),
+            60.0 * f64::from(k + 1),
+            false,
+        )
+    }));
+    windows.extend(
+        (16..20).map(|k| Window(LOWERING, 60.0 * f64::from(k), 60.0 * f64::from(k + 1), true)),
+    );
+    windows.extend(
+        (1..7).map(|k| Window(LOWERED, 60.0 * f64::from(k), 60.0 * f64::from(k + 1), true)),
+    );
     let (observations, causes) = bridge(&dir, &windows, &[4, 7, 9, 13, 16]);
     let outcome = weigh_causes(&observations, &NOISE, &causes);
     assert_eq!(outcome.verdict, Verdict::Named);
@@ -128,10 +146,18 @@ fn with_the_lowering_record_the_settlement_is_named_and_the_temperature_is_not()
     assert!(settlement.log_evidence > air.log_evidence + 5.0);
     // Held-out minutes: what is left is traffic and that the second record went down a little further.
     assert!(settlement.gap < 0.3 * of(&[]).gap, "{}", settlement.gap);
-    assert!(settlement.gap < 0.5 * air.gap, "{} {}", settlement.gap, air.gap);
+    assert!(
+        settlement.gap < 0.5 * air.gap,
+        "{} {}",
+        settlement.gap,
+        air.gap
+    );
     // The supports lose 23 and 43 kN and the girder gains 34 microstrain between the stages' means.
     for (slope, expected) in settlement.slopes[0].iter().zip([-23.4, -42.7, 34.3]) {
-        assert!((slope.0 - expected).abs() < 3.0 * NOISE[0], "{slope:?} {expected}");
+        assert!(
+            (slope.0 - expected).abs() < 3.0 * NOISE[0],
+            "{slope:?} {expected}"
+        );
     }
 }
 
@@ -142,7 +168,10 @@ fn the_command_asks_for_the_record_that_separates_two_causes_and_writes_a_page()
     std::fs::create_dir_all(&folder).expect("a folder");
     let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).expect("written");
     // Means of the bridge's two stages, rounded.
-    write("strain.csv", "run,force1,force2,strain\nbefore,238.59,237.93,1.51\nafter,215.19,195.27,35.79\n");
+    write(
+        "strain.csv",
+        "run,force1,force2,strain\nbefore,238.59,237.93,1.51\nafter,215.19,195.27,35.79\n",
+    );
     write("runs.csv", "run,lowered,air_C\nbefore,0,2.0\nafter,1,4.0\n");
     write(
         "job.toml",
@@ -154,7 +183,11 @@ fn the_command_asks_for_the_record_that_separates_two_causes_and_writes_a_page()
         .arg(folder.join("job.toml"))
         .output()
         .expect("the program runs");
-    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    assert!(
+        done.status.success(),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
     let result: serde_json::Value = serde_json::from_slice(&done.stdout).expect("valid json");
     assert_eq!(result["verdict"], "unknown");
     assert_eq!(result["named"], serde_json::json!([]));
@@ -162,7 +195,10 @@ fn the_command_asks_for_the_record_that_separates_two_causes_and_writes_a_page()
     assert_eq!(rivals.len(), 2);
     assert!(rivals.iter().all(|r| r["indistinguishable"] == true));
     let next = result["next_measurement"].as_str().expect("words");
-    assert!(next.contains("settlement") && next.contains("temperature"), "{next}");
+    assert!(
+        next.contains("settlement") && next.contains("temperature"),
+        "{next}"
+    );
     assert!(folder.join("job.out/report.html").exists());
 }
 
@@ -211,7 +247,10 @@ fn gauges_12_and_13_of_the_thesis_are_unfit_for_the_payload_and_no_gain_or_sign_
             .collect(),
         load_names: vec!["payload".into()],
         load_positions: None,
-        influence: per_kn.iter().flat_map(|s| [*s, 0.0, 0.0, 0.0, 0.0]).collect(),
+        influence: per_kn
+            .iter()
+            .flat_map(|s| [*s, 0.0, 0.0, 0.0, 0.0])
+            .collect(),
         tensors: vec![Vec::new(); ESTIMATES.len()],
         per_mm: None,
         loads: ON_THE_TRUCK.to_vec(),
@@ -233,13 +272,20 @@ fn gauges_12_and_13_of_the_thesis_are_unfit_for_the_payload_and_no_gain_or_sign_
     // Estimates of 281 and -381 kN in one run, -940 and -2599 in the next: of no fixed ratio to the load, so no gain, sign or angle.
     assert_eq!(outcome.verdict, Verdict::Unknown);
     assert!(outcome.effects.is_empty());
-    let mut worst: Vec<&str> = outcome.gauges_off_before.iter().map(|m| m.name.as_str()).collect();
+    let mut worst: Vec<&str> = outcome
+        .gauges_off_before
+        .iter()
+        .map(|m| m.name.as_str())
+        .collect();
     worst.truncate(2);
     worst.sort_unstable();
     assert_eq!(worst, ["12", "13"]);
     assert!(!outcome.remains.is_empty() && outcome.next_measurement != "none needed");
     // Of 14 and 17 nothing is said: they give the payload to a tenth in both runs.
     for fit in ["14", "17"] {
-        assert!(outcome.gauges_off_before.iter().all(|m| m.name != fit), "{fit}");
+        assert!(
+            outcome.gauges_off_before.iter().all(|m| m.name != fit),
+            "{fit}"
+        );
     }
 }

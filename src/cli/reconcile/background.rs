@@ -58,7 +58,10 @@ pub(super) fn background(
     own: Option<&Vec<f64>>,
     per_mm: [&Vec<f64>; 2],
 ) -> Vec<Scatter> {
-    let model_rel = job.measured.as_ref().map_or(0.0, |m| m.model_uncertainty_rel);
+    let model_rel = job
+        .measured
+        .as_ref()
+        .map_or(0.0, |m| m.model_uncertainty_rel);
     if model_rel == 0.0 {
         return Vec::new();
     }
@@ -66,12 +69,21 @@ pub(super) fn background(
     let placement = Some(job.placement.angle_tolerance_deg).filter(|a| *a > 0.0);
     let angle = reconcile.and_then(|r| r.angle_tolerance_deg).or(placement);
     let angle = angle.unwrap_or(ANGLE_DEG).to_radians();
-    let place = reconcile.and_then(|r| r.position_tolerance_mm).unwrap_or(0.0);
+    let place = reconcile
+        .and_then(|r| r.position_tolerance_mm)
+        .unwrap_or(0.0);
     // Along the axis of a gauge the derivative by its angle is the shear there.
-    let turned = part.tensors.iter().flatten().map(|t| angle * t[2]).collect();
+    let turned = part
+        .tensors
+        .iter()
+        .flatten()
+        .map(|t| angle * t[2])
+        .collect();
     let mut out = vec![Scatter::Together(turned)];
     for gradient in per_mm {
-        out.push(Scatter::Together(gradient.iter().map(|v| place * v).collect()));
+        out.push(Scatter::Together(
+            gradient.iter().map(|v| place * v).collect(),
+        ));
     }
     out.push(match own {
         // The remainder has the pattern of what was found: loads that cancel in the strain cancel in its error.
@@ -79,7 +91,12 @@ pub(super) fn background(
             let rest = part.influence.iter().zip(own);
             Scatter::Together(rest.map(|(a, own)| STILL_TO_COME * (a - own)).collect())
         }
-        None => Scatter::Single(part.influence.iter().map(|a| ENTRY_SHARE * model_rel * a).collect()),
+        None => Scatter::Single(
+            part.influence
+                .iter()
+                .map(|a| ENTRY_SHARE * model_rel * a)
+                .collect(),
+        ),
     });
     out
 }

@@ -26,8 +26,14 @@ pub(super) fn run(
     let best = outcome.sets.first();
     let named = outcome.verdict == crate::reconcile::Verdict::Named;
     session.put("verdict", outcome.verdict.word())?;
-    session.put("named", best.filter(|_| named).map_or(Vec::new(), |b| b.names.clone()))?;
-    let effects = best.filter(|_| named).map_or(Vec::new(), |b| slopes(b, observations));
+    session.put(
+        "named",
+        best.filter(|_| named)
+            .map_or(Vec::new(), |b| b.names.clone()),
+    )?;
+    let effects = best
+        .filter(|_| named)
+        .map_or(Vec::new(), |b| slopes(b, observations));
     session.put("effects", effects)?;
     let evidence = best.map_or(0.0, |b| b.log_evidence);
     let rival = |s: &CauseSet| {
@@ -35,12 +41,22 @@ pub(super) fn run(
                 "indistinguishable": outcome.rivals.contains(s) })
     };
     let rivals: Vec<Value> = if outcome.rivals.is_empty() {
-        outcome.sets.iter().skip(1).filter(|s| !s.names.is_empty()).map(rival).collect()
+        outcome
+            .sets
+            .iter()
+            .skip(1)
+            .filter(|s| !s.names.is_empty())
+            .map(rival)
+            .collect()
     } else {
         outcome.rivals.iter().map(rival).collect()
     };
     session.put("rivals", rivals)?;
-    let before = outcome.sets.iter().find(|s| s.names.is_empty()).map_or(0.0, |s| s.gap);
+    let before = outcome
+        .sets
+        .iter()
+        .find(|s| s.names.is_empty())
+        .map_or(0.0, |s| s.gap);
     session.put(
         "gap",
         json!({ "metric": "RMS(reading - prediction) / RMS(reading) over held-out runs, from the mean of the others, each channel over its range",
@@ -49,22 +65,40 @@ pub(super) fn run(
     session.put("next_measurement", &outcome.next_measurement)?;
     session.put("extended_model", Value::Null)?;
     say(session, &outcome);
-    let row = |s: &CauseSet| vec![s.names.join(" + "), format!("{:.1}", evidence - s.log_evidence), format!("{:.2} %", 100.0 * s.gap)];
+    let row = |s: &CauseSet| {
+        vec![
+            s.names.join(" + "),
+            format!("{:.1}", evidence - s.log_evidence),
+            format!("{:.2} %", 100.0 * s.gap),
+        ]
+    };
     let rows: Vec<Vec<String>> = outcome.sets.iter().map(row).collect();
     let section = Section {
         title: "Causes".into(),
         body: table(&["causes", "log evidence behind", "gap"], &rows),
     };
-    let lead = format!("Verdict: {}. Next measurement: {}", outcome.verdict.word(), outcome.next_measurement);
+    let lead = format!(
+        "Verdict: {}. Next measurement: {}",
+        outcome.verdict.word(),
+        outcome.next_measurement
+    );
     let html = page(&job.title, &lead, &session.findings, vec![section]);
     let output = session.output_for(path)?;
-    output.write_bytes("report.html", html.as_bytes()).map_err(|f| vec![f])
+    output
+        .write_bytes("report.html", html.as_bytes())
+        .map_err(|f| vec![f])
 }
 
 fn slopes(best: &CauseSet, observations: &Observations) -> Vec<Value> {
     let by_channel = |slopes: &Vec<(f64, f64)>| -> BTreeMap<String, Value> {
         let channels = observations.channels.iter().cloned();
-        channels.zip(slopes.iter().map(|s| json!({ "per_unit": s.0, "sigma": s.1 }))).collect()
+        channels
+            .zip(
+                slopes
+                    .iter()
+                    .map(|s| json!({ "per_unit": s.0, "sigma": s.1 })),
+            )
+            .collect()
     };
     best.names
         .iter()
@@ -76,8 +110,16 @@ fn slopes(best: &CauseSet, observations: &Observations) -> Vec<Value> {
 fn say(session: &mut Session, outcome: &CauseOutcome) {
     session.say(format!("verdict: {}", outcome.verdict.word()));
     for s in &outcome.sets {
-        let names = if s.names.is_empty() { "nothing".into() } else { s.names.join(" + ") };
-        session.say(format!("  {names}: log evidence {:.1}, gap {:.2} %", s.log_evidence, 100.0 * s.gap));
+        let names = if s.names.is_empty() {
+            "nothing".into()
+        } else {
+            s.names.join(" + ")
+        };
+        session.say(format!(
+            "  {names}: log evidence {:.1}, gap {:.2} %",
+            s.log_evidence,
+            100.0 * s.gap
+        ));
     }
     if !outcome.rivals.is_empty() {
         let names: Vec<String> = outcome.rivals.iter().map(|r| r.names.join(" + ")).collect();
@@ -103,10 +145,18 @@ fn read(
         let remedy = "add `[runs]` with a file that has a column for each cause";
         return Err(vec![Fault::of(&*job.file, "runs", "no `[runs]`", remedy)]);
     };
-    let text = session.inputs.read_named_text(job, &runs.file).map_err(|f| vec![f])?;
+    let text = session
+        .inputs
+        .read_named_text(job, &runs.file)
+        .map_err(|f| vec![f])?;
     let t = read_table(&runs.file.given, &text)?;
     let Some(key) = t.column(&["run"]) else {
-        return Err(vec![Fault::of(&*t.file, "run", "no column `run`", "add a column `run` with the runs' names")]);
+        return Err(vec![Fault::of(
+            &*t.file,
+            "run",
+            "no column `run`",
+            "add a column `run` with the runs' names",
+        )]);
     };
     let mut faults = Faults::new();
     let mut causes = Vec::new();
@@ -123,7 +173,10 @@ fn read(
         };
         let mut values = Vec::new();
         for run in &observations.runs {
-            let row = t.rows.iter().position(|(_, fields)| fields.get(key) == Some(run));
+            let row = t
+                .rows
+                .iter()
+                .position(|(_, fields)| fields.get(key) == Some(run));
             match row.map(|r| t.number(r, c)) {
                 Some(Ok(Some(v))) => values.push(v),
                 Some(Err(f)) => faults.push(f),
@@ -135,7 +188,14 @@ fn read(
                 )),
             }
         }
-        causes.push(Cause { name: name.clone(), values });
+        causes.push(Cause {
+            name: name.clone(),
+            values,
+        });
     }
-    if faults.is_empty() { Ok(causes) } else { Err(faults) }
+    if faults.is_empty() {
+        Ok(causes)
+    } else {
+        Err(faults)
+    }
 }

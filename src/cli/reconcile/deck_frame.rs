@@ -10,9 +10,7 @@ use crate::cli::strain::{Fields, lay_gauges, read_fields};
 use crate::fe::{Solution, SolveOptions, UnitLoad, solve_unit_loads};
 use crate::gauge::{Gauge, reading};
 use crate::model::{GridIx, Model, Vec3};
-use crate::reconcile::strain::{
-    MassSignature, N_PAYLOAD_COLUMNS, PlaneStrainRow, Wiring,
-};
+use crate::reconcile::strain::{MassSignature, N_PAYLOAD_COLUMNS, PlaneStrainRow, Wiring};
 use crate::units::Quantity;
 
 /// Strain in microstrain.
@@ -154,7 +152,12 @@ pub(super) fn read(
     }
     let along = gradients(job, model, &gauges, &own, n_c, Axis::Along);
     let across = gradients(job, model, &gauges, &own, n_c, Axis::Across);
-    part.scatter = background(job, &part, finer.is_some().then_some(&base), [&along, &across]);
+    part.scatter = background(
+        job,
+        &part,
+        finer.is_some().then_some(&base),
+        [&along, &across],
+    );
     part.per_mm = Some(along);
     part.as_modelled = finer.is_some().then(|| base.clone());
     let deck = DeckFrame {

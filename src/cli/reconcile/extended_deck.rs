@@ -37,7 +37,11 @@ impl DeckFrame {
     fn change_zone(&self, edits: &mut Edits, job: &Job, zone: &str, factor: f64) -> Option<()> {
         let deck = &self.fields.deck.deck;
         let ids = job.reconcile.as_ref()?.zones.get(zone)?;
-        let named = deck.cards.pshells.iter().filter(|p| ids.contains(p.card.id));
+        let named = deck
+            .cards
+            .pshells
+            .iter()
+            .filter(|p| ids.contains(p.card.id));
         for p in named {
             let c = &p.card;
             let scaled = |v: Option<f64>| v.map(|v| v * factor);
@@ -82,15 +86,27 @@ impl DeckFrame {
         let highest = others.chain(c.pbushes.iter().map(|p| p.card.id)).max();
         // Above all others, and another one for every bush.
         let id = highest?.checked_add(bush.card.id)?;
-        edits.insert_cards(deck, &pbush(&Pbush { id, k: old.k.map(|k| k * factor), ..old }));
-        let card = cbush(&Bush { pid: Some(id), ..bush.card });
+        edits.insert_cards(
+            deck,
+            &pbush(&Pbush {
+                id,
+                k: old.k.map(|k| k * factor),
+                ..old
+            }),
+        );
+        let card = cbush(&Bush {
+            pid: Some(id),
+            ..bush.card
+        });
         edits.replace_card(deck, bush.at, &card).ok()
     }
 
     fn add_masses(&self, edits: &mut Edits, job: &Job, masses: &[(String, f64)]) -> Option<()> {
         let deck = &self.fields.deck.deck;
         let shells = self.fields.model().shells.iter().map(|s| s.id);
-        let taken = shells.chain(deck.cards.conm2s.iter().map(|c| c.card.id)).max();
+        let taken = shells
+            .chain(deck.cards.conm2s.iter().map(|c| c.card.id))
+            .max();
         for (k, (place, kilogram)) in (1u32..).zip(masses) {
             let grid = *job.reconcile.as_ref()?.places.get(place)?;
             let mass = kilogram / job.units.mass_kg();

@@ -20,7 +20,10 @@ impl Finer {
         }
         let refined = model.refined()?;
         let on = |gauges: &Vec<Gauge>| -> Option<Vec<Gauge>> {
-            gauges.iter().map(|g| on_refined(g, model, &refined)).collect()
+            gauges
+                .iter()
+                .map(|g| on_refined(g, model, &refined))
+                .collect()
         };
         let laid = [on(laid[0])?, on(laid[1])?, on(laid[2])?];
         Some(Self { refined, laid })

@@ -9,12 +9,10 @@ use crate::cli::job::runs::{RunRow, read_runs};
 use crate::cli::job::strain::{StrainRows, StrainTable, read_strain};
 use crate::cli::job::{HoldOut, Job, WheelForces as JobWheelForces};
 use crate::finding::{Finding, Severity};
-use crate::reconcile::effect::Extension;
-use crate::reconcile::strain::{
-    PayloadWeight, StrainFrame, WheelForces, angle_scatter, examine,
-};
-use crate::reconcile::{NamedEffect, Observations, Outcome, Verdict};
 use crate::model::Vec3;
+use crate::reconcile::effect::Extension;
+use crate::reconcile::strain::{PayloadWeight, StrainFrame, WheelForces, angle_scatter, examine};
+use crate::reconcile::{NamedEffect, Observations, Outcome, Verdict};
 use crate::report::strain::{GapMark, reconcile_page};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -419,7 +417,11 @@ fn report(
     session.put("extended_model", extended)?;
     say(session, outcome);
     let model = deck.map(|d| d.fields.model());
-    let metres = if model.is_some() { job.units.length_m() } else { 1.0 };
+    let metres = if model.is_some() {
+        job.units.length_m()
+    } else {
+        1.0
+    };
     let marks: Vec<GapMark<'_>> = frame
         .gauges
         .iter()

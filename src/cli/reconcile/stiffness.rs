@@ -36,7 +36,12 @@ pub(super) fn factor(id: &str, percent: f64) -> f64 {
 fn joints(job: &Job, model: &Model) -> Vec<u32> {
     let named = job.reconcile.as_ref().and_then(|r| r.joints.as_ref());
     let chosen: Vec<u32> = match named {
-        Some(ids) => model.bushes.iter().map(|b| b.id).filter(|b| ids.contains(*b)).collect(),
+        Some(ids) => model
+            .bushes
+            .iter()
+            .map(|b| b.id)
+            .filter(|b| ids.contains(*b))
+            .collect(),
         None => model.bushes.iter().map(|b| b.id).collect(),
     };
     if named.is_none() && chosen.len() > MOST_JOINTS {
@@ -58,16 +63,18 @@ impl DeckFrame {
                 .iter()
                 .map(|j| (JOINT, j.to_string(), JOINT_PERCENT.to_vec(), JOINT_PRIOR)),
         );
-        let solved = wanted.into_par_iter().map(|(id, place, sizes, prior_percent)| {
-            let at = sizes
-                .into_iter()
-                .map(|p| Ok((p, self.stiffness_change(job, id, &place, p)?)));
-            Ok(StiffnessSignature {
-                id: format!("{id}:{place}"),
-                at_percent: at.collect::<Result<_, Faults>>()?,
-                prior_percent,
-            })
-        });
+        let solved = wanted
+            .into_par_iter()
+            .map(|(id, place, sizes, prior_percent)| {
+                let at = sizes
+                    .into_iter()
+                    .map(|p| Ok((p, self.stiffness_change(job, id, &place, p)?)));
+                Ok(StiffnessSignature {
+                    id: format!("{id}:{place}"),
+                    at_percent: at.collect::<Result<_, Faults>>()?,
+                    prior_percent,
+                })
+            });
         solved.collect()
     }
 
@@ -93,7 +100,11 @@ impl DeckFrame {
 
     fn with_joint(&self, place: &str, factor: f64) -> Model {
         let mut model = self.fields.model().clone();
-        for b in model.bushes.iter_mut().filter(|b| b.id.to_string() == place) {
+        for b in model
+            .bushes
+            .iter_mut()
+            .filter(|b| b.id.to_string() == place)
+        {
             b.k.iter_mut().for_each(|k| *k *= factor);
         }
         model

@@ -163,7 +163,11 @@ impl StrainFrame {
             let scatter = self.scatter.iter().map(|s| match s {
                 Scatter::Together(m) | Scatter::Single(m) => power(m, g),
             });
-            let relative = if own > 0.0 { scatter.sum::<f64>() / own } else { 0.0 };
+            let relative = if own > 0.0 {
+                scatter.sum::<f64>() / own
+            } else {
+                0.0
+            };
             (self.model_rel * self.model_rel + relative).sqrt()
         };
         (0..self.n_gauges()).map(doubt).collect()

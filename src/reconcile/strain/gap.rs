@@ -168,7 +168,11 @@ pub fn gap(
     let frame = &finer.as_modelled();
     let all = Selection::of_runs(frame, &frame.observations.proof_runs());
     let on = |f: &StrainFrame| all.pick(&predict(f, members), f.n_gauges());
-    let mesh: Vec<f64> = on(finer).iter().zip(on(frame)).map(|(a, b)| a - b).collect();
+    let mesh: Vec<f64> = on(finer)
+        .iter()
+        .zip(on(frame))
+        .map(|(a, b)| a - b)
+        .collect();
     let before = plain_residual(frame, &[], &all);
     let readings = all.pick(&frame.observations.values, frame.n_gauges());
     let (after, found) = if members.is_empty() {

@@ -41,13 +41,26 @@ pub fn reconcile_page(
         .filter(|l| l.moved())
         .map(|l| {
             let kn = [l.stated, l.before, l.after, l.sigma].map(|v| format!("{v:.2}"));
-            [l.run.clone(), l.load.clone()].into_iter().chain(kn).collect()
+            [l.run.clone(), l.load.clone()]
+                .into_iter()
+                .chain(kn)
+                .collect()
         })
         .collect();
     if !moved.is_empty() {
         sections.push(Section {
             title: "Loads that moved by more than two sigma, kN".into(),
-            body: table(&["run", "load", "stated", "recovered before", "after", "sigma"], &moved),
+            body: table(
+                &[
+                    "run",
+                    "load",
+                    "stated",
+                    "recovered before",
+                    "after",
+                    "sigma",
+                ],
+                &moved,
+            ),
         });
     }
     sections.push(Section {
@@ -66,15 +79,24 @@ pub fn reconcile_page(
         title: "Smallest sizes that these runs would show".into(),
         body: html! { details { summary { (seen.len()) " effects" } (table(&["effect", "size", "unit"], &seen)) } },
     });
-    page(title, "Where simulation and measurement disagree, and what is missing", findings, sections)
+    page(
+        title,
+        "Where simulation and measurement disagree, and what is missing",
+        findings,
+        sections,
+    )
 }
 
 fn verdict(outcome: &Outcome) -> Markup {
     let words = match outcome.verdict {
         Verdict::Named => "An effect is missing in the model, and it is named:",
         Verdict::None => "Model and readings agree within noise and stated uncertainty.",
-        Verdict::Unknown => "There is a gap, and nothing in the library closes it. The best attempt:",
-        Verdict::BelowDetectability => "There is a hint of an effect, too small for these runs to name. The best attempt:",
+        Verdict::Unknown => {
+            "There is a gap, and nothing in the library closes it. The best attempt:"
+        }
+        Verdict::BelowDetectability => {
+            "There is a hint of an effect, too small for these runs to name. The best attempt:"
+        }
     };
     let g = &outcome.gap;
     let percent = |v: f64| format!("{:.2} %", 100.0 * v);
@@ -94,7 +116,13 @@ fn verdict(outcome: &Outcome) -> Markup {
 fn effect(e: &NamedEffect) -> Vec<String> {
     let list = |v: &[f64]| v.iter().map(|x| number(*x)).collect::<Vec<_>>().join(", ");
     let plausible = if e.plausible { "yes" } else { "no" };
-    vec![e.id.clone(), list(&e.size), list(&e.sigma), e.unit.into(), plausible.into()]
+    vec![
+        e.id.clone(),
+        list(&e.size),
+        list(&e.sigma),
+        e.unit.into(),
+        plausible.into(),
+    ]
 }
 
 fn rivals(outcome: &Outcome) -> Section {
@@ -110,7 +138,12 @@ fn rivals(outcome: &Outcome) -> Section {
     Section {
         title: "Other explanations".into(),
         body: table(
-            &["instead", "log evidence behind", "gap after", "can be told apart"],
+            &[
+                "instead",
+                "log evidence behind",
+                "gap after",
+                "can be told apart",
+            ],
             &outcome.rivals.iter().map(row).collect::<Vec<_>>(),
         ),
     }

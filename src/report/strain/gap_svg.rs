@@ -29,7 +29,12 @@ pub(super) fn gap_on_model(model: Option<&Model>, marks: &[GapMark<'_>]) -> Stri
         .map(|e| e.map(flat))
         .collect();
     let (mut lo, mut hi) = ((f64::MAX, f64::MAX), (f64::MIN, f64::MIN));
-    for (x, y) in edges.iter().flatten().copied().chain(marks.iter().map(|m| flat(m.at))) {
+    for (x, y) in edges
+        .iter()
+        .flatten()
+        .copied()
+        .chain(marks.iter().map(|m| flat(m.at)))
+    {
         lo = (lo.0.min(x), lo.1.min(y));
         hi = (hi.0.max(x), hi.1.max(y));
     }
@@ -53,7 +58,13 @@ pub(super) fn gap_on_model(model: Option<&Model>, marks: &[GapMark<'_>]) -> Stri
     let most = marks.iter().map(|m| m.gap.before).fold(0.0, f64::max);
     /// Radius of the largest circle.
     const LARGEST: f64 = 26.0;
-    let radius = |v: f64| if most > 0.0 { LARGEST * (v / most).sqrt() } else { 0.0 };
+    let radius = |v: f64| {
+        if most > 0.0 {
+            LARGEST * (v / most).sqrt()
+        } else {
+            0.0
+        }
+    };
     for m in marks {
         let (x, y) = px(flat(m.at));
         let _ = write!(
