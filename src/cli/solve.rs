@@ -108,7 +108,7 @@ fn of_job(session: &mut Session, path: &Path) -> Result<Task, Faults> {
             label: l.name.clone(),
             loads: vec![load],
             spc: None,
-            mpc: None,
+            mpc: read.model.mpc,
             relief,
         })
         .collect();

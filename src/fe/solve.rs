@@ -93,7 +93,7 @@ pub fn solve_unit_loads(
             label: String::new(),
             loads: vec![load.clone()],
             spc: None,
-            mpc: None,
+            mpc: model.mpc,
             relief,
         })
         .collect();

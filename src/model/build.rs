@@ -35,6 +35,7 @@ impl Model {
         let (mut model, faults) =
             Self::build(&deck.cards, &deck.case_control.global.params, &loads);
         model.uncarried = structure;
+        model.mpc = deck.case_control.mpc_of_structure();
         let named = deck
             .labels
             .iter()

@@ -71,6 +71,8 @@ pub struct Model {
     pub rigids: Vec<Rigid>,
     /// MPC sets.
     pub mpcs: Vec<MpcSet>,
+    /// The set that holds under unit loads: [`nastran::bdf::CaseControl::mpc_of_structure`].
+    pub mpc: Option<u32>,
     /// SPC sets, SPCADD resolved; enforced displacements included.
     pub spcs: Vec<SpcSet>,
     /// SUPORT and SUPORT1 (set id, `None` for SUPORT).

@@ -1,6 +1,7 @@
 //! Sampled signals: what a data logger wrote, checked and made comparable.
 //!
 //! - [`channels`]: a record of equally long, equally sampled channels with units
+//! - [`binary`]: the long record of strainbridge, read a piece at a time
 //! - [`csv`]: bytes of a CSV file to a record
 //! - [`quality`]: dead, clipped, spiky, drifting, reversed, wrongly scaled channels as findings
 //! - [`detrend`]: mean, line and zero-run removal
@@ -12,6 +13,7 @@
 //! - [`resample`]: another sample rate
 
 pub mod align;
+pub mod binary;
 pub mod butterworth;
 pub mod channels;
 pub mod csv;

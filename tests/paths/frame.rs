@@ -113,6 +113,64 @@ fn with_the_sensitivity_of_another_solver_and_its_error_stated_nine_intervals_in
 }
 
 #[test]
+fn with_gravity_as_reference_gauges_at_zero_mean_the_wheels_carry_the_models_weight() {
+    let Some((job, folder)) = job("frame_gravity", |t| {
+        let text = t.replace("[measured]", "[measured]\nreference = \"gravity\"");
+        let at = text.find("/measured/strain.csv").unwrap();
+        let from = text[..at].rfind('"').unwrap();
+        format!(
+            "{}\"zeros.csv\"{}",
+            &text[..from],
+            &text[at + "/measured/strain.csv\"".len()..]
+        )
+    }) else {
+        return;
+    };
+    let (header, _) = csv(&shared(CASE).unwrap().join("measured/strain.csv"));
+    let zeros = vec!["0"; header.len() - 1].join(",");
+    std::fs::write(
+        folder.join("zeros.csv"),
+        format!("{}\nstanding,{zeros}\n", header.join(",")),
+    )
+    .unwrap();
+    let got = run(&["recover", job.to_str().unwrap()], &folder.join("out"));
+    let deck = shared(CASE).unwrap().join("frame.bdf");
+    let checked = run(&["check", deck.to_str().unwrap()], &folder.join("check"));
+    let about = &checked.result["decks"][0];
+    let weight = about["mass"].as_f64().unwrap() * 9806.65 / 1000.0;
+    let cg: Vec<f64> = (0..2).map(|i| about["cg"][i].as_f64().unwrap()).collect();
+    let read = nastran::bdf::read_deck(
+        "frame.bdf",
+        std::fs::read(&deck).unwrap(),
+        &mut nastran::bdf::MemoryLoader::default(),
+    );
+    let (mut sum, mut moment) = (0.0, [0.0; 2]);
+    for load in got.result["loads"].as_array().unwrap() {
+        let name = load["name"].as_str().unwrap();
+        let value = load["value"].as_f64().unwrap();
+        if name.starts_with("payload") {
+            assert!(value.abs() < 1e-6 * weight, "{name} {value}");
+            continue;
+        }
+        let id = 9001
+            + ["LF.FZ", "RF.FZ", "LM.FZ", "RM.FZ", "LR.FZ", "RR.FZ"]
+                .iter()
+                .position(|n| *n == name)
+                .unwrap() as u32;
+        let x = read.cards.grids.iter().find(|g| g.id == id).unwrap().x;
+        sum += value;
+        (0..2).for_each(|i| moment[i] += value * (x[i] - cg[i]));
+    }
+    assert!(
+        (sum - weight).abs() < 1e-6 * weight,
+        "{sum} of {weight}: {}",
+        got.stderr
+    );
+    // About the centre of gravity, in kN mm; the wheels stand metres from it.
+    assert!(moment.iter().all(|m| m.abs() < 1e-3 * weight), "{moment:?}");
+}
+
+#[test]
 fn six_wheel_loads_alone_end_with_an_error_finding() {
     let edit = |t: String| {
         let (head, tail) = (

@@ -194,7 +194,7 @@ fn edits_of(session: &mut Session, job: &Job, deck: &Deck) -> Result<(Edits, Vec
         .filter_map(|c| c.mpc)
         .collect();
     if deck.case_control.global.mpc.is_none()
-        && let Some(mpc) = kept.first()
+        && let Some(mpc) = deck.case_control.mpc_of_structure()
     {
         case.push_str(&format!("MPC = {mpc}\n"));
     }

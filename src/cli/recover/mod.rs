@@ -1,8 +1,7 @@
 //! `recover`: loads from measured strain.
 //!
-//! [`runs`] static states, a row each; [`stream`] records of any length, CSV or binary ([`binary`]), at constant memory.
+//! [`runs`] static states, a row each; [`stream`] records of any length, CSV or binary ([`crate::series::binary`]), at constant memory.
 
-mod binary;
 mod csv_record;
 mod runs;
 mod stream;
@@ -10,10 +9,14 @@ mod stream;
 use super::fault::{Fault, Faults};
 use super::job::{self, Job, Measured, Reference};
 use super::strain::{Prepared, prepare, put_conditioning};
+use super::wheels::{floor_fault, wheels_of};
 use super::{JobArguments, Session};
+use crate::fe::floor::solve_standing;
 use crate::finding::{Finding, Severity};
 use crate::gauge::reading;
+use crate::model::Model;
 use crate::recovery::{ErrorModel, Readings, Recovery};
+use crate::series::binary;
 
 /// Strain in one microstrain.
 const MICRO: f64 = 1e-6;
@@ -59,7 +62,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         .read_named(&job, &measured.strain)
         .map_err(|f| vec![f])?;
     if binary::is_record(&bytes) || csv_record::is_record(&bytes) {
-        stream::run(session, arguments, &task, bytes)
+        session.stage("stream", |s| stream::run(s, arguments, &task, bytes))
     } else {
         runs::run(session, arguments, &task)
     }
@@ -125,25 +128,51 @@ fn reference_strain(
     match (measured.reference, &prepared.fields) {
         (Reference::None, _) => Ok(vec![0.0; n]),
         (Reference::Subcase(id), Some(fields)) => {
-            let case = fields
-                .subcase(id)
-                .ok_or_else(|| fault(format!("the results have no subcase {id}"), "name the subcase of the reference state"))?;
+            let case = fields.subcase(id).ok_or_else(|| {
+                fault(
+                    format!("the results have no subcase {id}"),
+                    "name the subcase of the reference state",
+                )
+            })?;
             prepared
                 .gauges
                 .iter()
                 .map(|g| {
                     reading(g, case).ok_or_else(|| {
-                        fault(format!("gauge `{}` has no strain in subcase {id}", g.name), "ask for STRAIN of its element there")
+                        fault(
+                            format!("gauge `{}` has no strain in subcase {id}", g.name),
+                            "ask for STRAIN of its element there",
+                        )
                     })
                 })
                 .collect()
         }
-        (Reference::Gravity, _) => Err(fault(
-            "\"gravity\" can't be computed here: under inertia relief the weight of a free structure strains nothing".to_owned(),
-            "solve the structure on its wheels under GRAV, and name that subcase",
+        (Reference::Gravity, Some(fields)) => Ok(standing_strain(job, fields.model(), prepared)?),
+        (_, None) => Err(fault(
+            "a given S has no subcases and no weight".to_owned(),
+            "write reference = \"none\", or give a [model] instead of [sensitivity]",
         )),
-        (Reference::Subcase(_), None) => {
-            Err(fault("a given S has no subcases".to_owned(), "write reference = \"none\", or give a [model] instead of [sensitivity]"))
-        }
     }
+}
+
+/// Strain by gauge of the model standing on its wheels under its own weight: `S R`, `R` the reactions at the job's wheels on a flat floor.
+/// A free structure that gravity and its reactions hold in balance is strained by the reactions with their inertia relief alone.
+fn standing_strain(job: &Job, model: &Model, prepared: &Prepared) -> Result<Vec<f64>, Faults> {
+    let wheels = wheels_of(job, model)?;
+    let standing = solve_standing(model, wheels.axis, &wheels.grids, &[], None)
+        .map_err(|e| floor_fault(job, &e))?;
+    let reactions = standing.under_weight(model, job.units.standard_gravity());
+    let s = &prepared.sensitivity;
+    Ok((0..s.gauges.len())
+        .map(|g| {
+            let by_wheel = wheels.loads.iter().zip(&reactions);
+            by_wheel
+                .filter_map(|(l, r)| {
+                    let name = &job.loads.get(*l)?.name;
+                    let column = s.loads.iter().position(|c| c.name == *name)?;
+                    Some(s.values[(g, column)] * r)
+                })
+                .sum()
+        })
+        .collect())
 }

@@ -1,6 +1,5 @@
 //! Records: samples streamed through one filter, pieces in parallel, a few pieces in memory at a time.
 
-use super::binary::{self, Header};
 use super::csv_record::{self, Layout};
 use super::runs::columns_of;
 use super::{MICRO, Task};
@@ -14,6 +13,7 @@ use crate::recovery::history::{Filter, Sums};
 use crate::recovery::{NORMAL_95, Readings, recover};
 use crate::report::strain::{RecoveredRun, recover_page};
 use crate::sensitivity::Sensitivity;
+use crate::series::binary::{self, Header};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::io::Write;
@@ -89,7 +89,10 @@ pub(super) fn run(
     let named = &task.measured.strain;
     let file = named.given.clone();
     let (source, names, unit) = if binary::is_record(&bytes) {
-        let h = binary::read_header(&file, &bytes).map_err(|f| vec![f])?;
+        let h = binary::read_header(&bytes).map_err(|e| {
+            let remedy = "write the record again as README.md describes it";
+            vec![Fault::of(&*file, "header", e.to_string(), remedy)]
+        })?;
         let (names, unit) = (h.names.clone(), h.unit);
         (Source::Binary(h), names, unit)
     } else {
@@ -177,9 +180,7 @@ pub(super) fn run(
         }),
     };
     let names_of: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
-    let start = std::time::Instant::now();
     let out = session.output_for(&arguments.job)?;
-    let mut binary_out: Option<Vec<u8>> = None;
     let mut written = 0u64;
     let folder = out.folder().to_owned();
     let part = folder.join(".loads.bin.body");
@@ -257,9 +258,7 @@ pub(super) fn run(
         });
         let _ = std::fs::remove_file(&part);
         copied.map_err(|f| vec![f])?;
-        binary_out = Some(Vec::new());
     }
-    let seconds = start.elapsed().as_secs_f64();
     finish(
         session,
         arguments,
@@ -269,8 +268,7 @@ pub(super) fn run(
         &sums,
         &units,
         &file,
-        seconds,
-        binary_out.is_some().then_some(stride),
+        whole.then_some(stride),
     )
 }
 
@@ -387,7 +385,6 @@ fn finish(
     sums: &Sums,
     units: &[LoadUnits],
     file: &str,
-    seconds: f64,
     thinned: Option<usize>,
 ) -> Result<(), Faults> {
     let count = sums.samples.max(1) as f64;
@@ -437,7 +434,6 @@ fn finish(
     session.put("gauges", gauges)?;
     session.put("samples", sums.samples)?;
     session.put("gaps", sums.gaps)?;
-    let _ = seconds;
     if sums.gaps > 0 {
         session.findings.push(
             Finding::new(

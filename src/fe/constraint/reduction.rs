@@ -68,13 +68,6 @@ impl Reduction {
         }
         f
     }
-
-    /// Whether no dof of a grid depends on others.
-    pub(crate) fn is_plain(&self, grid: usize) -> bool {
-        self.state[6 * grid..6 * grid + 6]
-            .iter()
-            .all(|s| !matches!(s, State::Dependent(_)))
-    }
 }
 
 /// The constraints of one SPC and one MPC set, with rigid elements and permanent supports.

@@ -42,7 +42,7 @@ pub fn solve_standing(
             label: String::new(),
             loads: vec![load],
             spc: None,
-            mpc: None,
+            mpc: model.mpc,
             relief: Relief::Automatic,
         })
         .collect();

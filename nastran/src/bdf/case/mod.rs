@@ -170,6 +170,12 @@ impl CaseControl {
         full
     }
 
+    /// The MPC set that belongs to the structure whatever the load: the one above the subcases, else the smallest that a subcase selects.
+    pub fn mpc_of_structure(&self) -> Option<u32> {
+        let below = self.subcases.iter().filter_map(|s| s.mpc).min();
+        self.global.mpc.or(below)
+    }
+
     /// All subcases with what they inherit; a deck without SUBCASE has one, number 1.
     pub fn effective_subcases(&self) -> Vec<Subcase> {
         if self.subcases.is_empty() {

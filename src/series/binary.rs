@@ -15,38 +15,45 @@
 //!
 //! Then the samples, `n_columns` numbers each; a number that was not measured is NaN.
 
-use crate::cli::fault::Fault;
 use std::io::{self, Write};
 
 const MAGIC: &[u8; 8] = b"STRAINBH";
 
 /// What stands before the samples.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Header {
+pub struct Header {
+    /// Bytes a number, 4 or 8.
     pub width: usize,
+    /// Columns.
     pub names: Vec<String>,
+    /// First byte of the samples.
     pub start: usize,
+    /// How many samples.
     pub samples: usize,
+    /// Time of the first, s.
     pub t0: f64,
+    /// Time between them, s.
     pub dt: f64,
+    /// Value of one unit.
     pub unit: f64,
 }
 
+/// What is wrong with a header.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct HeaderError(&'static str);
+
 /// Whether the bytes begin as such a record.
-pub(super) fn is_record(bytes: &[u8]) -> bool {
+pub fn is_record(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
 }
 
 /// The header, checked against the size of the file.
-pub(super) fn read_header(file: &str, bytes: &[u8]) -> Result<Header, Fault> {
-    let fault = |what: &str| {
-        Fault::of(
-            file,
-            "header",
-            what,
-            "write the record again as README.md describes it",
-        )
-    };
+///
+/// # Errors
+/// Another version, numbers of another width, a cut header, fewer bytes than the samples it promises.
+pub fn read_header(bytes: &[u8]) -> Result<Header, HeaderError> {
+    let fault = HeaderError;
     let at = |from: usize, n: usize| bytes.get(from..from.checked_add(n)?);
     let u32_at = |from| {
         at(from, 4)
@@ -115,7 +122,10 @@ pub(super) fn read_header(file: &str, bytes: &[u8]) -> Result<Header, Fault> {
 }
 
 /// Writes a header for `samples` samples of f32.
-pub(super) fn write_header(
+///
+/// # Errors
+/// What `out` says.
+pub fn write_header(
     out: &mut dyn Write,
     names: &[String],
     samples: u64,
@@ -141,7 +151,7 @@ pub(super) fn write_header(
 }
 
 /// Numbers of samples `from .. to`, appended in the order of `columns` (`None`: NaN).
-pub(super) fn read_samples(
+pub fn read_samples(
     h: &Header,
     bytes: &[u8],
     from: usize,
