@@ -51,6 +51,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         &loads,
         &SolveOptions {
             corners: Corners::Compute,
+            ..SolveOptions::default()
         },
     )?;
     writeln!(

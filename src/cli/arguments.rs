@@ -58,6 +58,9 @@ pub struct CommonArguments {
     /// Threads for parallel work (default: all cores)
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,
+    /// Neither take solutions of the built-in solver from the folder `<job name>.cache` nor keep them there
+    #[arg(long)]
+    pub no_cache: bool,
 }
 
 /// A command on a job.

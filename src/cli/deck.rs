@@ -16,6 +16,8 @@ pub struct DeckModel {
     pub deck: Deck,
     /// Its model.
     pub model: Model,
+    /// Files it was read from: the deck, then its INCLUDEs.
+    pub files: Vec<PathBuf>,
     /// Everything that is wrong: in cards, then in the model.
     pub faults: Faults,
     /// What is worth knowing.
@@ -29,7 +31,9 @@ pub struct DeckModel {
 pub fn read_model(inputs: &mut Inputs, base: &Path, given: &str) -> Result<DeckModel, Fault> {
     let bytes = inputs.read(base, given)?;
     if looks_like_op2(&bytes) {
-        model_of_op2(given, &bytes)
+        let mut read = model_of_op2(given, &bytes)?;
+        read.files = vec![base.join(given)];
+        Ok(read)
     } else {
         Ok(model_of_deck(inputs, base, given, &bytes))
     }
@@ -42,14 +46,29 @@ pub fn looks_like_op2(bytes: &[u8]) -> bool {
 
 /// The deck alone, with the faults of its cards.
 pub fn deck_of(inputs: &mut Inputs, base: &Path, given: &str, bytes: &[u8]) -> Deck {
-    let path = base.join(given).display().to_string();
-    let mut loader = FileLoader { inputs };
-    read_deck(&path, bytes.to_vec(), &mut loader)
+    deck_and_files(inputs, base, given, bytes).0
+}
+
+/// The deck, and the files it was read from.
+fn deck_and_files(
+    inputs: &mut Inputs,
+    base: &Path,
+    given: &str,
+    bytes: &[u8],
+) -> (Deck, Vec<PathBuf>) {
+    let main = base.join(given);
+    let path = main.display().to_string();
+    let mut loader = FileLoader {
+        inputs,
+        files: vec![main],
+    };
+    let deck = read_deck(&path, bytes.to_vec(), &mut loader);
+    (deck, loader.files)
 }
 
 /// The deck in `bytes` and its model.
 pub fn model_of_deck(inputs: &mut Inputs, base: &Path, given: &str, bytes: &[u8]) -> DeckModel {
-    let deck = deck_of(inputs, base, given, bytes);
+    let (deck, files) = deck_and_files(inputs, base, given, bytes);
     let (model, model_faults) = Model::from_deck(&deck);
     let mut faults = deck_faults(&deck);
     let mut findings = Vec::new();
@@ -59,6 +78,7 @@ pub fn model_of_deck(inputs: &mut Inputs, base: &Path, given: &str, bytes: &[u8]
         given: given.to_owned(),
         deck,
         model,
+        files,
         faults,
         findings,
     }
@@ -105,6 +125,7 @@ pub fn model_of_op2(given: &str, bytes: &[u8]) -> Result<DeckModel, Fault> {
         given: given.to_owned(),
         deck: Deck::default(),
         model,
+        files: Vec::new(),
         faults,
         findings,
     })
@@ -202,6 +223,7 @@ pub fn moduli_and_densities(model: &Model) -> (Vec<(u32, f64)>, Vec<(u32, f64)>)
 /// Opens included files; symbols are environment variables.
 struct FileLoader<'a> {
     inputs: &'a mut Inputs,
+    files: Vec<PathBuf>,
 }
 
 impl Loader for FileLoader<'_> {
@@ -216,6 +238,7 @@ impl Loader for FileLoader<'_> {
             match std::fs::read(&path) {
                 Ok(bytes) => {
                     let kept = FileBytes::from(bytes.clone());
+                    self.files.push(path.clone());
                     self.inputs.record(&name, path, &kept);
                     return Ok(Loaded { path: name, bytes });
                 }

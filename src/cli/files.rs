@@ -119,6 +119,17 @@ impl Inputs {
         self.entries.push((given.to_owned(), path, hashing));
     }
 
+    /// SHA-256 of a file that was read, by the path it was read from.
+    pub fn digest_of(&mut self, path: &Path) -> Option<String> {
+        let entry = self.entries.iter_mut().find(|e| e.1 == path)?;
+        let hex = match std::mem::replace(&mut entry.2, Hashing::Done(String::new())) {
+            Hashing::Done(hex) => hex,
+            Hashing::Running(thread) => thread.join().ok()?,
+        };
+        entry.2 = Hashing::Done(hex.clone());
+        Some(hex)
+    }
+
     /// The list, hashes finished.
     pub fn finish(self) -> Vec<Input> {
         let hex = |h| match h {

@@ -38,17 +38,39 @@ impl Output {
         name: &str,
         fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
     ) -> Result<(), Fault> {
-        let target = self.folder.join(name);
+        let part = self.begin_file(name);
+        fill_file(&part, fill).map_err(|e| unwritable(&self.folder.join(name), &e))
+    }
+
+    /// Writes two files at the same time, each by its own `fill`.
+    ///
+    /// # Errors
+    /// A fault for the first that can't be written.
+    pub fn write_both(
+        &mut self,
+        (one, fill_one): (
+            &str,
+            impl FnOnce(&mut dyn Write) -> std::io::Result<()> + Send,
+        ),
+        (two, fill_two): (
+            &str,
+            impl FnOnce(&mut dyn Write) -> std::io::Result<()> + Send,
+        ),
+    ) -> Result<(), Fault> {
+        let (part_one, part_two) = (self.begin_file(one), self.begin_file(two));
+        let (a, b) = rayon::join(
+            || fill_file(&part_one, fill_one),
+            || fill_file(&part_two, fill_two),
+        );
+        a.map_err(|e| unwritable(&self.folder.join(one), &e))?;
+        b.map_err(|e| unwritable(&self.folder.join(two), &e))
+    }
+
+    /// Notes a file under its temporary name.
+    fn begin_file(&mut self, name: &str) -> PathBuf {
         let part = self.folder.join(format!(".{name}.part"));
-        let write = || -> std::io::Result<()> {
-            let mut file =
-                std::io::BufWriter::with_capacity(1 << 18, std::fs::File::create(&part)?);
-            fill(&mut file)?;
-            file.flush()
-        };
-        let written = write();
-        self.pending.push((part, target.clone()));
-        written.map_err(|e| unwritable(&target, &e))
+        self.pending.push((part.clone(), self.folder.join(name)));
+        part
     }
 
     /// Writes file `name` from bytes.
@@ -78,6 +100,15 @@ impl Drop for Output {
             let _ = std::fs::remove_file(part);
         }
     }
+}
+
+fn fill_file(
+    part: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let mut file = std::io::BufWriter::with_capacity(1 << 18, std::fs::File::create(part)?);
+    fill(&mut file)?;
+    file.flush()
 }
 
 fn unwritable(path: &Path, e: &std::io::Error) -> Fault {

@@ -29,6 +29,7 @@ pub struct Session {
     seconds: Map<String, Value>,
     output: Option<Output>,
     text: String,
+    notes: Vec<String>,
 }
 
 /// `result.json`.
@@ -114,6 +115,7 @@ impl Session {
             seconds: Map::new(),
             output: None,
             text: String::new(),
+            notes: Vec::new(),
         }
     }
 
@@ -160,12 +162,17 @@ impl Session {
     }
 
     fn note_seconds(&mut self, name: &str, start: Instant) {
+        self.note_step(name, start.elapsed().as_secs_f64());
+    }
+
+    /// Adds seconds under a name of its own, for the steps of a stage.
+    pub fn note_step(&mut self, name: &str, seconds: f64) {
         let before = self
             .seconds
             .get(name)
             .and_then(Value::as_f64)
             .unwrap_or(0.0);
-        let s = before + start.elapsed().as_secs_f64();
+        let s = before + seconds;
         self.seconds
             .insert(name.to_owned(), Value::from((s * 1e6).round() / 1e6));
     }
@@ -209,6 +216,16 @@ impl Session {
     pub fn say(&mut self, line: impl AsRef<str>) {
         self.text.push_str(line.as_ref());
         self.text.push('\n');
+    }
+
+    /// Adds a line for standard error that is no part of the answer.
+    pub fn note(&mut self, line: impl Into<String>) {
+        self.notes.push(line.into());
+    }
+
+    /// Whether solutions of the built-in solver are kept beside their inputs.
+    pub fn keeps_solutions(&self) -> bool {
+        !self.common.no_cache
     }
 
     /// The output folder: `--out`, else `<name of the file>.out` in the current folder's reach beside the file.
@@ -298,6 +315,7 @@ impl Session {
     /// Closes and prints.
     fn finish(self) -> Result<ExitCode, Faults> {
         let as_json = self.common.json;
+        let own = self.notes.clone();
         let Closed {
             json,
             text,
@@ -312,6 +330,9 @@ impl Session {
         findings
             .iter()
             .for_each(|f| notes.push_str(&(finding_text(f) + "\n")));
+        for note in &own {
+            notes.push_str(&format!("note: {note}\n"));
+        }
         if let Some(folder) = folder {
             notes.push_str(&format!("written to `{}`\n", folder.display()));
         }

@@ -2,20 +2,16 @@
 
 use super::deck::{DeckModel, read_model};
 use super::fault::{Fault, Faults};
+use super::solved::{cases_of_job, solve_kept};
 use super::{JobArguments, Session, job};
-use crate::fe::{
-    FeError, LoadCase, Relief, Solution, SolveOptions, SolveReport, UnitLoad, free_modes,
-    relief_of, solve_cases,
-};
+use crate::fe::{LoadCase, Solution, SolveReport, UnitLoad, relief_of};
 use crate::finding::{Finding, Severity};
 use crate::model::Model;
-use crate::report::{for_each_block, write_vtu};
-use nastran::op2::Op2Writer;
+use crate::report::{PlannedBlock, planned_blocks, rows_of_block, write_vtu};
+use nastran::op2::{EncodedBlock, Op2Writer, WriteError};
+use rayon::prelude::*;
 use serde_json::json;
 use std::path::{Path, PathBuf};
-
-/// Elastic modes of a free structure that are computed beside the strain.
-const MODES: usize = 10;
 
 /// What is to be solved.
 struct Task {
@@ -52,31 +48,10 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
             "solve it with Nastran",
         ));
     }
-    let (solution, report) = session
-        .stage("solve", |_| {
-            solve_cases(&read.model, &cases, &SolveOptions::default())
-        })
-        .map_err(|e| faults_of(&e, &read))?;
+    let (solution, report) = solve_kept(session, &arguments.job, &read, &cases)?;
     session.findings.extend(solution.findings.iter().cloned());
-    let free = cases.iter().find(|c| c.relief != Relief::None);
-    let frequencies = match free {
-        Some(case) => session
-            .stage("free modes", |_| {
-                free_modes(&read.model, case.spc, case.mpc, MODES)
-            })
-            .map(|(modes, _)| modes.iter().map(|m| m.frequency).collect())
-            .map_err(|e| faults_of(&e, &read))?,
-        None => Vec::new(),
-    };
     session.stage("write", |s| {
-        write(
-            s,
-            &arguments.job,
-            &read.model,
-            &solution,
-            &report,
-            &frequencies,
-        )
+        write(s, &arguments.job, &read.model, &solution, &report)
     })
 }
 
@@ -97,21 +72,7 @@ fn of_job(session: &mut Session, path: &Path) -> Result<Task, Faults> {
     if !read.faults.is_empty() {
         return Err(read.faults);
     }
-    let relief = relief_of(&read.model, None, None);
-    let loads = super::strain::unit_loads(&job, &read.model)?;
-    let cases = job
-        .loads
-        .iter()
-        .zip(loads)
-        .map(|(l, load)| LoadCase {
-            subcase: l.number,
-            label: l.name.clone(),
-            loads: vec![load],
-            spc: None,
-            mpc: read.model.mpc,
-            relief,
-        })
-        .collect();
+    let cases = cases_of_job(&job, &read)?;
     Ok(Task {
         read,
         cases,
@@ -177,28 +138,12 @@ fn has_enforced(model: &Model, spc: Option<u32>) -> bool {
         .any(|s| Some(s.sid) == spc && s.terms.iter().any(|t| t.2 != 0.0))
 }
 
-/// The solver's faults with file and line.
-pub(super) fn faults_of(error: &FeError, read: &DeckModel) -> Faults {
-    error
-        .faults()
-        .into_iter()
-        .map(|f| {
-            let file = match f.at.line {
-                0 => read.given.clone(),
-                _ => read.deck.path(f.at).to_owned(),
-            };
-            Fault::at(file, f.at.line, f.card, f.reason, f.remedy)
-        })
-        .collect()
-}
-
 fn write(
     session: &mut Session,
     input: &Path,
     model: &Model,
     solution: &Solution,
     report: &SolveReport,
-    frequencies: &[f64],
 ) -> Result<(), Faults> {
     session.put("grids", report.grids)?;
     session.put("dofs", report.dofs)?;
@@ -212,8 +157,7 @@ fn write(
             .mass
             .map(|m| json!({ "mass": m.mass, "cg": [m.cg.x, m.cg.y, m.cg.z] })),
     )?;
-    session.put("elastic_modes_hz", frequencies)?;
-    session.put("peak_memory_bytes", peak_memory())?;
+    session.put("elastic_modes_hz", &report.modes)?;
     session.say(format!(
         "{} load cases on {} grids, {} unknowns; factor of {} entries",
         solution.cases.len(),
@@ -221,34 +165,52 @@ fn write(
         report.dofs,
         report.factor_nonzeros
     ));
-    if let Some(first) = frequencies.first() {
+    if let Some(first) = report.modes.first() {
         session.say(format!(
             "first elastic mode of the free structure: {first:.4} per unit of time"
         ));
     }
     let out = session.output_for(input)?;
-    out.write("results.op2", |w| {
-        let mut op2 = Op2Writer::new(w, [1, 1, 2000]).map_err(std::io::Error::other)?;
-        for_each_block(model, solution, |block, rows| op2.write_block(block, rows))
-            .map_err(std::io::Error::other)?;
-        op2.finish().map(|_| ()).map_err(std::io::Error::other)
-    })
+    let plan = planned_blocks(model, solution);
+    out.write_both(
+        ("results.op2", |w| write_op2(model, solution, &plan, w)),
+        ("results.vtu", |w| write_vtu(model, &solution.cases, w)),
+    )
     .map_err(|f| vec![f])?;
-    out.write("results.vtu", |w| write_vtu(model, &solution.cases, w))
-        .map_err(|f| vec![f])?;
     let title = input
         .file_stem()
         .map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    let page = crate::report::strain::page(
-        &title,
-        "Solution of the built-in solver",
-        &session.findings,
-        Vec::new(),
-    );
+    session.put("peak_memory_bytes", peak_memory())?;
+    let page = crate::report::strain::solution_page(&title, solution, report, &session.findings);
     session
         .output_for(input)?
         .write_bytes("report.html", page.as_bytes())
         .map_err(|f| vec![f])
+}
+
+/// Blocks are made into words in parallel, a few at a time.
+fn write_op2(
+    model: &Model,
+    solution: &Solution,
+    plan: &[PlannedBlock],
+    out: &mut dyn std::io::Write,
+) -> std::io::Result<()> {
+    let encode = |group: &[PlannedBlock]| -> Result<Vec<EncodedBlock>, WriteError> {
+        group
+            .par_iter()
+            .map(|p| {
+                let (block, rows) = rows_of_block(model, solution, *p);
+                EncodedBlock::new(&block, &rows)
+            })
+            .collect()
+    };
+    let mut op2 = Op2Writer::new(out, [1, 1, 2000]).map_err(std::io::Error::other)?;
+    for group in plan.chunks(rayon::current_num_threads().clamp(1, 4)) {
+        for block in encode(group).map_err(std::io::Error::other)? {
+            op2.write_encoded(&block).map_err(std::io::Error::other)?;
+        }
+    }
+    op2.finish().map(|_| ()).map_err(std::io::Error::other)
 }
 
 /// Largest resident memory of this process so far, bytes; `None` where the system does not tell.

@@ -3,7 +3,6 @@
 use super::element::beam::{beam_coupled_mass, beam_lumped_mass};
 use super::element::shell::{output_frame, shell_mass};
 use super::element::{ElementMatrix, Prepared, rod_mass};
-use super::error::Refusal;
 use super::rigid_motion::rigid;
 use crate::linalg::Matrix6;
 use crate::model::{GridIx, Vec3};
@@ -33,39 +32,35 @@ pub struct MassProperties {
 }
 
 impl Mass {
-    /// Lumped mass of all elements and concentrated masses.
-    ///
-    /// # Errors
-    /// Elements that can't be formed.
-    pub(crate) fn new(prepared: &Prepared<'_>) -> Result<Self, Vec<Refusal>> {
+    /// Mass of all elements and concentrated masses: lumped, or with PARAM,COUPMASS consistent for shells, bars and beams (rods stay
+    /// lumped).
+    pub(crate) fn new(prepared: &Prepared<'_>) -> Self {
         let model = prepared.model;
         let mut mass = Self {
             point: vec![0.0; model.grids.len()],
             ..Self::default()
         };
-        let shells: Vec<Result<Vec<f64>, Refusal>> = (0..model.shells.len())
+        let shells: Vec<[[f64; 4]; 4]> = (0..model.shells.len())
             .into_par_iter()
-            .map(|i| shell_mass(prepared, i))
+            .map(|i| shell_mass(model, i))
             .collect();
-        let mut refused = Vec::new();
-        for (shell, result) in model.shells.iter().zip(shells) {
-            match result {
-                Err(refusal) => refused.push(refusal),
-                Ok(corners) => {
-                    let n = shell.shape.n_corners();
-                    let offset = if shell.zoffs == 0.0 {
-                        Vec3::zeros()
-                    } else {
-                        let x: Vec<Vec3> = shell.grids[..n]
-                            .iter()
-                            .map(|g| model.grids[g.us()].x)
-                            .collect();
-                        output_frame(&x)
-                            .map_or_else(Vec3::zeros, |f| f.row(2).transpose() * shell.zoffs)
-                    };
-                    for (g, m) in shell.grids.iter().zip(corners) {
-                        mass.add_point(*g, m, &offset);
-                    }
+        for (shell, pairs) in model.shells.iter().zip(shells) {
+            let n = shell.shape.n_corners().min(4);
+            let offset = if shell.zoffs == 0.0 {
+                Vec3::zeros()
+            } else {
+                let x: Vec<Vec3> = shell.grids[..n]
+                    .iter()
+                    .map(|g| model.grids[g.us()].x)
+                    .collect();
+                output_frame(&x).map_or_else(Vec3::zeros, |f| f.row(2).transpose() * shell.zoffs)
+            };
+            if model.params.coupmass {
+                mass.coupled
+                    .push(coupled_points(&shell.grids[..n], &pairs, &offset));
+            } else {
+                for (g, row) in shell.grids[..n].iter().zip(&pairs) {
+                    mass.add_point(*g, row.iter().sum(), &offset);
                 }
             }
         }
@@ -85,9 +80,6 @@ impl Mass {
         for m in &model.masses {
             *mass.blocks.entry(m.grid).or_insert_with(Matrix6::zeros) += m.matrix;
         }
-        if !refused.is_empty() {
-            return Err(refused);
-        }
         let w = model.params.wtmass;
         mass.point.iter_mut().for_each(|m| *m *= w);
         mass.blocks.values_mut().for_each(|m| *m *= w);
@@ -95,7 +87,7 @@ impl Mass {
             .iter_mut()
             .flat_map(|m| &mut m.values)
             .for_each(|v| *v *= w);
-        Ok(mass)
+        mass
     }
 
     /// A point mass at an offset from a grid.
@@ -190,16 +182,10 @@ impl Mass {
 }
 
 /// Mass, centre of gravity and rigid mass matrix of a model, WTMASS applied; `None` without mass.
-///
-/// # Errors
-/// Elements that can't be formed.
-pub fn mass_properties(
-    model: &crate::model::Model,
-) -> Result<Option<MassProperties>, super::error::FeError> {
-    let prepared = Prepared::new(model);
-    let mass = Mass::new(&prepared).map_err(super::error::FeError::Refused)?;
+pub fn mass_properties(model: &crate::model::Model) -> Option<MassProperties> {
+    let mass = Mass::new(&Prepared::new(model));
     let x: Vec<Vec3> = model.grids.iter().map(|g| g.x).collect();
-    Ok(mass.properties(&x))
+    mass.properties(&x)
 }
 
 /// Force and moment about a point of nodal forces.
@@ -213,6 +199,23 @@ pub(crate) fn resultant(x: &[Vec3], f: &[[f64; 6]], centre: &Vec3) -> [f64; 6] {
         }
     }
     sum
+}
+
+/// Mass of pairs of grids, all at one offset from them.
+fn coupled_points(grids: &[GridIx], pairs: &[[f64; 4]; 4], offset: &Vec3) -> ElementMatrix {
+    let mut m = ElementMatrix::zeros(grids.to_vec());
+    let n = m.n();
+    for (k, row) in pairs.iter().enumerate().take(grids.len()) {
+        for (l, mass) in row.iter().enumerate().take(grids.len()) {
+            let block = point_mass(*mass, offset);
+            for i in 0..6 {
+                for j in 0..6 {
+                    m.values[(6 * k + i) * n + 6 * l + j] = block[(i, j)];
+                }
+            }
+        }
+    }
+    m
 }
 
 /// 6 x 6 mass of a point at an offset, referred to its grid.

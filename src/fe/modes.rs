@@ -1,4 +1,4 @@
-//! Elastic modes by subspace iteration on the factor of the static solution.
+//! Elastic modes by a block Lanczos method on the factor of the static solution.
 
 use super::element::Prepared;
 use super::error::FeError;
@@ -7,12 +7,16 @@ use super::solve::Relief;
 use super::system::System;
 use crate::finding::Finding;
 use crate::linalg::DMatrix;
+use crate::linalg::sparse::Factor;
 use crate::model::Model;
 use rayon::prelude::*;
 
-/// Eigenvalues agree between two rounds within this share.
-const CONVERGED: f64 = 1e-9;
-const ROUNDS: usize = 60;
+/// Vectors a block: more than any multiplicity that symmetric structures have.
+const BLOCK: usize = 6;
+/// Residual of a Ritz pair over its value; the error of a frequency goes with its square: a few parts in ten thousand.
+const CONVERGED: f64 = 1e-2;
+/// Vectors at most, for each mode wanted: bounds memory and time.
+const VECTORS_A_MODE: usize = 8;
 
 /// A mode of vibration.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,12 +28,6 @@ pub struct Mode {
 }
 
 /// The lowest elastic modes, ascending; rigid motions are left out.
-///
-/// Subspace iteration on P K^-1 P' M, where P takes the rigid motions out (R'M u = 0): a balanced load needs no more than the
-/// determinately supported stiffness that statics use.
-///
-/// # Reference
-/// K. J. Bathe, Finite Element Procedures, 2nd ed. 2014, section 11.6.
 ///
 /// # Errors
 /// See [`FeError`].
@@ -44,81 +42,184 @@ pub fn free_modes(
         return Err(FeError::Refused(refused));
     }
     let prepared = Prepared::new(model);
-    let mass = Mass::new(&prepared).map_err(FeError::Refused)?;
+    let mass = Mass::new(&prepared);
     let mut findings = Vec::new();
-    let system = System::new(
+    let mut system = System::new(
         &prepared,
         &mass,
         (spc, mpc),
         Relief::Automatic,
         &mut findings,
     )?;
-    let factor = system.factor(model, &system.stiffness)?;
+    let stiffness = std::mem::take(&mut system.stiffness);
+    let factor = system.factor(&prepared, &mass, stiffness)?;
+    let modes = modes_of(&prepared, &mass, &system, &factor, count)?;
+    Ok((modes, findings))
+}
+
+type Field = Vec<[f64; 6]>;
+
+/// The lowest elastic modes from a factor of the determinately supported stiffness.
+///
+/// Block Lanczos with full reorthogonalization on P K^-1 P' M in the inner product of M, where P takes the rigid motions out
+/// (R'M u = 0): a balanced load needs no more than the stiffness that statics use.
+///
+/// # Reference
+/// R. G. Grimes, J. G. Lewis and H. D. Simon, SIAM J. Matrix Anal. Appl. 15 (1994) 228.
+///
+/// # Errors
+/// See [`FeError`].
+pub(super) fn modes_of(
+    prepared: &Prepared<'_>,
+    mass: &Mass,
+    system: &System,
+    factor: &Factor<'_>,
+    count: usize,
+) -> Result<Vec<Mode>, FeError> {
     let n = system.symbolic.n_unknowns();
-    let p = (2 * count).min(count + 8).min(n);
-    let take_out = |u: &mut Vec<[f64; 6]>| {
+    let most = (VECTORS_A_MODE * count).max(4 * BLOCK).min(n);
+    // P u from unknowns.
+    let field = |values: &[f64]| {
+        let mut u = system.unpack(prepared, values);
         if let Some(body) = &system.body {
-            body.take_out(&mass, u);
+            body.take_out(mass, &mut u);
         }
+        u
     };
-    let mut shapes: Vec<Vec<[f64; 6]>> = (0..p)
-        .into_par_iter()
-        .map(|c| {
-            let mut u = system.unpack(&prepared, &start_values(n, c));
-            take_out(&mut u);
-            u
-        })
-        .collect();
-    let mut before = vec![f64::INFINITY; count.min(p)];
-    let mut values = Vec::new();
-    for _ in 0..ROUNDS {
-        let forces: Vec<Vec<[f64; 6]>> = shapes.par_iter().map(|u| mass.times(u)).collect();
-        // Shapes that turned out alike were dropped.
-        let mut columns = vec![0.0; n * shapes.len()];
-        for (f, column) in forces.iter().zip(columns.chunks_exact_mut(n.max(1))) {
-            system.pack(&prepared, f.clone(), column)?;
-        }
+    let apply = |forces: &[Field]| -> Result<Vec<Field>, FeError> {
+        let mut columns = vec![0.0; n * forces.len()];
+        columns
+            .par_chunks_exact_mut(n.max(1))
+            .zip(forces)
+            .try_for_each(|(column, f)| system.pack(prepared, f.clone(), column))?;
         factor
             .solve(&mut columns)
-            .map_err(|e| system.refused(model, e))?;
-        let moved: Vec<Vec<[f64; 6]>> = columns
-            .par_chunks_exact(n.max(1))
-            .map(|c| {
-                let mut u = system.unpack(&prepared, c);
-                take_out(&mut u);
-                u
-            })
-            .collect();
-        let with_mass: Vec<Vec<[f64; 6]>> = moved.par_iter().map(|u| mass.times(u)).collect();
-        let stiffness = gram(&moved, &forces);
-        let weight = gram(&moved, &with_mass);
-        let Some((lambda, vectors)) = generalized(&stiffness, &weight) else {
-            break;
-        };
-        shapes = (0..lambda.len())
-            .into_par_iter()
-            .map(|c| combine(&moved, |r| vectors[(r, c)]))
-            .collect();
-        values = lambda;
-        let done = values
-            .iter()
-            .zip(&before)
-            .all(|(a, b)| (a - b).abs() <= CONVERGED * a.abs());
-        before = values.iter().take(count).copied().collect();
-        if done && !before.is_empty() {
+            .map_err(|e| system.refused(prepared.model, e))?;
+        Ok(columns.par_chunks_exact(n.max(1)).map(field).collect())
+    };
+    let start: Vec<Field> = (0..BLOCK.min(n))
+        .into_par_iter()
+        .map(|c| field(&start_values(n, c)))
+        .collect();
+    // One step on random values: what has no mass is gone.
+    let mut block = apply(&mass_times(mass, &start))?;
+    drop(start);
+    let (mut basis, mut forces): (Vec<Field>, Vec<Field>) = (Vec::new(), Vec::new());
+    // Q' M A Q, row and column by basis vector.
+    let mut projected = DMatrix::<f64>::zeros(0, 0);
+    loop {
+        let (q, f, kept) = orthonormal(mass, &basis, &forces, block);
+        let before = basis.len();
+        let size = before + q.len();
+        // Entries that tie the new vectors to the last ones are those of `kept`, found while they were made orthogonal.
+        let done = q.is_empty();
+        let converged = ritz(&projected).is_some_and(|(values, vectors)| {
+            let first = before.saturating_sub(kept.ncols());
+            values.len() >= count
+                && (0..count).all(|c| {
+                    let tail = vectors.column(c).rows(first, before - first).into_owned();
+                    (&kept * tail).norm() <= CONVERGED * values[c]
+                })
+        });
+        if (converged && before > 0) || done || (size > most && before > 0) {
             break;
         }
+        block = apply(&f)?;
+        basis.extend(q);
+        forces.extend(f);
+        // <q_i, A q_j> for all i and the new j.
+        let columns = gram(&forces, &block);
+        let mut grown = DMatrix::zeros(size, size);
+        grown
+            .view_mut((0, 0), (before, before))
+            .copy_from(&projected);
+        for i in 0..size {
+            for j in before..size {
+                grown[(i, j)] = columns[(i, j - before)];
+                grown[(j, i)] = columns[(i, j - before)];
+            }
+        }
+        projected = grown;
     }
-    let modes = values
-        .iter()
-        .zip(shapes)
-        .take(count)
-        .map(|(l, shape)| Mode {
-            frequency: l.max(0.0).sqrt() / std::f64::consts::TAU,
-            shape,
+    let Some((values, vectors)) = ritz(&projected) else {
+        return Ok(Vec::new());
+    };
+    let floor = 1e-12 * values.first().copied().unwrap_or(0.0);
+    let good = values.iter().take_while(|v| **v > floor).count();
+    Ok((0..count.min(good))
+        .into_par_iter()
+        .map(|c| Mode {
+            frequency: 1.0 / values[c].sqrt() / std::f64::consts::TAU,
+            shape: combine(&basis, |r| vectors[(r, c)]),
         })
+        .collect())
+}
+
+/// Ritz values 1 / omega^2, descending, and vectors.
+fn ritz(projected: &DMatrix<f64>) -> Option<(Vec<f64>, DMatrix<f64>)> {
+    if projected.nrows() == 0 {
+        return None;
+    }
+    let symmetric = (projected + projected.transpose()) * 0.5;
+    let eigen = symmetric.symmetric_eigen();
+    let mut order: Vec<usize> = (0..projected.nrows()).collect();
+    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+    let values = order.iter().map(|&i| eigen.eigenvalues[i]).collect();
+    let vectors = DMatrix::from_fn(projected.nrows(), order.len(), |r, c| {
+        eigen.eigenvectors[(r, order[c])]
+    });
+    Some((values, vectors))
+}
+
+fn mass_times(mass: &Mass, fields: &[Field]) -> Vec<Field> {
+    fields.par_iter().map(|u| mass.times(u)).collect()
+}
+
+/// A block made orthonormal in M to the basis and in itself: vectors, M times them, and the factor R of `block = basis part + Q R`.
+/// Directions that are left with nothing are dropped.
+fn orthonormal(
+    mass: &Mass,
+    basis: &[Field],
+    forces: &[Field],
+    mut block: Vec<Field>,
+) -> (Vec<Field>, Vec<Field>, DMatrix<f64>) {
+    let first = gram(&block, &mass_times(mass, &block));
+    let scale: Vec<f64> = (0..block.len())
+        .map(|i| first[(i, i)].max(0.0).sqrt())
         .collect();
-    Ok((modes, findings))
+    for _ in 0..2 {
+        if !basis.is_empty() {
+            let along = gram(forces, &block);
+            block
+                .par_iter_mut()
+                .enumerate()
+                .for_each(|(j, u)| subtract(u, basis, |i| along[(i, j)]));
+        }
+    }
+    let mut factor = DMatrix::identity(block.len(), block.len());
+    // Twice: the second round repairs what rounding leaves of the first.
+    for _ in 0..2 {
+        let weight = gram(&block, &mass_times(mass, &block));
+        let n = block.len();
+        let eigen = weight.symmetric_eigen();
+        let largest = scale.iter().fold(0.0_f64, |a, s| a.max(s * s));
+        let kept: Vec<usize> = (0..n)
+            .filter(|&i| eigen.eigenvalues[i] > 1e-24 * largest.max(f64::MIN_POSITIVE))
+            .collect();
+        let step = DMatrix::from_fn(kept.len(), n, |r, c| {
+            eigen.eigenvalues[kept[r]].sqrt() * eigen.eigenvectors[(c, kept[r])]
+        });
+        block = (0..kept.len())
+            .into_par_iter()
+            .map(|c| {
+                let root = eigen.eigenvalues[kept[c]].sqrt();
+                combine(&block, |r| eigen.eigenvectors[(r, kept[c])] / root)
+            })
+            .collect();
+        factor = step * factor;
+    }
+    let f = mass_times(mass, &block);
+    (block, f, factor)
 }
 
 /// Repeatable values between -1 and 1 (splitmix64).
@@ -135,69 +236,36 @@ fn start_values(n: usize, column: usize) -> Vec<f64> {
         .collect()
 }
 
-fn gram(a: &[Vec<[f64; 6]>], b: &[Vec<[f64; 6]>]) -> DMatrix<f64> {
-    let p = a.len();
-    let pairs: Vec<(usize, usize)> = (0..p).flat_map(|i| (0..=i).map(move |j| (i, j))).collect();
-    let dots: Vec<f64> = pairs
-        .par_iter()
-        .map(|&(i, j)| {
-            a[i].iter()
-                .flatten()
-                .zip(b[j].iter().flatten())
-                .map(|(x, y)| x * y)
-                .sum()
+/// Dots of all of `a` with all of `b`.
+fn gram(a: &[Field], b: &[Field]) -> DMatrix<f64> {
+    let dots: Vec<f64> = (0..a.len() * b.len())
+        .into_par_iter()
+        .map(|k| {
+            let (u, v) = (&a[k % a.len()], &b[k / a.len()]);
+            // Six sums, which the processor runs side by side.
+            let mut sums = [0.0; 6];
+            for (u, v) in u.iter().zip(v) {
+                for i in 0..6 {
+                    sums[i] += u[i] * v[i];
+                }
+            }
+            sums.iter().sum()
         })
         .collect();
-    let mut m = DMatrix::zeros(p, p);
-    for ((i, j), v) in pairs.into_iter().zip(dots) {
-        m[(i, j)] = v;
-        m[(j, i)] = v;
-    }
-    m
+    DMatrix::from_vec(a.len(), b.len(), dots)
 }
 
-fn combine(fields: &[Vec<[f64; 6]>], amount: impl Fn(usize) -> f64) -> Vec<[f64; 6]> {
+fn combine(fields: &[Field], amount: impl Fn(usize) -> f64) -> Field {
     let mut out = vec![[0.0; 6]; fields.first().map_or(0, Vec::len)];
-    for (r, field) in fields.iter().enumerate() {
-        let c = amount(r);
-        for (o, v) in out.iter_mut().zip(field) {
-            o.iter_mut().zip(v).for_each(|(o, v)| *o += c * v);
-        }
-    }
+    subtract(&mut out, fields, |r| -amount(r));
     out
 }
 
-/// Eigenvalues, ascending, and vectors of K x = lambda M x with x'Mx = 1; directions almost without mass are dropped.
-fn generalized(k: &DMatrix<f64>, m: &DMatrix<f64>) -> Option<(Vec<f64>, DMatrix<f64>)> {
-    let scale: Vec<f64> = (0..m.nrows())
-        .map(|i| {
-            if m[(i, i)] > 0.0 {
-                1.0 / m[(i, i)].sqrt()
-            } else {
-                0.0
-            }
-        })
-        .collect();
-    let scaled = |a: &DMatrix<f64>| {
-        DMatrix::from_fn(a.nrows(), a.ncols(), |i, j| a[(i, j)] * scale[i] * scale[j])
-    };
-    let eigen = scaled(m).symmetric_eigen();
-    let kept: Vec<usize> = (0..m.nrows())
-        .filter(|&i| eigen.eigenvalues[i] > 1e-12)
-        .collect();
-    if kept.is_empty() {
-        return None;
+fn subtract(from: &mut Field, fields: &[Field], amount: impl Fn(usize) -> f64) {
+    for (r, field) in fields.iter().enumerate() {
+        let c = amount(r);
+        for (o, v) in from.iter_mut().zip(field) {
+            o.iter_mut().zip(v).for_each(|(o, v)| *o -= c * v);
+        }
     }
-    let whiten = DMatrix::from_fn(m.nrows(), kept.len(), |r, c| {
-        scale[r] * eigen.eigenvectors[(r, kept[c])] / eigen.eigenvalues[kept[c]].sqrt()
-    });
-    let reduced = (whiten.transpose() * k * &whiten).symmetric_eigen();
-    let mut order: Vec<usize> = (0..kept.len()).collect();
-    order.sort_by(|&a, &b| reduced.eigenvalues[a].total_cmp(&reduced.eigenvalues[b]));
-    let values = order.iter().map(|&i| reduced.eigenvalues[i]).collect();
-    let vectors = &whiten
-        * DMatrix::from_fn(kept.len(), kept.len(), |r, c| {
-            reduced.eigenvectors[(r, order[c])]
-        });
-    Some((values, vectors))
 }

@@ -8,8 +8,8 @@ use crate::model::{GridIx, ShellIx};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Shells at a time: bounds the memory beside the result.
-const BATCH: usize = 16_384;
+/// Shells a task.
+const CHUNK: usize = 512;
 
 /// Where strain is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -21,7 +21,10 @@ pub enum Corners {
     Leave,
 }
 
-type Strains = ([[f64; 3]; 2], [[[f64; 3]; 2]; 4]);
+type Surfaces = [[f64; 3]; 2];
+
+/// Part of a field: at the centre and, where wanted, at the corners.
+type Piece<'a> = (&'a mut [Surfaces], &'a mut [[Surfaces; 4]]);
 
 fn local<const M: usize>(u: &[[f64; 6]], grids: &[GridIx]) -> [f64; M] {
     let mut out = [0.0; M];
@@ -43,54 +46,69 @@ pub(crate) fn shell_fields(
     let model = prepared.model;
     let n = model.shells.len();
     let elements = Arc::new((0..n as u32).map(ShellIx).collect::<Vec<_>>());
+    let at_corners = match corners {
+        Corners::Compute => n,
+        Corners::Leave => 0,
+    };
     let mut fields: Vec<ShellField> = u
         .iter()
         .map(|_| ShellField {
             elements: elements.clone(),
-            centre: Vec::with_capacity(n),
-            ..ShellField::default()
+            centre: vec![[[0.0; 3]; 2]; n],
+            corners: vec![[[[0.0; 3]; 2]; 4]; at_corners],
+            from_stress: false,
         })
         .collect();
-    let all: Vec<usize> = (0..n).collect();
-    for batch in all.chunks(BATCH) {
-        let rows: Vec<Result<Vec<Strains>, Refusal>> = batch
-            .par_iter()
-            .map(|&i| {
-                let shell = &model.shells[i];
-                let z = model.shell_properties[shell.property.us()].z;
-                Ok(
-                    match shell_matrices(prepared, i, Parts::WithoutStiffness)? {
-                        AnyShell::Quad(m) => u
-                            .iter()
-                            .map(|u| {
-                                let local = local::<24>(u, &shell.grids[..4]);
-                                (
-                                    surfaces(&m.centre, z, &local),
-                                    m.corners.each_ref().map(|rows| surfaces(rows, z, &local)),
-                                )
-                            })
-                            .collect(),
-                        AnyShell::Tria(m) => u
-                            .iter()
-                            .map(|u| {
-                                let centre =
-                                    surfaces(&m.centre, z, &local::<18>(u, &shell.grids[..3]));
-                                (centre, [centre, centre, centre, [[f64::NAN; 3]; 2]])
-                            })
-                            .collect(),
-                    },
-                )
-            })
-            .collect();
-        for row in rows {
-            let row = row.map_err(|r| FeError::Refused(vec![r]))?;
-            for (field, (centre, at_corners)) in fields.iter_mut().zip(row) {
-                field.centre.push(centre);
-                if corners == Corners::Compute {
-                    field.corners.push(at_corners);
+    // By chunk of shells: the part of every field that it fills.
+    let mut pieces: Vec<Vec<Piece<'_>>> = (0..n.div_ceil(CHUNK))
+        .map(|_| Vec::with_capacity(u.len()))
+        .collect();
+    for field in &mut fields {
+        let mut corners = field.corners.chunks_mut(CHUNK);
+        for (centre, list) in field.centre.chunks_mut(CHUNK).zip(&mut pieces) {
+            list.push((centre, corners.next().unwrap_or_default()));
+        }
+    }
+    pieces
+        .into_par_iter()
+        .enumerate()
+        .try_for_each(|(chunk, mut pieces)| {
+            let first = chunk * CHUNK;
+            (first..n.min(first + CHUNK))
+                .try_for_each(|i| fill(prepared, i, i - first, u, &mut pieces))
+        })
+        .map_err(|r| FeError::Refused(vec![r]))?;
+    Ok(fields)
+}
+
+/// Strain of shell `i` under every displacement field, put at row `at` of the pieces.
+fn fill(
+    prepared: &Prepared<'_>,
+    i: usize,
+    at: usize,
+    u: &[Vec<[f64; 6]>],
+    pieces: &mut [Piece<'_>],
+) -> Result<(), Refusal> {
+    let shell = &prepared.model.shells[i];
+    let z = prepared.model.shell_properties[shell.property.us()].z;
+    match shell_matrices(prepared, i, Parts::WithoutStiffness)? {
+        AnyShell::Quad(m) => {
+            for (u, (centre, corners)) in u.iter().zip(pieces) {
+                let local = local::<24>(u, &shell.grids[..4]);
+                centre[at] = surfaces(&m.centre, z, &local);
+                if let Some(slot) = corners.get_mut(at) {
+                    *slot = m.corners.each_ref().map(|rows| surfaces(rows, z, &local));
+                }
+            }
+        }
+        AnyShell::Tria(m) => {
+            for (u, (centre, corners)) in u.iter().zip(pieces) {
+                centre[at] = surfaces(&m.centre, z, &local::<18>(u, &shell.grids[..3]));
+                if let Some(slot) = corners.get_mut(at) {
+                    *slot = [centre[at], centre[at], centre[at], [[f64::NAN; 3]; 2]];
                 }
             }
         }
     }
-    Ok(fields)
+    Ok(())
 }

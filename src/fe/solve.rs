@@ -11,6 +11,7 @@ use super::{CaseResult, Solution, UnitLoad};
 use crate::finding::{Finding, Severity};
 use crate::linalg::sparse::OrderingMethod;
 use crate::model::Model;
+use rayon::prelude::*;
 
 /// How the loads of a case are held in balance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -45,6 +46,8 @@ pub struct LoadCase {
 pub struct SolveOptions {
     /// Strain at the corners, too.
     pub corners: Corners,
+    /// Elastic modes wanted of a structure that inertia balances, from the factor of the static solution.
+    pub modes: usize,
 }
 
 /// What the solver has to say beside the solution.
@@ -64,6 +67,31 @@ pub struct SolveReport {
     pub balance: Vec<Balance>,
     /// Mass and centre of gravity.
     pub mass: Option<MassProperties>,
+    /// Frequencies of the lowest elastic modes, cycles per unit of time, ascending: as many as were asked for, where the
+    /// structure is free.
+    pub modes: Vec<f64>,
+    /// Wall seconds by step.
+    pub seconds: Vec<(String, f64)>,
+}
+
+/// Times the steps of a solution.
+struct Clock(std::time::Instant);
+
+impl Clock {
+    fn start() -> Self {
+        Self(std::time::Instant::now())
+    }
+
+    /// Adds the time since the last note to a step.
+    fn note(&mut self, report: &mut SolveReport, step: &str) {
+        let seconds = std::mem::replace(&mut self.0, std::time::Instant::now()).elapsed();
+        match report.seconds.iter_mut().find(|s| s.0 == step) {
+            Some(s) => s.1 += seconds.as_secs_f64(),
+            None => report
+                .seconds
+                .push((step.to_owned(), seconds.as_secs_f64())),
+        }
+    }
 }
 
 /// How a model without case control is balanced: by PARAM,INREL; a model with neither INREL nor `spc` as a free structure.
@@ -74,6 +102,17 @@ pub fn relief_of(model: &Model, spc: Option<u32>, suport: Option<u32>) -> Relief
         (_, None) if model.grids.iter().all(|g| g.ps.is_empty()) => Relief::Automatic,
         _ => Relief::None,
     }
+}
+
+/// What a solution is made of before strain.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Solved {
+    /// Displacements by case and grid, basic frame.
+    pub displacements: Vec<Vec<[f64; 6]>>,
+    /// What the solver has to say.
+    pub report: SolveReport,
+    /// What was noticed.
+    pub findings: Vec<Finding>,
 }
 
 /// Solves unit loads on the free structure, subcases numbered 1 .. n.
@@ -109,12 +148,52 @@ pub fn solve_cases(
     cases: &[LoadCase],
     options: &SolveOptions,
 ) -> Result<(Solution, SolveReport), FeError> {
+    let prepared = prepare(model, cases)?;
+    let solved = displacements(&prepared, cases, options)?;
+    with_strain(&prepared, cases, solved, options)
+}
+
+/// Displacements of load cases, without strain: what is worth keeping of a solution.
+///
+/// # Errors
+/// See [`FeError`].
+pub fn solve_displacements(
+    model: &Model,
+    cases: &[LoadCase],
+    options: &SolveOptions,
+) -> Result<Solved, FeError> {
+    displacements(&prepare(model, cases)?, cases, options)
+}
+
+/// The strain of solved load cases.
+///
+/// # Errors
+/// See [`FeError`].
+pub fn solution_of(
+    model: &Model,
+    cases: &[LoadCase],
+    solved: Solved,
+    options: &SolveOptions,
+) -> Result<(Solution, SolveReport), FeError> {
+    with_strain(&prepare(model, cases)?, cases, solved, options)
+}
+
+fn prepare<'a>(model: &'a Model, cases: &[LoadCase]) -> Result<Prepared<'a>, FeError> {
     let refused = super::unsupported::unsupported(model, cases);
-    if !refused.is_empty() {
-        return Err(FeError::Refused(refused));
+    if refused.is_empty() {
+        Ok(Prepared::new(model))
+    } else {
+        Err(FeError::Refused(refused))
     }
-    let prepared = Prepared::new(model);
-    let mass = Mass::new(&prepared).map_err(FeError::Refused)?;
+}
+
+fn displacements(
+    prepared: &Prepared<'_>,
+    cases: &[LoadCase],
+    options: &SolveOptions,
+) -> Result<Solved, FeError> {
+    let model = prepared.model;
+    let mass = Mass::new(prepared);
     let x: Vec<_> = model.grids.iter().map(|g| g.x).collect();
     let mut report = SolveReport {
         grids: model.grids.len(),
@@ -122,7 +201,7 @@ pub fn solve_cases(
         ..SolveReport::default()
     };
     let mut findings = Vec::new();
-    let mut results: Vec<Option<CaseResult>> = vec![None; cases.len()];
+    let mut fields: Vec<Vec<[f64; 6]>> = vec![Vec::new(); cases.len()];
     let mut done = vec![false; cases.len()];
     for first in 0..cases.len() {
         if done[first] {
@@ -134,29 +213,50 @@ pub fn solve_cases(
             .collect();
         group.iter().for_each(|&i| done[i] = true);
         let members: Vec<&LoadCase> = group.iter().map(|&i| &cases[i]).collect();
-        let solved = solve_group(&prepared, &mass, &members, &mut report, &mut findings)?;
-        let shells = shell_fields(&prepared, &solved, options.corners)?;
-        let beams = super::beam_strain::beam_fields(&prepared, &solved)?;
-        for ((((i, case), u), shells), beams) in
-            group.iter().zip(members).zip(solved).zip(shells).zip(beams)
-        {
-            results[*i] = Some(CaseResult {
-                subcase: case.subcase,
-                label: case.label.clone(),
-                shells,
-                beams,
-                displacement: u,
-            });
+        let solved = solve_group(
+            prepared,
+            &mass,
+            &members,
+            options,
+            &mut report,
+            &mut findings,
+        )?;
+        for (i, u) in group.into_iter().zip(solved) {
+            fields[i] = u;
         }
     }
-    let source = concat!("strainbridge ", env!("CARGO_PKG_VERSION")).to_owned();
+    Ok(Solved {
+        displacements: fields,
+        report,
+        findings,
+    })
+}
+
+fn with_strain(
+    prepared: &Prepared<'_>,
+    cases: &[LoadCase],
+    solved: Solved,
+    options: &SolveOptions,
+) -> Result<(Solution, SolveReport), FeError> {
+    let u = solved.displacements;
+    let shells = shell_fields(prepared, &u, options.corners)?;
+    let beams = super::beam_strain::beam_fields(prepared, &u)?;
+    let results = cases.iter().zip(u).zip(shells).zip(beams);
     Ok((
         Solution {
-            cases: results.into_iter().flatten().collect(),
-            source,
-            findings,
+            cases: results
+                .map(|(((case, displacement), shells), beams)| CaseResult {
+                    subcase: case.subcase,
+                    label: case.label.clone(),
+                    shells,
+                    beams,
+                    displacement,
+                })
+                .collect(),
+            source: concat!("strainbridge ", env!("CARGO_PKG_VERSION")).to_owned(),
+            findings: solved.findings,
         },
-        report,
+        solved.report,
     ))
 }
 
@@ -165,6 +265,7 @@ fn solve_group(
     prepared: &Prepared<'_>,
     mass: &Mass,
     cases: &[&LoadCase],
+    options: &SolveOptions,
     report: &mut SolveReport,
     findings: &mut Vec<Finding>,
 ) -> Result<Vec<Vec<[f64; 6]>>, FeError> {
@@ -173,50 +274,79 @@ fn solve_group(
         return Ok(Vec::new());
     };
     check_sets(model, cases)?;
+    let mut clock = Clock::start();
     let mut system = System::new(prepared, mass, (case.spc, case.mpc), case.relief, findings)?;
+    clock.note(report, "assemble");
     let n = system.symbolic.n_unknowns();
     let mut columns = vec![0.0; n * cases.len()];
-    for (case, column) in cases.iter().zip(columns.chunks_exact_mut(n.max(1))) {
-        let mut f = applied_forces(model, mass, case)?;
-        system.loads_on_nothing(model, case.subcase, &f)?;
-        if let Some(body) = &system.body {
-            let before = largest(&f);
-            let balance = body.balance(case.subcase, mass, &mut f);
-            if largest(&f) <= 1e-9 * before && before > 0.0 {
-                findings.push(Finding::new(
-                    Severity::Warning,
-                    "load-is-inertia-only",
-                    format!("subcase {}", case.subcase),
-                    "the loads only accelerate the free structure as a rigid body (gravity, say): its strain is zero",
-                    "hold the structure by an SPC set, or apply the forces that carry the weight",
-                ));
-            }
-            report.balance.push(balance);
-        }
-        system.pack(prepared, f, column)?;
+    let packed: Vec<(Option<Balance>, Option<Finding>)> = columns
+        .par_chunks_exact_mut(n.max(1))
+        .zip(cases)
+        .map(|(column, case)| load_column(prepared, mass, &system, case, column))
+        .collect::<Result<_, FeError>>()?;
+    for (balance, finding) in packed {
+        report.balance.extend(balance);
+        findings.extend(finding);
     }
+    clock.note(report, "loads");
     if report.dofs < n {
         report.dofs = n;
         report.factor_nonzeros = system.symbolic.factor_nonzeros();
         report.ordering = Some(system.symbolic.method());
     }
     let stiffness = std::mem::take(&mut system.stiffness);
-    let factor = system.factor(model, &stiffness)?;
-    drop(stiffness);
+    let factor = system.factor(prepared, mass, stiffness)?;
+    clock.note(report, "factor");
     report.smallest_pivot = factor.smallest_pivot;
     factor
         .solve(&mut columns)
         .map_err(|e| system.refused(model, e))?;
-    drop(factor);
-    let mut all = Vec::with_capacity(cases.len());
-    for column in columns.chunks_exact(n.max(1)) {
-        let mut u = system.unpack(prepared, column);
-        if let (Some(body), Relief::Automatic) = (&system.body, case.relief) {
-            body.take_out(mass, &mut u);
-        }
-        all.push(u);
+    clock.note(report, "substitute");
+    if system.body.is_some() && options.modes > 0 && report.modes.is_empty() {
+        let modes = super::modes::modes_of(prepared, mass, &system, &factor, options.modes)?;
+        report.modes = modes.iter().map(|m| m.frequency).collect();
+        clock.note(report, "modes");
     }
-    Ok(all)
+    drop(factor);
+    Ok(columns
+        .par_chunks_exact(n.max(1))
+        .map(|column| {
+            let mut u = system.unpack(prepared, column);
+            if let (Some(body), Relief::Automatic) = (&system.body, case.relief) {
+                body.take_out(mass, &mut u);
+            }
+            u
+        })
+        .collect())
+}
+
+/// The balanced loads of a case at the unknowns.
+fn load_column(
+    prepared: &Prepared<'_>,
+    mass: &Mass,
+    system: &System,
+    case: &LoadCase,
+    column: &mut [f64],
+) -> Result<(Option<Balance>, Option<Finding>), FeError> {
+    let model = prepared.model;
+    let mut f = applied_forces(model, mass, case)?;
+    system.loads_on_nothing(model, case.subcase, &f)?;
+    let (mut balanced, mut finding) = (None, None);
+    if let Some(body) = &system.body {
+        let before = largest(&f);
+        balanced = Some(body.balance(case.subcase, mass, &mut f));
+        if largest(&f) <= 1e-9 * before && before > 0.0 {
+            finding = Some(Finding::new(
+                Severity::Warning,
+                "load-is-inertia-only",
+                format!("subcase {}", case.subcase),
+                "the loads only accelerate the free structure as a rigid body (gravity, say): its strain is zero",
+                "hold the structure by an SPC set, or apply the forces that carry the weight",
+            ));
+        }
+    }
+    system.pack(prepared, f, column)?;
+    Ok((balanced, finding))
 }
 
 pub(super) fn largest(f: &[[f64; 6]]) -> f64 {
@@ -297,7 +427,7 @@ fn applied_forces(model: &Model, mass: &Mass, case: &LoadCase) -> Result<Vec<[f6
 /// See [`FeError`].
 pub fn supported_stiffness(model: &Model) -> Result<(usize, Vec<(usize, usize, f64)>), FeError> {
     let prepared = Prepared::new(model);
-    let mass = Mass::new(&prepared).map_err(FeError::Refused)?;
+    let mass = Mass::new(&prepared);
     let system = System::new(
         &prepared,
         &mass,

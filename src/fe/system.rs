@@ -118,22 +118,67 @@ impl System {
     /// Mechanisms, each dof named; entries that are not numbers.
     pub(super) fn factor(
         &self,
-        model: &Model,
-        stiffness: &BlockMatrix,
+        prepared: &Prepared<'_>,
+        mass: &Mass,
+        stiffness: BlockMatrix,
     ) -> Result<Factor<'_>, FeError> {
-        let start = self.symbolic.unknown_start();
+        let model = prepared.model;
         let factor = Factor::new(&self.symbolic, stiffness).map_err(|e| self.refused(model, e))?;
         if factor.lost.is_empty() {
-            Ok(factor)
-        } else {
-            Err(mechanism(
-                model,
-                &factor.lost,
-                start,
-                &self.numbering,
-                &self.graph,
-            ))
+            return Ok(factor);
         }
+        let dofs = self.loose_dofs(prepared, mass, &factor);
+        Err(mechanism(model, &dofs, &self.numbering, &self.graph))
+    }
+
+    /// Grid and dof (0 to 5) that move most in each mechanism.
+    ///
+    /// A spring holds every lost unknown, so a unit force there moves the structure in a mechanism. What it moves as a whole, where
+    /// it is free, is taken out: the lighter part is left, and that is what hangs loose.
+    fn loose_dofs(
+        &self,
+        prepared: &Prepared<'_>,
+        mass: &Mass,
+        factor: &Factor<'_>,
+    ) -> Vec<(usize, usize)> {
+        let n = self.symbolic.n_unknowns();
+        let start = self.symbolic.unknown_start();
+        let mut columns = vec![0.0; n * factor.lost.len()];
+        for (column, &unknown) in columns.chunks_exact_mut(n.max(1)).zip(&factor.lost) {
+            column[unknown] = 1.0;
+        }
+        let at_pivots = || factor.lost.iter().map(|u| self.numbering.dof_of(*u, start));
+        if factor.solve(&mut columns).is_err() {
+            return at_pivots().collect();
+        }
+        let mut shapes: Vec<Vec<[f64; 6]>> = columns
+            .par_chunks_exact(n.max(1))
+            .map(|c| {
+                let mut u = self.unpack(prepared, c);
+                if let Some(body) = &self.body {
+                    body.take_out(mass, &mut u);
+                }
+                u
+            })
+            .collect();
+        let size = extent(prepared.model);
+        let mut dofs = Vec::new();
+        for (c, pivot) in at_pivots().enumerate() {
+            let (found, rest) = shapes[c..].split_at_mut(1);
+            let Some((g, dof)) = moves_most(&found[0], size) else {
+                dofs.push(pivot);
+                continue;
+            };
+            // The others without this motion, so that each names a motion of its own.
+            for other in rest {
+                let share = other[g][dof] / found[0][g][dof];
+                for (o, f) in other.iter_mut().zip(&found[0]) {
+                    o.iter_mut().zip(f).for_each(|(o, f)| *o -= share * f);
+                }
+            }
+            dofs.push((g, dof));
+        }
+        dofs
     }
 
     /// A failure of the factor in the words of the model.
@@ -310,10 +355,43 @@ fn autospc_finding(model: &Model, assembled: &Assembled, weak: &[(usize, f64)]) 
     })
 }
 
+/// Largest side of the box around the grids.
+fn extent(model: &Model) -> f64 {
+    (0..3)
+        .map(|i| {
+            let along = model.grids.iter().map(|g| g.x[i]);
+            let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+                (a.min(x), b.max(x))
+            });
+            high - low
+        })
+        .fold(0.0, f64::max)
+}
+
+/// The dof with the largest translation; where nothing but rotations move, that with the largest rotation.
+fn moves_most(u: &[[f64; 6]], size: f64) -> Option<(usize, usize)> {
+    let largest = |dofs: std::ops::Range<usize>| {
+        let mut best = (0.0, None);
+        for (g, u) in u.iter().enumerate() {
+            for dof in dofs.clone() {
+                if u[dof].is_finite() && u[dof].abs() > best.0 {
+                    best = (u[dof].abs(), Some((g, dof)));
+                }
+            }
+        }
+        best
+    };
+    let (translation, rotation) = (largest(0..3), largest(3..6));
+    if translation.0 > 1e-6 * rotation.0 * size {
+        translation.1
+    } else {
+        rotation.1
+    }
+}
+
 fn mechanism(
     model: &Model,
-    lost: &[usize],
-    start: &[usize],
+    lost: &[(usize, usize)],
     numbering: &Numbering,
     graph: &BlockGraph,
 ) -> FeError {
@@ -321,8 +399,7 @@ fn mechanism(
     let dofs = lost
         .iter()
         .take(SHOWN)
-        .map(|&unknown| {
-            let (g, dof) = numbering.dof_of(unknown, start);
+        .map(|&(g, dof)| {
             let grid = &model.grids[g];
             FreeDof {
                 grid: grid.id,

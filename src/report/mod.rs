@@ -6,6 +6,6 @@ mod strains;
 pub mod vehicle;
 mod vtu;
 
-pub use result_blocks::for_each_block;
+pub use result_blocks::{PlannedBlock, planned_blocks, rows_of_block};
 pub use strains::{STRAINS_HEADER, write_strains};
 pub use vtu::{write_cells_vtu, write_vtu};

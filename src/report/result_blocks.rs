@@ -15,49 +15,80 @@ const BEAM: &[&str] = &[
     "x_xb", "sxc", "sxd", "sxe", "sxf", "smax", "smin", "mst", "msc",
 ];
 
-/// Hands every block of a solution to `write`: displacements of all cases (displacement frames of the grids), then shell strain at
-/// both fibres (CQUAD4 with corners where they are known, CTRIA3), then strain of bars and beams.
-///
-/// # Errors
-/// The first that `write` gives.
-pub fn for_each_block<E>(
-    model: &Model,
-    solution: &Solution,
-    mut write: impl FnMut(&Block, &Rows) -> Result<(), E>,
-) -> Result<(), E> {
-    for case in solution.cases.iter().filter(|c| !c.displacement.is_empty()) {
-        write(
-            &block(case, Quantity::Displacement, None),
-            &displacement(model, case),
-        )?;
+/// One block of a solution, to be made into rows when its turn comes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PlannedBlock {
+    case: usize,
+    content: Content,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Content {
+    Displacement,
+    /// Shape, strain at corners included.
+    Shells(ShellShape, bool),
+    /// CBEAM rather than CBAR.
+    Beams(bool),
+}
+
+/// Every block of a solution in the order of the file: displacements of all cases (displacement frames of the grids), then shell
+/// strain at both fibres (CQUAD4 with corners where they are known, CTRIA3), then strain of bars and beams.
+pub fn planned_blocks(model: &Model, solution: &Solution) -> Vec<PlannedBlock> {
+    let mut all = Vec::new();
+    let mut plan = |content: &dyn Fn(&CaseResult) -> Option<Content>| {
+        let cases = solution.cases.iter().enumerate();
+        all.extend(
+            cases.filter_map(|(case, c)| content(c).map(|content| PlannedBlock { case, content })),
+        );
+    };
+    plan(&|c| (!c.displacement.is_empty()).then_some(Content::Displacement));
+    for shape in [ShellShape::Quad4, ShellShape::Tria3] {
+        plan(&|c| {
+            let mut shells = c.shells.elements.iter();
+            let corners = shape == ShellShape::Quad4 && !c.shells.corners.is_empty();
+            shells
+                .any(|ix| model.shells[ix.us()].shape == shape)
+                .then_some(Content::Shells(shape, corners))
+        });
     }
-    for (shape, with_corners, centre_only) in
-        [(ShellShape::Quad4, 144, 33), (ShellShape::Tria3, 74, 74)]
-    {
-        for case in &solution.cases {
-            let corners = shape == ShellShape::Quad4 && !case.shells.corners.is_empty();
-            let rows = shells(model, case, shape, corners);
-            if !rows.is_empty() {
-                write(
-                    &block(
-                        case,
-                        Quantity::Strain,
-                        Some(if corners { with_corners } else { centre_only }),
-                    ),
-                    &rows,
-                )?;
-            }
+    for is_beam in [false, true] {
+        plan(&|c| {
+            let mut beams = c.beams.elements.iter();
+            beams
+                .any(|ix| model.beams[ix.us()].is_beam == is_beam)
+                .then_some(Content::Beams(is_beam))
+        });
+    }
+    all
+}
+
+/// A planned block and its rows.
+pub fn rows_of_block(model: &Model, solution: &Solution, plan: PlannedBlock) -> (Block, Rows) {
+    let case = &solution.cases[plan.case];
+    match plan.content {
+        Content::Displacement => (
+            block(case, Quantity::Displacement, None),
+            displacement(model, case),
+        ),
+        Content::Shells(shape, corners) => {
+            let element = match (shape, corners) {
+                (ShellShape::Tria3, _) => 74,
+                (_, true) => 144,
+                (_, false) => 33,
+            };
+            (
+                block(case, Quantity::Strain, Some(element)),
+                shells(model, case, shape, corners),
+            )
+        }
+        Content::Beams(is_beam) => {
+            let element = if is_beam { 2 } else { 34 };
+            (
+                block(case, Quantity::Strain, Some(element)),
+                beams(model, case, is_beam),
+            )
         }
     }
-    for (is_beam, element) in [(false, 34), (true, 2)] {
-        for case in &solution.cases {
-            let rows = beams(model, case, is_beam);
-            if !rows.is_empty() {
-                write(&block(case, Quantity::Strain, Some(element)), &rows)?;
-            }
-        }
-    }
-    Ok(())
 }
 
 fn block(case: &CaseResult, quantity: Quantity, element: Option<u32>) -> Block {
@@ -110,6 +141,9 @@ fn shells(model: &Model, case: &CaseResult, shape: ShellShape, corners: bool) ->
     };
     let none = Vec::new();
     let corner_field = if corners { &case.shells.corners } else { &none };
+    let expected = case.shells.elements.len() * if corners { 10 } else { 2 };
+    rows.ids.reserve(expected);
+    rows.values.reserve(expected * SHELL.len());
     for (i, (ix, centre)) in case
         .shells
         .elements

@@ -9,6 +9,7 @@
 //! - [`spectrum`]: zero-padded transforms, band limiting and integration in one pass
 //! - [`integrate`]: velocity and displacement from acceleration
 //! - [`welch`]: power and cross spectra, coherence
+//! - [`content`]: up to which frequency a signal has content
 //! - [`align`]: delay between channels, shifting by a part of a sample
 //! - [`resample`]: another sample rate
 
@@ -16,6 +17,7 @@ pub mod align;
 pub mod binary;
 pub mod butterworth;
 pub mod channels;
+pub mod content;
 pub mod csv;
 pub mod detrend;
 pub mod filtfilt;

@@ -1,8 +1,11 @@
 //! The built-in solver against closed forms, published benchmarks and other solvers' results.
 
+mod coupled_mass;
 mod decks;
+mod frame_refined;
 mod frame_units;
 mod invariants;
 mod macneal_harder;
 mod mesh;
+mod plates;
 mod real_cases;

@@ -31,4 +31,4 @@ pub use container::{TableEntry, TableKind};
 pub use error::{Op2Error, Unsupported};
 pub use file::{Op2, Solver};
 pub use words::ByteOrder;
-pub use write::{Op2Writer, WriteError, write_blocks};
+pub use write::{EncodedBlock, Op2Writer, WriteError, write_blocks};

@@ -2,6 +2,7 @@
 //!
 //! [`runs`] static states, a row each; [`stream`] records of any length, CSV or binary ([`crate::series::binary`]), at constant memory.
 
+mod content;
 mod csv_record;
 mod runs;
 mod stream;

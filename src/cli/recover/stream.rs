@@ -1,5 +1,6 @@
 //! Records: samples streamed through one filter, pieces in parallel, a few pieces in memory at a time.
 
+use super::content::{check_content, content_of_loads};
 use super::csv_record::{self, Layout};
 use super::runs::columns_of;
 use super::{MICRO, Task};
@@ -180,6 +181,16 @@ pub(super) fn run(
         }),
     };
     let names_of: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
+    if let Some(first_mode) = task.prepared.fields.as_ref().and_then(|f| f.first_mode) {
+        let sigma = filter.sigma(&vec![0.0; s.loads.len()]);
+        let pieces = sampled_pieces(&record, &filter, &units).map_err(|f| vec![f])?;
+        let content = content_of_loads(&pieces, &sigma, if dt.1 > 0.0 { 1.0 / dt.1 } else { 0.0 });
+        session
+            .findings
+            .extend(check_content(&names_of, &content, first_mode));
+        session.put("first_elastic_mode_hz", first_mode)?;
+        session.put("content_hz", &content)?;
+    }
     let out = session.output_for(&arguments.job)?;
     let mut written = 0u64;
     let folder = out.folder().to_owned();
@@ -270,6 +281,20 @@ pub(super) fn run(
         &file,
         whole.then_some(stride),
     )
+}
+
+/// Loads of some pieces spread over the record.
+fn sampled_pieces(
+    record: &Record,
+    filter: &Filter,
+    units: &[LoadUnits],
+) -> Result<Vec<Vec<f64>>, Fault> {
+    let n = record.n_pieces();
+    let taken = n.min(GROUP);
+    (0..taken)
+        .into_par_iter()
+        .map(|i| process(record, filter, units, i * n / taken).map(|p| p.loads))
+        .collect()
 }
 
 struct Piece {

@@ -4,14 +4,16 @@ use crate::cli::Session;
 use crate::cli::deck::{DeckModel, moduli_and_densities, read_model};
 use crate::cli::fault::{Fault, Faults};
 use crate::cli::job::{Job, JobLoad, LoadActs, Reference, Role};
+use crate::cli::solved::{cases_of_job, solve_kept};
 use crate::fe::from_results::{Displacements, ReadOptions, solution_from_file};
-use crate::fe::{CaseResult, Solution, SolveOptions, UnitLoad, solve_unit_loads};
+use crate::fe::{CaseResult, Solution, UnitLoad};
 use crate::gauge::CornerRows;
 use crate::model::{Model, Vec3};
 use crate::sensitivity::{Load, LoadCaseOf};
 use crate::units::check_units;
 use nastran::results::ResultsFile;
 use std::collections::BTreeSet;
+use std::path::Path;
 
 /// Model and strain fields.
 pub struct Fields {
@@ -21,6 +23,8 @@ pub struct Fields {
     pub solutions: Vec<Solution>,
     /// By load: solution, case.
     of_load: Vec<(usize, usize)>,
+    /// First elastic frequency of the free structure, cycles per unit of time; `None` where another program solved it.
+    pub first_mode: Option<f64>,
 }
 
 impl Fields {
@@ -106,13 +110,15 @@ pub fn read_fields(session: &mut Session, job: &Job) -> Result<Fields, Faults> {
         &densities,
     ));
     if files.results.is_empty() {
-        let solved = session.stage("solve", |_| solve(job, &deck.model))?;
+        let cases = cases_of_job(job, &deck)?;
+        let (solved, report) = solve_kept(session, Path::new(&job.file), &deck, &cases)?;
         session.findings.extend(solved.findings.iter().cloned());
         let of_load = (0..job.loads.len()).map(|i| (0, i)).collect();
         return Ok(Fields {
             deck,
             solutions: vec![solved],
             of_load,
+            first_mode: report.modes.first().copied(),
         });
     }
     let mut wanted: BTreeSet<u32> = job.loads.iter().map(JobLoad::subcase).collect();
@@ -155,6 +161,7 @@ pub fn read_fields(session: &mut Session, job: &Job) -> Result<Fields, Faults> {
         deck,
         solutions,
         of_load,
+        first_mode: None,
     })
 }
 
@@ -287,18 +294,4 @@ pub fn unit_loads(job: &Job, model: &Model) -> Result<Vec<UnitLoad>, Faults> {
     } else {
         Err(faults)
     }
-}
-
-fn solve(job: &Job, model: &Model) -> Result<Solution, Faults> {
-    let loads = unit_loads(job, model)?;
-    solve_unit_loads(model, &loads, &SolveOptions::default())
-        .map(|(s, _)| s)
-        .map_err(|e| {
-            vec![Fault::of(
-                &*job.file,
-                "model",
-                e.to_string(),
-                "repair the deck, or give [model] results of another solver",
-            )]
-        })
 }

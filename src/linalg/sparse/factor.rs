@@ -42,11 +42,11 @@ pub struct Factor<'a> {
 }
 
 impl<'a> Factor<'a> {
-    /// The factor of a symmetric positive (semi)definite matrix.
+    /// The factor of a symmetric positive (semi)definite matrix, which is used up: the two need not be in memory together.
     ///
     /// # Errors
     /// An entry that is not a number, or a factor that memory doesn't hold.
-    pub fn new(symbolic: &'a Symbolic, matrix: &BlockMatrix) -> Result<Self, FactorError> {
+    pub fn new(symbolic: &'a Symbolic, matrix: BlockMatrix) -> Result<Self, FactorError> {
         let diagonal = matrix.diagonal(symbolic);
         if let Some(new) = diagonal.iter().position(|d| !d.is_finite()) {
             return Err(FactorError::NotANumber {
@@ -58,12 +58,9 @@ impl<'a> Factor<'a> {
             .map(|&d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 })
             .collect();
         let cholesky = &symbolic.cholesky;
-        let mut values = Vec::new();
-        values
-            .try_reserve_exact(cholesky.len_val())
-            .map_err(|_| FactorError::TooLarge)?;
-        values.resize(cholesky.len_val(), 0.0);
         let (columns, rows, mut entries) = matrix.lower_columns(symbolic, &scale);
+        drop(matrix);
+        let mut values = zeros(cholesky.len_val())?;
         let n = symbolic.n_unknowns();
         let pattern = SymbolicSparseColMatRef::new_checked(n, n, &columns, None, &rows);
         let (par, parameters) = (
@@ -116,6 +113,16 @@ impl<'a> Factor<'a> {
             smallest_pivot,
         })
     }
+}
+
+/// Zeros straight from the system: pages that are not touched yet cost nothing.
+fn zeros(n: usize) -> Result<Vec<f64>, FactorError> {
+    let mut probe: Vec<f64> = Vec::new();
+    probe
+        .try_reserve_exact(n)
+        .map_err(|_| FactorError::TooLarge)?;
+    drop(probe);
+    Ok(vec![0.0; n])
 }
 
 /// Squares of the diagonal of L, elimination order.

@@ -73,7 +73,7 @@ fn the_solution_of_many_right_hand_sides_satisfies_the_equations() {
         let (graph, sizes, terms) = lattice(side, m, true);
         let symbolic = Symbolic::analyse(&graph, &sizes).unwrap();
         let matrix = assemble(&symbolic, &graph, &terms, m);
-        let factor = Factor::new(&symbolic, &matrix).unwrap();
+        let factor = Factor::new(&symbolic, matrix.clone()).unwrap();
         assert!(factor.lost.is_empty());
         let n = symbolic.n_unknowns();
         let b: Vec<f64> = (0..5 * n)
@@ -98,7 +98,7 @@ fn every_unknown_that_nothing_holds_is_reported_and_stays_at_zero() {
     let (graph, sizes, terms) = lattice(12, 3, false);
     let symbolic = Symbolic::analyse(&graph, &sizes).unwrap();
     let matrix = assemble(&symbolic, &graph, &terms, 3);
-    let factor = Factor::new(&symbolic, &matrix).unwrap();
+    let factor = Factor::new(&symbolic, matrix.clone()).unwrap();
     assert_eq!(
         factor.lost.len(),
         3,

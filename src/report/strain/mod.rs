@@ -5,6 +5,7 @@ mod gap_page;
 mod gap_svg;
 mod page;
 mod pages;
+mod solution;
 mod svg;
 mod tables;
 
@@ -13,5 +14,6 @@ pub use gap_page::reconcile_page;
 pub use gap_svg::GapMark;
 pub use page::{Section, drawing_section, number, page, table, table_section};
 pub use pages::{RecoveredRun, place_page, recover_page, sensitivity_page};
+pub use solution::solution_page;
 pub use svg::{interval_bars, measured_against_predicted, model_with_gauges};
 pub use tables::{PlacedGauge, gauges_csv, gluing_sheet_csv, gluing_sheet_md, sensitivity_csv};

@@ -10,4 +10,4 @@ mod stream;
 mod writer;
 
 pub use error::WriteError;
-pub use writer::{Op2Writer, write_blocks};
+pub use writer::{EncodedBlock, Op2Writer, write_blocks};

@@ -48,23 +48,23 @@ impl<W: Write> Op2Writer<W> {
     /// [`WriteError::Unsupported`] for solids, grid point forces and element types without a layout; [`WriteError::Rows`] where an
     /// element lacks rows; [`WriteError::Id`]; [`WriteError::Columns`]; what the output gives.
     pub fn write_block(&mut self, block: &Block, rows: &Rows) -> Result<(), WriteError> {
-        let unsupported = || WriteError::Unsupported {
-            quantity: block.quantity,
-            element: block.element,
-        };
-        let (table, subtable) = head::names(block.quantity).ok_or_else(unsupported)?;
-        let layout = num_wide(block)
-            .and_then(|wide| layout(block.quantity, block.element, wide))
-            .ok_or_else(unsupported)?;
-        let bytes = entries::entries(block, rows, layout)?;
-        if self.open != Some(table) {
+        self.write_encoded(&EncodedBlock::new(block, rows)?)
+    }
+
+    /// Adds a block whose bytes were made before, perhaps on another thread.
+    ///
+    /// # Errors
+    ///
+    /// What the output gives.
+    pub fn write_encoded(&mut self, block: &EncodedBlock) -> Result<(), WriteError> {
+        if self.open != Some(block.table) {
             self.close()?;
-            self.stream.open_table(table, subtable, self.date)?;
-            self.open = Some(table);
+            self.stream
+                .open_table(block.table, block.subtable, self.date)?;
+            self.open = Some(block.table);
         }
-        let ident = head::ident(block, layout.wide);
-        self.stream.record(&ident, ident.len() / 4)?;
-        self.stream.record(&bytes, layout.wide)?;
+        self.stream.record(&block.ident, block.ident.len() / 4)?;
+        self.stream.record(&block.entries, block.wide)?;
         Ok(())
     }
 
@@ -83,6 +83,41 @@ impl<W: Write> Op2Writer<W> {
             self.stream.close_table()?;
         }
         Ok(())
+    }
+}
+
+/// A block as the words of the file.
+#[derive(Clone, Debug)]
+pub struct EncodedBlock {
+    table: &'static str,
+    subtable: &'static str,
+    wide: usize,
+    ident: Vec<u8>,
+    entries: Vec<u8>,
+}
+
+impl EncodedBlock {
+    /// The words of a block with these rows; see [`Op2Writer::write_block`].
+    ///
+    /// # Errors
+    ///
+    /// As [`Op2Writer::write_block`], output excepted.
+    pub fn new(block: &Block, rows: &Rows) -> Result<Self, WriteError> {
+        let unsupported = || WriteError::Unsupported {
+            quantity: block.quantity,
+            element: block.element,
+        };
+        let (table, subtable) = head::names(block.quantity).ok_or_else(unsupported)?;
+        let layout = num_wide(block)
+            .and_then(|wide| layout(block.quantity, block.element, wide))
+            .ok_or_else(unsupported)?;
+        Ok(Self {
+            table,
+            subtable,
+            wide: layout.wide,
+            ident: head::ident(block, layout.wide),
+            entries: entries::entries(block, rows, layout)?,
+        })
     }
 }
 

@@ -5,6 +5,7 @@
 //! incompatible modes of Taylor, Beresford and Wilson 1976 (QM6) on quadrilaterals. Drilling: the rotation about the surface
 //! normal is tied to the curl of the displacements about the same normal (Hughes and Brezzi 1989).
 
+mod area;
 mod kinematics;
 mod law;
 mod normals;
@@ -13,6 +14,8 @@ mod output_frame;
 mod quad4;
 mod tria3;
 
+#[cfg(test)]
+pub(crate) use area::corner_products;
 pub(crate) use law::ShellLaw;
 pub(crate) use normals::{CornerDirectors, shared_normals};
 pub(crate) use of_model::{AnyShell, shell_mass, shell_matrices, shell_stiffness, surfaces};
@@ -45,7 +48,7 @@ pub(crate) struct ShellInput<'a, const N: usize> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Parts {
     All,
-    /// Strain rows and corner areas; the stiffness stays zero.
+    /// Strain rows; the stiffness stays zero.
     WithoutStiffness,
 }
 
@@ -55,10 +58,6 @@ pub(crate) struct ShellMatrices<const N: usize, const M: usize> {
     pub(crate) stiffness: [[f64; M]; M],
     pub(crate) centre: StrainRows<M>,
     pub(crate) corners: [StrainRows<M>; N],
-    /// Area that belongs to each corner: integral of its shape function.
-    pub(crate) corner_area: [f64; N],
-    /// Volume of material that belongs to each corner: integral of shape function times thickness.
-    pub(crate) corner_volume: [f64; N],
 }
 
 /// Rows that turn an element's displacements into strain in its output frame: exx, eyy, gxy (engineering shear); strain at

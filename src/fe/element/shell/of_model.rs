@@ -118,15 +118,12 @@ pub(crate) fn shell_stiffness(prepared: &Prepared<'_>, i: usize) -> Result<Eleme
     })
 }
 
-/// Mass of each corner, before WTMASS: integral of shape function times (density * thickness + NSM).
-///
-/// # Errors
-/// As `shell_matrices`.
-pub(crate) fn shell_mass(prepared: &Prepared<'_>, i: usize) -> Result<Vec<f64>, Refusal> {
-    let model = prepared.model;
+/// Consistent mass of shell `i` by pairs of corners, before WTMASS: integral of the product of their shape functions times
+/// (density * thickness + NSM). The sum of a row is what a lumped mass puts at that corner.
+pub(crate) fn shell_mass(model: &Model, i: usize) -> [[f64; 4]; 4] {
     let shell = &model.shells[i];
     let Some(property) = model.shell_properties.get(shell.property.us()) else {
-        return Ok(Vec::new());
+        return [[0.0; 4]; 4];
     };
     let rho = match &property.kind {
         ShellKind::Homogeneous {
@@ -141,18 +138,12 @@ pub(crate) fn shell_mass(prepared: &Prepared<'_>, i: usize) -> Result<Vec<f64>, 
             .map_or(0.0, |m| m.rho),
         ShellKind::Laminate { .. } => 0.0,
     };
-    let sum = |area: &[f64], volume: &[f64]| {
-        area.iter()
-            .zip(volume)
-            .map(|(a, v)| rho * v + property.nsm * a)
-            .collect()
-    };
-    Ok(
-        match shell_matrices(prepared, i, Parts::WithoutStiffness)? {
-            AnyShell::Quad(m) => sum(&m.corner_area, &m.corner_volume),
-            AnyShell::Tria(m) => sum(&m.corner_area, &m.corner_volume),
-        },
-    )
+    let all: [Vec3; 4] = std::array::from_fn(|k| model.grids[shell.grids[k].us()].x);
+    let n = shell.shape.n_corners().min(4);
+    let products = super::area::corner_products(&all[..n], &shell.thickness);
+    std::array::from_fn(|k| {
+        std::array::from_fn(|l| rho * products.volume[k][l] + property.nsm * products.area[k][l])
+    })
 }
 
 /// Strain at both surfaces from rows and displacements: bottom (Z1), top (Z2).

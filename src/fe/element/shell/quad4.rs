@@ -19,6 +19,11 @@ fn shape(r: f64, s: f64) -> Shape<4> {
     }
 }
 
+/// Shape functions at the Gauss points, each of weight 1.
+pub(super) fn quad_points() -> [Shape<4>; 4] {
+    CORNERS.map(|(a, b)| shape(a * GAUSS, b * GAUSS))
+}
+
 /// What is needed again at a Gauss point.
 struct Point {
     shape: Shape<4>,
@@ -108,8 +113,6 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
         });
     }
     condense_modes(input, &mut points);
-    let mut corner_area = [0.0; 4];
-    let mut corner_volume = [0.0; 4];
     for p in &points {
         let section = Section {
             law: input.law,
@@ -124,10 +127,6 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
                 &p.curvature,
                 &drilling(&p.local, &p.shape),
             );
-        }
-        for k in 0..4 {
-            corner_area[k] += p.shape.h[k] * p.local.area;
-            corner_volume[k] += p.shape.h[k] * p.local.area * p.t;
         }
     }
     let mut corners = CORNERS.map(|(a, b)| {
@@ -161,8 +160,6 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
         stiffness,
         centre,
         corners,
-        corner_area,
-        corner_volume,
     })
 }
 

@@ -36,6 +36,11 @@ fn shape(r: f64, s: f64) -> Shape<3> {
     }
 }
 
+/// Shape functions and weights of the integration points; weights sum to half the parallelogram of the two sides.
+pub(super) fn tria_points() -> [(Shape<3>, f64); 7] {
+    POINTS.map(|(r, s, w)| (shape(r, s), w))
+}
+
 /// Stiffness and strain of a three-node shell. The rotation has a cubic bubble whose two amplitudes are eliminated.
 ///
 /// # Reference
@@ -78,8 +83,6 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
     let g = covariant(third + TYING, third - 2.0 * TYING);
 
     let mut big = [[0.0; WITH_BUBBLE]; WITH_BUBBLE];
-    let mut corner_area = [0.0; 3];
-    let mut corner_volume = [0.0; 3];
     for (r, s, w) in POINTS {
         let shape = shape(r, s);
         let t = Tangents::new(&x, d, &shape);
@@ -125,10 +128,6 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
                 &drilling::<3, WITH_BUBBLE>(&local, &shape),
             );
         }
-        for k in 0..3 {
-            corner_area[k] += shape.h[k] * weight;
-            corner_volume[k] += shape.h[k] * weight * thickness;
-        }
     }
     let mut stiffness = condense_bubble(&big);
     let mut centre = StrainRows {
@@ -147,8 +146,6 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
         stiffness,
         centre,
         corners: [centre; 3],
-        corner_area,
-        corner_volume,
     })
 }
 

@@ -1,0 +1,60 @@
+//! Whether a history is slow enough for quasi-static recovery: its content against the first elastic mode of the free structure.
+
+use crate::finding::{Finding, Severity};
+use crate::series::content::content_hz;
+
+/// Inertia of elastic motion adds 1 / (1 - r^2) - 1 to the strain at the share r of the first frequency: an eighth at one third.
+const SHARE_OF_FIRST_MODE: f64 = 1.0 / 3.0;
+
+/// Content of every load, Hz; `pieces` hold samples of all loads in turn, `sigma` is the noise of each load.
+pub(super) fn content_of_loads(
+    pieces: &[Vec<f64>],
+    sigma: &[f64],
+    rate_hz: f64,
+) -> Vec<Option<f64>> {
+    let k = sigma.len();
+    (0..k)
+        .map(|l| {
+            let of_load: Vec<Vec<f64>> = pieces
+                .iter()
+                .map(|p| {
+                    let mut before = 0.0;
+                    p.chunks_exact(k)
+                        .map(|f| {
+                            // A gap repeats what was there before.
+                            before = if f[l].is_finite() { f[l] } else { before };
+                            before
+                        })
+                        .collect()
+                })
+                .collect();
+            content_hz(&of_load, rate_hz, 2.0 * sigma[l] * sigma[l] / rate_hz)
+        })
+        .collect()
+}
+
+/// A warning for each load whose content reaches a third of the first mode.
+pub(super) fn check_content(
+    names: &[String],
+    content: &[Option<f64>],
+    first_mode: f64,
+) -> Vec<Finding> {
+    let limit = SHARE_OF_FIRST_MODE * first_mode;
+    names
+        .iter()
+        .zip(content)
+        .filter_map(|(name, f)| {
+            let f = f.filter(|f| *f >= limit)?;
+            Some(
+                Finding::new(
+                    Severity::Warning,
+                    "content-near-first-mode",
+                    format!("load `{name}`"),
+                    format!("its content reaches {f:.2} Hz, a third or more of the first elastic mode of the free structure ({first_mode:.2} Hz): quasi-static recovery reads elastic vibration as load"),
+                    "low-pass the strain below a third of the first mode, or take the loads from accelerations (`identify`)",
+                )
+                .with_numbers(f, limit),
+            )
+        })
+        .collect()
+}

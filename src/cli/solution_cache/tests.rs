@@ -1,0 +1,56 @@
+use super::*;
+
+fn solved() -> Solved {
+    Solved {
+        displacements: vec![vec![[0.1, -0.2, 1e-300, 4.0, 5.0, 1.0 / 3.0]; 7]; 3],
+        report: SolveReport {
+            grids: 7,
+            dofs: 42,
+            factor_nonzeros: 99,
+            ordering: Some(OrderingMethod::MinimumDegree),
+            smallest_pivot: 1.0 / 7.0,
+            balance: vec![Balance {
+                subcase: 4,
+                applied: [1.0, 2.0, 3.0, 4.0, 5.0, 0.1],
+                inertia: [-1.0, -2.0, -3.0, -4.0, -5.0, -0.1],
+                acceleration: [0.5; 6],
+                residual: 1e-15,
+            }],
+            mass: Some(MassProperties {
+                mass: 2.0,
+                cg: Vec3::new(1.0, 2.0, 3.0),
+                matrix: Matrix6::from_fn(|r, c| (r * 6 + c) as f64 / 3.0),
+            }),
+            modes: vec![2.5, 3.5],
+            seconds: Vec::new(),
+        },
+        findings: vec![
+            Finding::new(Severity::Info, "autospc", "grid/dof 5/6", "held", "nothing")
+                .with_numbers(1.0, 2.0),
+        ],
+    }
+}
+
+#[test]
+fn a_kept_solution_comes_back_bit_by_bit() {
+    let (s, hash) = (solved(), [7; 32]);
+    let back = decode(&encode(&s, &hash), &hash, 7, 3).unwrap();
+    assert_eq!(back.displacements, s.displacements);
+    assert_eq!(back.report, s.report);
+    assert_eq!(back.findings, s.findings);
+}
+
+#[test]
+fn a_file_with_any_byte_changed_or_cut_off_is_no_solution() {
+    let (s, hash) = (solved(), [7; 32]);
+    let bytes = encode(&s, &hash);
+    for at in 0..bytes.len() {
+        let mut other = bytes.clone();
+        other[at] ^= 0x10;
+        assert!(decode(&other, &hash, 7, 3).is_none(), "byte {at}");
+        assert!(decode(&bytes[..at], &hash, 7, 3).is_none(), "length {at}");
+    }
+    assert!(decode(&bytes, &[8; 32], 7, 3).is_none(), "another hash");
+    assert!(decode(&bytes, &hash, 8, 3).is_none(), "another model");
+    assert!(decode(&bytes, &hash, 7, 2).is_none(), "other cases");
+}

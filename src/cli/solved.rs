@@ -1,0 +1,127 @@
+//! The built-in solver as every command uses it: solutions are kept beside the job and taken from there while their inputs are the same.
+
+use super::Session;
+use super::deck::DeckModel;
+use super::fault::{Fault, Faults};
+use super::job::Job;
+use super::solution_cache::SolutionCache;
+use crate::fe::{
+    FeError, LoadCase, Solution, SolveOptions, SolveReport, relief_of, solution_of,
+    solve_displacements,
+};
+use std::fmt::Write;
+use std::path::Path;
+
+/// Elastic modes of a free structure that are computed beside the strain.
+const MODES: usize = 10;
+
+/// The unit loads of a job as load cases, subcases numbered in job order.
+///
+/// # Errors
+/// Grids and coordinate systems that the deck lacks.
+pub fn cases_of_job(job: &Job, read: &DeckModel) -> Result<Vec<LoadCase>, Faults> {
+    let relief = relief_of(&read.model, None, None);
+    let loads = super::strain::unit_loads(job, &read.model)?;
+    Ok(job
+        .loads
+        .iter()
+        .zip(loads)
+        .map(|(l, load)| LoadCase {
+            subcase: l.number,
+            label: l.name.clone(),
+            loads: vec![load],
+            spc: None,
+            mpc: read.model.mpc,
+            relief,
+        })
+        .collect())
+}
+
+/// Solves load cases on the model of a deck, or takes the solution from the cache beside `main_input` (the job, or the deck itself).
+///
+/// # Errors
+/// What stops the solver, with file and line.
+pub fn solve_kept(
+    session: &mut Session,
+    main_input: &Path,
+    read: &DeckModel,
+    cases: &[LoadCase],
+) -> Result<(Solution, SolveReport), Faults> {
+    let options = SolveOptions {
+        modes: MODES,
+        ..SolveOptions::default()
+    };
+    let identity = identity(session, read, cases);
+    let mut cache = session
+        .keeps_solutions()
+        .then(|| SolutionCache::new(main_input, &identity));
+    let grids = read.model.grids.len();
+    let kept = match cache.as_ref().map(|c| c.read(grids, cases.len())) {
+        Some(Ok(Some(solved))) => {
+            session.note(
+                "the solution is taken from the cache beside the input (`--no-cache` solves anew)"
+                    .to_owned(),
+            );
+            cache = None;
+            Some(solved)
+        }
+        Some(Err(why)) => {
+            session.note(format!("solved anew: {why}"));
+            None
+        }
+        Some(Ok(None)) | None => None,
+    };
+    let solved = match kept {
+        Some(solved) => solved,
+        None => session
+            .stage("solve", |_| {
+                solve_displacements(&read.model, cases, &options)
+            })
+            .map_err(|e| faults_of(&e, read))?,
+    };
+    if let Some(Err(why)) = cache.map(|c| c.write(&solved)) {
+        session.note(format!(
+            "the solution is not kept for the next command: {why}"
+        ));
+    }
+    for (step, seconds) in &solved.report.seconds {
+        session.note_step(&format!("solve: {step}"), *seconds);
+    }
+    session
+        .stage("strain", |_| {
+            solution_of(&read.model, cases, solved, &options)
+        })
+        .map_err(|e| faults_of(&e, read))
+}
+
+/// Everything that the displacements depend on: the program, the bytes of the deck and its includes, the load cases.
+fn identity(session: &mut Session, read: &DeckModel, cases: &[LoadCase]) -> String {
+    let mut text = format!("strainbridge {} modes {MODES}\n", env!("CARGO_PKG_VERSION"));
+    for path in &read.files {
+        let digest = session.inputs.digest_of(path);
+        let _ = writeln!(text, "file {}", digest.unwrap_or_default());
+    }
+    for case in cases {
+        let _ = writeln!(
+            text,
+            "case {} {:?} {:?} {:?} {:?}",
+            case.subcase, case.loads, case.spc, case.mpc, case.relief
+        );
+    }
+    text
+}
+
+/// The solver's faults with file and line.
+pub fn faults_of(error: &FeError, read: &DeckModel) -> Faults {
+    error
+        .faults()
+        .into_iter()
+        .map(|f| {
+            let file = match f.at.line {
+                0 => read.given.clone(),
+                _ => read.deck.path(f.at).to_owned(),
+            };
+            Fault::at(file, f.at.line, f.card, f.reason, f.remedy)
+        })
+        .collect()
+}

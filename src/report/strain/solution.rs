@@ -1,0 +1,94 @@
+//! The page of `solve`: what was solved, how the loads balance, how slow loads must be.
+
+use super::page::{Section, number, page, table};
+use crate::fe::{Balance, Solution, SolveReport};
+use crate::finding::Finding;
+use maud::html;
+
+/// Page of a solution: size of the model and its factor, resultants of applied and inertia loads, first elastic modes.
+pub fn solution_page(
+    title: &str,
+    solution: &Solution,
+    report: &SolveReport,
+    findings: &[Finding],
+) -> String {
+    let mut sections = vec![Section {
+        title: "Model".into(),
+        body: table(&["quantity", "value"], &model_rows(report)),
+    }];
+    if !report.balance.is_empty() {
+        let rows: Vec<Vec<String>> = report
+            .balance
+            .iter()
+            .flat_map(|b| balance_rows(solution, b))
+            .collect();
+        sections.push(Section {
+            title: "Balance".into(),
+            body: html! {
+                p { "Resultants about the centre of gravity, basic frame, in the deck's units. Inertia loads are mass times the rigid acceleration that the applied loads give; both sum to nothing." }
+                (table(&["subcase", "", "FX", "FY", "FZ", "MX", "MY", "MZ", "left, share"], &rows))
+            },
+        });
+    }
+    if !report.modes.is_empty() {
+        let rows: Vec<Vec<String>> = (1..)
+            .zip(&report.modes)
+            .map(|(i, f)| vec![i.to_string(), number(*f)])
+            .collect();
+        sections.push(Section {
+            title: "Elastic modes".into(),
+            body: html! {
+                p { "Of the free structure. Loads recovered by these strains must stay below a third of the first." }
+                (table(&["mode", "Hz"], &rows))
+            },
+        });
+    }
+    page(title, "Solution of the built-in solver", findings, sections)
+}
+
+fn model_rows(report: &SolveReport) -> Vec<Vec<String>> {
+    let mut rows = vec![
+        vec!["Grids".to_owned(), report.grids.to_string()],
+        vec!["Unknowns".into(), report.dofs.to_string()],
+        vec![
+            "Entries of the factor".into(),
+            report.factor_nonzeros.to_string(),
+        ],
+        vec!["Smallest pivot, of 1".into(), number(report.smallest_pivot)],
+    ];
+    if let Some(m) = &report.mass {
+        rows.push(vec!["Mass".into(), number(m.mass)]);
+        let cg = [m.cg.x, m.cg.y, m.cg.z].map(number).join(", ");
+        rows.push(vec!["Centre of gravity".into(), cg]);
+    }
+    rows
+}
+
+fn balance_rows(solution: &Solution, b: &Balance) -> [Vec<String>; 3] {
+    let label = solution
+        .cases
+        .iter()
+        .find(|c| c.subcase == b.subcase)
+        .map_or("", |c| c.label.as_str());
+    let row = |first: String, what: &str, six: &[f64; 6], last: String| {
+        let mut row = vec![first, what.to_owned()];
+        row.extend(six.iter().map(|v| number(*v)));
+        row.push(last);
+        row
+    };
+    [
+        row(
+            format!("{} {label}", b.subcase),
+            "Applied",
+            &b.applied,
+            String::new(),
+        ),
+        row(String::new(), "Inertia", &b.inertia, number(b.residual)),
+        row(
+            String::new(),
+            "Acceleration",
+            &b.acceleration,
+            String::new(),
+        ),
+    ]
+}

@@ -1,0 +1,359 @@
+//! `solve` as a user meets it: bad models named with file and line, solutions kept beside their inputs.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn strainbridge(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+fn folder(name: &str) -> PathBuf {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+        .join("solve_command")
+        .join(name);
+    let _ = std::fs::remove_dir_all(&path);
+    std::fs::create_dir_all(&path).unwrap();
+    path
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// A free strip of 8 x 2 quadrilaterals of 20 mm, grids 1 to 27, a force pair as load 1; `cards` go behind.
+fn strip(cards: &str) -> String {
+    let mut deck = String::from(
+        "SOL 101\nCEND\nSUBCASE 1\n  LOAD = 1\nBEGIN BULK\nPARAM,INREL,-2\n\
+         MAT1,1,210000.,,.3,7.85-9\nPSHELL,1,1,2.0,1,,1\n\
+         FORCE,1,1,0,100.,0.,0.,1.\n",
+    );
+    for i in 0..9 {
+        for j in 0..3 {
+            let _ = writeln!(deck, "GRID,{},,{}.,{}.,0.", 3 * i + j + 1, 20 * i, 20 * j);
+        }
+    }
+    for i in 0..8 {
+        for j in 0..2 {
+            let a = 3 * i + j + 1;
+            let _ = writeln!(
+                deck,
+                "CQUAD4,{},1,{a},{},{},{}",
+                2 * i + j + 1,
+                a + 3,
+                a + 4,
+                a + 1
+            );
+        }
+    }
+    deck.push_str(cards);
+    deck.push_str("ENDDATA\n");
+    deck
+}
+
+/// Runs `solve` on a deck; exit code and standard error.
+fn solve(name: &str, deck: &str) -> (i32, String, PathBuf) {
+    let dir = folder(name);
+    let path = dir.join("model.bdf");
+    std::fs::write(&path, deck).unwrap();
+    let out = strainbridge(&["solve", path.to_str().unwrap()]);
+    (out.status.code().unwrap_or(-1), text(&out.stderr), dir)
+}
+
+/// Line of the first card that starts so, from 1.
+fn line_of(deck: &str, card: &str) -> usize {
+    1 + deck.lines().position(|l| l.starts_with(card)).unwrap()
+}
+
+/// Fails unless the deck is refused with a message that stands at the card's line and says all of `words`.
+#[track_caller]
+fn refused(name: &str, deck: &str, card: &str, words: &[&str]) {
+    let (code, err, dir) = solve(name, deck);
+    assert_eq!(code, 2, "{name}: {err}");
+    let place = format!("model.bdf:{}:", line_of(deck, card));
+    let line = err
+        .lines()
+        .find(|l| l.contains(&place) && words.iter().all(|w| l.contains(w)));
+    assert!(line.is_some(), "{name}: {place} {words:?} not in\n{err}");
+    assert!(
+        !dir.join("model.out").join("results.op2").exists(),
+        "{name}"
+    );
+}
+
+#[test]
+fn a_sound_free_strip_is_solved() {
+    let (code, err, dir) = solve("sound", &strip(""));
+    assert_eq!(code, 0, "{err}");
+    for file in ["result.json", "results.op2", "results.vtu", "report.html"] {
+        assert!(dir.join("model.out").join(file).exists(), "{file}");
+    }
+}
+
+#[test]
+fn each_kind_of_bad_model_has_a_message_of_its_own_at_its_line() {
+    refused(
+        "missing_property",
+        &strip("CQUAD4,90,77,1,4,5,2\n"),
+        "CQUAD4,90",
+        &["CQUAD4 90", "77", "missing"],
+    );
+    refused(
+        "missing_material",
+        &strip("PSHELL,5,44,1.0\nCQUAD4,90,5,1,4,5,2\n"),
+        "PSHELL,5",
+        &["PSHELL 5", "44", "missing"],
+    );
+    refused(
+        "zero_length_bar",
+        &strip("PBAR,9,1,10.,100.,100.,200.\nGRID,60,,0.,0.,0.\nCBAR,90,9,1,60,0.,0.,1.\n"),
+        "CBAR,90",
+        &["CBAR 90", "length"],
+    );
+    refused(
+        "negative_thickness",
+        &strip("PSHELL,5,1,-1.0\nCQUAD4,90,5,1,4,5,2\n"),
+        "PSHELL,5",
+        &["PSHELL 5", "thickness"],
+    );
+    refused(
+        "duplicate_element",
+        &strip("CQUAD4,90,1,1,4,5,2\nCQUAD4,90,1,4,7,8,5\n"),
+        "CQUAD4,90,1,4",
+        &["CQUAD4 90", "twice"],
+    );
+    refused(
+        "duplicate_grid",
+        &strip("GRID,4,,1.,2.,3.\n"),
+        "GRID,4,,1.,2.,3.",
+        &["GRID 4", "twice"],
+    );
+    refused(
+        "missing_grid",
+        &strip("CQUAD4,90,1,1,4,5,555\n"),
+        "CQUAD4,90",
+        &["CQUAD4 90", "555", "missing"],
+    );
+    refused(
+        "rbe3_on_a_line",
+        &strip("GRID,60,,20.,0.,50.\nRBE3,91,,60,123456,1.0,123,1,4,\n,7\n"),
+        "RBE3,91",
+        &["RBE3 91", "line"],
+    );
+    refused(
+        "dependent_twice",
+        &strip("RBE2,91,1,123456,20\nRBE2,92,2,123456,20\n"),
+        "RBE2,92",
+        &["92", "grid 20", "dependent already"],
+    );
+    refused(
+        "no_set",
+        &strip("").replace("LOAD = 1", "LOAD = 8"),
+        "SOL 101",
+        &[],
+    );
+}
+
+#[test]
+fn mechanisms_are_named_before_anything_is_solved() {
+    // A bar that hangs on the strip by a hinge about its own axis and across: nothing holds its turning.
+    let hinge =
+        strip("PBAR,9,1,10.,100.,100.,200.\nGRID,60,,-80.,0.,0.\nCBAR,90,9,1,60,0.,0.,1.,\n,456\n");
+    refused(
+        "hinge",
+        &hinge,
+        "GRID,60",
+        &["grid 60", "held by nothing", "CBAR 90"],
+    );
+    // A second strip that nothing joins.
+    let island = strip(
+        "GRID,61,,0.,0.,99.\nGRID,62,,20.,0.,99.\nGRID,63,,20.,20.,99.\nCTRIA3,90,1,61,62,63\n",
+    );
+    let (code, err, _) = solve("island", &island);
+    assert_eq!(code, 2, "{err}");
+    assert!(
+        err.contains("grid 61") && err.contains("not joined"),
+        "{err}"
+    );
+    // An SPC set that leaves the strip free to slide.
+    let sliding = strip("SPC1,5,3456,1,THRU,27\n")
+        .replace("LOAD = 1", "LOAD = 1\n  SPC = 5")
+        .replace("PARAM,INREL,-2\n", "");
+    let (code, err, _) = solve("sliding", &sliding);
+    assert_eq!(code, 2, "{err}");
+    assert!(err.contains("held by nothing"), "{err}");
+}
+
+#[test]
+fn a_grid_in_no_element_is_a_note_and_a_load_on_it_an_error() {
+    let (code, err, _) = solve("unattached", &strip("GRID,60,,0.,0.,50.\n"));
+    assert_eq!(code, 0, "{err}");
+    assert!(
+        err.contains("GRID 60") && err.contains("no element uses it"),
+        "{err}"
+    );
+    refused(
+        "loaded_unattached",
+        &strip("GRID,60,,0.,0.,50.\nFORCE,1,60,0,1.,0.,0.,1.\n"),
+        "GRID,60",
+        &["grid 60", "no element holds"],
+    );
+}
+
+#[test]
+fn gravity_alone_says_that_a_free_structure_has_no_strain() {
+    let deck = strip("GRAV,7,,9810.,0.,0.,-1.\n").replace("LOAD = 1", "LOAD = 7");
+    let (code, err, dir) = solve("gravity", &deck);
+    assert_eq!(code, 0, "{err}");
+    assert!(err.contains("strain is zero"), "{err}");
+    let json = std::fs::read(dir.join("model.out/result.json")).unwrap();
+    let result: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    let applied = result["balance"][0]["applied"][2].as_f64().unwrap();
+    // 160 x 40 x 2 mm of steel.
+    let weight = -9810.0 * 7.85e-9 * 160.0 * 40.0 * 2.0;
+    assert!((applied / weight - 1.0).abs() < 1e-9, "{applied} {weight}");
+    let page = std::fs::read_to_string(dir.join("model.out/report.html")).unwrap();
+    assert!(
+        page.contains("Balance") && page.contains("Inertia"),
+        "{page}"
+    );
+}
+
+/// `result.json` without the times and the memory of the run.
+fn answer(dir: &Path) -> String {
+    let json = std::fs::read_to_string(dir.join("result.json")).unwrap();
+    json.lines()
+        .take_while(|l| !l.contains("\"seconds\""))
+        .filter(|l| !l.contains("peak_memory_bytes"))
+        .map(|l| format!("{l}\n"))
+        .collect()
+}
+
+fn kept(dir: &Path) -> Vec<PathBuf> {
+    std::fs::read_dir(dir.join("model.cache"))
+        .map(|list| list.map(|e| e.unwrap().path()).collect())
+        .unwrap_or_default()
+}
+
+#[test]
+fn a_solution_is_kept_beside_the_deck_and_gives_the_same_answer() {
+    let (code, first, dir) = solve("kept", &strip(""));
+    assert_eq!(code, 0, "{first}");
+    assert!(!first.contains("cache"), "{first}");
+    let [file] = kept(&dir).try_into().unwrap();
+    let deck = dir.join("model.bdf");
+    let run = |out: &str, extra: &[&str]| {
+        let out = dir.join(out);
+        let mut arguments = vec![
+            "solve",
+            deck.to_str().unwrap(),
+            "--out",
+            out.to_str().unwrap(),
+        ];
+        arguments.extend(extra);
+        let done = strainbridge(&arguments);
+        assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+        (out, text(&done.stderr))
+    };
+    let (again, err) = run("again", &[]);
+    assert!(err.contains("taken from the cache"), "{err}");
+    let base = dir.join("model.out");
+    assert_eq!(answer(&base), answer(&again));
+    for name in ["results.op2", "results.vtu"] {
+        let read = |d: &Path| std::fs::read(d.join(name)).unwrap();
+        assert!(read(&base) == read(&again), "{name}");
+    }
+    // A damaged file is passed over, said so, and replaced.
+    let mut bytes = std::fs::read(&file).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    std::fs::write(&file, &bytes).unwrap();
+    let (repaired, err) = run("repaired", &[]);
+    assert!(
+        err.contains("solved anew") && err.contains("damaged"),
+        "{err}"
+    );
+    assert_eq!(answer(&base), answer(&repaired));
+    // --no-cache neither reads nor writes.
+    std::fs::remove_file(&file).unwrap();
+    let (_, err) = run("without", &["--no-cache"]);
+    assert!(!err.contains("cache"), "{err}");
+    assert!(kept(&dir).is_empty());
+}
+
+#[test]
+fn a_changed_deck_is_solved_again() {
+    let (_, _, dir) = solve("changed", &strip(""));
+    let deck = dir.join("model.bdf");
+    std::fs::write(&deck, strip("").replace("PSHELL,1,1,2.0", "PSHELL,1,1,3.0")).unwrap();
+    let done = strainbridge(&["solve", deck.to_str().unwrap()]);
+    assert_eq!(done.status.code(), Some(0));
+    let err = text(&done.stderr);
+    assert!(!err.contains("taken from the cache"), "{err}");
+    assert_eq!(kept(&dir).len(), 2);
+}
+
+/// A job of two loads and three gauges on the strip.
+fn job(measured: &str) -> String {
+    let mut job = String::from("units = \"mm-t-s\"\n[model]\ndeck = \"model.bdf\"\n");
+    for (name, grid) in [("A", 13), ("B", 27)] {
+        let _ = write!(
+            job,
+            "[[load]]\nname = \"{name}\"\ngrid = {grid}\ncomponent = \"FZ\"\n"
+        );
+    }
+    for element in [5, 8, 12] {
+        let _ = write!(
+            job,
+            "[[gauge]]\nname = \"g{element}\"\nelement = {element}\nsurface = \"top\"\ndirection = [1, 0, 0]\n"
+        );
+    }
+    job + measured
+}
+
+#[test]
+fn recover_takes_the_solution_of_sensitivity_and_warns_of_content_near_the_first_mode() {
+    let dir = folder("recover");
+    std::fs::write(dir.join("model.bdf"), strip("")).unwrap();
+    // 60 Hz: far below the first mode of a 160 mm strip of 2 mm steel (about 400 Hz).
+    let slow = job("[measured]\nstrain = \"slow.csv\"\nnoise_microstrain = 1e-4\n");
+    let fast = slow.replace("slow.csv", "fast.csv");
+    std::fs::write(dir.join("job.toml"), &slow).unwrap();
+    for (name, hz) in [("slow.csv", 60.0), ("fast.csv", 300.0)] {
+        let mut csv = String::from("time,g5,g8,g12\n");
+        for i in 0..4096 {
+            let t = f64::from(i) / 2000.0;
+            let v = 10.0 * (std::f64::consts::TAU * hz * t).sin();
+            let _ = writeln!(csv, "{t},{v},{},{}", 0.5 * v, 0.2 * v);
+        }
+        std::fs::write(dir.join(name), csv).unwrap();
+    }
+    let path = dir.join("job.toml");
+    let run = |command: &str| {
+        let done = strainbridge(&[command, path.to_str().unwrap()]);
+        let err = text(&done.stderr);
+        assert!(
+            matches!(done.status.code(), Some(0 | 1)),
+            "{command}: {err}"
+        );
+        err
+    };
+    assert!(!run("sensitivity").contains("taken from the cache"));
+    let err = run("recover");
+    assert!(err.contains("taken from the cache"), "{err}");
+    assert!(!err.contains("first elastic mode"), "{err}");
+    std::fs::write(&path, fast).unwrap();
+    let err = run("recover");
+    assert!(err.contains("taken from the cache"), "{err}");
+    assert!(err.contains("first elastic mode"), "{err}");
+    let json = std::fs::read(dir.join("job.out/result.json")).unwrap();
+    let result: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    // A free uniform beam: 4.73^2 / 2 pi sqrt(EI / (m L^4)) = 410 Hz; a plate strip is a little stiffer across.
+    let first = result["first_elastic_mode_hz"].as_f64().unwrap();
+    assert!((first / 415.0 - 1.0).abs() < 0.06, "{first}");
+    let content = result["content_hz"][0].as_f64().unwrap();
+    assert!((content - 300.0).abs() < 5.0, "{content}");
+}
