@@ -310,9 +310,23 @@ fn a_grid_averages_over_its_length() {
         [1e-8 * (x.x - 45.0).powi(2), 0.0, 0.0]
     });
     let mean = read(&m, &long, CornerRows::Present, &square)[0];
-    // Mean of the square over +-15 is 75; chords of the corners add a sixth of the side squared (10^2 / 6): 91.7. A five-point rule over
-    // the kinks at the corners is not exact; 6 % is an estimate, still to be derived.
-    assert!((mean - 91.7e-8).abs() < 0.06 * 91.7e-8, "{mean}");
+    // Bilinear between corners at 5, 15 from the middle (25, 225): 25 up to 5, then
+    // 25 + 20 (d - 5). The rule is Gauss-Legendre with five
+    // points (Abramowitz and Stegun, table 25.4) over +-15; its middle point takes the shell's own centre row, 0 here.
+    let ridge = |d: f64| 25.0 + 20.0 * (d.abs() - 5.0).max(0.0);
+    let rule = [
+        (0.0, 0.568_888_888_9),
+        (0.538_469_310_1, 0.478_628_670_5),
+        (0.906_179_845_9, 0.236_926_885_1),
+    ];
+    let expected: f64 = rule
+        .iter()
+        .map(|(x, w)| if *x == 0.0 { 0.0 } else { w * ridge(15.0 * x) })
+        .sum();
+    assert!(
+        (mean - 1e-8 * expected).abs() < 1e-9 * mean,
+        "{mean} against {expected}e-8"
+    );
 }
 
 #[test]
