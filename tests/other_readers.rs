@@ -3,6 +3,8 @@
 //! Needs Python with `pyNastran` and `meshio`: the interpreter named by STRAINBRIDGE_PYTHON, else `python3`. Skipped, with a message,
 //! where they are absent.
 
+#![allow(clippy::print_stderr, reason = "says why it is skipped")]
+
 use nastran::bdf::{IncludeRequest, Loaded, Loader, read_deck};
 use serde_json::Value;
 use std::fmt::Write;

@@ -31,6 +31,6 @@ pub use relief::Balance;
 pub use shell_strain::Corners;
 pub use solution::*;
 pub use solve::{
-    LoadCase, Relief, SolveOptions, SolveReport, Solved, relief_of, solution_of, solve_cases,
-    solve_displacements, solve_unit_loads, supported_stiffness,
+    LoadCase, Relief, SolveOptions, SolveReport, Solved, Triplets, relief_of, solution_of,
+    solve_cases, solve_displacements, solve_unit_loads, supported_stiffness,
 };

@@ -420,12 +420,14 @@ fn applied_forces(model: &Model, mass: &Mass, case: &LoadCase) -> Result<Vec<[f6
     Ok(f)
 }
 
-/// The stiffness of the free structure, supported determinately, as its order and the lower triangle by row, column, value: for
-/// comparing factorisations with other programs.
+/// A matrix as its order and entries of its lower triangle: row, column, value.
+pub type Triplets = (usize, Vec<(usize, usize, f64)>);
+
+/// The stiffness of the free structure, supported determinately: for comparing factorisations with other programs.
 ///
 /// # Errors
 /// See [`FeError`].
-pub fn supported_stiffness(model: &Model) -> Result<(usize, Vec<(usize, usize, f64)>), FeError> {
+pub fn supported_stiffness(model: &Model) -> Result<Triplets, FeError> {
     let prepared = Prepared::new(model);
     let mass = Mass::new(&prepared);
     let system = System::new(

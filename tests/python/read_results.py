@@ -31,10 +31,18 @@ for subcase, table in op2.displacements.items():
         [int(g)] + [float(v) for v in row] for (g, _), row in zip(table.node_gridtype, table.data[0])
     ]
 mesh = meshio.read(f"{folder}/results.vtu")
+
+
+def values(array):
+    """Rows; plain numbers where there is one component."""
+    array = np.asarray(array)
+    return (array[:, 0] if array.ndim == 2 and array.shape[1] == 1 else array).tolist()
+
+
 vtu = {
     "points": mesh.points.tolist(),
     "cells": {block.type: int(len(block.data)) for block in mesh.cells},
-    "point_data": {name: np.asarray(v).tolist() for name, v in mesh.point_data.items()},
-    "cell_data": {name: [np.asarray(part).tolist() for part in v] for name, v in mesh.cell_data.items()},
+    "point_data": {name: values(v) for name, v in mesh.point_data.items()},
+    "cell_data": {name: [values(part) for part in v] for name, v in mesh.cell_data.items()},
 }
 print(json.dumps({"op2": cases, "vtu": vtu}))

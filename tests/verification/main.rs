@@ -1,5 +1,7 @@
 //! The built-in solver against closed forms, published benchmarks and other solvers' results.
 
+#![allow(clippy::print_stderr, reason = "numbers for the tables of the README")]
+
 mod coupled_mass;
 mod decks;
 mod frame_refined;

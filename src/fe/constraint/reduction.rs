@@ -6,9 +6,10 @@ use crate::model::{Mat3, Model, RigidKind};
 use std::collections::HashMap;
 
 /// What a dof is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum State {
     /// An unknown.
+    #[default]
     Free,
     /// Held at zero or at an enforced value.
     Held,
@@ -24,12 +25,6 @@ pub(crate) struct Reduction {
     pub(crate) rows: Vec<(Vec<(u32, f64)>, f64)>,
     /// Enforced displacements that are not zero.
     pub(crate) enforced: HashMap<u32, f64>,
-}
-
-impl Default for State {
-    fn default() -> Self {
-        Self::Free
-    }
 }
 
 impl Reduction {
