@@ -1,5 +1,6 @@
 //! From files to results, through the program.
 
+mod cases;
 mod command;
 mod frame;
 mod wing;
