@@ -60,7 +60,7 @@ pub fn weigh_causes(observations: &Observations, noise: &[f64], causes: &[Cause]
             let chosen = causes
                 .iter()
                 .enumerate()
-                .filter(|(k, _)| mask >> k & 1 == 1);
+                .filter(|(k, _)| (mask >> k) & 1 == 1);
             weigh(
                 observations,
                 noise,

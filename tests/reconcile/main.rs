@@ -3,4 +3,5 @@
 mod deck;
 mod given;
 mod hidden;
+mod joint;
 mod real;

@@ -11,8 +11,9 @@ use crate::reconcile::strain::Scatter;
 /// A technician glues to half a degree, 1 sd, where the job states no tolerance. Of places nothing is assumed: near a bracket a
 /// millimetre is worth several percent, and a floor that high hides everything else.
 const ANGLE_DEG: f64 = 0.5;
-/// Of what halving the mesh changed, this much is still to come: errors fall with the square of the width, so a third of it.
-const STILL_TO_COME: f64 = 1.0 / 3.0;
+/// Of what halving the mesh changed, this much may still be to come, 1 sd. Where strain is smooth a third of it is (errors fall with the
+/// square of the width), at a point load or a corner as much again.
+const STILL_TO_COME: f64 = 1.0;
 /// Where no finer mesh was solved: share of the stated model uncertainty that single coefficients have besides the common factor.
 const ENTRY_SHARE: f64 = 0.5;
 

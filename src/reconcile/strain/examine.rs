@@ -293,6 +293,7 @@ fn judge(
             };
             next_measurement(frame, &first, &other)
         }
+        None if verdict == Verdict::Unknown => look_again(&after),
         None => "none needed".into(),
     };
     Outcome {
@@ -317,6 +318,22 @@ fn judge(
         next_measurement: next,
         detectable: detectable(frame, candidates),
     }
+}
+
+/// What to measure where no effect of the library comes near: is it the gauges or the runs?
+fn look_again(after: &Adequacy) -> String {
+    /// As many gauges as one shunts in an hour.
+    const MOST: usize = 4;
+    let names = |parts: &[Misfit]| -> Vec<String> {
+        let worst = worst_first(parts, 0.0);
+        worst.iter().take(MOST).map(|m| m.name.clone()).collect()
+    };
+    let run = names(&after.runs).into_iter().next();
+    format!(
+        "shunt gauges {} before and after {}, made twice: readings that do not repeat are no effect of the loads",
+        names(&after.gauges).join(", "),
+        run.map_or("a run".into(), |r| format!("run {r}"))
+    )
 }
 
 /// Other sets of at most the same number of effects, nearest first, that do not contain the best one.
