@@ -62,13 +62,14 @@ impl StrainEffect for GaugeAngle {
         Stage::Structure
     }
     fn parameters(&self) -> Vec<Parameter> {
-        // A first-order step is zero for a gauge along a principal direction: start on both sides.
+        // A first-order step is zero for a gauge along a principal direction: start on both sides. A gauge glued across is as usual a
+        // mistake as one glued askew: the prior is wide.
         vec![Parameter {
             unit: "degree",
             neutral: 0.0,
-            prior_sd: 15.0,
+            prior_sd: 30.0,
             step: 0.25,
-            starts: vec![-30.0, -8.0, 8.0, 30.0],
+            starts: vec![-75.0, -30.0, -8.0, 8.0, 30.0, 75.0],
             plausible: 95.0,
         }]
     }
