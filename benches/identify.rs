@@ -75,6 +75,7 @@ fn question() -> Option<Question> {
         gain_tolerance: 0.0,
         sync_tolerance_s: 0.0,
         units: UnitNames::si(),
+        corrections: vec![],
     })
 }
 
@@ -93,9 +94,8 @@ fn swarm_of_40(bencher: divan::Bencher) {
         return;
     };
     let treatment = Treatment {
-        band: q.band,
         keep_every: 1,
-        adjust: vec![],
+        ..Treatment::of(q.band)
     };
     let Ok(m) = motion(&q.vehicle, &r, &treatment) else {
         return;

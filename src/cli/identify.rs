@@ -12,6 +12,7 @@ use crate::units::ReportUnits;
 use crate::vehicle::identify::{Identification, identify};
 use crate::vehicle::loads::{LoadHistory, link_forces, static_loads, wheel_force_history};
 use crate::vehicle::motion::{Motion, Treatment, motion};
+use crate::vehicle::stretch::slow_stretches;
 use serde::Serialize;
 
 /// A recovered load in `result.json`: dynamic part of a wheel force over its record, and its mean where masses tell it.
@@ -55,9 +56,10 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
 
     let history = |record: &Channels| {
         let treatment = Treatment {
-            band: question.band,
             keep_every: 1,
-            adjust: vec![],
+            adjust: question.corrections.clone(),
+            slow: slow_stretches(&found.vehicle, &found.values, record, &question.corrections),
+            ..Treatment::of(question.band)
         };
         motion(&found.vehicle, record, &treatment).map(|m| (wheel_force_history(&found, &m), m))
     };

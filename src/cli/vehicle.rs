@@ -10,7 +10,8 @@ use crate::series::quality::{Kind, check_channels};
 use crate::series::spectrum::Band;
 use crate::units::{Quantity, find_unit};
 use crate::vehicle::identify::Question;
-use crate::vehicle::motion::VehicleError;
+use crate::vehicle::layout::MassStep;
+use crate::vehicle::motion::{Adjustment, VehicleError};
 use crate::vehicle::preset::{PresetError, Wish, vehicle};
 use crate::vehicle::term::UnitNames;
 
@@ -67,8 +68,25 @@ pub fn read_vehicle(session: &mut Session, job: &Job) -> Result<VehicleRecords, 
         places: section.places.clone(),
         channels: section.columns.clone(),
     };
-    let model = vehicle(&wish).map_err(|e| vec![preset_fault(job, section, &e)])?;
+    let mut model = vehicle(&wish).map_err(|e| vec![preset_fault(job, section, &e)])?;
     let gravity = job.units.standard_gravity();
+    if let Some(change) = &section.mass_change {
+        let Some(body) = model.bodies.iter().position(|b| b.name == change.body) else {
+            return Err(vec![Fault::at(
+                &*job.file,
+                section.line,
+                "vehicle.mass_change.body",
+                format!("model `{}` has no body `{}`", section.model, change.body),
+                "name a body as in its mass: `b` for `m_b`",
+            )]);
+        };
+        model.steps.push(MassStep {
+            body,
+            at_s: change.at_s,
+            over_s: change.over_s,
+            gravity: if change.weight { gravity } else { 0.0 },
+        });
+    }
     for (named, record) in [
         (Some(&section.data), Some(&data)),
         (section.hold_out.as_ref(), hold_out.as_ref()),
@@ -105,6 +123,15 @@ pub fn read_vehicle(session: &mut Session, job: &Job) -> Result<VehicleRecords, 
         gravity,
         gain_tolerance: section.tolerance_gain.unwrap_or(0.0),
         sync_tolerance_s: section.tolerance_sync.unwrap_or(0.0),
+        corrections: section
+            .corrections
+            .iter()
+            .map(|(channel, [gain, delay_s])| Adjustment {
+                channel: channel.clone(),
+                gain: *gain,
+                delay_s: *delay_s,
+            })
+            .collect(),
         units: UnitNames {
             mass: unit(Quantity::Mass),
             length: unit(Quantity::Length),

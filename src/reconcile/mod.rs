@@ -5,6 +5,7 @@
 
 mod cause;
 pub mod effect;
+pub mod motion;
 mod observation;
 mod outcome;
 mod search;

@@ -8,6 +8,7 @@
 //! - [`butterworth`], [`filtfilt`]: second-order sections, and filtering without phase
 //! - [`spectrum`]: zero-padded transforms, band limiting and integration in one pass
 //! - [`integrate`]: velocity and displacement from acceleration
+//! - [`window`]: tapered transforms with independent bins
 //! - [`welch`]: power and cross spectra, coherence
 //! - [`content`]: up to which frequency a signal has content
 //! - [`align`]: delay between channels, shifting by a part of a sample
@@ -26,6 +27,7 @@ pub mod quality;
 pub mod resample;
 pub mod spectrum;
 pub mod welch;
+pub mod window;
 
 pub use channels::{Channel, Channels, SeriesError};
 

@@ -113,6 +113,11 @@ fn body_equation(vehicle: &Vehicle, motion: &Motion, b: usize, j: usize) -> Equa
             }
         }
     }
+    for (i, step) in vehicle.steps.iter().enumerate() {
+        if step.body == b && j == 0 {
+            columns.push((vehicle.step_index(i), motion.steps[i].clone()));
+        }
+    }
     let mut target = vec![0.0; motion.n_samples()];
     let mut driven = false;
     for (wheel, force) in vehicle.wheels.iter().zip(&motion.forces) {
@@ -160,11 +165,11 @@ fn total_equation(vehicle: &Vehicle, motion: &Motion, letter: &str) -> Equation 
             .iter_mut()
             .zip(&e.target)
             .for_each(|(t, v)| *t += factor * v);
-        let inertias = vehicle.term_index(0, 0);
+        let (inertias, steps) = (vehicle.term_index(0, 0), vehicle.step_index(0));
         for (p, column) in e
             .columns
             .into_iter()
-            .filter(|c| c.0 < inertias && factor != 0.0)
+            .filter(|c| (c.0 < inertias || c.0 >= steps) && factor != 0.0)
         {
             let scaled = column.iter().map(|v| factor * v);
             match total.columns.iter_mut().find(|c| c.0 == p) {

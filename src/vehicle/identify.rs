@@ -8,6 +8,7 @@ use super::interval::{residual, spread};
 use super::layout::{Parameter, Vehicle};
 use super::loads::{Blend, best_blend, link_forces, needed_forces, wheel_forces};
 use super::motion::{Adjustment, Motion, Treatment, VehicleError, motion, resolved};
+use super::stretch::slow_stretches;
 use super::term::{Quantity, UnitNames};
 use crate::finding::{Finding, Severity};
 use crate::linalg::tall::left_inverse;
@@ -36,6 +37,8 @@ pub struct Question {
     pub sync_tolerance_s: f64,
     /// Names of the job's units.
     pub units: UnitNames,
+    /// Known faults of channels, taken out before anything else.
+    pub corrections: Vec<Adjustment>,
 }
 
 /// One parameter, or a ratio of two.
@@ -128,9 +131,8 @@ pub fn identify(
     hold_out: Option<&Channels>,
 ) -> Result<Identification, VehicleError> {
     let treatment = Treatment {
-        band: question.band,
-        keep_every: 0,
-        adjust: vec![],
+        adjust: question.corrections.clone(),
+        ..Treatment::of(question.band)
     };
     let measured = with_measured_sensors(&question.vehicle, record);
     let vehicle = resolved(&measured, record, &treatment)?;
@@ -167,7 +169,14 @@ pub fn identify(
         let part = fit_part(question, &vehicle.part(&bodies), record, &treatment)?;
         any |= part.fit.is_some();
         let held = hold_out
-            .map(|h| motion(&part.part, h, &treatment))
+            .map(|h| {
+                let slow = slow_stretches(&part.part, &part.values, h, &treatment.adjust);
+                let treatment = Treatment {
+                    slow,
+                    ..treatment.clone()
+                };
+                motion(&part.part, h, &treatment)
+            })
             .transpose()?;
         collect(question, &mut answer, &all, part, held.as_ref());
     }
@@ -238,7 +247,7 @@ fn fit_part(
 ) -> Result<PartAnswer, VehicleError> {
     let names = part.parameters();
     let m = motion(part, record, treatment)?;
-    let eqs = equations(part, &m);
+    let mut eqs = equations(part, &m);
     let mut allow = allowed(question, &names);
     let reference = reference(part, &eqs, &allow);
     if let Some(r) = reference {
@@ -272,7 +281,17 @@ fn fit_part(
     if eqs.is_empty() || !has_scale {
         return Ok(out);
     }
-    let f = fit(&eqs, &allow);
+    let mut f = fit(&eqs, &allow);
+    let slow = slow_stretches(part, &f.values, record, &treatment.adjust);
+    if !slow.is_empty() {
+        let again = Treatment {
+            slow,
+            ..treatment.clone()
+        };
+        out.motion = motion(part, record, &again)?;
+        eqs = equations(part, &out.motion);
+        f = fit(&eqs, &allow);
+    }
     let s = spread(
         &eqs,
         &f,
@@ -368,7 +387,7 @@ fn add_tolerances(
             part,
             record,
             &Treatment {
-                adjust: vec![trial],
+                adjust: treatment.adjust.iter().cloned().chain([trial]).collect(),
                 ..treatment.clone()
             },
         )?;

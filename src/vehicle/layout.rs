@@ -121,6 +121,32 @@ pub struct Vehicle {
     pub wheels: Vec<Wheel>,
     /// Links.
     pub links: Vec<Link>,
+    /// Masses that change during a record.
+    pub steps: Vec<MassStep>,
+}
+
+/// A mass that joins (or, negative, leaves) a body during a record, at the body's origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MassStep {
+    /// Body.
+    pub body: usize,
+    /// When the change begins, s of the record's time.
+    pub at_s: f64,
+    /// How long it takes, s.
+    pub over_s: f64,
+    /// Acceleration of gravity that the change brings into the balance; 0 where it only adds inertia.
+    pub gravity: f64,
+}
+
+impl MassStep {
+    /// Share of the change that is done at a time.
+    pub fn done(&self, t_s: f64) -> f64 {
+        if self.over_s > 0.0 {
+            ((t_s - self.at_s) / self.over_s).clamp(0.0, 1.0)
+        } else {
+            f64::from(u8::from(t_s >= self.at_s))
+        }
+    }
 }
 
 /// A parameter of a vehicle.
@@ -135,7 +161,7 @@ pub struct Parameter {
 }
 
 impl Vehicle {
-    /// All parameters: inertias body by body (upper triangle by rows), then coefficients link by link.
+    /// All parameters: inertias body by body (upper triangle by rows), then coefficients link by link, then mass changes.
     pub fn parameters(&self) -> Vec<Parameter> {
         let mut out = Vec::new();
         for body in &self.bodies {
@@ -164,6 +190,14 @@ impl Vehicle {
                     positive: term.is_positive(),
                 });
             }
+        }
+        for step in &self.steps {
+            let body = self.bodies.get(step.body).map_or("", |b| b.name.as_str());
+            out.push(Parameter {
+                name: format!("dm_{body}"),
+                quantity: Quantity::Mass,
+                positive: false,
+            });
         }
         out
     }
@@ -196,6 +230,11 @@ impl Vehicle {
                 .map(|l| l.terms.len())
                 .sum::<usize>()
             + term
+    }
+
+    /// Index of the parameter of a mass change.
+    pub fn step_index(&self, step: usize) -> usize {
+        self.term_index(self.links.len(), 0) + step
     }
 
     /// Functions of a point's body at the point.
@@ -270,6 +309,14 @@ impl Vehicle {
                         ends: ends?,
                         ..l.clone()
                     })
+                })
+                .collect(),
+            steps: self
+                .steps
+                .iter()
+                .filter_map(|s| {
+                    let body = bodies.iter().position(|b| *b == s.body)?;
+                    Some(MassStep { body, ..*s })
                 })
                 .collect(),
         }

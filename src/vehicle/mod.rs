@@ -6,6 +6,7 @@
 //! - [`fit`]: weighted least squares with bounds; [`interval`]: covariance under coloured residuals
 //! - [`identify`]: all of it, with [`identifiability`] in words and [`checks`]
 //! - [`loads`]: wheel and chassis forces; [`fusion`]: axle bridge and hub accelerometer together
+//! - [`stretch`]: slow stretch from force, where integration drifts
 //! - [`simulate`]: forward in time; [`refine`]: nonlinear parameters by simulation error
 //! - [`swarm`]: particle swarm, for comparison with the thesis
 
@@ -22,6 +23,7 @@ pub mod motion;
 pub mod preset;
 pub mod refine;
 pub mod simulate;
+pub mod stretch;
 pub mod swarm;
 pub mod term;
 

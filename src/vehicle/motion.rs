@@ -1,6 +1,7 @@
 //! Measured channels made comparable: one band for all, body motions, stretch of links, terms formed wide-band.
 
 use super::layout::{Measures, Vehicle};
+use super::stretch::SlowStretch;
 use super::term::Term;
 use crate::finding::{Finding, Severity};
 use crate::linalg::tall::left_inverse;
@@ -64,6 +65,23 @@ pub struct Treatment {
     pub keep_every: usize,
     /// Corrections of channels, none for most.
     pub adjust: Vec<Adjustment>,
+    /// Slow stretch of links, where known: nonlinear terms then need no double integration below the band.
+    pub slow: Vec<SlowStretch>,
+    /// What is cut off either end, s; none: as little as the terms need.
+    pub settle_s: Option<f64>,
+}
+
+impl Treatment {
+    /// Plain treatment: one band, samples thinned as far as it allows.
+    pub fn of(band: Band) -> Self {
+        Self {
+            band,
+            keep_every: 0,
+            adjust: vec![],
+            slow: vec![],
+            settle_s: None,
+        }
+    }
 }
 
 /// Band-limited, trimmed signals of a record, all of one length and rate.
@@ -83,6 +101,8 @@ pub struct Motion {
     pub rate: Vec<Vec<f64>>,
     /// Each term of each link for a coefficient of one, formed wide-band, then limited to the band.
     pub terms: Vec<Vec<Vec<f64>>>,
+    /// Each mass change's column: what is there of it times acceleration.
+    pub steps: Vec<Vec<f64>>,
     /// Each wheel's force, where measured.
     pub forces: Vec<Option<Vec<f64>>>,
     /// Each wheel's mean force over the whole record, where measured.
@@ -135,6 +155,10 @@ impl Motion {
             stretch: links.iter().map(|&i| self.stretch[i].clone()).collect(),
             rate: links.iter().map(|&i| self.rate[i].clone()).collect(),
             terms: links.iter().map(|&i| self.terms[i].clone()).collect(),
+            steps: (0..self.steps.len())
+                .filter(|&i| bodies.contains(&vehicle.steps[i].body))
+                .map(|i| self.steps[i].clone())
+                .collect(),
             forces: wheels.iter().map(|&i| self.forces[i].clone()).collect(),
             mean_forces: wheels.iter().map(|&i| self.mean_forces[i]).collect(),
             findings: self.findings.clone(),
@@ -144,6 +168,8 @@ impl Motion {
 
 /// Wide-band signals of links reach down to this share of the lower band edge.
 const WIDE: f64 = 0.5;
+/// Below this multiple of the lower band edge the stretch of nonlinear terms comes from force, where that is known.
+const SLOW: f64 = 1.4;
 /// Redundant accelerometers may miss the rigid motion by this share of their signal before it is reported.
 const RIGID_LIMIT: f64 = 0.15;
 
@@ -212,10 +238,10 @@ pub fn motion(
         .links
         .iter()
         .any(|l| l.terms.iter().any(|t| !t.is_linear()));
-    let settle_s = if nonlinear {
-        1.5 * band.settling_s()
-    } else {
-        band.settling_s()
+    let settle_s = match treatment.settle_s {
+        Some(s) => s,
+        None if nonlinear => 1.5 * band.settling_s(),
+        None => band.settling_s(),
     };
     let needed_s = 2.0 * settle_s + 5.0 / band.low_hz.max(0.1);
     if record.duration_s() < needed_s {
@@ -253,7 +279,7 @@ pub fn motion(
 
     let mut transform = |name: &str, measures: Measures| -> Result<Spectrum, VehicleError> {
         let spectrum = fourier.spectrum(&without_mean(record.samples(name)?), rate_hz);
-        let adjust = treatment.adjust.iter().find(|a| a.channel == name);
+        let adjust = combined(&treatment.adjust, name);
         Ok(match (adjust, measures) {
             (None, Measures::Acceleration) => spectrum,
             (a, measures) => {
@@ -321,7 +347,7 @@ pub fn motion(
         .collect();
 
     let (mut stretch, mut rate, mut terms) = (vec![], vec![], vec![]);
-    for link in &vehicle.links {
+    for (l, link) in vehicle.links.iter().enumerate() {
         let mut parts = Vec::new();
         for (weight, end) in &link.ends {
             for (phi, s) in vehicle.functions(end).iter().zip(&body_spectra[end.body]) {
@@ -341,15 +367,37 @@ pub fn motion(
                 low_hz: band.low_hz * WIDE,
                 high_hz: f64::INFINITY,
             };
+            let slow = treatment.slow.iter().find(|s| s.link == l);
+            let Some(slow) = slow.filter(|s| s.stretch.len() == record.n_samples()) else {
+                return (
+                    fourier.samples(&relative.band_integrated(open, 2), 1),
+                    fourier.samples(&relative.band_integrated(open, 1), 1),
+                );
+            };
+            let fast = Band {
+                low_hz: band.low_hz * SLOW,
+                high_hz: f64::INFINITY,
+            };
+            let level = mean(&slow.stretch);
+            let below = fourier
+                .spectrum(&without_mean(&slow.stretch), rate_hz)
+                .times(|f| Complex64::new(1.0 - fast.gain(f), 0.0));
+            let rate = below.times(|f| Complex64::new(0.0, 2.0 * PI * f));
+            let joined = |times: i32, slow: &Spectrum, fourier: &mut Fourier| {
+                let whole = Spectrum::sum(&[(1.0, &relative.band_integrated(fast, times)), (1.0, slow)]);
+                whole.map_or(vec![], |s| fourier.samples(&s, 1))
+            };
+            let d = joined(2, &below, &mut fourier);
             (
-                fourier.samples(&relative.band_integrated(open, 2), 1),
-                fourier.samples(&relative.band_integrated(open, 1), 1),
+                d.iter().map(|d| d + level).collect(),
+                joined(1, &rate, &mut fourier),
             )
         });
         for term in &link.terms {
             columns.push(match (term, &wide) {
                 (Term::Stiffness, _) => d.clone(),
                 (Term::Damping, _) => v.clone(),
+                (Term::Inertance, _) => limited(&relative, 0, &mut fourier),
                 (term, Some((wd, wv))) => {
                     let force: Vec<f64> =
                         wd.iter().zip(wv).map(|(d, v)| term.basis(*d, *v)).collect();
@@ -364,6 +412,20 @@ pub fn motion(
         terms.push(columns);
     }
     let start_s = record.start_s + (trim * keep) as f64 / rate_hz;
+    let mut steps = Vec::new();
+    for step in &vehicle.steps {
+        let Some(heave) = body_spectra.get(step.body).and_then(|b| b.first()) else {
+            continue;
+        };
+        let a = fourier.samples(heave, 1);
+        let product: Vec<f64> = a
+            .iter()
+            .enumerate()
+            .map(|(i, a)| step.done(record.start_s + i as f64 / rate_hz) * (a + step.gravity))
+            .collect();
+        let s = fourier.spectrum(&without_mean(&product), rate_hz);
+        steps.push(limited(&s, 0, &mut fourier));
+    }
     Ok(Motion {
         rate_hz: rate_hz / keep as f64,
         start_s,
@@ -372,10 +434,22 @@ pub fn motion(
         stretch,
         rate,
         terms,
+        steps,
         forces,
         mean_forces,
         findings,
     })
+}
+
+/// All corrections of a channel in one.
+fn combined(adjust: &[Adjustment], name: &str) -> Option<Adjustment> {
+    let mut own = adjust.iter().filter(|a| a.channel == name);
+    let first = own.next()?.clone();
+    Some(own.fold(first, |sum, a| Adjustment {
+        gain: sum.gain * a.gain,
+        delay_s: sum.delay_s + a.delay_s,
+        ..sum
+    }))
 }
 
 /// Motions of each body as weighted sums of its sensors.

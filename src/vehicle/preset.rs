@@ -138,6 +138,7 @@ fn quarter(name: &str, corners: &[&str], wheels: &[&str], links: &[&str]) -> Veh
         sensors: vec![accelerometer("a_body".into(), point(0, origin))],
         wheels: vec![],
         links: vec![],
+        steps: vec![],
     };
     for (i, corner) in corners.iter().enumerate() {
         let p = point(i + 1, origin);
@@ -191,6 +192,7 @@ fn half(wish: &Wish) -> Vehicle {
         sensors: vec![],
         wheels: vec![],
         links: vec![],
+        steps: vec![],
     };
     for (i, (corner, letter, x)) in [("front", "f", 0.0), ("rear", "r", -1.0)]
         .into_iter()
@@ -234,6 +236,7 @@ fn full(wish: &Wish, axles: &[&str]) -> Result<Vehicle, PresetError> {
         sensors: vec![],
         wheels: vec![],
         links: vec![],
+        steps: vec![],
     };
     for (i, axle) in axles.iter().enumerate() {
         let place = |side: &str| {
@@ -312,6 +315,7 @@ fn rig() -> Vehicle {
                 terms: vec![],
             },
         ],
+        steps: vec![],
     }
 }
 
@@ -334,7 +338,35 @@ fn oscillator() -> Vehicle {
             ends: vec![(1.0, p)],
             terms: vec![],
         }],
+        steps: vec![],
     }
+}
+
+/// Links that couple what the plain model keeps apart; a term that names one (`k_axle`) adds it.
+pub const COUPLINGS: [&str; 4] = ["axle", "roll", "bar", "cross"];
+
+/// A coupling link without terms.
+///
+/// `front_pair`: `axle` joins the wheels, `roll` the bodies, `bar` resists unequal stretch of both sides, `cross` joins this side's
+/// body to the other wheel. `rear3`: `axle` joins mid and rear wheel, `bar` adds their stretches.
+pub fn coupling(v: &Vehicle, name: &str) -> Option<Link> {
+    let ends: &[(f64, usize)] = match (v.name.as_str(), name) {
+        ("front_pair", "axle") => &[(1.0, 1), (-1.0, 3)],
+        ("front_pair", "roll") => &[(1.0, 0), (-1.0, 2)],
+        ("front_pair", "bar") => &[(1.0, 0), (-1.0, 1), (-1.0, 2), (1.0, 3)],
+        ("front_pair", "cross") => &[(1.0, 0), (-1.0, 3)],
+        ("rear3", "axle") => &[(1.0, 1), (-1.0, 2)],
+        ("rear3", "bar") => &[(2.0, 0), (-1.0, 1), (-1.0, 2)],
+        _ => return None,
+    };
+    Some(Link {
+        name: name.to_owned(),
+        ends: ends
+            .iter()
+            .map(|&(w, b)| (w, point(b, [0.0, 0.0])))
+            .collect(),
+        terms: vec![],
+    })
 }
 
 /// Adds terms to the links they name: `k_s` to links `s*`, `cubic_stiffness` to all, `cubic_stiffness:s` to one.
@@ -363,7 +395,10 @@ fn add_terms(v: &mut Vehicle, terms: &[String]) -> Result<(), PresetError> {
         let mut met = false;
         if let Some(kind) = kind {
             for link in &mut v.links {
-                let here = if exact {
+                let coupling = COUPLINGS.contains(&link.name.as_str());
+                let here = if coupling {
+                    link.name == place
+                } else if exact {
                     link.name == place || link.name == format!("{place}_other")
                 } else {
                     link.name.starts_with(place)
@@ -375,6 +410,11 @@ fn add_terms(v: &mut Vehicle, terms: &[String]) -> Result<(), PresetError> {
                     }
                 }
             }
+        }
+        if let (false, Some(term), Some(mut link)) = (met, kind, coupling(v, place)) {
+            link.terms.push(term);
+            v.links.push(link);
+            met = true;
         }
         if !met {
             return Err(PresetError::Term {

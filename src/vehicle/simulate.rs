@@ -48,6 +48,9 @@ pub enum SimulationError {
         /// When.
         at_s: f64,
     },
+    /// A term that the simulation has no equation for.
+    #[error("link `{0}` has inertance, which is not simulated: leave the term out")]
+    Inertance(String),
     /// Histories of different length.
     #[error(
         "histories that drive the simulation have {found} and {expected} samples: cut them to one length"
@@ -238,6 +241,9 @@ fn machine<'a>(
         out.n_state += n;
     }
     for (l, link) in vehicle.links.iter().enumerate() {
+        if link.terms.contains(&Term::Inertance) {
+            return Err(SimulationError::Inertance(link.name.clone()));
+        }
         let mut ends = Vec::new();
         for (w, p) in &link.ends {
             let (first, given) = place[p.body];

@@ -73,6 +73,24 @@ pub enum Side {
     Rebound,
 }
 
+impl Side {
+    /// The word in a job.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Both => "both",
+            Self::Compression => "compression",
+            Self::Rebound => "rebound",
+        }
+    }
+
+    /// The side of a word.
+    pub fn from_name(word: &str) -> Option<Self> {
+        [Self::Both, Self::Compression, Self::Rebound]
+            .into_iter()
+            .find(|s| s.word() == word)
+    }
+}
+
 /// One term of a link force; d is the stretch (body less wheel), v its rate, d = 0 at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Term {
@@ -98,6 +116,8 @@ pub enum Term {
         /// Where it acts.
         side: Side,
     },
+    /// b d'': a mass that only relative acceleration moves, as in axles and bodies that turn. Not simulated.
+    Inertance,
     /// ca |v|: a damper with different rates c + ca in rebound (v > 0) and c - ca in compression.
     TwoRate,
 }
@@ -114,11 +134,26 @@ impl Term {
             Self::Friction { .. } => "fc",
             Self::BumpStop { .. } => "kb",
             Self::TwoRate => "ca",
+            Self::Inertance => "b",
         }
     }
 
     /// The term of a name in a job: a coefficient's prefix or an effect id; automatic where it has a constant of its own.
+    /// A constant may follow in brackets: `coulomb_friction(0.006)` (velocity), `bump_stop(0.03 compression)` (gap, side).
     pub fn from_name(name: &str) -> Option<Self> {
+        if let Some((plain, rest)) = name.split_once('(') {
+            let inside = rest.strip_suffix(')')?;
+            let (number, word) = inside.split_once(' ').unwrap_or((inside, "both"));
+            let constant = number.parse::<f64>().ok().filter(|v| *v > 0.0)?;
+            return match Self::from_name(plain)? {
+                Self::Friction { .. } => Some(Self::Friction { velocity: constant }),
+                Self::BumpStop { .. } => Some(Self::BumpStop {
+                    gap: constant,
+                    side: Side::from_name(word)?,
+                }),
+                _ => None,
+            };
+        }
         Some(match name {
             "k" | "stiffness" => Self::Stiffness,
             "c" | "viscous_damper" | "damping" => Self::Damping,
@@ -131,8 +166,28 @@ impl Term {
                 side: Side::Both,
             },
             "ca" | "asymmetric_damper" => Self::TwoRate,
+            "b" | "inertance" => Self::Inertance,
             _ => return None,
         })
+    }
+
+    /// The term as a job writes it, its constant included: [`Term::from_name`] reads it.
+    pub fn text(&self) -> String {
+        match self {
+            Self::Friction { velocity } if *velocity > 0.0 => format!("coulomb_friction({velocity:.5e})"),
+            Self::BumpStop { gap, side } if *gap > 0.0 => {
+                format!("bump_stop({gap:.6e} {})", side.word())
+            }
+            Self::Friction { .. } => "coulomb_friction".into(),
+            Self::BumpStop { .. } => "bump_stop".into(),
+            Self::Stiffness => "stiffness".into(),
+            Self::Damping => "viscous_damper".into(),
+            Self::Quadratic => "quadratic_stiffness".into(),
+            Self::Cubic => "cubic_stiffness".into(),
+            Self::Progressive => "progressive_leaf".into(),
+            Self::TwoRate => "asymmetric_damper".into(),
+            Self::Inertance => "inertance".into(),
+        }
     }
 
     /// What its coefficient is measured in.
@@ -143,6 +198,7 @@ impl Term {
             Self::Quadratic | Self::Progressive => Quantity::Stiffness2,
             Self::Cubic => Quantity::Stiffness3,
             Self::Friction { .. } => Quantity::Force,
+            Self::Inertance => Quantity::Mass,
         }
     }
 
@@ -154,12 +210,12 @@ impl Term {
         )
     }
 
-    /// Whether the term is proportional to the stretch or its rate.
+    /// Whether the term is proportional to the stretch, its rate or its acceleration.
     pub fn is_linear(&self) -> bool {
-        matches!(self, Self::Stiffness | Self::Damping)
+        matches!(self, Self::Stiffness | Self::Damping | Self::Inertance)
     }
 
-    /// Force for a coefficient of one.
+    /// Force for a coefficient of one; 0 for inertance, which stretch and rate don't tell.
     pub fn basis(&self, d: f64, v: f64) -> f64 {
         match *self {
             Self::Stiffness => d,
@@ -174,6 +230,7 @@ impl Term {
                 Side::Both => (d - gap).max(0.0) + (d + gap).min(0.0),
             },
             Self::TwoRate => v.abs(),
+            Self::Inertance => 0.0,
         }
     }
 }

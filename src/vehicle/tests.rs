@@ -32,5 +32,6 @@ fn question(model: &str, terms: &[&str], band: (f64, f64)) -> Question {
         gain_tolerance: 0.0,
         sync_tolerance_s: 0.0,
         units: UnitNames::si(),
+        corrections: vec![],
     }
 }

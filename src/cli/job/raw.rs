@@ -209,6 +209,24 @@ pub(super) struct RawVehicle {
     pub columns: BTreeMap<String, String>,
     pub places: BTreeMap<String, [f64; 2]>,
     pub bounds: BTreeMap<String, [f64; 2]>,
+    pub corrections: BTreeMap<String, RawCorrection>,
+    pub mass_change: Option<RawMassChange>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawCorrection {
+    pub gain: S<f64>,
+    pub delay_s: S<f64>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawMassChange {
+    pub body: S<String>,
+    pub at_s: S<f64>,
+    pub over_s: S<f64>,
+    pub weight: S<bool>,
 }
 
 #[derive(Deserialize, Default, Debug)]

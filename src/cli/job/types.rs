@@ -547,8 +547,25 @@ pub struct Vehicle {
     pub places: BTreeMap<String, [f64; 2]>,
     /// Limits of parameters.
     pub bounds: BTreeMap<String, [f64; 2]>,
+    /// Faults of channels that are known: gain (reading over truth) and delay (reading late), s.
+    pub corrections: BTreeMap<String, [f64; 2]>,
+    /// A mass that changes during the record.
+    pub mass_change: Option<MassChange>,
     /// Line of the job.
     pub line: u32,
+}
+
+/// `mass_change` of `[vehicle]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MassChange {
+    /// Body, such as `b`.
+    pub body: String,
+    /// When it begins, s.
+    pub at_s: f64,
+    /// How long it takes, s.
+    pub over_s: f64,
+    /// Whether its weight comes with it (else its inertia alone).
+    pub weight: bool,
 }
 
 /// Which world `reconcile` compares.

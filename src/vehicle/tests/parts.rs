@@ -359,11 +359,7 @@ fn a_swarm_of_the_thesis_does_no_better() {
     let r = quarter(8000, 11, TRUCK);
     let q = question("front2", &[], (1.0, 15.0));
     let id = identify(&q, &r, None).unwrap();
-    let treatment = crate::vehicle::motion::Treatment {
-        band: q.band,
-        keep_every: 0,
-        adjust: vec![],
-    };
+    let treatment = crate::vehicle::motion::Treatment::of(q.band);
     let m = crate::vehicle::motion::motion(&q.vehicle, &r, &treatment).unwrap();
     let objective = ThesisObjective::of(&equations(&q.vehicle, &m), 2);
     let bounds = [[100.0, 10_000.0], [100.0, 5000.0], [1e4, 2e6], [0.0, 5e4]];

@@ -44,6 +44,43 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
         sync = c.at_least_zero(&t.sync, "vehicle.tolerance.sync");
     }
     let sample_rate = c.positive(&raw.sample_rate, "vehicle.sample_rate");
+    let mut corrections = std::collections::BTreeMap::new();
+    for (channel, r) in &raw.corrections {
+        let gain = match r.gain.as_ref() {
+            Some(g) if *g.get_ref() == 0.0 || !g.get_ref().is_finite() => {
+                c.fault(
+                    g,
+                    &format!("vehicle.corrections.{channel}.gain"),
+                    "a gain of 0 leaves nothing to divide by".to_owned(),
+                    "write reading over truth, such as 1.05, or -1 for a turned sign",
+                );
+                1.0
+            }
+            Some(g) => *g.get_ref(),
+            None => 1.0,
+        };
+        let delay = r.delay_s.as_ref().map_or(0.0, |d| *d.get_ref());
+        corrections.insert(channel.clone(), [gain, delay]);
+    }
+    let mass_change = raw.mass_change.as_ref().and_then(|m| {
+        let at = c.require(
+            &m.at_s,
+            section,
+            "vehicle.mass_change.at_s",
+            "at_s = 30.0",
+        )?;
+        Some(MassChange {
+            body: m
+                .body
+                .as_ref()
+                .map_or_else(|| "b".to_owned(), |b| b.get_ref().clone()),
+            at_s: at,
+            over_s: c
+                .at_least_zero(&m.over_s, "vehicle.mass_change.over_s")
+                .unwrap_or(0.0),
+            weight: m.weight.as_ref().is_none_or(|w| *w.get_ref()),
+        })
+    });
     model.as_ref().zip(data.as_ref())?;
     Some(Vehicle {
         model: model?,
@@ -62,6 +99,8 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
         columns: raw.columns.clone(),
         places: raw.places.clone(),
         bounds: raw.bounds.clone(),
+        corrections,
+        mass_change,
         line: c.line(section),
     })
 }

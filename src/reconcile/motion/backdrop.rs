@@ -1,0 +1,86 @@
+//! What nothing in the library explains: the residual of a generous model, as background for every comparison.
+
+use super::fit::{Effort, MotionFit, fit};
+use super::frame::MotionFrame;
+use super::gls::{Basis, PriorColumn, solved};
+use super::noise::{Background, background, covariance};
+use super::response::responses;
+use super::scorer::MotionScorer;
+use rustfft::num_complex::Complex64;
+
+/// Forms that a generous model takes up, one after the other.
+const MOST: usize = 8;
+/// Fall of the squared residual that a form must bring, as a share of what is left and at least this much.
+const LEAST: f64 = 30.0;
+/// See `LEAST`.
+const SHARE: f64 = 0.01;
+
+/// The power that is left when the forms that help most, of whatever effect, are all fitted together.
+pub fn generous(scorer: &mut MotionScorer, null: &MotionFit) -> Background {
+    let forms = scorer.form_columns(null);
+    let mut columns: Vec<PriorColumn> = null.columns.to_vec();
+    let n = null.n_rows;
+    // The target is what the fit left plus what its columns took; the residual alone serves as target for further columns.
+    let target: Vec<f64> = null.residual[..n].to_vec();
+    let mut left = null.residual.to_vec();
+    let mut used = vec![false; forms.len()];
+    for _ in 0..MOST {
+        let basis = Basis::of(&columns);
+        let best = forms
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| !used[*i])
+            .map(|(i, f)| (i, basis.gain(&left, &f.2).0))
+            .max_by(|a, b| a.1.total_cmp(&b.1));
+        let total: f64 = left.iter().map(|v| v * v).sum();
+        let Some((i, gain)) = best.filter(|b| b.1 > LEAST.max(SHARE * total)) else {
+            break;
+        };
+        let _ = gain;
+        used[i] = true;
+        columns.extend(forms[i].2.iter().map(|rows| PriorColumn {
+            rows: rows.clone(),
+            prior: None,
+        }));
+        left = solved(&columns, &target).residual;
+    }
+    of_rows(scorer.frame, null, &left)
+}
+
+/// Background that a fit leaves above sensor noise.
+pub fn of_fit(frame: &MotionFrame, fit: &MotionFit) -> Background {
+    let h = responses(&fit.design, &fit.values);
+    let sensor = covariance(frame, &fit.design, &h, &Background::default());
+    background(frame, &fit.design, &fit.left, &sensor)
+}
+
+/// Background of whitened rows: coloured back by the whitening that made them.
+fn of_rows(frame: &MotionFrame, null: &MotionFit, rows: &[f64]) -> Background {
+    let colour = null.whitener.coloured(rows);
+    let h = responses(&null.design, &null.values);
+    let sensor: Vec<Vec<Complex64>> =
+        covariance(frame, &null.design, &h, &Background::default());
+    background(frame, &null.design, &colour, &sensor)
+}
+
+/// Total power, to compare backgrounds.
+pub fn power(b: &Background) -> f64 {
+    b.power.iter().flatten().sum()
+}
+
+/// A fit again under another background.
+pub fn again(
+    scorer: &MotionScorer,
+    old: &MotionFit,
+    background: &Background,
+) -> Option<MotionFit> {
+    fit(
+        scorer.frame,
+        scorer.candidates,
+        &scorer.frame.data,
+        old.parts.clone(),
+        Some(old),
+        background,
+        Effort::Settled,
+    )
+}

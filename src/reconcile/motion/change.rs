@@ -1,0 +1,190 @@
+//! What an effect changes: terms of a link, coupling links, a mass, a channel.
+
+use crate::vehicle::layout::{Link, MassStep, Vehicle};
+use crate::vehicle::motion::Adjustment;
+use crate::vehicle::term::Term;
+
+/// A change of the model or of a channel.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Change {
+    /// Terms on a link of the analyst's vehicle.
+    Terms {
+        /// The link.
+        link: usize,
+        /// The terms.
+        terms: Vec<Term>,
+    },
+    /// New links.
+    Links(Vec<Link>),
+    /// A mass that changes.
+    Step(MassStep),
+    /// A channel reads a multiple of the truth.
+    Gain {
+        /// The channel.
+        channel: String,
+    },
+    /// A channel reads late (or, negative, early).
+    Delay {
+        /// The channel.
+        channel: String,
+    },
+    /// A channel reads with its sign turned.
+    Flip {
+        /// The channel.
+        channel: String,
+    },
+    /// Two accelerometers are exchanged.
+    Swap {
+        /// One channel.
+        a: String,
+        /// The other.
+        b: String,
+    },
+}
+
+/// A vehicle with changes in it, and where each change's parameters are.
+#[derive(Clone, Debug)]
+pub struct Assembled {
+    /// The vehicle.
+    pub vehicle: Vehicle,
+    /// For each change, indices of its parameters in `vehicle.parameters()`.
+    pub own: Vec<Vec<usize>>,
+    /// Indices of the analyst's parameters, in the analyst's order.
+    pub base: Vec<usize>,
+}
+
+/// The vehicle with all changes that concern it; changes of channels add nothing here, but for a swap.
+pub fn assemble(base: &Vehicle, changes: &[&Change]) -> Assembled {
+    let mut vehicle = base.clone();
+    let mut places: Vec<Vec<Place>> = Vec::new();
+    for change in changes {
+        let mut own = Vec::new();
+        match change {
+            Change::Terms { link, terms } => {
+                if let Some(l) = vehicle.links.get_mut(*link) {
+                    for t in terms {
+                        own.push(Place::Term(*link, l.terms.len()));
+                        l.terms.push(*t);
+                    }
+                }
+            }
+            Change::Links(links) => {
+                for l in links {
+                    own.extend((0..l.terms.len()).map(|t| Place::Term(vehicle.links.len(), t)));
+                    vehicle.links.push(l.clone());
+                }
+            }
+            Change::Step(step) => {
+                own.push(Place::Step(vehicle.steps.len()));
+                vehicle.steps.push(*step);
+            }
+            Change::Swap { a, b } => {
+                for s in &mut vehicle.sensors {
+                    if s.channel == *a {
+                        s.channel.clone_from(b);
+                    } else if s.channel == *b {
+                        s.channel.clone_from(a);
+                    }
+                }
+            }
+            Change::Gain { .. } | Change::Delay { .. } | Change::Flip { .. } => {}
+        }
+        places.push(own);
+    }
+    let index = |p: &Place| match p {
+        Place::Term(l, t) => vehicle.term_index(*l, *t),
+        Place::Step(s) => vehicle.step_index(*s),
+    };
+    let n_inertias = vehicle.term_index(0, 0);
+    let mut kept: Vec<usize> = (0..n_inertias).collect();
+    for (l, link) in base.links.iter().enumerate() {
+        kept.extend((0..link.terms.len()).map(|t| vehicle.term_index(l, t)));
+    }
+    kept.extend((0..base.steps.len()).map(|s| vehicle.step_index(s)));
+    Assembled {
+        own: places.iter().map(|o| o.iter().map(index).collect()).collect(),
+        base: kept,
+        vehicle,
+    }
+}
+
+enum Place {
+    Term(usize, usize),
+    Step(usize),
+}
+
+/// Corrections of a frame with that of one channel joined.
+pub fn with_adjustment(list: &[Adjustment], more: Adjustment) -> Vec<Adjustment> {
+    let mut out = list.to_vec();
+    match out.iter_mut().find(|a| a.channel == more.channel) {
+        Some(a) => {
+            a.gain *= more.gain;
+            a.delay_s += more.delay_s;
+        }
+        None => out.push(more),
+    }
+    out
+}
+
+impl Change {
+    /// Shapes of the same kind with the constant a little smaller and larger; empty where there is none to find.
+    pub fn neighbours(&self, step: f64) -> Vec<Self> {
+        /// Either side of the present constant.
+        const SIDES: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
+        /// Times of a dense look, to either side.
+        const DENSE: i32 = 18;
+        /// Constants of terms need no finer step.
+        const FINEST: f64 = 0.005;
+        /// Seconds that a step of one stands for in the time of a change of mass.
+        const SPAN_S: f64 = 12.0;
+        let vary = |make: &dyn Fn(f64) -> Option<Self>| SIDES.iter().filter_map(|s| make(s * step)).collect();
+        match self {
+            Self::Terms { link, terms } if step > FINEST => vary(&|s| {
+                let mut terms = terms.clone();
+                let mut varied = false;
+                for t in &mut terms {
+                    match t {
+                        Term::Friction { velocity } => {
+                            *velocity *= (2.0 * s).exp();
+                            varied = true;
+                        }
+                        Term::BumpStop { gap, .. } => {
+                            *gap *= (0.5 * s).exp();
+                            varied = true;
+                        }
+                        _ => {}
+                    }
+                }
+                varied.then_some(Self::Terms { link: *link, terms })
+            }),
+            // The band turns a step into a wave: its time has many near misses, so the first look is dense.
+            Self::Step(m) if m.over_s == 0.0 && step > 0.1 => (-DENSE..=DENSE)
+                .map(|i| {
+                    Self::Step(MassStep {
+                        at_s: m.at_s + f64::from(i) * SPAN_S * 0.0125,
+                        ..*m
+                    })
+                })
+                .collect(),
+            Self::Step(m) if m.over_s == 0.0 && step > 0.01 => vec![],
+            Self::Step(m) => {
+                let mut out = vary(&|s| {
+                    Some(Self::Step(MassStep {
+                        at_s: m.at_s + SPAN_S * s,
+                        ..*m
+                    }))
+                });
+                if m.over_s > 0.0 && step > FINEST {
+                    out.extend(vary(&|s| {
+                        Some(Self::Step(MassStep {
+                            over_s: m.over_s * (2.0 * s).exp(),
+                            ..*m
+                        }))
+                    }));
+                }
+                out
+            }
+            _ => vec![],
+        }
+    }
+}

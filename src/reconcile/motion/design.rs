@@ -1,0 +1,177 @@
+//! Equations of motion of a record as transforms within the band: columns by parameter, channels by name.
+
+use super::frame::MotionFrame;
+use crate::series::channels::Channels;
+use crate::series::window::Windowed;
+use crate::vehicle::equations::equations;
+use crate::vehicle::layout::{Measures, Vehicle};
+use crate::vehicle::motion::{Adjustment, Motion, Treatment, VehicleError, motion};
+use crate::vehicle::stretch::SlowStretch;
+use rustfft::num_complex::Complex64;
+
+/// Transform of a signal within the band, a value a bin.
+pub type Bins = Vec<Complex64>;
+
+/// One equation of a compared body.
+#[derive(Clone, Debug)]
+pub struct BinEquation {
+    /// Such as `body b`.
+    pub name: String,
+    /// Body.
+    pub body: usize,
+    /// Which of its motions.
+    pub motion: usize,
+    /// Parameter index and column.
+    pub columns: Vec<(usize, Bins)>,
+    /// Measured outside force.
+    pub target: Bins,
+}
+
+/// A measured channel, corrected as the design asks.
+#[derive(Clone, Debug)]
+pub struct BinChannel {
+    /// Name.
+    pub name: String,
+    /// Its transform.
+    pub bins: Bins,
+    /// Noise of one sample, one sd; none where not declared.
+    pub noise: Option<f64>,
+}
+
+/// Everything a fit needs to know of a record.
+#[derive(Clone, Debug)]
+pub struct Design {
+    /// Frequencies, Hz.
+    pub f_hz: Vec<f64>,
+    /// Equations of the compared bodies.
+    pub equations: Vec<BinEquation>,
+    /// Channels of the compared bodies.
+    pub channels: Vec<BinChannel>,
+    /// Samples of the record to one of the thinned signals.
+    pub thinning: f64,
+    /// The vehicle.
+    pub vehicle: Vehicle,
+    /// Its motion.
+    pub motion: Motion,
+}
+
+/// Samples a second that the thinned signals keep, as a multiple of the upper band edge: what folds back is below 1e-3.
+const RATE_SHARE: f64 = 3.0;
+
+/// The design of a vehicle in a record, its channels corrected.
+///
+/// # Errors
+/// As [`motion`].
+pub fn design(
+    frame: &MotionFrame,
+    vehicle: &Vehicle,
+    record: &Channels,
+    adjust: &[Adjustment],
+    slow: Vec<SlowStretch>,
+) -> Result<Design, VehicleError> {
+    let mut keep = 1;
+    while record.rate_hz / (2 * keep) as f64 >= RATE_SHARE * frame.band.high_hz {
+        keep *= 2;
+    }
+    let treatment = Treatment {
+        band: frame.band,
+        keep_every: keep,
+        adjust: adjust.to_vec(),
+        slow,
+        // One length for all sets, with nonlinear terms or without.
+        settle_s: Some(1.5 * frame.band.settling_s()),
+    };
+    let motion = motion(vehicle, record, &treatment)?;
+    let mut window = Windowed::of(motion.n_samples(), motion.rate_hz, frame.band);
+    let mut out = Vec::new();
+    for e in equations(vehicle, &motion) {
+        let Some((body, index)) = body_of(vehicle, &e.name) else {
+            continue;
+        };
+        if !frame.bodies.contains(&body) {
+            continue;
+        }
+        out.push(BinEquation {
+            columns: e
+                .columns
+                .iter()
+                .map(|(i, c)| (*i, window.bins(c)))
+                .collect(),
+            target: window.bins(&e.target),
+            name: e.name,
+            body,
+            motion: index,
+        });
+    }
+    let mut channels = Vec::new();
+    for (s, signal) in vehicle.sensors.iter().zip(&motion.sensors) {
+        if frame.bodies.contains(&s.at.body) {
+            channels.push(BinChannel {
+                name: s.channel.clone(),
+                bins: window.bins(signal),
+                noise: frame
+                    .noise_acc
+                    .filter(|_| s.measures == Measures::Acceleration),
+            });
+        }
+    }
+    for (w, signal) in vehicle.wheels.iter().zip(&motion.forces) {
+        if let (true, Some(signal)) = (frame.bodies.contains(&w.at.body), signal) {
+            channels.push(BinChannel {
+                name: w.channel.clone(),
+                bins: window.bins(signal),
+                noise: frame.noise_force,
+            });
+        }
+    }
+    if out.is_empty() {
+        return Err(VehicleError::NoEquation(vehicle.name.clone()));
+    }
+    Ok(Design {
+        f_hz: window.f_hz,
+        equations: out,
+        channels,
+        thinning: keep as f64,
+        vehicle: vehicle.clone(),
+        motion,
+    })
+}
+
+/// Body and motion of an equation by its name.
+fn body_of(vehicle: &Vehicle, name: &str) -> Option<(usize, usize)> {
+    vehicle.bodies.iter().enumerate().find_map(|(b, body)| {
+        let letters = body.shape.letters();
+        letters.iter().enumerate().find_map(|(j, letter)| {
+            let own = format!(
+                "body {}{}{letter}",
+                body.name,
+                if j > 0 { " about " } else { "" }
+            );
+            (own == name).then_some((b, j))
+        })
+    })
+}
+
+impl Design {
+    /// Sum of parameter times column, less target, of every equation.
+    pub fn residual(&self, values: &[f64]) -> Vec<Bins> {
+        self.equations
+            .iter()
+            .map(|e| {
+                let mut r: Bins = e.target.iter().map(|t| -t).collect();
+                for (i, column) in &e.columns {
+                    let v = values.get(*i).copied().filter(|v| v.is_finite()).unwrap_or(0.0);
+                    if v != 0.0 {
+                        r.iter_mut().zip(column).for_each(|(r, c)| *r += c * v);
+                    }
+                }
+                r
+            })
+            .collect()
+    }
+}
+
+/// Root of the mean power of a transform times its number of bins: comparable between signals of one design.
+pub fn size(x: &[Complex64]) -> f64 {
+    x.iter().map(|v| v.norm_sqr()).sum::<f64>().sqrt()
+}

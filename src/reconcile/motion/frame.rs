@@ -1,0 +1,68 @@
+//! What the dynamic search starts from.
+
+use crate::series::channels::Channels;
+use crate::series::spectrum::Band;
+use crate::vehicle::layout::Vehicle;
+use crate::vehicle::motion::Adjustment;
+use crate::vehicle::term::UnitNames;
+use std::collections::BTreeMap;
+
+/// The analyst's vehicle, the records, and what is declared of their quality; job units throughout.
+#[derive(Clone, Debug)]
+pub struct MotionFrame {
+    /// The analyst's model; bodies beyond those compared are witnesses (the other side of an axle).
+    pub vehicle: Vehicle,
+    /// Bodies whose equations are compared.
+    pub bodies: Vec<usize>,
+    /// Parameters measured elsewhere.
+    pub known: BTreeMap<String, f64>,
+    /// The record that is fitted.
+    pub data: Channels,
+    /// The record that judges; where none is given the fitted one does.
+    pub hold_out: Option<Channels>,
+    /// The band of every comparison.
+    pub band: Band,
+    /// Acceleration of gravity.
+    pub gravity: f64,
+    /// Noise of accelerometers, one sd a sample, where declared.
+    pub noise_acc: Option<f64>,
+    /// Noise of force channels, one sd a sample, where declared.
+    pub noise_force: Option<f64>,
+    /// Gain tolerance of every channel, one sd, a share.
+    pub gain_tolerance: f64,
+    /// Synchronisation tolerance of every channel, one sd, s.
+    pub sync_tolerance_s: f64,
+    /// Faults of channels that the job declares.
+    pub corrections: Vec<Adjustment>,
+    /// Names of units.
+    pub units: UnitNames,
+}
+
+impl MotionFrame {
+    /// Channels of the compared bodies: accelerometers, then measured wheel forces.
+    pub fn channels(&self) -> Vec<String> {
+        let v = &self.vehicle;
+        let own = |b: usize| self.bodies.contains(&b);
+        v.sensors
+            .iter()
+            .filter(|s| own(s.at.body))
+            .map(|s| s.channel.clone())
+            .chain(
+                v.wheels
+                    .iter()
+                    .filter(|w| own(w.at.body) && self.data.has(&w.channel))
+                    .map(|w| w.channel.clone()),
+            )
+            .collect()
+    }
+
+    /// Whether a channel is an accelerometer (or displacement sensor) of a compared body.
+    pub fn is_sensor(&self, channel: &str) -> bool {
+        self.vehicle.sensors.iter().any(|s| s.channel == channel)
+    }
+
+    /// Whether the background is declared imperfect: gains and timing hold within tolerances only.
+    pub fn is_loose(&self) -> bool {
+        self.gain_tolerance > 0.0 || self.sync_tolerance_s > 0.0
+    }
+}

@@ -1,0 +1,56 @@
+//! What the dynamic workflow has to say.
+
+use super::change::Change;
+use super::gap::RecordGap;
+use crate::reconcile::outcome::{Gap, Rival, Verdict};
+use crate::vehicle::motion::Adjustment;
+
+/// A named effect of motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MotionEffect {
+    /// Id with place.
+    pub id: String,
+    /// Place alone.
+    pub place: Option<String>,
+    /// What it changes.
+    pub change: Change,
+    /// Correction of the channel, for a channel at fault.
+    pub correction: Option<Adjustment>,
+    /// Sizes of its parameters.
+    pub size: Vec<f64>,
+    /// One sd of each.
+    pub sigma: Vec<f64>,
+    /// Unit of the first.
+    pub unit: String,
+    /// Whether the size is one that occurs.
+    pub plausible: bool,
+}
+
+/// Everything.
+#[derive(Clone, Debug)]
+pub struct MotionOutcome {
+    /// Verdict.
+    pub verdict: Verdict,
+    /// Named effects; empty unless named.
+    pub effects: Vec<MotionEffect>,
+    /// What came closest.
+    pub best_attempt: Vec<MotionEffect>,
+    /// Other explanations, nearest first.
+    pub rivals: Vec<Rival>,
+    /// Log evidence of the best set less that of no effect.
+    pub evidence: f64,
+    /// Gap on held-out data.
+    pub gap: Gap,
+    /// Held-out gap of the analyst's model by equation.
+    pub before: Option<RecordGap>,
+    /// With the best attempt in.
+    pub after: Option<RecordGap>,
+    /// Squared residual over noise alone, by number of rows: analyst's model, best attempt.
+    pub reduced_chi2: [f64; 2],
+    /// Share of the measured quantity left on the fitted record: analyst's model, best attempt, floor.
+    pub left: [f64; 3],
+    /// What remains, in words.
+    pub remains: String,
+    /// What would separate the first two explanations.
+    pub next_measurement: String,
+}

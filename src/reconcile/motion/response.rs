@@ -1,0 +1,148 @@
+//! How each channel enters each equation: response of the residual to one unit in a channel.
+
+use super::design::Design;
+use crate::linalg::tall::left_inverse;
+use crate::vehicle::term::Term;
+use rustfft::num_complex::Complex64;
+use std::f64::consts::PI;
+
+/// `[equation][channel][bin]`, in the order of the design's equations and channels; nonlinear terms by their mean slope.
+pub fn responses(design: &Design, values: &[f64]) -> Vec<Vec<Vec<Complex64>>> {
+    let v = &design.vehicle;
+    let value = |i: usize| values.get(i).copied().filter(|x| x.is_finite()).unwrap_or(0.0);
+    // Share of each sensor in each motion of its body.
+    let weights: Vec<Option<Vec<Vec<f64>>>> = (0..v.bodies.len())
+        .map(|b| {
+            let rows: Vec<Vec<f64>> = v
+                .sensors
+                .iter()
+                .filter(|s| s.at.body == b)
+                .map(|s| v.functions(&s.at))
+                .collect();
+            left_inverse(&rows)
+        })
+        .collect();
+    let slopes = slopes(design, values);
+    let share = |body: usize, motion: usize, sensor: usize| -> f64 {
+        let Some(own) = (v.sensors[sensor].at.body == body).then(|| {
+            (0..v.sensors.len())
+                .filter(|&s| v.sensors[s].at.body == body)
+                .position(|s| s == sensor)
+        }) else {
+            return 0.0;
+        };
+        match (own, &weights[body]) {
+            (Some(k), Some(w)) => w[motion][k],
+            _ => 0.0,
+        }
+    };
+    design
+        .equations
+        .iter()
+        .map(|e| {
+            design
+                .channels
+                .iter()
+                .map(|c| {
+                    if let Some(w) = v.wheels.iter().find(|w| w.channel == c.name) {
+                        let phi = if w.at.body == e.body {
+                            v.functions(&w.at)[e.motion]
+                        } else {
+                            0.0
+                        };
+                        return vec![Complex64::new(-phi, 0.0); design.f_hz.len()];
+                    }
+                    let Some(s) = v.sensors.iter().position(|s| s.channel == c.name) else {
+                        return vec![Complex64::default(); design.f_hz.len()];
+                    };
+                    let n = v.bodies[e.body].shape.n();
+                    let inertia: f64 = (0..n)
+                        .map(|i| value(v.inertia_index(e.body, i, e.motion)) * share(e.body, i, s))
+                        .sum();
+                    let mut paths: Vec<(f64, [f64; 3])> = Vec::new();
+                    for (link, slope) in v.links.iter().zip(&slopes) {
+                        let here: f64 = link
+                            .ends
+                            .iter()
+                            .filter(|x| x.1.body == e.body)
+                            .map(|(w, p)| w * v.functions(p)[e.motion])
+                            .sum();
+                        let there: f64 = link
+                            .ends
+                            .iter()
+                            .filter(|x| x.1.body == v.sensors[s].at.body)
+                            .map(|(w, p)| {
+                                w * v
+                                    .functions(p)
+                                    .iter()
+                                    .enumerate()
+                                    .map(|(i, phi)| phi * share(p.body, i, s))
+                                    .sum::<f64>()
+                            })
+                            .sum();
+                        if here != 0.0 && there != 0.0 {
+                            paths.push((here * there, *slope));
+                        }
+                    }
+                    design
+                        .f_hz
+                        .iter()
+                        .map(|f| {
+                            let w = 2.0 * PI * f;
+                            let link: Complex64 = paths
+                                .iter()
+                                .map(|(g, [k, c, b])| {
+                                    Complex64::new(b - k / (w * w), -c / w) * *g
+                                })
+                                .sum();
+                            // Signals of displacement sensors are accelerations by now.
+                            link + inertia
+                        })
+                        .collect()
+                })
+                .collect()
+        })
+        .collect()
+}
+
+/// Mean slope of each link's law over stretch, rate and acceleration of stretch.
+fn slopes(design: &Design, values: &[f64]) -> Vec<[f64; 3]> {
+    let v = &design.vehicle;
+    v.links
+        .iter()
+        .enumerate()
+        .map(|(l, link)| {
+            let (d, rate) = (&design.motion.stretch[l], &design.motion.rate[l]);
+            let mut out = [0.0; 3];
+            for (t, term) in link.terms.iter().enumerate() {
+                let c = values
+                    .get(v.term_index(l, t))
+                    .copied()
+                    .filter(|x| x.is_finite())
+                    .unwrap_or(0.0);
+                match term {
+                    Term::Stiffness => out[0] += c,
+                    Term::Damping => out[1] += c,
+                    Term::Inertance => out[2] += c,
+                    _ if c != 0.0 => {
+                        // Statistical linearisation: regression of the term on stretch and rate.
+                        let (mut fd, mut fv, mut dd, mut vv) = (0.0, 0.0, 0.0, 0.0);
+                        for (d, r) in d.iter().zip(rate) {
+                            let f = term.basis(*d, *r);
+                            fd += f * d;
+                            fv += f * r;
+                            dd += d * d;
+                            vv += r * r;
+                        }
+                        if dd > 0.0 && vv > 0.0 {
+                            out[0] += c * fd / dd;
+                            out[1] += c * fv / vv;
+                        }
+                    }
+                    _ => {}
+                }
+            }
+            out
+        })
+        .collect()
+}

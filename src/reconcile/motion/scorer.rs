@@ -1,0 +1,384 @@
+//! The dynamic side of the search: evidence of sets of effects, and what to try next.
+
+use super::candidate::Candidate;
+use super::change::{Change, assemble};
+use super::design::{Design, design};
+use super::fit::{Effort, MotionFit, Part, adjustments, fault_column, fit, parameter_column, slices};
+use super::frame::MotionFrame;
+use super::gls::Basis;
+use super::noise::Background;
+use crate::reconcile::search::{Addition, Scored, Scorer};
+use crate::series::detrend::mean;
+use crate::vehicle::layout::Measures;
+use crate::vehicle::motion::Adjustment;
+use crate::vehicle::stretch::slow_stretches;
+use std::sync::Arc;
+
+/// Scores sets of effects on the fitted record.
+pub struct MotionScorer<'a> {
+    /// The frame.
+    pub frame: &'a MotionFrame,
+    /// The library.
+    pub candidates: &'a [Candidate],
+    /// What no effect explains.
+    pub background: Background,
+    /// Designs that hold every form of every candidate, by corrections and swaps.
+    pub forms: Vec<(Vec<Adjustment>, Vec<String>, Arc<Forms>)>,
+}
+
+/// A design with every form of every candidate in it.
+pub struct Forms {
+    design: Design,
+    /// Parameters of each form: candidate, form, indices.
+    own: Vec<(usize, usize, Vec<usize>)>,
+}
+
+/// Fall of the squared residual below which a form's constant isn't refined.
+const WORTH_REFINING: f64 = 30.0;
+/// Steps of refinement, each finer.
+const REFINE: [f64; 7] = [0.2, 0.07, 0.025, 0.009, 0.003, 0.001, 0.0003];
+
+impl MotionScorer<'_> {
+    /// What a set costs for its freedom: half the log of the number of rows a parameter, the choice among candidates and forms.
+    pub fn cost(&self, candidate: usize, shape: &Change) -> f64 {
+        let c = &self.candidates[candidate];
+        let n = match shape {
+            Change::Terms { terms, .. } => terms.len(),
+            Change::Links(links) => links.iter().map(|l| l.terms.len()).sum(),
+            _ => 1,
+        };
+        let constants = usize::from(c.shapes.len() > 4);
+        let per = 0.5 * 4000f64.ln();
+        per * (n + constants) as f64 + (self.candidates.len() as f64).ln() + c.handicap
+    }
+
+    fn evidence(&self, fit: &MotionFit) -> f64 {
+        let cost: f64 = fit
+            .parts
+            .iter()
+            .map(|p| self.cost(p.candidate, &p.shape))
+            .sum();
+        -0.5 * (fit.chi2 + fit.penalty + still(self.frame, fit)) - cost - unusual(fit)
+    }
+
+    fn part(&self, candidate: usize, addition: Option<&Addition>) -> Part {
+        let shapes = &self.candidates[candidate].shapes;
+        let chosen = addition.and_then(|a| a.parameters.first()).copied();
+        let index = (chosen.unwrap_or(0.0) as usize).min(shapes.len().saturating_sub(1));
+        let start = addition.and_then(|a| a.parameters.get(1)).copied();
+        let shape = shapes[index].clone();
+        let fault = match &shape {
+            Change::Gain { .. } => 1.0 + start.unwrap_or(0.0).clamp(-0.4, 0.6),
+            Change::Delay { .. } => start.unwrap_or(0.0).clamp(-0.02, 0.02),
+            _ => 0.0,
+        };
+        Part {
+            candidate,
+            shape,
+            fault,
+        }
+    }
+
+    /// Finds the constants of the forms in a fit, but for candidates that are settled.
+    fn refined(&self, mut best: MotionFit, settled: &[usize]) -> MotionFit {
+        for step in &REFINE {
+            for i in 0..best.parts.len() {
+                if settled.contains(&best.parts[i].candidate) {
+                    continue;
+                }
+                let varied = best.parts[i].shape.neighbours(*step);
+                let Some((shape, _)) = self.best_of(&best, i, &varied) else {
+                    continue;
+                };
+                let mut parts = best.parts.clone();
+                parts[i].shape = shape;
+                let again = fit(
+                    self.frame,
+                    self.candidates,
+                    &self.frame.data,
+                    parts,
+                    Some(&best),
+                    &self.background,
+                    Effort::Touch,
+                );
+                if let Some(f) = again.filter(|f| f.chi2 + f.penalty < best.chi2 + best.penalty) {
+                    best = f;
+                }
+            }
+        }
+        best
+    }
+
+    /// The form among several that leaves least with everything else as it is; `None` where the present one does.
+    fn best_of(&self, now: &MotionFit, part: usize, varied: &[Change]) -> Option<(Change, f64)> {
+        if varied.is_empty() {
+            return None;
+        }
+        let mut changes: Vec<&Change> = now.parts.iter().map(|p| &p.shape).collect();
+        changes.extend(varied);
+        let all = assemble(&self.frame.vehicle, &changes);
+        let mut values = vec![0.0; all.vehicle.parameters().len()];
+        for (&to, &old) in all.base.iter().zip(&now.assembled.base) {
+            values[to] = now.values[old];
+        }
+        for (to, old) in all.own.iter().zip(&now.assembled.own) {
+            to.iter().zip(old).for_each(|(&t, &o)| values[t] = now.values[o]);
+        }
+        let adjust = adjustments(self.frame, &now.parts);
+        let slow = slow_stretches(&all.vehicle, &values, &self.frame.data, &adjust);
+        let d = design(self.frame, &all.vehicle, &self.frame.data, &adjust, slow).ok()?;
+        let n_parts = now.parts.len();
+        // Everything but the part in question, then each form in turn.
+        let own: Vec<usize> = all.own[part].clone();
+        let old = &now.assembled.own[part];
+        let skip: Vec<usize> = (0..now.free.len())
+            .filter(|&k| old.contains(&now.free[k]))
+            .collect();
+        let kept: Vec<_> = now
+            .columns
+            .iter()
+            .enumerate()
+            .filter(|(k, _)| !skip.contains(k))
+            .map(|(_, c)| c.clone())
+            .collect();
+        let basis = Basis::of(&kept);
+        // The residual without the part: what it took is given back.
+        let mut residual = now.residual.to_vec();
+        for &k in &skip {
+            let x = now.values[now.free[k]];
+            residual
+                .iter_mut()
+                .zip(&now.columns[k].rows)
+                .for_each(|(r, c)| *r += c * x);
+        }
+        let gain = |parameters: &[usize]| {
+            let columns: Vec<Vec<f64>> = parameters
+                .iter()
+                .map(|&p| now.whitener.rows(&parameter_column(&d, p)))
+                .collect();
+            basis.gain(&residual, &columns).0
+        };
+        let present = gain(&own);
+        varied
+            .iter()
+            .enumerate()
+            .map(|(k, shape)| (shape.clone(), gain(&all.own[n_parts + k])))
+            .filter(|(_, g)| *g > present)
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// The design with all forms for the corrections of a fit.
+    fn all_forms(&mut self, base: &MotionFit) -> Option<Arc<Forms>> {
+        let adjust = adjustments(self.frame, &base.parts);
+        let key: Vec<String> = base
+            .parts
+            .iter()
+            .map(|p| format!("{:?}", p.shape))
+            .collect();
+        if let Some(f) = self.forms.iter().find(|f| f.0 == adjust && f.1 == key) {
+            return Some(Arc::clone(&f.2));
+        }
+        let mut changes: Vec<&Change> = base.parts.iter().map(|p| &p.shape).collect();
+        let mut names = Vec::new();
+        for (c, candidate) in self.candidates.iter().enumerate() {
+            for (k, shape) in candidate.shapes.iter().enumerate() {
+                if matches!(shape, Change::Terms { .. } | Change::Links(_) | Change::Step(_)) {
+                    names.push((c, k));
+                    changes.push(shape);
+                }
+            }
+        }
+        let all = assemble(&self.frame.vehicle, &changes);
+        let mut values = vec![0.0; all.vehicle.parameters().len()];
+        for (&to, &old) in all.base.iter().zip(&base.assembled.base) {
+            values[to] = base.values[old];
+        }
+        for (to, old) in all.own.iter().zip(&base.assembled.own) {
+            to.iter().zip(old).for_each(|(&t, &o)| values[t] = base.values[o]);
+        }
+        let slow = slow_stretches(&all.vehicle, &values, &self.frame.data, &adjust);
+        let design = design(self.frame, &all.vehicle, &self.frame.data, &adjust, slow).ok()?;
+        let own = names
+            .into_iter()
+            .zip(all.own.iter().skip(base.parts.len()))
+            .map(|((c, k), o)| (c, k, o.clone()))
+            .collect();
+        let forms = Arc::new(Forms { design, own });
+        self.forms.push((adjust, key, Arc::clone(&forms)));
+        Some(forms)
+    }
+
+    /// Whitened columns of every form that could join a fit: candidate, form, columns.
+    pub fn form_columns(&mut self, base: &MotionFit) -> Vec<(usize, usize, Vec<Vec<f64>>)> {
+        let mut out = Vec::new();
+        let set: Vec<usize> = base.parts.iter().map(|p| p.candidate).collect();
+        if let Some(forms) = self.all_forms(base) {
+            for (c, k, own) in &forms.own {
+                if set.contains(c) {
+                    continue;
+                }
+                let columns = own
+                    .iter()
+                    .map(|&p| base.whitener.rows(&parameter_column(&forms.design, p)))
+                    .collect();
+                out.push((*c, *k, columns));
+            }
+        }
+        for (c, candidate) in self.candidates.iter().enumerate() {
+            let Some(shape) = candidate.shapes.first().filter(|_| !set.contains(&c)) else {
+                continue;
+            };
+            let start = if matches!(shape, Change::Gain { .. }) {
+                1.0
+            } else {
+                0.0
+            };
+            if let Some(column) = fault_column(&base.design, &base.responses, shape, start) {
+                out.push((c, 0, vec![base.whitener.rows(&slices(&column))]));
+            }
+        }
+        out
+    }
+}
+
+impl Scorer for MotionScorer<'_> {
+    type Fit = MotionFit;
+
+    fn score(
+        &mut self,
+        set: &[usize],
+        from: Option<(&Scored<MotionFit>, Option<&Addition>)>,
+    ) -> Option<Scored<MotionFit>> {
+        let parts: Vec<Part> = set
+            .iter()
+            .map(|&c| {
+                let known = from.and_then(|(f, _)| f.fit.parts.iter().find(|p| p.candidate == c));
+                let addition = from.and_then(|(_, a)| a).filter(|a| a.candidate == c);
+                known.cloned().unwrap_or_else(|| self.part(c, addition))
+            })
+            .collect();
+        let start = from.map(|(f, _)| &f.fit);
+        let first = fit(
+            self.frame,
+            self.candidates,
+            &self.frame.data,
+            parts,
+            start,
+            &self.background,
+            Effort::Settled,
+        )?;
+        let before = from.map_or(f64::INFINITY, |(f, _)| f.fit.chi2);
+        let fit = if before - first.chi2 > WORTH_REFINING {
+            let settled: Vec<usize> = from.map_or(vec![], |(f, _)| f.set.clone());
+            self.refined(first, &settled)
+        } else {
+            first
+        };
+        Some(Scored {
+            set: set.to_vec(),
+            log_evidence: self.evidence(&fit),
+            fit,
+        })
+    }
+
+    fn screen(&mut self, base: &Scored<MotionFit>) -> Vec<Addition> {
+        let basis = Basis::of(&base.fit.columns);
+        let mut best: Vec<Option<Addition>> = vec![None; self.candidates.len()];
+        for (c, k, columns) in self.form_columns(&base.fit) {
+            let (fall, first) = basis.gain(&base.fit.residual, &columns);
+            let shape = &self.candidates[c].shapes[k];
+            let against = self.candidates[c].sign == super::candidate::Sign::Positive && first < 0.0;
+            let gain = 0.5 * fall * if against { 0.0 } else { 1.0 } - self.cost(c, shape);
+            if best[c].as_ref().is_none_or(|b| gain > b.gain) {
+                best[c] = Some(Addition {
+                    candidate: c,
+                    gain,
+                    parameters: vec![k as f64, first],
+                    sizes: vec![first],
+                });
+            }
+        }
+        let mut out: Vec<Addition> = best.into_iter().flatten().collect();
+        out.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        out
+    }
+
+    fn compatible(&self, a: usize, b: usize) -> bool {
+        let whole = |c: usize| self.candidates[c].is_upheaval();
+        a != b && !(whole(a) || whole(b))
+    }
+
+    fn kin(&self, candidate: usize) -> usize {
+        let family = self.candidates[candidate].family();
+        self.candidates
+            .iter()
+            .position(|c| c.family() == family)
+            .unwrap_or(candidate)
+    }
+}
+
+/// What the sizes of channel faults cost: gains go wrong by some per cent, delays by some samples; more is ever less likely.
+fn unusual(fit: &MotionFit) -> f64 {
+    const GAIN: f64 = 0.1;
+    const DELAY_S: f64 = 0.01;
+    fit.parts
+        .iter()
+        .map(|p| match &p.shape {
+            Change::Gain { .. } => 0.5 * ((1.0 / p.fault).ln() / GAIN).powi(2),
+            Change::Delay { .. } => 0.5 * (p.fault / DELAY_S).powi(2),
+            _ => 0.0,
+        })
+        .sum()
+}
+
+/// What readings at rest say against a set: an accelerometer's mean is gravity times its gain, the mean wheel force is the weight.
+///
+/// Squared deviations over 1.5 %, each held at 25: offsets of sensors are common, so this breaks ties and no more.
+fn still(frame: &MotionFrame, fit: &MotionFit) -> f64 {
+    const SHARE: f64 = 0.015;
+    const MOST: f64 = 25.0;
+    let v = &fit.assembled.vehicle;
+    let adjust = adjustments(frame, &fit.parts);
+    let gain = |channel: &str| {
+        adjust
+            .iter()
+            .find(|a| a.channel == channel)
+            .map_or(1.0, |a| a.gain)
+    };
+    let mut total = 0.0;
+    for s in &v.sensors {
+        if s.measures != Measures::Acceleration || !frame.bodies.contains(&s.at.body) {
+            continue;
+        }
+        let Ok(x) = frame.data.samples(&s.channel) else {
+            continue;
+        };
+        let m = mean(x) / frame.gravity;
+        // A channel without its static part says nothing.
+        if (0.5..2.0).contains(&m.abs()) {
+            total += ((m / gain(&s.channel) - 1.0) / SHARE).powi(2).min(MOST);
+        }
+    }
+    let wheels: Vec<&str> = v
+        .wheels
+        .iter()
+        .filter(|w| frame.bodies.contains(&w.at.body))
+        .map(|w| w.channel.as_str())
+        .collect();
+    let forces: Option<Vec<f64>> = wheels
+        .iter()
+        .map(|w| frame.data.samples(w).ok().map(mean))
+        .collect();
+    let mass: f64 = frame
+        .bodies
+        .iter()
+        .map(|&b| fit.values[v.inertia_index(b, 0, 0)])
+        .sum();
+    if let Some(f) = forces.filter(|f| !f.is_empty()) {
+        let ratio = mass * frame.gravity / f.iter().sum::<f64>();
+        if ratio.is_finite() && (0.5..2.0).contains(&ratio) {
+            total += ((ratio - 1.0) / SHARE).powi(2).min(MOST);
+        }
+    }
+    total
+}

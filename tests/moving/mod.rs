@@ -1,0 +1,99 @@
+//! Generated dynamic cases as frames for the search.
+
+#![allow(dead_code)]
+
+pub mod generator;
+
+use generator::{Background, Case, Layout, RATE_HZ};
+use std::collections::BTreeMap;
+use strainbridge::reconcile::Verdict;
+use strainbridge::reconcile::motion::{MotionFrame, MotionOutcome};
+use strainbridge::series::channels::{Channel, Channels};
+use strainbridge::series::spectrum::Band;
+use strainbridge::vehicle::preset::{Wish, vehicle};
+use strainbridge::vehicle::term::UnitNames;
+
+/// The frame that a job of the case would make.
+pub fn frame_of(case: &Case) -> MotionFrame {
+    let record = |list: &[(String, Vec<f64>)]| {
+        let list = list
+            .iter()
+            .map(|(name, samples)| Channel {
+                name: name.clone(),
+                unit: String::new(),
+                samples: samples.clone(),
+            })
+            .collect();
+        Channels::from_list(RATE_HZ, list).unwrap()
+    };
+    let model = match case.layout {
+        Layout::Rear => "rear3",
+        Layout::Pair => "front_pair",
+        _ => "front2",
+    };
+    let wish = Wish {
+        model: model.into(),
+        terms: case.terms.clone(),
+        ..Wish::default()
+    };
+    let loose = case.background == Background::Messy;
+    MotionFrame {
+        vehicle: vehicle(&wish).unwrap(),
+        bodies: if model == "rear3" {
+            vec![0, 1, 2]
+        } else {
+            vec![0, 1]
+        },
+        known: BTreeMap::new(),
+        data: record(&case.data),
+        hold_out: Some(record(&case.hold_out)),
+        band: Band {
+            low_hz: 0.7,
+            high_hz: 20.0,
+        },
+        gravity: generator::G,
+        noise_acc: Some(case.noise[0]),
+        noise_force: Some(case.noise[1]),
+        gain_tolerance: if loose { 0.01 } else { 0.0 },
+        sync_tolerance_s: if loose { 0.0004 } else { 0.0 },
+        corrections: vec![],
+        units: UnitNames::si(),
+    }
+}
+
+/// How an answer compares with the truth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Score {
+    Exact,
+    Abstained,
+    Missed,
+    Partial,
+    False,
+}
+
+/// The rule of `score.py`: families count, `below-detectability` is none.
+pub fn score(case: &Case, outcome: &MotionOutcome) -> Score {
+    let mut named: Vec<String> = match outcome.verdict {
+        Verdict::Named => outcome
+            .effects
+            .iter()
+            .map(|e| e.id.split(':').next().unwrap_or("").to_owned())
+            .collect(),
+        Verdict::Unknown => vec!["unknown".into()],
+        _ => vec!["none".into()],
+    };
+    named.dedup();
+    if named == [case.truth.clone()] {
+        Score::Exact
+    } else if named == ["unknown"] {
+        if case.truth == "none" {
+            Score::False
+        } else {
+            Score::Abstained
+        }
+    } else if named == ["none"] {
+        Score::Missed
+    } else {
+        Score::False
+    }
+}
