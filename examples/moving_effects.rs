@@ -73,7 +73,7 @@ fn main() {
     };
     for background in grounds {
         let mut total = Tally::default();
-        let mut run = |layout: Layout, effect: &str, size: usize, seed: u64, tally: &mut Tally| {
+        let run = |layout: Layout, effect: &str, size: usize, seed: u64, tally: &mut Tally| {
             let case = hide(layout, effect, size, background, seed);
             let start = std::time::Instant::now();
             let Ok(o) = examine(&frame_of(&case), &[]) else {

@@ -62,12 +62,7 @@ pub fn read_vehicle(session: &mut Session, job: &Job) -> Result<VehicleRecords, 
             "State `band_hz` in [vehicle].",
         ));
     }
-    let wish = Wish {
-        model: section.model.clone(),
-        terms: section.terms.clone(),
-        places: section.places.clone(),
-        channels: section.columns.clone(),
-    };
+    let wish = wish_of(section);
     let mut model = vehicle(&wish).map_err(|e| vec![preset_fault(job, section, &e)])?;
     let gravity = job.units.standard_gravity();
     if let Some(change) = &section.mass_change {
@@ -143,6 +138,16 @@ pub fn read_vehicle(session: &mut Session, job: &Job) -> Result<VehicleRecords, 
         data,
         hold_out,
     })
+}
+
+/// What a section asks of its vehicle.
+pub fn wish_of(section: &VehicleJob) -> Wish {
+    Wish {
+        model: section.model.clone(),
+        terms: section.terms.clone(),
+        places: section.places.clone(),
+        channels: section.columns.clone(),
+    }
 }
 
 /// A fault at the line of the job for what the vehicle layer refuses.

@@ -246,7 +246,7 @@ fn late(x: &[f64], delay: f64) -> Vec<f64> {
 /// Hides `effect` of a size (0: small, 1: middle, 2: large) in a truck drawn from `seed`.
 pub fn hide(layout: Layout, effect: &str, size: usize, background: Background, seed: u64) -> Case {
     let mut dice = Dice::of(seed);
-    let n_wheels = if layout == Layout::Rear { 2 } else { 2 };
+    let n_wheels = 2;
     let n_sprung = if layout == Layout::Rear { 1 } else { 2 };
     let of = |three: [f64; 3]| three[size];
     let mut m = Machine {
@@ -392,7 +392,7 @@ pub fn hide(layout: Layout, effect: &str, size: usize, background: Background, s
     let noise = [[0.02, 60.0], [0.04, 100.0]][dice.pick(2)];
     let offsets: Vec<f64> = names.iter().map(|_| 0.05 * dice.normal()).collect();
     let axle_delay = dice.between(0.08, 0.15);
-    let mut record = |seconds: f64, roughness: f64, dice: &mut Dice, changed: bool| {
+    let record = |seconds: f64, roughness: f64, dice: &mut Dice, changed: bool| {
         let mut machine = Machine {
             mass_step: if changed { m.mass_step } else { None },
             sprung: m.sprung.clone(),

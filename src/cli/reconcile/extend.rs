@@ -201,7 +201,7 @@ fn set(table: &mut Table, section: &str, key: &str, value: &str) {
 }
 
 /// Makes every file name of the job relative to the output folder.
-fn redirect(table: &mut Table, prefix: &str) {
+pub(super) fn redirect(table: &mut Table, prefix: &str) {
     const FILE_KEYS: [&str; 8] = [
         "file", "deck", "strain", "zero", "data", "loads", "result", "results",
     ];

@@ -3,6 +3,8 @@
 mod background;
 mod causes;
 mod deck_frame;
+mod dynamic;
+mod dynamic_extend;
 mod extend;
 mod extended_deck;
 mod finer;
@@ -13,7 +15,7 @@ mod static_path;
 mod stiffness;
 mod tables;
 
-use super::fault::{Fault, Faults};
+use super::fault::Faults;
 use super::job::{ReconcilePath, read_job};
 use super::{JobArguments, Session};
 
@@ -30,12 +32,6 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         .map_or(ReconcilePath::Static, |r| r.path)
     {
         ReconcilePath::Static => static_path::run(&job, &arguments.job, session),
-        ReconcilePath::Dynamic => Err(vec![Fault::at(
-            &*job.file,
-            job.reconcile.as_ref().map_or(1, |r| r.line),
-            "reconcile.path",
-            "the dynamic path is not there yet",
-            "write `path = \"static\"`, or use `identify` on the record",
-        )]),
+        ReconcilePath::Dynamic => dynamic::run(&job, &arguments.job, session),
     }
 }

@@ -128,7 +128,9 @@ pub fn with_adjustment(list: &[Adjustment], more: Adjustment) -> Vec<Adjustment>
 
 impl Change {
     /// Shapes of the same kind with the constant a little smaller and larger; empty where there is none to find.
-    pub fn neighbours(&self, step: f64) -> Vec<Self> {
+    ///
+    /// `gravity` is what a change of mass may bring with it.
+    pub fn neighbours(&self, step: f64, gravity: f64) -> Vec<Self> {
         /// Either side of the present constant.
         const SIDES: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
         /// Times of a dense look, to either side.
@@ -157,16 +159,21 @@ impl Change {
                 }
                 varied.then_some(Self::Terms { link: *link, terms })
             }),
-            // The band turns a step into a wave: its time has many near misses, so the first look is dense.
-            Self::Step(m) if m.over_s == 0.0 && step > 0.1 => (-DENSE..=DENSE)
-                .map(|i| {
-                    Self::Step(MassStep {
-                        at_s: m.at_s + f64::from(i) * SPAN_S * 0.0125,
-                        ..*m
+            // The band turns a step into a wave: its time has many near misses, so the first looks are dense.
+            Self::Step(m) if step > 0.05 => (-DENSE..=DENSE)
+                .flat_map(|i| {
+                    let least = if step > 0.1 { 0.15 } else { 0.02 };
+                    let apart = f64::max(least, 0.5 * m.over_s / f64::from(DENSE));
+                    [0.0, gravity].map(|gravity| {
+                        Self::Step(MassStep {
+                            at_s: m.at_s + 0.5 * m.over_s + f64::from(i) * apart,
+                            over_s: 0.0,
+                            gravity,
+                            ..*m
+                        })
                     })
                 })
                 .collect(),
-            Self::Step(m) if m.over_s == 0.0 && step > 0.01 => vec![],
             Self::Step(m) => {
                 let mut out = vary(&|s| {
                     Some(Self::Step(MassStep {

@@ -14,7 +14,7 @@ use super::outcome::{MotionEffect, MotionOutcome};
 use super::scorer::MotionScorer;
 use crate::reconcile::outcome::{Gap, Rival, Verdict};
 use crate::reconcile::search::{Breadth, Scored, search, settle};
-use crate::vehicle::motion::{Adjustment, VehicleError};
+use crate::vehicle::motion::VehicleError;
 use crate::vehicle::term::UnitNames;
 
 /// Log evidence that an effect must bring to be named.
@@ -170,22 +170,26 @@ fn judged(
             0.0
         }
     };
-    // Members that close next to nothing are dropped.
+    // A set with a member that closes next to nothing isn't named.
     let material = if frame.is_loose() || blind {
         MATERIAL_LOOSE
     } else {
         MATERIAL
     };
-    loop {
-        let whole = closed(&best.fit);
-        let weak = best.set.iter().copied().find_map(|member| {
-            let rest: Vec<usize> = best.set.iter().copied().filter(|m| *m != member).collect();
-            let without = all.iter().find(|s| s.set == rest)?;
-            (whole - closed(&without.fit) < material).then(|| without.clone())
-        });
-        match weak {
-            Some(without) => best = without,
-            None => break,
+    let all_material = |s: &Scored<MotionFit>| {
+        let whole = closed(&s.fit);
+        s.set.iter().all(|member| {
+            let rest: Vec<usize> = s.set.iter().copied().filter(|m| m != member).collect();
+            all.iter()
+                .find(|s| s.set == rest)
+                .is_none_or(|without| whole - closed(&without.fit) >= material)
+        })
+    };
+    if !all_material(&best) {
+        let rest: Vec<Scored<MotionFit>> =
+            all.iter().filter(|s| all_material(s)).cloned().collect();
+        if let Some(b) = settle(&rest, DECISIVE) {
+            best = b;
         }
     }
     let chi_null = by_noise(scorer, &null);
@@ -219,6 +223,7 @@ fn judged(
         before: before.as_ref().map_or(f64::NAN, |g| g.gap),
         after: after.as_ref().map_or(f64::NAN, |g| g.gap),
         floor: after.as_ref().or(before.as_ref()).map_or(f64::NAN, |g| g.floor),
+        mesh: 0.0,
     };
     // What was named must show on data that it was not fitted to.
     let proven = gap.after < gap.before
@@ -250,6 +255,7 @@ fn judged(
             vec![]
         },
         best_attempt: attempt,
+        corrections: adjustments(frame, &best.fit.parts),
         rivals,
         evidence,
         gap,
@@ -269,7 +275,6 @@ fn broken_effect(b: &BrokenChannel) -> MotionEffect {
         change: Change::Gain {
             channel: b.channel.clone(),
         },
-        correction: None,
         size: vec![b.measured],
         sigma: vec![f64::NAN],
         unit: String::new(),
@@ -280,7 +285,6 @@ fn broken_effect(b: &BrokenChannel) -> MotionEffect {
 /// The effects of a fit in words and numbers.
 fn named(scorer: &MotionScorer, fit: &MotionFit) -> Vec<MotionEffect> {
     let parameters = fit.assembled.vehicle.parameters();
-    let adjust = adjustments(scorer.frame, &fit.parts);
     fit.parts
         .iter()
         .enumerate()
@@ -298,8 +302,6 @@ fn named(scorer: &MotionScorer, fit: &MotionFit) -> Vec<MotionEffect> {
             };
             MotionEffect {
                 id: c.id.clone(),
-                correction: channel_of(&p.shape)
-                    .and_then(|n| adjust.iter().find(|a| a.channel == *n).cloned()),
                 place,
                 change: p.shape.clone(),
                 sigma: fit.sizes[i].iter().map(|s| s[1]).collect(),
@@ -309,15 +311,6 @@ fn named(scorer: &MotionScorer, fit: &MotionFit) -> Vec<MotionEffect> {
             }
         })
         .collect()
-}
-
-fn channel_of(shape: &Change) -> Option<&String> {
-    match shape {
-        Change::Gain { channel } | Change::Delay { channel } | Change::Flip { channel } => {
-            Some(channel)
-        }
-        _ => None,
-    }
 }
 
 /// Unit of a quantity; a share of the reference mass where no force sets the scale.
@@ -428,9 +421,4 @@ fn next_measurement(scorer: &MotionScorer, verdict: Verdict, rivals: &[Rival]) -
         }
         _ => "A rougher road or longer record would show smaller effects.".into(),
     }
-}
-
-/// A correction as the job holds it: gain and delay.
-pub fn correction(e: &MotionEffect) -> Option<&Adjustment> {
-    e.correction.as_ref()
 }

@@ -14,8 +14,6 @@ pub struct MotionEffect {
     pub place: Option<String>,
     /// What it changes.
     pub change: Change,
-    /// Correction of the channel, for a channel at fault.
-    pub correction: Option<Adjustment>,
     /// Sizes of its parameters.
     pub size: Vec<f64>,
     /// One sd of each.
@@ -35,6 +33,8 @@ pub struct MotionOutcome {
     pub effects: Vec<MotionEffect>,
     /// What came closest.
     pub best_attempt: Vec<MotionEffect>,
+    /// Corrections of channels with the named effects in: those of the job and those found.
+    pub corrections: Vec<Adjustment>,
     /// Other explanations, nearest first.
     pub rivals: Vec<Rival>,
     /// Log evidence of the best set less that of no effect.

@@ -86,7 +86,7 @@ impl MotionScorer<'_> {
                 if settled.contains(&best.parts[i].candidate) {
                     continue;
                 }
-                let varied = best.parts[i].shape.neighbours(*step);
+                let varied = best.parts[i].shape.neighbours(*step, self.frame.gravity);
                 let Some((shape, _)) = self.best_of(&best, i, &varied) else {
                     continue;
                 };

@@ -35,48 +35,6 @@ fn rear(r: &Readings) -> Channels {
     ])
 }
 
-fn whole(r: &Readings) -> Channels {
-    let corners = ["lf", "rf", "lm", "rm", "lr", "rr"];
-    let mut list = Vec::new();
-    for (i, c) in corners.iter().enumerate() {
-        for (prefix, samples) in [
-            ("a_body_", &r.body[i]),
-            ("a_", &r.hub[i]),
-            ("f_", &r.force[i]),
-        ] {
-            list.push(Channel {
-                name: format!("{prefix}{c}"),
-                unit: String::new(),
-                samples: samples.clone(),
-            });
-        }
-    }
-    Channels::from_list(RATE_HZ, list).unwrap()
-}
-
-fn full3() -> Question {
-    let truck = roll_off();
-    let mut places = BTreeMap::new();
-    for (axle, letter) in truck.axles.iter().zip(["f", "m", "r"]) {
-        for (side, sign) in [("l", 1.0), ("r", -1.0)] {
-            places.insert(format!("{side}{letter}"), [axle.x, sign * axle.half_track]);
-            places.insert(
-                format!("spring_{side}{letter}"),
-                [axle.x, sign * axle.half_spring],
-            );
-        }
-    }
-    let wish = Wish {
-        model: "full3".into(),
-        places,
-        ..Wish::default()
-    };
-    Question {
-        vehicle: vehicle(&wish).unwrap(),
-        ..question("front2", &[], (0.7, 10.0))
-    }
-}
-
 /// 64 s at 11 m/s to fit, 24 s on another road at 16 m/s to judge; noise 0.05 m/s2 and 100 N.
 fn drives() -> &'static (Readings, Readings) {
     static DRIVES: OnceLock<(Readings, Readings)> = OnceLock::new();

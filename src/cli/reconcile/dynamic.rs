@@ -1,0 +1,378 @@
+//! The dynamic path: record and vehicle, verdict, tables, page, extended job.
+
+use super::dynamic_extend;
+use crate::cli::Session;
+use crate::cli::fault::Faults;
+use crate::cli::job::{Job, Vehicle as VehicleJob};
+use crate::cli::vehicle::{VehicleRecords, read_vehicle, vehicle_fault, wish_of};
+use crate::finding::{Finding, Severity};
+use crate::reconcile::motion::gap::RecordGap;
+use crate::reconcile::motion::{MotionEffect, MotionFrame, MotionOutcome, examine};
+use crate::reconcile::{Rival, Verdict};
+use crate::report::strain::{Section, page, table_section};
+use crate::vehicle::identify::{Question, identify};
+use crate::vehicle::layout::Vehicle;
+use crate::vehicle::preset::{Wish, vehicle};
+use serde_json::{Value, json};
+use std::fmt::Write;
+use std::path::Path;
+
+pub(super) fn run(job: &Job, path: &Path, session: &mut Session) -> Result<(), Faults> {
+    let records = session.stage("read", |s| read_vehicle(s, job))?;
+    let Some(section) = &job.vehicle else {
+        return Ok(());
+    };
+    let frame = frame(section, &records);
+    let only = job
+        .reconcile
+        .as_ref()
+        .and_then(|r| r.effects.clone())
+        .unwrap_or_default();
+    let outcome = session
+        .stage("search", |_| examine(&frame, &only))
+        .map_err(|e| vec![vehicle_fault(job, &section.data.given, &e)])?;
+    let wheels = session.stage("wheel forces", |_| {
+        wheel_forces(&records, &frame, &outcome)
+    });
+    put(session, &outcome, &wheels)?;
+    findings(session, &outcome);
+    let extended = if outcome.verdict == Verdict::Named && repairable(&outcome) {
+        Some(dynamic_extend::write(
+            job, path, session, &frame, &outcome,
+        )?)
+    } else {
+        None
+    };
+    session.put("extended_model", extended)?;
+    write_tables(job, path, session, &outcome, &wheels)?;
+    say(session, &outcome);
+    Ok(())
+}
+
+/// A dead channel can't be put right by a model.
+fn repairable(outcome: &MotionOutcome) -> bool {
+    outcome
+        .effects
+        .iter()
+        .all(|e| !e.id.starts_with("dead_channel") && !e.id.starts_with("saturated_channel"))
+}
+
+/// The frame of a job: one side of an axle is compared, the other is a witness where it was measured.
+fn frame(section: &VehicleJob, records: &VehicleRecords) -> MotionFrame {
+    let q = &records.question;
+    let mut model = q.vehicle.clone();
+    let witnessed = ["a_body_other", "a_wheel_other"].iter().all(|c| {
+        let name = section.columns.get(*c).map_or(*c, String::as_str);
+        records.data.has(name) && records.hold_out.as_ref().is_none_or(|h| h.has(name))
+    });
+    if section.model == "front2" && witnessed {
+        let wish = Wish {
+            model: "front_pair".into(),
+            ..wish_of(section)
+        };
+        if let Ok(pair) = vehicle(&wish) {
+            model = Vehicle {
+                steps: model.steps.clone(),
+                ..pair
+            };
+        }
+    }
+    let bodies = if model.name == "front_pair" {
+        vec![0, 1]
+    } else {
+        (0..model.bodies.len()).collect()
+    };
+    MotionFrame {
+        bodies,
+        vehicle: model,
+        known: q.known.clone(),
+        data: records.data.clone(),
+        hold_out: records.hold_out.clone(),
+        band: q.band,
+        gravity: q.gravity,
+        noise_acc: section.noise_acc,
+        noise_force: section.noise_force,
+        gain_tolerance: q.gain_tolerance,
+        sync_tolerance_s: q.sync_tolerance_s,
+        corrections: q.corrections.clone(),
+        units: q.units.clone(),
+    }
+}
+
+/// Misfit of each measured wheel force, without and with the effects in, as `identify` leaves it on held-out data.
+fn wheel_forces(
+    records: &VehicleRecords,
+    frame: &MotionFrame,
+    outcome: &MotionOutcome,
+) -> Vec<(String, f64, Option<f64>)> {
+    let misfits = |q: &Question| -> Vec<(String, f64)> {
+        identify(q, &records.data, records.hold_out.as_ref())
+            .map(|id| {
+                id.fit
+                    .iter()
+                    .filter(|f| id.vehicle.wheels.iter().any(|w| w.channel == f.channel))
+                    .map(|f| (f.channel.clone(), f.relative_rms))
+                    .collect()
+            })
+            .unwrap_or_default()
+    };
+    let before = misfits(&records.question);
+    let after = (outcome.verdict == Verdict::Named && repairable(outcome)).then(|| {
+        let q = Question {
+            vehicle: outcome
+                .after
+                .as_ref()
+                .map_or_else(|| frame.vehicle.clone(), |g| g.vehicle.clone()),
+            corrections: outcome.corrections.clone(),
+            ..records.question.clone()
+        };
+        misfits(&q)
+    });
+    before
+        .into_iter()
+        .map(|(name, b)| {
+            let a = after
+                .as_ref()
+                .and_then(|a| a.iter().find(|x| x.0 == name).map(|x| x.1));
+            (name, b, a)
+        })
+        .collect()
+}
+
+fn effect_json(e: &MotionEffect) -> Value {
+    let first = |v: &[f64]| v.first().copied().filter(|x| x.is_finite());
+    json!({
+        "id": e.id,
+        "where": e.place,
+        "size": first(&e.size),
+        "sigma": first(&e.sigma),
+        "unit": e.unit,
+        "sizes": e.size,
+        "sigmas": e.sigma,
+        "plausible": e.plausible,
+    })
+}
+
+fn rival_json(r: &Rival) -> Value {
+    let place = |id: &String| id.split_once(':').map(|p| p.1.to_owned());
+    json!({
+        "id": r.ids.join(" + "),
+        "where": r.ids.iter().filter_map(place).collect::<Vec<_>>().join(" + "),
+        "evidence_difference": r.evidence_difference,
+        "gap_after": r.gap_after,
+        "indistinguishable": r.indistinguishable,
+    })
+}
+
+fn put(
+    session: &mut Session,
+    outcome: &MotionOutcome,
+    wheels: &[(String, f64, Option<f64>)],
+) -> Result<(), Faults> {
+    let ids: Vec<&str> = outcome.effects.iter().map(|e| e.id.as_str()).collect();
+    session.put("verdict", outcome.verdict.word())?;
+    session.put("named", ids)?;
+    let list = |e: &[MotionEffect]| e.iter().map(effect_json).collect::<Vec<_>>();
+    session.put("effects", list(&outcome.effects))?;
+    session.put("best_attempt", list(&outcome.best_attempt))?;
+    session.put(
+        "rivals",
+        outcome.rivals.iter().map(rival_json).collect::<Vec<_>>(),
+    )?;
+    session.put(
+        "gap",
+        json!({
+            "metric": "RMS of the equations' residual / RMS of the measured quantity (wheel force, mass times acceleration), in band, \
+                       on held-out data, root mean square over equations",
+            "before": outcome.gap.before,
+            "after": outcome.gap.after,
+            "floor": outcome.gap.floor,
+            "explained_share": outcome.gap.explained_share(),
+        }),
+    )?;
+    session.put("evidence", outcome.evidence)?;
+    let [before, after] = outcome.reduced_chi2;
+    session.put("reduced_chi2", json!({ "before": before, "after": after }))?;
+    session.put("remains", &outcome.remains)?;
+    session.put("next_measurement", &outcome.next_measurement)?;
+    let forces: Vec<Value> = wheels
+        .iter()
+        .map(|(n, b, a)| json!({ "channel": n, "before": b, "after": a }))
+        .collect();
+    session.put("wheel_force", forces)
+}
+
+fn findings(session: &mut Session, outcome: &MotionOutcome) {
+    if outcome.verdict == Verdict::Unknown {
+        session.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "gap-unexplained",
+                "model",
+                format!(
+                    "There is a gap that nothing in the library closes. {}",
+                    outcome.remains
+                ),
+                outcome.next_measurement.clone(),
+            )
+            .with_numbers(outcome.reduced_chi2[1], 1.0),
+        );
+    }
+    if outcome.verdict == Verdict::Named {
+        for r in outcome.rivals.iter().filter(|r| r.indistinguishable) {
+            session.findings.push(
+                Finding::new(
+                    Severity::Warning,
+                    "rival",
+                    r.ids.join(" + "),
+                    "Explains these data as well as what was named.",
+                    outcome.next_measurement.clone(),
+                )
+                .with_numbers(r.evidence_difference, 3.0),
+            );
+        }
+    }
+}
+
+/// `gap.csv` and `gap_bands.csv`, and the page.
+fn write_tables(
+    job: &Job,
+    path: &Path,
+    session: &mut Session,
+    outcome: &MotionOutcome,
+    wheels: &[(String, f64, Option<f64>)],
+) -> Result<(), Faults> {
+    let mut gap = String::from("equation,before,after,floor\n");
+    let mut bands = String::from("equation,up_to_hz,before,after\n");
+    let mut rows = Vec::new();
+    let after_of = |name: &str, g: &Option<RecordGap>| {
+        g.as_ref()
+            .and_then(|g| g.equations.iter().find(|e| e.name == name).cloned())
+    };
+    for e in outcome.before.iter().flat_map(|g| &g.equations) {
+        let after = after_of(&e.name, &outcome.after);
+        let left = after.as_ref().map_or(f64::NAN, |a| a.gap);
+        let _ = writeln!(gap, "{},{:.6},{left:.6},{:.6}", e.name, e.gap, e.floor);
+        rows.push(vec![
+            e.name.clone(),
+            format!("{:.2}", 100.0 * e.gap),
+            format!("{:.2}", 100.0 * left),
+            format!("{:.2}", 100.0 * e.floor),
+        ]);
+        for (i, b) in e.by_band.iter().enumerate() {
+            let a = after
+                .as_ref()
+                .and_then(|a| a.by_band.get(i))
+                .map_or(f64::NAN, |a| a[1]);
+            let _ = writeln!(bands, "{},{:.3},{:.6},{a:.6}", e.name, b[0], b[1]);
+        }
+    }
+    let effects: Vec<Vec<String>> = outcome
+        .best_attempt
+        .iter()
+        .map(|e| {
+            let sizes: Vec<String> = e
+                .size
+                .iter()
+                .zip(&e.sigma)
+                .map(|(v, s)| format!("{v:.5e} +- {s:.1e}"))
+                .collect();
+            vec![e.id.clone(), sizes.join(", "), e.unit.clone()]
+        })
+        .collect();
+    let rivals: Vec<Vec<String>> = outcome
+        .rivals
+        .iter()
+        .map(|r| {
+            vec![
+                r.ids.join(" + "),
+                format!("{:.1}", r.evidence_difference),
+                format!("{:.2}", 100.0 * r.gap_after),
+            ]
+        })
+        .collect();
+    let forces: Vec<Vec<String>> = wheels
+        .iter()
+        .map(|(n, b, a)| {
+            vec![
+                n.clone(),
+                format!("{:.2}", 100.0 * b),
+                a.map_or("-".into(), |a| format!("{:.2}", 100.0 * a)),
+            ]
+        })
+        .collect();
+    let verdict = format!(
+        "Verdict: {}. {} {}",
+        outcome.verdict.word(),
+        outcome.remains,
+        outcome.next_measurement
+    );
+    let sections: Vec<Section> = vec![
+        table_section(
+            "Gap on held-out data, % of the measured quantity",
+            &["equation", "before", "after", "floor"],
+            &rows,
+            &verdict,
+        ),
+        table_section("Effects", &["effect", "size", "unit"], &effects, ""),
+        table_section(
+            "Other explanations",
+            &["effects", "log evidence behind", "gap after, %"],
+            &rivals,
+            "",
+        ),
+        table_section(
+            "Wheel force, % left over",
+            &["channel", "before", "after"],
+            &forces,
+            "",
+        ),
+    ];
+    let html = page(
+        &job.title,
+        "Where vehicle model and record disagree, and what is missing",
+        &session.findings,
+        sections,
+    );
+    let output = session.output_for(path)?;
+    for (name, text) in [
+        ("gap.csv", gap),
+        ("gap_bands.csv", bands),
+        ("report.html", html),
+    ] {
+        output
+            .write_bytes(name, text.as_bytes())
+            .map_err(|f| vec![f])?;
+    }
+    Ok(())
+}
+
+fn say(session: &mut Session, outcome: &MotionOutcome) {
+    session.say(format!("verdict: {}", outcome.verdict.word()));
+    for e in &outcome.effects {
+        let sizes: Vec<String> = e
+            .size
+            .iter()
+            .zip(&e.sigma)
+            .map(|(v, s)| format!("{v:.5e} +- {s:.1e}"))
+            .collect();
+        session.say(format!("  {} {} {}", e.id, sizes.join(", "), e.unit));
+    }
+    let g = &outcome.gap;
+    session.say(format!(
+        "gap on held-out data: {:.2} % before, {:.2} % after, floor {:.2} %, explained {:.0} %",
+        100.0 * g.before,
+        100.0 * g.after,
+        100.0 * g.floor,
+        100.0 * g.explained_share()
+    ));
+    for r in outcome.rivals.iter().filter(|r| r.indistinguishable) {
+        session.say(format!(
+            "  can't be told from: {} (log evidence {:.1} behind)",
+            r.ids.join(" + "),
+            r.evidence_difference
+        ));
+    }
+    session.say(&outcome.remains);
+    session.say(format!("next measurement: {}", outcome.next_measurement));
+}
