@@ -12,13 +12,28 @@ use strainbridge::reconcile::motion::examine;
 /// Effects with the vehicles they are hidden in.
 const EFFECTS: [(&str, &[Layout]); 14] = [
     ("viscous_damper", &[Layout::Front, Layout::Rear]),
-    ("cubic_stiffness", &[Layout::Front, Layout::FrontAccelerationsOnly, Layout::Rear]),
-    ("coulomb_friction", &[Layout::Front, Layout::FrontAccelerationsOnly, Layout::Rear]),
-    ("bump_stop", &[Layout::Front, Layout::FrontAccelerationsOnly, Layout::Rear]),
-    ("asymmetric_damper", &[Layout::Front, Layout::FrontAccelerationsOnly, Layout::Rear]),
+    (
+        "cubic_stiffness",
+        &[Layout::Front, Layout::FrontAccelerationsOnly, Layout::Rear],
+    ),
+    (
+        "coulomb_friction",
+        &[Layout::Front, Layout::FrontAccelerationsOnly, Layout::Rear],
+    ),
+    (
+        "bump_stop",
+        &[Layout::Front, Layout::FrontAccelerationsOnly, Layout::Rear],
+    ),
+    (
+        "asymmetric_damper",
+        &[Layout::Front, Layout::FrontAccelerationsOnly, Layout::Rear],
+    ),
     ("accel_gain", &[Layout::Front, Layout::Rear]),
     ("sign_flip", &[Layout::Front]),
-    ("time_offset", &[Layout::Front, Layout::FrontAccelerationsOnly, Layout::Rear]),
+    (
+        "time_offset",
+        &[Layout::Front, Layout::FrontAccelerationsOnly, Layout::Rear],
+    ),
     ("axle_coupling", &[Layout::Pair]),
     ("roll_coupling", &[Layout::Pair]),
     ("mass_change", &[Layout::Front, Layout::Rear]),
@@ -65,7 +80,8 @@ fn main() {
     let number = |i: usize, or: u64| args.get(i).and_then(|a| a.parse().ok()).unwrap_or(or);
     let (seeds, controls) = (number(1, 1), number(2, 4));
     let only = args.get(3).cloned().unwrap_or_default();
-    let wanted = |name: &str| only.is_empty() || only == "all" || only.split(',').any(|o| o == name);
+    let wanted =
+        |name: &str| only.is_empty() || only == "all" || only.split(',').any(|o| o == name);
     let grounds = match args.get(4).map(String::as_str) {
         Some("clean") => vec![Background::Clean],
         Some("messy") => vec![Background::Messy],
@@ -121,8 +137,19 @@ fn main() {
         if wanted("none") {
             let mut t = Tally::default();
             for k in 0..controls {
-                let layouts = [Layout::Front, Layout::Rear, Layout::Pair, Layout::FrontAccelerationsOnly];
-                run(layouts[k as usize % 4], "none", 0, number(5, 1000) + k, &mut t);
+                let layouts = [
+                    Layout::Front,
+                    Layout::Rear,
+                    Layout::Pair,
+                    Layout::FrontAccelerationsOnly,
+                ];
+                run(
+                    layouts[k as usize % 4],
+                    "none",
+                    0,
+                    number(5, 1000) + k,
+                    &mut t,
+                );
             }
             t.line(&format!("none {background:?}"));
             total.add(&t);
@@ -135,7 +162,13 @@ fn main() {
             for layout in layouts {
                 for size in 0..3 {
                     for k in 0..seeds {
-                        run(*layout, effect, size, 100 * size as u64 + 10_000 + k, &mut t);
+                        run(
+                            *layout,
+                            effect,
+                            size,
+                            100 * size as u64 + 10_000 + k,
+                            &mut t,
+                        );
                     }
                 }
             }

@@ -36,7 +36,12 @@ fn run(command: &str, job: &Path, out: &Path) -> serde_json::Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-fn examined(layout: Layout, effect: &str, size: usize, background: Background) -> (Score, MotionOutcome) {
+fn examined(
+    layout: Layout,
+    effect: &str,
+    size: usize,
+    background: Background,
+) -> (Score, MotionOutcome) {
     let case = hide(layout, effect, size, background, 7);
     let outcome = examine(&frame_of(&case), &[]).unwrap();
     (score(&case, &outcome), outcome)
@@ -63,7 +68,10 @@ fn shared_cases_get_their_names_and_identify_runs_the_extended_job() {
         assert_eq!(r["named"], serde_json::json!([named]), "{case}");
         let size = r["effects"][0]["size"].as_f64().unwrap();
         assert!((size / truth - 1.0).abs() < 0.02, "{case}: {size}");
-        assert!(r["gap"]["explained_share"].as_f64().unwrap() > 0.95, "{case}");
+        assert!(
+            r["gap"]["explained_share"].as_f64().unwrap() > 0.95,
+            "{case}"
+        );
         let again = run(
             "identify",
             Path::new(r["extended_model"].as_str().unwrap()),
@@ -76,7 +84,10 @@ fn shared_cases_get_their_names_and_identify_runs_the_extended_job() {
             .find(|f| f["channel"] == "f_wheel")
             .unwrap()
             .clone();
-        assert!(wheel["relative_rms"].as_f64().unwrap() < 0.01, "{case}: {wheel}");
+        assert!(
+            wheel["relative_rms"].as_f64().unwrap() < 0.01,
+            "{case}: {wheel}"
+        );
     }
 }
 
@@ -85,7 +96,12 @@ fn controls_are_left_alone_on_clean_and_messy_backgrounds() {
     for background in [Background::Clean, Background::Messy] {
         for layout in [Layout::Front, Layout::Rear] {
             let (s, o) = examined(layout, "none", 0, background);
-            assert_eq!(s, Score::Exact, "{layout:?} {background:?}: {:?}", o.best_attempt);
+            assert_eq!(
+                s,
+                Score::Exact,
+                "{layout:?} {background:?}: {:?}",
+                o.best_attempt
+            );
         }
     }
 }
@@ -95,7 +111,11 @@ fn effects_are_named_with_their_size() {
     let (s, o) = examined(Layout::Front, "coulomb_friction", 1, Background::Clean);
     assert_eq!(s, Score::Exact);
     // 450 N were hidden.
-    assert!((o.effects[0].size[0] / 450.0 - 1.0).abs() < 0.05, "{:?}", o.effects[0].size);
+    assert!(
+        (o.effects[0].size[0] / 450.0 - 1.0).abs() < 0.05,
+        "{:?}",
+        o.effects[0].size
+    );
     assert!(o.gap.explained_share() > 0.95);
     let (s, o) = examined(Layout::Pair, "roll_coupling", 1, Background::Clean);
     assert_eq!(s, Score::Exact, "{:?}", o.best_attempt);

@@ -384,7 +384,8 @@ pub fn motion(
                 .times(|f| Complex64::new(1.0 - fast.gain(f), 0.0));
             let rate = below.times(|f| Complex64::new(0.0, 2.0 * PI * f));
             let joined = |times: i32, slow: &Spectrum, fourier: &mut Fourier| {
-                let whole = Spectrum::sum(&[(1.0, &relative.band_integrated(fast, times)), (1.0, slow)]);
+                let whole =
+                    Spectrum::sum(&[(1.0, &relative.band_integrated(fast, times)), (1.0, slow)]);
                 whole.map_or(vec![], |s| fourier.samples(&s, 1))
             };
             let d = joined(2, &below, &mut fourier);

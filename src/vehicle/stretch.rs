@@ -134,7 +134,11 @@ fn solved(
         .collect();
     let h = 1.0 / rate_hz;
     let size = force.iter().fold(0.0f64, |a, f| a.max(f.abs()));
-    let stiffness: f64 = terms.iter().map(|(c, t)| c * t.basis(1e-6, 0.0)).sum::<f64>() / 1e-6;
+    let stiffness: f64 = terms
+        .iter()
+        .map(|(c, t)| c * t.basis(1e-6, 0.0))
+        .sum::<f64>()
+        / 1e-6;
     if !(size > 0.0 && stiffness.is_finite() && stiffness > 0.0) {
         return None;
     }

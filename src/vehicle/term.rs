@@ -174,7 +174,9 @@ impl Term {
     /// The term as a job writes it, its constant included: [`Term::from_name`] reads it.
     pub fn text(&self) -> String {
         match self {
-            Self::Friction { velocity } if *velocity > 0.0 => format!("coulomb_friction({velocity:.5e})"),
+            Self::Friction { velocity } if *velocity > 0.0 => {
+                format!("coulomb_friction({velocity:.5e})")
+            }
             Self::BumpStop { gap, side } if *gap > 0.0 => {
                 format!("bump_stop({gap:.6e} {})", side.word())
             }

@@ -140,7 +140,11 @@ impl Machine {
             force[3] += pull;
         }
         for b in 0..n {
-            let mut m = if b < s { self.sprung[b] } else { self.unsprung[b - s] };
+            let mut m = if b < s {
+                self.sprung[b]
+            } else {
+                self.unsprung[b - s]
+            };
             if let (0, Some((at, change))) = (b, self.mass_step)
                 && t >= at
             {
@@ -216,7 +220,12 @@ fn drive(m: &Machine, seconds: f64, roughness: f64, delay_s: f64, dice: &mut Dic
                 out.tyres[w].push(tyres[w]);
             }
         }
-        let add = |k: &[f64], w: f64| y.iter().zip(k).map(|(a, b)| a + w * b).collect::<Vec<f64>>();
+        let add = |k: &[f64], w: f64| {
+            y.iter()
+                .zip(k)
+                .map(|(a, b)| a + w * b)
+                .collect::<Vec<f64>>()
+        };
         let k2 = m.rates(&add(&k1, h / 2.0), &at(2 * i + 1), t + h / 2.0).0;
         let k3 = m.rates(&add(&k2, h / 2.0), &at(2 * i + 1), t + h / 2.0).0;
         let k4 = m.rates(&add(&k3, h), &at(2 * i + 2), t + h).0;
@@ -238,7 +247,9 @@ fn late(x: &[f64], delay: f64) -> Vec<f64> {
             let f = u - k;
             let k = k as isize;
             let (a, b, c, d) = (at(k - 1), at(k), at(k + 1), at(k + 2));
-            b + 0.5 * f * (c - a + f * (2.0 * a - 5.0 * b + 4.0 * c - d + f * (3.0 * (b - c) + d - a)))
+            b + 0.5
+                * f
+                * (c - a + f * (2.0 * a - 5.0 * b + 4.0 * c - d + f * (3.0 * (b - c) + d - a)))
         })
         .collect()
 }
@@ -252,7 +263,11 @@ pub fn hide(layout: Layout, effect: &str, size: usize, background: Background, s
     let mut m = Machine {
         sprung: vec![],
         unsprung: vec![],
-        hangs_on: if n_sprung == 1 { vec![0, 0] } else { vec![0, 1] },
+        hangs_on: if n_sprung == 1 {
+            vec![0, 0]
+        } else {
+            vec![0, 1]
+        },
         laws: vec![],
         tyre_k: vec![],
         tyre_c: vec![],
@@ -264,7 +279,8 @@ pub fn hide(layout: Layout, effect: &str, size: usize, background: Background, s
     let heavy = if n_sprung == 1 { 1.6 } else { 1.0 };
     let first = heavy * dice.between(2600.0, 3400.0);
     for i in 0..n_sprung {
-        m.sprung.push(first * if i == 0 { 1.0 } else { dice.between(0.9, 1.1) });
+        m.sprung
+            .push(first * if i == 0 { 1.0 } else { dice.between(0.9, 1.1) });
     }
     for w in 0..n_wheels {
         m.unsprung.push(dice.between(900.0, 1300.0));
@@ -301,14 +317,22 @@ pub fn hide(layout: Layout, effect: &str, size: usize, background: Background, s
         Layout::FrontAccelerationsOnly => vec!["a_body", "a_wheel"],
         _ => vec!["a_body", "a_wheel", "f_wheel"],
     };
-    let link = if layout == Layout::Rear { dice.pick(2) } else { 0 };
+    let link = if layout == Layout::Rear {
+        dice.pick(2)
+    } else {
+        0
+    };
     let mut channel = None;
     let mut terms: Vec<String> = match layout {
         Layout::Rear => ["k_sm", "c_sm", "k_sr", "c_sr"].map(String::from).to_vec(),
         _ => ["k_s", "c_s"].map(String::from).to_vec(),
     };
     // Both sides of an axle are built alike.
-    let laws: Vec<usize> = if n_sprung == 2 { vec![0, 1] } else { vec![link] };
+    let laws: Vec<usize> = if n_sprung == 2 {
+        vec![0, 1]
+    } else {
+        vec![link]
+    };
     let k = m.laws[link].k;
     let c = m.laws[link].c;
     let mut truth = effect.to_owned();

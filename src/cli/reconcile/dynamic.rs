@@ -31,15 +31,11 @@ pub(super) fn run(job: &Job, path: &Path, session: &mut Session) -> Result<(), F
     let outcome = session
         .stage("search", |_| examine(&frame, &only))
         .map_err(|e| vec![vehicle_fault(job, &section.data.given, &e)])?;
-    let wheels = session.stage("wheel forces", |_| {
-        wheel_forces(&records, &frame, &outcome)
-    });
+    let wheels = session.stage("wheel forces", |_| wheel_forces(&records, &frame, &outcome));
     put(session, &outcome, &wheels)?;
     findings(session, &outcome);
     let extended = if outcome.verdict == Verdict::Named && repairable(&outcome) {
-        Some(dynamic_extend::write(
-            job, path, session, &frame, &outcome,
-        )?)
+        Some(dynamic_extend::write(job, path, session, &frame, &outcome)?)
     } else {
         None
     };

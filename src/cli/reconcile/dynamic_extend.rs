@@ -25,8 +25,7 @@ pub(super) fn write(
         .inputs
         .read_text(Path::new(""), &job.file)
         .map_err(|f| vec![f])?;
-    let malformed =
-        |what: String| vec![Fault::of(&*job.file, "job", what, "write valid TOML")];
+    let malformed = |what: String| vec![Fault::of(&*job.file, "job", what, "write valid TOML")];
     let mut table: Table = text
         .parse()
         .map_err(|e: toml::de::Error| malformed(e.to_string()))?;

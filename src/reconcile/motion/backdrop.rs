@@ -58,8 +58,7 @@ pub fn of_fit(frame: &MotionFrame, fit: &MotionFit) -> Background {
 fn of_rows(frame: &MotionFrame, null: &MotionFit, rows: &[f64]) -> Background {
     let colour = null.whitener.coloured(rows);
     let h = responses(&null.design, &null.values);
-    let sensor: Vec<Vec<Complex64>> =
-        covariance(frame, &null.design, &h, &Background::default());
+    let sensor: Vec<Vec<Complex64>> = covariance(frame, &null.design, &h, &Background::default());
     background(frame, &null.design, &colour, &sensor)
 }
 
@@ -69,11 +68,7 @@ pub fn power(b: &Background) -> f64 {
 }
 
 /// A fit again under another background.
-pub fn again(
-    scorer: &MotionScorer,
-    old: &MotionFit,
-    background: &Background,
-) -> Option<MotionFit> {
+pub fn again(scorer: &MotionScorer, old: &MotionFit, background: &Background) -> Option<MotionFit> {
     fit(
         scorer.frame,
         scorer.candidates,

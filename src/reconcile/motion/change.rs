@@ -102,7 +102,10 @@ pub fn assemble(base: &Vehicle, changes: &[&Change]) -> Assembled {
     }
     kept.extend((0..base.steps.len()).map(|s| vehicle.step_index(s)));
     Assembled {
-        own: places.iter().map(|o| o.iter().map(index).collect()).collect(),
+        own: places
+            .iter()
+            .map(|o| o.iter().map(index).collect())
+            .collect(),
         base: kept,
         vehicle,
     }
@@ -139,7 +142,9 @@ impl Change {
         const FINEST: f64 = 0.005;
         /// Seconds that a step of one stands for in the time of a change of mass.
         const SPAN_S: f64 = 12.0;
-        let vary = |make: &dyn Fn(f64) -> Option<Self>| SIDES.iter().filter_map(|s| make(s * step)).collect();
+        let vary = |make: &dyn Fn(f64) -> Option<Self>| {
+            SIDES.iter().filter_map(|s| make(s * step)).collect()
+        };
         match self {
             Self::Terms { link, terms } if step > FINEST => vary(&|s| {
                 let mut terms = terms.clone();

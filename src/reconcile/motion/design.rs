@@ -160,7 +160,11 @@ impl Design {
             .map(|e| {
                 let mut r: Bins = e.target.iter().map(|t| -t).collect();
                 for (i, column) in &e.columns {
-                    let v = values.get(*i).copied().filter(|v| v.is_finite()).unwrap_or(0.0);
+                    let v = values
+                        .get(*i)
+                        .copied()
+                        .filter(|v| v.is_finite())
+                        .unwrap_or(0.0);
                     if v != 0.0 {
                         r.iter_mut().zip(column).for_each(|(r, c)| *r += c * v);
                     }

@@ -62,8 +62,16 @@ pub fn examine(frame: &MotionFrame, only: &[String]) -> Result<MotionOutcome, Ve
     )?;
     let candidates = library(frame, &first.motion, only);
     let none = Background::default();
-    let null = fit(frame, &candidates, &frame.data, vec![], None, &none, Effort::Settled)
-        .ok_or_else(|| VehicleError::NoEquation(frame.vehicle.name.clone()))?;
+    let null = fit(
+        frame,
+        &candidates,
+        &frame.data,
+        vec![],
+        None,
+        &none,
+        Effort::Settled,
+    )
+    .ok_or_else(|| VehicleError::NoEquation(frame.vehicle.name.clone()))?;
     let mut scorer = MotionScorer {
         frame,
         candidates: &candidates,
@@ -222,12 +230,15 @@ fn judged(
     let gap = Gap {
         before: before.as_ref().map_or(f64::NAN, |g| g.gap),
         after: after.as_ref().map_or(f64::NAN, |g| g.gap),
-        floor: after.as_ref().or(before.as_ref()).map_or(f64::NAN, |g| g.floor),
+        floor: after
+            .as_ref()
+            .or(before.as_ref())
+            .map_or(f64::NAN, |g| g.floor),
         mesh: 0.0,
     };
     // What was named must show on data that it was not fitted to.
-    let proven = gap.after < gap.before
-        && (gap.explained_share() > PROVEN || gap.before < 1.2 * gap.floor);
+    let proven =
+        gap.after < gap.before && (gap.explained_share() > PROVEN || gap.before < 1.2 * gap.floor);
     let verdict = if !broken.is_empty() {
         Verdict::Named
     } else if !best.set.is_empty() && evidence > DECISIVE && adequate && proven {
@@ -245,7 +256,13 @@ fn judged(
         broken.iter().map(broken_effect).collect()
     };
     let rivals = rivals(scorer, &best, &all);
-    let remains = remains(verdict, chi, after_left, floor, after.as_ref().or(before.as_ref()));
+    let remains = remains(
+        verdict,
+        chi,
+        after_left,
+        floor,
+        after.as_ref().or(before.as_ref()),
+    );
     let next_measurement = next_measurement(scorer, verdict, &rivals);
     Ok(MotionOutcome {
         verdict,
@@ -298,7 +315,9 @@ fn named(scorer: &MotionScorer, fit: &MotionFit) -> Vec<MotionEffect> {
                 _ => fit.assembled.own[i]
                     .first()
                     .and_then(|&k| parameters.get(k))
-                    .map_or_else(String::new, |q| unit_of(scorer.frame, &scorer.frame.units, fit, q.quantity)),
+                    .map_or_else(String::new, |q| {
+                        unit_of(scorer.frame, &scorer.frame.units, fit, q.quantity)
+                    }),
             };
             MotionEffect {
                 id: c.id.clone(),

@@ -284,7 +284,10 @@ pub fn fit(
         };
         let free: Vec<usize> = (0..held.len())
             .filter(|&i| {
-                held[i].is_none() && d.equations.iter().any(|e| e.columns.iter().any(|c| c.0 == i))
+                held[i].is_none()
+                    && d.equations
+                        .iter()
+                        .any(|e| e.columns.iter().any(|c| c.0 == i))
             })
             .collect();
         let mut columns: Vec<PriorColumn> = free
@@ -348,14 +351,25 @@ pub fn fit(
         }
         let done = values.is_some()
             && moved < 1.0
-            && last
-                .as_ref()
-                .is_some_and(|l| (l.chi2 - s.chi2).abs() < 2e-4 * s.chi2 && (!nonlinear || round > anew));
+            && last.as_ref().is_some_and(|l| {
+                (l.chi2 - s.chi2).abs() < 2e-4 * s.chi2 && (!nonlinear || round > anew)
+            });
         let was_even = values.is_none();
         values = Some(new.clone());
         if !was_even {
             last = Some(finish(
-                &assembled, &parts, new, &free, &faults, s, d, h, whitener, columns, rows.len(), &extra,
+                &assembled,
+                &parts,
+                new,
+                &free,
+                &faults,
+                s,
+                d,
+                h,
+                whitener,
+                columns,
+                rows.len(),
+                &extra,
             ));
         }
         if done {
@@ -503,12 +517,9 @@ fn plausible(frame: &MotionFrame, candidates: &[Candidate], fit: &MotionFit) -> 
         };
         match &p.shape {
             Change::Gain { .. } => {
-                (x - 1.0).abs() > BEYOND * frame.gain_tolerance
-                    && (0.5..2.0).contains(x)
+                (x - 1.0).abs() > BEYOND * frame.gain_tolerance && (0.5..2.0).contains(x)
             }
-            Change::Delay { .. } => {
-                x.abs() > BEYOND * frame.sync_tolerance_s && x.abs() < 0.15
-            }
+            Change::Delay { .. } => x.abs() > BEYOND * frame.sync_tolerance_s && x.abs() < 0.15,
             // More than half of the body doesn't come or go; nor can a record tell its part from the whole.
             Change::Step(s) => {
                 let m = fit.values[fit.assembled.vehicle.inertia_index(s.body, 0, 0)];

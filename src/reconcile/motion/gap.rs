@@ -96,8 +96,7 @@ fn floors(frame: &MotionFrame, d: &Design, values: &[f64], with_tolerances: bool
                         let w = 2.0 * std::f64::consts::PI * d.f_hz[k];
                         let size = (h[i][c][k] * b).norm_sqr();
                         loose += size
-                            * (frame.gain_tolerance.powi(2)
-                                + (frame.sync_tolerance_s * w).powi(2));
+                            * (frame.gain_tolerance.powi(2) + (frame.sync_tolerance_s * w).powi(2));
                     }
                 }
             }
@@ -112,10 +111,7 @@ fn floors(frame: &MotionFrame, d: &Design, values: &[f64], with_tolerances: bool
 /// A mass that changed during the fitted record is taken as present or absent in another one, whichever fits.
 pub fn record_gap(frame: &MotionFrame, fit: &MotionFit, record: &Channels) -> Option<RecordGap> {
     let values = plain_values(frame, fit);
-    let stepped = fit
-        .parts
-        .iter()
-        .any(|p| matches!(p.shape, Change::Step(_)));
+    let stepped = fit.parts.iter().any(|p| matches!(p.shape, Change::Step(_)));
     let own = std::ptr::eq(record, &frame.data);
     if !stepped || own {
         return gap_with(frame, fit, record, &fit.assembled.vehicle, &values);
@@ -166,7 +162,8 @@ fn gap_with(
         });
     }
     let mean = |of: &dyn Fn(&EquationGap) -> f64| {
-        (equations.iter().map(|e| of(e).powi(2)).sum::<f64>() / equations.len().max(1) as f64).sqrt()
+        (equations.iter().map(|e| of(e).powi(2)).sum::<f64>() / equations.len().max(1) as f64)
+            .sqrt()
     };
     Some(RecordGap {
         gap: mean(&|e| e.gap),

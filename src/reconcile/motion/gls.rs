@@ -34,7 +34,10 @@ pub fn solved(columns: &[PriorColumn], target: &[f64]) -> Solved {
     for (i, column) in all.iter_mut().enumerate() {
         for &p in &priors {
             column.push(if p == i {
-                1.0 / columns[i].prior.unwrap_or(f64::INFINITY).max(f64::MIN_POSITIVE)
+                1.0 / columns[i]
+                    .prior
+                    .unwrap_or(f64::INFINITY)
+                    .max(f64::MIN_POSITIVE)
             } else {
                 0.0
             });

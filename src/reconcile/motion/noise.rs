@@ -44,8 +44,8 @@ pub fn covariance(
         .map(|c| match c.noise {
             Some(s) => s * s / design.thinning,
             None => {
-                let mean = c.bins.iter().map(|b| b.norm_sqr()).sum::<f64>()
-                    / c.bins.len().max(1) as f64;
+                let mean =
+                    c.bins.iter().map(|b| b.norm_sqr()).sum::<f64>() / c.bins.len().max(1) as f64;
                 UNDECLARED * UNDECLARED * mean
             }
         })

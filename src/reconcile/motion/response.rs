@@ -9,7 +9,13 @@ use std::f64::consts::PI;
 /// `[equation][channel][bin]`, in the order of the design's equations and channels; nonlinear terms by their mean slope.
 pub fn responses(design: &Design, values: &[f64]) -> Vec<Vec<Vec<Complex64>>> {
     let v = &design.vehicle;
-    let value = |i: usize| values.get(i).copied().filter(|x| x.is_finite()).unwrap_or(0.0);
+    let value = |i: usize| {
+        values
+            .get(i)
+            .copied()
+            .filter(|x| x.is_finite())
+            .unwrap_or(0.0)
+    };
     // Share of each sensor in each motion of its body.
     let weights: Vec<Option<Vec<Vec<f64>>>> = (0..v.bodies.len())
         .map(|b| {
@@ -91,9 +97,7 @@ pub fn responses(design: &Design, values: &[f64]) -> Vec<Vec<Vec<Complex64>>> {
                             let w = 2.0 * PI * f;
                             let link: Complex64 = paths
                                 .iter()
-                                .map(|(g, [k, c, b])| {
-                                    Complex64::new(b - k / (w * w), -c / w) * *g
-                                })
+                                .map(|(g, [k, c, b])| Complex64::new(b - k / (w * w), -c / w) * *g)
                                 .sum();
                             // Signals of displacement sensors are accelerations by now.
                             link + inertia

@@ -3,7 +3,9 @@
 use super::candidate::Candidate;
 use super::change::{Change, assemble};
 use super::design::{Design, design};
-use super::fit::{Effort, MotionFit, Part, adjustments, fault_column, fit, parameter_column, slices};
+use super::fit::{
+    Effort, MotionFit, Part, adjustments, fault_column, fit, parameter_column, slices,
+};
 use super::frame::MotionFrame;
 use super::gls::Basis;
 use super::noise::Background;
@@ -122,7 +124,9 @@ impl MotionScorer<'_> {
             values[to] = now.values[old];
         }
         for (to, old) in all.own.iter().zip(&now.assembled.own) {
-            to.iter().zip(old).for_each(|(&t, &o)| values[t] = now.values[o]);
+            to.iter()
+                .zip(old)
+                .for_each(|(&t, &o)| values[t] = now.values[o]);
         }
         let adjust = adjustments(self.frame, &now.parts);
         let slow = slow_stretches(&all.vehicle, &values, &self.frame.data, &adjust);
@@ -182,7 +186,10 @@ impl MotionScorer<'_> {
         let mut names = Vec::new();
         for (c, candidate) in self.candidates.iter().enumerate() {
             for (k, shape) in candidate.shapes.iter().enumerate() {
-                if matches!(shape, Change::Terms { .. } | Change::Links(_) | Change::Step(_)) {
+                if matches!(
+                    shape,
+                    Change::Terms { .. } | Change::Links(_) | Change::Step(_)
+                ) {
                     names.push((c, k));
                     changes.push(shape);
                 }
@@ -194,7 +201,9 @@ impl MotionScorer<'_> {
             values[to] = base.values[old];
         }
         for (to, old) in all.own.iter().zip(&base.assembled.own) {
-            to.iter().zip(old).for_each(|(&t, &o)| values[t] = base.values[o]);
+            to.iter()
+                .zip(old)
+                .for_each(|(&t, &o)| values[t] = base.values[o]);
         }
         let slow = slow_stretches(&all.vehicle, &values, &self.frame.data, &adjust);
         let design = design(self.frame, &all.vehicle, &self.frame.data, &adjust, slow).ok()?;
@@ -287,7 +296,8 @@ impl Scorer for MotionScorer<'_> {
         for (c, k, columns) in self.form_columns(&base.fit) {
             let (fall, first) = basis.gain(&base.fit.residual, &columns);
             let shape = &self.candidates[c].shapes[k];
-            let against = self.candidates[c].sign == super::candidate::Sign::Positive && first < 0.0;
+            let against =
+                self.candidates[c].sign == super::candidate::Sign::Positive && first < 0.0;
             let gain = 0.5 * fall * if against { 0.0 } else { 1.0 } - self.cost(c, shape);
             if best[c].as_ref().is_none_or(|b| gain > b.gain) {
                 best[c] = Some(Addition {

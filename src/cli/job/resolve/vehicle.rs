@@ -63,12 +63,7 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
         corrections.insert(channel.clone(), [gain, delay]);
     }
     let mass_change = raw.mass_change.as_ref().and_then(|m| {
-        let at = c.require(
-            &m.at_s,
-            section,
-            "vehicle.mass_change.at_s",
-            "at_s = 30.0",
-        )?;
+        let at = c.require(&m.at_s, section, "vehicle.mass_change.at_s", "at_s = 30.0")?;
         Some(MassChange {
             body: m
                 .body

@@ -53,16 +53,19 @@ pub fn library(frame: &MotionFrame, motion: &Motion, only: &[String]) -> Vec<Can
 fn links(frame: &MotionFrame) -> Vec<(usize, Option<String>)> {
     let v = &frame.vehicle;
     let own: Vec<usize> = (0..v.links.len())
-        .filter(|&l| v.links[l].ends.iter().all(|e| frame.bodies.contains(&e.1.body)))
+        .filter(|&l| {
+            v.links[l]
+                .ends
+                .iter()
+                .all(|e| frame.bodies.contains(&e.1.body))
+        })
         .collect();
     let word = |l: usize| {
         let wheel = v
             .wheels
             .iter()
             .find(|w| v.links[l].ends.iter().any(|e| e.1.body == w.at.body));
-        let one = wheel.filter(|w| {
-            v.wheels.iter().filter(|o| o.at.body == w.at.body).count() == 1
-        });
+        let one = wheel.filter(|w| v.wheels.iter().filter(|o| o.at.body == w.at.body).count() == 1);
         one.and_then(|w| w.channel.split_once('_').map(|p| p.1.to_owned()))
             .unwrap_or_else(|| v.links[l].name.clone())
     };
