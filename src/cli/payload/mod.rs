@@ -1,6 +1,7 @@
 //! `payload`: mass and, where it can be told, position of a payload, from strain, from wheel forces, or from both.
 
 mod answer;
+mod judge;
 mod model;
 mod readings;
 

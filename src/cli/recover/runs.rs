@@ -136,6 +136,7 @@ pub(super) fn run(
     );
     session.findings.extend(sums(task, &recovery, &units));
     session.findings.extend(unlikely(task, &recovery, &units));
+    session.findings.extend(undetermined(task, &recovery, &units));
     put(session, task, &recovery, &units)?;
     let shown: Vec<RecoveredRun> = recovery.runs.iter().map(|r| shown_run(r, &units)).collect();
     let points: Vec<(f64, f64)> = recovery
@@ -374,6 +375,46 @@ fn sums(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
             "at a standstill they must: then a load is missing, or a sign or an `applied` is wrong",
         )
         .with_numbers(largest, 0.1),
+    ]
+}
+
+/// Wanted loads whose interval is as wide as the loads themselves in every run: gauges that do not tell them.
+fn undetermined(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
+    /// Half width of the interval over the largest load of the kind (or `expected`) from which a load counts as unknown.
+    const WIDE: f64 = 0.5;
+    let s = &task.prepared.sensitivity;
+    let mut out: Vec<(usize, f64)> = Vec::new();
+    for (l, load) in s.loads.iter().enumerate().filter(|(_, l)| l.wanted) {
+        let widths = recovery.runs.iter().map(|r| {
+            let largest = (0..units.len())
+                .filter(|m| units[*m].name == units[l].name && s.loads[*m].wanted)
+                .map(|m| r.estimate.values[m].abs())
+                .fold(load.expected.unwrap_or(0.0), f64::max);
+            let [low, high] = r.estimate.interval(l);
+            (high - low) / 2.0 / largest
+        });
+        let best = widths.fold(f64::INFINITY, f64::min);
+        if best > WIDE && best.is_finite() {
+            out.push((l, best));
+        }
+    }
+    let Some(worst) = out.iter().map(|o| o.1).max_by(f64::total_cmp) else {
+        return Vec::new();
+    };
+    let names: Vec<&str> = out.iter().map(|o| s.loads[o.0].name.as_str()).collect();
+    vec![
+        Finding::new(
+            Severity::Error,
+            "loads-not-determined",
+            names.join(", "),
+            format!(
+                "in every run the 95 % interval of these loads is wider than half the largest load: the gauges do not tell them (condition \
+                 number {:.0}), and their values are mostly noise and model error",
+                s.condition_number_scaled()
+            ),
+            "add gauges where these loads differ (`place`), or drop loads",
+        )
+        .with_numbers(worst, WIDE),
     ]
 }
 

@@ -1,5 +1,6 @@
 //! `respond`: strain and stress anywhere on the structure from recovered loads, by superposition of the unit fields.
 
+mod files;
 mod gauges;
 mod states;
 
@@ -14,15 +15,11 @@ use crate::report::strain::{
 };
 use crate::report::write_cells_vtu;
 use crate::respond::{
-    LoadState, Peak, Place, ResponseRow, envelope, hot_spots, response_rows, von_mises_history,
+    LoadState, Peak, Place, ResponseRow, envelope, hot_spots, response_rows,
 };
 use crate::units::factor;
 use serde_json::json;
 use std::collections::BTreeSet;
-use std::io::Write;
-
-/// Places whose histories are written.
-const MOST_HISTORIES: usize = 40;
 
 /// Reads loads, superposes, writes envelope, hot spots, histories and the check at the gauges.
 pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
@@ -325,138 +322,12 @@ fn write(
         }
         Ok(())
     }))?;
-    write(out.write("histories.csv", |w| histories(w, rows, order, states, u)))?;
+    write(out.write("histories.csv", |w| files::histories(w, rows, order, states, u)))?;
     write(out.write("envelope.vtu", |w| {
-        write_cells_vtu(model, &arrays(model, rows, peaks, u, unit), w)
+        write_cells_vtu(model, &files::arrays(model, rows, peaks, u, unit), w)
     }))?;
     if !check.rows.is_empty() {
         write(out.write_bytes("predicted.csv", check.csv.as_bytes()))?;
     }
     write(out.write_bytes("report.html", html.as_bytes()))
-}
-
-/// A row a state: strain (microstrain), stress, von Mises with its 95 % interval, at every place listed.
-fn histories(
-    w: &mut dyn Write,
-    rows: &[ResponseRow],
-    order: &[usize],
-    states: &[LoadState],
-    u: f64,
-) -> std::io::Result<()> {
-    let list: Vec<&ResponseRow> = order
-        .iter()
-        .take(MOST_HISTORIES)
-        .map(|i| &rows[*i])
-        .collect();
-    write!(w, "state")?;
-    for r in &list {
-        let place = format!("{}.{}", r.element, r.surface_word().replace(' ', "."));
-        for c in [
-            "exx",
-            "eyy",
-            "gxy",
-            "sxx",
-            "syy",
-            "sxy",
-            "von_mises",
-            "von_mises.low",
-            "von_mises.high",
-        ] {
-            write!(w, ",{place}.{c}")?;
-        }
-    }
-    writeln!(w)?;
-    let columns: Vec<Vec<([f64; 3], f64, f64)>> =
-        list.iter().map(|r| von_mises_history(r, states)).collect();
-    for (i, state) in states.iter().enumerate() {
-        write!(w, "{}", state.label)?;
-        for (row, column) in list.iter().zip(&columns) {
-            let mut strain = [0.0; 3];
-            for (e, f) in row.strain.iter().zip(&state.values) {
-                strain
-                    .iter_mut()
-                    .zip(e)
-                    .for_each(|(s, e)| *s += e * f * 1e6);
-            }
-            let (stress, v, sigma) = column[i];
-            for x in strain {
-                write!(w, ",{x}")?;
-            }
-            for x in stress {
-                write!(w, ",{}", x * u)?;
-            }
-            let half = 1.959_964 * sigma;
-            write!(
-                w,
-                ",{},{},{}",
-                v * u,
-                (v - half).max(0.0) * u,
-                (v + half) * u
-            )?;
-        }
-        writeln!(w)?;
-    }
-    Ok(())
-}
-
-/// Envelope by element for ParaView: largest von Mises on the bottom and the top (bars: anywhere), its sd, and the state.
-fn arrays(
-    model: &Model,
-    rows: &[ResponseRow],
-    peaks: &[Peak],
-    u: f64,
-    unit: &str,
-) -> Vec<(String, Vec<f64>, Vec<f64>)> {
-    let blank = || {
-        (
-            vec![f64::NAN; model.shells.len()],
-            vec![f64::NAN; model.beams.len()],
-        )
-    };
-    let (mut bottom, mut top, mut sigma, mut state) = (blank(), blank(), blank(), blank());
-    let mut most = blank();
-    for (r, p) in rows.iter().zip(peaks) {
-        let v = p.von_mises * u;
-        let put = |slot: Option<&mut f64>, v: f64| {
-            if let Some(s) = slot {
-                *s = v;
-            }
-        };
-        let larger = |slot: Option<&f64>| slot.is_none_or(|s| s.is_nan() || v > *s);
-        match r.place {
-            Place::Shell { shell, surface } => {
-                let side = if surface.ix() == 0 {
-                    &mut bottom.0
-                } else {
-                    &mut top.0
-                };
-                put(side.get_mut(shell.us()), v);
-                if larger(most.0.get(shell.us())) {
-                    put(most.0.get_mut(shell.us()), v);
-                    put(sigma.0.get_mut(shell.us()), p.sigma * u);
-                    put(state.0.get_mut(shell.us()), p.at as f64);
-                }
-            }
-            Place::Beam { beam, .. } => {
-                if larger(most.1.get(beam.us())) {
-                    put(most.1.get_mut(beam.us()), v);
-                    put(sigma.1.get_mut(beam.us()), p.sigma * u);
-                    put(state.1.get_mut(beam.us()), p.at as f64);
-                }
-            }
-        }
-    }
-    [
-        (format!("largest von Mises, {unit}"), most),
-        (format!("largest von Mises bottom, {unit}"), bottom),
-        (format!("largest von Mises top, {unit}"), top),
-        (format!("its standard deviation, {unit}"), sigma),
-        (
-            "state of the largest (row of the loads, from 0)".to_owned(),
-            state,
-        ),
-    ]
-    .into_iter()
-    .map(|(name, (shells, beams))| (name, shells, beams))
-    .collect()
 }

@@ -1,0 +1,194 @@
+//! Gauges on the trucks: candidates, layouts, readings on the own and on the other model.
+
+use crate::world::{Lot, Truck, own};
+use std::sync::OnceLock;
+use strainbridge::fe::CaseResult;
+use strainbridge::gauge::{CornerRows, Gauge, GaugePlace, GaugeSpec, build, reading};
+use strainbridge::linalg::Matrix;
+use strainbridge::model::{Model, ShellIx, Vec3};
+use strainbridge::placement::candidates::{Angles, Candidates, Scatter};
+use strainbridge::placement::sites::{Site, candidates};
+use strainbridge::placement::{Layout, Spec, place};
+use strainbridge::sensitivity::{Load, LoadCaseOf, Sensitivity, from_cases};
+
+pub const MICRO: f64 = 1e-6;
+/// Prior size of a wheel load, N.
+pub const EXPECTED: f64 = 25_000.0;
+
+/// Rails and cross members: where a gauge can be glued.
+pub fn sites(model: &Model) -> Vec<Site> {
+    use strainbridge::fe::strain_tensor::Surface;
+    let allowed = |id: u32| (11..=15).contains(&id) || (21..=25).contains(&id) || (31..=37).contains(&id);
+    let mut out = Vec::new();
+    for (i, s) in model.shells.iter().enumerate() {
+        if allowed(model.shell_properties[s.property.us()].id) {
+            out.extend([Surface::Bottom, Surface::Top].map(|side| (ShellIx(i as u32), side)));
+        }
+    }
+    out
+}
+
+/// Columns for S: cases with names and sizes.
+pub fn columns<'a>(cases: &'a [CaseResult], names: &[&str], expected: f64) -> Vec<LoadCaseOf<'a>> {
+    cases
+        .iter()
+        .zip(names)
+        .map(|(case, name)| LoadCaseOf {
+            load: Load {
+                name: (*name).to_owned(),
+                expected: Some(expected),
+                wanted: true,
+            },
+            applied: 1.0,
+            case,
+        })
+        .collect()
+}
+
+/// The six vertical wheel loads of a truck.
+pub fn vertical(truck: &Truck) -> Vec<LoadCaseOf<'_>> {
+    columns(&truck.standing.contacts, &crate::world::NAMES, EXPECTED)
+}
+
+/// Candidates of the own truck for given columns, microstrain at the expected loads over 1 microstrain of noise.
+pub fn candidates_of(truck: &Truck, loads: &[LoadCaseOf], scatter: Scatter) -> (Vec<Site>, Candidates) {
+    let sites = sites(&truck.model);
+    let scales: Vec<f64> = loads.iter().map(|l| l.load.expected.unwrap()).collect();
+    let angles = Angles::Grid((0..12).map(|i| (15.0 * f64::from(i)).to_radians()).collect());
+    let c = candidates(&truck.model, &sites, loads, &scales, angles, scatter);
+    (sites, c)
+}
+
+/// What gluing and models do to a reading (1 degree, 2 %): such gauges are placed where it matters least.
+pub fn careful() -> Scatter {
+    Scatter {
+        noise: 1.0,
+        angle_sd: 1.0_f64.to_radians(),
+        model_rel: 0.02,
+        extra: Vec::new(),
+    }
+}
+
+/// Gauges of a layout on the own truck.
+pub fn glued(model: &Model, sites: &[Site], layout: &Layout) -> Vec<Gauge> {
+    layout
+        .gauges
+        .iter()
+        .enumerate()
+        .map(|(i, g)| {
+            let (shell, surface) = sites[g.place as usize];
+            let spec = GaugeSpec {
+                surface: Some(surface),
+                angle_rad: g.angle,
+                ..GaugeSpec::on(format!("P{:02}", i + 1), shell)
+            };
+            build(model, &spec, CornerRows::Absent).unwrap().0.remove(0)
+        })
+        .collect()
+}
+
+/// The D-optimal layout of `n` gauges from all candidates for the six vertical loads, 60 mm apart.
+pub fn best(n: usize) -> (Vec<Gauge>, Layout) {
+    let truck = own();
+    let (sites, c) = candidates_of(truck, &vertical(truck), careful());
+    let mut spec = Spec::new(n, 6);
+    spec.spacing = 60.0;
+    let layout = place(&c, &spec).unwrap();
+    (glued(&truck.model, &sites, &layout), layout)
+}
+
+/// The ten best gauges.
+pub fn best_ten() -> &'static [Gauge] {
+    static GAUGES: OnceLock<Vec<Gauge>> = OnceLock::new();
+    GAUGES.get_or_init(|| best(10).0)
+}
+
+/// S of gauges for given columns.
+pub fn sensitivity(gauges: &[Gauge], loads: &[LoadCaseOf]) -> Sensitivity {
+    from_cases(gauges, loads).unwrap()
+}
+
+/// What gauges of the own truck read in a case of another one, glued with scatter: 2 mm along both surface directions, 1 degree, and
+/// (in [`measured`]) 1 % of gain.
+pub fn on_other(other: &Truck, gauges: &[Gauge], lot: &mut Lot) -> Vec<Gauge> {
+    gauges
+        .iter()
+        .map(|g| {
+            let across = g.normal.cross(&g.direction);
+            let shift = g.direction * (2.0 * lot.normal()) + across * (2.0 * lot.normal());
+            let spec = GaugeSpec {
+                place: GaugePlace::Nearest(g.position + shift),
+                surface: Some(side_like(other, g, shift)),
+                direction: Some(g.direction),
+                angle_rad: lot.normal().to_radians(),
+                ..GaugeSpec::on(g.name.clone(), ShellIx(0))
+            };
+            build(&other.model, &spec, CornerRows::Present).unwrap().0.remove(0)
+        })
+        .collect()
+}
+
+/// The side of the other truck's shell that faces as the gauge does.
+fn side_like(other: &Truck, g: &Gauge, shift: Vec3) -> strainbridge::fe::strain_tensor::Surface {
+    use strainbridge::fe::strain_tensor::Surface;
+    let foot = strainbridge::gauge::nearest(&other.model, g.position + shift, |_| true).unwrap();
+    let probe = GaugeSpec {
+        surface: Some(Surface::Top),
+        direction: Some(g.direction),
+        ..GaugeSpec::on("probe", foot.shell)
+    };
+    let normal = build(&other.model, &probe, CornerRows::Absent).unwrap().0.remove(0).normal;
+    let outward = if g.surface == Surface::Top { g.normal } else { -g.normal };
+    if normal.dot(&outward) > 0.0 { Surface::Top } else { Surface::Bottom }
+}
+
+/// Strain of gauges under loads, by superposition.
+pub fn strain(gauges: &[Gauge], cases: &[CaseResult], loads: &[f64]) -> Vec<f64> {
+    gauges
+        .iter()
+        .map(|g| {
+            cases
+                .iter()
+                .zip(loads)
+                .map(|(c, f)| f * reading(g, c).unwrap())
+                .sum()
+        })
+        .collect()
+}
+
+/// The same with 1 % of gain and 1 microstrain of noise.
+pub fn measured(lot: &mut Lot, clean: &[f64]) -> Vec<f64> {
+    clean
+        .iter()
+        .map(|e| e * (1.0 + 0.01 * lot.normal()) + MICRO * lot.normal())
+        .collect()
+}
+
+/// Least-squares loads.
+pub fn solved(s: &Matrix, y: &[f64]) -> Vec<f64> {
+    let y = strainbridge::linalg::Vector::from_column_slice(y);
+    s.clone()
+        .svd(true, true)
+        .solve(&y, 1e-14)
+        .unwrap()
+        .iter()
+        .copied()
+        .collect()
+}
+
+/// Relative errors, in percent.
+pub fn percent(found: &[f64], truth: &[f64]) -> Vec<f64> {
+    found
+        .iter()
+        .zip(truth)
+        .map(|(f, t)| 100.0 * (f / t - 1.0).abs())
+        .collect()
+}
+
+pub fn mean(v: &[f64]) -> f64 {
+    v.iter().sum::<f64>() / v.len() as f64
+}
+
+pub fn largest(v: &[f64]) -> f64 {
+    v.iter().copied().fold(0.0, f64::max)
+}

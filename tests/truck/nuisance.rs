@@ -1,0 +1,140 @@
+//! Table 6.3: thirty other loads act at the wheels while the six vertical ones are asked for.
+
+use crate::gauges::*;
+use crate::world::*;
+use strainbridge::placement::candidates::Scatter;
+use strainbridge::placement::{Spec, place};
+use strainbridge::recovery::{ErrorModel, Readings, estimate};
+use strainbridge::sensitivity::{Load, LoadCaseOf, Sensitivity};
+
+/// Vertical loads of Table 6.2 in our wheel order LF RF LM RM LR RR, N.
+const VERTICAL: [f64; 6] = [24_530.0, 26_220.0, 19_660.0, 18_700.0, 18_860.0, 18_220.0];
+
+/// Root mean squares over the wheels of Table 6.2: FX FY in N, MX MY MZ in N mm.
+const SIZES: [f64; 5] = [1_622.0, 4_081.0, 1.566e6, 0.415e6, 0.253e6];
+
+const COMPONENTS: [&str; 5] = ["FX", "FY", "MX", "MY", "MZ"];
+
+fn all_loads() -> Vec<LoadCaseOf<'static>> {
+    let truck = own();
+    let mut loads = vertical(truck);
+    for (w, name) in NAMES.iter().enumerate() {
+        for ((case, component), size) in truck.others_of(w).iter().zip(COMPONENTS).zip(SIZES) {
+            loads.push(LoadCaseOf {
+                load: Load {
+                    name: name.replace("FZ", component),
+                    expected: Some(size),
+                    wanted: false,
+                },
+                applied: 1.0,
+                case,
+            });
+        }
+    }
+    loads
+}
+
+/// The root mean squares above are those of the printed table.
+#[test]
+fn sizes_are_those_of_table_6_2() {
+    let fx: [f64; 6] = [1.015, -3.554, 1.045, 0.365, -1.172, 0.116];
+    let fy: [f64; 6] = [3.508, 6.559, 0.767, -2.919, -5.403, -2.995];
+    let mx: [f64; 6] = [-1.396, -0.825, -2.120, 2.259, 0.542, 1.575];
+    let my: [f64; 6] = [-0.176, -0.985, 0.042, -0.126, -0.028, -0.121];
+    let mz: [f64; 6] = [0.060, -0.400, 0.224, 0.082, -0.347, -0.241];
+    let units = [1e3, 1e3, 1e6, 1e6, 1e6];
+    for ((column, size), unit) in [fx, fy, mx, my, mz].iter().zip(SIZES).zip(units) {
+        let rms = (column.iter().map(|v| v * v).sum::<f64>() / 6.0).sqrt() * unit;
+        assert!((rms / size - 1.0).abs() < 0.01, "{rms} {size}");
+    }
+}
+
+struct Outcome {
+    rms: f64,
+    coverage: f64,
+}
+
+/// A thousand draws: vertical loads of the table, the others normal of its size.
+fn draws(s_true: &Sensitivity, s: &Sensitivity, seed: u64) -> Outcome {
+    let mut lot = Lot::new(seed);
+    let errors = ErrorModel {
+        noise: MICRO,
+        model_rel: 0.0,
+    };
+    let (mut square, mut held, mut n) = (0.0, 0.0, 0.0);
+    for trial in 0..1000 {
+        let truth: Vec<f64> = s_true
+            .loads
+            .iter()
+            .enumerate()
+            .map(|(l, load)| match VERTICAL.get(l) {
+                Some(v) => *v,
+                None => load.expected.unwrap() * lot.normal(),
+            })
+            .collect();
+        let strain = (0..s_true.gauges.len())
+            .map(|g| {
+                let clean: f64 = truth.iter().enumerate().map(|(l, f)| s_true.values[(g, l)] * f).sum();
+                clean + MICRO * lot.normal()
+            })
+            .collect();
+        let run = estimate(
+            s,
+            &Readings {
+                run: trial.to_string(),
+                strain,
+                noise_factor: 1.0,
+            },
+            errors,
+        );
+        for l in 0..6 {
+            square += (run.estimate.values[l] / truth[l] - 1.0).powi(2);
+            let [low, high] = run.estimate.interval(l);
+            held += f64::from(u8::from(low < truth[l] && truth[l] < high));
+            n += 1.0;
+        }
+    }
+    Outcome {
+        rms: 100.0 * f64::sqrt(square / n),
+        coverage: held / n,
+    }
+}
+
+/// Layout for the vertical loads with the others estimated along (Ds), nuisance columns first.
+fn layout(n: usize) -> Vec<strainbridge::gauge::Gauge> {
+    let truck = own();
+    let mut loads = all_loads();
+    loads.rotate_left(6);
+    let (sites, c) = candidates_of(truck, &loads, Scatter::uniform(1.0));
+    let mut spec = Spec::new(n, 36);
+    spec.spacing = 60.0;
+    spec.nuisance = 30;
+    for l in 0..30 {
+        spec.prior[36 * l + l] = 1.0;
+    }
+    spec.effort.starts = 2;
+    spec.effort.kicks = 8;
+    glued(&truck.model, &sites, &place(&c, &spec).unwrap())
+}
+
+#[test]
+fn table_6_3_vertical_loads_among_thirty_others() {
+    let loads = all_loads();
+    for (n, limit) in [(14, 5.0), (20, 2.0)] {
+        let gauges = layout(n);
+        let s = sensitivity(&gauges, &loads);
+        let with = draws(&s, &s, 63);
+        // Blind: the best gauges for the vertical loads alone, the others not in S.
+        let (blind_gauges, _) = best(n);
+        let full = sensitivity(&blind_gauges, &loads);
+        let blind_s = sensitivity(&blind_gauges, &vertical(own()));
+        let blind = draws(&full, &blind_s, 63);
+        println!(
+            "6.3: {n} gauges: rms {:.2} %, coverage {:.3}; blind: rms {:.1} %, coverage {:.3}",
+            with.rms, with.coverage, blind.rms, blind.coverage
+        );
+        assert!(with.rms < limit, "{n} gauges: {:.2} %", with.rms);
+        assert!((with.coverage - 0.95).abs() < 0.015, "{}", with.coverage);
+        assert!(blind.rms > 2.0 * with.rms && blind.coverage < 0.9);
+    }
+}
