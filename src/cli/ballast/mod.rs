@@ -152,10 +152,10 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     let edited = write_edited(&read.deck, &edits);
     let after = session.stage("solve completed deck", |s| completed::after(s, &task, &edited))?;
     answer::findings(session, &task, &run, &measured, &after, &fit, &spec);
-    put(
+    answer::put(
         session, &task, &run, &measured, &sigma, &before, &after, &fit, &cards,
     )?;
-    write(
+    answer::write(
         session, arguments, &task, &measured, &before, &after, &fit, height,
     )?;
     let folder = session.output_for(&arguments.job)?.folder().to_owned();
