@@ -167,7 +167,18 @@ fn properties(truck: &Truck, deck: &mut DeckText) {
             a * a - b * b,
             inertia,
             inertia,
-            mean.powi(3) * wall
+            mean.powi(3) * wall,
+            "",
+            "",
+            // Gauges go on top, below, behind and in front of the tube.
+            a / 2.0,
+            0.0,
+            -a / 2.0,
+            0.0,
+            0.0,
+            a / 2.0,
+            0.0,
+            -a / 2.0
         ],
     );
     // Simply supported leaf: rate = 48 E I / L^3; width 90 mm gives the weak axis.

@@ -193,6 +193,37 @@ fn log_sum(t: &[f64]) -> f64 {
     top + t.iter().map(|v| (v - top).exp()).sum::<f64>().ln()
 }
 
+/// Standard deviation of a wheel force that stays as the floor gives it.
+const SHUT: f64 = 1e-9;
+
+/// Patterns of wheel forces of unit length without resultant force and moments: what equilibrium leaves open.
+fn balanced_patterns(arms: &[[f64; 2]]) -> Vec<Vec<f64>> {
+    let n = arms.len();
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    let rigid = [
+        vec![1.0; n],
+        arms.iter().map(|a| a[0]).collect(),
+        arms.iter().map(|a| a[1]).collect(),
+    ];
+    let units = (0..n).map(|i| (0..n).map(|w| f64::from(u8::from(w == i))).collect());
+    for (i, mut v) in rigid.into_iter().chain(units).enumerate() {
+        let size = v.iter().map(|x: &f64| x * x).sum::<f64>().sqrt();
+        for _ in 0..2 {
+            for b in &basis {
+                let along: f64 = v.iter().zip(b).map(|(x, y)| x * y).sum();
+                v.iter_mut().zip(b).for_each(|(x, y)| *x -= along * y);
+            }
+        }
+        let left = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if left > 1e-6 * size && left > 0.0 {
+            basis.push(v.iter().map(|x| x / left).collect());
+        } else if i < 3 {
+            return Vec::new();
+        }
+    }
+    basis.split_off(3.min(basis.len()))
+}
+
 struct Solved {
     found: Located,
     /// Gauge, stated variance, expected square of its residual.
@@ -217,7 +248,13 @@ fn solve_run(
     };
     let q = if spec.place == Place::Free { 3 } else { 1 };
     let (at_p, at_c) = (n_wheels, n_wheels + q);
-    let width = at_c + 1;
+    // How a floor shares the payload is the model's word: patterns that balance among themselves stay open to its uncertainty.
+    let patterns = match &model.arms {
+        Some(arms) if n_wheels == 0 && spec.model_rel > 0.0 => balanced_patterns(arms),
+        _ => Vec::new(),
+    };
+    let at_z = at_c + 1;
+    let width = at_z + patterns.len();
     let known = [1.0, run.shift[0], run.shift[1]];
     // Entry of `(F, F dx, F dy)` columns for the unknowns in use.
     let fold = |c: [f64; 3]| -> Vec<f64> {
@@ -260,6 +297,13 @@ fn solve_run(
                 .map(|w| row[w] * old.reactions[w])
                 .sum::<f64>();
         row[at_c] = predicted;
+        for (z, pattern) in patterns.iter().enumerate() {
+            row[at_z + z] = pattern
+                .iter()
+                .enumerate()
+                .map(|(w, share)| model.wheels[(g, w)] * share)
+                .sum();
+        }
         let own = run.sigma.get(g).copied().unwrap_or(0.0);
         let variance = own * own + spec.model_rel.powi(2) * parts;
         if variance > 0.0 {
@@ -294,6 +338,14 @@ fn solve_run(
             }
             rows.push((row, 0.0, exact * size * size, None));
         }
+    }
+    let share = spec.model_rel * old.p[0].abs().max(f64::MIN_POSITIVE);
+    for z in 0..patterns.len() {
+        let mut row = vec![0.0; width];
+        row[at_z + z] = 1.0;
+        // Before the first answer there is no size to compare with: the patterns stay shut.
+        let sd = if old.p[0] == 0.0 { SHUT } else { share };
+        rows.push((row, 0.0, sd * sd, None));
     }
     if let (Some(region), 3) = (spec.region, q) {
         let size = old.p[0].abs();

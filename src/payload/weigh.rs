@@ -280,6 +280,16 @@ fn weighed(
             }
         }
     }
+    // By strain alone an error of the payload's column as a whole reads as a shift of its line of action: `model_rel` of how far the wheels
+    // spread. Measured wheel forces fix that line by statics.
+    if let (true, true, Some(arms)) = (free, run.reactions.is_empty(), &model.arms) {
+        for k in 0..2 {
+            let n = arms.len().max(1) as f64;
+            let mean = arms.iter().map(|a| a[k]).sum::<f64>() / n;
+            let square = arms.iter().map(|a| (a[k] - mean).powi(2)).sum::<f64>() / n;
+            shift_covariance[3 * k] += spec.model_rel.powi(2) * square;
+        }
+    }
     let (estimates, estimate_sigma) = if run.strain.is_empty() {
         (Vec::new(), Vec::new())
     } else {

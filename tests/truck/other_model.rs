@@ -10,7 +10,7 @@ use strainbridge::placement::{Spec, place};
 use strainbridge::recovery::{ErrorModel, Readings, estimate};
 
 /// Seeded sets of gluing, gain and noise.
-const TRIALS: u64 = 200;
+const TRIALS: u64 = 60;
 
 struct Errors {
     mean: f64,
@@ -55,7 +55,7 @@ fn recovered(gauges: &[Gauge], rel: f64) -> Errors {
     }
 }
 
-/// Forty places on the flanges of the rails and four in the middle of cross members, along the part, away from joints.
+/// Forty places on the webs of the rails, high and low, and four in the middle of cross members, along the part, away from joints.
 fn forty_four() -> Vec<Gauge> {
     let truck = own();
     let mut out = Vec::new();
@@ -65,12 +65,13 @@ fn forty_four() -> Vec<Gauge> {
             direction: Some(direction),
             ..GaugeSpec::on(format!("C{:02}", out.len() + 1), strainbridge::model::ShellIx(0))
         };
-        out.push(build(&truck.model, &spec, CornerRows::Absent).unwrap().0.remove(0));
+        out.push(build(&truck.model, &spec, CornerRows::Present).unwrap().0.remove(0));
     };
     // Between the stations of Table A.1: x in inches from the bumper.
-    let stations = [40.0, 62.0, 76.0, 108.0, 148.0, 183.0, 226.0, 274.0, 296.0, 332.0];
-    let (low, high) = (30.0 * 25.4 - 1.0, 30.0 * 25.4 + 271.0);
-    let y = 34.0 * 25.4 / 2.0 - 45.0;
+    let stations = [42.0, 50.0, 66.0, 80.0, 116.0, 148.0, 183.0, 226.0, 280.0, 330.0];
+    let middle = 30.0 * 25.4 + 135.0;
+    let (low, high) = (middle - 100.0, middle + 100.0);
+    let y = 34.0 * 25.4 / 2.0;
     for x in stations {
         for side in [-y, y] {
             for z in [low, high] {
@@ -79,11 +80,42 @@ fn forty_four() -> Vec<Gauge> {
         }
     }
     for x in [30.0, 168.5, 254.5, 309.5] {
-        let z = (low + high) / 2.0;
-        lay(Vec3::new(x * 25.4, 60.0, z - 60.0), Vec3::new(0.0, 1.0, 0.0));
+        lay(Vec3::new(x * 25.4, 60.0, middle - 60.0), Vec3::new(0.0, 1.0, 0.0));
     }
     assert_eq!(out.len(), 44);
     out
+}
+
+/// The least condition number of ten rows that exchange from thirty random starts finds.
+fn least_condition(s: &strainbridge::linalg::Matrix) -> f64 {
+    let mut lot = Lot::new(10);
+    let of = |rows: &[usize]| dense::condition(&s.select_rows(rows));
+    (0..30)
+        .map(|_| {
+            let mut left: Vec<usize> = (0..s.nrows()).collect();
+            let mut rows: Vec<usize> = (0..10)
+                .map(|_| left.swap_remove(lot.between(0.0, left.len() as f64) as usize))
+                .collect();
+            let mut best = of(&rows);
+            loop {
+                let before = best;
+                for i in 0..rows.len() {
+                    for j in 0..left.len() {
+                        std::mem::swap(&mut rows[i], &mut left[j]);
+                        let now = of(&rows);
+                        if now < best {
+                            best = now;
+                        } else {
+                            std::mem::swap(&mut rows[i], &mut left[j]);
+                        }
+                    }
+                }
+                if best > before * (1.0 - 1e-6) {
+                    return best;
+                }
+            }
+        })
+        .fold(f64::INFINITY, f64::min)
 }
 
 #[test]
@@ -100,6 +132,9 @@ fn table_6_10_ten_of_forty_four_and_ten_of_all_on_readings_of_the_other_model() 
         let chosen: Vec<Gauge> = layout.gauges.iter().map(|g| all[g.place as usize].clone()).collect();
         let condition = dense::condition(&sensitivity(&chosen, &vertical(own())).values);
         let e = recovered(&chosen, 0.02);
+        if n == 10 {
+            println!("6.10: least condition number of ten of 44 by exchange: {:.1}", least_condition(&s.values));
+        }
         println!(
             "6.10: {n} of 44: mean {:.2} %, max {:.2} %, condition {condition:.1}, coverage {:.3}",
             e.mean, e.max, e.coverage
@@ -141,7 +176,7 @@ fn installed() -> Vec<(Gauge, (u32, usize, f64))> {
                 direction: Some(Vec3::new(1.0, 0.0, 0.0)),
                 ..GaugeSpec::on(format!("T{:02}", i + 1), strainbridge::model::ShellIx(0))
             };
-            let gauge = build(&shell.model, &spec, CornerRows::Absent).unwrap().0.remove(0);
+            let gauge = build(&shell.model, &spec, CornerRows::Present).unwrap().0.remove(0);
             // The bar whose span holds the station, and the flange tip or corner on that side: of its two points up or down, their mean.
             let bar = bars
                 .model
@@ -168,13 +203,14 @@ fn installed() -> Vec<(Gauge, (u32, usize, f64))> {
         .collect()
 }
 
-/// Strain of a bar at a share of its length on its upper (0) or lower (1) flange, the middle of the flange's two points.
+/// Strain of a bar at a share of its length on its upper (0) or lower (1) flange, where the gauge sits: 40 mm in from the outer face, the
+/// corner there (C or D) and the tip (F or E) 85 mm further in.
 fn bar_strain(case: &strainbridge::fe::CaseResult, id: u32, low: usize, share: f64) -> f64 {
     let ix = beam().model.beam_ix(id).unwrap();
     let row = case.beams.elements.binary_search(&ix).unwrap();
     let stations = &case.beams.stations[row];
     let points = [[0, 3], [1, 2]][low];
-    let of = |s: &(f64, [f64; 4])| (s.1[points[0]] + s.1[points[1]]) / 2.0;
+    let of = |s: &(f64, [f64; 4])| s.1[points[0]] + (s.1[points[1]] - s.1[points[0]]) * 36.0 / 85.0;
     let (a, b) = (&stations[0], &stations[stations.len() - 1]);
     of(a) + (of(b) - of(a)) * share
 }
@@ -263,5 +299,6 @@ fn strains_of_the_two_meshes_differ_by_little_where_gauges_go() {
     let size = largest(&b.iter().map(|v| v.abs()).collect::<Vec<_>>());
     let off: Vec<f64> = a.iter().zip(&b).map(|(a, b)| 100.0 * (a - b).abs() / size).collect();
     println!("mesh: 45 against 22.5 mm: mean {:.2} %, max {:.2} % of the largest strain", mean(&off), largest(&off));
-    assert!(mean(&off) < 3.0, "{off:?}");
+    let at: Vec<[f64; 3]> = gauges.iter().map(|g| [g.position.x, g.position.y, g.position.z]).collect();
+    assert!(mean(&off) < 3.0, "{off:?} {at:.0?}");
 }

@@ -63,13 +63,14 @@ fn size_and_place_of_the_payload_from_wheel_forces_and_from_strain_of_the_other_
     let sigma_wheel = 60.0;
     let spec = WeighSpec {
         place: Place::Free,
-        model_rel: 0.02,
+        // 1 % of gain, a degree, two millimetres and the mesh: about 3 % of a reading.
+        model_rel: 0.03,
         reaction_sigma: sigma_wheel,
         largest: 1e6,
         // Between tarper gantry and the truck's rear (6.5): 3 m and 0.5 m either way.
         region: Some([[-3000.0, 3000.0], [-500.0, 500.0]]),
     };
-    let trials = 100;
+    let trials = 60;
     for (source, limit) in [("wheel forces", 2.0), ("strain", 5.0), ("both", 5.0)] {
         let mut lot = Lot::new(65);
         let (mut square, mut held, mut off) = (0.0, 0, 0.0);
@@ -108,6 +109,6 @@ fn size_and_place_of_the_payload_from_wheel_forces_and_from_strain_of_the_other_
         let rms = 100.0 * (square / f64::from(trials)).sqrt();
         println!("6.5: from {source}: rms {rms:.2} %, place off by {off:.0} mm, region holds it in {held} of {trials}");
         assert!(rms < limit, "{source}: {rms} %");
-        assert!(held >= 90, "{source}: {held} of {trials}");
+        assert!(held * 10 >= trials * 9, "{source}: {held} of {trials}");
     }
 }
