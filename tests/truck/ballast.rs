@@ -4,13 +4,21 @@ use crate::program::{codes, head, run, scratch};
 use crate::world::*;
 
 fn job(folder: &std::path::Path, runs: &str, extra: &str) {
-    std::fs::write(folder.join("truck.bdf"), deck_text(45.0, Frame::Shell, false, 0.0)).unwrap();
+    std::fs::write(
+        folder.join("truck.bdf"),
+        deck_text(45.0, Frame::Shell, false, 0.0),
+    )
+    .unwrap();
     let text = head()
         + "[runs]\nfile = \"runs.csv\"\nunits = { force = \"kN\" }\nnoise = { force = 0.2 }\n\
            [ballast]\nmasses = 2\nregion = [[1500.0, 8500.0], [-500.0, 500.0]]\nmax_mass = 8.0\n"
         + extra;
     std::fs::write(folder.join("job.toml"), text).unwrap();
-    std::fs::write(folder.join("runs.csv"), format!("run,{}\n{runs}\n", NAMES.join(","))).unwrap();
+    std::fs::write(
+        folder.join("runs.csv"),
+        format!("run,{}\n{runs}\n", NAMES.join(",")),
+    )
+    .unwrap();
 }
 
 fn off(result: &serde_json::Value) -> Vec<f64> {
@@ -18,7 +26,9 @@ fn off(result: &serde_json::Value) -> Vec<f64> {
         .as_array()
         .unwrap()
         .iter()
-        .map(|r| 100.0 * (r["after"].as_f64().unwrap() / r["measured"].as_f64().unwrap() - 1.0).abs())
+        .map(|r| {
+            100.0 * (r["after"].as_f64().unwrap() / r["measured"].as_f64().unwrap() - 1.0).abs()
+        })
         .collect()
 }
 
@@ -26,17 +36,38 @@ fn off(result: &serde_json::Value) -> Vec<f64> {
 fn table_3_2_two_masses_bring_the_truck_to_the_measured_reactions() {
     let folder = scratch("thesis");
     // Table 3.2 in our wheel order, kN.
-    job(&folder, "Run 1,24.530,26.220,19.660,18.700,18.860,18.220", "");
-    let (code, result, err) = run(&["ballast", folder.join("job.toml").to_str().unwrap()], &folder.join("out"));
+    job(
+        &folder,
+        "Run 1,24.530,26.220,19.660,18.700,18.860,18.220",
+        "",
+    );
+    let (code, result, err) = run(
+        &["ballast", folder.join("job.toml").to_str().unwrap()],
+        &folder.join("out"),
+    );
     assert_eq!(code, 0, "{err}");
     let e = off(&result);
     let worst = e.iter().copied().fold(0.0, f64::max);
-    println!("3.2: reactions of the thesis: {e:.2?} %, worst {worst:.2} %, masses {}", result["masses"]);
+    println!(
+        "3.2: reactions of the thesis: {e:.2?} %, worst {worst:.2} %, masses {}",
+        result["masses"]
+    );
     // Middle and rear axle share as the camelback's levers say (25 to 23 inches), 4 % from what was measured: no mass can change that.
     assert!(worst < 2.5, "{e:?}");
-    assert!(codes(&result, "warning").contains(&"masses-not-separable".to_owned()), "{err}");
-    let total: f64 = result["masses"].as_array().unwrap().iter().map(|m| m["mass"].as_f64().unwrap()).sum();
-    assert!((total / 6795.8 - 1.0).abs() < 0.03, "the thesis found 1638.0 and 5157.8 kg, here {total}");
+    assert!(
+        codes(&result, "warning").contains(&"masses-not-separable".to_owned()),
+        "{err}"
+    );
+    let total: f64 = result["masses"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|m| m["mass"].as_f64().unwrap())
+        .sum();
+    assert!(
+        (total / 6795.8 - 1.0).abs() < 0.03,
+        "the thesis found 1638.0 and 5157.8 kg, here {total}"
+    );
 }
 
 #[test]
@@ -51,18 +82,26 @@ fn reactions_of_a_truck_with_its_masses_are_matched_and_the_ranges_hold_the_trut
         .map(|v| format!("{:.4}", v / 1e3))
         .collect();
     job(&folder, &format!("Run 1,{}", r.join(",")), "");
-    let (code, result, err) = run(&["ballast", folder.join("job.toml").to_str().unwrap()], &folder.join("out"));
+    let (code, result, err) = run(
+        &["ballast", folder.join("job.toml").to_str().unwrap()],
+        &folder.join("out"),
+    );
     assert_eq!(code, 0, "{err}");
     let e = off(&result);
     println!("3.2: own masses: {e:.3?} %");
     assert!(e.iter().all(|e| *e < 2.0), "{e:?}");
     let together = &result["together"];
-    assert!((together["mass"].as_f64().unwrap() / 6795.8 - 1.0).abs() < 1e-3, "{together}");
+    assert!(
+        (together["mass"].as_f64().unwrap() / 6795.8 - 1.0).abs() < 1e-3,
+        "{together}"
+    );
     // The analyst's other lines stay: the completed deck holds every line of the deck.
     let before = std::fs::read_to_string(folder.join("truck.bdf")).unwrap();
     let after = std::fs::read_to_string(folder.join("out").join("completed.bdf")).unwrap();
     let (body, _) = before.split_once("ENDDATA").unwrap();
-    assert!(after.starts_with(body) && after.contains("RBE3") && after.trim_end().ends_with("ENDDATA"));
+    assert!(
+        after.starts_with(body) && after.contains("RBE3") && after.trim_end().ends_with("ENDDATA")
+    );
 }
 
 #[test]
@@ -71,7 +110,11 @@ fn section_6_4_eleven_gauges_as_poor_as_the_thesis_end_in_exit_code_1_and_say_wh
     use strainbridge::gauge::{CornerRows, GaugePlace, GaugeSpec, build};
     use strainbridge::model::{ShellIx, Vec3};
     let folder = scratch("poor");
-    std::fs::write(folder.join("truck.bdf"), deck_text(45.0, Frame::Shell, true, PAYLOAD_TONNES)).unwrap();
+    std::fs::write(
+        folder.join("truck.bdf"),
+        deck_text(45.0, Frame::Shell, true, PAYLOAD_TONNES),
+    )
+    .unwrap();
     // Eleven gauges along the left rail between the axles, all on the upper flange: they see bending of one rail.
     let mut table = String::from("name,x,y,z,dir_x,dir_y,dir_z\n");
     let mut names = Vec::new();
@@ -87,7 +130,12 @@ fn section_6_4_eleven_gauges_as_poor_as_the_thesis_end_in_exit_code_1_and_say_wh
             direction: Some(Vec3::new(1.0, 0.0, 0.0)),
             ..GaugeSpec::on(format!("{}", i + 1), ShellIx(0))
         };
-        there.push(build(&finer().model, &spec, CornerRows::Present).unwrap().0.remove(0));
+        there.push(
+            build(&finer().model, &spec, CornerRows::Present)
+                .unwrap()
+                .0
+                .remove(0),
+        );
     }
     let clean = strain(&there, &finer().standing.contacts, &finer().reactions());
     let read: Vec<String> = measured(&mut lot, &clean)
@@ -105,8 +153,15 @@ fn section_6_4_eleven_gauges_as_poor_as_the_thesis_end_in_exit_code_1_and_say_wh
         head() + "[gauges]\nfile = \"gauges.csv\"\n[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 1.0\nmodel_uncertainty_rel = 0.02\n",
     )
     .unwrap();
-    let (code, result, err) = run(&["recover", folder.join("job.toml").to_str().unwrap()], &folder.join("out"));
-    println!("6.4: exit {code}, condition {}, {:?}", result["condition_number"], codes(&result, "error"));
+    let (code, result, err) = run(
+        &["recover", folder.join("job.toml").to_str().unwrap()],
+        &folder.join("out"),
+    );
+    println!(
+        "6.4: exit {code}, condition {}, {:?}",
+        result["condition_number"],
+        codes(&result, "error")
+    );
     assert_eq!(code, 1, "{err}");
     assert!(err.contains("gauges"), "{err}");
     assert!(result["condition_number"].as_f64().is_none_or(|c| c > 50.0));

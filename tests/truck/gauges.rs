@@ -18,7 +18,8 @@ pub const EXPECTED: f64 = 25_000.0;
 /// Rails and cross members: where a gauge can be glued.
 pub fn sites(model: &Model) -> Vec<Site> {
     use strainbridge::fe::strain_tensor::Surface;
-    let allowed = |id: u32| (11..=15).contains(&id) || (21..=25).contains(&id) || (31..=37).contains(&id);
+    let allowed =
+        |id: u32| (11..=15).contains(&id) || (21..=25).contains(&id) || (31..=37).contains(&id);
     let joints = joints(model);
     let clear = |x: Vec3| joints.iter().all(|j| (j - x).norm() > CLEARANCE);
     let mut out = Vec::new();
@@ -71,14 +72,25 @@ pub fn vertical(truck: &Truck) -> Vec<LoadCaseOf<'_>> {
 }
 
 /// Candidates of the own truck for given columns, microstrain at the expected loads over 1 microstrain of noise.
-pub fn candidates_of(truck: &Truck, loads: &[LoadCaseOf], scatter: Scatter) -> (Vec<Site>, Candidates) {
+pub fn candidates_of(
+    truck: &Truck,
+    loads: &[LoadCaseOf],
+    scatter: Scatter,
+) -> (Vec<Site>, Candidates) {
     let sites = sites(&truck.model);
     let scales: Vec<f64> = loads.iter().map(|l| l.load.expected.unwrap()).collect();
     let mut scatter = scatter;
     if scatter.angle_sd > 0.0 {
-        scatter.extra = sites.iter().map(|s| unevenness(loads, &scales, *s)).collect();
+        scatter.extra = sites
+            .iter()
+            .map(|s| unevenness(loads, &scales, *s))
+            .collect();
     }
-    let angles = Angles::Grid((0..12).map(|i| (15.0 * f64::from(i)).to_radians()).collect());
+    let angles = Angles::Grid(
+        (0..12)
+            .map(|i| (15.0 * f64::from(i)).to_radians())
+            .collect(),
+    );
     let c = candidates(&truck.model, &sites, loads, &scales, angles, scatter);
     (sites, c)
 }
@@ -93,9 +105,11 @@ fn unevenness(loads: &[LoadCaseOf], scales: &[f64], (shell, side): Site) -> f64 
             let field = &l.case.shells;
             let row = field.elements.binary_search(&shell).unwrap();
             let centre = field.centre[row][side.ix()];
-            let squares = field.corners[row]
-                .iter()
-                .flat_map(|c| (0..3).map(|i| (c[side.ix()][i] - centre[i]).powi(2)).collect::<Vec<_>>());
+            let squares = field.corners[row].iter().flat_map(|c| {
+                (0..3)
+                    .map(|i| (c[side.ix()][i] - centre[i]).powi(2))
+                    .collect::<Vec<_>>()
+            });
             let known: Vec<f64> = squares.filter(|v| v.is_finite()).collect();
             0.04 * known.iter().sum::<f64>() / 4.0 * (f / MICRO / l.applied).powi(2)
         })
@@ -172,7 +186,10 @@ pub fn on_other(other: &Truck, gauges: &[Gauge], lot: &mut Lot) -> Vec<Gauge> {
                 angle_rad: lot.normal().to_radians(),
                 ..GaugeSpec::on(g.name.clone(), ShellIx(0))
             };
-            build(&other.model, &spec, CornerRows::Present).unwrap().0.remove(0)
+            build(&other.model, &spec, CornerRows::Present)
+                .unwrap()
+                .0
+                .remove(0)
         })
         .collect()
 }
@@ -186,9 +203,21 @@ fn side_like(other: &Truck, g: &Gauge, shift: Vec3) -> strainbridge::fe::strain_
         direction: Some(g.direction),
         ..GaugeSpec::on("probe", foot.shell)
     };
-    let normal = build(&other.model, &probe, CornerRows::Absent).unwrap().0.remove(0).normal;
-    let outward = if g.surface == Surface::Top { g.normal } else { -g.normal };
-    if normal.dot(&outward) > 0.0 { Surface::Top } else { Surface::Bottom }
+    let normal = build(&other.model, &probe, CornerRows::Absent)
+        .unwrap()
+        .0
+        .remove(0)
+        .normal;
+    let outward = if g.surface == Surface::Top {
+        g.normal
+    } else {
+        -g.normal
+    };
+    if normal.dot(&outward) > 0.0 {
+        Surface::Top
+    } else {
+        Surface::Bottom
+    }
 }
 
 /// Strain of gauges under loads, by superposition.

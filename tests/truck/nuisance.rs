@@ -76,7 +76,11 @@ fn draws(s_true: &Sensitivity, s: &Sensitivity, seed: u64) -> Outcome {
             .collect();
         let strain = (0..s_true.gauges.len())
             .map(|g| {
-                let clean: f64 = truth.iter().enumerate().map(|(l, f)| s_true.values[(g, l)] * f).sum();
+                let clean: f64 = truth
+                    .iter()
+                    .enumerate()
+                    .map(|(l, f)| s_true.values[(g, l)] * f)
+                    .sum();
                 clean + MICRO * lot.normal()
             })
             .collect();
@@ -155,7 +159,12 @@ fn on_axles() -> Vec<Gauge> {
                 },
                 ..GaugeSpec::on(format!("A{id}.{station}"), ShellIx(0))
             };
-            out.push(build(&truck.model, &spec, CornerRows::Absent).unwrap().0.remove(0));
+            out.push(
+                build(&truck.model, &spec, CornerRows::Absent)
+                    .unwrap()
+                    .0
+                    .remove(0),
+            );
         }
     }
     out
@@ -169,7 +178,10 @@ fn table_6_3_vertical_loads_among_thirty_others() {
     let frame = layout(20, &[]);
     let s = sensitivity(&frame, &loads);
     let alone = draws(&s, &s, 63);
-    println!("6.3: 20 gauges on the frame alone: rms {:.2} %, coverage {:.3}", alone.rms, alone.coverage);
+    println!(
+        "6.3: 20 gauges on the frame alone: rms {:.2} %, coverage {:.3}",
+        alone.rms, alone.coverage
+    );
     assert!((alone.coverage - 0.95).abs() < 0.015, "{}", alone.coverage);
     for (n, limit) in [(14, 5.0), (20, 2.0)] {
         let mut gauges = on_axles();

@@ -63,12 +63,22 @@ fn forty_four() -> Vec<Gauge> {
         let spec = GaugeSpec {
             place: GaugePlace::Nearest(at),
             direction: Some(direction),
-            ..GaugeSpec::on(format!("C{:02}", out.len() + 1), strainbridge::model::ShellIx(0))
+            ..GaugeSpec::on(
+                format!("C{:02}", out.len() + 1),
+                strainbridge::model::ShellIx(0),
+            )
         };
-        out.push(build(&truck.model, &spec, CornerRows::Present).unwrap().0.remove(0));
+        out.push(
+            build(&truck.model, &spec, CornerRows::Present)
+                .unwrap()
+                .0
+                .remove(0),
+        );
     };
     // Between the stations of Table A.1: x in inches from the bumper.
-    let stations = [42.0, 50.0, 66.0, 80.0, 116.0, 148.0, 183.0, 226.0, 280.0, 330.0];
+    let stations = [
+        42.0, 50.0, 66.0, 80.0, 116.0, 148.0, 183.0, 226.0, 280.0, 330.0,
+    ];
     let middle = 30.0 * 25.4 + 135.0;
     let (low, high) = (middle - 100.0, middle + 100.0);
     let y = 34.0 * 25.4 / 2.0;
@@ -80,7 +90,10 @@ fn forty_four() -> Vec<Gauge> {
         }
     }
     for x in [30.0, 168.5, 254.5, 309.5] {
-        lay(Vec3::new(x * 25.4, 60.0, middle - 60.0), Vec3::new(0.0, 1.0, 0.0));
+        lay(
+            Vec3::new(x * 25.4, 60.0, middle - 60.0),
+            Vec3::new(0.0, 1.0, 0.0),
+        );
     }
     assert_eq!(out.len(), 44);
     out
@@ -129,11 +142,18 @@ fn table_6_10_ten_of_forty_four_and_ten_of_all_on_readings_of_the_other_model() 
     });
     for n in 6..=10 {
         let layout = place(&c, &Spec::new(n, 6)).unwrap();
-        let chosen: Vec<Gauge> = layout.gauges.iter().map(|g| all[g.place as usize].clone()).collect();
+        let chosen: Vec<Gauge> = layout
+            .gauges
+            .iter()
+            .map(|g| all[g.place as usize].clone())
+            .collect();
         let condition = dense::condition(&sensitivity(&chosen, &vertical(own())).values);
         let e = recovered(&chosen, 0.02);
         if n == 10 {
-            println!("6.10: least condition number of ten of 44 by exchange: {:.1}", least_condition(&s.values));
+            println!(
+                "6.10: least condition number of ten of 44 by exchange: {:.1}",
+                least_condition(&s.values)
+            );
         }
         println!(
             "6.10: {n} of 44: mean {:.2} %, max {:.2} %, condition {condition:.1}, coverage {:.3}",
@@ -160,9 +180,21 @@ fn installed() -> Vec<(Gauge, (u32, usize, f64))> {
     let (shell, bars) = (own(), beam());
     // Table A.1 from the bumper: A2 + 5, gantry + 9.5, 412 + 40.5, in inches; others by eye of figure 3.2.
     let places = [
-        (40.0, -1.0, 1.0), (40.0, 1.0, 1.0), (138.0, -1.0, 1.0), (138.0, 1.0, 1.0), (295.0, -1.0, 1.0),
-        (295.0, 1.0, 1.0), (62.0, -1.0, -1.0), (62.0, 1.0, -1.0), (110.0, -1.0, -1.0), (110.0, 1.0, -1.0),
-        (150.0, -1.0, -1.0), (226.0, 1.0, 1.0), (226.0, -1.0, -1.0), (330.0, -1.0, 1.0), (330.0, 1.0, 1.0),
+        (40.0, -1.0, 1.0),
+        (40.0, 1.0, 1.0),
+        (138.0, -1.0, 1.0),
+        (138.0, 1.0, 1.0),
+        (295.0, -1.0, 1.0),
+        (295.0, 1.0, 1.0),
+        (62.0, -1.0, -1.0),
+        (62.0, 1.0, -1.0),
+        (110.0, -1.0, -1.0),
+        (110.0, 1.0, -1.0),
+        (150.0, -1.0, -1.0),
+        (226.0, 1.0, 1.0),
+        (226.0, -1.0, -1.0),
+        (330.0, -1.0, 1.0),
+        (330.0, 1.0, 1.0),
     ];
     let middle = 30.0 * 25.4 + 135.0;
     places
@@ -176,7 +208,10 @@ fn installed() -> Vec<(Gauge, (u32, usize, f64))> {
                 direction: Some(Vec3::new(1.0, 0.0, 0.0)),
                 ..GaugeSpec::on(format!("T{:02}", i + 1), strainbridge::model::ShellIx(0))
             };
-            let gauge = build(&shell.model, &spec, CornerRows::Present).unwrap().0.remove(0);
+            let gauge = build(&shell.model, &spec, CornerRows::Present)
+                .unwrap()
+                .0
+                .remove(0);
             // The bar whose span holds the station, and the flange tip or corner on that side: of its two points up or down, their mean.
             let bar = bars
                 .model
@@ -248,7 +283,9 @@ fn table_6_9_shell_sensitivities_on_the_beam_truck_are_a_bias_of_the_model() {
     let hot: Vec<f64> = clean
         .iter()
         .zip(&own_strain)
-        .filter(|(c, _)| c.abs() > 0.3 * largest(&clean.iter().map(|v| v.abs()).collect::<Vec<_>>()))
+        .filter(|(c, _)| {
+            c.abs() > 0.3 * largest(&clean.iter().map(|v| v.abs()).collect::<Vec<_>>())
+        })
         .map(|(c, o)| 100.0 * (o / c - 1.0).abs())
         .collect();
     let e = percent(&solved(&s.values, &clean), &truth);
@@ -275,8 +312,16 @@ fn table_6_9_shell_sensitivities_on_the_beam_truck_are_a_bias_of_the_model() {
             model_rel: 0.0,
         },
     );
-    assert!(run.chi2 / run.dof as f64 > 9.0, "{} of {}", run.chi2, run.dof);
-    assert!(mean(&shares) < 5.0, "two models of one truck share the weight alike: {shares:?}");
+    assert!(
+        run.chi2 / run.dof as f64 > 9.0,
+        "{} of {}",
+        run.chi2,
+        run.dof
+    );
+    assert!(
+        mean(&shares) < 5.0,
+        "two models of one truck share the weight alike: {shares:?}"
+    );
 }
 
 #[test]
@@ -291,14 +336,28 @@ fn strains_of_the_two_meshes_differ_by_little_where_gauges_go() {
                 direction: Some(g.direction),
                 ..GaugeSpec::on(g.name.clone(), strainbridge::model::ShellIx(0))
             };
-            build(&finer().model, &spec, CornerRows::Present).unwrap().0.remove(0)
+            build(&finer().model, &spec, CornerRows::Present)
+                .unwrap()
+                .0
+                .remove(0)
         })
         .collect();
     let a = strain(gauges, &own().standing.contacts, &truth);
     let b = strain(&there, &finer().standing.contacts, &truth);
     let size = largest(&b.iter().map(|v| v.abs()).collect::<Vec<_>>());
-    let off: Vec<f64> = a.iter().zip(&b).map(|(a, b)| 100.0 * (a - b).abs() / size).collect();
-    println!("mesh: 45 against 22.5 mm: mean {:.2} %, max {:.2} % of the largest strain", mean(&off), largest(&off));
-    let at: Vec<[f64; 3]> = gauges.iter().map(|g| [g.position.x, g.position.y, g.position.z]).collect();
+    let off: Vec<f64> = a
+        .iter()
+        .zip(&b)
+        .map(|(a, b)| 100.0 * (a - b).abs() / size)
+        .collect();
+    println!(
+        "mesh: 45 against 22.5 mm: mean {:.2} %, max {:.2} % of the largest strain",
+        mean(&off),
+        largest(&off)
+    );
+    let at: Vec<[f64; 3]> = gauges
+        .iter()
+        .map(|g| [g.position.x, g.position.y, g.position.z])
+        .collect();
     assert!(mean(&off) < 3.0, "{off:?} {at:.0?}");
 }

@@ -33,7 +33,10 @@ fn table_6_1_reactions_of_a_separately_supported_solution_come_back_to_1e_5() {
         .map(|g| -rate * standing.displacement[grid(&held, *g).us()][2])
         .collect();
     let gauges = best_ten();
-    let y: Vec<f64> = gauges.iter().map(|g| reading(g, standing).unwrap()).collect();
+    let y: Vec<f64> = gauges
+        .iter()
+        .map(|g| reading(g, standing).unwrap())
+        .collect();
     let s = sensitivity(gauges, &vertical(own()));
     let errors = percent(&solved(&s.values, &y), &truth);
     println!("6.1: largest error {:.2e} %", largest(&errors));
@@ -48,7 +51,10 @@ fn the_wheels_of_the_loaded_truck_carry_its_weight_and_share_it_as_the_levers_sa
     assert!((r.iter().sum::<f64>() / (weight.mass * GRAVITY) - 1.0).abs() < 1e-9);
     // The camelback turns about its pivot: middle and rear axle share as 25 to 23 inches (Table A.1), rods and leaf ends aside.
     let (middle, rear) = (r[2] + r[3], r[4] + r[5]);
-    assert!((middle / rear / (25.0 / 23.0) - 1.0).abs() < 0.05, "{middle} {rear}");
+    assert!(
+        (middle / rear / (25.0 / 23.0) - 1.0).abs() < 0.05,
+        "{middle} {rear}"
+    );
     let wheels: Vec<GridIx> = WHEELS.iter().map(|w| grid(&truck.model, *w)).collect();
     let x = |i: usize| truck.model.grids[wheels[i].us()].x.x;
     let moment: f64 = (0..6).map(|i| r[i] * x(i)).sum();

@@ -12,11 +12,19 @@ fn layout() -> Vec<Gauge> {
     let truck = own();
     let mut loads = vertical(truck);
     loads.extend(columns(&truck.standing.others[..1], &["P.FZ"], 50_000.0));
-    loads.extend(columns(&truck.standing.others[1..3], &["P.MX", "P.MY"], 2e7));
+    loads.extend(columns(
+        &truck.standing.others[1..3],
+        &["P.MX", "P.MY"],
+        2e7,
+    ));
     let (sites, c) = candidates_of(truck, &loads, careful());
     let mut spec = strainbridge::placement::Spec::new(30, 9);
     spec.spacing = 60.0;
-    glued(&truck.model, &sites, &strainbridge::placement::place(&c, &spec).unwrap())
+    glued(
+        &truck.model,
+        &sites,
+        &strainbridge::placement::place(&c, &spec).unwrap(),
+    )
 }
 
 /// `(F, F dx, F dy)` of a truck: case, sign, direction.
@@ -29,12 +37,19 @@ fn floor(truck: &Truck) -> Matrix {
         v[i] = 1.0;
         v
     };
-    let acts = [(unit(2), Vec3::zeros()), (Vec3::zeros(), unit(0)), (Vec3::zeros(), unit(1))];
+    let acts = [
+        (unit(2), Vec3::zeros()),
+        (Vec3::zeros(), unit(0)),
+        (Vec3::zeros(), unit(1)),
+    ];
     let mut out = Matrix::zeros(6, 3);
     for (k, (case, sign)) in PARTS.into_iter().enumerate() {
         let (force, moment) = acts[case];
         let lift = truck.standing.lift(&truck.standing.others[case]);
-        let r = truck.standing.floor.reactions(&truck.standing.floor.load(at, force, moment, lift));
+        let r = truck
+            .standing
+            .floor
+            .reactions(&truck.standing.floor.load(at, force, moment, lift));
         (0..6).for_each(|w| out[(w, k)] = sign * r[w]);
     }
     out
@@ -43,14 +58,27 @@ fn floor(truck: &Truck) -> Matrix {
 fn model(gauges: &[Gauge]) -> PayloadModel {
     let truck = own();
     let s = sensitivity(gauges, &vertical(truck));
-    let direct = sensitivity(gauges, &columns(&truck.standing.others[..3], &["F", "X", "Y"], 1.0));
+    let direct = sensitivity(
+        gauges,
+        &columns(&truck.standing.others[..3], &["F", "X", "Y"], 1.0),
+    );
     let at = truck.model.grids[grid(&truck.model, PAYLOAD).us()].x;
     PayloadModel {
         gauges: s.gauges.clone(),
         wheels: s.values,
-        payload: Matrix::from_fn(gauges.len(), 3, |g, k| PARTS[k].1 * direct.values[(g, PARTS[k].0)]),
+        payload: Matrix::from_fn(gauges.len(), 3, |g, k| {
+            PARTS[k].1 * direct.values[(g, PARTS[k].0)]
+        }),
         floor: Some(floor(truck)),
-        arms: Some(truck.standing.floor.positions().iter().map(|x| [x.x - at.x, x.y - at.y]).collect()),
+        arms: Some(
+            truck
+                .standing
+                .floor
+                .positions()
+                .iter()
+                .map(|x| [x.x - at.x, x.y - at.y])
+                .collect(),
+        ),
     }
 }
 
@@ -78,18 +106,27 @@ fn size_and_place_of_the_payload_from_wheel_forces_and_from_strain_of_the_other_
             let force = lot.between(30_000.0, 60_000.0);
             let shift = [lot.between(-900.0, 900.0), lot.between(-200.0, 200.0)];
             let p = [force, force * shift[0], force * shift[1]];
-            let reactions: Vec<f64> = (0..6).map(|w| (0..3).map(|k| theirs[(w, k)] * p[k]).sum()).collect();
+            let reactions: Vec<f64> = (0..6)
+                .map(|w| (0..3).map(|k| theirs[(w, k)] * p[k]).sum())
+                .collect();
             let there = on_other(other, &gauges, &mut lot);
             let mut clean = strain(&there, &other.standing.contacts, &reactions);
             let amounts = [PARTS[0].1 * p[0], PARTS[2].1 * p[2], PARTS[1].1 * p[1]];
-            for (c, d) in clean.iter_mut().zip(strain(&there, &other.standing.others[..3], &amounts)) {
+            for (c, d) in
+                clean
+                    .iter_mut()
+                    .zip(strain(&there, &other.standing.others[..3], &amounts))
+            {
                 *c += d;
             }
             let mut run = PayloadRun {
                 run: "Run 3".into(),
                 strain: measured(&mut lot, &clean),
                 sigma: vec![MICRO; gauges.len()],
-                reactions: reactions.iter().map(|r| r + sigma_wheel * lot.normal()).collect(),
+                reactions: reactions
+                    .iter()
+                    .map(|r| r + sigma_wheel * lot.normal())
+                    .collect(),
                 shift: [0.0; 2],
             };
             match source {
@@ -107,7 +144,9 @@ fn size_and_place_of_the_payload_from_wheel_forces_and_from_strain_of_the_other_
             held += i32::from(q < 5.991);
         }
         let rms = 100.0 * (square / f64::from(trials)).sqrt();
-        println!("6.5: from {source}: rms {rms:.2} %, place off by {off:.0} mm, region holds it in {held} of {trials}");
+        println!(
+            "6.5: from {source}: rms {rms:.2} %, place off by {off:.0} mm, region holds it in {held} of {trials}"
+        );
         assert!(rms < limit, "{source}: {rms} %");
         assert!(held * 10 >= trials * 9, "{source}: {held} of {trials}");
     }

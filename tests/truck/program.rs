@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 pub fn scratch(name: &str) -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("truck").join(name);
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+        .join("truck")
+        .join(name);
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
     folder
@@ -33,7 +35,9 @@ pub fn head() -> String {
          [model]\ndeck = \"truck.bdf\"\n",
     );
     for (name, id) in crate::world::NAMES.iter().zip(crate::world::WHEELS) {
-        text += &format!("[[load]]\nname = \"{name}\"\ngrid = {id}\ncomponent = \"FZ\"\nexpected = 25000.0\n");
+        text += &format!(
+            "[[load]]\nname = \"{name}\"\ngrid = {id}\ncomponent = \"FZ\"\nexpected = 25000.0\n"
+        );
     }
     text
 }

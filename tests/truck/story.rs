@@ -25,29 +25,65 @@ fn the_story_names_what_was_hidden_and_gets_the_loads_back() {
         number(&result["wheel_force_error"]["before"]),
         number(&result["wheel_force_error"]["after"]),
     );
-    println!("story: wheel loads {before:.3} before, {after:.3} after; payload {}", result["payload_error"]);
+    println!(
+        "story: wheel loads {before:.3} before, {after:.3} after; payload {}",
+        result["payload_error"]
+    );
     assert!(after < 0.06 && after < 0.5 * before, "{before} {after}");
     assert!(number(&result["payload_error"]) < 0.02);
-    for chapter in ["1-solve", "2-place", "3-recover", "4-reconcile", "5-recover-again", "6-payload", "7-respond"] {
-        assert!(folder.join(chapter).join("report.html").is_file(), "{chapter}");
-        assert!(folder.join(chapter).join("result.json").is_file(), "{chapter}");
+    for chapter in [
+        "1-solve",
+        "2-place",
+        "3-recover",
+        "4-reconcile",
+        "5-recover-again",
+        "6-payload",
+        "7-respond",
+    ] {
+        assert!(
+            folder.join(chapter).join("report.html").is_file(),
+            "{chapter}"
+        );
+        assert!(
+            folder.join(chapter).join("result.json").is_file(),
+            "{chapter}"
+        );
     }
-    assert!(folder.join("report.html").is_file() && folder.join("7-respond").join("envelope.vtu").is_file());
+    assert!(
+        folder.join("report.html").is_file()
+            && folder.join("7-respond").join("envelope.vtu").is_file()
+    );
 
     // Stress from the table that `recover` wrote is that of the runs recovered inside `respond`.
-    let inside: serde_json::Value =
-        serde_json::from_str(&std::fs::read_to_string(folder.join("7-respond/result.json")).unwrap()).unwrap();
-    let with_table = job(&folder, "respond_table.toml", "respond.toml", "loads = \"5-recover-again/loads.csv\"\n");
+    let inside: serde_json::Value = serde_json::from_str(
+        &std::fs::read_to_string(folder.join("7-respond/result.json")).unwrap(),
+    )
+    .unwrap();
+    let with_table = job(
+        &folder,
+        "respond_table.toml",
+        "respond.toml",
+        "loads = \"5-recover-again/loads.csv\"\n",
+    );
     let (code, table, err) = run(&["respond", &with_table], &folder.join("respond_table"));
     assert_eq!(code, 0, "{err}");
     let (a, b) = (&inside["elements"][0], &table["elements"][0]);
-    assert_eq!((&a["element"], &a["surface"], &a["at"]), (&b["element"], &b["surface"], &b["at"]));
+    assert_eq!(
+        (&a["element"], &a["surface"], &a["at"]),
+        (&b["element"], &b["surface"], &b["at"])
+    );
     assert!((number(&a["max_von_mises"]) / number(&b["max_von_mises"]) - 1.0).abs() < 1e-9);
     assert!(codes(&table, "info").contains(&"load-errors-independent".to_owned()));
     // Predicted against measured strain at the gauges: within the scatter of gauge factors and the model.
     let gauges = table["gauges"].as_array().unwrap();
     assert_eq!(gauges.len(), 24);
-    let rms = |key: &str| gauges.iter().map(|g| number(&g[key]).powi(2)).sum::<f64>().sqrt();
+    let rms = |key: &str| {
+        gauges
+            .iter()
+            .map(|g| number(&g[key]).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    };
     assert!(rms("residual_rms_microstrain") < 0.1 * rms("measured_rms_microstrain"));
 
     // The study on the gauges of the story: noise in proportion scatters the loads in proportion; twice the same bytes.
@@ -67,9 +103,20 @@ fn the_story_names_what_was_hidden_and_gets_the_loads_back() {
             .find(|r| r["layout"] == layout && r["gauges"] == gauges && r["error"] == error)
             .unwrap_or_else(|| panic!("{layout} {gauges} {error}: {first}"))
     };
-    let (five, ten) = (find("given", 24, "relative-uniform 0.05"), find("given", 24, "relative-uniform 0.1"));
-    for (a, b) in five["loads"].as_array().unwrap().iter().zip(ten["loads"].as_array().unwrap()) {
-        assert!((number(&b["sigma"]) / number(&a["sigma"]) - 2.0).abs() < 1e-6, "{a} {b}");
+    let (five, ten) = (
+        find("given", 24, "relative-uniform 0.05"),
+        find("given", 24, "relative-uniform 0.1"),
+    );
+    for (a, b) in five["loads"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .zip(ten["loads"].as_array().unwrap())
+    {
+        assert!(
+            (number(&b["sigma"]) / number(&a["sigma"]) - 2.0).abs() < 1e-6,
+            "{a} {b}"
+        );
     }
     assert!(number(&find("given", 24, "angle 1")["mean_relative_rms"]) > 0.0);
     assert!(number(&find("given", 24, "position 2")["mean_relative_rms"]) > 0.0);
@@ -103,20 +150,44 @@ fn a_payload_of_wheel_forces_alone_needs_no_gauges_and_a_flipped_sign_is_refused
         ),
     )
     .unwrap();
-    let (code, result, err) = run(&["payload", folder.join("job.toml").to_str().unwrap()], &folder.join("out"));
+    let (code, result, err) = run(
+        &["payload", folder.join("job.toml").to_str().unwrap()],
+        &folder.join("out"),
+    );
     assert_eq!(code, 1, "{err}");
     let payload = result["payload"].as_array().unwrap();
     // The printed Run 2 forces add up to 32.240; 15 N are lost in rounding.
     for (run, kn) in [(0, 32.255), (1, 54.414)] {
-        assert!((number(&payload[run]["force"]) / kn - 1.0).abs() < 2e-3, "{}", payload[run]);
-        assert!((number(&payload[run]["mass"]) - kn * 1e3 / 9.80665).abs() < 15.0, "{}", payload[run]);
+        assert!(
+            (number(&payload[run]["force"]) / kn - 1.0).abs() < 2e-3,
+            "{}",
+            payload[run]
+        );
+        assert!(
+            (number(&payload[run]["mass"]) - kn * 1e3 / 9.80665).abs() < 15.0,
+            "{}",
+            payload[run]
+        );
     }
-    assert!(payload[2]["force"].is_null() && payload[2]["refused"].as_str().unwrap().contains("pull"));
+    assert!(
+        payload[2]["force"].is_null() && payload[2]["refused"].as_str().unwrap().contains("pull")
+    );
     assert!(codes(&result, "error").contains(&"payload-negative".to_owned()));
     // Place by the levers: sum of force times station over the payload.
     let x = |i: usize| [55.0, 55.0, 291.0, 291.0, 339.0, 339.0][i] * 0.0254;
-    let change = [32.053 - 24.530, 30.531 - 26.220, 32.242 - 19.660, 28.460 - 18.700, 28.405 - 18.860, 28.834 - 18.220];
+    let change = [
+        32.053 - 24.530,
+        30.531 - 26.220,
+        32.242 - 19.660,
+        28.460 - 18.700,
+        28.405 - 18.860,
+        28.834 - 18.220,
+    ];
     let sum: f64 = change.iter().sum();
     let at: f64 = (0..6).map(|i| change[i] * x(i)).sum::<f64>() / sum;
-    assert!((number(&payload[1]["position"][0]) - at).abs() < 1e-3, "{} {at}", payload[1]["position"]);
+    assert!(
+        (number(&payload[1]["position"][0]) - at).abs() < 1e-3,
+        "{} {at}",
+        payload[1]["position"]
+    );
 }

@@ -127,4 +127,3 @@ pub(super) fn after(
         .map_err(|e| floor_fault(task.job, &e))?;
     Ok(standing.under_weight(&completed.model, task.gravity))
 }
-

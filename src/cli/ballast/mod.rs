@@ -150,7 +150,9 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     let mut edits = Edits::default();
     edits.insert_cards(&read.deck, &text);
     let edited = write_edited(&read.deck, &edits);
-    let after = session.stage("solve completed deck", |s| completed::after(s, &task, &edited))?;
+    let after = session.stage("solve completed deck", |s| {
+        completed::after(s, &task, &edited)
+    })?;
     answer::findings(session, &task, &run, &measured, &after, &fit, &spec);
     answer::put(
         session, &task, &run, &measured, &sigma, &before, &after, &fit, &cards,
@@ -279,4 +281,3 @@ fn hung(
         down,
     )
 }
-

@@ -71,7 +71,7 @@ pub fn run(arguments: &DemoArguments, session: &mut Session) -> Result<(), Fault
         ),
         step,
     });
-    // The truck in the yard is not the model: other plate thicknesses, uneven ground, noise, gauge factors, and one cable swapped.
+    // The truck in the yard stands on uneven ground, its gauge factors scatter, its readings are noisy, and two wires are swapped.
     let yard = session.stage("drive the truck", |_| yard::drive(&gauges))?;
     write("strain.csv", &yard.strain_csv)?;
     write("runs.csv", &yard.runs_csv)?;

@@ -136,7 +136,9 @@ pub(super) fn run(
     );
     session.findings.extend(sums(task, &recovery, &units));
     session.findings.extend(unlikely(task, &recovery, &units));
-    session.findings.extend(undetermined(task, &recovery, &units));
+    session
+        .findings
+        .extend(undetermined(task, &recovery, &units));
     put(session, task, &recovery, &units)?;
     let shown: Vec<RecoveredRun> = recovery.runs.iter().map(|r| shown_run(r, &units)).collect();
     let points: Vec<(f64, f64)> = recovery

@@ -14,9 +14,7 @@ use crate::report::strain::{
     drawing_section, measured_against_predicted, number, page, table_section,
 };
 use crate::report::write_cells_vtu;
-use crate::respond::{
-    LoadState, Peak, Place, ResponseRow, envelope, hot_spots, response_rows,
-};
+use crate::respond::{LoadState, Peak, Place, ResponseRow, envelope, hot_spots, response_rows};
 use crate::units::factor;
 use serde_json::json;
 use std::collections::BTreeSet;
@@ -322,7 +320,9 @@ fn write(
         }
         Ok(())
     }))?;
-    write(out.write("histories.csv", |w| files::histories(w, rows, order, states, u)))?;
+    write(out.write("histories.csv", |w| {
+        files::histories(w, rows, order, states, u)
+    }))?;
     write(out.write("envelope.vtu", |w| {
         write_cells_vtu(model, &files::arrays(model, rows, peaks, u, unit), w)
     }))?;
