@@ -2,6 +2,8 @@
 //!
 //! Run: `cargo run --example moving_effects -- SEEDS CONTROLS [EFFECT,..] [clean|messy]`. Prints the table of the README.
 
+#![allow(clippy::print_stdout)]
+
 #[path = "../tests/moving/mod.rs"]
 mod moving;
 

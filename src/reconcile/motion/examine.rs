@@ -36,6 +36,10 @@ const AT_FLOOR: f64 = 1.6;
 const REMAINDER: f64 = 0.04;
 /// Share of the measured quantity that an imperfect background (declared tolerances) may leave without a word.
 const SLACK: f64 = 0.04;
+/// Held-out gap over its floor up to which nothing is left to explain.
+const AT_HELD_OUT_FLOOR: f64 = 1.25;
+/// Share of the fitted record's gap to be closed all the same.
+const CLOSED_TRANSIENT: f64 = 0.75;
 /// Share of the closable gap that named effects must close where the background is imperfect.
 const CLOSED_LOOSE: f64 = 0.6;
 /// The same where no noise is declared.
@@ -239,6 +243,12 @@ fn judged(
     // What was named must show on data that it was not fitted to.
     let proven =
         gap.after < gap.before && (gap.explained_share() > PROVEN || gap.before < 1.2 * gap.floor);
+    // Held-out data at their own floor say more than a moment of the fitted record that a form misses (the jolt of a load).
+    let at_floor = !frame.is_loose()
+        && !blind
+        && share > CLOSED_TRANSIENT
+        && gap.after < AT_HELD_OUT_FLOOR * gap.floor;
+    let adequate = adequate || at_floor;
     let verdict = if !broken.is_empty() {
         Verdict::Named
     } else if !best.set.is_empty() && evidence > DECISIVE && adequate && proven {
