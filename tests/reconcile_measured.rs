@@ -12,7 +12,14 @@ use strainbridge::vehicle::preset::{Wish, vehicle};
 use strainbridge::vehicle::term::UnitNames;
 
 /// One mass on a linear spring and damper, as the analyst has it; `cut` samples are fitted, the rest judges.
-fn frame(file: &str, rate_hz: f64, columns: [&str; 2], cut: usize, band: [f64; 2], measures: Measures) -> Option<MotionFrame> {
+fn frame(
+    file: &str,
+    rate_hz: f64,
+    columns: [&str; 2],
+    cut: usize,
+    band: [f64; 2],
+    measures: Measures,
+) -> Option<MotionFrame> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../shared/hidden_effects/real")
         .join(file);
@@ -74,7 +81,11 @@ fn the_cubic_spring_of_the_silverbox_is_named_from_the_linear_model() {
     };
     let o = examine(&f, &[]).unwrap();
     assert_eq!(o.verdict, Verdict::Named);
-    assert!(o.effects.iter().any(|e| e.id == "cubic_stiffness"), "{:?}", o.effects);
+    assert!(
+        o.effects.iter().any(|e| e.id == "cubic_stiffness"),
+        "{:?}",
+        o.effects
+    );
     assert!(o.gap.after < 0.25 * o.gap.before, "{:?}", o.gap);
 }
 
@@ -91,10 +102,19 @@ fn the_sliding_store_of_the_f16_is_never_a_sensor_fault() {
         return;
     };
     let o = examine(&f, &[]).unwrap();
-    let faults = ["accel_gain", "time_offset", "sign_flip", "channel_swap", "dead_channel", "saturated_channel"];
+    let faults = [
+        "accel_gain",
+        "time_offset",
+        "sign_flip",
+        "channel_swap",
+        "dead_channel",
+        "saturated_channel",
+    ];
     assert!(
         o.verdict == Verdict::Unknown
-            || o.effects.iter().all(|e| faults.iter().all(|f| !e.id.starts_with(f))),
+            || o.effects
+                .iter()
+                .all(|e| faults.iter().all(|f| !e.id.starts_with(f))),
         "{:?}",
         o.effects
     );
