@@ -25,6 +25,9 @@ pub struct Fit {
     pub chi2: f64,
 }
 
+/// Candidates with amplitudes, and the rounded logs of their sizes.
+type RoundedSizes = Vec<(usize, Vec<i64>)>;
+
 /// Log evidence of sets of effects on the readings of a selection.
 pub struct Likelihood<'a> {
     frame: &'a StrainFrame,
@@ -33,7 +36,7 @@ pub struct Likelihood<'a> {
     readings: Vec<f64>,
     /// The covariance is that of the prediction with these effects on.
     reference: &'a [(usize, Vec<f64>)],
-    cache: BTreeMap<Vec<(usize, Vec<i64>)>, Option<Rc<Precision>>>,
+    cache: BTreeMap<RoundedSizes, Option<Rc<Precision>>>,
     /// Where a (run, gauge) sits in the selection, by run times gauges plus gauge.
     index: Vec<Option<usize>>,
     /// Runs of the selection.
@@ -111,7 +114,7 @@ impl<'a> Likelihood<'a> {
     /// Precision of the residual with amplitudes of these sizes unknown.
     pub fn precision(&mut self, sizes: &[(usize, Vec<f64>)]) -> Option<Rc<Precision>> {
         let rounded = |v: &f64| (v.max(f64::MIN_POSITIVE).ln() / SIZE_STEP).round() as i64;
-        let key: Vec<(usize, Vec<i64>)> = sizes
+        let key: RoundedSizes = sizes
             .iter()
             .map(|(c, s)| (*c, s.iter().map(rounded).collect()))
             .collect();

@@ -135,12 +135,12 @@ pub fn hide(
     let mut truth = frame.clone();
     if background == Background::Messy {
         let angles: Vec<f64> = (0..n_g).map(|_| normal(&mut rng)).collect();
-        for g in 0..n_g {
+        for (g, angle) in angles.iter().enumerate() {
             let gain = 1.0 + 0.01 * normal(&mut rng);
             let facts = &frame.gauges[g];
             let (drawn, glued) = (
                 facts.angle_deg.to_radians(),
-                (facts.angle_deg + angles[g]).to_radians(),
+                (facts.angle_deg + angle).to_radians(),
             );
             for c in 0..n_c {
                 let at = g * n_c + c;
