@@ -23,6 +23,7 @@
 //! - model quantities are in the deck's own units; `units` converts at the door.
 //!
 //! The finite element layer never sees a gauge; a report never opens a file; numerics never print.
+#![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
 pub mod cli;
 pub mod estimate;

@@ -188,10 +188,10 @@ fn load(path: &Path) -> std::io::Result<FileBytes> {
     if meta.is_dir() {
         return Err(std::io::Error::other("it is a folder"));
     }
-    if meta.len() >= MAP_FROM {
-        if let Ok(m) = map_file(&file) {
-            return Ok(FileBytes(Arc::new(Bytes::Mapped(m))));
-        }
+    if meta.len() >= MAP_FROM
+        && let Ok(m) = map_file(&file)
+    {
+        return Ok(FileBytes(Arc::new(Bytes::Mapped(m))));
     }
     std::fs::read(path).map(|v| FileBytes(Arc::new(Bytes::Owned(v))))
 }

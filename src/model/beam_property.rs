@@ -29,20 +29,21 @@ impl Builder<'_> {
         }
         out.sort_by_key(|(beam, p)| (p.id, *beam, p.at));
         for pair in out.windows(2) {
-            if let [(a_beam, a), (b_beam, b)] = pair {
-                if a.id == b.id && a_beam == b_beam {
-                    let kind = FaultKind::Duplicate {
-                        what: "bar or beam property id",
-                        first: a.at,
-                    };
-                    let card = format!("property {}", b.id);
-                    self.faults.push(super::ModelFault {
-                        card,
-                        field: "PID",
-                        at: b.at,
-                        kind,
-                    });
-                }
+            if let [(a_beam, a), (b_beam, b)] = pair
+                && a.id == b.id
+                && a_beam == b_beam
+            {
+                let kind = FaultKind::Duplicate {
+                    what: "bar or beam property id",
+                    first: a.at,
+                };
+                let card = format!("property {}", b.id);
+                self.faults.push(super::ModelFault {
+                    card,
+                    field: "PID",
+                    at: b.at,
+                    kind,
+                });
             }
         }
         out.dedup_by_key(|(beam, p)| (*beam, p.id));

@@ -47,14 +47,14 @@ impl Builder<'_> {
                     }
                 }
             }
-            if let Some((_, _, a)) = terms.first() {
-                if *a == 0.0 {
-                    let kind = FaultKind::Word {
-                        found: "0".into(),
-                        expected: "a coefficient other than 0 for the first term",
-                    };
-                    self.fault(name.clone(), "A1", m.at, kind);
-                }
+            if let Some((_, _, a)) = terms.first()
+                && *a == 0.0
+            {
+                let kind = FaultKind::Word {
+                    found: "0".into(),
+                    expected: "a coefficient other than 0 for the first term",
+                };
+                self.fault(name.clone(), "A1", m.at, kind);
             }
             sets.entry(m.sid).or_default().push((terms, m.at));
         }

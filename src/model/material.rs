@@ -111,14 +111,14 @@ impl Builder<'_> {
         }
         out.sort_by_key(|m| (m.id, m.at));
         for pair in out.windows(2) {
-            if let [a, b] = pair {
-                if a.id == b.id {
-                    let kind = FaultKind::Duplicate {
-                        what: "material id",
-                        first: a.at,
-                    };
-                    self.fault(format!("material {}", b.id), "MID", b.at, kind);
-                }
+            if let [a, b] = pair
+                && a.id == b.id
+            {
+                let kind = FaultKind::Duplicate {
+                    what: "material id",
+                    first: a.at,
+                };
+                self.fault(format!("material {}", b.id), "MID", b.at, kind);
             }
         }
         out.dedup_by_key(|m| m.id);

@@ -70,10 +70,10 @@ impl Builder<'_> {
             // Z1 and Z2 of a PSHELL without T follow from the thickness of its elements.
             if let (ShellKind::Homogeneous { t, .. }, Some(te)) =
                 (&p.kind, first_thickness.get(&p.id))
+                && *t == 0.0
+                && p.z == [0.0, 0.0]
             {
-                if *t == 0.0 && p.z == [0.0, 0.0] {
-                    p.z = [-te / 2.0, te / 2.0];
-                }
+                p.z = [-te / 2.0, te / 2.0];
             }
         }
         out.sort_by_key(|s| s.id);
@@ -195,19 +195,19 @@ impl Builder<'_> {
         }
         out.sort_by_key(|p| (p.id, p.at));
         for pair in out.windows(2) {
-            if let [a, b] = pair {
-                if a.id == b.id {
-                    let kind = FaultKind::Duplicate {
-                        what: "shell property id",
-                        first: a.at,
-                    };
-                    self.faults.push(super::ModelFault {
-                        card: format!("shell property {}", b.id),
-                        field: "PID",
-                        at: b.at,
-                        kind,
-                    });
-                }
+            if let [a, b] = pair
+                && a.id == b.id
+            {
+                let kind = FaultKind::Duplicate {
+                    what: "shell property id",
+                    first: a.at,
+                };
+                self.faults.push(super::ModelFault {
+                    card: format!("shell property {}", b.id),
+                    field: "PID",
+                    at: b.at,
+                    kind,
+                });
             }
         }
         out.dedup_by_key(|p| p.id);

@@ -81,7 +81,7 @@ pub fn cross_spectra(x: &[f64], y: &[f64], rate_hz: f64, n_segment: usize) -> Cr
         out.n_segments += 1;
     }
     for k in 0..bins {
-        let sided = if k == 0 || (n % 2 == 0 && k == n / 2) {
+        let sided = if k == 0 || (n.is_multiple_of(2) && k == n / 2) {
             1.0
         } else {
             2.0

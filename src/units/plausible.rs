@@ -19,25 +19,25 @@ pub fn check_units(
     densities: &[(u32, f64)],
 ) -> Vec<Finding> {
     let mut out = Vec::new();
-    if let Some(text) = unitsys {
-        if UnitSystem::from_unitsys(text) != Some(system) {
-            let severity = if UnitSystem::from_unitsys(text).is_some() {
-                Severity::Error
-            } else {
-                Severity::Warning
-            };
-            out.push(Finding::new(
-                severity,
-                "units-contradict-unitsys",
-                "PARAM,UNITSYS",
-                format!(
-                    "The job says `{}`, the deck says PARAM,UNITSYS,{}",
-                    system.name(),
-                    text.trim()
-                ),
-                "state the deck's units in `units` of the job, or correct the parameter",
-            ));
-        }
+    if let Some(text) = unitsys
+        && UnitSystem::from_unitsys(text) != Some(system)
+    {
+        let severity = if UnitSystem::from_unitsys(text).is_some() {
+            Severity::Error
+        } else {
+            Severity::Warning
+        };
+        out.push(Finding::new(
+            severity,
+            "units-contradict-unitsys",
+            "PARAM,UNITSYS",
+            format!(
+                "The job says `{}`, the deck says PARAM,UNITSYS,{}",
+                system.name(),
+                text.trim()
+            ),
+            "state the deck's units in `units` of the job, or correct the parameter",
+        ));
     }
     let gpa = system.si(Quantity::Stress) / 1e9;
     out.extend(implausible(

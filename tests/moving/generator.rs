@@ -103,7 +103,8 @@ impl Machine {
             let (b, i) = (self.hangs_on[w], s + w);
             let (d, v) = (y[b] - y[i], y[n + b] - y[n + i]);
             let l = &self.laws[w];
-            let stiffness = l.k * (1.0 + l.modulation * (6.283 * l.modulation_hz * t).sin());
+            let stiffness =
+                l.k * (1.0 + l.modulation * (std::f64::consts::TAU * l.modulation_hz * t).sin());
             let over = match l.stop_side {
                 0 => (d - l.gap).max(0.0) + (d + l.gap).min(0.0),
                 1 => (d + l.gap).min(0.0),

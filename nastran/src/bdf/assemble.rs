@@ -214,7 +214,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
     /// Appends a continuation to the card that is open.
     pub(super) fn attach(&mut self, cut: &Cut<'a>, line: &Line) {
         let width = cut.width();
-        while self.fields.len() % width != 0 {
+        while !self.fields.len().is_multiple_of(width) {
             self.fields.push(&[]);
         }
         self.spans.push(self.span(line));

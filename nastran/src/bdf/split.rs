@@ -202,7 +202,7 @@ impl<'a> Cut<'a> {
         let mut starts = [self.body.len(); 11];
         let mut column = 0_usize;
         for (i, &c) in self.body.iter().enumerate() {
-            if column % 8 == 0
+            if column.is_multiple_of(8)
                 && let Some(start) = starts.get_mut(column / 8)
                 && *start == self.body.len()
             {

@@ -66,7 +66,7 @@ impl Analysis {
     pub fn from_code(code: i32) -> Self {
         match code {
             1 => Self::Statics,
-            2 | 3 | 4 => Self::Modes,
+            2..=4 => Self::Modes,
             5 => Self::Frequency,
             6 => Self::Transient,
             7 => Self::PreBuckling,

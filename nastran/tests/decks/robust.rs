@@ -101,7 +101,7 @@ fn decks_with_damaged_bytes_are_read() {
         let bytes = std::fs::read(path).unwrap();
         // a window of the larger files, its start kept
         let size = bytes.len().min(24_000);
-        let start = if next(&mut state) % 2 == 0 {
+        let start = if next(&mut state).is_multiple_of(2) {
             0
         } else {
             next(&mut state) % (bytes.len() - size + 1)

@@ -41,7 +41,7 @@ pub fn read_job(inputs: &mut Inputs, path: &Path) -> Result<Job, Faults> {
         Ok(job)
     } else {
         faults.sort_by(|a, b| {
-            (&a.file != &given, &a.file, a.line).cmp(&(&b.file != &given, &b.file, b.line))
+            (a.file != given, &a.file, a.line).cmp(&(b.file != given, &b.file, b.line))
         });
         faults.dedup();
         Err(faults)

@@ -148,10 +148,10 @@ fn remove_entry(table: &mut DeTable, span: &Range<usize>, key: &mut Vec<String>)
         .next();
     let Some(name) = found else { return false };
     key.push(name.get_ref().to_string());
-    if let Some(value) = table.get_mut(&name) {
-        if remove_inside(value, span, key) {
-            return true;
-        }
+    if let Some(value) = table.get_mut(&name)
+        && remove_inside(value, span, key)
+    {
+        return true;
     }
     table.remove(&name);
     true

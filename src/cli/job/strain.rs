@@ -114,19 +114,19 @@ pub fn strain_from_table(t: &Table) -> Result<StrainTable, Faults> {
     };
     if let StrainRows::Times(times) = &rows {
         for (i, w) in times.windows(2).enumerate() {
-            if let [a, b] = w {
-                if !(b > a) {
-                    let line = t.rows.get(i + 1).map_or(0, |r| r.0);
-                    let wrong = format!("time {b} after {a}");
-                    faults.push(Fault::at(
-                        &*t.file,
-                        line,
-                        "time",
-                        wrong,
-                        "write samples in order of time",
-                    ));
-                    break;
-                }
+            if let [a, b] = w
+                && !(b > a)
+            {
+                let line = t.rows.get(i + 1).map_or(0, |r| r.0);
+                let wrong = format!("time {b} after {a}");
+                faults.push(Fault::at(
+                    &*t.file,
+                    line,
+                    "time",
+                    wrong,
+                    "write samples in order of time",
+                ));
+                break;
             }
         }
     }

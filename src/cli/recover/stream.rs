@@ -230,7 +230,7 @@ pub(super) fn run(
                     .zip(piece.loads.chunks_exact(k))
                     .enumerate()
                 {
-                    if (index + i) % stride == 0 {
+                    if (index + i).is_multiple_of(stride) {
                         write_row(w, *t, f, &filter, &units)?;
                     }
                 }

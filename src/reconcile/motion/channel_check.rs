@@ -27,14 +27,14 @@ pub fn broken_channels(frame: &MotionFrame) -> Vec<BrokenChannel> {
             Kind::Other
         }
     };
-    let name = |f: &Finding| match f.code.as_ref() {
+    let name = |f: &Finding| match f.code {
         "dead-channel" => Some("dead_channel"),
         "saturated-channel" => Some("saturated_channel"),
         _ => None,
     };
     check_channels(&frame.data, frame.gravity, kind)
         .iter()
-        .filter(|f| own.iter().any(|c| *c == f.subject))
+        .filter(|f| own.contains(&f.subject))
         .filter_map(|f| {
             Some(BrokenChannel {
                 id: name(f)?,

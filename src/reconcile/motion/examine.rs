@@ -249,9 +249,8 @@ fn judged(
         && share > CLOSED_TRANSIENT
         && gap.after < AT_HELD_OUT_FLOOR * gap.floor;
     let adequate = adequate || at_floor;
-    let verdict = if !broken.is_empty() {
-        Verdict::Named
-    } else if !best.set.is_empty() && evidence > DECISIVE && adequate && proven {
+    let decided = !best.set.is_empty() && evidence > DECISIVE && adequate && proven;
+    let verdict = if !broken.is_empty() || decided {
         Verdict::Named
     } else if !quiet {
         Verdict::Unknown

@@ -143,7 +143,7 @@ fn gap_with(
     for (i, l) in left.iter().enumerate() {
         let whole = reference(&d, i, values).max(f64::MIN_POSITIVE);
         let mut power = vec![0.0; BANDS];
-        let mut edge = vec![0.0; BANDS];
+        let mut edge = [0.0; BANDS];
         for (k, v) in l.iter().enumerate() {
             let b = band_of(frame, d.f_hz[k]);
             power[b] += v.norm_sqr();

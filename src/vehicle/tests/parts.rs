@@ -155,7 +155,7 @@ fn a_simulated_step_follows_the_closed_form() {
         steps: 4,
     };
     let s = simulate(&q.vehicle, &[m, k, c], &drive).unwrap();
-    let (w, z) = ((k / m as f64).sqrt(), c / (2.0 * (k * m as f64).sqrt()));
+    let (w, z) = ((k / m).sqrt(), c / (2.0 * (k * m).sqrt()));
     let wd = w * (1.0 - z * z).sqrt();
     for i in 0..400 {
         let t = i as f64 / 200.0;

@@ -70,12 +70,11 @@ pub(super) fn rbe3(f: &mut Fields) -> Rbe3 {
                 let upper = f.opt_id(i + 1, "G").unwrap_or(0);
                 if let Some(group) = groups.last_mut()
                     && let Some(&lower) = group.grids.last()
+                    && upper > lower
                 {
-                    if upper > lower {
-                        group
-                            .grids
-                            .extend(f.written_out(i + 1, "G", lower + 1..=upper, 1));
-                    }
+                    group
+                        .grids
+                        .extend(f.written_out(i + 1, "G", lower + 1..=upper, 1));
                 }
                 i += 2;
             }

@@ -42,7 +42,7 @@ impl Set {
                 except,
             } => {
                 (*first..=*last).contains(&id)
-                    && (id - first) % (*by).max(1) == 0
+                    && (id - first).is_multiple_of((*by).max(1))
                     && !except.contains(&id)
             }
             SetItem::All { except } => !except.contains(&id),

@@ -137,7 +137,7 @@ fn written_cards_read_back_equal() {
         grid: 2,
         cid: 0,
         scale: 1.0,
-        n: [0.0, 3.14159265358979, -1.0],
+        n: [0.0, 1.23456789012345, -1.0],
     };
     let load = LoadSum {
         sid: 1,

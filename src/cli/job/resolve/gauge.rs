@@ -137,14 +137,14 @@ pub(crate) fn check_gauge(g: &JobGauge, faults: &mut Faults) {
     if g.name.is_empty() {
         fault("name", "the name is blank", "name every gauge");
     }
-    if let Some(d) = g.direction {
-        if !(d.iter().all(|x| x.is_finite()) && d.iter().any(|x| *x != 0.0)) {
-            fault(
-                "direction",
-                "the direction has no length",
-                "give a vector such as [1, 0, 0]",
-            );
-        }
+    if let Some(d) = g.direction
+        && !(d.iter().all(|x| x.is_finite()) && d.iter().any(|x| *x != 0.0))
+    {
+        fault(
+            "direction",
+            "the direction has no length",
+            "give a vector such as [1, 0, 0]",
+        );
     }
     if !(g.bridge_factor.is_finite() && g.bridge_factor != 0.0) {
         fault(

@@ -62,7 +62,7 @@ impl Row {
 
     /// Blanks up to field 2 of the next line.
     fn next_line(mut self) -> Row {
-        while self.0.len() % 8 != 0 {
+        while !self.0.len().is_multiple_of(8) {
             self.0.push(Field::Blank);
         }
         self
