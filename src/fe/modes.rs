@@ -15,6 +15,8 @@ use rayon::prelude::*;
 const BLOCK: usize = 6;
 /// Residual of a Ritz pair over its value; the error of a frequency goes with its square: a few parts in ten thousand.
 const CONVERGED: f64 = 1e-2;
+/// Grids handled at a time: the vectors of a block over so many stay in the cache.
+const CHUNK: usize = 512;
 /// Vectors at most, for each mode wanted: bounds memory and time.
 const VECTORS_A_MODE: usize = 8;
 
@@ -190,10 +192,7 @@ fn orthonormal(
     for _ in 0..2 {
         if !basis.is_empty() {
             let along = gram(forces, &block);
-            block
-                .par_iter_mut()
-                .enumerate()
-                .for_each(|(j, u)| subtract(u, basis, |i| along[(i, j)]));
+            subtract(&mut block, basis, &along);
         }
     }
     let mut factor = DMatrix::identity(block.len(), block.len());
@@ -236,36 +235,65 @@ fn start_values(n: usize, column: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Dots of all of `a` with all of `b`.
+/// Dots of all of `a` with all of `b`, chunk by chunk so that each is read once; the chunks are summed in their order.
 fn gram(a: &[Field], b: &[Field]) -> DMatrix<f64> {
-    let dots: Vec<f64> = (0..a.len() * b.len())
+    let grids = a.first().map_or(0, Vec::len);
+    let parts: Vec<DMatrix<f64>> = (0..grids.div_ceil(CHUNK))
         .into_par_iter()
-        .map(|k| {
-            let (u, v) = (&a[k % a.len()], &b[k / a.len()]);
-            // Six sums, which the processor runs side by side.
-            let mut sums = [0.0; 6];
-            for (u, v) in u.iter().zip(v) {
-                for i in 0..6 {
-                    sums[i] += u[i] * v[i];
-                }
-            }
-            sums.iter().sum()
+        .map(|c| {
+            let range = c * CHUNK..grids.min((c + 1) * CHUNK);
+            DMatrix::from_fn(a.len(), b.len(), |i, j| {
+                dot(&a[i][range.clone()], &b[j][range.clone()])
+            })
         })
         .collect();
-    DMatrix::from_vec(a.len(), b.len(), dots)
+    parts
+        .iter()
+        .fold(DMatrix::zeros(a.len(), b.len()), |sum, p| sum + p)
+}
+
+fn dot(a: &[[f64; 6]], b: &[[f64; 6]]) -> f64 {
+    // Six sums, which the processor runs side by side.
+    let mut sums = [0.0; 6];
+    for (a, b) in a.iter().zip(b) {
+        for i in 0..6 {
+            sums[i] += a[i] * b[i];
+        }
+    }
+    sums.iter().sum()
+}
+
+/// Takes `basis` times a column of `amounts` from each field of the block.
+fn subtract(block: &mut [Field], basis: &[Field], amounts: &DMatrix<f64>) {
+    let grids = block.first().map_or(0, Vec::len);
+    let mut pieces: Vec<Vec<&mut [[f64; 6]]>> = (0..grids.div_ceil(CHUNK))
+        .map(|_| Vec::with_capacity(block.len()))
+        .collect();
+    for field in block {
+        for (piece, list) in field.chunks_mut(CHUNK).zip(&mut pieces) {
+            list.push(piece);
+        }
+    }
+    pieces.into_par_iter().enumerate().for_each(|(c, list)| {
+        let range = c * CHUNK..grids.min((c + 1) * CHUNK);
+        for (j, piece) in list.into_iter().enumerate() {
+            for (i, q) in basis.iter().enumerate() {
+                add(piece, &q[range.clone()], -amounts[(i, j)]);
+            }
+        }
+    });
+}
+
+fn add(to: &mut [[f64; 6]], v: &[[f64; 6]], c: f64) {
+    for (o, v) in to.iter_mut().zip(v) {
+        o.iter_mut().zip(v).for_each(|(o, v)| *o += c * v);
+    }
 }
 
 fn combine(fields: &[Field], amount: impl Fn(usize) -> f64) -> Field {
     let mut out = vec![[0.0; 6]; fields.first().map_or(0, Vec::len)];
-    subtract(&mut out, fields, |r| -amount(r));
-    out
-}
-
-fn subtract(from: &mut Field, fields: &[Field], amount: impl Fn(usize) -> f64) {
     for (r, field) in fields.iter().enumerate() {
-        let c = amount(r);
-        for (o, v) in from.iter_mut().zip(field) {
-            o.iter_mut().zip(v).for_each(|(o, v)| *o -= c * v);
-        }
+        add(&mut out, field, amount(r));
     }
+    out
 }
