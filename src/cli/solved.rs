@@ -94,9 +94,14 @@ pub fn solve_kept(
         .map_err(|e| faults_of(&e, read))
 }
 
-/// Everything that the displacements depend on: the program, the bytes of the deck and its includes, the load cases.
+/// Everything that the displacements depend on: the program file, the bytes of the deck and its includes, the load cases.
 fn identity(session: &mut Session, read: &DeckModel, cases: &[LoadCase]) -> String {
     let mut text = format!("strainbridge {} modes {MODES}\n", env!("CARGO_PKG_VERSION"));
+    // A program that was built anew may solve otherwise under the same version.
+    let built = std::env::current_exe().and_then(std::fs::metadata);
+    if let Ok(about) = built {
+        let _ = writeln!(text, "program {} {:?}", about.len(), about.modified().ok());
+    }
     for path in &read.files {
         let digest = session.inputs.digest_of(path);
         let _ = writeln!(text, "file {}", digest.unwrap_or_default());
