@@ -6,7 +6,7 @@ use crate::cli::fault::{Fault, Faults};
 use crate::fe::floor::{FloorLoad, Standing, solve_standing};
 use crate::fe::strain_tensor::Surface;
 use crate::fe::{CaseResult, UnitLoad};
-use crate::gauge::{CornerRows, Gauge, GaugeSpec, build, reading};
+use crate::gauge::{CornerRows, Gauge, GaugeSpec, build, on_refined, reading};
 use crate::model::{GridIx, Model, Vec3};
 use nastran::bdf::{MemoryLoader, read_deck};
 use rand::{RngExt, SeedableRng};
@@ -164,8 +164,12 @@ pub(super) fn drive(glued: &[Glued]) -> Result<Yard, Faults> {
             moment: *moment,
         })
         .collect();
-    let standing =
-        solve_standing(&model, 2, &wheels, &loads, None).map_err(|e| program(e.to_string()))?;
+    // The truck itself is finer than its model: what it reads comes from a mesh half as wide.
+    let real = model
+        .refined()
+        .ok_or_else(|| program("the mesh can't be divided".into()))?;
+    let standing = solve_standing(&real.model, 2, &wheels, &loads, None)
+        .map_err(|e| program(e.to_string()))?;
     let gauges: Vec<Gauge> = glued
         .iter()
         .map(|g| {
@@ -174,11 +178,12 @@ pub(super) fn drive(glued: &[Glued]) -> Result<Yard, Faults> {
                 direction: Some(g.direction),
                 ..GaugeSpec::on(g.name.clone(), model.shell_ix(g.element)?)
             };
-            build(&model, &spec, CornerRows::Absent)
+            let gauge = build(&model, &spec, CornerRows::Absent)
                 .ok()?
                 .0
                 .into_iter()
-                .next()
+                .next()?;
+            on_refined(&gauge, &model, &real)
         })
         .collect::<Option<_>>()
         .ok_or_else(|| program("a gauge can't be laid".into()))?;
