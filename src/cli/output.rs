@@ -1,7 +1,8 @@
 //! Writing: files appear under their names only when all of them are complete.
 
 use super::fault::Fault;
-use std::io::Write;
+use std::fs::File;
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// The output folder of one command. Files are written under temporary names and renamed by [`Output::commit`]; dropped
@@ -40,6 +41,22 @@ impl Output {
     ) -> Result<(), Fault> {
         let part = self.begin_file(name);
         fill_file(&part, fill).map_err(|e| unwritable(&self.folder.join(name), &e))
+    }
+
+    /// Opens file `name` to be written piece by piece; flush it before [`Output::commit`].
+    ///
+    /// # Errors
+    /// A fault where it can't be created.
+    pub fn open(&mut self, name: &str) -> Result<BufWriter<File>, Fault> {
+        let part = self.begin_file(name);
+        File::create(part)
+            .map(|f| BufWriter::with_capacity(1 << 20, f))
+            .map_err(|e| unwritable(&self.folder.join(name), &e))
+    }
+
+    /// A fault for a file of this folder that could not be written on.
+    pub fn fault(&self, name: &str, e: &std::io::Error) -> Fault {
+        unwritable(&self.folder.join(name), e)
     }
 
     /// Writes two files at the same time, each by its own `fill`.
@@ -106,7 +123,7 @@ fn fill_file(
     part: &Path,
     fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
-    let mut file = std::io::BufWriter::with_capacity(1 << 18, std::fs::File::create(part)?);
+    let mut file = BufWriter::with_capacity(1 << 18, File::create(part)?);
     fill(&mut file)?;
     file.flush()
 }

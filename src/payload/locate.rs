@@ -253,7 +253,9 @@ fn solve_run(
         Some(arms) if n_wheels == 0 && spec.model_rel > 0.0 => balanced_patterns(arms),
         _ => Vec::new(),
     };
-    let at_z = at_c + 1;
+    // What all gauges share: the model as a whole where the floor gives the wheel forces, else every wheel's and part's column of it.
+    let n_common = if n_wheels > 0 { n_wheels + 3 } else { 1 };
+    let at_z = at_c + n_common;
     let width = at_z + patterns.len();
     let known = [1.0, run.shift[0], run.shift[1]];
     // Entry of `(F, F dx, F dy)` columns for the unknowns in use.
@@ -292,11 +294,16 @@ fn solve_run(
         for (k, c) in fold(column).into_iter().enumerate() {
             row[at_p + k] = c;
         }
-        let predicted: f64 = (0..3).map(|k| column[k] * old.p[k]).sum::<f64>()
-            + (0..n_wheels.min(old.reactions.len()))
-                .map(|w| row[w] * old.reactions[w])
-                .sum::<f64>();
-        row[at_c] = predicted;
+        if n_wheels > 0 {
+            for (w, r) in old.reactions.iter().enumerate().take(n_wheels) {
+                row[at_c + w] = model.wheels[(g, w)] * r;
+            }
+            for k in 0..3 {
+                row[at_c + n_wheels + k] = column[k] * old.p[k];
+            }
+        } else {
+            row[at_c] = (0..3).map(|k| column[k] * old.p[k]).sum();
+        }
         for (z, pattern) in patterns.iter().enumerate() {
             row[at_z + z] = pattern
                 .iter()
@@ -359,17 +366,20 @@ fn solve_run(
             }
         }
     }
-    if spec.model_rel > 0.0 {
-        let mut row = vec![0.0; width];
-        row[at_c] = 1.0;
-        rows.push((row, 0.0, spec.model_rel.powi(2), None));
-    } else {
+    if spec.model_rel == 0.0 {
         for r in &mut rows {
-            r.0[at_c] = 0.0;
+            r.0[at_c..at_z].fill(0.0);
         }
+    }
+    for c in at_c..at_z {
         let mut row = vec![0.0; width];
-        row[at_c] = 1.0;
-        rows.push((row, 0.0, 1.0, None));
+        row[c] = 1.0;
+        let sd = if spec.model_rel > 0.0 {
+            spec.model_rel
+        } else {
+            1.0
+        };
+        rows.push((row, 0.0, sd * sd, None));
     }
     let a = Matrix::from_fn(rows.len(), width, |i, l| rows[i].0[l]);
     let y: Vec<f64> = rows.iter().map(|r| r.1).collect();

@@ -10,12 +10,10 @@ use crate::sensitivity::Sensitivity;
 pub struct Filter {
     n: usize,
     k: usize,
-    /// Width of padded rows.
-    kp: usize,
-    /// `n x kp`: the gain, transposed, rows padded with zeros.
-    gain_t: Vec<f64>,
-    /// `k x n`: S transposed.
-    s_t: Vec<f64>,
+    /// `k x n`, by rows.
+    gain: Vec<f64>,
+    /// `n x k`, S by rows.
+    s: Vec<f64>,
     /// Subtracted from each sample, strain.
     zero: Vec<f64>,
     /// Noise variance of each load.
@@ -84,8 +82,10 @@ impl Sums {
     }
 }
 
-/// Doubles that a processor handles at once, at most.
-const PAD: usize = 8;
+/// Samples handled together: their readings lie beside each other by gauge, so that a coefficient is loaded once for all of them.
+const LANES: usize = 32;
+
+type Lanes = [f64; LANES];
 
 impl Filter {
     /// The filter for `s` with `zero` (strain by gauge) subtracted; weights are those of the model error at `typical` loads.
@@ -115,13 +115,6 @@ impl Filter {
             })
             .collect();
         let fit = fit(&s.values, &vec![0.0; n], &variances, &priors, &s.scales())?;
-        let kp = k.div_ceil(PAD) * PAD;
-        let mut gain_t = vec![0.0; n * kp];
-        for g in 0..n {
-            for l in 0..k {
-                gain_t[g * kp + l] = fit.gain[(l, g)];
-            }
-        }
         let own = errors.noise * errors.noise * noise_factor;
         let noise_variance: Vec<f64> = (0..k)
             .map(|l| {
@@ -143,11 +136,13 @@ impl Filter {
         Some(Self {
             n,
             k,
-            kp,
-            gain_t,
-            s_t: (0..k)
+            gain: (0..k)
                 .flat_map(|l| (0..n).map(move |g| (l, g)))
-                .map(|(l, g)| s.values[(g, l)])
+                .map(|(l, g)| fit.gain[(l, g)])
+                .collect(),
+            s: (0..n)
+                .flat_map(|g| (0..k).map(move |l| (g, l)))
+                .map(|(g, l)| s.values[(g, l)])
                 .collect(),
             zero,
             noise_variance,
@@ -157,48 +152,98 @@ impl Filter {
         })
     }
 
-    /// Loads of a block of samples (`n_gauges` strains each, times `to_strain`), appended to `out` (`n_loads` each) and to `sums`.
+    /// Loads of samples (`n_gauges` strains each, times `to_strain`), appended to `out` (`n_loads` each) and to `sums`.
+    /// A sample with a reading that is not finite has loads NaN and counts as a gap.
     pub fn apply(&self, samples: &[f64], to_strain: f64, out: &mut Vec<f64>, sums: &mut Sums) {
-        let (n, k, kp) = (self.n, self.k, self.kp);
+        let mut readings = vec![[0.0; LANES]; self.n];
+        let mut loads = vec![[0.0; LANES]; self.k];
         pulp::Arch::new().dispatch(|| {
-            let mut y = vec![0.0; n];
-            let mut f = vec![0.0; kp];
-            for sample in samples.chunks_exact(n) {
-                for ((v, &raw), z) in y.iter_mut().zip(sample).zip(&self.zero) {
-                    *v = raw * to_strain - z;
-                }
-                f.fill(0.0);
-                for (row, &v) in self.gain_t.chunks_exact(kp).zip(&y) {
-                    for (a, &b) in f.iter_mut().zip(row) {
-                        *a += b * v;
-                    }
-                }
-                out.extend_from_slice(&f[..k]);
-                if !f[..k].iter().all(|v| v.is_finite()) {
-                    sums.gaps += 1;
-                    continue;
-                }
-                sums.samples += 1;
-                for (a, &v) in sums.reading.iter_mut().zip(&y) {
-                    *a += v * v;
-                }
-                for (row, &v) in self.s_t.chunks_exact(n).zip(&f) {
-                    for (a, &b) in y.iter_mut().zip(row) {
-                        *a -= b * v;
-                    }
-                }
-                for (a, &v) in sums.residual.iter_mut().zip(&y) {
-                    *a += v * v;
-                }
-                for l in 0..k {
-                    let v = f[l];
-                    sums.min[l] = if v < sums.min[l] { v } else { sums.min[l] };
-                    sums.max[l] = if v > sums.max[l] { v } else { sums.max[l] };
-                    sums.sum[l] += v;
-                    sums.sum_of_squares[l] += v * v;
-                }
+            for block in samples.chunks((self.n * LANES).max(1)) {
+                self.apply_block(block, to_strain, &mut readings, &mut loads, out, sums);
             }
         });
+    }
+
+    #[inline(always)]
+    fn apply_block(
+        &self,
+        block: &[f64],
+        to_strain: f64,
+        readings: &mut [Lanes],
+        loads: &mut [Lanes],
+        out: &mut Vec<f64>,
+        sums: &mut Sums,
+    ) {
+        let count = block.len() / self.n.max(1);
+        if count < LANES {
+            readings.fill([0.0; LANES]);
+        }
+        for (lane, sample) in block.chunks_exact(self.n.max(1)).enumerate() {
+            for ((r, &raw), z) in readings.iter_mut().zip(sample).zip(&self.zero) {
+                r[lane] = raw * to_strain - z;
+            }
+        }
+        let mut ok = [true; LANES];
+        for (f, row) in loads.iter_mut().zip(self.gain.chunks_exact(self.n.max(1))) {
+            let mut sum = [0.0; LANES];
+            for (&c, y) in row.iter().zip(&*readings) {
+                for (a, &v) in sum.iter_mut().zip(y) {
+                    *a = c.mul_add(v, *a);
+                }
+            }
+            for (o, v) in ok.iter_mut().zip(&sum) {
+                *o &= v.is_finite();
+            }
+            *f = sum;
+        }
+        for (lane, &o) in ok.iter().enumerate().take(count) {
+            out.extend(loads.iter().map(|f| if o { f[lane] } else { f64::NAN }));
+        }
+        let gaps = ok.iter().take(count).filter(|o| !**o).count();
+        sums.samples += (count - gaps) as u64;
+        sums.gaps += gaps as u64;
+        if gaps > 0 {
+            for all in readings.iter_mut().chain(loads.iter_mut()) {
+                for (v, o) in all.iter_mut().zip(&ok) {
+                    *v = if *o { *v } else { 0.0 };
+                }
+            }
+        }
+        let taken = |lane: usize| lane < count && ok[lane];
+        for (l, f) in loads.iter().enumerate() {
+            let mut squares = [0.0; LANES];
+            for (s, &v) in squares.iter_mut().zip(f) {
+                *s = v * v;
+            }
+            sums.sum[l] += total(f);
+            sums.sum_of_squares[l] += total(&squares);
+            for (lane, &v) in f.iter().enumerate() {
+                if taken(lane) {
+                    sums.min[l] = if v < sums.min[l] { v } else { sums.min[l] };
+                    sums.max[l] = if v > sums.max[l] { v } else { sums.max[l] };
+                }
+            }
+        }
+        for (g, (y, row)) in readings
+            .iter()
+            .zip(self.s.chunks_exact(self.k.max(1)))
+            .enumerate()
+        {
+            let (mut left, mut squares) = (*y, [0.0; LANES]);
+            for (s, &v) in squares.iter_mut().zip(y) {
+                *s = v * v;
+            }
+            sums.reading[g] += total(&squares);
+            for (&c, f) in row.iter().zip(&*loads) {
+                for (a, &v) in left.iter_mut().zip(f) {
+                    *a = (-c).mul_add(v, *a);
+                }
+            }
+            for (s, &v) in squares.iter_mut().zip(&left) {
+                *s = v * v;
+            }
+            sums.residual[g] += total(&squares);
+        }
     }
 
     /// Standard deviation of each load of a sample with loads `f`.
@@ -224,4 +269,16 @@ impl Filter {
     pub fn n_gauges(&self) -> usize {
         self.n
     }
+}
+
+/// Sum over the lanes, in an order that a processor can add in parallel.
+#[inline(always)]
+fn total(lanes: &Lanes) -> f64 {
+    let mut four = [0.0; 4];
+    for chunk in lanes.chunks_exact(4) {
+        for (a, v) in four.iter_mut().zip(chunk) {
+            *a += v;
+        }
+    }
+    (four[0] + four[1]) + (four[2] + four[3])
 }

@@ -1,6 +1,7 @@
 //! A record from the bytes of a CSV file.
 
 use super::channels::{Channel, Channels, SeriesError};
+use super::number::{DecimalMark, number};
 
 /// Largest relative departure of a time step from the median that still counts as even (clock jitter of printed times).
 const STEP_TOLERANCE: f64 = 0.02;
@@ -9,7 +10,8 @@ const RATE_TOLERANCE: f64 = 1e-3;
 
 /// The record in a table with one header line: a column a channel, a row a sample.
 ///
-/// A column `t` or `time` (s) gives the sample rate; without it `declared_hz` does. Comma, semicolon and tab separate; a header
+/// A column `t` or `time` (s) gives the sample rate; without it `declared_hz` does. Comma, semicolon and tab separate (beside the
+/// last two a number may have a decimal comma); a header
 /// `a_body [m/s2]` or `a_body (m/s2)` carries a unit. An empty field, `NaN` or `NA` is a missing sample (NaN).
 ///
 /// # Errors
@@ -30,6 +32,7 @@ pub fn read_csv(bytes: &[u8], declared_hz: Option<f64>) -> Result<Channels, Seri
         .into_iter()
         .find(|s| header.contains(s))
         .unwrap_or(b',');
+    let mark = DecimalMark::beside(separator);
     let names: Vec<(String, String)> = header
         .split(|&b| b == separator)
         .map(name_and_unit)
@@ -46,7 +49,7 @@ pub fn read_csv(bytes: &[u8], declared_hz: Option<f64>) -> Result<Channels, Seri
                 n += 1;
                 continue;
             };
-            column.push(number(field).ok_or_else(|| SeriesError::Line {
+            column.push(number(field, mark).ok_or_else(|| SeriesError::Line {
                 line,
                 what: format!(
                     "`{}` in column `{}` is not a number",
@@ -145,14 +148,6 @@ fn name_and_unit(field: &[u8]) -> (String, String) {
         }
     }
     (text, String::new())
-}
-
-fn number(field: &[u8]) -> Option<f64> {
-    let field = trim(field);
-    if field.is_empty() || field.eq_ignore_ascii_case(b"nan") || field.eq_ignore_ascii_case(b"na") {
-        return Some(f64::NAN);
-    }
-    std::str::from_utf8(field).ok()?.parse().ok()
 }
 
 fn trim(bytes: &[u8]) -> &[u8] {

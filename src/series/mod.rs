@@ -3,6 +3,7 @@
 //! - [`channels`]: a record of equally long, equally sampled channels with units
 //! - [`binary`]: the long record of strainbridge, read a piece at a time
 //! - [`csv`]: bytes of a CSV file to a record
+//! - [`number`]: numbers read and written fast
 //! - [`quality`]: dead, clipped, spiky, drifting, reversed, wrongly scaled channels as findings
 //! - [`detrend`]: mean, line and zero-run removal
 //! - [`butterworth`], [`filtfilt`]: second-order sections, and filtering without phase
@@ -23,6 +24,7 @@ pub mod csv;
 pub mod detrend;
 pub mod filtfilt;
 pub mod integrate;
+pub mod number;
 pub mod quality;
 pub mod resample;
 pub mod spectrum;

@@ -99,12 +99,7 @@ fn size_and_place_of_the_payload_from_wheel_forces_and_from_strain_of_the_other_
         region: Some([[-3000.0, 3000.0], [-500.0, 500.0]]),
     };
     let trials = 60;
-    // Both together: 0.4 % and 11 mm off, but errors that all gauges share are not in that region, which holds the place less often.
-    for (source, limit, share) in [
-        ("wheel forces", 2.0, 0.9),
-        ("strain", 5.0, 0.9),
-        ("both", 2.0, 0.7),
-    ] {
+    for (source, limit) in [("wheel forces", 2.0), ("strain", 5.0), ("both", 2.0)] {
         let mut lot = Lot::new(65);
         let (mut square, mut held, mut off) = (0.0, 0, 0.0);
         for _ in 0..trials {
@@ -153,9 +148,6 @@ fn size_and_place_of_the_payload_from_wheel_forces_and_from_strain_of_the_other_
             "6.5: from {source}: rms {rms:.2} %, place off by {off:.0} mm, region holds it in {held} of {trials}"
         );
         assert!(rms < limit, "{source}: {rms} %");
-        assert!(
-            f64::from(held) >= share * f64::from(trials),
-            "{source}: {held} of {trials}"
-        );
+        assert!(held * 10 >= trials * 9, "{source}: {held} of {trials}");
     }
 }

@@ -1,6 +1,7 @@
 //! A CSV file with the line of every row.
 
 use crate::cli::fault::{Fault, Faults};
+use crate::series::number::{DecimalMark, number};
 
 /// Header and rows of a CSV file, fields trimmed.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +15,7 @@ pub struct Table {
 }
 
 /// The table in a CSV text. Comma, semicolon or tab, whichever the header has most of; lines starting with `#` are comments.
+/// Where commas don't divide the fields, a number may have a decimal comma.
 ///
 /// # Errors
 /// Rows of another length, an empty file.
@@ -63,6 +65,7 @@ pub fn read_table(file: &str, text: &str) -> Result<Table, Faults> {
             ));
         }
     }
+    let mark = DecimalMark::beside(delimiter);
     let mut rows = Vec::new();
     for record in reader.records() {
         match record {
@@ -82,7 +85,7 @@ pub fn read_table(file: &str, text: &str) -> Result<Table, Faults> {
                     ));
                     continue;
                 }
-                rows.push((line, r.iter().map(|s| s.to_owned()).collect()));
+                rows.push((line, r.iter().map(|s| with_point(s, mark)).collect()));
             }
             Err(e) => faults.push(Fault::of(file, "row", e.to_string(), "write a CSV file")),
         }
@@ -95,6 +98,18 @@ pub fn read_table(file: &str, text: &str) -> Result<Table, Faults> {
         })
     } else {
         Err(faults)
+    }
+}
+
+/// A field, a number's decimal comma turned into a point.
+fn with_point(field: &str, mark: DecimalMark) -> String {
+    if mark == DecimalMark::CommaOrPoint
+        && field.contains(',')
+        && number(field.as_bytes(), mark).is_some()
+    {
+        field.replacen(',', ".", 1)
+    } else {
+        field.to_owned()
     }
 }
 

@@ -1,6 +1,7 @@
 //! A long record in CSV, read piece by piece.
 
 use crate::cli::fault::Fault;
+use crate::series::number::{DecimalMark, number, short_number};
 
 /// Header of a record and where its rows begin.
 pub(super) struct Layout {
@@ -103,6 +104,7 @@ pub(super) fn read_piece(
     out: &mut Vec<f64>,
 ) -> Result<(), Fault> {
     let n = l.names.len() + 1;
+    let mark = DecimalMark::beside(l.delimiter);
     let mut row = vec![f64::NAN; n];
     let text = bytes.get(piece.0..piece.1).unwrap_or_default();
     let line_of = |within: usize| {
@@ -113,41 +115,43 @@ pub(super) fn read_piece(
             .filter(|b| **b == b'\n')
             .count() as u32
     };
+    // Columns count without time.
+    let picked: Vec<Option<usize>> = columns
+        .iter()
+        .map(|c| c.map(|c| if c >= l.time { c + 1 } else { c }))
+        .collect();
     let mut at = 0;
-    for line in text.split(|b| *b == b'\n') {
+    while at < text.len() {
         let here = at;
-        at += line.len() + 1;
-        let line = line.strip_suffix(b"\r").unwrap_or(line);
-        if line.iter().all(u8::is_ascii_whitespace) || line.starts_with(b"#") {
+        if let Some(end) = blank_or_comment(text, at) {
+            at = end;
             continue;
         }
         let mut count = 0;
-        for field in line.split(|b| *b == l.delimiter) {
-            let field = field.trim_ascii();
-            let value = if field.is_empty() {
-                f64::NAN
-            } else {
-                match std::str::from_utf8(field)
-                    .ok()
-                    .and_then(|t| t.parse::<f64>().ok())
-                {
-                    Some(v) => v,
-                    None => {
-                        let shown = String::from_utf8_lossy(field).into_owned();
-                        return Err(Fault::at(
-                            file,
-                            line_of(here),
-                            "field",
-                            format!("`{shown}` is no number"),
-                            "write numbers with a decimal point",
-                        ));
-                    }
+        loop {
+            let rest = text.get(at..).unwrap_or_default();
+            let (value, used) = match field(rest, l.delimiter, mark) {
+                Ok(found) => found,
+                Err(shown) => {
+                    return Err(Fault::at(
+                        file,
+                        line_of(here),
+                        "field",
+                        format!("`{shown}` is no number"),
+                        "write numbers with a decimal point",
+                    ));
                 }
             };
             if let Some(v) = row.get_mut(count) {
                 *v = value;
             }
             count += 1;
+            at += used;
+            let next = text.get(at);
+            at += 1;
+            if next != Some(&l.delimiter) {
+                break;
+            }
         }
         if count != n {
             let wrong = format!("{count} fields, the header has {n}");
@@ -160,12 +164,45 @@ pub(super) fn read_piece(
             ));
         }
         times.push(row[l.time]);
-        // Columns count without time.
-        out.extend(
-            columns
-                .iter()
-                .map(|c| c.map_or(f64::NAN, |c| row[if c >= l.time { c + 1 } else { c }])),
-        );
+        out.extend(picked.iter().map(|c| c.map_or(f64::NAN, |c| row[c])));
     }
     Ok(())
+}
+
+/// Where the line that begins at `at` ends, if it holds nothing or a comment.
+fn blank_or_comment(text: &[u8], at: usize) -> Option<usize> {
+    let rest = text.get(at..)?;
+    let first = rest.iter().position(|b| !matches!(b, b' ' | b'\r'));
+    match first.and_then(|n| rest.get(n)) {
+        Some(b'\n') | None => {}
+        Some(b'#') if first == Some(0) => {}
+        _ => return None,
+    }
+    let end = rest.iter().position(|b| *b == b'\n');
+    Some(end.map_or(text.len(), |n| at + n + 1))
+}
+
+/// Value of the field at the beginning of `rest` and its length up to the delimiter, the end of the line or of the text.
+fn field(rest: &[u8], delimiter: u8, mark: DecimalMark) -> Result<(f64, usize), String> {
+    let blank = |from: usize| {
+        let it = rest.get(from..).unwrap_or_default().iter();
+        it.take_while(|b| **b == b' ' || **b == b'\r').count()
+    };
+    let before = blank(0);
+    if let Some((v, n)) = short_number(rest.get(before..).unwrap_or_default(), mark) {
+        let used = before + n + blank(before + n);
+        match rest.get(used) {
+            Some(b) if *b == delimiter || *b == b'\n' => return Ok((v, used)),
+            None => return Ok((v, used)),
+            _ => {}
+        }
+    }
+    let used = rest
+        .iter()
+        .position(|b| *b == delimiter || *b == b'\n')
+        .unwrap_or(rest.len());
+    let text = rest.get(..used).unwrap_or_default();
+    let value = number(text, mark)
+        .ok_or_else(|| String::from_utf8_lossy(text.trim_ascii()).into_owned())?;
+    Ok((value, used))
 }

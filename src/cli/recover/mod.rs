@@ -4,6 +4,8 @@
 
 mod content;
 mod csv_record;
+mod history_files;
+mod record;
 mod runs;
 mod stream;
 

@@ -1,7 +1,9 @@
 //! Records: samples streamed through one filter, pieces in parallel, a few pieces in memory at a time.
 
 use super::content::{check_content, content_of_loads};
-use super::csv_record::{self, Layout};
+use super::csv_record;
+use super::history_files::{Form, Named, stream};
+use super::record::{BYTES, GROUP, Record, Source, process};
 use super::runs::columns_of;
 use super::{MICRO, Task};
 use crate::cli::fault::{Fault, Faults};
@@ -11,74 +13,20 @@ use crate::cli::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::linalg::Matrix;
 use crate::recovery::history::{Filter, Sums};
-use crate::recovery::{NORMAL_95, Readings, recover};
+use crate::recovery::{Readings, recover};
 use crate::report::strain::{RecoveredRun, recover_page};
 use crate::sensitivity::Sensitivity;
-use crate::series::binary::{self, Header};
+use crate::series::binary;
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use std::io::Write;
+use std::io::{Seek, Write};
 
-/// Samples a piece of a binary record.
-const SAMPLES: usize = 16_384;
-/// Bytes a piece of a CSV record.
-const BYTES: usize = 4 << 20;
-/// Pieces in memory at a time.
-const GROUP: usize = 8;
 /// Rows of `loads.csv` at most; longer records are thinned there and written whole to `loads.bin`.
 const MOST_ROWS: usize = 200_000;
 /// Samples on which the residual is judged.
 const JUDGED: usize = 200;
 /// Samples from which typical loads are taken for the weights of a stated model error.
 const TYPICAL: usize = 20_000;
-
-enum Source {
-    Binary(Header),
-    Csv(Layout, Vec<(usize, usize)>),
-}
-
-struct Record {
-    bytes: FileBytes,
-    file: String,
-    source: Source,
-    columns: Vec<Option<usize>>,
-    /// Strain of one unit of the file.
-    unit: f64,
-}
-
-impl Record {
-    fn n_pieces(&self) -> usize {
-        match &self.source {
-            Source::Binary(h) => h.samples.div_ceil(SAMPLES),
-            Source::Csv(_, pieces) => pieces.len(),
-        }
-    }
-
-    /// Times and readings of a piece.
-    fn piece(&self, i: usize) -> Result<(Vec<f64>, Vec<f64>), Fault> {
-        let (mut times, mut values) = (Vec::new(), Vec::new());
-        match &self.source {
-            Source::Binary(h) => {
-                let (from, to) = (i * SAMPLES, ((i + 1) * SAMPLES).min(h.samples));
-                values.reserve((to - from) * self.columns.len());
-                binary::read_samples(h, &self.bytes, from, to, &self.columns, &mut values);
-                times.extend((from..to).map(|s| h.t0 + h.dt * s as f64));
-            }
-            Source::Csv(l, pieces) => {
-                csv_record::read_piece(
-                    &self.file,
-                    &self.bytes,
-                    pieces[i],
-                    l,
-                    &self.columns,
-                    &mut times,
-                    &mut values,
-                )?;
-            }
-        }
-        Ok((times, values))
-    }
-}
 
 pub(super) fn run(
     session: &mut Session,
@@ -168,10 +116,7 @@ pub(super) fn run(
     // A CSV record's rows are not counted beforehand: a row is at least two bytes a column.
     let about = total.unwrap_or(record.bytes.len() / (6 * (names.len() + 1)));
     let stride = about.div_ceil(MOST_ROWS).max(1);
-    let whole = stride > 1;
-    let mut sums = Sums::new(s.gauges.len(), s.loads.len());
-    let mut first_fault = None;
-    let dt = match &record.source {
+    let (t0, dt) = match &record.source {
         Source::Binary(h) => (h.t0, h.dt),
         Source::Csv(..) => record.piece(0).ok().map_or((0.0, 0.0), |p| {
             (
@@ -183,8 +128,8 @@ pub(super) fn run(
     let names_of: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
     if let Some(first_mode) = task.prepared.fields.as_ref().and_then(|f| f.first_mode) {
         let sigma = filter.sigma(&vec![0.0; s.loads.len()]);
-        let pieces = sampled_pieces(&record, &filter, &units).map_err(|f| vec![f])?;
-        let content = content_of_loads(&pieces, &sigma, if dt.1 > 0.0 { 1.0 / dt.1 } else { 0.0 });
+        let pieces = sampled_pieces(&record, &filter).map_err(|f| vec![f])?;
+        let content = content_of_loads(&pieces, &sigma, if dt > 0.0 { 1.0 / dt } else { 0.0 });
         session
             .findings
             .extend(check_content(&names_of, &content, first_mode));
@@ -192,84 +137,51 @@ pub(super) fn run(
         session.put("content_hz", &content)?;
     }
     let out = session.output_for(&arguments.job)?;
-    let mut written = 0u64;
-    let folder = out.folder().to_owned();
-    let part = folder.join(".loads.bin.body");
-    let mut body = if whole {
-        std::fs::File::create(&part)
-            .ok()
-            .map(|f| std::io::BufWriter::with_capacity(1 << 20, f))
-    } else {
-        None
+    let mut csv = Named {
+        name: "loads.csv",
+        file: out.open("loads.csv").map_err(|f| vec![f])?,
     };
-    out.write("loads.csv", |w| {
-        write!(w, "time")?;
-        for name in &names_of {
-            write!(w, ",{name},{name}.low,{name}.high")?;
-        }
-        writeln!(w)?;
-        let mut index = 0usize;
-        for group in (0..record.n_pieces()).collect::<Vec<_>>().chunks(GROUP) {
-            let done: Vec<Result<Piece, Fault>> = group
-                .par_iter()
-                .map(|&i| process(&record, &filter, &units, i))
-                .collect();
-            for piece in done {
-                let piece = match piece {
-                    Ok(p) => p,
-                    Err(f) => {
-                        first_fault = Some(f);
-                        return Ok(());
-                    }
-                };
-                sums.merge(&piece.sums);
-                let k = names_of.len();
-                for (i, (t, f)) in piece
-                    .times
-                    .iter()
-                    .zip(piece.loads.chunks_exact(k))
-                    .enumerate()
-                {
-                    if (index + i).is_multiple_of(stride) {
-                        write_row(w, *t, f, &filter, &units)?;
-                    }
-                }
-                index += piece.times.len();
-                if let Some(b) = &mut body {
-                    b.write_all(&piece.bytes)?;
-                    written += piece.times.len() as u64;
-                }
-            }
-        }
-        Ok(())
-    })
-    .map_err(|f| vec![f])?;
-    if let Some(f) = first_fault {
-        let _ = std::fs::remove_file(&part);
-        return Err(vec![f]);
+    let mut bin = match stride > 1 {
+        true => Some(Named {
+            name: "loads.bin",
+            file: out.open("loads.bin").map_err(|f| vec![f])?,
+        }),
+        false => None,
+    };
+    let unit_names: Vec<String> = names_of.iter().zip(&units).map(named_with_unit).collect();
+    let head = |bin: &mut Named, samples: u64| {
+        binary::write_header(&mut bin.file, &unit_names, samples, t0, dt, 1.0)
+    };
+    let mut columns = "time".to_owned();
+    for name in &names_of {
+        columns.push_str(&format!(",{name},{name}.low,{name}.high"));
     }
-    if let Some(mut b) = body {
-        let done = b.flush();
-        drop(b);
-        let unit_names: Vec<String> = names_of
-            .iter()
-            .zip(&units)
-            .map(|(n, u)| {
-                if u.name.is_empty() {
-                    n.clone()
-                } else {
-                    format!("{n} [{}]", u.name)
-                }
-            })
-            .collect();
-        let copied = out.write("loads.bin", |w| {
-            done?;
-            binary::write_header(w, &unit_names, written, dt.0, dt.1, 1.0)?;
-            std::io::copy(&mut std::fs::File::open(&part)?, w).map(|_| ())
+    columns.push('\n');
+    csv.put(columns.as_bytes())
+        .and_then(|()| {
+            bin.as_mut()
+                .map_or(Ok(()), |b| head(b, 0).map_err(|e| (b.name, e)))
+        })
+        .map_err(|(name, e)| vec![out.fault(name, &e)])?;
+    let form = Form {
+        filter: &filter,
+        units: &units,
+        stride,
+    };
+    let sums = stream(&record, &form, &mut csv, bin.as_mut(), &out).map_err(|f| vec![f])?;
+    // How many samples a CSV record holds is known at its end: the header is written again.
+    let mut written = csv.file.flush().map_err(|e| (csv.name, e));
+    if let Some(mut b) = bin {
+        written = written.and_then(|()| {
+            b.file
+                .rewind()
+                .and_then(|()| head(&mut b, sums.samples + sums.gaps))
+                .and_then(|()| b.file.flush())
+                .map_err(|e| (b.name, e))
         });
-        let _ = std::fs::remove_file(&part);
-        copied.map_err(|f| vec![f])?;
     }
+    written.map_err(|(name, e)| vec![out.fault(name, &e)])?;
+    drop(csv);
     finish(
         session,
         arguments,
@@ -279,79 +191,26 @@ pub(super) fn run(
         &sums,
         &units,
         &file,
-        whole.then_some(stride),
+        (stride > 1).then_some(stride),
     )
 }
 
+fn named_with_unit((name, unit): (&String, &LoadUnits)) -> String {
+    if unit.name.is_empty() {
+        name.clone()
+    } else {
+        format!("{name} [{}]", unit.name)
+    }
+}
+
 /// Loads of some pieces spread over the record.
-fn sampled_pieces(
-    record: &Record,
-    filter: &Filter,
-    units: &[LoadUnits],
-) -> Result<Vec<Vec<f64>>, Fault> {
+fn sampled_pieces(record: &Record, filter: &Filter) -> Result<Vec<Vec<f64>>, Fault> {
     let n = record.n_pieces();
     let taken = n.min(GROUP);
     (0..taken)
         .into_par_iter()
-        .map(|i| process(record, filter, units, i * n / taken).map(|p| p.loads))
+        .map(|i| process(record, filter, i * n / taken).map(|p| p.loads))
         .collect()
-}
-
-struct Piece {
-    times: Vec<f64>,
-    loads: Vec<f64>,
-    /// Loads in report units, f32.
-    bytes: Vec<u8>,
-    sums: Sums,
-}
-
-fn process(
-    record: &Record,
-    filter: &Filter,
-    units: &[LoadUnits],
-    i: usize,
-) -> Result<Piece, Fault> {
-    let (times, values) = record.piece(i)?;
-    let mut loads = Vec::with_capacity(times.len() * filter.n_loads());
-    let mut sums = Sums::new(filter.n_gauges(), filter.n_loads());
-    filter.apply(&values, record.unit, &mut loads, &mut sums);
-    let mut bytes = Vec::with_capacity(loads.len() * 4);
-    for f in loads.chunks_exact(filter.n_loads()) {
-        for (v, u) in f.iter().zip(units) {
-            bytes.extend_from_slice(&((v * u.factor) as f32).to_le_bytes());
-        }
-    }
-    Ok(Piece {
-        times,
-        loads,
-        bytes,
-        sums,
-    })
-}
-
-fn write_row(
-    w: &mut dyn Write,
-    t: f64,
-    f: &[f64],
-    filter: &Filter,
-    units: &[LoadUnits],
-) -> std::io::Result<()> {
-    write!(w, "{t}")?;
-    for ((v, s), u) in f.iter().zip(filter.sigma(f)).zip(units) {
-        if v.is_finite() {
-            let half = NORMAL_95 * s;
-            write!(
-                w,
-                ",{:.6e},{:.6e},{:.6e}",
-                v * u.factor,
-                (v - half) * u.factor,
-                (v + half) * u.factor
-            )?;
-        } else {
-            write!(w, ",,,")?;
-        }
-    }
-    writeln!(w)
 }
 
 /// Typical (rms) loads, and what samples over the record say of the loads asked for and of the gauges.
