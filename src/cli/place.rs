@@ -10,7 +10,7 @@ use crate::model::{Model, ShellIx};
 use crate::placement::candidates::{Angles, Candidates, Scatter};
 use crate::placement::quality::{Quality, judge_rows};
 use crate::placement::sites::{Site, candidates};
-use crate::placement::{Layout, PlaceError, Spec, place};
+use crate::placement::{self, Layout, PlaceError, Spec, place};
 use crate::report::strain::{
     PlacedGauge, gauges_csv, gluing_sheet_csv, gluing_sheet_md, place_page,
 };
@@ -237,11 +237,12 @@ fn spec_of(session: &mut Session, job: &Job, k: usize) -> Spec {
         }
     }
     if job.placement.criterion == Criterion::Ds {
-        spec.nuisance = job
+        let nuisance = job
             .loads
             .iter()
             .filter(|l| l.role == job::Role::Nuisance)
             .count();
+        spec.criterion = placement::Criterion::Ds(nuisance);
     }
     spec
 }
@@ -389,7 +390,7 @@ fn installed(
         };
         place(&plain, &other).ok().map(|l| l.upper_bound)
     };
-    let log_det = crate::placement::quality::log_det(&rows, &spec.prior, k, spec.nuisance);
+    let log_det = crate::placement::quality::value(&rows, &spec.prior, k, &spec.criterion);
     Ok(Some(json!({
         "gauges": gauges.len(),
         "log_det": log_det,
@@ -459,10 +460,7 @@ fn put_result(
     session.put("log_det", layout.log_det)?;
     session.put("upper_bound", layout.upper_bound)?;
     session.put("efficiency_bound", layout.efficiency_bound)?;
-    session.put(
-        "proved",
-        layout.alive == 0 || layout.efficiency_bound >= 1.0 - 1e-9,
-    )?;
+    session.put("proved", layout.proved)?;
     session.put("rank", s.rank())?;
     session.put("condition_number", finite(s.condition_number()))?;
     session.put(

@@ -65,6 +65,46 @@ pub fn gram_of_lower(inv: &[f64], k: usize) -> Vec<f64> {
     g
 }
 
+/// Lower triangular `w` with `w' w = g` for a symmetric `g` that is not negative; rows of directions in which it is zero are zero.
+pub fn lower_root(g: &[f64], k: usize) -> Vec<f64> {
+    let mut rest = g.to_vec();
+    let mut w = vec![0.0; k * k];
+    for p in (0..k).rev() {
+        let pivot = rest[p * k + p];
+        // As in `cholesky`: what is left of a diagonal entry below this is rounding.
+        if !(pivot > ROOT_FLOOR * g[p * k + p]) {
+            continue;
+        }
+        let root = pivot.sqrt();
+        for j in 0..=p {
+            w[p * k + j] = rest[p * k + j] / root;
+        }
+        for i in 0..p {
+            for j in 0..p {
+                rest[i * k + j] -= w[p * k + i] * w[p * k + j];
+            }
+        }
+    }
+    w
+}
+
+/// Relative size under which a pivot of a product of matrices counts as zero; products carry more rounding than sums.
+const ROOT_FLOOR: f64 = 1e-12;
+
+/// `a b`, all `k x k`.
+pub fn product(a: &[f64], b: &[f64], k: usize) -> Vec<f64> {
+    let mut c = vec![0.0; k * k];
+    for i in 0..k {
+        for p in 0..k {
+            let x = a[i * k + p];
+            for j in 0..k {
+                c[i * k + j] += x * b[p * k + j];
+            }
+        }
+    }
+    c
+}
+
 /// `a += weight x x'`.
 pub fn add_outer(a: &mut [f64], x: &[f64], weight: f64) {
     let k = x.len();

@@ -3,6 +3,7 @@
 //! A small set of rows is solved, every candidate is priced with the result in one pass, the best-priced join, until the bound closes.
 
 use super::candidates::{Angles, Candidates, Choice};
+use super::criterion::Criterion;
 use super::kernel::{Priced, Report, price};
 use super::relax::{Active, Relaxed, relax};
 use std::collections::HashMap;
@@ -64,14 +65,14 @@ pub fn solve(
     c: &Candidates,
     s: usize,
     prior: &[f64],
-    nuisance: usize,
+    criterion: &Criterion,
     groups: &Groups,
     tolerance: f64,
     warm: &[Choice],
 ) -> Option<Columns> {
     let k = c.n_loads();
-    let wanted = (k - nuisance) as f64;
-    let mut set = RowSet::new(k, nuisance);
+    let wanted = criterion.degree(k) as f64;
+    let mut set = RowSet::new(k, criterion.clone());
     for &w in warm {
         set.add(c, w, groups);
     }
@@ -108,11 +109,11 @@ pub fn solve(
             (4 * s).max(256)
         };
         let threshold = least_active * (1.0 - 1e-9);
-        let mut priced = price(c, &relaxed.linv, threshold, groups.report(), keep);
+        let mut priced = price(c, &relaxed.point.root, threshold, groups.report(), keep);
         passes += 1;
         let top = top_of(&priced, groups, s, threshold);
         let gap = ((relaxed.prior_trace + top.0) / wanted).ln();
-        upper_bound = upper_bound.min(relaxed.log_det + wanted * gap);
+        upper_bound = upper_bound.min(relaxed.value() + wanted * gap);
         if gap <= tolerance || passes >= MAX_PASSES {
             return Some(Columns {
                 active: set.active,
@@ -226,11 +227,11 @@ struct RowSet {
 }
 
 impl RowSet {
-    fn new(k: usize, nuisance: usize) -> Self {
+    fn new(k: usize, criterion: Criterion) -> Self {
         Self {
             active: Active {
                 k,
-                nuisance,
+                criterion,
                 ..Active::default()
             },
             choices: Vec::new(),
@@ -267,7 +268,7 @@ impl RowSet {
         let k = self.active.k;
         let old = std::mem::take(&mut self.active);
         self.active.k = k;
-        self.active.nuisance = old.nuisance;
+        self.active.criterion = old.criterion.clone();
         self.seen.clear();
         let (old_groups, mut renumber) = (std::mem::take(&mut self.groups), HashMap::new());
         let choices = std::mem::take(&mut self.choices);

@@ -3,7 +3,8 @@
 //! Exchanging gauge `j` for row `i` multiplies `det M` by `(1 + d_i)(1 - d_j) + d_ij^2` (Fedorov, Theory of Optimal Experiments, 1972,
 //! eq. 3.2.4). Several starts and kicks, all from a fixed seed.
 
-use super::relax::{Active, criterion};
+use super::criterion::Criterion;
+use super::relax::Active;
 use crate::linalg::spd;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -20,12 +21,12 @@ pub struct Effort {
     pub seed: u64,
 }
 
-/// Rows chosen (ascending) and their `log det M`.
+/// Rows chosen (ascending) and their criterion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chosen {
     /// Indices into the rows.
     pub rows: Vec<usize>,
-    /// `log det`.
+    /// The criterion: `log det` for D.
     pub log_det: f64,
 }
 
@@ -265,18 +266,52 @@ impl Table {
     }
 }
 
-/// Criterion and tables (of `M`, and of `M_nn` where there are nuisance columns) of a choice.
-fn tables(active: &Active, prior: &[f64], chosen: &[usize]) -> Option<(f64, Vec<Table>)> {
-    let mut m = prior.to_vec();
-    for &i in chosen {
-        spd::add_outer(&mut m, active.row(i), 1.0);
+/// A choice with what its exchanges need.
+struct State {
+    value: f64,
+    /// `tr(L M^-1)` of a linear criterion.
+    spread: f64,
+    /// Under `M^-1`.
+    full: Table,
+    /// Under the inverse of the nuisance block (Ds) or `M^-1 L M^-1` (linear).
+    second: Option<Table>,
+}
+
+impl State {
+    fn of(active: &Active, prior: &[f64], chosen: &[usize]) -> Option<Self> {
+        let mut m = prior.to_vec();
+        for &i in chosen {
+            spd::add_outer(&mut m, active.row(i), 1.0);
+        }
+        let point = active.criterion.at(&m, active.k)?;
+        let second = (!point.second.is_empty()).then(|| Table::new(active, point.second, chosen));
+        Some(Self {
+            value: point.value,
+            spread: point.spread,
+            full: Table::new(active, point.inverse, chosen),
+            second,
+        })
     }
-    let (value, _, minv, ninv) = criterion(&m, active.k, active.nuisance)?;
-    let mut list = vec![Table::new(active, minv, chosen)];
-    if !ninv.is_empty() {
-        list.push(Table::new(active, ninv, chosen));
+
+    /// A number above 1 where row `i` in place of `j` in `slot` is better, and the larger the better.
+    fn gain(&self, criterion: &Criterion, slot: usize, i: usize, j: usize) -> f64 {
+        let ratio = self.full.ratio(slot, i, j);
+        match (&self.second, criterion) {
+            (Some(g), Criterion::Linear(_)) => {
+                if ratio < LEAST_PART {
+                    return 0.0;
+                }
+                let at = slot * self.full.d.len() + i;
+                let (x, y) = (self.full.cross[at], g.cross[at]);
+                let fall = g.d[i] - g.d[j] + 2.0 * x * y
+                    - g.d[i] * self.full.d[j]
+                    - g.d[j] * self.full.d[i];
+                self.spread / (self.spread - fall / ratio).max(f64::MIN_POSITIVE)
+            }
+            (Some(part), _) => ratio / part.ratio(slot, i, j).max(LEAST_PART),
+            (None, _) => ratio,
+        }
     }
-    Some((value, list))
 }
 
 /// Exchanges single rows until none gains. Starts regularised by `ridge` where the rows alone are singular.
@@ -293,22 +328,20 @@ fn improve(
         *b = chosen.iter().filter(|&&j| excludes(i, j)).count() as u32;
     }
     let mut base = prior;
-    let mut state = tables(active, base, &chosen);
-    if state.is_none() {
-        base = ridge;
-        state = tables(active, base, &chosen);
-    }
-    let (mut log_det, mut list) = state?;
+    let mut state = match State::of(active, base, &chosen) {
+        Some(state) => state,
+        None => {
+            base = ridge;
+            State::of(active, base, &chosen)?
+        }
+    };
     for _ in 0..MAX_SWEEPS {
         let mut gained = false;
         for slot in 0..s {
             let j = chosen[slot];
             let mut best = (1.0 + LEAST_GAIN, usize::MAX);
             for i in 0..n {
-                let mut ratio = list[0].ratio(slot, i, j);
-                if let Some(part) = list.get(1) {
-                    ratio /= part.ratio(slot, i, j).max(LEAST_PART);
-                }
+                let ratio = state.gain(&active.criterion, slot, i, j);
                 if ratio > best.0
                     && (blocked[i] == 0 || (blocked[i] == 1 && excludes(i, j) && i != j))
                 {
@@ -320,14 +353,20 @@ fn improve(
                 continue;
             }
             gained = true;
-            for t in &mut list {
-                swap(active, t, &chosen, slot, i);
+            let linear = matches!(active.criterion, Criterion::Linear(_));
+            if !linear {
+                for t in std::iter::once(&mut state.full).chain(&mut state.second) {
+                    swap(active, t, &chosen, slot, i);
+                }
             }
             for (x, b) in blocked.iter_mut().enumerate() {
                 *b += u32::from(excludes(x, i));
                 *b -= u32::from(excludes(x, j));
             }
             chosen[slot] = i;
+            if linear {
+                state = State::of(active, base, &chosen)?;
+            }
         }
         if !gained && !std::ptr::eq(base, prior) {
             base = prior;
@@ -336,18 +375,18 @@ fn improve(
         if !gained {
             break;
         }
-        (log_det, list) = tables(active, base, &chosen)?;
+        state = State::of(active, base, &chosen)?;
     }
     if !std::ptr::eq(base, prior) {
-        log_det = tables(active, prior, &chosen)?.0;
+        state = State::of(active, prior, &chosen)?;
     }
     Some(Chosen {
         rows: chosen,
-        log_det,
+        log_det: state.value,
     })
 }
 
-/// Share of its determinant under which the nuisance block counts as lost by an exchange.
+/// Share of its determinant under which a block counts as lost by an exchange.
 const LEAST_PART: f64 = 1e-9;
 
 /// Sweeps after which the search gives up; it stops by itself long before.

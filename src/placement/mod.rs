@@ -5,7 +5,8 @@
 //! load sizes). The best layout has the largest `log det M_S`.
 //!
 //! Order of work: [`candidates`] (rows, or strain tensors that stand for all angles at a place), [`relax`] (weights between 0 and 1),
-//! [`columns`] (the same over millions of rows; gives the bound), [`exchange`] (rounding and local search), [`spacing`], [`quality`].
+//! [`columns`] (the same over millions of rows; gives the bound), [`exchange`] (rounding and local search), [`spacing`], [`exact`] (proof of
+//! small problems), [`quality`].
 //!
 //! Certificate: for any positive definite `M` and any layout of distinct rows
 //! `log det M_S <= log det M + k ln((tr(M^-1 P) + T) / k)`, `T` the sum of the `s` largest `d_i = a_i' M^-1 a_i`, because the arithmetic mean
@@ -14,15 +15,19 @@
 
 pub mod candidates;
 pub mod columns;
+pub mod criterion;
+pub mod exact;
 pub mod exchange;
 pub mod kernel;
 mod layout;
 pub mod quality;
 pub mod quartic;
 pub mod relax;
+mod shortlist;
 pub mod sites;
 pub mod spacing;
 
+pub use criterion::Criterion;
 pub use layout::{Layout, PlaceError, Spec, place};
 
 #[cfg(test)]

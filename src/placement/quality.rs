@@ -1,7 +1,7 @@
 //! What a layout is worth: leverages, standard deviations of the loads, loss of a gauge.
 
 use super::candidates::{Candidates, Choice};
-use super::relax::criterion;
+use super::criterion::Criterion;
 use crate::linalg::spd;
 
 /// A layout judged.
@@ -56,11 +56,11 @@ pub fn judge_rows(rows: &[Vec<f64>], prior: &[f64], k: usize) -> Option<Quality>
     })
 }
 
-/// The criterion of these rows with the prior, the first `nuisance` columns not asked for; `None` where singular.
-pub fn log_det(rows: &[Vec<f64>], prior: &[f64], k: usize, nuisance: usize) -> Option<f64> {
+/// The criterion of these rows with the prior; `None` where singular.
+pub fn value(rows: &[Vec<f64>], prior: &[f64], k: usize, criterion: &Criterion) -> Option<f64> {
     let mut m = prior.to_vec();
     for r in rows {
         spd::add_outer(&mut m, r, 1.0);
     }
-    criterion(&m, k, nuisance.min(k.saturating_sub(1))).map(|v| v.0)
+    criterion.at(&m, k).map(|p| p.value)
 }

@@ -1,10 +1,11 @@
-//! The relaxation: weights in place of gauges, `max log det(P + sum w_i a_i a_i')` with `sum w = s`, `w >= 0` and at most 1 in each group.
+//! The relaxation: weights in place of gauges, `max criterion(P + sum w_i a_i a_i')` with `sum w = s`, `w >= 0` and at most 1 in each group.
 //!
 //! Weight moves between pairs of rows by exact line search (vertex exchange, visited in the order of the randomised exchange of
 //! Harman, Filova and Richtarik, J. Am. Stat. Assoc. 115 (2020), without the chance). Rows of a group share a weight of at most 1: one
 //! row for each distinct gauge, or all the angles of a place, or all the places within a spacing. Every exchange direction of that set is
 //! a pair, so the search cannot stop short of the optimum.
 
+use super::criterion::{Criterion, Point};
 use crate::linalg::spd;
 
 /// The rows a relaxation works on.
@@ -12,8 +13,8 @@ use crate::linalg::spd;
 pub struct Active {
     /// Number of columns.
     pub k: usize,
-    /// Leading columns that are nuisance loads: the criterion is `log det M - log det M_nn` (Ds); 0: `log det M` (D).
-    pub nuisance: usize,
+    /// What is made large.
+    pub criterion: Criterion,
     /// `n x k` by rows.
     pub rows: Vec<f64>,
     /// Group of each row, `0 .. n_groups`.
@@ -23,11 +24,6 @@ pub struct Active {
 }
 
 impl Active {
-    /// Number of columns asked for: the degree of the criterion.
-    pub fn wanted(&self) -> usize {
-        self.k - self.nuisance
-    }
-
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.group.len()
@@ -49,20 +45,23 @@ impl Active {
 pub struct Relaxed {
     /// Weights.
     pub weights: Vec<f64>,
-    /// Inverse of the lower Cholesky factor of `M`, rows of nuisance columns zeroed: `d = |linv a|^2` is the slope of the criterion.
-    pub linv: Vec<f64>,
-    /// `M^-1`.
-    pub minv: Vec<f64>,
-    /// `M_nn^-1`, padded with zeros to `k x k`; empty without nuisance columns.
-    pub ninv: Vec<f64>,
-    /// The criterion.
-    pub log_det: f64,
-    /// `tr(G P)`, `G = linv' linv`.
+    /// The criterion at `M`; `d = |root a|^2` is its slope towards a row.
+    pub point: Point,
+    /// `tr(G P)`, `G = root' root`.
     pub prior_trace: f64,
-    /// Variances of the rows.
+    /// Slopes towards the rows.
     pub d: Vec<f64>,
-    /// Upper bound of `log det` over these rows, less `log_det`, per load.
+    /// Upper bound of the criterion over these rows, less its value, over its degree.
     pub gap: f64,
+    /// Sweeps it took.
+    pub sweeps: usize,
+}
+
+impl Relaxed {
+    /// The criterion at the relaxed solution.
+    pub fn value(&self) -> f64 {
+        self.point.value
+    }
 }
 
 /// Sum of the `s` largest group maxima, and the least of those `s`.
@@ -96,10 +95,12 @@ pub fn relax(
     let mut u = vec![0.0; k];
     let mut v = vec![0.0; k];
     let (mut nu, mut nv) = (vec![0.0; k], vec![0.0; k]);
-    for _ in 0..sweeps {
+    let mut done = 0;
+    while done < sweeps {
         if state.gap <= tolerance {
             break;
         }
+        done += 1;
         slack.fill(1.0);
         for (&g, &w) in active.group.iter().zip(&weights) {
             slack[g as usize] -= w;
@@ -122,8 +123,9 @@ pub fn relax(
             .filter(|&i| weights[i as usize] > 0.0)
             .collect();
         outgoing.sort_unstable_by(|a, b| by_d(b, a));
-        let mut minv = std::mem::take(&mut state.minv);
-        let mut ninv = std::mem::take(&mut state.ninv);
+        let mut minv = std::mem::take(&mut state.point.inverse);
+        let mut second = std::mem::take(&mut state.point.second);
+        let linear = matches!(active.criterion, Criterion::Linear(_));
         for &i in &incoming {
             let (i, gi) = (i as usize, active.group[i as usize] as usize);
             let ai = active.row(i);
@@ -147,15 +149,23 @@ pub fn relax(
                 tried += 1;
                 let aj = active.row(j);
                 let full = Pair::new(&minv, ai, aj, &mut u, &mut v);
-                let part = (!ninv.is_empty()).then(|| Pair::new(&ninv, ai, aj, &mut nu, &mut nv));
-                let step = best_step(&full, part.as_ref(), cap);
+                let part =
+                    (!second.is_empty()).then(|| Pair::new(&second, ai, aj, &mut nu, &mut nv));
+                let step = match &part {
+                    Some(spread) if linear => linear_step(&full, spread, cap),
+                    part => best_step(&full, part.as_ref(), cap),
+                };
                 if step <= 0.0 || full.det(step) <= 0.0 {
                     continue;
                 }
-                full.apply(&mut minv, step, &u, &v);
                 if let Some(part) = part {
-                    part.apply(&mut ninv, step, &nu, &nv);
+                    if linear {
+                        full.apply_between(&mut second, step, &part, [&u, &v], [&nu, &nv]);
+                    } else {
+                        part.apply(&mut second, step, &nu, &nv);
+                    }
                 }
+                full.apply(&mut minv, step, &u, &v);
                 weights[i] += step;
                 weights[j] = if step >= weights[j] {
                     0.0
@@ -169,6 +179,7 @@ pub fn relax(
         state = measure(active, s, prior, &weights)?;
     }
     state.weights = weights;
+    state.sweeps = done;
     Some(state)
 }
 
@@ -207,15 +218,21 @@ impl Pair {
         (self.di - self.dj - 2.0 * t * curvature) / self.det(t)
     }
 
-    /// The inverse after the move, by the formula of Sherman, Morrison and Woodbury for two columns.
+    /// `Q` of `inverse after = inverse - [u v] Q [u v]'`, by the formula of Sherman, Morrison and Woodbury for two columns: its entries
+    /// uu, uv, vv.
+    fn change(&self, t: f64) -> [f64; 3] {
+        let det = self.det(t);
+        [
+            t * (1.0 - t * self.dj) / det,
+            t * t * self.dij / det,
+            -t * (1.0 + t * self.di) / det,
+        ]
+    }
+
+    /// The inverse after the move.
     fn apply(&self, inverse: &mut [f64], t: f64, u: &[f64], v: &[f64]) {
         let k = u.len();
-        let det = self.det(t);
-        let (cu, cv) = (
-            t * (1.0 - t * self.dj) / det,
-            -t * (1.0 + t * self.di) / det,
-        );
-        let cx = t * t * self.dij / det;
+        let [cu, cx, cv] = self.change(t);
         for r in 0..k {
             let (x, y) = (cu * u[r] + cx * v[r], cv * v[r] + cx * u[r]);
             for (c, m) in inverse[r * k..(r + 1) * k].iter_mut().enumerate() {
@@ -223,6 +240,62 @@ impl Pair {
             }
         }
     }
+
+    /// `M^-1 L M^-1` after the move: with `U = [u v]`, `P = M^-1 L M^-1 [a_i a_j]` and `Gamma` the products of the two rows under it (`spread`),
+    /// it changes by `-U Q P' - P Q U' + U Q Gamma Q U'`.
+    fn apply_between(
+        &self,
+        second: &mut [f64],
+        t: f64,
+        spread: &Pair,
+        [u, v]: [&[f64]; 2],
+        [p, q]: [&[f64]; 2],
+    ) {
+        let k = u.len();
+        let [a, b, c] = self.change(t);
+        let (gi, gx, gj) = (spread.di, spread.dij, spread.dj);
+        // Q Gamma Q.
+        let (h00, h01) = (a * gi + b * gx, a * gx + b * gj);
+        let (h10, h11) = (b * gi + c * gx, b * gx + c * gj);
+        let (e00, e01, e11) = (h00 * a + h01 * b, h00 * b + h01 * c, h10 * b + h11 * c);
+        for r in 0..k {
+            // Rows of U Q and of U Q Gamma Q.
+            let (x, y) = (a * u[r] + b * v[r], b * u[r] + c * v[r]);
+            let (f, g) = (e00 * u[r] + e01 * v[r], e01 * u[r] + e11 * v[r]);
+            for (n, m) in second[r * k..(r + 1) * k].iter_mut().enumerate() {
+                let (xn, yn) = (a * u[n] + b * v[n], b * u[n] + c * v[n]);
+                *m += f * u[n] + g * v[n] - x * p[n] - y * q[n] - p[r] * xn - q[r] * yn;
+            }
+        }
+    }
+}
+
+/// `(alpha, beta)` of `tr(L M^-1)` before the move less after it, `(alpha t + beta t^2) / det(t)`; `spread` holds the products under `M^-1 L M^-1`.
+fn fall(full: &Pair, spread: &Pair) -> (f64, f64) {
+    (
+        spread.di - spread.dj,
+        2.0 * full.dij * spread.dij - spread.di * full.dj - spread.dj * full.di,
+    )
+}
+
+/// The weight in `0 .. cap` whose move lowers `tr(L M^-1)` most: the first zero of the derivative, a quadratic.
+fn linear_step(full: &Pair, spread: &Pair, cap: f64) -> f64 {
+    let (alpha, beta) = fall(full, spread);
+    if !(alpha > 0.0) {
+        return 0.0;
+    }
+    let (gamma, delta) = (full.di - full.dj, full.dij * full.dij - full.di * full.dj);
+    let (a, b, c) = (beta * gamma - alpha * delta, 2.0 * beta, alpha);
+    let disc = b * b - 4.0 * a * c;
+    if disc < 0.0 {
+        return cap;
+    }
+    // Both roots without cancellation.
+    let w = -0.5 * (b + disc.sqrt().copysign(b));
+    [w / a, c / w]
+        .into_iter()
+        .filter(|t| t.is_finite() && *t > 0.0)
+        .fold(cap, f64::min)
 }
 
 /// The weight in `0 .. cap` whose move raises the criterion most.
@@ -259,27 +332,6 @@ fn best_step(full: &Pair, nuisance: Option<&Pair>, cap: f64) -> f64 {
     low
 }
 
-/// `log det M - log det M_nn` with the factors it takes: `linv` (nuisance rows zeroed), `M^-1`, `M_nn^-1` padded.
-pub fn criterion(
-    m: &[f64],
-    k: usize,
-    nuisance: usize,
-) -> Option<(f64, Vec<f64>, Vec<f64>, Vec<f64>)> {
-    let l = spd::cholesky(m, k)?;
-    let mut linv = spd::inverse_lower(&l, k);
-    let minv = spd::gram_of_lower(&linv, k);
-    if nuisance == 0 {
-        return Some((spd::log_det(&l, k), linv, minv, Vec::new()));
-    }
-    // The leading block of the factor is the factor of the leading block.
-    let mut head = linv.clone();
-    head[nuisance * k..].fill(0.0);
-    let ninv = spd::gram_of_lower(&head, k);
-    linv[..nuisance * k].fill(0.0);
-    let value = 2.0 * (nuisance..k).map(|i| l[i * k + i].ln()).sum::<f64>();
-    Some((value, linv, minv, ninv))
-}
-
 fn measure(active: &Active, s: usize, prior: &[f64], weights: &[f64]) -> Option<Relaxed> {
     let k = active.k;
     let mut m = prior.to_vec();
@@ -288,11 +340,11 @@ fn measure(active: &Active, s: usize, prior: &[f64], weights: &[f64]) -> Option<
             spd::add_outer(&mut m, active.row(i), w);
         }
     }
-    let (value, linv, minv, ninv) = criterion(&m, k, active.nuisance)?;
-    let slope = if active.nuisance > 0 {
-        spd::gram_of_lower(&linv, k)
+    let point = active.criterion.at(&m, k)?;
+    let slope = if active.criterion == Criterion::D {
+        point.inverse.clone()
     } else {
-        minv.clone()
+        point.slope(k)
     };
     let mut u = vec![0.0; k];
     let d: Vec<f64> = (0..active.len())
@@ -307,15 +359,13 @@ fn measure(active: &Active, s: usize, prior: &[f64], weights: &[f64]) -> Option<
         active.n_groups,
         s,
     );
-    let gap = ((prior_trace + top) / active.wanted() as f64).ln();
+    let gap = ((prior_trace + top) / active.criterion.degree(k) as f64).ln();
     Some(Relaxed {
         weights: Vec::new(),
-        linv,
-        minv,
-        ninv,
-        log_det: value,
+        point,
         prior_trace,
         d,
         gap,
+        sweeps: 0,
     })
 }

@@ -5,7 +5,7 @@ use crate::world::*;
 use strainbridge::gauge::{CornerRows, Gauge, GaugePlace, GaugeSpec, build};
 use strainbridge::model::{BeamIx, ShellIx};
 use strainbridge::placement::candidates::Scatter;
-use strainbridge::placement::{Spec, place};
+use strainbridge::placement::{Criterion, Spec, place};
 use strainbridge::recovery::{ErrorModel, Readings, estimate};
 use strainbridge::sensitivity::{Load, LoadCaseOf, Sensitivity};
 
@@ -115,7 +115,7 @@ fn layout(n: usize, kept: &[Gauge]) -> Vec<Gauge> {
     let mut spec = Spec::new(n, 36);
     // Both sides of a plate may carry a gauge: together they tell bending from stretching.
     spec.spacing = 5.0;
-    spec.nuisance = 30;
+    spec.criterion = Criterion::Ds(30);
     for l in 0..30 {
         spec.prior[36 * l + l] = 1.0;
     }

@@ -10,7 +10,7 @@ use crate::finding::{Finding, Severity};
 use crate::gauge::GaugeSpec;
 use crate::placement::candidates::{Angles, Candidates, Choice, Scatter};
 use crate::placement::sites::{Site, candidates};
-use crate::placement::{Spec, place};
+use crate::placement::{self, Spec, place};
 use crate::sensitivity::{LoadCaseOf, common_shells};
 use crate::study::PoolGauge;
 use rand::{RngExt, SeedableRng};
@@ -135,11 +135,12 @@ fn spec_of(job: &Job, name: &str, n: usize, k: usize, order: &[usize]) -> Spec {
         }
     }
     if name == "Ds" || job.placement.criterion == Criterion::Ds {
-        spec.nuisance = job
+        let nuisance = job
             .loads
             .iter()
             .filter(|l| l.role == Role::Nuisance)
             .count();
+        spec.criterion = placement::Criterion::Ds(nuisance);
     }
     spec
 }

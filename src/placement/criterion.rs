@@ -1,0 +1,110 @@
+//! What a layout is chosen for, as a concave function of its information matrix `M` (`k x k`), larger is better.
+//!
+//! | criterion | value | slope `G` |
+//! |---|---|---|
+//! | D | `ln det M` | `M^-1` |
+//! | Ds | `ln det M - ln det M_nn` | `M^-1` less the inverse of the nuisance block |
+//! | linear | `-k ln tr(L M^-1)` | `k M^-1 L M^-1 / tr(L M^-1)` |
+//!
+//! In all three a layout `S` with information `M_S = P + sum a a'` has `value(M_S) <= value(M) + q ln((tr(G P) + sum a' G a) / q)`, `q` the
+//! degree. For D and Ds that is the inequality of the arithmetic and the geometric mean; for the linear one, convexity of
+//! `tr(L M^-1)` along the ray through `M` gives `tr(L M_S^-1) >= tr(L M^-1)^2 / tr(M^-1 L M^-1 M_S)`.
+
+use crate::linalg::spd;
+
+/// What is made large.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Criterion {
+    /// The determinant for all columns.
+    #[default]
+    D,
+    /// The determinant for the others, that many leading columns being present but not asked for.
+    Ds(usize),
+    /// The smallest `tr(L M^-1)`, `L` `k x k` by rows, symmetric, not negative: A with `L` diagonal (variances of loads, weighed), I with
+    /// the mean of `b b'` over rows `b` whose prediction counts.
+    Linear(Vec<f64>),
+}
+
+/// A criterion at an information matrix.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Its value.
+    pub value: f64,
+    /// Lower triangular `W` with `W' W = G`: the slope towards a row `a` is `d = |W a|^2`.
+    pub root: Vec<f64>,
+    /// `M^-1`.
+    pub inverse: Vec<f64>,
+    /// Ds: the inverse of the nuisance block, padded with zeros; linear: `M^-1 L M^-1`; D: empty.
+    pub second: Vec<f64>,
+    /// `tr(L M^-1)`; 0 for D and Ds.
+    pub spread: f64,
+}
+
+impl Criterion {
+    /// The degree `q`: `value` rises by `q ln t` where `M` is multiplied by `t`, so `exp(difference / q)` is an efficiency.
+    pub fn degree(&self, k: usize) -> usize {
+        match self {
+            Self::Ds(nuisance) => k - self.leading(k, *nuisance),
+            _ => k,
+        }
+    }
+
+    /// At least one column is asked for.
+    fn leading(&self, k: usize, nuisance: usize) -> usize {
+        nuisance.min(k.saturating_sub(1))
+    }
+
+    /// Value and slope at `m`; `None` where it is singular.
+    pub fn at(&self, m: &[f64], k: usize) -> Option<Point> {
+        let l = spd::cholesky(m, k)?;
+        let mut root = spd::inverse_lower(&l, k);
+        let inverse = spd::gram_of_lower(&root, k);
+        match self {
+            Self::D => Some(Point {
+                value: spd::log_det(&l, k),
+                root,
+                inverse,
+                second: Vec::new(),
+                spread: 0.0,
+            }),
+            Self::Ds(nuisance) => {
+                let q = self.leading(k, *nuisance);
+                // The leading block of the factor is the factor of the leading block.
+                let mut head = root.clone();
+                head[q * k..].fill(0.0);
+                let second = if q == 0 {
+                    Vec::new()
+                } else {
+                    spd::gram_of_lower(&head, k)
+                };
+                root[..q * k].fill(0.0);
+                Some(Point {
+                    value: 2.0 * (q..k).map(|i| l[i * k + i].ln()).sum::<f64>(),
+                    root,
+                    inverse,
+                    second,
+                    spread: 0.0,
+                })
+            }
+            Self::Linear(weights) => {
+                let spread = spd::trace_of_product(weights, &inverse);
+                let second = spd::product(&spd::product(&inverse, weights, k), &inverse, k);
+                let slope: Vec<f64> = second.iter().map(|v| v * k as f64 / spread).collect();
+                (spread > 0.0).then(|| Point {
+                    value: -(k as f64) * spread.ln(),
+                    root: spd::lower_root(&slope, k),
+                    inverse,
+                    second,
+                    spread,
+                })
+            }
+        }
+    }
+}
+
+impl Point {
+    /// `G`.
+    pub fn slope(&self, k: usize) -> Vec<f64> {
+        spd::gram_of_lower(&self.root, k)
+    }
+}

@@ -1,0 +1,224 @@
+//! The short list of candidates on which a layout is searched, and the search on it.
+
+use super::candidates::{Angles, Candidates, Choice};
+use super::columns::{Columns, Groups};
+use super::exchange::{self, Effort};
+use super::kernel::{Priced, Report, price};
+use super::layout::Spec;
+use super::relax::Active;
+use super::spacing;
+use crate::linalg::spd;
+use std::collections::{HashMap, HashSet};
+
+/// Rows an exchange looks at.
+const LIST: usize = 1000;
+
+/// A layout with its criterion.
+pub(super) type Found = (Vec<Choice>, f64);
+
+/// The better of two.
+pub(super) fn better(a: Option<Found>, b: Option<Found>) -> Option<Found> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(if b.1 > a.1 { b } else { a }),
+        (a, b) => a.or(b),
+    }
+}
+
+/// The price under which a candidate can't be in a layout better than `incumbent`: forcing it in replaces the smallest term of `T`.
+pub(super) fn elimination(col: &Columns, k: usize, incumbent: f64) -> f64 {
+    let needed = k as f64 * ((incumbent - col.relaxed.value()) / k as f64).exp();
+    (needed - col.relaxed.prior_trace - col.top.0 + col.top.1).max(0.0) * (1.0 - 1e-9)
+}
+
+/// The rows for an exchange: those with weight, then the best-priced, at most [`LIST`], none under `floor`.
+pub(super) fn list_of(c: &Candidates, col: &Columns, groups: &Groups, floor: f64) -> Vec<Priced> {
+    let report = if *c.angles() == Angles::Continuous {
+        Report::BestOfPlace
+    } else {
+        Report::EachAngle
+    };
+    let mut threshold = (0.6 * col.top.1).max(floor);
+    let mut priced = price(c, &col.relaxed.point.root, threshold, report, LIST);
+    while priced.len() < LIST.min(c.n_rows()) && threshold > floor.max(1e-6 * col.top.1) {
+        threshold = (0.5 * threshold).max(floor);
+        priced = price(c, &col.relaxed.point.root, threshold, report, LIST);
+    }
+    let order = |a: &Priced, b: &Priced| {
+        b.d.total_cmp(&a.d)
+            .then((a.choice.place, a.choice.step).cmp(&(b.choice.place, b.choice.step)))
+    };
+    if priced.len() > LIST {
+        priced.select_nth_unstable_by(LIST - 1, order);
+        priced.truncate(LIST);
+    }
+    let seen: HashSet<(u32, u64)> = priced
+        .iter()
+        .map(|p| (p.choice.place, p.choice.angle.to_bits()))
+        .collect();
+    for (i, &choice) in col.choices.iter().enumerate() {
+        if col.relaxed.weights[i] > 0.0 && !seen.contains(&(choice.place, choice.angle.to_bits())) {
+            priced.push(Priced {
+                d: col.relaxed.d[i],
+                choice,
+            });
+        }
+    }
+    if let Groups::Cliques(of) = groups {
+        // The best-priced rows crowd in few places; the best of each further set of places keeps a choice within the spacing.
+        let mut sets = HashSet::new();
+        let mut wide = price(
+            c,
+            &col.relaxed.point.root,
+            0.0,
+            Report::BestOfPlace,
+            usize::MAX,
+        );
+        wide.sort_by(order);
+        wide.retain(|p| sets.insert(of[p.choice.place as usize]));
+        let seen: HashSet<(u32, u64)> = priced
+            .iter()
+            .map(|p| (p.choice.place, p.choice.angle.to_bits()))
+            .collect();
+        wide.retain(|p| !seen.contains(&(p.choice.place, p.choice.angle.to_bits())));
+        priced.extend(wide.into_iter().take(LIST / 2));
+    }
+    priced.sort_by(order);
+    priced
+}
+
+/// The best layout that a search on `list` finds; `known` is one to start from.
+pub(super) fn run(
+    c: &Candidates,
+    spec: &Spec,
+    list: &[Priced],
+    col: &Columns,
+    effort: Effort,
+    known: Option<&Found>,
+) -> Option<Found> {
+    let mut choices: Vec<Choice> = list.iter().map(|p| p.choice).collect();
+    let mut index: HashMap<(u32, u64), usize> = choices
+        .iter()
+        .enumerate()
+        .map(|(i, p)| ((p.place, p.angle.to_bits()), i))
+        .collect();
+    for p in known.iter().flat_map(|f| &f.0) {
+        index
+            .entry((p.place, p.angle.to_bits()))
+            .or_insert_with(|| {
+                choices.push(*p);
+                choices.len() - 1
+            });
+    }
+    let mut weights = vec![0.0; choices.len()];
+    for (p, &w) in col.choices.iter().zip(&col.relaxed.weights) {
+        if let Some(&i) = index.get(&(p.place, p.angle.to_bits())) {
+            weights[i] = w;
+        }
+    }
+    for p in known.iter().flat_map(|f| &f.0) {
+        if let Some(&i) = index.get(&(p.place, p.angle.to_bits())) {
+            weights[i] += 0.2;
+        }
+    }
+    let active = rows_of(c, spec, &choices);
+    let excludes = excluder(c, spec, &choices);
+    let found = exchange::search(
+        &active,
+        spec.gauges,
+        &spec.prior,
+        &weights,
+        &excludes,
+        effort,
+    )?;
+    Some((
+        found.rows.iter().map(|&i| choices[i]).collect(),
+        found.log_det,
+    ))
+}
+
+/// The rows of choices, each a group of its own.
+pub(super) fn rows_of(c: &Candidates, spec: &Spec, choices: &[Choice]) -> Active {
+    Active {
+        k: c.n_loads(),
+        criterion: spec.criterion.clone(),
+        rows: choices.iter().flat_map(|&p| c.row(p)).collect(),
+        group: (0..choices.len() as u32).collect(),
+        n_groups: choices.len(),
+    }
+}
+
+/// Whether two of the choices (by index) can't be in one layout.
+pub(super) fn excluder<'a>(
+    c: &'a Candidates,
+    spec: &Spec,
+    choices: &'a [Choice],
+) -> impl Fn(usize, usize) -> bool + Sync + use<'a> {
+    let positions = c.positions();
+    let apart = spec.spacing;
+    let spaced = apart > 0.0 && !positions.is_empty();
+    let one_a_place = *c.angles() == Angles::Continuous || apart > 0.0;
+    move |i, j| {
+        let (a, b) = (choices[i].place as usize, choices[j].place as usize);
+        i == j
+            || (one_a_place && a == b)
+            || (spaced && spacing::too_close(positions[a], positions[b], apart))
+    }
+}
+
+/// Turns one gauge after the other to its best angle.
+pub(super) fn polish(
+    c: &Candidates,
+    spec: &Spec,
+    mut gauges: Vec<Choice>,
+    mut log_det: f64,
+) -> Found {
+    let k = c.n_loads();
+    for _ in 0..20 {
+        let before = log_det;
+        for i in 0..gauges.len() {
+            let mut m = spec.prior.clone();
+            for (j, &g) in gauges.iter().enumerate() {
+                if j != i {
+                    spd::add_outer(&mut m, &c.row(g), 1.0);
+                }
+            }
+            // With as many gauges as loads the rest alone is singular: a trace of identity keeps it regular without moving the optimum.
+            let scale = (0..k).map(|p| m[p * k + p]).sum::<f64>() / k as f64 * 1e-9;
+            for p in 0..k {
+                m[p * k + p] += scale;
+            }
+            let Some(point) = spec.criterion.at(&m, k) else {
+                continue;
+            };
+            let one = c.subset(&[gauges[i].place]);
+            let Some(p) = price(&one, &point.root, 0.0, Report::BestOfPlace, usize::MAX)
+                .first()
+                .copied()
+            else {
+                continue;
+            };
+            let turned = Choice {
+                angle: p.choice.angle,
+                ..gauges[i]
+            };
+            let old = std::mem::replace(&mut gauges[i], turned);
+            match value_of(c, spec, &gauges) {
+                Some(v) if v > log_det => log_det = v,
+                _ => gauges[i] = old,
+            }
+        }
+        if log_det - before < 1e-9 {
+            break;
+        }
+    }
+    (gauges, log_det)
+}
+
+/// The criterion of a layout; `None` where it is singular.
+pub(super) fn value_of(c: &Candidates, spec: &Spec, gauges: &[Choice]) -> Option<f64> {
+    let mut m = spec.prior.clone();
+    for &g in gauges {
+        spd::add_outer(&mut m, &c.row(g), 1.0);
+    }
+    spec.criterion.at(&m, c.n_loads()).map(|p| p.value)
+}
