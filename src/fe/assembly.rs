@@ -71,22 +71,35 @@ pub(crate) struct Assembled {
     pub(crate) stiffness: BlockMatrix,
 }
 
-/// Grids whose free dofs an element's stiffness falls on.
-fn reached(reduction: &Reduction, grids: &[GridIx]) -> Vec<u32> {
-    let mut list = Vec::with_capacity(grids.len());
+/// Grids whose free dofs an element's stiffness falls on, with those dofs, a bit each. `dofs` are those of its grids that the
+/// element gives stiffness to: the rotations of a grid that holds solids alone are no unknowns.
+fn reached(reduction: &Reduction, grids: &[GridIx], dofs: u8) -> Vec<(u32, u8)> {
+    let mut list: Vec<(u32, u8)> = Vec::with_capacity(grids.len());
     for g in grids {
-        for dof in 6 * g.us()..6 * g.us() + 6 {
-            match reduction.state[dof] {
-                State::Free => list.push(g.0),
+        for i in (0..6).filter(|i| dofs >> i & 1 == 1) {
+            match reduction.state[6 * g.us() + i] {
+                State::Free => match list.last_mut() {
+                    Some(last) if last.0 == g.0 => last.1 |= 1 << i,
+                    _ => list.push((g.0, 1 << i)),
+                },
                 State::Held => {}
-                State::Dependent(r) => {
-                    list.extend(reduction.rows[r as usize].0.iter().map(|t| t.0 / 6))
-                }
+                State::Dependent(r) => list.extend(
+                    reduction.rows[r as usize]
+                        .0
+                        .iter()
+                        .map(|t| (t.0 / 6, 1 << (t.0 % 6))),
+                ),
             }
         }
     }
-    list.sort_unstable();
-    list.dedup();
+    list.sort_unstable_by_key(|t| t.0);
+    list.dedup_by(|later, first| {
+        let same = later.0 == first.0;
+        if same {
+            first.1 |= later.1;
+        }
+        same
+    });
     list
 }
 
@@ -100,23 +113,19 @@ pub(crate) fn assemble(
 ) -> Result<Assembled, FeError> {
     let model = prepared.model;
     let elements = prepared.elements();
-    let cliques: Vec<Vec<u32>> = elements
+    let cliques: Vec<Vec<(u32, u8)>> = elements
         .par_iter()
-        .map(|e| reached(reduction, &prepared.grids(*e)))
+        .map(|e| reached(reduction, &prepared.grids(*e), prepared.dofs(*e)))
         .collect();
     let mut free = vec![0_u8; model.grids.len()];
-    for &g in cliques.iter().flatten() {
-        free[g as usize] = 1;
+    for &(g, bits) in cliques.iter().flatten() {
+        free[g as usize] |= bits;
     }
     let mut numbering = Numbering {
         group: vec![None; model.grids.len()],
         ..Numbering::default()
     };
-    for (g, flag) in free.into_iter().enumerate().filter(|f| f.1 == 1) {
-        debug_assert_eq!(flag, 1);
-        let bits = (0..6)
-            .filter(|i| reduction.state[6 * g + i] == State::Free)
-            .fold(0_u8, |b, i| b | 1 << i);
+    for (g, bits) in free.into_iter().enumerate().filter(|f| f.1 != 0) {
         numbering.group[g] = Some(numbering.grid.len() as u32);
         numbering.grid.push(g as u32);
         numbering.free.push(bits);
@@ -128,7 +137,7 @@ pub(crate) fn assemble(
         .into_par_iter()
         .map(|c| {
             c.into_iter()
-                .filter_map(|g| numbering.group[g as usize])
+                .filter_map(|(g, _)| numbering.group[g as usize])
                 .collect()
         })
         .collect();
@@ -230,6 +239,9 @@ fn reduced<'a>(
     }
     let column = |dof: usize| {
         let group = numbering.group[dof / 6]?;
+        if numbering.free[group as usize] >> (dof % 6) & 1 == 0 {
+            return None;
+        }
         let at = groups.iter().position(|&g| g == group)?;
         let below = numbering.free[group as usize] & ((1_u8 << (dof % 6)) - 1);
         Some(offsets[at] + below.count_ones() as usize)

@@ -261,6 +261,12 @@ pub(crate) fn what_hangs(model: &Model, grid: crate::model::GridIx) -> String {
             all.push(format!("{} {}", s.shape.card(), s.id));
         }
     }
+    let solids = model.solids.iter();
+    all.extend(
+        solids
+            .filter(|s| s.grids.contains(&Some(grid)))
+            .map(|s| format!("{} {}", s.shape.card(), s.id)),
+    );
     for b in model.beams.iter().filter(|b| has(&b.grids)) {
         all.push(format!(
             "{} {}",

@@ -2,6 +2,7 @@
 
 use super::element::beam::{beam_coupled_mass, beam_lumped_mass};
 use super::element::shell::{output_frame, shell_mass};
+use super::element::solid::solid_mass;
 use super::element::{ElementMatrix, Prepared, rod_mass};
 use super::rigid_motion::rigid;
 use crate::linalg::Matrix6;
@@ -18,6 +19,8 @@ pub(crate) struct Mass {
     blocks: BTreeMap<GridIx, Matrix6<f64>>,
     /// Coupled masses of elements.
     coupled: Vec<ElementMatrix>,
+    /// Masses that couple grids in the three translations alike: grids, and row by row their shares.
+    scalar: Vec<(Vec<GridIx>, Vec<f64>)>,
 }
 
 /// Mass, centre of gravity and the 6 x 6 matrix of rigid motions about it.
@@ -32,8 +35,8 @@ pub struct MassProperties {
 }
 
 impl Mass {
-    /// Mass of all elements and concentrated masses: lumped, or with PARAM,COUPMASS consistent for shells, bars and beams (rods stay
-    /// lumped).
+    /// Mass of all elements and concentrated masses: lumped, or with PARAM,COUPMASS consistent for shells, bars, beams and solids (rods
+    /// stay lumped). Solids with mid-side grids are consistent always: lumped by rows their corners would have negative mass.
     pub(crate) fn new(prepared: &Prepared<'_>) -> Self {
         let model = prepared.model;
         let mut mass = Self {
@@ -77,6 +80,20 @@ impl Mass {
             let half = 0.5 * rod_mass(model, i);
             rod.grids.iter().for_each(|g| mass.point[g.us()] += half);
         }
+        let solids: Vec<_> = (0..model.solids.len())
+            .into_par_iter()
+            .map(|i| solid_mass(model, i))
+            .collect();
+        for (solid, (grids, products)) in model.solids.iter().zip(solids) {
+            let n = grids.len();
+            if model.params.coupmass || n > solid.shape.n_corners() {
+                mass.scalar.push((grids, products));
+            } else {
+                for (g, row) in grids.iter().zip(products.chunks_exact(n.max(1))) {
+                    mass.point[g.us()] += row.iter().sum::<f64>();
+                }
+            }
+        }
         for m in &model.masses {
             *mass.blocks.entry(m.grid).or_insert_with(Matrix6::zeros) += m.matrix;
         }
@@ -86,6 +103,7 @@ impl Mass {
         mass.coupled
             .iter_mut()
             .flat_map(|m| &mut m.values)
+            .chain(mass.scalar.iter_mut().flat_map(|m| &mut m.1))
             .for_each(|v| *v *= w);
         mass
     }
@@ -116,6 +134,15 @@ impl Mass {
             let local: Vec<f64> = m.grids.iter().flat_map(|g| u[g.us()]).collect();
             for (g, v) in m.grids.iter().zip(m.times(&local).chunks_exact(6)) {
                 f[g.us()].iter_mut().zip(v).for_each(|(f, v)| *f += v);
+            }
+        }
+        for (grids, products) in &self.scalar {
+            for (g, row) in grids.iter().zip(products.chunks_exact(grids.len().max(1))) {
+                for (h, m) in grids.iter().zip(row) {
+                    for i in 0..3 {
+                        f[g.us()][i] += m * u[h.us()][i];
+                    }
+                }
             }
         }
         f

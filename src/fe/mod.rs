@@ -17,11 +17,13 @@ mod relief;
 mod rigid_motion;
 pub mod shell_frame;
 mod shell_strain;
+mod solid_fields;
 mod solution;
 mod solve;
 pub mod strain_rows;
 pub mod strain_tensor;
 mod system;
+mod temperature;
 mod unsupported;
 
 pub use error::{FeError, FreeDof, Refusal};

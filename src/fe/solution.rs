@@ -26,6 +26,8 @@ pub struct CaseResult {
     pub shells: ShellField,
     /// Bar and beam strain.
     pub beams: BeamField,
+    /// Strain of solids; solved ones only.
+    pub solids: SolidField,
     /// Displacements in the displacement frames as the file has them turned to basic: translation and rotation by grid index;
     /// empty where absent, NaN where a grid has none.
     pub displacement: Vec<[f64; 6]>,
@@ -56,6 +58,17 @@ pub struct BeamField {
     pub stations: Vec<Vec<(f64, [f64; 4])>>,
 }
 
+/// Strain of solids: xx yy zz xy yz zx, engineering shear, in the basic frame or the material frame that PSOLID names.
+#[derive(Clone, Debug, Default)]
+pub struct SolidField {
+    /// Indices into [`crate::model::Model::solids`], ascending.
+    pub elements: Arc<Vec<usize>>,
+    /// By element: at the centre.
+    pub centre: Vec<[f64; 6]>,
+    /// By element and corner; NaN beyond the element's own corners.
+    pub corners: Vec<[[f64; 6]; 8]>,
+}
+
 /// A unit load: what acts in one load case.
 #[derive(Clone, Debug, PartialEq)]
 pub enum UnitLoad {
@@ -70,4 +83,11 @@ pub enum UnitLoad {
     },
     /// A load set of the deck.
     Set(u32),
+    /// Temperatures: the thermal strain they would give freely acts as a load, and strain is the mechanical rest.
+    Temperature {
+        /// TEMPERATURE(LOAD): a temperature set of the deck.
+        set: u32,
+        /// TEMPERATURE(INITIAL): where thermal strain counts from; `None`: from TREF of the materials.
+        initial: Option<u32>,
+    },
 }

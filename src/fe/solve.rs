@@ -7,6 +7,7 @@ use super::mass::{Mass, MassProperties};
 use super::relief::Balance;
 use super::shell_strain::{Corners, shell_fields};
 use super::system::System;
+use super::temperature::{Temperatures, thermal_forces};
 use super::{CaseResult, Solution, UnitLoad};
 use crate::finding::{Finding, Severity};
 use crate::linalg::sparse::OrderingMethod;
@@ -239,17 +240,20 @@ fn with_strain(
     options: &SolveOptions,
 ) -> Result<(Solution, SolveReport), FeError> {
     let u = solved.displacements;
+    let temperatures = temperatures_of(prepared.model, cases)?;
     let shells = shell_fields(prepared, &u, options.corners)?;
     let beams = super::beam_strain::beam_fields(prepared, &u)?;
-    let results = cases.iter().zip(u).zip(shells).zip(beams);
+    let solids = super::solid_fields::solid_fields(prepared, &u, &temperatures)?;
+    let results = cases.iter().zip(u).zip(shells).zip(beams).zip(solids);
     Ok((
         Solution {
             cases: results
-                .map(|(((case, displacement), shells), beams)| CaseResult {
+                .map(|((((case, displacement), shells), beams), solids)| CaseResult {
                     subcase: case.subcase,
                     label: case.label.clone(),
                     shells,
                     beams,
+                    solids,
                     displacement,
                 })
                 .collect(),
@@ -329,7 +333,7 @@ fn load_column(
     column: &mut [f64],
 ) -> Result<(Option<Balance>, Option<Finding>), FeError> {
     let model = prepared.model;
-    let mut f = applied_forces(model, mass, case)?;
+    let mut f = applied_forces(prepared, mass, case)?;
     system.loads_on_nothing(model, case.subcase, &f)?;
     let (mut balanced, mut finding) = (None, None);
     if let Some(body) = &system.body {
@@ -351,6 +355,14 @@ fn load_column(
 
 pub(super) fn largest(f: &[[f64; 6]]) -> f64 {
     f.iter().flatten().fold(0.0, |a, v| a.max(v.abs()))
+}
+
+/// The temperatures of every case; `None` for those without.
+fn temperatures_of(
+    model: &Model,
+    cases: &[LoadCase],
+) -> Result<Vec<Option<Temperatures>>, FeError> {
+    cases.iter().map(|c| Temperatures::of(model, c)).collect()
 }
 
 fn check_sets(model: &Model, cases: &[&LoadCase]) -> Result<(), FeError> {
@@ -386,10 +398,19 @@ fn check_sets(model: &Model, cases: &[&LoadCase]) -> Result<(), FeError> {
     Ok(())
 }
 
-fn applied_forces(model: &Model, mass: &Mass, case: &LoadCase) -> Result<Vec<[f64; 6]>, FeError> {
+fn applied_forces(
+    prepared: &Prepared<'_>,
+    mass: &Mass,
+    case: &LoadCase,
+) -> Result<Vec<[f64; 6]>, FeError> {
+    let model = prepared.model;
     let mut f = vec![[0.0; 6]; model.grids.len()];
+    if let Some(t) = Temperatures::of(model, case)? {
+        thermal_forces(prepared, &t, &mut f)?;
+    }
     for load in &case.loads {
         match load {
+            UnitLoad::Temperature { .. } => {}
             UnitLoad::AtGrid {
                 grid,
                 force,

@@ -243,9 +243,11 @@ impl System {
         };
         let limit = 1e-9 * largest(f);
         for (g, f) in f.iter().enumerate() {
-            let loose = |i: usize| {
-                self.reduction.state[6 * g + i] == State::Free && self.numbering.group[g].is_none()
+            let unknown = |i: usize| {
+                self.numbering.group[g]
+                    .is_some_and(|group| self.numbering.free[group as usize] >> i & 1 == 1)
             };
+            let loose = |i: usize| self.reduction.state[6 * g + i] == State::Free && !unknown(i);
             if let Some(i) = (0..6).find(|&i| f[i].abs() > limit && loose(i)) {
                 return Err(fault(g, i));
             }

@@ -67,13 +67,15 @@ pub(crate) fn unsupported(model: &Model, cases: &[LoadCase]) -> Vec<Refusal> {
             ShellKind::Laminate { .. } => {}
         }
     }
-    for s in &model.solids {
-        refuse(
-            format!("solid {}", s.id),
-            s.at,
-            "the built-in solver has no solids yet",
-            ELSEWHERE,
-        );
+    for p in &model.solid_properties {
+        if p.options[3].as_deref() == Some("PFLUID") {
+            refuse(
+                format!("PSOLID {}", p.id),
+                p.at,
+                "the built-in solver has no fluid elements",
+                ELSEWHERE,
+            );
+        }
     }
     for s in &model.shear_panels {
         refuse(

@@ -92,6 +92,47 @@ pub(super) fn solid_parts(shape: SolidShape, x: &[Option<Vec3>]) -> Option<Vec<P
     (!map.edges.is_empty()).then(|| map.parts())
 }
 
+/// Value, then exact derivatives: every function is of second degree at most in each parameter.
+fn with_slopes(f: &dyn Fn([f64; 3]) -> f64, p: [f64; 3]) -> [f64; 4] {
+    let slope = |k: usize| {
+        let (mut a, mut b) = (p, p);
+        a[k] += 0.5;
+        b[k] -= 0.5;
+        f(a) - f(b)
+    };
+    [f(p), slope(0), slope(1), slope(2)]
+}
+
+/// Edges of an element by their corners, in the order of the mid-side grids on the card; a pyramid has none here.
+pub(crate) fn solid_edges(shape: SolidShape) -> &'static [(usize, usize)] {
+    match shape {
+        SolidShape::Tetra => &TETRAHEDRON,
+        SolidShape::Penta => &WEDGE,
+        SolidShape::Hexa => &CUBE,
+        SolidShape::Pyram => &[],
+    }
+}
+
+/// Value and derivatives along the three parameters, each 0 to 1, of every linear corner function and every edge function (one in the
+/// middle of its edge) of a solid. A pyramid is a brick whose upper four corners are one.
+pub(crate) fn solid_functions(
+    shape: SolidShape,
+    p: [f64; 3],
+) -> (Vec<[f64; 4]>, Vec<[f64; 4]>) {
+    let domain = match shape {
+        SolidShape::Tetra => Domain::Tetrahedron,
+        SolidShape::Penta => Domain::Wedge,
+        SolidShape::Hexa | SolidShape::Pyram => Domain::Cube,
+    };
+    let mut corners = domain.corner_functions(p);
+    if shape == SolidShape::Pyram {
+        let upper = corners.split_off(4);
+        corners.push(std::array::from_fn(|k| upper.iter().map(|n| n[k]).sum()));
+        return (corners, Vec::new());
+    }
+    (corners, domain.edge_functions(p))
+}
+
 impl Map {
     fn of(domain: Domain, edges: &[(usize, usize)], x: &[Option<Vec3>]) -> Option<Self> {
         let n = domain.corners();
@@ -170,29 +211,26 @@ impl Domain {
     fn rule(self) -> &'static [RulePoint] {
         static RULES: [OnceLock<Vec<RulePoint>>; 5] = [const { OnceLock::new() }; 5];
         RULES[self as usize].get_or_init(|| {
-            // Value, then exact derivatives: every function is of second degree at most in each parameter.
-            let values = |f: &dyn Fn([f64; 3]) -> f64, p: [f64; 3]| {
-                let slope = |k: usize| {
-                    let (mut a, mut b) = (p, p);
-                    a[k] += 0.5;
-                    b[k] -= 0.5;
-                    f(a) - f(b)
-                };
-                [f(p), slope(0), slope(1), slope(2)]
-            };
             let point = |(weight, p): (f64, [f64; 3])| RulePoint {
                 weight,
-                corners: (0..self.corners())
-                    .map(|c| values(&|p| self.shape(c, p), p))
-                    .collect(),
-                edges: self
-                    .all_edges()
-                    .iter()
-                    .map(|(a, b)| values(&|p| 4.0 * self.edge(*a, *b, p), p))
-                    .collect(),
+                corners: self.corner_functions(p),
+                edges: self.edge_functions(p),
             };
             self.points().into_iter().map(point).collect()
         })
+    }
+
+    fn corner_functions(self, p: [f64; 3]) -> Vec<[f64; 4]> {
+        (0..self.corners())
+            .map(|c| with_slopes(&|p| self.shape(c, p), p))
+            .collect()
+    }
+
+    fn edge_functions(self, p: [f64; 3]) -> Vec<[f64; 4]> {
+        self.all_edges()
+            .iter()
+            .map(|(a, b)| with_slopes(&|p| 4.0 * self.edge(*a, *b, p), p))
+            .collect()
     }
 
     fn corners(self) -> usize {

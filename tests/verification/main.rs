@@ -11,3 +11,4 @@ mod macneal_harder;
 mod mesh;
 mod plates;
 mod real_cases;
+mod solids;

@@ -5,6 +5,7 @@ use super::bush::bush_stiffness;
 use super::matrix::ElementMatrix;
 use super::rod::rod_stiffness;
 use super::shell::{CornerDirectors, shared_normals, shell_stiffness};
+use super::solid::{solid_grids, solid_stiffness};
 use super::spring::spring_stiffness;
 use crate::fe::error::Refusal;
 use crate::fe::grid_frames::grid_axes;
@@ -18,6 +19,7 @@ pub(crate) enum ElementRef {
     Rod(usize),
     Bush(usize),
     Spring(usize),
+    Solid(usize),
 }
 
 /// A model with what its elements need beyond it.
@@ -51,6 +53,7 @@ impl<'a> Prepared<'a> {
             .chain(rods)
             .chain(bushes)
             .chain((0..m.springs.len()).map(ElementRef::Spring))
+            .chain((0..m.solids.len()).map(ElementRef::Solid))
             .collect()
     }
 
@@ -71,6 +74,15 @@ impl<'a> Prepared<'a> {
                 list.dedup();
                 list
             }
+            ElementRef::Solid(i) => solid_grids(&m.solids[i]),
+        }
+    }
+
+    /// Dofs of its grids that it may give stiffness to, a bit each.
+    pub(crate) fn dofs(&self, element: ElementRef) -> u8 {
+        match element {
+            ElementRef::Solid(_) => 0b000_111,
+            _ => 0b111_111,
         }
     }
 
@@ -85,6 +97,7 @@ impl<'a> Prepared<'a> {
             ElementRef::Rod(i) => rod_stiffness(self.model, i),
             ElementRef::Bush(i) => Ok(bush_stiffness(self.model, i)),
             ElementRef::Spring(i) => Ok(spring_stiffness(self, i)),
+            ElementRef::Solid(i) => solid_stiffness(self.model, i),
         }
     }
 }

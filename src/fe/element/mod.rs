@@ -9,6 +9,7 @@ mod list;
 mod matrix;
 mod rod;
 pub(crate) mod shell;
+pub(crate) mod solid;
 mod spring;
 
 pub(crate) use list::Prepared;

@@ -1,0 +1,20 @@
+//! CTETRA, CPENTA, CHEXA, CPYRAM with any of their mid-side grids: isoparametric serendipity elements, three translations a grid.
+//!
+//! Bricks and wedges without mid-side grids carry incompatible modes (quadratic along a brick's three directions, along a wedge's
+//! axis) with the gradient taken at the centre and scaled by the ratio of Jacobians, so that constant strain is met exactly on
+//! distorted shapes. Integration is full everywhere: six zero-energy modes and no more.
+//!
+//! # Reference
+//! Taylor, Beresford and Wilson, IJNME 10 (1976) 1211; Zienkiewicz and Taylor, The Finite Element Method, volume 1, chapters 8 and 10.
+
+mod form;
+mod law;
+mod of_model;
+mod table;
+
+pub(crate) use of_model::{
+    SolidStrain, solid_grids, solid_mass, solid_stiffness, solid_strain, solid_thermal_force,
+};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,215 @@
+//! Solids of a model: stiffness, mass, thermal forces, strain.
+
+use super::form::{Folded, SolidInput};
+use super::law::{SolidLaw, strain_rotation};
+use super::table::{Function, Tables};
+use crate::fe::element::ElementMatrix;
+use crate::fe::error::Refusal;
+use crate::linalg::{DMatrix, Vector6};
+use crate::model::{GridIx, Model, Solid, Vec3};
+
+/// Strain of a solid: xx yy zz xy yz zx, engineering shear; basic frame, or the material's where PSOLID names one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SolidStrain {
+    pub(crate) centre: [f64; 6],
+    /// By corner; NaN beyond the element's own.
+    pub(crate) corners: [[f64; 6]; 8],
+}
+
+fn refuse(solid: &Solid, reason: &str, remedy: &str) -> Refusal {
+    Refusal {
+        card: format!("{} {}", solid.shape.card(), solid.id),
+        at: solid.at,
+        reason: reason.to_owned(),
+        remedy: remedy.to_owned(),
+    }
+}
+
+fn folded(solid: &Solid) -> impl Fn(Folded) -> Refusal + '_ {
+    |_| {
+        refuse(
+            solid,
+            "its shape is flat, folded or inside out",
+            "check the order of its grids and the place of its mid-side grids",
+        )
+    }
+}
+
+/// Grids of a solid: corners, then the mid-side grids there are.
+pub(crate) fn solid_grids(solid: &Solid) -> Vec<GridIx> {
+    solid.grids.iter().flatten().copied().collect()
+}
+
+fn input(model: &Model, solid: &Solid) -> Result<SolidInput, Refusal> {
+    let n = solid.shape.n_corners();
+    let mids: Vec<usize> = (0..20 - n)
+        .filter(|i| solid.grids[n + i].is_some())
+        .collect();
+    if solid.shape == nastran::cards::SolidShape::Pyram && !mids.is_empty() {
+        return Err(refuse(
+            solid,
+            "the built-in solver has no pyramid with mid-side grids",
+            "leave the mid-side grids out, or solve with Nastran",
+        ));
+    }
+    Ok(SolidInput {
+        shape: solid.shape,
+        x: solid_grids(solid)
+            .iter()
+            .map(|g| model.grids[g.us()].x)
+            .collect(),
+        mids,
+    })
+}
+
+fn formed(model: &Model, solid: &Solid) -> Result<(SolidInput, SolidLaw), Refusal> {
+    let input = input(model, solid)?;
+    let corners = &input.x[..solid.shape.n_corners()];
+    let law = SolidLaw::new(model, solid, corners)
+        .map_err(|why| refuse(solid, why, "correct PSOLID and its material"))?;
+    Ok((input, law))
+}
+
+/// Stiffness of solid `i`, basic frame; rotations are without stiffness.
+///
+/// # Errors
+/// Folded shapes; properties and materials that make no solid.
+pub(crate) fn solid_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, Refusal> {
+    let solid = &model.solids[i];
+    let (input, law) = formed(model, solid)?;
+    let k = input.form(&law.g, None).map_err(folded(solid))?.stiffness;
+    let mut out = ElementMatrix::zeros(solid_grids(solid));
+    let n = out.n();
+    for a in 0..k.nrows() {
+        let row = 6 * (a / 3) + a % 3;
+        for b in 0..k.ncols() {
+            out.values[row * n + 6 * (b / 3) + b % 3] = k[(a, b)];
+        }
+    }
+    Ok(out)
+}
+
+/// Grids and, row by row, the integral of density times products of shape functions, before WTMASS; empty for a folded shape, which
+/// its stiffness refuses.
+pub(crate) fn solid_mass(model: &Model, i: usize) -> (Vec<GridIx>, Vec<f64>) {
+    let solid = &model.solids[i];
+    let rho = model
+        .solid_properties
+        .get(solid.property as usize)
+        .and_then(|p| model.materials.get(p.material.us()))
+        .map_or(0.0, |m| m.rho);
+    let products = input(model, solid)
+        .ok()
+        .and_then(|input| input.products().ok());
+    match products {
+        Some(mut p) if rho != 0.0 => {
+            p.iter_mut().for_each(|v| *v *= rho);
+            (solid_grids(solid), p)
+        }
+        _ => (Vec::new(), Vec::new()),
+    }
+}
+
+/// Thermal strain at a point from the temperature rise of the grids.
+fn expansion<'a>(law: &'a SolidLaw, rise: &'a [f64]) -> impl Fn(&[Function]) -> Vector6<f64> + 'a {
+    move |functions| {
+        let dt: f64 = functions.iter().zip(rise).map(|(f, t)| f[0] * t).sum();
+        law.alpha * dt
+    }
+}
+
+/// Forces of a temperature rise by grid of the element: three a grid, basic frame.
+///
+/// # Errors
+/// As `solid_stiffness`.
+pub(crate) fn solid_thermal_force(
+    model: &Model,
+    i: usize,
+    rise: &[f64],
+) -> Result<Vec<(GridIx, Vec3)>, Refusal> {
+    let solid = &model.solids[i];
+    let (input, law) = formed(model, solid)?;
+    let strain = expansion(&law, rise);
+    let force = input
+        .form(&law.g, Some(&strain))
+        .map_err(folded(solid))?
+        .force;
+    Ok(solid_grids(solid)
+        .into_iter()
+        .zip(force.chunks_exact(3).map(Vec3::from_column_slice))
+        .collect())
+}
+
+/// Mechanical strain of solid `i` under displacements (basic frame, by grid of the model) and the temperature rise of its grids
+/// (empty: none), one answer a field.
+///
+/// # Errors
+/// As `solid_stiffness`.
+pub(crate) fn solid_strain(
+    model: &Model,
+    i: usize,
+    fields: &[(&[[f64; 6]], Vec<f64>)],
+) -> Result<Vec<SolidStrain>, Refusal> {
+    let solid = &model.solids[i];
+    let (input, law) = formed(model, solid)?;
+    let tables = Tables::of(solid.shape);
+    let turn = law.axes.as_ref().map(strain_rotation);
+    let grids = solid_grids(solid);
+    let centre = input.at(&tables.centre).map_err(folded(solid))?;
+    let sampled: Vec<_> = tables
+        .sampling
+        .iter()
+        .map(|p| input.at(p))
+        .collect::<Result<_, Folded>>()
+        .map_err(folded(solid))?;
+    let share = match input.has_modes() {
+        true => input.form(&law.g, None).map_err(folded(solid))?.share,
+        false => DMatrix::zeros(0, 3 * grids.len()),
+    };
+    fields
+        .iter()
+        .map(|(u, rise)| {
+            let local: Vec<f64> = grids
+                .iter()
+                .flat_map(|g| u[g.us()].into_iter().take(3))
+                .collect();
+            let strain = expansion(&law, rise);
+            let mut modes: Vec<f64> = if rise.is_empty() || !input.has_modes() {
+                vec![0.0; share.nrows()]
+            } else {
+                input
+                    .form(&law.g, Some(&strain))
+                    .map_err(folded(solid))?
+                    .amount
+            };
+            for (m, amount) in modes.iter_mut().enumerate() {
+                *amount -= local
+                    .iter()
+                    .enumerate()
+                    .map(|(j, u)| share[(m, j)] * u)
+                    .sum::<f64>();
+            }
+            let at = |at: &super::form::At| -> [f64; 6] {
+                let total: Vector6<f64> = at
+                    .columns
+                    .iter()
+                    .zip(local.iter().chain(&modes))
+                    .map(|(c, u)| c * *u)
+                    .sum();
+                let mechanical = total - strain(&at.functions);
+                turn.map_or(mechanical, |t| t * mechanical).into()
+            };
+            let values: Vec<[f64; 6]> = sampled.iter().map(at).collect();
+            let mut corners = [[f64::NAN; 6]; 8];
+            for (corner, weights) in corners.iter_mut().zip(&tables.to_corner) {
+                *corner = std::array::from_fn(|c| {
+                    weights.iter().zip(&values).map(|(w, v)| w * v[c]).sum()
+                });
+            }
+            Ok(SolidStrain {
+                centre: at(&centre),
+                corners,
+            })
+        })
+        .collect()
+}

@@ -1,0 +1,50 @@
+//! Strain of solids from displacements.
+
+use super::SolidField;
+use super::element::Prepared;
+use super::element::solid::{SolidStrain, solid_grids, solid_strain};
+use super::error::{FeError, Refusal};
+use super::temperature::Temperatures;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Mechanical strain of every solid, one field a displacement field (basic frame, by grid) with its temperatures.
+///
+/// # Errors
+/// Solids that can't be formed.
+pub(crate) fn solid_fields(
+    prepared: &Prepared<'_>,
+    u: &[Vec<[f64; 6]>],
+    temperatures: &[Option<Temperatures>],
+) -> Result<Vec<SolidField>, FeError> {
+    let model = prepared.model;
+    let elements = Arc::new((0..model.solids.len()).collect::<Vec<_>>());
+    let by_solid: Result<Vec<Vec<SolidStrain>>, Refusal> = (0..model.solids.len())
+        .into_par_iter()
+        .map(|i| {
+            let grids = solid_grids(&model.solids[i]);
+            let fields: Vec<(&[[f64; 6]], Vec<f64>)> = u
+                .iter()
+                .zip(temperatures)
+                .map(|(u, t)| {
+                    let rise = t
+                        .as_ref()
+                        .map_or_else(Vec::new, |t| t.solid_rise(model, i, &grids));
+                    (u.as_slice(), rise)
+                })
+                .collect();
+            solid_strain(model, i, &fields)
+        })
+        .collect();
+    let by_solid = by_solid.map_err(|r| FeError::Refused(vec![r]))?;
+    Ok((0..u.len())
+        .map(|case| {
+            let of_case = || by_solid.iter().filter_map(|s| s.get(case));
+            SolidField {
+                elements: elements.clone(),
+                centre: of_case().map(|s| s.centre).collect(),
+                corners: of_case().map(|s| s.corners).collect(),
+            }
+        })
+        .collect())
+}
