@@ -248,14 +248,16 @@ fn with_strain(
     Ok((
         Solution {
             cases: results
-                .map(|((((case, displacement), shells), beams), solids)| CaseResult {
-                    subcase: case.subcase,
-                    label: case.label.clone(),
-                    shells,
-                    beams,
-                    solids,
-                    displacement,
-                })
+                .map(
+                    |((((case, displacement), shells), beams), solids)| CaseResult {
+                        subcase: case.subcase,
+                        label: case.label.clone(),
+                        shells,
+                        beams,
+                        solids,
+                        displacement,
+                    },
+                )
                 .collect(),
             source: concat!("strainbridge ", env!("CARGO_PKG_VERSION")).to_owned(),
             findings: solved.findings,

@@ -115,10 +115,7 @@ pub(crate) fn solid_edges(shape: SolidShape) -> &'static [(usize, usize)] {
 
 /// Value and derivatives along the three parameters, each 0 to 1, of every linear corner function and every edge function (one in the
 /// middle of its edge) of a solid. A pyramid is a brick whose upper four corners are one.
-pub(crate) fn solid_functions(
-    shape: SolidShape,
-    p: [f64; 3],
-) -> (Vec<[f64; 4]>, Vec<[f64; 4]>) {
+pub(crate) fn solid_functions(shape: SolidShape, p: [f64; 3]) -> (Vec<[f64; 4]>, Vec<[f64; 4]>) {
     let domain = match shape {
         SolidShape::Tetra => Domain::Tetrahedron,
         SolidShape::Penta => Domain::Wedge,

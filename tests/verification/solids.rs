@@ -49,7 +49,11 @@ impl Block {
                     .map(|j| {
                         (0..=l)
                             .map(|k| {
-                                let p = [i as f64 / n as f64, j as f64 / m as f64, k as f64 / l as f64];
+                                let p = [
+                                    i as f64 / n as f64,
+                                    j as f64 / m as f64,
+                                    k as f64 / l as f64,
+                                ];
                                 b.grid(at(p))
                             })
                             .collect()
@@ -88,9 +92,30 @@ impl Block {
         .map(|o| c(self, o));
         let edges: &[(usize, usize)] = match kind {
             Kind::Hexa => &[
-                (0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 5), (2, 6), (3, 7), (4, 5), (5, 6), (6, 7), (7, 4),
+                (0, 1),
+                (1, 2),
+                (2, 3),
+                (3, 0),
+                (0, 4),
+                (1, 5),
+                (2, 6),
+                (3, 7),
+                (4, 5),
+                (5, 6),
+                (6, 7),
+                (7, 4),
             ],
-            Kind::Penta => &[(0, 1), (1, 2), (2, 0), (0, 3), (1, 4), (2, 5), (3, 4), (4, 5), (5, 3)],
+            Kind::Penta => &[
+                (0, 1),
+                (1, 2),
+                (2, 0),
+                (0, 3),
+                (1, 4),
+                (2, 5),
+                (3, 4),
+                (4, 5),
+                (5, 3),
+            ],
             Kind::Tetra => &[(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)],
         };
         let lists: Vec<Vec<u32>> = match kind {
@@ -119,7 +144,11 @@ impl Block {
                 Kind::Tetra => "CTETRA",
             };
             let ids: Vec<String> = list.iter().map(u32::to_string).collect();
-            let mut text = format!("{name},{},1,{}", self.next, ids[..ids.len().min(6)].join(","));
+            let mut text = format!(
+                "{name},{},1,{}",
+                self.next,
+                ids[..ids.len().min(6)].join(",")
+            );
             for chunk in ids[ids.len().min(6)..].chunks(8) {
                 text += &format!("\n,{}", chunk.join(","));
             }
@@ -181,7 +210,10 @@ fn constant_strain_passes_through_distorted_solids() {
         let solved = b.bulk.solve();
         for (id, x) in &b.x {
             for (u, e) in solved.at(*id).iter().zip(exact(*x)) {
-                assert!((u - e).abs() < 1e-8 * 2e-3, "{kind:?} grid {id}: {u} for {e}");
+                assert!(
+                    (u - e).abs() < 1e-8 * 2e-3,
+                    "{kind:?} grid {id}: {u} for {e}"
+                );
             }
         }
         let solids = &solved.case.solids;
@@ -198,9 +230,15 @@ fn constant_strain_passes_through_distorted_solids() {
 /// MacNeal and Harder's straight cantilever, six elements long.
 fn cantilever(kind: (Kind, bool), n: [usize; 3], load: [f64; 3]) -> f64 {
     let (l, w, t) = (6.0, 0.2, 0.1);
-    let mut b = Block::new(material(1e7, 0.3), n, kind, |[x, y, z]| [l * x, w * y, t * z]);
+    let mut b = Block::new(material(1e7, 0.3), n, kind, |[x, y, z]| {
+        [l * x, w * y, t * z]
+    });
     let root: Vec<u32> = b.x.iter().filter(|x| x.1[0] < 1e-9).map(|x| *x.0).collect();
-    let tip: Vec<u32> = b.x.iter().filter(|x| x.1[0] > l - 1e-9).map(|x| *x.0).collect();
+    let tip: Vec<u32> =
+        b.x.iter()
+            .filter(|x| x.1[0] > l - 1e-9)
+            .map(|x| *x.0)
+            .collect();
     b.bulk.hold("123", root);
     for g in &tip {
         b.bulk.force(*g, load.map(|f| f / tip.len() as f64));
@@ -225,15 +263,29 @@ fn a_slender_cantilever_of_bricks_and_quadratic_solids_bends_as_macneal_and_hard
             ((Kind::Penta, true), 0.06),
         ] {
             let got = cantilever(kind, [6, 1, 1], load);
-            near(&format!("cantilever {kind:?} {name}"), got, reference, tolerance);
+            near(
+                &format!("cantilever {kind:?} {name}"),
+                got,
+                reference,
+                tolerance,
+            );
         }
-        for kind in [(Kind::Tetra, true), (Kind::Penta, false), (Kind::Tetra, false)] {
+        for kind in [
+            (Kind::Tetra, true),
+            (Kind::Penta, false),
+            (Kind::Tetra, false),
+        ] {
             let got = cantilever(kind, [6, 1, 1], load);
             record(&format!("cantilever {kind:?} {name}"), got, reference);
         }
         // Refined, quadratic tetrahedra arrive as well.
         let got = cantilever((Kind::Tetra, true), [30, 1, 1], load);
-        near(&format!("cantilever 30 long, ten-node tetrahedra, {name}"), got, reference, 0.03);
+        near(
+            &format!("cantilever 30 long, ten-node tetrahedra, {name}"),
+            got,
+            reference,
+            0.03,
+        );
     }
 }
 
@@ -258,10 +310,18 @@ fn cylinder(kind: (Kind, bool), nu: f64) -> f64 {
             let [x, y, z] = b.x[&id];
             let a = y.atan2(x);
             let on_arc = (a.to_degrees() - 5.0).abs() < 1e-6;
-            let r = x.hypot(y) / if on_arc { 5_f64.to_radians().cos() } else { 1.0 };
+            let r = x.hypot(y)
+                / if on_arc {
+                    5_f64.to_radians().cos()
+                } else {
+                    1.0
+                };
             moved += &format!(
                 "GRID*   {id:16}{:16}{:16.9E}{:16.9E}\n*       {z:16.9E}{:16}\n",
-                "", r * a.cos(), r * a.sin(), 7
+                "",
+                r * a.cos(),
+                r * a.sin(),
+                7
             );
             let _ = next;
         } else {
@@ -274,12 +334,11 @@ fn cylinder(kind: (Kind, bool), nu: f64) -> f64 {
     b.bulk.hold("23", all);
     // Unit pressure on the inner face: 3 * 10 degrees of arc, height 1; on a quadratic face (serendipity) corners take -1/12 of it.
     let force = 3.0 * 10_f64.to_radians();
-    let inner: Vec<(u32, [f64; 3])> = b
-        .x
-        .iter()
-        .filter(|x| x.1[0].hypot(x.1[1]) < 3.01)
-        .map(|x| (*x.0, *x.1))
-        .collect();
+    let inner: Vec<(u32, [f64; 3])> =
+        b.x.iter()
+            .filter(|x| x.1[0].hypot(x.1[1]) < 3.01)
+            .map(|x| (*x.0, *x.1))
+            .collect();
     for (id, x) in &inner {
         let a = x[1].atan2(x[0]);
         let corner = b.lattice[0].iter().flatten().any(|g| g == id);
@@ -288,7 +347,8 @@ fn cylinder(kind: (Kind, bool), nu: f64) -> f64 {
             (true, true) => -1.0 / 12.0,
             (true, false) => 1.0 / 3.0,
         };
-        b.bulk.force(*id, [share * force * a.cos(), share * force * a.sin(), 0.0]);
+        b.bulk
+            .force(*id, [share * force * a.cos(), share * force * a.sin(), 0.0]);
     }
     let s = b.bulk.solve();
     let g = b.lattice[0][0][0];
@@ -352,7 +412,9 @@ fn the_axis_of_a_material_coordinate_system_is_followed() {
     ));
     bulk.card("CORD2R,5,0,0.,0.,0.,0.,0.,1.,\n,0.,1.,0.");
     bulk.card("PSOLID,1,1,5");
-    let mut b = Block::new(bulk, [1, 2, 1], (Kind::Hexa, false), |[x, y, z]| [x, 4.0 * y, z]);
+    let mut b = Block::new(bulk, [1, 2, 1], (Kind::Hexa, false), |[x, y, z]| {
+        [x, 4.0 * y, z]
+    });
     let (bottom, top): (Vec<u32>, Vec<u32>) = (
         b.lattice.iter().flat_map(|p| p[0].clone()).collect(),
         b.lattice.iter().flat_map(|p| p[2].clone()).collect(),
@@ -362,7 +424,12 @@ fn the_axis_of_a_material_coordinate_system_is_followed() {
         b.bulk.force(*g, [0.0, 2.5, 0.0]);
     }
     let s: Solved = b.bulk.solve();
-    near("pull along the stiff axis", s.at(top[0])[1], 10.0 * 4.0 / 1e5, 1e-9);
+    near(
+        "pull along the stiff axis",
+        s.at(top[0])[1],
+        10.0 * 4.0 / 1e5,
+        1e-9,
+    );
     // Strain is given in the material frame: the first component lies along basic y.
     near("strain along it", s.case.solids.centre[0][0], 1e-4, 1e-9);
 }

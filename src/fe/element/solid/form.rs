@@ -89,7 +89,9 @@ impl SolidInput {
             push(&mut columns, &(inverse * Vec3::new(f[1], f[2], f[3])));
         }
         if !modes.is_empty() {
-            let centre = Tables::of(self.shape).centre.functions(self.shape, &self.mids);
+            let centre = Tables::of(self.shape)
+                .centre
+                .functions(self.shape, &self.mids);
             let j0 = self.jacobian(&centre);
             let det0 = j0.determinant();
             let inverse0 = j0.try_inverse().filter(|_| det0 > 0.0).ok_or(Folded)?;

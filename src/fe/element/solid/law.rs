@@ -15,7 +15,11 @@ pub(super) struct SolidLaw {
 
 impl SolidLaw {
     /// The law of a solid at its centre; `Err` says why there is none.
-    pub(super) fn new(model: &Model, solid: &Solid, corners: &[Vec3]) -> Result<Self, &'static str> {
+    pub(super) fn new(
+        model: &Model,
+        solid: &Solid,
+        corners: &[Vec3],
+    ) -> Result<Self, &'static str> {
         let property = model
             .solid_properties
             .get(solid.property as usize)

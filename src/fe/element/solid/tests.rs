@@ -18,12 +18,7 @@ fn steel() -> Matrix6<f64> {
 fn distorted(shape: SolidShape, mids: &[usize]) -> SolidInput {
     let r = nalgebra::Rotation3::from_euler_angles(0.4, -0.9, 1.7);
     let corners: &[[f64; 3]] = match shape {
-        SolidShape::Tetra => &[
-            [0., 0., 0.],
-            [10., 1., 0.],
-            [2., 8., -1.],
-            [1., 2., 9.],
-        ],
+        SolidShape::Tetra => &[[0., 0., 0.], [10., 1., 0.], [2., 8., -1.], [1., 2., 9.]],
         SolidShape::Penta => &[
             [0., 0., 0.],
             [10., 1., 0.],
@@ -92,14 +87,26 @@ fn six_rigid_motions_and_no_other_leave_a_solid_unstrained() {
             let r = DMatrix::from_fn(n, 1, |i, _| {
                 let mut t = Vec3::zeros();
                 t[mode % 3] = 1.0;
-                let u = if mode < 3 { t } else { t.cross(&s.x[i / 3]) / size };
+                let u = if mode < 3 {
+                    t
+                } else {
+                    t.cross(&s.x[i / 3]) / size
+                };
                 u[i % 3]
             });
             let residual = (&k * r).amax() / largest;
-            assert!(residual < 1e-10, "{:?} {} grids: {residual:e}", s.shape, n / 3);
+            assert!(
+                residual < 1e-10,
+                "{:?} {} grids: {residual:e}",
+                s.shape,
+                n / 3
+            );
         }
         let values = k.symmetric_eigenvalues();
-        let zero = values.iter().filter(|v| v.abs() < 1e-9 * values.max()).count();
+        let zero = values
+            .iter()
+            .filter(|v| v.abs() < 1e-9 * values.max())
+            .count();
         assert_eq!(zero, 6, "{:?} {} grids", s.shape, n / 3);
     }
 }
@@ -112,28 +119,39 @@ fn a_linear_displacement_field_gives_its_own_strain_at_every_point_of_a_straight
         .iter_mut()
         .zip([(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)])
     {
-        *e = if a == b { g[(a, a)] } else { g[(a, b)] + g[(b, a)] };
+        *e = if a == b {
+            g[(a, a)]
+        } else {
+            g[(a, b)] + g[(b, a)]
+        };
     }
     for s in all() {
         let formed = s.form(&steel(), None).unwrap();
-        let u: Vec<f64> = s
-            .x
-            .iter()
-            .flat_map(|x| {
-                let u = g * x;
-                [u.x, u.y, u.z]
-            })
-            .collect();
+        let u: Vec<f64> =
+            s.x.iter()
+                .flat_map(|x| {
+                    let u = g * x;
+                    [u.x, u.y, u.z]
+                })
+                .collect();
         // The modes stay at rest: their share of a constant strain is none.
         for m in 0..formed.share.nrows() {
-            let amount: f64 = u.iter().enumerate().map(|(j, u)| formed.share[(m, j)] * u).sum();
+            let amount: f64 = u
+                .iter()
+                .enumerate()
+                .map(|(j, u)| formed.share[(m, j)] * u)
+                .sum();
             assert!(amount.abs() < 1e-11, "{:?}: {amount:e}", s.shape);
         }
         for point in s.rule() {
             let at = s.at(point).unwrap();
             for (c, exact) in exact.iter().enumerate() {
                 let got: f64 = at.columns.iter().zip(&u).map(|(b, u)| b[c] * u).sum();
-                assert!((got - exact).abs() < 1e-12, "{:?}: {got} for {exact}", s.shape);
+                assert!(
+                    (got - exact).abs() < 1e-12,
+                    "{:?}: {got} for {exact}",
+                    s.shape
+                );
             }
         }
     }
@@ -146,10 +164,17 @@ fn products_of_shape_functions_add_up_to_the_volume_and_its_first_moment() {
         let p = s.products().unwrap();
         let volume: f64 = s.rule().iter().map(|q| s.at(q).unwrap().volume).sum();
         let sum: f64 = p.iter().sum();
-        let exact_volume = matches!(s.shape, SolidShape::Hexa | SolidShape::Tetra | SolidShape::Pyram);
+        let exact_volume = matches!(
+            s.shape,
+            SolidShape::Hexa | SolidShape::Tetra | SolidShape::Pyram
+        );
         // A curved wedge's volume needs a higher degree than its stiffness rule has in height.
         let tolerance = if exact_volume { 1e-9 } else { 1e-6 };
-        assert!((sum / volume - 1.0).abs() < tolerance, "{:?} {n}: {sum} {volume}", s.shape);
+        assert!(
+            (sum / volume - 1.0).abs() < tolerance,
+            "{:?} {n}: {sum} {volume}",
+            s.shape
+        );
         // x is itself a shape-function field: x' P x must not depend on which way it is summed, and is positive.
         let moment: f64 = (0..n)
             .map(|i| s.x[i].x * (0..n).map(|j| p[i * n + j] * s.x[j].x).sum::<f64>())
