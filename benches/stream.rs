@@ -16,7 +16,7 @@ const GAUGES: usize = 41;
 const LOADS: usize = 6;
 const SAMPLES: usize = 1_000_000;
 /// Samples a piece, as the command takes them.
-const PIECE: usize = 16_384;
+const PIECE: usize = 512;
 
 fn record() -> Vec<u8> {
     let names: Vec<String> = (0..GAUGES).map(|g| format!("G{g}")).collect();

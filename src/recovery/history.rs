@@ -1,6 +1,7 @@
 //! Records of any length: one gain matrix, samples streamed through it in blocks, constant memory.
 
 use super::errors::ErrorModel;
+use super::kernel::Samples;
 use super::solve::fit;
 use crate::linalg::Matrix;
 use crate::sensitivity::Sensitivity;
@@ -82,11 +83,6 @@ impl Sums {
     }
 }
 
-/// Samples handled together: their readings lie beside each other by gauge, so that a coefficient is loaded once for all of them.
-const LANES: usize = 32;
-
-type Lanes = [f64; LANES];
-
 impl Filter {
     /// The filter for `s` with `zero` (strain by gauge) subtracted; weights are those of the model error at `typical` loads.
     /// `None` where numbers are not finite.
@@ -155,95 +151,15 @@ impl Filter {
     /// Loads of samples (`n_gauges` strains each, times `to_strain`), appended to `out` (`n_loads` each) and to `sums`.
     /// A sample with a reading that is not finite has loads NaN and counts as a gap.
     pub fn apply(&self, samples: &[f64], to_strain: f64, out: &mut Vec<f64>, sums: &mut Sums) {
-        let mut readings = vec![[0.0; LANES]; self.n];
-        let mut loads = vec![[0.0; LANES]; self.k];
-        pulp::Arch::new().dispatch(|| {
-            for block in samples.chunks((self.n * LANES).max(1)) {
-                self.apply_block(block, to_strain, &mut readings, &mut loads, out, sums);
-            }
+        pulp::Arch::new().dispatch(Samples {
+            gain: &self.gain,
+            s: &self.s,
+            zero: &self.zero,
+            samples,
+            to_strain,
+            out,
+            sums,
         });
-    }
-
-    #[inline(always)]
-    fn apply_block(
-        &self,
-        block: &[f64],
-        to_strain: f64,
-        readings: &mut [Lanes],
-        loads: &mut [Lanes],
-        out: &mut Vec<f64>,
-        sums: &mut Sums,
-    ) {
-        let count = block.len() / self.n.max(1);
-        if count < LANES {
-            readings.fill([0.0; LANES]);
-        }
-        for (lane, sample) in block.chunks_exact(self.n.max(1)).enumerate() {
-            for ((r, &raw), z) in readings.iter_mut().zip(sample).zip(&self.zero) {
-                r[lane] = raw * to_strain - z;
-            }
-        }
-        let mut ok = [true; LANES];
-        for (f, row) in loads.iter_mut().zip(self.gain.chunks_exact(self.n.max(1))) {
-            let mut sum = [0.0; LANES];
-            for (&c, y) in row.iter().zip(&*readings) {
-                for (a, &v) in sum.iter_mut().zip(y) {
-                    *a = c.mul_add(v, *a);
-                }
-            }
-            for (o, v) in ok.iter_mut().zip(&sum) {
-                *o &= v.is_finite();
-            }
-            *f = sum;
-        }
-        for (lane, &o) in ok.iter().enumerate().take(count) {
-            out.extend(loads.iter().map(|f| if o { f[lane] } else { f64::NAN }));
-        }
-        let gaps = ok.iter().take(count).filter(|o| !**o).count();
-        sums.samples += (count - gaps) as u64;
-        sums.gaps += gaps as u64;
-        if gaps > 0 {
-            for all in readings.iter_mut().chain(loads.iter_mut()) {
-                for (v, o) in all.iter_mut().zip(&ok) {
-                    *v = if *o { *v } else { 0.0 };
-                }
-            }
-        }
-        let taken = |lane: usize| lane < count && ok[lane];
-        for (l, f) in loads.iter().enumerate() {
-            let mut squares = [0.0; LANES];
-            for (s, &v) in squares.iter_mut().zip(f) {
-                *s = v * v;
-            }
-            sums.sum[l] += total(f);
-            sums.sum_of_squares[l] += total(&squares);
-            for (lane, &v) in f.iter().enumerate() {
-                if taken(lane) {
-                    sums.min[l] = if v < sums.min[l] { v } else { sums.min[l] };
-                    sums.max[l] = if v > sums.max[l] { v } else { sums.max[l] };
-                }
-            }
-        }
-        for (g, (y, row)) in readings
-            .iter()
-            .zip(self.s.chunks_exact(self.k.max(1)))
-            .enumerate()
-        {
-            let (mut left, mut squares) = (*y, [0.0; LANES]);
-            for (s, &v) in squares.iter_mut().zip(y) {
-                *s = v * v;
-            }
-            sums.reading[g] += total(&squares);
-            for (&c, f) in row.iter().zip(&*loads) {
-                for (a, &v) in left.iter_mut().zip(f) {
-                    *a = (-c).mul_add(v, *a);
-                }
-            }
-            for (s, &v) in squares.iter_mut().zip(&left) {
-                *s = v * v;
-            }
-            sums.residual[g] += total(&squares);
-        }
     }
 
     /// Standard deviation of each load of a sample with loads `f`.
@@ -269,16 +185,4 @@ impl Filter {
     pub fn n_gauges(&self) -> usize {
         self.n
     }
-}
-
-/// Sum over the lanes, in an order that a processor can add in parallel.
-#[inline(always)]
-fn total(lanes: &Lanes) -> f64 {
-    let mut four = [0.0; 4];
-    for chunk in lanes.chunks_exact(4) {
-        for (a, v) in four.iter_mut().zip(chunk) {
-            *a += v;
-        }
-    }
-    (four[0] + four[1]) + (four[2] + four[3])
 }

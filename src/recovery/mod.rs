@@ -6,6 +6,7 @@
 pub mod errors;
 pub mod faults;
 pub mod history;
+mod kernel;
 pub mod net;
 mod runs;
 mod solve;

@@ -238,7 +238,7 @@ pub(super) fn solve(job: &Job, model: &Model, loads: &[UnitLoad]) -> Result<Solu
         .map_err(|e| vec![Fault::of(&*job.file, "model", e.to_string(), remedy)])
 }
 
-fn gravity(job: &Job) -> f64 {
+pub(super) fn gravity(job: &Job) -> f64 {
     job.payload
         .as_ref()
         .and_then(|p| p.gravity_m_s2)

@@ -1,10 +1,11 @@
 //! The extended model: a copy of the job whose files hold the named effects, so that every command runs it as it is.
 //!
 //! Effects of a channel go into the readings (`strain_extended.csv`), effects of structure into S (`sensitivity_extended.csv`), loads that
-//! were left out become columns of S, the payload's place goes into `runs_extended.csv`.
+//! were left out become columns of S or loads of the job, the payload's place goes into `runs_extended.csv`.
 
 use super::deck_frame::DeckFrame;
 use super::extended_deck::NamedStiffness;
+use super::extended_loads::{entries, side_loads};
 use super::relative::relative;
 use crate::cli::Session;
 use crate::cli::fault::{Fault, Faults};
@@ -145,7 +146,16 @@ pub(super) fn write(
             _ => None,
         })
         .collect();
-    let extended_deck = deck.and_then(|d| d.extended(job, &stiffness, &masses));
+    let side = side_loads(job, &outcome.effects);
+    if deck.is_some() {
+        let list = table
+            .entry("load")
+            .or_insert_with(|| Value::Array(Vec::new()));
+        if let Value::Array(list) = list {
+            list.extend(entries(job, frame, &side));
+        }
+    }
+    let extended_deck = deck.and_then(|d| d.extended(job, &stiffness, &masses, &side));
     if extended_deck.is_some() {
         set(&mut table, "model", "deck", DECK);
     }

@@ -1,6 +1,7 @@
 //! The analyst's deck with named effects in it.
 
 use super::deck_frame::DeckFrame;
+use super::extended_loads::{SideLoad, cards};
 use super::stiffness::{JOINT, factor};
 use crate::cli::job::Job;
 use nastran::bdf::{Edits, Field, format_card, write_edited};
@@ -10,15 +11,17 @@ use nastran::cards::{Bush, Orientation, Pbush};
 pub(super) type NamedStiffness = (&'static str, String, f64);
 
 impl DeckFrame {
-    /// The deck with zones thickened, joints changed and masses added; `None` where it is spread over several files or nothing changes.
+    /// The deck with zones thickened, joints changed, masses and a load set of side loads added; `None` where it is spread over several files or nothing changes.
     pub(super) fn extended(
         &self,
         job: &Job,
         stiffness: &[NamedStiffness],
         masses: &[(String, f64)],
+        side: &[SideLoad],
     ) -> Option<Vec<u8>> {
         let deck = &self.fields.deck.deck;
-        if deck.sources.len() != 1 || (stiffness.is_empty() && masses.is_empty()) {
+        if deck.sources.len() != 1 || (stiffness.is_empty() && masses.is_empty() && side.is_empty())
+        {
             return None;
         }
         let mut edits = Edits::default();
@@ -31,6 +34,11 @@ impl DeckFrame {
             }
         }
         self.add_masses(&mut edits, job, masses)?;
+        if !side.is_empty() {
+            let sets = self.fields.model().load_sets.iter().map(|s| s.sid);
+            let sid = sets.max().unwrap_or(0).checked_add(1)?;
+            edits.insert_cards(deck, &cards(job, sid, side));
+        }
         write_edited(deck, &edits).into_iter().next().map(|f| f.1)
     }
 

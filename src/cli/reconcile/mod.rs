@@ -7,6 +7,7 @@ mod dynamic;
 mod dynamic_extend;
 mod extend;
 mod extended_deck;
+mod extended_loads;
 mod finer;
 mod matrix_frame;
 mod relative;
