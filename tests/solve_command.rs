@@ -356,4 +356,20 @@ fn recover_takes_the_solution_of_sensitivity_and_warns_of_content_near_the_first
     assert!((first / 415.0 - 1.0).abs() < 0.06, "{first}");
     let content = result["content_hz"][0].as_f64().unwrap();
     assert!((content - 300.0).abs() < 5.0, "{content}");
+    // Strain from a results file: the modes are solved for the record's sake.
+    let done = strainbridge(&["solve", path.to_str().unwrap()]);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    let with_results = std::fs::read_to_string(&path).unwrap().replace(
+        "deck = \"model.bdf\"\n",
+        "deck = \"model.bdf\"\nresults = [\"job.out/results.op2\"]\n",
+    );
+    let other = dir.join("with_results.toml");
+    std::fs::write(&other, with_results).unwrap();
+    let done = strainbridge(&["recover", other.to_str().unwrap()]);
+    let err = text(&done.stderr);
+    assert!(err.contains("first elastic mode"), "{err}");
+    let json = std::fs::read(dir.join("with_results.out/result.json")).unwrap();
+    let again: serde_json::Value = serde_json::from_slice(&json).unwrap();
+    let other = again["first_elastic_mode_hz"].as_f64().unwrap();
+    assert!((other / first - 1.0).abs() < 1e-6, "{other} {first}");
 }

@@ -9,6 +9,7 @@ use crate::fe::{
     FeError, LoadCase, Solution, SolveOptions, SolveReport, relief_of, solution_of,
     solve_displacements,
 };
+use crate::finding::{Finding, Severity};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -92,6 +93,30 @@ pub fn solve_kept(
             solution_of(&read.model, cases, solved, &options)
         })
         .map_err(|e| faults_of(&e, read))
+}
+
+/// The first elastic frequency of the free structure of a deck whose strain another program solved; where the built-in solver can't tell,
+/// a finding says why.
+pub fn first_mode_of(session: &mut Session, job: &Job, read: &DeckModel) -> Option<f64> {
+    let solved = cases_of_job(job, read)
+        .and_then(|cases| solve_kept(session, Path::new(&job.file), read, &cases));
+    let why = match solved {
+        Ok((_, report)) => match report.modes.first() {
+            Some(f) => return Some(*f),
+            None => "it has no elastic mode".to_owned(),
+        },
+        Err(faults) => faults
+            .first()
+            .map_or_else(String::new, |f| format!("{}: {}", f.field, f.wrong)),
+    };
+    session.findings.push(Finding::new(
+        Severity::Info,
+        "first-mode-unknown",
+        &read.given,
+        format!("the first elastic mode of the structure is not known ({why}): whether the record is slow enough for quasi-static recovery was not checked"),
+        "compare the content of the loads with a third of the first elastic frequency of the free structure",
+    ));
+    None
 }
 
 /// Everything that the displacements depend on: the program file, the bytes of the deck and its includes, the load cases.

@@ -62,7 +62,7 @@ impl<'a> ResultsFile<'a> {
         }
     }
 
-    /// The solver, with the version where the file states it.
+    /// The solver, with the version where the file states it; other programs write OP2 files in the form of MSC Nastran without a version.
     pub fn solver(&self) -> String {
         match self {
             Self::Op2(op2) => {
@@ -77,6 +77,9 @@ impl<'a> ResultsFile<'a> {
                 match op2.version_label.as_deref() {
                     Some(label) if !label.is_empty() && !label.starts_with("XXXX") => {
                         format!("{name} ({label})")
+                    }
+                    _ if op2.solver == Solver::Msc => {
+                        format!("{name}, or a program that writes its form")
                     }
                     _ => name.to_string(),
                 }

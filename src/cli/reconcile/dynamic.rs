@@ -1,6 +1,7 @@
 //! The dynamic path: record and vehicle, verdict, tables, page, extended job.
 
-use super::dynamic_extend;
+use super::dynamic_extend::{self, sized};
+use super::words;
 use crate::cli::Session;
 use crate::cli::fault::Faults;
 use crate::cli::job::{Job, Vehicle as VehicleJob};
@@ -344,31 +345,15 @@ fn write_tables(
 }
 
 fn say(session: &mut Session, outcome: &MotionOutcome) {
-    session.say(format!("verdict: {}", outcome.verdict.word()));
-    for e in &outcome.effects {
-        let sizes: Vec<String> = e
-            .size
-            .iter()
-            .zip(&e.sigma)
-            .map(|(v, s)| format!("{v:.5e} +- {s:.1e}"))
-            .collect();
-        session.say(format!("  {} {} {}", e.id, sizes.join(", "), e.unit));
-    }
-    let g = &outcome.gap;
-    session.say(format!(
-        "gap on held-out data: {:.2} % before, {:.2} % after, floor {:.2} %, explained {:.0} %",
-        100.0 * g.before,
-        100.0 * g.after,
-        100.0 * g.floor,
-        100.0 * g.explained_share()
-    ));
-    for r in outcome.rivals.iter().filter(|r| r.indistinguishable) {
-        session.say(format!(
-            "  can't be told from: {} (log evidence {:.1} behind)",
-            r.ids.join(" + "),
-            r.evidence_difference
-        ));
-    }
+    let effects = outcome.effects.iter().map(sized);
+    words::say(
+        session,
+        outcome.verdict,
+        effects,
+        &outcome.gap,
+        &outcome.rivals,
+        "data",
+    );
     session.say(&outcome.remains);
     session.say(format!("next measurement: {}", outcome.next_measurement));
 }

@@ -1,13 +1,12 @@
 //! The job with the named effects of motion in it: terms, couplings, a change of mass, corrections of channels.
 
-use super::extend::redirect;
-use super::relative::relative;
+use super::extended_job::ExtendedJob;
+use super::words::Sized;
 use crate::cli::Session;
-use crate::cli::fault::{Fault, Faults};
+use crate::cli::fault::Faults;
 use crate::cli::job::Job;
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::{MotionEffect, MotionFrame, MotionOutcome};
-use std::fmt::Write;
 use std::path::Path;
 use toml::{Table, Value};
 
@@ -21,50 +20,22 @@ pub(super) fn write(
     frame: &MotionFrame,
     outcome: &MotionOutcome,
 ) -> Result<String, Faults> {
-    let text = session
-        .inputs
-        .read_text(Path::new(""), &job.file)
-        .map_err(|f| vec![f])?;
-    let malformed = |what: String| vec![Fault::of(&*job.file, "job", what, "write valid TOML")];
-    let mut table: Table = text
-        .parse()
-        .map_err(|e: toml::de::Error| malformed(e.to_string()))?;
-    let folder = session.output_for(path)?.folder().to_owned();
-    redirect(&mut table, &relative(&folder, &job.folder));
-    let title = table
-        .get("title")
-        .and_then(Value::as_str)
-        .unwrap_or("job")
-        .to_owned();
     let names: Vec<&str> = outcome.effects.iter().map(|e| e.id.as_str()).collect();
-    table.insert(
-        "title".into(),
-        Value::String(format!("{title}, with {}", names.join(" and "))),
-    );
-    if let Some(Value::Table(section)) = table.get_mut("vehicle") {
+    let mut extended = ExtendedJob::of(job, path, session, &names)?;
+    if let Some(Value::Table(section)) = extended.table.get_mut("vehicle") {
         extend(section, frame, outcome);
     }
-    let mut out =
-        String::from("# The job with the named effects in it; `size` and `sigma` as found.\n");
-    for e in &outcome.effects {
-        let _ = writeln!(out, "# {}", in_words(e));
-    }
-    out.push_str(&toml::to_string(&table).map_err(|e| malformed(e.to_string()))?);
-    session
-        .output_for(path)?
-        .write_bytes(JOB, out.as_bytes())
-        .map_err(|f| vec![f])?;
-    Ok(folder.join(JOB).display().to_string().replace('\\', "/"))
+    extended.write(JOB, path, session, outcome.effects.iter().map(sized))
 }
 
-fn in_words(e: &MotionEffect) -> String {
-    let sizes: Vec<String> = e
-        .size
-        .iter()
-        .zip(&e.sigma)
-        .map(|(v, s)| format!("{v:.6e} +- {s:.1e}"))
-        .collect();
-    format!("{}: {} {}", e.id, sizes.join(", "), e.unit)
+/// An effect with its sizes, as words are made of it.
+pub(super) fn sized(e: &MotionEffect) -> Sized<'_> {
+    Sized {
+        id: &e.id,
+        size: &e.size,
+        sigma: &e.sigma,
+        unit: &e.unit,
+    }
 }
 
 /// Puts the changes into `[vehicle]`.

@@ -5,10 +5,11 @@
 
 use super::deck_frame::DeckFrame;
 use super::extended_deck::NamedStiffness;
+use super::extended_job::ExtendedJob;
 use super::extended_loads::{entries, side_loads};
-use super::relative::relative;
+use super::words::Sized;
 use crate::cli::Session;
-use crate::cli::fault::{Fault, Faults};
+use crate::cli::fault::Faults;
 use crate::cli::job::Job;
 use crate::reconcile::effect::Extension;
 use crate::reconcile::strain::{Correction, StrainFrame, corrected_readings, extended_influence};
@@ -33,32 +34,9 @@ pub(super) fn write(
     outcome: &Outcome,
     deck: Option<&DeckFrame>,
 ) -> Result<Option<String>, Faults> {
-    let text = session
-        .inputs
-        .read_text(Path::new(""), &job.file)
-        .map_err(|f| vec![f])?;
-    let malformed = |e: toml::de::Error| {
-        vec![Fault::of(
-            &*job.file,
-            "job",
-            e.to_string(),
-            "write valid TOML",
-        )]
-    };
-    let mut table: Table = text.parse().map_err(malformed)?;
-    let folder = session.output_for(path)?.folder().to_owned();
-    let from_output = relative(&folder, &job.folder);
-    redirect(&mut table, &from_output);
-    let title = table
-        .get("title")
-        .and_then(Value::as_str)
-        .unwrap_or("job")
-        .to_owned();
     let names: Vec<&str> = outcome.effects.iter().map(|e| e.id.as_str()).collect();
-    table.insert(
-        "title".into(),
-        Value::String(format!("{title}, with {}", names.join(" and "))),
-    );
+    let mut extended = ExtendedJob::of(job, path, session, &names)?;
+    let table = &mut extended.table;
     let extensions: Vec<&Extension> = outcome.effects.iter().map(|e| &e.extension).collect();
     let mut files: Vec<(&str, String)> = Vec::new();
     let corrections = Correction::of(frame, &extensions);
@@ -67,14 +45,14 @@ pub(super) fn write(
             STRAIN,
             strain_csv(frame, &corrected_readings(frame, &corrections)),
         ));
-        set(&mut table, "measured", "strain", STRAIN);
+        set(table, "measured", "strain", STRAIN);
     }
     let influence = extended_influence(frame, &extensions);
     let nuisance: Vec<(String, Vec<f64>)> = nuisance(frame, &extensions);
     if job.sensitivity.is_some() && (influence.is_some() || !nuisance.is_empty()) {
         let values = influence.as_deref().unwrap_or(&frame.influence);
         files.push((SENSITIVITY, sensitivity_csv(frame, values, &nuisance)));
-        set(&mut table, "sensitivity", "file", SENSITIVITY);
+        set(table, "sensitivity", "file", SENSITIVITY);
         if let Some(Value::Table(s)) = table.get_mut("sensitivity") {
             // The extended files count in kN, kN m and kg.
             let mut per = Table::new();
@@ -111,7 +89,7 @@ pub(super) fn write(
         }
     }) {
         files.push((RUNS, runs_csv(frame, job, dx, dy)));
-        set(&mut table, "runs", "file", RUNS);
+        set(table, "runs", "file", RUNS);
         if let Some(Value::Table(runs)) = table.get_mut("runs") {
             runs.remove("columns");
             let units: Table = [("force", "kN"), ("mass", "kg"), ("length", "m")]
@@ -157,22 +135,8 @@ pub(super) fn write(
     }
     let extended_deck = deck.and_then(|d| d.extended(job, &stiffness, &masses, &side));
     if extended_deck.is_some() {
-        set(&mut table, "model", "deck", DECK);
+        set(table, "model", "deck", DECK);
     }
-    let mut job_text =
-        String::from("# The job with the named effects in it; `size` and `sigma` as found.\n");
-    for e in &outcome.effects {
-        let _ = writeln!(job_text, "# {}", in_words(e));
-    }
-    let body = toml::to_string(&table).map_err(|e| {
-        vec![Fault::of(
-            JOB,
-            "job",
-            e.to_string(),
-            "report this as an error of the program",
-        )]
-    })?;
-    job_text.push_str(&body);
     let output = session.output_for(path)?;
     for (name, content) in &files {
         output
@@ -182,78 +146,24 @@ pub(super) fn write(
     if let Some(bytes) = &extended_deck {
         output.write_bytes(DECK, bytes).map_err(|f| vec![f])?;
     }
-    output
-        .write_bytes(JOB, job_text.as_bytes())
-        .map_err(|f| vec![f])?;
-    Ok(Some(
-        folder.join(JOB).display().to_string().replace('\\', "/"),
-    ))
+    extended
+        .write(JOB, path, session, outcome.effects.iter().map(sized))
+        .map(Some)
 }
 
-fn in_words(e: &NamedEffect) -> String {
-    let sizes: Vec<String> = e
-        .size
-        .iter()
-        .zip(&e.sigma)
-        .map(|(v, s)| format!("{v:.6} +- {s:.6}"))
-        .collect();
-    if sizes.is_empty() {
-        e.id.clone()
-    } else {
-        format!("{}: {} {}", e.id, sizes.join(", "), e.unit)
+/// An effect with its sizes, as words are made of it.
+pub(super) fn sized(e: &NamedEffect) -> Sized<'_> {
+    Sized {
+        id: &e.id,
+        size: &e.size,
+        sigma: &e.sigma,
+        unit: e.unit,
     }
 }
 
 fn set(table: &mut Table, section: &str, key: &str, value: &str) {
     if let Some(Value::Table(t)) = table.get_mut(section) {
         t.insert(key.into(), Value::String(value.into()));
-    }
-}
-
-/// Makes every file name of the job relative to the output folder.
-pub(super) fn redirect(table: &mut Table, prefix: &str) {
-    const FILE_KEYS: [&str; 8] = [
-        "file", "deck", "strain", "zero", "data", "loads", "result", "results",
-    ];
-    let join = |name: &str| {
-        if Path::new(name).is_absolute() {
-            name.to_owned()
-        } else {
-            format!("{prefix}/{name}")
-        }
-    };
-    for (key, value) in table.iter_mut() {
-        match value {
-            Value::String(s) if FILE_KEYS.contains(&key.as_str()) => *s = join(s.as_str()),
-            Value::String(s) if key == "hold_out" => *s = join(s.as_str()),
-            Value::Array(items) if key == "results" => {
-                for item in items.iter_mut() {
-                    if let Value::String(s) = item {
-                        *s = join(s.as_str());
-                    }
-                }
-            }
-            Value::Array(items) => items.iter_mut().for_each(|i| {
-                if let Value::Table(t) = i {
-                    redirect(t, prefix);
-                }
-            }),
-            Value::Table(t) if key == "signatures" || key == "rail_stiffness" => {
-                redirect_all(t, &join)
-            }
-            Value::Table(t) if key != "columns" => redirect(t, prefix),
-            _ => {}
-        }
-    }
-}
-
-fn redirect_all(table: &mut Table, join: &dyn Fn(&str) -> String) {
-    for (_, value) in table.iter_mut() {
-        match value {
-            Value::String(s) => *s = join(s.as_str()),
-            Value::Table(t) => redirect_all(t, join),
-            _ => {}
-        }
     }
 }
 

@@ -7,6 +7,7 @@ mod dynamic;
 mod dynamic_extend;
 mod extend;
 mod extended_deck;
+mod extended_job;
 mod extended_loads;
 mod finer;
 mod matrix_frame;
@@ -15,6 +16,7 @@ mod signature_table;
 mod static_path;
 mod stiffness;
 mod tables;
+mod words;
 
 use super::fault::Faults;
 use super::job::{ReconcilePath, read_job};

@@ -1,8 +1,9 @@
 //! The static path: frame, verdict, tables, extended model.
 
 use super::deck_frame::{self, DeckFrame};
+use super::extend::{self, sized};
 use super::matrix_frame::{self, ModelPart};
-use super::{causes, extend, stiffness, tables};
+use super::{causes, stiffness, tables, words};
 use crate::cli::Session;
 use crate::cli::fault::{Fault, Faults};
 use crate::cli::job::runs::{RunRow, read_runs};
@@ -510,31 +511,15 @@ fn findings(session: &mut Session, outcome: &Outcome) {
 }
 
 fn say(session: &mut Session, outcome: &Outcome) {
-    session.say(format!("verdict: {}", outcome.verdict.word()));
-    for e in &outcome.effects {
-        let sizes: Vec<String> = e
-            .size
-            .iter()
-            .zip(&e.sigma)
-            .map(|(v, s)| format!("{v:.3} +- {s:.3}"))
-            .collect();
-        session.say(format!("  {} {} {}", e.id, sizes.join(", "), e.unit));
-    }
-    let g = &outcome.gap;
-    session.say(format!(
-        "gap on held-out runs: {:.2} % before, {:.2} % after, floor {:.2} %, explained {:.0} %",
-        100.0 * g.before,
-        100.0 * g.after,
-        100.0 * g.floor,
-        100.0 * g.explained_share()
-    ));
-    for r in outcome.rivals.iter().filter(|r| r.indistinguishable) {
-        session.say(format!(
-            "  can't be told from: {} (log evidence {:.1} behind)",
-            r.ids.join(" + "),
-            r.evidence_difference
-        ));
-    }
+    let effects = outcome.effects.iter().map(sized);
+    words::say(
+        session,
+        outcome.verdict,
+        effects,
+        &outcome.gap,
+        &outcome.rivals,
+        "runs",
+    );
     session.say(format!("where: {}", outcome.sits));
     session.say(format!("left: {}", outcome.remains));
     session.say(format!("next measurement: {}", outcome.next_measurement));

@@ -8,6 +8,7 @@ use super::runs::columns_of;
 use super::{MICRO, Task};
 use crate::cli::fault::{Fault, Faults};
 use crate::cli::files::FileBytes;
+use crate::cli::solved::first_mode_of;
 use crate::cli::strain::{LoadUnits, load_units};
 use crate::cli::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
@@ -126,7 +127,12 @@ pub(super) fn run(
         }),
     };
     let names_of: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
-    if let Some(first_mode) = task.prepared.fields.as_ref().and_then(|f| f.first_mode) {
+    let fields = task.prepared.fields.as_ref();
+    let first_mode = fields.and_then(|f| {
+        f.first_mode
+            .or_else(|| first_mode_of(session, task.job, &f.deck))
+    });
+    if let Some(first_mode) = first_mode {
         let sigma = filter.sigma(&vec![0.0; s.loads.len()]);
         let pieces = sampled_pieces(&record, &filter).map_err(|f| vec![f])?;
         let content = content_of_loads(&pieces, &sigma, if dt > 0.0 { 1.0 / dt } else { 0.0 });
