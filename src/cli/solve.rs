@@ -4,7 +4,7 @@ use super::deck::{DeckModel, read_model};
 use super::fault::{Fault, Faults};
 use super::solved::{cases_of_job, solve_kept};
 use super::{JobArguments, Session, job};
-use crate::fe::{LoadCase, Solution, SolveReport, UnitLoad, relief_of};
+use crate::fe::{LoadCase, Solution, SolveReport, loads_of_subcase, relief_of};
 use crate::finding::{Finding, Severity};
 use crate::model::Model;
 use crate::report::{PlannedBlock, planned_blocks, rows_of_block, write_vtu};
@@ -91,29 +91,20 @@ fn of_deck(session: &mut Session, path: &Path) -> Result<Task, Faults> {
     let mut left_out = Vec::new();
     let mut cases = Vec::new();
     for s in read.deck.case_control.effective_subcases() {
-        let thermal = s.temperature_load.is_some() || s.deform.is_some();
-        match s.load {
-            _ if thermal => left_out.push(format!(
-                "subcase {}: thermal loads and DEFORM are not carried",
-                s.id
-            )),
-            Some(load) => cases.push(LoadCase {
+        let loads = loads_of_subcase(&s);
+        if s.deform.is_some() {
+            left_out.push(format!("subcase {}: DEFORM is not carried", s.id));
+        } else if loads.is_empty() && !has_enforced(&read.model, s.spc) {
+            left_out.push(format!("subcase {}: no LOAD", s.id));
+        } else {
+            cases.push(LoadCase {
                 subcase: s.id,
                 label: s.label.clone().or(s.subtitle.clone()).unwrap_or_default(),
-                loads: vec![UnitLoad::Set(load)],
+                loads,
                 spc: s.spc,
                 mpc: s.mpc,
                 relief: relief_of(&read.model, s.spc, s.suport1),
-            }),
-            None if has_enforced(&read.model, s.spc) => cases.push(LoadCase {
-                subcase: s.id,
-                label: s.label.clone().unwrap_or_default(),
-                loads: Vec::new(),
-                spc: s.spc,
-                mpc: s.mpc,
-                relief: relief_of(&read.model, s.spc, s.suport1),
-            }),
-            None => left_out.push(format!("subcase {}: no LOAD", s.id)),
+            });
         }
     }
     if cases.is_empty() {

@@ -4,6 +4,7 @@ use super::BeamField;
 use super::element::Prepared;
 use super::element::beam::beam_strain;
 use super::error::{FeError, Refusal};
+use super::line_load::Between;
 use crate::model::BeamIx;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -15,6 +16,7 @@ use std::sync::Arc;
 pub(crate) fn beam_fields(
     prepared: &Prepared<'_>,
     u: &[Vec<[f64; 6]>],
+    between: &[Between<'_>],
 ) -> Result<Vec<BeamField>, FeError> {
     let model = prepared.model;
     let elements = Arc::new(
@@ -23,10 +25,11 @@ pub(crate) fn beam_fields(
             .collect::<Vec<_>>(),
     );
     u.iter()
-        .map(|u| {
+        .zip(between)
+        .map(|(u, between)| {
             let stations: Result<Vec<_>, Refusal> = (0..model.beams.len())
                 .into_par_iter()
-                .map(|i| beam_strain(model, i, u))
+                .map(|i| beam_strain(model, i, u, &between.of(model, i)))
                 .collect();
             let stations = stations.map_err(|r| FeError::Refused(vec![r]))?;
             Ok(BeamField {

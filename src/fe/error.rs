@@ -75,6 +75,15 @@ pub enum FeError {
         /// Where the grid stands.
         at: Place,
     },
+    /// SPCD names a dof that no SPC holds.
+    EnforcedFree {
+        /// Grid id.
+        grid: u32,
+        /// 1 to 6.
+        dof: u8,
+        /// Where the grid stands.
+        at: Place,
+    },
     /// A set that a load case names is not in the deck.
     MissingSet {
         /// `LOAD`, `SPC`, `MPC`.
@@ -187,6 +196,12 @@ impl FeError {
                 *at,
                 format!("subcase {subcase} loads dof {dof}, which no element holds"),
                 "connect the grid, or move the load",
+            ),
+            Self::EnforcedFree { grid, dof, at } => one(
+                format!("grid {grid}"),
+                *at,
+                format!("SPCD moves dof {dof}, which no SPC holds"),
+                "put the dof into the SPC set of the subcase",
             ),
             Self::MissingSet { kind, sid, subcase } => one(
                 format!("{kind} = {sid}"),

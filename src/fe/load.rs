@@ -1,5 +1,6 @@
 //! Nodal forces of loads.
 
+use super::element::beam::beam_end_forces;
 use super::mass::Mass;
 use crate::model::{GridIx, Load, LoadSet, Model, Vec3};
 
@@ -60,7 +61,16 @@ fn add(model: &Model, mass: &Mass, factor: f64, load: &Load, f: &mut [[f64; 6]])
                 f.iter_mut().zip(m).for_each(|(f, m)| *f += factor * m);
             }
         }
-        Load::Unsupported(..) => {}
+        Load::Line { beam, .. } => {
+            let interior = super::line_load::alone(load);
+            // A beam that can't be formed is refused with the stiffness.
+            if let Ok(ends) = beam_end_forces(model, beam.us(), &interior) {
+                for (g, v) in model.beams[beam.us()].grids.iter().zip(ends.chunks_exact(6)) {
+                    f[g.us()].iter_mut().zip(v).for_each(|(f, v)| *f += factor * v);
+                }
+            }
+        }
+        Load::Enforced { .. } | Load::Unsupported(..) => {}
     }
 }
 

@@ -3,7 +3,7 @@
 use super::element::beam::{beam_coupled_mass, beam_lumped_mass};
 use super::element::shell::{output_frame, shell_mass};
 use super::element::solid::solid_mass;
-use super::element::{ElementMatrix, Prepared, rod_mass};
+use super::element::{ElementMatrix, Prepared, rod_mass, shear_panel_mass};
 use super::rigid_motion::rigid;
 use crate::linalg::Matrix6;
 use crate::model::{GridIx, Vec3};
@@ -35,8 +35,8 @@ pub struct MassProperties {
 }
 
 impl Mass {
-    /// Mass of all elements and concentrated masses: lumped, or with PARAM,COUPMASS consistent for shells, bars, beams and solids (rods
-    /// stay lumped). Solids with mid-side grids are consistent always: lumped by rows their corners would have negative mass.
+    /// Mass of all elements and concentrated masses: lumped, or with PARAM,COUPMASS consistent for shells, bars, beams and solids (rods and
+    /// shear panels stay lumped). Solids with mid-side grids are consistent always: lumped by rows their corners would have negative mass.
     pub(crate) fn new(prepared: &Prepared<'_>) -> Self {
         let model = prepared.model;
         let mut mass = Self {
@@ -79,6 +79,12 @@ impl Mass {
         for (i, rod) in model.rods.iter().enumerate() {
             let half = 0.5 * rod_mass(model, i);
             rod.grids.iter().for_each(|g| mass.point[g.us()] += half);
+        }
+        for (i, panel) in model.shear_panels.iter().enumerate() {
+            let shares = shear_panel_mass(model, i);
+            for (g, m) in panel.grids.iter().zip(shares) {
+                mass.point[g.us()] += m;
+            }
         }
         let solids: Vec<_> = (0..model.solids.len())
             .into_par_iter()

@@ -10,6 +10,7 @@ mod error;
 pub mod floor;
 pub mod from_results;
 mod grid_frames;
+mod line_load;
 mod load;
 mod mass;
 mod modes;
@@ -33,6 +34,7 @@ pub use relief::Balance;
 pub use shell_strain::Corners;
 pub use solution::*;
 pub use solve::{
-    LoadCase, Relief, SolveOptions, SolveReport, Solved, Triplets, relief_of, solution_of,
+    LoadCase, Relief, SolveOptions, SolveReport, Solved, Triplets, loads_of_subcase, relief_of,
+    solution_of,
     solve_cases, solve_displacements, solve_unit_loads, supported_stiffness,
 };

@@ -49,7 +49,7 @@ pub fn free_modes(
     let mut system = System::new(
         &prepared,
         &mass,
-        (spc, mpc),
+        (spc, mpc, &[]),
         Relief::Automatic,
         &mut findings,
     )?;

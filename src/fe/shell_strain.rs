@@ -2,8 +2,9 @@
 
 use super::ShellField;
 use super::element::Prepared;
-use super::element::shell::{AnyShell, Parts, shell_matrices, surfaces};
+use super::element::shell::{AnyShell, Parts, shell_heat, shell_matrices, surfaces};
 use super::error::{FeError, Refusal};
+use super::temperature::Temperatures;
 use crate::model::{GridIx, ShellIx};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -41,6 +42,7 @@ fn local<const M: usize>(u: &[[f64; 6]], grids: &[GridIx]) -> [f64; M] {
 pub(crate) fn shell_fields(
     prepared: &Prepared<'_>,
     u: &[Vec<[f64; 6]>],
+    temperatures: &[Option<Temperatures>],
     corners: Corners,
 ) -> Result<Vec<ShellField>, FeError> {
     let model = prepared.model;
@@ -75,7 +77,7 @@ pub(crate) fn shell_fields(
         .try_for_each(|(chunk, mut pieces)| {
             let first = chunk * CHUNK;
             (first..n.min(first + CHUNK))
-                .try_for_each(|i| fill(prepared, i, i - first, u, &mut pieces))
+                .try_for_each(|i| fill(prepared, i, i - first, (u, temperatures), &mut pieces))
         })
         .map_err(|r| FeError::Refused(vec![r]))?;
     Ok(fields)
@@ -86,24 +88,40 @@ fn fill(
     prepared: &Prepared<'_>,
     i: usize,
     at: usize,
-    u: &[Vec<[f64; 6]>],
+    (u, temperatures): (&[Vec<[f64; 6]>], &[Option<Temperatures>]),
     pieces: &mut [Piece<'_>],
 ) -> Result<(), Refusal> {
     let shell = &prepared.model.shells[i];
     let z = prepared.model.shell_properties[shell.property.us()].z;
-    match shell_matrices(prepared, i, Parts::WithoutStiffness)? {
-        AnyShell::Quad(m) => {
-            for (u, (centre, corners)) in u.iter().zip(pieces) {
+    let n = shell.shape.n_corners();
+    let matrices = shell_matrices(prepared, i, Parts::WithoutStiffness, None)?;
+    for ((u, t), (centre, corners)) in u.iter().zip(temperatures).zip(pieces) {
+        let heat = t
+            .as_ref()
+            .and_then(|t| shell_heat(prepared.model, i, t));
+        // Thermal strain at the centre, and at a corner.
+        let free = |corner: Option<usize>| {
+            heat.as_ref().map_or([[0.0; 3]; 2], |h| {
+                let rise = match corner {
+                    Some(k) => h.rise[k],
+                    None => h.rise[..n].iter().sum::<f64>() / n as f64,
+                };
+                h.free(rise, z)
+            })
+        };
+        match &matrices {
+            AnyShell::Quad(m) => {
                 let local = local::<24>(u, &shell.grids[..4]);
-                centre[at] = surfaces(&m.centre, z, &local);
+                centre[at] = surfaces(&m.centre, z, &local, &free(None));
                 if let Some(slot) = corners.get_mut(at) {
-                    *slot = m.corners.each_ref().map(|rows| surfaces(rows, z, &local));
+                    *slot = std::array::from_fn(|k| {
+                        surfaces(&m.corners[k], z, &local, &free(Some(k)))
+                    });
                 }
             }
-        }
-        AnyShell::Tria(m) => {
-            for (u, (centre, corners)) in u.iter().zip(pieces) {
-                centre[at] = surfaces(&m.centre, z, &local::<18>(u, &shell.grids[..3]));
+            AnyShell::Tria(m) => {
+                let local = local::<18>(u, &shell.grids[..3]);
+                centre[at] = surfaces(&m.centre, z, &local, &free(None));
                 if let Some(slot) = corners.get_mut(at) {
                     *slot = [centre[at], centre[at], centre[at], [[f64::NAN; 3]; 2]];
                 }

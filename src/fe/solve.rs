@@ -2,6 +2,7 @@
 
 use super::element::Prepared;
 use super::error::FeError;
+use super::line_load::Between;
 use super::load::load_vector;
 use super::mass::{Mass, MassProperties};
 use super::relief::Balance;
@@ -11,7 +12,9 @@ use super::temperature::{Temperatures, thermal_forces};
 use super::{CaseResult, Solution, UnitLoad};
 use crate::finding::{Finding, Severity};
 use crate::linalg::sparse::OrderingMethod;
-use crate::model::Model;
+use crate::model::{GridIx, Load, Model};
+use nastran::bdf::Subcase;
+use nastran::cards::Dofs;
 use rayon::prelude::*;
 
 /// How the loads of a case are held in balance.
@@ -103,6 +106,21 @@ pub fn relief_of(model: &Model, spc: Option<u32>, suport: Option<u32>) -> Relief
         (_, None) if model.grids.iter().all(|g| g.ps.is_empty()) => Relief::Automatic,
         _ => Relief::None,
     }
+}
+
+/// What acts in a subcase of a deck: its LOAD and TEMPERATURE(LOAD).
+///
+/// TEMPERATURE without an option stands for both; it loads, and thermal strain counts from TREF.
+pub fn loads_of_subcase(s: &Subcase) -> Vec<UnitLoad> {
+    let temperature = s.temperature_load.map(|set| UnitLoad::Temperature {
+        set,
+        initial: s.temperature_initial.filter(|initial| *initial != set),
+    });
+    s.load
+        .into_iter()
+        .map(UnitLoad::Set)
+        .chain(temperature)
+        .collect()
 }
 
 /// What a solution is made of before strain.
@@ -208,7 +226,7 @@ fn displacements(
         if done[first] {
             continue;
         }
-        let key = |c: &LoadCase| (c.spc, c.mpc, c.relief);
+        let key = |c: &LoadCase| (c.spc, c.mpc, c.relief, enforced_of(model, c));
         let group: Vec<usize> = (first..cases.len())
             .filter(|&i| key(&cases[i]) == key(&cases[first]))
             .collect();
@@ -241,8 +259,13 @@ fn with_strain(
 ) -> Result<(Solution, SolveReport), FeError> {
     let u = solved.displacements;
     let temperatures = temperatures_of(prepared.model, cases)?;
-    let shells = shell_fields(prepared, &u, options.corners)?;
-    let beams = super::beam_strain::beam_fields(prepared, &u)?;
+    let between: Vec<Between<'_>> = cases
+        .iter()
+        .zip(&temperatures)
+        .map(|(case, t)| Between::new(prepared.model, case, t.as_ref()))
+        .collect();
+    let shells = shell_fields(prepared, &u, &temperatures, options.corners)?;
+    let beams = super::beam_strain::beam_fields(prepared, &u, &between)?;
     let solids = super::solid_fields::solid_fields(prepared, &u, &temperatures)?;
     let results = cases.iter().zip(u).zip(shells).zip(beams).zip(solids);
     Ok((
@@ -281,7 +304,13 @@ fn solve_group(
     };
     check_sets(model, cases)?;
     let mut clock = Clock::start();
-    let mut system = System::new(prepared, mass, (case.spc, case.mpc), case.relief, findings)?;
+    let mut system = System::new(
+        prepared,
+        mass,
+        (case.spc, case.mpc, &enforced_of(model, case)),
+        case.relief,
+        findings,
+    )?;
     clock.note(report, "assemble");
     let n = system.symbolic.n_unknowns();
     let mut columns = vec![0.0; n * cases.len()];
@@ -357,6 +386,21 @@ fn load_column(
 
 pub(super) fn largest(f: &[[f64; 6]]) -> f64 {
     f.iter().flatten().fold(0.0, |a, v| a.max(v.abs()))
+}
+
+/// What SPCD enforces in a case.
+fn enforced_of(model: &Model, case: &LoadCase) -> Vec<(GridIx, Dofs, f64)> {
+    let mut all = Vec::new();
+    for load in &case.loads {
+        let UnitLoad::Set(sid) = load else { continue };
+        for set in model.load_sets.iter().filter(|s| s.sid == *sid) {
+            all.extend(set.loads.iter().filter_map(|(factor, l)| match l {
+                Load::Enforced { grid, dofs, value } => Some((*grid, *dofs, factor * value)),
+                _ => None,
+            }));
+        }
+    }
+    all
 }
 
 /// The temperatures of every case; `None` for those without.
@@ -456,7 +500,7 @@ pub fn supported_stiffness(model: &Model) -> Result<Triplets, FeError> {
     let system = System::new(
         &prepared,
         &mass,
-        (None, None),
+        (None, None, &[]),
         Relief::Automatic,
         &mut Vec::new(),
     )?;

@@ -2,7 +2,7 @@
 
 use super::assembly::{Assembled, Numbering, assemble};
 use super::autospc::weak_unknowns;
-use super::constraint::{Reduction, State, reduce};
+use super::constraint::{Reduction, Sets, State, reduce};
 use super::element::Prepared;
 use super::error::{FeError, FreeDof, what_hangs};
 use super::grid_frames::{to_basic, to_local};
@@ -37,12 +37,12 @@ impl System {
     pub(super) fn new(
         prepared: &Prepared<'_>,
         mass: &Mass,
-        (spc, mpc): (Option<u32>, Option<u32>),
+        sets: Sets<'_>,
         relief: Relief,
         findings: &mut Vec<Finding>,
     ) -> Result<Self, FeError> {
         let model = prepared.model;
-        let reduction = reduce(model, &prepared.axes, spc, mpc)?;
+        let reduction = reduce(model, &prepared.axes, sets)?;
         let mut assembled = assemble(prepared, &reduction)?;
         let body = match relief {
             Relief::None => None,

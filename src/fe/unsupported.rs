@@ -1,6 +1,7 @@
 //! Cards that the solver does not carry: all of them are named before anything is solved.
 
 use super::UnitLoad;
+use super::element::shell::Lamination;
 use super::error::Refusal;
 use super::solve::LoadCase;
 use crate::model::{Load, MaterialKind, Model, ShellKind};
@@ -20,7 +21,7 @@ pub(crate) fn unsupported(model: &Model, cases: &[LoadCase]) -> Vec<Refusal> {
     };
     const ELSEWHERE: &str = "solve with Nastran and name its results in the job";
     for s in &model.shells {
-        if !matches!(s.shape, ShellShape::Quad4 | ShellShape::Tria3) {
+        if matches!(s.shape, ShellShape::Quad8 | ShellShape::Tria6) {
             refuse(
                 format!("{} {}", s.shape.card(), s.id),
                 s.at,
@@ -37,11 +38,11 @@ pub(crate) fn unsupported(model: &Model, cases: &[LoadCase]) -> Vec<Refusal> {
                 .any(|s| model.shell_properties[s.property.us()].id == p.id)
         };
         match &p.kind {
-            ShellKind::Laminate { .. } if used() => {
+            ShellKind::Laminate { lam, .. } if used() && Lamination::of(lam).is_none() => {
                 refuse(
                     format!("PCOMP {}", p.id),
                     p.at,
-                    "the built-in solver has no laminates yet",
+                    "LAM is none of blank, SYM, MEM, BEND, SMEAR",
                     ELSEWHERE,
                 );
             }
@@ -77,14 +78,6 @@ pub(crate) fn unsupported(model: &Model, cases: &[LoadCase]) -> Vec<Refusal> {
             );
         }
     }
-    for s in &model.shear_panels {
-        refuse(
-            format!("CSHEAR {}", s.id),
-            s.at,
-            "the built-in solver has no shear panels yet",
-            "use CQUAD4, or solve with Nastran",
-        );
-    }
     for c in &model.uncarried {
         let id = c.id.map_or(String::new(), |id| format!(" {id}"));
         refuse(
@@ -96,10 +89,25 @@ pub(crate) fn unsupported(model: &Model, cases: &[LoadCase]) -> Vec<Refusal> {
     }
     for case in cases {
         for load in &case.loads {
-            let UnitLoad::Set(sid) = load else { continue };
+            let (sid, thermal) = match load {
+                UnitLoad::Set(sid) => (sid, false),
+                UnitLoad::Temperature { set, .. } => (set, true),
+                UnitLoad::AtGrid { .. } => continue,
+            };
+            let temperatures = model.temperatures.iter().filter(|t| thermal && t.sid == *sid);
+            for (card, at) in temperatures.flat_map(|t| &t.unsupported) {
+                refuse(
+                    format!("{card} {sid}"),
+                    *at,
+                    "the built-in solver does not carry it",
+                    "give means and gradients alone, or solve with Nastran",
+                );
+            }
             for set in model.load_sets.iter().filter(|s| s.sid == *sid) {
                 for (_, load) in &set.loads {
-                    if let Load::Unsupported(card, at) = load {
+                    if let Load::Unsupported(card, at) = load
+                        && thermal == card.starts_with("TEMP")
+                    {
                         refuse(
                             format!("{card} {sid}"),
                             *at,

@@ -5,9 +5,9 @@ use super::face::solid_face;
 use super::fault::FaultKind;
 use super::frame::unit;
 use super::types::*;
-use nastran::cards::{IdList, LoadSum, Pload4};
+use nastran::cards::{IdList, LoadSum, Pload1, Pload4};
 use nastran::place::{Place, Placed};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 type Sets = BTreeMap<u32, Vec<(f64, Load)>>;
 
@@ -99,10 +99,90 @@ impl Builder<'_> {
                 .extend(loads.into_iter().map(|l| (1.0, l)));
         }
         for p in &cards.pload1s {
-            sets.entry(p.sid)
-                .or_default()
-                .push((1.0, Load::Unsupported("PLOAD1".into(), p.at)));
+            let load = self.pload1(p);
+            sets.entry(p.sid).or_default().extend(load.map(|l| (1.0, l)));
         }
+        for p in &cards.spcds {
+            let name = format!("SPCD {}", p.sid);
+            for (id, dofs, value) in &p.terms {
+                let Some(grid) = self.grid(*id, &name, "G", p.at) else {
+                    continue;
+                };
+                let load = Load::Enforced {
+                    grid,
+                    dofs: *dofs,
+                    value: *value,
+                };
+                sets.entry(p.sid).or_default().push((1.0, load));
+            }
+        }
+    }
+
+    /// A load along a bar or beam in its own axes.
+    ///
+    /// # Reference
+    /// MSC Nastran Quick Reference Guide, PLOAD1: LE and LEPR give places as lengths, FR and FRPR as shares; the PR scales count
+    /// intensity per length projected across the direction of the load.
+    fn pload1(&mut self, p: &Placed<Pload1>) -> Option<Load> {
+        let name = format!("PLOAD1 {}", p.sid);
+        let Some(beam) = self.model.beam_ix(p.element) else {
+            let kind = FaultKind::Missing {
+                what: "CBAR or CBEAM",
+                id: p.element.into(),
+            };
+            self.fault(name, "EID", p.at, kind);
+            return None;
+        };
+        let b = *self.model.beams.get(beam.us())?;
+        let end = |i: usize| -> Option<Vec3> { Some(self.x(*b.grids.get(i)?) + b.offsets.get(i)?) };
+        let length = (end(1)? - end(0)?).norm();
+        let mut basic = Vec3::zeros();
+        let axis = match p.kind[1] {
+            b'X' => 0,
+            b'Y' => 1,
+            _ => 2,
+        };
+        basic[axis] = 1.0;
+        let along_element = p.kind[2] == b'E';
+        let direction = if along_element { basic } else { b.axes * basic };
+        let projected = p.scale[2] == b'P';
+        let factor = if projected && !along_element {
+            (1.0 - direction.x * direction.x).max(0.0).sqrt()
+        } else {
+            1.0
+        };
+        let share = |x: f64| if p.scale[0] == b'L' { x / length } else { x };
+        let from = share(p.x1);
+        let to = p.x2.map_or(from, share);
+        let values = if from == to {
+            [p.p1, 0.0]
+        } else {
+            [p.p1, p.p2.unwrap_or(p.p1)].map(|v| v * factor)
+        };
+        // Against the rounding of lengths given to a few digits.
+        const BEYOND: f64 = 1e-6;
+        let inside = |x: f64| (-BEYOND..=1.0 + BEYOND).contains(&x);
+        if !(inside(from) && inside(to) && from <= to) {
+            let kind = FaultKind::Word {
+                found: format!("X1 {}, X2 {:?}", p.x1, p.x2),
+                expected: "places on the element, the first no farther than the second",
+            };
+            self.fault(name, "X1", p.at, kind);
+            return None;
+        }
+        let vectors = values.map(|v| direction * v);
+        let none = [Vec3::zeros(); 2];
+        let (force, moment) = if p.kind[0] == b'F' {
+            (vectors, none)
+        } else {
+            (none, vectors)
+        };
+        Some(Load::Line {
+            beam,
+            span: [from.clamp(0.0, 1.0), to.clamp(0.0, 1.0)],
+            force,
+            moment,
+        })
     }
 
     /// The shells of a list: each named one must exist, of a range those that do.
@@ -306,6 +386,18 @@ impl Builder<'_> {
         }
     }
 
+    /// The elements of a list; of a range those that exist.
+    fn written_out<'s>(&'s self, ids: &'s IdList) -> Box<dyn Iterator<Item = u32> + 's> {
+        match ids {
+            IdList::Each(list) => Box::new(list.iter().copied()),
+            IdList::Thru(a, b) => {
+                let (a, b) = (*a, *b);
+                let known = self.element_ids.keys().copied();
+                Box::new(known.filter(move |id| (a..=b).contains(id)))
+            }
+        }
+    }
+
     fn temperatures(&mut self) {
         let cards = self.cards;
         let mut sets: BTreeMap<u32, TemperatureSet> = BTreeMap::new();
@@ -313,6 +405,8 @@ impl Builder<'_> {
             sid,
             default: None,
             grids: Vec::new(),
+            elements: HashMap::new(),
+            unsupported: Vec::new(),
             at,
         };
         for t in &cards.tempds {
@@ -328,6 +422,32 @@ impl Builder<'_> {
                 .or_insert_with(|| fresh(t.sid, t.at))
                 .grids
                 .push((g, t.t));
+        }
+        for t in &cards.tempp1s {
+            let set = sets.entry(t.sid).or_insert_with(|| fresh(t.sid, t.at));
+            if t.at_surfaces {
+                set.unsupported
+                    .push(("TEMPP1 with TS1, TS2".to_owned(), t.at));
+            }
+            let plate = ElementTemperature::Plate {
+                mean: t.mean,
+                gradient: t.gradient,
+            };
+            set.elements
+                .extend(self.written_out(&t.elements).map(|id| (id, plate)));
+        }
+        for t in &cards.temprbs {
+            let set = sets.entry(t.sid).or_insert_with(|| fresh(t.sid, t.at));
+            if t.at_points {
+                set.unsupported
+                    .push(("TEMPRB with temperatures of points".to_owned(), t.at));
+            }
+            let line = ElementTemperature::Line {
+                ends: t.ends,
+                gradient: t.gradient,
+            };
+            set.elements
+                .extend(self.written_out(&t.elements).map(|id| (id, line)));
         }
         self.model.temperatures = sets.into_values().collect();
     }

@@ -138,7 +138,10 @@ impl Builder<'_> {
             None => 0.0,
         };
         let mut thickness = [t; 4];
-        for (ti, slot) in s.thickness.iter().zip(&mut thickness).take(corners) {
+        // A laminate is as thick as its plies, whatever the element says.
+        let layered = matches!(p.map(|p| &p.kind), Some(ShellKind::Laminate { .. }));
+        let stated = if layered { &[] } else { &s.thickness[..] };
+        for (ti, slot) in stated.iter().zip(&mut thickness).take(corners) {
             if let Some(ti) = ti {
                 *slot = if s.tflag { ti * t } else { *ti };
                 if !(*slot > 0.0) {
@@ -293,6 +296,7 @@ impl Builder<'_> {
             z0,
             plies,
             lam: p.lam.clone(),
+            tref: p.tref,
         };
         ShellProperty {
             id: p.id,

@@ -195,6 +195,8 @@ pub enum ShellKind {
         plies: Vec<ModelPly>,
         /// LAM as written.
         lam: String,
+        /// TREF: where thermal strain counts from; `None`: TREF of the plies' materials.
+        tref: Option<f64>,
     },
 }
 
@@ -479,7 +481,30 @@ pub struct TemperatureSet {
     /// TEMPD: temperature of grids that `grids` leaves out.
     pub default: Option<f64>,
     pub grids: Vec<(GridIx, f64)>,
+    /// Temperatures of single elements by id (TEMPP1, TEMPRB): they go before those of their grids.
+    pub elements: std::collections::HashMap<u32, ElementTemperature>,
+    /// Cards of this set that ask for more than is carried.
+    pub unsupported: Vec<(String, Place)>,
     pub at: Place,
+}
+
+/// Temperature of an element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ElementTemperature {
+    /// TEMPP1: of the reference plane, and dT/dz along the element normal.
+    Plate {
+        /// TBAR.
+        mean: f64,
+        /// TPRIME.
+        gradient: f64,
+    },
+    /// TEMPRB: mean of the section at A and B; gradients along element y and z at A and B.
+    Line {
+        /// TA, TB.
+        ends: [f64; 2],
+        /// Along y: at A, B; along z: at A, B.
+        gradient: [[f64; 2]; 2],
+    },
 }
 
 /// A card that the model does not carry.
@@ -526,6 +551,26 @@ pub enum Load {
         centre: Vec3,
         /// Angular velocity, radians per unit of time.
         omega: Vec3,
+    },
+    /// Force or moment along a CBAR or CBEAM (PLOAD1).
+    Line {
+        /// Which one.
+        beam: BeamIx,
+        /// Share of the length, offsets included, where it begins and ends; equal: concentrated there.
+        span: [f64; 2],
+        /// Per length at both ends of the span, the concentrated one first; element axes.
+        force: [Vec3; 2],
+        /// Likewise.
+        moment: [Vec3; 2],
+    },
+    /// SPCD: another enforced displacement of dofs that an SPC set holds, displacement frame.
+    Enforced {
+        /// Grid.
+        grid: GridIx,
+        /// Its dofs.
+        dofs: Dofs,
+        /// Displacement or rotation.
+        value: f64,
     },
     /// A load that the solver does not carry yet: the card's name and place, so that it can be refused by name.
     Unsupported(String, Place),

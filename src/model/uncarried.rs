@@ -24,9 +24,9 @@ const SELECTED: [(&str, &str); 4] = [
 ];
 
 /// Loads, their set id in the first field.
-const LOADS: [&str; 16] = [
+const LOADS: [&str; 19] = [
     "ACCEL", "ACCEL1", "CLOAD", "DEFORM", "FORCE1", "FORCE2", "FORCEAX", "GMLOAD", "MOMENT1",
-    "MOMENT2", "MOMAX", "PLOADE1", "PLOADX1", "PRESAX", "SLOAD", "SPCD",
+    "MOMENT2", "MOMAX", "PLOADE1", "PLOADX1", "PRESAX", "SLOAD", "TEMPAX", "TEMPP2", "TEMPP3", "TEMPG",
 ];
 
 /// Elements, masses and constraints, then loads, in the order of the deck.

@@ -52,6 +52,7 @@ fn append_cards(to: &mut Cards, from: Cards) {
         mpcs,
         mpcadds,
         spcs,
+        spcds,
         spc1s,
         spcadds,
         suports,
@@ -82,6 +83,8 @@ fn append_cards(to: &mut Cards, from: Cards) {
         loads,
         temps,
         tempds,
+        tempp1s,
+        temprbs,
         params,
     } = from;
     extend(&mut to.grids, grids);
@@ -108,6 +111,7 @@ fn append_cards(to: &mut Cards, from: Cards) {
     extend(&mut to.mpcs, mpcs);
     extend(&mut to.mpcadds, mpcadds);
     extend(&mut to.spcs, spcs);
+    extend(&mut to.spcds, spcds);
     extend(&mut to.spc1s, spc1s);
     extend(&mut to.spcadds, spcadds);
     extend(&mut to.suports, suports);
@@ -138,6 +142,8 @@ fn append_cards(to: &mut Cards, from: Cards) {
     extend(&mut to.loads, loads);
     extend(&mut to.temps, temps);
     extend(&mut to.tempds, tempds);
+    extend(&mut to.tempp1s, tempp1s);
+    extend(&mut to.temprbs, temprbs);
     extend(&mut to.params, params);
 }
 

@@ -115,3 +115,31 @@ pub struct Tempd {
     pub sid: u32,
     pub t: f64,
 }
+
+/// TEMPP1: temperature of plates and its gradient through the thickness.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Tempp1 {
+    pub sid: u32,
+    pub elements: super::IdList,
+    /// TBAR.
+    pub mean: f64,
+    /// TPRIME.
+    pub gradient: f64,
+    /// TS1 or TS2 is given.
+    pub at_surfaces: bool,
+}
+
+/// TEMPRB: temperature of bars, beams and rods.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Temprb {
+    pub sid: u32,
+    pub elements: super::IdList,
+    /// TA, TB.
+    pub ends: [f64; 2],
+    /// Gradient along element y at A and B, then along z.
+    pub gradient: [[f64; 2]; 2],
+    /// Temperatures of the stress recovery points are given.
+    pub at_points: bool,
+}

@@ -54,6 +54,7 @@ pub struct Cards {
     pub mpcs: Vec<Placed<Mpc>>,
     pub mpcadds: Vec<Placed<SetSum>>,
     pub spcs: Vec<Placed<Spc>>,
+    pub spcds: Vec<Placed<Spc>>,
     pub spc1s: Vec<Placed<Spc1>>,
     pub spcadds: Vec<Placed<SetSum>>,
     pub suports: Vec<Placed<Suport>>,
@@ -84,5 +85,7 @@ pub struct Cards {
     pub loads: Vec<Placed<LoadSum>>,
     pub temps: Vec<Placed<Temp>>,
     pub tempds: Vec<Placed<Tempd>>,
+    pub tempp1s: Vec<Placed<Tempp1>>,
+    pub temprbs: Vec<Placed<Temprb>>,
     pub params: Vec<Placed<Param>>,
 }

@@ -136,6 +136,9 @@ fn load_ids(deck: &Deck) -> Vec<u32> {
     ids.extend(c.rforces.iter().map(|l| l.card.sid));
     ids.extend(c.temps.iter().map(|l| l.card.sid));
     ids.extend(c.tempds.iter().map(|l| l.card.sid));
+    ids.extend(c.tempp1s.iter().map(|l| l.card.sid));
+    ids.extend(c.temprbs.iter().map(|l| l.card.sid));
+    ids.extend(c.spcds.iter().map(|l| l.card.sid));
     ids
 }
 

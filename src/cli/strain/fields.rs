@@ -243,6 +243,16 @@ pub fn unit_loads(job: &Job, model: &Model) -> Result<Vec<UnitLoad>, Faults> {
         .loads
         .iter()
         .filter_map(|l| match l.acts {
+            // A set of temperatures alone heats the structure.
+            LoadActs::Set(sid)
+                if model.load_sets.iter().all(|s| s.sid != sid)
+                    && model.temperatures.iter().any(|t| t.sid == sid) =>
+            {
+                Some(UnitLoad::Temperature {
+                    set: sid,
+                    initial: None,
+                })
+            }
             LoadActs::Set(sid) => Some(UnitLoad::Set(sid)),
             LoadActs::AtGrid {
                 grid,

@@ -4,7 +4,7 @@ mod body;
 mod mean;
 mod reduction;
 
-pub(crate) use reduction::{Reduction, State, reduce};
+pub(crate) use reduction::{Reduction, Sets, State, reduce};
 
 use nastran::place::Place;
 

@@ -2,8 +2,12 @@
 
 use super::{Claim, Relation, body, mean};
 use crate::fe::error::{FeError, Refusal};
-use crate::model::{Mat3, Model, RigidKind};
+use crate::model::{GridIx, Mat3, Model, RigidKind};
+use nastran::cards::Dofs;
 use std::collections::HashMap;
+
+/// An SPC set, an MPC set, and what SPCD enforces instead of the SPC set.
+pub(crate) type Sets<'a> = (Option<u32>, Option<u32>, &'a [(GridIx, Dofs, f64)]);
 
 /// What a dof is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -72,8 +76,7 @@ impl Reduction {
 pub(crate) fn reduce(
     model: &Model,
     axes: &[Option<Mat3>],
-    spc: Option<u32>,
-    mpc: Option<u32>,
+    (spc, mpc, enforced): Sets<'_>,
 ) -> Result<Reduction, FeError> {
     let mut claims: Vec<Claim> = Vec::new();
     let mut relations: Vec<Relation> = Vec::new();
@@ -136,14 +139,14 @@ pub(crate) fn reduce(
     if !refused.is_empty() {
         return Err(FeError::Refused(refused));
     }
-    resolve(model, &relations, &claims, spc)
+    resolve(model, &relations, &claims, (spc, enforced))
 }
 
 fn resolve(
     model: &Model,
     relations: &[Relation],
     claims: &[Claim],
-    spc: Option<u32>,
+    (spc, spcd): (Option<u32>, &[(GridIx, Dofs, f64)]),
 ) -> Result<Reduction, FeError> {
     let n = 6 * model.grids.len();
     let mut state = vec![State::Free; n];
@@ -164,6 +167,20 @@ fn resolve(
                     enforced.insert(dof, *value);
                 }
             }
+        }
+    }
+    for (g, dofs, value) in spcd {
+        for i in dofs.iter0() {
+            let dof = 6 * g.0 + i as u32;
+            if state[dof as usize] != State::Held {
+                let grid = &model.grids[g.us()];
+                return Err(FeError::EnforcedFree {
+                    grid: grid.id,
+                    dof: i as u8 + 1,
+                    at: grid.at,
+                });
+            }
+            enforced.insert(dof, *value);
         }
     }
     for (r, relation) in relations.iter().enumerate() {

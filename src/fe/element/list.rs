@@ -4,6 +4,7 @@ use super::beam::beam_stiffness;
 use super::bush::bush_stiffness;
 use super::matrix::ElementMatrix;
 use super::rod::rod_stiffness;
+use super::shear_panel::shear_panel_stiffness;
 use super::shell::{CornerDirectors, shared_normals, shell_stiffness};
 use super::solid::{solid_grids, solid_stiffness};
 use super::spring::spring_stiffness;
@@ -20,6 +21,7 @@ pub(crate) enum ElementRef {
     Bush(usize),
     Spring(usize),
     Solid(usize),
+    ShearPanel(usize),
 }
 
 /// A model with what its elements need beyond it.
@@ -54,6 +56,7 @@ impl<'a> Prepared<'a> {
             .chain(bushes)
             .chain((0..m.springs.len()).map(ElementRef::Spring))
             .chain((0..m.solids.len()).map(ElementRef::Solid))
+            .chain((0..m.shear_panels.len()).map(ElementRef::ShearPanel))
             .collect()
     }
 
@@ -75,13 +78,14 @@ impl<'a> Prepared<'a> {
                 list
             }
             ElementRef::Solid(i) => solid_grids(&m.solids[i]),
+            ElementRef::ShearPanel(i) => m.shear_panels[i].grids.to_vec(),
         }
     }
 
     /// Dofs of its grids that it may give stiffness to, a bit each.
     pub(crate) fn dofs(&self, element: ElementRef) -> u8 {
         match element {
-            ElementRef::Solid(_) => 0b000_111,
+            ElementRef::Solid(_) | ElementRef::ShearPanel(_) => 0b000_111,
             _ => 0b111_111,
         }
     }
@@ -98,6 +102,7 @@ impl<'a> Prepared<'a> {
             ElementRef::Bush(i) => Ok(bush_stiffness(self.model, i)),
             ElementRef::Spring(i) => Ok(spring_stiffness(self, i)),
             ElementRef::Solid(i) => solid_stiffness(self.model, i),
+            ElementRef::ShearPanel(i) => shear_panel_stiffness(self.model, i),
         }
     }
 }

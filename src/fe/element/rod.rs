@@ -66,3 +66,17 @@ pub(crate) fn rod_mass(model: &Model, i: usize) -> f64 {
         .map_or(0.0, |m| m.rho);
     (rho * rod.area + rod.nsm) * length
 }
+
+/// Force on the second grid of rod `i` (the first takes its opposite), basic frame, that acts as a rise of temperature; zero for a
+/// rod that its stiffness refuses.
+pub(crate) fn rod_thermal_force(model: &Model, i: usize, rise: f64) -> crate::model::Vec3 {
+    let rod = &model.rods[i];
+    let d = model.grids[rod.grids[1].us()].x - model.grids[rod.grids[0].us()].x;
+    let material = model.materials.get(rod.material.us());
+    let (Some(MaterialKind::Isotropic { e, alpha, .. }), Some(x)) =
+        (material.map(|m| m.kind), d.try_normalize(0.0))
+    else {
+        return crate::model::Vec3::zeros();
+    };
+    x * (e * rod.area * alpha * rise)
+}

@@ -1,10 +1,11 @@
-//! FORCE, MOMENT, PLOADs, GRAV, RFORCE, LOAD, TEMP, TEMPD.
+//! FORCE, MOMENT, PLOADs, GRAV, RFORCE, LOAD, TEMP, TEMPD, TEMPP1, TEMPRB.
 
 use super::super::fault::Wrong;
 use super::super::fields::Fields;
 use super::ids::id_lists;
 use crate::cards::{
     Cards, Force, Grav, IdList, LoadSum, Pload, Pload1, Pload2, Pload4, Rforce, Temp, Tempd,
+    Tempp1, Temprb,
 };
 use crate::place::Placed;
 
@@ -188,5 +189,54 @@ pub(super) fn tempd(f: &mut Fields, cards: &mut Cards) {
                 cards.tempds.push(Placed { card, at: f.at });
             }
         }
+    }
+}
+
+/// The element of field 2 and those of the lines from field `more` on.
+fn first_and_more(f: &mut Fields, more: usize) -> Vec<IdList> {
+    let mut lists = vec![IdList::Each(vec![f.id(1, "EID1")])];
+    lists.extend(id_lists(f, more, "EID"));
+    lists
+}
+
+pub(super) fn tempp1(f: &mut Fields, cards: &mut Cards) {
+    let sid = f.id(0, "SID");
+    let mean = f.real_or(2, "TBAR", 0.0);
+    let gradient = f.real_or(3, "TPRIME", 0.0);
+    let at_surfaces = !f.is_blank(5) || !f.is_blank(6);
+    let lists = first_and_more(f, 8);
+    if f.unusable {
+        return;
+    }
+    for elements in lists {
+        let card = Tempp1 {
+            sid,
+            elements,
+            mean,
+            gradient,
+            at_surfaces,
+        };
+        cards.tempp1s.push(Placed { card, at: f.at });
+    }
+}
+
+pub(super) fn temprb(f: &mut Fields, cards: &mut Cards) {
+    let sid = f.id(0, "SID");
+    let ends = f.reals(2, ["TA", "TB"]);
+    let gradient = [f.reals(4, ["TP1A", "TP1B"]), f.reals(6, ["TP2A", "TP2B"])];
+    let at_points = (8..16).any(|i| !f.is_blank(i));
+    let lists = first_and_more(f, 16);
+    if f.unusable {
+        return;
+    }
+    for elements in lists {
+        let card = Temprb {
+            sid,
+            elements,
+            ends,
+            gradient,
+            at_points,
+        };
+        cards.temprbs.push(Placed { card, at: f.at });
     }
 }

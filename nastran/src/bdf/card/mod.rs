@@ -52,6 +52,7 @@ pub(super) fn read_card(f: &mut Fields, cards: &mut Cards) -> bool {
         b"MPC" => keep(&mut cards.mpcs, f, constraint::mpc),
         b"MPCADD" => keep(&mut cards.mpcadds, f, constraint::set_sum),
         b"SPC" => keep(&mut cards.spcs, f, constraint::spc),
+        b"SPCD" => keep(&mut cards.spcds, f, constraint::spc),
         b"SPC1" => constraint::spc1(f, cards),
         b"SPCADD" => keep(&mut cards.spcadds, f, constraint::set_sum),
         b"SUPORT" | b"SUPORT1" | b"SUPPORT" => keep(&mut cards.suports, f, constraint::suport),
@@ -82,6 +83,8 @@ pub(super) fn read_card(f: &mut Fields, cards: &mut Cards) -> bool {
         b"LOAD" => keep(&mut cards.loads, f, load::load),
         b"TEMP" => load::temp(f, cards),
         b"TEMPD" => load::tempd(f, cards),
+        b"TEMPP1" => load::tempp1(f, cards),
+        b"TEMPRB" => load::temprb(f, cards),
         b"PARAM" => keep(&mut cards.params, f, param::param),
         _ => return false,
     }

@@ -1,6 +1,6 @@
 //! Stiffness of a beam in its own frame.
 
-use crate::linalg::{Matrix3, Matrix6, SMatrix};
+use crate::linalg::{Matrix3, Matrix6, SMatrix, SVector};
 use crate::model::Section;
 
 /// Three-point Gauss rule on 0..1.
@@ -111,14 +111,20 @@ impl LocalBeam<'_> {
         f
     }
 
-    /// Stiffness over u v w and rotations at A, then B; element frame.
-    pub(super) fn stiffness(&self) -> Option<SMatrix<f64, 12, 12>> {
+    /// Stiffness of end B with end A held, and what carries forces at B over to A with their sign reversed.
+    pub(super) fn basic(&self) -> Option<(Matrix6<f64>, Matrix6<f64>)> {
         let kb = self.flexibility().try_inverse()?;
         let kb = (kb + kb.transpose()) * 0.5;
         // Forces at A from those at B: -g.
         let mut g = Matrix6::identity();
         g[(4, 2)] = -self.length;
         g[(5, 1)] = self.length;
+        Some((kb, g))
+    }
+
+    /// Stiffness over u v w and rotations at A, then B; element frame.
+    pub(super) fn stiffness(&self) -> Option<SMatrix<f64, 12, 12>> {
+        let (kb, g) = self.basic()?;
         let mut k = SMatrix::<f64, 12, 12>::zeros();
         k.fixed_view_mut::<6, 6>(0, 0)
             .copy_from(&(g * kb * g.transpose()));
@@ -149,16 +155,18 @@ impl LocalBeam<'_> {
     }
 }
 
-/// Takes released dofs (a bit each, A then B) out of a stiffness by static condensation.
-pub(super) fn release(k: &mut SMatrix<f64, 12, 12>, pins: u16) {
+/// Takes released dofs (a bit each, A then B) out of a stiffness, and of the forces on it, by static condensation.
+pub(super) fn release(k: &mut SMatrix<f64, 12, 12>, f: &mut SVector<f64, 12>, pins: u16) {
     for r in (0..12).filter(|r| pins >> r & 1 == 1) {
         let pivot = k[(r, r)];
         let scale = k.diagonal().amax();
         if pivot > 1e-14 * scale {
             let column = k.column(r).into_owned();
+            *f -= column * (f[r] / pivot);
             *k -= column * column.transpose() / pivot;
         }
         k.row_mut(r).fill(0.0);
         k.column_mut(r).fill(0.0);
+        f[r] = 0.0;
     }
 }

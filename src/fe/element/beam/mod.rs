@@ -3,11 +3,13 @@
 //! The reference line joins the offset ends; for a CBEAM it is the line of shear centres. Element frame x, y, z; plane 1 is x-y.
 
 mod flexibility;
+mod interior;
 mod mass;
 mod of_model;
 
 pub(crate) use mass::{beam_coupled_mass, beam_lumped_mass};
-pub(crate) use of_model::{beam_stiffness, beam_strain};
+pub(crate) use interior::{Interior, LineLoad, LineStrain};
+pub(crate) use of_model::{beam_end_forces, beam_stiffness, beam_strain};
 
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,7 @@
 //! Beams of a model: stiffness in the basic frame, strain at the recovery points.
 
 use super::flexibility::{LocalBeam, release, section_at};
+use super::interior::Interior;
 use crate::fe::element::ElementMatrix;
 use crate::fe::error::Refusal;
 use crate::linalg::{SMatrix, SVector, Vector3};
@@ -98,20 +99,46 @@ pub(super) fn to_element(beam: &Beam) -> Matrix12 {
     t
 }
 
-fn pinned(model: &Model, beam: &Beam) -> Result<Matrix12, Refusal> {
+/// Stiffness and the end forces that act as what is between the ends, pins released, element frame.
+fn pinned(
+    model: &Model,
+    beam: &Beam,
+    interior: &Interior,
+) -> Result<(Matrix12, SVector<f64, 12>), Refusal> {
     let (local, _) = local(model, beam)?;
-    let mut k = local.stiffness().ok_or_else(|| {
+    let flexible = || {
         refuse(
             beam,
             "its sections give no stiffness".to_owned(),
             "correct area, inertia and torsion constant",
         )
-    })?;
+    };
+    let mut k = local.stiffness().ok_or_else(flexible)?;
+    let mut f = if interior.is_empty() {
+        SVector::zeros()
+    } else {
+        interior.end_forces(&local).ok_or_else(flexible)?
+    };
     release(
         &mut k,
+        &mut f,
         u16::from(beam.pins[0].0) | u16::from(beam.pins[1].0) << 6,
     );
-    Ok(k)
+    Ok((k, f))
+}
+
+/// Forces at the grids of beam `i`, six each, basic frame, that act as what is between its ends.
+///
+/// # Errors
+/// As `beam_stiffness`.
+pub(crate) fn beam_end_forces(
+    model: &Model,
+    i: usize,
+    interior: &Interior,
+) -> Result<[f64; 12], Refusal> {
+    let beam = &model.beams[i];
+    let (_, f) = pinned(model, beam, interior)?;
+    Ok((to_element(beam).transpose() * f).into())
 }
 
 /// Stiffness of beam `i`, basic frame.
@@ -121,14 +148,14 @@ fn pinned(model: &Model, beam: &Beam) -> Result<Matrix12, Refusal> {
 pub(crate) fn beam_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, Refusal> {
     let beam = &model.beams[i];
     let t = to_element(beam);
-    let k = t.transpose() * pinned(model, beam)? * t;
+    let k = t.transpose() * pinned(model, beam, &Interior::default())?.0 * t;
     Ok(ElementMatrix {
         grids: beam.grids.to_vec(),
         values: k.transpose().as_slice().to_vec(),
     })
 }
 
-/// Axial strain at C, D, E, F of the stations of beam `i` (ends of a CBAR, all sections of a CBEAM) from displacements (basic).
+/// Mechanical axial strain at C, D, E, F of the stations of beam `i` (ends of a CBAR, all sections of a CBEAM) from displacements (basic).
 ///
 /// # Errors
 /// As `beam_stiffness`.
@@ -136,12 +163,13 @@ pub(crate) fn beam_strain(
     model: &Model,
     i: usize,
     u: &[[f64; 6]],
+    interior: &Interior,
 ) -> Result<Vec<(f64, [f64; 4])>, Refusal> {
     let beam = &model.beams[i];
     let (local, property) = local(model, beam)?;
     let grid: Vec<f64> = beam.grids.iter().flat_map(|g| u[g.us()]).collect();
-    let force =
-        pinned(model, beam)? * (to_element(beam) * SVector::<f64, 12>::from_column_slice(&grid));
+    let (k, held) = pinned(model, beam, interior)?;
+    let force = k * (to_element(beam) * SVector::<f64, 12>::from_column_slice(&grid)) - held;
     let stations = if beam.is_beam {
         property.sections.iter().map(|s| s.0).collect()
     } else {
@@ -152,10 +180,11 @@ pub(crate) fn beam_strain(
         .map(|xi| {
             let s = section_at(&property.sections, xi);
             let arm = local.length * (1.0 - xi);
+            let inside = interior.beyond(xi, local.length);
             let at_section = Vector3::new(
-                force[6],
-                force[10] - arm * force[8],
-                force[11] + arm * force[7],
+                force[6] + inside[0],
+                force[10] - arm * force[8] + inside[4],
+                force[11] + arm * force[7] + inside[5],
             );
             let c = local.compliance(&s) * at_section;
             (xi, s.recovery.map(|[y, z]| c[0] + z * c[1] - y * c[2]))

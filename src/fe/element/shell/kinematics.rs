@@ -245,6 +245,21 @@ impl Section<'_> {
     }
 }
 
+/// f += weight * (membrane' N + curvature' M) with the stress resultants N, M of a held shell.
+pub(super) fn add_thermal<const M: usize>(
+    f: &mut [f64; M],
+    weight: f64,
+    (force, moment): ([f64; 3], [f64; 3]),
+    membrane: &[Row<M>; 3],
+    curvature: &[Row<M>; 3],
+) {
+    for c in 0..3 {
+        for i in 0..M {
+            f[i] += weight * (membrane[c][i] * force[c] + curvature[c][i] * moment[c]);
+        }
+    }
+}
+
 /// K += a' D b.
 fn add_pair<const R: usize, const M: usize>(
     k: &mut [[f64; M]; M],

@@ -1,9 +1,10 @@
 //! The plane-stress law of a shell in its output frame, by the MID1 to MID4 rules of PSHELL.
 
+use super::laminate::{self, Lamination, placed};
 use crate::model::{Material, MaterialKind, Model, ShellKind, ShellProperty};
 
 /// A shell without MID3 is rigid in transverse shear: this many times its elastic shear stiffness.
-const RIGID_SHEAR: f64 = 1e3;
+pub(super) const RIGID_SHEAR: f64 = 1e3;
 
 /// Matrices of stress = G strain (engineering shear) in the output frame; scaled by thickness where they are used.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,9 +20,9 @@ pub(crate) struct ShellLaw {
 }
 
 impl ShellLaw {
-    /// The law of a PSHELL whose material x axis lies at `angle_rad` from the element's output x axis.
+    /// The law of a PSHELL or laminate whose material x axis lies at `angle_rad` from the element's output x axis.
     ///
-    /// `None` for laminates and materials that aren't plane-stress laws: refused before.
+    /// `None` for materials that aren't plane-stress laws.
     pub(crate) fn new(model: &Model, property: &ShellProperty, angle_rad: f64) -> Option<Self> {
         let ShellKind::Homogeneous {
             membrane,
@@ -34,7 +35,11 @@ impl ShellLaw {
             ..
         } = &property.kind
         else {
-            return None;
+            let ShellKind::Laminate { z0, plies, lam, .. } = &property.kind else {
+                return None;
+            };
+            let placed = placed(model, plies, *z0, angle_rad)?;
+            return laminate::law(&placed, Lamination::of(lam)?);
         };
         let material = |m: &crate::model::MaterialIx| model.materials.get(m.us());
         let plane = |m: &Option<crate::model::MaterialIx>| match m {
@@ -66,7 +71,7 @@ impl ShellLaw {
 }
 
 /// G11 G12 G13 / G22 G23 / G33 of plane stress.
-fn plane_stress(m: &Material) -> Option<[[f64; 3]; 3]> {
+pub(super) fn plane_stress(m: &Material) -> Option<[[f64; 3]; 3]> {
     Some(match m.kind {
         MaterialKind::Isotropic { e, g, nu, .. } => {
             let c = e / (1.0 - nu * nu);
@@ -102,7 +107,7 @@ fn plane_strain_matrix(m: &Material) -> Option<[[f64; 3]; 3]> {
     ])
 }
 
-fn transverse_shear(m: &Material) -> Option<[[f64; 2]; 2]> {
+pub(super) fn transverse_shear(m: &Material) -> Option<[[f64; 2]; 2]> {
     Some(match m.kind {
         MaterialKind::Isotropic { g, .. } => [[g, 0.0], [0.0, g]],
         // As MID3 a MAT2 gives G11 G12 G22 of the transverse shear.
@@ -119,7 +124,7 @@ fn transverse_shear(m: &Material) -> Option<[[f64; 2]; 2]> {
 }
 
 /// T' G T with T the strain transformation to axes turned by `angle`.
-fn rotate(g: &[[f64; 3]; 3], angle: f64) -> [[f64; 3]; 3] {
+pub(super) fn rotate(g: &[[f64; 3]; 3], angle: f64) -> [[f64; 3]; 3] {
     let (s, c) = angle.sin_cos();
     let t = [
         [c * c, s * s, c * s],
@@ -139,7 +144,7 @@ fn rotate(g: &[[f64; 3]; 3], angle: f64) -> [[f64; 3]; 3] {
     out
 }
 
-fn rotate_shear(g: &[[f64; 2]; 2], angle: f64) -> [[f64; 2]; 2] {
+pub(super) fn rotate_shear(g: &[[f64; 2]; 2], angle: f64) -> [[f64; 2]; 2] {
     let (s, c) = angle.sin_cos();
     let t = [[c, s], [-s, c]];
     let mut out = [[0.0; 2]; 2];

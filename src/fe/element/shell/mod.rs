@@ -6,7 +6,9 @@
 //! normal is tied to the curl of the displacements about the same normal (Hughes and Brezzi 1989).
 
 mod area;
+mod expansion;
 mod kinematics;
+mod laminate;
 mod law;
 mod normals;
 mod of_model;
@@ -16,9 +18,13 @@ mod tria3;
 
 #[cfg(test)]
 pub(crate) use area::corner_products;
+pub(crate) use expansion::Heat;
+pub(crate) use laminate::Lamination;
 pub(crate) use law::ShellLaw;
 pub(crate) use normals::{CornerDirectors, shared_normals};
-pub(crate) use of_model::{AnyShell, shell_mass, shell_matrices, shell_stiffness, surfaces};
+pub(crate) use of_model::{
+    AnyShell, shell_heat, shell_mass, shell_matrices, shell_stiffness, shell_thermal_force, surfaces,
+};
 pub(crate) use output_frame::output_frame;
 pub(crate) use quad4::quad4;
 pub(crate) use tria3::tria3;
@@ -42,13 +48,15 @@ pub(crate) struct ShellInput<'a, const N: usize> {
     pub(crate) k6rot: f64,
     /// What is wanted.
     pub(crate) parts: Parts,
+    /// Temperatures, where forces of thermal strain are wanted.
+    pub(crate) heat: Option<&'a Heat>,
 }
 
 /// What is wanted of a shell: forming its stiffness is most of the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Parts {
     All,
-    /// Strain rows; the stiffness stays zero.
+    /// Strain rows and thermal forces; the stiffness stays zero.
     WithoutStiffness,
 }
 
@@ -58,6 +66,8 @@ pub(crate) struct ShellMatrices<const N: usize, const M: usize> {
     pub(crate) stiffness: [[f64; M]; M],
     pub(crate) centre: StrainRows<M>,
     pub(crate) corners: [StrainRows<M>; N],
+    /// Forces that hold the thermal strain back, sign reversed: the load it acts as.
+    pub(crate) thermal: [f64; M],
 }
 
 /// Rows that turn an element's displacements into strain in its output frame: exx, eyy, gxy (engineering shear); strain at

@@ -1,9 +1,15 @@
 //! Shells of a model: stiffness, strain rows, mass by corner.
 
-use super::{BadShape, Parts, ShellInput, ShellLaw, StrainRows, output_frame, quad4, tria3};
+use super::expansion::expansion;
+use super::{BadShape, Heat, Parts, ShellInput, ShellLaw, StrainRows, output_frame, quad4, tria3};
 use crate::fe::element::{ElementMatrix, Prepared};
 use crate::fe::error::Refusal;
+use crate::fe::temperature::Temperatures;
 use crate::model::{Model, Shell, ShellKind, Vec3};
+use nastran::cards::ShellShape;
+
+/// K6ROT of CQUADR and CTRIAR, which carry moments about their normal: the full weight of Hughes and Brezzi.
+const STIFF_DRILLING: f64 = 1e6;
 
 /// What a shell gives, whatever its number of corners.
 #[derive(Clone, Debug)]
@@ -45,6 +51,7 @@ pub(crate) fn shell_matrices(
     prepared: &Prepared<'_>,
     i: usize,
     parts: Parts,
+    heat: Option<&Heat>,
 ) -> Result<AnyShell, Refusal> {
     let model = prepared.model;
     let shell = &model.shells[i];
@@ -75,11 +82,15 @@ pub(crate) fn shell_matrices(
         refuse(
             shell,
             "its property has no plane-stress law",
-            "use a PSHELL with MAT1, MAT2 or MAT8",
+            "use a PSHELL or PCOMP with MAT1, MAT2 or MAT8",
         )
     })?;
     let d = &prepared.directors[i];
-    let (zoffs, k6rot, t) = (shell.zoffs, model.params.k6rot, shell.thickness);
+    let k6rot = match shell.shape {
+        ShellShape::QuadR | ShellShape::TriaR => STIFF_DRILLING,
+        _ => model.params.k6rot,
+    };
+    let (zoffs, t) = (shell.zoffs, shell.thickness);
     if n == 4 {
         let input = ShellInput {
             x: corners(model, shell),
@@ -89,6 +100,7 @@ pub(crate) fn shell_matrices(
             zoffs,
             k6rot,
             parts,
+            heat,
         };
         Ok(AnyShell::Quad(Box::new(quad4(&input).map_err(bad)?)))
     } else {
@@ -101,6 +113,7 @@ pub(crate) fn shell_matrices(
             zoffs,
             k6rot,
             parts,
+            heat,
         };
         Ok(AnyShell::Tria(Box::new(tria3(&input).map_err(bad)?)))
     }
@@ -112,10 +125,46 @@ pub(crate) fn shell_matrices(
 /// As `shell_matrices`.
 pub(crate) fn shell_stiffness(prepared: &Prepared<'_>, i: usize) -> Result<ElementMatrix, Refusal> {
     let grids = &prepared.model.shells[i].grids;
-    Ok(match shell_matrices(prepared, i, Parts::All)? {
+    Ok(match shell_matrices(prepared, i, Parts::All, None)? {
         AnyShell::Quad(m) => ElementMatrix::from_rows(&grids[..4], &m.stiffness),
         AnyShell::Tria(m) => ElementMatrix::from_rows(&grids[..3], &m.stiffness),
     })
+}
+
+/// What a load case heats shell `i` by; `None` where its property has no law.
+pub(crate) fn shell_heat(model: &Model, i: usize, t: &Temperatures) -> Option<Heat> {
+    let shell = &model.shells[i];
+    let n = shell.shape.n_corners();
+    let thickness = shell.thickness[..n].iter().sum::<f64>() / n as f64;
+    let property = model.shell_properties.get(shell.property.us())?;
+    let angle = material_angle(model, shell)?;
+    let expansion = expansion(model, property, thickness, angle)?;
+    let (rise, gradient) = t.shell_rise(shell, expansion.tref);
+    Some(Heat {
+        expansion,
+        rise,
+        gradient,
+    })
+}
+
+/// Forces of the thermal strain of shell `i`, six a grid, basic frame.
+///
+/// # Errors
+/// As `shell_matrices`.
+pub(crate) fn shell_thermal_force(
+    prepared: &Prepared<'_>,
+    i: usize,
+    t: &Temperatures,
+) -> Result<Vec<f64>, Refusal> {
+    let Some(heat) = shell_heat(prepared.model, i, t) else {
+        return Ok(Vec::new());
+    };
+    Ok(
+        match shell_matrices(prepared, i, Parts::WithoutStiffness, Some(&heat))? {
+            AnyShell::Quad(m) => m.thermal.to_vec(),
+            AnyShell::Tria(m) => m.thermal.to_vec(),
+        },
+    )
 }
 
 /// Consistent mass of shell `i` by pairs of corners, before WTMASS: integral of the product of their shape functions times
@@ -125,37 +174,51 @@ pub(crate) fn shell_mass(model: &Model, i: usize) -> [[f64; 4]; 4] {
     let Some(property) = model.shell_properties.get(shell.property.us()) else {
         return [[0.0; 4]; 4];
     };
-    let rho = match &property.kind {
+    let (rho, per_area) = match &property.kind {
         ShellKind::Homogeneous {
             membrane,
             bending,
             shear,
             ..
-        } => membrane
-            .or(*bending)
-            .or(*shear)
-            .and_then(|m| model.materials.get(m.us()))
-            .map_or(0.0, |m| m.rho),
-        ShellKind::Laminate { .. } => 0.0,
+        } => (
+            membrane
+                .or(*bending)
+                .or(*shear)
+                .and_then(|m| model.materials.get(m.us()))
+                .map_or(0.0, |m| m.rho),
+            property.nsm,
+        ),
+        ShellKind::Laminate { plies, .. } => {
+            let of_ply = |p: &crate::model::ModelPly| {
+                model
+                    .materials
+                    .get(p.material.us())
+                    .map_or(0.0, |m| m.rho * p.t)
+            };
+            (0.0, plies.iter().map(of_ply).sum::<f64>() + property.nsm)
+        }
     };
     let all: [Vec3; 4] = std::array::from_fn(|k| model.grids[shell.grids[k].us()].x);
     let n = shell.shape.n_corners().min(4);
     let products = super::area::corner_products(&all[..n], &shell.thickness);
     std::array::from_fn(|k| {
-        std::array::from_fn(|l| rho * products.volume[k][l] + property.nsm * products.area[k][l])
+        std::array::from_fn(|l| rho * products.volume[k][l] + per_area * products.area[k][l])
     })
 }
 
-/// Strain at both surfaces from rows and displacements: bottom (Z1), top (Z2).
+/// Mechanical strain at both surfaces from rows and displacements, less the thermal strain: bottom (Z1), top (Z2).
 pub(crate) fn surfaces<const M: usize>(
     rows: &StrainRows<M>,
     z: [f64; 2],
     u: &[f64; M],
+    free: &[[f64; 3]; 2],
 ) -> [[f64; 3]; 2] {
     let dot = |row: &[f64; M]| row.iter().zip(u).map(|(a, b)| a * b).sum::<f64>();
     let (membrane, curvature) = (
         rows.membrane.each_ref().map(dot),
         rows.curvature.each_ref().map(dot),
     );
-    z.map(|z| std::array::from_fn(|c| membrane[c] + z * curvature[c]))
+    std::array::from_fn(|s| {
+        std::array::from_fn(|c| membrane[c] + z[s] * curvature[c] - free[s][c])
+    })
 }

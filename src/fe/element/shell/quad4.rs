@@ -1,7 +1,7 @@
 //! CQUAD4: MITC4 bending and shear, QM6 membrane, drilling stiffness.
 
 use super::kinematics::{
-    Local, Row, Section, Shape, Tangents, curvature, drilling, membrane, shear, shift,
+    Local, Row, Section, Shape, Tangents, add_thermal, curvature, drilling, membrane, shear, shift,
     shift_stiffness,
 };
 use super::{BadShape, Parts, ShellInput, ShellMatrices, StrainRows, output_frame};
@@ -113,7 +113,18 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
         });
     }
     condense_modes(input, &mut points);
+    let mut thermal = [0.0; 24];
     for p in &points {
+        if let Some(heat) = input.heat {
+            let rise = p.shape.h.iter().zip(&heat.rise).map(|(h, t)| h * t).sum();
+            add_thermal(
+                &mut thermal,
+                p.local.area,
+                heat.resultants(rise),
+                &p.membrane,
+                &p.curvature,
+            );
+        }
         let section = Section {
             law: input.law,
             t: p.t,
@@ -149,6 +160,7 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
     let mut centre = centre_rows;
     if input.zoffs != 0.0 {
         shift_stiffness(&mut stiffness, &offset);
+        shift(&mut thermal, &offset);
         for rows in corners.iter_mut().chain([&mut centre]) {
             rows.membrane
                 .iter_mut()
@@ -160,6 +172,7 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
         stiffness,
         centre,
         corners,
+        thermal,
     })
 }
 

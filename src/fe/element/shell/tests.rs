@@ -45,6 +45,7 @@ fn input<'a, const N: usize>(
         zoffs,
         k6rot: 100.0,
         parts: Parts::All,
+        heat: None,
     }
 }
 

@@ -1,7 +1,7 @@
 //! CTRIA3: MITC3+ bending and shear, constant-strain membrane, drilling stiffness.
 
 use super::kinematics::{
-    Local, Row, Section, Shape, Tangents, curvature, drilling, membrane, shear, shift,
+    Local, Row, Section, Shape, Tangents, add_thermal, curvature, drilling, membrane, shear, shift,
     shift_stiffness,
 };
 use super::{BadShape, Parts, ShellInput, ShellMatrices, StrainRows, output_frame};
@@ -83,6 +83,7 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
     let g = covariant(third + TYING, third - 2.0 * TYING);
 
     let mut big = [[0.0; WITH_BUBBLE]; WITH_BUBBLE];
+    let mut thermal = [0.0; 18];
     for (r, s, w) in POINTS {
         let shape = shape(r, s);
         let t = Tangents::new(&x, d, &shape);
@@ -116,6 +117,17 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
             rows_r[i] = (2.0 * b[0][i] - b[1][i]) / 3.0 + mean + twist * (3.0 * s - 1.0) / 3.0;
             rows_s[i] = (2.0 * a[1][i] - a[0][i]) / 3.0 + mean + twist * (1.0 - 3.0 * r) / 3.0;
         }
+        if let Some(heat) = input.heat {
+            // The bubble takes no part: the integral of its curvature vanishes.
+            let rise = shape.h.iter().zip(&heat.rise).map(|(h, t)| h * t).sum();
+            add_thermal(
+                &mut thermal,
+                weight,
+                heat.resultants(rise),
+                &local.strain(&membrane::<3, 18>(&t, &shape)),
+                &local.strain(&curvature::<3, 18>(&t, &shape, d)),
+            );
+        }
         if input.parts == Parts::All {
             section.add_shear(&mut big, weight, &local.shear(&rows_r, &rows_s));
         }
@@ -136,6 +148,7 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
     };
     if input.zoffs != 0.0 {
         shift_stiffness(&mut stiffness, &offset);
+        shift(&mut thermal, &offset);
         centre
             .membrane
             .iter_mut()
@@ -146,6 +159,7 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
         stiffness,
         centre,
         corners: [centre; 3],
+        thermal,
     })
 }
 
