@@ -1,8 +1,9 @@
 //! Nodal forces of loads.
 
 use super::element::beam::beam_end_forces;
+use super::element::shell::{many_grids, over_surface};
 use super::mass::Mass;
-use crate::model::{GridIx, Load, LoadSet, Model, Vec3};
+use crate::model::{GridIx, Load, LoadSet, Model, Shell, Vec3};
 
 /// Forces and moments at all grids, basic frame, of one load set.
 pub(crate) fn load_vector(model: &Model, mass: &Mass, set: &LoadSet) -> Vec<[f64; 6]> {
@@ -30,6 +31,10 @@ fn add(model: &Model, mass: &Mass, factor: f64, load: &Load, f: &mut [[f64; 6]])
         } => {
             for s in shells {
                 let shell = &model.shells[s.us()];
+                if shell.shape.n_grids() > shell.shape.n_corners() {
+                    pressure_on_many(model, shell, pressure, direction, factor, f);
+                    continue;
+                }
                 pressure_on(
                     model,
                     &shell.grids[..shell.shape.n_corners()],
@@ -114,4 +119,33 @@ fn pressure_on(
         }
         _ => {}
     }
+}
+
+/// The same over a shell with mid-side grids: corner pressures by the corners' functions, forces by those of all grids.
+fn pressure_on_many(
+    model: &Model,
+    shell: &Shell,
+    pressure: &[f64; 4],
+    direction: &Option<Vec3>,
+    factor: f64,
+    f: &mut [[f64; 6]],
+) {
+    let n = shell.shape.n_corners();
+    let (grids, sides) = many_grids(shell);
+    over_surface(model, shell, |functions, area, _| {
+        // A corner's linear function is its own and half of those of its sides' grids.
+        let linear = |c: usize| {
+            let halves = sides
+                .iter()
+                .zip(&functions[n..])
+                .filter(|(s, _)| **s == c || (**s + 1) % n == c)
+                .map(|(_, f)| 0.5 * f[0]);
+            functions[c][0] + halves.sum::<f64>()
+        };
+        let p: f64 = (0..n).map(|c| linear(c) * pressure[c]).sum::<f64>() * factor;
+        let along = direction.map_or(area, |d| d * area.norm());
+        for (g, h) in grids.iter().zip(functions) {
+            push(f, *g, 0, &(along * (p * h[0])));
+        }
+    });
 }

@@ -1,12 +1,13 @@
 //! The mass of a model.
 
 use super::element::beam::{beam_coupled_mass, beam_lumped_mass};
-use super::element::shell::{output_frame, shell_mass};
+use super::element::shell::{many_mass, output_frame, shell_mass};
 use super::element::solid::solid_mass;
 use super::element::{ElementMatrix, Prepared, rod_mass, shear_panel_mass};
 use super::rigid_motion::rigid;
 use crate::linalg::Matrix6;
-use crate::model::{GridIx, Vec3};
+use crate::model::{GridIx, Model, Vec3};
+use nastran::cards::ShellShape;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -47,7 +48,11 @@ impl Mass {
             .into_par_iter()
             .map(|i| shell_mass(model, i))
             .collect();
-        for (shell, pairs) in model.shells.iter().zip(shells) {
+        for (i, (shell, pairs)) in model.shells.iter().zip(shells).enumerate() {
+            if matches!(shell.shape, ShellShape::Quad8 | ShellShape::Tria6) {
+                mass.add_many(model, i);
+                continue;
+            }
             let n = shell.shape.n_corners().min(4);
             let offset = if shell.zoffs == 0.0 {
                 Vec3::zeros()
@@ -59,8 +64,10 @@ impl Mass {
                 output_frame(&x).map_or_else(Vec3::zeros, |f| f.row(2).transpose() * shell.zoffs)
             };
             if model.params.coupmass {
+                let products: Vec<f64> =
+                    pairs[..n].iter().flat_map(|row| row[..n].to_vec()).collect();
                 mass.coupled
-                    .push(coupled_points(&shell.grids[..n], &pairs, &offset));
+                    .push(coupled_points(&shell.grids[..n], &products, &offset));
             } else {
                 for (g, row) in shell.grids[..n].iter().zip(&pairs) {
                     mass.add_point(*g, row.iter().sum(), &offset);
@@ -112,6 +119,22 @@ impl Mass {
             .chain(mass.scalar.iter_mut().flat_map(|m| &mut m.1))
             .for_each(|v| *v *= w);
         mass
+    }
+
+    /// A shell with mid-side grids, consistent always.
+    fn add_many(&mut self, model: &Model, i: usize) {
+        let shell = &model.shells[i];
+        let (grids, products) = many_mass(model, i);
+        let corners = shell.grids.iter().take(shell.shape.n_corners());
+        let x: Vec<Vec3> = corners.map(|g| model.grids[g.us()].x).collect();
+        match output_frame(&x) {
+            Some(frame) if shell.zoffs != 0.0 => {
+                let offset = frame.row(2).transpose() * shell.zoffs;
+                self.coupled
+                    .push(coupled_points(&grids, &products, &offset));
+            }
+            _ => self.scalar.push((grids, products)),
+        }
     }
 
     /// A point mass at an offset from a grid.
@@ -234,12 +257,12 @@ pub(crate) fn resultant(x: &[Vec3], f: &[[f64; 6]], centre: &Vec3) -> [f64; 6] {
     sum
 }
 
-/// Mass of pairs of grids, all at one offset from them.
-fn coupled_points(grids: &[GridIx], pairs: &[[f64; 4]; 4], offset: &Vec3) -> ElementMatrix {
+/// Mass of pairs of grids, row by row, all at one offset from them.
+fn coupled_points(grids: &[GridIx], products: &[f64], offset: &Vec3) -> ElementMatrix {
     let mut m = ElementMatrix::zeros(grids.to_vec());
     let n = m.n();
-    for (k, row) in pairs.iter().enumerate().take(grids.len()) {
-        for (l, mass) in row.iter().enumerate().take(grids.len()) {
+    for (k, row) in products.chunks_exact(grids.len().max(1)).enumerate() {
+        for (l, mass) in row.iter().enumerate() {
             let block = point_mass(*mass, offset);
             for i in 0..6 {
                 for j in 0..6 {

@@ -2,7 +2,9 @@
 
 use super::ShellField;
 use super::element::Prepared;
-use super::element::shell::{AnyShell, Parts, shell_heat, shell_matrices, surfaces};
+use super::element::shell::{
+    AnyShell, Parts, many_grids, shell_heat, shell_matrices, surfaces,
+};
 use super::error::{FeError, Refusal};
 use super::temperature::Temperatures;
 use crate::model::{GridIx, ShellIx};
@@ -117,6 +119,27 @@ fn fill(
                     *slot = std::array::from_fn(|k| {
                         surfaces(&m.corners[k], z, &local, &free(Some(k)))
                     });
+                }
+            }
+            AnyShell::Many(plain) => {
+                // Temperature moves the centre: the rows of this case.
+                let heated = match &heat {
+                    Some(h) => {
+                        Some(shell_matrices(prepared, i, Parts::WithoutStiffness, Some(h))?)
+                    }
+                    None => None,
+                };
+                let m = match &heated {
+                    Some(AnyShell::Many(m)) => m,
+                    _ => plain,
+                };
+                let local: Vec<f64> = many_grids(shell).0.iter().flat_map(|g| u[g.us()]).collect();
+                centre[at] = m.centre.surfaces(z, &local, &free(None));
+                if let Some(slot) = corners.get_mut(at) {
+                    *slot = [[[f64::NAN; 3]; 2]; 4];
+                    for (k, (slot, rows)) in slot.iter_mut().zip(&m.corners).enumerate() {
+                        *slot = rows.surfaces(z, &local, &free(Some(k)));
+                    }
                 }
             }
             AnyShell::Tria(m) => {

@@ -5,7 +5,6 @@ use super::element::shell::Lamination;
 use super::error::Refusal;
 use super::solve::LoadCase;
 use crate::model::{Load, MaterialKind, Model, ShellKind};
-use nastran::cards::ShellShape;
 use nastran::place::Place;
 
 /// Every entry of the model, or load of the cases, that would be left out of the answer.
@@ -20,16 +19,6 @@ pub(crate) fn unsupported(model: &Model, cases: &[LoadCase]) -> Vec<Refusal> {
         });
     };
     const ELSEWHERE: &str = "solve with Nastran and name its results in the job";
-    for s in &model.shells {
-        if matches!(s.shape, ShellShape::Quad8 | ShellShape::Tria6) {
-            refuse(
-                format!("{} {}", s.shape.card(), s.id),
-                s.at,
-                "the built-in solver has no such element yet",
-                "use CQUAD4 or CTRIA3, or solve with Nastran",
-            );
-        }
-    }
     for p in &model.shell_properties {
         let used = || {
             model

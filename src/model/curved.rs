@@ -130,6 +130,22 @@ pub(crate) fn solid_functions(shape: SolidShape, p: [f64; 3]) -> (Vec<[f64; 4]>,
     (corners, domain.edge_functions(p))
 }
 
+/// The same of a triangle or square, third parameter 0: what places a shell with mid-side grids.
+pub(crate) fn face_functions(n_corners: usize, p: [f64; 2]) -> (Vec<[f64; 4]>, Vec<[f64; 4]>) {
+    let domain = if n_corners == 3 {
+        Domain::Triangle
+    } else {
+        Domain::Square
+    };
+    let p = [p[0], p[1], 0.0];
+    (domain.corner_functions(p), domain.edge_functions(p))
+}
+
+/// Edges of a triangle or square by their corners, in the order of the mid-side grids.
+pub(crate) fn face_edges(n_corners: usize) -> &'static [(usize, usize)] {
+    if n_corners == 3 { &TRIANGLE } else { &SQUARE }
+}
+
 impl Map {
     fn of(domain: Domain, edges: &[(usize, usize)], x: &[Option<Vec3>]) -> Option<Self> {
         let n = domain.corners();

@@ -15,6 +15,7 @@ impl Builder<'_> {
     pub(super) fn loads(&mut self) {
         let mut sets: Sets = BTreeMap::new();
         self.nodal(&mut sets);
+        self.along_grids(&mut sets);
         self.pressures(&mut sets);
         self.body_forces(&mut sets);
         for card in self.uncarried_loads.iter() {
@@ -58,6 +59,53 @@ impl Builder<'_> {
                 Load::Moment(g, v)
             };
             sets.entry(f.sid).or_default().push((1.0, load));
+        }
+    }
+
+    /// Loads whose direction grids give, and loads on scalar points.
+    fn along_grids(&mut self, sets: &mut Sets) {
+        let cards = self.cards;
+        for f in &cards.forces_along {
+            let moment = if f.is_moment { "MOMENT" } else { "FORCE" };
+            let four = f.points[2] != 0;
+            let name = format!("{moment}{} {}", if four { 2 } else { 1 }, f.sid);
+            let Some(g) = self.grid(f.grid, &name, "G", f.at) else {
+                continue;
+            };
+            let n = if four { 4 } else { 2 };
+            let named: Vec<Option<GridIx>> = f
+                .points
+                .iter()
+                .take(n)
+                .map(|id| self.grid(*id, &name, "G", f.at))
+                .collect();
+            let x: Vec<Vec3> = named.into_iter().flatten().map(|g| self.x(g)).collect();
+            let direction = match x.as_slice() {
+                [a, b] => b - a,
+                [a, b, c, d] => (b - a).cross(&(d - c)),
+                _ => continue,
+            };
+            let Some(direction) = unit(direction) else {
+                let kind = FaultKind::Degenerate { what: "direction" };
+                self.fault(name, "G1", f.at, kind);
+                continue;
+            };
+            let v = direction * f.size;
+            let load = if f.is_moment {
+                Load::Moment(g, v)
+            } else {
+                Load::Force(g, v)
+            };
+            sets.entry(f.sid).or_default().push((1.0, load));
+        }
+        for s in &cards.sloads {
+            let name = format!("SLOAD {}", s.sid);
+            let Some(g) = self.grid(s.point, &name, "S", s.at) else {
+                continue;
+            };
+            // The first component, of the displacement frame where it is a grid.
+            let v = self.cd_axes(g).row(0).transpose() * s.load;
+            sets.entry(s.sid).or_default().push((1.0, Load::Force(g, v)));
         }
     }
 

@@ -28,7 +28,7 @@ mod uncarried;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use curved::{solid_edges, solid_functions};
+pub(crate) use curved::{face_edges, face_functions, solid_edges, solid_functions};
 pub use fault::*;
 pub use mass::Weight;
 pub use refine::RefinedModel;

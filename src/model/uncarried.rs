@@ -6,8 +6,8 @@ use super::types::Uncarried;
 use nastran::bdf::Deck;
 
 /// Stiffness, mass and constraints.
-const STRUCTURE: [&str; 52] = [
-    "CBEAM3", "CBEND", "CBUSH1D", "CBUSH2D", "CCONEAX", "CELAS3", "CELAS4", "CFAST", "CGAP",
+const STRUCTURE: [&str; 50] = [
+    "CBEAM3", "CBEND", "CBUSH1D", "CBUSH2D", "CCONEAX", "CFAST", "CGAP",
     "CMASS1", "CMASS2", "CMASS3", "CMASS4", "CPLSTN3", "CPLSTN4", "CPLSTN6", "CPLSTN8", "CPLSTS3",
     "CPLSTS4", "CPLSTS6", "CPLSTS8", "CQUAD", "CQUADX", "CQUADX4", "CQUADX8", "CRAC2D", "CRAC3D",
     "CSEAM", "CTRAX3", "CTRAX6", "CTRIAX", "CTRIAX6", "CWELD", "CYSYM", "GENEL", "NSM", "NSM1",
@@ -24,9 +24,9 @@ const SELECTED: [(&str, &str); 4] = [
 ];
 
 /// Loads, their set id in the first field.
-const LOADS: [&str; 19] = [
-    "ACCEL", "ACCEL1", "CLOAD", "DEFORM", "FORCE1", "FORCE2", "FORCEAX", "GMLOAD", "MOMENT1",
-    "MOMENT2", "MOMAX", "PLOADE1", "PLOADX1", "PRESAX", "SLOAD", "TEMPAX", "TEMPP2", "TEMPP3", "TEMPG",
+const LOADS: [&str; 14] = [
+    "ACCEL", "ACCEL1", "CLOAD", "DEFORM", "FORCEAX", "GMLOAD", 
+    "MOMAX", "PLOADE1", "PLOADX1", "PRESAX", "TEMPAX", "TEMPP2", "TEMPP3", "TEMPG",
 ];
 
 /// Elements, masses and constraints, then loads, in the order of the deck.

@@ -34,3 +34,14 @@ pub fn model_of(path: &std::path::Path) -> (Model, nastran::bdf::CaseControl) {
     let (model, _) = Model::from_cards(&deck.cards);
     (model, deck.case_control)
 }
+
+/// The model of a deck with what its other cards mean (a solver refuses those it does not carry), and its case control.
+pub fn faulty_model_of(path: &std::path::Path) -> (Model, nastran::bdf::CaseControl) {
+    let bytes = std::fs::read(path).unwrap();
+    let deck = read_deck(&path.to_string_lossy(), bytes, &mut Files);
+    let (model, faults) = Model::from_deck(&deck);
+    for fault in &faults {
+        eprintln!("{}: {fault}", path.display());
+    }
+    (model, deck.case_control)
+}

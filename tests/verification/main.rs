@@ -11,4 +11,5 @@ mod macneal_harder;
 mod mesh;
 mod plates;
 mod real_cases;
+mod real_decks;
 mod solids;

@@ -74,6 +74,8 @@ fn append_cards(to: &mut Cards, from: Cards) {
         mat9s,
         forces,
         moments,
+        forces_along,
+        sloads,
         ploads,
         pload1s,
         pload2s,
@@ -133,6 +135,8 @@ fn append_cards(to: &mut Cards, from: Cards) {
     extend(&mut to.mat9s, mat9s);
     extend(&mut to.forces, forces);
     extend(&mut to.moments, moments);
+    extend(&mut to.forces_along, forces_along);
+    extend(&mut to.sloads, sloads);
     extend(&mut to.ploads, ploads);
     extend(&mut to.pload1s, pload1s);
     extend(&mut to.pload2s, pload2s);

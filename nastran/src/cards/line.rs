@@ -95,7 +95,7 @@ pub struct Bush {
     pub offset: [f64; 3],
 }
 
-/// CELAS1 or CELAS2.
+/// CELAS1 to CELAS4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spring {
     /// Element id.

@@ -143,3 +143,24 @@ pub struct Temprb {
     /// Temperatures of the stress recovery points are given.
     pub at_points: bool,
 }
+
+/// FORCE1, FORCE2, MOMENT1, MOMENT2: a size and a direction that grids give.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct ForceAlong {
+    pub sid: u32,
+    pub grid: u32,
+    pub size: f64,
+    /// Two grids: from the first to the second; four: G1 to G2 crossed with G3 to G4 (0 where the card has two).
+    pub points: [u32; 4],
+    pub is_moment: bool,
+}
+
+/// SLOAD: a load on a scalar point, or on the first component of a grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Sload {
+    pub sid: u32,
+    pub point: u32,
+    pub load: f64,
+}

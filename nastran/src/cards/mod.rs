@@ -76,6 +76,8 @@ pub struct Cards {
     pub mat9s: Vec<Placed<Mat9>>,
     pub forces: Vec<Placed<Force>>,
     pub moments: Vec<Placed<Force>>,
+    pub forces_along: Vec<Placed<ForceAlong>>,
+    pub sloads: Vec<Placed<Sload>>,
     pub ploads: Vec<Placed<Pload>>,
     pub pload1s: Vec<Placed<Pload1>>,
     pub pload2s: Vec<Placed<Pload2>>,

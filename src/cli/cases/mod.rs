@@ -128,6 +128,8 @@ fn load_ids(deck: &Deck) -> Vec<u32> {
         .map(|f| f.card.sid)
         .collect();
     ids.extend(c.loads.iter().map(|l| l.card.sid));
+    ids.extend(c.forces_along.iter().map(|l| l.card.sid));
+    ids.extend(c.sloads.iter().map(|l| l.card.sid));
     ids.extend(c.ploads.iter().map(|l| l.card.sid));
     ids.extend(c.pload1s.iter().map(|l| l.card.sid));
     ids.extend(c.pload2s.iter().map(|l| l.card.sid));

@@ -5,7 +5,7 @@ use super::bush::bush_stiffness;
 use super::matrix::ElementMatrix;
 use super::rod::rod_stiffness;
 use super::shear_panel::shear_panel_stiffness;
-use super::shell::{CornerDirectors, shared_normals, shell_stiffness};
+use super::shell::{CornerDirectors, many_grids, shared_normals, shell_stiffness};
 use super::solid::{solid_grids, solid_stiffness};
 use super::spring::spring_stiffness;
 use crate::fe::error::Refusal;
@@ -64,7 +64,7 @@ impl<'a> Prepared<'a> {
     pub(crate) fn grids(&self, element: ElementRef) -> Vec<GridIx> {
         let m = self.model;
         match element {
-            ElementRef::Shell(i) => m.shells[i].grids[..m.shells[i].shape.n_corners()].to_vec(),
+            ElementRef::Shell(i) => many_grids(&m.shells[i]).0,
             ElementRef::Beam(i) => m.beams[i].grids.to_vec(),
             ElementRef::Rod(i) => m.rods[i].grids.to_vec(),
             ElementRef::Bush(i) => [Some(m.bushes[i].grids.0), m.bushes[i].grids.1]

@@ -4,7 +4,7 @@ use super::super::fault::Wrong;
 use super::super::fields::Fields;
 use super::ids::id_lists;
 use crate::cards::{
-    Cards, Force, Grav, IdList, LoadSum, Pload, Pload1, Pload2, Pload4, Rforce, Temp, Tempd,
+    Cards, Force, ForceAlong, Grav, IdList, LoadSum, Pload, Pload1, Pload2, Pload4, Rforce, Sload, Temp, Tempd,
     Tempp1, Temprb,
 };
 use crate::place::Placed;
@@ -16,6 +16,37 @@ pub(super) fn force(f: &mut Fields) -> Force {
         cid: f.opt_id(2, "CID").unwrap_or(0),
         scale: f.real_or(3, "F", 0.0),
         n: f.reals(4, ["N1", "N2", "N3"]),
+    }
+}
+
+pub(super) fn force_along(f: &mut Fields) -> ForceAlong {
+    let four = f.name.ends_with(b"2");
+    let mut points = [0; 4];
+    for (k, point) in points.iter_mut().take(if four { 4 } else { 2 }).enumerate() {
+        *point = f.id(3 + k, "G");
+    }
+    ForceAlong {
+        sid: f.id(0, "SID"),
+        grid: f.id(1, "G"),
+        size: f.real_or(2, "F", 0.0),
+        points,
+        is_moment: f.name.starts_with(b"MOMENT"),
+    }
+}
+
+pub(super) fn sload(f: &mut Fields, cards: &mut Cards) {
+    let sid = f.id(0, "SID");
+    for i in [1, 3, 5] {
+        if i == 1 || !f.is_blank(i) {
+            let card = Sload {
+                sid,
+                point: f.id(i, "S"),
+                load: f.real_or(i + 1, "F", 0.0),
+            };
+            if !f.unusable {
+                cards.sloads.push(Placed { card, at: f.at });
+            }
+        }
     }
 }
 

@@ -42,6 +42,7 @@ pub(super) fn read_card(f: &mut Fields, cards: &mut Cards) -> bool {
         b"CONROD" => keep(&mut cards.conrods, f, line::conrod),
         b"CBUSH" => keep(&mut cards.bushes, f, springs::bush),
         b"CELAS1" | b"CELAS2" => keep(&mut cards.springs, f, springs::spring),
+        b"CELAS3" | b"CELAS4" => keep(&mut cards.springs, f, springs::scalar_spring),
         b"CTETRA" | b"CPENTA" | b"CHEXA" | b"CPYRAM" => keep(&mut cards.solids, f, solid::solid),
         b"CONM1" => keep(&mut cards.conm1s, f, mass::conm1),
         b"CONM2" => keep(&mut cards.conm2s, f, mass::conm2),
@@ -74,6 +75,10 @@ pub(super) fn read_card(f: &mut Fields, cards: &mut Cards) -> bool {
         b"MAT9" => keep(&mut cards.mat9s, f, material::mat9),
         b"FORCE" => keep(&mut cards.forces, f, load::force),
         b"MOMENT" => keep(&mut cards.moments, f, load::force),
+        b"FORCE1" | b"FORCE2" | b"MOMENT1" | b"MOMENT2" => {
+            keep(&mut cards.forces_along, f, load::force_along)
+        }
+        b"SLOAD" => load::sload(f, cards),
         b"PLOAD" => keep(&mut cards.ploads, f, load::pload),
         b"PLOAD1" => keep(&mut cards.pload1s, f, load::pload1),
         b"PLOAD2" => load::pload2(f, cards),

@@ -1,4 +1,4 @@
-//! CBUSH, CELAS1, CELAS2, PBUSH, PELAS.
+//! CBUSH, CELAS1 to CELAS4, PBUSH, PELAS.
 
 use super::super::fault::Wrong;
 use super::super::fields::Fields;
@@ -39,6 +39,26 @@ pub(super) fn spring(f: &mut Fields) -> Spring {
         id,
         stiffness,
         ends: [end(f, 2), end(f, 4)],
+    }
+}
+
+/// CELAS3 and CELAS4: between scalar points, or one and ground.
+pub(super) fn scalar_spring(f: &mut Fields) -> Spring {
+    let id = f.id(0, "EID");
+    let stiffness = if f.name == b"CELAS4" {
+        SpringStiffness::Direct {
+            k: f.real(1, "K"),
+            damping: 0.0,
+            stress_coefficient: 0.0,
+        }
+    } else {
+        SpringStiffness::Property(f.opt_id(1, "PID"))
+    };
+    let point = |f: &mut Fields, i| f.opt_id(i, "S").filter(|&s| s > 0).map(|s| (s, 0));
+    Spring {
+        id,
+        stiffness,
+        ends: [point(f, 2), point(f, 3)],
     }
 }
 

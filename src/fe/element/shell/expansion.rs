@@ -65,6 +65,11 @@ pub(super) fn turn_strain([e1, e2, g]: [f64; 3], angle: f64) -> [f64; 3] {
     ]
 }
 
+/// Strain given in x and y, seen in axes that lie at `angle` from x.
+pub(crate) fn in_axes_at(strain: [f64; 3], angle: f64) -> [f64; 3] {
+    turn_strain(strain, -angle)
+}
+
 fn times(q: &[[f64; 3]; 3], e: &[f64; 3]) -> [f64; 3] {
     q.map(|row| row.iter().zip(e).map(|(a, b)| a * b).sum())
 }

@@ -10,6 +10,7 @@ mod expansion;
 mod kinematics;
 mod laminate;
 mod law;
+mod many;
 mod normals;
 mod of_model;
 mod output_frame;
@@ -18,12 +19,13 @@ mod tria3;
 
 #[cfg(test)]
 pub(crate) use area::corner_products;
-pub(crate) use expansion::Heat;
+pub(crate) use expansion::{Heat, in_axes_at};
 pub(crate) use laminate::Lamination;
 pub(crate) use law::ShellLaw;
+pub(crate) use many::{many_grids, over_surface};
 pub(crate) use normals::{CornerDirectors, shared_normals};
 pub(crate) use of_model::{
-    AnyShell, shell_heat, shell_mass, shell_matrices, shell_stiffness, shell_thermal_force, surfaces,
+    AnyShell, many_mass, material_angle, shell_heat, shell_mass, shell_matrices, shell_stiffness, shell_thermal_force, surfaces,
 };
 pub(crate) use output_frame::output_frame;
 pub(crate) use quad4::quad4;

@@ -1,6 +1,7 @@
 //! Shells of a model: stiffness, strain rows, mass by corner.
 
 use super::expansion::expansion;
+use super::many::{many_grids, many_shell, over_surface};
 use super::{BadShape, Heat, Parts, ShellInput, ShellLaw, StrainRows, output_frame, quad4, tria3};
 use crate::fe::element::{ElementMatrix, Prepared};
 use crate::fe::error::Refusal;
@@ -16,6 +17,8 @@ const STIFF_DRILLING: f64 = 1e6;
 pub(crate) enum AnyShell {
     Quad(Box<super::ShellMatrices<4, 24>>),
     Tria(Box<super::ShellMatrices<3, 18>>),
+    /// With mid-side grids.
+    Many(Box<super::many::ManyShell>),
 }
 
 fn corners<const N: usize>(model: &Model, shell: &Shell) -> [Vec3; N] {
@@ -85,6 +88,10 @@ pub(crate) fn shell_matrices(
             "use a PSHELL or PCOMP with MAT1, MAT2 or MAT8",
         )
     })?;
+    if matches!(shell.shape, ShellShape::Quad8 | ShellShape::Tria6) {
+        let many = many_shell(model, shell, property, angle, model.params.k6rot, heat);
+        return Ok(AnyShell::Many(Box::new(many.map_err(bad)?)));
+    }
     let d = &prepared.directors[i];
     let k6rot = match shell.shape {
         ShellShape::QuadR | ShellShape::TriaR => STIFF_DRILLING,
@@ -128,6 +135,10 @@ pub(crate) fn shell_stiffness(prepared: &Prepared<'_>, i: usize) -> Result<Eleme
     Ok(match shell_matrices(prepared, i, Parts::All, None)? {
         AnyShell::Quad(m) => ElementMatrix::from_rows(&grids[..4], &m.stiffness),
         AnyShell::Tria(m) => ElementMatrix::from_rows(&grids[..3], &m.stiffness),
+        AnyShell::Many(m) => ElementMatrix {
+            grids: many_grids(&prepared.model.shells[i]).0,
+            values: m.stiffness,
+        },
     })
 }
 
@@ -163,8 +174,49 @@ pub(crate) fn shell_thermal_force(
         match shell_matrices(prepared, i, Parts::WithoutStiffness, Some(&heat))? {
             AnyShell::Quad(m) => m.thermal.to_vec(),
             AnyShell::Tria(m) => m.thermal.to_vec(),
+            AnyShell::Many(m) => m.thermal,
         },
     )
+}
+
+/// Density times thickness per thickness, and further mass per area, of a property.
+fn densities(model: &Model, property: &crate::model::ShellProperty) -> (f64, f64) {
+    let rho = |m: &crate::model::MaterialIx| model.materials.get(m.us()).map_or(0.0, |m| m.rho);
+    match &property.kind {
+        ShellKind::Homogeneous {
+            membrane,
+            bending,
+            shear,
+            ..
+        } => {
+            let first = membrane.as_ref().or(bending.as_ref()).or(shear.as_ref());
+            (first.map_or(0.0, rho), property.nsm)
+        }
+        ShellKind::Laminate { plies, .. } => {
+            let layers: f64 = plies.iter().map(|p| rho(&p.material) * p.t).sum();
+            (0.0, layers + property.nsm)
+        }
+    }
+}
+
+/// Consistent mass of a shell with mid-side grids: its grids and, row by row, their shares, before WTMASS.
+pub(crate) fn many_mass(model: &Model, i: usize) -> (Vec<crate::model::GridIx>, Vec<f64>) {
+    let shell = &model.shells[i];
+    let (grids, _) = many_grids(shell);
+    let n = grids.len();
+    let mut products = vec![0.0; n * n];
+    if let Some(property) = model.shell_properties.get(shell.property.us()) {
+        let (rho, per_area) = densities(model, property);
+        over_surface(model, shell, |functions, area, t| {
+            let m = (rho * t + per_area) * area.norm();
+            for (a, f) in functions.iter().enumerate() {
+                for (b, g) in functions.iter().enumerate() {
+                    products[a * n + b] += m * f[0] * g[0];
+                }
+            }
+        });
+    }
+    (grids, products)
 }
 
 /// Consistent mass of shell `i` by pairs of corners, before WTMASS: integral of the product of their shape functions times
@@ -174,30 +226,7 @@ pub(crate) fn shell_mass(model: &Model, i: usize) -> [[f64; 4]; 4] {
     let Some(property) = model.shell_properties.get(shell.property.us()) else {
         return [[0.0; 4]; 4];
     };
-    let (rho, per_area) = match &property.kind {
-        ShellKind::Homogeneous {
-            membrane,
-            bending,
-            shear,
-            ..
-        } => (
-            membrane
-                .or(*bending)
-                .or(*shear)
-                .and_then(|m| model.materials.get(m.us()))
-                .map_or(0.0, |m| m.rho),
-            property.nsm,
-        ),
-        ShellKind::Laminate { plies, .. } => {
-            let of_ply = |p: &crate::model::ModelPly| {
-                model
-                    .materials
-                    .get(p.material.us())
-                    .map_or(0.0, |m| m.rho * p.t)
-            };
-            (0.0, plies.iter().map(of_ply).sum::<f64>() + property.nsm)
-        }
-    };
+    let (rho, per_area) = densities(model, property);
     let all: [Vec3; 4] = std::array::from_fn(|k| model.grids[shell.grids[k].us()].x);
     let n = shell.shape.n_corners().min(4);
     let products = super::area::corner_products(&all[..n], &shell.thickness);
