@@ -5,9 +5,14 @@ use crate::linalg::{DMatrix, sparse::BlockMatrix};
 
 /// A direction at a grid is without stiffness when it has less than this share of the grid's stiffest one.
 const EPZERO: f64 = 1e-8;
+/// With AUTOSPC off: none but rounding.
+const NOTHING: f64 = 1e-13;
 
 /// Unknowns (with the stiffness to give them) that, held, leave no direction at a single grid without stiffness.
-pub(crate) fn weak_unknowns(assembled: &Assembled) -> Vec<(usize, f64)> {
+///
+/// With AUTOSPC off, only directions without any stiffness are held: nothing can act on them, and a solver takes its null columns out.
+pub(crate) fn weak_unknowns(assembled: &Assembled, autospc: bool) -> Vec<(usize, f64)> {
+    let limit = if autospc { EPZERO } else { NOTHING };
     let diagonal = assembled.stiffness.diagonal_values(&assembled.symbolic);
     let typical = diagonal.iter().fold(0.0_f64, |a, v| a.max(*v));
     let start = assembled.symbolic.unknown_start();
@@ -35,7 +40,7 @@ pub(crate) fn weak_unknowns(assembled: &Assembled) -> Vec<(usize, f64)> {
                 .iter()
                 .zip(eigen.eigenvectors.column_iter())
             {
-                if *value <= EPZERO * stiffest || stiffest <= 0.0 {
+                if *value <= limit * stiffest || stiffest <= 0.0 {
                     let pick = (0..m)
                         .filter(|&i| !taken[i])
                         .max_by(|&a, &b| vector[a].abs().total_cmp(&vector[b].abs()));

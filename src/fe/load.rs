@@ -1,15 +1,22 @@
 //! Nodal forces of loads.
 
 use super::element::beam::beam_end_forces;
-use super::element::shell::{many_grids, over_surface};
+use super::element::shell::{linear_part, many_grids, over_face};
 use super::mass::Mass;
-use crate::model::{GridIx, Load, LoadSet, Model, Shell, Vec3};
+use crate::model::{GridIx, Load, LoadSet, Model, Vec3, solid_edges};
+use std::collections::HashMap;
 
 /// Forces and moments at all grids, basic frame, of one load set.
 pub(crate) fn load_vector(model: &Model, mass: &Mass, set: &LoadSet) -> Vec<[f64; 6]> {
     let mut f = vec![[0.0; 6]; model.grids.len()];
+    let on_faces = |l: &(f64, Load)| matches!(l.1, Load::FacePressure { .. });
+    let mids = if set.loads.iter().any(on_faces) {
+        mid_sides(model)
+    } else {
+        HashMap::new()
+    };
     for (factor, load) in &set.loads {
-        add(model, mass, *factor, load, &mut f);
+        add(model, mass, &mids, *factor, load, &mut f);
     }
     f
 }
@@ -20,7 +27,14 @@ fn push(f: &mut [[f64; 6]], grid: GridIx, at: usize, v: &Vec3) {
     }
 }
 
-fn add(model: &Model, mass: &Mass, factor: f64, load: &Load, f: &mut [[f64; 6]]) {
+fn add(
+    model: &Model,
+    mass: &Mass,
+    mids: &HashMap<(GridIx, GridIx), GridIx>,
+    factor: f64,
+    load: &Load,
+    f: &mut [[f64; 6]],
+) {
     match load {
         Load::Force(g, v) => push(f, *g, 0, &(v * factor)),
         Load::Moment(g, v) => push(f, *g, 3, &(v * factor)),
@@ -31,8 +45,11 @@ fn add(model: &Model, mass: &Mass, factor: f64, load: &Load, f: &mut [[f64; 6]])
         } => {
             for s in shells {
                 let shell = &model.shells[s.us()];
-                if shell.shape.n_grids() > shell.shape.n_corners() {
-                    pressure_on_many(model, shell, pressure, direction, factor, f);
+                let n = shell.shape.n_corners();
+                if shell.shape.n_grids() > n {
+                    let (grids, sides) = many_grids(shell);
+                    let face = (n, grids.as_slice(), sides.as_slice());
+                    pressure_on_curved(model, face, pressure, direction, factor, f);
                     continue;
                 }
                 pressure_on(
@@ -50,8 +67,22 @@ fn add(model: &Model, mass: &Mass, factor: f64, load: &Load, f: &mut [[f64; 6]])
             pressure,
             direction,
         } => {
-            let corners: Vec<GridIx> = grids.iter().flatten().copied().collect();
-            pressure_on(model, &corners, pressure, direction, factor, f);
+            let mut grids: Vec<GridIx> = grids.iter().flatten().copied().collect();
+            let n = grids.len();
+            let mut sides = Vec::new();
+            for side in 0..n {
+                let (a, b) = (grids[side], grids[(side + 1) % n]);
+                if let Some(mid) = mids.get(&(a.min(b), a.max(b))) {
+                    sides.push(side);
+                    grids.push(*mid);
+                }
+            }
+            if sides.is_empty() {
+                pressure_on(model, &grids, pressure, direction, factor, f);
+            } else {
+                let face = (n, grids.as_slice(), sides.as_slice());
+                pressure_on_curved(model, face, pressure, direction, factor, f);
+            }
         }
         Load::Gravity(a) => {
             let field =
@@ -121,31 +152,39 @@ fn pressure_on(
     }
 }
 
-/// The same over a shell with mid-side grids: corner pressures by the corners' functions, forces by those of all grids.
-fn pressure_on_many(
+/// The same over a face with mid-side grids, each with the number of its side: corner pressures by the corners' functions, forces by
+/// those of all grids.
+fn pressure_on_curved(
     model: &Model,
-    shell: &Shell,
+    (n, grids, sides): (usize, &[GridIx], &[usize]),
     pressure: &[f64; 4],
     direction: &Option<Vec3>,
     factor: f64,
     f: &mut [[f64; 6]],
 ) {
-    let n = shell.shape.n_corners();
-    let (grids, sides) = many_grids(shell);
-    over_surface(model, shell, |functions, area, _| {
-        // A corner's linear function is its own and half of those of its sides' grids.
-        let linear = |c: usize| {
-            let halves = sides
-                .iter()
-                .zip(&functions[n..])
-                .filter(|(s, _)| **s == c || (**s + 1) % n == c)
-                .map(|(_, f)| 0.5 * f[0]);
-            functions[c][0] + halves.sum::<f64>()
-        };
-        let p: f64 = (0..n).map(|c| linear(c) * pressure[c]).sum::<f64>() * factor;
+    let x: Vec<Vec3> = grids.iter().map(|g| model.grids[g.us()].x).collect();
+    over_face(n, &x, sides, |functions, area| {
+        let p: f64 = (0..n)
+            .map(|c| linear_part(n, functions, sides, c) * pressure[c])
+            .sum::<f64>()
+            * factor;
         let along = direction.map_or(area, |d| d * area.norm());
         for (g, h) in grids.iter().zip(functions) {
             push(f, *g, 0, &(along * (p * h[0])));
         }
     });
+}
+
+/// Mid-side grids of solids by the corners of their edges, smaller index first.
+fn mid_sides(model: &Model) -> HashMap<(GridIx, GridIx), GridIx> {
+    let mut all = HashMap::new();
+    for s in &model.solids {
+        let n = s.shape.n_corners();
+        for ((a, b), mid) in solid_edges(s.shape).iter().zip(&s.grids[n..]) {
+            if let (Some(a), Some(b), Some(mid)) = (s.grids[*a], s.grids[*b], mid) {
+                all.insert((a.min(b), a.max(b)), *mid);
+            }
+        }
+    }
+    all
 }

@@ -60,11 +60,7 @@ impl System {
         if let Some(body) = &body {
             findings.extend(ties(prepared, &assembled, body));
         }
-        let weak = if model.params.autospc {
-            weak_unknowns(&assembled)
-        } else {
-            Vec::new()
-        };
+        let weak = weak_unknowns(&assembled, model.params.autospc);
         for (unknown, k) in &weak {
             assembled
                 .stiffness

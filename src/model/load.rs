@@ -332,7 +332,7 @@ impl Builder<'_> {
                 .model
                 .solids
                 .get(solid)
-                .and_then(|s| solid_face(s, corner));
+                .and_then(|s| Some(self.inward(s, solid_face(s, corner)?)));
             match face {
                 Some(grids) => out.push(Load::FacePressure {
                     grids,
@@ -357,6 +357,28 @@ impl Builder<'_> {
             });
         }
         out
+    }
+
+    /// A face whose normal points into its solid, one numbered as its mirror image too.
+    fn inward(&self, s: &Solid, face: [Option<GridIx>; 4]) -> [Option<GridIx>; 4] {
+        let mean = |list: &mut dyn Iterator<Item = GridIx>| {
+            let x: Vec<Vec3> = list.map(|g| self.x(g)).collect();
+            x.iter().sum::<Vec3>() / x.len().max(1) as f64
+        };
+        let middle = mean(&mut s.grids.iter().take(s.shape.n_corners()).flatten().copied());
+        let on_face = mean(&mut face.iter().flatten().copied());
+        let [Some(a), Some(b), Some(c), d] = face else {
+            return face;
+        };
+        let last = d.unwrap_or(c);
+        let normal = (self.x(b) - self.x(a)).cross(&(self.x(last) - self.x(a)));
+        if normal.dot(&(middle - on_face)) >= 0.0 {
+            return face;
+        }
+        match d {
+            Some(d) => [Some(a), Some(d), Some(c), Some(b)],
+            None => [Some(a), Some(c), Some(b), None],
+        }
     }
 
     fn body_forces(&mut self, sets: &mut Sets) {

@@ -116,11 +116,24 @@ impl Bulk {
 
     /// Displacements under load set 1 with SPC set 1.
     pub fn solve(&self) -> Solved {
+        self.solve_loads(vec![UnitLoad::Set(1)])
+    }
+
+    /// Displacements under temperature set 9 with SPC set 1.
+    pub fn solve_hot(&self) -> Solved {
+        self.solve_loads(vec![UnitLoad::Temperature {
+            set: 9,
+            initial: None,
+        }])
+    }
+
+    /// Displacements under several loads with SPC set 1.
+    pub fn solve_loads(&self, loads: Vec<UnitLoad>) -> Solved {
         let model = self.model();
         let case = LoadCase {
             subcase: 1,
             label: String::new(),
-            loads: vec![UnitLoad::Set(1)],
+            loads,
             spc: Some(1),
             mpc: None,
             relief: Relief::None,

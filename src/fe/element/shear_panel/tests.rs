@@ -89,8 +89,9 @@ fn nearly_parallel_sides_give_the_flexibility_of_parallel_ones() {
         .map(Vec3::from);
         Plane::new(&x).unwrap().flexibility(0.3)
     };
-    let (parallel, almost) = (near(0.0), near(0.8));
-    assert!((almost / parallel - 1.0).abs() < 0.02, "{almost} for {parallel}");
+    let (parallel, almost) = (near(0.0), near(0.02));
+    // The change of shape itself is 3e-4 of the height.
+    assert!((almost / parallel - 1.0).abs() < 2e-3, "{almost} for {parallel}");
 }
 
 #[test]

@@ -301,10 +301,39 @@ const GAUSS: [(f64, f64); 3] = [
 ];
 
 /// Calls with functions (corners, then mid-side grids), area vector and thickness at the points of a rule on the surface.
-pub(crate) fn over_surface(model: &Model, shell: &Shell, mut at: impl FnMut(&[[f64; 4]], Vec3, f64)) {
+pub(crate) fn over_surface(
+    model: &Model,
+    shell: &Shell,
+    mut at: impl FnMut(&[[f64; 4]], Vec3, f64),
+) {
     let n = shell.shape.n_corners();
     let (grids, sides) = many_grids(shell);
     let x: Vec<Vec3> = grids.iter().map(|g| model.grids[g.us()].x).collect();
+    over_face(n, &x, &sides, |functions, area| {
+        let t = (0..n)
+            .map(|c| linear_part(n, functions, &sides, c) * shell.thickness[c])
+            .sum();
+        at(functions, area, t);
+    });
+}
+
+/// The linear function of corner `c`: its own and half of those of its sides' grids.
+pub(crate) fn linear_part(n: usize, functions: &[[f64; 4]], sides: &[usize], c: usize) -> f64 {
+    let halves = sides
+        .iter()
+        .zip(&functions[n..])
+        .filter(|(s, _)| **s == c || (**s + 1) % n == c)
+        .map(|(_, f)| 0.5 * f[0]);
+    functions[c][0] + halves.sum::<f64>()
+}
+
+/// Calls with functions and area vector at the points of a rule on a face of `n` corners with mid-side grids on `sides`.
+pub(crate) fn over_face(
+    n: usize,
+    x: &[Vec3],
+    sides: &[usize],
+    mut at: impl FnMut(&[[f64; 4]], Vec3),
+) {
     for (u, wu) in GAUSS {
         for (v, wv) in GAUSS {
             let (p, w) = if n == 3 {
@@ -312,11 +341,9 @@ pub(crate) fn over_surface(model: &Model, shell: &Shell, mut at: impl FnMut(&[[f
             } else {
                 ([u, v], wu * wv)
             };
-            let functions = surface_functions(n, p, &sides);
+            let functions = surface_functions(n, p, sides);
             let sum = |c: usize| -> Vec3 { x.iter().zip(&functions).map(|(x, f)| x * f[c]).sum() };
-            let (linear, _) = face_functions(n, p);
-            let t = linear.iter().zip(&shell.thickness).map(|(f, t)| f[0] * t).sum();
-            at(&functions, sum(1).cross(&sum(2)) * w, t);
+            at(&functions, sum(1).cross(&sum(2)) * w);
         }
     }
 }

@@ -15,7 +15,7 @@ pub(super) struct SolidInput {
     pub(super) mids: Vec<usize>,
 }
 
-/// The shape is folded, flat or inside out somewhere.
+/// The shape is folded or flat somewhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Folded;
 
@@ -65,6 +65,14 @@ impl SolidInput {
         }
     }
 
+    /// 1, or -1 for an element numbered as its mirror image: the same body, which solvers accept.
+    fn hand(&self) -> f64 {
+        let centre = &Tables::of(self.shape).centre;
+        self.jacobian(&centre.functions(self.shape, &self.mids))
+            .determinant()
+            .signum()
+    }
+
     fn jacobian(&self, functions: &[Function]) -> Matrix3<f64> {
         let mut j = Matrix3::zeros();
         for (x, f) in self.x.iter().zip(functions) {
@@ -81,7 +89,8 @@ impl SolidInput {
     pub(super) fn at(&self, point: &TablePoint) -> Result<At, Folded> {
         let functions = point.functions(self.shape, &self.mids);
         let j = self.jacobian(&functions);
-        let det = j.determinant();
+        let hand = self.hand();
+        let det = j.determinant() * hand;
         let inverse = j.try_inverse().filter(|_| det > 0.0).ok_or(Folded)?;
         let modes = self.modes();
         let mut columns = Vec::with_capacity(3 * (functions.len() + modes.len()));
@@ -93,7 +102,7 @@ impl SolidInput {
                 .centre
                 .functions(self.shape, &self.mids);
             let j0 = self.jacobian(&centre);
-            let det0 = j0.determinant();
+            let det0 = j0.determinant() * hand;
             let inverse0 = j0.try_inverse().filter(|_| det0 > 0.0).ok_or(Folded)?;
             for &k in modes {
                 let mut slope = Vec3::zeros();
@@ -162,10 +171,11 @@ impl SolidInput {
     pub(super) fn products(&self) -> Result<Vec<f64>, Folded> {
         let n = self.x.len();
         let mut out = vec![0.0; n * n];
+        let hand = self.hand();
         // Products of linear functions are of second degree: a tetrahedron's single point is not enough.
         for point in &Tables::of(self.shape).quadratic {
             let functions = point.functions(self.shape, &self.mids);
-            let det = self.jacobian(&functions).determinant();
+            let det = self.jacobian(&functions).determinant() * hand;
             if !(det > 0.0) {
                 return Err(Folded);
             }

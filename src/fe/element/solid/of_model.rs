@@ -29,7 +29,7 @@ fn folded(solid: &Solid) -> impl Fn(Folded) -> Refusal + '_ {
     |_| {
         refuse(
             solid,
-            "its shape is flat, folded or inside out",
+            "its shape is flat or folded",
             "check the order of its grids and the place of its mid-side grids",
         )
     }

@@ -184,9 +184,16 @@ fn products_of_shape_functions_add_up_to_the_volume_and_its_first_moment() {
 }
 
 #[test]
-fn a_solid_turned_inside_out_is_refused() {
-    let mut s = distorted(SolidShape::Hexa, &[]);
-    s.x.swap(0, 2);
-    s.x.swap(4, 6);
-    assert!(s.form(&steel(), None).is_err());
+fn a_mirrored_solid_is_the_same_body_and_a_folded_one_is_refused() {
+    let s = distorted(SolidShape::Hexa, &[]);
+    let mut mirrored = s.clone();
+    mirrored.x = [4, 5, 6, 7, 0, 1, 2, 3].map(|i| s.x[i]).to_vec();
+    let volume = |s: &SolidInput| s.products().unwrap().iter().sum::<f64>();
+    assert!((volume(&mirrored) / volume(&s) - 1.0).abs() < 1e-12);
+    let k = |s: &SolidInput| s.form(&steel(), None).unwrap().stiffness;
+    let (a, b) = (k(&s), k(&mirrored));
+    assert!((a[(0, 0)] - b[(12, 12)]).abs() < 1e-9 * a.amax());
+    let mut folded = s.clone();
+    folded.x.swap(1, 2);
+    assert!(folded.form(&steel(), None).is_err());
 }
