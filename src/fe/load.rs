@@ -101,8 +101,15 @@ fn add(
             let interior = super::line_load::alone(load);
             // A beam that can't be formed is refused with the stiffness.
             if let Ok(ends) = beam_end_forces(model, beam.us(), &interior) {
-                for (g, v) in model.beams[beam.us()].grids.iter().zip(ends.chunks_exact(6)) {
-                    f[g.us()].iter_mut().zip(v).for_each(|(f, v)| *f += factor * v);
+                for (g, v) in model.beams[beam.us()]
+                    .grids
+                    .iter()
+                    .zip(ends.chunks_exact(6))
+                {
+                    f[g.us()]
+                        .iter_mut()
+                        .zip(v)
+                        .for_each(|(f, v)| *f += factor * v);
                 }
             }
         }

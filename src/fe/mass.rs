@@ -64,8 +64,10 @@ impl Mass {
                 output_frame(&x).map_or_else(Vec3::zeros, |f| f.row(2).transpose() * shell.zoffs)
             };
             if model.params.coupmass {
-                let products: Vec<f64> =
-                    pairs[..n].iter().flat_map(|row| row[..n].to_vec()).collect();
+                let products: Vec<f64> = pairs[..n]
+                    .iter()
+                    .flat_map(|row| row[..n].to_vec())
+                    .collect();
                 mass.coupled
                     .push(coupled_points(&shell.grids[..n], &products, &offset));
             } else {

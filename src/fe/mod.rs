@@ -37,6 +37,5 @@ pub use shell_strain::Corners;
 pub use solution::*;
 pub use solve::{
     LoadCase, Relief, SolveOptions, SolveReport, Solved, Triplets, loads_of_subcase, relief_of,
-    solution_of,
-    solve_cases, solve_displacements, solve_unit_loads, supported_stiffness,
+    solution_of, solve_cases, solve_displacements, solve_unit_loads, supported_stiffness,
 };

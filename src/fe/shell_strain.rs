@@ -2,9 +2,7 @@
 
 use super::ShellField;
 use super::element::Prepared;
-use super::element::shell::{
-    AnyShell, Parts, many_grids, shell_heat, shell_matrices, surfaces,
-};
+use super::element::shell::{AnyShell, Parts, many_grids, shell_heat, shell_matrices, surfaces};
 use super::error::{FeError, Refusal};
 use super::temperature::Temperatures;
 use crate::model::{GridIx, ShellIx};
@@ -98,9 +96,7 @@ fn fill(
     let n = shell.shape.n_corners();
     let matrices = shell_matrices(prepared, i, Parts::WithoutStiffness, None)?;
     for ((u, t), (centre, corners)) in u.iter().zip(temperatures).zip(pieces) {
-        let heat = t
-            .as_ref()
-            .and_then(|t| shell_heat(prepared.model, i, t));
+        let heat = t.as_ref().and_then(|t| shell_heat(prepared.model, i, t));
         // Thermal strain at the centre, and at a corner.
         let free = |corner: Option<usize>| {
             heat.as_ref().map_or([[0.0; 3]; 2], |h| {
@@ -116,17 +112,19 @@ fn fill(
                 let local = local::<24>(u, &shell.grids[..4]);
                 centre[at] = surfaces(&m.centre, z, &local, &free(None));
                 if let Some(slot) = corners.get_mut(at) {
-                    *slot = std::array::from_fn(|k| {
-                        surfaces(&m.corners[k], z, &local, &free(Some(k)))
-                    });
+                    *slot =
+                        std::array::from_fn(|k| surfaces(&m.corners[k], z, &local, &free(Some(k))));
                 }
             }
             AnyShell::Many(plain) => {
                 // Temperature moves the centre: the rows of this case.
                 let heated = match &heat {
-                    Some(h) => {
-                        Some(shell_matrices(prepared, i, Parts::WithoutStiffness, Some(h))?)
-                    }
+                    Some(h) => Some(shell_matrices(
+                        prepared,
+                        i,
+                        Parts::WithoutStiffness,
+                        Some(h),
+                    )?),
                     None => None,
                 };
                 let m = match &heated {

@@ -76,10 +76,7 @@ impl Temperatures {
             let rise = std::array::from_fn(|k| mean - self.from(corner(k), tref));
             return (rise, *gradient);
         }
-        (
-            std::array::from_fn(|k| self.rise(corner(k), tref)),
-            0.0,
-        )
+        (std::array::from_fn(|k| self.rise(corner(k), tref)), 0.0)
     }
 
     /// The rise of a bar, beam or rod at its ends, and its gradients across.
@@ -138,7 +135,11 @@ pub(crate) fn thermal_forces(
         .map(|i| shell_thermal_force(prepared, i, t))
         .collect();
     for (shell, forces) in model.shells.iter().zip(shells) {
-        for (g, v) in shell.grids.iter().zip(forces.map_err(refused)?.chunks_exact(6)) {
+        for (g, v) in shell
+            .grids
+            .iter()
+            .zip(forces.map_err(refused)?.chunks_exact(6))
+        {
             f[g.us()].iter_mut().zip(v).for_each(|(f, v)| *f += v);
         }
     }

@@ -83,7 +83,10 @@ pub(crate) fn unsupported(model: &Model, cases: &[LoadCase]) -> Vec<Refusal> {
                 UnitLoad::Temperature { set, .. } => (set, true),
                 UnitLoad::AtGrid { .. } => continue,
             };
-            let temperatures = model.temperatures.iter().filter(|t| thermal && t.sid == *sid);
+            let temperatures = model
+                .temperatures
+                .iter()
+                .filter(|t| thermal && t.sid == *sid);
             for (card, at) in temperatures.flat_map(|t| &t.unsupported) {
                 refuse(
                     format!("{card} {sid}"),

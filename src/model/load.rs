@@ -105,7 +105,9 @@ impl Builder<'_> {
             };
             // The first component, of the displacement frame where it is a grid.
             let v = self.cd_axes(g).row(0).transpose() * s.load;
-            sets.entry(s.sid).or_default().push((1.0, Load::Force(g, v)));
+            sets.entry(s.sid)
+                .or_default()
+                .push((1.0, Load::Force(g, v)));
         }
     }
 
@@ -148,7 +150,9 @@ impl Builder<'_> {
         }
         for p in &cards.pload1s {
             let load = self.pload1(p);
-            sets.entry(p.sid).or_default().extend(load.map(|l| (1.0, l)));
+            sets.entry(p.sid)
+                .or_default()
+                .extend(load.map(|l| (1.0, l)));
         }
         for p in &cards.spcds {
             let name = format!("SPCD {}", p.sid);

@@ -13,10 +13,28 @@ const G12: f64 = 5_000.0;
 /// Reduced stiffness in axes turned by `degrees` from the fibres.
 fn turned(degrees: f64) -> Matrix3<f64> {
     let d = 1.0 - NU12 * NU12 * E2 / E1;
-    let q = Matrix3::new(E1 / d, NU12 * E2 / d, 0.0, NU12 * E2 / d, E2 / d, 0.0, 0.0, 0.0, G12);
+    let q = Matrix3::new(
+        E1 / d,
+        NU12 * E2 / d,
+        0.0,
+        NU12 * E2 / d,
+        E2 / d,
+        0.0,
+        0.0,
+        0.0,
+        G12,
+    );
     let (s, c) = degrees.to_radians().sin_cos();
     let t = Matrix3::new(
-        c * c, s * s, c * s, s * s, c * c, -c * s, -2.0 * c * s, 2.0 * c * s, c * c - s * s,
+        c * c,
+        s * s,
+        c * s,
+        s * s,
+        c * c,
+        -c * s,
+        -2.0 * c * s,
+        2.0 * c * s,
+        c * c - s * s,
     );
     t.transpose() * q * t
 }
@@ -45,18 +63,34 @@ fn abd(plies: &[(f64, f64)]) -> Matrix6<f64> {
 /// A distorted strip of the laminate with material angle `theta`, pulled by `n` per width along x.
 fn strip(plies: &[(f64, f64)], theta: f64, n: f64) -> (Bulk, Vec<Vec<u32>>) {
     let mut b = Bulk::default();
-    b.card(&format!("MAT8,1,{E1:?},{E2:?},{NU12:?},{G12:?},{G12:?},{G12:?},1.5-9"));
-    let list: Vec<String> = plies.iter().map(|(a, t)| format!("1,{t:?},{a:?},YES")).collect();
-    let lines: Vec<String> = list.chunks(2).map(|c| format!(",{}", c.join(","))).collect();
+    b.card(&format!(
+        "MAT8,1,{E1:?},{E2:?},{NU12:?},{G12:?},{G12:?},{G12:?},1.5-9"
+    ));
+    let list: Vec<String> = plies
+        .iter()
+        .map(|(a, t)| format!("1,{t:?},{a:?},YES"))
+        .collect();
+    let lines: Vec<String> = list
+        .chunks(2)
+        .map(|c| format!(",{}", c.join(",")))
+        .collect();
     b.card(&format!("PCOMP,1\n{}", lines.join("\n")));
     // Straight edges at both ends, so that the load is uniform along them.
     let ids = b.patch(6, 4, |u, v| {
         let inner = u * (1.0 - u);
         [60.0 * u + 10.0 * inner * (v - 0.4), 20.0 * v, 0.0]
     });
-    b.text = b.text.lines().map(|l| {
-        if l.starts_with("CQUAD4") { format!("{l},{theta:?}\n") } else { format!("{l}\n") }
-    }).collect();
+    b.text = b
+        .text
+        .lines()
+        .map(|l| {
+            if l.starts_with("CQUAD4") {
+                format!("{l},{theta:?}\n")
+            } else {
+                format!("{l}\n")
+            }
+        })
+        .collect();
     for j in 0..=4 {
         let share = if j == 0 || j == 4 { 0.5 } else { 1.0 };
         let f = n * 20.0 / 4.0 * share;
@@ -74,27 +108,43 @@ fn check(plies: &[(f64, f64)], theta: f64) {
     // THETA counts from side 1-2, whose direction changes along the distorted strip: as a coordinate system instead.
     let mut b = b;
     let (s, c) = theta.to_radians().sin_cos();
-    b.card(&format!("CORD2R,7,0,0.,0.,0.,0.,0.,1.,\n,{c:.9E},{s:.9E},0."));
+    b.card(&format!(
+        "CORD2R,7,0,0.,0.,0.,0.,0.,1.,\n,{c:.9E},{s:.9E},0."
+    ));
     b.text = b
         .text
         .lines()
-        .map(|l| match l.strip_prefix("CQUAD4").and_then(|l| l.strip_suffix(",0.0")) {
-            Some(rest) => format!("CQUAD4{rest},7\n"),
-            None => format!("{l}\n"),
+        .map(|l| {
+            match l
+                .strip_prefix("CQUAD4")
+                .and_then(|l| l.strip_suffix(",0.0"))
+            {
+                Some(rest) => format!("CQUAD4{rest},7\n"),
+                None => format!("{l}\n"),
+            }
         })
         .collect();
     let solved = b.solve();
     let total: f64 = plies.iter().map(|p| p.1).sum();
     let in_place: Vec<(f64, f64)> = plies.iter().map(|(a, t)| (a + theta, *t)).collect();
     let state = abd(&in_place).try_inverse().unwrap() * Vector6::new(n, 0.0, 0.0, 0.0, 0.0, 0.0);
-    for (ix, surfaces) in solved.case.shells.elements.iter().zip(&solved.case.shells.centre) {
+    for (ix, surfaces) in solved
+        .case
+        .shells
+        .elements
+        .iter()
+        .zip(&solved.case.shells.centre)
+    {
         for (got, z) in surfaces.iter().zip([-total / 2.0, total / 2.0]) {
             let exact: Vec<f64> = (0..3).map(|i| state[i] + z * state[i + 3]).collect();
             let size = exact.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
             let invariants = |e: &[f64]| [e[0] + e[1], ((e[0] - e[1]) / 2.0).hypot(e[2] / 2.0)];
             for (a, b) in invariants(got).iter().zip(invariants(&exact)) {
                 // The slices of the closed form err by 1e-7.
-                assert!((a - b).abs() < 1e-5 * size, "{ix:?} z {z}: {got:?} for {exact:?}");
+                assert!(
+                    (a - b).abs() < 1e-5 * size,
+                    "{ix:?} z {z}: {got:?} for {exact:?}"
+                );
             }
         }
     }

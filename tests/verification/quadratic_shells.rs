@@ -32,12 +32,19 @@ fn surface(
             let (a, b) = (2 * i, 2 * j);
             let mut make = |bulk: &mut Bulk, corners: &[(usize, usize)]| {
                 let k = corners.len();
-                let c: Vec<String> = corners.iter().map(|c| id(bulk, c.0, c.1).to_string()).collect();
+                let c: Vec<String> = corners
+                    .iter()
+                    .map(|c| id(bulk, c.0, c.1).to_string())
+                    .collect();
                 let mids: Vec<String> = (0..k)
                     .map(|s| {
                         let (p, q) = (corners[s], corners[(s + 1) % k]);
                         let (x, y) = ((p.0 + q.0) / 2, (p.1 + q.1) / 2);
-                        if left_out(x, y) { String::new() } else { id(bulk, x, y).to_string() }
+                        if left_out(x, y) {
+                            String::new()
+                        } else {
+                            id(bulk, x, y).to_string()
+                        }
                     })
                     .collect();
                 e += 1;
@@ -46,7 +53,11 @@ fn surface(
                 if k == 3 {
                     bulk.card(&format!("{name},{e},1,{}", all.join(",")));
                 } else {
-                    bulk.card(&format!("{name},{e},1,{}\n,{}", all[..6].join(","), all[6..].join(",")));
+                    bulk.card(&format!(
+                        "{name},{e},1,{}\n,{}",
+                        all[..6].join(","),
+                        all[6..].join(",")
+                    ));
                 }
             };
             if triangles {
@@ -73,7 +84,13 @@ fn constant_strain_and_curvature_pass_through_shells_with_mid_side_grids() {
         for missing in [false, true] {
             // Mid-side grids of inner sides left out by both neighbours.
             let left_out = |x: usize, y: usize| missing && x == 2 && y == 1;
-            let mut s = surface(Bulk::shell(1e6, 0.25, 0.001), [2, 2], triangles, left_out, kicked);
+            let mut s = surface(
+                Bulk::shell(1e6, 0.25, 0.001),
+                [2, 2],
+                triangles,
+                left_out,
+                kicked,
+            );
             for (g, p) in &s.grids {
                 let [x, y, _] = kicked(p[0], p[1]);
                 if p.iter().any(|v| *v == 0.0 || *v == 1.0) {
@@ -89,16 +106,29 @@ fn constant_strain_and_curvature_pass_through_shells_with_mid_side_grids() {
             for surface in solved.case.shells.centre.iter().flatten() {
                 let [ex, ey, g] = *surface;
                 let (mean, radius) = ((ex + ey) / 2.0, ((ex - ey) / 2.0).hypot(g / 2.0));
-                assert!((mean - 1e-3).abs() < 1e-11 && (radius - 5e-4).abs() < 1e-11, "{surface:?}");
+                assert!(
+                    (mean - 1e-3).abs() < 1e-11 && (radius - 5e-4).abs() < 1e-11,
+                    "{surface:?}"
+                );
             }
         }
         // Bending: w and its slopes on the boundary.
-        let mut s = surface(Bulk::shell(1e6, 0.25, 0.001), [2, 2], triangles, |_, _| false, kicked);
+        let mut s = surface(
+            Bulk::shell(1e6, 0.25, 0.001),
+            [2, 2],
+            triangles,
+            |_, _| false,
+            kicked,
+        );
         for (g, p) in &s.grids {
             let [x, y, _] = kicked(p[0], p[1]);
             if p.iter().any(|v| *v == 0.0 || *v == 1.0) {
                 let w = 1e-3 * (x * x + x * y + y * y) / 2.0;
-                for (dof, v) in [(3, w), (4, 1e-3 * (y + x / 2.0)), (5, -1e-3 * (x + y / 2.0))] {
+                for (dof, v) in [
+                    (3, w),
+                    (4, 1e-3 * (y + x / 2.0)),
+                    (5, -1e-3 * (x + y / 2.0)),
+                ] {
                     s.bulk.card(&format!("SPC*,1,{g},{dof},{v:.12E}"));
                 }
                 s.bulk.hold("126", [*g]);
@@ -110,8 +140,14 @@ fn constant_strain_and_curvature_pass_through_shells_with_mid_side_grids() {
             let [ex, ey, g] = *surface;
             let (mean, radius) = ((ex + ey) / 2.0, ((ex - ey) / 2.0).hypot(g / 2.0));
             // Curvatures 1e-3, 1e-3, 1e-3 (twice the twist) at half the thickness.
-            assert!((mean.abs() - 5e-7).abs() < 1e-8 * 5e-7 + 1e-15, "{surface:?} {triangles}");
-            assert!((radius - 2.5e-7).abs() < 1e-8 * 5e-7 + 1e-15, "{surface:?} {triangles}");
+            assert!(
+                (mean.abs() - 5e-7).abs() < 1e-8 * 5e-7 + 1e-15,
+                "{surface:?} {triangles}"
+            );
+            assert!(
+                (radius - 2.5e-7).abs() < 1e-8 * 5e-7 + 1e-15,
+                "{surface:?} {triangles}"
+            );
         }
     }
 }
@@ -122,10 +158,16 @@ fn no_rigid_motion_of_a_curved_quadratic_shell_is_resisted() {
         let mut bulk = Bulk::default();
         bulk.card("MAT1,1,210000.,,.3,7.85-9");
         bulk.card("PSHELL,1,1,4.0,1,,1");
-        let s = surface(bulk, [2, 2], triangles, |x, y| x == 2 && y == 1, |u, v| {
-            let (a, c) = (1.5 * u, 0.9 * v + 0.3 * u);
-            [200.0 * a.sin(), 150.0 * c, 200.0 * a.cos() + 60.0 * c * c]
-        });
+        let s = surface(
+            bulk,
+            [2, 2],
+            triangles,
+            |x, y| x == 2 && y == 1,
+            |u, v| {
+                let (a, c) = (1.5 * u, 0.9 * v + 0.3 * u);
+                [200.0 * a.sin(), 150.0 * c, 200.0 * a.cos() + 60.0 * c * c]
+            },
+        );
         let model = s.bulk.model();
         let (n, entries) = supported_stiffness(&model).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(n, 6 * model.grids.len());
@@ -165,13 +207,24 @@ fn no_rigid_motion_of_a_curved_quadratic_shell_is_resisted() {
 #[test]
 fn the_scordelis_lo_roof_stands_on_few_curved_elements() {
     // Quarter of the roof of MacNeal and Harder: fine-mesh value 0.3006 to 0.3024.
-    for (triangles, n, tolerance) in [(false, 4, 0.03), (false, 8, 0.02), (true, 4, 0.05), (true, 8, 0.03)] {
+    for (triangles, n, tolerance) in [
+        (false, 4, 0.03),
+        (false, 8, 0.02),
+        (true, 4, 0.05),
+        (true, 8, 0.03),
+    ] {
         let mut bulk = Bulk::shell(4.32e8, 0.0, 0.25);
         bulk.card("PARAM,K6ROT,100.");
-        let s = surface(bulk, [n, n], triangles, |_, _| false, |u, v| {
-            let a = 40_f64.to_radians() * u;
-            [25.0 * a.sin(), 25.0 * v, 25.0 * a.cos()]
-        });
+        let s = surface(
+            bulk,
+            [n, n],
+            triangles,
+            |_, _| false,
+            |u, v| {
+                let a = 40_f64.to_radians() * u;
+                [25.0 * a.sin(), 25.0 * v, 25.0 * a.cos()]
+            },
+        );
         let mut b = s.bulk;
         for (g, p) in &s.grids {
             let mut held = String::new();
@@ -211,12 +264,23 @@ fn mass_of_a_curved_shell_is_that_of_its_surface() {
     let mut bulk = Bulk::default();
     bulk.card("MAT1,1,210000.,,.3,2.0");
     bulk.card("PSHELL,1,1,4.0,1,,1");
-    let s = surface(bulk, [4, 1], false, |_, _| false, |u, v| {
-        let a = 1.5 * u;
-        [100.0 * a.sin(), 50.0 * v, 100.0 * a.cos()]
-    });
+    let s = surface(
+        bulk,
+        [4, 1],
+        false,
+        |_, _| false,
+        |u, v| {
+            let a = 1.5 * u;
+            [100.0 * a.sin(), 50.0 * v, 100.0 * a.cos()]
+        },
+    );
     // Parabolas through three points of an arc of 0.375 rad: shorter by 1e-5.
-    near("mass", mass_properties(&s.bulk.model()).unwrap().mass, 8.0 * 150.0 * 50.0, 1e-4);
+    near(
+        "mass",
+        mass_properties(&s.bulk.model()).unwrap().mass,
+        8.0 * 150.0 * 50.0,
+        1e-4,
+    );
 }
 
 #[test]

@@ -25,7 +25,10 @@ fn compare(table: &mut Table, name: &str, pairs: &[(Vec<f64>, Vec<f64>)]) {
         let size = norm(reference);
         if size >= 0.1 * largest && size > 0.0 {
             let off: Vec<f64> = ours.iter().zip(reference).map(|(a, b)| a - b).collect();
-            table.entry(name.to_owned()).or_default().push(norm(&off) / size);
+            table
+                .entry(name.to_owned())
+                .or_default()
+                .push(norm(&off) / size);
         }
     }
 }
@@ -60,7 +63,12 @@ fn prepared(deck: Option<&str>, file: &ResultsFile) -> Option<(Model, Vec<LoadCa
     let case = LoadCase {
         subcase: 1,
         label: String::new(),
-        loads: model.load_sets.last().map(|s| UnitLoad::Set(s.sid)).into_iter().collect(),
+        loads: model
+            .load_sets
+            .last()
+            .map(|s| UnitLoad::Set(s.sid))
+            .into_iter()
+            .collect(),
         spc: model.spcs.last().map(|s| s.sid),
         mpc: None,
         relief: Relief::None,
@@ -69,14 +77,21 @@ fn prepared(deck: Option<&str>, file: &ResultsFile) -> Option<(Model, Vec<LoadCa
 }
 
 /// Strain of a solid or rod from a row of stress, where the material is isotropic.
-fn isotropic(model: &Model, material: Option<strainbridge::model::MaterialIx>) -> Option<(f64, f64)> {
+fn isotropic(
+    model: &Model,
+    material: Option<strainbridge::model::MaterialIx>,
+) -> Option<(f64, f64)> {
     match model.materials.get(material?.us())?.kind {
         MaterialKind::Isotropic { e, nu, .. } => Some((e, nu)),
         _ => None,
     }
 }
 
-fn solve(deck: Option<&str>, results: &str, alter: impl Fn(&mut Model, &mut Vec<LoadCase>)) -> Option<Solved> {
+fn solve(
+    deck: Option<&str>,
+    results: &str,
+    alter: impl Fn(&mut Model, &mut Vec<LoadCase>),
+) -> Option<Solved> {
     let bytes = std::fs::read(shared(results)?).unwrap();
     let file = ResultsFile::read(&bytes, results).unwrap();
     let (mut model, mut cases) = prepared(deck, &file)?;
@@ -88,13 +103,21 @@ fn solve(deck: Option<&str>, results: &str, alter: impl Fn(&mut Model, &mut Vec<
         solution,
         table: Table::new(),
     };
-    let reference =
-        solution_from_results(&solved.model, &[("results", &file)], &ReadOptions::default());
+    let reference = solution_from_results(
+        &solved.model,
+        &[("results", &file)],
+        &ReadOptions::default(),
+    );
     solved.shells_and_beams(&reference);
     for (i, block) in file.blocks().iter().enumerate() {
         if block.analysis == Analysis::Statics && !block.complex && !block.sort2 {
             if let Ok(rows) = file.rows(i) {
-                solved.block(block.quantity, block.element.map_or(0, |e| e.0), block.subcase, &rows);
+                solved.block(
+                    block.quantity,
+                    block.element.map_or(0, |e| e.0),
+                    block.subcase,
+                    &rows,
+                );
             }
         }
     }
@@ -118,7 +141,9 @@ impl Solved {
     fn shells_and_beams(&mut self, reference: &Solution) {
         let mut table = std::mem::take(&mut self.table);
         for theirs in &reference.cases {
-            let Some(ours) = self.case(theirs.subcase) else { continue };
+            let Some(ours) = self.case(theirs.subcase) else {
+                continue;
+            };
             let mut shells: BTreeMap<&str, Vec<(Vec<f64>, Vec<f64>)>> = BTreeMap::new();
             for (ix, strain) in theirs.shells.elements.iter().zip(&theirs.shells.centre) {
                 let shell = &self.model.shells[ix.us()];
@@ -126,7 +151,10 @@ impl Solved {
                 let mine = flat(&ours.shells.centre[ix.us()]);
                 let row = flat(strain);
                 if row.iter().all(|v| v.is_finite()) {
-                    shells.entry(shell.shape.card()).or_default().push((mine, row));
+                    shells
+                        .entry(shell.shape.card())
+                        .or_default()
+                        .push((mine, row));
                 }
             }
             for (card, pairs) in shells {
@@ -139,7 +167,10 @@ impl Solved {
                 for (xi, row) in stations {
                     if let Some((_, own)) = mine.iter().find(|s| (s.0 - xi).abs() < 1e-6) {
                         let card = if beam.is_beam { "CBEAM" } else { "CBAR" };
-                        beams.entry(card).or_default().push((own.to_vec(), row.to_vec()));
+                        beams
+                            .entry(card)
+                            .or_default()
+                            .push((own.to_vec(), row.to_vec()));
                     }
                 }
             }
@@ -171,7 +202,8 @@ impl Solved {
             displacements,
             ..Default::default()
         };
-        let Ok((own, _)) = solution_of(&self.model, &cases, solved, &SolveOptions::default()) else {
+        let Ok((own, _)) = solution_of(&self.model, &cases, solved, &SolveOptions::default())
+        else {
             return;
         };
         let mut other = Solved {
@@ -181,12 +213,15 @@ impl Solved {
         };
         other.shells_and_beams(reference);
         for (name, list) in other.table {
-            self.table.insert(format!("{name} from their displacements"), list);
+            self.table
+                .insert(format!("{name} from their displacements"), list);
         }
     }
 
     fn block(&mut self, quantity: Quantity, element: u32, subcase: u32, rows: &Rows) {
-        let Some(case) = self.case(subcase) else { return };
+        let Some(case) = self.case(subcase) else {
+            return;
+        };
         let mut table = Table::new();
         match (quantity, element) {
             (Quantity::Displacement, _) => self.displacement(case, rows, &mut table),
@@ -209,7 +244,9 @@ impl Solved {
         let mut largest = 0.0_f64;
         let mut off = Vec::new();
         for (i, id) in rows.ids.iter().enumerate() {
-            let Some(g) = self.model.grid_ix(id.entity) else { continue };
+            let Some(g) = self.model.grid_ix(id.entity) else {
+                continue;
+            };
             if self.model.grids[g.us()].kind == strainbridge::model::PointKind::Scalar {
                 continue;
             }
@@ -223,26 +260,47 @@ impl Solved {
         let worst = off.iter().max_by(|a, b| a.1.total_cmp(&b.1));
         eprintln!("  largest displacement {largest:.4e}, worst grid {worst:?}");
         let shares = off.into_iter().map(|o| o.1 / largest);
-        table.entry("displacement".to_owned()).or_default().extend(shares);
+        table
+            .entry("displacement".to_owned())
+            .or_default()
+            .extend(shares);
     }
 
-    fn solids(&self, case: &CaseResult, rows: &Rows, element: u32, stress: Option<()>, table: &mut Table) {
+    fn solids(
+        &self,
+        case: &CaseResult,
+        rows: &Rows,
+        element: u32,
+        stress: Option<()>,
+        table: &mut Table,
+    ) {
         let mut pairs = Vec::new();
         for (i, id) in rows.ids.iter().enumerate() {
             if id.at != 0 {
                 continue;
             }
-            let Some(ix) = self.model.solids.iter().position(|s| s.id == id.entity) else { continue };
+            let Some(ix) = self.model.solids.iter().position(|s| s.id == id.entity) else {
+                continue;
+            };
             let row = rows.row(i)[..6].to_vec();
             let mut ours = case.solids.centre[ix].to_vec();
             if stress.is_some() {
-                let property = &self.model.solid_properties[self.model.solids[ix].property as usize];
-                let Some((e, nu)) = isotropic(&self.model, Some(property.material)) else { continue };
+                let property =
+                    &self.model.solid_properties[self.model.solids[ix].property as usize];
+                let Some((e, nu)) = isotropic(&self.model, Some(property.material)) else {
+                    continue;
+                };
                 let c = e / ((1.0 + nu) * (1.0 - 2.0 * nu));
                 let trace = ours[0] + ours[1] + ours[2];
                 let g = e / (2.0 + 2.0 * nu);
                 ours = (0..6)
-                    .map(|k| if k < 3 { c * ((1.0 - 2.0 * nu) * ours[k] + nu * trace) } else { g * ours[k] })
+                    .map(|k| {
+                        if k < 3 {
+                            c * ((1.0 - 2.0 * nu) * ours[k] + nu * trace)
+                        } else {
+                            g * ours[k]
+                        }
+                    })
                     .collect();
             }
             if rows.len() < 40 {
@@ -262,29 +320,42 @@ impl Solved {
     fn rods(&self, case: &CaseResult, rows: &Rows, stress: bool, table: &mut Table) {
         let mut by_card: BTreeMap<&str, Vec<(Vec<f64>, Vec<f64>)>> = BTreeMap::new();
         for (i, id) in rows.ids.iter().enumerate() {
-            let Some(rod) = self.model.rods.iter().find(|r| r.id == id.entity) else { continue };
+            let Some(rod) = self.model.rods.iter().find(|r| r.id == id.entity) else {
+                continue;
+            };
             let at = |g: GridIx| self.model.grids[g.us()].x;
             let d = at(rod.grids[1]) - at(rod.grids[0]);
             let u = |g: GridIx| Vec3::from_column_slice(&case.displacement[g.us()][..3]);
             let strain = (u(rod.grids[1]) - u(rod.grids[0])).dot(&d) / d.norm_squared();
-            let Some((e, _)) = isotropic(&self.model, Some(rod.material)) else { continue };
+            let Some((e, _)) = isotropic(&self.model, Some(rod.material)) else {
+                continue;
+            };
             let card = match rod.card {
                 RodCard::Crod => "CROD",
                 RodCard::Ctube => "CTUBE",
                 RodCard::Conrod => "CONROD",
             };
             let ours = if stress { e * strain } else { strain };
-            by_card.entry(card).or_default().push((vec![ours], vec![rows.row(i)[0]]));
+            by_card
+                .entry(card)
+                .or_default()
+                .push((vec![ours], vec![rows.row(i)[0]]));
         }
         for (card, pairs) in by_card {
-            compare(table, &format!("{card} axial {}", if stress { "stress" } else { "strain" }), &pairs);
+            compare(
+                table,
+                &format!("{card} axial {}", if stress { "stress" } else { "strain" }),
+                &pairs,
+            );
         }
     }
 
     fn plies(&self, case: &CaseResult, rows: &Rows, table: &mut Table) {
         let mut pairs = Vec::new();
         for (i, id) in rows.ids.iter().enumerate() {
-            let Some(ix) = self.model.shell_ix(id.entity) else { continue };
+            let Some(ix) = self.model.shell_ix(id.entity) else {
+                continue;
+            };
             let plies = ply_strains(&self.model, ix, &case.shells.centre[ix.us()]);
             if let Some(ply) = plies.get((id.layer as usize).wrapping_sub(1)) {
                 pairs.push((ply.to_vec(), rows.row(i)[..3].to_vec()));
@@ -295,9 +366,15 @@ impl Solved {
 
     #[track_caller]
     fn within(&self, name: &str, median: f64, most: f64) {
-        let list = self.table.get(name).unwrap_or_else(|| panic!("no {name} in {:?}", self.table.keys()));
+        let list = self
+            .table
+            .get(name)
+            .unwrap_or_else(|| panic!("no {name} in {:?}", self.table.keys()));
         let (m, q) = (quantile(list, 0.5), quantile(list, 0.95));
-        assert!(m <= median && q <= most, "{name}: median {m:.2e} (limit {median:.0e}), 95 % {q:.2e} (limit {most:.0e})");
+        assert!(
+            m <= median && q <= most,
+            "{name}: median {m:.2e} (limit {median:.0e}), 95 % {q:.2e} (limit {most:.0e})"
+        );
     }
 }
 
@@ -390,7 +467,11 @@ fn single_solids_and_curved_shells_agree_with_nx() {
 
 #[test]
 fn a_brick_beam_with_rigid_ends_agrees_with_msc() {
-    let Some(s) = solve(None, "nastran/msc_rbe2_2020/rigid_rbe2--v2020.op2", as_it_is) else {
+    let Some(s) = solve(
+        None,
+        "nastran/msc_rbe2_2020/rigid_rbe2--v2020.op2",
+        as_it_is,
+    ) else {
         return;
     };
     s.within("displacement", 0.02, 0.02);

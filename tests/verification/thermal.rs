@@ -86,7 +86,12 @@ fn a_gradient_through_the_thickness_bends_a_free_sheet_to_a_bowl() {
     // The top is warmer and longer: the sheet bends down from the held corner, w = -alpha T' (x^2 + y^2) / 2.
     let far = ids[3][3];
     let x = s.model.grids[s.model.grid_ix(far).unwrap().us()].x;
-    near("bowl", s.at(far)[2], -ALPHA * 5.0 * (x.x * x.x + x.y * x.y) / 2.0, 1e-6);
+    near(
+        "bowl",
+        s.at(far)[2],
+        -ALPHA * 5.0 * (x.x * x.x + x.y * x.y) / 2.0,
+        1e-6,
+    );
 }
 
 #[test]
@@ -106,7 +111,12 @@ fn a_bimetal_strip_bends_as_timoshenko_says() {
     let kappa = 6.0 * (a2 - a1) * dt * (1.0 + m).powi(2)
         / (h * (3.0 * (1.0 + m).powi(2) + (1.0 + m * n) * (m * m + 1.0 / (m * n))));
     // The second layer, on top, grows more: the strip bends down.
-    near("bimetal", s.at(ids[6][0])[2], -kappa * 120.0 * 120.0 / 2.0, 1e-6);
+    near(
+        "bimetal",
+        s.at(ids[6][0])[2],
+        -kappa * 120.0 * 120.0 / 2.0,
+        1e-6,
+    );
 }
 
 #[test]
@@ -115,10 +125,15 @@ fn bars_and_rods_grow_freely_push_when_held_and_bend_under_a_gradient() {
         let mut b = steel();
         b.card("PBAR,2,1,200.,9000.,4000.,8000.\n,5.,4.,-5.,4.,-5.,-4.,5.,-4.");
         b.card("PROD,3,1,50.");
-        let g: Vec<u32> = [[0., 0., 0.], [100., 0., 0.], [250., 0., 0.], [100., 80., 0.]]
-            .iter()
-            .map(|x| b.grid(*x))
-            .collect();
+        let g: Vec<u32> = [
+            [0., 0., 0.],
+            [100., 0., 0.],
+            [250., 0., 0.],
+            [100., 80., 0.],
+        ]
+        .iter()
+        .map(|x| b.grid(*x))
+        .collect();
         b.card("CBAR,1,2,1,2,0.,1.,0.");
         b.card("CBAR,2,2,2,3,0.,1.,0.");
         b.card("CROD,3,3,2,4");
@@ -141,7 +156,10 @@ fn bars_and_rods_grow_freely_push_when_held_and_bend_under_a_gradient() {
     let s = b.solve_hot();
     for (_, strain) in s.case.beams.stations.iter().flatten() {
         // The rod is free at its end and disturbs nothing.
-        assert!(strain.iter().all(|e| (e + 100.0 * ALPHA).abs() < 1e-12), "{strain:?}");
+        assert!(
+            strain.iter().all(|e| (e + 100.0 * ALPHA).abs() < 1e-12),
+            "{strain:?}"
+        );
     }
     // Warmer along element y (here basic y): the cantilever bends away from the warm side.
     let mut b = build(false);
@@ -149,7 +167,12 @@ fn bars_and_rods_grow_freely_push_when_held_and_bend_under_a_gradient() {
     b.card("TEMPRB,9,1,20.,20.,3.,3.,0.,0.,\n,\n,2");
     let s = b.solve_hot();
     let tip = s.at(3)[1];
-    near("gradient along y", tip, -ALPHA * 3.0 * 250.0 * 250.0 / 2.0, 0.02);
+    near(
+        "gradient along y",
+        tip,
+        -ALPHA * 3.0 * 250.0 * 250.0 / 2.0,
+        0.02,
+    );
 }
 
 #[test]
@@ -173,7 +196,11 @@ fn solids_under_a_linear_temperature_field_are_free_of_mechanical_strain() {
         let g: Vec<String> = [0, 4, 5, 1, 3, 7, 6, 2]
             .map(|k| layer[i + k].to_string())
             .to_vec();
-        b.card(&format!("CHEXA,{e},1,{}\n,{}", g[..6].join(","), g[6..].join(",")));
+        b.card(&format!(
+            "CHEXA,{e},1,{}\n,{}",
+            g[..6].join(","),
+            g[6..].join(",")
+        ));
     }
     b.hold("123", [layer[0]]);
     b.hold("23", [layer[8]]);

@@ -39,10 +39,7 @@ impl Plane {
         };
         let ([x2, x3, x4], [y3, y4]) = (plane.x, plane.y);
         // Inner angles below a half turn.
-        let convex = y3 > 0.0
-            && y4 > 0.0
-            && x3 > y3 * x4 / y4
-            && x4 < x2 - (x2 - x3) * y4 / y3;
+        let convex = y3 > 0.0 && y4 > 0.0 && x3 > y3 * x4 / y4 && x4 < x2 - (x2 - x3) * y4 / y3;
         convex.then_some(plane)
     }
 
@@ -76,7 +73,12 @@ impl Plane {
                 let d = -0.5 * (x4 / y4 + back / y3);
                 let xq = x4 - y4 * (x3 - x4) / (y3 - y4);
                 let s = 1.0 / (1.0 + d * d).sqrt();
-                let p = [xq * s, (xq - x2) * s, (xq - x3 - d * y3) * s, (xq - x4 - d * y4) * s];
+                let p = [
+                    xq * s,
+                    (xq - x2) * s,
+                    (xq - x3 - d * y3) * s,
+                    (xq - x4 - d * y4) * s,
+                ];
                 let lead = xq - x4;
                 let b = (lead * d + y4) / (lead - y4 * d);
                 0.5 * ratio(p) * area * (1.0 + third * nu1 * (b * b + b * d + d * d))
@@ -88,7 +90,12 @@ impl Plane {
                 let l = (xq - xp).hypot(yp);
                 let d = (xq - xp) / yp;
                 let s = yp / l;
-                let p = [xq * s, (xq - x2) * s, (xq - x3 - d * y3) * s, (xq - x4 - d * y4) * s];
+                let p = [
+                    xq * s,
+                    (xq - x2) * s,
+                    (xq - x3 - d * y3) * s,
+                    (xq - x4 - d * y4) * s,
+                ];
                 let c = l / p[0] - d;
                 let (a, b) = (l / p[1] - d, l / p[3] - c);
                 let term = |u: f64, v: f64| {

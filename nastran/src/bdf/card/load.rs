@@ -4,8 +4,8 @@ use super::super::fault::Wrong;
 use super::super::fields::Fields;
 use super::ids::id_lists;
 use crate::cards::{
-    Cards, Force, ForceAlong, Grav, IdList, LoadSum, Pload, Pload1, Pload2, Pload4, Rforce, Sload, Temp, Tempd,
-    Tempp1, Temprb,
+    Cards, Force, ForceAlong, Grav, IdList, LoadSum, Pload, Pload1, Pload2, Pload4, Rforce, Sload,
+    Temp, Tempd, Tempp1, Temprb,
 };
 use crate::place::Placed;
 

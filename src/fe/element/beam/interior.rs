@@ -54,14 +54,7 @@ impl Interior {
         let mut sum = Vector6::zeros();
         let mut add = |x: f64, f: Vec3, m: Vec3| {
             let arm = length * (x - xi);
-            sum += Vector6::new(
-                f.x,
-                f.y,
-                f.z,
-                m.x,
-                m.y - arm * f.z,
-                m.z + arm * f.y,
-            );
+            sum += Vector6::new(f.x, f.y, f.z, m.x, m.y - arm * f.z, m.z + arm * f.y);
         };
         for load in &self.loads {
             let [a, b] = load.span;

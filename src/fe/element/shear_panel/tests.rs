@@ -38,11 +38,19 @@ fn model(x: [[f64; 3]; 4], f1: f64) -> Model {
     m
 }
 
-const SKEW: [[f64; 3]; 4] = [[0., 0., 1.], [90., 10., 0.], [80., 70., 3.], [-5., 55., -1.]];
+const SKEW: [[f64; 3]; 4] = [
+    [0., 0., 1.],
+    [90., 10., 0.],
+    [80., 70., 3.],
+    [-5., 55., -1.],
+];
 
 #[test]
 fn a_rectangle_sheared_stores_half_g_gamma_squared_in_its_volume() {
-    let m = model([[0., 0., 0.], [90., 0., 0.], [90., 40., 0.], [0., 40., 0.]], 0.0);
+    let m = model(
+        [[0., 0., 0.], [90., 0., 0.], [90., 40., 0.], [0., 40., 0.]],
+        0.0,
+    );
     let k = shear_panel_stiffness(&m, 0).unwrap();
     let gamma = 1e-3;
     let mut u = [0.0; 24];
@@ -56,7 +64,8 @@ fn a_rectangle_sheared_stores_half_g_gamma_squared_in_its_volume() {
 #[test]
 fn no_rigid_motion_of_a_flat_panel_is_resisted_and_it_has_one_stiffness() {
     let mut flat = SKEW;
-    flat.iter_mut().for_each(|x| x[2] = 0.02 * x[0] - 0.3 * x[1]);
+    flat.iter_mut()
+        .for_each(|x| x[2] = 0.02 * x[0] - 0.3 * x[1]);
     for f1 in [0.0, 1.0] {
         let m = model(flat, f1);
         let k = shear_panel_stiffness(&m, 0).unwrap();
@@ -91,12 +100,18 @@ fn nearly_parallel_sides_give_the_flexibility_of_parallel_ones() {
     };
     let (parallel, almost) = (near(0.0), near(0.02));
     // The change of shape itself is 3e-4 of the height.
-    assert!((almost / parallel - 1.0).abs() < 2e-3, "{almost} for {parallel}");
+    assert!(
+        (almost / parallel - 1.0).abs() < 2e-3,
+        "{almost} for {parallel}"
+    );
 }
 
 #[test]
 fn the_mass_is_that_of_the_sheet_and_its_cover() {
-    let m = model([[0., 0., 0.], [90., 0., 0.], [90., 40., 0.], [0., 40., 0.]], 0.0);
+    let m = model(
+        [[0., 0., 0.], [90., 0., 0.], [90., 40., 0.], [0., 40., 0.]],
+        0.0,
+    );
     let sum: f64 = shear_panel_mass(&m, 0).iter().sum();
     assert!((sum - 3600.0 * (2.0 * 1.5 + 0.5)).abs() < 1e-9);
 }

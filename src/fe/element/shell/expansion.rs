@@ -92,9 +92,8 @@ pub(crate) fn expansion(
             bending_ratio,
             ..
         } => {
-            let material = |m: &Option<crate::model::MaterialIx>| {
-                m.and_then(|m| model.materials.get(m.us()))
-            };
+            let material =
+                |m: &Option<crate::model::MaterialIx>| m.and_then(|m| model.materials.get(m.us()));
             let stress = |m: &Material| -> Option<[f64; 3]> {
                 let alpha = turn_strain(coefficients(m)?, angle_rad);
                 Some(times(&rotate(&plane_stress(m)?, angle_rad), &alpha))
@@ -114,7 +113,11 @@ pub(crate) fn expansion(
             out.surface = [turn_strain(coefficients(surface)?, angle_rad); 2];
         }
         ShellKind::Laminate {
-            z0, plies, lam, tref, ..
+            z0,
+            plies,
+            lam,
+            tref,
+            ..
         } => {
             let places = placed(model, plies, *z0, angle_rad)?;
             let alphas: Option<Vec<[f64; 3]>> = plies

@@ -25,7 +25,8 @@ pub(crate) use law::ShellLaw;
 pub(crate) use many::{linear_part, many_grids, over_face};
 pub(crate) use normals::{CornerDirectors, shared_normals};
 pub(crate) use of_model::{
-    AnyShell, many_mass, material_angle, shell_heat, shell_mass, shell_matrices, shell_stiffness, shell_thermal_force, surfaces,
+    AnyShell, many_mass, material_angle, shell_heat, shell_mass, shell_matrices, shell_stiffness,
+    shell_thermal_force, surfaces,
 };
 pub(crate) use output_frame::output_frame;
 pub(crate) use quad4::quad4;

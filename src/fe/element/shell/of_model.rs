@@ -247,7 +247,5 @@ pub(crate) fn surfaces<const M: usize>(
         rows.membrane.each_ref().map(dot),
         rows.curvature.each_ref().map(dot),
     );
-    std::array::from_fn(|s| {
-        std::array::from_fn(|c| membrane[c] + z[s] * curvature[c] - free[s][c])
-    })
+    std::array::from_fn(|s| std::array::from_fn(|c| membrane[c] + z[s] * curvature[c] - free[s][c]))
 }
