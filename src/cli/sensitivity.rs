@@ -64,7 +64,7 @@ fn of_candidates(session: &mut Session, job: &Job) -> Result<Prepared, Faults> {
     };
     let steps = (180.0 / step).ceil() as usize;
     let mut gauges: Vec<Gauge> = Vec::new();
-    for (shell, surface) in allowed_sites(job, fields.model(), &common)? {
+    for (shell, surface) in allowed_sites(job, &fields, &common)? {
         for i in 0..steps {
             let angle = step * i as f64;
             let id = fields.model().shells.get(shell.us()).map_or(0, |s| s.id);

@@ -17,18 +17,21 @@ pub enum Angles {
     Continuous,
 }
 
-/// Standard deviation of a reading: `sd^2 = noise^2 + extra + (angle_sd |d row / d angle|)^2 + (model_rel |row|)^2`, the row in strain at
-/// the expected loads.
+/// Standard deviation of a reading: `sd^2 = noise^2 + extra + form + (angle_sd |d row / d angle|)^2 + (model_rel |row|)^2`, the row in strain
+/// at the expected loads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scatter {
     /// Noise, 1 sd, in the unit of the rows.
     pub noise: f64,
     /// Angle tolerance, 1 sd, radians; needs tensors.
     pub angle_sd: f64,
-    /// Model uncertainty of each load's part of the reading, 1 sd, a fraction; needs tensors.
+    /// Uncertainty of each load's part of the reading, 1 sd, a fraction (model and gauge factor, squares added); needs tensors.
     pub model_rel: f64,
-    /// A variance of its own for each place (position tolerance, gradient over the grid); empty: none.
+    /// A variance of its own for each place; empty: none.
     pub extra: Vec<f64>,
+    /// A variance that turns with the gauge, for each place: a quadratic form of its direction (position tolerance, gradient over the
+    /// grid); needs tensors; empty: none.
+    pub forms: Vec<Form>,
 }
 
 impl Scatter {
@@ -39,6 +42,7 @@ impl Scatter {
             angle_sd: 0.0,
             model_rel: 0.0,
             extra: Vec::new(),
+            forms: Vec::new(),
         }
     }
 }
@@ -187,6 +191,10 @@ impl Candidates {
             let (slope, row) = (quartic::of_slope(form), quartic::of_row(form));
             v = std::array::from_fn(|i| turn * slope[i] + model * row[i]);
         }
+        if let Some(form) = self.scatter.forms.get(place) {
+            let more = quartic::of_row(form);
+            v.iter_mut().zip(more).for_each(|(a, b)| *a += b);
+        }
         v[0] += self.fixed_variance(place);
         v
     }
@@ -206,7 +214,31 @@ impl Candidates {
 
     /// True where the variance depends on the angle.
     pub fn has_slopes(&self) -> bool {
-        !self.slopes.is_empty()
+        !self.slopes.is_empty() || !self.scatter.forms.is_empty()
+    }
+
+    /// Standard deviation of a gauge's reading.
+    pub fn sd(&self, choice: Choice) -> f64 {
+        quartic::value(
+            &self.variance(choice.place as usize),
+            &quartic::phases(choice.angle),
+        )
+        .sqrt()
+    }
+
+    /// How much a gauge's reading changes with its angle: rms over the expected loads (independent), per radian; 0 for fixed rows.
+    pub fn turn_rms(&self, choice: Choice) -> f64 {
+        if self.angles == Angles::Fixed {
+            return 0.0;
+        }
+        let (s, c) = (2.0 * choice.angle).sin_cos();
+        (0..self.k)
+            .map(|l| {
+                let [x, y, g] = self.tensor(choice.place as usize, l);
+                (c * g - s * (x - y)).powi(2)
+            })
+            .sum::<f64>()
+            .sqrt()
     }
 
     /// The row of a gauge over the standard deviation of its reading.
@@ -252,7 +284,13 @@ impl Candidates {
             blocks,
             scatter: Scatter {
                 extra: pick(&self.scatter.extra),
-                ..self.scatter.clone()
+                forms: places
+                    .iter()
+                    .filter_map(|&p| self.scatter.forms.get(p as usize).copied())
+                    .collect(),
+                noise: self.scatter.noise,
+                angle_sd: self.scatter.angle_sd,
+                model_rel: self.scatter.model_rel,
             },
             slopes: places
                 .iter()

@@ -6,7 +6,7 @@ use super::candidates::{Angles, Candidates, Choice};
 use super::criterion::Criterion;
 use super::kernel::{Priced, Report, price};
 use super::relax::{Active, Relaxed, relax};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Which rows share a weight of at most 1.
 #[derive(Clone, Debug, PartialEq)]
@@ -130,6 +130,11 @@ pub fn solve(
         });
         let room = (6 * k + s).max(96);
         let mut added = 0;
+        if matches!(groups, Groups::Cliques(_)) {
+            // The best of each set of places first: the best-priced rows crowd in few sets.
+            let mut seen = HashSet::new();
+            priced.sort_by_cached_key(|p| !seen.insert(groups.key(p.choice)));
+        }
         for p in &priced {
             if added >= room {
                 break;

@@ -5,8 +5,11 @@ use super::columns::{self, Columns, Groups};
 use super::criterion::Criterion;
 use super::exact::{self, Problem, Proof};
 use super::exchange::Effort;
-use super::kernel::{Report, price};
-use super::shortlist::{better, elimination, excluder, list_of, polish, rows_of, run};
+use super::kernel::{Priced, Report, price};
+use super::robust;
+use super::shortlist::{
+    Found, better, elimination, excluder, list_of, polish, rows_of, run, value_of,
+};
 use super::spacing;
 use std::collections::HashMap;
 
@@ -28,6 +31,17 @@ pub struct Spec {
     /// Floating-point operations, roughly, that a proof by branch and bound may take; 0: none is tried. It is tried where few candidates
     /// are left that could be in a better layout ([`exact::MOST_ROWS`]).
     pub proof: f64,
+    /// What the loss of a gauge means for the choice.
+    pub loss: Loss,
+}
+
+/// Whether a layout is chosen for what is left after the worst loss of one gauge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Loss {
+    /// It is not.
+    Judged,
+    /// It is, where there are more gauges than loads or prior information; the determinant for all columns counts then.
+    Optimised,
 }
 
 impl Spec {
@@ -45,6 +59,7 @@ impl Spec {
                 seed: 1,
             },
             proof: 1e9,
+            loss: Loss::Judged,
         }
     }
 }
@@ -179,15 +194,26 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
         singular
     };
     let incumbent = best.ok_or(none)?;
-    list = list_of(c, &col, &groups, elimination(&col, k, incumbent.1));
+    // What can't be in a better layout may be in one that loses less.
+    let floor = match spec.loss {
+        Loss::Judged => elimination(&col, k, incumbent.1),
+        Loss::Optimised => 0.0,
+    };
+    list = list_of(c, &col, &groups, floor);
     let found = run(c, spec, &list, &col, spec.effort, Some(&incumbent));
     let (mut gauges, mut log_det) = better(Some(incumbent.clone()), found).unwrap_or(incumbent);
     if *c.angles() == Angles::Continuous {
         (gauges, log_det) = polish(c, spec, gauges, log_det);
     }
-    let mut proved = log_det >= upper - exact::SAME;
+    let robust = match spec.loss {
+        Loss::Optimised => robust_of(c, spec, &list, &gauges),
+        Loss::Judged => None,
+    };
+    let mut proved = robust.is_none() && log_det >= upper - exact::SAME;
     let (mut alive, mut nodes) = (None, 0);
-    if !proved && spec.proof > 0.0 && *c.angles() != Angles::Continuous {
+    if let Some(found) = robust {
+        (gauges, log_det) = found;
+    } else if !proved && spec.proof > 0.0 && *c.angles() != Angles::Continuous {
         let tried;
         (alive, tried) = prove(c, spec, &col, &groups, log_det, upper);
         if let Some((proof, choices)) = tried {
@@ -213,6 +239,23 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
         alive,
         nodes,
     })
+}
+
+/// The layout near `gauges` that leaves most after the worst loss; `None` where there is none better.
+fn robust_of(c: &Candidates, spec: &Spec, list: &[Priced], gauges: &[Choice]) -> Option<Found> {
+    let mut choices: Vec<Choice> = gauges.to_vec();
+    choices.extend(
+        list.iter()
+            .map(|p| p.choice)
+            .filter(|p| !gauges.iter().any(|g| g == p)),
+    );
+    let active = rows_of(c, spec, &choices);
+    let start: Vec<usize> = (0..gauges.len()).collect();
+    let excludes = excluder(c, spec, &choices);
+    let found = robust::search(&active, &spec.prior, &start, &excludes, spec.effort)?;
+    let gauges: Vec<Choice> = found.0.iter().map(|&i| choices[i]).collect();
+    let value = value_of(c, spec, &gauges)?;
+    Some((gauges, value))
 }
 
 /// Rounds of rebuilding the sets of places within a spacing from new prices.

@@ -6,7 +6,8 @@
 //!
 //! Order of work: [`candidates`] (rows, or strain tensors that stand for all angles at a place), [`relax`] (weights between 0 and 1),
 //! [`columns`] (the same over millions of rows; gives the bound), [`exchange`] (rounding and local search), [`spacing`], [`exact`] (proof of
-//! small problems), [`quality`].
+//! small problems), [`quality`]; [`robust`] where a gauge may be lost, [`units`] where things have several rows or unlike costs. [`sites`],
+//! [`region`] and [`gradient`] make candidates of a model.
 //!
 //! Certificate: for any positive definite `M` and any layout of distinct rows
 //! `log det M_S <= log det M + k ln((tr(M^-1 P) + T) / k)`, `T` the sum of the `s` largest `d_i = a_i' M^-1 a_i`, because the arithmetic mean
@@ -18,17 +19,21 @@ pub mod columns;
 pub mod criterion;
 pub mod exact;
 pub mod exchange;
+pub mod gradient;
 pub mod kernel;
 mod layout;
 pub mod quality;
 pub mod quartic;
+pub mod region;
 pub mod relax;
+pub mod robust;
 mod shortlist;
 pub mod sites;
 pub mod spacing;
+pub mod units;
 
 pub use criterion::Criterion;
-pub use layout::{Layout, PlaceError, Spec, place};
+pub use layout::{Layout, Loss, PlaceError, Spec, place};
 
 #[cfg(test)]
 mod tests;

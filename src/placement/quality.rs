@@ -56,6 +56,85 @@ pub fn judge_rows(rows: &[Vec<f64>], prior: &[f64], k: usize) -> Option<Quality>
     })
 }
 
+/// Gauges kept from estimating, ascending: the `n` that the others predict best, and for each the standard deviation of reading less
+/// prediction over that of the reading, `sqrt(1 + a' M_rest^-1 a)`.
+///
+/// They are chosen so that `det M_rest` is largest (greedily, then by exchange), which is the same as the smallest joint variance of
+/// the predictions. `None` where the rest would be singular.
+pub fn reserve(rows: &[Vec<f64>], prior: &[f64], k: usize, n: usize) -> Option<Vec<(usize, f64)>> {
+    let rest_of = |out: &[usize]| {
+        let mut m = prior.to_vec();
+        for (i, r) in rows.iter().enumerate() {
+            if !out.contains(&i) {
+                spd::add_outer(&mut m, r, 1.0);
+            }
+        }
+        spd::cholesky(&m, k)
+    };
+    let value = |out: &[usize]| rest_of(out).map(|l| spd::log_det(&l, k));
+    let best = |out: &[usize]| {
+        (0..rows.len())
+            .filter(|i| !out.contains(i))
+            .filter_map(|i| {
+                let mut with = out.to_vec();
+                with.push(i);
+                Some((i, value(&with)?))
+            })
+            .max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))
+    };
+    let mut out: Vec<usize> = Vec::new();
+    let mut now = f64::NEG_INFINITY;
+    for _ in 0..n {
+        let (i, v) = best(&out)?;
+        out.push(i);
+        now = v;
+    }
+    let mut gained = true;
+    while gained {
+        gained = false;
+        for slot in 0..out.len() {
+            let mut rest = out.clone();
+            rest.swap_remove(slot);
+            if let Some((i, v)) = best(&rest)
+                && v > now + 1e-12
+            {
+                rest.push(i);
+                (out, now, gained) = (rest, v, true);
+            }
+        }
+    }
+    out.sort_unstable();
+    let l = rest_of(&out)?;
+    let inverse = spd::gram_of_lower(&spd::inverse_lower(&l, k), k);
+    let mut u = vec![0.0; k];
+    Some(
+        out.into_iter()
+            .map(|i| {
+                spd::times(&inverse, &rows[i], &mut u);
+                (i, (1.0 + spd::dot(&rows[i], &u)).sqrt())
+            })
+            .collect(),
+    )
+}
+
+/// By gauge, the largest change of a load (in shares of its column's scale) for an error of one standard deviation of that gauge's
+/// reading: `max_l |(M^-1 a)_l|`.
+pub fn influence(rows: &[Vec<f64>], prior: &[f64], k: usize) -> Option<Vec<f64>> {
+    let mut m = prior.to_vec();
+    rows.iter().for_each(|r| spd::add_outer(&mut m, r, 1.0));
+    let l = spd::cholesky(&m, k)?;
+    let inverse = spd::gram_of_lower(&spd::inverse_lower(&l, k), k);
+    let mut u = vec![0.0; k];
+    Some(
+        rows.iter()
+            .map(|r| {
+                spd::times(&inverse, r, &mut u);
+                u.iter().fold(0.0, |a: f64, v| a.max(v.abs()))
+            })
+            .collect(),
+    )
+}
+
 /// The criterion of these rows with the prior; `None` where singular.
 pub fn value(rows: &[Vec<f64>], prior: &[f64], k: usize, criterion: &Criterion) -> Option<f64> {
     let mut m = prior.to_vec();

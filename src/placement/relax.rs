@@ -126,6 +126,15 @@ pub fn relax(
         let mut minv = std::mem::take(&mut state.point.inverse);
         let mut second = std::mem::take(&mut state.point.second);
         let linear = matches!(active.criterion, Criterion::Linear(_));
+        if active.criterion == Criterion::D {
+            let lists = Lists {
+                d: &state.d,
+                incoming: &incoming,
+                outgoing: &outgoing,
+            };
+            sweep_d(active, &lists, &mut minv, &mut weights, &mut slack);
+            incoming.clear();
+        }
         for &i in &incoming {
             let (i, gi) = (i as usize, active.group[i as usize] as usize);
             let ai = active.row(i);
@@ -181,6 +190,88 @@ pub fn relax(
     state.weights = weights;
     state.sweeps = done;
     Some(state)
+}
+
+/// Rows that may gain and lose weight in a sweep, by their slopes `d` at its start.
+struct Lists<'a> {
+    d: &'a [f64],
+    incoming: &'a [u32],
+    outgoing: &'a [u32],
+}
+
+/// A sweep for D: the slopes of the outgoing rows follow every step, so that a pair that takes none costs one scalar product.
+fn sweep_d(
+    active: &Active,
+    lists: &Lists,
+    minv: &mut [f64],
+    weights: &mut [f64],
+    slack: &mut [f64],
+) {
+    let k = active.k;
+    let (mut u, mut v) = (vec![0.0; k], vec![0.0; k]);
+    let mut now: Vec<f64> = lists
+        .outgoing
+        .iter()
+        .map(|&j| lists.d[j as usize])
+        .collect();
+    for &i in lists.incoming {
+        let (i, gi) = (i as usize, active.group[i as usize] as usize);
+        let ai = active.row(i);
+        spd::times(minv, ai, &mut u);
+        let mut di = spd::dot(ai, &u);
+        let mut tried = 0;
+        for (at, &j) in lists.outgoing.iter().enumerate() {
+            let (j, gj) = (j as usize, active.group[j as usize] as usize);
+            if i == j || weights[j] <= 0.0 {
+                continue;
+            }
+            let cap = if gi == gj {
+                weights[j]
+            } else {
+                weights[j].min(slack[gi])
+            };
+            if cap <= 0.0 {
+                continue;
+            }
+            if lists.d[j] >= lists.d[i] || tried > MAX_TRIES {
+                break;
+            }
+            tried += 1;
+            if di <= now[at] {
+                continue;
+            }
+            let pair = Pair {
+                di,
+                dj: now[at],
+                dij: spd::dot(active.row(j), &u),
+            };
+            let step = best_step(&pair, None, cap);
+            if step <= 0.0 || pair.det(step) <= 0.0 {
+                continue;
+            }
+            spd::times(minv, active.row(j), &mut v);
+            let [cu, cx, cv] = pair.change(step);
+            pair.apply(minv, step, &u, &v);
+            for (d, &q) in now.iter_mut().zip(lists.outgoing) {
+                let row = active.row(q as usize);
+                let (x, y) = (spd::dot(row, &u), spd::dot(row, &v));
+                *d -= cu * x * x + 2.0 * cx * x * y + cv * y * y;
+            }
+            let (x, y) = (cu * pair.di + cx * pair.dij, cx * pair.di + cv * pair.dij);
+            for (a, b) in u.iter_mut().zip(&v) {
+                *a -= x * *a + y * b;
+            }
+            di = spd::dot(ai, &u);
+            weights[i] += step;
+            weights[j] = if step >= weights[j] {
+                0.0
+            } else {
+                weights[j] - step
+            };
+            slack[gi] -= step;
+            slack[gj] += step;
+        }
+    }
 }
 
 /// Weight under which a row or a group counts as full.

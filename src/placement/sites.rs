@@ -1,21 +1,46 @@
-//! Candidates from the strain fields of unit loads: every surface of every shell allowed.
+//! Candidates from the strain fields of unit loads: every surface of every shell allowed, as single grids or as bridges.
 
 use super::candidates::{Angles, Candidates, Scatter};
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::fe::strain_tensor::Surface;
-use crate::gauge::{centre, shell_strain, to_side};
+use crate::fe::{CaseResult, PlaneStrain};
+use crate::gauge::{Bridge, centre, shell_strain, to_side};
 use crate::model::{Model, ShellIx};
 use crate::sensitivity::LoadCaseOf;
 
 /// A place where a gauge can go.
 pub type Site = (ShellIx, Surface);
 
-/// Candidates of these sites, columns times `scales` (the loads' expected sizes), strain in microstrain so that the scatter is too.
+/// Candidates of single grids at these sites, columns times `scales` (the loads' expected sizes), strain in microstrain so that the scatter
+/// is too.
 ///
 /// Positions are those of the surfaces. Sites without strain in some case must not be among them.
 pub fn candidates(
     model: &Model,
     sites: &[Site],
+    loads: &[LoadCaseOf],
+    scales: &[f64],
+    angles: Angles,
+    scatter: Scatter,
+) -> Candidates {
+    bridges(
+        model,
+        sites,
+        Bridge::Quarter,
+        loads,
+        scales,
+        angles,
+        scatter,
+    )
+}
+
+/// The same for gauges wired as `bridge` (bridge factor 1): readings are sums of signed arm strains.
+///
+/// A shear bridge is a candidate by the angle of its first grid: its axis lies [`axis_of`] that.
+pub fn bridges(
+    model: &Model,
+    sites: &[Site],
+    bridge: Bridge,
     loads: &[LoadCaseOf],
     scales: &[f64],
     angles: Angles,
@@ -33,10 +58,8 @@ pub fn candidates(
         })
         .collect();
     Candidates::from_tensors(k, sites.len(), angles, scatter, |place, out| {
-        let (shell, side) = sites[place];
         for (l, load) in loads.iter().enumerate() {
-            let strain =
-                shell_strain(load.case, shell, side, ShellPlace::Centre).unwrap_or_default();
+            let strain = wired(bridge, load.case, sites[place]).unwrap_or_default();
             let factor = scales[l] / load.applied / MICRO;
             for (c, v) in strain.iter().enumerate() {
                 out[3 * l + c] = v * factor;
@@ -44,6 +67,44 @@ pub fn candidates(
         }
     })
     .with_positions(positions)
+}
+
+/// The tensor whose strain along a direction a bridge with its grid in that direction reads, element frame, engineering shear.
+///
+/// Bending: this side less the other, once or twice. Shear: the strain along the first grid less that normal to it.
+pub fn wired(bridge: Bridge, case: &CaseResult, (shell, side): Site) -> Option<PlaneStrain> {
+    let here = shell_strain(case, shell, side, ShellPlace::Centre)?;
+    let other = || {
+        let opposite = match side {
+            Surface::Top => Surface::Bottom,
+            Surface::Bottom => Surface::Top,
+        };
+        shell_strain(case, shell, opposite, ShellPlace::Centre)
+    };
+    Some(match bridge {
+        Bridge::Quarter => here,
+        Bridge::HalfBending | Bridge::FullBending => {
+            let there = other()?;
+            let twice = if bridge == Bridge::FullBending {
+                2.0
+            } else {
+                1.0
+            };
+            std::array::from_fn(|i| twice * (here[i] - there[i]))
+        }
+        Bridge::Shear => {
+            let [x, y, g] = here;
+            [x - y, y - x, 2.0 * g]
+        }
+    })
+}
+
+/// The angle of a bridge's axis from the element x axis, given that of its first grid.
+pub fn axis_of(bridge: Bridge, angle: f64) -> f64 {
+    match bridge {
+        Bridge::Shear => angle - std::f64::consts::FRAC_PI_4,
+        _ => angle,
+    }
 }
 
 /// Strain in one microstrain.

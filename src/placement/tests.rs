@@ -1,3 +1,6 @@
+mod units;
+mod workshop;
+
 use super::candidates::{Angles, Candidates, Choice, Scatter};
 use super::{Criterion, Spec, place, quality, quartic};
 use crate::linalg::spd;

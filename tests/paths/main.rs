@@ -3,4 +3,6 @@
 mod cases;
 mod command;
 mod frame;
+mod placement;
+mod sites;
 mod wing;

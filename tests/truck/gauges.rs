@@ -124,6 +124,7 @@ pub fn careful() -> Scatter {
         angle_sd: 1.0_f64.to_radians(),
         model_rel: 0.05,
         extra: Vec::new(),
+        forms: Vec::new(),
     }
 }
 

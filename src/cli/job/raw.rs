@@ -61,6 +61,7 @@ pub(super) struct RawLoad {
     pub subcase: S<u32>,
     pub role: S<String>,
     pub expected: S<f64>,
+    pub weight: S<f64>,
 }
 
 #[derive(Deserialize, Default, Debug)]
@@ -98,7 +99,23 @@ pub(super) struct RawCandidates {
     pub surfaces: S<Vec<Spanned<String>>>,
     pub angle_step_deg: S<NumberOrWord>,
     pub grid_length: S<f64>,
-    pub bridge: S<String>,
+    pub bridge: S<Texts>,
+    pub rosette: S<String>,
+    pub sets: S<Ids>,
+    pub exclude_properties: S<Ids>,
+    pub exclude_elements: S<Ids>,
+    pub boxes: S<Vec<Vec<[f64; 2]>>>,
+    pub exclude_boxes: S<Vec<Vec<[f64; 2]>>>,
+    pub clear_of: Option<RawClear>,
+}
+
+#[derive(Deserialize, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawClear {
+    pub edges: S<f64>,
+    pub joints: S<f64>,
+    pub loads: S<f64>,
+    pub attachments: S<f64>,
 }
 
 #[derive(Deserialize, Default, Debug)]
@@ -111,6 +128,17 @@ pub(super) struct RawPlacement {
     pub angle_tolerance_deg: S<f64>,
     pub model_uncertainty_rel: S<f64>,
     pub seed: S<u64>,
+    pub position_tolerance: S<f64>,
+    pub gauge_factor_rel: S<f64>,
+    pub noise_by_bridge: BTreeMap<Spanned<String>, Spanned<f64>>,
+    pub loss: S<String>,
+    pub keep: S<Texts>,
+    pub symmetric: S<String>,
+    pub costs: BTreeMap<Spanned<String>, Spanned<f64>>,
+    pub budget: S<f64>,
+    pub curve: S<Counts>,
+    pub reserve: S<u32>,
+    pub references: BTreeMap<String, u32>,
 }
 
 #[derive(Deserialize, Default, Debug)]

@@ -149,6 +149,8 @@ pub struct JobLoad {
     pub role: Role,
     /// Prior standard deviation, job units.
     pub expected: Option<f64>,
+    /// How much its variance counts in criterion A; default 1.
+    pub weight: f64,
     /// Line of the job.
     pub line: u32,
 }
@@ -319,8 +321,48 @@ pub struct Candidates {
     pub angles: AngleStep,
     /// Grid length of the gauges to be placed.
     pub grid_length: f64,
+    /// Wirings to choose from; default quarter bridges alone.
+    pub bridges: Vec<Bridge>,
+    /// Rosettes too.
+    pub rosette: Option<Rosette>,
+    /// SETs of the deck's case control that name the elements; `None`: not limited so.
+    pub sets: Option<Ids>,
+    /// Properties left out.
+    pub exclude_properties: Option<Ids>,
+    /// Elements left out.
+    pub exclude_elements: Option<Ids>,
+    /// Boxes in which gauges may sit; empty: anywhere.
+    pub boxes: Vec<Region>,
+    /// Boxes in which they may not.
+    pub exclude_boxes: Vec<Region>,
+    /// Least distances, job units.
+    pub clear: Clearances,
     /// Line of the job; 0 where the section is absent.
     pub line: u32,
+}
+
+/// `clear_of` of `[candidates]`: least distances, 0 where not stated.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Clearances {
+    /// From free edges and rims of holes.
+    pub edges: f64,
+    /// From edges where plates meet: welds.
+    pub joints: f64,
+    /// From grids at which loads act.
+    pub loads: f64,
+    /// From grids that rigid elements, RBE3 and bushes hold.
+    pub attachments: f64,
+}
+
+/// Gauges of the job that stay.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Keep {
+    /// None: the layout is new.
+    None,
+    /// All of them.
+    All,
+    /// These.
+    Named(Vec<String>),
 }
 
 /// What placement maximises.
@@ -330,6 +372,25 @@ pub enum Criterion {
     D,
     /// Determinant for the wanted loads, nuisance loads estimated along.
     Ds,
+    /// Least sum of the wanted loads' weighed variances, each in shares of its expected size.
+    A,
+    /// Least mean variance of the strain predicted at the candidates.
+    I,
+    /// Determinant for all loads, each known beforehand to its expected size.
+    BayesianD,
+}
+
+impl Criterion {
+    /// As in a job.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::D => "D",
+            Self::Ds => "Ds",
+            Self::A => "A",
+            Self::I => "I",
+            Self::BayesianD => "Bayesian-D",
+        }
+    }
 }
 
 /// `[placement]`.
@@ -349,6 +410,28 @@ pub struct Placement {
     pub model_uncertainty_rel: f64,
     /// Seed of everything random.
     pub seed: u64,
+    /// Misplacement along each direction, 1 sd, job units; default 0.
+    pub position_tolerance: f64,
+    /// Tolerance of the gauge factor, 1 sd, a fraction; default 0.
+    pub gauge_factor_rel: f64,
+    /// Noise of a wiring's reading, microstrain, where it is not `noise_microstrain`.
+    pub noise_by_bridge: Vec<(Bridge, f64)>,
+    /// Whether the layout is chosen for what is left after the worst loss of a gauge.
+    pub loss: crate::placement::Loss,
+    /// Gauges of the job that stay; `gauges` counts those to be added.
+    pub keep: Keep,
+    /// Pairs that mirror each other at the plane through 0 normal to this axis (0 to 2).
+    pub symmetric: Option<usize>,
+    /// Cost of a wiring's name (`quarter`, .., `rosette`) in channels; default 1, a rosette 3.
+    pub costs: Vec<(String, f64)>,
+    /// What a layout may cost; default: `gauges`.
+    pub budget: Option<f64>,
+    /// Numbers of gauges for the curve; empty: none is drawn.
+    pub curve: Vec<usize>,
+    /// Gauges reserved for validation.
+    pub reserve: usize,
+    /// Named reference points of the gluing sheet: grids.
+    pub references: Vec<(String, u32)>,
     /// Line of the job; 0 where the section is absent.
     pub line: u32,
 }

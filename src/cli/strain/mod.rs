@@ -6,7 +6,7 @@ mod given;
 mod units;
 
 pub use fields::{Fields, read_fields, unit_loads};
-pub use gauges::{lay_gauges, side, spec_of};
+pub use gauges::{lay_gauges, side, spec_of, without_strain};
 pub use given::read_given;
 pub use units::{LoadUnits, load_units};
 
@@ -43,7 +43,7 @@ pub fn prepare(session: &mut Session, job: &Job) -> Result<Prepared, Faults> {
         let fields = read_fields(session, job)?;
         let gauges = lay_gauges(session, job, &fields)?;
         let sensitivity = from_cases(&gauges, &fields.load_cases(job))
-            .map_err(|missing| gauges::without_strain(job, &missing))?;
+            .map_err(|missing| without_strain(job, &missing))?;
         Prepared {
             sensitivity,
             fields: Some(fields),

@@ -5,7 +5,7 @@ use super::pool::{Prepared, on_model};
 use crate::cli::Session;
 use crate::cli::fault::{Fault, Faults};
 use crate::cli::job::{Criterion, Job, Role, Study};
-use crate::cli::place::{allowed_sites, angles, column_order, scales};
+use crate::cli::place::{allowed_sites, angles, column_order, scales, scatter};
 use crate::finding::{Finding, Severity};
 use crate::gauge::GaugeSpec;
 use crate::placement::candidates::{Angles, Candidates, Choice, Scatter};
@@ -207,17 +207,13 @@ impl Wide {
         };
         let cases = fields.load_cases(job);
         let (common, _) = common_shells(&cases);
-        let sites = allowed_sites(job, fields.model(), &common)?;
+        let sites = allowed_sites(job, fields, &common)?;
         let sizes = scales(session, &cases, &common);
         let order = column_order(job);
         let (led, led_scales): (Vec<LoadCaseOf>, Vec<f64>) =
             order.iter().map(|&l| (cases[l].clone(), sizes[l])).unzip();
-        let scatter = Scatter {
-            noise: job.placement.noise_microstrain,
-            angle_sd: job.placement.angle_tolerance_deg.to_radians(),
-            model_rel: job.placement.model_uncertainty_rel,
-            extra: Vec::new(),
-        };
+        let quarter = crate::cli::job::Bridge::Quarter;
+        let scatter = scatter(job, fields.model(), &sites, quarter, &led, &led_scales);
         let candidates = candidates(
             fields.model(),
             &sites,

@@ -16,4 +16,6 @@ pub use page::{Section, drawing_section, number, page, table, table_section};
 pub use pages::{RecoveredRun, place_page, recover_page, sensitivity_page};
 pub use solution::solution_page;
 pub use svg::{interval_bars, measured_against_predicted, model_with_gauges};
-pub use tables::{PlacedGauge, gauges_csv, gluing_sheet_csv, gluing_sheet_md, sensitivity_csv};
+pub use tables::{
+    PlacedGauge, Role, gauges_csv, gluing_sheet_csv, gluing_sheet_md, sensitivity_csv,
+};

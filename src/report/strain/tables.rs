@@ -6,6 +6,25 @@ use crate::model::Model;
 use crate::sensitivity::Sensitivity;
 use std::io::{self, Write};
 
+/// What a gauge is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Loads are estimated with it.
+    Estimate,
+    /// It is kept from estimating: the others predict it.
+    Validation,
+}
+
+impl Role {
+    /// The word of files and reports.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Estimate => "estimate",
+            Self::Validation => "validation",
+        }
+    }
+}
+
 /// A gauge that placement chose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlacedGauge {
@@ -15,8 +34,18 @@ pub struct PlacedGauge {
     pub leverage: f64,
     /// Sum of its strains under the expected loads, microstrain.
     pub expected_microstrain: f64,
-    /// Nearest grid at which a load acts, and the way from there, basic frame.
-    pub reference: Option<(u32, [f64; 3])>,
+    /// Nearest reference point, and the way from there, basic frame.
+    pub reference: Option<(String, [f64; 3])>,
+    /// Wiring.
+    pub bridge: &'static str,
+    /// What it is for.
+    pub role: Role,
+    /// The error of its angle, degrees, that moves some load by 5 % of its expected size; `None`: none does.
+    pub angle_budget_deg: Option<f64>,
+    /// The same for its place, model units.
+    pub position_budget: Option<f64>,
+    /// By load, its strain when that load has its expected size, microstrain.
+    pub by_load: Vec<(String, f64)>,
 }
 
 impl PlacedGauge {
@@ -58,14 +87,14 @@ pub fn sensitivity_csv(out: &mut dyn Write, s: &Sensitivity) -> io::Result<()> {
 pub fn gauges_csv(out: &mut dyn Write, placed: &[PlacedGauge]) -> io::Result<()> {
     writeln!(
         out,
-        "name,element,surface,dir_x,dir_y,dir_z,angle_deg,x,y,z,angle_from_element_x_deg,angle_seen_deg,leverage"
+        "name,element,surface,dir_x,dir_y,dir_z,angle_deg,x,y,z,bridge,angle_from_element_x_deg,angle_seen_deg,leverage,role"
     )?;
     for p in placed {
         let g = &p.gauge;
         let (d, x) = (g.direction, g.position);
         writeln!(
             out,
-            "{},{},{},{},{},{},0,{},{},{},{:.4},{:.4},{:.6}",
+            "{},{},{},{},{},{},0,{},{},{},{},{:.4},{:.4},{:.6},{}",
             g.name,
             g.element,
             g.surface.word(),
@@ -75,9 +104,11 @@ pub fn gauges_csv(out: &mut dyn Write, placed: &[PlacedGauge]) -> io::Result<()>
             x.x,
             x.y,
             x.z,
+            p.bridge,
             g.angle_rad.to_degrees(),
             p.angle_seen_deg(),
-            p.leverage
+            p.leverage,
+            p.role.word()
         )?;
     }
     Ok(())
@@ -109,10 +140,14 @@ pub fn gluing_sheet_csv(
     placed: &[PlacedGauge],
     model: &Model,
 ) -> io::Result<()> {
-    writeln!(
+    write!(
         out,
-        "name,element,side,x,y,z,from_grid,dx,dy,dz,axis_x,axis_y,axis_z,outward_x,outward_y,outward_z,angle_seen_deg,expected_microstrain,corner_grids,corner_distances"
+        "name,element,side,x,y,z,from_grid,dx,dy,dz,axis_x,axis_y,axis_z,outward_x,outward_y,outward_z,angle_seen_deg,expected_microstrain,corner_grids,corner_distances,bridge,role,angle_budget_deg,position_budget"
     )?;
+    for (load, _) in placed.first().map_or(&[][..], |p| &p.by_load) {
+        write!(out, ",range_{load}_microstrain")?;
+    }
+    writeln!(out)?;
     for p in placed {
         let g = &p.gauge;
         let outward = match g.surface {
@@ -121,9 +156,8 @@ pub fn gluing_sheet_csv(
         };
         let (grid, way) = p
             .reference
-            .map_or((String::new(), [f64::NAN; 3]), |(id, v)| {
-                (id.to_string(), v)
-            });
+            .clone()
+            .unwrap_or((String::new(), [f64::NAN; 3]));
         let way = way.map(|v| {
             if v.is_finite() {
                 format!("{v:.2}")
@@ -134,9 +168,10 @@ pub fn gluing_sheet_csv(
         let corners = corner_distances(model, g);
         let ids: Vec<String> = corners.iter().map(|c| c.0.to_string()).collect();
         let far: Vec<String> = corners.iter().map(|c| format!("{:.2}", c.1)).collect();
-        writeln!(
+        let budget = |b: Option<f64>| b.map_or(String::new(), |v| format!("{v:.2}"));
+        write!(
             out,
-            "{},{},{},{:.3},{:.3},{:.3},{grid},{},{},{},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5},{:.1},{:.1},{},{}",
+            "{},{},{},{:.3},{:.3},{:.3},{grid},{},{},{},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5},{:.1},{:.1},{},{},{},{},{},{}",
             g.name,
             g.element,
             g.surface.word(),
@@ -155,8 +190,16 @@ pub fn gluing_sheet_csv(
             p.angle_seen_deg(),
             p.expected_microstrain,
             ids.join(" "),
-            far.join(" ")
+            far.join(" "),
+            p.bridge,
+            p.role.word(),
+            budget(p.angle_budget_deg),
+            budget(p.position_budget)
         )?;
+        for (_, strain) in &p.by_load {
+            write!(out, ",{:.1}", strain.abs())?;
+        }
+        writeln!(out)?;
     }
     Ok(())
 }
@@ -168,20 +211,21 @@ pub fn gluing_sheet_md(title: &str, placed: &[PlacedGauge], model: &Model) -> St
     t.push_str(
         "Strain is what the expected loads add up to: choose the amplifier's range above it.\n\n",
     );
-    t.push_str("| gauge | element | side | position | from grid | axis | outward | angle seen, deg | strain, microstrain |\n|---|---|---|---|---|---|---|---|---|\n");
+    t.push_str("Budgets are the errors of angle and place that move some load by 5 % of its expected size.\n\n");
+    t.push_str("| gauge | element | side | position | from | axis | outward | angle seen, deg | strain, microstrain | wiring | budget, deg | budget, length |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     for p in placed {
         let g = &p.gauge;
         let outward = match g.surface {
             Surface::Top => g.normal,
             Surface::Bottom => -g.normal,
         };
-        let from = p.reference.map_or(String::new(), |(id, v)| {
+        let from = p.reference.as_ref().map_or(String::new(), |(id, v)| {
             format!("{id}: {:+.1} {:+.1} {:+.1}", v[0], v[1], v[2])
         });
         let three =
             |v: crate::model::Vec3, d: usize| format!("{:.d$} {:.d$} {:.d$}", v.x, v.y, v.z);
         t.push_str(&format!(
-            "| {} | {} | {} | {} | {from} | {} | {} | {:.1} | {:.0} |\n",
+            "| {} | {} | {} | {} | {from} | {} | {} | {:.1} | {:.0} | {}{} | {} | {} |\n",
             g.name,
             g.element,
             g.surface.word(),
@@ -189,7 +233,17 @@ pub fn gluing_sheet_md(title: &str, placed: &[PlacedGauge], model: &Model) -> St
             three(g.direction, 3),
             three(outward, 3),
             p.angle_seen_deg(),
-            p.expected_microstrain
+            p.expected_microstrain,
+            p.bridge,
+            if p.role == Role::Validation {
+                ", validation"
+            } else {
+                ""
+            },
+            p.angle_budget_deg
+                .map_or("any".into(), |v| format!("{v:.1}")),
+            p.position_budget
+                .map_or("any".into(), |v| format!("{v:.1}"))
         ));
     }
     t.push_str("\nDistance of each gauge from the corners of its element (grid: distance):\n\n");

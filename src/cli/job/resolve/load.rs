@@ -64,6 +64,7 @@ fn load(c: &mut Collector, section: &Spanned<RawLoad>, number: u32) -> Option<Jo
         number,
         role,
         expected,
+        weight: c.positive(&raw.weight, "load.weight").unwrap_or(1.0),
         line: c.line(section),
     })
 }

@@ -2,8 +2,9 @@
 
 use super::super::faults::Collector;
 use super::super::raw::{RawCandidates, RawPlacement, RawStudy};
-use super::super::shapes::NumberOrWord;
+use super::super::shapes::{NumberOrWord, Texts};
 use super::super::types::*;
+use crate::placement::Loss;
 use toml::Spanned;
 
 /// Noise of a strain channel where the job says nothing, microstrain.
@@ -26,6 +27,14 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
         surfaces: vec![Surface::Top, Surface::Bottom],
         angles: AngleStep::Degrees(DEFAULT_ANGLE_STEP_DEG),
         grid_length: 0.0,
+        bridges: vec![Bridge::Quarter],
+        rosette: None,
+        sets: None,
+        exclude_properties: None,
+        exclude_elements: None,
+        boxes: Vec::new(),
+        exclude_boxes: Vec::new(),
+        clear: Clearances::default(),
         line: 0,
     };
     let Some(section) = raw else { return out };
@@ -75,9 +84,62 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
         .at_least_zero(&raw.grid_length, "candidates.grid_length")
         .unwrap_or(0.0);
     if let Some(b) = &raw.bridge {
-        c.choose_at(b, "candidates.bridge", &[("quarter", ())]);
+        let words = match b.get_ref() {
+            Texts::One(w) => vec![w.clone()],
+            Texts::Many(list) => list.clone(),
+        };
+        let choices = Bridge::ALL.map(|b| (b.name(), b));
+        out.bridges = words
+            .into_iter()
+            .filter_map(|w| c.choose_at(&Spanned::new(b.span(), w), "candidates.bridge", &choices))
+            .collect();
+        out.bridges.dedup();
+        if out.bridges.is_empty() && raw.rosette.is_none() {
+            let wrong = "no wiring to choose from";
+            c.fault(b, "candidates.bridge", wrong, "name `quarter`, for one");
+        }
+    }
+    out.rosette = raw.rosette.as_ref().and_then(|r| {
+        let choices = [
+            ("rectangular", Rosette::Rectangular),
+            ("delta", Rosette::Delta),
+        ];
+        c.choose_at(r, "candidates.rosette", &choices)
+    });
+    let ids = |s: &Option<Spanned<Ids>>| s.as_ref().map(|v| v.get_ref().clone());
+    out.sets = ids(&raw.sets);
+    out.exclude_properties = ids(&raw.exclude_properties);
+    out.exclude_elements = ids(&raw.exclude_elements);
+    out.boxes = boxes(c, &raw.boxes, "candidates.boxes");
+    out.exclude_boxes = boxes(c, &raw.exclude_boxes, "candidates.exclude_boxes");
+    if let Some(clear) = &raw.clear_of {
+        let mut least =
+            |v: &Option<Spanned<f64>>, key: &str| c.at_least_zero(v, key).unwrap_or(0.0);
+        out.clear = Clearances {
+            edges: least(&clear.edges, "candidates.clear_of.edges"),
+            joints: least(&clear.joints, "candidates.clear_of.joints"),
+            loads: least(&clear.loads, "candidates.clear_of.loads"),
+            attachments: least(&clear.attachments, "candidates.clear_of.attachments"),
+        };
     }
     out
+}
+
+/// Boxes of two or three ranges, each low before high.
+fn boxes(c: &mut Collector, raw: &Option<Spanned<Vec<Vec<[f64; 2]>>>>, key: &str) -> Vec<Region> {
+    let Some(list) = raw else { return Vec::new() };
+    for b in list.get_ref() {
+        let ranges = (2..=3).contains(&b.len());
+        if !ranges || b.iter().any(|[low, high]| !(low <= high)) {
+            c.fault(
+                list,
+                key,
+                "a box is two or three ranges [low, high]",
+                "write [[[0, 1000], [-50, 50], [0, 300]]]",
+            );
+        }
+    }
+    list.get_ref().clone()
 }
 
 pub(super) fn placement(
@@ -93,6 +155,17 @@ pub(super) fn placement(
         angle_tolerance_deg: 0.0,
         model_uncertainty_rel: 0.0,
         seed: 1,
+        position_tolerance: 0.0,
+        gauge_factor_rel: 0.0,
+        noise_by_bridge: Vec::new(),
+        loss: Loss::Judged,
+        keep: Keep::None,
+        symmetric: None,
+        costs: Vec::new(),
+        budget: None,
+        curve: Vec::new(),
+        reserve: 0,
+        references: Vec::new(),
         line: 0,
     };
     let Some(section) = raw else { return out };
@@ -102,7 +175,14 @@ pub(super) fn placement(
     out.criterion = c.choose(
         &raw.criterion,
         "placement.criterion",
-        &[("D", Criterion::D), ("Ds", Criterion::Ds)],
+        &[
+            Criterion::D,
+            Criterion::Ds,
+            Criterion::A,
+            Criterion::I,
+            Criterion::BayesianD,
+        ]
+        .map(|k| (k.name(), k)),
         criterion,
     );
     out.spacing = c
@@ -121,6 +201,55 @@ pub(super) fn placement(
         )
         .unwrap_or(0.0);
     out.seed = raw.seed.as_ref().map_or(1, |s| *s.get_ref());
+    out.position_tolerance = c
+        .at_least_zero(&raw.position_tolerance, "placement.position_tolerance")
+        .unwrap_or(0.0);
+    out.gauge_factor_rel = c
+        .at_least_zero(&raw.gauge_factor_rel, "placement.gauge_factor_rel")
+        .unwrap_or(0.0);
+    let bridges = Bridge::ALL.map(|b| (b.name(), b));
+    for (name, noise) in &raw.noise_by_bridge {
+        let key = "placement.noise_by_bridge";
+        let bridge = c.choose_at(name, key, &bridges);
+        let noise = c.positive(&Some(noise.clone()), key);
+        out.noise_by_bridge.extend(bridge.zip(noise));
+    }
+    let kinds: Vec<(&str, &str)> = Bridge::ALL
+        .iter()
+        .map(|b| (b.name(), b.name()))
+        .chain([("rosette", "rosette")])
+        .collect();
+    for (name, cost) in &raw.costs {
+        let kind = c.choose_at(name, "placement.costs", &kinds);
+        let cost = c.positive(&Some(cost.clone()), "placement.costs");
+        out.costs.extend(kind.map(str::to_owned).zip(cost));
+    }
+    out.budget = c.positive(&raw.budget, "placement.budget");
+    out.loss = c.choose(
+        &raw.loss,
+        "placement.loss",
+        &[("judge", Loss::Judged), ("optimise", Loss::Optimised)],
+        Loss::Judged,
+    );
+    out.keep = match raw.keep.as_ref().map(Spanned::get_ref) {
+        None => Keep::None,
+        Some(Texts::One(w)) if w == "all" => Keep::All,
+        Some(Texts::One(w)) => Keep::Named(vec![w.clone()]),
+        Some(Texts::Many(list)) => Keep::Named(list.clone()),
+    };
+    out.symmetric = raw
+        .symmetric
+        .as_ref()
+        .and_then(|s| c.choose_at(s, "placement.symmetric", &[("x", 0), ("y", 1), ("z", 2)]));
+    out.curve = raw.curve.as_ref().map_or_else(Vec::new, |n| {
+        n.get_ref().0.iter().map(|n| *n as usize).collect()
+    });
+    out.reserve = raw.reserve.as_ref().map_or(0, |n| *n.get_ref() as usize);
+    out.references = raw
+        .references
+        .iter()
+        .map(|(name, grid)| (name.clone(), *grid))
+        .collect();
     out
 }
 

@@ -1,0 +1,189 @@
+//! Layouts that survive the loss of any one gauge: exchange that raises the determinant left after the worst loss.
+//!
+//! With `h_q` the leverages, losing gauge `q` multiplies `det M` by `1 - h_q`; the search raises `ln det M + ln(1 - max h)`.
+
+use super::exchange::Effort;
+use super::relax::Active;
+use crate::linalg::spd;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+
+/// Gain in `ln det` under which an exchange is rounding error.
+const LEAST_GAIN: f64 = 1e-9;
+/// Leverage that counts as 1: that gauge may not be lost.
+const WHOLE: f64 = 1.0 - 1e-9;
+
+/// `ln det` that is left after the worst loss of one of these rows; `None` where that is singular.
+pub fn after_worst_loss(active: &Active, prior: &[f64], rows: &[usize]) -> Option<f64> {
+    let k = active.k;
+    let mut m = prior.to_vec();
+    rows.iter()
+        .for_each(|&i| spd::add_outer(&mut m, active.row(i), 1.0));
+    let l = spd::cholesky(&m, k)?;
+    let inverse = spd::gram_of_lower(&spd::inverse_lower(&l, k), k);
+    let mut u = vec![0.0; k];
+    let worst = rows.iter().fold(0.0_f64, |h, &i| {
+        spd::times(&inverse, active.row(i), &mut u);
+        h.max(spd::dot(active.row(i), &u))
+    });
+    (worst < WHOLE).then(|| spd::log_det(&l, k) + (1.0 - worst).ln())
+}
+
+/// The best rows found from `start`, with what is left after their worst loss; `None` where every layout met has a gauge that may not fail.
+pub fn search(
+    active: &Active,
+    prior: &[f64],
+    start: &[usize],
+    excludes: &(impl Fn(usize, usize) -> bool + Sync),
+    effort: Effort,
+) -> Option<(Vec<usize>, f64)> {
+    let (starts, kicks) = if active.k > MANY_LOADS {
+        (2, 2)
+    } else {
+        (effort.starts.max(1), effort.kicks.min(MOST_KICKS))
+    };
+    // Each start is a climb of its own, then kicks of what it found.
+    let found: Vec<Option<(Vec<usize>, f64)>> = (0..starts)
+        .into_par_iter()
+        .map(|n| {
+            let mut rng = ChaCha8Rng::seed_from_u64(effort.seed.wrapping_add(n as u64));
+            let first = if n == 0 {
+                start.to_vec()
+            } else {
+                moved(active, start, start.len(), excludes, &mut rng)
+            };
+            let mut best = climb(active, prior, first, excludes);
+            for _ in 0..kicks {
+                let from = best.as_ref().map_or(start, |b| &b.0);
+                let count = 1 + rng.random_range(0..2);
+                let rows = moved(active, from, count, excludes, &mut rng);
+                let next = climb(active, prior, rows, excludes);
+                best = better(best, next);
+            }
+            best
+        })
+        .collect();
+    found.into_iter().fold(None, better)
+}
+
+type Found = Option<(Vec<usize>, f64)>;
+
+fn better(a: Found, b: Found) -> Found {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(if b.1 > a.1 { b } else { a }),
+        (a, b) => a.or(b),
+    }
+}
+
+/// Loads from which the search is short.
+const MANY_LOADS: usize = 12;
+
+/// A layout with `count` gauges moved to random rows, where those fit.
+fn moved(
+    active: &Active,
+    from: &[usize],
+    count: usize,
+    excludes: &(impl Fn(usize, usize) -> bool + Sync),
+    rng: &mut ChaCha8Rng,
+) -> Vec<usize> {
+    let mut rows = from.to_vec();
+    for n in 0..count {
+        let slot = if count == rows.len() {
+            n
+        } else {
+            rng.random_range(0..rows.len())
+        };
+        let i = rng.random_range(0..active.len());
+        let mut rest = rows.iter().enumerate().filter(|(q, _)| *q != slot);
+        if rest.all(|(_, &r)| !excludes(i, r)) {
+            rows[slot] = i;
+        }
+    }
+    rows
+}
+
+/// Kicks of a search; each costs a few sweeps.
+const MOST_KICKS: usize = 20;
+
+fn climb(
+    active: &Active,
+    prior: &[f64],
+    mut rows: Vec<usize>,
+    excludes: &(impl Fn(usize, usize) -> bool + Sync),
+) -> Option<(Vec<usize>, f64)> {
+    let mut now = after_worst_loss(active, prior, &rows).unwrap_or(f64::NEG_INFINITY);
+    for _ in 0..50 {
+        let before = now;
+        for slot in 0..rows.len() {
+            let rest: Vec<usize> = rows
+                .iter()
+                .enumerate()
+                .filter(|(q, _)| *q != slot)
+                .map(|(_, &r)| r)
+                .collect();
+            let Some((i, value)) = best_beside(active, prior, &rest, excludes) else {
+                continue;
+            };
+            if value > now + LEAST_GAIN {
+                (rows[slot], now) = (i, value);
+            }
+        }
+        if !(now - before > LEAST_GAIN) {
+            break;
+        }
+    }
+    now.is_finite().then_some((rows, now))
+}
+
+/// The row that leaves most after the worst loss when it joins `rest`.
+fn best_beside(
+    active: &Active,
+    prior: &[f64],
+    rest: &[usize],
+    excludes: &(impl Fn(usize, usize) -> bool + Sync),
+) -> Option<(usize, f64)> {
+    let k = active.k;
+    let mut m = prior.to_vec();
+    rest.iter()
+        .for_each(|&i| spd::add_outer(&mut m, active.row(i), 1.0));
+    let l = spd::cholesky(&m, k)?;
+    let inverse = spd::gram_of_lower(&spd::inverse_lower(&l, k), k);
+    let base = spd::log_det(&l, k);
+    let solved: Vec<Vec<f64>> = rest
+        .iter()
+        .map(|&q| {
+            let mut u = vec![0.0; k];
+            spd::times(&inverse, active.row(q), &mut u);
+            u
+        })
+        .collect();
+    let d: Vec<f64> = rest
+        .iter()
+        .zip(&solved)
+        .map(|(&q, u)| spd::dot(active.row(q), u))
+        .collect();
+    let mut u = vec![0.0; k];
+    let mut best = None;
+    for i in 0..active.len() {
+        if rest.iter().any(|&r| excludes(i, r)) {
+            continue;
+        }
+        let row = active.row(i);
+        spd::times(&inverse, row, &mut u);
+        let own = spd::dot(row, &u);
+        let add = 1.0 / (1.0 + own);
+        let mut worst = own * add;
+        for (v, d) in solved.iter().zip(&d) {
+            let x = spd::dot(row, v);
+            worst = worst.max(d - add * x * x);
+        }
+        if worst < WHOLE {
+            let value = base + own.ln_1p() + (1.0 - worst).ln();
+            if best.is_none_or(|(_, b)| value > b) {
+                best = Some((i, value));
+            }
+        }
+    }
+    best
+}
