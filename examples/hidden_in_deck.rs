@@ -334,6 +334,11 @@ fn write(case: &Hidden, shared: &Path, folder: &Path) -> PathBuf {
         .replace(
             "model_uncertainty_rel = 0.02",
             "model_uncertainty_rel = 0.01",
+        )
+        // What the background is made of is what a workshop declares.
+        .replace(
+            "[reconcile]\n",
+            "[reconcile]\ntolerance = { angle_deg = 1.0 }\n",
         );
     if f.payload_weight == PayloadWeight::Missing {
         job = job.replace("weight_in_model = true", "weight_in_model = false");

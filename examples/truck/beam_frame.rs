@@ -47,6 +47,7 @@ pub fn build(truck: &Truck, deck: &mut DeckText) -> Frame {
     }
     let mut points = Vec::new();
     for (side, sign, pid) in [(Side::Left, -1.0, LEFT), (Side::Right, 1.0, RIGHT)] {
+        // The bar's own z axis points to the left: C and D are the corners at the web, E and F the tips of the lower and upper flange.
         for zone in 0..=rails.zone_bounds_in.len() as u32 {
             deck.card(
                 "PBAR",
@@ -60,13 +61,13 @@ pub fn build(truck: &Truck, deck: &mut DeckText) -> Frame {
                     "",
                     "",
                     h,
-                    sign * c,
+                    -sign * c,
                     -h,
-                    sign * c,
+                    -sign * c,
+                    -h,
+                    sign * f,
                     h,
-                    -sign * f,
-                    -h,
-                    -sign * f
+                    sign * f
                 ],
             );
         }

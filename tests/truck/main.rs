@@ -21,6 +21,7 @@ mod shell_frame;
 
 mod ballast;
 mod gauges;
+mod model_bias;
 mod nuisance;
 mod other_model;
 mod own_model;

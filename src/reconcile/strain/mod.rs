@@ -1,6 +1,7 @@
 //! The static strain path: frame, exact prediction, covariance, evidence.
 
 mod adequacy;
+mod bias;
 mod covariance;
 mod detect;
 mod examine;

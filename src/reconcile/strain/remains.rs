@@ -1,6 +1,7 @@
 //! What remains after the best explanation, in words: which gauges, which runs, how it grows with load.
 
 use super::adequacy::Adequacy;
+use super::bias::model_bias;
 use super::covariance::Selection;
 use super::frame::StrainFrame;
 use super::gap::rms;
@@ -15,9 +16,11 @@ pub fn remains(
     after: &Adequacy,
     strange: Option<&str>,
 ) -> String {
-    match strange {
-        Some(words) => format!("{words}; then: {}", beyond(frame, members, after)),
-        None => beyond(frame, members, after),
+    let rest = beyond(frame, members, after);
+    match (strange, strange.and_then(|_| model_bias(frame))) {
+        (Some(words), Some(bias)) => format!("{bias}; or {words}; then: {rest}"),
+        (Some(words), None) => format!("{words}; then: {rest}"),
+        (None, _) => rest,
     }
 }
 
