@@ -84,6 +84,7 @@ struct Glued {
     element: u32,
     surface: Surface,
     direction: Vec3,
+    angle_deg: f64,
     other: Option<(u32, Surface)>,
 }
 
@@ -105,6 +106,7 @@ fn glued(csv: &str) -> Vec<Glued> {
             element: f[7].parse().expect("an element"),
             surface: side(f[8]),
             direction: Vec3::new(number(9), number(10), number(11)),
+            angle_deg: number(5),
             other: f
                 .get(12)
                 .and_then(|e| e.parse().ok())
@@ -119,7 +121,7 @@ fn laid(model: &Model, g: &Glued, degrees: f64) -> Gauge {
     let spec = GaugeSpec {
         surface: Some(g.surface),
         direction: Some(g.direction),
-        angle_rad: degrees.to_radians(),
+        angle_rad: (g.angle_deg + degrees).to_radians(),
         bridge: if g.full {
             Bridge::FullBending
         } else {

@@ -4,13 +4,14 @@ use super::fault::Faults;
 use super::vehicle::{VehicleRecords, read_vehicle, vehicle_fault};
 use super::{JobArguments, Session, job};
 use crate::report::vehicle::{
-    Curve, identify_page, write_parameters, write_restoring_force, write_wheel_forces,
+    Curve, identify_page, restoring_curves, write_parameters, write_restoring_force,
+    write_wheel_forces,
 };
 use crate::series::channels::Channels;
 use crate::series::welch::cross_spectra;
 use crate::units::ReportUnits;
 use crate::vehicle::identify::{Identification, identify};
-use crate::vehicle::loads::{LoadHistory, link_forces, static_loads, wheel_force_history};
+use crate::vehicle::loads::{LoadHistory, static_loads, wheel_force_history};
 use crate::vehicle::motion::{Motion, Treatment, motion};
 use crate::vehicle::stretch::slow_stretches;
 use serde::Serialize;
@@ -219,32 +220,4 @@ fn spectrum_curves(history: &LoadHistory, motion: &Motion) -> Vec<Curve> {
             }
         })
         .collect()
-}
-
-/// Mean link force over bins of stretch.
-fn restoring_curves(found: &Identification, motion: &Motion) -> Vec<Curve> {
-    const BINS: usize = 41;
-    let forces = link_forces(&found.vehicle, &found.values, motion);
-    let mut out = Vec::new();
-    for (l, link) in found.vehicle.links.iter().enumerate() {
-        let d = &motion.stretch[l];
-        let largest = d.iter().fold(0.0f64, |a, b| a.max(b.abs()));
-        let mut sums = vec![(0.0, 0usize); BINS];
-        for (d, f) in d.iter().zip(&forces[l]).filter(|(_, f)| f.is_finite()) {
-            let bin = (((d / largest + 1.0) / 2.0 * BINS as f64) as usize).min(BINS - 1);
-            sums[bin].0 += f;
-            sums[bin].1 += 1;
-        }
-        let used: Vec<usize> = (0..BINS).filter(|&i| sums[i].1 > 0).collect();
-        out.push(Curve {
-            name: link.name.clone(),
-            x: used
-                .iter()
-                .map(|&i| ((i as f64 + 0.5) / BINS as f64 * 2.0 - 1.0) * largest)
-                .collect(),
-            recovered: used.iter().map(|&i| sums[i].0 / sums[i].1 as f64).collect(),
-            measured: vec![],
-        });
-    }
-    out
 }

@@ -11,9 +11,12 @@ use crate::reconcile::motion::gap::RecordGap;
 use crate::reconcile::motion::{MotionEffect, MotionFrame, MotionOutcome, examine};
 use crate::reconcile::{Rival, Verdict};
 use crate::report::strain::{Section, page, table_section};
-use crate::vehicle::identify::{Question, identify};
+use crate::report::vehicle::{Curve, restoring_curves, restoring_section, write_restoring_force};
+use crate::vehicle::identify::{Identification, Question, identify};
 use crate::vehicle::layout::Vehicle;
+use crate::vehicle::motion::{Treatment, motion};
 use crate::vehicle::preset::{Wish, vehicle};
+use crate::vehicle::stretch::slow_stretches;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;
@@ -32,7 +35,9 @@ pub(super) fn run(job: &Job, path: &Path, session: &mut Session) -> Result<(), F
     let outcome = session
         .stage("search", |_| examine(&frame, &only))
         .map_err(|e| vec![vehicle_fault(job, &section.data.given, &e)])?;
-    let wheels = session.stage("wheel forces", |_| wheel_forces(&records, &frame, &outcome));
+    let (wheels, found) =
+        session.stage("wheel forces", |_| wheel_forces(&records, &frame, &outcome));
+    let surface = found.as_ref().and_then(|f| restoring(&records, f));
     put(session, &outcome, &wheels)?;
     findings(session, &outcome);
     let extended = if outcome.verdict == Verdict::Named && repairable(&outcome) {
@@ -41,7 +46,7 @@ pub(super) fn run(job: &Job, path: &Path, session: &mut Session) -> Result<(), F
         None
     };
     session.put("extended_model", extended)?;
-    write_tables(job, path, session, &outcome, &wheels)?;
+    write_tables(job, path, session, &outcome, &wheels, surface)?;
     say(session, &outcome);
     Ok(())
 }
@@ -96,24 +101,40 @@ fn frame(section: &VehicleJob, records: &VehicleRecords) -> MotionFrame {
     }
 }
 
-/// Misfit of each measured wheel force, without and with the effects in, as `identify` leaves it on held-out data.
+/// The restoring forces of the analyst's links on the fitted record: table and curves.
+fn restoring(records: &VehicleRecords, found: &Identification) -> Option<(String, Vec<Curve>)> {
+    let q = &records.question;
+    let slow = slow_stretches(&found.vehicle, &found.values, &records.data, &q.corrections);
+    let treatment = Treatment {
+        adjust: q.corrections.clone(),
+        slow,
+        ..Treatment::of(q.band)
+    };
+    let moved = motion(&found.vehicle, &records.data, &treatment).ok()?;
+    Some((
+        write_restoring_force(found, &moved),
+        restoring_curves(found, &moved),
+    ))
+}
+
+/// Misfit of each measured wheel force, without and with the effects in, as `identify` leaves it on held-out data; and the analyst's
+/// vehicle as identified.
+#[allow(clippy::type_complexity, reason = "a short list and what it came from")]
 fn wheel_forces(
     records: &VehicleRecords,
     frame: &MotionFrame,
     outcome: &MotionOutcome,
-) -> Vec<(String, f64, Option<f64>)> {
-    let misfits = |q: &Question| -> Vec<(String, f64)> {
-        identify(q, &records.data, records.hold_out.as_ref())
-            .map(|id| {
-                id.fit
-                    .iter()
-                    .filter(|f| id.vehicle.wheels.iter().any(|w| w.channel == f.channel))
-                    .map(|f| (f.channel.clone(), f.relative_rms))
-                    .collect()
-            })
-            .unwrap_or_default()
+) -> (Vec<(String, f64, Option<f64>)>, Option<Identification>) {
+    let identified = |q: &Question| identify(q, &records.data, records.hold_out.as_ref()).ok();
+    let misfits = |id: &Identification| -> Vec<(String, f64)> {
+        id.fit
+            .iter()
+            .filter(|f| id.vehicle.wheels.iter().any(|w| w.channel == f.channel))
+            .map(|f| (f.channel.clone(), f.relative_rms))
+            .collect()
     };
-    let before = misfits(&records.question);
+    let found = identified(&records.question);
+    let before = found.as_ref().map(misfits).unwrap_or_default();
     let after = (outcome.verdict == Verdict::Named && repairable(outcome)).then(|| {
         let q = Question {
             vehicle: outcome
@@ -123,9 +144,9 @@ fn wheel_forces(
             corrections: outcome.corrections.clone(),
             ..records.question.clone()
         };
-        misfits(&q)
+        identified(&q).as_ref().map(misfits).unwrap_or_default()
     });
-    before
+    let list = before
         .into_iter()
         .map(|(name, b)| {
             let a = after
@@ -133,7 +154,8 @@ fn wheel_forces(
                 .and_then(|a| a.iter().find(|x| x.0 == name).map(|x| x.1));
             (name, b, a)
         })
-        .collect()
+        .collect();
+    (list, found)
 }
 
 fn effect_json(e: &MotionEffect) -> Value {
@@ -231,16 +253,20 @@ fn findings(session: &mut Session, outcome: &MotionOutcome) {
     }
 }
 
-/// `gap.csv` and `gap_bands.csv`, and the page.
+/// `gap.csv`, the gap by band, time and amplitude, and the page.
 fn write_tables(
     job: &Job,
     path: &Path,
     session: &mut Session,
     outcome: &MotionOutcome,
     wheels: &[(String, f64, Option<f64>)],
+    surface: Option<(String, Vec<Curve>)>,
 ) -> Result<(), Faults> {
     let mut gap = String::from("equation,before,after,floor\n");
+    // Equation, upper edge of the stretch, before, after.
     let mut bands = String::from("equation,up_to_hz,before,after\n");
+    let mut times = String::from("equation,up_to_s,before,after\n");
+    let mut sizes = String::from("equation,up_to_size_over_rms,before,after\n");
     let mut rows = Vec::new();
     let after_of = |name: &str, g: &Option<RecordGap>| {
         g.as_ref()
@@ -256,12 +282,24 @@ fn write_tables(
             format!("{:.2}", 100.0 * left),
             format!("{:.2}", 100.0 * e.floor),
         ]);
-        for (i, b) in e.by_band.iter().enumerate() {
-            let a = after
-                .as_ref()
-                .and_then(|a| a.by_band.get(i))
-                .map_or(f64::NAN, |a| a[1]);
-            let _ = writeln!(bands, "{},{:.3},{:.6},{a:.6}", e.name, b[0], b[1]);
+        let lists = [
+            (&mut bands, &e.by_band, after.as_ref().map(|a| &a.by_band)),
+            (
+                &mut times,
+                &e.course.by_time,
+                after.as_ref().map(|a| &a.course.by_time),
+            ),
+            (
+                &mut sizes,
+                &e.course.by_amplitude,
+                after.as_ref().map(|a| &a.course.by_amplitude),
+            ),
+        ];
+        for (table, before, after) in lists {
+            for (i, b) in before.iter().enumerate() {
+                let a = after.and_then(|a| a.get(i)).map_or(f64::NAN, |a| a[1]);
+                let _ = writeln!(table, "{},{:.3},{:.6},{a:.6}", e.name, b[0], b[1]);
+            }
         }
     }
     let effects: Vec<Vec<String>> = outcome
@@ -304,7 +342,7 @@ fn write_tables(
         outcome.remains,
         outcome.next_measurement
     );
-    let sections: Vec<Section> = vec![
+    let mut sections: Vec<Section> = vec![
         table_section(
             "Gap on held-out data, % of the measured quantity",
             &["equation", "before", "after", "floor"],
@@ -325,6 +363,8 @@ fn write_tables(
             "",
         ),
     ];
+    let (table, curves) = surface.unwrap_or_default();
+    sections.push(restoring_section(&curves));
     let html = page(
         &job.title,
         "Where vehicle model and record disagree, and what is missing",
@@ -335,6 +375,9 @@ fn write_tables(
     for (name, text) in [
         ("gap.csv", gap),
         ("gap_bands.csv", bands),
+        ("gap_times.csv", times),
+        ("gap_amplitudes.csv", sizes),
+        ("restoring_force.csv", table),
         ("report.html", html),
     ] {
         output

@@ -1,6 +1,7 @@
 //! How large the disagreement is: residual of the equations over what was measured, in the band.
 
 use super::change::Change;
+use super::course::{Course, course};
 use super::design::{Bins, Design, design, size};
 use super::fit::{MotionFit, adjustments, held, parameter_column, slices};
 use super::frame::MotionFrame;
@@ -23,6 +24,8 @@ pub struct EquationGap {
     pub floor: f64,
     /// The same by band of frequency: upper edge in Hz, gap.
     pub by_band: Vec<[f64; 2]>,
+    /// Over time and amplitude.
+    pub course: Course,
 }
 
 /// The gap of a record.
@@ -40,12 +43,16 @@ pub struct RecordGap {
     pub vehicle: Vehicle,
 }
 
-/// The measured quantity of an equation: its outside force, or mass times acceleration where none acts.
+/// Size of the measured quantity of an equation.
 pub fn reference(design: &Design, equation: usize, values: &[f64]) -> f64 {
+    size(&measured(design, equation, values))
+}
+
+/// The measured quantity of an equation: its outside force, or mass times acceleration where none acts.
+fn measured(design: &Design, equation: usize, values: &[f64]) -> Bins {
     let e = &design.equations[equation];
-    let force = size(&e.target);
-    if force > 0.0 {
-        return force;
+    if size(&e.target) > 0.0 {
+        return e.target.clone();
     }
     let inertias = design.vehicle.term_index(0, 0);
     let mut sum: Bins = vec![Complex64::default(); design.f_hz.len()];
@@ -55,7 +62,7 @@ pub fn reference(design: &Design, equation: usize, values: &[f64]) -> f64 {
             sum.iter_mut().zip(c).for_each(|(s, c)| *s += c * v);
         }
     }
-    size(&sum)
+    sum
 }
 
 /// Root mean square over equations of what a fit leaves over what was measured, nuisance at its estimate.
@@ -141,7 +148,8 @@ fn gap_with(
     let floor = floors(frame, &d, values, true);
     let mut equations = Vec::new();
     for (i, l) in left.iter().enumerate() {
-        let whole = reference(&d, i, values).max(f64::MIN_POSITIVE);
+        let there = measured(&d, i, values);
+        let whole = size(&there).max(f64::MIN_POSITIVE);
         let mut power = vec![0.0; BANDS];
         let mut edge = [0.0; BANDS];
         for (k, v) in l.iter().enumerate() {
@@ -153,6 +161,7 @@ fn gap_with(
             name: d.equations[i].name.clone(),
             gap: size(l) / whole,
             floor: floor[i] / whole,
+            course: course(l, &there, &d.f_hz, d.motion.rate_hz, d.motion.start_s),
             by_band: edge
                 .iter()
                 .zip(&power)

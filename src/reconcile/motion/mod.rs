@@ -9,6 +9,7 @@ pub mod backdrop;
 pub mod candidate;
 pub mod change;
 pub mod channel_check;
+pub mod course;
 pub mod design;
 pub mod effect;
 pub mod examine;

@@ -2,7 +2,9 @@
 
 mod page;
 mod plot;
+mod restoring;
 mod tables;
 
 pub use page::{Curve, identify_page};
+pub use restoring::{restoring_curves, restoring_section};
 pub use tables::{write_parameters, write_restoring_force, write_wheel_forces};

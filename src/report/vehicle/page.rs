@@ -1,6 +1,7 @@
 //! The page of `identify`.
 
 use super::plot::{Scale, lines};
+use super::restoring::restoring_section;
 use crate::finding::Finding;
 use crate::report::strain::{Section, page};
 use crate::vehicle::identify::Identification;
@@ -50,10 +51,7 @@ pub fn identify_page(
         title: "Spectra".into(),
         body: plots(spectra, "frequency, Hz", "density", Scale::LogY),
     });
-    sections.push(Section {
-        title: "Restoring force over stretch".into(),
-        body: plots(restoring, "stretch", "force", Scale::Linear),
-    });
+    sections.push(restoring_section(restoring));
     page(
         title,
         "Vehicle parameters and wheel loads from accelerations",
@@ -94,7 +92,7 @@ fn fit(found: &Identification) -> Markup {
     }
 }
 
-fn plots(curves: &[Curve], x_label: &str, y_label: &str, scale: Scale) -> Markup {
+pub(super) fn plots(curves: &[Curve], x_label: &str, y_label: &str, scale: Scale) -> Markup {
     html! {
         @if curves.is_empty() { p.muted { "None." } }
         @for c in curves {

@@ -1,5 +1,6 @@
 //! Tables of an identification.
 
+use super::restoring::asked_force;
 use crate::vehicle::identify::Identification;
 use crate::vehicle::loads::{LoadHistory, link_forces};
 use crate::vehicle::motion::Motion;
@@ -77,24 +78,8 @@ pub fn write_restoring_force(found: &Identification, motion: &Motion) -> String 
         let (d, r) = (&motion.stretch[l], &motion.rate[l]);
         let largest = |x: &[f64]| x.iter().fold(0.0f64, |a, b| a.max(b.abs()));
         let (dm, rm) = (largest(d), largest(r));
-        let carried: Vec<usize> = link
-            .ends
-            .iter()
-            .filter(|e| e.0 > 0.0 && v.bodies[e.1.body].shape.n() == 1)
-            .map(|e| e.1.body)
-            .collect();
-        let alone = carried.first().copied().filter(|b| {
-            v.links
-                .iter()
-                .filter(|k| k.ends.iter().any(|e| e.1.body == *b))
-                .count()
-                == 1
-        });
-        let measured = |t: usize| {
-            alone.map_or(f64::NAN, |b| {
-                -found.values[v.inertia_index(b, 0, 0)] * motion.bodies[b][0][t]
-            })
-        };
+        let asked = asked_force(found, motion, l);
+        let measured = |t: usize| asked.as_ref().map_or(f64::NAN, |a| a[t]);
         let bin = |x: f64, m: f64| (((x / m + 1.0) / 2.0 * BINS as f64) as usize).min(BINS - 1);
         let mut cells = vec![(0.0, 0.0, 0usize); BINS * BINS];
         if dm <= 0.0 || rm <= 0.0 {

@@ -1,0 +1,68 @@
+//! The restoring force of a link: what its model says, and what the motion of the body that it carries asks for.
+
+use super::page::{Curve, plots};
+use super::plot::Scale;
+use crate::report::strain::Section;
+use crate::vehicle::identify::Identification;
+use crate::vehicle::loads::link_forces;
+use crate::vehicle::motion::Motion;
+
+/// `-m a` of the body that link `l` alone carries, a value a sample; `None` where others carry it too, or it turns.
+pub fn asked_force(found: &Identification, motion: &Motion, l: usize) -> Option<Vec<f64>> {
+    let v = &found.vehicle;
+    let link = v.links.get(l)?;
+    let body = link
+        .ends
+        .iter()
+        .filter(|e| e.0 > 0.0 && v.bodies[e.1.body].shape.n() == 1)
+        .map(|e| e.1.body)
+        .next()?;
+    let links = v
+        .links
+        .iter()
+        .filter(|k| k.ends.iter().any(|e| e.1.body == body));
+    let mass = found.values[v.inertia_index(body, 0, 0)];
+    (links.count() == 1).then(|| motion.bodies[body][0].iter().map(|a| -mass * a).collect())
+}
+
+/// Mean force of every link by bins of its stretch: from the model, and as the motion asks for it where that is known.
+pub fn restoring_curves(found: &Identification, motion: &Motion) -> Vec<Curve> {
+    const BINS: usize = 41;
+    let forces = link_forces(&found.vehicle, &found.values, motion);
+    let mut out = Vec::new();
+    for (l, link) in found.vehicle.links.iter().enumerate() {
+        let d = &motion.stretch[l];
+        let asked = asked_force(found, motion, l);
+        let largest = d.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+        // Force of the model, force asked for, samples.
+        let mut sums = vec![(0.0, 0.0, 0usize); BINS];
+        for (t, (d, f)) in d.iter().zip(&forces[l]).enumerate() {
+            if f.is_finite() {
+                let bin = (((d / largest + 1.0) / 2.0 * BINS as f64) as usize).min(BINS - 1);
+                sums[bin].0 += f;
+                sums[bin].1 += asked.as_ref().map_or(0.0, |a| a[t]);
+                sums[bin].2 += 1;
+            }
+        }
+        let used: Vec<usize> = (0..BINS).filter(|&i| sums[i].2 > 0).collect();
+        let mean = |of: &dyn Fn(usize) -> f64| used.iter().map(|&i| of(i)).collect::<Vec<f64>>();
+        out.push(Curve {
+            name: link.name.clone(),
+            x: mean(&|i| ((i as f64 + 0.5) / BINS as f64 * 2.0 - 1.0) * largest),
+            recovered: mean(&|i| sums[i].0 / sums[i].2 as f64),
+            measured: match asked {
+                Some(_) => mean(&|i| sums[i].1 / sums[i].2 as f64),
+                None => Vec::new(),
+            },
+        });
+    }
+    out
+}
+
+/// The curves as a section of a page.
+pub fn restoring_section(curves: &[Curve]) -> Section {
+    Section {
+        title: "Restoring force over stretch (measured: what the motion asks for)".into(),
+        body: plots(curves, "stretch", "force", Scale::Linear),
+    }
+}
