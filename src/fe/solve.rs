@@ -14,7 +14,7 @@ use crate::finding::{Finding, Severity};
 use crate::linalg::sparse::OrderingMethod;
 use crate::model::{GridIx, Load, Model};
 use nastran::bdf::Subcase;
-use nastran::cards::Dofs;
+use nastran::cards::{Dofs, ShellShape};
 use rayon::prelude::*;
 
 /// How the loads of a case are held in balance.
@@ -219,7 +219,7 @@ fn displacements(
         mass: mass.properties(&x),
         ..SolveReport::default()
     };
-    let mut findings = Vec::new();
+    let mut findings = formulations(model);
     let mut fields: Vec<Vec<[f64; 6]>> = vec![Vec::new(); cases.len()];
     let mut done = vec![false; cases.len()];
     for first in 0..cases.len() {
@@ -365,7 +365,7 @@ fn load_column(
 ) -> Result<(Option<Balance>, Option<Finding>), FeError> {
     let model = prepared.model;
     let mut f = applied_forces(prepared, mass, case)?;
-    system.loads_on_nothing(model, case.subcase, &f)?;
+    system.loads_on_nothing(model, &prepared.axes, case.subcase, &f)?;
     let (mut balanced, mut finding) = (None, None);
     if let Some(body) = &system.body {
         let before = largest(&f);
@@ -386,6 +386,36 @@ fn load_column(
 
 pub(super) fn largest(f: &[[f64; 6]]) -> f64 {
     f.iter().flatten().fold(0.0, |a, v| a.max(v.abs()))
+}
+
+/// Says where an element stands for another than its card names.
+fn formulations(model: &Model) -> Vec<Finding> {
+    let told: [(&[ShellShape], &str, &str); 2] = [
+        (
+            &[ShellShape::QuadR, ShellShape::TriaR],
+            "CQUADR, CTRIAR",
+            "solved as CQUAD4 and CTRIA3 with a stiff rotation about the normal: stiffer in their plane than elements whose sides bend with that rotation",
+        ),
+        (
+            &[ShellShape::Quad8, ShellShape::Tria6],
+            "CQUAD8, CTRIA6",
+            "solved as one quadrilateral a corner around a point in the middle, on the curved surface through the grids",
+        ),
+    ];
+    told.into_iter()
+        .filter_map(|(shapes, cards, what)| {
+            let n = model.shells.iter().filter(|s| shapes.contains(&s.shape)).count();
+            (n > 0).then(|| {
+                Finding::new(
+                    Severity::Info,
+                    "formulation",
+                    cards,
+                    format!("{n} elements: {what}"),
+                    "nothing for meshes of several elements a side; solve with Nastran where single elements carry the answer",
+                )
+            })
+        })
+        .collect()
 }
 
 /// What SPCD enforces in a case.

@@ -11,7 +11,7 @@ use super::relief::RigidBody;
 use super::solve::{Relief, largest};
 use crate::finding::{Finding, Severity};
 use crate::linalg::sparse::{BlockGraph, BlockMatrix, Factor, FactorError, Symbolic};
-use crate::model::{GridIx, Model};
+use crate::model::{GridIx, Mat3, Model};
 use rayon::prelude::*;
 
 /// Everything between a model and its factor.
@@ -228,6 +228,7 @@ impl System {
     pub(super) fn loads_on_nothing(
         &self,
         model: &Model,
+        axes: &[Option<Mat3>],
         subcase: u32,
         f: &[[f64; 6]],
     ) -> Result<(), FeError> {
@@ -238,7 +239,12 @@ impl System {
             at: model.grids[g].at,
         };
         let limit = 1e-9 * largest(f);
-        for (g, f) in f.iter().enumerate() {
+        // What rigid elements and averages hand on counts where it arrives.
+        let mut arrives = f.to_vec();
+        for (f, axes) in arrives.iter_mut().zip(axes) {
+            *f = to_local(axes, *f);
+        }
+        for (g, f) in self.reduction.gather(arrives).iter().enumerate() {
             let unknown = |i: usize| {
                 self.numbering.group[g]
                     .is_some_and(|group| self.numbering.free[group as usize] >> i & 1 == 1)

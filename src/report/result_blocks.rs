@@ -1,12 +1,18 @@
 //! A solution as blocks of a Nastran result file.
 
-use crate::fe::{CaseResult, Solution};
-use crate::model::{Model, Vec3};
-use nastran::cards::ShellShape;
+use crate::fe::{CaseResult, Solution, ply_strains};
+use crate::model::{Model, ShellIx, ShellKind, Vec3};
+use nastran::cards::{ShellShape, SolidShape};
 use nastran::results::{Analysis, Block, ElementType, Quantity, RowId, Rows, ShellForm};
 
 const NODAL: &[&str] = &["t1", "t2", "t3", "r1", "r2", "r3"];
 const SHELL: &[&str] = &["fiber", "exx", "eyy", "gxy", "angle", "emax", "emin", "vm"];
+const PLY: &[&str] = &[
+    "s11", "s22", "s12", "s1z", "s2z", "angle", "smax", "smin", "vm",
+];
+const SOLID: &[&str] = &[
+    "xx", "yy", "zz", "xy", "yz", "zx", "max", "mid", "min", "vm",
+];
 const BAR: &[&str] = &[
     "s1a", "s2a", "s3a", "s4a", "axial", "smaxa", "smina", "mst", "s1b", "s2b", "s3b", "s4b",
     "smaxb", "sminb", "msc",
@@ -29,10 +35,59 @@ enum Content {
     Shells(ShellShape, bool),
     /// CBEAM rather than CBAR.
     Beams(bool),
+    Solids(SolidShape),
+    /// Plies of laminates of this shape.
+    Plies(ShellShape),
 }
 
+/// Element type of a shell's strain: with corners, and at the centre alone.
+fn shell_type(shape: ShellShape, corners: bool) -> Option<u32> {
+    match (shape, corners) {
+        (ShellShape::Quad4, true) => Some(144),
+        (ShellShape::Quad4, false) => Some(33),
+        (ShellShape::Tria3, _) => Some(74),
+        (ShellShape::QuadR, true) => Some(82),
+        (ShellShape::QuadR, false) => Some(228),
+        (ShellShape::TriaR, _) => Some(227),
+        (ShellShape::Quad8, true) => Some(64),
+        (ShellShape::Tria6, true) => Some(75),
+        (ShellShape::Quad8 | ShellShape::Tria6, false) => None,
+    }
+}
+
+/// Element type of plies.
+fn ply_type(shape: ShellShape) -> u32 {
+    match shape {
+        ShellShape::Quad4 => 95,
+        ShellShape::Quad8 => 96,
+        ShellShape::Tria3 => 97,
+        ShellShape::Tria6 => 98,
+        ShellShape::QuadR => 232,
+        ShellShape::TriaR => 233,
+    }
+}
+
+fn solid_type(shape: SolidShape) -> u32 {
+    match shape {
+        SolidShape::Tetra => 39,
+        SolidShape::Hexa => 67,
+        SolidShape::Penta => 68,
+        SolidShape::Pyram => 255,
+    }
+}
+
+const SHAPES: [ShellShape; 6] = [
+    ShellShape::Quad4,
+    ShellShape::Tria3,
+    ShellShape::QuadR,
+    ShellShape::TriaR,
+    ShellShape::Quad8,
+    ShellShape::Tria6,
+];
+
 /// Every block of a solution in the order of the file: displacements of all cases (displacement frames of the grids), then shell
-/// strain at both fibres (CQUAD4 with corners where they are known, CTRIA3), then strain of bars and beams.
+/// strain at both fibres (with corners where they are known; not CTRIA3 and CTRIAR), of the plies of laminates, of solids, then of bars
+/// and beams.
 pub fn planned_blocks(model: &Model, solution: &Solution) -> Vec<PlannedBlock> {
     let mut all = Vec::new();
     let mut plan = |content: &dyn Fn(&CaseResult) -> Option<Content>| {
@@ -42,13 +97,36 @@ pub fn planned_blocks(model: &Model, solution: &Solution) -> Vec<PlannedBlock> {
         );
     };
     plan(&|c| (!c.displacement.is_empty()).then_some(Content::Displacement));
-    for shape in [ShellShape::Quad4, ShellShape::Tria3] {
+    for shape in SHAPES {
         plan(&|c| {
             let mut shells = c.shells.elements.iter();
-            let corners = shape == ShellShape::Quad4 && !c.shells.corners.is_empty();
+            let constant = matches!(shape, ShellShape::Tria3 | ShellShape::TriaR);
+            let corners = !constant && !c.shells.corners.is_empty();
+            shell_type(shape, corners)?;
             shells
                 .any(|ix| model.shells[ix.us()].shape == shape)
                 .then_some(Content::Shells(shape, corners))
+        });
+    }
+    for shape in SHAPES {
+        plan(&|c| {
+            let mut shells = c.shells.elements.iter();
+            shells
+                .any(|ix| model.shells[ix.us()].shape == shape && is_laminate(model, *ix))
+                .then_some(Content::Plies(shape))
+        });
+    }
+    for shape in [
+        SolidShape::Tetra,
+        SolidShape::Hexa,
+        SolidShape::Penta,
+        SolidShape::Pyram,
+    ] {
+        plan(&|c| {
+            let mut solids = c.solids.elements.iter();
+            solids
+                .any(|i| model.solids[*i].shape == shape)
+                .then_some(Content::Solids(shape))
         });
     }
     for is_beam in [false, true] {
@@ -70,17 +148,18 @@ pub fn rows_of_block(model: &Model, solution: &Solution, plan: PlannedBlock) -> 
             block(case, Quantity::Displacement, None),
             displacement(model, case),
         ),
-        Content::Shells(shape, corners) => {
-            let element = match (shape, corners) {
-                (ShellShape::Tria3, _) => 74,
-                (_, true) => 144,
-                (_, false) => 33,
-            };
-            (
-                block(case, Quantity::Strain, Some(element)),
-                shells(model, case, shape, corners),
-            )
-        }
+        Content::Shells(shape, corners) => (
+            block(case, Quantity::Strain, shell_type(shape, corners)),
+            shells(model, case, shape, corners),
+        ),
+        Content::Plies(shape) => (
+            block(case, Quantity::PlyStrain, Some(ply_type(shape))),
+            plies(model, case, shape),
+        ),
+        Content::Solids(shape) => (
+            block(case, Quantity::Strain, Some(solid_type(shape))),
+            solids(model, case, shape),
+        ),
         Content::Beams(is_beam) => {
             let element = if is_beam { 2 } else { 34 };
             (
@@ -168,8 +247,7 @@ fn shells(model: &Model, case: &CaseResult, shape: ShellShape, corners: bool) ->
             }
         };
         push(0, centre);
-        for (g, strain) in shell
-            .grids
+        for (g, strain) in shell.grids[..shape.n_corners()]
             .iter()
             .zip(corner_field.get(i).into_iter().flatten())
         {
@@ -177,6 +255,89 @@ fn shells(model: &Model, case: &CaseResult, shape: ShellShape, corners: bool) ->
         }
     }
     rows
+}
+
+fn is_laminate(model: &Model, ix: ShellIx) -> bool {
+    let property = model.shells[ix.us()].property;
+    matches!(
+        model.shell_properties[property.us()].kind,
+        ShellKind::Laminate { .. }
+    )
+}
+
+/// Strain in the middle of every ply, ply axes; transverse shear is not computed (not a number).
+fn plies(model: &Model, case: &CaseResult, shape: ShellShape) -> Rows {
+    let mut rows = Rows {
+        columns: PLY,
+        ..Rows::default()
+    };
+    for (ix, centre) in case.shells.elements.iter().zip(&case.shells.centre) {
+        let shell = &model.shells[ix.us()];
+        if shell.shape != shape {
+            continue;
+        }
+        for (layer, strain) in (1..).zip(ply_strains(model, *ix, centre)) {
+            rows.ids.push(RowId {
+                entity: shell.id,
+                at: 0,
+                layer,
+            });
+            let [ex, ey, g, angle, largest, smallest, von_mises] = with_invariants(strain);
+            rows.values.extend([ex, ey, g, f64::NAN, f64::NAN]);
+            rows.values.extend([angle, largest, smallest, von_mises]);
+        }
+    }
+    rows
+}
+
+fn solids(model: &Model, case: &CaseResult, shape: SolidShape) -> Rows {
+    let mut rows = Rows {
+        columns: SOLID,
+        ..Rows::default()
+    };
+    let field = &case.solids;
+    for ((i, centre), corners) in field.elements.iter().zip(&field.centre).zip(&field.corners) {
+        let solid = &model.solids[*i];
+        if solid.shape != shape {
+            continue;
+        }
+        let cordm = model.solid_properties[solid.property as usize].cordm;
+        let layer = cordm.and_then(|c| u32::try_from(c).ok()).unwrap_or(0);
+        let mut push = |at: u32, strain: &[f64; 6]| {
+            rows.ids.push(RowId {
+                entity: solid.id,
+                at,
+                layer,
+            });
+            rows.values.extend(strain);
+            rows.values.extend(principal(strain));
+        };
+        push(0, centre);
+        for (g, strain) in solid.grids[..shape.n_corners()].iter().zip(corners) {
+            push(g.map_or(0, |g| model.grids[g.us()].id), strain);
+        }
+    }
+    rows
+}
+
+/// Principal strains, largest first, and the von Mises strain.
+fn principal(e: &[f64; 6]) -> [f64; 4] {
+    let tensor = crate::linalg::Matrix3::new(
+        e[0],
+        e[3] / 2.0,
+        e[5] / 2.0,
+        e[3] / 2.0,
+        e[1],
+        e[4] / 2.0,
+        e[5] / 2.0,
+        e[4] / 2.0,
+        e[2],
+    );
+    let mut p: [f64; 3] = tensor.symmetric_eigenvalues().into();
+    p.sort_by(|a, b| b.total_cmp(a));
+    let [a, b, c] = p;
+    let apart = (a - b).powi(2) + (b - c).powi(2) + (c - a).powi(2);
+    [a, b, c, (2.0 * apart).sqrt() / 3.0]
 }
 
 /// exx, eyy, gxy, angle of the larger principal strain (degrees), both principal strains, von Mises strain.

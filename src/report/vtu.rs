@@ -2,6 +2,7 @@
 
 use crate::fe::CaseResult;
 use crate::model::{GridIx, Model};
+use nastran::cards::SolidShape;
 use std::io::{Result, Write};
 
 const LINE: u8 = 3;
@@ -38,8 +39,9 @@ fn floats(values: impl Iterator<Item = f64>) -> Vec<u8> {
     values.flat_map(|v| (v as f32).to_le_bytes()).collect()
 }
 
-/// Writes the mesh of shells, bars and rods with each case's displacement, and per shell, at bottom and top, strain in the element
-/// frame (exx, eyy, gxy, engineering shear) and the largest principal strain by magnitude, in strain. Values are 32-bit reals.
+/// Writes the mesh of shells, bars, rods, solids and shear panels with each case's displacement; per shell, at bottom and top, strain in
+/// the element frame (exx, eyy, gxy, engineering shear) and the largest principal strain by magnitude; per solid the strain at its
+/// centre (xx yy zz xy yz zx, engineering shear). Values are 32-bit reals.
 ///
 /// # Errors
 /// What `out` gives.
@@ -81,6 +83,22 @@ pub fn write_vtu(model: &Model, cases: &[CaseResult], out: &mut dyn Write) -> Re
                 floats(largest),
             );
         }
+    }
+    let first_solid = model.shells.len() + model.beams.len() + model.rods.len();
+    for case in cases.iter().filter(|c| !c.solids.centre.is_empty()) {
+        let mut by_cell = vec![[f64::NAN; 6]; cells.len()];
+        for (i, strain) in case.solids.elements.iter().zip(&case.solids.centre) {
+            if let Some(slot) = by_cell.get_mut(first_solid + i) {
+                *slot = *strain;
+            }
+        }
+        let strain = by_cell.iter().flatten().copied();
+        a.array(
+            &format!("strain of solids {}", title(case)),
+            "Float32",
+            6,
+            floats(strain),
+        );
     }
     finish(a, out)
 }
@@ -124,6 +142,18 @@ fn mesh(model: &Model) -> (Appended, Cells) {
     }
     cells.extend(model.beams.iter().map(|b| (LINE, b.id, b.grids.to_vec())));
     cells.extend(model.rods.iter().map(|r| (LINE, r.id, r.grids.to_vec())));
+    for s in &model.solids {
+        let kind = match s.shape {
+            SolidShape::Tetra => 10,
+            SolidShape::Hexa => 12,
+            SolidShape::Penta => 13,
+            SolidShape::Pyram => 14,
+        };
+        let corners = s.grids[..s.shape.n_corners()].iter().flatten();
+        cells.push((kind, s.id, corners.copied().collect()));
+    }
+    let panels = model.shear_panels.iter();
+    cells.extend(panels.map(|p| (QUAD, p.id, p.grids.to_vec())));
     let mut a = Appended {
         xml: String::new(),
         offset: 0,

@@ -17,3 +17,5 @@ mod real_cases;
 mod real_decks;
 mod solids;
 mod thermal;
+mod whole_decks;
+mod written;

@@ -8,7 +8,8 @@ pub struct RowId {
     /// Shells and solids: corner grid, 0 the centre. Beams: station grid (0 between the ends). Nodal rows: grid type.
     /// Plies: 0. Bars with stations: station number from 1. Grid point forces: the element (0 for totals).
     pub at: u32,
-    /// Shells: 1 the first row (Z1 or mid-plane), 2 the second. Plies: ply number. Otherwise 0.
+    /// Shells: 1 the first row (Z1 or mid-plane), 2 the second. Plies: ply number. Solids to be written: the coordinate system of the
+    /// centre's row. Otherwise 0.
     pub layer: u32,
 }
 

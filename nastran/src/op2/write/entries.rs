@@ -47,7 +47,8 @@ fn rows_of_entry(
         Shape::ShellCentre => 2,
         Shape::ShellCorners => layout.wide.saturating_sub(2) / 17 * 2,
         Shape::ForceCorners => layout.wide.saturating_sub(2) / 9,
-        Shape::Solid | Shape::GridPoint => {
+        Shape::Solid => layout.wide.saturating_sub(4) / 21,
+        Shape::GridPoint => {
             return Err(WriteError::Unsupported {
                 quantity: block.quantity,
                 element: block.element,
@@ -115,6 +116,16 @@ fn push_entry<'r>(
                 reals(out, row(i));
             }
         }
+        Shape::Solid => {
+            // the coordinate system stands in the first row's layer, the corners' number without the centre
+            int(out, first.layer)?;
+            out.extend_from_slice(b"GRID");
+            int(out, ids.len().saturating_sub(1))?;
+            for (i, id) in ids.iter().enumerate() {
+                int(out, id.at)?;
+                reals(out, &solid_words(row(i)));
+            }
+        }
         Shape::Beam => {
             // end A stands first and end B last, the stations between them follow end A
             let last = ids.len().saturating_sub(1);
@@ -144,6 +155,32 @@ fn push_entry<'r>(
         _ => (0..ids.len()).for_each(|i| reals(out, row(i))),
     }
     Ok(())
+}
+
+/// The 20 reals of a location of a solid from `xx yy zz xy yz zx max mid min vm`; direction cosines of the principal axes stay zero.
+fn solid_words(row: &[f64]) -> [f64; 20] {
+    let v = |i: usize| row.get(i).copied().unwrap_or(0.0);
+    let pressure = -(v(0) + v(1) + v(2)) / 3.0;
+    let mut words = [0.0; 20];
+    let places = [
+        (0, v(0)),
+        (1, v(3)),
+        (2, v(6)),
+        (6, pressure),
+        (7, v(9)),
+        (8, v(1)),
+        (9, v(4)),
+        (10, v(7)),
+        (14, v(2)),
+        (15, v(5)),
+        (16, v(8)),
+    ];
+    for (at, value) in places {
+        if let Some(word) = words.get_mut(at) {
+            *word = value;
+        }
+    }
+    words
 }
 
 fn int(out: &mut Vec<u8>, value: impl TryInto<i32> + Copy) -> Result<(), WriteError> {
