@@ -268,7 +268,11 @@ fn truth(text: &str, gauges: &[Glued], runs: &str) -> StrainFrame {
             .collect(),
         per_mm: None,
         loads: rows.iter().flat_map(|r| r[2..8].to_vec()).collect(),
-        payload: rows.iter().map(|r| [r[0], r[1] - NOMINAL_X_M]).collect(),
+        payload: rows
+            .iter()
+            .map(|r| [r[0], r[1] - NOMINAL_X_M, 0.0])
+            .collect(),
+        payload_origin: [NOMINAL_X_M, 0.0],
         payload_weight: PayloadWeight::InModel,
         wheel_forces: WheelForces::Measured,
         other_loads: other_names

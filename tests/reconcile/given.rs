@@ -3,7 +3,8 @@
 use super::hidden;
 use super::hidden::generator::{Background, EFFECTS, STRANGERS, hide};
 use super::hidden::judge::{Answer, judge};
-use strainbridge::reconcile::strain::{StrainFrame, examine};
+use strainbridge::reconcile::effect::{Member, library};
+use strainbridge::reconcile::strain::{StrainFrame, examine, predict};
 use strainbridge::reconcile::{Outcome, Verdict};
 
 fn case(name: &str) -> Option<(StrainFrame, serde_json::Value)> {
@@ -127,5 +128,35 @@ fn what_no_effect_of_the_library_makes_is_called_unknown_and_described() {
         let outcome = examine(&hidden.frame, &[]);
         assert_eq!(named(&outcome), ["unknown"], "{stranger}");
         assert!(!outcome.remains.is_empty(), "{stranger}");
+    }
+}
+
+#[test]
+fn a_payload_moved_in_the_runs_strains_as_the_offset_that_was_found() {
+    let Some((frame, _)) = case("dev-s1") else {
+        return;
+    };
+    // Forward and to the left, where the library tries both at once.
+    let (dx, dy) = (0.17, -0.08);
+    let both = library(&frame, &["payload_offset".into()])
+        .into_iter()
+        .find(|c| c.effect.id() == "payload_offset" && c.effect.parameters().len() == 2)
+        .expect("an offset both ways");
+    let effect = both.effect.as_ref();
+    let found = predict(
+        &frame,
+        &[Member {
+            effect,
+            parameters: &[dx, dy],
+        }],
+    );
+    let mut moved = frame.clone();
+    for p in &mut moved.payload {
+        *p = [p[0], p[1] + dx, p[2] + dy];
+    }
+    let written = predict(&moved, &[]);
+    let size = found.iter().fold(0.0f64, |a, v| a.max(v.abs()));
+    for (a, b) in found.iter().zip(&written) {
+        assert!((a - b).abs() < 1e-9 * size, "{a} {b}");
     }
 }

@@ -106,14 +106,14 @@ pub(super) fn read(
         let x = model.grids.get(grid.us()).map_or(Vec3::zeros(), |g| g.x);
         [x[0] * length_m, x[1] * length_m]
     };
-    let payload_x = payload_grid(job, model).map(|g| place_of(&g)[0]);
+    let at_grid = payload_grid(job, model).map_or([0.0; 2], |g| place_of(&g));
     let mut part = ModelPart {
         gauges: channels.iter().map(|c| facts(job, c)).collect(),
         load_names: wheels.iter().map(|w| w.0.clone()).collect(),
         load_positions: Some(wheels.iter().map(|w| place_of(&w.1)).collect()),
         influence: table.clone(),
         tensors: (0..n_g).map(plane).collect(),
-        nominal_x_m: nominal_x_m(job).or(payload_x).unwrap_or(0.0),
+        payload_origin: [nominal_x_m(job).unwrap_or(at_grid[0]), at_grid[1]],
         ..ModelPart::default()
     };
     for (g, laid) in part.gauges.iter_mut().zip(&gauges) {

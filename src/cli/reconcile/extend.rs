@@ -88,7 +88,7 @@ pub(super) fn write(
             None
         }
     }) {
-        files.push((RUNS, runs_csv(frame, job, dx, dy)));
+        files.push((RUNS, runs_csv(frame, dx, dy)));
         set(table, "runs", "file", RUNS);
         if let Some(Value::Table(runs)) = table.get_mut("runs") {
             runs.remove("columns");
@@ -255,14 +255,14 @@ fn payload_csv(frame: &StrainFrame, influence: &[f64]) -> String {
     out
 }
 
-fn runs_csv(frame: &StrainFrame, job: &Job, dx: f64, dy: f64) -> String {
-    let nominal = super::matrix_frame::nominal_x_m(job).unwrap_or(0.0);
+fn runs_csv(frame: &StrainFrame, dx: f64, dy: f64) -> String {
+    let [at_x, at_y] = frame.payload_origin;
     let mut out = format!(
         "run,payload_mass,payload_x,payload_y,{}\n",
         frame.load_names.join(",")
     );
     for (r, run) in frame.observations.runs.iter().enumerate() {
-        let [mass, x] = frame.payload.get(r).copied().unwrap_or([0.0; 2]);
+        let [mass, x, y] = frame.payload.get(r).copied().unwrap_or([0.0; 3]);
         let loads: Vec<String> = frame
             .loads
             .iter()
@@ -272,8 +272,9 @@ fn runs_csv(frame: &StrainFrame, job: &Job, dx: f64, dy: f64) -> String {
             .collect();
         let _ = writeln!(
             out,
-            "{run},{mass:.6},{:.6},{dy:.6},{}",
-            nominal + x + dx,
+            "{run},{mass:.6},{:.6},{:.6},{}",
+            at_x + x + dx,
+            at_y + y + dy,
             loads.join(",")
         );
     }

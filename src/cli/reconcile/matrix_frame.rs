@@ -28,7 +28,7 @@ pub(super) struct ModelPart {
     /// Errors that every gauge may have.
     pub(super) scatter: Vec<Scatter>,
     /// Nominal place of the payload, m.
-    pub(super) nominal_x_m: f64,
+    pub(super) payload_origin: [f64; 2],
 }
 
 /// Ratio of the transverse to the axial strain where a table gives the axial one alone: a rail flange in bending.
@@ -97,7 +97,7 @@ pub(super) fn read(
     let gauges: Vec<GaugeFacts> = channels.iter().map(|name| facts(job, name)).collect();
     let mut part = ModelPart {
         load_names: columns.iter().map(|c| c.0.clone()).collect(),
-        nominal_x_m: nominal_x_m(job).unwrap_or(0.0),
+        payload_origin: [nominal_x_m(job).unwrap_or(0.0), 0.0],
         influence,
         ..ModelPart::default()
     };

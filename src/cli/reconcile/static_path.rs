@@ -239,7 +239,7 @@ fn frame(
                 )),
             }
         }
-        payload.push(payload_of(row, gravity, part.nominal_x_m));
+        payload.push(payload_of(row, gravity, part.payload_origin));
     }
     if !faults.is_empty() {
         return Err(faults);
@@ -259,6 +259,7 @@ fn frame(
         per_mm: part.per_mm,
         loads,
         payload,
+        payload_origin: part.payload_origin,
         payload_weight: if job.payload.as_ref().is_none_or(|p| p.weight_in_model) {
             PayloadWeight::InModel
         } else {
@@ -288,12 +289,16 @@ fn frame(
     Ok(frame)
 }
 
-fn payload_of(row: &RunRow, gravity: f64, nominal_x_m: f64) -> [f64; 2] {
+fn payload_of(row: &RunRow, gravity: f64, origin: [f64; 2]) -> [f64; 3] {
     let mass = row
         .payload_mass_kg
         .or(row.payload_force_n.map(|f| f / gravity))
         .unwrap_or(0.0);
-    [mass, row.payload_x_m.map_or(0.0, |x| x - nominal_x_m)]
+    [
+        mass,
+        row.payload_x_m.map_or(0.0, |x| x - origin[0]),
+        row.payload_y_m.map_or(0.0, |y| y - origin[1]),
+    ]
 }
 
 /// The size of a fault that has no parameter: -1 for a turned sign.

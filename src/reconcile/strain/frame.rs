@@ -100,8 +100,10 @@ pub struct StrainFrame {
     pub per_mm: Option<Vec<f64>>,
     /// Wheel loads by run, kN, `n_runs x n_loads`.
     pub loads: Vec<f64>,
-    /// Payload by run: mass in kg, distance in x from its nominal place in m.
-    pub payload: Vec<[f64; 2]>,
+    /// Payload by run: mass in kg, distance in x and in y (left) from its nominal place in m.
+    pub payload: Vec<[f64; 3]>,
+    /// The nominal place, x and y, m, as the job's coordinates count.
+    pub payload_origin: [f64; 2],
     /// Does the analyst's model hold the payload's weight?
     pub payload_weight: PayloadWeight,
     /// Where the wheel forces come from.

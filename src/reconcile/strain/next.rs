@@ -18,7 +18,7 @@ pub struct Explanation<'a> {
 struct Design {
     words: String,
     loads: Vec<f64>,
-    payload: [f64; 2],
+    payload: [f64; 3],
 }
 
 fn designs(frame: &StrainFrame) -> Vec<Design> {
@@ -30,11 +30,11 @@ fn designs(frame: &StrainFrame) -> Vec<Design> {
     });
     let Some(heaviest) = heaviest else { return out };
     let loads = frame.loads[heaviest * n_l..(heaviest + 1) * n_l].to_vec();
-    let payload = frame.payload.get(heaviest).copied().unwrap_or([0.0; 2]);
+    let payload = frame.payload.get(heaviest).copied().unwrap_or([0.0; 3]);
     out.push(Design {
         words: "the empty truck again".into(),
         loads: vec![0.0; n_l],
-        payload: [0.0, payload[1]],
+        payload: [0.0, payload[1], payload[2]],
     });
     out.push(Design {
         words: format!(
@@ -42,7 +42,7 @@ fn designs(frame: &StrainFrame) -> Vec<Design> {
             2.0 * payload[0]
         ),
         loads: loads.iter().map(|f| 2.0 * f).collect(),
-        payload: [2.0 * payload[0], payload[1]],
+        payload: [2.0 * payload[0], payload[1], payload[2]],
     });
     /// A jack under a wheel changes its force by about this much, kN.
     const JACK_KN: f64 = 10.0;
@@ -52,7 +52,7 @@ fn designs(frame: &StrainFrame) -> Vec<Design> {
         out.push(Design {
             words: format!("the empty truck with {name} raised by {JACK_KN:.0} kN on a jack"),
             loads: jacked,
-            payload: [0.0, payload[1]],
+            payload: [0.0, payload[1], payload[2]],
         });
     }
     out

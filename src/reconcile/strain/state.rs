@@ -57,9 +57,10 @@ impl StrainState {
     pub fn set_payload(&mut self, frame: &StrainFrame, dx: f64, dy: f64) {
         let [_, n_r, n_c] = self.shape;
         for run in 0..n_r {
-            let [mass, x] = frame.payload.get(run).copied().unwrap_or([0.0; 2]);
+            let [mass, x, y] = frame.payload.get(run).copied().unwrap_or([0.0; 3]);
+            let (x, y) = (x + dx, y + dy);
             let first = run * n_c + frame.n_loads();
-            let terms = [1.0, x + dx, dy, (x + dx) * dy];
+            let terms = [1.0, x, y, x * y];
             for (cell, t) in self.columns[first..first + terms.len()]
                 .iter_mut()
                 .zip(terms)

@@ -80,7 +80,7 @@ fn flat_ground(base: &StrainFrame) -> Vec<[f64; 2]> {
         .map(|l| {
             let (mut a, mut b, mut c, mut p, mut q) = (0.0, 0.0, 0.0, 0.0, 0.0);
             for r in 0..base.n_runs() {
-                let [m, x] = base.payload[r];
+                let [m, x, _] = base.payload[r];
                 let f = base.loads[r * n_l + l];
                 (a, b, c) = (a + m * m, b + m * m * x, c + m * m * x * x);
                 (p, q) = (p + m * f, q + m * x * f);
@@ -125,7 +125,7 @@ pub fn hide(
             &[0.0, 1500.0, 2400.0, 3700.0, 5500.0, 6800.0, 8000.0],
         );
         let x = rng.random_range(-0.4..0.45);
-        frame.payload[r] = [mass, x];
+        frame.payload[r] = [mass, x, 0.0];
         for l in 0..n_l {
             loads[r * n_l + l] = mass * (flat[l][0] + x * flat[l][1]);
         }
@@ -313,7 +313,7 @@ fn apply(
                 size * normal(rng).clamp(-1.5, 1.5),
             );
             for r in 0..n_r {
-                let [m, x] = frame.payload[r];
+                let [m, x, _] = frame.payload[r];
                 for h in 0..n_g {
                     let b = &truth.influence[h * n_c + n_c - 4..h * n_c + n_c];
                     readings[r * n_g + h] += m * (dx * b[1] + dy * b[2] + (x + dx) * dy * b[3]);

@@ -159,8 +159,9 @@ pub fn frame_of(dir: &Path) -> StrainFrame {
         payload: kg
             .iter()
             .zip(&x)
-            .map(|(m, x)| [*m, x - number("nominal_payload_x_m")])
+            .map(|(m, x)| [*m, x - number("nominal_payload_x_m"), 0.0])
             .collect(),
+        payload_origin: [number("nominal_payload_x_m"), 0.0],
         payload_weight: if meta["analyst_includes_payload_gravity"].as_bool() == Some(false) {
             PayloadWeight::Missing
         } else {
