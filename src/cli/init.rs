@@ -396,15 +396,22 @@ fn job_text(
     if !ids.is_empty() && ids.len() <= 60 {
         t.push_str(&format!("properties = [{}]\n", ids.join(", ")));
     }
-    let spacing = 0.05 / system.length_m();
+    let mm = 0.001 / system.length_m();
+    let [spacing, clear, far, shift] = [50.0, 20.0, 100.0, 2.0].map(|v| v * mm);
+    let (n, more) = (loads.len().max(1), 2 * loads.len().max(1));
     t.push_str(&format!(
         "surfaces = [\"top\", \"bottom\"]         # drop the side that can't be reached\n\
-         angle_step_deg = 15                  # or \"continuous\"\n\n\
+         angle_step_deg = 15                  # or \"continuous\"\n\
+         # clear_of = {{ edges = {clear}, joints = {clear}, loads = {far}, attachments = {far} }}  # strain there is not to be trusted\n\n\
          [placement]\n\
          gauges = {}                           # twice the number of loads: some may fail\n\
          spacing = {spacing}                       # least distance between gauges: 50 mm\n\
          noise_microstrain = 1.0\n\
-         angle_tolerance_deg = 2.0\n\n\
+         angle_tolerance_deg = 2.0\n\
+         # position_tolerance = {shift}         # 2 mm, 1 sd\n\
+         # curve = [{n}, {more}]                     # what each of these numbers of gauges gives\n\
+         # reserve = 2                        # gauges kept for validation\n\
+         # loss = \"optimise\"                  # for what is left after the loss of any one gauge\n\n\
          # Once gauges are glued and read:\n\
          # [gauges]\n\
          # file = \"job.out/gauges.csv\"\n\
