@@ -198,3 +198,104 @@ fn check_and_strains_write_a_page_beside_their_result() {
         "{page}"
     );
 }
+
+#[test]
+fn every_shell_gets_completions_that_name_the_commands() {
+    for shell in ["bash", "zsh", "fish", "powershell"] {
+        let out = strainbridge(&["completions", shell]);
+        assert_eq!(out.status.code(), Some(0), "{shell}");
+        let script = text(&out.stdout);
+        assert!(
+            script.contains("reconcile") && script.contains("no-cache"),
+            "{shell}"
+        );
+    }
+}
+
+#[test]
+fn help_of_every_command_shows_an_example_of_it() {
+    let help = text(&strainbridge(&["--help"]).stdout);
+    let mut seen = 0;
+    for line in help.lines().skip_while(|l| *l != "Commands:").skip(1) {
+        let Some(name) = line
+            .strip_prefix("  ")
+            .and_then(|l| l.split_whitespace().next())
+        else {
+            break;
+        };
+        // Descriptions of two lines go on far to the right.
+        if name == "help" || line.starts_with("   ") {
+            continue;
+        }
+        seen += 1;
+        let page = text(&strainbridge(&[name, "--help"]).stdout);
+        assert!(
+            page.contains("Example:") && page.contains(&format!("  strainbridge {name}")),
+            "{page}"
+        );
+    }
+    assert!(seen >= 17, "{help}");
+}
+
+/// Keys of a TOML value that a schema does not know.
+fn unknown_keys(schema: &serde_json::Value, value: &toml::Value, at: &str, out: &mut Vec<String>) {
+    match value {
+        toml::Value::Table(t) => {
+            for (key, below) in t {
+                let known = &schema["properties"][key];
+                let other = &schema["additionalProperties"];
+                let here = format!("{at}.{key}");
+                match (known.is_object(), other.is_object()) {
+                    (true, _) => unknown_keys(known, below, &here, out),
+                    (false, true) => unknown_keys(other, below, &here, out),
+                    _ => out.push(here),
+                }
+            }
+        }
+        toml::Value::Array(list) if list.iter().any(toml::Value::is_table) => {
+            list.iter()
+                .for_each(|v| unknown_keys(&schema["items"], v, at, out));
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn the_schema_knows_every_key_of_a_job_and_no_misspelt_one() {
+    let out = strainbridge(&["schema"]);
+    assert_eq!(out.status.code(), Some(0));
+    let schema: serde_json::Value = serde_json::from_slice(&out.stdout).unwrap();
+    let unknown = |job: &str| {
+        let mut list = Vec::new();
+        unknown_keys(
+            &schema,
+            &job.parse::<toml::Table>().unwrap().into(),
+            "",
+            &mut list,
+        );
+        list
+    };
+    let job = "units = \"mm-t-s\"\n[model]\ndeck = \"a.bdf\"\n[[load]]\ngrid = 1\nfroce = 2\n[vehicle]\nknown = { m_b = 1.0 }\n";
+    assert_eq!(unknown(job), [".load.froce"]);
+    let mut jobs = Vec::new();
+    for folder in ["static", "deck", "dynamics"] {
+        let shared = PathBuf::from(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../shared/hidden_effects"
+        ))
+        .join(folder);
+        let cases = std::fs::read_dir(shared).into_iter().flatten().flatten();
+        jobs.extend(
+            cases
+                .map(|c| c.path().join("job.toml"))
+                .filter(|j| j.exists()),
+        );
+    }
+    if jobs.is_empty() {
+        eprintln!("skipped: no shared jobs here");
+    }
+    for path in jobs {
+        let list = unknown(&std::fs::read_to_string(&path).unwrap());
+        assert!(list.is_empty(), "{}: {list:?}", path.display());
+    }
+}

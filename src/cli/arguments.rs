@@ -4,7 +4,19 @@ use std::path::PathBuf;
 
 /// Strain gauges and a finite element model in, wheel loads with intervals out.
 #[derive(clap::Parser, Debug)]
-#[command(name = "strainbridge", version, about, arg_required_else_help = true)]
+#[command(
+    name = "strainbridge",
+    version,
+    about,
+    arg_required_else_help = true,
+    after_help = "First steps:\n  strainbridge demo                               the truck story in a folder, in seconds\n  \
+                  strainbridge check truck.bdf truck.op2          what is in your files\n  \
+                  strainbridge init truck.bdf truck.op2           a commented job from them\n  \
+                  strainbridge place job.toml                     where to glue gauges\n  \
+                  strainbridge recover job.toml                   loads from measured strain\n\n\
+                  Exit code: 0 done; 1 done, but an answer can't be relied on; 2 bad input, every fault listed.\n\
+                  `strainbridge COMMAND --help` shows an example of each."
+)]
 pub struct Arguments {
     /// What to do.
     #[command(subcommand)]
@@ -15,35 +27,84 @@ pub struct Arguments {
 #[derive(clap::Subcommand, Debug)]
 pub enum Command {
     /// The truck story in a folder: solve, place, recover, reconcile, weigh, report
+    #[command(after_help = "Example:\n  strainbridge demo story && open story/report.html")]
     Demo(DemoArguments),
     /// Read decks, results or jobs; report what is in them and every fault
+    #[command(
+        after_help = "Example:\n  strainbridge check truck.bdf truck.op2\n  strainbridge check job.toml --json"
+    )]
     Check(FilesArguments),
     /// Shell and bar strain of every static subcase, in the element and the basic frame, to strains.csv
+    #[command(after_help = "Example:\n  strainbridge strains truck.bdf truck.op2 --out strains")]
     Strains(DeckArguments),
     /// Write a commented job.toml from a deck and its results
+    #[command(
+        after_help = "Example:\n  strainbridge init truck.bdf truck.op2 --out .    # then read job.toml and correct it"
+    )]
     Init(DeckArguments),
     /// Write unit_loads.bdf: the job's deck with one unit-load subcase a load, ready for Nastran
+    #[command(
+        after_help = "Example:\n  strainbridge cases job.toml --out nastran && cd nastran && nastran unit_loads.bdf"
+    )]
     Cases(JobArguments),
     /// Compute S of the job's gauges, or of its candidates: what each reads per unit of each load
+    #[command(after_help = "Example:\n  strainbridge sensitivity job.toml")]
     Sensitivity(JobArguments),
     /// Choose gauges, with a certificate of how far from the best possible they are
+    #[command(
+        after_help = "Example:\n  strainbridge place job.toml    # job.out/gauges.csv, gauges.xlsx, gluing_sheet.md, report.html"
+    )]
     Place(JobArguments),
     /// Recover loads from measured strain, with intervals
+    #[command(after_help = "Example:\n  strainbridge recover job.toml --json | jq .loads")]
     Recover(JobArguments),
     /// Repeat recovery under stated errors for a range of gauge counts and layouts
+    #[command(after_help = "Example:\n  strainbridge study job.toml --threads 4")]
     Study(JobArguments),
     /// Strain and stress anywhere on the structure from recovered loads, by superposition: envelope, hot spots, histories
+    #[command(
+        after_help = "Example:\n  strainbridge respond job.toml    # job.out/envelope.vtu opens in ParaView"
+    )]
     Respond(JobArguments),
     /// Mass and, where it can be told, position of a payload, from strain, wheel forces or both
+    #[command(after_help = "Example:\n  strainbridge payload job.toml")]
     Payload(JobArguments),
     /// Size and place lumped masses that bring the model's reactions to the measured ones; write the completed deck
+    #[command(
+        after_help = "Example:\n  strainbridge ballast job.toml    # job.out holds the completed deck"
+    )]
     Ballast(JobArguments),
     /// Strain of a job's unit loads, or of a deck's static subcases, by the built-in solver
+    #[command(
+        after_help = "Example:\n  strainbridge solve truck.bdf --out solved    # solved/results.op2, solved/results.vtu"
+    )]
     Solve(JobArguments),
     /// Find where simulation and measurement disagree, name the missing effect, add it, show the gap shrink
+    #[command(
+        after_help = "Example:\n  strainbridge reconcile job.toml    # exit code 1: what it says can't be relied on"
+    )]
     Reconcile(JobArguments),
     /// Vehicle parameters and wheel loads from accelerations
+    #[command(after_help = "Example:\n  strainbridge identify vehicle.toml")]
     Identify(JobArguments),
+    /// Print the JSON schema of a job, for editors that complete and check TOML by it
+    #[command(
+        after_help = "Example:\n  strainbridge schema > job.schema.json    # and `#:schema job.schema.json` as first line of job.toml"
+    )]
+    Schema,
+    /// Print the completions of a shell
+    #[command(
+        after_help = "Example:\n  strainbridge completions bash > ~/.local/share/bash-completion/completions/strainbridge"
+    )]
+    Completions(CompletionsArguments),
+}
+
+/// Which shell.
+#[derive(clap::Args, Debug)]
+pub struct CompletionsArguments {
+    /// The shell
+    #[arg(value_enum, value_name = "SHELL")]
+    pub shell: clap_complete::Shell,
 }
 
 /// Options of every command.

@@ -181,7 +181,8 @@ fn sha256_hex(bytes: &[u8]) -> String {
         .collect()
 }
 
-fn load(path: &Path) -> std::io::Result<FileBytes> {
+/// Bytes of a file, mapped where it is large.
+pub(super) fn load(path: &Path) -> std::io::Result<FileBytes> {
     const MAP_FROM: u64 = 1 << 16;
     let file = std::fs::File::open(path)?;
     let meta = file.metadata()?;

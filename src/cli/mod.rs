@@ -14,6 +14,7 @@ pub mod fault;
 pub mod files;
 mod identify;
 mod init;
+mod interrupt;
 pub mod job;
 pub mod output;
 mod payload;
@@ -27,6 +28,7 @@ mod session;
 mod solution_cache;
 mod solve;
 mod solved;
+mod spreadsheets;
 mod strain;
 mod strains;
 mod study;
@@ -37,10 +39,13 @@ mod words;
 pub use arguments::*;
 pub use session::*;
 
+use clap::CommandFactory;
+use std::io::Write;
 use std::process::ExitCode;
 
 /// Runs the command and returns the exit code: 0 done, 1 done with error findings, 2 bad input.
 pub fn run(arguments: Arguments) -> ExitCode {
+    interrupt::watch();
     match arguments.command {
         Command::Strains(a) => Session::run("strains", &a.common, |s| strains::run(&a, s)),
         Command::Check(a) => Session::run("check", &a.common, |s| check::run(&a, s)),
@@ -59,5 +64,23 @@ pub fn run(arguments: Arguments) -> ExitCode {
         Command::Solve(a) => Session::run("solve", &a.common, |s| solve::run(&a, s)),
         Command::Reconcile(a) => Session::run("reconcile", &a.common, |s| reconcile::run(&a, s)),
         Command::Identify(a) => Session::run("identify", &a.common, |s| identify::run(&a, s)),
+        Command::Schema => print(job::schema::job_schema().as_bytes()),
+        Command::Completions(a) => {
+            let mut text = Vec::new();
+            clap_complete::generate(
+                a.shell,
+                &mut Arguments::command(),
+                "strainbridge",
+                &mut text,
+            );
+            print(&text)
+        }
     }
+}
+
+/// Prints text that is the whole answer.
+fn print(text: &[u8]) -> ExitCode {
+    // A closed pipe (`| head`) is no fault of ours.
+    let _ = std::io::stdout().write_all(text);
+    ExitCode::SUCCESS
 }

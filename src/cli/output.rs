@@ -1,6 +1,8 @@
 //! Writing: files appear under their names only when all of them are complete.
 
 use super::fault::Fault;
+use super::files::{FileBytes, load};
+use super::interrupt;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -54,6 +56,18 @@ impl Output {
             .map_err(|e| unwritable(&self.folder.join(name), &e))
     }
 
+    /// Bytes of file `name` as written so far, which must be flushed. Drop them before [`Output::commit`].
+    ///
+    /// # Errors
+    /// A fault where it can't be read.
+    pub fn read_back(&self, name: &str) -> Result<FileBytes, Fault> {
+        load(&self.part(name)).map_err(|e| unwritable(&self.folder.join(name), &e))
+    }
+
+    fn part(&self, name: &str) -> PathBuf {
+        self.folder.join(format!(".{name}.part"))
+    }
+
     /// A fault for a file of this folder that could not be written on.
     pub fn fault(&self, name: &str, e: &std::io::Error) -> Fault {
         unwritable(&self.folder.join(name), e)
@@ -85,7 +99,8 @@ impl Output {
 
     /// Notes a file under its temporary name.
     fn begin_file(&mut self, name: &str) -> PathBuf {
-        let part = self.folder.join(format!(".{name}.part"));
+        let part = self.part(name);
+        interrupt::note(&part);
         self.pending.push((part.clone(), self.folder.join(name)));
         part
     }
@@ -105,6 +120,7 @@ impl Output {
     pub fn commit(mut self) -> Result<(), Fault> {
         while let Some((part, target)) = self.pending.first().cloned() {
             std::fs::rename(&part, &target).map_err(|e| unwritable(&target, &e))?;
+            interrupt::forget(&part);
             self.pending.remove(0);
         }
         Ok(())
@@ -115,6 +131,7 @@ impl Drop for Output {
     fn drop(&mut self) {
         for (part, _) in &self.pending {
             let _ = std::fs::remove_file(part);
+            interrupt::forget(part);
         }
     }
 }

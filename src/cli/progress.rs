@@ -1,9 +1,42 @@
-//! Progress on a terminal, for work that takes over a second.
+//! Progress on a terminal, for work that takes over a second: the stage, how long it has run and, where that is known, the time left.
 
 use std::io::IsTerminal;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
+
+/// How much of a stage is done.
+#[derive(Default)]
+pub struct Meter {
+    done: AtomicU64,
+    total: AtomicU64,
+}
+
+impl Meter {
+    /// Begins a stage of so many parts; 0: it is not known.
+    pub fn begin(&self, total: usize) {
+        self.done.store(0, Ordering::Relaxed);
+        self.total.store(total as u64, Ordering::Relaxed);
+    }
+
+    /// So many parts more are done.
+    pub fn advance(&self, parts: usize) {
+        self.done.fetch_add(parts as u64, Ordering::Relaxed);
+    }
+
+    /// Share done and time left after `elapsed`; `None` where nothing is known yet.
+    fn left(&self, elapsed: Duration) -> Option<(f64, Duration)> {
+        let done = self.done.load(Ordering::Relaxed);
+        let total = self.total.load(Ordering::Relaxed);
+        if done == 0 || total == 0 {
+            return None;
+        }
+        let share = (done as f64 / total as f64).min(1.0);
+        Some((share, elapsed.mul_f64((1.0 - share) / share)))
+    }
+}
 
 /// A spinner that appears after a second and goes when dropped.
 pub struct Progress {
@@ -13,10 +46,12 @@ pub struct Progress {
 
 /// How long work may take before a progress line appears.
 const PATIENCE: Duration = Duration::from_secs(1);
+/// How often the time left is stated anew.
+const TICK: Duration = Duration::from_millis(250);
 
 impl Progress {
     /// Starts one; silent where standard error is no terminal.
-    pub fn start(what: &str) -> Self {
+    pub fn start(what: &str, meter: &Arc<Meter>) -> Self {
         if !std::io::stderr().is_terminal() {
             return Self {
                 stop: None,
@@ -24,7 +59,7 @@ impl Progress {
             };
         }
         let (stop, stopped) = channel::<()>();
-        let what = what.to_owned();
+        let (what, meter, began) = (what.to_owned(), Arc::clone(meter), Instant::now());
         let thread = std::thread::spawn(move || {
             if stopped.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Timeout) {
                 return;
@@ -34,9 +69,14 @@ impl Progress {
             {
                 spinner.set_style(style);
             }
-            spinner.set_message(what);
+            spinner.set_message(what.clone());
             spinner.enable_steady_tick(Duration::from_millis(120));
-            let _ = stopped.recv();
+            while stopped.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
+                if let Some((share, left)) = meter.left(began.elapsed()) {
+                    let (percent, seconds) = (100.0 * share, left.as_secs());
+                    spinner.set_message(format!("{what}: {percent:.0} %, about {seconds} s left;"));
+                }
+            }
             spinner.finish_and_clear();
         });
         Self {
@@ -52,5 +92,20 @@ impl Drop for Progress {
         if let Some(t) = self.thread.take() {
             let _ = t.join();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quarter_done_in_ten_seconds_leaves_thirty() {
+        let meter = Meter::default();
+        assert_eq!(meter.left(Duration::from_secs(10)), None);
+        meter.begin(8);
+        meter.advance(2);
+        let left = meter.left(Duration::from_secs(10));
+        assert_eq!(left, Some((0.25, Duration::from_secs(30))));
     }
 }

@@ -4,7 +4,7 @@ use super::CommonArguments;
 use super::fault::{Fault, Faults};
 use super::files::{Input, Inputs};
 use super::output::Output;
-use super::progress::Progress;
+use super::progress::{Meter, Progress};
 use super::words::finding_text;
 use crate::finding::{Finding, Severity, worst};
 use crate::units::{ReportUnits, UnitSystem};
@@ -13,6 +13,7 @@ use serde_json::{Map, Value};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// One run of a command.
@@ -30,6 +31,7 @@ pub struct Session {
     output: Option<Output>,
     text: String,
     notes: Vec<String>,
+    meter: Arc<Meter>,
 }
 
 /// `result.json`.
@@ -116,6 +118,7 @@ impl Session {
             output: None,
             text: String::new(),
             notes: Vec::new(),
+            meter: Arc::default(),
         }
     }
 
@@ -135,7 +138,7 @@ impl Session {
         };
         let mut session = Session::new(command, &common);
         let start = Instant::now();
-        let progress = Progress::start(command);
+        let progress = Progress::start(command, &self.meter);
         work(&mut session)?;
         drop(progress);
         session.note_seconds("total", start);
@@ -154,11 +157,17 @@ impl Session {
     /// Runs a stage: timed under its name, with a progress line on a terminal where it takes over a second.
     pub fn stage<T>(&mut self, name: &str, work: impl FnOnce(&mut Session) -> T) -> T {
         let start = Instant::now();
-        let progress = Progress::start(name);
+        self.meter.begin(0);
+        let progress = Progress::start(name, &self.meter);
         let out = work(self);
         drop(progress);
         self.note_seconds(name, start);
         out
+    }
+
+    /// What the progress line of the present stage shows; to be told how many parts it has.
+    pub fn meter(&self) -> Arc<Meter> {
+        Arc::clone(&self.meter)
     }
 
     fn note_seconds(&mut self, name: &str, start: Instant) {

@@ -3,6 +3,7 @@
 //! The name is the SHA-256 of everything the solution depends on, so a changed deck or load finds nothing. A file holds a mark, that
 //! hash, little-endian numbers, and the SHA-256 of all bytes before; one that does not add up is passed over and written again.
 
+use super::interrupt;
 use crate::fe::{Balance, MassProperties, SolveReport, Solved};
 use crate::finding::{Finding, Severity};
 use crate::linalg::Matrix6;
@@ -62,11 +63,13 @@ impl SolutionCache {
             std::fs::create_dir_all(&self.folder)?;
             let file = self.file();
             let part = file.with_extension(format!("{}.part", std::process::id()));
+            interrupt::note(&part);
             let done = std::fs::write(&part, encode(solved, &self.hash))
                 .and_then(|()| std::fs::rename(&part, &file));
             if done.is_err() {
                 let _ = std::fs::remove_file(&part);
             }
+            interrupt::forget(&part);
             done
         };
         write().map_err(|e| format!("`{}`: {e}", self.folder.display()))?;

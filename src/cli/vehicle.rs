@@ -4,9 +4,10 @@ use super::Session;
 use super::fault::{Fault, Faults};
 use super::job::{Job, NamedFile, Vehicle as VehicleJob};
 use crate::finding::{Finding, Severity};
-use crate::series::channels::Channels;
+use crate::series::channels::{Channels, SeriesError};
 use crate::series::csv::read_csv;
 use crate::series::quality::{Kind, check_channels};
+use crate::series::rpc::{is_rpc, read_rpc};
 use crate::series::spectrum::Band;
 use crate::units::{Quantity, find_unit};
 use crate::vehicle::identify::Question;
@@ -185,7 +186,12 @@ fn read_record(
     named: &NamedFile,
 ) -> Result<Channels, Faults> {
     let bytes = session.inputs.read_named(job, named).map_err(|f| vec![f])?;
-    let mut record = read_csv(&bytes, section.sample_rate).map_err(|e| {
+    let read = if is_rpc(&bytes) {
+        read_rpc_at(&bytes, section.sample_rate)
+    } else {
+        read_csv(&bytes, section.sample_rate)
+    };
+    let mut record = read.map_err(|e| {
         let (wrong, remedy) = split_message(&e.to_string());
         match &e {
             crate::series::SeriesError::Line { line, what, remedy } => vec![Fault::at(
@@ -222,6 +228,22 @@ fn read_record(
         Ok(record)
     } else {
         Err(faults)
+    }
+}
+
+/// An RPC III record, its rate held against the one that the job declares.
+fn read_rpc_at(bytes: &[u8], declared_hz: Option<f64>) -> Result<Channels, SeriesError> {
+    /// Largest relative departure of both rates.
+    const RATE_TOLERANCE: f64 = 1e-3;
+    let record = read_rpc(bytes)?;
+    match declared_hz {
+        Some(declared) if (record.rate_hz / declared - 1.0).abs() > RATE_TOLERANCE => {
+            Err(SeriesError::Rate {
+                found_hz: record.rate_hz,
+                declared_hz: declared,
+            })
+        }
+        _ => Ok(record),
     }
 }
 

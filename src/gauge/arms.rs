@@ -58,6 +58,16 @@ pub struct Gauge {
     pub angle_rad: f64,
 }
 
+impl Gauge {
+    /// Unit vector out of the side that the gauge sits on, basic frame.
+    pub fn outward(&self) -> Vec3 {
+        match self.surface {
+            Surface::Top => self.normal,
+            Surface::Bottom => -self.normal,
+        }
+    }
+}
+
 /// What a gauge reads in a load case, strain; `None` where the case has no strain at one of its spots.
 pub fn reading(gauge: &Gauge, case: &CaseResult) -> Option<f64> {
     gauge.arms.iter().map(|arm| arm_reading(arm, case)).sum()

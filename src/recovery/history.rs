@@ -176,6 +176,20 @@ impl Filter {
             .collect()
     }
 
+    /// Standard deviation of a change of load `l` between two samples, `change` that of all loads. Noise enters twice; errors of the
+    /// model, which both samples share, with what changes.
+    pub fn sigma_of_change(&self, l: usize, change: &[f64]) -> f64 {
+        let model: f64 = self
+            .model_variance
+            .iter()
+            .skip(l * self.k)
+            .zip(change)
+            .map(|(b, v)| b * v * v)
+            .sum();
+        let noise = self.noise_variance.get(l).copied().unwrap_or(f64::NAN);
+        (2.0 * noise + model).sqrt()
+    }
+
     /// Number of loads.
     pub fn n_loads(&self) -> usize {
         self.k

@@ -1,11 +1,14 @@
-//! From plain results to bytes: text, json, csv, html. Nothing is computed here.
+//! From plain results to bytes: text, json, csv, html, spreadsheets. Nothing is computed here.
 
 mod result_blocks;
+pub mod spreadsheet;
 pub mod strain;
 mod strains;
 pub mod vehicle;
 mod vtu;
+mod vtu_points;
 
 pub use result_blocks::{PlannedBlock, planned_blocks, rows_of_block};
 pub use strains::{STRAINS_HEADER, write_strains};
 pub use vtu::{write_cells_vtu, write_vtu};
+pub use vtu_points::{PointValues, write_points_vtu};

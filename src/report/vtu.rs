@@ -10,14 +10,14 @@ const TRIANGLE: u8 = 5;
 const QUAD: u8 = 9;
 
 /// Arrays are appended to the XML as raw little-endian bytes, each after its length in bytes (64 bit).
-struct Appended {
-    xml: String,
+pub(super) struct Appended {
+    pub(super) xml: String,
     offset: u64,
     blocks: Vec<Vec<u8>>,
 }
 
 impl Appended {
-    fn array(&mut self, name: &str, kind: &str, components: usize, bytes: Vec<u8>) {
+    pub(super) fn array(&mut self, name: &str, kind: &str, components: usize, bytes: Vec<u8>) {
         self.xml += &format!(
             "<DataArray type=\"{kind}\" Name=\"{}\" NumberOfComponents=\"{components}\" format=\"appended\" offset=\"{}\"/>\n",
             escape(name),
@@ -35,7 +35,7 @@ fn escape(text: &str) -> String {
         .replace('"', "&quot;")
 }
 
-fn floats(values: impl Iterator<Item = f64>) -> Vec<u8> {
+pub(super) fn floats(values: impl Iterator<Item = f64>) -> Vec<u8> {
     values.flat_map(|v| (v as f32).to_le_bytes()).collect()
 }
 
@@ -154,17 +154,7 @@ fn mesh(model: &Model) -> (Appended, Cells) {
     }
     let panels = model.shear_panels.iter();
     cells.extend(panels.map(|p| (QUAD, p.id, p.grids.to_vec())));
-    let mut a = Appended {
-        xml: String::new(),
-        offset: 0,
-        blocks: Vec::new(),
-    };
-    a.xml += "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n";
-    a.xml += &format!(
-        "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<Points>\n",
-        model.grids.len(),
-        cells.len()
-    );
+    let mut a = begin(model.grids.len(), cells.len());
     a.array(
         "Points",
         "Float64",
@@ -209,6 +199,19 @@ fn mesh(model: &Model) -> (Appended, Cells) {
     (a, cells)
 }
 
+/// The document up to the points.
+pub(super) fn begin(points: usize, cells: usize) -> Appended {
+    let xml = format!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
+         header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n<Points>\n"
+    );
+    Appended {
+        xml,
+        offset: 0,
+        blocks: Vec::new(),
+    }
+}
+
 /// Ends the point data, begins the cell data with the element numbers.
 fn begin_cell_data(a: &mut Appended, cells: &Cells) {
     a.xml += "</PointData>\n<CellData>\n";
@@ -223,7 +226,7 @@ fn begin_cell_data(a: &mut Appended, cells: &Cells) {
     );
 }
 
-fn finish(mut a: Appended, out: &mut dyn Write) -> Result<()> {
+pub(super) fn finish(mut a: Appended, out: &mut dyn Write) -> Result<()> {
     a.xml += "</CellData>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
     out.write_all(a.xml.as_bytes())?;
     for block in &a.blocks {

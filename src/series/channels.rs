@@ -96,6 +96,9 @@ pub enum SeriesError {
         /// Lower band edge.
         low_hz: f64,
     },
+    /// An RPC III file that can't be read.
+    #[error(transparent)]
+    Rpc(#[from] super::rpc::RpcError),
     /// A band that the sampling can't hold.
     #[error("the band {low_hz} to {high_hz} Hz does not fit a sample rate of {rate_hz} Hz: need 0 < low < high < {:.3} Hz", .rate_hz / 2.0)]
     Band {

@@ -3,6 +3,7 @@
 //! - [`channels`]: a record of equally long, equally sampled channels with units
 //! - [`binary`]: the long record of strainbridge, read a piece at a time
 //! - [`csv`]: bytes of a CSV file to a record
+//! - [`rpc`]: RPC III files, read and written
 //! - [`number`]: numbers read and written fast
 //! - [`quality`]: dead, clipped, spiky, drifting, reversed, wrongly scaled channels as findings
 //! - [`detrend`]: mean, line and zero-run removal
@@ -14,6 +15,7 @@
 //! - [`content`]: up to which frequency a signal has content
 //! - [`align`]: delay between channels, shifting by a part of a sample
 //! - [`resample`]: another sample rate
+//! - [`rainflow`]: cycles and pseudo-damage
 
 pub mod align;
 pub mod binary;
@@ -26,7 +28,9 @@ pub mod filtfilt;
 pub mod integrate;
 pub mod number;
 pub mod quality;
+pub mod rainflow;
 pub mod resample;
+pub mod rpc;
 pub mod spectrum;
 pub mod welch;
 pub mod window;

@@ -119,7 +119,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
 }
 
 /// Ids of all load sets.
-fn load_ids(deck: &Deck) -> Vec<u32> {
+pub(in crate::cli) fn load_ids(deck: &Deck) -> Vec<u32> {
     let c = &deck.cards;
     let mut ids: Vec<u32> = c
         .forces

@@ -2,10 +2,10 @@
 
 use super::parse::line_column;
 use super::raw::S;
+use super::spanned::Spanned;
 use super::suggest;
 use super::types::NamedFile;
 use crate::cli::fault::{Fault, Faults};
-use toml::Spanned;
 
 /// The job's text and the faults found in it so far.
 pub(super) struct Collector<'a> {

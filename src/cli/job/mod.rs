@@ -1,5 +1,6 @@
 //! job.toml: [`parse`] turns text into [`raw`] structs with the place of every value, [`resolve`] turns those into the plain
-//! structs of [`types`]; [`gauges`], [`strain`] and [`runs`] read the tables a job names.
+//! structs of [`types`]; [`gauges`], [`strain`] and [`runs`] read the tables a job names; [`schema`] describes
+//! a job to editors.
 
 mod faults;
 pub mod gauges;
@@ -7,7 +8,9 @@ mod parse;
 mod raw;
 mod resolve;
 pub mod runs;
+pub mod schema;
 mod shapes;
+mod spanned;
 pub mod strain;
 pub mod suggest;
 pub mod table;

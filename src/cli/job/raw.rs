@@ -1,14 +1,15 @@
 //! The job as written: every key of every section, each value with its place in the text, nothing required here.
 
 use super::shapes::{Counts, Ids, NumberOrWord, Texts};
+use super::spanned::Spanned;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use toml::Spanned;
 
 /// A value with its place, `None` where the key is absent.
 pub(super) type S<T> = Option<Spanned<T>>;
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawJob {
     pub title: S<String>,
@@ -24,6 +25,7 @@ pub(super) struct RawJob {
     pub runs: S<RawRuns>,
     pub ballast: S<RawBallast>,
     pub payload: S<RawPayload>,
+    pub recover: S<RawRecover>,
     pub respond: S<RawRespond>,
     pub study: S<RawStudy>,
     pub vehicle: S<RawVehicle>,
@@ -31,7 +33,7 @@ pub(super) struct RawJob {
     pub sensitivity: S<RawSensitivity>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawUnits {
     pub force: S<String>,
@@ -41,14 +43,14 @@ pub(super) struct RawUnits {
     pub stress: S<String>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawModel {
     pub deck: S<String>,
     pub results: Vec<Spanned<String>>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawLoad {
     pub name: S<String>,
@@ -64,7 +66,7 @@ pub(super) struct RawLoad {
     pub weight: S<f64>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawGauge {
     pub name: S<String>,
@@ -85,13 +87,13 @@ pub(super) struct RawGauge {
     pub transverse_sensitivity: S<f64>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawGauges {
     pub file: S<String>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawCandidates {
     pub properties: S<Ids>,
@@ -109,7 +111,7 @@ pub(super) struct RawCandidates {
     pub clear_of: Option<RawClear>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawClear {
     pub edges: S<f64>,
@@ -118,7 +120,7 @@ pub(super) struct RawClear {
     pub attachments: S<f64>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawPlacement {
     pub gauges: S<u32>,
@@ -141,7 +143,7 @@ pub(super) struct RawPlacement {
     pub references: BTreeMap<String, u32>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawMeasured {
     pub strain: S<String>,
@@ -152,7 +154,7 @@ pub(super) struct RawMeasured {
     pub hold_out: S<Texts>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawRuns {
     pub file: S<String>,
@@ -162,7 +164,7 @@ pub(super) struct RawRuns {
     pub wheel_forces: S<String>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawRunNoise {
     pub force: S<f64>,
@@ -171,7 +173,7 @@ pub(super) struct RawRunNoise {
     pub length: S<f64>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawBallast {
     pub masses: S<u32>,
@@ -182,7 +184,7 @@ pub(super) struct RawBallast {
     pub gravity: S<f64>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawPayload {
     pub grid: S<u32>,
@@ -197,7 +199,14 @@ pub(super) struct RawPayload {
     pub nominal_y: S<f64>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawRecover {
+    pub files: S<Vec<Spanned<String>>>,
+    pub slope: S<f64>,
+}
+
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawRespond {
     pub elements: S<Ids>,
@@ -205,7 +214,7 @@ pub(super) struct RawRespond {
     pub loads: S<String>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawStudy {
     pub layouts: S<Vec<Spanned<String>>>,
@@ -215,14 +224,14 @@ pub(super) struct RawStudy {
     pub seed: S<u64>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawError {
     pub kind: S<String>,
     pub size: S<f64>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawVehicle {
     pub model: S<String>,
@@ -241,14 +250,14 @@ pub(super) struct RawVehicle {
     pub mass_change: Option<RawMassChange>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawCorrection {
     pub gain: S<f64>,
     pub delay_s: S<f64>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawMassChange {
     pub body: S<String>,
@@ -257,21 +266,21 @@ pub(super) struct RawMassChange {
     pub weight: S<bool>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawVehicleNoise {
     pub acc: S<f64>,
     pub force: S<f64>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawTolerance {
     pub gain: S<f64>,
     pub sync: S<f64>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawReconcile {
     pub path: S<String>,
@@ -285,14 +294,14 @@ pub(super) struct RawReconcile {
     pub tolerance: Option<RawGluing>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawGluing {
     pub angle_deg: S<f64>,
     pub position_mm: S<f64>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawSensitivity {
     pub file: S<String>,
@@ -301,7 +310,7 @@ pub(super) struct RawSensitivity {
     pub signatures: Option<RawSignatures>,
 }
 
-#[derive(Deserialize, Default, Debug)]
+#[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawSignatures {
     pub lateral_wheel_loads: S<String>,

@@ -1,6 +1,8 @@
 //! Values that may be written in more than one way.
 
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
+use std::borrow::Cow;
 use std::fmt;
 
 /// Ids: a number, a list, or text such as `"1 THRU 5000"` or `"1, 7, 20 THRU 30"`.
@@ -162,3 +164,35 @@ impl<'de> Deserialize<'de> for Counts {
         d.deserialize_any(V)
     }
 }
+
+/// A schema of its own for each of these types, part of where it is used.
+macro_rules! schema {
+    ($type:ty, $schema:tt) => {
+        impl JsonSchema for $type {
+            fn inline_schema() -> bool {
+                true
+            }
+
+            fn schema_name() -> Cow<'static, str> {
+                stringify!($type).into()
+            }
+
+            fn json_schema(_: &mut SchemaGenerator) -> Schema {
+                json_schema!($schema)
+            }
+        }
+    };
+}
+
+schema!(Ids, {
+    "type": ["integer", "string", "array"],
+    "items": { "type": "integer" },
+    "minimum": 1
+});
+schema!(Texts, { "type": ["string", "array"], "items": { "type": "string" } });
+schema!(NumberOrWord, { "type": ["number", "string"] });
+schema!(Counts, {
+    "type": ["integer", "array"],
+    "items": { "type": "integer", "minimum": 0 },
+    "minimum": 0
+});

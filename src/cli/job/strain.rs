@@ -1,9 +1,10 @@
-//! The strain file: a column a gauge in microstrain, a row a run (`run`) or a sample (`time`).
+//! The strain file: a column a gauge in microstrain, a row a run (`run`) or a sample (`time`); or RPC III, a channel a gauge.
 
 use super::table::{Table, read_table};
 use super::types::{Job, NamedFile};
 use crate::cli::fault::{Fault, Faults};
 use crate::cli::files::Inputs;
+use crate::series::rpc;
 
 /// What the rows of a strain file are.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,8 +53,88 @@ pub fn read_strain(
     job: &Job,
     named: &NamedFile,
 ) -> Result<StrainTable, Faults> {
+    let bytes = inputs.read_named(job, named).map_err(|f| vec![f])?;
+    if rpc::is_rpc(&bytes) {
+        return strain_from_rpc(&named.given, &bytes);
+    }
     let text = inputs.read_named_text(job, named).map_err(|f| vec![f])?;
     strain_from_table(&read_table(&named.given, &text)?)
+}
+
+/// The header of an RPC III file.
+///
+/// # Errors
+/// A fault of the file.
+pub fn read_strain_header(file: &str, bytes: &[u8]) -> Result<rpc::Header, Faults> {
+    rpc::read_header(bytes).map_err(|e| {
+        let text = e.to_string();
+        let (wrong, remedy) = text.rsplit_once(": ").unwrap_or((&text, "export it again"));
+        vec![Fault::of(file, "header", wrong, remedy)]
+    })
+}
+
+/// Turns the channels that are named after gauges into microstrain. No unit means microstrain.
+///
+/// # Errors
+/// A fault for each of them whose unit is none of strain.
+pub fn in_microstrain(file: &str, h: &mut rpc::Header, gauges: &[String]) -> Result<(), Faults> {
+    let mut faults = Faults::new();
+    let used = h.channels.iter_mut().filter(|c| gauges.contains(&c.name));
+    for channel in used {
+        match microstrain_in(&channel.unit) {
+            Some(factor) => channel.scale *= factor,
+            None => faults.push(Fault::of(
+                file,
+                &*channel.name,
+                format!("`{}` is no unit of strain", channel.unit),
+                "export it in microstrain (uE, um/m) or strain (m/m)",
+            )),
+        }
+    }
+    if faults.is_empty() {
+        Ok(())
+    } else {
+        Err(faults)
+    }
+}
+
+/// Microstrain in one of a unit, as measuring systems write it.
+fn microstrain_in(unit: &str) -> Option<f64> {
+    let word: String = unit
+        .to_lowercase()
+        .chars()
+        .filter(|c| !matches!(c, ' ' | '_' | '-' | '.'))
+        .map(|c| if matches!(c, 'µ' | 'μ') { 'u' } else { c })
+        .collect();
+    match word.as_str() {
+        "" | "microstrain" | "ustrain" | "ue" | "uε" | "um/m" | "ustr" | "us" | "1e6" | "ppm"
+        | "uin/in" => Some(1.0),
+        "strain" | "m/m" | "mm/mm" | "in/in" | "eps" => Some(1e6),
+        "mm/m" | "millistrain" | "mstrain" | "me" => Some(1e3),
+        _ => None,
+    }
+}
+
+/// A whole RPC III file; columns whose unit is none of strain are left out.
+fn strain_from_rpc(file: &str, bytes: &[u8]) -> Result<StrainTable, Faults> {
+    let mut h = read_strain_header(file, bytes)?;
+    let columns: Vec<Option<usize>> = (0..h.channels.len())
+        .filter(|c| microstrain_in(&h.channels[*c].unit).is_some())
+        .map(Some)
+        .collect();
+    let gauges: Vec<String> = columns
+        .iter()
+        .filter_map(|c| h.channels.get((*c)?).map(|c| c.name.clone()))
+        .collect();
+    in_microstrain(file, &mut h, &gauges)?;
+    let mut microstrain = Vec::new();
+    rpc::read_samples(&h, bytes, 0, h.samples, &columns, &mut microstrain);
+    Ok(StrainTable {
+        file: file.to_owned(),
+        gauges,
+        rows: StrainRows::Times((0..h.samples).map(|i| h.dt * i as f64).collect()),
+        microstrain,
+    })
 }
 
 /// The strain in a table.

@@ -49,6 +49,8 @@ pub struct Job {
     pub ballast: Option<Ballast>,
     /// `[payload]`.
     pub payload: Option<Payload>,
+    /// `[recover]`; the default where absent.
+    pub recover: Recover,
     /// `[respond]`; the default where absent.
     pub respond: Respond,
     /// `[study]`.
@@ -567,6 +569,35 @@ pub struct Payload {
     pub nominal_y: Option<f64>,
     /// Line of the job.
     pub line: u32,
+}
+
+/// What `recover` writes beside `loads.csv`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LoadFile {
+    /// `loads.rsp`: the history in RPC III.
+    Rpc,
+    /// `loads.bdf`: FORCE, MOMENT and LOAD, for a history TABLED1.
+    Nastran,
+    /// `rainflow.csv`: cycles and pseudo-damage of the history.
+    Rainflow,
+}
+
+impl LoadFile {
+    /// All of them, with the words of a job.
+    pub const ALL: [(&'static str, LoadFile); 3] = [
+        ("rpc", Self::Rpc),
+        ("nastran", Self::Nastran),
+        ("rainflow", Self::Rainflow),
+    ];
+}
+
+/// `[recover]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recover {
+    /// Files asked for; `None`: all, but for long histories.
+    pub files: Option<Vec<LoadFile>>,
+    /// Power of the load range in pseudo-damage.
+    pub slope: f64,
 }
 
 /// `[respond]`.

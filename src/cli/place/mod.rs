@@ -4,6 +4,7 @@ mod answer;
 mod choose;
 mod curve;
 mod installed;
+mod points;
 mod pool;
 mod region;
 mod sheet;
@@ -14,10 +15,12 @@ pub(super) use region::allowed_sites;
 
 use super::fault::{Fault, Faults};
 use super::job;
+use super::spreadsheets::write_spreadsheet;
 use super::strain::{load_units, read_fields};
 use super::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::placement::quality::{judge_rows, reserve};
+use crate::report::spreadsheet::gauge_sheets;
 use crate::report::strain::{
     gauges_csv, gluing_sheet_csv, gluing_sheet_md, place_page, sensitivity_csv,
 };
@@ -129,7 +132,10 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         "gluing_sheet.md",
         gluing_sheet_md(&job.title, &placed, fields.model()).as_bytes(),
     ))?;
-    write(out.write_bytes("report.html", page.as_bytes()))
+    write(out.write("gauges.vtu", |w| points::gauges_vtu(w, &placed)))?;
+    write(out.write_bytes("report.html", page.as_bytes()))?;
+    let sheets = gauge_sheets(&placed, fields.model(), &s);
+    write_spreadsheet(session, &job, &arguments.job, "gauges.xlsx", &sheets)
 }
 
 /// Gauges reserved for validation: index and prediction's standard deviation over the reading's.

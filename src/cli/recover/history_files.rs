@@ -1,8 +1,10 @@
 //! `loads.csv` and `loads.bin` of a record: formed in parallel, written in order by a thread of their own.
 
 use super::record::{GROUP, Piece, Record, process};
+use super::trace::Spans;
 use crate::cli::fault::Fault;
 use crate::cli::output::Output;
+use crate::cli::progress::Meter;
 use crate::cli::strain::LoadUnits;
 use crate::recovery::NORMAL_95;
 use crate::recovery::history::{Filter, Sums};
@@ -22,6 +24,8 @@ pub(super) struct Form<'a> {
     pub units: &'a [LoadUnits],
     /// Every how many samples a row.
     pub stride: usize,
+    /// Whether `loads.bin` is written.
+    pub numbers: bool,
 }
 
 impl Form<'_> {
@@ -32,7 +36,7 @@ impl Form<'_> {
             numbers: Vec::new(),
         };
         let loads = piece.loads.chunks_exact(self.filter.n_loads().max(1));
-        if self.stride > 1 {
+        if self.numbers {
             text.numbers.reserve(piece.loads.len() * 4);
             for f in loads.clone() {
                 for (v, u) in f.iter().zip(self.units) {
@@ -93,7 +97,10 @@ pub(super) fn stream(
     csv: &mut Named,
     mut bin: Option<&mut Named>,
     out: &Output,
+    meter: &Meter,
+    spans: &mut Spans,
 ) -> Result<Sums, Fault> {
+    meter.begin(record.n_pieces());
     let mut sums = Sums::new(form.filter.n_gauges(), form.filter.n_loads());
     let (sender, texts) = std::sync::mpsc::sync_channel::<Vec<Text>>(1);
     let (read, written) = std::thread::scope(|scope| {
@@ -123,9 +130,11 @@ pub(super) fn stream(
             let mut starts = Vec::with_capacity(done.len());
             for piece in &done {
                 sums.merge(&piece.sums);
+                spans.add(piece);
                 starts.push(first);
                 first += piece.times.len();
             }
+            meter.advance(done.len());
             let texts = done
                 .par_iter()
                 .zip(&starts)

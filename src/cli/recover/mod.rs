@@ -1,13 +1,16 @@
 //! `recover`: loads from measured strain.
 //!
-//! [`runs`] static states, a row each; [`stream`] records of any length, CSV or binary ([`crate::series::binary`]), at constant memory.
+//! [`runs`] static states, a row each; [`stream`] records of any length, CSV, RPC III or binary ([`crate::series::binary`]), at constant
+//! memory; [`derived`] what else is made of the loads.
 
 mod content;
 mod csv_record;
+mod derived;
 mod history_files;
 mod record;
 mod runs;
 mod stream;
+mod trace;
 
 use super::fault::{Fault, Faults};
 use super::job::{self, Job, Measured, Reference};
@@ -19,7 +22,7 @@ use crate::finding::{Finding, Severity};
 use crate::gauge::reading;
 use crate::model::Model;
 use crate::recovery::{ErrorModel, Readings, Recovery};
-use crate::series::binary;
+use crate::series::{binary, rpc};
 
 /// Strain in one microstrain.
 const MICRO: f64 = 1e-6;
@@ -64,7 +67,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         .inputs
         .read_named(&job, &measured.strain)
         .map_err(|f| vec![f])?;
-    if binary::is_record(&bytes) || csv_record::is_record(&bytes) {
+    if binary::is_record(&bytes) || rpc::is_rpc(&bytes) || csv_record::is_record(&bytes) {
         session.stage("stream", |s| stream::run(s, arguments, &task, bytes))
     } else {
         runs::run(session, arguments, &task)

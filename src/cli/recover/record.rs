@@ -5,6 +5,7 @@ use crate::cli::fault::Fault;
 use crate::cli::files::FileBytes;
 use crate::recovery::history::{Filter, Sums};
 use crate::series::binary::{self, Header};
+use crate::series::rpc;
 
 /// Samples a piece of a binary record.
 const SAMPLES: usize = 16_384;
@@ -18,6 +19,8 @@ pub(super) const GROUP: usize = 8;
 /// How a record is stored.
 pub(super) enum Source {
     Binary(Header),
+    /// RPC III, channels in microstrain.
+    Rpc(rpc::Header),
     Csv(Layout, Vec<(usize, usize)>),
 }
 
@@ -34,6 +37,7 @@ impl Record {
     pub fn n_pieces(&self) -> usize {
         match &self.source {
             Source::Binary(h) => h.samples.div_ceil(SAMPLES),
+            Source::Rpc(h) => h.samples.div_ceil(SAMPLES),
             Source::Csv(_, pieces) => pieces.len(),
         }
     }
@@ -47,6 +51,11 @@ impl Record {
                 values.reserve((to - from) * self.columns.len());
                 binary::read_samples(h, &self.bytes, from, to, &self.columns, &mut values);
                 times.extend((from..to).map(|s| h.t0 + h.dt * s as f64));
+            }
+            Source::Rpc(h) => {
+                let (from, to) = (i * SAMPLES, ((i + 1) * SAMPLES).min(h.samples));
+                rpc::read_samples(h, &self.bytes, from, to, &self.columns, &mut values);
+                times.extend((from..to).map(|s| h.dt * s as f64));
             }
             Source::Csv(l, pieces) => {
                 csv_record::read_piece(
@@ -88,7 +97,7 @@ pub(super) fn process(record: &Record, filter: &Filter, i: usize) -> Result<Piec
             }
             (from..to).map(|s| h.t0 + h.dt * s as f64).collect()
         }
-        Source::Csv(..) => {
+        Source::Csv(..) | Source::Rpc(_) => {
             let (times, values) = record.piece(i)?;
             filter.apply(&values, record.unit, &mut loads, &mut sums);
             times

@@ -1,15 +1,18 @@
 //! Static states.
 
+use super::derived::{write_arrows, write_nastran_runs};
 use super::{MICRO, Task};
 use crate::cli::fault::{Fault, Faults};
 use crate::cli::job::strain::{StrainRows, StrainTable, read_strain};
-use crate::cli::job::{Job, LoadActs, Measured, NamedFile};
+use crate::cli::job::{Job, LoadActs, LoadFile, Measured, NamedFile};
+use crate::cli::spreadsheets::write_spreadsheet;
 use crate::cli::strain::{LoadUnits, load_units};
 use crate::cli::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::recovery::net::effective_samples;
 use crate::recovery::{Readings, Recovery, recover};
-use crate::report::strain::{RecoveredRun, recover_page};
+use crate::report::spreadsheet::{residual_sheet, runs_sheet};
+use crate::report::strain::{GaugePoints, RecoveredRun, recover_page};
 use serde_json::{Value, json};
 use std::io::Write;
 
@@ -141,17 +144,17 @@ pub(super) fn run(
         .extend(undetermined(task, &recovery, &units));
     put(session, task, &recovery, &units)?;
     let shown: Vec<RecoveredRun> = recovery.runs.iter().map(|r| shown_run(r, &units)).collect();
-    let points: Vec<(f64, f64)> = recovery
-        .runs
-        .iter()
-        .zip(&readings)
-        .flat_map(|(r, y)| {
-            r.predicted
+    let points: Vec<GaugePoints> = (0..s.gauges.len())
+        .map(|g| GaugePoints {
+            name: s.gauges[g].clone(),
+            residual: recovery.gauge_residual_rms[g] / MICRO,
+            points: recovery
+                .runs
                 .iter()
-                .zip(&y.strain)
-                .map(|(p, m)| (p / MICRO, m / MICRO))
+                .zip(&readings)
+                .map(|(r, y)| (r.predicted[g] / MICRO, y.strain[g] / MICRO))
+                .collect(),
         })
-        .filter(|p| p.0.is_finite() && p.1.is_finite())
         .collect();
     let by_gauge: Vec<(String, f64, f64)> = (0..s.gauges.len())
         .map(|g| {
@@ -180,6 +183,7 @@ pub(super) fn run(
         s,
         &shown,
         &points,
+        &[],
         &by_gauge,
         &session.findings,
         &numbers,
@@ -204,7 +208,18 @@ pub(super) fn run(
     out.write("loads.csv", |w| loads_csv(w, &recovery, &units))
         .map_err(|f| vec![f])?;
     out.write_bytes("report.html", page.as_bytes())
-        .map_err(|f| vec![f])
+        .map_err(|f| vec![f])?;
+    let names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
+    let files = &task.job.recover.files;
+    if files
+        .as_ref()
+        .is_none_or(|f| f.contains(&LoadFile::Nastran))
+    {
+        write_nastran_runs(session, arguments, task, &names, &recovery)?;
+    }
+    write_arrows(session, arguments, task, &names, &units, &recovery)?;
+    let sheets = [runs_sheet(&shown), residual_sheet(&by_gauge)];
+    write_spreadsheet(session, task.job, &arguments.job, "loads.xlsx", &sheets)
 }
 
 fn readings_of(

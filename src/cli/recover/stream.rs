@@ -2,22 +2,27 @@
 
 use super::content::{check_content, content_of_loads};
 use super::csv_record;
+use super::derived::{self, History};
 use super::history_files::{Form, Named, stream};
 use super::record::{BYTES, GROUP, Record, Source, process};
 use super::runs::columns_of;
+use super::trace::Spans;
 use super::{MICRO, Task};
 use crate::cli::fault::{Fault, Faults};
 use crate::cli::files::FileBytes;
+use crate::cli::job::strain::{in_microstrain, read_strain_header};
 use crate::cli::solved::first_mode_of;
+use crate::cli::spreadsheets::write_spreadsheet;
 use crate::cli::strain::{LoadUnits, load_units};
 use crate::cli::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::linalg::Matrix;
 use crate::recovery::history::{Filter, Sums};
 use crate::recovery::{Readings, recover};
+use crate::report::spreadsheet::{HistoryLoad, history_sheet, residual_sheet};
 use crate::report::strain::{RecoveredRun, recover_page};
 use crate::sensitivity::Sensitivity;
-use crate::series::binary;
+use crate::series::{binary, rpc};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::io::{Seek, Write};
@@ -45,6 +50,11 @@ pub(super) fn run(
         })?;
         let (names, unit) = (h.names.clone(), h.unit);
         (Source::Binary(h), names, unit)
+    } else if rpc::is_rpc(&bytes) {
+        let mut h = read_strain_header(&file, &bytes)?;
+        let names = h.channels.iter().map(|c| c.name.clone()).collect();
+        in_microstrain(&file, &mut h, &all.gauges)?;
+        (Source::Rpc(h), names, MICRO)
     } else {
         let l = csv_record::layout(&bytes).ok_or_else(|| {
             vec![Fault::at(
@@ -112,6 +122,7 @@ pub(super) fn run(
     }
     let total = match &record.source {
         Source::Binary(h) => Some(h.samples),
+        Source::Rpc(h) => Some(h.samples),
         Source::Csv(..) => None,
     };
     // A CSV record's rows are not counted beforehand: a row is at least two bytes a column.
@@ -119,6 +130,7 @@ pub(super) fn run(
     let stride = about.div_ceil(MOST_ROWS).max(1);
     let (t0, dt) = match &record.source {
         Source::Binary(h) => (h.t0, h.dt),
+        Source::Rpc(h) => (0.0, h.dt),
         Source::Csv(..) => record.piece(0).ok().map_or((0.0, 0.0), |p| {
             (
                 p.0.first().copied().unwrap_or(0.0),
@@ -142,12 +154,14 @@ pub(super) fn run(
         session.put("first_elastic_mode_hz", first_mode)?;
         session.put("content_hz", &content)?;
     }
+    let meter = session.meter();
     let out = session.output_for(&arguments.job)?;
     let mut csv = Named {
         name: "loads.csv",
         file: out.open("loads.csv").map_err(|f| vec![f])?,
     };
-    let mut bin = match stride > 1 {
+    let wanted = derived::wanted(task, about);
+    let mut bin = match stride > 1 || !wanted.is_empty() {
         true => Some(Named {
             name: "loads.bin",
             file: out.open("loads.bin").map_err(|f| vec![f])?,
@@ -173,8 +187,19 @@ pub(super) fn run(
         filter: &filter,
         units: &units,
         stride,
+        numbers: bin.is_some(),
     };
-    let sums = stream(&record, &form, &mut csv, bin.as_mut(), &out).map_err(|f| vec![f])?;
+    let mut spans = Spans::new(s.loads.len(), record.n_pieces());
+    let sums = stream(
+        &record,
+        &form,
+        &mut csv,
+        bin.as_mut(),
+        out,
+        &meter,
+        &mut spans,
+    )
+    .map_err(|f| vec![f])?;
     // How many samples a CSV record holds is known at its end: the header is written again.
     let mut written = csv.file.flush().map_err(|e| (csv.name, e));
     if let Some(mut b) = bin {
@@ -188,6 +213,24 @@ pub(super) fn run(
     }
     written.map_err(|(name, e)| vec![out.fault(name, &e)])?;
     drop(csv);
+    if !wanted.is_empty() {
+        let bytes = out.read_back("loads.bin").map_err(|f| vec![f])?;
+        let header = binary::read_header(&bytes).map_err(|e| {
+            let remedy = "report this as an error of the program";
+            vec![Fault::of("loads.bin", "header", e.to_string(), remedy)]
+        })?;
+        let history = History {
+            bytes,
+            header,
+            names: &names_of,
+            units: &units,
+            filter: &filter,
+            sums: &sums,
+        };
+        session.stage("files of the history", |s| {
+            derived::write_history(s, arguments, task, &history, &wanted)
+        })?;
+    }
     finish(
         session,
         arguments,
@@ -195,6 +238,7 @@ pub(super) fn run(
         &s,
         &filter,
         &sums,
+        &spans,
         &units,
         &file,
         (stride > 1).then_some(stride),
@@ -273,6 +317,7 @@ fn finish(
     s: &Sensitivity,
     filter: &Filter,
     sums: &Sums,
+    spans: &Spans,
     units: &[LoadUnits],
     file: &str,
     thinned: Option<usize>,
@@ -286,6 +331,7 @@ fn finish(
     let sigma = filter.sigma(&rms);
     let mut loads: Vec<Value> = Vec::new();
     let mut shown = Vec::new();
+    let mut summary = Vec::new();
     for (l, u) in units.iter().enumerate() {
         let mean = sums.sum[l] / count;
         loads.push(json!({
@@ -298,6 +344,15 @@ fn finish(
             "max": sums.max[l] * u.factor,
             "rms": rms[l] * u.factor,
         }));
+        summary.push(HistoryLoad {
+            name: s.loads[l].name.clone(),
+            unit: u.name.clone(),
+            min: sums.min[l] * u.factor,
+            mean: mean * u.factor,
+            max: sums.max[l] * u.factor,
+            rms: rms[l] * u.factor,
+            sigma: sigma[l] * u.factor,
+        });
         shown.push((
             s.loads[l].name.clone(),
             [sums.min[l], mean, sums.max[l]].map(|v| v * u.factor),
@@ -363,6 +418,7 @@ fn finish(
         run: format!("{file}: smallest, mean, largest"),
         loads: shown,
     }];
+    let names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
     let page = recover_page(
         &task.job.title,
         task.prepared.fields.as_ref().map(|f| f.model()),
@@ -370,6 +426,7 @@ fn finish(
         s,
         &runs,
         &[],
+        &spans.traces(&names, units, filter, &rms),
         &by_gauge,
         &session.findings,
         &numbers,
@@ -377,5 +434,7 @@ fn finish(
     session
         .output_for(&arguments.job)?
         .write_bytes("report.html", page.as_bytes())
-        .map_err(|f| vec![f])
+        .map_err(|f| vec![f])?;
+    let sheets = [history_sheet(&summary), residual_sheet(&by_gauge)];
+    write_spreadsheet(session, task.job, &arguments.job, "loads.xlsx", &sheets)
 }

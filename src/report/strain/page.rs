@@ -36,7 +36,7 @@ table{border-collapse:collapse;font-size:.92em}td,th{padding:.22em .7em;text-ali
 th{color:#516173;font-weight:600}td:first-child,th:first-child{text-align:left}.scroll{overflow-x:auto}\
 .f{border-left:4px solid;padding:.4em .8em;margin:.5em 0;background:#f6f8fa}.error{border-color:#c0392b}.warning{border-color:#d68910}\
 .info{border-color:#5d7f9e}.f b{text-transform:capitalize}.f small{color:#516173}svg{max-width:100%;height:auto}\
-.muted{color:#516173}pre{white-space:pre-wrap}@media print{body{margin:0}}";
+.small{display:flex;flex-wrap:wrap;gap:.6em}.small svg{width:11em}.muted{color:#516173}pre{white-space:pre-wrap}@media print{body{margin:0}}";
 
 /// A page with `lead` under its title, findings, then the sections.
 pub fn page(title: &str, lead: &str, findings: &[Finding], sections: Vec<Section>) -> String {

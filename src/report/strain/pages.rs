@@ -1,5 +1,6 @@
 //! The pages of `sensitivity`, `place` and `recover`.
 
+use super::history::{GaugePoints, LoadTrace, gauge_plot, history_band};
 use super::page::{Section, number, page};
 use super::svg;
 use super::tables::PlacedGauge;
@@ -98,7 +99,7 @@ pub struct RecoveredRun {
     pub loads: Vec<(String, [f64; 3], String)>,
 }
 
-/// The page of `recover`. `points` are (predicted, measured) in microstrain; `by_gauge` residual rms in microstrain and leverage.
+/// The page of `recover`. `points` are those of static runs, `traces` those of a history; `by_gauge` residual rms in microstrain and leverage.
 #[allow(clippy::too_many_arguments)]
 pub fn recover_page(
     title: &str,
@@ -106,7 +107,8 @@ pub fn recover_page(
     gauges: &[Gauge],
     s: &Sensitivity,
     runs: &[RecoveredRun],
-    points: &[(f64, f64)],
+    points: &[GaugePoints],
+    traces: &[LoadTrace],
     by_gauge: &[(String, f64, f64)],
     findings: &[Finding],
     numbers: &[(String, String)],
@@ -120,10 +122,29 @@ pub fn recover_page(
         title: "Loads with 95 % intervals".into(),
         body: html! { @for r in runs { h3 { (r.run) } (PreEscaped(bars(r))) } },
     });
+    if !traces.is_empty() {
+        sections.push(Section {
+            title: "Histories".into(),
+            body: html! {
+                @for t in traces { (PreEscaped(history_band(t))) }
+                p.muted { "Line: mean. Dark: from the smallest to the largest sample of a span of time. Light: 95 % interval of a sample around it." }
+            },
+        });
+    }
     if !points.is_empty() {
+        let all: Vec<(f64, f64)> = points
+            .iter()
+            .flat_map(|g| &g.points)
+            .copied()
+            .filter(|p| p.0.is_finite() && p.1.is_finite())
+            .collect();
         sections.push(Section {
             title: "Measured against predicted strain".into(),
-            body: html! { (PreEscaped(svg::measured_against_predicted(points))) },
+            body: html! {
+                (PreEscaped(svg::measured_against_predicted(&all)))
+                p.muted { "By gauge, the largest residual first, microstrain; a point a run." }
+                div.small { @for g in worst_first(points) { (PreEscaped(gauge_plot(g))) } }
+            },
         });
     }
     sections.push(Section {
@@ -141,6 +162,14 @@ pub fn recover_page(
         findings,
         sections,
     )
+}
+
+/// Gauges by falling residual, as many as a page shows.
+fn worst_first(points: &[GaugePoints]) -> Vec<&GaugePoints> {
+    let mut list: Vec<&GaugePoints> = points.iter().collect();
+    list.sort_by(|a, b| b.residual.total_cmp(&a.residual));
+    list.truncate(MOST_ROWS);
+    list
 }
 
 /// Forces and moments on scales of their own.

@@ -115,7 +115,7 @@ pub fn gauges_csv(out: &mut dyn Write, placed: &[PlacedGauge]) -> io::Result<()>
 }
 
 /// Grids of the element under a gauge, with its distance from each.
-fn corner_distances(model: &Model, g: &Gauge) -> Vec<(u32, f64)> {
+pub(in crate::report) fn corner_distances(model: &Model, g: &Gauge) -> Vec<(u32, f64)> {
     let Some(shell) = model
         .shell_ix(g.element)
         .and_then(|ix| model.shells.get(ix.us()))

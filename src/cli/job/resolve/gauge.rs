@@ -2,9 +2,9 @@
 
 use super::super::faults::Collector;
 use super::super::raw::{RawGauge, RawGauges};
+use super::super::spanned::Spanned;
 use super::super::types::*;
 use crate::cli::fault::{Fault, Faults};
-use toml::Spanned;
 
 const SURFACES: [(&str, Surface); 2] = [("top", Surface::Top), ("bottom", Surface::Bottom)];
 const ROSETTES: [(&str, Rosette); 2] = [

@@ -2,10 +2,10 @@
 
 use super::super::faults::Collector;
 use super::super::raw::{RawLoad, RawModel, S};
+use super::super::spanned::Spanned;
 use super::super::suggest;
 use super::super::types::*;
 use crate::cli::fault::Fault;
-use toml::Spanned;
 
 pub(super) fn model(c: &mut Collector, raw: Option<&Spanned<RawModel>>) -> Option<ModelFiles> {
     let section = raw?;

@@ -1,16 +1,18 @@
-//! `[measured]`, `[runs]`, `[ballast]`, `[payload]`, `[respond]`.
+//! `[measured]`, `[runs]`, `[ballast]`, `[payload]`, `[recover]`, `[respond]`.
 
 use super::super::faults::Collector;
-use super::super::raw::{RawBallast, RawMeasured, RawPayload, RawRespond, RawRuns, S};
+use super::super::raw::{RawBallast, RawMeasured, RawPayload, RawRecover, RawRespond, RawRuns, S};
 use super::super::shapes::{NumberOrWord, Texts};
+use super::super::spanned::Spanned;
 use super::super::types::*;
 use super::placement::DEFAULT_NOISE_MICROSTRAIN;
 use super::units::units;
 use crate::units::ReportUnits;
-use toml::Spanned;
 
 /// Elements that `respond` reports where the job says nothing.
 const DEFAULT_HOTTEST: usize = 20;
+/// Power of the load range in pseudo-damage where the job says nothing: usual for welded and cast parts of vehicles.
+const DEFAULT_SLOPE: f64 = 5.0;
 
 pub(super) fn measured(c: &mut Collector, raw: Option<&Spanned<RawMeasured>>) -> Option<Measured> {
     let section = raw?;
@@ -198,4 +200,23 @@ pub(super) fn respond(c: &mut Collector, raw: Option<&Spanned<RawRespond>>) -> R
     out.loads = c.named(&raw.loads, "respond.loads");
     out.line = c.line(section);
     out
+}
+
+pub(super) fn recover(c: &mut Collector, raw: Option<&Spanned<RawRecover>>) -> Recover {
+    let raw = raw.map(Spanned::get_ref);
+    let files = raw.and_then(|r| r.files.as_ref()).map(|list| {
+        let words = list.get_ref().iter();
+        words
+            .filter_map(|w| c.choose_at(w, "recover.files", &LoadFile::ALL))
+            .collect()
+    });
+    let slope = raw.and_then(|r| {
+        c.number(&r.slope, "recover.slope", "a number from 1 to 20", |x| {
+            (1.0..=20.0).contains(&x)
+        })
+    });
+    Recover {
+        files,
+        slope: slope.unwrap_or(DEFAULT_SLOPE),
+    }
 }

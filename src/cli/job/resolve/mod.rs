@@ -52,6 +52,7 @@ pub(super) fn resolve_job(
         runs: measured::runs(&mut c, raw.runs.as_ref(), report_units),
         ballast: measured::ballast(&mut c, raw.ballast.as_ref()),
         payload: measured::payload(&mut c, raw.payload.as_ref()),
+        recover: measured::recover(&mut c, raw.recover.as_ref()),
         respond: measured::respond(&mut c, raw.respond.as_ref()),
         study: placement::study(&mut c, raw.study.as_ref()),
         vehicle: vehicle::vehicle(&mut c, raw.vehicle.as_ref()),

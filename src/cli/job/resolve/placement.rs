@@ -3,9 +3,9 @@
 use super::super::faults::Collector;
 use super::super::raw::{RawCandidates, RawPlacement, RawStudy};
 use super::super::shapes::{NumberOrWord, Texts};
+use super::super::spanned::Spanned;
 use super::super::types::*;
 use crate::placement::Loss;
-use toml::Spanned;
 
 /// Noise of a strain channel where the job says nothing, microstrain.
 pub(super) const DEFAULT_NOISE_MICROSTRAIN: f64 = 1.0;

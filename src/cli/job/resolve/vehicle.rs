@@ -3,10 +3,10 @@
 use super::super::faults::Collector;
 use super::super::raw::{RawReconcile, RawSensitivity, RawVehicle};
 use super::super::shapes::Texts;
+use super::super::spanned::Spanned;
 use super::super::types::*;
 use super::units::units;
 use crate::units::{ReportUnits, UnitSystem};
-use toml::Spanned;
 
 use crate::vehicle::preset::MODELS;
 

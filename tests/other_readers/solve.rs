@@ -1,58 +1,13 @@
-//! What `solve` writes, read by other programs: pyNastran (OP2) and meshio (VTU).
-//!
-//! Needs Python with `pyNastran` and `meshio`: the interpreter named by STRAINBRIDGE_PYTHON, else `python3`. Skipped, with a message,
-//! where they are absent.
+//! What `solve` writes: pyNastran (OP2) and meshio (VTU).
 
-#![allow(clippy::print_stderr, reason = "says why it is skipped")]
-
-use nastran::bdf::{IncludeRequest, Loaded, Loader, read_deck};
+use crate::plate::{NoFiles, deck};
+use crate::python::read_by;
+use nastran::bdf::read_deck;
 use serde_json::Value;
-use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::Command;
 use strainbridge::fe::{CaseResult, SolveOptions, UnitLoad, solve_unit_loads};
 use strainbridge::model::{Model, Vec3};
-
-struct NoFiles;
-
-impl Loader for NoFiles {
-    fn load(&mut self, _: &IncludeRequest) -> Result<Loaded, String> {
-        Err("no include here".to_owned())
-    }
-}
-
-/// Quadrilaterals with a fold, two triangles, a force at two grids, one a subcase.
-fn deck() -> String {
-    let mut deck = String::from(
-        "SOL 101\nCEND\nSUBCASE 1\n  LOAD = 1\nSUBCASE 2\n  LOAD = 2\nBEGIN BULK\nPARAM,INREL,-2\n\
-         MAT1,1,210000.,,.3,7.85-9\nPSHELL,1,1,2.0,1,,1\nFORCE,1,3,0,100.,0.,0.2,1.\nFORCE,2,11,0,50.,1.,0.,0.3\n",
-    );
-    for i in 0..5 {
-        for j in 0..3 {
-            let z = if j == 2 { 12.0 } else { f64::from(i) };
-            let _ = writeln!(
-                deck,
-                "GRID,{},,{}.,{}.,{z:?}",
-                3 * i + j + 1,
-                20 * i,
-                20 * j
-            );
-        }
-    }
-    for i in 0..4 {
-        for j in 0..2 {
-            let (a, id) = (3 * i + j + 1, 2 * i + j + 1);
-            if i == 3 {
-                let _ = writeln!(deck, "CTRIA3,{id},1,{a},{},{}", a + 3, a + 1);
-                let _ = writeln!(deck, "CTRIA3,{},1,{},{},{}", id + 10, a + 1, a + 3, a + 4);
-            } else {
-                let _ = writeln!(deck, "CQUAD4,{id},1,{a},{},{},{}", a + 3, a + 4, a + 1);
-            }
-        }
-    }
-    deck.push_str("ENDDATA\n");
-    deck
-}
 
 fn near(what: &str, got: f64, expected: f64, largest: f64) {
     assert!(
@@ -109,25 +64,12 @@ fn pynastran_and_meshio_read_what_solve_writes() {
         .unwrap();
     let err = String::from_utf8_lossy(&solved.stderr).into_owned();
     assert_eq!(solved.status.code(), Some(0), "{err}");
-    let python = std::env::var("STRAINBRIDGE_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/python/read_results.py");
-    let Ok(read) = Command::new(python)
-        .arg(script)
-        .arg(dir.join("model.out"))
-        .output()
-    else {
-        eprintln!("skipped: no Python here");
+    let Some(read) = read_by(
+        "read_results.py",
+        &[dir.join("model.out").to_str().unwrap()],
+    ) else {
         return;
     };
-    if read.status.code() == Some(77) {
-        eprintln!("skipped: {}", String::from_utf8_lossy(&read.stdout));
-        return;
-    }
-    let text = String::from_utf8_lossy(&read.stdout);
-    let Some(json) = text.lines().rfind(|l| l.starts_with('{')) else {
-        panic!("{text}\n{}", String::from_utf8_lossy(&read.stderr));
-    };
-    let read: Value = serde_json::from_str(json).unwrap();
 
     let deck = read_deck("model.bdf", deck().into_bytes(), &mut NoFiles);
     let (model, _) = Model::from_cards(&deck.cards);

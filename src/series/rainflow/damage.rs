@@ -1,0 +1,89 @@
+//! Pseudo-damage of counted cycles.
+
+use super::count::Cycle;
+
+/// Ranges are counted in this many bins.
+const BINS: usize = 64;
+/// Half width of a 95 % interval over one standard deviation.
+const NORMAL_95: f64 = 1.959_963_984_540_054;
+
+/// Cycles of ranges between two limits.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bin {
+    /// Cycles; a half cycle is 0.5.
+    pub cycles: f64,
+    /// Sum of their means, each times its count.
+    pub sum_of_means: f64,
+    /// Their part of the damage.
+    pub damage: f64,
+}
+
+/// `sum of n R^m` over the cycles: the damage of a part whose life falls with the power `m` of the range, but for a factor that
+/// belongs to the part. Ratios of two records are what it is for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Damage {
+    /// The power m.
+    pub slope: f64,
+    /// Cycles by range, `BINS` of equal width up to [`Damage::limit`].
+    pub bins: Vec<Bin>,
+    /// The largest range that bins reach to.
+    pub limit: f64,
+    /// Cycles counted.
+    pub cycles: f64,
+    /// The largest range.
+    pub largest: f64,
+    /// Damage of the ranges as they are.
+    pub value: f64,
+    /// Damage with every range at the low end of its 95 % interval, all together; no range falls below zero.
+    pub low: f64,
+    /// The same at the high end.
+    pub high: f64,
+}
+
+impl Damage {
+    /// Nothing yet; `limit` is the difference of the record's extremes.
+    pub fn new(slope: f64, limit: f64) -> Self {
+        Self {
+            slope,
+            bins: vec![Bin::default(); BINS],
+            limit,
+            cycles: 0.0,
+            largest: 0.0,
+            value: 0.0,
+            low: 0.0,
+            high: 0.0,
+        }
+    }
+
+    /// Adds a cycle; `sigma` is one standard deviation of its range.
+    ///
+    /// The ends of the interval move all ranges the same way. That is right for errors of the model, which last through the record,
+    /// and wide for noise.
+    pub fn add(&mut self, cycle: &Cycle, sigma: f64) {
+        let range = cycle.range();
+        let half = NORMAL_95 * sigma;
+        let of = |r: f64| cycle.count * r.max(0.0).powf(self.slope);
+        let damage = of(range);
+        self.value += damage;
+        self.low += of(range - half);
+        self.high += of(range + half);
+        self.cycles += cycle.count;
+        self.largest = self.largest.max(range);
+        let share = if self.limit > 0.0 {
+            range / self.limit
+        } else {
+            0.0
+        };
+        let at = ((share * BINS as f64) as usize).min(BINS - 1);
+        if let Some(bin) = self.bins.get_mut(at) {
+            bin.cycles += cycle.count;
+            bin.sum_of_means += cycle.count * cycle.mean();
+            bin.damage += damage;
+        }
+    }
+
+    /// The range of one cycle that does the damage `d`, in the unit of the ranges.
+    pub fn one_cycle(&self, d: f64) -> f64 {
+        d.powf(1.0 / self.slope)
+    }
+}

@@ -1,0 +1,11 @@
+//! Our files read by other programs, and theirs by us: pyNastran (OP2, bulk data), meshio (VTU), openpyxl (XLSX), rpc3-file (RPC III).
+//!
+//! Needs Python with these packages: the interpreter named by STRAINBRIDGE_PYTHON, else `python3`. Skipped, with a message, where they
+//! are absent.
+
+#![allow(clippy::print_stderr, reason = "says why it is skipped")]
+
+mod exchange;
+mod plate;
+mod python;
+mod solve;

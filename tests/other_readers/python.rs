@@ -1,0 +1,23 @@
+//! Runs a script of `tests/python`.
+
+use serde_json::Value;
+use std::process::Command;
+
+/// The JSON object that a script prints; `None`, with a message, where Python or a package is absent.
+pub fn read_by(script: &str, arguments: &[&str]) -> Option<Value> {
+    let python = std::env::var("STRAINBRIDGE_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let path = format!("{}/tests/python/{script}", env!("CARGO_MANIFEST_DIR"));
+    let Ok(read) = Command::new(python).arg(path).args(arguments).output() else {
+        eprintln!("skipped: no Python here");
+        return None;
+    };
+    let text = String::from_utf8_lossy(&read.stdout);
+    if read.status.code() == Some(77) {
+        eprintln!("skipped: {text}");
+        return None;
+    }
+    let Some(json) = text.lines().rfind(|l| l.starts_with('{')) else {
+        panic!("{text}\n{}", String::from_utf8_lossy(&read.stderr));
+    };
+    Some(serde_json::from_str(json).unwrap())
+}
