@@ -6,7 +6,7 @@ use strainbridge::gauge::{CornerRows, Gauge, GaugePlace, GaugeSpec, build, readi
 use strainbridge::linalg::dense;
 use strainbridge::model::Vec3;
 use strainbridge::placement::candidates::{Candidates, Scatter};
-use strainbridge::placement::{Spec, place};
+use strainbridge::placement::{Criterion, Spec, place};
 use strainbridge::recovery::{ErrorModel, Readings, estimate};
 
 /// Seeded sets of gluing, gain and noise.
@@ -129,6 +129,127 @@ fn least_condition(s: &strainbridge::linalg::Matrix) -> f64 {
             }
         })
         .fold(f64::INFINITY, f64::min)
+}
+
+/// Mitchell's exchange as the thesis ran it (2.4.2): from a random layout add the row of largest variance, drop the one of least, while
+/// `det` grows; a row may stand in the layout more than once. The best of ten starts.
+fn mitchell(s: &strainbridge::linalg::Matrix, n: usize) -> Vec<usize> {
+    let mut lot = Lot::new(7);
+    let scaled = s * (EXPECTED / MICRO);
+    let information = |rows: &[usize]| {
+        let a = scaled.select_rows(rows);
+        a.transpose() * a
+    };
+    let variance = |m: &strainbridge::linalg::Matrix, i: usize| -> f64 {
+        let row = scaled.row(i).transpose();
+        m.clone()
+            .lu()
+            .solve(&row)
+            .map_or(f64::INFINITY, |x| row.dot(&x))
+    };
+    let start = |lot: &mut Lot| -> Vec<usize> {
+        (0..n)
+            .map(|_| lot.between(0.0, s.nrows() as f64) as usize)
+            .collect()
+    };
+    (0..10)
+        .map(|_| {
+            let mut rows = start(&mut lot);
+            while information(&rows).determinant() <= 0.0 {
+                rows = start(&mut lot);
+            }
+            loop {
+                let before = information(&rows).determinant();
+                let mut next = rows.clone();
+                let m = information(&next);
+                let add = (0..s.nrows())
+                    .max_by(|&a, &b| variance(&m, a).total_cmp(&variance(&m, b)))
+                    .unwrap();
+                next.push(add);
+                let m = information(&next);
+                let drop = (0..next.len())
+                    .min_by(|&a, &b| variance(&m, next[a]).total_cmp(&variance(&m, next[b])))
+                    .unwrap();
+                next.swap_remove(drop);
+                if information(&next).determinant() <= before * (1.0 + 1e-9) {
+                    return (before, rows);
+                }
+                rows = next;
+            }
+        })
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .unwrap()
+        .1
+}
+
+#[test]
+fn the_thesis_algorithm_repeats_gauges_and_the_proved_layout_of_distinct_ones_does_not() {
+    let all = forty_four();
+    let s = sensitivity(&all, &vertical(own())).values;
+    let c = Candidates::from_rows(6, 44, Scatter::uniform(1.0), |g, out| {
+        for (l, o) in out.iter_mut().enumerate() {
+            *o = s[(g, l)] / MICRO * EXPECTED;
+        }
+    });
+    for n in [6, 7, 8, 9, 10, 20, 40] {
+        let start = std::time::Instant::now();
+        let ours = place(&c, &Spec::new(n, 6)).unwrap();
+        let seconds = start.elapsed().as_secs_f64();
+        assert!(ours.proved, "{n} of 44 is not proved");
+        println!(
+            "6.10: {n} of 44 proved in {} nodes, {seconds:.3} s, log det {:.4}",
+            ours.nodes, ours.log_det
+        );
+    }
+    let theirs = mitchell(&s, 10);
+    let mut distinct = theirs.clone();
+    distinct.sort_unstable();
+    distinct.dedup();
+    let scaled = |rows: &[usize]| {
+        let a = s.select_rows(rows) * (EXPECTED / MICRO);
+        (a.transpose() * a).determinant().ln()
+    };
+    let ours = place(&c, &Spec::new(10, 6)).unwrap();
+    assert!(scaled(&distinct) <= ours.upper_bound + 1e-9);
+    // What a layout gives when each place can hold one gauge: its distinct gauges, and their sigma for 1 microstrain.
+    let sigma = |rows: &[usize]| -> Vec<f64> {
+        let a = s.select_rows(rows) / MICRO;
+        let inverse = (a.transpose() * a).try_inverse().unwrap();
+        (0..6).map(|i| inverse[(i, i)].sqrt() / 1000.0).collect()
+    };
+    let rows: Vec<usize> = ours.gauges.iter().map(|g| g.place as usize).collect();
+    println!(
+        "6.10: Mitchell's exchange with repeats: {} of 10 distinct, log det {:.4} with repeats, condition {:.1}, sigma per microstrain {:.3?} kN",
+        distinct.len(),
+        scaled(&theirs),
+        dense::condition(&s.select_rows(&distinct)),
+        sigma(&distinct)
+    );
+    println!(
+        "6.10: ours: log det {:.4}, condition {:.1}, sigma per microstrain {:.3?} kN",
+        ours.log_det,
+        dense::condition(&s.select_rows(&rows)),
+        sigma(&rows)
+    );
+    let a = Spec {
+        criterion: Criterion::Linear((0..36).map(|i| f64::from(u8::from(i % 7 == 0))).collect()),
+        ..Spec::new(10, 6)
+    };
+    let a = place(&c, &a).unwrap();
+    let rows: Vec<usize> = a.gauges.iter().map(|g| g.place as usize).collect();
+    println!(
+        "6.10: criterion A: condition {:.1}, sigma per microstrain {:.3?} kN, proved {}",
+        dense::condition(&s.select_rows(&rows)),
+        sigma(&rows),
+        a.proved
+    );
+    let best = sensitivity(best_ten(), &vertical(own())).values / MICRO;
+    let inverse = (best.transpose() * &best).try_inverse().unwrap();
+    let own: Vec<f64> = (0..6).map(|i| inverse[(i, i)].sqrt() / 1000.0).collect();
+    println!(
+        "6.10: ten of all candidates: condition {:.1}, sigma per microstrain {own:.3?} kN",
+        dense::condition(&best)
+    );
 }
 
 #[test]
