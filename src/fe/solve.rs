@@ -394,7 +394,7 @@ fn formulations(model: &Model) -> Vec<Finding> {
         (
             &[ShellShape::QuadR, ShellShape::TriaR],
             "CQUADR, CTRIAR",
-            "solved as CQUAD4 and CTRIA3 with a stiff rotation about the normal: stiffer in their plane than elements whose sides bend with that rotation",
+            "solved as CQUAD4 and CTRIA3 whose sides bend with the rotation about the normal (Allman 1984)",
         ),
         (
             &[ShellShape::Quad8, ShellShape::Tria6],

@@ -404,9 +404,9 @@ fn one_element_of_each_kind_agrees_with_nx() {
     s.within("displacement", 0.02, 0.02);
 }
 
-/// Measured 3.3 % and 9.5 %: a column of one element a wall, where each formulation of drilling and shear shows at its full size
-/// (strain recovered from their displacements agrees to 1e-6, so do shear flows).
-const NEARLY_EVERY: (f64, f64) = (0.05, 0.12);
+/// Measured 1.3 % and 3.2 %: a column of one element a wall, where each formulation of wedge, drilling and shear shows at its full
+/// size (strain recovered from their displacements agrees to 1e-6, forces of beams, rods and shear panels to 1e-7).
+const NEARLY_EVERY: (f64, f64) = (0.02, 0.05);
 
 #[test]
 fn nearly_every_element_type_agrees_with_nx() {

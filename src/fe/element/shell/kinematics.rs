@@ -127,6 +127,31 @@ pub(super) fn membrane<const N: usize, const M: usize>(
     rows
 }
 
+/// Adds what bending sides do to the mid-surface strains rr, ss, 2 rs: between corners i and j the side bulges by
+/// (x_j - x_i) x n / 8 times the difference of their rotations about n, along the side as a parabola. `slopes` are the derivatives of
+/// the parabolas (one in the middle of their sides) along r and s.
+///
+/// # Reference
+/// Allman, A compatible triangular element including vertex rotations, Computers and Structures 19 (1984) 1.
+pub(super) fn add_bending_sides<const N: usize, const M: usize>(
+    rows: &mut [Row<M>; 3],
+    t: &Tangents,
+    x: &[Vec3; N],
+    n: &Vec3,
+    slopes: &[(f64, f64); N],
+) {
+    for (i, (mr, ms)) in slopes.iter().enumerate() {
+        let j = (i + 1) % N;
+        let bulge = (x[j] - x[i]).cross(n) / 8.0;
+        let (along_r, along_s) = (t.gr.dot(&bulge), t.gs.dot(&bulge));
+        let strains = [along_r * mr, along_s * ms, along_r * ms + along_s * mr];
+        for (row, e) in rows.iter_mut().zip(strains) {
+            put(row, 6 * j + 3, &(n * e));
+            put(row, 6 * i + 3, &(n * -e));
+        }
+    }
+}
+
 /// Coefficients of z in the strains rr, ss, 2 rs.
 pub(super) fn curvature<const N: usize, const M: usize>(
     t: &Tangents,

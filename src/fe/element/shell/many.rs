@@ -7,7 +7,9 @@
 //! A mid-side grid that the card leaves out lies halfway between its corners and moves with their mean.
 
 use super::expansion::{Expansion, expansion, turn_strain};
-use super::{BadShape, Heat, Parts, ShellInput, ShellLaw, ShellMatrices, output_frame, quad4};
+use super::{
+    BadShape, Heat, Parts, ShellInput, ShellLaw, ShellMatrices, Sides, output_frame, quad4,
+};
 use crate::linalg::{DMatrix, DVector};
 use crate::model::{GridIx, Mat3, Model, Shell, ShellProperty, Vec3, face_edges, face_functions};
 
@@ -198,6 +200,7 @@ impl Whole<'_> {
             zoffs: self.zoffs,
             k6rot: self.k6rot,
             parts: Parts::All,
+            sides: Sides::Straight,
             heat: heat.as_ref(),
         })?;
         Ok((matrices, angle_of(&self.frame.row(0).transpose())))

@@ -2,7 +2,8 @@
 //!
 //! Bending and transverse shear: degenerated shell with nodal directors, mixed interpolation of the covariant shear strains
 //! (MITC4: Dvorkin and Bathe 1984; MITC3+: Lee, Lee and Bathe 2014). Membrane: covariant strains of the mid-surface, with the
-//! incompatible modes of Taylor, Beresford and Wilson 1976 (QM6) on quadrilaterals. Drilling: the rotation about the surface
+//! incompatible modes of Taylor, Beresford and Wilson 1976 (QM6) on quadrilaterals; CQUADR and CTRIAR have sides that bend with the
+//! rotations about the normal instead (Allman 1984). Drilling: the rotation about the surface
 //! normal is tied to the curl of the displacements about the same normal (Hughes and Brezzi 1989).
 
 mod area;
@@ -51,8 +52,19 @@ pub(crate) struct ShellInput<'a, const N: usize> {
     pub(crate) k6rot: f64,
     /// What is wanted.
     pub(crate) parts: Parts,
+    /// What rotations about the normal do to the sides.
+    pub(crate) sides: Sides,
     /// Temperatures, where forces of thermal strain are wanted.
     pub(crate) heat: Option<&'a Heat>,
+}
+
+/// What rotations about the normal do to the sides of a shell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sides {
+    /// Nothing: they stay straight.
+    Straight,
+    /// They bend as a beam under its end rotations (Allman 1984; CQUADR and CTRIAR).
+    Bending,
 }
 
 /// What is wanted of a shell: forming its stiffness is most of the work.

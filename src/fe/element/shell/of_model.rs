@@ -2,15 +2,17 @@
 
 use super::expansion::expansion;
 use super::many::{many_grids, many_shell, over_surface};
-use super::{BadShape, Heat, Parts, ShellInput, ShellLaw, StrainRows, output_frame, quad4, tria3};
+use super::{
+    BadShape, Heat, Parts, ShellInput, ShellLaw, Sides, StrainRows, output_frame, quad4, tria3,
+};
 use crate::fe::element::{ElementMatrix, Prepared};
 use crate::fe::error::Refusal;
 use crate::fe::temperature::Temperatures;
 use crate::model::{Model, Shell, ShellKind, Vec3};
 use nastran::cards::ShellShape;
 
-/// K6ROT of CQUADR and CTRIAR, which carry moments about their normal: the full weight of Hughes and Brezzi.
-const STIFF_DRILLING: f64 = 1e6;
+/// K6ROT of CQUADR and CTRIAR: equal rotations at all corners bend no side, and this holds them.
+const STABLE_DRILLING: f64 = 1e3;
 
 /// What a shell gives, whatever its number of corners.
 #[derive(Clone, Debug)]
@@ -93,9 +95,9 @@ pub(crate) fn shell_matrices(
         return Ok(AnyShell::Many(Box::new(many.map_err(bad)?)));
     }
     let d = &prepared.directors[i];
-    let k6rot = match shell.shape {
-        ShellShape::QuadR | ShellShape::TriaR => STIFF_DRILLING,
-        _ => model.params.k6rot,
+    let (k6rot, sides) = match shell.shape {
+        ShellShape::QuadR | ShellShape::TriaR => (STABLE_DRILLING, Sides::Bending),
+        _ => (model.params.k6rot, Sides::Straight),
     };
     let (zoffs, t) = (shell.zoffs, shell.thickness);
     if n == 4 {
@@ -107,6 +109,7 @@ pub(crate) fn shell_matrices(
             zoffs,
             k6rot,
             parts,
+            sides,
             heat,
         };
         Ok(AnyShell::Quad(Box::new(quad4(&input).map_err(bad)?)))
@@ -120,6 +123,7 @@ pub(crate) fn shell_matrices(
             zoffs,
             k6rot,
             parts,
+            sides,
             heat,
         };
         Ok(AnyShell::Tria(Box::new(tria3(&input).map_err(bad)?)))

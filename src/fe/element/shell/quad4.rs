@@ -1,10 +1,10 @@
 //! CQUAD4: MITC4 bending and shear, QM6 membrane, drilling stiffness.
 
 use super::kinematics::{
-    Local, Row, Section, Shape, Tangents, add_thermal, curvature, drilling, membrane, shear, shift,
-    shift_stiffness,
+    Local, Row, Section, Shape, Tangents, add_bending_sides, add_thermal, curvature, drilling,
+    membrane, shear, shift, shift_stiffness,
 };
-use super::{BadShape, Parts, ShellInput, ShellMatrices, StrainRows, output_frame};
+use super::{BadShape, Parts, ShellInput, ShellMatrices, Sides, StrainRows, output_frame};
 use crate::linalg::Matrix4;
 
 const CORNERS: [(f64, f64); 4] = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
@@ -17,6 +17,16 @@ fn shape(r: f64, s: f64) -> Shape<4> {
         hr: CORNERS.map(|(a, b)| 0.25 * a * (1.0 + b * s)),
         hs: CORNERS.map(|(a, b)| 0.25 * b * (1.0 + a * r)),
     }
+}
+
+/// Derivatives of the parabola of each side (one in its middle, linear to nothing at the side across).
+fn side_slopes(r: f64, s: f64) -> [(f64, f64); 4] {
+    [
+        (-r * (1.0 - s), -0.5 * (1.0 - r * r)),
+        (0.5 * (1.0 - s * s), -s * (1.0 + r)),
+        (-r * (1.0 + s), 0.5 * (1.0 - r * r)),
+        (-0.5 * (1.0 - s * s), -s * (1.0 - r)),
+    ]
 }
 
 /// Shape functions at the Gauss points, each of weight 1.
@@ -48,6 +58,13 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
     let offset = normal * input.zoffs;
     let x = input.x.map(|x| x + offset);
     let d = &input.directors;
+    let in_plane = |t: &Tangents, shape: &Shape<4>, r: f64, s: f64| -> [Row<24>; 3] {
+        let mut rows = membrane(t, shape);
+        if input.sides == Sides::Bending {
+            add_bending_sides(&mut rows, t, &x, &normal, &side_slopes(r, s));
+        }
+        rows
+    };
     let at = |r: f64, s: f64| {
         let shape = shape(r, s);
         (shape, Tangents::new(&x, d, &shape))
@@ -55,7 +72,7 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
     let (centre_shape, centre_tangents) = at(0.0, 0.0);
     let centre_local = Local::new(&centre_tangents, &x_axis)?;
     let centre_rows = StrainRows {
-        membrane: centre_local.strain(&membrane(&centre_tangents, &centre_shape)),
+        membrane: centre_local.strain(&in_plane(&centre_tangents, &centre_shape, 0.0, 0.0)),
         curvature: centre_local.strain(&curvature(&centre_tangents, &centre_shape, d)),
     };
     let tie = |r: f64, s: f64| -> [Row<24>; 2] {
@@ -100,7 +117,7 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
             section.add_shear(&mut stiffness, local.area, &local.shear(&rows_r, &rows_s));
         }
         points.push(Point {
-            membrane: local.strain(&membrane(&t, &shape)),
+            membrane: local.strain(&in_plane(&t, &shape, r, s)),
             curvature: local.strain(&curvature(&t, &shape, d)),
             modes: [
                 [m1x, 0.0, m2x, 0.0],
@@ -112,7 +129,9 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
             local,
         });
     }
-    condense_modes(input, &mut points);
+    if input.sides == Sides::Straight {
+        condense_modes(input, &mut points);
+    }
     let mut thermal = [0.0; 24];
     for p in &points {
         if let Some(heat) = input.heat {

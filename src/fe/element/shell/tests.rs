@@ -45,6 +45,7 @@ fn input<'a, const N: usize>(
         zoffs,
         k6rot: 100.0,
         parts: Parts::All,
+        sides: Sides::Straight,
         heat: None,
     }
 }
@@ -181,6 +182,22 @@ fn a_linear_displacement_field_gives_its_own_strain_at_centre_and_corners() {
             }
         }
     }
+}
+
+#[test]
+fn shells_whose_sides_bend_have_six_rigid_motions_and_no_other() {
+    let (law, x) = (steel(), warped());
+    let mut quad = input(x, tilted(&x), &law, 0.0);
+    (quad.sides, quad.k6rot) = (Sides::Bending, 1e3);
+    let m = quad4(&quad).unwrap();
+    assert!(rigid_residual(&m.stiffness, &x) < 1e-10);
+    assert_eq!(zero_modes(&m.stiffness), 6);
+    let corners = [x[0], x[1], x[2]];
+    let mut tria = input(corners, tilted(&corners), &law, 0.0);
+    (tria.sides, tria.k6rot) = (Sides::Bending, 1e3);
+    let m = tria3(&tria).unwrap();
+    assert!(rigid_residual(&m.stiffness, &corners) < 1e-10);
+    assert_eq!(zero_modes(&m.stiffness), 6);
 }
 
 #[test]

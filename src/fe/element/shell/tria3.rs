@@ -1,10 +1,10 @@
 //! CTRIA3: MITC3+ bending and shear, constant-strain membrane, drilling stiffness.
 
 use super::kinematics::{
-    Local, Row, Section, Shape, Tangents, add_thermal, curvature, drilling, membrane, shear, shift,
-    shift_stiffness,
+    Local, Row, Section, Shape, Tangents, add_bending_sides, add_thermal, curvature, drilling,
+    membrane, shear, shift, shift_stiffness,
 };
-use super::{BadShape, Parts, ShellInput, ShellMatrices, StrainRows, output_frame};
+use super::{BadShape, Parts, ShellInput, ShellMatrices, Sides, StrainRows, output_frame};
 use crate::linalg::SMatrix;
 
 /// Degree 5 on the triangle (Radon 1948): r, s, weight; weights sum to 1/2.
@@ -62,6 +62,14 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
     let along = |g: &crate::model::Vec3| [g.dot(&local.e1), g.dot(&local.e2)];
     let (br, bs) = (along(&gr), along(&gs));
 
+    let third = 1.0 / 3.0;
+    let in_plane = |t: &Tangents, shape: &Shape<3>| -> [Row<18>; 3] {
+        let mut rows = membrane(t, shape);
+        if input.sides == Sides::Bending {
+            add_bending_sides(&mut rows, t, &x, &normal, &side_slopes(&shape.h));
+        }
+        rows
+    };
     let covariant = |r: f64, s: f64| -> [Row<WITH_BUBBLE>; 2] {
         let shape = shape(r, s);
         let mut rows = shear::<3, WITH_BUBBLE>(&Tangents::new(&x, d, &shape), &shape, d);
@@ -77,7 +85,6 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
         covariant(2.0 / 3.0, 1.0 / 6.0),
         covariant(1.0 / 6.0, 1.0 / 6.0),
     );
-    let third = 1.0 / 3.0;
     let e = covariant(third - 2.0 * TYING, third + TYING);
     let f = covariant(third + TYING, third + TYING);
     let g = covariant(third + TYING, third - 2.0 * TYING);
@@ -124,7 +131,7 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
                 &mut thermal,
                 weight,
                 heat.resultants(rise),
-                &local.strain(&membrane::<3, 18>(&t, &shape)),
+                &local.strain(&in_plane(&t, &shape)),
                 &local.strain(&curvature::<3, 18>(&t, &shape, d)),
             );
         }
@@ -135,7 +142,7 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
             section.add(
                 &mut big,
                 weight,
-                &local.strain(&membrane::<3, WITH_BUBBLE>(&t, &shape)),
+                &with_bubble(&local.strain(&in_plane(&t, &shape))),
                 &local.strain(&bend),
                 &drilling::<3, WITH_BUBBLE>(&local, &shape),
             );
@@ -143,7 +150,7 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
     }
     let mut stiffness = condense_bubble(&big);
     let mut centre = StrainRows {
-        membrane: local.strain(&membrane::<3, 18>(&centre_tangents, &centre_shape)),
+        membrane: local.strain(&in_plane(&centre_tangents, &centre_shape)),
         curvature: local.strain(&curvature::<3, 18>(&centre_tangents, &centre_shape, d)),
     };
     if input.zoffs != 0.0 {
@@ -161,6 +168,25 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
         corners: [centre; 3],
         thermal,
     })
+}
+
+/// Derivatives of the parabola of each side, four times the product of its corners' functions.
+fn side_slopes(h: &[f64; 3]) -> [(f64, f64); 3] {
+    const SLOPES: [(f64, f64); 3] = [(-1.0, -1.0), (1.0, 0.0), (0.0, 1.0)];
+    std::array::from_fn(|i| {
+        let j = (i + 1) % 3;
+        let ((ir, is), (jr, js)) = (SLOPES[i], SLOPES[j]);
+        (4.0 * (ir * h[j] + jr * h[i]), 4.0 * (is * h[j] + js * h[i]))
+    })
+}
+
+/// Rows with the bubble's unknowns, which take no part.
+fn with_bubble(rows: &[Row<18>; 3]) -> [Row<WITH_BUBBLE>; 3] {
+    let mut out = [[0.0; WITH_BUBBLE]; 3];
+    for (to, from) in out.iter_mut().zip(rows) {
+        to[..18].copy_from_slice(from);
+    }
+    out
 }
 
 fn condense_bubble(big: &[[f64; WITH_BUBBLE]; WITH_BUBBLE]) -> [[f64; 18]; 18] {
