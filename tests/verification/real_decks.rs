@@ -110,15 +110,13 @@ fn solve(
     );
     solved.shells_and_beams(&reference);
     for (i, block) in file.blocks().iter().enumerate() {
-        if block.analysis == Analysis::Statics && !block.complex && !block.sort2 {
-            if let Ok(rows) = file.rows(i) {
-                solved.block(
-                    block.quantity,
-                    block.element.map_or(0, |e| e.0),
-                    block.subcase,
-                    &rows,
-                );
-            }
+        if block.analysis == Analysis::Statics
+            && !block.complex
+            && !block.sort2
+            && let Ok(rows) = file.rows(i)
+        {
+            let element = block.element.map_or(0, |e| e.0);
+            solved.block(block.quantity, element, block.subcase, &rows);
         }
     }
     solved.recovered(&cases, &reference);

@@ -6,7 +6,7 @@
 //! (constant strain and curvature, six rigid motions and no other), bends in its plane as two elements a side, and follows a curve.
 //! A mid-side grid that the card leaves out lies halfway between its corners and moves with their mean.
 
-use super::expansion::{Expansion, expansion, turn_strain};
+use super::expansion::{expansion, turn_strain};
 use super::{
     BadShape, Heat, Parts, ShellInput, ShellLaw, ShellMatrices, Sides, output_frame, quad4,
 };
@@ -187,8 +187,7 @@ impl Whole<'_> {
         let thickness = p.map(|p| p.thickness);
         let mean = thickness.iter().sum::<f64>() / 4.0;
         let heat = self.heat.map(|h| Heat {
-            expansion: expansion(self.model, self.property, mean, angle)
-                .unwrap_or_else(Expansion::default),
+            expansion: expansion(self.model, self.property, mean, angle).unwrap_or_default(),
             rise: p.map(|p| p.rise),
             gradient: h.gradient,
         });

@@ -108,7 +108,7 @@ impl Tables {
 
 /// Gauss-Legendre on 0..1, abscissae and weights (Abramowitz and Stegun, table 25.4).
 const TWO: [(f64, f64); 2] = [
-    (0.211_324_865_405_187_12, 0.5),
+    (0.211_324_865_405_187_1, 0.5),
     (0.788_675_134_594_812_9, 0.5),
 ];
 const THREE: [(f64, f64); 3] = [
