@@ -231,6 +231,7 @@ pub(super) fn run(
             derived::write_history(s, arguments, task, &history, &wanted)
         })?;
     }
+    derived::note_left_out(session, task, sums.samples + sums.gaps, &wanted);
     finish(
         session,
         arguments,

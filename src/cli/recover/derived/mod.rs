@@ -96,6 +96,11 @@ pub(super) fn write_history(
     if wanted.contains(&LoadFile::Nastran) {
         nastran::write_history(session, arguments, task, history)?;
     }
+    Ok(())
+}
+
+/// Notes which files were not written because the record is long.
+pub(super) fn note_left_out(session: &mut Session, task: &Task, samples: u64, wanted: &[LoadFile]) {
     if task.job.recover.files.is_none() && wanted.len() < LoadFile::ALL.len() {
         let left: Vec<&str> = LoadFile::ALL
             .iter()
@@ -110,8 +115,7 @@ pub(super) fn write_history(
                 "the record is long: these files are written only where they are asked for",
                 "name them in [recover] files",
             )
-            .with_numbers(history.header.samples as f64, MOST_ROWS as f64),
+            .with_numbers(samples as f64, MOST_ROWS as f64),
         );
     }
-    Ok(())
 }
