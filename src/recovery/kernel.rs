@@ -4,7 +4,8 @@ use super::history::Sums;
 use pulp::Simd;
 
 /// Samples handled together: their readings lie beside each other by gauge, so that a coefficient is loaded once for all of them.
-const LANES: usize = 16;
+/// A multiple of [`UNROLL`] vectors for every width of vector, eight numbers included.
+const LANES: usize = 32;
 /// Vectors in registers for each of two rows.
 const UNROLL: usize = 4;
 
