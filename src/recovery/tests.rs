@@ -306,3 +306,36 @@ fn a_streamed_record_gives_what_the_same_samples_give_as_runs() {
     let rms = (sums.residual.iter().sum::<f64>() / (12.0 * 11.0)).sqrt();
     assert!((rms - got.residual_rms).abs() < 1e-12);
 }
+
+#[test]
+fn whole_blocks_give_what_single_samples_give_and_a_gap_spoils_its_sample_alone() {
+    let s = Sensitivity {
+        gauges: ["1", "2", "3"].map(String::from).to_vec(),
+        loads: ["A", "B"].map(Load::named).to_vec(),
+        values: Matrix::from_row_slice(3, 2, &[1e-3, 2e-4, -3e-4, 1e-3, 5e-4, 7e-4]),
+    };
+    let filter = Filter::new(&s, vec![1e-5, 0.0, -1e-5], NOISE, 1.0, &[0.0; 2]).unwrap();
+    // Two whole blocks and a part of one; a reading is missing in the middle of the second.
+    let mut samples: Vec<f64> = (0..3 * 77)
+        .map(|i| ((i * 37) % 101) as f64 - 50.0)
+        .collect();
+    samples[3 * 40 + 1] = f64::NAN;
+    let (mut out, mut sums) = (Vec::new(), Sums::new(3, 2));
+    filter.apply(&samples, 1e-6, &mut out, &mut sums);
+    let mut together = Sums::new(3, 2);
+    for (i, sample) in samples.chunks_exact(3).enumerate() {
+        let mut one = Vec::new();
+        filter.apply(sample, 1e-6, &mut one, &mut together);
+        for (a, b) in one.iter().zip(&out[2 * i..]) {
+            assert!(
+                (i == 40 && a.is_nan() && b.is_nan()) || (a - b).abs() < 1e-12 * b.abs().max(1.0)
+            );
+        }
+    }
+    assert_eq!((sums.samples, sums.gaps), (76, 1));
+    assert_eq!((together.samples, together.gaps), (76, 1));
+    assert_eq!((&sums.min, &sums.max), (&together.min, &together.max));
+    for (a, b) in sums.residual.iter().zip(&together.residual) {
+        assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
+    }
+}
