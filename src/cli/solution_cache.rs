@@ -112,7 +112,8 @@ fn encode(solved: &Solved, hash: &[u8; 32]) -> Vec<u8> {
             Some(OrderingMethod::MinimumDegree) => 2,
         },
     );
-    reals(&mut out, &[report.smallest_pivot]);
+    let [first, last] = report.epsilon;
+    reals(&mut out, &[report.smallest_pivot, first, last]);
     put(&mut out, usize::from(report.mass.is_some()));
     if let Some(m) = &report.mass {
         reals(&mut out, &[m.mass, m.cg.x, m.cg.y, m.cg.z]);
@@ -162,7 +163,13 @@ fn reals(out: &mut Vec<u8>, values: &[f64]) {
 }
 
 /// Codes of findings that the solver gives.
-const CODES: &[&str] = &["autospc", "tied-to-ground", "load-is-inertia-only"];
+const CODES: &[&str] = &[
+    "autospc",
+    "tied-to-ground",
+    "load-is-inertia-only",
+    "formulation",
+    "inaccurate-solution",
+];
 
 /// `None` for bytes that are no solution of this hash, number of grids and of cases.
 fn decode(bytes: &[u8], hash: &[u8; 32], grids: usize, cases: usize) -> Option<Solved> {
@@ -185,7 +192,7 @@ fn decode(bytes: &[u8], hash: &[u8; 32], grids: usize, cases: usize) -> Option<S
         2 => Some(OrderingMethod::MinimumDegree),
         _ => None,
     };
-    report.smallest_pivot = at.real()?;
+    [report.smallest_pivot, report.epsilon[0], report.epsilon[1]] = at.array()?;
     if at.count()? == 1 {
         let [mass, x, y, z] = at.array()?;
         let matrix = Matrix6::from_column_slice(&at.array::<36>()?);

@@ -141,6 +141,7 @@ fn write(
     session.put("factor_nonzeros", report.factor_nonzeros)?;
     session.put("ordering", report.ordering)?;
     session.put("smallest_pivot", report.smallest_pivot)?;
+    session.put("epsilon", report.epsilon)?;
     session.put("balance", &report.balance)?;
     session.put(
         "mass",

@@ -9,6 +9,7 @@ fn solved() -> Solved {
             factor_nonzeros: 99,
             ordering: Some(OrderingMethod::MinimumDegree),
             smallest_pivot: 1.0 / 7.0,
+            epsilon: [1e-8, 1e-13],
             balance: vec![Balance {
                 subcase: 4,
                 applied: [1.0, 2.0, 3.0, 4.0, 5.0, 0.1],

@@ -39,10 +39,37 @@ pub struct Factor<'a> {
     pub lost: Vec<usize>,
     /// Smallest pivot that was not lost, of the scaled matrix: how near the structure is to a mechanism.
     pub smallest_pivot: f64,
+    pub(super) matrix: ScaledMatrix,
+}
+
+/// Lower triangle of the scaled matrix by columns, elimination order: what the residual of a solution is formed with.
+#[derive(Debug)]
+pub(super) struct ScaledMatrix {
+    columns: Vec<u32>,
+    rows: Vec<u32>,
+    entries: Vec<f64>,
+}
+
+impl ScaledMatrix {
+    /// r -= A x.
+    pub(super) fn subtract_product(&self, x: &[f64], r: &mut [f64]) {
+        for (j, range) in self.columns.windows(2).enumerate() {
+            let range = range[0] as usize..range[1] as usize;
+            let mut own = 0.0;
+            for (&i, &a) in self.rows[range.clone()].iter().zip(&self.entries[range]) {
+                let i = i as usize;
+                own += a * x[i];
+                if i != j {
+                    r[i] -= a * x[j];
+                }
+            }
+            r[j] -= own;
+        }
+    }
 }
 
 impl<'a> Factor<'a> {
-    /// The factor of a symmetric positive (semi)definite matrix, which is used up: the two need not be in memory together.
+    /// The factor of a symmetric positive (semi)definite matrix, which is used up: only its scaled lower triangle is kept.
     ///
     /// # Errors
     /// An entry that is not a number, or a factor that memory doesn't hold.
@@ -111,6 +138,11 @@ impl<'a> Factor<'a> {
             scale,
             lost,
             smallest_pivot,
+            matrix: ScaledMatrix {
+                columns,
+                rows,
+                entries,
+            },
         })
     }
 }

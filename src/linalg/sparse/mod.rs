@@ -14,6 +14,7 @@ pub use block_matrix::{BlockMatrix, DenseTerm};
 pub use factor::{Factor, FactorError};
 pub use graph::BlockGraph;
 pub use order::OrderingMethod;
+pub use solve::Refined;
 pub use symbolic::Symbolic;
 
 #[cfg(test)]

@@ -94,6 +94,38 @@ fn the_solution_of_many_right_hand_sides_satisfies_the_equations() {
 }
 
 #[test]
+fn epsilon_is_the_work_that_the_residual_does_and_refinement_makes_it_smaller() {
+    let (side, m) = (40, 6);
+    let (graph, sizes, mut terms) = lattice(side, m, true);
+    // Every third spring ten thousand million times softer than the rest: digits are lost.
+    for (_, k) in terms.iter_mut().step_by(3) {
+        k.iter_mut().for_each(|k| *k *= 1e-10);
+    }
+    let symbolic = Symbolic::analyse(&graph, &sizes).unwrap();
+    let matrix = assemble(&symbolic, &graph, &terms, m);
+    let factor = Factor::new(&symbolic, matrix.clone()).unwrap();
+    let n = symbolic.n_unknowns();
+    let b: Vec<f64> = (0..2 * n).map(|i| ((i * 7) % 13) as f64 - 6.0).collect();
+    let (mut plain, mut refined) = (b.clone(), b.clone());
+    factor.solve(&mut plain).unwrap();
+    let told = factor.solve_refined(&mut refined, 0.0).unwrap();
+    let epsilon = |x: &[f64], b: &[f64]| {
+        let ax = matrix.times(&symbolic, x);
+        let lost: f64 = (0..n).map(|i| x[i] * (b[i] - ax[i])).sum();
+        let work: f64 = x.iter().zip(b).map(|(x, b)| x * b).sum();
+        (lost / work).abs()
+    };
+    for c in 0..2 {
+        let at = c * n..(c + 1) * n;
+        let own = epsilon(&plain[at.clone()], &b[at.clone()]);
+        // The two sums run in another order: rounding differs by what it is itself.
+        assert!(told[c].first < 10.0 * own + 1e-13 && own < 10.0 * told[c].first + 1e-13);
+        assert!(told[c].last <= told[c].first);
+        assert!(epsilon(&refined[at.clone()], &b[at]) <= own + 1e-13);
+    }
+}
+
+#[test]
 fn every_unknown_that_nothing_holds_is_reported_and_stays_at_zero() {
     let (graph, sizes, terms) = lattice(12, 3, false);
     let symbolic = Symbolic::analyse(&graph, &sizes).unwrap();

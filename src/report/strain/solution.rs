@@ -55,6 +55,10 @@ fn model_rows(report: &SolveReport) -> Vec<Vec<String>> {
             report.factor_nonzeros.to_string(),
         ],
         vec!["Smallest pivot, of 1".into(), number(report.smallest_pivot)],
+        vec![
+            "Epsilon of the worst case, |u'(f - K u)| / |u'f|, before and after refinement".into(),
+            report.epsilon.map(number).join(", "),
+        ],
     ];
     if let Some(m) = &report.mass {
         rows.push(vec!["Mass".into(), number(m.mass)]);
