@@ -23,6 +23,7 @@ mod progress;
 mod reconcile;
 mod recover;
 mod respond;
+mod scene;
 mod sensitivity;
 mod session;
 mod solution_cache;

@@ -3,6 +3,7 @@
 use super::fault::Faults;
 use super::job::{self, AngleStep, Job};
 use super::place::allowed_sites;
+use super::scene::scene_of_job;
 use super::strain::{Prepared, lay_gauges, load_units, prepare, put_conditioning, read_fields};
 use super::{JobArguments, Session};
 use crate::gauge::{Gauge, GaugeSpec, build};
@@ -30,13 +31,8 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         s.condition_number(),
         s.condition_number_scaled()
     ));
-    let page = sensitivity_page(
-        &job.title,
-        s,
-        &prepared.gauges,
-        prepared.fields.as_ref().map(|f| f.model()),
-        &session.findings,
-    );
+    let scene = scene_of_job(&job, &prepared);
+    let page = sensitivity_page(&job.title, s, scene.as_ref(), &session.findings);
     let units: Vec<String> = load_units(
         &job,
         &s.loads.iter().map(|l| l.name.clone()).collect::<Vec<_>>(),

@@ -2,6 +2,7 @@
 
 use super::deck::{DeckModel, read_model};
 use super::fault::{Fault, Faults};
+use super::scene::scene_of_solution;
 use super::solved::{cases_of_job, solve_kept};
 use super::{JobArguments, Session, job};
 use crate::fe::{LoadCase, Solution, SolveReport, loads_of_subcase, relief_of};
@@ -51,7 +52,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     let (solution, report) = solve_kept(session, &arguments.job, &read, &cases)?;
     session.findings.extend(solution.findings.iter().cloned());
     session.stage("write", |s| {
-        write(s, &arguments.job, &read.model, &solution, &report)
+        write(s, &arguments.job, &read.model, &cases, &solution, &report)
     })
 }
 
@@ -133,6 +134,7 @@ fn write(
     session: &mut Session,
     input: &Path,
     model: &Model,
+    cases: &[LoadCase],
     solution: &Solution,
     report: &SolveReport,
 ) -> Result<(), Faults> {
@@ -173,7 +175,9 @@ fn write(
         .file_stem()
         .map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     session.put("peak_memory_bytes", peak_memory())?;
-    let page = crate::report::strain::solution_page(&title, solution, report, &session.findings);
+    let scene = scene_of_solution(model, cases, solution);
+    let page =
+        crate::report::strain::solution_page(&title, solution, report, &scene, &session.findings);
     session
         .output_for(input)?
         .write_bytes("report.html", page.as_bytes())

@@ -29,6 +29,7 @@ mod uncarried;
 mod tests;
 
 pub(crate) use curved::{face_edges, face_functions, solid_edges, solid_functions};
+pub(crate) use face::faces as solid_faces;
 pub use fault::*;
 pub use mass::Weight;
 pub use refine::RefinedModel;

@@ -1,6 +1,8 @@
 //! From plain results to bytes: text, json, csv, html, spreadsheets. Nothing is computed here.
 
+pub mod figure;
 mod result_blocks;
+pub mod scene;
 pub mod spreadsheet;
 pub mod strain;
 mod strains;

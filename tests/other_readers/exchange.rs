@@ -51,7 +51,7 @@ strain = "STRAIN"
 file = "gauges.csv"
 "#;
 
-fn strainbridge(arguments: &[&str]) -> Value {
+pub fn strainbridge(arguments: &[&str]) -> Value {
     let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
         .args(arguments)
         .args(["--no-cache", "--json"])
@@ -62,14 +62,14 @@ fn strainbridge(arguments: &[&str]) -> Value {
     serde_json::from_slice(&done.stdout).unwrap()
 }
 
-fn job(dir: &Path, name: &str, strain: &str) -> String {
+pub fn job(dir: &Path, name: &str, strain: &str) -> String {
     let path = dir.join(name);
     std::fs::write(&path, JOB.replace("STRAIN", strain)).unwrap();
     path.to_str().unwrap().to_owned()
 }
 
 /// A folder with the plate, its placed gauges, S of them, and strain that the truth makes: `strain.csv`, `runs.csv`.
-fn plate(name: &str) -> PathBuf {
+pub fn plate(name: &str) -> PathBuf {
     let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
         .join("exchange")
         .join(name);

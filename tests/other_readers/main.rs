@@ -8,4 +8,5 @@
 mod exchange;
 mod plate;
 mod python;
+mod report;
 mod solve;

@@ -4,11 +4,12 @@ use super::Task;
 use super::judge::{findings, words};
 use super::model::Parts;
 use crate::cli::fault::Faults;
+use crate::cli::scene::scene_of_job;
 use crate::cli::{JobArguments, Session};
 use crate::payload::{PayloadRun, Place, WeighSpec, WeighedRun, Weighing};
-use crate::report::strain::{
-    drawing_section, interval_bars, model_with_gauges, number, page, table_section,
-};
+use crate::report::figure::{IntervalRow, intervals};
+use crate::report::scene::scene_section;
+use crate::report::strain::{figure_section, number, page, table_section};
 use serde_json::{Value, json};
 
 fn finite(v: f64) -> Option<f64> {
@@ -80,6 +81,21 @@ pub(super) fn put(
     session.put("by_gauge", singles)?;
     findings(session, task, parts, runs, spec, weighing);
     Ok(())
+}
+
+/// What each gauge in use says of a run, and all of them.
+fn bars(r: &WeighedRun, weighing: &Weighing) -> Vec<IntervalRow> {
+    let used = weighing.gauges.iter().enumerate().filter(|(_, v)| v.used);
+    used.filter_map(|(g, v)| {
+        let (e, s) = (*r.estimates.get(g)?, *r.estimate_sigma.get(g)?);
+        (e.is_finite() && s.is_finite() && s < r.force.abs())
+            .then(|| (v.name.clone(), [e - 1.96 * s, e, e + 1.96 * s]))
+    })
+    .chain(std::iter::once((
+        "all".to_owned(),
+        [r.interval[0], r.force, r.interval[1]],
+    )))
+    .collect()
 }
 
 /// Tables and page.
@@ -189,38 +205,23 @@ pub(super) fn write(
             &gauge_rows,
             "",
         ));
-        for r in weighing.runs.iter().take(6) {
-            let bars: Vec<(String, [f64; 3])> = weighing
-                .gauges
-                .iter()
-                .enumerate()
-                .filter(|(_, v)| v.used)
-                .filter_map(|(g, v)| {
-                    let (e, s) = (*r.estimates.get(g)?, *r.estimate_sigma.get(g)?);
-                    (e.is_finite() && s.is_finite() && s < r.force.abs())
-                        .then(|| (v.name.clone(), [e - 1.96 * s, e, e + 1.96 * s]))
-                })
-                .chain(std::iter::once((
-                    "all".to_owned(),
-                    [r.interval[0], r.force, r.interval[1]],
-                )))
-                .collect();
-            sections.push(drawing_section(
-                &format!("{}: gauges in use and all together", r.run),
-                interval_bars(&bars, units.force.name),
-                "",
-            ));
-        }
-    }
-    if let Some(p) = &parts.prepared
-        && let Some(fields) = &p.fields
-    {
-        let refs: Vec<&crate::gauge::Gauge> = p.gauges.iter().collect();
-        sections.push(drawing_section(
-            "Model and gauges",
-            model_with_gauges(fields.model(), &refs),
-            "",
+        let runs: Vec<(String, Vec<IntervalRow>)> = weighing
+            .runs
+            .iter()
+            .map(|r| (r.run.clone(), bars(r, weighing)))
+            .collect();
+        sections.push(figure_section(
+            "Gauges in use and all together",
+            &intervals(&runs, units.force.name),
+            "A gauge alone whose interval is wider than the payload is left out.",
         ));
+    }
+    if let Some(scene) = parts
+        .prepared
+        .as_ref()
+        .and_then(|p| scene_of_job(task.job, p))
+    {
+        sections.push(scene_section("Model and gauges", &scene));
     }
     let html = page(&task.job.title, "Payload", &session.findings, sections);
     let out = session.output_for(&arguments.job)?;

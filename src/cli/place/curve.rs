@@ -8,6 +8,8 @@ use crate::cli::strain::LoadUnits;
 use crate::linalg::{Matrix, dense};
 use crate::placement::quality::judge_rows;
 use crate::placement::{PlaceError, Spec};
+use crate::report::figure::CountPoint;
+use crate::report::strain::HowMany;
 use serde_json::{Value, json};
 
 /// A number of gauges.
@@ -101,4 +103,19 @@ pub(super) fn curve_json(points: &[Point], names: &[String], units: &[LoadUnits]
             })
         })
         .collect()
+}
+
+/// The curve for the page.
+pub(super) fn drawn(points: &[Point], names: &[String], units: &[LoadUnits]) -> HowMany {
+    let point = |p: &Point| CountPoint {
+        gauges: p.gauges,
+        efficiency: p.efficiency_bound,
+        after_loss: p.worst_loss,
+        sigma: p.sigma.clone(),
+    };
+    let loads = names.iter().zip(units);
+    HowMany {
+        points: points.iter().map(point).collect(),
+        loads: loads.map(|(n, u)| (n.clone(), u.name.clone())).collect(),
+    }
 }

@@ -15,6 +15,7 @@ pub(super) use region::allowed_sites;
 
 use super::fault::{Fault, Faults};
 use super::job;
+use super::scene::{placed_mark, scene_of};
 use super::spreadsheets::write_spreadsheet;
 use super::strain::{load_units, read_fields};
 use super::{JobArguments, Session};
@@ -22,7 +23,7 @@ use crate::finding::{Finding, Severity};
 use crate::placement::quality::{judge_rows, reserve};
 use crate::report::spreadsheet::gauge_sheets;
 use crate::report::strain::{
-    gauges_csv, gluing_sheet_csv, gluing_sheet_md, place_page, sensitivity_csv,
+    HowMany, gauges_csv, gluing_sheet_csv, gluing_sheet_md, place_page, sensitivity_csv,
 };
 use crate::sensitivity::{check_separability, common_shells, from_cases};
 use serde_json::json;
@@ -94,11 +95,13 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     session.findings.extend(check_separability(&s));
     answer::judge_layout(session, &chosen, &quality, &spec, &placed, k);
     answer::say(session, &chosen, &s, &placed, installed.as_ref());
+    let mut how_many = HowMany::default();
     if !job.placement.curve.is_empty() {
         let (points, left_out) =
             session.stage("curve", |_| curve::curve(&task, &kinds, &spec, &units));
         session.put("how_many", curve::curve_json(&points, &names, &units))?;
         answer::say_curve(session, &points, &names, &units);
+        how_many = curve::drawn(&points, &names, &units);
         if !left_out.is_empty() {
             let counts: Vec<String> = left_out.iter().map(usize::to_string).collect();
             session.findings.push(Finding::new(
@@ -113,13 +116,16 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
             ));
         }
     }
+    let marks = placed.iter().map(placed_mark).collect();
+    let scene = scene_of(&job, &fields, marks);
     let page = place_page(
         &job.title,
-        fields.model(),
+        &scene,
         &placed,
         &s,
         &session.findings,
         &answer::session_numbers(&chosen, &s, &installed),
+        &how_many,
     );
     let out = session.output_for(&arguments.job)?;
     let write = |f: Result<(), Fault>| f.map_err(|f| vec![f]);

@@ -10,7 +10,8 @@ use crate::finding::{Finding, Severity};
 use crate::reconcile::motion::gap::RecordGap;
 use crate::reconcile::motion::{MotionEffect, MotionFrame, MotionOutcome, examine};
 use crate::reconcile::{Rival, Verdict};
-use crate::report::strain::{Section, page, table_section};
+use crate::report::figure::gap_by_channel;
+use crate::report::strain::{Section, figure_section, page, table_section};
 use crate::report::vehicle::{Curve, restoring_curves, restoring_section, write_restoring_force};
 use crate::vehicle::identify::{Identification, Question, identify};
 use crate::vehicle::layout::Vehicle;
@@ -342,7 +343,22 @@ fn write_tables(
         outcome.remains,
         outcome.next_measurement
     );
+    let percent = |cell: &String| cell.parse().unwrap_or(f64::NAN);
+    let drawn: Vec<(String, [f64; 3])> = rows
+        .iter()
+        .filter_map(|r| match &r[..] {
+            [name, before, after, floor] => {
+                Some((name.clone(), [before, after, floor].map(percent)))
+            }
+            _ => None,
+        })
+        .collect();
     let mut sections: Vec<Section> = vec![
+        figure_section(
+            "Gap before and after",
+            &gap_by_channel(&drawn, "% of the measured quantity,"),
+            "On held-out data, by equation of motion; stroke: the floor.",
+        ),
         table_section(
             "Gap on held-out data, % of the measured quantity",
             &["equation", "before", "after", "floor"],

@@ -9,12 +9,17 @@ use crate::cli::fault::{Fault, Faults};
 use crate::cli::job::runs::{RunRow, read_runs};
 use crate::cli::job::strain::{StrainRows, StrainTable, read_strain};
 use crate::cli::job::{HoldOut, Job, WheelForces as JobWheelForces};
+use crate::cli::scene::{fields_of, mark_of_gap};
 use crate::finding::{Finding, Severity};
-use crate::model::Vec3;
+use crate::model::{Model, Vec3};
 use crate::reconcile::effect::Extension;
-use crate::reconcile::strain::{PayloadWeight, StrainFrame, WheelForces, angle_scatter, examine};
+use crate::reconcile::strain::{
+    PayloadWeight, StrainFrame, WheelForces, angle_scatter, examine, predict,
+};
 use crate::reconcile::{NamedEffect, Observations, Outcome, Verdict};
-use crate::report::strain::{GapMark, reconcile_page};
+use crate::report::figure::GaugePoints;
+use crate::report::scene::{Mark, Scene};
+use crate::report::strain::{RunStrain, reconcile_page};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -428,20 +433,66 @@ fn report(
     } else {
         1.0
     };
-    let marks: Vec<GapMark<'_>> = frame
+    let marks: Vec<Mark> = frame
         .gauges
         .iter()
         .zip(&outcome.channels)
         .filter_map(|(g, gap)| {
             let at = Vec3::from(g.position?) / metres;
-            Some(GapMark { at, gap })
+            Some(mark_of_gap(at, gap))
         })
         .collect();
-    let page = reconcile_page(&job.title, outcome, model, &marks, &session.findings);
+    // Where S is given there is no model to draw: the gauges alone.
+    let nothing = Model::default();
+    let scene = (!marks.is_empty()).then(|| Scene {
+        model: model.unwrap_or(&nothing),
+        marks,
+        fields: deck.map_or_else(Vec::new, |d| fields_of(job, &d.fields)),
+        arrows: Vec::new(),
+    });
+    let strain = run_strain(frame);
+    let page = reconcile_page(
+        &job.title,
+        outcome,
+        scene.as_ref(),
+        &strain,
+        &session.findings,
+    );
     let output = session.output_for(path)?;
     output
         .write_bytes("report.html", page.as_bytes())
         .map_err(|f| vec![f])
+}
+
+/// Measured and predicted strain of the runs, by the model as it was given.
+fn run_strain(frame: &StrainFrame) -> RunStrain {
+    let predicted = predict(frame, &[]);
+    let o = &frame.observations;
+    let n = frame.n_gauges();
+    let held = |run: &usize| o.held_out.get(*run).copied().unwrap_or(false);
+    let (held_out, used): (Vec<usize>, Vec<usize>) = (0..frame.n_runs()).partition(held);
+    let points = (0..n)
+        .map(|g| {
+            let pairs = [&used, &held_out].map(|runs| -> Vec<(f64, f64)> {
+                let of = |r: &usize| (predicted[r * n + g], o.value(*r, g));
+                runs.iter().map(of).collect()
+            });
+            let square = |p: &(f64, f64)| (p.1 - p.0).powi(2);
+            let known: Vec<f64> = pairs.iter().flatten().map(square).collect();
+            let known: Vec<f64> = known.into_iter().filter(|v| v.is_finite()).collect();
+            GaugePoints {
+                name: o.channels.get(g).cloned().unwrap_or_default(),
+                residual: (known.iter().sum::<f64>() / known.len().max(1) as f64).sqrt(),
+                points: pairs,
+            }
+        })
+        .collect();
+    let names = |runs: &[usize]| runs.iter().map(|r| o.runs[*r].clone()).collect();
+    RunStrain {
+        points,
+        used: names(&used),
+        held_out: names(&held_out),
+    }
 }
 
 fn findings(session: &mut Session, outcome: &Outcome) {

@@ -5,14 +5,16 @@ use super::{MICRO, Task};
 use crate::cli::fault::{Fault, Faults};
 use crate::cli::job::strain::{StrainRows, StrainTable, read_strain};
 use crate::cli::job::{Job, LoadActs, LoadFile, Measured, NamedFile};
+use crate::cli::scene::{Shown, run_arrows, scene_of_job};
 use crate::cli::spreadsheets::write_spreadsheet;
 use crate::cli::strain::{LoadUnits, load_units};
 use crate::cli::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::recovery::net::effective_samples;
 use crate::recovery::{Readings, Recovery, recover};
+use crate::report::figure::GaugePoints;
 use crate::report::spreadsheet::{residual_sheet, runs_sheet};
-use crate::report::strain::{GaugePoints, RecoveredRun, recover_page};
+use crate::report::strain::{Recovered, RecoveredRun, recover_page};
 use serde_json::{Value, json};
 use std::io::Write;
 
@@ -148,12 +150,18 @@ pub(super) fn run(
         .map(|g| GaugePoints {
             name: s.gauges[g].clone(),
             residual: recovery.gauge_residual_rms[g] / MICRO,
-            points: recovery
-                .runs
-                .iter()
-                .zip(&readings)
-                .map(|(r, y)| (r.predicted[g] / MICRO, y.strain[g] / MICRO))
-                .collect(),
+            points: [0.0, recovery.gauge_leverage[g]].map(|leverage| {
+                let pairs = recovery.runs.iter().zip(&readings);
+                pairs
+                    .map(|(r, y)| {
+                        let (predicted, measured) = (r.predicted[g], y.strain[g]);
+                        (
+                            held_out(predicted, measured, leverage) / MICRO,
+                            measured / MICRO,
+                        )
+                    })
+                    .collect()
+            }),
         })
         .collect();
     let by_gauge: Vec<(String, f64, f64)> = (0..s.gauges.len())
@@ -176,18 +184,19 @@ pub(super) fn run(
             format!("{:.2}", s.condition_number_scaled()),
         ),
     ];
-    let page = recover_page(
-        &task.job.title,
-        task.prepared.fields.as_ref().map(|f| f.model()),
-        &task.prepared.gauges,
-        s,
-        &shown,
-        &points,
-        &[],
-        &by_gauge,
-        &session.findings,
-        &numbers,
-    );
+    let scene = scene_of_job(task.job, task.prepared).map(|mut scene| {
+        scene.arrows = run_arrows(task.job, scene.model, &shown, Shown::Interval);
+        scene
+    });
+    let found = Recovered {
+        sensitivity: s,
+        runs: &shown,
+        points: &points,
+        traces: &[],
+        by_gauge: &by_gauge,
+        numbers: &numbers,
+    };
+    let page = recover_page(&task.job.title, scene.as_ref(), &found, &session.findings);
     for r in &recovery.runs {
         let list: Vec<String> = units
             .iter()
@@ -220,6 +229,17 @@ pub(super) fn run(
     write_arrows(session, arguments, task, &names, &units, &recovery)?;
     let sheets = [runs_sheet(&shown), residual_sheet(&by_gauge)];
     write_spreadsheet(session, task.job, &arguments.job, "loads.xlsx", &sheets)
+}
+
+/// What all other gauges predict of this one, from its own prediction and leverage; NaN where the others say nothing of it.
+fn held_out(predicted: f64, measured: f64, leverage: f64) -> f64 {
+    /// Leverage from which the others say next to nothing.
+    const ALONE: f64 = 0.999;
+    if leverage < ALONE {
+        measured - (measured - predicted) / (1.0 - leverage)
+    } else {
+        f64::NAN
+    }
 }
 
 fn readings_of(

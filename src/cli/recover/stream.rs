@@ -11,6 +11,7 @@ use super::{MICRO, Task};
 use crate::cli::fault::{Fault, Faults};
 use crate::cli::files::FileBytes;
 use crate::cli::job::strain::{in_microstrain, read_strain_header};
+use crate::cli::scene::{Shown, run_arrows, scene_of_job};
 use crate::cli::solved::first_mode_of;
 use crate::cli::spreadsheets::write_spreadsheet;
 use crate::cli::strain::{LoadUnits, load_units};
@@ -20,7 +21,7 @@ use crate::linalg::Matrix;
 use crate::recovery::history::{Filter, Sums};
 use crate::recovery::{Readings, recover};
 use crate::report::spreadsheet::{HistoryLoad, history_sheet, residual_sheet};
-use crate::report::strain::{RecoveredRun, recover_page};
+use crate::report::strain::{Recovered, RecoveredRun, recover_page};
 use crate::sensitivity::Sensitivity;
 use crate::series::{binary, rpc};
 use rayon::prelude::*;
@@ -420,18 +421,19 @@ fn finish(
         loads: shown,
     }];
     let names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
-    let page = recover_page(
-        &task.job.title,
-        task.prepared.fields.as_ref().map(|f| f.model()),
-        &task.prepared.gauges,
-        s,
-        &runs,
-        &[],
-        &spans.traces(&names, units, filter, &rms),
-        &by_gauge,
-        &session.findings,
-        &numbers,
-    );
+    let scene = scene_of_job(task.job, task.prepared).map(|mut scene| {
+        scene.arrows = run_arrows(task.job, scene.model, &runs, Shown::Extremes);
+        scene
+    });
+    let found = Recovered {
+        sensitivity: s,
+        runs: &runs,
+        points: &[],
+        traces: &spans.traces(&names, units, filter, &rms),
+        by_gauge: &by_gauge,
+        numbers: &numbers,
+    };
+    let page = recover_page(&task.job.title, scene.as_ref(), &found, &session.findings);
     session
         .output_for(&arguments.job)?
         .write_bytes("report.html", page.as_bytes())

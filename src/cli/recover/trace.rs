@@ -3,7 +3,7 @@
 use super::record::Piece;
 use crate::cli::strain::LoadUnits;
 use crate::recovery::history::Filter;
-use crate::report::strain::LoadTrace;
+use crate::report::figure::LoadTrace;
 
 /// Spans of a record at least, where it has so many samples.
 const LEAST: usize = 240;

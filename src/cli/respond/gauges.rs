@@ -6,6 +6,7 @@ use crate::cli::job::strain::{StrainRows, read_strain};
 use crate::cli::job::{Job, Reference};
 use crate::cli::strain::Prepared;
 use crate::finding::{Finding, Severity};
+use crate::report::figure::GaugePoints;
 use crate::respond::LoadState;
 use serde_json::json;
 use std::fmt::Write;
@@ -29,8 +30,10 @@ pub(super) struct GaugeCheck {
 /// All gauges.
 pub(super) struct Check {
     pub rows: Vec<GaugeCheck>,
-    /// Predicted, measured, microstrain.
-    pub points: Vec<(f64, f64)>,
+    /// Predicted, measured, microstrain; thinned.
+    pub points: Vec<GaugePoints>,
+    /// Names of the states behind the points.
+    pub states: Vec<String>,
     pub csv: String,
 }
 
@@ -47,6 +50,7 @@ pub(super) fn check(
     let mut out = Check {
         rows: Vec::new(),
         points: Vec::new(),
+        states: Vec::new(),
         csv: String::new(),
     };
     let s = &prepared.sensitivity;
@@ -107,6 +111,8 @@ pub(super) fn check(
     }
     out.csv.push('\n');
     let mut pairs: Vec<Vec<(f64, f64)>> = vec![Vec::new(); s.gauges.len()];
+    // With the missing ones, so that every point keeps its state.
+    let mut drawn = pairs.clone();
     for (state, row) in states.iter().zip(&row_of) {
         let Some(row) = row else { continue };
         out.csv.push_str(&state.label);
@@ -129,6 +135,7 @@ pub(super) fn check(
                 let _ = write!(out.csv, "{read}");
                 pairs[g].push((predicted, read));
             }
+            drawn[g].push((predicted, read));
         }
         out.csv.push('\n');
     }
@@ -175,9 +182,33 @@ pub(super) fn check(
             .with_numbers(poor.len() as f64, 0.0),
         );
     }
-    let all = pairs.iter().flatten().count();
-    let stride = all.div_ceil(MOST_POINTS).max(1);
-    out.points = pairs.into_iter().flatten().step_by(stride).collect();
+    let stride = drawn
+        .iter()
+        .map(Vec::len)
+        .sum::<usize>()
+        .div_ceil(MOST_POINTS)
+        .max(1);
+    out.states = states
+        .iter()
+        .zip(&row_of)
+        .filter(|(_, row)| row.is_some())
+        .map(|(s, _)| s.label.clone())
+        .step_by(stride)
+        .collect();
+    let residual = |name: &String| {
+        let row = out.rows.iter().find(|r| &r.name == name);
+        row.map_or(0.0, |r| r.residual_rms)
+    };
+    out.points = s
+        .gauges
+        .iter()
+        .zip(drawn)
+        .map(|(name, list)| GaugePoints {
+            name: name.clone(),
+            residual: residual(name),
+            points: [list.into_iter().step_by(stride).collect(), Vec::new()],
+        })
+        .collect();
     let finite = |v: f64| v.is_finite().then_some(v);
     let rows: Vec<serde_json::Value> = out
         .rows

@@ -10,9 +10,8 @@ use super::strain::{Prepared, prepare, read_fields};
 use super::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::model::{GridIx, Model, RigidKind};
-use crate::report::strain::{
-    drawing_section, measured_against_predicted, number, page, table_section,
-};
+use crate::report::figure::agreement;
+use crate::report::strain::{figure_section, number, page, table_section};
 use crate::report::write_cells_vtu;
 use crate::respond::{LoadState, Peak, Place, ResponseRow, envelope, hot_spots, response_rows};
 use crate::units::factor;
@@ -284,9 +283,10 @@ fn write(
                 ]
             })
             .collect();
-        sections.push(drawing_section(
+        let kinds = ["states", ""];
+        sections.push(figure_section(
             "Measured against predicted strain at the gauges",
-            measured_against_predicted(&check.points),
+            &agreement(&check.points, kinds, [&check.states, &[]]),
             "",
         ));
         sections.push(table_section(

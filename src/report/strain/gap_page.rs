@@ -1,37 +1,65 @@
 //! The page of `reconcile` on static strain.
 
-use super::gap_svg::{GapMark, gap_bars, gap_on_model};
 use super::page::{Section, number, page, table};
 use crate::finding::Finding;
-use crate::model::Model;
 use crate::reconcile::{NamedEffect, Outcome, Verdict};
-use maud::{Markup, PreEscaped, html};
+use crate::report::figure::{GaugePoints, agreement, gap_by_channel};
+use crate::report::scene::{Scene, scene_section};
+use maud::{Markup, html};
+
+/// Strain of the runs as the given model predicts it.
+#[derive(Default)]
+pub struct RunStrain {
+    /// By gauge: runs used, runs held out.
+    pub points: Vec<GaugePoints>,
+    /// Names of the runs used.
+    pub used: Vec<String>,
+    /// Names of those held out.
+    pub held_out: Vec<String>,
+}
 
 /// The page: verdict, where the gap sits, what was named, what else would explain it, loads before and after, what remains.
 pub fn reconcile_page(
     title: &str,
     outcome: &Outcome,
-    model: Option<&Model>,
-    marks: &[GapMark<'_>],
+    scene: Option<&Scene>,
+    strain: &RunStrain,
     findings: &[Finding],
 ) -> String {
     let mut sections = vec![Section {
         title: "Verdict".into(),
         body: verdict(outcome),
     }];
-    let drawing = gap_on_model(model, marks);
+    let by_channel: Vec<(String, [f64; 3])> = outcome
+        .channels
+        .iter()
+        .map(|c| (c.channel.clone(), [c.before, c.after, c.floor]))
+        .collect();
     sections.push(Section {
         title: "Where the gap sits".into(),
         body: html! {
             p { (outcome.sits) "." }
-            @if !drawing.is_empty() {
-                (PreEscaped(drawing))
-                p.muted { "Area of a circle: what the model misses at that gauge in the held-out runs, open before, full after. Named: above one and a half times its floor." }
-            }
-            (PreEscaped(gap_bars(&outcome.channels)))
-            p.muted { "Root mean square over the held-out runs, microstrain: upper bar before, lower bar after, stroke the floor." }
+            (gap_by_channel(&by_channel, "µε"))
+            p.muted { "Root mean square over the held-out runs: before and after the named effects; stroke: the floor, what noise and stated uncertainty leave." }
         },
     });
+    if let Some(scene) = scene {
+        let mut section = scene_section("The gap on the model", scene);
+        section.body = html! {
+            (section.body)
+            p.muted { "Area of a circle: what the model misses at that gauge in the held-out runs, orange before, blue after." }
+        };
+        sections.push(section);
+    }
+    if !strain.points.is_empty() {
+        sections.push(Section {
+            title: "Measured against predicted strain".into(),
+            body: html! {
+                (agreement(&strain.points, ["runs used for fitting", "held-out runs"], [&strain.used, &strain.held_out]))
+                p.muted { "Prediction of the model as it was given, before any effect." }
+            },
+        });
+    }
     if !outcome.rivals.is_empty() {
         sections.push(rivals(outcome));
     }

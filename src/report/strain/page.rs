@@ -1,6 +1,7 @@
 //! The frame of a report page: one file, no script from elsewhere, findings first.
 
 use crate::finding::{Finding, Severity};
+use crate::report::figure::{DRAWN, Figure, scripts};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// A titled part of a page.
@@ -22,26 +23,21 @@ pub fn table_section(title: &str, header: &[&str], rows: &[Vec<String>], note: &
     }
 }
 
-/// A part that is a drawing with a note under it.
-pub fn drawing_section(title: &str, svg: String, note: &str) -> Section {
+/// A part that is a figure with a note under it.
+pub fn figure_section(title: &str, figure: &Figure, note: &str) -> Section {
     Section {
         title: title.to_owned(),
-        body: html! { (PreEscaped(svg)) @if !note.is_empty() { p.muted { (note) } } },
+        body: html! { (figure) @if !note.is_empty() { p.muted { (note) } } },
     }
 }
 
-const STYLE: &str = "body{font:15px/1.45 system-ui,sans-serif;color:#1c2530;max-width:1100px;margin:2em auto;padding:0 1.2em}\
-h1{font-size:1.6em;margin:0 0 .2em}h2{font-size:1.15em;margin:1.8em 0 .5em;border-bottom:1px solid #d6dce3;padding-bottom:.2em}\
-table{border-collapse:collapse;font-size:.92em}td,th{padding:.22em .7em;text-align:right;border-bottom:1px solid #e6eaef}\
-th{color:#516173;font-weight:600}td:first-child,th:first-child{text-align:left}.scroll{overflow-x:auto}\
-.f{border-left:4px solid;padding:.4em .8em;margin:.5em 0;background:#f6f8fa}.error{border-color:#c0392b}.warning{border-color:#d68910}\
-.info{border-color:#5d7f9e}.f b{text-transform:capitalize}.f small{color:#516173}svg{max-width:100%;height:auto}\
-.small{display:flex;flex-wrap:wrap;gap:.6em}.small svg{width:11em}.muted{color:#516173}pre{white-space:pre-wrap}@media print{body{margin:0}}";
+const STYLE: &str = include_str!("../page.css");
 
 /// A page with `lead` under its title, findings, then the sections.
 pub fn page(title: &str, lead: &str, findings: &[Finding], sections: Vec<Section>) -> String {
     let mut sorted: Vec<&Finding> = findings.iter().collect();
     sorted.sort_by_key(|f| std::cmp::Reverse(f.severity));
+    let drawn = sections.iter().any(|s| s.body.0.contains(DRAWN));
     html! {
         (DOCTYPE)
         html lang="en" {
@@ -58,9 +54,9 @@ pub fn page(title: &str, lead: &str, findings: &[Finding], sections: Vec<Section
                 @if sorted.is_empty() { p { "None." } }
                 @for f in sorted { (finding(f)) }
                 @for s in sections {
-                    h2 { (s.title) }
-                    (s.body)
+                    section { h2 { (s.title) } (s.body) }
                 }
+                @if drawn { (PreEscaped(scripts())) }
             }
         }
     }

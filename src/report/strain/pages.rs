@@ -1,39 +1,38 @@
 //! The pages of `sensitivity`, `place` and `recover`.
 
-use super::history::{GaugePoints, LoadTrace, gauge_plot, history_band};
 use super::page::{Section, number, page};
-use super::svg;
 use super::tables::PlacedGauge;
 use crate::finding::Finding;
-use crate::gauge::Gauge;
-use crate::model::Model;
+use crate::report::figure::{
+    CountPoint, GaugePoints, IntervalRow, LoadTrace, agreement, curve, heat_map, history, intervals,
+};
+use crate::report::scene::{Scene, scene_section};
 use crate::sensitivity::Sensitivity;
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 /// Rows of S that a page shows; longer tables are in `sensitivity.csv`.
 const MOST_ROWS: usize = 120;
 
-fn model_section(model: Option<&Model>, gauges: &[&Gauge]) -> Option<Section> {
-    let drawing = svg::model_with_gauges(model?, gauges);
-    Some(Section {
-        title: "Model and gauges".into(),
-        body: html! {
-            (PreEscaped(drawing))
-            p.muted { "Strokes lie along the gauges' axes: red on the top (Z2), blue on the bottom (Z1) of the element." }
-        },
-    })
+/// Title of the scene on every page.
+pub(super) const SCENE: &str = "Model and gauges";
+
+fn model_section(scene: Option<&Scene>) -> Option<Section> {
+    Some(scene_section(SCENE, scene?))
 }
 
 fn sensitivity_section(s: &Sensitivity) -> Section {
     let n = s.gauges.len().min(MOST_ROWS);
     let columns: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
-    let map = svg::heat_map(&s.gauges[..n], &columns, |r, c| s.values[(r, c)]);
+    // Strain in microstrain per job unit, as in sensitivity.csv.
+    let map = heat_map(&s.gauges[..n], &columns, "µε per job unit", |r, c| {
+        1e6 * s.values[(r, c)]
+    });
     Section {
         title: "Sensitivity".into(),
         body: html! {
             p { "Rank " (s.rank()) " of " (s.loads.len()) ", condition number " (number(s.condition_number())) " in job units, "
                 (number(s.condition_number_scaled())) " scaled." }
-            (PreEscaped(map))
+            (map)
             p.muted { "Colour: share of the column's largest value. " @if n < s.gauges.len() { "The first " (n) " of " (s.gauges.len()) " rows; all are in sensitivity.csv." } }
         },
     }
@@ -43,12 +42,10 @@ fn sensitivity_section(s: &Sensitivity) -> Section {
 pub fn sensitivity_page(
     title: &str,
     s: &Sensitivity,
-    gauges: &[Gauge],
-    model: Option<&Model>,
+    scene: Option<&Scene>,
     findings: &[Finding],
 ) -> String {
-    let refs: Vec<&Gauge> = gauges.iter().collect();
-    let mut sections: Vec<Section> = model_section(model, &refs).into_iter().collect();
+    let mut sections: Vec<Section> = model_section(scene).into_iter().collect();
     sections.push(sensitivity_section(s));
     page(
         title,
@@ -58,21 +55,30 @@ pub fn sensitivity_page(
     )
 }
 
-/// The page of `place`.
+/// The page of `place`; `counts` is what other numbers of gauges give.
 pub fn place_page(
     title: &str,
-    model: &Model,
+    scene: &Scene,
     placed: &[PlacedGauge],
     s: &Sensitivity,
     findings: &[Finding],
     numbers: &[(String, String)],
+    counts: &HowMany,
 ) -> String {
-    let refs: Vec<&Gauge> = placed.iter().map(|p| &p.gauge).collect();
     let mut sections = vec![Section {
         title: "Layout".into(),
         body: pairs(numbers),
     }];
-    sections.extend(model_section(Some(model), &refs));
+    sections.extend(model_section(Some(scene)));
+    if !counts.points.is_empty() {
+        sections.push(Section {
+            title: "How many gauges".into(),
+            body: html! {
+                (curve(&counts.points, &counts.loads))
+                p.muted { "One standard deviation of each load, as the stated noise makes it; efficiency is certified against the best possible layout of that many gauges." }
+            },
+        });
+    }
     sections.push(Section {
         title: "Gauges".into(),
         body: html! {
@@ -91,6 +97,15 @@ pub fn place_page(
     page(title, "Gauge layout", findings, sections)
 }
 
+/// What each number of gauges gives, and the loads (name, unit) that its sigmas belong to.
+#[derive(Default)]
+pub struct HowMany {
+    /// By number.
+    pub points: Vec<CountPoint>,
+    /// Loads.
+    pub loads: Vec<(String, String)>,
+}
+
 /// One run or record for the page: name, by load (name, low, value, high, unit).
 pub struct RecoveredRun {
     /// Run.
@@ -99,63 +114,75 @@ pub struct RecoveredRun {
     pub loads: Vec<(String, [f64; 3], String)>,
 }
 
-/// The page of `recover`. `points` are those of static runs, `traces` those of a history; `by_gauge` residual rms in microstrain and leverage.
-#[allow(clippy::too_many_arguments)]
+/// What `recover` found.
+pub struct Recovered<'a> {
+    /// S.
+    pub sensitivity: &'a Sensitivity,
+    /// Runs.
+    pub runs: &'a [RecoveredRun],
+    /// Points of static runs: predicted by all gauges, and by all others.
+    pub points: &'a [GaugePoints],
+    /// Loads of a history.
+    pub traces: &'a [LoadTrace],
+    /// Residual rms in microstrain, and leverage.
+    pub by_gauge: &'a [(String, f64, f64)],
+    /// First table.
+    pub numbers: &'a [(String, String)],
+}
+
+/// Runs whose loads are drawn; all are in `loads.csv`.
+const MOST_RUNS: usize = 200;
+
+/// The page of `recover`.
 pub fn recover_page(
     title: &str,
-    model: Option<&Model>,
-    gauges: &[Gauge],
-    s: &Sensitivity,
-    runs: &[RecoveredRun],
-    points: &[GaugePoints],
-    traces: &[LoadTrace],
-    by_gauge: &[(String, f64, f64)],
+    scene: Option<&Scene>,
+    found: &Recovered,
     findings: &[Finding],
-    numbers: &[(String, String)],
 ) -> String {
-    let refs: Vec<&Gauge> = gauges.iter().collect();
     let mut sections = vec![Section {
         title: "Result".into(),
-        body: pairs(numbers),
+        body: pairs(found.numbers),
     }];
+    sections.extend(model_section(scene));
     sections.push(Section {
         title: "Loads with 95 % intervals".into(),
-        body: html! { @for r in runs { h3 { (r.run) } (PreEscaped(bars(r))) } },
+        body: html! {
+            (bars(found.runs))
+            @if found.runs.len() > MOST_RUNS { p.muted { "The first " (MOST_RUNS) " of " (found.runs.len()) " runs; all are in loads.csv." } }
+        },
     });
-    if !traces.is_empty() {
+    if !found.traces.is_empty() {
         sections.push(Section {
             title: "Histories".into(),
             body: html! {
-                @for t in traces { (PreEscaped(history_band(t))) }
-                p.muted { "Line: mean. Dark: from the smallest to the largest sample of a span of time. Light: 95 % interval of a sample around it." }
+                (history(found.traces))
+                p.muted { "Drag to zoom, double click to return. Line: mean. Dark: from the smallest to the largest sample of a span of time. Light: 95 % interval of a sample around it." }
             },
         });
     }
-    if !points.is_empty() {
-        let all: Vec<(f64, f64)> = points
-            .iter()
-            .flat_map(|g| &g.points)
-            .copied()
-            .filter(|p| p.0.is_finite() && p.1.is_finite())
-            .collect();
+    if !found.points.is_empty() {
+        let runs: Vec<String> = found.runs.iter().map(|r| r.run.clone()).collect();
+        let kinds = [
+            "used: predicted by all gauges",
+            "held out: predicted by the others",
+        ];
         sections.push(Section {
             title: "Measured against predicted strain".into(),
             body: html! {
-                (PreEscaped(svg::measured_against_predicted(&all)))
-                p.muted { "By gauge, the largest residual first, microstrain; a point a run." }
-                div.small { @for g in worst_first(points) { (PreEscaped(gauge_plot(g))) } }
+                (agreement(found.points, kinds, [&runs, &runs]))
+                p.muted { "A point a gauge and run. Held out: what all other gauges say of this one, from its residual and leverage." }
             },
         });
     }
     sections.push(Section {
         title: "Gauges".into(),
-        body: html! { table {
+        body: html! { div.scroll { table {
             tr { th { "gauge" } th { "residual rms, µε" } th { "leverage" } }
-            @for (name, rms, leverage) in by_gauge { tr { td { (name) } td { (format!("{rms:.2}")) } td { (format!("{leverage:.3}")) } } }
-        } },
+            @for (name, rms, leverage) in found.by_gauge { tr { td { (name) } td { (format!("{rms:.2}")) } td { (format!("{leverage:.3}")) } } }
+        } } },
     });
-    sections.extend(model_section(model, &refs));
-    sections.push(sensitivity_section(s));
+    sections.push(sensitivity_section(found.sensitivity));
     page(
         title,
         "Loads recovered from measured strain",
@@ -164,36 +191,26 @@ pub fn recover_page(
     )
 }
 
-/// Gauges by falling residual, as many as a page shows.
-fn worst_first(points: &[GaugePoints]) -> Vec<&GaugePoints> {
-    let mut list: Vec<&GaugePoints> = points.iter().collect();
-    list.sort_by(|a, b| b.residual.total_cmp(&a.residual));
-    list.truncate(MOST_ROWS);
-    list
-}
-
-/// Forces and moments on scales of their own.
-fn bars(r: &RecoveredRun) -> String {
-    let mut units: Vec<&String> = Vec::new();
-    for (_, _, u) in &r.loads {
-        if !units.contains(&u) {
-            units.push(u);
-        }
-    }
-    units
-        .into_iter()
-        .map(|unit| {
-            let rows: Vec<(String, [f64; 3])> = r
-                .loads
-                .iter()
-                .filter(|l| &l.2 == unit)
-                .map(|l| (l.0.clone(), l.1))
-                .collect();
-            svg::interval_bars(&rows, unit)
-        })
-        .collect()
+/// Forces and moments on scales of their own, a run at a time.
+fn bars(runs: &[RecoveredRun]) -> Markup {
+    let mut units: Vec<&String> = runs.iter().flat_map(|r| &r.loads).map(|l| &l.2).collect();
+    units.sort_unstable();
+    units.dedup();
+    let of_run = |r: &RecoveredRun, unit: &String| -> (String, Vec<IntervalRow>) {
+        let rows = r.loads.iter().filter(|l| &l.2 == unit);
+        (r.run.clone(), rows.map(|l| (l.0.clone(), l.1)).collect())
+    };
+    let figure = |unit: &String| {
+        let groups: Vec<_> = runs
+            .iter()
+            .take(MOST_RUNS)
+            .map(|r| of_run(r, unit))
+            .collect();
+        intervals(&groups, unit)
+    };
+    html! { @for unit in units { (figure(unit)) } }
 }
 
 fn pairs(numbers: &[(String, String)]) -> Markup {
-    html! { table { @for (name, value) in numbers { tr { td { (name) } td { (value) } } } } }
+    html! { div.scroll { table { @for (name, value) in numbers { tr { td { (name) } td { (value) } } } } } }
 }

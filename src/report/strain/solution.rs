@@ -3,6 +3,7 @@
 use super::page::{Section, number, page, table};
 use crate::fe::{Balance, Solution, SolveReport};
 use crate::finding::Finding;
+use crate::report::scene::{Scene, scene_section};
 use maud::html;
 
 /// Page of a solution: size of the model and its factor, resultants of applied and inertia loads, first elastic modes.
@@ -10,12 +11,14 @@ pub fn solution_page(
     title: &str,
     solution: &Solution,
     report: &SolveReport,
+    scene: &Scene,
     findings: &[Finding],
 ) -> String {
     let mut sections = vec![Section {
         title: "Model".into(),
         body: table(&["quantity", "value"], &model_rows(report)),
     }];
+    sections.push(scene_section("Loads and strain", scene));
     if !report.balance.is_empty() {
         let rows: Vec<Vec<String>> = report
             .balance

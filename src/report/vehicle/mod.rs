@@ -1,7 +1,6 @@
 //! Tables and page of `identify`.
 
 mod page;
-mod plot;
 mod restoring;
 mod tables;
 

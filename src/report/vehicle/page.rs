@@ -1,11 +1,11 @@
 //! The page of `identify`.
 
-use super::plot::{Scale, lines};
 use super::restoring::restoring_section;
 use crate::finding::Finding;
+use crate::report::figure::{Line, Scale, lines};
 use crate::report::strain::{Section, page};
 use crate::vehicle::identify::Identification;
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 /// A signal recovered and measured over one axis; `measured` is empty where it was not measured.
 pub struct Curve {
@@ -77,7 +77,7 @@ fn parameters(found: &Identification) -> Markup {
 
 fn fit(found: &Identification) -> Markup {
     html! {
-        table {
+        div.scroll { table {
             tr { th { "channel" } th { "left over, %" } th { "judged on" } th { "left over where fitted, %" } }
             @for f in &found.fit { tr {
                 td { (f.channel) }
@@ -85,23 +85,28 @@ fn fit(found: &Identification) -> Markup {
                 td { (f.on) }
                 td { (format!("{:.2}", 100.0 * f.relative_rms_fitted)) }
             } }
-        }
+        } }
         @if let Some(m) = found.mass_closure {
             p { "Identified mass over weighed mass: " (format!("{:.4}", m.ratio)) "." }
         }
     }
 }
 
+/// Curves one at a time, what was measured below what was recovered.
 pub(super) fn plots(curves: &[Curve], x_label: &str, y_label: &str, scale: Scale) -> Markup {
-    html! {
-        @if curves.is_empty() { p.muted { "None." } }
-        @for c in curves {
-            h3 { (c.name) }
-            @if c.measured.is_empty() {
-                (PreEscaped(lines(&[("recovered", c.x.as_slice(), c.recovered.as_slice())], x_label, y_label, scale)))
-            } @else {
-                (PreEscaped(lines(&[("measured", c.x.as_slice(), c.measured.as_slice()), ("recovered", c.x.as_slice(), c.recovered.as_slice())], x_label, y_label, scale)))
+    let groups: Vec<(String, Vec<Line>)> = curves
+        .iter()
+        .map(|c| {
+            let line = |name, y| Line { name, x: &c.x, y };
+            let mut list = vec![line("recovered", &c.recovered)];
+            if !c.measured.is_empty() {
+                list.insert(0, line("measured", &c.measured));
             }
-        }
+            (c.name.clone(), list)
+        })
+        .collect();
+    html! {
+        @if groups.is_empty() { p.muted { "None." } }
+        @else { (lines(&groups, x_label, y_label, scale)) }
     }
 }

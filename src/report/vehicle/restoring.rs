@@ -1,7 +1,7 @@
 //! The restoring force of a link: what its model says, and what the motion of the body that it carries asks for.
 
 use super::page::{Curve, plots};
-use super::plot::Scale;
+use crate::report::figure::Scale;
 use crate::report::strain::Section;
 use crate::vehicle::identify::Identification;
 use crate::vehicle::loads::link_forces;

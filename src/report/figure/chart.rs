@@ -1,0 +1,42 @@
+//! A figure in two dimensions.
+
+use maud::{Markup, PreEscaped, Render, html};
+use serde_json::{Value, json};
+
+/// What plotly.js is given: traces and axes. Written as its own JSON, for the typed builders of the crate know neither packed arrays nor
+/// figures that share a choice.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// What it shows, for screen readers and tests.
+    pub label: String,
+    /// By choice: name and traces. A single one is drawn without asking.
+    pub choices: Vec<(String, Vec<Value>)>,
+    /// Axes.
+    pub layout: Value,
+    /// Pixels.
+    pub height: usize,
+}
+
+impl Render for Figure {
+    fn render(&self) -> Markup {
+        let traces: Vec<&Vec<Value>> = self.choices.iter().map(|c| &c.1).collect();
+        let data = json!({ "choices": traces, "layout": self.layout });
+        html! {
+            figure.plot aria-label=(self.label) data-figure="chart" {
+                @if self.choices.len() > 1 {
+                    div.controls { label { "Show " select data-role="choice" {
+                        @for (i, c) in self.choices.iter().enumerate() { option value=(i) { (c.0) } }
+                    } } }
+                }
+                div.canvas style=(format!("height:{}px", self.height)) {}
+                (embedded(&data))
+            }
+        }
+    }
+}
+
+/// Data of a figure inside the page. `<` can only stand inside a string there and is written as its code, so that nothing ends early.
+pub(in crate::report) fn embedded(data: &Value) -> Markup {
+    let text = data.to_string().replace('<', "\\u003c");
+    html! { script type="application/json" { (PreEscaped(text)) } }
+}

@@ -1,0 +1,74 @@
+//! What each number of gauges gives.
+
+use super::chart::Figure;
+use super::packed::{short, shorts};
+use serde_json::{Value, json};
+
+/// One number of gauges.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CountPoint {
+    /// How many.
+    pub gauges: usize,
+    /// Certified efficiency, 0..1.
+    pub efficiency: f64,
+    /// Efficiency left after the worst loss of a gauge, 0..1.
+    pub after_loss: f64,
+    /// By load, one standard deviation.
+    pub sigma: Vec<f64>,
+}
+
+/// Sigma of every load, by its unit, and efficiency against the number of gauges.
+pub fn curve(points: &[CountPoint], loads: &[(String, String)]) -> Figure {
+    let counts: Vec<usize> = points.iter().map(|p| p.gauges).collect();
+    let mut units: Vec<&str> = loads.iter().map(|l| l.1.as_str()).collect();
+    units.sort_unstable();
+    units.dedup();
+    let line = |name: &str, y: Vec<Value>, shown: &str| {
+        json!({
+            "type": "scatter", "mode": "lines+markers", "name": name, "x": counts, "y": y,
+            "hovertemplate": format!("%{{x}} gauges: {shown}<extra>{name}</extra>"),
+        })
+    };
+    let mut choices: Vec<(String, Vec<Value>)> = units
+        .iter()
+        .map(|unit| {
+            let of_unit = (0..loads.len()).filter(|l| loads[*l].1 == *unit);
+            let traces = of_unit.map(|l| {
+                let y = points.iter().map(|p| short(p.sigma[l])).collect();
+                line(&loads[l].0, y, &format!("%{{y:.4~g}} {unit}"))
+            });
+            let name = if unit.is_empty() {
+                "times the set"
+            } else {
+                unit
+            };
+            (format!("sigma of the loads, {name}"), traces.collect())
+        })
+        .collect();
+    let percent = |of: &dyn Fn(&CountPoint) -> f64| shorts(points.iter().map(|p| 100.0 * of(p)));
+    choices.push((
+        "efficiency, %".into(),
+        vec![
+            line(
+                "certified, of the best possible",
+                percent(&|p| p.efficiency),
+                "%{y:.2f} %",
+            ),
+            line(
+                "left after the worst loss of a gauge",
+                percent(&|p| p.after_loss),
+                "%{y:.1f} %",
+            ),
+        ],
+    ));
+    Figure {
+        label: "efficiency and sigma against the number of gauges".into(),
+        choices,
+        layout: json!({
+            "xaxis": { "title": { "text": "gauges" }, "tickvals": counts },
+            "yaxis": { "rangemode": "tozero", "automargin": true },
+            "legend": { "orientation": "h", "y": -0.22 },
+        }),
+        height: 400,
+    }
+}

@@ -1,0 +1,40 @@
+//! The gap by channel.
+
+use super::chart::Figure;
+use super::packed::shorts;
+use serde_json::json;
+
+/// A channel's name with its gap before, after, and its floor, `unit` rms, on what was held out.
+pub fn gap_by_channel(channels: &[(String, [f64; 3])], unit: &str) -> Figure {
+    let names: Vec<&String> = channels.iter().map(|c| &c.0).collect();
+    let of = |k: usize| shorts(channels.iter().map(|c| c.1[k]));
+    let bar = |name: &str, k: usize, colour: &str| {
+        json!({
+            "type": "bar", "name": name, "x": names, "y": of(k), "marker": { "color": colour },
+            "hovertemplate": format!("%{{x}}: %{{y:.4~g}} {unit} {name}<extra></extra>"),
+        })
+    };
+    let floor = json!({
+        "type": "scatter", "mode": "markers", "name": "floor", "x": names, "y": of(2),
+        "marker": { "symbol": "line-ew-open", "size": 16, "color": "#1c2530", "line": { "width": 2 } },
+        "hovertemplate": format!("%{{x}}: floor %{{y:.4~g}} {unit}<extra></extra>"),
+    });
+    Figure {
+        label: "gap before and after".into(),
+        choices: vec![(
+            String::new(),
+            vec![
+                bar("before", 0, "#d68910"),
+                bar("after", 1, "#1f618d"),
+                floor,
+            ],
+        )],
+        layout: json!({
+            "barmode": "group",
+            "xaxis": { "type": "category", "automargin": true, "tickangle": -60 },
+            "yaxis": { "title": { "text": format!("{unit} rms") }, "rangemode": "tozero", "automargin": true },
+            "legend": { "orientation": "h", "y": 1.12 },
+        }),
+        height: 380,
+    }
+}

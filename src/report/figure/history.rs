@@ -1,0 +1,92 @@
+//! A load over time.
+
+use super::chart::Figure;
+use super::packed::shorts;
+use serde_json::{Value, json};
+
+/// One load over time, thinned: by span of time the smallest, mean and largest sample, report unit.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct LoadTrace {
+    /// Name.
+    pub name: String,
+    /// Report unit; empty for a load set.
+    pub unit: String,
+    /// Beginning and end of the record, s.
+    pub time: [f64; 2],
+    /// Half of the 95 % interval of a sample.
+    pub half: f64,
+    /// Spans of equal length: smallest, mean, largest; NaN where nothing was measured.
+    pub spans: Vec<[f64; 3]>,
+}
+
+/// Histories, one at a time: what lies between smallest and largest of each span, its 95 % interval around it, and the mean.
+pub fn history(traces: &[LoadTrace]) -> Figure {
+    let first = traces.first().map_or([0.0, 1.0], |t| t.time);
+    Figure {
+        label: "histories of loads".into(),
+        choices: traces.iter().map(|t| (t.name.clone(), bands(t))).collect(),
+        layout: json!({
+            "xaxis": { "title": { "text": "time, s" }, "range": shorts(first) },
+            "yaxis": { "automargin": true },
+            "hovermode": "x unified",
+            "legend": { "orientation": "h", "y": 1.12 },
+        }),
+        height: 380,
+    }
+}
+
+fn bands(trace: &LoadTrace) -> Vec<Value> {
+    let n = trace.spans.len().max(1) as f64;
+    let [from, to] = trace.time;
+    let time = shorts((0..trace.spans.len()).map(|i| from + (to - from) * (i as f64 + 0.5) / n));
+    let half = if trace.half.is_finite() {
+        trace.half
+    } else {
+        0.0
+    };
+    let line = |name: &str, of: &dyn Fn(&[f64; 3]) -> f64, fill: Value| {
+        let mut trace = json!({
+            "type": "scatter", "mode": "lines", "name": name, "x": time,
+            "y": shorts(trace.spans.iter().map(of)),
+            "line": { "width": 0 }, "showlegend": false, "hoverinfo": "skip",
+        });
+        if let (Some(t), Some(more)) = (trace.as_object_mut(), fill.as_object()) {
+            t.extend(more.clone());
+        }
+        trace
+    };
+    let band = |colour: &str| json!({ "fill": "tonexty", "fillcolor": colour, "showlegend": true });
+    let unit = &trace.unit;
+    let shown = |width: f64, colour: &str| {
+        json!({
+            "line": { "width": width, "color": colour }, "showlegend": true, "hoverinfo": "all",
+            "hovertemplate": format!("%{{y:.5~g}} {unit}"),
+        })
+    };
+    vec![
+        line("below", &|s| s[0] - half, json!({})),
+        line(
+            &format!(
+                "95 % interval of a sample: ± {} {unit}",
+                crate::report::strain::number(half)
+            ),
+            &|s| s[2] + half,
+            band("rgba(93,143,184,.30)"),
+        ),
+        line(
+            "smallest",
+            &|s| s[0],
+            json!({ "hoverinfo": "all", "hovertemplate": format!("%{{y:.5~g}} {unit}") }),
+        ),
+        line(
+            "smallest to largest of a span",
+            &|s| s[2],
+            band("rgba(31,97,141,.65)"),
+        ),
+        line(
+            &format!("mean of {}, {unit}", trace.name),
+            &|s| s[1],
+            shown(1.2, "#1c2530"),
+        ),
+    ]
+}

@@ -1,0 +1,59 @@
+//! Curves over a common axis.
+
+use super::chart::Figure;
+use super::packed::shorts;
+use serde_json::{Value, json};
+
+/// Points drawn at most for one curve; longer ones are thinned evenly.
+const MOST_POINTS: usize = 4000;
+const COLOURS: [&str; 3] = ["#9aa7b5", "#1f618d", "#c0392b"];
+
+/// A curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line<'a> {
+    /// Name.
+    pub name: &'a str,
+    /// Right.
+    pub x: &'a [f64],
+    /// Up.
+    pub y: &'a [f64],
+}
+
+/// Axes of a figure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// Both linear.
+    Linear,
+    /// y by powers of ten.
+    LogY,
+}
+
+/// Groups of curves, one group at a time; in a group the first is drawn lowest.
+pub fn lines(groups: &[(String, Vec<Line>)], x: &str, y: &str, scale: Scale) -> Figure {
+    let trace = |i: usize, l: &Line| -> Value {
+        let step = l.x.len().div_ceil(MOST_POINTS).max(1);
+        let thin = |v: &[f64]| shorts(v.iter().step_by(step).copied());
+        json!({
+            "type": "scatter", "mode": "lines", "name": l.name, "x": thin(l.x), "y": thin(l.y),
+            "line": { "width": 1.4, "color": COLOURS[i % COLOURS.len()] },
+        })
+    };
+    let choices = groups.iter().map(|(name, list)| {
+        let traces = list.iter().enumerate().map(|(i, l)| trace(i, l));
+        (name.clone(), traces.collect())
+    });
+    let kind = match scale {
+        Scale::Linear => "linear",
+        Scale::LogY => "log",
+    };
+    Figure {
+        label: format!("{y} over {x}"),
+        choices: choices.collect(),
+        layout: json!({
+            "xaxis": { "title": { "text": x } },
+            "yaxis": { "title": { "text": y }, "type": kind, "automargin": true, "exponentformat": "power" },
+            "legend": { "orientation": "h", "y": 1.12 },
+        }),
+        height: 380,
+    }
+}

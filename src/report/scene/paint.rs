@@ -1,0 +1,89 @@
+//! Strain as numbers at the vertices that are drawn.
+
+use super::skin::{Owner, Part};
+use crate::fe::CaseResult;
+use crate::linalg::Matrix3;
+use crate::model::Model;
+
+/// Strain by element: the largest principal one by magnitude, signed, at bottom and top; `NaN` where there is none.
+pub(super) struct Values {
+    shells: Vec<[f64; 2]>,
+    solids: Vec<[f64; 2]>,
+}
+
+impl Values {
+    /// Of a load case: shells in their plane, solids at their centre (both sides alike).
+    pub(super) fn of(model: &Model, case: &CaseResult) -> Self {
+        let mut shells = vec![[f64::NAN; 2]; model.shells.len()];
+        for (ix, strain) in case.shells.elements.iter().zip(&case.shells.centre) {
+            if let Some(slot) = shells.get_mut(ix.us()) {
+                *slot = strain.map(largest_in_plane);
+            }
+        }
+        let mut solids = vec![[f64::NAN; 2]; model.solids.len()];
+        for (i, strain) in case.solids.elements.iter().zip(&case.solids.centre) {
+            if let Some(slot) = solids.get_mut(*i) {
+                *slot = [largest(strain); 2];
+            }
+        }
+        Self { shells, solids }
+    }
+
+    fn at(&self, owner: Owner) -> [f64; 2] {
+        match owner {
+            Owner::Shell(i) => self.shells[i],
+            Owner::Solid(i) => self.solids[i],
+            Owner::Panel => [f64::NAN; 2],
+        }
+    }
+
+    /// At the vertices of a part, bottom and top: the mean of the elements around each grid, and of the grids that a vertex stands for
+    /// the one with the largest magnitude.
+    pub(super) fn on(&self, part: &Part) -> [Vec<f64>; 2] {
+        [0, 1].map(|side| {
+            let mut sums = vec![(0.0, 0_u32); part.grids.len()];
+            for (owner, corners) in &part.faces {
+                let v = self.at(*owner)[side];
+                let n = if corners[2] == corners[3] { 3 } else { 4 };
+                for c in corners.iter().take(n).filter(|_| v.is_finite()) {
+                    sums[*c as usize].0 += v;
+                    sums[*c as usize].1 += 1;
+                }
+            }
+            let mut out = vec![f64::NAN; part.drawn.vertices.len()];
+            for ((sum, n), vertex) in sums.iter().zip(&part.drawn.vertex_of) {
+                let slot = &mut out[*vertex as usize];
+                let mean = sum / f64::from(*n);
+                if *n > 0 && !(mean.abs() <= slot.abs()) {
+                    *slot = mean;
+                }
+            }
+            out
+        })
+    }
+}
+
+/// Of exx, eyy, gxy (engineering shear).
+pub(super) fn largest_in_plane([ex, ey, g]: [f64; 3]) -> f64 {
+    let (mean, radius) = ((ex + ey) / 2.0, ((ex - ey) / 2.0).hypot(g / 2.0));
+    if mean < 0.0 {
+        mean - radius
+    } else {
+        mean + radius
+    }
+}
+
+/// Of xx yy zz xy yz zx (engineering shear).
+fn largest(e: &[f64; 6]) -> f64 {
+    if e.iter().any(|v| !v.is_finite()) {
+        return f64::NAN;
+    }
+    let [xx, yy, zz, xy, yz, zx] = *e;
+    let (xy, yz, zx) = (xy / 2.0, yz / 2.0, zx / 2.0);
+    let tensor = Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz);
+    let values = tensor.symmetric_eigenvalues();
+    values
+        .iter()
+        .copied()
+        .fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a })
+}

@@ -1,0 +1,139 @@
+//! The surface that is drawn: shells and the outside of solids, by property.
+
+use super::coarse::{Drawn, coarsened};
+use super::solids::outside;
+use crate::model::{GridIx, Model};
+use std::collections::{BTreeMap, HashMap};
+
+/// Triangles drawn at most, and with many fields to choose from: each of them has its own numbers in the page.
+const MOST_TRIANGLES: usize = 60_000;
+const LEAST_TRIANGLES: usize = 20_000;
+/// Fields up to which the picture is as fine as it gets.
+const FEW_FIELDS: usize = 6;
+/// Properties that are switched on and off one by one; the smallest beyond go together.
+const MOST_PARTS: usize = 40;
+
+/// The element that a face belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Owner {
+    /// Index into `shells`.
+    Shell(usize),
+    /// Index into `solids`.
+    Solid(usize),
+    /// No strain.
+    Panel,
+}
+
+/// Faces of one property.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Part {
+    /// What it is called.
+    pub name: String,
+    /// Grids of its faces.
+    pub grids: Vec<GridIx>,
+    /// Faces: owner, indices into `grids`; triangles repeat the third.
+    pub faces: Vec<(Owner, [u32; 4])>,
+    /// What is drawn of them.
+    pub drawn: Drawn,
+}
+
+impl Part {
+    fn n_triangles(&self) -> usize {
+        let quads = self.faces.iter().filter(|f| f.1[2] != f.1[3]).count();
+        self.faces.len() + quads
+    }
+}
+
+/// Faces by property, coarsened so that all together stay below a limit: small parts whole, large ones with what is left.
+pub(super) fn skin(model: &Model, fields: usize) -> Vec<Part> {
+    let mut parts = together(raw(model));
+    let mut order: Vec<usize> = (0..parts.len()).collect();
+    order.sort_by_key(|i| parts[*i].n_triangles());
+    let limit = MOST_TRIANGLES * FEW_FIELDS / fields.max(FEW_FIELDS);
+    let (mut left, mut n) = (limit.max(LEAST_TRIANGLES), parts.len());
+    for i in order {
+        let most = left / n.max(1);
+        parts[i].drawn = coarsened(model, &parts[i], most);
+        left = left.saturating_sub(parts[i].drawn.triangles.len());
+        n -= 1;
+    }
+    parts
+}
+
+/// A face before its part numbers its grids.
+type RawFace = (Owner, [GridIx; 4]);
+
+fn raw(model: &Model) -> Vec<(String, Vec<RawFace>)> {
+    let mut by_kind: BTreeMap<(u8, u32), Vec<RawFace>> = BTreeMap::new();
+    for (i, s) in model.shells.iter().enumerate() {
+        let id = model
+            .shell_properties
+            .get(s.property.us())
+            .map_or(0, |p| p.id);
+        let last = if s.shape.n_corners() == 4 { 3 } else { 2 };
+        let corners = [s.grids[0], s.grids[1], s.grids[2], s.grids[last]];
+        let faces = by_kind.entry((0, id)).or_default();
+        faces.push((Owner::Shell(i), corners));
+    }
+    for (i, corners) in outside(model) {
+        let property = model.solids[i].property as usize;
+        let id = model.solid_properties.get(property).map_or(0, |p| p.id);
+        let faces = by_kind.entry((1, id)).or_default();
+        faces.push((Owner::Solid(i), corners));
+    }
+    if !model.shear_panels.is_empty() {
+        let panels = model.shear_panels.iter();
+        by_kind.insert((2, 0), panels.map(|p| (Owner::Panel, p.grids)).collect());
+    }
+    let named = |id: u32| {
+        let mut names = model.property_names.iter();
+        names
+            .find(|n| n.0 == id)
+            .map_or(String::new(), |n| format!(" {}", n.1))
+    };
+    let word = |(kind, id): (u8, u32)| match kind {
+        0 => format!("shells {id}{}", named(id)),
+        1 => format!("solids {id}{}", named(id)),
+        _ => "shear panels".to_owned(),
+    };
+    by_kind.into_iter().map(|(k, f)| (word(k), f)).collect()
+}
+
+/// Numbers the grids of every part; the smallest beyond [`MOST_PARTS`] become one.
+fn together(mut list: Vec<(String, Vec<RawFace>)>) -> Vec<Part> {
+    if list.len() > MOST_PARTS {
+        let mut sizes: Vec<usize> = list.iter().map(|p| p.1.len()).collect();
+        sizes.sort_unstable_by(|a, b| b.cmp(a));
+        let least = sizes[MOST_PARTS - 2];
+        let (mut kept, mut rest, mut n) = (Vec::new(), Vec::new(), 0);
+        for part in list {
+            if part.1.len() >= least && kept.len() < MOST_PARTS - 1 {
+                kept.push(part);
+            } else {
+                n += 1;
+                rest.extend(part.1);
+            }
+        }
+        kept.push((format!("{n} small properties"), rest));
+        list = kept;
+    }
+    list.into_iter()
+        .map(|(name, faces)| {
+            let mut part = Part {
+                name,
+                ..Part::default()
+            };
+            let mut local: HashMap<GridIx, u32> = HashMap::new();
+            for (owner, corners) in faces {
+                let ids = corners.map(|g| {
+                    *local.entry(g).or_insert_with(|| {
+                        part.grids.push(g);
+                        part.grids.len() as u32 - 1
+                    })
+                });
+                part.faces.push((owner, ids));
+            }
+            part
+        })
+        .collect()
+}

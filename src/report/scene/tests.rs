@@ -1,0 +1,217 @@
+use super::outline::outline;
+use super::paint::{Values, largest_in_plane};
+use super::skin::{Part, skin};
+use super::*;
+use crate::fe::{CaseResult, ShellField};
+use crate::model::*;
+use nastran::cards::{ShellShape, SolidShape};
+use nastran::place::Place;
+use std::sync::Arc;
+
+fn grid(id: u32, x: [f64; 3]) -> Grid {
+    Grid {
+        id,
+        kind: PointKind::Grid,
+        x: x.into(),
+        cd: FrameIx(0),
+        ps: Default::default(),
+        at: Place::default(),
+    }
+}
+
+/// `n` x `n` unit squares; the first `of_one` belong to property 0, the others to property 1.
+fn plate(n: u32, of_one: usize) -> Model {
+    let mut m = Model::default();
+    for j in 0..=n {
+        for i in 0..=n {
+            m.grids
+                .push(grid(1 + j * (n + 1) + i, [f64::from(i), f64::from(j), 0.0]));
+        }
+    }
+    for j in 0..n {
+        for i in 0..n {
+            let g = j * (n + 1) + i;
+            let c = [g, g + 1, g + n + 2, g + n + 1].map(GridIx);
+            m.shells.push(Shell {
+                id: 1 + j * n + i,
+                shape: ShellShape::Quad4,
+                grids: [c[0], c[1], c[2], c[3], c[0], c[1], c[2], c[3]],
+                property: ShellPropertyIx(u32::from(m.shells.len() >= of_one)),
+                material_angle_rad: 0.0,
+                zoffs: 0.0,
+                thickness: [1.0; 4],
+                at: Place::default(),
+            });
+        }
+    }
+    for id in [7, 8] {
+        m.shell_properties.push(ShellProperty {
+            id,
+            kind: ShellKind::Homogeneous {
+                t: 1.0,
+                membrane: None,
+                bending: None,
+                plane_strain: false,
+                shear: None,
+                coupling: None,
+                bending_ratio: 1.0,
+                shear_ratio: 0.833_333,
+            },
+            nsm: 0.0,
+            z: [-0.5, 0.5],
+            at: Place::default(),
+        });
+    }
+    m
+}
+
+/// Strain `exx` at the bottom and its negative at the top of every shell.
+fn bent(model: &Model, exx: impl Fn(usize) -> f64) -> CaseResult {
+    let n = model.shells.len();
+    CaseResult {
+        shells: ShellField {
+            elements: Arc::new((0..n as u32).map(ShellIx).collect()),
+            centre: (0..n)
+                .map(|i| [[exx(i), 0.0, 0.0], [-exx(i), 0.0, 0.0]])
+                .collect(),
+            ..ShellField::default()
+        },
+        ..CaseResult::default()
+    }
+}
+
+fn area(model: &Model, part: &Part) -> f64 {
+    let at = |v: u32| model.grids[part.grids[part.drawn.vertices[v as usize] as usize].us()].x;
+    let triangles = part.drawn.triangles.iter();
+    triangles
+        .map(|t| {
+            let [a, b, c] = t.map(at);
+            (b - a).cross(&(c - a)).norm() / 2.0
+        })
+        .sum()
+}
+
+#[test]
+fn a_small_model_is_drawn_whole_with_a_part_a_property() {
+    let model = plate(4, 6);
+    let parts = skin(&model, 1);
+    let names: Vec<&str> = parts.iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(names, ["shells 7", "shells 8"]);
+    // Six squares and ten.
+    assert_eq!(area(&model, &parts[0]), 6.0);
+    assert_eq!(area(&model, &parts[1]), 10.0);
+}
+
+#[test]
+fn a_large_model_is_drawn_coarser_and_its_small_parts_stay_whole() {
+    // 313,600 elements; the first 100 are a strip one element wide.
+    let model = plate(560, 100);
+    let parts = skin(&model, 1);
+    let triangles: usize = parts.iter().map(|p| p.drawn.triangles.len()).sum();
+    assert!(triangles <= 60_000 && triangles > 20_000, "{triangles}");
+    assert_eq!(area(&model, &parts[0]), 100.0);
+    // Vertices are grids of the model: half a cube is lost at the border at most, 4 cubes' width of 560.
+    let large = area(&model, &parts[1]);
+    let whole = 560.0 * 560.0 - 100.0;
+    assert!(large <= whole && large > 0.96 * whole, "{large}");
+}
+
+#[test]
+fn a_vertex_takes_the_mean_around_its_grid_and_of_its_grids_the_largest() {
+    let model = plate(2, 9);
+    let parts = skin(&model, 1);
+    let values = Values::of(&model, &bent(&model, |i| i as f64));
+    let [bottom, top] = values.on(&parts[0]);
+    // The middle grid touches elements 0 to 3, the first corner element 0 alone.
+    let at = |id: u32| {
+        let local = parts[0].grids.iter().position(|g| g.0 + 1 == id).unwrap();
+        parts[0].drawn.vertex_of[local] as usize
+    };
+    assert_eq!((bottom[at(5)], top[at(5)]), (1.5, -1.5));
+    assert_eq!(bottom[at(1)], 0.0);
+    assert_eq!(bottom[at(9)], 3.0);
+    // A single hot element is not lost where 313,600 become a few ten thousand: it keeps the mean of the four around its grid.
+    let model = plate(560, 0);
+    let hot = Values::of(
+        &model,
+        &bent(&model, |i| if i == 100_000 { 4.0 } else { 0.0 }),
+    );
+    let parts = skin(&model, 1);
+    let most = parts
+        .iter()
+        .flat_map(|p| hot.on(p)[0].clone())
+        .fold(0.0, f64::max);
+    assert_eq!(most, 1.0);
+}
+
+#[test]
+fn the_principal_strain_is_that_of_mohrs_circle() {
+    // Pure shear of 2e-3: 1e-3 at 45 degrees. Uniaxial with nu 0.3. Both with the sign of the larger.
+    assert!((largest_in_plane([0.0, 0.0, 2e-3]) - 1e-3).abs() < 1e-18);
+    assert_eq!(largest_in_plane([1e-3, -3e-4, 0.0]), 1e-3);
+    assert_eq!(largest_in_plane([-1e-3, 3e-4, 0.0]), -1e-3);
+}
+
+#[test]
+fn of_solids_the_outside_alone_is_drawn() {
+    let mut model = Model::default();
+    for k in 0..=2_u32 {
+        for (i, xy) in [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+            .iter()
+            .enumerate()
+        {
+            model
+                .grids
+                .push(grid(4 * k + i as u32 + 1, [xy[0], xy[1], f64::from(k)]));
+        }
+    }
+    for k in 0..2 {
+        let mut grids = [None; 20];
+        for (i, g) in grids.iter_mut().enumerate().take(8) {
+            *g = Some(GridIx(4 * k + i as u32));
+        }
+        model.solids.push(Solid {
+            id: k + 1,
+            shape: SolidShape::Hexa,
+            grids,
+            property: 0,
+            at: Place::default(),
+        });
+    }
+    let parts = skin(&model, 0);
+    // Two cubes on top of each other: ten faces of area 1.
+    assert_eq!(parts[0].faces.len(), 10);
+    assert_eq!(area(&model, &parts[0]), 10.0);
+}
+
+#[test]
+fn the_outline_of_a_large_plate_is_its_border() {
+    let model = plate(60, 0);
+    let faces = model
+        .shells
+        .iter()
+        .map(|s| [s.grids[0], s.grids[1], s.grids[2], s.grids[3]]);
+    assert_eq!(outline(&model, faces).len(), 4 * 60);
+}
+
+#[test]
+fn a_page_of_a_large_model_stays_small() {
+    let model = plate(560, 100);
+    let case = bent(&model, |i| (i as f64).sin());
+    let field = |name: &str| Field {
+        name: name.into(),
+        unit: "µε".into(),
+        case: &case,
+        scale: 1e6,
+    };
+    let scene = Scene {
+        model: &model,
+        marks: Vec::new(),
+        fields: ["A.FZ", "B.FZ", "C.FZ"].map(field).to_vec(),
+        arrows: Vec::new(),
+    };
+    let section = scene_section("Model", &scene).body.into_string();
+    // 60,000 triangles of three 16-bit and 30,000 vertices of three 32-bit numbers and an id, two 16-bit numbers a field: 1.5 MB with base64.
+    assert!(section.len() < 2_000_000, "{}", section.len());
+    assert!(section.contains("coarser than the model"));
+}

@@ -1,0 +1,102 @@
+//! What a scene shows.
+
+use crate::fe::CaseResult;
+use crate::fe::strain_tensor::Surface;
+use crate::gauge::Gauge;
+use crate::model::{Model, Vec3};
+
+/// All of it.
+#[derive(Clone, Debug)]
+pub struct Scene<'a> {
+    /// Structure.
+    pub model: &'a Model,
+    /// Gauges.
+    pub marks: Vec<Mark>,
+    /// Strain fields to choose from.
+    pub fields: Vec<Field<'a>>,
+    /// Loads to choose from.
+    pub arrows: Vec<ArrowSet>,
+}
+
+/// A gauge.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    /// Name.
+    pub name: String,
+    /// Place, basic frame.
+    pub at: Vec3,
+    /// Unit vectors along its axis and out of the side that it sits on, where known.
+    pub axes: Option<[Vec3; 2]>,
+    /// Side, where known.
+    pub surface: Option<Surface>,
+    /// What else is said of it when it is picked.
+    pub note: String,
+    /// Gap at it, before and after; drawn as the area of circles.
+    pub gap: Option<[f64; 2]>,
+}
+
+impl Mark {
+    /// A gauge laid onto the model.
+    pub fn of(gauge: &Gauge, note: String) -> Self {
+        Self {
+            name: gauge.name.clone(),
+            at: gauge.position,
+            axes: Some([gauge.direction, gauge.outward()]),
+            surface: Some(gauge.surface),
+            note: format!(
+                "element {} {}, {:.1}° from its x axis{}{note}",
+                gauge.element,
+                gauge.surface.word(),
+                gauge.angle_rad.to_degrees(),
+                if note.is_empty() { "" } else { ", " }
+            ),
+            gap: None,
+        }
+    }
+}
+
+/// Strain of a load case: `strain * scale` in `unit`.
+#[derive(Clone, Debug)]
+pub struct Field<'a> {
+    /// Name.
+    pub name: String,
+    /// Unit of the numbers shown.
+    pub unit: String,
+    /// Strain.
+    pub case: &'a CaseResult,
+    /// Number shown per strain.
+    pub scale: f64,
+}
+
+/// Force or moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Twist {
+    /// Force.
+    Force,
+    /// Moment, right-hand rule.
+    Moment,
+}
+
+/// One load.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arrow {
+    /// Where it acts, basic frame.
+    pub at: Vec3,
+    /// Unit vector.
+    pub along: Vec3,
+    /// Kind.
+    pub twist: Twist,
+    /// Size, signed; lengths compare within a kind.
+    pub value: f64,
+    /// What is said of it.
+    pub label: String,
+}
+
+/// Loads that act together: a run, or the unit loads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArrowSet {
+    /// Name.
+    pub name: String,
+    /// Loads.
+    pub arrows: Vec<Arrow>,
+}
