@@ -3,14 +3,12 @@
 //! Used where a placement changes its information matrix thousands of times; `k` is the number of loads (6 to 60).
 
 /// Lower Cholesky factor `L` with `L L' = a`, or `None` where `a` is not positive definite to working precision.
+#[inline(always)]
 pub fn cholesky(a: &[f64], k: usize) -> Option<Vec<f64>> {
     let mut l = vec![0.0; k * k];
     for i in 0..k {
         for j in 0..=i {
-            let mut sum = a[i * k + j];
-            for p in 0..j {
-                sum -= l[i * k + p] * l[j * k + p];
-            }
+            let sum = a[i * k + j] - dot(&l[i * k..i * k + j], &l[j * k..j * k + j]);
             if i == j {
                 // A pivot this far below its diagonal entry is rounding error of the subtraction, not information.
                 if sum.is_nan() || sum <= PIVOT_FLOOR * a[i * k + i].abs() {
@@ -124,7 +122,7 @@ pub fn times(a: &[f64], x: &[f64], y: &mut [f64]) {
 }
 
 /// Scalar product, in four sums side by side (one sum would wait for each addition).
-#[inline]
+#[inline(always)]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len().min(b.len());
     let (a, b) = (&a[..n], &b[..n]);

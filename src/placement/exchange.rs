@@ -1,10 +1,10 @@
 //! From weights to gauges: rounding, then exchange of single gauges until none improves.
 //!
-//! Exchanging gauge `j` for row `i` multiplies `det M` by `(1 + d_i)(1 - d_j) + d_ij^2` (Fedorov, Theory of Optimal Experiments, 1972,
-//! eq. 3.2.4). Several starts and kicks, all from a fixed seed.
+//! Several starts and kicks, all from a fixed seed.
 
-use super::criterion::Criterion;
+use super::climb::{Climb, List};
 use super::relax::Active;
+use super::table::Packed;
 use crate::linalg::spd;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -36,10 +36,12 @@ pub fn search(
     s: usize,
     prior: &[f64],
     weights: &[f64],
+    known: Option<&[usize]>,
     excludes: &(impl Fn(usize, usize) -> bool + Sync),
     effort: Effort,
 ) -> Option<Chosen> {
     let ridge = ridge(active, prior, weights);
+    let list = List::new(active, prior, excludes);
     let results: Vec<Option<Chosen>> = (0..effort.starts.max(1))
         .into_par_iter()
         .map(|start| {
@@ -53,40 +55,42 @@ pub fn search(
                 0 => by_weight(weights),
                 _ => by_lot(weights, &mut rng),
             };
-            let first = if start == 1 {
-                Vec::new()
-            } else {
-                compatible(&order, s, excludes)
+            let first = match (start, known) {
+                (0, Some(rows)) => rows.to_vec(),
+                (1, _) => Vec::new(),
+                _ => compatible(&order, s, excludes),
             };
-            let first = complete(active, s, &ridge, first, excludes).or_else(|| {
+            let first = complete(active, &list.packed, s, &ridge, first, excludes).or_else(|| {
                 (0..REPAIRS).find_map(|_| loosest(active.len(), s, excludes, &mut rng))
             })?;
-            let mut best = improve(active, prior, &ridge, first, excludes)?;
+            let mut at = improve(&list, &ridge, first)?;
+            let mut best = (at.value, at.rows.clone());
+            let mut now = at.clone();
             for _ in 0..effort.kicks {
-                let q = 1 + rng.random_range(0..3.min(s));
-                let mut kept = best.rows.clone();
-                for _ in 0..q.min(kept.len()) {
-                    kept.swap_remove(rng.random_range(0..kept.len()));
-                }
-                for _ in 0..50 {
-                    if kept.len() == s {
-                        break;
-                    }
-                    let i = rng.random_range(0..active.len());
-                    if kept.iter().all(|&j| !excludes(i, j)) {
-                        kept.push(i);
-                    }
-                }
-                let Some(next) = complete(active, s, &ridge, kept, excludes)
-                    .and_then(|f| improve(active, prior, &ridge, f, excludes))
-                else {
-                    continue;
+                let count = if s < MANY {
+                    1 + rng.random_range(0..3.min(s))
+                } else {
+                    3 + rng.random_range(0..2)
                 };
-                if next.log_det > best.log_det {
-                    best = next;
+                // A layout a little worse may lead on; how much worse is drawn.
+                let worse = -LENIENT * rng.random_range(f64::MIN_POSITIVE..1.0).ln();
+                if now.kick(&list, count, &mut rng)
+                    && now.climb(&list, prior)
+                    && now.value > at.value - worse
+                {
+                    at.copy(&now);
+                    if at.value > best.0 {
+                        best = (at.value, at.rows.clone());
+                    }
+                } else {
+                    now.copy(&at);
                 }
             }
-            Some(best)
+            let log_det = value(active, prior, &best.1)?;
+            Some(Chosen {
+                rows: best.1,
+                log_det,
+            })
         })
         .collect();
     let mut best: Option<Chosen> = None;
@@ -179,6 +183,7 @@ fn loosest(
 /// Adds the row of largest variance until there are `s`.
 fn complete(
     active: &Active,
+    packed: &Packed,
     s: usize,
     ridge: &[f64],
     mut chosen: Vec<usize>,
@@ -195,16 +200,14 @@ fn complete(
     let linv = spd::inverse_lower(&spd::cholesky(&m, k)?, k);
     let mut minv = spd::gram_of_lower(&linv, k);
     let mut u = vec![0.0; k];
-    let mut d: Vec<f64> = (0..active.len())
-        .map(|i| {
-            spd::times(&minv, active.row(i), &mut u);
-            if chosen.iter().any(|&j| excludes(i, j)) {
-                f64::NEG_INFINITY
-            } else {
-                spd::dot(active.row(i), &u)
-            }
-        })
-        .collect();
+    let (mut d, mut x) = (vec![0.0; packed.len()], vec![0.0; packed.len()]);
+    packed.variances(&minv, &mut d);
+    d[active.len()..].fill(f64::NEG_INFINITY);
+    for (i, v) in d.iter_mut().enumerate().take(active.len()) {
+        if chosen.iter().any(|&j| excludes(i, j)) {
+            *v = f64::NEG_INFINITY;
+        }
+    }
     while chosen.len() < s {
         let best = (0..active.len()).max_by(|&a, &b| d[a].total_cmp(&d[b]).then(b.cmp(&a)))?;
         if d[best] == f64::NEG_INFINITY {
@@ -212,9 +215,9 @@ fn complete(
         }
         spd::times(&minv, active.row(best), &mut u);
         let factor = 1.0 / (1.0 + d[best]);
-        for (i, v) in d.iter_mut().enumerate() {
+        packed.products(&u, &mut x);
+        for (i, (v, &x)) in d.iter_mut().zip(&x).enumerate().take(active.len()) {
             if *v > f64::NEG_INFINITY {
-                let x = spd::dot(active.row(i), &u);
                 *v = if excludes(i, best) {
                     f64::NEG_INFINITY
                 } else {
@@ -222,210 +225,38 @@ fn complete(
                 };
             }
         }
-        let column = u.clone();
-        spd::add_outer(&mut minv, &column, -factor);
+        spd::add_outer(&mut minv, &u, -factor);
         chosen.push(best);
     }
     Some(chosen)
 }
 
-/// Gain in `det` under which an exchange is rounding error.
-const LEAST_GAIN: f64 = 1e-9;
-
-/// An inverse with the variances of all rows, and their cross variances with the chosen ones (by slot).
-struct Table {
-    inverse: Vec<f64>,
-    d: Vec<f64>,
-    cross: Vec<f64>,
-}
-
-impl Table {
-    fn new(active: &Active, inverse: Vec<f64>, chosen: &[usize]) -> Self {
-        let n = active.len();
-        let mut u = vec![0.0; active.k];
-        let mut t = Self {
-            inverse,
-            d: vec![0.0; n],
-            cross: vec![0.0; n * chosen.len()],
-        };
-        for i in 0..n {
-            let ai = active.row(i);
-            spd::times(&t.inverse, ai, &mut u);
-            t.d[i] = spd::dot(ai, &u);
-            for (c, &j) in chosen.iter().enumerate() {
-                t.cross[c * n + i] = spd::dot(active.row(j), &u);
-            }
-        }
-        t
-    }
-
-    /// Factor on the determinant when row `i` takes the place of row `j` in `slot`.
-    fn ratio(&self, slot: usize, i: usize, j: usize) -> f64 {
-        let cross = self.cross[slot * self.d.len() + i];
-        (1.0 + self.d[i]) * (1.0 - self.d[j]) + cross * cross
-    }
-}
-
-/// A choice with what its exchanges need.
-struct State {
-    value: f64,
-    /// `tr(L M^-1)` of a linear criterion.
-    spread: f64,
-    /// Under `M^-1`.
-    full: Table,
-    /// Under the inverse of the nuisance block (Ds) or `M^-1 L M^-1` (linear).
-    second: Option<Table>,
-}
-
-impl State {
-    fn of(active: &Active, prior: &[f64], chosen: &[usize]) -> Option<Self> {
-        let mut m = prior.to_vec();
-        for &i in chosen {
-            spd::add_outer(&mut m, active.row(i), 1.0);
-        }
-        let point = active.criterion.at(&m, active.k)?;
-        let second = (!point.second.is_empty()).then(|| Table::new(active, point.second, chosen));
-        Some(Self {
-            value: point.value,
-            spread: point.spread,
-            full: Table::new(active, point.inverse, chosen),
-            second,
-        })
-    }
-
-    /// A number above 1 where row `i` in place of `j` in `slot` is better, and the larger the better.
-    fn gain(&self, criterion: &Criterion, slot: usize, i: usize, j: usize) -> f64 {
-        let ratio = self.full.ratio(slot, i, j);
-        match (&self.second, criterion) {
-            (Some(g), Criterion::Linear(_)) => {
-                if ratio < LEAST_PART {
-                    return 0.0;
-                }
-                let at = slot * self.full.d.len() + i;
-                let (x, y) = (self.full.cross[at], g.cross[at]);
-                let fall = g.d[i] - g.d[j] + 2.0 * x * y
-                    - g.d[i] * self.full.d[j]
-                    - g.d[j] * self.full.d[i];
-                self.spread / (self.spread - fall / ratio).max(f64::MIN_POSITIVE)
-            }
-            (Some(part), _) => ratio / part.ratio(slot, i, j).max(LEAST_PART),
-            (None, _) => ratio,
-        }
-    }
-}
-
-/// Exchanges single rows until none gains. Starts regularised by `ridge` where the rows alone are singular.
-fn improve(
-    active: &Active,
-    prior: &[f64],
+/// Climbs from these rows, regularised by `ridge` first where they alone are singular; `None` where the rows it ends with are.
+fn improve<E: Fn(usize, usize) -> bool + Sync>(
+    list: &List<E>,
     ridge: &[f64],
-    mut chosen: Vec<usize>,
-    excludes: &(impl Fn(usize, usize) -> bool + Sync),
-) -> Option<Chosen> {
-    let (n, s) = (active.len(), chosen.len());
-    let mut blocked = vec![0u32; n];
-    for (i, b) in blocked.iter_mut().enumerate() {
-        *b = chosen.iter().filter(|&&j| excludes(i, j)).count() as u32;
-    }
-    let mut base = prior;
-    let mut state = match State::of(active, base, &chosen) {
-        Some(state) => state,
+    chosen: Vec<usize>,
+) -> Option<Climb> {
+    let mut climb = match Climb::of(list, list.prior, chosen.clone()) {
+        Some(climb) => climb,
         None => {
-            base = ridge;
-            State::of(active, base, &chosen)?
+            let mut climb = Climb::of(list, ridge, chosen)?;
+            climb.climb(list, ridge).then_some(())?;
+            Climb::of(list, list.prior, climb.rows)?
         }
     };
-    for _ in 0..MAX_SWEEPS {
-        let mut gained = false;
-        for slot in 0..s {
-            let j = chosen[slot];
-            let mut best = (1.0 + LEAST_GAIN, usize::MAX);
-            for i in 0..n {
-                let ratio = state.gain(&active.criterion, slot, i, j);
-                if ratio > best.0
-                    && (blocked[i] == 0 || (blocked[i] == 1 && excludes(i, j) && i != j))
-                {
-                    best = (ratio, i);
-                }
-            }
-            let i = best.1;
-            if i == usize::MAX {
-                continue;
-            }
-            gained = true;
-            let linear = matches!(active.criterion, Criterion::Linear(_));
-            if !linear {
-                for t in std::iter::once(&mut state.full).chain(&mut state.second) {
-                    swap(active, t, &chosen, slot, i);
-                }
-            }
-            for (x, b) in blocked.iter_mut().enumerate() {
-                *b += u32::from(excludes(x, i));
-                *b -= u32::from(excludes(x, j));
-            }
-            chosen[slot] = i;
-            if linear {
-                state = State::of(active, base, &chosen)?;
-            }
-        }
-        if !gained && !std::ptr::eq(base, prior) {
-            base = prior;
-            gained = true;
-        }
-        if !gained {
-            break;
-        }
-        state = State::of(active, base, &chosen)?;
-    }
-    if !std::ptr::eq(base, prior) {
-        state = State::of(active, prior, &chosen)?;
-    }
-    Some(Chosen {
-        rows: chosen,
-        log_det: state.value,
-    })
+    climb.climb(list, list.prior).then_some(climb)
 }
 
-/// Share of its determinant under which a block counts as lost by an exchange.
-const LEAST_PART: f64 = 1e-9;
-
-/// Sweeps after which the search gives up; it stops by itself long before.
-const MAX_SWEEPS: usize = 200;
-
-/// Brings a table up to date for row `i` in place of the gauge in `slot`.
-fn swap(active: &Active, t: &mut Table, chosen: &[usize], slot: usize, i: usize) {
-    let (n, k) = (active.len(), active.k);
-    let mut ui = vec![0.0; k];
-    spd::times(&t.inverse, active.row(i), &mut ui);
-    let x: Vec<f64> = (0..n).map(|p| spd::dot(active.row(p), &ui)).collect();
-    let add = 1.0 / (1.0 + t.d[i]);
-    let j = chosen[slot];
-    let xj = x[j];
-    let y: Vec<f64> = (0..n)
-        .map(|p| t.cross[slot * n + p] - add * x[p] * xj)
-        .collect();
-    let drop = 1.0 / (1.0 - y[j]);
-    let mut uj = vec![0.0; k];
-    spd::times(&t.inverse, active.row(j), &mut uj);
-    for (a, b) in uj.iter_mut().zip(&ui) {
-        *a -= add * xj * b;
-    }
-    spd::add_outer(&mut t.inverse, &ui, -add);
-    spd::add_outer(&mut t.inverse, &uj, drop);
-    for p in 0..n {
-        t.d[p] += drop * y[p] * y[p] - add * x[p] * x[p];
-    }
-    for (c, &q) in chosen.iter().enumerate() {
-        let (xq, yq) = (x[q], y[q]);
-        let column = &mut t.cross[c * n..(c + 1) * n];
-        if c == slot {
-            for (p, v) in column.iter_mut().enumerate() {
-                *v = x[p] - add * x[p] * x[i] + drop * y[p] * y[i];
-            }
-        } else {
-            for (p, v) in column.iter_mut().enumerate() {
-                *v += drop * y[p] * yq - add * x[p] * xq;
-            }
-        }
-    }
+/// The criterion of these rows.
+fn value(active: &Active, prior: &[f64], rows: &[usize]) -> Option<f64> {
+    let mut m = prior.to_vec();
+    rows.iter()
+        .for_each(|&i| spd::add_outer(&mut m, active.row(i), 1.0));
+    active.criterion.at(&m, active.k).map(|p| p.value)
 }
+
+/// Gauges from which a kick moves more of them.
+const MANY: usize = 20;
+/// Mean loss of the criterion after a kick that is put up with.
+const LENIENT: f64 = 0.05;

@@ -8,7 +8,7 @@ use super::exchange::Effort;
 use super::kernel::{Priced, Report, price};
 use super::robust;
 use super::shortlist::{
-    Found, better, elimination, excluder, list_of, polish, rows_of, run, value_of,
+    Found, LIST, around, better, elimination, excluder, list_of, polish, rows_of, run, value_of,
 };
 use super::spacing;
 use std::collections::HashMap;
@@ -150,7 +150,7 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
     let mut upper = col.upper_bound;
     let mut passes = col.passes;
     let quick = Effort {
-        starts: 4,
+        starts: if spaced { 4 } else { 2 },
         kicks: 0,
         ..spec.effort
     };
@@ -202,6 +202,22 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
     list = list_of(c, &col, &groups, floor);
     let found = run(c, spec, &list, &col, spec.effort, Some(&incumbent));
     let (mut gauges, mut log_det) = better(Some(incumbent.clone()), found).unwrap_or(incumbent);
+    // A list that was cut may lack what this layout lacks.
+    let rounds = if list.len() < LIST { 0 } else { ROUNDS };
+    for _ in 0..rounds {
+        let near = around(c, spec, &gauges);
+        let known = (gauges.clone(), log_det);
+        let effort = Effort {
+            starts: 1,
+            kicks: spec.effort.kicks / 4,
+            ..spec.effort
+        };
+        passes += 1;
+        match run(c, spec, &near, &col, effort, Some(&known)) {
+            Some(next) if next.1 > log_det + exact::SAME => (gauges, log_det) = next,
+            _ => break,
+        }
+    }
     if *c.angles() == Angles::Continuous {
         (gauges, log_det) = polish(c, spec, gauges, log_det);
     }
@@ -257,6 +273,9 @@ fn robust_of(c: &Candidates, spec: &Spec, list: &[Priced], gauges: &[Choice]) ->
     let value = value_of(c, spec, &gauges)?;
     Some((gauges, value))
 }
+
+/// Rounds of exchange with the rows whose variance in the layout is largest.
+const ROUNDS: usize = 5;
 
 /// Rounds of rebuilding the sets of places within a spacing from new prices.
 const CLIQUE_ROUNDS: usize = 4;

@@ -15,6 +15,7 @@
 //! gauge within a spacing) `T` counts the largest of each group only.
 
 pub mod candidates;
+mod climb;
 pub mod columns;
 pub mod criterion;
 pub mod exact;
@@ -22,6 +23,7 @@ pub mod exchange;
 pub mod gradient;
 pub mod kernel;
 mod layout;
+mod newton;
 pub mod quality;
 pub mod quartic;
 pub mod region;
@@ -30,6 +32,7 @@ pub mod robust;
 mod shortlist;
 pub mod sites;
 pub mod spacing;
+mod table;
 pub mod units;
 
 pub use criterion::Criterion;

@@ -1,11 +1,13 @@
 //! The relaxation: weights in place of gauges, `max criterion(P + sum w_i a_i a_i')` with `sum w = s`, `w >= 0` and at most 1 in each group.
 //!
-//! Weight moves between pairs of rows by exact line search (vertex exchange, visited in the order of the randomised exchange of
+//! For D, Newton steps ([`super::newton`]); where one does not close the gap, and for the other criteria,
+//! weight moves between pairs of rows by exact line search (vertex exchange, visited in the order of the randomised exchange of
 //! Harman, Filova and Richtarik, J. Am. Stat. Assoc. 115 (2020), without the chance). Rows of a group share a weight of at most 1: one
 //! row for each distinct gauge, or all the angles of a place, or all the places within a spacing. Every exchange direction of that set is
 //! a pair, so the search cannot stop short of the optimum.
 
 use super::criterion::{Criterion, Point};
+use super::newton;
 use crate::linalg::spd;
 
 /// The rows a relaxation works on.
@@ -101,6 +103,15 @@ pub fn relax(
             break;
         }
         done += 1;
+        if active.criterion == Criterion::D
+            && let Some(next) = newton::step(active, prior, &weights, &state)
+            && let Some(after) = measure(active, s, prior, &next)
+            && after.gap < FALL * state.gap
+        {
+            weights = next;
+            state = after;
+            continue;
+        }
         slack.fill(1.0);
         for (&g, &w) in active.group.iter().zip(&weights) {
             slack[g as usize] -= w;
@@ -191,6 +202,9 @@ pub fn relax(
     state.sweeps = done;
     Some(state)
 }
+
+/// Share of the gap that a Newton step must leave at most, or a sweep is made instead.
+const FALL: f64 = 0.9;
 
 /// Rows that may gain and lose weight in a sweep, by their slopes `d` at its start.
 struct Lists<'a> {

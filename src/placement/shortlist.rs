@@ -11,7 +11,7 @@ use crate::linalg::spd;
 use std::collections::{HashMap, HashSet};
 
 /// Rows an exchange looks at.
-const LIST: usize = 1000;
+pub(super) const LIST: usize = 700;
 
 /// A layout with its criterion.
 pub(super) type Found = (Vec<Choice>, f64);
@@ -86,6 +86,39 @@ pub(super) fn list_of(c: &Candidates, col: &Columns, groups: &Groups, floor: f64
     priced
 }
 
+/// The rows whose variance in a layout is largest: an exchange of gauge `j` for row `i` can gain only where `d_i > d_j`, because
+/// `(1 + d_i)(1 - d_j) + d_ij^2 <= 1 + d_i - d_j`.
+pub(super) fn around(c: &Candidates, spec: &Spec, gauges: &[Choice]) -> Vec<Priced> {
+    let k = c.n_loads();
+    let mut m = spec.prior.clone();
+    for &g in gauges {
+        spd::add_outer(&mut m, &c.row(g), 1.0);
+    }
+    let Some(point) = spec.criterion.at(&m, k) else {
+        return Vec::new();
+    };
+    let slope = point.slope(k);
+    let mut u = vec![0.0; k];
+    let least = gauges.iter().fold(f64::INFINITY, |least, &g| {
+        let row = c.row(g);
+        spd::times(&slope, &row, &mut u);
+        least.min(spd::dot(&row, &u))
+    });
+    let mut priced = price(c, &point.root, least, Report::BestOfPlace, LIST);
+    if priced.len() > LIST {
+        priced.select_nth_unstable_by(LIST - 1, by_price);
+        priced.truncate(LIST);
+    }
+    priced.sort_by(by_price);
+    priced
+}
+
+/// The dearest first.
+fn by_price(a: &Priced, b: &Priced) -> std::cmp::Ordering {
+    b.d.total_cmp(&a.d)
+        .then((a.choice.place, a.choice.step).cmp(&(b.choice.place, b.choice.step)))
+}
+
 /// The best layout that a search on `list` finds; `known` is one to start from.
 pub(super) fn run(
     c: &Candidates,
@@ -109,6 +142,10 @@ pub(super) fn run(
                 choices.len() - 1
             });
     }
+    let start: Option<Vec<usize>> = known.map(|f| {
+        let at = |p: &Choice| index.get(&(p.place, p.angle.to_bits())).copied();
+        f.0.iter().filter_map(at).collect()
+    });
     let mut weights = vec![0.0; choices.len()];
     for (p, &w) in col.choices.iter().zip(&col.relaxed.weights) {
         if let Some(&i) = index.get(&(p.place, p.angle.to_bits())) {
@@ -127,6 +164,7 @@ pub(super) fn run(
         spec.gauges,
         &spec.prior,
         &weights,
+        start.as_deref(),
         &excludes,
         effort,
     )?;

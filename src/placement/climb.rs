@@ -1,0 +1,279 @@
+//! A layout that climbs: exchanges of single rows until none gains, and kicks out of the optimum it ends in.
+//!
+//! Exchanging gauge `j` for row `i` multiplies `det M` by `(1 + d_i)(1 - d_j) + d_ij^2` (Fedorov, Theory of Optimal Experiments, 1972,
+//! eq. 3.2.4).
+
+use super::criterion::Criterion;
+use super::relax::Active;
+use super::table::{Packed, Table};
+use crate::linalg::spd;
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use std::sync::OnceLock;
+
+/// Gain in `det` under which an exchange is rounding error.
+const LEAST_GAIN: f64 = 1e-9;
+/// Share of its determinant under which a block counts as lost by an exchange.
+const LEAST_PART: f64 = 1e-9;
+/// Sweeps after which a climb gives up; it stops by itself long before.
+const MAX_SWEEPS: usize = 200;
+/// Exchanges after which rounding in the tables is cleared away.
+const FRESH: usize = 400;
+/// Rounding in the sum of the chosen rows' variances from which the tables are made anew.
+const DRIFT: f64 = 1e-7;
+/// Share of the determinant that an exchange of a kick may cost.
+const ROUGH: f64 = 0.05;
+/// Rows a kick draws for a slot.
+const DRAWS: usize = 12;
+
+/// What can be chosen from.
+pub(super) struct List<'a, E> {
+    pub active: &'a Active,
+    pub packed: Packed,
+    pub prior: &'a [f64],
+    /// True where two rows can't both be chosen, and for one and the same.
+    excludes: &'a E,
+    /// By row, the rows it excludes, itself among them; filled when first asked for.
+    partners: Vec<OnceLock<Vec<u32>>>,
+}
+
+impl<'a, E: Fn(usize, usize) -> bool> List<'a, E> {
+    pub fn new(active: &'a Active, prior: &'a [f64], excludes: &'a E) -> Self {
+        Self {
+            active,
+            packed: Packed::of(active),
+            prior,
+            excludes,
+            partners: vec![OnceLock::new(); active.len()],
+        }
+    }
+
+    fn partners(&self, row: usize) -> &[u32] {
+        self.partners[row].get_or_init(|| {
+            (0..self.active.len())
+                .filter(|&i| (self.excludes)(i, row))
+                .map(|i| i as u32)
+                .collect()
+        })
+    }
+}
+
+/// A layout with what its exchanges need.
+#[derive(Clone)]
+pub(super) struct Climb {
+    pub rows: Vec<usize>,
+    /// The criterion, under the base it was begun with.
+    pub value: f64,
+    /// `tr(L M^-1)` of a linear criterion.
+    spread: f64,
+    /// Under `M^-1`.
+    full: Table,
+    /// Under the inverse of the nuisance block (Ds) or `M^-1 L M^-1` (linear).
+    second: Option<Table>,
+    /// By row, how many of the chosen exclude it.
+    blocked: Vec<u32>,
+    /// By row, 0 where nothing excludes it, minus infinity otherwise.
+    mask: Vec<f64>,
+    swaps: usize,
+}
+
+impl Climb {
+    /// Begins with these rows and `base` as prior information; `None` where that is singular.
+    pub fn of<E: Fn(usize, usize) -> bool>(
+        list: &List<E>,
+        base: &[f64],
+        rows: Vec<usize>,
+    ) -> Option<Self> {
+        let (active, n) = (list.active, list.packed.len());
+        let mut c = Self {
+            rows,
+            value: 0.0,
+            spread: 0.0,
+            full: Table::default(),
+            second: None,
+            blocked: vec![0; n],
+            mask: vec![0.0; n],
+            swaps: 0,
+        };
+        // Rows that fill up the last block are never chosen.
+        c.blocked[active.len()..].fill(2);
+        c.mask[active.len()..].fill(f64::NEG_INFINITY);
+        for slot in 0..c.rows.len() {
+            c.block(list, c.rows[slot], 1);
+        }
+        c.measure(list, base).then_some(c)
+    }
+
+    fn block<E: Fn(usize, usize) -> bool>(&mut self, list: &List<E>, row: usize, by: i32) {
+        for &i in list.partners(row) {
+            let i = i as usize;
+            self.blocked[i] = self.blocked[i].saturating_add_signed(by);
+            self.mask[i] = if self.blocked[i] == 0 {
+                0.0
+            } else {
+                f64::NEG_INFINITY
+            };
+        }
+    }
+
+    /// Tables and value from the rows; false where singular.
+    fn measure<E>(&mut self, list: &List<E>, base: &[f64]) -> bool {
+        let (active, packed) = (list.active, &list.packed);
+        let mut m = base.to_vec();
+        for &i in &self.rows {
+            spd::add_outer(&mut m, active.row(i), 1.0);
+        }
+        let Some(point) = active.criterion.at(&m, active.k) else {
+            return false;
+        };
+        self.value = point.value;
+        self.spread = point.spread;
+        self.second = (!point.second.is_empty())
+            .then(|| Table::new(active, packed, point.second, &self.rows));
+        self.full = Table::new(active, packed, point.inverse, &self.rows);
+        self.swaps = 0;
+        true
+    }
+
+    /// A number above 1 where row `i` in place of `j` in `slot` is better, and the larger the better.
+    fn gain(&self, criterion: &Criterion, slot: usize, i: usize, j: usize) -> f64 {
+        let ratio = self.full.ratio(slot, i, j);
+        match (&self.second, criterion) {
+            (Some(g), Criterion::Linear(_)) => {
+                if ratio < LEAST_PART {
+                    return 0.0;
+                }
+                let (x, y) = (self.full.cross(slot, i), g.cross(slot, i));
+                let fall = g.d[i] - g.d[j] + 2.0 * x * y
+                    - g.d[i] * self.full.d[j]
+                    - g.d[j] * self.full.d[i];
+                self.spread / (self.spread - fall / ratio).max(f64::MIN_POSITIVE)
+            }
+            (Some(part), _) => ratio / part.ratio(slot, i, j).max(LEAST_PART),
+            (None, _) => ratio,
+        }
+    }
+
+    /// The row that gains most in a slot, with its gain.
+    fn best<E: Fn(usize, usize) -> bool>(
+        &self,
+        list: &List<E>,
+        slot: usize,
+    ) -> Option<(f64, usize)> {
+        let j = self.rows[slot];
+        let criterion = &list.active.criterion;
+        let mut best = None;
+        let least = 1.0 + LEAST_GAIN;
+        let better = |best: &Option<(f64, usize)>, g: f64| g > best.map_or(least, |b| b.0);
+        if self.second.is_none() {
+            best = self.full.best(&list.packed, slot, j, &self.mask, least);
+        } else {
+            for i in 0..list.active.len() {
+                let g = self.gain(criterion, slot, i, j);
+                if self.blocked[i] == 0 && better(&best, g) {
+                    best = Some((g, i));
+                }
+            }
+        }
+        // Rows that nothing but the gauge that goes excludes.
+        for &i in list.partners(j) {
+            let i = i as usize;
+            if self.blocked[i] == 1 && i != j {
+                let g = self.gain(criterion, slot, i, j);
+                if better(&best, g) {
+                    best = Some((g, i));
+                }
+            }
+        }
+        best
+    }
+
+    /// Row `i` in place of the gauge in `slot`; false where that leaves nothing regular.
+    fn swap<E: Fn(usize, usize) -> bool>(
+        &mut self,
+        list: &List<E>,
+        base: &[f64],
+        slot: usize,
+        i: usize,
+    ) -> bool {
+        let linear = matches!(list.active.criterion, Criterion::Linear(_));
+        let j = self.rows[slot];
+        if !linear {
+            let g = self.gain(&list.active.criterion, slot, i, j);
+            for t in std::iter::once(&mut self.full).chain(&mut self.second) {
+                t.swap(list.active, &list.packed, &self.rows, slot, i);
+            }
+            self.value += g.ln();
+        }
+        self.block(list, j, -1);
+        self.block(list, i, 1);
+        self.rows[slot] = i;
+        self.swaps += 1;
+        if linear || self.swaps > FRESH || self.drift(list, base) > DRIFT {
+            return self.measure(list, base);
+        }
+        true
+    }
+
+    /// How far the variances of the chosen are from `tr(M^-1 (M - P)) = k - tr(M^-1 P)`: rounding that has grown.
+    fn drift<E>(&self, list: &List<E>, base: &[f64]) -> f64 {
+        let sum: f64 = self.rows.iter().map(|&j| self.full.d[j]).sum();
+        (sum + spd::trace_of_product(&self.full.inverse, base) - list.active.k as f64).abs()
+    }
+
+    /// Exchanges single rows until none gains; false where it came upon a layout that is singular.
+    pub fn climb<E: Fn(usize, usize) -> bool>(&mut self, list: &List<E>, base: &[f64]) -> bool {
+        for _ in 0..MAX_SWEEPS {
+            let mut gained = false;
+            for slot in 0..self.rows.len() {
+                if let Some((_, i)) = self.best(list, slot) {
+                    if !self.swap(list, base, slot, i) {
+                        return false;
+                    }
+                    gained = true;
+                }
+            }
+            if !gained {
+                break;
+            }
+        }
+        true
+    }
+
+    /// Puts random rows in place of `count` gauges.
+    pub fn kick<E: Fn(usize, usize) -> bool>(
+        &mut self,
+        list: &List<E>,
+        count: usize,
+        rng: &mut ChaCha8Rng,
+    ) -> bool {
+        for _ in 0..count {
+            let slot = rng.random_range(0..self.rows.len());
+            let j = self.rows[slot];
+            for _ in 0..DRAWS {
+                let i = rng.random_range(0..list.active.len());
+                let free = self.blocked[i] == 0
+                    || self.blocked[i] == 1 && i != j && (list.excludes)(i, j);
+                if free && self.gain(&list.active.criterion, slot, i, j) > ROUGH {
+                    if !self.swap(list, list.prior, slot, i) {
+                        return false;
+                    }
+                    break;
+                }
+            }
+        }
+        true
+    }
+
+    /// Becomes what `other` is, in the memory it has.
+    pub fn copy(&mut self, other: &Self) {
+        self.rows.copy_from_slice(&other.rows);
+        self.blocked.copy_from_slice(&other.blocked);
+        self.mask.copy_from_slice(&other.mask);
+        self.full.copy(&other.full);
+        if let (Some(a), Some(b)) = (&mut self.second, &other.second) {
+            a.copy(b);
+        }
+        (self.value, self.spread, self.swaps) = (other.value, other.spread, other.swaps);
+    }
+}
