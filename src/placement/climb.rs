@@ -252,8 +252,8 @@ impl Climb {
             let j = self.rows[slot];
             for _ in 0..DRAWS {
                 let i = rng.random_range(0..list.active.len());
-                let free = self.blocked[i] == 0
-                    || self.blocked[i] == 1 && i != j && (list.excludes)(i, j);
+                let free =
+                    self.blocked[i] == 0 || self.blocked[i] == 1 && i != j && (list.excludes)(i, j);
                 if free && self.gain(&list.active.criterion, slot, i, j) > ROUGH {
                     if !self.swap(list, list.prior, slot, i) {
                         return false;

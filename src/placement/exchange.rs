@@ -60,9 +60,10 @@ pub fn search(
                 (1, _) => Vec::new(),
                 _ => compatible(&order, s, excludes),
             };
-            let first = complete(active, &list.packed, s, &ridge, first, excludes).or_else(|| {
-                (0..REPAIRS).find_map(|_| loosest(active.len(), s, excludes, &mut rng))
-            })?;
+            let first =
+                complete(active, &list.packed, s, &ridge, first, excludes).or_else(|| {
+                    (0..REPAIRS).find_map(|_| loosest(active.len(), s, excludes, &mut rng))
+                })?;
             let mut at = improve(&list, &ridge, first)?;
             let mut best = (at.value, at.rows.clone());
             let mut now = at.clone();

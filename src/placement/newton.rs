@@ -107,7 +107,11 @@ impl Model {
                 w[j].min(slack[group[i]])
             };
             let bend = self.bend(i, j);
-            let t = if bend > 0.0 { (pull / bend).min(cap) } else { cap };
+            let t = if bend > 0.0 {
+                (pull / bend).min(cap)
+            } else {
+                cap
+            };
             w[i] += t;
             w[j] = if t >= w[j] { 0.0 } else { w[j] - t };
             slack[group[i]] -= t;
