@@ -21,7 +21,8 @@
     // A finger on a chart scrolls the page.
     if (touch) layout.dragmode = false;
     for (const axis of ["xaxis", "yaxis"]) layout[axis] = Object.assign({ gridcolor: "#eceff2" }, layout[axis]);
-    // No room for a scale beside a chart on a phone.
+    // No room beside or above a chart on a phone.
+    if (narrow && layout.legend) layout.legend = { orientation: "h", y: -0.28, yanchor: "top" };
     if (narrow) for (const t of data.choices.flat()) if (t.type === "heatmap") t.showscale = false;
     const draw = (i) => Plotly.react(canvas, data.choices[i], layout, config);
     const choice = figure.querySelector("[data-role=choice]");
@@ -132,7 +133,7 @@
       const out = [
         Object.assign({
           type: "scatter3d", mode: on("names") ? "markers+text" : "markers", name: "gauges", text: list.map((m) => m.name), textposition: "top center",
-          textfont: { color: colour, size: 12 }, marker: { size: 4.5, color: colour, line: { color: "#fff", width: 1 } }, hovertext, hoverinfo: "text", meta, visible,
+          textfont: { color: colour, size: 12 }, marker: { size: 5.5, color: colour, line: { color: "#fff", width: 1 } }, hovertext, hoverinfo: "text", meta, visible,
         }, columns(at)),
         Object.assign({
           type: "scatter3d", mode: "lines", name: "axes of gauges", hoverinfo: "skip", line: { color: shades, width: 6 }, visible: visible && ends.length > 0,
@@ -259,7 +260,31 @@
       return Plotly.react(canvas, surfaces().concat([edges, rods], gauges(), arrows()), layout, config);
     }
     const pick = figure.querySelector(".pick");
+    // The gauge nearest to a place on the screen, within a fingertip; one on the far side of a sheet counts, too.
+    function gaugeAt(event) {
+      const shown = canvas._fullLayout && canvas._fullLayout.scene && canvas._fullLayout.scene._scene;
+      if (!shown || !on("gauges")) return null;
+      const { model, view, projection } = shown.glplot.cameraParams;
+      const times = (m, v) => [0, 1, 2, 3].map((r) => m[r] * v[0] + m[4 + r] * v[1] + m[8 + r] * v[2] + m[12 + r] * v[3]);
+      const box = shown.container.getBoundingClientRect();
+      let best = null, near = touch ? 22 : 11;
+      for (const m of data.marks) {
+        const p = times(projection, times(view, times(model, m.at.map((v, k) => v * shown.dataScale[k]).concat(1))));
+        const away = Math.hypot(box.left + box.width * (1 + p[0] / p[3]) / 2 - event.clientX, box.top + box.height * (1 - p[1] / p[3]) / 2 - event.clientY);
+        if (away < near) { near = away; best = m; }
+      }
+      return best;
+    }
+    let gauge = null;
+    const point = (event) => {
+      if (event.type === "pointermove" && event.buttons) return;
+      gauge = gaugeAt(event);
+      if (gauge) pick.textContent = gauge.name + ": " + gauge.note;
+    };
+    canvas.addEventListener("pointermove", point, true);
+    canvas.addEventListener("pointerup", point, true);
     const said = (event) => {
+      if (gauge) return;
       const p = event.points[0];
       const text = (p.data.meta || p.data.text || [])[p.pointNumber];
       if (text) pick.textContent = String(text).replace(/<br>/g, ", ");
