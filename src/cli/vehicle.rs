@@ -6,6 +6,7 @@ use super::job::{Job, NamedFile, Vehicle as VehicleJob};
 use crate::finding::{Finding, Severity};
 use crate::series::channels::{Channels, SeriesError};
 use crate::series::csv::read_csv;
+use crate::series::foreign::{Foreign, read_foreign};
 use crate::series::quality::{Kind, check_channels};
 use crate::series::rpc::{is_rpc, read_rpc};
 use crate::series::spectrum::Band;
@@ -188,6 +189,8 @@ fn read_record(
     let bytes = session.inputs.read_named(job, named).map_err(|f| vec![f])?;
     let read = if is_rpc(&bytes) {
         read_rpc_at(&bytes, section.sample_rate)
+    } else if let Some(kind) = Foreign::of(&bytes) {
+        read_foreign(kind, &bytes, section.sample_rate, &[])
     } else {
         read_csv(&bytes, section.sample_rate)
     };

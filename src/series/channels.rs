@@ -99,6 +99,33 @@ pub enum SeriesError {
     /// An RPC III file that can't be read.
     #[error(transparent)]
     Rpc(#[from] super::rpc::RpcError),
+    /// A kind of file that this build does not read.
+    #[error(
+        "it is a {} file, which this build of strainbridge does not read: take a released binary, build with `--features {}`, or export the record as CSV or RPC III",
+        .kind.words()[0], .kind.words()[1]
+    )]
+    NotBuilt {
+        /// What it is.
+        kind: super::foreign::Foreign,
+    },
+    /// A Parquet file that can't be read.
+    #[error(
+        "it can't be read as Parquet ({0}): write it again, columns of numbers and one `time` in seconds"
+    )]
+    Parquet(String),
+    /// An MDF file that can't be read.
+    #[error(
+        "it can't be read as MDF4 ({0}): save it as MDF 4.1 with its measuring program or asammdf"
+    )]
+    Mdf(String),
+    /// Channels that were not sampled together.
+    #[error(
+        "channels {} were sampled at other times than the rest: bring all to one rate first (asammdf: `resample`)", .names.join(", ")
+    )]
+    Apart {
+        /// Their names.
+        names: Vec<String>,
+    },
     /// A band that the sampling can't hold.
     #[error("the band {low_hz} to {high_hz} Hz does not fit a sample rate of {rate_hz} Hz: need 0 < low < high < {:.3} Hz", .rate_hz / 2.0)]
     Band {

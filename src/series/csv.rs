@@ -93,7 +93,8 @@ pub fn read_csv(bytes: &[u8], declared_hz: Option<f64>) -> Result<Channels, Seri
     })
 }
 
-fn rate_of(
+/// Rate and first time of a time column, `lines` its lines.
+pub(super) fn rate_of(
     t: &[f64],
     lines: &[usize],
     declared_hz: Option<f64>,
@@ -135,7 +136,8 @@ fn rate_of(
     }
 }
 
-fn name_and_unit(field: &[u8]) -> (String, String) {
+/// Name and unit of a header.
+pub(super) fn name_and_unit(field: &[u8]) -> (String, String) {
     let text = String::from_utf8_lossy(trim(field))
         .trim_matches('"')
         .to_owned();

@@ -4,6 +4,7 @@
 //! - [`binary`]: the long record of strainbridge, read a piece at a time
 //! - [`csv`]: bytes of a CSV file to a record
 //! - [`rpc`]: RPC III files, read and written
+//! - [`foreign`]: Parquet and MDF4, where the build has them
 //! - [`number`]: numbers read and written fast
 //! - [`quality`]: dead, clipped, spiky, drifting, reversed, wrongly scaled channels as findings
 //! - [`detrend`]: mean, line and zero-run removal
@@ -25,8 +26,13 @@ pub mod content;
 pub mod csv;
 pub mod detrend;
 pub mod filtfilt;
+pub mod foreign;
 pub mod integrate;
+#[cfg(feature = "mdf")]
+pub mod mdf;
 pub mod number;
+#[cfg(feature = "parquet")]
+pub mod parquet;
 pub mod quality;
 pub mod rainflow;
 pub mod resample;

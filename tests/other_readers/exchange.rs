@@ -337,3 +337,65 @@ fn records_that_rpc3_file_writes_give_the_same_loads_as_the_table_they_come_from
         }
     }
 }
+
+#[cfg(all(feature = "mdf", feature = "parquet"))]
+#[test]
+fn records_that_pyarrow_and_asammdf_write_give_the_same_loads_as_the_table_they_come_from() {
+    let dir = plate("foreign");
+    let path = dir.join("strain.csv");
+    if read_by("read_exchange.py", &[path.to_str().unwrap()]).is_none() {
+        return;
+    }
+    let expected = strainbridge(&["recover", &job(&dir, "csv.toml", "strain.csv")]);
+    // Reals of 64 bits are the same; of 32 bits off by some millionths.
+    for (file, allowed) in [
+        ("strain.parquet", 1e-9),
+        ("strain_odd.parquet", 3e-5),
+        ("strain.mf4", 1e-9),
+        ("strain_packed.mf4", 1e-9),
+    ] {
+        let got = strainbridge(&["recover", &job(&dir, "foreign.toml", file)]);
+        assert_eq!(got["samples"], N, "{file}");
+        for l in 0..3 {
+            for key in ["value", "min", "max"] {
+                let [a, b] = [&got, &expected].map(|r| number(&r["loads"][l][key]));
+                near(key, a, b, allowed * 300.0);
+            }
+        }
+    }
+    let out = dir.join("csv.out/loads.parquet");
+    let Some(read) = read_by("read_exchange.py", &[out.to_str().unwrap()]) else {
+        return;
+    };
+    let columns = &read["loads.parquet"]["columns"];
+    for (l, name) in LOADS.iter().enumerate() {
+        let values = numbers(&columns[*name]);
+        assert_eq!(values.len(), N);
+        for (i, v) in values.iter().enumerate() {
+            // Reals of 32 bits.
+            near(name, *v, truth(i)[l], 1e-6 * 300.0);
+        }
+    }
+    let times = numbers(&columns["time"]);
+    near("time", times[N - 1], (N - 1) as f64 * DT, 1e-9);
+    assert_eq!(read["loads.parquet"]["notes"]["unit of A.FZ"], "N");
+}
+
+#[cfg(not(any(feature = "mdf", feature = "parquet")))]
+#[test]
+fn a_build_that_does_not_read_a_kind_of_file_says_what_to_do() {
+    let dir = plate("refused");
+    for (file, begin, feature) in [
+        ("a.parquet", &b"PAR1...."[..], "parquet"),
+        ("a.mf4", b"MDF     4.10    ", "mdf"),
+    ] {
+        std::fs::write(dir.join(file), begin).unwrap();
+        let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+            .args(["recover", &job(&dir, "refused.toml", file)])
+            .output()
+            .unwrap();
+        assert_eq!(done.status.code(), Some(2));
+        let error = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert!(error.contains(&format!("--features {feature}")), "{error}");
+    }
+}

@@ -1,4 +1,5 @@
-//! Our files read by other programs, and theirs by us: pyNastran (OP2, bulk data), meshio (VTU), openpyxl (XLSX), rpc3-file (RPC III).
+//! Our files read by other programs, and theirs by us: pyNastran (OP2, bulk data), meshio (VTU), openpyxl (XLSX), rpc3-file (RPC III), pyarrow
+//! (Parquet), asammdf (MDF4); reports in Chromium.
 //!
 //! Needs Python with these packages: the interpreter named by STRAINBRIDGE_PYTHON, else `python3`. Skipped, with a message, where they
 //! are absent.
@@ -10,3 +11,4 @@ mod plate;
 mod python;
 mod report;
 mod solve;
+mod vehicle;

@@ -144,6 +144,19 @@ pub(in crate::cli) fn load_ids(deck: &Deck) -> Vec<u32> {
     ids
 }
 
+/// Load sets by dynamic cards, and tables: they share their numbers with what `recover` writes for a history.
+const DYNAMIC: [&str; 14] = [
+    "ACSRCE", "DAREA", "DLOAD", "LSEQ", "RLOAD1", "RLOAD2", "TABLED1", "TABLED2", "TABLED3",
+    "TABLED4", "TABLED5", "TLOAD1", "TLOAD2", "RANDPS",
+];
+
+/// Ids of dynamic loads and tables of a deck.
+pub(in crate::cli) fn dynamic_ids(deck: &Deck) -> Vec<u32> {
+    let cards = deck.others.iter();
+    let of_kind = cards.filter(|c| DYNAMIC.contains(&c.name.as_str()));
+    of_kind.filter_map(|c| c.first).collect()
+}
+
 fn edits_of(session: &mut Session, job: &Job, deck: &Deck) -> Result<(Edits, Vec<Value>), Faults> {
     let mut edits = Edits::default();
     edits.remove_subcases(deck);

@@ -28,7 +28,8 @@ impl Collector<'_> {
         wrong: impl Into<String>,
         remedy: impl Into<String>,
     ) {
-        let line = self.line(at);
+        let (line, column) = line_column(self.text, at.span().start);
+        let wrong = format!("{} (column {column})", wrong.into());
         self.faults
             .push(Fault::at(self.file, line, field, wrong, remedy));
     }

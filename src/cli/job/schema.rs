@@ -204,7 +204,7 @@ const KEYS: &[(&str, &str, &[&str])] = &[
     (
         "recover.files",
         "Which of them; default all, but for long histories",
-        &["rpc", "nastran", "rainflow"],
+        &["rpc", "nastran", "rainflow", "parquet"],
     ),
     (
         "recover.slope",

@@ -1,9 +1,12 @@
-//! The strain file: a column a gauge in microstrain, a row a run (`run`) or a sample (`time`); or RPC III, a channel a gauge.
+//! The strain file: a column a gauge in microstrain, a row a run (`run`) or a sample (`time`); or RPC III, Parquet, MDF4, a channel a
+//! gauge.
 
 use super::table::{Table, read_table};
 use super::types::{Job, NamedFile};
 use crate::cli::fault::{Fault, Faults};
 use crate::cli::files::Inputs;
+use crate::series::Channels;
+use crate::series::foreign::{Foreign, read_foreign};
 use crate::series::rpc;
 
 /// What the rows of a strain file are.
@@ -57,6 +60,10 @@ pub fn read_strain(
     if rpc::is_rpc(&bytes) {
         return strain_from_rpc(&named.given, &bytes);
     }
+    if let Some(kind) = Foreign::of(&bytes) {
+        let record = strain_record(&named.given, kind, &bytes, &[])?;
+        return Ok(strain_from_record(&named.given, &record));
+    }
     let text = inputs.read_named_text(job, named).map_err(|f| vec![f])?;
     strain_from_table(&read_table(&named.given, &text)?)
 }
@@ -83,12 +90,7 @@ pub fn in_microstrain(file: &str, h: &mut rpc::Header, gauges: &[String]) -> Res
     for channel in used {
         match microstrain_in(&channel.unit) {
             Some(factor) => channel.scale *= factor,
-            None => faults.push(Fault::of(
-                file,
-                &*channel.name,
-                format!("`{}` is no unit of strain", channel.unit),
-                "export it in microstrain (uE, um/m) or strain (m/m)",
-            )),
+            None => faults.push(no_strain(file, &channel.name, &channel.unit)),
         }
     }
     if faults.is_empty() {
@@ -112,6 +114,67 @@ fn microstrain_in(unit: &str) -> Option<f64> {
         "strain" | "m/m" | "mm/mm" | "in/in" | "eps" => Some(1e6),
         "mm/m" | "millistrain" | "mstrain" | "me" => Some(1e3),
         _ => None,
+    }
+}
+
+/// A Parquet or MDF4 record in microstrain; `gauges` must be sampled together and have a unit of strain, other channels whose unit is
+/// none are left out.
+///
+/// # Errors
+/// Faults of the file.
+pub fn strain_record(
+    file: &str,
+    kind: Foreign,
+    bytes: &[u8],
+    gauges: &[String],
+) -> Result<Channels, Faults> {
+    let mut record = read_foreign(kind, bytes, None, gauges).map_err(|e| {
+        let text = e.to_string();
+        let (wrong, remedy) = text.split_once(": ").unwrap_or((&text, "export it again"));
+        vec![Fault::of(file, "record", wrong, remedy)]
+    })?;
+    let mut faults = Faults::new();
+    record.list.retain_mut(|c| match microstrain_in(&c.unit) {
+        Some(factor) => {
+            c.samples.iter_mut().for_each(|v| *v *= factor);
+            true
+        }
+        None => {
+            if gauges.contains(&c.name) {
+                faults.push(no_strain(file, &c.name, &c.unit));
+            }
+            false
+        }
+    });
+    if faults.is_empty() {
+        Ok(record)
+    } else {
+        Err(faults)
+    }
+}
+
+fn no_strain(file: &str, channel: &str, unit: &str) -> Fault {
+    Fault::of(
+        file,
+        channel,
+        format!("`{unit}` is no unit of strain"),
+        "export it in microstrain (uE, um/m) or strain (m/m)",
+    )
+}
+
+/// A whole record as a table.
+fn strain_from_record(file: &str, record: &Channels) -> StrainTable {
+    let n = record.n_samples();
+    let row = |i: usize| record.list.iter().map(move |c| c.samples[i]);
+    StrainTable {
+        file: file.to_owned(),
+        gauges: record.list.iter().map(|c| c.name.clone()).collect(),
+        rows: StrainRows::Times(
+            (0..n)
+                .map(|i| record.start_s + i as f64 / record.rate_hz)
+                .collect(),
+        ),
+        microstrain: (0..n).flat_map(row).collect(),
     }
 }
 

@@ -277,6 +277,19 @@ spaceing = 3
 }
 
 #[test]
+fn a_value_that_can_not_be_is_pointed_at_by_line_and_column() {
+    let text = "units = \"m-kg-s\"\n[model]\ndeck = \"truck.bdf\"\n[placement]\ngauges = 2\nspacing = -3.0\ncriterion = \"Q\"\n";
+    let found = faults(text);
+    for (line, column) in [(6, 11), (7, 13)] {
+        let fault = found.iter().find(|f| f.line == Some(line)).unwrap();
+        assert!(
+            fault.wrong.contains(&format!("(column {column})")),
+            "{fault}"
+        );
+    }
+}
+
+#[test]
 fn units_are_required_and_a_word_close_to_one_is_suggested() {
     let f = faults("title = \"x\"\n");
     assert!(

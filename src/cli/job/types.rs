@@ -580,14 +580,22 @@ pub enum LoadFile {
     Nastran,
     /// `rainflow.csv`: cycles and pseudo-damage of the history.
     Rainflow,
+    /// `loads.parquet`: the history in Parquet.
+    Parquet,
 }
 
 impl LoadFile {
+    /// Whether this build can write it.
+    pub fn is_built(self) -> bool {
+        self != Self::Parquet || cfg!(feature = "parquet")
+    }
+
     /// All of them, with the words of a job.
-    pub const ALL: [(&'static str, LoadFile); 3] = [
+    pub const ALL: [(&'static str, LoadFile); 4] = [
         ("rpc", Self::Rpc),
         ("nastran", Self::Nastran),
         ("rainflow", Self::Rainflow),
+        ("parquet", Self::Parquet),
     ];
 }
 

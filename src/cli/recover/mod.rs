@@ -1,7 +1,7 @@
 //! `recover`: loads from measured strain.
 //!
 //! [`runs`] static states, a row each; [`stream`] records of any length, CSV, RPC III or binary ([`crate::series::binary`]), at constant
-//! memory; [`derived`] what else is made of the loads.
+//! memory, Parquet and MDF4 read whole; [`derived`] what else is made of the loads.
 
 mod content;
 mod csv_record;
@@ -22,6 +22,7 @@ use crate::finding::{Finding, Severity};
 use crate::gauge::reading;
 use crate::model::Model;
 use crate::recovery::{ErrorModel, Readings, Recovery};
+use crate::series::foreign::Foreign;
 use crate::series::{binary, rpc};
 
 /// Strain in one microstrain.
@@ -67,7 +68,11 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         .inputs
         .read_named(&job, &measured.strain)
         .map_err(|f| vec![f])?;
-    if binary::is_record(&bytes) || rpc::is_rpc(&bytes) || csv_record::is_record(&bytes) {
+    if binary::is_record(&bytes)
+        || rpc::is_rpc(&bytes)
+        || Foreign::of(&bytes).is_some()
+        || csv_record::is_record(&bytes)
+    {
         session.stage("stream", |s| stream::run(s, arguments, &task, bytes))
     } else {
         runs::run(session, arguments, &task)

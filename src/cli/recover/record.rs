@@ -5,7 +5,7 @@ use crate::cli::fault::Fault;
 use crate::cli::files::FileBytes;
 use crate::recovery::history::{Filter, Sums};
 use crate::series::binary::{self, Header};
-use crate::series::rpc;
+use crate::series::{Channels, rpc};
 
 /// Samples a piece of a binary record.
 const SAMPLES: usize = 16_384;
@@ -22,6 +22,8 @@ pub(super) enum Source {
     /// RPC III, channels in microstrain.
     Rpc(rpc::Header),
     Csv(Layout, Vec<(usize, usize)>),
+    /// Parquet, MDF4: in memory, microstrain.
+    Whole(Channels),
 }
 
 pub(super) struct Record {
@@ -39,6 +41,7 @@ impl Record {
             Source::Binary(h) => h.samples.div_ceil(SAMPLES),
             Source::Rpc(h) => h.samples.div_ceil(SAMPLES),
             Source::Csv(_, pieces) => pieces.len(),
+            Source::Whole(c) => c.n_samples().div_ceil(SAMPLES),
         }
     }
 
@@ -56,6 +59,18 @@ impl Record {
                 let (from, to) = (i * SAMPLES, ((i + 1) * SAMPLES).min(h.samples));
                 rpc::read_samples(h, &self.bytes, from, to, &self.columns, &mut values);
                 times.extend((from..to).map(|s| h.dt * s as f64));
+            }
+            Source::Whole(c) => {
+                let to = ((i + 1) * SAMPLES).min(c.n_samples());
+                for s in i * SAMPLES..to {
+                    times.push(c.start_s + s as f64 / c.rate_hz);
+                    let of = |column: &Option<usize>| {
+                        let channel = column.and_then(|c_ix| c.list.get(c_ix));
+                        channel.and_then(|x| x.samples.get(s)).copied()
+                    };
+                    let row = self.columns.iter().map(|k| of(k).unwrap_or(f64::NAN));
+                    values.extend(row);
+                }
             }
             Source::Csv(l, pieces) => {
                 csv_record::read_piece(
@@ -97,7 +112,7 @@ pub(super) fn process(record: &Record, filter: &Filter, i: usize) -> Result<Piec
             }
             (from..to).map(|s| h.t0 + h.dt * s as f64).collect()
         }
-        Source::Csv(..) | Source::Rpc(_) => {
+        Source::Csv(..) | Source::Rpc(_) | Source::Whole(_) => {
             let (times, values) = record.piece(i)?;
             filter.apply(&values, record.unit, &mut loads, &mut sums);
             times

@@ -10,7 +10,7 @@ use super::trace::Spans;
 use super::{MICRO, Task};
 use crate::cli::fault::{Fault, Faults};
 use crate::cli::files::FileBytes;
-use crate::cli::job::strain::{in_microstrain, read_strain_header};
+use crate::cli::job::strain::{in_microstrain, read_strain_header, strain_record};
 use crate::cli::scene::{Shown, run_arrows, scene_of_job};
 use crate::cli::solved::first_mode_of;
 use crate::cli::spreadsheets::write_spreadsheet;
@@ -23,6 +23,7 @@ use crate::recovery::{Readings, recover};
 use crate::report::spreadsheet::{HistoryLoad, history_sheet, residual_sheet};
 use crate::report::strain::{Recovered, RecoveredRun, recover_page};
 use crate::sensitivity::Sensitivity;
+use crate::series::foreign::Foreign;
 use crate::series::{binary, rpc};
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -56,6 +57,10 @@ pub(super) fn run(
         let names = h.channels.iter().map(|c| c.name.clone()).collect();
         in_microstrain(&file, &mut h, &all.gauges)?;
         (Source::Rpc(h), names, MICRO)
+    } else if let Some(kind) = Foreign::of(&bytes) {
+        let record = strain_record(&file, kind, &bytes, &all.gauges)?;
+        let names = record.list.iter().map(|c| c.name.clone()).collect();
+        (Source::Whole(record), names, MICRO)
     } else {
         let l = csv_record::layout(&bytes).ok_or_else(|| {
             vec![Fault::at(
@@ -124,20 +129,32 @@ pub(super) fn run(
     let total = match &record.source {
         Source::Binary(h) => Some(h.samples),
         Source::Rpc(h) => Some(h.samples),
+        Source::Whole(c) => Some(c.n_samples()),
         Source::Csv(..) => None,
     };
-    // A CSV record's rows are not counted beforehand: a row is at least two bytes a column.
-    let about = total.unwrap_or(record.bytes.len() / (6 * (names.len() + 1)));
+    // A CSV record's rows are not counted beforehand: those of its first piece tell how long one is.
+    let first = match &record.source {
+        Source::Csv(..) => record.piece(0).ok(),
+        _ => None,
+    };
+    let about = total.unwrap_or_else(|| match (&record.source, &first) {
+        (Source::Csv(l, pieces), Some((times, _))) => {
+            let of_first = pieces.first().map_or(1, |p| p.1 - p.0).max(1);
+            let rows = record.bytes.len().saturating_sub(l.start) as f64 / of_first as f64;
+            (rows * times.len() as f64).round() as usize
+        }
+        _ => 0,
+    });
     let stride = about.div_ceil(MOST_ROWS).max(1);
     let (t0, dt) = match &record.source {
         Source::Binary(h) => (h.t0, h.dt),
         Source::Rpc(h) => (0.0, h.dt),
-        Source::Csv(..) => record.piece(0).ok().map_or((0.0, 0.0), |p| {
-            (
-                p.0.first().copied().unwrap_or(0.0),
-                if p.0.len() > 1 { p.0[1] - p.0[0] } else { 0.0 },
-            )
-        }),
+        Source::Whole(c) => (c.start_s, 1.0 / c.rate_hz),
+        Source::Csv(..) => match first.as_ref().map(|p| &p.0[..]) {
+            Some([a, b, ..]) => (*a, b - a),
+            Some([a]) => (*a, 0.0),
+            _ => (0.0, 0.0),
+        },
     };
     let names_of: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
     let fields = task.prepared.fields.as_ref();

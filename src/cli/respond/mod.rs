@@ -6,11 +6,13 @@ mod states;
 
 use super::fault::{Fault, Faults};
 use super::job::{self, Job};
-use super::strain::{Prepared, prepare, read_fields};
+use super::scene::scene_of;
+use super::strain::{Fields, Prepared, prepare, read_fields};
 use super::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
-use crate::model::{GridIx, Model, RigidKind};
+use crate::model::{GridIx, Model, RigidKind, Vec3};
 use crate::report::figure::agreement;
+use crate::report::scene::{Mark, scene_section};
 use crate::report::strain::{figure_section, number, page, table_section};
 use crate::report::write_cells_vtu;
 use crate::respond::{LoadState, Peak, Place, ResponseRow, envelope, hot_spots, response_rows};
@@ -81,17 +83,27 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     let check = gauges::check(session, &job, &prepared, &states)?;
     put(session, &job, &rows, &peaks, &order, &spots, &states)?;
     write(
-        session,
-        arguments,
-        &job,
-        fields.model(),
-        &rows,
-        &peaks,
-        &order,
-        &spots,
-        &states,
-        &check,
+        session, arguments, &job, fields, &rows, &peaks, &order, &spots, &states, &check,
     )
+}
+
+/// An element of a row as a mark of the scene, at the middle of its grids.
+fn mark_of_row(model: &Model, row: &ResponseRow, note: String) -> Mark {
+    let at: Vec<_> = grids(model, row)
+        .iter()
+        .filter_map(|g| model.grids.get(g.us()).map(|g| g.x))
+        .collect();
+    Mark {
+        name: row.element.to_string(),
+        at: at.iter().sum::<Vec3>() / at.len().max(1) as f64,
+        axes: None,
+        surface: match row.place {
+            Place::Shell { surface, .. } => Some(surface),
+            Place::Beam { .. } => None,
+        },
+        note,
+        gap: None,
+    }
 }
 
 fn stress_unit(job: &Job) -> f64 {
@@ -218,7 +230,7 @@ fn write(
     session: &mut Session,
     arguments: &JobArguments,
     job: &Job,
-    model: &Model,
+    fields: &Fields,
     rows: &[ResponseRow],
     peaks: &[Peak],
     order: &[usize],
@@ -226,6 +238,7 @@ fn write(
     states: &[LoadState],
     check: &gauges::Check,
 ) -> Result<(), Faults> {
+    let model = fields.model();
     let (u, unit) = (stress_unit(job), job.report_units.stress.name);
     let shown = |list: &[usize]| -> Vec<Vec<String>> {
         list.iter()
@@ -270,6 +283,20 @@ fn write(
             "Elements hotter than all that share a grid with them.",
         ),
     ];
+    let marks = spots[..spots.len().min(job.respond.hottest)]
+        .iter()
+        .map(|i| {
+            let (r, p) = (&rows[*i], &peaks[*i]);
+            let [value, half] = [p.von_mises, 1.959_964 * p.sigma].map(|v| number(v * u));
+            let at = states.get(p.at).map_or("", |s| s.label.as_str());
+            let note = format!("{} {value} ± {half} {unit} in {at}", r.surface_word());
+            mark_of_row(model, r, note)
+        })
+        .collect();
+    sections.push(scene_section(
+        "Hot spots on the model",
+        &scene_of(job, fields, marks),
+    ));
     if !check.rows.is_empty() {
         let gauge_rows: Vec<Vec<String>> = check
             .rows

@@ -39,7 +39,7 @@ pub fn heat_map(
         "hovertemplate": format!("%{{y}}, %{{x}}<br>%{{customdata:.4~g}} {unit}<extra></extra>"),
         "zmin": -1, "zmax": 1, "xgap": 1, "ygap": 1,
         "colorscale": [[0, "#1f4e8c"], [0.25, "#86b1d8"], [0.5, "#f6f7f8"], [0.75, "#ee9d72"], [1, "#b2182b"]],
-        "colorbar": { "title": { "text": "share of<br>largest" }, "thickness": 12, "len": 0.9 },
+        "colorbar": { "title": { "text": "share of largest", "side": "right" }, "thickness": 12, "len": 1 },
     });
     Figure {
         label: "sensitivity as a heat map".into(),

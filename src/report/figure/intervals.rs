@@ -15,7 +15,7 @@ pub fn intervals(groups: &[(String, Vec<IntervalRow>)], unit: &str) -> Figure {
         label: format!("values with intervals, {unit}"),
         choices: drawn.collect(),
         layout: json!({
-            "xaxis": { "title": { "text": unit }, "zeroline": true, "zerolinecolor": "#9aa7b5" },
+            "xaxis": { "title": { "text": unit }, "tickformat": ".5~g", "nticks": 8, "zeroline": true, "zerolinecolor": "#9aa7b5" },
             "yaxis": { "type": "category", "autorange": "reversed", "automargin": true, "fixedrange": true, "dtick": 1 },
             "showlegend": false,
         }),

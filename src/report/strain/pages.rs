@@ -146,7 +146,11 @@ pub fn recover_page(
     }];
     sections.extend(model_section(scene));
     sections.push(Section {
-        title: "Loads with 95 % intervals".into(),
+        title: if found.traces.is_empty() {
+            "Loads with 95 % intervals".into()
+        } else {
+            "Loads: smallest, mean, largest".into()
+        },
         body: html! {
             (bars(found.runs))
             @if found.runs.len() > MOST_RUNS { p.muted { "The first " (MOST_RUNS) " of " (found.runs.len()) " runs; all are in loads.csv." } }

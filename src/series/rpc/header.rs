@@ -193,6 +193,10 @@ fn of_params(params: &Params, start: usize, length: usize) -> Result<Header, Rpc
     if file_type != "TIME_HISTORY" {
         return Err(kind("FILE_TYPE", Some(file_type)));
     }
+    // Half a frame more at the end: how it lies there is not told by any file at hand.
+    if params.real("HALF_FRAMES").is_some_and(|n| n != 0.0) {
+        return Err(kind("HALF_FRAMES", params.get("HALF_FRAMES")));
+    }
     let numbers = match params.get("DATA_TYPE").unwrap_or("SHORT_INTEGER") {
         "SHORT_INTEGER" => Numbers::Int16,
         "FLOATING_POINT" => Numbers::Float32,

@@ -142,3 +142,17 @@ fn cut_and_mutated_files_are_refused_or_read_but_never_panic() {
         let _ = read_rpc(&bad);
     }
 }
+
+#[test]
+fn a_file_with_half_a_frame_more_is_refused_by_name() {
+    let mut bytes = file();
+    // The last of the 128-byte records of the header that holds a key: its key gives way.
+    let records = read_header(&bytes).unwrap().start / 128;
+    let free = (0..records).rev().find(|i| bytes[128 * i] != 0).unwrap();
+    let record = &mut bytes[128 * free..128 * (free + 1)];
+    record.fill(0);
+    record[..11].copy_from_slice(b"HALF_FRAMES");
+    record[32] = b'1';
+    let error = read_header(&bytes).unwrap_err().to_string();
+    assert!(error.contains("`HALF_FRAMES` = `1`"), "{error}");
+}

@@ -1,8 +1,9 @@
-//! What else is made of recovered loads: RPC III, Nastran cards, rainflow counts, arrows. A history is read back from `loads.bin`, a
+//! What else is made of recovered loads: RPC III, Parquet, Nastran cards, rainflow counts, arrows. A history is read back from `loads.bin`, a
 //! piece at a time.
 
 mod damage;
 mod nastran;
+mod parquet;
 mod rpc;
 mod vtu;
 
@@ -36,9 +37,9 @@ pub(super) fn wanted(task: &Task, samples: usize) -> Vec<LoadFile> {
             .filter(|f| {
                 let most = match f {
                     LoadFile::Nastran => MOST_ROWS,
-                    LoadFile::Rpc | LoadFile::Rainflow => MOST_SAMPLES,
+                    LoadFile::Rpc | LoadFile::Rainflow | LoadFile::Parquet => MOST_SAMPLES,
                 };
-                samples <= most
+                samples <= most && f.is_built()
             })
             .collect(),
     }
@@ -93,6 +94,9 @@ pub(super) fn write_history(
     if wanted.contains(&LoadFile::Rpc) {
         rpc::write(session, arguments, history)?;
     }
+    if wanted.contains(&LoadFile::Parquet) {
+        parquet::write(session, arguments, task, history)?;
+    }
     if wanted.contains(&LoadFile::Nastran) {
         nastran::write_history(session, arguments, task, history)?;
     }
@@ -101,12 +105,12 @@ pub(super) fn write_history(
 
 /// Notes which files were not written because the record is long.
 pub(super) fn note_left_out(session: &mut Session, task: &Task, samples: u64, wanted: &[LoadFile]) {
-    if task.job.recover.files.is_none() && wanted.len() < LoadFile::ALL.len() {
-        let left: Vec<&str> = LoadFile::ALL
-            .iter()
-            .filter(|f| !wanted.contains(&f.1))
-            .map(|f| f.0)
-            .collect();
+    let left: Vec<&str> = LoadFile::ALL
+        .iter()
+        .filter(|f| !wanted.contains(&f.1) && f.1.is_built())
+        .map(|f| f.0)
+        .collect();
+    if task.job.recover.files.is_none() && !left.is_empty() {
         session.findings.push(
             Finding::new(
                 Severity::Info,

@@ -4,7 +4,7 @@
 //! load and one DLOAD for all.
 
 use super::{History, PIECE};
-use crate::cli::cases::load_ids;
+use crate::cli::cases::{dynamic_ids, load_ids};
 use crate::cli::fault::Faults;
 use crate::cli::job::{JobLoad, LoadActs};
 use crate::cli::recover::Task;
@@ -29,7 +29,7 @@ struct Unit {
 /// Cards of 1 of each load, which loads they are, and the next free set. Loads without a place in the job are left out.
 fn unit_sets(task: &Task, names: &[String]) -> (String, Vec<Unit>, u32) {
     let deck = task.prepared.fields.as_ref().map(|f| &f.deck.deck);
-    let taken = deck.and_then(|d| load_ids(d).into_iter().max());
+    let taken = deck.and_then(|d| load_ids(d).into_iter().chain(dynamic_ids(d)).max());
     let mut next = taken.map_or(FIRST_SET, |last| (last + 1).max(FIRST_SET));
     let (mut text, mut units) = (String::new(), Vec::new());
     for (column, name) in names.iter().enumerate() {

@@ -1,0 +1,69 @@
+//! Accelerations in the files of other programs.
+
+use crate::python::read_by;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Parameters that `identify` finds with the record in `data` and the held-out one in `holdout`.
+fn identified(dir: &Path, text: &str, ending: &str) -> Vec<Value> {
+    let job = dir.join(format!("job_{ending}.toml"));
+    let text = text
+        .replace("data.csv", &format!("data_real.{ending}"))
+        .replace("holdout.csv", &format!("holdout_real.{ending}"));
+    std::fs::write(&job, text).unwrap();
+    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .args(["identify", job.to_str().unwrap(), "--json"])
+        .output()
+        .unwrap();
+    let error = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert_eq!(done.status.code(), Some(0), "{error}");
+    let result: Value = serde_json::from_slice(&done.stdout).unwrap();
+    result["parameters"].as_array().unwrap().clone()
+}
+
+#[test]
+fn accelerations_in_rpc_iii_parquet_and_mdf4_give_the_parameters_of_the_table() {
+    let case = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../shared/hidden_effects/dynamics/dev-d1/job.toml");
+    let Ok(text) = std::fs::read_to_string(&case) else {
+        eprintln!("skipped: {} is absent", case.display());
+        return;
+    };
+    let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("accelerations");
+    let _ = std::fs::remove_dir_all(&dir);
+    std::fs::create_dir_all(&dir).unwrap();
+    let paths = ["data", "holdout"].map(|name| {
+        let target = dir.join(format!("{name}_real.csv"));
+        std::fs::copy(case.with_file_name(format!("{name}.csv")), &target).unwrap();
+        target.to_str().unwrap().to_owned()
+    });
+    if read_by("read_exchange.py", &paths.each_ref().map(String::as_str)).is_none() {
+        return;
+    }
+    let expected = identified(&dir, &text, "csv");
+    let mut endings = vec!["rsp"];
+    if cfg!(feature = "parquet") {
+        endings.push("parquet");
+    }
+    if cfg!(feature = "mdf") {
+        endings.push("mf4");
+    }
+    for ending in endings {
+        for (got, e) in identified(&dir, &text, ending).iter().zip(&expected) {
+            assert_eq!(got["name"], e["name"]);
+            let [a, b, sigma] = [&got["value"], &e["value"], &e["sigma"]].map(|v| v.as_f64());
+            let (Some(a), Some(b)) = (a, b) else {
+                assert_eq!(a, b, "{ending} {}", e["name"]);
+                continue;
+            };
+            // Reals of 32 bits move an estimate far less than its own uncertainty.
+            let allowed = 0.01 * sigma.unwrap_or(b.abs());
+            assert!(
+                (a - b).abs() <= allowed,
+                "{ending} {}: {a} for {b}",
+                e["name"]
+            );
+        }
+    }
+}
