@@ -171,7 +171,7 @@ fn on_frame(
             proof,
             effort: Effort {
                 starts: 4,
-                kicks: 2,
+                kicks: if k > 12 { 40 } else { 4 },
                 seed: 1,
             },
             ..Spec::new(s, k)
@@ -220,10 +220,12 @@ fn anchors(folder: &str) -> Outcome {
         let f: Vec<&str> = line.split(',').collect();
         let c = matrix(folder, f[0])?;
         let (s, k) = (f[3].parse::<usize>()?, c.n_loads());
-        for (name, starts, kicks, proof) in [("quick", 4, 2, 0.0), ("thorough", 8, 12, 1e10)] {
-            if name == "thorough" && k > 12 {
-                continue;
-            }
+        let efforts = if k > 12 {
+            [("quick", 1, 32, 0.0), ("longer", 4, 60, 0.0)]
+        } else {
+            [("quick", 4, 4, 0.0), ("proof", 8, 12, 1e10)]
+        };
+        for (name, starts, kicks, proof) in efforts {
             let spec = Spec {
                 effort: Effort {
                     starts,
@@ -251,7 +253,7 @@ fn anchors(folder: &str) -> Outcome {
                 |i: usize| other(i).map_or("-".into(), |v| format!("{:+.6}", l.log_det - v));
             writeln!(
                 out,
-                "{:25} {s:3} {name:8}: over AlgDesign {}, over reference {}, at least {:.4}, proved {}, {cpu:.5} s processor ({wall:.5} wall), AlgDesign {:.0} times that",
+                "{:25} {s:3} {name:6}: over AlgDesign {}, over reference {}, at least {:.4}, proved {}, {cpu:.5} s processor ({wall:.5} wall), AlgDesign {:.0} times that",
                 f[0],
                 above(4),
                 above(6),

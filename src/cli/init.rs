@@ -402,7 +402,7 @@ fn job_text(
     t.push_str(&format!(
         "surfaces = [\"top\", \"bottom\"]         # drop the side that can't be reached\n\
          angle_step_deg = 15                  # or \"continuous\"\n\
-         # clear_of = {{ edges = {clear}, joints = {clear}, loads = {far}, attachments = {far} }}  # strain there is not to be trusted\n\n\
+         # clear_of = {{ edges = {clear}, holes = {clear}, joints = {clear}, loads = {far}, attachments = {far} }}  # strain there is not to be trusted\n\n\
          [placement]\n\
          gauges = {}                           # twice the number of loads: some may fail\n\
          spacing = {spacing}                       # least distance between gauges: 50 mm\n\

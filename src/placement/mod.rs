@@ -6,7 +6,7 @@
 //!
 //! Order of work: [`candidates`] (rows, or strain tensors that stand for all angles at a place), [`relax`] (weights between 0 and 1),
 //! [`columns`] (the same over millions of rows; gives the bound), [`exchange`] (rounding and local search), [`spacing`], [`exact`] (proof of
-//! small problems), [`quality`]; [`robust`] where a gauge may be lost, [`units`] where things have several rows or unlike costs. [`sites`],
+//! small problems), [`quality`]; [`robust`] where a gauge may be lost, [`condition`] where errors shall not grow, [`units`] where things have several rows or unlike costs. [`sites`],
 //! [`region`] and [`gradient`] make candidates of a model.
 //!
 //! Certificate: for any positive definite `M` and any layout of distinct rows
@@ -17,6 +17,7 @@
 pub mod candidates;
 mod climb;
 pub mod columns;
+pub mod condition;
 pub mod criterion;
 pub mod exact;
 pub mod exchange;

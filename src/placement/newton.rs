@@ -4,7 +4,7 @@
 //! weights by moving weight between pairs of rows, which costs a row of the matrix each, and the step goes towards what it gives.
 
 use super::criterion::Criterion;
-use super::relax::{Active, Relaxed};
+use super::relax::{Active, Relaxed, pulls};
 use crate::linalg::spd;
 
 /// Rows without weight that join a step at most, by loads.
@@ -25,7 +25,8 @@ pub(super) fn step(
 ) -> Option<Vec<f64>> {
     let mut rows: Vec<usize> = (0..active.len()).filter(|&i| weights[i] > 0.0).collect();
     let mut out: Vec<usize> = (0..active.len()).filter(|&i| weights[i] <= 0.0).collect();
-    let dear = |a: &usize, b: &usize| state.d[*b].total_cmp(&state.d[*a]).then(a.cmp(b));
+    let pull = pulls(active, weights, &state.d);
+    let dear = |a: &usize, b: &usize| pull[*b].total_cmp(&pull[*a]).then(a.cmp(b));
     let join = (JOIN * active.k).min(out.len());
     if join < out.len() && join > 0 {
         out.select_nth_unstable_by(join - 1, dear);

@@ -16,6 +16,108 @@ pub fn free_edges(model: &Model) -> Vec<Segment> {
     by_edge(model, |shells| shells.len() == 1)
 }
 
+/// Free edges that are no rims of holes.
+pub fn borders(model: &Model) -> Vec<Segment> {
+    split(model).0
+}
+
+/// Rims of holes: closed runs of free edges that turn into the material.
+///
+/// Along a border of a plate the angles `theta` of the material at its grids add up to `sum (pi - theta) = 2 pi`, around a hole to
+/// `-2 pi`, at the open end of a tube to 0 (Gauss and Bonnet); a run below `-pi` is a rim. `theta` is that of the shells met from one free edge to the
+/// next across edges of two shells.
+pub fn hole_rims(model: &Model) -> Vec<Segment> {
+    split(model).1
+}
+
+fn split(model: &Model) -> (Vec<Segment>, Vec<Segment>) {
+    let edges = edges_of(model);
+    let mut free: Vec<([u32; 2], ShellIx)> = edges
+        .iter()
+        .filter_map(|(e, shells)| match shells.as_slice() {
+            [one] => Some((*e, *one)),
+            _ => None,
+        })
+        .collect();
+    free.sort_unstable_by_key(|f| f.0);
+    // Runs: grids joined by free edges.
+    let mut run: HashMap<u32, u32> = HashMap::new();
+    for ([a, b], _) in &free {
+        let (a, b) = (root(&mut run, *a), root(&mut run, *b));
+        if a != b {
+            run.insert(a.max(b), a.min(b));
+        }
+    }
+    let mut turn: HashMap<u32, f64> = HashMap::new();
+    for (edge, shell) in &free {
+        for grid in edge {
+            // Each grid of a run is met from both its free edges.
+            let theta = material(model, &edges, *edge, *shell, *grid);
+            *turn.entry(root(&mut run, *grid)).or_insert(0.0) +=
+                0.5 * (std::f64::consts::PI - theta);
+        }
+    }
+    let at = |g: u32| model.grids.get(g as usize).map(|g| g.x);
+    let (mut borders, mut rims) = (Vec::new(), Vec::new());
+    for ([a, b], _) in free {
+        let inward = turn
+            .get(&root(&mut run, a))
+            .is_some_and(|t| *t < -std::f64::consts::PI);
+        if let Some(segment) = at(a).zip(at(b)) {
+            let segment = [segment.0, segment.1];
+            if inward {
+                rims.push(segment);
+            } else {
+                borders.push(segment);
+            }
+        }
+    }
+    (borders, rims)
+}
+
+fn root(run: &mut HashMap<u32, u32>, grid: u32) -> u32 {
+    let mut at = grid;
+    while let Some(&up) = run.get(&at).filter(|up| **up != at) {
+        at = up;
+    }
+    run.insert(grid, at);
+    at
+}
+
+/// Angle of the shells around `grid` from a free edge to where they end.
+fn material(
+    model: &Model,
+    edges: &HashMap<[u32; 2], Vec<ShellIx>>,
+    mut edge: [u32; 2],
+    mut shell: ShellIx,
+    grid: u32,
+) -> f64 {
+    let mut sum = 0.0;
+    for _ in 0..MOST_AROUND {
+        let Some(s) = model.shells.get(shell.us()) else {
+            break;
+        };
+        let n = s.shape.n_corners();
+        let Some(c) = (0..n).find(|&c| s.grids[c].0 == grid) else {
+            break;
+        };
+        let around = [s.grids[(c + 1) % n].0, s.grids[(c + n - 1) % n].0];
+        let at = |g: u32| model.grids.get(g as usize).map(|g| g.x).unwrap_or_default();
+        let [u, v] = around.map(|g| at(g) - at(grid));
+        sum += u.cross(&v).norm().atan2(u.dot(&v));
+        let far = around.map(|g| [g.min(grid), g.max(grid)]);
+        let next = if far[0] == edge { far[1] } else { far[0] };
+        match edges.get(&next).map(Vec::as_slice) {
+            Some([a, b]) => (edge, shell) = (next, if *a == shell { *b } else { *a }),
+            _ => break,
+        }
+    }
+    sum
+}
+
+/// Shells around a grid at most.
+const MOST_AROUND: usize = 64;
+
 /// Edges where plates meet at an angle, or more than two of them: where a weld is.
 pub fn joints(model: &Model) -> Vec<Segment> {
     let normal = |ix: &ShellIx| -> Option<Vec3> {
@@ -30,7 +132,8 @@ pub fn joints(model: &Model) -> Vec<Segment> {
     })
 }
 
-fn by_edge(model: &Model, taken: impl Fn(&[ShellIx]) -> bool) -> Vec<Segment> {
+/// Shells by edge, grids ascending.
+fn edges_of(model: &Model) -> HashMap<[u32; 2], Vec<ShellIx>> {
     let mut edges: HashMap<[u32; 2], Vec<ShellIx>> = HashMap::new();
     for (i, s) in model.shells.iter().enumerate() {
         let n = s.shape.n_corners();
@@ -42,7 +145,11 @@ fn by_edge(model: &Model, taken: impl Fn(&[ShellIx]) -> bool) -> Vec<Segment> {
             }
         }
     }
-    let mut kept: Vec<[u32; 2]> = edges
+    edges
+}
+
+fn by_edge(model: &Model, taken: impl Fn(&[ShellIx]) -> bool) -> Vec<Segment> {
+    let mut kept: Vec<[u32; 2]> = edges_of(model)
         .into_iter()
         .filter(|(_, shells)| taken(shells))
         .map(|(e, _)| e)

@@ -120,13 +120,12 @@ pub fn relax(
         let d = &state.d;
         let by_d = |a: &u32, b: &u32| d[*b as usize].total_cmp(&d[*a as usize]).then(a.cmp(b));
         let keep = (4 * k + s / 2).max(32).min(n);
-        incoming.retain(|&i| {
-            let i = i as usize;
-            weights[i] < 1.0 - FULL
-                && (slack[active.group[i] as usize] > FULL || active.n_groups < n)
-        });
+        let pull = pulls(active, &weights, d);
+        incoming.retain(|&i| weights[i as usize] < 1.0 - FULL && pull[i as usize] > 0.0);
         if incoming.len() > keep {
-            incoming.select_nth_unstable_by(keep - 1, by_d);
+            incoming.select_nth_unstable_by(keep - 1, |&a, &b| {
+                pull[b as usize].total_cmp(&pull[a as usize]).then(a.cmp(&b))
+            });
             incoming.truncate(keep);
         }
         incoming.sort_unstable_by(by_d);
@@ -201,6 +200,31 @@ pub fn relax(
     state.weights = weights;
     state.sweeps = done;
     Some(state)
+}
+
+/// By row, how much larger its slope is than the least slope of a row whose weight it can take: any other's where its group has room,
+/// that of a row of its group where it has not.
+pub(super) fn pulls(active: &Active, weights: &[f64], d: &[f64]) -> Vec<f64> {
+    let mut slack = vec![1.0; active.n_groups];
+    let mut least = vec![f64::INFINITY; active.n_groups];
+    let mut all = f64::INFINITY;
+    for ((&g, &w), &d) in active.group.iter().zip(weights).zip(d) {
+        let g = g as usize;
+        slack[g] -= w;
+        if w > 0.0 {
+            least[g] = least[g].min(d);
+            all = all.min(d);
+        }
+    }
+    active
+        .group
+        .iter()
+        .zip(d)
+        .map(|(&g, &d)| {
+            let g = g as usize;
+            d - if slack[g] > FULL { all } else { least[g] }
+        })
+        .collect()
 }
 
 /// Share of the gap that a Newton step must leave at most, or a sweep is made instead.

@@ -1,3 +1,5 @@
+mod condition;
+mod region;
 mod units;
 mod workshop;
 

@@ -5,7 +5,7 @@ use crate::world::*;
 use strainbridge::gauge::{CornerRows, Gauge, GaugePlace, GaugeSpec, build, reading};
 use strainbridge::linalg::dense;
 use strainbridge::model::Vec3;
-use strainbridge::placement::candidates::{Candidates, Scatter};
+use strainbridge::placement::candidates::{Candidates, Choice, Scatter};
 use strainbridge::placement::{Criterion, Spec, place};
 use strainbridge::recovery::{ErrorModel, Readings, estimate};
 
@@ -250,6 +250,50 @@ fn the_thesis_algorithm_repeats_gauges_and_the_proved_layout_of_distinct_ones_do
         "6.10: ten of all candidates: condition {:.1}, sigma per microstrain {own:.3?} kN",
         dense::condition(&best)
     );
+}
+
+#[test]
+fn ten_gauges_for_the_condition_number_are_within_a_fifth_of_the_least_that_a_search_finds() {
+    let columns = vertical(own());
+    let rows_at = |s: &strainbridge::linalg::Matrix| {
+        Candidates::from_rows(6, s.nrows(), Scatter::uniform(1.0), |g, out| {
+            for (l, o) in out.iter_mut().enumerate() {
+                *o = s[(g, l)] / MICRO * EXPECTED;
+            }
+        })
+    };
+    let of_rows = |c: &Candidates| {
+        let spec = Spec::new(10, 6);
+        let by_d = place(c, &spec).unwrap();
+        strainbridge::placement::condition::best(c, &spec, &by_d, &[0.0; 36]).unwrap()
+    };
+    let s = sensitivity(&forty_four(), &columns).values;
+    let (least, got) = (least_condition(&s), of_rows(&rows_at(&s)));
+    println!("6.10: ten of 44 for the condition number: {:.2}, least {least:.2}", got.condition);
+    assert!(got.condition <= 1.2 * least);
+    // All candidates, and a search among an even share of them.
+    let (_, all) = candidates_of(own(), &columns, Scatter::uniform(1.0));
+    let spec = Spec::new(10, 6);
+    let by_d = place(&all, &spec).unwrap();
+    let got =
+        strainbridge::placement::condition::best(&all, &spec, &by_d, &[0.0; 36]).unwrap();
+    let stride = all.n_places() / 250;
+    let some = strainbridge::linalg::Matrix::from_fn(250, 6, |r, l| {
+        let step = (r % 12) as u16;
+        all.row(Choice {
+            place: (r * stride) as u32,
+            step,
+            angle: (15.0 * f64::from(step)).to_radians(),
+        })[l]
+    });
+    let least = least_condition(&some);
+    println!(
+        "6.10: ten of all for the condition number: {:.2}, least met {:.2}, a search among 250 of them {least:.2}; D has {:.2}",
+        got.condition,
+        got.least,
+        dense::condition(&strainbridge::linalg::Matrix::from_fn(10, 6, |r, l| all.row(by_d.gauges[r])[l]))
+    );
+    assert!(got.condition <= 1.2 * least && got.condition <= 1.2 * got.least);
 }
 
 #[test]

@@ -115,6 +115,7 @@ pub(super) struct RawCandidates {
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawClear {
     pub edges: S<f64>,
+    pub holes: S<f64>,
     pub joints: S<f64>,
     pub loads: S<f64>,
     pub attachments: S<f64>,

@@ -346,8 +346,10 @@ pub struct Candidates {
 /// `clear_of` of `[candidates]`: least distances, 0 where not stated.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Clearances {
-    /// From free edges and rims of holes.
+    /// From free edges; from rims of holes too, where `holes` is not stated.
     pub edges: f64,
+    /// From rims of holes.
+    pub holes: Option<f64>,
     /// From edges where plates meet: welds.
     pub joints: f64,
     /// From grids at which loads act.
@@ -380,6 +382,8 @@ pub enum Criterion {
     I,
     /// Determinant for all loads, each known beforehand to its expected size.
     BayesianD,
+    /// Least condition number of S with columns in the loads' expected sizes.
+    Condition,
 }
 
 impl Criterion {
@@ -391,6 +395,7 @@ impl Criterion {
             Self::A => "A",
             Self::I => "I",
             Self::BayesianD => "Bayesian-D",
+            Self::Condition => "condition",
         }
     }
 }

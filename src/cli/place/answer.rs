@@ -102,6 +102,9 @@ pub(super) fn put_result(
         "condition_number_scaled",
         finite(s.condition_number_scaled()),
     )?;
+    if let Some(least) = layout.least_condition {
+        session.put("least_condition_number_scaled", finite(least))?;
+    }
     let sigma: Vec<serde_json::Value> = units
         .iter()
         .enumerate()
@@ -156,7 +159,10 @@ pub(super) fn judge_layout(
             "state [placement] spacing, as much as a technician needs",
         ));
     }
-    if layout.efficiency_bound < 0.9 && spec.loss == Loss::Judged {
+    if layout.efficiency_bound < 0.9
+        && spec.loss == Loss::Judged
+        && layout.least_condition.is_none()
+    {
         session.findings.push(
             Finding::new(
                 Severity::Info,
@@ -191,6 +197,12 @@ pub(super) fn session_numbers(
             format!("{:.2}", s.condition_number_scaled()),
         ),
     ];
+    if let Some(least) = layout.least_condition {
+        out.push((
+            "Least condition number found, scaled".to_owned(),
+            format!("{least:.2}"),
+        ));
+    }
     if let Some(v) = installed {
         if let Some(c) = v
             .get("condition_number_scaled")

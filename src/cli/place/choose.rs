@@ -4,13 +4,14 @@ use super::pool::Kind;
 use super::task::{Task, know_the_loads, position};
 use crate::cli::Session;
 use crate::cli::fault::{Fault, Faults};
-use crate::cli::job::Rosette as JobRosette;
+use crate::cli::job::{Criterion as Wanted, Rosette as JobRosette};
 use crate::gauge::{Bridge, CornerRows, Gauge, GaugeSpec, Rosette, build};
+use crate::linalg::spd;
 use crate::model::Vec3;
 use crate::placement::candidates::{Angles, Choice};
 use crate::placement::sites::axis_of;
 use crate::placement::units::{UnitSpec, Units, place_units};
-use crate::placement::{PlaceError, Spec, place};
+use crate::placement::{Layout, PlaceError, Spec, condition, place, quality};
 use std::collections::HashMap;
 
 /// A channel chosen.
@@ -41,6 +42,8 @@ pub(super) struct Chosen {
     pub nodes: usize,
     /// Its costs, where they were counted.
     pub cost: Option<f64>,
+    /// The least condition number met, where that was looked for.
+    pub least_condition: Option<f64>,
 }
 
 /// Units at most: memory for their rows.
@@ -92,7 +95,8 @@ pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Ch
     if is_plain(task)
         && let [kind] = kinds
     {
-        let layout = place(&kind.candidates, spec).map_err(Refused::By)?;
+        let mut layout = place(&kind.candidates, spec).map_err(Refused::By)?;
+        let least_condition = well_conditioned(task, kind, spec, &mut layout);
         let n = layout.gauges.len();
         let channels = layout
             .gauges
@@ -108,9 +112,45 @@ pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Ch
             proved: layout.proved,
             nodes: layout.nodes,
             cost: None,
+            least_condition,
         });
     }
+    if task.job.placement.criterion == Wanted::Condition {
+        return Err(Refused::Job(Fault::at(
+            &*task.job.file,
+            task.job.placement.line,
+            "placement.criterion",
+            "the least condition number is looked for among single gauges of one wiring, without pairs, costs or a budget",
+            "write criterion = \"D\", or leave those keys out",
+        )));
+    }
     within_budget(task, kinds, spec)
+}
+
+/// Puts the layout of least condition number in place of the best one by D, where the job asks for it; the certificate then says how much
+/// of the largest determinant is left.
+fn well_conditioned(task: &Task, kind: &Kind, spec: &Spec, layout: &mut Layout) -> Option<f64> {
+    if task.job.placement.criterion != Wanted::Condition {
+        return None;
+    }
+    let k = task.cases.len();
+    // Gauges that stay read with the noise of all.
+    let noise = task.job.placement.noise_microstrain;
+    let mut base = vec![0.0; k * k];
+    for row in &task.kept_rows {
+        spd::add_outer(&mut base, row, noise * noise);
+    }
+    let found = condition::best(&kind.candidates, spec, layout, &base)?;
+    let rows: Vec<Vec<f64>> = found
+        .gauges
+        .iter()
+        .map(|&g| kind.candidates.row(g))
+        .collect();
+    layout.log_det = quality::value(&rows, &spec.prior, k, &spec.criterion)?;
+    layout.efficiency_bound = ((layout.log_det - layout.upper_bound) / k as f64).exp();
+    layout.gauges = found.gauges;
+    layout.proved = false;
+    Some(found.least)
 }
 
 fn name(i: usize, n: usize) -> String {
@@ -274,6 +314,7 @@ fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Ref
         efficiency_bound: layout.efficiency_bound,
         proved: false,
         nodes: 0,
+        least_condition: None,
         cost: Some(layout.units.iter().map(|&u| units.cost[u]).sum()),
     })
 }

@@ -5,7 +5,9 @@ use crate::cli::job::{Job, LoadActs, Region};
 use crate::cli::strain::{Fields, side};
 use crate::gauge::centre;
 use crate::model::{ShellIx, Vec3};
-use crate::placement::region::{Segment, attachments, clear_of, free_edges, joints};
+use crate::placement::region::{
+    Segment, attachments, borders, clear_of, free_edges, hole_rims, joints,
+};
 use crate::placement::sites::Site;
 
 /// Surfaces where the job lets gauges go, among shells with strain in every case.
@@ -42,8 +44,13 @@ pub fn allowed_sites(job: &Job, fields: &Fields, common: &[ShellIx]) -> Result<V
         }
     }
     let clear = rule.clear;
-    let limits: [(f64, &dyn Fn() -> Vec<Segment>); 4] = [
-        (clear.edges, &|| free_edges(model)),
+    let rims = clear.holes.unwrap_or(clear.edges);
+    let apart = rims != clear.edges;
+    let limits: [(f64, &dyn Fn() -> Vec<Segment>); 5] = [
+        (clear.edges, &|| {
+            if apart { borders(model) } else { free_edges(model) }
+        }),
+        (if apart { rims } else { 0.0 }, &|| hole_rims(model)),
         (clear.joints, &|| joints(model)),
         (clear.loads, &|| load_points(job, fields)),
         (clear.attachments, &|| attachments(model)),

@@ -130,7 +130,7 @@ impl<'a> Task<'a> {
         let k = self.cases.len();
         let loads = &self.job.loads;
         match self.job.placement.criterion {
-            Wanted::D | Wanted::BayesianD => Criterion::D,
+            Wanted::D | Wanted::BayesianD | Wanted::Condition => Criterion::D,
             Wanted::Ds => Criterion::Ds(loads.iter().filter(|l| l.role == Role::Nuisance).count()),
             Wanted::A => {
                 let mut l = vec![0.0; k * k];

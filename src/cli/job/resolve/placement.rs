@@ -117,6 +117,8 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
             |v: &Option<Spanned<f64>>, key: &str| c.at_least_zero(v, key).unwrap_or(0.0);
         out.clear = Clearances {
             edges: least(&clear.edges, "candidates.clear_of.edges"),
+            holes: (clear.holes.is_some())
+                .then(|| least(&clear.holes, "candidates.clear_of.holes")),
             joints: least(&clear.joints, "candidates.clear_of.joints"),
             loads: least(&clear.loads, "candidates.clear_of.loads"),
             attachments: least(&clear.attachments, "candidates.clear_of.attachments"),
@@ -181,6 +183,7 @@ pub(super) fn placement(
             Criterion::A,
             Criterion::I,
             Criterion::BayesianD,
+            Criterion::Condition,
         ]
         .map(|k| (k.name(), k)),
         criterion,

@@ -1,0 +1,280 @@
+//! Layouts of least condition number: how much an error of the readings grows, at worst, on its way to the loads.
+//!
+//! `S` holds the strains of the gauges (not over their standard deviations) with columns times the expected sizes of the loads, and
+//! `M = S'S`. The search raises `-ln cond S + 0.05 ln(det M) / (2 k)`: of layouts alike in condition it takes the one that reads more
+//! (a hundredth of condition number for a fifth of the standard deviations of the loads).
+//!
+//! Single rows are exchanged. In a slot all rows are ranked by `tr(M) tr(M^-1)`, the condition number in the Frobenius norm, which a row
+//! changes in closed form; the first of them are judged by eigenvalues.
+
+use super::candidates::{Angles, Candidates, Choice};
+use super::layout::{Layout, Spec};
+use super::shortlist::excluder;
+use crate::linalg::spd;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+
+/// A layout of small condition number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Conditioned {
+    /// The gauges, by place and angle.
+    pub gauges: Vec<Choice>,
+    /// Condition number of its `S`, gauges that stay included.
+    pub condition: f64,
+    /// The least condition number of any layout the search met.
+    pub least: f64,
+}
+
+/// Weight of the information beside the condition number.
+const INFORMATION: f64 = 0.05;
+/// Rows that take part at most, with few loads and with many.
+const MOST: [usize; 2] = [12_000, 1_500];
+/// Loads from which there are many.
+const MANY: usize = 12;
+/// Rows of a slot judged by eigenvalues, with few loads and with many.
+const JUDGED: [usize; 2] = [24, 6];
+/// Gain under which an exchange is none.
+const LEAST_GAIN: f64 = 1e-9;
+/// Share of the mean diagonal that keeps the rest of a layout regular without a gauge.
+const RIDGE: f64 = 1e-10;
+
+/// The layout of least condition number found, from `layout` and from random ones; `base` is the `S'S` of gauges that stay, columns
+/// as the candidates'. `None` where no layout met separates the loads.
+pub fn best(c: &Candidates, spec: &Spec, layout: &Layout, base: &[f64]) -> Option<Conditioned> {
+    let k = c.n_loads();
+    let many = usize::from(k > MANY);
+    let choices = taking_part(c, &layout.gauges, MOST[many]);
+    let rows: Vec<f64> = choices
+        .iter()
+        .flat_map(|&p| {
+            let sd = c.sd(p);
+            c.row(p).into_iter().map(move |v| v * sd)
+        })
+        .collect();
+    let excludes = excluder(c, spec, &choices);
+    let search = Search {
+        k,
+        rows: &rows,
+        base,
+        judged: JUDGED[many],
+        excludes: &excludes,
+    };
+    let known: Vec<usize> = (0..layout.gauges.len()).collect();
+    let [starts, kicks] = if many == 1 { [2, 2] } else { [6, 6] };
+    let found: Vec<Option<Found>> = (0..starts)
+        .into_par_iter()
+        .map(|n| {
+            let seed = spec.effort.seed.wrapping_mul(7919).wrapping_add(n);
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let first = if n == 0 {
+                known.clone()
+            } else {
+                search.moved(&known, known.len(), &mut rng)
+            };
+            let mut best = search.climb(first);
+            for _ in 0..kicks {
+                let from = best.as_ref().map_or(&known, |b| &b.rows).clone();
+                let count = 1 + rng.random_range(0..3.min(from.len()));
+                best = better(best, search.climb(search.moved(&from, count, &mut rng)));
+            }
+            best
+        })
+        .collect();
+    let best = found.into_iter().fold(None, better)?;
+    let mut gauges: Vec<Choice> = best.rows.iter().map(|&i| choices[i]).collect();
+    gauges.sort_by(|a, b| a.place.cmp(&b.place).then(a.angle.total_cmp(&b.angle)));
+    Some(Conditioned {
+        gauges,
+        condition: best.condition,
+        least: best.least,
+    })
+}
+
+/// The gauges of the layout, then candidates evenly spread over all.
+fn taking_part(c: &Candidates, layout: &[Choice], most: usize) -> Vec<Choice> {
+    let angles: Vec<f64> = match c.angles() {
+        Angles::Fixed => vec![0.0],
+        Angles::Grid(a) => a.clone(),
+        Angles::Continuous => (0..12)
+            .map(|i| f64::from(i) * std::f64::consts::PI / 12.0)
+            .collect(),
+    };
+    let all = c.n_places() * angles.len();
+    // A stride without a common factor with the number of angles meets all of them.
+    let mut stride = all.div_ceil(most.max(1)).max(1);
+    while stride > 1 && common(stride, angles.len()) > 1 {
+        stride += 1;
+    }
+    let mut out = layout.to_vec();
+    for n in (0..all).step_by(stride) {
+        let choice = Choice {
+            place: (n / angles.len()) as u32,
+            step: if *c.angles() == Angles::Continuous {
+                0
+            } else {
+                (n % angles.len()) as u16
+            },
+            angle: angles[n % angles.len()],
+        };
+        if !layout.contains(&choice) {
+            out.push(choice);
+        }
+    }
+    out
+}
+
+fn common(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { common(b, a % b) }
+}
+
+struct Found {
+    rows: Vec<usize>,
+    value: f64,
+    condition: f64,
+    least: f64,
+}
+
+fn better(a: Option<Found>, b: Option<Found>) -> Option<Found> {
+    match (a, b) {
+        (Some(a), Some(b)) => {
+            let least = a.least.min(b.least);
+            let best = if b.value > a.value { b } else { a };
+            Some(Found { least, ..best })
+        }
+        (a, b) => a.or(b),
+    }
+}
+
+struct Search<'a, E> {
+    k: usize,
+    rows: &'a [f64],
+    base: &'a [f64],
+    judged: usize,
+    excludes: &'a E,
+}
+
+impl<E: Fn(usize, usize) -> bool> Search<'_, E> {
+    fn row(&self, i: usize) -> &[f64] {
+        &self.rows[i * self.k..(i + 1) * self.k]
+    }
+
+    fn len(&self) -> usize {
+        self.rows.len() / self.k
+    }
+
+    fn information(&self, rows: &[usize]) -> Vec<f64> {
+        let mut m = self.base.to_vec();
+        rows.iter()
+            .for_each(|&i| spd::add_outer(&mut m, self.row(i), 1.0));
+        m
+    }
+
+    /// What is made large, and the condition number; `None` where singular.
+    fn value(&self, m: &[f64]) -> Option<(f64, f64)> {
+        let l = spd::cholesky(m, self.k)?;
+        let e = spd::eigenvalues(m, self.k);
+        let (low, high) = (e.first()?, e.last()?);
+        let condition = (high / low).sqrt();
+        let value = -condition.ln() + INFORMATION * spd::log_det(&l, self.k) / (2 * self.k) as f64;
+        (value.is_finite()).then_some((value, condition))
+    }
+
+    /// A layout with `count` gauges moved to random rows, where those fit.
+    fn moved(&self, from: &[usize], count: usize, rng: &mut ChaCha8Rng) -> Vec<usize> {
+        let mut rows = from.to_vec();
+        for n in 0..count {
+            let slot = if count == rows.len() {
+                n
+            } else {
+                rng.random_range(0..rows.len())
+            };
+            let i = rng.random_range(0..self.len());
+            if self.fits(&rows, slot, i) {
+                rows[slot] = i;
+            }
+        }
+        rows
+    }
+
+    /// Whether row `i` goes with all but the gauge in `slot`.
+    fn fits(&self, rows: &[usize], slot: usize, i: usize) -> bool {
+        let mut rest = rows.iter().enumerate().filter(|(q, _)| *q != slot);
+        rest.all(|(_, &r)| !(self.excludes)(i, r))
+    }
+
+    fn climb(&self, mut rows: Vec<usize>) -> Option<Found> {
+        let mut now = self
+            .value(&self.information(&rows))
+            .unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+        let mut least = now.1;
+        for _ in 0..50 {
+            let before = now.0;
+            for slot in 0..rows.len() {
+                let rest: Vec<usize> = rows
+                    .iter()
+                    .enumerate()
+                    .filter(|(q, _)| *q != slot)
+                    .map(|(_, &r)| r)
+                    .collect();
+                let m = self.information(&rest);
+                for i in self.promising(&m, &rows, slot) {
+                    let mut with = m.clone();
+                    spd::add_outer(&mut with, self.row(i), 1.0);
+                    if let Some(v) = self.value(&with) {
+                        least = least.min(v.1);
+                        if v.0 > now.0 + LEAST_GAIN {
+                            (now, rows[slot]) = (v, i);
+                        }
+                    }
+                }
+            }
+            if !(now.0 - before > LEAST_GAIN) {
+                break;
+            }
+        }
+        now.0.is_finite().then_some(Found {
+            rows,
+            value: now.0,
+            condition: now.1,
+            least,
+        })
+    }
+
+    /// The rows that give the least `tr(M) tr(M^-1)` beside the rest `m`, and fit.
+    fn promising(&self, m: &[f64], rows: &[usize], slot: usize) -> Vec<usize> {
+        let k = self.k;
+        let trace: f64 = (0..k).map(|p| m[p * k + p]).sum();
+        let mut m = m.to_vec();
+        // The rest of as many gauges as loads is singular; rows are short beside those of a load that all read.
+        let ridge = RIDGE * trace.max(f64::MIN_POSITIVE) / k as f64;
+        (0..k).for_each(|p| m[p * k + p] += ridge);
+        let Some(l) = spd::cholesky(&m, k) else {
+            return Vec::new();
+        };
+        let inverse = spd::gram_of_lower(&spd::inverse_lower(&l, k), k);
+        let spread: f64 = (0..k).map(|p| inverse[p * k + p]).sum();
+        let mut u = vec![0.0; k];
+        let mut keyed: Vec<(f64, usize)> = (0..self.len())
+            .map(|i| {
+                let a = self.row(i);
+                spd::times(&inverse, a, &mut u);
+                let left = spread - spd::dot(&u, &u) / (1.0 + spd::dot(a, &u));
+                ((trace + spd::dot(a, a)) * left, i)
+            })
+            .collect();
+        let by = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        let sure = (8 * self.judged).min(keyed.len());
+        if sure > 0 && sure < keyed.len() {
+            keyed.select_nth_unstable_by(sure - 1, by);
+            keyed.truncate(sure);
+        }
+        keyed.sort_by(by);
+        keyed
+            .into_iter()
+            .map(|x| x.1)
+            .filter(|&i| self.fits(rows, slot, i))
+            .take(self.judged)
+            .collect()
+    }
+}
