@@ -124,7 +124,9 @@ pub fn relax(
         incoming.retain(|&i| weights[i as usize] < 1.0 - FULL && pull[i as usize] > 0.0);
         if incoming.len() > keep {
             incoming.select_nth_unstable_by(keep - 1, |&a, &b| {
-                pull[b as usize].total_cmp(&pull[a as usize]).then(a.cmp(&b))
+                pull[b as usize]
+                    .total_cmp(&pull[a as usize])
+                    .then(a.cmp(&b))
             });
             incoming.truncate(keep);
         }

@@ -269,14 +269,16 @@ fn ten_gauges_for_the_condition_number_are_within_a_fifth_of_the_least_that_a_se
     };
     let s = sensitivity(&forty_four(), &columns).values;
     let (least, got) = (least_condition(&s), of_rows(&rows_at(&s)));
-    println!("6.10: ten of 44 for the condition number: {:.2}, least {least:.2}", got.condition);
+    println!(
+        "6.10: ten of 44 for the condition number: {:.2}, least {least:.2}",
+        got.condition
+    );
     assert!(got.condition <= 1.2 * least);
     // All candidates, and a search among an even share of them.
     let (_, all) = candidates_of(own(), &columns, Scatter::uniform(1.0));
     let spec = Spec::new(10, 6);
     let by_d = place(&all, &spec).unwrap();
-    let got =
-        strainbridge::placement::condition::best(&all, &spec, &by_d, &[0.0; 36]).unwrap();
+    let got = strainbridge::placement::condition::best(&all, &spec, &by_d, &[0.0; 36]).unwrap();
     let stride = all.n_places() / 250;
     let some = strainbridge::linalg::Matrix::from_fn(250, 6, |r, l| {
         let step = (r % 12) as u16;
@@ -291,7 +293,9 @@ fn ten_gauges_for_the_condition_number_are_within_a_fifth_of_the_least_that_a_se
         "6.10: ten of all for the condition number: {:.2}, least met {:.2}, a search among 250 of them {least:.2}; D has {:.2}",
         got.condition,
         got.least,
-        dense::condition(&strainbridge::linalg::Matrix::from_fn(10, 6, |r, l| all.row(by_d.gauges[r])[l]))
+        dense::condition(
+            &strainbridge::linalg::Matrix::from_fn(10, 6, |r, l| all.row(by_d.gauges[r])[l])
+        )
     );
     assert!(got.condition <= 1.2 * least && got.condition <= 1.2 * got.least);
 }

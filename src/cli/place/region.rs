@@ -48,7 +48,11 @@ pub fn allowed_sites(job: &Job, fields: &Fields, common: &[ShellIx]) -> Result<V
     let apart = rims != clear.edges;
     let limits: [(f64, &dyn Fn() -> Vec<Segment>); 5] = [
         (clear.edges, &|| {
-            if apart { borders(model) } else { free_edges(model) }
+            if apart {
+                borders(model)
+            } else {
+                free_edges(model)
+            }
         }),
         (if apart { rims } else { 0.0 }, &|| hole_rims(model)),
         (clear.joints, &|| joints(model)),

@@ -164,7 +164,8 @@ fn fewer_gauges_than_loads_are_placed_where_load_sizes_are_known() {
 }
 
 #[test]
-fn in_the_noise_of_two_degrees_a_layout_that_ignores_it_keeps_a_quarter_and_one_of_weighed_rows_nearly_all() {
+fn in_the_noise_of_two_degrees_a_layout_that_ignores_it_keeps_a_quarter_and_one_of_weighed_rows_nearly_all()
+ {
     let Some((n, t)) = tensors(6) else { return };
     // Tensors are microstrain for 1 kN: 30 kN, 1 microstrain, 2 degrees.
     let made = |angle_sd: f64| {
@@ -188,7 +189,10 @@ fn in_the_noise_of_two_degrees_a_layout_that_ignores_it_keeps_a_quarter_and_one_
         let careful = place(&real, &spec).unwrap();
         let kept = log_det(&real, &ignorant.gauges, &[0.0; 36]) - careful.upper_bound;
         let kept = (kept / 6.0).exp();
-        eprintln!("{s} gauges: {kept:.3} against {:.4}", careful.efficiency_bound);
+        eprintln!(
+            "{s} gauges: {kept:.3} against {:.4}",
+            careful.efficiency_bound
+        );
         // A reference found .19 to .25 and .995.
         assert!(kept < 0.3, "{s}: {kept}");
         assert!(careful.efficiency_bound > 0.995 - 0.001, "{s}");
