@@ -343,7 +343,7 @@ fn records_that_rpc3_file_writes_give_the_same_loads_as_the_table_they_come_from
 fn records_that_pyarrow_and_asammdf_write_give_the_same_loads_as_the_table_they_come_from() {
     let dir = plate("foreign");
     let path = dir.join("strain.csv");
-    if read_by("read_exchange.py", &[path.to_str().unwrap()]).is_none() {
+    if read_by("read_records.py", &[path.to_str().unwrap()]).is_none() {
         return;
     }
     let expected = strainbridge(&["recover", &job(&dir, "csv.toml", "strain.csv")]);
@@ -364,7 +364,7 @@ fn records_that_pyarrow_and_asammdf_write_give_the_same_loads_as_the_table_they_
         }
     }
     let out = dir.join("csv.out/loads.parquet");
-    let Some(read) = read_by("read_exchange.py", &[out.to_str().unwrap()]) else {
+    let Some(read) = read_by("read_records.py", &[out.to_str().unwrap()]) else {
         return;
     };
     let columns = &read["loads.parquet"]["columns"];

@@ -1,9 +1,9 @@
-"""Reads what place and recover write: XLSX by openpyxl, VTU by meshio, RPC III by rpc3-file, Parquet by pyarrow, MDF4 by asammdf, bulk data by pyNastran.
+"""Reads what place and recover write: XLSX by openpyxl, VTU by meshio, RPC III by rpc3-file, bulk data by pyNastran.
 
     python read_exchange.py FILE...
 
 Prints one JSON object, a key a file; exit code 77 where a package is absent. A `.csv` is turned into RPC III (`.rsp` beside it, reals
-where its name ends in `_real`), Parquet and MDF4.
+where its name ends in `_real`).
 """
 import csv
 import json
@@ -11,12 +11,9 @@ import os
 import sys
 
 try:
-    import asammdf
     import meshio
     import numpy as np
     import openpyxl
-    import pyarrow
-    import pyarrow.parquet
     import rpc3
     from pyNastran.bdf.bdf import read_bdf
 except Exception as e:  # absent, or of versions that don't go together
@@ -74,27 +71,8 @@ def to_rpc(path):
     channels = [rpc3.Channel(name, unit_of(name, "uE"), dt=dt, data=v) for name, v in zip(rows[0][1:], columns[1:])]
     target = os.path.splitext(path)[0] + ".rsp"
     rpc3.write(target, channels, datatype=float if "_real" in path else int, overwrite=True)
-    stem = os.path.splitext(path)[0]
-    pyarrow.parquet.write_table(pyarrow.table(dict(zip(rows[0], columns))), stem + ".parquet")
-    # Milliseconds as a timestamp, 32-bit reals, a text column and zstd.
-    odd = {"time": pyarrow.array((columns[0] * 1000).round().astype("int64"), pyarrow.timestamp("ms"))}
-    odd.update({name: pyarrow.array(v, pyarrow.float32()) for name, v in zip(rows[0][1:], columns[1:])})
-    odd["remark"] = pyarrow.array(["dry"] * len(columns[0]))
-    pyarrow.parquet.write_table(pyarrow.table(odd), stem + "_odd.parquet", compression="zstd", row_group_size=1000)
-    signals = [asammdf.Signal(v, columns[0], name=name, unit=unit_of(name, "µm/m")) for name, v in zip(rows[0][1:], columns[1:])]
-    for version, tail in (("4.10", ""), ("4.11", "_packed")):
-        mdf = asammdf.MDF(version=version)
-        mdf.append(signals)
-        mdf.append([asammdf.Signal(np.arange(5.0), np.arange(5.0), name="battery", unit="V")])
-        mdf.save(stem + tail + ".mf4", overwrite=True, compression=2 if tail else 0)
     return target
 
 
-def table(path):
-    read = pyarrow.parquet.read_table(path)
-    return {"columns": {name: read[name].to_pylist() for name in read.column_names},
-            "notes": {k.decode(): v.decode() for k, v in (read.schema.metadata or {}).items()}}
-
-
-readers = {".xlsx": xlsx, ".vtu": vtu, ".rsp": rsp, ".bdf": bdf, ".csv": to_rpc, ".parquet": table}
+readers = {".xlsx": xlsx, ".vtu": vtu, ".rsp": rsp, ".bdf": bdf, ".csv": to_rpc}
 print(json.dumps({os.path.basename(path): readers[os.path.splitext(path)[1]](path) for path in sys.argv[1:]}))
