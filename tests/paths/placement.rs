@@ -75,6 +75,29 @@ fn criterion_a_gives_smaller_variances_and_d_a_larger_determinant() {
 }
 
 #[test]
+fn a_layout_for_the_condition_number_has_a_smaller_one_than_d_and_states_the_least_found() {
+    let Some((d, _)) = placed("place_d12", WIDE, "gauges = 12\ncriterion = \"D\"") else {
+        return;
+    };
+    let words = "gauges = 12\ncriterion = \"condition\"";
+    let (got, _) = placed("place_condition", WIDE, words).unwrap();
+    let own = got.number("condition_number_scaled");
+    let least = got.number("least_condition_number_scaled");
+    assert!(own < d.number("condition_number_scaled"), "{own}");
+    // S of the result is that of gauges with a length and a transverse sensitivity, the search's is that of points.
+    assert!(own <= 1.2 * least, "{own} {least}");
+    assert_eq!(gauges(&got).len(), 12);
+    assert!(got.number("log_det") <= d.number("upper_bound") + 1e-9);
+    assert!(got.number("efficiency_bound") <= 1.0);
+    // Pairs are not among what it looks for, and it says so.
+    let words = "gauges = 12\ncriterion = \"condition\"\nsymmetric = \"y\"";
+    let (job, folder) = job("place_condition_pairs", WIDE, words).unwrap();
+    let got = run(&["place", job.to_str().unwrap()], &folder.join("out"));
+    assert_eq!(got.code, 2);
+    assert!(got.stderr.contains("placement.criterion"), "{}", got.stderr);
+}
+
+#[test]
 fn with_five_gauges_for_nine_loads_of_known_size_every_sigma_is_below_that_size() {
     let Some((got, _)) = placed(
         "place_bayes",
