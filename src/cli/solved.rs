@@ -6,10 +6,11 @@ use super::fault::{Fault, Faults};
 use super::job::Job;
 use super::solution_cache::SolutionCache;
 use crate::fe::{
-    FeError, LoadCase, Solution, SolveOptions, SolveReport, relief_of, solution_of,
-    solve_displacements,
+    FeError, LoadCase, Solution, SolveOptions, SolveReport, Solved, UnitLoad, relief_of,
+    solution_of, solve_displacements, unit_cases,
 };
 use crate::finding::{Finding, Severity};
+use crate::model::Model;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -52,12 +53,56 @@ pub fn solve_kept(
         modes: MODES,
         ..SolveOptions::default()
     };
-    let identity = identity(session, read, cases);
+    let identity = identity(session, read, cases, "");
+    let solved = kept(session, main_input, &identity, &read.model, cases, &options)
+        .map_err(|e| faults_of(&e, read))?;
+    for (step, seconds) in &solved.report.seconds {
+        session.note_step(&format!("solve: {step}"), *seconds);
+    }
+    session
+        .stage("strain", |_| {
+            solution_of(&read.model, cases, solved, &options)
+        })
+        .map_err(|e| faults_of(&e, read))
+}
+
+/// The strain of unit loads on a model made from a deck (a finer mesh, further temperature sets), kept like any other solution; `made`
+/// says in words what the deck's bytes don't: how the model was made from it.
+///
+/// # Errors
+/// What stops the solver, with file and line.
+pub fn unit_loads_kept(
+    session: &mut Session,
+    main_input: &Path,
+    (read, made): (&DeckModel, &str),
+    model: &Model,
+    loads: &[UnitLoad],
+) -> Result<Solution, Faults> {
+    let options = SolveOptions::default();
+    let cases = unit_cases(model, loads);
+    let identity = identity(session, read, &cases, made);
+    kept(session, main_input, &identity, model, &cases, &options)
+        .and_then(|solved| solution_of(model, &cases, solved, &options))
+        .map(|(solution, _)| solution)
+        .map_err(|e| faults_of(&e, read))
+}
+
+/// Displacements from the cache, or solved and put there.
+fn kept(
+    session: &mut Session,
+    main_input: &Path,
+    identity: &str,
+    model: &Model,
+    cases: &[LoadCase],
+    options: &SolveOptions,
+) -> Result<Solved, FeError> {
     let mut cache = session
         .keeps_solutions()
-        .then(|| SolutionCache::new(main_input, &identity));
-    let grids = read.model.grids.len();
-    let kept = match cache.as_ref().map(|c| c.read(grids, cases.len())) {
+        .then(|| SolutionCache::new(main_input, identity));
+    let kept = match cache
+        .as_ref()
+        .map(|c| c.read(model.grids.len(), cases.len()))
+    {
         Some(Ok(Some(solved))) => {
             session.note(
                 "the solution is taken from the cache beside the input (`--no-cache` solves anew)"
@@ -74,25 +119,14 @@ pub fn solve_kept(
     };
     let solved = match kept {
         Some(solved) => solved,
-        None => session
-            .stage("solve", |_| {
-                solve_displacements(&read.model, cases, &options)
-            })
-            .map_err(|e| faults_of(&e, read))?,
+        None => session.stage("solve", |_| solve_displacements(model, cases, options))?,
     };
     if let Some(Err(why)) = cache.map(|c| c.write(&solved)) {
         session.note(format!(
             "the solution is not kept for the next command: {why}"
         ));
     }
-    for (step, seconds) in &solved.report.seconds {
-        session.note_step(&format!("solve: {step}"), *seconds);
-    }
-    session
-        .stage("strain", |_| {
-            solution_of(&read.model, cases, solved, &options)
-        })
-        .map_err(|e| faults_of(&e, read))
+    Ok(solved)
 }
 
 /// The first elastic frequency of the free structure of a deck whose strain another program solved; where the built-in solver can't tell,
@@ -120,8 +154,11 @@ pub fn first_mode_of(session: &mut Session, job: &Job, read: &DeckModel) -> Opti
 }
 
 /// Everything that the displacements depend on: the program file, the bytes of the deck and its includes, the load cases.
-fn identity(session: &mut Session, read: &DeckModel, cases: &[LoadCase]) -> String {
-    let mut text = format!("strainbridge {} modes {MODES}\n", env!("CARGO_PKG_VERSION"));
+fn identity(session: &mut Session, read: &DeckModel, cases: &[LoadCase], made: &str) -> String {
+    let mut text = format!(
+        "strainbridge {} modes {MODES} {made}\n",
+        env!("CARGO_PKG_VERSION")
+    );
     // A program that was built anew may solve otherwise under the same version.
     let built = std::env::current_exe().and_then(std::fs::metadata);
     if let Ok(about) = built {

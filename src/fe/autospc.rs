@@ -32,6 +32,10 @@ pub(crate) fn weak_unknowns(assembled: &Assembled, autospc: bool) -> Vec<(usize,
             if well_held(&k, largest) {
                 continue;
             }
+            // The factor names the grid of a stiffness that is not a number.
+            if k.iter().any(|v| !v.is_finite()) {
+                continue;
+            }
             let eigen = k.symmetric_eigen();
             let stiffest = eigen.eigenvalues.max();
             let mut taken = vec![false; m];

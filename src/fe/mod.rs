@@ -38,4 +38,5 @@ pub use solution::*;
 pub use solve::{
     LoadCase, Relief, SolveOptions, SolveReport, Solved, Triplets, loads_of_subcase, relief_of,
     solution_of, solve_cases, solve_displacements, solve_unit_loads, supported_stiffness,
+    unit_cases,
 };

@@ -150,8 +150,13 @@ pub fn solve_unit_loads(
     loads: &[UnitLoad],
     options: &SolveOptions,
 ) -> Result<(Solution, SolveReport), FeError> {
+    solve_cases(model, &unit_cases(model, loads), options)
+}
+
+/// Unit loads on the free structure as load cases, subcases numbered 1 .. n.
+pub fn unit_cases(model: &Model, loads: &[UnitLoad]) -> Vec<LoadCase> {
     let relief = relief_of(model, None, None);
-    let cases: Vec<LoadCase> = (1..)
+    (1..)
         .zip(loads)
         .map(|(subcase, load)| LoadCase {
             subcase,
@@ -161,8 +166,7 @@ pub fn solve_unit_loads(
             mpc: model.mpc,
             relief,
         })
-        .collect();
-    solve_cases(model, &cases, options)
+        .collect()
 }
 
 /// Solves load cases; those with the same constraints share one factor.

@@ -34,7 +34,7 @@ pub fn svd(a: &Matrix) -> Option<Svd> {
         });
     }
     // Tall and wide alike: the right vectors must span the column space only, which the thin form gives.
-    let d = a.clone().svd(true, true);
+    let d = bounded_svd(a.clone())?;
     let (u, vt) = (d.u?, d.v_t?);
     let mut order: Vec<usize> = (0..d.singular_values.len()).collect();
     order.sort_by(|&i, &j| d.singular_values[j].total_cmp(&d.singular_values[i]));
@@ -46,6 +46,15 @@ pub fn svd(a: &Matrix) -> Option<Svd> {
         s,
         v: pick_v,
     })
+}
+
+/// nalgebra's decomposition of finite numbers with an end: its iteration by itself never gives up, and on some matrices never settles
+/// at the last bit.
+pub(super) fn bounded_svd(a: Matrix) -> Option<nalgebra::SVD<f64, nalgebra::Dyn, nalgebra::Dyn>> {
+    let sweeps = 200 * (a.nrows().min(a.ncols()) + 5);
+    [5.0, 50.0, 5000.0]
+        .into_iter()
+        .find_map(|loose| a.clone().try_svd(true, true, loose * f64::EPSILON, sweeps))
 }
 
 /// Largest over smallest singular value of a matrix with at least as many rows as columns; infinite where fewer or singular.

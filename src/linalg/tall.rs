@@ -1,5 +1,6 @@
 //! Least squares with many rows and few columns.
 
+use super::dense::bounded_svd;
 use nalgebra::{DMatrix, DVector};
 
 /// The triangular factor of tall rows: as much as least squares needs to know of them.
@@ -77,8 +78,21 @@ pub fn solve(blocks: &[(f64, &Triangle)], n: usize) -> Solution {
     solve_dense(a, &y)
 }
 
+/// The answer to numbers that are none.
+fn undetermined(n: usize) -> Solution {
+    Solution {
+        x: vec![f64::NAN; n],
+        inverse: vec![vec![f64::NAN; n]; n],
+        singular_values: vec![],
+        directions: vec![],
+    }
+}
+
 fn solve_dense(mut a: DMatrix<f64>, y: &DVector<f64>) -> Solution {
     let n = a.ncols();
+    if a.iter().chain(y.iter()).any(|v| !v.is_finite()) {
+        return undetermined(n);
+    }
     if a.is_empty() {
         return Solution {
             x: vec![0.0; n],
@@ -94,14 +108,11 @@ fn solve_dense(mut a: DMatrix<f64>, y: &DVector<f64>) -> Solution {
     for (j, norm) in norms.iter().enumerate() {
         a.column_mut(j).scale_mut(1.0 / norm);
     }
-    let svd = a.svd(true, true);
+    let Some(svd) = bounded_svd(a) else {
+        return undetermined(n);
+    };
     let (Some(u), Some(vt)) = (&svd.u, &svd.v_t) else {
-        return Solution {
-            x: vec![f64::NAN; n],
-            inverse: vec![vec![f64::NAN; n]; n],
-            singular_values: vec![],
-            directions: vec![],
-        };
+        return undetermined(n);
     };
     let mut order: Vec<usize> = (0..svd.singular_values.len()).collect();
     order.sort_by(|&i, &j| svd.singular_values[j].total_cmp(&svd.singular_values[i]));

@@ -49,13 +49,14 @@ impl<'a> Builder<'a> {
                     Vec3::from(g.x)
                 }
             };
-            if !x.iter().all(|v| v.is_finite()) {
+            // Sums of fourth powers of coordinates must stay numbers.
+            if !x.iter().all(|v| v.abs() < 1e15) {
                 self.fault(
                     name(),
                     "X1",
                     g.at,
                     FaultKind::Degenerate {
-                        what: "finite location",
+                        what: "location within 1e15 of the origin",
                     },
                 );
             }

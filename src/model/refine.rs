@@ -1,13 +1,14 @@
 //! The same model on a mesh half as wide: how much of an answer is the mesh.
 
-use super::types::{FrameIx, Grid, GridIx, Model, Shell, ShellIx};
+use super::types::{FrameIx, Grid, GridIx, Model, Shell, ShellIx, TemperatureSet};
 use nastran::cards::{Dofs, ShellShape};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A model whose shells are divided in four, and where each went.
 #[derive(Clone, Debug)]
 pub struct RefinedModel {
-    /// The finer model. Load and temperature sets are left out: they would have to be divided too.
+    /// The finer model. Load sets are left out: they would have to be divided too. New grids have the mean temperature of their
+    /// side or shell.
     pub model: Model,
     /// By shell of the coarse model: the shells it was divided into. Child k of a quadrilateral has its corner k, child k of a
     /// triangle (k < 3) too; a triangle's fourth is the middle one.
@@ -28,6 +29,7 @@ impl Model {
             grids: self.grids.clone(),
             middles: BTreeMap::new(),
             next_id: self.grids.last()?.id,
+            parents: Vec::new(),
         };
         let mut shells = Vec::with_capacity(self.shells.len().checked_mul(4)?);
         let mut children = Vec::with_capacity(self.shells.len());
@@ -47,14 +49,46 @@ impl Model {
             }
             children.push(here);
         }
+        let temperatures = self
+            .temperatures
+            .iter()
+            .map(|t| self.finer_temperatures(t, &builder.parents, &children, &shells))
+            .collect();
         let model = Self {
             grids: builder.grids,
             shells,
             load_sets: Vec::new(),
-            temperatures: Vec::new(),
+            temperatures,
             ..self.clone()
         };
         Some(RefinedModel { model, children })
+    }
+
+    /// A temperature set on the divided mesh; `parents` are those of each new grid.
+    fn finer_temperatures(
+        &self,
+        set: &TemperatureSet,
+        parents: &[Vec<GridIx>],
+        children: &[[ShellIx; 4]],
+        shells: &[Shell],
+    ) -> TemperatureSet {
+        let mut at = vec![set.default.unwrap_or(0.0); self.grids.len()];
+        for (g, t) in &set.grids {
+            at[g.us()] = *t;
+        }
+        let mut out = set.clone();
+        out.grids = (0..).map(GridIx).zip(at.iter().copied()).collect();
+        for of in parents {
+            let mean = of.iter().map(|g| at[g.us()]).sum::<f64>() / of.len().max(1) as f64;
+            out.grids.push((GridIx(out.grids.len() as u32), mean));
+        }
+        for (shell, into) in self.shells.iter().zip(children) {
+            if let Some(t) = set.elements.get(&shell.id) {
+                let ids = into.iter().map(|c| shells[c.us()].id);
+                out.elements.extend(ids.map(|id| (id, *t)));
+            }
+        }
+        out
     }
 
     fn can_be_refined(&self) -> bool {
@@ -87,6 +121,8 @@ struct Builder {
     grids: Vec<Grid>,
     middles: BTreeMap<(GridIx, GridIx), GridIx>,
     next_id: u32,
+    /// Of each grid that was made.
+    parents: Vec<Vec<GridIx>>,
 }
 
 /// Grids and corner thicknesses of a child.
@@ -110,6 +146,7 @@ impl Builder {
             ps: if constrained { first.ps } else { Dofs(0) },
             ..first
         });
+        self.parents.push(of.to_vec());
         Some(ix)
     }
 

@@ -1,219 +1,21 @@
-//! A joint half as stiff as modelled, hidden in a small structure of our own, found through the solver and put into the deck.
-//!
-//! Two strips of plate (1000 x 100 x 5 mm, steel) side by side, tied by three bushes; forces across the plates at six places. The readings
+//! A joint half as stiff as modelled, hidden in a structure of our own, found through the solver and put into the deck. The readings
 //! come from a mesh three times as fine, in which the middle bush has half its stiffness.
 
-use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
-use std::process::Command;
-
-/// Elements along a strip of the analyst's mesh; two across.
-const ALONG: usize = 20;
-/// Bushes: element id and station along the strips.
-const BUSHES: [(usize, usize); 3] = [(9001, 0), (9002, 10), (9003, 20)];
-/// Gauges on the analyst's mesh: strip, row, station.
-const GAUGES: [(usize, usize, usize); 12] = [
-    (1, 0, 2),
-    (1, 1, 6),
-    (1, 0, 9),
-    (1, 1, 11),
-    (1, 0, 15),
-    (1, 1, 18),
-    (2, 1, 1),
-    (2, 0, 5),
-    (2, 1, 8),
-    (2, 0, 12),
-    (2, 1, 13),
-    (2, 0, 17),
-];
-
-/// A mesh `m` times as fine.
-struct Mesh(usize);
-
-impl Mesh {
-    fn grid(&self, strip: usize, row: usize, station: usize) -> usize {
-        10_000 * strip + row * self.0 * (ALONG * self.0 + 1) + station * self.0 + 1
-    }
-
-    fn fine_grid(&self, strip: usize, row: usize, station: usize) -> usize {
-        10_000 * strip + row * (ALONG * self.0 + 1) + station + 1
-    }
-
-    /// The element at the middle of the analyst's element.
-    fn element(&self, strip: usize, row: usize, station: usize) -> usize {
-        let half = self.0 / 2;
-        let (row, station) = (row * self.0 + half, station * self.0 + half);
-        100_000 * strip + row * ALONG * self.0 + station + 1
-    }
-
-    fn deck(&self, middle: f64) -> String {
-        let mut out = String::from("SOL 101\nCEND\nBEGIN BULK\nPARAM,INREL,-2\nPARAM,POST,-1\n");
-        out += "MAT1,1,2.+5,,.3,7.85-9\nPSHELL,1,1,5.,1,,1\n";
-        let size = 50.0 / self.0 as f64;
-        for strip in 1..=2 {
-            for row in 0..=2 * self.0 {
-                for station in 0..=ALONG * self.0 {
-                    let (x, y) = (
-                        size * station as f64,
-                        size * row as f64 + 300.0 * (strip - 1) as f64,
-                    );
-                    let id = self.fine_grid(strip, row, station);
-                    let _ = writeln!(out, "GRID,{id},,{x:.5},{y:.5},0.");
-                }
-            }
-            for row in 0..2 * self.0 {
-                for station in 0..ALONG * self.0 {
-                    let id = 100_000 * strip + row * ALONG * self.0 + station + 1;
-                    let g = |r, s| self.fine_grid(strip, r, s);
-                    let corners = [
-                        g(row, station),
-                        g(row, station + 1),
-                        g(row + 1, station + 1),
-                        g(row + 1, station),
-                    ];
-                    let [a, b, c, d] = corners;
-                    let _ = writeln!(out, "CQUAD4,{id},1,{a},{b},{c},{d}");
-                }
-            }
-        }
-        for (id, station) in BUSHES {
-            let factor = if id == BUSHES[1].0 { middle } else { 1.0 };
-            let property = if factor == 1.0 { 7 } else { 8 };
-            let (a, b) = (self.grid(1, 2, station), self.grid(2, 0, station));
-            let _ = writeln!(out, "CBUSH,{id},{property},{a},{b},,,,0");
-        }
-        for (id, factor) in [(7, 1.0), (8, middle)] {
-            let k = |k: f64| k * factor;
-            let _ = writeln!(
-                out,
-                "PBUSH,{id},K,{:.6},{:.6},{:.6},{:.6},{:.6},{:.6}",
-                k(2e3),
-                k(2e3),
-                k(30.0),
-                k(4e6),
-                k(4e6),
-                k(4e6)
-            );
-        }
-        out + "ENDDATA\n"
-    }
-
-    fn job(&self, measured: &str) -> String {
-        let mut out = String::from(
-            "title = \"Two strips\"\nunits = \"mm-t-s\"\nreport_units = { force = \"kN\", moment = \"kN m\", length = \"m\" }\n[model]\ndeck = \"deck.bdf\"\n",
-        );
-        for (name, (strip, row, station)) in LOADS {
-            let grid = self.grid(strip, row, station);
-            let _ = write!(
-                out,
-                "[[load]]\nname = \"{name}\"\ngrid = {grid}\ncomponent = \"FZ\"\n"
-            );
-        }
-        for (k, (strip, row, station)) in GAUGES.into_iter().enumerate() {
-            let element = self.element(strip, row, station);
-            let _ = write!(
-                out,
-                "[[gauge]]\nname = \"G{k:02}\"\nelement = {element}\nsurface = \"top\"\ndirection = [1, 0, 0]\n"
-            );
-        }
-        out + measured
-    }
-}
-
-/// Names and places of the forces.
-const LOADS: [(&str, (usize, usize, usize)); 6] = [
-    ("A", (1, 0, 0)),
-    ("B", (1, 0, 10)),
-    ("C", (1, 0, 20)),
-    ("D", (2, 2, 0)),
-    ("E", (2, 2, 10)),
-    ("F", (2, 2, 20)),
-];
-
-/// Numbers between -1 and 1 that repeat (a linear congruential generator, Knuth's constants).
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
-
-fn run(command: &str, job: &Path) -> PathBuf {
-    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
-        .arg(command)
-        .arg(job)
-        .output()
-        .expect("the program runs");
-    let code = done.status.code();
-    assert!(
-        code.is_some_and(|c| c < 2),
-        "{command}: {}",
-        String::from_utf8_lossy(&done.stderr)
-    );
-    job.with_extension("out")
-}
-
-/// S of a folder's job, microstrain per N, gauges by loads.
-fn sensitivity(out: &Path) -> Vec<Vec<f64>> {
-    let text = std::fs::read_to_string(out.join("sensitivity.csv")).expect("S");
-    let row = |l: &str| {
-        l.split(',')
-            .skip(1)
-            .map(|v| v.parse().expect("a number"))
-            .collect()
-    };
-    text.lines().skip(1).map(row).collect()
-}
+use super::strips::{GAUGES, MEASURED, Mesh, measured, result, run, sensitivity, workplace};
 
 #[test]
 fn a_joint_of_half_its_stiffness_is_named_and_the_extended_deck_strains_as_the_true_structure() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("reconcile_joint");
-    let _ = std::fs::remove_dir_all(&folder);
-    let write = |name: &str, text: &str| {
-        let path = folder.join(name);
-        std::fs::create_dir_all(path.parent().expect("a folder")).expect("created");
-        std::fs::write(path, text).expect("written");
-    };
-    write("true/deck.bdf", &Mesh(3).deck(0.5));
+    let (folder, write) = workplace("reconcile_joint");
+    write("true/deck.bdf", &Mesh(3).deck(0.5, None));
     write("true/job.toml", &Mesh(3).job(""));
     let truth = sensitivity(&run("sensitivity", &folder.join("true/job.toml")));
-    // Forces up to 50 N; noise of half a microstrain (uniform: 0.87 peak).
-    let mut numbers = Numbers(7);
-    let mut runs = String::from("run,A,B,C,D,E,F\n");
-    let mut strain = String::from("run");
-    (0..GAUGES.len()).for_each(|k| {
-        let _ = write!(strain, ",G{k:02}");
-    });
-    strain.push('\n');
-    for r in 1..=14 {
-        let forces: Vec<f64> = (0..LOADS.len()).map(|_| 50.0 * numbers.next()).collect();
-        let kn: Vec<String> = forces.iter().map(|f| format!("{:.6}", f / 1e3)).collect();
-        let _ = writeln!(runs, "R{r:02},{}", kn.join(","));
-        let read = truth.iter().map(|row| {
-            let clean: f64 = row.iter().zip(&forces).map(|(a, f)| a * f).sum();
-            format!("{:.3}", clean + 0.87 * numbers.next())
-        });
-        let read: Vec<String> = read.collect();
-        let _ = writeln!(strain, "R{r:02},{}", read.join(","));
-    }
+    let [strain, runs] = measured(&truth, |_| vec![0.0; GAUGES.len()]);
     write("model/strain.csv", &strain);
     write("model/runs.csv", &runs);
-    write("model/deck.bdf", &Mesh(1).deck(1.0));
-    write(
-        "model/job.toml",
-        &Mesh(1).job(
-            "[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.5\nmodel_uncertainty_rel = 0.005\nhold_out = [\"R11\", \"R12\", \"R13\", \"R14\"]\n\
-             [runs]\nfile = \"runs.csv\"\nunits = { force = \"kN\" }\nnoise = { force = 0.0001 }\n[reconcile]\npath = \"static\"\n",
-        ),
-    );
+    write("model/deck.bdf", &Mesh(1).deck(1.0, None));
+    write("model/job.toml", &Mesh(1).job(MEASURED));
     let out = run("reconcile", &folder.join("model/job.toml"));
-    let text = std::fs::read_to_string(out.join("result.json")).expect("result.json");
-    let found: serde_json::Value = serde_json::from_str(&text).expect("valid json");
+    let found = result(&out);
     assert_eq!(
         found["named"],
         serde_json::json!(["joint_stiffness:9002"]),
@@ -233,7 +35,7 @@ fn a_joint_of_half_its_stiffness_is_named_and_the_extended_deck_strains_as_the_t
         found["gap"]
     );
     // On the same mesh the extended deck strains as one with the true stiffness does; the unchanged one does not.
-    write("right/deck.bdf", &Mesh(1).deck(0.5));
+    write("right/deck.bdf", &Mesh(1).deck(0.5, None));
     write("right/job.toml", &Mesh(1).job(""));
     let right = sensitivity(&run("sensitivity", &folder.join("right/job.toml")));
     let off = |s: &[Vec<f64>]| -> f64 {

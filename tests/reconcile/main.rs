@@ -2,6 +2,8 @@
 
 mod deck;
 mod given;
+mod heat;
 mod hidden;
 mod joint;
 mod real;
+mod strips;

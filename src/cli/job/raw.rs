@@ -289,6 +289,7 @@ pub(super) struct RawReconcile {
     pub places: BTreeMap<String, u32>,
     #[serde(rename = "thermal_microstrain_per_degC")]
     pub thermal: BTreeMap<Spanned<String>, f64>,
+    pub temperature_set: Option<u32>,
     pub effects: S<Texts>,
     pub joints: Option<Ids>,
     pub causes: BTreeMap<String, String>,

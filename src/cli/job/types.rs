@@ -714,6 +714,8 @@ pub struct Reconcile {
     pub places: BTreeMap<String, u32>,
     /// Apparent strain per degree by bridge name.
     pub thermal_microstrain_per_degc: BTreeMap<String, f64>,
+    /// Temperature set of the deck whose pattern `thermal_gradient` has.
+    pub temperature_set: Option<u32>,
     /// Effect ids; `None`: all.
     pub effects: Option<Vec<String>>,
     /// Bushes whose stiffness may be wrong; `None`: all, where they are few.

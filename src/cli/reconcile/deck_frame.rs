@@ -1,17 +1,20 @@
 //! The static frame of a job with a deck: signatures of loads, masses, stiffness and gauge angles from the built-in solver.
 
 use super::background::{Axis, background, gradients};
+use super::deck_thermal::{Heated, NOTHING};
 use super::finer::Finer;
 use super::matrix_frame::{ModelPart, facts, nominal_x_m};
 use crate::cli::Session;
 use crate::cli::fault::{Fault, Faults};
 use crate::cli::job::{Component, Job, LoadActs};
+use crate::cli::solved::unit_loads_kept;
 use crate::cli::strain::{Fields, lay_gauges, read_fields};
 use crate::fe::{Solution, SolveOptions, UnitLoad, solve_unit_loads};
 use crate::gauge::{Gauge, reading};
 use crate::model::{GridIx, Model, Vec3};
 use crate::reconcile::strain::{MassSignature, N_PAYLOAD_COLUMNS, PlaneStrainRow, Wiring};
 use crate::units::Quantity;
+use std::path::Path;
 
 /// Strain in microstrain.
 const MICRO: f64 = 1e6;
@@ -32,6 +35,7 @@ pub(super) fn read(
     channels: &[String],
 ) -> Result<(ModelPart, DeckFrame), Faults> {
     let fields = read_fields(session, job)?;
+    let job_file = Path::new(&job.file);
     let gauges = in_order(job, lay_gauges(session, job, &fields)?, channels)?;
     // The same gauges turned: what they read at three angles holds their in-plane strain.
     let noted = session.findings.len();
@@ -47,6 +51,8 @@ pub(super) fn read(
     }
     session.findings.truncate(noted);
     let model = fields.model();
+    let heated = Heated::of(job, model)?;
+    let model = &heated.model;
     let (wheels, columns) = columns(job, model)?;
     let mut loads = columns.clone();
     let components = [
@@ -75,12 +81,18 @@ pub(super) fn read(
         places.push(place.clone());
         loads.push(unit(job, grid, Component::FZ, -gravity / KILO));
     }
+    let first_heat = loads.len();
+    loads.extend(heated.loads());
     // Signatures come from a mesh half as wide, where that can be made: what the mesh makes is computed, not guessed.
     let laid = [&gauges, &turned[0], &turned[1]];
     let finer = session.stage("refine", |_| Finer::of(model, laid));
-    let solution = session.stage("solve signatures", |_| match &finer {
-        Some(f) => solve(job, &f.refined.model, &loads),
-        None => solve(job, model, &loads),
+    let heat = format!("temperature set {:?}", reconcile.map(|r| r.temperature_set));
+    let solution = session.stage("solve signatures", |s| match &finer {
+        Some(f) => {
+            let made = format!("mesh half as wide, {heat}");
+            unit_loads_kept(s, job_file, (&fields.deck, &made), &f.refined.model, &loads)
+        }
+        None => unit_loads_kept(s, job_file, (&fields.deck, &heat), model, &loads),
     })?;
     let n_c = columns.len();
     let [seen, seen_45, seen_90] = match &finer {
@@ -90,7 +102,9 @@ pub(super) fn read(
     let table = influence(job, model, seen, &solution, n_c);
     let at_45 = influence(job, model, seen_45, &solution, n_c);
     let at_90 = influence(job, model, seen_90, &solution, n_c);
-    let own = session.stage("solve signatures", |_| solve(job, model, &columns))?;
+    let own = session.stage("solve signatures", |s| {
+        unit_loads_kept(s, job_file, (&fields.deck, &heat), model, &columns)
+    })?;
     let base = influence(job, model, &gauges, &own, n_c);
     let n_g = gauges.len();
     let plane = |g: usize| -> PlaneStrainRow {
@@ -136,20 +150,21 @@ pub(super) fn read(
             per_kg: column(first_mass + k),
         })
         .collect();
-    if let Some(r) = reconcile.filter(|r| !r.thermal_microstrain_per_degc.is_empty()) {
-        let of = |name: &String| {
-            let bridge = job
-                .gauges
-                .iter()
-                .find(|g| g.name == *name)
-                .map_or("quarter", |g| g.bridge.name());
-            r.thermal_microstrain_per_degc
-                .get(bridge)
-                .copied()
-                .unwrap_or(0.0)
-        };
-        part.thermal_uniform = Some(channels.iter().map(of).collect());
-    }
+    // Microstrain a degree: mechanical strain from the model, and what the gauge shows of heat besides.
+    let apparent: Vec<f64> = channels.iter().map(|c| apparent(job, c)).collect();
+    let mechanical = |load: &Option<UnitLoad>, c: usize| load.as_ref().map(|_| column(c));
+    let even = mechanical(&heated.even, first_heat);
+    let even: Vec<f64> = match even {
+        Some(m) => m.iter().zip(&apparent).map(|(m, a)| m + a).collect(),
+        None => apparent.clone(),
+    };
+    part.thermal_uniform = even.iter().any(|v| v.abs() > NOTHING).then_some(even);
+    let pattern = first_heat + usize::from(heated.even.is_some());
+    part.thermal_gradient = mechanical(&heated.pattern, pattern).map(|m| {
+        let heat = gauges.iter().zip(&apparent);
+        let besides = heat.map(|(g, a)| a * heated.rise_at(g));
+        m.iter().zip(besides).map(|(m, a)| m + a).collect()
+    });
     let along = gradients(job, model, &gauges, &own, n_c, Axis::Along);
     let across = gradients(job, model, &gauges, &own, n_c, Axis::Across);
     part.scatter = background(
@@ -168,6 +183,19 @@ pub(super) fn read(
     };
     part.stiffness = session.stage("solve zones", |_| deck.signatures(job))?;
     Ok((part, deck))
+}
+
+/// Apparent strain of a channel's wiring, microstrain a degree.
+fn apparent(job: &Job, channel: &str) -> f64 {
+    let bridge = job
+        .gauges
+        .iter()
+        .find(|g| g.name == channel)
+        .map_or("quarter", |g| g.bridge.name());
+    let given = job.reconcile.as_ref();
+    given
+        .and_then(|r| r.thermal_microstrain_per_degc.get(bridge).copied())
+        .unwrap_or(0.0)
 }
 
 /// The frame counts in kN.

@@ -4,6 +4,7 @@
 //! were left out become columns of S or loads of the job, the payload's place goes into `runs_extended.csv`.
 
 use super::deck_frame::DeckFrame;
+use super::deck_thermal;
 use super::extended_deck::NamedStiffness;
 use super::extended_job::ExtendedJob;
 use super::extended_loads::{entries, side_loads};
@@ -125,12 +126,13 @@ pub(super) fn write(
         })
         .collect();
     let side = side_loads(job, &outcome.effects);
-    if deck.is_some() {
+    if let Some(d) = deck {
         let list = table
             .entry("load")
             .or_insert_with(|| Value::Array(Vec::new()));
         if let Value::Array(list) = list {
             list.extend(entries(job, frame, &side));
+            list.extend(deck_thermal::entry(job, d.fields.model(), &outcome.effects));
         }
     }
     let extended_deck = deck.and_then(|d| d.extended(job, &stiffness, &masses, &side));

@@ -3,6 +3,7 @@
 mod background;
 mod causes;
 mod deck_frame;
+mod deck_thermal;
 mod dynamic;
 mod dynamic_extend;
 mod extend;

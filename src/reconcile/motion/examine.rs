@@ -36,6 +36,13 @@ const AT_FLOOR: f64 = 1.6;
 const REMAINDER: f64 = 0.04;
 /// Share of the measured quantity that an imperfect background (declared tolerances) may leave without a word.
 const SLACK: f64 = 0.04;
+/// Share of the measured quantity that may be left by an imperfect background without a name: unmeasured couplings count, too.
+const QUIET: f64 = 0.05;
+/// Declared tolerances (1 sd) that a gain or delay must exceed to be a fault, unless its evidence is overwhelming: what other channels
+/// may be off takes its share of a fault.
+const BEYOND_TOLERANCE: f64 = 3.3;
+/// Such evidence.
+const OVERWHELMING: f64 = 20.0;
 /// Held-out gap over its floor up to which nothing is left to explain.
 const AT_HELD_OUT_FLOOR: f64 = 1.25;
 /// Share of the fitted record's gap to be closed all the same.
@@ -197,9 +204,15 @@ fn judged(
                 .is_none_or(|without| whole - closed(&without.fit) >= material)
         })
     };
-    if !all_material(&best) {
-        let rest: Vec<Scored<MotionFit>> =
-            all.iter().filter(|s| all_material(s)).cloned().collect();
+    let null_evidence = empty.as_ref().map(|s| s.log_evidence);
+    let overwhelming = |s: &Scored<MotionFit>| {
+        null_evidence.is_some_and(|null| s.log_evidence - null > OVERWHELMING)
+    };
+    let nameable = |s: &Scored<MotionFit>| {
+        all_material(s) && (overwhelming(s) || beyond_tolerance(frame, &s.fit))
+    };
+    if !nameable(&best) {
+        let rest: Vec<Scored<MotionFit>> = all.iter().filter(|s| nameable(s)).cloned().collect();
         if let Some(b) = settle(&rest, DECISIVE) {
             best = b;
         }
@@ -210,7 +223,7 @@ fn judged(
     let chi = [reduced(&chi_null), reduced(&chi_best)];
     let after_left = share_left(&best.fit);
     let share = closed(&best.fit);
-    let null_evidence = empty.as_ref().map_or(best.log_evidence, |s| s.log_evidence);
+    let null_evidence = null_evidence.unwrap_or(best.log_evidence);
     let evidence = best.log_evidence - null_evidence;
     let adequate = if blind {
         share > CLOSED_BLIND
@@ -222,7 +235,7 @@ fn judged(
     let quiet = if blind {
         before_left < SLACK
     } else if frame.is_loose() {
-        chi[0] < AT_FLOOR || before_left < SLACK
+        chi[0] < AT_FLOOR || before_left < QUIET
     } else {
         chi[0] < AT_FLOOR
     };
@@ -294,6 +307,18 @@ fn judged(
     })
 }
 
+/// Whether every gain and delay of a fit is more than a healthy channel of the declared tolerance may have.
+fn beyond_tolerance(frame: &MotionFrame, fit: &MotionFit) -> bool {
+    fit.parts.iter().zip(&fit.sizes).all(|(p, sizes)| {
+        let size = sizes.first().map_or(0.0, |s| s[0]);
+        match p.shape {
+            Change::Gain { .. } => (size - 1.0).abs() > BEYOND_TOLERANCE * frame.gain_tolerance,
+            Change::Delay { .. } => size.abs() > BEYOND_TOLERANCE * frame.sync_tolerance_s,
+            _ => true,
+        }
+    })
+}
+
 fn broken_effect(b: &BrokenChannel) -> MotionEffect {
     MotionEffect {
         id: format!("{}:{}", b.id, b.channel),
@@ -361,7 +386,7 @@ fn unit_of(
     }
 }
 
-/// Other sets, nearest first; sets that merely add to the best are no rivals.
+/// Other sets, nearest first; sets that merely add to the best are no rivals. Where nothing is named, what came nearest.
 fn rivals(
     scorer: &MotionScorer,
     best: &Scored<MotionFit>,
@@ -372,7 +397,10 @@ fn rivals(
     let frame = scorer.frame;
     let proof = frame.hold_out.as_ref().unwrap_or(&frame.data);
     all.iter()
-        .filter(|s| !s.set.is_empty() && !best.set.iter().all(|m| s.set.contains(m)))
+        .filter(|s| {
+            let adds = !best.set.is_empty() && best.set.iter().all(|m| s.set.contains(m));
+            !s.set.is_empty() && !adds
+        })
         .take(MOST)
         .map(|s| {
             let difference = best.log_evidence - s.log_evidence;

@@ -144,6 +144,7 @@ pub(super) fn reconcile(
             .iter()
             .map(|(k, v)| (k.get_ref().clone(), *v))
             .collect(),
+        temperature_set: raw.temperature_set,
         effects,
         joints: raw.joints.clone(),
         causes: raw.causes.clone(),
