@@ -80,8 +80,8 @@ pub struct SolveReport {
     pub seconds: Vec<(String, f64)>,
 }
 
-/// Solutions whose epsilon is larger are refined by one step.
-const REFINED_ABOVE: f64 = 1e-9;
+/// Solutions whose epsilon is larger are refined by one step: below, rounding of a million unknowns leaves little to gain.
+const REFINED_ABOVE: f64 = 1e-7;
 /// Above this after refinement, digits that a gauge reads may be lost: the analyst is told (Nastran's users are told to worry at 1e-3).
 const INACCURATE_ABOVE: f64 = 1e-6;
 
