@@ -8,7 +8,7 @@ use super::element::{Prepared, rod_thermal_force};
 use super::error::FeError;
 use super::line_load::beam_expansion;
 use super::solve::LoadCase;
-use crate::model::{ElementTemperature, GridIx, Model, Shell, TemperatureSet};
+use crate::model::{ElementTemperature, GridIx, Model, Shell};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
@@ -51,11 +51,11 @@ impl Temperatures {
         };
         let set = find(set)?;
         Ok(Some(Self {
-            at: by_grid(model, set),
+            at: set.by_grid(model.grids.len()),
             elements: set.elements.clone(),
             initial: match initial {
                 None => None,
-                Some(sid) => Some(by_grid(model, find(sid)?)),
+                Some(sid) => Some(find(sid)?.by_grid(model.grids.len())),
             },
         }))
     }
@@ -97,14 +97,6 @@ impl Temperatures {
             .map_or(0.0, |m| m.tref);
         grids.iter().map(|g| self.rise(*g, tref)).collect()
     }
-}
-
-fn by_grid(model: &Model, set: &TemperatureSet) -> Vec<f64> {
-    let mut all = vec![set.default.unwrap_or(0.0); model.grids.len()];
-    for (g, t) in &set.grids {
-        all[g.us()] = *t;
-    }
-    all
 }
 
 /// Adds the forces that hold the thermal strain of every element back.

@@ -72,10 +72,7 @@ impl Model {
         children: &[[ShellIx; 4]],
         shells: &[Shell],
     ) -> TemperatureSet {
-        let mut at = vec![set.default.unwrap_or(0.0); self.grids.len()];
-        for (g, t) in &set.grids {
-            at[g.us()] = *t;
-        }
+        let at = set.by_grid(self.grids.len());
         let mut out = set.clone();
         out.grids = (0..).map(GridIx).zip(at.iter().copied()).collect();
         for of in parents {

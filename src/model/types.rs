@@ -488,6 +488,19 @@ pub struct TemperatureSet {
     pub at: Place,
 }
 
+impl TemperatureSet {
+    /// Temperature of each of the `n` grids of the model.
+    pub fn by_grid(&self, n: usize) -> Vec<f64> {
+        let mut all = vec![self.default.unwrap_or(0.0); n];
+        for (g, t) in &self.grids {
+            if let Some(slot) = all.get_mut(g.us()) {
+                *slot = *t;
+            }
+        }
+        all
+    }
+}
+
 /// Temperature of an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ElementTemperature {

@@ -161,9 +161,8 @@ pub(super) fn read(
     part.thermal_uniform = even.iter().any(|v| v.abs() > NOTHING).then_some(even);
     let pattern = first_heat + usize::from(heated.even.is_some());
     part.thermal_gradient = mechanical(&heated.pattern, pattern).map(|m| {
-        let heat = gauges.iter().zip(&apparent);
-        let besides = heat.map(|(g, a)| a * heated.rise_at(g));
-        m.iter().zip(besides).map(|(m, a)| m + a).collect()
+        let besides = apparent.iter().zip(heated.rises(&gauges));
+        m.iter().zip(besides).map(|(m, (a, t))| m + a * t).collect()
     });
     let along = gradients(job, model, &gauges, &own, n_c, Axis::Along);
     let across = gradients(job, model, &gauges, &own, n_c, Axis::Across);

@@ -7,6 +7,7 @@
 use crate::cli::fault::{Fault, Faults};
 use crate::cli::job::{Job, Reconcile};
 use crate::fe::UnitLoad;
+use crate::fe::strain_tensor::Surface;
 use crate::gauge::Gauge;
 use crate::model::{ElementTemperature, GridIx, MaterialKind, Model, TemperatureSet};
 use crate::reconcile::NamedEffect;
@@ -25,8 +26,8 @@ pub(super) struct Heated {
     pub(super) even: Option<UnitLoad>,
     /// One degree between the coldest and the warmest place of the deck's set.
     pub(super) pattern: Option<UnitLoad>,
-    /// The pattern by grid of the deck; empty without one.
-    rise: Vec<f64>,
+    /// That pattern.
+    shape: Option<TemperatureSet>,
 }
 
 impl Heated {
@@ -42,7 +43,7 @@ impl Heated {
             model: model.clone(),
             even: None,
             pattern: None,
-            rise: Vec::new(),
+            shape: None,
         };
         out.model
             .temperatures
@@ -58,29 +59,48 @@ impl Heated {
             .and_then(|r| Some((r.temperature_set?, r)))
         {
             let set = scaled(job, reconcile, model, sid, shape)?;
-            out.rise = vec![set.default.unwrap_or(0.0); model.grids.len()];
-            for (g, t) in &set.grids {
-                out.rise[g.us()] = *t;
-            }
-            out.model.temperatures.push(set);
+            out.model.temperatures.push(set.clone());
+            out.shape = Some(set);
             out.pattern = Some(load(shape));
         }
         Ok(out)
     }
 
-    /// The pattern where a gauge sits: mean of the grids of its element.
-    pub(super) fn rise_at(&self, gauge: &Gauge) -> f64 {
-        let of = |grids: &[GridIx]| {
-            let known = grids.iter().filter_map(|g| self.rise.get(g.us()));
-            let (sum, n) = known.fold((0.0, 0.0), |(s, n), t| (s + t, n + 1.0));
-            if n > 0.0 { sum / n } else { 0.0 }
+    /// The pattern where each gauge sits: on its side of a shell, else the mean of the ends of its bar.
+    pub(super) fn rises(&self, gauges: &[Gauge]) -> Vec<f64> {
+        let Some(set) = &self.shape else {
+            return vec![0.0; gauges.len()];
         };
-        let shell = self.model.shells.iter().find(|s| s.id == gauge.element);
-        let beam = || self.model.beams.iter().find(|b| b.id == gauge.element);
-        match shell {
-            Some(s) => of(&s.grids[..s.shape.n_corners()]),
-            None => beam().map_or(0.0, |b| of(&b.grids)),
-        }
+        let at = set.by_grid(self.model.grids.len());
+        let mean = |grids: &[GridIx]| {
+            grids.iter().map(|g| at[g.us()]).sum::<f64>() / grids.len().max(1) as f64
+        };
+        let of = |gauge: &Gauge| {
+            let own = set.elements.get(&gauge.element);
+            if let Some(s) = self.model.shells.iter().find(|s| s.id == gauge.element) {
+                let out = match gauge.surface {
+                    Surface::Top => 0.5,
+                    Surface::Bottom => -0.5,
+                };
+                let n = s.shape.n_corners();
+                let thickness = s.thickness[..n].iter().sum::<f64>() / n as f64;
+                return match own {
+                    Some(ElementTemperature::Plate { mean, gradient }) => {
+                        mean + gradient * out * thickness
+                    }
+                    _ => mean(&s.grids[..n]),
+                };
+            }
+            match own {
+                Some(ElementTemperature::Line { ends, .. }) => 0.5 * (ends[0] + ends[1]),
+                _ => {
+                    let mut beams = self.model.beams.iter();
+                    let beam = beams.find(|b| b.id == gauge.element);
+                    beam.map_or(0.0, |b| mean(&b.grids))
+                }
+            }
+        };
+        gauges.iter().map(of).collect()
     }
 
     /// Those there are, even first.
@@ -164,18 +184,24 @@ fn scaled(
     })
 }
 
-/// Lowest and highest temperature of a set.
+/// Lowest and highest temperature that an element has in a set.
 fn extremes(model: &Model, set: &TemperatureSet) -> [f64; 2] {
-    let mut at = vec![set.default.unwrap_or(0.0); model.grids.len()];
-    for (g, t) in &set.grids {
-        at[g.us()] = *t;
-    }
-    let of_elements = set.elements.values().flat_map(|t| match t {
-        ElementTemperature::Plate { mean, .. } => vec![*mean],
-        ElementTemperature::Line { ends, .. } => ends.to_vec(),
-    });
-    at.into_iter()
-        .chain(of_elements)
+    let at = set.by_grid(model.grids.len());
+    let of = |id: u32, grids: &[GridIx]| -> Vec<f64> {
+        match set.elements.get(&id) {
+            Some(ElementTemperature::Plate { mean, .. }) => vec![*mean],
+            Some(ElementTemperature::Line { ends, .. }) => ends.to_vec(),
+            None => grids.iter().map(|g| at[g.us()]).collect(),
+        }
+    };
+    let shells = model.shells.iter();
+    let shells = shells.flat_map(|s| of(s.id, &s.grids[..s.shape.n_corners()]));
+    let lines = model.beams.iter().map(|b| (b.id, b.grids));
+    let lines = lines.chain(model.rods.iter().map(|r| (r.id, r.grids)));
+    let solids = model.solids.iter().flat_map(|s| s.grids.iter().flatten());
+    shells
+        .chain(lines.flat_map(|(id, grids)| of(id, &grids)))
+        .chain(solids.map(|g| at[g.us()]))
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], t| {
             [a.min(t), b.max(t)]
         })
