@@ -5,8 +5,9 @@ use super::strain::{Fields, LoadUnits, Prepared, load_units};
 use crate::fe::{LoadCase, Solution, UnitLoad};
 use crate::model::{GridIx, Load, Model, Vec3};
 use crate::reconcile::ChannelGap;
+use crate::report::page::number;
 use crate::report::scene::{Arrow, ArrowSet, Field, Mark, Scene, Twist};
-use crate::report::strain::{PlacedGauge, RecoveredRun, Role, number};
+use crate::report::strain::{PlacedGauge, RecoveredRun, Role};
 
 /// Load cases to choose from, and runs.
 const MOST_FIELDS: usize = 24;

@@ -1,6 +1,7 @@
 //! From plain results to bytes: text, json, csv, html, spreadsheets. Nothing is computed here.
 
 pub mod figure;
+pub mod page;
 mod result_blocks;
 pub mod scene;
 pub mod spreadsheet;

@@ -6,7 +6,7 @@ use crate::cli::fault::Faults;
 use crate::cli::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::payload::{BallastFit, BallastSpec};
-use crate::report::strain::{number, page, table_section};
+use crate::report::page::{number, page, table_section};
 use serde_json::json;
 
 /// Misfit of a reaction above which the masses do not explain it, of the measured value.

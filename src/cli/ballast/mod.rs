@@ -13,7 +13,7 @@ use crate::fe::floor::{Standing, solve_standing};
 use crate::finding::{Finding, Severity};
 use crate::model::{GridIx, Vec3};
 use crate::payload::{BallastSpec, Carriers, size_ballast, spread};
-use crate::report::strain::number;
+use crate::report::page::number;
 use crate::units::{Quantity, factor};
 use nastran::bdf::{Edits, write_edited};
 

@@ -106,7 +106,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         out.write_bytes(&name, &bytes).map_err(|f| vec![f])?;
     }
     let title = &job.title;
-    let page = crate::report::strain::page(
+    let page = crate::report::page::page(
         title,
         "Unit-load deck: run unit_loads.bdf, then name its OP2 as [model] results",
         &session.findings,

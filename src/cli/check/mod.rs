@@ -12,7 +12,7 @@ mod together;
 use super::fault::Faults;
 use super::{FilesArguments, Session};
 use crate::finding::Finding;
-use crate::report::strain::{Section, page, table};
+use crate::report::page::{Section, page, table};
 use decks::DeckEntry;
 use kind::{Kind, kind_of};
 use maud::html;

@@ -1,7 +1,7 @@
 //! The page that leads through the story.
 
 use super::Chapter;
-use crate::report::strain::{Section, page as frame};
+use crate::report::page::{Section, page as frame};
 use maud::html;
 
 /// One part a chapter, with links to its report and files.

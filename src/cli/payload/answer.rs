@@ -8,8 +8,8 @@ use crate::cli::scene::scene_of_job;
 use crate::cli::{JobArguments, Session};
 use crate::payload::{PayloadRun, Place, WeighSpec, WeighedRun, Weighing};
 use crate::report::figure::{IntervalRow, intervals};
+use crate::report::page::{figure_section, number, page, table_section};
 use crate::report::scene::scene_section;
-use crate::report::strain::{figure_section, number, page, table_section};
 use serde_json::{Value, json};
 
 fn finite(v: f64) -> Option<f64> {

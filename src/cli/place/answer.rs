@@ -10,7 +10,8 @@ use crate::cli::strain::{LoadUnits, load_units};
 use crate::finding::{Finding, Severity};
 use crate::placement::quality::Quality;
 use crate::placement::{Loss, Spec};
-use crate::report::strain::{PlacedGauge, Role, number};
+use crate::report::page::number;
+use crate::report::strain::{PlacedGauge, Role};
 use crate::sensitivity::Sensitivity;
 use serde_json::json;
 

@@ -6,7 +6,7 @@ use crate::cli::job::table::read_table;
 use crate::cli::job::{Job, Reconcile};
 use crate::finding::{Finding, Severity};
 use crate::reconcile::{Cause, CauseOutcome, CauseSet, Observations, weigh_causes};
-use crate::report::strain::{Section, page, table};
+use crate::report::page::{Section, page, table};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -11,7 +11,7 @@ use crate::reconcile::motion::gap::RecordGap;
 use crate::reconcile::motion::{MotionEffect, MotionFrame, MotionOutcome, examine};
 use crate::reconcile::{Rival, Verdict};
 use crate::report::figure::gap_by_channel;
-use crate::report::strain::{Section, figure_section, page, table_section};
+use crate::report::page::{Section, figure_section, page, table_section};
 use crate::report::vehicle::{Curve, restoring_curves, restoring_section, write_restoring_force};
 use crate::vehicle::identify::{Identification, Question, identify};
 use crate::vehicle::layout::Vehicle;

@@ -9,7 +9,7 @@ use super::job::{self, Job, Role, Study};
 use super::strain::{LoadUnits, load_units, put_conditioning};
 use super::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
-use crate::report::strain::{number, page, table_section};
+use crate::report::page::{number, page, table_section};
 use crate::sensitivity::Load;
 use crate::study::{ErrorKind, StudyError, StudyRow, StudySpec, study_layout};
 use crate::units::Quantity;

@@ -28,7 +28,7 @@ pub fn agreement(gauges: &[GaugePoints], kinds: [&str; 2], runs: [&[String]; 2])
     let mut choices = vec![("all gauges".to_owned(), picture(&order, kinds, runs))];
     if order.len() > 1 {
         choices.extend(order.iter().take(MOST_CHOICES).map(|g| {
-            let residual = crate::report::strain::number(g.residual);
+            let residual = crate::report::page::number(g.residual);
             (
                 format!("{}, residual {residual} µε", g.name),
                 picture(&[g], kinds, runs),

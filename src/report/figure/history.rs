@@ -68,7 +68,7 @@ fn bands(trace: &LoadTrace) -> Vec<Value> {
         line(
             &format!(
                 "95 % interval of a sample: ± {} {unit}",
-                crate::report::strain::number(half)
+                crate::report::page::number(half)
             ),
             &|s| s[2] + half,
             band("rgba(93,143,184,.30)"),

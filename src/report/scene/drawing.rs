@@ -7,7 +7,7 @@ use super::types::{Arrow, Field, Mark, Scene, Twist};
 use crate::fe::strain_tensor::Surface;
 use crate::model::{Model, Vec3};
 use crate::report::figure::{embedded, packed_f32, packed_i16, packed_u32, short, shorts};
-use crate::report::strain::Section;
+use crate::report::page::Section;
 use maud::{Markup, html};
 use serde_json::{Value, json};
 

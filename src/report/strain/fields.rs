@@ -1,10 +1,10 @@
 //! The page of `strains`: what was read, and where it is hot.
 
-use super::page::{Section, number, page, table};
 use crate::fe::Solution;
 use crate::fe::strain_rows::{Location, Point, StrainRow, hottest, largest_strain};
 use crate::finding::Finding;
 use crate::model::Model;
+use crate::report::page::{Section, number, page, table};
 use maud::html;
 
 /// Subcases and elements a subcase that the page lists; `strains.csv` holds all.

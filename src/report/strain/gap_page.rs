@@ -1,9 +1,9 @@
 //! The page of `reconcile` on static strain.
 
-use super::page::{Section, number, page, table};
 use crate::finding::Finding;
 use crate::reconcile::{NamedEffect, Outcome, Verdict};
 use crate::report::figure::{GaugePoints, agreement, gap_by_channel};
+use crate::report::page::{Section, number, page, table};
 use crate::report::scene::{Scene, scene_section};
 use maud::{Markup, html};
 

@@ -2,14 +2,12 @@
 
 mod fields;
 mod gap_page;
-mod page;
 mod pages;
 mod solution;
 mod tables;
 
 pub use fields::strains_page;
 pub use gap_page::{RunStrain, reconcile_page};
-pub use page::{Section, figure_section, number, page, table, table_section};
 pub use pages::{HowMany, Recovered, RecoveredRun, place_page, recover_page, sensitivity_page};
 pub use solution::solution_page;
 pub(in crate::report) use tables::corner_distances;

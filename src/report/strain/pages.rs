@@ -1,11 +1,11 @@
 //! The pages of `sensitivity`, `place` and `recover`.
 
-use super::page::{Section, number, page};
 use super::tables::PlacedGauge;
 use crate::finding::Finding;
 use crate::report::figure::{
     CountPoint, GaugePoints, IntervalRow, LoadTrace, agreement, curve, heat_map, history, intervals,
 };
+use crate::report::page::{Section, number, page};
 use crate::report::scene::{Scene, scene_section};
 use crate::sensitivity::Sensitivity;
 use maud::{Markup, html};

@@ -1,8 +1,8 @@
 //! The page of `solve`: what was solved, how the loads balance, how slow loads must be.
 
-use super::page::{Section, number, page, table};
 use crate::fe::{Balance, Solution, SolveReport};
 use crate::finding::Finding;
+use crate::report::page::{Section, number, page, table};
 use crate::report::scene::{Scene, scene_section};
 use maud::html;
 

@@ -3,7 +3,7 @@
 use super::restoring::restoring_section;
 use crate::finding::Finding;
 use crate::report::figure::{Line, Scale, lines};
-use crate::report::strain::{Section, page};
+use crate::report::page::{Section, page};
 use crate::vehicle::identify::Identification;
 use maud::{Markup, html};
 

@@ -2,7 +2,7 @@
 
 use super::page::{Curve, plots};
 use crate::report::figure::Scale;
-use crate::report::strain::Section;
+use crate::report::page::Section;
 use crate::vehicle::identify::Identification;
 use crate::vehicle::loads::link_forces;
 use crate::vehicle::motion::Motion;

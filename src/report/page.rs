@@ -31,7 +31,7 @@ pub fn figure_section(title: &str, figure: &Figure, note: &str) -> Section {
     }
 }
 
-const STYLE: &str = include_str!("../page.css");
+const STYLE: &str = include_str!("page.css");
 
 /// A page with `lead` under its title, findings, then the sections.
 pub fn page(title: &str, lead: &str, findings: &[Finding], sections: Vec<Section>) -> String {
