@@ -97,9 +97,8 @@ fn placed(job: &Job, model: &Model, name: &str) -> Option<(Vec3, Vec3, Twist)> {
     };
     let at = model.grids.get(model.grid_ix(grid)?.us())?.x;
     let frame = model.frames.get(model.frame_ix(cid)?.us())?;
-    let mut v = [0.0; 3];
-    v[component.dof() % 3] = 1.0;
-    let twist = if component.dof() < 3 {
+    let v = component.vector(1.0);
+    let twist = if component.is_force() {
         Twist::Force
     } else {
         Twist::Moment

@@ -1,7 +1,7 @@
 //! The vehicle of a job and its records, in the job's units: what `identify` and `reconcile` start from.
 
 use super::Session;
-use super::fault::{Fault, Faults};
+use super::fault::{Fault, Faults, split_message};
 use super::job::{Job, NamedFile, Vehicle as VehicleJob};
 use crate::finding::{Finding, Severity};
 use crate::series::channels::{Channels, SeriesError};
@@ -155,7 +155,7 @@ pub fn wish_of(section: &VehicleJob) -> Wish {
 /// A fault at the line of the job for what the vehicle layer refuses.
 pub fn vehicle_fault(job: &Job, file: &str, e: &VehicleError) -> Fault {
     let line = job.vehicle.as_ref().map_or(0, |v| v.line);
-    let (wrong, remedy) = split_message(&e.to_string());
+    let (wrong, remedy) = split_message(&e);
     match e {
         VehicleError::Series(_) => Fault::of(file, "record", wrong, remedy),
         _ => Fault::at(&*job.file, line, "vehicle", wrong, remedy),
@@ -168,16 +168,8 @@ fn preset_fault(job: &Job, section: &VehicleJob, e: &PresetError) -> Fault {
         PresetError::Term { .. } => "vehicle.terms",
         PresetError::Place { .. } => "vehicle.places",
     };
-    let (wrong, remedy) = split_message(&e.to_string());
+    let (wrong, remedy) = split_message(&e);
     Fault::at(&*job.file, section.line, key, wrong, remedy)
-}
-
-/// What is wrong and what to do, around the last colon of a message.
-fn split_message(text: &str) -> (String, String) {
-    text.rsplit_once(": ").map_or_else(
-        || (text.to_owned(), "see the message".to_owned()),
-        |(a, b)| (a.to_owned(), b.to_owned()),
-    )
 }
 
 fn read_record(
@@ -195,7 +187,7 @@ fn read_record(
         read_csv(&bytes, section.sample_rate)
     };
     let mut record = read.map_err(|e| {
-        let (wrong, remedy) = split_message(&e.to_string());
+        let (wrong, remedy) = split_message(&e);
         match &e {
             crate::series::SeriesError::Line { line, what, remedy } => vec![Fault::at(
                 &*named.given,

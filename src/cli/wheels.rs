@@ -26,7 +26,7 @@ pub fn wheels_of(job: &Job, model: &Model) -> Result<Wheels, Faults> {
             grid,
             component,
             cid: 0,
-        } if component.dof() < 3 && Some(grid) != payload => Some((grid, component.dof())),
+        } if component.is_force() && Some(grid) != payload => Some((grid, component.dof())),
         _ => None,
     };
     let wanted: Vec<(usize, u32, usize)> = job

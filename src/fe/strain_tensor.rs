@@ -49,6 +49,37 @@ pub fn strain_along(e: &Mat3, direction: &Vec3) -> f64 {
     n.dot(&(e * n))
 }
 
+/// Principal strains of exx, eyy, gxy (engineering shear), the larger first: `(exx + eyy)/2 +- sqrt(((exx - eyy)/2)^2 + (gxy/2)^2)`.
+pub fn principal_in_plane([exx, eyy, gxy]: PlaneStrain) -> [f64; 2] {
+    let (mean, radius) = ((exx + eyy) / 2.0, ((exx - eyy) / 2.0).hypot(gxy / 2.0));
+    [mean + radius, mean - radius]
+}
+
+/// Principal strain of the largest magnitude of exx, eyy, gxy.
+pub fn largest_in_plane(strain: PlaneStrain) -> f64 {
+    let [most, least] = principal_in_plane(strain);
+    if most + least < 0.0 { least } else { most }
+}
+
+/// Principal strains of xx yy zz xy yz zx (engineering shear), largest first; not a number where any is not.
+pub fn principal_strains(strain: &[f64; 6]) -> [f64; 3] {
+    if strain.iter().any(|v| !v.is_finite()) {
+        return [f64::NAN; 3];
+    }
+    let [xx, yy, zz, xy, yz, zx] = *strain;
+    let (xy, yz, zx) = (xy / 2.0, yz / 2.0, zx / 2.0);
+    let tensor = Mat3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz);
+    let mut p: [f64; 3] = tensor.symmetric_eigenvalues().into();
+    p.sort_by(|a, b| b.total_cmp(a));
+    p
+}
+
+/// Principal strain of the largest magnitude of xx yy zz xy yz zx.
+pub fn largest_principal(strain: &[f64; 6]) -> f64 {
+    let [most, _, least] = principal_strains(strain);
+    if most + least < 0.0 { least } else { most }
+}
+
 /// Strain at fibre `z` from strain at fibres `z1` and `z2`, linear through the thickness; the mean where the fibres coincide.
 pub fn strain_at_fibre(strain: [PlaneStrain; 2], fibres: [f64; 2], z: f64) -> PlaneStrain {
     let span = fibres[1] - fibres[0];

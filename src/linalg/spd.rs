@@ -89,46 +89,13 @@ pub fn lower_root(g: &[f64], k: usize) -> Vec<f64> {
 /// Relative size under which a pivot of a product of matrices counts as zero; products carry more rounding than sums.
 const ROOT_FLOOR: f64 = 1e-12;
 
-/// Eigenvalues of a symmetric matrix, ascending, by Jacobi's rotations (Golub and Van Loan, Matrix Computations, 8.5).
+/// Eigenvalues of a symmetric matrix, ascending.
 pub fn eigenvalues(a: &[f64], k: usize) -> Vec<f64> {
-    let mut m = a.to_vec();
-    for _ in 0..ROTATIONS {
-        let off: f64 = (0..k)
-            .flat_map(|i| (0..i).map(move |j| (i, j)))
-            .map(|(i, j)| m[i * k + j] * m[i * k + j])
-            .sum();
-        let diagonal: f64 = (0..k).map(|i| m[i * k + i] * m[i * k + i]).sum();
-        if off <= diagonal * f64::EPSILON * f64::EPSILON {
-            break;
-        }
-        for p in 0..k {
-            for q in p + 1..k {
-                let x = m[p * k + q];
-                if x == 0.0 {
-                    continue;
-                }
-                let theta = (m[q * k + q] - m[p * k + p]) / (2.0 * x);
-                let t = 1.0f64.copysign(theta) / (theta.abs() + theta.hypot(1.0));
-                let c = 1.0 / t.hypot(1.0);
-                let s = t * c;
-                for r in 0..k {
-                    let (u, v) = (m[r * k + p], m[r * k + q]);
-                    (m[r * k + p], m[r * k + q]) = (c * u - s * v, s * u + c * v);
-                }
-                for r in 0..k {
-                    let (u, v) = (m[p * k + r], m[q * k + r]);
-                    (m[p * k + r], m[q * k + r]) = (c * u - s * v, s * u + c * v);
-                }
-            }
-        }
-    }
-    let mut e: Vec<f64> = (0..k).map(|i| m[i * k + i]).collect();
+    let matrix = nalgebra::DMatrix::from_row_slice(k, k, a);
+    let mut e: Vec<f64> = matrix.symmetric_eigenvalues().iter().copied().collect();
     e.sort_by(f64::total_cmp);
     e
 }
-
-/// Rounds of rotations; convergence is quadratic, so they are never spent.
-const ROTATIONS: usize = 30;
 
 /// `a b`, all `k x k`.
 pub fn product(a: &[f64], b: &[f64], k: usize) -> Vec<f64> {

@@ -8,6 +8,7 @@
 //! changes in closed form; the first of them are judged by eigenvalues.
 
 use super::candidates::{Angles, Candidates, Choice};
+use super::kick::{fits, moved};
 use super::layout::{Layout, Spec};
 use super::shortlist::excluder;
 use crate::linalg::spd;
@@ -180,27 +181,12 @@ impl<E: Fn(usize, usize) -> bool> Search<'_, E> {
         (value.is_finite()).then_some((value, condition))
     }
 
-    /// A layout with `count` gauges moved to random rows, where those fit.
     fn moved(&self, from: &[usize], count: usize, rng: &mut ChaCha8Rng) -> Vec<usize> {
-        let mut rows = from.to_vec();
-        for n in 0..count {
-            let slot = if count == rows.len() {
-                n
-            } else {
-                rng.random_range(0..rows.len())
-            };
-            let i = rng.random_range(0..self.len());
-            if self.fits(&rows, slot, i) {
-                rows[slot] = i;
-            }
-        }
-        rows
+        moved(from, count, self.len(), self.excludes, rng)
     }
 
-    /// Whether row `i` goes with all but the gauge in `slot`.
     fn fits(&self, rows: &[usize], slot: usize, i: usize) -> bool {
-        let mut rest = rows.iter().enumerate().filter(|(q, _)| *q != slot);
-        rest.all(|(_, &r)| !(self.excludes)(i, r))
+        fits(rows, slot, i, self.excludes)
     }
 
     fn climb(&self, mut rows: Vec<usize>) -> Option<Found> {

@@ -23,6 +23,7 @@ pub mod exact;
 pub mod exchange;
 pub mod gradient;
 pub mod kernel;
+mod kick;
 mod layout;
 mod newton;
 pub mod quality;

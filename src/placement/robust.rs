@@ -3,6 +3,7 @@
 //! With `h_q` the leverages, losing gauge `q` multiplies `det M` by `1 - h_q`; the search raises `ln det M + ln(1 - max h)`.
 
 use super::exchange::Effort;
+use super::kick::moved;
 use super::relax::Active;
 use crate::linalg::spd;
 use rand::{RngExt, SeedableRng};
@@ -51,13 +52,13 @@ pub fn search(
             let first = if n == 0 {
                 start.to_vec()
             } else {
-                moved(active, start, start.len(), excludes, &mut rng)
+                moved(start, start.len(), active.len(), excludes, &mut rng)
             };
             let mut best = climb(active, prior, first, excludes);
             for _ in 0..kicks {
                 let from = best.as_ref().map_or(start, |b| &b.0);
                 let count = 1 + rng.random_range(0..2);
-                let rows = moved(active, from, count, excludes, &mut rng);
+                let rows = moved(from, count, active.len(), excludes, &mut rng);
                 let next = climb(active, prior, rows, excludes);
                 best = better(best, next);
             }
@@ -78,30 +79,6 @@ fn better(a: Found, b: Found) -> Found {
 
 /// Loads from which the search is short.
 const MANY_LOADS: usize = 12;
-
-/// A layout with `count` gauges moved to random rows, where those fit.
-fn moved(
-    active: &Active,
-    from: &[usize],
-    count: usize,
-    excludes: &(impl Fn(usize, usize) -> bool + Sync),
-    rng: &mut ChaCha8Rng,
-) -> Vec<usize> {
-    let mut rows = from.to_vec();
-    for n in 0..count {
-        let slot = if count == rows.len() {
-            n
-        } else {
-            rng.random_range(0..rows.len())
-        };
-        let i = rng.random_range(0..active.len());
-        let mut rest = rows.iter().enumerate().filter(|(q, _)| *q != slot);
-        if rest.all(|(_, &r)| !excludes(i, r)) {
-            rows[slot] = i;
-        }
-    }
-    rows
-}
 
 /// Kicks of a search; each costs a few sweeps.
 const MOST_KICKS: usize = 20;

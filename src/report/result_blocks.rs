@@ -1,5 +1,6 @@
 //! A solution as blocks of a Nastran result file.
 
+use crate::fe::strain_tensor::{principal_in_plane, principal_strains};
 use crate::fe::{CaseResult, Solution, ply_strains};
 use crate::model::{Model, ShellIx, ShellKind, Vec3};
 use nastran::cards::{ShellShape, SolidShape};
@@ -322,30 +323,17 @@ fn solids(model: &Model, case: &CaseResult, shape: SolidShape) -> Rows {
 
 /// Principal strains, largest first, and the von Mises strain.
 fn principal(e: &[f64; 6]) -> [f64; 4] {
-    let tensor = crate::linalg::Matrix3::new(
-        e[0],
-        e[3] / 2.0,
-        e[5] / 2.0,
-        e[3] / 2.0,
-        e[1],
-        e[4] / 2.0,
-        e[5] / 2.0,
-        e[4] / 2.0,
-        e[2],
-    );
-    let mut p: [f64; 3] = tensor.symmetric_eigenvalues().into();
-    p.sort_by(|a, b| b.total_cmp(a));
-    let [a, b, c] = p;
+    let [a, b, c] = principal_strains(e);
     let apart = (a - b).powi(2) + (b - c).powi(2) + (c - a).powi(2);
     [a, b, c, (2.0 * apart).sqrt() / 3.0]
 }
 
 /// exx, eyy, gxy, angle of the larger principal strain (degrees), both principal strains, von Mises strain.
 fn with_invariants([ex, ey, g]: [f64; 3]) -> [f64; 7] {
-    let (mean, radius) = ((ex + ey) / 2.0, ((ex - ey) / 2.0).hypot(g / 2.0));
+    let [largest, smallest] = principal_in_plane([ex, ey, g]);
     let angle = 0.5 * g.atan2(ex - ey).to_degrees();
     let von_mises = (4.0 / 9.0 * (ex * ex + ey * ey - ex * ey) + g * g / 3.0).sqrt();
-    [ex, ey, g, angle, mean + radius, mean - radius, von_mises]
+    [ex, ey, g, angle, largest, smallest, von_mises]
 }
 
 fn beams(model: &Model, case: &CaseResult, is_beam: bool) -> Rows {

@@ -1,6 +1,7 @@
 //! VTU (VTK XML unstructured grid) that ParaView opens: mesh, displacements and shell strain of load cases.
 
 use crate::fe::CaseResult;
+use crate::fe::strain_tensor::largest_in_plane;
 use crate::model::{GridIx, Model};
 use nastran::cards::SolidShape;
 use std::io::{Result, Write};
@@ -75,7 +76,7 @@ pub fn write_vtu(model: &Model, cases: &[CaseResult], out: &mut dyn Write) -> Re
                 3,
                 floats(strain),
             );
-            let largest = by_shell.iter().map(|s| largest_principal(s[surface]));
+            let largest = by_shell.iter().map(|s| largest_in_plane(s[surface]));
             a.array(
                 &format!("largest strain {name} {}", title(case)),
                 "Float32",
@@ -241,14 +242,5 @@ fn title(case: &CaseResult) -> String {
         case.subcase.to_string()
     } else {
         format!("{} {}", case.subcase, case.label)
-    }
-}
-
-fn largest_principal([ex, ey, g]: [f64; 3]) -> f64 {
-    let (mean, radius) = ((ex + ey) / 2.0, ((ex - ey) / 2.0).hypot(g / 2.0));
-    if mean < 0.0 {
-        mean - radius
-    } else {
-        mean + radius
     }
 }

@@ -120,7 +120,7 @@ pub enum SeriesError {
     Mdf(String),
     /// Channels that were not sampled together.
     #[error(
-        "channels {} were sampled at other times than the rest: bring all to one rate first (asammdf: `resample`)", .names.join(", ")
+        "channels {} were sampled at other times than the rest: bring all to one rate first (`resample` of asammdf does it)", .names.join(", ")
     )]
     Apart {
         /// Their names.

@@ -8,7 +8,7 @@ use falcon_mdf::{ChannelGroup, Mf4File};
 const SAME: f64 = 1e-3;
 
 /// Channels sampled together, physical values with their units: those of the channel group that holds most of `wanted` (most numbers,
-/// where none is named), with every group on the same times. An invalid sample is NaN.
+/// where none is named), with every group on the same times; text is left out. An invalid sample is NaN.
 ///
 /// # Errors
 /// A file that can't be read, a group without times, uneven times, a rate other than the declared one, wanted channels on other times.
@@ -23,15 +23,15 @@ pub fn read_mdf(
         .data_groups()
         .iter()
         .flat_map(|d| &d.channel_groups)
-        .filter(|g| g.channels.iter().any(|c| !c.is_master()))
+        .filter(|g| values(g).next().is_some())
         .collect();
-    let names = |g: &ChannelGroup| -> Vec<String> {
-        let values = g.channels.iter().filter(|c| !c.is_master());
-        values.map(|c| c.name.clone()).collect()
-    };
+    let names = |g: &ChannelGroup| -> Vec<String> { values(g).map(|c| c.name.clone()).collect() };
     let weight = |g: &ChannelGroup| {
         let asked = names(g).iter().filter(|n| wanted.contains(n)).count();
-        (asked, g.sample_count * g.channels.len() as u64)
+        (
+            asked,
+            g.sample_count.saturating_mul(g.channels.len() as u64),
+        )
     };
     let Some(main) = groups.iter().copied().max_by_key(|g| weight(g)) else {
         return Err(SeriesError::Mdf("it holds no channels".into()));
@@ -60,7 +60,7 @@ pub fn read_mdf(
             apart.extend(names(group).into_iter().filter(|n| wanted.contains(n)));
             continue;
         }
-        for c in group.channels.iter().filter(|c| !c.is_master()) {
+        for c in values(group) {
             let signal = file.signal(c).map_err(broken)?;
             let mut samples = signal.values_f64().map_err(broken)?;
             if let Some(valid) = signal.validity() {
@@ -82,6 +82,12 @@ pub fn read_mdf(
         start_s,
         ..Channels::from_list(rate_hz, list)?
     })
+}
+
+/// Channels that hold numbers and are not the group's clock.
+fn values(g: &ChannelGroup) -> impl Iterator<Item = &falcon_mdf::Channel> {
+    let channels = g.channels.iter();
+    channels.filter(|c| !c.is_master() && c.is_numeric())
 }
 
 #[cfg(test)]

@@ -3,7 +3,9 @@
 use super::channels::{Channel, Channels, SeriesError};
 use super::csv::{name_and_unit, rate_of};
 use bytes::Bytes;
-use parquet::basic::{Compression, ConvertedType, LogicalType, Repetition, TimeUnit, Type as Kind};
+use parquet::basic::{
+    Compression, ConvertedType, LogicalType, Repetition, SortOrder, TimeUnit, Type as Kind,
+};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{DataType, DoubleType, FloatType};
 use parquet::errors::ParquetError;
@@ -41,7 +43,7 @@ pub fn read_parquet(bytes: &[u8], declared_hz: Option<f64>) -> Result<Channels, 
         for ((i, _, scale), out) in columns.iter().zip(&mut values) {
             let descriptor = schema.column(*i);
             let reader = group.get_column_reader(*i).map_err(broken)?;
-            append(reader, descriptor.max_def_level(), *scale, out)?;
+            append(reader, &descriptor, *scale, out)?;
         }
     }
     let is_time = |name: &str| matches!(name.to_ascii_lowercase().as_str(), "t" | "time");
@@ -96,13 +98,21 @@ fn scale(c: &ColumnDescriptor) -> Option<f64> {
 /// Appends a column of a row group.
 fn append(
     reader: ColumnReader,
-    max_def: i16,
+    column: &ColumnDescriptor,
     scale: f64,
     out: &mut Vec<f64>,
 ) -> Result<(), SeriesError> {
+    let max_def = column.max_def_level();
+    let unsigned = column.sort_order() == SortOrder::UNSIGNED;
     match reader {
         ColumnReader::BoolColumnReader(r) => {
             numbers(r, max_def, |v| f64::from(u8::from(*v)), scale, out)
+        }
+        ColumnReader::Int32ColumnReader(r) if unsigned => {
+            numbers(r, max_def, |v| f64::from(v.cast_unsigned()), scale, out)
+        }
+        ColumnReader::Int64ColumnReader(r) if unsigned => {
+            numbers(r, max_def, |v| v.cast_unsigned() as f64, scale, out)
         }
         ColumnReader::Int32ColumnReader(r) => numbers(r, max_def, |v| f64::from(*v), scale, out),
         ColumnReader::Int64ColumnReader(r) => numbers(r, max_def, |v| *v as f64, scale, out),
@@ -210,6 +220,7 @@ pub fn parquet_bytes(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use parquet::schema::parser::parse_message_type;
 
     #[test]
     fn what_is_written_is_read_back_and_damaged_files_are_refused() {
@@ -234,5 +245,24 @@ mod tests {
         for cut in [0, 4, 100, bytes.len() / 2, bytes.len() - 1] {
             assert!(read_parquet(&bytes[..cut], None).is_err(), "{cut}");
         }
+    }
+
+    #[test]
+    fn counts_without_a_sign_stay_positive() {
+        let schema = "message m { required int32 n (INTEGER(32,false)); required int32 z; }";
+        let schema = std::sync::Arc::new(parse_message_type(schema).unwrap());
+        let mut bytes = Vec::new();
+        let mut file = SerializedFileWriter::new(&mut bytes, schema, Default::default()).unwrap();
+        let mut group = file.next_row_group().unwrap();
+        while let Some(mut column) = group.next_column().unwrap() {
+            let typed = column.typed::<parquet::data_type::Int32Type>();
+            typed.write_batch(&[7, -1], None, None).unwrap();
+            column.close().unwrap();
+        }
+        group.close().unwrap();
+        file.close().unwrap();
+        let read = read_parquet(&bytes, Some(1.0)).unwrap();
+        assert_eq!(read.list[0].samples, [7.0, f64::from(u32::MAX)]);
+        assert_eq!(read.list[1].samples, [7.0, -1.0]);
     }
 }

@@ -38,7 +38,9 @@ def write(path):
     pyarrow.parquet.write_table(pyarrow.table(odd), stem + "_odd.parquet", compression="zstd", row_group_size=1000)
     for version, tail in (("4.10", ""), ("4.11", "_packed")):
         mdf = asammdf.MDF(version=version)
-        mdf.append([asammdf.Signal(v, time, name=name, unit=unit_of(name)) for name, v in zip(names, columns[1:])])
+        signals = [asammdf.Signal(v, time, name=name, unit=unit_of(name)) for name, v in zip(names, columns[1:])]
+        remark = asammdf.Signal(np.array([b"dry"] * len(time)), time, name="remark", encoding="utf-8")
+        mdf.append([*signals, remark])
         # A slower group beside them.
         mdf.append([asammdf.Signal(np.arange(5.0), np.arange(5.0), name="battery", unit="V")])
         mdf.save(stem + tail + ".mf4", overwrite=True, compression=2 if tail else 0)

@@ -239,16 +239,14 @@ fn edits_of(session: &mut Session, job: &Job, deck: &Deck) -> Result<(Edits, Vec
                 component,
                 cid,
             } => {
-                let mut n = [0.0; 3];
-                n[component.dof() % 3] = l.applied.signum();
                 let card = Force {
                     sid,
                     grid,
                     cid,
                     scale: l.applied.abs(),
-                    n,
+                    n: component.vector(l.applied.signum()),
                 };
-                bulk.push_str(&if component.dof() < 3 {
+                bulk.push_str(&if component.is_force() {
                     card.to_force_card()
                 } else {
                     card.to_moment_card()

@@ -3,7 +3,7 @@
 
 use super::table::{Table, read_table};
 use super::types::{Job, NamedFile};
-use crate::cli::fault::{Fault, Faults};
+use crate::cli::fault::{Fault, Faults, split_message};
 use crate::cli::files::Inputs;
 use crate::series::Channels;
 use crate::series::foreign::{Foreign, read_foreign};
@@ -74,8 +74,7 @@ pub fn read_strain(
 /// A fault of the file.
 pub fn read_strain_header(file: &str, bytes: &[u8]) -> Result<rpc::Header, Faults> {
     rpc::read_header(bytes).map_err(|e| {
-        let text = e.to_string();
-        let (wrong, remedy) = text.rsplit_once(": ").unwrap_or((&text, "export it again"));
+        let (wrong, remedy) = split_message(&e);
         vec![Fault::of(file, "header", wrong, remedy)]
     })
 }
@@ -129,8 +128,7 @@ pub fn strain_record(
     gauges: &[String],
 ) -> Result<Channels, Faults> {
     let mut record = read_foreign(kind, bytes, None, gauges).map_err(|e| {
-        let text = e.to_string();
-        let (wrong, remedy) = text.split_once(": ").unwrap_or((&text, "export it again"));
+        let (wrong, remedy) = split_message(&e);
         vec![Fault::of(file, "record", wrong, remedy)]
     })?;
     let mut faults = Faults::new();

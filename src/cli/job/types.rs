@@ -98,13 +98,25 @@ impl Component {
         self as usize
     }
 
+    /// A force, not a moment.
+    pub fn is_force(self) -> bool {
+        (self as usize) < 3
+    }
+
     /// Force or moment.
     pub fn quantity(self) -> Quantity {
-        if (self as usize) < 3 {
+        if self.is_force() {
             Quantity::Force
         } else {
             Quantity::Moment
         }
+    }
+
+    /// A force or moment of `size` as a vector in the axes of the load.
+    pub fn vector(self, size: f64) -> [f64; 3] {
+        let mut v = [0.0; 3];
+        v[self.dof() % 3] = size;
+        v
     }
 }
 

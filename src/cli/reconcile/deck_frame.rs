@@ -13,7 +13,6 @@ use crate::fe::{Solution, SolveOptions, UnitLoad, solve_unit_loads};
 use crate::gauge::{Gauge, reading};
 use crate::model::{GridIx, Model, Vec3};
 use crate::reconcile::strain::{MassSignature, N_PAYLOAD_COLUMNS, PlaneStrainRow, Wiring};
-use crate::units::Quantity;
 use std::path::Path;
 
 /// Strain in microstrain.
@@ -290,14 +289,8 @@ fn payload_grid(job: &Job, model: &Model) -> Option<GridIx> {
 
 /// `size` kN or kN m at a grid, in the deck's units.
 fn unit(job: &Job, grid: GridIx, component: Component, size: f64) -> UnitLoad {
-    let quantity = if component.dof() < 3 {
-        Quantity::Force
-    } else {
-        Quantity::Moment
-    };
-    let mut v = Vec3::zeros();
-    v[component.dof() % 3] = size * KILO / job.units.si(quantity);
-    let (force, moment) = if component.dof() < 3 {
+    let v = Vec3::from(component.vector(size * KILO / job.units.si(component.quantity())));
+    let (force, moment) = if component.is_force() {
         (v, Vec3::zeros())
     } else {
         (Vec3::zeros(), v)

@@ -268,7 +268,8 @@ fn write_tables(
     let mut bands = String::from("equation,up_to_hz,before,after\n");
     let mut times = String::from("equation,up_to_s,before,after\n");
     let mut sizes = String::from("equation,up_to_size_over_rms,before,after\n");
-    let mut rows = Vec::new();
+    // Gap before, after, floor.
+    let mut gaps: Vec<(String, [f64; 3])> = Vec::new();
     let after_of = |name: &str, g: &Option<RecordGap>| {
         g.as_ref()
             .and_then(|g| g.equations.iter().find(|e| e.name == name).cloned())
@@ -277,12 +278,7 @@ fn write_tables(
         let after = after_of(&e.name, &outcome.after);
         let left = after.as_ref().map_or(f64::NAN, |a| a.gap);
         let _ = writeln!(gap, "{},{:.6},{left:.6},{:.6}", e.name, e.gap, e.floor);
-        rows.push(vec![
-            e.name.clone(),
-            format!("{:.2}", 100.0 * e.gap),
-            format!("{:.2}", 100.0 * left),
-            format!("{:.2}", 100.0 * e.floor),
-        ]);
+        gaps.push((e.name.clone(), [e.gap, left, e.floor].map(|v| 100.0 * v)));
         let lists = [
             (&mut bands, &e.by_band, after.as_ref().map(|a| &a.by_band)),
             (
@@ -343,20 +339,17 @@ fn write_tables(
         outcome.remains,
         outcome.next_measurement
     );
-    let percent = |cell: &String| cell.parse().unwrap_or(f64::NAN);
-    let drawn: Vec<(String, [f64; 3])> = rows
+    let rows: Vec<Vec<String>> = gaps
         .iter()
-        .filter_map(|r| match &r[..] {
-            [name, before, after, floor] => {
-                Some((name.clone(), [before, after, floor].map(percent)))
-            }
-            _ => None,
+        .map(|(name, values)| {
+            let cells = values.map(|v| format!("{v:.2}"));
+            std::iter::once(name.clone()).chain(cells).collect()
         })
         .collect();
     let mut sections: Vec<Section> = vec![
         figure_section(
             "Gap before and after",
-            &gap_by_channel(&drawn, "% of the measured quantity,"),
+            &gap_by_channel(&gaps, "% of the measured quantity,"),
             "On held-out data, by equation of motion; stroke: the floor.",
         ),
         table_section(

@@ -6,7 +6,6 @@ use crate::cli::job::{Component, Job, LoadActs};
 use crate::reconcile::NamedEffect;
 use crate::reconcile::effect::Extension;
 use crate::reconcile::strain::StrainFrame;
-use crate::units::Quantity;
 use nastran::bdf::{Field, format_card};
 use toml::{Table, Value};
 
@@ -130,10 +129,5 @@ pub(super) fn cards(job: &Job, sid: u32, side: &[SideLoad]) -> String {
 }
 
 fn in_job_units(job: &Job, component: Component, kilo: f64) -> f64 {
-    let quantity = if component.dof() < 3 {
-        Quantity::Force
-    } else {
-        Quantity::Moment
-    };
-    kilo * KILO / job.units.si(quantity)
+    kilo * KILO / job.units.si(component.quantity())
 }

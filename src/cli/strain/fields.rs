@@ -282,11 +282,10 @@ pub fn unit_loads(job: &Job, model: &Model) -> Result<Vec<UnitLoad>, Faults> {
                     );
                 }
                 let (ix, frame) = (ix?, frame?);
-                let mut v = [0.0; 3];
-                v[component.dof() % 3] = l.applied;
+                let v = component.vector(l.applied);
                 let at = model.grids.get(ix.us())?.x;
                 let v = model.frames.get(frame.us())?.vector_to_basic(v, at);
-                let (force, moment) = if component.dof() < 3 {
+                let (force, moment) = if component.is_force() {
                     (v, Vec3::zeros())
                 } else {
                     (Vec3::zeros(), v)

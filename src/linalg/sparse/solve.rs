@@ -22,6 +22,12 @@ fn epsilon(x: &[f64], r: &[f64], b: &[f64]) -> f64 {
     if work > 0.0 { dot(r) / work } else { 0.0 }
 }
 
+/// Columns for each thread.
+fn share_of(columns: usize) -> usize {
+    let threads = rayon::current_num_threads().max(1);
+    columns.div_ceil(threads).max(1)
+}
+
 impl Factor<'_> {
     /// Replaces right-hand sides by solutions: `x` holds columns of `n_unknowns` each, caller's numbering.
     ///
@@ -32,9 +38,7 @@ impl Factor<'_> {
         if n == 0 || x.is_empty() {
             return Ok(());
         }
-        let columns = x.len() / n;
-        let share = columns.div_ceil(rayon::current_num_threads().max(1)).max(1);
-        x.par_chunks_mut(share * n)
+        x.par_chunks_mut(share_of(x.len() / n) * n)
             .try_for_each(|part| self.solve_part(part, n))
     }
 
@@ -58,11 +62,8 @@ impl Factor<'_> {
         if n == 0 || x.is_empty() {
             return Ok(Vec::new());
         }
-        let share = (x.len() / n)
-            .div_ceil(rayon::current_num_threads().max(1))
-            .max(1);
         let parts: Vec<Vec<Refined>> = x
-            .par_chunks_mut(share * n)
+            .par_chunks_mut(share_of(x.len() / n) * n)
             .map(|part| self.refine_part(part, n, limit))
             .collect::<Result<_, _>>()?;
         Ok(parts.concat())

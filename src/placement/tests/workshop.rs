@@ -193,7 +193,7 @@ fn in_the_noise_of_two_degrees_a_layout_that_ignores_it_keeps_a_quarter_and_one_
             "{s} gauges: {kept:.3} against {:.4}",
             careful.efficiency_bound
         );
-        // A reference found .19 to .25 and .995.
+        // A reference found .19 to .25 and .995, printed with three digits.
         assert!(kept < 0.3, "{s}: {kept}");
         assert!(careful.efficiency_bound > 0.995 - 0.001, "{s}");
     }

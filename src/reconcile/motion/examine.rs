@@ -38,11 +38,8 @@ const REMAINDER: f64 = 0.04;
 const SLACK: f64 = 0.04;
 /// Share of the measured quantity that may be left by an imperfect background without a name: unmeasured couplings count, too.
 const QUIET: f64 = 0.05;
-/// Declared tolerances (1 sd) that a gain or delay must exceed to be a fault, unless its evidence is overwhelming: what other channels
-/// may be off takes its share of a fault.
+/// Declared tolerances (1 sd) that a gain or delay must exceed to be a fault: what other channels may be off takes its share of one.
 const BEYOND_TOLERANCE: f64 = 3.3;
-/// Such evidence.
-const OVERWHELMING: f64 = 20.0;
 /// Held-out gap over its floor up to which nothing is left to explain.
 const AT_HELD_OUT_FLOOR: f64 = 1.25;
 /// Share of the fitted record's gap to be closed all the same.
@@ -204,13 +201,7 @@ fn judged(
                 .is_none_or(|without| whole - closed(&without.fit) >= material)
         })
     };
-    let null_evidence = empty.as_ref().map(|s| s.log_evidence);
-    let overwhelming = |s: &Scored<MotionFit>| {
-        null_evidence.is_some_and(|null| s.log_evidence - null > OVERWHELMING)
-    };
-    let nameable = |s: &Scored<MotionFit>| {
-        all_material(s) && (overwhelming(s) || beyond_tolerance(frame, &s.fit))
-    };
+    let nameable = |s: &Scored<MotionFit>| all_material(s) && beyond_tolerance(frame, &s.fit);
     if !nameable(&best) {
         let rest: Vec<Scored<MotionFit>> = all.iter().filter(|s| nameable(s)).cloned().collect();
         if let Some(b) = settle(&rest, DECISIVE) {
@@ -223,7 +214,7 @@ fn judged(
     let chi = [reduced(&chi_null), reduced(&chi_best)];
     let after_left = share_left(&best.fit);
     let share = closed(&best.fit);
-    let null_evidence = null_evidence.unwrap_or(best.log_evidence);
+    let null_evidence = empty.as_ref().map_or(best.log_evidence, |s| s.log_evidence);
     let evidence = best.log_evidence - null_evidence;
     let adequate = if blind {
         share > CLOSED_BLIND

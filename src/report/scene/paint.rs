@@ -2,7 +2,7 @@
 
 use super::skin::{Owner, Part};
 use crate::fe::CaseResult;
-use crate::linalg::Matrix3;
+use crate::fe::strain_tensor::{largest_in_plane, largest_principal};
 use crate::model::Model;
 
 /// Strain by element: the largest principal one by magnitude, signed, at bottom and top; `NaN` where there is none.
@@ -23,7 +23,7 @@ impl Values {
         let mut solids = vec![[f64::NAN; 2]; model.solids.len()];
         for (i, strain) in case.solids.elements.iter().zip(&case.solids.centre) {
             if let Some(slot) = solids.get_mut(*i) {
-                *slot = [largest(strain); 2];
+                *slot = [largest_principal(strain); 2];
             }
         }
         Self { shells, solids }
@@ -61,29 +61,4 @@ impl Values {
             out
         })
     }
-}
-
-/// Of exx, eyy, gxy (engineering shear).
-pub(super) fn largest_in_plane([ex, ey, g]: [f64; 3]) -> f64 {
-    let (mean, radius) = ((ex + ey) / 2.0, ((ex - ey) / 2.0).hypot(g / 2.0));
-    if mean < 0.0 {
-        mean - radius
-    } else {
-        mean + radius
-    }
-}
-
-/// Of xx yy zz xy yz zx (engineering shear).
-fn largest(e: &[f64; 6]) -> f64 {
-    if e.iter().any(|v| !v.is_finite()) {
-        return f64::NAN;
-    }
-    let [xx, yy, zz, xy, yz, zx] = *e;
-    let (xy, yz, zx) = (xy / 2.0, yz / 2.0, zx / 2.0);
-    let tensor = Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz);
-    let values = tensor.symmetric_eigenvalues();
-    values
-        .iter()
-        .copied()
-        .fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a })
 }

@@ -1,7 +1,8 @@
 use super::outline::outline;
-use super::paint::{Values, largest_in_plane};
+use super::paint::Values;
 use super::skin::{Part, skin};
 use super::*;
+use crate::fe::strain_tensor::largest_in_plane;
 use crate::fe::{CaseResult, ShellField};
 use crate::model::*;
 use nastran::cards::{ShellShape, SolidShape};

@@ -59,16 +59,14 @@ fn unit_card(load: &JobLoad, sid: u32) -> String {
     else {
         return String::new();
     };
-    let mut n = [0.0; 3];
-    n[component.dof() % 3] = 1.0;
     let card = Force {
         sid,
         grid,
         cid,
         scale: 1.0,
-        n,
+        n: component.vector(1.0),
     };
-    if component.dof() < 3 {
+    if component.is_force() {
         card.to_force_card()
     } else {
         card.to_moment_card()

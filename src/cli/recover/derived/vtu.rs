@@ -42,9 +42,7 @@ pub(in crate::cli::recover) fn write_arrows(
         ) else {
             continue;
         };
-        let mut v = [0.0; 3];
-        v[component.dof() % 3] = 1.0;
-        let v = frame.vector_to_basic(v, at.x);
+        let v = frame.vector_to_basic(component.vector(1.0), at.x);
         let point = grids.iter().position(|g| g.0 == grid).unwrap_or_else(|| {
             grids.push((grid, [at.x.x, at.x.y, at.x.z]));
             grids.len() - 1
