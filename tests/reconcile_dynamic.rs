@@ -72,6 +72,20 @@ fn shared_cases_get_their_names_and_identify_runs_the_extended_job() {
             r["gap"]["explained_share"].as_f64().unwrap() > 0.95,
             "{case}"
         );
+        // What the effect did to a simulation of the held-out road goes to the level of sensor noise.
+        for c in r["simulation"]["channels"].as_array().unwrap() {
+            let [measured, before, after] =
+                ["measured_rms", "before", "after"].map(|k| c[k].as_f64().unwrap());
+            assert!(after < 0.15 * before && after < 0.01 * measured, "{c}");
+        }
+        let by_simulation = r["simulation"]["parameters"].as_array().unwrap();
+        if let Some(p) = by_simulation
+            .iter()
+            .find(|p| matches!(p["name"].as_str(), Some("fc_s" | "k3_s")))
+        {
+            let p = p["by_simulation"].as_f64().unwrap();
+            assert!((p / truth - 1.0).abs() < 0.02, "{case}: {p}");
+        }
         let again = run(
             "identify",
             Path::new(r["extended_model"].as_str().unwrap()),

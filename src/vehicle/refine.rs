@@ -38,7 +38,7 @@ pub const OPEN: Band = Band {
 };
 
 /// Sets up what to simulate from a record: bodies whose wheels are all measured are driven by them; the motion of a body with an
-/// unmeasured wheel is given, integrated from its accelerometer down to half the band's lower edge.
+/// unmeasured wheel, and of those in `witnesses`, is given, integrated from its accelerometer down to half the band's lower edge.
 ///
 /// # Errors
 /// [`SeriesError`] when a channel is missing or the record is too short for the band.
@@ -46,6 +46,7 @@ pub fn comparison(
     vehicle: &Vehicle,
     record: &Channels,
     band: Band,
+    witnesses: &[usize],
 ) -> Result<Comparison, SeriesError> {
     let (record, _) = record.with_gaps_filled();
     let trim = if band == OPEN {
@@ -98,7 +99,7 @@ pub fn comparison(
             .iter()
             .find(|s| s.at.body == b && body.shape.n() == 1);
         drive.given.push(match own {
-            Some(s) if !measured_wheels(b) => {
+            Some(s) if !measured_wheels(b) || witnesses.contains(&b) => {
                 let a = record.samples(&s.channel)?;
                 Some(vec![[
                     integrated(a, record.rate_hz, wide, 2),
@@ -170,6 +171,21 @@ impl Comparison {
                 (*i, x.iter().zip(y).map(|(a, b)| a - b).collect())
             })
             .collect())
+    }
+
+    /// The same with so many integration steps a sample.
+    pub fn with_steps(mut self, steps: usize) -> Self {
+        self.drive.steps = steps;
+        self
+    }
+
+    /// RMS of each compared sensor, its mean included where that is compared.
+    pub fn measured_rms(&self) -> Vec<(usize, f64)> {
+        let size = |y: &[f64]| {
+            let kept: Vec<f64> = y.iter().copied().filter(|v| v.is_finite()).collect();
+            rms(&kept)
+        };
+        self.measured.iter().map(|(i, y)| (*i, size(y))).collect()
     }
 
     /// Samples at the start that are not compared (a simulation from rest needs time to forget it).

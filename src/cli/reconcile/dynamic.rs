@@ -8,10 +8,12 @@ use crate::cli::job::{Job, Vehicle as VehicleJob};
 use crate::cli::vehicle::{VehicleRecords, read_vehicle, vehicle_fault, wish_of};
 use crate::finding::{Finding, Severity};
 use crate::reconcile::motion::gap::RecordGap;
-use crate::reconcile::motion::{MotionEffect, MotionFrame, MotionOutcome, examine};
+use crate::reconcile::motion::{
+    MotionEffect, MotionFrame, MotionOutcome, SimulatedGap, examine, simulated_gap,
+};
 use crate::reconcile::{Rival, Verdict};
 use crate::report::figure::gap_by_channel;
-use crate::report::page::{Section, figure_section, page, table_section};
+use crate::report::page::{Section, figure_section, number, page, table_section};
 use crate::report::vehicle::{Curve, restoring_curves, restoring_section, write_restoring_force};
 use crate::vehicle::identify::{Identification, Question, identify};
 use crate::vehicle::layout::Vehicle;
@@ -39,16 +41,28 @@ pub(super) fn run(job: &Job, path: &Path, session: &mut Session) -> Result<(), F
     let (wheels, found) =
         session.stage("wheel forces", |_| wheel_forces(&records, &frame, &outcome));
     let surface = found.as_ref().and_then(|f| restoring(&records, f));
+    let named = outcome.verdict == Verdict::Named && repairable(&outcome);
+    let simulation = named.then(|| session.stage("simulate", |_| simulated_gap(&frame, &outcome)));
     put(session, &outcome, &wheels)?;
+    session.put("simulation", simulation.as_ref().map(simulation_json))?;
     findings(session, &outcome);
-    let extended = if outcome.verdict == Verdict::Named && repairable(&outcome) {
+    let extended = if named {
         Some(dynamic_extend::write(job, path, session, &frame, &outcome)?)
     } else {
         None
     };
     session.put("extended_model", extended)?;
-    write_tables(job, path, session, &outcome, &wheels, surface)?;
-    say(session, &outcome);
+    let simulation = simulation.and_then(Result::ok);
+    write_tables(
+        job,
+        path,
+        session,
+        &outcome,
+        &wheels,
+        simulation.as_ref(),
+        surface,
+    )?;
+    say(session, &outcome, simulation.as_ref());
     Ok(())
 }
 
@@ -184,6 +198,24 @@ fn rival_json(r: &Rival) -> Value {
     })
 }
 
+fn simulation_json(s: &Result<SimulatedGap, String>) -> Value {
+    let s = match s {
+        Ok(s) => s,
+        Err(reason) => return json!({ "not_simulated": reason }),
+    };
+    let channels = s.channels.iter().map(|c| {
+        json!({ "channel": c.channel, "measured_rms": c.measured, "before": c.before, "after": c.after })
+    });
+    let parameters = s.parameters.iter().map(|(name, regression, simulation)| {
+        json!({ "name": name, "by_regression": regression, "by_simulation": simulation })
+    });
+    json!({
+        "metric": "RMS of measured less simulated on held-out data, in the unit of the channel; both models fitted by simulation",
+        "channels": channels.collect::<Vec<_>>(),
+        "parameters": parameters.collect::<Vec<_>>(),
+    })
+}
+
 fn put(
     session: &mut Session,
     outcome: &MotionOutcome,
@@ -261,6 +293,7 @@ fn write_tables(
     session: &mut Session,
     outcome: &MotionOutcome,
     wheels: &[(String, f64, Option<f64>)],
+    simulation: Option<&SimulatedGap>,
     surface: Option<(String, Vec<Curve>)>,
 ) -> Result<(), Faults> {
     let mut gap = String::from("equation,before,after,floor\n");
@@ -372,6 +405,18 @@ fn write_tables(
             "",
         ),
     ];
+    if let Some(s) = simulation {
+        let cells = s.channels.iter().map(|c| {
+            let values = [c.measured, c.before, c.after].map(number);
+            std::iter::once(c.channel.clone()).chain(values).collect()
+        });
+        sections.push(table_section(
+            "Simulated held-out data, RMS in the unit of the channel",
+            &["channel", "measured", "error before", "error after"],
+            &cells.collect::<Vec<Vec<String>>>(),
+            "Both models with the parameters that simulate the fitted record best.",
+        ));
+    }
     let (table, curves) = surface.unwrap_or_default();
     sections.push(restoring_section(&curves));
     let html = page(
@@ -396,7 +441,7 @@ fn write_tables(
     Ok(())
 }
 
-fn say(session: &mut Session, outcome: &MotionOutcome) {
+fn say(session: &mut Session, outcome: &MotionOutcome, simulation: Option<&SimulatedGap>) {
     let effects = outcome.effects.iter().map(sized);
     words::say(
         session,
@@ -406,6 +451,15 @@ fn say(session: &mut Session, outcome: &MotionOutcome) {
         &outcome.rivals,
         "data",
     );
+    for c in simulation.iter().flat_map(|s| &s.channels) {
+        session.say(format!(
+            "simulated {}: error {} before, {} after, of {}",
+            c.channel,
+            number(c.before),
+            number(c.after),
+            number(c.measured)
+        ));
+    }
     session.say(&outcome.remains);
     session.say(format!("next measurement: {}", outcome.next_measurement));
 }

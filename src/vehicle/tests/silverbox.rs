@@ -35,10 +35,10 @@ fn held_out_mv(terms: &[&str], fitted: &Channels, rest: &Channels) -> f64 {
     let q = question("oscillator", terms, (3.0, 200.0));
     let start = identify(&q, fitted, None).unwrap();
     let free: Vec<usize> = (0..start.values.len()).collect();
-    let mut c = comparison(&q.vehicle, fitted, OPEN).unwrap();
+    let mut c = comparison(&q.vehicle, fitted, OPEN, &[]).unwrap();
     c.forget(200);
     let refined = refine(&q.vehicle, &start.values, &free, &c).unwrap();
-    let mut judge = comparison(&q.vehicle, rest, OPEN).unwrap();
+    let mut judge = comparison(&q.vehicle, rest, OPEN, &[]).unwrap();
     judge.forget(200);
     let errors = judge
         .errors(&q.vehicle, &refined.values, &refined.constant)
