@@ -34,7 +34,7 @@ pub fn equations(vehicle: &Vehicle, motion: &Motion) -> Vec<Equation> {
         .bodies
         .iter()
         .enumerate()
-        .filter(|(b, _)| measured(*b))
+        .filter(|(b, _)| measured(*b) && !vehicle.is_witness(*b))
     {
         for (j, letter) in body.shape.letters().iter().enumerate() {
             let mut e = body_equation(vehicle, motion, b, j);
@@ -71,9 +71,13 @@ pub fn equations(vehicle: &Vehicle, motion: &Motion) -> Vec<Equation> {
     out
 }
 
-/// Whether link forces cancel in the total of a motion: not where a spring bears on the frame ahead of its axle.
+/// Whether link forces cancel in the total of a motion: not where a spring bears on the frame ahead of its axle, nor where a link goes to
+/// a witness.
 fn links_cancel(vehicle: &Vehicle, letter: &str) -> bool {
     vehicle.links.iter().all(|link| {
+        if link.ends.iter().any(|(_, p)| vehicle.is_witness(p.body)) {
+            return false;
+        }
         let arm = |p: &Point| {
             let own = vehicle.bodies[p.body].shape.letters().contains(&letter);
             match (letter, own) {
@@ -152,7 +156,8 @@ fn total_equation(vehicle: &Vehicle, motion: &Motion, letter: &str) -> Equation 
         total.name.push_str(" about ");
         total.name.push_str(letter);
     }
-    for (b, body) in vehicle.bodies.iter().enumerate() {
+    let bodies = vehicle.bodies.iter().enumerate();
+    for (b, body) in bodies.filter(|(b, _)| !vehicle.is_witness(*b)) {
         let own = body.shape.letters().iter().position(|l| *l == letter);
         let (j, factor) = match (own, letter) {
             (Some(j), _) => (j, 1.0),

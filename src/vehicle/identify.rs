@@ -233,10 +233,7 @@ fn reference(part: &Vehicle, equations: &[Equation], allowed: &[Allowed]) -> Opt
     }
     let mut bodies: Vec<usize> = (0..part.bodies.len()).collect();
     bodies.sort_by_key(|&b| !part.bodies[b].sprung);
-    bodies
-        .into_iter()
-        .map(|b| part.inertia_index(b, 0, 0))
-        .find(|&i| occurs(i))
+    part.masses(&bodies).into_iter().find(|&i| occurs(i))
 }
 
 fn fit_part(
@@ -583,7 +580,7 @@ fn channel_misfits(
         let wheels: Vec<usize> = (0..part.wheels.len())
             .filter(|&w| part.wheels[w].at.body == b)
             .collect();
-        if wheels.iter().any(|&w| m.forces[w].is_none()) {
+        if part.is_witness(b) || wheels.iter().any(|&w| m.forces[w].is_none()) {
             continue;
         }
         // Residual of each equation of the body, turned into an error of acceleration by its inertia.
@@ -638,7 +635,7 @@ fn close_masses(question: &Question, answer: &mut Identification, record: &Chann
             .filter(|w| bodies.contains(&w.at.body))
             .map(|w| w.channel.as_str())
             .collect();
-        let index: Vec<usize> = bodies.iter().map(|&b| v.inertia_index(b, 0, 0)).collect();
+        let index = v.masses(&bodies);
         let grounded = v
             .links
             .iter()

@@ -13,13 +13,15 @@ pub enum Shape {
     HeaveRoll,
     /// All three.
     HeavePitchRoll,
+    /// Up and down as measured: a body beyond the model that a link of it reaches. It has no inertia and no equation.
+    Witness,
 }
 
 impl Shape {
     /// The functions 1, x, y that apply, at a place.
     pub fn functions(self, x: f64, y: f64) -> Vec<f64> {
         match self {
-            Self::Heave => vec![1.0],
+            Self::Heave | Self::Witness => vec![1.0],
             Self::HeavePitch => vec![1.0, x],
             Self::HeaveRoll => vec![1.0, y],
             Self::HeavePitchRoll => vec![1.0, x, y],
@@ -29,7 +31,7 @@ impl Shape {
     /// Letters of those functions: "", "x", "y".
     pub fn letters(self) -> &'static [&'static str] {
         match self {
-            Self::Heave => &[""],
+            Self::Heave | Self::Witness => &[""],
             Self::HeavePitch => &["", "x"],
             Self::HeaveRoll => &["", "y"],
             Self::HeavePitchRoll => &["", "x", "y"],
@@ -39,6 +41,14 @@ impl Shape {
     /// Number of motions.
     pub fn n(self) -> usize {
         self.letters().len()
+    }
+
+    /// Number of inertia parameters: the upper triangle of its inertia.
+    pub fn n_inertias(self) -> usize {
+        match self {
+            Self::Witness => 0,
+            _ => self.n() * (self.n() + 1) / 2,
+        }
     }
 }
 
@@ -164,7 +174,7 @@ impl Vehicle {
     /// All parameters: inertias body by body (upper triangle by rows), then coefficients link by link, then mass changes.
     pub fn parameters(&self) -> Vec<Parameter> {
         let mut out = Vec::new();
-        for body in &self.bodies {
+        for body in self.bodies.iter().filter(|b| b.shape != Shape::Witness) {
             let letters = body.shape.letters();
             for i in 0..letters.len() {
                 for j in i..letters.len() {
@@ -202,13 +212,25 @@ impl Vehicle {
         out
     }
 
-    /// Index of the parameter M(i, j) of a body.
+    /// Whether a body is but a witness.
+    pub fn is_witness(&self, body: usize) -> bool {
+        let b = self.bodies.get(body);
+        b.is_some_and(|b| b.shape == Shape::Witness)
+    }
+
+    /// Indices of the masses of bodies, witnesses left out.
+    pub fn masses(&self, bodies: &[usize]) -> Vec<usize> {
+        let own = bodies.iter().filter(|&&b| !self.is_witness(b));
+        own.map(|&b| self.inertia_index(b, 0, 0)).collect()
+    }
+
+    /// Index of the parameter M(i, j) of a body that is no witness.
     pub fn inertia_index(&self, body: usize, i: usize, j: usize) -> usize {
         let before: usize = self
             .bodies
             .iter()
             .take(body)
-            .map(|b| b.shape.n() * (b.shape.n() + 1) / 2)
+            .map(|b| b.shape.n_inertias())
             .sum();
         let (i, j) = (i.min(j), i.max(j));
         let n = self.bodies.get(body).map_or(1, |b| b.shape.n());
@@ -217,11 +239,7 @@ impl Vehicle {
 
     /// Index of the parameter of a term of a link.
     pub fn term_index(&self, link: usize, term: usize) -> usize {
-        let inertias: usize = self
-            .bodies
-            .iter()
-            .map(|b| b.shape.n() * (b.shape.n() + 1) / 2)
-            .sum();
+        let inertias: usize = self.bodies.iter().map(|b| b.shape.n_inertias()).sum();
         inertias
             + self
                 .links

@@ -83,7 +83,7 @@ pub fn sprung_residuals(
     motion: &Motion,
     links: &[Vec<f64>],
 ) -> Vec<Vec<f64>> {
-    let free = |b: usize| vehicle.wheels.iter().all(|w| w.at.body != b);
+    let free = |b: usize| !vehicle.is_witness(b) && vehicle.wheels.iter().all(|w| w.at.body != b);
     (0..vehicle.bodies.len())
         .filter(|b| free(*b))
         .flat_map(|b| needed_forces(vehicle, values, motion, links, b))
@@ -330,7 +330,7 @@ pub fn static_loads(found: &Identification, gravity: f64, run: &str) -> LoadEsti
             .filter(|w| bodies.contains(&w.at.body))
             .map(|w| w.channel.as_str())
             .collect();
-        let masses: Vec<usize> = bodies.iter().map(|&b| v.inertia_index(b, 0, 0)).collect();
+        let masses = v.masses(&bodies);
         let told = masses
             .iter()
             .all(|&i| found.scaled[i] && found.values[i].is_finite());

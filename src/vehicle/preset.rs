@@ -66,6 +66,7 @@ pub struct Wish {
 ///
 /// - `front2`: a_body, a_wheel, f_wheel (thesis 5.1, 5.2); `front_pair`: also `_other`
 /// - `rear3`: a_body, a_mid, a_rear, f_mid, f_rear (thesis 5.3 to 5.5)
+/// - these with a term on `pitch`: also a_body_next, the body over the next axle
 /// - `half`: a_body_front, a_body_rear, a_front, a_rear, f_front, f_rear (pitch)
 /// - `full2`, `full3`: a_body_lf .. a_body_rr (three at least), a_lf .., f_lf .. with beam axles (heave, pitch, roll)
 /// - `rig`: a_1, a_2, f_1, spring 1 between the masses, spring 2 from mass 2 to ground (thesis 4.1)
@@ -343,14 +344,32 @@ fn oscillator() -> Vehicle {
 }
 
 /// Links that couple what the plain model keeps apart; a term that names one (`k_axle`) adds it.
-pub const COUPLINGS: [&str; 4] = ["axle", "roll", "bar", "cross"];
+pub const COUPLINGS: [&str; 5] = ["axle", "roll", "bar", "cross", "pitch"];
+
+/// Channel of the body over the next axle.
+pub const NEXT: &str = "a_body_next";
+
+/// Adds the body over the next axle as a witness, where the model is of one axle or bogie; `channel` is its accelerometer.
+pub fn add_next(v: &mut Vehicle, channel: &str) {
+    let of_one = matches!(v.name.as_str(), "front2" | "front_pair" | "rear3");
+    if of_one && v.bodies.iter().all(|b| b.shape != Shape::Witness) {
+        let at = point(v.bodies.len(), [0.0, 0.0]);
+        v.bodies.push(body("next", Shape::Witness, 0.0, 0.0, false));
+        v.sensors.push(accelerometer(channel.to_owned(), at));
+    }
+}
 
 /// A coupling link without terms.
 ///
 /// `front_pair`: `axle` joins the wheels, `roll` the bodies, `bar` resists unequal stretch of both sides, `cross` joins this side's
-/// body to the other wheel. `rear3`: `axle` joins mid and rear wheel, `bar` adds their stretches.
+/// body to the other wheel. `rear3`: `axle` joins mid and rear wheel, `bar` adds their stretches. `pitch` joins the body to that over
+/// the next axle ([`add_next`]): a frame of mass M and pitch inertia J whose centre of gravity is a behind this axle and b ahead of the next
+/// has inertance b_pitch = (J - M a b) / (a + b)^2 between them, and m_b is its static share, M b / (a + b).
 pub fn coupling(v: &Vehicle, name: &str) -> Option<Link> {
+    let next = v.bodies.iter().position(|b| b.shape == Shape::Witness);
+    let to_next = next.map(|n| [(1.0, 0), (-1.0, n)]);
     let ends: &[(f64, usize)] = match (v.name.as_str(), name) {
+        (_, "pitch") => to_next.as_ref()?,
         ("front_pair", "axle") => &[(1.0, 1), (-1.0, 3)],
         ("front_pair", "roll") => &[(1.0, 0), (-1.0, 2)],
         ("front_pair", "bar") => &[(1.0, 0), (-1.0, 1), (-1.0, 2), (1.0, 3)],
@@ -410,6 +429,9 @@ fn add_terms(v: &mut Vehicle, terms: &[String]) -> Result<(), PresetError> {
                     }
                 }
             }
+        }
+        if !met && kind.is_some() && place == "pitch" {
+            add_next(v, NEXT);
         }
         if let (false, Some(term), Some(mut link)) = (met, kind, coupling(v, place)) {
             link.terms.push(term);

@@ -18,7 +18,7 @@ use crate::report::vehicle::{Curve, restoring_curves, restoring_section, write_r
 use crate::vehicle::identify::{Identification, Question, identify};
 use crate::vehicle::layout::Vehicle;
 use crate::vehicle::motion::{Treatment, motion};
-use crate::vehicle::preset::{Wish, vehicle};
+use crate::vehicle::preset::{NEXT, Wish, add_next, vehicle};
 use crate::vehicle::stretch::slow_stretches;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -78,10 +78,12 @@ fn repairable(outcome: &MotionOutcome) -> bool {
 fn frame(section: &VehicleJob, records: &VehicleRecords) -> MotionFrame {
     let q = &records.question;
     let mut model = q.vehicle.clone();
-    let witnessed = ["a_body_other", "a_wheel_other"].iter().all(|c| {
-        let name = section.columns.get(*c).map_or(*c, String::as_str);
+    let recorded = |name: &str| {
         records.data.has(name) && records.hold_out.as_ref().is_none_or(|h| h.has(name))
-    });
+    };
+    let witnessed = ["a_body_other", "a_wheel_other"]
+        .iter()
+        .all(|c| recorded(section.columns.get(*c).map_or(*c, String::as_str)));
     if section.model == "front2" && witnessed {
         let wish = Wish {
             model: "front_pair".into(),
@@ -97,8 +99,14 @@ fn frame(section: &VehicleJob, records: &VehicleRecords) -> MotionFrame {
     let bodies = if model.name == "front_pair" {
         vec![0, 1]
     } else {
-        (0..model.bodies.len()).collect()
+        (0..model.bodies.len())
+            .filter(|&b| !model.is_witness(b))
+            .collect()
     };
+    let next = section.columns.get(NEXT).map_or(NEXT, String::as_str);
+    if recorded(next) {
+        add_next(&mut model, next);
+    }
     MotionFrame {
         bodies,
         vehicle: model,

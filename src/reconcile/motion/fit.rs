@@ -82,10 +82,7 @@ pub fn held(frame: &MotionFrame, vehicle: &Vehicle, design: &Design) -> Vec<Opti
     if !driven && !scaled {
         let mut bodies = frame.bodies.clone();
         bodies.sort_by_key(|&b| !vehicle.bodies[b].sprung);
-        let first = bodies
-            .iter()
-            .map(|&b| vehicle.inertia_index(b, 0, 0))
-            .find(|&i| occurs(i));
+        let first = vehicle.masses(&bodies).into_iter().find(|&i| occurs(i));
         if let Some(i) = first {
             out[i] = Some(1.0);
         }

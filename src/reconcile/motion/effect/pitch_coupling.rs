@@ -1,4 +1,4 @@
-//! Sprung bodies that are not free of each other along the vehicle; the same link as roll, to the body of another axle.
+//! Sprung bodies over two axles that are not free of each other: the pitch inertia of the frame, or what stands in for it.
 
 use super::axle_coupling::shapes;
 use crate::reconcile::motion::candidate::Candidate;

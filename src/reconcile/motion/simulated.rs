@@ -1,0 +1,188 @@
+//! The named model by the error of simulation: parameters found anew by simulating the fitted record, judged by simulating the held-out one.
+//!
+//! The search compares equations, which are linear in what it looks for; a simulation has no measured motion on its right-hand side, so
+//! neither sensor noise in the regressors nor stretch integrated twice can hide what is wrong. The analyst's model is treated alike.
+
+use super::frame::MotionFrame;
+use super::gap::RecordGap;
+use super::outcome::MotionOutcome;
+use crate::series::align::delayed;
+use crate::series::channels::Channels;
+use crate::series::detrend::rms;
+use crate::series::spectrum::Band;
+use crate::vehicle::layout::{Measures, Vehicle};
+use crate::vehicle::motion::Adjustment;
+use crate::vehicle::refine::{Comparison, OPEN, comparison, refine};
+use crate::vehicle::simulate::SimulationError;
+
+/// Samples of the fitted record that are simulated over and over; what they leave open the rest would hardly settle.
+const FITTED: usize = 12_000;
+/// Samples that a simulation from rest is given to come to terms with displacement sensors.
+const FORGOTTEN: usize = 200;
+/// Integration steps a sample, the first that does not run away.
+const STEPS: [usize; 2] = [2, 8];
+
+/// Error of simulation of one sensor on held-out data, RMS in its unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SimulatedChannel {
+    /// Channel.
+    pub channel: String,
+    /// RMS of what was measured.
+    pub measured: f64,
+    /// Of the analyst's model.
+    pub before: f64,
+    /// Of the named one.
+    pub after: f64,
+}
+
+/// Both models after simulation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SimulatedGap {
+    /// By sensor that was simulated.
+    pub channels: Vec<SimulatedChannel>,
+    /// Parameters of the named model: name, by regression, by simulation.
+    pub parameters: Vec<(String, f64, f64)>,
+}
+
+/// Simulates both models; the reason where that can't be done.
+///
+/// # Errors
+/// A sentence: inertance and changes of mass are not simulated; a body's inertia may be unknown; motion may run away.
+pub fn simulated_gap(frame: &MotionFrame, outcome: &MotionOutcome) -> Result<SimulatedGap, String> {
+    let (Some(before), Some(after)) = (&outcome.before, &outcome.after) else {
+        return Err("there is no model to simulate".into());
+    };
+    let one = simulated(frame, before, &frame.corrections)?;
+    let two = simulated(frame, after, &outcome.corrections)?;
+    let channels = two.errors.iter().filter_map(|(channel, measured, error)| {
+        let plain = one.errors.iter().find(|e| e.0 == *channel)?;
+        Some(SimulatedChannel {
+            channel: channel.clone(),
+            measured: *measured,
+            before: plain.2,
+            after: *error,
+        })
+    });
+    let names = after.vehicle.parameters();
+    Ok(SimulatedGap {
+        channels: channels.collect(),
+        parameters: (two.free.iter())
+            .map(|&i| (names[i].name.clone(), after.values[i], two.values[i]))
+            .collect(),
+    })
+}
+
+struct Judged {
+    /// Channel, RMS of what was measured, RMS of the error.
+    errors: Vec<(String, f64, f64)>,
+    values: Vec<f64>,
+    free: Vec<usize>,
+}
+
+/// A model fitted to the one record by simulation and held against the other.
+fn simulated(
+    frame: &MotionFrame,
+    model: &RecordGap,
+    adjust: &[Adjustment],
+) -> Result<Judged, String> {
+    let v = &model.vehicle;
+    if !v.steps.is_empty() {
+        return Err("a mass that changes is not simulated".into());
+    }
+    let fitted = first(&corrected(&frame.data, adjust), FITTED);
+    let judging = corrected(frame.hold_out.as_ref().unwrap_or(&frame.data), adjust);
+    let free = free(frame, v, &model.values);
+    let mut last = SimulationError::Diverged { at_s: 0.0 };
+    for steps in STEPS {
+        let learn = prepared(frame, v, &fitted, steps)?;
+        let judge = prepared(frame, v, &judging, steps)?;
+        let tried = refine(v, &model.values, &free, &learn).and_then(|r| {
+            let errors = judge.errors(v, &r.values, &r.constant)?;
+            Ok((r.values, errors))
+        });
+        match tried {
+            Ok((values, errors)) => {
+                let sizes = judge.measured_rms();
+                let errors = errors.iter().zip(&sizes).map(|((i, e), (_, size))| {
+                    let kept: Vec<f64> = e.iter().copied().filter(|x| x.is_finite()).collect();
+                    (v.sensors[*i].channel.clone(), *size, rms(&kept))
+                });
+                return Ok(Judged {
+                    errors: errors.collect(),
+                    values,
+                    free,
+                });
+            }
+            Err(e @ SimulationError::Diverged { .. }) => last = e,
+            Err(e) => return Err(e.to_string()),
+        }
+    }
+    Err(last.to_string())
+}
+
+fn prepared(
+    frame: &MotionFrame,
+    v: &Vehicle,
+    record: &Channels,
+    steps: usize,
+) -> Result<Comparison, String> {
+    let witnesses: Vec<usize> = (0..v.bodies.len())
+        .filter(|b| !frame.bodies.contains(b))
+        .collect();
+    let mut c = comparison(v, record, band(frame), &witnesses)
+        .map_err(|e| e.to_string())?
+        .with_steps(steps);
+    if band(frame) == OPEN {
+        c.forget(FORGOTTEN);
+    }
+    Ok(c)
+}
+
+/// Displacements are compared as they are, accelerations in the band.
+fn band(frame: &MotionFrame) -> Band {
+    let sensors = &frame.vehicle.sensors;
+    if sensors.iter().all(|s| s.measures == Measures::Displacement) {
+        OPEN
+    } else {
+        frame.band
+    }
+}
+
+/// Parameters that the equations told, but for those measured elsewhere and the mass that stands for the scale where no force does.
+fn free(frame: &MotionFrame, v: &Vehicle, values: &[f64]) -> Vec<usize> {
+    let names = v.parameters();
+    let is_known = |i: usize| frame.known.contains_key(&names[i].name);
+    let driven = v.wheels.iter().any(|w| frame.data.has(&w.channel));
+    let scale = (!driven && !(0..names.len()).any(is_known))
+        .then(|| {
+            let mut bodies = frame.bodies.clone();
+            bodies.sort_by_key(|&b| !v.bodies[b].sprung);
+            let mut masses = v.masses(&bodies).into_iter();
+            masses.find(|&i| values[i].is_finite())
+        })
+        .flatten();
+    (0..names.len())
+        .filter(|&i| values[i].is_finite() && !is_known(i) && Some(i) != scale)
+        .collect()
+}
+
+fn corrected(record: &Channels, adjust: &[Adjustment]) -> Channels {
+    let (mut record, _) = record.with_gaps_filled();
+    for a in adjust {
+        for c in record.list.iter_mut().filter(|c| c.name == a.channel) {
+            if a.delay_s != 0.0 {
+                c.samples = delayed(&c.samples, record.rate_hz, -a.delay_s);
+            }
+            c.samples.iter_mut().for_each(|x| *x /= a.gain);
+        }
+    }
+    record
+}
+
+fn first(record: &Channels, samples: usize) -> Channels {
+    let mut out = record.clone();
+    for c in &mut out.list {
+        c.samples.truncate(samples);
+    }
+    out
+}
