@@ -121,3 +121,62 @@ fn bad_records_end_with_code_2_and_name_file_line_and_remedy() {
     );
     fails("k_q");
 }
+
+/// By Newton's laws the force on the chassis is the wheel force less what the wheel's own mass takes; hanger and shackle share it as the
+/// levers say.
+#[test]
+fn the_chassis_force_is_told_by_mass_by_springs_and_at_the_seats_of_the_leaf() {
+    let case =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/hidden_effects/dynamics/dev-d1");
+    if !case.exists() {
+        eprintln!("skipped: {} is absent", case.display());
+        return;
+    }
+    let out = folder("identify_chassis");
+    std::fs::create_dir_all(&out).unwrap();
+    let mut text = std::fs::read_to_string(case.join("job.toml")).unwrap();
+    for file in ["data.csv", "holdout.csv"] {
+        std::fs::copy(case.join(file), out.join(file)).unwrap();
+    }
+    let leaf =
+        "leaf = { s = { hanger_to_axle = 0.6, axle_to_shackle = 0.9, shackle_angle_deg = 10 } }";
+    text = text.replace("[vehicle]", &format!("[vehicle]\n{leaf}"));
+    std::fs::write(out.join("job.toml"), &text).unwrap();
+    let output = run(&out.join("job.toml"), &out.join("out"));
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let chassis = &result["chassis_forces"][0];
+    let [mass, springs, difference] =
+        ["rms_by_mass", "rms_by_springs", "rms_difference"].map(|k| chassis[k].as_f64().unwrap());
+    // Sensor noise is below one per cent of the accelerations.
+    assert!(difference < 0.02 * mass.min(springs), "{chassis}");
+    let table = std::fs::read_to_string(out.join("out/chassis_forces.csv")).unwrap();
+    let mut lines = table.lines();
+    assert_eq!(
+        lines.next(),
+        Some("time,b.by_mass,b.by_springs,s,s.hanger,s.shackle,s.horizontal")
+    );
+    let mut squares = [0.0; 2];
+    for line in lines.take(2000) {
+        let v: Vec<f64> = line.split(',').map(|x| x.parse().unwrap()).collect();
+        let near = |a: f64, b: f64| assert!((a - b).abs() <= 2e-6 * v[3].abs() + 1e-6, "{line}");
+        near(v[4] + v[5], v[3]);
+        near(v[4] * 0.6, v[5] * 0.9);
+        near(v[6], v[5] * 10f64.to_radians().tan());
+        squares[0] += (v[1] - v[3]).powi(2);
+        squares[1] += v[1] * v[1];
+    }
+    assert!(squares[0] < 0.02f64.powi(2) * squares[1]);
+    std::fs::write(out.join("job.toml"), text.replace("{ s = {", "{ q = {")).unwrap();
+    let output = run(&out.join("job.toml"), &out.join("out"));
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert!(
+        error.contains("no link `q`") && error.contains("`s`"),
+        "{error}"
+    );
+}

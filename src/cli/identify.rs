@@ -4,12 +4,14 @@ use super::fault::Faults;
 use super::vehicle::{VehicleRecords, read_vehicle, vehicle_fault};
 use super::{JobArguments, Session, job};
 use crate::report::vehicle::{
-    Curve, identify_page, restoring_curves, write_parameters, write_restoring_force,
-    write_wheel_forces,
+    Curve, identify_page, restoring_curves, write_chassis_forces, write_parameters,
+    write_restoring_force, write_wheel_forces,
 };
 use crate::series::channels::Channels;
+use crate::series::detrend::rms;
 use crate::series::welch::cross_spectra;
 use crate::units::ReportUnits;
+use crate::vehicle::chassis::chassis_forces;
 use crate::vehicle::identify::{Identification, identify};
 use crate::vehicle::loads::{LoadHistory, static_loads, wheel_force_history};
 use crate::vehicle::motion::{Motion, Treatment, motion};
@@ -27,6 +29,16 @@ struct LoadRow {
     min: f64,
     max: f64,
     sample_sigma: Option<f64>,
+}
+
+/// The force on a sprung body in `result.json`.
+#[derive(Serialize)]
+struct ChassisRow {
+    body: String,
+    rms_by_mass: f64,
+    rms_by_springs: f64,
+    rms_difference: f64,
+    unit: String,
 }
 
 /// Reads the job and its records, identifies, writes parameters, wheel loads and restoring forces.
@@ -104,6 +116,15 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         "restoring_force.csv",
         write_restoring_force(&found, &measured),
     )?;
+    let forces = chassis_forces(&found, &measured);
+    let leaves = job.vehicle.as_ref().map(|v| v.leaf.clone());
+    let leaves = leaves.unwrap_or_default();
+    if !forces.is_empty() {
+        write(
+            "chassis_forces.csv",
+            write_chassis_forces(&forces, &leaves, &measured),
+        )?;
+    }
     let (shown, shown_motion) = held.as_ref().map_or((&loads, &measured), |(h, m)| (h, m));
     let html = identify_page(
         &job.title,
@@ -112,7 +133,19 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         &history_curves(shown, shown_motion),
         &spectrum_curves(shown, shown_motion),
         &restoring_curves(&found, shown_motion),
+        &forces,
     );
+    let rows: Vec<ChassisRow> = forces
+        .iter()
+        .map(|f| ChassisRow {
+            body: f.body.clone(),
+            rms_by_mass: rms(&f.by_mass),
+            rms_by_springs: rms(&f.by_springs),
+            rms_difference: f.difference(),
+            unit: question.units.force.clone(),
+        })
+        .collect();
+    session.put("chassis_forces", rows)?;
     session
         .output_for(&arguments.job)?
         .write_bytes("report.html", html.as_bytes())

@@ -66,6 +66,24 @@ pub fn read_vehicle(session: &mut Session, job: &Job) -> Result<VehicleRecords, 
     }
     let wish = wish_of(section);
     let mut model = vehicle(&wish).map_err(|e| vec![preset_fault(job, section, &e)])?;
+    if let Some(link) = section
+        .leaf
+        .keys()
+        .find(|k| model.links.iter().all(|l| l.name != **k))
+    {
+        let links: Vec<String> = model
+            .links
+            .iter()
+            .map(|l| format!("`{}`", l.name))
+            .collect();
+        return Err(vec![Fault::at(
+            &*job.file,
+            section.line,
+            format!("vehicle.leaf.{link}"),
+            format!("model `{}` has no link `{link}`", section.model),
+            format!("name one of {}", links.join(", ")),
+        )]);
+    }
     let gravity = job.units.standard_gravity();
     if let Some(change) = &section.mass_change {
         let Some(body) = model.bodies.iter().position(|b| b.name == change.body) else {

@@ -1,4 +1,4 @@
-//! Wheel and chassis forces from a fitted vehicle and measured motion.
+//! Wheel forces from a fitted vehicle and measured motion.
 
 use super::identify::Identification;
 use super::layout::Vehicle;
@@ -197,81 +197,6 @@ pub fn best_blend(vehicle: &Vehicle, values: &[f64], motion: &Motion) -> Blend {
     (0..vehicle.wheels.len())
         .map(|w| share(w).unwrap_or_default())
         .collect()
-}
-
-/// Force on the chassis from all links of a body, by the body's inertia: M q'' in heave (thesis 5.8, 5.11).
-pub fn chassis_force_by_mass(
-    vehicle: &Vehicle,
-    values: &[f64],
-    motion: &Motion,
-    body: usize,
-) -> Vec<f64> {
-    let mut out = vec![0.0; motion.n_samples()];
-    for (i, q) in motion.bodies[body].iter().enumerate() {
-        let m = values
-            .get(vehicle.inertia_index(body, i, 0))
-            .copied()
-            .unwrap_or(f64::NAN);
-        out.iter_mut().zip(q).for_each(|(f, a)| *f += m * a);
-    }
-    out
-}
-
-/// The same by the links' own terms: minus the sum of link forces (thesis 5.9, 5.12).
-pub fn chassis_force_by_spring(
-    vehicle: &Vehicle,
-    values: &[f64],
-    motion: &Motion,
-    body: usize,
-) -> Vec<f64> {
-    let links = link_forces(vehicle, values, motion);
-    let mut out = vec![0.0; motion.n_samples()];
-    for (link, force) in vehicle.links.iter().zip(&links) {
-        let w: f64 = link
-            .ends
-            .iter()
-            .filter(|e| e.1.body == body)
-            .map(|e| e.0)
-            .sum();
-        out.iter_mut().zip(force).for_each(|(o, f)| *o -= w * f);
-    }
-    out
-}
-
-/// Force on the chassis from a single accelerometer and a stated sprung mass: m a, with the standard deviation that the mass
-/// (one sd), sensor noise and the part of the motion not straight above the wheel (share of the signal) leave.
-pub fn chassis_force_single(
-    acceleration: &[f64],
-    mass: f64,
-    mass_sigma: f64,
-    noise: f64,
-) -> (Vec<f64>, f64) {
-    let force: Vec<f64> = acceleration.iter().map(|a| mass * a).collect();
-    let rms = crate::series::detrend::rms(acceleration);
-    (force, (mass_sigma * rms).hypot(mass * noise))
-}
-
-/// Where a leaf spring stands on the frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LeafSeat {
-    /// From the fixed hanger to the axle, along the spring.
-    pub hanger_to_axle: f64,
-    /// From the axle to the shackle.
-    pub axle_to_shackle: f64,
-    /// Angle of the shackle from the vertical, radians, positive when it pulls the spring's end away from the hanger.
-    pub shackle_angle_rad: f64,
-}
-
-/// Vertical force at hanger and shackle and horizontal force at both, from the vertical force on the chassis: the leaf is a beam
-/// on a hinge and a roller whose reaction is along the shackle.
-pub fn split_leaf(force: f64, seat: LeafSeat) -> [f64; 3] {
-    let length = seat.hanger_to_axle + seat.axle_to_shackle;
-    let shackle = force * seat.hanger_to_axle / length;
-    [
-        force - shackle,
-        shackle,
-        shackle * seat.shackle_angle_rad.tan(),
-    ]
 }
 
 /// Wheel forces of a record in the band, one sigma a sample from what the identification left over.

@@ -5,11 +5,12 @@
 //! - [`motion`]: measured channels made comparable; [`equations`]: the equations of motion, linear in the parameters
 //! - [`fit`]: weighted least squares with bounds; [`interval`]: covariance under coloured residuals
 //! - [`identify`]: all of it, with [`identifiability`] in words and [`checks`]
-//! - [`loads`]: wheel and chassis forces; [`fusion`]: axle bridge and hub accelerometer together
+//! - [`loads`]: wheel forces; [`chassis`]: chassis forces; [`fusion`]: axle bridge and hub accelerometer together
 //! - [`stretch`]: slow stretch from force, where integration drifts
 //! - [`simulate`]: forward in time; [`refine`]: nonlinear parameters by simulation error
 //! - [`swarm`]: particle swarm, for comparison with the thesis
 
+pub mod chassis;
 pub mod checks;
 pub mod equations;
 pub mod fit;

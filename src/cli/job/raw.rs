@@ -249,6 +249,15 @@ pub(super) struct RawVehicle {
     pub bounds: BTreeMap<String, [f64; 2]>,
     pub corrections: BTreeMap<String, RawCorrection>,
     pub mass_change: Option<RawMassChange>,
+    pub leaf: BTreeMap<Spanned<String>, RawLeaf>,
+}
+
+#[derive(Deserialize, JsonSchema, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawLeaf {
+    pub hanger_to_axle: S<f64>,
+    pub axle_to_shackle: S<f64>,
+    pub shackle_angle_deg: S<f64>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

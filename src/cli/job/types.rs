@@ -2,6 +2,7 @@
 
 pub use super::shapes::Ids;
 use crate::units::{Quantity, ReportUnits, Unit, UnitSystem};
+use crate::vehicle::chassis::LeafSeat;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -690,6 +691,8 @@ pub struct Vehicle {
     pub corrections: BTreeMap<String, [f64; 2]>,
     /// A mass that changes during the record.
     pub mass_change: Option<MassChange>,
+    /// Leaf springs by link (`s`), whose force is divided between hanger and shackle.
+    pub leaf: BTreeMap<String, LeafSeat>,
     /// Line of the job.
     pub line: u32,
 }

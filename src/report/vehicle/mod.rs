@@ -6,4 +6,6 @@ mod tables;
 
 pub use page::{Curve, identify_page};
 pub use restoring::{restoring_curves, restoring_section};
-pub use tables::{write_parameters, write_restoring_force, write_wheel_forces};
+pub use tables::{
+    write_chassis_forces, write_parameters, write_restoring_force, write_wheel_forces,
+};

@@ -3,7 +3,9 @@
 use super::restoring::restoring_section;
 use crate::finding::Finding;
 use crate::report::figure::{Line, Scale, lines};
-use crate::report::page::{Section, page};
+use crate::report::page::{Section, number, page, table_section};
+use crate::series::detrend::rms;
+use crate::vehicle::chassis::ChassisForce;
 use crate::vehicle::identify::Identification;
 use maud::{Markup, html};
 
@@ -27,6 +29,7 @@ pub fn identify_page(
     histories: &[Curve],
     spectra: &[Curve],
     restoring: &[Curve],
+    chassis: &[ChassisForce],
 ) -> String {
     let mut sections = vec![Section {
         title: "Parameters".into(),
@@ -47,6 +50,16 @@ pub fn identify_page(
         title: "Wheel force".into(),
         body: plots(histories, "time, s", "force", Scale::Linear),
     });
+    let rows = chassis.iter().map(|f| {
+        let sizes = [rms(&f.by_mass), rms(&f.by_springs), f.difference()].map(number);
+        std::iter::once(f.body.clone()).chain(sizes).collect()
+    });
+    sections.push(table_section(
+        "Chassis force, RMS in the band",
+        &["body", "by mass", "by springs", "difference"],
+        &rows.collect::<Vec<Vec<String>>>(),
+        "By mass: inertia times acceleration. By springs: what springs and dampers pass on. Either may be wrong by their difference.",
+    ));
     sections.push(Section {
         title: "Spectra".into(),
         body: plots(spectra, "frequency, Hz", "density", Scale::LogY),

@@ -1,9 +1,11 @@
 //! Tables of an identification.
 
 use super::restoring::asked_force;
+use crate::vehicle::chassis::{ChassisForce, LeafSeat, split_leaf};
 use crate::vehicle::identify::Identification;
 use crate::vehicle::loads::{LoadHistory, link_forces};
 use crate::vehicle::motion::Motion;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// `parameters.csv`: name, value, sigma, low, high, unit, identifiable; blank where not told.
@@ -108,6 +110,42 @@ pub fn write_restoring_force(found: &Identification, motion: &Motion) -> String 
                 model / n_f
             );
         }
+    }
+    out
+}
+
+/// `chassis_forces.csv`: time, then of each sprung body the force by mass and by springs, of each spring its force on the chassis, and of a
+/// leaf spring those at hanger and shackle (vertical) and along the frame; in the band, about their means, upwards.
+pub fn write_chassis_forces(
+    forces: &[ChassisForce],
+    leaves: &BTreeMap<String, LeafSeat>,
+    motion: &Motion,
+) -> String {
+    let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
+    for f in forces {
+        columns.push((format!("{}.by_mass", f.body), f.by_mass.clone()));
+        columns.push((format!("{}.by_springs", f.body), f.by_springs.clone()));
+        for (link, force) in &f.springs {
+            columns.push((link.clone(), force.clone()));
+            if let Some(seat) = leaves.get(link) {
+                for (k, part) in ["hanger", "shackle", "horizontal"].iter().enumerate() {
+                    let at = force.iter().map(|v| split_leaf(*v, *seat)[k]).collect();
+                    columns.push((format!("{link}.{part}"), at));
+                }
+            }
+        }
+    }
+    let mut out = String::from("time");
+    columns.iter().for_each(|c| {
+        let _ = write!(out, ",{}", c.0);
+    });
+    out.push('\n');
+    for t in 0..motion.n_samples() {
+        let _ = write!(out, "{:.6}", motion.start_s + t as f64 / motion.rate_hz);
+        for (_, values) in &columns {
+            let _ = write!(out, ",{:.6e}", values[t]);
+        }
+        out.push('\n');
     }
     out
 }

@@ -3,12 +3,12 @@
 use super::*;
 use crate::series::channels::{Channel, SeriesError};
 use crate::series::integrate::integrated;
+use crate::vehicle::chassis::{LeafSeat, split_leaf};
 use crate::vehicle::checks::check_mass_closure;
 use crate::vehicle::equations::{Equation, equations};
 use crate::vehicle::fit::{Allowed, fit};
 use crate::vehicle::fusion::{calibrate, combined};
 use crate::vehicle::interval::spread;
-use crate::vehicle::loads::{LeafSeat, split_leaf};
 use crate::vehicle::motion::VehicleError;
 use crate::vehicle::preset::PresetError;
 use crate::vehicle::simulate::{Drive, SimulationError, simulate};

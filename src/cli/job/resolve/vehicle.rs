@@ -8,6 +8,7 @@ use super::super::types::*;
 use super::units::units;
 use crate::units::{ReportUnits, UnitSystem};
 
+use crate::vehicle::chassis::LeafSeat;
 use crate::vehicle::preset::MODELS;
 
 pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> Option<Vehicle> {
@@ -76,6 +77,34 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
             weight: m.weight.as_ref().is_none_or(|w| *w.get_ref()),
         })
     });
+    let mut leaf = std::collections::BTreeMap::new();
+    for (link, r) in &raw.leaf {
+        let key = |k: &str| format!("vehicle.leaf.{}.{k}", link.get_ref());
+        for (value, k) in [
+            (&r.hanger_to_axle, "hanger_to_axle"),
+            (&r.axle_to_shackle, "axle_to_shackle"),
+        ] {
+            c.require(value, section, &key(k), &format!("{k} = 0.7"));
+        }
+        let seat = LeafSeat {
+            hanger_to_axle: c
+                .positive(&r.hanger_to_axle, &key("hanger_to_axle"))
+                .unwrap_or(1.0),
+            axle_to_shackle: c
+                .positive(&r.axle_to_shackle, &key("axle_to_shackle"))
+                .unwrap_or(1.0),
+            shackle_angle_rad: c
+                .number(
+                    &r.shackle_angle_deg,
+                    &key("shackle_angle_deg"),
+                    "an angle between -80 and 80 degrees",
+                    |a| a.abs() <= 80.0,
+                )
+                .unwrap_or(0.0)
+                .to_radians(),
+        };
+        leaf.insert(link.get_ref().clone(), seat);
+    }
     model.as_ref().zip(data.as_ref())?;
     Some(Vehicle {
         model: model?,
@@ -96,6 +125,7 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
         bounds: raw.bounds.clone(),
         corrections,
         mass_change,
+        leaf,
         line: c.line(section),
     })
 }
