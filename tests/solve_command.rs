@@ -373,3 +373,25 @@ fn recover_takes_the_solution_of_sensitivity_and_warns_of_content_near_the_first
     let other = again["first_elastic_mode_hz"].as_f64().unwrap();
     assert!((other / first - 1.0).abs() < 1e-6, "{other} {first}");
 }
+
+/// Element types of a result file: 33 is CQUAD4 at the centre, 144 with corners (MSC Nastran Quick Reference Guide, item codes).
+#[test]
+fn strain_is_written_where_the_deck_asks_for_it() {
+    for (request, written) in [
+        ("", 144),
+        ("STRAIN(PLOT,FIBER) = ALL\n", 33),
+        ("STRAIN(PLOT,FIBER,BILIN) = ALL\n", 144),
+    ] {
+        let deck = strip("").replacen("SUBCASE 1", &format!("{request}SUBCASE 1"), 1);
+        let (code, err, dir) = solve("corners", &deck);
+        assert_eq!(code, 0, "{err}");
+        let bytes = std::fs::read(dir.join("model.out/results.op2")).unwrap();
+        let file = nastran::op2::Op2::read(&bytes).unwrap();
+        let strain = nastran::results::Quantity::Strain;
+        let types: Vec<u32> = (file.blocks.iter())
+            .filter(|b| b.quantity == strain)
+            .filter_map(|b| b.element.map(|e| e.0))
+            .collect();
+        assert_eq!(types, [written], "{request}");
+    }
+}

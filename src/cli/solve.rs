@@ -5,10 +5,12 @@ use super::fault::{Fault, Faults};
 use super::scene::scene_of_solution;
 use super::solved::{cases_of_job, solve_kept};
 use super::{JobArguments, Session, job};
-use crate::fe::{LoadCase, Solution, SolveReport, loads_of_subcase, relief_of};
+use crate::fe::{Corners, LoadCase, Solution, SolveReport, loads_of_subcase, relief_of};
 use crate::finding::{Finding, Severity};
-use crate::model::Model;
+use crate::model::{Model, Shell};
 use crate::report::{PlannedBlock, planned_blocks, rows_of_block, write_vtu};
+use nastran::bdf::Request;
+use nastran::cards::ShellShape;
 use nastran::op2::{EncodedBlock, Op2Writer, WriteError};
 use rayon::prelude::*;
 use serde_json::json;
@@ -18,6 +20,8 @@ use std::path::{Path, PathBuf};
 struct Task {
     read: DeckModel,
     cases: Vec<LoadCase>,
+    /// Where strain is wanted.
+    corners: Corners,
     /// Why a subcase of the deck is left out.
     left_out: Vec<String>,
 }
@@ -38,6 +42,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     let Task {
         read,
         cases,
+        corners,
         left_out,
     } = task;
     for why in left_out {
@@ -49,7 +54,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
             "solve it with Nastran",
         ));
     }
-    let (solution, report) = solve_kept(session, &arguments.job, &read, &cases)?;
+    let (solution, report) = solve_kept(session, &arguments.job, &read, &cases, corners)?;
     session.findings.extend(solution.findings.iter().cloned());
     session.stage("write", |s| {
         write(s, &arguments.job, &read.model, &cases, &solution, &report)
@@ -77,6 +82,7 @@ fn of_job(session: &mut Session, path: &Path) -> Result<Task, Faults> {
     Ok(Task {
         read,
         cases,
+        corners: Corners::Compute,
         left_out: Vec::new(),
     })
 }
@@ -91,6 +97,7 @@ fn of_deck(session: &mut Session, path: &Path) -> Result<Task, Faults> {
     }
     let mut left_out = Vec::new();
     let mut cases = Vec::new();
+    let mut corners = corners_always_written(&read.model);
     for s in read.deck.case_control.effective_subcases() {
         let loads = loads_of_subcase(&s);
         if s.deform.is_some() {
@@ -98,6 +105,9 @@ fn of_deck(session: &mut Session, path: &Path) -> Result<Task, Faults> {
         } else if loads.is_empty() && !has_enforced(&read.model, s.spc) {
             left_out.push(format!("subcase {}: no LOAD", s.id));
         } else {
+            if s.request("STRAIN").is_none_or(asks_for_corners) {
+                corners = Corners::Compute;
+            }
             cases.push(LoadCase {
                 subcase: s.id,
                 label: s.label.clone().or(s.subtitle.clone()).unwrap_or_default(),
@@ -119,8 +129,27 @@ fn of_deck(session: &mut Session, path: &Path) -> Result<Task, Faults> {
     Ok(Task {
         read,
         cases,
+        corners,
         left_out,
     })
+}
+
+/// Whether a request for strain names a method for corners; Nastran's default is the centre. A deck that asks for no strain at all gets
+/// both.
+fn asks_for_corners(r: &Request) -> bool {
+    ["CORNER", "BILIN", "CUBIC", "SGAGE"]
+        .iter()
+        .any(|o| r.has(o))
+}
+
+/// Result files have no element type for the centre of CQUAD8 and CTRIA6 alone.
+fn corners_always_written(model: &Model) -> Corners {
+    let curved = |s: &Shell| matches!(s.shape, ShellShape::Quad8 | ShellShape::Tria6);
+    if model.shells.iter().any(curved) {
+        Corners::Compute
+    } else {
+        Corners::Leave
+    }
 }
 
 fn has_enforced(model: &Model, spc: Option<u32>) -> bool {

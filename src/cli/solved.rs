@@ -6,7 +6,7 @@ use super::fault::{Fault, Faults};
 use super::job::Job;
 use super::solution_cache::SolutionCache;
 use crate::fe::{
-    FeError, LoadCase, Solution, SolveOptions, SolveReport, Solved, UnitLoad, relief_of,
+    Corners, FeError, LoadCase, Solution, SolveOptions, SolveReport, Solved, UnitLoad, relief_of,
     solution_of, solve_displacements, unit_cases,
 };
 use crate::finding::{Finding, Severity};
@@ -48,10 +48,11 @@ pub fn solve_kept(
     main_input: &Path,
     read: &DeckModel,
     cases: &[LoadCase],
+    corners: Corners,
 ) -> Result<(Solution, SolveReport), Faults> {
     let options = SolveOptions {
         modes: MODES,
-        ..SolveOptions::default()
+        corners,
     };
     let identity = identity(session, read, cases, "");
     let solved = kept(session, main_input, &identity, &read.model, cases, &options)
@@ -133,7 +134,7 @@ fn kept(
 /// a finding says why.
 pub fn first_mode_of(session: &mut Session, job: &Job, read: &DeckModel) -> Option<f64> {
     let solved = cases_of_job(job, read)
-        .and_then(|cases| solve_kept(session, Path::new(&job.file), read, &cases));
+        .and_then(|cases| solve_kept(session, Path::new(&job.file), read, &cases, Corners::Leave));
     let why = match solved {
         Ok((_, report)) => match report.modes.first() {
             Some(f) => return Some(*f),

@@ -6,7 +6,7 @@ use crate::cli::fault::{Fault, Faults};
 use crate::cli::job::{Job, JobLoad, LoadActs, Reference, Role};
 use crate::cli::solved::{cases_of_job, solve_kept};
 use crate::fe::from_results::{Displacements, ReadOptions, solution_from_file};
-use crate::fe::{CaseResult, Solution, UnitLoad};
+use crate::fe::{CaseResult, Corners, Solution, UnitLoad};
 use crate::gauge::CornerRows;
 use crate::model::{Model, Vec3};
 use crate::sensitivity::{Load, LoadCaseOf};
@@ -111,7 +111,13 @@ pub fn read_fields(session: &mut Session, job: &Job) -> Result<Fields, Faults> {
     ));
     if files.results.is_empty() {
         let cases = cases_of_job(job, &deck)?;
-        let (solved, report) = solve_kept(session, Path::new(&job.file), &deck, &cases)?;
+        let (solved, report) = solve_kept(
+            session,
+            Path::new(&job.file),
+            &deck,
+            &cases,
+            Corners::Compute,
+        )?;
         session.findings.extend(solved.findings.iter().cloned());
         let of_load = (0..job.loads.len()).map(|i| (0, i)).collect();
         return Ok(Fields {
