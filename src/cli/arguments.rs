@@ -52,7 +52,7 @@ pub enum Command {
     Sensitivity(JobArguments),
     /// Choose gauges, with a certificate of how far from the best possible they are
     #[command(
-        after_help = "Example:\n  strainbridge place job.toml    # job.out/gauges.csv, gauges.xlsx, gluing_sheet.md, report.html"
+        after_help = "Example:\n  strainbridge place job.toml    # job.out/gauges.csv, gauges.xlsx, gluing_sheet.md, report.html (report.pdf with feature pdf)"
     )]
     Place(JobArguments),
     /// Recover loads from measured strain, with intervals

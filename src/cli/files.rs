@@ -52,6 +52,18 @@ enum Hashing {
     Done(String),
 }
 
+impl Hashing {
+    /// The digest, waited for.
+    fn finish(&mut self) -> String {
+        let hex = match std::mem::replace(self, Hashing::Done(String::new())) {
+            Hashing::Done(hex) => hex,
+            Hashing::Running(thread) => thread.join().unwrap_or_default(),
+        };
+        *self = Hashing::Done(hex.clone());
+        hex
+    }
+}
+
 impl Inputs {
     /// Bytes of the file `given`, which is relative to `base`; large ones are mapped.
     ///
@@ -122,25 +134,16 @@ impl Inputs {
     /// SHA-256 of a file that was read, by the path it was read from.
     pub fn digest_of(&mut self, path: &Path) -> Option<String> {
         let entry = self.entries.iter_mut().find(|e| e.1 == path)?;
-        let hex = match std::mem::replace(&mut entry.2, Hashing::Done(String::new())) {
-            Hashing::Done(hex) => hex,
-            Hashing::Running(thread) => thread.join().ok()?,
-        };
-        entry.2 = Hashing::Done(hex.clone());
-        Some(hex)
+        Some(entry.2.finish()).filter(|hex| !hex.is_empty())
     }
 
     /// The list, hashes finished.
-    pub fn finish(self) -> Vec<Input> {
-        let hex = |h| match h {
-            Hashing::Done(s) => s,
-            Hashing::Running(t) => t.join().unwrap_or_default(),
-        };
+    pub fn list(&mut self) -> Vec<Input> {
         self.entries
-            .into_iter()
-            .map(|(path, _, h)| Input {
+            .iter_mut()
+            .map(|(path, _, hashing)| Input {
                 path: path.replace('\\', "/"),
-                sha256: hex(h),
+                sha256: hashing.finish(),
             })
             .collect()
     }

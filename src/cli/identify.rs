@@ -126,7 +126,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         )?;
     }
     let (shown, shown_motion) = held.as_ref().map_or((&loads, &measured), |(h, m)| (h, m));
-    let html = identify_page(
+    let page = identify_page(
         &job.title,
         &found,
         &session.findings,
@@ -146,10 +146,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         })
         .collect();
     session.put("chassis_forces", rows)?;
-    session
-        .output_for(&arguments.job)?
-        .write_bytes("report.html", html.as_bytes())
-        .map_err(|f| vec![f])?;
+    session.write_page(&arguments.job, page)?;
     for p in &found.parameters {
         match (p.value, p.sigma) {
             (Some(v), Some(s)) => {

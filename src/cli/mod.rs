@@ -17,6 +17,7 @@ mod init;
 mod interrupt;
 pub mod job;
 pub mod output;
+mod paper;
 mod payload;
 mod place;
 mod progress;

@@ -44,8 +44,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     let out = session.output_for(&arguments.job)?;
     out.write("sensitivity.csv", |w| sensitivity_csv(w, s))
         .map_err(|f| vec![f])?;
-    out.write_bytes("report.html", page.as_bytes())
-        .map_err(|f| vec![f])
+    session.write_page(&arguments.job, page)
 }
 
 /// S of every candidate: each allowed surface at each angle of the grid (every 15 degrees where the job says continuous).

@@ -18,17 +18,20 @@ use std::time::Instant;
 
 /// One run of a command.
 pub struct Session {
-    command: &'static str,
+    pub(super) command: &'static str,
     common: CommonArguments,
     /// Files read so far.
     pub inputs: Inputs,
     /// What the stages had to say.
     pub findings: Vec<Finding>,
     faults: Faults,
-    units: Value,
+    pub(super) units: Value,
     body: Map<String, Value>,
     seconds: Map<String, Value>,
-    output: Option<Output>,
+    pub(super) output: Option<Output>,
+    /// The page to be drawn on paper.
+    #[cfg(feature = "pdf")]
+    pub(super) paper: Option<crate::report::page::Page>,
     text: String,
     notes: Vec<String>,
     meter: Arc<Meter>,
@@ -94,6 +97,8 @@ impl Session {
             },
             None => work(&mut session),
         };
+        #[cfg(feature = "pdf")]
+        let done = done.and_then(|()| session.write_paper());
         session.note_seconds("total", start);
         match done.and_then(|()| session.finish()) {
             Ok(code) => code,
@@ -116,6 +121,8 @@ impl Session {
             body: Map::new(),
             seconds: Map::new(),
             output: None,
+            #[cfg(feature = "pdf")]
+            paper: None,
             text: String::new(),
             notes: Vec::new(),
             meter: Arc::default(),
@@ -140,6 +147,8 @@ impl Session {
         let start = Instant::now();
         let progress = Progress::start(command, &self.meter);
         work(&mut session)?;
+        #[cfg(feature = "pdf")]
+        session.write_paper()?;
         drop(progress);
         session.note_seconds("total", start);
         self.note_seconds(command, start);
@@ -282,7 +291,7 @@ impl Session {
             let lines: Vec<String> = self.faults.iter().map(Fault::to_string).collect();
             self.put("faults", lines)?;
         }
-        let inputs = self.inputs.finish();
+        let inputs = self.inputs.list();
         let mut findings = self.findings;
         // The worst first; the order of stages within a severity.
         findings.sort_by_key(|f| std::cmp::Reverse(f.severity));

@@ -207,10 +207,7 @@ fn write(
     let scene = scene_of_solution(model, cases, solution);
     let page =
         crate::report::strain::solution_page(&title, solution, report, &scene, &session.findings);
-    session
-        .output_for(input)?
-        .write_bytes("report.html", page.as_bytes())
-        .map_err(|f| vec![f])
+    session.write_page(input, page)
 }
 
 /// Blocks are made into words in parallel, a few at a time.

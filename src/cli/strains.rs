@@ -80,10 +80,7 @@ pub fn run(arguments: &DeckArguments, session: &mut Session) -> Result<(), Fault
         output.write("strains.csv", write).map_err(|f| vec![f])?;
         let title = format!("Strain of {given}");
         let page = strains_page(&title, &deck.model, &solution, &s.findings);
-        let output = s.output_for(&arguments.deck)?;
-        output
-            .write_bytes("report.html", page.as_bytes())
-            .map_err(|f| vec![f])
+        s.write_page(&arguments.deck, page)
     })?;
     let subcases: Vec<u32> = solution.cases.iter().map(|c| c.subcase).collect();
     session.say(format!(

@@ -2,6 +2,8 @@
 
 pub mod figure;
 pub mod page;
+#[cfg(feature = "pdf")]
+pub mod pdf;
 mod result_blocks;
 pub mod scene;
 pub mod spreadsheet;

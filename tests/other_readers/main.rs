@@ -1,5 +1,5 @@
 //! Our files read by other programs, and theirs by us: pyNastran (OP2, bulk data), meshio (VTU), openpyxl (XLSX), rpc3-file (RPC III), pyarrow
-//! (Parquet), asammdf (MDF4); reports in Chromium.
+//! (Parquet), asammdf (MDF4); reports in Chromium, on paper by pypdf and PDFium.
 //!
 //! Needs Python with these packages: the interpreter named by STRAINBRIDGE_PYTHON, else `python3`. Skipped, with a message, where they
 //! are absent.
@@ -7,6 +7,8 @@
 #![allow(clippy::print_stderr, reason = "says why it is skipped")]
 
 mod exchange;
+#[cfg(feature = "pdf")]
+mod paper;
 mod plate;
 mod python;
 mod report;

@@ -6,7 +6,7 @@ use crate::cli::fault::Faults;
 use crate::cli::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::payload::{BallastFit, BallastSpec};
-use crate::report::page::{number, page, table_section};
+use crate::report::page::{Page, number, table_section};
 use serde_json::json;
 
 /// Misfit of a reaction above which the masses do not explain it, of the measured value.
@@ -261,7 +261,7 @@ pub(super) fn write(
             ),
         ),
     ];
-    let html = page(
+    let page = Page::new(
         &job.title,
         "Masses that complete the model",
         &session.findings,
@@ -297,6 +297,5 @@ pub(super) fn write(
         Ok(())
     })
     .map_err(|f| vec![f])?;
-    out.write_bytes("report.html", html.as_bytes())
-        .map_err(|f| vec![f])
+    session.write_page(&arguments.job, page)
 }

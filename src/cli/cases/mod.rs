@@ -106,16 +106,13 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         out.write_bytes(&name, &bytes).map_err(|f| vec![f])?;
     }
     let title = &job.title;
-    let page = crate::report::page::page(
+    let page = crate::report::page::Page::new(
         title,
         "Unit-load deck: run unit_loads.bdf, then name its OP2 as [model] results",
         &session.findings,
         Vec::new(),
     );
-    session
-        .output_for(Path::new(&arguments.job))?
-        .write_bytes("report.html", page.as_bytes())
-        .map_err(|f| vec![f])
+    session.write_page(Path::new(&arguments.job), page)
 }
 
 /// Ids of all load sets.

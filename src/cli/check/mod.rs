@@ -12,10 +12,9 @@ mod together;
 use super::fault::Faults;
 use super::{FilesArguments, Session};
 use crate::finding::Finding;
-use crate::report::page::{Section, page, table};
+use crate::report::page::{Block, Page, Section};
 use decks::DeckEntry;
 use kind::{Kind, kind_of};
-use maud::html;
 use results::ResultEntry;
 use std::path::Path;
 
@@ -42,7 +41,7 @@ pub fn run(arguments: &FilesArguments, session: &mut Session) -> Result<(), Faul
     let page = page_of(&found, &session.findings);
     if let Some(output) = session.output_if_asked()? {
         output
-            .write_bytes("report.html", page.as_bytes())
+            .write_bytes("report.html", page.to_html().as_bytes())
             .map_err(|f| vec![f])?;
     }
     session.put_faults(found.faults);
@@ -50,22 +49,21 @@ pub fn run(arguments: &FilesArguments, session: &mut Session) -> Result<(), Faul
 }
 
 /// `report.html`: faults, then every file as on the terminal.
-fn page_of(found: &Found, findings: &[Finding]) -> String {
+fn page_of(found: &Found, findings: &[Finding]) -> Page {
     let faults: Vec<Vec<String>> = found.faults.iter().map(|f| vec![f.to_string()]).collect();
-    let mut sections = vec![Section {
-        title: "Faults".into(),
-        body: match faults.is_empty() {
-            true => html! { p { "None." } },
-            false => table(&["file:line: field: what is wrong: what to do"], &faults),
-        },
-    }];
+    let list = match faults.is_empty() {
+        true => Block::Text("None.".into()),
+        false => Block::table(&["file:line: field: what is wrong: what to do"], faults),
+    };
+    let mut sections = vec![Section::new("Faults", vec![list])];
     let decks = found.decks.iter().map(|d| ("Deck", d.text()));
     let results = found.results.iter().map(|r| ("Results", r.text()));
-    sections.extend(decks.chain(results).map(|(title, text)| Section {
-        title: title.into(),
-        body: html! { pre { (text) } },
-    }));
-    page("Check", "What is in the files", findings, sections)
+    sections.extend(
+        decks
+            .chain(results)
+            .map(|(title, text)| Section::new(title, vec![Block::Lines(text)])),
+    );
+    Page::new("Check", "What is in the files", findings, sections)
 }
 
 /// Looks into one file.

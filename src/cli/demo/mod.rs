@@ -174,7 +174,7 @@ pub fn run(arguments: &DemoArguments, session: &mut Session) -> Result<(), Fault
         json!({ "before": before, "after": after }),
     )?;
     session.put("payload_error", off)?;
-    let html = page::page(&story);
+    let html = page::page(&story).to_html();
     session
         .output_at(&folder)?
         .write_bytes("report.html", html.as_bytes())

@@ -1,35 +1,35 @@
 //! The page that leads through the story.
 
 use super::Chapter;
-use crate::report::page::{Section, page as frame};
-use maud::html;
+use crate::finding::Severity;
+use crate::report::page::{Block, Page, Section};
 
 /// One part a chapter, with links to its report and files.
-pub(super) fn page(story: &[Chapter]) -> String {
-    let sections = story
-        .iter()
-        .map(|c| Section {
-            title: c.folder.to_owned(),
-            body: html! {
-                p { (c.words) }
-                p.muted {
-                    a href=(format!("{}/report.html", c.folder)) { "report" } " · "
-                    a href=(format!("{}/result.json", c.folder)) { "result.json" } " · "
-                    code { "strainbridge " (c.step.command) }
-                }
-                @for f in c.step.findings.iter().filter(|f| f.severity >= crate::finding::Severity::Warning).take(4) {
-                    p.muted { (f.code) ": " (f.message) }
-                }
-                @if !c.step.text.is_empty() {
-                    pre { (c.step.text.lines().take(14).collect::<Vec<_>>().join("\n")) }
-                }
-            },
-        })
-        .collect();
-    frame(
+pub(super) fn page(story: &[Chapter]) -> Page {
+    Page::new(
         "The truck story",
         "Strain gauges and a finite element model in, wheel loads with intervals out: every folder holds the job, its tables and its report",
         &[],
-        sections,
+        story.iter().map(section).collect(),
     )
+}
+
+fn section(c: &Chapter) -> Section {
+    let link = |words: &str, file: &str| (words.to_owned(), format!("{}/{file}", c.folder));
+    let mut blocks = vec![
+        Block::Text(c.words.to_owned()),
+        Block::Links(vec![
+            link("report", "report.html"),
+            link("result.json", "result.json"),
+        ]),
+        Block::Note(format!("strainbridge {}", c.step.command)),
+    ];
+    let serious = c.step.findings.iter();
+    let serious = serious.filter(|f| f.severity >= Severity::Warning).take(4);
+    blocks.extend(serious.map(|f| Block::Note(format!("{}: {}", f.code, f.message))));
+    if !c.step.text.is_empty() {
+        let lines: Vec<&str> = c.step.text.lines().take(14).collect();
+        blocks.push(Block::Lines(lines.join("\n")));
+    }
+    Section::new(c.folder, blocks)
 }

@@ -8,7 +8,7 @@ use crate::cli::scene::scene_of_job;
 use crate::cli::{JobArguments, Session};
 use crate::payload::{PayloadRun, Place, WeighSpec, WeighedRun, Weighing};
 use crate::report::figure::{IntervalRow, intervals};
-use crate::report::page::{figure_section, number, page, table_section};
+use crate::report::page::{Page, Paper, figure_section, number, table_section};
 use crate::report::scene::scene_section;
 use serde_json::{Value, json};
 
@@ -132,14 +132,16 @@ pub(super) fn write(
         .runs
         .iter()
         .map(|r| {
+            // What is refused has no numbers to sign for.
+            if r.refused.is_some() {
+                let nothing = std::iter::repeat_n(String::new(), 4);
+                let cells = [r.run.clone(), "refused".into()].into_iter();
+                return cells.chain(nothing).collect();
+            }
             let (axes, angle) = r.ellipse();
             vec![
                 r.run.clone(),
-                if r.refused.is_some() {
-                    "refused".into()
-                } else {
-                    number(r.force)
-                },
+                number(r.force),
                 format!("{} to {}", number(r.interval[0]), number(r.interval[1])),
                 number(r.force / task.weight_of_mass),
                 format!(
@@ -152,7 +154,7 @@ pub(super) fn write(
                         "{} x {} at {:.0}°",
                         number(axes[0]),
                         number(axes[1]),
-                        angle.to_degrees()
+                        angle.to_degrees().round() + 0.0
                     )
                 } else {
                     "known".into()
@@ -212,7 +214,7 @@ pub(super) fn write(
             .collect();
         sections.push(figure_section(
             "Gauges in use and all together",
-            &intervals(&runs, units.force.name),
+            intervals(&runs, units.force.name),
             "A gauge alone whose interval is wider than the payload is left out.",
         ));
     }
@@ -223,7 +225,7 @@ pub(super) fn write(
     {
         sections.push(scene_section("Model and gauges", &scene));
     }
-    let html = page(&task.job.title, "Payload", &session.findings, sections);
+    let page = Page::new(&task.job.title, "Payload", &session.findings, sections);
     let out = session.output_for(&arguments.job)?;
     out.write("payload.csv", |w| {
         writeln!(
@@ -278,6 +280,5 @@ pub(super) fn write(
         Ok(())
     })
     .map_err(|f| vec![f])?;
-    out.write_bytes("report.html", html.as_bytes())
-        .map_err(|f| vec![f])
+    session.write_page(&arguments.job, page.on_paper(Paper::Signed))
 }

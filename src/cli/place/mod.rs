@@ -21,6 +21,7 @@ use super::strain::{load_units, read_fields};
 use super::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::placement::quality::{judge_rows, reserve};
+use crate::report::page::Paper;
 use crate::report::spreadsheet::gauge_sheets;
 use crate::report::strain::{
     HowMany, gauges_csv, gluing_sheet_csv, gluing_sheet_md, place_page, sensitivity_csv,
@@ -139,7 +140,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         gluing_sheet_md(&job.title, &placed, fields.model()).as_bytes(),
     ))?;
     write(out.write("gauges.vtu", |w| points::gauges_vtu(w, &placed)))?;
-    write(out.write_bytes("report.html", page.as_bytes()))?;
+    session.write_page(&arguments.job, page.on_paper(Paper::Signed))?;
     let sheets = gauge_sheets(&placed, fields.model(), &s);
     write_spreadsheet(session, &job, &arguments.job, "gauges.xlsx", &sheets)
 }

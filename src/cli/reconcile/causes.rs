@@ -6,7 +6,7 @@ use crate::cli::job::table::read_table;
 use crate::cli::job::{Job, Reconcile};
 use crate::finding::{Finding, Severity};
 use crate::reconcile::{Cause, CauseOutcome, CauseSet, Observations, weigh_causes};
-use crate::report::page::{Section, page, table};
+use crate::report::page::{Page, Paper, table_section};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -73,20 +73,15 @@ pub(super) fn run(
         ]
     };
     let rows: Vec<Vec<String>> = outcome.sets.iter().map(row).collect();
-    let section = Section {
-        title: "Causes".into(),
-        body: table(&["causes", "log evidence behind", "gap"], &rows),
-    };
+    let head = ["causes", "log evidence behind", "gap"];
+    let section = table_section("Causes", &head, &rows, "");
     let lead = format!(
         "Verdict: {}. Next measurement: {}",
         outcome.verdict.word(),
         outcome.next_measurement
     );
-    let html = page(&job.title, &lead, &session.findings, vec![section]);
-    let output = session.output_for(path)?;
-    output
-        .write_bytes("report.html", html.as_bytes())
-        .map_err(|f| vec![f])
+    let page = Page::new(&job.title, &lead, &session.findings, vec![section]);
+    session.write_page(path, page.on_paper(Paper::Report))
 }
 
 fn slopes(best: &CauseSet, observations: &Observations) -> Vec<Value> {

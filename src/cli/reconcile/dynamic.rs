@@ -13,7 +13,7 @@ use crate::reconcile::motion::{
 };
 use crate::reconcile::{Rival, Verdict};
 use crate::report::figure::gap_by_channel;
-use crate::report::page::{Section, figure_section, number, page, table_section};
+use crate::report::page::{Block, Page, Paper, Section, figure_section, number, table_section};
 use crate::report::vehicle::{Curve, restoring_curves, restoring_section, write_restoring_force};
 use crate::vehicle::identify::{Identification, Question, identify};
 use crate::vehicle::layout::Vehicle;
@@ -374,12 +374,6 @@ fn write_tables(
             ]
         })
         .collect();
-    let verdict = format!(
-        "Verdict: {}. {} {}",
-        outcome.verdict.word(),
-        outcome.remains,
-        outcome.next_measurement
-    );
     let rows: Vec<Vec<String>> = gaps
         .iter()
         .map(|(name, values)| {
@@ -387,17 +381,25 @@ fn write_tables(
             std::iter::once(name.clone()).chain(cells).collect()
         })
         .collect();
+    let verdict = format!("{}.", outcome.verdict.word());
     let mut sections: Vec<Section> = vec![
+        Section::new(
+            "Verdict",
+            vec![
+                Block::Stressed(verdict, outcome.remains.clone()),
+                Block::Stressed("Next measurement:".into(), outcome.next_measurement.clone()),
+            ],
+        ),
         figure_section(
             "Gap before and after",
-            &gap_by_channel(&gaps, "% of the measured quantity,"),
+            gap_by_channel(&gaps, "% of the measured quantity,"),
             "On held-out data, by equation of motion; stroke: the floor.",
         ),
         table_section(
             "Gap on held-out data, % of the measured quantity",
             &["equation", "before", "after", "floor"],
             &rows,
-            &verdict,
+            "",
         ),
         table_section("Effects", &["effect", "size", "unit"], &effects, ""),
         table_section(
@@ -427,7 +429,7 @@ fn write_tables(
     }
     let (table, curves) = surface.unwrap_or_default();
     sections.push(restoring_section(&curves));
-    let html = page(
+    let page = Page::new(
         &job.title,
         "Where vehicle model and record disagree, and what is missing",
         &session.findings,
@@ -440,13 +442,12 @@ fn write_tables(
         ("gap_times.csv", times),
         ("gap_amplitudes.csv", sizes),
         ("restoring_force.csv", table),
-        ("report.html", html),
     ] {
         output
             .write_bytes(name, text.as_bytes())
             .map_err(|f| vec![f])?;
     }
-    Ok(())
+    session.write_page(path, page.on_paper(Paper::Report))
 }
 
 fn say(session: &mut Session, outcome: &MotionOutcome, simulation: Option<&SimulatedGap>) {

@@ -18,6 +18,7 @@ use crate::reconcile::strain::{
 };
 use crate::reconcile::{NamedEffect, Observations, Outcome, Verdict};
 use crate::report::figure::GaugePoints;
+use crate::report::page::Paper;
 use crate::report::scene::{Mark, Scene};
 use crate::report::strain::{RunStrain, reconcile_page};
 use serde_json::{Value, json};
@@ -458,10 +459,7 @@ fn report(
         &strain,
         &session.findings,
     );
-    let output = session.output_for(path)?;
-    output
-        .write_bytes("report.html", page.as_bytes())
-        .map_err(|f| vec![f])
+    session.write_page(path, page.on_paper(Paper::Report))
 }
 
 /// Measured and predicted strain of the runs, by the model as it was given.

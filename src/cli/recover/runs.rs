@@ -216,8 +216,7 @@ pub(super) fn run(
     let out = session.output_for(&arguments.job)?;
     out.write("loads.csv", |w| loads_csv(w, &recovery, &units))
         .map_err(|f| vec![f])?;
-    out.write_bytes("report.html", page.as_bytes())
-        .map_err(|f| vec![f])?;
+    session.write_page(&arguments.job, page)?;
     let names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
     let files = &task.job.recover.files;
     if files

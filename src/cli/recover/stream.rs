@@ -451,10 +451,7 @@ fn finish(
         numbers: &numbers,
     };
     let page = recover_page(&task.job.title, scene.as_ref(), &found, &session.findings);
-    session
-        .output_for(&arguments.job)?
-        .write_bytes("report.html", page.as_bytes())
-        .map_err(|f| vec![f])?;
+    session.write_page(&arguments.job, page)?;
     let sheets = [history_sheet(&summary), residual_sheet(&by_gauge)];
     write_spreadsheet(session, task.job, &arguments.job, "loads.xlsx", &sheets)
 }

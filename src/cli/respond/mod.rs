@@ -12,7 +12,7 @@ use super::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::model::{GridIx, Model, RigidKind, Vec3};
 use crate::report::figure::agreement;
-use crate::report::page::{figure_section, number, page, table_section};
+use crate::report::page::{Page, figure_section, number, table_section};
 use crate::report::scene::{Mark, scene_section};
 use crate::report::write_cells_vtu;
 use crate::respond::{LoadState, Peak, Place, ResponseRow, envelope, hot_spots, response_rows};
@@ -313,7 +313,7 @@ fn write(
         let kinds = ["states", ""];
         sections.push(figure_section(
             "Measured against predicted strain at the gauges",
-            &agreement(&check.points, kinds, [&check.states, &[]]),
+            agreement(&check.points, kinds, [&check.states, &[]]),
             "",
         ));
         sections.push(table_section(
@@ -323,7 +323,7 @@ fn write(
             "",
         ));
     }
-    let html = page(
+    let page = Page::new(
         &job.title,
         "Stress from recovered loads",
         &session.findings,
@@ -356,5 +356,5 @@ fn write(
     if !check.rows.is_empty() {
         write(out.write_bytes("predicted.csv", check.csv.as_bytes()))?;
     }
-    write(out.write_bytes("report.html", html.as_bytes()))
+    session.write_page(&arguments.job, page)
 }

@@ -9,7 +9,7 @@ use super::job::{self, Job, Role, Study};
 use super::strain::{LoadUnits, load_units, put_conditioning};
 use super::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
-use crate::report::page::{number, page, table_section};
+use crate::report::page::{Page, number, table_section};
 use crate::sensitivity::Load;
 use crate::study::{ErrorKind, StudyError, StudyRow, StudySpec, study_layout};
 use crate::units::Quantity;
@@ -334,7 +334,7 @@ fn write(
         .map(|l| format!("{}, {}", loads[*l].name, units[*l].name))
         .collect();
     header.extend(heads.iter().map(String::as_str));
-    let html = page(
+    let page = Page::new(
         &job.title,
         "What errors do to recovered loads",
         &session.findings,
@@ -379,6 +379,5 @@ fn write(
         Ok(())
     })
     .map_err(|f| vec![f])?;
-    out.write_bytes("report.html", html.as_bytes())
-        .map_err(|f| vec![f])
+    session.write_page(&arguments.job, page)
 }

@@ -45,6 +45,7 @@ pub fn agreement(gauges: &[GaugePoints], kinds: [&str; 2], runs: [&[String]; 2])
             "legend": { "orientation": "h", "y": 1.1 },
         }),
         height: 460,
+        on_paper: 1,
     }
 }
 

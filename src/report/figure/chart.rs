@@ -15,6 +15,8 @@ pub struct Figure {
     pub layout: Value,
     /// Pixels.
     pub height: usize,
+    /// Choices drawn on paper, from the first.
+    pub on_paper: usize,
 }
 
 impl Render for Figure {

@@ -70,5 +70,6 @@ pub fn curve(points: &[CountPoint], loads: &[(String, String)]) -> Figure {
             "legend": { "orientation": "h", "y": -0.22 },
         }),
         height: 400,
+        on_paper: 8,
     }
 }

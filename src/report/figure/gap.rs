@@ -36,5 +36,6 @@ pub fn gap_by_channel(channels: &[(String, [f64; 3])], unit: &str) -> Figure {
             "legend": { "orientation": "h", "y": 1.12 },
         }),
         height: 380,
+        on_paper: 1,
     }
 }

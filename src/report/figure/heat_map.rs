@@ -49,5 +49,6 @@ pub fn heat_map(
             "yaxis": { "type": "category", "autorange": "reversed", "automargin": true, "fixedrange": true, "dtick": 1 },
         }),
         height: 130 + 18 * rows.len(),
+        on_paper: 1,
     }
 }

@@ -32,6 +32,7 @@ pub fn history(traces: &[LoadTrace]) -> Figure {
             "legend": { "orientation": "h", "y": 1.12 },
         }),
         height: 380,
+        on_paper: 12,
     }
 }
 

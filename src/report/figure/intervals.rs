@@ -20,6 +20,7 @@ pub fn intervals(groups: &[(String, Vec<IntervalRow>)], unit: &str) -> Figure {
             "showlegend": false,
         }),
         height: 90 + 24 * most,
+        on_paper: 4,
     }
 }
 

@@ -55,5 +55,6 @@ pub fn lines(groups: &[(String, Vec<Line>)], x: &str, y: &str, scale: Scale) -> 
             "legend": { "orientation": "h", "y": 1.12 },
         }),
         height: 380,
+        on_paper: 8,
     }
 }

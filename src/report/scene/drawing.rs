@@ -1,4 +1,4 @@
-//! A scene as a part of a page: its switches, its data.
+//! A scene as a part of a page: its switches, its data; for paper its lines and gauges.
 
 use super::outline::{bars, outline};
 use super::paint::Values;
@@ -7,26 +7,46 @@ use super::types::{Arrow, Field, Mark, Scene, Twist};
 use crate::fe::strain_tensor::Surface;
 use crate::model::{Model, Vec3};
 use crate::report::figure::{embedded, packed_f32, packed_i16, packed_u32, short, shorts};
-use crate::report::page::Section;
+use crate::report::page::{Block, Section};
 use maud::{Markup, html};
 use serde_json::{Value, json};
+
+/// A scene ready to be shown.
+#[derive(Clone, Debug)]
+pub struct SceneView {
+    /// In three dimensions, for a browser.
+    pub markup: Markup,
+    /// Outline of the shells and axes of the bars, basic frame.
+    pub lines: Vec<[Vec3; 2]>,
+    /// Gauges.
+    pub marks: Vec<Mark>,
+}
 
 /// The section. Colour: the largest principal strain by magnitude at the surfaces of shells, at the centre of solids.
 pub fn scene_section(title: &str, scene: &Scene) -> Section {
     let parts = skin(scene.model, scene.fields.len());
-    let data = data(scene, &parts);
-    Section {
-        title: title.to_owned(),
-        body: html! {
-            figure.plot.scene aria-label="the model in three dimensions" data-figure="scene" {
-                (switches(scene, &parts))
-                div.canvas {}
-                p.pick aria-live="polite" { "Turn: drag. Zoom: wheel or two fingers. Point at a gauge, an arrow or the surface, or tap it." }
-                (embedded(&data))
-            }
-            (note(scene, &parts))
-        },
-    }
+    let faces = parts
+        .iter()
+        .flat_map(|p| p.faces.iter().map(|f| f.1.map(|c| p.grids[c as usize])));
+    let mut lines = outline(scene.model, faces);
+    let rods = bars(scene.model);
+    let data = data(scene, &parts, &lines, &rods);
+    let markup = html! {
+        figure.plot.scene aria-label="the model in three dimensions" data-figure="scene" {
+            (switches(scene, &parts))
+            div.canvas {}
+            p.pick aria-live="polite" { "Turn: drag. Zoom: wheel or two fingers. Point at a gauge, an arrow or the surface, or tap it." }
+            (embedded(&data))
+        }
+        (note(scene, &parts))
+    };
+    lines.extend(rods);
+    let view = SceneView {
+        markup,
+        lines,
+        marks: scene.marks.clone(),
+    };
+    Section::new(title, vec![Block::Scene(view)])
 }
 
 fn switches(scene: &Scene, parts: &[Part]) -> Markup {
@@ -94,7 +114,7 @@ fn note(scene: &Scene, parts: &[Part]) -> Markup {
     }
 }
 
-fn data(scene: &Scene, parts: &[Part]) -> Value {
+fn data(scene: &Scene, parts: &[Part], edges: &[[Vec3; 2]], rods: &[[Vec3; 2]]) -> Value {
     let at = |p: &Part, v: u32| {
         let grid = p.grids[v as usize];
         scene
@@ -115,22 +135,17 @@ fn data(scene: &Scene, parts: &[Part]) -> Value {
             })
         })
         .collect();
-    let faces = parts
-        .iter()
-        .flat_map(|p| p.faces.iter().map(|f| f.1.map(|c| p.grids[c as usize])));
-    let edges = outline(scene.model, faces);
-    let rods = bars(scene.model);
     let points = parts
         .iter()
         .flat_map(|p| p.drawn.vertices.iter().map(|v| at(p, *v)));
-    let ends = edges.iter().chain(&rods).flatten().copied();
+    let ends = edges.iter().chain(rods).flatten().copied();
     let (lo, hi) = extent(points.chain(ends).chain(scene.marks.iter().map(|m| m.at)));
     json!({
         "size": short((hi - lo).norm()),
         "box": [three(lo), three(hi)],
         "parts": shown,
-        "edges": axes(&strokes(&edges)),
-        "bars": axes(&strokes(&rods)),
+        "edges": axes(&strokes(edges)),
+        "bars": axes(&strokes(rods)),
         "marks": scene.marks.iter().map(mark).collect::<Vec<_>>(),
         "fields": scene.fields.iter().map(|f| field(scene.model, f, parts)).collect::<Vec<_>>(),
         "arrows": scene.arrows.iter().map(|set| {

@@ -8,7 +8,7 @@ mod skin;
 mod solids;
 mod types;
 
-pub use drawing::scene_section;
+pub use drawing::{SceneView, scene_section};
 pub use types::{Arrow, ArrowSet, Field, Mark, Scene, Twist};
 
 #[cfg(test)]

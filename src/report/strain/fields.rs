@@ -4,20 +4,14 @@ use crate::fe::Solution;
 use crate::fe::strain_rows::{Location, Point, StrainRow, hottest, largest_strain};
 use crate::finding::Finding;
 use crate::model::Model;
-use crate::report::page::{Section, number, page, table};
-use maud::html;
+use crate::report::page::{Block, Page, Section, number};
 
 /// Subcases and elements a subcase that the page lists; `strains.csv` holds all.
 const MOST_CASES: usize = 40;
 const HOTTEST: usize = 10;
 
 /// Page of the strain fields of `solution`: numbers of elements by subcase, then the hottest elements of each.
-pub fn strains_page(
-    title: &str,
-    model: &Model,
-    solution: &Solution,
-    findings: &[Finding],
-) -> String {
+pub fn strains_page(title: &str, model: &Model, solution: &Solution, findings: &[Finding]) -> Page {
     let of_case = |case: &crate::fe::CaseResult| {
         vec![
             case.subcase.to_string(),
@@ -33,29 +27,42 @@ pub fn strains_page(
         ]
     };
     let cases: Vec<Vec<String>> = solution.cases.iter().map(of_case).collect();
-    let mut sections = vec![Section {
-        title: "Subcases".into(),
-        body: html! {
-            p { "From " (solution.source) ". Every row is in strains.csv." }
-            (table(&["subcase", "label", "shells", "read from", "bars and beams"], &cases))
-        },
-    }];
+    let head = ["subcase", "label", "shells", "read from", "bars and beams"];
+    let mut sections = vec![Section::new(
+        "Subcases",
+        vec![
+            Block::Text(format!(
+                "From {}. Every row is in strains.csv.",
+                solution.source
+            )),
+            Block::table(&head, cases),
+        ],
+    )];
     for case in solution.cases.iter().take(MOST_CASES) {
         let rows: Vec<Vec<String>> = hottest(model, case, HOTTEST).iter().map(line).collect();
-        sections.push(Section {
-            title: format!("Subcase {}: largest strain", case.subcase),
-            body: html! {
-                (table(&["element", "type", "place", "surface", "largest, any direction", "exx", "eyy", "gxy"], &rows))
-            },
-        });
+        let head = [
+            "element",
+            "type",
+            "place",
+            "surface",
+            "largest, any direction",
+            "exx",
+            "eyy",
+            "gxy",
+        ];
+        sections.push(Section::new(
+            format!("Subcase {}: largest strain", case.subcase),
+            vec![Block::table(&head, rows)],
+        ));
     }
     if solution.cases.len() > MOST_CASES {
-        sections.push(Section {
-            title: "More subcases".into(),
-            body: html! { p { (solution.cases.len() - MOST_CASES) " more are in strains.csv." } },
-        });
+        let left = solution.cases.len() - MOST_CASES;
+        sections.push(Section::new(
+            "More subcases",
+            vec![Block::Text(format!("{left} more are in strains.csv."))],
+        ));
     }
-    page(
+    Page::new(
         title,
         "Strain in the element frame (gxy: engineering shear)",
         findings,

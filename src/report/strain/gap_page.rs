@@ -3,9 +3,8 @@
 use crate::finding::Finding;
 use crate::reconcile::{NamedEffect, Outcome, Verdict};
 use crate::report::figure::{GaugePoints, agreement, gap_by_channel};
-use crate::report::page::{Section, number, page, table};
+use crate::report::page::{Block, Page, Section, figure_section, number, table_section};
 use crate::report::scene::{Scene, scene_section};
-use maud::{Markup, html};
 
 /// Strain of the runs as the given model predicts it.
 #[derive(Default)]
@@ -25,40 +24,42 @@ pub fn reconcile_page(
     scene: Option<&Scene>,
     strain: &RunStrain,
     findings: &[Finding],
-) -> String {
-    let mut sections = vec![Section {
-        title: "Verdict".into(),
-        body: verdict(outcome),
-    }];
+) -> Page {
+    let mut sections = vec![Section::new("Verdict", verdict(outcome))];
     let by_channel: Vec<(String, [f64; 3])> = outcome
         .channels
         .iter()
         .map(|c| (c.channel.clone(), [c.before, c.after, c.floor]))
         .collect();
-    sections.push(Section {
-        title: "Where the gap sits".into(),
-        body: html! {
-            p { (outcome.sits) "." }
-            (gap_by_channel(&by_channel, "µε"))
-            p.muted { "Root mean square over the held-out runs: before and after the named effects; stroke: the floor, what noise and stated uncertainty leave." }
-        },
+    let listed = by_channel.iter().map(|(name, gap)| {
+        let cells = gap.iter().map(|v| number(*v));
+        std::iter::once(name.clone()).chain(cells).collect()
     });
+    sections.push(Section::new(
+        "Where the gap sits",
+        vec![
+            Block::Text(format!("{}.", outcome.sits)),
+            Block::Figure(gap_by_channel(&by_channel, "µε")),
+            Block::Note("Root mean square over the held-out runs: before and after the named effects; stroke: the floor, what noise and stated uncertainty leave.".into()),
+            Block::Folded {
+                summary: format!("{} gauges, µε rms", by_channel.len()),
+                blocks: vec![Block::table(&["gauge", "before", "after", "floor"], listed.collect())],
+            },
+        ],
+    ));
     if let Some(scene) = scene {
         let mut section = scene_section("The gap on the model", scene);
-        section.body = html! {
-            (section.body)
-            p.muted { "Area of a circle: what the model misses at that gauge in the held-out runs, orange before, blue after." }
-        };
+        section.blocks.push(Block::Note("Area of a circle: what the model misses at that gauge in the held-out runs, orange before, blue after.".into()));
         sections.push(section);
     }
     if !strain.points.is_empty() {
-        sections.push(Section {
-            title: "Measured against predicted strain".into(),
-            body: html! {
-                (agreement(&strain.points, ["runs used for fitting", "held-out runs"], [&strain.used, &strain.held_out]))
-                p.muted { "Prediction of the model as it was given, before any effect." }
-            },
-        });
+        let kinds = ["runs used for fitting", "held-out runs"];
+        let runs: [&[String]; 2] = [&strain.used, &strain.held_out];
+        sections.push(figure_section(
+            "Measured against predicted strain",
+            agreement(&strain.points, kinds, runs),
+            "Prediction of the model as it was given, before any effect.",
+        ));
     }
     if !outcome.rivals.is_empty() {
         sections.push(rivals(outcome));
@@ -76,38 +77,44 @@ pub fn reconcile_page(
         })
         .collect();
     if !moved.is_empty() {
-        sections.push(Section {
-            title: "Loads that moved by more than two sigma, kN".into(),
-            body: table(
-                &[
-                    "run",
-                    "load",
-                    "stated",
-                    "recovered before",
-                    "after",
-                    "sigma",
-                ],
-                &moved,
-            ),
-        });
+        let head = [
+            "run",
+            "load",
+            "stated",
+            "recovered before",
+            "after",
+            "sigma",
+        ];
+        sections.push(table_section(
+            "Loads that moved by more than two sigma, kN",
+            &head,
+            &moved,
+            "",
+        ));
     }
-    sections.push(Section {
-        title: "What remains".into(),
-        body: html! {
-            p { (outcome.remains) "." }
-            p { b { "Next measurement: " } (outcome.next_measurement) "." }
-        },
-    });
+    sections.push(Section::new(
+        "What remains",
+        vec![
+            Block::Text(format!("{}.", outcome.remains)),
+            Block::Stressed(
+                "Next measurement:".into(),
+                format!("{}.", outcome.next_measurement),
+            ),
+        ],
+    ));
     let seen: Vec<Vec<String>> = outcome
         .detectable
         .iter()
         .map(|d| vec![d.id.clone(), number(d.size), d.unit.into()])
         .collect();
-    sections.push(Section {
-        title: "Smallest sizes that these runs would show".into(),
-        body: html! { details { summary { (seen.len()) " effects" } (table(&["effect", "size", "unit"], &seen)) } },
-    });
-    page(
+    sections.push(Section::new(
+        "Smallest sizes that these runs would show",
+        vec![Block::Folded {
+            summary: format!("{} effects", seen.len()),
+            blocks: vec![Block::table(&["effect", "size", "unit"], seen)],
+        }],
+    ));
+    Page::new(
         title,
         "Where simulation and measurement disagree, and what is missing",
         findings,
@@ -115,7 +122,7 @@ pub fn reconcile_page(
     )
 }
 
-fn verdict(outcome: &Outcome) -> Markup {
+fn verdict(outcome: &Outcome) -> Vec<Block> {
     let words = match outcome.verdict {
         Verdict::Named => "An effect is missing in the model, and it is named:",
         Verdict::None => "Model and readings agree within noise and stated uncertainty.",
@@ -128,17 +135,30 @@ fn verdict(outcome: &Outcome) -> Markup {
     };
     let g = &outcome.gap;
     let percent = |v: f64| format!("{:.2} %", 100.0 * v);
-    html! {
-        p { b { (outcome.verdict.word()) } ". " (words) }
-        @if !outcome.best_attempt.is_empty() {
-            (table(&["effect", "size", "sigma", "unit", "plausible"], &outcome.best_attempt.iter().map(effect).collect::<Vec<_>>()))
-        }
-        p {
-            "Gap on held-out runs, RMS(reading − model) / RMS(reading): " (percent(g.before)) " before, " (percent(g.after)) " after, floor "
-            (percent(g.floor)) "; " (format!("{:.0} %", 100.0 * g.explained_share())) " of what can be closed is closed."
-            @if g.mesh > 0.0 { " The mesh alone makes " (percent(g.mesh)) ": the difference from a mesh half as wide." }
-        }
+    let mut out = vec![Block::Stressed(
+        format!("{}.", outcome.verdict.word()),
+        words.into(),
+    )];
+    if !outcome.best_attempt.is_empty() {
+        let rows = outcome.best_attempt.iter().map(effect).collect();
+        let head = ["effect", "size", "sigma", "unit", "plausible"];
+        out.push(Block::table(&head, rows));
     }
+    let mut gap = format!(
+        "Gap on held-out runs, RMS(reading − model) / RMS(reading): {} before, {} after, floor {}; {:.0} % of what can be closed is closed.",
+        percent(g.before),
+        percent(g.after),
+        percent(g.floor),
+        100.0 * g.explained_share()
+    );
+    if g.mesh > 0.0 {
+        gap.push_str(&format!(
+            " The mesh alone makes {}: the difference from a mesh half as wide.",
+            percent(g.mesh)
+        ));
+    }
+    out.push(Block::Text(gap));
+    out
 }
 
 fn effect(e: &NamedEffect) -> Vec<String> {
@@ -163,16 +183,12 @@ fn rivals(outcome: &Outcome) -> Section {
             apart.into(),
         ]
     };
-    Section {
-        title: "Other explanations".into(),
-        body: table(
-            &[
-                "instead",
-                "log evidence behind",
-                "gap after",
-                "can be told apart",
-            ],
-            &outcome.rivals.iter().map(row).collect::<Vec<_>>(),
-        ),
-    }
+    let head = [
+        "instead",
+        "log evidence behind",
+        "gap after",
+        "can be told apart",
+    ];
+    let rows: Vec<Vec<String>> = outcome.rivals.iter().map(row).collect();
+    table_section("Other explanations", &head, &rows, "")
 }

@@ -1,14 +1,14 @@
 //! The pages of `sensitivity`, `place` and `recover`.
 
+use super::gluing::gluing_section;
 use super::tables::PlacedGauge;
 use crate::finding::Finding;
 use crate::report::figure::{
     CountPoint, GaugePoints, IntervalRow, LoadTrace, agreement, curve, heat_map, history, intervals,
 };
-use crate::report::page::{Section, number, page};
+use crate::report::page::{Block, Page, Section, figure_section, number, table_section};
 use crate::report::scene::{Scene, scene_section};
 use crate::sensitivity::Sensitivity;
-use maud::{Markup, html};
 
 /// Rows of S that a page shows; longer tables are in `sensitivity.csv`.
 const MOST_ROWS: usize = 120;
@@ -27,15 +27,24 @@ fn sensitivity_section(s: &Sensitivity) -> Section {
     let map = heat_map(&s.gauges[..n], &columns, "µε per job unit", |r, c| {
         1e6 * s.values[(r, c)]
     });
-    Section {
-        title: "Sensitivity".into(),
-        body: html! {
-            p { "Rank " (s.rank()) " of " (s.loads.len()) ", condition number " (number(s.condition_number())) " in job units, "
-                (number(s.condition_number_scaled())) " scaled." }
-            (map)
-            p.muted { "Colour: share of the column's largest value. " @if n < s.gauges.len() { "The first " (n) " of " (s.gauges.len()) " rows; all are in sensitivity.csv." } }
-        },
+    let rank = format!(
+        "Rank {} of {}, condition number {} in job units, {} scaled.",
+        s.rank(),
+        s.loads.len(),
+        number(s.condition_number()),
+        number(s.condition_number_scaled())
+    );
+    let mut note =
+        "Microstrain per job unit of the load; colour: share of the column's largest value."
+            .to_owned();
+    if n < s.gauges.len() {
+        note.push_str(&format!(
+            " The first {n} of {} rows; all are in sensitivity.csv.",
+            s.gauges.len()
+        ));
     }
+    let blocks = vec![Block::Text(rank), Block::Figure(map), Block::Note(note)];
+    Section::new("Sensitivity", blocks)
 }
 
 /// The page of `sensitivity`.
@@ -44,10 +53,10 @@ pub fn sensitivity_page(
     s: &Sensitivity,
     scene: Option<&Scene>,
     findings: &[Finding],
-) -> String {
+) -> Page {
     let mut sections: Vec<Section> = model_section(scene).into_iter().collect();
     sections.push(sensitivity_section(s));
-    page(
+    Page::new(
         title,
         "Sensitivity of the gauges to the loads",
         findings,
@@ -64,37 +73,51 @@ pub fn place_page(
     findings: &[Finding],
     numbers: &[(String, String)],
     counts: &HowMany,
-) -> String {
-    let mut sections = vec![Section {
-        title: "Layout".into(),
-        body: pairs(numbers),
-    }];
+) -> Page {
+    let mut sections = vec![Section::new("Layout", vec![Block::pairs(numbers)])];
     sections.extend(model_section(Some(scene)));
     if !counts.points.is_empty() {
-        sections.push(Section {
-            title: "How many gauges".into(),
-            body: html! {
-                (curve(&counts.points, &counts.loads))
-                p.muted { "One standard deviation of each load, as the stated noise makes it; efficiency is certified against the best possible layout of that many gauges." }
-            },
-        });
+        sections.push(figure_section(
+            "How many gauges",
+            curve(&counts.points, &counts.loads),
+            "One standard deviation of each load, as the stated noise makes it; efficiency is certified against the best possible layout of that many gauges.",
+        ));
     }
-    sections.push(Section {
-        title: "Gauges".into(),
-        body: html! {
-            div.scroll { table {
-                tr { th { "gauge" } th { "element" } th { "side" } th { "x" } th { "y" } th { "z" } th { "angle, deg" } th { "seen, deg" } th { "leverage" } th { "strain, µε" } }
-                @for p in placed { tr {
-                    td { (p.gauge.name) } td { (p.gauge.element) } td { (p.gauge.surface.word()) }
-                    td { (format!("{:.1}", p.gauge.position.x)) } td { (format!("{:.1}", p.gauge.position.y)) } td { (format!("{:.1}", p.gauge.position.z)) }
-                    td { (format!("{:.1}", p.gauge.angle_rad.to_degrees())) } td { (format!("{:.1}", p.angle_seen_deg())) }
-                    td { (format!("{:.3}", p.leverage)) } td { (format!("{:.0}", p.expected_microstrain)) }
-                } }
-            } }
-        },
-    });
+    let head = [
+        "gauge",
+        "element",
+        "side",
+        "x",
+        "y",
+        "z",
+        "angle, deg",
+        "seen, deg",
+        "leverage",
+        "strain, µε",
+    ];
+    let rows: Vec<Vec<String>> = placed.iter().map(placed_row).collect();
+    sections.push(table_section("Gauges", &head, &rows, PLACED));
     sections.push(sensitivity_section(s));
-    page(title, "Gauge layout", findings, sections)
+    sections.push(gluing_section(placed, scene.model));
+    Page::new(title, "Gauge layout", findings, sections)
+}
+
+const PLACED: &str = "Places in the basic frame, in the model's length; angles from the x axis of the element, and as seen on that side; strain: the sum under the expected loads.";
+
+fn placed_row(p: &PlacedGauge) -> Vec<String> {
+    let x = p.gauge.position;
+    vec![
+        p.gauge.name.clone(),
+        p.gauge.element.to_string(),
+        p.gauge.surface.word().to_owned(),
+        format!("{:.1}", x.x),
+        format!("{:.1}", x.y),
+        format!("{:.1}", x.z),
+        format!("{:.1}", p.gauge.angle_rad.to_degrees()),
+        format!("{:.1}", p.angle_seen_deg()),
+        format!("{:.3}", p.leverage),
+        format!("{:.0}", p.expected_microstrain),
+    ]
 }
 
 /// What each number of gauges gives, and the loads (name, unit) that its sigmas belong to.
@@ -139,31 +162,28 @@ pub fn recover_page(
     scene: Option<&Scene>,
     found: &Recovered,
     findings: &[Finding],
-) -> String {
-    let mut sections = vec![Section {
-        title: "Result".into(),
-        body: pairs(found.numbers),
-    }];
+) -> Page {
+    let mut sections = vec![Section::new("Result", vec![Block::pairs(found.numbers)])];
     sections.extend(model_section(scene));
-    sections.push(Section {
-        title: if found.traces.is_empty() {
-            "Loads with 95 % intervals".into()
-        } else {
-            "Loads: smallest, mean, largest".into()
-        },
-        body: html! {
-            (bars(found.runs))
-            @if found.runs.len() > MOST_RUNS { p.muted { "The first " (MOST_RUNS) " of " (found.runs.len()) " runs; all are in loads.csv." } }
-        },
-    });
+    let mut loads = bars(found.runs);
+    if found.runs.len() > MOST_RUNS {
+        loads.push(Block::Note(format!(
+            "The first {MOST_RUNS} of {} runs; all are in loads.csv.",
+            found.runs.len()
+        )));
+    }
+    let title_of_loads = if found.traces.is_empty() {
+        "Loads with 95 % intervals"
+    } else {
+        "Loads: smallest, mean, largest"
+    };
+    sections.push(Section::new(title_of_loads, loads));
     if !found.traces.is_empty() {
-        sections.push(Section {
-            title: "Histories".into(),
-            body: html! {
-                (history(found.traces))
-                p.muted { "Drag to zoom, double click to return. Line: mean. Dark: from the smallest to the largest sample of a span of time. Light: 95 % interval of a sample around it." }
-            },
-        });
+        sections.push(figure_section(
+            "Histories",
+            history(found.traces),
+            "Drag to zoom, double click to return. Line: mean. Dark: from the smallest to the largest sample of a span of time. Light: 95 % interval of a sample around it.",
+        ));
     }
     if !found.points.is_empty() {
         let runs: Vec<String> = found.runs.iter().map(|r| r.run.clone()).collect();
@@ -171,23 +191,20 @@ pub fn recover_page(
             "used: predicted by all gauges",
             "held out: predicted by the others",
         ];
-        sections.push(Section {
-            title: "Measured against predicted strain".into(),
-            body: html! {
-                (agreement(found.points, kinds, [&runs, &runs]))
-                p.muted { "A point a gauge and run. Held out: what all other gauges say of this one, from its residual and leverage." }
-            },
-        });
+        sections.push(figure_section(
+            "Measured against predicted strain",
+            agreement(found.points, kinds, [&runs, &runs]),
+            "A point a gauge and run. Held out: what all other gauges say of this one, from its residual and leverage.",
+        ));
     }
-    sections.push(Section {
-        title: "Gauges".into(),
-        body: html! { div.scroll { table {
-            tr { th { "gauge" } th { "residual rms, µε" } th { "leverage" } }
-            @for (name, rms, leverage) in found.by_gauge { tr { td { (name) } td { (format!("{rms:.2}")) } td { (format!("{leverage:.3}")) } } }
-        } } },
-    });
+    let row = |(name, rms, leverage): &(String, f64, f64)| {
+        vec![name.clone(), format!("{rms:.2}"), format!("{leverage:.3}")]
+    };
+    let rows: Vec<Vec<String>> = found.by_gauge.iter().map(row).collect();
+    let head = ["gauge", "residual rms, µε", "leverage"];
+    sections.push(table_section("Gauges", &head, &rows, ""));
     sections.push(sensitivity_section(found.sensitivity));
-    page(
+    Page::new(
         title,
         "Loads recovered from measured strain",
         findings,
@@ -196,7 +213,7 @@ pub fn recover_page(
 }
 
 /// Forces and moments on scales of their own, a run at a time.
-fn bars(runs: &[RecoveredRun]) -> Markup {
+fn bars(runs: &[RecoveredRun]) -> Vec<Block> {
     let mut units: Vec<&String> = runs.iter().flat_map(|r| &r.loads).map(|l| &l.2).collect();
     units.sort_unstable();
     units.dedup();
@@ -210,11 +227,7 @@ fn bars(runs: &[RecoveredRun]) -> Markup {
             .take(MOST_RUNS)
             .map(|r| of_run(r, unit))
             .collect();
-        intervals(&groups, unit)
+        Block::Figure(intervals(&groups, unit))
     };
-    html! { @for unit in units { (figure(unit)) } }
-}
-
-fn pairs(numbers: &[(String, String)]) -> Markup {
-    html! { div.scroll { table { @for (name, value) in numbers { tr { td { (name) } td { (value) } } } } } }
+    units.into_iter().map(figure).collect()
 }

@@ -2,9 +2,8 @@
 
 use crate::fe::{Balance, Solution, SolveReport};
 use crate::finding::Finding;
-use crate::report::page::{Section, number, page, table};
+use crate::report::page::{Block, Page, Section, number, table_section};
 use crate::report::scene::{Scene, scene_section};
-use maud::html;
 
 /// Page of a solution: size of the model and its factor, resultants of applied and inertia loads, first elastic modes.
 pub fn solution_page(
@@ -13,11 +12,9 @@ pub fn solution_page(
     report: &SolveReport,
     scene: &Scene,
     findings: &[Finding],
-) -> String {
-    let mut sections = vec![Section {
-        title: "Model".into(),
-        body: table(&["quantity", "value"], &model_rows(report)),
-    }];
+) -> Page {
+    let rows = model_rows(report);
+    let mut sections = vec![table_section("Model", &["quantity", "value"], &rows, "")];
     sections.push(scene_section("Loads and strain", scene));
     if !report.balance.is_empty() {
         let rows: Vec<Vec<String>> = report
@@ -25,28 +22,39 @@ pub fn solution_page(
             .iter()
             .flat_map(|b| balance_rows(solution, b))
             .collect();
-        sections.push(Section {
-            title: "Balance".into(),
-            body: html! {
-                p { "Resultants about the centre of gravity, basic frame, in the deck's units. Inertia loads are mass times the rigid acceleration that the applied loads give; both sum to nothing." }
-                (table(&["subcase", "", "FX", "FY", "FZ", "MX", "MY", "MZ", "left, share"], &rows))
-            },
-        });
+        let head = [
+            "subcase",
+            "",
+            "FX",
+            "FY",
+            "FZ",
+            "MX",
+            "MY",
+            "MZ",
+            "left, share",
+        ];
+        sections.push(Section::new(
+            "Balance",
+            vec![
+                Block::Text("Resultants about the centre of gravity, basic frame, in the deck's units. Inertia loads are mass times the rigid acceleration that the applied loads give; both sum to nothing.".into()),
+                Block::table(&head, rows),
+            ],
+        ));
     }
     if !report.modes.is_empty() {
         let rows: Vec<Vec<String>> = (1..)
             .zip(&report.modes)
             .map(|(i, f)| vec![i.to_string(), number(*f)])
             .collect();
-        sections.push(Section {
-            title: "Elastic modes".into(),
-            body: html! {
-                p { "Of the free structure. Loads recovered by these strains must stay below a third of the first." }
-                (table(&["mode", "Hz"], &rows))
-            },
-        });
+        sections.push(Section::new(
+            "Elastic modes",
+            vec![
+                Block::Text("Of the free structure. Loads recovered by these strains must stay below a third of the first.".into()),
+                Block::table(&["mode", "Hz"], rows),
+            ],
+        ));
     }
-    page(title, "Solution of the built-in solver", findings, sections)
+    Page::new(title, "Solution of the built-in solver", findings, sections)
 }
 
 fn model_rows(report: &SolveReport) -> Vec<Vec<String>> {

@@ -1,4 +1,4 @@
-//! CSV and markdown.
+//! CSV of gauges and of S.
 
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::Gauge;
@@ -202,57 +202,4 @@ pub fn gluing_sheet_csv(
         writeln!(out)?;
     }
     Ok(())
-}
-
-/// The same to print.
-pub fn gluing_sheet_md(title: &str, placed: &[PlacedGauge], model: &Model) -> String {
-    let mut t = format!("# Gluing sheet: {title}\n\n");
-    t.push_str("Positions and directions in the basic frame and in the model's units; the side is the one the arrow `outward` leaves.\n");
-    t.push_str(
-        "Strain is what the expected loads add up to: choose the amplifier's range above it.\n\n",
-    );
-    t.push_str("Budgets are the errors of angle and place that move some load by 5 % of its expected size.\n\n");
-    t.push_str("| gauge | element | side | position | from | axis | outward | angle seen, deg | strain, microstrain | wiring | budget, deg | budget, length |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-    for p in placed {
-        let g = &p.gauge;
-        let outward = match g.surface {
-            Surface::Top => g.normal,
-            Surface::Bottom => -g.normal,
-        };
-        let from = p.reference.as_ref().map_or(String::new(), |(id, v)| {
-            format!("{id}: {:+.1} {:+.1} {:+.1}", v[0], v[1], v[2])
-        });
-        let three =
-            |v: crate::model::Vec3, d: usize| format!("{:.d$} {:.d$} {:.d$}", v.x, v.y, v.z);
-        t.push_str(&format!(
-            "| {} | {} | {} | {} | {from} | {} | {} | {:.1} | {:.0} | {}{} | {} | {} |\n",
-            g.name,
-            g.element,
-            g.surface.word(),
-            three(g.position, 1),
-            three(g.direction, 3),
-            three(outward, 3),
-            p.angle_seen_deg(),
-            p.expected_microstrain,
-            p.bridge,
-            if p.role == Role::Validation {
-                ", validation"
-            } else {
-                ""
-            },
-            p.angle_budget_deg
-                .map_or("any".into(), |v| format!("{v:.1}")),
-            p.position_budget
-                .map_or("any".into(), |v| format!("{v:.1}"))
-        ));
-    }
-    t.push_str("\nDistance of each gauge from the corners of its element (grid: distance):\n\n");
-    for p in placed {
-        let list: Vec<String> = corner_distances(model, &p.gauge)
-            .iter()
-            .map(|(id, d)| format!("{id}: {d:.1}"))
-            .collect();
-        t.push_str(&format!("- {}: {}\n", p.gauge.name, list.join(", ")));
-    }
-    t
 }

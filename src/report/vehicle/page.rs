@@ -3,11 +3,10 @@
 use super::restoring::restoring_section;
 use crate::finding::Finding;
 use crate::report::figure::{Line, Scale, lines};
-use crate::report::page::{Section, number, page, table_section};
+use crate::report::page::{Block, Page, Section, number, table_section};
 use crate::series::detrend::rms;
 use crate::vehicle::chassis::ChassisForce;
-use crate::vehicle::identify::Identification;
-use maud::{Markup, html};
+use crate::vehicle::identify::{Estimate, Identification};
 
 /// A signal recovered and measured over one axis; `measured` is empty where it was not measured.
 pub struct Curve {
@@ -30,26 +29,20 @@ pub fn identify_page(
     spectra: &[Curve],
     restoring: &[Curve],
     chassis: &[ChassisForce],
-) -> String {
-    let mut sections = vec![Section {
-        title: "Parameters".into(),
-        body: parameters(found),
-    }];
+) -> Page {
+    let mut sections = vec![parameters(found)];
     if !found.unidentifiable.is_empty() {
-        let body = html! { @for s in &found.unidentifiable { p { (s) } } };
-        sections.push(Section {
-            title: "What this record can't tell".into(),
-            body,
-        });
+        let blocks = found.unidentifiable.iter().cloned().map(Block::Text);
+        sections.push(Section::new(
+            "What this record can't tell",
+            blocks.collect(),
+        ));
     }
-    sections.push(Section {
-        title: "Fit".into(),
-        body: fit(found),
-    });
-    sections.push(Section {
-        title: "Wheel force".into(),
-        body: plots(histories, "time, s", "force", Scale::Linear),
-    });
+    sections.push(Section::new("Fit", fit(found)));
+    sections.push(Section::new(
+        "Wheel force",
+        vec![plots(histories, "time, s", "force", Scale::Linear)],
+    ));
     let rows = chassis.iter().map(|f| {
         let sizes = [rms(&f.by_mass), rms(&f.by_springs), f.difference()].map(number);
         std::iter::once(f.body.clone()).chain(sizes).collect()
@@ -60,12 +53,12 @@ pub fn identify_page(
         &rows.collect::<Vec<Vec<String>>>(),
         "By mass: inertia times acceleration. By springs: what springs and dampers pass on. Either may be wrong by their difference.",
     ));
-    sections.push(Section {
-        title: "Spectra".into(),
-        body: plots(spectra, "frequency, Hz", "density", Scale::LogY),
-    });
+    sections.push(Section::new(
+        "Spectra",
+        vec![plots(spectra, "frequency, Hz", "density", Scale::LogY)],
+    ));
     sections.push(restoring_section(restoring));
-    page(
+    Page::new(
         title,
         "Vehicle parameters and wheel loads from accelerations",
         findings,
@@ -73,40 +66,50 @@ pub fn identify_page(
     )
 }
 
-fn parameters(found: &Identification) -> Markup {
-    let number = |v: Option<f64>| v.map_or("not told".to_owned(), |v| format!("{v:.5e}"));
-    html! { div.scroll { table {
-        tr { th { "parameter" } th { "value" } th { "sigma" } th { "95 % from" } th { "to" } th { "unit" } }
-        @for p in &found.parameters { tr {
-            td { (p.name) @if p.known { " (known)" } }
-            td { (number(p.value)) }
-            td { (p.sigma.map_or(String::new(), |s| format!("{s:.2e}"))) }
-            td { (p.interval.map_or(String::new(), |i| format!("{:.5e}", i[0]))) }
-            td { (p.interval.map_or(String::new(), |i| format!("{:.5e}", i[1]))) }
-            td { (p.unit) }
-        } }
-    } } }
+fn parameters(found: &Identification) -> Section {
+    let told = |v: Option<f64>, known: &str| v.map_or(known.to_owned(), |v| format!("{v:.5e}"));
+    let row = |p: &Estimate| {
+        vec![
+            format!("{}{}", p.name, if p.known { " (known)" } else { "" }),
+            told(p.value, "not told"),
+            p.sigma.map_or(String::new(), |s| format!("{s:.2e}")),
+            told(p.interval.map(|i| i[0]), ""),
+            told(p.interval.map(|i| i[1]), ""),
+            p.unit.clone(),
+        ]
+    };
+    let rows: Vec<Vec<String>> = found.parameters.iter().map(row).collect();
+    let head = ["parameter", "value", "sigma", "95 % from", "to", "unit"];
+    table_section("Parameters", &head, &rows, "")
 }
 
-fn fit(found: &Identification) -> Markup {
-    html! {
-        div.scroll { table {
-            tr { th { "channel" } th { "left over, %" } th { "judged on" } th { "left over where fitted, %" } }
-            @for f in &found.fit { tr {
-                td { (f.channel) }
-                td { (format!("{:.2}", 100.0 * f.relative_rms)) }
-                td { (f.on) }
-                td { (format!("{:.2}", 100.0 * f.relative_rms_fitted)) }
-            } }
-        } }
-        @if let Some(m) = found.mass_closure {
-            p { "Identified mass over weighed mass: " (format!("{:.4}", m.ratio)) "." }
-        }
+fn fit(found: &Identification) -> Vec<Block> {
+    let rows = found.fit.iter().map(|f| {
+        vec![
+            f.channel.clone(),
+            format!("{:.2}", 100.0 * f.relative_rms),
+            f.on.to_owned(),
+            format!("{:.2}", 100.0 * f.relative_rms_fitted),
+        ]
+    });
+    let head = [
+        "channel",
+        "left over, %",
+        "judged on",
+        "left over where fitted, %",
+    ];
+    let mut out = vec![Block::table(&head, rows.collect())];
+    if let Some(m) = found.mass_closure {
+        out.push(Block::Text(format!(
+            "Identified mass over weighed mass: {:.4}.",
+            m.ratio
+        )));
     }
+    out
 }
 
 /// Curves one at a time, what was measured below what was recovered.
-pub(super) fn plots(curves: &[Curve], x_label: &str, y_label: &str, scale: Scale) -> Markup {
+pub(super) fn plots(curves: &[Curve], x_label: &str, y_label: &str, scale: Scale) -> Block {
     let groups: Vec<(String, Vec<Line>)> = curves
         .iter()
         .map(|c| {
@@ -118,8 +121,8 @@ pub(super) fn plots(curves: &[Curve], x_label: &str, y_label: &str, scale: Scale
             (c.name.clone(), list)
         })
         .collect();
-    html! {
-        @if groups.is_empty() { p.muted { "None." } }
-        @else { (lines(&groups, x_label, y_label, scale)) }
+    if groups.is_empty() {
+        return Block::Note("None.".into());
     }
+    Block::Figure(lines(&groups, x_label, y_label, scale))
 }

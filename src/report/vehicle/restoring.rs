@@ -61,8 +61,8 @@ pub fn restoring_curves(found: &Identification, motion: &Motion) -> Vec<Curve> {
 
 /// The curves as a section of a page.
 pub fn restoring_section(curves: &[Curve]) -> Section {
-    Section {
-        title: "Restoring force over stretch (measured: what the motion asks for)".into(),
-        body: plots(curves, "stretch", "force", Scale::Linear),
-    }
+    Section::new(
+        "Restoring force over stretch (measured: what the motion asks for)",
+        vec![plots(curves, "stretch", "force", Scale::Linear)],
+    )
 }

@@ -1,0 +1,146 @@
+//! What a page is made of. Plain text throughout: each rendering escapes it in its own way.
+
+use crate::finding::Finding;
+use crate::report::figure::Figure;
+use crate::report::scene::SceneView;
+
+/// A report: title, findings, then the sections.
+#[derive(Clone, Debug)]
+pub struct Page {
+    /// What it is about, as the user calls it.
+    pub title: String,
+    /// What kind of report it is.
+    pub lead: String,
+    /// In any order: the worst are shown first.
+    pub findings: Vec<Finding>,
+    /// Parts.
+    pub sections: Vec<Section>,
+    /// Whether it is also written as `report.pdf`.
+    pub paper: Paper,
+}
+
+/// What of a report goes onto paper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Paper {
+    /// Nothing.
+    None,
+    /// All of it.
+    Report,
+    /// All of it, with lines for name, date and signature.
+    Signed,
+}
+
+impl Page {
+    /// A page with `lead` under its title.
+    pub fn new(title: &str, lead: &str, findings: &[Finding], sections: Vec<Section>) -> Self {
+        Self {
+            title: title.to_owned(),
+            lead: lead.to_owned(),
+            findings: findings.to_vec(),
+            sections,
+            paper: Paper::None,
+        }
+    }
+
+    /// The same page, for paper too.
+    pub fn on_paper(self, paper: Paper) -> Self {
+        Self { paper, ..self }
+    }
+
+    /// The findings, the worst first, else in the order of the stages.
+    pub fn worst_first(&self) -> Vec<&Finding> {
+        let mut sorted: Vec<&Finding> = self.findings.iter().collect();
+        sorted.sort_by_key(|f| std::cmp::Reverse(f.severity));
+        sorted
+    }
+}
+
+/// A titled part of a page.
+#[derive(Clone, Debug)]
+pub struct Section {
+    /// Heading.
+    pub title: String,
+    /// Content.
+    pub blocks: Vec<Block>,
+}
+
+impl Section {
+    /// A part with these blocks.
+    pub fn new(title: impl Into<String>, blocks: Vec<Block>) -> Self {
+        Self {
+            title: title.into(),
+            blocks,
+        }
+    }
+}
+
+/// One thing of a section.
+#[derive(Clone, Debug)]
+pub enum Block {
+    /// A paragraph.
+    Text(String),
+    /// A paragraph that begins with stressed words.
+    Stressed(String, String),
+    /// A paragraph in the background: how to read what stands above it.
+    Note(String),
+    /// A table.
+    Table(Table),
+    /// A figure in two dimensions.
+    Figure(Figure),
+    /// The model in three dimensions; on paper its outline with the gauges, seen along the axes.
+    Scene(SceneView),
+    /// Lines as they are, in type of one width.
+    Lines(String),
+    /// Links of a page to files beside it: words, path.
+    Links(Vec<(String, String)>),
+    /// What only some look for: folded away under `summary` on a screen, in full on paper.
+    Folded {
+        /// Words to open it.
+        summary: String,
+        /// Content.
+        blocks: Vec<Block>,
+    },
+}
+
+impl Block {
+    /// A table with a heading line, or without where `head` is empty.
+    pub fn table(head: &[&str], rows: Vec<Vec<String>>) -> Self {
+        Self::Table(Table {
+            head: head.iter().map(|h| (*h).to_owned()).collect(),
+            rows,
+        })
+    }
+
+    /// Names and their values, without a heading line.
+    pub fn pairs(numbers: &[(String, String)]) -> Self {
+        let row = |(name, value): &(String, String)| vec![name.clone(), value.clone()];
+        Self::table(&[], numbers.iter().map(row).collect())
+    }
+}
+
+/// A table; rows as long as its heading line where there is one.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Table {
+    /// Heading line; empty for none.
+    pub head: Vec<String>,
+    /// Cells.
+    pub rows: Vec<Vec<String>>,
+}
+
+/// A part that is a table with a note under it.
+pub fn table_section(title: &str, head: &[&str], rows: &[Vec<String>], note: &str) -> Section {
+    noted(title, Block::table(head, rows.to_vec()), note)
+}
+
+/// A part that is a figure with a note under it.
+pub fn figure_section(title: &str, figure: Figure, note: &str) -> Section {
+    noted(title, Block::Figure(figure), note)
+}
+
+fn noted(title: &str, block: Block, note: &str) -> Section {
+    let mut blocks = vec![block];
+    if !note.is_empty() {
+        blocks.push(Block::Note(note.to_owned()));
+    }
+    Section::new(title, blocks)
+}

@@ -1,0 +1,8 @@
+//! A report page: what it says as plain blocks, drawn as HTML here and as PDF by `report::pdf`.
+
+mod block;
+mod html;
+mod number;
+
+pub use block::{Block, Page, Paper, Section, Table, figure_section, table_section};
+pub use number::number;

@@ -1,0 +1,109 @@
+//! How a table fits the paper: size of type, upright or across, and where not even that is enough, columns dealt over several tables.
+
+use crate::report::page::Table;
+
+/// Width of the text, mm: A4 with margins of 18 mm.
+pub(super) const UPRIGHT: f64 = 174.0;
+/// The same across.
+const ACROSS: f64 = 261.0;
+/// Millimetres per point of type and character: a little less than half the height of the type, as digits, small letters and the
+/// spaces between them take in the mean.
+const PER_CHARACTER: f64 = 0.44 * 25.4 / 72.0;
+/// Space beside a column, mm.
+const BESIDE: f64 = 3.0;
+/// Characters after which a cell goes on in the next line.
+const WRAPPED: usize = 26;
+/// Sizes of type tried, points.
+const SIZES: [f64; 5] = [9.0, 8.5, 8.0, 7.5, 7.0];
+/// Rows from which a narrow table is set in two columns, and the space between these, mm.
+const LONG: usize = 45;
+const GUTTER: f64 = 8.0;
+/// Longest word that is not broken.
+pub(super) const LONGEST_WORD: usize = 22;
+
+/// A table, or some of its columns, as it is set.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Fitted {
+    /// Columns shown.
+    pub(super) columns: Vec<usize>,
+    /// Size of type, points.
+    pub(super) size: f64,
+    /// Whether the sheet is turned.
+    pub(super) across: bool,
+    /// Whether the page has two of it beside each other.
+    pub(super) halved: bool,
+}
+
+/// The table in one piece where a size of type allows it, else in pieces that repeat the first column.
+pub(super) fn fitted(table: &Table) -> Vec<Fitted> {
+    let n = table.rows.iter().map(Vec::len).max().unwrap_or(0);
+    let n = n.max(table.head.len());
+    let widths: Vec<usize> = (0..n).map(|c| characters(table, c)).collect();
+    let whole = |across: bool, size: f64| Fitted {
+        columns: (0..n).collect(),
+        size,
+        across,
+        halved: false,
+    };
+    let wide = |size: f64| widths.iter().map(|w| width(*w, size)).sum::<f64>();
+    if table.rows.len() > LONG
+        && let Some(size) = SIZES.iter().find(|s| 2.0 * wide(**s) + GUTTER <= UPRIGHT)
+    {
+        return vec![Fitted {
+            halved: true,
+            ..whole(false, *size)
+        }];
+    }
+    // Small type is for what is wide even across.
+    let upright = SIZES.iter().filter(|s| **s > 7.5);
+    let upright = upright.map(|s| (false, UPRIGHT, *s));
+    let across = SIZES.iter().map(|s| (true, ACROSS, *s));
+    if let Some((across, _, size)) = upright.chain(across).find(|t| wide(t.2) <= t.1) {
+        return vec![whole(across, size)];
+    }
+    const SMALL: f64 = 7.0;
+    let first = width(widths.first().copied().unwrap_or(0), SMALL);
+    let mut out: Vec<Fitted> = Vec::new();
+    let mut used = f64::INFINITY;
+    for (c, w) in widths.iter().enumerate().skip(1) {
+        let own = width(*w, SMALL);
+        if used + own > ACROSS {
+            out.push(Fitted {
+                columns: vec![0],
+                ..whole(true, SMALL)
+            });
+            used = first;
+        }
+        used += own;
+        if let Some(last) = out.last_mut() {
+            last.columns.push(c);
+        }
+    }
+    out
+}
+
+/// Characters that a column is wide: its longest cell, or what that wraps to.
+fn characters(table: &Table, column: usize) -> usize {
+    let cells = table.rows.iter().chain(std::iter::once(&table.head));
+    let cells = cells.filter_map(|row| row.get(column));
+    let wide = |cell: &String| {
+        let word = cell.split_whitespace().map(|w| w.chars().count()).max();
+        let word = word.unwrap_or(0).min(LONGEST_WORD);
+        cell.chars().count().min(WRAPPED).max(word)
+    };
+    cells.map(wide).max().unwrap_or(0)
+}
+
+fn width(characters: usize, size: f64) -> f64 {
+    characters as f64 * size * PER_CHARACTER + BESIDE
+}
+
+/// Whether a column holds numbers, which stand to the right.
+pub(super) fn is_numeric(table: &Table, column: usize) -> bool {
+    let mut cells = table.rows.iter().filter_map(|row| row.get(column));
+    let numeric = |cell: &String| {
+        let bare = cell.trim_end_matches('%').trim();
+        bare.is_empty() || bare == "-" || bare == "∞" || bare.parse::<f64>().is_ok()
+    };
+    column > 0 && cells.all(numeric)
+}

@@ -1,0 +1,176 @@
+//! What the template is given: the page as JSON, every text made printable.
+
+use super::chart::pictures;
+use super::columns::{Fitted, LONGEST_WORD, fitted, is_numeric};
+use super::glyphs::{breakable, printable, shortened};
+use super::picture::Picture;
+use super::sketch::views;
+use crate::finding::{Finding, Severity};
+use crate::report::page::{Block, Page, Paper, Section, Table, number};
+use serde_json::{Value, json};
+
+/// Where a report comes from.
+#[derive(Clone, Copy, Debug)]
+pub struct Origin<'a> {
+    /// Program and version.
+    pub program: &'a str,
+    /// Its command.
+    pub command: &'a str,
+    /// Files read: path and SHA-256, hexadecimal.
+    pub inputs: &'a [(String, String)],
+    /// Quantity and unit.
+    pub units: &'a [(String, String)],
+}
+
+/// Longest word of running text that is not broken.
+const IN_TEXT: usize = 48;
+/// Cells of a table and lines of one text on paper; the rest is in the files.
+const MOST_ROWS: usize = 600;
+
+/// The page for the template.
+pub(super) fn content(page: &Page, origin: &Origin) -> Value {
+    let findings: Vec<Value> = page.worst_first().into_iter().map(finding).collect();
+    let units: Vec<[String; 2]> = origin
+        .units
+        .iter()
+        .map(|(q, u)| [printable(q), printable(u)])
+        .collect();
+    let inputs: Vec<[String; 2]> = origin
+        .inputs
+        .iter()
+        .map(|(path, hash)| [breakable(path, 40), hash.clone()])
+        .collect();
+    json!({
+        "title": breakable(&page.title, IN_TEXT),
+        "plain_title": printable(&page.title),
+        "running": shortened(&page.title, 80),
+        "lead": printable(&page.lead),
+        "running_lead": shortened(&page.lead, 50),
+        "program": origin.program,
+        "command": origin.command,
+        "units": units,
+        "inputs": inputs,
+        "findings": findings,
+        "sheets": sheets(&page.sections),
+        "signed": page.paper == Paper::Signed,
+    })
+}
+
+fn finding(f: &Finding) -> Value {
+    let (word, colour) = match f.severity {
+        Severity::Error => ("Error", "#c0392b"),
+        Severity::Warning => ("Warning", "#d68910"),
+        Severity::Info => ("Note", "#5d7f9e"),
+    };
+    let numbers = match (f.measured, f.limit) {
+        (Some(m), Some(l)) => format!("Measured {}, limit {}.", number(m), number(l)),
+        (Some(m), None) => format!("Measured {}.", number(m)),
+        _ => String::new(),
+    };
+    json!({
+        "word": word,
+        "colour": colour,
+        "subject": breakable(&f.subject, IN_TEXT),
+        "message": breakable(&f.message, IN_TEXT),
+        "numbers": numbers,
+        "remedy": breakable(&f.remedy, IN_TEXT),
+    })
+}
+
+/// Sections by how the sheet lies: those that follow each other the same way share their sheets.
+fn sheets(sections: &[Section]) -> Vec<Value> {
+    let mut out: Vec<(bool, Vec<Value>)> = Vec::new();
+    for s in sections {
+        let blocks = blocks(&s.blocks);
+        let across = blocks.iter().any(|b| b["across"] == true);
+        let section = json!({ "title": printable(&s.title), "blocks": blocks });
+        match out.last_mut() {
+            Some((last, list)) if *last == across => list.push(section),
+            _ => out.push((across, vec![section])),
+        }
+    }
+    out.into_iter()
+        .map(|(across, sections)| json!({ "across": across, "sections": sections }))
+        .collect()
+}
+
+fn blocks(list: &[Block]) -> Vec<Value> {
+    list.iter().flat_map(block).collect()
+}
+
+fn block(b: &Block) -> Vec<Value> {
+    let words = |kind: &str, t: &str| json!({ "kind": kind, "text": breakable(t, IN_TEXT) });
+    match b {
+        Block::Text(t) => vec![words("text", t)],
+        Block::Note(t) => vec![words("note", t)],
+        Block::Stressed(lead, rest) => vec![json!({
+            "kind": "stressed", "lead": breakable(lead, IN_TEXT), "text": breakable(rest, IN_TEXT),
+        })],
+        Block::Table(t) => table(t),
+        Block::Figure(f) => {
+            let left = f.choices.len().saturating_sub(f.on_paper);
+            let mut out = drawn(pictures(f));
+            if left > 0 && f.on_paper > 1 {
+                let n = f.choices.len();
+                let note = format!("The first {} of {n}; all are in report.html.", f.on_paper);
+                out.push(words("note", &note));
+            }
+            out
+        }
+        Block::Scene(s) => {
+            let mut out = drawn(views(s));
+            if s.marks.iter().any(|m| m.axes.is_some()) {
+                out.push(words("note", STROKES));
+            }
+            out
+        }
+        Block::Lines(t) => {
+            let lines: Vec<String> = t.lines().take(MOST_ROWS).map(printable).collect();
+            vec![json!({ "kind": "lines", "lines": lines })]
+        }
+        // Paper has no links.
+        Block::Links(_) => Vec::new(),
+        Block::Folded { summary, blocks } => {
+            let mut out = vec![words("heading", summary)];
+            out.extend(self::blocks(blocks));
+            out
+        }
+    }
+}
+
+const STROKES: &str = "Strokes lie along the axes of the gauges: red on the top (Z2), blue on the bottom (Z1) of the element. The model in three dimensions is in report.html.";
+
+fn drawn(pictures: Vec<Picture>) -> Vec<Value> {
+    let value = |p: Picture| json!({ "kind": "picture", "picture": p.to_json() });
+    pictures.into_iter().map(value).collect()
+}
+
+fn table(t: &Table) -> Vec<Value> {
+    let mut out: Vec<Value> = fitted(t).iter().map(|f| piece(t, f)).collect();
+    if t.rows.len() > MOST_ROWS {
+        let n = t.rows.len();
+        let text =
+            format!("The first {MOST_ROWS} of {n} rows; all are in the tables beside this file.");
+        out.push(json!({ "kind": "note", "text": text }));
+    }
+    out
+}
+
+fn piece(t: &Table, f: &Fitted) -> Value {
+    let cell = |row: &Vec<String>, c: &usize| {
+        let text = row.get(*c).map_or("", String::as_str);
+        breakable(text, LONGEST_WORD)
+    };
+    let line =
+        |row: &Vec<String>| -> Vec<String> { f.columns.iter().map(|c| cell(row, c)).collect() };
+    let right: Vec<bool> = f.columns.iter().map(|c| is_numeric(t, *c)).collect();
+    json!({
+        "kind": "table",
+        "across": f.across,
+        "halved": f.halved,
+        "size": f.size,
+        "right": right,
+        "head": if t.head.is_empty() { Vec::new() } else { line(&t.head) },
+        "rows": t.rows.iter().take(MOST_ROWS).map(line).collect::<Vec<_>>(),
+    })
+}

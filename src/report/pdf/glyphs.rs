@@ -1,0 +1,66 @@
+//! The fonts of the pages, and text that they can show.
+
+use std::sync::OnceLock;
+use typst::foundations::Bytes;
+use typst::text::Font;
+
+/// Families used: text, and hashes and lines of one width.
+const FAMILIES: [&str; 2] = ["Libertinus Serif", "DejaVu Sans Mono"];
+
+/// Both families in the styles that the crate `typst-assets` has.
+pub(super) fn fonts() -> &'static [Font] {
+    static FONTS: OnceLock<Vec<Font>> = OnceLock::new();
+    FONTS.get_or_init(|| {
+        typst_assets::fonts()
+            .flat_map(|data| Font::iter(Bytes::new(data)))
+            .filter(|f| FAMILIES.contains(&f.info().family.as_str()))
+            .collect()
+    })
+}
+
+/// The text as it can stand on paper: a character that no font here has is written as its number, `[U+4E2D]`, and so is one that
+/// would be invisible or turn the direction of reading. Nobody signs for an empty box.
+pub(super) fn printable(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c.is_control() {
+            out.push(' ');
+        } else if is_shown(c) {
+            out.push(c);
+        } else {
+            out.push_str(&format!("[U+{:04X}]", u32::from(c)));
+        }
+    }
+    out
+}
+
+fn is_shown(c: char) -> bool {
+    let hidden = matches!(u32::from(c), 0xAD | 0x200B..=0x200F | 0x2028..=0x202E | 0x2060..=0x206F | 0xFE00..=0xFE0F | 0xFEFF);
+    c.is_ascii() || !hidden && fonts().iter().any(|f| f.info().coverage.contains(c.into()))
+}
+
+/// Printable text in which words longer than `longest` characters may be broken.
+pub(super) fn breakable(text: &str, longest: usize) -> String {
+    let text = printable(text);
+    let mut out = String::with_capacity(text.len());
+    for word in text.split_inclusive(char::is_whitespace) {
+        let long = word.chars().count() > longest;
+        for (i, c) in word.chars().enumerate() {
+            if long && i > 0 && i % 8 == 0 {
+                out.push('\u{200b}');
+            }
+            out.push(c);
+        }
+    }
+    out
+}
+
+/// At most `most` characters of printable text, marked where some are left out.
+pub(super) fn shortened(text: &str, most: usize) -> String {
+    let text = printable(text);
+    if text.chars().count() <= most {
+        return text;
+    }
+    let kept: String = text.chars().take(most.saturating_sub(1)).collect();
+    format!("{kept}…")
+}

@@ -1,0 +1,18 @@
+//! A page as PDF, by Typst: its blocks become plain data, which a fixed template lays out. No text of a user is ever read as markup.
+
+mod chart;
+mod columns;
+mod content;
+mod glyphs;
+mod heat;
+mod picture;
+mod scale;
+mod sketch;
+mod traces;
+mod world;
+
+pub use content::Origin;
+pub use world::{PdfError, write_pdf};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,122 @@
+//! Traces of a figure as series of points.
+
+use serde_json::Value;
+
+/// How a series is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Upright bars from the axis.
+    Bars,
+    /// Points alone.
+    Points,
+    /// A line alone.
+    Lines,
+    /// Both.
+    Both,
+}
+
+/// A series of a figure.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Series {
+    /// Name; empty where it has none.
+    pub(super) name: String,
+    /// How it is drawn.
+    pub(super) kind: Kind,
+    /// `#rrggbb`.
+    pub(super) colour: String,
+    /// plotly.js's word for a point.
+    pub(super) symbol: String,
+    /// Right and up: numbers or names.
+    values: [Vec<Value>; 2],
+    /// Below and above a value to the right.
+    errors: [Vec<Value>; 2],
+}
+
+impl Series {
+    /// Number of points.
+    pub(super) fn len(&self) -> usize {
+        self.values[0].len().min(self.values[1].len())
+    }
+
+    /// Name on axis `k`, where that has names.
+    pub(super) fn name_at(&self, k: usize, i: usize) -> Option<&str> {
+        self.values[k].get(i)?.as_str()
+    }
+
+    /// Value on axis `k`.
+    pub(super) fn value_at(&self, k: usize, i: usize) -> Option<f64> {
+        self.values[k].get(i)?.as_f64()
+    }
+
+    /// Interval about a value to the right.
+    pub(super) fn interval_at(&self, i: usize) -> Option<[f64; 2]> {
+        let v = self.value_at(0, i)?;
+        let [below, above] = &self.errors;
+        Some([v - below.get(i)?.as_f64()?, v + above.get(i)?.as_f64()?])
+    }
+
+    /// What an axis must hold of it: its values, their intervals, the foot of its bars.
+    pub(super) fn reach(&self, k: usize) -> Vec<f64> {
+        let mut out: Vec<f64> = self.values[k].iter().filter_map(Value::as_f64).collect();
+        if k == 0 {
+            out.extend(
+                (0..self.len())
+                    .filter_map(|i| self.interval_at(i))
+                    .flatten(),
+            );
+        }
+        if k == 1 && self.kind == Kind::Bars {
+            out.push(0.0);
+        }
+        out
+    }
+}
+
+/// The series of traces; `colours` in turn for those without.
+pub(super) fn series_of(traces: &[Value], colours: &[&str]) -> Vec<Series> {
+    let list = |v: &Value| v.as_array().cloned().unwrap_or_default();
+    let word = |v: &Value| v.as_str().unwrap_or("").to_owned();
+    let mut next = colours.iter().cycle();
+    let mut out = Vec::new();
+    for t in traces {
+        // Lines of no width only bound what is filled.
+        if t["line"]["width"] == 0 {
+            continue;
+        }
+        let kind = match (t["type"].as_str(), t["mode"].as_str()) {
+            (Some("bar"), _) => Kind::Bars,
+            (_, Some("lines")) => Kind::Lines,
+            (_, Some("lines+markers")) => Kind::Both,
+            _ => Kind::Points,
+        };
+        let own = [&t["marker"]["color"], &t["line"]["color"]];
+        let own = own.into_iter().find_map(Value::as_str);
+        let own = own.filter(|c| c.starts_with('#'));
+        let colour = own.or_else(|| next.next().copied()).unwrap_or("#1f618d");
+        out.push(Series {
+            name: word(&t["name"]),
+            kind,
+            colour: colour.to_owned(),
+            symbol: word(&t["marker"]["symbol"]),
+            values: [list(&t["x"]), list(&t["y"])],
+            errors: [
+                list(&t["error_x"]["arrayminus"]),
+                list(&t["error_x"]["array"]),
+            ],
+        });
+    }
+    out
+}
+
+/// Names on axis `k` in the order in which they come; `None` where it has numbers.
+pub(super) fn names_of(series: &[Series], k: usize) -> Option<Vec<String>> {
+    let mut names: Vec<String> = Vec::new();
+    let mut seen = std::collections::BTreeSet::new();
+    for value in series.iter().flat_map(|s| &s.values[k]) {
+        let name = value.as_str()?;
+        if seen.insert(name) {
+            names.push(name.to_owned());
+        }
+    }
+    (!names.is_empty()).then_some(names)
+}

@@ -1,0 +1,109 @@
+//! What the technician takes to the structure, to print: as markdown, and as a part of the plan's report.
+
+use super::tables::{PlacedGauge, Role, corner_distances};
+use crate::fe::strain_tensor::Surface;
+use crate::model::{Model, Vec3};
+use crate::report::page::{Block, Section};
+
+const FRAME: &str = "Positions and directions in the basic frame and in the model's units; the side is the one the arrow `outward` leaves.";
+const STRAIN: &str =
+    "Strain is what the expected loads add up to: choose the amplifier's range above it.";
+const BUDGETS: &str =
+    "Budgets are the errors of angle and place that move some load by 5 % of its expected size.";
+const CORNERS: &str = "Distance of each gauge from the corners of its element (grid: distance):";
+
+const HEAD: [&str; 12] = [
+    "gauge",
+    "element",
+    "side",
+    "position",
+    "from",
+    "axis",
+    "outward",
+    "angle seen, deg",
+    "strain, microstrain",
+    "wiring",
+    "budget, deg",
+    "budget, length",
+];
+
+/// The gluing sheet in markdown.
+pub fn gluing_sheet_md(title: &str, placed: &[PlacedGauge], model: &Model) -> String {
+    let mut t = format!("# Gluing sheet: {title}\n\n{FRAME}\n{STRAIN}\n\n{BUDGETS}\n\n");
+    t.push_str(&format!(
+        "| {} |\n|{}\n",
+        HEAD.join(" | "),
+        "---|".repeat(HEAD.len())
+    ));
+    for p in placed {
+        t.push_str(&format!("| {} |\n", row(p).join(" | ")));
+    }
+    t.push_str(&format!("\n{CORNERS}\n\n"));
+    for p in placed {
+        t.push_str(&format!("- {}: {}\n", p.gauge.name, corners(model, p)));
+    }
+    t
+}
+
+/// The same as a part of a report.
+pub(super) fn gluing_section(placed: &[PlacedGauge], model: &Model) -> Section {
+    let far = |p: &PlacedGauge| vec![p.gauge.name.clone(), corners(model, p)];
+    let text = |t: &str| Block::Text(t.to_owned());
+    Section::new(
+        "Gluing sheet",
+        vec![
+            text(FRAME),
+            text(STRAIN),
+            text(BUDGETS),
+            Block::table(&HEAD, placed.iter().map(row).collect()),
+            text(CORNERS),
+            Block::table(
+                &["gauge", "corners of its element"],
+                placed.iter().map(far).collect(),
+            ),
+        ],
+    )
+}
+
+fn row(p: &PlacedGauge) -> Vec<String> {
+    let g = &p.gauge;
+    let outward = match g.surface {
+        Surface::Top => g.normal,
+        Surface::Bottom => -g.normal,
+    };
+    let from = p.reference.as_ref().map_or(String::new(), |(id, v)| {
+        format!("{id}: {:+.1} {:+.1} {:+.1}", v[0], v[1], v[2])
+    });
+    // Nothing is written as -0.
+    let plain = |v: f64, d: usize| {
+        let ten = 10f64.powi(d as i32);
+        format!("{:.d$}", (v * ten).round() / ten + 0.0)
+    };
+    let three =
+        |v: Vec3, d: usize| format!("{} {} {}", plain(v.x, d), plain(v.y, d), plain(v.z, d));
+    let budget = |b: Option<f64>| b.map_or("any".to_owned(), |v| format!("{v:.1}"));
+    let role = match p.role {
+        Role::Estimate => "",
+        Role::Validation => ", validation",
+    };
+    vec![
+        g.name.clone(),
+        g.element.to_string(),
+        g.surface.word().to_owned(),
+        three(g.position, 1),
+        from,
+        three(g.direction, 3),
+        three(outward, 3),
+        format!("{:.1}", p.angle_seen_deg()),
+        format!("{:.0}", p.expected_microstrain),
+        format!("{}{role}", p.bridge),
+        budget(p.angle_budget_deg),
+        budget(p.position_budget),
+    ]
+}
+
+fn corners(model: &Model, p: &PlacedGauge) -> String {
+    let list = corner_distances(model, &p.gauge);
+    let list: Vec<String> = list.iter().map(|(id, d)| format!("{id}: {d:.1}")).collect();
+    list.join(", ")
+}

@@ -1,0 +1,204 @@
+//! `report.pdf` read by pypdf and drawn by PDFium: what those who sign must find in it.
+
+use crate::exchange::{job, plate, strainbridge};
+use crate::python::read_by;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// A title that a template language, JSON or a page could trip over.
+const TITLE: &str = "Plate #panic(1) *b* $x$ _u_ <a> `c` @ref [r] {s} // & µε \u{4e2d} \u{202e}";
+/// The same on paper: no font here has the last but one, and the last would turn the direction of reading.
+const SHOWN: &str = "Plate #panic(1) *b* $x$ _u_ <a> `c` @ref [r] {s} // & µε [U+4E2D] [U+202E]";
+
+/// The job of `plate` as `name` under the nasty title.
+fn titled(dir: &Path, name: &str) -> PathBuf {
+    let path = PathBuf::from(job(dir, name, "strain.csv"));
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, text.replace("Folded plate", TITLE)).unwrap();
+    path
+}
+
+/// A job on forces at the corners of the plate; the names of its runs are no easier than its title.
+fn on_four_wheels(dir: &Path) -> String {
+    let runs = "run,W1.FZ,W3.FZ,W13.FZ,W15.FZ\nR#1 *b* <i>,13.1,13.2,13.05,13.15\n\"a, b $\",26.1,26.2,26.05,26.15\n";
+    std::fs::write(dir.join("wheels.csv"), runs).unwrap();
+    let mut text =
+        format!("title = '{TITLE}'\nunits = \"mm-t-s\"\n[model]\ndeck = \"model.bdf\"\n");
+    for grid in [1, 3, 13, 15] {
+        text += &format!(
+            "[[load]]\nname = \"W{grid}.FZ\"\ngrid = {grid}\ncomponent = \"FZ\"\nexpected = 50.0\n"
+        );
+    }
+    text + "[runs]\nfile = \"wheels.csv\"\nunits = { force = \"N\" }\nnoise = { force = 0.05 }\nwheel_forces = \"measured\"\n\
+            [payload]\ngrid = 8\nposition = \"known\"\nuse = [\"reactions\"]\n"
+}
+
+/// What is read of the `report.pdf` of jobs that ran; `None`, with a message, without Python.
+fn read(jobs: &[&Path]) -> Option<Vec<Value>> {
+    let reports: Vec<PathBuf> = jobs
+        .iter()
+        .map(|j| j.with_extension("out").join("report.pdf"))
+        .collect();
+    let paths: Vec<&str> = reports.iter().map(|p| p.to_str().unwrap()).collect();
+    let seen = read_by("read_paper.py", &paths)?;
+    Some(paths.iter().map(|p| seen[*p].clone()).collect())
+}
+
+/// Text without spaces and breaks of lines: where a line ends is of no interest.
+fn bare(text: &str) -> String {
+    let kept = |c: &char| !c.is_whitespace() && *c != '\u{200b}';
+    text.chars().filter(kept).collect()
+}
+
+/// Bare text of all pages.
+fn text_of(paper: &Value) -> String {
+    let pages = paper["pages"].as_array().unwrap();
+    let all: Vec<&str> = pages.iter().filter_map(|p| p["text"].as_str()).collect();
+    bare(&all.join(" "))
+}
+
+/// What holds of every report: A4, nothing blank, numbered pages, program, units, hashes and findings as in `result.json`.
+fn is_sound(paper: &Value, result: &Value, words: &[&str]) {
+    let text = text_of(paper);
+    let pages = paper["pages"].as_array().unwrap();
+    assert!(!pages.is_empty());
+    for (i, page) in pages.iter().enumerate() {
+        let mut size = [0, 1].map(|k| page["size"][k].as_f64().unwrap());
+        size.sort_by(f64::total_cmp);
+        // A4 in points, upright or turned.
+        assert!((size[0] - 595.28).abs() < 0.1 && (size[1] - 841.89).abs() < 0.1);
+        // Header and footer alone ink less than half a percent.
+        assert!(page["inked"].as_f64().unwrap() > 0.01, "page {i}");
+        let number = format!("page {} of {}", i + 1, pages.len());
+        assert!(
+            bare(page["text"].as_str().unwrap()).contains(&bare(&number)),
+            "{number}"
+        );
+    }
+    let version = result["version"].as_str().unwrap();
+    let made = format!(
+        "strainbridge {version}, command {}",
+        result["command"].as_str().unwrap()
+    );
+    let units = result["units"].as_object().unwrap();
+    let stated = units
+        .iter()
+        .filter(|(q, _)| *q != "system")
+        .map(|(q, u)| format!("{q} {}", u.as_str().unwrap()));
+    let inputs = result["inputs"].as_array().unwrap();
+    assert!(!inputs.is_empty());
+    let hashes = inputs
+        .iter()
+        .map(|i| i["sha256"].as_str().unwrap().to_owned());
+    let findings = result["findings"].as_array().unwrap();
+    let messages = findings
+        .iter()
+        .map(|f| f["message"].as_str().unwrap().to_owned());
+    let words = words.iter().map(|w| (*w).to_owned());
+    for word in std::iter::once(made)
+        .chain(stated)
+        .chain(hashes)
+        .chain(messages)
+        .chain(words)
+    {
+        assert!(text.contains(&bare(&word)), "`{word}` is not in:\n{text}");
+    }
+}
+
+/// A value of `result.json` with one digit after the point, as the plan shows places and angles.
+fn tenth(v: &Value) -> String {
+    format!("{:.1}", v.as_f64().unwrap())
+}
+
+#[test]
+fn plan_and_payload_on_paper_state_inputs_units_and_the_numbers_of_result_json_and_can_be_signed() {
+    let dir = plate("paper");
+    let plan = titled(&dir, "plan.toml");
+    let placed = strainbridge(&["place", plan.to_str().unwrap()]);
+    let weighed = dir.join("payload.toml");
+    std::fs::write(&weighed, on_four_wheels(&dir)).unwrap();
+    let weights = strainbridge(&["payload", weighed.to_str().unwrap()]);
+    // The same inputs twice are the same file, under another name.
+    let bytes = std::fs::read(plan.with_extension("out").join("report.pdf")).unwrap();
+    strainbridge(&[
+        "place",
+        plan.to_str().unwrap(),
+        "--out",
+        dir.join("again").to_str().unwrap(),
+    ]);
+    assert!(bytes.starts_with(b"%PDF"));
+    assert!(bytes == std::fs::read(dir.join("again/report.pdf")).unwrap());
+    let Some(papers) = read(&[&plan, &weighed]) else {
+        return;
+    };
+    for paper in &papers {
+        let title = paper["title"].as_str().unwrap();
+        assert_eq!(title, SHOWN.trim());
+    }
+    let signed = ["Made by", "Checked by", "Name", "Date", "Signature"];
+    let mut rows = vec!["Gluing sheet".to_owned(), SHOWN.to_owned()];
+    for g in placed["gauges"].as_array().unwrap() {
+        let [x, y, z] = [0, 1, 2].map(|k| tenth(&g["position"][k]));
+        let (name, side) = (g["name"].as_str().unwrap(), g["surface"].as_str().unwrap());
+        rows.push(format!("{name} {} {side} {x} {y} {z}", g["element"]));
+    }
+    let words: Vec<&str> = rows.iter().map(String::as_str).chain(signed).collect();
+    is_sound(&papers[0], &placed, &words);
+    // Forces at the corners say sum and, being alike, that it stands in the middle.
+    let runs = weights["payload"].as_array().unwrap();
+    let mut rows = vec![SHOWN.to_owned()];
+    for (r, force) in runs.iter().zip(["52.50", "104.5"]) {
+        let given: f64 = force.parse().unwrap();
+        assert!((r["force"].as_f64().unwrap() - given).abs() < 0.05);
+        rows.push(format!("{} {force}", r["run"].as_str().unwrap()));
+    }
+    assert_eq!(rows.len(), 3);
+    let words: Vec<&str> = rows.iter().map(String::as_str).chain(signed).collect();
+    is_sound(&papers[1], &weights, &words);
+}
+
+#[test]
+fn a_reconciliation_on_paper_holds_the_verdict_its_effects_and_what_else_would_explain_them() {
+    let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/hidden_effects");
+    let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("paper_gap");
+    let _ = std::fs::remove_dir_all(&dir);
+    let mut jobs = Vec::new();
+    for case in ["static/dev-s3", "dynamics/dev-d2"] {
+        let Ok(files) = std::fs::read_dir(shared.join(case)) else {
+            eprintln!("skipped: {} is absent", shared.display());
+            return;
+        };
+        let own = dir.join(case);
+        std::fs::create_dir_all(&own).unwrap();
+        for file in files.flatten() {
+            std::fs::write(
+                own.join(file.file_name()),
+                std::fs::read(file.path()).unwrap(),
+            )
+            .unwrap();
+        }
+        jobs.push(own.join("job.toml"));
+    }
+    let results: Vec<Value> = jobs
+        .iter()
+        .map(|j| strainbridge(&["reconcile", j.to_str().unwrap()]))
+        .collect();
+    let paths: Vec<&Path> = jobs.iter().map(PathBuf::as_path).collect();
+    let Some(papers) = read(&paths) else {
+        return;
+    };
+    for (paper, result) in papers.iter().zip(&results) {
+        let mut words = vec![result["verdict"].as_str().unwrap()];
+        words.push(result["next_measurement"].as_str().unwrap());
+        words.extend(
+            result["named"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .filter_map(Value::as_str),
+        );
+        let rivals = result["rivals"].as_array().unwrap();
+        words.extend(rivals.iter().filter_map(|r| r["id"].as_str()));
+        is_sound(paper, result, &words);
+    }
+}
