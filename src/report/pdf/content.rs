@@ -25,7 +25,7 @@ pub struct Origin<'a> {
 /// Longest word of running text that is not broken.
 const IN_TEXT: usize = 48;
 /// Cells of a table and lines of one text on paper; the rest is in the files.
-const MOST_ROWS: usize = 600;
+const MOST_ROWS: usize = 2000;
 
 /// The page for the template.
 pub(super) fn content(page: &Page, origin: &Origin) -> Value {
