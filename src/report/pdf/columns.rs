@@ -34,10 +34,13 @@ pub(super) struct Fitted {
     pub(super) halved: bool,
 }
 
-/// The table in one piece where a size of type allows it, else in pieces that repeat the first column.
+/// The table (nothing of one without columns) in one piece where a size of type allows it, else in pieces that repeat the first column.
 pub(super) fn fitted(table: &Table) -> Vec<Fitted> {
     let n = table.rows.iter().map(Vec::len).max().unwrap_or(0);
     let n = n.max(table.head.len());
+    if n == 0 {
+        return Vec::new();
+    }
     let widths: Vec<usize> = (0..n).map(|c| characters(table, c)).collect();
     let whole = |across: bool, size: f64| Fitted {
         columns: (0..n).collect(),

@@ -2,7 +2,7 @@
 
 use super::columns::UPRIGHT;
 use super::glyphs::shortened;
-use super::picture::{FAINT, INK, Picture, Shape, Word};
+use super::picture::{INK, Picture, Shape, Word};
 use super::scale::round_step;
 use crate::fe::strain_tensor::Surface;
 use crate::model::Vec3;
@@ -15,6 +15,8 @@ const HIGH: f64 = 120.0;
 const AROUND: f64 = 9.0;
 /// Share of the longest side below which a drawing shows nothing.
 const FLAT: f64 = 0.02;
+/// Colour of the model.
+const MESH: &str = "#b4bec9";
 /// Half length of the stroke of a gauge, and radius of the largest circle of a gap, mm.
 const STROKE: f64 = 2.2;
 const LARGEST: f64 = 5.0;
@@ -115,7 +117,7 @@ fn drawing(scene: &SceneView, view: &View, [low, high]: [Vec3; 2]) -> Picture {
         size: [UPRIGHT, tall + 2.0 * AROUND + 3.0],
         ..Picture::default()
     };
-    picture.strokes(outline(&scene.lines, &place), FAINT, 0.12);
+    picture.strokes(outline(&scene.lines, &place), MESH, 0.12);
     marks(&mut picture, &scene.marks, &place, &|v| {
         let p = flat(v);
         [p[0], -p[1]]
