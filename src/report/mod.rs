@@ -1,4 +1,4 @@
-//! From plain results to bytes: text, json, csv, html, spreadsheets. Nothing is computed here.
+//! From plain results to bytes: text, json, csv, html, pdf, spreadsheets. Nothing is computed here.
 
 pub mod figure;
 pub mod page;

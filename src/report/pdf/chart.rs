@@ -2,7 +2,7 @@
 
 use super::columns::UPRIGHT;
 use super::heat::heat;
-use super::picture::{FAINT, Picture, Shape};
+use super::picture::{FAINT, LONGEST, Picture, Shape};
 use super::scale::Scale;
 use super::traces::{Kind, Series, names_of, series_of};
 use crate::report::figure::Figure;
@@ -87,7 +87,7 @@ impl Axis {
     /// Width of the longest name, mm.
     fn room(names: Option<Vec<String>>, otherwise: f64) -> f64 {
         let longest = |n: Vec<String>| n.iter().map(|x| x.chars().count()).max().unwrap_or(0);
-        names.map_or(otherwise, |n| 4.0 + 1.3 * longest(n).min(32) as f64)
+        names.map_or(otherwise, |n| 4.0 + 1.3 * longest(n).min(LONGEST) as f64)
     }
 }
 
@@ -199,12 +199,12 @@ fn draw(picture: &mut Picture, s: &Series, points: &[Option<[f64; 2]>], x: &Axis
 /// Names of the series with their colours, in lines at the top; where the space below begins.
 fn legend(picture: &mut Picture, series: &[Series]) -> f64 {
     let named: Vec<&Series> = series.iter().filter(|s| !s.name.is_empty()).collect();
-    if named.len() < 2 {
+    if named.is_empty() {
         return 2.0;
     }
     let (mut x, mut y) = (0.0, 2.0);
     for s in named {
-        let width = 8.0 + 1.25 * s.name.chars().count().min(32) as f64;
+        let width = 8.0 + 1.25 * s.name.chars().count().min(LONGEST) as f64;
         if x + width > UPRIGHT {
             (x, y) = (0.0, y + 4.0);
         }

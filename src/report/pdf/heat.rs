@@ -1,7 +1,7 @@
 //! A matrix as colours on paper, with its numbers in the cells where they fit.
 
 use super::columns::UPRIGHT;
-use super::picture::{Picture, Shape};
+use super::picture::{LONGEST, Picture, Shape};
 use crate::report::page::number;
 use serde_json::Value;
 
@@ -31,7 +31,7 @@ pub(super) fn heat(map: &Value) -> Vec<Picture> {
 
 fn part(map: &Value, columns: &[String], rows: &[String], first: usize) -> Picture {
     let longest = |names: &[String]| names.iter().map(|n| n.chars().count()).max();
-    let room = |names: &[String]| 4.0 + 1.3 * longest(names).unwrap_or(0).min(32) as f64;
+    let room = |names: &[String]| 4.0 + 1.3 * longest(names).unwrap_or(0).min(LONGEST) as f64;
     let (left, top) = (room(rows), room(columns));
     // Few columns need not fill the page.
     let width = ((UPRIGHT - left) / columns.len() as f64).min(22.0);

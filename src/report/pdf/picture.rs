@@ -66,7 +66,7 @@ pub(super) const FAINT: &str = "#9aa7b5";
 pub(super) const INK: &str = "#1c2530";
 
 /// Characters of a name in a drawing.
-const LONGEST: usize = 32;
+pub(super) const LONGEST: usize = 40;
 
 impl Picture {
     /// A line from `a` to `b`.

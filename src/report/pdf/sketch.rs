@@ -160,13 +160,11 @@ fn marks(
     let most = marks.iter().filter_map(|m| m.gap).flatten();
     let most = most.filter(|v| v.is_finite()).fold(0.0, f64::max);
     // Names keep clear of all gauges.
-    let mut taken: Vec<[f64; 4]> = marks
-        .iter()
-        .map(|m| place(m.at))
-        .map(|p| [p[0] - 1.0, p[1] - 1.0, p[0] + 1.0, p[1] + 1.0])
-        .collect();
+    let mut taken: Vec<[f64; 4]> = Vec::new();
+    let mut keep = |p: [f64; 2], r: f64| taken.push([p[0] - r, p[1] - r, p[0] + r, p[1] + r]);
     for m in marks {
         let at = place(m.at);
+        keep(at, 1.0);
         for (k, colour) in ["#d68910", "#1f618d"].iter().enumerate() {
             if let Some(gap) = m.gap
                 && most > 0.0
@@ -184,6 +182,8 @@ fn marks(
                 let d = turn(along).map(|v| STROKE * v);
                 let [a, b] = [-1.0, 1.0].map(|s| [at[0] + s * d[0], at[1] + s * d[1]]);
                 picture.line(a, b, colour, 0.6);
+                keep(a, 0.7);
+                keep(b, 0.7);
                 picture.circle(at, 0.5, colour, 0.0);
             }
             None => picture.circle(at, 0.5, INK, 0.0),
@@ -199,7 +199,7 @@ fn name(picture: &mut Picture, name: &str, at: [f64; 2], taken: &mut Vec<[f64; 4
     const SIZE: f64 = 6.0;
     let text = shortened(name, 16);
     let (wide, tall) = (1.15 * text.chars().count() as f64, 2.2);
-    for far in [1.6, 4.0, 7.0, 11.0] {
+    for far in [1.6, 3.0, 5.0, 8.0, 11.0] {
         for turn in 0..12 {
             let angle = f64::from(turn) * std::f64::consts::PI / 6.0;
             let (c, s) = (angle.cos(), -angle.sin());
@@ -216,7 +216,7 @@ fn name(picture: &mut Picture, name: &str, at: [f64; 2], taken: &mut Vec<[f64; 4
             let free =
                 |t: &[f64; 4]| area[0] > t[2] || area[2] < t[0] || area[1] > t[3] || area[3] < t[1];
             if inside && taken.iter().all(free) {
-                if far > 2.0 {
+                if far > 3.5 {
                     picture.line(at, near, INK, 0.1);
                 }
                 picture.shapes.push(Shape::Word(Word {
