@@ -8,6 +8,7 @@ use faer::sparse::linalg::cholesky::SymbolicCholeskyRaw;
 use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Auto, Par, Side, Spec};
+use rayon::prelude::*;
 
 /// Pivots of the matrix scaled to a unit diagonal below this are lost to rounding: the unknown is held by nothing.
 const TINY_PIVOT: f64 = 1e-13;
@@ -51,20 +52,57 @@ pub(super) struct ScaledMatrix {
 }
 
 impl ScaledMatrix {
-    /// r -= A x.
-    pub(super) fn subtract_product(&self, x: &[f64], r: &mut [f64]) {
+    /// r -= A x for `k` columns kept row by row, a share of the columns a thread.
+    pub(super) fn subtract_product(&self, x: &[f64], r: &mut [f64], k: usize) {
+        let threads = rayon::current_num_threads().max(1);
+        let share = k.div_ceil(threads).clamp(1, 6);
+        let firsts: Vec<usize> = (0..k).step_by(share).collect();
+        let parts: Vec<(usize, Vec<f64>)> = firsts
+            .into_par_iter()
+            .map(|c| {
+                let m = share.min(k - c);
+                let part = match m {
+                    1 => self.remainder::<1>(x, r, k, c),
+                    2 => self.remainder::<2>(x, r, k, c),
+                    3 => self.remainder::<3>(x, r, k, c),
+                    4 => self.remainder::<4>(x, r, k, c),
+                    5 => self.remainder::<5>(x, r, k, c),
+                    _ => self.remainder::<6>(x, r, k, c),
+                };
+                (m, part)
+            })
+            .collect();
+        let mut c = 0;
+        for (m, part) in parts {
+            for (to, from) in r.chunks_exact_mut(k).zip(part.chunks_exact(m)) {
+                to[c..c + m].copy_from_slice(from);
+            }
+            c += m;
+        }
+    }
+
+    /// r - A x of `M` columns from the one numbered `c`, row by row.
+    fn remainder<const M: usize>(&self, x: &[f64], r: &[f64], k: usize, c: usize) -> Vec<f64> {
+        let of = |rows: &[f64]| -> Vec<[f64; M]> {
+            let rows = rows.chunks_exact(k);
+            rows.map(|row| std::array::from_fn(|m| row[c + m]))
+                .collect()
+        };
+        let (x, mut r) = (of(x), of(r));
         for (j, range) in self.columns.windows(2).enumerate() {
             let range = range[0] as usize..range[1] as usize;
-            let mut own = 0.0;
+            let (mut own, xj) = ([0.0; M], x[j]);
             for (&i, &a) in self.rows[range.clone()].iter().zip(&self.entries[range]) {
                 let i = i as usize;
-                own += a * x[i];
+                let xi = x[i];
+                (0..M).for_each(|m| own[m] += a * xi[m]);
                 if i != j {
-                    r[i] -= a * x[j];
+                    (0..M).for_each(|m| r[i][m] -= a * xj[m]);
                 }
             }
-            r[j] -= own;
+            (0..M).for_each(|m| r[j][m] -= own[m]);
         }
+        r.into_flattened()
     }
 }
 

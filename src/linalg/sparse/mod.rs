@@ -4,6 +4,7 @@
 //! itself is faer's supernodal Cholesky.
 
 mod block_matrix;
+mod branches;
 mod factor;
 mod graph;
 mod order;

@@ -1,10 +1,28 @@
 //! Forward and backward substitution for many right-hand sides.
+//!
+//! Right-hand sides are kept row by row (all values of an unknown side by side) in elimination order. Branches of the elimination tree are
+//! substituted side by side, each by one thread; what they take from the unknowns of the crown is summed before the crown is.
 
+use super::branches::{Branch, Branches};
 use super::factor::{Factor, FactorError};
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::sparse::linalg::cholesky::LltRef;
-use faer::{Conj, MatMut, Par};
+use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve::{
+    solve_lower_triangular_in_place, solve_upper_triangular_in_place,
+};
+use faer::prelude::{Reborrow, ReborrowMut};
+use faer::sparse::linalg::cholesky::SymbolicCholeskyRaw;
+use faer::sparse::linalg::cholesky::supernodal::{SupernodalLltRef, SupernodeRef};
+use faer::{Accum, MatMut, MatRef, Par};
 use rayon::prelude::*;
+use std::ops::Range;
+
+/// Right-hand sides substituted together: the factor is read once for all of them.
+const TOGETHER: usize = 12;
+/// Entries of a supernode above which one substitution is shared by all threads.
+const SHARED: usize = 1 << 15;
+
+/// Groups that a task brings into elimination order.
+const GROUPS: usize = 4096;
 
 /// How well a solution satisfies its equation: Nastran's epsilon before and after refinement.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,37 +33,26 @@ pub struct Refined {
     pub last: f64,
 }
 
-/// |x'r| / |x'b|; zero for no load.
-fn epsilon(x: &[f64], r: &[f64], b: &[f64]) -> f64 {
-    let dot = |v: &[f64]| x.iter().zip(v).map(|(x, v)| x * v).sum::<f64>().abs();
-    let work = dot(b);
-    if work > 0.0 { dot(r) / work } else { 0.0 }
-}
-
-/// Columns for each thread.
-fn share_of(columns: usize) -> usize {
-    let threads = rayon::current_num_threads().max(1);
-    columns.div_ceil(threads).max(1)
+/// Working columns of a substitution.
+#[derive(Default)]
+struct Work {
+    /// The unknowns of a supernode, column by column.
+    own: Vec<f64>,
+    /// Those of the rows below it.
+    below: Vec<f64>,
 }
 
 impl Factor<'_> {
     /// Replaces right-hand sides by solutions: `x` holds columns of `n_unknowns` each, caller's numbering.
     ///
     /// # Errors
-    /// Scratch space that memory doesn't hold.
+    /// A right-hand side that is no whole number of columns gives none.
     pub fn solve(&self, x: &mut [f64]) -> Result<(), FactorError> {
-        let n = self.symbolic.n_unknowns();
-        if n == 0 || x.is_empty() {
-            return Ok(());
-        }
-        x.par_chunks_mut(share_of(x.len() / n) * n)
-            .try_for_each(|part| self.solve_part(part, n))
-    }
-
-    fn solve_part(&self, x: &mut [f64], n: usize) -> Result<(), FactorError> {
-        let mut y = self.scaled(x, n);
-        self.substitute(&mut y, n)?;
-        self.unscale(&y, x, n);
+        self.each_part(x, |part, k| {
+            let mut y = self.scaled(part, k);
+            self.substitute(&mut y, k);
+            self.unscale(&y, part, k);
+        });
         Ok(())
     }
 
@@ -56,92 +63,125 @@ impl Factor<'_> {
     /// Columns above `limit` are refined, x + A^-1 (b - A x), and the correction kept where it helps.
     ///
     /// # Errors
-    /// Scratch space that memory doesn't hold.
+    /// As [`Factor::solve`].
     pub fn solve_refined(&self, x: &mut [f64], limit: f64) -> Result<Vec<Refined>, FactorError> {
-        let n = self.symbolic.n_unknowns();
-        if n == 0 || x.is_empty() {
-            return Ok(Vec::new());
-        }
-        let parts: Vec<Vec<Refined>> = x
-            .par_chunks_mut(share_of(x.len() / n) * n)
-            .map(|part| self.refine_part(part, n, limit))
-            .collect::<Result<_, _>>()?;
-        Ok(parts.concat())
-    }
-
-    fn refine_part(
-        &self,
-        x: &mut [f64],
-        n: usize,
-        limit: f64,
-    ) -> Result<Vec<Refined>, FactorError> {
-        let mut y = self.scaled(x, n);
-        self.substitute(&mut y, n)?;
-        let mut told = Vec::with_capacity(x.len() / n);
-        for (x, y) in x.chunks_exact(n).zip(y.chunks_exact_mut(n)) {
-            let b = self.scaled(x, n);
-            let mut r = b.clone();
-            self.matrix.subtract_product(y, &mut r);
-            let first = epsilon(y, &r, &b);
-            let mut last = first;
-            if !(first <= limit) {
-                self.substitute(&mut r, n)?;
-                let better: Vec<f64> = y.iter().zip(&r).map(|(y, d)| y + d).collect();
-                let mut rest = b.clone();
-                self.matrix.subtract_product(&better, &mut rest);
-                let after = epsilon(&better, &rest, &b);
-                if after < first {
-                    y.copy_from_slice(&better);
-                    last = after;
-                }
-            }
-            told.push(Refined { first, last });
-        }
-        self.unscale(&y, x, n);
+        let mut told = Vec::new();
+        self.each_part(x, |part, k| {
+            let b = self.scaled(part, k);
+            let mut y = b.clone();
+            self.substitute(&mut y, k);
+            told.extend(self.refine(&mut y, &b, k, limit));
+            self.unscale(&y, part, k);
+        });
         Ok(told)
     }
 
-    /// Columns in elimination order, scaled as the right-hand side of the scaled matrix.
-    fn scaled(&self, x: &[f64], n: usize) -> Vec<f64> {
-        let mut y = vec![0.0; x.len()];
-        for (x, y) in x.chunks_exact(n).zip(y.chunks_exact_mut(n)) {
-            self.each_group(|new, old| {
-                for i in 0..new.len() {
-                    y[new.start + i] = x[old + i] * self.scale[new.start + i];
-                }
-            });
+    /// Calls with columns that go together and their number.
+    fn each_part(&self, x: &mut [f64], mut call: impl FnMut(&mut [f64], usize)) {
+        let n = self.symbolic.n_unknowns();
+        if n == 0 || x.is_empty() {
+            return;
         }
+        let columns = x.len() / n;
+        let together = columns.div_ceil(columns.div_ceil(TOGETHER).max(1)).max(1);
+        for part in x.chunks_mut(together * n) {
+            let k = part.len() / n;
+            call(part, k);
+        }
+    }
+
+    /// Epsilon of each of `k` solutions; where it is above `limit`, a solution is replaced by its refinement if that is better.
+    fn refine(&self, y: &mut [f64], b: &[f64], k: usize, limit: f64) -> Vec<Refined> {
+        let (first, r) = self.epsilons(y, b, k);
+        let mut told: Vec<Refined> = first
+            .iter()
+            .map(|&first| Refined { first, last: first })
+            .collect();
+        let poor: Vec<usize> = (0..k).filter(|&c| !(first[c] <= limit)).collect();
+        if poor.is_empty() {
+            return told;
+        }
+        let picked = |from: &[f64]| -> Vec<f64> {
+            let rows = from.chunks_exact(k);
+            rows.flat_map(|row| poor.iter().map(|&c| row[c])).collect()
+        };
+        let m = poor.len();
+        let mut better = picked(&r);
+        self.substitute(&mut better, m);
+        better.iter_mut().zip(picked(y)).for_each(|(d, y)| *d += y);
+        let (after, _) = self.epsilons(&better, &picked(b), m);
+        for (i, &c) in poor.iter().enumerate() {
+            if after[i] < first[c] {
+                told[c].last = after[i];
+                let rows = y.chunks_exact_mut(k).zip(better.chunks_exact(m));
+                rows.for_each(|(to, from)| to[c] = from[i]);
+            }
+        }
+        told
+    }
+
+    /// |x'r| / |x'b| of each of `k` solutions, zero for no load, and r = b - A x.
+    fn epsilons(&self, y: &[f64], b: &[f64], k: usize) -> (Vec<f64>, Vec<f64>) {
+        let mut r = b.to_vec();
+        self.matrix.subtract_product(y, &mut r, k);
+        let dots = |v: &[f64]| -> Vec<f64> {
+            let mut sums = vec![0.0; k];
+            for (y, v) in y.chunks_exact(k).zip(v.chunks_exact(k)) {
+                for (s, (y, v)) in sums.iter_mut().zip(y.iter().zip(v)) {
+                    *s += y * v;
+                }
+            }
+            sums
+        };
+        let (lost, work) = rayon::join(|| dots(&r), || dots(b));
+        let share = |(l, w): (&f64, &f64)| if w.abs() > 0.0 { (l / w).abs() } else { 0.0 };
+        (lost.iter().zip(&work).map(share).collect(), r)
+    }
+
+    /// Columns in elimination order, row by row, scaled as the right-hand side of the scaled matrix.
+    fn scaled(&self, x: &[f64], k: usize) -> Vec<f64> {
+        let (n, symbolic) = (x.len() / k, self.symbolic);
+        let mut y = vec![0.0; x.len()];
+        // Groups of a task.
+        let groups: Vec<&[u32]> = symbolic.order.chunks(GROUPS).collect();
+        let mut rest = y.as_mut_slice();
+        let mut pieces = Vec::with_capacity(groups.len());
+        for (i, old) in groups.into_iter().enumerate() {
+            let starts = &symbolic.start[i * GROUPS..][..=old.len()];
+            let (own, tail) = rest.split_at_mut((starts[old.len()] - starts[0]) * k);
+            pieces.push((old, starts, own));
+            rest = tail;
+        }
+        pieces.into_par_iter().for_each(|(old, starts, y)| {
+            let mut rows = y.chunks_exact_mut(k);
+            for (&old, new) in old.iter().zip(starts.windows(2)) {
+                let from = symbolic.old_start[old as usize];
+                for (i, row) in (new[0]..new[1]).zip(&mut rows) {
+                    let (scale, from) = (self.scale[i], from + i - new[0]);
+                    for (c, y) in row.iter_mut().enumerate() {
+                        *y = x[c * n + from] * scale;
+                    }
+                }
+            }
+        });
         y
     }
 
     /// Solutions of the scaled matrix in the caller's numbering.
-    fn unscale(&self, y: &[f64], x: &mut [f64], n: usize) {
-        for (x, y) in x.chunks_exact_mut(n).zip(y.chunks_exact(n)) {
+    fn unscale(&self, y: &[f64], x: &mut [f64], k: usize) {
+        let n = x.len() / k;
+        x.par_chunks_exact_mut(n).enumerate().for_each(|(c, x)| {
             self.each_group(|new, old| {
                 for i in 0..new.len() {
-                    x[old + i] = y[new.start + i] * self.scale[new.start + i];
+                    let at = new.start + i;
+                    x[old + i] = y[at * k + c] * self.scale[at];
                 }
             });
-        }
-    }
-
-    fn substitute(&self, y: &mut [f64], n: usize) -> Result<(), FactorError> {
-        let (symbolic, columns) = (self.symbolic, y.len() / n);
-        let scratch = symbolic
-            .cholesky
-            .solve_in_place_scratch::<f64>(columns, Par::Seq);
-        let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::TooLarge)?;
-        LltRef::new(&symbolic.cholesky, &self.values).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(y, n, columns),
-            Par::Seq,
-            MemStack::new(&mut memory),
-        );
-        Ok(())
+        });
     }
 
     /// Calls with the unknowns of each group in elimination order and its first unknown in the caller's numbering.
-    fn each_group(&self, mut call: impl FnMut(std::ops::Range<usize>, usize)) {
+    fn each_group(&self, mut call: impl FnMut(Range<usize>, usize)) {
         let symbolic = self.symbolic;
         for (new, &old) in symbolic.order.iter().enumerate() {
             call(
@@ -149,5 +189,271 @@ impl Factor<'_> {
                 symbolic.old_start[old as usize],
             );
         }
+    }
+
+    /// Replaces `k` right-hand sides of L L' by solutions.
+    fn substitute(&self, y: &mut [f64], k: usize) {
+        let SymbolicCholeskyRaw::Supernodal(nodes) = self.symbolic.cholesky.raw() else {
+            return;
+        };
+        let factor = SupernodalLltRef::new(nodes, &self.values);
+        let branches = &self.symbolic.branches;
+        let mut crown = Crown::taken(branches, factor, y, k);
+        let mut bins = slices(branches, y, k);
+        let sums: Vec<Vec<f64>> = bins
+            .par_iter_mut()
+            .map(|bin| {
+                let mut sum = vec![0.0; crown.rows.len()];
+                let mut work = Work::default();
+                for (branch, rows) in bin {
+                    forward_branch(branches, branch, factor, (rows, &mut sum), k, &mut work);
+                }
+                sum
+            })
+            .collect();
+        crown.add(&sums);
+        drop(sums);
+        crown.solve();
+        let above = &crown.rows;
+        bins.par_iter_mut().for_each(|bin| {
+            let mut work = Work::default();
+            for (branch, rows) in bin {
+                backward_branch(branches, branch, factor, (rows, above), k, &mut work);
+            }
+        });
+        drop(bins);
+        crown.given_back(y);
+    }
+}
+
+/// The rows of each branch, shared out among the threads.
+fn slices<'a>(
+    branches: &'a Branches,
+    y: &'a mut [f64],
+    k: usize,
+) -> Vec<Vec<(&'a Branch, &'a mut [f64])>> {
+    let mut taken = 0;
+    let mut rest = y;
+    let mut by_branch: Vec<Option<(&Branch, &mut [f64])>> = Vec::new();
+    for branch in &branches.list {
+        let (_, tail) = rest.split_at_mut((branch.unknowns.start - taken) * k);
+        let (own, tail) = tail.split_at_mut(branch.unknowns.len() * k);
+        by_branch.push(Some((branch, own)));
+        taken = branch.unknowns.end;
+        rest = tail;
+    }
+    let bins = branches.shared_out(rayon::current_num_threads());
+    bins.into_iter()
+        .map(|bin| {
+            let mut own: Vec<_> = bin
+                .into_iter()
+                .filter_map(|i| by_branch[i].take())
+                .collect();
+            own.sort_by_key(|(b, _)| b.supernodes.start);
+            own
+        })
+        .collect()
+}
+
+/// Solves with the branch's supernodes upwards; what they take from rows of the crown goes into `sum`.
+fn forward_branch(
+    branches: &Branches,
+    branch: &Branch,
+    factor: SupernodalLltRef<'_, u32, f64>,
+    (rows, sum): (&mut [f64], &mut [f64]),
+    k: usize,
+    work: &mut Work,
+) {
+    let (first, end) = (branch.unknowns.start, branch.unknowns.end);
+    for s in branch.supernodes.clone() {
+        let node = factor.supernode(s);
+        let at = (node.start() - first) * k;
+        forward(node, &mut rows[at..], k, work, Par::Seq);
+        let n = node.pattern().len();
+        for (i, &row) in node.pattern().iter().enumerate() {
+            let row = row as usize;
+            let to = if row < end {
+                &mut rows[(row - first) * k..][..k]
+            } else {
+                &mut sum[branches.in_crown[row] as usize * k..][..k]
+            };
+            subtract(to, &work.below, i, n);
+        }
+    }
+}
+
+/// Solves with the branch's supernodes downwards, the crown's unknowns being known.
+fn backward_branch(
+    branches: &Branches,
+    branch: &Branch,
+    factor: SupernodalLltRef<'_, u32, f64>,
+    (rows, above): (&mut [f64], &[f64]),
+    k: usize,
+    work: &mut Work,
+) {
+    let (first, end) = (branch.unknowns.start, branch.unknowns.end);
+    for s in branch.supernodes.clone().rev() {
+        let node = factor.supernode(s);
+        let n = node.pattern().len();
+        work.below.resize(n * k, 0.0);
+        for (i, &row) in node.pattern().iter().enumerate() {
+            let row = row as usize;
+            let from = if row < end {
+                &rows[(row - first) * k..][..k]
+            } else {
+                &above[branches.in_crown[row] as usize * k..][..k]
+            };
+            put(&mut work.below, from, i, n);
+        }
+        let at = (node.start() - first) * k;
+        backward(node, &mut rows[at..], k, work, Par::Seq);
+    }
+}
+
+/// The unknowns above all branches.
+struct Crown<'a> {
+    branches: &'a Branches,
+    factor: SupernodalLltRef<'a, u32, f64>,
+    rows: Vec<f64>,
+    k: usize,
+}
+
+impl<'a> Crown<'a> {
+    fn taken(
+        branches: &'a Branches,
+        factor: SupernodalLltRef<'a, u32, f64>,
+        y: &[f64],
+        k: usize,
+    ) -> Self {
+        let mut rows = Vec::with_capacity(branches.n_crown * k);
+        for &s in &branches.crown {
+            let node = factor.supernode(s);
+            rows.extend(&y[node.start() * k..(node.start() + node.val().ncols()) * k]);
+        }
+        Self {
+            branches,
+            factor,
+            rows,
+            k,
+        }
+    }
+
+    fn given_back(&self, y: &mut [f64]) {
+        let mut rest = self.rows.as_slice();
+        for &s in &self.branches.crown {
+            let node = self.factor.supernode(s);
+            let (own, tail) = rest.split_at(node.val().ncols() * self.k);
+            y[node.start() * self.k..][..own.len()].copy_from_slice(own);
+            rest = tail;
+        }
+    }
+
+    fn add(&mut self, sums: &[Vec<f64>]) {
+        for sum in sums {
+            let rows = self.rows.iter_mut();
+            rows.zip(sum).for_each(|(r, s)| *r += s);
+        }
+    }
+
+    fn solve(&mut self) {
+        let (k, in_crown) = (self.k, &self.branches.in_crown);
+        let rows = &mut self.rows;
+        let mut work = Work::default();
+        let par = |node: &SupernodeRef<'_, u32, f64>| {
+            let large = node.val().nrows() * node.val().ncols() > SHARED;
+            if large { Par::rayon(0) } else { Par::Seq }
+        };
+        for &s in &self.branches.crown {
+            let node = self.factor.supernode(s);
+            let at = in_crown[node.start()] as usize * k;
+            forward(node, &mut rows[at..], k, &mut work, par(&node));
+            let n = node.pattern().len();
+            for (i, &row) in node.pattern().iter().enumerate() {
+                let to = &mut rows[in_crown[row as usize] as usize * k..][..k];
+                subtract(to, &work.below, i, n);
+            }
+        }
+        for &s in self.branches.crown.iter().rev() {
+            let node = self.factor.supernode(s);
+            let n = node.pattern().len();
+            work.below.resize(n * k, 0.0);
+            for (i, &row) in node.pattern().iter().enumerate() {
+                let from = &rows[in_crown[row as usize] as usize * k..][..k];
+                put(&mut work.below, from, i, n);
+            }
+            let at = in_crown[node.start()] as usize * k;
+            backward(node, &mut rows[at..], k, &mut work, par(&node));
+        }
+    }
+}
+
+/// `to -= ` row `i` of `n` rows kept column by column.
+fn subtract(to: &mut [f64], columns: &[f64], i: usize, n: usize) {
+    let from = columns[i..].iter().step_by(n);
+    to.iter_mut().zip(from).for_each(|(t, f)| *t -= f);
+}
+
+/// Row `i` of `n` rows kept column by column `= from`.
+fn put(columns: &mut [f64], from: &[f64], i: usize, n: usize) {
+    let to = columns[i..].iter_mut().step_by(n);
+    to.zip(from).for_each(|(t, f)| *t = *f);
+}
+
+/// L11 x = b on the supernode's own rows, the first of `rows`; `below` becomes L21 x.
+fn forward(
+    node: SupernodeRef<'_, u32, f64>,
+    rows: &mut [f64],
+    k: usize,
+    work: &mut Work,
+    par: Par,
+) {
+    let (w, m) = (node.val().ncols(), node.pattern().len());
+    let (top, bottom) = node.val().split_at_row(w);
+    columns_of(&rows[..w * k], w, &mut work.own);
+    let mut own = MatMut::from_column_major_slice_mut(&mut work.own, w, k);
+    solve_lower_triangular_in_place(top, own.rb_mut(), par);
+    work.below.resize(m * k, 0.0);
+    let below = MatMut::from_column_major_slice_mut(&mut work.below, m, k);
+    matmul(below, Accum::Replace, bottom, own.rb(), 1.0, par);
+    rows_of(&work.own, w, &mut rows[..w * k]);
+}
+
+/// L11' x = b - L21' below on the supernode's own rows, the first of `rows`.
+fn backward(
+    node: SupernodeRef<'_, u32, f64>,
+    rows: &mut [f64],
+    k: usize,
+    work: &mut Work,
+    par: Par,
+) {
+    let (w, m) = (node.val().ncols(), node.pattern().len());
+    let (top, bottom) = node.val().split_at_row(w);
+    columns_of(&rows[..w * k], w, &mut work.own);
+    let mut own = MatMut::from_column_major_slice_mut(&mut work.own, w, k);
+    let below = MatRef::from_column_major_slice(&work.below[..m * k], m, k);
+    matmul(
+        own.rb_mut(),
+        Accum::Add,
+        bottom.transpose(),
+        below,
+        -1.0,
+        par,
+    );
+    solve_upper_triangular_in_place(top.transpose(), own.rb_mut(), par);
+    rows_of(&work.own, w, &mut rows[..w * k]);
+}
+
+fn columns_of(rows: &[f64], n: usize, columns: &mut Vec<f64>) {
+    columns.resize(rows.len(), 0.0);
+    for (i, row) in rows.chunks_exact(rows.len() / n.max(1)).enumerate() {
+        put(columns, row, i, n);
+    }
+}
+
+fn rows_of(columns: &[f64], n: usize, rows: &mut [f64]) {
+    let k = rows.len() / n.max(1);
+    for (i, row) in rows.chunks_exact_mut(k).enumerate() {
+        let from = columns[i..].iter().step_by(n);
+        row.iter_mut().zip(from).for_each(|(t, f)| *t = *f);
     }
 }

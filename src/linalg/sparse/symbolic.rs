@@ -1,5 +1,6 @@
 //! The shape of the factor: elimination order, place of every unknown, faer's symbolic factorisation.
 
+use super::branches::Branches;
 use super::factor::FactorError;
 use super::graph::BlockGraph;
 use super::order::{EliminationForest, OrderingMethod, candidates};
@@ -23,6 +24,7 @@ pub struct Symbolic {
     pub(super) old_start: Vec<usize>,
     /// Supernodes of the factor, in elimination order.
     pub(super) cholesky: SymbolicCholesky<u32>,
+    pub(super) branches: Branches,
     method: OrderingMethod,
 }
 
@@ -65,6 +67,7 @@ impl Symbolic {
             order,
             start,
             old_start,
+            branches: Branches::of(&cholesky),
             cholesky,
             method,
         })

@@ -76,7 +76,8 @@ fn the_solution_of_many_right_hand_sides_satisfies_the_equations() {
         let factor = Factor::new(&symbolic, matrix.clone()).unwrap();
         assert!(factor.lost.is_empty());
         let n = symbolic.n_unknowns();
-        let b: Vec<f64> = (0..5 * n)
+        // More than go together.
+        let b: Vec<f64> = (0..29 * n)
             .map(|i| ((i * 37 + 11) % 101) as f64 / 50.0 - 1.0)
             .collect();
         let mut x = b.clone();
@@ -90,6 +91,46 @@ fn the_solution_of_many_right_hand_sides_satisfies_the_equations() {
                 .fold(0.0, f64::max);
             assert!(worst < 1e-9, "side {side}: residual {worst:e}");
         }
+    }
+}
+
+#[test]
+fn every_unknown_is_in_one_branch_or_the_crown_and_threads_change_nothing() {
+    let (side, m) = (60, 3);
+    let (graph, sizes, terms) = lattice(side, m, true);
+    let symbolic = Symbolic::analyse(&graph, &sizes).unwrap();
+    let (n, branches) = (symbolic.n_unknowns(), &symbolic.branches);
+    let mut times = vec![0; n];
+    for b in &branches.list {
+        times[b.unknowns.clone()].iter_mut().for_each(|t| *t += 1);
+    }
+    let crown = branches.in_crown.iter().filter(|p| **p != u32::MAX);
+    assert_eq!(crown.count(), branches.n_crown);
+    for (t, place) in times.iter_mut().zip(&branches.in_crown) {
+        *t += usize::from(*place != u32::MAX);
+    }
+    assert!(times.iter().all(|t| *t == 1));
+    // The lattice is divided at all, and the crown is the smaller part.
+    assert!(branches.list.len() > 8 && branches.n_crown < n / 2);
+    let matrix = assemble(&symbolic, &graph, &terms, m);
+    let factor = Factor::new(&symbolic, matrix).unwrap();
+    let solved = |threads: usize| {
+        let mut x: Vec<f64> = (0..7 * n).map(|i| ((i * 31) % 17) as f64 - 8.0).collect();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let told = pool
+            .build()
+            .unwrap()
+            .install(|| factor.solve_refined(&mut x, 0.0));
+        (x, told.unwrap().len())
+    };
+    let (one, told) = solved(1);
+    assert_eq!(told, 7);
+    let largest = one.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
+    for threads in [2, 5] {
+        let (other, _) = solved(threads);
+        // Sums in another order: rounding alone.
+        let apart = one.iter().zip(&other).map(|(a, b)| (a - b).abs());
+        assert!(apart.fold(0.0, f64::max) < 1e-10 * largest);
     }
 }
 
