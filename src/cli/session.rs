@@ -16,6 +16,9 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
 
+/// Bytes of stack of a working thread, what a main thread has on most systems.
+const STACK: usize = 8 << 20;
+
 /// One run of a command.
 pub struct Session {
     pub(super) command: &'static str,
@@ -82,20 +85,20 @@ impl Session {
     ) -> ExitCode {
         let mut session = Session::new(command, common);
         let start = Instant::now();
-        let done = match common.threads {
-            Some(n) => match rayon::ThreadPoolBuilder::new()
-                .num_threads(n.max(1))
-                .build()
-            {
-                Ok(pool) => pool.install(|| work(&mut session)),
-                Err(e) => Err(vec![Fault::of(
-                    "--threads",
-                    "threads",
-                    e.to_string(),
-                    "ask for fewer threads",
-                )]),
-            },
-            None => work(&mut session),
+        // Work begins on a thread of the pool: from outside, each of a factorisation's many small parallel steps would wake two threads
+        // and put one to sleep. 0 threads: as many as the machine has.
+        let done = match rayon::ThreadPoolBuilder::new()
+            .num_threads(common.threads.map_or(0, |n| n.max(1)))
+            .stack_size(STACK)
+            .build()
+        {
+            Ok(pool) => pool.install(|| work(&mut session)),
+            Err(e) => Err(vec![Fault::of(
+                "--threads",
+                "threads",
+                e.to_string(),
+                "ask for fewer threads",
+            )]),
         };
         #[cfg(feature = "pdf")]
         let done = done.and_then(|()| session.write_paper());

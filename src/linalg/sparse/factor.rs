@@ -52,57 +52,27 @@ pub(super) struct ScaledMatrix {
 }
 
 impl ScaledMatrix {
-    /// r -= A x for `k` columns kept row by row, a share of the columns a thread.
-    pub(super) fn subtract_product(&self, x: &[f64], r: &mut [f64], k: usize) {
-        let threads = rayon::current_num_threads().max(1);
-        let share = k.div_ceil(threads).clamp(1, 6);
-        let firsts: Vec<usize> = (0..k).step_by(share).collect();
-        let parts: Vec<(usize, Vec<f64>)> = firsts
-            .into_par_iter()
-            .map(|c| {
-                let m = share.min(k - c);
-                let part = match m {
-                    1 => self.remainder::<1>(x, r, k, c),
-                    2 => self.remainder::<2>(x, r, k, c),
-                    3 => self.remainder::<3>(x, r, k, c),
-                    4 => self.remainder::<4>(x, r, k, c),
-                    5 => self.remainder::<5>(x, r, k, c),
-                    _ => self.remainder::<6>(x, r, k, c),
-                };
-                (m, part)
-            })
-            .collect();
-        let mut c = 0;
-        for (m, part) in parts {
-            for (to, from) in r.chunks_exact_mut(k).zip(part.chunks_exact(m)) {
-                to[c..c + m].copy_from_slice(from);
-            }
-            c += m;
-        }
-    }
-
-    /// r - A x of `M` columns from the one numbered `c`, row by row.
-    fn remainder<const M: usize>(&self, x: &[f64], r: &[f64], k: usize, c: usize) -> Vec<f64> {
-        let of = |rows: &[f64]| -> Vec<[f64; M]> {
-            let rows = rows.chunks_exact(k);
-            rows.map(|row| std::array::from_fn(|m| row[c + m]))
-                .collect()
-        };
-        let (x, mut r) = (of(x), of(r));
+    /// r -= A y, where `r` holds `M` columns row by row, and `y` holds those, from the one numbered `c`, among `k`.
+    pub(super) fn subtract_product<const M: usize>(
+        &self,
+        y: &[f64],
+        (k, c): (usize, usize),
+        r: &mut [[f64; M]],
+    ) {
+        let row = |i: usize| -> [f64; M] { std::array::from_fn(|m| y[i * k + c + m]) };
         for (j, range) in self.columns.windows(2).enumerate() {
             let range = range[0] as usize..range[1] as usize;
-            let (mut own, xj) = ([0.0; M], x[j]);
+            let (mut own, yj) = ([0.0; M], row(j));
             for (&i, &a) in self.rows[range.clone()].iter().zip(&self.entries[range]) {
                 let i = i as usize;
-                let xi = x[i];
-                (0..M).for_each(|m| own[m] += a * xi[m]);
+                let yi = row(i);
+                (0..M).for_each(|m| own[m] += a * yi[m]);
                 if i != j {
-                    (0..M).for_each(|m| r[i][m] -= a * xj[m]);
+                    (0..M).for_each(|m| r[i][m] -= a * yj[m]);
                 }
             }
             (0..M).for_each(|m| r[j][m] -= own[m]);
         }
-        r.into_flattened()
     }
 }
 
@@ -185,14 +155,18 @@ impl<'a> Factor<'a> {
     }
 }
 
-/// Zeros straight from the system: pages that are not touched yet cost nothing.
+/// Zeros that every thread writes its share of: the system hands out gigabytes page by page, and faer would ask for them with one thread.
 fn zeros(n: usize) -> Result<Vec<f64>, FactorError> {
     let mut probe: Vec<f64> = Vec::new();
     probe
         .try_reserve_exact(n)
         .map_err(|_| FactorError::TooLarge)?;
     drop(probe);
-    Ok(vec![0.0; n])
+    let mut values = vec![0.0; n];
+    values
+        .par_chunks_mut(1 << 18)
+        .for_each(|chunk| chunk.fill(0.0));
+    Ok(values)
 }
 
 /// Squares of the diagonal of L, elimination order.

@@ -19,7 +19,7 @@ use std::ops::Range;
 /// Right-hand sides substituted together: the factor is read once for all of them.
 const TOGETHER: usize = 12;
 /// Entries of a supernode above which one substitution is shared by all threads.
-const SHARED: usize = 1 << 15;
+const SHARED: usize = 1 << 18;
 
 /// Groups that a task brings into elimination order.
 const GROUPS: usize = 4096;
@@ -40,6 +40,16 @@ struct Work {
     own: Vec<f64>,
     /// Those of the rows below it.
     below: Vec<f64>,
+}
+
+/// What is left of some right-hand sides.
+struct Remainder {
+    /// The first of its columns.
+    first: usize,
+    /// By column.
+    epsilon: Vec<f64>,
+    /// Row by row, elimination order.
+    rows: Vec<f64>,
 }
 
 impl Factor<'_> {
@@ -67,10 +77,9 @@ impl Factor<'_> {
     pub fn solve_refined(&self, x: &mut [f64], limit: f64) -> Result<Vec<Refined>, FactorError> {
         let mut told = Vec::new();
         self.each_part(x, |part, k| {
-            let b = self.scaled(part, k);
-            let mut y = b.clone();
+            let mut y = self.scaled(part, k);
             self.substitute(&mut y, k);
-            told.extend(self.refine(&mut y, &b, k, limit));
+            told.extend(self.refine(&mut y, part, k, limit));
             self.unscale(&y, part, k);
         });
         Ok(told)
@@ -90,28 +99,40 @@ impl Factor<'_> {
         }
     }
 
-    /// Epsilon of each of `k` solutions; where it is above `limit`, a solution is replaced by its refinement if that is better.
-    fn refine(&self, y: &mut [f64], b: &[f64], k: usize, limit: f64) -> Vec<Refined> {
-        let (first, r) = self.epsilons(y, b, k);
-        let mut told: Vec<Refined> = first
-            .iter()
-            .map(|&first| Refined { first, last: first })
-            .collect();
-        let poor: Vec<usize> = (0..k).filter(|&c| !(first[c] <= limit)).collect();
+    /// Epsilon of each of `k` solutions `y` for right-hand sides `x`; where it is above `limit`, a solution is replaced by its refinement
+    /// if that is better.
+    fn refine(&self, y: &mut [f64], x: &[f64], k: usize, limit: f64) -> Vec<Refined> {
+        let found = self.remainders(y, x, k);
+        let mut told = Vec::with_capacity(k);
+        for f in &found {
+            let as_told = f.epsilon.iter();
+            told.extend(as_told.map(|&first| Refined { first, last: first }));
+        }
+        let poor: Vec<usize> = (0..k).filter(|&c| !(told[c].first <= limit)).collect();
         if poor.is_empty() {
             return told;
         }
-        let picked = |from: &[f64]| -> Vec<f64> {
-            let rows = from.chunks_exact(k);
-            rows.flat_map(|row| poor.iter().map(|&c| row[c])).collect()
-        };
-        let m = poor.len();
-        let mut better = picked(&r);
+        let (n, m) = (x.len() / k, poor.len());
+        let mut better = Vec::with_capacity(n * m);
+        for row in 0..n {
+            better.extend(poor.iter().map(|&c| {
+                let f = &found[found.partition_point(|f| f.first <= c) - 1];
+                f.rows[row * f.epsilon.len() + c - f.first]
+            }));
+        }
+        drop(found);
         self.substitute(&mut better, m);
-        better.iter_mut().zip(picked(y)).for_each(|(d, y)| *d += y);
-        let (after, _) = self.epsilons(&better, &picked(b), m);
+        for (to, from) in better.chunks_exact_mut(m).zip(y.chunks_exact(k)) {
+            to.iter_mut().zip(&poor).for_each(|(t, &c)| *t += from[c]);
+        }
+        let loads: Vec<f64> = poor
+            .iter()
+            .flat_map(|&c| x[c * n..(c + 1) * n].iter().copied())
+            .collect();
+        let after = self.remainders(&better, &loads, m);
+        let after: Vec<f64> = after.into_iter().flat_map(|f| f.epsilon).collect();
         for (i, &c) in poor.iter().enumerate() {
-            if after[i] < first[c] {
+            if after[i] < told[c].first {
                 told[c].last = after[i];
                 let rows = y.chunks_exact_mut(k).zip(better.chunks_exact(m));
                 rows.for_each(|(to, from)| to[c] = from[i]);
@@ -120,22 +141,49 @@ impl Factor<'_> {
         told
     }
 
-    /// |x'r| / |x'b| of each of `k` solutions, zero for no load, and r = b - A x.
-    fn epsilons(&self, y: &[f64], b: &[f64], k: usize) -> (Vec<f64>, Vec<f64>) {
-        let mut r = b.to_vec();
-        self.matrix.subtract_product(y, &mut r, k);
-        let dots = |v: &[f64]| -> Vec<f64> {
-            let mut sums = vec![0.0; k];
-            for (y, v) in y.chunks_exact(k).zip(v.chunks_exact(k)) {
-                for (s, (y, v)) in sums.iter_mut().zip(y.iter().zip(v)) {
-                    *s += y * v;
-                }
+    /// r = b - A y and |y'r| / |y'b| (zero for no load) of solutions `y` for right-hand sides `x`, a share of the columns a thread.
+    fn remainders(&self, y: &[f64], x: &[f64], k: usize) -> Vec<Remainder> {
+        let threads = rayon::current_num_threads().max(1);
+        let share = k.div_ceil(threads).clamp(1, 6);
+        let firsts: Vec<usize> = (0..k).step_by(share).collect();
+        firsts
+            .into_par_iter()
+            .map(|c| match share.min(k - c) {
+                1 => self.remainder::<1>(y, x, k, c),
+                2 => self.remainder::<2>(y, x, k, c),
+                3 => self.remainder::<3>(y, x, k, c),
+                4 => self.remainder::<4>(y, x, k, c),
+                5 => self.remainder::<5>(y, x, k, c),
+                _ => self.remainder::<6>(y, x, k, c),
+            })
+            .collect()
+    }
+
+    fn remainder<const M: usize>(&self, y: &[f64], x: &[f64], k: usize, c: usize) -> Remainder {
+        let n = x.len() / k;
+        let mut r = vec![[0.0; M]; n];
+        self.each_group(|new, old| {
+            for i in 0..new.len() {
+                let scale = self.scale[new.start + i];
+                r[new.start + i] = std::array::from_fn(|m| x[(c + m) * n + old + i] * scale);
+            }
+        });
+        let dots = |r: &[[f64; M]]| -> [f64; M] {
+            let mut sums = [0.0; M];
+            for (r, y) in r.iter().zip(y.chunks_exact(k)) {
+                (0..M).for_each(|m| sums[m] += r[m] * y[c + m]);
             }
             sums
         };
-        let (lost, work) = rayon::join(|| dots(&r), || dots(b));
+        let work = dots(&r);
+        self.matrix.subtract_product(y, (k, c), &mut r);
+        let lost = dots(&r);
         let share = |(l, w): (&f64, &f64)| if w.abs() > 0.0 { (l / w).abs() } else { 0.0 };
-        (lost.iter().zip(&work).map(share).collect(), r)
+        Remainder {
+            first: c,
+            epsilon: lost.iter().zip(&work).map(share).collect(),
+            rows: r.into_flattened(),
+        }
     }
 
     /// Columns in elimination order, row by row, scaled as the right-hand side of the scaled matrix.
