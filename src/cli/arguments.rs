@@ -1,5 +1,6 @@
 //! Arguments as the user types them.
 
+use crate::fe::HeatedStrain;
 use std::path::PathBuf;
 
 /// Strain gauges and a finite element model in, wheel loads with intervals out.
@@ -78,7 +79,7 @@ pub enum Command {
     #[command(
         after_help = "Example:\n  strainbridge solve truck.bdf --out solved    # solved/results.op2, solved/results.vtu"
     )]
-    Solve(JobArguments),
+    Solve(SolveArguments),
     /// Find where simulation and measurement disagree, name the missing effect, add it, show the gap shrink
     #[command(
         after_help = "Example:\n  strainbridge reconcile job.toml    # exit code 1: what it says can't be relied on"
@@ -133,6 +134,29 @@ pub struct JobArguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub common: CommonArguments,
+}
+
+/// A deck or job to be solved.
+#[derive(clap::Args, Debug)]
+pub struct SolveArguments {
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub job: JobArguments,
+    /// Write the total strain of heated structures, thermal expansion included (the apparent strain of a gauge that compensates nothing);
+    /// without it the mechanical strain, which a gauge compensated for its material reads
+    #[arg(long)]
+    pub total_strain: bool,
+}
+
+impl SolveArguments {
+    /// Which strain is written.
+    pub fn heated(&self) -> HeatedStrain {
+        if self.total_strain {
+            HeatedStrain::Total
+        } else {
+            HeatedStrain::Mechanical
+        }
+    }
 }
 
 /// The story.

@@ -63,7 +63,9 @@ pub fn run(arguments: Arguments) -> ExitCode {
         Command::Respond(a) => Session::run("respond", &a.common, |s| respond::run(&a, s)),
         Command::Study(a) => Session::run("study", &a.common, |s| study::run(&a, s)),
         Command::Demo(a) => Session::run("demo", &a.common, |s| demo::run(&a, s)),
-        Command::Solve(a) => Session::run("solve", &a.common, |s| solve::run(&a, s)),
+        Command::Solve(a) => Session::run("solve", &a.job.common, |s| {
+            solve::run(&a.job, a.heated(), s)
+        }),
         Command::Reconcile(a) => Session::run("reconcile", &a.common, |s| reconcile::run(&a, s)),
         Command::Identify(a) => Session::run("identify", &a.common, |s| identify::run(&a, s)),
         Command::Schema => print(job::schema::job_schema().as_bytes()),

@@ -5,7 +5,10 @@ use super::fault::{Fault, Faults};
 use super::scene::scene_of_solution;
 use super::solved::{cases_of_job, solve_kept};
 use super::{JobArguments, Session, job};
-use crate::fe::{Corners, LoadCase, Solution, SolveReport, loads_of_subcase, relief_of};
+use crate::fe::{
+    Corners, HeatedStrain, LoadCase, Solution, SolveOptions, SolveReport, loads_of_subcase,
+    relief_of,
+};
 use crate::finding::{Finding, Severity};
 use crate::model::{Model, Shell};
 use crate::report::{PlannedBlock, planned_blocks, rows_of_block, write_vtu};
@@ -27,7 +30,11 @@ struct Task {
 }
 
 /// Reads the job or deck, solves, writes `results.op2`, `results.vtu` and the report.
-pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
+pub fn run(
+    arguments: &JobArguments,
+    heated: HeatedStrain,
+    session: &mut Session,
+) -> Result<(), Faults> {
     let is_job = arguments
         .job
         .extension()
@@ -45,6 +52,11 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         corners,
         left_out,
     } = task;
+    let options = SolveOptions {
+        corners,
+        heated,
+        ..SolveOptions::default()
+    };
     for why in left_out {
         session.findings.push(Finding::new(
             Severity::Warning,
@@ -54,7 +66,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
             "solve it with Nastran",
         ));
     }
-    let (solution, report) = solve_kept(session, &arguments.job, &read, &cases, corners)?;
+    let (solution, report) = solve_kept(session, &arguments.job, &read, &cases, options)?;
     session.findings.extend(solution.findings.iter().cloned());
     session.stage("write", |s| {
         write(s, &arguments.job, &read.model, &cases, &solution, &report)

@@ -39,7 +39,7 @@ pub fn cases_of_job(job: &Job, read: &DeckModel) -> Result<Vec<LoadCase>, Faults
         .collect())
 }
 
-/// Solves load cases on the model of a deck, or takes the solution from the cache beside `main_input` (the job, or the deck itself).
+/// Solves load cases on the model of a deck, with its elastic modes, or takes the solution from the cache beside `main_input` (the job, or the deck itself).
 ///
 /// # Errors
 /// What stops the solver, with file and line.
@@ -48,11 +48,11 @@ pub fn solve_kept(
     main_input: &Path,
     read: &DeckModel,
     cases: &[LoadCase],
-    corners: Corners,
+    options: SolveOptions,
 ) -> Result<(Solution, SolveReport), Faults> {
     let options = SolveOptions {
         modes: MODES,
-        corners,
+        ..options
     };
     let identity = identity(session, read, cases, "");
     let solved = kept(session, main_input, &identity, &read.model, cases, &options)
@@ -133,8 +133,13 @@ fn kept(
 /// The first elastic frequency of the free structure of a deck whose strain another program solved; where the built-in solver can't tell,
 /// a finding says why.
 pub fn first_mode_of(session: &mut Session, job: &Job, read: &DeckModel) -> Option<f64> {
-    let solved = cases_of_job(job, read)
-        .and_then(|cases| solve_kept(session, Path::new(&job.file), read, &cases, Corners::Leave));
+    let solved = cases_of_job(job, read).and_then(|cases| {
+        let options = SolveOptions {
+            corners: Corners::Leave,
+            ..SolveOptions::default()
+        };
+        solve_kept(session, Path::new(&job.file), read, &cases, options)
+    });
     let why = match solved {
         Ok((_, report)) => match report.modes.first() {
             Some(f) => return Some(*f),

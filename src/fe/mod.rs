@@ -36,7 +36,7 @@ pub use relief::Balance;
 pub use shell_strain::Corners;
 pub use solution::*;
 pub use solve::{
-    LoadCase, Relief, SolveOptions, SolveReport, Solved, Triplets, loads_of_subcase, relief_of,
-    solution_of, solve_cases, solve_displacements, solve_unit_loads, supported_stiffness,
-    unit_cases,
+    HeatedStrain, LoadCase, Relief, SolveOptions, SolveReport, Solved, Triplets, loads_of_subcase,
+    relief_of, solution_of, solve_cases, solve_displacements, solve_unit_loads,
+    supported_stiffness, unit_cases,
 };

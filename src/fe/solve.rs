@@ -45,11 +45,23 @@ pub struct LoadCase {
     pub relief: Relief,
 }
 
+/// What of the strain of a heated structure is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum HeatedStrain {
+    /// Total less thermal, as Nastran gives it: what a gauge compensated for its material reads.
+    #[default]
+    Mechanical,
+    /// Thermal expansion included, the strain of the displacements: the apparent strain of a gauge that compensates nothing.
+    Total,
+}
+
 /// Settings of the solver.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct SolveOptions {
     /// Strain at the corners, too.
     pub corners: Corners,
+    /// With thermal expansion or without.
+    pub heated: HeatedStrain,
     /// Elastic modes wanted of a structure that inertia balances, from the factor of the static solution.
     pub modes: usize,
 }
@@ -269,7 +281,10 @@ fn with_strain(
     options: &SolveOptions,
 ) -> Result<(Solution, SolveReport), FeError> {
     let u = solved.displacements;
-    let temperatures = temperatures_of(prepared.model, cases)?;
+    let temperatures = match options.heated {
+        HeatedStrain::Mechanical => temperatures_of(prepared.model, cases)?,
+        HeatedStrain::Total => vec![None; cases.len()],
+    };
     let between: Vec<Between<'_>> = cases
         .iter()
         .zip(&temperatures)

@@ -1,5 +1,6 @@
 //! From plain results to bytes: text, json, csv, html, pdf, spreadsheets. Nothing is computed here.
 
+mod csv_cell;
 pub mod figure;
 pub mod page;
 #[cfg(feature = "pdf")]
@@ -13,6 +14,7 @@ pub mod vehicle;
 mod vtu;
 mod vtu_points;
 
+pub use csv_cell::csv_cell;
 pub use result_blocks::{PlannedBlock, planned_blocks, rows_of_block};
 pub use strains::{STRAINS_HEADER, write_strains};
 pub use vtu::{write_cells_vtu, write_vtu};

@@ -121,14 +121,24 @@ impl Bulk {
 
     /// Displacements under temperature set 9 with SPC set 1.
     pub fn solve_hot(&self) -> Solved {
-        self.solve_loads(vec![UnitLoad::Temperature {
+        self.solve_hot_with(&SolveOptions::default())
+    }
+
+    /// The same with settings.
+    pub fn solve_hot_with(&self, options: &SolveOptions) -> Solved {
+        let hot = UnitLoad::Temperature {
             set: 9,
             initial: None,
-        }])
+        };
+        self.solve_with(vec![hot], options)
     }
 
     /// Displacements under several loads with SPC set 1.
     pub fn solve_loads(&self, loads: Vec<UnitLoad>) -> Solved {
+        self.solve_with(loads, &SolveOptions::default())
+    }
+
+    fn solve_with(&self, loads: Vec<UnitLoad>, options: &SolveOptions) -> Solved {
         let model = self.model();
         let case = LoadCase {
             subcase: 1,
@@ -138,8 +148,8 @@ impl Bulk {
             mpc: None,
             relief: Relief::None,
         };
-        let (mut solution, _) = solve_cases(&model, &[case], &SolveOptions::default())
-            .unwrap_or_else(|e| panic!("{e}"));
+        let (mut solution, _) =
+            solve_cases(&model, &[case], options).unwrap_or_else(|e| panic!("{e}"));
         Solved {
             case: solution.cases.remove(0),
             model,

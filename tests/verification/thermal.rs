@@ -1,6 +1,7 @@
 //! Temperature: free bodies grow without mechanical strain, held ones carry it, layered ones bend. Set 9 is the temperature.
 
 use crate::mesh::{Bulk, Solved, near};
+use strainbridge::fe::{HeatedStrain, SolveOptions};
 
 const ALPHA: f64 = 1.2e-5;
 
@@ -54,6 +55,37 @@ fn a_free_sheet_grows_and_strains_nothing_mechanically() {
         }
     }
     assert!(largest(&s) < 1e-12, "{:e}", largest(&s));
+}
+
+#[test]
+fn total_strain_holds_the_expansion_of_a_free_sheet_and_of_a_free_bar() {
+    let mut b = steel();
+    let ids = sheet(&mut b);
+    let ends = [b.grid([300.0, 0.0, 0.0]), b.grid([400.0, 0.0, 0.0])];
+    b.card("PBAR,5,1,100.,1000.,1000.,1500.\n,5.,0.,-5.,0.,0.,5.,0.,-5.");
+    b.card(&format!("CBAR,901,5,{},{},0.,0.,1.", ends[0], ends[1]));
+    b.card("TEMPD,9,120.");
+    b.hold("123456", [ids[0][0], ends[0]]);
+    let hot = 100.0 * ALPHA;
+    let total = SolveOptions {
+        heated: HeatedStrain::Total,
+        ..SolveOptions::default()
+    };
+    let (mechanical, total) = (b.solve_hot(), b.solve_hot_with(&total));
+    assert!(largest(&mechanical) < 1e-12);
+    for surface in total.case.shells.centre.iter().flatten() {
+        for (e, exact) in surface.iter().zip([hot, hot, 0.0]) {
+            assert!((e - exact).abs() < 1e-12, "{surface:?}");
+        }
+    }
+    for (solved, exact) in [(&mechanical, 0.0), (&total, hot)] {
+        for (_, points) in solved.case.beams.stations.iter().flatten() {
+            assert!(
+                points.iter().all(|e| (e - exact).abs() < 1e-12),
+                "{points:?}"
+            );
+        }
+    }
 }
 
 #[test]

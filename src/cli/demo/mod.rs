@@ -7,6 +7,7 @@ mod yard;
 
 use super::fault::{Fault, Faults};
 use super::{CommonArguments, DemoArguments, JobArguments, Session, Step};
+use crate::fe::HeatedStrain;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -196,7 +197,7 @@ fn play(
         },
     };
     session.step(command, &folder.join(out), |s| match command {
-        "solve" => super::solve::run(&arguments, s),
+        "solve" => super::solve::run(&arguments, HeatedStrain::default(), s),
         "place" => super::place::run(&arguments, s),
         "recover" => super::recover::run(&arguments, s),
         "reconcile" => super::reconcile::run(&arguments, s),

@@ -7,6 +7,7 @@ use crate::cli::fault::Faults;
 use crate::cli::scene::scene_of_job;
 use crate::cli::{JobArguments, Session};
 use crate::payload::{PayloadRun, Place, WeighSpec, WeighedRun, Weighing};
+use crate::report::csv_cell;
 use crate::report::figure::{IntervalRow, intervals};
 use crate::report::page::{Page, Paper, figure_section, number, table_section};
 use crate::report::scene::scene_section;
@@ -248,7 +249,7 @@ pub(super) fn write(
             writeln!(
                 w,
                 "{},{},{}",
-                r.run,
+                csv_cell(&r.run),
                 line.join(","),
                 r.refused.as_ref().map_or("", |_| "yes")
             )?;
@@ -268,8 +269,8 @@ pub(super) fn write(
                 writeln!(
                     w,
                     "{},{},{},{},{},{}",
-                    r.run,
-                    v.name,
+                    csv_cell(&r.run),
+                    csv_cell(&v.name),
                     of(&run.strain, 1e6),
                     of(&r.estimates, 1.0),
                     of(&r.estimate_sigma, 1.0),

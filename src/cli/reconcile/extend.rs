@@ -15,6 +15,7 @@ use crate::cli::job::Job;
 use crate::reconcile::effect::Extension;
 use crate::reconcile::strain::{Correction, StrainFrame, corrected_readings, extended_influence};
 use crate::reconcile::{NamedEffect, Outcome};
+use crate::report::csv_cell;
 use std::fmt::Write;
 use std::path::Path;
 use toml::{Table, Value};
@@ -194,7 +195,9 @@ fn nuisance(frame: &StrainFrame, extensions: &[&Extension]) -> Vec<(String, Vec<
 }
 
 fn strain_csv(frame: &StrainFrame, values: &[f64]) -> String {
-    let mut out = format!("run,{}\n", frame.observations.channels.join(","));
+    let channels = frame.observations.channels.iter();
+    let channels: Vec<_> = channels.map(|c| csv_cell(c)).collect();
+    let mut out = format!("run,{}\n", channels.join(","));
     for (run, row) in frame
         .observations
         .runs
@@ -211,7 +214,7 @@ fn strain_csv(frame: &StrainFrame, values: &[f64]) -> String {
                 }
             })
             .collect();
-        let _ = writeln!(out, "{run},{}", cells.join(","));
+        let _ = writeln!(out, "{},{}", csv_cell(run), cells.join(","));
     }
     out
 }
@@ -221,11 +224,11 @@ fn sensitivity_csv(
     influence: &[f64],
     nuisance: &[(String, Vec<f64>)],
 ) -> String {
-    let names: Vec<&str> = frame
+    let names: Vec<_> = frame
         .load_names
         .iter()
         .chain(nuisance.iter().map(|n| &n.0))
-        .map(String::as_str)
+        .map(|n| csv_cell(n))
         .collect();
     let mut out = format!("gauge,{}\n", names.join(","));
     for (g, gauge) in frame.gauges.iter().enumerate() {
@@ -235,7 +238,7 @@ fn sensitivity_csv(
             .take(frame.n_loads());
         let more = nuisance.iter().filter_map(|n| n.1.get(g));
         let cells: Vec<String> = row.chain(more).map(|v| format!("{v:.9e}")).collect();
-        let _ = writeln!(out, "{},{}", gauge.name, cells.join(","));
+        let _ = writeln!(out, "{},{}", csv_cell(&gauge.name), cells.join(","));
     }
     out
 }
@@ -252,17 +255,15 @@ fn payload_csv(frame: &StrainFrame, influence: &[f64]) -> String {
             .skip(frame.n_loads())
             .map(|v| format!("{v:.9e}"))
             .collect();
-        let _ = writeln!(out, "{},{}", gauge.name, cells.join(","));
+        let _ = writeln!(out, "{},{}", csv_cell(&gauge.name), cells.join(","));
     }
     out
 }
 
 fn runs_csv(frame: &StrainFrame, dx: f64, dy: f64) -> String {
     let [at_x, at_y] = frame.payload_origin;
-    let mut out = format!(
-        "run,payload_mass,payload_x,payload_y,{}\n",
-        frame.load_names.join(",")
-    );
+    let names: Vec<_> = frame.load_names.iter().map(|n| csv_cell(n)).collect();
+    let mut out = format!("run,payload_mass,payload_x,payload_y,{}\n", names.join(","));
     for (r, run) in frame.observations.runs.iter().enumerate() {
         let [mass, x, y] = frame.payload.get(r).copied().unwrap_or([0.0; 3]);
         let loads: Vec<String> = frame
@@ -274,7 +275,8 @@ fn runs_csv(frame: &StrainFrame, dx: f64, dy: f64) -> String {
             .collect();
         let _ = writeln!(
             out,
-            "{run},{mass:.6},{:.6},{:.6},{}",
+            "{},{mass:.6},{:.6},{:.6},{}",
+            csv_cell(run),
             at_x + x + dx,
             at_y + y + dy,
             loads.join(",")

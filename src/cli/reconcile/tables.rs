@@ -3,6 +3,7 @@
 use crate::cli::Session;
 use crate::cli::fault::Faults;
 use crate::reconcile::Outcome;
+use crate::report::csv_cell;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -14,7 +15,11 @@ pub(super) fn write(session: &mut Session, job: &Path, outcome: &Outcome) -> Res
         let _ = writeln!(
             gap,
             "{},{:.4},{:.4},{:.4},{:.4}",
-            c.channel, c.before, c.after, c.floor, c.reading
+            csv_cell(&c.channel),
+            c.before,
+            c.after,
+            c.floor,
+            c.reading
         );
     }
     let mut loads = String::from("run,load,stated_kN,before_kN,after_kN,sigma_kN,moved\n");
@@ -23,7 +28,12 @@ pub(super) fn write(session: &mut Session, job: &Path, outcome: &Outcome) -> Res
         let _ = writeln!(
             loads,
             "{},{},{:.4},{:.4},{:.4},{:.4},{moved}",
-            l.run, l.load, l.stated, l.before, l.after, l.sigma
+            csv_cell(&l.run),
+            csv_cell(&l.load),
+            l.stated,
+            l.before,
+            l.after,
+            l.sigma
         );
     }
     let output = session.output_for(job)?;

@@ -12,6 +12,7 @@ use crate::cli::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::recovery::net::effective_samples;
 use crate::recovery::{Readings, Recovery, recover};
+use crate::report::csv_cell;
 use crate::report::figure::GaugePoints;
 use crate::report::spreadsheet::{residual_sheet, runs_sheet};
 use crate::report::strain::{Recovered, RecoveredRun, recover_page};
@@ -332,11 +333,13 @@ fn shown_run(r: &crate::recovery::RunEstimate, units: &[LoadUnits]) -> Recovered
 fn loads_csv(w: &mut dyn Write, recovery: &Recovery, units: &[LoadUnits]) -> std::io::Result<()> {
     write!(w, "run")?;
     for name in recovery.runs.first().map_or(&[][..], |r| &r.estimate.names) {
-        write!(w, ",{name},{name}.low,{name}.high")?;
+        for column in [name.clone(), format!("{name}.low"), format!("{name}.high")] {
+            write!(w, ",{}", csv_cell(&column))?;
+        }
     }
     writeln!(w)?;
     for r in &recovery.runs {
-        write!(w, "{}", r.estimate.run)?;
+        write!(w, "{}", csv_cell(&r.estimate.run))?;
         for (l, u) in units.iter().enumerate() {
             let [low, high] = r.estimate.interval(l);
             for v in [r.estimate.values[l], low, high] {

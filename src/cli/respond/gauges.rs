@@ -6,6 +6,7 @@ use crate::cli::job::strain::{StrainRows, read_strain};
 use crate::cli::job::{Job, Reference};
 use crate::cli::strain::Prepared;
 use crate::finding::{Finding, Severity};
+use crate::report::csv_cell;
 use crate::report::figure::GaugePoints;
 use crate::respond::LoadState;
 use serde_json::json;
@@ -107,7 +108,8 @@ pub(super) fn check(
     }
     out.csv.push_str("state");
     for g in &s.gauges {
-        let _ = write!(out.csv, ",{g},{g}.measured");
+        let measured = format!("{g}.measured");
+        let _ = write!(out.csv, ",{},{}", csv_cell(g), csv_cell(&measured));
     }
     out.csv.push('\n');
     let mut pairs: Vec<Vec<(f64, f64)>> = vec![Vec::new(); s.gauges.len()];

@@ -11,6 +11,7 @@ use super::strain::{Fields, Prepared, prepare, read_fields};
 use super::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::model::{GridIx, Model, RigidKind, Vec3};
+use crate::report::csv_cell;
 use crate::report::figure::agreement;
 use crate::report::page::{Page, figure_section, number, table_section};
 use crate::report::scene::{Mark, scene_section};
@@ -289,6 +290,7 @@ fn write(
             let (r, p) = (&rows[*i], &peaks[*i]);
             let [value, half] = [p.von_mises, 1.959_964 * p.sigma].map(|v| number(v * u));
             let at = states.get(p.at).map_or("", |s| s.label.as_str());
+            let at = csv_cell(at);
             let note = format!("{} {value} ± {half} {unit} in {at}", r.surface_word());
             mark_of_row(model, r, note)
         })
@@ -336,6 +338,7 @@ fn write(
         for i in order {
             let (r, p) = (&rows[*i], &peaks[*i]);
             let at = states.get(p.at).map_or("", |s| s.label.as_str());
+            let at = csv_cell(at);
             writeln!(
                 w,
                 "{},{},{},{},{at}",

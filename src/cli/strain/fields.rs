@@ -6,7 +6,7 @@ use crate::cli::fault::{Fault, Faults};
 use crate::cli::job::{Job, JobLoad, LoadActs, Reference, Role};
 use crate::cli::solved::{cases_of_job, solve_kept};
 use crate::fe::from_results::{Displacements, ReadOptions, solution_from_file};
-use crate::fe::{CaseResult, Corners, Solution, UnitLoad};
+use crate::fe::{CaseResult, Solution, SolveOptions, UnitLoad};
 use crate::gauge::CornerRows;
 use crate::model::{Model, Vec3};
 use crate::sensitivity::{Load, LoadCaseOf};
@@ -116,7 +116,7 @@ pub fn read_fields(session: &mut Session, job: &Job) -> Result<Fields, Faults> {
             Path::new(&job.file),
             &deck,
             &cases,
-            Corners::Compute,
+            SolveOptions::default(),
         )?;
         session.findings.extend(solved.findings.iter().cloned());
         let of_load = (0..job.loads.len()).map(|i| (0, i)).collect();

@@ -9,6 +9,7 @@ use super::job::{self, Job, Role, Study};
 use super::strain::{LoadUnits, load_units, put_conditioning};
 use super::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
+use crate::report::csv_cell;
 use crate::report::page::{Page, number, table_section};
 use crate::sensitivity::Load;
 use crate::study::{ErrorKind, StudyError, StudyRow, StudySpec, study_layout};
@@ -352,7 +353,9 @@ fn write(
     out.write("study.csv", |w| {
         write!(w, "layout,gauges,error,condition_number,mean_relative_rms")?;
         for l in loads {
-            write!(w, ",{}.bias,{}.sigma,{}.coverage", l.name, l.name, l.name)?;
+            for what in ["bias", "sigma", "coverage"] {
+                write!(w, ",{}", csv_cell(&format!("{}.{what}", l.name)))?;
+            }
         }
         writeln!(w)?;
         for line in lines {

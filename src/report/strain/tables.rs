@@ -3,6 +3,7 @@
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::Gauge;
 use crate::model::Model;
+use crate::report::csv_cell;
 use crate::sensitivity::Sensitivity;
 use std::io::{self, Write};
 
@@ -67,11 +68,11 @@ impl PlacedGauge {
 pub fn sensitivity_csv(out: &mut dyn Write, s: &Sensitivity) -> io::Result<()> {
     write!(out, "gauge")?;
     for l in &s.loads {
-        write!(out, ",{}", l.name)?;
+        write!(out, ",{}", csv_cell(&l.name))?;
     }
     writeln!(out)?;
     for (g, name) in s.gauges.iter().enumerate() {
-        write!(out, "{name}")?;
+        write!(out, "{}", csv_cell(name))?;
         for l in 0..s.loads.len() {
             write!(out, ",{}", s.values[(g, l)] * 1e6)?;
         }
@@ -95,7 +96,7 @@ pub fn gauges_csv(out: &mut dyn Write, placed: &[PlacedGauge]) -> io::Result<()>
         writeln!(
             out,
             "{},{},{},{},{},{},0,{},{},{},{},{:.4},{:.4},{:.6},{}",
-            g.name,
+            csv_cell(&g.name),
             g.element,
             g.surface.word(),
             d.x,
@@ -145,7 +146,7 @@ pub fn gluing_sheet_csv(
         "name,element,side,x,y,z,from_grid,dx,dy,dz,axis_x,axis_y,axis_z,outward_x,outward_y,outward_z,angle_seen_deg,expected_microstrain,corner_grids,corner_distances,bridge,role,angle_budget_deg,position_budget"
     )?;
     for (load, _) in placed.first().map_or(&[][..], |p| &p.by_load) {
-        write!(out, ",range_{load}_microstrain")?;
+        write!(out, ",{}", csv_cell(&format!("range_{load}_microstrain")))?;
     }
     writeln!(out)?;
     for p in placed {
@@ -172,7 +173,7 @@ pub fn gluing_sheet_csv(
         write!(
             out,
             "{},{},{},{:.3},{:.3},{:.3},{grid},{},{},{},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5},{:.1},{:.1},{},{},{},{},{},{}",
-            g.name,
+            csv_cell(&g.name),
             g.element,
             g.surface.word(),
             g.position.x,

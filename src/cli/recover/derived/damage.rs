@@ -5,6 +5,7 @@ use crate::cli::fault::Faults;
 use crate::cli::recover::Task;
 use crate::cli::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
+use crate::report::csv_cell;
 use crate::series::rainflow::{Cycle, Damage, Point, Rainflow};
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -74,7 +75,7 @@ fn table(w: &mut dyn Write, history: &History, all: &[Damage]) -> std::io::Resul
             writeln!(
                 w,
                 "{},{},{:.7e},{:.7e},{},{:.7e},{:.7e}",
-                history.names[l],
+                csv_cell(&history.names[l]),
                 history.units[l].name,
                 width * b as f64,
                 width * (b + 1) as f64,
