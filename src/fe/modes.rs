@@ -94,9 +94,7 @@ pub(super) fn modes_of(
             .par_chunks_exact_mut(n.max(1))
             .zip(forces)
             .try_for_each(|(column, f)| system.pack(prepared, f.clone(), column))?;
-        factor
-            .solve(&mut columns)
-            .map_err(|e| system.refused(prepared.model, e))?;
+        factor.solve(&mut columns);
         Ok(columns.par_chunks_exact(n.max(1)).map(field).collect())
     };
     let start: Vec<Field> = (0..BLOCK.min(n))

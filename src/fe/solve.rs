@@ -359,9 +359,7 @@ fn solve_group(
     let factor = system.factor(prepared, mass, stiffness)?;
     clock.note(report, "factor");
     report.smallest_pivot = factor.smallest_pivot;
-    let refined = factor
-        .solve_refined(&mut columns, REFINED_ABOVE)
-        .map_err(|e| system.refused(model, e))?;
+    let refined = factor.solve_refined(&mut columns, REFINED_ABOVE);
     clock.note(report, "substitute");
     for (case, refined) in cases.iter().zip(refined) {
         report.epsilon[0] = report.epsilon[0].max(refined.first);

@@ -7,6 +7,9 @@ use std::ops::Range;
 /// Branches are divided until none holds more than this share of the factor: enough of them to share out evenly.
 const SHARE: f64 = 1.0 / 24.0;
 
+/// Tasks that branches are shared out into.
+const TASKS: usize = 16;
+
 /// A supernode with all that is below it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Branch {
@@ -73,11 +76,12 @@ impl Branches {
         }
     }
 
-    /// Branches for so many threads, about as heavy as each other: indices into `list`.
-    pub(super) fn shared_out(&self, threads: usize) -> Vec<Vec<usize>> {
+    /// Branches in tasks about as heavy as each other: indices into `list`. As many whatever the number of threads, so that sums over them
+    /// round alike.
+    pub(super) fn shared_out(&self) -> Vec<Vec<usize>> {
         let mut order: Vec<usize> = (0..self.list.len()).collect();
         order.sort_by_key(|&i| std::cmp::Reverse(self.list[i].weight));
-        let mut bins = vec![(0_usize, Vec::new()); threads.max(1)];
+        let mut bins = vec![(0_usize, Vec::new()); TASKS];
         for i in order {
             if let Some(least) = bins.iter_mut().min_by_key(|b| b.0) {
                 least.0 += self.list[i].weight;

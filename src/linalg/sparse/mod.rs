@@ -9,6 +9,7 @@ mod factor;
 mod graph;
 mod order;
 mod solve;
+mod substitution;
 mod symbolic;
 
 pub use block_matrix::{BlockMatrix, DenseTerm};

@@ -1,25 +1,13 @@
-//! Forward and backward substitution for many right-hand sides.
+//! Solutions for many right-hand sides, and how well they satisfy their equations.
 //!
-//! Right-hand sides are kept row by row (all values of an unknown side by side) in elimination order. Branches of the elimination tree are
-//! substituted side by side, each by one thread; what they take from the unknowns of the crown is summed before the crown is.
+//! Right-hand sides are kept row by row (all values of an unknown side by side) in elimination order.
 
-use super::branches::{Branch, Branches};
-use super::factor::{Factor, FactorError};
-use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::{
-    solve_lower_triangular_in_place, solve_upper_triangular_in_place,
-};
-use faer::prelude::{Reborrow, ReborrowMut};
-use faer::sparse::linalg::cholesky::SymbolicCholeskyRaw;
-use faer::sparse::linalg::cholesky::supernodal::{SupernodalLltRef, SupernodeRef};
-use faer::{Accum, MatMut, MatRef, Par};
+use super::factor::Factor;
 use rayon::prelude::*;
 use std::ops::Range;
 
 /// Right-hand sides substituted together: the factor is read once for all of them.
 const TOGETHER: usize = 12;
-/// Entries of a supernode above which one substitution is shared by all threads.
-const SHARED: usize = 1 << 18;
 
 /// Groups that a task brings into elimination order.
 const GROUPS: usize = 4096;
@@ -31,15 +19,6 @@ pub struct Refined {
     pub first: f64,
     /// As given back.
     pub last: f64,
-}
-
-/// Working columns of a substitution.
-#[derive(Default)]
-struct Work {
-    /// The unknowns of a supernode, column by column.
-    own: Vec<f64>,
-    /// Those of the rows below it.
-    below: Vec<f64>,
 }
 
 /// What is left of some right-hand sides.
@@ -54,16 +33,12 @@ struct Remainder {
 
 impl Factor<'_> {
     /// Replaces right-hand sides by solutions: `x` holds columns of `n_unknowns` each, caller's numbering.
-    ///
-    /// # Errors
-    /// A right-hand side that is no whole number of columns gives none.
-    pub fn solve(&self, x: &mut [f64]) -> Result<(), FactorError> {
+    pub fn solve(&self, x: &mut [f64]) {
         self.each_part(x, |part, k| {
             let mut y = self.scaled(part, k);
             self.substitute(&mut y, k);
             self.unscale(&y, part, k);
         });
-        Ok(())
     }
 
     /// As [`Factor::solve`], and tells how well each column satisfies its equation; a column that does so badly is corrected by
@@ -71,10 +46,7 @@ impl Factor<'_> {
     ///
     /// The measure is Nastran's epsilon, |x'(b - A x)| / |x'b|: the share of the work of the loads that rounding lost.
     /// Columns above `limit` are refined, x + A^-1 (b - A x), and the correction kept where it helps.
-    ///
-    /// # Errors
-    /// As [`Factor::solve`].
-    pub fn solve_refined(&self, x: &mut [f64], limit: f64) -> Result<Vec<Refined>, FactorError> {
+    pub fn solve_refined(&self, x: &mut [f64], limit: f64) -> Vec<Refined> {
         let mut told = Vec::new();
         self.each_part(x, |part, k| {
             let mut y = self.scaled(part, k);
@@ -82,7 +54,7 @@ impl Factor<'_> {
             told.extend(self.refine(&mut y, part, k, limit));
             self.unscale(&y, part, k);
         });
-        Ok(told)
+        told
     }
 
     /// Calls with columns that go together and their number.
@@ -237,271 +209,5 @@ impl Factor<'_> {
                 symbolic.old_start[old as usize],
             );
         }
-    }
-
-    /// Replaces `k` right-hand sides of L L' by solutions.
-    fn substitute(&self, y: &mut [f64], k: usize) {
-        let SymbolicCholeskyRaw::Supernodal(nodes) = self.symbolic.cholesky.raw() else {
-            return;
-        };
-        let factor = SupernodalLltRef::new(nodes, &self.values);
-        let branches = &self.symbolic.branches;
-        let mut crown = Crown::taken(branches, factor, y, k);
-        let mut bins = slices(branches, y, k);
-        let sums: Vec<Vec<f64>> = bins
-            .par_iter_mut()
-            .map(|bin| {
-                let mut sum = vec![0.0; crown.rows.len()];
-                let mut work = Work::default();
-                for (branch, rows) in bin {
-                    forward_branch(branches, branch, factor, (rows, &mut sum), k, &mut work);
-                }
-                sum
-            })
-            .collect();
-        crown.add(&sums);
-        drop(sums);
-        crown.solve();
-        let above = &crown.rows;
-        bins.par_iter_mut().for_each(|bin| {
-            let mut work = Work::default();
-            for (branch, rows) in bin {
-                backward_branch(branches, branch, factor, (rows, above), k, &mut work);
-            }
-        });
-        drop(bins);
-        crown.given_back(y);
-    }
-}
-
-/// The rows of each branch, shared out among the threads.
-fn slices<'a>(
-    branches: &'a Branches,
-    y: &'a mut [f64],
-    k: usize,
-) -> Vec<Vec<(&'a Branch, &'a mut [f64])>> {
-    let mut taken = 0;
-    let mut rest = y;
-    let mut by_branch: Vec<Option<(&Branch, &mut [f64])>> = Vec::new();
-    for branch in &branches.list {
-        let (_, tail) = rest.split_at_mut((branch.unknowns.start - taken) * k);
-        let (own, tail) = tail.split_at_mut(branch.unknowns.len() * k);
-        by_branch.push(Some((branch, own)));
-        taken = branch.unknowns.end;
-        rest = tail;
-    }
-    let bins = branches.shared_out(rayon::current_num_threads());
-    bins.into_iter()
-        .map(|bin| {
-            let mut own: Vec<_> = bin
-                .into_iter()
-                .filter_map(|i| by_branch[i].take())
-                .collect();
-            own.sort_by_key(|(b, _)| b.supernodes.start);
-            own
-        })
-        .collect()
-}
-
-/// Solves with the branch's supernodes upwards; what they take from rows of the crown goes into `sum`.
-fn forward_branch(
-    branches: &Branches,
-    branch: &Branch,
-    factor: SupernodalLltRef<'_, u32, f64>,
-    (rows, sum): (&mut [f64], &mut [f64]),
-    k: usize,
-    work: &mut Work,
-) {
-    let (first, end) = (branch.unknowns.start, branch.unknowns.end);
-    for s in branch.supernodes.clone() {
-        let node = factor.supernode(s);
-        let at = (node.start() - first) * k;
-        forward(node, &mut rows[at..], k, work, Par::Seq);
-        let n = node.pattern().len();
-        for (i, &row) in node.pattern().iter().enumerate() {
-            let row = row as usize;
-            let to = if row < end {
-                &mut rows[(row - first) * k..][..k]
-            } else {
-                &mut sum[branches.in_crown[row] as usize * k..][..k]
-            };
-            subtract(to, &work.below, i, n);
-        }
-    }
-}
-
-/// Solves with the branch's supernodes downwards, the crown's unknowns being known.
-fn backward_branch(
-    branches: &Branches,
-    branch: &Branch,
-    factor: SupernodalLltRef<'_, u32, f64>,
-    (rows, above): (&mut [f64], &[f64]),
-    k: usize,
-    work: &mut Work,
-) {
-    let (first, end) = (branch.unknowns.start, branch.unknowns.end);
-    for s in branch.supernodes.clone().rev() {
-        let node = factor.supernode(s);
-        let n = node.pattern().len();
-        work.below.resize(n * k, 0.0);
-        for (i, &row) in node.pattern().iter().enumerate() {
-            let row = row as usize;
-            let from = if row < end {
-                &rows[(row - first) * k..][..k]
-            } else {
-                &above[branches.in_crown[row] as usize * k..][..k]
-            };
-            put(&mut work.below, from, i, n);
-        }
-        let at = (node.start() - first) * k;
-        backward(node, &mut rows[at..], k, work, Par::Seq);
-    }
-}
-
-/// The unknowns above all branches.
-struct Crown<'a> {
-    branches: &'a Branches,
-    factor: SupernodalLltRef<'a, u32, f64>,
-    rows: Vec<f64>,
-    k: usize,
-}
-
-impl<'a> Crown<'a> {
-    fn taken(
-        branches: &'a Branches,
-        factor: SupernodalLltRef<'a, u32, f64>,
-        y: &[f64],
-        k: usize,
-    ) -> Self {
-        let mut rows = Vec::with_capacity(branches.n_crown * k);
-        for &s in &branches.crown {
-            let node = factor.supernode(s);
-            rows.extend(&y[node.start() * k..(node.start() + node.val().ncols()) * k]);
-        }
-        Self {
-            branches,
-            factor,
-            rows,
-            k,
-        }
-    }
-
-    fn given_back(&self, y: &mut [f64]) {
-        let mut rest = self.rows.as_slice();
-        for &s in &self.branches.crown {
-            let node = self.factor.supernode(s);
-            let (own, tail) = rest.split_at(node.val().ncols() * self.k);
-            y[node.start() * self.k..][..own.len()].copy_from_slice(own);
-            rest = tail;
-        }
-    }
-
-    fn add(&mut self, sums: &[Vec<f64>]) {
-        for sum in sums {
-            let rows = self.rows.iter_mut();
-            rows.zip(sum).for_each(|(r, s)| *r += s);
-        }
-    }
-
-    fn solve(&mut self) {
-        let (k, in_crown) = (self.k, &self.branches.in_crown);
-        let rows = &mut self.rows;
-        let mut work = Work::default();
-        let par = |node: &SupernodeRef<'_, u32, f64>| {
-            let large = node.val().nrows() * node.val().ncols() > SHARED;
-            if large { Par::rayon(0) } else { Par::Seq }
-        };
-        for &s in &self.branches.crown {
-            let node = self.factor.supernode(s);
-            let at = in_crown[node.start()] as usize * k;
-            forward(node, &mut rows[at..], k, &mut work, par(&node));
-            let n = node.pattern().len();
-            for (i, &row) in node.pattern().iter().enumerate() {
-                let to = &mut rows[in_crown[row as usize] as usize * k..][..k];
-                subtract(to, &work.below, i, n);
-            }
-        }
-        for &s in self.branches.crown.iter().rev() {
-            let node = self.factor.supernode(s);
-            let n = node.pattern().len();
-            work.below.resize(n * k, 0.0);
-            for (i, &row) in node.pattern().iter().enumerate() {
-                let from = &rows[in_crown[row as usize] as usize * k..][..k];
-                put(&mut work.below, from, i, n);
-            }
-            let at = in_crown[node.start()] as usize * k;
-            backward(node, &mut rows[at..], k, &mut work, par(&node));
-        }
-    }
-}
-
-/// `to -= ` row `i` of `n` rows kept column by column.
-fn subtract(to: &mut [f64], columns: &[f64], i: usize, n: usize) {
-    let from = columns[i..].iter().step_by(n);
-    to.iter_mut().zip(from).for_each(|(t, f)| *t -= f);
-}
-
-/// Row `i` of `n` rows kept column by column `= from`.
-fn put(columns: &mut [f64], from: &[f64], i: usize, n: usize) {
-    let to = columns[i..].iter_mut().step_by(n);
-    to.zip(from).for_each(|(t, f)| *t = *f);
-}
-
-/// L11 x = b on the supernode's own rows, the first of `rows`; `below` becomes L21 x.
-fn forward(
-    node: SupernodeRef<'_, u32, f64>,
-    rows: &mut [f64],
-    k: usize,
-    work: &mut Work,
-    par: Par,
-) {
-    let (w, m) = (node.val().ncols(), node.pattern().len());
-    let (top, bottom) = node.val().split_at_row(w);
-    columns_of(&rows[..w * k], w, &mut work.own);
-    let mut own = MatMut::from_column_major_slice_mut(&mut work.own, w, k);
-    solve_lower_triangular_in_place(top, own.rb_mut(), par);
-    work.below.resize(m * k, 0.0);
-    let below = MatMut::from_column_major_slice_mut(&mut work.below, m, k);
-    matmul(below, Accum::Replace, bottom, own.rb(), 1.0, par);
-    rows_of(&work.own, w, &mut rows[..w * k]);
-}
-
-/// L11' x = b - L21' below on the supernode's own rows, the first of `rows`.
-fn backward(
-    node: SupernodeRef<'_, u32, f64>,
-    rows: &mut [f64],
-    k: usize,
-    work: &mut Work,
-    par: Par,
-) {
-    let (w, m) = (node.val().ncols(), node.pattern().len());
-    let (top, bottom) = node.val().split_at_row(w);
-    columns_of(&rows[..w * k], w, &mut work.own);
-    let mut own = MatMut::from_column_major_slice_mut(&mut work.own, w, k);
-    let below = MatRef::from_column_major_slice(&work.below[..m * k], m, k);
-    matmul(
-        own.rb_mut(),
-        Accum::Add,
-        bottom.transpose(),
-        below,
-        -1.0,
-        par,
-    );
-    solve_upper_triangular_in_place(top.transpose(), own.rb_mut(), par);
-    rows_of(&work.own, w, &mut rows[..w * k]);
-}
-
-fn columns_of(rows: &[f64], n: usize, columns: &mut Vec<f64>) {
-    columns.resize(rows.len(), 0.0);
-    for (i, row) in rows.chunks_exact(rows.len() / n.max(1)).enumerate() {
-        put(columns, row, i, n);
-    }
-}
-
-fn rows_of(columns: &[f64], n: usize, rows: &mut [f64]) {
-    let k = rows.len() / n.max(1);
-    for (i, row) in rows.chunks_exact_mut(k).enumerate() {
-        let from = columns[i..].iter().step_by(n);
-        row.iter_mut().zip(from).for_each(|(t, f)| *t = *f);
     }
 }

@@ -81,7 +81,7 @@ fn the_solution_of_many_right_hand_sides_satisfies_the_equations() {
             .map(|i| ((i * 37 + 11) % 101) as f64 / 50.0 - 1.0)
             .collect();
         let mut x = b.clone();
-        factor.solve(&mut x).unwrap();
+        factor.solve(&mut x);
         for (x, b) in x.chunks(n).zip(b.chunks(n)) {
             let r = matrix.times(&symbolic, x);
             let worst = r
@@ -121,7 +121,7 @@ fn every_unknown_is_in_one_branch_or_the_crown_and_threads_change_nothing() {
             .build()
             .unwrap()
             .install(|| factor.solve_refined(&mut x, 0.0));
-        (x, told.unwrap().len())
+        (x, told.len())
     };
     let (one, told) = solved(1);
     assert_eq!(told, 7);
@@ -149,8 +149,8 @@ fn epsilon_is_small_where_digits_are_lost_and_refinement_makes_it_no_larger() {
     let n = symbolic.n_unknowns();
     let b: Vec<f64> = (0..2 * n).map(|i| ((i * 7) % 13) as f64 - 6.0).collect();
     let (mut plain, mut refined) = (b.clone(), b.clone());
-    factor.solve(&mut plain).unwrap();
-    let told = factor.solve_refined(&mut refined, 0.0).unwrap();
+    factor.solve(&mut plain);
+    let told = factor.solve_refined(&mut refined, 0.0);
     let epsilon = |x: &[f64], b: &[f64]| {
         let ax = matrix.times(&symbolic, x);
         let lost: f64 = (0..n).map(|i| x[i] * (b[i] - ax[i])).sum();
@@ -183,7 +183,7 @@ fn every_unknown_that_nothing_holds_is_reported_and_stays_at_zero() {
     x[0] = 1.0;
     x[3 * 143] = -1.0;
     let b = x.clone();
-    factor.solve(&mut x).unwrap();
+    factor.solve(&mut x);
     let r = matrix.times(&symbolic, &x);
     assert!(r.iter().zip(&b).all(|(r, b)| (r - b).abs() < 1e-9));
 }
