@@ -25,6 +25,7 @@
 //! The finite element layer never sees a gauge; a report never opens a file; numerics never print.
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
+pub mod app;
 pub mod cli;
 pub mod estimate;
 pub mod fe;

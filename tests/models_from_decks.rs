@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use strainbridge::cli::deck::{DeckModel, read_model};
-use strainbridge::cli::files::Inputs;
+use strainbridge::app::deck::{DeckModel, read_model};
+use strainbridge::app::files::Inputs;
 use strainbridge::fe::shell_frame::quad_axes;
 use strainbridge::model::{GridIx, Model, Vec3};
 

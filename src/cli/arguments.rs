@@ -120,9 +120,18 @@ pub struct CommonArguments {
     /// Threads for parallel work (default: all cores)
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,
-    /// Neither take solutions of the built-in solver from the folder `<job name>.cache` nor keep them there
+    /// Neither take solutions of the built-in solver from those kept nor keep them
     #[arg(long)]
     pub no_cache: bool,
+}
+
+impl CommonArguments {
+    /// What the application is asked.
+    pub(super) fn to_app(&self) -> crate::app::CommonArguments {
+        crate::app::CommonArguments {
+            out: self.out.clone(),
+        }
+    }
 }
 
 /// A command on a job.

@@ -1,74 +1,67 @@
-//! The command line: the only place that reads files, writes files and prints.
-//!
-//! One file a command; what they share:
-//! [`Session`] (options, inputs, stages, findings, output of one command), [`files`] (reading), [`output`] (writing),
-//! [`fault`] (bad input), [`job`] (job.toml and the tables it names).
+//! The command line: arguments in, one call of the application, exit code out. Nothing is decided here.
 
 mod arguments;
-mod ballast;
-mod cases;
-mod check;
-pub mod deck;
 mod demo;
-pub mod fault;
-pub mod files;
-mod identify;
-mod init;
 mod interrupt;
-pub mod job;
-pub mod output;
-mod paper;
-mod payload;
-mod place;
 mod progress;
-mod reconcile;
-mod recover;
-mod respond;
-mod scene;
-mod sensitivity;
-mod session;
-mod solution_cache;
-mod solve;
-mod solved;
-mod spreadsheets;
-mod strain;
-mod strains;
-mod study;
-pub mod vehicle;
-mod wheels;
-mod words;
+mod run;
 
 pub use arguments::*;
-pub use session::*;
 
+use crate::app::{self, Closed, Session};
 use clap::CommandFactory;
-use std::io::Write;
+use run::{Run, print};
 use std::process::ExitCode;
 
 /// Runs the command and returns the exit code: 0 done, 1 done with error findings, 2 bad input.
 pub fn run(arguments: Arguments) -> ExitCode {
     interrupt::watch();
+    let on_job = |command: &'static str, a: &JobArguments, work: JobCommand| {
+        let job = app::JobArguments {
+            job: a.job.clone(),
+            common: a.common.to_app(),
+        };
+        Run::of(&a.common, &a.job).session(|cx| {
+            Session::run(command, &job.common, cx, |s| work(&job, s))
+        })
+    };
     match arguments.command {
-        Command::Strains(a) => Session::run("strains", &a.common, |s| strains::run(&a, s)),
-        Command::Check(a) => Session::run("check", &a.common, |s| check::run(&a, s)),
-        Command::Init(a) => Session::run("init", &a.common, |s| init::run(&a, s)),
-        Command::Cases(a) => Session::run("cases", &a.common, |s| cases::run(&a, s)),
-        Command::Place(a) => Session::run("place", &a.common, |s| place::run(&a, s)),
-        Command::Recover(a) => Session::run("recover", &a.common, |s| recover::run(&a, s)),
-        Command::Sensitivity(a) => {
-            Session::run("sensitivity", &a.common, |s| sensitivity::run(&a, s))
+        Command::Strains(a) => on_deck("strains", &a, app::strains::run),
+        Command::Check(a) => {
+            let files = app::FilesArguments {
+                files: a.files.clone(),
+                common: a.common.to_app(),
+            };
+            let first = a.files.first().cloned().unwrap_or_default();
+            Run::of(&a.common, &first).session(|cx| {
+                Session::run("check", &files.common, cx, |s| app::check::run(&files, s))
+            })
         }
-        Command::Ballast(a) => Session::run("ballast", &a.common, |s| ballast::run(&a, s)),
-        Command::Payload(a) => Session::run("payload", &a.common, |s| payload::run(&a, s)),
-        Command::Respond(a) => Session::run("respond", &a.common, |s| respond::run(&a, s)),
-        Command::Study(a) => Session::run("study", &a.common, |s| study::run(&a, s)),
-        Command::Demo(a) => Session::run("demo", &a.common, |s| demo::run(&a, s)),
-        Command::Solve(a) => Session::run("solve", &a.job.common, |s| {
-            solve::run(&a.job, a.heated(), s)
-        }),
-        Command::Reconcile(a) => Session::run("reconcile", &a.common, |s| reconcile::run(&a, s)),
-        Command::Identify(a) => Session::run("identify", &a.common, |s| identify::run(&a, s)),
-        Command::Schema => print(job::schema::job_schema().as_bytes()),
+        Command::Init(a) => on_deck("init", &a, app::init::run),
+        Command::Cases(a) => on_job("cases", &a, app::cases::run),
+        Command::Place(a) => on_job("place", &a, app::place::run),
+        Command::Recover(a) => on_job("recover", &a, app::recover::run),
+        Command::Sensitivity(a) => on_job("sensitivity", &a, app::sensitivity::run),
+        Command::Ballast(a) => on_job("ballast", &a, app::ballast::run),
+        Command::Payload(a) => on_job("payload", &a, app::payload::run),
+        Command::Respond(a) => on_job("respond", &a, app::respond::run),
+        Command::Study(a) => on_job("study", &a, app::study::run),
+        Command::Demo(a) => {
+            Run::of(&a.common, demo::DECK_NAME.as_ref()).session(|cx| demo::run(&a, cx))
+        }
+        Command::Solve(a) => {
+            let heated = a.heated();
+            let job = app::JobArguments {
+                job: a.job.job.clone(),
+                common: a.job.common.to_app(),
+            };
+            Run::of(&a.job.common, &a.job.job).session(|cx| {
+                Session::run("solve", &job.common, cx, |s| app::solve::run(&job, heated, s))
+            })
+        }
+        Command::Reconcile(a) => on_job("reconcile", &a, app::reconcile::run),
+        Command::Identify(a) => on_job("identify", &a, app::identify::run),
+        Command::Schema => print(app::job::schema::job_schema().as_bytes()),
         Command::Completions(a) => {
             let mut text = Vec::new();
             clap_complete::generate(
@@ -82,9 +75,17 @@ pub fn run(arguments: Arguments) -> ExitCode {
     }
 }
 
-/// Prints text that is the whole answer.
-fn print(text: &[u8]) -> ExitCode {
-    // A closed pipe (`| head`) is no fault of ours.
-    let _ = std::io::stdout().write_all(text);
-    ExitCode::SUCCESS
+/// A command on a job that writes as it goes.
+type JobCommand = fn(&app::JobArguments, &mut Session) -> Result<(), app::fault::Faults>;
+/// A command on a deck that writes as it goes.
+type DeckCommand = fn(&app::DeckArguments, &mut Session) -> Result<(), app::fault::Faults>;
+
+fn on_deck(command: &'static str, a: &DeckArguments, work: DeckCommand) -> ExitCode {
+    let deck = app::DeckArguments {
+        deck: a.deck.clone(),
+        results: a.results.clone(),
+        common: a.common.to_app(),
+    };
+    Run::of(&a.common, &a.deck)
+        .session(|cx| Session::run(command, &deck.common, cx, |s| work(&deck, s)))
 }

@@ -1,28 +1,29 @@
 //! Progress on a terminal, for work that takes over a second: the stage, how long it has run and, where that is known, the time left.
 
+use crate::app::context::Progress;
 use std::io::IsTerminal;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// How much of a stage is done.
 #[derive(Default)]
-pub struct Meter {
+struct Meter {
     done: AtomicU64,
     total: AtomicU64,
 }
 
 impl Meter {
     /// Begins a stage of so many parts; 0: it is not known.
-    pub fn begin(&self, total: usize) {
+    fn begin(&self, total: usize) {
         self.done.store(0, Ordering::Relaxed);
         self.total.store(total as u64, Ordering::Relaxed);
     }
 
     /// So many parts more are done.
-    pub fn advance(&self, parts: usize) {
+    fn advance(&self, parts: usize) {
         self.done.fetch_add(parts as u64, Ordering::Relaxed);
     }
 
@@ -38,20 +39,48 @@ impl Meter {
     }
 }
 
-/// A spinner that appears after a second and goes when dropped.
-pub struct Progress {
-    stop: Option<Sender<()>>,
-    thread: Option<JoinHandle<()>>,
-}
-
 /// How long work may take before a progress line appears.
 const PATIENCE: Duration = Duration::from_secs(1);
 /// How often the time left is stated anew.
 const TICK: Duration = Duration::from_millis(250);
 
-impl Progress {
-    /// Starts one; silent where standard error is no terminal.
-    pub fn start(what: &str, meter: &Arc<Meter>) -> Self {
+/// A line on standard error for the stage that runs; silent where that is no terminal.
+#[derive(Default)]
+pub struct Terminal {
+    meter: Arc<Meter>,
+    stages: Mutex<Vec<Line>>,
+}
+
+impl Progress for Terminal {
+    fn begin(&self, stage: &str) {
+        self.meter.begin(0);
+        let line = Line::start(stage, &self.meter);
+        let mut stages = self.stages.lock().unwrap_or_else(PoisonError::into_inner);
+        stages.push(line);
+    }
+
+    fn end(&self) {
+        let mut stages = self.stages.lock().unwrap_or_else(PoisonError::into_inner);
+        stages.pop();
+    }
+
+    fn parts(&self, total: usize) {
+        self.meter.begin(total);
+    }
+
+    fn advance(&self, parts: usize) {
+        self.meter.advance(parts);
+    }
+}
+
+/// A spinner that appears after a second and goes when dropped.
+struct Line {
+    stop: Option<Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Line {
+    fn start(what: &str, meter: &Arc<Meter>) -> Self {
         if !std::io::stderr().is_terminal() {
             return Self {
                 stop: None,
@@ -86,7 +115,7 @@ impl Progress {
     }
 }
 
-impl Drop for Progress {
+impl Drop for Line {
     fn drop(&mut self) {
         drop(self.stop.take());
         if let Some(t) = self.thread.take() {

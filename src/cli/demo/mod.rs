@@ -5,14 +5,19 @@ mod jobs;
 mod page;
 mod yard;
 
-use super::fault::{Fault, Faults};
-use super::{CommonArguments, DemoArguments, JobArguments, Session, Step};
+use super::DemoArguments;
+use crate::app::context::Context;
+use crate::app::fault::{Fault, Faults};
+use crate::app::store::Folder;
+use crate::app::{self, Closed, CommonArguments, JobArguments, Session};
 use crate::fe::HeatedStrain;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// The model, as in models/truck-shell.
 pub(super) const DECK: &str = include_str!("../../../models/truck-shell/truck.bdf");
+/// Its name in the story's folder.
+pub(super) const DECK_NAME: &str = "truck.bdf";
 /// Where the story goes if nobody says.
 const FOLDER: &str = "strainbridge-demo";
 
@@ -20,11 +25,16 @@ const FOLDER: &str = "strainbridge-demo";
 struct Chapter {
     folder: &'static str,
     words: String,
-    step: Step,
+    command: &'static str,
+    step: Closed,
 }
 
 /// Plays the story.
-pub fn run(arguments: &DemoArguments, session: &mut Session) -> Result<(), Faults> {
+pub fn run(arguments: &DemoArguments, cx: &Context) -> Result<Closed, Faults> {
+    Session::run("demo", &CommonArguments::default(), cx, |s| story(arguments, s))
+}
+
+fn story(arguments: &DemoArguments, session: &mut Session) -> Result<(), Faults> {
     let folder = arguments
         .common
         .out
@@ -38,12 +48,12 @@ pub fn run(arguments: &DemoArguments, session: &mut Session) -> Result<(), Fault
         let path = folder.join(name);
         std::fs::write(&path, text)
             .map_err(|e| {
-                vec![Fault::of(
+                Faults::from(Fault::of(
                     path.display().to_string(),
                     "output",
                     format!("can't be written ({e})"),
                     "name another folder: strainbridge demo DIR",
-                )]
+                ))
             })
             .map(|()| path)
     };
@@ -57,6 +67,7 @@ pub fn run(arguments: &DemoArguments, session: &mut Session) -> Result<(), Fault
             "Nine unit loads on the free truck: {} unknowns, one factor.",
             step.result["dofs"]
         ),
+        command: "solve",
         step,
     });
     let place = write("place.toml", &jobs::plan(Some("1-solve/results.op2")))?;
@@ -70,6 +81,7 @@ pub fn run(arguments: &DemoArguments, session: &mut Session) -> Result<(), Fault
             step.result["candidates"]["rows"],
             100.0 * step.result["efficiency_bound"].as_f64().unwrap_or(0.0)
         ),
+        command: "place",
         step,
     });
     // The truck in the yard stands on uneven ground, its gauge factors scatter, its readings are noisy, and two wires are swapped.
@@ -85,6 +97,7 @@ pub fn run(arguments: &DemoArguments, session: &mut Session) -> Result<(), Fault
             "Wheel loads are off by {:.1} % (rms against what was measured), and the residual says that they can't be trusted.",
             100.0 * before
         ),
+        command: "recover",
         step,
     });
     let job = write("reconcile.toml", &jobs::reconcile())?;
@@ -109,6 +122,7 @@ pub fn run(arguments: &DemoArguments, session: &mut Session) -> Result<(), Fault
             100.0 * gap["before"].as_f64().unwrap_or(f64::NAN),
             100.0 * gap["after"].as_f64().unwrap_or(f64::NAN)
         ),
+        command: "reconcile",
         step,
     });
     let corrected = folder
@@ -129,6 +143,7 @@ pub fn run(arguments: &DemoArguments, session: &mut Session) -> Result<(), Fault
             "With the effect in the model the wheel loads are off by {:.1} %.",
             100.0 * after
         ),
+        command: "recover",
         step,
     });
     let job = write("payload.toml", &jobs::payload(strain))?;
@@ -140,6 +155,7 @@ pub fn run(arguments: &DemoArguments, session: &mut Session) -> Result<(), Fault
             "Payload size and place from strain and wheel forces: off by {:.1} % (rms).",
             100.0 * off
         ),
+        command: "payload",
         step,
     });
     let job = write("respond.toml", &jobs::respond(strain))?;
@@ -154,6 +170,7 @@ pub fn run(arguments: &DemoArguments, session: &mut Session) -> Result<(), Fault
             hottest["sigma"].as_f64().unwrap_or(f64::NAN),
             hottest["at"].as_str().unwrap_or("")
         ),
+        command: "respond",
         step,
     });
     for c in &story {
@@ -165,7 +182,7 @@ pub fn run(arguments: &DemoArguments, session: &mut Session) -> Result<(), Fault
     session.say(format!("open {}", folder.join("report.html").display()));
     let steps: Vec<Value> = story
         .iter()
-        .map(|c| json!({ "command": c.step.command, "folder": c.folder, "words": c.words }))
+        .map(|c| json!({ "command": c.command, "folder": c.folder, "words": c.words }))
         .collect();
     session.put("steps", steps)?;
     session.put("named", named)?;
@@ -179,7 +196,7 @@ pub fn run(arguments: &DemoArguments, session: &mut Session) -> Result<(), Fault
     session
         .output_at(&folder)?
         .write_bytes("report.html", html.as_bytes())
-        .map_err(|f| vec![f])
+        .map_err(Faults::from)
 }
 
 fn play(
@@ -188,20 +205,23 @@ fn play(
     folder: &Path,
     out: &str,
     job: &Path,
-) -> Result<Step, Faults> {
+) -> Result<Closed, Faults> {
     let arguments = JobArguments {
         job: job.to_owned(),
         common: CommonArguments {
             out: Some(folder.join(out)),
-            ..CommonArguments::default()
         },
     };
-    session.step(command, &folder.join(out), |s| match command {
-        "solve" => super::solve::run(&arguments, HeatedStrain::default(), s),
-        "place" => super::place::run(&arguments, s),
-        "recover" => super::recover::run(&arguments, s),
-        "reconcile" => super::reconcile::run(&arguments, s),
-        "payload" => super::payload::run(&arguments, s),
-        _ => super::respond::run(&arguments, s),
+    let kept = Folder::beside(job);
+    let cx = session.cx.store(&kept);
+    session.stage(command, |_| {
+        Session::run(command, &arguments.common, &cx, |s| match command {
+            "solve" => app::solve::run(&arguments, HeatedStrain::default(), s),
+            "place" => app::place::run(&arguments, s),
+            "recover" => app::recover::run(&arguments, s),
+            "reconcile" => app::reconcile::run(&arguments, s),
+            "payload" => app::payload::run(&arguments, s),
+            _ => app::respond::run(&arguments, s),
+        })
     })
 }

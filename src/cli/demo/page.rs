@@ -22,7 +22,7 @@ fn section(c: &Chapter) -> Section {
             link("report", "report.html"),
             link("result.json", "result.json"),
         ]),
-        Block::Note(format!("strainbridge {}", c.step.command)),
+        Block::Note(format!("strainbridge {}", c.command)),
     ];
     let serious = c.step.findings.iter();
     let serious = serious.filter(|f| f.severity >= Severity::Warning).take(4);

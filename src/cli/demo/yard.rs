@@ -2,7 +2,7 @@
 
 use super::DECK;
 use super::jobs::{NOISE, PAYLOAD, WHEELS};
-use crate::cli::fault::{Fault, Faults};
+use crate::app::fault::{Fault, Faults};
 use crate::fe::floor::{FloorLoad, Standing, solve_standing};
 use crate::fe::strain_tensor::Surface;
 use crate::fe::{CaseResult, UnitLoad};
@@ -122,12 +122,12 @@ const MICRO: f64 = 1e-6;
 /// Mistakes of the program only: the deck is its own.
 pub(super) fn drive(glued: &[Glued]) -> Result<Yard, Faults> {
     let program = |wrong: String| {
-        vec![Fault::of(
+        Faults::from(Fault::of(
             "truck.bdf",
             "demo",
             wrong,
             "report this as an error of the program",
-        )]
+        ))
     };
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
     let mut normal = move || {

@@ -1,0 +1,279 @@
+//! `ballast`: lumped masses that bring the model's reactions to the measured ones, and the deck with them in it.
+
+mod answer;
+mod completed;
+
+use super::deck::{DeckModel, read_model};
+use super::fault::{Fault, Faults};
+use super::job::runs::read_runs;
+use super::job::{self, Ballast, Job};
+use super::wheels::{Wheels, floor_fault, wheels_of};
+use super::{JobArguments, Session};
+use crate::fe::floor::{Standing, solve_standing};
+use crate::finding::{Finding, Severity};
+use crate::model::{GridIx, Vec3};
+use crate::payload::{BallastSpec, Carriers, size_ballast, spread};
+use crate::report::page::number;
+use crate::units::{Quantity, factor};
+use nastran::bdf::{Edits, write_edited};
+
+/// The completed deck.
+const DECK: &str = "completed";
+/// Noise of a measured reaction where the job states none, of the mean reaction.
+const ASSUMED_NOISE: f64 = 0.01;
+
+struct Task<'a> {
+    job: &'a Job,
+    ballast: &'a Ballast,
+    read: &'a DeckModel,
+    wheels: Wheels,
+    standing: Standing,
+    gravity: f64,
+}
+
+/// Reads, sizes, writes the completed deck, solves it and reports.
+pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
+    let job = session.stage("read job", |s| job::read_job(&mut s.inputs, &arguments.job))?;
+    session.put_units(job.units, &job.report_units);
+    let missing = |field: &str, example: &str| {
+        Faults::from(Fault::of(
+            &*job.file,
+            field,
+            format!("the job has no [{field}]"),
+            example,
+        ))
+    };
+    let ballast = job.ballast.as_ref().ok_or_else(|| {
+        missing(
+            "ballast",
+            "state what is looked for: [ballast] masses = 2, region = [[x0, x1], [y0, y1]]",
+        )
+    })?;
+    let files = job
+        .model
+        .as_ref()
+        .ok_or_else(|| missing("model", "name the deck: [model] deck = \"model.bdf\""))?;
+    let read = session
+        .stage("read model", |s| {
+            read_model(&mut s.inputs, &job.folder, &files.deck.given)
+        })
+        .map_err(Faults::from)?;
+    Faults::check(read.faults)?;
+    if read.deck.sources.is_empty() {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "model.deck",
+            "an OP2 is no deck that could be completed",
+            "name the deck",
+        )));
+    }
+    session.findings.extend(read.findings.iter().cloned());
+    let wheels = wheels_of(&job, &read.model)?;
+    let standing = session
+        .stage("solve", |_| {
+            solve_standing(&read.model, wheels.axis, &wheels.grids, &[], None)
+        })
+        .map_err(|e| floor_fault(&job, &e))?;
+    let task = Task {
+        job: &job,
+        ballast,
+        read: &read,
+        wheels,
+        standing,
+        gravity: ballast
+            .gravity_m_s2
+            .map_or(job.units.standard_gravity(), |g| g / job.units.length_m()),
+    };
+    let (run, measured, sigma) = measured(session, &task)?;
+    let carriers = Carriers::of(&read.model, task.wheels.axis, |p| {
+        ballast
+            .properties
+            .as_ref()
+            .is_none_or(|ids| ids.contains(p))
+    });
+    let (region, height) = region(&task, &carriers)?;
+    let before = task.standing.under_weight(&read.model, task.gravity);
+    let lacking: f64 = measured.iter().sum::<f64>() - before.iter().sum::<f64>();
+    let largest = ballast
+        .max_mass
+        .map_or(lacking.max(0.0), |m| m * task.gravity);
+    if !(largest > 0.0) {
+        return Err(Faults::from(Fault::at(
+            &*job.file,
+            ballast.line,
+            "ballast",
+            format!(
+                "the model already weighs {} {} more than run `{run}` measured",
+                number(-lacking * force(&job)),
+                job.report_units.force.name
+            ),
+            "take masses out of the deck, or check the units of the runs file",
+        )));
+    }
+    let mut on_a_line = false;
+    let spec = BallastSpec {
+        masses: ballast.masses,
+        region,
+        largest,
+        sigma: sigma.clone(),
+    };
+    let fit = session.stage("size", |_| {
+        let n = measured.len();
+        let table_failed = std::cell::Cell::new(false);
+        let fit = size_ballast(
+            &before,
+            &measured,
+            |place| match hung(&task, &carriers, place, height, 1.0) {
+                Some(forces) => task.standing.under_forces(&read.model, &forces),
+                None => {
+                    table_failed.set(true);
+                    vec![0.0; n]
+                }
+            },
+            &spec,
+        );
+        on_a_line = table_failed.get();
+        fit
+    });
+    if on_a_line {
+        return Err(Faults::from(Fault::at(
+            &*job.file,
+            ballast.line,
+            "ballast.region",
+            "the grids near part of the region lie on a line and can't hold a mass",
+            "name properties of both rails in `properties`, or narrow the region",
+        )));
+    }
+    let (cards, text) = completed::cards(&task, &carriers, &fit, height);
+    let mut edits = Edits::default();
+    edits.insert_cards(&read.deck, &text);
+    let edited = write_edited(&read.deck, &edits);
+    let after = session.stage("solve completed deck", |s| {
+        completed::after(s, &task, &edited)
+    })?;
+    answer::findings(session, &task, &run, &measured, &after, &fit, &spec);
+    answer::put(
+        session, &task, &run, &measured, &sigma, &before, &after, &fit, &cards,
+    )?;
+    answer::write(
+        session, arguments, &task, &measured, &before, &after, &fit, height,
+    )?;
+    let folder = session.output_for(&arguments.job)?.folder().to_owned();
+    let files = super::cases::relocated(&read.deck, edited, &folder, DECK);
+    let out = session.output_for(&arguments.job)?;
+    for (name, bytes) in files {
+        out.write_bytes(&name, &bytes).map_err(Faults::from)?;
+    }
+    Ok(())
+}
+
+fn force(job: &Job) -> f64 {
+    factor(job.units, job.report_units.force)
+}
+
+fn length(job: &Job) -> f64 {
+    factor(job.units, job.report_units.length)
+}
+
+fn mass(job: &Job) -> f64 {
+    factor(job.units, job.report_units.mass)
+}
+
+/// Name, reactions and their sd in job units of the run asked for, in the order of the wheels.
+fn measured(session: &mut Session, task: &Task) -> Result<(String, Vec<f64>, Vec<f64>), Faults> {
+    let job = task.job;
+    let Some(runs) = &job.runs else {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "runs",
+            "the job has no [runs]",
+            "name the measured reactions: [runs] file = \"runs.csv\"",
+        )));
+    };
+    let rows = read_runs(&mut session.inputs, job, runs)?;
+    let row = match &task.ballast.run {
+        Some(name) => rows.iter().find(|r| r.run == *name),
+        None => rows.first(),
+    };
+    let Some(row) = row else {
+        return Err(Faults::from(Fault::at(
+            &*job.file,
+            task.ballast.line,
+            "ballast.run",
+            format!("`{}` has no such run", runs.file.given),
+            "name a run of the runs file",
+        )));
+    };
+    let newton = job.units.si(Quantity::Force);
+    let mut faults = FaultList::new();
+    let mut values = Vec::new();
+    for l in &task.wheels.loads {
+        let name = &job.loads[*l].name;
+        match row.loads_si.get(name) {
+            Some(v) => values.push(v / newton),
+            None => faults.push(Fault::at(
+                &*runs.file.given,
+                row.line,
+                name.clone(),
+                format!("run `{}` has no reaction of `{name}`", row.run),
+                "measure every wheel, or take its load out of the job",
+            )),
+        }
+    }
+    Faults::check(faults)?;
+    let mean = values.iter().sum::<f64>().abs() / values.len() as f64;
+    let sigma = match runs.noise.force.filter(|s| *s > 0.0) {
+        Some(s) => s * runs.units.force.si / newton,
+        None => {
+            session.findings.push(
+                Finding::new(
+                    Severity::Info,
+                    "reaction-noise-assumed",
+                    "runs.noise.force",
+                    "the job does not say how well the reactions are measured: 1 % of their mean is taken",
+                    "state [runs] noise = { force = 0.06 }",
+                )
+                .with_numbers(ASSUMED_NOISE * mean * force(job), 0.0),
+            );
+            ASSUMED_NOISE * mean
+        }
+    };
+    let n = values.len();
+    Ok((row.run.clone(), values, vec![sigma; n]))
+}
+
+/// Where masses may sit in plan, and their height.
+fn region(task: &Task, carriers: &Carriers) -> Result<([[f64; 2]; 2], f64), Faults> {
+    let Some([b, c, up]) = carriers.extent() else {
+        return Err(Faults::from(Fault::at(
+            &*task.job.file,
+            task.ballast.line,
+            "ballast.properties",
+            "no shell, bar or beam has such a property",
+            "name properties that can carry a mass",
+        )));
+    };
+    Ok(match task.ballast.region.as_deref() {
+        Some([x, y]) => ([*x, *y], up[1]),
+        Some([x, y, z, ..]) => ([*x, *y], (z[0] + z[1]) / 2.0),
+        _ => ([b, c], up[1]),
+    })
+}
+
+/// Forces of a unit weight times `weight` at a place on the grids that carry it.
+fn hung(
+    task: &Task,
+    carriers: &Carriers,
+    place: [f64; 2],
+    height: f64,
+    weight: f64,
+) -> Option<Vec<(GridIx, Vec3)>> {
+    let mut down = Vec3::zeros();
+    down[task.wheels.axis] = -weight;
+    spread(
+        &task.read.model,
+        &carriers.arms(place),
+        carriers.point(place, height),
+        down,
+    )
+}

@@ -1,0 +1,278 @@
+//! `cases`: the analyst's deck with one unit-load subcase a load, ready for Nastran.
+
+mod includes;
+
+pub(in crate::app) use includes::{from_folder, relocated};
+
+use super::deck::read_model;
+use super::fault::{Fault, Faults};
+use super::job::{self, Job, LoadActs};
+use super::{JobArguments, Session};
+use crate::finding::{Finding, Severity};
+use nastran::bdf::{Deck, Edits, Field, format_card, write_edited};
+use nastran::cards::Force;
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// Case control statements that would load, hold or restrict the unit-load run, or ask for other strain.
+const UNWANTED: [&str; 22] = [
+    "LOAD",
+    "LOADSET",
+    "DLOAD",
+    "SPC",
+    "SUPORT1",
+    "TEMPERATURE",
+    "TEMP",
+    "DEFORM",
+    "CLOAD",
+    "STRAIN",
+    "ANALYSIS",
+    "METHOD",
+    "CMETHOD",
+    "FREQUENCY",
+    "TSTEP",
+    "TSTEPNL",
+    "NLPARM",
+    "SDAMPING",
+    "STATSUB",
+    "IC",
+    "BCONTACT",
+    "NLSTEP",
+];
+
+/// Writes `unit_loads.bdf`.
+pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
+    let job = session.stage("read job", |s| job::read_job(&mut s.inputs, &arguments.job))?;
+    session.put_units(job.units, &job.report_units);
+    let fault =
+        |field: &str, wrong: &str, remedy: &str| Faults::from(Fault::of(&*job.file, field, wrong, remedy));
+    let Some(files) = &job.model else {
+        return Err(fault(
+            "model",
+            "the job has no [model]",
+            "name the deck: [model] deck = \"model.bdf\"",
+        ));
+    };
+    if job.loads.is_empty() {
+        return Err(fault(
+            "load",
+            "the job has no [[load]]",
+            "name the loads, one [[load]] each",
+        ));
+    }
+    let read = session
+        .stage("read deck", |s| {
+            read_model(&mut s.inputs, &job.folder, &files.deck.given)
+        })
+        .map_err(Faults::from)?;
+    Faults::check(read.faults)?;
+    if read.deck.sources.is_empty() {
+        return Err(fault(
+            "model.deck",
+            "an OP2 is no deck that could be run again",
+            "name the deck",
+        ));
+    }
+    let mut faults = super::strain::unit_loads(&job, &read.model)
+        .err()
+        .unwrap_or_default();
+    for l in &job.loads {
+        if let LoadActs::Set(sid) = l.acts
+            && !load_ids(&read.deck).contains(&sid)
+        {
+            let wrong = format!("load `{}`: the deck has no load set {sid}", l.name);
+            faults.push(Fault::at(
+                &*job.file,
+                l.line,
+                "load.load_set",
+                wrong,
+                "correct the id",
+            ));
+        }
+    }
+    Faults::check(faults)?;
+    let (edits, rows) = edits_of(session, &job, &read.deck)?;
+    session.put("subcases", rows)?;
+    let edited = write_edited(&read.deck, &edits);
+    let folder = session.output_for(&arguments.job)?.folder().to_owned();
+    let files = includes::relocated(&read.deck, edited, &folder, "unit_loads");
+    session.say(format!("unit_loads.bdf: {} subcases", job.loads.len()));
+    let out = session.output_for(&arguments.job)?;
+    for (name, bytes) in files {
+        out.write_bytes(&name, &bytes).map_err(Faults::from)?;
+    }
+    let title = &job.title;
+    let page = crate::report::page::Page::new(
+        title,
+        "Unit-load deck: run unit_loads.bdf, then name its OP2 as [model] results",
+        &session.findings,
+        Vec::new(),
+    );
+    session.write_page(Path::new(&arguments.job), page)
+}
+
+/// Ids of all load sets.
+pub(in crate::app) fn load_ids(deck: &Deck) -> Vec<u32> {
+    let c = &deck.cards;
+    let mut ids: Vec<u32> = c
+        .forces
+        .iter()
+        .chain(&c.moments)
+        .map(|f| f.card.sid)
+        .collect();
+    ids.extend(c.loads.iter().map(|l| l.card.sid));
+    ids.extend(c.forces_along.iter().map(|l| l.card.sid));
+    ids.extend(c.sloads.iter().map(|l| l.card.sid));
+    ids.extend(c.ploads.iter().map(|l| l.card.sid));
+    ids.extend(c.pload1s.iter().map(|l| l.card.sid));
+    ids.extend(c.pload2s.iter().map(|l| l.card.sid));
+    ids.extend(c.pload4s.iter().map(|l| l.card.sid));
+    ids.extend(c.gravs.iter().map(|l| l.card.sid));
+    ids.extend(c.rforces.iter().map(|l| l.card.sid));
+    ids.extend(c.temps.iter().map(|l| l.card.sid));
+    ids.extend(c.tempds.iter().map(|l| l.card.sid));
+    ids.extend(c.tempp1s.iter().map(|l| l.card.sid));
+    ids.extend(c.temprbs.iter().map(|l| l.card.sid));
+    ids.extend(c.spcds.iter().map(|l| l.card.sid));
+    ids
+}
+
+/// Load sets by dynamic cards, and tables: they share their numbers with what `recover` writes for a history.
+const DYNAMIC: [&str; 14] = [
+    "ACSRCE", "DAREA", "DLOAD", "LSEQ", "RLOAD1", "RLOAD2", "TABLED1", "TABLED2", "TABLED3",
+    "TABLED4", "TABLED5", "TLOAD1", "TLOAD2", "RANDPS",
+];
+
+/// Ids of dynamic loads and tables of a deck.
+pub(in crate::app) fn dynamic_ids(deck: &Deck) -> Vec<u32> {
+    let cards = deck.others.iter();
+    let of_kind = cards.filter(|c| DYNAMIC.contains(&c.name.as_str()));
+    of_kind.filter_map(|c| c.first).collect()
+}
+
+fn edits_of(session: &mut Session, job: &Job, deck: &Deck) -> Result<(Edits, Vec<Value>), Faults> {
+    let mut edits = Edits::default();
+    edits.remove_subcases(deck);
+    edits.remove_case_lines(deck, |l| {
+        let stated = l.text.to_ascii_uppercase();
+        let param =
+            l.name.starts_with("PARAM") && ["POST", "INREL"].iter().any(|p| stated.contains(p));
+        let word = l.name.split('(').next().unwrap_or_default();
+        l.subcase.is_none() && !l.in_packet && (param || UNWANTED.contains(&word))
+    });
+    if deck.sol.is_some_and(|s| s != 101) || (deck.sol.is_none() && deck.sol_text.is_some()) {
+        edits.replace_sol(deck, "101\n");
+    }
+    let refused = |e: nastran::bdf::EditError| {
+        Faults::from(Fault::of(
+            &*job.file,
+            "model.deck",
+            e.to_string(),
+            "write PARAM and SUPORT entries once, without replication",
+        ))
+    };
+    let mut dropped = 0;
+    for p in deck
+        .cards
+        .params
+        .iter()
+        .filter(|p| ["POST", "INREL"].contains(&p.card.name.as_str()))
+    {
+        edits.remove_card(deck, p.at).map_err(refused)?;
+    }
+    for s in &deck.cards.suports {
+        edits.remove_card(deck, s.at).map_err(refused)?;
+        dropped += 1;
+    }
+    if dropped > 0 {
+        session.findings.push(Finding::new(
+            Severity::Info,
+            "suport-dropped",
+            "SUPORT",
+            "SUPORT entries are left out: PARAM,INREL,-2 balances the free structure by itself",
+            "",
+        ));
+    }
+    let mut next = load_ids(deck).into_iter().max().unwrap_or(0).max(1000) + 1;
+    let mut case = String::from(
+        "$ Unit loads, one subcase each, in the order of the job\nSTRAIN(FIBER,CENTER) = ALL\n",
+    );
+    // Subcases go, and what they select of the structure itself stays.
+    let kept: std::collections::BTreeSet<u32> = deck
+        .case_control
+        .subcases
+        .iter()
+        .filter_map(|c| c.mpc)
+        .collect();
+    if deck.case_control.global.mpc.is_none()
+        && let Some(mpc) = deck.case_control.mpc_of_structure()
+    {
+        case.push_str(&format!("MPC = {mpc}\n"));
+    }
+    if kept.len() > 1 {
+        session.findings.push(Finding::new(
+            Severity::Warning,
+            "several-mpc-sets",
+            "MPC",
+            format!(
+                "the deck's subcases select several MPC sets: the unit loads take {}",
+                kept.first().copied().unwrap_or_default()
+            ),
+            "correct MPC in unit_loads.bdf if another set holds while the gauges are read",
+        ));
+    }
+    let mut bulk = String::from("$ Unit loads\nPARAM,POST,-1\nPARAM,INREL,-2\n");
+    let mut rows = Vec::new();
+    for l in &job.loads {
+        let sid = next;
+        next += 1;
+        match l.acts {
+            LoadActs::AtGrid {
+                grid,
+                component,
+                cid,
+            } => {
+                let card = Force {
+                    sid,
+                    grid,
+                    cid,
+                    scale: l.applied.abs(),
+                    n: component.vector(l.applied.signum()),
+                };
+                bulk.push_str(&if component.is_force() {
+                    card.to_force_card()
+                } else {
+                    card.to_moment_card()
+                });
+            }
+            LoadActs::Set(set) => {
+                let fields = [
+                    Field::from(sid),
+                    Field::Real(1.0),
+                    Field::Real(l.applied),
+                    Field::from(set),
+                ];
+                bulk.push_str(&format_card("LOAD", &fields));
+            }
+        }
+        case.push_str(&format!(
+            "SUBCASE {}\n  LABEL = {}\n  LOAD = {sid}\n",
+            l.number,
+            label(&l.name)
+        ));
+        rows.push(
+            json!({ "subcase": l.number, "load": l.name, "load_set": sid, "applied": l.applied }),
+        );
+    }
+    edits.insert_case_end(deck, &case);
+    edits.insert_cards(deck, &bulk);
+    Ok((edits, rows))
+}
+
+/// A load's name as a case control label: one line, 60 characters.
+fn label(name: &str) -> String {
+    name.chars()
+        .filter(|c| !c.is_control() && *c != '$')
+        .take(60)
+        .collect()
+}

@@ -1,0 +1,103 @@
+//! Decks in `result.json` and in words.
+
+use super::Found;
+use crate::app::Session;
+use crate::app::deck::{DeckModel, model_of_deck};
+use crate::app::words::short;
+use crate::model::Model;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Elements of any kind, with and without a struct of their own; masses, rigid elements and plot elements aren't counted.
+const ELEMENTS: [&str; 53] = [
+    "CBAR", "CBEAM", "CBEAM3", "CBEND", "CBUSH", "CBUSH1D", "CBUSH2D", "CDAMP1", "CDAMP2",
+    "CDAMP3", "CDAMP4", "CDAMP5", "CELAS1", "CELAS2", "CELAS3", "CELAS4", "CFAST", "CGAP", "CHEXA",
+    "CPENTA", "CPYRAM", "CTETRA", "CONROD", "CQUAD", "CQUAD4", "CQUAD8", "CQUADR", "CQUADX",
+    "CQUADX4", "CQUADX8", "CROD", "CTUBE", "CSHEAR", "CTRIA3", "CTRIA6", "CTRIAR", "CTRIAX",
+    "CTRIAX6", "CTRAX3", "CTRAX6", "CVISC", "CRAC2D", "CRAC3D", "CWELD", "CSEAM", "CPLSTN3",
+    "CPLSTN4", "CPLSTN6", "CPLSTN8", "CPLSTS3", "CPLSTS4", "CPLSTS6", "CPLSTS8",
+];
+
+/// One deck.
+#[derive(Serialize)]
+pub(super) struct DeckEntry {
+    path: String,
+    /// Number of cards by name.
+    cards: BTreeMap<String, usize>,
+    grids: usize,
+    elements: usize,
+    /// WTMASS applied.
+    mass: f64,
+    cg: [f64; 3],
+    solution: Option<String>,
+    subcases: Vec<u32>,
+    wtmass: f64,
+    property_names: BTreeMap<u32, String>,
+    faults: usize,
+    #[serde(skip)]
+    pub model: Option<Model>,
+}
+
+pub(super) fn look(
+    session: &mut Session,
+    base: &Path,
+    given: &str,
+    bytes: &[u8],
+    found: &mut Found,
+) {
+    let read = model_of_deck(&mut session.inputs, base, given, bytes);
+    session.findings.extend(read.findings.iter().cloned());
+    found.faults.extend(read.faults.iter().cloned());
+    found.decks.push(DeckEntry::of(read));
+}
+
+impl DeckEntry {
+    pub(super) fn of(d: DeckModel) -> Self {
+        let cards = d.deck.counts.clone();
+        let weight = d.model.weight();
+        let m = &d.model;
+        let in_mesh = m.n_elements() - m.masses.len() - m.rigids.len();
+        let counted: usize = ELEMENTS.iter().filter_map(|e| cards.get(*e)).sum();
+        Self {
+            path: d.given,
+            grids: m.grids.iter().filter(|g| !g.is_scalar()).count(),
+            // Where the mesh came from an OP2 there are no cards to count.
+            elements: if cards.is_empty() { in_mesh } else { counted },
+            cards,
+            mass: weight.mass,
+            cg: weight.cg.into(),
+            solution: d.deck.sol_text.clone(),
+            subcases: d.deck.case_control.subcases.iter().map(|s| s.id).collect(),
+            wtmass: m.params.wtmass,
+            property_names: m.property_names.iter().cloned().collect(),
+            faults: d.faults.len(),
+            model: Some(d.model),
+        }
+    }
+
+    /// For people.
+    pub(super) fn text(&self) -> String {
+        let cards: Vec<String> = self.cards.iter().map(|(k, n)| format!("{k} {n}")).collect();
+        let [x, y, z] = self.cg.map(short);
+        let wtmass = if self.wtmass == 1.0 {
+            String::new()
+        } else {
+            format!(" (PARAM,WTMASS,{} applied)", self.wtmass)
+        };
+        let solution = self
+            .solution
+            .as_ref()
+            .map_or(String::new(), |s| format!(", SOL {s}"));
+        format!(
+            "deck `{}`: {} grids, {} elements, {} subcases{solution}\n  mass {}{wtmass}, centre of gravity {x}, {y}, {z}\n  cards: {}\n  faults: {}",
+            self.path,
+            self.grids,
+            self.elements,
+            self.subcases.len(),
+            short(self.mass),
+            cards.join(", "),
+            self.faults
+        )
+    }
+}

@@ -1,0 +1,220 @@
+//! A job: its own faults, then the files it names.
+
+use super::{Found, look as look_at};
+use crate::app::fault::Fault;
+use crate::app::job::{self, HoldOut, Job, NamedFile};
+use crate::app::{Session, deck};
+use crate::finding::{Finding, Severity};
+use crate::model::Model;
+use crate::units::check_units;
+use std::path::Path;
+
+pub(super) fn look(session: &mut Session, base: &Path, given: &str, found: &mut Found) {
+    let job = match job::read_job(&mut session.inputs, &base.join(given)) {
+        Ok(job) => job,
+        Err(f) => return found.faults.extend(f),
+    };
+    session.put_units(job.units, &job.report_units);
+    session.say(format!(
+        "job `{given}`: {} loads, {} gauges, units {}",
+        job.loads.len(),
+        job.gauges.len(),
+        job.units.name()
+    ));
+    files(session, &job, found);
+    if let Some(m) = &job.measured {
+        match job::strain::read_strain(&mut session.inputs, &job, &m.strain) {
+            Ok(t) => session.findings.extend(gauges_and_strain(&job, &t.gauges)),
+            Err(f) => found.faults.extend(f),
+        }
+    }
+    if let Some(r) = &job.runs {
+        found.faults.extend(
+            job::runs::read_runs(&mut session.inputs, &job, r)
+                .err()
+                .unwrap_or_default(),
+        );
+    }
+}
+
+/// Opens every file that the job names; decks and results are looked into.
+fn files(session: &mut Session, job: &Job, found: &mut Found) {
+    if let Some(m) = &job.model {
+        let before = found.decks.len();
+        for named in std::iter::once(&m.deck).chain(&m.results) {
+            match session.inputs.read_named(job, named) {
+                Ok(_) => look_at(session, &job.folder, &named.given, found),
+                Err(f) => found.faults.push(f),
+            }
+        }
+        if let Some(model) = found.decks.get(before).and_then(|d| d.model.as_ref()) {
+            session.findings.extend(units_of(job, model));
+            found.faults.extend(missing_ids(job, model));
+        }
+    }
+    for named in other_files(job) {
+        if let Err(f) = session.inputs.read_named(job, named) {
+            found.faults.push(f);
+        }
+    }
+}
+
+/// Files beside model, strain, runs and gauges.
+fn other_files(job: &Job) -> Vec<&NamedFile> {
+    let mut out: Vec<&NamedFile> = Vec::new();
+    if let Some(m) = &job.measured {
+        out.extend(&m.zero);
+        if let HoldOut::File(f) = &m.hold_out {
+            out.push(f);
+        }
+    }
+    if let Some(s) = &job.sensitivity {
+        let g = &s.signatures;
+        out.push(&s.file);
+        out.extend(
+            [
+                &g.lateral_wheel_loads,
+                &g.thermal,
+                &g.payload,
+                &g.unaccounted_mass,
+                &g.gauge_angle,
+            ]
+            .into_iter()
+            .flatten(),
+        );
+        out.extend(g.rail_stiffness.values());
+    }
+    if let Some(v) = &job.vehicle {
+        out.push(&v.data);
+        out.extend(&v.hold_out);
+    }
+    out.extend(&job.respond.loads);
+    out
+}
+
+/// Contradictions between the job's units and the deck.
+fn units_of(job: &Job, model: &Model) -> Vec<Finding> {
+    let (moduli, densities) = deck::moduli_and_densities(model);
+    check_units(
+        job.units,
+        model.params.unitsys.as_deref(),
+        &moduli,
+        &densities,
+    )
+}
+
+/// Grids, elements and sets that the job names and the deck lacks.
+fn missing_ids(job: &Job, model: &Model) -> Vec<Fault> {
+    let mut out = Vec::new();
+    for l in &job.loads {
+        match l.acts {
+            job::LoadActs::AtGrid { grid, cid, .. } => {
+                if model.grid_ix(grid).is_none() {
+                    out.push(lacks(
+                        &job.file,
+                        l.line,
+                        "load.grid",
+                        &format!("grid {grid}"),
+                        &l.name,
+                    ));
+                }
+                if model.frame_ix(cid).is_none() {
+                    out.push(lacks(
+                        &job.file,
+                        l.line,
+                        "load.cid",
+                        &format!("coordinate system {cid}"),
+                        &l.name,
+                    ));
+                }
+            }
+            job::LoadActs::Set(sid) if !model.load_sets.iter().any(|s| s.sid == sid) => {
+                out.push(lacks(
+                    &job.file,
+                    l.line,
+                    "load.load_set",
+                    &format!("load set {sid}"),
+                    &l.name,
+                ));
+            }
+            job::LoadActs::Set(_) => {}
+        }
+    }
+    for g in &job.gauges {
+        let element = match g.place {
+            job::GaugePlace::Element(e) if model.shell_ix(e).is_none() => {
+                Some(format!("shell {e}"))
+            }
+            job::GaugePlace::BeamPoint { element, .. } if model.beam_ix(element).is_none() => {
+                Some(format!("bar or beam {element}"))
+            }
+            _ => None,
+        };
+        let second = g
+            .pair
+            .map(|p| p.0)
+            .filter(|e| model.shell_ix(*e).is_none() && model.beam_ix(*e).is_none());
+        for missing in element
+            .into_iter()
+            .chain(second.map(|e| format!("element {e}")))
+        {
+            out.push(lacks(&g.file, g.line, "element", &missing, &g.name));
+        }
+    }
+    out
+}
+
+fn lacks(file: &str, line: u32, field: &str, what: &str, name: &str) -> Fault {
+    Fault::at(
+        file,
+        line,
+        field,
+        format!("`{name}`: the deck has no {what}"),
+        "correct the id, or name the deck of these results",
+    )
+}
+
+/// Gauges without a column and columns without a gauge.
+fn gauges_and_strain(job: &Job, columns: &[String]) -> Vec<Finding> {
+    let names: Vec<&str> = job.gauges.iter().map(|g| g.name.as_str()).collect();
+    let unknown: Vec<&str> = columns
+        .iter()
+        .map(String::as_str)
+        .filter(|c| !names.contains(c))
+        .collect();
+    let silent: Vec<&str> = names
+        .iter()
+        .copied()
+        .filter(|n| !columns.iter().any(|c| c == n))
+        .collect();
+    let mut out = Vec::new();
+    let mut note = |code, what: &str, list: &[&str], remedy: &str| {
+        if !list.is_empty() {
+            let message = format!("{} {what}: {}", list.len(), list.join(", "));
+            out.push(Finding::new(
+                Severity::Warning,
+                code,
+                "measured.strain",
+                message,
+                remedy,
+            ));
+        }
+    };
+    // A rosette's legs have columns of their own, `<name>.a` and so on.
+    let rosette = job.gauges.iter().any(|g| g.rosette.is_some());
+    if !rosette {
+        note(
+            "gauge-without-strain",
+            "gauges have no column in the strain file",
+            &silent,
+            "name the columns after the gauges",
+        );
+        note(
+            "strain-without-gauge",
+            "columns of the strain file belong to no gauge",
+            &unknown,
+            "add the gauges, or drop the columns",
+        );
+    }
+    out
+}

@@ -1,0 +1,180 @@
+//! Result files in `result.json` and in words. Every block is decoded, so that damage shows.
+
+use super::Found;
+use crate::app::Session;
+use crate::app::fault::Fault;
+use crate::app::files::FileBytes;
+use crate::finding::{Finding, Severity};
+use nastran::results::{Block, ResultsFile};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// One result file.
+#[derive(Serialize)]
+pub(super) struct ResultEntry {
+    path: String,
+    solver: String,
+    word_bytes: usize,
+    tables: Vec<TableEntry>,
+    /// Every table of an OP2 by name, in file order, results or not.
+    file_tables: Vec<String>,
+    #[serde(skip)]
+    pub bytes: FileBytes,
+}
+
+/// One block of results.
+#[derive(Serialize)]
+struct TableEntry {
+    name: String,
+    quantity: &'static str,
+    subcase: u32,
+    analysis: &'static str,
+    /// Card name, or the number of a type without name.
+    element_type: Option<String>,
+    rows: usize,
+    /// Mode number or load step, 0 in statics.
+    mode: i32,
+    decoded: bool,
+}
+
+impl ResultEntry {
+    /// Path as given.
+    pub(super) fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// For people: one line a kind of table.
+    pub(super) fn text(&self) -> String {
+        let mut kinds: BTreeMap<(&str, &str, String), (Vec<u32>, usize)> = BTreeMap::new();
+        for t in &self.tables {
+            let key = (
+                t.quantity,
+                t.analysis,
+                t.element_type.clone().unwrap_or_default(),
+            );
+            let entry = kinds.entry(key).or_default();
+            if !entry.0.contains(&t.subcase) {
+                entry.0.push(t.subcase);
+            }
+            entry.1 += t.rows;
+        }
+        let mut out = format!(
+            "results `{}`: {}, {} bytes a word",
+            self.path, self.solver, self.word_bytes
+        );
+        for ((quantity, analysis, element), (subcases, rows)) in kinds {
+            let on = if element.is_empty() {
+                String::new()
+            } else {
+                format!(" of {element}")
+            };
+            let n = subcases.len();
+            let plural = if n == 1 { "" } else { "s" };
+            out.push_str(&format!(
+                "\n  {quantity}{on}, {analysis}: {n} subcase{plural}, {rows} rows"
+            ));
+        }
+        out
+    }
+}
+
+pub(super) fn look(session: &mut Session, given: &str, bytes: FileBytes, found: &mut Found) {
+    let read = ResultsFile::read(&bytes, given);
+    let (entry, findings, faults) = match read {
+        Ok(file) => describe(given, &bytes, &file),
+        Err(e) => {
+            return found.faults.push(Fault::of(
+                given,
+                "results",
+                e.to_string(),
+                "write the file again",
+            ));
+        }
+    };
+    session.findings.extend(findings);
+    found.faults.extend(faults);
+    found.results.push(entry);
+}
+
+fn describe(
+    given: &str,
+    bytes: &FileBytes,
+    file: &ResultsFile,
+) -> (ResultEntry, Vec<Finding>, Vec<Fault>) {
+    let decoded: Vec<_> = (0..file.blocks().len())
+        .into_par_iter()
+        .map(|i| file.rows(i).map(|r| r.len()))
+        .collect();
+    let mut tables = Vec::with_capacity(decoded.len());
+    let mut undecoded: BTreeMap<String, usize> = BTreeMap::new();
+    for (block, rows) in file.blocks().iter().zip(decoded) {
+        if let Err(e) = &rows {
+            *undecoded.entry(e.to_string()).or_default() += 1;
+        }
+        tables.push(entry(block, rows.ok()));
+    }
+    let mut findings: Vec<Finding> = file
+        .notes()
+        .iter()
+        .map(|n| {
+            Finding::new(
+                Severity::Info,
+                "table-skipped",
+                format!("{given}: {}", n.subject),
+                n.message.clone(),
+                "",
+            )
+        })
+        .collect();
+    for (why, n) in undecoded {
+        let message = format!(
+            "{n} block{} can't be decoded: {why}",
+            if n == 1 { "" } else { "s" }
+        );
+        findings.push(Finding::new(
+            Severity::Info,
+            "block-not-decoded",
+            given,
+            message,
+            "",
+        ));
+    }
+    let mut faults = Vec::new();
+    let mut file_tables = Vec::new();
+    if let ResultsFile::Op2(op2) = file {
+        file_tables = op2.tables.iter().map(|t| t.name.clone()).collect();
+        if op2.truncated {
+            faults.push(Fault::of(
+                given,
+                "OP2",
+                "the file ends early or is damaged",
+                "write or copy the file again",
+            ));
+        }
+    }
+    let entry = ResultEntry {
+        path: given.to_owned(),
+        solver: file.solver(),
+        word_bytes: file.word_bytes(),
+        tables,
+        file_tables,
+        bytes: bytes.clone(),
+    };
+    (entry, findings, faults)
+}
+
+fn entry(block: &Block, rows: Option<usize>) -> TableEntry {
+    TableEntry {
+        name: block.table.clone(),
+        quantity: block.quantity.word(),
+        subcase: block.subcase,
+        analysis: block.analysis.word(),
+        element_type: block
+            .element
+            .map(|e| e.name().map_or_else(|| e.0.to_string(), str::to_owned)),
+        rows: rows.unwrap_or(block.entries),
+        mode: block.mode,
+        decoded: rows.is_some(),
+    }
+}

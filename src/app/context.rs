@@ -1,0 +1,118 @@
+//! What a question is asked in: where files come from, where solutions are kept, who hears of progress and may stop the work.
+
+use super::files::{FileBytes, load};
+use super::store::SolutionStore;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Where files come from.
+pub trait Files: Sync {
+    /// The bytes of a file.
+    ///
+    /// # Errors
+    /// Those of the system; [`std::io::ErrorKind::NotFound`] where there is none.
+    fn load(&self, path: &Path) -> std::io::Result<FileBytes>;
+}
+
+/// The file system.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Disk;
+
+impl Files for Disk {
+    fn load(&self, path: &Path) -> std::io::Result<FileBytes> {
+        load(path)
+    }
+}
+
+/// Files held in memory, by path.
+#[derive(Clone, Debug, Default)]
+pub struct InMemory {
+    files: BTreeMap<PathBuf, Vec<u8>>,
+}
+
+impl InMemory {
+    /// Adds a file.
+    #[must_use]
+    pub fn with(mut self, path: impl Into<PathBuf>, bytes: impl Into<Vec<u8>>) -> Self {
+        self.files.insert(path.into(), bytes.into());
+        self
+    }
+}
+
+impl Files for InMemory {
+    fn load(&self, path: &Path) -> std::io::Result<FileBytes> {
+        match self.files.get(path) {
+            Some(bytes) => Ok(FileBytes::from(bytes.clone())),
+            None => Err(std::io::ErrorKind::NotFound.into()),
+        }
+    }
+}
+
+/// Who hears of progress, and may stop the work.
+pub trait Progress: Sync {
+    /// A stage begins.
+    fn begin(&self, stage: &str) {
+        let _ = stage;
+    }
+
+    /// The stage begun last ends.
+    fn end(&self) {}
+
+    /// The present stage has so many parts; 0: it is not known.
+    fn parts(&self, total: usize) {
+        let _ = total;
+    }
+
+    /// So many parts more are done.
+    fn advance(&self, parts: usize) {
+        let _ = parts;
+    }
+
+    /// Whether the work is to stop; asked between stages and between load cases.
+    fn is_cancelled(&self) -> bool {
+        false
+    }
+}
+
+/// Hears nothing and stops nothing.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Silent;
+
+impl Progress for Silent {}
+
+/// What a question is asked in.
+#[derive(Clone, Copy)]
+pub struct Context<'a> {
+    /// Where files come from.
+    pub files: &'a dyn Files,
+    /// Where solutions of the built-in solver are kept; `None`: nowhere.
+    pub store: Option<&'a dyn SolutionStore>,
+    /// Who hears of progress.
+    pub progress: &'a dyn Progress,
+}
+
+impl<'a> Context<'a> {
+    /// Files from here; no solution is kept, nobody hears.
+    pub fn new(files: &'a dyn Files) -> Self {
+        Self {
+            files,
+            store: None,
+            progress: &Silent,
+        }
+    }
+
+    /// The same with a place for solutions.
+    #[must_use]
+    pub fn store(self, store: &'a dyn SolutionStore) -> Self {
+        Self {
+            store: Some(store),
+            ..self
+        }
+    }
+
+    /// The same with somebody who hears.
+    #[must_use]
+    pub fn progress(self, progress: &'a dyn Progress) -> Self {
+        Self { progress, ..self }
+    }
+}

@@ -1,0 +1,268 @@
+//! Decks and models: INCLUDE from the file system, the model of a deck or of an OP2 that holds the mesh.
+
+use super::fault::{Fault, FaultList, Faults};
+use super::files::Inputs;
+use crate::finding::{Finding, Severity};
+use crate::model::{FaultKind, FaultWeight, Material, MaterialKind, Model, ModelFault};
+use nastran::bdf::{Deck, IncludeRequest, Loaded, Loader, read_deck};
+use nastran::op2::Op2;
+use std::path::{Component, Path, PathBuf};
+
+/// A deck and what it means.
+pub struct DeckModel {
+    /// Path as given.
+    pub given: String,
+    /// The deck; empty for an OP2.
+    pub deck: Deck,
+    /// Its model.
+    pub model: Model,
+    /// Files it was read from: the deck, then its INCLUDEs.
+    pub files: Vec<PathBuf>,
+    /// Everything that is wrong: in cards, then in the model.
+    pub faults: FaultList,
+    /// What is worth knowing.
+    pub findings: Vec<Finding>,
+}
+
+/// Reads the deck `given` (relative to `base`) with its INCLUDEs, or the mesh of an OP2, and builds the model.
+///
+/// # Errors
+/// A fault where the file can't be read at all. What is wrong inside is in [`DeckModel::faults`].
+pub fn read_model(inputs: &mut Inputs, base: &Path, given: &str) -> Result<DeckModel, Fault> {
+    let bytes = inputs.read(base, given)?;
+    if looks_like_op2(&bytes) {
+        let mut read = model_of_op2(given, &bytes)?;
+        read.files = vec![base.join(given)];
+        Ok(read)
+    } else {
+        Ok(model_of_deck(inputs, base, given, &bytes))
+    }
+}
+
+/// Whether a file is an OP2: its first record mark is 4 or 8 in either byte order.
+pub fn looks_like_op2(bytes: &[u8]) -> bool {
+    matches!(bytes.get(..4), Some([4 | 8, 0, 0, 0] | [0, 0, 0, 4 | 8]))
+}
+
+/// The deck alone, with the faults of its cards.
+pub fn deck_of(inputs: &mut Inputs, base: &Path, given: &str, bytes: &[u8]) -> Deck {
+    deck_and_files(inputs, base, given, bytes).0
+}
+
+/// The deck, and the files it was read from.
+fn deck_and_files(
+    inputs: &mut Inputs,
+    base: &Path,
+    given: &str,
+    bytes: &[u8],
+) -> (Deck, Vec<PathBuf>) {
+    let main = base.join(given);
+    let path = main.display().to_string();
+    let mut loader = FileLoader {
+        inputs,
+        files: vec![main],
+    };
+    let deck = read_deck(&path, bytes.to_vec(), &mut loader);
+    (deck, loader.files)
+}
+
+/// The deck in `bytes` and its model.
+pub fn model_of_deck(inputs: &mut Inputs, base: &Path, given: &str, bytes: &[u8]) -> DeckModel {
+    let (deck, files) = deck_and_files(inputs, base, given, bytes);
+    let (model, model_faults) = Model::from_deck(&deck);
+    let mut faults = deck_faults(&deck);
+    let mut findings = Vec::new();
+    let file_of = |f: &ModelFault| deck.path(f.at).to_owned();
+    sort_out(&model_faults, &file_of, &mut faults, &mut findings, given);
+    DeckModel {
+        given: given.to_owned(),
+        deck,
+        model,
+        files,
+        faults,
+        findings,
+    }
+}
+
+/// The model in the geometry blocks of an OP2.
+///
+/// # Errors
+/// A fault where the file is no OP2 or holds no geometry.
+pub fn model_of_op2(given: &str, bytes: &[u8]) -> Result<DeckModel, Fault> {
+    let op2 = Op2::read(bytes)
+        .map_err(|e| Fault::of(given, "OP2", e.to_string(), "write the file again"))?;
+    let (cards, notes) = op2.cards();
+    if cards.grids.is_empty() {
+        return Err(Fault::of(
+            given,
+            "mesh",
+            "the OP2 holds no geometry",
+            "give the deck, or solve with PARAM,OGEOM,YES",
+        ));
+    }
+    let (model, model_faults) = Model::from_cards(&cards);
+    let mut faults = FaultList::new();
+    let mut findings: Vec<Finding> = notes
+        .iter()
+        .map(|n| {
+            Finding::new(
+                Severity::Info,
+                "geometry-note",
+                format!("{given}: {}", n.subject),
+                n.message.clone(),
+                "",
+            )
+        })
+        .collect();
+    sort_out(
+        &model_faults,
+        &|_| given.to_owned(),
+        &mut faults,
+        &mut findings,
+        given,
+    );
+    Ok(DeckModel {
+        given: given.to_owned(),
+        deck: Deck::default(),
+        model,
+        files: Vec::new(),
+        faults,
+        findings,
+    })
+}
+
+/// The faults of a deck's cards.
+pub fn deck_faults(deck: &Deck) -> FaultList {
+    deck.faults
+        .iter()
+        .map(|f| {
+            let field = match (f.card.as_str(), f.field) {
+                ("", _) => "deck".to_owned(),
+                (card, None) => card.to_owned(),
+                (card, Some(field)) => format!("{card} {}", field.name),
+            };
+            Fault::at(
+                deck.path(f.at),
+                f.at.line,
+                field,
+                f.what.message(),
+                f.what.remedy(),
+            )
+        })
+        .collect()
+}
+
+/// Errors become faults; notes become findings, one a kind.
+fn sort_out(
+    model_faults: &[ModelFault],
+    file_of: &dyn Fn(&ModelFault) -> String,
+    faults: &mut FaultList,
+    findings: &mut Vec<Finding>,
+    given: &str,
+) {
+    for f in model_faults
+        .iter()
+        .filter(|f| f.weight() == FaultWeight::Error)
+    {
+        faults.push(Fault::at(
+            file_of(f),
+            f.at.line,
+            format!("{} {}", f.card, f.field),
+            f.kind.to_string(),
+            f.remedy(),
+        ));
+    }
+    let notes = |pick: fn(&FaultKind) -> bool| -> Vec<&ModelFault> {
+        model_faults.iter().filter(|f| pick(&f.kind)).collect()
+    };
+    for (code, list) in [
+        (
+            "grid-unattached",
+            notes(|k| matches!(k, FaultKind::Unattached)),
+        ),
+        (
+            "element-id-shared",
+            notes(|k| matches!(k, FaultKind::SharedId { .. })),
+        ),
+        (
+            "set-missing",
+            notes(|k| matches!(k, FaultKind::Missing { what: "set", .. })),
+        ),
+    ] {
+        let Some(first) = list.first() else { continue };
+        let more = if list.len() > 1 {
+            format!(" (and {} more)", list.len() - 1)
+        } else {
+            String::new()
+        };
+        let message = format!("`{}` line {}: {first}{more}", file_of(first), first.at.line);
+        let mut finding = Finding::new(Severity::Info, code, given, message, first.remedy());
+        finding.measured = Some(list.len() as f64);
+        findings.push(finding);
+    }
+}
+
+/// Young's modulus by material id, and density times WTMASS, for the plausibility of units.
+pub fn moduli_and_densities(model: &Model) -> (Vec<(u32, f64)>, Vec<(u32, f64)>) {
+    let modulus = |m: &Material| match m.kind {
+        MaterialKind::Isotropic { e, .. } => Some((m.id, e)),
+        MaterialKind::Orthotropic { e1, .. } => Some((m.id, e1)),
+        _ => None,
+    };
+    let moduli = model.materials.iter().filter_map(modulus).collect();
+    (
+        moduli,
+        model
+            .materials
+            .iter()
+            .map(|m| (m.id, m.rho * model.params.wtmass))
+            .collect(),
+    )
+}
+
+/// Opens included files; symbols are environment variables.
+struct FileLoader<'a, 'f> {
+    inputs: &'a mut Inputs<'f>,
+    files: Vec<PathBuf>,
+}
+
+impl Loader for FileLoader<'_, '_> {
+    fn load(&mut self, request: &IncludeRequest) -> Result<Loaded, String> {
+        let paths = request.candidates(|s| std::env::var(s).ok()).map_err(|s| {
+            format!("the symbol `{s}` has no value: define it as an environment variable")
+        })?;
+        let mut why = "no such file".to_owned();
+        for path in paths {
+            let path = without_dots(Path::new(&path));
+            let name = path.display().to_string();
+            match self.inputs.load(&path) {
+                Ok(bytes) => {
+                    self.files.push(path.clone());
+                    self.inputs.record(&name, path, &bytes);
+                    let bytes = bytes.to_vec();
+                    return Ok(Loaded { path: name, bytes });
+                }
+                Err(e) if e.kind() == std::io::ErrorKind::NotFound => {}
+                Err(e) => why = e.to_string(),
+            }
+        }
+        Err(why)
+    }
+}
+
+/// The path with `.` and `folder/..` taken out, so that one file has one name.
+fn without_dots(path: &Path) -> PathBuf {
+    let mut out = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir
+                if matches!(out.components().next_back(), Some(Component::Normal(_))) =>
+            {
+                out.pop();
+            }
+            part => out.push(part),
+        }
+    }
+    out
+}

@@ -1,0 +1,137 @@
+//! Bad input: what is wrong, where, and what to do about it.
+
+use serde::Serialize;
+use std::fmt;
+
+/// One fault, printed as `file:line: field: what is wrong: what to do`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Fault {
+    /// File as given.
+    pub file: String,
+    /// Line, counted from 1; `None` where the fault is the file's as a whole.
+    pub line: Option<u32>,
+    /// Key, card field or column.
+    pub field: String,
+    /// What is wrong: expected and found.
+    pub wrong: String,
+    /// What to do.
+    pub remedy: String,
+}
+
+impl Fault {
+    /// A fault at a line of a file.
+    pub fn at(
+        file: impl Into<String>,
+        line: u32,
+        field: impl Into<String>,
+        wrong: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        let line = (line > 0).then_some(line);
+        Self {
+            file: file.into(),
+            line,
+            field: field.into(),
+            wrong: wrong.into(),
+            remedy: remedy.into(),
+        }
+    }
+
+    /// A fault of a whole file.
+    pub fn of(
+        file: impl Into<String>,
+        field: impl Into<String>,
+        wrong: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self {
+            file: file.into(),
+            line: None,
+            field: field.into(),
+            wrong: wrong.into(),
+            remedy: remedy.into(),
+        }
+    }
+}
+
+/// What is wrong and what to do: the parts of an error's text before and after its last colon.
+pub fn split_message(error: &impl fmt::Display) -> (String, String) {
+    let text = error.to_string();
+    match text.rsplit_once(": ") {
+        Some((wrong, remedy)) => (wrong.to_owned(), remedy.to_owned()),
+        None => (text, "see the message".to_owned()),
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{}:{}: {}: {}: {}",
+            self.file,
+            self.line.unwrap_or(1),
+            self.field,
+            self.wrong,
+            self.remedy
+        )
+    }
+}
+
+/// Faults as they are collected, none so far perhaps.
+pub type FaultList = Vec<Fault>;
+
+/// Every fault that was found, one at least: the error of every question.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Faults(Vec<Fault>);
+
+impl Faults {
+    /// Nothing where the list is empty.
+    ///
+    /// # Errors
+    /// The faults of the list, where it has any.
+    pub fn check(list: FaultList) -> Result<(), Self> {
+        if list.is_empty() {
+            Ok(())
+        } else {
+            Err(Self(list))
+        }
+    }
+
+    /// The faults as a list.
+    pub fn into_list(self) -> FaultList {
+        self.0
+    }
+}
+
+impl From<Fault> for Faults {
+    fn from(fault: Fault) -> Self {
+        Self(vec![fault])
+    }
+}
+
+impl std::ops::Deref for Faults {
+    type Target = [Fault];
+    fn deref(&self) -> &[Fault] {
+        &self.0
+    }
+}
+
+impl IntoIterator for Faults {
+    type Item = Fault;
+    type IntoIter = std::vec::IntoIter<Fault>;
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.into_iter()
+    }
+}
+
+impl fmt::Display for Faults {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for fault in &self.0 {
+            writeln!(f, "{fault}")?;
+        }
+        let n = self.0.len();
+        write!(f, "{n} fault{} found", if n == 1 { "" } else { "s" })
+    }
+}
+
+impl std::error::Error for Faults {}

@@ -1,0 +1,264 @@
+//! Reading files: paths relative to a base, contents in memory or mapped, and the list of inputs with their hashes.
+
+use super::context::Files;
+use super::fault::Fault;
+use super::job::{Job, NamedFile};
+use sha2::{Digest, Sha256};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::thread::JoinHandle;
+
+/// A file that was read: what `result.json` says of it.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Input {
+    /// Path as given, by the user or by the job.
+    pub path: String,
+    /// SHA-256 of its bytes, hexadecimal.
+    pub sha256: String,
+}
+
+/// Bytes of a file, mapped or read.
+#[derive(Clone)]
+pub struct FileBytes(Arc<Bytes>);
+
+enum Bytes {
+    Mapped(memmap2::Mmap),
+    Owned(Vec<u8>),
+}
+
+impl From<Vec<u8>> for FileBytes {
+    fn from(bytes: Vec<u8>) -> Self {
+        Self(Arc::new(Bytes::Owned(bytes)))
+    }
+}
+
+impl std::ops::Deref for FileBytes {
+    type Target = [u8];
+    fn deref(&self) -> &[u8] {
+        match &*self.0 {
+            Bytes::Mapped(m) => m,
+            Bytes::Owned(v) => v,
+        }
+    }
+}
+
+/// A file that was read, with where it was found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FileRead {
+    /// Path as given, by the user or by the job.
+    pub given: String,
+    /// Path it was read from.
+    pub path: PathBuf,
+    /// SHA-256 of its bytes, hexadecimal.
+    pub sha256: String,
+}
+
+/// The files that one question read, in order. Hashes are computed on a thread of their own.
+pub struct Inputs<'a> {
+    files: &'a dyn Files,
+    entries: Vec<(String, PathBuf, Hashing)>,
+}
+
+enum Hashing {
+    Running(JoinHandle<String>),
+    Done(String),
+}
+
+impl Hashing {
+    /// The digest, waited for.
+    fn finish(&mut self) -> String {
+        let hex = match std::mem::replace(self, Hashing::Done(String::new())) {
+            Hashing::Done(hex) => hex,
+            Hashing::Running(thread) => thread.join().unwrap_or_default(),
+        };
+        *self = Hashing::Done(hex.clone());
+        hex
+    }
+}
+
+impl<'a> Inputs<'a> {
+    /// Nothing read so far, of these files.
+    pub fn of(files: &'a dyn Files) -> Self {
+        Self {
+            files,
+            entries: Vec::new(),
+        }
+    }
+
+    /// Files that were read before, such as the job with its tables.
+    pub fn resume(files: &'a dyn Files, read: &[FileRead]) -> Self {
+        let entry = |f: &FileRead| {
+            let done = Hashing::Done(f.sha256.clone());
+            (f.given.clone(), f.path.clone(), done)
+        };
+        Self {
+            files,
+            entries: read.iter().map(entry).collect(),
+        }
+    }
+
+    /// What was read, hashes finished, to be resumed.
+    pub fn files_read(&mut self) -> Vec<FileRead> {
+        let entries = self.entries.iter_mut();
+        entries
+            .map(|(given, path, hashing)| FileRead {
+                given: given.clone(),
+                path: path.clone(),
+                sha256: hashing.finish(),
+            })
+            .collect()
+    }
+
+    /// Bytes of a file that is found by its path alone.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub fn load(&self, path: &Path) -> std::io::Result<FileBytes> {
+        self.files.load(path)
+    }
+
+    /// Bytes of the file `given`, which is relative to `base`; large ones are mapped.
+    ///
+    /// # Errors
+    /// A fault of the file itself where it can't be read.
+    pub fn read(&mut self, base: &Path, given: &str) -> Result<FileBytes, Fault> {
+        let path = base.join(given);
+        let bytes = self.files.load(&path).map_err(|e| unreadable(given, &e))?;
+        self.record(given, path, &bytes);
+        Ok(bytes)
+    }
+
+    /// Text of the file `given`, which is relative to `base`; a byte order mark is dropped.
+    ///
+    /// # Errors
+    /// A fault where it can't be read or isn't UTF-8.
+    pub fn read_text(&mut self, base: &Path, given: &str) -> Result<String, Fault> {
+        let bytes = self.read(base, given)?;
+        match std::str::from_utf8(&bytes) {
+            Ok(text) => Ok(text.strip_prefix('\u{feff}').unwrap_or(text).to_owned()),
+            Err(e) => {
+                let before = bytes.get(..e.valid_up_to()).unwrap_or_default();
+                let line = 1 + before.iter().filter(|b| **b == b'\n').count() as u32;
+                Err(Fault::at(
+                    given,
+                    line,
+                    "text",
+                    "not UTF-8",
+                    "save the file as UTF-8 text",
+                ))
+            }
+        }
+    }
+
+    /// Bytes of a file that a job names.
+    ///
+    /// # Errors
+    /// A fault at the line of the job that names it.
+    pub fn read_named(&mut self, job: &Job, named: &NamedFile) -> Result<FileBytes, Fault> {
+        self.read(&job.folder, &named.given)
+            .map_err(|f| at_job_line(job, named, f))
+    }
+
+    /// Text of a file that a job names.
+    ///
+    /// # Errors
+    /// A fault at the line of the job that names it, or at the line that isn't text.
+    pub fn read_named_text(&mut self, job: &Job, named: &NamedFile) -> Result<String, Fault> {
+        self.read_text(&job.folder, &named.given)
+            .map_err(|f| at_job_line(job, named, f))
+    }
+
+    /// Notes a file that was read by other means, so that it is listed.
+    pub fn record(&mut self, given: &str, path: PathBuf, bytes: &FileBytes) {
+        if self.entries.iter().any(|e| e.1 == path) {
+            return;
+        }
+        const SMALL: usize = 1 << 20;
+        let hashing = if bytes.len() <= SMALL {
+            Hashing::Done(sha256_hex(bytes))
+        } else {
+            let bytes = bytes.clone();
+            Hashing::Running(std::thread::spawn(move || sha256_hex(&bytes)))
+        };
+        self.entries.push((given.to_owned(), path, hashing));
+    }
+
+    /// SHA-256 of a file that was read, by the path it was read from.
+    pub fn digest_of(&mut self, path: &Path) -> Option<String> {
+        let entry = self.entries.iter_mut().find(|e| e.1 == path)?;
+        Some(entry.2.finish()).filter(|hex| !hex.is_empty())
+    }
+
+    /// The list, hashes finished.
+    pub fn list(&mut self) -> Vec<Input> {
+        self.entries
+            .iter_mut()
+            .map(|(path, _, hashing)| Input {
+                path: path.replace('\\', "/"),
+                sha256: hashing.finish(),
+            })
+            .collect()
+    }
+}
+
+fn at_job_line(job: &Job, named: &NamedFile, f: Fault) -> Fault {
+    match f.line {
+        Some(_) => f,
+        None => Fault::at(
+            &*job.file,
+            named.line,
+            &*named.key,
+            format!("`{}`: {}", named.given, f.wrong),
+            f.remedy,
+        ),
+    }
+}
+
+fn unreadable(given: &str, e: &std::io::Error) -> Fault {
+    let (wrong, remedy) = match e.kind() {
+        std::io::ErrorKind::NotFound => (
+            "no such file".to_owned(),
+            "check the path; paths in a job are relative to the job file",
+        ),
+        std::io::ErrorKind::PermissionDenied => (
+            "no permission to read it".to_owned(),
+            "check the file's permissions",
+        ),
+        _ => (format!("can't be read ({e})"), "check the path"),
+    };
+    Fault::of(given, "file", wrong, remedy)
+}
+
+fn sha256_hex(bytes: &[u8]) -> String {
+    Sha256::digest(bytes)
+        .iter()
+        .map(|b| format!("{b:02x}"))
+        .collect()
+}
+
+/// Bytes of a file, mapped where it is large.
+pub fn load(path: &Path) -> std::io::Result<FileBytes> {
+    const MAP_FROM: u64 = 1 << 16;
+    let file = std::fs::File::open(path)?;
+    let meta = file.metadata()?;
+    if meta.is_dir() {
+        return Err(std::io::Error::other("it is a folder"));
+    }
+    if meta.len() >= MAP_FROM
+        && let Ok(m) = map_file(&file)
+    {
+        return Ok(FileBytes(Arc::new(Bytes::Mapped(m))));
+    }
+    std::fs::read(path).map(|v| FileBytes(Arc::new(Bytes::Owned(v))))
+}
+
+/// Maps a file for reading.
+///
+/// The one unsafe call of the program. The mapping is read-only and private to this process; the readers take `&[u8]` and check
+/// every size. What remains is a file that another program shortens while it is being read: the operating system then ends
+/// this process, and no result is written.
+#[allow(unsafe_code)]
+fn map_file(file: &std::fs::File) -> std::io::Result<memmap2::Mmap> {
+    // SAFETY: read-only map of a regular file that is not written by this process; see above for concurrent truncation.
+    unsafe { memmap2::Mmap::map(file) }
+}

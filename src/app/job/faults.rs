@@ -1,0 +1,147 @@
+//! Collecting faults at places of the job's text.
+
+use super::parse::line_column;
+use super::raw::S;
+use super::spanned::Spanned;
+use super::suggest;
+use super::types::NamedFile;
+use crate::app::fault::{Fault, Faults};
+
+/// The job's text and the faults found in it so far.
+pub(super) struct Collector<'a> {
+    pub file: &'a str,
+    pub text: &'a str,
+    pub faults: &'a mut FaultList,
+}
+
+impl Collector<'_> {
+    /// Line of a value.
+    pub(super) fn line<T>(&self, at: &Spanned<T>) -> u32 {
+        line_column(self.text, at.span().start).0
+    }
+
+    /// Notes a fault at a value.
+    pub(super) fn fault<T>(
+        &mut self,
+        at: &Spanned<T>,
+        field: &str,
+        wrong: impl Into<String>,
+        remedy: impl Into<String>,
+    ) {
+        let (line, column) = line_column(self.text, at.span().start);
+        let wrong = format!("{} (column {column})", wrong.into());
+        self.faults
+            .push(Fault::at(self.file, line, field, wrong, remedy));
+    }
+
+    /// The value of a key that must be there; `section` is where it is missed.
+    pub(super) fn require<T: Clone, U>(
+        &mut self,
+        value: &S<T>,
+        section: &Spanned<U>,
+        key: &str,
+        example: &str,
+    ) -> Option<T> {
+        if value.is_none() {
+            self.fault(
+                section,
+                key,
+                "this key is missing",
+                format!("add `{example}`"),
+            );
+        }
+        value.as_ref().map(|v| v.get_ref().clone())
+    }
+
+    /// A named file.
+    pub(super) fn named(&self, value: &S<String>, key: &str) -> Option<NamedFile> {
+        value.as_ref().map(|v| self.named_at(v, key))
+    }
+
+    /// A named file.
+    pub(super) fn named_at(&self, v: &Spanned<String>, key: &str) -> NamedFile {
+        NamedFile {
+            given: v.get_ref().clone(),
+            key: key.to_owned(),
+            line: self.line(v),
+        }
+    }
+
+    /// The choice that a word names; `default` where the key is absent or the word unknown (a fault then).
+    pub(super) fn choose<T: Copy>(
+        &mut self,
+        word: &S<String>,
+        key: &str,
+        choices: &[(&str, T)],
+        default: T,
+    ) -> T {
+        let Some(word) = word else { return default };
+        self.choose_at(word, key, choices).unwrap_or(default)
+    }
+
+    /// The choice that a word names.
+    pub(super) fn choose_at<T: Copy>(
+        &mut self,
+        word: &Spanned<String>,
+        key: &str,
+        choices: &[(&str, T)],
+    ) -> Option<T> {
+        let found = choices.iter().find(|c| c.0 == word.get_ref()).map(|c| c.1);
+        if found.is_none() {
+            let names: Vec<&str> = choices.iter().map(|c| c.0).collect();
+            let expected = names
+                .iter()
+                .map(|n| format!("`{n}`"))
+                .collect::<Vec<_>>()
+                .join(", ");
+            let wrong = format!("`{}`, expected one of {expected}", word.get_ref());
+            let remedy = match suggest::closest(word.get_ref(), names) {
+                Some(n) => format!("did you mean `{n}`?"),
+                None => "use one of these words".to_owned(),
+            };
+            self.fault(word, key, wrong, remedy);
+        }
+        found
+    }
+
+    /// A number that must be finite and pass `ok`, which `expected` puts in words.
+    pub(super) fn number(
+        &mut self,
+        value: &S<f64>,
+        key: &str,
+        expected: &str,
+        ok: impl Fn(f64) -> bool,
+    ) -> Option<f64> {
+        let v = value.as_ref()?;
+        let x = *v.get_ref();
+        if x.is_finite() && ok(x) {
+            return Some(x);
+        }
+        self.fault(
+            v,
+            key,
+            format!("`{x}`, expected {expected}"),
+            "correct the number",
+        );
+        None
+    }
+
+    /// A number of 0 or more.
+    pub(super) fn at_least_zero(&mut self, value: &S<f64>, key: &str) -> Option<f64> {
+        self.number(value, key, "0 or more", |x| x >= 0.0)
+    }
+
+    /// A number above 0.
+    pub(super) fn positive(&mut self, value: &S<f64>, key: &str) -> Option<f64> {
+        self.number(value, key, "a number above 0", |x| x > 0.0)
+    }
+
+    /// A count of at least 1.
+    pub(super) fn count(&mut self, value: &S<u32>, key: &str) -> Option<usize> {
+        let v = value.as_ref()?;
+        if *v.get_ref() == 0 {
+            self.fault(v, key, "`0`, expected 1 or more", "correct the number");
+        }
+        Some(*v.get_ref() as usize)
+    }
+}

@@ -1,0 +1,69 @@
+//! job.toml: [`parse`] turns text into [`raw`] structs with the place of every value, [`resolve`] turns those into the plain
+//! structs of [`types`]; [`gauges`], [`strain`] and [`runs`] read the tables a job names; [`schema`] describes
+//! a job to editors.
+
+mod faults;
+pub mod gauges;
+mod parse;
+mod raw;
+mod resolve;
+pub mod runs;
+pub mod schema;
+mod shapes;
+mod spanned;
+pub mod strain;
+pub mod suggest;
+pub mod table;
+mod types;
+
+#[cfg(test)]
+mod tests;
+
+pub use types::*;
+
+use super::context::Files;
+use super::fault::Faults;
+use super::files::Inputs;
+use std::path::Path;
+
+impl Job {
+    /// The job in a file.
+    ///
+    /// # Errors
+    /// Every fault found, with file and line: syntax, unknown keys, wrong types, contradictions, missing files.
+    pub fn read(path: impl AsRef<Path>, files: &dyn Files) -> Result<Self, Faults> {
+        let mut inputs = Inputs::of(files);
+        let mut job = read_job(&mut inputs, path.as_ref())?;
+        job.read = inputs.files_read();
+        Ok(job)
+    }
+}
+
+impl AsRef<Path> for Job {
+    fn as_ref(&self) -> &Path {
+        Path::new(&self.file)
+    }
+}
+
+/// The job in a file, with its gauge file read; strain and runs are read when a command asks for them.
+///
+/// # Errors
+/// Every fault found: syntax, unknown keys, wrong types, contradictions, missing files.
+pub fn read_job(inputs: &mut Inputs, path: &Path) -> Result<Job, Faults> {
+    let given = path.display().to_string();
+    let text = inputs
+        .read_text(Path::new(""), &given)
+        .map_err(Faults::from)?;
+    let (raw, mut faults) = parse::parse_job(&given, &text);
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    let mut job = resolve::resolve_job(&given, &text, &folder, raw, &mut faults);
+    job.gauges
+        .extend(gauges::read_gauge_file(inputs, &job, &mut faults));
+    resolve::check_names(&job, &mut faults);
+    faults.sort_by(|a, b| {
+        (a.file != given, &a.file, a.line).cmp(&(b.file != given, &b.file, b.line))
+    });
+    faults.dedup();
+    Faults::check(faults)?;
+    Ok(job)
+}

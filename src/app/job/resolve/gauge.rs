@@ -1,0 +1,189 @@
+//! `[[gauge]]` and `[gauges]`.
+
+use super::super::faults::Collector;
+use super::super::raw::{RawGauge, RawGauges};
+use super::super::spanned::Spanned;
+use super::super::types::*;
+use crate::app::fault::{Fault, Faults};
+
+const SURFACES: [(&str, Surface); 2] = [("top", Surface::Top), ("bottom", Surface::Bottom)];
+const ROSETTES: [(&str, Rosette); 2] = [
+    ("rectangular", Rosette::Rectangular),
+    ("delta", Rosette::Delta),
+];
+const POINTS: [(&str, u8); 4] = [("C", 0), ("D", 1), ("E", 2), ("F", 3)];
+
+fn from<T: Copy>(word: &str, choices: &[(&str, T)]) -> Option<T> {
+    choices
+        .iter()
+        .find(|c| c.0.eq_ignore_ascii_case(word))
+        .map(|c| c.1)
+}
+
+/// `top` or `bottom`.
+pub(crate) fn surface_from(word: &str) -> Option<Surface> {
+    from(word, &SURFACES)
+}
+
+/// `rectangular` or `delta`.
+pub(crate) fn rosette_from(word: &str) -> Option<Rosette> {
+    from(word, &ROSETTES)
+}
+
+/// C, D, E, F as 0 to 3.
+pub(crate) fn point_from(word: &str) -> Option<u8> {
+    from(word, &POINTS)
+}
+
+pub(super) fn gauge_file(c: &mut Collector, raw: Option<&Spanned<RawGauges>>) -> Option<NamedFile> {
+    let section = raw?;
+    c.require(
+        &section.get_ref().file,
+        section,
+        "gauges.file",
+        "file = \"gauges.csv\"",
+    )?;
+    c.named(&section.get_ref().file, "gauges.file")
+}
+
+pub(super) fn gauges(c: &mut Collector, raw: &[Spanned<RawGauge>]) -> Vec<JobGauge> {
+    raw.iter().filter_map(|g| gauge(c, g)).collect()
+}
+
+fn gauge(c: &mut Collector, section: &Spanned<RawGauge>) -> Option<JobGauge> {
+    let raw = section.get_ref();
+    let name = c.require(&raw.name, section, "gauge.name", "name = \"14\"");
+    let number = |v: &Option<Spanned<u32>>| v.as_ref().map(|v| *v.get_ref());
+    let cid = number(&raw.cid).unwrap_or(0);
+    let point = raw
+        .point
+        .as_ref()
+        .and_then(|p| c.choose_at(p, "gauge.point", &POINTS));
+    let station = c.number(
+        &raw.station,
+        "gauge.station",
+        "0 (end A) to 1 (end B)",
+        |x| (0.0..=1.0).contains(&x),
+    );
+    let position = raw.position.as_ref().map(|p| *p.get_ref());
+    let place = match (number(&raw.element), position) {
+        (Some(element), _) => match point {
+            Some(point) => GaugePlace::BeamPoint {
+                element,
+                point,
+                station: station.unwrap_or(0.0),
+            },
+            None => GaugePlace::Element(element),
+        },
+        (None, Some(p)) => GaugePlace::Position(p, cid),
+        (None, None) => GaugePlace::Unstated,
+    };
+    let surface = raw
+        .surface
+        .as_ref()
+        .and_then(|s| c.choose_at(s, "gauge.surface", &SURFACES));
+    let surface2 = c.choose(&raw.surface2, "gauge.surface2", &SURFACES, Surface::Bottom);
+    let bridges: Vec<(&str, Bridge)> = Bridge::ALL.into_iter().map(|b| (b.name(), b)).collect();
+    let bridge = c.choose(&raw.bridge, "gauge.bridge", &bridges, Bridge::Quarter);
+    let rosette = raw
+        .rosette
+        .as_ref()
+        .and_then(|r| c.choose_at(r, "gauge.rosette", &ROSETTES));
+    let gauge = JobGauge {
+        name: name?,
+        place,
+        position,
+        surface: surface.unwrap_or(Surface::Top),
+        surface_stated: surface.is_some(),
+        direction: raw.direction.as_ref().map(|d| *d.get_ref()),
+        cid,
+        angle_deg: c
+            .number(&raw.angle_deg, "gauge.angle_deg", "a number", |_| true)
+            .unwrap_or(0.0),
+        bridge,
+        bridge_factor: raw.bridge_factor.as_ref().map_or(1.0, |b| *b.get_ref()),
+        grid_length: c
+            .at_least_zero(&raw.grid_length, "gauge.grid_length")
+            .unwrap_or(0.0),
+        pair: number(&raw.element2).map(|e| (e, surface2)),
+        rosette,
+        transverse_sensitivity: c
+            .number(
+                &raw.transverse_sensitivity,
+                "gauge.transverse_sensitivity",
+                "a fraction between -0.5 and 0.5",
+                |x| x.abs() < 0.5,
+            )
+            .unwrap_or(0.0),
+        member: String::new(),
+        file: c.file.to_owned(),
+        line: c.line(section),
+    };
+    check_gauge(&gauge, c.faults);
+    Some(gauge)
+}
+
+/// What must hold for a gauge, wherever it is written.
+pub(crate) fn check_gauge(g: &JobGauge, faults: &mut FaultList) {
+    let mut fault = |field: &str, wrong: &str, remedy: &str| {
+        faults.push(Fault::at(
+            &*g.file,
+            g.line,
+            field,
+            format!("gauge `{}`: {wrong}", g.name),
+            remedy,
+        ));
+    };
+    if g.name.is_empty() {
+        fault("name", "the name is blank", "name every gauge");
+    }
+    if let Some(d) = g.direction
+        && !(d.iter().all(|x| x.is_finite()) && d.iter().any(|x| *x != 0.0))
+    {
+        fault(
+            "direction",
+            "the direction has no length",
+            "give a vector such as [1, 0, 0]",
+        );
+    }
+    if !(g.bridge_factor.is_finite() && g.bridge_factor != 0.0) {
+        fault(
+            "bridge_factor",
+            "must be a number other than 0",
+            "give the factor that readings were divided by; default 1",
+        );
+    }
+    if !(g.grid_length.is_finite() && g.grid_length >= 0.0) {
+        fault(
+            "grid_length",
+            "must be 0 or more",
+            "give the gauge's grid length in job units",
+        );
+    }
+    let bending = matches!(g.bridge, Bridge::HalfBending | Bridge::FullBending);
+    let on_element = matches!(
+        g.place,
+        GaugePlace::Element(_) | GaugePlace::BeamPoint { .. }
+    );
+    if g.pair.is_some() && !bending && g.bridge != Bridge::Shear {
+        fault(
+            "element2",
+            "a quarter bridge has no second pair",
+            "drop `element2`, or set `bridge`",
+        );
+    }
+    if g.rosette.is_some() && g.bridge != Bridge::Quarter {
+        fault(
+            "rosette",
+            "a rosette's legs are quarter bridges",
+            "drop `bridge` or `rosette`",
+        );
+    }
+    if matches!(g.place, GaugePlace::Position(..)) && g.pair.is_some() && !on_element {
+        fault(
+            "element2",
+            "stands beside a position",
+            "give `element` for the first pair too",
+        );
+    }
+}

@@ -1,0 +1,140 @@
+//! The runs file: what else was measured in each run, by the job's names, in SI units.
+
+use super::suggest;
+use super::table::read_table;
+use super::types::{Component, Job, LoadActs, Runs};
+use crate::app::fault::{Fault, Faults};
+use crate::app::files::Inputs;
+use crate::units::Quantity;
+use std::collections::BTreeMap;
+
+/// One run, SI units; what a file lacks or leaves blank is absent.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct RunRow {
+    /// Name.
+    pub run: String,
+    /// By load name: force in N, moment in N m.
+    pub loads_si: BTreeMap<String, f64>,
+    /// Payload weight, N.
+    pub payload_force_n: Option<f64>,
+    /// Payload mass, kg.
+    pub payload_mass_kg: Option<f64>,
+    /// Payload position along x, m.
+    pub payload_x_m: Option<f64>,
+    /// Payload position along y, m.
+    pub payload_y_m: Option<f64>,
+    /// Line in the file.
+    pub line: u32,
+}
+
+/// The runs of `[runs]`, with the load names that the job (its loads, or the columns of a given S) knows.
+///
+/// # Errors
+/// Every fault: missing columns, fields that are no numbers, runs named twice.
+pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunRow>, Faults> {
+    let text = inputs
+        .read_named_text(job, &runs.file)
+        .map_err(Faults::from)?;
+    let t = read_table(&runs.file.given, &text)?;
+    let mut faults = FaultList::new();
+    let Some(key) = t.column(&["run"]) else {
+        return Err(Faults::from(Fault::at(
+            &*t.file,
+            1,
+            "run",
+            "no column `run`",
+            "add a column `run` with the runs' names",
+        )));
+    };
+    let mut columns: Vec<(String, usize, f64)> = Vec::new();
+    for (name, quantity) in known_columns(job) {
+        let stated = runs.columns.get(&name);
+        let column = stated.unwrap_or(&name);
+        match t.header.iter().position(|h| h == column) {
+            Some(c) => columns.push((name, c, runs.units.unit(quantity).si)),
+            None if stated.is_some() => faults.push(Fault::at(
+                &*job.file,
+                runs.line,
+                format!("runs.columns.{name}"),
+                format!("`{}` has no column `{column}`", t.file),
+                suggest::remedy(column, t.header.iter().map(String::as_str)),
+            )),
+            None => {}
+        }
+    }
+    let mut out: Vec<RunRow> = Vec::new();
+    for (row, (line, fields)) in t.rows.iter().enumerate() {
+        let run = fields.get(key).cloned().unwrap_or_default();
+        if out.iter().any(|r| r.run == run) {
+            let wrong = format!("run `{run}` stands twice");
+            faults.push(Fault::at(
+                &*t.file,
+                *line,
+                "run",
+                wrong,
+                "give every run its own name",
+            ));
+        }
+        let mut entry = RunRow {
+            run,
+            line: *line,
+            ..RunRow::default()
+        };
+        for (name, c, si) in &columns {
+            let x = match t.number(row, *c) {
+                Ok(Some(x)) => x * si,
+                Ok(None) => continue,
+                Err(f) => {
+                    faults.push(f);
+                    continue;
+                }
+            };
+            match name.as_str() {
+                "payload_force" => entry.payload_force_n = Some(x),
+                "payload_mass" => entry.payload_mass_kg = Some(x),
+                "payload_x" => entry.payload_x_m = Some(x),
+                "payload_y" => entry.payload_y_m = Some(x),
+                _ => {
+                    entry.loads_si.insert(name.clone(), x);
+                }
+            }
+        }
+        out.push(entry);
+    }
+    Faults::check(faults)?;
+    Ok(out)
+}
+
+/// Names that a runs file may carry, with what they measure.
+fn known_columns(job: &Job) -> Vec<(String, Quantity)> {
+    let mut out: Vec<(String, Quantity)> = Vec::new();
+    for load in &job.loads {
+        if let LoadActs::AtGrid { component, .. } = load.acts {
+            out.push((load.name.clone(), component.quantity()));
+        }
+    }
+    if let Some(s) = &job.sensitivity {
+        for (name, _) in &s.columns {
+            if !out.iter().any(|o| &o.0 == name) {
+                out.push((name.clone(), quantity_of_name(name)));
+            }
+        }
+    }
+    let payload = [
+        ("payload_force", Quantity::Force),
+        ("payload_mass", Quantity::Mass),
+        ("payload_x", Quantity::Length),
+        ("payload_y", Quantity::Length),
+    ];
+    out.extend(payload.map(|(n, q)| (n.to_owned(), q)));
+    out
+}
+
+/// Force or moment by the last part of a load's name (`LF.MX` is a moment); a force where the name does not tell.
+pub fn quantity_of_name(name: &str) -> Quantity {
+    let tail = name.rsplit(['.', '_', ' ']).next().unwrap_or("");
+    Component::ALL
+        .into_iter()
+        .find(|c| c.name().eq_ignore_ascii_case(tail))
+        .map_or(Quantity::Force, Component::quantity)
+}

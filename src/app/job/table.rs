@@ -1,0 +1,147 @@
+//! A CSV file with the line of every row.
+
+use crate::app::fault::{Fault, Faults};
+use crate::series::number::{DecimalMark, number};
+
+/// Header and rows of a CSV file, fields trimmed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// File as given.
+    pub file: String,
+    /// Column names.
+    pub header: Vec<String>,
+    /// Rows: line in the file, fields.
+    pub rows: Vec<(u32, Vec<String>)>,
+}
+
+/// The table in a CSV text. Comma, semicolon or tab, whichever the header has most of; lines starting with `#` are comments.
+/// Where commas don't divide the fields, a number may have a decimal comma.
+///
+/// # Errors
+/// Rows of another length, an empty file.
+pub fn read_table(file: &str, text: &str) -> Result<Table, Faults> {
+    let first = text
+        .lines()
+        .find(|l| !l.trim().is_empty() && !l.starts_with('#'))
+        .unwrap_or("");
+    let delimiter = [b',', b';', b'\t']
+        .into_iter()
+        .max_by_key(|d| (first.bytes().filter(|b| b == d).count(), *d == b','))
+        .unwrap_or(b',');
+    let mut reader = csv::ReaderBuilder::new()
+        .delimiter(delimiter)
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .flexible(true)
+        .from_reader(text.as_bytes());
+    let mut faults = FaultList::new();
+    let header: Vec<String> = match reader.headers() {
+        Ok(h) => h.iter().map(|s| s.to_owned()).collect(),
+        Err(e) => {
+            return Err(Faults::from(Fault::of(
+                file,
+                "header",
+                e.to_string(),
+                "write a CSV file with a header",
+            )));
+        }
+    };
+    if header.iter().all(String::is_empty) {
+        return Err(Faults::from(Fault::of(
+            file,
+            "header",
+            "the file is empty",
+            "write a header and a row an entry",
+        )));
+    }
+    for (i, name) in header.iter().enumerate() {
+        if header[..i].contains(name) {
+            faults.push(Fault::at(
+                file,
+                1,
+                name,
+                "column named twice",
+                "give every column its own name",
+            ));
+        }
+    }
+    let mark = DecimalMark::beside(delimiter);
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        match record {
+            Ok(r) => {
+                let line = r.position().map_or(0, |p| p.line() as u32);
+                if r.iter().all(str::is_empty) {
+                    continue;
+                }
+                if r.len() != header.len() {
+                    let wrong = format!("{} fields, the header has {}", r.len(), header.len());
+                    faults.push(Fault::at(
+                        file,
+                        line,
+                        "row",
+                        wrong,
+                        "give every row as many fields as the header",
+                    ));
+                    continue;
+                }
+                rows.push((line, r.iter().map(|s| with_point(s, mark)).collect()));
+            }
+            Err(e) => faults.push(Fault::of(file, "row", e.to_string(), "write a CSV file")),
+        }
+    }
+    Faults::check(faults)?;
+    Ok(Table {
+            file: file.to_owned(),
+            header,
+            rows,
+        })
+}
+
+/// A field, a number's decimal comma turned into a point.
+fn with_point(field: &str, mark: DecimalMark) -> String {
+    if mark == DecimalMark::CommaOrPoint
+        && field.contains(',')
+        && number(field.as_bytes(), mark).is_some()
+    {
+        field.replacen(',', ".", 1)
+    } else {
+        field.to_owned()
+    }
+}
+
+impl Table {
+    /// Index of the first of these columns that exists.
+    pub fn column(&self, names: &[&str]) -> Option<usize> {
+        names
+            .iter()
+            .find_map(|n| self.header.iter().position(|h| h == n))
+    }
+
+    /// The number in a field; blank gives `None`.
+    ///
+    /// # Errors
+    /// A fault where the field is no finite number.
+    pub fn number(&self, row: usize, column: usize) -> Result<Option<f64>, Fault> {
+        let Some((line, fields)) = self.rows.get(row) else {
+            return Ok(None);
+        };
+        let text = fields.get(column).map_or("", String::as_str);
+        if text.is_empty() {
+            return Ok(None);
+        }
+        match text.parse::<f64>() {
+            Ok(x) if x.is_finite() => Ok(Some(x)),
+            _ => {
+                let name = self.header.get(column).map_or("", String::as_str);
+                Err(Fault::at(
+                    &*self.file,
+                    *line,
+                    name,
+                    format!("`{text}` is no number"),
+                    "write a number with a decimal point",
+                ))
+            }
+        }
+    }
+}

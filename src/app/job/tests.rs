@@ -1,0 +1,411 @@
+use super::*;
+use crate::app::fault::Fault;
+use std::path::PathBuf;
+
+/// A job text parsed and resolved, without any file but the job.
+fn read_text(text: &str) -> Result<Job, Vec<Fault>> {
+    let (raw, mut faults) = parse::parse_job("job.toml", text);
+    let job = resolve::resolve_job("job.toml", text, Path::new(""), raw, &mut faults);
+    Faults::check(faults)?;
+    Ok(job)
+}
+
+fn faults(text: &str) -> Vec<Fault> {
+    read_text(text).expect_err("the job should be refused")
+}
+
+fn shared() -> Option<PathBuf> {
+    let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared"));
+    path.is_dir().then_some(path)
+}
+
+fn jobs_below(folder: &Path, out: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            jobs_below(&path, out);
+        } else if path.file_name().is_some_and(|n| n == "job.toml") {
+            out.push(path);
+        }
+    }
+}
+
+#[test]
+fn every_shared_job_is_read_with_all_files_it_names() {
+    let Some(shared) = shared() else {
+        eprintln!("skipped: no ../shared");
+        return;
+    };
+    let mut jobs = Vec::new();
+    jobs_below(&shared, &mut jobs);
+    assert!(jobs.len() >= 10, "{jobs:?}");
+    for path in jobs {
+        let mut inputs = Inputs::default();
+        let job =
+            read_job(&mut inputs, &path).unwrap_or_else(|f| panic!("{}: {f:?}", path.display()));
+        if let Some(m) = &job.measured {
+            let strain = strain::read_strain(&mut inputs, &job, &m.strain).unwrap();
+            let names: Vec<&String> = job.gauges.iter().map(|g| &g.name).collect();
+            assert_eq!(
+                strain.gauges.iter().collect::<Vec<_>>(),
+                names,
+                "{}",
+                path.display()
+            );
+            assert!(strain.n_rows() >= 12);
+        }
+        if let Some(r) = &job.runs {
+            let runs = runs::read_runs(&mut inputs, &job, r).unwrap();
+            assert!(runs.iter().all(|r| r.loads_si.len() == 6
+                && r.payload_mass_kg.is_some()
+                && r.payload_x_m.is_some()));
+        }
+    }
+}
+
+#[test]
+fn a_runs_file_is_read_in_si_by_the_jobs_names() {
+    let Some(shared) = shared() else {
+        eprintln!("skipped: no ../shared");
+        return;
+    };
+    let mut inputs = Inputs::default();
+    let job = read_job(
+        &mut inputs,
+        &shared.join("hidden_effects/static/dev-s1/job.toml"),
+    )
+    .unwrap();
+    assert_eq!(
+        job.sensitivity.as_ref().unwrap().columns[0],
+        ("RR.FZ".into(), "FZ_RR".into()),
+        "in the order of the job"
+    );
+    let text =
+        std::fs::read_to_string(shared.join("hidden_effects/static/dev-s1/runs.csv")).unwrap();
+    let first: Vec<f64> = text
+        .lines()
+        .nth(1)
+        .unwrap()
+        .split(',')
+        .skip(1)
+        .map(|x| x.parse().unwrap())
+        .collect();
+    let runs = runs::read_runs(&mut inputs, &job, job.runs.as_ref().unwrap()).unwrap();
+    assert_eq!(runs[0].payload_mass_kg, Some(first[0]));
+    assert_eq!(runs[0].loads_si["RR.FZ"], first[2] * 1e3);
+    assert_eq!(runs[0].loads_si["LR.FZ"], first[7] * 1e3);
+}
+
+/// Every key of the command-line contract in one job.
+const WHOLE: &str = r#"
+title = "Roll-off truck"
+units = "m-kg-s"
+report_units = { force = "kN", moment = "kN m" }
+[model]
+deck = "truck.bdf"
+results = ["truck.op2", "lf.op2"]
+[[load]]
+name = "LF.FZ"
+grid = 101
+component = "FZ"
+applied = 1000.0
+result = "lf.op2"
+subcase = 1
+role = "wanted"
+expected = 25000.0
+[[load]]
+name = "other"
+load_set = 12
+role = "nuisance"
+[[load]]
+name = "LF.MX"
+grid = 101
+component = "MX"
+cid = 3
+[[gauge]]
+name = "14"
+element = 1205
+surface = "top"
+direction = [1, 0, 0]
+angle_deg = 0
+bridge = "full-bending"
+bridge_factor = 1.0
+grid_length = 5.0
+element2 = 1305
+surface2 = "bottom"
+[[gauge]]
+name = "15"
+position = [0.1, 2, 3.0]
+direction = [0, 1, 0]
+[candidates]
+properties = [1, 2]
+elements = "1 THRU 5000"
+surfaces = ["top", "bottom"]
+angle_step_deg = "continuous"
+[placement]
+gauges = 10
+spacing = 50.0
+noise_microstrain = 1.0
+angle_tolerance_deg = 2.0
+[measured]
+strain = "strain.csv"
+zero = "run1.csv"
+reference = "none"
+noise_microstrain = 1.0
+model_uncertainty_rel = 0.02
+hold_out = ["R11", "R12"]
+[runs]
+file = "runs.csv"
+columns = { "LF.FZ" = "FZ_LF_kN", payload_mass = "payload_kg" }
+units = { force = "kN", mass = "kg", length = "m" }
+noise = { force = 0.06 }
+wheel_forces = "flat_ground_model"
+[ballast]
+masses = 2
+region = [[0, 1], [2.0, 3.0]]
+max_mass = 500
+run = "R01"
+[payload]
+grid = 9101
+position = "free"
+gravity = 9.81
+weight_in_model = true
+region = [[0, 1], [2.0, 3.0]]
+use = ["strain", "reactions"]
+[respond]
+elements = "1 THRU 500"
+hottest = 20
+loads = "loads.csv"
+[study]
+layouts = ["given", "random", "D"]
+gauges = [6, 8, 10]
+errors = [{ kind = "relative-uniform", size = 0.1 }]
+trials = 2000
+seed = 1
+[vehicle]
+model = "front2"
+terms = ["k_s", "c_s"]
+data = "data.csv"
+hold_out = "holdout.csv"
+sample_rate = 500
+known = { m_b = 3200.0 }
+noise = { acc = 0.02, force = 60.0 }
+tolerance = { gain = 0.01, sync = 0.0004 }
+band_hz = [0.7, 20.0]
+[reconcile]
+path = "static"
+zones = { L4 = [14] }
+places = { rear = 9204 }
+thermal_microstrain_per_degC = { quarter = 1.404, full-bending = 0.0 }
+effects = "all"
+joints = [7]
+tolerance = { angle_deg = 1.0, position_mm = 2.0 }
+[sensitivity]
+file = "A_vertical.csv"
+per = { force = "kN", moment = "kN m", mass = "kg" }
+columns = { "LF.FZ" = "FZ_LF" }
+signatures = { lateral_wheel_loads = "A_other.csv", thermal = "T_thermal.csv", payload = "B_payload.csv", unaccounted_mass = "B_mass.csv", gauge_angle = "tensor.csv", rail_stiffness = { Z1 = "dA_dt_Z1.csv" } }
+"#;
+
+#[test]
+fn a_job_with_every_key_of_the_contract_is_read() {
+    let job = read_text(WHOLE).unwrap();
+    assert_eq!(job.loads.len(), 3);
+    assert_eq!(job.loads[1].acts, LoadActs::Set(12));
+    assert_eq!(job.loads[1].applied, 1.0);
+    assert_eq!(
+        job.loads[2].subcase(),
+        3,
+        "left out: its number in job order"
+    );
+    assert_eq!(
+        job.placement.criterion,
+        Criterion::Ds,
+        "nuisance loads make Ds the default"
+    );
+    assert_eq!(job.candidates.angles, AngleStep::Continuous);
+    assert!(job.candidates.elements.unwrap().contains(77));
+    assert_eq!(job.gauges[0].pair, Some((1305, Surface::Bottom)));
+    assert_eq!(
+        job.gauges[1].place,
+        GaugePlace::Position([0.1, 2.0, 3.0], 0)
+    );
+    assert_eq!(
+        job.study.unwrap().errors,
+        vec![("relative-uniform".to_owned(), 0.1)]
+    );
+    assert_eq!(job.vehicle.unwrap().band_hz, Some([0.7, 20.0]));
+    assert_eq!(job.runs.unwrap().wheel_forces, WheelForces::FlatGroundModel);
+}
+
+#[test]
+fn every_fault_is_listed_with_its_line_and_a_remedy() {
+    let text = r#"
+units = "m-kg-s"
+[model]
+deck = "truck.bdf"
+[[load]]
+name = "LF.FZ"
+grid = 101
+componnent = "FZ"
+[[load]]
+name = "RF.FZ"
+grid = "one hundred"
+component = "FQ"
+[placement]
+gauges = 2.5
+spaceing = 3
+"#;
+    let found = faults(text);
+    let lines: Vec<(Option<u32>, &str)> =
+        found.iter().map(|f| (f.line, f.field.as_str())).collect();
+    for expected in [
+        (Some(8), "load[1].componnent"),
+        (Some(11), "load[2].grid"),
+        (Some(14), "placement.gauges"),
+        (Some(15), "placement.spaceing"),
+    ] {
+        assert!(lines.contains(&expected), "{expected:?} in {found:#?}");
+    }
+    let text: String = found.iter().map(|f| f.to_string() + "\n").collect();
+    assert!(text.contains("did you mean `component`?"), "{text}");
+    assert!(text.contains("did you mean `spacing`?"), "{text}");
+    assert!(text.contains("a whole number"), "{text}");
+}
+
+#[test]
+fn a_value_that_can_not_be_is_pointed_at_by_line_and_column() {
+    let text = "units = \"m-kg-s\"\n[model]\ndeck = \"truck.bdf\"\n[placement]\ngauges = 2\nspacing = -3.0\ncriterion = \"Q\"\n";
+    let found = faults(text);
+    for (line, column) in [(6, 11), (7, 13)] {
+        let fault = found.iter().find(|f| f.line == Some(line)).unwrap();
+        assert!(
+            fault.wrong.contains(&format!("(column {column})")),
+            "{fault}"
+        );
+    }
+}
+
+#[test]
+fn units_are_required_and_a_word_close_to_one_is_suggested() {
+    let f = faults("title = \"x\"\n");
+    assert!(
+        f[0].to_string().starts_with("job.toml:1: units: "),
+        "{}",
+        f[0]
+    );
+    let f = faults("units = \"mm-t\"\n");
+    assert!(f[0].remedy.contains("mm-t-s"), "{}", f[0]);
+    let f = faults("units = \"m-kg-s\"\nreport_units = { force = \"KN\" }\n");
+    assert!(
+        f[0].to_string()
+            .starts_with("job.toml:2: report_units.force: "),
+        "{}",
+        f[0]
+    );
+}
+
+#[test]
+fn a_misspelt_section_is_named_with_its_line() {
+    let f = faults("units = \"m-kg-s\"\n\n[placment]\ngauges = 3\n");
+    assert_eq!(f[0].line, Some(3));
+    assert!(f[0].remedy.contains("`placement`"), "{}", f[0]);
+}
+
+#[test]
+fn broken_toml_is_a_fault_with_its_line() {
+    let f = faults("units = \"m-kg-s\"\n[model\ndeck = 3\n");
+    assert!(f.iter().any(|f| f.line == Some(2)), "{f:?}");
+}
+
+#[test]
+fn contradictions_between_keys_are_faults() {
+    let base = "units = \"m-kg-s\"\n[[load]]\nname = \"a\"\n";
+    for (more, field) in [
+        (
+            "grid = 1\nload_set = 2\ncomponent = \"FX\"\n",
+            "load.load_set",
+        ),
+        ("grid = 1\n", "load.component"),
+        ("component = \"FX\"\n", "load.grid"),
+        ("load_set = 1\napplied = 0\n", "load.applied"),
+        ("load_set = 1\nexpected = -3\n", "load.expected"),
+        (
+            "load_set = 1\n[[load]]\nname = \"a\"\nload_set = 2\n",
+            "load.name",
+        ),
+        (
+            "load_set = 1\nresult = \"x.op2\"\n[model]\ndeck = \"d\"\nresults = [\"y.op2\"]\n",
+            "load.result",
+        ),
+    ] {
+        let found = faults(&format!("{base}{more}"));
+        assert!(found.iter().any(|f| f.field == field), "{field}: {found:?}");
+    }
+}
+
+#[test]
+fn gauge_tables_take_the_contracts_columns_and_list_every_fault() {
+    let text = "name,element,surface,dir_x,dir_y,dir_z,angle_deg,bridge,bridge_factor,grid_length,element2,surface2\n\
+                A,12,top,1,0,0,45,half-bending,2,5.0,13,bottom\n\
+                B,1.5,upper,0,0,0,x,quarter,1,0,,\n\
+                C,14,bottom,1,0,0,,fullbending,,,,\n";
+    let t = table::read_table("g.csv", text).unwrap();
+    let mut found = Vec::new();
+    let gauges = gauges::gauges_from_table(&t, 1.0, &mut found);
+    assert_eq!(gauges.len(), 1);
+    assert_eq!(gauges[0].place, GaugePlace::Element(12));
+    assert_eq!(
+        (gauges[0].bridge, gauges[0].bridge_factor, gauges[0].pair),
+        (Bridge::HalfBending, 2.0, Some((13, Surface::Bottom)))
+    );
+    let fields: Vec<(Option<u32>, &str)> =
+        found.iter().map(|f| (f.line, f.field.as_str())).collect();
+    for expected in [
+        (Some(3), "element"),
+        (Some(3), "surface"),
+        (Some(3), "angle_deg"),
+        (Some(4), "bridge"),
+    ] {
+        assert!(fields.contains(&expected), "{expected:?} in {fields:?}");
+    }
+}
+
+#[test]
+fn positions_in_metres_become_job_units() {
+    let t = table::read_table(
+        "g.csv",
+        "gauge,x_m,y_m,z_m,kind,surface\nA,1.5,-0.25,0,quarter,top\n",
+    )
+    .unwrap();
+    let mut found = Vec::new();
+    let gauges = gauges::gauges_from_table(&t, 1e-3, &mut found);
+    assert_eq!(gauges[0].position, Some([1500.0, -250.0, 0.0]));
+}
+
+#[test]
+fn strain_tables_hold_runs_or_samples() {
+    let t = table::read_table("s.csv", "run,G1,G2\nR1,1.5,\nR2,3,4\n").unwrap();
+    let s = strain::strain_from_table(&t).unwrap();
+    assert_eq!(
+        s.rows,
+        strain::StrainRows::Runs(vec!["R1".into(), "R2".into()])
+    );
+    assert!(s.row(0)[1].is_nan());
+    let t = table::read_table("s.csv", "time;G1\n0;1\n0.1;2\n0.1;3\n").unwrap();
+    let f = strain::strain_from_table(&t).unwrap_err();
+    assert_eq!((f[0].line, f[0].field.as_str()), (Some(4), "time"));
+    let t = table::read_table("s.csv", "G1\n1\n").unwrap();
+    assert!(strain::strain_from_table(&t).is_err());
+}
+
+#[test]
+fn rows_of_another_length_are_faults() {
+    let f = table::read_table("s.csv", "run,G1,G2\nR1,1\n").unwrap_err();
+    assert!(
+        f[0].to_string()
+            .starts_with("s.csv:2: row: 2 fields, the header has 3"),
+        "{}",
+        f[0]
+    );
+}

@@ -1,0 +1,40 @@
+//! The application: a [`job::Job`] and a [`context::Context`] in, an [`outcome::Outcome`] out; one module a workflow.
+//!
+//! What they share: [`work`] (files read, findings, seconds of a question on its way), [`files`] (reading), [`store`] (kept solutions),
+//! [`fault`] (bad input), [`job`] (job.toml and the tables it names), [`strain`] (the one chain from job to S).
+
+pub mod ballast;
+pub mod cases;
+pub mod check;
+pub mod context;
+pub mod deck;
+pub mod fault;
+pub mod files;
+pub mod half_written;
+pub mod identify;
+pub mod init;
+pub mod job;
+pub mod outcome;
+pub mod output;
+mod paper;
+pub mod payload;
+pub mod place;
+pub mod reconcile;
+pub mod recover;
+pub mod respond;
+mod scene;
+pub mod sensitivity;
+mod session;
+pub mod solve;
+mod solved;
+mod spreadsheets;
+pub mod store;
+mod strain;
+pub mod strains;
+pub mod study;
+pub mod vehicle;
+mod wheels;
+pub mod words;
+pub mod work;
+
+pub use session::*;

@@ -1,0 +1,155 @@
+//! Writing: files appear under their names only when all of them are complete.
+
+use super::fault::Fault;
+use super::files::{FileBytes, load};
+use super::half_written;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// The output folder of one command. Files are written under temporary names and renamed by [`Output::commit`]; dropped
+/// without it, nothing is left behind.
+pub struct Output {
+    folder: PathBuf,
+    pending: Vec<(PathBuf, PathBuf)>,
+}
+
+impl Output {
+    /// An output folder, created where missing.
+    ///
+    /// # Errors
+    /// A fault where it can't be created.
+    pub fn begin(folder: &Path) -> Result<Self, Fault> {
+        std::fs::create_dir_all(folder).map_err(|e| unwritable(folder, &e))?;
+        Ok(Self {
+            folder: folder.to_owned(),
+            pending: Vec::new(),
+        })
+    }
+
+    /// The folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Writes file `name` by `fill`, buffered.
+    ///
+    /// # Errors
+    /// A fault where it can't be written.
+    pub fn write(
+        &mut self,
+        name: &str,
+        fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+    ) -> Result<(), Fault> {
+        let part = self.begin_file(name);
+        fill_file(&part, fill).map_err(|e| unwritable(&self.folder.join(name), &e))
+    }
+
+    /// Opens file `name` to be written piece by piece; flush it before [`Output::commit`].
+    ///
+    /// # Errors
+    /// A fault where it can't be created.
+    pub fn open(&mut self, name: &str) -> Result<BufWriter<File>, Fault> {
+        let part = self.begin_file(name);
+        File::create(part)
+            .map(|f| BufWriter::with_capacity(1 << 20, f))
+            .map_err(|e| unwritable(&self.folder.join(name), &e))
+    }
+
+    /// Bytes of file `name` as written so far, which must be flushed. Drop them before [`Output::commit`].
+    ///
+    /// # Errors
+    /// A fault where it can't be read.
+    pub fn read_back(&self, name: &str) -> Result<FileBytes, Fault> {
+        load(&self.part(name)).map_err(|e| unwritable(&self.folder.join(name), &e))
+    }
+
+    fn part(&self, name: &str) -> PathBuf {
+        self.folder.join(format!(".{name}.part"))
+    }
+
+    /// A fault for a file of this folder that could not be written on.
+    pub fn fault(&self, name: &str, e: &std::io::Error) -> Fault {
+        unwritable(&self.folder.join(name), e)
+    }
+
+    /// Writes two files at the same time, each by its own `fill`.
+    ///
+    /// # Errors
+    /// A fault for the first that can't be written.
+    pub fn write_both(
+        &mut self,
+        (one, fill_one): (
+            &str,
+            impl FnOnce(&mut dyn Write) -> std::io::Result<()> + Send,
+        ),
+        (two, fill_two): (
+            &str,
+            impl FnOnce(&mut dyn Write) -> std::io::Result<()> + Send,
+        ),
+    ) -> Result<(), Fault> {
+        let (part_one, part_two) = (self.begin_file(one), self.begin_file(two));
+        let (a, b) = rayon::join(
+            || fill_file(&part_one, fill_one),
+            || fill_file(&part_two, fill_two),
+        );
+        a.map_err(|e| unwritable(&self.folder.join(one), &e))?;
+        b.map_err(|e| unwritable(&self.folder.join(two), &e))
+    }
+
+    /// Notes a file under its temporary name.
+    fn begin_file(&mut self, name: &str) -> PathBuf {
+        let part = self.part(name);
+        half_written::note(&part);
+        self.pending.push((part.clone(), self.folder.join(name)));
+        part
+    }
+
+    /// Writes file `name` from bytes.
+    ///
+    /// # Errors
+    /// A fault where it can't be written.
+    pub fn write_bytes(&mut self, name: &str, bytes: &[u8]) -> Result<(), Fault> {
+        self.write(name, |w| w.write_all(bytes))
+    }
+
+    /// Renames every file to its name.
+    ///
+    /// # Errors
+    /// A fault for the first that can't be renamed.
+    pub fn commit(mut self) -> Result<(), Fault> {
+        while let Some((part, target)) = self.pending.first().cloned() {
+            std::fs::rename(&part, &target).map_err(|e| unwritable(&target, &e))?;
+            half_written::forget(&part);
+            self.pending.remove(0);
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Output {
+    fn drop(&mut self) {
+        for (part, _) in &self.pending {
+            let _ = std::fs::remove_file(part);
+            half_written::forget(part);
+        }
+    }
+}
+
+fn fill_file(
+    part: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let mut file = BufWriter::with_capacity(1 << 18, File::create(part)?);
+    fill(&mut file)?;
+    file.flush()
+}
+
+fn unwritable(path: &Path, e: &std::io::Error) -> Fault {
+    Fault::of(
+        path.display().to_string(),
+        "output",
+        format!("can't be written ({e})"),
+        "choose another folder with `--out`",
+    )
+}

@@ -1,0 +1,120 @@
+//! `payload`: mass and, where it can be told, position of a payload, from strain, from wheel forces, or from both.
+
+mod answer;
+mod judge;
+mod model;
+mod readings;
+
+use super::fault::{Fault, Faults};
+use super::job::{self, Job, Payload, PayloadPosition};
+use super::{JobArguments, Session};
+use crate::payload::{PayloadModel, PayloadRun, Place, WeighSpec, weigh};
+use crate::units::factor;
+
+/// A job's payload section with what it needs: counted in report units from here on (force, length).
+struct Task<'a> {
+    job: &'a Job,
+    payload: &'a Payload,
+    /// Gravity in report force per report mass.
+    weight_of_mass: f64,
+    /// Report force and length per job unit.
+    force: f64,
+    length: f64,
+    /// Nominal place of the payload in plan, report length, and the names of the plan axes.
+    nominal: [f64; 2],
+    /// Reactions of the structure's own weight, by wheel; empty where unknown.
+    empty: Vec<f64>,
+    /// Names of the wheels.
+    wheels: Vec<String>,
+}
+
+/// Reads, weighs, writes.
+pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
+    let job = session.stage("read job", |s| job::read_job(&mut s.inputs, &arguments.job))?;
+    session.put_units(job.units, &job.report_units);
+    let Some(payload) = &job.payload else {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "payload",
+            "the job has no [payload]",
+            "state what is looked for: [payload] grid = 9101, position = \"known\"",
+        )));
+    };
+    let use_strain = payload.use_strain && job.measured.is_some();
+    let use_reactions = payload.use_reactions && job.runs.is_some();
+    if !use_strain && !use_reactions {
+        return Err(Faults::from(Fault::at(
+            &*job.file,
+            payload.line,
+            "payload.use",
+            "neither strain nor reactions to weigh by",
+            "add [measured] strain = \"strain.csv\" or [runs] file = \"runs.csv\", and name them in `use`",
+        )));
+    }
+    let gravity = payload.gravity_m_s2.unwrap_or(9.806_65);
+    let si = job.report_units.mass.si / job.report_units.force.si;
+    let mut task = Task {
+        job: &job,
+        payload,
+        weight_of_mass: gravity * si,
+        force: factor(job.units, job.report_units.force),
+        length: factor(job.units, job.report_units.length),
+        nominal: [0.0; 2],
+        empty: Vec::new(),
+        wheels: Vec::new(),
+    };
+    let parts = model::model_of(session, &mut task, use_strain)?;
+    let runs = readings::runs_of(session, &task, &parts.model, use_strain, use_reactions)?;
+    let spec = spec_of(&task, &parts.model, &runs);
+    let weighing = session.stage("weigh", |_| weigh(&parts.model, &runs, &spec));
+    answer::put(session, &task, &parts, &runs, &spec, &weighing)?;
+    answer::write(session, arguments, &task, &parts, &runs, &weighing)
+}
+
+/// A limit far above any payload, in weights of the largest reading.
+const FAR: f64 = 1.0e3;
+
+fn spec_of(task: &Task, model: &PayloadModel, runs: &[PayloadRun]) -> WeighSpec {
+    let job = task.job;
+    let reactions = runs.iter().flat_map(|r| &r.reactions).map(|r| r.abs());
+    let largest_reaction = reactions.filter(|r| r.is_finite()).fold(0.0, f64::max);
+    let stated = job
+        .runs
+        .as_ref()
+        .and_then(|r| Some(r.noise.force? * r.units.force.si / job.report_units.force.si))
+        .filter(|s| *s > 0.0);
+    let empty: f64 = task.empty.iter().sum();
+    let place = match task.payload.position {
+        PayloadPosition::Known => Place::Known,
+        PayloadPosition::Free => Place::Free,
+    };
+    let region = task.payload.region.as_deref().and_then(|r| match r {
+        [x, y, ..] => Some([x, y].map(|v| v.map(|v| v * task.length))),
+        _ => None,
+    });
+    // Without a region: between the wheels.
+    let between = model.arms.as_ref().map(|arms| {
+        [0, 1].map(|k| {
+            arms.iter()
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |r, a| {
+                    [r[0].min(a[k]), r[1].max(a[k])]
+                })
+        })
+    });
+    WeighSpec {
+        place,
+        model_rel: job
+            .measured
+            .as_ref()
+            .map_or(0.0, |m| m.model_uncertainty_rel),
+        reaction_sigma: stated.unwrap_or(readings::ASSUMED_NOISE * largest_reaction),
+        largest: if empty > 0.0 {
+            10.0 * empty
+        } else {
+            FAR * largest_reaction.max(1.0)
+        },
+        region: region
+            .map(|r| [0, 1].map(|k| r[k].map(|v| v - task.nominal[k])))
+            .or(between),
+    }
+}

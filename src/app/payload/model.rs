@@ -1,0 +1,316 @@
+//! How gauges and wheels answer to the payload: from the deck, or from the tables of `[sensitivity]`.
+
+use super::Task;
+use crate::app::Session;
+use crate::app::deck::read_model;
+use crate::app::fault::{Fault, Faults};
+use crate::app::job::table::read_table;
+use crate::app::job::{Component, LoadActs};
+use crate::app::strain::{Prepared, prepare};
+use crate::app::wheels::{floor_fault, wheels_of};
+use crate::fe::UnitLoad;
+use crate::fe::floor::solve_standing;
+use crate::finding::{Finding, Severity};
+use crate::gauge::reading;
+use crate::linalg::Matrix;
+use crate::model::{GridIx, Model, Vec3};
+use crate::payload::PayloadModel;
+
+/// The model of the payload with what the report draws.
+pub(super) struct Parts {
+    /// In report units of force and length.
+    pub model: PayloadModel,
+    /// S and gauges; `None` where strain is not used.
+    pub prepared: Option<Prepared>,
+}
+
+/// The model in report units; sets nominal place, wheels and their reactions to the empty structure.
+///
+/// # Errors
+/// Faults of deck, gauges, tables; no payload grid.
+pub(super) fn model_of(
+    session: &mut Session,
+    task: &mut Task,
+    use_strain: bool,
+) -> Result<Parts, Faults> {
+    if task.job.sensitivity.is_some() {
+        return given(session, task, use_strain);
+    }
+    let prepared = if use_strain {
+        Some(prepare(session, task.job)?)
+    } else {
+        None
+    };
+    if let Some(p) = &prepared {
+        session.put_conditioning(&p.sensitivity)?;
+    }
+    match prepared.as_ref().and_then(|p| p.fields.as_ref()) {
+        Some(fields) => {
+            let model = standing(session, task, fields.model(), prepared.as_ref())?;
+            Ok(Parts { model, prepared })
+        }
+        None => {
+            let Some(files) = &task.job.model else {
+                return Err(Faults::from(Fault::of(
+                    &*task.job.file,
+                    "model",
+                    "the job has neither [model] nor [sensitivity]",
+                    "name the deck: [model] deck = \"model.bdf\"",
+                )));
+            };
+            let read = session
+                .stage("read model", |s| {
+                    read_model(&mut s.inputs, &task.job.folder, &files.deck.given)
+                })
+                .map_err(Faults::from)?;
+            Faults::check(read.faults)?;
+            let model = standing(session, task, &read.model, None)?;
+            Ok(Parts {
+                model,
+                prepared: None,
+            })
+        }
+    }
+}
+
+/// The grid of the payload: the job's, else the one grid with moments among the loads.
+fn payload_grid(task: &Task, model: &Model) -> Result<(GridIx, u32), Faults> {
+    let fault = |wrong: String| {
+        Faults::from(Fault::at(
+            &*task.job.file,
+            task.payload.line,
+            "payload.grid",
+            wrong,
+            "name the grid where the payload acts, such as the reference grid of its RBE3",
+        ))
+    };
+    let id = task
+        .payload
+        .grid
+        .or_else(|| {
+            task.job.loads.iter().find_map(|l| match l.acts {
+                LoadActs::AtGrid {
+                    grid, component, ..
+                } if component.dof() > 2 && l.role == crate::app::job::Role::Wanted => Some(grid),
+                _ => None,
+            })
+        })
+        .ok_or_else(|| fault("the key is missing".into()))?;
+    model
+        .grid_ix(id)
+        .map(|ix| (ix, id))
+        .ok_or_else(|| fault(format!("the deck has no grid {id}")))
+}
+
+/// From the deck: unit loads at wheels and payload on the free structure, and the floor.
+fn standing(
+    session: &mut Session,
+    task: &mut Task,
+    model: &Model,
+    prepared: Option<&Prepared>,
+) -> Result<PayloadModel, Faults> {
+    let job = task.job;
+    let wheels = wheels_of(job, model)?;
+    let (grid, id) = payload_grid(task, model)?;
+    let (a, b, c) = (wheels.axis, (wheels.axis + 1) % 3, (wheels.axis + 2) % 3);
+    let unit = |axis: usize| {
+        let mut v = Vec3::zeros();
+        v[axis] = 1.0;
+        v
+    };
+    let others = [
+        (unit(a), Vec3::zeros()),
+        (Vec3::zeros(), unit(b)),
+        (Vec3::zeros(), unit(c)),
+    ];
+    let loads: Vec<UnitLoad> = others
+        .iter()
+        .map(|(force, moment)| UnitLoad::AtGrid {
+            grid,
+            force: *force,
+            moment: *moment,
+        })
+        .collect();
+    let standing = session
+        .stage("solve on the floor", |_| {
+            solve_standing(model, a, &wheels.grids, &loads, None)
+        })
+        .map_err(|e| floor_fault(job, &e))?;
+    let at = model.grids.get(grid.us()).map_or_else(Vec3::zeros, |g| g.x);
+    let n = wheels.grids.len();
+    // Weight down; its shift along b turns about c, along c against b.
+    let signs = [-1.0, -1.0, 1.0];
+    let shift_of = [0, 2, 1];
+    let mut floor = Matrix::zeros(n, 3);
+    for (k, (force, moment)) in others.iter().enumerate() {
+        let lift = standing.lift(&standing.others[k]);
+        let r = standing
+            .floor
+            .reactions(&standing.floor.load(at, *force, *moment, lift));
+        for (w, r) in r.iter().enumerate() {
+            floor[(w, shift_of[k])] = signs[k] * r;
+        }
+    }
+    let gravity = task
+        .payload
+        .gravity_m_s2
+        .map_or(job.units.standard_gravity(), |g| g / job.units.length_m());
+    task.empty = standing
+        .under_weight(model, gravity)
+        .iter()
+        .map(|r| r * task.force)
+        .collect();
+    task.wheels = wheels
+        .loads
+        .iter()
+        .map(|l| job.loads[*l].name.clone())
+        .collect();
+    task.nominal = [at[b] * task.length, at[c] * task.length];
+    session.findings.push(Finding::new(
+        Severity::Info,
+        "flat-floor",
+        "payload",
+        "where wheel forces are not measured the structure stands on a flat, level, frictionless floor; its own springs decide how the \
+         wheels share the payload, tyres are rigid",
+        "",
+    ));
+    let (gauges, wheel_columns, payload_columns) = match prepared {
+        None => (Vec::new(), Matrix::zeros(0, n), Matrix::zeros(0, 3)),
+        Some(p) => {
+            let s = &p.sensitivity;
+            let rows = s.gauges.len();
+            let columns =
+                Matrix::from_fn(rows, n, |g, w| s.values[(g, wheels.loads[w])] / task.force);
+            let mut direct = Matrix::zeros(rows, 3);
+            for k in 0..3 {
+                // The job's own column where it has one, else the solution made here.
+                let component = [a, 3 + b, 3 + c][k];
+                let own = job.loads.iter().position(|l| {
+                    matches!(l.acts, LoadActs::AtGrid { grid, component: d, cid: 0 } if grid == id && d == Component::ALL[component])
+                });
+                for (g, gauge) in p.gauges.iter().enumerate() {
+                    let v = match own {
+                        Some(l) => s.values[(g, l)],
+                        None => reading(gauge, &standing.others[k]).unwrap_or(0.0),
+                    };
+                    direct[(g, shift_of[k])] = signs[k] * v;
+                }
+            }
+            (s.gauges.clone(), columns, direct)
+        }
+    };
+    // Shifts count in report lengths.
+    let per = [
+        1.0 / task.force,
+        1.0 / (task.force * task.length),
+        1.0 / (task.force * task.length),
+    ];
+    let payload = Matrix::from_fn(gauges.len(), 3, |g, k| payload_columns[(g, k)] * per[k]);
+    let floor = Matrix::from_fn(n, 3, |w, k| {
+        floor[(w, k)] / if k == 0 { 1.0 } else { task.length }
+    });
+    let arms = standing
+        .floor
+        .positions()
+        .iter()
+        .map(|x| [(x[b] - at[b]) * task.length, (x[c] - at[c]) * task.length])
+        .collect();
+    Ok(PayloadModel {
+        gauges,
+        wheels: wheel_columns,
+        payload,
+        floor: Some(floor),
+        arms: Some(arms),
+    })
+}
+
+/// From tables: S, and the payload's signature `b0, b_dx, b_dy` per mass.
+fn given(session: &mut Session, task: &mut Task, use_strain: bool) -> Result<Parts, Faults> {
+    let job = task.job;
+    let Some(tables) = &job.sensitivity else {
+        return Err(Vec::new());
+    };
+    let prepared = prepare(session, job)?;
+    let s = &prepared.sensitivity;
+    let vertical: Vec<usize> = (0..s.loads.len())
+        .filter(|l| {
+            let name = &s.loads[*l].name;
+            s.loads[*l].wanted && name.split(['.', '_', ' ']).any(|p| p == "FZ")
+        })
+        .collect();
+    task.wheels = vertical.iter().map(|l| s.loads[*l].name.clone()).collect();
+    let to_si = |x: Option<f64>| x.unwrap_or(0.0) * task.length;
+    task.nominal = [to_si(task.payload.nominal_x), to_si(task.payload.nominal_y)];
+    let n = s.gauges.len();
+    let mut payload = Matrix::zeros(n, 3);
+    if use_strain {
+        let Some(file) = &tables.signatures.payload else {
+            return Err(Faults::from(Fault::at(
+                &*job.file,
+                tables.line,
+                "sensitivity.signatures.payload",
+                "the job gives S without the payload's signature",
+                "name its table: signatures = { payload = \"B_payload.csv\" } with columns gauge, b0, b_dx, b_dy",
+            )));
+        };
+        let text = session
+            .inputs
+            .read_named_text(job, file)
+            .map_err(Faults::from)?;
+        let table = read_table(&file.given, &text)?;
+        let key = table.column(&["gauge", "name"]).unwrap_or(0);
+        let mut faults = FaultList::new();
+        // Microstrain per mass (and length) of the table to strain per report force (and length).
+        let mass = job.report_units.mass.si / tables.per.mass.si;
+        let length = job.report_units.length.si / tables.per.length.si;
+        for (g, name) in s.gauges.iter().enumerate() {
+            let Some(row) = table.rows.iter().position(|r| r.1.get(key) == Some(name)) else {
+                faults.push(Fault::of(
+                    &*file.given,
+                    "gauge",
+                    format!("no row for gauge `{name}`"),
+                    "give every gauge a row",
+                ));
+                continue;
+            };
+            for (k, column) in ["b0", "b_dx", "b_dy"].into_iter().enumerate() {
+                let Some(c) = table.column(&[column]) else {
+                    continue;
+                };
+                match table.number(row, c) {
+                    Ok(v) => {
+                        let per = MICRO * mass / task.weight_of_mass;
+                        payload[(g, k)] =
+                            v.unwrap_or(0.0) * per * if k == 0 { 1.0 } else { length };
+                    }
+                    Err(f) => faults.push(f),
+                }
+            }
+        }
+        Faults::check(faults)?;
+    }
+    let model = PayloadModel {
+        gauges: if use_strain {
+            s.gauges.clone()
+        } else {
+            Vec::new()
+        },
+        wheels: Matrix::from_fn(if use_strain { n } else { 0 }, vertical.len(), |g, w| {
+            s.values[(g, vertical[w])] / task.force
+        }),
+        payload: if use_strain {
+            payload
+        } else {
+            Matrix::zeros(0, 3)
+        },
+        floor: None,
+        arms: None,
+    };
+    Ok(Parts {
+        model,
+        prepared: Some(prepared),
+    })
+}
+
+/// Strain in one microstrain.
+const MICRO: f64 = 1e-6;

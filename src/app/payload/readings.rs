@@ -1,0 +1,340 @@
+//! What the runs read: net strain with its noise, changes of the wheel forces, known places.
+
+use super::Task;
+use crate::app::Session;
+use crate::app::fault::{Fault, Faults};
+use crate::app::job::runs::{RunRow, read_runs};
+use crate::app::job::strain::{StrainRows, StrainTable, read_strain};
+use crate::app::job::{NamedFile, PayloadPosition, WheelForces};
+use crate::finding::{Finding, Severity};
+use crate::payload::{PayloadModel, PayloadRun};
+use crate::recovery::net::{Net, WEAK, mean_of, net};
+use serde_json::json;
+
+/// Noise of a wheel force where the job states none, of the largest.
+pub(super) const ASSUMED_NOISE: f64 = 0.01;
+
+/// Strain in one microstrain.
+const MICRO: f64 = 1e-6;
+
+/// The runs to be weighed.
+///
+/// # Errors
+/// Unreadable tables, runs without what the answer needs.
+pub(super) fn runs_of(
+    session: &mut Session,
+    task: &Task,
+    model: &PayloadModel,
+    use_strain: bool,
+    use_reactions: bool,
+) -> Result<Vec<PayloadRun>, Faults> {
+    let job = task.job;
+    let rows = match &job.runs {
+        Some(runs) => read_runs(&mut session.inputs, job, runs)?,
+        None => Vec::new(),
+    };
+    let reactions = use_reactions && believed(session, task, use_strain);
+    if !use_strain && !reactions {
+        return Err(Faults::from(Fault::at(
+            &*job.file,
+            task.payload.line,
+            "payload.use",
+            "the wheel forces are computed, not measured, and there is no strain",
+            "give measured strain or wheel forces",
+        )));
+    }
+    let unloaded = unloaded(task, &rows)?;
+    let mut out: Vec<PayloadRun> = Vec::new();
+    if use_strain {
+        for (run, nets) in strain(session, task, model)? {
+            if Some(&run) == task.payload.unloaded.as_ref() {
+                continue;
+            }
+            out.push(PayloadRun {
+                run,
+                strain: nets.iter().map(|n| n.value).collect(),
+                sigma: nets.iter().map(|n| n.sigma).collect(),
+                reactions: Vec::new(),
+                shift: [0.0; 2],
+            });
+        }
+    } else {
+        let others = rows
+            .iter()
+            .filter(|r| Some(&r.run) != task.payload.unloaded.as_ref());
+        out.extend(others.map(|r| PayloadRun {
+            run: r.run.clone(),
+            strain: Vec::new(),
+            sigma: Vec::new(),
+            reactions: Vec::new(),
+            shift: [0.0; 2],
+        }));
+    }
+    let metre = job.report_units.length.si;
+    let newton = job.report_units.force.si;
+    let mut without: Vec<String> = Vec::new();
+    for run in &mut out {
+        let row = rows.iter().find(|r| r.run == run.run);
+        let known = task.payload.position == PayloadPosition::Known;
+        if let Some(row) = row.filter(|_| known) {
+            for (k, at) in [row.payload_x_m, row.payload_y_m].into_iter().enumerate() {
+                if let Some(at) = at {
+                    run.shift[k] = at / metre - task.nominal[k];
+                }
+            }
+        }
+        if let (true, None, Some(at)) = (known, row, task.payload.nominal_x) {
+            run.shift[0] = at * task.length - task.nominal[0];
+        }
+        if reactions {
+            let of = |row: &RunRow| -> Vec<f64> {
+                task.wheels
+                    .iter()
+                    .map(|w| row.loads_si.get(w).map_or(f64::NAN, |v| v / newton))
+                    .collect()
+            };
+            let values = row.map_or_else(|| vec![f64::NAN; task.wheels.len()], of);
+            let values: Vec<f64> = match unloaded {
+                Some(u) => values.iter().zip(of(u)).map(|(v, u)| v - u).collect(),
+                None => values,
+            };
+            if values.iter().all(|v| v.is_finite()) {
+                run.reactions = values;
+            } else {
+                without.push(run.run.clone());
+            }
+        }
+    }
+    if !without.is_empty() {
+        if model.floor.is_none() || !use_strain {
+            return Err(Faults::from(Fault::at(
+                &*job.file,
+                job.runs.as_ref().map_or(0, |r| r.line),
+                "runs",
+                format!("no wheel forces of every wheel for {}", without.join(", ")),
+                "add their rows and columns",
+            )));
+        }
+        session.findings.push(Finding::new(
+            Severity::Warning,
+            "run-without-wheel-forces",
+            without.join(", "),
+            "not every wheel was measured: the payload is weighed by strain on a flat floor",
+            "add their rows and columns to the runs file",
+        ));
+    } else if !reactions && model.floor.is_none() {
+        return Err(Faults::from(Fault::at(
+            &*job.file,
+            task.payload.line,
+            "payload",
+            "a given S has no floor: without measured wheel forces the payload can't be told from them",
+            "give a [model], or measured wheel forces with `use = [\"strain\", \"reactions\"]`",
+        )));
+    }
+    if out.is_empty() {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "run",
+            "no run to be weighed",
+            "add rows to the strain or runs file",
+        )));
+    }
+    // Runs with and without wheel forces are weighed by the same rule.
+    if !without.is_empty() {
+        out.iter_mut().for_each(|r| r.reactions.clear());
+    }
+    Ok(out)
+}
+
+/// Whether the wheel forces count as evidence; says so where they don't.
+fn believed(session: &mut Session, task: &Task, use_strain: bool) -> bool {
+    let Some(runs) = &task.job.runs else {
+        return false;
+    };
+    if runs.wheel_forces == WheelForces::Measured {
+        if runs.noise.force.is_none_or(|s| s <= 0.0) {
+            session.findings.push(Finding::new(
+                Severity::Info,
+                "reaction-noise-assumed",
+                "runs.noise.force",
+                "the job does not say how well the wheel forces are measured: 1 % of the largest is taken",
+                "state [runs] noise = { force = 0.06 }",
+            ));
+        }
+        return true;
+    }
+    if use_strain {
+        session.findings.push(Finding::new(
+            Severity::Info,
+            "wheel-forces-computed",
+            "runs.wheel_forces",
+            "the wheel forces were computed for flat ground, not measured: they are no evidence of the payload and are left out",
+            "measure them, or weigh by strain",
+        ));
+    }
+    false
+}
+
+fn unloaded<'a>(task: &Task, rows: &'a [RunRow]) -> Result<Option<&'a RunRow>, Faults> {
+    let Some(name) = &task.payload.unloaded else {
+        return Ok(None);
+    };
+    match rows.iter().find(|r| r.run == *name) {
+        Some(row) => Ok(Some(row)),
+        None if task.job.runs.is_none() => Ok(None),
+        None => Err(Faults::from(Fault::at(
+            &*task.job.file,
+            task.payload.line,
+            "payload.unloaded",
+            format!("the runs file has no run `{name}`"),
+            "name the run without payload",
+        ))),
+    }
+}
+
+/// Net strain of every run by gauge of the model; says which gauges are too weak.
+fn strain(
+    session: &mut Session,
+    task: &Task,
+    model: &PayloadModel,
+) -> Result<Vec<(String, Vec<Net>)>, Faults> {
+    let Some(measured) = &task.job.measured else {
+        return Ok(Vec::new());
+    };
+    let table = session.stage("read strain", |s| {
+        read_strain(&mut s.inputs, task.job, &measured.strain)
+    })?;
+    let noise = measured.noise_microstrain * MICRO;
+    let zero: Vec<Option<Net>> = match &measured.zero {
+        Some(named) => {
+            let t = read_strain(&mut session.inputs, task.job, named)?;
+            by_gauge(&t, model)
+                .into_iter()
+                .map(|v| Some(mean_of(&v, noise)))
+                .collect()
+        }
+        None => vec![None; model.gauges.len()],
+    };
+    let readings = by_gauge(&table, model);
+    if readings.iter().flatten().all(|v| !v.is_finite()) {
+        return Err(Faults::from(Fault::at(
+            &*measured.strain.given,
+            1,
+            "gauge",
+            "no column is named after a gauge of the job",
+            "name the columns after the gauges",
+        )));
+    }
+    let runs: Vec<(String, Vec<Net>)> = match &table.rows {
+        StrainRows::Times(_) => {
+            let means = readings.iter().map(|v| mean_of(v, noise));
+            vec![(stem(&measured.strain), nets(means, &zero))]
+        }
+        StrainRows::Runs(names) => {
+            // Without a zero file an unloaded run of the same table is the zero.
+            let own = task
+                .payload
+                .unloaded
+                .as_ref()
+                .and_then(|u| names.iter().position(|n| n == u))
+                .filter(|_| measured.zero.is_none());
+            let zero: Vec<Option<Net>> = match own {
+                Some(i) => readings
+                    .iter()
+                    .map(|v| Some(mean_of(&v[i..=i], noise)))
+                    .collect(),
+                None => zero,
+            };
+            names
+                .iter()
+                .enumerate()
+                .map(|(i, name)| {
+                    let means = readings.iter().map(|v| mean_of(&v[i..=i], noise));
+                    (name.clone(), nets(means, &zero))
+                })
+                .collect()
+        }
+    };
+    say_net(session, task, model, &runs)?;
+    Ok(runs)
+}
+
+fn nets(means: impl Iterator<Item = Net>, zero: &[Option<Net>]) -> Vec<Net> {
+    means.zip(zero).map(|(m, z)| net(m, *z)).collect()
+}
+
+fn stem(named: &NamedFile) -> String {
+    std::path::Path::new(&named.given)
+        .file_stem()
+        .map_or_else(|| named.given.clone(), |s| s.to_string_lossy().into_owned())
+}
+
+/// Readings of each gauge of the model by row, strain; NaN where the table has no column.
+fn by_gauge(table: &StrainTable, model: &PayloadModel) -> Vec<Vec<f64>> {
+    model
+        .gauges
+        .iter()
+        .map(|g| {
+            let column = table.gauges.iter().position(|h| h == g);
+            (0..table.n_rows())
+                .map(|i| {
+                    column
+                        .and_then(|c| table.row(i).get(c))
+                        .map_or(f64::NAN, |v| v * MICRO)
+                })
+                .collect()
+        })
+        .collect()
+}
+
+/// `net` of the result, and the gauges too weak for the job in every run.
+fn say_net(
+    session: &mut Session,
+    task: &Task,
+    model: &PayloadModel,
+    runs: &[(String, Vec<Net>)],
+) -> Result<(), Faults> {
+    let mut weak: Vec<&str> = Vec::new();
+    let mut best = f64::INFINITY;
+    for (g, name) in model.gauges.iter().enumerate() {
+        let loaded = runs
+            .iter()
+            .filter(|r| Some(&r.0) != task.payload.unloaded.as_ref());
+        let most = loaded
+            .map(|r| r.1[g].signal_to_noise())
+            .filter(|s| s.is_finite())
+            .fold(0.0, f64::max);
+        if most < WEAK {
+            weak.push(name);
+            best = best.min(most);
+        }
+    }
+    if !weak.is_empty() {
+        session.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "gauges-too-weak",
+                weak.join(", "),
+                "the net reading does not stand out of the noise in any run: these gauges can say nothing of the payload",
+                "leave them out, or glue gauges where the payload strains the structure (`place`)",
+            )
+            .with_numbers(best, WEAK),
+        );
+    }
+    let rows: Vec<serde_json::Value> = runs
+        .iter()
+        .flat_map(|(run, nets)| {
+            model.gauges.iter().zip(nets).map(move |(g, n)| {
+                let finite = |v: f64| v.is_finite().then_some(v);
+                json!({
+                    "run": run,
+                    "name": g,
+                    "net_microstrain": finite(n.value / MICRO),
+                    "sigma_microstrain": finite(n.sigma / MICRO),
+                    "signal_to_noise": finite(n.signal_to_noise()),
+                })
+            })
+        })
+        .collect();
+    session.put("net", rows)
+}

@@ -1,0 +1,408 @@
+//! The choice: single gauges through the tensors, or units (rosettes, pairs, unlike costs) within a budget.
+
+use super::pool::Kind;
+use super::task::{Task, know_the_loads, position};
+use crate::app::Session;
+use crate::app::fault::{Fault, Faults};
+use crate::app::job::{Criterion as Wanted, Rosette as JobRosette};
+use crate::gauge::{Bridge, CornerRows, Gauge, GaugeSpec, Rosette, build};
+use crate::linalg::spd;
+use crate::model::Vec3;
+use crate::placement::candidates::{Angles, Choice};
+use crate::placement::sites::axis_of;
+use crate::placement::units::{UnitSpec, Units, place_units};
+use crate::placement::{Layout, PlaceError, Spec, condition, place, quality};
+use std::collections::HashMap;
+
+/// A channel chosen.
+pub(super) struct Channel {
+    /// On the model.
+    pub gauge: Gauge,
+    /// Wiring, as a job names it.
+    pub bridge: &'static str,
+    /// Index of the site.
+    pub site: usize,
+    /// Row over its standard deviation, columns in the candidates' order.
+    pub row: Vec<f64>,
+    /// Standard deviation of its reading, microstrain.
+    pub sd: f64,
+    /// Change of its reading with its angle, microstrain a radian, rms over the expected loads.
+    pub turn: f64,
+    /// The angle of its first grid.
+    pub angle: f64,
+}
+
+/// A layout chosen.
+pub(super) struct Chosen {
+    pub channels: Vec<Channel>,
+    pub log_det: f64,
+    pub upper_bound: f64,
+    pub efficiency_bound: f64,
+    pub proved: bool,
+    pub nodes: usize,
+    /// Its costs, where they were counted.
+    pub cost: Option<f64>,
+    /// The least condition number met, where that was looked for.
+    pub least_condition: Option<f64>,
+}
+
+/// Units at most: memory for their rows.
+const MOST_UNITS: usize = 4_000_000;
+
+/// Whether single gauges of one wiring are all there is to choose.
+pub(super) fn is_plain(task: &Task) -> bool {
+    let (c, p) = (&task.job.candidates, &task.job.placement);
+    c.bridges.len() == 1
+        && c.rosette.is_none()
+        && p.symmetric.is_none()
+        && p.costs.is_empty()
+        && p.budget.is_none()
+}
+
+/// Chooses; where the loads can't be separated, with the loads taken as known to their expected size, which a finding says.
+///
+/// # Errors
+/// Where nothing fits.
+pub(super) fn choose(
+    session: &mut Session,
+    task: &Task,
+    kinds: &[Kind],
+    spec: &mut Spec,
+) -> Result<Chosen, Faults> {
+    match choose_once(task, kinds, spec) {
+        Err(Refused::By(PlaceError::Singular { gauges, loads })) => {
+            know_the_loads(session, spec, gauges, loads);
+            choose_once(task, kinds, spec)
+        }
+        other => other,
+    }
+    .map_err(|e| {
+        vec![match e {
+            Refused::By(e) => task.refusal(&e),
+            Refused::Job(f) => f,
+        }]
+    })
+}
+
+/// Why there is no choice.
+pub(super) enum Refused {
+    By(PlaceError),
+    Job(Fault),
+}
+
+/// Chooses as the spec says.
+pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Refused> {
+    if is_plain(task)
+        && let [kind] = kinds
+    {
+        let mut layout = place(&kind.candidates, spec).map_err(Refused::By)?;
+        let least_condition = well_conditioned(task, kind, spec, &mut layout);
+        let n = layout.gauges.len();
+        let channels = layout
+            .gauges
+            .iter()
+            .enumerate()
+            .filter_map(|(i, &c)| channel(task, kind, c, name(i, n)))
+            .collect();
+        return Ok(Chosen {
+            channels,
+            log_det: layout.log_det,
+            upper_bound: layout.upper_bound,
+            efficiency_bound: layout.efficiency_bound,
+            proved: layout.proved,
+            nodes: layout.nodes,
+            cost: None,
+            least_condition,
+        });
+    }
+    if task.job.placement.criterion == Wanted::Condition {
+        return Err(Refused::Job(Fault::at(
+            &*task.job.file,
+            task.job.placement.line,
+            "placement.criterion",
+            "the least condition number is looked for among single gauges of one wiring, without pairs, costs or a budget",
+            "write criterion = \"D\", or leave those keys out",
+        )));
+    }
+    within_budget(task, kinds, spec)
+}
+
+/// Puts the layout of least condition number in place of the best one by D, where the job asks for it; the certificate then says how much
+/// of the largest determinant is left.
+fn well_conditioned(task: &Task, kind: &Kind, spec: &Spec, layout: &mut Layout) -> Option<f64> {
+    if task.job.placement.criterion != Wanted::Condition {
+        return None;
+    }
+    let k = task.cases.len();
+    // Gauges that stay read with the noise of all.
+    let noise = task.job.placement.noise_microstrain;
+    let mut base = vec![0.0; k * k];
+    for row in &task.kept_rows {
+        spd::add_outer(&mut base, row, noise * noise);
+    }
+    let found = condition::best(&kind.candidates, spec, layout, &base)?;
+    let rows: Vec<Vec<f64>> = found
+        .gauges
+        .iter()
+        .map(|&g| kind.candidates.row(g))
+        .collect();
+    layout.log_det = quality::value(&rows, &spec.prior, k, &spec.criterion)?;
+    layout.efficiency_bound = ((layout.log_det - layout.upper_bound) / k as f64).exp();
+    layout.gauges = found.gauges;
+    layout.proved = false;
+    Some(found.least)
+}
+
+fn name(i: usize, n: usize) -> String {
+    let digits = n.to_string().len().max(2);
+    format!("P{:0digits$}", i + 1)
+}
+
+fn channel(task: &Task, kind: &Kind, choice: Choice, name: String) -> Option<Channel> {
+    let site = choice.place as usize;
+    let (shell, surface) = *task.sites.get(site)?;
+    let spec = GaugeSpec {
+        surface: Some(surface),
+        angle_rad: axis_of(kind.bridge, choice.angle),
+        grid_length: task.job.candidates.grid_length,
+        bridge: kind.bridge,
+        ..GaugeSpec::on(name, shell)
+    };
+    let (gauges, _) = build(task.fields.model(), &spec, CornerRows::Absent).ok()?;
+    Some(Channel {
+        gauge: gauges.into_iter().next()?,
+        bridge: kind.name,
+        site,
+        row: kind.candidates.row(choice),
+        sd: kind.candidates.sd(choice),
+        turn: kind.candidates.turn_rms(choice),
+        angle: choice.angle,
+    })
+}
+
+/// A unit in words: wiring, site and angle of each grid or bridge in it; a rosette's legs are three of the quarter kind.
+struct Described {
+    members: Vec<(usize, Choice)>,
+    rosette: bool,
+}
+
+fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Refused> {
+    let p = &task.job.placement;
+    let k = task.cases.len();
+    let cost_of = |name: &str, default: f64| {
+        let own = p.costs.iter().find(|c| c.0 == name);
+        own.map_or(default, |c| c.1)
+    };
+    let positions: Vec<[f64; 3]> = task
+        .sites
+        .iter()
+        .map(|&s| position(task.fields, s).map_or([f64::NAN; 3], |x| [x.x, x.y, x.z]))
+        .collect();
+    let steps: Vec<f64> = match kinds.first().map(|k| k.candidates.angles()) {
+        Some(Angles::Grid(a)) => a.clone(),
+        _ => (0..12)
+            .map(|i| (15.0 * f64::from(i)).to_radians())
+            .collect(),
+    };
+    let mates = p.symmetric.map(|axis| Mirror::of(task, &positions, axis));
+    // Rosettes need a quarter kind to take their legs from.
+    let quarter = kinds.iter().position(|k| k.bridge == Bridge::Quarter);
+    let legs: Option<[f64; 3]> = task.job.candidates.rosette.map(|r| {
+        let r = match r {
+            JobRosette::Rectangular => Rosette::Rectangular,
+            JobRosette::Delta => Rosette::Delta,
+        };
+        r.legs().map(|l| l.1)
+    });
+    let asked = &task.job.candidates.bridges;
+    let singles = asked.len() * steps.len();
+    let many = task.sites.len() * (singles + if legs.is_some() { 2 } else { 0 });
+    if many > MOST_UNITS {
+        return Err(Refused::Job(Fault::at(
+            &*task.job.file,
+            task.job.candidates.line,
+            "candidates",
+            format!("{many} units to choose from, more than {MOST_UNITS}"),
+            "state a wider `angle_step_deg`, or fewer elements; rosettes, pairs and costs are compared one by one",
+        )));
+    }
+    let mut units = Units::new(k, positions);
+    let mut described: Vec<Described> = Vec::new();
+    let mut add = |members: Vec<(usize, Choice)>, cost: f64, rosette: bool| {
+        let rows: Vec<Vec<f64>> = members
+            .iter()
+            .map(|(kind, c)| kinds[*kind].candidates.row(*c))
+            .collect();
+        let first = members.first().map_or(0, |m| m.1.place);
+        let last = members.last().map_or(0, |m| m.1.place);
+        units.add(&rows, cost, [first, last]);
+        described.push(Described { members, rosette });
+    };
+    let at = |place: usize, angle: f64| Choice {
+        place: place as u32,
+        step: 0,
+        angle,
+    };
+    for site in 0..task.sites.len() {
+        let mate = match &mates {
+            Some(m) => match m.mate(site) {
+                // Of a pair the first is taken; one without a partner can't be in a symmetric layout.
+                Some(other) if other >= site => Some(other),
+                _ => continue,
+            },
+            None => None,
+        };
+        let paired = |kind: usize, angle: f64| -> Vec<(usize, Choice)> {
+            let mut out = vec![(kind, at(site, angle))];
+            if let Some(other) = mate.filter(|m| *m != site)
+                && let Some(m) = &mates
+            {
+                out.push((kind, at(other, m.angle(task, site, other, angle))));
+            }
+            out
+        };
+        for (n, kind) in kinds.iter().enumerate() {
+            if kind.bridge == Bridge::Quarter && !asked.iter().any(|b| b.name() == "quarter") {
+                continue;
+            }
+            for &angle in &steps {
+                let members = paired(n, angle);
+                let cost = cost_of(kind.name, 1.0) * members.len() as f64;
+                add(members, cost, false);
+            }
+        }
+        if let (Some(q), Some(legs)) = (quarter, legs) {
+            // Its orientation matters little: two are compared.
+            for turn in [0.0, 0.5 * legs[1]] {
+                let members: Vec<(usize, Choice)> =
+                    legs.iter().flat_map(|l| paired(q, turn + l)).collect();
+                let cost = cost_of("rosette", 3.0) * members.len() as f64 / 3.0;
+                add(members, cost, true);
+            }
+        }
+    }
+    let budget = p.budget.unwrap_or(spec.gauges as f64);
+    let spec = UnitSpec {
+        budget,
+        spacing: spec.spacing,
+        prior: spec.prior.clone(),
+        criterion: spec.criterion.clone(),
+        tolerance: spec.tolerance,
+        effort: spec.effort,
+    };
+    let layout = place_units(&units, &spec).map_err(Refused::By)?;
+    let n = layout.units.len();
+    let mut channels = Vec::new();
+    for (i, &u) in layout.units.iter().enumerate() {
+        let d = &described[u];
+        for (m, (kind, choice)) in d.members.iter().enumerate() {
+            let base = name(i, n);
+            let leg = m % 3;
+            let name = match (d.rosette, d.members.len()) {
+                (true, 3) => format!("{base}.{}", ["a", "b", "c"][leg]),
+                (true, _) => format!("{base}{}.{}", ["L", "R"][m % 2], ["a", "b", "c"][m / 2]),
+                (false, 2) => format!("{base}{}", ["L", "R"][m]),
+                (false, _) => base,
+            };
+            channels.extend(channel(task, &kinds[*kind], *choice, name));
+        }
+    }
+    Ok(Chosen {
+        channels,
+        log_det: layout.log_det,
+        upper_bound: layout.upper_bound,
+        efficiency_bound: layout.efficiency_bound,
+        proved: false,
+        nodes: 0,
+        least_condition: None,
+        cost: Some(layout.units.iter().map(|&u| units.cost[u]).sum()),
+    })
+}
+
+/// Partners of sites at a plane through the origin normal to an axis.
+struct Mirror {
+    axis: usize,
+    mate: Vec<Option<usize>>,
+}
+
+impl Mirror {
+    fn of(task: &Task, positions: &[[f64; 3]], axis: usize) -> Self {
+        let size = positions
+            .iter()
+            .flatten()
+            .fold(0.0_f64, |a, v| a.max(v.abs()));
+        // Partners of a mirrored mesh agree to the deck's digits.
+        let cell = (1e-3 * size).max(f64::MIN_POSITIVE);
+        let key = |x: [f64; 3]| x.map(|v| (v / cell).round() as i64);
+        let mut at: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+        for (i, x) in positions.iter().enumerate() {
+            at.entry(key(*x)).or_default().push(i);
+        }
+        let outward = |site: usize| -> Option<Vec3> {
+            let g = probe(task, site, 0.0)?;
+            Some(match g.surface {
+                crate::fe::strain_tensor::Surface::Top => g.normal,
+                crate::fe::strain_tensor::Surface::Bottom => -g.normal,
+            })
+        };
+        let mate = positions
+            .iter()
+            .enumerate()
+            .map(|(i, x)| {
+                let mut y = *x;
+                y[axis] = -y[axis];
+                let mut normal = outward(i)?;
+                normal[axis] = -normal[axis];
+                let near = key(y);
+                let around = (0..27).flat_map(|n| {
+                    let step = [n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1];
+                    let cell: [i64; 3] = std::array::from_fn(|c| near[c] + step[c]);
+                    at.get(&cell).cloned().unwrap_or_default()
+                });
+                around
+                    .filter(|&j| outward(j).is_some_and(|m| m.dot(&normal) > 0.9))
+                    .min_by(|&a, &b| {
+                        let far = |j: usize| crate::placement::spacing::distance(positions[j], y);
+                        far(a).total_cmp(&far(b)).then(a.cmp(&b))
+                    })
+            })
+            .collect();
+        Self { axis, mate }
+    }
+
+    fn mate(&self, site: usize) -> Option<usize> {
+        self.mate.get(site).copied().flatten()
+    }
+
+    /// The angle on the partner's element of the mirrored direction.
+    fn angle(&self, task: &Task, site: usize, other: usize, angle: f64) -> f64 {
+        let Some(here) = probe(task, site, angle) else {
+            return angle;
+        };
+        let mut d = here.direction;
+        d[self.axis] = -d[self.axis];
+        let frame = (
+            probe(task, other, 0.0),
+            probe(task, other, std::f64::consts::FRAC_PI_2),
+        );
+        match frame {
+            (Some(x), Some(y)) => d.dot(&y.direction).atan2(d.dot(&x.direction)),
+            _ => angle,
+        }
+    }
+}
+
+/// A single grid at a site.
+fn probe(task: &Task, site: usize, angle: f64) -> Option<Gauge> {
+    let (shell, surface) = *task.sites.get(site)?;
+    let spec = GaugeSpec {
+        surface: Some(surface),
+        angle_rad: angle,
+        ..GaugeSpec::on("probe", shell)
+    };
+    build(task.fields.model(), &spec, CornerRows::Absent)
+        .ok()?
+        .0
+        .into_iter()
+        .next()
+}

@@ -1,0 +1,87 @@
+//! The gauges that the job already has, by the same measures.
+
+use super::answer::{finite, in_job_order, sigma_rows};
+use super::pool::MICRO;
+use super::task::Task;
+use crate::app::Session;
+use crate::app::fault::Faults;
+use crate::app::strain::lay_gauges;
+use crate::finding::{Finding, Severity};
+use crate::linalg::spd;
+use crate::placement::candidates::Candidates;
+use crate::placement::quality::judge_rows;
+use crate::placement::{self, Spec, place};
+use crate::sensitivity::from_cases;
+use serde_json::json;
+
+/// The installed layout by the same measures, noise alone; `None` without gauges in the job.
+pub(super) fn installed(
+    session: &mut Session,
+    task: &Task,
+    c: &Candidates,
+    spec: &Spec,
+) -> Result<Option<serde_json::Value>, Faults> {
+    let (job, fields, cases, scales) = (task.job, task.fields, &task.cases, &task.scales);
+    if job.gauges.is_empty() {
+        return Ok(None);
+    }
+    let gauges = lay_gauges(session, job, fields)?;
+    let s = match from_cases(&gauges, cases) {
+        Ok(s) => s,
+        Err(missing) => {
+            session.findings.push(Finding::new(
+                Severity::Warning,
+                "installed-gauges-without-strain",
+                missing.iter().map(|m| m.gauge.as_str()).collect::<Vec<_>>().join(", "),
+                "installed gauges sit where some subcase has no strain: the installed layout is not judged",
+                "ask for STRAIN of their elements in every subcase",
+            ));
+            return Ok(None);
+        }
+    };
+    let k = cases.len();
+    // Without the gauges that stay: they are among the installed ones.
+    let mut spec = spec.clone();
+    for row in &task.kept_rows {
+        spd::add_outer(&mut spec.prior, row, -1.0);
+    }
+    let noise = job.placement.noise_microstrain * MICRO;
+    let order = &task.order;
+    let rows: Vec<Vec<f64>> = (0..gauges.len())
+        .map(|g| {
+            (0..k)
+                .map(|l| s.values[(g, order[l])] * scales[order[l]] / noise)
+                .collect()
+        })
+        .collect();
+    let Some(q) = judge_rows(&rows, &spec.prior, k).map(|q| in_job_order(q, order)) else {
+        return Ok(Some(json!({ "gauges": gauges.len(), "rank": s.rank() })));
+    };
+    let bound = if gauges.len() == spec.gauges && !c.has_slopes() {
+        None
+    } else {
+        let plain = Candidates::clone(c).with_noise_only();
+        let other = Spec {
+            gauges: gauges.len(),
+            effort: crate::placement::exchange::Effort {
+                starts: 2,
+                kicks: 0,
+                seed: 1,
+            },
+            proof: 0.0,
+            loss: placement::Loss::Judged,
+            ..spec.clone()
+        };
+        place(&plain, &other).ok().map(|l| l.upper_bound)
+    };
+    let log_det = crate::placement::quality::value(&rows, &spec.prior, k, &spec.criterion);
+    Ok(Some(json!({
+        "gauges": gauges.len(),
+        "log_det": log_det,
+        "upper_bound": bound,
+        "condition_number": finite(s.condition_number()),
+        "condition_number_scaled": finite(s.condition_number_scaled()),
+        "load_sigma": sigma_rows(job, &s, &q, scales),
+        "worst_loss": { "gauge": s.gauges[q.worst], "efficiency_left": q.worst_loss, "leverage": q.leverage[q.worst] },
+    })))
+}

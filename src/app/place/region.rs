@@ -1,0 +1,132 @@
+//! Where the job lets gauges go.
+
+use crate::app::fault::{Fault, Faults};
+use crate::app::job::{Job, LoadActs, Region};
+use crate::app::strain::{Fields, side};
+use crate::gauge::centre;
+use crate::model::{ShellIx, Vec3};
+use crate::placement::region::{
+    Segment, attachments, borders, clear_of, free_edges, hole_rims, joints,
+};
+use crate::placement::sites::Site;
+
+/// Surfaces where the job lets gauges go, among shells with strain in every case.
+///
+/// # Errors
+/// None is left, or the deck lacks a SET.
+pub fn allowed_sites(job: &Job, fields: &Fields, common: &[ShellIx]) -> Result<Vec<Site>, Faults> {
+    let rule = &job.candidates;
+    let model = fields.model();
+    let sets = sets_of(job, fields)?;
+    let mut shells: Vec<(ShellIx, Vec3)> = Vec::new();
+    for &ix in common {
+        let Some(shell) = model.shells.get(ix.us()) else {
+            continue;
+        };
+        let property = model
+            .shell_properties
+            .get(shell.property.us())
+            .map_or(0, |p| p.id);
+        let among = |ids: &Option<crate::app::job::Ids>, id: u32| {
+            ids.as_ref().map(|list| list.contains(id))
+        };
+        let allowed = among(&rule.properties, property) != Some(false)
+            && among(&rule.elements, shell.id) != Some(false)
+            && among(&rule.exclude_properties, property) != Some(true)
+            && among(&rule.exclude_elements, shell.id) != Some(true)
+            && (sets.is_empty() || sets.iter().any(|s| s.has(shell.id)));
+        let Some(x) = centre(model, shell).filter(|_| allowed) else {
+            continue;
+        };
+        let inside = rule.boxes.is_empty() || rule.boxes.iter().any(|b| holds(b, x));
+        if inside && !rule.exclude_boxes.iter().any(|b| holds(b, x)) {
+            shells.push((ix, x));
+        }
+    }
+    let clear = rule.clear;
+    let rims = clear.holes.unwrap_or(clear.edges);
+    let apart = rims != clear.edges;
+    let limits: [(f64, &dyn Fn() -> Vec<Segment>); 5] = [
+        (clear.edges, &|| {
+            if apart {
+                borders(model)
+            } else {
+                free_edges(model)
+            }
+        }),
+        (if apart { rims } else { 0.0 }, &|| hole_rims(model)),
+        (clear.joints, &|| joints(model)),
+        (clear.loads, &|| load_points(job, fields)),
+        (clear.attachments, &|| attachments(model)),
+    ];
+    for (distance, segments) in limits.into_iter().filter(|l| l.0 > 0.0) {
+        let points: Vec<Vec3> = shells.iter().map(|s| s.1).collect();
+        let clear = clear_of(&points, &segments(), distance);
+        let mut flags = clear.into_iter();
+        shells.retain(|_| flags.next().unwrap_or(false));
+    }
+    let sites: Vec<Site> = shells
+        .iter()
+        .flat_map(|(ix, _)| rule.surfaces.iter().map(|s| (*ix, side(*s))))
+        .collect();
+    if sites.is_empty() {
+        let wrong =
+            "no shell with strain in every load's subcase is among the candidates".to_owned();
+        return Err(Faults::from(Fault::at(
+            &*job.file,
+            rule.line,
+            "candidates",
+            wrong,
+            "widen `properties`, `elements` or `boxes`, reduce `clear_of`, or ask for STRAIN of more elements",
+        )));
+    }
+    Ok(sites)
+}
+
+/// The deck's SETs that the job names.
+fn sets_of<'a>(job: &Job, fields: &'a Fields) -> Result<Vec<&'a nastran::bdf::Set>, Faults> {
+    let Some(wanted) = &job.candidates.sets else {
+        return Ok(Vec::new());
+    };
+    let control = &fields.deck.deck.case_control;
+    let mut found = Vec::new();
+    let mut faults = FaultList::new();
+    for id in wanted.0.iter().flat_map(|[a, b]| *a..=*b) {
+        let set = std::iter::once(&control.global)
+            .chain(&control.subcases)
+            .find_map(|s| s.sets.get(&id));
+        match set {
+            Some(s) => found.push(s),
+            None => faults.push(Fault::at(
+                &*job.file,
+                job.candidates.line,
+                "candidates.sets",
+                format!("the deck's case control has no SET {id}"),
+                "name a SET of element ids, or list `elements`",
+            )),
+        }
+    }
+    Faults::check(faults)?;
+    Ok(found)
+}
+
+fn holds(region: &Region, x: Vec3) -> bool {
+    region
+        .iter()
+        .zip([x.x, x.y, x.z])
+        .all(|([low, high], v)| (*low..=*high).contains(&v))
+}
+
+fn load_points(job: &Job, fields: &Fields) -> Vec<Segment> {
+    let model = fields.model();
+    job.loads
+        .iter()
+        .filter_map(|l| match l.acts {
+            LoadActs::AtGrid { grid, .. } => {
+                let x = model.grids.get(model.grid_ix(grid)?.us())?.x;
+                Some([x, x])
+            }
+            LoadActs::Set(_) => None,
+        })
+        .collect()
+}

@@ -1,0 +1,126 @@
+//! What the technician needs of each gauge: reference point, tolerance budget, strain by load.
+
+use super::choose::Chosen;
+use super::task::{Task, by_load};
+use crate::app::job::LoadActs;
+use crate::gauge::{Bridge, Gauge};
+use crate::placement::gradient::forms;
+use crate::placement::quality::{Quality, influence};
+use crate::placement::quartic;
+use crate::placement::sites::Site;
+use crate::report::strain::{PlacedGauge, Role};
+use crate::sensitivity::LoadCaseOf;
+
+/// Error of a load, in shares of its expected size, for which the tolerance budget is stated.
+const BUDGET: f64 = 0.05;
+
+/// The gauges with all that the sheet says of them; `validation` are those not used for estimating.
+pub(super) fn placed(
+    task: &Task,
+    chosen: &Chosen,
+    prior: &[f64],
+    quality: &Quality,
+    validation: &[(usize, f64)],
+) -> Vec<PlacedGauge> {
+    let k = task.cases.len();
+    let rows: Vec<Vec<f64>> = chosen.channels.iter().map(|c| c.row.clone()).collect();
+    let influence = influence(&rows, prior, k).unwrap_or_default();
+    let (led, scales) = task.led();
+    let steep = steepness(task, chosen, &led, &scales);
+    let names: Vec<String> = task.job.loads.iter().map(|l| l.name.clone()).collect();
+    chosen
+        .channels
+        .iter()
+        .enumerate()
+        .map(|(i, c)| {
+            // Share of a load's expected size by which an error of one microstrain of this gauge moves the load it moves most.
+            let moves = influence.get(i).copied().unwrap_or(0.0) / c.sd;
+            let allowed = |change: f64| {
+                let error = moves * change;
+                (error > 0.0).then(|| BUDGET / error)
+            };
+            let strains = by_load(task, &c.gauge);
+            PlacedGauge {
+                gauge: c.gauge.clone(),
+                leverage: quality.leverage[i],
+                expected_microstrain: strains.iter().map(|v| v.abs()).sum(),
+                reference: reference_of(task, &c.gauge),
+                bridge: c.bridge,
+                role: if validation.iter().any(|v| v.0 == i) {
+                    Role::Validation
+                } else {
+                    Role::Estimate
+                },
+                angle_budget_deg: allowed(c.turn).map(f64::to_degrees),
+                position_budget: allowed(steep[i]),
+                by_load: names.iter().cloned().zip(strains).collect(),
+            }
+        })
+        .collect()
+}
+
+/// By channel, the change of its reading with its place, microstrain per length, rms over the expected loads.
+fn steepness(task: &Task, chosen: &Chosen, led: &[LoadCaseOf], scales: &[f64]) -> Vec<f64> {
+    let mut out = vec![0.0; chosen.channels.len()];
+    for bridge in WIRINGS {
+        let (at, sites): (Vec<usize>, Vec<Site>) = chosen
+            .channels
+            .iter()
+            .enumerate()
+            .filter(|(_, c)| c.bridge == word(bridge))
+            .map(|(i, c)| (i, task.sites[c.site]))
+            .unzip();
+        if sites.is_empty() {
+            continue;
+        }
+        let forms = forms(task.fields.model(), &sites, bridge, led, scales, 1.0);
+        for (i, form) in at.into_iter().zip(&forms) {
+            let phases = quartic::phases(chosen.channels[i].angle);
+            let square = quartic::value(&quartic::of_row(form), &phases);
+            out[i] = square.max(0.0).sqrt();
+        }
+    }
+    out
+}
+
+const WIRINGS: [Bridge; 4] = [
+    Bridge::Quarter,
+    Bridge::HalfBending,
+    Bridge::FullBending,
+    Bridge::Shear,
+];
+
+fn word(b: Bridge) -> &'static str {
+    match b {
+        Bridge::Quarter => "quarter",
+        Bridge::HalfBending => "half-bending",
+        Bridge::FullBending => "full-bending",
+        Bridge::Shear => "shear",
+    }
+}
+
+/// The nearest of the job's reference points, else of the grids at which loads act, and the way from there.
+fn reference_of(task: &Task, g: &Gauge) -> Option<(String, [f64; 3])> {
+    let model = task.fields.model();
+    let loads = task.job.loads.iter().filter_map(|l| match l.acts {
+        LoadActs::AtGrid { grid, .. } => Some((grid.to_string(), grid)),
+        LoadActs::Set(_) => None,
+    });
+    let named = task.job.placement.references.iter();
+    let points: Vec<(String, u32)> = if task.job.placement.references.is_empty() {
+        loads.collect()
+    } else {
+        named.map(|(n, g)| (format!("{n} ({g})"), *g)).collect()
+    };
+    points
+        .into_iter()
+        .filter_map(|(name, grid)| {
+            let x = model.grids.get(model.grid_ix(grid)?.us())?.x;
+            let d = g.position - x;
+            Some((name, [d.x, d.y, d.z]))
+        })
+        .min_by(|a, b| {
+            let n = |v: &[f64; 3]| v.iter().map(|x| x * x).sum::<f64>();
+            n(&a.1).total_cmp(&n(&b.1))
+        })
+}

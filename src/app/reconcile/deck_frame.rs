@@ -1,0 +1,332 @@
+//! The static frame of a job with a deck: signatures of loads, masses, stiffness and gauge angles from the built-in solver.
+
+use super::background::{Axis, background, gradients};
+use super::deck_thermal::{Heated, NOTHING};
+use super::finer::Finer;
+use super::matrix_frame::{ModelPart, facts, nominal_x_m};
+use crate::app::Session;
+use crate::app::fault::{Fault, Faults};
+use crate::app::job::{Component, Job, LoadActs};
+use crate::app::solved::unit_loads_kept;
+use crate::app::strain::{Fields, lay_gauges, read_fields};
+use crate::fe::{Solution, SolveOptions, UnitLoad, solve_unit_loads};
+use crate::gauge::{Gauge, reading};
+use crate::model::{GridIx, Model, Vec3};
+use crate::reconcile::strain::{MassSignature, N_PAYLOAD_COLUMNS, PlaneStrainRow, Wiring};
+use std::path::Path;
+
+/// Strain in microstrain.
+const MICRO: f64 = 1e6;
+
+/// The model with everything needed to solve it again.
+pub(super) struct DeckFrame {
+    pub(super) fields: Fields,
+    pub(super) gauges: Vec<Gauge>,
+    pub(super) columns: Vec<UnitLoad>,
+    /// Influence on the mesh as it stands.
+    pub(super) base: Vec<f64>,
+}
+
+/// Solves all signatures. `channels` are the gauges in the order of the strain file.
+pub(super) fn read(
+    session: &mut Session,
+    job: &Job,
+    channels: &[String],
+) -> Result<(ModelPart, DeckFrame), Faults> {
+    let fields = read_fields(session, job)?;
+    let job_file = Path::new(&job.file);
+    let gauges = in_order(job, lay_gauges(session, job, &fields)?, channels)?;
+    // The same gauges turned: what they read at three angles holds their in-plane strain.
+    let noted = session.findings.len();
+    let mut turned = Vec::new();
+    for degrees in [45.0, 90.0] {
+        let mut other = job.clone();
+        other.gauges.iter_mut().for_each(|g| g.angle_deg += degrees);
+        turned.push(in_order(
+            job,
+            lay_gauges(session, &other, &fields)?,
+            channels,
+        )?);
+    }
+    session.findings.truncate(noted);
+    let model = fields.model();
+    let heated = Heated::of(job, model)?;
+    let model = &heated.model;
+    let (wheels, columns) = columns(job, model)?;
+    let mut loads = columns.clone();
+    let components = [
+        Component::FX,
+        Component::FY,
+        Component::MX,
+        Component::MY,
+        Component::MZ,
+    ];
+    let mut other_names = Vec::new();
+    for (name, grid) in &wheels {
+        for c in components {
+            other_names.push(format!(
+                "{}_{}",
+                c.name(),
+                name.split('.').next().unwrap_or(name)
+            ));
+            loads.push(unit(job, *grid, c, 1.0));
+        }
+    }
+    let reconcile = job.reconcile.as_ref();
+    let gravity = gravity(job);
+    let mut places = Vec::new();
+    for (place, id) in reconcile.iter().flat_map(|r| &r.places) {
+        let grid = grid_of(job, model, *id)?;
+        places.push(place.clone());
+        loads.push(unit(job, grid, Component::FZ, -gravity / KILO));
+    }
+    let first_heat = loads.len();
+    loads.extend(heated.loads());
+    // Signatures come from a mesh half as wide, where that can be made: what the mesh makes is computed, not guessed.
+    let laid = [&gauges, &turned[0], &turned[1]];
+    let finer = session.stage("refine", |_| Finer::of(model, laid));
+    let heat = format!("temperature set {:?}", reconcile.map(|r| r.temperature_set));
+    let solution = session.stage("solve signatures", |s| match &finer {
+        Some(f) => {
+            let made = format!("mesh half as wide, {heat}");
+            unit_loads_kept(s, (&fields.deck, &made), &f.refined.model, &loads)
+        }
+        None => unit_loads_kept(s, (&fields.deck, &heat), model, &loads),
+    })?;
+    let n_c = columns.len();
+    let [seen, seen_45, seen_90] = match &finer {
+        Some(f) => f.laid.each_ref(),
+        None => laid,
+    };
+    let table = influence(job, model, seen, &solution, n_c);
+    let at_45 = influence(job, model, seen_45, &solution, n_c);
+    let at_90 = influence(job, model, seen_90, &solution, n_c);
+    let own = session.stage("solve signatures", |s| {
+        unit_loads_kept(s, (&fields.deck, &heat), model, &columns)
+    })?;
+    let base = influence(job, model, &gauges, &own, n_c);
+    let n_g = gauges.len();
+    let plane = |g: usize| -> PlaneStrainRow {
+        let one = |c: usize| {
+            let i = g * n_c + c;
+            [table[i], at_90[i], 2.0 * at_45[i] - table[i] - at_90[i]]
+        };
+        (0..n_c).map(one).collect()
+    };
+    let column = |c: usize| readings(seen, &solution, c..c + 1);
+    let length_m = job.units.length_m();
+    let place_of = |grid: &GridIx| {
+        let x = model.grids.get(grid.us()).map_or(Vec3::zeros(), |g| g.x);
+        [x[0] * length_m, x[1] * length_m]
+    };
+    let at_grid = payload_grid(job, model).map_or([0.0; 2], |g| place_of(&g));
+    let mut part = ModelPart {
+        gauges: channels.iter().map(|c| facts(job, c)).collect(),
+        load_names: wheels.iter().map(|w| w.0.clone()).collect(),
+        load_positions: Some(wheels.iter().map(|w| place_of(&w.1)).collect()),
+        influence: table.clone(),
+        tensors: (0..n_g).map(plane).collect(),
+        payload_origin: [nominal_x_m(job).unwrap_or(at_grid[0]), at_grid[1]],
+        ..ModelPart::default()
+    };
+    for (g, laid) in part.gauges.iter_mut().zip(&gauges) {
+        // In-plane strain is in the axes of the gauge itself, its wiring included.
+        g.angle_deg = 0.0;
+        g.wiring = Wiring::Quarter;
+        g.position = Some([0, 1, 2].map(|k| laid.position[k] * length_m));
+    }
+    part.other_loads = other_names
+        .into_iter()
+        .enumerate()
+        .map(|(k, n)| (n, column(n_c + k)))
+        .collect();
+    let first_mass = n_c + part.other_loads.len();
+    part.masses = places
+        .into_iter()
+        .enumerate()
+        .map(|(k, place)| MassSignature {
+            place,
+            per_kg: column(first_mass + k),
+        })
+        .collect();
+    // Microstrain a degree: mechanical strain from the model, and what the gauge shows of heat besides.
+    let apparent: Vec<f64> = channels.iter().map(|c| apparent(job, c)).collect();
+    let mechanical = |load: &Option<UnitLoad>, c: usize| load.as_ref().map(|_| column(c));
+    let even = mechanical(&heated.even, first_heat);
+    let even: Vec<f64> = match even {
+        Some(m) => m.iter().zip(&apparent).map(|(m, a)| m + a).collect(),
+        None => apparent.clone(),
+    };
+    part.thermal_uniform = even.iter().any(|v| v.abs() > NOTHING).then_some(even);
+    let pattern = first_heat + usize::from(heated.even.is_some());
+    part.thermal_gradient = mechanical(&heated.pattern, pattern).map(|m| {
+        let besides = apparent.iter().zip(heated.rises(&gauges));
+        m.iter().zip(besides).map(|(m, (a, t))| m + a * t).collect()
+    });
+    let along = gradients(job, model, &gauges, &own, n_c, Axis::Along);
+    let across = gradients(job, model, &gauges, &own, n_c, Axis::Across);
+    part.scatter = background(
+        job,
+        &part,
+        finer.is_some().then_some(&base),
+        [&along, &across],
+    );
+    part.per_mm = Some(along);
+    part.as_modelled = finer.is_some().then(|| base.clone());
+    let deck = DeckFrame {
+        fields,
+        gauges,
+        columns,
+        base,
+    };
+    part.stiffness = session.stage("solve zones", |_| deck.signatures(job))?;
+    Ok((part, deck))
+}
+
+/// Apparent strain of a channel's wiring, microstrain a degree.
+fn apparent(job: &Job, channel: &str) -> f64 {
+    let bridge = job
+        .gauges
+        .iter()
+        .find(|g| g.name == channel)
+        .map_or("quarter", |g| g.bridge.name());
+    let given = job.reconcile.as_ref();
+    given
+        .and_then(|r| r.thermal_microstrain_per_degc.get(bridge).copied())
+        .unwrap_or(0.0)
+}
+
+/// The frame counts in kN.
+const KILO: f64 = 1e3;
+
+/// Channels in the order of the strain file.
+fn in_order(job: &Job, laid: Vec<Gauge>, channels: &[String]) -> Result<Vec<Gauge>, Faults> {
+    let find = |name: &String| {
+        laid.iter()
+            .find(|g| g.name == *name)
+            .cloned()
+            .ok_or_else(|| {
+                let wrong = format!("the strain file has a column `{name}`, the job no such gauge");
+                Fault::of(&*job.file, "gauge", wrong, "name the gauges as the columns")
+            })
+    };
+    let (mut out, mut faults) = (Vec::new(), FaultList::new());
+    for name in channels {
+        match find(name) {
+            Ok(g) => out.push(g),
+            Err(f) => faults.push(f),
+        }
+    }
+    Faults::check(faults)?;
+    Ok(out)
+}
+
+/// Influence of the columns, `n_gauges x n_columns`, those that stand for nothing zero.
+pub(super) fn influence(
+    job: &Job,
+    model: &Model,
+    gauges: &[Gauge],
+    solution: &Solution,
+    n_columns: usize,
+) -> Vec<f64> {
+    let mut out = readings(gauges, solution, 0..n_columns);
+    let blank = if payload_grid(job, model).is_some() {
+        1
+    } else {
+        N_PAYLOAD_COLUMNS
+    };
+    for row in out.chunks_exact_mut(n_columns.max(1)) {
+        row.iter_mut().rev().take(blank).for_each(|v| *v = 0.0);
+    }
+    out
+}
+
+/// Microstrain per unit of each case of `range`, `n_gauges x n_cases` by rows; NaN where there is no strain.
+fn readings(gauges: &[Gauge], solution: &Solution, range: std::ops::Range<usize>) -> Vec<f64> {
+    let mut out = Vec::with_capacity(gauges.len() * range.len());
+    for g in gauges {
+        for c in range.clone() {
+            let value = solution.cases.get(c).and_then(|case| reading(g, case));
+            out.push(MICRO * value.unwrap_or(f64::NAN));
+        }
+    }
+    out
+}
+
+pub(super) fn solve(job: &Job, model: &Model, loads: &[UnitLoad]) -> Result<Solution, Faults> {
+    let remedy = "repair the deck, or give S as CSV files in `[sensitivity]`";
+    let solved = solve_unit_loads(model, loads, &SolveOptions::default());
+    solved
+        .map(|s| s.0)
+        .map_err(|e| Faults::from(Fault::of(&*job.file, "model", e.to_string(), remedy)))
+}
+
+pub(super) fn gravity(job: &Job) -> f64 {
+    job.payload
+        .as_ref()
+        .and_then(|p| p.gravity_m_s2)
+        .unwrap_or(9.806_65)
+}
+
+fn grid_of(job: &Job, model: &Model, id: u32) -> Result<GridIx, Faults> {
+    let wrong = || {
+        Faults::from(Fault::of(
+            &*job.file,
+            "grid",
+            format!("the deck has no grid {id}"),
+            "correct the id",
+        ))
+    };
+    model.grid_ix(id).ok_or_else(wrong)
+}
+
+fn payload_grid(job: &Job, model: &Model) -> Option<GridIx> {
+    model.grid_ix(job.payload.as_ref()?.grid?)
+}
+
+/// `size` kN or kN m at a grid, in the deck's units.
+fn unit(job: &Job, grid: GridIx, component: Component, size: f64) -> UnitLoad {
+    let v = Vec3::from(component.vector(size * KILO / job.units.si(component.quantity())));
+    let (force, moment) = if component.is_force() {
+        (v, Vec3::zeros())
+    } else {
+        (Vec3::zeros(), v)
+    };
+    UnitLoad::AtGrid {
+        grid,
+        force,
+        moment,
+    }
+}
+
+/// The wheels (name, grid) and the columns of the influence matrix: each wheel load, then the payload per kg: its weight, and the
+/// moments that moving it by a metre forward and to the left brings (W dx about y, -W dy about x).
+#[allow(
+    clippy::type_complexity,
+    reason = "a list of names with grids, and the loads"
+)]
+fn columns(job: &Job, model: &Model) -> Result<(Vec<(String, GridIx)>, Vec<UnitLoad>), Faults> {
+    let mut wheels = Vec::new();
+    let mut loads = Vec::new();
+    for l in &job.loads {
+        let LoadActs::AtGrid {
+            grid, component, ..
+        } = l.acts
+        else {
+            continue;
+        };
+        let ix = grid_of(job, model, grid)?;
+        wheels.push((l.name.clone(), ix));
+        loads.push(unit(job, ix, component, 1.0));
+    }
+    let weight = gravity(job) / KILO;
+    // Without a payload grid its columns stand for nothing and are blanked.
+    let first = wheels.first().map_or(GridIx(0), |w| w.1);
+    let at = payload_grid(job, model).unwrap_or(first);
+    loads.push(unit(job, at, Component::FZ, -weight));
+    loads.push(unit(job, at, Component::MY, weight));
+    loads.push(unit(job, at, Component::MX, -weight));
+    // Bending is linear in the place: the product term stands for nothing and is blanked.
+    loads.push(unit(job, at, Component::MX, -weight));
+    Ok((wheels, loads))
+}

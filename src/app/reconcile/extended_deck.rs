@@ -1,0 +1,167 @@
+//! The analyst's deck with named effects in it.
+
+use super::deck_frame::DeckFrame;
+use super::extended_loads::{SideLoad, cards};
+use super::stiffness::{JOINT, factor};
+use crate::app::job::Job;
+use nastran::bdf::{Edits, Field, format_card, write_edited};
+use nastran::cards::{Bush, Orientation, Pbush};
+
+/// A stiffness that was named: effect id, place, size.
+pub(super) type NamedStiffness = (&'static str, String, f64);
+
+impl DeckFrame {
+    /// The deck with zones thickened, joints changed, masses and a load set of side loads added; `None` where it is spread over several files or nothing changes.
+    pub(super) fn extended(
+        &self,
+        job: &Job,
+        stiffness: &[NamedStiffness],
+        masses: &[(String, f64)],
+        side: &[SideLoad],
+    ) -> Option<Vec<u8>> {
+        let deck = &self.fields.deck.deck;
+        if deck.sources.len() != 1 || (stiffness.is_empty() && masses.is_empty() && side.is_empty())
+        {
+            return None;
+        }
+        let mut edits = Edits::default();
+        for (id, place, percent) in stiffness {
+            let factor = factor(id, *percent);
+            if *id == JOINT {
+                self.change_joint(&mut edits, place, factor)?;
+            } else {
+                self.change_zone(&mut edits, job, place, factor)?;
+            }
+        }
+        self.add_masses(&mut edits, job, masses)?;
+        if !side.is_empty() {
+            let sets = self.fields.model().load_sets.iter().map(|s| s.sid);
+            let sid = sets.max().unwrap_or(0).checked_add(1)?;
+            edits.insert_cards(deck, &cards(job, sid, side));
+        }
+        write_edited(deck, &edits).into_iter().next().map(|f| f.1)
+    }
+
+    fn change_zone(&self, edits: &mut Edits, job: &Job, zone: &str, factor: f64) -> Option<()> {
+        let deck = &self.fields.deck.deck;
+        let ids = job.reconcile.as_ref()?.zones.get(zone)?;
+        let named = deck
+            .cards
+            .pshells
+            .iter()
+            .filter(|p| ids.contains(p.card.id));
+        for p in named {
+            let c = &p.card;
+            let scaled = |v: Option<f64>| v.map(|v| v * factor);
+            let fields = [
+                Field::from(c.id),
+                c.mid1.into(),
+                scaled(c.t).into(),
+                c.mid2.into(),
+                c.bending_ratio.into(),
+                c.mid3.into(),
+                c.shear_ratio.into(),
+                c.nsm.into(),
+                scaled(c.z1).into(),
+                scaled(c.z2).into(),
+                c.mid4.into(),
+            ];
+            edits
+                .replace_card(deck, p.at, &format_card("PSHELL", &fields))
+                .ok()?;
+        }
+        Some(())
+    }
+
+    /// Gives a bush a property of its own, the old one times `factor`.
+    fn change_joint(&self, edits: &mut Edits, place: &str, factor: f64) -> Option<()> {
+        let deck = &self.fields.deck.deck;
+        let bushes = &deck.cards.bushes;
+        let bush = bushes.iter().find(|b| b.card.id.to_string() == place)?;
+        let pid = bush.card.pid.unwrap_or(bush.card.id);
+        let old = deck.cards.pbushes.iter().find(|p| p.card.id == pid)?.card;
+        let c = &deck.cards;
+        let others = c.pshells.iter().map(|p| p.card.id);
+        let others = others.chain(c.pbars.iter().map(|p| p.card.id));
+        let others = others.chain(c.pbarls.iter().map(|p| p.card.id));
+        let others = others.chain(c.pbeams.iter().map(|p| p.card.id));
+        let others = others.chain(c.pbeamls.iter().map(|p| p.card.id));
+        let others = others.chain(c.prods.iter().map(|p| p.card.id));
+        let others = others.chain(c.ptubes.iter().map(|p| p.card.id));
+        let others = others.chain(c.pcomps.iter().map(|p| p.card.id));
+        let others = others.chain(c.psolids.iter().map(|p| p.card.id));
+        let others = others.chain(c.pelas.iter().map(|p| p.card.id));
+        let highest = others.chain(c.pbushes.iter().map(|p| p.card.id)).max();
+        // Above all others, and another one for every bush.
+        let id = highest?.checked_add(bush.card.id)?;
+        edits.insert_cards(
+            deck,
+            &pbush(&Pbush {
+                id,
+                k: old.k.map(|k| k * factor),
+                ..old
+            }),
+        );
+        let card = cbush(&Bush {
+            pid: Some(id),
+            ..bush.card
+        });
+        edits.replace_card(deck, bush.at, &card).ok()
+    }
+
+    fn add_masses(&self, edits: &mut Edits, job: &Job, masses: &[(String, f64)]) -> Option<()> {
+        let deck = &self.fields.deck.deck;
+        let shells = self.fields.model().shells.iter().map(|s| s.id);
+        let taken = shells
+            .chain(deck.cards.conm2s.iter().map(|c| c.card.id))
+            .max();
+        for (k, (place, kilogram)) in (1u32..).zip(masses) {
+            let grid = *job.reconcile.as_ref()?.places.get(place)?;
+            let mass = kilogram / job.units.mass_kg();
+            let fields = [
+                Field::from(taken.unwrap_or(0).checked_add(k)?),
+                grid.into(),
+                Field::Blank,
+                mass.into(),
+            ];
+            edits.insert_cards(deck, &format_card("CONM2", &fields));
+        }
+        Some(())
+    }
+}
+
+fn pbush(p: &Pbush) -> String {
+    let word = |w: &str| Field::Text(w.into());
+    let mut fields = vec![Field::from(p.id), word("K")];
+    for (k, rigid) in p.k.iter().zip(p.rigid) {
+        fields.push(if rigid { word("RIGID") } else { (*k).into() });
+    }
+    for (name, values) in [("B", p.b), ("GE", p.ge)] {
+        fields.extend([Field::Blank, word(name)]);
+        fields.extend(values.map(Field::from));
+    }
+    fields.extend([Field::Blank, word("RCV")]);
+    fields.extend(p.recovery.map(Field::from));
+    format_card("PBUSH", &fields)
+}
+
+fn cbush(b: &Bush) -> String {
+    let mut fields = vec![
+        Field::from(b.id),
+        b.pid.into(),
+        b.grids.0.into(),
+        b.grids.1.into(),
+    ];
+    match b.orientation {
+        Orientation::Grid(g) => fields.extend([g.into(), Field::Blank, Field::Blank]),
+        Orientation::Vector(v) => fields.extend(v.map(Field::from)),
+        _ => fields.extend([Field::Blank, Field::Blank, Field::Blank]),
+    }
+    fields.push(b.cid.into());
+    fields.push(b.s.into());
+    if let Some(ocid) = b.ocid {
+        fields.push(ocid.into());
+        fields.extend(b.offset.map(Field::from));
+    }
+    format_card("CBUSH", &fields)
+}

@@ -1,0 +1,133 @@
+//! Loads that the extended job of a deck asks for as well: side loads at the wheels that were named, and the payload, which strains
+//! the structure in every run.
+
+use super::deck_frame::gravity;
+use crate::app::job::{Component, Job, LoadActs};
+use crate::reconcile::NamedEffect;
+use crate::reconcile::effect::Extension;
+use crate::reconcile::strain::StrainFrame;
+use nastran::bdf::{Field, format_card};
+use toml::{Table, Value};
+
+/// A component at a grid, and its size: kN or kN m.
+pub(super) struct SideLoad {
+    name: String,
+    grid: u32,
+    component: Component,
+    /// Usual size: one standard deviation before a run is seen.
+    usual: f64,
+    /// Root mean square over the runs; the usual size where the runs did not tell.
+    found: f64,
+}
+
+const COMPONENTS: [Component; 5] = [
+    Component::FX,
+    Component::FY,
+    Component::MX,
+    Component::MY,
+    Component::MZ,
+];
+const KILO: f64 = 1e3;
+/// Moment of the payload per weight: half a metre off its grid, one standard deviation.
+const OFF_GRID_M: f64 = 0.5;
+
+/// Side loads of the effects, by the grids of the job's wheels.
+pub(super) fn side_loads(job: &Job, effects: &[NamedEffect]) -> Vec<SideLoad> {
+    let mut out = Vec::new();
+    for e in effects {
+        let Extension::NuisanceLoads { id, loads, .. } = &e.extension else {
+            continue;
+        };
+        if *id != "lateral_wheel_loads" {
+            continue;
+        }
+        for (name, usual) in loads {
+            let Some((word, wheel)) = name.split_once('_') else {
+                continue;
+            };
+            let kind = COMPONENTS.iter().position(|c| c.name() == word);
+            let (Some(kind), Some(grid)) = (kind, grid_of_wheel(job, wheel)) else {
+                continue;
+            };
+            let found = e.size.get(kind).copied().filter(|s| *s > 0.0);
+            out.push(SideLoad {
+                name: format!("{wheel}.{word}"),
+                grid,
+                component: COMPONENTS[kind],
+                usual: *usual,
+                found: found.unwrap_or(*usual),
+            });
+        }
+    }
+    out
+}
+
+fn grid_of_wheel(job: &Job, wheel: &str) -> Option<u32> {
+    job.loads.iter().find_map(|l| match l.acts {
+        LoadActs::AtGrid { grid, .. } if l.name.split('.').next() == Some(wheel) => Some(grid),
+        _ => None,
+    })
+}
+
+/// `[[load]]` entries of the side loads and of the payload, `role = "nuisance"`.
+pub(super) fn entries(job: &Job, frame: &StrainFrame, side: &[SideLoad]) -> Vec<Value> {
+    let entry = |name: &str, grid: u32, component: Component, size: f64| {
+        let mut t = Table::new();
+        t.insert("name".into(), Value::String(name.into()));
+        t.insert("grid".into(), Value::Integer(i64::from(grid)));
+        t.insert("component".into(), Value::String(component.name().into()));
+        t.insert("role".into(), Value::String("nuisance".into()));
+        t.insert(
+            "expected".into(),
+            Value::Float(in_job_units(job, component, size)),
+        );
+        Value::Table(t)
+    };
+    let mut out: Vec<Value> = side
+        .iter()
+        .map(|s| entry(&s.name, s.grid, s.component, s.usual))
+        .collect();
+    let taken = |grid: u32| {
+        job.loads
+            .iter()
+            .any(|l| matches!(l.acts, LoadActs::AtGrid { grid: g, .. } if g == grid))
+    };
+    let heaviest = frame.payload.iter().map(|p| p[0].abs()).fold(0.0, f64::max);
+    if let Some(grid) = job.payload.as_ref().and_then(|p| p.grid)
+        && heaviest > 0.0
+        && !taken(grid)
+    {
+        let weight = heaviest * gravity(job) / KILO;
+        for (component, size) in [
+            (Component::FZ, weight),
+            (Component::MX, weight * OFF_GRID_M),
+            (Component::MY, weight * OFF_GRID_M),
+        ] {
+            let name = format!("payload.{}", component.name());
+            out.push(entry(&name, grid, component, size));
+        }
+    }
+    out
+}
+
+/// FORCE and MOMENT cards of load set `sid` with the sizes that were found.
+pub(super) fn cards(job: &Job, sid: u32, side: &[SideLoad]) -> String {
+    let mut out = String::new();
+    for s in side {
+        let dof = s.component.dof();
+        let card = if dof < 3 { "FORCE" } else { "MOMENT" };
+        let mut fields = vec![
+            Field::from(sid),
+            s.grid.into(),
+            0u32.into(),
+            in_job_units(job, s.component, s.found).into(),
+        ];
+        fields.extend((0..3).map(|k| Field::from(if k == dof % 3 { 1.0 } else { 0.0 })));
+        out.push_str(&format_card(card, &fields));
+    }
+    out
+}
+
+fn in_job_units(job: &Job, component: Component, kilo: f64) -> f64 {
+    kilo * KILO / job.units.si(component.quantity())
+}

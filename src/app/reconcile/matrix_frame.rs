@@ -1,0 +1,235 @@
+//! The static frame of a job whose S and signatures are given as CSV files.
+
+use super::signature_table::SignatureTable;
+use crate::app::fault::{Fault, Faults};
+use crate::app::files::Inputs;
+use crate::app::job::{Bridge, GivenSensitivity, Job};
+use crate::reconcile::strain::{
+    GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, PlaneStrainRow, Scatter, StiffnessSignature,
+    Wiring,
+};
+
+/// What the model says, however it was computed: the part of a frame that no run enters.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ModelPart {
+    pub(super) gauges: Vec<GaugeFacts>,
+    pub(super) load_names: Vec<String>,
+    pub(super) load_positions: Option<Vec<[f64; 2]>>,
+    pub(super) influence: Vec<f64>,
+    pub(super) tensors: Vec<PlaneStrainRow>,
+    pub(super) per_mm: Option<Vec<f64>>,
+    pub(super) other_loads: Vec<(String, Vec<f64>)>,
+    pub(super) thermal_uniform: Option<Vec<f64>>,
+    pub(super) thermal_gradient: Option<Vec<f64>>,
+    pub(super) masses: Vec<MassSignature>,
+    pub(super) stiffness: Vec<StiffnessSignature>,
+    /// Influence on the analyst's own mesh, where `influence` is that of a finer one.
+    pub(super) as_modelled: Option<Vec<f64>>,
+    /// Errors that every gauge may have.
+    pub(super) scatter: Vec<Scatter>,
+    /// Nominal place of the payload, m.
+    pub(super) payload_origin: [f64; 2],
+}
+
+/// Ratio of the transverse to the axial strain where a table gives the axial one alone: a rail flange in bending.
+const POISSON: f64 = 0.29;
+
+/// Wiring of a bridge, as far as angles go.
+pub(super) fn wiring(bridge: Bridge) -> Wiring {
+    match bridge {
+        Bridge::Quarter => Wiring::Quarter,
+        Bridge::HalfBending | Bridge::FullBending => Wiring::Bending,
+        Bridge::Shear => Wiring::Shear,
+    }
+}
+
+/// Reads everything that `[sensitivity]` names. `channels` are the gauges in the order of the strain file.
+pub(super) fn read(
+    inputs: &mut Inputs,
+    job: &Job,
+    given: &GivenSensitivity,
+    channels: &[String],
+) -> Result<ModelPart, Faults> {
+    /// The frame counts in kN, kN m, kg and m.
+    const KILO: f64 = 1e3;
+    let (per_kn, per_knm) = (KILO / given.per.force.si, KILO / given.per.moment.si);
+    let (per_kg, per_m) = (1.0 / given.per.mass.si, 1.0 / given.per.length.si);
+    let s = SignatureTable::read(inputs, job, &given.file, channels)?;
+    let columns: Vec<(String, String)> = if given.columns.is_empty() {
+        s.names().into_iter().map(|n| (n.clone(), n)).collect()
+    } else {
+        given.columns.clone()
+    };
+    let scale = |name: &str| if is_moment(name) { per_knm } else { per_kn };
+    let mut by_column: Vec<Vec<f64>> = Vec::new();
+    for (name, column) in &columns {
+        by_column.push(s.column(column, scale(name))?);
+    }
+    // Payload columns: weight, times dx, times dy, times dx dy.
+    let payload_names = [
+        ["b0", ""],
+        ["b_dx", "b_x"],
+        ["b_dy", "b_y"],
+        ["b_dxdy", "b_xy"],
+    ];
+    let payload_scale = [
+        per_kg,
+        per_kg * per_m,
+        per_kg * per_m,
+        per_kg * per_m * per_m,
+    ];
+    let n = channels.len();
+    let mut payload = vec![vec![0.0; n]; N_PAYLOAD_COLUMNS];
+    if let Some(file) = &given.signatures.payload {
+        let t = SignatureTable::read(inputs, job, file, channels)?;
+        for ((column, names), f) in payload.iter_mut().zip(payload_names).zip(payload_scale) {
+            if let Some(name) = names.iter().find(|n| t.has(n)) {
+                *column = t.column(name, f)?;
+            }
+        }
+    }
+    by_column.extend(payload);
+    let n_c = by_column.len();
+    let n_l = columns.len();
+    let influence: Vec<f64> = (0..n)
+        .flat_map(|g| by_column.iter().map(move |c| c[g]))
+        .collect();
+    let gauges: Vec<GaugeFacts> = channels.iter().map(|name| facts(job, name)).collect();
+    let mut part = ModelPart {
+        load_names: columns.iter().map(|c| c.0.clone()).collect(),
+        payload_origin: [nominal_x_m(job).unwrap_or(0.0), 0.0],
+        influence,
+        ..ModelPart::default()
+    };
+    part.tensors = vec![Vec::new(); n];
+    if let Some(file) = &given.signatures.gauge_angle {
+        let t = SignatureTable::read(inputs, job, file, channels)?;
+        let mut names: Vec<(String, f64)> = columns
+            .iter()
+            .map(|(name, c)| (c.clone(), scale(name)))
+            .collect();
+        names.extend(
+            payload_names
+                .iter()
+                .zip(payload_scale)
+                .map(|(n, f)| (n[0].to_owned(), f)),
+        );
+        // Columns as far as the table goes: payload columns may end with b_dx.
+        let known: Vec<&(String, f64)> = names
+            .iter()
+            .take_while(|(c, _)| t.has(&format!("exx_{c}")))
+            .collect();
+        let mut planes = vec![PlaneStrainRow::new(); n];
+        for (c, f) in known {
+            let exx = t.column(&format!("exx_{c}"), *f)?;
+            let gxy = t.column(&format!("gxy_{c}"), *f)?;
+            let eyy = if t.has(&format!("eyy_{c}")) {
+                t.column(&format!("eyy_{c}"), *f)?
+            } else {
+                exx.iter().map(|e| -POISSON * e).collect()
+            };
+            for (g, plane) in planes.iter_mut().enumerate() {
+                plane.push([exx[g], eyy[g], gxy[g]]);
+            }
+        }
+        for (g, plane) in planes.into_iter().enumerate() {
+            part.tensors[g] = match gauges[g].wiring {
+                Wiring::Quarter => plane,
+                // A bridge: its own reading along its axis, with the shear of both sides cancelled.
+                Wiring::Bending => (0..n_l + 2)
+                    .map(|c| part.influence[g * n_c + c])
+                    .map(|a| [a, -POISSON * a, 0.0])
+                    .collect(),
+                Wiring::Shear => Vec::new(),
+            };
+        }
+    }
+    part.gauges = gauges;
+    if let Some(file) = &given.signatures.lateral_wheel_loads {
+        let t = SignatureTable::read(inputs, job, file, channels)?;
+        for name in t.names() {
+            part.other_loads
+                .push((name.clone(), t.column(&name, scale(&name))?));
+        }
+    }
+    if let Some(file) = &given.signatures.thermal {
+        let t = SignatureTable::read(inputs, job, file, channels)?;
+        let one = |names: [&str; 2]| {
+            names
+                .iter()
+                .find(|n| t.has(n))
+                .map(|n| t.column(n, 1.0))
+                .transpose()
+        };
+        part.thermal_uniform = one(["thermal_uniform", "uniform"])?;
+        part.thermal_gradient = one(["thermal_gradient", "gradient"])?;
+    }
+    if let Some(file) = &given.signatures.unaccounted_mass {
+        let t = SignatureTable::read(inputs, job, file, channels)?;
+        for place in t.names() {
+            part.masses.push(MassSignature {
+                per_kg: t.column(&place, per_kg)?,
+                place,
+            });
+        }
+    }
+    for (zone, file) in &given.signatures.rail_stiffness {
+        let t = SignatureTable::read(inputs, job, file, channels)?;
+        let mut change = vec![0.0; n * n_c];
+        let mut names: Vec<(String, f64)> = columns
+            .iter()
+            .map(|(name, c)| (c.clone(), scale(name)))
+            .collect();
+        names.extend(
+            payload_names
+                .iter()
+                .zip(payload_scale)
+                .map(|(n, f)| (n[0].to_owned(), f)),
+        );
+        for (c, (name, f)) in names
+            .iter()
+            .enumerate()
+            .filter(|(_, (name, _))| t.has(name))
+        {
+            for (g, v) in t.column(name, *f)?.into_iter().enumerate() {
+                change[g * n_c + c] = v;
+            }
+        }
+        part.stiffness.push(StiffnessSignature {
+            id: format!("rail_stiffness:{zone}"),
+            at_percent: vec![(1.0, change)],
+            prior_percent: 15.0,
+        });
+    }
+    if n_l == 0 {
+        return Err(Faults::from(Fault::of(
+            &*given.file.given,
+            "columns",
+            "no load column",
+            "give S a column a load",
+        )));
+    }
+    Ok(part)
+}
+
+/// Nominal place of the payload, m, where the job states it.
+pub(super) fn nominal_x_m(job: &Job) -> Option<f64> {
+    Some(job.payload.as_ref()?.nominal_x? * job.units.length_m())
+}
+
+fn is_moment(name: &str) -> bool {
+    name.split(['.', '_', ' '])
+        .any(|part| ["MX", "MY", "MZ"].contains(&part.to_ascii_uppercase().as_str()))
+}
+
+/// What the job says of a gauge.
+pub(super) fn facts(job: &Job, name: &str) -> GaugeFacts {
+    let known = job.gauges.iter().find(|g| g.name == name);
+    let metres = |x: [f64; 3]| x.map(|v| v * job.units.length_m());
+    GaugeFacts {
+        name: name.to_owned(),
+        wiring: known.map_or(Wiring::Quarter, |g| wiring(g.bridge)),
+        angle_deg: known.map_or(0.0, |g| g.angle_deg),
+        position: known.and_then(|g| g.position).map(metres),
+    }
+}

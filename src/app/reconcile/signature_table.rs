@@ -1,0 +1,83 @@
+//! A CSV file with a row a gauge: influence or signature columns, in the order of the job's gauges.
+
+use crate::app::fault::{Fault, Faults};
+use crate::app::files::Inputs;
+use crate::app::job::table::{Table, read_table};
+use crate::app::job::{Job, NamedFile};
+
+/// Columns of numbers over gauges.
+pub(super) struct SignatureTable {
+    table: Table,
+    /// Row of each gauge.
+    rows: Vec<usize>,
+}
+
+impl SignatureTable {
+    /// Reads `named` and finds the row of every gauge in its first column (or `gauge`, `name`).
+    pub(super) fn read(
+        inputs: &mut Inputs,
+        job: &Job,
+        named: &NamedFile,
+        gauges: &[String],
+    ) -> Result<Self, Faults> {
+        let text = inputs.read_named_text(job, named).map_err(Faults::from)?;
+        let table = read_table(&named.given, &text)?;
+        let key = table.column(&["gauge", "name"]).unwrap_or(0);
+        let mut faults = FaultList::new();
+        let mut rows = Vec::with_capacity(gauges.len());
+        for gauge in gauges {
+            match table.rows.iter().position(|r| r.1.get(key) == Some(gauge)) {
+                Some(row) => rows.push(row),
+                None => faults.push(Fault::of(
+                    &*named.given,
+                    "gauge",
+                    format!("no row for gauge `{gauge}`"),
+                    "give every gauge a row",
+                )),
+            }
+        }
+        Faults::check(faults)?;
+    Ok(Self { table, rows })
+    }
+
+    /// Names of the number columns.
+    pub(super) fn names(&self) -> Vec<String> {
+        let key = self.table.column(&["gauge", "name"]).unwrap_or(0);
+        self.table
+            .header
+            .iter()
+            .enumerate()
+            .filter(|(c, _)| *c != key)
+            .map(|(_, h)| h.clone())
+            .collect()
+    }
+
+    /// Does the column exist?
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.table.column(&[name]).is_some()
+    }
+
+    /// Column `name` times `factor`, by gauge.
+    pub(super) fn column(&self, name: &str, factor: f64) -> Result<Vec<f64>, Faults> {
+        let Some(c) = self.table.column(&[name]) else {
+            let found = self.table.header.join(", ");
+            let wrong = format!("no column `{name}` (found: {found})");
+            return Err(Faults::from(Fault::at(
+                &*self.table.file,
+                1,
+                name,
+                wrong,
+                "name the columns as the job does",
+            )));
+        };
+        let number = |&row: &usize| {
+            let blank = || Fault::of(&*self.table.file, name, "blank", "write a number");
+            Ok(self.table.number(row, c)?.ok_or_else(blank)? * factor)
+        };
+        self.rows
+            .iter()
+            .map(number)
+            .collect::<Result<Vec<f64>, Fault>>()
+            .map_err(Faults::from)
+    }
+}

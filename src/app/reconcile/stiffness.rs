@@ -1,0 +1,141 @@
+//! Signatures of a stiffness that may be wrong: the changed model solved again.
+
+use super::deck_frame::{DeckFrame, influence, solve};
+use crate::app::fault::{Fault, Faults};
+use crate::app::job::Job;
+use crate::model::Model;
+use crate::reconcile::strain::StiffnessSignature;
+use rayon::prelude::*;
+
+/// Thickness change at which a zone's signature is computed first, percent.
+const ZONE_PERCENT: f64 = 10.0;
+/// Stiffness of a joint at which its signature is computed first, natural log times 100: half and double.
+const JOINT_PERCENT: [f64; 2] = [-69.314_718_055_994_53, 69.314_718_055_994_53];
+/// Prior sd of a thickness, percent.
+const ZONE_PRIOR: f64 = 15.0;
+/// Prior sd of a joint's stiffness, natural log times 100: known to a factor of two.
+const JOINT_PRIOR: f64 = 70.0;
+/// Bushes of a deck that names none: more of them are springs of something else.
+const MOST_JOINTS: usize = 12;
+
+/// Id of a zone's stiffness.
+pub(super) const ZONE: &str = "rail_stiffness";
+/// Id of a joint's stiffness.
+pub(super) const JOINT: &str = "joint_stiffness";
+
+/// Factor of a stiffness at a size: a zone counts in percent, a joint in its natural log times 100.
+pub(super) fn factor(id: &str, percent: f64) -> f64 {
+    if id == JOINT {
+        (percent / 100.0).exp()
+    } else {
+        1.0 + percent / 100.0
+    }
+}
+
+/// Bushes whose stiffness is tried: those that the job names, or all of a deck that has few.
+fn joints(job: &Job, model: &Model) -> Vec<u32> {
+    let named = job.reconcile.as_ref().and_then(|r| r.joints.as_ref());
+    let chosen: Vec<u32> = match named {
+        Some(ids) => model
+            .bushes
+            .iter()
+            .map(|b| b.id)
+            .filter(|b| ids.contains(*b))
+            .collect(),
+        None => model.bushes.iter().map(|b| b.id).collect(),
+    };
+    if named.is_none() && chosen.len() > MOST_JOINTS {
+        return Vec::new();
+    }
+    chosen
+}
+
+impl DeckFrame {
+    /// Signatures of all zones and joints.
+    pub(super) fn signatures(&self, job: &Job) -> Result<Vec<StiffnessSignature>, Faults> {
+        let zones = job.reconcile.iter().flat_map(|r| r.zones.keys());
+        let mut wanted: Vec<(&str, String, Vec<f64>, f64)> = zones
+            .map(|z| (ZONE, z.clone(), vec![ZONE_PERCENT], ZONE_PRIOR))
+            .collect();
+        let joints = joints(job, self.fields.model());
+        wanted.extend(
+            joints
+                .iter()
+                .map(|j| (JOINT, j.to_string(), JOINT_PERCENT.to_vec(), JOINT_PRIOR)),
+        );
+        let solved = wanted
+            .into_par_iter()
+            .map(|(id, place, sizes, prior_percent)| {
+                let at = sizes
+                    .into_iter()
+                    .map(|p| Ok((p, self.stiffness_change(job, id, &place, p)?)));
+                Ok(StiffnessSignature {
+                    id: format!("{id}:{place}"),
+                    at_percent: at.collect::<Result<_, Faults>>()?,
+                    prior_percent,
+                })
+            });
+        solved.collect()
+    }
+
+    /// Change of the influence matrix when the stiffness of a zone or a joint changes by `percent` (see [`factor`]), from a solution of
+    /// the changed model on the mesh as it stands.
+    pub(super) fn stiffness_change(
+        &self,
+        job: &Job,
+        id: &str,
+        place: &str,
+        percent: f64,
+    ) -> Result<Vec<f64>, Faults> {
+        let factor = factor(id, percent);
+        let model = if id == JOINT {
+            self.with_joint(place, factor)
+        } else {
+            self.with_zone(job, place, factor)?
+        };
+        let solution = solve(job, &model, &self.columns)?;
+        let now = influence(job, &model, &self.gauges, &solution, self.columns.len());
+        Ok(now.iter().zip(&self.base).map(|(a, b)| a - b).collect())
+    }
+
+    fn with_joint(&self, place: &str, factor: f64) -> Model {
+        let mut model = self.fields.model().clone();
+        for b in model
+            .bushes
+            .iter_mut()
+            .filter(|b| b.id.to_string() == place)
+        {
+            b.k.iter_mut().for_each(|k| *k *= factor);
+        }
+        model
+    }
+
+    fn with_zone(&self, job: &Job, zone: &str, factor: f64) -> Result<Model, Faults> {
+        let fault = |wrong: String, remedy: &str| {
+            Faults::from(Fault::of(&*job.file, "reconcile.zones", wrong, remedy))
+        };
+        let Some(ids) = job.reconcile.as_ref().and_then(|r| r.zones.get(zone)) else {
+            return Err(fault(format!("no zone `{zone}`"), "name its properties"));
+        };
+        let mut deck = self.fields.deck.deck.clone();
+        let mut changed = 0;
+        for p in deck
+            .cards
+            .pshells
+            .iter_mut()
+            .filter(|p| ids.contains(p.card.id))
+        {
+            p.card.t = p.card.t.map(|t| t * factor);
+            p.card.z1 = p.card.z1.map(|z| z * factor);
+            p.card.z2 = p.card.z2.map(|z| z * factor);
+            changed += 1;
+        }
+        if changed == 0 {
+            return Err(fault(
+                format!("zone `{zone}` names no PSHELL of the deck"),
+                "name PSHELL ids",
+            ));
+        }
+        Ok(Model::from_deck(&deck).0)
+    }
+}

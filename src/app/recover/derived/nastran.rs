@@ -1,0 +1,217 @@
+//! `loads.bdf`: recovered loads as bulk data, in the job's units.
+//!
+//! Every load is a FORCE or MOMENT of 1 in a set of its own. A run is a LOAD that adds them up; a history is a TLOAD1 and a TABLED1 a
+//! load and one DLOAD for all.
+
+use super::{History, PIECE};
+use crate::app::cases::{dynamic_ids, load_ids};
+use crate::app::fault::Faults;
+use crate::app::job::{JobLoad, LoadActs};
+use crate::app::recover::Task;
+use crate::app::strain::LoadUnits;
+use crate::app::{JobArguments, Session};
+use crate::recovery::Recovery;
+use nastran::bdf::{Field, format_card};
+use nastran::cards::Force;
+use std::io::Write;
+
+const NAME: &str = "loads.bdf";
+/// The first set where no deck says which are taken.
+const FIRST_SET: u32 = 1001;
+
+/// A load and the set that holds 1 of it.
+struct Unit {
+    /// Column of the recovered loads.
+    column: usize,
+    set: u32,
+}
+
+/// Cards of 1 of each load, which loads they are, and the next free set. Loads without a place in the job are left out.
+fn unit_sets(task: &Task, names: &[String]) -> (String, Vec<Unit>, u32) {
+    let deck = task.prepared.fields.as_ref().map(|f| &f.deck.deck);
+    let taken = deck.and_then(|d| load_ids(d).into_iter().chain(dynamic_ids(d)).max());
+    let mut next = taken.map_or(FIRST_SET, |last| (last + 1).max(FIRST_SET));
+    let (mut text, mut units) = (String::new(), Vec::new());
+    for (column, name) in names.iter().enumerate() {
+        let Some(load) = task.job.loads.iter().find(|l| &l.name == name) else {
+            continue;
+        };
+        text.push_str(&format!("$ {}\n", plain(name)));
+        let set = match load.acts {
+            LoadActs::Set(set) => set,
+            LoadActs::AtGrid { .. } => {
+                text.push_str(&unit_card(load, next));
+                next += 1;
+                next - 1
+            }
+        };
+        units.push(Unit { column, set });
+    }
+    (text, units, next)
+}
+
+fn unit_card(load: &JobLoad, sid: u32) -> String {
+    let LoadActs::AtGrid {
+        grid,
+        component,
+        cid,
+    } = load.acts
+    else {
+        return String::new();
+    };
+    let card = Force {
+        sid,
+        grid,
+        cid,
+        scale: 1.0,
+        n: component.vector(1.0),
+    };
+    if component.is_force() {
+        card.to_force_card()
+    } else {
+        card.to_moment_card()
+    }
+}
+
+/// Text that can stand in a comment or a label.
+fn plain(text: &str) -> String {
+    text.chars()
+        .filter(|c| !c.is_control() && *c != '$')
+        .take(60)
+        .collect()
+}
+
+fn heading(task: &Task, what: &str) -> String {
+    format!(
+        "$ Recovered loads of {}, units {}\n$ {what}\n",
+        plain(&task.job.title),
+        task.job.units.name()
+    )
+}
+
+/// Writes the loads of every run; nothing where the job says of no load where it acts.
+///
+/// # Errors
+/// A file that can't be written.
+pub(in crate::app::recover) fn write_runs(
+    session: &mut Session,
+    arguments: &JobArguments,
+    task: &Task,
+    names: &[String],
+    recovery: &Recovery,
+) -> Result<(), Faults> {
+    let (cards, units, mut next) = unit_sets(task, names);
+    if units.is_empty() {
+        return Ok(());
+    }
+    let mut case = String::from("$ For the case control of the deck:\n");
+    let mut bulk = String::new();
+    for (number, run) in (1..).zip(&recovery.runs) {
+        let values: Vec<(f64, u32)> = units
+            .iter()
+            .map(|u| (rounded(run.estimate.values[u.column], 9), u.set))
+            .collect();
+        let label = plain(&run.estimate.run);
+        if values.iter().any(|v| !v.0.is_finite()) {
+            bulk.push_str(&format!("$ Run {label}: not recovered\n"));
+            continue;
+        }
+        case.push_str(&format!(
+            "$ SUBCASE {number}\n$   LABEL = {label}\n$   LOAD = {next}\n"
+        ));
+        let mut fields = vec![Field::from(next), Field::Real(1.0)];
+        fields.extend(
+            values
+                .iter()
+                .flat_map(|(v, set)| [Field::Real(*v), Field::from(*set)]),
+        );
+        bulk.push_str(&format!("$ Run {label}\n{}", format_card("LOAD", &fields)));
+        next += 1;
+    }
+    let head = heading(task, "1 of each load, then a LOAD a run");
+    session
+        .output_for(&arguments.job)?
+        .write_bytes(NAME, [head, case, cards, bulk].concat().as_bytes())
+        .map_err(Faults::from)
+}
+
+/// Writes the loads of a history as tables over time.
+///
+/// # Errors
+/// A file that can't be written.
+pub(super) fn write_history(
+    session: &mut Session,
+    arguments: &JobArguments,
+    task: &Task,
+    history: &History,
+) -> Result<(), Faults> {
+    let (cards, units, next) = unit_sets(task, history.names);
+    if units.is_empty() || history.header.samples == 0 {
+        return Ok(());
+    }
+    let n = units.len() as u32;
+    // Tables have ids of their own; the same number for TLOAD1 and its table is easy to follow.
+    let (first, all) = (next, next + n);
+    let mut text = heading(
+        task,
+        &format!("1 of each load, its history as a table, DLOAD = {all} for all of them"),
+    );
+    text.push_str(&cards);
+    let mut fields = vec![Field::from(all), Field::Real(1.0)];
+    for (id, unit) in (first..).zip(&units) {
+        let card = [
+            Field::from(id),
+            Field::from(unit.set),
+            Field::Blank,
+            Field::Blank,
+            Field::from(id),
+        ];
+        text.push_str(&format_card("TLOAD1", &card));
+        fields.extend([Field::Real(1.0), Field::from(id)]);
+    }
+    text.push_str(&format_card("DLOAD", &fields));
+    session
+        .output_for(&arguments.job)?
+        .write(NAME, |w| {
+            w.write_all(text.as_bytes())?;
+            for (id, unit) in (first..).zip(&units) {
+                table(w, history, id, unit.column, &history.units[unit.column])?;
+            }
+            Ok(())
+        })
+        .map_err(Faults::from)
+}
+
+/// TABLED1 of one load: time in s, the load in the job's unit; a gap is left to the straight line across it.
+fn table(
+    w: &mut dyn Write,
+    history: &History,
+    id: u32,
+    column: usize,
+    unit: &LoadUnits,
+) -> std::io::Result<()> {
+    let h = &history.header;
+    let mut fields = vec![Field::from(id)];
+    fields.resize(8, Field::Blank);
+    let mut values = Vec::new();
+    for from in (0..h.samples).step_by(PIECE) {
+        values.clear();
+        history.samples(
+            from,
+            (from + PIECE).min(h.samples),
+            &[Some(column)],
+            &mut values,
+        );
+        for (i, v) in (from..).zip(&values).filter(|(_, v)| v.is_finite()) {
+            let time = rounded(h.t0 + h.dt * i as f64, 10);
+            fields.extend([Field::Real(time), Field::Real(rounded(v / unit.factor, 7))]);
+        }
+    }
+    fields.push(Field::from("ENDT"));
+    w.write_all(format_card("TABLED1", &fields).as_bytes())
+}
+
+/// The number with so many significant digits; the 32-bit reals of `loads.bin` hold 7.
+fn rounded(x: f64, digits: usize) -> f64 {
+    format!("{x:.*e}", digits - 1).parse().unwrap_or(x)
+}

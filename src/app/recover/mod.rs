@@ -1,0 +1,189 @@
+//! `recover`: loads from measured strain.
+//!
+//! [`runs`] static states, a row each; [`stream`] records of any length, CSV, RPC III or binary ([`crate::series::binary`]), at constant
+//! memory, Parquet and MDF4 read whole; [`derived`] what else is made of the loads.
+
+mod content;
+mod csv_record;
+mod derived;
+mod history_files;
+mod record;
+mod runs;
+mod stream;
+mod trace;
+
+use super::fault::{Fault, Faults};
+use super::job::{self, Job, Measured, Reference};
+use super::strain::{Prepared, prepare};
+use super::wheels::{floor_fault, wheels_of};
+use super::{JobArguments, Session};
+use crate::fe::floor::solve_standing;
+use crate::finding::{Finding, Severity};
+use crate::gauge::reading;
+use crate::model::Model;
+use crate::recovery::{ErrorModel, Readings, Recovery};
+use crate::series::foreign::Foreign;
+use crate::series::{binary, rpc};
+
+/// Strain in one microstrain.
+const MICRO: f64 = 1e-6;
+
+/// What runs and records share.
+struct Task<'a> {
+    job: &'a Job,
+    measured: &'a Measured,
+    prepared: &'a Prepared,
+    errors: ErrorModel,
+    /// Strain subtracted from readings, by gauge of S.
+    zero: Vec<f64>,
+    /// Noise variance of a reading less zero, in units of that of a reading.
+    noise_factor: f64,
+}
+
+/// Reads, recovers, writes `loads.csv` and the report.
+pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
+    let job = session.stage("read job", |s| job::read_job(&mut s.inputs, &arguments.job))?;
+    session.put_units(job.units, &job.report_units);
+    let Some(measured) = &job.measured else {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "measured",
+            "the job has no [measured]",
+            "name the strain file: [measured] strain = \"strain.csv\"",
+        )));
+    };
+    let prepared = prepare(session, &job)?;
+    session.put_conditioning(&prepared.sensitivity)?;
+    let task = task_of(session, &job, measured, &prepared)?;
+    if measured.reference == Reference::None {
+        session.findings.push(Finding::new(
+            Severity::Info,
+            "loads-are-changes",
+            "measured.reference",
+            "loads are changes from the state at which the gauges read zero",
+            "state `reference` to get totals",
+        ));
+    }
+    let bytes = session
+        .inputs
+        .read_named(&job, &measured.strain)
+        .map_err(Faults::from)?;
+    if binary::is_record(&bytes)
+        || rpc::is_rpc(&bytes)
+        || Foreign::of(&bytes).is_some()
+        || csv_record::is_record(&bytes)
+    {
+        session.stage("stream", |s| stream::run(s, arguments, &task, bytes))
+    } else {
+        runs::run(session, arguments, &task)
+    }
+}
+
+/// What runs and records share: zero, reference, stated errors.
+fn task_of<'a>(
+    session: &mut Session,
+    job: &'a Job,
+    measured: &'a Measured,
+    prepared: &'a Prepared,
+) -> Result<Task<'a>, Faults> {
+    let (mut zero, n_zero) = runs::zero_of(session, job, measured, &prepared.sensitivity.gauges)?;
+    for (z, r) in zero
+        .iter_mut()
+        .zip(reference_strain(job, measured, prepared)?)
+    {
+        *z -= r;
+    }
+    Ok(Task {
+        job,
+        measured,
+        prepared,
+        errors: ErrorModel {
+            noise: measured.noise_microstrain * MICRO,
+            model_rel: measured.model_uncertainty_rel,
+        },
+        zero,
+        noise_factor: 1.0 + n_zero.map_or(0.0, |n| 1.0 / n),
+    })
+}
+
+/// Readings and recovered loads of the job's static runs, for commands that go on from there.
+///
+/// # Errors
+/// Unreadable tables; a record, which `recover` streams.
+pub(super) fn recovered_runs(
+    session: &mut Session,
+    job: &Job,
+    measured: &Measured,
+    prepared: &Prepared,
+) -> Result<(Vec<Readings>, Recovery), Faults> {
+    let task = task_of(session, job, measured, prepared)?;
+    runs::solve(session, &task)
+}
+
+/// Strain of the reference state by gauge: it is added to the readings, so that loads are totals.
+fn reference_strain(
+    job: &Job,
+    measured: &Measured,
+    prepared: &Prepared,
+) -> Result<Vec<f64>, Faults> {
+    let n = prepared.sensitivity.gauges.len();
+    let fault = |wrong: String, remedy: &str| {
+        Faults::from(Fault::at(
+            &*job.file,
+            measured.line,
+            "measured.reference",
+            wrong,
+            remedy,
+        ))
+    };
+    match (measured.reference, &prepared.fields) {
+        (Reference::None, _) => Ok(vec![0.0; n]),
+        (Reference::Subcase(id), Some(fields)) => {
+            let case = fields.subcase(id).ok_or_else(|| {
+                fault(
+                    format!("the results have no subcase {id}"),
+                    "name the subcase of the reference state",
+                )
+            })?;
+            prepared
+                .gauges
+                .iter()
+                .map(|g| {
+                    reading(g, case).ok_or_else(|| {
+                        fault(
+                            format!("gauge `{}` has no strain in subcase {id}", g.name),
+                            "ask for STRAIN of its element there",
+                        )
+                    })
+                })
+                .collect()
+        }
+        (Reference::Gravity, Some(fields)) => Ok(standing_strain(job, fields.model(), prepared)?),
+        (_, None) => Err(fault(
+            "a given S has no subcases and no weight".to_owned(),
+            "write reference = \"none\", or give a [model] instead of [sensitivity]",
+        )),
+    }
+}
+
+/// Strain by gauge of the model standing on its wheels under its own weight: `S R`, `R` the reactions at the job's wheels on a flat floor.
+/// A free structure that gravity and its reactions hold in balance is strained by the reactions with their inertia relief alone.
+fn standing_strain(job: &Job, model: &Model, prepared: &Prepared) -> Result<Vec<f64>, Faults> {
+    let wheels = wheels_of(job, model)?;
+    let standing = solve_standing(model, wheels.axis, &wheels.grids, &[], None)
+        .map_err(|e| floor_fault(job, &e))?;
+    let reactions = standing.under_weight(model, job.units.standard_gravity());
+    let s = &prepared.sensitivity;
+    Ok((0..s.gauges.len())
+        .map(|g| {
+            let by_wheel = wheels.loads.iter().zip(&reactions);
+            by_wheel
+                .filter_map(|(l, r)| {
+                    let name = &job.loads.get(*l)?.name;
+                    let column = s.loads.iter().position(|c| c.name == *name)?;
+                    Some(s.values[(g, column)] * r)
+                })
+                .sum()
+        })
+        .collect())
+}

@@ -1,0 +1,457 @@
+//! Records: samples streamed through one filter, pieces in parallel, a few pieces in memory at a time.
+
+use super::content::{check_content, content_of_loads};
+use super::csv_record;
+use super::derived::{self, History};
+use super::history_files::{Form, Named, stream};
+use super::record::{BYTES, GROUP, Record, Source, process};
+use super::runs::columns_of;
+use super::trace::Spans;
+use super::{MICRO, Task};
+use crate::app::fault::{Fault, Faults};
+use crate::app::files::FileBytes;
+use crate::app::job::strain::{in_microstrain, read_strain_header, strain_record};
+use crate::app::scene::{Shown, run_arrows, scene_of_job};
+use crate::app::solved::first_mode_of;
+use crate::app::spreadsheets::write_spreadsheet;
+use crate::app::strain::{LoadUnits, load_units};
+use crate::app::{JobArguments, Session};
+use crate::finding::{Finding, Severity};
+use crate::linalg::Matrix;
+use crate::recovery::history::{Filter, Sums};
+use crate::recovery::{Readings, recover};
+use crate::report::spreadsheet::{HistoryLoad, history_sheet, residual_sheet};
+use crate::report::strain::{Recovered, RecoveredRun, recover_page};
+use crate::sensitivity::Sensitivity;
+use crate::series::foreign::Foreign;
+use crate::series::{binary, rpc};
+use rayon::prelude::*;
+use serde_json::{Value, json};
+use std::io::{Seek, Write};
+
+/// Rows of `loads.csv` at most; longer records are thinned there and written whole to `loads.bin`.
+const MOST_ROWS: usize = 200_000;
+/// Samples on which the residual is judged.
+const JUDGED: usize = 200;
+/// Samples from which typical loads are taken for the weights of a stated model error.
+const TYPICAL: usize = 20_000;
+
+pub(super) fn run(
+    session: &mut Session,
+    arguments: &JobArguments,
+    task: &Task,
+    bytes: FileBytes,
+) -> Result<(), Faults> {
+    let all = &task.prepared.sensitivity;
+    let named = &task.measured.strain;
+    let file = named.given.clone();
+    let (source, names, unit) = if binary::is_record(&bytes) {
+        let h = binary::read_header(&bytes).map_err(|e| {
+            let remedy = "write the record again as README.md describes it";
+            Faults::from(Fault::of(&*file, "header", e.to_string(), remedy))
+        })?;
+        let (names, unit) = (h.names.clone(), h.unit);
+        (Source::Binary(h), names, unit)
+    } else if rpc::is_rpc(&bytes) {
+        let mut h = read_strain_header(&file, &bytes)?;
+        let names = h.channels.iter().map(|c| c.name.clone()).collect();
+        in_microstrain(&file, &mut h, &all.gauges)?;
+        (Source::Rpc(h), names, MICRO)
+    } else if let Some(kind) = Foreign::of(&bytes) {
+        let record = strain_record(&file, kind, &bytes, &all.gauges)?;
+        let names = record.list.iter().map(|c| c.name.clone()).collect();
+        (Source::Whole(record), names, MICRO)
+    } else {
+        let l = csv_record::layout(&bytes).ok_or_else(|| {
+            Faults::from(Fault::at(
+                &*file,
+                1,
+                "time",
+                "no column `time`",
+                "add a column `time` in seconds",
+            ))
+        })?;
+        let pieces = csv_record::pieces(&bytes, l.start, BYTES);
+        let names = l.names.clone();
+        (Source::Csv(l, pieces), names, MICRO)
+    };
+    let found = columns_of(session, named, &names, &all.gauges);
+    // Gauges without a column take no part.
+    let used: Vec<usize> = (0..found.len())
+        .filter(|&g| found[g].is_some() && task.zero[g].is_finite())
+        .collect();
+    if used.is_empty() {
+        return Err(Faults::from(Fault::at(
+            &*file,
+            1,
+            "gauge",
+            "no column is named after a gauge of the job",
+            "name the columns after the gauges",
+        )));
+    }
+    let s = Sensitivity {
+        gauges: used.iter().map(|&g| all.gauges[g].clone()).collect(),
+        loads: all.loads.clone(),
+        values: Matrix::from_fn(used.len(), all.loads.len(), |i, l| all.values[(used[i], l)]),
+    };
+    let zero: Vec<f64> = used.iter().map(|&g| task.zero[g]).collect();
+    let record = Record {
+        bytes,
+        file: file.clone(),
+        source,
+        columns: used.iter().map(|&g| found[g]).collect(),
+        unit,
+    };
+    let units = load_units(
+        task.job,
+        &s.loads.iter().map(|l| l.name.clone()).collect::<Vec<_>>(),
+    );
+    let judged = judge(task, &record, &s, &zero)?;
+    session.findings.extend(judged.1.iter().cloned());
+    let filter =
+        Filter::new(&s, zero, task.errors, task.noise_factor, &judged.0).ok_or_else(|| {
+            Faults::from(Fault::of(
+                &*file,
+                "sensitivity",
+                "S holds numbers that are not finite",
+                "check the results of the unit loads",
+            ))
+        })?;
+    if filter.rank < s.loads.len() {
+        session.findings.push(Finding::new(
+            Severity::Error,
+            "run-not-solvable",
+            &file,
+            "the gauges of this record don't separate the loads: some of the values are arbitrary",
+            "add gauges, drop loads, or state `expected` for loads with role \"nuisance\"",
+        ));
+    }
+    let total = match &record.source {
+        Source::Binary(h) => Some(h.samples),
+        Source::Rpc(h) => Some(h.samples),
+        Source::Whole(c) => Some(c.n_samples()),
+        Source::Csv(..) => None,
+    };
+    // A CSV record's rows are not counted beforehand: those of its first piece tell how long one is.
+    let first = match &record.source {
+        Source::Csv(..) => record.piece(0).ok(),
+        _ => None,
+    };
+    let about = total.unwrap_or_else(|| match (&record.source, &first) {
+        (Source::Csv(l, pieces), Some((times, _))) => {
+            let of_first = pieces.first().map_or(1, |p| p.1 - p.0).max(1);
+            let rows = record.bytes.len().saturating_sub(l.start) as f64 / of_first as f64;
+            (rows * times.len() as f64).round() as usize
+        }
+        _ => 0,
+    });
+    let stride = about.div_ceil(MOST_ROWS).max(1);
+    let (t0, dt) = match &record.source {
+        Source::Binary(h) => (h.t0, h.dt),
+        Source::Rpc(h) => (0.0, h.dt),
+        Source::Whole(c) => (c.start_s, 1.0 / c.rate_hz),
+        Source::Csv(..) => match first.as_ref().map(|p| &p.0[..]) {
+            Some([a, b, ..]) => (*a, b - a),
+            Some([a]) => (*a, 0.0),
+            _ => (0.0, 0.0),
+        },
+    };
+    let names_of: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
+    let fields = task.prepared.fields.as_ref();
+    let first_mode = fields.and_then(|f| {
+        f.first_mode
+            .or_else(|| first_mode_of(session, task.job, &f.deck))
+    });
+    if let Some(first_mode) = first_mode {
+        let sigma = filter.sigma(&vec![0.0; s.loads.len()]);
+        let pieces = sampled_pieces(&record, &filter).map_err(Faults::from)?;
+        let content = content_of_loads(&pieces, &sigma, if dt > 0.0 { 1.0 / dt } else { 0.0 });
+        session
+            .findings
+            .extend(check_content(&names_of, &content, first_mode));
+        session.put("first_elastic_mode_hz", first_mode)?;
+        session.put("content_hz", &content)?;
+    }
+    let progress = session.cx.progress;
+    let out = session.output_for(&arguments.job)?;
+    let mut csv = Named {
+        name: "loads.csv",
+        file: out.open("loads.csv").map_err(Faults::from)?,
+    };
+    let wanted = derived::wanted(task, about);
+    let mut bin = match stride > 1 || !wanted.is_empty() {
+        true => Some(Named {
+            name: "loads.bin",
+            file: out.open("loads.bin").map_err(Faults::from)?,
+        }),
+        false => None,
+    };
+    let unit_names: Vec<String> = names_of.iter().zip(&units).map(named_with_unit).collect();
+    let head = |bin: &mut Named, samples: u64| {
+        binary::write_header(&mut bin.file, &unit_names, samples, t0, dt, 1.0)
+    };
+    let mut columns = "time".to_owned();
+    for name in &names_of {
+        columns.push_str(&format!(",{name},{name}.low,{name}.high"));
+    }
+    columns.push('\n');
+    csv.put(columns.as_bytes())
+        .and_then(|()| {
+            bin.as_mut()
+                .map_or(Ok(()), |b| head(b, 0).map_err(|e| (b.name, e)))
+        })
+        .map_err(|(name, e)| vec![out.fault(name, &e)])?;
+    let form = Form {
+        filter: &filter,
+        units: &units,
+        stride,
+        numbers: bin.is_some(),
+    };
+    let mut spans = Spans::new(s.loads.len(), record.n_pieces());
+    let sums = stream(
+        &record,
+        &form,
+        &mut csv,
+        bin.as_mut(),
+        out,
+        progress,
+        &mut spans,
+    )
+    .map_err(Faults::from)?;
+    // How many samples a CSV record holds is known at its end: the header is written again.
+    let mut written = csv.file.flush().map_err(|e| (csv.name, e));
+    if let Some(mut b) = bin {
+        written = written.and_then(|()| {
+            b.file
+                .rewind()
+                .and_then(|()| head(&mut b, sums.samples + sums.gaps))
+                .and_then(|()| b.file.flush())
+                .map_err(|e| (b.name, e))
+        });
+    }
+    written.map_err(|(name, e)| vec![out.fault(name, &e)])?;
+    drop(csv);
+    if !wanted.is_empty() {
+        let bytes = out.read_back("loads.bin").map_err(Faults::from)?;
+        let header = binary::read_header(&bytes).map_err(|e| {
+            let remedy = "report this as an error of the program";
+            Faults::from(Fault::of("loads.bin", "header", e.to_string(), remedy))
+        })?;
+        let history = History {
+            bytes,
+            header,
+            names: &names_of,
+            units: &units,
+            filter: &filter,
+            sums: &sums,
+        };
+        session.stage("files of the history", |s| {
+            derived::write_history(s, arguments, task, &history, &wanted)
+        })?;
+    }
+    derived::note_left_out(session, task, sums.samples + sums.gaps, &wanted);
+    finish(
+        session,
+        arguments,
+        task,
+        &s,
+        &filter,
+        &sums,
+        &spans,
+        &units,
+        &file,
+        (stride > 1).then_some(stride),
+    )
+}
+
+fn named_with_unit((name, unit): (&String, &LoadUnits)) -> String {
+    if unit.name.is_empty() {
+        name.clone()
+    } else {
+        format!("{name} [{}]", unit.name)
+    }
+}
+
+/// Loads of some pieces spread over the record.
+fn sampled_pieces(record: &Record, filter: &Filter) -> Result<Vec<Vec<f64>>, Fault> {
+    let n = record.n_pieces();
+    let taken = n.min(GROUP);
+    (0..taken)
+        .into_par_iter()
+        .map(|i| process(record, filter, i * n / taken).map(|p| p.loads))
+        .collect()
+}
+
+/// Typical (rms) loads, and what samples over the record say of the loads asked for and of the gauges.
+fn judge(
+    task: &Task,
+    record: &Record,
+    s: &Sensitivity,
+    zero: &[f64],
+) -> Result<(Vec<f64>, Vec<Finding>), Faults> {
+    let n = s.gauges.len();
+    let pieces = record.n_pieces();
+    let mut readings: Vec<Readings> = Vec::new();
+    let spread = pieces.min(10);
+    let each = JUDGED.div_ceil(spread.max(1));
+    for p in 0..spread {
+        let (times, values) = record.piece(p * pieces / spread).map_err(Faults::from)?;
+        let take = times.len().min(TYPICAL);
+        for i in (0..each).map(|i| i * take / each).filter(|i| *i < take) {
+            let row = &values[i * n..(i + 1) * n];
+            let strain = row
+                .iter()
+                .zip(zero)
+                .map(|(v, z)| v * record.unit - z)
+                .collect();
+            readings.push(Readings {
+                run: format!("t = {}", times[i]),
+                strain,
+                noise_factor: task.noise_factor,
+            });
+        }
+    }
+    let recovery = recover(s, &readings, task.errors);
+    let k = s.loads.len();
+    let typical = (0..k)
+        .map(|l| {
+            let q: f64 = recovery
+                .runs
+                .iter()
+                .map(|r| r.estimate.values[l].powi(2))
+                .sum();
+            (q / recovery.runs.len().max(1) as f64).sqrt()
+        })
+        .collect();
+    let mut findings = recovery.findings;
+    findings.retain(|f| f.code != "run-not-solvable");
+    Ok((typical, findings))
+}
+
+#[allow(clippy::too_many_arguments)]
+fn finish(
+    session: &mut Session,
+    arguments: &JobArguments,
+    task: &Task,
+    s: &Sensitivity,
+    filter: &Filter,
+    sums: &Sums,
+    spans: &Spans,
+    units: &[LoadUnits],
+    file: &str,
+    thinned: Option<usize>,
+) -> Result<(), Faults> {
+    let count = sums.samples.max(1) as f64;
+    let rms: Vec<f64> = sums
+        .sum_of_squares
+        .iter()
+        .map(|q| (q / count).sqrt())
+        .collect();
+    let sigma = filter.sigma(&rms);
+    let mut loads: Vec<Value> = Vec::new();
+    let mut shown = Vec::new();
+    let mut summary = Vec::new();
+    for (l, u) in units.iter().enumerate() {
+        let mean = sums.sum[l] / count;
+        loads.push(json!({
+            "run": file,
+            "name": s.loads[l].name,
+            "value": mean * u.factor,
+            "sigma": sigma[l] * u.factor,
+            "unit": u.name,
+            "min": sums.min[l] * u.factor,
+            "max": sums.max[l] * u.factor,
+            "rms": rms[l] * u.factor,
+        }));
+        summary.push(HistoryLoad {
+            name: s.loads[l].name.clone(),
+            unit: u.name.clone(),
+            min: sums.min[l] * u.factor,
+            mean: mean * u.factor,
+            max: sums.max[l] * u.factor,
+            rms: rms[l] * u.factor,
+            sigma: sigma[l] * u.factor,
+        });
+        shown.push((
+            s.loads[l].name.clone(),
+            [sums.min[l], mean, sums.max[l]].map(|v| v * u.factor),
+            u.name.clone(),
+        ));
+    }
+    session.put("loads", loads)?;
+    let dof = s.gauges.len().saturating_sub(filter.rank).max(1) as f64;
+    let residual = (sums.residual.iter().sum::<f64>() / (count * dof)).sqrt() / MICRO;
+    session.put("residual_rms_microstrain", residual)?;
+    let by_gauge: Vec<(String, f64, f64)> = (0..s.gauges.len())
+        .map(|g| {
+            (
+                s.gauges[g].clone(),
+                (sums.residual[g] / count).sqrt() / MICRO,
+                filter.leverage[g],
+            )
+        })
+        .collect();
+    let gauges: Vec<Value> = by_gauge
+        .iter()
+        .map(|(n, r, h)| json!({ "name": n, "residual_rms_microstrain": r, "leverage": h }))
+        .collect();
+    session.put("gauges", gauges)?;
+    session.put("samples", sums.samples)?;
+    session.put("gaps", sums.gaps)?;
+    if sums.gaps > 0 {
+        session.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "samples-with-gaps",
+                file,
+                format!(
+                    "{} samples have a gauge without a reading: their loads are left blank",
+                    sums.gaps
+                ),
+                "repair the channel, or leave its gauge out of the job",
+            )
+            .with_numbers(sums.gaps as f64, 0.0),
+        );
+    }
+    if let Some(stride) = thinned {
+        session.findings.push(Finding::new(
+            Severity::Info,
+            "history-thinned",
+            "loads.csv",
+            format!("loads.csv holds every {stride}th sample; loads.bin holds all of them (format in README.md)"),
+            "",
+        ));
+    }
+    session.say(format!(
+        "{}: {} samples, residual {residual:.2} microstrain rms",
+        file, sums.samples
+    ));
+    let numbers = vec![
+        ("Samples".to_owned(), sums.samples.to_string()),
+        (
+            "Residual, microstrain rms".to_owned(),
+            format!("{residual:.3}"),
+        ),
+    ];
+    let runs = [RecoveredRun {
+        run: format!("{file}: smallest, mean, largest"),
+        loads: shown,
+    }];
+    let names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
+    let scene = scene_of_job(task.job, task.prepared).map(|mut scene| {
+        scene.arrows = run_arrows(task.job, scene.model, &runs, Shown::Extremes);
+        scene
+    });
+    let found = Recovered {
+        sensitivity: s,
+        runs: &runs,
+        points: &[],
+        traces: &spans.traces(&names, units, filter, &rms),
+        by_gauge: &by_gauge,
+        numbers: &numbers,
+    };
+    let page = recover_page(&task.job.title, scene.as_ref(), &found, &session.findings);
+    session.write_page(&arguments.job, page)?;
+    let sheets = [history_sheet(&summary), residual_sheet(&by_gauge)];
+    write_spreadsheet(session, task.job, &arguments.job, "loads.xlsx", &sheets)
+}

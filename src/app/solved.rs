@@ -1,0 +1,187 @@
+//! The built-in solver as every command uses it: solutions are kept beside the job and taken from there while their inputs are the same.
+
+use super::work::Work;
+use super::deck::DeckModel;
+use super::fault::{Fault, Faults};
+use super::job::Job;
+use super::store::{Key, read_solution, write_solution};
+use crate::fe::{
+    Corners, FeError, LoadCase, Solution, SolveOptions, SolveReport, Solved, UnitLoad, relief_of,
+    solution_of, solve_displacements, unit_cases,
+};
+use crate::finding::{Finding, Severity};
+use crate::model::Model;
+use std::fmt::Write;
+
+/// Elastic modes of a free structure that are computed beside the strain.
+const MODES: usize = 10;
+
+/// The unit loads of a job as load cases, subcases numbered in job order.
+///
+/// # Errors
+/// Grids and coordinate systems that the deck lacks.
+pub fn cases_of_job(job: &Job, read: &DeckModel) -> Result<Vec<LoadCase>, Faults> {
+    let relief = relief_of(&read.model, None, None);
+    let loads = super::strain::unit_loads(job, &read.model)?;
+    Ok(job
+        .loads
+        .iter()
+        .zip(loads)
+        .map(|(l, load)| LoadCase {
+            subcase: l.number,
+            label: l.name.clone(),
+            loads: vec![load],
+            spc: None,
+            mpc: read.model.mpc,
+            relief,
+        })
+        .collect())
+}
+
+/// Solves load cases on the model of a deck, with its elastic modes, or takes the solution from the cache beside `main_input` (the job, or the deck itself).
+///
+/// # Errors
+/// What stops the solver, with file and line.
+pub fn solve_kept(
+    work: &mut Work,
+    read: &DeckModel,
+    cases: &[LoadCase],
+    options: SolveOptions,
+) -> Result<(Solution, SolveReport), Faults> {
+    let options = SolveOptions {
+        modes: MODES,
+        ..options
+    };
+    let identity = identity(work, read, cases, "");
+    let solved = kept(work, &identity, &read.model, cases, &options)
+        .map_err(|e| faults_of(&e, read))?;
+    for (step, seconds) in &solved.report.seconds {
+        work.note_seconds(&format!("solve: {step}"), *seconds);
+    }
+    work
+        .stage("strain", |_| {
+            solution_of(&read.model, cases, solved, &options)
+        })
+        .map_err(|e| faults_of(&e, read))
+}
+
+/// The strain of unit loads on a model made from a deck (a finer mesh, further temperature sets), kept like any other solution; `made`
+/// says in words what the deck's bytes don't: how the model was made from it.
+///
+/// # Errors
+/// What stops the solver, with file and line.
+pub fn unit_loads_kept(
+    work: &mut Work,
+    (read, made): (&DeckModel, &str),
+    model: &Model,
+    loads: &[UnitLoad],
+) -> Result<Solution, Faults> {
+    let options = SolveOptions::default();
+    let cases = unit_cases(model, loads);
+    let identity = identity(work, read, &cases, made);
+    kept(work, &identity, model, &cases, &options)
+        .and_then(|solved| solution_of(model, &cases, solved, &options))
+        .map(|(solution, _)| solution)
+        .map_err(|e| faults_of(&e, read))
+}
+
+/// Displacements from the cache, or solved and put there.
+fn kept(
+    work: &mut Work,
+    identity: &str,
+    model: &Model,
+    cases: &[LoadCase],
+    options: &SolveOptions,
+) -> Result<Solved, FeError> {
+    let key = Key::of(identity);
+    let mut store = work.cx.store;
+    let kept = match store.map(|s| read_solution(s, &key, model.grids.len(), cases.len())) {
+        Some(Ok(Some(solved))) => {
+            work.notes.push(
+                "the solution is taken from those kept (`--no-cache` solves anew)".to_owned(),
+            );
+            store = None;
+            Some(solved)
+        }
+        Some(Err(why)) => {
+            work.notes.push(format!("solved anew: {why}"));
+            None
+        }
+        Some(Ok(None)) | None => None,
+    };
+    let solved = match kept {
+        Some(solved) => solved,
+        None => work.stage("solve", |_| solve_displacements(model, cases, options))?,
+    };
+    if let Some(Err(why)) = store.map(|s| write_solution(s, &key, &solved)) {
+        work.notes.push(format!(
+            "the solution is not kept for the next command: {why}"
+        ));
+    }
+    Ok(solved)
+}
+
+/// The first elastic frequency of the free structure of a deck whose strain another program solved; where the built-in solver can't tell,
+/// a finding says why.
+pub fn first_mode_of(work: &mut Work, job: &Job, read: &DeckModel) -> Option<f64> {
+    let solved = cases_of_job(job, read).and_then(|cases| {
+        let options = SolveOptions {
+            corners: Corners::Leave,
+            ..SolveOptions::default()
+        };
+        solve_kept(work, read, &cases, options)
+    });
+    let why = match solved {
+        Ok((_, report)) => match report.modes.first() {
+            Some(f) => return Some(*f),
+            None => "it has no elastic mode".to_owned(),
+        },
+        Err(faults) => faults
+            .first()
+            .map_or_else(String::new, |f| format!("{}: {}", f.field, f.wrong)),
+    };
+    work.findings.push(Finding::new(
+        Severity::Info,
+        "first-mode-unknown",
+        &read.given,
+        format!("the first elastic mode of the structure is not known ({why}): whether the record is slow enough for quasi-static recovery was not checked"),
+        "compare the content of the loads with a third of the first elastic frequency of the free structure",
+    ));
+    None
+}
+
+/// Everything that the displacements depend on: the program's sources and version, the bytes of the deck and its includes, the load cases.
+fn identity(work: &mut Work, read: &DeckModel, cases: &[LoadCase], made: &str) -> String {
+    let mut text = format!(
+        "strainbridge {} {} modes {MODES} {made}\n",
+        env!("CARGO_PKG_VERSION"),
+        env!("STRAINBRIDGE_SOURCES"),
+    );
+    for path in &read.files {
+        let digest = work.inputs.digest_of(path);
+        let _ = writeln!(text, "file {}", digest.unwrap_or_default());
+    }
+    for case in cases {
+        let _ = writeln!(
+            text,
+            "case {} {:?} {:?} {:?} {:?}",
+            case.subcase, case.loads, case.spc, case.mpc, case.relief
+        );
+    }
+    text
+}
+
+/// The solver's faults with file and line.
+pub fn faults_of(error: &FeError, read: &DeckModel) -> Faults {
+    error
+        .faults()
+        .into_iter()
+        .map(|f| {
+            let file = match f.at.line {
+                0 => read.given.clone(),
+                _ => read.deck.path(f.at).to_owned(),
+            };
+            Fault::at(file, f.at.line, f.card, f.reason, f.remedy)
+        })
+        .collect()
+}

@@ -1,0 +1,303 @@
+//! The job's model and the strain of its unit loads, from result files or from the built-in solver.
+
+use crate::app::work::Work;
+use crate::app::deck::{DeckModel, moduli_and_densities, read_model};
+use crate::app::fault::{Fault, Faults};
+use crate::app::job::{Job, JobLoad, LoadActs, Reference, Role};
+use crate::app::solved::{cases_of_job, solve_kept};
+use crate::fe::from_results::{Displacements, ReadOptions, solution_from_file};
+use crate::fe::{CaseResult, Solution, SolveOptions, UnitLoad};
+use crate::gauge::CornerRows;
+use crate::model::{Model, Vec3};
+use crate::sensitivity::{Load, LoadCaseOf};
+use crate::units::check_units;
+use nastran::results::ResultsFile;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Model and strain fields.
+pub struct Fields {
+    /// Deck and model.
+    pub deck: DeckModel,
+    /// Result files, or one solved here.
+    pub solutions: Vec<Solution>,
+    /// By load: solution, case.
+    of_load: Vec<(usize, usize)>,
+    /// First elastic frequency of the free structure, cycles per unit of time; `None` where another program solved it.
+    pub first_mode: Option<f64>,
+}
+
+impl Fields {
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.deck.model
+    }
+
+    /// Every load with the case in which it acts, job order.
+    pub fn load_cases<'a>(&'a self, job: &Job) -> Vec<LoadCaseOf<'a>> {
+        job.loads
+            .iter()
+            .zip(&self.of_load)
+            .map(|(l, &(s, c))| LoadCaseOf {
+                load: Load {
+                    name: l.name.clone(),
+                    expected: l.expected,
+                    wanted: l.role == Role::Wanted,
+                },
+                applied: l.applied,
+                case: &self.solutions[s].cases[c],
+            })
+            .collect()
+    }
+
+    /// A case by its subcase id.
+    pub fn subcase(&self, id: u32) -> Option<&CaseResult> {
+        self.solutions
+            .iter()
+            .flat_map(|s| &s.cases)
+            .find(|c| c.subcase == id)
+    }
+
+    /// Whether every load's case has strain at corners.
+    pub fn corner_rows(&self, job: &Job) -> CornerRows {
+        let all = self
+            .load_cases(job)
+            .iter()
+            .all(|l| !l.case.shells.corners.is_empty());
+        if all {
+            CornerRows::Present
+        } else {
+            CornerRows::Absent
+        }
+    }
+}
+
+/// Reads the model and finds the case of every load.
+///
+/// # Errors
+/// Faults of the deck, unreadable results, loads without a case.
+pub fn read_fields(work: &mut Work, job: &Job) -> Result<Fields, Faults> {
+    let Some(files) = &job.model else {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "model",
+            "the job has no [model]",
+            "name the deck: [model] deck = \"model.bdf\"",
+        )));
+    };
+    if job.loads.is_empty() {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "load",
+            "the job has no [[load]]",
+            "name the loads to be recovered, one [[load]] each",
+        )));
+    }
+    let deck = work
+        .stage("read model", |s| {
+            read_model(&mut s.inputs, &job.folder, &files.deck.given)
+        })
+        .map_err(Faults::from)?;
+    Faults::check(deck.faults)?;
+    work.findings.extend(deck.findings.iter().cloned());
+    let (moduli, densities) = moduli_and_densities(&deck.model);
+    work.findings.extend(check_units(
+        job.units,
+        deck.model.params.unitsys.as_deref(),
+        &moduli,
+        &densities,
+    ));
+    if files.results.is_empty() {
+        let cases = cases_of_job(job, &deck)?;
+        let (solved, report) = solve_kept(
+            work,
+            &deck,
+            &cases,
+            SolveOptions::default(),
+        )?;
+        work.findings.extend(solved.findings.iter().cloned());
+        let of_load = (0..job.loads.len()).map(|i| (0, i)).collect();
+        return Ok(Fields {
+            deck,
+            solutions: vec![solved],
+            of_load,
+            first_mode: report.modes.first().copied(),
+        });
+    }
+    let mut wanted: BTreeSet<u32> = job.loads.iter().map(JobLoad::subcase).collect();
+    if let Some(Reference::Subcase(id)) = job.measured.as_ref().map(|m| m.reference) {
+        wanted.insert(id);
+    }
+    let options = ReadOptions {
+        displacements: Displacements::Leave,
+        subcases: Some(wanted),
+        ..ReadOptions::default()
+    };
+    let mut solutions = Vec::new();
+    for named in &files.results {
+        let bytes = work.inputs.read_named(job, named).map_err(Faults::from)?;
+        let solution = work.stage("read results", |_| {
+            ResultsFile::read(&bytes, &named.given)
+                .map(|file| solution_from_file(&deck.model, &named.given, &file, &options))
+        });
+        let solution = solution.map_err(|e| {
+            Faults::from(Fault::at(
+                &*job.file,
+                named.line,
+                &*named.key,
+                e.to_string(),
+                "give an OP2, punch or HDF5 file of a static run",
+            ))
+        })?;
+        work.findings.extend(solution.findings.iter().cloned());
+        solutions.push(solution);
+    }
+    let of_load = find_cases(job, &solutions)?;
+    work.findings.push(super::source_finding(
+        &solutions
+            .iter()
+            .map(|s| s.source.as_str())
+            .collect::<Vec<_>>()
+            .join("; "),
+    ));
+    Ok(Fields {
+        deck,
+        solutions,
+        of_load,
+        first_mode: None,
+    })
+}
+
+fn find_cases(job: &Job, solutions: &[Solution]) -> Result<Vec<(usize, usize)>, Faults> {
+    let mut faults = FaultList::new();
+    let mut found = Vec::new();
+    let names: Vec<&str> = job
+        .model
+        .iter()
+        .flat_map(|m| &m.results)
+        .map(|n| n.given.as_str())
+        .collect();
+    for load in &job.loads {
+        let file = load.result.as_ref().map(|r| r.given.as_str());
+        let hit = solutions
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| file.is_none_or(|f| names.get(*i) == Some(&f)))
+            .find_map(|(i, s)| {
+                let c = s
+                    .cases
+                    .iter()
+                    .position(|c| c.subcase == load.subcase() && has_strain(c))?;
+                Some((i, c))
+            });
+        // A file a load case is common: a file named for the load with a single case needs no subcase.
+        let hit = hit.or_else(|| {
+            let i = names.iter().position(|n| Some(*n) == file)?;
+            let only = solutions[i].cases.len() == 1 && load.subcase.is_none();
+            only.then_some((i, 0))
+        });
+        match hit {
+            Some(h) => found.push(h),
+            None => {
+                let there: Vec<String> = solutions
+                    .iter()
+                    .flat_map(|s| &s.cases)
+                    .filter(|c| has_strain(c))
+                    .map(|c| c.subcase.to_string())
+                    .collect();
+                let wrong = format!(
+                    "load `{}`: no static subcase {} with strain in the results",
+                    load.name,
+                    load.subcase()
+                );
+                let remedy = if there.is_empty() {
+                    "ask for STRAIN(FIBER,CENTER) = ALL and PARAM,POST,-1 in the run (`cases` writes such a deck)".to_owned()
+                } else {
+                    format!("state `subcase`; the results hold {}", there.join(", "))
+                };
+                faults.push(Fault::at(
+                    &*job.file,
+                    load.line,
+                    "load.subcase",
+                    wrong,
+                    remedy,
+                ));
+            }
+        }
+    }
+    Faults::check(faults)?;
+    Ok(found)
+}
+
+fn has_strain(c: &CaseResult) -> bool {
+    !c.shells.elements.is_empty() || !c.beams.elements.is_empty()
+}
+
+/// Unit loads of the job, each of its size `applied`.
+///
+/// # Errors
+/// Grids and coordinate systems that the deck lacks.
+pub fn unit_loads(job: &Job, model: &Model) -> Result<Vec<UnitLoad>, Faults> {
+    let mut faults = FaultList::new();
+    let loads = job
+        .loads
+        .iter()
+        .filter_map(|l| match l.acts {
+            // A set of temperatures alone heats the structure.
+            LoadActs::Set(sid)
+                if model.load_sets.iter().all(|s| s.sid != sid)
+                    && model.temperatures.iter().any(|t| t.sid == sid) =>
+            {
+                Some(UnitLoad::Temperature {
+                    set: sid,
+                    initial: None,
+                })
+            }
+            LoadActs::Set(sid) => Some(UnitLoad::Set(sid)),
+            LoadActs::AtGrid {
+                grid,
+                component,
+                cid,
+            } => {
+                let (ix, frame) = (model.grid_ix(grid), model.frame_ix(cid));
+                let mut lacks = |field: &str, what: String| {
+                    faults.push(Fault::at(
+                        &*job.file,
+                        l.line,
+                        field,
+                        what,
+                        "correct the id, or name another deck",
+                    ));
+                };
+                if ix.is_none() {
+                    lacks(
+                        "load.grid",
+                        format!("load `{}`: the deck has no grid {grid}", l.name),
+                    );
+                }
+                if frame.is_none() {
+                    lacks(
+                        "load.cid",
+                        format!("load `{}`: the deck has no coordinate system {cid}", l.name),
+                    );
+                }
+                let (ix, frame) = (ix?, frame?);
+                let v = component.vector(l.applied);
+                let at = model.grids.get(ix.us())?.x;
+                let v = model.frames.get(frame.us())?.vector_to_basic(v, at);
+                let (force, moment) = if component.is_force() {
+                    (v, Vec3::zeros())
+                } else {
+                    (Vec3::zeros(), v)
+                };
+                Some(UnitLoad::AtGrid {
+                    grid: ix,
+                    force,
+                    moment,
+                })
+            }
+        })
+        .collect();
+    Faults::check(faults)?;
+    Ok(loads)
+}

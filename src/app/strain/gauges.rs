@@ -1,0 +1,156 @@
+//! The job's gauges laid onto the model.
+
+use super::Fields;
+use crate::app::work::Work;
+use crate::app::fault::{Fault, Faults};
+use crate::app::job::{self, Job, JobGauge};
+use crate::fe::strain_tensor::Surface;
+use crate::gauge::{Bridge, Gauge, GaugePlace, GaugeSpec, Rosette, build};
+use crate::model::{Model, Vec3};
+use crate::sensitivity::NoStrain;
+
+/// Channels of the job's gauges, in job order; findings go to the work.
+///
+/// # Errors
+/// Elements and coordinate systems that the deck lacks, directions normal to their surface.
+pub fn lay_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<Vec<Gauge>, Faults> {
+    let mut faults = FaultList::new();
+    let mut gauges = Vec::new();
+    let corners = fields.corner_rows(job);
+    for g in &job.gauges {
+        match spec_of(fields.model(), g) {
+            Ok(spec) => match build(fields.model(), &spec, corners) {
+                Ok((channels, findings)) => {
+                    gauges.extend(channels);
+                    work.findings.extend(findings);
+                }
+                Err(e) => faults.push(Fault::at(
+                    &*g.file,
+                    g.line,
+                    "gauge",
+                    e.to_string(),
+                    "correct the gauge",
+                )),
+            },
+            Err(f) => faults.push(f),
+        }
+    }
+    Faults::check(faults)?;
+    Ok(gauges)
+}
+
+/// A side of a job as the solver layer names it.
+pub fn side(s: job::Surface) -> Surface {
+    match s {
+        job::Surface::Top => Surface::Top,
+        job::Surface::Bottom => Surface::Bottom,
+    }
+}
+
+/// A gauge of the job with its ids resolved on the model.
+///
+/// # Errors
+/// Ids that the deck lacks.
+pub fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
+    let fault = |field: &str, wrong: String, remedy: &str| {
+        Fault::at(&*g.file, g.line, field, wrong, remedy)
+    };
+    let lacks = |field: &str, what: String| {
+        fault(
+            field,
+            format!("gauge `{}`: the deck has no {what}", g.name),
+            "correct the id, or name the deck of this gauge",
+        )
+    };
+    let frame = match model.frame_ix(g.cid) {
+        Some(ix) => model.frames.get(ix.us()),
+        None => None,
+    }
+    .ok_or_else(|| lacks("cid", format!("coordinate system {}", g.cid)))?;
+    let shell = |id: u32, field: &str| {
+        model
+            .shell_ix(id)
+            .ok_or_else(|| lacks(field, format!("shell {id}")))
+    };
+    let mut at = Vec3::zeros();
+    let place = match g.place {
+        job::GaugePlace::Element(id) => GaugePlace::Shell(shell(id, "element")?),
+        job::GaugePlace::Position(x, _) => {
+            at = frame.to_basic(x);
+            GaugePlace::Nearest(at)
+        }
+        job::GaugePlace::BeamPoint {
+            element,
+            point,
+            station,
+        } => GaugePlace::Beam {
+            beam: model
+                .beam_ix(element)
+                .ok_or_else(|| lacks("element", format!("bar or beam {element}")))?,
+            point: usize::from(point),
+            station,
+        },
+        job::GaugePlace::Unstated => {
+            return Err(fault(
+                "element",
+                format!("gauge `{}` has no place", g.name),
+                "state `element` and `surface`, or `position`",
+            ));
+        }
+    };
+    let pair = match g.pair {
+        Some((id, s)) => Some((shell(id, "element2")?, side(s))),
+        None => None,
+    };
+    Ok(GaugeSpec {
+        name: g.name.clone(),
+        place,
+        surface: g.surface_stated.then(|| side(g.surface)),
+        direction: g.direction.map(|d| frame.vector_to_basic(d, at)),
+        angle_rad: g.angle_deg.to_radians(),
+        bridge: match g.bridge {
+            job::Bridge::Quarter => Bridge::Quarter,
+            job::Bridge::HalfBending => Bridge::HalfBending,
+            job::Bridge::FullBending => Bridge::FullBending,
+            job::Bridge::Shear => Bridge::Shear,
+        },
+        bridge_factor: g.bridge_factor,
+        grid_length: g.grid_length,
+        pair,
+        rosette: g.rosette.map(|r| match r {
+            job::Rosette::Rectangular => Rosette::Rectangular,
+            job::Rosette::Delta => Rosette::Delta,
+        }),
+        transverse_sensitivity: g.transverse_sensitivity,
+    })
+}
+
+/// Faults of gauges without strain, at the line that states them.
+pub fn without_strain(job: &Job, missing: &[NoStrain]) -> Faults {
+    let mut out: FaultList = Vec::new();
+    for m in missing {
+        let stated = job
+            .gauges
+            .iter()
+            .find(|g| g.name == m.gauge || m.gauge.starts_with(&format!("{}.", g.name)));
+        let (file, line) = stated.map_or((job.file.as_str(), 0), |g| (g.file.as_str(), g.line));
+        let wrong = format!(
+            "gauge `{}`: element {} has no strain in subcase {} (load `{}`)",
+            m.gauge, m.element, m.subcase, m.load
+        );
+        let fault = Fault::at(
+            file,
+            line,
+            "element",
+            wrong,
+            "ask for STRAIN of that element in every subcase, or move the gauge",
+        );
+        if !out
+            .iter()
+            .any(|f| f.line == fault.line && f.file == fault.file)
+        {
+            out.push(fault);
+        }
+    }
+    out
+}

@@ -1,0 +1,139 @@
+//! S from a table that the job names.
+
+use crate::app::work::Work;
+use crate::app::fault::{Fault, Faults};
+use crate::app::job::table::read_table;
+use crate::app::job::{Job, Role};
+use crate::linalg::Matrix;
+use crate::sensitivity::{Load, Sensitivity};
+use crate::units::factor;
+
+/// Strain in one microstrain.
+const MICRO: f64 = 1e-6;
+
+/// Whether a load's name says that it is a moment: `LF.MX`, `MX_LF`, `M_LF`.
+pub fn is_moment(name: &str) -> bool {
+    name.split(['.', '_', ' '])
+        .any(|part| matches!(part, "MX" | "MY" | "MZ" | "M"))
+}
+
+/// The table of `[sensitivity]` as S in strain per job unit, rows in the order of the job's gauges where it has some.
+///
+/// # Errors
+/// Missing columns, rows for gauges that the job names and the table lacks, fields that are no numbers.
+pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
+    let Some(given) = &job.sensitivity else {
+        return Err(Vec::new());
+    };
+    let text = work
+        .inputs
+        .read_named_text(job, &given.file)
+        .map_err(Faults::from)?;
+    let table = read_table(&given.file.given, &text)?;
+    let mut faults = FaultList::new();
+    let Some(key) = table.column(&["gauge", "name"]) else {
+        return Err(Faults::from(Fault::at(
+            &*table.file,
+            1,
+            "gauge",
+            "no column `gauge`",
+            "name the gauges in a column `gauge`",
+        )));
+    };
+    let columns: Vec<(String, String)> = if given.columns.is_empty() {
+        let stated: Vec<&String> = job.loads.iter().map(|l| &l.name).collect();
+        table
+            .header
+            .iter()
+            .enumerate()
+            .filter(|(i, h)| *i != key && (stated.is_empty() || stated.contains(h)))
+            .map(|(_, h)| (h.clone(), h.clone()))
+            .collect()
+    } else {
+        given.columns.clone()
+    };
+    let mut loads = Vec::new();
+    let mut at = Vec::new();
+    for (name, column) in &columns {
+        let Some(c) = table.column(&[column]) else {
+            let wrong = format!("no column `{column}` in `{}`", table.file);
+            faults.push(Fault::at(
+                &*job.file,
+                given.line,
+                "sensitivity.columns",
+                wrong,
+                "name a column of the table",
+            ));
+            continue;
+        };
+        let stated = job.loads.iter().find(|l| &l.name == name);
+        let moment = stated.and_then(|l| l.report_unit(&given.per)).map_or_else(
+            || is_moment(name),
+            |u| u.quantity == crate::units::Quantity::Moment,
+        );
+        let per = if moment {
+            given.per.moment
+        } else {
+            given.per.force
+        };
+        at.push((c, MICRO * factor(job.units, per)));
+        loads.push(Load {
+            name: name.clone(),
+            expected: stated.and_then(|l| l.expected),
+            wanted: stated.is_none_or(|l| l.role == Role::Wanted),
+        });
+    }
+    let names: Vec<String> = table
+        .rows
+        .iter()
+        .map(|r| r.1.get(key).cloned().unwrap_or_default())
+        .collect();
+    let order: Vec<(String, usize)> = if job.gauges.is_empty() {
+        names
+            .iter()
+            .cloned()
+            .enumerate()
+            .map(|(i, n)| (n, i))
+            .collect()
+    } else {
+        job.gauges
+            .iter()
+            .filter_map(|g| match names.iter().position(|n| *n == g.name) {
+                Some(i) => Some((g.name.clone(), i)),
+                None => {
+                    let wrong = format!("gauge `{}` has no row in `{}`", g.name, table.file);
+                    faults.push(Fault::at(
+                        &*g.file,
+                        g.line,
+                        "gauge",
+                        wrong,
+                        "add its row, or drop the gauge",
+                    ));
+                    None
+                }
+            })
+            .collect()
+    };
+    let mut values = Matrix::zeros(order.len(), loads.len());
+    for (r, (_, row)) in order.iter().enumerate() {
+        for (l, (c, f)) in at.iter().enumerate() {
+            match table.number(*row, *c) {
+                Ok(Some(v)) => values[(r, l)] = v * f,
+                Ok(None) => faults.push(Fault::at(
+                    &*table.file,
+                    table.rows.get(*row).map_or(0, |r| r.0),
+                    &*loads[l].name,
+                    "blank",
+                    "give every influence coefficient (0 where there is none)",
+                )),
+                Err(f) => faults.push(f),
+            }
+        }
+    }
+    Faults::check(faults)?;
+    Ok(Sensitivity {
+            gauges: order.into_iter().map(|o| o.0).collect(),
+            loads,
+            values,
+        })
+}

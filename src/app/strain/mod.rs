@@ -1,0 +1,89 @@
+//! What the strain commands share: the model with its unit-load strain, gauges laid onto it, S from there or from a table.
+
+mod fields;
+mod gauges;
+mod given;
+mod units;
+
+pub use fields::{Fields, read_fields, unit_loads};
+pub use gauges::{lay_gauges, side, spec_of, without_strain};
+pub use given::read_given;
+pub use units::{LoadUnits, load_units};
+
+use super::work::Work;
+use super::fault::Faults;
+use super::job::Job;
+use crate::finding::{Finding, Severity};
+use super::outcome::finite;
+use crate::gauge::Gauge;
+use crate::sensitivity::{Sensitivity, from_cases};
+use serde::Serialize;
+
+/// S of the job's gauges with all there is to know of them.
+pub struct Prepared {
+    /// S.
+    pub sensitivity: Sensitivity,
+    /// Model and strain fields; `None` where S is given.
+    pub fields: Option<Fields>,
+    /// Gauges on the model; empty where S is given.
+    pub gauges: Vec<Gauge>,
+}
+
+/// S of the job's gauges: from the table of `[sensitivity]`, else from the model and its results.
+///
+/// # Errors
+/// Every fault on the way.
+pub fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
+    let prepared = if job.sensitivity.is_some() {
+        let sensitivity = read_given(work, job)?;
+        Prepared {
+            sensitivity,
+            fields: None,
+            gauges: Vec::new(),
+        }
+    } else {
+        let fields = read_fields(work, job)?;
+        let gauges = lay_gauges(work, job, &fields)?;
+        let sensitivity = from_cases(&gauges, &fields.load_cases(job))
+            .map_err(|missing| without_strain(job, &missing))?;
+        Prepared {
+            sensitivity,
+            fields: Some(fields),
+            gauges,
+        }
+    };
+    Ok(prepared)
+}
+
+/// Rank and condition numbers of S, as they stand in `result.json`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Conditioning {
+    /// Rank.
+    pub rank: usize,
+    /// S in strain per job unit.
+    pub condition_number: Option<f64>,
+    /// Columns times `expected`, else of unit norm.
+    pub condition_number_scaled: Option<f64>,
+}
+
+impl Conditioning {
+    /// Of S.
+    pub fn of(s: &Sensitivity) -> Self {
+        Self {
+            rank: s.rank(),
+            condition_number: finite(s.condition_number()),
+            condition_number_scaled: finite(s.condition_number_scaled()),
+        }
+    }
+}
+
+/// A finding that says where the strain comes from.
+pub fn source_finding(source: &str) -> Finding {
+    Finding::new(
+        Severity::Info,
+        "strain-source",
+        "model",
+        format!("strain of the unit loads: {source}"),
+        "",
+    )
+}

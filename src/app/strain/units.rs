@@ -1,0 +1,43 @@
+//! Units of loads: job units inside, report units outside.
+
+use crate::app::job::Job;
+use crate::units::factor;
+
+/// Unit of one load in reports.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadUnits {
+    /// Its name; empty for a load set, which is counted in times the set.
+    pub name: String,
+    /// Report value = job value times this.
+    pub factor: f64,
+}
+
+/// Units by load, in job order. A load that only a given S names is a moment where its name says so (`.M`, `_M`, leading `M`).
+pub fn load_units(job: &Job, names: &[String]) -> Vec<LoadUnits> {
+    names
+        .iter()
+        .map(|name| match job.loads.iter().find(|l| &l.name == name) {
+            Some(l) => match l.report_unit(&job.report_units) {
+                Some(u) => LoadUnits {
+                    name: u.name.to_owned(),
+                    factor: factor(job.units, u),
+                },
+                None => LoadUnits {
+                    name: String::new(),
+                    factor: 1.0,
+                },
+            },
+            None => {
+                let unit = if super::given::is_moment(name) {
+                    job.report_units.moment
+                } else {
+                    job.report_units.force
+                };
+                LoadUnits {
+                    name: unit.name.to_owned(),
+                    factor: factor(job.units, unit),
+                }
+            }
+        })
+        .collect()
+}

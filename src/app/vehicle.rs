@@ -1,0 +1,272 @@
+//! The vehicle of a job and its records, in the job's units: what `identify` and `reconcile` start from.
+
+use super::work::Work;
+use super::fault::{Fault, Faults, split_message};
+use super::job::{Job, NamedFile, Vehicle as VehicleJob};
+use crate::finding::{Finding, Severity};
+use crate::series::channels::{Channels, SeriesError};
+use crate::series::csv::read_csv;
+use crate::series::foreign::{Foreign, read_foreign};
+use crate::series::quality::{Kind, check_channels};
+use crate::series::rpc::{is_rpc, read_rpc};
+use crate::series::spectrum::Band;
+use crate::units::{Quantity, find_unit};
+use crate::vehicle::identify::Question;
+use crate::vehicle::layout::MassStep;
+use crate::vehicle::motion::{Adjustment, VehicleError};
+use crate::vehicle::preset::{PresetError, Wish, vehicle};
+use crate::vehicle::term::UnitNames;
+
+/// Band where the job names none, Hz: rigid-body and axle motion of a truck.
+const DEFAULT_BAND_HZ: [f64; 2] = [0.7, 20.0];
+
+/// A question with its records.
+pub struct VehicleRecords {
+    /// What is asked.
+    pub question: Question,
+    /// The record to fit.
+    pub data: Channels,
+    /// The record to judge by.
+    pub hold_out: Option<Channels>,
+}
+
+/// Reads `[vehicle]`, its records, converts units, and checks every channel; findings go to the work.
+///
+/// # Errors
+/// Every fault of section, files and model.
+pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults> {
+    let Some(section) = &job.vehicle else {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "vehicle",
+            "the job has no [vehicle] section",
+            "add one with `model` and `data`",
+        )));
+    };
+    let data = read_record(work, job, section, &section.data)?;
+    let hold_out = section
+        .hold_out
+        .as_ref()
+        .map(|h| read_record(work, job, section, h))
+        .transpose()?;
+    let mut band = section.band_hz.unwrap_or(DEFAULT_BAND_HZ);
+    if section.band_hz.is_none() {
+        band[1] = band[1].min(0.4 * data.rate_hz);
+        let message = format!(
+            "The job names no band; {} to {} Hz is used for every channel.",
+            band[0], band[1]
+        );
+        work.findings.push(Finding::new(
+            Severity::Info,
+            "default-band",
+            "vehicle.band_hz",
+            message,
+            "State `band_hz` in [vehicle].",
+        ));
+    }
+    let wish = wish_of(section);
+    let mut model = vehicle(&wish).map_err(|e| vec![preset_fault(job, section, &e)])?;
+    if let Some(link) = section
+        .leaf
+        .keys()
+        .find(|k| model.links.iter().all(|l| l.name != **k))
+    {
+        let links: Vec<String> = model
+            .links
+            .iter()
+            .map(|l| format!("`{}`", l.name))
+            .collect();
+        return Err(Faults::from(Fault::at(
+            &*job.file,
+            section.line,
+            format!("vehicle.leaf.{link}"),
+            format!("model `{}` has no link `{link}`", section.model),
+            format!("name one of {}", links.join(", ")),
+        )));
+    }
+    let gravity = job.units.standard_gravity();
+    if let Some(change) = &section.mass_change {
+        let Some(body) = model.bodies.iter().position(|b| b.name == change.body) else {
+            return Err(Faults::from(Fault::at(
+                &*job.file,
+                section.line,
+                "vehicle.mass_change.body",
+                format!("model `{}` has no body `{}`", section.model, change.body),
+                "name a body as in its mass: `b` for `m_b`",
+            )));
+        };
+        model.steps.push(MassStep {
+            body,
+            at_s: change.at_s,
+            over_s: change.over_s,
+            gravity: if change.weight { gravity } else { 0.0 },
+        });
+    }
+    for (named, record) in [
+        (Some(&section.data), Some(&data)),
+        (section.hold_out.as_ref(), hold_out.as_ref()),
+    ] {
+        if let (Some(named), Some(record)) = (named, record) {
+            let used = |name: &str| {
+                if model.wheels.iter().any(|w| w.channel == name) {
+                    Kind::Force
+                } else if model.sensors.iter().any(|s| s.channel == name) || name.starts_with("a_")
+                {
+                    Kind::Acceleration
+                } else {
+                    Kind::Other
+                }
+            };
+            let findings = check_channels(record, gravity, used);
+            work
+                .findings
+                .extend(findings.into_iter().map(|f| Finding {
+                    subject: format!("{}: {}", named.given, f.subject),
+                    ..f
+                }));
+        }
+    }
+    let unit = |q: Quantity| job.units.unit(q).name.to_owned();
+    let question = Question {
+        vehicle: model,
+        known: section.known.clone(),
+        bounds: section.bounds.clone(),
+        band: Band {
+            low_hz: band[0],
+            high_hz: band[1],
+        },
+        gravity,
+        gain_tolerance: section.tolerance_gain.unwrap_or(0.0),
+        sync_tolerance_s: section.tolerance_sync.unwrap_or(0.0),
+        corrections: section
+            .corrections
+            .iter()
+            .map(|(channel, [gain, delay_s])| Adjustment {
+                channel: channel.clone(),
+                gain: *gain,
+                delay_s: *delay_s,
+            })
+            .collect(),
+        units: UnitNames {
+            mass: unit(Quantity::Mass),
+            length: unit(Quantity::Length),
+            force: unit(Quantity::Force),
+        },
+    };
+    Ok(VehicleRecords {
+        question,
+        data,
+        hold_out,
+    })
+}
+
+/// What a section asks of its vehicle.
+pub fn wish_of(section: &VehicleJob) -> Wish {
+    Wish {
+        model: section.model.clone(),
+        terms: section.terms.clone(),
+        places: section.places.clone(),
+        channels: section.columns.clone(),
+    }
+}
+
+/// A fault at the line of the job for what the vehicle layer refuses.
+pub fn vehicle_fault(job: &Job, file: &str, e: &VehicleError) -> Fault {
+    let line = job.vehicle.as_ref().map_or(0, |v| v.line);
+    let (wrong, remedy) = split_message(&e);
+    match e {
+        VehicleError::Series(_) => Fault::of(file, "record", wrong, remedy),
+        _ => Fault::at(&*job.file, line, "vehicle", wrong, remedy),
+    }
+}
+
+fn preset_fault(job: &Job, section: &VehicleJob, e: &PresetError) -> Fault {
+    let key = match e {
+        PresetError::Model { .. } => "vehicle.model",
+        PresetError::Term { .. } => "vehicle.terms",
+        PresetError::Place { .. } => "vehicle.places",
+    };
+    let (wrong, remedy) = split_message(&e);
+    Fault::at(&*job.file, section.line, key, wrong, remedy)
+}
+
+fn read_record(
+    work: &mut Work,
+    job: &Job,
+    section: &VehicleJob,
+    named: &NamedFile,
+) -> Result<Channels, Faults> {
+    let bytes = work.inputs.read_named(job, named).map_err(Faults::from)?;
+    let read = if is_rpc(&bytes) {
+        read_rpc_at(&bytes, section.sample_rate)
+    } else if let Some(kind) = Foreign::of(&bytes) {
+        read_foreign(kind, &bytes, section.sample_rate, &[])
+    } else {
+        read_csv(&bytes, section.sample_rate)
+    };
+    let mut record = read.map_err(|e| {
+        let (wrong, remedy) = split_message(&e);
+        match &e {
+            crate::series::SeriesError::Line { line, what, remedy } => Faults::from(Fault::at(
+                &*named.given,
+                *line as u32,
+                "table",
+                what,
+                *remedy,
+            )),
+            crate::series::SeriesError::UnevenTime { line, .. } => Faults::from(Fault::at(
+                &*named.given,
+                *line as u32,
+                "time",
+                wrong,
+                remedy,
+            )),
+            _ => Faults::from(Fault::of(&*named.given, "table", wrong, remedy)),
+        }
+    })?;
+    let mut faults = FaultList::new();
+    for channel in record.list.iter_mut().filter(|c| !c.unit.is_empty()) {
+        match factor(job, &channel.unit) {
+            Some(f) => channel.samples.iter_mut().for_each(|v| *v *= f),
+            None => faults.push(Fault::at(
+                &*named.given,
+                1,
+                channel.name.clone(),
+                format!("`{}` is no unit of acceleration or force", channel.unit),
+                "write m/s2, mm/s2, g, N, kN or another unit that the job may use",
+            )),
+        }
+    }
+    Faults::check(faults)?;
+    Ok(record)
+}
+
+/// An RPC III record, its rate held against the one that the job declares.
+fn read_rpc_at(bytes: &[u8], declared_hz: Option<f64>) -> Result<Channels, SeriesError> {
+    /// Largest relative departure of both rates.
+    const RATE_TOLERANCE: f64 = 1e-3;
+    let record = read_rpc(bytes)?;
+    match declared_hz {
+        Some(declared) if (record.rate_hz / declared - 1.0).abs() > RATE_TOLERANCE => {
+            Err(SeriesError::Rate {
+                found_hz: record.rate_hz,
+                declared_hz: declared,
+            })
+        }
+        _ => Ok(record),
+    }
+}
+
+/// What a number in that unit is multiplied by to be in the job's units.
+fn factor(job: &Job, unit: &str) -> Option<f64> {
+    if matches!(unit, "g" | "G" | "g0") {
+        return Some(job.units.standard_gravity());
+    }
+    // A voltage, say, is taken as it is.
+    if matches!(unit, "-" | "1" | "V") {
+        return Some(1.0);
+    }
+    [Quantity::Acceleration, Quantity::Force]
+        .into_iter()
+        .find_map(|q| Some(find_unit(q, unit)?.si / job.units.si(q)))
+}

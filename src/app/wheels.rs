@@ -1,0 +1,97 @@
+//! The wheels of a job: loads that carry the structure, and how it stands on them.
+
+use super::fault::{Fault, Faults};
+use super::job::{Job, JobLoad, LoadActs};
+use crate::fe::floor::FloorError;
+use crate::model::{GridIx, Model};
+
+/// Vertical loads of a job that are no payload.
+pub struct Wheels {
+    /// The axis they act along: 0 x, 1 y, 2 z.
+    pub axis: usize,
+    /// Index of each in the job's loads.
+    pub loads: Vec<usize>,
+    /// Their grids.
+    pub grids: Vec<GridIx>,
+}
+
+/// The job's wheels: forces along the axis that most of its forces act along, at other grids than the payload's.
+///
+/// # Errors
+/// Fewer than three, grids that the deck lacks.
+pub fn wheels_of(job: &Job, model: &Model) -> Result<Wheels, Faults> {
+    let payload = job.payload.as_ref().and_then(|p| p.grid);
+    let force = |l: &JobLoad| match l.acts {
+        LoadActs::AtGrid {
+            grid,
+            component,
+            cid: 0,
+        } if component.is_force() && Some(grid) != payload => Some((grid, component.dof())),
+        _ => None,
+    };
+    let wanted: Vec<(usize, u32, usize)> = job
+        .loads
+        .iter()
+        .enumerate()
+        .filter(|(_, l)| l.role == super::job::Role::Wanted)
+        .filter_map(|(i, l)| force(l).map(|(g, a)| (i, g, a)))
+        .collect();
+    let axis = (0..3)
+        .rev()
+        .max_by_key(|a| wanted.iter().filter(|w| w.2 == *a).count())
+        .unwrap_or(2);
+    let mut out = Wheels {
+        axis,
+        loads: Vec::new(),
+        grids: Vec::new(),
+    };
+    let mut faults = FaultList::new();
+    // A point between the wheels with moments beside its force is the payload's even where [payload] does not say so.
+    let has_moment = |id: u32| {
+        job.loads.iter().any(|l| {
+            matches!(l.acts, LoadActs::AtGrid { grid, component, .. } if grid == id && component.dof() > 2)
+                && l.role == super::job::Role::Wanted
+        })
+    };
+    for (i, id, _) in wanted
+        .into_iter()
+        .filter(|w| w.2 == axis && !has_moment(w.1))
+    {
+        match model.grid_ix(id) {
+            Some(g) => {
+                out.loads.push(i);
+                out.grids.push(g);
+            }
+            None => faults.push(Fault::at(
+                &*job.file,
+                job.loads[i].line,
+                "load.grid",
+                format!("load `{}`: the deck has no grid {id}", job.loads[i].name),
+                "correct the id, or name another deck",
+            )),
+        }
+    }
+    if out.grids.len() < 3 && faults.is_empty() {
+        faults.push(Fault::of(
+            &*job.file,
+            "load",
+            format!(
+                "{} vertical wheel loads (forces along one basic axis at a grid), expected three or more",
+                out.grids.len()
+            ),
+            "name every wheel: [[load]] grid = 101, component = \"FZ\"",
+        ));
+    }
+    Faults::check(faults)?;
+    Ok(out)
+}
+
+/// A floor that can't be had, as a fault of the job's model.
+pub fn floor_fault(job: &Job, e: &FloorError) -> Faults {
+    Faults::from(Fault::of(
+        &*job.file,
+        "model",
+        e.to_string(),
+        "repair the deck, or correct the wheel loads",
+    ))
+}

@@ -1,0 +1,127 @@
+//! One run of a command: context, threads, what is printed, exit code.
+
+use super::progress::Terminal;
+use super::{CommonArguments};
+use crate::app::Closed;
+use crate::app::context::{Context, Disk};
+use crate::app::fault::{Fault, Faults};
+use crate::app::outcome::Findings;
+use crate::app::store::Folder;
+use crate::app::words::finding_text;
+use crate::finding::Severity;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Bytes of stack of a working thread, what a main thread has on most systems.
+const STACK: usize = 8 << 20;
+
+/// A command's surroundings.
+pub(super) struct Run {
+    common: CommonArguments,
+    store: Option<Folder>,
+}
+
+/// What a command leaves to be said.
+struct Said<'a> {
+    text: &'a str,
+    json: &'a str,
+    findings: &'a Findings,
+    notes: &'a [String],
+    folder: Option<&'a PathBuf>,
+    faults: &'a [Fault],
+}
+
+impl Run {
+    /// A command on this file.
+    pub fn of(common: &CommonArguments, main_input: &Path) -> Self {
+        Self {
+            common: common.clone(),
+            store: (!common.no_cache).then(|| Folder::beside(main_input)),
+        }
+    }
+
+    /// Runs a command that writes as it goes.
+    pub fn session(
+        &self,
+        work: impl FnOnce(&Context) -> Result<Closed, Faults> + Send,
+    ) -> ExitCode {
+        match self.pooled(work) {
+            Ok(closed) => self.say(&Said {
+                text: &closed.text,
+                json: &closed.json,
+                findings: &closed.findings,
+                notes: &closed.notes,
+                folder: closed.folder.as_ref(),
+                faults: &closed.faults,
+            }),
+            Err(faults) => refuse(&faults),
+        }
+    }
+
+    /// Work on the asked number of threads. It begins on a thread of the pool: from outside, each of a factorisation's many small
+    /// parallel steps would wake two threads and put one to sleep.
+    fn pooled<T: Send>(
+        &self,
+        work: impl FnOnce(&Context) -> Result<T, Faults> + Send,
+    ) -> Result<T, Faults> {
+        let terminal = Terminal::default();
+        // 0 threads: as many as the machine has.
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(self.common.threads.map_or(0, |n| n.max(1)))
+            .stack_size(STACK)
+            .build()
+            .map_err(|e| {
+                Fault::of("--threads", "threads", e.to_string(), "ask for fewer threads")
+            })?;
+        let mut cx = Context::new(&Disk).progress(&terminal);
+        cx.store = self.store.as_ref().map(|s| s as _);
+        pool.install(|| work(&cx))
+    }
+
+    fn say(&self, said: &Said) -> ExitCode {
+        print(if self.common.json { said.json } else { said.text }.as_bytes());
+        let mut notes = String::new();
+        said.findings
+            .iter()
+            .for_each(|f| notes.push_str(&(finding_text(f) + "\n")));
+        for note in said.notes {
+            notes.push_str(&format!("note: {note}\n"));
+        }
+        if let Some(folder) = said.folder {
+            notes.push_str(&format!("written to `{}`\n", folder.display()));
+        }
+        let _ = std::io::stderr().write_all(notes.as_bytes());
+        if !said.faults.is_empty() {
+            print_faults(said.faults);
+            return ExitCode::from(2);
+        }
+        match said.findings.worst() {
+            Some(Severity::Error) => ExitCode::from(1),
+            _ => ExitCode::SUCCESS,
+        }
+    }
+}
+
+fn refuse(faults: &Faults) -> ExitCode {
+    print_faults(faults);
+    let _ = std::io::stderr().write_all(b"nothing was written\n");
+    ExitCode::from(2)
+}
+
+fn print_faults(faults: &[Fault]) {
+    let mut text: String = faults.iter().map(|f| format!("{f}\n")).collect();
+    let n = faults.len();
+    text.push_str(&format!(
+        "{n} fault{} found\n",
+        if n == 1 { "" } else { "s" }
+    ));
+    let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
+/// Prints to standard output.
+pub(super) fn print(text: &[u8]) -> ExitCode {
+    // A closed pipe (`| head`) is no fault of ours.
+    let _ = std::io::stdout().write_all(text);
+    ExitCode::SUCCESS
+}

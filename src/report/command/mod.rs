@@ -1,0 +1,61 @@
+//! What each command writes and says of its outcome: one file a command.
+
+mod pages;
+mod place;
+mod sensitivity;
+
+pub use pages::{write_book, write_page};
+
+use crate::app::fault::{Fault, Faults};
+use crate::app::outcome::{Answer, Outcome};
+use crate::app::output::Output;
+use std::path::Path;
+
+/// An outcome that has files and words.
+pub trait Report {
+    /// Writes its tables and report, each table with the units of its columns.
+    ///
+    /// # Errors
+    /// The first file that can't be written.
+    fn write(&self, out: &mut Output) -> Result<(), Faults>;
+
+    /// What a person reads of it on a terminal; lines end in line feeds.
+    fn words(&self) -> String;
+}
+
+/// Writes an outcome into a folder, `result.json` last; nothing stands under its name before all is written. The text of `result.json`.
+///
+/// # Errors
+/// The first file that can't be written.
+pub fn save<A>(outcome: &Outcome<A>, folder: &Path) -> Result<String, Faults>
+where
+    A: Answer,
+    Outcome<A>: Report,
+{
+    let mut out = Output::begin(folder)?;
+    outcome.write(&mut out)?;
+    finish(outcome, out)
+}
+
+/// Adds `result.json` to the files of an outcome and puts all of them in place. The text of `result.json`.
+///
+/// # Errors
+/// The first file that can't be written.
+pub fn finish<A: Answer>(outcome: &Outcome<A>, mut out: Output) -> Result<String, Faults> {
+    let json = outcome
+        .to_json(out.tables())
+        .map_err(|e| mistake("result.json", &e))?;
+    out.write_bytes("result.json", json.as_bytes())?;
+    out.commit()?;
+    Ok(json)
+}
+
+/// A file that a library refuses to make.
+fn mistake(file: &str, e: &impl ToString) -> Fault {
+    Fault::of(
+        file,
+        "file",
+        e.to_string(),
+        "report this as an error of the program",
+    )
+}
