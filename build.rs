@@ -15,7 +15,10 @@ fn main() {
     for file in &files {
         hasher.write(&std::fs::read(file).unwrap_or_default());
     }
-    println!("cargo::rustc-env=STRAINBRIDGE_SOURCES={:016x}", hasher.finish());
+    println!(
+        "cargo::rustc-env=STRAINBRIDGE_SOURCES={:016x}",
+        hasher.finish()
+    );
     // Not in builds for tests: every commit would build the crate anew.
     let commit = match std::env::var("PROFILE").as_deref() {
         Ok("release") => commit(&root.join(".git")).unwrap_or_default(),

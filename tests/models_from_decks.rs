@@ -47,8 +47,12 @@ fn cases() -> Vec<(String, Value, DeckModel)> {
             .unwrap_or("")
             .starts_with("op2");
         let file = if from_op2 { &case["op2"] } else { &case["bdf"] };
-        let read = read_model(&mut Inputs::default(), &path, file.as_str().unwrap())
-            .unwrap_or_else(|f| panic!("{f}"));
+        let read = read_model(
+            &mut Inputs::of(&strainbridge::app::context::Disk),
+            &path,
+            file.as_str().unwrap(),
+        )
+        .unwrap_or_else(|f| panic!("{f}"));
         out.push((
             path.file_name().unwrap().to_string_lossy().into_owned(),
             mesh.clone(),

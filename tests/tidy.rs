@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 /// Row of each module of the root crate; imports go strictly downward. `finding` and `linalg` are below all others of row 1:
 /// estimates carry findings, series use linear algebra.
-const ROWS: [(&str, f64); 19] = [
-    ("cli", 9.0),
-    ("report", 8.0),
+const ROWS: [(&str, f64); 20] = [
+    ("cli", 10.0),
+    ("report", 9.0),
+    ("app", 8.0),
     ("reconcile", 7.0),
     ("study", 7.0),
     ("payload", 7.0),
@@ -23,7 +24,7 @@ const ROWS: [(&str, f64); 19] = [
     ("estimate", 1.0),
     ("linalg", 0.5),
     ("finding", 0.5),
-    ("lib", 10.0),
+    ("lib", 11.0),
 ];
 
 /// Linear-algebra crates that only `linalg` names.
@@ -150,7 +151,7 @@ fn only_the_command_line_prints_and_touches_files() {
     ];
     let mut wrong = String::new();
     for (path, lines) in sources() {
-        if is_test(&path) || module(&path) == Some("cli") || path == "src/main.rs" {
+        if is_test(&path) || module(&path) == Some("cli" | "app") || path == "src/main.rs" {
             continue;
         }
         for (n, line) in lines.iter().enumerate() {
@@ -176,7 +177,7 @@ fn one_function_is_unsafe_and_it_maps_files() {
                 .map(move |_| path.clone())
         })
         .collect();
-    assert_eq!(places, ["src/cli/files.rs"]);
+    assert_eq!(places, ["src/app/files.rs"]);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Decks and models: INCLUDE from the file system, the model of a deck or of an OP2 that holds the mesh.
 
-use super::fault::{Fault, FaultList, Faults};
+use super::fault::{Fault, FaultList};
 use super::files::Inputs;
 use crate::finding::{Finding, Severity};
 use crate::model::{FaultKind, FaultWeight, Material, MaterialKind, Model, ModelFault};

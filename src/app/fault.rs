@@ -97,6 +97,15 @@ impl Faults {
         }
     }
 
+    /// The faults of a list, or the one to be said where it is empty.
+    pub fn or(list: FaultList, otherwise: Fault) -> Self {
+        if list.is_empty() {
+            otherwise.into()
+        } else {
+            Self(list)
+        }
+    }
+
     /// The faults as a list.
     pub fn into_list(self) -> FaultList {
         self.0

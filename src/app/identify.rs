@@ -76,7 +76,8 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         };
         motion(&found.vehicle, record, &treatment).map(|m| (wheel_force_history(&found, &m), m))
     };
-    let (loads, measured) = history(data).map_err(|e| Faults::from(vehicle_fault(&job, data_name, &e)))?;
+    let (loads, measured) =
+        history(data).map_err(|e| Faults::from(vehicle_fault(&job, data_name, &e)))?;
     let mut rows = load_rows(
         &found,
         question.gravity,

@@ -3,6 +3,7 @@
 use super::fault::Fault;
 use super::files::{FileBytes, load};
 use super::half_written;
+use super::outcome::Tables;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -12,6 +13,7 @@ use std::path::{Path, PathBuf};
 pub struct Output {
     folder: PathBuf,
     pending: Vec<(PathBuf, PathBuf)>,
+    tables: Tables,
 }
 
 impl Output {
@@ -24,12 +26,28 @@ impl Output {
         Ok(Self {
             folder: folder.to_owned(),
             pending: Vec::new(),
+            tables: Tables::new(),
         })
     }
 
     /// The folder.
     pub fn folder(&self) -> &Path {
         &self.folder
+    }
+
+    /// States the units of a table's columns, for `result.json`.
+    pub fn declare<C: Into<String>, U: Into<String>>(
+        &mut self,
+        table: &str,
+        columns: impl IntoIterator<Item = (C, U)>,
+    ) {
+        let columns = columns.into_iter().map(|(c, u)| (c.into(), u.into()));
+        self.tables.insert(table.to_owned(), columns.collect());
+    }
+
+    /// Units of the columns of every table declared.
+    pub fn tables(&self) -> &Tables {
+        &self.tables
     }
 
     /// Writes file `name` by `fill`, buffered.

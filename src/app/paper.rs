@@ -5,7 +5,7 @@ use super::fault::Faults;
 use crate::report::page::Page;
 use std::path::Path;
 
-impl Session {
+impl Session<'_> {
     /// Writes `report.html`; a page that is meant for paper is kept for [`Session::write_paper`].
     ///
     /// # Errors
@@ -64,9 +64,9 @@ impl Session {
     /// What the numbers are counted in, by quantity.
     #[cfg(feature = "pdf")]
     fn units_in_words(&self) -> Vec<(String, String)> {
-        let known = self.units.as_object().into_iter().flatten();
-        let (system, mut units): (Vec<_>, Vec<_>) = known
-            .filter_map(|(quantity, unit)| Some((quantity.clone(), unit.as_str()?.to_owned())))
+        let stated = self.units.list().iter();
+        let (system, mut units): (Vec<_>, Vec<_>) = stated
+            .map(|(quantity, unit)| ((*quantity).to_owned(), unit.clone()))
             .partition(|(quantity, _)| quantity == "system");
         let system = system.into_iter().map(|s| ("model and job in".into(), s.1));
         units.extend(system);

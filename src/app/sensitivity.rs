@@ -1,58 +1,74 @@
 //! `sensitivity`: S of the job's gauges, or of its candidates where it has none.
 
+use super::context::Context;
 use super::fault::Faults;
-use super::job::{self, AngleStep, Job};
+use super::job::{AngleStep, Job};
+use super::outcome::{Answer, Outcome, StatedUnits};
 use super::place::allowed_sites;
-use super::scene::scene_of_job;
-use super::strain::{Prepared, lay_gauges, load_units, prepare, read_fields};
-use super::{JobArguments, Session};
+use super::strain::{
+    Conditioning, Prepared, lay_gauges, load_units, prepare, read_fields, without_strain,
+};
+use super::work::Work;
 use crate::gauge::{Gauge, GaugeSpec, build};
-use crate::report::strain::{sensitivity_csv, sensitivity_page};
-use crate::sensitivity::{common_shells, from_cases};
+use crate::sensitivity::{check_separability, common_shells, from_cases};
+use serde::Serialize;
 
-/// Reads, computes, writes `sensitivity.csv` and the report.
-pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
-    let job = session.stage("read job", |s| job::read_job(&mut s.inputs, &arguments.job))?;
-    session.put_units(job.units, &job.report_units);
+/// S of a job's gauges or candidates.
+#[derive(Serialize)]
+pub struct Sensed {
+    /// Rank and condition numbers.
+    #[serde(flatten)]
+    pub conditioning: Conditioning,
+    /// How many gauges.
+    pub gauges: usize,
+    /// Names of the loads, a column each.
+    pub loads: Vec<String>,
+    /// What reports count each load in.
+    pub report_units_of_loads: Vec<String>,
+    /// S itself, with the model and the gauges it was made of.
+    #[serde(skip)]
+    pub prepared: Prepared,
+    /// The job.
+    #[serde(skip)]
+    pub job: Job,
+}
+
+impl Answer for Sensed {
+    const COMMAND: &'static str = "sensitivity";
+}
+
+/// S of the job's gauges, or of each allowed surface at each angle of the grid where it has none.
+///
+/// # Errors
+/// Every fault of the job and of the files it names.
+pub fn sensitivity(job: &Job, cx: &Context) -> Result<Outcome<Sensed>, Faults> {
+    let mut work = Work::of_job(cx, job);
     let prepared = if job.gauges.is_empty() && job.sensitivity.is_none() {
-        session.stage("candidates", |s| of_candidates(s, &job))?
+        work.stage("candidates", |w| of_candidates(w, job))?
     } else {
-        prepare(session, &job)?
+        prepare(&mut work, job)?
     };
     let s = &prepared.sensitivity;
-    session.put_conditioning(s)?;
-    session.put("gauges", s.gauges.len())?;
-    session.put("loads", s.loads.iter().map(|l| &l.name).collect::<Vec<_>>())?;
-    session.say(format!(
-        "S: {} gauges x {} loads, rank {}, condition number {:.4} in job units, {:.4} scaled",
-        s.gauges.len(),
-        s.loads.len(),
-        s.rank(),
-        s.condition_number(),
-        s.condition_number_scaled()
-    ));
-    let scene = scene_of_job(&job, &prepared);
-    let page = sensitivity_page(&job.title, s, scene.as_ref(), &session.findings);
-    let units: Vec<String> = load_units(
-        &job,
-        &s.loads.iter().map(|l| l.name.clone()).collect::<Vec<_>>(),
-    )
-    .into_iter()
-    .map(|u| u.name)
-    .collect();
-    session.put("report_units_of_loads", units)?;
-    let out = session.output_for(&arguments.job)?;
-    out.write("sensitivity.csv", |w| sensitivity_csv(w, s))
-        .map_err(Faults::from)?;
-    session.write_page(&arguments.job, page)
+    work.findings.extend(check_separability(s));
+    let loads: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
+    let units = load_units(job, &loads).into_iter().map(|u| u.name);
+    let answer = Sensed {
+        conditioning: Conditioning::of(s),
+        gauges: s.gauges.len(),
+        report_units_of_loads: units.collect(),
+        loads,
+        prepared,
+        job: job.clone(),
+    };
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
 /// S of every candidate: each allowed surface at each angle of the grid (every 15 degrees where the job says continuous).
-fn of_candidates(session: &mut Session, job: &Job) -> Result<Prepared, Faults> {
-    let fields = read_fields(session, job)?;
+fn of_candidates(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
+    let fields = read_fields(work, job)?;
     let cases = fields.load_cases(job);
     let (common, findings) = common_shells(&cases);
-    session.findings.extend(findings);
+    work.findings.extend(findings);
     let step = match job.candidates.angles {
         AngleStep::Degrees(d) => d,
         AngleStep::Continuous => 15.0,
@@ -73,8 +89,9 @@ fn of_candidates(session: &mut Session, job: &Job) -> Result<Prepared, Faults> {
             }
         }
     }
-    gauges.extend(lay_gauges(session, job, &fields)?);
-    let sensitivity = from_cases(&gauges, &cases).map_err(|_| Vec::new())?;
+    gauges.extend(lay_gauges(work, job, &fields)?);
+    let sensitivity =
+        from_cases(&gauges, &cases).map_err(|missing| without_strain(job, &missing))?;
     Ok(Prepared {
         sensitivity,
         fields: Some(fields),

@@ -172,7 +172,7 @@ impl<'a> Session<'a> {
     }
 
     /// Notes faults of the input that leave an answer all the same (`check`): they are listed, and the exit code is 2.
-    pub fn put_faults(&mut self, faults: Faults) {
+    pub fn put_faults(&mut self, faults: FaultList) {
         self.faults.extend(faults);
     }
 
@@ -186,7 +186,6 @@ impl<'a> Session<'a> {
         self.text.push_str(line.as_ref());
         self.text.push('\n');
     }
-
 
     /// The output folder: `--out`, else `<name of the file>.out` in the current folder's reach beside the file.
     ///
@@ -221,10 +220,11 @@ impl<'a> Session<'a> {
     }
 
     fn open(&mut self, folder: &Path) -> Result<&mut Output, Faults> {
-        if self.output.is_none() {
-            self.output = Some(Output::begin(folder).map_err(Faults::from)?);
-        }
-        self.output.as_mut().ok_or_else(Vec::new)
+        let output = match self.output.take() {
+            Some(output) => output,
+            None => Output::begin(folder)?,
+        };
+        Ok(self.output.insert(output))
     }
 
     /// Writes and commits the files.

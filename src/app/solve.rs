@@ -2,7 +2,6 @@
 
 use super::deck::{DeckModel, read_model};
 use super::fault::{Fault, Faults};
-use super::scene::scene_of_solution;
 use super::solved::{cases_of_job, solve_kept};
 use super::{JobArguments, Session, job};
 use crate::fe::{
@@ -11,6 +10,7 @@ use crate::fe::{
 };
 use crate::finding::{Finding, Severity};
 use crate::model::{Model, Shell};
+use crate::report::scene::scene_of_solution;
 use crate::report::{PlannedBlock, planned_blocks, rows_of_block, write_vtu};
 use nastran::bdf::Request;
 use nastran::cards::ShellShape;
@@ -87,7 +87,7 @@ fn of_job(session: &mut Session, path: &Path) -> Result<Task, Faults> {
     let read =
         read_model(&mut session.inputs, &job.folder, &files.deck.given).map_err(Faults::from)?;
     session.findings.extend(read.findings.iter().cloned());
-    Faults::check(read.faults)?;
+    Faults::check(read.faults.clone())?;
     let cases = cases_of_job(&job, &read)?;
     Ok(Task {
         read,
@@ -102,7 +102,7 @@ fn of_deck(session: &mut Session, path: &Path) -> Result<Task, Faults> {
     let base = PathBuf::new();
     let read = read_model(&mut session.inputs, &base, &given).map_err(Faults::from)?;
     session.findings.extend(read.findings.iter().cloned());
-    Faults::check(read.faults)?;
+    Faults::check(read.faults.clone())?;
     let mut left_out = Vec::new();
     let mut cases = Vec::new();
     let mut corners = corners_always_written(&read.model);

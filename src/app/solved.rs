@@ -1,10 +1,10 @@
 //! The built-in solver as every command uses it: solutions are kept beside the job and taken from there while their inputs are the same.
 
-use super::work::Work;
 use super::deck::DeckModel;
-use super::fault::{Fault, Faults};
+use super::fault::{Fault, FaultList, Faults};
 use super::job::Job;
 use super::store::{Key, read_solution, write_solution};
+use super::work::Work;
 use crate::fe::{
     Corners, FeError, LoadCase, Solution, SolveOptions, SolveReport, Solved, UnitLoad, relief_of,
     solution_of, solve_displacements, unit_cases,
@@ -53,16 +53,15 @@ pub fn solve_kept(
         ..options
     };
     let identity = identity(work, read, cases, "");
-    let solved = kept(work, &identity, &read.model, cases, &options)
-        .map_err(|e| faults_of(&e, read))?;
+    let solved =
+        kept(work, &identity, &read.model, cases, &options).map_err(|e| faults_of(&e, read))?;
     for (step, seconds) in &solved.report.seconds {
         work.note_seconds(&format!("solve: {step}"), *seconds);
     }
-    work
-        .stage("strain", |_| {
-            solution_of(&read.model, cases, solved, &options)
-        })
-        .map_err(|e| faults_of(&e, read))
+    work.stage("strain", |_| {
+        solution_of(&read.model, cases, solved, &options)
+    })
+    .map_err(|e| faults_of(&e, read))
 }
 
 /// The strain of unit loads on a model made from a deck (a finer mesh, further temperature sets), kept like any other solution; `made`
@@ -173,7 +172,7 @@ fn identity(work: &mut Work, read: &DeckModel, cases: &[LoadCase], made: &str) -
 
 /// The solver's faults with file and line.
 pub fn faults_of(error: &FeError, read: &DeckModel) -> Faults {
-    error
+    let list: FaultList = error
         .faults()
         .into_iter()
         .map(|f| {
@@ -183,5 +182,7 @@ pub fn faults_of(error: &FeError, read: &DeckModel) -> Faults {
             };
             Fault::at(file, f.at.line, f.card, f.reason, f.remedy)
         })
-        .collect()
+        .collect();
+    let unknown = Fault::of(&*read.given, "solve", error.to_string(), "correct the deck");
+    Faults::or(list, unknown)
 }

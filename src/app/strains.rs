@@ -1,7 +1,7 @@
 //! `strains`: shell and bar strain of every static subcase, in the element and the basic frame.
 
 use super::deck::{looks_like_op2, read_model};
-use super::fault::{Fault, Faults};
+use super::fault::{Fault, FaultList, Faults};
 use super::files::FileBytes;
 use super::{DeckArguments, Session};
 use crate::fe::from_results::{Displacements, ReadOptions, solution_from_results};
@@ -20,8 +20,8 @@ pub fn run(arguments: &DeckArguments, session: &mut Session) -> Result<(), Fault
         .map_err(Faults::from)?;
     session.findings.extend(deck.findings);
     // Without elements nothing can be placed. Else the run was possible, and a fault elsewhere (an unused set, say) is worth a warning.
-    if deck.model.shells.is_empty() && deck.model.beams.is_empty() && !deck.faults.is_empty() {
-        return Err(deck.faults);
+    if deck.model.shells.is_empty() && deck.model.beams.is_empty() {
+        Faults::check(deck.faults.clone())?;
     }
     let warn = |f: &Fault| {
         Finding::new(

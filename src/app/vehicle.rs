@@ -1,8 +1,8 @@
 //! The vehicle of a job and its records, in the job's units: what `identify` and `reconcile` start from.
 
-use super::work::Work;
-use super::fault::{Fault, Faults, split_message};
+use super::fault::{Fault, FaultList, Faults, split_message};
 use super::job::{Job, NamedFile, Vehicle as VehicleJob};
+use super::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::series::channels::{Channels, SeriesError};
 use crate::series::csv::read_csv;
@@ -65,7 +65,7 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
         ));
     }
     let wish = wish_of(section);
-    let mut model = vehicle(&wish).map_err(|e| vec![preset_fault(job, section, &e)])?;
+    let mut model = vehicle(&wish).map_err(|e| Faults::from(preset_fault(job, section, &e)))?;
     if let Some(link) = section
         .leaf
         .keys()
@@ -118,12 +118,10 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
                 }
             };
             let findings = check_channels(record, gravity, used);
-            work
-                .findings
-                .extend(findings.into_iter().map(|f| Finding {
-                    subject: format!("{}: {}", named.given, f.subject),
-                    ..f
-                }));
+            work.findings.extend(findings.into_iter().map(|f| Finding {
+                subject: format!("{}: {}", named.given, f.subject),
+                ..f
+            }));
         }
     }
     let unit = |q: Quantity| job.units.unit(q).name.to_owned();

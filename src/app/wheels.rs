@@ -1,6 +1,6 @@
 //! The wheels of a job: loads that carry the structure, and how it stands on them.
 
-use super::fault::{Fault, Faults};
+use super::fault::{Fault, FaultList, Faults};
 use super::job::{Job, JobLoad, LoadActs};
 use crate::fe::floor::FloorError;
 use crate::model::{GridIx, Model};

@@ -73,8 +73,7 @@ impl<'a> Work<'a> {
     pub fn finish<A>(mut self, units: StatedUnits, answer: A) -> Outcome<A> {
         self.note_seconds("total", self.began.elapsed().as_secs_f64());
         // The worst first; the order of stages within a severity.
-        self.findings
-            .sort_by_key(|f| std::cmp::Reverse(f.severity));
+        self.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
         Outcome {
             units,
             inputs: self.inputs.list(),

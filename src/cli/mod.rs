@@ -8,7 +8,7 @@ mod run;
 
 pub use arguments::*;
 
-use crate::app::{self, Closed, Session};
+use crate::app::{self, Session};
 use clap::CommandFactory;
 use run::{Run, print};
 use std::process::ExitCode;
@@ -21,9 +21,8 @@ pub fn run(arguments: Arguments) -> ExitCode {
             job: a.job.clone(),
             common: a.common.to_app(),
         };
-        Run::of(&a.common, &a.job).session(|cx| {
-            Session::run(command, &job.common, cx, |s| work(&job, s))
-        })
+        Run::of(&a.common, &a.job)
+            .session(|cx| Session::run(command, &job.common, cx, |s| work(&job, s)))
     };
     match arguments.command {
         Command::Strains(a) => on_deck("strains", &a, app::strains::run),
@@ -39,9 +38,11 @@ pub fn run(arguments: Arguments) -> ExitCode {
         }
         Command::Init(a) => on_deck("init", &a, app::init::run),
         Command::Cases(a) => on_job("cases", &a, app::cases::run),
-        Command::Place(a) => on_job("place", &a, app::place::run),
+        Command::Place(a) => Run::of(&a.common, &a.job).job(&a.job, app::place::place),
         Command::Recover(a) => on_job("recover", &a, app::recover::run),
-        Command::Sensitivity(a) => on_job("sensitivity", &a, app::sensitivity::run),
+        Command::Sensitivity(a) => {
+            Run::of(&a.common, &a.job).job(&a.job, app::sensitivity::sensitivity)
+        }
         Command::Ballast(a) => on_job("ballast", &a, app::ballast::run),
         Command::Payload(a) => on_job("payload", &a, app::payload::run),
         Command::Respond(a) => on_job("respond", &a, app::respond::run),
@@ -56,7 +57,9 @@ pub fn run(arguments: Arguments) -> ExitCode {
                 common: a.job.common.to_app(),
             };
             Run::of(&a.job.common, &a.job.job).session(|cx| {
-                Session::run("solve", &job.common, cx, |s| app::solve::run(&job, heated, s))
+                Session::run("solve", &job.common, cx, |s| {
+                    app::solve::run(&job, heated, s)
+                })
             })
         }
         Command::Reconcile(a) => on_job("reconcile", &a, app::reconcile::run),

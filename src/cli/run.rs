@@ -1,14 +1,16 @@
 //! One run of a command: context, threads, what is printed, exit code.
 
+use super::CommonArguments;
 use super::progress::Terminal;
-use super::{CommonArguments};
 use crate::app::Closed;
 use crate::app::context::{Context, Disk};
 use crate::app::fault::{Fault, Faults};
-use crate::app::outcome::Findings;
+use crate::app::job::Job;
+use crate::app::outcome::{Answer, Findings, Outcome};
 use crate::app::store::Folder;
 use crate::app::words::finding_text;
 use crate::finding::Severity;
+use crate::report::command::{Report, save};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -59,6 +61,39 @@ impl Run {
         }
     }
 
+    /// Asks a question of a job, writes the outcome into `--out`, else `<job name>.out` beside the job.
+    pub fn job<A>(
+        &self,
+        path: &Path,
+        ask: impl FnOnce(&Job, &Context) -> Result<Outcome<A>, Faults> + Send,
+    ) -> ExitCode
+    where
+        A: Answer + Send,
+        Outcome<A>: Report,
+    {
+        let folder = self
+            .common
+            .out
+            .clone()
+            .unwrap_or_else(|| default_folder(path));
+        let done = self.pooled(|cx| {
+            let outcome = ask(&Job::read(path, cx.files)?, cx)?;
+            let json = save(&outcome, &folder)?;
+            Ok((outcome, json))
+        });
+        match done {
+            Ok((outcome, json)) => self.say(&Said {
+                text: &outcome.words(),
+                json: &json,
+                findings: &outcome.findings,
+                notes: &outcome.notes,
+                folder: Some(&folder),
+                faults: &[],
+            }),
+            Err(faults) => refuse(&faults),
+        }
+    }
+
     /// Work on the asked number of threads. It begins on a thread of the pool: from outside, each of a factorisation's many small
     /// parallel steps would wake two threads and put one to sleep.
     fn pooled<T: Send>(
@@ -72,7 +107,12 @@ impl Run {
             .stack_size(STACK)
             .build()
             .map_err(|e| {
-                Fault::of("--threads", "threads", e.to_string(), "ask for fewer threads")
+                Fault::of(
+                    "--threads",
+                    "threads",
+                    e.to_string(),
+                    "ask for fewer threads",
+                )
             })?;
         let mut cx = Context::new(&Disk).progress(&terminal);
         cx.store = self.store.as_ref().map(|s| s as _);
@@ -80,7 +120,14 @@ impl Run {
     }
 
     fn say(&self, said: &Said) -> ExitCode {
-        print(if self.common.json { said.json } else { said.text }.as_bytes());
+        print(
+            if self.common.json {
+                said.json
+            } else {
+                said.text
+            }
+            .as_bytes(),
+        );
         let mut notes = String::new();
         said.findings
             .iter()
@@ -101,6 +148,14 @@ impl Run {
             _ => ExitCode::SUCCESS,
         }
     }
+}
+
+/// `<stem>.out` beside the file.
+fn default_folder(main_input: &Path) -> PathBuf {
+    let stem = main_input.file_stem();
+    let mut name = stem.map_or_else(|| "strainbridge".into(), |s| s.to_owned());
+    name.push(".out");
+    main_input.with_file_name(name)
 }
 
 fn refuse(faults: &Faults) -> ExitCode {

@@ -31,6 +31,7 @@ pub mod quartic;
 pub mod region;
 pub mod relax;
 pub mod robust;
+mod role;
 mod shortlist;
 pub mod sites;
 pub mod spacing;
@@ -39,6 +40,7 @@ pub mod units;
 
 pub use criterion::Criterion;
 pub use layout::{Layout, Loss, PlaceError, Spec, place};
+pub use role::Role;
 
 #[cfg(test)]
 mod tests;

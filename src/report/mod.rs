@@ -1,5 +1,6 @@
 //! From plain results to bytes: text, json, csv, html, pdf, spreadsheets. Nothing is computed here.
 
+pub mod command;
 mod csv_cell;
 pub mod figure;
 pub mod page;

@@ -4,7 +4,7 @@ mod answer;
 mod completed;
 
 use super::deck::{DeckModel, read_model};
-use super::fault::{Fault, Faults};
+use super::fault::{Fault, FaultList, Faults};
 use super::job::runs::read_runs;
 use super::job::{self, Ballast, Job};
 use super::wheels::{Wheels, floor_fault, wheels_of};
@@ -58,7 +58,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
             read_model(&mut s.inputs, &job.folder, &files.deck.given)
         })
         .map_err(Faults::from)?;
-    Faults::check(read.faults)?;
+    Faults::check(read.faults.clone())?;
     if read.deck.sources.is_empty() {
         return Err(Faults::from(Fault::of(
             &*job.file,

@@ -44,8 +44,9 @@ const UNWANTED: [&str; 22] = [
 pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
     let job = session.stage("read job", |s| job::read_job(&mut s.inputs, &arguments.job))?;
     session.put_units(job.units, &job.report_units);
-    let fault =
-        |field: &str, wrong: &str, remedy: &str| Faults::from(Fault::of(&*job.file, field, wrong, remedy));
+    let fault = |field: &str, wrong: &str, remedy: &str| {
+        Faults::from(Fault::of(&*job.file, field, wrong, remedy))
+    };
     let Some(files) = &job.model else {
         return Err(fault(
             "model",
@@ -75,7 +76,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     }
     let mut faults = super::strain::unit_loads(&job, &read.model)
         .err()
-        .unwrap_or_default();
+        .map_or_else(Vec::new, Faults::into_list);
     for l in &job.loads {
         if let LoadActs::Set(sid) = l.acts
             && !load_ids(&read.deck).contains(&sid)

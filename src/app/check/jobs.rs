@@ -32,7 +32,7 @@ pub(super) fn look(session: &mut Session, base: &Path, given: &str, found: &mut 
         found.faults.extend(
             job::runs::read_runs(&mut session.inputs, &job, r)
                 .err()
-                .unwrap_or_default(),
+                .map_or_else(Vec::new, crate::app::fault::Faults::into_list),
         );
     }
 }

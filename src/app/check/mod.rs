@@ -9,7 +9,7 @@ mod kind;
 mod results;
 mod together;
 
-use super::fault::Faults;
+use super::fault::{FaultList, Faults};
 use super::{FilesArguments, Session};
 use crate::finding::Finding;
 use crate::report::page::{Block, Page, Section};

@@ -5,7 +5,7 @@ use super::raw::S;
 use super::spanned::Spanned;
 use super::suggest;
 use super::types::NamedFile;
-use crate::app::fault::{Fault, Faults};
+use crate::app::fault::{Fault, FaultList};
 
 /// The job's text and the faults found in it so far.
 pub(super) struct Collector<'a> {

@@ -7,7 +7,7 @@ use super::resolve::{check_gauge, surface_from};
 use super::suggest;
 use super::table::{Table, read_table};
 use super::types::*;
-use crate::app::fault::{Fault, Faults};
+use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::files::Inputs;
 
 /// The gauges of `[gauges] file`; faults are added to the list.

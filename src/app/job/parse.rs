@@ -2,7 +2,7 @@
 
 use super::raw::RawJob;
 use super::suggest;
-use crate::app::fault::{Fault, Faults};
+use crate::app::fault::{Fault, FaultList};
 use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;
@@ -12,7 +12,7 @@ use toml::de::{DeTable, DeValue, Deserializer, Error};
 const MOST_FAULTS: usize = 100;
 
 /// The raw job and the faults met on the way.
-pub(super) fn parse_job(file: &str, text: &str) -> (RawJob, Faults) {
+pub(super) fn parse_job(file: &str, text: &str) -> (RawJob, FaultList) {
     let (mut table, errors) = DeTable::parse_recoverable(text);
     let mut faults: FaultList = errors.iter().map(|e| syntax_fault(file, text, e)).collect();
     if !faults.is_empty() {

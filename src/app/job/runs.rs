@@ -3,7 +3,7 @@
 use super::suggest;
 use super::table::read_table;
 use super::types::{Component, Job, LoadActs, Runs};
-use crate::app::fault::{Fault, Faults};
+use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::files::Inputs;
 use crate::units::Quantity;
 use std::collections::BTreeMap;

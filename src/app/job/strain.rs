@@ -3,7 +3,7 @@
 
 use super::table::{Table, read_table};
 use super::types::{Job, NamedFile};
-use crate::app::fault::{Fault, Faults, split_message};
+use crate::app::fault::{Fault, FaultList, Faults, split_message};
 use crate::app::files::Inputs;
 use crate::series::Channels;
 use crate::series::foreign::{Foreign, read_foreign};

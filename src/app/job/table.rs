@@ -1,6 +1,6 @@
 //! A CSV file with the line of every row.
 
-use crate::app::fault::{Fault, Faults};
+use crate::app::fault::{Fault, FaultList, Faults};
 use crate::series::number::{DecimalMark, number};
 
 /// Header and rows of a CSV file, fields trimmed.
@@ -92,10 +92,10 @@ pub fn read_table(file: &str, text: &str) -> Result<Table, Faults> {
     }
     Faults::check(faults)?;
     Ok(Table {
-            file: file.to_owned(),
-            header,
-            rows,
-        })
+        file: file.to_owned(),
+        header,
+        rows,
+    })
 }
 
 /// A field, a number's decimal comma turned into a point.

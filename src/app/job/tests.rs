@@ -1,9 +1,9 @@
 use super::*;
-use crate::app::fault::Fault;
+use crate::app::fault::{Fault, Faults};
 use std::path::PathBuf;
 
 /// A job text parsed and resolved, without any file but the job.
-fn read_text(text: &str) -> Result<Job, Vec<Fault>> {
+fn read_text(text: &str) -> Result<Job, Faults> {
     let (raw, mut faults) = parse::parse_job("job.toml", text);
     let job = resolve::resolve_job("job.toml", text, Path::new(""), raw, &mut faults);
     Faults::check(faults)?;
@@ -11,7 +11,9 @@ fn read_text(text: &str) -> Result<Job, Vec<Fault>> {
 }
 
 fn faults(text: &str) -> Vec<Fault> {
-    read_text(text).expect_err("the job should be refused")
+    read_text(text)
+        .expect_err("the job should be refused")
+        .into_list()
 }
 
 fn shared() -> Option<PathBuf> {
@@ -40,7 +42,7 @@ fn every_shared_job_is_read_with_all_files_it_names() {
     jobs_below(&shared, &mut jobs);
     assert!(jobs.len() >= 10, "{jobs:?}");
     for path in jobs {
-        let mut inputs = Inputs::default();
+        let mut inputs = Inputs::of(&crate::app::context::Disk);
         let job =
             read_job(&mut inputs, &path).unwrap_or_else(|f| panic!("{}: {f:?}", path.display()));
         if let Some(m) = &job.measured {
@@ -69,7 +71,7 @@ fn a_runs_file_is_read_in_si_by_the_jobs_names() {
         eprintln!("skipped: no ../shared");
         return;
     };
-    let mut inputs = Inputs::default();
+    let mut inputs = Inputs::of(&crate::app::context::Disk);
     let job = read_job(
         &mut inputs,
         &shared.join("hidden_effects/static/dev-s1/job.toml"),

@@ -4,12 +4,12 @@ use super::Task;
 use super::judge::{findings, words};
 use super::model::Parts;
 use crate::app::fault::Faults;
-use crate::app::scene::scene_of_job;
 use crate::app::{JobArguments, Session};
 use crate::payload::{PayloadRun, Place, WeighSpec, WeighedRun, Weighing};
 use crate::report::csv_cell;
 use crate::report::figure::{IntervalRow, intervals};
 use crate::report::page::{Page, Paper, figure_section, number, table_section};
+use crate::report::scene::scene_of_job;
 use crate::report::scene::scene_section;
 use serde_json::{Value, json};
 

@@ -3,7 +3,7 @@
 use super::Task;
 use crate::app::Session;
 use crate::app::deck::read_model;
-use crate::app::fault::{Fault, Faults};
+use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::table::read_table;
 use crate::app::job::{Component, LoadActs};
 use crate::app::strain::{Prepared, prepare};
@@ -228,7 +228,13 @@ fn standing(
 fn given(session: &mut Session, task: &mut Task, use_strain: bool) -> Result<Parts, Faults> {
     let job = task.job;
     let Some(tables) = &job.sensitivity else {
-        return Err(Vec::new());
+        return Err(Fault::of(
+            &*job.file,
+            "sensitivity",
+            "the job has no [sensitivity]",
+            "name the table of S: [sensitivity] file = \"S.csv\"",
+        )
+        .into());
     };
     let prepared = prepare(session, job)?;
     let s = &prepared.sensitivity;

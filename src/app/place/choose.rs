@@ -2,9 +2,9 @@
 
 use super::pool::Kind;
 use super::task::{Task, know_the_loads, position};
-use crate::app::Session;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::{Criterion as Wanted, Rosette as JobRosette};
+use crate::app::work::Work;
 use crate::gauge::{Bridge, CornerRows, Gauge, GaugeSpec, Rosette, build};
 use crate::linalg::spd;
 use crate::model::Vec3;
@@ -64,23 +64,23 @@ pub(super) fn is_plain(task: &Task) -> bool {
 /// # Errors
 /// Where nothing fits.
 pub(super) fn choose(
-    session: &mut Session,
+    work: &mut Work,
     task: &Task,
     kinds: &[Kind],
     spec: &mut Spec,
 ) -> Result<Chosen, Faults> {
     match choose_once(task, kinds, spec) {
         Err(Refused::By(PlaceError::Singular { gauges, loads })) => {
-            know_the_loads(session, spec, gauges, loads);
+            know_the_loads(work, spec, gauges, loads);
             choose_once(task, kinds, spec)
         }
         other => other,
     }
     .map_err(|e| {
-        vec![match e {
+        Faults::from(match e {
             Refused::By(e) => task.refusal(&e),
             Refused::Job(f) => f,
-        }]
+        })
     })
 }
 

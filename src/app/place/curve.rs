@@ -1,29 +1,15 @@
 //! How many gauges: what each number of them gives, and what the next one buys.
 
-use super::answer::finite;
 use super::choose::{Refused, choose_once};
+use super::outcome::{BoughtSigma, CurvePoint};
 use super::pool::Kind;
 use super::task::Task;
+use crate::app::outcome::finite;
 use crate::app::strain::LoadUnits;
+use crate::finding::{Finding, Severity};
 use crate::linalg::{Matrix, dense};
 use crate::placement::quality::judge_rows;
 use crate::placement::{PlaceError, Spec};
-use crate::report::figure::CountPoint;
-use crate::report::strain::HowMany;
-use serde_json::{Value, json};
-
-/// A number of gauges.
-pub(super) struct Point {
-    pub gauges: usize,
-    pub efficiency_bound: f64,
-    pub condition_number_scaled: f64,
-    /// Efficiency left after the worst loss.
-    pub worst_loss: f64,
-    /// By load, report units, job order.
-    pub sigma: Vec<f64>,
-    /// By load, report units: how much less than with the number before, a gauge.
-    pub bought: Vec<Option<f64>>,
-}
 
 /// The curve over the job's numbers; numbers that can't separate the loads are left out.
 pub(super) fn curve(
@@ -31,12 +17,12 @@ pub(super) fn curve(
     kinds: &[Kind],
     spec: &Spec,
     units: &[LoadUnits],
-) -> (Vec<Point>, Vec<usize>) {
+) -> (Vec<CurvePoint>, Vec<usize>) {
     let mut counts = task.job.placement.curve.clone();
     counts.sort_unstable();
     counts.dedup();
     let k = task.cases.len();
-    let (mut points, mut left_out): (Vec<Point>, Vec<usize>) = (Vec::new(), Vec::new());
+    let (mut points, mut left_out): (Vec<CurvePoint>, Vec<usize>) = (Vec::new(), Vec::new());
     for gauges in counts {
         let mut spec = Spec {
             gauges,
@@ -66,56 +52,44 @@ pub(super) fn curve(
         let sds = chosen.channels.iter().map(|c| c.sd);
         let sds: Vec<f64> = sds.chain(vec![1.0; task.kept_rows.len()]).collect();
         let s = Matrix::from_fn(all.len(), k, |r, c| all[r][c] * sds[r]);
-        let bought = (0..k)
+        let load_sigma = (0..k)
             .map(|l| {
-                let before = points.last()?;
-                Some((before.sigma[l] - sigma[l]) / (gauges - before.gauges) as f64)
+                let bought = points.last().map(|before| {
+                    let steps = (gauges - before.gauges) as f64;
+                    (before.load_sigma[l].sigma - sigma[l]) / steps
+                });
+                BoughtSigma {
+                    name: task.job.loads[l].name.clone(),
+                    sigma: sigma[l],
+                    unit: units[l].name.clone(),
+                    less_by_a_gauge: bought,
+                }
             })
             .collect();
-        points.push(Point {
+        points.push(CurvePoint {
             gauges,
             efficiency_bound: chosen.efficiency_bound,
-            condition_number_scaled: dense::condition(&s),
+            condition_number_scaled: finite(dense::condition(&s)),
             worst_loss: q.worst_loss,
-            sigma,
-            bought,
+            load_sigma,
         });
     }
     (points, left_out)
 }
 
-/// The curve for `result.json`.
-pub(super) fn curve_json(points: &[Point], names: &[String], units: &[LoadUnits]) -> Vec<Value> {
-    points
-        .iter()
-        .map(|p| {
-            let loads: Vec<Value> = (0..names.len())
-                .map(|l| {
-                    json!({ "name": names[l], "sigma": p.sigma[l], "unit": units[l].name, "less_by_a_gauge": p.bought[l] })
-                })
-                .collect();
-            json!({
-                "gauges": p.gauges,
-                "efficiency_bound": p.efficiency_bound,
-                "condition_number_scaled": finite(p.condition_number_scaled),
-                "worst_loss": p.worst_loss,
-                "load_sigma": loads,
-            })
-        })
-        .collect()
-}
-
-/// The curve for the page.
-pub(super) fn drawn(points: &[Point], names: &[String], units: &[LoadUnits]) -> HowMany {
-    let point = |p: &Point| CountPoint {
-        gauges: p.gauges,
-        efficiency: p.efficiency_bound,
-        after_loss: p.worst_loss,
-        sigma: p.sigma.clone(),
-    };
-    let loads = names.iter().zip(units);
-    HowMany {
-        points: points.iter().map(point).collect(),
-        loads: loads.map(|(n, u)| (n.clone(), u.name.clone())).collect(),
-    }
+/// Numbers of gauges that the curve leaves out.
+pub(super) fn incomplete(left_out: &[usize]) -> Option<Finding> {
+    let counts: Vec<String> = left_out.iter().map(usize::to_string).collect();
+    (!left_out.is_empty()).then(|| {
+        Finding::new(
+            Severity::Info,
+            "curve-incomplete",
+            "placement.curve",
+            format!(
+                "no layout of {} gauges separates the loads and keeps the spacing",
+                counts.join(", ")
+            ),
+            "",
+        )
+    })
 }

@@ -1,35 +1,36 @@
 //! The gauges that the job already has, by the same measures.
 
-use super::answer::{finite, in_job_order, sigma_rows};
+use super::judge::{in_job_order, sigma_rows};
+use super::outcome::{Installed, InstalledQuality, WorstLoss};
 use super::pool::MICRO;
 use super::task::Task;
-use crate::app::Session;
 use crate::app::fault::Faults;
+use crate::app::outcome::finite;
 use crate::app::strain::lay_gauges;
+use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::linalg::spd;
 use crate::placement::candidates::Candidates;
 use crate::placement::quality::judge_rows;
 use crate::placement::{self, Spec, place};
 use crate::sensitivity::from_cases;
-use serde_json::json;
 
 /// The installed layout by the same measures, noise alone; `None` without gauges in the job.
 pub(super) fn installed(
-    session: &mut Session,
+    work: &mut Work,
     task: &Task,
     c: &Candidates,
     spec: &Spec,
-) -> Result<Option<serde_json::Value>, Faults> {
+) -> Result<Option<Installed>, Faults> {
     let (job, fields, cases, scales) = (task.job, task.fields, &task.cases, &task.scales);
     if job.gauges.is_empty() {
         return Ok(None);
     }
-    let gauges = lay_gauges(session, job, fields)?;
+    let gauges = lay_gauges(work, job, fields)?;
     let s = match from_cases(&gauges, cases) {
         Ok(s) => s,
         Err(missing) => {
-            session.findings.push(Finding::new(
+            work.findings.push(Finding::new(
                 Severity::Warning,
                 "installed-gauges-without-strain",
                 missing.iter().map(|m| m.gauge.as_str()).collect::<Vec<_>>().join(", "),
@@ -55,7 +56,11 @@ pub(super) fn installed(
         })
         .collect();
     let Some(q) = judge_rows(&rows, &spec.prior, k).map(|q| in_job_order(q, order)) else {
-        return Ok(Some(json!({ "gauges": gauges.len(), "rank": s.rank() })));
+        return Ok(Some(Installed {
+            gauges: gauges.len(),
+            rank: Some(s.rank()),
+            quality: None,
+        }));
     };
     let bound = if gauges.len() == spec.gauges && !c.has_slopes() {
         None
@@ -75,13 +80,21 @@ pub(super) fn installed(
         place(&plain, &other).ok().map(|l| l.upper_bound)
     };
     let log_det = crate::placement::quality::value(&rows, &spec.prior, k, &spec.criterion);
-    Ok(Some(json!({
-        "gauges": gauges.len(),
-        "log_det": log_det,
-        "upper_bound": bound,
-        "condition_number": finite(s.condition_number()),
-        "condition_number_scaled": finite(s.condition_number_scaled()),
-        "load_sigma": sigma_rows(job, &s, &q, scales),
-        "worst_loss": { "gauge": s.gauges[q.worst], "efficiency_left": q.worst_loss, "leverage": q.leverage[q.worst] },
-    })))
+    let quality = InstalledQuality {
+        log_det,
+        upper_bound: bound,
+        condition_number: finite(s.condition_number()),
+        condition_number_scaled: finite(s.condition_number_scaled()),
+        load_sigma: sigma_rows(job, &s, &q, scales),
+        worst_loss: WorstLoss {
+            gauge: s.gauges[q.worst].clone(),
+            leverage: q.leverage[q.worst],
+            efficiency_left: q.worst_loss,
+        },
+    };
+    Ok(Some(Installed {
+        gauges: gauges.len(),
+        rank: None,
+        quality: Some(quality),
+    }))
 }

@@ -1,148 +1,156 @@
 //! `place`: gauges chosen from the candidates, with the certificate, beside the installed ones where the job has some.
 
-mod answer;
 mod choose;
 mod curve;
 mod installed;
-mod points;
+mod judge;
+mod outcome;
 mod pool;
 mod region;
 mod sheet;
 mod task;
 
+pub use outcome::*;
 pub(super) use pool::{angles, column_order, scales, scatter};
 pub(super) use region::allowed_sites;
 
+use super::context::Context;
 use super::fault::{Fault, Faults};
-use super::job;
-use super::scene::{placed_mark, scene_of};
-use super::spreadsheets::write_spreadsheet;
-use super::strain::{load_units, read_fields};
-use super::{JobArguments, Session};
+use super::job::Job;
+use super::outcome::{Outcome, StatedUnits, finite};
+use super::strain::{Conditioning, Fields, LoadSigma, load_units, read_fields, without_strain};
+use super::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::placement::quality::{judge_rows, reserve};
-use crate::report::page::Paper;
-use crate::report::spreadsheet::gauge_sheets;
-use crate::report::strain::{
-    HowMany, gauges_csv, gluing_sheet_csv, gluing_sheet_md, place_page, sensitivity_csv,
-};
-use crate::sensitivity::{check_separability, common_shells, from_cases};
-use serde_json::json;
+use crate::sensitivity::{Sensitivity, check_separability, common_shells, from_cases};
 
-/// Reads, places, compares, writes `gauges.csv`, the gluing sheet and the report.
-pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
-    let job = session.stage("read job", |s| job::read_job(&mut s.inputs, &arguments.job))?;
-    session.put_units(job.units, &job.report_units);
-    let fields = read_fields(session, &job)?;
-    let cases = fields.load_cases(&job);
+/// Gauges for the loads of a job: chosen from its candidates with a certificate, beside the installed ones where it has some.
+///
+/// # Errors
+/// Every fault of the job and of the files it names; a layout that nothing fits.
+pub fn place(job: &Job, cx: &Context) -> Result<Outcome<Placed>, Faults> {
+    let mut work = Work::of_job(cx, job);
+    let fields = read_fields(&mut work, job)?;
+    let answer = placed(&mut work, job, &fields)?;
+    let answer = answer.with(fields, job);
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// The layout on the model.
+fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Faults> {
+    let cases = fields.load_cases(job);
     let (common, findings) = common_shells(&cases);
-    session.findings.extend(findings);
-    let sites = allowed_sites(&job, &fields, &common)?;
+    work.findings.extend(findings);
+    let sites = allowed_sites(job, fields, &common)?;
     let k = cases.len();
-    let scales = scales(session, &cases, &common);
-    let mut task = task::task(&job, &fields, cases, scales, sites);
-    task.keep(session)?;
+    let scales = scales(work, &cases, &common);
+    let mut task = task::task(job, fields, cases, scales, sites);
+    task.keep(work)?;
     let (led, led_scales) = task.led();
-    let kinds = session.stage("candidates", |_| {
+    let kinds = work.stage("candidates", |_| {
         let angles = angles(job.candidates.angles);
-        pool::kinds(
-            &job,
-            fields.model(),
-            &task.sites,
-            &led,
-            &led_scales,
-            &angles,
-        )
+        pool::kinds(job, fields.model(), &task.sites, &led, &led_scales, &angles)
     });
-    let mut spec = task.spec(session);
-    let chosen = session.stage("place", |s| choose::choose(s, &task, &kinds, &mut spec))?;
+    let mut spec = task.spec(work);
+    let chosen = work.stage("place", |w| choose::choose(w, &task, &kinds, &mut spec))?;
     let rows: Vec<Vec<f64>> = chosen.channels.iter().map(|c| c.row.clone()).collect();
     let Some(quality) =
-        judge_rows(&rows, &spec.prior, k).map(|q| answer::in_job_order(q, &task.order))
+        judge_rows(&rows, &spec.prior, k).map(|q| judge::in_job_order(q, &task.order))
     else {
         let singular = crate::placement::PlaceError::Singular {
             gauges: spec.gauges,
             loads: k,
         };
-        return Err(Faults::from(task.refusal(&singular)));
+        return Err(task.refusal(&singular).into());
     };
-    let validation = reserved(session, &task, &rows, &spec.prior)?;
-    let all: Vec<_> = chosen
-        .channels
-        .iter()
-        .map(|c| c.gauge.clone())
-        .chain(task.kept.clone())
-        .collect();
-    let s = from_cases(&all, &task.cases).map_err(|_| Vec::new())?;
+    let validation = reserved(work, &task, &rows, &spec.prior)?;
+    let chosen_gauges = chosen.channels.iter().map(|c| c.gauge.clone());
+    let all: Vec<_> = chosen_gauges.chain(task.kept.clone()).collect();
+    let s = from_cases(&all, &task.cases).map_err(|missing| without_strain(job, &missing))?;
     let names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
-    let units = load_units(&job, &names);
-    let placed = sheet::placed(&task, &chosen, &spec.prior, &quality, &validation);
+    let units = load_units(job, &names);
+    let gauges = sheet::placed(&task, &chosen, &spec.prior, &quality, &validation);
     let installed = match kinds.first().filter(|_| choose::is_plain(&task)) {
-        Some(kind) => installed::installed(session, &task, &kind.candidates, &spec)?,
+        Some(kind) => installed::installed(work, &task, &kind.candidates, &spec)?,
         None => None,
     };
-    let counted = kinds.iter().map(|k| k.candidates.n_rows()).sum();
-    let size = [task.sites.len(), counted];
-    answer::put_result(session, &task, size, &chosen, &s, &quality, &units, &placed)?;
-    let reserved: Vec<_> = validation
-        .iter()
-        .map(|(i, inflation)| {
-            let c = &chosen.channels[*i];
-            json!({ "name": c.gauge.name, "prediction_sd_microstrain": c.sd * inflation })
-        })
-        .collect();
-    session.put("reserved", reserved)?;
-    session.put("installed", &installed)?;
-    session.findings.extend(check_separability(&s));
-    answer::judge_layout(session, &chosen, &quality, &spec, &placed, k);
-    answer::say(session, &chosen, &s, &placed, installed.as_ref());
-    let mut how_many = HowMany::default();
-    if !job.placement.curve.is_empty() {
+    work.findings.extend(check_separability(&s));
+    judge::judge_layout(work, &chosen, &quality, &spec, &gauges, k);
+    let how_many = if job.placement.curve.is_empty() {
+        Vec::new()
+    } else {
         let (points, left_out) =
-            session.stage("curve", |_| curve::curve(&task, &kinds, &spec, &units));
-        session.put("how_many", curve::curve_json(&points, &names, &units))?;
-        answer::say_curve(session, &points, &names, &units);
-        how_many = curve::drawn(&points, &names, &units);
-        if !left_out.is_empty() {
-            let counts: Vec<String> = left_out.iter().map(usize::to_string).collect();
-            session.findings.push(Finding::new(
-                Severity::Info,
-                "curve-incomplete",
-                "placement.curve",
-                format!(
-                    "no layout of {} gauges separates the loads and keeps the spacing",
-                    counts.join(", ")
-                ),
-                "",
-            ));
+            work.stage("curve", |_| curve::curve(&task, &kinds, &spec, &units));
+        work.findings.extend(curve::incomplete(&left_out));
+        points
+    };
+    let reserved = validation.iter().map(|(i, inflation)| {
+        let c = &chosen.channels[*i];
+        Reserved {
+            name: c.gauge.name.clone(),
+            prediction_sd_microstrain: c.sd * inflation,
+        }
+    });
+    Ok(LayoutOf {
+        reserved: reserved.collect(),
+        candidates: Candidates {
+            places: task.sites.len(),
+            rows: kinds.iter().map(|k| k.candidates.n_rows()).sum(),
+        },
+        load_sigma: judge::sigma_rows(job, &s, &quality, &task.scales),
+        worst_loss: WorstLoss {
+            gauge: gauges[quality.worst].gauge.name.clone(),
+            leverage: quality.leverage[quality.worst],
+            efficiency_left: quality.worst_loss,
+        },
+        kept: task.kept.iter().map(|g| g.name.clone()).collect(),
+        sensitivity: s,
+        gauges,
+        chosen,
+        installed,
+        how_many,
+    })
+}
+
+/// A layout before model and job are handed to the outcome.
+struct LayoutOf {
+    gauges: Vec<PlacedGauge>,
+    candidates: Candidates,
+    chosen: choose::Chosen,
+    kept: Vec<String>,
+    sensitivity: Sensitivity,
+    load_sigma: Vec<LoadSigma>,
+    worst_loss: WorstLoss,
+    reserved: Vec<Reserved>,
+    installed: Option<Installed>,
+    how_many: Vec<CurvePoint>,
+}
+
+impl LayoutOf {
+    fn with(self, fields: Fields, job: &Job) -> Placed {
+        Placed {
+            gauges: self.gauges,
+            candidates: self.candidates,
+            criterion: job.placement.criterion.name(),
+            log_det: self.chosen.log_det,
+            upper_bound: self.chosen.upper_bound,
+            efficiency_bound: self.chosen.efficiency_bound,
+            proved: self.chosen.proved,
+            nodes: self.chosen.nodes,
+            cost: self.chosen.cost,
+            kept: self.kept,
+            conditioning: Conditioning::of(&self.sensitivity),
+            least_condition_number_scaled: self.chosen.least_condition.and_then(finite),
+            load_sigma: self.load_sigma,
+            worst_loss: self.worst_loss,
+            reserved: self.reserved,
+            installed: self.installed,
+            how_many: self.how_many,
+            sensitivity: self.sensitivity,
+            fields,
+            job: job.clone(),
         }
     }
-    let marks = placed.iter().map(placed_mark).collect();
-    let scene = scene_of(&job, &fields, marks);
-    let page = place_page(
-        &job.title,
-        &scene,
-        &placed,
-        &s,
-        &session.findings,
-        &answer::session_numbers(&chosen, &s, &installed),
-        &how_many,
-    );
-    let out = session.output_for(&arguments.job)?;
-    let write = |f: Result<(), Fault>| f.map_err(Faults::from);
-    write(out.write("gauges.csv", |w| gauges_csv(w, &placed)))?;
-    write(out.write("sensitivity.csv", |w| sensitivity_csv(w, &s)))?;
-    write(out.write("gluing_sheet.csv", |w| {
-        gluing_sheet_csv(w, &placed, fields.model())
-    }))?;
-    write(out.write_bytes(
-        "gluing_sheet.md",
-        gluing_sheet_md(&job.title, &placed, fields.model()).as_bytes(),
-    ))?;
-    write(out.write("gauges.vtu", |w| points::gauges_vtu(w, &placed)))?;
-    session.write_page(&arguments.job, page.on_paper(Paper::Signed))?;
-    let sheets = gauge_sheets(&placed, fields.model(), &s);
-    write_spreadsheet(session, &job, &arguments.job, "gauges.xlsx", &sheets)
 }
 
 /// Gauges reserved for validation: index and prediction's standard deviation over the reading's.
@@ -150,7 +158,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
 /// # Errors
 /// Where the rest would not separate the loads.
 fn reserved(
-    session: &mut Session,
+    work: &mut Work,
     task: &task::Task,
     rows: &[Vec<f64>],
     prior: &[f64],
@@ -168,7 +176,7 @@ fn reserved(
             "reserve fewer, or place more",
         )));
     };
-    session.findings.push(Finding::new(
+    work.findings.push(Finding::new(
         Severity::Info,
         "gauges-reserved",
         "placement.reserve",

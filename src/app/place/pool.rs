@@ -1,7 +1,7 @@
 //! Candidates of the job: wirings, angles, scales, what scatters a reading.
 
-use crate::app::Session;
 use crate::app::job::{AngleStep, Bridge as JobBridge, Job, Role};
+use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::gauge::Bridge;
 use crate::model::{Model, ShellIx};
@@ -108,7 +108,7 @@ pub(in crate::app) fn column_order(job: &Job) -> Vec<usize> {
 
 /// Column scales: `expected`; where a load states none, the size that strains the candidates by [`ASSUMED_STRAIN`] rms.
 pub(in crate::app) fn scales(
-    session: &mut Session,
+    work: &mut Work,
     cases: &[LoadCaseOf],
     common: &[ShellIx],
 ) -> Vec<f64> {
@@ -139,7 +139,7 @@ pub(in crate::app) fn scales(
         })
         .collect();
     if !assumed.is_empty() {
-        session.findings.push(Finding::new(
+        work.findings.push(Finding::new(
             Severity::Info,
             "expected-assumed",
             assumed.join(", "),

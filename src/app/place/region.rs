@@ -1,6 +1,6 @@
 //! Where the job lets gauges go.
 
-use crate::app::fault::{Fault, Faults};
+use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Job, LoadActs, Region};
 use crate::app::strain::{Fields, side};
 use crate::gauge::centre;

@@ -1,14 +1,15 @@
 //! What the technician needs of each gauge: reference point, tolerance budget, strain by load.
 
 use super::choose::Chosen;
+use super::outcome::{PlacedGauge, StrainOfLoad};
 use super::task::{Task, by_load};
 use crate::app::job::LoadActs;
 use crate::gauge::{Bridge, Gauge};
+use crate::placement::Role;
 use crate::placement::gradient::forms;
 use crate::placement::quality::{Quality, influence};
 use crate::placement::quartic;
 use crate::placement::sites::Site;
-use crate::report::strain::{PlacedGauge, Role};
 use crate::sensitivity::LoadCaseOf;
 
 /// Error of a load, in shares of its expected size, for which the tolerance budget is stated.
@@ -40,20 +41,36 @@ pub(super) fn placed(
                 (error > 0.0).then(|| BUDGET / error)
             };
             let strains = by_load(task, &c.gauge);
+            let g = &c.gauge;
             PlacedGauge {
-                gauge: c.gauge.clone(),
+                name: g.name.clone(),
+                element: g.element,
+                surface: g.surface.word(),
+                position: [g.position.x, g.position.y, g.position.z],
+                direction: [g.direction.x, g.direction.y, g.direction.z],
+                angle_deg: g.angle_rad.to_degrees(),
+                angle_seen_deg: PlacedGauge::seen_deg(g),
                 leverage: quality.leverage[i],
                 expected_microstrain: strains.iter().map(|v| v.abs()).sum(),
-                reference: reference_of(task, &c.gauge),
                 bridge: c.bridge,
                 role: if validation.iter().any(|v| v.0 == i) {
                     Role::Validation
                 } else {
                     Role::Estimate
                 },
+                sd_microstrain: c.sd,
                 angle_budget_deg: allowed(c.turn).map(f64::to_degrees),
                 position_budget: allowed(steep[i]),
-                by_load: names.iter().cloned().zip(strains).collect(),
+                strain_by_load: names
+                    .iter()
+                    .zip(strains)
+                    .map(|(name, microstrain)| StrainOfLoad {
+                        name: name.clone(),
+                        microstrain,
+                    })
+                    .collect(),
+                reference: reference_of(task, g),
+                gauge: g.clone(),
             }
         })
         .collect()

@@ -1,10 +1,10 @@
 //! What is to be placed: the job resolved on its model.
 
 use super::pool::{MICRO, column_order};
-use crate::app::Session;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::{Criterion as Wanted, Job, Keep, Role};
 use crate::app::strain::{Fields, lay_gauges, without_strain};
+use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::gauge::{Bridge, Gauge, reading};
 use crate::linalg::spd;
@@ -45,12 +45,12 @@ impl<'a> Task<'a> {
     ///
     /// # Errors
     /// Names that are no gauge's, gauges that can't be laid, gauges without strain.
-    pub fn keep(&mut self, session: &mut Session) -> Result<(), Faults> {
+    pub fn keep(&mut self, work: &mut Work) -> Result<(), Faults> {
         let p = &self.job.placement;
         if p.keep == Keep::None {
             return Ok(());
         }
-        let mut laid = lay_gauges(session, self.job, self.fields)?;
+        let mut laid = lay_gauges(work, self.job, self.fields)?;
         if let Keep::Named(names) = &p.keep {
             let own = |g: &Gauge, n: &String| g.name == *n || g.name.starts_with(&format!("{n}."));
             for n in names {
@@ -91,10 +91,10 @@ impl<'a> Task<'a> {
     }
 
     /// Spec with gauges, criterion, and what is known beforehand.
-    pub fn spec(&self, session: &mut Session) -> Spec {
+    pub fn spec(&self, work: &mut Work) -> Spec {
         let (job, k) = (self.job, self.cases.len());
         let gauges = job.placement.gauges.unwrap_or_else(|| {
-            session.findings.push(Finding::new(
+            work.findings.push(Finding::new(
                 Severity::Info,
                 "gauges-assumed",
                 "placement.gauges",
@@ -194,13 +194,13 @@ pub(super) fn position(fields: &Fields, (shell, side): Site) -> Option<Vec3> {
 
 /// Where no layout separates the loads, the best one for loads that are each known to their expected size (1 in these columns), with
 /// the finding that the measurement alone does not give them.
-pub(super) fn know_the_loads(session: &mut Session, spec: &mut Spec, gauges: usize, loads: usize) {
+pub(super) fn know_the_loads(work: &mut Work, spec: &mut Spec, gauges: usize, loads: usize) {
     for l in 0..loads {
         if let Some(p) = spec.prior.get_mut(l * loads + l) {
             *p = p.max(1.0);
         }
     }
-    session.findings.push(
+    work.findings.push(
         Finding::new(
             Severity::Error,
             "loads-not-separable",

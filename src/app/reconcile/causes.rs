@@ -1,7 +1,7 @@
 //! Readings against causes measured in every run, where no model gives their strain: `[reconcile] causes`.
 
 use crate::app::Session;
-use crate::app::fault::{Fault, Faults};
+use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::table::read_table;
 use crate::app::job::{Job, Reconcile};
 use crate::finding::{Finding, Severity};
@@ -138,7 +138,12 @@ fn read(
 ) -> Result<Vec<Cause>, Faults> {
     let Some(runs) = &job.runs else {
         let remedy = "add `[runs]` with a file that has a column for each cause";
-        return Err(Faults::from(Fault::of(&*job.file, "runs", "no `[runs]`", remedy)));
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "runs",
+            "no `[runs]`",
+            remedy,
+        )));
     };
     let text = session
         .inputs

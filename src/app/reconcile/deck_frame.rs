@@ -5,7 +5,7 @@ use super::deck_thermal::{Heated, NOTHING};
 use super::finer::Finer;
 use super::matrix_frame::{ModelPart, facts, nominal_x_m};
 use crate::app::Session;
-use crate::app::fault::{Fault, Faults};
+use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Component, Job, LoadActs};
 use crate::app::solved::unit_loads_kept;
 use crate::app::strain::{Fields, lay_gauges, read_fields};
@@ -13,7 +13,6 @@ use crate::fe::{Solution, SolveOptions, UnitLoad, solve_unit_loads};
 use crate::gauge::{Gauge, reading};
 use crate::model::{GridIx, Model, Vec3};
 use crate::reconcile::strain::{MassSignature, N_PAYLOAD_COLUMNS, PlaneStrainRow, Wiring};
-use std::path::Path;
 
 /// Strain in microstrain.
 const MICRO: f64 = 1e6;
@@ -34,7 +33,6 @@ pub(super) fn read(
     channels: &[String],
 ) -> Result<(ModelPart, DeckFrame), Faults> {
     let fields = read_fields(session, job)?;
-    let job_file = Path::new(&job.file);
     let gauges = in_order(job, lay_gauges(session, job, &fields)?, channels)?;
     // The same gauges turned: what they read at three angles holds their in-plane strain.
     let noted = session.findings.len();

@@ -1,6 +1,6 @@
 //! A CSV file with a row a gauge: influence or signature columns, in the order of the job's gauges.
 
-use crate::app::fault::{Fault, Faults};
+use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::files::Inputs;
 use crate::app::job::table::{Table, read_table};
 use crate::app::job::{Job, NamedFile};
@@ -37,7 +37,7 @@ impl SignatureTable {
             }
         }
         Faults::check(faults)?;
-    Ok(Self { table, rows })
+        Ok(Self { table, rows })
     }
 
     /// Names of the number columns.

@@ -5,11 +5,10 @@ use super::extend::{self, sized};
 use super::matrix_frame::{self, ModelPart};
 use super::{causes, stiffness, tables, words};
 use crate::app::Session;
-use crate::app::fault::{Fault, Faults};
+use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::runs::{RunRow, read_runs};
 use crate::app::job::strain::{StrainRows, StrainTable, read_strain};
 use crate::app::job::{HoldOut, Job, WheelForces as JobWheelForces};
-use crate::app::scene::{fields_of, mark_of_gap};
 use crate::finding::{Finding, Severity};
 use crate::model::{Model, Vec3};
 use crate::reconcile::effect::Extension;
@@ -20,6 +19,7 @@ use crate::reconcile::{NamedEffect, Observations, Outcome, Verdict};
 use crate::report::figure::GaugePoints;
 use crate::report::page::Paper;
 use crate::report::scene::{Mark, Scene};
+use crate::report::scene::{fields_of, mark_of_gap};
 use crate::report::strain::{RunStrain, reconcile_page};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -159,9 +159,7 @@ fn observations(job: &Job, session: &mut Session) -> Result<Observations, Faults
                     )
                 })
                 .collect();
-            if !unknown.is_empty() {
-                return Err(unknown);
-            }
+            Faults::check(unknown)?;
             out.runs.iter().map(|r| names.contains(r)).collect()
         }
         _ => vec![false; out.runs.len()],
@@ -213,7 +211,12 @@ fn frame(
     const KILO: f64 = 1e3;
     let Some(runs) = &job.runs else {
         let remedy = "add `[runs]` with the wheel forces and the payload of each run";
-        return Err(Faults::from(Fault::of(&*job.file, "runs", "no `[runs]`", remedy)));
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "runs",
+            "no `[runs]`",
+            remedy,
+        )));
     };
     let rows = read_runs(&mut session.inputs, job, runs)?;
     let gravity = job

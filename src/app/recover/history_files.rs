@@ -2,9 +2,9 @@
 
 use super::record::{GROUP, Piece, Record, process};
 use super::trace::Spans;
+use crate::app::context::Progress;
 use crate::app::fault::Fault;
 use crate::app::output::Output;
-use crate::app::context::Progress;
 use crate::app::strain::LoadUnits;
 use crate::recovery::NORMAL_95;
 use crate::recovery::history::{Filter, Sums};

@@ -11,7 +11,6 @@ use super::{MICRO, Task};
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::FileBytes;
 use crate::app::job::strain::{in_microstrain, read_strain_header, strain_record};
-use crate::app::scene::{Shown, run_arrows, scene_of_job};
 use crate::app::solved::first_mode_of;
 use crate::app::spreadsheets::write_spreadsheet;
 use crate::app::strain::{LoadUnits, load_units};
@@ -20,6 +19,7 @@ use crate::finding::{Finding, Severity};
 use crate::linalg::Matrix;
 use crate::recovery::history::{Filter, Sums};
 use crate::recovery::{Readings, recover};
+use crate::report::scene::{Shown, run_arrows, scene_of_job};
 use crate::report::spreadsheet::{HistoryLoad, history_sheet, residual_sheet};
 use crate::report::strain::{Recovered, RecoveredRun, recover_page};
 use crate::sensitivity::Sensitivity;
@@ -200,7 +200,7 @@ pub(super) fn run(
             bin.as_mut()
                 .map_or(Ok(()), |b| head(b, 0).map_err(|e| (b.name, e)))
         })
-        .map_err(|(name, e)| vec![out.fault(name, &e)])?;
+        .map_err(|(name, e)| Faults::from(out.fault(name, &e)))?;
     let form = Form {
         filter: &filter,
         units: &units,
@@ -229,7 +229,7 @@ pub(super) fn run(
                 .map_err(|e| (b.name, e))
         });
     }
-    written.map_err(|(name, e)| vec![out.fault(name, &e)])?;
+    written.map_err(|(name, e)| Faults::from(out.fault(name, &e)))?;
     drop(csv);
     if !wanted.is_empty() {
         let bytes = out.read_back("loads.bin").map_err(Faults::from)?;

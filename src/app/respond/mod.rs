@@ -6,7 +6,6 @@ mod states;
 
 use super::fault::{Fault, Faults};
 use super::job::{self, Job};
-use super::scene::scene_of;
 use super::strain::{Fields, Prepared, prepare, read_fields};
 use super::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
@@ -14,6 +13,7 @@ use crate::model::{GridIx, Model, RigidKind, Vec3};
 use crate::report::csv_cell;
 use crate::report::figure::agreement;
 use crate::report::page::{Page, figure_section, number, table_section};
+use crate::report::scene::scene_of;
 use crate::report::scene::{Mark, scene_section};
 use crate::report::write_cells_vtu;
 use crate::respond::{LoadState, Peak, Place, ResponseRow, envelope, hot_spots, response_rows};
@@ -47,7 +47,13 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         prepare(session, &job)?
     };
     let Some(fields) = &prepared.fields else {
-        return Err(Vec::new());
+        return Err(Fault::of(
+            &*job.file,
+            "model",
+            "the job has no [model]",
+            "name the deck: [model] deck = \"model.bdf\"",
+        )
+        .into());
     };
     let states = states::read(session, &job, &prepared)?;
     let wanted = job.respond.elements.as_ref();

@@ -1,7 +1,7 @@
 //! Load states: a table that `recover` wrote, or the job's static runs recovered here.
 
 use crate::app::Session;
-use crate::app::fault::{Fault, Faults};
+use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::table::read_table;
 use crate::app::job::{Job, NamedFile};
 use crate::app::recover::recovered_runs;
@@ -89,7 +89,7 @@ fn from_table(
             )),
         }
     }
-    Faults::check(faults)?;
+    Faults::check(std::mem::take(&mut faults))?;
     let mut states = Vec::new();
     let mut blank = 0_usize;
     for (row, (_, fields)) in t.rows.iter().enumerate() {

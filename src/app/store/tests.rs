@@ -1,4 +1,10 @@
-use super::*;
+use super::Key;
+use super::solution_file::{decode, encode};
+use crate::fe::{Balance, MassProperties, SolveReport, Solved};
+use crate::finding::{Finding, Severity};
+use crate::linalg::Matrix6;
+use crate::linalg::sparse::OrderingMethod;
+use crate::model::Vec3;
 
 fn solved() -> Solved {
     Solved {
@@ -34,7 +40,7 @@ fn solved() -> Solved {
 
 #[test]
 fn a_kept_solution_comes_back_bit_by_bit() {
-    let (s, hash) = (solved(), [7; 32]);
+    let (s, hash) = (solved(), Key([7; 32]));
     let back = decode(&encode(&s, &hash), &hash, 7, 3).unwrap();
     assert_eq!(back.displacements, s.displacements);
     assert_eq!(back.report, s.report);
@@ -43,7 +49,7 @@ fn a_kept_solution_comes_back_bit_by_bit() {
 
 #[test]
 fn a_file_with_any_byte_changed_or_cut_off_is_no_solution() {
-    let (s, hash) = (solved(), [7; 32]);
+    let (s, hash) = (solved(), Key([7; 32]));
     let bytes = encode(&s, &hash);
     for at in 0..bytes.len() {
         let mut other = bytes.clone();
@@ -51,7 +57,10 @@ fn a_file_with_any_byte_changed_or_cut_off_is_no_solution() {
         assert!(decode(&other, &hash, 7, 3).is_none(), "byte {at}");
         assert!(decode(&bytes[..at], &hash, 7, 3).is_none(), "length {at}");
     }
-    assert!(decode(&bytes, &[8; 32], 7, 3).is_none(), "another hash");
+    assert!(
+        decode(&bytes, &Key([8; 32]), 7, 3).is_none(),
+        "another hash"
+    );
     assert!(decode(&bytes, &hash, 8, 3).is_none(), "another model");
     assert!(decode(&bytes, &hash, 7, 2).is_none(), "other cases");
 }

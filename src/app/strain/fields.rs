@@ -1,10 +1,10 @@
 //! The job's model and the strain of its unit loads, from result files or from the built-in solver.
 
-use crate::app::work::Work;
 use crate::app::deck::{DeckModel, moduli_and_densities, read_model};
-use crate::app::fault::{Fault, Faults};
+use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Job, JobLoad, LoadActs, Reference, Role};
 use crate::app::solved::{cases_of_job, solve_kept};
+use crate::app::work::Work;
 use crate::fe::from_results::{Displacements, ReadOptions, solution_from_file};
 use crate::fe::{CaseResult, Solution, SolveOptions, UnitLoad};
 use crate::gauge::CornerRows;
@@ -13,7 +13,6 @@ use crate::sensitivity::{Load, LoadCaseOf};
 use crate::units::check_units;
 use nastran::results::ResultsFile;
 use std::collections::BTreeSet;
-use std::path::Path;
 
 /// Model and strain fields.
 pub struct Fields {
@@ -98,7 +97,7 @@ pub fn read_fields(work: &mut Work, job: &Job) -> Result<Fields, Faults> {
             read_model(&mut s.inputs, &job.folder, &files.deck.given)
         })
         .map_err(Faults::from)?;
-    Faults::check(deck.faults)?;
+    Faults::check(deck.faults.clone())?;
     work.findings.extend(deck.findings.iter().cloned());
     let (moduli, densities) = moduli_and_densities(&deck.model);
     work.findings.extend(check_units(
@@ -109,12 +108,7 @@ pub fn read_fields(work: &mut Work, job: &Job) -> Result<Fields, Faults> {
     ));
     if files.results.is_empty() {
         let cases = cases_of_job(job, &deck)?;
-        let (solved, report) = solve_kept(
-            work,
-            &deck,
-            &cases,
-            SolveOptions::default(),
-        )?;
+        let (solved, report) = solve_kept(work, &deck, &cases, SolveOptions::default())?;
         work.findings.extend(solved.findings.iter().cloned());
         let of_load = (0..job.loads.len()).map(|i| (0, i)).collect();
         return Ok(Fields {

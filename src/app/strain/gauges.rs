@@ -1,9 +1,9 @@
 //! The job's gauges laid onto the model.
 
 use super::Fields;
-use crate::app::work::Work;
-use crate::app::fault::{Fault, Faults};
+use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{self, Job, JobGauge};
+use crate::app::work::Work;
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::{Bridge, Gauge, GaugePlace, GaugeSpec, Rosette, build};
 use crate::model::{Model, Vec3};
@@ -152,5 +152,11 @@ pub fn without_strain(job: &Job, missing: &[NoStrain]) -> Faults {
             out.push(fault);
         }
     }
-    out
+    let unknown = Fault::of(
+        &*job.file,
+        "gauge",
+        "a gauge has no strain in some subcase",
+        "ask for STRAIN of every element in every subcase",
+    );
+    Faults::or(out, unknown)
 }

@@ -1,9 +1,9 @@
 //! S from a table that the job names.
 
-use crate::app::work::Work;
-use crate::app::fault::{Fault, Faults};
+use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::table::read_table;
 use crate::app::job::{Job, Role};
+use crate::app::work::Work;
 use crate::linalg::Matrix;
 use crate::sensitivity::{Load, Sensitivity};
 use crate::units::factor;
@@ -23,7 +23,13 @@ pub fn is_moment(name: &str) -> bool {
 /// Missing columns, rows for gauges that the job names and the table lacks, fields that are no numbers.
 pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
     let Some(given) = &job.sensitivity else {
-        return Err(Vec::new());
+        return Err(Fault::of(
+            &*job.file,
+            "sensitivity",
+            "the job has no [sensitivity]",
+            "name the table of S: [sensitivity] file = \"S.csv\"",
+        )
+        .into());
     };
     let text = work
         .inputs
@@ -132,8 +138,8 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
     }
     Faults::check(faults)?;
     Ok(Sensitivity {
-            gauges: order.into_iter().map(|o| o.0).collect(),
-            loads,
-            values,
-        })
+        gauges: order.into_iter().map(|o| o.0).collect(),
+        loads,
+        values,
+    })
 }

@@ -8,13 +8,13 @@ mod units;
 pub use fields::{Fields, read_fields, unit_loads};
 pub use gauges::{lay_gauges, side, spec_of, without_strain};
 pub use given::read_given;
-pub use units::{LoadUnits, load_units};
+pub use units::{LoadSigma, LoadUnits, load_units};
 
-use super::work::Work;
 use super::fault::Faults;
 use super::job::Job;
-use crate::finding::{Finding, Severity};
 use super::outcome::finite;
+use super::work::Work;
+use crate::finding::{Finding, Severity};
 use crate::gauge::Gauge;
 use crate::sensitivity::{Sensitivity, from_cases};
 use serde::Serialize;

@@ -2,14 +2,28 @@
 
 use crate::app::job::Job;
 use crate::units::factor;
+use serde::Serialize;
 
 /// Unit of one load in reports.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadUnits {
     /// Its name; empty for a load set, which is counted in times the set.
     pub name: String,
+    /// Its name in the job's own units.
+    pub of_job: String,
     /// Report value = job value times this.
     pub factor: f64,
+}
+
+/// One standard deviation of a load.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LoadSigma {
+    /// Load.
+    pub name: String,
+    /// One standard deviation, report units.
+    pub sigma: f64,
+    /// Report unit.
+    pub unit: String,
 }
 
 /// Units by load, in job order. A load that only a given S names is a moment where its name says so (`.M`, `_M`, leading `M`).
@@ -20,10 +34,12 @@ pub fn load_units(job: &Job, names: &[String]) -> Vec<LoadUnits> {
             Some(l) => match l.report_unit(&job.report_units) {
                 Some(u) => LoadUnits {
                     name: u.name.to_owned(),
+                    of_job: job.units.unit(u.quantity).name.to_owned(),
                     factor: factor(job.units, u),
                 },
                 None => LoadUnits {
                     name: String::new(),
+                    of_job: String::new(),
                     factor: 1.0,
                 },
             },
@@ -35,6 +51,7 @@ pub fn load_units(job: &Job, names: &[String]) -> Vec<LoadUnits> {
                 };
                 LoadUnits {
                     name: unit.name.to_owned(),
+                    of_job: job.units.unit(unit.quantity).name.to_owned(),
                     factor: factor(job.units, unit),
                 }
             }

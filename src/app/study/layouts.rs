@@ -203,7 +203,13 @@ struct Wide {
 impl Wide {
     fn new(session: &mut Session, job: &Job, prepared: &Prepared) -> Result<Self, Faults> {
         let Some(fields) = &prepared.fields else {
-            return Err(Vec::new());
+            return Err(Fault::of(
+                &*job.file,
+                "model",
+                "the job has no [model]",
+                "name the deck: [model] deck = \"model.bdf\"",
+            )
+            .into());
         };
         let cases = fields.load_cases(job);
         let (common, _) = common_shells(&cases);

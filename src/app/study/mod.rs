@@ -3,7 +3,7 @@
 mod layouts;
 mod pool;
 
-use super::fault::{Fault, Faults};
+use super::fault::{Fault, FaultList, Faults};
 use super::job::runs::read_runs;
 use super::job::{self, Job, Role, Study};
 use super::strain::{LoadUnits, load_units};

@@ -1,7 +1,7 @@
 //! Gauges that a study can choose from, with how their rows change when they are turned or shifted.
 
 use crate::app::Session;
-use crate::app::fault::Faults;
+use crate::app::fault::{Fault, Faults};
 use crate::app::job::{Job, Role, Study};
 use crate::app::strain::{Fields, read_fields, read_given, spec_of};
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
@@ -62,7 +62,7 @@ pub(super) fn prepare(
         let specs = crate::app::strain::lay_gauges(session, job, &fields)?;
         let cases = fields.load_cases(job);
         let s = crate::sensitivity::from_cases(&specs, &cases).map_err(|m| {
-            vec![crate::app::fault::Fault::of(
+            Faults::from(Fault::of(
                 &*job.file,
                 "gauge",
                 m.iter()
@@ -70,7 +70,7 @@ pub(super) fn prepare(
                     .collect::<Vec<_>>()
                     .join("; "),
                 "move the gauge",
-            )]
+            ))
         })?;
         let mut channel = 0;
         for g in &job.gauges {

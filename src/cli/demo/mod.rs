@@ -8,9 +8,12 @@ mod yard;
 use super::DemoArguments;
 use crate::app::context::Context;
 use crate::app::fault::{Fault, Faults};
+use crate::app::job::Job;
+use crate::app::outcome::{Answer, Outcome};
 use crate::app::store::Folder;
 use crate::app::{self, Closed, CommonArguments, JobArguments, Session};
 use crate::fe::HeatedStrain;
+use crate::report::command::{Report, save};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -31,7 +34,9 @@ struct Chapter {
 
 /// Plays the story.
 pub fn run(arguments: &DemoArguments, cx: &Context) -> Result<Closed, Faults> {
-    Session::run("demo", &CommonArguments::default(), cx, |s| story(arguments, s))
+    Session::run("demo", &CommonArguments::default(), cx, |s| {
+        story(arguments, s)
+    })
 }
 
 fn story(arguments: &DemoArguments, session: &mut Session) -> Result<(), Faults> {
@@ -214,14 +219,35 @@ fn play(
     };
     let kept = Folder::beside(job);
     let cx = session.cx.store(&kept);
-    session.stage(command, |_| {
-        Session::run(command, &arguments.common, &cx, |s| match command {
-            "solve" => app::solve::run(&arguments, HeatedStrain::default(), s),
-            "place" => app::place::run(&arguments, s),
-            "recover" => app::recover::run(&arguments, s),
-            "reconcile" => app::reconcile::run(&arguments, s),
-            "payload" => app::payload::run(&arguments, s),
-            _ => app::respond::run(&arguments, s),
-        })
+    let run = |work: fn(&JobArguments, &mut Session) -> Result<(), Faults>| {
+        Session::run(command, &arguments.common, &cx, |s| work(&arguments, s))
+    };
+    session.stage(command, |_| match command {
+        "solve" => run(|a, s| app::solve::run(a, HeatedStrain::default(), s)),
+        "place" => asked(
+            &app::place::place(&Job::read(job, cx.files)?, &cx)?,
+            &folder.join(out),
+        ),
+        "recover" => run(app::recover::run),
+        "reconcile" => run(app::reconcile::run),
+        "payload" => run(app::payload::run),
+        _ => run(app::respond::run),
+    })
+}
+
+/// An outcome written into its folder.
+fn asked<A: Answer>(outcome: &Outcome<A>, folder: &Path) -> Result<Closed, Faults>
+where
+    Outcome<A>: Report,
+{
+    Ok(Closed {
+        json: save(outcome, folder)?,
+        text: outcome.words(),
+        findings: outcome.findings.clone(),
+        notes: outcome.notes.clone(),
+        folder: Some(folder.to_owned()),
+        faults: Vec::new(),
+        result: serde_json::to_value(&outcome.answer).unwrap_or_default(),
+        seconds: outcome.seconds.total(),
     })
 }

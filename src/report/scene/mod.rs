@@ -2,6 +2,7 @@
 
 mod coarse;
 mod drawing;
+mod of_job;
 mod outline;
 mod paint;
 mod skin;
@@ -9,6 +10,10 @@ mod solids;
 mod types;
 
 pub use drawing::{SceneView, scene_section};
+pub use of_job::{
+    Shown, fields_of, mark_of_gap, placed_mark, run_arrows, scene_of, scene_of_job,
+    scene_of_solution,
+};
 pub use types::{Arrow, ArrowSet, Field, Mark, Scene, Twist};
 
 #[cfg(test)]

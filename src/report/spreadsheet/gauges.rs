@@ -1,8 +1,9 @@
 //! The gauge plan: where each gauge goes, what the technician takes along, and what it reads.
 
 use super::book::{Cell, Sheet};
+use crate::app::place::PlacedGauge;
 use crate::model::Model;
-use crate::report::strain::{PlacedGauge, corner_distances};
+use crate::report::strain::corner_distances;
 use crate::sensitivity::Sensitivity;
 
 /// Sheets `Gauges` (basic frame, the model's length unit), `Gluing sheet` and `Sensitivity` (microstrain per job unit of each load).
@@ -46,7 +47,7 @@ fn plan(placed: &[PlacedGauge]) -> Sheet {
             g.direction.y,
             g.direction.z,
             g.angle_rad.to_degrees(),
-            p.angle_seen_deg(),
+            p.angle_seen_deg,
             p.leverage,
             p.expected_microstrain,
         ];
@@ -102,7 +103,7 @@ fn gluing(placed: &[PlacedGauge], model: &Model) -> Sheet {
             outward.x.into(),
             outward.y.into(),
             outward.z.into(),
-            p.angle_seen_deg().into(),
+            p.angle_seen_deg.into(),
             p.expected_microstrain.into(),
             p.angle_budget_deg.unwrap_or(f64::NAN).into(),
             p.position_budget.unwrap_or(f64::NAN).into(),

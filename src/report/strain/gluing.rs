@@ -1,8 +1,10 @@
 //! What the technician takes to the structure, to print: as markdown, and as a part of the plan's report.
 
-use super::tables::{PlacedGauge, Role, corner_distances};
+use super::tables::corner_distances;
+use crate::app::place::PlacedGauge;
 use crate::fe::strain_tensor::Surface;
 use crate::model::{Model, Vec3};
+use crate::placement::Role;
 use crate::report::page::{Block, Section};
 
 const FRAME: &str = "Positions and directions in the basic frame and in the model's units; the side is the one the arrow `outward` leaves.";
@@ -94,7 +96,7 @@ fn row(p: &PlacedGauge) -> Vec<String> {
         from,
         three(g.direction, 3),
         three(outward, 3),
-        format!("{:.1}", p.angle_seen_deg()),
+        format!("{:.1}", p.angle_seen_deg),
         format!("{:.0}", p.expected_microstrain),
         format!("{}{role}", p.bridge),
         budget(p.angle_budget_deg),

@@ -4,6 +4,7 @@ mod fields;
 mod gap_page;
 mod gluing;
 mod pages;
+mod points;
 mod solution;
 mod tables;
 
@@ -11,6 +12,7 @@ pub use fields::strains_page;
 pub use gap_page::{RunStrain, reconcile_page};
 pub use gluing::gluing_sheet_md;
 pub use pages::{HowMany, Recovered, RecoveredRun, place_page, recover_page, sensitivity_page};
+pub use points::gauges_vtu;
 pub use solution::solution_page;
 pub(in crate::report) use tables::corner_distances;
-pub use tables::{PlacedGauge, Role, gauges_csv, gluing_sheet_csv, sensitivity_csv};
+pub use tables::{gauges_csv, gluing_sheet_csv, sensitivity_csv};

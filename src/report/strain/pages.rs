@@ -1,7 +1,7 @@
 //! The pages of `sensitivity`, `place` and `recover`.
 
 use super::gluing::gluing_section;
-use super::tables::PlacedGauge;
+use crate::app::place::PlacedGauge;
 use crate::finding::Finding;
 use crate::report::figure::{
     CountPoint, GaugePoints, IntervalRow, LoadTrace, agreement, curve, heat_map, history, intervals,
@@ -114,7 +114,7 @@ fn placed_row(p: &PlacedGauge) -> Vec<String> {
         format!("{:.1}", x.y),
         format!("{:.1}", x.z),
         format!("{:.1}", p.gauge.angle_rad.to_degrees()),
-        format!("{:.1}", p.angle_seen_deg()),
+        format!("{:.1}", p.angle_seen_deg),
         format!("{:.3}", p.leverage),
         format!("{:.0}", p.expected_microstrain),
     ]

@@ -1,65 +1,12 @@
 //! CSV of gauges and of S.
 
+use crate::app::place::{PlacedGauge, StrainOfLoad};
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::Gauge;
 use crate::model::Model;
 use crate::report::csv_cell;
 use crate::sensitivity::Sensitivity;
 use std::io::{self, Write};
-
-/// What a gauge is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
-    /// Loads are estimated with it.
-    Estimate,
-    /// It is kept from estimating: the others predict it.
-    Validation,
-}
-
-impl Role {
-    /// The word of files and reports.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Estimate => "estimate",
-            Self::Validation => "validation",
-        }
-    }
-}
-
-/// A gauge that placement chose.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PlacedGauge {
-    /// Where it sits.
-    pub gauge: Gauge,
-    /// Its leverage.
-    pub leverage: f64,
-    /// Sum of its strains under the expected loads, microstrain.
-    pub expected_microstrain: f64,
-    /// Nearest reference point, and the way from there, basic frame.
-    pub reference: Option<(String, [f64; 3])>,
-    /// Wiring.
-    pub bridge: &'static str,
-    /// What it is for.
-    pub role: Role,
-    /// The error of its angle, degrees, that moves some load by 5 % of its expected size; `None`: none does.
-    pub angle_budget_deg: Option<f64>,
-    /// The same for its place, model units.
-    pub position_budget: Option<f64>,
-    /// By load, its strain when that load has its expected size, microstrain.
-    pub by_load: Vec<(String, f64)>,
-}
-
-impl PlacedGauge {
-    /// The angle as the technician sees that side: on the bottom it turns the other way.
-    pub fn angle_seen_deg(&self) -> f64 {
-        let deg = self.gauge.angle_rad.to_degrees();
-        match self.gauge.surface {
-            Surface::Top => deg,
-            Surface::Bottom if deg == 90.0 => deg,
-            Surface::Bottom => -deg,
-        }
-    }
-}
 
 /// S in microstrain per job unit: `gauge`, then a column a load.
 ///
@@ -107,7 +54,7 @@ pub fn gauges_csv(out: &mut dyn Write, placed: &[PlacedGauge]) -> io::Result<()>
             x.z,
             p.bridge,
             g.angle_rad.to_degrees(),
-            p.angle_seen_deg(),
+            p.angle_seen_deg,
             p.leverage,
             p.role.word()
         )?;
@@ -145,7 +92,7 @@ pub fn gluing_sheet_csv(
         out,
         "name,element,side,x,y,z,from_grid,dx,dy,dz,axis_x,axis_y,axis_z,outward_x,outward_y,outward_z,angle_seen_deg,expected_microstrain,corner_grids,corner_distances,bridge,role,angle_budget_deg,position_budget"
     )?;
-    for (load, _) in placed.first().map_or(&[][..], |p| &p.by_load) {
+    for StrainOfLoad { name: load, .. } in placed.first().map_or(&[][..], |p| &p.strain_by_load) {
         write!(out, ",{}", csv_cell(&format!("range_{load}_microstrain")))?;
     }
     writeln!(out)?;
@@ -188,7 +135,7 @@ pub fn gluing_sheet_csv(
             outward.x,
             outward.y,
             outward.z,
-            p.angle_seen_deg(),
+            p.angle_seen_deg,
             p.expected_microstrain,
             ids.join(" "),
             far.join(" "),
@@ -197,8 +144,8 @@ pub fn gluing_sheet_csv(
             budget(p.angle_budget_deg),
             budget(p.position_budget)
         )?;
-        for (_, strain) in &p.by_load {
-            write!(out, ",{:.1}", strain.abs())?;
+        for s in &p.strain_by_load {
+            write!(out, ",{:.1}", s.microstrain.abs())?;
         }
         writeln!(out)?;
     }

@@ -4,7 +4,7 @@ use super::super::faults::Collector;
 use super::super::raw::{RawGauge, RawGauges};
 use super::super::spanned::Spanned;
 use super::super::types::*;
-use crate::app::fault::{Fault, Faults};
+use crate::app::fault::{Fault, FaultList};
 
 const SURFACES: [(&str, Surface); 2] = [("top", Surface::Top), ("bottom", Surface::Bottom)];
 const ROSETTES: [(&str, Rosette); 2] = [

@@ -12,7 +12,7 @@ pub(super) use gauge::{check_gauge, point_from, rosette_from, surface_from};
 use super::faults::Collector;
 use super::raw::RawJob;
 use super::types::*;
-use crate::app::fault::{Fault, Faults};
+use crate::app::fault::{Fault, FaultList};
 use std::path::Path;
 
 /// The job, complete but for the gauges of its gauge file; faults are added to the list.

@@ -1,13 +1,15 @@
-//! What commands put into the scene of their report: the job's unit loads as strain and arrows, gauges, recovered loads.
+//! The scene of a job: the job's unit loads as strain and arrows, gauges, recovered loads.
 
-use super::job::{Job, LoadActs};
-use super::strain::{Fields, LoadUnits, Prepared, load_units};
+use super::types::{Arrow, ArrowSet, Field, Mark, Scene, Twist};
+use crate::app::job::{Job, LoadActs};
+use crate::app::place::PlacedGauge;
+use crate::app::strain::{Fields, LoadUnits, Prepared, load_units};
 use crate::fe::{LoadCase, Solution, UnitLoad};
 use crate::model::{GridIx, Load, Model, Vec3};
+use crate::placement::Role;
 use crate::reconcile::ChannelGap;
 use crate::report::page::number;
-use crate::report::scene::{Arrow, ArrowSet, Field, Mark, Scene, Twist};
-use crate::report::strain::{PlacedGauge, RecoveredRun, Role};
+use crate::report::strain::RecoveredRun;
 
 /// Load cases to choose from, and runs.
 const MOST_FIELDS: usize = 24;
@@ -16,7 +18,7 @@ const MOST_RUNS: usize = 100;
 const MOST_OF_SET: usize = 60;
 
 /// The scene of a job with a model: its gauges, its unit loads.
-pub(super) fn scene_of_job<'a>(job: &Job, prepared: &'a Prepared) -> Option<Scene<'a>> {
+pub fn scene_of_job<'a>(job: &Job, prepared: &'a Prepared) -> Option<Scene<'a>> {
     let fields = prepared.fields.as_ref()?;
     let mark = |g| Mark::of(g, String::new());
     Some(scene_of(
@@ -27,7 +29,7 @@ pub(super) fn scene_of_job<'a>(job: &Job, prepared: &'a Prepared) -> Option<Scen
 }
 
 /// The scene of a job's model with these gauges.
-pub(super) fn scene_of<'a>(job: &Job, fields: &'a Fields, marks: Vec<Mark>) -> Scene<'a> {
+pub fn scene_of<'a>(job: &Job, fields: &'a Fields, marks: Vec<Mark>) -> Scene<'a> {
     let model = fields.model();
     let arrows = job.loads.iter().flat_map(|l| match l.acts {
         LoadActs::Set(sid) => arrows_of_set(model, sid),
@@ -63,7 +65,7 @@ fn some(set: ArrowSet) -> Vec<ArrowSet> {
 }
 
 /// Strain per unit load, microstrain per report unit.
-pub(super) fn fields_of<'a>(job: &Job, fields: &'a Fields) -> Vec<Field<'a>> {
+pub fn fields_of<'a>(job: &Job, fields: &'a Fields) -> Vec<Field<'a>> {
     let names: Vec<String> = job.loads.iter().map(|l| l.name.clone()).collect();
     let units: Vec<LoadUnits> = load_units(job, &names);
     fields
@@ -108,7 +110,7 @@ fn placed(job: &Job, model: &Model, name: &str) -> Option<(Vec3, Vec3, Twist)> {
 
 /// What the three numbers of a recovered load are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Shown {
+pub enum Shown {
     /// Lower end of the interval, value, upper end: a set of arrows a run.
     Interval,
     /// Smallest, mean, largest of a history: a set of arrows each.
@@ -116,12 +118,7 @@ pub(super) enum Shown {
 }
 
 /// Recovered loads as arrows.
-pub(super) fn run_arrows(
-    job: &Job,
-    model: &Model,
-    runs: &[RecoveredRun],
-    shown: Shown,
-) -> Vec<ArrowSet> {
+pub fn run_arrows(job: &Job, model: &Model, runs: &[RecoveredRun], shown: Shown) -> Vec<ArrowSet> {
     let set = |name: String, run: &RecoveredRun, k: usize| ArrowSet {
         name,
         arrows: run
@@ -190,7 +187,7 @@ fn arrow_at(model: &Model, grid: GridIx, v: Vec3, twist: Twist) -> Option<Arrow>
 }
 
 /// The scene of a solution: strain and loads of every case, in the deck's units.
-pub(super) fn scene_of_solution<'a>(
+pub fn scene_of_solution<'a>(
     model: &'a Model,
     cases: &[LoadCase],
     solution: &'a Solution,
@@ -229,7 +226,7 @@ pub(super) fn scene_of_solution<'a>(
 }
 
 /// A gauge of a plan.
-pub(super) fn placed_mark(p: &PlacedGauge) -> Mark {
+pub fn placed_mark(p: &PlacedGauge) -> Mark {
     let kept = if p.role == Role::Validation {
         ", for validation"
     } else {
@@ -237,16 +234,13 @@ pub(super) fn placed_mark(p: &PlacedGauge) -> Mark {
     };
     let note = format!(
         "{:.1}° as seen, {}{kept}, leverage {:.3}, {:.0} µε under the expected loads",
-        p.angle_seen_deg(),
-        p.bridge,
-        p.leverage,
-        p.expected_microstrain
+        p.angle_seen_deg, p.bridge, p.leverage, p.expected_microstrain
     );
     Mark::of(&p.gauge, note)
 }
 
 /// A gauge with its gap.
-pub(super) fn mark_of_gap(at: Vec3, gap: &ChannelGap) -> Mark {
+pub fn mark_of_gap(at: Vec3, gap: &ChannelGap) -> Mark {
     Mark {
         name: gap.channel.clone(),
         at,

@@ -1,13 +1,15 @@
 //! `gauges.vtu`.
 
+use crate::app::place::PlacedGauge;
 use crate::gauge::Gauge;
 use crate::model::Vec3;
-use crate::report::strain::PlacedGauge;
 use crate::report::{PointValues, write_points_vtu};
 use std::io::{Result, Write};
 
 /// Gauges as points: axis, outward normal, leverage, expected strain.
-pub(super) fn gauges_vtu(w: &mut dyn Write, placed: &[PlacedGauge]) -> Result<()> {
+/// # Errors
+/// What `w` says.
+pub fn gauges_vtu(w: &mut dyn Write, placed: &[PlacedGauge]) -> Result<()> {
     let three = |v: Vec3| [v.x, v.y, v.z];
     let vectors = |of: &dyn Fn(&Gauge) -> Vec3| {
         PointValues::Vectors(placed.iter().map(|p| three(of(&p.gauge))).collect())

@@ -1,0 +1,202 @@
+//! Files and words of `place`.
+
+use super::{Report, write_book, write_page};
+use crate::app::fault::Faults;
+use crate::app::outcome::Outcome;
+use crate::app::output::Output;
+use crate::app::place::{Installed, InstalledQuality, Placed};
+use crate::placement::Role;
+use crate::report::figure::CountPoint;
+use crate::report::page::{Paper, number};
+use crate::report::scene::{placed_mark, scene_of};
+use crate::report::spreadsheet::gauge_sheets;
+use crate::report::strain::{
+    HowMany, gauges_csv, gauges_vtu, gluing_sheet_csv, gluing_sheet_md, place_page, sensitivity_csv,
+};
+use std::fmt::Write;
+
+impl Report for Outcome<Placed> {
+    fn write(&self, out: &mut Output) -> Result<(), Faults> {
+        let (s, model, job) = (&self.sensitivity, self.fields.model(), &self.job);
+        let length = job.units.unit(crate::units::Quantity::Length).name;
+        out.declare("gauges.csv", GAUGES.map(|(c, u)| (c, unit(u, length))));
+        out.write("gauges.csv", |w| gauges_csv(w, &self.gauges))?;
+        out.declare("sensitivity.csv", super::sensitivity::columns(job, s));
+        out.write("sensitivity.csv", |w| sensitivity_csv(w, s))?;
+        out.declare(
+            "gluing_sheet.csv",
+            GLUING.map(|(c, u)| (c, unit(u, length))),
+        );
+        out.write("gluing_sheet.csv", |w| {
+            gluing_sheet_csv(w, &self.gauges, model)
+        })?;
+        let sheet = gluing_sheet_md(&job.title, &self.gauges, model);
+        out.write_bytes("gluing_sheet.md", sheet.as_bytes())?;
+        out.write("gauges.vtu", |w| gauges_vtu(w, &self.gauges))?;
+        let marks = self.gauges.iter().map(placed_mark).collect();
+        let scene = scene_of(job, &self.fields, marks);
+        let page = place_page(
+            &job.title,
+            &scene,
+            &self.gauges,
+            s,
+            &self.findings,
+            &numbers(self),
+            &how_many(self),
+        );
+        write_page(out, self, page.on_paper(Paper::Signed))?;
+        let sheets = gauge_sheets(&self.gauges, model, s);
+        write_book(out, self, job, "gauges.xlsx", &sheets)
+    }
+
+    fn words(&self) -> String {
+        let mut text = format!(
+            "{} gauges, {} (log det {:.3}), condition number {:.2} scaled\n",
+            self.gauges.len(),
+            if self.proved {
+                "proved the best possible".to_owned()
+            } else {
+                format!(
+                    "at least {:.2} % of the best possible",
+                    100.0 * self.efficiency_bound
+                )
+            },
+            self.log_det,
+            self.sensitivity.condition_number_scaled()
+        );
+        if let Some(d) = installed(self).and_then(|q| q.log_det) {
+            let _ = writeln!(text, "installed gauges: log det {d:.3} with noise alone");
+        }
+        for p in &self.gauges {
+            let bridge = match p.bridge {
+                "quarter" => String::new(),
+                other => format!(", {other}"),
+            };
+            let role = match p.role {
+                Role::Estimate => "",
+                Role::Validation => ", for validation",
+            };
+            let _ = writeln!(
+                text,
+                "  {} element {} {} at {:.1} deg{bridge}{role}",
+                p.name, p.element, p.surface, p.angle_deg
+            );
+        }
+        for p in &self.how_many {
+            let sigma: Vec<String> = p
+                .load_sigma
+                .iter()
+                .map(|s| format!("{} {} {}", s.name, number(s.sigma), s.unit))
+                .collect();
+            let _ = writeln!(
+                text,
+                "{} gauges: {:.2} % of the best, condition {:.2}, after the worst loss {:.0} %; sigma {}",
+                p.gauges,
+                100.0 * p.efficiency_bound,
+                p.condition_number_scaled.unwrap_or(f64::INFINITY),
+                100.0 * p.worst_loss,
+                sigma.join(", ")
+            );
+        }
+        text
+    }
+}
+
+/// Columns of gauges.csv; `L` stands for the job's length.
+const GAUGES: [(&str, &str); 15] = [
+    ("name", ""),
+    ("element", ""),
+    ("surface", ""),
+    ("dir_x", ""),
+    ("dir_y", ""),
+    ("dir_z", ""),
+    ("angle_deg", "deg"),
+    ("x", "L"),
+    ("y", "L"),
+    ("z", "L"),
+    ("bridge", ""),
+    ("angle_from_element_x_deg", "deg"),
+    ("angle_seen_deg", "deg"),
+    ("leverage", ""),
+    ("role", ""),
+];
+
+/// Columns of gluing_sheet.csv with a unit.
+const GLUING: [(&str, &str); 11] = [
+    ("x", "L"),
+    ("y", "L"),
+    ("z", "L"),
+    ("dx", "L"),
+    ("dy", "L"),
+    ("dz", "L"),
+    ("angle_seen_deg", "deg"),
+    ("expected_microstrain", "microstrain"),
+    ("corner_distances", "L"),
+    ("angle_budget_deg", "deg"),
+    ("position_budget", "L"),
+];
+
+fn unit<'a>(word: &'a str, length: &'a str) -> &'a str {
+    if word == "L" { length } else { word }
+}
+
+fn installed(placed: &Placed) -> Option<&InstalledQuality> {
+    let installed: Option<&Installed> = placed.installed.as_ref();
+    installed?.quality.as_ref()
+}
+
+/// Rows of the page's first table.
+fn numbers(placed: &Placed) -> Vec<(String, String)> {
+    let mut out = vec![
+        (
+            "Efficiency, certified at least".to_owned(),
+            if placed.proved {
+                "1, proved the best".to_owned()
+            } else {
+                format!("{:.4}", placed.efficiency_bound)
+            },
+        ),
+        ("log det".to_owned(), format!("{:.4}", placed.log_det)),
+        (
+            "Condition number, scaled".to_owned(),
+            format!("{:.2}", placed.sensitivity.condition_number_scaled()),
+        ),
+    ];
+    let mut row = |name: &str, value: Option<f64>, digits: usize| {
+        out.extend(value.map(|v| (name.to_owned(), format!("{v:.digits$}"))));
+    };
+    row(
+        "Least condition number found, scaled",
+        placed.least_condition_number_scaled,
+        2,
+    );
+    let own = installed(placed);
+    row(
+        "Installed: condition number, scaled",
+        own.and_then(|q| q.condition_number_scaled),
+        2,
+    );
+    row(
+        "Installed: log det (noise alone)",
+        own.and_then(|q| q.log_det),
+        4,
+    );
+    out
+}
+
+fn how_many(placed: &Placed) -> HowMany {
+    let point = |p: &crate::app::place::CurvePoint| CountPoint {
+        gauges: p.gauges,
+        efficiency: p.efficiency_bound,
+        after_loss: p.worst_loss,
+        sigma: p.load_sigma.iter().map(|s| s.sigma).collect(),
+    };
+    let loads = placed.how_many.first().map_or(&[][..], |p| &p.load_sigma);
+    HowMany {
+        points: placed.how_many.iter().map(point).collect(),
+        loads: loads
+            .iter()
+            .map(|s| (s.name.clone(), s.unit.clone()))
+            .collect(),
+    }
+}

@@ -1,0 +1,51 @@
+//! Files and words of `sensitivity`.
+
+use super::{Report, write_page};
+use crate::app::fault::Faults;
+use crate::app::job::Job;
+use crate::app::outcome::Outcome;
+use crate::app::output::Output;
+use crate::app::sensitivity::Sensed;
+use crate::app::strain::load_units;
+use crate::report::scene::scene_of_job;
+use crate::report::strain::{sensitivity_csv, sensitivity_page};
+use crate::sensitivity::Sensitivity;
+
+impl Report for Outcome<Sensed> {
+    fn write(&self, out: &mut Output) -> Result<(), Faults> {
+        let s = &self.prepared.sensitivity;
+        out.declare("sensitivity.csv", columns(&self.job, s));
+        out.write("sensitivity.csv", |w| sensitivity_csv(w, s))?;
+        let scene = scene_of_job(&self.job, &self.prepared);
+        let page = sensitivity_page(&self.job.title, s, scene.as_ref(), &self.findings);
+        write_page(out, self, page)
+    }
+
+    fn words(&self) -> String {
+        let s = &self.prepared.sensitivity;
+        format!(
+            "S: {} gauges x {} loads, rank {}, condition number {:.4} in job units, {:.4} scaled\n",
+            s.gauges.len(),
+            s.loads.len(),
+            s.rank(),
+            s.condition_number(),
+            s.condition_number_scaled()
+        )
+    }
+}
+
+/// Columns of sensitivity.csv with their units: microstrain per job unit of the load.
+pub(super) fn columns(job: &Job, s: &Sensitivity) -> Vec<(String, String)> {
+    let names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
+    let units = load_units(job, &names).into_iter().map(|u| {
+        if u.of_job.is_empty() {
+            "microstrain".to_owned()
+        } else {
+            format!("microstrain/({})", u.of_job)
+        }
+    });
+    let gauge = ("gauge".to_owned(), String::new());
+    std::iter::once(gauge)
+        .chain(names.iter().cloned().zip(units))
+        .collect()
+}
