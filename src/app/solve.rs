@@ -1,23 +1,76 @@
 //! `solve`: the built-in solver on a job's unit loads or on a deck's own static subcases.
 
+use super::context::Context;
 use super::deck::{DeckModel, read_model};
 use super::fault::{Fault, Faults};
+use super::job::Job;
+use super::outcome::{Answer, Outcome, StatedUnits};
 use super::solved::{cases_of_job, solve_kept};
-use super::{JobArguments, Session, job};
+use super::work::Work;
 use crate::fe::{
-    Corners, HeatedStrain, LoadCase, Solution, SolveOptions, SolveReport, loads_of_subcase,
-    relief_of,
+    Balance, Corners, HeatedStrain, LoadCase, Solution, SolveOptions, SolveReport,
+    loads_of_subcase, relief_of,
 };
 use crate::finding::{Finding, Severity};
+use crate::linalg::sparse::OrderingMethod;
 use crate::model::{Model, Shell};
-use crate::report::scene::scene_of_solution;
-use crate::report::{PlannedBlock, planned_blocks, rows_of_block, write_vtu};
 use nastran::bdf::Request;
 use nastran::cards::ShellShape;
-use nastran::op2::{EncodedBlock, Op2Writer, WriteError};
-use rayon::prelude::*;
-use serde_json::json;
+use serde::Serialize;
 use std::path::{Path, PathBuf};
+
+/// Load cases solved by the built-in solver.
+#[derive(Serialize)]
+pub struct SolvedCases {
+    /// Grids of the model.
+    pub grids: usize,
+    /// Unknowns.
+    pub dofs: usize,
+    /// Entries of the factor.
+    pub factor_nonzeros: usize,
+    /// How the unknowns were ordered.
+    pub ordering: Option<OrderingMethod>,
+    /// Smallest pivot over the largest entry of its row.
+    pub smallest_pivot: f64,
+    /// Nastran's epsilon of the worst case before and after refinement: |u'(f - K u)| / |u'f|.
+    pub epsilon: [f64; 2],
+    /// By load case: what acts, what inertia takes, what is left.
+    pub balance: Vec<Balance>,
+    /// Mass and its centre.
+    pub mass: Option<MassAndCentre>,
+    /// First elastic frequencies, per unit of time.
+    pub elastic_modes_hz: Vec<f64>,
+    /// Largest resident memory of the process so far, bytes; `None` where the system does not tell.
+    pub peak_memory_bytes: Option<u64>,
+    /// Title of the report.
+    #[serde(skip)]
+    pub title: String,
+    /// The deck's model.
+    #[serde(skip)]
+    pub deck: DeckModel,
+    /// What was solved.
+    #[serde(skip)]
+    pub cases: Vec<LoadCase>,
+    /// Displacements and strain.
+    #[serde(skip)]
+    pub solution: Solution,
+    /// What the solver said.
+    #[serde(skip)]
+    pub report: SolveReport,
+}
+
+/// Mass and its centre, basic frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MassAndCentre {
+    /// Mass, the deck's units.
+    pub mass: f64,
+    /// Centre.
+    pub cg: [f64; 3],
+}
+
+impl Answer for SolvedCases {
+    const COMMAND: &'static str = "solve";
+}
 
 /// What is to be solved.
 struct Task {
@@ -29,23 +82,47 @@ struct Task {
     left_out: Vec<String>,
 }
 
-/// Reads the job or deck, solves, writes `results.op2`, `results.vtu` and the report.
-pub fn run(
-    arguments: &JobArguments,
+/// The unit loads of a job, solved by the built-in solver.
+///
+/// # Errors
+/// Every fault of the job and its deck; what stops the solver.
+pub fn solve(
+    job: &Job,
     heated: HeatedStrain,
-    session: &mut Session,
-) -> Result<(), Faults> {
-    let is_job = arguments
-        .job
-        .extension()
-        .is_some_and(|e| e.eq_ignore_ascii_case("toml"));
-    let task = session.stage("read", |s| {
-        if is_job {
-            of_job(s, &arguments.job)
-        } else {
-            of_deck(s, &arguments.job)
-        }
-    })?;
+    cx: &Context,
+) -> Result<Outcome<SolvedCases>, Faults> {
+    let mut work = Work::of_job(cx, job);
+    let task = work.stage("read", |w| of_job(w, job))?;
+    let answer = solved(&mut work, task, heated, title_of(Path::new(&job.file)))?;
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// The static subcases of a deck, solved by the built-in solver.
+///
+/// # Errors
+/// Every fault of the deck; what stops the solver.
+pub fn solve_deck(
+    path: &Path,
+    heated: HeatedStrain,
+    cx: &Context,
+) -> Result<Outcome<SolvedCases>, Faults> {
+    let mut work = Work::new(cx);
+    let task = work.stage("read", |w| of_deck(w, path))?;
+    let answer = solved(&mut work, task, heated, title_of(path))?;
+    Ok(work.finish(StatedUnits::default(), answer))
+}
+
+fn title_of(path: &Path) -> String {
+    let stem = path.file_stem();
+    stem.map_or_else(String::new, |s| s.to_string_lossy().into_owned())
+}
+
+fn solved(
+    work: &mut Work,
+    task: Task,
+    heated: HeatedStrain,
+    title: String,
+) -> Result<SolvedCases, Faults> {
     let Task {
         read,
         cases,
@@ -58,7 +135,7 @@ pub fn run(
         ..SolveOptions::default()
     };
     for why in left_out {
-        session.findings.push(Finding::new(
+        work.findings.push(Finding::new(
             Severity::Warning,
             "subcase-left-out",
             read.given.clone(),
@@ -66,29 +143,44 @@ pub fn run(
             "solve it with Nastran",
         ));
     }
-    let (solution, report) = solve_kept(session, &read, &cases, options)?;
-    session.findings.extend(solution.findings.iter().cloned());
-    session.stage("write", |s| {
-        write(s, &arguments.job, &read.model, &cases, &solution, &report)
+    let (solution, report) = solve_kept(work, &read, &cases, options)?;
+    work.findings.extend(solution.findings.iter().cloned());
+    Ok(SolvedCases {
+        grids: report.grids,
+        dofs: report.dofs,
+        factor_nonzeros: report.factor_nonzeros,
+        ordering: report.ordering,
+        smallest_pivot: report.smallest_pivot,
+        epsilon: report.epsilon,
+        balance: report.balance.clone(),
+        mass: report.mass.map(|m| MassAndCentre {
+            mass: m.mass,
+            cg: [m.cg.x, m.cg.y, m.cg.z],
+        }),
+        elastic_modes_hz: report.modes.clone(),
+        peak_memory_bytes: peak_memory(),
+        title,
+        deck: read,
+        cases,
+        solution,
+        report,
     })
 }
 
-fn of_job(session: &mut Session, path: &Path) -> Result<Task, Faults> {
-    let job = job::read_job(&mut session.inputs, path)?;
-    session.put_units(job.units, &job.report_units);
+fn of_job(work: &mut Work, job: &Job) -> Result<Task, Faults> {
     let Some(files) = &job.model else {
-        return Err(Faults::from(Fault::of(
+        return Err(Fault::of(
             &*job.file,
             "model",
             "the job has no [model]",
             "name the deck: [model] deck = \"model.bdf\"",
-        )));
+        )
+        .into());
     };
-    let read =
-        read_model(&mut session.inputs, &job.folder, &files.deck.given).map_err(Faults::from)?;
-    session.findings.extend(read.findings.iter().cloned());
+    let read = read_model(&mut work.inputs, &job.folder, &files.deck.given)?;
+    work.findings.extend(read.findings.iter().cloned());
     Faults::check(read.faults.clone())?;
-    let cases = cases_of_job(&job, &read)?;
+    let cases = cases_of_job(job, &read)?;
     Ok(Task {
         read,
         cases,
@@ -97,11 +189,11 @@ fn of_job(session: &mut Session, path: &Path) -> Result<Task, Faults> {
     })
 }
 
-fn of_deck(session: &mut Session, path: &Path) -> Result<Task, Faults> {
+fn of_deck(work: &mut Work, path: &Path) -> Result<Task, Faults> {
     let given = path.display().to_string();
     let base = PathBuf::new();
-    let read = read_model(&mut session.inputs, &base, &given).map_err(Faults::from)?;
-    session.findings.extend(read.findings.iter().cloned());
+    let read = read_model(&mut work.inputs, &base, &given)?;
+    work.findings.extend(read.findings.iter().cloned());
     Faults::check(read.faults.clone())?;
     let mut left_out = Vec::new();
     let mut cases = Vec::new();
@@ -165,82 +257,6 @@ fn has_enforced(model: &Model, spc: Option<u32>) -> bool {
         .spcs
         .iter()
         .any(|s| Some(s.sid) == spc && s.terms.iter().any(|t| t.2 != 0.0))
-}
-
-fn write(
-    session: &mut Session,
-    input: &Path,
-    model: &Model,
-    cases: &[LoadCase],
-    solution: &Solution,
-    report: &SolveReport,
-) -> Result<(), Faults> {
-    session.put("grids", report.grids)?;
-    session.put("dofs", report.dofs)?;
-    session.put("factor_nonzeros", report.factor_nonzeros)?;
-    session.put("ordering", report.ordering)?;
-    session.put("smallest_pivot", report.smallest_pivot)?;
-    session.put("epsilon", report.epsilon)?;
-    session.put("balance", &report.balance)?;
-    session.put(
-        "mass",
-        report
-            .mass
-            .map(|m| json!({ "mass": m.mass, "cg": [m.cg.x, m.cg.y, m.cg.z] })),
-    )?;
-    session.put("elastic_modes_hz", &report.modes)?;
-    session.say(format!(
-        "{} load cases on {} grids, {} unknowns; factor of {} entries",
-        solution.cases.len(),
-        report.grids,
-        report.dofs,
-        report.factor_nonzeros
-    ));
-    if let Some(first) = report.modes.first() {
-        session.say(format!(
-            "first elastic mode of the free structure: {first:.4} per unit of time"
-        ));
-    }
-    let out = session.output_for(input)?;
-    let plan = planned_blocks(model, solution);
-    out.write_both(
-        ("results.op2", |w| write_op2(model, solution, &plan, w)),
-        ("results.vtu", |w| write_vtu(model, &solution.cases, w)),
-    )
-    .map_err(Faults::from)?;
-    let title = input
-        .file_stem()
-        .map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    session.put("peak_memory_bytes", peak_memory())?;
-    let scene = scene_of_solution(model, cases, solution);
-    let page =
-        crate::report::strain::solution_page(&title, solution, report, &scene, &session.findings);
-    session.write_page(input, page)
-}
-
-/// Blocks are made into words in parallel, a few at a time.
-fn write_op2(
-    model: &Model,
-    solution: &Solution,
-    plan: &[PlannedBlock],
-    out: &mut dyn std::io::Write,
-) -> std::io::Result<()> {
-    let encode = |group: &[PlannedBlock]| -> Result<Vec<EncodedBlock>, WriteError> {
-        group
-            .par_iter()
-            .map(|p| {
-                let (block, rows) = rows_of_block(model, solution, *p);
-                EncodedBlock::new(&block, &rows)
-            })
-            .collect()
-    };
-    let mut op2 = Op2Writer::new(out, [1, 1, 2000]).map_err(std::io::Error::other)?;
-    for group in plan.chunks(rayon::current_num_threads().clamp(1, 4)) {
-        for block in encode(group).map_err(std::io::Error::other)? {
-            op2.write_encoded(&block).map_err(std::io::Error::other)?;
-        }
-    }
-    op2.finish().map(|_| ()).map_err(std::io::Error::other)
 }
 
 /// Largest resident memory of this process so far, bytes; `None` where the system does not tell.

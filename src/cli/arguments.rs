@@ -158,6 +158,12 @@ pub struct SolveArguments {
 }
 
 impl SolveArguments {
+    /// Whether it is a job that is to be solved, not a deck.
+    pub(super) fn is_job(&self) -> bool {
+        let extension = self.job.job.extension();
+        extension.is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+    }
+
     /// Which strain is written.
     pub fn heated(&self) -> HeatedStrain {
         if self.total_strain {

@@ -25,7 +25,8 @@ pub fn run(arguments: Arguments) -> ExitCode {
             .session(|cx| Session::run(command, &job.common, cx, |s| work(&job, s)))
     };
     match arguments.command {
-        Command::Strains(a) => on_deck("strains", &a, app::strains::run),
+        Command::Strains(a) => Run::of(&a.common, &a.deck)
+            .files(&a.deck, |cx| app::strains::strains(&a.deck, &a.results, cx)),
         Command::Check(a) => {
             let files = app::FilesArguments {
                 files: a.files.clone(),
@@ -37,7 +38,7 @@ pub fn run(arguments: Arguments) -> ExitCode {
             })
         }
         Command::Init(a) => on_deck("init", &a, app::init::run),
-        Command::Cases(a) => on_job("cases", &a, app::cases::run),
+        Command::Cases(a) => Run::of(&a.common, &a.job).job(&a.job, app::cases::cases),
         Command::Place(a) => Run::of(&a.common, &a.job).job(&a.job, app::place::place),
         Command::Recover(a) => on_job("recover", &a, app::recover::run),
         Command::Sensitivity(a) => {
@@ -51,16 +52,13 @@ pub fn run(arguments: Arguments) -> ExitCode {
             Run::of(&a.common, demo::DECK_NAME.as_ref()).session(|cx| demo::run(&a, cx))
         }
         Command::Solve(a) => {
-            let heated = a.heated();
-            let job = app::JobArguments {
-                job: a.job.job.clone(),
-                common: a.job.common.to_app(),
-            };
-            Run::of(&a.job.common, &a.job.job).session(|cx| {
-                Session::run("solve", &job.common, cx, |s| {
-                    app::solve::run(&job, heated, s)
-                })
-            })
+            let (run, heated) = (Run::of(&a.job.common, &a.job.job), a.heated());
+            if a.is_job() {
+                run.job(&a.job.job, |job, cx| app::solve::solve(job, heated, cx))
+            } else {
+                let deck = &a.job.job;
+                run.files(deck, |cx| app::solve::solve_deck(deck, heated, cx))
+            }
         }
         Command::Reconcile(a) => on_job("reconcile", &a, app::reconcile::run),
         Command::Identify(a) => on_job("identify", &a, app::identify::run),

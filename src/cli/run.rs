@@ -71,13 +71,23 @@ impl Run {
         A: Answer + Send,
         Outcome<A>: Report,
     {
-        let folder = self
-            .common
-            .out
-            .clone()
-            .unwrap_or_else(|| default_folder(path));
+        self.files(path, |cx| ask(&Job::read(path, cx.files)?, cx))
+    }
+
+    /// Asks a question of files, writes the outcome into `--out`, else `<name>.out` beside the first of them.
+    pub fn files<A>(
+        &self,
+        first: &Path,
+        ask: impl FnOnce(&Context) -> Result<Outcome<A>, Faults> + Send,
+    ) -> ExitCode
+    where
+        A: Answer + Send,
+        Outcome<A>: Report,
+    {
+        let folder = self.common.out.clone();
+        let folder = folder.unwrap_or_else(|| default_folder(first));
         let done = self.pooled(|cx| {
-            let outcome = ask(&Job::read(path, cx.files)?, cx)?;
+            let outcome = ask(cx)?;
             let json = save(&outcome, &folder)?;
             Ok((outcome, json))
         });

@@ -50,6 +50,31 @@ pub fn n_elements(case: &CaseResult) -> usize {
     case.shells.elements.len() + case.beams.elements.len()
 }
 
+/// Number of rows that [`each_row`] gives for a whole case.
+pub fn n_rows(model: &Model, case: &CaseResult) -> usize {
+    let known = |strain: &[PlaneStrain; 2]| !strain.iter().flatten().all(|v| v.is_nan());
+    let shells = case.shells.elements.iter().enumerate().map(|(i, ix)| {
+        let Some(shell) = model.shells.get(ix.us()) else {
+            return 0;
+        };
+        let centre = case.shells.centre.get(i).is_some_and(known);
+        let corners = case.shells.corners.get(i).map_or(0, |corners| {
+            let corners = corners.iter().zip(&shell.grids);
+            let corners = corners.take(shell.shape.n_corners());
+            corners
+                .filter(|(strain, g)| known(strain) && model.grids.get(g.us()).is_some())
+                .count()
+        });
+        2 * (usize::from(centre) + corners)
+    });
+    let beams = case.beams.elements.iter().zip(&case.beams.stations);
+    let beams = beams.map(|(ix, stations)| match model.beams.get(ix.us()) {
+        Some(_) => stations.iter().map(|(_, points)| points.len()).sum(),
+        None => 0,
+    });
+    shells.sum::<usize>() + beams.sum::<usize>()
+}
+
 /// Calls `each` with the rows of elements `range` of a case, numbered as [`n_elements`] counts.
 ///
 /// Order: shells by id, then bars by id; a shell's centre, then its corners G1 to G4, bottom before top; a bar's stations from A to B,

@@ -4,13 +4,16 @@ mod includes;
 
 pub(in crate::app) use includes::{from_folder, relocated};
 
+use super::context::Context;
 use super::deck::read_model;
 use super::fault::{Fault, Faults};
-use super::job::{self, Job, LoadActs};
-use super::{JobArguments, Session};
+use super::job::{Job, LoadActs};
+use super::outcome::{Answer, Outcome, StatedUnits};
+use super::work::Work;
 use crate::finding::{Finding, Severity};
 use nastran::bdf::{Deck, Edits, Field, format_card, write_edited};
 use nastran::cards::Force;
+use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -40,10 +43,43 @@ const UNWANTED: [&str; 22] = [
     "NLSTEP",
 ];
 
-/// Writes `unit_loads.bdf`.
-pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
-    let job = session.stage("read job", |s| job::read_job(&mut s.inputs, &arguments.job))?;
-    session.put_units(job.units, &job.report_units);
+/// A deck with one unit-load subcase a load.
+#[derive(Serialize)]
+pub struct UnitLoadDeck {
+    /// By load: its subcase and what acts.
+    pub subcases: Vec<Value>,
+    /// The deck and the edits that make it.
+    #[serde(skip)]
+    pub edited: EditedDeck,
+    /// Title of the job.
+    #[serde(skip)]
+    pub title: String,
+}
+
+impl Answer for UnitLoadDeck {
+    const COMMAND: &'static str = "cases";
+}
+
+/// A deck as read, and the files of its edited form.
+pub struct EditedDeck {
+    deck: Deck,
+    edits: Edits,
+}
+
+impl EditedDeck {
+    /// Name and bytes of every file of the edited deck, its INCLUDEs as they are found from `folder`; the first is `unit_loads.bdf`.
+    pub fn files(&self, folder: &Path) -> Vec<(String, Vec<u8>)> {
+        let edited = write_edited(&self.deck, &self.edits);
+        includes::relocated(&self.deck, edited, folder, "unit_loads")
+    }
+}
+
+/// The job's deck with one unit-load subcase a load, ready for Nastran.
+///
+/// # Errors
+/// Every fault of the job and its deck; entries that can't be edited.
+pub fn cases(job: &Job, cx: &Context) -> Result<Outcome<UnitLoadDeck>, Faults> {
+    let mut work = Work::of_job(cx, job);
     let fault = |field: &str, wrong: &str, remedy: &str| {
         Faults::from(Fault::of(&*job.file, field, wrong, remedy))
     };
@@ -61,11 +97,9 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
             "name the loads, one [[load]] each",
         ));
     }
-    let read = session
-        .stage("read deck", |s| {
-            read_model(&mut s.inputs, &job.folder, &files.deck.given)
-        })
-        .map_err(Faults::from)?;
+    let read = work.stage("read deck", |s| {
+        read_model(&mut s.inputs, &job.folder, &files.deck.given)
+    })?;
     Faults::check(read.faults)?;
     if read.deck.sources.is_empty() {
         return Err(fault(
@@ -74,7 +108,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
             "name the deck",
         ));
     }
-    let mut faults = super::strain::unit_loads(&job, &read.model)
+    let mut faults = super::strain::unit_loads(job, &read.model)
         .err()
         .map_or_else(Vec::new, Faults::into_list);
     for l in &job.loads {
@@ -92,24 +126,16 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         }
     }
     Faults::check(faults)?;
-    let (edits, rows) = edits_of(session, &job, &read.deck)?;
-    session.put("subcases", rows)?;
-    let edited = write_edited(&read.deck, &edits);
-    let folder = session.output_for(&arguments.job)?.folder().to_owned();
-    let files = includes::relocated(&read.deck, edited, &folder, "unit_loads");
-    session.say(format!("unit_loads.bdf: {} subcases", job.loads.len()));
-    let out = session.output_for(&arguments.job)?;
-    for (name, bytes) in files {
-        out.write_bytes(&name, &bytes).map_err(Faults::from)?;
-    }
-    let title = &job.title;
-    let page = crate::report::page::Page::new(
-        title,
-        "Unit-load deck: run unit_loads.bdf, then name its OP2 as [model] results",
-        &session.findings,
-        Vec::new(),
-    );
-    session.write_page(Path::new(&arguments.job), page)
+    let (edits, subcases) = edits_of(&mut work, job, &read.deck)?;
+    let answer = UnitLoadDeck {
+        subcases,
+        edited: EditedDeck {
+            deck: read.deck,
+            edits,
+        },
+        title: job.title.clone(),
+    };
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
 /// Ids of all load sets.
@@ -151,7 +177,7 @@ pub(in crate::app) fn dynamic_ids(deck: &Deck) -> Vec<u32> {
     of_kind.filter_map(|c| c.first).collect()
 }
 
-fn edits_of(session: &mut Session, job: &Job, deck: &Deck) -> Result<(Edits, Vec<Value>), Faults> {
+fn edits_of(work: &mut Work, job: &Job, deck: &Deck) -> Result<(Edits, Vec<Value>), Faults> {
     let mut edits = Edits::default();
     edits.remove_subcases(deck);
     edits.remove_case_lines(deck, |l| {
@@ -186,7 +212,7 @@ fn edits_of(session: &mut Session, job: &Job, deck: &Deck) -> Result<(Edits, Vec
         dropped += 1;
     }
     if dropped > 0 {
-        session.findings.push(Finding::new(
+        work.findings.push(Finding::new(
             Severity::Info,
             "suport-dropped",
             "SUPORT",
@@ -211,7 +237,7 @@ fn edits_of(session: &mut Session, job: &Job, deck: &Deck) -> Result<(Edits, Vec
         case.push_str(&format!("MPC = {mpc}\n"));
     }
     if kept.len() > 1 {
-        session.findings.push(Finding::new(
+        work.findings.push(Finding::new(
             Severity::Warning,
             "several-mpc-sets",
             "MPC",

@@ -223,7 +223,10 @@ fn play(
         Session::run(command, &arguments.common, &cx, |s| work(&arguments, s))
     };
     session.stage(command, |_| match command {
-        "solve" => run(|a, s| app::solve::run(a, HeatedStrain::default(), s)),
+        "solve" => asked(
+            &app::solve::solve(&Job::read(job, cx.files)?, HeatedStrain::default(), &cx)?,
+            &folder.join(out),
+        ),
         "place" => asked(
             &app::place::place(&Job::read(job, cx.files)?, &cx)?,
             &folder.join(out),

@@ -1,8 +1,11 @@
 //! What each command writes and says of its outcome: one file a command.
 
+mod cases;
 mod pages;
 mod place;
 mod sensitivity;
+mod solve;
+mod strains;
 
 pub use pages::{write_book, write_page};
 

@@ -1,0 +1,32 @@
+//! Files and words of `cases`.
+
+use super::{Report, write_page};
+use crate::app::cases::UnitLoadDeck;
+use crate::app::fault::Faults;
+use crate::app::outcome::Outcome;
+use crate::app::output::Output;
+use crate::report::page::Page;
+
+impl Report for Outcome<UnitLoadDeck> {
+    fn write(&self, out: &mut Output) -> Result<(), Faults> {
+        let folder = out.folder().to_owned();
+        for (name, bytes) in self.edited.files(&folder) {
+            out.write_bytes(&name, &bytes)?;
+        }
+        let page = Page::new(
+            &self.title,
+            "Unit-load deck: run unit_loads.bdf, then name its OP2 as [model] results",
+            &self.findings,
+            Vec::new(),
+        );
+        write_page(out, self, page)
+    }
+
+    fn words(&self) -> String {
+        let n = self.subcases.len();
+        format!(
+            "unit_loads.bdf: {n} subcase{}\n",
+            if n == 1 { "" } else { "s" }
+        )
+    }
+}

@@ -1,0 +1,70 @@
+//! Files and words of `solve`.
+
+use super::{Report, write_page};
+use crate::app::fault::Faults;
+use crate::app::outcome::Outcome;
+use crate::app::output::Output;
+use crate::app::solve::SolvedCases;
+use crate::fe::Solution;
+use crate::model::Model;
+use crate::report::scene::scene_of_solution;
+use crate::report::strain::solution_page;
+use crate::report::{PlannedBlock, planned_blocks, rows_of_block, write_vtu};
+use nastran::op2::{EncodedBlock, Op2Writer, WriteError};
+use rayon::prelude::*;
+
+impl Report for Outcome<SolvedCases> {
+    fn write(&self, out: &mut Output) -> Result<(), Faults> {
+        let (model, solution) = (&self.deck.model, &self.solution);
+        let plan = planned_blocks(model, solution);
+        out.write_both(
+            ("results.op2", |w| write_op2(model, solution, &plan, w)),
+            ("results.vtu", |w| write_vtu(model, &solution.cases, w)),
+        )?;
+        let scene = scene_of_solution(model, &self.cases, solution);
+        let page = solution_page(&self.title, solution, &self.report, &scene, &self.findings);
+        write_page(out, self, page)
+    }
+
+    fn words(&self) -> String {
+        let n = self.solution.cases.len();
+        let mut text = format!(
+            "{n} load case{} on {} grids, {} unknowns; factor of {} entries\n",
+            if n == 1 { "" } else { "s" },
+            self.grids,
+            self.dofs,
+            self.factor_nonzeros
+        );
+        if let Some(first) = self.elastic_modes_hz.first() {
+            text.push_str(&format!(
+                "first elastic mode of the free structure: {first:.4} per unit of time\n"
+            ));
+        }
+        text
+    }
+}
+
+/// Blocks are made into words in parallel, a few at a time.
+fn write_op2(
+    model: &Model,
+    solution: &Solution,
+    plan: &[PlannedBlock],
+    out: &mut dyn std::io::Write,
+) -> std::io::Result<()> {
+    let encode = |group: &[PlannedBlock]| -> Result<Vec<EncodedBlock>, WriteError> {
+        group
+            .par_iter()
+            .map(|p| {
+                let (block, rows) = rows_of_block(model, solution, *p);
+                EncodedBlock::new(&block, &rows)
+            })
+            .collect()
+    };
+    let mut op2 = Op2Writer::new(out, [1, 1, 2000]).map_err(std::io::Error::other)?;
+    for group in plan.chunks(rayon::current_num_threads().clamp(1, 4)) {
+        for block in encode(group).map_err(std::io::Error::other)? {
+            op2.write_encoded(&block).map_err(std::io::Error::other)?;
+        }
+    }
+    op2.finish().map(|_| ()).map_err(std::io::Error::other)
+}

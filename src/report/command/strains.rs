@@ -1,0 +1,30 @@
+//! Files and words of `strains`.
+
+use super::{Report, write_page};
+use crate::app::fault::Faults;
+use crate::app::outcome::Outcome;
+use crate::app::output::Output;
+use crate::app::strains::Strains;
+use crate::report::strain::strains_page;
+use crate::report::write_strains;
+
+impl Report for Outcome<Strains> {
+    fn write(&self, out: &mut Output) -> Result<(), Faults> {
+        out.write("strains.csv", |mut w| {
+            write_strains(&self.model, &self.solution, &mut w).map(|_| ())
+        })?;
+        let title = format!("Strain of {}", self.given);
+        let page = strains_page(&title, &self.model, &self.solution, &self.findings);
+        write_page(out, self, page)
+    }
+
+    fn words(&self) -> String {
+        format!(
+            "{} rows of strain in {} static subcase{}, from {}\n",
+            self.rows,
+            self.subcases,
+            if self.subcases == 1 { "" } else { "s" },
+            self.solution.source
+        )
+    }
+}
