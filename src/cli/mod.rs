@@ -44,10 +44,10 @@ pub fn run(arguments: Arguments) -> ExitCode {
         Command::Sensitivity(a) => {
             Run::of(&a.common, &a.job).job(&a.job, app::sensitivity::sensitivity)
         }
-        Command::Ballast(a) => on_job("ballast", &a, app::ballast::run),
+        Command::Ballast(a) => Run::of(&a.common, &a.job).job(&a.job, app::ballast::ballast),
         Command::Payload(a) => on_job("payload", &a, app::payload::run),
         Command::Respond(a) => on_job("respond", &a, app::respond::run),
-        Command::Study(a) => on_job("study", &a, app::study::run),
+        Command::Study(a) => Run::of(&a.common, &a.job).job(&a.job, app::study::study),
         Command::Demo(a) => {
             Run::of(&a.common, demo::DECK_NAME.as_ref()).session(|cx| demo::run(&a, cx))
         }

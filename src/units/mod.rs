@@ -2,6 +2,7 @@
 //!
 //! Inside, a model keeps the units of its deck; a number is converted once on reading and once in a report.
 
+mod number;
 mod plausible;
 mod system;
 mod unit;
@@ -9,6 +10,7 @@ mod unit;
 #[cfg(test)]
 mod tests;
 
+pub use number::number;
 pub use plausible::*;
 pub use system::*;
 pub use unit::*;

@@ -1,10 +1,10 @@
 //! The completed deck: cards of the masses, and its reactions solved anew.
 
 use super::{DECK, Task};
-use crate::app::Session;
 use crate::app::deck::model_of_deck;
 use crate::app::fault::{Fault, Faults};
 use crate::app::wheels::floor_fault;
+use crate::app::work::Work;
 use crate::fe::floor::solve_standing;
 use crate::model::GridIx;
 use crate::payload::{BallastFit, Carriers};
@@ -87,7 +87,7 @@ pub(super) fn cards(
 
 /// Reactions of the completed deck, read back and solved anew.
 pub(super) fn after(
-    session: &mut Session,
+    work: &mut Work,
     task: &Task,
     edited: &[(String, Vec<u8>)],
 ) -> Result<Vec<f64>, Faults> {
@@ -103,12 +103,7 @@ pub(super) fn after(
         .first()
         .map(|f| f.1.clone())
         .ok_or_else(|| program("no file".into()))?;
-    let completed = model_of_deck(
-        &mut session.inputs,
-        &task.job.folder,
-        &task.read.given,
-        &bytes,
-    );
+    let completed = model_of_deck(&mut work.inputs, &task.job.folder, &task.read.given, &bytes);
     if let Some(f) = completed.faults.first() {
         return Err(program(f.to_string()));
     }

@@ -3,24 +3,41 @@
 mod answer;
 mod completed;
 
+pub use answer::{Ballasted, HungMass, Reaction, Together};
+
+use super::context::Context;
 use super::deck::{DeckModel, read_model};
 use super::fault::{Fault, FaultList, Faults};
 use super::job::runs::read_runs;
-use super::job::{self, Ballast, Job};
+use super::job::{Ballast, Job};
+use super::outcome::{Outcome, StatedUnits};
 use super::wheels::{Wheels, floor_fault, wheels_of};
-use super::{JobArguments, Session};
+use super::work::Work;
 use crate::fe::floor::{Standing, solve_standing};
 use crate::finding::{Finding, Severity};
 use crate::model::{GridIx, Vec3};
 use crate::payload::{BallastSpec, Carriers, size_ballast, spread};
-use crate::report::page::number;
-use crate::units::{Quantity, factor};
-use nastran::bdf::{Edits, write_edited};
+use crate::units::{Quantity, factor, number};
+use nastran::bdf::{Deck, Edits, write_edited};
+use std::path::Path;
 
 /// The completed deck.
 const DECK: &str = "completed";
 /// Noise of a measured reaction where the job states none, of the mean reaction.
 const ASSUMED_NOISE: f64 = 0.01;
+
+/// The deck with the masses in it.
+pub struct CompletedDeck {
+    deck: Deck,
+    edited: Vec<(String, Vec<u8>)>,
+}
+
+impl CompletedDeck {
+    /// Name and bytes of every file of the completed deck, its INCLUDEs as they are found from `folder`; the first is `completed.bdf`.
+    pub fn files(&self, folder: &Path) -> Vec<(String, Vec<u8>)> {
+        super::cases::relocated(&self.deck, self.edited.clone(), folder, DECK)
+    }
+}
 
 struct Task<'a> {
     job: &'a Job,
@@ -31,10 +48,12 @@ struct Task<'a> {
     gravity: f64,
 }
 
-/// Reads, sizes, writes the completed deck, solves it and reports.
-pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
-    let job = session.stage("read job", |s| job::read_job(&mut s.inputs, &arguments.job))?;
-    session.put_units(job.units, &job.report_units);
+/// Lumped masses that bring the model's reactions to the measured ones, and the deck with them in it, read back and solved.
+///
+/// # Errors
+/// Every fault of the job and its deck; a region that can't hold a mass; a model that already weighs more.
+pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
+    let mut work = Work::of_job(cx, job);
     let missing = |field: &str, example: &str| {
         Faults::from(Fault::of(
             &*job.file,
@@ -53,11 +72,9 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         .model
         .as_ref()
         .ok_or_else(|| missing("model", "name the deck: [model] deck = \"model.bdf\""))?;
-    let read = session
-        .stage("read model", |s| {
-            read_model(&mut s.inputs, &job.folder, &files.deck.given)
-        })
-        .map_err(Faults::from)?;
+    let read = work.stage("read model", |s| {
+        read_model(&mut s.inputs, &job.folder, &files.deck.given)
+    })?;
     Faults::check(read.faults.clone())?;
     if read.deck.sources.is_empty() {
         return Err(Faults::from(Fault::of(
@@ -67,15 +84,15 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
             "name the deck",
         )));
     }
-    session.findings.extend(read.findings.iter().cloned());
-    let wheels = wheels_of(&job, &read.model)?;
-    let standing = session
+    work.findings.extend(read.findings.iter().cloned());
+    let wheels = wheels_of(job, &read.model)?;
+    let standing = work
         .stage("solve", |_| {
             solve_standing(&read.model, wheels.axis, &wheels.grids, &[], None)
         })
-        .map_err(|e| floor_fault(&job, &e))?;
+        .map_err(|e| floor_fault(job, &e))?;
     let task = Task {
-        job: &job,
+        job,
         ballast,
         read: &read,
         wheels,
@@ -84,7 +101,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
             .gravity_m_s2
             .map_or(job.units.standard_gravity(), |g| g / job.units.length_m()),
     };
-    let (run, measured, sigma) = measured(session, &task)?;
+    let (run, measured, sigma) = measured(&mut work, &task)?;
     let carriers = Carriers::of(&read.model, task.wheels.axis, |p| {
         ballast
             .properties
@@ -104,7 +121,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
             "ballast",
             format!(
                 "the model already weighs {} {} more than run `{run}` measured",
-                number(-lacking * force(&job)),
+                number(-lacking * force(job)),
                 job.report_units.force.name
             ),
             "take masses out of the deck, or check the units of the runs file",
@@ -117,7 +134,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         largest,
         sigma: sigma.clone(),
     };
-    let fit = session.stage("size", |_| {
+    let fit = work.stage("size", |_| {
         let n = measured.len();
         let table_failed = std::cell::Cell::new(false);
         let fit = size_ballast(
@@ -148,23 +165,27 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     let mut edits = Edits::default();
     edits.insert_cards(&read.deck, &text);
     let edited = write_edited(&read.deck, &edits);
-    let after = session.stage("solve completed deck", |s| {
+    let after = work.stage("solve completed deck", |s| {
         completed::after(s, &task, &edited)
     })?;
-    answer::findings(session, &task, &run, &measured, &after, &fit, &spec);
-    answer::put(
-        session, &task, &run, &measured, &sigma, &before, &after, &fit, &cards,
-    )?;
-    answer::write(
-        session, arguments, &task, &measured, &before, &after, &fit, height,
-    )?;
-    let folder = session.output_for(&arguments.job)?.folder().to_owned();
-    let files = super::cases::relocated(&read.deck, edited, &folder, DECK);
-    let out = session.output_for(&arguments.job)?;
-    for (name, bytes) in files {
-        out.write_bytes(&name, &bytes).map_err(Faults::from)?;
-    }
-    Ok(())
+    answer::judge(&mut work, &task, &run, &measured, &after, &fit, &spec);
+    let sized = answer::Sized {
+        run,
+        measured: &measured,
+        sigma: &sigma,
+        before: &before,
+        after: &after,
+        fit: &fit,
+        cards: &cards,
+        height,
+    };
+    let answer = answer::ballasted(&task, &sized);
+    let deck = CompletedDeck {
+        deck: read.deck,
+        edited,
+    };
+    let answer = answer(deck);
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
 fn force(job: &Job) -> f64 {
@@ -180,7 +201,7 @@ fn mass(job: &Job) -> f64 {
 }
 
 /// Name, reactions and their sd in job units of the run asked for, in the order of the wheels.
-fn measured(session: &mut Session, task: &Task) -> Result<(String, Vec<f64>, Vec<f64>), Faults> {
+fn measured(work: &mut Work, task: &Task) -> Result<(String, Vec<f64>, Vec<f64>), Faults> {
     let job = task.job;
     let Some(runs) = &job.runs else {
         return Err(Faults::from(Fault::of(
@@ -190,7 +211,7 @@ fn measured(session: &mut Session, task: &Task) -> Result<(String, Vec<f64>, Vec
             "name the measured reactions: [runs] file = \"runs.csv\"",
         )));
     };
-    let rows = read_runs(&mut session.inputs, job, runs)?;
+    let rows = read_runs(&mut work.inputs, job, runs)?;
     let row = match &task.ballast.run {
         Some(name) => rows.iter().find(|r| r.run == *name),
         None => rows.first(),
@@ -225,7 +246,7 @@ fn measured(session: &mut Session, task: &Task) -> Result<(String, Vec<f64>, Vec
     let sigma = match runs.noise.force.filter(|s| *s > 0.0) {
         Some(s) => s * runs.units.force.si / newton,
         None => {
-            session.findings.push(
+            work.findings.push(
                 Finding::new(
                     Severity::Info,
                     "reaction-noise-assumed",

@@ -2,10 +2,10 @@
 
 use super::RANDOM_LAYOUTS;
 use super::pool::{Prepared, on_model};
-use crate::app::Session;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::{Criterion, Job, Role, Study};
 use crate::app::place::{allowed_sites, angles, column_order, scales, scatter};
+use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::gauge::GaugeSpec;
 use crate::placement::candidates::{Angles, Candidates, Choice, Scatter};
@@ -33,7 +33,7 @@ pub(super) struct LayoutOf {
 /// # Errors
 /// No pool at all, candidates that can't be used.
 pub(super) fn of(
-    session: &mut Session,
+    work: &mut Work,
     job: &Job,
     study: &Study,
     prepared: &Prepared,
@@ -54,7 +54,7 @@ pub(super) fn of(
     let mut out = Vec::new();
     let mut skipped: Vec<String> = Vec::new();
     let wide = if from_model {
-        Some(Wide::new(session, job, prepared)?)
+        Some(Wide::new(work, job, prepared)?)
     } else {
         None
     };
@@ -88,7 +88,7 @@ pub(super) fn of(
         }
     }
     if !skipped.is_empty() {
-        session.findings.push(Finding::new(
+        work.findings.push(Finding::new(
             Severity::Warning,
             "layouts-skipped",
             skipped.join(", "),
@@ -201,7 +201,7 @@ struct Wide {
 }
 
 impl Wide {
-    fn new(session: &mut Session, job: &Job, prepared: &Prepared) -> Result<Self, Faults> {
+    fn new(work: &mut Work, job: &Job, prepared: &Prepared) -> Result<Self, Faults> {
         let Some(fields) = &prepared.fields else {
             return Err(Fault::of(
                 &*job.file,
@@ -214,7 +214,7 @@ impl Wide {
         let cases = fields.load_cases(job);
         let (common, _) = common_shells(&cases);
         let sites = allowed_sites(job, fields, &common)?;
-        let sizes = scales(session, &cases, &common);
+        let sizes = scales(work, &cases, &common);
         let order = column_order(job);
         let (led, led_scales): (Vec<LoadCaseOf>, Vec<f64>) =
             order.iter().map(|&l| (cases[l].clone(), sizes[l])).unzip();

@@ -3,18 +3,18 @@
 mod layouts;
 mod pool;
 
+use super::context::Context;
 use super::fault::{Fault, FaultList, Faults};
 use super::job::runs::read_runs;
-use super::job::{self, Job, Role, Study};
-use super::strain::{LoadUnits, load_units};
-use super::{JobArguments, Session};
+use super::job::{self, Job, Study};
+use super::outcome::{Answer, Outcome, StatedUnits, finite};
+use super::strain::{Conditioning, LoadUnits, load_units};
+use super::work::Work;
 use crate::finding::{Finding, Severity};
-use crate::report::csv_cell;
-use crate::report::page::{Page, number, table_section};
-use crate::sensitivity::Load;
+use crate::sensitivity::{Load, check_separability};
 use crate::study::{ErrorKind, StudyError, StudyRow, StudySpec, study_layout};
 use crate::units::Quantity;
-use serde_json::{Value, json};
+use serde::Serialize;
 
 /// Strain in one microstrain.
 const MICRO: f64 = 1e-6;
@@ -29,10 +29,66 @@ struct Line {
     row: StudyRow,
 }
 
-/// Reads, repeats, writes.
-pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
-    let job = session.stage("read job", |s| job::read_job(&mut s.inputs, &arguments.job))?;
-    session.put_units(job.units, &job.report_units);
+/// Recovery repeated under stated errors.
+#[derive(Serialize)]
+pub struct Studied {
+    /// A row a layout, number of gauges and error.
+    pub study: Vec<StudiedLayout>,
+    /// Rank and condition numbers of the gauges that the job has.
+    #[serde(flatten)]
+    pub conditioning: Option<Conditioning>,
+    /// The job.
+    #[serde(skip)]
+    pub job: Job,
+}
+
+impl Answer for Studied {
+    const COMMAND: &'static str = "study";
+}
+
+/// A layout under one error.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StudiedLayout {
+    /// Which layout.
+    pub layout: String,
+    /// Its number of gauges.
+    pub gauges: usize,
+    /// Kind and size of the error.
+    pub error: String,
+    /// S in strain per job unit.
+    pub condition_number: Option<f64>,
+    /// Mean over the wanted loads of `relative_rms`.
+    pub mean_relative_rms: Option<f64>,
+    /// By load.
+    pub loads: Vec<StudiedLoad>,
+}
+
+/// A load under one error.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StudiedLoad {
+    /// Load.
+    pub name: String,
+    /// Mean error, report units.
+    pub bias: Option<f64>,
+    /// Standard deviation of the error, report units.
+    pub sigma: Option<f64>,
+    /// Root mean square error over the true size.
+    pub relative_rms: Option<f64>,
+    /// Share of the trials whose 95 % interval held the truth.
+    pub coverage: Option<f64>,
+    /// Report unit.
+    pub unit: String,
+    /// Whether it is asked for.
+    #[serde(skip)]
+    pub wanted: bool,
+}
+
+/// Recovery repeated under stated errors, for a range of gauge counts and layouts.
+///
+/// # Errors
+/// Every fault of the job and of the files it names; loads of unknown size.
+pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
+    let mut work = Work::of_job(cx, job);
     let Some(study) = &job.study else {
         return Err(Faults::from(Fault::of(
             &*job.file,
@@ -41,12 +97,12 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
             "state it: [study] layouts = [\"given\", \"D\"], gauges = [8, 10], errors = [{ kind = \"relative-uniform\", size = 0.1 }]",
         )));
     };
-    let errors = errors(&job, study)?;
-    let prepared = pool::prepare(session, &job, study)?;
+    let errors = errors(job, study)?;
+    let prepared = pool::prepare(&mut work, job, study)?;
     let loads = &prepared.loads;
     let names: Vec<String> = loads.iter().map(|l| l.name.clone()).collect();
-    let units = load_units(&job, &names);
-    let truth = truth(session, &job, study, loads)?;
+    let units = load_units(job, &names);
+    let truth = truth(&mut work, job, study, loads)?;
     let spec = StudySpec {
         truth: truth.clone(),
         prior: loads
@@ -69,9 +125,9 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
             "state `expected`, its standard deviation: it is drawn in every trial",
         )));
     }
-    let layouts = layouts::of(session, &job, study, &prepared)?;
+    let layouts = layouts::of(&mut work, job, study, &prepared)?;
     let mut lines: Vec<Line> = Vec::new();
-    session.stage("repeat", |_| {
+    work.stage("repeat", |_| {
         for l in &layouts {
             for (error, word) in &errors {
                 lines.push(Line {
@@ -84,13 +140,18 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         }
     });
     if let Some(s) = &prepared.installed {
-        session.put_conditioning(s)?;
+        work.findings.extend(check_separability(s));
     }
-    findings(session, &lines, loads);
-    put(session, &lines, loads, &units, &truth)?;
-    write(
-        session, arguments, &job, study, &lines, loads, &units, &truth,
-    )
+    findings(&mut work, &lines, loads);
+    let rows = lines
+        .iter()
+        .map(|line| studied(line, loads, &units, &truth));
+    let answer = Studied {
+        study: rows.collect(),
+        conditioning: prepared.installed.as_ref().map(Conditioning::of),
+        job: job.clone(),
+    };
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
 fn errors(job: &Job, study: &Study) -> Result<Vec<(StudyError, String)>, Faults> {
@@ -125,14 +186,9 @@ fn errors(job: &Job, study: &Study) -> Result<Vec<(StudyError, String)>, Faults>
 }
 
 /// True loads: those of the first run of the runs file that has all wanted ones, else their expected sizes.
-fn truth(
-    session: &mut Session,
-    job: &Job,
-    study: &Study,
-    loads: &[Load],
-) -> Result<Vec<f64>, Faults> {
+fn truth(work: &mut Work, job: &Job, study: &Study, loads: &[Load]) -> Result<Vec<f64>, Faults> {
     if let Some(runs) = &job.runs {
-        let rows = read_runs(&mut session.inputs, job, runs)?;
+        let rows = read_runs(&mut work.inputs, job, runs)?;
         let (n, nm) = (
             job.units.si(Quantity::Force),
             job.units.si(Quantity::Moment),
@@ -155,7 +211,7 @@ fn truth(
                 .collect()
         };
         if let Some((run, values)) = rows.iter().find_map(|r| of(r).map(|v| (r.run.clone(), v))) {
-            session.findings.push(Finding::new(
+            work.findings.push(Finding::new(
                 Severity::Info,
                 "true-loads",
                 &run,
@@ -195,10 +251,10 @@ fn mean_relative(row: &StudyRow, truth: &[f64], loads: &[Load]) -> f64 {
     all.iter().sum::<f64>() / all.len().max(1) as f64
 }
 
-fn findings(session: &mut Session, lines: &[Line], loads: &[Load]) {
+fn findings(work: &mut Work, lines: &[Line], loads: &[Load]) {
     for line in lines {
         if line.row.sigma.iter().all(|s| s.is_nan()) {
-            session.findings.push(Finding::new(
+            work.findings.push(Finding::new(
                 Severity::Warning,
                 "layout-singular",
                 format!("{} {}", line.layout, line.gauges),
@@ -209,7 +265,7 @@ fn findings(session: &mut Session, lines: &[Line], loads: &[Load]) {
                 "ask for more gauges than loads",
             ));
         } else if line.row.singular > 0 {
-            session.findings.push(
+            work.findings.push(
                 Finding::new(
                     Severity::Info,
                     "layouts-singular",
@@ -226,7 +282,7 @@ fn findings(session: &mut Session, lines: &[Line], loads: &[Load]) {
         .filter(|l| l.error.starts_with("position") && l.row.sigma.iter().all(|s| *s == 0.0))
         .collect();
     if !bars.is_empty() {
-        session.findings.push(Finding::new(
+        work.findings.push(Finding::new(
             Severity::Warning,
             "place-without-effect",
             "position",
@@ -236,148 +292,22 @@ fn findings(session: &mut Session, lines: &[Line], loads: &[Load]) {
     }
 }
 
-fn finite(v: f64) -> Option<f64> {
-    v.is_finite().then_some(v)
-}
-
-fn put(
-    session: &mut Session,
-    lines: &[Line],
-    loads: &[Load],
-    units: &[LoadUnits],
-    truth: &[f64],
-) -> Result<(), Faults> {
-    let rows: Vec<Value> = lines
-        .iter()
-        .map(|line| {
-            let by_load: Vec<Value> = (0..loads.len())
-                .map(|l| {
-                    json!({
-                        "name": loads[l].name,
-                        "bias": finite(line.row.bias[l] * units[l].factor),
-                        "sigma": finite(line.row.sigma[l] * units[l].factor),
-                        "relative_rms": finite(relative(&line.row, truth, l)),
-                        "coverage": finite(line.row.coverage[l]),
-                        "unit": units[l].name,
-                    })
-                })
-                .collect();
-            json!({
-                "layout": line.layout,
-                "gauges": line.gauges,
-                "error": line.error,
-                "condition_number": finite(line.row.condition_number),
-                "mean_relative_rms": finite(mean_relative(&line.row, truth, loads)),
-                "loads": by_load,
-            })
-        })
-        .collect();
-    session.put("study", rows)
-}
-
-#[allow(clippy::too_many_arguments)]
-fn write(
-    session: &mut Session,
-    arguments: &JobArguments,
-    job: &Job,
-    study: &Study,
-    lines: &[Line],
-    loads: &[Load],
-    units: &[LoadUnits],
-    truth: &[f64],
-) -> Result<(), Faults> {
-    let wanted: Vec<usize> = (0..loads.len())
-        .filter(|l| {
-            job.loads
-                .iter()
-                .all(|j| j.name != loads[*l].name || j.role == Role::Wanted)
-        })
-        .collect();
-    let shown: Vec<Vec<String>> = lines
-        .iter()
-        .map(|line| {
-            let mut cells = vec![
-                line.layout.clone(),
-                line.gauges.to_string(),
-                line.error.clone(),
-                number(line.row.condition_number),
-                format!(
-                    "{} %",
-                    number(100.0 * mean_relative(&line.row, truth, loads))
-                ),
-            ];
-            cells.extend(wanted.iter().map(|l| {
-                format!(
-                    "{} ± {}",
-                    number(line.row.bias[*l] * units[*l].factor),
-                    number(line.row.sigma[*l] * units[*l].factor)
-                )
-            }));
-            cells
-        })
-        .collect();
-    for line in lines {
-        session.say(format!(
-            "{} {} gauges, {}: mean rms error {:.2} %, condition number {}",
-            line.layout,
-            line.gauges,
-            line.error,
-            100.0 * mean_relative(&line.row, truth, loads),
-            number(line.row.condition_number)
-        ));
+fn studied(line: &Line, loads: &[Load], units: &[LoadUnits], truth: &[f64]) -> StudiedLayout {
+    let by_load = (0..loads.len()).map(|l| StudiedLoad {
+        name: loads[l].name.clone(),
+        bias: finite(line.row.bias[l] * units[l].factor),
+        sigma: finite(line.row.sigma[l] * units[l].factor),
+        relative_rms: finite(relative(&line.row, truth, l)),
+        coverage: finite(line.row.coverage[l]),
+        unit: units[l].name.clone(),
+        wanted: loads[l].wanted,
+    });
+    StudiedLayout {
+        layout: line.layout.clone(),
+        gauges: line.gauges,
+        error: line.error.clone(),
+        condition_number: finite(line.row.condition_number),
+        mean_relative_rms: finite(mean_relative(&line.row, truth, loads)),
+        loads: by_load.collect(),
     }
-    let mut header = vec!["layout", "gauges", "error", "condition", "mean rms"];
-    let heads: Vec<String> = wanted
-        .iter()
-        .map(|l| format!("{}, {}", loads[*l].name, units[*l].name))
-        .collect();
-    header.extend(heads.iter().map(String::as_str));
-    let page = Page::new(
-        &job.title,
-        "What errors do to recovered loads",
-        &session.findings,
-        vec![table_section(
-            &format!(
-                "{} trials each, seed {}: bias ± 1 sd",
-                study.trials, study.seed
-            ),
-            &header,
-            &shown,
-            "The same seed gives the same numbers on any machine and any number of threads. Layout `random`: the trials are dealt over 50 of them.",
-        )],
-    );
-    let out = session.output_for(&arguments.job)?;
-    out.write("study.csv", |w| {
-        write!(w, "layout,gauges,error,condition_number,mean_relative_rms")?;
-        for l in loads {
-            for what in ["bias", "sigma", "coverage"] {
-                write!(w, ",{}", csv_cell(&format!("{}.{what}", l.name)))?;
-            }
-        }
-        writeln!(w)?;
-        for line in lines {
-            write!(
-                w,
-                "{},{},{},{},{}",
-                line.layout,
-                line.gauges,
-                line.error,
-                line.row.condition_number,
-                mean_relative(&line.row, truth, loads)
-            )?;
-            for (l, u) in units.iter().enumerate() {
-                write!(
-                    w,
-                    ",{},{},{}",
-                    line.row.bias[l] * u.factor,
-                    line.row.sigma[l] * u.factor,
-                    line.row.coverage[l]
-                )?;
-            }
-            writeln!(w)?;
-        }
-        Ok(())
-    })
-    .map_err(Faults::from)?;
-    session.write_page(&arguments.job, page)
 }

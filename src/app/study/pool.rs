@@ -1,9 +1,9 @@
 //! Gauges that a study can choose from, with how their rows change when they are turned or shifted.
 
-use crate::app::Session;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::{Job, Role, Study};
 use crate::app::strain::{Fields, read_fields, read_given, spec_of};
+use crate::app::work::Work;
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::gauge::{Gauge, GaugePlace, GaugeSpec, build, reading};
 use crate::model::{Model, Vec3};
@@ -26,13 +26,9 @@ pub(super) struct Prepared {
 ///
 /// # Errors
 /// Faults of the deck, the results, the gauges.
-pub(super) fn prepare(
-    session: &mut Session,
-    job: &Job,
-    _study: &Study,
-) -> Result<Prepared, Faults> {
+pub(super) fn prepare(work: &mut Work, job: &Job, _study: &Study) -> Result<Prepared, Faults> {
     if job.sensitivity.is_some() {
-        let s = read_given(session, job)?;
+        let s = read_given(work, job)?;
         let pool = (0..s.gauges.len())
             .map(|g| PoolGauge {
                 row: s.values.row(g).iter().copied().collect(),
@@ -47,7 +43,7 @@ pub(super) fn prepare(
             fields: None,
         });
     }
-    let fields = read_fields(session, job)?;
+    let fields = read_fields(work, job)?;
     let loads: Vec<Load> = job
         .loads
         .iter()
@@ -59,7 +55,7 @@ pub(super) fn prepare(
         .collect();
     let (mut pool, mut installed) = (Vec::new(), None);
     if !job.gauges.is_empty() {
-        let specs = crate::app::strain::lay_gauges(session, job, &fields)?;
+        let specs = crate::app::strain::lay_gauges(work, job, &fields)?;
         let cases = fields.load_cases(job);
         let s = crate::sensitivity::from_cases(&specs, &cases).map_err(|m| {
             Faults::from(Fault::of(

@@ -1,11 +1,13 @@
 //! What each command writes and says of its outcome: one file a command.
 
+mod ballast;
 mod cases;
 mod pages;
 mod place;
 mod sensitivity;
 mod solve;
 mod strains;
+mod study;
 
 pub use pages::{write_book, write_page};
 

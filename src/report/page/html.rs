@@ -1,9 +1,9 @@
 //! A page as one HTML file: no script from elsewhere, findings first.
 
 use super::block::{Block, Page, Table};
-use super::number::number;
 use crate::finding::{Finding, Severity};
 use crate::report::figure::{DRAWN, scripts};
+use crate::units::number;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("../page.css");

@@ -2,7 +2,6 @@
 
 mod block;
 mod html;
-mod number;
 
+pub use crate::units::number;
 pub use block::{Block, Page, Paper, Section, Table, figure_section, table_section};
-pub use number::number;

@@ -1,0 +1,158 @@
+//! Files and words of `ballast`.
+
+use super::{Report, write_page};
+use crate::app::ballast::{Ballasted, HungMass};
+use crate::app::fault::Faults;
+use crate::app::outcome::Outcome;
+use crate::app::output::Output;
+use crate::report::csv_cell;
+use crate::report::page::{Page, table_section};
+use crate::units::number;
+use std::fmt::Write;
+
+/// Columns of masses.csv.
+const MASSES: [&str; 9] = [
+    "mass",
+    "mass.low",
+    "mass.high",
+    "along",
+    "along.low",
+    "along.high",
+    "across",
+    "across.low",
+    "across.high",
+];
+
+impl Report for Outcome<Ballasted> {
+    fn write(&self, out: &mut Output) -> Result<(), Faults> {
+        let units = &self.job.report_units;
+        let (force, mass, length) = (units.force.name, units.mass.name, units.length.name);
+        out.declare(
+            "reactions.csv",
+            [
+                ("name", ""),
+                ("measured", force),
+                ("before", force),
+                ("after", force),
+            ],
+        );
+        out.write("reactions.csv", |w| {
+            writeln!(w, "name,measured,before,after")?;
+            for r in &self.reactions {
+                let name = csv_cell(&r.name);
+                writeln!(w, "{name},{},{},{}", r.measured, r.before, r.after)?;
+            }
+            Ok(())
+        })?;
+        let unit = |c: &str| if c.starts_with("mass") { mass } else { length };
+        out.declare("masses.csv", MASSES.map(|c| (c, unit(c))));
+        out.write("masses.csv", |w| {
+            writeln!(w, "{}", MASSES.join(","))?;
+            for m in &self.masses {
+                let line: Vec<String> = numbers(m).iter().map(f64::to_string).collect();
+                writeln!(w, "{}", line.join(","))?;
+            }
+            Ok(())
+        })?;
+        let folder = out.folder().to_owned();
+        for (name, bytes) in self.deck.files(&folder) {
+            out.write_bytes(&name, &bytes)?;
+        }
+        write_page(out, self, page(self))
+    }
+
+    fn words(&self) -> String {
+        let units = &self.job.report_units;
+        let mut text = String::new();
+        for r in &self.reactions {
+            let _ = writeln!(
+                text,
+                "{}: measured {:.3}, before {:.3}, after {:.3} {}",
+                r.name, r.measured, r.before, r.after, units.force.name
+            );
+        }
+        for m in &self.masses {
+            let _ = writeln!(
+                text,
+                "mass {:.4} {} at {:.4}, {:.4} {}",
+                m.mass, units.mass.name, m.position[0], m.position[1], units.length.name
+            );
+        }
+        text
+    }
+}
+
+/// The numbers of a mass in the order of [`MASSES`].
+fn numbers(m: &HungMass) -> [f64; 9] {
+    let [along, across] = m.position_range;
+    [
+        m.mass,
+        m.mass_range[0],
+        m.mass_range[1],
+        m.position[0],
+        along[0],
+        along[1],
+        m.position[1],
+        across[0],
+        across[1],
+    ]
+}
+
+fn page(found: &Outcome<Ballasted>) -> Page {
+    let units = &found.job.report_units;
+    let reactions: Vec<Vec<String>> = found
+        .reactions
+        .iter()
+        .map(|r| {
+            vec![
+                r.name.clone(),
+                number(r.measured),
+                number(r.before),
+                number(r.after),
+                format!("{:+.2} %", 100.0 * (r.after / r.measured - 1.0)),
+            ]
+        })
+        .collect();
+    let masses: Vec<Vec<String>> = found
+        .masses
+        .iter()
+        .enumerate()
+        .map(|(k, m)| {
+            let n = numbers(m);
+            let range = |a: usize| format!("{} to {}", number(n[a]), number(n[a + 1]));
+            vec![
+                (k + 1).to_string(),
+                number(n[0]),
+                range(1),
+                number(n[3]),
+                range(4),
+                number(n[6]),
+                range(7),
+            ]
+        })
+        .collect();
+    let sections = vec![
+        table_section(
+            &format!("Reactions, {}", units.force.name),
+            &["wheel", "measured", "before", "after", "off"],
+            &reactions,
+            "After: the completed deck, read back and solved.",
+        ),
+        table_section(
+            &format!("Masses, {} and {}", units.mass.name, units.length.name),
+            &["mass", "size", "95 %", "along", "95 %", "across", "95 %"],
+            &masses,
+            &format!(
+                "Ranges: what the data leave one number when the others are adjusted. Height {} (no influence on a level floor).",
+                number(found.height)
+            ),
+        ),
+    ];
+    let title = &found.job.title;
+    Page::new(
+        title,
+        "Masses that complete the model",
+        &found.findings,
+        sections,
+    )
+}

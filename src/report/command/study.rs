@@ -1,0 +1,131 @@
+//! Files and words of `study`.
+
+use super::{Report, write_page};
+use crate::app::fault::Faults;
+use crate::app::outcome::Outcome;
+use crate::app::output::Output;
+use crate::app::study::{Studied, StudiedLayout, StudiedLoad};
+use crate::report::csv_cell;
+use crate::report::page::{Page, table_section};
+use crate::units::number;
+use std::fmt::Write;
+
+/// Half width of a 95 % interval over its standard deviation.
+const HALF_WIDTH: f64 = 1.96;
+
+impl Report for Outcome<Studied> {
+    fn write(&self, out: &mut Output) -> Result<(), Faults> {
+        let loads = self.study.first().map_or(&[][..], |row| &row.loads);
+        let mut columns: Vec<(String, &str)> = COLUMNS.map(|c| (c.to_owned(), "")).to_vec();
+        for l in loads {
+            columns.push((format!("{}.bias", l.name), &l.unit));
+            columns.push((format!("{}.sigma", l.name), &l.unit));
+            columns.push((format!("{}.coverage", l.name), ""));
+        }
+        let header: Vec<String> = columns.iter().map(|c| csv_cell(&c.0).into()).collect();
+        out.declare("study.csv", columns.iter().map(|(c, u)| (c.as_str(), *u)));
+        out.write("study.csv", |w| {
+            writeln!(w, "{}", header.join(","))?;
+            for row in &self.study {
+                writeln!(w, "{}", line(row))?;
+            }
+            Ok(())
+        })?;
+        write_page(out, self, page(self))
+    }
+
+    fn words(&self) -> String {
+        let mut text = String::new();
+        for row in &self.study {
+            let _ = writeln!(
+                text,
+                "{} {} gauges, {}: mean rms error {:.2} %, condition number {}",
+                row.layout,
+                row.gauges,
+                row.error,
+                100.0 * plain(row.mean_relative_rms),
+                number(plain(row.condition_number))
+            );
+        }
+        text
+    }
+}
+
+/// First columns of study.csv.
+const COLUMNS: [&str; 5] = [
+    "layout",
+    "gauges",
+    "error",
+    "condition_number",
+    "mean_relative_rms",
+];
+
+fn plain(x: Option<f64>) -> f64 {
+    x.unwrap_or(f64::NAN)
+}
+
+fn line(row: &StudiedLayout) -> String {
+    let mut cells = vec![
+        row.layout.clone(),
+        row.gauges.to_string(),
+        row.error.clone(),
+    ];
+    let mut numbers = vec![row.condition_number, row.mean_relative_rms];
+    let by_load = row.loads.iter();
+    numbers.extend(by_load.flat_map(|l| [l.bias, l.sigma, l.coverage]));
+    cells.extend(
+        numbers
+            .iter()
+            .map(|n| n.map_or(String::new(), |v| v.to_string())),
+    );
+    cells.join(",")
+}
+
+fn page(found: &Outcome<Studied>) -> Page {
+    let loads = found.study.first().map_or(&[][..], |row| &row.loads);
+    let mut header: Vec<String> = ["layout", "gauges", "error", "condition", "mean rms"]
+        .map(str::to_owned)
+        .to_vec();
+    let wanted = |row: &StudiedLayout| -> Vec<StudiedLoad> {
+        row.loads.iter().filter(|l| l.wanted).cloned().collect()
+    };
+    let heads = loads.iter().filter(|l| l.wanted);
+    header.extend(heads.map(|l| format!("{}, {}", l.name, l.unit)));
+    let rows: Vec<Vec<String>> = found
+        .study
+        .iter()
+        .map(|row| {
+            let mut cells = vec![
+                row.layout.clone(),
+                row.gauges.to_string(),
+                row.error.clone(),
+                number(plain(row.condition_number)),
+                format!("{} %", number(100.0 * plain(row.mean_relative_rms))),
+            ];
+            cells.extend(wanted(row).iter().map(|l| {
+                let width = HALF_WIDTH * plain(l.sigma);
+                format!("{} ± {}", number(plain(l.bias)), number(width))
+            }));
+            cells
+        })
+        .collect();
+    let (trials, seed) = found
+        .job
+        .study
+        .as_ref()
+        .map_or((0, 0), |s| (s.trials, s.seed));
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    let section = table_section(
+        &format!("{trials} trials each, seed {seed}: bias ± half width of the 95 % interval"),
+        &header,
+        &rows,
+        "The same seed gives the same numbers on any machine and any number of threads. Layout `random`: the trials are dealt over 50 of them.",
+    );
+    let title = &found.job.title;
+    Page::new(
+        title,
+        "What errors do to recovered loads",
+        &found.findings,
+        vec![section],
+    )
+}
