@@ -1,14 +1,17 @@
 //! `init`: a commented job from the analyst's own files.
 
 use super::cases::from_folder;
+use super::context::Context;
 use super::deck::{DeckModel, moduli_and_densities, read_model};
 use super::fault::{Fault, Faults};
-use super::{DeckArguments, Session};
+use super::outcome::{Answer, Outcome, StatedUnits};
+use super::work::Work;
 use crate::fe::from_results::{Displacements, ReadOptions, solution_from_file};
 use crate::finding::{Finding, Severity};
 use crate::model::{Load, Model, RigidKind};
 use crate::units::UnitSystem;
 use nastran::results::ResultsFile;
+use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -25,29 +28,50 @@ struct Proposed {
 /// Loads proposed at most where nothing but grids is known.
 const MOST_GRIDS: usize = 24;
 
-/// Reads the files and writes `job.toml`.
-pub fn run(arguments: &DeckArguments, session: &mut Session) -> Result<(), Faults> {
-    let folder: PathBuf = arguments
-        .common
-        .out
-        .clone()
-        .unwrap_or_else(|| PathBuf::from("."));
-    let target = folder.join("job.toml");
-    if target.exists() {
+/// A commented job made from an analyst's files.
+#[derive(Serialize)]
+pub struct Proposal {
+    /// Name of the job's file.
+    pub job: &'static str,
+    /// Names of the loads proposed.
+    pub loads: Vec<String>,
+    /// The job itself.
+    #[serde(skip)]
+    pub text: String,
+}
+
+impl Answer for Proposal {
+    const COMMAND: &'static str = "init";
+}
+
+/// The file of a proposed job.
+pub const JOB: &str = "job.toml";
+
+/// A commented job from a deck and its results, to stand in `folder`.
+///
+/// # Errors
+/// Files that can't be read; a job that is there already.
+pub fn init(
+    deck_path: &Path,
+    results: &[PathBuf],
+    folder: &Path,
+    cx: &Context,
+) -> Result<Outcome<Proposal>, Faults> {
+    let mut work = Work::new(cx);
+    let target = folder.join(JOB);
+    if cx.files.load(&target).is_ok() {
         return Err(Faults::from(Fault::of(
             target.display().to_string(),
-            "job.toml",
+            JOB,
             "there is one already, and it is not overwritten",
             "move it away, or name another folder with `--out`",
         )));
     }
-    let given = arguments.deck.display().to_string();
-    let deck = session
-        .stage("read deck", |s| {
-            read_model(&mut s.inputs, Path::new(""), &given)
-        })
-        .map_err(Faults::from)?;
-    session.findings.extend(deck.findings.iter().cloned());
+    let given = deck_path.display().to_string();
+    let deck = work.stage("read deck", |s| {
+        read_model(&mut s.inputs, Path::new(""), &given)
+    })?;
+    work.findings.extend(deck.findings.iter().cloned());
     if !deck.faults.is_empty() {
         let n = deck.faults.len();
         let first = deck
@@ -55,7 +79,7 @@ pub fn run(arguments: &DeckArguments, session: &mut Session) -> Result<(), Fault
             .first()
             .map(ToString::to_string)
             .unwrap_or_default();
-        session.findings.push(
+        work.findings.push(
             Finding::new(
                 Severity::Warning,
                 "deck-has-faults",
@@ -67,9 +91,9 @@ pub fn run(arguments: &DeckArguments, session: &mut Session) -> Result<(), Fault
         );
     }
     let mut strained: Vec<(String, BTreeSet<u32>)> = Vec::new();
-    for path in &arguments.results {
+    for path in results {
         let name = path.display().to_string();
-        let bytes = session
+        let bytes = work
             .inputs
             .read(Path::new(""), &name)
             .map_err(Faults::from)?;
@@ -77,7 +101,7 @@ pub fn run(arguments: &DeckArguments, session: &mut Session) -> Result<(), Fault
             displacements: Displacements::Leave,
             ..ReadOptions::default()
         };
-        let solution = session
+        let solution = work
             .stage("read results", |_| {
                 ResultsFile::read(&bytes, &name)
                     .map(|f| solution_from_file(&deck.model, &name, &f, &options))
@@ -90,7 +114,7 @@ pub fn run(arguments: &DeckArguments, session: &mut Session) -> Result<(), Fault
                     "give an OP2, punch or HDF5 file of a static run",
                 ))
             })?;
-        session.findings.extend(solution.findings.iter().cloned());
+        work.findings.extend(solution.findings.iter().cloned());
         let cases = solution
             .cases
             .iter()
@@ -102,7 +126,7 @@ pub fn run(arguments: &DeckArguments, session: &mut Session) -> Result<(), Fault
     let system = units_of(&deck.model);
     let loads = propose(&deck, &strained, system);
     if loads.is_empty() {
-        session.findings.push(Finding::new(
+        work.findings.push(Finding::new(
             Severity::Warning,
             "no-loads-found",
             &given,
@@ -110,27 +134,13 @@ pub fn run(arguments: &DeckArguments, session: &mut Session) -> Result<(), Fault
             "write one [[load]] for each load",
         ));
     }
-    let text = job_text(&deck, arguments, &folder, system, &loads);
-    session.put("job", "job.toml")?;
-    session.put("loads", loads.iter().map(|l| &l.name).collect::<Vec<_>>())?;
-    session.say(format!(
-        "job.toml: {} loads proposed; read it, correct units and loads, then run `place` on it",
-        loads.len()
-    ));
-    if arguments.common.out.is_some() {
-        let out = session.output_for(&arguments.deck)?;
-        return out
-            .write_bytes("job.toml", text.as_bytes())
-            .map_err(Faults::from);
-    }
-    std::fs::write(&target, text).map_err(|e| {
-        Faults::from(Fault::of(
-            "job.toml",
-            "output",
-            e.to_string(),
-            "choose another folder with `--out`",
-        ))
-    })
+    let text = job_text(&deck, (deck_path, results), folder, system, &loads);
+    let answer = Proposal {
+        job: JOB,
+        loads: loads.into_iter().map(|l| l.name).collect(),
+        text,
+    };
+    Ok(work.finish(StatedUnits::default(), answer))
 }
 
 /// The unit system that Young's moduli and densities speak for; metres where nothing speaks.
@@ -320,7 +330,7 @@ fn unique(used: &mut BTreeMap<String, usize>, name: String) -> String {
 
 fn job_text(
     deck: &DeckModel,
-    arguments: &DeckArguments,
+    (deck_path, results): (&Path, &[PathBuf]),
     folder: &Path,
     system: UnitSystem,
     loads: &[Proposed],
@@ -331,13 +341,8 @@ fn job_text(
         UnitSystem::InLbfS => ("lbf", "lbf in"),
         _ => ("kN", "kN m"),
     };
-    let results: Vec<String> = arguments
-        .results
-        .iter()
-        .map(|p| format!("\"{}\"", path(p)))
-        .collect();
-    let title = arguments
-        .deck
+    let results: Vec<String> = results.iter().map(|p| format!("\"{}\"", path(p))).collect();
+    let title = deck_path
         .file_stem()
         .map(|s| s.to_string_lossy().into_owned())
         .unwrap_or_default();
@@ -348,7 +353,7 @@ fn job_text(
          report_units = {{ force = \"{force}\", moment = \"{moment}\" }}\n\n\
          [model]\ndeck = \"{}\"\n",
         clean(&title),
-        path(&arguments.deck)
+        path(deck_path)
     );
     if results.is_empty() {
         t.push_str("# results = [\"unit_loads.op2\"]        # of the deck that `strainbridge cases job.toml` writes; left out: the built-in solver computes them\n");

@@ -228,11 +228,7 @@ impl<'a> Session<'a> {
     }
 
     /// Writes and commits the files.
-    fn close(mut self) -> Result<Closed, Faults> {
-        if self.command == "check" {
-            let lines: Vec<String> = self.faults.iter().map(Fault::to_string).collect();
-            self.put("faults", lines)?;
-        }
+    fn close(self) -> Result<Closed, Faults> {
         let body = Body(self.command, Value::Object(self.body));
         let outcome = self.work.finish(self.units, body);
         let json = outcome.to_json_of(outcome.answer.0, &Tables::new());

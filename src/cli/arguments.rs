@@ -1,7 +1,7 @@
 //! Arguments as the user types them.
 
 use crate::fe::HeatedStrain;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Strain gauges and a finite element model in, wheel loads with intervals out.
 #[derive(clap::Parser, Debug)]
@@ -194,6 +194,13 @@ pub struct FilesArguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub common: CommonArguments,
+}
+
+impl FilesArguments {
+    /// The first file.
+    pub(super) fn first(&self) -> &Path {
+        self.files.first().map_or(Path::new(""), |f| f)
+    }
 }
 
 /// A command on a deck and its results.

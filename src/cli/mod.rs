@@ -27,17 +27,8 @@ pub fn run(arguments: Arguments) -> ExitCode {
     match arguments.command {
         Command::Strains(a) => Run::of(&a.common, &a.deck)
             .files(&a.deck, |cx| app::strains::strains(&a.deck, &a.results, cx)),
-        Command::Check(a) => {
-            let files = app::FilesArguments {
-                files: a.files.clone(),
-                common: a.common.to_app(),
-            };
-            let first = a.files.first().cloned().unwrap_or_default();
-            Run::of(&a.common, &first).session(|cx| {
-                Session::run("check", &files.common, cx, |s| app::check::run(&files, s))
-            })
-        }
-        Command::Init(a) => on_deck("init", &a, app::init::run),
+        Command::Check(a) => Run::of(&a.common, a.first()).check(&a.files),
+        Command::Init(a) => Run::of(&a.common, &a.deck).init(&a.deck, &a.results),
         Command::Cases(a) => Run::of(&a.common, &a.job).job(&a.job, app::cases::cases),
         Command::Place(a) => Run::of(&a.common, &a.job).job(&a.job, app::place::place),
         Command::Recover(a) => on_job("recover", &a, app::recover::run),
@@ -78,15 +69,3 @@ pub fn run(arguments: Arguments) -> ExitCode {
 
 /// A command on a job that writes as it goes.
 type JobCommand = fn(&app::JobArguments, &mut Session) -> Result<(), app::fault::Faults>;
-/// A command on a deck that writes as it goes.
-type DeckCommand = fn(&app::DeckArguments, &mut Session) -> Result<(), app::fault::Faults>;
-
-fn on_deck(command: &'static str, a: &DeckArguments, work: DeckCommand) -> ExitCode {
-    let deck = app::DeckArguments {
-        deck: a.deck.clone(),
-        results: a.results.clone(),
-        common: a.common.to_app(),
-    };
-    Run::of(&a.common, &a.deck)
-        .session(|cx| Session::run(command, &deck.common, cx, |s| work(&deck, s)))
-}

@@ -3,14 +3,17 @@
 use super::CommonArguments;
 use super::progress::Terminal;
 use crate::app::Closed;
+use crate::app::check::check;
 use crate::app::context::{Context, Disk};
 use crate::app::fault::{Fault, Faults};
+use crate::app::init::init;
 use crate::app::job::Job;
 use crate::app::outcome::{Answer, Findings, Outcome};
+use crate::app::output::Output;
 use crate::app::store::Folder;
 use crate::app::words::finding_text;
 use crate::finding::Severity;
-use crate::report::command::{Report, save};
+use crate::report::command::{Report, save, unsaved};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -98,6 +101,60 @@ impl Run {
                 findings: &outcome.findings,
                 notes: &outcome.notes,
                 folder: Some(&folder),
+                faults: &[],
+            }),
+            Err(faults) => refuse(&faults),
+        }
+    }
+
+    /// Checks files: written only with `--out`; their faults are part of the answer.
+    pub fn check(&self, files: &[PathBuf]) -> ExitCode {
+        let folder = self.common.out.as_deref();
+        let done = self.pooled(|cx| {
+            let outcome = check(files, cx)?;
+            let json = match folder {
+                Some(folder) => save(&outcome, folder)?,
+                None => unsaved(&outcome)?,
+            };
+            Ok((outcome, json))
+        });
+        match done {
+            Ok((outcome, json)) => self.say(&Said {
+                text: &outcome.words(),
+                json: &json,
+                findings: &outcome.findings,
+                notes: &outcome.notes,
+                folder: self.common.out.as_ref(),
+                faults: &outcome.faults,
+            }),
+            Err(faults) => refuse(&faults),
+        }
+    }
+
+    /// Writes a job from files: alone into the current folder, with `result.json` into `--out`.
+    pub fn init(&self, deck: &Path, results: &[PathBuf]) -> ExitCode {
+        let folder = self.common.out.clone();
+        let into = folder.clone().unwrap_or_else(|| PathBuf::from("."));
+        let done = self.pooled(|cx| {
+            let outcome = init(deck, results, &into, cx)?;
+            let json = match folder {
+                Some(_) => save(&outcome, &into)?,
+                None => {
+                    let mut out = Output::begin(&into)?;
+                    outcome.write(&mut out)?;
+                    out.commit()?;
+                    unsaved(&outcome)?
+                }
+            };
+            Ok((outcome, json))
+        });
+        match done {
+            Ok((outcome, json)) => self.say(&Said {
+                text: &outcome.words(),
+                json: &json,
+                findings: &outcome.findings,
+                notes: &outcome.notes,
+                folder: self.common.out.as_ref(),
                 faults: &[],
             }),
             Err(faults) => refuse(&faults),

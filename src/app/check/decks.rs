@@ -1,9 +1,9 @@
 //! Decks in `result.json` and in words.
 
-use super::Found;
-use crate::app::Session;
+use super::Checked;
 use crate::app::deck::{DeckModel, model_of_deck};
 use crate::app::words::short;
+use crate::app::work::Work;
 use crate::model::Model;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -21,7 +21,7 @@ const ELEMENTS: [&str; 53] = [
 
 /// One deck.
 #[derive(Serialize)]
-pub(super) struct DeckEntry {
+pub struct DeckEntry {
     path: String,
     /// Number of cards by name.
     cards: BTreeMap<String, usize>,
@@ -36,18 +36,12 @@ pub(super) struct DeckEntry {
     property_names: BTreeMap<u32, String>,
     faults: usize,
     #[serde(skip)]
-    pub model: Option<Model>,
+    pub(super) model: Option<Model>,
 }
 
-pub(super) fn look(
-    session: &mut Session,
-    base: &Path,
-    given: &str,
-    bytes: &[u8],
-    found: &mut Found,
-) {
-    let read = model_of_deck(&mut session.inputs, base, given, bytes);
-    session.findings.extend(read.findings.iter().cloned());
+pub(super) fn look(work: &mut Work, base: &Path, given: &str, bytes: &[u8], found: &mut Checked) {
+    let read = model_of_deck(&mut work.inputs, base, given, bytes);
+    work.findings.extend(read.findings.iter().cloned());
     found.faults.extend(read.faults.iter().cloned());
     found.decks.push(DeckEntry::of(read));
 }
@@ -77,7 +71,7 @@ impl DeckEntry {
     }
 
     /// For people.
-    pub(super) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let cards: Vec<String> = self.cards.iter().map(|(k, n)| format!("{k} {n}")).collect();
         let [x, y, z] = self.cg.map(short);
         let wtmass = if self.wtmass == 1.0 {

@@ -1,36 +1,38 @@
 //! A job: its own faults, then the files it names.
 
-use super::{Found, look as look_at};
+use super::{Checked, look as look_at};
+use crate::app::deck;
 use crate::app::fault::Fault;
 use crate::app::job::{self, HoldOut, Job, NamedFile};
-use crate::app::{Session, deck};
+use crate::app::outcome::StatedUnits;
+use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::model::Model;
 use crate::units::check_units;
 use std::path::Path;
 
-pub(super) fn look(session: &mut Session, base: &Path, given: &str, found: &mut Found) {
-    let job = match job::read_job(&mut session.inputs, &base.join(given)) {
+pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checked) {
+    let job = match job::read_job(&mut work.inputs, &base.join(given)) {
         Ok(job) => job,
         Err(f) => return found.faults.extend(f),
     };
-    session.put_units(job.units, &job.report_units);
-    session.say(format!(
+    found.units = StatedUnits::of(job.units, &job.report_units);
+    found.jobs.push(format!(
         "job `{given}`: {} loads, {} gauges, units {}",
         job.loads.len(),
         job.gauges.len(),
         job.units.name()
     ));
-    files(session, &job, found);
+    files(work, &job, found);
     if let Some(m) = &job.measured {
-        match job::strain::read_strain(&mut session.inputs, &job, &m.strain) {
-            Ok(t) => session.findings.extend(gauges_and_strain(&job, &t.gauges)),
+        match job::strain::read_strain(&mut work.inputs, &job, &m.strain) {
+            Ok(t) => work.findings.extend(gauges_and_strain(&job, &t.gauges)),
             Err(f) => found.faults.extend(f),
         }
     }
     if let Some(r) = &job.runs {
         found.faults.extend(
-            job::runs::read_runs(&mut session.inputs, &job, r)
+            job::runs::read_runs(&mut work.inputs, &job, r)
                 .err()
                 .map_or_else(Vec::new, crate::app::fault::Faults::into_list),
         );
@@ -38,22 +40,22 @@ pub(super) fn look(session: &mut Session, base: &Path, given: &str, found: &mut 
 }
 
 /// Opens every file that the job names; decks and results are looked into.
-fn files(session: &mut Session, job: &Job, found: &mut Found) {
+fn files(work: &mut Work, job: &Job, found: &mut Checked) {
     if let Some(m) = &job.model {
         let before = found.decks.len();
         for named in std::iter::once(&m.deck).chain(&m.results) {
-            match session.inputs.read_named(job, named) {
-                Ok(_) => look_at(session, &job.folder, &named.given, found),
+            match work.inputs.read_named(job, named) {
+                Ok(_) => look_at(work, &job.folder, &named.given, found),
                 Err(f) => found.faults.push(f),
             }
         }
         if let Some(model) = found.decks.get(before).and_then(|d| d.model.as_ref()) {
-            session.findings.extend(units_of(job, model));
+            work.findings.extend(units_of(job, model));
             found.faults.extend(missing_ids(job, model));
         }
     }
     for named in other_files(job) {
-        if let Err(f) = session.inputs.read_named(job, named) {
+        if let Err(f) = work.inputs.read_named(job, named) {
             found.faults.push(f);
         }
     }

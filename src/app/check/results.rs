@@ -1,9 +1,9 @@
 //! Result files in `result.json` and in words. Every block is decoded, so that damage shows.
 
-use super::Found;
-use crate::app::Session;
+use super::Checked;
 use crate::app::fault::Fault;
 use crate::app::files::FileBytes;
+use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use nastran::results::{Block, ResultsFile};
 use rayon::prelude::*;
@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 
 /// One result file.
 #[derive(Serialize)]
-pub(super) struct ResultEntry {
+pub struct ResultEntry {
     path: String,
     solver: String,
     word_bytes: usize,
@@ -20,7 +20,7 @@ pub(super) struct ResultEntry {
     /// Every table of an OP2 by name, in file order, results or not.
     file_tables: Vec<String>,
     #[serde(skip)]
-    pub bytes: FileBytes,
+    pub(super) bytes: FileBytes,
 }
 
 /// One block of results.
@@ -45,7 +45,7 @@ impl ResultEntry {
     }
 
     /// For people: one line a kind of table.
-    pub(super) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let mut kinds: BTreeMap<(&str, &str, String), (Vec<u32>, usize)> = BTreeMap::new();
         for t in &self.tables {
             let key = (
@@ -79,7 +79,7 @@ impl ResultEntry {
     }
 }
 
-pub(super) fn look(session: &mut Session, given: &str, bytes: FileBytes, found: &mut Found) {
+pub(super) fn look(work: &mut Work, given: &str, bytes: FileBytes, found: &mut Checked) {
     let read = ResultsFile::read(&bytes, given);
     let (entry, findings, faults) = match read {
         Ok(file) => describe(given, &bytes, &file),
@@ -92,7 +92,7 @@ pub(super) fn look(session: &mut Session, given: &str, bytes: FileBytes, found: 
             ));
         }
     };
-    session.findings.extend(findings);
+    work.findings.extend(findings);
     found.faults.extend(faults);
     found.results.push(entry);
 }

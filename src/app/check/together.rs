@@ -1,15 +1,15 @@
 //! Deck against results.
 
-use super::Found;
+use super::Checked;
 use super::decks::DeckEntry;
-use crate::app::Session;
 use crate::app::deck::model_of_op2;
+use crate::app::work::Work;
 use crate::fe::belongs::{Supports, check_belongs, check_coordinates};
 use nastran::op2::Op2;
 use nastran::results::ResultsFile;
 
 /// Findings of every result file against the deck. Where no deck has a mesh, the first OP2 with geometry stands for it.
-pub(super) fn compare(session: &mut Session, found: &mut Found) {
+pub(super) fn compare(work: &mut Work, found: &mut Checked) {
     let has_mesh = |d: &DeckEntry| d.model.as_ref().is_some_and(|m| !m.grids.is_empty());
     if !found.decks.iter().any(has_mesh) {
         let with_mesh = found
@@ -17,7 +17,7 @@ pub(super) fn compare(session: &mut Session, found: &mut Found) {
             .iter()
             .find_map(|r| model_of_op2(r.path(), &r.bytes).ok());
         if let Some(read) = with_mesh {
-            session.findings.extend(read.findings.iter().cloned());
+            work.findings.extend(read.findings.iter().cloned());
             found.faults.extend(read.faults.iter().cloned());
             found.decks.push(DeckEntry::of(read));
         }
@@ -34,15 +34,13 @@ pub(super) fn compare(session: &mut Session, found: &mut Found) {
         let Ok(file) = ResultsFile::read(&r.bytes, r.path()) else {
             continue;
         };
-        session
-            .findings
+        work.findings
             .extend(check_belongs(model, r.path(), &file, Supports::AsDeck));
         if let Ok(op2) = Op2::read(&r.bytes) {
             let (cards, _) = op2.cards();
             if !cards.grids.is_empty() {
                 let (geometry, _) = crate::model::Model::from_cards(&cards);
-                session
-                    .findings
+                work.findings
                     .extend(check_coordinates(model, r.path(), &geometry));
             }
         }

@@ -2,6 +2,8 @@
 
 mod ballast;
 mod cases;
+mod check;
+mod init;
 mod pages;
 mod place;
 mod sensitivity;
@@ -12,7 +14,7 @@ mod study;
 pub use pages::{write_book, write_page};
 
 use crate::app::fault::{Fault, Faults};
-use crate::app::outcome::{Answer, Outcome};
+use crate::app::outcome::{Answer, Outcome, Tables};
 use crate::app::output::Output;
 use std::path::Path;
 
@@ -53,6 +55,15 @@ pub fn finish<A: Answer>(outcome: &Outcome<A>, mut out: Output) -> Result<String
     out.write_bytes("result.json", json.as_bytes())?;
     out.commit()?;
     Ok(json)
+}
+
+/// The text of `result.json` of an outcome that is not written.
+///
+/// # Errors
+/// An answer without a JSON form, which is a mistake of the program.
+pub fn unsaved<A: Answer>(outcome: &Outcome<A>) -> Result<String, Faults> {
+    let json = outcome.to_json(&Tables::new());
+    Ok(json.map_err(|e| mistake("result.json", &e))?)
 }
 
 /// A file that a library refuses to make.
