@@ -52,7 +52,7 @@ pub fn run(arguments: Arguments) -> ExitCode {
             }
         }
         Command::Reconcile(a) => on_job("reconcile", &a, app::reconcile::run),
-        Command::Identify(a) => on_job("identify", &a, app::identify::run),
+        Command::Identify(a) => Run::of(&a.common, &a.job).job(&a.job, app::identify::identify),
         Command::Schema => print(app::job::schema::job_schema().as_bytes()),
         Command::Completions(a) => {
             let mut text = Vec::new();

@@ -3,6 +3,7 @@
 mod ballast;
 mod cases;
 mod check;
+mod identify;
 mod init;
 mod pages;
 mod place;

@@ -1,0 +1,129 @@
+//! Files and words of `identify`.
+
+use super::{Report, write_page};
+use crate::app::fault::Faults;
+use crate::app::identify::Identified;
+use crate::app::outcome::Outcome;
+use crate::app::output::Output;
+use crate::report::vehicle::{
+    Curve, identify_page, restoring_curves, write_chassis_forces, write_parameters,
+    write_restoring_force, write_wheel_forces,
+};
+use crate::series::welch::cross_spectra;
+use crate::vehicle::loads::LoadHistory;
+use crate::vehicle::motion::Motion;
+use std::fmt::Write;
+
+/// Half width of a 95 % interval over its standard deviation.
+const HALF_WIDTH: f64 = 1.96;
+
+impl Report for Outcome<Identified> {
+    fn write(&self, out: &mut Output) -> Result<(), Faults> {
+        let (found, fitted) = (&self.found, &self.fitted);
+        let mut write = |name: &str, text: String| out.write_bytes(name, text.as_bytes());
+        write("parameters.csv", write_parameters(found))?;
+        write(
+            "loads.csv",
+            write_wheel_forces(found, &fitted.loads, &fitted.motion),
+        )?;
+        if let Some(held) = &self.held_out {
+            let text = write_wheel_forces(found, &held.loads, &held.motion);
+            write("loads_hold_out.csv", text)?;
+        }
+        let text = write_restoring_force(found, &fitted.motion);
+        write("restoring_force.csv", text)?;
+        if !self.forces.is_empty() {
+            let leaves = self.job.vehicle.as_ref().map(|v| v.leaf.clone());
+            let leaves = leaves.unwrap_or_default();
+            let text = write_chassis_forces(&self.forces, &leaves, &fitted.motion);
+            write("chassis_forces.csv", text)?;
+        }
+        let shown = self.held_out.as_ref().unwrap_or(fitted);
+        let page = identify_page(
+            &self.job.title,
+            found,
+            &self.findings,
+            &history_curves(&shown.loads, &shown.motion),
+            &spectrum_curves(&shown.loads, &shown.motion),
+            &restoring_curves(found, &shown.motion),
+            &self.forces,
+        );
+        write_page(out, self, page)
+    }
+
+    fn words(&self) -> String {
+        let mut text = String::new();
+        for p in &self.parameters {
+            let _ = match (p.value, p.sigma) {
+                (Some(v), Some(s)) => writeln!(
+                    text,
+                    "{:12} {v:>14.6e} +- {:.2e} {} (95 %)",
+                    p.name,
+                    HALF_WIDTH * s,
+                    p.unit
+                ),
+                _ => writeln!(text, "{:12} {:>14} {}", p.name, "not told", p.unit),
+            };
+        }
+        for sentence in &self.unidentifiable {
+            let _ = writeln!(text, "{sentence}");
+        }
+        for f in &self.fit {
+            let _ = writeln!(
+                text,
+                "{:12} left over {:.2} % ({})",
+                f.channel,
+                100.0 * f.relative_rms,
+                f.on
+            );
+        }
+        if let Some(ratio) = self.mass_closure {
+            let _ = writeln!(text, "identified mass / weighed mass: {ratio:.4}");
+        }
+        text
+    }
+}
+
+/// Seconds of wheel force that the page shows.
+const SHOWN_S: f64 = 8.0;
+
+fn known(history: &LoadHistory) -> impl Iterator<Item = usize> + '_ {
+    (0..history.names.len()).filter(|&i| history.values[i].iter().any(|v| v.is_finite()))
+}
+
+fn history_curves(history: &LoadHistory, motion: &Motion) -> Vec<Curve> {
+    let n = ((SHOWN_S * history.rate_hz) as usize).min(motion.n_samples());
+    let cut = |x: &[f64]| x.iter().take(n).copied().collect::<Vec<f64>>();
+    known(history)
+        .map(|i| Curve {
+            name: history.names[i].clone(),
+            x: (0..n)
+                .map(|t| history.start_s + t as f64 / history.rate_hz)
+                .collect(),
+            recovered: cut(&history.values[i]),
+            measured: motion.forces[i].as_deref().map_or(vec![], cut),
+        })
+        .collect()
+}
+
+fn spectrum_curves(history: &LoadHistory, motion: &Motion) -> Vec<Curve> {
+    let segment = (4.0 * history.rate_hz) as usize;
+    known(history)
+        .map(|i| {
+            let measured = motion.forces[i].as_ref();
+            let s = cross_spectra(
+                &history.values[i],
+                measured.unwrap_or(&history.values[i]),
+                history.rate_hz,
+                segment,
+            );
+            let measured = measured.map_or(vec![], |_| s.yy);
+            Curve {
+                name: history.names[i].clone(),
+                x: s.f_hz,
+                recovered: s.xx,
+                measured,
+            }
+        })
+        .collect()
+}
