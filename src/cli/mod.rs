@@ -36,7 +36,7 @@ pub fn run(arguments: Arguments) -> ExitCode {
             Run::of(&a.common, &a.job).job(&a.job, app::sensitivity::sensitivity)
         }
         Command::Ballast(a) => Run::of(&a.common, &a.job).job(&a.job, app::ballast::ballast),
-        Command::Payload(a) => on_job("payload", &a, app::payload::run),
+        Command::Payload(a) => Run::of(&a.common, &a.job).job(&a.job, app::payload::payload),
         Command::Respond(a) => on_job("respond", &a, app::respond::run),
         Command::Study(a) => Run::of(&a.common, &a.job).job(&a.job, app::study::study),
         Command::Demo(a) => {

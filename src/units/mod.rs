@@ -14,3 +14,6 @@ pub use number::number;
 pub use plausible::*;
 pub use system::*;
 pub use unit::*;
+
+/// Strain in one microstrain.
+pub const MICROSTRAIN: f64 = 1e-6;

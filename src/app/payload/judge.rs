@@ -2,8 +2,8 @@
 
 use super::Task;
 use super::model::Parts;
-use crate::app::Session;
 use crate::app::words::short;
+use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::payload::{PayloadRun, Place, Refusal, WeighSpec, Weighing};
 
@@ -38,7 +38,7 @@ pub(super) fn words(task: &Task, refusal: &Refusal) -> String {
 
 /// What there is to say of every run, and of the gauges that carry nothing.
 pub(super) fn findings(
-    session: &mut Session,
+    work: &mut Work,
     task: &Task,
     parts: &Parts,
     runs: &[PayloadRun],
@@ -65,7 +65,7 @@ pub(super) fn findings(
                     "glue gauges where the payload strains the structure, or measure wheel forces",
                 ),
             };
-            session.findings.push(Finding::new(
+            work.findings.push(Finding::new(
                 Severity::Error,
                 code,
                 &r.run,
@@ -76,7 +76,7 @@ pub(super) fn findings(
         }
         let wide = (r.interval[1] - r.interval[0]) / r.force;
         if wide > VAGUE {
-            session.findings.push(
+            work.findings.push(
                 Finding::new(
                     Severity::Warning,
                     "payload-vague",
@@ -105,7 +105,7 @@ pub(super) fn findings(
                 .collect(),
         };
         for (w, t) in total.iter().enumerate().filter(|t| *t.1 < 0.0) {
-            session.findings.push(
+            work.findings.push(
                 Finding::new(
                     Severity::Error,
                     "wheel-lifts-off",
@@ -122,7 +122,7 @@ pub(super) fn findings(
                 (v[0][1] - v[0][0]).max(v[1][1] - v[1][0]) / 2.0
             });
             if axes[0] > room {
-                session.findings.push(
+                work.findings.push(
                     Finding::new(
                         Severity::Warning,
                         "place-not-determined",
@@ -155,7 +155,7 @@ pub(super) fn findings(
                 .fold(0.0, f64::max);
             if worst > 4.0 {
                 let unit = task.job.report_units.length.name;
-                session.findings.push(
+                work.findings.push(
                     Finding::new(
                         Severity::Warning,
                         "payload-elsewhere",
@@ -179,7 +179,7 @@ pub(super) fn findings(
         .map(|v| v.name.as_str())
         .collect();
     if !rejected.is_empty() {
-        session.findings.push(
+        work.findings.push(
             Finding::new(
                 Severity::Warning,
                 "gauges-not-used",

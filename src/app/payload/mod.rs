@@ -5,9 +5,13 @@ mod judge;
 mod model;
 mod readings;
 
+pub use answer::{Ellipse, NetReading, SingleGauge, Weighed, WeighedPayload};
+
+use super::context::Context;
 use super::fault::{Fault, Faults};
-use super::job::{self, Job, Payload, PayloadPosition};
-use super::{JobArguments, Session};
+use super::job::{Job, Payload, PayloadPosition};
+use super::outcome::{Outcome, StatedUnits};
+use super::work::Work;
 use crate::payload::{PayloadModel, PayloadRun, Place, WeighSpec, weigh};
 use crate::units::factor;
 
@@ -28,10 +32,12 @@ struct Task<'a> {
     wheels: Vec<String>,
 }
 
-/// Reads, weighs, writes.
-pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
-    let job = session.stage("read job", |s| job::read_job(&mut s.inputs, &arguments.job))?;
-    session.put_units(job.units, &job.report_units);
+/// Mass and, where it can be told, position of a payload, from strain, from wheel forces, or from both.
+///
+/// # Errors
+/// Every fault of the job and of the files it names; neither strain nor wheel forces to weigh by.
+pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
+    let mut work = Work::of_job(cx, job);
     let Some(payload) = &job.payload else {
         return Err(Faults::from(Fault::of(
             &*job.file,
@@ -54,7 +60,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
     let gravity = payload.gravity_m_s2.unwrap_or(9.806_65);
     let si = job.report_units.mass.si / job.report_units.force.si;
     let mut task = Task {
-        job: &job,
+        job,
         payload,
         weight_of_mass: gravity * si,
         force: factor(job.units, job.report_units.force),
@@ -63,12 +69,14 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         empty: Vec::new(),
         wheels: Vec::new(),
     };
-    let parts = model::model_of(session, &mut task, use_strain)?;
-    let runs = readings::runs_of(session, &task, &parts.model, use_strain, use_reactions)?;
-    let spec = spec_of(&task, &parts.model, &runs);
-    let weighing = session.stage("weigh", |_| weigh(&parts.model, &runs, &spec));
-    answer::put(session, &task, &parts, &runs, &spec, &weighing)?;
-    answer::write(session, arguments, &task, &parts, &runs, &weighing)
+    let parts = model::model_of(&mut work, &mut task, use_strain)?;
+    let readings = readings::runs_of(&mut work, &task, &parts.model, use_strain, use_reactions)?;
+    let runs = &readings.runs;
+    let spec = spec_of(&task, &parts.model, runs);
+    let weighing = work.stage("weigh", |_| weigh(&parts.model, runs, &spec));
+    judge::findings(&mut work, &task, &parts, runs, &spec, &weighing);
+    let answer = answer::weighed(&task, parts, readings, &spec, weighing);
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
 /// A limit far above any payload, in weights of the largest reading.

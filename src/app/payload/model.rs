@@ -1,13 +1,13 @@
 //! How gauges and wheels answer to the payload: from the deck, or from the tables of `[sensitivity]`.
 
 use super::Task;
-use crate::app::Session;
 use crate::app::deck::read_model;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::table::read_table;
 use crate::app::job::{Component, LoadActs};
 use crate::app::strain::{Prepared, prepare};
 use crate::app::wheels::{floor_fault, wheels_of};
+use crate::app::work::Work;
 use crate::fe::UnitLoad;
 use crate::fe::floor::solve_standing;
 use crate::finding::{Finding, Severity};
@@ -15,6 +15,7 @@ use crate::gauge::reading;
 use crate::linalg::Matrix;
 use crate::model::{GridIx, Model, Vec3};
 use crate::payload::PayloadModel;
+use crate::sensitivity::check_separability;
 
 /// The model of the payload with what the report draws.
 pub(super) struct Parts {
@@ -29,24 +30,24 @@ pub(super) struct Parts {
 /// # Errors
 /// Faults of deck, gauges, tables; no payload grid.
 pub(super) fn model_of(
-    session: &mut Session,
+    work: &mut Work,
     task: &mut Task,
     use_strain: bool,
 ) -> Result<Parts, Faults> {
     if task.job.sensitivity.is_some() {
-        return given(session, task, use_strain);
+        return given(work, task, use_strain);
     }
     let prepared = if use_strain {
-        Some(prepare(session, task.job)?)
+        Some(prepare(work, task.job)?)
     } else {
         None
     };
     if let Some(p) = &prepared {
-        session.put_conditioning(&p.sensitivity)?;
+        work.findings.extend(check_separability(&p.sensitivity));
     }
     match prepared.as_ref().and_then(|p| p.fields.as_ref()) {
         Some(fields) => {
-            let model = standing(session, task, fields.model(), prepared.as_ref())?;
+            let model = standing(work, task, fields.model(), prepared.as_ref())?;
             Ok(Parts { model, prepared })
         }
         None => {
@@ -58,13 +59,13 @@ pub(super) fn model_of(
                     "name the deck: [model] deck = \"model.bdf\"",
                 )));
             };
-            let read = session
+            let read = work
                 .stage("read model", |s| {
                     read_model(&mut s.inputs, &task.job.folder, &files.deck.given)
                 })
                 .map_err(Faults::from)?;
             Faults::check(read.faults)?;
-            let model = standing(session, task, &read.model, None)?;
+            let model = standing(work, task, &read.model, None)?;
             Ok(Parts {
                 model,
                 prepared: None,
@@ -104,7 +105,7 @@ fn payload_grid(task: &Task, model: &Model) -> Result<(GridIx, u32), Faults> {
 
 /// From the deck: unit loads at wheels and payload on the free structure, and the floor.
 fn standing(
-    session: &mut Session,
+    work: &mut Work,
     task: &mut Task,
     model: &Model,
     prepared: Option<&Prepared>,
@@ -131,7 +132,7 @@ fn standing(
             moment: *moment,
         })
         .collect();
-    let standing = session
+    let standing = work
         .stage("solve on the floor", |_| {
             solve_standing(model, a, &wheels.grids, &loads, None)
         })
@@ -166,7 +167,7 @@ fn standing(
         .map(|l| job.loads[*l].name.clone())
         .collect();
     task.nominal = [at[b] * task.length, at[c] * task.length];
-    session.findings.push(Finding::new(
+    work.findings.push(Finding::new(
         Severity::Info,
         "flat-floor",
         "payload",
@@ -225,7 +226,7 @@ fn standing(
 }
 
 /// From tables: S, and the payload's signature `b0, b_dx, b_dy` per mass.
-fn given(session: &mut Session, task: &mut Task, use_strain: bool) -> Result<Parts, Faults> {
+fn given(work: &mut Work, task: &mut Task, use_strain: bool) -> Result<Parts, Faults> {
     let job = task.job;
     let Some(tables) = &job.sensitivity else {
         return Err(Fault::of(
@@ -236,7 +237,7 @@ fn given(session: &mut Session, task: &mut Task, use_strain: bool) -> Result<Par
         )
         .into());
     };
-    let prepared = prepare(session, job)?;
+    let prepared = prepare(work, job)?;
     let s = &prepared.sensitivity;
     let vertical: Vec<usize> = (0..s.loads.len())
         .filter(|l| {
@@ -259,7 +260,7 @@ fn given(session: &mut Session, task: &mut Task, use_strain: bool) -> Result<Par
                 "name its table: signatures = { payload = \"B_payload.csv\" } with columns gauge, b0, b_dx, b_dy",
             )));
         };
-        let text = session
+        let text = work
             .inputs
             .read_named_text(job, file)
             .map_err(Faults::from)?;

@@ -1,15 +1,16 @@
 //! What the runs read: net strain with its noise, changes of the wheel forces, known places.
 
 use super::Task;
-use crate::app::Session;
+use super::answer::NetReading;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::runs::{RunRow, read_runs};
 use crate::app::job::strain::{StrainRows, StrainTable, read_strain};
 use crate::app::job::{NamedFile, PayloadPosition, WheelForces};
+use crate::app::outcome::finite;
+use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::payload::{PayloadModel, PayloadRun};
 use crate::recovery::net::{Net, WEAK, mean_of, net};
-use serde_json::json;
 
 /// Noise of a wheel force where the job states none, of the largest.
 pub(super) const ASSUMED_NOISE: f64 = 0.01;
@@ -17,23 +18,31 @@ pub(super) const ASSUMED_NOISE: f64 = 0.01;
 /// Strain in one microstrain.
 const MICRO: f64 = 1e-6;
 
+/// What was read.
+pub(super) struct Readings {
+    /// The runs to be weighed.
+    pub runs: Vec<PayloadRun>,
+    /// What each gauge reads of each run, less its zero.
+    pub net: Vec<NetReading>,
+}
+
 /// The runs to be weighed.
 ///
 /// # Errors
 /// Unreadable tables, runs without what the answer needs.
 pub(super) fn runs_of(
-    session: &mut Session,
+    work: &mut Work,
     task: &Task,
     model: &PayloadModel,
     use_strain: bool,
     use_reactions: bool,
-) -> Result<Vec<PayloadRun>, Faults> {
+) -> Result<Readings, Faults> {
     let job = task.job;
     let rows = match &job.runs {
-        Some(runs) => read_runs(&mut session.inputs, job, runs)?,
+        Some(runs) => read_runs(&mut work.inputs, job, runs)?,
         None => Vec::new(),
     };
-    let reactions = use_reactions && believed(session, task, use_strain);
+    let reactions = use_reactions && believed(work, task, use_strain);
     if !use_strain && !reactions {
         return Err(Faults::from(Fault::at(
             &*job.file,
@@ -45,8 +54,11 @@ pub(super) fn runs_of(
     }
     let unloaded = unloaded(task, &rows)?;
     let mut out: Vec<PayloadRun> = Vec::new();
+    let mut net = Vec::new();
     if use_strain {
-        for (run, nets) in strain(session, task, model)? {
+        let read = strain(work, task, model)?;
+        net = net_rows(model, &read);
+        for (run, nets) in read {
             if Some(&run) == task.payload.unloaded.as_ref() {
                 continue;
             }
@@ -115,7 +127,7 @@ pub(super) fn runs_of(
                 "add their rows and columns",
             )));
         }
-        session.findings.push(Finding::new(
+        work.findings.push(Finding::new(
             Severity::Warning,
             "run-without-wheel-forces",
             without.join(", "),
@@ -143,17 +155,17 @@ pub(super) fn runs_of(
     if !without.is_empty() {
         out.iter_mut().for_each(|r| r.reactions.clear());
     }
-    Ok(out)
+    Ok(Readings { runs: out, net })
 }
 
 /// Whether the wheel forces count as evidence; says so where they don't.
-fn believed(session: &mut Session, task: &Task, use_strain: bool) -> bool {
+fn believed(work: &mut Work, task: &Task, use_strain: bool) -> bool {
     let Some(runs) = &task.job.runs else {
         return false;
     };
     if runs.wheel_forces == WheelForces::Measured {
         if runs.noise.force.is_none_or(|s| s <= 0.0) {
-            session.findings.push(Finding::new(
+            work.findings.push(Finding::new(
                 Severity::Info,
                 "reaction-noise-assumed",
                 "runs.noise.force",
@@ -164,7 +176,7 @@ fn believed(session: &mut Session, task: &Task, use_strain: bool) -> bool {
         return true;
     }
     if use_strain {
-        session.findings.push(Finding::new(
+        work.findings.push(Finding::new(
             Severity::Info,
             "wheel-forces-computed",
             "runs.wheel_forces",
@@ -194,20 +206,20 @@ fn unloaded<'a>(task: &Task, rows: &'a [RunRow]) -> Result<Option<&'a RunRow>, F
 
 /// Net strain of every run by gauge of the model; says which gauges are too weak.
 fn strain(
-    session: &mut Session,
+    work: &mut Work,
     task: &Task,
     model: &PayloadModel,
 ) -> Result<Vec<(String, Vec<Net>)>, Faults> {
     let Some(measured) = &task.job.measured else {
         return Ok(Vec::new());
     };
-    let table = session.stage("read strain", |s| {
+    let table = work.stage("read strain", |s| {
         read_strain(&mut s.inputs, task.job, &measured.strain)
     })?;
     let noise = measured.noise_microstrain * MICRO;
     let zero: Vec<Option<Net>> = match &measured.zero {
         Some(named) => {
-            let t = read_strain(&mut session.inputs, task.job, named)?;
+            let t = read_strain(&mut work.inputs, task.job, named)?;
             by_gauge(&t, model)
                 .into_iter()
                 .map(|v| Some(mean_of(&v, noise)))
@@ -255,7 +267,7 @@ fn strain(
                 .collect()
         }
     };
-    say_net(session, task, model, &runs)?;
+    judge_net(work, task, model, &runs);
     Ok(runs)
 }
 
@@ -287,13 +299,8 @@ fn by_gauge(table: &StrainTable, model: &PayloadModel) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// `net` of the result, and the gauges too weak for the job in every run.
-fn say_net(
-    session: &mut Session,
-    task: &Task,
-    model: &PayloadModel,
-    runs: &[(String, Vec<Net>)],
-) -> Result<(), Faults> {
+/// The gauges too weak for the job in every run.
+fn judge_net(work: &mut Work, task: &Task, model: &PayloadModel, runs: &[(String, Vec<Net>)]) {
     let mut weak: Vec<&str> = Vec::new();
     let mut best = f64::INFINITY;
     for (g, name) in model.gauges.iter().enumerate() {
@@ -310,7 +317,7 @@ fn say_net(
         }
     }
     if !weak.is_empty() {
-        session.findings.push(
+        work.findings.push(
             Finding::new(
                 Severity::Warning,
                 "gauges-too-weak",
@@ -321,20 +328,21 @@ fn say_net(
             .with_numbers(best, WEAK),
         );
     }
-    let rows: Vec<serde_json::Value> = runs
-        .iter()
-        .flat_map(|(run, nets)| {
-            model.gauges.iter().zip(nets).map(move |(g, n)| {
-                let finite = |v: f64| v.is_finite().then_some(v);
-                json!({
-                    "run": run,
-                    "name": g,
-                    "net_microstrain": finite(n.value / MICRO),
-                    "sigma_microstrain": finite(n.sigma / MICRO),
-                    "signal_to_noise": finite(n.signal_to_noise()),
-                })
+}
+
+/// What each gauge reads of each run, less its zero.
+fn net_rows(model: &PayloadModel, runs: &[(String, Vec<Net>)]) -> Vec<NetReading> {
+    let of_run = |(run, nets): &(String, Vec<Net>)| -> Vec<NetReading> {
+        let gauges = model.gauges.iter().zip(nets);
+        gauges
+            .map(|(g, n)| NetReading {
+                run: run.clone(),
+                name: g.clone(),
+                net_microstrain: finite(n.value / MICRO),
+                sigma_microstrain: finite(n.sigma / MICRO),
+                signal_to_noise: finite(n.signal_to_noise()),
             })
-        })
-        .collect();
-    session.put("net", rows)
+            .collect()
+    };
+    runs.iter().flat_map(of_run).collect()
 }

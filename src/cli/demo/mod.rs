@@ -233,7 +233,10 @@ fn play(
         ),
         "recover" => run(app::recover::run),
         "reconcile" => run(app::reconcile::run),
-        "payload" => run(app::payload::run),
+        "payload" => asked(
+            &app::payload::payload(&Job::read(job, cx.files)?, &cx)?,
+            &folder.join(out),
+        ),
         _ => run(app::respond::run),
     })
 }

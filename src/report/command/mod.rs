@@ -6,6 +6,7 @@ mod check;
 mod identify;
 mod init;
 mod pages;
+mod payload;
 mod place;
 mod sensitivity;
 mod solve;
