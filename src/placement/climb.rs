@@ -4,7 +4,7 @@
 //! eq. 3.2.4).
 
 use super::criterion::Criterion;
-use super::relax::Active;
+use super::relaxed::Active;
 use super::table::{Packed, Table};
 use crate::linalg::spd;
 use rand::RngExt;

@@ -5,7 +5,8 @@
 use super::candidates::{Angles, Candidates, Choice};
 use super::criterion::Criterion;
 use super::kernel::{Priced, Report, price};
-use super::relax::{Active, Relaxed, relax};
+use super::relax::relax;
+use super::relaxed::{Active, Relaxed};
 use std::collections::{HashMap, HashSet};
 
 /// Which rows share a weight of at most 1.

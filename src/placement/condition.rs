@@ -9,8 +9,9 @@
 
 use super::candidates::{Angles, Candidates, Choice};
 use super::kick::{fits, moved};
-use super::layout::{Layout, Spec};
+use super::layout::Layout;
 use super::shortlist::excluder;
+use super::spec::Spec;
 use crate::linalg::spd;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -6,7 +6,8 @@
 //! known, `j` is fixed.
 
 use super::exchange::Chosen;
-use super::relax::{Active, Relaxed, relax};
+use super::relax::relax;
+use super::relaxed::{Active, Relaxed};
 use crate::linalg::spd;
 use rayon::prelude::*;
 use std::collections::HashMap;

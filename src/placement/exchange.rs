@@ -3,7 +3,7 @@
 //! Several starts and kicks, all from a fixed seed.
 
 use super::climb::{Climb, List};
-use super::relax::Active;
+use super::relaxed::Active;
 use super::table::Packed;
 use crate::linalg::spd;
 use rand::{RngExt, SeedableRng};

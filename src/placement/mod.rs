@@ -30,17 +30,20 @@ pub mod quality;
 pub mod quartic;
 pub mod region;
 pub mod relax;
+mod relaxed;
 pub mod robust;
 mod role;
 mod shortlist;
 pub mod sites;
 pub mod spacing;
+mod spec;
 mod table;
 pub mod units;
 
 pub use criterion::Criterion;
-pub use layout::{Layout, Loss, PlaceError, Spec, place};
+pub use layout::{Layout, PlaceError, place};
 pub use role::Role;
+pub use spec::{Loss, Spec};
 
 #[cfg(test)]
 mod tests;

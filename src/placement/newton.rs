@@ -4,7 +4,7 @@
 //! weights by moving weight between pairs of rows, which costs a row of the matrix each, and the step goes towards what it gives.
 
 use super::criterion::Criterion;
-use super::relax::{Active, Relaxed, pulls};
+use super::relaxed::{Active, Relaxed, pulls};
 use crate::linalg::spd;
 
 /// Rows without weight that join a step at most, by loads.

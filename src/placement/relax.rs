@@ -6,65 +6,10 @@
 //! row for each distinct gauge, or all the angles of a place, or all the places within a spacing. Every exchange direction of that set is
 //! a pair, so the search cannot stop short of the optimum.
 
-use super::criterion::{Criterion, Point};
+use super::criterion::Criterion;
 use super::newton;
+use super::relaxed::{Active, FULL, Relaxed, pulls};
 use crate::linalg::spd;
-
-/// The rows a relaxation works on.
-#[derive(Clone, Debug, Default)]
-pub struct Active {
-    /// Number of columns.
-    pub k: usize,
-    /// What is made large.
-    pub criterion: Criterion,
-    /// `n x k` by rows.
-    pub rows: Vec<f64>,
-    /// Group of each row, `0 .. n_groups`.
-    pub group: Vec<u32>,
-    /// Number of groups.
-    pub n_groups: usize,
-}
-
-impl Active {
-    /// Number of rows.
-    pub fn len(&self) -> usize {
-        self.group.len()
-    }
-
-    /// True without rows.
-    pub fn is_empty(&self) -> bool {
-        self.group.is_empty()
-    }
-
-    /// Row `i`.
-    pub fn row(&self, i: usize) -> &[f64] {
-        &self.rows[i * self.k..(i + 1) * self.k]
-    }
-}
-
-/// A solution of the relaxation on its rows.
-#[derive(Clone, Debug)]
-pub struct Relaxed {
-    /// Weights.
-    pub weights: Vec<f64>,
-    /// The criterion at `M`; `d = |root a|^2` is its slope towards a row.
-    pub point: Point,
-    /// `tr(G P)`, `G = root' root`.
-    pub prior_trace: f64,
-    /// Slopes towards the rows.
-    pub d: Vec<f64>,
-    /// Upper bound of the criterion over these rows, less its value, over its degree.
-    pub gap: f64,
-    /// Sweeps it took.
-    pub sweeps: usize,
-}
-
-impl Relaxed {
-    /// The criterion at the relaxed solution.
-    pub fn value(&self) -> f64 {
-        self.point.value
-    }
-}
 
 /// Sum of the `s` largest group maxima, and the least of those `s`.
 pub fn top_sum(d: impl Iterator<Item = (u32, f64)>, n_groups: usize, s: usize) -> (f64, f64) {
@@ -204,31 +149,6 @@ pub fn relax(
     Some(state)
 }
 
-/// By row, how much larger its slope is than the least slope of a row whose weight it can take: any other's where its group has room,
-/// that of a row of its group where it has not.
-pub(super) fn pulls(active: &Active, weights: &[f64], d: &[f64]) -> Vec<f64> {
-    let mut slack = vec![1.0; active.n_groups];
-    let mut least = vec![f64::INFINITY; active.n_groups];
-    let mut all = f64::INFINITY;
-    for ((&g, &w), &d) in active.group.iter().zip(weights).zip(d) {
-        let g = g as usize;
-        slack[g] -= w;
-        if w > 0.0 {
-            least[g] = least[g].min(d);
-            all = all.min(d);
-        }
-    }
-    active
-        .group
-        .iter()
-        .zip(d)
-        .map(|(&g, &d)| {
-            let g = g as usize;
-            d - if slack[g] > FULL { all } else { least[g] }
-        })
-        .collect()
-}
-
 /// Share of the gap that a Newton step must leave at most, or a sweep is made instead.
 const FALL: f64 = 0.9;
 
@@ -314,8 +234,6 @@ fn sweep_d(
     }
 }
 
-/// Weight under which a row or a group counts as full.
-const FULL: f64 = 1e-12;
 /// Partners a row tries in one sweep; the next sweep sorts again.
 const MAX_TRIES: usize = 48;
 

@@ -4,7 +4,7 @@
 
 use super::exchange::Effort;
 use super::kick::moved;
-use super::relax::Active;
+use super::relaxed::Active;
 use crate::linalg::spd;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

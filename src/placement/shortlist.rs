@@ -4,9 +4,9 @@ use super::candidates::{Angles, Candidates, Choice};
 use super::columns::{Columns, Groups};
 use super::exchange::{self, Effort};
 use super::kernel::{Priced, Report, price};
-use super::layout::Spec;
-use super::relax::Active;
+use super::relaxed::Active;
 use super::spacing;
+use super::spec::Spec;
 use crate::linalg::spd;
 use std::collections::{HashMap, HashSet};
 

@@ -2,7 +2,7 @@
 //!
 //! Rows lie in blocks of [`WIDE`], a column after the other, so that products of all rows with a vector run in vector registers.
 
-use super::relax::Active;
+use super::relaxed::Active;
 use crate::linalg::spd;
 
 /// Rows handled together.

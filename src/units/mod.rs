@@ -4,6 +4,7 @@
 
 mod number;
 mod plausible;
+mod report;
 mod system;
 mod unit;
 
@@ -12,6 +13,7 @@ mod tests;
 
 pub use number::number;
 pub use plausible::*;
+pub use report::*;
 pub use system::*;
 pub use unit::*;
 

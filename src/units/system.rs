@@ -1,6 +1,9 @@
 //! Consistent unit systems a deck can be written in.
 
-use super::{Quantity, Unit};
+use super::unit::{POUND_FORCE_N, Quantity, Unit};
+
+/// Metres in an inch (exact).
+const INCH_M: f64 = 0.0254;
 
 /// A consistent unit system; time is in seconds in all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,11 +17,6 @@ pub enum UnitSystem {
     /// inch, pound-force, second: mass in lbf s^2 / in.
     InLbfS,
 }
-
-/// Metres in an inch (exact).
-const INCH_M: f64 = 0.0254;
-/// Newtons in a pound-force (exact: 0.45359237 kg times 9.80665 m/s^2).
-pub(super) const POUND_FORCE_N: f64 = 4.448_221_615_260_5;
 
 impl UnitSystem {
     /// All of them, as a job may name them.

@@ -1,7 +1,7 @@
 //! The answer of `ballast`, and what is to be said of it.
 
 use super::completed::MassCards;
-use super::{CompletedDeck, DECK, Task, force, length, mass};
+use super::task::{CompletedDeck, DECK, Task, force, length, mass};
 use crate::app::job::Job;
 use crate::app::outcome::Answer;
 use crate::app::work::Work;

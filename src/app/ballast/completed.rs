@@ -1,6 +1,6 @@
 //! The completed deck: cards of the masses, and its reactions solved anew.
 
-use super::{DECK, Task};
+use super::task::{DECK, Task};
 use crate::app::deck::model_of_deck;
 use crate::app::fault::{Fault, Faults};
 use crate::app::wheels::floor_fault;

@@ -2,51 +2,29 @@
 
 mod answer;
 mod completed;
+mod task;
 
 pub use answer::{Ballasted, HungMass, Reaction, Together};
+pub use task::CompletedDeck;
 
 use super::context::Context;
-use super::deck::{DeckModel, read_model};
+use super::deck::read_model;
 use super::fault::{Fault, FaultList, Faults};
+use super::job::Job;
 use super::job::runs::read_runs;
-use super::job::{Ballast, Job};
 use super::outcome::{Outcome, StatedUnits};
-use super::wheels::{Wheels, floor_fault, wheels_of};
+use super::wheels::{floor_fault, wheels_of};
 use super::work::Work;
-use crate::fe::floor::{Standing, solve_standing};
+use crate::fe::floor::solve_standing;
 use crate::finding::{Finding, Severity};
 use crate::model::{GridIx, Vec3};
 use crate::payload::{BallastSpec, Carriers, size_ballast, spread};
-use crate::units::{Quantity, factor, number};
-use nastran::bdf::{Deck, Edits, write_edited};
-use std::path::Path;
+use crate::units::{Quantity, number};
+use nastran::bdf::{Edits, write_edited};
+use task::{Task, force};
 
-/// The completed deck.
-const DECK: &str = "completed";
 /// Noise of a measured reaction where the job states none, of the mean reaction.
 const ASSUMED_NOISE: f64 = 0.01;
-
-/// The deck with the masses in it.
-pub struct CompletedDeck {
-    deck: Deck,
-    edited: Vec<(String, Vec<u8>)>,
-}
-
-impl CompletedDeck {
-    /// Name and bytes of every file of the completed deck, its INCLUDEs as they are found from `folder`; the first is `completed.bdf`.
-    pub fn files(&self, folder: &Path) -> Vec<(String, Vec<u8>)> {
-        super::cases::relocated(&self.deck, self.edited.clone(), folder, DECK)
-    }
-}
-
-struct Task<'a> {
-    job: &'a Job,
-    ballast: &'a Ballast,
-    read: &'a DeckModel,
-    wheels: Wheels,
-    standing: Standing,
-    gravity: f64,
-}
 
 /// Lumped masses that bring the model's reactions to the measured ones, and the deck with them in it, read back and solved.
 ///
@@ -186,18 +164,6 @@ pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
     };
     let answer = answer(deck);
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
-}
-
-fn force(job: &Job) -> f64 {
-    factor(job.units, job.report_units.force)
-}
-
-fn length(job: &Job) -> f64 {
-    factor(job.units, job.report_units.length)
-}
-
-fn mass(job: &Job) -> f64 {
-    factor(job.units, job.report_units.mass)
 }
 
 /// Name, reactions and their sd in job units of the run asked for, in the order of the wheels.

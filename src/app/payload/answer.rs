@@ -1,8 +1,8 @@
 //! The answer of `payload`.
 
-use super::Task;
 use super::judge::words;
 use super::model::Parts;
+use super::task::Task;
 use crate::app::job::Job;
 use crate::app::outcome::{Answer, finite};
 use crate::app::strain::{Conditioning, Prepared};

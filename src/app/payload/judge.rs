@@ -1,7 +1,7 @@
 //! Findings of `payload`: refusals, wheels that lift off, places that can't be told, gauges that are not used.
 
-use super::Task;
 use super::model::Parts;
+use super::task::Task;
 use crate::app::words::short;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};

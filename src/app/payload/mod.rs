@@ -4,33 +4,18 @@ mod answer;
 mod judge;
 mod model;
 mod readings;
+mod task;
 
 pub use answer::{Ellipse, NetReading, SingleGauge, Weighed, WeighedPayload};
 
 use super::context::Context;
 use super::fault::{Fault, Faults};
-use super::job::{Job, Payload, PayloadPosition};
+use super::job::{Job, PayloadPosition};
 use super::outcome::{Outcome, StatedUnits};
 use super::work::Work;
 use crate::payload::{PayloadModel, PayloadRun, Place, WeighSpec, weigh};
 use crate::units::factor;
-
-/// A job's payload section with what it needs: counted in report units from here on (force, length).
-struct Task<'a> {
-    job: &'a Job,
-    payload: &'a Payload,
-    /// Gravity in report force per report mass.
-    weight_of_mass: f64,
-    /// Report force and length per job unit.
-    force: f64,
-    length: f64,
-    /// Nominal place of the payload in plan, report length, and the names of the plan axes.
-    nominal: [f64; 2],
-    /// Reactions of the structure's own weight, by wheel; empty where unknown.
-    empty: Vec<f64>,
-    /// Names of the wheels.
-    wheels: Vec<String>,
-}
+use task::Task;
 
 /// Mass and, where it can be told, position of a payload, from strain, from wheel forces, or from both.
 ///

@@ -1,6 +1,6 @@
 //! How gauges and wheels answer to the payload: from the deck, or from the tables of `[sensitivity]`.
 
-use super::Task;
+use super::task::Task;
 use crate::app::deck::read_model;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::table::read_table;

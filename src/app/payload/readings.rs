@@ -1,7 +1,7 @@
 //! What the runs read: net strain with its noise, changes of the wheel forces, known places.
 
-use super::Task;
 use super::answer::NetReading;
+use super::task::Task;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::runs::{RunRow, read_runs};
 use crate::app::job::strain::{StrainRows, StrainTable, read_strain};

@@ -3,36 +3,22 @@
 //! The key is the SHA-256 of everything a solution depends on: contents of the files, load cases, version, commit and features of the
 //! program. A changed deck or load finds nothing.
 
+mod key;
 mod solution_file;
 
 #[cfg(test)]
 mod tests;
 
+pub use key::Key;
+
 use super::half_written;
 use crate::fe::Solved;
-use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 /// Solutions kept in one folder; the oldest go first.
 const KEPT: usize = 8;
-
-/// What a solution is kept under.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Key(pub(super) [u8; 32]);
-
-impl Key {
-    /// The key of everything a solution depends on, in words.
-    pub fn of(identity: &str) -> Self {
-        Self(Sha256::digest(identity.as_bytes()).into())
-    }
-
-    /// Its first half, hexadecimal: the name of a file.
-    pub fn name(&self) -> String {
-        self.0[..16].iter().map(|b| format!("{b:02x}")).collect()
-    }
-}
 
 /// Where solutions are kept, as bytes under a key.
 pub trait SolutionStore: Sync {

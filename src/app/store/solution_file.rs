@@ -2,7 +2,7 @@
 //!
 //! A mark, the key's hash, little-endian numbers, and the SHA-256 of all bytes before; what does not add up is no solution.
 
-use super::Key;
+use super::key::Key;
 use crate::fe::{Balance, MassProperties, SolveReport, Solved};
 use crate::finding::{Finding, Severity};
 use crate::linalg::Matrix6;

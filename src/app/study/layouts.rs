@@ -1,6 +1,5 @@
 //! Layouts of a study: the gauges given, random ones, the best ones.
 
-use super::RANDOM_LAYOUTS;
 use super::pool::{Prepared, on_model};
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::{Criterion, Job, Role, Study};
@@ -15,6 +14,9 @@ use crate::sensitivity::{LoadCaseOf, common_shells};
 use crate::study::PoolGauge;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+
+/// Random layouts that the trials are dealt over.
+const RANDOM_LAYOUTS: usize = 50;
 
 /// Gauges of one kind and count.
 pub(super) struct LayoutOf {

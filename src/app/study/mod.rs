@@ -18,8 +18,6 @@ use serde::Serialize;
 
 /// Strain in one microstrain.
 const MICRO: f64 = 1e-6;
-/// Random layouts that the trials are dealt over.
-const RANDOM_LAYOUTS: usize = 50;
 
 /// One line of the answer.
 struct Line {

@@ -1,9 +1,12 @@
 //! `demo`: the truck story in a folder. Solve, place, glue and drive (made up here), recover, reconcile, recover again, weigh the payload,
 //! stress, report.
 
+mod chapter;
 mod jobs;
 mod page;
 mod yard;
+
+pub(super) use chapter::DECK_NAME;
 
 use super::DemoArguments;
 use crate::app::context::Context;
@@ -14,23 +17,12 @@ use crate::app::store::Folder;
 use crate::app::{self, Closed, CommonArguments, JobArguments, Session};
 use crate::fe::HeatedStrain;
 use crate::report::command::{Report, save};
+use chapter::{Chapter, DECK};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// The model, as in models/truck-shell.
-pub(super) const DECK: &str = include_str!("../../../models/truck-shell/truck.bdf");
-/// Its name in the story's folder.
-pub(super) const DECK_NAME: &str = "truck.bdf";
 /// Where the story goes if nobody says.
 const FOLDER: &str = "strainbridge-demo";
-
-/// One chapter: its folder and what happened.
-struct Chapter {
-    folder: &'static str,
-    words: String,
-    command: &'static str,
-    step: Closed,
-}
 
 /// Plays the story.
 pub fn run(arguments: &DemoArguments, cx: &Context) -> Result<Closed, Faults> {

@@ -1,6 +1,6 @@
 //! The page that leads through the story.
 
-use super::Chapter;
+use super::chapter::Chapter;
 use crate::finding::Severity;
 use crate::report::page::{Block, Page, Section};
 

@@ -1,6 +1,6 @@
 //! The truck in the yard: what its gauges and wheel transducers would have read.
 
-use super::DECK;
+use super::chapter::DECK;
 use super::jobs::{NOISE, PAYLOAD, WHEELS};
 use crate::app::fault::{Fault, Faults};
 use crate::fe::floor::{FloorLoad, Standing, solve_standing};

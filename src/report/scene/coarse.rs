@@ -1,19 +1,8 @@
 //! Fewer triangles for the eye: grids that lie close together become one. What is computed never passes here.
 
-use super::skin::Part;
+use super::part::{Drawn, Part};
 use crate::model::{Model, Vec3};
 use std::collections::{BTreeMap, HashSet};
-
-/// What is drawn of a part.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Drawn {
-    /// By grid of the part: its vertex.
-    pub vertex_of: Vec<u32>,
-    /// By vertex: the grid of the part that stands for it.
-    pub vertices: Vec<u32>,
-    /// Corners, indices into `vertices`.
-    pub triangles: Vec<[u32; 3]>,
-}
 
 /// Halvings of the search for the width of a cell.
 const STEPS: usize = 9;

@@ -2,25 +2,16 @@
 
 use super::outline::{bars, outline};
 use super::paint::Values;
-use super::skin::{Part, skin};
+use super::part::Part;
+use super::skin::skin;
 use super::types::{Arrow, Field, Mark, Scene, Twist};
+use super::view::SceneView;
 use crate::fe::strain_tensor::Surface;
 use crate::model::{Model, Vec3};
 use crate::report::figure::{embedded, packed_f32, packed_i16, packed_u32, short, shorts};
 use crate::report::page::{Block, Section};
 use maud::{Markup, html};
 use serde_json::{Value, json};
-
-/// A scene ready to be shown.
-#[derive(Clone, Debug)]
-pub struct SceneView {
-    /// In three dimensions, for a browser.
-    pub markup: Markup,
-    /// Outline of the shells and axes of the bars, basic frame.
-    pub lines: Vec<[Vec3; 2]>,
-    /// Gauges.
-    pub marks: Vec<Mark>,
-}
 
 /// The section. Colour: the largest principal strain by magnitude at the surfaces of shells, at the centre of solids.
 pub fn scene_section(title: &str, scene: &Scene) -> Section {

@@ -5,16 +5,19 @@ mod drawing;
 mod of_job;
 mod outline;
 mod paint;
+mod part;
 mod skin;
 mod solids;
 mod types;
+mod view;
 
-pub use drawing::{SceneView, scene_section};
+pub use drawing::scene_section;
 pub use of_job::{
     Shown, fields_of, mark_of_gap, placed_mark, run_arrows, scene_of, scene_of_job,
     scene_of_solution,
 };
 pub use types::{Arrow, ArrowSet, Field, Mark, Scene, Twist};
+pub use view::SceneView;
 
 #[cfg(test)]
 mod tests;

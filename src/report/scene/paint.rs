@@ -1,6 +1,6 @@
 //! Strain as numbers at the vertices that are drawn.
 
-use super::skin::{Owner, Part};
+use super::part::{Owner, Part};
 use crate::fe::CaseResult;
 use crate::fe::strain_tensor::{largest_in_plane, largest_principal};
 use crate::model::Model;

@@ -1,6 +1,7 @@
 //! The surface that is drawn: shells and the outside of solids, by property.
 
-use super::coarse::{Drawn, coarsened};
+use super::coarse::coarsened;
+use super::part::{Owner, Part};
 use super::solids::outside;
 use crate::model::{GridIx, Model};
 use std::collections::{BTreeMap, HashMap};
@@ -12,37 +13,6 @@ const LEAST_TRIANGLES: usize = 20_000;
 const FEW_FIELDS: usize = 6;
 /// Properties that are switched on and off one by one; the smallest beyond go together.
 const MOST_PARTS: usize = 40;
-
-/// The element that a face belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Owner {
-    /// Index into `shells`.
-    Shell(usize),
-    /// Index into `solids`.
-    Solid(usize),
-    /// No strain.
-    Panel,
-}
-
-/// Faces of one property.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Part {
-    /// What it is called.
-    pub name: String,
-    /// Grids of its faces.
-    pub grids: Vec<GridIx>,
-    /// Faces: owner, indices into `grids`; triangles repeat the third.
-    pub faces: Vec<(Owner, [u32; 4])>,
-    /// What is drawn of them.
-    pub drawn: Drawn,
-}
-
-impl Part {
-    fn n_triangles(&self) -> usize {
-        let quads = self.faces.iter().filter(|f| f.1[2] != f.1[3]).count();
-        self.faces.len() + quads
-    }
-}
 
 /// Faces by property, coarsened so that all together stay below a limit: small parts whole, large ones with what is left.
 pub(super) fn skin(model: &Model, fields: usize) -> Vec<Part> {

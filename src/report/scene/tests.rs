@@ -1,6 +1,7 @@
 use super::outline::outline;
 use super::paint::Values;
-use super::skin::{Part, skin};
+use super::part::Part;
+use super::skin::skin;
 use super::*;
 use crate::fe::strain_tensor::largest_in_plane;
 use crate::fe::{CaseResult, ShellField};

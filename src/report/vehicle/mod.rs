@@ -1,10 +1,12 @@
 //! Tables and page of `identify`.
 
+mod curve;
 mod page;
 mod restoring;
 mod tables;
 
-pub use page::{Curve, identify_page};
+pub use curve::Curve;
+pub use page::identify_page;
 pub use restoring::{restoring_curves, restoring_section};
 pub use tables::{
     write_chassis_forces, write_parameters, write_restoring_force, write_wheel_forces,

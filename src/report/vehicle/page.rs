@@ -1,24 +1,13 @@
 //! The page of `identify`.
 
+use super::curve::{Curve, plots};
 use super::restoring::restoring_section;
 use crate::finding::Finding;
-use crate::report::figure::{Line, Scale, lines};
+use crate::report::figure::Scale;
 use crate::report::page::{Block, Page, Section, number, table_section};
 use crate::series::detrend::rms;
 use crate::vehicle::chassis::ChassisForce;
 use crate::vehicle::identify::{Estimate, Identification};
-
-/// A signal recovered and measured over one axis; `measured` is empty where it was not measured.
-pub struct Curve {
-    /// Load or link name.
-    pub name: String,
-    /// Time (s), frequency (Hz) or stretch.
-    pub x: Vec<f64>,
-    /// Recovered.
-    pub recovered: Vec<f64>,
-    /// Measured.
-    pub measured: Vec<f64>,
-}
 
 /// Parameters, verdicts, fit, a stretch of wheel force over time, spectra, restoring forces.
 pub fn identify_page(
@@ -106,23 +95,4 @@ fn fit(found: &Identification) -> Vec<Block> {
         )));
     }
     out
-}
-
-/// Curves one at a time, what was measured below what was recovered.
-pub(super) fn plots(curves: &[Curve], x_label: &str, y_label: &str, scale: Scale) -> Block {
-    let groups: Vec<(String, Vec<Line>)> = curves
-        .iter()
-        .map(|c| {
-            let line = |name, y| Line { name, x: &c.x, y };
-            let mut list = vec![line("recovered", &c.recovered)];
-            if !c.measured.is_empty() {
-                list.insert(0, line("measured", &c.measured));
-            }
-            (c.name.clone(), list)
-        })
-        .collect();
-    if groups.is_empty() {
-        return Block::Note("None.".into());
-    }
-    Block::Figure(lines(&groups, x_label, y_label, scale))
 }

@@ -1,6 +1,6 @@
 //! The restoring force of a link: what its model says, and what the motion of the body that it carries asks for.
 
-use super::page::{Curve, plots};
+use super::curve::{Curve, plots};
 use crate::report::figure::Scale;
 use crate::report::page::Section;
 use crate::vehicle::identify::Identification;

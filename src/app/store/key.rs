@@ -1,0 +1,19 @@
+//! What a solution is kept under.
+
+use sha2::{Digest, Sha256};
+
+/// What a solution is kept under.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Key(pub(super) [u8; 32]);
+
+impl Key {
+    /// The key of everything a solution depends on, in words.
+    pub fn of(identity: &str) -> Self {
+        Self(Sha256::digest(identity.as_bytes()).into())
+    }
+
+    /// Its first half, hexadecimal: the name of a file.
+    pub fn name(&self) -> String {
+        self.0[..16].iter().map(|b| format!("{b:02x}")).collect()
+    }
+}

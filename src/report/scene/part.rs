@@ -1,0 +1,46 @@
+//! Faces of one property, and what is drawn of them.
+
+use crate::model::GridIx;
+
+/// The element that a face belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Owner {
+    /// Index into `shells`.
+    Shell(usize),
+    /// Index into `solids`.
+    Solid(usize),
+    /// No strain.
+    Panel,
+}
+
+/// Faces of one property.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Part {
+    /// What it is called.
+    pub name: String,
+    /// Grids of its faces.
+    pub grids: Vec<GridIx>,
+    /// Faces: owner, indices into `grids`; triangles repeat the third.
+    pub faces: Vec<(Owner, [u32; 4])>,
+    /// What is drawn of them.
+    pub drawn: Drawn,
+}
+
+impl Part {
+    /// Triangles of its faces.
+    pub(super) fn n_triangles(&self) -> usize {
+        let quads = self.faces.iter().filter(|f| f.1[2] != f.1[3]).count();
+        self.faces.len() + quads
+    }
+}
+
+/// What is drawn of a part.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Drawn {
+    /// By grid of the part: its vertex.
+    pub vertex_of: Vec<u32>,
+    /// By vertex: the grid of the part that stands for it.
+    pub vertices: Vec<u32>,
+    /// Corners, indices into `vertices`.
+    pub triangles: Vec<[u32; 3]>,
+}

@@ -1,0 +1,16 @@
+//! A scene ready to be shown.
+
+use super::types::Mark;
+use crate::model::Vec3;
+use maud::Markup;
+
+/// A scene ready to be shown.
+#[derive(Clone, Debug)]
+pub struct SceneView {
+    /// In three dimensions, for a browser.
+    pub markup: Markup,
+    /// Outline of the shells and axes of the bars, basic frame.
+    pub lines: Vec<[Vec3; 2]>,
+    /// Gauges.
+    pub marks: Vec<Mark>,
+}
