@@ -1,14 +1,18 @@
 //! The rules of the house as tests: layers, who may print, open files or be unsafe, what must have a README.
 
+mod imports;
+mod size;
+
 use std::path::{Path, PathBuf};
 
 /// Row of each module of the root crate; imports go strictly downward. `finding` and `linalg` are below all others of row 1:
 /// estimates carry findings, series use linear algebra.
-const ROWS: [(&str, f64); 20] = [
+const ROWS: [(&str, f64); 21] = [
     ("cli", 10.0),
     ("report", 9.0),
     ("app", 8.0),
     ("reconcile", 7.0),
+    ("calibrate", 7.0),
     ("study", 7.0),
     ("payload", 7.0),
     ("placement", 6.0),
@@ -213,4 +217,35 @@ fn main_is_a_summary_and_every_model_says_what_it_proves() {
             );
         }
     }
+}
+
+/// Circles that are still to be untied; the list only shrinks.
+const CIRCLES: [&str; 0] = [];
+
+#[test]
+fn no_circle_of_imports() {
+    let all = sources();
+    let mut found = Vec::new();
+    for root in ["src/", "nastran/src/"] {
+        let files = all
+            .iter()
+            .filter(|f| f.0.starts_with(root) && !is_test(&f.0));
+        let files = files.map(|(path, lines)| (path.as_str(), lines.join("\n")));
+        for circle in imports::Crate::of(root, files).circles() {
+            found.push(circle.join(", "));
+        }
+    }
+    let new: Vec<&String> = found
+        .iter()
+        .filter(|c| !CIRCLES.contains(&c.as_str()))
+        .collect();
+    assert!(new.is_empty(), "these files import each other: {new:#?}");
+    let gone: Vec<&&str> = CIRCLES
+        .iter()
+        .filter(|c| !found.iter().any(|f| f == *c))
+        .collect();
+    assert!(
+        gone.is_empty(),
+        "untied, take them from the list: {gone:#?}"
+    );
 }

@@ -1,0 +1,66 @@
+//! Lengths of files and functions.
+
+use super::{is_test, sources};
+
+/// Lines of a file at most.
+const FILE: usize = 500;
+/// Lines of a function at most.
+const FUNCTION: usize = 120;
+
+/// Files and functions (`path function`) that are longer still; the list only shrinks.
+const LONGER: [&str; 0] = [];
+
+#[test]
+fn files_and_functions_are_short() {
+    let mut found = Vec::new();
+    for (path, lines) in sources() {
+        if is_test(&path) {
+            continue;
+        }
+        if lines.len() > FILE {
+            found.push((path.clone(), lines.len()));
+        }
+        for (name, length) in functions(&lines) {
+            if length > FUNCTION {
+                found.push((format!("{path} {name}"), length));
+            }
+        }
+    }
+    let new: Vec<_> = found
+        .iter()
+        .filter(|f| !LONGER.contains(&f.0.as_str()))
+        .collect();
+    assert!(new.is_empty(), "split these (name, lines): {new:#?}");
+    let gone: Vec<_> = LONGER
+        .iter()
+        .filter(|l| !found.iter().any(|f| f.0 == **l))
+        .collect();
+    assert!(
+        gone.is_empty(),
+        "short now, take them from the list: {gone:#?}"
+    );
+}
+
+/// Name and lines of each function, by its indentation.
+fn functions(lines: &[String]) -> Vec<(String, usize)> {
+    let mut out = Vec::new();
+    for (start, line) in lines.iter().enumerate() {
+        let bare = line.trim_start();
+        let indent = &line[..line.len() - bare.len()];
+        let head = bare.split('(').next().unwrap_or("");
+        let words: Vec<&str> = head.split_whitespace().collect();
+        let Some(at) = words.iter().position(|w| *w == "fn") else {
+            continue;
+        };
+        if !bare.starts_with("pub") && at > 2 || bare.ends_with(';') || bare.ends_with('}') {
+            continue;
+        }
+        let end = format!("{indent}}}");
+        let Some(length) = lines[start..].iter().position(|l| l.trim_end() == end) else {
+            continue;
+        };
+        let name = words.get(at + 1).unwrap_or(&"").split('<').next();
+        out.push((name.unwrap_or("").to_owned(), length + 1));
+    }
+    out
+}
