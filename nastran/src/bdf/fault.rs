@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::deck::Source;
+use super::source::Source;
 use crate::place::Place;
 
 /// A fault of a deck.
@@ -88,6 +88,8 @@ pub enum Wrong {
     IncludeName {
         found: String,
     },
+    /// The deck ends within a line and without ENDDATA.
+    CutShort,
     /// A case control or executive line that cannot be read.
     Statement {
         found: String,
@@ -112,6 +114,7 @@ impl Wrong {
             Self::Orphan { label } => Some(label),
             Self::IncludeNotFound { name, .. } | Self::IncludeCycle { name } => Some(name),
             Self::Missing
+            | Self::CutShort
             | Self::TooManyReplicated { .. }
             | Self::IncludeDepth { .. }
             | Self::IncludeCount { .. } => None,
@@ -162,6 +165,9 @@ impl Wrong {
             Self::IncludeName { found } => {
                 format!("the file name of INCLUDE cannot be read: {found}")
             }
+            Self::CutShort => {
+                "the deck ends within a line and without ENDDATA: it is cut".to_owned()
+            }
             Self::Statement { found, why } => format!("{why}: {found}"),
         }
     }
@@ -198,6 +204,7 @@ impl Wrong {
                 "join some of the included files"
             }
             Self::IncludeName { .. } => "write INCLUDE 'file' with both quotes",
+            Self::CutShort => "copy the deck again, or close it with ENDDATA",
             Self::Statement { .. } => "correct the statement",
         }
     }
