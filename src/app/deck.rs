@@ -1,7 +1,7 @@
 //! Decks and models: INCLUDE from the file system, the model of a deck or of an OP2 that holds the mesh.
 
 use super::fault::{Fault, FaultList};
-use super::files::Inputs;
+use super::files::{Inputs, why_unreadable};
 use crate::finding::{Finding, Severity};
 use crate::model::{FaultKind, FaultWeight, Material, MaterialKind, Model, ModelFault};
 use nastran::bdf::{Deck, IncludeRequest, Loaded, Loader, read_deck};
@@ -243,7 +243,7 @@ impl Loader for FileLoader<'_, '_> {
                     return Ok(Loaded { path: name, bytes });
                 }
                 Err(e) if e.kind() == std::io::ErrorKind::NotFound => {}
-                Err(e) => why = e.to_string(),
+                Err(e) => why = why_unreadable(&e).0,
             }
         }
         Err(why)
@@ -251,7 +251,7 @@ impl Loader for FileLoader<'_, '_> {
 }
 
 /// The path with `.` and `folder/..` taken out, so that one file has one name.
-fn without_dots(path: &Path) -> PathBuf {
+pub(super) fn without_dots(path: &Path) -> PathBuf {
     let mut out = PathBuf::new();
     for part in path.components() {
         match part {

@@ -33,6 +33,7 @@ pub mod strains;
 pub mod study;
 pub mod vehicle;
 mod wheels;
+mod whole_file;
 pub mod words;
 pub mod work;
 

@@ -1,7 +1,7 @@
 //! Writing: files appear under their names only when all of them are complete.
 
 use super::fault::Fault;
-use super::files::{FileBytes, load};
+use super::whole_file::{FileBytes, load};
 use super::half_written;
 use super::outcome::Tables;
 use std::fs::File;

@@ -188,7 +188,8 @@ impl Builder<'_> {
         by_sid: &BTreeMap<u32, Vec<&Placed<SetSum>>>,
     ) {
         if let Some(sum) = by_sid.get(&sid).and_then(|cards| cards.first()) {
-            let what = format!("{card} that stands for more than {MOST_TERMS} sets with the others");
+            let what =
+                format!("{card} that stands for more than {MOST_TERMS} sets with the others");
             let remedy = "write fewer sums that name sums";
             let kind = FaultKind::Unsupported { what, remedy };
             self.fault(format!("{card} {sid}"), "S", sum.at, kind);

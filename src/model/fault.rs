@@ -105,7 +105,9 @@ impl ModelFault {
             Degenerate { .. } => "correct the order of its grids, or delete the element".into(),
             Orientation => "give an orientation vector that isn't parallel to the element".into(),
             CollinearFrame => "move point C off the line A B, and B off A".into(),
-            SumCycle { .. } => "take one of the sets of the circle out of the card that names it".into(),
+            SumCycle { .. } => {
+                "take one of the sets of the circle out of the card that names it".into()
+            }
             FrameCycle => "define one of the systems of the circle in the basic system".into(),
             CollinearArms => {
                 "add a grid off the line, or add rotations 456 to the connected dofs".into()

@@ -96,7 +96,14 @@ mod tests {
 
     #[test]
     fn circles_are_named_as_they_go_and_what_hangs_on_them_is_not_written_out() {
-        let found = order(&[(1, &[2]), (2, &[5]), (5, &[3]), (3, &[2]), (8, &[8]), (4, &[9])]);
+        let found = order(&[
+            (1, &[2]),
+            (2, &[5]),
+            (5, &[3]),
+            (3, &[2]),
+            (8, &[8]),
+            (4, &[9]),
+        ]);
         assert_eq!(found.ready, [4]);
         assert_eq!(found.circles, [vec![2, 5, 3], vec![8]]);
     }

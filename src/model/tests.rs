@@ -464,7 +464,10 @@ fn twenty_thousand_loads_that_name_each_other_are_written_out_at_once() {
     let (m, faults) = model(&text);
     // measured .1 s; copying every sum for every other took over 40 s
     assert!(start.elapsed().as_secs() < 10);
-    assert!(faults.iter().all(|f| f.weight() == FaultWeight::Note), "{faults:?}");
+    assert!(
+        faults.iter().all(|f| f.weight() == FaultWeight::Note),
+        "{faults:?}"
+    );
     let last = m.load_sets.iter().find(|s| s.sid == 30_040).unwrap();
     assert_eq!(last.loads.len(), 1);
     assert_eq!(last.loads[0].0, 2_f64.powi(40));
@@ -487,7 +490,11 @@ fn sets_that_sum_each_other_in_a_circle_are_called_that() {
             "LOAD 3: the sets name each other in a circle: 3 -> 4 -> 5 -> 3",
         ]
     );
-    assert!(!faults.iter().any(|f| matches!(f.kind, FaultKind::Missing { .. })));
+    assert!(
+        !faults
+            .iter()
+            .any(|f| matches!(f.kind, FaultKind::Missing { .. }))
+    );
 }
 
 #[test]

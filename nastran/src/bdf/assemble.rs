@@ -126,9 +126,13 @@ impl<'a, 'b> Assembler<'a, 'b> {
     }
 
     fn not_a_card(&mut self, line: &Line) {
-        let what = Wrong::NotACard {
-            found: excerpt(trim(line.text)),
+        // An included file may be any file of the machine: its lines are not shown.
+        let found = if self.source == SourceIx(0) {
+            excerpt(trim(line.text))
+        } else {
+            String::new()
         };
+        let what = Wrong::NotACard { found };
         let at = Place {
             source: self.source,
             line: line.number,

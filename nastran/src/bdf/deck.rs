@@ -50,6 +50,14 @@ pub struct Deck {
 }
 
 impl Deck {
+    /// Whether nothing was found that makes a text a deck: no section, no card with a struct.
+    pub(super) fn is_empty(&self) -> bool {
+        self.bounds == SectionBounds::default()
+            && self.sol_text.is_none()
+            && self.case_control.lines.is_empty()
+            && self.cards == Cards::default()
+    }
+
     /// The text of a card that has no struct; bytes that are not UTF-8 as Latin-1.
     pub fn text(&self, card: &OtherCard) -> String {
         let source = self.sources.get(card.at.source.0 as usize);

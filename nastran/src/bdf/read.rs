@@ -7,6 +7,7 @@ use super::budget::BUDGET;
 use super::case;
 use super::chunk::read_chunks;
 use super::deck::Deck;
+use super::fault::{Fault, Wrong};
 use super::fields::MAX_FAULTS;
 use super::include::Loader;
 use super::line::text_of;
@@ -57,7 +58,23 @@ pub fn read_deck(main_path: &str, bytes: Vec<u8>, loader: &mut dyn Loader) -> De
     read_sol(&sections.case, &mut deck);
     deck.case_control = case::read_case_control(&sections.case, &mut deck.faults);
     deck.faults.extend(sections.faults);
-    deck.faults.extend(faults);
+    // Of a text that is no deck every line is wrong: said once, and none of it shown.
+    let nameless = |f: &Fault| f.card.is_empty();
+    if deck.is_empty() && deck.faults.is_empty() && faults.iter().all(nameless) {
+        deck.others.clear();
+        deck.counts.clear();
+        deck.faults.push(Fault {
+            at: Place {
+                line: 1,
+                ..Place::default()
+            },
+            card: String::new(),
+            field: None,
+            what: Wrong::NotADeck,
+        });
+    } else {
+        deck.faults.extend(faults);
+    }
     deck.notes = sections.notes;
     deck.notes.extend(notes);
     if deck.faults.len() >= MAX_FAULTS {
