@@ -11,6 +11,14 @@ use std::io::{self, Write};
 pub const STRAINS_HEADER: &str =
     "subcase,element,type,location,surface,exx,eyy,gxy,Exx,Eyy,Ezz,Exy,Eyz,Ezx";
 
+/// Columns of `strains.csv` with their units.
+pub fn strains_columns() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let is_strain = |c: &str| c.len() == 3 && c.starts_with(['e', 'g', 'E']);
+    STRAINS_HEADER
+        .split(',')
+        .map(move |c| (c, if is_strain(c) { "microstrain" } else { "" }))
+}
+
 /// Microstrain.
 const MICRO: f64 = 1e-6;
 
