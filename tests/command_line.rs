@@ -183,6 +183,12 @@ fn check_and_strains_write_a_page_beside_their_result() {
     );
     let csv = std::fs::read_to_string(dir.join("s/strains.csv")).unwrap();
     assert_eq!(csv.lines().count(), 3, "{csv}");
+    // a strain of a thousandth is 1000 microstrain
+    assert!(
+        csv.lines()
+            .any(|l| l.contains("top,1.0000000") && l.contains("e3,")),
+        "{csv}"
+    );
 
     let out = strainbridge(&[
         "check",

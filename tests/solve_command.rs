@@ -7,8 +7,15 @@ use std::process::{Command, Output};
 fn strainbridge(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_strainbridge"))
         .args(arguments)
+        .env("STRAINBRIDGE_CACHE", kept_beside(arguments))
         .output()
         .unwrap()
+}
+
+/// A folder for kept solutions of its own for every test: beside the file that the command is about.
+fn kept_beside(arguments: &[&str]) -> PathBuf {
+    let file = Path::new(arguments.get(1).copied().unwrap_or_default());
+    file.with_file_name("kept")
 }
 
 fn folder(name: &str) -> PathBuf {
@@ -233,17 +240,18 @@ fn answer(dir: &Path) -> String {
 }
 
 fn kept(dir: &Path) -> Vec<PathBuf> {
-    std::fs::read_dir(dir.join("model.cache"))
+    std::fs::read_dir(dir.join("kept"))
         .map(|list| list.map(|e| e.unwrap().path()).collect())
         .unwrap_or_default()
 }
 
 #[test]
-fn a_solution_is_kept_beside_the_deck_and_gives_the_same_answer() {
+fn a_kept_solution_gives_the_same_answer_and_nothing_is_kept_beside_the_deck() {
     let (code, first, dir) = solve("kept", &strip(""));
     assert_eq!(code, 0, "{first}");
     assert!(!first.contains("cache"), "{first}");
     let [file] = kept(&dir).try_into().unwrap();
+    assert!(!dir.join("model.cache").exists());
     let deck = dir.join("model.bdf");
     let run = |out: &str, extra: &[&str]| {
         let out = dir.join(out);
@@ -259,7 +267,7 @@ fn a_solution_is_kept_beside_the_deck_and_gives_the_same_answer() {
         (out, text(&done.stderr))
     };
     let (again, err) = run("again", &[]);
-    assert!(err.contains("taken from the cache"), "{err}");
+    assert!(err.contains("taken from those kept"), "{err}");
     let base = dir.join("model.out");
     assert_eq!(answer(&base), answer(&again));
     for name in ["results.op2", "results.vtu"] {
@@ -292,7 +300,7 @@ fn a_changed_deck_is_solved_again() {
     let done = strainbridge(&["solve", deck.to_str().unwrap()]);
     assert_eq!(done.status.code(), Some(0));
     let err = text(&done.stderr);
-    assert!(!err.contains("taken from the cache"), "{err}");
+    assert!(!err.contains("taken from those kept"), "{err}");
     assert_eq!(kept(&dir).len(), 2);
 }
 
@@ -341,13 +349,13 @@ fn recover_takes_the_solution_of_sensitivity_and_warns_of_content_near_the_first
         );
         err
     };
-    assert!(!run("sensitivity").contains("taken from the cache"));
+    assert!(!run("sensitivity").contains("taken from those kept"));
     let err = run("recover");
-    assert!(err.contains("taken from the cache"), "{err}");
+    assert!(err.contains("taken from those kept"), "{err}");
     assert!(!err.contains("first elastic mode"), "{err}");
     std::fs::write(&path, fast).unwrap();
     let err = run("recover");
-    assert!(err.contains("taken from the cache"), "{err}");
+    assert!(err.contains("taken from those kept"), "{err}");
     assert!(err.contains("first elastic mode"), "{err}");
     let json = std::fs::read(dir.join("job.out/result.json")).unwrap();
     let result: serde_json::Value = serde_json::from_slice(&json).unwrap();

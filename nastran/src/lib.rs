@@ -14,3 +14,8 @@ pub mod op2;
 pub mod place;
 pub mod punch;
 pub mod results;
+
+/// The example of README.md compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,6 +1,7 @@
 //! Damaged OP2 files: every truncation and thousands of seeded mutations give an error or a partial answer, never a panic.
 
 use nastran::op2::Op2;
+use nastran::results::Salvaged;
 use std::path::PathBuf;
 
 const SHARED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/nastran");
@@ -31,7 +32,9 @@ fn files(largest: u64) -> Vec<(PathBuf, Vec<u8>)> {
 
 /// Reads everything a file holds; the number of rows that came out.
 fn read_all(bytes: &[u8]) -> usize {
-    let Ok(op2) = Op2::read(bytes) else { return 0 };
+    let Ok(Salvaged { file: op2, .. }) = Op2::salvage(bytes) else {
+        return 0;
+    };
     let rows = (0..op2.blocks.len())
         .filter_map(|b| op2.rows(b).ok())
         .map(|r| r.len())
@@ -98,7 +101,7 @@ fn a_large_file_cut_after_any_record_keeps_the_blocks_before_it() {
         let ends = record_ends(&bytes);
         let (step, mut before) = (ends.len() / 100 + 1, 0);
         for end in ends.into_iter().step_by(step) {
-            let Ok(op2) = Op2::read(&bytes[..end]) else {
+            let Ok(Salvaged { file: op2, .. }) = Op2::salvage(&bytes[..end]) else {
                 continue;
             };
             let n = op2.blocks.len();
@@ -116,24 +119,63 @@ fn a_large_file_cut_after_any_record_keeps_the_blocks_before_it() {
 }
 
 #[test]
-fn a_cut_file_says_so() {
-    for (path, bytes) in files(120_000) {
-        let op2 = Op2::read(&bytes).unwrap();
-        assert!(!op2.truncated, "{}", path.display());
-        let middle = record_ends(&bytes)[record_ends(&bytes).len() / 2];
-        if let Ok(op2) = Op2::read(&bytes[..middle]) {
+fn a_whole_file_is_read_and_a_cut_one_is_not() {
+    for (path, bytes) in files(20_000_000) {
+        Op2::read(&bytes).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        for percent in (5..100).step_by(5) {
+            let cut = &bytes[..bytes.len() * percent / 100];
             assert!(
-                op2.truncated
-                    && op2
-                        .notes
-                        .iter()
-                        .any(|n| n.message.contains("the file ends")),
-                "{}: {:?}",
-                path.display(),
-                op2.notes
+                Op2::read(cut).is_err(),
+                "{} cut at {percent} %",
+                path.display()
             );
         }
     }
+}
+
+/// Byte ranges of the records of result tables: from one negative key to the next.
+fn numbered_records(bytes: &[u8]) -> Vec<(usize, usize)> {
+    let little = matches!(u32::from_le_bytes(bytes[..4].try_into().unwrap()), 4 | 8);
+    let (mut starts, mut before) = (Vec::new(), 0);
+    for end in record_ends(bytes) {
+        if end <= bytes.len() && end - before == 12 {
+            let word = bytes[before + 4..before + 8].try_into().unwrap();
+            let key = if little {
+                i32::from_le_bytes(word)
+            } else {
+                i32::from_be_bytes(word)
+            };
+            if (-10_000..-2).contains(&key) {
+                starts.push(before);
+            }
+        }
+        before = end;
+    }
+    starts.windows(2).map(|w| (w[0], w[1])).collect()
+}
+
+#[test]
+fn a_record_that_is_lost_or_stands_twice_is_damage() {
+    let (mut tried, mut step) = (0, 0);
+    for (path, bytes) in files(120_000) {
+        for (from, to) in numbered_records(&bytes) {
+            step += 1;
+            if step % 7 != 0 {
+                continue;
+            }
+            let lost = [&bytes[..from], &bytes[to..]].concat();
+            let twice = [&bytes[..to], &bytes[from..]].concat();
+            for damaged in [lost, twice] {
+                tried += 1;
+                assert!(
+                    Op2::read(&damaged).is_err(),
+                    "{}: {from} to {to}",
+                    path.display()
+                );
+            }
+        }
+    }
+    println!("{tried} records lost or doubled");
 }
 
 #[test]

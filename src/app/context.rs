@@ -1,7 +1,7 @@
 //! What a question is asked in: where files come from, where solutions are kept, who hears of progress and may stop the work.
 
-use super::files::{FileBytes, load};
 use super::store::SolutionStore;
+use super::whole_file::{FileBytes, load};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

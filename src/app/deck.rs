@@ -1,7 +1,7 @@
 //! Decks and models: INCLUDE from the file system, the model of a deck or of an OP2 that holds the mesh.
 
 use super::fault::{Fault, FaultList};
-use super::files::Inputs;
+use super::files::{Inputs, why_unreadable};
 use crate::finding::{Finding, Severity};
 use crate::model::{FaultKind, FaultWeight, Material, MaterialKind, Model, ModelFault};
 use nastran::bdf::{Deck, IncludeRequest, Loaded, Loader, read_deck};
@@ -71,7 +71,7 @@ pub fn model_of_deck(inputs: &mut Inputs, base: &Path, given: &str, bytes: &[u8]
     let (deck, files) = deck_and_files(inputs, base, given, bytes);
     let (model, model_faults) = Model::from_deck(&deck);
     let mut faults = deck_faults(&deck);
-    let mut findings = Vec::new();
+    let mut findings = notes_of(&deck, given);
     let file_of = |f: &ModelFault| deck.path(f.at).to_owned();
     sort_out(&model_faults, &file_of, &mut faults, &mut findings, given);
     DeckModel {
@@ -129,6 +129,22 @@ pub fn model_of_op2(given: &str, bytes: &[u8]) -> Result<DeckModel, Fault> {
         faults,
         findings,
     })
+}
+
+/// What the reader noted, one finding a deck: superelements that are kept and not read, a missing ENDDATA.
+fn notes_of(deck: &Deck, given: &str) -> Vec<Finding> {
+    let Some(first) = deck.notes.first() else {
+        return Vec::new();
+    };
+    let more = match deck.notes.len() - 1 {
+        0 => String::new(),
+        n => format!(" (and {n} more)"),
+    };
+    let place = format!("`{}` line {}", deck.path(first.at), first.at.line);
+    let message = format!("{place}: {}{more}", first.text);
+    let remedy = "see that nothing of the deck is missing";
+    let finding = Finding::new(Severity::Info, "deck-note", given, message, remedy);
+    vec![finding.with_numbers(deck.notes.len() as f64, 0.0)]
 }
 
 /// The faults of a deck's cards.
@@ -243,7 +259,7 @@ impl Loader for FileLoader<'_, '_> {
                     return Ok(Loaded { path: name, bytes });
                 }
                 Err(e) if e.kind() == std::io::ErrorKind::NotFound => {}
-                Err(e) => why = e.to_string(),
+                Err(e) => why = why_unreadable(&e).0,
             }
         }
         Err(why)
@@ -251,7 +267,7 @@ impl Loader for FileLoader<'_, '_> {
 }
 
 /// The path with `.` and `folder/..` taken out, so that one file has one name.
-fn without_dots(path: &Path) -> PathBuf {
+pub(super) fn without_dots(path: &Path) -> PathBuf {
     let mut out = PathBuf::new();
     for part in path.components() {
         match part {

@@ -1,11 +1,11 @@
-//! Reading files: paths relative to a base, contents in memory or mapped, and the list of inputs with their hashes.
+//! Reading files: paths relative to a base, contents in memory, and the list of inputs with their hashes.
 
 use super::context::Files;
 use super::fault::Fault;
 use super::job::{Job, NamedFile};
+pub use super::whole_file::FileBytes;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::thread::JoinHandle;
 
 /// A file that was read: what `result.json` says of it.
@@ -15,31 +15,6 @@ pub struct Input {
     pub path: String,
     /// SHA-256 of its bytes, hexadecimal.
     pub sha256: String,
-}
-
-/// Bytes of a file, mapped or read.
-#[derive(Clone)]
-pub struct FileBytes(Arc<Bytes>);
-
-enum Bytes {
-    Mapped(memmap2::Mmap),
-    Owned(Vec<u8>),
-}
-
-impl From<Vec<u8>> for FileBytes {
-    fn from(bytes: Vec<u8>) -> Self {
-        Self(Arc::new(Bytes::Owned(bytes)))
-    }
-}
-
-impl std::ops::Deref for FileBytes {
-    type Target = [u8];
-    fn deref(&self) -> &[u8] {
-        match &*self.0 {
-            Bytes::Mapped(m) => m,
-            Bytes::Owned(v) => v,
-        }
-    }
 }
 
 /// A file that was read, with where it was found.
@@ -117,7 +92,7 @@ impl<'a> Inputs<'a> {
         self.files.load(path)
     }
 
-    /// Bytes of the file `given`, which is relative to `base`; large ones are mapped.
+    /// Bytes of the file `given`, which is relative to `base`.
     ///
     /// # Errors
     /// A fault of the file itself where it can't be read.
@@ -215,7 +190,13 @@ fn at_job_line(job: &Job, named: &NamedFile, f: Fault) -> Fault {
 }
 
 fn unreadable(given: &str, e: &std::io::Error) -> Fault {
-    let (wrong, remedy) = match e.kind() {
+    let (wrong, remedy) = why_unreadable(e);
+    Fault::of(given, "file", wrong, remedy)
+}
+
+/// Why a file can't be read, and what to do.
+pub(super) fn why_unreadable(e: &std::io::Error) -> (String, &'static str) {
+    match e.kind() {
         std::io::ErrorKind::NotFound => (
             "no such file".to_owned(),
             "check the path; paths in a job are relative to the job file",
@@ -224,9 +205,21 @@ fn unreadable(given: &str, e: &std::io::Error) -> Fault {
             "no permission to read it".to_owned(),
             "check the file's permissions",
         ),
+        std::io::ErrorKind::IsADirectory => ("it is a folder".to_owned(), "name a file in it"),
+        std::io::ErrorKind::InvalidInput => (
+            "no file: a device, a pipe or a socket".to_owned(),
+            "copy what it gives into a file",
+        ),
+        std::io::ErrorKind::ResourceBusy => (
+            "it changed while it was read".to_owned(),
+            "wait until the program that writes it has finished",
+        ),
+        std::io::ErrorKind::OutOfMemory => (
+            "larger than the memory that is free".to_owned(),
+            "divide the file, or use a larger machine",
+        ),
         _ => (format!("can't be read ({e})"), "check the path"),
-    };
-    Fault::of(given, "file", wrong, remedy)
+    }
 }
 
 fn sha256_hex(bytes: &[u8]) -> String {
@@ -234,31 +227,4 @@ fn sha256_hex(bytes: &[u8]) -> String {
         .iter()
         .map(|b| format!("{b:02x}"))
         .collect()
-}
-
-/// Bytes of a file, mapped where it is large.
-pub fn load(path: &Path) -> std::io::Result<FileBytes> {
-    const MAP_FROM: u64 = 1 << 16;
-    let file = std::fs::File::open(path)?;
-    let meta = file.metadata()?;
-    if meta.is_dir() {
-        return Err(std::io::Error::other("it is a folder"));
-    }
-    if meta.len() >= MAP_FROM
-        && let Ok(m) = map_file(&file)
-    {
-        return Ok(FileBytes(Arc::new(Bytes::Mapped(m))));
-    }
-    std::fs::read(path).map(|v| FileBytes(Arc::new(Bytes::Owned(v))))
-}
-
-/// Maps a file for reading.
-///
-/// The one unsafe call of the program. The mapping is read-only and private to this process; the readers take `&[u8]` and check
-/// every size. What remains is a file that another program shortens while it is being read: the operating system then ends
-/// this process, and no result is written.
-#[allow(unsafe_code)]
-fn map_file(file: &std::fs::File) -> std::io::Result<memmap2::Mmap> {
-    // SAFETY: read-only map of a regular file that is not written by this process; see above for concurrent truncation.
-    unsafe { memmap2::Mmap::map(file) }
 }

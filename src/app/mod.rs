@@ -14,6 +14,7 @@ pub mod half_written;
 pub mod identify;
 pub mod init;
 pub mod job;
+mod manifest;
 pub mod outcome;
 pub mod output;
 mod paper;
@@ -32,7 +33,9 @@ pub mod strain;
 pub mod strains;
 pub mod study;
 pub mod vehicle;
+pub mod verify;
 mod wheels;
+mod whole_file;
 pub mod words;
 pub mod work;
 

@@ -1,12 +1,17 @@
 //! Writing: files appear under their names only when all of them are complete.
 
 use super::fault::Fault;
-use super::files::{FileBytes, load};
 use super::half_written;
+use super::manifest::{self, Manifest};
 use super::outcome::Tables;
+use super::whole_file::{FileBytes, load};
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Counts temporary files of this process.
+static PARTS: AtomicU64 = AtomicU64::new(0);
 
 /// The output folder of one command. Files are written under temporary names and renamed by [`Output::commit`]; dropped
 /// without it, nothing is left behind.
@@ -79,11 +84,17 @@ impl Output {
     /// # Errors
     /// A fault where it can't be read.
     pub fn read_back(&self, name: &str) -> Result<FileBytes, Fault> {
-        load(&self.part(name)).map_err(|e| unwritable(&self.folder.join(name), &e))
+        let target = self.folder.join(name);
+        let written = self.pending.iter().rev().find(|p| p.1 == target);
+        let part = written.map_or(&target, |p| &p.0);
+        load(part).map_err(|e| unwritable(&target, &e))
     }
 
+    /// A temporary name that no other run into the folder has.
     fn part(&self, name: &str) -> PathBuf {
-        self.folder.join(format!(".{name}.part"))
+        let n = PARTS.fetch_add(1, Ordering::Relaxed);
+        self.folder
+            .join(format!(".{name}.{}-{n}.part", std::process::id()))
     }
 
     /// A fault for a file of this folder that could not be written on.
@@ -115,8 +126,12 @@ impl Output {
         b.map_err(|e| unwritable(&self.folder.join(two), &e))
     }
 
-    /// Notes a file under its temporary name.
+    /// Notes a file under its temporary name; begun twice, it is written anew.
     fn begin_file(&mut self, name: &str) -> PathBuf {
+        let target = self.folder.join(name);
+        if let Some(written) = self.pending.iter().find(|p| p.1 == target) {
+            return written.0.clone();
+        }
         let part = self.part(name);
         half_written::note(&part);
         self.pending.push((part.clone(), self.folder.join(name)));
@@ -131,11 +146,32 @@ impl Output {
         self.write(name, |w| w.write_all(bytes))
     }
 
-    /// Renames every file to its name.
+    /// Renames every file to its name, and removes what the command wrote into the folder before and doesn't write now.
     ///
     /// # Errors
     /// A fault for the first that can't be renamed.
-    pub fn commit(mut self) -> Result<(), Fault> {
+    pub fn commit(mut self, command: &str) -> Result<(), Fault> {
+        let names: Vec<String> = self
+            .pending
+            .iter()
+            .filter_map(|p| Some(p.1.file_name()?.to_string_lossy().into_owned()))
+            .collect();
+        let mut written = Manifest::read(&self.folder);
+        let gone = written.replace(command, &names);
+        self.write_bytes(manifest::NAME, written.text().as_bytes())?;
+        self.rename_all()?;
+        for name in gone {
+            // One that is gone already is no loss.
+            let _ = std::fs::remove_file(self.folder.join(name));
+        }
+        Ok(())
+    }
+
+    /// Renames every file to its name and leaves the folder as it is otherwise: for a file among those of a user.
+    ///
+    /// # Errors
+    /// A fault for the first that can't be renamed.
+    pub fn rename_all(&mut self) -> Result<(), Fault> {
         while let Some((part, target)) = self.pending.first().cloned() {
             std::fs::rename(&part, &target).map_err(|e| unwritable(&target, &e))?;
             half_written::forget(&part);

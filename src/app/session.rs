@@ -231,7 +231,9 @@ impl<'a> Session<'a> {
     fn close(self) -> Result<Closed, Faults> {
         let body = Body(self.command, Value::Object(self.body));
         let outcome = self.work.finish(self.units, body);
-        let json = outcome.to_json_of(outcome.answer.0, &Tables::new());
+        let none = Tables::new();
+        let tables = self.output.as_ref().map_or(&none, Output::tables);
+        let json = outcome.to_json_of(outcome.answer.0, tables);
         let json = json.map_err(|e| {
             Fault::of(
                 "result.json",
@@ -244,7 +246,7 @@ impl<'a> Session<'a> {
         if let Some(mut output) = self.output {
             output.write_bytes("result.json", json.as_bytes())?;
             folder = Some(output.folder().to_owned());
-            output.commit()?;
+            output.commit(self.command)?;
         }
         let Outcome {
             findings,

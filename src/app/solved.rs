@@ -38,7 +38,7 @@ pub fn cases_of_job(job: &Job, read: &DeckModel) -> Result<Vec<LoadCase>, Faults
         .collect())
 }
 
-/// Solves load cases on the model of a deck, with its elastic modes, or takes the solution from the cache beside `main_input` (the job, or the deck itself).
+/// Solves load cases on the model of a deck, with its elastic modes, or takes the kept solution.
 ///
 /// # Errors
 /// What stops the solver, with file and line.

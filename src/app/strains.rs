@@ -98,8 +98,18 @@ pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome
         ));
     }
     let subcase_ids: Vec<u32> = solution.cases.iter().map(|c| c.subcase).collect();
+    let rows = solution.cases.iter().map(|c| n_rows(&deck.model, c)).sum();
+    if rows == 0 {
+        work.findings.push(Finding::new(
+            Severity::Warning,
+            "no-strain-rows",
+            given.as_str(),
+            "the results hold neither strain nor stress of shells, bars or beams in a static subcase",
+            "ask for STRAIN(FIBER) = ALL in every subcase, or let `solve` on the deck compute it",
+        ));
+    }
     let answer = Strains {
-        rows: solution.cases.iter().map(|c| n_rows(&deck.model, c)).sum(),
+        rows,
         subcases: subcase_ids.len(),
         subcase_ids,
         given,
@@ -128,7 +138,7 @@ fn result_bytes(
                     &name,
                     "results",
                     "no result file given",
-                    "name the OP2, punch or H5 file after the deck",
+                    "name the OP2, punch or H5 file after the deck, or let `solve` on the deck write one",
                 ));
             }
             Ok(bytes) => files.push((name, bytes)),

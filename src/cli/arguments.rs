@@ -88,6 +88,14 @@ pub enum Command {
     /// Vehicle parameters and wheel loads from accelerations
     #[command(after_help = "Example:\n  strainbridge identify vehicle.toml")]
     Identify(JobArguments),
+    /// Recompute a result folder from its inputs and compare hashes and numbers
+    #[command(
+        after_help = "Example:\n  strainbridge verify job.out    # exit code 1: something differs"
+    )]
+    Verify(VerifyArguments),
+    /// Remove kept solutions of the built-in solver
+    #[command(after_help = "Example:\n  strainbridge clean")]
+    Clean(CleanArguments),
     /// Print the JSON schema of a job, for editors that complete and check TOML by it
     #[command(
         after_help = "Example:\n  strainbridge schema > job.schema.json    # and `#:schema job.schema.json` as first line of job.toml"
@@ -106,6 +114,28 @@ pub struct CompletionsArguments {
     /// The shell
     #[arg(value_enum, value_name = "SHELL")]
     pub shell: clap_complete::Shell,
+}
+
+/// What is verified.
+#[derive(clap::Args, Debug)]
+pub struct VerifyArguments {
+    /// The folder that a command wrote
+    #[arg(value_name = "FOLDER")]
+    pub folder: PathBuf,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: CommonArguments,
+}
+
+/// What is removed.
+#[derive(clap::Args, Debug)]
+pub struct CleanArguments {
+    /// The folder with kept solutions (default: the user's folder for caches)
+    #[arg(value_name = "FOLDER")]
+    pub folder: Option<PathBuf>,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: CommonArguments,
 }
 
 /// Options of every command.

@@ -5,6 +5,7 @@ mod demo;
 mod interrupt;
 mod progress;
 mod run;
+mod upkeep;
 
 pub use arguments::*;
 
@@ -53,6 +54,8 @@ pub fn run(arguments: Arguments) -> ExitCode {
         }
         Command::Reconcile(a) => on_job("reconcile", &a, app::reconcile::run),
         Command::Identify(a) => Run::of(&a.common, &a.job).job(&a.job, app::identify::identify),
+        Command::Verify(a) => upkeep::verify(&a),
+        Command::Clean(a) => upkeep::clean(&a),
         Command::Schema => print(app::job::schema::job_schema().as_bytes()),
         Command::Completions(a) => {
             let mut text = Vec::new();

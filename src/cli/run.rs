@@ -39,10 +39,10 @@ struct Said<'a> {
 
 impl Run {
     /// A command on this file.
-    pub fn of(common: &CommonArguments, main_input: &Path) -> Self {
+    pub fn of(common: &CommonArguments, _main_input: &Path) -> Self {
         Self {
             common: common.clone(),
-            store: (!common.no_cache).then(|| Folder::beside(main_input)),
+            store: (!common.no_cache).then(Folder::of_user),
         }
     }
 
@@ -142,7 +142,7 @@ impl Run {
                 None => {
                     let mut out = Output::begin(&into)?;
                     outcome.write(&mut out)?;
-                    out.commit()?;
+                    out.rename_all()?;
                     unsaved(&outcome)?
                 }
             };
@@ -155,6 +155,37 @@ impl Run {
                 findings: &outcome.findings,
                 notes: &outcome.notes,
                 folder: self.common.out.as_ref(),
+                faults: &[],
+            }),
+            Err(faults) => refuse(&faults),
+        }
+    }
+
+    /// Asks a question that writes only into `--out`, where that names a folder.
+    pub fn question<A>(
+        &self,
+        out: Option<&Path>,
+        ask: impl FnOnce(&Context) -> Result<Outcome<A>, Faults> + Send,
+    ) -> ExitCode
+    where
+        A: Answer + Send,
+        Outcome<A>: Report,
+    {
+        let done = self.pooled(|cx| {
+            let outcome = ask(cx)?;
+            let json = match out {
+                Some(folder) => save(&outcome, folder)?,
+                None => unsaved(&outcome)?,
+            };
+            Ok((outcome, json))
+        });
+        match done {
+            Ok((outcome, json)) => self.say(&Said {
+                text: &outcome.words(),
+                json: &json,
+                findings: &outcome.findings,
+                notes: &outcome.notes,
+                folder: out.map(Path::to_owned).as_ref(),
                 faults: &[],
             }),
             Err(faults) => refuse(&faults),
@@ -225,7 +256,7 @@ fn default_folder(main_input: &Path) -> PathBuf {
     main_input.with_file_name(name)
 }
 
-fn refuse(faults: &Faults) -> ExitCode {
+pub(super) fn refuse(faults: &Faults) -> ExitCode {
     print_faults(faults);
     let _ = std::io::stderr().write_all(b"nothing was written\n");
     ExitCode::from(2)

@@ -2,10 +2,11 @@
 
 use super::build::Builder;
 use super::fault::FaultKind;
+use super::set_sum::{MOST_TERMS, SumOrder, sum_order};
 use super::types::*;
 use nastran::cards::{Dofs, IdList, SetSum};
 use nastran::place::{Place, Placed};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Terms of an equation: grid, dof (0-based), coefficient.
 type Equation = (Vec<(GridIx, u8, f64)>, Place);
@@ -123,15 +124,38 @@ impl Builder<'_> {
         card: &str,
         sets: &BTreeMap<u32, Vec<T>>,
     ) -> BTreeMap<u32, Vec<T>> {
-        let mut out: BTreeMap<u32, Vec<T>> = BTreeMap::new();
+        let mut by_sid: BTreeMap<u32, Vec<&Placed<SetSum>>> = BTreeMap::new();
         for sum in cards {
-            for sid in &sum.sets {
-                match sets.get(sid) {
-                    Some(terms) => out
-                        .entry(sum.sid)
-                        .or_default()
-                        .extend(terms.iter().cloned()),
-                    None => {
+            by_sid.entry(sum.sid).or_default().push(sum);
+        }
+        let names: BTreeMap<u32, BTreeSet<u32>> = by_sid
+            .iter()
+            .map(|(sid, cards)| (*sid, cards.iter().flat_map(|c| c.sets.clone()).collect()))
+            .collect();
+        let SumOrder { ready, circles } = sum_order(&names);
+        for circle in circles {
+            if let Some(sum) = circle.first().and_then(|sid| by_sid.get(sid)?.first()) {
+                let kind = FaultKind::SumCycle { sets: circle };
+                self.fault(format!("{card} {}", sum.sid), "S", sum.at, kind);
+            }
+        }
+        // Sets of primitive constraints, each once, so that sums of sums stay small.
+        let mut parts: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        let mut left = MOST_TERMS;
+        for sum_sid in ready {
+            let (mut all, mut seen) = (Vec::new(), BTreeSet::new());
+            let mut add = |sid: u32| {
+                if seen.insert(sid) {
+                    all.push(sid);
+                }
+            };
+            for sum in by_sid.get(&sum_sid).into_iter().flatten() {
+                for sid in &sum.sets {
+                    if let Some(inner) = parts.get(sid) {
+                        inner.iter().copied().for_each(&mut add);
+                    } else if sets.contains_key(sid) {
+                        add(*sid);
+                    } else {
                         let kind = FaultKind::Missing {
                             what: "set",
                             id: (*sid).into(),
@@ -140,8 +164,36 @@ impl Builder<'_> {
                     }
                 }
             }
+            left = left.saturating_sub(all.len());
+            if left == 0 {
+                self.too_many_terms(card, sum_sid, &by_sid);
+                break;
+            }
+            parts.insert(sum_sid, all);
         }
-        out
+        parts
+            .into_iter()
+            .filter(|(_, parts)| !parts.is_empty())
+            .map(|(sid, parts)| {
+                let terms = parts.iter().filter_map(|p| sets.get(p)).flatten();
+                (sid, terms.cloned().collect())
+            })
+            .collect()
+    }
+
+    fn too_many_terms(
+        &mut self,
+        card: &str,
+        sid: u32,
+        by_sid: &BTreeMap<u32, Vec<&Placed<SetSum>>>,
+    ) {
+        if let Some(sum) = by_sid.get(&sid).and_then(|cards| cards.first()) {
+            let what =
+                format!("{card} that stands for more than {MOST_TERMS} sets with the others");
+            let remedy = "write fewer sums that name sums";
+            let kind = FaultKind::Unsupported { what, remedy };
+            self.fault(format!("{card} {sid}"), "S", sum.at, kind);
+        }
     }
 
     /// Notes the grids that nothing uses.

@@ -47,6 +47,8 @@ pub enum FaultKind {
     CollinearFrame,
     /// Coordinate systems refer to each other in a circle.
     FrameCycle,
+    /// Sets that sum each other in a circle.
+    SumCycle { sets: Vec<u32> },
     /// The arms of an RBE3 can't carry a moment about some axis.
     CollinearArms,
     /// A dof is dependent in two places.
@@ -103,6 +105,9 @@ impl ModelFault {
             Degenerate { .. } => "correct the order of its grids, or delete the element".into(),
             Orientation => "give an orientation vector that isn't parallel to the element".into(),
             CollinearFrame => "move point C off the line A B, and B off A".into(),
+            SumCycle { .. } => {
+                "take one of the sets of the circle out of the card that names it".into()
+            }
             FrameCycle => "define one of the systems of the circle in the basic system".into(),
             CollinearArms => {
                 "add a grid off the line, or add rotations 456 to the connected dofs".into()
@@ -151,6 +156,17 @@ impl fmt::Display for FaultKind {
             Orientation => write!(f, "the orientation vector has no part across the element"),
             CollinearFrame => write!(f, "points A, B, C lie on a line"),
             FrameCycle => write!(f, "the system is defined by itself through others"),
+            SumCycle { sets } => {
+                const SHOWN: usize = 6;
+                write!(f, "the sets name each other in a circle: ")?;
+                for sid in sets.iter().take(SHOWN) {
+                    write!(f, "{sid} -> ")?;
+                }
+                if sets.len() > SHOWN {
+                    write!(f, ".. ({} sets) -> ", sets.len())?;
+                }
+                write!(f, "{}", sets.first().unwrap_or(&0))
+            }
             CollinearArms => write!(
                 f,
                 "the connected grids lie on a line and carry no rotation about it"

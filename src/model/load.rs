@@ -5,11 +5,11 @@ use super::face::solid_face;
 use super::fault::FaultKind;
 use super::frame::unit;
 use super::types::*;
-use nastran::cards::{IdList, LoadSum, Pload1, Pload4};
+use nastran::cards::{IdList, Pload1, Pload4};
 use nastran::place::{Place, Placed};
 use std::collections::{BTreeMap, HashMap};
 
-type Sets = BTreeMap<u32, Vec<(f64, Load)>>;
+pub(super) type Sets = BTreeMap<u32, Vec<(f64, Load)>>;
 
 impl Builder<'_> {
     pub(super) fn loads(&mut self) {
@@ -418,45 +418,6 @@ impl Builder<'_> {
                 _ => Load::Unsupported("RFORCE".into(), r.at),
             };
             sets.entry(r.sid).or_default().push((1.0, load));
-        }
-    }
-
-    /// LOAD combinations written out. One may sum others: those come first that wait for none.
-    fn combinations(&mut self, sets: &Sets) -> Sets {
-        let cards = self.cards;
-        let mut out: Sets = BTreeMap::new();
-        let mut waiting: Vec<&Placed<LoadSum>> = cards.loads.iter().collect();
-        loop {
-            let sums: Vec<u32> = waiting.iter().map(|l| l.sid).collect();
-            let (ready, later): (Vec<_>, Vec<_>) = waiting
-                .into_iter()
-                .partition(|l| l.terms.iter().all(|t| !sums.contains(&t.1)));
-            // Only circles left: what they refer to is missing.
-            let circle = ready.is_empty();
-            for l in if circle { later.clone() } else { ready } {
-                let mut sum = Vec::new();
-                for (factor, sid) in &l.terms {
-                    match out.get(sid).or(sets.get(sid)) {
-                        Some(loads) => sum.extend(
-                            loads
-                                .iter()
-                                .map(|(f, load)| (f * factor * l.scale, load.clone())),
-                        ),
-                        None => {
-                            let kind = FaultKind::Missing {
-                                what: "load set",
-                                id: (*sid).into(),
-                            };
-                            self.fault(format!("LOAD {}", l.sid), "L", l.at, kind);
-                        }
-                    }
-                }
-                out.entry(l.sid).or_default().extend(sum);
-            }
-            if circle || later.is_empty() {
-                return out;
-            }
-            waiting = later;
         }
     }
 

@@ -448,3 +448,60 @@ fn a_mesh_with_bars_along_its_shells_is_not_refined() {
     ));
     assert!(m.refined().is_some());
 }
+
+#[test]
+fn twenty_thousand_loads_that_name_each_other_are_written_out_at_once() {
+    let mut text = format!("{QUAD}CQUAD4,9,1,1,2,3,4\nFORCE,1,2,,1.,0.,0.,1.\n");
+    for sid in 2..=20_001 {
+        text.push_str(&format!("LOAD,{sid},1.,1.,{}\n", sid - 1));
+    }
+    // each of these doubles the one before: 2^40 loads if they were copied
+    for sid in 30_001..=30_040 {
+        let before = if sid == 30_001 { 20_001 } else { sid - 1 };
+        text.push_str(&format!("LOAD,{sid},1.,1.,{before},1.,{before}\n"));
+    }
+    let start = std::time::Instant::now();
+    let (m, faults) = model(&text);
+    // measured .1 s; copying every sum for every other took over 40 s
+    assert!(start.elapsed().as_secs() < 10);
+    assert!(
+        faults.iter().all(|f| f.weight() == FaultWeight::Note),
+        "{faults:?}"
+    );
+    let last = m.load_sets.iter().find(|s| s.sid == 30_040).unwrap();
+    assert_eq!(last.loads.len(), 1);
+    assert_eq!(last.loads[0].0, 2_f64.powi(40));
+}
+
+#[test]
+fn sets_that_sum_each_other_in_a_circle_are_called_that() {
+    let (_, faults) = model(&format!(
+        "{QUAD}CQUAD4,9,1,1,2,3,4\nLOAD,3,1.,1.,4\nLOAD,4,1.,1.,5\nLOAD,5,1.,1.,3\nSPCADD,7,8\nSPCADD,8,7\n"
+    ));
+    let said: Vec<String> = faults
+        .iter()
+        .filter(|f| matches!(f.kind, FaultKind::SumCycle { .. }))
+        .map(ToString::to_string)
+        .collect();
+    assert_eq!(
+        said,
+        [
+            "SPCADD 7: the sets name each other in a circle: 7 -> 8 -> 7",
+            "LOAD 3: the sets name each other in a circle: 3 -> 4 -> 5 -> 3",
+        ]
+    );
+    assert!(
+        !faults
+            .iter()
+            .any(|f| matches!(f.kind, FaultKind::Missing { .. }))
+    );
+}
+
+#[test]
+fn a_sum_of_sums_of_constraints_holds_every_set_once() {
+    let (m, _) = model(&format!(
+        "{QUAD}CQUAD4,9,1,1,2,3,4\nSPC1,1,123,1\nSPC1,2,3,2\nSPCADD,5,1,2\nSPCADD,6,5,1\n"
+    ));
+    let six = m.spcs.iter().find(|s| s.sid == 6).unwrap();
+    assert_eq!(six.terms.len(), 2);
+}

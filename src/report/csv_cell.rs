@@ -1,27 +1,47 @@
 //! Names of users in tables.
 
+use crate::series::cell::guarded;
 use std::borrow::Cow;
 
-/// The text as a cell of a CSV table: in quotes where it holds a comma, a quote or a line break (RFC 4180).
+/// The text as a cell of a CSV table: in quotes where it holds a comma, a quote or a line break (RFC 4180), with an apostrophe before it
+/// where a spreadsheet would take it for a formula.
 pub fn csv_cell(text: &str) -> Cow<'_, str> {
+    let text = guarded(text);
     if text.contains([',', ';', '"', '\n', '\r', '\t']) {
         Cow::Owned(format!("\"{}\"", text.replace('"', "\"\"")))
     } else {
-        Cow::Borrowed(text)
+        text
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::series::cell::unguarded;
 
     #[test]
     fn what_would_break_a_row_is_quoted_and_reads_back() {
-        for name in ["Run 1", "Run 1, loaded", "a \"b\"", "one\ntwo", "x;y"] {
+        for name in [
+            "Run 1",
+            "Run 1, loaded",
+            "a \"b\"",
+            "one\ntwo",
+            "x;y",
+            "=1+1",
+            "@x, y",
+        ] {
             let text = format!("run,value\n{},1\n", csv_cell(name));
             let mut reader = csv::Reader::from_reader(text.as_bytes());
             let row = reader.records().next().unwrap().unwrap();
-            assert_eq!((&row[0], &row[1]), (name, "1"));
+            assert_eq!((unguarded(&row[0]), &row[1]), (name, "1"));
+        }
+    }
+
+    #[test]
+    fn no_cell_begins_as_a_formula_does() {
+        for name in ["=cmd|' /C calc'!A0", "+x", "-x", "@x", "=a,\"b\""] {
+            let cell = csv_cell(name);
+            assert!(cell.trim_start_matches('"').starts_with('\''), "{cell}");
         }
     }
 }

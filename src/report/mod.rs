@@ -17,6 +17,6 @@ mod vtu_points;
 
 pub use csv_cell::csv_cell;
 pub use result_blocks::{PlannedBlock, planned_blocks, rows_of_block};
-pub use strains::{STRAINS_HEADER, write_strains};
+pub use strains::{STRAINS_HEADER, strains_columns, write_strains};
 pub use vtu::{write_cells_vtu, write_vtu};
 pub use vtu_points::{PointValues, write_points_vtu};

@@ -7,9 +7,20 @@ use rayon::prelude::*;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-/// First line of `strains.csv`. Lower case: element frame, engineering shear; upper case: basic frame, tensor shear.
+/// First line of `strains.csv`; strain is in microstrain. Lower case: element frame, engineering shear; upper case: basic frame, tensor shear.
 pub const STRAINS_HEADER: &str =
     "subcase,element,type,location,surface,exx,eyy,gxy,Exx,Eyy,Ezz,Exy,Eyz,Ezx";
+
+/// Columns of `strains.csv` with their units.
+pub fn strains_columns() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let is_strain = |c: &str| c.len() == 3 && c.starts_with(['e', 'g', 'E']);
+    STRAINS_HEADER
+        .split(',')
+        .map(move |c| (c, if is_strain(c) { "microstrain" } else { "" }))
+}
+
+/// Microstrain.
+const MICRO: f64 = 1e-6;
 
 /// Elements a piece of text: pieces are made in parallel and written in order.
 const PIECE: usize = 2048;
@@ -19,7 +30,7 @@ const POINTS: [&str; 4] = ["C", "D", "E", "F"];
 
 /// Writes the strain of every case, subcases in the solution's order, rows in the order of [`each_row`]; returns the number of rows.
 ///
-/// Numbers are the shortest text that reads back to the same double; a number that does not exist is an empty field. Bars: `surface` is
+/// Strain is in microstrain. Numbers are the shortest text that reads back to the same double; a number that does not exist is an empty field. Bars: `surface` is
 /// the recovery point C, D, E or F, `location` an end grid or `x=<x/xb>` between the ends, `eyy` and `gxy` are empty.
 ///
 /// # Errors
@@ -73,7 +84,8 @@ fn line(text: &mut String, subcase: u32, row: &StrainRow) {
         Point::Surface(s) => s.word(),
         Point::Recovery(p) => POINTS.get(p).copied().unwrap_or(""),
     });
-    for &v in row.local.iter().chain(&row.basic) {
+    for &strain in row.local.iter().chain(&row.basic) {
+        let v = strain / MICRO;
         text.push(',');
         if v == 0.0 {
             text.push('0');

@@ -2,6 +2,7 @@
 //!
 //! - [`channels`]: a record of equally long, equally sampled channels with units
 //! - [`binary`]: the long record of strainbridge, read a piece at a time
+//! - [`cell`]: names that a spreadsheet would take for formulas
 //! - [`csv`]: bytes of a CSV file to a record
 //! - [`rpc`]: RPC III files, read and written
 //! - [`foreign`]: Parquet and MDF4, where the build has them
@@ -21,6 +22,7 @@
 pub mod align;
 pub mod binary;
 pub mod butterworth;
+pub mod cell;
 pub mod channels;
 pub mod content;
 pub mod csv;

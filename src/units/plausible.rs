@@ -119,3 +119,36 @@ fn implausible(
         .with_numbers(first.1, limit),
     )
 }
+
+/// The system in which the deck's numbers are most plausible: PARAM,UNITSYS where it names one, else of those whose Young's moduli
+/// [`check_units`] accepts the one nearest to 100 GPa and 5,000 kg/m^3 (steel, aluminium, titanium, plastics) on a logarithmic scale.
+/// `None` where no modulus is stated or all systems contradict the deck.
+pub fn likely_system(
+    unitsys: Option<&str>,
+    moduli: &[(u32, f64)],
+    densities: &[(u32, f64)],
+) -> Option<UnitSystem> {
+    if let Some(system) = unitsys.and_then(UnitSystem::from_unitsys) {
+        return Some(system);
+    }
+    let typical = |values: &[(u32, f64)]| {
+        let mut v: Vec<f64> = values.iter().map(|v| v.1).filter(|x| *x > 0.0).collect();
+        v.sort_by(f64::total_cmp);
+        v.get(v.len() / 2).copied()
+    };
+    let e = typical(moduli)?;
+    let rho = typical(densities);
+    let distance = |s: &UnitSystem| {
+        let density = s.mass_kg() / s.length_m().powi(3);
+        let from = |x: f64, usual: f64| (x / usual).ln().abs();
+        from(e * s.si(Quantity::Stress), 100e9) + rho.map_or(0.0, |r| from(r * density, 5000.0))
+    };
+    let accepted = |s: &UnitSystem| {
+        let found = check_units(*s, None, moduli, densities);
+        found.iter().all(|f| f.severity < Severity::Error)
+    };
+    UnitSystem::ALL
+        .into_iter()
+        .filter(accepted)
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+}

@@ -79,3 +79,21 @@ fn factors_go_from_model_to_report_units() {
     let lb = factor(UnitSystem::InLbfS, find_unit(Quantity::Mass, "lb").unwrap());
     assert!((lb - 386.0886).abs() < 1e-3, "{lb}");
 }
+
+#[test]
+fn the_likely_system_is_one_that_the_check_accepts_and_none_where_none_is() {
+    // steel as each system writes it
+    for system in UnitSystem::ALL {
+        let e = 2.1e11 / system.si(Quantity::Stress);
+        let rho = 7850.0 / (system.mass_kg() / system.length_m().powi(3));
+        let found = likely_system(None, &[(1, e)], &[(1, rho)]);
+        assert_eq!(found, Some(system));
+    }
+    // a modulus of 1 is none of a material in any system
+    assert_eq!(likely_system(None, &[(1, 1.0)], &[]), None);
+    assert_eq!(likely_system(None, &[], &[]), None);
+    assert_eq!(
+        likely_system(Some("MN-MM"), &[], &[]),
+        UnitSystem::from_unitsys("MN-MM")
+    );
+}

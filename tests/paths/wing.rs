@@ -122,7 +122,7 @@ fn a_known_multiple_of_a_load_comes_back_from_the_files_own_strain() {
             + n[2] * n[2] * e("Ezz")
             + 2.0 * (n[0] * n[1] * e("Exy") + n[1] * n[2] * e("Eyz") + n[2] * n[0] * e("Ezx"));
         names.push_str(&format!(",{}", g["name"].as_str().unwrap()));
-        values.push_str(&format!(",{}", 2.5 * strain * 1e6));
+        values.push_str(&format!(",{}", 2.5 * strain));
     }
     std::fs::write(folder.join("strain.csv"), format!("{names}\n{values}\n")).unwrap();
     let job = folder.join("recover.toml");

@@ -171,17 +171,13 @@ fn only_the_command_line_prints_and_touches_files() {
 }
 
 #[test]
-fn one_function_is_unsafe_and_it_maps_files() {
+fn nothing_is_unsafe() {
     let places: Vec<String> = sources()
         .into_iter()
-        .flat_map(|(path, lines)| {
-            lines
-                .into_iter()
-                .filter(|l| l.contains("allow(unsafe_code)"))
-                .map(move |_| path.clone())
-        })
+        .filter(|(_, lines)| lines.iter().any(|l| l.contains("allow(unsafe_code)")))
+        .map(|(path, _)| path)
         .collect();
-    assert_eq!(places, ["src/app/files.rs"]);
+    assert_eq!(places, [""; 0]);
 }
 
 #[test]

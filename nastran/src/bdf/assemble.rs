@@ -3,71 +3,15 @@
 use std::sync::atomic::AtomicUsize;
 
 use super::card::read_card;
-use super::deck::{Note, OtherCard};
-use super::defer::{Deferred, Orphan, Span};
+use super::deck::OtherCard;
 use super::fault::{Fault, Wrong};
 use super::fields::{Fields, Value, excerpt, note_fault};
 use super::line::{Line, trim, without_comment};
-use super::names::{Label, NameReader};
+use super::names::NameReader;
+use super::part::{Deferred, Name, Orphan, Part, Span};
 use super::replicate::{self, Template};
 use super::split::{Cut, Lead, cut, is_list_word};
-use crate::cards::Cards;
 use crate::place::{Place, SourceIx};
-
-/// A card name in upper case, padded with zeros.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
-pub(super) struct Name(pub [u8; 8]);
-
-impl Name {
-    /// `None` where it is no name: letters and digits, at most 8, a letter first.
-    pub(super) fn new(head: &[u8]) -> Option<Name> {
-        if head.is_empty() || head.len() > 8 || !head.first().is_some_and(u8::is_ascii_alphabetic) {
-            return None;
-        }
-        let mut name = [0; 8];
-        for (to, &from) in name.iter_mut().zip(head) {
-            if !from.is_ascii_alphanumeric() && from != b'_' {
-                return None;
-            }
-            *to = from.to_ascii_uppercase();
-        }
-        Some(Name(name))
-    }
-
-    pub(super) fn as_bytes(&self) -> &[u8] {
-        let n = self.0.iter().position(|&c| c == 0).unwrap_or(8);
-        self.0.get(..n).unwrap_or_default()
-    }
-}
-
-/// What a piece of bulk data holds.
-#[derive(Debug, Default)]
-pub(super) struct Part {
-    pub cards: Cards,
-    pub counts: Vec<(Name, usize)>,
-    pub others: Vec<OtherCard>,
-    pub faults: Vec<Fault>,
-    pub notes: Vec<Note>,
-    pub labels: Vec<Label>,
-    pub deferred: Vec<Deferred>,
-    pub orphans: Vec<Orphan>,
-}
-
-impl Part {
-    fn count(&mut self, name: Name) {
-        // cards of one name follow each other: the last used is moved to the end
-        match self.counts.iter().rposition(|(n, _)| *n == name) {
-            Some(i) => {
-                if let Some((_, n)) = self.counts.get_mut(i) {
-                    *n += 1;
-                }
-                let last = self.counts.len() - 1;
-                self.counts.swap(i, last);
-            }
-            None => self.counts.push((name, 1)),
-        }
-    }
-}
 
 /// What the lines since the last finished card make.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -182,9 +126,13 @@ impl<'a, 'b> Assembler<'a, 'b> {
     }
 
     fn not_a_card(&mut self, line: &Line) {
-        let what = Wrong::NotACard {
-            found: excerpt(trim(line.text)),
+        // An included file may be any file of the machine: its lines are not shown.
+        let found = if self.source == SourceIx(0) {
+            excerpt(trim(line.text))
+        } else {
+            String::new()
         };
+        let what = Wrong::NotACard { found };
         let at = Place {
             source: self.source,
             line: line.number,

@@ -4,10 +4,11 @@ use std::sync::atomic::AtomicUsize;
 
 use rayon::prelude::*;
 
-use super::assemble::{Assembler, Part};
-use super::deck::Source;
+use super::assemble::Assembler;
 use super::line::Lines;
 use super::merge::append;
+use super::part::Part;
+use super::source::Source;
 use crate::place::SourceIx;
 
 /// Lines of bulk data that begin with a card and hold no INCLUDE, BEGIN or ENDDATA.

@@ -5,17 +5,9 @@ use std::collections::BTreeMap;
 use super::case::CaseControl;
 use super::fault::Fault;
 use super::names::{Label, Named};
+use super::source::{Note, SectionBounds, Source};
 use crate::cards::{Cards, Param};
 use crate::place::Place;
-
-/// A file of a deck.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Source {
-    /// As the loader names it.
-    pub path: String,
-    /// Its bytes, unchanged.
-    pub bytes: Vec<u8>,
-}
 
 /// A card without a struct of its own, kept word for word.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,34 +21,6 @@ pub struct OtherCard {
     /// Bytes of its first line to the end of its last, comments between included.
     pub(super) start: usize,
     pub(super) end: usize,
-}
-
-/// Something worth saying that is no fault.
-#[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
-pub struct Note {
-    pub at: Place,
-    pub text: String,
-}
-
-/// A position between bytes of a source.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Position {
-    pub source: usize,
-    pub offset: usize,
-}
-
-/// Where the sections of the deck meet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub(super) struct Seams {
-    /// Start of the line after CEND, or of the deck.
-    pub case_start: Option<Position>,
-    /// Start of the line `BEGIN BULK`.
-    pub bulk_line: Option<Position>,
-    /// Start of the line ENDDATA.
-    pub enddata: Option<Position>,
-    /// Start of the line SOL, and its end.
-    pub(super) sol: Option<(Position, usize)>,
 }
 
 /// A deck: its bytes, its typed cards, and everything that is wrong with it.
@@ -82,10 +46,18 @@ pub struct Deck {
     pub notes: Vec<Note>,
     /// Names in comments.
     pub labels: Vec<Label>,
-    pub(super) seams: Seams,
+    pub(super) bounds: SectionBounds,
 }
 
 impl Deck {
+    /// Whether nothing was found that makes a text a deck: no section, no card with a struct.
+    pub(super) fn is_empty(&self) -> bool {
+        self.bounds == SectionBounds::default()
+            && self.sol_text.is_none()
+            && self.case_control.lines.is_empty()
+            && self.cards == Cards::default()
+    }
+
     /// The text of a card that has no struct; bytes that are not UTF-8 as Latin-1.
     pub fn text(&self, card: &OtherCard) -> String {
         let source = self.sources.get(card.at.source.0 as usize);

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::deck::Source;
+use super::source::Source;
 use crate::place::Place;
 
 /// A fault of a deck.
@@ -88,6 +88,10 @@ pub enum Wrong {
     IncludeName {
         found: String,
     },
+    /// The deck ends within a line and without ENDDATA.
+    CutShort,
+    /// A text without any card or section of a deck.
+    NotADeck,
     /// A case control or executive line that cannot be read.
     Statement {
         found: String,
@@ -112,6 +116,8 @@ impl Wrong {
             Self::Orphan { label } => Some(label),
             Self::IncludeNotFound { name, .. } | Self::IncludeCycle { name } => Some(name),
             Self::Missing
+            | Self::CutShort
+            | Self::NotADeck
             | Self::TooManyReplicated { .. }
             | Self::IncludeDepth { .. }
             | Self::IncludeCount { .. } => None,
@@ -135,6 +141,9 @@ impl Wrong {
             }
             Self::NotOneOf { found, allowed } => {
                 format!("one of {allowed} is needed, found: {found}")
+            }
+            Self::NotACard { found } if found.is_empty() => {
+                "the line is neither a card nor a continuation".to_owned()
             }
             Self::NotACard { found } => {
                 format!("the line is neither a card nor a continuation: {found}")
@@ -161,6 +170,12 @@ impl Wrong {
             }
             Self::IncludeName { found } => {
                 format!("the file name of INCLUDE cannot be read: {found}")
+            }
+            Self::CutShort => {
+                "the deck ends within a line and without ENDDATA: it is cut".to_owned()
+            }
+            Self::NotADeck => {
+                "no Nastran deck: no card of bulk data and no section stands in it".to_owned()
             }
             Self::Statement { found, why } => format!("{why}: {found}"),
         }
@@ -198,6 +213,10 @@ impl Wrong {
                 "join some of the included files"
             }
             Self::IncludeName { .. } => "write INCLUDE 'file' with both quotes",
+            Self::NotADeck => {
+                "give the bulk data file (`.bdf`, `.dat`, `.nas`) that the solver reads"
+            }
+            Self::CutShort => "copy the deck again, or close it with ENDDATA",
             Self::Statement { .. } => "correct the statement",
         }
     }

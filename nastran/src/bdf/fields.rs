@@ -296,7 +296,7 @@ impl<'a, 'f> Fields<'a, 'f> {
     ) -> Vec<u32> {
         let step = usize::try_from(step.max(1)).unwrap_or(1);
         let length = range.end().saturating_sub(*range.start()) as usize / step + 1;
-        if super::replicate::take(self.budget, length.saturating_mul(4)) {
+        if super::budget::take(self.budget, length.saturating_mul(4)) {
             return range.step_by(step).collect();
         }
         let found = excerpt(self.raw(i));

@@ -1,34 +1,40 @@
 //! Nastran decks: reads executive and case control and bulk data, keeps every byte, edits and writes back.
 
 mod assemble;
+mod budget;
+mod bulk_scan;
 mod card;
 mod case;
 mod chunk;
 mod deck;
-mod defer;
 mod fault;
 mod fields;
 mod include;
+mod include_statement;
 mod line;
+mod loose_continuations;
 mod merge;
 mod names;
 mod number;
+mod part;
 mod read;
 mod replicate;
+mod sections;
+mod source;
 mod split;
-mod walk;
 mod write;
 
 #[cfg(test)]
 mod tests;
 
 pub use case::{CaseControl, CaseLine, Request, Selection, Set, SetItem, Subcase, SubcaseKind};
-pub use deck::{Deck, Note, OtherCard, Source};
+pub use deck::{Deck, OtherCard};
 pub use fault::{Fault, FieldName, Wrong};
 pub use include::{IncludeRequest, Loaded, Loader, MemoryLoader};
 pub use names::{Label, Named};
 pub use number::{Number, read_number};
 pub use read::read_deck;
+pub use source::{Note, Source};
 pub use write::{
     EditError, Edits, Field, ToFields, format_card, format_real, shortest_real, write_deck,
     write_edited,

@@ -3,30 +3,32 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicUsize;
 
-use super::assemble::Part;
+use super::budget::BUDGET;
 use super::case;
 use super::chunk::read_chunks;
-use super::deck::{Deck, Note, Position};
-use super::defer::resolve;
+use super::deck::Deck;
+use super::fault::{Fault, Wrong};
 use super::fields::MAX_FAULTS;
 use super::include::Loader;
 use super::line::text_of;
+use super::loose_continuations::resolve;
 use super::merge::append;
-use super::replicate::BUDGET;
-use super::walk::{Statement, walk};
+use super::part::Part;
+use super::sections::{Statement, read_sections};
+use super::source::{Note, Position};
 use crate::place::Place;
 
 /// The deck in `bytes` with all files it includes. What cannot be read is in [`Deck::faults`].
 ///
 /// `main_path` is how messages call the first deck, and where relative INCLUDE names start.
 pub fn read_deck(main_path: &str, bytes: Vec<u8>, loader: &mut dyn Loader) -> Deck {
-    let walked = walk(main_path, bytes, loader);
+    let sections = read_sections(main_path, bytes, loader);
     let budget = AtomicUsize::new(BUDGET);
-    let mut part = read_chunks(&walked.chunks, &walked.sources, &budget);
+    let mut part = read_chunks(&sections.chunks, &sections.sources, &budget);
     if !part.deferred.is_empty() || !part.orphans.is_empty() {
         let deferred = std::mem::take(&mut part.deferred);
         let mut orphans = std::mem::take(&mut part.orphans);
-        let late = resolve(&deferred, &mut orphans, &walked.sources, &budget);
+        let late = resolve(&deferred, &mut orphans, &sections.sources, &budget);
         append(&mut part, late);
     }
     let Part {
@@ -46,18 +48,34 @@ pub fn read_deck(main_path: &str, bytes: Vec<u8>, loader: &mut dyn Loader) -> De
             .collect::<BTreeMap<_, _>>(),
         others,
         labels,
-        seams: walked.seams,
+        bounds: sections.bounds,
         ..Deck::default()
     };
-    if walked.seams.enddata.is_some() {
+    if sections.bounds.enddata.is_some() {
         deck.counts.insert("ENDDATA".to_owned(), 1);
     }
-    read_sol(&walked.executive, &mut deck);
-    read_sol(&walked.case, &mut deck);
-    deck.case_control = case::read_case_control(&walked.case, &mut deck.faults);
-    deck.faults.extend(walked.faults);
-    deck.faults.extend(faults);
-    deck.notes = walked.notes;
+    read_sol(&sections.executive, &mut deck);
+    read_sol(&sections.case, &mut deck);
+    deck.case_control = case::read_case_control(&sections.case, &mut deck.faults);
+    deck.faults.extend(sections.faults);
+    // Of a text that is no deck every line is wrong: said once, and none of it shown.
+    let nameless = |f: &Fault| f.card.is_empty();
+    if deck.is_empty() && deck.faults.is_empty() && faults.iter().all(nameless) {
+        deck.others.clear();
+        deck.counts.clear();
+        deck.faults.push(Fault {
+            at: Place {
+                line: 1,
+                ..Place::default()
+            },
+            card: String::new(),
+            field: None,
+            what: Wrong::NotADeck,
+        });
+    } else {
+        deck.faults.extend(faults);
+    }
+    deck.notes = sections.notes;
     deck.notes.extend(notes);
     if deck.faults.len() >= MAX_FAULTS {
         let text = format!("only {MAX_FAULTS} faults are listed, there are more");
@@ -66,7 +84,7 @@ pub fn read_deck(main_path: &str, bytes: Vec<u8>, loader: &mut dyn Loader) -> De
             text,
         });
     }
-    deck.sources = walked.sources;
+    deck.sources = sections.sources;
     deck
 }
 
@@ -92,7 +110,7 @@ fn read_sol(statements: &[Statement], deck: &mut Deck) {
         deck.sol = word.parse().ok().or_else(|| named_solution(&word));
         deck.sol_text = Some(value.to_owned());
         let source = statement.at.source.0 as usize;
-        deck.seams.sol = Some((
+        deck.bounds.sol = Some((
             Position {
                 source,
                 offset: statement.start,

@@ -1,13 +1,11 @@
 //! Replication: `=`, `==`, `*(n)` in fields, `=(n)` in field 1.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::AtomicUsize;
 
+use super::budget::{BUDGET, take};
 use super::fault::Wrong;
 use super::fields::excerpt;
 use super::number::{Number, read_number};
-
-/// Bytes of generated cards that a deck may have.
-pub(super) const BUDGET: usize = 48 << 20;
 
 /// A card and the steps that make the next from it.
 #[derive(Clone, Debug)]
@@ -37,14 +35,6 @@ pub(super) fn spend(budget: &AtomicUsize, template: &Template) -> Result<(), Wro
     Err(Wrong::TooManyReplicated {
         limit: BUDGET / 200,
     })
-}
-
-/// Takes bytes off the budget; false where too few are left.
-pub(super) fn take(budget: &AtomicUsize, bytes: usize) -> bool {
-    let taken = budget.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| {
-        left.checked_sub(bytes)
-    });
-    taken.is_ok()
 }
 
 impl Template {

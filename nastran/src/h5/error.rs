@@ -1,5 +1,7 @@
 //! What can be wrong with an HDF5 result file.
 
+use crate::results::Damage;
+
 /// Why an HDF5 file, or a block of one, could not be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum H5Error {
@@ -11,6 +13,9 @@ pub enum H5Error {
         /// What the HDF5 layer says.
         reason: String,
     },
+    /// The file is cut short, or a table of it is damaged.
+    #[error("damaged HDF5 file, cut short perhaps: {0}; write or copy the file again")]
+    Damaged(Damage),
     /// It is HDF5, but without `/NASTRAN/RESULT`.
     #[error(
         "no group `/NASTRAN/RESULT`: this is not a Nastran result file, or it holds input only"
@@ -48,4 +53,14 @@ pub enum H5Error {
         /// The table.
         path: String,
     },
+}
+
+impl H5Error {
+    /// Whether the file contradicts itself, other than being of a kind that is not read.
+    pub(crate) fn is_damage(&self) -> bool {
+        matches!(
+            self,
+            Self::Container { .. } | Self::TooLarge { .. } | Self::Damaged(_)
+        )
+    }
 }

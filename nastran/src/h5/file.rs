@@ -1,11 +1,14 @@
 //! An HDF5 result file as an index of blocks.
 
 use super::domain::{Domain, domains};
+use super::extent::stated_length;
 use super::layout::{Kind, Layout, elemental, nodal};
 use super::table::Table;
 use super::weight::grid_point_weight;
 use super::{H5Error, decode};
-use crate::results::{Analysis, Block, GridPointWeight, Note, Quantity, Rows, ShellForm};
+use crate::results::{
+    Analysis, Block, Damage, GridPointWeight, Note, Quantity, Rows, Salvaged, ShellForm,
+};
 use hdf5_pure::{AttrValue, File};
 use std::collections::BTreeMap;
 
@@ -23,6 +26,7 @@ pub struct H5 {
     /// The number of the schema, where the file states it.
     pub schema: Option<i64>,
     spans: Vec<Span>,
+    damage: Vec<Damage>,
 }
 
 /// Records of one block.
@@ -34,11 +38,19 @@ struct Span {
 }
 
 impl H5 {
-    /// The index of an HDF5 result file. The bytes are copied once: the HDF5 layer owns its input.
+    /// The index of a whole HDF5 result file. The bytes are copied once: the HDF5 layer owns its input.
     ///
     /// # Errors
-    /// [`H5Error`] where the container is damaged or holds no Nastran results. A damaged table alone is a note.
+    /// [`H5Error::Damaged`] for a file that is cut short or whose tables can't all be opened, and those of [`H5::salvage`].
     pub fn read(bytes: &[u8]) -> Result<Self, H5Error> {
+        Self::salvage(bytes)?.whole().map_err(H5Error::Damaged)
+    }
+
+    /// What can be read of a file that may be cut or damaged, with the damage.
+    ///
+    /// # Errors
+    /// [`H5Error`] where the container is damaged or holds no Nastran results.
+    pub fn salvage(bytes: &[u8]) -> Result<Salvaged<Self>, H5Error> {
         let fail = |e: hdf5_pure::Error| H5Error::Container {
             path: "/".to_string(),
             reason: e.to_string(),
@@ -57,14 +69,22 @@ impl H5 {
             grid_point_weight: None,
             schema,
             spans: Vec::new(),
+            damage: Vec::new(),
         };
+        if let Some(stated) = stated_length(bytes).filter(|&n| n > bytes.len() as u64) {
+            this.damage.push(Damage {
+                at: "superblock".to_owned(),
+                what: format!("{stated} bytes stated, the file has {}", bytes.len()),
+            });
+        }
         if this.file.group(RESULT).is_err() {
             return Err(H5Error::NoResults);
         }
         let domains = domains(&this.table(&format!("{RESULT}/DOMAINS"))?)?;
         this.nodal(&domains)?;
         this.elemental(&domains)?;
-        Ok(this)
+        let damage = std::mem::take(&mut this.damage);
+        Ok(Salvaged { file: this, damage })
     }
 
     fn table(&self, path: &str) -> Result<Table<'_>, H5Error> {
@@ -97,7 +117,7 @@ impl H5 {
             if name == "GRID_WEIGHT" {
                 match self.table(&path).and_then(|t| grid_point_weight(&t)) {
                     Ok(weight) => self.grid_point_weight = weight,
-                    Err(e) => self.note(&path, e.to_string()),
+                    Err(e) => self.unread(&path, &e),
                 }
                 continue;
             }
@@ -129,6 +149,18 @@ impl H5 {
             }
         }
         Ok(())
+    }
+
+    /// A table that can't be read: damage, or of a kind that is passed over.
+    fn unread(&mut self, path: &str, why: &H5Error) {
+        if why.is_damage() {
+            self.damage.push(Damage {
+                at: path.to_string(),
+                what: why.to_string(),
+            });
+        } else {
+            self.note(path, why.to_string());
+        }
     }
 
     fn note(&mut self, subject: &str, message: String) {
@@ -190,17 +222,17 @@ impl H5 {
                 );
             }
             Ok(blocks) => blocks,
-            Err(e) => return self.note(path, e.to_string()),
+            Err(e) => return self.unread(path, &e),
         };
         for (id, span, form) in blocks {
             let Some(d) = domains.get(&id) else {
-                self.note(
-                    path,
-                    format!(
-                        "{} records with DOMAIN_ID {id}, which DOMAINS does not list, left out",
+                self.damage.push(Damage {
+                    at: path.to_string(),
+                    what: format!(
+                        "{} records have DOMAIN_ID {id}, which DOMAINS does not list",
                         span.count
                     ),
-                );
+                });
                 continue;
             };
             let modal =

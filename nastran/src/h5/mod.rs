@@ -9,6 +9,7 @@ mod chunk;
 mod decode;
 mod domain;
 mod error;
+mod extent;
 mod file;
 mod layout;
 mod table;

@@ -49,9 +49,8 @@ impl<'f> Table<'f> {
         };
         let dataset = file.dataset(path).map_err(fail)?;
         let Datatype::Compound { size, members } = dataset.datatype().map_err(fail)? else {
-            return Err(H5Error::Container {
+            return Err(H5Error::NotDecoded {
                 path: path.to_string(),
-                reason: "not a table of records".to_string(),
             });
         };
         let record = size as usize;

@@ -276,7 +276,7 @@ fn truncated_and_mutated_files_give_an_answer_or_an_error_but_no_panic() {
         return;
     };
     let read_all = |bytes: &[u8]| {
-        if let Ok(h5) = H5::read(bytes) {
+        if let Ok(h5) = H5::salvage(bytes).map(|s| s.file) {
             for ix in 0..=h5.blocks.len() {
                 let _ = h5.rows(ix);
             }

@@ -7,7 +7,7 @@
 
 use super::fortran::{Cursor, Physical, Stop};
 use super::words::{Format, Words};
-use crate::results::Note;
+use crate::results::{Damage, Note};
 
 /// What a table is, as far as its name and keys tell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -63,7 +63,8 @@ pub(super) struct Container {
     pub records: Vec<Record>,
     pub pieces: Vec<Piece>,
     pub notes: Vec<Note>,
-    pub truncated: bool,
+    /// Where the file contradicts itself, or ends too early.
+    pub damage: Vec<Damage>,
     /// Where reading stopped before the end of the file.
     pub stopped: Option<(usize, String)>,
 }
@@ -101,7 +102,7 @@ pub(super) fn read_container(file: &[u8], format: Format) -> Container {
         records: Vec::new(),
         pieces: Vec::new(),
         notes: Vec::new(),
-        truncated: false,
+        damage: Vec::new(),
         stopped: None,
     };
     let mut cursor = Cursor::new(file, format);
@@ -113,11 +114,13 @@ pub(super) fn read_container(file: &[u8], format: Format) -> Container {
             Err(Trouble::Stop(Stop::End)) if cursor.pos == start => {
                 if !closed {
                     // OUTPUT2 files without header may end like this
-                    c.truncated = c.version_label.is_some();
-                    c.note(
-                        "the file ends without the closing key 0; further tables may be missing"
-                            .to_owned(),
-                    );
+                    let what =
+                        "the file ends without the closing key 0; further tables may be missing";
+                    if c.version_label.is_some() {
+                        c.harm(what.to_owned());
+                    } else {
+                        c.note(what.to_owned());
+                    }
                 }
                 break;
             }
@@ -130,7 +133,7 @@ pub(super) fn read_container(file: &[u8], format: Format) -> Container {
                 key,
                 expected,
             }) => {
-                c.note(format!("unexpected key {key} at byte {offset}, expected {expected}; went on with the next table"));
+                c.harm(format!("unexpected key {key} at byte {offset}, expected {expected}; went on with the next table"));
                 if !skip_to_table(&mut cursor, file, start) {
                     break;
                 }
@@ -239,7 +242,15 @@ impl Container {
                             expected: "-1 after the table name",
                         });
                     }
+                    // records are numbered one by one: a gap is a lost record, a step back one that stands twice or elsewhere
+                    let expected = number.saturating_add(1);
                     number = key.unsigned_abs().try_into().unwrap_or(i64::MAX);
+                    if number != expected {
+                        self.damage.push(Damage {
+                            at: format!("table {}", table.name),
+                            what: format!("record {number} stands where record {expected} should"),
+                        });
+                    }
                     let one = cursor.key()?;
                     let kind = cursor.key()?;
                     if one != 1 {
@@ -297,8 +308,7 @@ impl Container {
 
     fn note_stop(&mut self, file: &[u8], stop: &Stop) {
         let offset = stop.offset(file);
-        self.truncated = true;
-        self.note(format!(
+        self.harm(format!(
             "{stop} at byte {offset} of {}; what stands before it was read",
             file.len()
         ));
@@ -306,11 +316,21 @@ impl Container {
     }
 
     fn note(&mut self, message: String) {
-        let subject = self.tables.last().map_or_else(
+        let subject = self.here();
+        self.notes.push(Note { subject, message });
+    }
+
+    fn harm(&mut self, what: String) {
+        let at = self.here();
+        self.damage.push(Damage { at, what });
+    }
+
+    /// The last table and record that was met.
+    fn here(&self) -> String {
+        self.tables.last().map_or_else(
             || "file".to_owned(),
             |t| format!("table {}, record {}", t.name, t.records.len()),
-        );
-        self.notes.push(Note { subject, message });
+        )
     }
 }
 

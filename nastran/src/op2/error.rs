@@ -1,6 +1,6 @@
 //! What can be wrong with an OP2.
 
-use crate::results::ElementType;
+use crate::results::{Damage, ElementType};
 
 /// Why an OP2, or a block of it, could not be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -17,6 +17,10 @@ pub enum Op2Error {
         "damaged OP2: no table could be read, {what} at byte {offset}; export the results again"
     )]
     NoTable { offset: usize, what: String },
+
+    /// The file is cut short or contradicts itself.
+    #[error("damaged OP2, cut short perhaps: {0}; write or copy the file again")]
+    Damaged(Damage),
 
     /// The caller asked for a block that does not exist.
     #[error("block {block} does not exist: the file has {count}")]
@@ -42,6 +46,16 @@ pub enum Op2Error {
         row: usize,
         found: i64,
     },
+}
+
+impl Op2Error {
+    /// Whether the file contradicts itself, other than being of a kind that is not read.
+    pub(crate) fn is_damage(&self) -> bool {
+        matches!(
+            self,
+            Self::NoTable { .. } | Self::Damaged(_) | Self::BadId { .. }
+        )
+    }
 }
 
 /// Why the rows of a block are not decoded.

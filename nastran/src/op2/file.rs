@@ -12,7 +12,7 @@ use super::rows::decode;
 use super::weight::read_weight;
 use super::words::{ByteOrder, Format, Words};
 use crate::cards::Cards;
-use crate::results::{Block, GridPointWeight, Note, Quantity, Rows};
+use crate::results::{Block, GridPointWeight, Note, Quantity, Rows, Salvaged};
 
 /// Who wrote a file, by its labels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -44,10 +44,8 @@ pub struct Op2<'a> {
     pub tables: Vec<TableEntry>,
     /// Every result block, in file order.
     pub blocks: Vec<Block>,
-    /// What was passed over, and where a damaged file stops.
+    /// What was passed over.
     pub notes: Vec<Note>,
-    /// The file ends early or is damaged: tables may be missing, the last block may lack rows.
-    pub truncated: bool,
     spans: Vec<Span>,
     weight: Option<usize>,
     records: Vec<Record>,
@@ -55,14 +53,21 @@ pub struct Op2<'a> {
 }
 
 impl<'a> Op2<'a> {
-    /// Tables and blocks of a file; no row is decoded.
+    /// Tables and blocks of a whole file; no row is decoded.
     ///
-    /// A file that is cut short or damaged gives what could be read, a note, and [`Op2::truncated`].
+    /// # Errors
+    ///
+    /// [`Op2Error::Damaged`] for a file that is cut short or contradicts itself, and those of [`Op2::salvage`].
+    pub fn read(file: &'a [u8]) -> Result<Op2<'a>, Op2Error> {
+        Self::salvage(file)?.whole().map_err(Op2Error::Damaged)
+    }
+
+    /// What can be read of a file that may be cut or damaged, with the damage: tables may be missing, the last block may lack rows.
     ///
     /// # Errors
     ///
     /// [`Op2Error::NotOp2`], or [`Op2Error::NoTable`] where not even one table could be read.
-    pub fn read(file: &'a [u8]) -> Result<Op2<'a>, Op2Error> {
+    pub fn salvage(file: &'a [u8]) -> Result<Salvaged<Op2<'a>>, Op2Error> {
         let first = || file.get(..file.len().min(8)).unwrap_or(&[]).to_vec();
         let format = Format::detect(file).ok_or_else(|| Op2Error::NotOp2 { first: first() })?;
         let mut c: Container = read_container(file, format);
@@ -79,7 +84,8 @@ impl<'a> Op2<'a> {
             spans,
             weight,
         } = index(file, format, &mut c);
-        Ok(Op2 {
+        let damage = std::mem::take(&mut c.damage);
+        let op2 = Op2 {
             file,
             format,
             solver: solver(&c),
@@ -89,12 +95,12 @@ impl<'a> Op2<'a> {
             tables: c.tables,
             blocks,
             notes: c.notes,
-            truncated: c.truncated,
             spans,
             weight,
             records: c.records,
             pieces: c.pieces,
-        })
+        };
+        Ok(Salvaged { file: op2, damage })
     }
 
     /// Rows of block `block` (an index of [`Op2::blocks`]).

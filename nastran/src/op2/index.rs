@@ -4,7 +4,7 @@ use super::container::{Container, TableEntry, TableKind};
 use super::ident::{IDENT_WORDS, Ident, read_ident};
 use super::rows::{Layout, layout};
 use super::words::{Format, Words};
-use crate::results::{Analysis, Block, Note, Quantity};
+use crate::results::{Analysis, Block, Damage, Note, Quantity};
 
 /// Where the rows of a block stand, and what is needed to decode them.
 #[derive(Clone, Copy, Debug)]
@@ -59,10 +59,12 @@ fn index_table(
     t: usize,
     table: &TableEntry,
 ) -> bool {
-    let mut found = false;
+    let first_block = out.blocks.len();
+    let (mut found, mut stray) = (false, None);
     let mut r = table.records.start;
     while r < table.records.end {
         let Some(ident) = ident_at(file, format, c, r) else {
+            stray = stray.or(Some(r));
             r = r.saturating_add(1);
             continue;
         };
@@ -73,9 +75,9 @@ fn index_table(
             .then(|| c.records.get(rows))
             .flatten()
         else {
-            c.notes.push(Note {
-                subject: format!("table {}, subcase {}", table.name, ident.subcase),
-                message: "an identification record without rows; skipped".to_owned(),
+            c.damage.push(Damage {
+                at: format!("table {}, subcase {}", table.name, ident.subcase),
+                what: "an identification record without rows".to_owned(),
             });
             continue;
         };
@@ -87,9 +89,31 @@ fn index_table(
         let (block, span) = describe(table, t, rows, words, ident);
         if let Some(why) = passed_over(&block, &span) {
             note_once(c, &table.name, &why);
+        } else if span
+            .layout
+            .is_some_and(|l| !words.is_multiple_of(l.wide.max(1)))
+        {
+            c.damage.push(Damage {
+                at: format!("table {}, subcase {}", table.name, block.subcase),
+                what: format!(
+                    "{words} words are no whole number of rows of {}",
+                    block.num_wide
+                ),
+            });
         }
         out.blocks.push(block);
         out.spans.push(span);
+    }
+    // Among results that are read, what is no identification record is one that was harmed: its rows would be lost in silence.
+    let mut blocks = out.blocks.iter().skip(first_block);
+    if let Some(r) = stray
+        && blocks.any(|b| b.quantity != Quantity::Other)
+    {
+        let number = r.saturating_sub(table.records.start).saturating_add(3);
+        c.damage.push(Damage {
+            at: format!("table {}, record {number}", table.name),
+            what: "no identification record stands before these rows".to_owned(),
+        });
     }
     found
 }

@@ -1,5 +1,7 @@
 //! What can be wrong with a punch file.
 
+use crate::results::Damage;
+
 /// Why a punch file, or a block of one, could not be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PunchError {
@@ -8,6 +10,9 @@ pub enum PunchError {
         "no result block found: a punch file has headers such as `$DISPLACEMENTS` or `$ELEMENT STRAINS`; request output with (PUNCH)"
     )]
     NoBlocks,
+    /// The text ends within an entry.
+    #[error("damaged punch file, cut short perhaps: {0}; write or copy the file again")]
+    Damaged(Damage),
     /// The block index is out of range.
     #[error("block {index} does not exist: the file has {blocks}")]
     NoSuchBlock {
@@ -48,4 +53,14 @@ pub enum PunchError {
         /// Words of the element type.
         expected: usize,
     },
+}
+
+impl PunchError {
+    /// Whether the text contradicts its layout, other than being of a kind that is not decoded.
+    pub(crate) fn is_damage(&self) -> bool {
+        matches!(
+            self,
+            Self::BadField { .. } | Self::WordCount { .. } | Self::Damaged(_)
+        )
+    }
 }

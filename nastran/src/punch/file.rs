@@ -3,7 +3,10 @@
 use super::entry::{content, each_entry, is_continuation};
 use super::header::Header;
 use super::{PunchError, decode};
-use crate::results::{Block, Note, Quantity, Rows, ShellForm};
+use crate::results::{Block, Damage, Note, Quantity, Rows, Salvaged, ShellForm};
+
+/// Columns of a line as solvers write it: one of them is whole even without a line end.
+const FULL_LINE: usize = 80;
 
 /// A punch file: the index is made at once, rows are decoded block by block from the bytes it borrows.
 #[derive(Clone, Debug)]
@@ -25,11 +28,19 @@ struct Span {
 }
 
 impl<'a> Punch<'a> {
-    /// The index of a punch file.
+    /// The index of a whole punch file.
+    ///
+    /// # Errors
+    /// [`PunchError::Damaged`] for a text that ends within an entry, and those of [`Punch::salvage`].
+    pub fn read(bytes: &'a [u8]) -> Result<Self, PunchError> {
+        Self::salvage(bytes)?.whole().map_err(PunchError::Damaged)
+    }
+
+    /// What can be read of a punch file that may be cut, with the damage.
     ///
     /// # Errors
     /// [`PunchError::NoBlocks`] where no header names a result.
-    pub fn read(bytes: &'a [u8]) -> Result<Self, PunchError> {
+    pub fn salvage(bytes: &'a [u8]) -> Result<Salvaged<Self>, PunchError> {
         let mut this = Self {
             bytes,
             blocks: Vec::new(),
@@ -80,7 +91,40 @@ impl<'a> Punch<'a> {
             return Err(PunchError::NoBlocks);
         }
         this.finish();
-        Ok(this)
+        let damage = this.cut_at_the_end(open, number).into_iter().collect();
+        Ok(Salvaged { file: this, damage })
+    }
+
+    /// Damage where the text ends in a header, within a line or within an entry of the last block. A cut between two whole entries
+    /// doesn't show.
+    fn cut_at_the_end(&self, in_entries: bool, line: u32) -> Option<Damage> {
+        let damage = |what: String| {
+            Some(Damage {
+                at: format!("line {line}"),
+                what,
+            })
+        };
+        let last = self.bytes.rsplit(|&b| b == b'\n').next().unwrap_or(&[]);
+        if !last.is_empty() && last.len() < FULL_LINE {
+            return damage("the text ends within a line".to_owned());
+        }
+        if !in_entries {
+            return damage("the text ends in a header, without entries".to_owned());
+        }
+        let (block, span) = (self.blocks.last()?, self.spans.last()?);
+        if decode::refusal(block).is_some() {
+            return None;
+        }
+        let text = self.bytes.get(span.start..span.end)?;
+        let mut rows = Rows {
+            columns: decode::columns(block).unwrap_or(&[]),
+            ..Rows::default()
+        };
+        let (from, from_line) = last_entry(text, span.line);
+        let read = each_entry(text.get(from..)?, from_line, |entry| {
+            decode::push(block, entry, &mut rows)
+        });
+        read.err().and_then(|e| damage(e.to_string()))
     }
 
     /// Shell forms, which the header does not state, and notes on what is not decoded.
@@ -168,6 +212,20 @@ impl<'a> Punch<'a> {
         })?;
         Ok(rows)
     }
+}
+
+/// Offset and line of the last entry of a text of entries.
+fn last_entry(text: &[u8], first_line: u32) -> (usize, u32) {
+    let (mut at, mut number) = (0_usize, first_line);
+    let mut found = (at, number);
+    for l in text.split_inclusive(|&b| b == b'\n') {
+        if !l.iter().all(u8::is_ascii_whitespace) && !is_continuation(l) {
+            found = (at, number);
+        }
+        at = at.saturating_add(l.len());
+        number = number.saturating_add(1);
+    }
+    found
 }
 
 fn block(h: &Header) -> Block {

@@ -1,6 +1,6 @@
 //! One front for every kind of result file.
 
-use super::{Block, GridPointWeight, Note, Rows};
+use super::{Block, GridPointWeight, Note, Rows, Salvaged};
 use crate::cards::Cards;
 use crate::h5::{H5, H5Error, is_h5};
 use crate::op2::{Op2, Op2Error, Solver};
@@ -39,20 +39,48 @@ pub enum ResultsError {
     H5(#[from] H5Error),
 }
 
+impl ResultsError {
+    /// Whether the file is cut or damaged, other than being of a kind that is not read.
+    pub fn is_damage(&self) -> bool {
+        match self {
+            Self::UnknownKind { .. } => false,
+            Self::Op2(e) => e.is_damage(),
+            Self::Punch(e) => e.is_damage(),
+            Self::H5(e) => e.is_damage(),
+        }
+    }
+}
+
 impl<'a> ResultsFile<'a> {
-    /// Reads the index of a result file; `name` is only used in messages and to break ties.
+    /// Reads the index of a whole result file; `name` is only used in messages and to break ties.
     ///
     /// # Errors
-    /// [`ResultsError`]: a kind that is not known, or what its reader says.
+    /// [`ResultsError`]: a file that is cut or damaged ([`ResultsError::is_damage`]), and those of [`ResultsFile::salvage`].
     pub fn read(bytes: &'a [u8], name: &str) -> Result<Self, ResultsError> {
+        let Salvaged { file, damage } = Self::salvage(bytes, name)?;
+        let Some(first) = damage.into_iter().next() else {
+            return Ok(file);
+        };
+        Err(match file {
+            Self::Op2(_) => Op2Error::Damaged(first).into(),
+            Self::Punch(_) => PunchError::Damaged(first).into(),
+            Self::H5(_) => H5Error::Damaged(first).into(),
+        })
+    }
+
+    /// What can be read of a result file that may be cut or damaged, with the damage: to describe it, never to compute with it.
+    ///
+    /// # Errors
+    /// [`ResultsError`]: a kind that is not known, or a file of which nothing can be read.
+    pub fn salvage(bytes: &'a [u8], name: &str) -> Result<Salvaged<Self>, ResultsError> {
         if is_h5(bytes) {
-            return Ok(Self::H5(Box::new(H5::read(bytes)?)));
+            return Ok(H5::salvage(bytes)?.map(|f| Self::H5(Box::new(f))));
         }
         if looks_like_punch(bytes) {
-            return Ok(Self::Punch(Punch::read(bytes)?));
+            return Ok(Punch::salvage(bytes)?.map(Self::Punch));
         }
-        match Op2::read(bytes) {
-            Ok(op2) => Ok(Self::Op2(Box::new(op2))),
+        match Op2::salvage(bytes) {
+            Ok(op2) => Ok(op2.map(|f| Self::Op2(Box::new(f)))),
             Err(Op2Error::NotOp2 { .. }) if !name.to_ascii_lowercase().ends_with(".op2") => {
                 Err(ResultsError::UnknownKind {
                     name: name.to_string(),

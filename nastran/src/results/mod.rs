@@ -2,11 +2,13 @@
 
 mod block;
 pub mod columns;
+mod damage;
 mod element;
 mod file;
 mod rows;
 
 pub use block::*;
+pub use damage::*;
 pub use element::*;
 pub use file::*;
 pub use rows::*;

@@ -5,7 +5,7 @@ use crate::app::fault::Fault;
 use crate::app::files::FileBytes;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
-use nastran::results::{Block, ResultsFile};
+use nastran::results::{Block, ResultsFile, Salvaged};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -80,9 +80,9 @@ impl ResultEntry {
 }
 
 pub(super) fn look(work: &mut Work, given: &str, bytes: FileBytes, found: &mut Checked) {
-    let read = ResultsFile::read(&bytes, given);
+    let read = ResultsFile::salvage(&bytes, given);
     let (entry, findings, faults) = match read {
-        Ok(file) => describe(given, &bytes, &file),
+        Ok(read) => describe(given, &bytes, &read),
         Err(e) => {
             return found.faults.push(Fault::of(
                 given,
@@ -100,8 +100,14 @@ pub(super) fn look(work: &mut Work, given: &str, bytes: FileBytes, found: &mut C
 fn describe(
     given: &str,
     bytes: &FileBytes,
-    file: &ResultsFile,
+    read: &Salvaged<ResultsFile>,
 ) -> (ResultEntry, Vec<Finding>, Vec<Fault>) {
+    let file = &read.file;
+    let mut faults: Vec<Fault> = read
+        .damage
+        .iter()
+        .map(|d| damaged(given, d.to_string()))
+        .collect();
     let decoded: Vec<_> = (0..file.blocks().len())
         .into_par_iter()
         .map(|i| file.rows(i).map(|r| r.len()))
@@ -109,8 +115,10 @@ fn describe(
     let mut tables = Vec::with_capacity(decoded.len());
     let mut undecoded: BTreeMap<String, usize> = BTreeMap::new();
     for (block, rows) in file.blocks().iter().zip(decoded) {
-        if let Err(e) = &rows {
-            *undecoded.entry(e.to_string()).or_default() += 1;
+        match &rows {
+            Err(e) if e.is_damage() => faults.push(damaged(given, e.to_string())),
+            Err(e) => *undecoded.entry(e.to_string()).or_default() += 1,
+            Ok(_) => {}
         }
         tables.push(entry(block, rows.ok()));
     }
@@ -140,18 +148,9 @@ fn describe(
             "",
         ));
     }
-    let mut faults = Vec::new();
     let mut file_tables = Vec::new();
     if let ResultsFile::Op2(op2) = file {
         file_tables = op2.tables.iter().map(|t| t.name.clone()).collect();
-        if op2.truncated {
-            faults.push(Fault::of(
-                given,
-                "OP2",
-                "the file ends early or is damaged",
-                "write or copy the file again",
-            ));
-        }
     }
     let entry = ResultEntry {
         path: given.to_owned(),
@@ -162,6 +161,15 @@ fn describe(
         bytes: bytes.clone(),
     };
     (entry, findings, faults)
+}
+
+fn damaged(given: &str, what: String) -> Fault {
+    Fault::of(
+        given,
+        "results",
+        format!("cut short or damaged: {what}"),
+        "write or copy the file again",
+    )
 }
 
 fn entry(block: &Block, rows: Option<usize>) -> TableEntry {

@@ -1,6 +1,7 @@
 //! A CSV file with the line of every row.
 
 use crate::app::fault::{Fault, FaultList, Faults};
+use crate::series::cell::unguarded;
 use crate::series::number::{DecimalMark, number};
 
 /// Header and rows of a CSV file, fields trimmed.
@@ -36,7 +37,7 @@ pub fn read_table(file: &str, text: &str) -> Result<Table, Faults> {
         .from_reader(text.as_bytes());
     let mut faults = FaultList::new();
     let header: Vec<String> = match reader.headers() {
-        Ok(h) => h.iter().map(|s| s.to_owned()).collect(),
+        Ok(h) => h.iter().map(|s| unguarded(s).to_owned()).collect(),
         Err(e) => {
             return Err(Faults::from(Fault::of(
                 file,
@@ -54,8 +55,9 @@ pub fn read_table(file: &str, text: &str) -> Result<Table, Faults> {
             "write a header and a row an entry",
         )));
     }
-    for (i, name) in header.iter().enumerate() {
-        if header[..i].contains(name) {
+    let mut seen = std::collections::HashSet::with_capacity(header.len());
+    for name in &header {
+        if !seen.insert(name) {
             faults.push(Fault::at(
                 file,
                 1,
@@ -85,7 +87,10 @@ pub fn read_table(file: &str, text: &str) -> Result<Table, Faults> {
                     ));
                     continue;
                 }
-                rows.push((line, r.iter().map(|s| with_point(s, mark)).collect()));
+                rows.push((
+                    line,
+                    r.iter().map(|s| with_point(unguarded(s), mark)).collect(),
+                ));
             }
             Err(e) => faults.push(Fault::of(file, "row", e.to_string(), "write a CSV file")),
         }

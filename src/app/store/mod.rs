@@ -17,8 +17,10 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// Solutions kept in one folder; the oldest go first.
-const KEPT: usize = 8;
+/// Solutions kept in one folder; those not used for longest go first.
+const KEPT: usize = 64;
+/// Their bytes.
+const MOST_BYTES: u64 = 4 << 30;
 
 /// Where solutions are kept, as bytes under a key.
 pub trait SolutionStore: Sync {
@@ -75,12 +77,59 @@ impl Folder {
         Self(folder.into())
     }
 
-    /// Solutions in `<name>.cache` beside a job or deck.
-    pub fn beside(main_input: impl AsRef<Path>) -> Self {
-        let main_input = main_input.as_ref();
-        let mut name = main_input.file_stem().unwrap_or_default().to_owned();
-        name.push(".cache");
-        Self(main_input.with_file_name(name))
+    /// Solutions in the user's folder for caches: `STRAINBRIDGE_CACHE`, else `strainbridge` in `XDG_CACHE_HOME`, in the system's place for
+    /// caches, or in that for temporary files.
+    pub fn of_user() -> Self {
+        let at = |name: &str| {
+            let path = PathBuf::from(std::env::var_os(name)?);
+            path.is_absolute().then_some(path)
+        };
+        if let Some(folder) = at("STRAINBRIDGE_CACHE") {
+            return Self(folder);
+        }
+        let system = match std::env::consts::OS {
+            "windows" => at("LOCALAPPDATA"),
+            "macos" => at("HOME").map(|h| h.join("Library").join("Caches")),
+            _ => at("HOME").map(|h| h.join(".cache")),
+        };
+        let base = at("XDG_CACHE_HOME").or(system);
+        Self(base.unwrap_or_else(std::env::temp_dir).join("strainbridge"))
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Removes every kept solution of the folder, and the folder where that leaves it empty: how many, and their bytes.
+    ///
+    /// # Errors
+    /// The first that can't be removed.
+    pub fn clean(&self) -> std::io::Result<(usize, u64)> {
+        let (mut n, mut bytes) = (0, 0);
+        for (_, size, path) in self.kept() {
+            std::fs::remove_file(path)?;
+            n += 1;
+            bytes += size;
+        }
+        // Refused where something else stands in it.
+        let _ = std::fs::remove_dir(&self.0);
+        Ok((n, bytes))
+    }
+
+    /// Kept solutions, the oldest use first: when, bytes, file.
+    fn kept(&self) -> Vec<(std::time::SystemTime, u64, PathBuf)> {
+        let entries = std::fs::read_dir(&self.0).into_iter().flatten();
+        let mut files: Vec<_> = entries
+            .filter_map(Result::ok)
+            .filter(|e| e.path().extension().is_some_and(|x| x == "solution"))
+            .filter_map(|e| {
+                let meta = e.metadata().ok().filter(|m| m.is_file())?;
+                Some((meta.modified().ok()?, meta.len(), e.path()))
+            })
+            .collect();
+        files.sort();
+        files
     }
 
     fn file(&self, key: &Key) -> PathBuf {
@@ -88,18 +137,17 @@ impl Folder {
     }
 
     fn forget_oldest(&self) {
-        let Ok(entries) = std::fs::read_dir(&self.0) else {
-            return;
-        };
-        let mut files: Vec<(std::time::SystemTime, PathBuf)> = entries
-            .filter_map(Result::ok)
-            .filter(|e| e.path().extension().is_some_and(|x| x == "solution"))
-            .filter_map(|e| Some((e.metadata().ok()?.modified().ok()?, e.path())))
-            .collect();
-        files.sort();
-        let surplus = files.len().saturating_sub(KEPT);
-        for (_, path) in files.into_iter().take(surplus) {
-            let _ = std::fs::remove_file(path);
+        let mut files = self.kept();
+        // The one just kept stays, however large.
+        files.pop();
+        let mut room = MOST_BYTES;
+        for (age, (_, size, path)) in files.into_iter().rev().enumerate() {
+            match room.checked_sub(size).filter(|_| age + 1 < KEPT) {
+                Some(left) => room = left,
+                None => {
+                    let _ = std::fs::remove_file(path);
+                }
+            }
         }
     }
 }
@@ -107,7 +155,13 @@ impl Folder {
 impl SolutionStore for Folder {
     fn read(&self, key: &Key) -> Result<Option<Vec<u8>>, String> {
         match std::fs::read(self.file(key)) {
-            Ok(bytes) => Ok(Some(bytes)),
+            Ok(bytes) => {
+                // Used now: so it is not among the first to go.
+                let now = std::time::SystemTime::now();
+                let file = std::fs::File::options().write(true).open(self.file(key));
+                let _ = file.and_then(|f| f.set_modified(now));
+                Ok(Some(bytes))
+            }
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
             Err(e) => Err(format!("the kept solution can't be read ({e})")),
         }

@@ -13,7 +13,6 @@ use crate::app::context::Context;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::Job;
 use crate::app::outcome::{Answer, Outcome};
-use crate::app::store::Folder;
 use crate::app::{self, Closed, CommonArguments, JobArguments, Session};
 use crate::fe::HeatedStrain;
 use crate::report::command::{Report, save};
@@ -209,8 +208,7 @@ fn play(
             out: Some(folder.join(out)),
         },
     };
-    let kept = Folder::beside(job);
-    let cx = session.cx.store(&kept);
+    let cx = session.cx;
     let run = |work: fn(&JobArguments, &mut Session) -> Result<(), Faults>| {
         Session::run(command, &arguments.common, &cx, |s| work(&arguments, s))
     };

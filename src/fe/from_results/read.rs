@@ -179,14 +179,21 @@ fn read_case(
     let mut decode = |ix: usize| match file.rows(ix) {
         Ok(rows) => Some(rows),
         Err(e) => {
-            let remedy = "export the results again if this block is needed";
-            findings.push(Finding::new(
-                Severity::Warning,
-                "block-not-read",
-                name,
-                e.to_string(),
-                remedy,
-            ));
+            // A block of a kind that is not decoded is left out; one that contradicts itself makes the file untrustworthy.
+            let (severity, code, remedy) = if e.is_damage() {
+                (
+                    Severity::Error,
+                    "results-damaged",
+                    "write or copy the file again",
+                )
+            } else {
+                (
+                    Severity::Warning,
+                    "block-not-read",
+                    "export the results again if this block is needed",
+                )
+            };
+            findings.push(Finding::new(severity, code, name, e.to_string(), remedy));
             None
         }
     };

@@ -12,10 +12,15 @@ impl Report for Outcome<Proposal> {
     }
 
     fn words(&self) -> String {
-        format!(
-            "{}: {} loads proposed; read it, correct units and loads, then run `place` on it\n",
-            self.job,
-            self.loads.len()
-        )
+        let n = self.loads.len();
+        let plural = if n == 1 { "" } else { "s" };
+        let what = format!("{}: {n} load{plural} proposed", self.job);
+        match self.placeable {
+            true => format!(
+                "{what}; read it, correct units and loads, then run `place {}`\n",
+                self.path.display()
+            ),
+            false => format!("{what}; gauges can't be placed by it as it is: see the findings\n"),
+        }
     }
 }

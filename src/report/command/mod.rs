@@ -12,6 +12,7 @@ mod sensitivity;
 mod solve;
 mod strains;
 mod study;
+mod verify;
 
 pub use pages::{write_book, write_page};
 
@@ -55,7 +56,7 @@ pub fn finish<A: Answer>(outcome: &Outcome<A>, mut out: Output) -> Result<String
         .to_json(out.tables())
         .map_err(|e| mistake("result.json", &e))?;
     out.write_bytes("result.json", json.as_bytes())?;
-    out.commit()?;
+    out.commit(A::COMMAND)?;
     Ok(json)
 }
 

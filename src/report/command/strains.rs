@@ -6,10 +6,11 @@ use crate::app::outcome::Outcome;
 use crate::app::output::Output;
 use crate::app::strains::Strains;
 use crate::report::strain::strains_page;
-use crate::report::write_strains;
+use crate::report::{strains_columns, write_strains};
 
 impl Report for Outcome<Strains> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
+        out.declare("strains.csv", strains_columns());
         out.write("strains.csv", |mut w| {
             write_strains(&self.model, &self.solution, &mut w).map(|_| ())
         })?;

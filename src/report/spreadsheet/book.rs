@@ -82,6 +82,8 @@ pub struct About<'a> {
 
 /// The year that every workbook is dated: the same input gives the same bytes.
 const DATED: u16 = 2000;
+/// The most UTF-16 units of a cell (ECMA-376, specifications of Excel).
+const MOST_TEXT: usize = 32_767;
 /// Widest column that is fitted to its text, pixels.
 const WIDEST: u32 = 520;
 
@@ -112,12 +114,12 @@ fn fill(out: &mut Worksheet, sheet: &Sheet) -> Result<(), XlsxError> {
         .set_border_bottom(FormatBorder::Thin);
     out.set_name(&sheet.name)?;
     for (c, name) in (0_u16..).zip(&sheet.columns) {
-        out.write_string_with_format(0, c, name, &head)?;
+        out.write_string_with_format(0, c, fitting(name), &head)?;
     }
     for (r, row) in (1_u32..).zip(&sheet.rows) {
         for (c, cell) in (0_u16..).zip(row) {
             match cell {
-                Cell::Text(text) => out.write_string(r, c, text)?,
+                Cell::Text(text) => out.write_string(r, c, fitting(text))?,
                 Cell::Number(x) if x.is_finite() => out.write_number(r, c, *x)?,
                 Cell::Number(_) => out,
             };
@@ -131,6 +133,21 @@ fn fill(out: &mut Worksheet, sheet: &Sheet) -> Result<(), XlsxError> {
     out.set_autofit_max_width(WIDEST);
     out.autofit();
     Ok(())
+}
+
+/// As much of a text as a cell of a spreadsheet holds; what is cut off ends in two points.
+fn fitting(text: &str) -> std::borrow::Cow<'_, str> {
+    // The limit counts UTF-16 units; a character has at most two of them.
+    if text.len() <= MOST_TEXT || text.encode_utf16().count() <= MOST_TEXT {
+        return text.into();
+    }
+    let mut left = MOST_TEXT - 2;
+    let kept = text.chars().take_while(|c| {
+        let fits = c.len_utf16() <= left;
+        left = left.saturating_sub(c.len_utf16());
+        fits
+    });
+    (kept.collect::<String>() + "..").into()
 }
 
 fn units_sheet(about: &About) -> Sheet {

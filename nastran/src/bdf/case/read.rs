@@ -3,7 +3,7 @@
 use super::super::fault::{Fault, Wrong};
 use super::super::fields::note_fault;
 use super::super::number::{Number, read_number};
-use super::super::walk::Statement;
+use super::super::sections::Statement;
 use super::{CaseControl, CaseLine, Request, Selection, Set, Subcase, SubcaseKind};
 use crate::cards::{Param, ParamValue};
 

@@ -79,19 +79,42 @@ fn absolute_paths_of_both_systems_are_tried_as_they_are() {
 }
 
 #[test]
-fn a_missing_file_is_a_note_before_bulk_data_and_a_fault_in_it() {
+fn a_missing_file_is_a_fault_in_every_section() {
     let deck = read(
-        "SOL 101\nINCLUDE 'dmap.alt'\nCEND\nINCLUDE 'case.inc'\nBEGIN BULK\nINCLUDE 'gone.inc'\nGRID,1\n",
+        "SOL 101\nINCLUDE 'dmap.alt'\nCEND\nINCLUDE 'case.inc'\nBEGIN BULK\nINCLUDE 'gone.inc'\nGRID,1\nENDDATA\n",
         &[],
     );
-    assert_eq!(deck.notes.len(), 2);
-    assert_eq!(deck.faults.len(), 1);
-    assert!(
-        shown(&deck)[0].starts_with(
-            "jobs/run/main.bdf:6: `INCLUDE`: the included file cannot be read: gone.inc"
-        )
-    );
+    let faults = shown(&deck);
+    for (fault, (line, name)) in
+        faults
+            .iter()
+            .zip([(2, "dmap.alt"), (4, "case.inc"), (6, "gone.inc")])
+    {
+        let start = format!(
+            "jobs/run/main.bdf:{line}: `INCLUDE`: the included file cannot be read: {name}"
+        );
+        assert!(fault.starts_with(&start), "{fault}");
+    }
+    assert_eq!(faults.len(), 3);
     assert_eq!(deck.cards.grids.len(), 1);
+}
+
+#[test]
+fn a_deck_that_ends_within_a_line_is_cut_and_one_without_enddata_may_be() {
+    let whole = "SOL 101\nCEND\nBEGIN BULK\nGRID,1\nGRID,21\nENDDATA\n";
+    assert!(shown(&read(whole, &[])).is_empty());
+    let within = shown(&read(&whole[..whole.len() - 10], &[]));
+    assert_eq!(within.len(), 1);
+    assert!(
+        within[0].contains(":5: `ENDDATA`: the deck ends within a line"),
+        "{within:?}"
+    );
+    let between = read(&whole[..whole.len() - 8], &[]);
+    assert!(shown(&between).is_empty());
+    assert!(between.notes[0].text.contains("without ENDDATA"));
+    // bulk data alone needs no ENDDATA
+    let bulk = read("GRID,1\nGRID,21", &[]);
+    assert!(shown(&bulk).is_empty() && bulk.notes.is_empty());
 }
 
 #[test]

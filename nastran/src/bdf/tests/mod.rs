@@ -6,6 +6,7 @@ mod continuations;
 mod edits;
 mod faults;
 mod fields;
+mod foreign;
 mod includes;
 mod names;
 mod numbers;

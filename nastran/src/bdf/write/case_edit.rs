@@ -1,7 +1,8 @@
 //! Edits of case control and of the executive section.
 
 use super::super::case::CaseLine;
-use super::super::deck::{Deck, Position};
+use super::super::deck::Deck;
+use super::super::source::Position;
 use super::edit::Edits;
 
 impl Edits {
@@ -10,7 +11,7 @@ impl Edits {
     /// A deck of bulk data alone gets the sections `SOL 101`, `CEND`, these lines and `BEGIN BULK` in front, and ENDDATA.
     pub fn insert_case_end(&mut self, deck: &Deck, text: &str) {
         let packet = deck.case_control.lines.iter().find(|l| l.in_packet);
-        match packet.map(position).or(deck.seams.bulk_line) {
+        match packet.map(position).or(deck.bounds.bulk_line) {
             Some(p) => self.patch(p.source, p.offset, p.offset, text),
             None => self.add_sections(deck, text),
         }
@@ -51,7 +52,7 @@ impl Edits {
 
     /// Writes `SOL text` in place of the deck's SOL statement; a deck without one stays as it is.
     pub fn replace_sol(&mut self, deck: &Deck, text: &str) {
-        if let Some((p, end)) = deck.seams.sol {
+        if let Some((p, end)) = deck.bounds.sol {
             self.patch(p.source, p.offset, end, &format!("SOL {text}"));
         }
     }
@@ -75,7 +76,7 @@ impl Edits {
             start,
             &format!("SOL 101\nCEND\n{text}{gap}BEGIN BULK\n"),
         );
-        if deck.seams.enddata.is_none() {
+        if deck.bounds.enddata.is_none() {
             self.end_with_enddata(deck);
         }
     }

@@ -1,8 +1,9 @@
 //! Edits of a deck: cards replaced, removed, added.
 
 use super::super::assemble::bare;
-use super::super::deck::{Deck, Position};
+use super::super::deck::Deck;
 use super::super::line::{Line, Lines, trim, without_comment};
+use super::super::source::Position;
 use super::super::split::{Lead, cut, is_list_word};
 use crate::place::Place;
 
@@ -139,7 +140,7 @@ impl Edits {
     /// Adds cards (whole lines) before ENDDATA, or at the end of the first deck where there is none.
     pub fn insert_cards(&mut self, deck: &Deck, text: &str) {
         let end = deck.sources.first().map_or(0, |s| s.bytes.len());
-        let Position { source, offset } = deck.seams.enddata.unwrap_or(Position {
+        let Position { source, offset } = deck.bounds.enddata.unwrap_or(Position {
             source: 0,
             offset: end,
         });

@@ -3,39 +3,13 @@
 use std::collections::HashMap;
 use std::sync::atomic::AtomicUsize;
 
-use super::assemble::{Assembler, Part};
-use super::deck::{Note, Source};
+use super::assemble::Assembler;
 use super::fault::{Fault, Wrong};
 use super::fields::note_fault;
 use super::line::{Line, text_of};
+use super::part::{Deferred, Orphan, Part, Span};
+use super::source::{Note, Source};
 use crate::place::Place;
-
-/// A physical line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Span {
-    pub at: Place,
-    pub start: usize,
-    pub end: usize,
-}
-
-/// A card that names a continuation which did not follow.
-#[derive(Clone, Debug)]
-pub(super) struct Deferred {
-    pub label: Vec<u8>,
-    pub lines: Vec<Span>,
-}
-
-/// Continuation lines that name a card which did not stand above.
-#[derive(Clone, Debug)]
-pub(super) struct Orphan {
-    pub label: Vec<u8>,
-    /// Name in field 10 of the last line.
-    pub next: Vec<u8>,
-    pub lines: Vec<Span>,
-    /// The deferred card of the same part that stands directly above.
-    pub follows: Option<usize>,
-    pub used: bool,
-}
 
 /// Joins deferred cards with their continuations and reads them.
 ///

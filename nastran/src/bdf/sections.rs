@@ -1,13 +1,15 @@
-//! Walks through a deck and its included files in reading order: which lines belong to which section.
+//! The sections of a deck and its included files, in reading order: which lines are executive control, case control, bulk data.
 
 use std::collections::BTreeMap;
 
-use super::chunk::{CHUNK_BYTES, Chunk};
-use super::deck::{Note, Position, Seams, Source};
+use super::bulk_scan::{Special, first_word, scan};
+use super::chunk::Chunk;
 use super::fault::{Fault, Wrong};
-use super::fields::{excerpt, note_fault};
+use super::fields::note_fault;
 use super::include::{IncludeRequest, Loader};
-use super::line::{Line, Lines, is_blank, text_of, trim, without_comment};
+use super::include_statement::include_name;
+use super::line::{Lines, text_of, without_comment};
+use super::source::{Note, Position, SectionBounds, Source};
 use crate::place::{Place, SourceIx};
 
 /// Files included within files.
@@ -16,8 +18,6 @@ const MAX_DEPTH: usize = 32;
 const MAX_INCLUDES: usize = 10_000;
 /// Bytes of files that are included more than once, counted from the second time.
 const MAX_REPEATED: usize = 16 << 20;
-/// Lines of one INCLUDE statement.
-const MAX_NAME_LINES: usize = 16;
 
 /// The sections of a deck.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,7 +43,7 @@ pub(super) struct Statement {
 }
 
 /// Sections told apart.
-pub(super) struct Walk<'l> {
+pub(super) struct Sections<'l> {
     loader: &'l mut dyn Loader,
     pub sources: Vec<Source>,
     section: Section,
@@ -52,7 +52,7 @@ pub(super) struct Walk<'l> {
     pub chunks: Vec<Chunk>,
     pub faults: Vec<Fault>,
     pub notes: Vec<Note>,
-    pub seams: Seams,
+    pub bounds: SectionBounds,
     /// Files being read, outermost first.
     stack: Vec<u32>,
     by_path: BTreeMap<String, u32>,
@@ -61,16 +61,13 @@ pub(super) struct Walk<'l> {
     done: bool,
 }
 
-/// A line of bulk data that is no card.
-enum Special {
-    Include,
-    Begin,
-    EndData,
-}
-
-/// Walks through the deck.
-pub(super) fn walk<'l>(main_path: &str, bytes: Vec<u8>, loader: &'l mut dyn Loader) -> Walk<'l> {
-    let mut walk = Walk {
+/// The sections of the deck in `bytes`, its INCLUDEs taken in where they stand.
+pub(super) fn read_sections<'l>(
+    main_path: &str,
+    bytes: Vec<u8>,
+    loader: &'l mut dyn Loader,
+) -> Sections<'l> {
+    let mut sections = Sections {
         loader,
         sources: vec![Source {
             path: main_path.to_owned(),
@@ -82,18 +79,19 @@ pub(super) fn walk<'l>(main_path: &str, bytes: Vec<u8>, loader: &'l mut dyn Load
         chunks: Vec::new(),
         faults: Vec::new(),
         notes: Vec::new(),
-        seams: Seams::default(),
+        bounds: SectionBounds::default(),
         stack: Vec::new(),
         by_path: BTreeMap::from([(main_path.to_owned(), 0)]),
         includes: 0,
         repeated: 0,
         done: false,
     };
-    walk.file(0);
-    walk
+    sections.file(0);
+    sections.note_missing_end();
+    sections
 }
 
-impl Walk<'_> {
+impl Sections<'_> {
     fn bytes(&self, source: u32) -> &[u8] {
         self.sources
             .get(source as usize)
@@ -111,6 +109,36 @@ impl Walk<'_> {
                 what,
             },
         );
+    }
+
+    /// Bulk data that no ENDDATA closes: a fault where the file ends within a line, for then it is cut; else a note.
+    fn note_missing_end(&mut self) {
+        if self.done || self.bounds.bulk_line.is_none() {
+            return;
+        }
+        let bytes = self.bytes(0);
+        let line = bytes.iter().filter(|&&b| b == b'\n').count();
+        let at = Place {
+            source: SourceIx(0),
+            line: u32::try_from(line).unwrap_or(u32::MAX),
+        };
+        if bytes.last().is_some_and(|&b| b != b'\n') {
+            note_fault(
+                &mut self.faults,
+                Fault {
+                    at: Place {
+                        line: at.line.saturating_add(1),
+                        ..at
+                    },
+                    card: "ENDDATA".to_owned(),
+                    field: None,
+                    what: Wrong::CutShort,
+                },
+            );
+        } else {
+            let text = "the deck ends without ENDDATA: if it was cut, cards are missing".to_owned();
+            self.notes.push(Note { at, text });
+        }
     }
 
     fn file(&mut self, source: u32) {
@@ -150,14 +178,14 @@ impl Walk<'_> {
             b"INCLUDE" => return self.include(source, line.start, number),
             b"BEGIN" => {
                 let is_bulk = self.begin(source, &text_of(without_comment(line.text)), number);
-                if is_bulk && self.seams.bulk_line.is_none() {
-                    self.seams.bulk_line = Some(position);
+                if is_bulk && self.bounds.bulk_line.is_none() {
+                    self.bounds.bulk_line = Some(position);
                 }
                 return after;
             }
             b"CEND" => {
                 self.section = Section::Case;
-                self.seams.case_start = Some(Position {
+                self.bounds.case_start = Some(Position {
                     source: source as usize,
                     offset: after.0,
                 });
@@ -165,7 +193,7 @@ impl Walk<'_> {
             }
             // a deck without BEGIN BULK ends here
             b"ENDDATA" => {
-                self.seams.enddata = Some(position);
+                self.bounds.enddata = Some(position);
                 self.done = true;
                 return after;
             }
@@ -239,8 +267,8 @@ impl Walk<'_> {
                     self.bytes(source).get(start..end).unwrap_or_default(),
                 ));
                 let is_bulk = self.begin(source, &text, line);
-                if is_bulk && self.seams.bulk_line.is_none() {
-                    self.seams.bulk_line = Some(Position {
+                if is_bulk && self.bounds.bulk_line.is_none() {
+                    self.bounds.bulk_line = Some(Position {
                         source: source as usize,
                         offset: start,
                     });
@@ -248,7 +276,7 @@ impl Walk<'_> {
                 (end, line.saturating_add(1))
             }
             Special::EndData => {
-                self.seams.enddata = Some(Position {
+                self.bounds.enddata = Some(Position {
                     source: source as usize,
                     offset: start,
                 });
@@ -339,10 +367,6 @@ impl Walk<'_> {
                     self.file(ix);
                 }
             }
-            Err(why) if matches!(self.section, Section::Executive | Section::Case) => {
-                let text = format!("the included file `{}` is left out: {why}", request.name);
-                self.notes.push(Note { at: place, text });
-            }
             Err(why) => self.fault(
                 place,
                 Wrong::IncludeNotFound {
@@ -353,91 +377,6 @@ impl Walk<'_> {
         }
         after
     }
-}
-
-/// Cuts bulk data into chunks; stops at the first INCLUDE, BEGIN or ENDDATA and returns it with start, end and line.
-fn scan(
-    bytes: &[u8],
-    source: u32,
-    at: usize,
-    number: u32,
-    mut chunks: Option<&mut Vec<Chunk>>,
-) -> Option<(Special, usize, usize, u32)> {
-    let mut chunk = Chunk {
-        source,
-        start: at,
-        end: at,
-        line: number,
-    };
-    let mut close = |chunk: &Chunk, end: usize| {
-        if let Some(chunks) = chunks.as_mut()
-            && end > chunk.start
-        {
-            chunks.push(Chunk { end, ..*chunk });
-        }
-    };
-    let mut before: &[u8] = &[];
-    for line in Lines::new(bytes, at, bytes.len(), number) {
-        if let Some(special) = special(line.text) {
-            close(&chunk, line.start);
-            return Some((special, line.start, line.end, line.number));
-        }
-        if line.start - chunk.start >= CHUNK_BYTES
-            && line.text.first().is_some_and(u8::is_ascii_alphabetic)
-            && is_closed(before)
-        {
-            close(&chunk, line.start);
-            chunk = Chunk {
-                source,
-                start: line.start,
-                end: line.start,
-                line: line.number,
-            };
-        }
-        before = line.text;
-    }
-    close(&chunk, bytes.len());
-    None
-}
-
-/// Whether a card may begin after this line: it is no comment and does not end in a comma.
-fn is_closed(line: &[u8]) -> bool {
-    let body = without_comment(line);
-    body.iter()
-        .rev()
-        .find(|&&c| !is_blank(c))
-        .is_some_and(|&c| c != b',')
-}
-
-#[inline]
-fn special(line: &[u8]) -> Option<Special> {
-    let first = *line.first()?;
-    if !matches!(
-        first,
-        b'E' | b'e' | b'I' | b'i' | b'B' | b'b' | b' ' | b'\t'
-    ) {
-        return None;
-    }
-    let start = line.iter().position(|&c| !is_blank(c))?;
-    if !matches!(line.get(start)?, b'E' | b'e' | b'I' | b'i' | b'B' | b'b') {
-        return None;
-    }
-    match first_word(line).as_slice() {
-        b"ENDDATA" => Some(Special::EndData),
-        b"INCLUDE" => Some(Special::Include),
-        b"BEGIN" => Some(Special::Begin),
-        _ => None,
-    }
-}
-
-/// The first word in upper case, at most 12 letters; empty for blank lines and comments.
-pub(super) fn first_word(line: &[u8]) -> Vec<u8> {
-    let line = trim(line);
-    line.iter()
-        .take(12)
-        .take_while(|c| c.is_ascii_alphanumeric())
-        .map(u8::to_ascii_uppercase)
-        .collect()
 }
 
 /// The statement without its comment; a `$` within quotes is text.
@@ -477,62 +416,5 @@ fn first_section(bytes: &[u8]) -> Section {
         Section::Case
     } else {
         Section::Unknown
-    }
-}
-
-/// The file name of an INCLUDE statement, which may go on over several lines.
-fn include_name(lines: &mut Lines) -> Result<String, String> {
-    let first = lines.next().map(|l: Line| l.text).unwrap_or_default();
-    let rest = trim(trim(first).get(7..).unwrap_or_default());
-    let rest = rest.strip_prefix(b"=").map_or(rest, trim);
-    match rest.first() {
-        Some(&quote @ (b'\'' | b'"')) => {
-            let mut name = Vec::new();
-            let mut part = rest.get(1..).unwrap_or_default();
-            for _ in 0..MAX_NAME_LINES {
-                if let Some(end) = memchr::memchr(quote, part) {
-                    name.extend_from_slice(trim(part.get(..end).unwrap_or_default()));
-                    return Ok(text_of(&name));
-                }
-                name.extend_from_slice(trim(part));
-                // a comma at the end of a line only says that the name goes on
-                if name.last() == Some(&b',') {
-                    name.pop();
-                }
-                let Some(next) = lines.next() else {
-                    break;
-                };
-                part = next.text;
-            }
-            Err(excerpt(rest))
-        }
-        Some(_) => {
-            let mut name = Vec::new();
-            let mut part = without_comment_after_blank(rest);
-            for _ in 0..MAX_NAME_LINES {
-                match trim(part) {
-                    [head @ .., b','] => name.extend_from_slice(head),
-                    all => {
-                        name.extend_from_slice(all);
-                        break;
-                    }
-                }
-                part = lines.next().map(|l: Line| l.text).unwrap_or_default();
-            }
-            if name.is_empty() {
-                Err(String::new())
-            } else {
-                Ok(text_of(&name))
-            }
-        }
-        None => Err(String::new()),
-    }
-}
-
-/// A `$` that follows a blank begins a comment; at the start of a name it is a symbol.
-fn without_comment_after_blank(s: &[u8]) -> &[u8] {
-    match memchr::memmem::find(s, b" $") {
-        Some(i) => s.get(..i).unwrap_or(s),
-        None => s,
     }
 }

@@ -1,0 +1,90 @@
+//! What a piece of bulk data holds, before the pieces are joined.
+
+use super::deck::OtherCard;
+use super::fault::Fault;
+use super::names::Label;
+use super::source::Note;
+use crate::cards::Cards;
+use crate::place::Place;
+
+/// A card name in upper case, padded with zeros.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub(super) struct Name(pub [u8; 8]);
+
+impl Name {
+    /// `None` where it is no name: letters and digits, at most 8, a letter first.
+    pub(super) fn new(head: &[u8]) -> Option<Name> {
+        if head.is_empty() || head.len() > 8 || !head.first().is_some_and(u8::is_ascii_alphabetic) {
+            return None;
+        }
+        let mut name = [0; 8];
+        for (to, &from) in name.iter_mut().zip(head) {
+            if !from.is_ascii_alphanumeric() && from != b'_' {
+                return None;
+            }
+            *to = from.to_ascii_uppercase();
+        }
+        Some(Name(name))
+    }
+
+    pub(super) fn as_bytes(&self) -> &[u8] {
+        let n = self.0.iter().position(|&c| c == 0).unwrap_or(8);
+        self.0.get(..n).unwrap_or_default()
+    }
+}
+
+/// What a piece of bulk data holds.
+#[derive(Debug, Default)]
+pub(super) struct Part {
+    pub cards: Cards,
+    pub counts: Vec<(Name, usize)>,
+    pub others: Vec<OtherCard>,
+    pub faults: Vec<Fault>,
+    pub notes: Vec<Note>,
+    pub labels: Vec<Label>,
+    pub deferred: Vec<Deferred>,
+    pub orphans: Vec<Orphan>,
+}
+
+impl Part {
+    pub(super) fn count(&mut self, name: Name) {
+        // cards of one name follow each other: the last used is moved to the end
+        match self.counts.iter().rposition(|(n, _)| *n == name) {
+            Some(i) => {
+                if let Some((_, n)) = self.counts.get_mut(i) {
+                    *n += 1;
+                }
+                let last = self.counts.len() - 1;
+                self.counts.swap(i, last);
+            }
+            None => self.counts.push((name, 1)),
+        }
+    }
+}
+
+/// A physical line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Span {
+    pub at: Place,
+    pub start: usize,
+    pub end: usize,
+}
+
+/// A card that names a continuation which did not follow.
+#[derive(Clone, Debug)]
+pub(super) struct Deferred {
+    pub label: Vec<u8>,
+    pub lines: Vec<Span>,
+}
+
+/// Continuation lines that name a card which did not stand above.
+#[derive(Clone, Debug)]
+pub(super) struct Orphan {
+    pub label: Vec<u8>,
+    /// Name in field 10 of the last line.
+    pub next: Vec<u8>,
+    pub lines: Vec<Span>,
+    /// The deferred card of the same part that stands directly above.
+    pub follows: Option<usize>,
+    pub used: bool,
+}

@@ -1,0 +1,40 @@
+//! The files of a deck, and where its sections stand in them.
+
+use crate::place::Place;
+
+/// A file of a deck.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Source {
+    /// As the loader names it.
+    pub path: String,
+    /// Its bytes, unchanged.
+    pub bytes: Vec<u8>,
+}
+
+/// Something worth saying that is no fault.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Note {
+    pub at: Place,
+    pub text: String,
+}
+
+/// A position between bytes of a source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Position {
+    pub source: usize,
+    pub offset: usize,
+}
+
+/// Where the sections of the deck meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub(super) struct SectionBounds {
+    /// Start of the line after CEND, or of the deck.
+    pub case_start: Option<Position>,
+    /// Start of the line `BEGIN BULK`.
+    pub bulk_line: Option<Position>,
+    /// Start of the line ENDDATA.
+    pub enddata: Option<Position>,
+    /// Start of the line SOL, and its end.
+    pub(super) sol: Option<(Position, usize)>,
+}

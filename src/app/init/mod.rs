@@ -1,0 +1,188 @@
+//! `init`: a commented job from the analyst's own files, tried before it is recommended.
+//!
+//! [`propose`] loads (of the results' subcases, of the deck's, at [`points`]), lengths by the [`mesh`], [`text`] of the job, and
+//! [`trial`]: `place` on it. The first proposal that `place` answers is written.
+
+mod mesh;
+mod points;
+mod propose;
+mod round;
+mod text;
+mod trial;
+
+use super::context::Context;
+use super::deck::{DeckModel, moduli_and_densities, read_model};
+use super::fault::{Fault, Faults};
+use super::outcome::{Answer, Outcome, StatedUnits};
+use super::work::Work;
+use crate::fe::from_results::{Displacements, ReadOptions, solution_from_file};
+use crate::finding::{Finding, Severity};
+use crate::units::likely_system;
+use nastran::results::ResultsFile;
+use propose::{StrainFrom, Strained, proposals};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use text::{JobPlan, usual_spacing};
+use trial::{Verdict, first_that_places};
+
+/// A commented job made from an analyst's files.
+#[derive(Serialize)]
+pub struct Proposal {
+    /// Name of the job's file.
+    pub job: &'static str,
+    /// Names of the loads proposed.
+    pub loads: Vec<String>,
+    /// Whether `place` answers it.
+    pub placeable: bool,
+    /// The job itself.
+    #[serde(skip)]
+    pub text: String,
+    /// Where it is to stand.
+    #[serde(skip)]
+    pub path: PathBuf,
+}
+
+impl Answer for Proposal {
+    const COMMAND: &'static str = "init";
+}
+
+/// The file of a proposed job.
+pub const JOB: &str = "job.toml";
+
+/// A commented job from a deck and its results, to stand in `folder`.
+///
+/// # Errors
+/// Files that can't be read; a job that is there already; a deck without grids.
+pub fn init(
+    deck_path: &Path,
+    results: &[PathBuf],
+    folder: &Path,
+    cx: &Context,
+) -> Result<Outcome<Proposal>, Faults> {
+    let mut work = Work::new(cx);
+    let target = folder.join(JOB);
+    if cx.files.load(&target).is_ok() {
+        return Err(Faults::from(Fault::of(
+            target.display().to_string(),
+            JOB,
+            "there is one already, and it is not overwritten",
+            "move it away, or name another folder with `--out`",
+        )));
+    }
+    let given = deck_path.display().to_string();
+    let deck = work.stage("read deck", |s| {
+        read_model(&mut s.inputs, Path::new(""), &given)
+    })?;
+    if deck.model.grids.is_empty() {
+        let none = Fault::of(
+            &*given,
+            "GRID",
+            "no grid in it",
+            "give a deck, or an OP2 that holds the mesh",
+        );
+        return Err(Faults::or(deck.faults, none));
+    }
+    work.findings.extend(deck.findings.iter().cloned());
+    let (moduli, densities) = moduli_and_densities(&deck.model);
+    let system = likely_system(deck.model.params.unitsys.as_deref(), &moduli, &densities);
+    let strained = read_strained(results, &deck, &mut work)?;
+    let found = proposals(&deck, &strained, system);
+    let plan = JobPlan {
+        deck: &deck,
+        deck_path,
+        results,
+        folder,
+        system,
+        from: found.first().map_or(StrainFrom::Solver, |p| p.from),
+        without_results: "no static subcase of it has strain of shells and a load",
+        loads: found.first().map_or(&[], |p| &p.loads),
+        left_out: &[],
+        spacing: usual_spacing(&deck),
+    };
+    let verdict = match obstacle(&deck, &given, system.is_none()) {
+        Some(finding) => {
+            work.findings.push(finding);
+            Verdict::hopeless(&plan)
+        }
+        None => work.stage("try", |w| first_that_places(&w.cx, &plan, &found)),
+    };
+    work.findings.extend(verdict.finding);
+    let answer = Proposal {
+        job: JOB,
+        loads: verdict.loads,
+        placeable: verdict.places,
+        text: verdict.text,
+        path: target,
+    };
+    Ok(work.finish(StatedUnits::default(), answer))
+}
+
+/// What stops placing before it is tried; `None`: nothing that shows.
+fn obstacle(deck: &DeckModel, given: &str, units_open: bool) -> Option<Finding> {
+    let m = &deck.model;
+    let stop = |code, message: String, remedy: &str| {
+        Some(Finding::new(
+            Severity::Warning,
+            code,
+            given,
+            message,
+            remedy,
+        ))
+    };
+    if let Some(first) = deck.faults.first() {
+        let n = deck.faults.len();
+        let message = format!("{n} faults in the deck, the first: {first}");
+        return stop("deck-has-faults", message, "run `check` on it");
+    }
+    if m.shells.is_empty() {
+        let message = format!(
+            "there is nothing to glue gauges on: no shell among {} solids and {} bars and beams",
+            m.solids.len(),
+            m.beams.len()
+        );
+        let remedy = "coat the solids' faces with thin shells (membranes of a thousandth of the thickness) and solve again";
+        return stop("nothing-to-glue-on", message, remedy);
+    }
+    if units_open {
+        let message = "Young's moduli and densities fit no system of units".to_owned();
+        return stop("units-unknown", message, "fill in `units` of the job");
+    }
+    None
+}
+
+/// Result files with their static subcases that hold strain of shells.
+fn read_strained(
+    results: &[PathBuf],
+    deck: &DeckModel,
+    work: &mut Work,
+) -> Result<Vec<Strained>, Faults> {
+    let options = ReadOptions {
+        displacements: Displacements::Leave,
+        ..ReadOptions::default()
+    };
+    let mut strained = Vec::new();
+    for path in results {
+        let name = path.display().to_string();
+        let bytes = work.inputs.read(Path::new(""), &name)?;
+        let solution = work
+            .stage("read results", |_| {
+                ResultsFile::read(&bytes, &name)
+                    .map(|f| solution_from_file(&deck.model, &name, &f, &options))
+            })
+            .map_err(|e| {
+                Fault::of(
+                    &*name,
+                    "results",
+                    e.to_string(),
+                    "give an OP2, punch or HDF5 file of a static run",
+                )
+            })?;
+        // What a file lacks is said by the job, which leaves it out then.
+        let findings = solution.findings.iter();
+        let said = findings.filter(|f| f.code != "no-static-results" && f.code != "no-strain-output");
+        work.findings.extend(said.cloned());
+        let with_strain = solution.cases.iter().filter(|c| !c.shells.elements.is_empty());
+        strained.push((name, with_strain.map(|c| c.subcase).collect()));
+    }
+    Ok(strained)
+}

@@ -1,0 +1,170 @@
+//! `place` tried on proposed jobs, so that `init` recommends only what works.
+
+use super::propose::{Proposal, ProposedLoad};
+use super::text::JobPlan;
+use crate::app::context::{Context, Files};
+use crate::app::deck::without_dots;
+use crate::app::fault::Faults;
+use crate::app::files::FileBytes;
+use crate::app::job::Job;
+use crate::app::place::place;
+use crate::app::store::Memory;
+use crate::finding::{Finding, Severity};
+use std::path::{Path, PathBuf};
+
+/// Grids of a model up to which `place` is tried: some seconds with the built-in solver.
+const MOST_GRIDS: usize = 100_000;
+/// Trials at most.
+const MOST_TRIALS: usize = 24;
+
+/// What came of the trials.
+pub(super) struct Verdict {
+    /// job.toml.
+    pub text: String,
+    /// Names of its loads.
+    pub loads: Vec<String>,
+    /// Whether `place` can be recommended.
+    pub places: bool,
+    /// What is to be said of it.
+    pub finding: Option<Finding>,
+}
+
+impl Verdict {
+    /// The job as planned, not to be recommended, for reasons said elsewhere.
+    pub(super) fn hopeless(plan: &JobPlan) -> Self {
+        Self {
+            text: plan.text(),
+            loads: names(plan.loads),
+            places: false,
+            finding: None,
+        }
+    }
+}
+
+/// The first of the proposals that `place` answers without an error; else the first that it answers at all; else the first.
+pub(super) fn first_that_places(cx: &Context, plan: &JobPlan, proposals: &[Proposal]) -> Verdict {
+    if plan.deck.model.grids.len() > MOST_GRIDS {
+        return Verdict {
+            places: !plan.loads.is_empty(),
+            ..Verdict::hopeless(plan)
+        };
+    }
+    // Solutions are kept for the length of the trials, and for `place` afterwards where the caller keeps them.
+    let memory = Memory::default();
+    let store = cx.store.unwrap_or(&memory);
+    let (mut doubtful, mut first_fault) = (None, None);
+    for trial in trials(plan, proposals).take(MOST_TRIALS) {
+        match try_place(cx, &trial, store) {
+            Ok(Reliable::Yes) => return answer(&trial),
+            Ok(Reliable::No) => doubtful = doubtful.or_else(|| Some(answer(&trial))),
+            Err(faults) => first_fault = first_fault.or(Some(faults)),
+        }
+    }
+    if let Some(found) = doubtful {
+        return found;
+    }
+    let why = first_fault
+        .as_ref()
+        .and_then(|f| f.iter().next())
+        .map_or_else(
+            || "neither subcases with loads nor points where loads could act were found".to_owned(),
+            |f| format!("{}: {}", f.wrong, f.remedy),
+        );
+    Verdict {
+        finding: Some(Finding::new(
+            Severity::Warning,
+            "no-placement-found",
+            plan.deck.given.clone(),
+            format!("none of the proposed loads gives gauges: {why}"),
+            "write the [[load]]s that you mean, or give results with strain of shells",
+        )),
+        ..Verdict::hopeless(plan)
+    }
+}
+
+fn names(loads: &[ProposedLoad]) -> Vec<String> {
+    loads.iter().map(|l| l.name.clone()).collect()
+}
+
+fn answer(trial: &JobPlan) -> Verdict {
+    Verdict {
+        places: true,
+        ..Verdict::hopeless(trial)
+    }
+}
+
+/// The proposals in turn, each with less spacing and then with fewer loads.
+fn trials<'a>(
+    plan: &'a JobPlan<'a>,
+    proposals: &'a [Proposal],
+) -> impl Iterator<Item = JobPlan<'a>> {
+    let with = move |p: &'a Proposal, n: usize, spacing: f64| {
+        let (loads, left_out) = p.loads.split_at(n.min(p.loads.len()));
+        JobPlan {
+            from: p.from,
+            loads,
+            left_out,
+            spacing,
+            ..plan.clone()
+        }
+    };
+    let usual = plan.spacing;
+    let whole = proposals.iter().flat_map(move |p| {
+        [usual, super::round::round(usual / 4.0), 0.0]
+            .into_iter()
+            .map(move |spacing| with(p, p.loads.len(), spacing))
+    });
+    let fewer = proposals.iter().flat_map(move |p| {
+        let halves = std::iter::successors(Some(p.loads.len() / 2), |n| Some(n / 2));
+        halves.take_while(|n| *n > 0).map(move |n| with(p, n, 0.0))
+    });
+    whole.chain(fewer)
+}
+
+/// Whether an answer holds.
+enum Reliable {
+    Yes,
+    No,
+}
+
+fn try_place(
+    cx: &Context,
+    trial: &JobPlan,
+    store: &dyn crate::app::store::SolutionStore,
+) -> Result<Reliable, Faults> {
+    let path = trial.folder.join("job.toml");
+    let files = WithJob {
+        inner: cx.files,
+        path: path.clone(),
+        text: trial.text(),
+    };
+    let cx = Context {
+        files: &files,
+        store: Some(store),
+        progress: cx.progress,
+    };
+    let outcome = place(&Job::read(&path, &files)?, &cx)?;
+    Ok(if outcome.is_reliable() {
+        Reliable::Yes
+    } else {
+        Reliable::No
+    })
+}
+
+/// The files of a context and a job that isn't written yet.
+struct WithJob<'a> {
+    inner: &'a dyn Files,
+    path: PathBuf,
+    text: String,
+}
+
+impl Files for WithJob<'_> {
+    fn load(&self, path: &Path) -> std::io::Result<FileBytes> {
+        if path == self.path {
+            Ok(FileBytes::from(self.text.clone().into_bytes()))
+        } else {
+            // A folder that isn't made yet has no `..`.
+            self.inner.load(&without_dots(path))
+        }
+    }
+}

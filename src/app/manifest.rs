@@ -1,0 +1,95 @@
+//! Which files of a folder which command wrote, so that its next run removes those that it no longer writes.
+//!
+//! `.strainbridge` in the folder: a line a file, the command, a tab, the name. Files of other commands are left alone, for one command's
+//! tables are often another's input.
+
+use std::collections::BTreeSet;
+use std::path::{Component, Path, PathBuf};
+
+/// Its name.
+pub(super) const NAME: &str = ".strainbridge";
+
+/// Command and name of each file.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Manifest(BTreeSet<(String, String)>);
+
+impl Manifest {
+    /// The manifest of a folder; empty where there is none.
+    pub(super) fn read(folder: &Path) -> Self {
+        let text = std::fs::read_to_string(folder.join(NAME)).unwrap_or_default();
+        let entry = |line: &str| {
+            let (command, name) = line.split_once('\t')?;
+            is_plain(name).then(|| (command.to_owned(), name.to_owned()))
+        };
+        Self(text.lines().filter_map(entry).collect())
+    }
+
+    /// Puts what a command writes now in place of what it wrote before; files that it wrote and that nobody writes now.
+    pub(super) fn replace(&mut self, command: &str, names: &[String]) -> Vec<PathBuf> {
+        let (before, others): (BTreeSet<_>, BTreeSet<_>) = std::mem::take(&mut self.0)
+            .into_iter()
+            .partition(|e| e.0 == command);
+        self.0 = others;
+        // A file that another command wrote before belongs to whoever wrote it last.
+        self.0.retain(|e| !names.contains(&e.1));
+        let kept: BTreeSet<String> = self.0.iter().map(|e| e.1.clone()).collect();
+        let present = names.iter().map(|n| (command.to_owned(), n.clone()));
+        self.0.extend(present);
+        before
+            .into_iter()
+            .map(|e| e.1)
+            .filter(|n| !names.contains(n) && !kept.contains(n))
+            .map(PathBuf::from)
+            .collect()
+    }
+
+    /// As text.
+    pub(super) fn text(&self) -> String {
+        let line = |(command, name): &(String, String)| format!("{command}\t{name}\n");
+        self.0.iter().map(line).collect()
+    }
+}
+
+/// Whether a name leads to a file of the folder itself.
+fn is_plain(name: &str) -> bool {
+    let mut parts = Path::new(name).components();
+    matches!(
+        (parts.next(), parts.next()),
+        (Some(Component::Normal(_)), None)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_command_gives_up_what_it_no_longer_writes_and_nothing_of_others() {
+        let mut m = Manifest::default();
+        let names = |list: &[&str]| list.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>();
+        assert!(
+            m.replace("place", &names(&["gauges.csv", "report.html"]))
+                .is_empty()
+        );
+        assert!(
+            m.replace(
+                "recover",
+                &names(&["loads.csv", "loads.bin", "report.html"])
+            )
+            .is_empty()
+        );
+        let gone = m.replace("recover", &names(&["loads.csv", "report.html"]));
+        assert_eq!(gone, [PathBuf::from("loads.bin")]);
+        assert!(m.text().contains("place\tgauges.csv\n"));
+        // report.html is recover's now
+        assert!(m.replace("place", &names(&["gauges.csv"])).is_empty());
+    }
+
+    #[test]
+    fn names_that_lead_out_of_the_folder_are_no_names() {
+        for name in ["../x", "/etc/x", "a/b", "..", ""] {
+            assert!(!is_plain(name), "{name}");
+        }
+        assert!(is_plain("loads.csv"));
+    }
+}

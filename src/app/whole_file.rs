@@ -1,0 +1,156 @@
+//! A whole file into memory, and what can go wrong on the way.
+//!
+//! Files are read, not mapped: a mapped file that another program shortens ends this one by a signal, and one that it rewrites
+//! gives half old and half new numbers. Reading costs a copy, a third of a second a gigabyte.
+
+use std::fs::{File, Metadata};
+use std::io::{Error, ErrorKind, Read};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Bytes of a file, in memory: what another program does to the file meanwhile changes nothing.
+#[derive(Clone)]
+pub struct FileBytes(Arc<Vec<u8>>);
+
+impl From<Vec<u8>> for FileBytes {
+    fn from(bytes: Vec<u8>) -> Self {
+        Self(Arc::new(bytes))
+    }
+}
+
+impl std::ops::Deref for FileBytes {
+    type Target = [u8];
+    fn deref(&self) -> &[u8] {
+        &self.0
+    }
+}
+
+/// Bytes of a file.
+///
+/// # Errors
+/// Those of the system, and of kind
+/// - [`ErrorKind::IsADirectory`] for a folder, [`ErrorKind::InvalidInput`] for a device, pipe or socket, which may never end;
+/// - [`ErrorKind::OutOfMemory`] for a file larger than the free memory;
+/// - [`ErrorKind::ResourceBusy`] for one that changed meanwhile.
+pub fn load(path: &Path) -> std::io::Result<FileBytes> {
+    // Before it is opened: opening a pipe waits for its writer.
+    check_kind(&std::fs::metadata(path)?)?;
+    let mut file = File::open(path)?;
+    let before = file.metadata()?;
+    check_kind(&before)?;
+    let size = before.len();
+    if free_memory().is_some_and(|free| size > free) {
+        return Err(ErrorKind::OutOfMemory.into());
+    }
+    let room = usize::try_from(size).map_err(|_| ErrorKind::OutOfMemory)?;
+    let mut bytes = Vec::new();
+    bytes
+        .try_reserve_exact(room)
+        .map_err(|_| ErrorKind::OutOfMemory)?;
+    (&mut file).take(size).read_to_end(&mut bytes)?;
+    if bytes.len() != room || differs(&before, &file.metadata()?) {
+        return Err(ErrorKind::ResourceBusy.into());
+    }
+    Ok(bytes.into())
+}
+
+fn check_kind(meta: &Metadata) -> std::io::Result<()> {
+    if meta.is_dir() {
+        Err(ErrorKind::IsADirectory.into())
+    } else if meta.is_file() {
+        Ok(())
+    } else {
+        Err(Error::from(ErrorKind::InvalidInput))
+    }
+}
+
+/// Whether a file was written to between two looks, as far as its size and its clock tell.
+fn differs(before: &Metadata, after: &Metadata) -> bool {
+    before.len() != after.len() || before.modified().ok() != after.modified().ok()
+}
+
+/// Memory that can be had without swapping; `None` where the system doesn't say it in `/proc/meminfo`.
+fn free_memory() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text.lines().find_map(|l| l.strip_prefix("MemAvailable:"))?;
+    let kib: u64 = line.split_whitespace().next()?.parse().ok()?;
+    kib.checked_mul(1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write;
+
+    fn scratch(name: &str) -> std::path::PathBuf {
+        std::env::temp_dir().join(format!("whole_file_{}_{name}", std::process::id()))
+    }
+
+    #[test]
+    fn a_file_is_read_as_it_is_and_an_empty_one_is_empty() {
+        let path = scratch("plain");
+        for bytes in [vec![], vec![7_u8; 3_000_000]] {
+            std::fs::write(&path, &bytes).unwrap();
+            assert!(*load(&path).unwrap() == *bytes);
+        }
+        std::fs::remove_file(&path).unwrap();
+    }
+
+    #[test]
+    fn folders_and_devices_are_refused_and_a_pipe_is_not_waited_for() {
+        let kind = |path: &Path| load(path).err().map(|e| e.kind());
+        assert_eq!(kind(&std::env::temp_dir()), Some(ErrorKind::IsADirectory));
+        assert_eq!(kind(&scratch("gone")), Some(ErrorKind::NotFound));
+        if cfg!(unix) {
+            assert_eq!(kind(Path::new("/dev/zero")), Some(ErrorKind::InvalidInput));
+            let pipe = scratch("pipe");
+            let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+            if made.is_ok_and(|s| s.success()) {
+                assert_eq!(kind(&pipe), Some(ErrorKind::InvalidInput));
+                std::fs::remove_file(&pipe).unwrap();
+            }
+        }
+    }
+
+    #[test]
+    fn a_file_that_is_cut_and_written_anew_while_it_is_read_gives_one_of_its_states_or_an_error() {
+        use std::sync::atomic::{AtomicBool, Ordering};
+        const SIZE: usize = 8 << 20;
+        const PAUSE: std::time::Duration = std::time::Duration::from_millis(1);
+        let path = scratch("changing");
+        std::fs::write(&path, vec![1_u8; SIZE]).unwrap();
+        let stop = AtomicBool::new(false);
+        let (mut whole, mut refused) = (0, 0);
+        std::thread::scope(|s| {
+            s.spawn(|| {
+                let mut next = 1_u8;
+                while !stop.load(Ordering::Relaxed) {
+                    next = next.wrapping_add(1);
+                    let mut file = File::create(&path).unwrap();
+                    for _ in 0..8 {
+                        file.write_all(&vec![next; SIZE / 8]).unwrap();
+                        std::thread::sleep(PAUSE);
+                    }
+                    // longer than the clock of the file system ticks, so that every state has a time of its own
+                    std::thread::sleep(20 * PAUSE);
+                }
+            });
+            for _ in 0..100 {
+                match load(&path) {
+                    Ok(bytes) => {
+                        let first = bytes.first().copied();
+                        assert!(bytes.iter().all(|b| Some(*b) == first));
+                        whole += 1;
+                    }
+                    Err(e) => {
+                        assert_eq!(e.kind(), ErrorKind::ResourceBusy);
+                        refused += 1;
+                    }
+                }
+            }
+            stop.store(true, Ordering::Relaxed);
+        });
+        std::fs::remove_file(&path).unwrap();
+        assert!(whole + refused == 100 && refused > 0, "{whole} {refused}");
+    }
+}

@@ -1,0 +1,107 @@
+//! `verify` and `clean`: what is done to results and kept solutions that stand already.
+
+use super::run::{Run, print, refuse};
+use super::{CleanArguments, VerifyArguments};
+use crate::app::fault::{Fault, Faults};
+use crate::app::outcome::StatedUnits;
+use crate::app::store::Folder;
+use crate::app::verify::{Made, compare, made, main_input};
+use crate::app::work::Work;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Stdio};
+
+/// Runs the command that made a folder anew, into another, and compares.
+pub(super) fn verify(a: &VerifyArguments) -> ExitCode {
+    let scratch =
+        Scratch(std::env::temp_dir().join(format!("strainbridge-verify-{}", std::process::id())));
+    Run::of(&a.common, &a.folder).question(a.common.out.as_deref(), |cx| {
+        let mut work = Work::new(cx);
+        let made = made(&a.folder)?;
+        work.stage("recompute", |_| again(&a.folder, &made, &scratch.0))?;
+        let found = work.stage("compare", |_| compare(&a.folder, &scratch.0))?;
+        work.findings.extend(found.findings(&a.folder));
+        Ok(work.finish(StatedUnits::default(), found))
+    })
+}
+
+/// The command as a process of its own: nothing that this one holds can colour the answer.
+fn again(folder: &Path, made: &Made, out: &Path) -> Result<(), Faults> {
+    let fault = |wrong: String, remedy: &str| {
+        Faults::from(Fault::of(
+            folder.display().to_string(),
+            "inputs",
+            wrong,
+            remedy,
+        ))
+    };
+    let Some(main) = main_input(folder, made) else {
+        return Err(fault(
+            "the job or deck that it was made from isn't found".to_owned(),
+            "call `verify` from the folder that the command was called from",
+        ));
+    };
+    let program =
+        std::env::current_exe().map_err(|e| fault(e.to_string(), "call it by its path"))?;
+    let mut command = Command::new(program);
+    command.arg(&made.command).arg(&main);
+    if made.command == "strains" {
+        command.args(made.results());
+    }
+    command.args(["--no-cache", "--out"]).arg(out);
+    let done = command
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .output()
+        .map_err(|e| fault(e.to_string(), "call `verify` again"))?;
+    if out.join("result.json").is_file() {
+        return Ok(());
+    }
+    let said = String::from_utf8_lossy(&done.stderr);
+    let first = said
+        .lines()
+        .next()
+        .unwrap_or("nothing was written")
+        .to_owned();
+    Err(fault(
+        format!("`{} {}` now fails: {first}", made.command, main.display()),
+        "restore the inputs",
+    ))
+}
+
+/// A folder that is removed when it is no longer needed.
+struct Scratch(PathBuf);
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Removes kept solutions.
+pub(super) fn clean(a: &CleanArguments) -> ExitCode {
+    let folder = a.folder.as_ref().map_or_else(Folder::of_user, Folder::at);
+    let shown = folder.path().display().to_string();
+    match folder.clean() {
+        Ok((n, bytes)) if a.common.json => {
+            let json = serde_json::json!({ "command": "clean", "folder": shown, "removed": n, "bytes": bytes });
+            print(format!("{json:#}\n").as_bytes())
+        }
+        Ok((n, bytes)) => {
+            let megabytes = bytes as f64 / 1e6;
+            let plural = if n == 1 { "" } else { "s" };
+            print(
+                format!("{n} kept solution{plural} removed from `{shown}`, {megabytes:.1} MB\n")
+                    .as_bytes(),
+            )
+        }
+        Err(e) => refuse(
+            &Fault::of(
+                shown,
+                "clean",
+                format!("can't be removed ({e})"),
+                "check the permissions",
+            )
+            .into(),
+        ),
+    }
+}

@@ -1,0 +1,50 @@
+//! Files and words of `verify`.
+
+use super::{Report, write_page};
+use crate::app::fault::Faults;
+use crate::app::outcome::Outcome;
+use crate::app::output::Output;
+use crate::app::verify::Verified;
+use crate::report::page::{Block, Page, Section};
+
+impl Report for Outcome<Verified> {
+    fn write(&self, out: &mut Output) -> Result<(), Faults> {
+        let rows: Vec<Vec<String>> = self
+            .differs
+            .iter()
+            .map(|d| vec![d.file.clone(), d.at.clone(), d.was.clone(), d.now.clone()])
+            .collect();
+        let differs = match rows.is_empty() {
+            true => Block::Text("Nothing.".into()),
+            false => Block::table(&["file", "where", "in the folder", "now"], rows),
+        };
+        let sections = vec![
+            Section::new("Differs", vec![differs]),
+            Section::new("Same", vec![Block::Lines(self.same.join("\n"))]),
+        ];
+        let page = Page::new(
+            "Verify",
+            "A result folder recomputed",
+            &self.findings,
+            sections,
+        );
+        write_page(out, self, page)
+    }
+
+    fn words(&self) -> String {
+        let mut text = format!(
+            "{} the same, {} differences\n",
+            self.same.len(),
+            self.differs.len()
+        );
+        for d in &self.differs {
+            let at = if d.at.is_empty() {
+                String::new()
+            } else {
+                format!(" {}", d.at)
+            };
+            text.push_str(&format!("{}{at}: was {}, is {}\n", d.file, d.was, d.now));
+        }
+        text
+    }
+}
