@@ -1,8 +1,9 @@
 //! The stiffness of a constrained model, in blocks of a grid's free dofs.
 
 use super::constraint::{Reduction, State};
-use super::element::{ElementMatrix, Prepared};
+use super::element::ElementMatrix;
 use super::error::{FeError, Refusal};
+use super::prepared::Prepared;
 use crate::linalg::sparse::{BlockGraph, BlockMatrix, DenseTerm, Symbolic};
 use crate::model::{GridIx, Mat3};
 use rayon::prelude::*;

@@ -1,10 +1,10 @@
 //! Axial strain of bars and beams at their recovery points.
 
 use super::BeamField;
-use super::element::Prepared;
 use super::element::beam::beam_strain;
 use super::error::{FeError, Refusal};
 use super::line_load::Between;
+use super::prepared::Prepared;
 use crate::model::BeamIx;
 use rayon::prelude::*;
 use std::sync::Arc;

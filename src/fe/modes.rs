@@ -1,9 +1,9 @@
 //! Elastic modes by a block Lanczos method on the factor of the static solution.
 
-use super::element::Prepared;
 use super::error::FeError;
+use super::load_case::Relief;
 use super::mass::Mass;
-use super::solve::Relief;
+use super::prepared::Prepared;
 use super::system::System;
 use crate::finding::Finding;
 use crate::linalg::DMatrix;
@@ -39,7 +39,7 @@ pub fn free_modes(
     mpc: Option<u32>,
     count: usize,
 ) -> Result<(Vec<Mode>, Vec<Finding>), FeError> {
-    let refused = super::unsupported::unsupported(model, &[]);
+    let refused = super::unsupported_cards::unsupported_cards(model, &[]);
     if !refused.is_empty() {
         return Err(FeError::Refused(refused));
     }

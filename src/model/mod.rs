@@ -23,7 +23,7 @@ mod section;
 mod shell;
 mod solid;
 mod types;
-mod uncarried;
+mod unsupported_cards;
 
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,7 @@
 //! All constraints of a load case together: which dofs are free, which are held, which follow others.
 
-use super::{Claim, Relation, body, mean};
+use super::relation::{Claim, Relation};
+use super::{body, mean};
 use crate::fe::error::{FeError, Refusal};
 use crate::model::{GridIx, Mat3, Model, RigidKind};
 use nastran::cards::Dofs;
@@ -211,6 +212,28 @@ fn resolve(
         }
         state[dof as usize] = State::Dependent(r as u32);
     }
+    let rows = rows_without_dependent(model, relations, claims, &state, &enforced)?;
+    Ok(Reduction {
+        state,
+        rows,
+        enforced,
+    })
+}
+
+/// A row of free dofs and a constant by dependent dof.
+type Row = (Vec<(u32, f64)>, f64);
+
+/// The relations with every dependent dof on their right-hand sides replaced.
+///
+/// # Errors
+/// Dofs that depend on themselves.
+fn rows_without_dependent(
+    model: &Model,
+    relations: &[Relation],
+    claims: &[Claim],
+    state: &[State],
+    enforced: &HashMap<u32, f64>,
+) -> Result<Vec<Row>, FeError> {
     // Depth first: a row is final when all dependent dofs in it have been replaced.
     #[derive(Clone, Copy, PartialEq)]
     enum Mark {
@@ -237,7 +260,7 @@ fn resolve(
                 })
                 .collect();
             if waits.is_empty() {
-                rows[r] = substitute(&relations[r].terms, &state, &rows, &enforced);
+                rows[r] = substitute(&relations[r].terms, state, &rows, enforced);
                 mark[r] = Mark::Done;
                 stack.pop();
             } else {
@@ -255,11 +278,7 @@ fn resolve(
             }
         }
     }
-    Ok(Reduction {
-        state,
-        rows,
-        enforced,
-    })
+    Ok(rows)
 }
 
 fn substitute(

@@ -40,7 +40,7 @@ impl<'m> BeamCollector<'m> {
         let mut last: Option<u32> = None;
         for (i, id) in rows.ids.iter().enumerate() {
             let new = last.replace(id.entity) != Some(id.entity);
-            // Elements that the model lacks are told of by `belongs`.
+            // Elements that the model lacks are told of by `deck_result_consistency`.
             let Some(ix) = ids.find(id.entity) else {
                 continue;
             };
