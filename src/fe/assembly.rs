@@ -86,7 +86,7 @@ fn reached(reduction: &Reduction, grids: &[GridIx], dofs: u8) -> Vec<(u32, u8)> 
                 State::Held => {}
                 State::Dependent(r) => list.extend(
                     reduction.rows[r as usize]
-                        .0
+                        .free
                         .iter()
                         .map(|t| (t.0 / 6, 1 << (t.0 % 6))),
                 ),
@@ -255,7 +255,7 @@ fn reduced<'a>(
             State::Free => column(dof).map(|c| (c, 1.0)).into_iter().collect(),
             State::Held => Vec::new(),
             State::Dependent(r) => reduction.rows[r as usize]
-                .0
+                .free
                 .iter()
                 .filter_map(|(d, c)| Some((column(*d as usize)?, *c)))
                 .collect(),

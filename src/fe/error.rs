@@ -113,6 +113,15 @@ pub enum FeError {
         /// Where it stands.
         at: Place,
     },
+    /// Modes were asked for, and the structure has no mass.
+    NoMassToVibrate,
+    /// Numbers that are infinite, not numbers, or larger than single precision (that of result files) holds.
+    Overflow {
+        /// Subcase id.
+        subcase: u32,
+        /// `loads`, `displacements`, `strain`.
+        what: &'static str,
+    },
     /// The factor doesn't fit memory or 32-bit indices.
     TooLarge {
         /// Unknowns of the system.
@@ -199,11 +208,23 @@ impl FeError {
                 "no mass, so nothing balances the loads of a free structure".to_owned(),
                 "give the materials a density or add CONM2",
             ),
+            Self::NoMassToVibrate => one(
+                "model".to_owned(),
+                nowhere,
+                "no mass, so nothing vibrates".to_owned(),
+                "give the materials a density or add CONM2",
+            ),
             Self::NotANumber { grid, at } => one(
                 format!("grid {grid}"),
                 *at,
                 "the stiffness at this grid is not a number".to_owned(),
                 "look for zero or huge property values of the elements there",
+            ),
+            Self::Overflow { subcase, what } => one(
+                format!("subcase {subcase}"),
+                nowhere,
+                format!("its {what} are not numbers, or above 3.4e38"),
+                "look for loads, moduli, thicknesses and areas that are far too large or far too small",
             ),
             Self::TooLarge { unknowns } => one(
                 "model".to_owned(),

@@ -27,6 +27,6 @@ pub struct SolveOptions {
     pub corners: Corners,
     /// With thermal expansion or without.
     pub heated: HeatedStrain,
-    /// Elastic modes wanted of a structure that inertia balances, from the factor of the static solution.
+    /// Elastic modes wanted beside the static solution, from its factor; 0: none.
     pub modes: usize,
 }

@@ -1,6 +1,7 @@
 //! What the solver has to say beside the strain.
 
 use super::mass::MassProperties;
+use super::reactions::Reactions;
 use super::relief::Balance;
 use crate::finding::Finding;
 use crate::linalg::sparse::OrderingMethod;
@@ -22,10 +23,12 @@ pub struct SolveReport {
     pub epsilon: [f64; 2],
     /// Balance of every case solved by inertia relief.
     pub balance: Vec<Balance>,
+    /// Reactions of every case whose supports take load, basic frame.
+    pub reactions: Vec<Reactions>,
     /// Mass and centre of gravity.
     pub mass: Option<MassProperties>,
-    /// Frequencies of the lowest elastic modes, cycles per unit of time, ascending: as many as were asked for, where the
-    /// structure is free.
+    /// Frequencies of the lowest elastic modes of the structure as the first cases hold it, cycles per unit of time, ascending: as many
+    /// as were asked for.
     pub modes: Vec<f64>,
     /// Wall seconds by step.
     pub seconds: Vec<(String, f64)>,

@@ -4,12 +4,17 @@ use super::applied::{applied_forces, check_sets, enforced_of, largest};
 use super::error::FeError;
 use super::formulation::formulations;
 use super::load_case::{LoadCase, Relief, unit_cases};
-use super::mass::Mass;
+use super::load_checks::{check_finite, load_into_support, nothing_acts};
+use super::mass::{Mass, MassProperties};
+use super::modes::frequencies;
 use super::options::SolveOptions;
 use super::prepared::Prepared;
+use super::reactions::reactions;
 use super::relief::Balance;
 use super::report::{Clock, SolveReport, Solved};
+use super::shape_checks::check_shapes;
 use super::strain_of_cases::with_strain;
+use super::support::contradictions;
 use super::system::System;
 use super::{Solution, UnitLoad};
 use crate::finding::{Finding, Severity};
@@ -95,6 +100,7 @@ fn displacements(
         ..SolveReport::default()
     };
     let mut findings = formulations(model);
+    findings.extend(check_shapes(model));
     let mut fields: Vec<Vec<[f64; 6]>> = vec![Vec::new(); cases.len()];
     let mut done = vec![false; cases.len()];
     for first in 0..cases.len() {
@@ -140,6 +146,7 @@ fn solve_group(
         return Ok(Vec::new());
     };
     check_sets(model, cases)?;
+    findings.extend(contradictions(model, case.spc));
     let mut clock = Clock::start();
     let mut system = System::new(
         prepared,
@@ -151,48 +158,80 @@ fn solve_group(
     clock.note(report, "assemble");
     let n = system.symbolic.n_unknowns();
     let mut columns = vec![0.0; n * cases.len()];
-    let packed: Vec<(Option<Balance>, Option<Finding>)> = columns
-        .par_chunks_exact_mut(n.max(1))
-        .zip(cases)
-        .map(|(column, case)| load_column(prepared, mass, &system, case, column))
+    let acting: Vec<Acting> = cases
+        .par_iter()
+        .map(|case| acting(prepared, mass, &system, report.mass.as_ref(), case))
         .collect::<Result<_, FeError>>()?;
-    for (balance, finding) in packed {
-        report.balance.extend(balance);
-        findings.extend(finding);
+    let mut forces = Vec::with_capacity(cases.len());
+    for acting in acting {
+        report.balance.extend(acting.balance);
+        findings.extend(acting.findings);
+        forces.push(acting.forces);
     }
+    columns
+        .par_chunks_exact_mut(n.max(1))
+        .zip(&forces)
+        .try_for_each(|(column, f)| system.pack(prepared, f.clone(), column))?;
     clock.note(report, "loads");
     if report.dofs < n {
         report.dofs = n;
         report.factor_nonzeros = system.symbolic.factor_nonzeros();
         report.ordering = Some(system.symbolic.method());
     }
-    let stiffness = std::mem::take(&mut system.stiffness);
-    let factor = system.factor(prepared, mass, stiffness)?;
-    clock.note(report, "factor");
-    report.smallest_pivot = factor.smallest_pivot;
-    let refined = factor.solve_refined(&mut columns, REFINED_ABOVE);
-    clock.note(report, "substitute");
-    for (case, refined) in cases.iter().zip(refined) {
-        report.epsilon[0] = report.epsilon[0].max(refined.first);
-        report.epsilon[1] = report.epsilon[1].max(refined.last);
-        findings.extend(inaccurate(case.subcase, refined.last));
+    if n == 0 {
+        findings.push(nothing_free(cases));
+    } else {
+        let stiffness = std::mem::take(&mut system.stiffness);
+        let factor = system.factor(prepared, mass, stiffness)?;
+        clock.note(report, "factor");
+        report.smallest_pivot = factor.smallest_pivot;
+        let refined = factor.solve_refined(&mut columns, REFINED_ABOVE);
+        clock.note(report, "substitute");
+        for (case, refined) in cases.iter().zip(refined) {
+            report.epsilon[0] = report.epsilon[0].max(refined.first);
+            report.epsilon[1] = report.epsilon[1].max(refined.last);
+            findings.extend(inaccurate(case.subcase, refined.last));
+        }
+        let still = system.reduction.enforced.is_empty() && report.mass.is_some();
+        if options.modes > 0 && report.modes.is_empty() && still {
+            report.modes = frequencies(prepared, mass, &system, &factor, options.modes)?;
+            clock.note(report, "modes");
+        }
     }
-    if system.body.is_some() && options.modes > 0 && report.modes.is_empty() {
-        let modes = super::modes::modes_of(prepared, mass, &system, &factor, options.modes)?;
-        report.modes = modes.iter().map(|m| m.frequency).collect();
-        clock.note(report, "modes");
-    }
-    drop(factor);
-    Ok(columns
-        .par_chunks_exact(n.max(1))
-        .map(|column| {
-            let mut u = system.unpack(prepared, column);
+    let fields: Vec<Vec<[f64; 6]>> = (0..cases.len())
+        .into_par_iter()
+        .map(|i| {
+            let mut u = system.unpack(prepared, &columns[n * i..n * (i + 1)]);
             if let (Some(body), Relief::Automatic) = (&system.body, case.relief) {
                 body.take_out(mass, &mut u);
             }
-            u
+            check_finite(
+                cases[i].subcase,
+                "displacements",
+                u.iter().flatten().copied(),
+            )?;
+            Ok(u)
         })
-        .collect())
+        .collect::<Result<_, FeError>>()?;
+    let ids: Vec<u32> = cases.iter().map(|c| c.subcase).collect();
+    let reactions = reactions(prepared, &system, &ids, &fields, &forces)?;
+    if !reactions.is_empty() {
+        clock.note(report, "reactions");
+    }
+    report.reactions.extend(reactions);
+    Ok(fields)
+}
+
+/// What is said of a structure whose every dof is held.
+fn nothing_free(cases: &[&LoadCase]) -> Finding {
+    let ids: Vec<String> = cases.iter().map(|c| c.subcase.to_string()).collect();
+    Finding::new(
+        Severity::Warning,
+        "every-dof-held",
+        format!("subcases {}", ids.join(", ")),
+        "supports hold every degree of freedom, so that loads strain nothing",
+        "hold the structure where its supports are, and there alone",
+    )
 }
 
 fn inaccurate(subcase: u32, epsilon: f64) -> Option<Finding> {
@@ -208,23 +247,42 @@ fn inaccurate(subcase: u32, epsilon: f64) -> Option<Finding> {
     })
 }
 
-/// The balanced loads of a case at the unknowns.
-fn load_column(
+/// What acts in a case.
+struct Acting {
+    /// By grid, basic frame, inertia included where it balances.
+    forces: Vec<[f64; 6]>,
+    balance: Option<Balance>,
+    findings: Vec<Finding>,
+}
+
+/// The balanced loads of a case.
+///
+/// # Errors
+/// Loads on nothing; numbers beyond all bounds; sets that the deck lacks.
+fn acting(
     prepared: &Prepared<'_>,
     mass: &Mass,
     system: &System,
+    weight: Option<&MassProperties>,
     case: &LoadCase,
-    column: &mut [f64],
-) -> Result<(Option<Balance>, Option<Finding>), FeError> {
+) -> Result<Acting, FeError> {
     let model = prepared.model;
     let mut f = applied_forces(prepared, mass, case)?;
+    check_finite(case.subcase, "loads", f.iter().flatten().copied())?;
     system.loads_on_nothing(model, &prepared.axes, case.subcase, &f)?;
-    let (mut balanced, mut finding) = (None, None);
+    let mut findings: Vec<Finding> = nothing_acts(model, case, &f, weight).into_iter().collect();
+    findings.extend(load_into_support(
+        model,
+        &prepared.axes,
+        &system.reduction,
+        case,
+    ));
+    let mut balance = None;
     if let Some(body) = &system.body {
         let before = largest(&f);
-        balanced = Some(body.balance(case.subcase, mass, &mut f));
+        balance = Some(body.balance(case.subcase, mass, &mut f));
         if largest(&f) <= 1e-9 * before && before > 0.0 {
-            finding = Some(Finding::new(
+            findings.push(Finding::new(
                 Severity::Warning,
                 "load-is-inertia-only",
                 format!("subcase {}", case.subcase),
@@ -233,8 +291,11 @@ fn load_column(
             ));
         }
     }
-    system.pack(prepared, f, column)?;
-    Ok((balanced, finding))
+    Ok(Acting {
+        forces: f,
+        balance,
+        findings,
+    })
 }
 
 /// A matrix as its order and entries of its lower triangle: row, column, value.

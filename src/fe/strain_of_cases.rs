@@ -3,12 +3,13 @@
 use super::error::FeError;
 use super::line_load::Between;
 use super::load_case::LoadCase;
+use super::load_checks::check_finite;
 use super::options::{HeatedStrain, SolveOptions};
 use super::prepared::Prepared;
 use super::report::{SolveReport, Solved};
 use super::shell_strain::shell_fields;
 use super::temperature::Temperatures;
-use super::{CaseResult, Solution};
+use super::{BeamField, CaseResult, ShellField, SolidField, Solution};
 use crate::model::Model;
 
 /// Strain of all elements from the displacements of every case.
@@ -34,6 +35,13 @@ pub(super) fn with_strain(
     let shells = shell_fields(prepared, &u, &temperatures, options.corners)?;
     let beams = super::beam_strain::beam_fields(prepared, &u, &between)?;
     let solids = super::solid_fields::solid_fields(prepared, &u, &temperatures)?;
+    for (i, case) in cases.iter().enumerate() {
+        check_finite(
+            case.subcase,
+            "strains",
+            strains(&shells[i], &beams[i], &solids[i]),
+        )?;
+    }
     let results = cases.iter().zip(u).zip(shells).zip(beams).zip(solids);
     Ok((
         Solution {
@@ -62,4 +70,16 @@ fn temperatures_of(
     cases: &[LoadCase],
 ) -> Result<Vec<Option<Temperatures>>, FeError> {
     cases.iter().map(|c| Temperatures::of(model, c)).collect()
+}
+
+/// Every strain of a case that is a number or should be one: what an element lacks (a triangle's fourth corner) is left out.
+fn strains<'a>(
+    shells: &'a ShellField,
+    beams: &'a BeamField,
+    solids: &'a SolidField,
+) -> impl Iterator<Item = f64> + 'a {
+    let of_shells = shells.centre.iter().flatten().flatten();
+    let of_beams = beams.stations.iter().flatten().flat_map(|s| &s.1);
+    let of_solids = solids.centre.iter().flatten();
+    of_shells.chain(of_beams).chain(of_solids).copied()
 }

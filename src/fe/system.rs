@@ -50,13 +50,13 @@ impl System {
             Relief::None => None,
             _ => {
                 let x = model.grids.iter().map(|g| g.x).collect();
-                Some(RigidBody::new(
+                RigidBody::new(
                     x,
                     &prepared.axes,
                     mass,
                     &reduction,
                     &touched(prepared, &reduction),
-                )?)
+                )?
             }
         };
         if let Some(body) = &body {
@@ -275,8 +275,11 @@ fn touched(prepared: &Prepared<'_>, reduction: &Reduction) -> Vec<bool> {
         }
     }
     for (dof, state) in reduction.state.iter().enumerate() {
-        if matches!(state, State::Dependent(_)) {
+        if let State::Dependent(r) = state {
             touched[dof / 6] = true;
+            for (held, _) in &reduction.rows[*r as usize].held {
+                touched[(*held / 6) as usize] = true;
+            }
         }
     }
     touched

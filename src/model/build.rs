@@ -36,6 +36,10 @@ impl Model {
             Self::build(&deck.cards, &deck.case_control.global.params, &loads);
         model.unsupported_cards = structure;
         model.mpc = deck.case_control.mpc_of_structure();
+        let subcases = deck.case_control.effective_subcases();
+        model.selected_spcs = subcases.iter().filter_map(|s| s.spc).collect();
+        model.selected_spcs.sort_unstable();
+        model.selected_spcs.dedup();
         let named = deck
             .labels
             .iter()

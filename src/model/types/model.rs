@@ -46,6 +46,8 @@ pub struct Model {
     pub mpcs: Vec<MpcSet>,
     /// The set that holds under unit loads: [`nastran::bdf::CaseControl::mpc_of_structure`].
     pub mpc: Option<u32>,
+    /// SPC sets that the subcases of the deck's case control select, ascending, each once; empty for a model made without a deck.
+    pub selected_spcs: Vec<u32>,
     /// SPC sets, SPCADD resolved; enforced displacements included.
     pub spcs: Vec<SpcSet>,
     /// SUPORT and SUPORT1 (set id, `None` for SUPORT).

@@ -31,11 +31,13 @@ pub(crate) use of_model::{
     shell_thermal_force, surfaces,
 };
 pub(crate) use output_frame::output_frame;
+#[cfg(test)]
 pub(crate) use quad4::quad4;
+#[cfg(test)]
 pub(crate) use tria3::tria3;
-pub(crate) use types::{
-    BadShape, Heat, Parts, ShellInput, ShellLaw, ShellMatrices, Sides, StrainRows,
-};
+#[cfg(test)]
+pub(crate) use types::{BadShape, Heat, ShellInput, ShellLaw, ShellMatrices, Sides};
+pub(crate) use types::{Parts, StrainRows};
 
 #[cfg(test)]
 mod tests;
