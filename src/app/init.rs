@@ -360,6 +360,11 @@ fn job_text(
     } else {
         t.push_str(&format!("results = [{}]\n", results.join(", ")));
     }
+    t.push_str(&match deck.model.selected_spcs.as_slice() {
+        [] => "# support = \"free\"                   # the deck selects no SPC set: inertia balances every load\n".to_owned(),
+        [set] => format!("support = \"deck\"                     # check: SPC set {set} of the deck holds the structure while gauges are read; \"free\": inertia relief\n"),
+        [set, ..] => format!("support = {set}                          # check: the deck's subcases select several SPC sets; \"free\": inertia relief\n"),
+    });
     t.push_str("\n# One [[load]] for each load that acts while the gauges are read, those you don't ask for included (role = \"nuisance\").\n");
     for l in loads {
         t.push_str(&format!("\n[[load]]\nname = \"{}\"\n{}\n", l.name, l.what));

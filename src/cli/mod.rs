@@ -43,12 +43,12 @@ pub fn run(arguments: Arguments) -> ExitCode {
             Run::of(&a.common, demo::DECK_NAME.as_ref()).session(|cx| demo::run(&a, cx))
         }
         Command::Solve(a) => {
-            let (run, heated) = (Run::of(&a.job.common, &a.job.job), a.heated());
+            let (run, options) = (Run::of(&a.job.common, &a.job.job), a.options());
             if a.is_job() {
-                run.job(&a.job.job, |job, cx| app::solve::solve(job, heated, cx))
+                run.job(&a.job.job, |job, cx| app::solve::solve(job, options, cx))
             } else {
                 let deck = &a.job.job;
-                run.files(deck, |cx| app::solve::solve_deck(deck, heated, cx))
+                run.files(deck, |cx| app::solve::solve_deck(deck, options, cx))
             }
         }
         Command::Reconcile(a) => on_job("reconcile", &a, app::reconcile::run),

@@ -57,16 +57,19 @@ pub fn loads_of_subcase(s: &Subcase) -> Vec<UnitLoad> {
         .collect()
 }
 
-/// Unit loads on the free structure as load cases, subcases numbered 1 .. n.
-pub fn unit_cases(model: &Model, loads: &[UnitLoad]) -> Vec<LoadCase> {
-    let relief = relief_of(model, None, None);
+/// Unit loads as load cases, subcases numbered 1 .. n; `spc` and `relief` hold them all.
+pub fn unit_cases(
+    model: &Model,
+    (spc, relief): (Option<u32>, Relief),
+    loads: &[UnitLoad],
+) -> Vec<LoadCase> {
     (1..)
         .zip(loads)
         .map(|(subcase, load)| LoadCase {
             subcase,
             label: String::new(),
             loads: vec![load.clone()],
-            spc: None,
+            spc,
             mpc: model.mpc,
             relief,
         })

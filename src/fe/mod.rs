@@ -43,7 +43,7 @@ mod unsupported_cards;
 mod what_hangs;
 
 pub use error::{FeError, FreeDof, Refusal};
-pub use load_case::{LoadCase, Relief, loads_of_subcase, relief_of, unit_cases};
+pub use load_case::{LoadCase, Relief, loads_of_subcase, relief_of};
 pub use mass::{MassProperties, mass_properties};
 pub use modes::{ModalSolution, Mode, free_modes, solve_modes};
 pub use options::{Corners, HeatedStrain, SolveOptions};
@@ -54,6 +54,7 @@ pub use report::{SolveReport, Solved};
 pub use shape_checks::check_shapes;
 pub use solution::*;
 pub use solve::{
-    Triplets, solution_of, solve_cases, solve_displacements, solve_unit_loads, supported_stiffness,
+    Triplets, solution_of, solve_cases, solve_displacements, solve_unit_loads, solve_unit_loads_on,
+    supported_stiffness,
 };
 pub use support::{Support, SupportChoice, SupportError, assumed_relief, support_of};

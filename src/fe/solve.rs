@@ -3,7 +3,7 @@
 use super::applied::{applied_forces, check_sets, enforced_of, largest};
 use super::error::FeError;
 use super::formulation::formulations;
-use super::load_case::{LoadCase, Relief, unit_cases};
+use super::load_case::{LoadCase, Relief};
 use super::load_checks::{check_finite, load_into_support, nothing_acts};
 use super::mass::{Mass, MassProperties};
 use super::modes::frequencies;
@@ -14,7 +14,7 @@ use super::relief::Balance;
 use super::report::{Clock, SolveReport, Solved};
 use super::shape_checks::check_shapes;
 use super::strain_of_cases::with_strain;
-use super::support::contradictions;
+use super::support::{Support, contradictions};
 use super::system::System;
 use super::{Solution, UnitLoad};
 use crate::finding::{Finding, Severity};
@@ -35,7 +35,20 @@ pub fn solve_unit_loads(
     loads: &[UnitLoad],
     options: &SolveOptions,
 ) -> Result<(Solution, SolveReport), FeError> {
-    solve_cases(model, &unit_cases(model, loads), options)
+    solve_unit_loads_on(model, Support::free(model), loads, options)
+}
+
+/// Solves unit loads on a structure held like this, subcases numbered 1 .. n.
+///
+/// # Errors
+/// See [`FeError`].
+pub fn solve_unit_loads_on(
+    model: &Model,
+    support: Support,
+    loads: &[UnitLoad],
+    options: &SolveOptions,
+) -> Result<(Solution, SolveReport), FeError> {
+    solve_cases(model, &support.unit_cases(model, loads), options)
 }
 
 /// Solves load cases; those with the same constraints share one factor.

@@ -1,6 +1,7 @@
 //! What holds a structure under unit loads: an SPC set, or nothing but its own inertia.
 
-use super::load_case::Relief;
+use super::UnitLoad;
+use super::load_case::{LoadCase, Relief, unit_cases};
 use crate::finding::{Finding, Severity};
 use crate::model::Model;
 
@@ -59,11 +60,21 @@ fn known(sets: &[u32]) -> String {
 }
 
 impl Support {
-    /// Held by nothing.
-    pub const FREE: Self = Self {
-        spc: None,
-        relief: Relief::Automatic,
-    };
+    /// Held by nothing; PARAM,INREL,-1 of the model says that displacements count from its SUPORT dofs.
+    pub fn free(model: &Model) -> Self {
+        Self {
+            spc: None,
+            relief: match model.params.inrel {
+                -1 => Relief::Suport(None),
+                _ => Relief::Automatic,
+            },
+        }
+    }
+
+    /// Unit loads as load cases on this support, subcases numbered 1 .. n.
+    pub fn unit_cases(&self, model: &Model, loads: &[UnitLoad]) -> Vec<LoadCase> {
+        unit_cases(model, (self.spc, self.relief), loads)
+    }
 
     /// Whether an SPC set holds the structure.
     pub fn is_held(&self) -> bool {
@@ -91,7 +102,7 @@ impl Support {
 /// A set that the deck lacks; several sets selected where one must be.
 pub fn support_of(model: &Model, wanted: SupportChoice) -> Result<Support, SupportError> {
     let set = match (wanted, model.selected_spcs.as_slice()) {
-        (SupportChoice::Free, _) | (SupportChoice::Deck, []) => return Ok(Support::FREE),
+        (SupportChoice::Free, _) | (SupportChoice::Deck, []) => return Ok(Support::free(model)),
         (SupportChoice::Set(set), _) | (SupportChoice::Deck, &[set]) => set,
         (SupportChoice::Deck, several) => {
             return Err(SupportError::Several {
@@ -106,7 +117,8 @@ pub fn support_of(model: &Model, wanted: SupportChoice) -> Result<Support, Suppo
         });
     }
     let relief = match model.params.inrel {
-        -1 | -2 => Relief::Automatic,
+        -1 => Relief::Suport(None),
+        -2 => Relief::Automatic,
         _ => Relief::None,
     };
     Ok(Support {
@@ -120,7 +132,7 @@ pub fn assumed_relief(model: &Model, support: Support) -> Option<Finding> {
     (support.spc.is_none() && support.relief == Relief::Automatic && model.params.inrel == 0).then(
         || {
             Finding::new(
-                Severity::Info,
+                Severity::Warning,
                 "inertia-relief-assumed",
                 "model",
                 "nothing holds the structure and PARAM,INREL is not given: inertia balances the loads (Nastran would stop at a mechanism)",

@@ -12,7 +12,7 @@ use crate::app::job::Job;
 use crate::app::outcome::{Answer, Outcome};
 use crate::app::store::Folder;
 use crate::app::{self, Closed, CommonArguments, JobArguments, Session};
-use crate::fe::HeatedStrain;
+use crate::fe::SolveOptions;
 use crate::report::command::{Report, save};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -224,7 +224,7 @@ fn play(
     };
     session.stage(command, |_| match command {
         "solve" => asked(
-            &app::solve::solve(&Job::read(job, cx.files)?, HeatedStrain::default(), &cx)?,
+            &app::solve::solve(&Job::read(job, cx.files)?, options, &cx)?,
             &folder.join(out),
         ),
         "place" => asked(
