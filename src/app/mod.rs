@@ -14,6 +14,7 @@ pub mod half_written;
 pub mod identify;
 pub mod init;
 pub mod job;
+pub mod modes;
 pub mod outcome;
 pub mod output;
 mod paper;

@@ -137,10 +137,7 @@ fn solved(
         left_out,
         support,
     } = task;
-    let options = SolveOptions {
-        corners,
-        ..options
-    };
+    let options = SolveOptions { corners, ..options };
     for why in left_out {
         work.findings.push(Finding::new(
             Severity::Warning,

@@ -51,6 +51,15 @@ pub fn run(arguments: Arguments) -> ExitCode {
                 run.files(deck, |cx| app::solve::solve_deck(deck, options, cx))
             }
         }
+        Command::Modes(a) => {
+            Run::of(&a.common, &a.input).files(&a.input, |cx| match a.input.extension() {
+                Some(e) if e.eq_ignore_ascii_case("toml") => {
+                    let job = app::job::Job::read(&a.input, cx.files)?;
+                    app::modes::modes(&job, a.modes, cx)
+                }
+                _ => app::modes::modes_of_deck(&a.input, a.modes, cx),
+            })
+        }
         Command::Reconcile(a) => on_job("reconcile", &a, app::reconcile::run),
         Command::Identify(a) => on_job("identify", &a, app::identify::run),
         Command::Schema => print(app::job::schema::job_schema().as_bytes()),

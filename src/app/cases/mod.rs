@@ -9,6 +9,7 @@ use super::deck::read_model;
 use super::fault::{Fault, Faults};
 use super::job::{Job, LoadActs};
 use super::outcome::{Answer, Outcome, StatedUnits};
+use super::solved::support_of_job;
 use super::work::Work;
 use crate::fe::{Relief, Support};
 use crate::finding::{Finding, Severity};
@@ -47,6 +48,8 @@ const UNWANTED: [&str; 22] = [
 /// A deck with one unit-load subcase a load.
 #[derive(Serialize)]
 pub struct UnitLoadDeck {
+    /// What holds the structure, in words.
+    pub support: String,
     /// By load: its subcase and what acts.
     pub subcases: Vec<Value>,
     /// The deck and the edits that make it.

@@ -53,9 +53,7 @@ fn files(work: &mut Work, job: &Job, found: &mut Checked) {
         if let Some(model) = found.decks.get(before).and_then(|d| d.model.as_ref()) {
             work.findings.extend(units_of(job, model));
             match support_of_job(job, model) {
-                Ok(support) => work
-                    .findings
-                    .push(support_finding(&m.deck.given, support)),
+                Ok(support) => work.findings.push(support_finding(&m.deck.given, support)),
                 Err(faults) => found.faults.extend(faults.into_list()),
             }
             found.faults.extend(missing_ids(job, model));

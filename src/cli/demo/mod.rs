@@ -224,7 +224,7 @@ fn play(
     };
     session.stage(command, |_| match command {
         "solve" => asked(
-            &app::solve::solve(&Job::read(job, cx.files)?, options, &cx)?,
+            &app::solve::solve(&Job::read(job, cx.files)?, solving(), &cx)?,
             &folder.join(out),
         ),
         "place" => asked(
@@ -253,4 +253,12 @@ where
         result: serde_json::to_value(&outcome.answer).unwrap_or_default(),
         seconds: outcome.seconds.total(),
     })
+}
+
+/// What the story asks of the solver.
+fn solving() -> SolveOptions {
+    SolveOptions {
+        modes: app::solve::MODES,
+        ..SolveOptions::default()
+    }
 }

@@ -4,6 +4,7 @@ mod ballast;
 mod cases;
 mod check;
 mod init;
+mod modes;
 mod pages;
 mod place;
 mod sensitivity;
