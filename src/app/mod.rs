@@ -15,6 +15,7 @@ pub mod identify;
 pub mod init;
 pub mod job;
 mod manifest;
+pub mod modes;
 pub mod outcome;
 pub mod output;
 mod paper;

@@ -5,11 +5,12 @@ use super::deck::{DeckModel, read_model};
 use super::fault::{Fault, Faults};
 use super::job::Job;
 use super::outcome::{Answer, Outcome, StatedUnits};
-use super::solved::{cases_of_job, solve_kept};
+pub use super::solved::MODES;
+use super::solved::{cases_of_job, solve_kept, support_of_job};
 use super::work::Work;
 use crate::fe::{
-    Balance, Corners, HeatedStrain, LoadCase, Solution, SolveOptions, SolveReport,
-    loads_of_subcase, relief_of,
+    Balance, Corners, LoadCase, Reactions, Solution, SolveOptions, SolveReport, Support,
+    assumed_relief, loads_of_subcase, relief_of,
 };
 use crate::finding::{Finding, Severity};
 use crate::linalg::sparse::OrderingMethod;
@@ -38,6 +39,10 @@ pub struct SolvedCases {
     pub balance: Vec<Balance>,
     /// Mass and its centre.
     pub mass: Option<MassAndCentre>,
+    /// What holds the structure under the unit loads of a job, in words; `None` for a deck, whose subcases say so themselves.
+    pub support: Option<String>,
+    /// By load case: resultants of what acts and of the reactions, and the reactions grid by grid, basic frame; empty where nothing is held.
+    pub reactions: Vec<Reactions>,
     /// First elastic frequencies, per unit of time.
     pub elastic_modes_hz: Vec<f64>,
     /// Largest resident memory of the process so far, bytes; `None` where the system does not tell.
@@ -80,6 +85,8 @@ struct Task {
     corners: Corners,
     /// Why a subcase of the deck is left out.
     left_out: Vec<String>,
+    /// What holds the structure of a job.
+    support: Option<String>,
 }
 
 /// The unit loads of a job, solved by the built-in solver.
@@ -88,12 +95,12 @@ struct Task {
 /// Every fault of the job and its deck; what stops the solver.
 pub fn solve(
     job: &Job,
-    heated: HeatedStrain,
+    options: SolveOptions,
     cx: &Context,
 ) -> Result<Outcome<SolvedCases>, Faults> {
     let mut work = Work::of_job(cx, job);
     let task = work.stage("read", |w| of_job(w, job))?;
-    let answer = solved(&mut work, task, heated, title_of(Path::new(&job.file)))?;
+    let answer = solved(&mut work, task, options, title_of(Path::new(&job.file)))?;
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
@@ -103,12 +110,12 @@ pub fn solve(
 /// Every fault of the deck; what stops the solver.
 pub fn solve_deck(
     path: &Path,
-    heated: HeatedStrain,
+    options: SolveOptions,
     cx: &Context,
 ) -> Result<Outcome<SolvedCases>, Faults> {
     let mut work = Work::new(cx);
     let task = work.stage("read", |w| of_deck(w, path))?;
-    let answer = solved(&mut work, task, heated, title_of(path))?;
+    let answer = solved(&mut work, task, options, title_of(path))?;
     Ok(work.finish(StatedUnits::default(), answer))
 }
 
@@ -120,7 +127,7 @@ fn title_of(path: &Path) -> String {
 fn solved(
     work: &mut Work,
     task: Task,
-    heated: HeatedStrain,
+    options: SolveOptions,
     title: String,
 ) -> Result<SolvedCases, Faults> {
     let Task {
@@ -128,12 +135,9 @@ fn solved(
         cases,
         corners,
         left_out,
+        support,
     } = task;
-    let options = SolveOptions {
-        corners,
-        heated,
-        ..SolveOptions::default()
-    };
+    let options = SolveOptions { corners, ..options };
     for why in left_out {
         work.findings.push(Finding::new(
             Severity::Warning,
@@ -157,6 +161,8 @@ fn solved(
             mass: m.mass,
             cg: [m.cg.x, m.cg.y, m.cg.z],
         }),
+        support,
+        reactions: report.reactions.clone(),
         elastic_modes_hz: report.modes.clone(),
         peak_memory_bytes: peak_memory(),
         title,
@@ -180,12 +186,14 @@ fn of_job(work: &mut Work, job: &Job) -> Result<Task, Faults> {
     let read = read_model(&mut work.inputs, &job.folder, &files.deck.given)?;
     work.findings.extend(read.findings.iter().cloned());
     Faults::check(read.faults.clone())?;
+    let support = support_of_job(job, &read.model)?;
     let cases = cases_of_job(job, &read)?;
     Ok(Task {
         read,
         cases,
         corners: Corners::Compute,
         left_out: Vec::new(),
+        support: Some(support.words()),
     })
 }
 
@@ -218,6 +226,14 @@ fn of_deck(work: &mut Work, path: &Path) -> Result<Task, Faults> {
             });
         }
     }
+    let relieved = cases.iter().find(|c| c.spc.is_none());
+    work.findings.extend(relieved.and_then(|c| {
+        let support = Support {
+            spc: c.spc,
+            relief: c.relief,
+        };
+        assumed_relief(&read.model, support)
+    }));
     if cases.is_empty() {
         return Err(Faults::from(Fault::of(
             given,
@@ -231,6 +247,7 @@ fn of_deck(work: &mut Work, path: &Path) -> Result<Task, Faults> {
         cases,
         corners,
         left_out,
+        support: None,
     })
 }
 

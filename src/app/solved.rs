@@ -6,22 +6,75 @@ use super::job::Job;
 use super::store::{Key, read_solution, write_solution};
 use super::work::Work;
 use crate::fe::{
-    Corners, FeError, LoadCase, Solution, SolveOptions, SolveReport, Solved, UnitLoad, relief_of,
-    solution_of, solve_displacements, unit_cases,
+    Corners, FeError, LoadCase, Solution, SolveOptions, SolveReport, Solved, Support,
+    SupportChoice, UnitLoad, solution_of, solve_displacements, support_of,
 };
 use crate::finding::{Finding, Severity};
 use crate::model::Model;
 use std::fmt::Write;
 
-/// Elastic modes of a free structure that are computed beside the strain.
-const MODES: usize = 10;
+/// Elastic modes that are computed beside the strain where nothing else is asked for.
+pub const MODES: usize = 10;
+
+/// What holds the structure of a job under its unit loads.
+///
+/// # Errors
+/// An SPC set that the deck lacks; several that its subcases select.
+pub fn support_of_job(job: &Job, model: &Model) -> Result<Support, Faults> {
+    let (wanted, line) = job
+        .model
+        .as_ref()
+        .map_or((SupportChoice::Deck, 0), |m| (m.support, m.support_line));
+    support_of(model, wanted).map_err(|e| {
+        Faults::from(Fault::at(
+            &*job.file,
+            line,
+            "model.support",
+            e.to_string(),
+            "write support = \"free\", or the id of the SPC set that holds the structure while gauges are read",
+        ))
+    })
+}
+
+/// Which support it is, for `check` and `init`.
+pub fn support_finding(deck: &str, support: Support) -> Finding {
+    Finding::new(
+        Severity::Info,
+        "support",
+        deck,
+        format!("under unit loads the structure is {}", support.words()),
+        "state `support` in [model] if it is held otherwise while gauges are read",
+    )
+}
+
+/// Refuses what only a structure on its wheels can answer, where supports hold it.
+///
+/// # Errors
+/// A structure that an SPC set holds.
+pub fn stands_on_wheels(job: &Job, model: &Model, what: &str) -> Result<(), Faults> {
+    let support = support_of_job(job, model)?;
+    if !support.is_held() {
+        return Ok(());
+    }
+    let line = job.model.as_ref().map_or(0, |m| m.support_line);
+    Err(Faults::from(Fault::at(
+        &*job.file,
+        line,
+        "model.support",
+        format!(
+            "{what} takes a structure that stands on its wheels, and this one is {}",
+            support.words()
+        ),
+        "write support = \"free\" where wheels carry it",
+    )))
+}
 
 /// The unit loads of a job as load cases, subcases numbered in job order.
 ///
 /// # Errors
 /// Grids and coordinate systems that the deck lacks.
 pub fn cases_of_job(job: &Job, read: &DeckModel) -> Result<Vec<LoadCase>, Faults> {
-    let relief = relief_of(&read.model, None, None);
+    let support = support_of_job(job, &read.model)?;
     let loads = super::strain::unit_loads(job, &read.model)?;
     Ok(job
         .loads
@@ -31,9 +84,9 @@ pub fn cases_of_job(job: &Job, read: &DeckModel) -> Result<Vec<LoadCase>, Faults
             subcase: l.number,
             label: l.name.clone(),
             loads: vec![load],
-            spc: None,
+            spc: support.spc,
             mpc: read.model.mpc,
-            relief,
+            relief: support.relief,
         })
         .collect())
 }
@@ -48,11 +101,7 @@ pub fn solve_kept(
     cases: &[LoadCase],
     options: SolveOptions,
 ) -> Result<(Solution, SolveReport), Faults> {
-    let options = SolveOptions {
-        modes: MODES,
-        ..options
-    };
-    let identity = identity(work, read, cases, "");
+    let identity = identity(work, read, cases, &format!("modes {}", options.modes));
     let solved =
         kept(work, &identity, &read.model, cases, &options).map_err(|e| faults_of(&e, read))?;
     for (step, seconds) in &solved.report.seconds {
@@ -72,11 +121,11 @@ pub fn solve_kept(
 pub fn unit_loads_kept(
     work: &mut Work,
     (read, made): (&DeckModel, &str),
-    model: &Model,
+    (model, support): (&Model, Support),
     loads: &[UnitLoad],
 ) -> Result<Solution, Faults> {
     let options = SolveOptions::default();
-    let cases = unit_cases(model, loads);
+    let cases = support.unit_cases(model, loads);
     let identity = identity(work, read, &cases, made);
     kept(work, &identity, model, &cases, &options)
         .and_then(|solved| solution_of(model, &cases, solved, &options))
@@ -126,6 +175,7 @@ pub fn first_mode_of(work: &mut Work, job: &Job, read: &DeckModel) -> Option<f64
     let solved = cases_of_job(job, read).and_then(|cases| {
         let options = SolveOptions {
             corners: Corners::Leave,
+            modes: MODES,
             ..SolveOptions::default()
         };
         solve_kept(work, read, &cases, options)
@@ -152,7 +202,7 @@ pub fn first_mode_of(work: &mut Work, job: &Job, read: &DeckModel) -> Option<f64
 /// Everything that the displacements depend on: the program's sources and version, the bytes of the deck and its includes, the load cases.
 fn identity(work: &mut Work, read: &DeckModel, cases: &[LoadCase], made: &str) -> String {
     let mut text = format!(
-        "strainbridge {} {} modes {MODES} {made}\n",
+        "strainbridge {} {} {made}\n",
         env!("CARGO_PKG_VERSION"),
         env!("STRAINBRIDGE_SOURCES"),
     );

@@ -1,6 +1,6 @@
 //! Arguments as the user types them.
 
-use crate::fe::HeatedStrain;
+use crate::fe::{HeatedStrain, SolveOptions};
 use std::path::{Path, PathBuf};
 
 /// Strain gauges and a finite element model in, wheel loads with intervals out.
@@ -80,6 +80,9 @@ pub enum Command {
         after_help = "Example:\n  strainbridge solve truck.bdf --out solved    # solved/results.op2, solved/results.vtu"
     )]
     Solve(SolveArguments),
+    /// Elastic modes of a job's or deck's structure, free or supported, with their shapes, effective masses and strain at gauges
+    #[command(after_help = "Example:\n  strainbridge modes truck.bdf --modes 20 --out modes")]
+    Modes(ModesArguments),
     /// Find where simulation and measurement disagree, name the missing effect, add it, show the gap shrink
     #[command(
         after_help = "Example:\n  strainbridge reconcile job.toml    # exit code 1: what it says can't be relied on"
@@ -185,6 +188,9 @@ pub struct SolveArguments {
     /// without it the mechanical strain, which a gauge compensated for its material reads
     #[arg(long)]
     pub total_strain: bool,
+    /// Elastic modes computed beside the strain; 0: none
+    #[arg(long, value_name = "N", default_value_t = crate::app::solve::MODES)]
+    pub modes: usize,
 }
 
 impl SolveArguments {
@@ -194,14 +200,31 @@ impl SolveArguments {
         extension.is_some_and(|e| e.eq_ignore_ascii_case("toml"))
     }
 
-    /// Which strain is written.
-    pub fn heated(&self) -> HeatedStrain {
-        if self.total_strain {
-            HeatedStrain::Total
-        } else {
-            HeatedStrain::Mechanical
+    /// What is asked of the solver.
+    pub fn options(&self) -> SolveOptions {
+        SolveOptions {
+            heated: match self.total_strain {
+                true => HeatedStrain::Total,
+                false => HeatedStrain::Mechanical,
+            },
+            modes: self.modes,
+            ..SolveOptions::default()
         }
     }
+}
+
+/// A deck or job whose modes are wanted.
+#[derive(clap::Args, Debug)]
+pub struct ModesArguments {
+    /// The deck, or a job
+    #[arg(value_name = "DECK|JOB.toml")]
+    pub input: PathBuf,
+    /// How many
+    #[arg(long, value_name = "N", default_value_t = crate::app::solve::MODES)]
+    pub modes: usize,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub common: CommonArguments,
 }
 
 /// The story.

@@ -44,13 +44,22 @@ pub fn run(arguments: Arguments) -> ExitCode {
             Run::of(&a.common, demo::DECK_NAME.as_ref()).session(|cx| demo::run(&a, cx))
         }
         Command::Solve(a) => {
-            let (run, heated) = (Run::of(&a.job.common, &a.job.job), a.heated());
+            let (run, options) = (Run::of(&a.job.common, &a.job.job), a.options());
             if a.is_job() {
-                run.job(&a.job.job, |job, cx| app::solve::solve(job, heated, cx))
+                run.job(&a.job.job, |job, cx| app::solve::solve(job, options, cx))
             } else {
                 let deck = &a.job.job;
-                run.files(deck, |cx| app::solve::solve_deck(deck, heated, cx))
+                run.files(deck, |cx| app::solve::solve_deck(deck, options, cx))
             }
+        }
+        Command::Modes(a) => {
+            Run::of(&a.common, &a.input).files(&a.input, |cx| match a.input.extension() {
+                Some(e) if e.eq_ignore_ascii_case("toml") => {
+                    let job = app::job::Job::read(&a.input, cx.files)?;
+                    app::modes::modes(&job, a.modes, cx)
+                }
+                _ => app::modes::modes_of_deck(&a.input, a.modes, cx),
+            })
         }
         Command::Reconcile(a) => on_job("reconcile", &a, app::reconcile::run),
         Command::Identify(a) => Run::of(&a.common, &a.job).job(&a.job, app::identify::identify),

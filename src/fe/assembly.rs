@@ -1,8 +1,9 @@
 //! The stiffness of a constrained model, in blocks of a grid's free dofs.
 
 use super::constraint::{Reduction, State};
-use super::element::{ElementMatrix, Prepared};
+use super::element::ElementMatrix;
 use super::error::{FeError, Refusal};
+use super::prepared::Prepared;
 use crate::linalg::sparse::{BlockGraph, BlockMatrix, DenseTerm, Symbolic};
 use crate::model::{GridIx, Mat3};
 use rayon::prelude::*;
@@ -85,7 +86,7 @@ fn reached(reduction: &Reduction, grids: &[GridIx], dofs: u8) -> Vec<(u32, u8)> 
                 State::Held => {}
                 State::Dependent(r) => list.extend(
                     reduction.rows[r as usize]
-                        .0
+                        .free
                         .iter()
                         .map(|t| (t.0 / 6, 1 << (t.0 % 6))),
                 ),
@@ -254,7 +255,7 @@ fn reduced<'a>(
             State::Free => column(dof).map(|c| (c, 1.0)).into_iter().collect(),
             State::Held => Vec::new(),
             State::Dependent(r) => reduction.rows[r as usize]
-                .0
+                .free
                 .iter()
                 .filter_map(|(d, c)| Some((column(*d as usize)?, *c)))
                 .collect(),

@@ -1,10 +1,10 @@
 //! Axial strain of bars and beams at their recovery points.
 
 use super::BeamField;
-use super::element::Prepared;
-use super::element::beam::beam_strain;
+use super::element::beam::{StationStrain, beam_strain};
 use super::error::{FeError, Refusal};
 use super::line_load::Between;
+use super::prepared::Prepared;
 use crate::model::BeamIx;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -32,9 +32,15 @@ pub(crate) fn beam_fields(
                 .map(|i| beam_strain(model, i, u, &between.of(model, i)))
                 .collect();
             let stations = stations.map_err(|r| FeError::Refused(vec![r]))?;
+            let points = |s: &StationStrain| (s.station, s.points);
+            let of_all = stations.iter();
             Ok(BeamField {
                 elements: elements.clone(),
-                stations,
+                axial: of_all
+                    .clone()
+                    .map(|b| b.iter().map(|s| s.axial).collect())
+                    .collect(),
+                stations: of_all.map(|b| b.iter().map(points).collect()).collect(),
             })
         })
         .collect()

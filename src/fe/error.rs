@@ -1,6 +1,5 @@
 //! Why a model can't be solved.
 
-use crate::model::Model;
 use nastran::place::Place;
 use std::fmt;
 
@@ -114,6 +113,15 @@ pub enum FeError {
         /// Where it stands.
         at: Place,
     },
+    /// Modes were asked for, and the structure has no mass.
+    NoMassToVibrate,
+    /// Numbers that are infinite, not numbers, or larger than single precision (that of result files) holds.
+    Overflow {
+        /// Subcase id.
+        subcase: u32,
+        /// `loads`, `displacements`, `strain`.
+        what: &'static str,
+    },
     /// The factor doesn't fit memory or 32-bit indices.
     TooLarge {
         /// Unknowns of the system.
@@ -156,36 +164,7 @@ impl FeError {
                 ),
                 "break the circle",
             ),
-            Self::Mechanism { dofs, count, parts } => {
-                let mut list: Vec<Refusal> = dofs
-                    .iter()
-                    .map(|d| Refusal {
-                        card: format!("grid {}", d.grid),
-                        at: d.at,
-                        reason: format!("dof {} is held by nothing; here hang: {}", d.dof, d.hangs),
-                        remedy: "connect or hold it".to_owned(),
-                    })
-                    .collect();
-                list.extend(parts.iter().map(|p| {
-                    Refusal {
-                        card: "model".to_owned(),
-                        at: nowhere,
-                        reason: p.clone(),
-                        remedy:
-                            "join the part to the structure (RBE2, RBE3, shared grids) or delete it"
-                                .to_owned(),
-                    }
-                }));
-                if *count > dofs.len() {
-                    list.push(Refusal {
-                        card: "model".to_owned(),
-                        at: nowhere,
-                        reason: format!("{count} dofs in all are held by nothing"),
-                        remedy: "the first are listed".to_owned(),
-                    });
-                }
-                list
-            }
+            Self::Mechanism { dofs, count, parts } => mechanism_faults(dofs, *count, parts),
             Self::LoadOnNothing {
                 grid,
                 dof,
@@ -229,11 +208,23 @@ impl FeError {
                 "no mass, so nothing balances the loads of a free structure".to_owned(),
                 "give the materials a density or add CONM2",
             ),
+            Self::NoMassToVibrate => one(
+                "model".to_owned(),
+                nowhere,
+                "no mass, so nothing vibrates".to_owned(),
+                "give the materials a density or add CONM2",
+            ),
             Self::NotANumber { grid, at } => one(
                 format!("grid {grid}"),
                 *at,
                 "the stiffness at this grid is not a number".to_owned(),
                 "look for zero or huge property values of the elements there",
+            ),
+            Self::Overflow { subcase, what } => one(
+                format!("subcase {subcase}"),
+                nowhere,
+                format!("its {what} are not numbers, or above 3.4e38"),
+                "look for loads, moduli, thicknesses and areas that are far too large or far too small",
             ),
             Self::TooLarge { unknowns } => one(
                 "model".to_owned(),
@@ -251,6 +242,34 @@ impl FeError {
     }
 }
 
+/// One fault a loose dof and a loose part.
+fn mechanism_faults(dofs: &[FreeDof], count: usize, parts: &[String]) -> Vec<Refusal> {
+    let mut list: Vec<Refusal> = dofs
+        .iter()
+        .map(|d| Refusal {
+            card: format!("grid {}", d.grid),
+            at: d.at,
+            reason: format!("dof {} is held by nothing; here hang: {}", d.dof, d.hangs),
+            remedy: "connect or hold it".to_owned(),
+        })
+        .collect();
+    list.extend(parts.iter().map(|p| Refusal {
+        card: "model".to_owned(),
+        at: Place::default(),
+        reason: p.clone(),
+        remedy: "join the part to the structure (RBE2, RBE3, shared grids) or delete it".to_owned(),
+    }));
+    if count > dofs.len() {
+        list.push(Refusal {
+            card: "model".to_owned(),
+            at: Place::default(),
+            reason: format!("{count} dofs in all are held by nothing"),
+            remedy: "the first are listed".to_owned(),
+        });
+    }
+    list
+}
+
 impl fmt::Display for FeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, fault) in self.faults().iter().enumerate() {
@@ -266,77 +285,3 @@ impl fmt::Display for FeError {
 }
 
 impl std::error::Error for FeError {}
-
-/// Elements with a grid, in words, at most four named.
-pub(crate) fn what_hangs(model: &Model, grid: crate::model::GridIx) -> String {
-    let mut all: Vec<String> = Vec::new();
-    let has = |list: &[crate::model::GridIx]| list.contains(&grid);
-    for s in &model.shells {
-        if has(&s.grids[..s.shape.n_corners()]) {
-            all.push(format!("{} {}", s.shape.card(), s.id));
-        }
-    }
-    let solids = model.solids.iter();
-    all.extend(
-        solids
-            .filter(|s| s.grids.contains(&Some(grid)))
-            .map(|s| format!("{} {}", s.shape.card(), s.id)),
-    );
-    for b in model.beams.iter().filter(|b| has(&b.grids)) {
-        all.push(format!(
-            "{} {}",
-            if b.is_beam { "CBEAM" } else { "CBAR" },
-            b.id
-        ));
-    }
-    all.extend(
-        model
-            .rods
-            .iter()
-            .filter(|r| has(&r.grids))
-            .map(|r| format!("rod {}", r.id)),
-    );
-    all.extend(
-        model
-            .bushes
-            .iter()
-            .filter(|b| b.grids.0 == grid || b.grids.1 == Some(grid))
-            .map(|b| format!("CBUSH {}", b.id)),
-    );
-    all.extend(
-        model
-            .springs
-            .iter()
-            .filter(|s| s.ends.iter().flatten().any(|e| e.0 == grid))
-            .map(|s| format!("spring {}", s.id)),
-    );
-    all.extend(
-        model
-            .masses
-            .iter()
-            .filter(|m| m.grid == grid)
-            .map(|m| format!("mass {}", m.id)),
-    );
-    for r in &model.rigids {
-        let touches = match &r.kind {
-            crate::model::RigidKind::Body {
-                independent,
-                dependent,
-                ..
-            } => independent.iter().chain(dependent).any(|(g, _)| *g == grid),
-            crate::model::RigidKind::Mean {
-                reference, arms, ..
-            } => *reference == grid || arms.iter().any(|a| a.2 == grid),
-        };
-        if touches {
-            all.push(format!("rigid element {}", r.id));
-        }
-    }
-    let more = all.len().saturating_sub(4);
-    all.truncate(4);
-    match (all.is_empty(), more) {
-        (true, _) => "no element".to_owned(),
-        (false, 0) => all.join(", "),
-        (false, more) => format!("{} and {more} more", all.join(", ")),
-    }
-}

@@ -1,10 +1,10 @@
 //! What acts along the bars and beams of a load case: PLOAD1 and temperature.
 
 use super::UnitLoad;
-use super::element::beam::{Interior, LineLoad, LineStrain};
-use super::solve::LoadCase;
-use super::temperature::Temperatures;
-use crate::model::{Load, MaterialKind, Model};
+use super::element::beam::{Interior, LineLoad};
+use super::load_case::LoadCase;
+use super::temperature::{Temperatures, beam_expansion};
+use crate::model::{Load, Model};
 use std::collections::HashMap;
 
 /// Loads along beams, and temperatures, of one case.
@@ -71,20 +71,4 @@ impl<'a> Between<'a> {
             thermal: self.temperatures.and_then(|t| beam_expansion(model, i, t)),
         }
     }
-}
-
-/// Free thermal strain of beam `i`; `None` where its material is no MAT1.
-pub(crate) fn beam_expansion(model: &Model, i: usize, t: &Temperatures) -> Option<LineStrain> {
-    let beam = model.beams.get(i)?;
-    let property = model.beam_properties.get(beam.property.us())?;
-    let material = model.materials.get(property.material.us())?;
-    let MaterialKind::Isotropic { alpha, .. } = material.kind else {
-        return None;
-    };
-    let (ends, gradient) = t.line_rise(beam.id, beam.grids, material.tref);
-    Some(LineStrain {
-        axial: ends.map(|t| alpha * t),
-        per_y: gradient[0].map(|t| alpha * t),
-        per_z: gradient[1].map(|t| alpha * t),
-    })
 }

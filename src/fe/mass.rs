@@ -3,7 +3,8 @@
 use super::element::beam::{beam_coupled_mass, beam_lumped_mass};
 use super::element::shell::{many_mass, output_frame, shell_mass};
 use super::element::solid::solid_mass;
-use super::element::{ElementMatrix, Prepared, rod_mass, shear_panel_mass};
+use super::element::{ElementMatrix, point_mass, rod_mass, shear_panel_mass};
+use super::prepared::Prepared;
 use super::rigid_motion::rigid;
 use crate::linalg::Matrix6;
 use crate::model::{GridIx, Model, Vec3};
@@ -274,15 +275,4 @@ fn coupled_points(grids: &[GridIx], products: &[f64], offset: &Vec3) -> ElementM
         }
     }
     m
-}
-
-/// 6 x 6 mass of a point at an offset, referred to its grid.
-pub(crate) fn point_mass(m: f64, offset: &Vec3) -> Matrix6<f64> {
-    let c = offset.cross_matrix();
-    let mut matrix = Matrix6::zeros();
-    matrix.fixed_view_mut::<3, 3>(0, 0).fill_diagonal(m);
-    matrix.fixed_view_mut::<3, 3>(0, 3).copy_from(&(c * -m));
-    matrix.fixed_view_mut::<3, 3>(3, 0).copy_from(&(c * m));
-    matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&(c * c * -m));
-    matrix
 }

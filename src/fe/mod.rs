@@ -1,42 +1,60 @@
 //! From a model and loads, or from a result file, to strain fields.
 
+mod applied;
 mod assembly;
 mod autospc;
 mod beam_strain;
-pub mod belongs;
 mod constraint;
+pub mod deck_result_consistency;
 mod element;
 mod error;
 pub mod floor;
+mod formulation;
 pub mod from_results;
 mod grid_frames;
+mod lanczos;
 mod line_load;
 mod load;
+mod load_case;
+mod load_checks;
 mod mass;
 mod modes;
+mod options;
 mod ply_strain;
+mod prepared;
+mod reactions;
 mod relief;
+mod report;
 mod rigid_motion;
+mod shape_checks;
 pub mod shell_frame;
 mod shell_strain;
 mod solid_fields;
 mod solution;
 mod solve;
+mod strain_of_cases;
 pub mod strain_rows;
 pub mod strain_tensor;
+mod support;
 mod system;
 mod temperature;
-mod unsupported;
+mod thermal_force;
+mod unsupported_cards;
+mod what_hangs;
 
 pub use error::{FeError, FreeDof, Refusal};
+pub use load_case::{LoadCase, Relief, loads_of_subcase, relief_of};
 pub use mass::{MassProperties, mass_properties};
-pub use modes::{Mode, free_modes};
+pub use modes::{ModalSolution, Mode, free_modes, solve_modes};
+pub use options::{Corners, HeatedStrain, SolveOptions};
 pub use ply_strain::ply_strains;
+pub use reactions::{Reaction, Reactions};
 pub use relief::Balance;
-pub use shell_strain::Corners;
+pub use report::{SolveReport, Solved};
+pub use shape_checks::check_shapes;
 pub use solution::*;
 pub use solve::{
-    HeatedStrain, LoadCase, Relief, SolveOptions, SolveReport, Solved, Triplets, loads_of_subcase,
-    relief_of, solution_of, solve_cases, solve_displacements, solve_unit_loads,
-    supported_stiffness, unit_cases,
+    Triplets, solution_of, solve_cases, solve_displacements, solve_unit_loads, solve_unit_loads_on,
+    supported_stiffness,
 };
+pub use support::{Support, SupportChoice, SupportError, assumed_relief, support_of};

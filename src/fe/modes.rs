@@ -1,297 +1,259 @@
-//! Elastic modes by a block Lanczos method on the factor of the static solution.
+//! Elastic modes of a free or supported structure.
 
-use super::element::Prepared;
 use super::error::FeError;
-use super::mass::Mass;
-use super::solve::Relief;
+use super::lanczos::{Accuracy, Pair, lowest};
+use super::load_case::{LoadCase, Relief};
+use super::mass::{Mass, MassProperties};
+use super::options::SolveOptions;
+use super::prepared::Prepared;
+use super::rigid_motion::rigid;
+use super::strain_of_cases::with_strain;
 use super::system::System;
-use crate::finding::Finding;
-use crate::linalg::DMatrix;
+use super::{Solution, SolveReport, Solved};
+use crate::finding::{Finding, Severity};
 use crate::linalg::sparse::Factor;
-use crate::model::Model;
-use rayon::prelude::*;
+use crate::model::{Model, Vec3};
 
-/// Vectors a block: more than any multiplicity that symmetric structures have.
-const BLOCK: usize = 6;
-/// Residual of a Ritz pair over its value; the error of a frequency goes with its square: a few parts in ten thousand.
-const CONVERGED: f64 = 1e-2;
-/// Grids handled at a time: the vectors of a block over so many stay in the cache.
-const CHUNK: usize = 512;
-/// Vectors at most, for each mode wanted: bounds memory and time.
-const VECTORS_A_MODE: usize = 8;
+/// Frequencies beside a static solution, which judge whether records are slow: a few parts in ten thousand, whatever lies beside them.
+const BESIDE_STATICS: Accuracy = Accuracy {
+    frequency: 2e-4,
+    residual: f64::INFINITY,
+};
+/// Modes asked for by themselves: shapes are wanted too, whose error is the residual over the gap.
+const ALONE: Accuracy = Accuracy {
+    frequency: 1e-8,
+    residual: 1e-5,
+};
+/// Two modes nearer than this share of their frequency mix freely: their shapes are any two of the space they span.
+const CLOSE: f64 = 1e-4;
 
 /// A mode of vibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
     /// Cycles per unit of time.
     pub frequency: f64,
-    /// Shape with unit generalized mass, basic frame: translation and rotation by grid index.
+    /// u'Mu of the shape: 1 but for rounding.
+    pub generalised_mass: f64,
+    /// Share of the equation that is not satisfied: |K^-1 M u - u / omega^2| over |u / omega^2| in the norm of M.
+    pub residual: f64,
+    /// Bound on the relative error of the frequency that follows from residual and gap.
+    pub frequency_error: f64,
+    /// Distance to the nearest other mode's 1 / omega^2, over its own.
+    pub gap: f64,
+    /// Modal effective mass along x, y, z and about axes through the centre of gravity: (u'MR)^2 / u'Mu. Zero for a free structure, whose
+    /// elastic modes move no centre of gravity.
+    pub effective_mass: [f64; 6],
+    /// Shape with unit generalised mass, basic frame: translation and rotation by grid index.
     pub shape: Vec<[f64; 6]>,
 }
 
-/// The lowest elastic modes, ascending; rigid motions are left out.
+/// Modes of a structure, with their strain.
+#[derive(Clone, Debug, Default)]
+pub struct ModalSolution {
+    /// Ascending; rigid motions are left out.
+    pub modes: Vec<Mode>,
+    /// Rigid motions that no support holds.
+    pub rigid_motions: usize,
+    /// Mass and centre of gravity.
+    pub mass: Option<MassProperties>,
+    /// Unknowns.
+    pub dofs: usize,
+    /// Strain of every shape, numbered 1 .. n as subcases.
+    pub strain: Solution,
+    /// What was noticed.
+    pub findings: Vec<Finding>,
+}
+
+/// The lowest elastic modes with their strain; rigid motions are left out.
+///
+/// `spc` holds the structure; where it holds no rigid motion, or not all, the rest is left free. Mass and stiffness are those of statics,
+/// PARAM,WTMASS and PARAM,COUPMASS included.
 ///
 /// # Errors
-/// See [`FeError`].
+/// See [`FeError`]; a structure without mass.
+pub fn solve_modes(
+    model: &Model,
+    spc: Option<u32>,
+    mpc: Option<u32>,
+    count: usize,
+    options: &SolveOptions,
+) -> Result<ModalSolution, FeError> {
+    let refused = super::unsupported_cards::unsupported_cards(model, &[]);
+    if !refused.is_empty() {
+        return Err(FeError::Refused(refused));
+    }
+    let prepared = Prepared::new(model);
+    let mass = Mass::new(&prepared);
+    let x: Vec<Vec3> = model.grids.iter().map(|g| g.x).collect();
+    let properties = mass.properties(&x).ok_or(FeError::NoMassToVibrate)?;
+    let mut findings = super::formulation::formulations(model);
+    findings.extend(super::shape_checks::check_shapes(model));
+    let (pairs, rigid_motions, dofs) =
+        pairs_of(&prepared, &mass, (spc, mpc), count, &mut findings)?;
+    findings.extend(fewer_than_wanted(pairs.len(), count));
+    findings.extend(not_converged(&pairs));
+    findings.extend(close_modes(&pairs));
+    let modes: Vec<Mode> = pairs
+        .into_iter()
+        .map(|p| finished(&mass, &x, &properties, p))
+        .collect();
+    let cases: Vec<LoadCase> = (1..)
+        .zip(&modes)
+        .map(|(subcase, mode)| LoadCase {
+            subcase,
+            label: format!("mode {subcase}, {} cycles per unit of time", mode.frequency),
+            loads: Vec::new(),
+            spc,
+            mpc,
+            relief: Relief::None,
+        })
+        .collect();
+    let solved = Solved {
+        displacements: modes.iter().map(|m| m.shape.clone()).collect(),
+        report: SolveReport::default(),
+        findings: Vec::new(),
+    };
+    let (strain, _) = with_strain(&prepared, &cases, solved, options)?;
+    Ok(ModalSolution {
+        modes,
+        rigid_motions,
+        mass: Some(properties),
+        dofs,
+        strain,
+        findings,
+    })
+}
+
+/// The lowest elastic modes without their strain.
+///
+/// # Errors
+/// See [`solve_modes`].
 pub fn free_modes(
     model: &Model,
     spc: Option<u32>,
     mpc: Option<u32>,
     count: usize,
 ) -> Result<(Vec<Mode>, Vec<Finding>), FeError> {
-    let refused = super::unsupported::unsupported(model, &[]);
-    if !refused.is_empty() {
-        return Err(FeError::Refused(refused));
-    }
-    let prepared = Prepared::new(model);
-    let mass = Mass::new(&prepared);
-    let mut findings = Vec::new();
-    let mut system = System::new(
-        &prepared,
-        &mass,
-        (spc, mpc, &[]),
-        Relief::Automatic,
-        &mut findings,
-    )?;
-    let stiffness = std::mem::take(&mut system.stiffness);
-    let factor = system.factor(&prepared, &mass, stiffness)?;
-    let modes = modes_of(&prepared, &mass, &system, &factor, count)?;
-    Ok((modes, findings))
+    let solved = solve_modes(model, spc, mpc, count, &SolveOptions::default())?;
+    Ok((solved.modes, solved.findings))
 }
 
-type Field = Vec<[f64; 6]>;
-
-/// The lowest elastic modes from a factor of the determinately supported stiffness.
-///
-/// Block Lanczos with full reorthogonalization on P K^-1 P' M in the inner product of M, where P takes the rigid motions out
-/// (R'M u = 0): a balanced load needs no more than the stiffness that statics use.
-///
-/// # Reference
-/// R. G. Grimes, J. G. Lewis and H. D. Simon, SIAM J. Matrix Anal. Appl. 15 (1994) 228.
+/// Frequencies of the lowest elastic modes from the factor of a static solution.
 ///
 /// # Errors
 /// See [`FeError`].
-pub(super) fn modes_of(
+pub(super) fn frequencies(
     prepared: &Prepared<'_>,
     mass: &Mass,
     system: &System,
     factor: &Factor<'_>,
     count: usize,
-) -> Result<Vec<Mode>, FeError> {
-    let n = system.symbolic.n_unknowns();
-    let most = (VECTORS_A_MODE * count).max(4 * BLOCK).min(n);
-    // P u from unknowns.
-    let field = |values: &[f64]| {
-        let mut u = system.unpack(prepared, values);
-        if let Some(body) = &system.body {
-            body.take_out(mass, &mut u);
-        }
-        u
-    };
-    let apply = |forces: &[Field]| -> Result<Vec<Field>, FeError> {
-        let mut columns = vec![0.0; n * forces.len()];
-        columns
-            .par_chunks_exact_mut(n.max(1))
-            .zip(forces)
-            .try_for_each(|(column, f)| system.pack(prepared, f.clone(), column))?;
-        factor.solve(&mut columns);
-        Ok(columns.par_chunks_exact(n.max(1)).map(field).collect())
-    };
-    let start: Vec<Field> = (0..BLOCK.min(n))
-        .into_par_iter()
-        .map(|c| field(&start_values(n, c)))
-        .collect();
-    // One step on random values: what has no mass is gone.
-    let mut block = apply(&mass_times(mass, &start))?;
-    drop(start);
-    let (mut basis, mut forces): (Vec<Field>, Vec<Field>) = (Vec::new(), Vec::new());
-    // Q' M A Q, row and column by basis vector.
-    let mut projected = DMatrix::<f64>::zeros(0, 0);
-    loop {
-        let (q, f, kept) = orthonormal(mass, &basis, &forces, block);
-        let before = basis.len();
-        let size = before + q.len();
-        // Entries that tie the new vectors to the last ones are those of `kept`, found while they were made orthogonal.
-        let done = q.is_empty();
-        let converged = ritz(&projected).is_some_and(|(values, vectors)| {
-            let first = before.saturating_sub(kept.ncols());
-            values.len() >= count
-                && (0..count).all(|c| {
-                    let tail = vectors.column(c).rows(first, before - first).into_owned();
-                    (&kept * tail).norm() <= CONVERGED * values[c]
-                })
-        });
-        if (converged && before > 0) || done || (size > most && before > 0) {
-            break;
-        }
-        block = apply(&f)?;
-        basis.extend(q);
-        forces.extend(f);
-        // <q_i, A q_j> for all i and the new j.
-        let columns = gram(&forces, &block);
-        let mut grown = DMatrix::zeros(size, size);
-        grown
-            .view_mut((0, 0), (before, before))
-            .copy_from(&projected);
-        for i in 0..size {
-            for j in before..size {
-                grown[(i, j)] = columns[(i, j - before)];
-                grown[(j, i)] = columns[(i, j - before)];
-            }
-        }
-        projected = grown;
-    }
-    let Some((values, vectors)) = ritz(&projected) else {
-        return Ok(Vec::new());
-    };
-    let floor = 1e-12 * values.first().copied().unwrap_or(0.0);
-    let good = values.iter().take_while(|v| **v > floor).count();
-    Ok((0..count.min(good))
-        .into_par_iter()
-        .map(|c| Mode {
-            frequency: 1.0 / values[c].sqrt() / std::f64::consts::TAU,
-            shape: combine(&basis, |r| vectors[(r, c)]),
-        })
-        .collect())
+) -> Result<Vec<f64>, FeError> {
+    let pairs = lowest(prepared, mass, system, factor, (count, BESIDE_STATICS))?;
+    Ok(pairs.iter().map(|p| p.frequency).collect())
 }
 
-/// Ritz values 1 / omega^2, descending, and vectors.
-fn ritz(projected: &DMatrix<f64>) -> Option<(Vec<f64>, DMatrix<f64>)> {
-    if projected.nrows() == 0 {
-        return None;
-    }
-    let symmetric = (projected + projected.transpose()) * 0.5;
-    let eigen = symmetric.symmetric_eigen();
-    let mut order: Vec<usize> = (0..projected.nrows()).collect();
-    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-    let values = order.iter().map(|&i| eigen.eigenvalues[i]).collect();
-    let vectors = DMatrix::from_fn(projected.nrows(), order.len(), |r, c| {
-        eigen.eigenvectors[(r, order[c])]
-    });
-    Some((values, vectors))
-}
-
-fn mass_times(mass: &Mass, fields: &[Field]) -> Vec<Field> {
-    fields.par_iter().map(|u| mass.times(u)).collect()
-}
-
-/// A block made orthonormal in M to the basis and in itself: vectors, M times them, and the factor R of `block = basis part + Q R`.
-/// Directions that are left with nothing are dropped.
-fn orthonormal(
+/// Pairs, rigid motions left free, unknowns.
+fn pairs_of(
+    prepared: &Prepared<'_>,
     mass: &Mass,
-    basis: &[Field],
-    forces: &[Field],
-    mut block: Vec<Field>,
-) -> (Vec<Field>, Vec<Field>, DMatrix<f64>) {
-    let first = gram(&block, &mass_times(mass, &block));
-    let scale: Vec<f64> = (0..block.len())
-        .map(|i| first[(i, i)].max(0.0).sqrt())
-        .collect();
-    for _ in 0..2 {
-        if !basis.is_empty() {
-            let along = gram(forces, &block);
-            subtract(&mut block, basis, &along);
-        }
+    (spc, mpc): (Option<u32>, Option<u32>),
+    count: usize,
+    findings: &mut Vec<Finding>,
+) -> Result<(Vec<Pair>, usize, usize), FeError> {
+    let sets = (spc, mpc, [].as_slice());
+    let mut system = System::new(prepared, mass, sets, Relief::Automatic, findings)?;
+    // Supports that are moved in statics stand still.
+    system.reduction.forget_enforced();
+    let n = system.symbolic.n_unknowns();
+    let rigid_motions = system.body.as_ref().map_or(0, |b| b.n_free());
+    if n == 0 || count == 0 {
+        return Ok((Vec::new(), rigid_motions, n));
     }
-    let mut factor = DMatrix::identity(block.len(), block.len());
-    // Twice: the second round repairs what rounding leaves of the first.
-    for _ in 0..2 {
-        let weight = gram(&block, &mass_times(mass, &block));
-        let n = block.len();
-        let eigen = weight.symmetric_eigen();
-        let largest = scale.iter().fold(0.0_f64, |a, s| a.max(s * s));
-        let kept: Vec<usize> = (0..n)
-            .filter(|&i| eigen.eigenvalues[i] > 1e-24 * largest.max(f64::MIN_POSITIVE))
-            .collect();
-        let step = DMatrix::from_fn(kept.len(), n, |r, c| {
-            eigen.eigenvalues[kept[r]].sqrt() * eigen.eigenvectors[(c, kept[r])]
-        });
-        block = (0..kept.len())
-            .into_par_iter()
-            .map(|c| {
-                let root = eigen.eigenvalues[kept[c]].sqrt();
-                combine(&block, |r| eigen.eigenvectors[(r, kept[c])] / root)
-            })
-            .collect();
-        factor = step * factor;
-    }
-    let f = mass_times(mass, &block);
-    (block, f, factor)
+    let stiffness = std::mem::take(&mut system.stiffness);
+    let factor = system.factor(prepared, mass, stiffness)?;
+    let pairs = lowest(prepared, mass, &system, &factor, (count, ALONE))?;
+    Ok((pairs, rigid_motions, n))
 }
 
-/// Repeatable values between -1 and 1 (splitmix64).
-fn start_values(n: usize, column: usize) -> Vec<f64> {
-    let mut state = 0x9E37_79B9_7F4A_7C15_u64.wrapping_mul(column as u64 + 1);
-    (0..n)
-        .map(|_| {
-            state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-            let mut z = state;
-            z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-            z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-            ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        })
-        .collect()
-}
-
-/// Dots of all of `a` with all of `b`, chunk by chunk so that each is read once; the chunks are summed in their order.
-fn gram(a: &[Field], b: &[Field]) -> DMatrix<f64> {
-    let grids = a.first().map_or(0, Vec::len);
-    let parts: Vec<DMatrix<f64>> = (0..grids.div_ceil(CHUNK))
-        .into_par_iter()
-        .map(|c| {
-            let range = c * CHUNK..grids.min((c + 1) * CHUNK);
-            DMatrix::from_fn(a.len(), b.len(), |i, j| {
-                dot(&a[i][range.clone()], &b[j][range.clone()])
-            })
-        })
-        .collect();
-    parts
+/// A pair with its masses, its largest translation positive.
+fn finished(mass: &Mass, x: &[Vec3], properties: &MassProperties, pair: Pair) -> Mode {
+    let frequency_error = pair.frequency_error();
+    let mut shape = pair.shape;
+    let largest = shape
         .iter()
-        .fold(DMatrix::zeros(a.len(), b.len()), |sum, p| sum + p)
-}
-
-fn dot(a: &[[f64; 6]], b: &[[f64; 6]]) -> f64 {
-    // Six sums, which the processor runs side by side.
-    let mut sums = [0.0; 6];
-    for (a, b) in a.iter().zip(b) {
-        for i in 0..6 {
-            sums[i] += a[i] * b[i];
-        }
+        .flat_map(|u| &u[..3])
+        .fold(0.0_f64, |a, v| if v.abs() > a.abs() { *v } else { a });
+    if largest < 0.0 {
+        shape.iter_mut().flatten().for_each(|v| *v = -*v);
     }
-    sums.iter().sum()
-}
-
-/// Takes `basis` times a column of `amounts` from each field of the block.
-fn subtract(block: &mut [Field], basis: &[Field], amounts: &DMatrix<f64>) {
-    let grids = block.first().map_or(0, Vec::len);
-    let mut pieces: Vec<Vec<&mut [[f64; 6]]>> = (0..grids.div_ceil(CHUNK))
-        .map(|_| Vec::with_capacity(block.len()))
-        .collect();
-    for field in block {
-        for (piece, list) in field.chunks_mut(CHUNK).zip(&mut pieces) {
-            list.push(piece);
-        }
-    }
-    pieces.into_par_iter().enumerate().for_each(|(c, list)| {
-        let range = c * CHUNK..grids.min((c + 1) * CHUNK);
-        for (j, piece) in list.into_iter().enumerate() {
-            for (i, q) in basis.iter().enumerate() {
-                add(piece, &q[range.clone()], -amounts[(i, j)]);
-            }
-        }
+    let momentum = mass.times(&shape);
+    let work = |a: &[[f64; 6]], b: &mut dyn Iterator<Item = [f64; 6]>| -> f64 {
+        a.iter()
+            .zip(b)
+            .map(|(a, b)| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>())
+            .sum()
+    };
+    let generalised_mass = work(&momentum, &mut shape.iter().copied());
+    let effective_mass = std::array::from_fn(|i| {
+        let motion = &mut x.iter().map(|x| rigid(i, x, &properties.cg));
+        work(&momentum, motion).powi(2) / generalised_mass
     });
-}
-
-fn add(to: &mut [[f64; 6]], v: &[[f64; 6]], c: f64) {
-    for (o, v) in to.iter_mut().zip(v) {
-        o.iter_mut().zip(v).for_each(|(o, v)| *o += c * v);
+    Mode {
+        frequency: pair.frequency,
+        generalised_mass,
+        residual: pair.residual,
+        frequency_error,
+        gap: pair.gap,
+        effective_mass,
+        shape,
     }
 }
 
-fn combine(fields: &[Field], amount: impl Fn(usize) -> f64) -> Field {
-    let mut out = vec![[0.0; 6]; fields.first().map_or(0, Vec::len)];
-    for (r, field) in fields.iter().enumerate() {
-        add(&mut out, field, amount(r));
-    }
-    out
+fn fewer_than_wanted(found: usize, wanted: usize) -> Option<Finding> {
+    (found < wanted).then(|| {
+        Finding::new(
+            Severity::Info,
+            "fewer-modes",
+            "modes",
+            format!("the structure has {found} elastic modes with mass, {wanted} were asked for"),
+            "ask for fewer, or give the parts that should vibrate mass",
+        )
+        .with_numbers(found as f64, wanted as f64)
+    })
+}
+
+fn not_converged(pairs: &[Pair]) -> Option<Finding> {
+    let worst = pairs
+        .iter()
+        .map(Pair::frequency_error)
+        .fold(0.0_f64, f64::max);
+    (worst > ALONE.frequency.max(1e-6)).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "modes-not-converged",
+            "modes",
+            "the iteration ended before the last modes had settled: their frequencies are certain to the number stated alone",
+            "ask for fewer modes, or for more than are needed and leave the last ones",
+        )
+        .with_numbers(worst, ALONE.frequency)
+    })
+}
+
+fn close_modes(pairs: &[Pair]) -> Option<Finding> {
+    let close: Vec<String> = (1..)
+        .zip(pairs.windows(2))
+        .filter(|(_, w)| (w[1].frequency - w[0].frequency).abs() < CLOSE * w[0].frequency)
+        .map(|(i, _)| format!("{i} and {}", i + 1))
+        .collect();
+    (!close.is_empty()).then(|| {
+        Finding::new(
+            Severity::Info,
+            "close-modes",
+            format!("modes {}", close.join(", ")),
+            "these frequencies coincide: each shape is one of many of the same frequency",
+            "compare the space that they span, not one shape with one shape",
+        )
+        .with_numbers(close.len() as f64, 0.0)
+    })
 }

@@ -44,30 +44,31 @@ pub struct Balance {
 }
 
 impl RigidBody {
-    /// The free motions of a model with the given mass; `touched` are the grids that belong to the structure.
+    /// The free motions of a model with the given mass; `touched` are the grids that belong to the structure. `None` where supports
+    /// leave no motion free.
     ///
     /// # Errors
-    /// No mass.
+    /// Free motions, and no mass to balance loads along them.
     pub(crate) fn new(
         x: Vec<Vec3>,
         axes: &[Option<Mat3>],
         mass: &Mass,
         reduction: &Reduction,
         touched: &[bool],
-    ) -> Result<Self, FeError> {
-        let properties = mass.properties(&x).ok_or(FeError::NoMass)?;
-        let size = x
-            .iter()
-            .zip(touched)
-            .filter(|t| *t.1)
-            .map(|(x, _)| (x - properties.cg).norm())
-            .fold(0.0, f64::max);
+    ) -> Result<Option<Self>, FeError> {
+        let properties = mass.properties(&x);
+        let parts = || x.iter().zip(touched).filter(|t| *t.1).map(|t| t.0);
+        let centre = match &properties {
+            Some(p) => p.cg,
+            None => parts().sum::<Vec3>() / parts().count().max(1) as f64,
+        };
+        let size = parts().map(|x| (x - centre).norm()).fold(0.0, f64::max);
         let size = if size > 0.0 { size } else { 1.0 };
         let mut resisted = Matrix6::<f64>::zeros();
         for (g, x) in x.iter().enumerate().filter(|(g, _)| touched[*g]) {
             for i in (0..6).filter(|i| reduction.state[6 * g + i] == State::Held) {
                 let row: [f64; 6] = std::array::from_fn(|mode| {
-                    let u = to_local(&axes[g], rigid(mode, x, &properties.cg))[i];
+                    let u = to_local(&axes[g], rigid(mode, x, &centre))[i];
                     let dof_scale = if i >= 3 { size } else { 1.0 };
                     u * dof_scale / if mode >= 3 { size } else { 1.0 }
                 });
@@ -87,15 +88,19 @@ impl RigidBody {
                 eigen.eigenvectors[(r, free[c])] / if r >= 3 { size } else { 1.0 }
             })
         };
+        if basis.ncols() == 0 {
+            return Ok(None);
+        }
+        let properties = properties.ok_or(FeError::NoMass)?;
         let rigid_mass = DMatrix::from_fn(6, 6, |r, c| properties.matrix[(r, c)]);
         let modal = basis.transpose() * rigid_mass * &basis;
-        Ok(Self {
+        Ok(Some(Self {
             x,
             properties,
             basis,
             modal,
             size,
-        })
+        }))
     }
 
     /// How many motions are free.

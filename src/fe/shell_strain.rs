@@ -1,9 +1,10 @@
 //! Strain of shells from displacements.
 
 use super::ShellField;
-use super::element::Prepared;
 use super::element::shell::{AnyShell, Parts, many_grids, shell_heat, shell_matrices, surfaces};
 use super::error::{FeError, Refusal};
+use super::options::Corners;
+use super::prepared::Prepared;
 use super::temperature::Temperatures;
 use crate::model::{GridIx, ShellIx};
 use rayon::prelude::*;
@@ -11,16 +12,6 @@ use std::sync::Arc;
 
 /// Shells a task.
 const CHUNK: usize = 512;
-
-/// Where strain is computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Corners {
-    /// At centre and corners.
-    #[default]
-    Compute,
-    /// At the centre only: a fifth of the memory.
-    Leave,
-}
 
 type Surfaces = [[f64; 3]; 2];
 

@@ -1,9 +1,9 @@
 //! Strain of solids from displacements.
 
 use super::SolidField;
-use super::element::Prepared;
 use super::element::solid::{SolidStrain, solid_grids, solid_strain};
 use super::error::{FeError, Refusal};
+use super::prepared::Prepared;
 use super::temperature::Temperatures;
 use rayon::prelude::*;
 use std::sync::Arc;

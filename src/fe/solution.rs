@@ -56,6 +56,8 @@ pub struct BeamField {
     pub elements: Arc<Vec<BeamIx>>,
     /// By element: stations (x/xb ascending), each with the strain at C D E F, axial strain included.
     pub stations: Vec<Vec<(f64, [f64; 4])>>,
+    /// By element and station: strain of the neutral axis, bending left out; NaN where the result doesn't tell.
+    pub axial: Vec<Vec<f64>>,
 }
 
 /// Strain of solids: xx yy zz xy yz zx, engineering shear, in the basic frame or the material frame that PSOLID names.

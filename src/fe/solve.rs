@@ -1,157 +1,30 @@
 //! Linear statics: load cases in, strain fields out.
 
-use super::element::Prepared;
+use super::applied::{applied_forces, check_sets, enforced_of, largest};
 use super::error::FeError;
-use super::line_load::Between;
-use super::load::load_vector;
+use super::formulation::formulations;
+use super::load_case::{LoadCase, Relief};
+use super::load_checks::{check_finite, load_into_support, nothing_acts};
 use super::mass::{Mass, MassProperties};
+use super::modes::frequencies;
+use super::options::SolveOptions;
+use super::prepared::Prepared;
+use super::reactions::reactions;
 use super::relief::Balance;
-use super::shell_strain::{Corners, shell_fields};
+use super::report::{Clock, SolveReport, Solved};
+use super::shape_checks::check_shapes;
+use super::strain_of_cases::with_strain;
+use super::support::{Support, contradictions};
 use super::system::System;
-use super::temperature::{Temperatures, thermal_forces};
-use super::{CaseResult, Solution, UnitLoad};
+use super::{Solution, UnitLoad};
 use crate::finding::{Finding, Severity};
-use crate::linalg::sparse::OrderingMethod;
-use crate::model::{GridIx, Load, Model};
-use nastran::bdf::Subcase;
-use nastran::cards::{Dofs, ShellShape};
+use crate::model::Model;
 use rayon::prelude::*;
-
-/// How the loads of a case are held in balance.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Relief {
-    /// By the SPC set alone.
-    None,
-    /// By inertia, supports chosen by us (PARAM,INREL,-2).
-    Automatic,
-    /// By inertia, displacements relative to the SUPORT dofs and those of this SUPORT1 set (PARAM,INREL,-1).
-    Suport(Option<u32>),
-}
-
-/// One load case.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LoadCase {
-    /// Subcase id.
-    pub subcase: u32,
-    /// For people.
-    pub label: String,
-    /// What acts; several are summed.
-    pub loads: Vec<UnitLoad>,
-    /// SPC set.
-    pub spc: Option<u32>,
-    /// MPC set.
-    pub mpc: Option<u32>,
-    /// What balances the loads.
-    pub relief: Relief,
-}
-
-/// What of the strain of a heated structure is wanted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum HeatedStrain {
-    /// Total less thermal, as Nastran gives it: what a gauge compensated for its material reads.
-    #[default]
-    Mechanical,
-    /// Thermal expansion included, the strain of the displacements: the apparent strain of a gauge that compensates nothing.
-    Total,
-}
-
-/// Settings of the solver.
-#[derive(Clone, Debug, PartialEq, Eq, Default)]
-pub struct SolveOptions {
-    /// Strain at the corners, too.
-    pub corners: Corners,
-    /// With thermal expansion or without.
-    pub heated: HeatedStrain,
-    /// Elastic modes wanted of a structure that inertia balances, from the factor of the static solution.
-    pub modes: usize,
-}
-
-/// What the solver has to say beside the solution.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct SolveReport {
-    /// Grids of the model.
-    pub grids: usize,
-    /// Unknowns of the largest system solved.
-    pub dofs: usize,
-    /// Entries of its factor.
-    pub factor_nonzeros: usize,
-    /// Its ordering.
-    pub ordering: Option<OrderingMethod>,
-    /// Smallest pivot of the matrix scaled to unit diagonal: below 1e-10 the structure is nearly a mechanism.
-    pub smallest_pivot: f64,
-    /// Nastran's epsilon of the worst case, |u'(f - K u)| / |u'f|, as substituted and after iterative refinement.
-    pub epsilon: [f64; 2],
-    /// Balance of every case solved by inertia relief.
-    pub balance: Vec<Balance>,
-    /// Mass and centre of gravity.
-    pub mass: Option<MassProperties>,
-    /// Frequencies of the lowest elastic modes, cycles per unit of time, ascending: as many as were asked for, where the
-    /// structure is free.
-    pub modes: Vec<f64>,
-    /// Wall seconds by step.
-    pub seconds: Vec<(String, f64)>,
-}
 
 /// Solutions whose epsilon is larger are refined by one step: below, rounding of a million unknowns leaves little to gain.
 const REFINED_ABOVE: f64 = 1e-7;
 /// Above this after refinement, digits that a gauge reads may be lost: the analyst is told (Nastran's users are told to worry at 1e-3).
 const INACCURATE_ABOVE: f64 = 1e-6;
-
-/// Times the steps of a solution.
-struct Clock(std::time::Instant);
-
-impl Clock {
-    fn start() -> Self {
-        Self(std::time::Instant::now())
-    }
-
-    /// Adds the time since the last note to a step.
-    fn note(&mut self, report: &mut SolveReport, step: &str) {
-        let seconds = std::mem::replace(&mut self.0, std::time::Instant::now()).elapsed();
-        match report.seconds.iter_mut().find(|s| s.0 == step) {
-            Some(s) => s.1 += seconds.as_secs_f64(),
-            None => report
-                .seconds
-                .push((step.to_owned(), seconds.as_secs_f64())),
-        }
-    }
-}
-
-/// How a model without case control is balanced: by PARAM,INREL; a model with neither INREL nor `spc` as a free structure.
-pub fn relief_of(model: &Model, spc: Option<u32>, suport: Option<u32>) -> Relief {
-    match (model.params.inrel, spc) {
-        (-1, _) => Relief::Suport(suport),
-        (-2, _) => Relief::Automatic,
-        (_, None) if model.grids.iter().all(|g| g.ps.is_empty()) => Relief::Automatic,
-        _ => Relief::None,
-    }
-}
-
-/// What acts in a subcase of a deck: its LOAD and TEMPERATURE(LOAD).
-///
-/// TEMPERATURE without an option stands for both; it loads, and thermal strain counts from TREF.
-pub fn loads_of_subcase(s: &Subcase) -> Vec<UnitLoad> {
-    let temperature = s.temperature_load.map(|set| UnitLoad::Temperature {
-        set,
-        initial: s.temperature_initial.filter(|initial| *initial != set),
-    });
-    s.load
-        .into_iter()
-        .map(UnitLoad::Set)
-        .chain(temperature)
-        .collect()
-}
-
-/// What a solution is made of before strain.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Solved {
-    /// Displacements by case and grid, basic frame.
-    pub displacements: Vec<Vec<[f64; 6]>>,
-    /// What the solver has to say.
-    pub report: SolveReport,
-    /// What was noticed.
-    pub findings: Vec<Finding>,
-}
 
 /// Solves unit loads on the free structure, subcases numbered 1 .. n.
 ///
@@ -162,23 +35,20 @@ pub fn solve_unit_loads(
     loads: &[UnitLoad],
     options: &SolveOptions,
 ) -> Result<(Solution, SolveReport), FeError> {
-    solve_cases(model, &unit_cases(model, loads), options)
+    solve_unit_loads_on(model, Support::free(model), loads, options)
 }
 
-/// Unit loads on the free structure as load cases, subcases numbered 1 .. n.
-pub fn unit_cases(model: &Model, loads: &[UnitLoad]) -> Vec<LoadCase> {
-    let relief = relief_of(model, None, None);
-    (1..)
-        .zip(loads)
-        .map(|(subcase, load)| LoadCase {
-            subcase,
-            label: String::new(),
-            loads: vec![load.clone()],
-            spc: None,
-            mpc: model.mpc,
-            relief,
-        })
-        .collect()
+/// Solves unit loads on a structure held like this, subcases numbered 1 .. n.
+///
+/// # Errors
+/// See [`FeError`].
+pub fn solve_unit_loads_on(
+    model: &Model,
+    support: Support,
+    loads: &[UnitLoad],
+    options: &SolveOptions,
+) -> Result<(Solution, SolveReport), FeError> {
+    solve_cases(model, &support.unit_cases(model, loads), options)
 }
 
 /// Solves load cases; those with the same constraints share one factor.
@@ -221,7 +91,7 @@ pub fn solution_of(
 }
 
 fn prepare<'a>(model: &'a Model, cases: &[LoadCase]) -> Result<Prepared<'a>, FeError> {
-    let refused = super::unsupported::unsupported(model, cases);
+    let refused = super::unsupported_cards::unsupported_cards(model, cases);
     if refused.is_empty() {
         Ok(Prepared::new(model))
     } else {
@@ -243,6 +113,7 @@ fn displacements(
         ..SolveReport::default()
     };
     let mut findings = formulations(model);
+    findings.extend(check_shapes(model));
     let mut fields: Vec<Vec<[f64; 6]>> = vec![Vec::new(); cases.len()];
     let mut done = vec![false; cases.len()];
     for first in 0..cases.len() {
@@ -274,47 +145,6 @@ fn displacements(
     })
 }
 
-fn with_strain(
-    prepared: &Prepared<'_>,
-    cases: &[LoadCase],
-    solved: Solved,
-    options: &SolveOptions,
-) -> Result<(Solution, SolveReport), FeError> {
-    let u = solved.displacements;
-    let temperatures = match options.heated {
-        HeatedStrain::Mechanical => temperatures_of(prepared.model, cases)?,
-        HeatedStrain::Total => vec![None; cases.len()],
-    };
-    let between: Vec<Between<'_>> = cases
-        .iter()
-        .zip(&temperatures)
-        .map(|(case, t)| Between::new(prepared.model, case, t.as_ref()))
-        .collect();
-    let shells = shell_fields(prepared, &u, &temperatures, options.corners)?;
-    let beams = super::beam_strain::beam_fields(prepared, &u, &between)?;
-    let solids = super::solid_fields::solid_fields(prepared, &u, &temperatures)?;
-    let results = cases.iter().zip(u).zip(shells).zip(beams).zip(solids);
-    Ok((
-        Solution {
-            cases: results
-                .map(
-                    |((((case, displacement), shells), beams), solids)| CaseResult {
-                        subcase: case.subcase,
-                        label: case.label.clone(),
-                        shells,
-                        beams,
-                        solids,
-                        displacement,
-                    },
-                )
-                .collect(),
-            source: concat!("strainbridge ", env!("CARGO_PKG_VERSION")).to_owned(),
-            findings: solved.findings,
-        },
-        solved.report,
-    ))
-}
-
 /// Displacements (basic frame) of cases with the same constraints.
 fn solve_group(
     prepared: &Prepared<'_>,
@@ -329,6 +159,7 @@ fn solve_group(
         return Ok(Vec::new());
     };
     check_sets(model, cases)?;
+    findings.extend(contradictions(model, case.spc));
     let mut clock = Clock::start();
     let mut system = System::new(
         prepared,
@@ -340,48 +171,80 @@ fn solve_group(
     clock.note(report, "assemble");
     let n = system.symbolic.n_unknowns();
     let mut columns = vec![0.0; n * cases.len()];
-    let packed: Vec<(Option<Balance>, Option<Finding>)> = columns
-        .par_chunks_exact_mut(n.max(1))
-        .zip(cases)
-        .map(|(column, case)| load_column(prepared, mass, &system, case, column))
+    let acting: Vec<Acting> = cases
+        .par_iter()
+        .map(|case| acting(prepared, mass, &system, report.mass.as_ref(), case))
         .collect::<Result<_, FeError>>()?;
-    for (balance, finding) in packed {
-        report.balance.extend(balance);
-        findings.extend(finding);
+    let mut forces = Vec::with_capacity(cases.len());
+    for acting in acting {
+        report.balance.extend(acting.balance);
+        findings.extend(acting.findings);
+        forces.push(acting.forces);
     }
+    columns
+        .par_chunks_exact_mut(n.max(1))
+        .zip(&forces)
+        .try_for_each(|(column, f)| system.pack(prepared, f.clone(), column))?;
     clock.note(report, "loads");
     if report.dofs < n {
         report.dofs = n;
         report.factor_nonzeros = system.symbolic.factor_nonzeros();
         report.ordering = Some(system.symbolic.method());
     }
-    let stiffness = std::mem::take(&mut system.stiffness);
-    let factor = system.factor(prepared, mass, stiffness)?;
-    clock.note(report, "factor");
-    report.smallest_pivot = factor.smallest_pivot;
-    let refined = factor.solve_refined(&mut columns, REFINED_ABOVE);
-    clock.note(report, "substitute");
-    for (case, refined) in cases.iter().zip(refined) {
-        report.epsilon[0] = report.epsilon[0].max(refined.first);
-        report.epsilon[1] = report.epsilon[1].max(refined.last);
-        findings.extend(inaccurate(case.subcase, refined.last));
+    if n == 0 {
+        findings.push(nothing_free(cases));
+    } else {
+        let stiffness = std::mem::take(&mut system.stiffness);
+        let factor = system.factor(prepared, mass, stiffness)?;
+        clock.note(report, "factor");
+        report.smallest_pivot = factor.smallest_pivot;
+        let refined = factor.solve_refined(&mut columns, REFINED_ABOVE);
+        clock.note(report, "substitute");
+        for (case, refined) in cases.iter().zip(refined) {
+            report.epsilon[0] = report.epsilon[0].max(refined.first);
+            report.epsilon[1] = report.epsilon[1].max(refined.last);
+            findings.extend(inaccurate(case.subcase, refined.last));
+        }
+        let still = system.reduction.enforced.is_empty() && report.mass.is_some();
+        if options.modes > 0 && report.modes.is_empty() && still {
+            report.modes = frequencies(prepared, mass, &system, &factor, options.modes)?;
+            clock.note(report, "modes");
+        }
     }
-    if system.body.is_some() && options.modes > 0 && report.modes.is_empty() {
-        let modes = super::modes::modes_of(prepared, mass, &system, &factor, options.modes)?;
-        report.modes = modes.iter().map(|m| m.frequency).collect();
-        clock.note(report, "modes");
-    }
-    drop(factor);
-    Ok(columns
-        .par_chunks_exact(n.max(1))
-        .map(|column| {
-            let mut u = system.unpack(prepared, column);
+    let fields: Vec<Vec<[f64; 6]>> = (0..cases.len())
+        .into_par_iter()
+        .map(|i| {
+            let mut u = system.unpack(prepared, &columns[n * i..n * (i + 1)]);
             if let (Some(body), Relief::Automatic) = (&system.body, case.relief) {
                 body.take_out(mass, &mut u);
             }
-            u
+            check_finite(
+                cases[i].subcase,
+                "displacements",
+                u.iter().flatten().copied(),
+            )?;
+            Ok(u)
         })
-        .collect())
+        .collect::<Result<_, FeError>>()?;
+    let ids: Vec<u32> = cases.iter().map(|c| c.subcase).collect();
+    let reactions = reactions(prepared, &system, &ids, &fields, &forces)?;
+    if !reactions.is_empty() {
+        clock.note(report, "reactions");
+    }
+    report.reactions.extend(reactions);
+    Ok(fields)
+}
+
+/// What is said of a structure whose every dof is held.
+fn nothing_free(cases: &[&LoadCase]) -> Finding {
+    let ids: Vec<String> = cases.iter().map(|c| c.subcase.to_string()).collect();
+    Finding::new(
+        Severity::Warning,
+        "every-dof-held",
+        format!("subcases {}", ids.join(", ")),
+        "supports hold every degree of freedom, so that loads strain nothing",
+        "hold the structure where its supports are, and there alone",
+    )
 }
 
 fn inaccurate(subcase: u32, epsilon: f64) -> Option<Finding> {
@@ -397,23 +260,42 @@ fn inaccurate(subcase: u32, epsilon: f64) -> Option<Finding> {
     })
 }
 
-/// The balanced loads of a case at the unknowns.
-fn load_column(
+/// What acts in a case.
+struct Acting {
+    /// By grid, basic frame, inertia included where it balances.
+    forces: Vec<[f64; 6]>,
+    balance: Option<Balance>,
+    findings: Vec<Finding>,
+}
+
+/// The balanced loads of a case.
+///
+/// # Errors
+/// Loads on nothing; numbers beyond all bounds; sets that the deck lacks.
+fn acting(
     prepared: &Prepared<'_>,
     mass: &Mass,
     system: &System,
+    weight: Option<&MassProperties>,
     case: &LoadCase,
-    column: &mut [f64],
-) -> Result<(Option<Balance>, Option<Finding>), FeError> {
+) -> Result<Acting, FeError> {
     let model = prepared.model;
     let mut f = applied_forces(prepared, mass, case)?;
+    check_finite(case.subcase, "loads", f.iter().flatten().copied())?;
     system.loads_on_nothing(model, &prepared.axes, case.subcase, &f)?;
-    let (mut balanced, mut finding) = (None, None);
+    let mut findings: Vec<Finding> = nothing_acts(model, case, &f, weight).into_iter().collect();
+    findings.extend(load_into_support(
+        model,
+        &prepared.axes,
+        &system.reduction,
+        case,
+    ));
+    let mut balance = None;
     if let Some(body) = &system.body {
         let before = largest(&f);
-        balanced = Some(body.balance(case.subcase, mass, &mut f));
+        balance = Some(body.balance(case.subcase, mass, &mut f));
         if largest(&f) <= 1e-9 * before && before > 0.0 {
-            finding = Some(Finding::new(
+            findings.push(Finding::new(
                 Severity::Warning,
                 "load-is-inertia-only",
                 format!("subcase {}", case.subcase),
@@ -422,141 +304,11 @@ fn load_column(
             ));
         }
     }
-    system.pack(prepared, f, column)?;
-    Ok((balanced, finding))
-}
-
-pub(super) fn largest(f: &[[f64; 6]]) -> f64 {
-    f.iter().flatten().fold(0.0, |a, v| a.max(v.abs()))
-}
-
-/// Says where an element stands for another than its card names.
-fn formulations(model: &Model) -> Vec<Finding> {
-    let told: [(&[ShellShape], &str, &str); 2] = [
-        (
-            &[ShellShape::QuadR, ShellShape::TriaR],
-            "CQUADR, CTRIAR",
-            "solved as CQUAD4 and CTRIA3 whose sides bend with the rotation about the normal (Allman 1984)",
-        ),
-        (
-            &[ShellShape::Quad8, ShellShape::Tria6],
-            "CQUAD8, CTRIA6",
-            "solved as one quadrilateral a corner around a point in the middle, on the curved surface through the grids",
-        ),
-    ];
-    told.into_iter()
-        .filter_map(|(shapes, cards, what)| {
-            let n = model.shells.iter().filter(|s| shapes.contains(&s.shape)).count();
-            (n > 0).then(|| {
-                Finding::new(
-                    Severity::Info,
-                    "formulation",
-                    cards,
-                    format!("{n} elements: {what}"),
-                    "nothing for meshes of several elements a side; solve with Nastran where single elements carry the answer",
-                )
-            })
-        })
-        .collect()
-}
-
-/// What SPCD enforces in a case.
-fn enforced_of(model: &Model, case: &LoadCase) -> Vec<(GridIx, Dofs, f64)> {
-    let mut all = Vec::new();
-    for load in &case.loads {
-        let UnitLoad::Set(sid) = load else { continue };
-        for set in model.load_sets.iter().filter(|s| s.sid == *sid) {
-            all.extend(set.loads.iter().filter_map(|(factor, l)| match l {
-                Load::Enforced { grid, dofs, value } => Some((*grid, *dofs, factor * value)),
-                _ => None,
-            }));
-        }
-    }
-    all
-}
-
-/// The temperatures of every case; `None` for those without.
-fn temperatures_of(
-    model: &Model,
-    cases: &[LoadCase],
-) -> Result<Vec<Option<Temperatures>>, FeError> {
-    cases.iter().map(|c| Temperatures::of(model, c)).collect()
-}
-
-fn check_sets(model: &Model, cases: &[&LoadCase]) -> Result<(), FeError> {
-    for case in cases {
-        let missing = |kind, sid: Option<u32>, known: bool| match sid {
-            Some(sid) if !known => Err(FeError::MissingSet {
-                kind,
-                sid,
-                subcase: case.subcase,
-            }),
-            _ => Ok(()),
-        };
-        missing(
-            "SPC",
-            case.spc,
-            model.spcs.iter().any(|s| Some(s.sid) == case.spc),
-        )?;
-        missing(
-            "MPC",
-            case.mpc,
-            model.mpcs.iter().any(|s| Some(s.sid) == case.mpc),
-        )?;
-        for load in &case.loads {
-            if let UnitLoad::Set(sid) = load {
-                missing(
-                    "LOAD",
-                    Some(*sid),
-                    model.load_sets.iter().any(|s| s.sid == *sid),
-                )?;
-            }
-        }
-    }
-    Ok(())
-}
-
-fn applied_forces(
-    prepared: &Prepared<'_>,
-    mass: &Mass,
-    case: &LoadCase,
-) -> Result<Vec<[f64; 6]>, FeError> {
-    let model = prepared.model;
-    let mut f = vec![[0.0; 6]; model.grids.len()];
-    if let Some(t) = Temperatures::of(model, case)? {
-        thermal_forces(prepared, &t, &mut f)?;
-    }
-    for load in &case.loads {
-        match load {
-            UnitLoad::Temperature { .. } => {}
-            UnitLoad::AtGrid {
-                grid,
-                force,
-                moment,
-            } => {
-                for i in 0..3 {
-                    f[grid.us()][i] += force[i];
-                    f[grid.us()][3 + i] += moment[i];
-                }
-            }
-            UnitLoad::Set(sid) => {
-                let set =
-                    model
-                        .load_sets
-                        .iter()
-                        .find(|s| s.sid == *sid)
-                        .ok_or(FeError::MissingSet {
-                            kind: "LOAD",
-                            sid: *sid,
-                            subcase: case.subcase,
-                        })?;
-                for (f, add) in f.iter_mut().zip(load_vector(model, mass, set)) {
-                    f.iter_mut().zip(add).for_each(|(f, a)| *f += a);
-                }
-            }
-        }
-    }
-    Ok(f)
+    Ok(Acting {
+        forces: f,
+        balance,
+        findings,
+    })
 }
 
 /// A matrix as its order and entries of its lower triangle: row, column, value.

@@ -1,14 +1,16 @@
 //! The constrained stiffness of a model, ready to be factored: what statics and free modes share.
 
+use super::applied::largest;
 use super::assembly::{Assembled, Numbering, assemble};
 use super::autospc::weak_unknowns;
 use super::constraint::{Reduction, Sets, State, reduce};
-use super::element::Prepared;
-use super::error::{FeError, FreeDof, what_hangs};
+use super::error::{FeError, FreeDof};
 use super::grid_frames::{to_basic, to_local};
+use super::load_case::Relief;
 use super::mass::Mass;
+use super::prepared::Prepared;
 use super::relief::RigidBody;
-use super::solve::{Relief, largest};
+use super::what_hangs::what_hangs;
 use crate::finding::{Finding, Severity};
 use crate::linalg::sparse::{BlockGraph, BlockMatrix, Factor, FactorError, Symbolic};
 use crate::model::{GridIx, Mat3, Model};
@@ -48,13 +50,13 @@ impl System {
             Relief::None => None,
             _ => {
                 let x = model.grids.iter().map(|g| g.x).collect();
-                Some(RigidBody::new(
+                RigidBody::new(
                     x,
                     &prepared.axes,
                     mass,
                     &reduction,
                     &touched(prepared, &reduction),
-                )?)
+                )?
             }
         };
         if let Some(body) = &body {
@@ -273,8 +275,11 @@ fn touched(prepared: &Prepared<'_>, reduction: &Reduction) -> Vec<bool> {
         }
     }
     for (dof, state) in reduction.state.iter().enumerate() {
-        if matches!(state, State::Dependent(_)) {
+        if let State::Dependent(r) = state {
             touched[dof / 6] = true;
+            for (held, _) in &reduction.rows[*r as usize].held {
+                touched[(*held / 6) as usize] = true;
+            }
         }
     }
     touched

@@ -1,15 +1,10 @@
-//! Temperatures of a load case and the forces of the thermal strain they give.
+//! Temperatures of a load case and the strain they give.
 
 use super::UnitLoad;
-use super::element::beam::{Interior, beam_end_forces};
-use super::element::shell::shell_thermal_force;
-use super::element::solid::{solid_grids, solid_thermal_force};
-use super::element::{Prepared, rod_thermal_force};
+use super::element::beam::LineStrain;
 use super::error::FeError;
-use super::line_load::beam_expansion;
-use super::solve::LoadCase;
-use crate::model::{ElementTemperature, GridIx, Model, Shell};
-use rayon::prelude::*;
+use super::load_case::LoadCase;
+use crate::model::{ElementTemperature, GridIx, MaterialKind, Model, Shell};
 use std::collections::HashMap;
 
 /// Rises at both ends, and gradients along y and along z at both ends.
@@ -99,62 +94,18 @@ impl Temperatures {
     }
 }
 
-/// Adds the forces that hold the thermal strain of every element back.
-///
-/// # Errors
-/// Elements that can't be formed.
-pub(crate) fn thermal_forces(
-    prepared: &Prepared<'_>,
-    t: &Temperatures,
-    f: &mut [[f64; 6]],
-) -> Result<(), FeError> {
-    let model = prepared.model;
-    let refused = |r| FeError::Refused(vec![r]);
-    let solids: Vec<_> = (0..model.solids.len())
-        .into_par_iter()
-        .map(|i| {
-            let grids = solid_grids(&model.solids[i]);
-            solid_thermal_force(model, i, &t.solid_rise(model, i, &grids))
-        })
-        .collect();
-    for solid in solids {
-        for (g, v) in solid.map_err(refused)? {
-            (0..3).for_each(|i| f[g.us()][i] += v[i]);
-        }
-    }
-    let shells: Vec<_> = (0..model.shells.len())
-        .into_par_iter()
-        .map(|i| shell_thermal_force(prepared, i, t))
-        .collect();
-    for (shell, forces) in model.shells.iter().zip(shells) {
-        for (g, v) in shell
-            .grids
-            .iter()
-            .zip(forces.map_err(refused)?.chunks_exact(6))
-        {
-            f[g.us()].iter_mut().zip(v).for_each(|(f, v)| *f += v);
-        }
-    }
-    for (i, beam) in model.beams.iter().enumerate() {
-        let interior = Interior {
-            thermal: beam_expansion(model, i, t),
-            ..Interior::default()
-        };
-        let ends = beam_end_forces(model, i, &interior).map_err(refused)?;
-        for (g, v) in beam.grids.iter().zip(ends.chunks_exact(6)) {
-            f[g.us()].iter_mut().zip(v).for_each(|(f, v)| *f += v);
-        }
-    }
-    for (i, rod) in model.rods.iter().enumerate() {
-        let tref = model
-            .materials
-            .get(rod.material.us())
-            .map_or(0.0, |m| m.tref);
-        let (ends, _) = t.line_rise(rod.id, rod.grids, tref);
-        let force = rod_thermal_force(model, i, 0.5 * (ends[0] + ends[1]));
-        for (g, sign) in rod.grids.iter().zip([-1.0, 1.0]) {
-            (0..3).for_each(|k| f[g.us()][k] += sign * force[k]);
-        }
-    }
-    Ok(())
+/// Free thermal strain of beam `i`; `None` where its material is no MAT1.
+pub(crate) fn beam_expansion(model: &Model, i: usize, t: &Temperatures) -> Option<LineStrain> {
+    let beam = model.beams.get(i)?;
+    let property = model.beam_properties.get(beam.property.us())?;
+    let material = model.materials.get(property.material.us())?;
+    let MaterialKind::Isotropic { alpha, .. } = material.kind else {
+        return None;
+    };
+    let (ends, gradient) = t.line_rise(beam.id, beam.grids, material.tref);
+    Some(LineStrain {
+        axial: ends.map(|t| alpha * t),
+        per_y: gradient[0].map(|t| alpha * t),
+        per_z: gradient[1].map(|t| alpha * t),
+    })
 }

@@ -26,6 +26,13 @@ pub enum Spot {
         /// x/xb.
         station: f64,
     },
+    /// The neutral axis of a bar or beam, where bending strains nothing.
+    BeamAxis {
+        /// Which.
+        beam: BeamIx,
+        /// x/xb.
+        station: f64,
+    },
 }
 
 /// `coefficient . (exx, eyy, gxy)` at a spot, in the output frame of that spot; a beam's arm counts the first alone.
@@ -88,7 +95,16 @@ fn arm_reading(arm: &Arm, case: &CaseResult) -> Option<f64> {
             beam,
             point,
             station,
-        } => Some(a * beam_strain(case, beam, point, station)?),
+        } => Some(
+            a * beam_strain(case, beam, station, |row, s| {
+                case.beams.stations.get(row)?.get(s)?.1.get(point).copied()
+            })?,
+        ),
+        Spot::BeamAxis { beam, station } => Some(
+            a * beam_strain(case, beam, station, |row, s| {
+                case.beams.axial.get(row)?.get(s).copied()
+            })?,
+        ),
     }
 }
 
@@ -107,11 +123,16 @@ pub fn shell_strain(
     strain.iter().all(|v| v.is_finite()).then_some(strain)
 }
 
-/// Linear between the stations of a bar or beam.
-fn beam_strain(case: &CaseResult, beam: BeamIx, point: usize, station: f64) -> Option<f64> {
+/// Linear between the stations of a bar or beam; `strain` by row of the field and station.
+fn beam_strain(
+    case: &CaseResult,
+    beam: BeamIx,
+    station: f64,
+    strain: impl Fn(usize, usize) -> Option<f64>,
+) -> Option<f64> {
     let row = case.beams.elements.binary_search(&beam).ok()?;
     let stations = case.beams.stations.get(row)?;
-    let at = |i: usize| Some((stations.get(i)?.0, *stations.get(i)?.1.get(point)?));
+    let at = |i: usize| Some((stations.get(i)?.0, strain(row, i)?));
     let after = stations
         .iter()
         .position(|s| s.0 >= station)

@@ -1,6 +1,8 @@
 //! From a description to arms.
 
 use super::arms::{Arm, Gauge, Spot};
+use super::beam::{BeamSeat, on_beam};
+use super::error::GaugeError;
 use super::grid_average::{POINTS, about_centre, place_at};
 use super::spec::{Bridge, GaugePlace, GaugeSpec};
 use super::surface::{Foot, centre, nearest, to_side};
@@ -8,45 +10,6 @@ use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::fe::strain_tensor::Surface;
 use crate::finding::{Finding, Severity};
 use crate::model::{Mat3, Model, ShellIx, Vec3};
-
-/// Why a gauge can't be laid onto the model.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum GaugeError {
-    /// The direction stands on the surface.
-    #[error(
-        "gauge `{gauge}`: its direction is normal to element {element}: give one that lies along the surface"
-    )]
-    NormalDirection {
-        /// Name.
-        gauge: String,
-        /// Element id.
-        element: u32,
-    },
-    /// An element without area.
-    #[error(
-        "gauge `{gauge}`: element {element} has no area: repair the mesh or choose another element"
-    )]
-    NoArea {
-        /// Name.
-        gauge: String,
-        /// Element id.
-        element: u32,
-    },
-    /// No shells.
-    #[error(
-        "gauge `{gauge}`: the model has no shells near which it could sit: name a bar and its recovery point"
-    )]
-    NoShells {
-        /// Name.
-        gauge: String,
-    },
-    /// An element that is not there.
-    #[error("gauge `{gauge}`: its element is not in the model: check the id")]
-    NoElement {
-        /// Name.
-        gauge: String,
-    },
-}
 
 /// Whether the result has strain at the corners of shells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,7 +38,12 @@ pub fn build(
         station,
     } = spec.place
     {
-        return Ok((vec![on_beam(model, spec, beam, point, station)?], findings));
+        let seat = BeamSeat {
+            beam,
+            point,
+            station,
+        };
+        return Ok((vec![on_beam(model, spec, seat)?], findings));
     }
     let no_area = |element| GaugeError::NoArea {
         gauge: spec.name.clone(),
@@ -396,62 +364,4 @@ fn merged(arms: Vec<Arm>) -> Vec<Arm> {
         }
     }
     out
-}
-
-fn on_beam(
-    model: &Model,
-    spec: &GaugeSpec,
-    beam: crate::model::BeamIx,
-    point: usize,
-    station: f64,
-) -> Result<Gauge, GaugeError> {
-    let missing = || GaugeError::NoElement {
-        gauge: spec.name.clone(),
-    };
-    let b = model.beams.get(beam.us()).ok_or_else(missing)?;
-    let end = |i: usize| {
-        model
-            .grids
-            .get(b.grids[i].us())
-            .map(|g| g.x + b.offsets[i])
-            .ok_or_else(missing)
-    };
-    let (a, e) = (end(0)?, end(1)?);
-    let [y, z] = model
-        .beam_properties
-        .get(b.property.us())
-        .and_then(|p| p.sections.first())
-        .and_then(|s| s.1.recovery.get(point).copied())
-        .unwrap_or_default();
-    let factor = match spec.bridge {
-        Bridge::Quarter | Bridge::Shear => 1.0,
-        Bridge::HalfBending => 2.0,
-        Bridge::FullBending => 4.0,
-    };
-    let arm = |point: usize, w: f64| Arm {
-        spot: Spot::Beam {
-            beam,
-            point,
-            station,
-        },
-        coefficient: [w / spec.bridge_factor, 0.0, 0.0],
-    };
-    // A bending bridge on a bar pairs the point opposite: bending alone, so the mean of the four points is subtracted.
-    let arms = if factor == 1.0 {
-        vec![arm(point, 1.0)]
-    } else {
-        (0..4)
-            .map(|p| arm(p, factor * (f64::from(u8::from(p == point)) - 0.25)))
-            .collect()
-    };
-    Ok(Gauge {
-        name: spec.name.clone(),
-        arms,
-        element: b.id,
-        surface: Surface::Top,
-        position: a + (e - a) * station + b.axes.transpose() * Vec3::new(0.0, y, z),
-        direction: b.axes.row(0).transpose(),
-        normal: b.axes.row(2).transpose(),
-        angle_rad: 0.0,
-    })
 }

@@ -4,7 +4,9 @@
 //! each a linear functional of the strain at one place, so that `reading = sum coefficient . strain`.
 
 mod arms;
+mod beam;
 mod build;
+mod error;
 mod grid_average;
 mod moved;
 mod on_refined;
@@ -12,7 +14,8 @@ mod spec;
 mod surface;
 
 pub use arms::{Arm, Gauge, Spot, reading, shell_strain};
-pub use build::{CornerRows, GaugeError, build};
+pub use build::{CornerRows, build};
+pub use error::GaugeError;
 pub use moved::moved;
 pub use on_refined::on_refined;
 pub use spec::{Bridge, GaugePlace, GaugeSpec, Rosette};

@@ -379,6 +379,8 @@ fn a_gauge_on_a_bar_reads_at_its_recovery_point_and_station() {
                 (0.0, [1e-6, 2e-6, -1e-6, 0.0]),
                 (1.0, [3e-6, 2e-6, -3e-6, 0.0]),
             ]],
+            // Bending along C alone, 1e-7 of axial strain: D is blank, so that no mean of the four points is the axial strain.
+            axial: vec![vec![1e-7, 3e-7]],
         },
         ..Default::default()
     };
@@ -402,6 +404,9 @@ fn a_gauge_on_a_bar_reads_at_its_recovery_point_and_station() {
     assert!((at(0, 0.0, Bridge::Quarter) - 1e-6).abs() < 1e-18);
     assert!((at(0, 0.25, Bridge::Quarter) - 1.5e-6).abs() < 1e-18);
     assert!((at(2, 1.0, Bridge::Quarter) + 3e-6).abs() < 1e-18);
+    // Across the neutral axis the bending strain turns its sign: half bridge twice, full bridge four times the bending strain.
+    assert!((at(0, 0.0, Bridge::HalfBending) - 2.0 * 0.9e-6).abs() < 1e-18);
+    assert!((at(0, 0.5, Bridge::FullBending) - 4.0 * (2e-6 - 2e-7)).abs() < 1e-18);
 }
 
 #[test]

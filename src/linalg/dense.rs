@@ -48,6 +48,23 @@ pub fn svd(a: &Matrix) -> Option<Svd> {
     })
 }
 
+/// The shortest of the vectors that come nearest to `a x = b`; singular values below `tolerance` of the largest count as zero. `None`
+/// where `a` holds numbers that are not finite.
+pub fn shortest_solution(a: &Matrix, b: &[f64], tolerance: f64) -> Option<Vec<f64>> {
+    let d = svd(a)?;
+    let limit = tolerance * d.s.first().copied().unwrap_or(0.0);
+    let mut x = vec![0.0; a.ncols()];
+    for (k, s) in d.s.iter().enumerate().filter(|s| *s.1 > limit) {
+        let along: f64 = d.u.column(k).iter().zip(b).map(|(u, b)| u * b).sum();
+        let column = d.v.column(k);
+        let share = along / s;
+        x.iter_mut()
+            .zip(column.iter())
+            .for_each(|(x, v)| *x += share * v);
+    }
+    Some(x)
+}
+
 /// nalgebra's decomposition of finite numbers with an end: its iteration by itself never gives up, and on some matrices never settles
 /// at the last bit.
 pub(super) fn bounded_svd(a: Matrix) -> Option<nalgebra::SVD<f64, nalgebra::Dyn, nalgebra::Dyn>> {

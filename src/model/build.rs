@@ -11,7 +11,7 @@ use std::collections::HashMap;
 pub(super) struct Builder<'a> {
     pub cards: &'a Cards,
     pub case_params: &'a [Param],
-    pub uncarried_loads: &'a [Uncarried],
+    pub unsupported_loads: &'a [UnsupportedCard],
     pub model: Model,
     pub faults: Vec<ModelFault>,
     pub frame_ix: HashMap<u32, FrameIx>,
@@ -31,11 +31,15 @@ impl Model {
 
     /// The model that a deck means: its cards, PARAMs of case control (which win), names of properties and components.
     pub fn from_deck(deck: &Deck) -> (Model, Vec<ModelFault>) {
-        let (structure, loads) = super::uncarried::of_deck(deck);
+        let (structure, loads) = super::unsupported_cards::of_deck(deck);
         let (mut model, faults) =
             Self::build(&deck.cards, &deck.case_control.global.params, &loads);
-        model.uncarried = structure;
+        model.unsupported_cards = structure;
         model.mpc = deck.case_control.mpc_of_structure();
+        let subcases = deck.case_control.effective_subcases();
+        model.selected_spcs = subcases.iter().filter_map(|s| s.spc).collect();
+        model.selected_spcs.sort_unstable();
+        model.selected_spcs.dedup();
         let named = deck
             .labels
             .iter()
@@ -47,12 +51,12 @@ impl Model {
     fn build(
         cards: &Cards,
         case_params: &[Param],
-        uncarried_loads: &[Uncarried],
+        unsupported_loads: &[UnsupportedCard],
     ) -> (Model, Vec<ModelFault>) {
         let mut b = Builder {
             cards,
             case_params,
-            uncarried_loads,
+            unsupported_loads,
             model: Model::default(),
             faults: Vec::new(),
             frame_ix: HashMap::new(),

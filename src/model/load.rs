@@ -1,13 +1,14 @@
 //! Load sets: primitive loads in the basic frame, LOAD combinations written out, temperatures apart.
 
+mod line;
+mod pressure;
+mod temperature;
+
 use super::build::Builder;
-use super::face::solid_face;
 use super::fault::FaultKind;
 use super::frame::unit;
 use super::types::*;
-use nastran::cards::{IdList, Pload1, Pload4};
-use nastran::place::{Place, Placed};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 pub(super) type Sets = BTreeMap<u32, Vec<(f64, Load)>>;
 
@@ -18,7 +19,7 @@ impl Builder<'_> {
         self.along_grids(&mut sets);
         self.pressures(&mut sets);
         self.body_forces(&mut sets);
-        for card in self.uncarried_loads.iter() {
+        for card in self.unsupported_loads.iter() {
             if let Some(sid) = card.id {
                 let load = Load::Unsupported(card.card.clone(), card.at);
                 sets.entry(sid).or_default().push((1.0, load));
@@ -111,6 +112,7 @@ impl Builder<'_> {
         }
     }
 
+    /// Pressures, line loads and enforced displacements.
     fn pressures(&mut self, sets: &mut Sets) {
         let cards = self.cards;
         for p in &cards.ploads {
@@ -170,221 +172,6 @@ impl Builder<'_> {
         }
     }
 
-    /// A load along a bar or beam in its own axes.
-    ///
-    /// # Reference
-    /// MSC Nastran Quick Reference Guide, PLOAD1: LE and LEPR give places as lengths, FR and FRPR as shares; the PR scales count
-    /// intensity per length projected across the direction of the load.
-    fn pload1(&mut self, p: &Placed<Pload1>) -> Option<Load> {
-        let name = format!("PLOAD1 {}", p.sid);
-        let Some(beam) = self.model.beam_ix(p.element) else {
-            let kind = FaultKind::Missing {
-                what: "CBAR or CBEAM",
-                id: p.element.into(),
-            };
-            self.fault(name, "EID", p.at, kind);
-            return None;
-        };
-        let b = *self.model.beams.get(beam.us())?;
-        let end = |i: usize| -> Option<Vec3> { Some(self.x(*b.grids.get(i)?) + b.offsets.get(i)?) };
-        let length = (end(1)? - end(0)?).norm();
-        let mut basic = Vec3::zeros();
-        let axis = match p.kind[1] {
-            b'X' => 0,
-            b'Y' => 1,
-            _ => 2,
-        };
-        basic[axis] = 1.0;
-        let along_element = p.kind[2] == b'E';
-        let direction = if along_element { basic } else { b.axes * basic };
-        let projected = p.scale[2] == b'P';
-        let factor = if projected && !along_element {
-            (1.0 - direction.x * direction.x).max(0.0).sqrt()
-        } else {
-            1.0
-        };
-        let share = |x: f64| if p.scale[0] == b'L' { x / length } else { x };
-        let from = share(p.x1);
-        let to = p.x2.map_or(from, share);
-        let values = if from == to {
-            [p.p1, 0.0]
-        } else {
-            [p.p1, p.p2.unwrap_or(p.p1)].map(|v| v * factor)
-        };
-        // Against the rounding of lengths given to a few digits.
-        const BEYOND: f64 = 1e-6;
-        let inside = |x: f64| (-BEYOND..=1.0 + BEYOND).contains(&x);
-        if !(inside(from) && inside(to) && from <= to) {
-            let kind = FaultKind::Word {
-                found: format!("X1 {}, X2 {:?}", p.x1, p.x2),
-                expected: "places on the element, the first no farther than the second",
-            };
-            self.fault(name, "X1", p.at, kind);
-            return None;
-        }
-        let vectors = values.map(|v| direction * v);
-        let none = [Vec3::zeros(); 2];
-        let (force, moment) = if p.kind[0] == b'F' {
-            (vectors, none)
-        } else {
-            (none, vectors)
-        };
-        Some(Load::Line {
-            beam,
-            span: [from.clamp(0.0, 1.0), to.clamp(0.0, 1.0)],
-            force,
-            moment,
-        })
-    }
-
-    /// The shells of a list: each named one must exist, of a range those that do.
-    fn shells_of(&mut self, ids: &IdList, name: &str, at: Place) -> Vec<ShellIx> {
-        match ids {
-            IdList::Thru(a, b) => {
-                let from = self.model.shells.partition_point(|s| s.id < *a);
-                let to = self.model.shells.partition_point(|s| s.id <= *b);
-                (from..to).map(|i| ShellIx(i as u32)).collect()
-            }
-            IdList::Each(list) => {
-                let mut out = Vec::with_capacity(list.len());
-                for id in list {
-                    match self.model.shell_ix(*id) {
-                        Some(ix) => out.push(ix),
-                        None => self.fault(
-                            name.to_owned(),
-                            "EID",
-                            at,
-                            FaultKind::Missing {
-                                what: "shell",
-                                id: (*id).into(),
-                            },
-                        ),
-                    }
-                }
-                out
-            }
-        }
-    }
-
-    fn pload4(&mut self, p: &Placed<Pload4>) -> Vec<Load> {
-        let name = format!("PLOAD4 {}", p.sid);
-        if !(p.sorl.is_empty() || p.sorl == "SURF") {
-            return vec![Load::Unsupported("PLOAD4 with SORL".into(), p.at)];
-        }
-        let p1 = p.pressure[0].unwrap_or(0.0);
-        let pressure = p.pressure.map(|x| x.unwrap_or(p1));
-        let direction = match p.direction {
-            Some((cid, n)) if n != [0.0; 3] => {
-                let Some(f) = self.frame(cid.into(), &name, "CID", p.at) else {
-                    return Vec::new();
-                };
-                let Some(frame) = self.model.frames.get(f.us()) else {
-                    return Vec::new();
-                };
-                if frame.kind != nastran::cards::CoordKind::Rectangular {
-                    return vec![Load::Unsupported(
-                        "PLOAD4 in a cylindrical or spherical system".into(),
-                        p.at,
-                    )];
-                }
-                unit(frame.vector_to_basic(n, Vec3::zeros()))
-            }
-            _ => None,
-        };
-        let mut shells = Vec::new();
-        let mut out = Vec::new();
-        let ids: Vec<u32> = match &p.elements {
-            IdList::Each(ids) => ids.clone(),
-            IdList::Thru(a, b) => {
-                let (shells, solids) = (&self.model.shells, &self.model.solids);
-                let range = |from: usize, to: usize| from..to.max(from);
-                let shells_in = range(
-                    shells.partition_point(|s| s.id < *a),
-                    shells.partition_point(|s| s.id <= *b),
-                );
-                let solids_in = range(
-                    solids.partition_point(|s| s.id < *a),
-                    solids.partition_point(|s| s.id <= *b),
-                );
-                let shell_ids = shells.get(shells_in).unwrap_or(&[]).iter().map(|s| s.id);
-                shell_ids
-                    .chain(solids.get(solids_in).unwrap_or(&[]).iter().map(|s| s.id))
-                    .collect()
-            }
-        };
-        for id in ids {
-            if let Some(ix) = self.model.shell_ix(id) {
-                shells.push(ix);
-                continue;
-            }
-            let Ok(solid) = self.model.solids.binary_search_by_key(&id, |s| s.id) else {
-                self.fault(
-                    name.clone(),
-                    "EID",
-                    p.at,
-                    FaultKind::Missing {
-                        what: "shell or solid",
-                        id: id.into(),
-                    },
-                );
-                continue;
-            };
-            let corner = p
-                .face
-                .map(|g| g.and_then(|g| self.grid_ix.get(&g).copied()));
-            let face = self
-                .model
-                .solids
-                .get(solid)
-                .and_then(|s| Some(self.inward(s, solid_face(s, corner)?)));
-            match face {
-                Some(grids) => out.push(Load::FacePressure {
-                    grids,
-                    pressure,
-                    direction,
-                }),
-                None => {
-                    let found = format!("G1 {:?}, G3 or G4 {:?}", p.face[0], p.face[1]);
-                    let kind = FaultKind::Word {
-                        found,
-                        expected: "corners that tell a face of the element",
-                    };
-                    self.fault(name.clone(), "G1", p.at, kind);
-                }
-            }
-        }
-        if !shells.is_empty() {
-            out.push(Load::ShellPressure {
-                shells,
-                pressure,
-                direction,
-            });
-        }
-        out
-    }
-
-    /// A face whose normal points into its solid, one numbered as its mirror image too.
-    fn inward(&self, s: &Solid, face: [Option<GridIx>; 4]) -> [Option<GridIx>; 4] {
-        let mean = |list: &mut dyn Iterator<Item = GridIx>| {
-            let x: Vec<Vec3> = list.map(|g| self.x(g)).collect();
-            x.iter().sum::<Vec3>() / x.len().max(1) as f64
-        };
-        let middle = mean(&mut s.grids.iter().take(s.shape.n_corners()).flatten().copied());
-        let on_face = mean(&mut face.iter().flatten().copied());
-        let [Some(a), Some(b), Some(c), d] = face else {
-            return face;
-        };
-        let last = d.unwrap_or(c);
-        let normal = (self.x(b) - self.x(a)).cross(&(self.x(last) - self.x(a)));
-        if normal.dot(&(middle - on_face)) >= 0.0 {
-            return face;
-        }
-        match d {
-            Some(d) => [Some(a), Some(d), Some(c), Some(b)],
-            None => [Some(a), Some(c), Some(b), None],
-        }
-    }
-
     fn body_forces(&mut self, sets: &mut Sets) {
         let cards = self.cards;
         for g in &cards.gravs {
@@ -419,71 +206,5 @@ impl Builder<'_> {
             };
             sets.entry(r.sid).or_default().push((1.0, load));
         }
-    }
-
-    /// The elements of a list; of a range those that exist.
-    fn written_out<'s>(&'s self, ids: &'s IdList) -> Box<dyn Iterator<Item = u32> + 's> {
-        match ids {
-            IdList::Each(list) => Box::new(list.iter().copied()),
-            IdList::Thru(a, b) => {
-                let (a, b) = (*a, *b);
-                let known = self.element_ids.keys().copied();
-                Box::new(known.filter(move |id| (a..=b).contains(id)))
-            }
-        }
-    }
-
-    fn temperatures(&mut self) {
-        let cards = self.cards;
-        let mut sets: BTreeMap<u32, TemperatureSet> = BTreeMap::new();
-        let fresh = |sid: u32, at: Place| TemperatureSet {
-            sid,
-            default: None,
-            grids: Vec::new(),
-            elements: HashMap::new(),
-            unsupported: Vec::new(),
-            at,
-        };
-        for t in &cards.tempds {
-            sets.entry(t.sid)
-                .or_insert_with(|| fresh(t.sid, t.at))
-                .default = Some(t.t);
-        }
-        for t in &cards.temps {
-            let Some(g) = self.grid(t.grid, &format!("TEMP {}", t.sid), "G", t.at) else {
-                continue;
-            };
-            sets.entry(t.sid)
-                .or_insert_with(|| fresh(t.sid, t.at))
-                .grids
-                .push((g, t.t));
-        }
-        for t in &cards.tempp1s {
-            let set = sets.entry(t.sid).or_insert_with(|| fresh(t.sid, t.at));
-            if t.at_surfaces {
-                set.unsupported
-                    .push(("TEMPP1 with TS1, TS2".to_owned(), t.at));
-            }
-            let plate = ElementTemperature::Plate {
-                mean: t.mean,
-                gradient: t.gradient,
-            };
-            set.elements
-                .extend(self.written_out(&t.elements).map(|id| (id, plate)));
-        }
-        for t in &cards.temprbs {
-            let set = sets.entry(t.sid).or_insert_with(|| fresh(t.sid, t.at));
-            if t.at_points {
-                set.unsupported
-                    .push(("TEMPRB with temperatures of points".to_owned(), t.at));
-            }
-            let line = ElementTemperature::Line {
-                ends: t.ends,
-                gradient: t.gradient,
-            };
-            set.elements
-                .extend(self.written_out(&t.elements).map(|id| (id, line)));
-        }
-        self.model.temperatures = sets.into_values().collect();
     }
 }

@@ -25,7 +25,7 @@ mod set_sum;
 mod shell;
 mod solid;
 mod types;
-mod uncarried;
+mod unsupported_cards;
 
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,6 @@
 //! The same model on a mesh half as wide: how much of an answer is the mesh.
 
-use super::types::{FrameIx, Grid, GridIx, Model, Shell, ShellIx, TemperatureSet};
+use super::types::{FrameIx, Grid, GridIx, Model, Shell, ShellIx, SpcSet, TemperatureSet};
 use nastran::cards::{Dofs, ShellShape};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,7 +20,7 @@ impl Model {
     /// panels, shells with mid-side grids, bars along the sides of shells, no shells at all.
     ///
     /// Grids keep their index, so loads, masses and rigid elements stay where they are. New grids lie on the straight sides: a curved
-    /// surface keeps its facets. They are constrained where both ends of their side are.
+    /// surface keeps its facets. They are constrained where both ends of their side are, by PS as by SPC sets.
     pub fn refined(&self) -> Option<RefinedModel> {
         if !self.can_be_refined() {
             return None;
@@ -54,8 +54,14 @@ impl Model {
             .iter()
             .map(|t| self.finer_temperatures(t, &builder.parents, &children, &shells))
             .collect();
+        let spcs = self
+            .spcs
+            .iter()
+            .map(|s| self.finer_supports(s, &builder.parents))
+            .collect();
         let model = Self {
             grids: builder.grids,
+            spcs,
             shells,
             load_sets: Vec::new(),
             temperatures,
@@ -83,6 +89,33 @@ impl Model {
             if let Some(t) = set.elements.get(&shell.id) {
                 let ids = into.iter().map(|c| shells[c.us()].id);
                 out.elements.extend(ids.map(|id| (id, *t)));
+            }
+        }
+        out
+    }
+
+    /// An SPC set on the divided mesh: a new grid is held where all its parents are, at their mean value.
+    fn finer_supports(&self, set: &SpcSet, parents: &[Vec<GridIx>]) -> SpcSet {
+        let mut held: BTreeMap<GridIx, [Option<f64>; 6]> = BTreeMap::new();
+        for (g, dofs, value) in &set.terms {
+            let of = held.entry(*g).or_default();
+            dofs.iter0().for_each(|i| of[i] = Some(*value));
+        }
+        let mut out = set.clone();
+        let frame = |g: &GridIx| self.grids.get(g.us()).map(|g| g.cd);
+        for (new, of) in (self.grids.len() as u32..).map(GridIx).zip(parents) {
+            if of.windows(2).any(|w| frame(&w[0]) != frame(&w[1])) {
+                continue;
+            }
+            for dof in 0..6 {
+                let values: Option<Vec<f64>> = of
+                    .iter()
+                    .map(|g| held.get(g).and_then(|h| h[dof]))
+                    .collect();
+                if let (Some(values), Some(dofs)) = (values, Dofs::from_digits(dof as u32 + 1)) {
+                    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+                    out.terms.push((new, dofs, mean));
+                }
             }
         }
         out

@@ -401,7 +401,7 @@ fn cards_that_the_model_does_not_carry_are_told_and_their_loads_are_no_part_of_a
         "{QUAD}CQUAD4,9,1,1,2,3,4\nCFAST,3,5,PROP,1,1,1\nCVISC,4,5,1,2\nFORCE,6,2,,1.,0.,0.,1.\nFORCEAX,6,2,1.,1,3\nLOAD,7,1.,2.,6"
     ));
     let cards: Vec<(&str, Option<u32>)> = m
-        .uncarried
+        .unsupported_cards
         .iter()
         .map(|c| (c.card.as_str(), c.id))
         .collect();

@@ -3,6 +3,7 @@
 pub mod command;
 mod csv_cell;
 pub mod figure;
+mod mode_blocks;
 pub mod page;
 #[cfg(feature = "pdf")]
 pub mod pdf;

@@ -9,7 +9,9 @@ use super::deck::read_model;
 use super::fault::{Fault, Faults};
 use super::job::{Job, LoadActs};
 use super::outcome::{Answer, Outcome, StatedUnits};
+use super::solved::support_of_job;
 use super::work::Work;
+use crate::fe::{Relief, Support};
 use crate::finding::{Finding, Severity};
 use nastran::bdf::{Deck, Edits, Field, format_card, write_edited};
 use nastran::cards::Force;
@@ -46,6 +48,8 @@ const UNWANTED: [&str; 22] = [
 /// A deck with one unit-load subcase a load.
 #[derive(Serialize)]
 pub struct UnitLoadDeck {
+    /// What holds the structure, in words.
+    pub support: String,
     /// By load: its subcase and what acts.
     pub subcases: Vec<Value>,
     /// The deck and the edits that make it.
@@ -126,9 +130,11 @@ pub fn cases(job: &Job, cx: &Context) -> Result<Outcome<UnitLoadDeck>, Faults> {
         }
     }
     Faults::check(faults)?;
-    let (edits, subcases) = edits_of(&mut work, job, &read.deck)?;
+    let support = support_of_job(job, &read.model)?;
+    let (edits, subcases) = edits_of(&mut work, job, (&read.deck, support))?;
     let answer = UnitLoadDeck {
         subcases,
+        support: support.words(),
         edited: EditedDeck {
             deck: read.deck,
             edits,
@@ -177,7 +183,11 @@ pub(in crate::app) fn dynamic_ids(deck: &Deck) -> Vec<u32> {
     of_kind.filter_map(|c| c.first).collect()
 }
 
-fn edits_of(work: &mut Work, job: &Job, deck: &Deck) -> Result<(Edits, Vec<Value>), Faults> {
+fn edits_of(
+    work: &mut Work,
+    job: &Job,
+    (deck, support): (&Deck, Support),
+) -> Result<(Edits, Vec<Value>), Faults> {
     let mut edits = Edits::default();
     edits.remove_subcases(deck);
     edits.remove_case_lines(deck, |l| {
@@ -216,7 +226,7 @@ fn edits_of(work: &mut Work, job: &Job, deck: &Deck) -> Result<(Edits, Vec<Value
             Severity::Info,
             "suport-dropped",
             "SUPORT",
-            "SUPORT entries are left out: PARAM,INREL,-2 balances the free structure by itself",
+            "SUPORT entries are left out: PARAM,INREL,-2 balances what is free by itself, and a held structure needs none",
             "",
         ));
     }
@@ -248,7 +258,13 @@ fn edits_of(work: &mut Work, job: &Job, deck: &Deck) -> Result<(Edits, Vec<Value
             "correct MPC in unit_loads.bdf if another set holds while the gauges are read",
         ));
     }
-    let mut bulk = String::from("$ Unit loads\nPARAM,POST,-1\nPARAM,INREL,-2\n");
+    if let Some(spc) = support.spc {
+        case.push_str(&format!("SPC = {spc}\n"));
+    }
+    let mut bulk = String::from("$ Unit loads\nPARAM,POST,-1\n");
+    if support.relief != Relief::None {
+        bulk.push_str("PARAM,INREL,-2\n");
+    }
     let mut rows = Vec::new();
     for l in &job.loads {
         let sid = next;

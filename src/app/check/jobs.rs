@@ -5,6 +5,7 @@ use crate::app::deck;
 use crate::app::fault::Fault;
 use crate::app::job::{self, HoldOut, Job, NamedFile};
 use crate::app::outcome::StatedUnits;
+use crate::app::solved::{support_finding, support_of_job};
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::model::Model;
@@ -51,6 +52,10 @@ fn files(work: &mut Work, job: &Job, found: &mut Checked) {
         }
         if let Some(model) = found.decks.get(before).and_then(|d| d.model.as_ref()) {
             work.findings.extend(units_of(job, model));
+            match support_of_job(job, model) {
+                Ok(support) => work.findings.push(support_finding(&m.deck.given, support)),
+                Err(faults) => found.faults.extend(faults.into_list()),
+            }
             found.faults.extend(missing_ids(job, model));
         }
     }

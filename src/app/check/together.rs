@@ -4,7 +4,7 @@ use super::Checked;
 use super::decks::DeckEntry;
 use crate::app::deck::model_of_op2;
 use crate::app::work::Work;
-use crate::fe::belongs::{Supports, check_belongs, check_coordinates};
+use crate::fe::deck_result_consistency::{Supports, check_consistency, check_coordinates};
 use nastran::op2::Op2;
 use nastran::results::ResultsFile;
 
@@ -35,7 +35,7 @@ pub(super) fn compare(work: &mut Work, found: &mut Checked) {
             continue;
         };
         work.findings
-            .extend(check_belongs(model, r.path(), &file, Supports::AsDeck));
+            .extend(check_consistency(model, r.path(), &file, Supports::AsDeck));
         if let Ok(op2) = Op2::read(&r.bytes) {
             let (cards, _) = op2.cards();
             if !cards.grids.is_empty() {

@@ -89,10 +89,20 @@ impl JobPlan<'_> {
              title = \"{}\"\n\
              {units}\n\
              report_units = {{ force = \"{force}\", moment = \"{moment}\" }}\n\n\
-             [model]\ndeck = \"{}\"\n{results}\n",
+             [model]\ndeck = \"{}\"\n{results}\n{}\n",
             clean(&title.to_string_lossy()),
-            path(self.deck_path)
+            path(self.deck_path),
+            self.support()
         )
+    }
+
+    /// What holds the structure.
+    fn support(&self) -> String {
+        match self.deck.model.selected_spcs.as_slice() {
+            [] => "# support = \"free\"                   # the deck selects no SPC set: inertia balances every load".to_owned(),
+            [set] => format!("support = \"deck\"                     # check: SPC set {set} of the deck holds the structure while gauges are read; \"free\": inertia relief"),
+            [set, ..] => format!("support = {set}                          # check: the deck's subcases select several SPC sets; \"free\": inertia relief"),
+        }
     }
 
     fn loads_text(&self) -> String {

@@ -48,6 +48,7 @@ pub(super) struct RawUnits {
 pub(super) struct RawModel {
     pub deck: S<String>,
     pub results: Vec<Spanned<String>>,
+    pub support: S<NumberOrWord>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

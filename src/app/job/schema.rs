@@ -28,6 +28,11 @@ const KEYS: &[(&str, &str, &[&str])] = &[
         "OP2, HDF5 or punch files; none: the built-in solver computes them",
         &[],
     ),
+    (
+        "model.support",
+        "What holds the structure: \"deck\" (the SPC set that case control selects, if any, else free), \"free\" (inertia relief), or the id of an SPC set",
+        &[],
+    ),
     ("load", "A load to be recovered: a column of S", &[]),
     ("load.name", "Its name in tables and reports", &[]),
     ("load.grid", "Grid where it acts", &[]),

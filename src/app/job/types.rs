@@ -2,6 +2,7 @@
 
 pub use super::shapes::Ids;
 use crate::app::files::FileRead;
+use crate::fe::SupportChoice;
 use crate::units::{Quantity, ReportUnits, Unit, UnitSystem};
 use crate::vehicle::chassis::LeafSeat;
 use std::collections::BTreeMap;
@@ -74,6 +75,10 @@ pub struct ModelFiles {
     pub deck: NamedFile,
     /// Result files; empty: the built-in solver computes them.
     pub results: Vec<NamedFile>,
+    /// What holds the structure.
+    pub support: SupportChoice,
+    /// Line of `support`, or of the section.
+    pub support_line: u32,
 }
 
 /// A force or moment component.

@@ -5,6 +5,7 @@ use crate::app::deck::read_model;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::table::read_table;
 use crate::app::job::{Component, LoadActs};
+use crate::app::solved::stands_on_wheels;
 use crate::app::strain::{Prepared, prepare};
 use crate::app::wheels::{floor_fault, wheels_of};
 use crate::app::work::Work;
@@ -112,6 +113,7 @@ fn standing(
     prepared: Option<&Prepared>,
 ) -> Result<PayloadModel, Faults> {
     let job = task.job;
+    stands_on_wheels(job, model, "a payload over wheel forces")?;
     let wheels = wheels_of(job, model)?;
     let (grid, id) = payload_grid(task, model)?;
     let (a, b, c) = (wheels.axis, (wheels.axis + 1) % 3, (wheels.axis + 2) % 3);

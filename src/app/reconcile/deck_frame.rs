@@ -7,9 +7,9 @@ use super::matrix_frame::{ModelPart, facts, nominal_x_m};
 use crate::app::Session;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Component, Job, LoadActs};
-use crate::app::solved::unit_loads_kept;
+use crate::app::solved::{support_of_job, unit_loads_kept};
 use crate::app::strain::{Fields, lay_gauges, read_fields};
-use crate::fe::{Solution, SolveOptions, UnitLoad, solve_unit_loads};
+use crate::fe::{Solution, SolveOptions, UnitLoad, solve_unit_loads_on};
 use crate::gauge::{Gauge, reading};
 use crate::model::{GridIx, Model, Vec3};
 use crate::reconcile::strain::{MassSignature, N_PAYLOAD_COLUMNS, PlaneStrainRow, Wiring};
@@ -80,6 +80,7 @@ pub(super) fn read(
     }
     let first_heat = loads.len();
     loads.extend(heated.loads());
+    let support = support_of_job(job, model)?;
     // Signatures come from a mesh half as wide, where that can be made: what the mesh makes is computed, not guessed.
     let laid = [&gauges, &turned[0], &turned[1]];
     let finer = session.stage("refine", |_| Finer::of(model, laid));
@@ -87,9 +88,14 @@ pub(super) fn read(
     let solution = session.stage("solve signatures", |s| match &finer {
         Some(f) => {
             let made = format!("mesh half as wide, {heat}");
-            unit_loads_kept(s, (&fields.deck, &made), &f.refined.model, &loads)
+            unit_loads_kept(
+                s,
+                (&fields.deck, &made),
+                (&f.refined.model, support),
+                &loads,
+            )
         }
-        None => unit_loads_kept(s, (&fields.deck, &heat), model, &loads),
+        None => unit_loads_kept(s, (&fields.deck, &heat), (model, support), &loads),
     })?;
     let n_c = columns.len();
     let [seen, seen_45, seen_90] = match &finer {
@@ -100,7 +106,7 @@ pub(super) fn read(
     let at_45 = influence(job, model, seen_45, &solution, n_c);
     let at_90 = influence(job, model, seen_90, &solution, n_c);
     let own = session.stage("solve signatures", |s| {
-        unit_loads_kept(s, (&fields.deck, &heat), model, &columns)
+        unit_loads_kept(s, (&fields.deck, &heat), (model, support), &columns)
     })?;
     let base = influence(job, model, &gauges, &own, n_c);
     let n_g = gauges.len();
@@ -253,7 +259,8 @@ fn readings(gauges: &[Gauge], solution: &Solution, range: std::ops::Range<usize>
 
 pub(super) fn solve(job: &Job, model: &Model, loads: &[UnitLoad]) -> Result<Solution, Faults> {
     let remedy = "repair the deck, or give S as CSV files in `[sensitivity]`";
-    let solved = solve_unit_loads(model, loads, &SolveOptions::default());
+    let support = support_of_job(job, model)?;
+    let solved = solve_unit_loads_on(model, support, loads, &SolveOptions::default());
     solved
         .map(|s| s.0)
         .map_err(|e| Faults::from(Fault::of(&*job.file, "model", e.to_string(), remedy)))

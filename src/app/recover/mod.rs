@@ -14,6 +14,7 @@ mod trace;
 
 use super::fault::{Fault, Faults};
 use super::job::{self, Job, Measured, Reference};
+use super::solved::stands_on_wheels;
 use super::strain::{Prepared, prepare};
 use super::wheels::{floor_fault, wheels_of};
 use super::{JobArguments, Session};
@@ -167,6 +168,7 @@ fn reference_strain(
 /// Strain by gauge of the model standing on its wheels under its own weight: `S R`, `R` the reactions at the job's wheels on a flat floor.
 /// A free structure that gravity and its reactions hold in balance is strained by the reactions with their inertia relief alone.
 fn standing_strain(job: &Job, model: &Model, prepared: &Prepared) -> Result<Vec<f64>, Faults> {
+    stands_on_wheels(job, model, "the reference \"gravity\"")?;
     let wheels = wheels_of(job, model)?;
     let standing = solve_standing(model, wheels.axis, &wheels.grids, &[], None)
         .map_err(|e| floor_fault(job, &e))?;

@@ -3,14 +3,14 @@
 //! A mark, the key's hash, little-endian numbers, and the SHA-256 of all bytes before; what does not add up is no solution.
 
 use super::key::Key;
-use crate::fe::{Balance, MassProperties, SolveReport, Solved};
+use crate::fe::{Balance, MassProperties, Reaction, Reactions, SolveReport, Solved};
 use crate::finding::{Finding, Severity};
 use crate::linalg::Matrix6;
 use crate::linalg::sparse::OrderingMethod;
 use crate::model::Vec3;
 use sha2::{Digest, Sha256};
 
-const MARK: &[u8] = b"strainbridge solution 1\n";
+const MARK: &[u8] = b"strainbridge solution 2\n";
 
 /// A solution as bytes.
 pub(super) fn encode(solved: &Solved, Key(hash): &Key) -> Vec<u8> {
@@ -47,6 +47,18 @@ pub(super) fn encode(solved: &Solved, Key(hash): &Key) -> Vec<u8> {
             reals(&mut out, six);
         }
         reals(&mut out, &[b.residual]);
+    }
+    put(&mut out, report.reactions.len());
+    for r in &report.reactions {
+        put(&mut out, r.subcase as usize);
+        reals(&mut out, &r.applied);
+        reals(&mut out, &r.total);
+        reals(&mut out, &[r.residual]);
+        put(&mut out, r.grids.len());
+        for g in &r.grids {
+            put(&mut out, g.grid as usize);
+            reals(&mut out, &g.force);
+        }
     }
     put(&mut out, solved.findings.len());
     for f in &solved.findings {
@@ -88,6 +100,13 @@ const CODES: &[&str] = &[
     "load-is-inertia-only",
     "formulation",
     "inaccurate-solution",
+    "contradicting-spc",
+    "every-dof-held",
+    "folded-quad",
+    "inverted-solid",
+    "load-into-support",
+    "no-load",
+    "re-entrant-quad",
 ];
 
 /// `None` for bytes that are no solution of this hash, number of grids and of cases.
@@ -129,6 +148,20 @@ pub(super) fn decode(bytes: &[u8], Key(hash): &Key, grids: usize, cases: usize) 
             inertia: at.array()?,
             acceleration: at.array()?,
             residual: at.real()?,
+        })
+    })?;
+    report.reactions = at.list(|at| {
+        Some(Reactions {
+            subcase: u32::try_from(at.count()?).ok()?,
+            applied: at.array()?,
+            total: at.array()?,
+            residual: at.real()?,
+            grids: at.list(|at| {
+                Some(Reaction {
+                    grid: u32::try_from(at.count()?).ok()?,
+                    force: at.array()?,
+                })
+            })?,
         })
     })?;
     let findings = at.list(|at| {

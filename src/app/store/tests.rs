@@ -1,6 +1,6 @@
 use super::Key;
 use super::solution_file::{decode, encode};
-use crate::fe::{Balance, MassProperties, SolveReport, Solved};
+use crate::fe::{Balance, MassProperties, Reaction, Reactions, SolveReport, Solved};
 use crate::finding::{Finding, Severity};
 use crate::linalg::Matrix6;
 use crate::linalg::sparse::OrderingMethod;
@@ -29,6 +29,16 @@ fn solved() -> Solved {
                 matrix: Matrix6::from_fn(|r, c| (r * 6 + c) as f64 / 3.0),
             }),
             modes: vec![2.5, 3.5],
+            reactions: vec![Reactions {
+                subcase: 4,
+                applied: [3.0; 6],
+                total: [-3.0; 6],
+                residual: 1e-16,
+                grids: vec![Reaction {
+                    grid: 11,
+                    force: [-3.0, 0.5, 0.25, 0.0, 1.0, 2.0],
+                }],
+            }],
             seconds: Vec::new(),
         },
         findings: vec![

@@ -3,7 +3,7 @@
 use crate::app::deck::{DeckModel, moduli_and_densities, read_model};
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Job, JobLoad, LoadActs, Reference, Role};
-use crate::app::solved::{cases_of_job, solve_kept};
+use crate::app::solved::{MODES, cases_of_job, solve_kept};
 use crate::app::work::Work;
 use crate::fe::from_results::{Displacements, ReadOptions, solution_from_file};
 use crate::fe::{CaseResult, Solution, SolveOptions, UnitLoad};
@@ -109,7 +109,15 @@ pub fn read_fields(work: &mut Work, job: &Job) -> Result<Fields, Faults> {
     ));
     if files.results.is_empty() {
         let cases = cases_of_job(job, &deck)?;
-        let (solved, report) = solve_kept(work, &deck, &cases, SolveOptions::default())?;
+        let (solved, report) = solve_kept(
+            work,
+            &deck,
+            &cases,
+            SolveOptions {
+                modes: MODES,
+                ..SolveOptions::default()
+            },
+        )?;
         work.findings.extend(solved.findings.iter().cloned());
         let of_load = (0..job.loads.len()).map(|i| (0, i)).collect();
         return Ok(Fields {

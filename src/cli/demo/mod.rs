@@ -14,7 +14,7 @@ use crate::app::fault::{Fault, Faults};
 use crate::app::job::Job;
 use crate::app::outcome::{Answer, Outcome};
 use crate::app::{self, Closed, CommonArguments, JobArguments, Session};
-use crate::fe::HeatedStrain;
+use crate::fe::SolveOptions;
 use crate::report::command::{Report, save};
 use chapter::{Chapter, DECK};
 use serde_json::{Value, json};
@@ -214,7 +214,7 @@ fn play(
     };
     session.stage(command, |_| match command {
         "solve" => asked(
-            &app::solve::solve(&Job::read(job, cx.files)?, HeatedStrain::default(), &cx)?,
+            &app::solve::solve(&Job::read(job, cx.files)?, solving(), &cx)?,
             &folder.join(out),
         ),
         "place" => asked(
@@ -246,4 +246,12 @@ where
         result: serde_json::to_value(&outcome.answer).unwrap_or_default(),
         seconds: outcome.seconds.total(),
     })
+}
+
+/// What the story asks of the solver.
+fn solving() -> SolveOptions {
+    SolveOptions {
+        modes: app::solve::MODES,
+        ..SolveOptions::default()
+    }
 }

@@ -1,6 +1,6 @@
 //! RBE2, RBAR, RBE1: dofs that follow one rigid motion.
 
-use super::Relation;
+use super::relation::Relation;
 use crate::fe::error::Refusal;
 use crate::fe::rigid_motion::rigid_matrix;
 use crate::linalg::Matrix6;

@@ -1,6 +1,6 @@
 //! RBE3: a reference grid that moves as the weighted mean of others.
 
-use super::Relation;
+use super::relation::Relation;
 use crate::fe::error::Refusal;
 use crate::fe::rigid_motion::rigid_matrix;
 use crate::linalg::{DMatrix, Matrix6};

@@ -1,6 +1,7 @@
 //! All constraints of a load case together: which dofs are free, which are held, which follow others.
 
-use super::{Claim, Relation, body, mean};
+use super::relation::{Claim, Relation};
+use super::{body, mean};
 use crate::fe::error::{FeError, Refusal};
 use crate::model::{GridIx, Mat3, Model, RigidKind};
 use nastran::cards::Dofs;
@@ -21,12 +22,23 @@ pub(crate) enum State {
     Dependent(u32),
 }
 
+/// What a dependent dof follows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Row {
+    /// Free dofs and their coefficients.
+    pub(crate) free: Vec<(u32, f64)>,
+    /// Held dofs and their coefficients: what its force puts onto supports.
+    pub(crate) held: Vec<(u32, f64)>,
+    /// Displacement that enforced dofs give it.
+    pub(crate) constant: f64,
+}
+
 /// u = T q + u0 over all dofs, numbered 6 * grid index + (0 to 5), displacement frames.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Reduction {
     pub(crate) state: Vec<State>,
-    /// Rows of dependent dofs, in free dofs only, and their constants.
-    pub(crate) rows: Vec<(Vec<(u32, f64)>, f64)>,
+    /// Rows of dependent dofs.
+    pub(crate) rows: Vec<Row>,
     /// Enforced displacements that are not zero.
     pub(crate) enforced: HashMap<u32, f64>,
 }
@@ -39,8 +51,8 @@ impl Reduction {
             State::Free => value(dof as u32),
             State::Held => self.enforced.get(&(dof as u32)).copied().unwrap_or(0.0),
             State::Dependent(r) => {
-                let (row, constant) = &self.rows[r as usize];
-                constant + row.iter().map(|(d, c)| c * value(*d)).sum::<f64>()
+                let row = &self.rows[r as usize];
+                row.constant + row.free.iter().map(|(d, c)| c * value(*d)).sum::<f64>()
             }
         };
         (0..q.len())
@@ -59,13 +71,48 @@ impl Reduction {
             if let State::Dependent(r) = state {
                 let v = std::mem::replace(&mut f[dof / 6][dof % 6], 0.0);
                 if v != 0.0 {
-                    for (d, c) in &self.rows[*r as usize].0 {
+                    for (d, c) in &self.rows[*r as usize].free {
                         f[(*d / 6) as usize][(*d % 6) as usize] += c * v;
                     }
                 }
             }
         }
         f
+    }
+}
+
+impl Reduction {
+    /// Forces that arrive at held dofs: those there and those that dependent dofs put onto them; zero elsewhere.
+    pub(crate) fn onto_held(&self, f: &[[f64; 6]]) -> Vec<[f64; 6]> {
+        let mut out = vec![[0.0; 6]; f.len()];
+        for (dof, state) in self.state.iter().enumerate() {
+            let v = f[dof / 6][dof % 6];
+            match state {
+                State::Free => {}
+                State::Held => out[dof / 6][dof % 6] += v,
+                State::Dependent(r) => {
+                    for (d, c) in &self.rows[*r as usize].held {
+                        out[(*d / 6) as usize][(*d % 6) as usize] += c * v;
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    /// Holds at zero what SPC and SPCD move.
+    pub(crate) fn forget_enforced(&mut self) {
+        self.enforced.clear();
+        self.rows.iter_mut().for_each(|r| r.constant = 0.0);
+    }
+
+    /// Whether a force at this dof reaches a support.
+    pub(crate) fn reaches_support(&self, dof: usize) -> bool {
+        match self.state[dof] {
+            State::Free => false,
+            State::Held => true,
+            State::Dependent(r) => !self.rows[r as usize].held.is_empty(),
+        }
     }
 }
 
@@ -211,6 +258,25 @@ fn resolve(
         }
         state[dof as usize] = State::Dependent(r as u32);
     }
+    let rows = rows_without_dependent(model, relations, claims, &state, &enforced)?;
+    Ok(Reduction {
+        state,
+        rows,
+        enforced,
+    })
+}
+
+/// The relations with every dependent dof on their right-hand sides replaced.
+///
+/// # Errors
+/// Dofs that depend on themselves.
+fn rows_without_dependent(
+    model: &Model,
+    relations: &[Relation],
+    claims: &[Claim],
+    state: &[State],
+    enforced: &HashMap<u32, f64>,
+) -> Result<Vec<Row>, FeError> {
     // Depth first: a row is final when all dependent dofs in it have been replaced.
     #[derive(Clone, Copy, PartialEq)]
     enum Mark {
@@ -219,7 +285,7 @@ fn resolve(
         Done,
     }
     let mut mark = vec![Mark::New; relations.len()];
-    let mut rows: Vec<(Vec<(u32, f64)>, f64)> = vec![(Vec::new(), 0.0); relations.len()];
+    let mut rows = vec![Row::default(); relations.len()];
     let mut stack = Vec::new();
     for r in 0..relations.len() {
         stack.push(r);
@@ -237,7 +303,7 @@ fn resolve(
                 })
                 .collect();
             if waits.is_empty() {
-                rows[r] = substitute(&relations[r].terms, &state, &rows, &enforced);
+                rows[r] = substitute(&relations[r].terms, state, &rows, enforced);
                 mark[r] = Mark::Done;
                 stack.pop();
             } else {
@@ -255,40 +321,47 @@ fn resolve(
             }
         }
     }
-    Ok(Reduction {
-        state,
-        rows,
-        enforced,
-    })
+    Ok(rows)
 }
 
 fn substitute(
     terms: &[(u32, f64)],
     state: &[State],
-    rows: &[(Vec<(u32, f64)>, f64)],
+    rows: &[Row],
     enforced: &HashMap<u32, f64>,
-) -> (Vec<(u32, f64)>, f64) {
-    let mut constant = 0.0;
-    let mut sum: Vec<(u32, f64)> = Vec::with_capacity(terms.len());
+) -> Row {
+    let mut sum = Row {
+        free: Vec::with_capacity(terms.len()),
+        ..Row::default()
+    };
     for &(dof, c) in terms {
         match state[dof as usize] {
-            State::Free => sum.push((dof, c)),
-            State::Held => constant += c * enforced.get(&dof).copied().unwrap_or(0.0),
+            State::Free => sum.free.push((dof, c)),
+            State::Held => {
+                sum.constant += c * enforced.get(&dof).copied().unwrap_or(0.0);
+                sum.held.push((dof, c));
+            }
             State::Dependent(o) => {
-                let (row, k) = &rows[o as usize];
-                constant += c * k;
-                sum.extend(row.iter().map(|(d, v)| (*d, c * v)));
+                let row = &rows[o as usize];
+                sum.constant += c * row.constant;
+                sum.free.extend(row.free.iter().map(|(d, v)| (*d, c * v)));
+                sum.held.extend(row.held.iter().map(|(d, v)| (*d, c * v)));
             }
         }
     }
-    sum.sort_by_key(|t| t.0);
-    sum.dedup_by(|later, first| {
+    like_terms_added(&mut sum.free);
+    like_terms_added(&mut sum.held);
+    sum
+}
+
+fn like_terms_added(terms: &mut Vec<(u32, f64)>) {
+    terms.sort_by_key(|t| t.0);
+    terms.dedup_by(|later, first| {
         let same = later.0 == first.0;
         if same {
             first.1 += later.1;
         }
         same
     });
-    sum.retain(|t| t.1 != 0.0);
-    (sum, constant)
+    terms.retain(|t| t.1 != 0.0);
 }

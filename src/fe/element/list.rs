@@ -5,12 +5,12 @@ use super::bush::bush_stiffness;
 use super::matrix::ElementMatrix;
 use super::rod::rod_stiffness;
 use super::shear_panel::shear_panel_stiffness;
-use super::shell::{CornerDirectors, many_grids, shared_normals, shell_stiffness};
+use super::shell::{many_grids, shell_stiffness};
 use super::solid::{solid_grids, solid_stiffness};
 use super::spring::spring_stiffness;
 use crate::fe::error::Refusal;
-use crate::fe::grid_frames::grid_axes;
-use crate::model::{GridIx, Mat3, Model};
+use crate::fe::prepared::Prepared;
+use crate::model::GridIx;
 
 /// One element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,25 +24,7 @@ pub(crate) enum ElementRef {
     ShearPanel(usize),
 }
 
-/// A model with what its elements need beyond it.
-#[derive(Debug)]
-pub(crate) struct Prepared<'a> {
-    pub(crate) model: &'a Model,
-    /// Displacement frames of the grids.
-    pub(crate) axes: Vec<Option<Mat3>>,
-    /// Directors by shell.
-    pub(crate) directors: Vec<CornerDirectors>,
-}
-
-impl<'a> Prepared<'a> {
-    pub(crate) fn new(model: &'a Model) -> Self {
-        Self {
-            model,
-            axes: grid_axes(model),
-            directors: shared_normals(model),
-        }
-    }
-
+impl Prepared<'_> {
     /// Every element with stiffness.
     pub(crate) fn elements(&self) -> Vec<ElementRef> {
         let m = self.model;

@@ -1,6 +1,7 @@
 //! Dense matrices of single elements.
 
-use crate::model::GridIx;
+use crate::linalg::Matrix6;
+use crate::model::{GridIx, Vec3};
 
 /// A symmetric matrix over six dofs of each grid, basic frame, row by row.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -39,4 +40,15 @@ impl ElementMatrix {
             .map(|row| row.iter().zip(u).map(|(a, b)| a * b).sum())
             .collect()
     }
+}
+
+/// 6 x 6 mass of a point at an offset, referred to its grid.
+pub(crate) fn point_mass(m: f64, offset: &Vec3) -> Matrix6<f64> {
+    let c = offset.cross_matrix();
+    let mut matrix = Matrix6::zeros();
+    matrix.fixed_view_mut::<3, 3>(0, 0).fill_diagonal(m);
+    matrix.fixed_view_mut::<3, 3>(0, 3).copy_from(&(c * -m));
+    matrix.fixed_view_mut::<3, 3>(3, 0).copy_from(&(c * m));
+    matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&(c * c * -m));
+    matrix
 }

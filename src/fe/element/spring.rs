@@ -1,7 +1,8 @@
 //! CELAS1, CELAS2: a spring between two dofs, or a dof and ground.
 
-use super::{ElementMatrix, Prepared};
+use super::ElementMatrix;
 use crate::fe::grid_frames::to_basic;
+use crate::fe::prepared::Prepared;
 
 /// Stiffness of spring `i`, basic frame; its dofs are those of the grids' displacement frames.
 pub(crate) fn spring_stiffness(prepared: &Prepared<'_>, i: usize) -> ElementMatrix {

@@ -3,14 +3,24 @@
 use super::ids::Ids;
 use super::tally::{Met, Tally};
 use crate::fe::BeamField;
+use crate::fe::element::beam::section_at;
+use crate::linalg::{Matrix, dense};
 use crate::model::{BeamIx, MaterialKind, Model};
 use nastran::results::columns;
 use nastran::results::{Block, Quantity, Rows};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// A station: x/xb and the strain at C D E F.
-type Station = (f64, [f64; 4]);
+/// Strain at a station.
+#[derive(Clone, Copy)]
+struct Station {
+    /// x/xb.
+    at: f64,
+    /// At C D E F.
+    points: [f64; 4],
+    /// Of the neutral axis; NaN where the rows do not hold it.
+    axial: f64,
+}
 
 /// Collects the bar and beam rows of one subcase, block by block.
 pub(super) struct BeamCollector<'m> {
@@ -40,7 +50,7 @@ impl<'m> BeamCollector<'m> {
         let mut last: Option<u32> = None;
         for (i, id) in rows.ids.iter().enumerate() {
             let new = last.replace(id.entity) != Some(id.entity);
-            // Elements that the model lacks are told of by `belongs`.
+            // Elements that the model lacks are told of by `deck_result_consistency`.
             let Some(ix) = ids.find(id.entity) else {
                 continue;
             };
@@ -65,9 +75,13 @@ impl<'m> BeamCollector<'m> {
                 _ => 1.0,
             };
             let mut found = stations(rows.columns, rows.row(i));
-            found
-                .iter_mut()
-                .for_each(|(_, s)| *s = s.map(|v| v * scale));
+            for s in &mut found {
+                s.points = s.points.map(|v| v * scale);
+                s.axial *= scale;
+                if s.axial.is_nan() {
+                    s.axial = axial_between(self.model, ix, s.at, s.points);
+                }
+            }
             let Ok(ix) = u32::try_from(ix) else { continue };
             let list = self.stations.entry(BeamIx(ix)).or_default();
             if new {
@@ -83,11 +97,55 @@ impl<'m> BeamCollector<'m> {
             self.stations.into_iter().unzip();
         stations
             .iter_mut()
-            .for_each(|s| s.sort_by(|a, b| a.0.total_cmp(&b.0)));
+            .for_each(|s| s.sort_by(|a, b| a.at.total_cmp(&b.at)));
+        let all = stations.iter();
         BeamField {
             elements: Arc::new(elements),
-            stations,
+            axial: all
+                .clone()
+                .map(|b| b.iter().map(|s| s.axial).collect())
+                .collect(),
+            stations: all
+                .map(|b| b.iter().map(|s| (s.at, s.points)).collect())
+                .collect(),
         }
+    }
+}
+
+/// Strain of the neutral axis from that of four points by the plane through them: the mean with the weights that put the points'
+/// centre onto the axis. NaN where no such weights are (points on a line that misses the axis).
+fn axial_between(model: &Model, beam: usize, station: f64, points: [f64; 4]) -> f64 {
+    /// Misses of the axis below this share of the points' spread are rounding.
+    const ON_AXIS: f64 = 1e-9;
+    let property = model
+        .beams
+        .get(beam)
+        .and_then(|b| model.beam_properties.get(b.property.us()));
+    let Some(section) = property.map(|p| section_at(&p.sections, station)) else {
+        return f64::NAN;
+    };
+    let off = section
+        .recovery
+        .map(|p| [p[0] - section.neutral[0], p[1] - section.neutral[1]]);
+    let size = off.iter().flatten().fold(0.0_f64, |a, v| a.max(v.abs()));
+    if size == 0.0 {
+        return points[0];
+    }
+    // Least squares of w with sum w = 1, sum w y = 0, sum w z = 0: w = A' (A A')^+ b.
+    let a = Matrix::from_fn(3, 4, |r, c| match r {
+        0 => 1.0,
+        r => off[c][r - 1] / size,
+    });
+    let Some(weights) = dense::shortest_solution(&a, &[1.0, 0.0, 0.0], ON_AXIS) else {
+        return f64::NAN;
+    };
+    let missed = (0..3).any(|r| {
+        let sum: f64 = (0..4).map(|c| a[(r, c)] * weights[c]).sum();
+        (sum - if r == 0 { 1.0 } else { 0.0 }).abs() > ON_AXIS
+    });
+    match missed {
+        true => f64::NAN,
+        false => weights.iter().zip(points).map(|(w, e)| w * e).sum(),
     }
 }
 
@@ -97,8 +155,16 @@ fn stations(names: &[&str], row: &[f64]) -> Vec<Station> {
         // s1a s2a s3a s4a axial smaxa smina mst s1b s2b s3b s4b smaxb sminb msc.
         [a1, a2, a3, a4, axial, _, _, _, b1, b2, b3, b4, _, _, _] if names == columns::BAR => {
             vec![
-                (0.0, [a1, a2, a3, a4].map(|s| s + axial)),
-                (1.0, [b1, b2, b3, b4].map(|s| s + axial)),
+                Station {
+                    at: 0.0,
+                    points: [a1, a2, a3, a4].map(|s| s + axial),
+                    axial,
+                },
+                Station {
+                    at: 1.0,
+                    points: [b1, b2, b3, b4].map(|s| s + axial),
+                    axial,
+                },
             ]
         }
         // x_xb s1 s2 s3 s4 axial smax smin ms.
@@ -106,17 +172,22 @@ fn stations(names: &[&str], row: &[f64]) -> Vec<Station> {
             let points = [s1, s2, s3, s4];
             let largest = points.into_iter().fold(f64::NEG_INFINITY, f64::max);
             let bending_alone = (largest + axial - smax).abs() < (largest - smax).abs();
-            vec![(
-                x,
-                if bending_alone {
-                    points.map(|s| s + axial)
-                } else {
-                    points
-                },
-            )]
+            let points = match bending_alone {
+                true => points.map(|s| s + axial),
+                false => points,
+            };
+            vec![Station {
+                at: x,
+                points,
+                axial,
+            }]
         }
         // x_xb sxc sxd sxe sxf smax smin mst msc.
-        [x, c, d, e, f, ..] if names == columns::BEAM => vec![(x, [c, d, e, f])],
+        [x, c, d, e, f, ..] if names == columns::BEAM => vec![Station {
+            at: x,
+            points: [c, d, e, f],
+            axial: f64::NAN,
+        }],
         _ => Vec::new(),
     }
 }

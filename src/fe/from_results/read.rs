@@ -5,7 +5,7 @@ use super::displacement::to_basic;
 use super::merge::merge;
 use super::shells::ShellCollector;
 use super::tally::{Met, Tally};
-use crate::fe::belongs::{Supports, check_belongs, check_coordinates};
+use crate::fe::deck_result_consistency::{Supports, check_consistency, check_coordinates};
 use crate::fe::{CaseResult, Solution};
 use crate::finding::{Finding, Severity};
 use crate::model::Model;
@@ -57,7 +57,7 @@ pub fn solution_from_results(
 ///
 /// Shell strain is at Z1 and Z2 in the output frame of [`crate::fe::shell_frame`]. A subcase without shell strain takes shell stress and
 /// the isotropic material; the same holds for bars. Blocks that can't be decoded become findings, and so does what
-/// [`check_belongs`] sees.
+/// [`check_consistency`] sees.
 pub fn solution_from_file(
     model: &Model,
     name: &str,
@@ -99,7 +99,7 @@ pub fn solution_from_file(
     solution.findings.extend(tally.findings(name));
     solution
         .findings
-        .extend(check_belongs(model, name, file, options.supports));
+        .extend(check_consistency(model, name, file, options.supports));
     if let Some((cards, _)) = file.cards() {
         // Grids and their frames are enough to compare coordinates.
         let cards = Cards {

@@ -65,7 +65,7 @@ impl<'m> ShellCollector<'m> {
             let target = match current {
                 Some((entity, target)) if entity == first.entity => target,
                 _ => {
-                    // Elements that the model lacks are told of by `belongs`.
+                    // Elements that the model lacks are told of by `deck_result_consistency`.
                     let target = ids
                         .find(first.entity)
                         .and_then(|ix| self.target(ix, block, &fibres, tally));

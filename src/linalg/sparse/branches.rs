@@ -1,4 +1,4 @@
-//! Branches of the elimination tree that have nothing to do with each other, and the crown above them: what can be substituted side by side.
+//! Branches of the elimination tree that have nothing to do with each other, and the top of the tree above them: what can be substituted side by side.
 
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use faer::sparse::linalg::cholesky::{SymbolicCholesky, SymbolicCholeskyRaw};
@@ -27,11 +27,11 @@ pub(super) struct Branches {
     /// Ascending.
     pub(super) list: Vec<Branch>,
     /// Supernodes above them, ascending.
-    pub(super) crown: Vec<usize>,
-    /// Place of each unknown among those of the crown; `OUTSIDE` elsewhere.
-    pub(super) in_crown: Vec<u32>,
-    /// Unknowns of the crown.
-    pub(super) n_crown: usize,
+    pub(super) top: Vec<usize>,
+    /// Place of each unknown among those of the top; `OUTSIDE` elsewhere.
+    pub(super) in_top: Vec<u32>,
+    /// Unknowns of the top.
+    pub(super) n_top: usize,
 }
 
 const OUTSIDE: u32 = u32::MAX;
@@ -44,11 +44,11 @@ impl Branches {
         let tree = Tree::of(nodes);
         let total: usize = tree.weight_of_roots();
         let most = (total as f64 * SHARE) as usize;
-        let (mut list, mut crown) = (Vec::new(), Vec::new());
+        let (mut list, mut top) = (Vec::new(), Vec::new());
         let mut open = tree.roots.clone();
         while let Some(s) = open.pop() {
             if tree.below[s] > most || tree.scattered {
-                crown.push(s);
+                top.push(s);
                 open.extend(&tree.children[s]);
             } else {
                 list.push(Branch {
@@ -59,20 +59,20 @@ impl Branches {
             }
         }
         list.sort_by_key(|b| b.supernodes.start);
-        crown.sort_unstable();
-        let mut in_crown = vec![OUTSIDE; nodes.nrows()];
-        let mut n_crown = 0;
-        for &s in &crown {
-            for place in &mut in_crown[tree.columns(nodes, s)] {
-                *place = n_crown as u32;
-                n_crown += 1;
+        top.sort_unstable();
+        let mut in_top = vec![OUTSIDE; nodes.nrows()];
+        let mut n_top = 0;
+        for &s in &top {
+            for place in &mut in_top[tree.columns(nodes, s)] {
+                *place = n_top as u32;
+                n_top += 1;
             }
         }
         Self {
             list,
-            crown,
-            in_crown,
-            n_crown,
+            top,
+            in_top,
+            n_top,
         }
     }
 

@@ -1,6 +1,7 @@
 //! The numeric factor: faer's supernodal Cholesky of the matrix scaled to a unit diagonal.
 
 use super::block_matrix::BlockMatrix;
+use super::error::FactorError;
 use super::symbolic::Symbolic;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, LltParams, LltRegularization};
@@ -14,20 +15,6 @@ use rayon::prelude::*;
 const TINY_PIVOT: f64 = 1e-13;
 /// Lost pivots that are looked for, each by one more factorisation.
 const MOST_LOST: usize = 12;
-
-/// Why a factor could not be made.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum FactorError {
-    /// A pivot is not a number: an entry of the matrix is infinite or not a number.
-    #[error("pivot of unknown {unknown} is not a number")]
-    NotANumber {
-        /// Caller's numbering.
-        unknown: usize,
-    },
-    /// More entries than indices count or memory holds.
-    #[error("the factor is too large for this machine's memory or for 32-bit indices")]
-    TooLarge,
-}
 
 /// L L' of the matrix scaled to a unit diagonal.
 #[derive(Debug)]

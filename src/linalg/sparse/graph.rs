@@ -94,3 +94,12 @@ impl BlockGraph {
         (of, count as usize)
     }
 }
+
+/// Inverse of a permutation.
+pub(super) fn inverse(order: &[u32]) -> Vec<u32> {
+    let mut position = vec![0; order.len()];
+    for (new, &old) in order.iter().enumerate() {
+        position[old as usize] = new as u32;
+    }
+    position
+}

@@ -5,6 +5,7 @@
 
 mod block_matrix;
 mod branches;
+mod error;
 mod factor;
 mod graph;
 mod order;
@@ -13,7 +14,8 @@ mod substitution;
 mod symbolic;
 
 pub use block_matrix::{BlockMatrix, DenseTerm};
-pub use factor::{Factor, FactorError};
+pub use error::FactorError;
+pub use factor::Factor;
 pub use graph::BlockGraph;
 pub use order::OrderingMethod;
 pub use solve::Refined;

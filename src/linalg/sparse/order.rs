@@ -1,7 +1,6 @@
 //! Elimination orders that keep the factor small: nested dissection against approximate minimum degree.
 
-use super::graph::BlockGraph;
-use super::symbolic::inverse;
+use super::graph::{BlockGraph, inverse};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;

@@ -1,6 +1,6 @@
 //! Forward and backward substitution by branches of the elimination tree.
 //!
-//! Branches are substituted side by side, some to a task; what they take from the unknowns of the crown is summed before the crown is
+//! Branches are substituted side by side, some to a task; what they take from the unknowns of the top is summed before the top is
 //! solved, with all threads on its large supernodes.
 
 use super::branches::{Branch, Branches};
@@ -35,12 +35,12 @@ impl Factor<'_> {
         };
         let factor = SupernodalLltRef::new(nodes, &self.values);
         let branches = &self.symbolic.branches;
-        let mut crown = Crown::taken(branches, factor, y, k);
+        let mut top = Top::taken(branches, factor, y, k);
         let mut bins = slices(branches, y, k);
         let sums: Vec<Vec<f64>> = bins
             .par_iter_mut()
             .map(|bin| {
-                let mut sum = vec![0.0; crown.rows.len()];
+                let mut sum = vec![0.0; top.rows.len()];
                 let mut work = Work::default();
                 for (branch, rows) in bin {
                     forward_branch(branches, branch, factor, (rows, &mut sum), k, &mut work);
@@ -48,10 +48,10 @@ impl Factor<'_> {
                 sum
             })
             .collect();
-        crown.add(&sums);
+        top.add(&sums);
         drop(sums);
-        crown.solve();
-        let above = &crown.rows;
+        top.solve();
+        let above = &top.rows;
         bins.par_iter_mut().for_each(|bin| {
             let mut work = Work::default();
             for (branch, rows) in bin {
@@ -59,7 +59,7 @@ impl Factor<'_> {
             }
         });
         drop(bins);
-        crown.given_back(y);
+        top.given_back(y);
     }
 }
 
@@ -92,7 +92,7 @@ fn slices<'a>(
         .collect()
 }
 
-/// Solves with the branch's supernodes upwards; what they take from rows of the crown goes into `sum`.
+/// Solves with the branch's supernodes upwards; what they take from rows of the top goes into `sum`.
 fn forward_branch(
     branches: &Branches,
     branch: &Branch,
@@ -112,14 +112,14 @@ fn forward_branch(
             let to = if row < end {
                 &mut rows[(row - first) * k..][..k]
             } else {
-                &mut sum[branches.in_crown[row] as usize * k..][..k]
+                &mut sum[branches.in_top[row] as usize * k..][..k]
             };
             subtract(to, &work.below, i, n);
         }
     }
 }
 
-/// Solves with the branch's supernodes downwards, the crown's unknowns being known.
+/// Solves with the branch's supernodes downwards, the top's unknowns being known.
 fn backward_branch(
     branches: &Branches,
     branch: &Branch,
@@ -138,7 +138,7 @@ fn backward_branch(
             let from = if row < end {
                 &rows[(row - first) * k..][..k]
             } else {
-                &above[branches.in_crown[row] as usize * k..][..k]
+                &above[branches.in_top[row] as usize * k..][..k]
             };
             put(&mut work.below, from, i, n);
         }
@@ -148,22 +148,22 @@ fn backward_branch(
 }
 
 /// The unknowns above all branches.
-struct Crown<'a> {
+struct Top<'a> {
     branches: &'a Branches,
     factor: SupernodalLltRef<'a, u32, f64>,
     rows: Vec<f64>,
     k: usize,
 }
 
-impl<'a> Crown<'a> {
+impl<'a> Top<'a> {
     fn taken(
         branches: &'a Branches,
         factor: SupernodalLltRef<'a, u32, f64>,
         y: &[f64],
         k: usize,
     ) -> Self {
-        let mut rows = Vec::with_capacity(branches.n_crown * k);
-        for &s in &branches.crown {
+        let mut rows = Vec::with_capacity(branches.n_top * k);
+        for &s in &branches.top {
             let node = factor.supernode(s);
             rows.extend(&y[node.start() * k..(node.start() + node.val().ncols()) * k]);
         }
@@ -177,7 +177,7 @@ impl<'a> Crown<'a> {
 
     fn given_back(&self, y: &mut [f64]) {
         let mut rest = self.rows.as_slice();
-        for &s in &self.branches.crown {
+        for &s in &self.branches.top {
             let node = self.factor.supernode(s);
             let (own, tail) = rest.split_at(node.val().ncols() * self.k);
             y[node.start() * self.k..][..own.len()].copy_from_slice(own);
@@ -193,32 +193,32 @@ impl<'a> Crown<'a> {
     }
 
     fn solve(&mut self) {
-        let (k, in_crown) = (self.k, &self.branches.in_crown);
+        let (k, in_top) = (self.k, &self.branches.in_top);
         let rows = &mut self.rows;
         let mut work = Work::default();
         let par = |node: &SupernodeRef<'_, u32, f64>| {
             let large = node.val().nrows() * node.val().ncols() > SHARED;
             if large { Par::rayon(0) } else { Par::Seq }
         };
-        for &s in &self.branches.crown {
+        for &s in &self.branches.top {
             let node = self.factor.supernode(s);
-            let at = in_crown[node.start()] as usize * k;
+            let at = in_top[node.start()] as usize * k;
             forward(node, &mut rows[at..], k, &mut work, par(&node));
             let n = node.pattern().len();
             for (i, &row) in node.pattern().iter().enumerate() {
-                let to = &mut rows[in_crown[row as usize] as usize * k..][..k];
+                let to = &mut rows[in_top[row as usize] as usize * k..][..k];
                 subtract(to, &work.below, i, n);
             }
         }
-        for &s in self.branches.crown.iter().rev() {
+        for &s in self.branches.top.iter().rev() {
             let node = self.factor.supernode(s);
             let n = node.pattern().len();
             work.below.resize(n * k, 0.0);
             for (i, &row) in node.pattern().iter().enumerate() {
-                let from = &rows[in_crown[row as usize] as usize * k..][..k];
+                let from = &rows[in_top[row as usize] as usize * k..][..k];
                 put(&mut work.below, from, i, n);
             }
-            let at = in_crown[node.start()] as usize * k;
+            let at = in_top[node.start()] as usize * k;
             backward(node, &mut rows[at..], k, &mut work, par(&node));
         }
     }

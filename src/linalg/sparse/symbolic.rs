@@ -1,8 +1,8 @@
 //! The shape of the factor: elimination order, place of every unknown, faer's symbolic factorisation.
 
 use super::branches::Branches;
-use super::factor::FactorError;
-use super::graph::BlockGraph;
+use super::error::FactorError;
+use super::graph::{BlockGraph, inverse};
 use super::order::{EliminationForest, OrderingMethod, candidates};
 use faer::Side;
 use faer::sparse::SymbolicSparseColMatRef;
@@ -109,15 +109,6 @@ fn running(sizes: impl Iterator<Item = u8>) -> Vec<usize> {
         start.push(total);
     }
     start
-}
-
-/// Inverse of a permutation.
-pub(super) fn inverse(order: &[u32]) -> Vec<u32> {
-    let mut position = vec![0; order.len()];
-    for (new, &old) in order.iter().enumerate() {
-        position[old as usize] = new as u32;
-    }
-    position
 }
 
 /// Columns of the upper triangle in elimination order: every unknown of an earlier neighbour, and the group's own down to the diagonal.

@@ -95,7 +95,7 @@ fn the_solution_of_many_right_hand_sides_satisfies_the_equations() {
 }
 
 #[test]
-fn every_unknown_is_in_one_branch_or_the_crown_and_threads_change_nothing() {
+fn every_unknown_is_in_one_branch_or_the_top_and_threads_change_nothing() {
     let (side, m) = (60, 3);
     let (graph, sizes, terms) = lattice(side, m, true);
     let symbolic = Symbolic::analyse(&graph, &sizes).unwrap();
@@ -104,14 +104,14 @@ fn every_unknown_is_in_one_branch_or_the_crown_and_threads_change_nothing() {
     for b in &branches.list {
         times[b.unknowns.clone()].iter_mut().for_each(|t| *t += 1);
     }
-    let crown = branches.in_crown.iter().filter(|p| **p != u32::MAX);
-    assert_eq!(crown.count(), branches.n_crown);
-    for (t, place) in times.iter_mut().zip(&branches.in_crown) {
+    let top = branches.in_top.iter().filter(|p| **p != u32::MAX);
+    assert_eq!(top.count(), branches.n_top);
+    for (t, place) in times.iter_mut().zip(&branches.in_top) {
         *t += usize::from(*place != u32::MAX);
     }
     assert!(times.iter().all(|t| *t == 1));
-    // The lattice is divided at all, and the crown is the smaller part.
-    assert!(branches.list.len() > 8 && branches.n_crown < n / 2);
+    // The lattice is divided at all, and the top is the smaller part.
+    assert!(branches.list.len() > 8 && branches.n_top < n / 2);
     let matrix = assemble(&symbolic, &graph, &terms, m);
     let factor = Factor::new(&symbolic, matrix).unwrap();
     let solved = |threads: usize| {

@@ -1,11 +1,15 @@
-//! Cross-sections of PBARL and PBEAML: [`shape`] knows the types of the manual, [`area`] integrates over their parts,
+//! Cross-sections of PBARL and PBEAML: [`shape`] knows the types of the manual ([`massive`], [`open`]), [`area`] integrates over their parts,
 //! [`thin`] finds the shear centre of open walls.
 
 mod area;
+mod massive;
+mod open;
+mod parts;
 mod shape;
 mod thin;
 
 #[cfg(test)]
 mod tests;
 
-pub(super) use shape::{SectionFault, Shape, bar_section};
+pub(super) use parts::Shape;
+pub(super) use shape::{SectionFault, bar_section};

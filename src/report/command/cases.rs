@@ -25,8 +25,9 @@ impl Report for Outcome<UnitLoadDeck> {
     fn words(&self) -> String {
         let n = self.subcases.len();
         format!(
-            "unit_loads.bdf: {n} subcase{}\n",
-            if n == 1 { "" } else { "s" }
+            "unit_loads.bdf: {n} subcase{}; the structure is {}\n",
+            if n == 1 { "" } else { "s" },
+            self.support
         )
     }
 }

@@ -5,6 +5,7 @@ mod cases;
 mod check;
 mod identify;
 mod init;
+mod modes;
 mod pages;
 mod payload;
 mod place;

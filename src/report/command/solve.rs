@@ -35,9 +35,12 @@ impl Report for Outcome<SolvedCases> {
             self.dofs,
             self.factor_nonzeros
         );
+        if let Some(support) = &self.support {
+            text.push_str(&format!("the structure is {support}\n"));
+        }
         if let Some(first) = self.elastic_modes_hz.first() {
             text.push_str(&format!(
-                "first elastic mode of the free structure: {first:.4} per unit of time\n"
+                "first elastic mode: {first:.4} per unit of time\n"
             ));
         }
         text

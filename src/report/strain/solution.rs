@@ -1,6 +1,6 @@
 //! The page of `solve`: what was solved, how the loads balance, how slow loads must be.
 
-use crate::fe::{Balance, Solution, SolveReport};
+use crate::fe::{Balance, Reaction, Reactions, Solution, SolveReport};
 use crate::finding::Finding;
 use crate::report::page::{Block, Page, Section, number, table_section};
 use crate::report::scene::{Scene, scene_section};
@@ -41,6 +41,9 @@ pub fn solution_page(
             ],
         ));
     }
+    if !report.reactions.is_empty() {
+        sections.push(reactions_section(&report.reactions));
+    }
     if !report.modes.is_empty() {
         let rows: Vec<Vec<String>> = (1..)
             .zip(&report.modes)
@@ -49,12 +52,43 @@ pub fn solution_page(
         sections.push(Section::new(
             "Elastic modes",
             vec![
-                Block::Text("Of the free structure. Loads recovered by these strains must stay below a third of the first.".into()),
+                Block::Text("Of the structure as it is held. Loads recovered by these strains must stay below a third of the first.".into()),
                 Block::table(&["mode", "Hz"], rows),
             ],
         ));
     }
     Page::new(title, "Solution of the built-in solver", findings, sections)
+}
+
+/// Grids shown of a support: the rest stands in `result.json`.
+const GRIDS_SHOWN: usize = 12;
+
+/// Resultants of what acts and of the reactions, and the grids that carry most.
+fn reactions_section(all: &[Reactions]) -> Section {
+    let mut rows = Vec::new();
+    let mut row = |first: String, what: String, six: &[f64; 6]| {
+        let mut row = vec![first, what];
+        row.extend(six.iter().map(|v| number(*v)));
+        rows.push(row);
+    };
+    for r in all {
+        row(r.subcase.to_string(), "acts".into(), &r.applied);
+        row(String::new(), "reactions".into(), &r.total);
+        let mut grids: Vec<&Reaction> = r.grids.iter().collect();
+        let size = |g: &Reaction| g.force[..3].iter().map(|v| v * v).sum::<f64>();
+        grids.sort_by(|a, b| size(b).total_cmp(&size(a)));
+        for g in grids.into_iter().take(GRIDS_SHOWN) {
+            row(String::new(), format!("grid {}", g.grid), &g.force);
+        }
+    }
+    let head = ["subcase", "", "FX", "FY", "FZ", "MX", "MY", "MZ"];
+    Section::new(
+        "Reactions",
+        vec![
+            Block::Text("Of the supports, basic frame, in the deck's units; resultants about its origin, then the grids that carry most.".into()),
+            Block::table(&head, rows),
+        ],
+    )
 }
 
 fn model_rows(report: &SolveReport) -> Vec<Vec<String>> {

@@ -2,10 +2,12 @@
 
 use super::super::faults::Collector;
 use super::super::raw::{RawLoad, RawModel, S};
+use super::super::shapes::NumberOrWord;
 use super::super::spanned::Spanned;
 use super::super::suggest;
 use super::super::types::*;
 use crate::app::fault::Fault;
+use crate::fe::SupportChoice;
 
 pub(super) fn model(c: &mut Collector, raw: Option<&Spanned<RawModel>>) -> Option<ModelFiles> {
     let section = raw?;
@@ -19,8 +21,38 @@ pub(super) fn model(c: &mut Collector, raw: Option<&Spanned<RawModel>>) -> Optio
     Some(ModelFiles {
         deck: c.named(&raw.deck, "model.deck")?,
         results,
+        support: support(c, &raw.support),
+        support_line: match &raw.support {
+            Some(s) => c.line(s),
+            None => c.line(section),
+        },
     })
 }
+
+/// `"deck"`, `"free"`, or the id of an SPC set.
+fn support(c: &mut Collector, raw: &S<NumberOrWord>) -> SupportChoice {
+    let Some(at) = raw else {
+        return SupportChoice::Deck;
+    };
+    match at.get_ref() {
+        NumberOrWord::Word(w) if w == "deck" => return SupportChoice::Deck,
+        NumberOrWord::Word(w) if w == "free" => return SupportChoice::Free,
+        NumberOrWord::Number(n) if n.fract() == 0.0 && *n >= 1.0 && *n <= f64::from(u32::MAX) => {
+            return SupportChoice::Set(*n as u32);
+        }
+        NumberOrWord::Number(n) => {
+            let wrong = format!("`{n}` is no id of an SPC set");
+            c.fault(at, "model.support", wrong, SUPPORT_REMEDY);
+        }
+        NumberOrWord::Word(w) => {
+            let wrong = format!("`{w}`, expected \"deck\", \"free\" or the id of an SPC set");
+            c.fault(at, "model.support", wrong, SUPPORT_REMEDY);
+        }
+    }
+    SupportChoice::Deck
+}
+
+const SUPPORT_REMEDY: &str = "write \"deck\" for the set that case control selects, \"free\" for inertia relief, or the set's id";
 
 pub(super) fn loads(c: &mut Collector, raw: &[Spanned<RawLoad>]) -> Vec<JobLoad> {
     let mut out: Vec<JobLoad> = Vec::new();

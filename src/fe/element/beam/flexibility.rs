@@ -24,7 +24,7 @@ pub(super) struct LocalBeam<'a> {
 }
 
 /// Properties between stations, linear in x.
-pub(super) fn section_at(sections: &[(f64, Section)], xi: f64) -> Section {
+pub(crate) fn section_at(sections: &[(f64, Section)], xi: f64) -> Section {
     let last = sections.last().map(|s| s.1).unwrap_or_default();
     let Some(i) = sections.windows(2).position(|w| xi <= w[1].0) else {
         return last;

@@ -2,8 +2,7 @@
 
 use super::flexibility::section_at;
 use super::of_model::{length, to_element};
-use crate::fe::element::ElementMatrix;
-use crate::fe::mass::point_mass;
+use crate::fe::element::{ElementMatrix, point_mass};
 use crate::linalg::{Matrix6, SMatrix, Vector3};
 use crate::model::{Beam, Model, Section};
 

@@ -155,7 +155,18 @@ pub(crate) fn beam_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, R
     })
 }
 
-/// Mechanical axial strain at C, D, E, F of the stations of beam `i` (ends of a CBAR, all sections of a CBEAM) from displacements (basic).
+/// Mechanical strain of a beam at one of its stations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct StationStrain {
+    /// x/xb.
+    pub(crate) station: f64,
+    /// Along the axis at C, D, E, F.
+    pub(crate) points: [f64; 4],
+    /// Of the neutral axis.
+    pub(crate) axial: f64,
+}
+
+/// Mechanical axial strain at C, D, E, F and at the neutral axis of the stations of beam `i` (ends of a CBAR, all sections of a CBEAM) from displacements (basic).
 ///
 /// # Errors
 /// As `beam_stiffness`.
@@ -164,7 +175,7 @@ pub(crate) fn beam_strain(
     i: usize,
     u: &[[f64; 6]],
     interior: &Interior,
-) -> Result<Vec<(f64, [f64; 4])>, Refusal> {
+) -> Result<Vec<StationStrain>, Refusal> {
     let beam = &model.beams[i];
     let (local, property) = local(model, beam)?;
     let grid: Vec<f64> = beam.grids.iter().flat_map(|g| u[g.us()]).collect();
@@ -187,7 +198,12 @@ pub(crate) fn beam_strain(
                 force[11] + arm * force[7] + inside[5],
             );
             let c = local.compliance(&s) * at_section;
-            (xi, s.recovery.map(|[y, z]| c[0] + z * c[1] - y * c[2]))
+            let at = |[y, z]: [f64; 2]| c[0] + z * c[1] - y * c[2];
+            StationStrain {
+                station: xi,
+                points: s.recovery.map(at),
+                axial: at(s.neutral),
+            }
         })
         .collect())
 }

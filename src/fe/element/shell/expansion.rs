@@ -1,31 +1,9 @@
 //! Thermal expansion of shells: stress resultants of a held shell and free strain at its surfaces.
 
 use super::laminate::{Lamination, placed};
-use super::law::{plane_stress, rotate};
+use super::plane_stress::{plane_stress, rotate};
+use super::types::{Expansion, Heat};
 use crate::model::{Material, MaterialKind, Model, ShellKind, ShellProperty};
-
-/// Thermal strain of a shell in its output frame.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Expansion {
-    /// Membrane force per length: of a unit rise of temperature, and of a unit gradient dT/dz.
-    pub(crate) force: [[f64; 3]; 2],
-    /// Moment per length (integral of z sigma), likewise.
-    pub(crate) moment: [[f64; 3]; 2],
-    /// Free strain per unit rise at the surfaces Z1 and Z2: exx, eyy, gxy (engineering shear).
-    pub(crate) surface: [[f64; 3]; 2],
-    /// Temperature where thermal strain counts from.
-    pub(crate) tref: f64,
-}
-
-/// What a load case heats a shell by.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Heat {
-    pub(crate) expansion: Expansion,
-    /// Rise of the reference plane at the corners.
-    pub(crate) rise: [f64; 4],
-    /// dT/dz along the element normal.
-    pub(crate) gradient: f64,
-}
 
 impl Heat {
     /// Membrane force and moment per length of the held shell where the rise is `rise`.

@@ -4,7 +4,7 @@
 //! strains linear in z are e_rr = g_r . u,r + z (g_r . q,r + D,r . u,r) with q = sum h_k theta_k x d_k, and so on. Every one of
 //! them vanishes for u_k = c + w x x_k, theta_k = w, whatever the shape: a x (b x c) products cancel in pairs.
 
-use super::{BadShape, ShellLaw};
+use super::types::{BadShape, ShellLaw, StrainRows};
 use crate::model::Vec3;
 
 /// A linear form on the element's unknowns.
@@ -316,6 +316,12 @@ pub(super) fn shift<const M: usize>(row: &mut Row<M>, offset: &Vec3) {
         let u = Vec3::new(row[6 * k], row[6 * k + 1], row[6 * k + 2]);
         put(row, 6 * k + 3, &offset.cross(&u));
     }
+}
+
+/// The same for the rows of strain at a place.
+pub(super) fn shift_rows<const M: usize>(rows: &mut StrainRows<M>, offset: &Vec3) {
+    let all = rows.membrane.iter_mut().chain(&mut rows.curvature);
+    all.for_each(|row| shift(row, offset));
 }
 
 /// The same for a stiffness: L' K L.

@@ -5,7 +5,8 @@
 //! Jones, Mechanics of Composite Materials, chapter 4; MSC Nastran Linear Static Analysis User's Guide, composites: transverse shear
 //! flexibility by the energy of the shear stress that balances bending.
 
-use super::law::{ShellLaw, plane_stress, rotate, rotate_shear, transverse_shear};
+use super::plane_stress::{RIGID_SHEAR, plane_stress, rotate, rotate_shear, transverse_shear};
+use super::types::ShellLaw;
 use crate::model::{Model, ModelPly};
 
 /// Three-point Gauss rule on 0..1: exact for the square of a parabola.
@@ -157,7 +158,7 @@ fn transverse(plies: &[Placed], i: usize) -> f64 {
         g += e(p) * (high * high - low * low) / 2.0;
     }
     let thickness = plies.iter().map(|p| p.z[1] - p.z[0]).sum::<f64>();
-    let stiffest = super::law::RIGID_SHEAR * rigid * thickness;
+    let stiffest = RIGID_SHEAR * rigid * thickness;
     if flexibility > 0.0 {
         (inertia * inertia / flexibility).min(stiffest)
     } else {

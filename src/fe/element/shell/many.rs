@@ -7,9 +7,9 @@
 //! A mid-side grid that the card leaves out lies halfway between its corners and moves with their mean.
 
 use super::expansion::{expansion, turn_strain};
-use super::{
-    BadShape, Heat, Parts, ShellInput, ShellLaw, ShellMatrices, Sides, output_frame, quad4,
-};
+use super::output_frame::output_frame;
+use super::quad4::quad4;
+use super::types::{BadShape, Heat, Parts, ShellInput, ShellLaw, ShellMatrices, Sides};
 use crate::linalg::{DMatrix, DVector};
 use crate::model::{GridIx, Mat3, Model, Shell, ShellProperty, Vec3, face_edges, face_functions};
 

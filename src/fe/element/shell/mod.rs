@@ -15,14 +15,15 @@ mod many;
 mod normals;
 mod of_model;
 mod output_frame;
+mod plane_stress;
 mod quad4;
 mod tria3;
+mod types;
 
 #[cfg(test)]
 pub(crate) use area::corner_products;
-pub(crate) use expansion::{Heat, in_axes_at};
+pub(crate) use expansion::in_axes_at;
 pub(crate) use laminate::Lamination;
-pub(crate) use law::ShellLaw;
 pub(crate) use many::{linear_part, many_grids, over_face};
 pub(crate) use normals::{CornerDirectors, shared_normals};
 pub(crate) use of_model::{
@@ -30,72 +31,13 @@ pub(crate) use of_model::{
     shell_thermal_force, surfaces,
 };
 pub(crate) use output_frame::output_frame;
+#[cfg(test)]
 pub(crate) use quad4::quad4;
+#[cfg(test)]
 pub(crate) use tria3::tria3;
-
-use crate::model::Vec3;
-
-/// Everything a shell's stiffness and strain depend on.
-#[derive(Clone, Debug)]
-pub(crate) struct ShellInput<'a, const N: usize> {
-    /// Corners, basic frame.
-    pub(crate) x: [Vec3; N],
-    /// Unit director at each corner.
-    pub(crate) directors: [Vec3; N],
-    /// Thickness at each corner.
-    pub(crate) thickness: [f64; N],
-    /// Material in the element's output frame.
-    pub(crate) law: &'a ShellLaw,
-    /// Offset of the reference plane along the element normal.
-    pub(crate) zoffs: f64,
-    /// K6ROT.
-    pub(crate) k6rot: f64,
-    /// What is wanted.
-    pub(crate) parts: Parts,
-    /// What rotations about the normal do to the sides.
-    pub(crate) sides: Sides,
-    /// Temperatures, where forces of thermal strain are wanted.
-    pub(crate) heat: Option<&'a Heat>,
-}
-
-/// What rotations about the normal do to the sides of a shell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Sides {
-    /// Nothing: they stay straight.
-    Straight,
-    /// They bend as a beam under its end rotations (Allman 1984; CQUADR and CTRIAR).
-    Bending,
-}
-
-/// What is wanted of a shell: forming its stiffness is most of the work.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Parts {
-    All,
-    /// Strain rows and thermal forces; the stiffness stays zero.
-    WithoutStiffness,
-}
-
-/// Stiffness and strain of a shell with `M` = 6 N unknowns, basic frame.
-#[derive(Clone, Debug)]
-pub(crate) struct ShellMatrices<const N: usize, const M: usize> {
-    pub(crate) stiffness: [[f64; M]; M],
-    pub(crate) centre: StrainRows<M>,
-    pub(crate) corners: [StrainRows<M>; N],
-    /// Forces that hold the thermal strain back, sign reversed: the load it acts as.
-    pub(crate) thermal: [f64; M],
-}
-
-/// Rows that turn an element's displacements into strain in its output frame: exx, eyy, gxy (engineering shear); strain at
-/// height z above the reference plane is `membrane + z * curvature`.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct StrainRows<const M: usize> {
-    pub(crate) membrane: [[f64; M]; 3],
-    pub(crate) curvature: [[f64; M]; 3],
-}
-
-/// The shell can't be formed: corners coincide, lie on a line or make a re-entrant shape.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct BadShape;
+#[cfg(test)]
+pub(crate) use types::{BadShape, Heat, ShellInput, ShellLaw, ShellMatrices, Sides};
+pub(crate) use types::{Parts, StrainRows};
 
 #[cfg(test)]
 mod tests;

@@ -1,12 +1,14 @@
 //! Shells of a model: stiffness, strain rows, mass by corner.
 
 use super::expansion::expansion;
-use super::many::{many_grids, many_shell, over_surface};
-use super::{
-    BadShape, Heat, Parts, ShellInput, ShellLaw, Sides, StrainRows, output_frame, quad4, tria3,
-};
-use crate::fe::element::{ElementMatrix, Prepared};
+use super::many::{ManyShell, many_grids, many_shell, over_surface};
+use super::output_frame::output_frame;
+use super::quad4::quad4;
+use super::tria3::tria3;
+use super::types::{BadShape, Heat, Parts, ShellInput, ShellLaw, ShellMatrices, Sides, StrainRows};
+use crate::fe::element::ElementMatrix;
 use crate::fe::error::Refusal;
+use crate::fe::prepared::Prepared;
 use crate::fe::temperature::Temperatures;
 use crate::model::{Model, Shell, ShellKind, Vec3};
 use nastran::cards::ShellShape;
@@ -17,10 +19,10 @@ const STABLE_DRILLING: f64 = 1e3;
 /// What a shell gives, whatever its number of corners.
 #[derive(Clone, Debug)]
 pub(crate) enum AnyShell {
-    Quad(Box<super::ShellMatrices<4, 24>>),
-    Tria(Box<super::ShellMatrices<3, 18>>),
+    Quad(Box<ShellMatrices<4, 24>>),
+    Tria(Box<ShellMatrices<3, 18>>),
     /// With mid-side grids.
-    Many(Box<super::many::ManyShell>),
+    Many(Box<ManyShell>),
 }
 
 fn corners<const N: usize>(model: &Model, shell: &Shell) -> [Vec3; N] {

@@ -2,9 +2,10 @@
 
 use super::kinematics::{
     Local, Row, Section, Shape, Tangents, add_bending_sides, add_thermal, curvature, drilling,
-    membrane, shear, shift, shift_stiffness,
+    membrane, shear, shift, shift_rows, shift_stiffness,
 };
-use super::{BadShape, Parts, ShellInput, ShellMatrices, Sides, StrainRows, output_frame};
+use super::output_frame::output_frame;
+use super::types::{BadShape, Parts, ShellInput, ShellMatrices, Sides, StrainRows};
 use crate::linalg::Matrix4;
 
 const CORNERS: [(f64, f64); 4] = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
@@ -43,6 +44,42 @@ struct Point {
     /// Strains xx, yy, xy of the four incompatible modes.
     modes: [[f64; 4]; 3],
     t: f64,
+}
+
+impl Point {
+    /// Adds membrane, bending and drilling stiffness, and the load of thermal strain.
+    fn add(&self, input: &ShellInput<'_, 4>, stiffness: &mut [Row<24>; 24], thermal: &mut Row<24>) {
+        if let Some(heat) = input.heat {
+            let rise = self
+                .shape
+                .h
+                .iter()
+                .zip(&heat.rise)
+                .map(|(h, t)| h * t)
+                .sum();
+            add_thermal(
+                thermal,
+                self.local.area,
+                heat.resultants(rise),
+                &self.membrane,
+                &self.curvature,
+            );
+        }
+        let section = Section {
+            law: input.law,
+            t: self.t,
+            k6rot: input.k6rot,
+        };
+        if input.parts == Parts::All {
+            section.add(
+                stiffness,
+                self.local.area,
+                &self.membrane,
+                &self.curvature,
+                &drilling(&self.local, &self.shape),
+            );
+        }
+    }
 }
 
 /// Stiffness and strain of a four-node shell.
@@ -134,32 +171,27 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
     }
     let mut thermal = [0.0; 24];
     for p in &points {
-        if let Some(heat) = input.heat {
-            let rise = p.shape.h.iter().zip(&heat.rise).map(|(h, t)| h * t).sum();
-            add_thermal(
-                &mut thermal,
-                p.local.area,
-                heat.resultants(rise),
-                &p.membrane,
-                &p.curvature,
-            );
-        }
-        let section = Section {
-            law: input.law,
-            t: p.t,
-            k6rot: input.k6rot,
-        };
-        if input.parts == Parts::All {
-            section.add(
-                &mut stiffness,
-                p.local.area,
-                &p.membrane,
-                &p.curvature,
-                &drilling(&p.local, &p.shape),
-            );
-        }
+        p.add(input, &mut stiffness, &mut thermal);
     }
-    let mut corners = CORNERS.map(|(a, b)| {
+    let mut corners = corner_rows(&points);
+    let mut centre = centre_rows;
+    if input.zoffs != 0.0 {
+        shift_stiffness(&mut stiffness, &offset);
+        shift(&mut thermal, &offset);
+        let all = corners.iter_mut().chain([&mut centre]);
+        all.for_each(|rows| shift_rows(rows, &offset));
+    }
+    Ok(ShellMatrices {
+        stiffness,
+        centre,
+        corners,
+        thermal,
+    })
+}
+
+/// Strain at the corners, bilinear through the Gauss points.
+fn corner_rows(points: &[Point]) -> [StrainRows<24>; 4] {
+    CORNERS.map(|(a, b)| {
         let mut rows = StrainRows {
             membrane: [[0.0; 24]; 3],
             curvature: [[0.0; 24]; 3],
@@ -175,23 +207,6 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
             }
         }
         rows
-    });
-    let mut centre = centre_rows;
-    if input.zoffs != 0.0 {
-        shift_stiffness(&mut stiffness, &offset);
-        shift(&mut thermal, &offset);
-        for rows in corners.iter_mut().chain([&mut centre]) {
-            rows.membrane
-                .iter_mut()
-                .chain(&mut rows.curvature)
-                .for_each(|row| shift(row, &offset));
-        }
-    }
-    Ok(ShellMatrices {
-        stiffness,
-        centre,
-        corners,
-        thermal,
     })
 }
 

@@ -1,4 +1,5 @@
 use super::*;
+use crate::model::Vec3;
 
 fn steel() -> ShellLaw {
     let (e, nu) = (210_000.0, 0.3);

@@ -2,9 +2,10 @@
 
 use super::kinematics::{
     Local, Row, Section, Shape, Tangents, add_bending_sides, add_thermal, curvature, drilling,
-    membrane, shear, shift, shift_stiffness,
+    membrane, shear, shift, shift_rows, shift_stiffness,
 };
-use super::{BadShape, Parts, ShellInput, ShellMatrices, Sides, StrainRows, output_frame};
+use super::output_frame::output_frame;
+use super::types::{BadShape, Parts, ShellInput, ShellMatrices, Sides, StrainRows};
 use crate::linalg::SMatrix;
 
 /// Degree 5 on the triangle (Radon 1948): r, s, weight; weights sum to 1/2.
@@ -80,14 +81,14 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
         }
         rows
     };
-    let (a, b, c) = (
-        covariant(1.0 / 6.0, 2.0 / 3.0),
-        covariant(2.0 / 3.0, 1.0 / 6.0),
-        covariant(1.0 / 6.0, 1.0 / 6.0),
-    );
-    let e = covariant(third - 2.0 * TYING, third + TYING);
-    let f = covariant(third + TYING, third + TYING);
-    let g = covariant(third + TYING, third - 2.0 * TYING);
+    let assumed = AssumedShear {
+        a: covariant(1.0 / 6.0, 2.0 / 3.0),
+        b: covariant(2.0 / 3.0, 1.0 / 6.0),
+        c: covariant(1.0 / 6.0, 1.0 / 6.0),
+        e: covariant(third - 2.0 * TYING, third + TYING),
+        f: covariant(third + TYING, third + TYING),
+        g: covariant(third + TYING, third - 2.0 * TYING),
+    };
 
     let mut big = [[0.0; WITH_BUBBLE]; WITH_BUBBLE];
     let mut thermal = [0.0; 18];
@@ -116,14 +117,7 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
             bend[1][18 + k] = fs * bs[k];
             bend[2][18 + k] = fs * br[k] + fr * bs[k];
         }
-        let mut rows_r = [0.0; WITH_BUBBLE];
-        let mut rows_s = [0.0; WITH_BUBBLE];
-        for i in 0..WITH_BUBBLE {
-            let twist = f[0][i] - g[0][i] - f[1][i] + e[1][i];
-            let mean = (c[0][i] + c[1][i]) / 3.0;
-            rows_r[i] = (2.0 * b[0][i] - b[1][i]) / 3.0 + mean + twist * (3.0 * s - 1.0) / 3.0;
-            rows_s[i] = (2.0 * a[1][i] - a[0][i]) / 3.0 + mean + twist * (1.0 - 3.0 * r) / 3.0;
-        }
+        let [rows_r, rows_s] = assumed.at(r, s);
         if let Some(heat) = input.heat {
             // The bubble takes no part: the integral of its curvature vanishes.
             let rise = shape.h.iter().zip(&heat.rise).map(|(h, t)| h * t).sum();
@@ -156,11 +150,7 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
     if input.zoffs != 0.0 {
         shift_stiffness(&mut stiffness, &offset);
         shift(&mut thermal, &offset);
-        centre
-            .membrane
-            .iter_mut()
-            .chain(&mut centre.curvature)
-            .for_each(|row| shift(row, &offset));
+        shift_rows(&mut centre, &offset);
     }
     Ok(ShellMatrices {
         stiffness,
@@ -168,6 +158,32 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
         corners: [centre; 3],
         thermal,
     })
+}
+
+/// Covariant transverse shear strains at the tying points of MITC3+, and their interpolation.
+struct AssumedShear {
+    a: [Row<WITH_BUBBLE>; 2],
+    b: [Row<WITH_BUBBLE>; 2],
+    c: [Row<WITH_BUBBLE>; 2],
+    e: [Row<WITH_BUBBLE>; 2],
+    f: [Row<WITH_BUBBLE>; 2],
+    g: [Row<WITH_BUBBLE>; 2],
+}
+
+impl AssumedShear {
+    /// Along r and s at a point.
+    fn at(&self, r: f64, s: f64) -> [Row<WITH_BUBBLE>; 2] {
+        let Self { a, b, c, e, f, g } = self;
+        let mut rows_r = [0.0; WITH_BUBBLE];
+        let mut rows_s = [0.0; WITH_BUBBLE];
+        for i in 0..WITH_BUBBLE {
+            let twist = f[0][i] - g[0][i] - f[1][i] + e[1][i];
+            let mean = (c[0][i] + c[1][i]) / 3.0;
+            rows_r[i] = (2.0 * b[0][i] - b[1][i]) / 3.0 + mean + twist * (3.0 * s - 1.0) / 3.0;
+            rows_s[i] = (2.0 * a[1][i] - a[0][i]) / 3.0 + mean + twist * (1.0 - 3.0 * r) / 3.0;
+        }
+        [rows_r, rows_s]
+    }
 }
 
 /// Derivatives of the parabola of each side, four times the product of its corners' functions.

@@ -66,7 +66,7 @@ impl SolidInput {
     }
 
     /// 1, or -1 for an element numbered as its mirror image: the same body, which solvers accept.
-    fn hand(&self) -> f64 {
+    pub(super) fn hand(&self) -> f64 {
         let centre = &Tables::of(self.shape).centre;
         self.jacobian(&centre.functions(self.shape, &self.mids))
             .determinant()

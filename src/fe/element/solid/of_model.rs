@@ -70,6 +70,11 @@ fn formed(model: &Model, solid: &Solid) -> Result<(SolidInput, SolidLaw), Refusa
     Ok((input, law))
 }
 
+/// Whether solid `i` is numbered as its mirror image, inside out.
+pub(crate) fn is_inverted(model: &Model, i: usize) -> bool {
+    input(model, &model.solids[i]).is_ok_and(|input| input.hand() < 0.0)
+}
+
 /// Stiffness of solid `i`, basic frame; rotations are without stiffness.
 ///
 /// # Errors

@@ -20,7 +20,7 @@ use crate::model::Model;
 use nastran::results::ResultsFile;
 
 /// Every check that needs no more than the tables of one result file; [`check_coordinates`] compares with its geometry.
-pub fn check_belongs(
+pub fn check_consistency(
     model: &Model,
     name: &str,
     file: &ResultsFile,

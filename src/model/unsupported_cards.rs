@@ -2,7 +2,7 @@
 //!
 //! Dampers, plot elements, heat transfer, output, optimisation and dynamics change nothing in linear statics and are not listed.
 
-use super::types::Uncarried;
+use super::types::UnsupportedCard;
 use nastran::bdf::Deck;
 
 /// Stiffness, mass and constraints.
@@ -30,14 +30,14 @@ const LOADS: [&str; 14] = [
 ];
 
 /// Elements, masses and constraints, then loads, in the order of the deck.
-pub(super) fn of_deck(deck: &Deck) -> (Vec<Uncarried>, Vec<Uncarried>) {
+pub(super) fn of_deck(deck: &Deck) -> (Vec<UnsupportedCard>, Vec<UnsupportedCard>) {
     let listed = |names: &[&str]| {
         let cards = deck
             .others
             .iter()
             .filter(|c| names.contains(&c.name.as_str()));
         cards
-            .map(|c| Uncarried {
+            .map(|c| UnsupportedCard {
                 card: c.name.clone(),
                 id: c.first,
                 at: c.at,

@@ -3,12 +3,12 @@
 use super::UnitLoad;
 use super::element::shell::Lamination;
 use super::error::Refusal;
-use super::solve::LoadCase;
+use super::load_case::LoadCase;
 use crate::model::{Load, MaterialKind, Model, ShellKind};
 use nastran::place::Place;
 
 /// Every entry of the model, or load of the cases, that would be left out of the answer.
-pub(crate) fn unsupported(model: &Model, cases: &[LoadCase]) -> Vec<Refusal> {
+pub(crate) fn unsupported_cards(model: &Model, cases: &[LoadCase]) -> Vec<Refusal> {
     let mut all = Vec::new();
     let mut refuse = |card: String, at: Place, reason: &str, remedy: &str| {
         all.push(Refusal {
@@ -67,7 +67,7 @@ pub(crate) fn unsupported(model: &Model, cases: &[LoadCase]) -> Vec<Refusal> {
             );
         }
     }
-    for c in &model.uncarried {
+    for c in &model.unsupported_cards {
         let id = c.id.map_or(String::new(), |id| format!(" {id}"));
         refuse(
             format!("{}{id}", c.card),

@@ -1,0 +1,19 @@
+//! One dependent dof, and the card that makes it so.
+
+use nastran::place::Place;
+
+/// `dependent = sum of coefficient * other`; dofs are numbered 6 * grid index + (0 to 5), displacement frames of the grids.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Relation {
+    pub(crate) dependent: u32,
+    pub(crate) terms: Vec<(u32, f64)>,
+    /// Index into the list of claims, for messages.
+    pub(crate) claim: u32,
+}
+
+/// A card that makes dofs dependent.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Claim {
+    pub(crate) card: String,
+    pub(crate) at: Place,
+}

@@ -1,0 +1,101 @@
+//! What a shell is made from and what comes of it.
+
+use crate::model::Vec3;
+
+/// Matrices of stress = G strain (engineering shear) in the output frame; scaled by thickness where they are used.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ShellLaw {
+    /// Membrane; `None`: no membrane stiffness.
+    pub(crate) membrane: Option<[[f64; 3]; 3]>,
+    /// Bending, 12 I / t^3 included.
+    pub(crate) bending: Option<[[f64; 3]; 3]>,
+    /// Membrane-bending coupling (MID4).
+    pub(crate) coupling: Option<[[f64; 3]; 3]>,
+    /// Transverse shear, ts / t included.
+    pub(crate) shear: Option<[[f64; 2]; 2]>,
+}
+
+/// Everything a shell's stiffness and strain depend on.
+#[derive(Clone, Debug)]
+pub(crate) struct ShellInput<'a, const N: usize> {
+    /// Corners, basic frame.
+    pub(crate) x: [Vec3; N],
+    /// Unit director at each corner.
+    pub(crate) directors: [Vec3; N],
+    /// Thickness at each corner.
+    pub(crate) thickness: [f64; N],
+    /// Material in the element's output frame.
+    pub(crate) law: &'a ShellLaw,
+    /// Offset of the reference plane along the element normal.
+    pub(crate) zoffs: f64,
+    /// K6ROT.
+    pub(crate) k6rot: f64,
+    /// What is wanted.
+    pub(crate) parts: Parts,
+    /// What rotations about the normal do to the sides.
+    pub(crate) sides: Sides,
+    /// Temperatures, where forces of thermal strain are wanted.
+    pub(crate) heat: Option<&'a Heat>,
+}
+
+/// What rotations about the normal do to the sides of a shell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sides {
+    /// Nothing: they stay straight.
+    Straight,
+    /// They bend as a beam under its end rotations (Allman 1984; CQUADR and CTRIAR).
+    Bending,
+}
+
+/// What is wanted of a shell: forming its stiffness is most of the work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Parts {
+    All,
+    /// Strain rows and thermal forces; the stiffness stays zero.
+    WithoutStiffness,
+}
+
+/// Stiffness and strain of a shell with `M` = 6 N unknowns, basic frame.
+#[derive(Clone, Debug)]
+pub(crate) struct ShellMatrices<const N: usize, const M: usize> {
+    pub(crate) stiffness: [[f64; M]; M],
+    pub(crate) centre: StrainRows<M>,
+    pub(crate) corners: [StrainRows<M>; N],
+    /// Forces that hold the thermal strain back, sign reversed: the load it acts as.
+    pub(crate) thermal: [f64; M],
+}
+
+/// Rows that turn an element's displacements into strain in its output frame: exx, eyy, gxy (engineering shear); strain at
+/// height z above the reference plane is `membrane + z * curvature`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StrainRows<const M: usize> {
+    pub(crate) membrane: [[f64; M]; 3],
+    pub(crate) curvature: [[f64; M]; 3],
+}
+
+/// The shell can't be formed: corners coincide, lie on a line or make a re-entrant shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct BadShape;
+
+/// Thermal strain of a shell in its output frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Expansion {
+    /// Membrane force per length: of a unit rise of temperature, and of a unit gradient dT/dz.
+    pub(crate) force: [[f64; 3]; 2],
+    /// Moment per length (integral of z sigma), likewise.
+    pub(crate) moment: [[f64; 3]; 2],
+    /// Free strain per unit rise at the surfaces Z1 and Z2: exx, eyy, gxy (engineering shear).
+    pub(crate) surface: [[f64; 3]; 2],
+    /// Temperature where thermal strain counts from.
+    pub(crate) tref: f64,
+}
+
+/// What a load case heats a shell by.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Heat {
+    pub(crate) expansion: Expansion,
+    /// Rise of the reference plane at the corners.
+    pub(crate) rise: [f64; 4],
+    /// dT/dz along the element normal.
+    pub(crate) gradient: f64,
+}

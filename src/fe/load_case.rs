@@ -1,0 +1,77 @@
+//! Load cases: what acts, what holds, what balances.
+
+use super::UnitLoad;
+use crate::model::Model;
+use nastran::bdf::Subcase;
+
+/// How the loads of a case are held in balance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Relief {
+    /// By the SPC set alone.
+    None,
+    /// By inertia, supports chosen by us (PARAM,INREL,-2).
+    Automatic,
+    /// By inertia, displacements relative to the SUPORT dofs and those of this SUPORT1 set (PARAM,INREL,-1).
+    Suport(Option<u32>),
+}
+
+/// One load case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadCase {
+    /// Subcase id.
+    pub subcase: u32,
+    /// For people.
+    pub label: String,
+    /// What acts; several are summed.
+    pub loads: Vec<UnitLoad>,
+    /// SPC set.
+    pub spc: Option<u32>,
+    /// MPC set.
+    pub mpc: Option<u32>,
+    /// What balances the loads.
+    pub relief: Relief,
+}
+
+/// How a model without case control is balanced: by PARAM,INREL; a model with neither INREL nor `spc` as a free structure.
+pub fn relief_of(model: &Model, spc: Option<u32>, suport: Option<u32>) -> Relief {
+    match (model.params.inrel, spc) {
+        (-1, _) => Relief::Suport(suport),
+        (-2, _) => Relief::Automatic,
+        (_, None) if model.grids.iter().all(|g| g.ps.is_empty()) => Relief::Automatic,
+        _ => Relief::None,
+    }
+}
+
+/// What acts in a subcase of a deck: its LOAD and TEMPERATURE(LOAD).
+///
+/// TEMPERATURE without an option stands for both; it loads, and thermal strain counts from TREF.
+pub fn loads_of_subcase(s: &Subcase) -> Vec<UnitLoad> {
+    let temperature = s.temperature_load.map(|set| UnitLoad::Temperature {
+        set,
+        initial: s.temperature_initial.filter(|initial| *initial != set),
+    });
+    s.load
+        .into_iter()
+        .map(UnitLoad::Set)
+        .chain(temperature)
+        .collect()
+}
+
+/// Unit loads as load cases, subcases numbered 1 .. n; `spc` and `relief` hold them all.
+pub fn unit_cases(
+    model: &Model,
+    (spc, relief): (Option<u32>, Relief),
+    loads: &[UnitLoad],
+) -> Vec<LoadCase> {
+    (1..)
+        .zip(loads)
+        .map(|(subcase, load)| LoadCase {
+            subcase,
+            label: String::new(),
+            loads: vec![load.clone()],
+            spc,
+            mpc: model.mpc,
+            relief,
+        })
+        .collect()
+}

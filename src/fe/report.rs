@@ -1,0 +1,66 @@
+//! What the solver has to say beside the strain.
+
+use super::mass::MassProperties;
+use super::reactions::Reactions;
+use super::relief::Balance;
+use crate::finding::Finding;
+use crate::linalg::sparse::OrderingMethod;
+
+/// What the solver has to say beside the solution.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SolveReport {
+    /// Grids of the model.
+    pub grids: usize,
+    /// Unknowns of the largest system solved.
+    pub dofs: usize,
+    /// Entries of its factor.
+    pub factor_nonzeros: usize,
+    /// Its ordering.
+    pub ordering: Option<OrderingMethod>,
+    /// Smallest pivot of the matrix scaled to unit diagonal: below 1e-10 the structure is nearly a mechanism.
+    pub smallest_pivot: f64,
+    /// Nastran's epsilon of the worst case, |u'(f - K u)| / |u'f|, as substituted and after iterative refinement.
+    pub epsilon: [f64; 2],
+    /// Balance of every case solved by inertia relief.
+    pub balance: Vec<Balance>,
+    /// Reactions of every case whose supports take load, basic frame.
+    pub reactions: Vec<Reactions>,
+    /// Mass and centre of gravity.
+    pub mass: Option<MassProperties>,
+    /// Frequencies of the lowest elastic modes of the structure as the first cases hold it, cycles per unit of time, ascending: as many
+    /// as were asked for.
+    pub modes: Vec<f64>,
+    /// Wall seconds by step.
+    pub seconds: Vec<(String, f64)>,
+}
+
+/// What a solution is made of before strain.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Solved {
+    /// Displacements by case and grid, basic frame.
+    pub displacements: Vec<Vec<[f64; 6]>>,
+    /// What the solver has to say.
+    pub report: SolveReport,
+    /// What was noticed.
+    pub findings: Vec<Finding>,
+}
+
+/// Times the steps of a solution.
+pub(super) struct Clock(std::time::Instant);
+
+impl Clock {
+    pub(super) fn start() -> Self {
+        Self(std::time::Instant::now())
+    }
+
+    /// Adds the time since the last note to a step.
+    pub(super) fn note(&mut self, report: &mut SolveReport, step: &str) {
+        let seconds = std::mem::replace(&mut self.0, std::time::Instant::now()).elapsed();
+        match report.seconds.iter_mut().find(|s| s.0 == step) {
+            Some(s) => s.1 += seconds.as_secs_f64(),
+            None => report
+                .seconds
+                .push((step.to_owned(), seconds.as_secs_f64())),
+        }
+    }
+}

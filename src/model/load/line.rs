@@ -1,0 +1,76 @@
+//! PLOAD1.
+
+use crate::model::build::Builder;
+use crate::model::fault::FaultKind;
+use crate::model::types::*;
+use nastran::cards::Pload1;
+use nastran::place::Placed;
+
+impl Builder<'_> {
+    /// A load along a bar or beam in its own axes.
+    ///
+    /// # Reference
+    /// MSC Nastran Quick Reference Guide, PLOAD1: LE and LEPR give places as lengths, FR and FRPR as shares; the PR scales count
+    /// intensity per length projected across the direction of the load.
+    pub(super) fn pload1(&mut self, p: &Placed<Pload1>) -> Option<Load> {
+        let name = format!("PLOAD1 {}", p.sid);
+        let Some(beam) = self.model.beam_ix(p.element) else {
+            let kind = FaultKind::Missing {
+                what: "CBAR or CBEAM",
+                id: p.element.into(),
+            };
+            self.fault(name, "EID", p.at, kind);
+            return None;
+        };
+        let b = *self.model.beams.get(beam.us())?;
+        let end = |i: usize| -> Option<Vec3> { Some(self.x(*b.grids.get(i)?) + b.offsets.get(i)?) };
+        let length = (end(1)? - end(0)?).norm();
+        let mut basic = Vec3::zeros();
+        let axis = match p.kind[1] {
+            b'X' => 0,
+            b'Y' => 1,
+            _ => 2,
+        };
+        basic[axis] = 1.0;
+        let along_element = p.kind[2] == b'E';
+        let direction = if along_element { basic } else { b.axes * basic };
+        let projected = p.scale[2] == b'P';
+        let factor = if projected && !along_element {
+            (1.0 - direction.x * direction.x).max(0.0).sqrt()
+        } else {
+            1.0
+        };
+        let share = |x: f64| if p.scale[0] == b'L' { x / length } else { x };
+        let from = share(p.x1);
+        let to = p.x2.map_or(from, share);
+        let values = if from == to {
+            [p.p1, 0.0]
+        } else {
+            [p.p1, p.p2.unwrap_or(p.p1)].map(|v| v * factor)
+        };
+        // Against the rounding of lengths given to a few digits.
+        const BEYOND: f64 = 1e-6;
+        let inside = |x: f64| (-BEYOND..=1.0 + BEYOND).contains(&x);
+        if !(inside(from) && inside(to) && from <= to) {
+            let kind = FaultKind::Word {
+                found: format!("X1 {}, X2 {:?}", p.x1, p.x2),
+                expected: "places on the element, the first no farther than the second",
+            };
+            self.fault(name, "X1", p.at, kind);
+            return None;
+        }
+        let vectors = values.map(|v| direction * v);
+        let none = [Vec3::zeros(); 2];
+        let (force, moment) = if p.kind[0] == b'F' {
+            (vectors, none)
+        } else {
+            (none, vectors)
+        };
+        Some(Load::Line {
+            beam,
+            span: [from.clamp(0.0, 1.0), to.clamp(0.0, 1.0)],
+            force,
+            moment,
+        })
+    }
+}

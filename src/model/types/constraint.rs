@@ -1,0 +1,55 @@
+//! What ties grids to each other and holds them.
+
+use super::index::GridIx;
+use nastran::cards::Dofs;
+use nastran::place::Place;
+
+/// A rigid element; dofs are in the displacement frames of their grids.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Rigid {
+    pub id: u32,
+    pub kind: RigidKind,
+    pub at: Place,
+}
+
+/// Which rigid element.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RigidKind {
+    /// RBE2, RBAR and RBE1: dependent dofs follow the rigid motion given by the independent ones.
+    Body {
+        /// Independent dofs, six in all.
+        independent: Vec<(GridIx, Dofs)>,
+        /// Dependent dofs.
+        dependent: Vec<(GridIx, Dofs)>,
+        /// Thermal expansion coefficient.
+        alpha: f64,
+    },
+    /// RBE3.
+    Mean {
+        /// Reference grid.
+        reference: GridIx,
+        /// REFC.
+        refc: Dofs,
+        /// Weight, dofs, grid.
+        arms: Vec<(f64, Dofs, GridIx)>,
+        /// UM: dofs made dependent instead of REFC; empty: REFC is dependent.
+        um: Vec<(GridIx, Dofs)>,
+    },
+}
+
+/// The equations of one MPC set id (MPCADD resolved): terms grid, dof (0-based), coefficient; the first is dependent.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct MpcSet {
+    pub sid: u32,
+    pub equations: Vec<(Vec<(GridIx, u8, f64)>, Place)>,
+}
+
+/// The constraints of one SPC set id (SPCADD resolved): grid, dofs, enforced value.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct SpcSet {
+    pub sid: u32,
+    pub terms: Vec<(GridIx, Dofs, f64)>,
+}

@@ -1,0 +1,185 @@
+//! Grids, frames and elements.
+
+use super::index::{BeamPropertyIx, FrameIx, GridIx, Mat3, MaterialIx, ShellPropertyIx, Vec3};
+use nastran::cards::{Dofs, ShellShape, SolidShape};
+use nastran::place::Place;
+
+/// What a point of the model is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PointKind {
+    /// GRID: a place and six dofs.
+    Grid,
+    /// SPOINT, or the end of a spring without a component: one dof and no place. It is carried as a grid at the origin of the basic
+    /// frame whose dofs 2 to 6 are constrained, so that the whole path from cards to answer is that of grids.
+    Scalar,
+}
+
+/// A grid, or a scalar point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// Id in the file.
+    pub id: u32,
+    /// Which of the two.
+    pub kind: PointKind,
+    /// Location, basic frame.
+    pub x: Vec3,
+    /// Displacement coordinate system.
+    pub cd: FrameIx,
+    /// Permanent constraints.
+    pub ps: Dofs,
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// A coordinate system resolved to basic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Id in the file, 0 basic.
+    pub id: u32,
+    /// What its coordinates are.
+    pub kind: nastran::cards::CoordKind,
+    /// Origin, basic frame.
+    pub origin: Vec3,
+    /// Rows are its x, y, z axes in basic.
+    pub axes: Mat3,
+}
+
+/// A shell element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shell {
+    /// Element id.
+    pub id: u32,
+    /// Shape.
+    pub shape: ShellShape,
+    /// Grids, corners first; the first `n_grids` count, a missing mid-side grid repeats its corner.
+    pub grids: [GridIx; 8],
+    /// Property.
+    pub property: ShellPropertyIx,
+    /// Angle of the material x axis from side 1-2, radians, right-handed about the normal (MCID already projected).
+    pub material_angle_rad: f64,
+    /// Offset of the reference plane along the normal.
+    pub zoffs: f64,
+    /// Corner thicknesses (the property's where the card has none).
+    pub thickness: [f64; 4],
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// CBAR or CBEAM.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beam {
+    /// Element id.
+    pub id: u32,
+    /// A CBEAM.
+    pub is_beam: bool,
+    /// Ends A, B.
+    pub grids: [GridIx; 2],
+    /// Property.
+    pub property: BeamPropertyIx,
+    /// Offsets of the ends from their grids, basic frame.
+    pub offsets: [Vec3; 2],
+    /// Element axes, rows x (A to B, offsets included), y (in the plane of the orientation vector), z, basic frame.
+    pub axes: Mat3,
+    /// Released dofs at A, B, element frame.
+    pub pins: [Dofs; 2],
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// CROD, CTUBE, CONROD.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Rod {
+    pub id: u32,
+    pub card: RodCard,
+    pub grids: [GridIx; 2],
+    pub material: MaterialIx,
+    pub area: f64,
+    pub torsion: f64,
+    /// Torsional stress coefficient.
+    pub c: f64,
+    pub nsm: f64,
+    pub at: Place,
+}
+
+/// Which card a rod came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum RodCard {
+    Crod,
+    Ctube,
+    Conrod,
+}
+
+/// CBUSH.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bush {
+    /// Element id.
+    pub id: u32,
+    /// Ends; B is `None` when grounded.
+    pub grids: (GridIx, Option<GridIx>),
+    /// Element axes, basic frame.
+    pub axes: Mat3,
+    /// Location of the spring, basic frame.
+    pub location: Vec3,
+    /// Stiffness by component.
+    pub k: [f64; 6],
+    /// Stress and strain recovery coefficients SA, ST, EA, ET.
+    pub recovery: [f64; 4],
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// CELAS1, CELAS2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Spring {
+    pub id: u32,
+    pub k: f64,
+    pub stress_coefficient: f64,
+    /// Grid and dof (0-based, displacement frame of the grid); `None` ground.
+    pub ends: [Option<(GridIx, u8)>; 2],
+    pub at: Place,
+}
+
+/// A solid element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Solid {
+    pub id: u32,
+    pub shape: SolidShape,
+    /// Corners first; `None`: no mid-side grid.
+    pub grids: [Option<GridIx>; 20],
+    /// Index into [`Model::solid_properties`].
+    pub property: u32,
+    pub at: Place,
+}
+
+/// CSHEAR with its PSHEAR.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct ShearPanel {
+    pub id: u32,
+    pub grids: [GridIx; 4],
+    pub material: MaterialIx,
+    pub t: f64,
+    pub nsm: f64,
+    pub f1: f64,
+    pub f2: f64,
+    pub at: Place,
+}
+
+/// A concentrated mass: 6 x 6 about its grid, basic frame, before WTMASS.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointMass {
+    /// Element id.
+    pub id: u32,
+    /// Grid.
+    pub grid: GridIx,
+    /// Mass matrix in the basic frame, referred to the grid.
+    pub matrix: crate::linalg::Matrix6<f64>,
+    /// Offset of the centre of gravity from the grid, basic frame (0 for CONM1).
+    pub offset: Vec3,
+    /// Where it stands.
+    pub at: Place,
+}

@@ -1,0 +1,19 @@
+//! The checked, immutable model. `GridId`-like numbers (`id`) are the file's; `..Ix` are indices into our arrays.
+
+mod constraint;
+mod index;
+mod load;
+mod mesh;
+mod model;
+mod params;
+mod property;
+mod unsupported_card;
+
+pub use constraint::*;
+pub use index::*;
+pub use load::*;
+pub use mesh::*;
+pub use model::*;
+pub use params::*;
+pub use property::*;
+pub use unsupported_card::*;

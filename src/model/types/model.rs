@@ -1,0 +1,65 @@
+//! The model as a whole.
+
+use super::constraint::{MpcSet, Rigid, SpcSet};
+use super::index::GridIx;
+use super::load::{LoadSet, TemperatureSet};
+use super::mesh::{Beam, Bush, Frame, Grid, PointMass, Rod, ShearPanel, Shell, Solid, Spring};
+use super::params::Params;
+use super::property::{BeamProperty, Material, ShellProperty, SolidProperty};
+use super::unsupported_card::UnsupportedCard;
+use nastran::cards::Dofs;
+
+/// A structure as the deck means it.
+#[derive(Clone, Debug, Default)]
+pub struct Model {
+    /// Grids by ascending id.
+    pub grids: Vec<Grid>,
+    /// Coordinate systems; the first is basic.
+    pub frames: Vec<Frame>,
+    /// Shells by ascending id.
+    pub shells: Vec<Shell>,
+    /// Shell properties by ascending id.
+    pub shell_properties: Vec<ShellProperty>,
+    /// CBAR and CBEAM by ascending id.
+    pub beams: Vec<Beam>,
+    /// Their properties.
+    pub beam_properties: Vec<BeamProperty>,
+    /// CROD, CTUBE, CONROD.
+    pub rods: Vec<Rod>,
+    /// CBUSH.
+    pub bushes: Vec<Bush>,
+    /// CELAS1, CELAS2.
+    pub springs: Vec<Spring>,
+    /// CHEXA, CPENTA, CTETRA.
+    pub solids: Vec<Solid>,
+    /// Solid properties, ascending id.
+    pub solid_properties: Vec<SolidProperty>,
+    /// CSHEAR.
+    pub shear_panels: Vec<ShearPanel>,
+    /// Materials by ascending id.
+    pub materials: Vec<Material>,
+    /// CONM1, CONM2.
+    pub masses: Vec<PointMass>,
+    /// RBE1, RBE2, RBE3, RBAR.
+    pub rigids: Vec<Rigid>,
+    /// MPC sets.
+    pub mpcs: Vec<MpcSet>,
+    /// The set that holds under unit loads: [`nastran::bdf::CaseControl::mpc_of_structure`].
+    pub mpc: Option<u32>,
+    /// SPC sets that the subcases of the deck's case control select, ascending, each once; empty for a model made without a deck.
+    pub selected_spcs: Vec<u32>,
+    /// SPC sets, SPCADD resolved; enforced displacements included.
+    pub spcs: Vec<SpcSet>,
+    /// SUPORT and SUPORT1 (set id, `None` for SUPORT).
+    pub suports: Vec<(Option<u32>, Vec<(GridIx, Dofs)>)>,
+    /// Load sets by id, LOAD combinations resolved to weighted primitive loads.
+    pub load_sets: Vec<LoadSet>,
+    /// Temperature sets by id: default, grid values.
+    pub temperatures: Vec<TemperatureSet>,
+    /// Cards of the deck that change stiffness, mass, constraints or loads and have no place above: a solver must refuse them.
+    pub unsupported_cards: Vec<UnsupportedCard>,
+    /// Parameters that change what the model means.
+    pub params: Params,
+    /// Names of properties and components from comments: (`property id`, name).
+    pub property_names: Vec<(u32, String)>,
+}

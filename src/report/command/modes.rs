@@ -1,0 +1,145 @@
+//! Files and words of `modes`.
+
+use super::{Report, write_page};
+use crate::app::fault::Faults;
+use crate::app::modes::{ModeRow, Modes};
+use crate::app::outcome::Outcome;
+use crate::app::output::Output;
+use crate::report::csv_cell;
+use crate::report::mode_blocks::rows_of_mode_block;
+use crate::report::page::{Block, Page, Section, number};
+use crate::report::scene::{scene_of_solution, scene_section};
+use crate::report::{planned_blocks, write_vtu};
+use nastran::op2::{EncodedBlock, Op2Writer};
+use std::io::Write;
+
+/// Columns of modes.csv before those of the gauges, with their units.
+const COLUMNS: [(&str, &str); 12] = [
+    ("mode", ""),
+    ("hz", "1/time"),
+    ("generalised_mass", "job mass"),
+    ("residual", ""),
+    ("frequency_error", ""),
+    ("gap", ""),
+    ("effective_mass_x", "job mass"),
+    ("effective_mass_y", "job mass"),
+    ("effective_mass_z", "job mass"),
+    ("effective_inertia_x", "job mass length^2"),
+    ("effective_inertia_y", "job mass length^2"),
+    ("effective_inertia_z", "job mass length^2"),
+];
+
+impl Report for Outcome<Modes> {
+    fn write(&self, out: &mut Output) -> Result<(), Faults> {
+        let plain = COLUMNS.map(|(c, u)| (c.to_owned(), u.to_owned()));
+        let gauges = self.gauges.iter();
+        let of_gauges = gauges.map(|g| (g.clone(), "microstrain".to_owned()));
+        out.declare("modes.csv", plain.into_iter().chain(of_gauges));
+        out.write("modes.csv", |w| table(self, w))?;
+        out.write("modes.op2", |w| op2(self, w))?;
+        let cases = &self.solution.strain.cases;
+        out.write("modes.vtu", |w| write_vtu(&self.model, cases, w))?;
+        write_page(out, self, page(self))
+    }
+
+    fn words(&self) -> String {
+        let mut text = format!(
+            "{} elastic modes of the structure, {}{}\n",
+            self.modes.len(),
+            self.support,
+            match self.rigid_motions {
+                0 => String::new(),
+                n => format!(", {n} rigid motions left out"),
+            }
+        );
+        for m in &self.modes {
+            text.push_str(&format!(
+                "  {:3}  {} Hz, sure to {:.1e}\n",
+                m.mode,
+                number(m.hz),
+                m.frequency_error
+            ));
+        }
+        text
+    }
+}
+
+fn table(modes: &Modes, out: &mut dyn Write) -> std::io::Result<()> {
+    let mut head: Vec<String> = COLUMNS.iter().map(|c| c.0.to_owned()).collect();
+    head.extend(modes.gauges.iter().map(|g| csv_cell(g).into_owned()));
+    writeln!(out, "{}", head.join(","))?;
+    for m in &modes.modes {
+        let mut row = vec![m.mode.to_string()];
+        let numbers = [
+            m.hz,
+            m.generalised_mass,
+            m.residual,
+            m.frequency_error,
+            m.gap,
+        ];
+        let cell = |v: &f64| match v.is_finite() {
+            true => v.to_string(),
+            false => String::new(),
+        };
+        row.extend(numbers.iter().chain(&m.effective_mass).map(cell));
+        let strain = m.gauge_microstrain.iter();
+        row.extend(strain.map(|e| e.map_or_else(String::new, |e| e.to_string())));
+        writeln!(out, "{}", row.join(","))?;
+    }
+    Ok(())
+}
+
+fn op2(modes: &Modes, out: &mut dyn Write) -> std::io::Result<()> {
+    let mut op2 = Op2Writer::new(out, [1, 1, 2000]).map_err(std::io::Error::other)?;
+    for plan in planned_blocks(&modes.model, &modes.solution.strain) {
+        let (block, rows) = rows_of_mode_block(&modes.model, &modes.solution, plan);
+        let encoded = EncodedBlock::new(&block, &rows).map_err(std::io::Error::other)?;
+        op2.write_encoded(&encoded).map_err(std::io::Error::other)?;
+    }
+    op2.finish().map(|_| ()).map_err(std::io::Error::other)
+}
+
+fn page(modes: &Outcome<Modes>) -> Page {
+    let share = |m: &ModeRow, i: usize| match modes.mass {
+        Some(mass) if mass > 0.0 => format!("{:.1}", 100.0 * m.effective_mass[i] / mass),
+        _ => String::new(),
+    };
+    let rows: Vec<Vec<String>> = modes
+        .modes
+        .iter()
+        .map(|m| {
+            vec![
+                m.mode.to_string(),
+                number(m.hz),
+                format!("{:.1e}", m.frequency_error),
+                number(m.gap),
+                share(m, 0),
+                share(m, 1),
+                share(m, 2),
+            ]
+        })
+        .collect();
+    let head = [
+        "mode",
+        "Hz",
+        "error at most, share",
+        "gap",
+        "mass along x, %",
+        "y, %",
+        "z, %",
+    ];
+    let text = format!(
+        "The structure is {}; {} rigid motions are left out. Shapes have a generalised mass of 1.",
+        modes.support, modes.rigid_motions
+    );
+    let cases = modes.cases();
+    let scene = scene_of_solution(&modes.model, &cases, &modes.solution.strain);
+    let sections = vec![
+        Section::new(
+            "Elastic modes",
+            vec![Block::Text(text), Block::table(&head, rows)],
+        ),
+        scene_section("Shapes and their strain", &scene),
+    ];
+    Page::new(&modes.title, "Elastic modes", &modes.findings, sections)
+}
