@@ -116,9 +116,27 @@ impl Motion {
     pub fn n_samples(&self) -> usize {
         self.sensors.first().map_or(0, Vec::len)
     }
-}
 
-impl Motion {
+    /// The stretch of `length` samples from sample `from`; shorter where the motion ends.
+    pub fn stretch_of(&self, from: usize, length: usize) -> Self {
+        let cut =
+            |x: &Vec<f64>| -> Vec<f64> { x.iter().skip(from).take(length).copied().collect() };
+        let all = |x: &Vec<Vec<f64>>| -> Vec<Vec<f64>> { x.iter().map(cut).collect() };
+        Self {
+            rate_hz: self.rate_hz,
+            start_s: self.start_s + from as f64 / self.rate_hz,
+            sensors: all(&self.sensors),
+            bodies: self.bodies.iter().map(all).collect(),
+            stretch: all(&self.stretch),
+            rate: all(&self.rate),
+            terms: self.terms.iter().map(all).collect(),
+            steps: all(&self.steps),
+            forces: self.forces.iter().map(|f| f.as_ref().map(cut)).collect(),
+            mean_forces: self.mean_forces.clone(),
+            findings: vec![],
+        }
+    }
+
     /// The motion of the part of the vehicle made of the given bodies, in the order of [`Vehicle::part`].
     pub fn part(&self, vehicle: &Vehicle, bodies: &[usize]) -> Self {
         let kept = |flags: Vec<bool>| {
@@ -400,8 +418,11 @@ pub fn motion(
                 (Term::Damping, _) => v.clone(),
                 (Term::Inertance, _) => limited(&relative, 0, &mut fourier),
                 (term, Some((wd, wv))) => {
-                    let force: Vec<f64> =
-                        wd.iter().zip(wv).map(|(d, v)| term.basis(*d, *v)).collect();
+                    let force: Vec<f64> = (wd.iter().zip(wv).enumerate())
+                        .map(|(i, (d, v))| {
+                            term.basis_at(*d, *v, record.start_s + i as f64 / rate_hz)
+                        })
+                        .collect();
                     let s = fourier.spectrum(&without_mean(&force), rate_hz);
                     limited(&s, 0, &mut fourier)
                 }
