@@ -208,6 +208,12 @@ impl Vehicle {
         out
     }
 
+    /// Whether a mass or spring changes during a record.
+    pub fn changes(&self) -> bool {
+        let mut terms = self.links.iter().flat_map(|l| &l.terms);
+        !self.steps.is_empty() || terms.any(Term::is_of_time)
+    }
+
     /// Lets every change of a mass or spring happen at once at a time: `f64::MIN` for done, `f64::MAX` for not begun.
     pub fn settle_changes(&mut self, time_s: f64) {
         for s in &mut self.steps {
