@@ -5,7 +5,7 @@ use crate::series::channels::{Channel, SeriesError};
 use crate::series::integrate::integrated;
 use crate::vehicle::chassis::{LeafSeat, split_leaf};
 use crate::vehicle::checks::check_mass_closure;
-use crate::vehicle::equations::{Equation, equations};
+use crate::vehicle::equations::Equation;
 use crate::vehicle::fit::{Allowed, fit};
 use crate::vehicle::interval::spread;
 use crate::vehicle::motion::VehicleError;
