@@ -10,6 +10,7 @@
 //! - [`simulate`]: forward in time; [`refine`]: nonlinear parameters by simulation error
 
 pub mod adequacy;
+mod body_motion;
 pub mod chassis;
 pub mod checks;
 pub mod equations;
@@ -19,14 +20,18 @@ pub mod identification;
 pub mod identify;
 pub mod interval;
 pub mod layout;
+mod limiter;
+mod link_motion;
 pub mod loads;
 pub mod misfit;
 pub mod motion;
+mod part_answer;
 pub mod preset;
 pub mod refine;
 pub mod simulate;
 pub mod stretch;
 pub mod term;
+pub mod treatment;
 
 #[cfg(test)]
 mod tests;

@@ -1,18 +1,9 @@
 //! Slow stretch of a link from the force that passes through it: what double integration of accelerations loses in drift.
 
 use super::layout::{Measures, Shape, Vehicle};
-use super::motion::Adjustment;
+use super::treatment::{Adjustment, SlowStretch};
 use crate::series::channels::Channels;
 use crate::series::detrend::mean;
-
-/// Stretch of a link as its own law gives it from the force through it, at every sample of a record.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SlowStretch {
-    /// Index of the link.
-    pub link: usize,
-    /// Stretch, mean force taken as rest.
-    pub stretch: Vec<f64>,
-}
 
 /// Slow stretch of every link with a nonlinear term whose force one body's equation tells: a body that only heaves, held by this
 /// link alone, all its outside forces measured.
