@@ -1,4 +1,4 @@
-//! 64 s of a quarter truck at 500 Hz: identification, and the swarm of the thesis on the same equations.
+//! 64 s of a quarter truck at 500 Hz: identification.
 //!
 //! Run: `cargo bench --bench identify`. The record is a sum of sines that follows the model exactly.
 
@@ -6,11 +6,8 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use strainbridge::series::channels::{Channel, Channels};
 use strainbridge::series::spectrum::Band;
-use strainbridge::vehicle::equations::equations;
 use strainbridge::vehicle::identify::{Question, identify};
-use strainbridge::vehicle::motion::{Treatment, motion};
 use strainbridge::vehicle::preset::{Wish, vehicle};
-use strainbridge::vehicle::swarm::{Flight, ThesisObjective, swarm};
 use strainbridge::vehicle::term::UnitNames;
 
 fn main() {
@@ -75,6 +72,8 @@ fn question() -> Option<Question> {
         gain_tolerance: 0.0,
         sync_tolerance_s: 0.0,
         units: UnitNames::si(),
+        noise_acc: None,
+        noise_force: None,
         corrections: vec![],
     })
 }
@@ -85,22 +84,4 @@ fn least_squares(bencher: divan::Bencher) {
         return;
     };
     bencher.bench(|| identify(&q, &r, None).map(|id| id.values));
-}
-
-/// The equations of all 32,000 samples, as the thesis evaluates them.
-#[divan::bench(sample_count = 3, sample_size = 1)]
-fn swarm_of_40(bencher: divan::Bencher) {
-    let (Some(q), r) = (question(), record()) else {
-        return;
-    };
-    let treatment = Treatment {
-        keep_every: 1,
-        ..Treatment::of(q.band)
-    };
-    let Ok(m) = motion(&q.vehicle, &r, &treatment) else {
-        return;
-    };
-    let objective = ThesisObjective::of(&equations(&q.vehicle, &m), 2);
-    let bounds = [[100.0, 10_000.0], [100.0, 5000.0], [1e4, 2e6], [0.0, 5e4]];
-    bencher.bench(|| swarm(|x| objective.value(x), &bounds, &Flight::of(4, 1)));
 }

@@ -12,7 +12,7 @@ use moving::{Score, frame_of, score};
 use strainbridge::reconcile::motion::examine;
 
 /// Effects with the vehicles they are hidden in.
-const EFFECTS: [(&str, &[Layout]); 14] = [
+const EFFECTS: [(&str, &[Layout]); 16] = [
     ("viscous_damper", &[Layout::Front, Layout::Rear]),
     (
         "cubic_stiffness",
@@ -36,12 +36,14 @@ const EFFECTS: [(&str, &[Layout]); 14] = [
         "time_offset",
         &[Layout::Front, Layout::FrontAccelerationsOnly, Layout::Rear],
     ),
-    ("axle_coupling", &[Layout::Pair]),
+    ("axle_coupling", &[Layout::Pair, Layout::Rear]),
     ("roll_coupling", &[Layout::Pair]),
     ("mass_change", &[Layout::Front, Layout::Rear]),
     ("modulated_stiffness", &[Layout::Front]),
     ("memory", &[Layout::Front, Layout::FrontAccelerationsOnly]),
-    ("quadratic_drag", &[Layout::Front]),
+    ("quadratic_damping", &[Layout::Front]),
+    ("dead_zone", &[Layout::Front]),
+    ("stiffness_drift", &[Layout::Front]),
 ];
 
 #[derive(Default, Clone)]
@@ -101,7 +103,7 @@ fn main() {
             let s = score(&case, &o);
             tally.n += 1;
             match s {
-                Score::Exact => {
+                Score::Exact | Score::Group => {
                     tally.exact += 1;
                     tally.share += o.gap.explained_share();
                 }
@@ -109,7 +111,7 @@ fn main() {
                 Score::Missed => tally.missed += 1,
                 _ => tally.wrong += 1,
             }
-            if s != Score::Exact || args.len() > 6 {
+            if !matches!(s, Score::Exact | Score::Group) || args.len() > 6 {
                 let tried: Vec<String> = o
                     .best_attempt
                     .iter()

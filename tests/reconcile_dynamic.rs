@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use strainbridge::reconcile::Verdict;
-use strainbridge::reconcile::motion::{MotionOutcome, examine};
+use strainbridge::reconcile::motion::{MotionFrame, MotionOutcome, examine};
 use strainbridge::vehicle::preset::{Wish, vehicle};
 
 fn shared(case: &str) -> Option<PathBuf> {
@@ -56,6 +56,8 @@ fn shared_cases_get_their_names_and_identify_runs_the_extended_job() {
         ("dev-d2", Some("coulomb_friction"), 1000.0),
         ("dev-d3", Some("cubic_stiffness"), 3.2e8),
         ("dev-d4", Some("time_offset:a_body"), 0.005),
+        ("dev-d5", Some("accel_gain:a_wheel"), 0.93),
+        ("dev-d7", Some("roll_coupling"), 7e4),
     ] {
         let Some(folder) = shared(case) else { return };
         let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("dynamic_{case}"));
@@ -105,6 +107,154 @@ fn shared_cases_get_their_names_and_identify_runs_the_extended_job() {
             "{case}: {wheel}"
         );
     }
+}
+
+/// Friction and a cubic spring, gains good to 1 %, and an anti-roll bar that nobody measured.
+#[test]
+fn two_effects_before_an_imperfect_background_are_both_named() {
+    let Some(folder) = shared("dev-d6") else {
+        return;
+    };
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR")).join("dynamic_dev-d6");
+    let _ = std::fs::remove_dir_all(&out);
+    let r = run("reconcile", &folder.join("job.toml"), &out);
+    let mut named: Vec<&str> = r["named"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter_map(|n| n.as_str())
+        .collect();
+    named.sort_unstable();
+    assert_eq!(named, ["coulomb_friction", "cubic_stiffness"], "{r}");
+    let gap = |key: &str| r["gap"][key].as_f64().unwrap();
+    assert!(gap("after") < gap("before"), "{}", r["gap"]);
+}
+
+/// A gain on a body accelerometer and its inverse on a wheel's are one and the same to the shaken part; the weight on the wheel tells them
+/// apart, and where no force is measured they are a group.
+#[test]
+fn the_accelerometer_that_reads_wrong_is_named_or_its_group_never_another_alone() {
+    use moving::generator::hide_gain;
+    // What a gain could be taken for, and what could hide it.
+    let library = [
+        "accel_gain",
+        "time_offset",
+        "mass_change",
+        "cubic_stiffness",
+    ]
+    .map(String::from);
+    for (layout, scores) in [
+        (Layout::Front, &[Score::Exact][..]),
+        (
+            Layout::FrontAccelerationsOnly,
+            &[Score::Exact, Score::Group][..],
+        ),
+    ] {
+        for channel in ["a_body", "a_wheel"] {
+            for gain in [0.84, 0.96, 1.05, 1.15] {
+                let case = hide_gain(layout, channel, gain, 11);
+                let o = examine(&frame_of(&case), &library).unwrap();
+                let found = score(&case, &o);
+                assert!(
+                    scores.contains(&found),
+                    "{layout:?} {channel} {gain}: {found:?} {:?} {:?}",
+                    o.effects,
+                    o.rivals
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn without_a_second_record_gaps_are_cross_validated_and_called_that() {
+    use strainbridge::reconcile::motion::gap::Proof;
+    let case = hide(Layout::Front, "coulomb_friction", 1, Background::Clean, 7);
+    let frame = MotionFrame {
+        hold_out: None,
+        ..frame_of(&case)
+    };
+    let o = examine(&frame, &[]).unwrap();
+    assert_eq!(o.judged_by, Proof::CrossValidated);
+    assert_eq!(score(&case, &o), Score::Exact);
+    // Segments under parameters of the others leave what a held-out road leaves: the floor of the sensors, within a third.
+    assert!(
+        (o.gap.after / o.gap.floor - 1.0).abs() < 0.33,
+        "{:?}",
+        o.gap
+    );
+    assert!(o.remains.contains("cross-validated"), "{}", o.remains);
+}
+
+/// 1e-6 is not 1e-2: a gap that gains good to 1 % would leave is none where they are said to be exact to a millionth.
+#[test]
+fn declared_tolerances_enter_by_their_size() {
+    let case = hide(Layout::Front, "none", 0, Background::Messy, 3);
+    let declared = frame_of(&case);
+    let tight = MotionFrame {
+        gain_tolerance: 1e-6,
+        sync_tolerance_s: 1e-9,
+        ..declared.clone()
+    };
+    let loose = examine(&declared, &[]).unwrap();
+    let tight = examine(&tight, &[]).unwrap();
+    assert!(matches!(
+        loose.verdict,
+        Verdict::None | Verdict::BelowDetectability
+    ));
+    assert!(
+        matches!(tight.verdict, Verdict::Named | Verdict::Unknown),
+        "{:?} {:?}",
+        tight.verdict,
+        tight.gap
+    );
+    let floor = |o: &MotionOutcome| o.before.as_ref().unwrap().floor.expected();
+    assert!(floor(&loose) > 3.0 * floor(&tight));
+}
+
+/// A roll-off truck leaves its container: 60 % of the body goes.
+#[test]
+fn a_mass_may_change_by_more_than_half() {
+    let case = moving::generator::hide_mass_change(Layout::Front, -0.6, 5);
+    let o = examine(&frame_of(&case), &[]).unwrap();
+    assert_eq!(score(&case, &o), Score::Exact, "{:?}", o.best_attempt);
+    let size = o.effects[0].size[0];
+    let truth = -0.6 * case.sprung;
+    assert!((size / truth - 1.0).abs() < 0.02, "{size} for {truth}");
+}
+
+/// What the smallest sizes say is what happens: half of it is not named, three times of it is.
+#[test]
+fn the_smallest_size_that_is_stated_is_where_naming_begins() {
+    let clean = hide(Layout::Front, "none", 0, Background::Clean, 9);
+    let o = examine(&frame_of(&clean), &[]).unwrap();
+    let smallest = o
+        .smallest
+        .iter()
+        .find(|s| s.id == "accel_gain:a_wheel")
+        .unwrap();
+    for (times, named) in [(0.5, false), (3.0, true)] {
+        let mut frame = frame_of(&clean);
+        let gain = 1.0 + times * smallest.size;
+        for record in std::iter::once(&mut frame.data).chain(frame.hold_out.iter_mut()) {
+            for c in record.list.iter_mut().filter(|c| c.name == "a_wheel") {
+                c.samples.iter_mut().for_each(|v| *v *= gain);
+            }
+        }
+        let o = examine(&frame, &[]).unwrap();
+        let said = o.effects.iter().any(|e| e.id == "accel_gain:a_wheel");
+        assert_eq!(said, named, "{times}: {:?} {:?}", o.verdict, o.effects);
+    }
+}
+
+#[test]
+fn free_play_a_quadratic_damper_and_a_spring_that_changes_are_named() {
+    for effect in ["dead_zone", "quadratic_damping", "stiffness_drift"] {
+        let (s, o) = examined(Layout::Front, effect, 1, Background::Clean);
+        assert_eq!(s, Score::Exact, "{effect}: {:?}", o.best_attempt);
+    }
+    let (s, o) = examined(Layout::Rear, "axle_coupling", 1, Background::Clean);
+    assert_eq!(s, Score::Exact, "{:?}", o.best_attempt);
 }
 
 #[test]

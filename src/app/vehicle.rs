@@ -136,6 +136,8 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
         gravity,
         gain_tolerance: section.tolerance_gain.unwrap_or(0.0),
         sync_tolerance_s: section.tolerance_sync.unwrap_or(0.0),
+        noise_acc: section.noise_acc,
+        noise_force: section.noise_force,
         corrections: section
             .corrections
             .iter()

@@ -9,25 +9,22 @@
 //! - [`number`]: numbers read and written fast
 //! - [`quality`]: dead, clipped, spiky, drifting, reversed, wrongly scaled channels as findings
 //! - [`detrend`]: mean, line and zero-run removal
-//! - [`butterworth`], [`filtfilt`]: second-order sections, and filtering without phase
 //! - [`spectrum`]: zero-padded transforms, band limiting and integration in one pass
 //! - [`integrate`]: velocity and displacement from acceleration
 //! - [`window`]: tapered transforms with independent bins
 //! - [`welch`]: power and cross spectra, coherence
 //! - [`content`]: up to which frequency a signal has content
-//! - [`align`]: delay between channels, shifting by a part of a sample
+//! - [`align`]: shifting by a part of a sample
 //! - [`resample`]: another sample rate
 //! - [`rainflow`]: cycles and pseudo-damage
 
 pub mod align;
 pub mod binary;
-pub mod butterworth;
 pub mod cell;
 pub mod channels;
 pub mod content;
 pub mod csv;
 pub mod detrend;
-pub mod filtfilt;
 pub mod foreign;
 pub mod integrate;
 #[cfg(feature = "mdf")]

@@ -1,6 +1,5 @@
 //! Another sample rate.
 
-use super::channels::{Channel, Channels};
 use super::detrend::line;
 use std::f64::consts::PI;
 
@@ -39,23 +38,6 @@ pub fn resampled(x: &[f64], from_hz: f64, to_hz: f64) -> Vec<f64> {
             offset + slope * t + sum / weight
         })
         .collect()
-}
-
-/// A record at another rate, every channel alike.
-pub fn record_resampled(record: &Channels, to_hz: f64) -> Channels {
-    let list = record
-        .list
-        .iter()
-        .map(|c| Channel {
-            samples: resampled(&c.samples, record.rate_hz, to_hz),
-            ..c.clone()
-        })
-        .collect();
-    Channels {
-        rate_hz: to_hz,
-        start_s: record.start_s,
-        list,
-    }
 }
 
 fn sinc(u: f64) -> f64 {

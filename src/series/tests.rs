@@ -1,9 +1,7 @@
-use super::align::{delay_between, delayed};
-use super::butterworth::{Pass, butterworth, response};
+use super::align::delayed;
 use super::channels::{Channel, Channels, SeriesError};
 use super::csv::read_csv;
 use super::detrend::{rms, without_line};
-use super::filtfilt::filtfilt;
 use super::integrate::integrated;
 use super::quality::{Kind, check_channels};
 use super::resample::resampled;
@@ -67,16 +65,6 @@ fn live(seed: u64) -> Vec<f64> {
 }
 
 #[test]
-fn a_band_pass_has_its_edges_at_3_db_and_unit_gain_between() {
-    for order in 1..=6 {
-        let s = butterworth(order, Pass::Band(0.7, 20.0), RATE).unwrap();
-        assert!((response(&s, 0.7, RATE).norm() - 0.5f64.sqrt()).abs() < 1e-9);
-        assert!((response(&s, 20.0, RATE).norm() - 0.5f64.sqrt()).abs() < 1e-9);
-        assert!(response(&s, 0.0, RATE).norm() < 1e-12);
-    }
-}
-
-#[test]
 fn integration_in_the_frequency_domain_returns_a_sine_and_ignores_an_offset() {
     let (f, n) = (4.0, 10_000);
     let w = 2.0 * PI * f;
@@ -134,28 +122,16 @@ fn a_high_pass_keeps_the_double_integral_of_noise_small_where_detrending_does_no
 }
 
 #[test]
-fn a_shift_by_part_of_a_sample_is_found_again() {
-    let x = integrated(
-        &noise(16_000, 1),
-        RATE,
-        Band {
-            low_hz: 0.5,
-            high_hz: 40.0,
-        },
-        0,
-    );
+fn a_shift_by_part_of_a_sample_moves_a_sine_by_its_phase() {
+    let f = 7.3;
+    let sine = |i: usize, late: f64| 2.0 + (2.0 * PI * f * (i as f64 / RATE - late)).sin();
+    let x: Vec<f64> = (0..8000).map(|i| sine(i, 0.0)).collect();
     for seconds in [0.0004, -0.005, 0.1234] {
-        let y: Vec<f64> = delayed(&x, RATE, seconds)
-            .iter()
-            .zip(noise(16_000, 2))
-            .map(|(v, e)| v + 0.02 * e * rms(&x))
-            .collect();
-        let d = delay_between(&x, &y, RATE, 1.0, 30.0).unwrap();
-        assert!(
-            (d.seconds - seconds).abs() < 5.0 * d.sigma_s.max(2e-6),
-            "{seconds} {d:?}"
-        );
-        assert!(d.sigma_s < 1e-4 && d.coherence > 0.9);
+        let y = delayed(&x, RATE, seconds);
+        // The ends carry the record's start and stop.
+        for k in 2000..6000 {
+            assert!((y[k] - sine(k, seconds)).abs() < 1e-2, "{seconds} {k}");
+        }
     }
 }
 
@@ -342,7 +318,7 @@ fn channels_of_different_length_are_refused_by_name() {
 
 /// Numbers by `tests/golden/scipy_series.py` (scipy 1.17.1).
 #[test]
-fn filters_and_spectra_agree_with_scipy() {
+fn spectra_agree_with_scipy() {
     let text = include_str!("../../tests/golden/scipy_series.json");
     let golden: serde_json::Value = serde_json::from_str(text).unwrap();
     let numbers = |v: &serde_json::Value| {
@@ -361,17 +337,6 @@ fn filters_and_spectra_agree_with_scipy() {
     };
     let x = numbers(&golden["x"]);
     let y = numbers(&golden["y"]);
-    for case in golden["sosfiltfilt"].as_array().unwrap() {
-        let edges = numbers(&case["edges"]);
-        let pass = match case["btype"].as_str().unwrap() {
-            "band" => Pass::Band(edges[0], edges[1]),
-            "low" => Pass::Low(edges[0]),
-            _ => Pass::High(edges[0]),
-        };
-        let sections = butterworth(case["order"].as_u64().unwrap() as usize, pass, 100.0).unwrap();
-        // Rounding grows with the closeness of the poles to the circle.
-        close(&filtfilt(&sections, &x), &numbers(&case["out"]), 1e-8);
-    }
     let s = cross_spectra(&x, &y, 100.0, 64);
     close(&s.xx, &numbers(&golden["welch_x"]), 1e-12);
     close(&s.coherence(), &numbers(&golden["coherence"]), 1e-10);

@@ -1,6 +1,6 @@
 //! Forces on the chassis: by its inertia, by its springs, at the seats of leaf springs.
 
-use super::identify::Identification;
+use super::identification::Identification;
 use super::layout::Vehicle;
 use super::loads::link_forces;
 use super::motion::Motion;

@@ -1,124 +1,21 @@
 //! Parameters of a vehicle from a record, with intervals, verdicts and checks.
 
-use super::checks::{MassClosure, at_bound, check_mass_closure, check_sides};
+use super::adequacy::{Declared, channel_floors};
+use super::checks::{check_mass_closure, check_sides};
 use super::equations::{Equation, equations};
 use super::fit::{Allowed, Fit, fit};
-use super::identifiability::{absent_sentence, is_known, scale_sentence, weak_sentences};
-use super::interval::{residual, spread};
+use super::identifiability::is_known;
+use super::interval::spread;
 use super::layout::{Parameter, Vehicle};
-use super::loads::{Blend, best_blend, link_forces, needed_forces, wheel_forces};
-use super::motion::{Adjustment, Motion, Treatment, VehicleError, motion, resolved};
+use super::loads::best_blend;
+use super::motion::{motion, resolved};
+use super::part_answer::{PartAnswer, collect};
 use super::stretch::slow_stretches;
-use super::term::{Quantity, UnitNames};
-use crate::finding::{Finding, Severity};
-use crate::linalg::tall::left_inverse;
+use super::treatment::{Adjustment, Treatment, VehicleError};
 use crate::series::channels::Channels;
 use crate::series::detrend::rms;
-use crate::series::spectrum::Band;
-use serde::Serialize;
-use std::collections::BTreeMap;
 
-/// What is asked.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Question {
-    /// The model.
-    pub vehicle: Vehicle,
-    /// Parameters measured elsewhere.
-    pub known: BTreeMap<String, f64>,
-    /// Limits; positive parameters are limited to 0 and up anyway.
-    pub bounds: BTreeMap<String, [f64; 2]>,
-    /// The band of every equation.
-    pub band: Band,
-    /// Acceleration of gravity, job units.
-    pub gravity: f64,
-    /// Gain tolerance of every channel, 1 sd, as a share.
-    pub gain_tolerance: f64,
-    /// Synchronisation tolerance of every channel, 1 sd, s.
-    pub sync_tolerance_s: f64,
-    /// Names of the job's units.
-    pub units: UnitNames,
-    /// Known faults of channels, taken out before anything else.
-    pub corrections: Vec<Adjustment>,
-}
-
-/// One parameter, or a ratio of two.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Estimate {
-    /// Name, `k_s` or `k_s/m_b`.
-    pub name: String,
-    /// Value; none where it can't be told.
-    pub value: Option<f64>,
-    /// One standard deviation, coloured residuals and declared tolerances included.
-    pub sigma: Option<f64>,
-    /// Unit in words.
-    pub unit: String,
-    /// Whether record and model determine it.
-    pub identifiable: bool,
-    /// 95 % interval.
-    pub interval: Option<[f64; 2]>,
-    /// Whether it was declared, not estimated.
-    pub known: bool,
-}
-
-/// How well a channel is explained.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ChannelFit {
-    /// Channel.
-    pub channel: String,
-    /// RMS of measured less predicted over RMS of measured, in band.
-    pub relative_rms: f64,
-    /// The same on the data that were fitted.
-    pub relative_rms_fitted: f64,
-    /// `hold-out` or `fitted`: where `relative_rms` comes from.
-    pub on: &'static str,
-}
-
-/// The answer.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Identification {
-    /// The vehicle with all constants of its terms.
-    pub vehicle: Vehicle,
-    /// Values of `vehicle.parameters()`; relative to the reference mass (1) where no force sets the scale; NaN where unknown.
-    pub values: Vec<f64>,
-    /// Standard deviations, 0 for known ones.
-    pub sigmas: Vec<f64>,
-    /// Covariance of `values`, by rows.
-    pub covariance: Vec<Vec<f64>>,
-    /// Whether `values` carry the scale of forces.
-    pub scaled: Vec<bool>,
-    /// Factor on sigma for 95 %.
-    pub coverage_factor: f64,
-    /// Parameters and ratios as reported.
-    pub parameters: Vec<Estimate>,
-    /// What can't be told, in words.
-    pub unidentifiable: Vec<String>,
-    /// How well each channel is explained.
-    pub fit: Vec<ChannelFit>,
-    /// Dynamics against statics.
-    pub mass_closure: Option<MassClosure>,
-    /// How wheel forces are best put together.
-    pub blend: Blend,
-    /// RMS of the wheel force error in band, where measured (the larger of fitted and held-out).
-    pub wheel_force_sigma: Vec<Option<f64>>,
-    /// Ratio of smallest to largest singular value, worst component, columns of unit norm.
-    pub conditioning: f64,
-    /// Everything noticed.
-    pub findings: Vec<Finding>,
-}
-
-/// The fit of one connected part of a vehicle.
-struct PartAnswer {
-    part: Vehicle,
-    names: Vec<Parameter>,
-    values: Vec<f64>,
-    covariance: Vec<Vec<f64>>,
-    coverage_factor: f64,
-    reference: Option<usize>,
-    fit: Option<Fit>,
-    unknown: Vec<usize>,
-    blend: Blend,
-    motion: Motion,
-}
+pub use super::identification::{ChannelFit, Estimate, Identification, Question};
 
 /// Parameters of the vehicle from a record; a second record, never fitted, judges them.
 ///
@@ -168,17 +65,30 @@ pub fn identify(
     for bodies in vehicle.components() {
         let part = fit_part(question, &vehicle.part(&bodies), record, &treatment)?;
         any |= part.fit.is_some();
+        let in_record = |record: &Channels| Treatment {
+            slow: slow_stretches(&part.part, &part.values, record, &treatment.adjust),
+            ..treatment.clone()
+        };
         let held = hold_out
-            .map(|h| {
-                let slow = slow_stretches(&part.part, &part.values, h, &treatment.adjust);
-                let treatment = Treatment {
-                    slow,
-                    ..treatment.clone()
-                };
-                motion(&part.part, h, &treatment)
-            })
+            .map(|h| motion(&part.part, h, &in_record(h)))
             .transpose()?;
-        collect(question, &mut answer, &all, part, held.as_ref());
+        // A change of mass or spring has its time in the fitted record: it alone can judge.
+        let judged = hold_out.filter(|_| !part.part.changes()).unwrap_or(record);
+        let floors = if part.fit.is_some() {
+            let (values, blend) = (&part.values, &part.blend);
+            let treatment = in_record(judged);
+            channel_floors(
+                &part.part,
+                values,
+                blend,
+                judged,
+                &treatment,
+                &declared(question),
+            )?
+        } else {
+            vec![]
+        };
+        collect(question, &mut answer, &all, part, held.as_ref(), &floors);
     }
     if !any {
         return Err(VehicleError::NoEquation(vehicle.name.clone()));
@@ -188,6 +98,15 @@ pub fn identify(
         .extend(check_sides(&all, &answer.values, &answer.sigmas));
     close_masses(question, &mut answer, record);
     Ok(answer)
+}
+
+fn declared(question: &Question) -> Declared {
+    Declared {
+        noise_acc: question.noise_acc,
+        noise_force: question.noise_force,
+        gain: question.gain_tolerance,
+        sync_s: question.sync_tolerance_s,
+    }
 }
 
 /// The vehicle less sensors whose channels the record lacks, where the rest still gives the body's motion.
@@ -404,226 +323,6 @@ fn add_tolerances(
     Ok(())
 }
 
-/// Puts the answer of a part into the whole.
-fn collect(
-    question: &Question,
-    answer: &mut Identification,
-    all: &[Parameter],
-    part: PartAnswer,
-    held: Option<&Motion>,
-) {
-    let at: Vec<usize> = part
-        .names
-        .iter()
-        .map(|p| all.iter().position(|q| q.name == p.name).unwrap_or(0))
-        .collect();
-    let units = &question.units;
-    let reference_name = part.reference.map(|r| part.names[r].name.clone());
-    let scaled = part.reference.is_none() && part.fit.is_some();
-    answer.coverage_factor = answer.coverage_factor.max(part.coverage_factor);
-    answer.findings.extend(part.motion.findings.iter().cloned());
-    let mut absent = Vec::new();
-    let mut group = Vec::new();
-    for (i, p) in part.names.iter().enumerate() {
-        let sigma = part.covariance[i][i].max(0.0).sqrt();
-        let known = question.known.contains_key(&p.name);
-        let value = part.values[i];
-        answer.values[at[i]] = value;
-        answer.sigmas[at[i]] = if known { 0.0 } else { sigma };
-        answer.scaled[at[i]] = scaled;
-        for j in 0..part.names.len() {
-            answer.covariance[at[i]][at[j]] = part.covariance[i][j];
-        }
-        let told = value.is_finite() && (known || scaled && !part.unknown.contains(&i));
-        let shown = scaled
-            .then_some(value)
-            .or(known.then_some(value))
-            .filter(|v| v.is_finite());
-        let half = part.coverage_factor * sigma;
-        answer.parameters.push(Estimate {
-            name: p.name.clone(),
-            value: shown,
-            sigma: shown.map(|_| if known { 0.0 } else { sigma }),
-            unit: units.of(p.quantity),
-            identifiable: told,
-            interval: shown.map(|v| if known { [v, v] } else { [v - half, v + half] }),
-            known,
-        });
-        if !value.is_finite() {
-            absent.push(p.name.clone());
-        } else if part.reference.is_some() {
-            group.push(p.name.clone());
-        }
-    }
-    if let (Some(r), Some(reference)) = (part.reference, &reference_name) {
-        for (i, p) in part
-            .names
-            .iter()
-            .enumerate()
-            .filter(|(i, _)| *i != r && part.values[*i].is_finite())
-        {
-            let sigma = part.covariance[i][i].max(0.0).sqrt();
-            let half = part.coverage_factor * sigma;
-            answer.parameters.push(Estimate {
-                name: format!("{}/{reference}", p.name),
-                value: Some(part.values[i]),
-                sigma: Some(sigma),
-                unit: format!("({})/({})", units.of(p.quantity), units.of(Quantity::Mass)),
-                identifiable: !part.unknown.contains(&i),
-                interval: Some([part.values[i] - half, part.values[i] + half]),
-                known: false,
-            });
-        }
-        let springs: Vec<String> = part
-            .names
-            .iter()
-            .filter(|p| p.quantity == Quantity::Stiffness)
-            .map(|p| p.name.clone())
-            .collect();
-        answer
-            .unidentifiable
-            .push(scale_sentence(&group, reference, &springs));
-    }
-    if !absent.is_empty() {
-        let channels: Vec<String> = part
-            .part
-            .wheels
-            .iter()
-            .zip(&part.motion.forces)
-            .filter(|(_, f)| f.is_none())
-            .map(|(w, _)| w.channel.clone())
-            .collect();
-        answer
-            .unidentifiable
-            .push(absent_sentence(&absent, &channels));
-    }
-    if let Some(f) = &part.fit {
-        answer
-            .unidentifiable
-            .extend(weak_sentences(f, &part.names, &part.unknown));
-        for &i in &f.active {
-            let p = &part.names[i];
-            answer.findings.push(at_bound(
-                &p.name,
-                f.values[i],
-                p.quantity == Quantity::Damping,
-            ));
-        }
-        if let (Some(a), Some(b)) = (
-            f.solution.singular_values.first(),
-            f.solution.singular_values.last(),
-        ) {
-            answer.conditioning = answer.conditioning.min(b / a);
-        }
-    }
-    if part.fit.is_none() {
-        return;
-    }
-    let fitted = channel_misfits(&part.part, &part.values, &part.motion, &part.blend);
-    let judged = held.map(|h| channel_misfits(&part.part, &part.values, h, &part.blend));
-    for (i, (channel, error, size)) in fitted.iter().enumerate() {
-        let on_hold_out = judged
-            .as_ref()
-            .and_then(|j| j.get(i))
-            .map(|(_, e, s)| (e / s, *e));
-        let own = error / size;
-        answer.fit.push(ChannelFit {
-            channel: channel.clone(),
-            relative_rms: on_hold_out.map_or(own, |h| h.0),
-            relative_rms_fitted: own,
-            on: if on_hold_out.is_some() {
-                "hold-out"
-            } else {
-                "fitted"
-            },
-        });
-        if let Some(w) = answer
-            .vehicle
-            .wheels
-            .iter()
-            .position(|w| w.channel == *channel)
-        {
-            answer.wheel_force_sigma[w] = Some(error.max(on_hold_out.map_or(0.0, |h| h.1)));
-        }
-    }
-    for (wheel, shares) in part.part.wheels.iter().zip(part.blend) {
-        if let Some(w) = answer
-            .vehicle
-            .wheels
-            .iter()
-            .position(|x| x.channel == wheel.channel)
-        {
-            answer.blend[w] = shares;
-        }
-    }
-}
-
-/// Channel, RMS of measured less predicted, RMS of measured: every measured wheel force, then the accelerometers of every body
-/// whose outside forces are measured, predicted from forces and stretch.
-fn channel_misfits(
-    part: &Vehicle,
-    values: &[f64],
-    m: &Motion,
-    blend: &Blend,
-) -> Vec<(String, f64, f64)> {
-    let mut out = Vec::new();
-    let minus =
-        |a: &[f64], b: &[f64]| rms(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>());
-    let forces = wheel_forces(part, values, m, blend);
-    for ((wheel, force), measured) in part.wheels.iter().zip(&forces).zip(&m.forces) {
-        if let Some(measured) = measured {
-            out.push((wheel.channel.clone(), minus(measured, force), rms(measured)));
-        }
-    }
-    let links = link_forces(part, values, m);
-    for (b, body) in part.bodies.iter().enumerate() {
-        let wheels: Vec<usize> = (0..part.wheels.len())
-            .filter(|&w| part.wheels[w].at.body == b)
-            .collect();
-        if part.is_witness(b) || wheels.iter().any(|&w| m.forces[w].is_none()) {
-            continue;
-        }
-        // Residual of each equation of the body, turned into an error of acceleration by its inertia.
-        let mut r = needed_forces(part, values, m, &links, b);
-        for &w in &wheels {
-            if let Some(force) = &m.forces[w] {
-                for (j, phi) in part.functions(&part.wheels[w].at).iter().enumerate() {
-                    r[j].iter_mut().zip(force).for_each(|(r, f)| *r -= phi * f);
-                }
-            }
-        }
-        let n = body.shape.n();
-        let inertia: Vec<Vec<f64>> = (0..n)
-            .map(|i| {
-                (0..n)
-                    .map(|j| values[part.inertia_index(b, i, j)])
-                    .collect()
-            })
-            .collect();
-        let Some(inverse) =
-            left_inverse(&inertia).filter(|_| inertia.iter().flatten().all(|v| v.is_finite()))
-        else {
-            continue;
-        };
-        for (sensor, a) in part
-            .sensors
-            .iter()
-            .zip(&m.sensors)
-            .filter(|(s, _)| s.at.body == b)
-        {
-            let phi = part.functions(&sensor.at);
-            let row: Vec<f64> = (0..n)
-                .map(|j| (0..n).map(|i| phi[i] * inverse[i][j]).sum())
-                .collect();
-            let error: Vec<f64> = (0..a.len())
-                .map(|t| row.iter().zip(&r).map(|(c, r)| c * r[t]).sum())
-                .collect();
-            out.push((sensor.channel.clone(), rms(&error), rms(a)));
-        }
-    }
-    out
-}
-
 /// Compares masses with the mean wheel forces, over the parts whose every wheel is measured.
 fn close_masses(question: &Question, answer: &mut Identification, record: &Channels) {
     let v = &answer.vehicle;
@@ -679,37 +378,4 @@ fn mean_finite(x: &[f64]) -> f64 {
         n += 1;
     }
     sum / n.max(1) as f64
-}
-
-impl Identification {
-    /// Value of a parameter by name, where the record tells it with its scale.
-    pub fn value(&self, name: &str) -> Option<f64> {
-        self.parameters
-            .iter()
-            .find(|p| p.name == name)
-            .and_then(|p| p.value)
-    }
-
-    /// Findings of error severity if nothing at all could be told.
-    pub fn verdict(&self) -> Option<Finding> {
-        let told = self.parameters.iter().any(|p| p.identifiable && !p.known);
-        (!told).then(|| {
-            let message = "No parameter can be told from this record.";
-            Finding::new(
-                Severity::Error,
-                "nothing-identifiable",
-                &self.vehicle.name,
-                message,
-                "Add a measurement named under `unidentifiable`.",
-            )
-        })
-    }
-
-    /// Residuals of every equation of a record in the band, by name: where the model fails.
-    pub fn equation_residuals(&self, m: &Motion) -> Vec<(String, Vec<f64>)> {
-        equations(&self.vehicle, m)
-            .iter()
-            .map(|e| (e.name.clone(), residual(e, &self.values)))
-            .collect()
-    }
 }

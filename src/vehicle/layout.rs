@@ -1,6 +1,6 @@
 //! A vehicle seen from the side of mechanics: rigid bodies that heave, pitch and roll, and what joins them.
 
-use super::term::{Quantity, Term};
+use super::term::{Quantity, Term, share_done};
 
 /// Which small rigid motions a body has; vertical displacement at (x, y) is q0 + x q_pitch + y q_roll.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -151,11 +151,7 @@ pub struct MassStep {
 impl MassStep {
     /// Share of the change that is done at a time.
     pub fn done(&self, t_s: f64) -> f64 {
-        if self.over_s > 0.0 {
-            ((t_s - self.at_s) / self.over_s).clamp(0.0, 1.0)
-        } else {
-            f64::from(u8::from(t_s >= self.at_s))
-        }
+        share_done(self.at_s, self.over_s, t_s)
     }
 }
 
@@ -210,6 +206,24 @@ impl Vehicle {
             });
         }
         out
+    }
+
+    /// Whether a mass or spring changes during a record.
+    pub fn changes(&self) -> bool {
+        let mut terms = self.links.iter().flat_map(|l| &l.terms);
+        !self.steps.is_empty() || terms.any(Term::is_of_time)
+    }
+
+    /// Lets every change of a mass or spring happen at once at a time: `f64::MIN` for done, `f64::MAX` for not begun.
+    pub fn settle_changes(&mut self, time_s: f64) {
+        for s in &mut self.steps {
+            (s.at_s, s.over_s) = (time_s, 0.0);
+        }
+        for t in self.links.iter_mut().flat_map(|l| &mut l.terms) {
+            if let Term::StiffnessChange { at_s, over_s } = t {
+                (*at_s, *over_s) = (time_s, 0.0);
+            }
+        }
     }
 
     /// Whether a body is but a witness.

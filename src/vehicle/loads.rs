@@ -1,6 +1,6 @@
 //! Wheel forces from a fitted vehicle and measured motion.
 
-use super::identify::Identification;
+use super::identification::Identification;
 use super::layout::Vehicle;
 use super::motion::Motion;
 use crate::estimate::LoadEstimate;

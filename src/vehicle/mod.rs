@@ -5,28 +5,33 @@
 //! - [`motion`]: measured channels made comparable; [`equations`]: the equations of motion, linear in the parameters
 //! - [`fit`]: weighted least squares with bounds; [`interval`]: covariance under coloured residuals
 //! - [`identify`]: all of it, with [`identifiability`] in words and [`checks`]
-//! - [`loads`]: wheel forces; [`chassis`]: chassis forces; [`fusion`]: axle bridge and hub accelerometer together
+//! - [`loads`]: wheel forces; [`chassis`]: chassis forces
 //! - [`stretch`]: slow stretch from force, where integration drifts
 //! - [`simulate`]: forward in time; [`refine`]: nonlinear parameters by simulation error
-//! - [`swarm`]: particle swarm, for comparison with the thesis
 
+pub mod adequacy;
+mod body_motion;
 pub mod chassis;
 pub mod checks;
 pub mod equations;
 pub mod fit;
-pub mod fusion;
 pub mod identifiability;
+pub mod identification;
 pub mod identify;
 pub mod interval;
 pub mod layout;
+mod limiter;
+mod link_motion;
 pub mod loads;
+pub mod misfit;
 pub mod motion;
+mod part_answer;
 pub mod preset;
 pub mod refine;
 pub mod simulate;
 pub mod stretch;
-pub mod swarm;
 pub mod term;
+pub mod treatment;
 
 #[cfg(test)]
 mod tests;

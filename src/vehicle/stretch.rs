@@ -1,18 +1,9 @@
 //! Slow stretch of a link from the force that passes through it: what double integration of accelerations loses in drift.
 
 use super::layout::{Measures, Shape, Vehicle};
-use super::motion::Adjustment;
+use super::treatment::{Adjustment, SlowStretch};
 use crate::series::channels::Channels;
 use crate::series::detrend::mean;
-
-/// Stretch of a link as its own law gives it from the force through it, at every sample of a record.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SlowStretch {
-    /// Index of the link.
-    pub link: usize,
-    /// Stretch, mean force taken as rest.
-    pub stretch: Vec<f64>,
-}
 
 /// Slow stretch of every link with a nonlinear term whose force one body's equation tells: a body that only heaves, held by this
 /// link alone, all its outside forces measured.
@@ -29,7 +20,7 @@ pub fn slow_stretches(
         .filter(|&l| vehicle.links[l].terms.iter().any(|t| !t.is_linear()))
         .filter_map(|l| {
             let force = link_force(vehicle, values, record, adjust, l)?;
-            let stretch = solved(vehicle, values, l, &force, record.rate_hz)?;
+            let stretch = solved(vehicle, values, l, &force, record)?;
             Some(SlowStretch { link: l, stretch })
         })
         .collect()
@@ -114,8 +105,9 @@ fn solved(
     values: &[f64],
     link: usize,
     force: &[f64],
-    rate_hz: f64,
+    record: &Channels,
 ) -> Option<Vec<f64>> {
+    let rate_hz = record.rate_hz;
     /// Newton steps; four suffice but where friction turns.
     const STEPS: usize = 30;
     let terms: Vec<(f64, super::term::Term)> = vehicle.links[link]
@@ -143,11 +135,14 @@ fn solved(
         return None;
     }
     let speed = size / stiffness * rate_hz;
-    let law = |d: f64, v: f64| terms.iter().map(|(c, t)| c * t.basis(d, v)).sum::<f64>();
+    let law = |d: f64, v: f64, t_s: f64| -> f64 {
+        terms.iter().map(|(c, t)| c * t.basis_at(d, v, t_s)).sum()
+    };
     let (mut d, mut v) = (0.0f64, 0.0f64);
     let mut out = Vec::with_capacity(force.len());
-    for &f in force {
-        let miss = |v: f64| law(d + h * v, v) - f;
+    for (i, &f) in force.iter().enumerate() {
+        let t_s = record.start_s + i as f64 * h;
+        let miss = |v: f64| law(d + h * v, v, t_s) - f;
         // The law rises with v: the root stays between the last points of either sign.
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
         for _ in 0..STEPS {

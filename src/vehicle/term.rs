@@ -17,6 +17,8 @@ pub enum Quantity {
     Stiffness3,
     /// Force times time per length.
     Damping,
+    /// Force times time squared per length squared.
+    Damping2,
     /// Force.
     Force,
 }
@@ -57,6 +59,7 @@ impl UnitNames {
             Quantity::Stiffness2 => format!("{f}/{l}2"),
             Quantity::Stiffness3 => format!("{f}/{l}3"),
             Quantity::Damping => format!("{f} s/{l}"),
+            Quantity::Damping2 => format!("{f} s2/{l}2"),
             Quantity::Force => f.clone(),
         }
     }
@@ -120,6 +123,20 @@ pub enum Term {
     Inertance,
     /// ca |v|: a damper with different rates c + ca in rebound (v > 0) and c - ca in compression.
     TwoRate,
+    /// c2 v |v|: a damper whose force grows with the square of the rate.
+    QuadraticDamping,
+    /// -kz d within the gap, -kz gap beyond: free play that takes kz of the link's stiffness.
+    DeadZone {
+        /// Free travel to either side.
+        gap: f64,
+    },
+    /// dk d times the share of a change that is done: a spring that changes during a record.
+    StiffnessChange {
+        /// When the change begins, s of the record's time.
+        at_s: f64,
+        /// How long it takes, s; 0: at once.
+        over_s: f64,
+    },
 }
 
 impl Term {
@@ -135,16 +152,29 @@ impl Term {
             Self::BumpStop { .. } => "kb",
             Self::TwoRate => "ca",
             Self::Inertance => "b",
+            Self::QuadraticDamping => "c2",
+            Self::DeadZone { .. } => "kz",
+            Self::StiffnessChange { .. } => "dk",
         }
     }
 
     /// The term of a name in a job: a coefficient's prefix or an effect id; automatic where it has a constant of its own.
-    /// A constant may follow in brackets: `coulomb_friction(0.006)` (velocity), `bump_stop(0.03 compression)` (gap, side).
+    /// A constant may follow in brackets: `coulomb_friction(0.006)` (velocity), `bump_stop(0.03 compression)` (gap, side); it must for
+    /// `dead_zone(0.004)` (gap) and `stiffness_drift(0 64)` (begin and length in s).
     pub fn from_name(name: &str) -> Option<Self> {
         if let Some((plain, rest)) = name.split_once('(') {
             let inside = rest.strip_suffix(')')?;
+            if plain == "stiffness_drift" {
+                let (at, over) = inside.split_once(' ')?;
+                let numbers = (at.parse::<f64>().ok()?, over.parse::<f64>().ok()?);
+                let (at_s, over_s) = Some(numbers).filter(|n| n.0.is_finite() && n.1 >= 0.0)?;
+                return Some(Self::StiffnessChange { at_s, over_s });
+            }
             let (number, word) = inside.split_once(' ').unwrap_or((inside, "both"));
             let constant = number.parse::<f64>().ok().filter(|v| *v > 0.0)?;
+            if plain == "dead_zone" {
+                return Some(Self::DeadZone { gap: constant });
+            }
             return match Self::from_name(plain)? {
                 Self::Friction { .. } => Some(Self::Friction { velocity: constant }),
                 Self::BumpStop { .. } => Some(Self::BumpStop {
@@ -166,6 +196,7 @@ impl Term {
                 side: Side::Both,
             },
             "ca" | "asymmetric_damper" => Self::TwoRate,
+            "c2" | "quadratic_damping" => Self::QuadraticDamping,
             "b" | "inertance" => Self::Inertance,
             _ => return None,
         })
@@ -189,13 +220,22 @@ impl Term {
             Self::Progressive => "progressive_leaf".into(),
             Self::TwoRate => "asymmetric_damper".into(),
             Self::Inertance => "inertance".into(),
+            Self::QuadraticDamping => "quadratic_damping".into(),
+            Self::DeadZone { gap } => format!("dead_zone({gap:.6e})"),
+            Self::StiffnessChange { at_s, over_s } => {
+                format!("stiffness_drift({at_s:.6} {over_s:.6})")
+            }
         }
     }
 
     /// What its coefficient is measured in.
     pub fn quantity(&self) -> Quantity {
         match self {
-            Self::Stiffness | Self::BumpStop { .. } => Quantity::Stiffness,
+            Self::Stiffness
+            | Self::BumpStop { .. }
+            | Self::DeadZone { .. }
+            | Self::StiffnessChange { .. } => Quantity::Stiffness,
+            Self::QuadraticDamping => Quantity::Damping2,
             Self::Damping | Self::TwoRate => Quantity::Damping,
             Self::Quadratic | Self::Progressive => Quantity::Stiffness2,
             Self::Cubic => Quantity::Stiffness3,
@@ -233,6 +273,31 @@ impl Term {
             },
             Self::TwoRate => v.abs(),
             Self::Inertance => 0.0,
+            Self::QuadraticDamping => v * v.abs(),
+            Self::DeadZone { gap } => -d.clamp(-gap, gap),
+            Self::StiffnessChange { .. } => d,
         }
+    }
+
+    /// The same at a time of the record, s: what changes with time is there as far as it is done.
+    pub fn basis_at(&self, d: f64, v: f64, t_s: f64) -> f64 {
+        match *self {
+            Self::StiffnessChange { at_s, over_s } => d * share_done(at_s, over_s, t_s),
+            _ => self.basis(d, v),
+        }
+    }
+
+    /// Whether the term changes with time.
+    pub fn is_of_time(&self) -> bool {
+        matches!(self, Self::StiffnessChange { .. })
+    }
+}
+
+/// Share of a change that begins at `at_s` and takes `over_s` that is done at `t_s`.
+pub fn share_done(at_s: f64, over_s: f64, t_s: f64) -> f64 {
+    if over_s > 0.0 {
+        ((t_s - at_s) / over_s).clamp(0.0, 1.0)
+    } else {
+        f64::from(u8::from(t_s >= at_s))
     }
 }

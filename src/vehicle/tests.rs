@@ -32,6 +32,8 @@ fn question(model: &str, terms: &[&str], band: (f64, f64)) -> Question {
         gain_tolerance: 0.0,
         sync_tolerance_s: 0.0,
         units: UnitNames::si(),
+        noise_acc: None,
+        noise_force: None,
         corrections: vec![],
     }
 }

@@ -38,6 +38,8 @@ pub struct Case {
     pub hold_out: Vec<(String, Vec<f64>)>,
     pub terms: Vec<String>,
     pub noise: [f64; 2],
+    /// Mass of the measured body.
+    pub sprung: f64,
 }
 
 pub struct Dice(ChaCha8Rng);
@@ -76,6 +78,11 @@ struct Law {
     memory_k: f64,
     memory_s: f64,
     drag: f64,
+    /// Free play to either side.
+    play: f64,
+    /// Share of stiffness that is lost or won over the record, and how long that takes.
+    drift: f64,
+    drift_s: f64,
 }
 
 struct Machine {
@@ -103,8 +110,9 @@ impl Machine {
             let (b, i) = (self.hangs_on[w], s + w);
             let (d, v) = (y[b] - y[i], y[n + b] - y[n + i]);
             let l = &self.laws[w];
-            let stiffness =
-                l.k * (1.0 + l.modulation * (std::f64::consts::TAU * l.modulation_hz * t).sin());
+            let drifted = l.drift * (t / l.drift_s).min(1.0);
+            let wave = l.modulation * (std::f64::consts::TAU * l.modulation_hz * t).sin();
+            let stiffness = l.k * (1.0 + wave + drifted);
             let over = match l.stop_side {
                 0 => (d - l.gap).max(0.0) + (d + l.gap).min(0.0),
                 1 => (d + l.gap).min(0.0),
@@ -116,7 +124,7 @@ impl Machine {
             } else {
                 0.0
             };
-            let pull = stiffness * d
+            let pull = stiffness * (d - d.clamp(-l.play, l.play))
                 + l.c * v
                 + l.k3 * d * d * d
                 + l.friction * (v / l.fade).tanh()
@@ -131,6 +139,12 @@ impl Machine {
             tyres.push(tyre);
             force[b] -= pull;
             force[i] += pull + tyre - self.statics[w];
+        }
+        if s == 1 && u == 2 {
+            // A beam between the axles of a bogie.
+            let pull = self.axle * (y[1] - y[2]);
+            force[1] -= pull;
+            force[2] += pull;
         }
         if s == 2 {
             let pull = self.roll * (y[0] - y[1]);
@@ -255,8 +269,44 @@ fn late(x: &[f64], delay: f64) -> Vec<f64> {
         .collect()
 }
 
+/// A given gain on a given channel, clean background.
+pub fn hide_gain(layout: Layout, channel: &str, gain: f64, seed: u64) -> Case {
+    let exact = Exact {
+        gain: Some((channel.to_owned(), gain)),
+        mass: None,
+    };
+    hide_exactly(layout, "accel_gain", 0, Background::Clean, seed, &exact)
+}
+
+/// A given share of the body that joins or leaves, clean background.
+pub fn hide_mass_change(layout: Layout, share: f64, seed: u64) -> Case {
+    let exact = Exact {
+        gain: None,
+        mass: Some(share),
+    };
+    hide_exactly(layout, "mass_change", 0, Background::Clean, seed, &exact)
+}
+
+/// Sizes that are not drawn.
+#[derive(Default)]
+struct Exact {
+    gain: Option<(String, f64)>,
+    mass: Option<f64>,
+}
+
 /// Hides `effect` of a size (0: small, 1: middle, 2: large) in a truck drawn from `seed`.
 pub fn hide(layout: Layout, effect: &str, size: usize, background: Background, seed: u64) -> Case {
+    hide_exactly(layout, effect, size, background, seed, &Exact::default())
+}
+
+fn hide_exactly(
+    layout: Layout,
+    effect: &str,
+    size: usize,
+    background: Background,
+    seed: u64,
+    exact: &Exact,
+) -> Case {
     let mut dice = Dice::of(seed);
     let n_wheels = 2;
     let n_sprung = if layout == Layout::Rear { 1 } else { 2 };
@@ -300,6 +350,9 @@ pub fn hide(layout: Layout, effect: &str, size: usize, background: Background, s
             memory_k: 0.0,
             memory_s: 0.0,
             drag: 0.0,
+            play: 0.0,
+            drift: 0.0,
+            drift_s: 64.0,
         });
         m.tyre_k.push(dice.between(1.3e6, 1.5e6));
         m.tyre_c.push(dice.between(2e3, 3e3));
@@ -369,7 +422,9 @@ pub fn hide(layout: Layout, effect: &str, size: usize, background: Background, s
                 law.memory_k = of([0.15, 0.3, 0.6]) * k;
                 law.memory_s = dice.between(0.03, 0.2);
             }
-            "quadratic_drag" => {
+            "dead_zone" => law.play = of([0.001, 0.002, 0.004]),
+            "stiffness_drift" => law.drift = of([0.05, -0.1, 0.25]),
+            "quadratic_damping" => {
                 law.drag = of([0.3, 0.8, 1.6]) * c / 0.25;
                 law.c *= 0.6;
             }
@@ -382,13 +437,14 @@ pub fn hide(layout: Layout, effect: &str, size: usize, background: Background, s
         "mass_change" => {
             m.mass_step = Some((
                 dice.between(15.0, 50.0),
-                of([0.06, -0.12, 0.25]) * m.sprung[0],
+                exact.mass.unwrap_or(of([0.06, -0.12, 0.25])) * m.sprung[0],
             ))
         }
         "accel_gain" => {
             let at = names[dice.pick(if layout == Layout::Rear { 3 } else { 2 })].to_owned();
             let off = of([0.04, 0.08, 0.15]) * if dice.pick(2) == 0 { 1.0 } else { -1.0 };
-            gain.push((at.clone(), 1.0 + off));
+            let (at, g) = exact.gain.clone().unwrap_or((at, 1.0 + off));
+            gain.push((at.clone(), g));
             channel = Some(at);
         }
         "sign_flip" => {
@@ -430,6 +486,9 @@ pub fn hide(layout: Layout, effect: &str, size: usize, background: Background, s
             ..m
         };
         machine.axle = m.axle;
+        if !changed {
+            machine.laws.iter_mut().for_each(|l| l.drift = 0.0);
+        }
         let run = drive(&machine, seconds, roughness, axle_delay, dice);
         let signal = |name: &str| -> Vec<f64> {
             match name {
@@ -470,11 +529,12 @@ pub fn hide(layout: Layout, effect: &str, size: usize, background: Background, s
     };
     let data = record(64.0, roughness, &mut dice, true);
     let hold_out = record(24.0, roughness * 1.1, &mut dice, false);
-    if ["modulated_stiffness", "memory", "quadratic_drag"].contains(&effect) {
+    if ["modulated_stiffness", "memory"].contains(&effect) {
         truth = "unknown".into();
     }
-    if effect == "roll_coupling" || effect == "axle_coupling" {
-        truth = effect.into();
+    // What joins left and right of one axle is one effect, wherever it acts.
+    if effect == "axle_coupling" && layout == Layout::Pair {
+        truth = "roll_coupling".into();
     }
     Case {
         layout,
@@ -485,5 +545,6 @@ pub fn hide(layout: Layout, effect: &str, size: usize, background: Background, s
         hold_out,
         terms,
         noise,
+        sprung: m.sprung[0],
     }
 }

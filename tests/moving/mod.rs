@@ -65,13 +65,17 @@ pub fn frame_of(case: &Case) -> MotionFrame {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Score {
     Exact,
+    /// The right effect at another channel, which the record can't tell from the right one: said so.
+    Group,
+    /// The right effect at another channel alone.
+    Misplaced,
     Abstained,
     Missed,
     Partial,
     False,
 }
 
-/// The rule of `score.py`: families count, `below-detectability` is none.
+/// The rule of `score.py`: families and channels count, `below-detectability` is none.
 pub fn score(case: &Case, outcome: &MotionOutcome) -> Score {
     let mut named: Vec<String> = match outcome.verdict {
         Verdict::Named => outcome
@@ -84,7 +88,7 @@ pub fn score(case: &Case, outcome: &MotionOutcome) -> Score {
     };
     named.dedup();
     if named == [case.truth.clone()] {
-        Score::Exact
+        at_place(case, outcome)
     } else if named == ["unknown"] {
         if case.truth == "none" {
             Score::False
@@ -95,5 +99,25 @@ pub fn score(case: &Case, outcome: &MotionOutcome) -> Score {
         Score::Missed
     } else {
         Score::False
+    }
+}
+
+/// Whether the channel is the right one, or one of a group that is called a group.
+fn at_place(case: &Case, outcome: &MotionOutcome) -> Score {
+    let Some(channel) = &case.channel else {
+        return Score::Exact;
+    };
+    let right = format!("{}:{channel}", case.truth);
+    let in_group = |ids: &[String]| ids.contains(&right);
+    if outcome.effects.iter().any(|e| e.id == right) {
+        Score::Exact
+    } else if outcome
+        .rivals
+        .iter()
+        .any(|r| r.indistinguishable && in_group(&r.ids))
+    {
+        Score::Group
+    } else {
+        Score::Misplaced
     }
 }

@@ -7,7 +7,7 @@ use crate::app::fault::Faults;
 use crate::app::job::{Job, Vehicle as VehicleJob};
 use crate::app::vehicle::{VehicleRecords, read_vehicle, vehicle_fault, wish_of};
 use crate::finding::{Finding, Severity};
-use crate::reconcile::motion::gap::RecordGap;
+use crate::reconcile::motion::gap::{Proof, RecordGap};
 use crate::reconcile::motion::{
     MotionEffect, MotionFrame, MotionOutcome, SimulatedGap, examine, simulated_gap,
 };
@@ -242,14 +242,23 @@ fn put(
     session.put(
         "gap",
         json!({
-            "metric": "RMS of the equations' residual / RMS of the measured quantity (wheel force, mass times acceleration), in band, \
-                       on held-out data, root mean square over equations",
+            "metric": format!(
+                "RMS of the equations' residual / RMS of the measured quantity (wheel force, mass times acceleration), in band, \
+                 on {}, root mean square over equations",
+                outcome.judged_by.words()
+            ),
+            "judged_by": outcome.judged_by,
             "before": outcome.gap.before,
             "after": outcome.gap.after,
             "floor": outcome.gap.floor,
             "explained_share": outcome.gap.explained_share(),
         }),
     )?;
+    let smallest = outcome
+        .smallest
+        .iter()
+        .map(|s| json!({ "id": s.id, "size": s.size, "unit": s.unit }));
+    session.put("detectable", smallest.collect::<Vec<_>>())?;
     session.put("evidence", outcome.evidence)?;
     let [before, after] = outcome.reduced_chi2;
     session.put("reduced_chi2", json!({ "before": before, "after": after }))?;
@@ -276,6 +285,41 @@ fn findings(session: &mut Session, outcome: &MotionOutcome) {
                 outcome.next_measurement.clone(),
             )
             .with_numbers(outcome.reduced_chi2[1], 1.0),
+        );
+    }
+    if outcome.judged_by != Proof::HeldOut {
+        session.findings.push(Finding::new(
+            Severity::Warning,
+            "no-hold-out",
+            "vehicle.hold_out",
+            format!(
+                "No record was held out: gaps are those of {}.",
+                outcome.judged_by.words()
+            ),
+            "Name a record of another stretch of road as `hold_out` in [vehicle].",
+        ));
+    }
+    if outcome.verdict == Verdict::BelowDetectability
+        && let Some(hint) = outcome.rivals.first()
+    {
+        let sizes: Vec<String> = outcome
+            .smallest
+            .iter()
+            .filter(|s| hint.ids.contains(&s.id))
+            .map(|s| format!("`{}` {:.3e} {}", s.id, s.size, s.unit))
+            .collect();
+        session.findings.push(
+            Finding::new(
+                Severity::Info,
+                "below-detectability",
+                hint.ids.join(" + "),
+                format!(
+                    "There is a hint, too small for this record to name. The smallest size that would have been named: {}.",
+                    sizes.join(", ")
+                ),
+                outcome.next_measurement.clone(),
+            )
+            .with_numbers(-hint.evidence_difference, outcome.decisive),
         );
     }
     if outcome.verdict == Verdict::Named {
@@ -324,13 +368,13 @@ fn write_tables(
             (&mut bands, &e.by_band, after.as_ref().map(|a| &a.by_band)),
             (
                 &mut times,
-                &e.course.by_time,
-                after.as_ref().map(|a| &a.course.by_time),
+                &e.profile.by_time,
+                after.as_ref().map(|a| &a.profile.by_time),
             ),
             (
                 &mut sizes,
-                &e.course.by_amplitude,
-                after.as_ref().map(|a| &a.course.by_amplitude),
+                &e.profile.by_amplitude,
+                after.as_ref().map(|a| &a.profile.by_amplitude),
             ),
         ];
         for (table, before, after) in lists {
@@ -393,10 +437,13 @@ fn write_tables(
         figure_section(
             "Gap before and after",
             gap_by_channel(&gaps, "% of the measured quantity,"),
-            "On held-out data, by equation of motion; stroke: the floor.",
+            &format!(
+                "On {}, by equation of motion; stroke: the floor.",
+                outcome.judged_by.words()
+            ),
         ),
         table_section(
-            "Gap on held-out data, % of the measured quantity",
+            "Gap by equation, % of the measured quantity",
             &["equation", "before", "after", "floor"],
             &rows,
             "",
@@ -458,7 +505,7 @@ fn say(session: &mut Session, outcome: &MotionOutcome, simulation: Option<&Simul
         effects,
         &outcome.gap,
         &outcome.rivals,
-        "data",
+        outcome.judged_by.words(),
     );
     for c in simulation.iter().flat_map(|s| &s.channels) {
         session.say(format!(

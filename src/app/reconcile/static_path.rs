@@ -573,7 +573,7 @@ fn say(session: &mut Session, outcome: &Outcome) {
         effects,
         &outcome.gap,
         &outcome.rivals,
-        "runs",
+        "held-out runs",
     );
     session.say(format!("where: {}", outcome.sits));
     session.say(format!("left: {}", outcome.remains));

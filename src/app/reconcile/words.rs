@@ -49,7 +49,7 @@ pub(super) fn say<'a>(
         session.say(format!("  {}", e.in_words()));
     }
     session.say(format!(
-        "gap on held-out {data}: {:.2} % before, {:.2} % after, floor {:.2} %, explained {:.0} %",
+        "gap on {data}: {:.2} % before, {:.2} % after, floor {:.2} %, explained {:.0} %",
         100.0 * gap.before,
         100.0 * gap.after,
         100.0 * gap.floor,

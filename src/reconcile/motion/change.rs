@@ -130,6 +130,15 @@ pub fn with_adjustment(list: &[Adjustment], more: Adjustment) -> Vec<Adjustment>
 }
 
 impl Change {
+    /// Whether it changes during the record.
+    pub fn is_of_time(&self) -> bool {
+        match self {
+            Self::Step(_) => true,
+            Self::Terms { terms, .. } => terms.iter().any(Term::is_of_time),
+            _ => false,
+        }
+    }
+
     /// Shapes of the same kind with the constant a little smaller and larger; empty where there is none to find.
     ///
     /// `gravity` is what a change of mass may bring with it.
@@ -157,6 +166,15 @@ impl Change {
                         }
                         Term::BumpStop { gap, .. } => {
                             *gap *= (0.5 * s).exp();
+                            varied = true;
+                        }
+                        Term::DeadZone { gap } => {
+                            *gap *= (2.0 * s).exp();
+                            varied = true;
+                        }
+                        Term::StiffnessChange { at_s, over_s } => {
+                            *at_s += SPAN_S * s;
+                            *over_s = 0.0;
                             varied = true;
                         }
                         _ => {}

@@ -34,8 +34,10 @@ pub struct BinChannel {
     pub name: String,
     /// Its transform.
     pub bins: Bins,
-    /// Noise of one sample, one sd; none where not declared.
+    /// Noise of one sample of the corrected channel, one sd; none where not declared.
     pub noise: Option<f64>,
+    /// What its readings were divided by.
+    pub gain: f64,
 }
 
 /// Everything a fit needs to know of a record.
@@ -82,6 +84,18 @@ pub fn design(
         settle_s: Some(1.5 * frame.band.settling_s()),
     };
     let motion = motion(vehicle, record, &treatment)?;
+    let mut out = of_motion(frame, vehicle, motion, adjust)?;
+    out.thinning = keep as f64;
+    Ok(out)
+}
+
+/// The design of a stretch of a motion.
+fn of_motion(
+    frame: &MotionFrame,
+    vehicle: &Vehicle,
+    motion: Motion,
+    adjust: &[Adjustment],
+) -> Result<Design, VehicleError> {
     let mut window = Windowed::of(motion.n_samples(), motion.rate_hz, frame.band);
     let mut out = Vec::new();
     for e in equations(vehicle, &motion) {
@@ -103,24 +117,34 @@ pub fn design(
             motion: index,
         });
     }
+    // Noise is that of readings: a channel divided by its gain has its noise divided, too.
+    let gain = |channel: &str| -> f64 {
+        let own = adjust.iter().filter(|a| a.channel == channel);
+        own.map(|a| a.gain.abs()).product()
+    };
     let mut channels = Vec::new();
     for (s, signal) in vehicle.sensors.iter().zip(&motion.sensors) {
         if frame.bodies.contains(&s.at.body) {
+            let gain = gain(&s.channel);
+            let noise = frame
+                .noise_acc
+                .filter(|_| s.measures == Measures::Acceleration);
             channels.push(BinChannel {
                 name: s.channel.clone(),
                 bins: window.bins(signal),
-                noise: frame
-                    .noise_acc
-                    .filter(|_| s.measures == Measures::Acceleration),
+                noise: noise.map(|n| n / gain),
+                gain,
             });
         }
     }
     for (w, signal) in vehicle.wheels.iter().zip(&motion.forces) {
         if let (true, Some(signal)) = (frame.bodies.contains(&w.at.body), signal) {
+            let gain = gain(&w.channel);
             channels.push(BinChannel {
                 name: w.channel.clone(),
                 bins: window.bins(signal),
-                noise: frame.noise_force,
+                noise: frame.noise_force.map(|n| n / gain),
+                gain,
             });
         }
     }
@@ -131,7 +155,7 @@ pub fn design(
         f_hz: window.f_hz,
         equations: out,
         channels,
-        thinning: keep as f64,
+        thinning: 1.0,
         vehicle: vehicle.clone(),
         motion,
     })
@@ -153,6 +177,44 @@ fn body_of(vehicle: &Vehicle, name: &str) -> Option<(usize, usize)> {
 }
 
 impl Design {
+    /// Whether a parameter is in any equation.
+    pub fn has(&self, parameter: usize) -> bool {
+        self.equations
+            .iter()
+            .any(|e| e.columns.iter().any(|c| c.0 == parameter))
+    }
+
+    /// The same of `n` stretches of equal length, one after the other; empty where they would be too short for the band.
+    pub fn segments(&self, frame: &MotionFrame, adjust: &[Adjustment], n: usize) -> Vec<Self> {
+        let length = self.motion.n_samples() / n.max(1);
+        let parts = (0..n).map(|k| {
+            let motion = self.motion.stretch_of(k * length, length);
+            let mut d = of_motion(frame, &self.vehicle, motion, adjust).ok()?;
+            d.thinning = self.thinning;
+            Some(d)
+        });
+        parts.collect::<Option<Vec<_>>>().unwrap_or_default()
+    }
+
+    /// Mean over the compared stretch of a function of the record's time, s.
+    pub fn mean_done(&self, of: impl Fn(f64) -> f64) -> f64 {
+        let n = self.motion.n_samples().max(1);
+        let at = |i: usize| self.motion.start_s + i as f64 / self.motion.rate_hz;
+        (0..n).map(|i| of(at(i))).sum::<f64>() / n as f64
+    }
+
+    /// Begin and end of the compared stretch, s of the record's time.
+    pub fn span_s(&self) -> [f64; 2] {
+        let m = &self.motion;
+        [m.start_s, m.start_s + m.n_samples() as f64 / m.rate_hz]
+    }
+
+    /// What the readings of a channel were divided by.
+    pub fn gain_of(&self, channel: &str) -> f64 {
+        let c = self.channels.iter().find(|c| c.name == channel);
+        c.map_or(1.0, |c| c.gain)
+    }
+
     /// Sum of parameter times column, less target, of every equation.
     pub fn residual(&self, values: &[f64]) -> Vec<Bins> {
         self.equations
@@ -178,4 +240,26 @@ impl Design {
 /// Root of the mean power of a transform times its number of bins: comparable between signals of one design.
 pub fn size(x: &[Complex64]) -> f64 {
     x.iter().map(|v| v.norm_sqr()).sum::<f64>().sqrt()
+}
+
+/// Size of the measured quantity of an equation.
+pub fn reference(design: &Design, equation: usize, values: &[f64]) -> f64 {
+    size(&measured(design, equation, values))
+}
+
+/// The measured quantity of an equation: its outside force, or mass times acceleration where none acts.
+pub fn measured(design: &Design, equation: usize, values: &[f64]) -> Bins {
+    let e = &design.equations[equation];
+    if size(&e.target) > 0.0 {
+        return e.target.clone();
+    }
+    let inertias = design.vehicle.term_index(0, 0);
+    let mut sum: Bins = vec![Complex64::default(); design.f_hz.len()];
+    for (i, c) in e.columns.iter().filter(|c| c.0 < inertias) {
+        let v = values[*i];
+        if v.is_finite() {
+            sum.iter_mut().zip(c).for_each(|(s, c)| *s += c * v);
+        }
+    }
+    sum
 }

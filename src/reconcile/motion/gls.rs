@@ -128,6 +128,16 @@ impl Basis {
         }
     }
 
+    /// Norm of what is new in a column: one over the standard deviation of its coefficient.
+    pub fn left_of(&self, column: &[f64]) -> f64 {
+        let mut c = column.to_vec();
+        c.extend(vec![0.0; self.n_priors]);
+        let before = norm(&c);
+        self.reduce(&mut c);
+        let after = norm(&c);
+        if after <= 1e-7 * before { 0.0 } else { after }
+    }
+
     /// Fall of the squared residual by further free columns, one after the other, and the coefficient of the first.
     pub fn gain(&self, residual: &[f64], further: &[Vec<f64>]) -> (f64, f64) {
         let mut own = Self {

@@ -3,25 +3,37 @@
 //! - [`frame`]: what is given; [`design`]: the equations as transforms within the band
 //! - [`response`], [`noise`], [`gls`]: how sensor noise enters, and least squares that respects it
 //! - [`change`], [`candidate`], [`effect`]: the library; [`fit`]: a set of effects fitted; [`scorer`]: its evidence
-//! - [`backdrop`]: what nothing explains; [`gap`]: how much is left on other data; [`examine`]: the verdict; [`simulated`]: what was named, by simulation
+//! - [`unexplained_background`]: what nothing explains; [`gap`]: how much is left on other data; [`examine`]: the verdict; [`simulated`]: what was named, by simulation
 
-pub mod backdrop;
+pub mod alias;
+pub mod at_rest;
 pub mod candidate;
 pub mod change;
 pub mod channel_check;
-pub mod course;
+pub mod columns;
+pub mod corrections;
 pub mod design;
+pub mod detectable;
 pub mod effect;
+pub mod effect_units;
+pub mod evidence;
 pub mod examine;
 pub mod fit;
+pub mod fitted;
+pub mod floor;
 pub mod frame;
 pub mod gap;
+pub mod gap_profile;
 pub mod gls;
+pub mod judge;
+pub mod limits;
 pub mod noise;
 pub mod outcome;
 pub mod response;
 pub mod scorer;
+mod sentences;
 pub mod simulated;
+pub mod unexplained_background;
 
 pub use examine::examine;
 pub use frame::MotionFrame;

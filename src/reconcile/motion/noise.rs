@@ -79,6 +79,34 @@ pub fn covariance(
         .collect()
 }
 
+/// Sum over bins of ln |S| - ln |S0|, S the covariance and S0 that of sensor noise alone.
+///
+/// With x the true channels, G x = b the equations (b the background, of covariance B) and y = x + n the readings, the density of y with
+/// b and the unseen part of x integrated out is exp(-r' S^-1 r) |S0| / |S| in every bin, with r = G y, S0 = G N G', S = S0 + B. So
+/// equations may be scaled at will: models that differ by a scale alone are alike.
+pub fn log_determinant(
+    frame: &MotionFrame,
+    design: &Design,
+    responses: &[Vec<Vec<Complex64>>],
+    background: &Background,
+    covariances: &[Vec<Complex64>],
+) -> f64 {
+    if background.power.is_empty() {
+        return 0.0;
+    }
+    let n = design.equations.len();
+    let sensors = covariance(frame, design, responses, &Background::default());
+    let log = |s: &[Complex64]| -> f64 {
+        let l = cholesky(s, n);
+        (0..n).map(|i| 2.0 * l[i * n + i].re.ln()).sum()
+    };
+    covariances
+        .iter()
+        .zip(&sensors)
+        .map(|(s, s0)| log(s) - log(s0))
+        .sum()
+}
+
 impl Whitener {
     /// Factors of covariances.
     pub fn of(covariance: &[Vec<Complex64>], n: usize) -> Self {

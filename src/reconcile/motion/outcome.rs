@@ -1,7 +1,7 @@
 //! What the dynamic workflow has to say.
 
 use super::change::Change;
-use super::gap::RecordGap;
+use super::gap::{Proof, RecordGap};
 use crate::reconcile::outcome::{Gap, Rival, Verdict};
 use crate::vehicle::motion::Adjustment;
 
@@ -24,6 +24,17 @@ pub struct MotionEffect {
     pub plausible: bool,
 }
 
+/// The smallest size of an effect that a record would have shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Smallest {
+    /// Id with place.
+    pub id: String,
+    /// Size.
+    pub size: f64,
+    /// Unit.
+    pub unit: String,
+}
+
 /// Everything.
 #[derive(Clone, Debug)]
 pub struct MotionOutcome {
@@ -39,9 +50,13 @@ pub struct MotionOutcome {
     pub rivals: Vec<Rival>,
     /// Log evidence of the best set less that of no effect.
     pub evidence: f64,
-    /// Gap on held-out data.
+    /// Log evidence that names.
+    pub decisive: f64,
+    /// Gap on what judges.
     pub gap: Gap,
-    /// Held-out gap of the analyst's model by equation.
+    /// What that was.
+    pub judged_by: Proof,
+    /// Gap there of the analyst's model by equation.
     pub before: Option<RecordGap>,
     /// With the best attempt in.
     pub after: Option<RecordGap>,
@@ -49,6 +64,8 @@ pub struct MotionOutcome {
     pub reduced_chi2: [f64; 2],
     /// Share of the measured quantity left on the fitted record: analyst's model, best attempt, floor.
     pub left: [f64; 3],
+    /// Smallest sizes that would have been seen.
+    pub smallest: Vec<Smallest>,
     /// What remains, in words.
     pub remains: String,
     /// What would separate the first two explanations.

@@ -29,6 +29,7 @@ pub fn responses(design: &Design, values: &[f64]) -> Vec<Vec<Vec<Complex64>>> {
         })
         .collect();
     let slopes = slopes(design, values);
+    let changed = changed_masses(design, values);
     let share = |body: usize, motion: usize, sensor: usize| -> f64 {
         let Some(own) = (v.sensors[sensor].at.body == body).then(|| {
             (0..v.sensors.len())
@@ -62,9 +63,12 @@ pub fn responses(design: &Design, values: &[f64]) -> Vec<Vec<Vec<Complex64>>> {
                         return vec![Complex64::default(); design.f_hz.len()];
                     };
                     let n = v.bodies[e.body].shape.n();
-                    let inertia: f64 = (0..n)
+                    let mut inertia: f64 = (0..n)
                         .map(|i| value(v.inertia_index(e.body, i, e.motion)) * share(e.body, i, s))
                         .sum();
+                    if e.motion == 0 {
+                        inertia += changed[e.body] * share(e.body, 0, s);
+                    }
                     let mut paths: Vec<(f64, [f64; 3])> = Vec::new();
                     for (link, slope) in v.links.iter().zip(&slopes) {
                         let here: f64 = link
@@ -109,6 +113,19 @@ pub fn responses(design: &Design, values: &[f64]) -> Vec<Vec<Vec<Complex64>>> {
         .collect()
 }
 
+/// What changes of mass add to each body, mean over the record.
+fn changed_masses(design: &Design, values: &[f64]) -> Vec<f64> {
+    let v = &design.vehicle;
+    let mut out = vec![0.0; v.bodies.len()];
+    for (s, step) in v.steps.iter().enumerate() {
+        let value = values.get(v.step_index(s)).filter(|x| x.is_finite());
+        if let (Some(value), Some(out)) = (value, out.get_mut(step.body)) {
+            *out += value * design.mean_done(|t_s| step.done(t_s));
+        }
+    }
+    out
+}
+
 /// Mean slope of each link's law over stretch, rate and acceleration of stretch.
 fn slopes(design: &Design, values: &[f64]) -> Vec<[f64; 3]> {
     let v = &design.vehicle;
@@ -131,8 +148,9 @@ fn slopes(design: &Design, values: &[f64]) -> Vec<[f64; 3]> {
                     _ if c != 0.0 => {
                         // Statistical linearisation: regression of the term on stretch and rate.
                         let (mut fd, mut fv, mut dd, mut vv) = (0.0, 0.0, 0.0, 0.0);
-                        for (d, r) in d.iter().zip(rate) {
-                            let f = term.basis(*d, *r);
+                        for (i, (d, r)) in d.iter().zip(rate).enumerate() {
+                            let t_s = design.motion.start_s + i as f64 / design.motion.rate_hz;
+                            let f = term.basis_at(*d, *r, t_s);
                             fd += f * d;
                             fv += f * r;
                             dd += d * d;

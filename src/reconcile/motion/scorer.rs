@@ -2,16 +2,16 @@
 
 use super::candidate::Candidate;
 use super::change::{Change, assemble};
+use super::columns::{fault_column, parameter_column, slices};
+use super::corrections::adjustments;
 use super::design::{Design, design};
-use super::fit::{
-    Effort, MotionFit, Part, adjustments, fault_column, fit, parameter_column, slices,
-};
+use super::evidence::{cost, evidence};
+use super::fit::{Effort, fit};
+use super::fitted::{MotionFit, Part};
 use super::frame::MotionFrame;
 use super::gls::Basis;
 use super::noise::Background;
 use crate::reconcile::search::{Addition, Scored, Scorer};
-use crate::series::detrend::mean;
-use crate::vehicle::layout::Measures;
 use crate::vehicle::motion::Adjustment;
 use crate::vehicle::stretch::slow_stretches;
 use std::sync::Arc;
@@ -41,26 +41,10 @@ const WORTH_REFINING: f64 = 30.0;
 const REFINE: [f64; 7] = [0.2, 0.07, 0.025, 0.009, 0.003, 0.001, 0.0003];
 
 impl MotionScorer<'_> {
-    /// What a set costs for its freedom: half the log of the number of rows a parameter, the choice among candidates and forms.
-    pub fn cost(&self, candidate: usize, shape: &Change) -> f64 {
+    /// What a candidate in a form costs: [`cost`].
+    pub fn cost(&self, candidate: usize, shape: &Change, n_rows: usize) -> f64 {
         let c = &self.candidates[candidate];
-        let n = match shape {
-            Change::Terms { terms, .. } => terms.len(),
-            Change::Links(links) => links.iter().map(|l| l.terms.len()).sum(),
-            _ => 1,
-        };
-        let constants = usize::from(c.shapes.len() > 4);
-        let per = 0.5 * 4000f64.ln();
-        per * (n + constants) as f64 + (self.candidates.len() as f64).ln() + c.handicap
-    }
-
-    fn evidence(&self, fit: &MotionFit) -> f64 {
-        let cost: f64 = fit
-            .parts
-            .iter()
-            .map(|p| self.cost(p.candidate, &p.shape))
-            .sum();
-        -0.5 * (fit.chi2 + fit.penalty + still(self.frame, fit)) - cost - unusual(fit)
+        cost(c, shape, self.candidates.len(), n_rows)
     }
 
     fn part(&self, candidate: usize, addition: Option<&Addition>) -> Part {
@@ -155,18 +139,22 @@ impl MotionScorer<'_> {
                 .zip(&now.columns[k].rows)
                 .for_each(|(r, c)| *r += c * x);
         }
-        let gain = |parameters: &[usize]| {
+        let at_rest = |shape: &Change| {
+            let rest = now.rest.as_ref();
+            rest.map_or(0.0, |r| r.entry_of_change(self.frame, shape))
+        };
+        let gain = |parameters: &[usize], shape: &Change| {
             let columns: Vec<Vec<f64>> = parameters
                 .iter()
-                .map(|&p| now.whitener.rows(&parameter_column(&d, p)))
+                .map(|&p| now.rows(&parameter_column(&d, p), at_rest(shape)))
                 .collect();
             basis.gain(&residual, &columns).0
         };
-        let present = gain(&own);
+        let present = gain(&own, &now.parts[part].shape);
         varied
             .iter()
             .enumerate()
-            .map(|(k, shape)| (shape.clone(), gain(&all.own[n_parts + k])))
+            .map(|(k, shape)| (shape.clone(), gain(&all.own[n_parts + k], shape)))
             .filter(|(_, g)| *g > present)
             .max_by(|a, b| a.1.total_cmp(&b.1))
     }
@@ -226,9 +214,12 @@ impl MotionScorer<'_> {
                 if set.contains(c) {
                     continue;
                 }
+                let rest = base.rest.as_ref();
+                let shape = &self.candidates[*c].shapes[*k];
+                let at_rest = rest.map_or(0.0, |r| r.entry_of_change(self.frame, shape));
                 let columns = own
                     .iter()
-                    .map(|&p| base.whitener.rows(&parameter_column(&forms.design, p)))
+                    .map(|&p| base.rows(&parameter_column(&forms.design, p), at_rest))
                     .collect();
                 out.push((*c, *k, columns));
             }
@@ -243,7 +234,7 @@ impl MotionScorer<'_> {
                 0.0
             };
             if let Some(column) = fault_column(&base.design, &base.responses, shape, start) {
-                out.push((c, 0, vec![base.whitener.rows(&slices(&column))]));
+                out.push((c, 0, vec![base.rows(&slices(&column), 0.0)]));
             }
         }
         out
@@ -285,7 +276,7 @@ impl Scorer for MotionScorer<'_> {
         };
         Some(Scored {
             set: set.to_vec(),
-            log_evidence: self.evidence(&fit),
+            log_evidence: evidence(self.frame, self.candidates, &fit),
             fit,
         })
     }
@@ -298,7 +289,8 @@ impl Scorer for MotionScorer<'_> {
             let shape = &self.candidates[c].shapes[k];
             let against =
                 self.candidates[c].sign == super::candidate::Sign::Positive && first < 0.0;
-            let gain = 0.5 * fall * if against { 0.0 } else { 1.0 } - self.cost(c, shape);
+            let gain =
+                0.5 * fall * if against { 0.0 } else { 1.0 } - self.cost(c, shape, base.fit.n_rows);
             if best[c].as_ref().is_none_or(|b| gain > b.gain) {
                 best[c] = Some(Addition {
                     candidate: c,
@@ -325,70 +317,4 @@ impl Scorer for MotionScorer<'_> {
             .position(|c| c.family() == family)
             .unwrap_or(candidate)
     }
-}
-
-/// What the sizes of channel faults cost: gains go wrong by some per cent, delays by some samples; more is ever less likely.
-fn unusual(fit: &MotionFit) -> f64 {
-    const GAIN: f64 = 0.1;
-    const DELAY_S: f64 = 0.01;
-    fit.parts
-        .iter()
-        .map(|p| match &p.shape {
-            Change::Gain { .. } => 0.5 * ((1.0 / p.fault).ln() / GAIN).powi(2),
-            Change::Delay { .. } => 0.5 * (p.fault / DELAY_S).powi(2),
-            _ => 0.0,
-        })
-        .sum()
-}
-
-/// What readings at rest say against a set: an accelerometer's mean is gravity times its gain, the mean wheel force is the weight.
-///
-/// Squared deviations over 1.5 %, each held at 25: offsets of sensors are common, so this breaks ties and no more.
-fn still(frame: &MotionFrame, fit: &MotionFit) -> f64 {
-    const SHARE: f64 = 0.015;
-    const MOST: f64 = 25.0;
-    let v = &fit.assembled.vehicle;
-    let adjust = adjustments(frame, &fit.parts);
-    let gain = |channel: &str| {
-        adjust
-            .iter()
-            .find(|a| a.channel == channel)
-            .map_or(1.0, |a| a.gain)
-    };
-    let mut total = 0.0;
-    for s in &v.sensors {
-        if s.measures != Measures::Acceleration || !frame.bodies.contains(&s.at.body) {
-            continue;
-        }
-        let Ok(x) = frame.data.samples(&s.channel) else {
-            continue;
-        };
-        let m = mean(x) / frame.gravity;
-        // A channel without its static part says nothing.
-        if (0.5..2.0).contains(&m.abs()) {
-            total += ((m / gain(&s.channel) - 1.0) / SHARE).powi(2).min(MOST);
-        }
-    }
-    let wheels: Vec<&str> = v
-        .wheels
-        .iter()
-        .filter(|w| frame.bodies.contains(&w.at.body))
-        .map(|w| w.channel.as_str())
-        .collect();
-    let forces: Option<Vec<f64>> = wheels
-        .iter()
-        .map(|w| frame.data.samples(w).ok().map(mean))
-        .collect();
-    let mass: f64 = frame
-        .bodies
-        .iter()
-        .map(|&b| fit.values[v.inertia_index(b, 0, 0)])
-        .sum();
-    if let Some(f) = forces.filter(|f| !f.is_empty()) {
-        let ratio = mass * frame.gravity / f.iter().sum::<f64>();
-        if ratio.is_finite() && (0.5..2.0).contains(&ratio) {
-            total += ((ratio - 1.0) / SHARE).powi(2).min(MOST);
-        }
-    }
-    total
 }

@@ -86,8 +86,12 @@ fn simulated(
     adjust: &[Adjustment],
 ) -> Result<Judged, String> {
     let v = &model.vehicle;
-    if !v.steps.is_empty() {
-        return Err("a mass that changes is not simulated".into());
+    let of_time = v
+        .links
+        .iter()
+        .any(|l| l.terms.iter().any(|t| t.is_of_time()));
+    if !v.steps.is_empty() || of_time {
+        return Err("a mass or spring that changes is not simulated".into());
     }
     let fitted = first(&corrected(&frame.data, adjust), FITTED);
     let judging = corrected(frame.hold_out.as_ref().unwrap_or(&frame.data), adjust);

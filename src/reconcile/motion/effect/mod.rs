@@ -7,19 +7,26 @@ mod bump_stop;
 mod channel_swap;
 mod coulomb_friction;
 mod cubic_stiffness;
+mod dead_zone;
 mod mass_change;
 mod pitch_coupling;
 mod progressive_leaf;
+mod quadratic_damping;
 mod quadratic_stiffness;
 mod roll_coupling;
 mod sign_flip;
+mod stiffness_drift;
 mod time_offset;
 mod viscous_damper;
 
 use super::candidate::Candidate;
+use super::change::Change;
 use super::frame::MotionFrame;
 use crate::series::detrend::rms;
+use crate::vehicle::layout::Link;
 use crate::vehicle::motion::Motion;
+use crate::vehicle::preset::coupling;
+use crate::vehicle::term::Term;
 
 /// Every effect that the frame could show, in a fixed order; `only` keeps the ids (or families) given, all where empty.
 pub fn library(frame: &MotionFrame, motion: &Motion, only: &[String]) -> Vec<Candidate> {
@@ -32,6 +39,9 @@ pub fn library(frame: &MotionFrame, motion: &Motion, only: &[String]) -> Vec<Can
         coulomb_friction::candidates(frame, motion),
         bump_stop::candidates(frame, motion),
         asymmetric_damper::candidates(frame),
+        quadratic_damping::candidates(frame),
+        dead_zone::candidates(frame, motion),
+        stiffness_drift::candidates(frame),
         mass_change::candidates(frame),
         axle_coupling::candidates(frame),
         roll_coupling::candidates(frame),
@@ -47,6 +57,28 @@ pub fn library(frame: &MotionFrame, motion: &Motion, only: &[String]) -> Vec<Can
         all.retain(|c| only.iter().any(|o| *o == c.id || *o == c.family()));
     }
     all
+}
+
+/// Coupling links by name, each as inertia, as spring, and as spring with damper.
+fn coupling_forms(frame: &MotionFrame, names: &[&str]) -> Vec<Change> {
+    let mut out = Vec::new();
+    for name in names {
+        let Some(link) = coupling(&frame.vehicle, name) else {
+            continue;
+        };
+        let with = |terms: Vec<Term>| {
+            Change::Links(vec![Link {
+                terms,
+                ..link.clone()
+            }])
+        };
+        if !matches!(*name, "bar" | "cross") {
+            out.push(with(vec![Term::Inertance]));
+        }
+        out.push(with(vec![Term::Stiffness]));
+        out.push(with(vec![Term::Stiffness, Term::Damping]));
+    }
+    out
 }
 
 /// Links between compared bodies with the word for their place; none where there is but one.

@@ -1,11 +1,11 @@
 //! Sprung bodies over two axles that are not free of each other: the pitch inertia of the frame, or what stands in for it.
 
-use super::axle_coupling::shapes;
+use super::coupling_forms;
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::frame::MotionFrame;
 
 pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
-    let shapes = shapes(frame, &["pitch"]);
+    let shapes = coupling_forms(frame, &["pitch"]);
     if shapes.is_empty() {
         return vec![];
     }

@@ -1,11 +1,17 @@
-//! Sprung bodies that are not free of each other across the vehicle: roll inertia or roll stiffness.
+//! Left and right of one axle joined: an anti-roll bar, roll inertia or stiffness of body and axle.
 
-use super::axle_coupling::shapes;
+use super::coupling_forms;
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::frame::MotionFrame;
 
+/// Links across the vehicle: between stretches of both sides, wheels, bodies, this body and the other wheel.
+const LINKS: [&str; 4] = ["bar", "axle", "roll", "cross"];
+
 pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
-    let shapes = shapes(frame, &["roll"]);
+    if frame.vehicle.name != "front_pair" {
+        return vec![];
+    }
+    let shapes = coupling_forms(frame, &LINKS);
     if shapes.is_empty() {
         return vec![];
     }

@@ -1,6 +1,7 @@
 //! What nothing in the library explains: the residual of a generous model, as background for every comparison.
 
-use super::fit::{Effort, MotionFit, fit};
+use super::fit::{Effort, fit};
+use super::fitted::MotionFit;
 use super::frame::MotionFrame;
 use super::gls::{Basis, PriorColumn, solved};
 use super::noise::{Background, background, covariance};
@@ -16,7 +17,7 @@ const LEAST: f64 = 30.0;
 const SHARE: f64 = 0.01;
 
 /// The power that is left when the forms that help most, of whatever effect, are all fitted together.
-pub fn generous(scorer: &mut MotionScorer, null: &MotionFit) -> Background {
+pub fn unexplained_background(scorer: &mut MotionScorer, null: &MotionFit) -> Background {
     let forms = scorer.form_columns(null);
     let mut columns: Vec<PriorColumn> = null.columns.to_vec();
     let n = null.n_rows;
@@ -33,10 +34,9 @@ pub fn generous(scorer: &mut MotionScorer, null: &MotionFit) -> Background {
             .map(|(i, f)| (i, basis.gain(&left, &f.2).0))
             .max_by(|a, b| a.1.total_cmp(&b.1));
         let total: f64 = left.iter().map(|v| v * v).sum();
-        let Some((i, gain)) = best.filter(|b| b.1 > LEAST.max(SHARE * total)) else {
+        let Some((i, _)) = best.filter(|b| b.1 > LEAST.max(SHARE * total)) else {
             break;
         };
-        let _ = gain;
         used[i] = true;
         columns.extend(forms[i].2.iter().map(|rows| PriorColumn {
             rows: rows.clone(),
@@ -68,7 +68,7 @@ pub fn power(b: &Background) -> f64 {
 }
 
 /// A fit again under another background.
-pub fn again(scorer: &MotionScorer, old: &MotionFit, background: &Background) -> Option<MotionFit> {
+pub fn refit(scorer: &MotionScorer, old: &MotionFit, background: &Background) -> Option<MotionFit> {
     fit(
         scorer.frame,
         scorer.candidates,

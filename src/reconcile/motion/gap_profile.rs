@@ -13,28 +13,28 @@ const END: f64 = 0.075;
 
 /// Local gap: RMS of the residual there over RMS of the measured quantity in the whole record.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Course {
+pub struct GapProfile {
     /// End of the stretch, seconds; gap.
     pub by_time: Vec<[f64; 2]>,
     /// Upper edge of the size of the measured quantity, over its RMS; gap.
     pub by_amplitude: Vec<[f64; 2]>,
 }
 
-/// The course of a residual beside the measured quantity, both as bins at `f_hz` of one windowed transform at `rate_hz` that begins at
+/// The profile of a residual beside the measured quantity, both as bins at `f_hz` of one windowed transform at `rate_hz` that begins at
 /// `start_s` ([`crate::series::window::Windowed`]); empty where there are fewer than two bins.
-pub fn course(
+pub fn gap_profile(
     residual: &Bins,
     measured: &Bins,
     f_hz: &[f64],
     rate_hz: f64,
     start_s: f64,
-) -> Course {
+) -> GapProfile {
     let (Some(first), Some(last)) = (f_hz.first(), f_hz.last()) else {
-        return Course::default();
+        return GapProfile::default();
     };
     let step = (last - first) / (f_hz.len().max(2) - 1) as f64;
     if f_hz.len() < 2 || step <= 0.0 {
-        return Course::default();
+        return GapProfile::default();
     }
     let length = (rate_hz / step).round() as usize;
     let at = (first / step).round() as usize;
@@ -82,7 +82,7 @@ pub fn course(
             [top / size, rms(class.iter().map(|k| left[*k])) / size]
         })
         .collect();
-    Course {
+    GapProfile {
         by_time,
         by_amplitude,
     }
@@ -95,14 +95,14 @@ fn rms(values: impl Iterator<Item = f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::course;
+    use super::gap_profile;
     use crate::series::spectrum::Band;
     use crate::series::window::Windowed;
     use std::f64::consts::TAU;
 
     const RATE: f64 = 100.0;
 
-    fn signals(residual: impl Fn(f64, f64) -> f64) -> super::Course {
+    fn signals(residual: impl Fn(f64, f64) -> f64) -> super::GapProfile {
         let band = Band {
             low_hz: 0.5,
             high_hz: 20.0,
@@ -119,7 +119,7 @@ mod tests {
             .map(|i| residual(i as f64 / RATE, whole[i]))
             .collect();
         let (left, whole) = (window.bins(&left), window.bins(&whole));
-        course(&left, &whole, &window.f_hz, RATE, 0.0)
+        gap_profile(&left, &whole, &window.f_hz, RATE, 0.0)
     }
 
     #[test]

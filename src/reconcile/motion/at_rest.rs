@@ -1,0 +1,189 @@
+//! What a record says of the vehicle at rest: the mean wheel force is its weight, an accelerometer's mean is gravity times its gain.
+
+use super::change::Change;
+use super::corrections::adjustments;
+use super::design::Design;
+use super::fitted::{ColumnOf, MotionFit};
+use super::frame::MotionFrame;
+use crate::vehicle::layout::Measures;
+use std::f64::consts::PI;
+
+/// Mean over gravity between which a channel is taken to carry its static part.
+const STATIC: std::ops::Range<f64> = 0.5..2.0;
+/// Zero of an accelerometer, one sd, in g: 50 mg is what data sheets of capacitive sensors state.
+const ZERO_G: f64 = 0.05;
+/// What slower motion than the band's adds to the velocity between the ends of a record, as a factor.
+const SLOWER: f64 = 2.0;
+
+/// The balance of weight as one more row of the least squares: g (sum of masses) = sum of mean wheel forces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RestRow {
+    /// Parameters with the acceleration that each is multiplied by.
+    masses: Vec<(usize, f64)>,
+    /// Channels of the design with their mean force.
+    forces: Vec<(usize, f64)>,
+    /// One sd of the balance, force.
+    pub sigma: f64,
+}
+
+/// The balance of the compared bodies; `None` where a wheel force is missing or zeroed, or a link bears on the ground.
+pub fn rest_row(frame: &MotionFrame, design: &Design, values: &[f64]) -> Option<RestRow> {
+    let v = &design.vehicle;
+    let grounded = v
+        .links
+        .iter()
+        .any(|l| l.ends.iter().map(|e| e.0).sum::<f64>().abs() > 1e-9);
+    let wheels: Vec<&str> = v
+        .wheels
+        .iter()
+        .filter(|w| frame.bodies.contains(&w.at.body))
+        .map(|w| w.channel.as_str())
+        .collect();
+    if grounded || wheels.is_empty() {
+        return None;
+    }
+    let mut forces = Vec::new();
+    let mut variance = 0.0;
+    for name in wheels {
+        let gain = design.gain_of(name);
+        let (mean, n) = finite_mean(frame.data.samples(name).ok()?)?;
+        let at = design.channels.iter().position(|c| c.name == name)?;
+        forces.push((at, mean / gain));
+        variance += (frame.noise_force.unwrap_or(0.0) / gain).powi(2) / n as f64;
+    }
+    let own = v.masses(&frame.bodies);
+    let mut masses: Vec<(usize, f64)> = own.iter().map(|&i| (i, frame.gravity)).collect();
+    let value = |i: usize| values.get(i).copied().unwrap_or(f64::NAN);
+    for (s, step) in v.steps.iter().enumerate() {
+        let i = v.step_index(s);
+        let share = step_share(frame, step);
+        if step.gravity > 0.0 {
+            masses.push((i, step.gravity * share));
+        } else if value(i).is_finite() {
+            // A change whose weight does not show: what the wheels carry of it is unknown.
+            variance += (frame.gravity * share * value(i)).powi(2);
+        }
+    }
+    let weight: f64 = masses.iter().map(|&(i, g)| g * value(i)).sum();
+    let force: f64 = forces.iter().map(|f| f.1).sum();
+    if !STATIC.contains(&(weight / force)) {
+        return None;
+    }
+    // The mean of m a over the record is its change of momentum over its duration.
+    let momentum: f64 = frame
+        .bodies
+        .iter()
+        .filter(|&&b| !v.is_witness(b))
+        .map(|&b| value(v.inertia_index(b, 0, 0)) * velocity(design, b))
+        .sum();
+    variance += 2.0 * (SLOWER * momentum / frame.data.duration_s()).powi(2);
+    let sigma = variance.sqrt();
+    (sigma.is_finite() && sigma > 0.0).then_some(RestRow {
+        masses,
+        forces,
+        sigma,
+    })
+}
+
+/// Share of the record during which a change of mass is there.
+fn step_share(frame: &MotionFrame, step: &crate::vehicle::layout::MassStep) -> f64 {
+    let n = frame.data.n_samples().max(1);
+    let at = |i: usize| frame.data.start_s + i as f64 / frame.data.rate_hz;
+    (0..n).map(|i| step.done(at(i))).sum::<f64>() / n as f64
+}
+
+/// RMS of a body's vertical velocity in the band.
+fn velocity(design: &Design, body: usize) -> f64 {
+    let n = design.motion.n_samples().max(1) as f64;
+    let sensor = design
+        .vehicle
+        .sensors
+        .iter()
+        .find(|s| s.at.body == body && s.measures == Measures::Acceleration);
+    let bins = sensor.and_then(|s| design.channels.iter().find(|c| c.name == s.channel));
+    let power: f64 = bins.map_or(0.0, |c| {
+        c.bins
+            .iter()
+            .zip(&design.f_hz)
+            .map(|(a, f)| a.norm_sqr() / (2.0 * PI * f).powi(2))
+            .sum()
+    });
+    // E|X|^2 of a bin is the variance of white noise; a one-sided sum holds half of it.
+    (2.0 * power / n).sqrt()
+}
+
+impl RestRow {
+    /// Entry of a column, over the row's standard deviation.
+    pub fn entry(&self, of: &ColumnOf) -> f64 {
+        let sum = match of {
+            ColumnOf::Parameter(i) => self.acceleration_of(*i),
+            // A force that reads low by a share enters the balance with that share of its mean.
+            ColumnOf::Gain(c) => -(self.forces.iter())
+                .filter(|f| f.0 == *c)
+                .map(|f| f.1)
+                .sum::<f64>(),
+            ColumnOf::Fault(_) | ColumnOf::Delay(_) => 0.0,
+        };
+        sum / self.sigma
+    }
+
+    /// Entry of a parameter that a change would bring, over the row's standard deviation.
+    pub fn entry_of_change(&self, frame: &MotionFrame, change: &Change) -> f64 {
+        match change {
+            Change::Step(s) => s.gravity * step_share(frame, s) / self.sigma,
+            _ => 0.0,
+        }
+    }
+
+    /// The right-hand side with held parameters taken off, over the row's standard deviation.
+    pub fn target(&self, fixed: &[f64]) -> f64 {
+        let force: f64 = self.forces.iter().map(|f| f.1).sum();
+        let held: f64 = self
+            .masses
+            .iter()
+            .map(|&(i, g)| g * fixed.get(i).copied().unwrap_or(0.0))
+            .sum();
+        (force - held) / self.sigma
+    }
+
+    fn acceleration_of(&self, parameter: usize) -> f64 {
+        self.masses
+            .iter()
+            .filter(|m| m.0 == parameter)
+            .map(|m| m.1)
+            .sum()
+    }
+}
+
+/// Squared deviates of the accelerometers' means from gravity times the gain that a fit gives them, their zeros unknown within
+/// [`ZERO_G`]. A channel without its static part says nothing.
+pub fn zeros(frame: &MotionFrame, fit: &MotionFit) -> f64 {
+    let adjust = adjustments(frame, &fit.parts);
+    let gain = |channel: &str| -> f64 {
+        adjust
+            .iter()
+            .filter(|a| a.channel == channel)
+            .map(|a| a.gain)
+            .product()
+    };
+    let v = &fit.assembled.vehicle;
+    v.sensors
+        .iter()
+        .filter(|s| s.measures == Measures::Acceleration && frame.bodies.contains(&s.at.body))
+        .filter_map(|s| {
+            let (mean, _) = finite_mean(frame.data.samples(&s.channel).ok()?)?;
+            let in_g = mean / frame.gravity;
+            STATIC
+                .contains(&in_g.abs())
+                .then(|| ((in_g - gain(&s.channel)) / ZERO_G).powi(2))
+        })
+        .sum()
+}
+
+fn finite_mean(x: &[f64]) -> Option<(f64, usize)> {
+    let (sum, n) = x
+        .iter()
+        .filter(|v| v.is_finite())
+        .fold((0.0, 0usize), |(s, n), v| (s + v, n + 1));
+    (n > 0).then(|| (sum / n as f64, n))
+}

@@ -1,0 +1,55 @@
+//! The smallest size of every effect that a record would have shown.
+
+use super::change::Change;
+use super::effect_units::unit_of_change;
+use super::examine::DECISIVE;
+use super::fitted::{ColumnOf, MotionFit};
+use super::gls::Basis;
+use super::limits::tolerance_limit;
+use super::outcome::Smallest;
+use super::scorer::MotionScorer;
+
+/// Sizes by candidate, in the library's order: those that would raise the log evidence to the level of a name, in the form that shows
+/// best, and beyond what the declared tolerances allow of a channel.
+///
+/// An effect of size x whose column's coefficient has the standard deviation s gains (x / s)^2 / 2 less its price.
+pub fn smallest_sizes(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Smallest> {
+    let basis = Basis::of(&null.columns);
+    let tolerances = null
+        .column_of
+        .iter()
+        .filter(|c| matches!(c, ColumnOf::Gain(_) | ColumnOf::Delay(_)))
+        .count();
+    let limit = tolerance_limit(tolerances);
+    let mut out: Vec<Option<Smallest>> = vec![None; scorer.candidates.len()];
+    for (c, k, columns) in scorer.form_columns(null) {
+        let candidate = &scorer.candidates[c];
+        let Some(shape) = candidate.shapes.get(k) else {
+            continue;
+        };
+        let [column] = columns.as_slice() else {
+            continue;
+        };
+        let left = basis.left_of(column);
+        if left <= 0.0 {
+            continue;
+        }
+        let price = scorer.cost(c, shape, null.n_rows);
+        let sigma = 1.0 / left;
+        let seen = sigma * (2.0 * (DECISIVE + price)).sqrt();
+        let tolerance = match shape {
+            Change::Gain { .. } => scorer.frame.gain_tolerance,
+            Change::Delay { .. } => scorer.frame.sync_tolerance_s,
+            _ => 0.0,
+        };
+        let size = seen.max(limit * tolerance.hypot(sigma));
+        if out[c].as_ref().is_none_or(|s| size < s.size) {
+            out[c] = Some(Smallest {
+                id: candidate.id.clone(),
+                size,
+                unit: unit_of_change(scorer.frame, shape, null),
+            });
+        }
+    }
+    out.into_iter().flatten().collect()
+}

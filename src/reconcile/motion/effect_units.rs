@@ -1,0 +1,34 @@
+//! Units of effects.
+
+use super::change::Change;
+use super::fitted::MotionFit;
+use super::frame::MotionFrame;
+use crate::vehicle::term::Quantity;
+
+/// Unit of the first parameter of a change; relative to the reference mass where no force sets the scale.
+pub fn unit_of_change(frame: &MotionFrame, change: &Change, fit: &MotionFit) -> String {
+    let quantity = match change {
+        Change::Gain { .. } | Change::Flip { .. } | Change::Swap { .. } => return "-".to_owned(),
+        Change::Delay { .. } => return "s".to_owned(),
+        Change::Terms { terms, .. } => terms.first().map(|t| t.quantity()),
+        Change::Links(links) => {
+            let term = links.first().and_then(|l| l.terms.first());
+            term.map(|t| t.quantity())
+        }
+        Change::Step(_) => Some(Quantity::Mass),
+    };
+    let Some(quantity) = quantity else {
+        return String::new();
+    };
+    let unit = frame.units.of(quantity);
+    let driven = fit
+        .design
+        .equations
+        .iter()
+        .any(|e| e.target.iter().any(|t| t.norm_sqr() > 0.0));
+    if driven || frame.known.values().any(|v| *v != 0.0) {
+        unit
+    } else {
+        format!("({unit})/({})", frame.units.mass)
+    }
+}

@@ -1,0 +1,61 @@
+//! Log evidence of a set of effects: likelihood of the channels, prior of sizes, price of freedom.
+
+use super::at_rest::zeros;
+use super::candidate::Candidate;
+use super::change::Change;
+use super::fitted::MotionFit;
+use super::frame::MotionFrame;
+
+/// Scatter of the logarithm of gains that are at fault, one sd: by some per cent; more is ever less likely.
+const GAIN: f64 = 0.1;
+/// Scatter of delays that are at fault, s, one sd: some samples at the rates of vehicle records.
+const DELAY_S: f64 = 0.01;
+
+/// What an effect costs for its freedom: half the log of the number of rows a parameter (Schwarz), the choice among `n` candidates, and
+/// the candidate's own handicap.
+///
+/// # Reference
+/// G. Schwarz, Estimating the dimension of a model, Ann. Statist. 6 (1978) 461.
+pub fn cost(candidate: &Candidate, shape: &Change, n_candidates: usize, n_rows: usize) -> f64 {
+    let n = match shape {
+        Change::Terms { terms, .. } => terms.len(),
+        Change::Links(links) => links.iter().map(|l| l.terms.len()).sum(),
+        _ => 1,
+    };
+    // A constant that is looked for among several forms is a parameter, too.
+    let constants = usize::from(candidate.shapes.len() > 4);
+    let per = 0.5 * (n_rows.max(2) as f64).ln();
+    per * (n + constants) as f64 + (n_candidates.max(1) as f64).ln() + candidate.handicap
+}
+
+/// Log evidence of a fit: -1/2 (squared residual over its covariance, balance of weight included, squared nuisance over its tolerance,
+/// means of accelerometers) - log-determinants of the covariances (equations: over that of sensors alone), less prior and price of the
+/// effects.
+pub fn evidence(frame: &MotionFrame, candidates: &[Candidate], fit: &MotionFit) -> f64 {
+    let cost: f64 = fit
+        .parts
+        .iter()
+        .filter_map(|p| {
+            let c = candidates.get(p.candidate)?;
+            Some(cost(c, &p.shape, candidates.len(), fit.n_rows))
+        })
+        .sum();
+    let at_rest = fit.rest.as_ref().map_or(0.0, |r| r.sigma.ln());
+    -0.5 * (fit.chi2 + fit.penalty + zeros(frame, fit))
+        - fit.log_det
+        - at_rest
+        - cost
+        - unusual(fit)
+}
+
+/// What the sizes of channel faults cost.
+fn unusual(fit: &MotionFit) -> f64 {
+    fit.parts
+        .iter()
+        .map(|p| match &p.shape {
+            Change::Gain { .. } => 0.5 * ((1.0 / p.fault).ln() / GAIN).powi(2),
+            Change::Delay { .. } => 0.5 * (p.fault / DELAY_S).powi(2),
+            _ => 0.0,
+        })
+        .sum()
+}

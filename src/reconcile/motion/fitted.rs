@@ -1,0 +1,100 @@
+//! A set of effects as it was fitted: parameters, sizes, residuals, and what a further column would meet.
+
+use super::at_rest::RestRow;
+use super::change::{Assembled, Change};
+use super::design::{Bins, Design};
+use super::gls::PriorColumn;
+use super::noise::Whitener;
+use rustfft::num_complex::Complex64;
+use std::sync::Arc;
+
+/// One effect of a set, in the form that was chosen.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// Number of the candidate.
+    pub candidate: usize,
+    /// Its form.
+    pub shape: Change,
+    /// 1 / gain of a gain fault, delay in s of a delay fault; not used otherwise.
+    pub fault: f64,
+}
+
+/// What a column of the least squares stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ColumnOf {
+    /// A parameter of the vehicle.
+    Parameter(usize),
+    /// The fault of a part (its number in the set).
+    Fault(usize),
+    /// The gain of a channel (its number in the design) within its tolerance.
+    Gain(usize),
+    /// The timing of a channel within its tolerance.
+    Delay(usize),
+}
+
+/// A fit.
+#[derive(Clone, Debug)]
+pub struct MotionFit {
+    /// The effects.
+    pub parts: Vec<Part>,
+    /// The vehicle with them.
+    pub assembled: Assembled,
+    /// Its parameters; NaN where no compared equation holds them.
+    pub values: Vec<f64>,
+    /// One sd of each, 0 for fixed ones.
+    pub sigmas: Vec<f64>,
+    /// Parameters that were estimated, in the order of the first columns.
+    pub free: Vec<usize>,
+    /// Sizes of each effect's parameters, with one sd.
+    pub sizes: Vec<Vec<[f64; 2]>>,
+    /// Squared residual over its covariance, the balance of weight included.
+    pub chi2: f64,
+    /// Squared nuisance over its prior.
+    pub penalty: f64,
+    /// Sum over bins of ln |S| - ln |S of sensors alone|: what the background costs a normal density of the channels.
+    pub log_det: f64,
+    /// Data rows.
+    pub n_rows: usize,
+    /// The record as it was last seen.
+    pub design: Arc<Design>,
+    /// Responses at `values`.
+    pub responses: Arc<Vec<Vec<Vec<Complex64>>>>,
+    /// Whitening at `values`.
+    pub whitener: Arc<Whitener>,
+    /// The balance of weight, where wheel forces tell it.
+    pub rest: Option<RestRow>,
+    /// Whitened columns.
+    pub columns: Arc<Vec<PriorColumn>>,
+    /// What they stand for.
+    pub column_of: Vec<ColumnOf>,
+    /// Whitened residual, priors at its end.
+    pub residual: Arc<Vec<f64>>,
+    /// Residual of each equation with nuisance at its estimate.
+    pub left: Arc<Vec<Bins>>,
+}
+
+impl MotionFit {
+    /// Rows of a further column, `[equation][bin]` and its entry in the balance of weight, whitened as the fit's own.
+    pub fn rows(&self, bins: &[&[Complex64]], at_rest: f64) -> Vec<f64> {
+        whitened(&self.whitener, self.rest.as_ref(), bins, at_rest)
+    }
+
+    /// Squared residual by degree of freedom.
+    pub fn reduced_chi2(&self) -> f64 {
+        self.chi2 / self.n_rows.saturating_sub(self.columns.len()).max(1) as f64
+    }
+}
+
+/// Whitened rows of a column with its entry in the balance of weight, where there is one, at the end.
+pub fn whitened(
+    whitener: &Whitener,
+    rest: Option<&RestRow>,
+    bins: &[&[Complex64]],
+    at_rest: f64,
+) -> Vec<f64> {
+    let mut rows = whitener.rows(bins);
+    if rest.is_some() {
+        rows.push(at_rest);
+    }
+    rows
+}

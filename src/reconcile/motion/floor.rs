@@ -1,0 +1,188 @@
+//! What sensor noise and declared tolerances leave of a complete model, and the most they leave in 99 jobs of 100.
+
+use super::columns::{nuisance, parameter_column, slices};
+use super::design::{Bins, Design, reference, size};
+use super::fitted::Part;
+use super::frame::MotionFrame;
+use super::gls::{PriorColumn, solved};
+use super::noise::{Background, Whitener, covariance};
+use super::response::responses;
+use rustfft::num_complex::Complex64;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+/// Declared noise may be wrong by this factor: it is a data sheet's, or was estimated at rest.
+pub const NOISE_FACTOR: f64 = 1.5;
+/// Share of complete models that stay below a limit.
+const CONFIDENCE: f64 = 0.99;
+
+/// Squared floors of one equation, over the squared size of what was measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Floor {
+    /// Of sensor noise.
+    pub noise: f64,
+    /// Of declared tolerances, expected.
+    pub tolerance: f64,
+    /// Of declared tolerances, exceeded by one complete model in a hundred.
+    pub tolerance_limit: f64,
+}
+
+impl Floor {
+    /// Expected, as a share of the measured quantity.
+    pub fn expected(&self) -> f64 {
+        (self.noise + self.tolerance).sqrt()
+    }
+
+    /// The most that a complete model leaves: noise wrong by [`NOISE_FACTOR`], tolerances as they are in one job of a hundred.
+    pub fn limit(&self) -> f64 {
+        (self.noise * NOISE_FACTOR * NOISE_FACTOR + self.tolerance_limit).sqrt()
+    }
+
+    /// Mean of squares.
+    pub fn mean(list: &[Self]) -> Self {
+        let n = list.len().max(1) as f64;
+        let of = |f: &dyn Fn(&Self) -> f64| list.iter().map(f).sum::<f64>() / n;
+        Self {
+            noise: of(&|f| f.noise),
+            tolerance: of(&|f| f.tolerance),
+            tolerance_limit: of(&|f| f.tolerance_limit),
+        }
+    }
+}
+
+/// Parameters by least squares without nuisance, all equations alike, over one or more designs of a vehicle.
+pub fn plain(designs: &[&Design], free: &[usize], target: &[Vec<Bins>]) -> Vec<f64> {
+    let stacked = |of: &dyn Fn(&Design, usize) -> Vec<f64>| -> Vec<f64> {
+        designs
+            .iter()
+            .enumerate()
+            .flat_map(|(k, d)| of(d, k))
+            .collect()
+    };
+    let columns: Vec<PriorColumn> = free
+        .iter()
+        .map(|&i| PriorColumn {
+            rows: stacked(&|d, _| even(d).rows(&parameter_column(d, i))),
+            prior: None,
+        })
+        .collect();
+    let rows = stacked(&|d, k| even(d).rows(&slices(&target[k])));
+    solved(&columns, &rows).x
+}
+
+/// Equal weights of all equations and bins.
+fn even(d: &Design) -> Whitener {
+    let n = d.equations.len();
+    let mut s = vec![Complex64::default(); n * n];
+    for i in 0..n {
+        s[i * n + i] = Complex64::new(1.0, 0.0);
+    }
+    Whitener::of(&vec![s; d.f_hz.len()], n)
+}
+
+/// Floors by equation of a design `judged`, its parameters `values` found by [`plain`] on the designs `learnt` in the `free` ones, effects
+/// `parts` in the model.
+///
+/// A tolerance of one sd leaves column - A beta there, beta the parameters that take its column on the learnt designs: what the
+/// parameters take up is no gap. Several tolerances make a quadratic form of normal deviates; its quantile is that of the chi-square
+/// of equal mean and variance (Satterthwaite).
+///
+/// # Reference
+/// F. E. Satterthwaite, An approximate distribution of estimates of variance components, Biometrics Bull. 2 (1946) 110.
+pub fn floors(
+    frame: &MotionFrame,
+    parts: &[Part],
+    learnt: &[&Design],
+    judged: &Design,
+    values: &[f64],
+    free: &[usize],
+) -> Vec<Floor> {
+    let h = responses(judged, values);
+    let s = covariance(frame, judged, &h, &Background::default());
+    let n = judged.equations.len();
+    let sizes: Vec<f64> = (0..n)
+        .map(|i| reference(judged, i, values).max(f64::MIN_POSITIVE))
+        .collect();
+    let left = left_by_tolerances(frame, parts, learnt, judged, values, free, &h);
+    (0..n)
+        .map(|i| {
+            let noise: f64 = s.iter().map(|s| s[i * n + i].re).sum();
+            let whole = sizes[i] * sizes[i];
+            let form = |a: &[Bins], b: &[Bins]| -> f64 {
+                let dot: f64 = a[i].iter().zip(&b[i]).map(|(x, y)| (x * y.conj()).re).sum();
+                dot / whole
+            };
+            let (mut mean, mut square) = (0.0, 0.0);
+            for a in &left {
+                mean += form(a, a);
+                square += left.iter().map(|b| form(a, b).powi(2)).sum::<f64>();
+            }
+            Floor {
+                noise: noise / whole,
+                tolerance: mean,
+                tolerance_limit: quantile(mean, square),
+            }
+        })
+        .collect()
+}
+
+/// Quantile of a quadratic form of normal deviates with eigenvalues of that sum and sum of squares.
+fn quantile(sum: f64, squares: f64) -> f64 {
+    if !(sum > 0.0 && squares > 0.0) {
+        return 0.0;
+    }
+    let freedom = sum * sum / squares;
+    ChiSquared::new(freedom).map_or(sum, |c| sum / freedom * c.inverse_cdf(CONFIDENCE))
+}
+
+/// What one sd of each tolerance leaves in every equation of `judged`.
+fn left_by_tolerances(
+    frame: &MotionFrame,
+    parts: &[Part],
+    learnt: &[&Design],
+    judged: &Design,
+    values: &[f64],
+    free: &[usize],
+    h: &[Vec<Vec<Complex64>>],
+) -> Vec<Vec<Bins>> {
+    let here = nuisance(frame, judged, h, parts);
+    if here.is_empty() {
+        return vec![];
+    }
+    let there: Vec<Vec<Vec<Bins>>> = learnt
+        .iter()
+        .map(|d| {
+            let own = nuisance(frame, d, &responses(d, values), parts);
+            own.into_iter().map(|c| c.1).collect()
+        })
+        .collect();
+    here.into_iter()
+        .enumerate()
+        .map(|(k, (_, mut column, sd))| {
+            let target: Vec<Vec<Bins>> = there
+                .iter()
+                .map(|d| d.get(k).cloned().unwrap_or_default())
+                .collect();
+            let beta = plain(learnt, free, &target);
+            for (e, column) in judged.equations.iter().zip(&mut column) {
+                for (i, own) in &e.columns {
+                    let Some(b) = free.iter().position(|f| f == i).map(|at| beta[at]) else {
+                        continue;
+                    };
+                    column.iter_mut().zip(own).for_each(|(l, c)| *l -= c * b);
+                }
+                column.iter_mut().for_each(|l| *l *= sd);
+            }
+            column
+        })
+        .collect()
+}
+
+/// Root of the mean over equations of squared residual over squared measured quantity.
+pub fn share(d: &Design, left: &[Bins], values: &[f64]) -> f64 {
+    let sum: f64 = left
+        .iter()
+        .enumerate()
+        .map(|(i, l)| (size(l) / reference(d, i, values).max(f64::MIN_POSITIVE)).powi(2))
+        .sum();
+    (sum / left.len().max(1) as f64).sqrt()
+}

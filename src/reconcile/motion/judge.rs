@@ -1,0 +1,260 @@
+//! What a search's best set is worth: named, none, unknown or below what the record shows.
+
+use super::change::Change;
+use super::channel_check::BrokenChannel;
+use super::corrections::adjustments;
+use super::detectable::smallest_sizes;
+use super::effect_units::unit_of_change;
+use super::examine::{DECISIVE, Found};
+use super::fit::{Effort, fit};
+use super::fitted::MotionFit;
+use super::floor::NOISE_FACTOR;
+use super::gap::{RecordGap, fitted_gap, proof, proof_gap};
+use super::limits::beyond_tolerance;
+use super::noise::Background;
+use super::outcome::{MotionEffect, MotionOutcome};
+use super::scorer::MotionScorer;
+use super::sentences::{next_measurement, remains};
+use crate::reconcile::outcome::{Gap, Rival, Verdict};
+use crate::reconcile::search::{Scored, settle};
+use crate::vehicle::motion::VehicleError;
+
+/// Log evidence that is a hint: odds of three.
+const HINT: f64 = 1.0;
+/// Rivals within this log evidence (odds of 20) can't be told apart.
+const CLOSE: f64 = 3.0;
+/// Share of an effect's own power that its form may leave: stretch is integrated from noisy accelerations and nonlinear terms are formed
+/// from it, to about a fifth of their amplitude at the worst (the lower band edge).
+const FORM: f64 = 0.04;
+
+/// Gaps of a model.
+struct Gaps {
+    fitted: Option<RecordGap>,
+    proof: Option<RecordGap>,
+    /// Squared residual by degree of freedom under sensor noise alone, tolerances at their estimate.
+    reduced_chi2: f64,
+}
+
+impl Gaps {
+    fn of(scorer: &MotionScorer, f: &MotionFit) -> Self {
+        let alone = refit_under_noise(scorer, f);
+        Self {
+            fitted: fitted_gap(scorer.frame, f),
+            proof: proof_gap(scorer.frame, f),
+            reduced_chi2: alone.reduced_chi2(),
+        }
+    }
+
+    /// Whether a complete model may leave this: by its squared residual, or by the size of its gap on the fitted record and on what judges.
+    /// `excess` is the squared size of what named effects took, over that of what was measured.
+    fn at_floor(&self, excess: f64) -> bool {
+        let within = |g: &Option<RecordGap>| {
+            g.as_ref()
+                .is_some_and(|g| g.gap.powi(2) <= g.floor.limit().powi(2) + FORM * excess)
+        };
+        self.reduced_chi2 < NOISE_FACTOR * NOISE_FACTOR
+            || within(&self.fitted) && within(&self.proof)
+    }
+}
+
+fn refit_under_noise(scorer: &MotionScorer, old: &MotionFit) -> MotionFit {
+    fit(
+        scorer.frame,
+        scorer.candidates,
+        &scorer.frame.data,
+        old.parts.clone(),
+        Some(old),
+        &Background::default(),
+        Effort::Settled,
+    )
+    .unwrap_or_else(|| old.clone())
+}
+
+/// The verdict with everything that belongs to it.
+pub(super) fn judged(
+    scorer: &mut MotionScorer,
+    found: Found,
+) -> Result<MotionOutcome, VehicleError> {
+    let Found {
+        null,
+        all,
+        best,
+        broken,
+    } = found;
+    let frame = scorer.frame;
+    let empty = all.iter().find(|s| s.set.is_empty()).cloned();
+    let null_under_background = empty.as_ref().map_or(&null, |s| &s.fit);
+    let best = nameable(scorer, &all, best);
+    let before = Gaps::of(scorer, &null);
+    let after = if best.set.is_empty() {
+        Gaps::of(scorer, null_under_background)
+    } else {
+        Gaps::of(scorer, &best.fit)
+    };
+    let null_evidence = empty.as_ref().map_or(best.log_evidence, |s| s.log_evidence);
+    let evidence = best.log_evidence - null_evidence;
+    let taken = |g: &Option<RecordGap>| g.as_ref().map_or(0.0, |g| g.gap * g.gap);
+    let excess = (taken(&before.fitted) - taken(&after.fitted)).max(0.0);
+    let gap = gap_of(&before.proof, &after.proof);
+    let decided = !best.set.is_empty()
+        && evidence > DECISIVE
+        && after.at_floor(excess)
+        && gap.after < gap.before;
+    let hint = all
+        .iter()
+        .find(|s| !s.set.is_empty())
+        .is_some_and(|s| s.log_evidence - null_evidence > HINT);
+    let verdict = if !broken.is_empty() || decided {
+        Verdict::Named
+    } else if !before.at_floor(0.0) {
+        Verdict::Unknown
+    } else if hint && best.set.is_empty() {
+        Verdict::BelowDetectability
+    } else {
+        Verdict::None
+    };
+    let attempt: Vec<MotionEffect> = if broken.is_empty() {
+        effects_of(scorer, &best.fit)
+    } else {
+        broken.iter().map(broken_effect).collect()
+    };
+    let rivals = rivals(scorer, &best, &all);
+    let share = |g: &Option<RecordGap>, of: fn(&RecordGap) -> f64| g.as_ref().map_or(f64::NAN, of);
+    let left = [
+        share(&before.fitted, |g| g.gap),
+        share(&after.fitted, |g| g.gap),
+        share(&after.fitted, |g| g.floor.expected()),
+    ];
+    let chi = [before.reduced_chi2, after.reduced_chi2];
+    let judged_by = proof(frame, &best.fit);
+    Ok(MotionOutcome {
+        verdict,
+        effects: if verdict == Verdict::Named {
+            attempt.clone()
+        } else {
+            vec![]
+        },
+        best_attempt: attempt,
+        corrections: adjustments(frame, &best.fit.parts),
+        remains: remains(verdict, chi, left, judged_by, after.proof.as_ref()),
+        next_measurement: next_measurement(scorer, verdict, &rivals),
+        rivals,
+        evidence,
+        decisive: DECISIVE,
+        gap,
+        judged_by,
+        before: before.proof,
+        after: after.proof,
+        reduced_chi2: chi,
+        left,
+        smallest: smallest_sizes(scorer, &null),
+    })
+}
+
+fn gap_of(before: &Option<RecordGap>, after: &Option<RecordGap>) -> Gap {
+    let of = |g: &Option<RecordGap>| g.as_ref().map_or(f64::NAN, |g| g.gap);
+    let floor = after.as_ref().or(before.as_ref());
+    Gap {
+        before: of(before),
+        after: of(after),
+        floor: floor.map_or(f64::NAN, |g| g.floor.expected()),
+        mesh: 0.0,
+    }
+}
+
+/// The best set, or the best one all of whose members may be named: channels beyond their tolerance, and nothing that closes less of the
+/// gap than tolerances make from job to job.
+fn nameable(
+    scorer: &MotionScorer,
+    all: &[Scored<MotionFit>],
+    best: Scored<MotionFit>,
+) -> Scored<MotionFit> {
+    let frame = scorer.frame;
+    let gaps: Vec<Option<RecordGap>> = all.iter().map(|s| fitted_gap(frame, &s.fit)).collect();
+    let power = |set: &[usize]| {
+        let at = all.iter().position(|s| s.set == set)?;
+        gaps[at].as_ref().map(|g| g.gap * g.gap)
+    };
+    let material = |s: &Scored<MotionFit>| {
+        let Some(at) = all.iter().position(|o| o.set == s.set) else {
+            return true;
+        };
+        let Some(own) = &gaps[at] else { return false };
+        let varies = (own.floor.tolerance_limit - own.floor.tolerance).max(0.0);
+        s.set.iter().all(|member| {
+            let rest: Vec<usize> = s.set.iter().copied().filter(|m| m != member).collect();
+            power(&rest).is_none_or(|without| without - own.gap * own.gap > varies)
+        })
+    };
+    let fine = |s: &Scored<MotionFit>| material(s) && beyond_tolerance(frame, &s.fit);
+    if fine(&best) {
+        return best;
+    }
+    let rest: Vec<Scored<MotionFit>> = all.iter().filter(|s| fine(s)).cloned().collect();
+    settle(&rest, DECISIVE).unwrap_or(best)
+}
+
+fn broken_effect(b: &BrokenChannel) -> MotionEffect {
+    MotionEffect {
+        id: format!("{}:{}", b.id, b.channel),
+        place: Some(b.channel.clone()),
+        change: Change::Gain {
+            channel: b.channel.clone(),
+        },
+        size: vec![b.measured],
+        sigma: vec![f64::NAN],
+        unit: String::new(),
+        plausible: true,
+    }
+}
+
+/// The effects of a fit in words and numbers.
+fn effects_of(scorer: &MotionScorer, fit: &MotionFit) -> Vec<MotionEffect> {
+    fit.parts
+        .iter()
+        .zip(&fit.sizes)
+        .map(|(p, sizes)| {
+            let c = &scorer.candidates[p.candidate];
+            let size: Vec<f64> = sizes.iter().map(|s| s[0]).collect();
+            MotionEffect {
+                id: c.id.clone(),
+                place: c.place.clone(),
+                change: p.shape.clone(),
+                sigma: sizes.iter().map(|s| s[1]).collect(),
+                unit: unit_of_change(scorer.frame, &p.shape, fit),
+                plausible: size.iter().all(|v| v.is_finite()),
+                size,
+            }
+        })
+        .collect()
+}
+
+/// Other sets, nearest first; sets that merely add to the best are no rivals. Where nothing is named, what came nearest.
+fn rivals(
+    scorer: &MotionScorer,
+    best: &Scored<MotionFit>,
+    all: &[Scored<MotionFit>],
+) -> Vec<Rival> {
+    /// As many as anyone reads.
+    const MOST: usize = 4;
+    all.iter()
+        .filter(|s| {
+            let adds = best.set.iter().all(|m| s.set.contains(m));
+            !s.set.is_empty() && (best.set.is_empty() || !adds)
+        })
+        .take(MOST)
+        .map(|s| {
+            let difference = best.log_evidence - s.log_evidence;
+            Rival {
+                ids: s
+                    .set
+                    .iter()
+                    .map(|&c| scorer.candidates[c].id.clone())
+                    .collect(),
+                evidence_difference: difference,
+                gap_after: proof_gap(scorer.frame, &s.fit).map_or(f64::NAN, |g| g.gap),
+                indistinguishable: !best.set.is_empty() && difference.abs() < CLOSE,
+            }
+        })
+        .collect()
+}

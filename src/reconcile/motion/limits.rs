@@ -1,0 +1,149 @@
+//! What nature and declared tolerances allow of a fit.
+
+use super::candidate::{Candidate, Sign};
+use super::change::Change;
+use super::fitted::{ColumnOf, MotionFit};
+use super::frame::MotionFrame;
+use super::gls::{PriorColumn, Solved, solved};
+use crate::vehicle::term::{Side, Term, share_done};
+use statrs::distribution::{ContinuousCDF, Normal};
+
+/// Rate at which a job of healthy channels may have one beyond its limit.
+const FALSE_RATE: f64 = 0.01;
+
+/// Standard deviations of a declared tolerance that no channel of a healthy job exceeds but in one job of a hundred: the normal quantile
+/// of both tails, shared by `n` gains and delays.
+pub fn tolerance_limit(n: usize) -> f64 {
+    let tail = FALSE_RATE / (2.0 * n.max(1) as f64);
+    Normal::new(0.0, 1.0).map_or(3.0, |z| z.inverse_cdf(1.0 - tail))
+}
+
+/// The solution with every nuisance within what a healthy job has ([`tolerance_limit`]): priors of those that would leave it are
+/// narrowed until they stay. Without this a model that fits badly is silenced by channels that read nothing at all.
+pub fn within_tolerance(columns: &mut [PriorColumn], target: &[f64]) -> Solved {
+    /// Narrowing settles in a few rounds; what is left beyond is small.
+    const ROUNDS: usize = 6;
+    /// Beyond the limit by less than this share is at it.
+    const SLACK: f64 = 1.05;
+    let declared: Vec<Option<f64>> = columns.iter().map(|c| c.prior).collect();
+    let most = tolerance_limit(declared.iter().flatten().count());
+    let mut s = solved(columns, target);
+    for _ in 0..ROUNDS {
+        let mut beyond = false;
+        for ((c, declared), x) in columns.iter_mut().zip(&declared).zip(&s.x) {
+            if let (Some(prior), Some(sd)) = (&mut c.prior, declared)
+                && x.abs() > SLACK * most * sd
+            {
+                *prior *= (most * sd / x.abs()).max(0.03);
+                beyond = true;
+            }
+        }
+        if !beyond {
+            break;
+        }
+        s = solved(columns, target);
+    }
+    // What was taken counts as the declared tolerance has it.
+    s.penalty = declared
+        .iter()
+        .zip(&s.x)
+        .filter_map(|(d, x)| d.map(|d| (x / d).powi(2)))
+        .sum();
+    s
+}
+
+/// Whether every gain and delay of a fit is beyond what a healthy channel has: the declared tolerance and what the tolerances of the other
+/// channels leave open of it (its sigma), together.
+pub fn beyond_tolerance(frame: &MotionFrame, fit: &MotionFit) -> bool {
+    let tolerances = fit
+        .column_of
+        .iter()
+        .filter(|c| {
+            matches!(
+                c,
+                ColumnOf::Gain(_) | ColumnOf::Delay(_) | ColumnOf::Fault(_)
+            )
+        })
+        .count();
+    let limit = tolerance_limit(tolerances);
+    let beyond = |off: f64, tolerance: f64, sigma: f64| off.abs() > limit * tolerance.hypot(sigma);
+    fit.parts.iter().zip(&fit.sizes).all(|(p, sizes)| {
+        let Some([size, sigma]) = sizes.first() else {
+            return true;
+        };
+        match p.shape {
+            Change::Gain { .. } => beyond(size - 1.0, frame.gain_tolerance, *sigma),
+            Change::Delay { .. } => beyond(*size, frame.sync_tolerance_s, *sigma),
+            _ => true,
+        }
+    })
+}
+
+/// Gains that a channel may have and still be the channel that was meant: beyond, it is another fault (unit, sensor, wire).
+const GAINS: std::ops::Range<f64> = 0.5..2.0;
+/// Longest delay, s, that the search follows: a tenth of the period of the lowest frequencies that vehicles are compared at.
+const LONGEST_DELAY_S: f64 = 0.15;
+
+/// Whether every effect's size is one that nature allows.
+pub fn plausible(candidates: &[Candidate], fit: &MotionFit) -> bool {
+    fit.parts.iter().zip(&fit.sizes).all(|(p, sizes)| {
+        let Some([x, _]) = sizes.first() else {
+            return true;
+        };
+        match &p.shape {
+            Change::Gain { .. } => GAINS.contains(x),
+            Change::Delay { .. } => x.abs() < LONGEST_DELAY_S,
+            // What comes may be any mass; what leaves is less than what was there.
+            Change::Step(s) => {
+                let m = fit.values[fit.assembled.vehicle.inertia_index(s.body, 0, 0)];
+                m > 0.0 && *x > -m && is_seen(fit, |t_s| s.done(t_s))
+            }
+            shape => {
+                let signed = candidates
+                    .get(p.candidate)
+                    .is_none_or(|c| c.sign == Sign::Any)
+                    || *x > 0.0;
+                signed && stiffness_is_sensible(shape, *x, fit)
+            }
+        }
+    })
+}
+
+/// Whether at least half of a change happens within the compared stretch, a tenth of it from either end: what happens before or after is
+/// no change to this record.
+fn is_seen(fit: &MotionFit, done: impl Fn(f64) -> f64) -> bool {
+    const END: f64 = 0.1;
+    let [begin, end] = fit.design.span_s();
+    let margin = END * (end - begin);
+    done(end - margin) - done(begin + margin) >= 0.5
+}
+
+/// Stiffness within a gap, as a share of that beyond it, that parts free play from a stop: both are the same law, two slopes.
+const PLAY: f64 = 0.2;
+
+/// Free play leaves next to nothing of the spring within its gap, an end stop a spring that works; a spring that changes keeps a positive
+/// stiffness.
+fn stiffness_is_sensible(shape: &Change, size: f64, fit: &MotionFit) -> bool {
+    let Change::Terms { link, terms } = shape else {
+        return true;
+    };
+    let v = &fit.assembled.vehicle;
+    let Some(l) = v.links.get(*link) else {
+        return true;
+    };
+    let at = l.terms.iter().position(|t| *t == Term::Stiffness);
+    let Some(k) = at.map(|t| fit.values[v.term_index(*link, t)]) else {
+        return true;
+    };
+    match terms.first() {
+        Some(Term::DeadZone { .. }) => k - size < PLAY * k && k - size > -PLAY * k,
+        Some(Term::BumpStop {
+            side: Side::Both, ..
+        }) => k > PLAY * (k + size),
+        Some(Term::StiffnessChange { at_s, over_s }) => {
+            let seen = is_seen(fit, |t_s| share_done(*at_s, *over_s, t_s));
+            seen && k > 0.0 && k + size > 0.0
+        }
+        _ => true,
+    }
+}

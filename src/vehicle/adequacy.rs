@@ -1,0 +1,152 @@
+//! Whether a fitted model leaves more than its sensors do: then something is missing in it, and its parameters stand in for that.
+
+use super::layout::{Measures, Vehicle};
+use super::loads::Blend;
+use super::misfit::channel_residuals;
+use super::motion::{Adjustment, Treatment, VehicleError, motion};
+use crate::finding::{Finding, Severity};
+use crate::series::channels::Channels;
+use crate::series::detrend::rms;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Declared noise may be wrong by this factor: it is a data sheet's, or was estimated at rest.
+const NOISE_FACTOR: f64 = 1.5;
+/// Standard deviations of declared tolerances that one job of a hundred exceeds.
+const TOLERANCE_SD: f64 = 2.6;
+/// A misfit is far above its floor from so many times what 99 complete models of 100 leave: nearer than that, parameters are off by about
+/// as much as their intervals say.
+const FAR: f64 = 2.0;
+
+/// What is declared of the channels, one sd each.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Declared {
+    /// Noise of accelerometers, a sample; none: not declared.
+    pub noise_acc: Option<f64>,
+    /// Noise of wheel forces, a sample; none: not declared.
+    pub noise_force: Option<f64>,
+    /// Gain of every channel, a share.
+    pub gain: f64,
+    /// Synchronisation of every channel, s.
+    pub sync_s: f64,
+}
+
+/// What sensors leave of a channel's misfit: expected, and the most that 99 complete models of 100 leave; in the channel's unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelFloor {
+    /// Channel.
+    pub channel: String,
+    /// RMS expected.
+    pub expected: f64,
+    /// The most.
+    pub limit: f64,
+}
+
+/// Floors of the misfit of every channel of a record, by doing to it once more what is declared: noise of the declared size is added,
+/// gains and timing are moved by one sd each, and what that changes in the residuals is what it left there already. Empty where no noise
+/// is declared.
+///
+/// # Errors
+/// As [`motion`].
+pub fn channel_floors(
+    vehicle: &Vehicle,
+    values: &[f64],
+    blend: &Blend,
+    record: &Channels,
+    treatment: &Treatment,
+    declared: &Declared,
+) -> Result<Vec<ChannelFloor>, VehicleError> {
+    let sensors = (vehicle.sensors.iter()).map(|s| (&s.channel, declared.noise_acc, s.measures));
+    let forces =
+        (vehicle.wheels.iter()).map(|w| (&w.channel, declared.noise_force, Measures::Acceleration));
+    let present: Vec<_> = sensors.chain(forces).filter(|c| record.has(c.0)).collect();
+    if present
+        .iter()
+        .any(|c| c.1.is_none() || c.2 != Measures::Acceleration)
+    {
+        return Ok(vec![]);
+    }
+    let residuals = |record: &Channels, treatment: &Treatment| {
+        let m = motion(vehicle, record, treatment)?;
+        Ok::<_, VehicleError>(channel_residuals(vehicle, values, &m, blend))
+    };
+    let plain = residuals(record, treatment)?;
+    let changes = |other: &[(String, Vec<f64>, f64)]| -> Vec<f64> {
+        plain
+            .iter()
+            .zip(other)
+            .map(|(a, b)| {
+                let d: Vec<f64> = a.1.iter().zip(&b.1).map(|(x, y)| x - y).collect();
+                rms(&d)
+            })
+            .collect()
+    };
+    let mut noisy = record.clone();
+    let mut dice = ChaCha8Rng::seed_from_u64(1);
+    for (name, sd, _) in &present {
+        let sd = sd.unwrap_or(0.0);
+        for c in noisy.list.iter_mut().filter(|c| c.name == **name) {
+            // Uniform of that variance: the sum of many samples is normal anyway.
+            let width = sd * 12f64.sqrt();
+            c.samples
+                .iter_mut()
+                .for_each(|x| *x += width * (dice.random::<f64>() - 0.5));
+        }
+    }
+    let noise = changes(&residuals(&noisy, treatment)?);
+    let mut loose = vec![0.0; plain.len()];
+    for (name, _, _) in &present {
+        for (gain, delay_s) in [(1.0 + declared.gain, 0.0), (1.0, declared.sync_s)] {
+            if gain == 1.0 && delay_s == 0.0 {
+                continue;
+            }
+            let trial = Adjustment {
+                channel: (*name).clone(),
+                gain,
+                delay_s,
+            };
+            let moved = Treatment {
+                adjust: treatment.adjust.iter().cloned().chain([trial]).collect(),
+                ..treatment.clone()
+            };
+            let change = changes(&residuals(record, &moved)?);
+            loose.iter_mut().zip(change).for_each(|(l, c)| *l += c * c);
+        }
+    }
+    let of = |i: usize, noise_times: f64, sd: f64| {
+        (noise_times * noise[i]).hypot(sd * f64::sqrt(loose[i]))
+    };
+    Ok(plain
+        .iter()
+        .enumerate()
+        .map(|(i, (channel, ..))| ChannelFloor {
+            channel: channel.clone(),
+            expected: of(i, 1.0, 1.0),
+            limit: of(i, NOISE_FACTOR, TOLERANCE_SD),
+        })
+        .collect())
+}
+
+/// Error where the misfit of a channel is far above its floor.
+pub fn check_adequacy(channel: &str, relative: f64, floor: [f64; 2], on: &str) -> Option<Finding> {
+    let [expected, limit] = floor;
+    if relative.is_nan() || relative <= FAR * limit {
+        return None;
+    }
+    let message = format!(
+        "The model leaves {:.1} % of `{channel}` unexplained ({on} data) where noise and tolerances leave {:.1} %: something is missing in \
+         it, and the parameters stand in for that beyond their intervals.",
+        100.0 * relative,
+        100.0 * expected
+    );
+    let remedy =
+        "Run `reconcile` on this job: it looks for what is missing and writes the job with it.";
+    let finding = Finding::new(
+        Severity::Error,
+        "model-incomplete",
+        channel,
+        message,
+        remedy,
+    );
+    Some(finding.with_numbers(relative, FAR * limit))
+}

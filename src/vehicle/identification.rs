@@ -1,0 +1,129 @@
+//! What an identification is asked, and what it answers.
+
+use super::checks::MassClosure;
+use super::layout::Vehicle;
+use super::motion::Adjustment;
+use super::term::UnitNames;
+use crate::finding::{Finding, Severity};
+use crate::series::spectrum::Band;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// What is asked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Question {
+    /// The model.
+    pub vehicle: Vehicle,
+    /// Parameters measured elsewhere.
+    pub known: BTreeMap<String, f64>,
+    /// Limits; positive parameters are limited to 0 and up anyway.
+    pub bounds: BTreeMap<String, [f64; 2]>,
+    /// The band of every equation.
+    pub band: Band,
+    /// Acceleration of gravity, job units.
+    pub gravity: f64,
+    /// Gain tolerance of every channel, 1 sd, as a share.
+    pub gain_tolerance: f64,
+    /// Synchronisation tolerance of every channel, 1 sd, s.
+    pub sync_tolerance_s: f64,
+    /// Names of the job's units.
+    pub units: UnitNames,
+    /// Noise of accelerometers, 1 sd a sample, where declared.
+    pub noise_acc: Option<f64>,
+    /// Noise of wheel forces, 1 sd a sample, where declared.
+    pub noise_force: Option<f64>,
+    /// Known faults of channels, taken out before anything else.
+    pub corrections: Vec<Adjustment>,
+}
+
+/// One parameter, or a ratio of two.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Estimate {
+    /// Name, `k_s` or `k_s/m_b`.
+    pub name: String,
+    /// Value; none where it can't be told.
+    pub value: Option<f64>,
+    /// One standard deviation, coloured residuals and declared tolerances included.
+    pub sigma: Option<f64>,
+    /// Unit in words.
+    pub unit: String,
+    /// Whether record and model determine it.
+    pub identifiable: bool,
+    /// 95 % interval.
+    pub interval: Option<[f64; 2]>,
+    /// Whether it was declared, not estimated.
+    pub known: bool,
+}
+
+/// How well a channel is explained.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ChannelFit {
+    /// Channel.
+    pub channel: String,
+    /// RMS of measured less predicted over RMS of measured, in band.
+    pub relative_rms: f64,
+    /// The same on the data that were fitted.
+    pub relative_rms_fitted: f64,
+    /// What declared noise and tolerances leave of it where `relative_rms` was found, over the same RMS; none where no noise is declared.
+    pub floor: Option<f64>,
+    /// `hold-out` or `fitted`: where `relative_rms` comes from.
+    pub on: &'static str,
+}
+
+/// The answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Identification {
+    /// The vehicle with all constants of its terms.
+    pub vehicle: Vehicle,
+    /// Values of `vehicle.parameters()`; relative to the reference mass (1) where no force sets the scale; NaN where unknown.
+    pub values: Vec<f64>,
+    /// Standard deviations, 0 for known ones.
+    pub sigmas: Vec<f64>,
+    /// Covariance of `values`, by rows.
+    pub covariance: Vec<Vec<f64>>,
+    /// Whether `values` carry the scale of forces.
+    pub scaled: Vec<bool>,
+    /// Factor on sigma for 95 %.
+    pub coverage_factor: f64,
+    /// Parameters and ratios as reported.
+    pub parameters: Vec<Estimate>,
+    /// What can't be told, in words.
+    pub unidentifiable: Vec<String>,
+    /// How well each channel is explained.
+    pub fit: Vec<ChannelFit>,
+    /// Dynamics against statics.
+    pub mass_closure: Option<MassClosure>,
+    /// How wheel forces are best put together.
+    pub blend: Vec<Vec<f64>>,
+    /// RMS of the wheel force error in band, where measured (the larger of fitted and held-out).
+    pub wheel_force_sigma: Vec<Option<f64>>,
+    /// Ratio of smallest to largest singular value, worst component, columns of unit norm.
+    pub conditioning: f64,
+    /// Everything noticed.
+    pub findings: Vec<Finding>,
+}
+
+impl Identification {
+    /// Value of a parameter by name, where the record tells it with its scale.
+    pub fn value(&self, name: &str) -> Option<f64> {
+        self.parameters
+            .iter()
+            .find(|p| p.name == name)
+            .and_then(|p| p.value)
+    }
+
+    /// Findings of error severity if nothing at all could be told.
+    pub fn verdict(&self) -> Option<Finding> {
+        let told = self.parameters.iter().any(|p| p.identifiable && !p.known);
+        (!told).then(|| {
+            let message = "No parameter can be told from this record.";
+            Finding::new(
+                Severity::Error,
+                "nothing-identifiable",
+                &self.vehicle.name,
+                message,
+                "Add a measurement named under `unidentifiable`.",
+            )
+        })
+    }
+}

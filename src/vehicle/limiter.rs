@@ -1,0 +1,82 @@
+//! Spectra limited to the band, thinned and trimmed.
+
+use super::layout::Vehicle;
+use super::treatment::{Treatment, VehicleError};
+use crate::series::channels::{Channels, SeriesError};
+use crate::series::detrend::without_mean;
+use crate::series::spectrum::{Band, Fourier, Spectrum};
+
+/// Limits spectra to the band, thins and trims what they give.
+pub(super) struct Limiter {
+    pub fourier: Fourier,
+    pub band: Band,
+    pub rate_hz: f64,
+    pub keep: usize,
+    pub trim: usize,
+    n_kept: usize,
+}
+
+impl Limiter {
+    /// # Errors
+    /// A band that the rate can't hold, a record that is shorter than the band needs.
+    pub fn of(
+        vehicle: &Vehicle,
+        record: &Channels,
+        treatment: &Treatment,
+    ) -> Result<Self, VehicleError> {
+        let band = treatment.band;
+        let rate_hz = record.rate_hz;
+        if !(band.low_hz >= 0.0 && band.low_hz < band.high_hz && band.high_hz < rate_hz / 2.0) {
+            return Err(SeriesError::Band {
+                low_hz: band.low_hz,
+                high_hz: band.high_hz,
+                rate_hz,
+            }
+            .into());
+        }
+        let mut terms = vehicle.links.iter().flat_map(|l| &l.terms);
+        let settle_s = match treatment.settle_s {
+            Some(s) => s,
+            None if terms.any(|t| !t.is_linear()) => 1.5 * band.settling_s(),
+            None => band.settling_s(),
+        };
+        let needed_s = 2.0 * settle_s + 5.0 / band.low_hz.max(0.1);
+        if record.duration_s() < needed_s {
+            return Err(SeriesError::TooShort {
+                found_s: record.duration_s(),
+                needed_s,
+                low_hz: band.low_hz,
+            }
+            .into());
+        }
+        let mut keep = treatment.keep_every.max(1);
+        if treatment.keep_every == 0 {
+            while rate_hz / (2 * keep) as f64 >= 5.0 * band.high_hz {
+                keep *= 2;
+            }
+        }
+        Ok(Self {
+            fourier: Fourier::default(),
+            band,
+            rate_hz,
+            keep,
+            trim: ((settle_s * rate_hz).ceil() as usize).div_ceil(keep),
+            n_kept: record.n_samples().div_ceil(keep),
+        })
+    }
+
+    /// Samples of a spectrum in the band, so many times integrated.
+    pub fn limited(&mut self, s: &Spectrum, times: i32) -> Vec<f64> {
+        let x = self
+            .fourier
+            .samples(&s.band_integrated(self.band, times), self.keep);
+        let trim = self.trim;
+        x[trim.min(x.len())..self.n_kept.saturating_sub(trim).max(trim).min(x.len())].to_vec()
+    }
+
+    /// A signal at the record's rate, its mean taken off, in the band.
+    pub fn limited_samples(&mut self, x: &[f64]) -> Vec<f64> {
+        let s = self.fourier.spectrum(&without_mean(x), self.rate_hz);
+        self.limited(&s, 0)
+    }
+}
