@@ -4,7 +4,7 @@ use super::fault::{Fault, FaultList, Faults, split_message};
 use super::job::{Job, NamedFile, Vehicle as VehicleJob};
 use super::work::Work;
 use crate::finding::{Finding, Severity};
-use crate::series::channels::{Channels, SeriesError};
+use crate::series::{Channels, SeriesError};
 use crate::series::csv::read_csv;
 use crate::series::foreign::{Foreign, read_foreign};
 use crate::series::quality::{Kind, check_channels};

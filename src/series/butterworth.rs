@@ -1,6 +1,6 @@
 //! Digital Butterworth filters as second-order sections.
 
-use super::channels::SeriesError;
+use super::error::SeriesError;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::PI;
 

@@ -1,8 +1,9 @@
 use super::align::{delay_between, delayed};
 use super::butterworth::{Pass, butterworth, response};
-use super::channels::{Channel, Channels, SeriesError};
+use super::channels::{Channel, Channels};
 use super::csv::read_csv;
 use super::detrend::{rms, without_line};
+use super::error::SeriesError;
 use super::filtfilt::filtfilt;
 use super::integrate::integrated;
 use super::quality::{Kind, check_channels};

@@ -5,7 +5,7 @@ use super::stretch::SlowStretch;
 use super::term::Term;
 use crate::finding::{Finding, Severity};
 use crate::linalg::tall::left_inverse;
-use crate::series::channels::{Channels, SeriesError};
+use crate::series::{Channels, SeriesError};
 use crate::series::detrend::{mean, rms, without_mean};
 use crate::series::spectrum::{Band, Fourier, Spectrum};
 use rustfft::num_complex::Complex64;

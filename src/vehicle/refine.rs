@@ -3,7 +3,7 @@
 use super::layout::{Measures, Vehicle};
 use super::simulate::{Drive, Simulated, SimulationError, simulate};
 use crate::linalg::levenberg::{Minimum, levenberg_marquardt};
-use crate::series::channels::{Channels, SeriesError};
+use crate::series::{Channels, SeriesError};
 use crate::series::detrend::{rms, without_mean};
 use crate::series::integrate::integrated;
 use crate::series::spectrum::{Band, Fourier};
