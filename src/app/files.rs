@@ -42,6 +42,12 @@ impl std::ops::Deref for FileBytes {
     }
 }
 
+impl AsRef<[u8]> for FileBytes {
+    fn as_ref(&self) -> &[u8] {
+        self
+    }
+}
+
 /// A file that was read, with where it was found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FileRead {

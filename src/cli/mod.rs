@@ -32,6 +32,15 @@ pub fn run(arguments: Arguments) -> ExitCode {
         Command::Cases(a) => Run::of(&a.common, &a.job).job(&a.job, app::cases::cases),
         Command::Place(a) => Run::of(&a.common, &a.job).job(&a.job, app::place::place),
         Command::Recover(a) => on_job("recover", &a, app::recover::run),
+        Command::Fleet(a) => {
+            let run = Run::of(&a.common, &a.job);
+            let spec = app::fleet::FleetSpec {
+                folder: run.folder(&a.job),
+                files: a.files,
+                shard: a.shard,
+            };
+            run.job(&a.job, |job, cx| app::fleet::fleet(job, &spec, cx))
+        }
         Command::Sensitivity(a) => {
             Run::of(&a.common, &a.job).job(&a.job, app::sensitivity::sensitivity)
         }

@@ -64,6 +64,12 @@ impl Run {
         }
     }
 
+    /// `--out`, else `<job name>.out` beside the job.
+    pub fn folder(&self, path: &Path) -> PathBuf {
+        let asked = self.common.out.clone();
+        asked.unwrap_or_else(|| default_folder(path))
+    }
+
     /// Asks a question of a job, writes the outcome into `--out`, else `<job name>.out` beside the job.
     pub fn job<A>(
         &self,
@@ -87,8 +93,7 @@ impl Run {
         A: Answer + Send,
         Outcome<A>: Report,
     {
-        let folder = self.common.out.clone();
-        let folder = folder.unwrap_or_else(|| default_folder(first));
+        let folder = self.folder(first);
         let done = self.pooled(|cx| {
             let outcome = ask(cx)?;
             let json = save(&outcome, &folder)?;
