@@ -120,6 +120,9 @@ pub struct FleetArguments {
     /// Do one part of the files, such as 3/64
     #[arg(long, value_name = "N/OF", value_parser = shard)]
     pub shard: Option<Shard>,
+    /// Folder where the results of single files are kept, for tasks that share one (default: that of --out)
+    #[arg(long, value_name = "DIR")]
+    pub kept: Option<PathBuf>,
     /// What every command is asked
     #[command(flatten)]
     pub common: CommonArguments,

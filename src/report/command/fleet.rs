@@ -7,7 +7,8 @@ use crate::app::outcome::Outcome;
 use crate::app::output::Output;
 use crate::report::csv_cell;
 use crate::report::figure::{Line, Scale, intervals, lines};
-use crate::report::page::{Block, Page, Paper, Section, figure_section, number, table_section};
+use crate::report::page::{Block, Page, Paper, Section, figure_section, table_section};
+use crate::units::number;
 use std::fmt::Write;
 
 /// Files listed on the page; `result.json` has all.
