@@ -10,6 +10,7 @@ pub mod context;
 pub mod deck;
 pub mod fault;
 pub mod files;
+pub mod fleet;
 pub mod half_written;
 pub mod identify;
 pub mod init;

@@ -1,5 +1,6 @@
 //! Arguments as the user types them.
 
+use crate::app::fleet::name::Shard;
 use crate::fe::{HeatedStrain, SolveOptions};
 use std::path::{Path, PathBuf};
 
@@ -59,6 +60,13 @@ pub enum Command {
     /// Recover loads from measured strain, with intervals
     #[command(after_help = "Example:\n  strainbridge recover job.toml --json | jq .loads")]
     Recover(JobArguments),
+    /// Loads, cycles, damage and faults of many records on all cores, merged by vehicle
+    #[command(
+        after_help = "Example:\n  strainbridge fleet job.toml data/*.parquet --out fleet    # again, for what is new alone\n  \
+                      strainbridge fleet job.toml data/*.parquet --out fleet --shard 3/64    # a part of them, on one of many machines\n  \
+                      strainbridge fleet job.toml --out fleet    # merges what the folder holds"
+    )]
+    Fleet(FleetArguments),
     /// Repeat recovery under stated errors for a range of gauge counts and layouts
     #[command(after_help = "Example:\n  strainbridge study job.toml --threads 4")]
     Study(JobArguments),
@@ -109,6 +117,30 @@ pub enum Command {
         after_help = "Example:\n  strainbridge completions bash > ~/.local/share/bash-completion/completions/strainbridge"
     )]
     Completions(CompletionsArguments),
+}
+
+/// A job, records, which of them.
+#[derive(clap::Args, Debug)]
+pub struct FleetArguments {
+    /// The job, with [fleet] file_name
+    #[arg(value_name = "JOB")]
+    pub job: PathBuf,
+    /// Records; none: what the output folder holds is merged
+    #[arg(value_name = "FILES")]
+    pub files: Vec<PathBuf>,
+    /// Do one part of the files, such as 3/64
+    #[arg(long, value_name = "N/OF", value_parser = shard)]
+    pub shard: Option<Shard>,
+    /// Folder where the results of single files are kept, for tasks that share one (default: that of --out)
+    #[arg(long, value_name = "DIR")]
+    pub kept: Option<PathBuf>,
+    /// What every command is asked
+    #[command(flatten)]
+    pub common: CommonArguments,
+}
+
+fn shard(text: &str) -> Result<Shard, String> {
+    Shard::of(text).ok_or_else(|| "expected a part such as 3/64, counted from 1".to_owned())
 }
 
 /// Which shell.

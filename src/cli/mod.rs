@@ -33,6 +33,21 @@ pub fn run(arguments: Arguments) -> ExitCode {
         Command::Cases(a) => Run::of(&a.common, &a.job).job(&a.job, app::cases::cases),
         Command::Place(a) => Run::of(&a.common, &a.job).job(&a.job, app::place::place),
         Command::Recover(a) => on_job("recover", &a, app::recover::run),
+        Command::Fleet(a) => {
+            let run = Run::of(&a.common, &a.job);
+            let folder = run.folder(&a.job);
+            // Shards run at the same time: each writes its answer into a folder of its own.
+            let answer = match a.shard {
+                Some(s) => folder.join(format!("shard-{}-of-{}", s.number, s.of)),
+                None => folder.clone(),
+            };
+            let spec = app::fleet::FleetSpec {
+                folder: a.kept.unwrap_or(folder),
+                files: a.files,
+                shard: a.shard,
+            };
+            run.job_into(&a.job, &answer, |job, cx| app::fleet::fleet(job, &spec, cx))
+        }
         Command::Sensitivity(a) => {
             Run::of(&a.common, &a.job).job(&a.job, app::sensitivity::sensitivity)
         }

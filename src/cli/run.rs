@@ -33,7 +33,7 @@ struct Said<'a> {
     json: &'a str,
     findings: &'a Findings,
     notes: &'a [String],
-    folder: Option<&'a PathBuf>,
+    folder: Option<&'a Path>,
     faults: &'a [Fault],
 }
 
@@ -57,11 +57,17 @@ impl Run {
                 json: &closed.json,
                 findings: &closed.findings,
                 notes: &closed.notes,
-                folder: closed.folder.as_ref(),
+                folder: closed.folder.as_deref(),
                 faults: &closed.faults,
             }),
             Err(faults) => refuse(&faults),
         }
+    }
+
+    /// `--out`, else `<job name>.out` beside the job.
+    pub fn folder(&self, path: &Path) -> PathBuf {
+        let asked = self.common.out.clone();
+        asked.unwrap_or_else(|| default_folder(path))
     }
 
     /// Asks a question of a job, writes the outcome into `--out`, else `<job name>.out` beside the job.
@@ -74,7 +80,21 @@ impl Run {
         A: Answer + Send,
         Outcome<A>: Report,
     {
-        self.files(path, |cx| ask(&Job::read(path, cx.files)?, cx))
+        self.job_into(path, &self.folder(path), ask)
+    }
+
+    /// Asks a question of a job, writes the outcome into `folder`.
+    pub fn job_into<A>(
+        &self,
+        path: &Path,
+        folder: &Path,
+        ask: impl FnOnce(&Job, &Context) -> Result<Outcome<A>, Faults> + Send,
+    ) -> ExitCode
+    where
+        A: Answer + Send,
+        Outcome<A>: Report,
+    {
+        self.into_folder(folder, |cx| ask(&Job::read(path, cx.files)?, cx))
     }
 
     /// Asks a question of files, writes the outcome into `--out`, else `<name>.out` beside the first of them.
@@ -87,11 +107,21 @@ impl Run {
         A: Answer + Send,
         Outcome<A>: Report,
     {
-        let folder = self.common.out.clone();
-        let folder = folder.unwrap_or_else(|| default_folder(first));
+        self.into_folder(&self.folder(first), ask)
+    }
+
+    fn into_folder<A>(
+        &self,
+        folder: &Path,
+        ask: impl FnOnce(&Context) -> Result<Outcome<A>, Faults> + Send,
+    ) -> ExitCode
+    where
+        A: Answer + Send,
+        Outcome<A>: Report,
+    {
         let done = self.pooled(|cx| {
             let outcome = ask(cx)?;
-            let json = save(&outcome, &folder)?;
+            let json = save(&outcome, folder)?;
             Ok((outcome, json))
         });
         match done {
@@ -100,7 +130,7 @@ impl Run {
                 json: &json,
                 findings: &outcome.findings,
                 notes: &outcome.notes,
-                folder: Some(&folder),
+                folder: Some(folder),
                 faults: &[],
             }),
             Err(faults) => refuse(&faults),
@@ -124,7 +154,7 @@ impl Run {
                 json: &json,
                 findings: &outcome.findings,
                 notes: &outcome.notes,
-                folder: self.common.out.as_ref(),
+                folder: self.common.out.as_deref(),
                 faults: &outcome.faults,
             }),
             Err(faults) => refuse(&faults),
@@ -154,7 +184,7 @@ impl Run {
                 json: &json,
                 findings: &outcome.findings,
                 notes: &outcome.notes,
-                folder: self.common.out.as_ref(),
+                folder: self.common.out.as_deref(),
                 faults: &[],
             }),
             Err(faults) => refuse(&faults),

@@ -1,6 +1,9 @@
-//! Records of other programs that a build may leave out: Parquet and MDF4, read whole.
+//! Records of other programs read whole: Parquet and MDF4.
 
-use super::channels::{Channels, SeriesError};
+use super::channels::Channels;
+use super::error::SeriesError;
+use super::record::{Evenness, Options, Record, open_record, read_channels};
+use std::sync::Arc;
 
 /// Kinds of file, each behind a feature of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,20 +42,33 @@ impl Foreign {
 /// A build without the feature, a file that can't be read, uneven or missing times, a rate other than the declared one, wanted
 /// channels that were not sampled together.
 pub fn read_foreign(
-    kind: Foreign,
+    _: Foreign,
     bytes: &[u8],
     declared_hz: Option<f64>,
     wanted: &[String],
 ) -> Result<Channels, SeriesError> {
-    match kind {
-        #[cfg(feature = "parquet")]
-        Foreign::Parquet => super::parquet::read_parquet(bytes, declared_hz),
-        #[cfg(feature = "mdf")]
-        Foreign::Mdf => super::mdf::read_mdf(bytes, declared_hz, wanted),
-        #[allow(unreachable_patterns, reason = "with both features on")]
-        _ => {
-            let (_, _, _) = (bytes, declared_hz, wanted);
-            Err(SeriesError::NotBuilt { kind })
-        }
+    let options = Options {
+        declared_hz,
+        wanted: wanted.to_vec(),
+    };
+    let record = open_record(Arc::new(bytes.to_vec()), &options)?;
+    check_even(&record)?;
+    read_channels(&record)
+}
+
+/// Refuses a record whose samples are not the stored ones, all of them.
+pub(super) fn check_even(record: &Record) -> Result<(), SeriesError> {
+    let expected_s = 1.0 / record.clock.rate_hz;
+    let at = |row: usize, found_s: f64| {
+        Err(SeriesError::UnevenTime {
+            line: record.line_of_row(row),
+            found_s,
+            expected_s,
+        })
+    };
+    match (record.clock.evenness, record.clock.gaps.first()) {
+        (_, Some(gap)) => at(gap.after_row, gap.to_s - gap.from_s),
+        (Evenness::Resampled { largest, row }, None) => at(row, expected_s * (1.0 + largest)),
+        (Evenness::Even, None) => Ok(()),
     }
 }

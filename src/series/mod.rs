@@ -1,11 +1,12 @@
 //! Sampled signals: what a data logger wrote, checked and made comparable.
 //!
 //! - [`channels`]: a record of equally long, equally sampled channels with units
+//! - [`record`]: records of any length and origin, read a piece at a time on one clock
 //! - [`binary`]: the long record of strainbridge, read a piece at a time
 //! - [`cell`]: names that a spreadsheet would take for formulas
-//! - [`csv`]: bytes of a CSV file to a record
+//! - [`csv`]: bytes of a CSV file to a record in memory
 //! - [`rpc`]: RPC III files, read and written
-//! - [`foreign`]: Parquet and MDF4, where the build has them
+//! - [`foreign`]: Parquet and MDF4 in memory
 //! - [`number`]: numbers read and written fast
 //! - [`quality`]: dead, clipped, spiky, drifting, reversed, wrongly scaled channels as findings
 //! - [`detrend`]: mean, line and zero-run removal
@@ -25,22 +26,23 @@ pub mod channels;
 pub mod content;
 pub mod csv;
 pub mod detrend;
+pub mod error;
 pub mod foreign;
 pub mod integrate;
-#[cfg(feature = "mdf")]
-pub mod mdf;
 pub mod number;
 #[cfg(feature = "parquet")]
 pub mod parquet;
 pub mod quality;
 pub mod rainflow;
+pub mod record;
 pub mod resample;
 pub mod rpc;
 pub mod spectrum;
 pub mod welch;
 pub mod window;
 
-pub use channels::{Channel, Channels, SeriesError};
+pub use channels::{Channel, Channels};
+pub use error::SeriesError;
 
 #[cfg(test)]
 mod tests;

@@ -97,7 +97,10 @@ pub fn short_number(text: &[u8], mark: DecimalMark) -> Option<(f64, usize)> {
     Some((if negative { -size } else { size }, at))
 }
 
-/// The number in a whole field; an empty one, `NaN` and `NA` are NaN. `None` where it is no number.
+/// What programs and spreadsheets write where nothing was measured.
+const NOT_MEASURED: [&[u8]; 7] = [b"nan", b"na", b"n/a", b"#n/a", b"#nv", b"null", b"1.#qnan"];
+
+/// The number in a whole field; an empty one, `NaN`, `NA`, `#N/A` and the like are NaN. `None` where it is no number.
 pub fn number(field: &[u8], mark: DecimalMark) -> Option<f64> {
     let field = field.trim_ascii();
     if let Some((v, n)) = short_number(field, mark)
@@ -105,7 +108,7 @@ pub fn number(field: &[u8], mark: DecimalMark) -> Option<f64> {
     {
         return Some(v);
     }
-    if field.is_empty() || field.eq_ignore_ascii_case(b"nan") || field.eq_ignore_ascii_case(b"na") {
+    if field.is_empty() || NOT_MEASURED.iter().any(|w| field.eq_ignore_ascii_case(w)) {
         return Some(f64::NAN);
     }
     let text = std::str::from_utf8(field).ok()?;

@@ -1,156 +1,22 @@
-//! Parquet: records read, histories written.
+//! Parquet: histories written.
 
-use super::channels::{Channel, Channels, SeriesError};
-use super::csv::{name_and_unit, rate_of};
-use bytes::Bytes;
-use parquet::basic::{
-    Compression, ConvertedType, LogicalType, Repetition, SortOrder, TimeUnit, Type as Kind,
-};
-use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
-use parquet::data_type::{DataType, DoubleType, FloatType};
+use super::error::SeriesError;
+use parquet::basic::{Compression, Repetition, Type as Kind};
+use parquet::data_type::{DoubleType, FloatType};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
-use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
-use parquet::schema::types::{ColumnDescriptor, Type};
+use parquet::schema::types::Type;
 use std::sync::Arc;
 
-/// Values taken at a time.
-const BATCH: usize = 65_536;
 /// Samples a row group.
 const GROUP: usize = 131_072;
 
-/// The record in a table: a column a channel, a row a sample. A column `t` or `time` gives the times: seconds, or a timestamp. Columns of
-/// numbers alone are read; a name `a_body [m/s2]` carries a unit; a null is a missing sample (NaN).
-///
-/// # Errors
-/// A file that can't be read, uneven times, a rate other than the declared one.
-pub fn read_parquet(bytes: &[u8], declared_hz: Option<f64>) -> Result<Channels, SeriesError> {
-    let file = SerializedFileReader::new(Bytes::copy_from_slice(bytes)).map_err(broken)?;
-    let schema = file.metadata().file_metadata().schema_descr_ptr();
-    // Column of the file, its name and unit, the number of one stored unit.
-    let columns: Vec<(usize, (String, String), f64)> = schema
-        .columns()
-        .iter()
-        .enumerate()
-        .filter(|(_, c)| c.max_rep_level() == 0)
-        .filter_map(|(i, c)| Some((i, name_and_unit(c.name().as_bytes()), scale(c)?)))
-        .collect();
-    let mut values: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
-    for group in 0..file.num_row_groups() {
-        let group = file.get_row_group(group).map_err(broken)?;
-        for ((i, _, scale), out) in columns.iter().zip(&mut values) {
-            let descriptor = schema.column(*i);
-            let reader = group.get_column_reader(*i).map_err(broken)?;
-            append(reader, &descriptor, *scale, out)?;
-        }
-    }
-    let is_time = |name: &str| matches!(name.to_ascii_lowercase().as_str(), "t" | "time");
-    let time = columns.iter().position(|c| is_time(&c.1.0));
-    let (rate_hz, start_s) = match time.and_then(|t| values.get(t)) {
-        Some(t) => rate_of(t, &(1..=t.len()).collect::<Vec<_>>(), declared_hz)?,
-        None => (declared_hz.ok_or(SeriesError::NoRate)?, 0.0),
-    };
-    let list = columns
-        .into_iter()
-        .zip(values)
-        .enumerate()
-        .filter(|(k, _)| Some(*k) != time)
-        .map(|(_, ((_, (name, unit), _), samples))| Channel {
-            name,
-            unit,
-            samples,
-        })
-        .collect();
-    Ok(Channels {
-        start_s,
-        ..Channels::from_list(rate_hz, list)?
-    })
-}
-
 fn broken(e: ParquetError) -> SeriesError {
-    SeriesError::Parquet(e.to_string())
-}
-
-/// What one stored unit is worth: seconds for timestamps, 1 for plain numbers; `None` for what is no number.
-fn scale(c: &ColumnDescriptor) -> Option<f64> {
-    let of_unit = |unit: &TimeUnit| match unit {
-        TimeUnit::MILLIS => 1e-3,
-        TimeUnit::MICROS => 1e-6,
-        TimeUnit::NANOS => 1e-9,
-    };
-    match (c.physical_type(), c.logical_type_ref()) {
-        (Kind::INT32 | Kind::INT64, Some(LogicalType::Timestamp(t))) => Some(of_unit(&t.unit)),
-        (Kind::INT32 | Kind::INT64, Some(LogicalType::Time(t))) => Some(of_unit(&t.unit)),
-        (Kind::INT32 | Kind::INT64, Some(LogicalType::Decimal(d))) => Some(10_f64.powi(-d.scale)),
-        (Kind::INT32 | Kind::INT64, Some(LogicalType::Date)) => None,
-        (Kind::INT32 | Kind::INT64, _) => match c.converted_type() {
-            ConvertedType::TIMESTAMP_MILLIS | ConvertedType::TIME_MILLIS => Some(1e-3),
-            ConvertedType::TIMESTAMP_MICROS | ConvertedType::TIME_MICROS => Some(1e-6),
-            _ => Some(1.0),
-        },
-        (Kind::BOOLEAN | Kind::FLOAT | Kind::DOUBLE, _) => Some(1.0),
-        _ => None,
-    }
-}
-
-/// Appends a column of a row group.
-fn append(
-    reader: ColumnReader,
-    column: &ColumnDescriptor,
-    scale: f64,
-    out: &mut Vec<f64>,
-) -> Result<(), SeriesError> {
-    let max_def = column.max_def_level();
-    let unsigned = column.sort_order() == SortOrder::UNSIGNED;
-    match reader {
-        ColumnReader::BoolColumnReader(r) => {
-            numbers(r, max_def, |v| f64::from(u8::from(*v)), scale, out)
-        }
-        ColumnReader::Int32ColumnReader(r) if unsigned => {
-            numbers(r, max_def, |v| f64::from(v.cast_unsigned()), scale, out)
-        }
-        ColumnReader::Int64ColumnReader(r) if unsigned => {
-            numbers(r, max_def, |v| v.cast_unsigned() as f64, scale, out)
-        }
-        ColumnReader::Int32ColumnReader(r) => numbers(r, max_def, |v| f64::from(*v), scale, out),
-        ColumnReader::Int64ColumnReader(r) => numbers(r, max_def, |v| *v as f64, scale, out),
-        ColumnReader::FloatColumnReader(r) => numbers(r, max_def, |v| f64::from(*v), scale, out),
-        ColumnReader::DoubleColumnReader(r) => numbers(r, max_def, |v| *v, scale, out),
-        _ => Ok(()),
-    }
-}
-
-fn numbers<T: DataType>(
-    mut reader: ColumnReaderImpl<T>,
-    max_def: i16,
-    number: impl Fn(&T::T) -> f64,
-    scale: f64,
-    out: &mut Vec<f64>,
-) -> Result<(), SeriesError> {
-    let (mut levels, mut values) = (Vec::new(), Vec::new());
-    loop {
-        levels.clear();
-        values.clear();
-        let read = reader.read_records(BATCH, Some(&mut levels), None, &mut values);
-        let (records, _, _) = read.map_err(broken)?;
-        if records == 0 {
-            return Ok(());
-        }
-        let mut known = values.iter().map(|v| scale * number(v));
-        if max_def == 0 {
-            out.extend(known);
-        } else {
-            out.extend(levels.iter().map(|l| {
-                if *l == max_def {
-                    known.next().unwrap_or(f64::NAN)
-                } else {
-                    f64::NAN
-                }
-            }));
-        }
-    }
+    SeriesError::Broken(format!(
+        "it can't be written as Parquet ({e}): report this as an error of the program"
+    ))
 }
 
 /// A file with a column `time` (s, 64 bits) and one a name (32 bits, NaN where nothing was measured), `notes` as its key-value metadata.
@@ -220,7 +86,12 @@ pub fn parquet_bytes(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::series::foreign::{Foreign, read_foreign};
     use parquet::schema::parser::parse_message_type;
+
+    fn read_parquet(bytes: &[u8], hz: Option<f64>) -> Result<crate::series::Channels, SeriesError> {
+        read_foreign(Foreign::Parquet, bytes, hz, &[])
+    }
 
     #[test]
     fn what_is_written_is_read_back_and_damaged_files_are_refused() {

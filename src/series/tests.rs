@@ -1,7 +1,8 @@
 use super::align::delayed;
-use super::channels::{Channel, Channels, SeriesError};
+use super::channels::{Channel, Channels};
 use super::csv::read_csv;
 use super::detrend::{rms, without_line};
+use super::error::SeriesError;
 use super::integrate::integrated;
 use super::quality::{Kind, check_channels};
 use super::resample::resampled;

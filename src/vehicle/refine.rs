@@ -3,10 +3,10 @@
 use super::layout::{Measures, Vehicle};
 use super::simulate::{Drive, Simulated, SimulationError, simulate};
 use crate::linalg::levenberg::{Minimum, levenberg_marquardt};
-use crate::series::channels::{Channels, SeriesError};
 use crate::series::detrend::{rms, without_mean};
 use crate::series::integrate::integrated;
 use crate::series::spectrum::{Band, Fourier};
+use crate::series::{Channels, SeriesError};
 
 /// What a simulation is held against.
 #[derive(Clone, Debug)]

@@ -11,6 +11,7 @@ mod exchange;
 mod paper;
 mod plate;
 mod python;
+mod records;
 mod report;
 mod solve;
 mod vehicle;

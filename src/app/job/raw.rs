@@ -31,6 +31,7 @@ pub(super) struct RawJob {
     pub vehicle: S<RawVehicle>,
     pub reconcile: S<RawReconcile>,
     pub sensitivity: S<RawSensitivity>,
+    pub fleet: S<RawFleet>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]
@@ -206,6 +207,14 @@ pub(super) struct RawPayload {
 pub(super) struct RawRecover {
     pub files: S<Vec<Spanned<String>>>,
     pub slope: S<f64>,
+}
+
+#[derive(Deserialize, JsonSchema, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawFleet {
+    pub file_name: S<String>,
+    pub knee_range: S<f64>,
+    pub slope_below_knee: S<f64>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

@@ -216,6 +216,22 @@ const KEYS: &[(&str, &str, &[&str])] = &[
         "Power of the load range in pseudo-damage; default 5",
         &[],
     ),
+    ("fleet", "Records of many vehicles and days", &[]),
+    (
+        "fleet.file_name",
+        "Form of their file names: text with {vehicle} and {day}, and {any} for what doesn't matter",
+        &[],
+    ),
+    (
+        "fleet.knee_range",
+        "Load range below which the S-N line is flatter, report unit; default none",
+        &[],
+    ),
+    (
+        "fleet.slope_below_knee",
+        "Power below the knee; default: cycles below do no harm",
+        &[],
+    ),
     (
         "respond",
         "Strain and stress anywhere from recovered loads",

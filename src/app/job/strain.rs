@@ -97,7 +97,7 @@ pub fn in_microstrain(file: &str, h: &mut rpc::Header, gauges: &[String]) -> Res
 }
 
 /// Microstrain in one of a unit, as measuring systems write it.
-fn microstrain_in(unit: &str) -> Option<f64> {
+pub fn microstrain_in(unit: &str) -> Option<f64> {
     let word: String = unit
         .to_lowercase()
         .chars()

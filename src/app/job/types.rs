@@ -66,6 +66,8 @@ pub struct Job {
     pub reconcile: Option<Reconcile>,
     /// `[sensitivity]`: S and signatures computed elsewhere.
     pub sensitivity: Option<GivenSensitivity>,
+    /// `[fleet]`.
+    pub fleet: Option<Fleet>,
 }
 
 /// `[model]`.
@@ -640,6 +642,17 @@ pub struct Recover {
     pub files: Option<Vec<LoadFile>>,
     /// Power of the load range in pseudo-damage.
     pub slope: f64,
+}
+
+/// `[fleet]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fleet {
+    /// Form of file names, with `{vehicle}` and `{day}`.
+    pub file_name: NamedFile,
+    /// Range below which the S-N line is flatter, report unit of each load; `None`: a straight line.
+    pub knee_range: Option<f64>,
+    /// Power below the knee; infinite where cycles below do no harm.
+    pub slope_below_knee: f64,
 }
 
 /// `[respond]`.

@@ -120,7 +120,7 @@ pub(super) fn recovered_runs(
 }
 
 /// Strain of the reference state by gauge: it is added to the readings, so that loads are totals.
-fn reference_strain(
+pub(super) fn reference_strain(
     job: &Job,
     measured: &Measured,
     prepared: &Prepared,

@@ -3,6 +3,9 @@
 mod ballast;
 mod cases;
 mod check;
+mod fleet;
+#[cfg(feature = "parquet")]
+mod fleet_parquet;
 mod identify;
 mod init;
 mod modes;

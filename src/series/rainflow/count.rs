@@ -1,4 +1,4 @@
-//! Rainflow counting, sample by sample.
+//! Rainflow counting by four points, sample by sample.
 
 /// A sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,26 +32,58 @@ impl Cycle {
     }
 }
 
-/// A count under way. It remembers the reversals whose ranges are still open, each smaller than the one before it, and nothing else
-/// of the record.
+/// A reversal and what belongs to it: what other signals were then, say.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reversal<T> {
+    /// The sample.
+    pub point: Point,
+    /// What belongs to it.
+    pub tag: T,
+}
+
+/// A count under way. It remembers the reversals that no cycle has closed yet (the residue, in time order), and nothing else.
+///
+/// A cycle from B to C closes when the reversal A before it and the one after it, D, reach at least as far. Of reversals of equal value the
+/// later counts as the higher, which makes the cycles of a history one set whatever the order in which they are found: the residues
+/// of the parts of a history, one after the other through another count, close exactly the cycles that the parts could not. Full
+/// cycles and the residue's ranges as half cycles together are the count of ASTM E1049 ([`Rainflow::finish`]); its half cycles of
+/// parts do not add up to those of the whole, the residues do.
 ///
 /// # Reference
-/// ASTM E1049-85, section 5.4.4, rainflow counting.
-#[derive(Clone, Debug, Default)]
-pub struct Rainflow {
-    open: Vec<Point>,
+/// C. Amzallag, J.P. Gerey, J.L. Robert, J. Bahuaud, Standardization of the rainflow counting method for fatigue analysis, Int. J. Fatigue
+/// 16 (1994) 287-293; ASTM E1049-85, section 5.4.4.
+#[derive(Clone, Debug)]
+pub struct Rainflow<T = ()> {
+    open: Vec<Reversal<T>>,
     /// The latest sample, which is a reversal where the next one turns back.
     latest: Option<Point>,
 }
 
-impl Rainflow {
-    /// Takes the next sample; `counted` gets every cycle that closes. A value that is not finite is passed over.
-    pub fn push(&mut self, point: Point, counted: &mut impl FnMut(Cycle)) {
+impl<T> Default for Rainflow<T> {
+    fn default() -> Self {
+        Self {
+            open: Vec::new(),
+            latest: None,
+        }
+    }
+}
+
+impl<T> Rainflow<T> {
+    /// Takes the next sample; `counted` gets the two reversals of every cycle that closes, `tag` gives what belongs to a sample that has
+    /// become a reversal. A value that is not finite is passed over.
+    #[inline]
+    pub fn push_tagged(
+        &mut self,
+        point: Point,
+        tag: &mut impl FnMut(Point) -> T,
+        counted: &mut impl FnMut(&Reversal<T>, &Reversal<T>),
+    ) {
         if !point.value.is_finite() {
             return;
         }
         let Some(latest) = self.latest else {
-            self.open.push(point);
+            let tag = tag(point);
+            self.open.push(Reversal { point, tag });
             self.latest = Some(point);
             return;
         };
@@ -59,48 +91,107 @@ impl Rainflow {
             return;
         }
         // The last open reversal is where the present rise or fall began.
-        let began = self.open.last().map_or(latest.value, |p| p.value);
-        if (point.value - latest.value) * (latest.value - began) < 0.0 {
-            self.reversal(latest, counted);
+        let began = self.open.last().map_or(latest.value, |r| r.point.value);
+        if (point.value > latest.value) != (latest.value > began) && latest.value != began {
+            let tag = tag(latest);
+            self.reversal(Reversal { point: latest, tag }, counted);
         }
         self.latest = Some(point);
     }
 
-    /// Counts what is left: the last sample is a reversal, and every open range half a cycle.
-    pub fn finish(mut self, counted: &mut impl FnMut(Cycle)) {
+    /// The residue: the reversals that are still open and the last sample, in time order.
+    pub fn residue(mut self, tag: &mut impl FnMut(Point) -> T) -> Vec<Reversal<T>> {
         if let Some(latest) = self.latest
-            && self.open.last() != Some(&latest)
+            && self.open.last().is_none_or(|r| r.point != latest)
         {
-            self.reversal(latest, counted);
+            let tag = tag(latest);
+            self.open.push(Reversal { point: latest, tag });
         }
-        for pair in self.open.windows(2) {
-            counted(Cycle {
-                from: pair[0],
-                to: pair[1],
-                count: 0.5,
-            });
-        }
+        self.open
     }
 
-    fn reversal(&mut self, point: Point, counted: &mut impl FnMut(Cycle)) {
-        self.open.push(point);
-        while let &[.., a, b, c] = self.open.as_slice() {
-            if (c.value - b.value).abs() < (b.value - a.value).abs() {
+    /// The latest sample, where it stands for no reversal yet.
+    pub fn latest(&self) -> Option<Point> {
+        self.latest
+    }
+
+    fn reversal(
+        &mut self,
+        reversal: Reversal<T>,
+        counted: &mut impl FnMut(&Reversal<T>, &Reversal<T>),
+    ) {
+        self.open.push(reversal);
+        while let [.., a, b, c, d] = self.open.as_slice() {
+            let [av, bv, cv, dv] = [a, b, c, d].map(|r| r.point.value);
+            // Equal values: the later is the higher.
+            let closed = if bv > av {
+                cv >= av && dv >= bv
+            } else {
+                cv < av && dv < bv
+            };
+            if !closed {
                 break;
             }
-            let starts = self.open.len() == 3;
-            let count = if starts { 0.5 } else { 1.0 };
-            counted(Cycle {
-                from: a,
-                to: b,
-                count,
-            });
-            if starts {
-                self.open.remove(0);
-            } else {
-                self.open.truncate(self.open.len() - 3);
-                self.open.push(c);
-            }
+            counted(b, c);
+            let last = self.open.pop();
+            self.open.truncate(self.open.len().saturating_sub(2));
+            self.open.extend(last);
         }
     }
+}
+
+impl<T: Clone> Rainflow<T> {
+    /// The residue of histories that follow each other, from theirs; `counted` gets the cycles that close across their borders.
+    pub fn joined(
+        residues: &[Vec<Reversal<T>>],
+        counted: &mut impl FnMut(&Reversal<T>, &Reversal<T>),
+    ) -> Vec<Reversal<T>> {
+        let mut count = Self::default();
+        let mut latest: Option<T> = None;
+        for r in residues.iter().flatten() {
+            let mut before = |_: Point| latest.clone().unwrap_or_else(|| r.tag.clone());
+            let changed = count.latest.is_none_or(|l| l.value != r.point.value);
+            count.push_tagged(r.point, &mut before, counted);
+            // A sample that repeats the latest is not taken, and what belongs to it neither.
+            if changed && r.point.value.is_finite() {
+                latest = Some(r.tag.clone());
+            }
+        }
+        match latest {
+            Some(tag) => count.residue(&mut |_| tag.clone()),
+            None => Vec::new(),
+        }
+    }
+}
+
+impl Rainflow {
+    /// Takes the next sample; `counted` gets every full cycle that closes. A value that is not finite is passed over.
+    pub fn push(&mut self, point: Point, counted: &mut impl FnMut(Cycle)) {
+        self.push_tagged(point, &mut |_| (), &mut |b, c| {
+            counted(Cycle {
+                from: b.point,
+                to: c.point,
+                count: 1.0,
+            });
+        });
+    }
+
+    /// Counts what is left as ASTM E1049 does: the last sample is a reversal, and every open range half a cycle.
+    pub fn finish(self, counted: &mut impl FnMut(Cycle)) {
+        for cycle in half_cycles(&self.residue(&mut |_| ())) {
+            counted(cycle);
+        }
+    }
+}
+
+/// The ranges of a residue as half cycles.
+pub fn half_cycles<T>(residue: &[Reversal<T>]) -> impl Iterator<Item = Cycle> {
+    residue.windows(2).filter_map(|w| match w {
+        [a, b] => Some(Cycle {
+            from: a.point,
+            to: b.point,
+            count: 0.5,
+        }),
+        _ => None,
+    })
 }

@@ -1,10 +1,22 @@
 //! Rainflow cycles and the pseudo-damage they make.
+//!
+//! - [`count`]: the four-point count, whose residues join; with the residue as half cycles it is the count of ASTM E1049
+//! - [`law`]: the harm of a cycle, by the slope and knee of an S-N line
+//! - [`tally`]: cycles by class, levels, extremes and sums of a load over a time; tallies of days join to that of the year
+//! - [`interval`]: damage with what is known of its errors
+//! - [`damage`]: damage of one record, range by range
 
-mod count;
+pub mod count;
 mod damage;
+pub mod interval;
+pub mod law;
+pub mod tally;
 
-pub use count::{Cycle, Point, Rainflow};
+pub use count::{Cycle, Point, Rainflow, Reversal, half_cycles};
 pub use damage::{Bin, Damage};
+pub use interval::{DamageInterval, damage_interval};
+pub use law::{Knee, Law};
+pub use tally::{Counter, Extreme, Tally};
 
 #[cfg(test)]
 mod tests;

@@ -1,5 +1,7 @@
 use super::*;
 
+mod joined;
+
 fn cycles_of(history: &[f64]) -> Vec<Cycle> {
     let mut out = Vec::new();
     let mut count = Rainflow::default();

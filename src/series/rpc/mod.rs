@@ -15,5 +15,11 @@ pub use header::{Header, RpcChannel, RpcError, is_rpc, read_header};
 pub use samples::{read_rpc, read_samples};
 pub use write::{Target, write_rpc};
 
+impl From<RpcError> for super::error::SeriesError {
+    fn from(e: RpcError) -> Self {
+        Self::Broken(e.to_string())
+    }
+}
+
 #[cfg(test)]
 mod tests;

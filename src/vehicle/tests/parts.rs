@@ -1,8 +1,8 @@
 //! Fits, intervals, simulation, checks and bad input, each on its own.
 
 use super::*;
-use crate::series::channels::{Channel, SeriesError};
 use crate::series::integrate::integrated;
+use crate::series::{Channel, SeriesError};
 use crate::vehicle::chassis::{LeafSeat, split_leaf};
 use crate::vehicle::checks::check_mass_closure;
 use crate::vehicle::equations::Equation;

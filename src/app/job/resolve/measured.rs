@@ -1,7 +1,9 @@
 //! `[measured]`, `[runs]`, `[ballast]`, `[payload]`, `[recover]`, `[respond]`.
 
 use super::super::faults::Collector;
-use super::super::raw::{RawBallast, RawMeasured, RawPayload, RawRecover, RawRespond, RawRuns, S};
+use super::super::raw::{
+    RawBallast, RawFleet, RawMeasured, RawPayload, RawRecover, RawRespond, RawRuns, S,
+};
 use super::super::shapes::{NumberOrWord, Texts};
 use super::super::spanned::Spanned;
 use super::super::types::*;
@@ -14,7 +16,12 @@ const DEFAULT_HOTTEST: usize = 20;
 /// Power of the load range in pseudo-damage where the job says nothing: usual for welded and cast parts of vehicles.
 const DEFAULT_SLOPE: f64 = 5.0;
 
-pub(super) fn measured(c: &mut Collector, raw: Option<&Spanned<RawMeasured>>) -> Option<Measured> {
+/// `[measured]`; where there is a `[fleet]`, its records stand in for the strain file.
+pub(super) fn measured(
+    c: &mut Collector,
+    raw: Option<&Spanned<RawMeasured>>,
+    fleet: Option<&Spanned<RawFleet>>,
+) -> Option<Measured> {
     let section = raw?;
     let raw = section.get_ref();
     let reference = match raw.reference.as_ref().map(|r| (r, r.get_ref())) {
@@ -39,14 +46,24 @@ pub(super) fn measured(c: &mut Collector, raw: Option<&Spanned<RawMeasured>>) ->
             line: c.line(at),
         }),
     };
-    c.require(
-        &raw.strain,
-        section,
-        "measured.strain",
-        "strain = \"strain.csv\"",
-    )?;
+    let strain = match (&raw.strain, fleet) {
+        (None, Some(_)) => NamedFile {
+            given: String::new(),
+            key: "measured.strain".into(),
+            line: c.line(section),
+        },
+        _ => {
+            c.require(
+                &raw.strain,
+                section,
+                "measured.strain",
+                "strain = \"strain.csv\"",
+            )?;
+            c.named(&raw.strain, "measured.strain")?
+        }
+    };
     Some(Measured {
-        strain: c.named(&raw.strain, "measured.strain")?,
+        strain,
         zero: c.named(&raw.zero, "measured.zero"),
         reference,
         noise_microstrain: c
@@ -219,4 +236,26 @@ pub(super) fn recover(c: &mut Collector, raw: Option<&Spanned<RawRecover>>) -> R
         files,
         slope: slope.unwrap_or(DEFAULT_SLOPE),
     }
+}
+
+pub(super) fn fleet(c: &mut Collector, raw: Option<&Spanned<RawFleet>>) -> Option<Fleet> {
+    let section = raw?;
+    let raw = section.get_ref();
+    c.require(
+        &raw.file_name,
+        section,
+        "fleet.file_name",
+        "file_name = \"{vehicle}_{day}.parquet\"",
+    )?;
+    let slope = c.number(
+        &raw.slope_below_knee,
+        "fleet.slope_below_knee",
+        "a number from 1 to 40",
+        |x| (1.0..=40.0).contains(&x),
+    );
+    Some(Fleet {
+        file_name: c.named(&raw.file_name, "fleet.file_name")?,
+        knee_range: c.positive(&raw.knee_range, "fleet.knee_range"),
+        slope_below_knee: slope.unwrap_or(f64::INFINITY),
+    })
 }

@@ -1,0 +1,95 @@
+//! What is kept of one file: a few kilobytes that merge to the result of a vehicle.
+
+use crate::finding::Severity;
+use crate::series::rainflow::Tally;
+use serde::{Deserialize, Serialize};
+
+/// One load over the record.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LoadDay {
+    /// Its name.
+    pub name: String,
+    /// Unit of every number of it.
+    pub unit: String,
+    /// Standard deviation of the noise in a sample.
+    pub noise: f64,
+    /// Covariance of its errors of scale with every load, row-major, `n_loads x n_loads`.
+    pub scale: Vec<f64>,
+    /// Cycles, levels, extremes and sums of damage.
+    pub tally: Tally,
+}
+
+/// One gauge over the record.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GaugeDay {
+    /// Its name.
+    pub name: String,
+    /// Mean reading less the job's zero, microstrain.
+    pub mean: f64,
+    /// Standard deviation of its readings, microstrain.
+    pub sd: f64,
+    /// Noise from second differences of its readings, microstrain.
+    pub noise: f64,
+    /// What the loads leave unexplained, rms, microstrain.
+    pub residual: f64,
+    /// Its reading over what the loads recovered from all gauges predict for it, by least squares.
+    pub gain: f64,
+    /// Samples without a reading.
+    pub missing: u64,
+}
+
+/// A finding of the record.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DayFinding {
+    /// `error`, `warning` or `info`.
+    pub severity: String,
+    /// Its code.
+    pub code: String,
+    /// What it is about.
+    pub subject: String,
+    /// What was found.
+    pub message: String,
+}
+
+impl DayFinding {
+    /// The word of a severity.
+    pub fn word(severity: Severity) -> &'static str {
+        match severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+            Severity::Info => "info",
+        }
+    }
+}
+
+/// What a record came to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Day {
+    /// Samples a second.
+    pub rate_hz: f64,
+    /// Span of the record, hours.
+    pub hours: f64,
+    /// Samples missing in gaps.
+    pub missing: usize,
+    /// Loads, in the order of the job.
+    pub loads: Vec<LoadDay>,
+    /// Gauges, in the order of the job.
+    pub gauges: Vec<GaugeDay>,
+    /// Findings of the record.
+    pub findings: Vec<DayFinding>,
+}
+
+/// A file and what became of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FileResult {
+    /// Path as given.
+    pub path: String,
+    /// Digest of its bytes; empty where it can't be read.
+    pub sha256: String,
+    /// The vehicle.
+    pub vehicle: String,
+    /// The day.
+    pub day: String,
+    /// What it came to, or why to nothing.
+    pub result: Result<Day, String>,
+}

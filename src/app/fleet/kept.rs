@@ -1,0 +1,143 @@
+//! Results of single files, kept in the output folder by what they depend on.
+
+use super::day::{Day, FileResult};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Folder of the kept results within the output folder.
+pub const FOLDER: &str = "days";
+/// Counts up when what is kept changes its meaning.
+const FORM: u32 = 1;
+
+/// A kept result.
+#[derive(Serialize, Deserialize)]
+struct Kept {
+    form: u32,
+    version: String,
+    /// Digest of the job and of every file it stands on.
+    job: String,
+    path: String,
+    sha256: String,
+    vehicle: String,
+    day: String,
+    done: Option<Day>,
+    failed: Option<String>,
+}
+
+/// Kept results of one job.
+pub struct KeptDays {
+    folder: PathBuf,
+    job: String,
+}
+
+/// What a folder holds.
+#[derive(Default)]
+pub struct Held {
+    /// Results of this job, by path.
+    pub files: Vec<FileResult>,
+    /// Results of another job, version or form, and files that can't be read.
+    pub others: usize,
+}
+
+/// SHA-256, hexadecimal.
+pub fn digest(parts: &[&str]) -> String {
+    let mut hash = Sha256::new();
+    for part in parts {
+        hash.update((part.len() as u64).to_le_bytes());
+        hash.update(part.as_bytes());
+    }
+    hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
+}
+
+impl KeptDays {
+    /// Those of a job, whose digest is `job`, in an output folder.
+    pub fn new(out: &Path, job: String) -> Self {
+        Self {
+            folder: out.join(FOLDER),
+            job,
+        }
+    }
+
+    /// Where the result of a file is kept: by its bytes, its name, the job and the version.
+    fn place(&self, sha256: &str, name: &str) -> PathBuf {
+        let version = concat!(env!("CARGO_PKG_VERSION"), " days");
+        let key = digest(&[version, &FORM.to_string(), &self.job, sha256, name]);
+        self.folder
+            .join(format!("{}.json", key.get(..32).unwrap_or(&key)))
+    }
+
+    /// The result of a file with these bytes and this path, where it is kept.
+    pub fn get(&self, path: &str, sha256: &str) -> Option<FileResult> {
+        let bytes = std::fs::read(self.place(sha256, path)).ok()?;
+        self.read(&bytes)
+            .filter(|f| f.path == path && f.sha256 == sha256)
+    }
+
+    fn read(&self, bytes: &[u8]) -> Option<FileResult> {
+        let kept: Kept = serde_json::from_slice(bytes).ok()?;
+        let own =
+            kept.form == FORM && kept.version == env!("CARGO_PKG_VERSION") && kept.job == self.job;
+        own.then_some(FileResult {
+            path: kept.path,
+            sha256: kept.sha256,
+            vehicle: kept.vehicle,
+            day: kept.day,
+            result: match (kept.done, kept.failed) {
+                (Some(day), _) => Ok(day),
+                (None, failed) => Err(failed.unwrap_or_default()),
+            },
+        })
+    }
+
+    /// Keeps the result of a file; another run may do the same at the same time, the file is whole at any moment.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub fn put(&self, file: &FileResult) -> std::io::Result<()> {
+        let kept = Kept {
+            form: FORM,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            job: self.job.clone(),
+            path: file.path.clone(),
+            sha256: file.sha256.clone(),
+            vehicle: file.vehicle.clone(),
+            day: file.day.clone(),
+            done: file.result.as_ref().ok().cloned(),
+            failed: file.result.as_ref().err().cloned(),
+        };
+        let bytes = serde_json::to_vec(&kept).map_err(std::io::Error::other)?;
+        std::fs::create_dir_all(&self.folder)?;
+        let place = self.place(&file.sha256, &file.path);
+        let part = place.with_extension(format!("{}.part", std::process::id()));
+        let mut out = std::fs::File::create(&part)?;
+        out.write_all(&bytes)?;
+        drop(out);
+        std::fs::rename(&part, &place)
+    }
+
+    /// All that the folder holds of this job.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub fn all(&self) -> std::io::Result<Held> {
+        let mut held = Held::default();
+        let entries = match std::fs::read_dir(&self.folder) {
+            Ok(entries) => entries,
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(held),
+            Err(e) => return Err(e),
+        };
+        for entry in entries {
+            let path = entry?.path();
+            if path.extension().is_some_and(|e| e == "json") {
+                match self.read(&std::fs::read(&path)?) {
+                    Some(file) => held.files.push(file),
+                    None => held.others += 1,
+                }
+            }
+        }
+        held.files.sort_by(|a, b| a.path.cmp(&b.path));
+        Ok(held)
+    }
+}

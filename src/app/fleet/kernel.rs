@@ -1,0 +1,413 @@
+//! One record to what is kept of it: no file, no printing; as many threads as the pool it runs in.
+
+use super::day::{Day, DayFinding, LoadDay};
+use super::health::Health;
+use crate::app::strain::LoadUnits;
+use crate::finding::Severity;
+use crate::linalg::Matrix;
+use crate::recovery::ErrorModel;
+use crate::recovery::history::{Filter, Sums};
+use crate::sensitivity::Sensitivity;
+use crate::series::SeriesError;
+use crate::series::rainflow::{Counter, Law};
+use crate::series::record::{Evenness, Record};
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::ops::ControlFlow;
+
+/// Pieces of a record that are looked at beforehand.
+const LOOKED_AT: usize = 10;
+/// Strain in a microstrain.
+const MICRO: f64 = 1e-6;
+
+/// What all records of a job share.
+pub struct Kernel {
+    /// S of all gauges of the job.
+    pub sensitivity: Sensitivity,
+    /// Strain subtracted from readings, by gauge.
+    pub zero: Vec<f64>,
+    /// Stated errors.
+    pub errors: ErrorModel,
+    /// Noise variance of a reading less zero, in units of that of a reading.
+    pub noise_factor: f64,
+    /// Units by load.
+    pub units: Vec<LoadUnits>,
+    /// Harm of a cycle.
+    pub law: Law,
+    /// Width of a class, by load, report units.
+    pub widths: Vec<f64>,
+    /// Microstrain in one of a unit that a file states; `None` where it is no strain.
+    pub microstrain_in: fn(&str) -> Option<f64>,
+}
+
+/// A record being recovered: the gauges of it that read.
+struct Recovering {
+    filter: Filter,
+    /// Gauges of the job.
+    used: Vec<usize>,
+    columns: Vec<Option<usize>>,
+    /// Strain of one unit of each column.
+    scale: Vec<f64>,
+    zero: Vec<f64>,
+    /// S of the used gauges, strain per report unit.
+    s: Vec<Vec<f64>>,
+    /// Report units per job unit, by load.
+    factors: Vec<f64>,
+}
+
+/// What a piece of a record gives.
+struct Part {
+    /// Loads in report units, row by row.
+    loads: Vec<f64>,
+    health: Health,
+}
+
+impl Kernel {
+    /// What a record comes to. Gauges that it lacks, or that give nothing, are said; the loads are recovered from the others.
+    ///
+    /// # Errors
+    /// Why loads can't be had of it.
+    pub fn day(&self, record: &Record) -> Result<Day, String> {
+        let text = |e: SeriesError| e.to_string();
+        let mut findings = Vec::new();
+        self.check_clock(record, &mut findings)?;
+        let r = self.prepared(record, &mut findings)?;
+        let k = self.sensitivity.loads.len();
+        let zero_sigma = r.filter.sigma(&vec![0.0; k]);
+        let noise: Vec<f64> = zero_sigma
+            .iter()
+            .zip(&r.factors)
+            .map(|(s, f)| s * f)
+            .collect();
+        let mut counters: Vec<Counter> = (0..k)
+            .map(|l| {
+                let at = |v: &[f64]| v.get(l).copied().unwrap_or(1.0);
+                Counter::new(l, k, at(&noise), at(&self.widths), self.law)
+            })
+            .collect();
+        let mut health = Health::new(r.s.clone());
+        let pieces: Vec<usize> = (0..record.n_pieces()).collect();
+        for group in pieces.chunks(2 * rayon::current_num_threads().max(1)) {
+            let parts: Vec<Part> = group
+                .par_iter()
+                .map(|p| r.part(record, *p))
+                .collect::<Result<_, _>>()
+                .map_err(text)?;
+            counters.par_iter_mut().for_each(|c| {
+                for part in &parts {
+                    c.push(&part.loads);
+                }
+            });
+            parts.iter().for_each(|p| health.merge(&p.health));
+        }
+        let scales = self.scale_covariances(&r, &zero_sigma);
+        let loads = counters
+            .into_iter()
+            .zip(&self.sensitivity.loads)
+            .zip(&self.units);
+        let loads =
+            loads
+                .zip(noise.iter().zip(scales))
+                .map(|(((c, load), unit), (noise, scale))| LoadDay {
+                    name: load.name.clone(),
+                    unit: unit.name.clone(),
+                    noise: *noise,
+                    scale,
+                    tally: c.finish(),
+                });
+        let names: Vec<String> = r
+            .used
+            .iter()
+            .filter_map(|g| self.sensitivity.gauges.get(*g))
+            .cloned()
+            .collect();
+        Ok(Day {
+            rate_hz: record.clock.rate_hz,
+            hours: record.clock.duration_s() / 3600.0,
+            missing: record.clock.missing,
+            loads: loads.collect(),
+            gauges: health.days(&names, &r.filter.leverage),
+            findings,
+        })
+    }
+
+    fn check_clock(&self, record: &Record, findings: &mut Vec<DayFinding>) -> Result<(), String> {
+        let clock = &record.clock;
+        if clock.doubtful_unit {
+            return Err(format!(
+                "its times are whole numbers of an unstated unit, {} apart: name the column `time [s]` or `time [ms]`",
+                1.0 / clock.rate_hz
+            ));
+        }
+        if let Evenness::Resampled { largest, .. } = clock.evenness {
+            findings.push(said(
+                Severity::Warning,
+                "record-resampled",
+                "time",
+                format!(
+                    "steps differ by up to {:.0} %: samples are interpolated to {:.6} Hz",
+                    100.0 * largest,
+                    clock.rate_hz
+                ),
+            ));
+        }
+        if clock.n_gaps > 0 {
+            findings.push(said(
+                Severity::Warning,
+                "record-gaps",
+                "time",
+                format!(
+                    "{} samples are missing in {} gaps",
+                    clock.missing, clock.n_gaps
+                ),
+            ));
+        }
+        Ok(())
+    }
+
+    /// The gauges that read, and the filter from them.
+    fn prepared(
+        &self,
+        record: &Record,
+        findings: &mut Vec<DayFinding>,
+    ) -> Result<Recovering, String> {
+        let all = &self.sensitivity;
+        let mut places: HashMap<&str, usize> = HashMap::new();
+        for (c, column) in record.columns().iter().enumerate() {
+            if places.insert(&column.name, c).is_some() && all.gauges.contains(&column.name) {
+                return Err(format!("two columns are named `{}`", column.name));
+            }
+        }
+        let mut found = Vec::new();
+        for (g, name) in all.gauges.iter().enumerate() {
+            match places
+                .get(name.as_str())
+                .and_then(|c| Some((*c, record.columns().get(*c)?)))
+            {
+                Some((c, column)) => {
+                    let micro = (self.microstrain_in)(&column.unit).ok_or_else(|| {
+                        format!("`{}` of `{name}` is no unit of strain", column.unit)
+                    })?;
+                    found.push((g, c, micro * MICRO));
+                }
+                None => findings.push(said(
+                    Severity::Warning,
+                    "gauge-missing",
+                    name,
+                    "the record has no such column".into(),
+                )),
+            }
+        }
+        let sampled = sampled(record, &found)?;
+        let n = found.len();
+        let mut alive = Vec::new();
+        for (j, &(g, c, scale)) in found.iter().enumerate() {
+            let mut values = sampled
+                .iter()
+                .skip(j)
+                .step_by(n.max(1))
+                .filter(|v| v.is_finite());
+            let first = values.next();
+            let name = all.gauges.get(g).map_or("", String::as_str);
+            match first {
+                Some(first) if sampled.len() < 4 * n || values.any(|v| v != first) => {
+                    alive.push((g, c, scale))
+                }
+                Some(_) => findings.push(said(
+                    Severity::Warning,
+                    "dead_channel",
+                    name,
+                    "it reads one and the same value".into(),
+                )),
+                None => findings.push(said(
+                    Severity::Warning,
+                    "dead_channel",
+                    name,
+                    "it gives nothing".into(),
+                )),
+            }
+        }
+        let alive_values = kept_columns(&sampled, &found, &alive);
+        self.recovering(&alive, &alive_values)
+    }
+
+    fn recovering(
+        &self,
+        alive: &[(usize, usize, f64)],
+        sampled: &[f64],
+    ) -> Result<Recovering, String> {
+        let all = &self.sensitivity;
+        let k = all.loads.len();
+        let used: Vec<usize> = alive.iter().map(|a| a.0).collect();
+        if used.is_empty() {
+            return Err(
+                "no column is named after a gauge of the job, or none of them reads".to_owned(),
+            );
+        }
+        let s = Sensitivity {
+            gauges: used
+                .iter()
+                .filter_map(|g| all.gauges.get(*g))
+                .cloned()
+                .collect(),
+            loads: all.loads.clone(),
+            values: Matrix::from_fn(used.len(), k, |i, l| all.values[(used[i], l)]),
+        };
+        let zero: Vec<f64> = used
+            .iter()
+            .map(|g| self.zero.get(*g).copied().unwrap_or(0.0))
+            .collect();
+        let singular = || "S holds numbers that are not finite".to_owned();
+        let plain = Filter::new(
+            &s,
+            zero.clone(),
+            self.errors,
+            self.noise_factor,
+            &vec![0.0; k],
+        )
+        .ok_or_else(singular)?;
+        if plain.rank < k {
+            let names: Vec<&str> = s.gauges.iter().map(String::as_str).collect();
+            return Err(format!(
+                "its gauges don't separate the loads: only {} read",
+                names.join(", ")
+            ));
+        }
+        // Typical loads weigh the model's error.
+        let scaled: Vec<f64> = sampled.to_vec();
+        let (mut loads, mut sums) = (Vec::new(), Sums::new(used.len(), k));
+        plain.apply(&scaled, 1.0, &mut loads, &mut sums);
+        let count = sums.samples.max(1) as f64;
+        let typical: Vec<f64> = sums
+            .sum_of_squares
+            .iter()
+            .map(|q| (q / count).sqrt())
+            .collect();
+        let noise = self.errors.noise;
+        if noise > 0.0
+            && sums.samples > 0
+            && sums
+                .reading
+                .iter()
+                .all(|q| (q / count).sqrt() < 1e-3 * noise)
+        {
+            return Err("every reading is less than a thousandth of the stated noise: are they in strain, not microstrain?".to_owned());
+        }
+        let filter = Filter::new(&s, zero.clone(), self.errors, self.noise_factor, &typical)
+            .ok_or_else(singular)?;
+        let factors: Vec<f64> = self.units.iter().map(|u| u.factor).collect();
+        let row = |g: usize| factors.iter().enumerate().map(move |(l, f)| (g, l, *f));
+        let values = |g: usize| row(g).map(|(g, l, f)| s.values[(g, l)] / f).collect();
+        Ok(Recovering {
+            filter,
+            columns: alive.iter().map(|a| Some(a.1)).collect(),
+            scale: alive.iter().map(|a| a.2).collect(),
+            zero,
+            s: (0..used.len()).map(values).collect(),
+            used,
+            factors,
+        })
+    }
+
+    /// Covariance of the errors of scale of each load with every load: what the filter's variance gains where one load acts alone.
+    fn scale_covariances(&self, r: &Recovering, zero_sigma: &[f64]) -> Vec<Vec<f64>> {
+        let k = zero_sigma.len();
+        // Large enough that noise is nothing beside it.
+        const FAR: f64 = 1e6;
+        let mut out = vec![vec![0.0; k * k]; k];
+        for m in 0..k {
+            let one = self
+                .sensitivity
+                .scales()
+                .get(m)
+                .copied()
+                .filter(|s| *s > 0.0)
+                .unwrap_or(1.0);
+            let mut f = vec![0.0; k];
+            if let Some(slot) = f.get_mut(m) {
+                *slot = FAR * one;
+            }
+            for (l, sigma) in r.filter.sigma(&f).iter().enumerate() {
+                let own = zero_sigma.get(l).copied().unwrap_or(0.0);
+                let per = (sigma * sigma - own * own).max(0.0) / (FAR * one).powi(2);
+                let units = r.factors.get(l).copied().unwrap_or(1.0)
+                    / r.factors.get(m).copied().unwrap_or(1.0);
+                if let Some(slot) = out.get_mut(l).and_then(|row| row.get_mut(m * k + m)) {
+                    *slot = per * units * units;
+                }
+            }
+        }
+        out
+    }
+}
+
+impl Recovering {
+    fn part(&self, record: &Record, piece: usize) -> Result<Part, SeriesError> {
+        let (n, k) = (self.used.len(), self.factors.len());
+        let mut part = Part {
+            loads: Vec::new(),
+            health: Health::new(self.s.clone()),
+        };
+        let mut sums = Sums::new(n, k);
+        let (mut strain, mut loads) = (Vec::new(), Vec::new());
+        record.read(piece, &self.columns, &mut |block| {
+            strain.clear();
+            let rows = block.values.chunks_exact(n);
+            strain.extend(rows.flat_map(|row| row.iter().zip(&self.scale).map(|(v, s)| v * s)));
+            loads.clear();
+            self.filter.apply(&strain, 1.0, &mut loads, &mut sums);
+            for row in loads.chunks_exact_mut(k) {
+                row.iter_mut().zip(&self.factors).for_each(|(v, f)| *v *= f);
+            }
+            for row in strain.chunks_exact_mut(n) {
+                row.iter_mut().zip(&self.zero).for_each(|(v, z)| *v -= z);
+            }
+            part.health.add(&strain, &loads);
+            part.loads.extend_from_slice(&loads);
+            ControlFlow::Continue(())
+        })?;
+        Ok(part)
+    }
+}
+
+/// Readings of the first block of some pieces spread over the record, strain.
+fn sampled(record: &Record, found: &[(usize, usize, f64)]) -> Result<Vec<f64>, String> {
+    let columns: Vec<Option<usize>> = found.iter().map(|f| Some(f.1)).collect();
+    let n = record.n_pieces();
+    let taken = n.min(LOOKED_AT);
+    let mut out = Vec::new();
+    for i in 0..taken {
+        let read = record.read(i * n / taken, &columns, &mut |block| {
+            for row in block.values.chunks_exact(found.len().max(1)) {
+                out.extend(row.iter().zip(found).map(|(v, f)| v * f.2));
+            }
+            ControlFlow::Break(())
+        });
+        read.map_err(|e| e.to_string())?;
+    }
+    Ok(out)
+}
+
+/// The columns of `found` that are in `alive`, row by row.
+fn kept_columns(
+    values: &[f64],
+    found: &[(usize, usize, f64)],
+    alive: &[(usize, usize, f64)],
+) -> Vec<f64> {
+    let keep: Vec<bool> = found
+        .iter()
+        .map(|f| alive.iter().any(|a| a.0 == f.0))
+        .collect();
+    let rows = values.chunks_exact(found.len().max(1));
+    rows.flat_map(|row| row.iter().zip(&keep).filter(|k| *k.1).map(|k| *k.0))
+        .collect()
+}
+
+fn said(severity: Severity, code: &str, subject: &str, message: String) -> DayFinding {
+    DayFinding {
+        severity: DayFinding::word(severity).to_owned(),
+        code: code.to_owned(),
+        subject: subject.to_owned(),
+        message,
+    }
+}

@@ -1,0 +1,223 @@
+//! `fleet`: records of many vehicles and days, one small result a file, merged by vehicle.
+//!
+//! [`kernel`] turns a record into a [`day::Day`], by any number of threads and without a file; [`kept`] keeps it by the digest of what it
+//! depends on, so that a second run does what is new alone and many machines can share one folder; [`merge`] joins the days of a
+//! vehicle exactly.
+
+pub mod day;
+mod health;
+pub mod kept;
+pub mod kernel;
+pub mod merge;
+pub mod name;
+mod outcome;
+mod prepared;
+
+pub use outcome::{FileAnswer, Fleet, GaugeHistory, VehicleAnswer, VehicleLoadAnswer};
+pub use prepared::kernel_of;
+
+use super::context::Context;
+use super::fault::{Fault, Faults};
+use super::files::FileBytes;
+use super::job::Job;
+use super::outcome::{Outcome, StatedUnits};
+use super::work::Work;
+use crate::finding::{Finding, Severity};
+use crate::series::record::{Options, open_record};
+use day::FileResult;
+use kept::{KeptDays, digest};
+use kernel::Kernel;
+use merge::merged;
+use name::{NameForm, Shard};
+use rayon::prelude::*;
+use sha2::{Digest, Sha256};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// What is asked of a fleet.
+#[derive(Clone, Debug, Default)]
+pub struct FleetSpec {
+    /// Records, relative to the working folder; none: what the output folder holds is merged.
+    pub files: Vec<PathBuf>,
+    /// The part of them that is done here; all where `None`.
+    pub shard: Option<Shard>,
+    /// The output folder, where the results of single files are kept.
+    pub folder: PathBuf,
+}
+
+/// Loads, cycles, damage and faults of many records, by vehicle.
+///
+/// A record that can't be read is a failed file and a finding of severity error; the others are done all the same.
+///
+/// # Errors
+/// Every fault of the job and of the files it names; an output folder that can't be written.
+pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>, Faults> {
+    let mut work = Work::of_job(cx, job);
+    let Some(section) = &job.fleet else {
+        let remedy = "add [fleet] file_name = \"{vehicle}_{day}.parquet\"";
+        return Err(Fault::of(&*job.file, "fleet", "the job has no [fleet]", remedy).into());
+    };
+    let form = NameForm::of(&section.file_name.given).map_err(|wrong| {
+        let remedy = "write it as \"{vehicle}_{day}.parquet\"";
+        Faults::from(Fault::at(
+            &*job.file,
+            section.file_name.line,
+            "fleet.file_name",
+            wrong,
+            remedy,
+        ))
+    })?;
+    let kernel = kernel_of(&mut work, job)?;
+    let kept = KeptDays::new(&spec.folder, job_digest(&mut work));
+    let (files, reused) = if spec.files.is_empty() {
+        held(&mut work, &kept, &spec.folder)?
+    } else {
+        work.stage("records", |w| done(w, &kernel, &kept, &form, spec))?
+    };
+    let (vehicles, status) = work.stage("merge", |_| merged(&files));
+    let answer = Fleet::of(job, &kernel, vehicles, &files, &status, reused);
+    work.findings.extend(answer.findings(&files, &status));
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// A digest of the job and of all that it stands on: every file read so far.
+fn job_digest(work: &mut Work) -> String {
+    let read = work.inputs.files_read();
+    let parts: Vec<&str> = read.iter().map(|f| f.sha256.as_str()).collect();
+    digest(&parts)
+}
+
+/// What the output folder holds.
+fn held(
+    work: &mut Work,
+    kept: &KeptDays,
+    folder: &Path,
+) -> Result<(Vec<FileResult>, usize), Faults> {
+    let shown = folder.display().to_string();
+    let held = kept.all().map_err(|e| {
+        Faults::from(Fault::of(
+            &*shown,
+            "folder",
+            format!("can't be read ({e})"),
+            "check the path",
+        ))
+    })?;
+    if held.files.is_empty() {
+        let wrong = "no results of this job are kept there";
+        let remedy = "name the records to be done, or the folder of an earlier run with --out";
+        return Err(Fault::of(&*shown, "days", wrong, remedy).into());
+    }
+    if held.others > 0 {
+        work.findings.push(Finding::new(
+            Severity::Info,
+            "fleet-other-results",
+            &shown,
+            format!(
+                "{} kept results are of another job or version and were left out",
+                held.others
+            ),
+            "remove them where they are no longer wanted",
+        ));
+    }
+    let n = held.files.len();
+    Ok((held.files, n))
+}
+
+/// The results of the asked files: kept ones, and the others done now.
+fn done(
+    work: &mut Work,
+    kernel: &Kernel,
+    kept: &KeptDays,
+    form: &NameForm,
+    spec: &FleetSpec,
+) -> Result<(Vec<FileResult>, usize), Faults> {
+    let mut paths: Vec<String> = spec.files.iter().map(|p| p.display().to_string()).collect();
+    paths.sort();
+    paths.dedup();
+    let mine: Vec<&String> = paths
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| spec.shard.is_none_or(|s| s.holds(*i)))
+        .map(|p| p.1)
+        .collect();
+    let cx = work.cx;
+    cx.progress.parts(mine.len());
+    let results: Vec<Result<(FileResult, bool), Fault>> = mine
+        .par_iter()
+        .map(|path| {
+            let bytes = cx.files.load(Path::new(path));
+            let done = one(kernel, kept, form, path, bytes);
+            cx.progress.advance(1);
+            done
+        })
+        .collect();
+    work.go_on()?;
+    let mut files = Vec::new();
+    let mut reused = 0;
+    for result in results {
+        let (file, was_kept) = result?;
+        reused += usize::from(was_kept);
+        files.push(file);
+    }
+    Ok((files, reused))
+}
+
+/// The result of one file, and whether it was kept.
+fn one(
+    kernel: &Kernel,
+    kept: &KeptDays,
+    form: &NameForm,
+    path: &str,
+    bytes: std::io::Result<FileBytes>,
+) -> Result<(FileResult, bool), Fault> {
+    let named = form.read(path);
+    let mut file = FileResult {
+        path: path.to_owned(),
+        sha256: String::new(),
+        vehicle: named.as_ref().map_or(String::new(), |n| n.vehicle.clone()),
+        day: named.as_ref().map_or(String::new(), |n| n.day.clone()),
+        result: Err(String::new()),
+    };
+    let bytes = match bytes {
+        Ok(bytes) => bytes,
+        Err(e) => {
+            file.result = Err(format!("it can't be read: {e}"));
+            return Ok((file, false));
+        }
+    };
+    file.sha256 = Sha256::digest(&*bytes)
+        .iter()
+        .map(|b| format!("{b:02x}"))
+        .collect();
+    if named.is_none() {
+        file.result = Err("its name is not of the form that [fleet] file_name states".to_owned());
+        return Ok((file, false));
+    }
+    if let Some(before) = kept.get(path, &file.sha256) {
+        return Ok((before, true));
+    }
+    file.result = day_of(kernel, bytes);
+    kept.put(&file).map_err(|e| {
+        let remedy = "choose another folder with --out";
+        Fault::of(
+            path,
+            "output",
+            format!("its result can't be kept ({e})"),
+            remedy,
+        )
+    })?;
+    Ok((file, false))
+}
+
+/// What the bytes of a record come to.
+///
+/// # Errors
+/// Why they come to nothing.
+pub fn day_of(kernel: &Kernel, bytes: FileBytes) -> Result<day::Day, String> {
+    let options = Options {
+        declared_hz: None,
+        wanted: kernel.sensitivity.gauges.clone(),
+    };
+    let record = open_record(Arc::new(bytes), &options).map_err(|e| e.to_string())?;
+    kernel.day(&record)
+}

@@ -1,0 +1,249 @@
+//! Which vehicle and which day a file is of, by its name.
+
+use std::cmp::Ordering;
+
+/// The form of file names: text with `{vehicle}` and `{day}`, each once; `{any}` for what doesn't matter.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NameForm {
+    parts: Vec<Part>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Part {
+    Text(String),
+    Vehicle,
+    Day,
+    Any,
+}
+
+/// What a file name tells.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Named {
+    /// The vehicle.
+    pub vehicle: String,
+    /// The day, as the name has it.
+    pub day: String,
+}
+
+impl NameForm {
+    /// The form that a text states; what is wrong with it otherwise.
+    ///
+    /// # Errors
+    /// A place that is unknown, missing, given twice or not divided from the next by text.
+    pub fn of(text: &str) -> Result<Self, String> {
+        let mut parts = Vec::new();
+        let mut rest = text;
+        while !rest.is_empty() {
+            let (before, after) = rest.split_once('{').unwrap_or((rest, ""));
+            if !before.is_empty() {
+                parts.push(Part::Text(before.to_owned()));
+            }
+            if before.len() == rest.len() {
+                break;
+            }
+            let (name, left) = after
+                .split_once('}')
+                .ok_or_else(|| format!("`{{` without `}}` in `{text}`"))?;
+            parts.push(match name {
+                "vehicle" => Part::Vehicle,
+                "day" => Part::Day,
+                "any" => Part::Any,
+                other => {
+                    return Err(format!(
+                        "`{{{other}}}` is neither {{vehicle}}, {{day}} nor {{any}}"
+                    ));
+                }
+            });
+            rest = left;
+        }
+        for (part, word) in [(Part::Vehicle, "vehicle"), (Part::Day, "day")] {
+            let n = parts.iter().filter(|p| **p == part).count();
+            if n != 1 {
+                return Err(format!("`{{{word}}}` stands {n} times, expected once"));
+            }
+        }
+        let touch = |w: &[Part]| !w.iter().any(|p| matches!(p, Part::Text(_)));
+        if parts.windows(2).any(touch) {
+            return Err("two places without text between them".to_owned());
+        }
+        Ok(Self { parts })
+    }
+
+    /// Vehicle and day of a file; `None` where its name has another form. A place takes as little as it can, the last all that is left.
+    pub fn read(&self, file: &str) -> Option<Named> {
+        let name = file.rsplit(['/', '\\']).next()?;
+        let (mut vehicle, mut day) = (None, None);
+        let mut rest = name;
+        let mut parts = self.parts.iter().peekable();
+        while let Some(part) = parts.next() {
+            if let Part::Text(text) = part {
+                rest = rest.strip_prefix(text.as_str())?;
+                continue;
+            }
+            let taken = match parts.peek() {
+                // The last text is the end of the name, wherever else it may stand.
+                Some(Part::Text(text))
+                    if self.parts.last() == Some(&Part::Text(text.clone()))
+                        && self.ends_at(part) =>
+                {
+                    rest.strip_suffix(text.as_str())?
+                }
+                Some(Part::Text(text)) => rest.get(..rest.find(text.as_str())?)?,
+                _ => rest,
+            };
+            rest = rest.get(taken.len()..)?;
+            match part {
+                Part::Vehicle => vehicle = Some(taken.to_owned()),
+                Part::Day => day = Some(taken.to_owned()),
+                _ => {}
+            }
+        }
+        let named = Named {
+            vehicle: vehicle.filter(|v| !v.is_empty())?,
+            day: day.filter(|d| !d.is_empty())?,
+        };
+        rest.is_empty().then_some(named)
+    }
+
+    /// Whether a place is the last before the end of the name.
+    fn ends_at(&self, part: &Part) -> bool {
+        self.parts
+            .iter()
+            .rev()
+            .find(|p| !matches!(p, Part::Text(_)))
+            == Some(part)
+    }
+}
+
+/// The order of days: runs of digits by their number, the rest as text (`day9` before `day10`).
+pub fn by_day(a: &str, b: &str) -> Ordering {
+    let (mut a, mut b) = (a.as_bytes(), b.as_bytes());
+    loop {
+        let digits = |t: &[u8]| t.iter().take_while(|c| c.is_ascii_digit()).count();
+        match (digits(a), digits(b)) {
+            (0, _) | (_, 0) => match (a.split_first(), b.split_first()) {
+                (None, None) => return Ordering::Equal,
+                (None, _) => return Ordering::Less,
+                (_, None) => return Ordering::Greater,
+                (Some((x, ra)), Some((y, rb))) if x == y => (a, b) = (ra, rb),
+                (Some((x, _)), Some((y, _))) => return x.cmp(y),
+            },
+            (n, m) => {
+                let ((x, ra), (y, rb)) = (a.split_at(n), b.split_at(m));
+                let bare = |t: &[u8]| {
+                    t.iter()
+                        .skip_while(|c| **c == b'0')
+                        .copied()
+                        .collect::<Vec<u8>>()
+                };
+                let (x, y) = (bare(x), bare(y));
+                let order = x.len().cmp(&y.len()).then(x.cmp(&y));
+                if order != Ordering::Equal {
+                    return order;
+                }
+                (a, b) = (ra, rb);
+            }
+        }
+    }
+}
+
+/// A part of the files: number `number` of `of`, counted from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    /// From 1.
+    pub number: usize,
+    /// How many there are.
+    pub of: usize,
+}
+
+impl Shard {
+    /// The shard that a text such as `3/64` states.
+    pub fn of(text: &str) -> Option<Self> {
+        let (number, of) = text.split_once('/')?;
+        let shard = Self {
+            number: number.trim().parse().ok()?,
+            of: of.trim().parse().ok()?,
+        };
+        (1..=shard.of).contains(&shard.number).then_some(shard)
+    }
+
+    /// Whether a file, `i`th of all from 0, belongs to it.
+    pub fn holds(&self, i: usize) -> bool {
+        i % self.of == self.number - 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vehicle_and_day_are_read_from_the_name_whatever_the_folder() {
+        let form = NameForm::of("{vehicle}_{day}.parquet").unwrap();
+        let named = form.read("data/2026/T7_2026-05-01.parquet").unwrap();
+        assert_eq!(
+            (named.vehicle.as_str(), named.day.as_str()),
+            ("T7", "2026-05-01")
+        );
+        // The day is what is left, points and all.
+        assert_eq!(form.read("T7_1.5.parquet").unwrap().day, "1.5");
+        assert_eq!(form.read("T7_a_b.parquet").unwrap().day, "a_b");
+        for other in ["T7.parquet", "T7_1.csv", "_1.parquet", "T7_.parquet"] {
+            assert_eq!(form.read(other), None, "{other}");
+        }
+        let form = NameForm::of("{day}-{any}-{vehicle}.mf4").unwrap();
+        let named = form.read("0502-west-T7.mf4").unwrap();
+        assert_eq!((named.vehicle.as_str(), named.day.as_str()), ("T7", "0502"));
+    }
+
+    #[test]
+    fn forms_that_can_not_tell_are_refused() {
+        for text in [
+            "{vehicle}.csv",
+            "{vehicle}{day}.csv",
+            "{vehicle}_{day}_{day}",
+            "{truck}_{day}",
+            "{vehicle_{day}",
+        ] {
+            assert!(NameForm::of(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn days_are_ordered_by_their_numbers() {
+        let mut days = vec![
+            "day10",
+            "day9",
+            "2026-05-02",
+            "2026-05-01",
+            "day09b",
+            "1",
+            "02",
+        ];
+        days.sort_by(|a, b| by_day(a, b));
+        assert_eq!(
+            days,
+            [
+                "1",
+                "02",
+                "2026-05-01",
+                "2026-05-02",
+                "day9",
+                "day09b",
+                "day10"
+            ]
+        );
+    }
+
+    #[test]
+    fn shards_count_from_one_and_share_all_files() {
+        assert_eq!(Shard::of("3/64"), Some(Shard { number: 3, of: 64 }));
+        for text in ["0/4", "5/4", "1", "a/b", "1/0"] {
+            assert_eq!(Shard::of(text), None, "{text}");
+        }
+        let all: Vec<Shard> = (1..=4).map(|number| Shard { number, of: 4 }).collect();
+        for i in 0..100 {
+            assert_eq!(all.iter().filter(|s| s.holds(i)).count(), 1);
+        }
+    }
+}

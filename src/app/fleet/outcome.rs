@@ -1,0 +1,394 @@
+//! The answer of `fleet`.
+
+use super::day::{FileResult, GaugeDay};
+use super::kernel::Kernel;
+use super::merge::{Status, Vehicle};
+use crate::app::job::Job;
+use crate::app::outcome::Answer;
+use crate::finding::{Finding, Severity};
+use crate::series::rainflow::DamageInterval;
+use serde::Serialize;
+
+/// A gauge is called dead on a day when it reads less than this many times what it read on its typical day.
+const DEAD: f64 = 0.01;
+/// A share of days on which a finding must stand before it is told of the vehicle as a whole.
+const OFF: f64 = 0.1;
+
+/// A load of a vehicle.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct VehicleLoadAnswer {
+    /// Its name.
+    pub load: String,
+    /// Unit of `max`, `min`; damage is in its power.
+    pub unit: String,
+    /// Largest value, and its day.
+    pub max: Option<f64>,
+    /// Day of the largest value.
+    pub max_day: String,
+    /// Smallest value.
+    pub min: Option<f64>,
+    /// Day of the smallest value.
+    pub min_day: String,
+    /// Cycles; those of the residue count half.
+    pub cycles: f64,
+    /// Damage, the bias of noise taken off.
+    pub damage: f64,
+    /// Lower end of its 95 % interval.
+    pub damage_low: f64,
+    /// Upper end.
+    pub damage_high: f64,
+    /// Damage as counted.
+    pub damage_counted: f64,
+    /// What noise added, in the mean.
+    pub noise_bias: f64,
+    /// Standard deviation from the error of S, the same on all days.
+    pub sigma_s: f64,
+    /// From the scatter of noise, which averages out.
+    pub sigma_noise: f64,
+    /// Of the bias that was taken off.
+    pub sigma_bias: f64,
+    /// Damage an hour over that of all vehicles together.
+    pub relative: f64,
+    /// Damage of each day by itself.
+    pub by_day: Vec<f64>,
+    /// Width of a class.
+    #[serde(skip)]
+    pub width: f64,
+    /// Cycles by range in class widths.
+    #[serde(skip)]
+    pub range_pairs: Vec<(u32, f64)>,
+    /// Cycles by class of both reversals.
+    #[serde(skip)]
+    pub from_to: Vec<(i32, i32, u64)>,
+    /// Rises through the lower border of each class.
+    #[serde(skip)]
+    pub levels: Vec<(i32, u64)>,
+}
+
+/// A gauge of a vehicle over its days.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GaugeHistory {
+    /// Its name.
+    pub name: String,
+    /// Days on which it gave nothing or one value.
+    pub dead_days: Vec<String>,
+    /// Mean reading of each day, microstrain.
+    pub mean: Vec<Option<f64>>,
+    /// Noise of each day, microstrain.
+    pub noise: Vec<Option<f64>>,
+    /// Gain against what the other gauges predict, each day.
+    pub gain: Vec<Option<f64>>,
+}
+
+/// A vehicle.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct VehicleAnswer {
+    /// Its name.
+    pub name: String,
+    /// How many files count.
+    pub files: usize,
+    /// Their days, in order.
+    pub days: Vec<String>,
+    /// Hours of them.
+    pub hours: f64,
+    /// Loads, in the order of the job.
+    pub loads: Vec<VehicleLoadAnswer>,
+    /// Gauges.
+    pub gauges: Vec<GaugeHistory>,
+}
+
+/// A file.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FileAnswer {
+    /// Path as given.
+    pub path: String,
+    /// Digest of its bytes.
+    pub sha256: String,
+    /// The vehicle.
+    pub vehicle: String,
+    /// The day.
+    pub day: String,
+    /// `done`, `failed` or `copy`.
+    pub status: &'static str,
+    /// Why, where it does not count.
+    pub message: String,
+    /// Hours of it.
+    pub hours: Option<f64>,
+    /// Samples a second.
+    pub rate_hz: Option<f64>,
+    /// Samples missing in gaps.
+    pub missing: Option<usize>,
+}
+
+/// The answer.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Fleet {
+    /// Title of the job.
+    #[serde(skip)]
+    pub title: String,
+    /// Slope of the S-N line.
+    pub slope: f64,
+    /// Vehicles by name.
+    pub vehicles: Vec<VehicleAnswer>,
+    /// Files by path.
+    pub files: Vec<FileAnswer>,
+    /// How many results were kept from an earlier run.
+    #[serde(skip)]
+    pub reused: usize,
+}
+
+impl Answer for Fleet {
+    const COMMAND: &'static str = "fleet";
+}
+
+impl Fleet {
+    /// The answer of merged vehicles.
+    pub(super) fn of(
+        job: &Job,
+        kernel: &Kernel,
+        vehicles: Vec<Vehicle>,
+        files: &[FileResult],
+        status: &[Status],
+        reused: usize,
+    ) -> Self {
+        let all_hours: f64 = vehicles.iter().map(|v| v.hours).sum();
+        let of_all = |name: &str| -> f64 {
+            let loads = vehicles
+                .iter()
+                .flat_map(|v| &v.loads)
+                .filter(|l| l.name == name);
+            loads.map(|l| l.damage.value).sum::<f64>() / all_hours
+        };
+        let answers = vehicles.iter().map(|v| VehicleAnswer {
+            name: v.name.clone(),
+            files: v.days.len(),
+            days: v.days.clone(),
+            hours: v.hours,
+            loads: v
+                .loads
+                .iter()
+                .map(|l| {
+                    let DamageInterval {
+                        value,
+                        low,
+                        high,
+                        counted,
+                        noise_bias,
+                        sigma_s,
+                        sigma_noise,
+                        sigma_bias,
+                    } = l.damage;
+                    let [max_day, min_day] = l.extreme_days.clone();
+                    VehicleLoadAnswer {
+                        load: l.name.clone(),
+                        unit: l.unit.clone(),
+                        max: l.tally.max.map(|e| e.value),
+                        max_day,
+                        min: l.tally.min.map(|e| e.value),
+                        min_day,
+                        cycles: l.tally.n_cycles(),
+                        damage: value,
+                        damage_low: low,
+                        damage_high: high,
+                        damage_counted: counted,
+                        noise_bias,
+                        sigma_s,
+                        sigma_noise,
+                        sigma_bias,
+                        relative: value / v.hours / of_all(&l.name),
+                        by_day: l.by_day.clone(),
+                        width: l.tally.width,
+                        range_pairs: l.tally.range_pairs(),
+                        from_to: l.tally.cycles.clone(),
+                        levels: l.tally.levels.clone(),
+                    }
+                })
+                .collect(),
+            gauges: v
+                .gauges
+                .iter()
+                .map(|(name, days)| history(name, days, &v.days))
+                .collect(),
+        });
+        let mut listed: Vec<FileAnswer> = files
+            .iter()
+            .zip(status)
+            .map(|(f, s)| {
+                let day = f.result.as_ref().ok();
+                FileAnswer {
+                    path: f.path.clone(),
+                    sha256: f.sha256.clone(),
+                    vehicle: f.vehicle.clone(),
+                    day: f.day.clone(),
+                    status: s.word(),
+                    message: s.message().to_owned(),
+                    hours: day.map(|d| d.hours),
+                    rate_hz: day.map(|d| d.rate_hz),
+                    missing: day.map(|d| d.missing),
+                }
+            })
+            .collect();
+        listed.sort_by(|a, b| a.path.cmp(&b.path));
+        Self {
+            title: job.title.clone(),
+            slope: kernel.law.slope,
+            vehicles: answers.collect(),
+            files: listed,
+            reused,
+        }
+    }
+
+    /// What is to be known: files that don't count, gauges that died, findings of single records.
+    pub(super) fn findings(&self, files: &[FileResult], status: &[Status]) -> Vec<Finding> {
+        let mut out = Vec::new();
+        for (file, status) in files.iter().zip(status) {
+            let (severity, code, remedy) = match status {
+                Status::Done => continue,
+                Status::Failed(_) => (
+                    Severity::Error,
+                    "fleet-file-failed",
+                    "mend the file, or leave it out",
+                ),
+                Status::Copy(_) => (
+                    Severity::Warning,
+                    "fleet-second-copy",
+                    "keep one file a day",
+                ),
+            };
+            out.push(Finding::new(
+                severity,
+                code,
+                &file.path,
+                status.message(),
+                remedy,
+            ));
+        }
+        out.extend(of_records(files, status));
+        for v in &self.vehicles {
+            for g in &v.gauges {
+                if let Some(first) = g.dead_days.first() {
+                    let n = g.dead_days.len();
+                    let message = format!(
+                        "gives nothing on {n} of {} days, the first {first}",
+                        v.days.len()
+                    );
+                    let remedy = "repair it; its days were recovered from the other gauges where they can tell the loads";
+                    let subject = format!("{} {}", v.name, g.name);
+                    out.push(
+                        Finding::new(Severity::Warning, "dead_channel", subject, message, remedy)
+                            .with_numbers(n as f64, 0.0),
+                    );
+                }
+                out.extend(gain_changes(v, g));
+            }
+        }
+        out
+    }
+}
+
+/// Findings of single records, one for all that say the same of the same subject.
+fn of_records(files: &[FileResult], status: &[Status]) -> Vec<Finding> {
+    let mut grouped: std::collections::BTreeMap<(&str, &str), (usize, &str, &str)> =
+        Default::default();
+    for (file, status) in files.iter().zip(status) {
+        let (Status::Done, Ok(day)) = (status, &file.result) else {
+            continue;
+        };
+        for f in day.findings.iter().filter(|f| f.code != "dead_channel") {
+            let slot = grouped
+                .entry((&f.code, &f.subject))
+                .or_insert((0, &file.path, &f.message));
+            slot.0 += 1;
+        }
+    }
+    let codes = [
+        ("record-resampled", "record-resampled"),
+        ("record-gaps", "record-gaps"),
+        ("gauge-missing", "gauge-missing"),
+    ];
+    grouped
+        .into_iter()
+        .filter_map(|((code, subject), (n, path, message))| {
+            let code = codes.iter().find(|c| c.0 == code)?.1;
+            let files = if n == 1 {
+                "1 record".to_owned()
+            } else {
+                format!("{n} records")
+            };
+            let text = format!("{files}, the first {path}: {message}");
+            Some(Finding::new(
+                Severity::Warning,
+                code,
+                subject,
+                text,
+                "look at the logger",
+            ))
+        })
+        .collect()
+}
+
+fn history(name: &str, days: &[GaugeDay], names: &[String]) -> GaugeHistory {
+    let mut sds: Vec<f64> = days
+        .iter()
+        .map(|d| d.sd)
+        .filter(|s| s.is_finite())
+        .collect();
+    sds.sort_by(f64::total_cmp);
+    let typical = sds.get(sds.len() / 2).copied().unwrap_or(0.0);
+    let finite = |x: f64| x.is_finite().then_some(x);
+    let dead = |d: &GaugeDay| !d.sd.is_finite() || d.sd <= DEAD * typical;
+    GaugeHistory {
+        name: name.to_owned(),
+        dead_days: days
+            .iter()
+            .zip(names)
+            .filter(|(d, _)| dead(d))
+            .map(|(_, n)| n.clone())
+            .collect(),
+        mean: days.iter().map(|d| finite(d.mean)).collect(),
+        noise: days.iter().map(|d| finite(d.noise)).collect(),
+        gain: days.iter().map(|d| finite(d.gain)).collect(),
+    }
+}
+
+/// A gain that is far from what it was before, from one day on.
+fn gain_changes(v: &VehicleAnswer, g: &GaugeHistory) -> Option<Finding> {
+    let known: Vec<(usize, f64)> = g
+        .gain
+        .iter()
+        .enumerate()
+        .filter_map(|(i, x)| Some((i, (*x)?)))
+        .collect();
+    let median = |list: &[(usize, f64)]| {
+        let mut values: Vec<f64> = list.iter().map(|x| x.1).collect();
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied()
+    };
+    // Two days before and two after, so that one odd day is no change.
+    let cut = (2..known.len().saturating_sub(1)).max_by(|a, b| {
+        let jump = |c: usize| {
+            let (before, after) = known.split_at(c);
+            (median(after).unwrap_or(0.0) - median(before).unwrap_or(0.0)).abs()
+        };
+        jump(*a).total_cmp(&jump(*b))
+    })?;
+    let (before, after) = known.split_at(cut);
+    let (was, is) = (median(before)?, median(after)?);
+    let apart = after
+        .iter()
+        .all(|x| (x.1 - was).abs() > 0.5 * (is - was).abs())
+        && before
+            .iter()
+            .all(|x| (x.1 - is).abs() > 0.5 * (is - was).abs());
+    let day = v.days.get(after.first()?.0)?;
+    (apart && (is - was).abs() > OFF).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "gauge_gain",
+            format!("{} {}", v.name, g.name),
+            format!("its gain against the other gauges is {was:.2} before {day} and {is:.2} from then on"),
+            "look at its lead wires, amplifier and glue",
+        )
+        .with_numbers(is - was, OFF)
+    })
+}

@@ -1,0 +1,62 @@
+//! The harm that a cycle does.
+
+use serde::{Deserialize, Serialize};
+
+/// What lies below a knee.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Knee {
+    /// Ranges below this one do less harm than the power would say.
+    pub range: f64,
+    /// The power below; infinite for no harm at all.
+    pub slope: f64,
+}
+
+/// Pseudo-damage of a cycle as a power of its range, but for a factor that belongs to the part: `R^m`, and below a knee
+/// `R_k^m (R / R_k)^(m_2)`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Law {
+    /// The power m: the slope of the S-N line.
+    pub slope: f64,
+    /// Where the line bends, if it does.
+    pub knee: Option<Knee>,
+}
+
+impl Law {
+    /// A straight line.
+    pub fn straight(slope: f64) -> Self {
+        Self { slope, knee: None }
+    }
+
+    /// Damage of one cycle of a range.
+    pub fn damage(&self, range: f64) -> f64 {
+        match self.knee {
+            Some(k) if range < k.range => {
+                k.range.powf(self.slope) * (range / k.range).powf(k.slope)
+            }
+            _ => power(range, self.slope),
+        }
+    }
+
+    /// Change of the damage with the range.
+    pub fn derivative(&self, range: f64) -> f64 {
+        match self.knee {
+            Some(k) if range < k.range => {
+                if range > 0.0 && k.slope.is_finite() {
+                    k.slope * self.damage(range) / range
+                } else {
+                    0.0
+                }
+            }
+            _ => self.slope * power(range, self.slope - 1.0),
+        }
+    }
+}
+
+/// A power; whole ones, which most S-N lines have, by products.
+fn power(x: f64, p: f64) -> f64 {
+    if p.fract() == 0.0 && (0.0..=64.0).contains(&p) {
+        x.powi(p as i32)
+    } else {
+        x.powf(p)
+    }
+}

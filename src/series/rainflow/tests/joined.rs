@@ -1,0 +1,221 @@
+//! Tallies of parts against that of the whole, and the interval of damage over days.
+
+use crate::series::rainflow::*;
+
+/// Numbers between -1 and 1, the same everywhere (splitmix64).
+struct Numbers(u64);
+
+impl Numbers {
+    fn even(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    /// Mean 0, standard deviation 1.
+    fn normal(&mut self) -> f64 {
+        (0..12).map(|_| 0.5 * self.even()).sum()
+    }
+}
+
+fn tally(rows: &[f64], k: usize, load: usize, noise: f64) -> Tally {
+    let mut counter = Counter::new(load, k, noise, 0.25, Law::straight(5.0));
+    // In blocks of uneven size, as records come.
+    for block in rows.chunks(k * 37) {
+        counter.push(block);
+    }
+    counter.finish()
+}
+
+/// Two loads; the first rounded, so that many reversals are equal, with gaps.
+fn history(n: usize) -> Vec<f64> {
+    let mut numbers = Numbers(3);
+    let (mut a, mut b) = (0.0, 0.0);
+    (0..n)
+        .flat_map(|i| {
+            a = 0.9 * a + numbers.normal();
+            b = 0.5 * b + 0.3 * a + numbers.normal();
+            let gap = i % 977 < 3;
+            [
+                if gap {
+                    f64::NAN
+                } else {
+                    (a * 4.0).round() / 4.0
+                },
+                b,
+            ]
+        })
+        .collect()
+}
+
+#[test]
+fn parts_join_to_the_whole_to_the_last_cycle_wherever_they_are_cut() {
+    let (n, k) = (20_000, 2);
+    let rows = history(n);
+    for load in 0..k {
+        let whole = tally(&rows, k, load, 0.0);
+        assert!(whole.cycles.iter().map(|c| c.2).sum::<u64>() > 1000);
+        for cuts in [1, 2, 7, 50, 3000] {
+            let mut numbers = Numbers(cuts as u64);
+            let mut at: Vec<usize> = (0..cuts)
+                .map(|_| ((numbers.even() + 1.0) * 0.5 * n as f64) as usize)
+                .collect();
+            at.extend([0, n]);
+            at.sort_unstable();
+            let parts: Vec<Tally> = at
+                .windows(2)
+                .map(|w| tally(&rows[w[0] * k..w[1] * k], k, load, 0.0))
+                .collect();
+            let joined = Tally::joined(&parts.iter().collect::<Vec<_>>()).unwrap();
+            assert_eq!(joined.cycles, whole.cycles, "{cuts}");
+            assert_eq!(joined.levels, whole.levels, "{cuts}");
+            assert_eq!(joined.range_pairs(), whole.range_pairs(), "{cuts}");
+            assert_eq!((joined.max, joined.min), (whole.max, whole.min), "{cuts}");
+            assert_eq!((joined.samples, joined.missing), (n, whole.missing));
+            let values = |t: &Tally| t.residues[0].iter().map(|r| r.value).collect::<Vec<_>>();
+            assert_eq!(values(&joined), values(&whole), "{cuts}");
+            let (a, b) = (
+                damage_interval(&joined, &[1e-4, 0.0, 0.0, 1e-4], 0.0),
+                damage_interval(&whole, &[1e-4, 0.0, 0.0, 1e-4], 0.0),
+            );
+            // Sums of the same numbers in another order.
+            for (a, b) in [(a.value, b.value), (a.low, b.low), (a.high, b.high)] {
+                assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn joining_in_two_steps_is_joining_at_once() {
+    let rows = history(9000);
+    let parts: Vec<Tally> = rows.chunks(2 * 1000).map(|c| tally(c, 2, 0, 0.1)).collect();
+    let all = Tally::joined(&parts.iter().collect::<Vec<_>>()).unwrap();
+    let halves: Vec<Tally> = parts
+        .chunks(4)
+        .map(|c| Tally::joined(&c.iter().collect::<Vec<_>>()).unwrap())
+        .collect();
+    let twice = Tally::joined(&halves.iter().collect::<Vec<_>>()).unwrap();
+    assert_eq!(
+        (all.cycles, all.levels, all.max),
+        (twice.cycles, twice.levels, twice.max)
+    );
+}
+
+#[test]
+fn a_known_sine_is_known_cycles_levels_and_damage() {
+    // 100 periods of amplitude 2 from valley to valley: full cycles of range 4, levels of width .25 from -2 to 2.
+    let rows: Vec<f64> = (0..=100 * 64)
+        .map(|i| -2.0 * (std::f64::consts::TAU * f64::from(i) / 64.0).cos())
+        .collect();
+    let t = tally(&rows, 1, 0, 0.0);
+    // A hundred peaks between a hundred and one valleys: all the cycles there are, the last as two halves.
+    assert_eq!(t.n_cycles(), 100.0);
+    let d = damage_interval(&t, &[0.0], 0.0);
+    assert!(
+        (d.value / (100.0 * 4f64.powi(5)) - 1.0).abs() < 1e-9,
+        "{}",
+        d.value
+    );
+    // Every border strictly within is risen through once a period.
+    for (i, n) in &t.levels {
+        if (-7..8).contains(i) {
+            assert_eq!(*n, 100, "{i}");
+        }
+    }
+    assert_eq!(t.max.unwrap().value, 2.0);
+    assert_eq!(t.max.unwrap().at, 32);
+}
+
+#[test]
+fn below_a_knee_a_cycle_does_what_the_flatter_line_says() {
+    let law = Law {
+        slope: 5.0,
+        knee: Some(Knee {
+            range: 10.0,
+            slope: 9.0,
+        }),
+    };
+    assert_eq!(law.damage(20.0), 20f64.powi(5));
+    assert!((law.damage(5.0) - 1e5 * 0.5f64.powi(9)).abs() < 1e-6);
+    let none = Law {
+        slope: 5.0,
+        knee: Some(Knee {
+            range: 10.0,
+            slope: f64::INFINITY,
+        }),
+    };
+    assert_eq!((none.damage(9.99), none.derivative(9.99)), (0.0, 0.0));
+    // The derivative is that of the damage.
+    for r in [2.0, 8.0, 15.0] {
+        let h = 1e-5 * r;
+        let slope = (law.damage(r + h) - law.damage(r - h)) / (2.0 * h);
+        assert!((slope / law.derivative(r) - 1.0).abs() < 1e-6);
+    }
+}
+
+/// A day of two correlated loads in slow waves of random size, as wheels see them.
+fn day(numbers: &mut Numbers, n: usize) -> Vec<f64> {
+    let mut waves = [[0.0_f64; 2]; 2];
+    let mut rows = Vec::with_capacity(2 * n);
+    for _ in 0..n {
+        // A lightly damped oscillator a load, some 25 samples a period, driven by noise.
+        for w in &mut waves {
+            let next = 1.9 * w[0] - 0.96 * w[1] + 0.1 * numbers.normal();
+            *w = [next, w[0]];
+        }
+        rows.extend([waves[0][0], 0.5 * waves[0][0] + waves[1][0]]);
+    }
+    rows
+}
+
+#[test]
+fn the_interval_of_damage_holds_over_thirty_days_with_one_error_of_scale() {
+    const VEHICLES: usize = 1000;
+    const DAYS: usize = 30;
+    const SAMPLES: usize = 500;
+    // Each entry of the gain is 2 % off, one and the same every day; noise is 2 % of the typical load, new in each sample.
+    const SCALE: f64 = 0.02;
+    let mut numbers = Numbers(11);
+    let sample = day(&mut numbers, 20_000);
+    let rms = (sample.iter().step_by(2).map(|v| v * v).sum::<f64>() / 20_000.0).sqrt();
+    let noise = 0.02 * rms;
+    let covariance = [SCALE * SCALE, 0.0, 0.0, SCALE * SCALE];
+    let (mut held, mut held_apart) = (0, 0);
+    for _ in 0..VEHICLES {
+        let c = [SCALE * numbers.normal(), SCALE * numbers.normal()];
+        let mut truth = Vec::new();
+        let mut seen = Vec::new();
+        for _ in 0..DAYS {
+            let rows = day(&mut numbers, SAMPLES);
+            truth.push(tally(&rows, 2, 0, 0.0));
+            let read: Vec<f64> = rows
+                .chunks_exact(2)
+                .flat_map(|r| {
+                    let first = r[0] * (1.0 + c[0]) + c[1] * r[1];
+                    [
+                        first + noise * numbers.normal(),
+                        r[1] + noise * numbers.normal(),
+                    ]
+                })
+                .collect();
+            seen.push(tally(&read, 2, 0, noise));
+        }
+        let of = |days: &[Tally]| Tally::joined(&days.iter().collect::<Vec<_>>()).unwrap();
+        let real = damage_interval(&of(&truth), &covariance, 0.0).value;
+        let d = damage_interval(&of(&seen), &covariance, noise);
+        held += usize::from((d.low..=d.high).contains(&real));
+        // The same sizes, taken as if each day had an error of its own.
+        let apart: f64 = seen
+            .iter()
+            .map(|t| damage_interval(t, &covariance, noise).sigma_s.powi(2))
+            .sum();
+        held_apart += usize::from((d.value - real).abs() < 1.96 * apart.sqrt());
+    }
+    let share = |n: usize| n as f64 / VEHICLES as f64;
+    // One standard deviation of a share of .95 over 1,000 trials is .7 %.
+    assert!((0.92..=0.98).contains(&share(held)), "{}", share(held));
+    assert!(share(held_apart) < 0.6, "{}", share(held_apart));
+}

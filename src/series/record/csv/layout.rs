@@ -1,0 +1,310 @@
+//! How a table is laid out: what divides fields, which lines come first, where its times are.
+
+use super::date;
+use super::text::{Encoding, bare, field_end, is_empty_line, shown};
+use crate::series::error::SeriesError;
+use crate::series::number::{DecimalMark, number};
+use crate::series::record::reader::{Column, is_time, name_and_unit, seconds_in};
+
+/// Lines looked at for the header.
+const MOST_LINES: usize = 200;
+/// Bytes looked at for it: a million names of some length.
+const MOST_BYTES: usize = 64 << 20;
+
+/// What a time field holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TimeKind {
+    /// A number, seconds in one of it.
+    Number {
+        /// Seconds.
+        factor: f64,
+    },
+    /// Date and time.
+    Date {
+        /// Those of the first row, s since 1970.
+        epoch_s: f64,
+    },
+}
+
+/// The layout of a table.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    /// How it is coded.
+    pub encoding: Encoding,
+    /// What divides fields.
+    pub delimiter: u8,
+    /// The mark between whole and fraction.
+    pub mark: DecimalMark,
+    /// A name and unit a field.
+    pub columns: Vec<Column>,
+    /// Which field is time, and what it holds.
+    pub time: Option<(usize, TimeKind)>,
+    /// Whether the unit of time is stated.
+    pub unit_stated: bool,
+    /// Half of the last digit that times are written with, s.
+    pub rounding_s: f64,
+    /// First byte of the first row.
+    pub start: usize,
+}
+
+/// A line of the beginning.
+struct Line {
+    /// Where it begins and ends in the file.
+    from: usize,
+    to: usize,
+    text: Vec<u8>,
+}
+
+impl Layout {
+    /// The layout of a file.
+    ///
+    /// The first row is the first line with a number (or date) in its first field or its time field, and as many fields as the line
+    /// before it; that line is the header, or a row of units below the header.
+    ///
+    /// # Errors
+    /// No header, a header without rows, times in an unknown unit.
+    pub fn of(bytes: &[u8]) -> Result<Self, SeriesError> {
+        let (encoding, begin) = Encoding::of(bytes);
+        let lines = first_lines(encoding, bytes, begin);
+        let delimiter = delimiter_of(&lines);
+        let mark = DecimalMark::beside(delimiter);
+        let fields: Vec<Vec<&[u8]>> = lines.iter().map(|l| split(&l.text, delimiter)).collect();
+        let header = header_of(&fields, mark)?;
+        let names = fields.get(header).map_or(&[][..], Vec::as_slice);
+        let units = fields
+            .get(header + 1)
+            .filter(|f| is_units(f, names.len(), mark));
+        let row = header + 1 + usize::from(units.is_some());
+        let mut columns: Vec<Column> = names.iter().map(|f| name_and_unit(&shown(f))).collect();
+        // A delimiter at the end of every line is no column.
+        if columns.len() > 1 && columns.last().is_some_and(|c| c.name.is_empty()) {
+            let rows = fields.get(row..).unwrap_or_default();
+            if rows.iter().all(|r| r.last().is_none_or(|f| f.is_empty())) {
+                columns.pop();
+            }
+        }
+        if let Some(units) = units {
+            for (c, unit) in columns.iter_mut().zip(units) {
+                if c.unit.is_empty() {
+                    c.unit = shown(unit).trim_matches(['[', ']', '(', ')']).to_owned();
+                }
+            }
+        }
+        let first = fields.get(row).ok_or(SeriesError::Empty)?;
+        let start = lines.get(row).map_or(bytes.len(), |l| l.from);
+        let dated = first.first().is_some_and(|f| date::seconds(f).is_some());
+        let time = columns
+            .iter()
+            .enumerate()
+            .position(|(i, c)| is_time(&c.name, i == 0))
+            // A date in the first field is the time whatever its name.
+            .or(dated.then_some(0));
+        let mut layout = Self {
+            encoding,
+            delimiter,
+            mark,
+            columns,
+            time: None,
+            unit_stated: false,
+            rounding_s: 0.0,
+            start,
+        };
+        if let Some(at) = time {
+            let rows = fields.get(row..).unwrap_or_default();
+            layout.set_time(at, rows)?;
+        }
+        Ok(layout)
+    }
+
+    /// Whether rows have times rather than names of runs: a column of time, and none called `run`.
+    pub fn is_record(&self) -> bool {
+        self.time.is_some() && !self.columns.iter().any(|c| c.name == "run")
+    }
+
+    fn set_time(&mut self, at: usize, rows: &[Vec<&[u8]>]) -> Result<(), SeriesError> {
+        let unit = self.columns.get(at).map_or("", |c| c.unit.as_str());
+        let values = || rows.iter().filter_map(|r| r.get(at)).copied();
+        let first = values().next().unwrap_or_default();
+        let (kind, digits, factor) = match date::seconds(first) {
+            Some(epoch_s) => {
+                let digits = values().map(date::decimals).max().unwrap_or(0);
+                (TimeKind::Date { epoch_s }, digits, 1.0)
+            }
+            None => {
+                let factor = seconds_in(unit).ok_or_else(|| SeriesError::Line {
+                    line: 1,
+                    what: format!("`{unit}` is no unit of time"),
+                    remedy: "give times in s or ms",
+                })?;
+                let digits = values().map(decimals).max().unwrap_or(0);
+                (TimeKind::Number { factor }, digits, factor)
+            }
+        };
+        self.unit_stated = !unit.is_empty();
+        self.rounding_s = 0.5 * factor * 10_f64.powi(-(digits.min(300) as i32));
+        if matches!(kind, TimeKind::Date { .. }) {
+            // Seconds since 1970 in 64 bits are good to a quarter of a microsecond.
+            self.rounding_s += 2.5e-7;
+        }
+        self.time = Some((at, kind));
+        Ok(())
+    }
+}
+
+/// Decimals of a number as written: `1.50e-3` has five.
+fn decimals(field: &[u8]) -> usize {
+    let field = bare(field);
+    let (digits, power) = match field.iter().position(|b| matches!(b, b'e' | b'E')) {
+        Some(n) => {
+            let power = field.get(n + 1..).unwrap_or_default();
+            let power = std::str::from_utf8(power)
+                .ok()
+                .and_then(|t| t.parse::<i32>().ok());
+            (field.get(..n).unwrap_or_default(), power.unwrap_or(0))
+        }
+        None => (field, 0),
+    };
+    let after = digits
+        .iter()
+        .position(|b| matches!(b, b'.' | b','))
+        .map_or(0, |n| digits.len() - n - 1);
+    usize::try_from(after as i32 - power).unwrap_or(0)
+}
+
+/// The lines in which header and first rows stand, empty ones and comments left out.
+fn first_lines(encoding: Encoding, bytes: &[u8], begin: usize) -> Vec<Line> {
+    let mut lines = Vec::new();
+    let mut at = begin;
+    while at < bytes.len() && lines.len() < MOST_LINES && at < MOST_BYTES {
+        let end = encoding.line_end(bytes, at);
+        let text = encoding
+            .text(bytes.get(at..end).unwrap_or_default())
+            .trim_ascii_end()
+            .to_vec();
+        if !is_empty_line(&text) {
+            lines.push(Line {
+                from: at,
+                to: end,
+                text,
+            });
+        }
+        at = end;
+    }
+    // The last line may be cut off by the end of the file: it is judged when it is read.
+    debug_assert!(lines.iter().all(|l| l.from < l.to));
+    lines
+}
+
+/// What divides the fields of most lines into most parts; beside equals semicolon and tab come before comma, which may be decimal.
+fn delimiter_of(lines: &[Line]) -> u8 {
+    let score = |d: u8| {
+        let counts = lines
+            .iter()
+            .map(|l| l.text.iter().filter(|b| **b == d).count());
+        let with = counts.clone().filter(|n| *n > 0).count();
+        let most = counts.max().unwrap_or(0);
+        (with, most)
+    };
+    let (semicolon, tab, comma) = (score(b';'), score(b'\t'), score(b','));
+    let half = lines.len().div_ceil(2);
+    if semicolon.0 >= half && semicolon.0 >= tab.0 {
+        b';'
+    } else if tab.0 >= half {
+        b'\t'
+    } else if comma.0 > 0 || semicolon.0 + tab.0 == 0 {
+        b','
+    } else if semicolon.0 >= tab.0 {
+        b';'
+    } else {
+        b'\t'
+    }
+}
+
+fn split(line: &[u8], delimiter: u8) -> Vec<&[u8]> {
+    let mut out = Vec::new();
+    let mut at = 0;
+    loop {
+        let rest = line.get(at..).unwrap_or_default();
+        let n = field_end(rest, delimiter);
+        out.push(bare(rest.get(..n).unwrap_or_default()));
+        at += n + 1;
+        if rest.get(n) != Some(&delimiter) {
+            return out;
+        }
+    }
+}
+
+/// Whether a field holds a number or a date.
+fn holds_value(field: &[u8], mark: DecimalMark) -> bool {
+    number(field, mark).is_some_and(f64::is_finite) || date::seconds(field).is_some()
+}
+
+/// The line that names the columns: of the lines before the first row, the first with as many fields as the row.
+fn header_of(fields: &[Vec<&[u8]>], mark: DecimalMark) -> Result<usize, SeriesError> {
+    let values = |f: &Vec<&[u8]>| f.iter().filter(|f| holds_value(f, mark)).count();
+    let Some(first) = fields.first() else {
+        return Err(SeriesError::Line {
+            line: 1,
+            what: "the file is empty".into(),
+            remedy: "give a header line and rows",
+        });
+    };
+    let named = |f: &[&[u8]]| {
+        f.iter().enumerate().any(|(i, n)| {
+            is_time(&name_and_unit(&shown(n)).name, i == 0) || shown(n).eq_ignore_ascii_case("run")
+        })
+    };
+    // Names may be numbers (`time,14,15`): a column of time tells the header, if rows of about its length follow.
+    let followed = fields.windows(2).position(|w| match w {
+        [a, b] => a.len() > 1 && named(a) && a.len().abs_diff(b.len()) <= 1,
+        _ => false,
+    });
+    if let Some(header) = followed {
+        return Ok(header);
+    }
+    let plain = first.len() > 1 && values(first) == 0;
+    if plain && fields.get(1).is_some_and(|s| s.len() == first.len()) {
+        return Ok(0);
+    }
+    let row = fields
+        .iter()
+        .position(|f| f.len() > 1 && 2 * values(f) > f.len())
+        .or_else(|| fields.iter().position(|f| f.len() == 1 && values(f) == 1));
+    let Some(row) = row else {
+        return if fields.len() == 1 || first.len() == 1 {
+            Err(SeriesError::Empty)
+        } else {
+            Ok(0)
+        };
+    };
+    if named(first) {
+        return Ok(0);
+    }
+    let n = fields.get(row).map_or(0, Vec::len);
+    (0..row)
+        .find(|i| {
+            fields
+                .get(*i)
+                .is_some_and(|f| f.len() == n && values(f) == 0)
+        })
+        .ok_or_else(|| SeriesError::Line {
+            line: 1,
+            what: "no line names the columns".into(),
+            remedy: "begin with a header line: `time` and a name a channel",
+        })
+}
+
+/// Whether these fields are units below a header: as many, none a number, some of them a word.
+fn is_units(fields: &[&[u8]], n: usize, mark: DecimalMark) -> bool {
+    let word = |f: &[u8]| !f.is_empty() && number(f, mark).is_none() && date::seconds(f).is_none();
+    let of_time = |f: &[u8]| {
+        let unit = shown(f);
+        let unit = unit.trim_matches(['[', ']', '(', ')']);
+        !unit.is_empty() && seconds_in(unit).is_some()
+    };
+    fields.len() == n
+        && fields.iter().any(|f| word(f))
+        && fields.iter().all(|f| f.is_empty() || *f == b"-" || word(f))
+        // A row of text is no row of units; one that begins with nothing or says `s` somewhere is.
+        && (fields.first().is_some_and(|f| f.is_empty()) || fields.iter().any(|f| of_time(f)))
+}

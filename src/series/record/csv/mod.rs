@@ -1,0 +1,299 @@
+//! Tables as loggers, measuring programs and spreadsheets write them, read a piece at a time.
+//!
+//! Comma, semicolon or tab between fields, a decimal comma beside the last two; UTF-8, UTF-16 or an eight-bit code; lines before the
+//! header, a row of units after it, units in the header, quoted fields; times in seconds, in a stated unit, or as date and time.
+
+mod date;
+mod layout;
+mod text;
+
+pub use layout::Layout;
+
+use super::reader::{BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times};
+use crate::series::error::SeriesError;
+use crate::series::number::{number, short_number};
+use layout::TimeKind;
+use text::Encoding;
+
+/// Bytes of a piece.
+const PIECE: usize = 4 << 20;
+
+/// A table as a record.
+pub struct Csv {
+    bytes: Bytes,
+    layout: Layout,
+    pieces: Vec<(usize, usize)>,
+    columns: Vec<Column>,
+    /// Field of each column.
+    fields: Vec<usize>,
+}
+
+impl Csv {
+    /// The table in a file.
+    ///
+    /// # Errors
+    /// No header, a header without rows, a time column in a unit that is none of time.
+    pub fn new(bytes: Bytes) -> Result<Self, SeriesError> {
+        let layout = Layout::of((*bytes).as_ref())?;
+        let pieces = layout
+            .encoding
+            .pieces((*bytes).as_ref(), layout.start, PIECE);
+        let (fields, columns) = layout
+            .columns
+            .iter()
+            .enumerate()
+            .filter(|(i, c)| Some(*i) != layout.time.map(|t| t.0) && !c.name.is_empty())
+            .map(|(i, c)| (i, c.clone()))
+            .unzip();
+        Ok(Self {
+            bytes,
+            layout,
+            pieces,
+            columns,
+            fields,
+        })
+    }
+
+    /// Which field goes where: for each field of a row, the places among the picks.
+    fn places(&self, picks: &[Pick]) -> Vec<Vec<usize>> {
+        let mut places = vec![Vec::new(); self.layout.columns.len()];
+        for (j, pick) in picks.iter().enumerate() {
+            let field = match pick {
+                Pick::Time => self.layout.time.map(|t| t.0),
+                Pick::Column(c) => self.fields.get(*c).copied(),
+                Pick::Nothing => None,
+            };
+            if let Some(list) = field.and_then(|f| places.get_mut(f)) {
+                list.push(j);
+            }
+        }
+        places
+    }
+}
+
+impl RecordReader for Csv {
+    fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    fn times(&self) -> Times {
+        match self.layout.time {
+            Some((_, kind)) => Times::Stored {
+                rounding_s: self.layout.rounding_s,
+                epoch_s: match kind {
+                    TimeKind::Date { epoch_s } => Some(epoch_s),
+                    TimeKind::Number { .. } => None,
+                },
+                unit_stated: self.layout.unit_stated,
+            },
+            None => Times::None { samples: None },
+        }
+    }
+
+    fn n_pieces(&self) -> usize {
+        self.pieces.len()
+    }
+
+    fn line(&self, piece: usize, row_in_piece: usize, _row: usize) -> usize {
+        let Some(&(from, to)) = self.pieces.get(piece) else {
+            return 0;
+        };
+        let bytes = (*self.bytes).as_ref();
+        let encoding = self.layout.encoding;
+        let before = encoding.lines(bytes.get(..from).unwrap_or_default());
+        let text = encoding.text(bytes.get(from..to).unwrap_or_default());
+        let mut rows = 0;
+        for (n, line) in text.split(|b| *b == b'\n').enumerate() {
+            if !text::is_empty_line(line) {
+                if rows == row_in_piece {
+                    return before + n + 1;
+                }
+                rows += 1;
+            }
+        }
+        before + 1
+    }
+
+    fn read(&self, piece: usize, picks: &[Pick], sink: &mut Sink) -> Result<(), SeriesError> {
+        let Some(&(from, to)) = self.pieces.get(piece) else {
+            return Ok(());
+        };
+        let raw = (*self.bytes).as_ref().get(from..to).unwrap_or_default();
+        let text = self.layout.encoding.text(raw);
+        let places = self.places(picks);
+        // Nothing but the time is asked: the rest of each line is passed over.
+        let last = match (picks, self.layout.time) {
+            ([Pick::Time | Pick::Nothing], Some((field, _))) => field,
+            _ => usize::MAX,
+        };
+        let parser = Parser {
+            layout: &self.layout,
+            places: &places,
+            last,
+        };
+        let k = picks.len();
+        let mut values = Vec::with_capacity(BLOCK * k);
+        let (mut at, mut rows, mut first) = (0, 0, 0);
+        while at < text.len() {
+            let here = at;
+            if let Some(next) = text::skip_empty(&text, at) {
+                at = next;
+                continue;
+            }
+            let begin = values.len();
+            values.resize(begin + k, f64::NAN);
+            let slots = values.get_mut(begin..).unwrap_or_default();
+            at = parser.row(&text, at, slots).map_err(|(what, remedy)| {
+                let bytes = (*self.bytes).as_ref();
+                let before = self
+                    .layout
+                    .encoding
+                    .lines(bytes.get(..from).unwrap_or_default());
+                let within = Encoding::Bytes.lines(text.get(..here).unwrap_or_default());
+                SeriesError::Line {
+                    line: before + within + 1,
+                    what,
+                    remedy,
+                }
+            })?;
+            rows += 1;
+            if rows == BLOCK {
+                let flow = sink(Block {
+                    first,
+                    rows,
+                    values: &values,
+                });
+                if flow.is_break() {
+                    return Ok(());
+                }
+                first += rows;
+                rows = 0;
+                values.clear();
+            }
+        }
+        if rows > 0 {
+            let _ = sink(Block {
+                first,
+                rows,
+                values: &values,
+            });
+        }
+        Ok(())
+    }
+}
+
+/// What is wrong with a row, and what to do.
+type Wrong = (String, &'static str);
+
+/// Reads rows of one table.
+struct Parser<'a> {
+    layout: &'a Layout,
+    places: &'a [Vec<usize>],
+    /// The last field that matters.
+    last: usize,
+}
+
+impl Parser<'_> {
+    /// Reads the row that begins at `at` into `slots`; where the next line begins.
+    fn row(&self, text: &[u8], mut at: usize, slots: &mut [f64]) -> Result<usize, Wrong> {
+        let n = self.layout.columns.len();
+        let delimiter = self.layout.delimiter;
+        let mut field = 0;
+        loop {
+            let rest = text.get(at..).unwrap_or_default();
+            let wanted = self.places.get(field).filter(|p| !p.is_empty());
+            let used = match wanted {
+                Some(places) => {
+                    let (value, used) = self.value(rest, field)?;
+                    for j in places {
+                        if let Some(slot) = slots.get_mut(*j) {
+                            *slot = value;
+                        }
+                    }
+                    used
+                }
+                None => text::field_end(rest, delimiter),
+            };
+            at += used;
+            if field == self.last {
+                let rest = text.get(at..).unwrap_or_default();
+                return Ok(at + memchr::memchr(b'\n', rest).map_or(rest.len(), |n| n + 1));
+            }
+            field += 1;
+            let next = text.get(at);
+            at += 1;
+            if next != Some(&delimiter) {
+                break;
+            }
+            // A delimiter at the end of every line is no field.
+            if field == n && matches!(text.get(at), None | Some(b'\n' | b'\r')) {
+                let rest = text.get(at..).unwrap_or_default();
+                at += memchr::memchr(b'\n', rest).map_or(rest.len(), |n| n + 1);
+                break;
+            }
+        }
+        if field == n {
+            Ok(at)
+        } else {
+            Err((
+                format!("{field} fields, the header has {n}"),
+                "give every row as many fields as the header; is the file cut off?",
+            ))
+        }
+    }
+
+    /// Value of the field at the beginning of `rest`, and its length up to the delimiter or the end of the line.
+    fn value(&self, rest: &[u8], field: usize) -> Result<(f64, usize), Wrong> {
+        let delimiter = self.layout.delimiter;
+        let mark = self.layout.mark;
+        let time = self.layout.time.filter(|t| t.0 == field).map(|t| t.1);
+        let factor = match time {
+            Some(TimeKind::Number { factor }) => factor,
+            Some(TimeKind::Date { epoch_s }) => {
+                let used = text::field_end(rest, delimiter);
+                let shown = text::bare(rest.get(..used).unwrap_or_default());
+                return match date::seconds(shown) {
+                    Some(s) => Ok((s - epoch_s, used)),
+                    None if shown.is_empty() => Ok((f64::NAN, used)),
+                    None => Err((
+                        format!("`{}` is no date and time", String::from_utf8_lossy(shown)),
+                        "write it as in the first row, such as 2026-05-01 12:00:00.002",
+                    )),
+                };
+            }
+            None => 1.0,
+        };
+        let before = rest.iter().take_while(|b| **b == b' ').count();
+        if let Some((v, n)) = short_number(rest.get(before..).unwrap_or_default(), mark) {
+            let mut used = before + n;
+            while let Some(b' ' | b'\r') = rest.get(used) {
+                used += 1;
+            }
+            match rest.get(used) {
+                None => return Ok((v * factor, used)),
+                Some(b) if *b == delimiter || *b == b'\n' => return Ok((v * factor, used)),
+                _ => {}
+            }
+        }
+        let used = text::field_end(rest, delimiter);
+        let shown = text::bare(rest.get(..used).unwrap_or_default());
+        match number(shown, mark) {
+            Some(v) => Ok((v * factor, used)),
+            None => {
+                let name = self
+                    .layout
+                    .columns
+                    .get(field)
+                    .map_or("", |c| c.name.as_str());
+                let mut shown = String::from_utf8_lossy(shown).into_owned();
+                if let Some((end, _)) = shown.char_indices().nth(40) {
+                    shown.truncate(end);
+                }
+                Err((
+                    format!("`{shown}` in column `{name}` is not a number"),
+                    "write a number with a decimal point, or leave the field empty",
+                ))
+            }
+        }
+    }
+}

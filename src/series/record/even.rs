@@ -1,0 +1,297 @@
+//! A record on even steps: stored samples, NaN in gaps, interpolated samples where the stored ones are uneven.
+
+use super::clock::{Clock, Evenness, Steps, clock_of, counts};
+use super::reader::{BLOCK, Block, Column, Pick, RecordReader, Sink};
+use crate::series::error::SeriesError;
+use std::ops::ControlFlow;
+
+/// A checked record.
+pub struct Record {
+    reader: Box<dyn RecordReader>,
+    /// Its clock.
+    pub clock: Clock,
+    steps: Option<Steps>,
+    /// First sample of each piece on even steps, and the number of samples.
+    starts: Vec<usize>,
+}
+
+impl Record {
+    /// The record of a reader after a pass over its times.
+    ///
+    /// # Errors
+    /// No samples, no rate, a rate other than the declared one, times that are missing or do not ascend, a hole longer than the
+    /// record.
+    pub fn new(
+        reader: Box<dyn RecordReader>,
+        declared_hz: Option<f64>,
+    ) -> Result<Self, SeriesError> {
+        let (clock, steps) = clock_of(&*reader, declared_hz)?;
+        let starts = match &steps {
+            Some(steps) => starts_of_times(&clock, steps),
+            None => {
+                let mut starts = vec![0];
+                let mut sum = 0;
+                for n in counts(&*reader)? {
+                    sum += n;
+                    starts.push(sum);
+                }
+                starts
+            }
+        };
+        Ok(Self {
+            reader,
+            clock,
+            steps,
+            starts,
+        })
+    }
+
+    /// Its columns, in file order.
+    pub fn columns(&self) -> &[Column] {
+        self.reader.columns()
+    }
+
+    /// How many pieces it is read in.
+    pub fn n_pieces(&self) -> usize {
+        self.reader.n_pieces()
+    }
+
+    /// Samples of a piece: the first, and the first of the next one.
+    pub fn span(&self, piece: usize) -> (usize, usize) {
+        let at = |i: usize| self.starts.get(i).copied().unwrap_or(self.clock.samples);
+        (at(piece), at(piece + 1))
+    }
+
+    /// The line in the file of a stored row, counted from 0.
+    pub fn line_of_row(&self, row: usize) -> usize {
+        let mut before = 0;
+        let spans = self.steps.iter().flat_map(|s| &s.spans);
+        for (piece, s) in spans.enumerate() {
+            if row < before + s.rows {
+                return self.reader.line(piece, row - before, row);
+            }
+            before += s.rows;
+        }
+        row + 1
+    }
+
+    /// Decodes a piece: blocks of consecutive samples, [`Block::first`] counted from the beginning of the record, a number for each of
+    /// `columns` (`None`: NaN) as stored.
+    ///
+    /// # Errors
+    /// What can't be decoded, with its place.
+    pub fn read(
+        &self,
+        piece: usize,
+        columns: &[Option<usize>],
+        sink: &mut Sink,
+    ) -> Result<(), SeriesError> {
+        let mut picks: Vec<Pick> = columns
+            .iter()
+            .map(|c| c.map_or(Pick::Nothing, Pick::Column))
+            .collect();
+        let start = self.span(piece).0;
+        let resampled = matches!(self.clock.evenness, Evenness::Resampled { .. });
+        match &self.steps {
+            Some(steps) if resampled || self.clock.n_gaps > 0 => {
+                picks.push(Pick::Time);
+                if resampled {
+                    self.read_uneven(steps, piece, &picks, sink)
+                } else {
+                    self.read_gaps(steps, piece, &picks, sink)
+                }
+            }
+            _ => self.reader.read(piece, &picks, &mut |block| {
+                sink(Block {
+                    first: start + block.first,
+                    ..block
+                })
+            }),
+        }
+    }
+
+    /// Stored samples with NaN in between where some are missing; the last pick is the time.
+    fn read_gaps(
+        &self,
+        steps: &Steps,
+        piece: usize,
+        picks: &[Pick],
+        sink: &mut Sink,
+    ) -> Result<(), SeriesError> {
+        let k = picks.len() - 1;
+        let mut out = Rows::new(self.span(piece).0, k);
+        let before = steps.spans.get(..piece).unwrap_or_default();
+        let mut last = before
+            .iter()
+            .rev()
+            .find(|s| s.rows > 0)
+            .map_or(f64::NAN, |s| s.last);
+        self.reader.read(piece, picks, &mut |block| {
+            for row in block.values.chunks_exact(k + 1) {
+                let Some((&t, values)) = row.split_last() else {
+                    continue;
+                };
+                for _ in 0..steps.missing_between(last, t) {
+                    out.push(std::iter::repeat_n(f64::NAN, k), sink)?;
+                }
+                out.push(values.iter().copied(), sink)?;
+                last = t;
+            }
+            ControlFlow::Continue(())
+        })?;
+        let _ = out.finish(sink);
+        Ok(())
+    }
+
+    /// Samples on even steps by straight lines between stored ones, NaN in gaps; the last pick is the time.
+    fn read_uneven(
+        &self,
+        steps: &Steps,
+        piece: usize,
+        picks: &[Pick],
+        sink: &mut Sink,
+    ) -> Result<(), SeriesError> {
+        let k = picks.len() - 1;
+        let (begin, end) = self.span(piece);
+        let mut out = Rows::new(begin, k);
+        let mut next = begin;
+        let mut before: Option<Vec<f64>> = None;
+        let mut between = |row: &[f64]| -> ControlFlow<()> {
+            let (Some(a), Some(&tb)) = (&before, row.last()) else {
+                before = Some(row.to_vec());
+                return ControlFlow::Continue(());
+            };
+            let ta = a.last().copied().unwrap_or(tb);
+            let gap = steps.missing_between(ta, tb) > 0;
+            while next < end {
+                let t = self.clock.time_s(next);
+                let share = ((t - ta) / (tb - ta)).max(0.0);
+                // The end of the record may lie a rounding error before its last sample's time.
+                if share > 1.0 + 1e-6 {
+                    break;
+                }
+                let keep = share < 1e-6 || share > 1.0 - 1e-6;
+                let line = a.iter().zip(row).take(k).map(|(a, b)| {
+                    if keep {
+                        if share < 0.5 { *a } else { *b }
+                    } else if gap {
+                        f64::NAN
+                    } else {
+                        a + (b - a) * share
+                    }
+                });
+                out.push(line, sink)?;
+                next += 1;
+            }
+            before = Some(row.to_vec());
+            ControlFlow::Continue(())
+        };
+        let mut stopped = false;
+        self.reader.read(piece, picks, &mut |block| {
+            for row in block.values.chunks_exact(k + 1) {
+                if between(row).is_break() {
+                    stopped = true;
+                    return ControlFlow::Break(());
+                }
+            }
+            ControlFlow::Continue(())
+        })?;
+        // Up to the first row of the next piece that has one.
+        let following =
+            (piece + 1..self.n_pieces()).find(|p| steps.spans.get(*p).is_some_and(|s| s.rows > 0));
+        if let Some(p) = following.filter(|_| !stopped) {
+            self.reader.read(p, picks, &mut |block| {
+                if let Some(row) = block.values.get(..k + 1) {
+                    let _ = between(row);
+                }
+                ControlFlow::Break(())
+            })?;
+        }
+        if !stopped {
+            let _ = out.finish(sink);
+        }
+        Ok(())
+    }
+}
+
+/// Rows on their way to a sink.
+struct Rows {
+    first: usize,
+    k: usize,
+    rows: usize,
+    values: Vec<f64>,
+}
+
+impl Rows {
+    fn new(first: usize, k: usize) -> Self {
+        Self {
+            first,
+            k,
+            rows: 0,
+            values: Vec::with_capacity(BLOCK * k),
+        }
+    }
+
+    fn push(&mut self, row: impl Iterator<Item = f64>, sink: &mut Sink) -> ControlFlow<()> {
+        self.values.extend(row);
+        self.rows += 1;
+        if self.rows == BLOCK {
+            self.finish(sink)
+        } else {
+            ControlFlow::Continue(())
+        }
+    }
+
+    fn finish(&mut self, sink: &mut Sink) -> ControlFlow<()> {
+        if self.rows == 0 {
+            return ControlFlow::Continue(());
+        }
+        debug_assert_eq!(self.values.len(), self.rows * self.k);
+        let block = Block {
+            first: self.first,
+            rows: self.rows,
+            values: &self.values,
+        };
+        let flow = sink(block);
+        self.first += self.rows;
+        self.rows = 0;
+        self.values.clear();
+        flow
+    }
+}
+
+/// First sample of each piece, and the number of samples.
+fn starts_of_times(clock: &Clock, steps: &Steps) -> Vec<usize> {
+    let mut starts = Vec::with_capacity(steps.spans.len() + 1);
+    if let Evenness::Resampled { .. } = clock.evenness {
+        // A piece has the steps from its first time to that of the next piece.
+        for (i, s) in steps.spans.iter().enumerate() {
+            let at = if i == 0 || s.rows == 0 {
+                starts.last().copied().unwrap_or(0)
+            } else {
+                (((s.first - clock.start_s) * clock.rate_hz - 1e-6).ceil() as usize)
+                    .min(clock.samples)
+            };
+            starts.push(at);
+        }
+        // A piece without rows begins where the next one does.
+        let mut next = clock.samples;
+        for (start, s) in starts.iter_mut().zip(&steps.spans).rev() {
+            if s.rows == 0 {
+                *start = next;
+            }
+            next = *start;
+        }
+    } else {
+        let (mut sum, mut last) = (0, f64::NAN);
+        for s in &steps.spans {
+            starts.push(sum);
+            if s.rows > 0 {
+                sum += steps.missing_between(last, s.first) + s.rows + s.missing as usize;
+                last = s.last;
+            }
+        }
+    }
+    starts.push(clock.samples);
+    starts
+}

@@ -1,0 +1,183 @@
+//! One number of a record.
+
+use falcon_mdf::blocks::{ChannelType, DataType};
+use falcon_mdf::{Channel, Conversion};
+
+/// How the bits of a number are meant.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Unsigned,
+    Signed,
+    F32,
+    F64,
+    /// The number of the record.
+    Index,
+}
+
+/// Where a number lies in a record and what it is worth.
+pub(super) struct Field {
+    kind: Kind,
+    big_endian: bool,
+    at: usize,
+    bytes: usize,
+    shift: u32,
+    bits: u32,
+    conversion: Conversion,
+    is_float: bool,
+    /// Byte after the data and mask of the bit that says invalid.
+    invalid: Option<(usize, u8)>,
+    all_invalid: bool,
+}
+
+impl Field {
+    /// The field of a channel; `None` where it is none of fixed length that is a plain number.
+    pub(super) fn of(c: &Channel) -> Option<Self> {
+        let index = matches!(
+            c.channel_type,
+            ChannelType::VirtualMaster | ChannelType::VirtualData
+        );
+        if !index
+            && !matches!(
+                c.channel_type,
+                ChannelType::FixedLength | ChannelType::Master
+            )
+        {
+            return None;
+        }
+        let bits = c.bit_count;
+        let (kind, big_endian) = match c.data_type {
+            _ if index => (Kind::Index, false),
+            DataType::UIntLe => (Kind::Unsigned, false),
+            DataType::UIntBe => (Kind::Unsigned, true),
+            DataType::IntLe => (Kind::Signed, false),
+            DataType::IntBe => (Kind::Signed, true),
+            DataType::FloatLe if bits == 32 => (Kind::F32, false),
+            DataType::FloatBe if bits == 32 => (Kind::F32, true),
+            DataType::FloatLe if bits == 64 => (Kind::F64, false),
+            DataType::FloatBe if bits == 64 => (Kind::F64, true),
+            _ => return None,
+        };
+        let shift = u32::from(c.bit_offset);
+        let real = matches!(kind, Kind::F32 | Kind::F64);
+        let fits = kind == Kind::Index || (bits > 0 && shift + bits <= 64);
+        if !fits || (real && shift != 0) || c.is_array() || c.unreadable().is_some() {
+            return None;
+        }
+        // Values of which some are text have no number for them.
+        let numeric = matches!(
+            c.conversion,
+            Conversion::None
+                | Conversion::Linear { .. }
+                | Conversion::Rational { .. }
+                | Conversion::Algebraic { .. }
+                | Conversion::TableInterpolated { .. }
+                | Conversion::TableLookup { .. }
+                | Conversion::RangeTable { .. }
+        );
+        numeric.then(|| Self {
+            kind,
+            big_endian,
+            at: c.byte_offset as usize,
+            bytes: (shift + bits).div_ceil(8) as usize,
+            shift,
+            bits,
+            conversion: c.conversion.clone(),
+            is_float: c.is_float(),
+            invalid: c.invalidation_bit.then(|| {
+                let bit = c.inval_bit_pos;
+                ((bit / 8) as usize, 1 << (bit % 8))
+            }),
+            all_invalid: c.all_invalid,
+        })
+    }
+
+    /// Whether the field lies within records of so many bytes.
+    pub(super) fn fits(&self, data: usize, invalidation: usize) -> bool {
+        let within = self.kind == Kind::Index || self.at + self.bytes <= data;
+        within && self.invalid.is_none_or(|(byte, _)| byte < invalidation)
+    }
+
+    /// The largest error of a value by what it is stored as: half a count, or the last bit of a real of 32 bits at a day's end.
+    pub(super) fn rounding(&self) -> f64 {
+        let one = self.conversion.convert(1.0, self.is_float)
+            - self.conversion.convert(0.0, self.is_float);
+        match self.kind {
+            Kind::Index | Kind::F64 => 0.0,
+            Kind::F32 => 86_400.0 * 6e-8 * one.abs(),
+            Kind::Unsigned | Kind::Signed => 0.5 * one.abs(),
+        }
+    }
+
+    /// The value in each of the records that follow each other, the first being number `first`, `size` bytes each, of which `data` are
+    /// before the invalidation bytes; to every `stride`th of `out`.
+    pub(super) fn decode(
+        &self,
+        records: &[u8],
+        size: usize,
+        data: usize,
+        first: usize,
+        out: &mut [f64],
+        stride: usize,
+    ) {
+        let rows = records.chunks_exact(size.max(1));
+        let slots = out.iter_mut().step_by(stride.max(1));
+        for (i, (slot, row)) in slots.zip(rows).enumerate() {
+            let invalid = self
+                .invalid
+                .is_some_and(|(byte, mask)| row.get(data + byte).is_none_or(|b| b & mask != 0));
+            *slot = if invalid || self.all_invalid {
+                f64::NAN
+            } else {
+                self.value(row, first + i)
+            };
+        }
+    }
+
+    #[inline]
+    fn value(&self, row: &[u8], index: usize) -> f64 {
+        let raw = if self.kind == Kind::Index {
+            index as f64
+        } else {
+            self.raw(row.get(self.at..self.at + self.bytes).unwrap_or_default())
+        };
+        match &self.conversion {
+            Conversion::None => raw,
+            Conversion::Linear { offset, factor } => factor * raw + offset,
+            other => other.convert(raw, self.is_float),
+        }
+    }
+
+    #[inline]
+    fn raw(&self, b: &[u8]) -> f64 {
+        match (self.kind, b) {
+            (Kind::F32, &[a, b, c, d]) if self.big_endian => {
+                f64::from(f32::from_be_bytes([a, b, c, d]))
+            }
+            (Kind::F32, &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
+            (Kind::F64, &[a, b, c, d, e, f, g, h]) if self.big_endian => {
+                f64::from_be_bytes([a, b, c, d, e, f, g, h])
+            }
+            (Kind::F64, &[a, b, c, d, e, f, g, h]) => f64::from_le_bytes([a, b, c, d, e, f, g, h]),
+            (Kind::Unsigned | Kind::Signed, b) if !b.is_empty() && b.len() <= 8 => {
+                let mut word = [0; 8];
+                if self.big_endian {
+                    for (slot, b) in word.iter_mut().zip(b.iter().rev()) {
+                        *slot = *b;
+                    }
+                } else {
+                    for (slot, b) in word.iter_mut().zip(b) {
+                        *slot = *b;
+                    }
+                }
+                let unused = 64 - self.bits;
+                let left = (u64::from_le_bytes(word) >> self.shift) << unused;
+                if self.kind == Kind::Signed {
+                    (left.cast_signed() >> unused) as f64
+                } else {
+                    (left >> unused) as f64
+                }
+            }
+            _ => f64::NAN,
+        }
+    }
+}

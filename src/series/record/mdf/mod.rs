@@ -1,0 +1,152 @@
+//! ASAM MDF 4: the channels sampled together with those that are wanted, read by parts of their data blocks.
+//!
+//! `falcon_mdf` tells what lies where. Groups of fixed records in blocks, plain or deflated, are read from there a piece at a time
+//! ([`fixed`]); what is stored otherwise (groups whose records alternate, values apart from invalidation, Zstandard, LZ4) is decoded
+//! whole by the library.
+
+mod field;
+mod fixed;
+
+use super::reader::{Bytes, Column, RecordReader, Times};
+use super::whole::Whole;
+use crate::series::error::SeriesError;
+use falcon_mdf::io::{ByteSlice, ByteSource};
+use falcon_mdf::{ChannelGroup, Mf4Error, Mf4File};
+use field::Field;
+use fixed::{Fixed, Group};
+use std::sync::Arc;
+
+/// Times of two groups that are the same to this share of a step count as one clock.
+const SAME: f64 = 1e-3;
+
+fn broken(what: impl std::fmt::Display) -> SeriesError {
+    SeriesError::Broken(format!(
+        "it can't be read as MDF4 ({what}): save it as MDF 4.1 with its measuring program or asammdf"
+    ))
+}
+
+/// The bytes of the file as the library asks for them.
+struct Source(Bytes);
+
+impl ByteSource for Source {
+    fn len(&self) -> u64 {
+        (*self.0).as_ref().len() as u64
+    }
+
+    fn read_bytes(&self, offset: u64, len: usize) -> falcon_mdf::Result<ByteSlice<'_>> {
+        let bytes: &[u8] = (*self.0).as_ref();
+        usize::try_from(offset)
+            .ok()
+            .and_then(|from| bytes.get(from..from.checked_add(len)?))
+            .map(ByteSlice::borrowed)
+            .ok_or_else(|| {
+                Mf4Error::parse_error(format!("the file ends before byte {offset} + {len}"))
+            })
+    }
+}
+
+/// The channels of the group that holds most of `wanted` (most numbers, where none is named), with those of every group on the same
+/// times; text is left out. An invalid sample is NaN.
+///
+/// # Errors
+/// A file that can't be read or is cut off, wanted channels on other times.
+pub(super) fn open(bytes: Bytes, wanted: &[String]) -> Result<Box<dyn RecordReader>, SeriesError> {
+    let file = Mf4File::from_source(Arc::new(Source(bytes.clone()))).map_err(broken)?;
+    let groups: Vec<&ChannelGroup> = file
+        .data_groups()
+        .iter()
+        .flat_map(|d| &d.channel_groups)
+        .filter(|g| values(g).next().is_some() && !g.is_vlsd())
+        .collect();
+    let weight = |g: &ChannelGroup| {
+        let asked = values(g).filter(|c| wanted.contains(&c.name)).count();
+        (
+            asked,
+            g.sample_count.saturating_mul(g.channels.len() as u64),
+        )
+    };
+    let Some(main) = groups.iter().copied().max_by_key(|g| weight(g)) else {
+        return Err(broken("it holds no channels"));
+    };
+    let finished = file.unfinalized().is_none();
+    let mut plain: Vec<Option<Group>> = Vec::new();
+    for g in &groups {
+        plain.push(Group::of(&file, &bytes, g, finished)?);
+    }
+    let at = |g: &ChannelGroup| groups.iter().position(|o| std::ptr::eq(*o, g));
+    let main_at = at(main).unwrap_or(0);
+    let Some(clock) = plain.get_mut(main_at).and_then(Option::take) else {
+        return whole(&file, main).map(|w| Box::new(w) as Box<dyn RecordReader>);
+    };
+    let mut apart: Vec<String> = Vec::new();
+    let mut list = vec![clock];
+    for (other, group) in groups.iter().zip(plain) {
+        if std::ptr::eq(*other, main) {
+            continue;
+        }
+        match group {
+            Some(group)
+                if list
+                    .first()
+                    .is_some_and(|m| m.same_clock(&group, &bytes, SAME)) =>
+            {
+                list.push(group);
+            }
+            _ => apart.extend(
+                values(other)
+                    .filter(|c| wanted.contains(&c.name))
+                    .map(|c| c.name.clone()),
+            ),
+        }
+    }
+    if !apart.is_empty() {
+        return Err(SeriesError::Apart { names: apart });
+    }
+    Ok(Box::new(Fixed::new(bytes, list)))
+}
+
+/// Channels that hold numbers and are not the group's clock.
+fn values(g: &ChannelGroup) -> impl Iterator<Item = &falcon_mdf::Channel> {
+    let channels = g.channels.iter();
+    channels.filter(|c| !c.is_master() && c.is_numeric() && !c.is_array())
+}
+
+/// A group decoded whole.
+fn whole(file: &Mf4File, group: &ChannelGroup) -> Result<Whole, SeriesError> {
+    let mut columns = Vec::new();
+    let mut samples = Vec::new();
+    let decode = |c: &falcon_mdf::Channel| -> Result<Vec<f64>, SeriesError> {
+        let signal = file.signal(c).map_err(broken)?;
+        let mut samples = signal.values_f64().map_err(broken)?;
+        if let Some(valid) = signal.validity() {
+            for (v, valid) in samples.iter_mut().zip(valid) {
+                *v = if valid { *v } else { f64::NAN };
+            }
+        }
+        Ok(samples)
+    };
+    for c in values(group) {
+        columns.push(Column {
+            name: c.name.clone(),
+            unit: c.unit.clone(),
+        });
+        samples.push(decode(c)?);
+    }
+    let clock = group.channels.iter().find(|c| c.is_time_channel());
+    let stored = clock.map(decode).transpose()?;
+    Ok(Whole {
+        columns,
+        times: match (&stored, clock) {
+            (Some(_), Some(c)) => Times::Stored {
+                rounding_s: Field::of(c).map_or(0.0, |f| f.rounding()),
+                epoch_s: None,
+                unit_stated: true,
+            },
+            _ => Times::None {
+                samples: samples.first().map(Vec::len),
+            },
+        },
+        samples,
+        stored: stored.unwrap_or_default(),
+    })
+}

@@ -1,0 +1,28 @@
+//! Records of any length and origin, read a piece at a time: names with units split off, one clock, pieces that decode in parallel.
+//!
+//! A format is a [`RecordReader`]: [`csv`], the binary record of strainbridge, RPC III, Parquet, MDF4, TDMS, UFF 58. [`open_record`]
+//! tells them apart by their first bytes, passes once over the times ([`Clock`]) and gives a [`Record`], whose samples stand on even
+//! steps whatever the file held. Nothing is kept of a file but what lists its parts.
+
+mod clock;
+pub mod csv;
+mod even;
+#[cfg(feature = "mdf")]
+mod mdf;
+mod open;
+#[cfg(feature = "parquet")]
+mod parquet;
+mod reader;
+mod stored;
+mod tdms;
+mod uff;
+mod whole;
+
+pub use clock::{Clock, Evenness, Gap};
+pub use even::Record;
+pub use open::{Options, open_record, read_channels};
+pub use reader::{Block, Bytes, Column, Pick, RecordReader, Sink, Times, name_and_unit};
+pub use whole::Whole;
+
+#[cfg(test)]
+mod tests;

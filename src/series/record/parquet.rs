@@ -1,0 +1,438 @@
+//! Parquet: a column a channel, a row a sample; read by parts of row groups, a page of each column at a time.
+
+use super::reader::{BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times, is_time};
+use super::reader::{name_and_unit, seconds_in};
+use crate::series::error::SeriesError;
+use parquet::basic::{ConvertedType, LogicalType, SortOrder, TimeUnit, Type as Kind};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
+use parquet::data_type::DataType;
+use parquet::errors::ParquetError;
+use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
+use parquet::file::reader::{ChunkReader, Length};
+use parquet::file::serialized_reader::SerializedPageReader;
+use parquet::schema::types::ColumnDescriptor;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// Rows of a row group that are a piece: few enough that a file of one group is read by several threads, enough that a page on the
+/// border, which both neighbours decode, costs little.
+const PIECE: usize = 262_144;
+
+/// A Parquet file as a record.
+pub struct Parquet {
+    bytes: Bytes,
+    metadata: ParquetMetaData,
+    columns: Vec<Column>,
+    /// Leaf of the file and the worth of one stored unit, a column each.
+    leaves: Vec<(usize, f64)>,
+    time: Option<(usize, f64)>,
+    times: Times,
+    /// What is taken off stored times, s.
+    epoch: f64,
+    /// Row group, first row in it, rows.
+    pieces: Vec<(usize, usize, usize)>,
+}
+
+/// What an index column says beside its values: a plain number, or a point in time.
+#[derive(Clone, Copy, PartialEq)]
+enum Meaning {
+    Number(f64),
+    Instant(f64),
+}
+
+impl Parquet {
+    /// The table in a file. A column of time (`time`, `t`, `timestamp`) gives the times; else the first column of timestamps, such
+    /// as the index that pandas writes. Columns of numbers alone are read; a null is NaN.
+    ///
+    /// # Errors
+    /// A file that is cut off or damaged.
+    pub fn new(bytes: Bytes) -> Result<Self, SeriesError> {
+        let whole = Whole(bytes.clone());
+        let metadata = ParquetMetaDataReader::new()
+            .parse_and_finish(&whole)
+            .map_err(broken)?;
+        let schema = metadata.file_metadata().schema_descr();
+        let mut time: Option<(usize, Meaning, String, bool)> = None;
+        let mut found = Vec::new();
+        for (leaf, c) in schema.columns().iter().enumerate() {
+            let (0, Some(meaning)) = (c.max_rep_level(), meaning(c)) else {
+                continue;
+            };
+            // The name of a nested leaf is its last word; groups other than the root are no tables of channels.
+            let column = name_and_unit(c.name());
+            let named = is_time(&column.name, leaf == 0);
+            if named && time.as_ref().is_none_or(|t| !t.3) {
+                time = Some((leaf, meaning, column.unit.clone(), true));
+            } else if matches!(meaning, Meaning::Instant(_)) && time.is_none() {
+                time = Some((leaf, meaning, column.unit.clone(), false));
+            }
+            found.push((leaf, meaning, column));
+        }
+        let at = time.as_ref().map(|t| t.0);
+        let (leaves, columns) = found
+            .into_iter()
+            // A row number that pandas or others left over is no channel.
+            .filter(|(leaf, _, c)| Some(*leaf) != at && !c.name.starts_with("__index_level_"))
+            .map(|(leaf, m, c)| (leaf, worth(m), c))
+            .map(|(leaf, worth, c)| ((leaf, worth), c))
+            .unzip();
+        let mut pieces = Vec::new();
+        for (g, group) in metadata.row_groups().iter().enumerate() {
+            let rows = usize::try_from(group.num_rows()).unwrap_or(0);
+            let parts = rows.div_ceil(PIECE).max(1);
+            let each = rows.div_ceil(parts).max(1);
+            for from in (0..rows).step_by(each) {
+                pieces.push((g, from, each.min(rows - from)));
+            }
+        }
+        let rows = pieces.iter().map(|p| p.2).sum();
+        let mut file = Self {
+            bytes,
+            metadata,
+            columns,
+            leaves,
+            time: None,
+            times: Times::None {
+                samples: Some(rows),
+            },
+            epoch: 0.0,
+            pieces,
+        };
+        if let Some((leaf, meaning, unit, _)) = time {
+            file.set_time(leaf, meaning, &unit)?;
+        }
+        Ok(file)
+    }
+
+    fn set_time(&mut self, leaf: usize, meaning: Meaning, unit: &str) -> Result<(), SeriesError> {
+        let schema = self.metadata.file_metadata().schema_descr();
+        let kind = schema.column(leaf).physical_type();
+        let factor = match meaning {
+            Meaning::Instant(worth) => worth,
+            Meaning::Number(worth) => {
+                let s = seconds_in(unit).ok_or_else(|| {
+                    let wrong = format!("`{unit}` is no unit of time: give times in s or ms");
+                    SeriesError::Broken(wrong)
+                })?;
+                worth * s
+            }
+        };
+        self.time = Some((leaf, factor));
+        let instant = matches!(meaning, Meaning::Instant(_));
+        if instant {
+            let mut first = None;
+            for piece in 0..self.pieces.len() {
+                self.read(piece, &[Pick::Time], &mut |block| {
+                    first = block.values.first().copied();
+                    ControlFlow::Break(())
+                })?;
+                if first.is_some() {
+                    break;
+                }
+            }
+            self.epoch = first.filter(|t| t.is_finite()).unwrap_or(0.0);
+        }
+        let (integers, reals) = (
+            matches!(kind, Kind::INT32 | Kind::INT64),
+            kind == Kind::FLOAT,
+        );
+        self.times = Times::Stored {
+            // A stored unit is rounded to a half; seconds since 1970 in 64 bits are good to a quarter of a microsecond; a real of 32
+            // bits to 2^-24 of itself, of which the end of a day's record is taken.
+            rounding_s: match (instant, integers, reals) {
+                (true, ..) => 0.5 * factor + 2.5e-7,
+                (false, true, _) => 0.5 * factor,
+                (false, _, true) => 86_400.0 * 6e-8 * factor,
+                _ => 0.0,
+            },
+            epoch_s: instant.then_some(self.epoch),
+            unit_stated: instant || !unit.is_empty(),
+        };
+        Ok(())
+    }
+
+    /// A reader of one column of a row group, its first `from` rows passed over.
+    fn column(&self, group: usize, leaf: usize, from: usize) -> Result<ColumnReader, SeriesError> {
+        let cut = || {
+            broken(ParquetError::General(
+                "a column lies outside of the file".into(),
+            ))
+        };
+        let group = self.metadata.row_groups().get(group).ok_or_else(cut)?;
+        let chunk = group.columns().get(leaf).ok_or_else(cut)?;
+        if chunk.compressed_size() < 0 || chunk.data_page_offset() < 0 {
+            return Err(cut());
+        }
+        let rows = usize::try_from(group.num_rows()).map_err(|_| cut())?;
+        let whole = Arc::new(Whole(self.bytes.clone()));
+        let pages = SerializedPageReader::new(whole, chunk, rows, None).map_err(broken)?;
+        let descriptor = self.metadata.file_metadata().schema_descr().column(leaf);
+        let mut reader = get_column_reader(descriptor, Box::new(pages));
+        if from > 0 {
+            skip(&mut reader, from)?;
+        }
+        Ok(reader)
+    }
+}
+
+impl RecordReader for Parquet {
+    fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    fn times(&self) -> Times {
+        self.times
+    }
+
+    fn n_pieces(&self) -> usize {
+        self.pieces.len()
+    }
+
+    fn rows(&self, piece: usize) -> Option<usize> {
+        self.pieces.get(piece).map(|p| p.2)
+    }
+
+    fn read(&self, piece: usize, picks: &[Pick], sink: &mut Sink) -> Result<(), SeriesError> {
+        let Some(&(group, from, rows)) = self.pieces.get(piece) else {
+            return Ok(());
+        };
+        let schema = self.metadata.file_metadata().schema_descr();
+        let mut open = Vec::new();
+        for (j, pick) in picks.iter().enumerate() {
+            let (leaf, worth, off) = match pick {
+                Pick::Nothing => continue,
+                Pick::Column(c) => match self.leaves.get(*c) {
+                    Some((leaf, worth)) => (*leaf, *worth, 0.0),
+                    None => continue,
+                },
+                Pick::Time => match self.time {
+                    Some((leaf, worth)) => (leaf, worth, self.epoch),
+                    None => continue,
+                },
+            };
+            let reader = self.column(group, leaf, from)?;
+            open.push((j, worth, off, schema.column(leaf), reader));
+        }
+        let k = picks.len();
+        let mut values = vec![f64::NAN; BLOCK * k];
+        let mut buffers = Buffers::default();
+        for first in (0..rows).step_by(BLOCK) {
+            let count = BLOCK.min(rows - first);
+            for (j, worth, off, descriptor, reader) in &mut open {
+                buffers.out.clear();
+                append(reader, descriptor, count, &mut buffers)?;
+                if buffers.out.len() != count {
+                    let wrong = "a column ends before its row group";
+                    return Err(broken(ParquetError::EOF(wrong.into())));
+                }
+                for (slot, v) in values.iter_mut().skip(*j).step_by(k).zip(&buffers.out) {
+                    *slot = v * *worth - *off;
+                }
+            }
+            let block = Block {
+                first,
+                rows: count,
+                values: values.get(..count * k).unwrap_or_default(),
+            };
+            if sink(block).is_break() {
+                break;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn worth(m: Meaning) -> f64 {
+    match m {
+        Meaning::Number(w) | Meaning::Instant(w) => w,
+    }
+}
+
+fn broken(e: ParquetError) -> SeriesError {
+    SeriesError::Broken(format!(
+        "it can't be read as Parquet ({e}): write it again, columns of numbers and one `time` in seconds"
+    ))
+}
+
+/// What a stored value is; `None` for what is no number.
+fn meaning(c: &ColumnDescriptor) -> Option<Meaning> {
+    let of_unit = |unit: &TimeUnit| match unit {
+        TimeUnit::MILLIS => 1e-3,
+        TimeUnit::MICROS => 1e-6,
+        TimeUnit::NANOS => 1e-9,
+    };
+    match (c.physical_type(), c.logical_type_ref()) {
+        (Kind::INT32 | Kind::INT64, Some(LogicalType::Timestamp(t))) => {
+            Some(Meaning::Instant(of_unit(&t.unit)))
+        }
+        (Kind::INT32 | Kind::INT64, Some(LogicalType::Time(t))) => {
+            Some(Meaning::Instant(of_unit(&t.unit)))
+        }
+        (Kind::INT32 | Kind::INT64, Some(LogicalType::Decimal(d))) => {
+            Some(Meaning::Number(10_f64.powi(-d.scale)))
+        }
+        (Kind::INT32 | Kind::INT64, Some(LogicalType::Date)) => None,
+        (Kind::INT32 | Kind::INT64, _) => Some(match c.converted_type() {
+            ConvertedType::TIMESTAMP_MILLIS | ConvertedType::TIME_MILLIS => Meaning::Instant(1e-3),
+            ConvertedType::TIMESTAMP_MICROS | ConvertedType::TIME_MICROS => Meaning::Instant(1e-6),
+            _ => Meaning::Number(1.0),
+        }),
+        (Kind::BOOLEAN | Kind::FLOAT | Kind::DOUBLE, _) => Some(Meaning::Number(1.0)),
+        _ => None,
+    }
+}
+
+/// Room for the values of a block of one column.
+#[derive(Default)]
+struct Buffers {
+    out: Vec<f64>,
+    levels: Vec<i16>,
+    bools: Vec<bool>,
+    i32s: Vec<i32>,
+    i64s: Vec<i64>,
+    f32s: Vec<f32>,
+    f64s: Vec<f64>,
+}
+
+/// Decodes `count` rows of a column into `b.out`.
+fn append(
+    reader: &mut ColumnReader,
+    column: &ColumnDescriptor,
+    count: usize,
+    b: &mut Buffers,
+) -> Result<(), SeriesError> {
+    let most = column.max_def_level();
+    let unsigned = column.sort_order() == SortOrder::UNSIGNED;
+    let (out, levels) = (&mut b.out, &mut b.levels);
+    match reader {
+        ColumnReader::BoolColumnReader(r) => {
+            let of = |v: &bool| f64::from(u8::from(*v));
+            numbers(r, most, count, &mut b.bools, levels, out, of)
+        }
+        ColumnReader::Int32ColumnReader(r) if unsigned => {
+            let of = |v: &i32| f64::from(v.cast_unsigned());
+            numbers(r, most, count, &mut b.i32s, levels, out, of)
+        }
+        ColumnReader::Int64ColumnReader(r) if unsigned => {
+            let of = |v: &i64| v.cast_unsigned() as f64;
+            numbers(r, most, count, &mut b.i64s, levels, out, of)
+        }
+        ColumnReader::Int32ColumnReader(r) => {
+            numbers(r, most, count, &mut b.i32s, levels, out, |v| f64::from(*v))
+        }
+        ColumnReader::Int64ColumnReader(r) => {
+            numbers(r, most, count, &mut b.i64s, levels, out, |v| *v as f64)
+        }
+        ColumnReader::FloatColumnReader(r) => {
+            numbers(r, most, count, &mut b.f32s, levels, out, |v| f64::from(*v))
+        }
+        ColumnReader::DoubleColumnReader(r) => {
+            numbers(r, most, count, &mut b.f64s, levels, out, |v| *v)
+        }
+        _ => Ok(()),
+    }
+}
+
+fn numbers<T: DataType>(
+    reader: &mut ColumnReaderImpl<T>,
+    most: i16,
+    count: usize,
+    values: &mut Vec<T::T>,
+    levels: &mut Vec<i16>,
+    out: &mut Vec<f64>,
+    number: impl Fn(&T::T) -> f64,
+) -> Result<(), SeriesError> {
+    while out.len() < count {
+        levels.clear();
+        values.clear();
+        let known = if most > 0 { Some(&mut *levels) } else { None };
+        let read = reader.read_records(count - out.len(), known, None, values);
+        let (records, _, _) = read.map_err(broken)?;
+        if records == 0 {
+            return Ok(());
+        }
+        let mut known = values.iter().map(&number);
+        if most == 0 {
+            out.extend(known);
+        } else {
+            out.extend(levels.iter().map(|l| {
+                if *l == most {
+                    known.next().unwrap_or(f64::NAN)
+                } else {
+                    f64::NAN
+                }
+            }));
+        }
+    }
+    Ok(())
+}
+
+fn skip(reader: &mut ColumnReader, rows: usize) -> Result<(), SeriesError> {
+    let skipped = match reader {
+        ColumnReader::BoolColumnReader(r) => r.skip_records(rows),
+        ColumnReader::Int32ColumnReader(r) => r.skip_records(rows),
+        ColumnReader::Int64ColumnReader(r) => r.skip_records(rows),
+        ColumnReader::FloatColumnReader(r) => r.skip_records(rows),
+        ColumnReader::DoubleColumnReader(r) => r.skip_records(rows),
+        _ => Ok(rows),
+    };
+    skipped.map(|_| ()).map_err(broken)
+}
+
+/// The bytes of the file as this library asks for them; what it takes is copied, a page at a time.
+struct Whole(Bytes);
+
+impl Whole {
+    fn from(&self, start: u64) -> Result<&[u8], ParquetError> {
+        let bytes: &[u8] = (*self.0).as_ref();
+        usize::try_from(start)
+            .ok()
+            .and_then(|s| bytes.get(s..))
+            .ok_or_else(|| ParquetError::EOF(format!("byte {start} lies beyond the end")))
+    }
+}
+
+impl Length for Whole {
+    fn len(&self) -> u64 {
+        (*self.0).as_ref().len() as u64
+    }
+}
+
+/// Reads on from a place.
+struct Reading {
+    bytes: Bytes,
+    at: usize,
+}
+
+impl std::io::Read for Reading {
+    fn read(&mut self, out: &mut [u8]) -> std::io::Result<usize> {
+        let bytes: &[u8] = (*self.bytes).as_ref();
+        let rest = bytes.get(self.at..).unwrap_or_default();
+        let n = rest.len().min(out.len());
+        for (slot, b) in out.iter_mut().zip(rest) {
+            *slot = *b;
+        }
+        self.at += n;
+        Ok(n)
+    }
+}
+
+impl ChunkReader for Whole {
+    type T = Reading;
+
+    fn get_read(&self, start: u64) -> Result<Self::T, ParquetError> {
+        self.from(start)?;
+        Ok(Reading {
+            bytes: self.0.clone(),
+            at: start as usize,
+        })
+    }
+
+    fn get_bytes(&self, start: u64, length: usize) -> Result<bytes::Bytes, ParquetError> {
+        let rest = self.from(start)?;
+        let taken = rest
+            .get(..length)
+            .ok_or_else(|| ParquetError::EOF("the file ends early".into()))?;
+        Ok(bytes::Bytes::copy_from_slice(taken))
+    }
+}

@@ -1,0 +1,385 @@
+use super::csv::Csv;
+use super::*;
+use crate::series::error::SeriesError;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+fn open(text: &str) -> Result<Record, SeriesError> {
+    Record::new(
+        Box::new(Csv::new(Arc::new(text.as_bytes().to_vec()))?),
+        None,
+    )
+}
+
+/// All samples of all columns, row by row.
+fn rows(record: &Record) -> Vec<Vec<f64>> {
+    let k = record.columns().len();
+    let picks: Vec<Option<usize>> = (0..k).map(Some).collect();
+    let mut out: Vec<Vec<f64>> = Vec::new();
+    for piece in 0..record.n_pieces() {
+        let mut next = record.span(piece).0;
+        let read = record.read(piece, &picks, &mut |block| {
+            assert_eq!(block.first, next);
+            next += block.rows;
+            out.extend(block.values.chunks_exact(k).map(<[f64]>::to_vec));
+            ControlFlow::Continue(())
+        });
+        read.unwrap();
+        assert_eq!(next, record.span(piece).1, "piece {piece}");
+    }
+    assert_eq!(out.len(), record.clock.samples);
+    out
+}
+
+#[test]
+fn tables_as_loggers_write_them_are_one_record() {
+    let utf16: Vec<u8> =
+        "\u{feff}Time [s];P01 [µm/m];P02\r\n0,0;1,5;-2\r\n0,1;2,5;#NV\r\n0,2;3,5;4\r\n"
+            .encode_utf16()
+            .flat_map(u16::to_le_bytes)
+            .collect();
+    let texts: [&[u8]; 10] = [
+        // As it should be; with byte order mark and CRLF; quoted, as pandas writes with QUOTE_ALL; a decimal comma and tabs.
+        b"time,P01 [um/m],P02\n0.0,1.5,-2\n0.1,2.5,NaN\n0.2,3.5,4\n",
+        b"\xef\xbb\xbfTime,P01 [um/m],P02\r\n0.0,1.5,-2\r\n0.1,2.5,\r\n0.2,3.5,4\r\n",
+        b"\"time\",\"P01 [um/m]\",\"P02\"\n\"0.0\",\"1.5\",\"-2\"\n\"0.1\",\"2.5\",\"\"\n\"0.2\",\"3.5\",\"4\"\n",
+        b"time [s]\tP01 (um/m)\tP02\n0,0\t1,5\t-2\n0,1\t2,5\t#N/A\n0,2\t3,5\t4\n",
+        // A row of units below the names; lines of a measuring program before them; a semicolon at the end of each line.
+        b"Time;P01;P02\ns;um/m;\n0,0;1,5;-2\n0,1;2,5;\n0,2;3,5;4\n",
+        b"Measured by 7\nRate: 10 Hz\n\nTime  1 - default sample rate [s]\tP01 [um/m]\tP02\n0.0\t1.5\t-2\n0.1\t2.5\t\n0.2\t3.5\t4\n",
+        b"time;P01 [um/m];P02;\n0,0;1,5;-2;\n0,1;2,5;;\n0,2;3,5;4;\n",
+        // Milliseconds that say so; a date, below no name as pandas writes its index; UTF-16.
+        b"time [ms],P01 [um/m],P02\n0,1.5,-2\n100,2.5,n/a\n200,3.5,4\n",
+        b",P01 [um/m],P02\n2026-05-01 12:00:00.0,1.5,-2\n2026-05-01 12:00:00.1,2.5,\n2026-05-01 12:00:00.2,3.5,4\n",
+        &utf16,
+    ];
+    for text in texts {
+        let shown = String::from_utf8_lossy(text);
+        let reader = Csv::new(Arc::new(text.to_vec())).unwrap_or_else(|e| panic!("{e} in {shown}"));
+        let record =
+            Record::new(Box::new(reader), None).unwrap_or_else(|e| panic!("{e} in {shown}"));
+        let names: Vec<&str> = record.columns().iter().map(|c| c.name.as_str()).collect();
+        assert_eq!(names, ["P01", "P02"], "{shown}");
+        assert!(
+            ["um/m", "µm/m"].contains(&record.columns()[0].unit.as_str()),
+            "{shown}"
+        );
+        assert!(
+            (record.clock.rate_hz - 10.0).abs() < 1e-5,
+            "{} {shown}",
+            record.clock.rate_hz
+        );
+        assert_eq!(record.clock.evenness, Evenness::Even, "{shown}");
+        assert_eq!((record.clock.rows, record.clock.n_gaps), (3, 0), "{shown}");
+        let rows = rows(&record);
+        assert_eq!(
+            (rows[0][0], rows[0][1], rows[2][0], rows[2][1]),
+            (1.5, -2.0, 3.5, 4.0),
+            "{shown}"
+        );
+        assert!(rows[1][0] == 2.5 && rows[1][1].is_nan(), "{shown}");
+    }
+}
+
+#[test]
+fn names_that_are_numbers_and_empty_names_of_row_numbers_are_no_rows() {
+    let record = open(",time,14,15\n0,0.0,1,2\n1,0.5,3,4\n").unwrap();
+    let names: Vec<&str> = record.columns().iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["14", "15"]);
+    assert_eq!(rows(&record), [[1.0, 2.0], [3.0, 4.0]]);
+}
+
+#[test]
+fn faults_of_a_table_name_their_line() {
+    let line = |text: &str| match open(text)
+        .err()
+        .unwrap_or_else(|| panic!("{text} is taken"))
+    {
+        SeriesError::Line { line, .. }
+        | SeriesError::NotAscending { line, .. }
+        | SeriesError::NoTime { line } => line,
+        other => panic!("{text}: {other}"),
+    };
+    // Out of order, repeated, missing: comments and empty lines count.
+    assert_eq!(line("time,a\n0,1\n# pause\n2,1\n\n1,1\n3,1\n"), 6);
+    assert_eq!(line("time,a\n0,1\n1,1\n1,1\n2,1\n"), 4);
+    assert_eq!(line("time,a\n0,1\n,1\n2,1\n"), 3);
+    assert_eq!(line("time,a\n0,1\nabc,1\n2,1\n"), 3);
+    // What a row holds beside its time is read later.
+    for (text, wrong) in [
+        ("time,a\n0,1\n1,x\n2,1\n", 3),
+        ("time,a,b\n0,1,2\n1,2\n2,1,2\n", 3),
+    ] {
+        let record = open(text).unwrap();
+        let read = record.read(0, &[Some(0)], &mut |_| ControlFlow::Continue(()));
+        assert!(
+            matches!(read, Err(SeriesError::Line { line, .. }) if line == wrong),
+            "{text}"
+        );
+    }
+    for text in ["time,a\n", "time,a", ""] {
+        assert!(open(text).is_err(), "{text}");
+    }
+    assert!(matches!(open("time,a\n").err(), Some(SeriesError::Empty)));
+    assert!(matches!(
+        open("time [kg],a\n0,1\n1,2\n").err(),
+        Some(SeriesError::Line { .. })
+    ));
+}
+
+/// A table whose times are made by a rule, its only channel twice the time.
+fn timed(n: usize, time: impl Fn(usize) -> f64, digits: usize) -> String {
+    let mut text = String::from("time,a\n");
+    for i in 0..n {
+        let t = time(i);
+        text.push_str(&format!("{t:.digits$},{}\n", 2.0 * t));
+    }
+    text
+}
+
+#[test]
+fn steps_within_a_fiftieth_are_even_and_those_beyond_are_resampled_and_said() {
+    let jitter =
+        |share: f64| move |i: usize| (i as f64 + if i % 2 == 1 { share } else { 0.0 }) * 0.01;
+    let even = open(&timed(500, jitter(0.01), 7)).unwrap();
+    assert_eq!(even.clock.evenness, Evenness::Even);
+    assert_eq!(rows(&even).len(), 500);
+    let uneven = open(&timed(500, jitter(0.05), 7)).unwrap();
+    let Evenness::Resampled { largest, .. } = uneven.clock.evenness else {
+        panic!("5 % is not even")
+    };
+    // Steps of .95 and 1.05; the median is one of them.
+    assert!((0.04..0.12).contains(&largest), "{largest}");
+    // A straight line stays one: twice the time of every even step.
+    for (i, row) in rows(&uneven).iter().enumerate() {
+        let expected = 2.0 * uneven.clock.time_s(i);
+        assert!((row[0] - expected).abs() < 1e-9, "{i} {}", row[0]);
+    }
+    // Times rounded by printing are no jitter: 128 Hz with three digits.
+    let printed = open(&timed(500, |i| i as f64 / 128.0, 3)).unwrap();
+    assert_eq!(printed.clock.evenness, Evenness::Even);
+    assert!((printed.clock.rate_hz / 128.0 - 1.0).abs() < 1e-3);
+}
+
+#[test]
+fn missing_samples_are_gaps_and_not_invented() {
+    // 100 Hz, without samples 200 to 249 and 300.
+    let text = timed(400, |i| i as f64 * 0.01, 3);
+    let kept = text
+        .lines()
+        .enumerate()
+        .filter(|(n, _)| !(201..251).contains(n) && *n != 301);
+    let kept: Vec<&str> = kept.map(|l| l.1).collect();
+    let record = open(&kept.join("\n")).unwrap();
+    let clock = &record.clock;
+    assert_eq!(
+        (clock.samples, clock.rows, clock.missing, clock.n_gaps),
+        (400, 349, 51, 2)
+    );
+    assert_eq!((clock.gaps[0].missing, clock.gaps[1].missing), (50, 1));
+    assert!((clock.duration_s() - 4.0).abs() < 1e-9);
+    for (i, row) in rows(&record).iter().enumerate() {
+        let gone = (200..250).contains(&i) || i == 300;
+        assert!(
+            if gone {
+                row[0].is_nan()
+            } else {
+                (row[0] - 0.02 * i as f64).abs() < 1e-9
+            },
+            "{i}"
+        );
+    }
+    // A time that jumps by years is no gap but a wrong time.
+    let far = open("time,a\n0.00,1\n0.01,1\n0.02,1\n900000000.03,1\n");
+    assert!(matches!(far.err(), Some(SeriesError::Hole { .. })));
+}
+
+#[test]
+fn whole_numbers_of_an_unstated_unit_are_doubted() {
+    let text = |head: &str, step: usize| {
+        let rows: String = (0..200).map(|i| format!("{},1\n", i * step)).collect();
+        format!("{head},a\n{rows}")
+    };
+    assert!(open(&text("time", 2)).unwrap().clock.doubtful_unit);
+    assert!(!open(&text("time [s]", 2)).unwrap().clock.doubtful_unit);
+    let stated = open(&text("time [ms]", 2)).unwrap();
+    assert!(!stated.clock.doubtful_unit && (stated.clock.rate_hz - 500.0).abs() < 1e-9);
+    assert!(
+        !open(&timed(200, |i| i as f64 * 0.002, 3))
+            .unwrap()
+            .clock
+            .doubtful_unit
+    );
+}
+
+/// 300,000 rows: several pieces, so that lines, gaps and uneven steps cross their borders.
+#[test]
+fn pieces_join_without_a_seam() {
+    let n = 400_000;
+    let even = timed(n, |i| i as f64 * 0.002, 3);
+    let record = open(&even).unwrap();
+    assert!(record.n_pieces() > 1);
+    let read = rows(&record);
+    assert!(
+        read.iter()
+            .enumerate()
+            .all(|(i, r)| (r[0] - 0.004 * i as f64).abs() < 1e-9)
+    );
+    let uneven = timed(n, |i| (i as f64 + 0.05 * ((i * 7) % 5) as f64) * 0.002, 6);
+    let record = open(&uneven).unwrap();
+    assert!(matches!(record.clock.evenness, Evenness::Resampled { .. }));
+    for (i, r) in rows(&record).iter().enumerate() {
+        assert!(
+            (r[0] - 2.0 * record.clock.time_s(i)).abs() < 1e-8,
+            "{i} {}",
+            r[0]
+        );
+    }
+    // A line out of order behind the first piece is found by its number.
+    let mut lines: Vec<&str> = even.lines().collect();
+    lines.swap(350_000, 350_001);
+    let wrong = open(&lines.join("\n")).err();
+    assert!(
+        matches!(wrong, Some(SeriesError::NotAscending { line: 350_002, .. })),
+        "{wrong:?}"
+    );
+}
+
+#[test]
+fn a_wide_table_takes_time_in_proportion_to_its_size() {
+    let table = |n: usize| {
+        let names: String = (0..n).map(|i| format!(",c{i}")).collect();
+        let zeros = ",0".repeat(n);
+        format!("time{names}\n0{zeros}\n1{zeros}\n2{zeros}\n")
+    };
+    let seconds = |n: usize| {
+        let text = table(n);
+        let start = std::time::Instant::now();
+        let record = open(&text).unwrap();
+        assert_eq!(rows(&record).len(), 3);
+        start.elapsed().as_secs_f64()
+    };
+    seconds(1000);
+    let (small, large) = (seconds(50_000), seconds(500_000));
+    // Ten times the size: a hundredfold would be quadratic. 30 leaves room for a busy machine.
+    assert!(large < 30.0 * small.max(0.005), "{small} {large}");
+}
+
+#[test]
+fn a_record_of_ours_and_rpc_iii_are_read_in_pieces() {
+    let names = ["A [kN]".to_owned(), "B [kN]".to_owned()];
+    let n = 40_000;
+    let mut bytes = Vec::new();
+    crate::series::binary::write_header(&mut bytes, &names, n as u64, 5.0, 0.01, 1.0).unwrap();
+    for i in 0..n {
+        for k in 0..2 {
+            bytes.extend_from_slice(&((2 * i + k) as f32).to_le_bytes());
+        }
+    }
+    let record = open_record(Arc::new(bytes.clone()), &Options::default()).unwrap();
+    assert_eq!((record.clock.start_s, record.clock.samples), (5.0, n));
+    assert_eq!(
+        (
+            record.columns()[1].name.as_str(),
+            record.columns()[1].unit.as_str()
+        ),
+        ("B", "kN")
+    );
+    assert!(
+        rows(&record)
+            .iter()
+            .enumerate()
+            .all(|(i, r)| r[..] == [2.0 * i as f64, 2.0 * i as f64 + 1.0])
+    );
+    let wrong = Options {
+        declared_hz: Some(90.0),
+        ..Options::default()
+    };
+    assert!(matches!(
+        open_record(Arc::new(bytes), &wrong).err(),
+        Some(SeriesError::Rate { .. })
+    ));
+}
+
+#[cfg(feature = "parquet")]
+#[test]
+fn parquet_is_read_by_parts_of_row_groups() {
+    use crate::series::parquet::parquet_bytes;
+    let names = ["A [kN]".to_owned(), "B".to_owned()];
+    let n = 600_000;
+    let bytes = parquet_bytes(&names, &[], [0.5, 0.01], n, |from, to, out| {
+        out.extend(
+            (from..to).flat_map(|i| [i as f64, if i == 7 { f64::NAN } else { -(i as f64) }]),
+        );
+    })
+    .unwrap();
+    let record = open_record(Arc::new(bytes.clone()), &Options::default()).unwrap();
+    assert_eq!((record.clock.samples, record.clock.start_s), (n, 0.5));
+    assert!((record.clock.rate_hz - 100.0).abs() < 1e-6);
+    for (i, r) in rows(&record).iter().enumerate() {
+        assert_eq!(r[0], i as f64);
+        assert!(
+            if i == 7 {
+                r[1].is_nan()
+            } else {
+                r[1] == -(i as f64)
+            },
+            "{i}"
+        );
+    }
+    for cut in [0, 4, 100, bytes.len() / 2, bytes.len() - 1] {
+        let cut = bytes.get(..cut).unwrap().to_vec();
+        assert!(open_record(Arc::new(cut), &Options::default()).is_err());
+    }
+}
+
+/// A damaged file is a fault or another record, never a panic.
+#[test]
+fn mutated_files_do_not_panic() {
+    let mut seed = 7_u64;
+    let mut next = move || {
+        seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 33) as usize
+    };
+    let mut files: Vec<Vec<u8>> = vec![
+        timed(50, |i| i as f64 * 0.01, 3).into_bytes(),
+        b"Time;P01;P02\ns;um/m;\n0,0;1,5;-2\n0,1;2,5;\n0,2;3,5;4\n".to_vec(),
+        b",P01\n2026-05-01 12:00:00.0,1.5\n2026-05-01 12:00:00.1,2.5\n".to_vec(),
+    ];
+    #[cfg(feature = "parquet")]
+    files.push(
+        crate::series::parquet::parquet_bytes(&["a".into()], &[], [0.0, 0.1], 100, |f, t, out| {
+            out.extend((f..t).map(|i| i as f64));
+        })
+        .unwrap(),
+    );
+    for file in &mut files {
+        for _ in 0..400 {
+            let mut bytes = file.clone();
+            for _ in 0..1 + next() % 4 {
+                let at = next() % bytes.len();
+                match next() % 3 {
+                    0 => bytes[at] = next() as u8,
+                    1 => bytes.truncate(at.max(1)),
+                    _ => bytes.insert(at, next() as u8),
+                }
+            }
+            if let Ok(record) = open_record(Arc::new(bytes), &Options::default()) {
+                let picks: Vec<Option<usize>> = (0..record.columns().len()).map(Some).collect();
+                for piece in 0..record.n_pieces() {
+                    let mut left = 10_000;
+                    let _ = record.read(piece, &picks, &mut |block| {
+                        left -= block.rows.min(left);
+                        if left == 0 {
+                            ControlFlow::Break(())
+                        } else {
+                            ControlFlow::Continue(())
+                        }
+                    });
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! Universal file, data sets 58 and 58b: time histories, a data set a channel.
+
+mod dataset;
+
+use super::reader::{BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times};
+use crate::series::error::SeriesError;
+use dataset::{Dataset, Samples, datasets};
+
+/// Samples a piece.
+const PIECE: usize = 65_536;
+
+fn broken(what: impl std::fmt::Display) -> SeriesError {
+    SeriesError::Broken(format!(
+        "it can't be read as a universal file ({what}): export time histories as data sets 58 or 58b on even steps"
+    ))
+}
+
+/// Whether the bytes begin as a universal file: a line with -1 alone, then the number of a data set.
+pub(super) fn is_uff(bytes: &[u8]) -> bool {
+    let mut lines = bytes
+        .get(..200.min(bytes.len()))
+        .unwrap_or_default()
+        .split(|b| *b == b'\n');
+    let first = lines.find(|l| !l.trim_ascii().is_empty());
+    let second = lines.next().map(<[u8]>::trim_ascii);
+    first.is_some_and(|l| l.trim_ascii() == b"-1" && l.starts_with(b"    "))
+        && second.is_some_and(|l| l.first().is_some_and(u8::is_ascii_digit))
+}
+
+/// A universal file as a record.
+pub(super) struct Uff {
+    bytes: Bytes,
+    columns: Vec<Column>,
+    sets: Vec<Dataset>,
+    times: (f64, f64, usize),
+}
+
+impl Uff {
+    /// The time histories of one clock: those of `wanted` (most of them, where none is named).
+    ///
+    /// # Errors
+    /// A file that can't be read or holds no time histories, wanted channels of another clock.
+    pub(super) fn new(bytes: Bytes, wanted: &[String]) -> Result<Self, SeriesError> {
+        let all = datasets((*bytes).as_ref())?;
+        let clock = |d: &Dataset| (d.start_s.to_bits(), d.step_s.to_bits(), d.samples);
+        let weight = |of: &Dataset| {
+            let same = all.iter().filter(|d| clock(d) == clock(of));
+            let asked = same
+                .clone()
+                .filter(|d| wanted.contains(&d.column.name))
+                .count();
+            (asked, same.count().saturating_mul(of.samples))
+        };
+        let Some(main) = all.iter().max_by_key(|d| weight(d)) else {
+            return Err(broken("it holds no time histories"));
+        };
+        let (key, times) = (clock(main), (main.start_s, main.step_s, main.samples));
+        let apart: Vec<String> = all
+            .iter()
+            .filter(|d| clock(d) != key && wanted.contains(&d.column.name))
+            .map(|d| d.column.name.clone())
+            .collect();
+        if !apart.is_empty() {
+            return Err(SeriesError::Apart { names: apart });
+        }
+        let sets: Vec<Dataset> = all.into_iter().filter(|d| clock(d) == key).collect();
+        Ok(Self {
+            bytes,
+            columns: sets.iter().map(|d| d.column.clone()).collect(),
+            sets,
+            times,
+        })
+    }
+}
+
+impl RecordReader for Uff {
+    fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    fn times(&self) -> Times {
+        let (start_s, step_s, samples) = self.times;
+        Times::Even {
+            start_s,
+            step_s,
+            samples,
+        }
+    }
+
+    fn n_pieces(&self) -> usize {
+        self.times.2.div_ceil(PIECE)
+    }
+
+    fn rows(&self, piece: usize) -> Option<usize> {
+        Some(self.times.2.saturating_sub(piece * PIECE).min(PIECE))
+    }
+
+    fn read(&self, piece: usize, picks: &[Pick], sink: &mut Sink) -> Result<(), SeriesError> {
+        let begin = piece * PIECE;
+        let end = (begin + PIECE).min(self.times.2);
+        let file: &[u8] = (*self.bytes).as_ref();
+        let k = picks.len();
+        let mut values = vec![f64::NAN; BLOCK * k];
+        for from in (begin..end).step_by(BLOCK) {
+            let to = (from + BLOCK).min(end);
+            for (j, pick) in picks.iter().enumerate() {
+                let slots = values.iter_mut().skip(j).step_by(k.max(1));
+                let set = match pick {
+                    Pick::Column(c) => self.sets.get(*c),
+                    _ => None,
+                };
+                for (slot, i) in slots.zip(from..to) {
+                    *slot = match (pick, set.map(|s| &s.data)) {
+                        (Pick::Time, _) => self.times.0 + self.times.1 * i as f64,
+                        (_, Some(Samples::Text(v))) => v.get(i).copied().unwrap_or(f64::NAN),
+                        (_, Some(Samples::Binary(b))) => b.value(file, i),
+                        (_, None) => f64::NAN,
+                    };
+                }
+            }
+            let block = Block {
+                first: from - begin,
+                rows: to - from,
+                values: values.get(..(to - from) * k).unwrap_or_default(),
+            };
+            if sink(block).is_break() {
+                break;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,251 @@
+//! `fleet` as a user runs it: records of three vehicles in small tables, S given.
+
+use serde_json::Value;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const GAUGES: usize = 5;
+/// Microstrain per kN.
+const S: [[f64; 2]; GAUGES] = [
+    [10.0, 1.0],
+    [-8.0, 3.0],
+    [2.0, 9.0],
+    [1.0, -11.0],
+    [6.0, 6.0],
+];
+const SAMPLES: usize = 1200;
+
+/// Numbers between -1 and 1 (splitmix64).
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
+
+/// Loads of a day, kN: waves whose size differs by vehicle and day.
+fn loads(vehicle: usize, day: usize) -> Vec<[f64; 2]> {
+    let mut numbers = Numbers((vehicle * 100 + day) as u64);
+    let (mut a, mut b) = ([0.0; 2], [0.0; 2]);
+    let size = 10.0 * (1.0 + vehicle as f64);
+    (0..SAMPLES)
+        .map(|_| {
+            for w in [&mut a, &mut b] {
+                *w = [1.9 * w[0] - 0.96 * w[1] + 0.1 * numbers.next(), w[0]];
+            }
+            [size * a[0], size * (0.5 * a[0] + b[0])]
+        })
+        .collect()
+}
+
+/// A day's table; `rows` of it, one gauge dead or left out where asked.
+fn table(vehicle: usize, day: usize, left_out: Option<usize>, dead: Option<usize>) -> String {
+    let mut text = String::from("time");
+    let kept: Vec<usize> = (0..GAUGES).filter(|g| Some(*g) != left_out).collect();
+    kept.iter()
+        .for_each(|g| write!(text, ",G{g} [um/m]").unwrap());
+    text.push('\n');
+    for (i, f) in loads(vehicle, day).iter().enumerate() {
+        write!(text, "{:.2}", i as f64 * 0.01).unwrap();
+        for g in &kept {
+            let strain = S[*g][0] * f[0] + S[*g][1] * f[1];
+            let shown = if Some(*g) == dead { 7.0 } else { strain };
+            write!(text, ",{shown:.6}").unwrap();
+        }
+        text.push('\n');
+    }
+    text
+}
+
+const JOB: &str = r#"title = "Three trucks"
+units = "m-kg-s"
+report_units = { force = "kN", moment = "kN m" }
+[sensitivity]
+file = "S.csv"
+per = { force = "kN" }
+[[load]]
+name = "A.FZ"
+expected = 20000.0
+[[load]]
+name = "B.FZ"
+expected = 20000.0
+[measured]
+noise_microstrain = 0.001
+model_uncertainty_rel = 0.02
+[fleet]
+file_name = "{vehicle}_{day}.csv"
+"#;
+
+/// A folder with job and sixty records of three vehicles.
+fn folder(name: &str) -> (PathBuf, Vec<String>) {
+    let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("fleet_{name}"));
+    let _ = std::fs::remove_dir_all(&dir);
+    std::fs::create_dir_all(&dir).unwrap();
+    std::fs::write(dir.join("job.toml"), JOB).unwrap();
+    let mut s = String::from("gauge,A.FZ,B.FZ\n");
+    for (g, row) in S.iter().enumerate() {
+        writeln!(s, "G{g},{},{}", row[0], row[1]).unwrap();
+    }
+    std::fs::write(dir.join("S.csv"), s).unwrap();
+    let mut files = Vec::new();
+    for vehicle in 0..3 {
+        for day in 1..=20 {
+            let file = format!("T{vehicle}_{day}.csv");
+            std::fs::write(dir.join(&file), table(vehicle, day, None, None)).unwrap();
+            files.push(file);
+        }
+    }
+    (dir, files)
+}
+
+fn fleet(dir: &Path, out: &str, files: &[String], more: &[&str]) -> (i32, Value) {
+    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .current_dir(dir)
+        .args(["fleet", "job.toml"])
+        .args(files)
+        .args(["--out", out, "--json"])
+        .args(more)
+        .output()
+        .unwrap();
+    let code = done.status.code().unwrap();
+    let error = String::from_utf8_lossy(&done.stderr).into_owned();
+    let json = serde_json::from_slice(&done.stdout).unwrap_or(Value::String(error));
+    (code, json)
+}
+
+fn csv(dir: &Path, out: &str) -> String {
+    std::fs::read_to_string(dir.join(out).join("fleet.csv")).unwrap()
+}
+
+#[test]
+fn one_run_threads_shards_and_a_merge_of_what_is_kept_write_the_same_bytes() {
+    let (dir, files) = folder("same");
+    let (code, result) = fleet(&dir, "all", &files, &[]);
+    assert_eq!(code, 0, "{result}");
+    let all = csv(&dir, "all");
+    let mut rows = all.lines();
+    assert_eq!(
+        rows.next(),
+        Some("vehicle,files,hours,load,max,min,damage,damage_low,damage_high")
+    );
+    assert_eq!(rows.count(), 6);
+    // The largest load of each vehicle, from the loads that the strain was made of.
+    for (v, vehicle) in result["vehicles"].as_array().unwrap().iter().enumerate() {
+        assert_eq!(vehicle["files"], 20);
+        for l in 0..2 {
+            let largest = (1..=20)
+                .flat_map(|d| loads(v, d))
+                .map(|f| f[l])
+                .fold(f64::MIN, f64::max);
+            let got = vehicle["loads"][l]["max"].as_f64().unwrap();
+            // Strain is written with six decimals.
+            assert!((got - largest).abs() < 1e-4, "{v} {l}: {got} {largest}");
+        }
+    }
+    let (code, _) = fleet(&dir, "one", &files, &["--threads", "1"]);
+    assert_eq!((code, csv(&dir, "one")), (0, all.clone()));
+    // Four shards into one folder, files in another order, then merged.
+    let turned: Vec<String> = files.iter().rev().cloned().collect();
+    for n in [3, 1, 4, 2] {
+        let (code, part) = fleet(&dir, "shards", &turned, &["--shard", &format!("{n}/4")]);
+        assert_eq!((code, part["files"].as_array().unwrap().len()), (0, 15));
+    }
+    let (code, merged) = fleet(&dir, "shards", &[], &[]);
+    assert_eq!((code, csv(&dir, "shards")), (0, all.clone()));
+    assert_eq!(merged["files"].as_array().unwrap().len(), 60);
+    // A second run is the same; records whose results are kept are not decoded: one is broken meanwhile in a way its bytes don't show.
+    let (code, _) = fleet(&dir, "all", &files, &[]);
+    assert_eq!((code, csv(&dir, "all")), (0, all));
+    assert_eq!(std::fs::read_dir(dir.join("all/days")).unwrap().count(), 60);
+    // Another job has other results.
+    std::fs::write(dir.join("job.toml"), JOB.replace("0.02", "0.03")).unwrap();
+    let (code, said) = fleet(&dir, "all", &[], &[]);
+    assert_eq!(code, 2, "{said}");
+}
+
+#[test]
+fn what_is_broken_is_said_and_nothing_else_is_lost() {
+    let (dir, mut files) = folder("broken");
+    let whole = fleet(&dir, "before", &files, &[]).1;
+    // Cut in the middle of a line, a gauge left out, a gauge dead for good from day 15 on, a second copy, a name that tells nothing.
+    let text = std::fs::read_to_string(dir.join("T0_3.csv")).unwrap();
+    std::fs::write(dir.join("T0_3.csv"), &text[..text.len() / 2 - 3]).unwrap();
+    std::fs::write(dir.join("T1_5.csv"), table(1, 5, Some(4), None)).unwrap();
+    for day in 15..=20 {
+        std::fs::write(
+            dir.join(format!("T2_{day}.csv")),
+            table(2, day, None, Some(1)),
+        )
+        .unwrap();
+    }
+    std::fs::copy(dir.join("T1_7.csv"), dir.join("T1_7b.csv")).unwrap();
+    std::fs::copy(dir.join("T1_8.csv"), dir.join("notes.csv")).unwrap();
+    files.extend([
+        "T1_7b.csv".to_owned(),
+        "notes.csv".to_owned(),
+        "T9_1.csv".to_owned(),
+    ]);
+    let (code, result) = fleet(&dir, "after", &files, &[]);
+    assert_eq!(code, 1, "{result}");
+    let status = |path: &str| {
+        let list = result["files"].as_array().unwrap();
+        list.iter().find(|f| f["path"] == path).unwrap()["status"]
+            .as_str()
+            .unwrap()
+            .to_owned()
+    };
+    for (path, expected) in [
+        ("T0_3.csv", "failed"),
+        ("T1_5.csv", "done"),
+        ("T2_16.csv", "done"),
+        ("T1_7.csv", "done"),
+        ("T1_7b.csv", "copy"),
+        ("notes.csv", "failed"),
+        ("T9_1.csv", "failed"),
+    ] {
+        assert_eq!(status(path), expected, "{path}");
+    }
+    let has = |code: &str, subject: &str| {
+        let list = result["findings"].as_array().unwrap();
+        list.iter()
+            .any(|f| f["code"] == code && f["subject"].as_str().unwrap().contains(subject))
+    };
+    assert!(has("gauge-missing", "G4"));
+    assert!(has("fleet-second-copy", "T1_7b.csv"));
+    assert!(has("dead_channel", "T2 G1"));
+    let gauge = &result["vehicles"][2]["gauges"][1];
+    assert_eq!(gauge["dead_days"][0], "15");
+    // Loads from the gauges that are left are the same but for rounding; the vehicle with a cut day has one day less.
+    for v in 1..3 {
+        for l in 0..2 {
+            let [a, b] =
+                [&whole, &result].map(|r| r["vehicles"][v]["loads"][l]["damage"].as_f64().unwrap());
+            assert!((a / b - 1.0).abs() < 1e-3, "{a} {b}");
+        }
+    }
+    assert_eq!(result["vehicles"][0]["files"], 19);
+}
+
+#[test]
+fn what_fleet_can_not_do_is_said() {
+    let (dir, files) = folder("refused");
+    let (code, said) = fleet(&dir, "nothing", &[], &[]);
+    assert_eq!(code, 2, "{said}");
+    for shard in ["0/4", "5/4", "x"] {
+        assert_eq!(
+            fleet(&dir, "shard", &files, &["--shard", shard]).0,
+            2,
+            "{shard}"
+        );
+    }
+    std::fs::write(dir.join("job.toml"), JOB.replace("{day}", "{tag}")).unwrap();
+    let (code, said) = fleet(&dir, "form", &files, &[]);
+    assert_eq!(code, 2);
+    assert!(said.as_str().unwrap().contains("fleet.file_name"), "{said}");
+}
