@@ -215,7 +215,7 @@ impl Run {
                 json: &json,
                 findings: &outcome.findings,
                 notes: &outcome.notes,
-                folder: out.map(Path::to_owned).as_ref(),
+                folder: out,
                 faults: &[],
             }),
             Err(faults) => refuse(&faults),

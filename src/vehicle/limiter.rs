@@ -2,9 +2,9 @@
 
 use super::layout::Vehicle;
 use super::treatment::{Treatment, VehicleError};
-use crate::series::channels::{Channels, SeriesError};
 use crate::series::detrend::without_mean;
 use crate::series::spectrum::{Band, Fourier, Spectrum};
+use crate::series::{Channels, SeriesError};
 
 /// Limits spectra to the band, thins and trims what they give.
 pub(super) struct Limiter {

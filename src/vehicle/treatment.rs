@@ -1,6 +1,6 @@
 //! How channels of a record are taken: corrections, band, slow stretch; and what stops the acceleration path.
 
-use crate::series::channels::SeriesError;
+use crate::series::SeriesError;
 use crate::series::spectrum::Band;
 use thiserror::Error;
 

@@ -6,7 +6,8 @@ use crate::app::strain::LoadUnits;
 use crate::finding::Severity;
 use crate::linalg::Matrix;
 use crate::recovery::ErrorModel;
-use crate::recovery::history::{Filter, Sums};
+use crate::recovery::history::{Filter, SampleLoads};
+use crate::recovery::{Sums, Widening};
 use crate::sensitivity::Sensitivity;
 use crate::series::SeriesError;
 use crate::series::rainflow::{Counter, Law};
@@ -126,7 +127,7 @@ impl Kernel {
             hours: record.clock.duration_s() / 3600.0,
             missing: record.clock.missing,
             loads: loads.collect(),
-            gauges: health.days(&names, &r.filter.leverage),
+            gauges: health.days(&names, &r.filter.whole().leverage),
             findings,
         })
     }
@@ -264,9 +265,10 @@ impl Kernel {
             self.errors,
             self.noise_factor,
             &vec![0.0; k],
+            Widening::none(),
         )
         .ok_or_else(singular)?;
-        if plain.rank < k {
+        if plain.whole().rank < k {
             let names: Vec<&str> = s.gauges.iter().map(String::as_str).collect();
             return Err(format!(
                 "its gauges don't separate the loads: only {} read",
@@ -275,13 +277,11 @@ impl Kernel {
         }
         // Typical loads weigh the model's error.
         let scaled: Vec<f64> = sampled.to_vec();
-        let (mut loads, mut sums) = (Vec::new(), Sums::new(used.len(), k));
+        let (mut loads, mut sums) = (SampleLoads::default(), Sums::new(used.len(), k));
         plain.apply(&scaled, 1.0, &mut loads, &mut sums);
-        let count = sums.samples.max(1) as f64;
-        let typical: Vec<f64> = sums
-            .sum_of_squares
-            .iter()
-            .map(|q| (q / count).sqrt())
+        let mean = |sum: f64, count: u64| (sum / count.max(1) as f64).sqrt();
+        let typical: Vec<f64> = (0..k)
+            .map(|l| mean(sums.sum_of_squares[l], sums.known(l)))
             .collect();
         let noise = self.errors.noise;
         if noise > 0.0
@@ -289,12 +289,20 @@ impl Kernel {
             && sums
                 .reading
                 .iter()
-                .all(|q| (q / count).sqrt() < 1e-3 * noise)
+                .enumerate()
+                .all(|(g, q)| mean(*q, sums.read(g)) < 1e-3 * noise)
         {
             return Err("every reading is less than a thousandth of the stated noise: are they in strain, not microstrain?".to_owned());
         }
-        let filter = Filter::new(&s, zero.clone(), self.errors, self.noise_factor, &typical)
-            .ok_or_else(singular)?;
+        let filter = Filter::new(
+            &s,
+            zero.clone(),
+            self.errors,
+            self.noise_factor,
+            &typical,
+            Widening::none(),
+        )
+        .ok_or_else(singular)?;
         let factors: Vec<f64> = self.units.iter().map(|u| u.factor).collect();
         let row = |g: usize| factors.iter().enumerate().map(move |(l, f)| (g, l, *f));
         let values = |g: usize| row(g).map(|(g, l, f)| s.values[(g, l)] / f).collect();
@@ -349,21 +357,23 @@ impl Recovering {
             health: Health::new(self.s.clone()),
         };
         let mut sums = Sums::new(n, k);
-        let (mut strain, mut loads) = (Vec::new(), Vec::new());
+        let (mut strain, mut recovered) = (Vec::new(), SampleLoads::default());
         record.read(piece, &self.columns, &mut |block| {
             strain.clear();
             let rows = block.values.chunks_exact(n);
             strain.extend(rows.flat_map(|row| row.iter().zip(&self.scale).map(|(v, s)| v * s)));
-            loads.clear();
-            self.filter.apply(&strain, 1.0, &mut loads, &mut sums);
+            recovered.values.clear();
+            recovered.gaps.clear();
+            self.filter.apply(&strain, 1.0, &mut recovered, &mut sums);
+            let loads = &mut recovered.values;
             for row in loads.chunks_exact_mut(k) {
                 row.iter_mut().zip(&self.factors).for_each(|(v, f)| *v *= f);
             }
             for row in strain.chunks_exact_mut(n) {
                 row.iter_mut().zip(&self.zero).for_each(|(v, z)| *v -= z);
             }
-            part.health.add(&strain, &loads);
-            part.loads.extend_from_slice(&loads);
+            part.health.add(&strain, loads);
+            part.loads.extend_from_slice(loads);
             ControlFlow::Continue(())
         })?;
         Ok(part)

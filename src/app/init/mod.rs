@@ -179,9 +179,13 @@ fn read_strained(
             })?;
         // What a file lacks is said by the job, which leaves it out then.
         let findings = solution.findings.iter();
-        let said = findings.filter(|f| f.code != "no-static-results" && f.code != "no-strain-output");
+        let said =
+            findings.filter(|f| f.code != "no-static-results" && f.code != "no-strain-output");
         work.findings.extend(said.cloned());
-        let with_strain = solution.cases.iter().filter(|c| !c.shells.elements.is_empty());
+        let with_strain = solution
+            .cases
+            .iter()
+            .filter(|c| !c.shells.elements.is_empty());
         strained.push((name, with_strain.map(|c| c.subcase).collect()));
     }
     Ok(strained)

@@ -6,7 +6,7 @@ use crate::series::window::Windowed;
 use crate::vehicle::equations::equations;
 use crate::vehicle::layout::{Measures, Vehicle};
 use crate::vehicle::motion::{Adjustment, Motion, Treatment, VehicleError, motion};
-use crate::vehicle::stretch::SlowStretch;
+use crate::vehicle::treatment::SlowStretch;
 use rustfft::num_complex::Complex64;
 
 /// Transform of a signal within the band, a value a bin.
