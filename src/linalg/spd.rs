@@ -154,3 +154,15 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 pub fn trace_of_product(a: &[f64], b: &[f64]) -> f64 {
     dot(a, b)
 }
+
+/// `L^-1 x` in place, `L` lower triangular by rows.
+pub fn solve_lower(l: &[f64], x: &mut [f64]) {
+    let k = x.len();
+    for i in 0..k {
+        let (before, rest) = x.split_at_mut(i);
+        let row = &l[i * k..i * k + i];
+        if let Some(v) = rest.first_mut() {
+            *v = (*v - dot(row, before)) / l[i * k + i];
+        }
+    }
+}

@@ -6,7 +6,7 @@ use crate::linalg::Matrix;
 ///
 /// The model's error has two parts, because models err both ways: each influence coefficient by itself (mesh, gradient at the gauge),
 /// `sd = model_rel |S_gl f_l|`, which the residual shows, and each load's column as a whole (stiffness, thickness),
-/// `sd = model_rel |f_l|` on the load itself, which no residual can show.
+/// `sd = model_rel |f_l|` on the load itself, which no residual can show. Both are the same in every run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorModel {
     /// Noise of one reading, strain, 1 sd.
@@ -16,14 +16,26 @@ pub struct ErrorModel {
 }
 
 impl ErrorModel {
+    /// Variance of the noise of a reading; `noise_factor` is 1 for a single reading less a long zero.
+    pub fn noise_variance(&self, noise_factor: f64) -> f64 {
+        (self.noise * self.noise * noise_factor).max(f64::MIN_POSITIVE)
+    }
+
+    /// Covariance of what the model's error puts into one gauge at loads `f` and at loads `g`; `row` is the gauge's row of S:
+    /// `model_rel^2 sum_l S_l^2 f_l g_l`.
+    pub fn shared(&self, row: impl Iterator<Item = f64>, f: &[f64], g: &[f64]) -> f64 {
+        let sum: f64 = row
+            .zip(f.iter().zip(g))
+            .map(|(s, (a, b))| s * s * a * b)
+            .sum();
+        self.model_rel * self.model_rel * sum
+    }
+
     /// Variance of each reading at loads `f`; `noise_factor` multiplies the noise variance (1 for a single reading less a long zero).
     pub fn variances(&self, s: &Matrix, f: &[f64], noise_factor: f64) -> Vec<f64> {
-        let own = self.noise * self.noise * noise_factor;
+        let own = self.noise_variance(noise_factor);
         s.row_iter()
-            .map(|row| {
-                let model: f64 = row.iter().zip(f).map(|(a, b)| (a * b).powi(2)).sum();
-                own + self.model_rel * self.model_rel * model
-            })
+            .map(|row| own + self.shared(row.iter().copied(), f, f))
             .collect()
     }
 

@@ -1,202 +1,217 @@
-//! Records of any length: one gain matrix, samples streamed through it in blocks, constant memory.
+//! Records of any length: one estimate, samples streamed through it in blocks, constant memory.
 
 use super::errors::ErrorModel;
+use super::gain::Gain;
 use super::kernel::Samples;
-use super::solve::fit;
-use crate::linalg::Matrix;
+use super::plausible::LARGEST_STRAIN;
+use super::sums::Sums;
+use super::types::Widening;
 use crate::sensitivity::Sensitivity;
+use std::collections::HashMap;
+use std::sync::{Arc, PoisonError, RwLock};
 
-/// `f = gain (eps - zero)`, and what a sample's interval takes.
-#[derive(Clone, Debug)]
+/// Sets of silent gauges whose estimate is kept: what is not kept is formed anew for every sample that needs it.
+const KEPT: usize = 4096;
+
+/// `f = gain (eps - zero)`, and what a sample's interval takes. Where gauges give nothing, the estimate from the others.
+#[derive(Debug)]
 pub struct Filter {
-    n: usize,
-    k: usize,
+    /// From all gauges.
+    whole: Arc<Gain>,
     /// `k x n`, by rows.
     gain: Vec<f64>,
     /// `n x k`, S by rows.
-    s: Vec<f64>,
+    rows: Vec<f64>,
     /// Subtracted from each sample, strain.
     zero: Vec<f64>,
-    /// Noise variance of each load.
-    noise_variance: Vec<f64>,
-    /// `k x k`: variance of load l for the square of load m, from errors of single influence coefficients and of whole columns.
-    model_variance: Vec<f64>,
-    /// Leverage of each gauge.
-    pub leverage: Vec<f64>,
-    /// Rank of the system.
-    pub rank: usize,
+    s: Sensitivity,
+    errors: ErrorModel,
+    noise_factor: f64,
+    typical: Vec<f64>,
+    widening: Widening,
+    /// Estimates by the gauges that read.
+    others: RwLock<HashMap<Vec<usize>, Option<Arc<Gain>>>>,
 }
 
-/// Sums over a record.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Sums {
-    /// Samples without a gap.
-    pub samples: u64,
-    /// Samples left out because a gauge gave nothing.
-    pub gaps: u64,
-    /// Smallest of each load.
-    pub min: Vec<f64>,
-    /// Largest of each load.
-    pub max: Vec<f64>,
-    /// Sum of each load.
-    pub sum: Vec<f64>,
-    /// Sum of squares of each load.
-    pub sum_of_squares: Vec<f64>,
-    /// Sum of squared residuals by gauge, strain^2.
-    pub residual: Vec<f64>,
-    /// Sum of squared readings by gauge, strain^2.
-    pub reading: Vec<f64>,
-}
-
-impl Sums {
-    /// Nothing yet.
-    pub fn new(n: usize, k: usize) -> Self {
-        Self {
-            samples: 0,
-            gaps: 0,
-            min: vec![f64::INFINITY; k],
-            max: vec![f64::NEG_INFINITY; k],
-            sum: vec![0.0; k],
-            sum_of_squares: vec![0.0; k],
-            residual: vec![0.0; n],
-            reading: vec![0.0; n],
-        }
-    }
-
-    /// Both together.
-    pub fn merge(&mut self, other: &Self) {
-        self.samples += other.samples;
-        self.gaps += other.gaps;
-        let add = |a: &mut Vec<f64>, b: &[f64]| a.iter_mut().zip(b).for_each(|(x, y)| *x += y);
-        self.min
-            .iter_mut()
-            .zip(&other.min)
-            .for_each(|(x, y)| *x = x.min(*y));
-        self.max
-            .iter_mut()
-            .zip(&other.max)
-            .for_each(|(x, y)| *x = x.max(*y));
-        add(&mut self.sum, &other.sum);
-        add(&mut self.sum_of_squares, &other.sum_of_squares);
-        add(&mut self.residual, &other.residual);
-        add(&mut self.reading, &other.reading);
-    }
+/// Loads of samples.
+#[derive(Clone, Debug, Default)]
+pub struct SampleLoads {
+    /// `n_loads` a sample; NaN where the gauges that read don't tell a load.
+    pub values: Vec<f64>,
+    /// Samples in which a gauge gave nothing, and the estimate that was taken; ascending.
+    pub gaps: Vec<(usize, Option<Arc<Gain>>)>,
 }
 
 impl Filter {
-    /// The filter for `s` with `zero` (strain by gauge) subtracted; weights are those of the model error at `typical` loads.
-    /// `None` where numbers are not finite.
+    /// The filter for `s` with `zero` (strain by gauge) subtracted; weights are those of the model's error at `typical` loads, intervals
+    /// those of `widening`. `None` where numbers are not finite.
     pub fn new(
         s: &Sensitivity,
         zero: Vec<f64>,
         errors: ErrorModel,
         noise_factor: f64,
         typical: &[f64],
+        widening: Widening,
     ) -> Option<Self> {
         let (n, k) = (s.gauges.len(), s.loads.len());
-        let variances: Vec<f64> = errors
-            .variances(&s.values, typical, noise_factor)
-            .iter()
-            .map(|v| v.max(f64::MIN_POSITIVE))
-            .collect();
-        let priors: Vec<Option<f64>> = s
-            .loads
-            .iter()
-            .map(|l| {
-                if l.wanted {
-                    None
-                } else {
-                    l.expected.filter(|e| *e > 0.0)
-                }
-            })
-            .collect();
-        let fit = fit(&s.values, &vec![0.0; n], &variances, &priors, &s.scales())?;
-        let own = errors.noise * errors.noise * noise_factor;
-        let noise_variance: Vec<f64> = (0..k)
-            .map(|l| {
-                let unseen = fit.covariance[(l, l)].is_infinite();
-                if unseen {
-                    f64::INFINITY
-                } else {
-                    own * (0..n).map(|g| fit.gain[(l, g)].powi(2)).sum::<f64>()
-                }
-            })
-            .collect();
-        let rel2 = errors.model_rel * errors.model_rel;
-        let model_variance = Matrix::from_fn(k, k, |l, m| {
-            let single: f64 = (0..n)
-                .map(|g| (fit.gain[(l, g)] * s.values[(g, m)]).powi(2))
-                .sum();
-            rel2 * (single + if l == m { 1.0 } else { 0.0 })
-        });
+        let all: Vec<usize> = (0..n).collect();
+        let whole = Gain::new(s, &all, errors, noise_factor, typical)?;
         Some(Self {
-            n,
-            k,
             gain: (0..k)
                 .flat_map(|l| (0..n).map(move |g| (l, g)))
-                .map(|(l, g)| fit.gain[(l, g)])
+                .map(|(l, g)| whole.gain[(l, g)])
                 .collect(),
-            s: (0..n)
+            rows: (0..n)
                 .flat_map(|g| (0..k).map(move |l| (g, l)))
                 .map(|(g, l)| s.values[(g, l)])
                 .collect(),
+            whole: Arc::new(whole),
             zero,
-            noise_variance,
-            model_variance: model_variance.transpose().iter().copied().collect(),
-            leverage: fit.leverage,
-            rank: fit.rank,
+            s: s.clone(),
+            errors,
+            noise_factor,
+            typical: typical.to_vec(),
+            widening,
+            others: RwLock::new(HashMap::new()),
         })
     }
 
-    /// Loads of samples (`n_gauges` strains each, times `to_strain`), appended to `out` (`n_loads` each) and to `sums`.
-    /// A sample with a reading that is not finite has loads NaN and counts as a gap.
-    pub fn apply(&self, samples: &[f64], to_strain: f64, out: &mut Vec<f64>, sums: &mut Sums) {
+    /// Loads of samples (`n_gauges` readings each, times `to_strain`), appended to `out` and to `sums`.
+    pub fn apply(&self, samples: &[f64], to_strain: f64, out: &mut SampleLoads, sums: &mut Sums) {
+        let (n, k) = (self.n_gauges(), self.n_loads());
+        let before = out.values.len() / k.max(1);
+        let mut gaps = Vec::new();
         pulp::Arch::new().dispatch(Samples {
             gain: &self.gain,
-            s: &self.s,
+            s: &self.rows,
             zero: &self.zero,
             samples,
             to_strain,
-            out,
+            out: &mut out.values,
+            gaps: &mut gaps,
             sums,
         });
+        for at in gaps {
+            let readings = samples.get(at * n..(at + 1) * n).unwrap_or_default();
+            let gain = self.with_gap(
+                readings,
+                to_strain,
+                &mut out.values,
+                (before + at) * k,
+                sums,
+            );
+            out.gaps.push((before + at, gain));
+        }
     }
 
-    /// Standard deviation of each load of a sample with loads `f`.
-    pub fn sigma(&self, f: &[f64]) -> Vec<f64> {
-        (0..self.k)
-            .map(|l| {
-                let model: f64 = self.model_variance[l * self.k..(l + 1) * self.k]
-                    .iter()
-                    .zip(f)
-                    .map(|(b, v)| b * v * v)
-                    .sum();
-                (self.noise_variance[l] + model).sqrt()
-            })
-            .collect()
-    }
-
-    /// Standard deviation of a change of load `l` between two samples, `change` that of all loads. Noise enters twice; errors of the
-    /// model, which both samples share, with what changes.
-    pub fn sigma_of_change(&self, l: usize, change: &[f64]) -> f64 {
-        let model: f64 = self
-            .model_variance
+    /// Loads of a sample in which some gauge gave nothing, from the others; the estimate taken.
+    fn with_gap(
+        &self,
+        readings: &[f64],
+        to_strain: f64,
+        out: &mut [f64],
+        at: usize,
+        sums: &mut Sums,
+    ) -> Option<Arc<Gain>> {
+        let mut strain: Vec<f64> = readings
             .iter()
-            .skip(l * self.k)
-            .zip(change)
-            .map(|(b, v)| b * v * v)
-            .sum();
-        let noise = self.noise_variance.get(l).copied().unwrap_or(f64::NAN);
-        (2.0 * noise + model).sqrt()
+            .zip(&self.zero)
+            .map(|(v, z)| v * to_strain - z)
+            .collect();
+        sums.gaps += 1;
+        for v in &mut strain {
+            if v.abs() > LARGEST_STRAIN {
+                sums.impossible += 1;
+                *v = f64::NAN;
+            }
+        }
+        let used: Vec<usize> = (0..strain.len())
+            .filter(|&g| strain[g].is_finite())
+            .collect();
+        let gain = self.estimate(used)?;
+        let loads = gain.loads(&strain);
+        for (l, v) in loads.iter().enumerate().filter(|(l, _)| gain.is_seen(*l)) {
+            if let Some(slot) = out.get_mut(at + l) {
+                *slot = *v;
+            }
+            sums.min[l] = sums.min[l].min(*v);
+            sums.max[l] = sums.max[l].max(*v);
+            sums.sum[l] += v;
+            sums.sum_of_squares[l] += v * v;
+            sums.known_in_gaps[l] += 1;
+        }
+        for &g in &gain.used {
+            let row = self.s.values.row(g);
+            let predicted: f64 = row.iter().zip(&loads).map(|(s, f)| s * f).sum();
+            sums.reading[g] += strain[g] * strain[g];
+            sums.residual[g] += (strain[g] - predicted).powi(2);
+            sums.read_in_gaps[g] += 1;
+        }
+        Some(gain)
+    }
+
+    /// The estimate from the gauges `used`; `None` where none reads.
+    fn estimate(&self, used: Vec<usize>) -> Option<Arc<Gain>> {
+        if used.is_empty() {
+            return None;
+        }
+        let kept = self.others.read().unwrap_or_else(PoisonError::into_inner);
+        if let Some(found) = kept.get(&used) {
+            return found.clone();
+        }
+        drop(kept);
+        let new = Gain::new(
+            &self.s,
+            &used,
+            self.errors,
+            self.noise_factor,
+            &self.typical,
+        )
+        .map(Arc::new);
+        let mut kept = self.others.write().unwrap_or_else(PoisonError::into_inner);
+        if kept.len() < KEPT {
+            kept.insert(used, new.clone());
+        }
+        new
+    }
+
+    /// Standard deviation of each load of a sample with loads `f`, all gauges reading.
+    pub fn sigma(&self, f: &[f64]) -> Vec<f64> {
+        self.whole.sigma(f, &self.widening)
+    }
+
+    /// The same for a sample in which only the gauges of `gain` read.
+    pub fn sigma_with(&self, gain: &Gain, f: &[f64]) -> Vec<f64> {
+        // A load that is not known has no error either: its coefficients weigh nothing here.
+        let known: Vec<f64> = f
+            .iter()
+            .map(|v| if v.is_finite() { *v } else { 0.0 })
+            .collect();
+        gain.sigma(&known, &self.widening)
+    }
+
+    /// Half width of the 95 % interval over sigma.
+    pub fn coverage_factor(&self) -> f64 {
+        self.widening.coverage_factor
+    }
+
+    /// Standard deviation of a change of load `l` between two samples, `change` that of all loads.
+    pub fn sigma_of_change(&self, l: usize, change: &[f64]) -> f64 {
+        self.whole.sigma_of_change(l, change, &self.widening)
+    }
+
+    /// The estimate from all gauges.
+    pub fn whole(&self) -> &Gain {
+        &self.whole
     }
 
     /// Number of loads.
     pub fn n_loads(&self) -> usize {
-        self.k
+        self.whole.n_loads()
     }
 
     /// Number of gauges.
     pub fn n_gauges(&self) -> usize {
-        self.n
+        self.zero.len()
     }
 }

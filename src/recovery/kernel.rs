@@ -1,6 +1,7 @@
 //! The arithmetic of a streamed record with the vector instructions that the processor has: `f = G y`, residual `y - S f`.
 
-use super::history::Sums;
+use super::plausible::LARGEST_STRAIN;
+use super::sums::Sums;
 use pulp::Simd;
 
 /// Samples handled together: their readings lie beside each other by gauge, so that a coefficient is loaded once for all of them.
@@ -21,8 +22,10 @@ pub(super) struct Samples<'a> {
     pub samples: &'a [f64],
     /// Strain of one unit of them.
     pub to_strain: f64,
-    /// Loads are appended, `k` a sample; NaN where a reading is not finite.
+    /// Loads are appended, `k` a sample; NaN where a reading is missing or too large to be strain.
     pub out: &'a mut Vec<f64>,
+    /// Those samples are appended by number; the sums leave them out.
+    pub gaps: &'a mut Vec<usize>,
     /// Sums to add to.
     pub sums: &'a mut Sums,
 }
@@ -39,14 +42,19 @@ impl pulp::WithSimd for Samples<'_> {
         let mut y = vec![0.0; n * LANES];
         let mut f = vec![0.0; k * LANES];
         let samples = self.samples;
-        for block in samples.chunks(n * LANES) {
+        for (number, block) in samples.chunks(n * LANES).enumerate() {
             let count = block.len() / n;
             if count < LANES {
                 y.fill(0.0);
             }
             for (lane, sample) in block.chunks_exact(n).enumerate() {
                 for ((v, &raw), z) in y.chunks_exact_mut(LANES).zip(sample).zip(self.zero) {
-                    v[lane] = raw * self.to_strain - z;
+                    let strain = raw * self.to_strain - z;
+                    v[lane] = if strain.abs() <= LARGEST_STRAIN {
+                        strain
+                    } else {
+                        f64::NAN
+                    };
                 }
             }
             product(simd, self.gain, &y, &mut f);
@@ -54,7 +62,7 @@ impl pulp::WithSimd for Samples<'_> {
                 self.out.extend(f.chunks_exact(LANES).map(|f| f[lane]));
             }
             if count < LANES || !all_finite(simd, &f) {
-                self.set_apart(count, &mut y, &mut f);
+                self.set_apart(number * LANES, count, &mut y, &mut f);
             } else {
                 self.sums.samples += LANES as u64;
                 self.extremes(simd, &f);
@@ -66,7 +74,7 @@ impl pulp::WithSimd for Samples<'_> {
 
 impl Samples<'_> {
     /// Counts the samples of a block that is not whole: those with a gap, and lanes without a sample, are zero from here on.
-    fn set_apart(&mut self, count: usize, y: &mut [f64], f: &mut [f64]) {
+    fn set_apart(&mut self, first: usize, count: usize, y: &mut [f64], f: &mut [f64]) {
         let k = self.sums.sum.len();
         for lane in 0..LANES {
             let whole = lane < count && f.chunks_exact(LANES).all(|f| f[lane].is_finite());
@@ -82,9 +90,9 @@ impl Samples<'_> {
                 v[lane] = 0.0;
             }
             if lane < count {
-                self.sums.gaps += 1;
-                let first = self.out.len() - (count - lane) * k;
-                self.out[first..first + k].fill(f64::NAN);
+                self.gaps.push(first + lane);
+                let at = self.out.len() - (count - lane) * k;
+                self.out[at..at + k].fill(f64::NAN);
             }
         }
     }

@@ -1,20 +1,32 @@
 //! Loads from measured strain: weighted least squares, covariance, and what the residual says of both.
 //!
-//! `eps = S f + e`, with `e` the noise of the readings and the model's own error. [`runs`] estimates static states, [`history`] streams
-//! records of any length, [`verdict`] judges the residual, [`faults`] names gauges that look wired backwards, dead or wrong.
+//! `eps = S f + e`, with `e` the noise of the readings and the model's own error. One estimate ([`gain`]) serves static states ([`runs`])
+//! and records of any length ([`history`]), so that both have the same intervals. [`residuals`] weighs what no load can make, across the
+//! runs; [`verdict`] judges it, [`outlier`] and [`faults`] name gauges that look wrong, [`determined`] and [`plausible`] say whether
+//! readings and loads can be what they are taken for.
 
+mod determined;
 pub mod errors;
 pub mod faults;
+pub mod gain;
 pub mod history;
 mod kernel;
 pub mod net;
+mod outlier;
+pub mod plausible;
+pub mod residuals;
 mod runs;
 mod solve;
+mod sums;
+mod types;
 pub mod verdict;
 
 pub use errors::ErrorModel;
-pub use runs::*;
+pub use gain::Gain;
+pub use runs::{NORMAL_95, estimate, recover, student_95};
 pub use solve::*;
+pub use sums::Sums;
+pub use types::*;
 
 #[cfg(test)]
 mod tests;

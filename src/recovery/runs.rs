@@ -1,101 +1,96 @@
-//! Static states: one estimate a run, all judged together.
+//! Static states, or samples of a record: one estimate each, all judged together.
 
 use super::errors::ErrorModel;
-use super::solve::fit;
-use super::{faults, verdict};
+use super::gain::Gain;
+use super::residuals::{Out, Pattern, Projection};
+use super::types::{Readings, Recovery, RunEstimate, Widening};
+use super::{determined, faults, plausible, verdict};
 use crate::estimate::LoadEstimate;
 use crate::finding::Finding;
-use crate::linalg::Matrix;
 use crate::sensitivity::Sensitivity;
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, StudentsT};
-
-/// Readings of one static state.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Readings {
-    /// Run name.
-    pub run: String,
-    /// Strain by gauge, zero and reference taken into account; NaN where a gauge gave nothing.
-    pub strain: Vec<f64>,
-    /// Noise variance of these readings in units of that of a single one: `1/n_run + 1/n_zero` for means of `n` effective samples.
-    pub noise_factor: f64,
-}
-
-/// The estimate of one run with its residual.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RunEstimate {
-    /// Loads with covariance.
-    pub estimate: LoadEstimate,
-    /// Predicted strain by gauge.
-    pub predicted: Vec<f64>,
-    /// Reading less prediction; NaN where a gauge gave nothing.
-    pub residual: Vec<f64>,
-    /// 1 sd of each reading, stated noise and model error together.
-    pub sd: Vec<f64>,
-    /// Sum of squares of residuals over sd.
-    pub chi2: f64,
-    /// Readings less loads (plus stated priors).
-    pub dof: usize,
-    /// Leverage by gauge.
-    pub leverage: Vec<f64>,
-    /// Rank of the system.
-    pub rank: usize,
-}
-
-/// All runs.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Recovery {
-    /// In the order given.
-    pub runs: Vec<RunEstimate>,
-    /// Root mean square of all residuals, strain, over the degrees of freedom.
-    pub residual_rms: f64,
-    /// Root mean square residual by gauge, strain.
-    pub gauge_residual_rms: Vec<f64>,
-    /// Mean leverage by gauge.
-    pub gauge_leverage: Vec<f64>,
-    /// What was noticed.
-    pub findings: Vec<Finding>,
-}
+use std::collections::BTreeMap;
 
 /// Factor on sigma of a 95 % interval where sigma is known.
 pub const NORMAL_95: f64 = 1.959_963_984_540_054;
 
 /// Factor on sigma of a 95 % interval where sigma is estimated with `dof` degrees of freedom.
-pub fn student_95(dof: usize) -> f64 {
-    StudentsT::new(0.0, 1.0, dof.max(1) as f64).map_or(NORMAL_95, |t| t.inverse_cdf(0.975))
+pub fn student_95(dof: f64) -> f64 {
+    StudentsT::new(0.0, 1.0, dof.max(1.0)).map_or(NORMAL_95, |t| t.inverse_cdf(0.975))
 }
 
 /// Loads of every run with intervals, and findings on what the residuals say.
 ///
-/// Where the residuals are larger than stated noise and model error explain, the covariance of a run is multiplied by its
-/// `chi2 / dof` (Birge) and its interval takes Student's factor.
+/// Where the residuals are larger than stated noise and model error explain, all covariances are multiplied by `chi2 / dof` (Birge)
+/// and the intervals take Student's factor; a finding says so. A run that stands out by itself takes its own.
 ///
 /// # Reference
 /// R. T. Birge, Phys. Rev. 40 (1932) 207; A. C. Aitken, Proc. R. Soc. Edinburgh 55 (1935) 42.
 pub fn recover(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Recovery {
-    let mut runs: Vec<RunEstimate> = readings
-        .par_iter()
-        .map(|r| estimate(s, r, errors))
-        .collect();
-    let mut findings = verdict::check(s, readings, &runs, errors);
-    if findings.iter().any(|f| verdict::CODES.contains(&f.code)) {
-        findings.extend(faults::check(s, readings, errors));
-        for r in &mut runs {
-            let birge = if r.dof > 0 {
-                r.chi2 / r.dof as f64
-            } else {
-                1.0
-            };
-            if birge > 1.0 {
-                r.estimate.covariance.iter_mut().for_each(|v| *v *= birge);
-                r.estimate.coverage_factor = student_95(r.dof);
+    let (readings, mut findings) = plausible::check(s, readings, errors);
+    let solved = solve(s, &readings, errors);
+    let verdict = verdict::check(s, &readings, &solved, errors);
+    let named = match verdict.misfit {
+        true => faults::check(s, &readings, errors),
+        false => Vec::new(),
+    };
+    findings.extend(unlike(verdict.findings, named));
+    let Solved {
+        mut runs,
+        patterns,
+        typical,
+    } = solved;
+    for (pattern, gain) in &patterns {
+        let Some(gain) = gain else { continue };
+        for (&i, widening) in pattern
+            .runs
+            .iter()
+            .filter_map(|i| Some((i, verdict.by_run.get(*i)?)))
+        {
+            let e = &mut runs[i].estimate;
+            e.covariance = gain.covariance(&e.values, widening);
+            e.coverage_factor = widening.coverage_factor;
+            for l in (0..gain.n_loads()).filter(|&l| !gain.is_seen(l)) {
+                e.values[l] = f64::NAN;
             }
         }
     }
-    let (n, mut sum, mut dof) = (s.gauges.len(), 0.0, 0);
+    let (residual_rms, gauge_residual_rms, gauge_leverage) = residual_sizes(s.gauges.len(), &runs);
+    findings.extend(determined::check(s, &runs));
+    Recovery {
+        runs,
+        residual_rms,
+        gauge_residual_rms,
+        gauge_leverage,
+        findings,
+        widening: verdict.widening,
+        typical,
+    }
+}
+
+/// Both lists without saying the same of a gauge twice: a cause that is named says more than that a gauge stands out, and how far it
+/// stands out more than that it does.
+fn unlike(mut judged: Vec<Finding>, mut named: Vec<Finding>) -> Vec<Finding> {
+    named.retain(|n| {
+        n.code != verdict::GAUGE_SUSPECT
+            || !judged
+                .iter()
+                .any(|f| f.code == n.code && f.subject == n.subject)
+    });
+    judged.retain(|f| {
+        f.code != verdict::GAUGE_SUSPECT || !named.iter().any(|n| n.subject == f.subject)
+    });
+    judged.extend(named);
+    judged
+}
+
+/// Root mean square of all residuals over the degrees of freedom, of each gauge's, and mean leverages.
+fn residual_sizes(n: usize, runs: &[RunEstimate]) -> (f64, Vec<f64>, Vec<f64>) {
+    let (mut sum, mut dof) = (0.0, 0);
     let mut by_gauge = vec![(0.0, 0usize); n];
     let mut leverage = vec![0.0; n];
-    for r in &runs {
+    for r in runs {
         dof += r.dof;
         for g in 0..n {
             leverage[g] += r.leverage[g] / runs.len() as f64;
@@ -106,81 +101,127 @@ pub fn recover(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Re
             }
         }
     }
-    Recovery {
-        runs,
-        residual_rms: if dof > 0 {
-            (sum / dof as f64).sqrt()
-        } else {
-            0.0
-        },
-        gauge_residual_rms: by_gauge
-            .iter()
-            .map(|(q, m)| if *m > 0 { (q / *m as f64).sqrt() } else { 0.0 })
-            .collect(),
-        gauge_leverage: leverage,
-        findings,
-    }
+    let rms = |q: f64, m: usize| if m > 0 { (q / m as f64).sqrt() } else { 0.0 };
+    let gauges = by_gauge.iter().map(|(q, m)| rms(*q, *m)).collect();
+    (rms(sum, dof), gauges, leverage)
 }
 
 /// Iterations between loads and the variances that depend on them; they settle in two or three.
 const ITERATIONS: usize = 4;
 
-/// One run: weights depend on the loads through the model error, so solution and weights alternate.
-pub fn estimate(s: &Sensitivity, r: &Readings, errors: ErrorModel) -> RunEstimate {
-    let (n, k) = (s.gauges.len(), s.loads.len());
-    let used: Vec<usize> = (0..n)
-        .filter(|&g| r.strain.get(g).is_some_and(|v| v.is_finite()))
-        .collect();
-    let a = Matrix::from_fn(used.len(), k, |i, l| s.values[(used[i], l)]);
-    let y: Vec<f64> = used.iter().map(|&g| r.strain[g]).collect();
-    let priors: Vec<Option<f64>> = s
-        .loads
-        .iter()
-        .map(|l| {
-            if l.wanted {
-                None
-            } else {
-                l.expected.filter(|e| *e > 0.0)
-            }
+/// Estimates with intervals as stated errors make them.
+pub(super) struct Solved {
+    pub runs: Vec<RunEstimate>,
+    /// Runs by the gauges that read in them, the most frequent first, and their estimate; `None` where S is not finite.
+    pub patterns: Vec<(Pattern, Option<Gain>)>,
+    /// Loads whose model error weighs the readings.
+    pub typical: Vec<f64>,
+}
+
+/// The runs by the gauges that read in them and by their noise, the most frequent first.
+pub(super) fn patterns(n: usize, readings: &[Readings]) -> Vec<Pattern> {
+    let mut map: BTreeMap<(Vec<usize>, u64), Vec<usize>> = BTreeMap::new();
+    for (i, r) in readings.iter().enumerate() {
+        let used = (0..n)
+            .filter(|&g| r.strain.get(g).is_some_and(|v| v.is_finite()))
+            .collect();
+        map.entry((used, r.noise_factor.to_bits()))
+            .or_default()
+            .push(i);
+    }
+    let mut list: Vec<Pattern> = map
+        .into_iter()
+        .map(|((used, noise), runs)| Pattern {
+            used,
+            noise_factor: f64::from_bits(noise),
+            runs,
         })
         .collect();
-    let scales = s.scales();
-    let mut f = vec![0.0; k];
-    let mut variances = vec![1.0; used.len()];
-    let mut solved = None;
-    let rounds = if errors.model_rel > 0.0 {
-        ITERATIONS
-    } else {
-        1
-    };
-    for round in 0..rounds {
-        variances = if round == 0 {
-            vec![(errors.noise * errors.noise * r.noise_factor).max(f64::MIN_POSITIVE); used.len()]
-        } else {
-            errors
-                .variances(&a, &f, r.noise_factor)
-                .iter()
-                .map(|v| v.max(f64::MIN_POSITIVE))
-                .collect()
-        };
-        solved = fit(&a, &y, &variances, &priors, &scales);
-        match &solved {
-            Some(fit) => f.clone_from(&fit.f),
-            None => break,
+    list.sort_by(|a, b| b.runs.len().cmp(&a.runs.len()).then(a.runs.cmp(&b.runs)));
+    list
+}
+
+/// Loads of every run: weights depend on typical loads through the model's error, so solution and weights alternate.
+pub(super) fn solve(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Solved {
+    let k = s.loads.len();
+    let patterns = patterns(s.gauges.len(), readings);
+    let mut typical = vec![0.0; k];
+    let mut last = at_typical(s, readings, errors, &patterns, &typical);
+    if errors.model_rel > 0.0 {
+        for _ in 0..ITERATIONS {
+            typical = root_mean_squares(k, &last.1);
+            last = at_typical(s, readings, errors, &patterns, &typical);
         }
     }
-    if errors.model_rel > 0.0 {
-        variances = errors
-            .variances(&a, &f, r.noise_factor)
-            .iter()
-            .map(|v| v.max(f64::MIN_POSITIVE))
-            .collect();
+    let (gains, loads) = last;
+    let mut runs: Vec<Option<RunEstimate>> = vec![None; readings.len()];
+    for (p, gain) in patterns.iter().zip(&gains) {
+        let projection = Projection::new(s, p, errors, &typical, Out::Unstated);
+        for &i in &p.runs {
+            let run = estimate_of(s, &readings[i], errors, p, gain.as_ref(), &loads[i]);
+            runs[i] = Some(match &projection {
+                Some(projection) => RunEstimate {
+                    chi2: projection.chi2_of_run(&projection.of(p, &readings[i].strain), &loads[i]),
+                    dof: projection.m(),
+                    ..run
+                },
+                None => run,
+            });
+        }
     }
+    Solved {
+        runs: runs.into_iter().flatten().collect(),
+        patterns: patterns.into_iter().zip(gains).collect(),
+        typical,
+    }
+}
+
+/// The estimate of each pattern for weights at `typical` loads, and the loads of every run.
+fn at_typical(
+    s: &Sensitivity,
+    readings: &[Readings],
+    errors: ErrorModel,
+    patterns: &[Pattern],
+    typical: &[f64],
+) -> (Vec<Option<Gain>>, Vec<Vec<f64>>) {
+    let gains: Vec<Option<Gain>> = patterns
+        .par_iter()
+        .map(|p| Gain::new(s, &p.used, errors, p.noise_factor, typical))
+        .collect();
+    let mut loads = vec![vec![0.0; s.loads.len()]; readings.len()];
+    for (p, gain) in patterns.iter().zip(&gains) {
+        let Some(gain) = gain else { continue };
+        for &i in &p.runs {
+            loads[i] = gain.loads(&readings[i].strain);
+        }
+    }
+    (gains, loads)
+}
+
+fn root_mean_squares(k: usize, loads: &[Vec<f64>]) -> Vec<f64> {
+    (0..k)
+        .map(|l| {
+            let sum: f64 = loads.iter().map(|f| f[l] * f[l]).sum();
+            (sum / loads.len().max(1) as f64).sqrt()
+        })
+        .collect()
+}
+
+/// One run without its residual's judgement.
+fn estimate_of(
+    s: &Sensitivity,
+    r: &Readings,
+    errors: ErrorModel,
+    pattern: &Pattern,
+    gain: Option<&Gain>,
+    f: &[f64],
+) -> RunEstimate {
+    let (n, k) = (s.gauges.len(), s.loads.len());
     let mut out = RunEstimate {
         estimate: LoadEstimate {
             run: r.run.clone(),
             names: s.loads.iter().map(|l| l.name.clone()).collect(),
-            values: f.clone(),
+            values: f.to_vec(),
             covariance: vec![f64::INFINITY; k * k],
             coverage_factor: NORMAL_95,
             findings: Vec::new(),
@@ -193,29 +234,30 @@ pub fn estimate(s: &Sensitivity, r: &Readings, errors: ErrorModel) -> RunEstimat
         leverage: vec![0.0; n],
         rank: 0,
     };
-    let Some(fit) = solved else { return out };
-    for l in 0..k {
-        for m in 0..k {
-            out.estimate.covariance[l * k + m] = fit.covariance[(l, m)];
-        }
-        out.estimate.covariance[l * k + l] += errors.column_variance(f[l]);
+    let Some(gain) = gain else { return out };
+    out.estimate.covariance = gain.covariance(f, &Widening::none());
+    out.rank = gain.rank;
+    for (g, row) in s.values.row_iter().enumerate() {
+        out.predicted[g] = row.iter().zip(f).map(|(s, f)| s * f).sum();
     }
-    for g in 0..n {
-        out.predicted[g] = (0..k).map(|l| s.values[(g, l)] * f[l]).sum();
+    let noise = errors.noise_variance(r.noise_factor);
+    for (&g, leverage) in pattern.used.iter().zip(&gain.leverage) {
+        out.residual[g] = r.strain[g] - out.predicted[g];
+        out.sd[g] = (noise + errors.shared(s.values.row(g).iter().copied(), f, f)).sqrt();
+        out.leverage[g] = *leverage;
     }
-    for (i, &g) in used.iter().enumerate() {
-        out.residual[g] = y[i] - out.predicted[g];
-        out.sd[g] = variances[i].sqrt();
-        out.chi2 += out.residual[g].powi(2) / variances[i];
-        out.leverage[g] = fit.leverage[i];
-    }
-    for (l, p) in priors.iter().enumerate() {
-        if let Some(p) = p {
-            out.chi2 += (f[l] / p).powi(2);
-        }
-    }
-    let stated = priors.iter().flatten().count();
-    out.dof = (used.len() + stated).saturating_sub(fit.rank);
-    out.rank = fit.rank;
     out
+}
+
+/// One run by itself, its interval as stated errors make it.
+pub fn estimate(s: &Sensitivity, r: &Readings, errors: ErrorModel) -> RunEstimate {
+    let solved = solve(s, std::slice::from_ref(r), errors);
+    solved.runs.into_iter().next().unwrap_or_else(|| {
+        let nothing = Pattern {
+            used: Vec::new(),
+            noise_factor: r.noise_factor,
+            runs: Vec::new(),
+        };
+        estimate_of(s, r, errors, &nothing, None, &vec![f64::NAN; s.loads.len()])
+    })
 }

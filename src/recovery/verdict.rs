@@ -1,14 +1,19 @@
 //! What the residual says: do stated noise and model error explain it, and if not, can the loads be trusted?
 
+use super::NORMAL_95;
 use super::errors::ErrorModel;
-use super::runs::{Readings, RunEstimate};
+use super::outlier;
+use super::residuals::{Joint, Out, Projection};
+use super::runs::{Solved, student_95};
+use super::types::{Readings, RunEstimate, Widening};
 use crate::finding::{Finding, Severity};
 use crate::linalg::{Matrix, dense};
 use crate::sensitivity::Sensitivity;
+use crate::units::MICROSTRAIN;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-/// Findings of this module that widen the intervals.
-pub const CODES: [&str; 2] = ["strain-not-explained", "residual-above-stated-errors"];
+/// Code of a finding on a gauge whose error stands out.
+pub const GAUGE_SUSPECT: &str = "gauge-suspect";
 
 /// Chance under which a sum of squares counts as larger than stated errors make it.
 const SIGNIFICANT: f64 = 1e-3;
@@ -18,6 +23,21 @@ const BEYOND_DOUBT: f64 = 1e-6;
 const EXPLAINED_LIMIT: f64 = 0.05;
 /// `sqrt(chi2 / dof)` under which a misfit is small next to stated errors whatever its share.
 const BIRGE_LIMIT: f64 = 3.0;
+/// Sets of runs with the same silent gauges that are judged together; what is left are a few runs each.
+const PATTERNS: usize = 4;
+/// Degrees of freedom from which residuals can be called too small.
+const ENOUGH: usize = 10;
+
+/// Findings, and what they do to the intervals.
+pub(super) struct Verdict {
+    pub findings: Vec<Finding>,
+    /// Whether stated errors don't explain the residuals.
+    pub misfit: bool,
+    /// Of all runs.
+    pub widening: Widening,
+    /// Of each run.
+    pub by_run: Vec<Widening>,
+}
 
 /// Chance of a sum of squares at least as large, where the stated errors are right.
 pub fn chance(chi2: f64, dof: usize) -> f64 {
@@ -27,61 +47,249 @@ pub fn chance(chi2: f64, dof: usize) -> f64 {
     ChiSquared::new(dof as f64).map_or(1.0, |d| d.sf(chi2))
 }
 
+/// How far residuals exceed stated errors.
+struct Evidence {
+    /// Chance of residuals as large, and as small.
+    high: f64,
+    low: f64,
+    /// `sqrt(chi2 / dof)` of the test that says so.
+    excess: f64,
+    /// The same of the runs by themselves, over which the intervals are taken.
+    pooled: f64,
+    /// Independent errors behind it.
+    effective: f64,
+}
+
 /// Findings on rank, redundancy and the size of the residuals.
-pub fn check(
+pub(super) fn check(
     s: &Sensitivity,
     readings: &[Readings],
-    runs: &[RunEstimate],
+    solved: &Solved,
     errors: ErrorModel,
-) -> Vec<Finding> {
-    let mut findings = Vec::new();
-    let dof: usize = runs.iter().map(|r| r.dof).sum();
-    let chi2: f64 = runs.iter().map(|r| r.chi2).sum();
-    for r in runs.iter().filter(|r| r.rank < s.loads.len()) {
-        findings.push(Finding::new(
-            Severity::Error,
-            "run-not-solvable",
-            &r.estimate.run,
-            "the gauges that read in this run don't separate the loads: some of its values are arbitrary",
-            "bring the silent gauges back, drop loads, or state `expected` for loads with role \"nuisance\"",
-        ));
-    }
-    if dof == 0 {
-        findings.push(Finding::new(
+) -> Verdict {
+    let runs = &solved.runs;
+    let mut verdict = Verdict {
+        findings: unsolvable(s, solved),
+        misfit: false,
+        widening: Widening::none(),
+        by_run: vec![Widening::none(); runs.len()],
+    };
+    if runs.iter().all(|r| r.dof == 0) {
+        verdict.findings.push(Finding::new(
             Severity::Warning,
             "no-redundancy",
             "gauges",
             "there are no more gauges than loads: the residual is zero whatever the readings, and a faulty gauge can't be noticed",
             "add gauges: each one above the number of loads checks the rest",
         ));
-        return findings;
+        return verdict;
     }
-    let p = chance(chi2, dof);
-    let birge = (chi2 / dof as f64).sqrt();
-    let share = |pairs: &[(&Readings, &RunEstimate)]| {
-        let (mut r2, mut y2, mut n, mut free) = (0.0, 0.0, 0usize, 0usize);
-        for (y, r) in pairs {
-            free += r.dof;
-            for (v, e) in y
-                .strain
-                .iter()
-                .zip(&r.residual)
-                .filter(|(v, _)| v.is_finite())
-            {
-                y2 += v * v;
-                r2 += e * e;
-                n += 1;
+    let joints = joints(s, readings, solved, errors);
+    let evidence = weigh(s, runs, &joints);
+    verdict.misfit = evidence.high < SIGNIFICANT;
+    if verdict.misfit && evidence.pooled > 1.0 {
+        verdict.widening = widened(evidence.pooled, evidence.effective);
+    }
+    verdict.by_run = runs
+        .iter()
+        .map(|r| {
+            let own = r.chi2 / r.dof.max(1) as f64;
+            let alone = chance(r.chi2, r.dof) < SIGNIFICANT / runs.len() as f64;
+            match verdict.misfit && alone && own.sqrt() > evidence.pooled {
+                true => widened(own.sqrt(), r.dof as f64),
+                false => verdict.widening.clone(),
             }
+        })
+        .collect();
+    let sizes = Sizes::of(s, readings, runs);
+    verdict
+        .findings
+        .extend(size_finding(&evidence, &sizes, errors));
+    let gauges = outlier::check(s, solved, joints.first());
+    verdict.findings.extend(gauges.findings);
+    for w in verdict.by_run.iter_mut().chain([&mut verdict.widening]) {
+        w.shifts.clone_from(&gauges.shifts);
+    }
+    verdict
+}
+
+fn widened(birge: f64, dof: f64) -> Widening {
+    Widening {
+        variance_factor: birge * birge,
+        coverage_factor: student_95(dof).max(NORMAL_95),
+        shifts: Vec::new(),
+    }
+}
+
+/// Runs whose gauges don't tell some of the loads.
+fn unsolvable(s: &Sensitivity, solved: &Solved) -> Vec<Finding> {
+    let mut out = Vec::new();
+    for (pattern, gain) in &solved.patterns {
+        let unseen: Vec<&str> = s
+            .loads
+            .iter()
+            .enumerate()
+            .filter(|(l, load)| load.wanted && gain.as_ref().is_none_or(|g| !g.is_seen(*l)))
+            .map(|(_, load)| load.name.as_str())
+            .collect();
+        if unseen.is_empty() {
+            continue;
         }
-        if y2 > 0.0 && free > 0 {
-            (r2 / y2 * n as f64 / free as f64).sqrt()
+        let names: Vec<&str> = pattern
+            .runs
+            .iter()
+            .filter_map(|&i| solved.runs.get(i).map(|r| r.estimate.run.as_str()))
+            .collect();
+        let silent = s.gauges.len() - pattern.used.len();
+        let why = match silent {
+            0 => "the gauges don't separate".to_owned(),
+            n => format!("{n} gauges are silent, and the others don't tell"),
+        };
+        out.push(Finding::new(
+            Severity::Error,
+            "run-not-solvable",
+            names.join(", "),
+            format!("{why} {}: these loads are left blank", unseen.join(", ")),
+            "bring the silent gauges back, drop loads, or state `expected` for loads with role \"nuisance\"",
+        ));
+    }
+    out
+}
+
+/// The most frequent patterns of silent gauges, each judged over its runs together. All loads are taken out, those of a stated size
+/// too: whether a nuisance load is the same in all runs is not known.
+fn joints(
+    s: &Sensitivity,
+    readings: &[Readings],
+    solved: &Solved,
+    errors: ErrorModel,
+) -> Vec<Joint> {
+    let most = solved.patterns.iter().take(PATTERNS);
+    most.filter_map(|(pattern, gain)| {
+        gain.as_ref()?;
+        let projection = Projection::new(s, pattern, errors, &solved.typical, Out::All)?;
+        let strain: Vec<&[f64]> = pattern
+            .runs
+            .iter()
+            .map(|&i| readings.get(i).map_or(&[][..], |r| &r.strain))
+            .collect();
+        let loads: Vec<Vec<f64>> = pattern
+            .runs
+            .iter()
+            .map(|&i| solved.runs[i].estimate.values.clone())
+            .collect();
+        projection.judge(pattern, &strain, &loads)
+    })
+    .collect()
+}
+
+/// All tests together, each held against its share of the chance (Bonferroni).
+fn weigh(s: &Sensitivity, runs: &[RunEstimate], joints: &[Joint]) -> Evidence {
+    let ratio = |chi2: f64, dof: usize| (chi2 / dof.max(1) as f64).sqrt();
+    let (chi2, dof) = runs
+        .iter()
+        .fold((0.0, 0), |a, r| (a.0 + r.chi2, a.1 + r.dof));
+    let mut tests: Vec<(f64, f64)> = joints
+        .iter()
+        .map(|j| (chance(j.chi2, j.dof), ratio(j.chi2, j.dof)))
+        .collect();
+    // Nuisance loads beyond their stated sizes show in the runs one by one.
+    if joints.is_empty() || s.priors().iter().any(Option::is_some) {
+        let worst = runs
+            .iter()
+            .map(|r| (chance(r.chi2, r.dof), ratio(r.chi2, r.dof)))
+            .min_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
+        tests.extend(worst.map(|(p, r)| ((p * runs.len() as f64).min(1.0), r)));
+    }
+    let n = tests.len() as f64;
+    let (high, excess) = tests
+        .iter()
+        .map(|(p, r)| ((p * n).min(1.0), *r))
+        .min_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)))
+        .unwrap_or((1.0, 1.0));
+    let low = joints
+        .iter()
+        .filter(|j| j.dof >= ENOUGH)
+        .map(|j| n * (1.0 - chance(j.chi2, j.dof)))
+        .fold(1.0, f64::min);
+    let effective: f64 = joints.iter().map(|j| j.effective).sum();
+    let of_one = runs.iter().map(|r| r.dof).max().unwrap_or(1) as f64;
+    Evidence {
+        high,
+        low,
+        excess: if high < SIGNIFICANT {
+            excess
         } else {
-            0.0
+            ratio(
+                joints.iter().map(|j| j.chi2).sum(),
+                joints.iter().map(|j| j.dof).sum(),
+            )
+        },
+        pooled: ratio(chi2, dof),
+        effective: if joints.is_empty() { of_one } else { effective },
+    }
+}
+
+/// Sizes of residuals against readings.
+struct Sizes {
+    /// Residual over readings, root mean squares, of all runs.
+    share: f64,
+    /// Runs that are beyond doubt by themselves.
+    bad: Vec<String>,
+    /// Runs.
+    n: usize,
+    /// Patterns among the residuals.
+    patterns: usize,
+}
+
+impl Sizes {
+    fn of(s: &Sensitivity, readings: &[Readings], runs: &[RunEstimate]) -> Self {
+        let pairs: Vec<(&Readings, &RunEstimate)> = readings.iter().zip(runs).collect();
+        let each = runs.len() as f64;
+        let bad = pairs
+            .iter()
+            .filter(|(_, r)| {
+                each * chance(r.chi2, r.dof) < BEYOND_DOUBT
+                    && (r.chi2 / r.dof.max(1) as f64).sqrt() > BIRGE_LIMIT
+            })
+            .filter(|pair| share(&[**pair]) > EXPLAINED_LIMIT)
+            .map(|(_, r)| r.estimate.run.clone())
+            .collect();
+        Self {
+            share: share(&pairs),
+            bad,
+            n: runs.len(),
+            patterns: patterns(s.gauges.len(), runs),
         }
-    };
-    let pairs: Vec<(&Readings, &RunEstimate)> = readings.iter().zip(runs).collect();
-    let all = share(&pairs);
-    let noise = errors.noise * 1e6;
+    }
+}
+
+/// Residual over readings, root mean squares, the residual over its degrees of freedom.
+fn share(pairs: &[(&Readings, &RunEstimate)]) -> f64 {
+    let (mut r2, mut y2, mut n, mut free) = (0.0, 0.0, 0usize, 0usize);
+    for (y, r) in pairs {
+        free += r.dof;
+        for (v, e) in y
+            .strain
+            .iter()
+            .zip(&r.residual)
+            .filter(|(v, _)| v.is_finite())
+        {
+            y2 += v * v;
+            r2 += e * e;
+            n += 1;
+        }
+    }
+    if y2 > 0.0 && free > 0 {
+        (r2 / y2 * n as f64 / free as f64).sqrt()
+    } else {
+        0.0
+    }
+}
+
+/// Whether the residuals are larger or smaller than stated errors make them, in words.
+fn size_finding(evidence: &Evidence, sizes: &Sizes, errors: ErrorModel) -> Option<Finding> {
+    let noise = errors.noise / MICROSTRAIN;
     let stated = match errors.model_rel {
         r if r > 0.0 => format!(
             "noise of {noise} microstrain and a model uncertainty of {} %",
@@ -89,82 +297,78 @@ pub fn check(
         ),
         _ => format!("noise of {noise} microstrain"),
     };
-    let patterns = patterns(runs);
-    let remedy = match patterns {
-        0 | 1 => "look for a load that acts and is not among the [[load]] (payload, lateral forces, temperature), or a faulty gauge".to_owned(),
-        m => format!(
-            "the residuals of the runs follow {m} patterns: look for {m} loads or effects that act and are not among the [[load]] (payload and \
-             its moments, lateral forces, temperature), then for a faulty gauge"
-        ),
-    };
-    let bad: Vec<&str> = pairs
-        .iter()
-        .filter(|(_, r)| {
-            chance(r.chi2, r.dof) < BEYOND_DOUBT
-                && (r.chi2 / r.dof.max(1) as f64).sqrt() > BIRGE_LIMIT
-        })
-        .filter(|pair| share(&[**pair]) > EXPLAINED_LIMIT)
-        .map(|(_, r)| r.estimate.run.as_str())
-        .collect();
-    if p < BEYOND_DOUBT && birge > BIRGE_LIMIT && (all > EXPLAINED_LIMIT || !bad.is_empty()) {
-        let subject = if bad.is_empty() || bad.len() == runs.len() {
+    let excess = evidence.excess;
+    let beyond = evidence.high < BEYOND_DOUBT && excess > BIRGE_LIMIT;
+    if beyond && (sizes.share > EXPLAINED_LIMIT || !sizes.bad.is_empty()) {
+        let subject = if sizes.bad.is_empty() || sizes.bad.len() == sizes.n {
             "all runs".to_owned()
         } else {
-            bad.join(", ")
+            sizes.bad.join(", ")
         };
-        findings.push(
+        return Some(
             Finding::new(
                 Severity::Error,
                 "strain-not-explained",
                 subject,
                 format!(
-                    "the loads asked for leave {:.0} % of the measured strain unexplained, {birge:.1} times what {stated} make: something \
+                    "the loads asked for leave {:.0} % of the measured strain unexplained, {excess:.1} times what {stated} make: something \
                      else strains the structure, and these loads have taken over part of it. They can't be trusted, nor can their intervals",
-                    all * 100.0
+                    sizes.share * 100.0
                 ),
-                remedy,
+                missing_load_remedy(sizes.patterns),
             )
-            .with_numbers(birge, BIRGE_LIMIT),
+            .with_numbers(excess, BIRGE_LIMIT),
         );
-    } else if p < SIGNIFICANT {
-        findings.push(
+    }
+    if evidence.high < SIGNIFICANT {
+        let then = if evidence.pooled > 1.0 {
+            format!("intervals are {:.2} times as wide", evidence.pooled)
+        } else {
+            "intervals stay as they are, since the model's stated error is most of their width"
+                .to_owned()
+        };
+        return Some(
             Finding::new(
                 Severity::Warning,
                 "residual-above-stated-errors",
                 "residual",
                 format!(
-                    "residuals are {birge:.2} times what {stated} make ({:.1} % of the measured strain): intervals are widened accordingly",
-                    all * 100.0
+                    "residuals are {excess:.2} times what {stated} make ({:.1} % of the measured strain): {then}",
+                    sizes.share * 100.0
                 ),
                 "state the noise and `model_uncertainty_rel` you believe in; if you do, a small load is missing or a gauge is off",
             )
-            .with_numbers(birge, 1.0),
-        );
-    } else if 1.0 - p < BEYOND_DOUBT && dof >= 10 {
-        findings.push(
-            Finding::new(
-                Severity::Info,
-                "residual-below-stated-errors",
-                "residual",
-                format!("residuals are {birge:.2} times what {stated} make: intervals are wider than the readings call for"),
-                "state a smaller noise or model uncertainty, if that is what you believe",
-            )
-            .with_numbers(birge, 1.0),
+            .with_numbers(excess, 1.0),
         );
     }
-    findings
+    (evidence.low < BEYOND_DOUBT).then(|| {
+        Finding::new(
+            Severity::Info,
+            "residual-below-stated-errors",
+            "residual",
+            format!("residuals are {excess:.2} times what {stated} make: intervals are wider than the readings call for"),
+            "state a smaller noise or model uncertainty, if that is what you believe",
+        )
+        .with_numbers(excess, 1.0)
+    })
+}
+
+fn missing_load_remedy(patterns: usize) -> String {
+    match patterns {
+        0 | 1 => "look for a load that acts and is not among the [[load]] (payload, lateral forces, temperature), or a faulty gauge".to_owned(),
+        m => format!(
+            "the residuals of the runs follow {m} patterns: look for {m} loads or effects that act and are not among the [[load]] (payload and \
+             its moments, lateral forces, temperature), then for a faulty gauge"
+        ),
+    }
 }
 
 /// Number of patterns among the residuals of the runs that stand out of noise: singular values above the largest one of pure noise.
-fn patterns(runs: &[RunEstimate]) -> usize {
-    let Some(first) = runs.first() else { return 0 };
-    let (n, m) = (first.residual.len(), runs.len());
+fn patterns(n: usize, runs: &[RunEstimate]) -> usize {
+    let m = runs.len();
     let std = |g: usize, r: &RunEstimate| {
-        if r.residual[g].is_finite() && r.sd[g] > 0.0 {
-            r.residual[g] / r.sd[g]
-        } else {
-            0.0
-        }
+        let v = r.residual[g] / r.sd[g];
+        if v.is_finite() { v } else { 0.0 }
     };
     let a = Matrix::from_fn(
         n.max(m),

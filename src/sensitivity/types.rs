@@ -1,6 +1,7 @@
 //! The matrix with its names and scales.
 
 use crate::linalg::{Matrix, dense};
+use crate::units::Quantity;
 
 /// A column of S.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,6 +12,8 @@ pub struct Load {
     pub expected: Option<f64>,
     /// Asked for, or present but not asked for.
     pub wanted: bool,
+    /// Force or moment, where that is known: sizes of loads are compared within a kind.
+    pub quantity: Option<Quantity>,
 }
 
 impl Load {
@@ -20,7 +23,13 @@ impl Load {
             name: name.into(),
             expected: None,
             wanted: true,
+            quantity: None,
         }
+    }
+
+    /// What is known of it beforehand, 1 sd about zero: the stated size of a nuisance load, `None` for a wanted one.
+    pub fn prior(&self) -> Option<f64> {
+        self.expected.filter(|e| !self.wanted && *e > 0.0)
     }
 }
 
@@ -52,6 +61,11 @@ impl Sensitivity {
                 })
                 .collect()
         })
+    }
+
+    /// [`Load::prior`] of every load.
+    pub fn priors(&self) -> Vec<Option<f64>> {
+        self.loads.iter().map(Load::prior).collect()
     }
 
     /// S with its columns times [`Self::scales`].

@@ -3,6 +3,7 @@
 use super::error::{ErrorKind, StudyError};
 use crate::linalg::{Matrix, dense};
 use crate::recovery::{Fit, fit, student_95};
+use crate::units::MICROSTRAIN;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -155,9 +156,9 @@ fn trial(
                     own * (1.0 + error.size * normal(&mut random))
                 }
                 ErrorKind::AbsoluteUniform => {
-                    own + MICRO * error.size * random.random_range(-1.0..=1.0)
+                    own + MICROSTRAIN * error.size * random.random_range(-1.0..=1.0)
                 }
-                ErrorKind::AbsoluteNormal => own + MICRO * error.size * normal(&mut random),
+                ErrorKind::AbsoluteNormal => own + MICROSTRAIN * error.size * normal(&mut random),
                 ErrorKind::Angle => {
                     let turn = (error.size * normal(&mut random)).to_radians();
                     match &gauge.turned {
@@ -198,7 +199,7 @@ fn trial(
                 chi2 += (f / sd).powi(2);
             }
         }
-        let factor = student_95(spare) * (chi2 / spare as f64).sqrt();
+        let factor = student_95(spare as f64) * (chi2 / spare as f64).sqrt();
         (0..k)
             .map(|l| (found[l] - truth[l]).abs() <= factor * fit.covariance[(l, l)].sqrt())
             .collect()
@@ -213,6 +214,3 @@ fn turned(e0: f64, e45: f64, e90: f64, angle: f64) -> f64 {
     let (mean, half) = ((e0 + e90) / 2.0, (e0 - e90) / 2.0);
     mean + half * (2.0 * angle).cos() + (e45 - mean) * (2.0 * angle).sin()
 }
-
-/// Strain in one microstrain.
-const MICRO: f64 = 1e-6;

@@ -19,3 +19,5 @@ pub use unit::*;
 
 /// Strain in one microstrain.
 pub const MICROSTRAIN: f64 = 1e-6;
+/// Units in one thousand of them: newtons in a kilonewton.
+pub const KILO: f64 = 1e3;

@@ -59,6 +59,7 @@ pub fn columns<'a>(cases: &'a [CaseResult], names: &[&str], expected: f64) -> Ve
                 name: (*name).to_owned(),
                 expected: Some(expected),
                 wanted: true,
+                quantity: None,
             },
             applied: 1.0,
             case,

@@ -27,6 +27,7 @@ fn all_loads() -> Vec<LoadCaseOf<'static>> {
                     name: name.replace("FZ", component),
                     expected: Some(size),
                     wanted: false,
+                    quantity: None,
                 },
                 applied: 1.0,
                 case,

@@ -179,6 +179,14 @@ impl JobLoad {
         self.subcase.unwrap_or(self.number)
     }
 
+    /// Force or moment; `None` for a load set.
+    pub fn quantity(&self) -> Option<Quantity> {
+        match self.acts {
+            LoadActs::AtGrid { component, .. } => Some(component.quantity()),
+            LoadActs::Set(_) => None,
+        }
+    }
+
     /// The unit in which it is reported; `None` for a load set, which is counted in times the set.
     pub fn report_unit(&self, units: &ReportUnits) -> Option<Unit> {
         match self.acts {

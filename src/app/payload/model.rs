@@ -16,6 +16,7 @@ use crate::linalg::Matrix;
 use crate::model::{GridIx, Model, Vec3};
 use crate::payload::PayloadModel;
 use crate::sensitivity::check_separability;
+use crate::units::MICROSTRAIN;
 
 /// The model of the payload with what the report draws.
 pub(super) struct Parts {
@@ -286,7 +287,7 @@ fn given(work: &mut Work, task: &mut Task, use_strain: bool) -> Result<Parts, Fa
                 };
                 match table.number(row, c) {
                     Ok(v) => {
-                        let per = MICRO * mass / task.weight_of_mass;
+                        let per = MICROSTRAIN * mass / task.weight_of_mass;
                         payload[(g, k)] =
                             v.unwrap_or(0.0) * per * if k == 0 { 1.0 } else { length };
                     }
@@ -318,6 +319,3 @@ fn given(work: &mut Work, task: &mut Task, use_strain: bool) -> Result<Parts, Fa
         prepared: Some(prepared),
     })
 }
-
-/// Strain in one microstrain.
-const MICRO: f64 = 1e-6;

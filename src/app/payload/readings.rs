@@ -11,12 +11,10 @@ use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::payload::{PayloadModel, PayloadRun};
 use crate::recovery::net::{Net, WEAK, mean_of, net};
+use crate::units::MICROSTRAIN;
 
 /// Noise of a wheel force where the job states none, of the largest.
 pub(super) const ASSUMED_NOISE: f64 = 0.01;
-
-/// Strain in one microstrain.
-const MICRO: f64 = 1e-6;
 
 /// What was read.
 pub(super) struct Readings {
@@ -216,7 +214,7 @@ fn strain(
     let table = work.stage("read strain", |s| {
         read_strain(&mut s.inputs, task.job, &measured.strain)
     })?;
-    let noise = measured.noise_microstrain * MICRO;
+    let noise = measured.noise_microstrain * MICROSTRAIN;
     let zero: Vec<Option<Net>> = match &measured.zero {
         Some(named) => {
             let t = read_strain(&mut work.inputs, task.job, named)?;
@@ -292,7 +290,7 @@ fn by_gauge(table: &StrainTable, model: &PayloadModel) -> Vec<Vec<f64>> {
                 .map(|i| {
                     column
                         .and_then(|c| table.row(i).get(c))
-                        .map_or(f64::NAN, |v| v * MICRO)
+                        .map_or(f64::NAN, |v| v * MICROSTRAIN)
                 })
                 .collect()
         })
@@ -338,8 +336,8 @@ fn net_rows(model: &PayloadModel, runs: &[(String, Vec<Net>)]) -> Vec<NetReading
             .map(|(g, n)| NetReading {
                 run: run.clone(),
                 name: g.clone(),
-                net_microstrain: finite(n.value / MICRO),
-                sigma_microstrain: finite(n.sigma / MICRO),
+                net_microstrain: finite(n.value / MICROSTRAIN),
+                sigma_microstrain: finite(n.sigma / MICROSTRAIN),
                 signal_to_noise: finite(n.signal_to_noise()),
             })
             .collect()

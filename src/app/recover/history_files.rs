@@ -6,8 +6,8 @@ use crate::app::context::Progress;
 use crate::app::fault::Fault;
 use crate::app::output::Output;
 use crate::app::strain::LoadUnits;
-use crate::recovery::NORMAL_95;
-use crate::recovery::history::{Filter, Sums};
+use crate::recovery::history::Filter;
+use crate::recovery::{Gain, Sums};
 use crate::series::number::push_seven_digits;
 use rayon::prelude::*;
 use std::io::Write;
@@ -35,9 +35,12 @@ impl Form<'_> {
             rows: Vec::new(),
             numbers: Vec::new(),
         };
-        let loads = piece.loads.chunks_exact(self.filter.n_loads().max(1));
+        let loads = piece
+            .loads
+            .values
+            .chunks_exact(self.filter.n_loads().max(1));
         if self.numbers {
-            text.numbers.reserve(piece.loads.len() * 4);
+            text.numbers.reserve(piece.loads.values.len() * 4);
             for f in loads.clone() {
                 for (v, u) in f.iter().zip(self.units) {
                     let number = (v * u.factor) as f32;
@@ -46,25 +49,34 @@ impl Form<'_> {
             }
         }
         let skipped = (self.stride - first % self.stride) % self.stride;
-        for (t, f) in piece
+        let mut gaps = piece.loads.gaps.iter().peekable();
+        for (i, (t, f)) in piece
             .times
             .iter()
             .zip(loads)
+            .enumerate()
             .skip(skipped)
             .step_by(self.stride)
         {
-            self.row(*t, f, &mut text.rows);
+            while gaps.next_if(|g| g.0 < i).is_some() {}
+            let gap = gaps.next_if(|g| g.0 == i).and_then(|g| g.1.as_deref());
+            self.row(*t, f, gap, &mut text.rows);
         }
         text
     }
 
-    fn row(&self, t: f64, f: &[f64], out: &mut Vec<u8>) {
+    /// A row of `loads.csv`; `gap`: the estimate of a sample in which some gauge gave nothing.
+    fn row(&self, t: f64, f: &[f64], gap: Option<&Gain>, out: &mut Vec<u8>) {
         out.extend_from_slice(t.to_string().as_bytes());
-        for ((v, s), u) in f.iter().zip(self.filter.sigma(f)).zip(self.units) {
-            let half = NORMAL_95 * s;
+        let sigma = match gap {
+            Some(gain) => self.filter.sigma_with(gain, f),
+            None => self.filter.sigma(f),
+        };
+        for ((v, s), u) in f.iter().zip(sigma).zip(self.units) {
+            let half = self.filter.coverage_factor() * s;
             for shown in [*v, v - half, v + half] {
                 out.push(b',');
-                if v.is_finite() {
+                if v.is_finite() && s.is_finite() {
                     push_seven_digits(out, shown * u.factor);
                 }
             }

@@ -24,9 +24,7 @@ use crate::model::Model;
 use crate::recovery::{ErrorModel, Readings, Recovery};
 use crate::series::foreign::Foreign;
 use crate::series::{binary, rpc};
-
-/// Strain in one microstrain.
-const MICRO: f64 = 1e-6;
+use crate::units::MICROSTRAIN;
 
 /// What runs and records share.
 struct Task<'a> {
@@ -98,7 +96,7 @@ fn task_of<'a>(
         measured,
         prepared,
         errors: ErrorModel {
-            noise: measured.noise_microstrain * MICRO,
+            noise: measured.noise_microstrain * MICROSTRAIN,
             model_rel: measured.model_uncertainty_rel,
         },
         zero,

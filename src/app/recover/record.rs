@@ -3,7 +3,8 @@
 use super::csv_record::{self, Layout};
 use crate::app::fault::Fault;
 use crate::app::files::FileBytes;
-use crate::recovery::history::{Filter, Sums};
+use crate::recovery::Sums;
+use crate::recovery::history::{Filter, SampleLoads};
 use crate::series::binary::{self, Header};
 use crate::series::{Channels, rpc};
 
@@ -76,7 +77,7 @@ impl Record {
                 csv_record::read_piece(
                     &self.file,
                     &self.bytes,
-                    pieces[i],
+                    pieces.get(i).copied().unwrap_or_default(),
                     l,
                     &self.columns,
                     &mut times,
@@ -91,18 +92,18 @@ impl Record {
 /// Loads of a piece.
 pub(super) struct Piece {
     pub times: Vec<f64>,
-    pub loads: Vec<f64>,
+    pub loads: SampleLoads,
     pub sums: Sums,
 }
 
 /// Loads of piece `i`.
 pub(super) fn process(record: &Record, filter: &Filter, i: usize) -> Result<Piece, Fault> {
     let mut sums = Sums::new(filter.n_gauges(), filter.n_loads());
-    let mut loads = Vec::new();
+    let mut loads = SampleLoads::default();
     let times = match &record.source {
         Source::Binary(h) => {
             let (from, to) = (i * SAMPLES, ((i + 1) * SAMPLES).min(h.samples));
-            loads.reserve((to - from) * filter.n_loads());
+            loads.values.reserve((to - from) * filter.n_loads());
             let mut values = Vec::with_capacity(BLOCK * record.columns.len());
             for block in (from..to).step_by(BLOCK) {
                 values.clear();

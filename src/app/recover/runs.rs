@@ -1,7 +1,7 @@
 //! Static states.
 
+use super::Task;
 use super::derived::{write_arrows, write_nastran_runs};
-use super::{MICRO, Task};
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::strain::{StrainRows, StrainTable, read_strain};
 use crate::app::job::{Job, LoadActs, LoadFile, Measured, NamedFile};
@@ -10,12 +10,13 @@ use crate::app::strain::{LoadUnits, load_units};
 use crate::app::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::recovery::net::effective_samples;
-use crate::recovery::{Readings, Recovery, recover};
+use crate::recovery::{NORMAL_95, Readings, Recovery, recover};
 use crate::report::csv_cell;
 use crate::report::figure::GaugePoints;
 use crate::report::scene::{Shown, run_arrows, scene_of_job};
 use crate::report::spreadsheet::{residual_sheet, runs_sheet};
 use crate::report::strain::{Recovered, RecoveredRun, recover_page};
+use crate::units::MICROSTRAIN;
 use serde_json::{Value, json};
 use std::io::Write;
 
@@ -89,7 +90,7 @@ pub(super) fn zero_of(
             *z = f64::NAN;
             continue;
         }
-        *z = v.iter().sum::<f64>() / v.len() as f64 * MICRO;
+        *z = v.iter().sum::<f64>() / v.len() as f64 * MICROSTRAIN;
         effective = effective.min(effective_samples(&v));
     }
     Ok((zero, effective.is_finite().then_some(effective)))
@@ -141,24 +142,20 @@ pub(super) fn run(
         &s.loads.iter().map(|l| l.name.clone()).collect::<Vec<_>>(),
     );
     session.findings.extend(sums(task, &recovery, &units));
-    session.findings.extend(unlikely(task, &recovery, &units));
-    session
-        .findings
-        .extend(undetermined(task, &recovery, &units));
     put(session, task, &recovery, &units)?;
     let shown: Vec<RecoveredRun> = recovery.runs.iter().map(|r| shown_run(r, &units)).collect();
     let points: Vec<GaugePoints> = (0..s.gauges.len())
         .map(|g| GaugePoints {
             name: s.gauges[g].clone(),
-            residual: recovery.gauge_residual_rms[g] / MICRO,
+            residual: recovery.gauge_residual_rms[g] / MICROSTRAIN,
             points: [0.0, recovery.gauge_leverage[g]].map(|leverage| {
                 let pairs = recovery.runs.iter().zip(&readings);
                 pairs
                     .map(|(r, y)| {
                         let (predicted, measured) = (r.predicted[g], y.strain[g]);
                         (
-                            held_out(predicted, measured, leverage) / MICRO,
-                            measured / MICRO,
+                            held_out(predicted, measured, leverage) / MICROSTRAIN,
+                            measured / MICROSTRAIN,
                         )
                     })
                     .collect()
@@ -169,7 +166,7 @@ pub(super) fn run(
         .map(|g| {
             (
                 s.gauges[g].clone(),
-                recovery.gauge_residual_rms[g] / MICRO,
+                recovery.gauge_residual_rms[g] / MICROSTRAIN,
                 recovery.gauge_leverage[g],
             )
         })
@@ -178,7 +175,7 @@ pub(super) fn run(
         ("Runs".to_owned(), recovery.runs.len().to_string()),
         (
             "Residual, microstrain rms".to_owned(),
-            format!("{:.3}", recovery.residual_rms / MICRO),
+            format!("{:.3}", recovery.residual_rms / MICROSTRAIN),
         ),
         (
             "Condition number, scaled".to_owned(),
@@ -203,11 +200,12 @@ pub(super) fn run(
             .iter()
             .enumerate()
             .map(|(l, u)| {
+                let half = r.estimate.coverage_factor * r.estimate.sigma(l);
                 format!(
                     "{} {:.4} +- {:.4} {}",
                     s.loads[l].name,
                     r.estimate.values[l] * u.factor,
-                    r.estimate.sigma(l) * u.factor,
+                    half * u.factor,
                     u.name
                 )
             })
@@ -258,7 +256,7 @@ fn readings_of(
                 .zip(&task.zero)
                 .map(|(c, z)| {
                     c.and_then(|c| row.get(c))
-                        .map_or(f64::NAN, |v| v * MICRO - z)
+                        .map_or(f64::NAN, |v| v * MICROSTRAIN - z)
                 })
                 .collect();
             Readings {
@@ -293,12 +291,15 @@ fn put(
         }
     }
     session.put("loads", loads)?;
-    session.put("residual_rms_microstrain", recovery.residual_rms / MICRO)?;
+    session.put(
+        "residual_rms_microstrain",
+        recovery.residual_rms / MICROSTRAIN,
+    )?;
     let gauges: Vec<Value> = (0..s.gauges.len())
         .map(|g| {
             json!({
                 "name": s.gauges[g],
-                "residual_rms_microstrain": recovery.gauge_residual_rms[g] / MICRO,
+                "residual_rms_microstrain": recovery.gauge_residual_rms[g] / MICROSTRAIN,
                 "leverage": recovery.gauge_leverage[g],
             })
         })
@@ -388,7 +389,7 @@ fn sums(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
                     "{} {component} {:+.3} +- {:.3} {}",
                     r.estimate.run,
                     sum * u.factor,
-                    sigma * u.factor,
+                    NORMAL_95 * sigma * u.factor,
                     u.name
                 ));
                 largest = largest.max(sum.abs() / size);
@@ -415,84 +416,4 @@ fn sums(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
         )
         .with_numbers(largest, 0.1),
     ]
-}
-
-/// Wanted loads whose interval is as wide as the loads themselves in every run: gauges that do not tell them.
-fn undetermined(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
-    /// Half width of the interval over the largest load of the kind (or `expected`) from which a load counts as unknown.
-    const WIDE: f64 = 0.5;
-    let s = &task.prepared.sensitivity;
-    let mut out: Vec<(usize, f64)> = Vec::new();
-    for (l, load) in s.loads.iter().enumerate().filter(|(_, l)| l.wanted) {
-        let widths = recovery.runs.iter().map(|r| {
-            let largest = (0..units.len())
-                .filter(|m| units[*m].name == units[l].name && s.loads[*m].wanted)
-                .map(|m| r.estimate.values[m].abs())
-                .fold(load.expected.unwrap_or(0.0), f64::max);
-            let [low, high] = r.estimate.interval(l);
-            (high - low) / 2.0 / largest
-        });
-        let best = widths.fold(f64::INFINITY, f64::min);
-        if best > WIDE && best.is_finite() {
-            out.push((l, best));
-        }
-    }
-    let Some(worst) = out.iter().map(|o| o.1).max_by(f64::total_cmp) else {
-        return Vec::new();
-    };
-    let names: Vec<&str> = out.iter().map(|o| s.loads[o.0].name.as_str()).collect();
-    vec![
-        Finding::new(
-            Severity::Error,
-            "loads-not-determined",
-            names.join(", "),
-            format!(
-                "in every run the 95 % interval of these loads is wider than half the largest load: the gauges do not tell them (condition \
-                 number {:.0}), and their values are mostly noise and model error",
-                s.condition_number_scaled()
-            ),
-            "add gauges where these loads differ (`place`), or drop loads",
-        )
-        .with_numbers(worst, WIDE),
-    ]
-}
-
-/// Loads many times larger than `expected`.
-fn unlikely(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
-    /// Ratio to `expected` (1 sd) above which a size or a unit is wrong.
-    const MOST: f64 = 10.0;
-    let mut out = Vec::new();
-    for (l, load) in task
-        .job
-        .loads
-        .iter()
-        .enumerate()
-        .filter(|(l, _)| *l < units.len())
-    {
-        let Some(e) = load.expected.filter(|e| *e > 0.0) else {
-            continue;
-        };
-        let top = recovery
-            .runs
-            .iter()
-            .map(|r| r.estimate.values[l].abs())
-            .fold(0.0, f64::max)
-            / e;
-        if top > MOST {
-            out.push(
-                Finding::new(
-                    Severity::Warning,
-                    "load-beyond-expected",
-                    &load.name,
-                    format!(
-                        "load `{}` comes out up to {top:.0} times its `expected` size",
-                        load.name
-                    ),
-                    "check `applied`, units of the strain file, and `expected`",
-                )
-                .with_numbers(top, MOST),
-            );
-        }
-    }
-    out
 }

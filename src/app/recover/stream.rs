@@ -1,5 +1,7 @@
 //! Records: samples streamed through one filter, pieces in parallel, a few pieces in memory at a time.
 
+use super::Task;
+use super::Task;
 use super::content::{check_content, content_of_loads};
 use super::csv_record;
 use super::derived::{self, History};
@@ -7,7 +9,6 @@ use super::history_files::{Form, Named, stream};
 use super::record::{BYTES, GROUP, Record, Source, process};
 use super::runs::columns_of;
 use super::trace::Spans;
-use super::{MICRO, Task};
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::FileBytes;
 use crate::app::job::strain::{in_microstrain, read_strain_header, strain_record};
@@ -17,22 +18,25 @@ use crate::app::strain::{LoadUnits, load_units};
 use crate::app::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::linalg::Matrix;
-use crate::recovery::history::{Filter, Sums};
-use crate::recovery::{Readings, recover};
+use crate::recovery::history::Filter;
+use crate::recovery::{Readings, Recovery, Sums, recover};
 use crate::report::scene::{Shown, run_arrows, scene_of_job};
 use crate::report::spreadsheet::{HistoryLoad, history_sheet, residual_sheet};
 use crate::report::strain::{Recovered, RecoveredRun, recover_page};
 use crate::sensitivity::Sensitivity;
 use crate::series::foreign::Foreign;
 use crate::series::{binary, rpc};
+use crate::units::MICROSTRAIN;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::io::{Seek, Write};
 
 /// Rows of `loads.csv` at most; longer records are thinned there and written whole to `loads.bin`.
 const MOST_ROWS: usize = 200_000;
-/// Samples on which the residual is judged.
+/// Samples on which the residual of a long record is judged.
 const JUDGED: usize = 200;
+/// Samples up to which a record that is read in one piece is judged whole.
+const JUDGED_OF_SHORT: usize = 2000;
 /// Samples from which typical loads are taken for the weights of a stated model error.
 const TYPICAL: usize = 20_000;
 
@@ -56,11 +60,11 @@ pub(super) fn run(
         let mut h = read_strain_header(&file, &bytes)?;
         let names = h.channels.iter().map(|c| c.name.clone()).collect();
         in_microstrain(&file, &mut h, &all.gauges)?;
-        (Source::Rpc(h), names, MICRO)
+        (Source::Rpc(h), names, MICROSTRAIN)
     } else if let Some(kind) = Foreign::of(&bytes) {
         let record = strain_record(&file, kind, &bytes, &all.gauges)?;
         let names = record.list.iter().map(|c| c.name.clone()).collect();
-        (Source::Whole(record), names, MICRO)
+        (Source::Whole(record), names, MICROSTRAIN)
     } else {
         let l = csv_record::layout(&bytes).ok_or_else(|| {
             Faults::from(Fault::at(
@@ -73,7 +77,7 @@ pub(super) fn run(
         })?;
         let pieces = csv_record::pieces(&bytes, l.start, BYTES);
         let names = l.names.clone();
-        (Source::Csv(l, pieces), names, MICRO)
+        (Source::Csv(l, pieces), names, MICROSTRAIN)
     };
     let found = columns_of(session, named, &names, &all.gauges);
     // Gauges without a column take no part.
@@ -102,30 +106,37 @@ pub(super) fn run(
         columns: used.iter().map(|&g| found[g]).collect(),
         unit,
     };
+    if record.n_pieces() == 0 {
+        return Err(Faults::from(Fault::at(
+            &*file,
+            1,
+            "rows",
+            "a header and no rows",
+            "write a row a sample",
+        )));
+    }
     let units = load_units(
         task.job,
         &s.loads.iter().map(|l| l.name.clone()).collect::<Vec<_>>(),
     );
     let judged = judge(task, &record, &s, &zero)?;
-    session.findings.extend(judged.1.iter().cloned());
-    let filter =
-        Filter::new(&s, zero, task.errors, task.noise_factor, &judged.0).ok_or_else(|| {
-            Faults::from(Fault::of(
-                &*file,
-                "sensitivity",
-                "S holds numbers that are not finite",
-                "check the results of the unit loads",
-            ))
-        })?;
-    if filter.rank < s.loads.len() {
-        session.findings.push(Finding::new(
-            Severity::Error,
-            "run-not-solvable",
-            &file,
-            "the gauges of this record don't separate the loads: some of the values are arbitrary",
-            "add gauges, drop loads, or state `expected` for loads with role \"nuisance\"",
-        ));
-    }
+    session.findings.extend(judged.findings.iter().cloned());
+    let filter = Filter::new(
+        &s,
+        zero,
+        task.errors,
+        task.noise_factor,
+        &judged.typical,
+        judged.widening.clone(),
+    )
+    .ok_or_else(|| {
+        Faults::from(Fault::of(
+            &*file,
+            "sensitivity",
+            "S holds numbers that are not finite",
+            "check the results of the unit loads",
+        ))
+    })?;
     let total = match &record.source {
         Source::Binary(h) => Some(h.samples),
         Source::Rpc(h) => Some(h.samples),
@@ -207,7 +218,7 @@ pub(super) fn run(
         stride,
         numbers: bin.is_some(),
     };
-    let mut spans = Spans::new(s.loads.len(), record.n_pieces());
+    let mut spans = Spans::new(s.loads.len());
     let sums = stream(
         &record,
         &form,
@@ -278,26 +289,26 @@ fn sampled_pieces(record: &Record, filter: &Filter) -> Result<Vec<Vec<f64>>, Fau
     let taken = n.min(GROUP);
     (0..taken)
         .into_par_iter()
-        .map(|i| process(record, filter, i * n / taken).map(|p| p.loads))
+        .map(|i| process(record, filter, i * n / taken).map(|p| p.loads.values))
         .collect()
 }
 
-/// Typical (rms) loads, and what samples over the record say of the loads asked for and of the gauges.
-fn judge(
-    task: &Task,
-    record: &Record,
-    s: &Sensitivity,
-    zero: &[f64],
-) -> Result<(Vec<f64>, Vec<Finding>), Faults> {
+/// What samples over the record say of the loads asked for, of the gauges, and of the intervals.
+fn judge(task: &Task, record: &Record, s: &Sensitivity, zero: &[f64]) -> Result<Recovery, Faults> {
     let n = s.gauges.len();
     let pieces = record.n_pieces();
     let mut readings: Vec<Readings> = Vec::new();
     let spread = pieces.min(10);
-    let each = JUDGED.div_ceil(spread.max(1));
+    // A short record is judged on all of its samples, as the same rows would be as runs.
+    let each = match pieces {
+        1 => JUDGED_OF_SHORT,
+        _ => JUDGED.div_ceil(spread.max(1)),
+    };
     for p in 0..spread {
         let (times, values) = record.piece(p * pieces / spread).map_err(Faults::from)?;
         let take = times.len().min(TYPICAL);
-        for i in (0..each).map(|i| i * take / each).filter(|i| *i < take) {
+        let each = each.min(take);
+        for i in (0..each).map(|i| i * take / each) {
             let row = &values[i * n..(i + 1) * n];
             let strain = row
                 .iter()
@@ -311,21 +322,7 @@ fn judge(
             });
         }
     }
-    let recovery = recover(s, &readings, task.errors);
-    let k = s.loads.len();
-    let typical = (0..k)
-        .map(|l| {
-            let q: f64 = recovery
-                .runs
-                .iter()
-                .map(|r| r.estimate.values[l].powi(2))
-                .sum();
-            (q / recovery.runs.len().max(1) as f64).sqrt()
-        })
-        .collect();
-    let mut findings = recovery.findings;
-    findings.retain(|f| f.code != "run-not-solvable");
-    Ok((typical, findings))
+    Ok(recover(s, &readings, task.errors))
 }
 
 #[allow(clippy::too_many_arguments)]
@@ -341,18 +338,19 @@ fn finish(
     file: &str,
     thinned: Option<usize>,
 ) -> Result<(), Faults> {
-    let count = sums.samples.max(1) as f64;
+    let known: Vec<f64> = (0..s.loads.len()).map(|l| sums.known(l) as f64).collect();
     let rms: Vec<f64> = sums
         .sum_of_squares
         .iter()
-        .map(|q| (q / count).sqrt())
+        .zip(&known)
+        .map(|(q, n)| (q / n.max(1.0)).sqrt())
         .collect();
     let sigma = filter.sigma(&rms);
     let mut loads: Vec<Value> = Vec::new();
     let mut shown = Vec::new();
     let mut summary = Vec::new();
     for (l, u) in units.iter().enumerate() {
-        let mean = sums.sum[l] / count;
+        let mean = sums.sum[l] / known[l];
         loads.push(json!({
             "run": file,
             "name": s.loads[l].name,
@@ -379,15 +377,18 @@ fn finish(
         ));
     }
     session.put("loads", loads)?;
-    let dof = s.gauges.len().saturating_sub(filter.rank).max(1) as f64;
-    let residual = (sums.residual.iter().sum::<f64>() / (count * dof)).sqrt() / MICRO;
+    let dof = s.gauges.len().saturating_sub(filter.whole().rank).max(1) as f64;
+    let free: f64 = (0..s.gauges.len())
+        .map(|g| sums.read(g) as f64 * dof / s.gauges.len() as f64)
+        .sum();
+    let residual = (sums.residual.iter().sum::<f64>() / free.max(1.0)).sqrt() / MICROSTRAIN;
     session.put("residual_rms_microstrain", residual)?;
     let by_gauge: Vec<(String, f64, f64)> = (0..s.gauges.len())
         .map(|g| {
             (
                 s.gauges[g].clone(),
-                (sums.residual[g] / count).sqrt() / MICRO,
-                filter.leverage[g],
+                (sums.residual[g] / sums.read(g).max(1) as f64).sqrt() / MICROSTRAIN,
+                filter.whole().leverage[g],
             )
         })
         .collect();
@@ -405,10 +406,10 @@ fn finish(
                 "samples-with-gaps",
                 file,
                 format!(
-                    "{} samples have a gauge without a reading: their loads are left blank",
+                    "in {} samples some gauge gives nothing: their loads are those of the others, with wider intervals, or blank",
                     sums.gaps
                 ),
-                "repair the channel, or leave its gauge out of the job",
+                "repair the channel, or leave its gauge out: [[correction]] ignore = true",
             )
             .with_numbers(sums.gaps as f64, 0.0),
         );

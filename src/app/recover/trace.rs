@@ -5,97 +5,83 @@ use crate::app::strain::LoadUnits;
 use crate::recovery::history::Filter;
 use crate::report::figure::LoadTrace;
 
-/// Spans of a record at least, where it has so many samples.
-const LEAST: usize = 240;
-/// Spans at most, an even number: from here on two neighbours become one.
-const MOST: usize = 960;
+/// Spans at most, an even number: from here on two neighbours become one. Twice what a wide screen has of points.
+const MOST: usize = 4000;
 
-/// Spans so far.
+/// Spans of equally many samples so far.
 pub(super) struct Spans {
     k: usize,
-    /// Spans of each piece.
-    per_piece: usize,
-    /// Neighbouring spans that are drawn as one.
-    together: usize,
-    /// Spans in the last entry.
-    filled: usize,
-    /// By span and load: smallest, sum, largest, count.
-    list: Vec<Vec<[f64; 4]>>,
+    /// Samples of a span.
+    samples: usize,
+    list: Vec<Span>,
+}
+
+/// Some samples on end.
+#[derive(Clone, Debug, PartialEq)]
+struct Span {
+    /// Time of the first and the last.
     time: [f64; 2],
+    samples: usize,
+    /// By load: smallest, sum, largest, count.
+    loads: Vec<[f64; 4]>,
 }
 
 const NOTHING: [f64; 4] = [f64::INFINITY, 0.0, f64::NEG_INFINITY, 0.0];
 
 impl Spans {
-    /// For a record of so many pieces and `k` loads.
-    pub(super) fn new(k: usize, pieces: usize) -> Self {
+    /// For a record of `k` loads.
+    pub(super) fn new(k: usize) -> Self {
         Self {
             k,
-            per_piece: LEAST.div_ceil(pieces.max(1)),
-            together: 1,
-            filled: 0,
+            samples: 1,
             list: Vec::new(),
-            time: [f64::NAN; 2],
         }
     }
 
-    /// Takes the next piece: from its sums where it is one span, else from its loads.
+    /// Takes the next piece.
     pub(super) fn add(&mut self, piece: &Piece) {
-        if let (Some(first), Some(last)) = (piece.times.first(), piece.times.last()) {
-            self.time = [
-                if self.time[0].is_nan() {
-                    *first
-                } else {
-                    self.time[0]
-                },
-                *last,
-            ];
-        }
-        if self.per_piece == 1 {
-            let s = &piece.sums;
-            let count = s.samples as f64;
-            let span = (0..self.k).map(|l| [s.min[l], s.sum[l], s.max[l], count]);
-            self.push(span.collect());
-            return;
-        }
-        let samples = piece.times.len().div_ceil(self.per_piece).max(1);
-        for part in piece.loads.chunks(samples * self.k.max(1)) {
-            let mut span = vec![NOTHING; self.k];
-            for f in part.chunks_exact(self.k.max(1)) {
-                for (s, v) in span.iter_mut().zip(f).filter(|(_, v)| v.is_finite()) {
-                    merge(s, &[*v, *v, *v, 1.0]);
+        let loads = piece.loads.values.chunks_exact(self.k.max(1));
+        for (time, f) in piece.times.iter().zip(loads) {
+            if self.list.last().is_none_or(|s| s.samples == self.samples) {
+                if self.list.len() == MOST {
+                    self.halve();
                 }
+                self.list.push(Span {
+                    time: [*time; 2],
+                    samples: 0,
+                    loads: vec![NOTHING; self.k],
+                });
             }
-            self.push(span);
+            let Some(span) = self.list.last_mut() else {
+                continue;
+            };
+            span.time[1] = *time;
+            span.samples += 1;
+            for (s, v) in span.loads.iter_mut().zip(f).filter(|(_, v)| v.is_finite()) {
+                merge(s, &[*v, *v, *v, 1.0]);
+            }
         }
     }
 
-    fn push(&mut self, span: Vec<[f64; 4]>) {
-        match self.list.last_mut() {
-            Some(last) if self.filled < self.together => {
-                last.iter_mut().zip(&span).for_each(|(a, b)| merge(a, b));
-                self.filled += 1;
-            }
-            _ => {
-                self.list.push(span);
-                self.filled = 1;
-            }
-        }
-        if self.list.len() > MOST {
-            self.list = self
-                .list
-                .chunks(2)
-                .map(|pair| {
-                    let mut one = pair[0].clone();
-                    if let Some(two) = pair.get(1) {
-                        one.iter_mut().zip(two).for_each(|(a, b)| merge(a, b));
-                    }
-                    one
-                })
-                .collect();
-            // One more than an even number: the last entry stays alone, as full as it was.
-            self.together *= 2;
-        }
+    /// Two neighbours become one.
+    fn halve(&mut self) {
+        self.samples *= 2;
+        self.list = self
+            .list
+            .chunks(2)
+            .map(|pair| {
+                let mut one = pair[0].clone();
+                if let Some(two) = pair.get(1) {
+                    one.time[1] = two.time[1];
+                    one.samples += two.samples;
+                    one.loads
+                        .iter_mut()
+                        .zip(&two.loads)
+                        .for_each(|(a, b)| merge(a, b));
+                }
+                one
+            })
+            .collect();
     }
 
     /// Traces by load in report units; `rms` loads say how wide the interval of a sample is.
@@ -111,7 +97,7 @@ impl Spans {
             .map(|l| {
                 let factor = units[l].factor;
                 let spans = self.list.iter().map(|span| {
-                    let [low, sum, high, count] = span[l];
+                    let [low, sum, high, count] = span.loads[l];
                     if count > 0.0 {
                         [low, sum / count, high].map(|v| v * factor)
                     } else {
@@ -121,8 +107,8 @@ impl Spans {
                 LoadTrace {
                     name: names[l].clone(),
                     unit: units[l].name.clone(),
-                    time: self.time,
-                    half: crate::recovery::NORMAL_95 * sigma[l] * factor,
+                    times: self.list.iter().map(|s| s.time).collect(),
+                    half: filter.coverage_factor() * sigma[l] * factor,
                     spans: spans.collect(),
                 }
             })
@@ -138,53 +124,66 @@ fn merge(a: &mut [f64; 4], b: &[f64; 4]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recovery::history::Sums;
+    use crate::recovery::Sums;
+    use crate::recovery::history::SampleLoads;
 
     fn piece(from: usize, values: &[f64]) -> Piece {
-        let mut sums = Sums::new(0, 1);
-        for v in values {
-            sums.samples += 1;
-            sums.sum[0] += v;
-            sums.min[0] = sums.min[0].min(*v);
-            sums.max[0] = sums.max[0].max(*v);
-        }
         Piece {
             times: (from..from + values.len()).map(|i| i as f64).collect(),
-            loads: values.to_vec(),
-            sums,
+            loads: SampleLoads {
+                values: values.to_vec(),
+                gaps: Vec::new(),
+            },
+            sums: Sums::new(0, 1),
         }
     }
 
     #[test]
     fn spans_of_a_long_record_stay_few_and_hold_its_extremes_and_sum() {
-        let pieces = 5000;
-        let mut spans = Spans::new(1, pieces);
+        let pieces = 9000;
+        let mut spans = Spans::new(1);
         for p in 0..pieces {
             let v = p as f64;
             spans.add(&piece(2 * p, &[v, -v]));
         }
-        assert!(spans.list.len() <= MOST && spans.list.len() > MOST / 4);
-        let counts: f64 = spans.list.iter().map(|s| s[0][3]).sum();
-        assert_eq!(counts, 10_000.0);
-        let high = spans.list.iter().map(|s| s[0][2]).fold(0.0, f64::max);
-        assert_eq!(high, 4999.0);
-        // In order of time, the largest of each span rises, and all spans but the last hold as many pieces.
-        assert!(spans.list.windows(2).all(|w| w[0][0][2] < w[1][0][2]));
-        let full = spans.list[0][0][3];
+        assert!(spans.list.len() <= MOST && spans.list.len() > MOST / 2);
+        let counts: f64 = spans.list.iter().map(|s| s.loads[0][3]).sum();
+        assert_eq!(counts, 18_000.0);
+        let high = spans.list.iter().map(|s| s.loads[0][2]).fold(0.0, f64::max);
+        assert_eq!(high, 8999.0);
+        // In order of time, the largest of each span rises, and all spans but the last hold as many samples.
+        assert!(
+            spans
+                .list
+                .windows(2)
+                .all(|w| w[0].loads[0][2] < w[1].loads[0][2] && w[0].time[1] < w[1].time[0])
+        );
         let inner = &spans.list[..spans.list.len() - 1];
-        assert!(inner.iter().all(|s| s[0][3] == full));
-        assert_eq!(spans.time, [0.0, 9999.0]);
+        assert!(inner.iter().all(|s| s.samples == spans.samples));
     }
 
     #[test]
-    fn a_short_record_is_cut_into_spans_and_gaps_are_left_out() {
-        let mut spans = Spans::new(1, 1);
-        let mut values: Vec<f64> = (0..480).map(f64::from).collect();
-        values[0] = f64::NAN;
-        values[1] = f64::NAN;
-        spans.add(&piece(0, &values));
-        assert_eq!(spans.list.len(), LEAST);
-        assert_eq!(spans.list[0][0], NOTHING);
-        assert_eq!(spans.list[1][0], [2.0, 5.0, 3.0, 2.0]);
+    fn a_step_in_pieces_of_unlike_length_is_drawn_when_it_happens() {
+        // A step at 9,000 of 10,000 samples; the last piece is short, as the last of a file is.
+        let values: Vec<f64> = (0..10_000)
+            .map(|i| f64::from(u8::from(i >= 9000)))
+            .collect();
+        let mut spans = Spans::new(1);
+        let mut from = 0;
+        for part in [4100, 4100, 1800] {
+            spans.add(&piece(from, &values[from..from + part]));
+            from += part;
+        }
+        let first = spans.list.iter().find(|s| s.loads[0][2] > 0.5).unwrap();
+        let width = spans.samples as f64;
+        assert!((first.time[0] - 9000.0).abs() <= width, "{:?}", first.time);
+    }
+
+    #[test]
+    fn samples_that_are_no_numbers_are_left_out() {
+        let mut spans = Spans::new(1);
+        spans.add(&piece(0, &[f64::NAN, 2.0, 3.0]));
+        assert_eq!(spans.list[0].loads[0], NOTHING);
+        assert_eq!(spans.list[1].loads[0], [2.0, 2.0, 2.0, 1.0]);
     }
 }

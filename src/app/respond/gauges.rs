@@ -9,11 +9,10 @@ use crate::finding::{Finding, Severity};
 use crate::report::csv_cell;
 use crate::report::figure::GaugePoints;
 use crate::respond::LoadState;
+use crate::units::MICROSTRAIN;
 use serde_json::json;
 use std::fmt::Write;
 
-/// Strain in one microstrain.
-const MICRO: f64 = 1e-6;
 /// Points a drawing takes.
 const MOST_POINTS: usize = 2000;
 /// Residual over measured rms of a gauge from which its prediction is poor.
@@ -125,7 +124,7 @@ pub(super) fn check(
                 .enumerate()
                 .map(|(l, f)| s.values[(g, l)] * f)
                 .sum::<f64>()
-                / MICRO;
+                / MICROSTRAIN;
             let read = table
                 .gauges
                 .iter()

@@ -42,6 +42,7 @@ impl Fields {
                     name: l.name.clone(),
                     expected: l.expected,
                     wanted: l.role == Role::Wanted,
+                    quantity: l.quantity(),
                 },
                 applied: l.applied,
                 case: &self.solutions[s].cases[c],

@@ -6,10 +6,7 @@ use crate::app::job::{Job, Role};
 use crate::app::work::Work;
 use crate::linalg::Matrix;
 use crate::sensitivity::{Load, Sensitivity};
-use crate::units::factor;
-
-/// Strain in one microstrain.
-const MICRO: f64 = 1e-6;
+use crate::units::{MICROSTRAIN, Quantity, factor};
 
 /// Whether a load's name says that it is a moment: `LF.MX`, `MX_LF`, `M_LF`.
 pub fn is_moment(name: &str) -> bool {
@@ -73,20 +70,24 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
             continue;
         };
         let stated = job.loads.iter().find(|l| &l.name == name);
-        let moment = stated.and_then(|l| l.report_unit(&given.per)).map_or_else(
-            || is_moment(name),
-            |u| u.quantity == crate::units::Quantity::Moment,
-        );
+        let moment = stated
+            .and_then(|l| l.report_unit(&given.per))
+            .map_or_else(|| is_moment(name), |u| u.quantity == Quantity::Moment);
         let per = if moment {
             given.per.moment
         } else {
             given.per.force
         };
-        at.push((c, MICRO * factor(job.units, per)));
+        at.push((c, MICROSTRAIN * factor(job.units, per)));
         loads.push(Load {
             name: name.clone(),
             expected: stated.and_then(|l| l.expected),
             wanted: stated.is_none_or(|l| l.role == Role::Wanted),
+            quantity: Some(if moment {
+                Quantity::Moment
+            } else {
+                Quantity::Force
+            }),
         });
     }
     let names: Vec<String> = table

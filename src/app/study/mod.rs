@@ -13,11 +13,8 @@ use super::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::sensitivity::{Load, check_separability};
 use crate::study::{ErrorKind, StudyError, StudyRow, StudySpec, study_layout};
-use crate::units::Quantity;
+use crate::units::{MICROSTRAIN, Quantity};
 use serde::Serialize;
-
-/// Strain in one microstrain.
-const MICRO: f64 = 1e-6;
 
 /// One line of the answer.
 struct Line {
@@ -107,7 +104,7 @@ pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
             .iter()
             .map(|l| if l.wanted { None } else { l.expected })
             .collect(),
-        noise: MICRO
+        noise: MICROSTRAIN
             * job
                 .measured
                 .as_ref()

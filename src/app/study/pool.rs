@@ -51,6 +51,7 @@ pub(super) fn prepare(work: &mut Work, job: &Job, _study: &Study) -> Result<Prep
             name: l.name.clone(),
             expected: l.expected,
             wanted: l.role == Role::Wanted,
+            quantity: l.quantity(),
         })
         .collect();
     let (mut pool, mut installed) = (Vec::new(), None);

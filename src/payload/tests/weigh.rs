@@ -2,6 +2,7 @@
 
 use crate::linalg::Matrix;
 use crate::payload::{PayloadModel, PayloadRun, Place, Refusal, WeighSpec, weigh};
+use crate::units::MICROSTRAIN;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -14,8 +15,6 @@ const ARMS: [[f64; 2]; 6] = [
     [1.8, -0.9],
     [1.8, 0.9],
 ];
-/// Good for a microstrain of noise.
-const MICRO: f64 = 1e-6;
 
 struct Lot(ChaCha8Rng);
 
@@ -41,9 +40,9 @@ fn floor() -> Matrix {
 
 /// Gauges that read 1 to 10 microstrain a kN of each wheel and of the payload.
 fn truck(lot: &mut Lot, gauges: usize) -> PayloadModel {
-    let wheels = Matrix::from_fn(gauges, 6, |_, _| MICRO * lot.between(-5.0, 5.0));
+    let wheels = Matrix::from_fn(gauges, 6, |_, _| MICROSTRAIN * lot.between(-5.0, 5.0));
     let payload = Matrix::from_fn(gauges, 3, |_, k| {
-        MICRO * lot.between(-5.0, 5.0) * if k == 0 { 1.0 } else { 0.5 }
+        MICROSTRAIN * lot.between(-5.0, 5.0) * if k == 0 { 1.0 } else { 0.5 }
     });
     PayloadModel {
         gauges: (0..gauges).map(|g| format!("G{g}")).collect(),
@@ -82,7 +81,7 @@ fn clean(model: &PayloadModel, force: f64, shift: [f64; 2]) -> PayloadRun {
     PayloadRun {
         run: "R".into(),
         strain,
-        sigma: vec![MICRO; model.gauges.len()],
+        sigma: vec![MICROSTRAIN; model.gauges.len()],
         reactions,
         shift: [0.0; 2],
     }
@@ -91,7 +90,7 @@ fn clean(model: &PayloadModel, force: f64, shift: [f64; 2]) -> PayloadRun {
 fn noisy(lot: &mut Lot, mut run: PayloadRun) -> PayloadRun {
     run.strain
         .iter_mut()
-        .for_each(|v| *v += MICRO * lot.normal());
+        .for_each(|v| *v += MICROSTRAIN * lot.normal());
     run.reactions
         .iter_mut()
         .for_each(|v| *v += 0.1 * lot.normal());
@@ -176,7 +175,7 @@ fn with_a_third_of_the_gauges_bad_weight_and_place_stay_and_the_bad_ones_are_nam
                     run.strain[g] = match g % 4 {
                         0 => -run.strain[g],
                         1 => 0.0,
-                        2 => run.strain[g] + 150.0 * MICRO,
+                        2 => run.strain[g] + 150.0 * MICROSTRAIN,
                         _ => 2.0 * run.strain[g],
                     };
                 }
@@ -191,7 +190,7 @@ fn with_a_third_of_the_gauges_bad_weight_and_place_stay_and_the_bad_ones_are_nam
         for (g, v) in answer.gauges.iter().enumerate() {
             let bad = (g + trial) % 3 == 0;
             // A gauge that hardly reads is not much changed by a factor.
-            let loud = runs.iter().any(|r| r.strain[g].abs() > 40.0 * MICRO) || g % 4 == 1;
+            let loud = runs.iter().any(|r| r.strain[g].abs() > 40.0 * MICROSTRAIN) || g % 4 == 1;
             if bad && loud {
                 bad_all += 1;
                 named += usize::from(!v.used);

@@ -11,22 +11,25 @@ pub struct LoadTrace {
     pub name: String,
     /// Report unit; empty for a load set.
     pub unit: String,
-    /// Beginning and end of the record, s.
-    pub time: [f64; 2],
+    /// First and last time of each span, s.
+    pub times: Vec<[f64; 2]>,
     /// Half of the 95 % interval of a sample.
     pub half: f64,
-    /// Spans of equal length: smallest, mean, largest; NaN where nothing was measured.
+    /// Spans: smallest, mean, largest; NaN where nothing was measured.
     pub spans: Vec<[f64; 3]>,
 }
 
 /// Histories, one at a time: what lies between smallest and largest of each span, its 95 % interval around it, and the mean.
 pub fn history(traces: &[LoadTrace]) -> Figure {
-    let first = traces.first().map_or([0.0, 1.0], |t| t.time);
+    let ends = traces
+        .first()
+        .and_then(|t| Some([t.times.first()?[0], t.times.last()?[1]]));
+    let ends = ends.unwrap_or([0.0, 1.0]);
     Figure {
         label: "histories of loads".into(),
         choices: traces.iter().map(|t| (t.name.clone(), bands(t))).collect(),
         layout: json!({
-            "xaxis": { "title": { "text": "time, s" }, "range": shorts(first) },
+            "xaxis": { "title": { "text": "time, s" }, "range": shorts(ends) },
             "yaxis": { "automargin": true },
             "hovermode": "x unified",
             "legend": { "orientation": "h", "y": 1.12 },
@@ -37,9 +40,7 @@ pub fn history(traces: &[LoadTrace]) -> Figure {
 }
 
 fn bands(trace: &LoadTrace) -> Vec<Value> {
-    let n = trace.spans.len().max(1) as f64;
-    let [from, to] = trace.time;
-    let time = shorts((0..trace.spans.len()).map(|i| from + (to - from) * (i as f64 + 0.5) / n));
+    let time = shorts(trace.times.iter().map(|[from, to]| (from + to) / 2.0));
     let half = if trace.half.is_finite() {
         trace.half
     } else {

@@ -47,7 +47,7 @@ fn a_history_spans_the_extremes_with_their_interval_and_leaves_gaps_out() {
     let trace = LoadTrace {
         name: "A<B".into(),
         unit: "kN".into(),
-        time: [0.0, 12.0],
+        times: vec![[0.0, 4.0], [4.0, 8.0], [9.0, 12.0]],
         half: 1.0,
         spans: vec![[-3.0, 0.0, 4.0], [f64::NAN; 3], [1.0, 1.0, 1.0]],
     };
@@ -58,8 +58,8 @@ fn a_history_spans_the_extremes_with_their_interval_and_leaves_gaps_out() {
     assert_eq!(*of(1), json!([5.0, null, 2.0]));
     assert_eq!(*of(3), json!([4.0, null, 1.0]));
     assert_eq!(*of(4), json!([0.0, null, 1.0]));
-    // The middles of three spans of 4 s.
-    assert_eq!(figure.choices[0].1[4]["x"], json!([2.0, 6.0, 10.0]));
+    // The middle of each span in its own time.
+    assert_eq!(figure.choices[0].1[4]["x"], json!([2.0, 6.0, 10.5]));
     // Nothing in the data can end its script early.
     let page = figure.render().into_string();
     assert!(page.contains("A\\u003cB") && page.matches("</script>").count() == 1);

@@ -94,6 +94,8 @@ fn damage_of(history: &History, l: usize, slope: f64) -> Damage {
     let mut damage = Damage::new(slope, max - min);
     let mut ends = [Vec::new(), Vec::new()];
     let columns = history.all();
+    // Its interval is that of a normal error.
+    let wider = history.filter.coverage_factor() / crate::recovery::NORMAL_95;
     let mut add = |cycle: Cycle| {
         for (end, point) in ends.iter_mut().zip([cycle.from, cycle.to]) {
             end.clear();
@@ -106,7 +108,7 @@ fn damage_of(history: &History, l: usize, slope: f64) -> Damage {
             .zip(history.units)
             .map(|((a, b), u)| (b - a) / u.factor)
             .collect();
-        let sigma = history.filter.sigma_of_change(l, &change) * history.units[l].factor;
+        let sigma = wider * history.filter.sigma_of_change(l, &change) * history.units[l].factor;
         damage.add(&cycle, sigma);
     };
     let mut count = Rainflow::default();

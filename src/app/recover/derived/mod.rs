@@ -17,7 +17,8 @@ use crate::app::job::LoadFile;
 use crate::app::strain::LoadUnits;
 use crate::app::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
-use crate::recovery::history::{Filter, Sums};
+use crate::recovery::Sums;
+use crate::recovery::history::Filter;
 use crate::series::binary::{self, Header};
 
 /// Samples of a history up to which every file is written without being asked for.

@@ -19,7 +19,7 @@ pub(super) fn write(
     let sigma = history.filter.sigma(&vec![0.0; history.names.len()]);
     let mut notes = Vec::new();
     for (l, (name, unit)) in history.names.iter().zip(history.units).enumerate() {
-        let half = crate::recovery::NORMAL_95 * sigma[l] * unit.factor;
+        let half = history.filter.coverage_factor() * sigma[l] * unit.factor;
         notes.push((format!("unit of {name}"), unit.name.clone()));
         notes.push((format!("95 % half width of {name}"), half.to_string()));
     }

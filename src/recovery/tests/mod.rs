@@ -1,4 +1,7 @@
-use super::history::{Filter, Sums};
+mod coverage;
+mod records;
+mod residual;
+
 use super::*;
 use crate::finding::Severity;
 use crate::linalg::Matrix;
@@ -260,6 +263,7 @@ fn a_nuisance_load_with_a_stated_size_lets_fewer_gauges_do() {
             name: n.into(),
             expected: (n == "N").then_some(1.0),
             wanted: n != "N",
+            quantity: None,
         })
         .to_vec();
     let s = Sensitivity {
@@ -281,61 +285,4 @@ fn a_nuisance_load_with_a_stated_size_lets_fewer_gauges_do() {
         "{}",
         e.estimate.sigma(0)
     );
-}
-
-#[test]
-fn a_streamed_record_gives_what_the_same_samples_give_as_runs() {
-    let Some(frame) = frame(9) else { return };
-    let filter = Filter::new(&frame.s, vec![0.0; 20], NOISE, 1.0, &[0.0; 9]).unwrap();
-    let samples: Vec<f64> = frame
-        .readings
-        .iter()
-        .flat_map(|r| r.strain.iter().map(|v| v * 1e6))
-        .collect();
-    let (mut out, mut sums) = (Vec::new(), Sums::new(20, 9));
-    filter.apply(&samples, 1e-6, &mut out, &mut sums);
-    let got = recover(&frame.s, &frame.readings, NOISE);
-    for (i, r) in got.runs.iter().enumerate() {
-        let sigma = filter.sigma(&r.estimate.values);
-        for l in 0..9 {
-            assert!((out[i * 9 + l] - r.estimate.values[l]).abs() < 1e-6 * r.estimate.sigma(l));
-            assert!((sigma[l] / r.estimate.sigma(l) - 1.0).abs() < 1e-9);
-        }
-    }
-    assert_eq!((sums.samples, sums.gaps), (12, 0));
-    let rms = (sums.residual.iter().sum::<f64>() / (12.0 * 11.0)).sqrt();
-    assert!((rms - got.residual_rms).abs() < 1e-12);
-}
-
-#[test]
-fn whole_blocks_give_what_single_samples_give_and_a_gap_spoils_its_sample_alone() {
-    let s = Sensitivity {
-        gauges: ["1", "2", "3"].map(String::from).to_vec(),
-        loads: ["A", "B"].map(Load::named).to_vec(),
-        values: Matrix::from_row_slice(3, 2, &[1e-3, 2e-4, -3e-4, 1e-3, 5e-4, 7e-4]),
-    };
-    let filter = Filter::new(&s, vec![1e-5, 0.0, -1e-5], NOISE, 1.0, &[0.0; 2]).unwrap();
-    // Two whole blocks and a part of one; a reading is missing in the middle of the second.
-    let mut samples: Vec<f64> = (0..3 * 77)
-        .map(|i| ((i * 37) % 101) as f64 - 50.0)
-        .collect();
-    samples[3 * 40 + 1] = f64::NAN;
-    let (mut out, mut sums) = (Vec::new(), Sums::new(3, 2));
-    filter.apply(&samples, 1e-6, &mut out, &mut sums);
-    let mut together = Sums::new(3, 2);
-    for (i, sample) in samples.chunks_exact(3).enumerate() {
-        let mut one = Vec::new();
-        filter.apply(sample, 1e-6, &mut one, &mut together);
-        for (a, b) in one.iter().zip(&out[2 * i..]) {
-            assert!(
-                (i == 40 && a.is_nan() && b.is_nan()) || (a - b).abs() < 1e-12 * b.abs().max(1.0)
-            );
-        }
-    }
-    assert_eq!((sums.samples, sums.gaps), (76, 1));
-    assert_eq!((together.samples, together.gaps), (76, 1));
-    assert_eq!((&sums.min, &sums.max), (&together.min, &together.max));
-    for (a, b) in sums.residual.iter().zip(&together.residual) {
-        assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
-    }
 }

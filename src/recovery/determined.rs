@@ -1,0 +1,84 @@
+//! Whether the readings tell the loads: the width of intervals against the loads themselves, and loads against their expected size.
+
+use super::types::RunEstimate;
+use crate::finding::{Finding, Severity};
+use crate::sensitivity::Sensitivity;
+
+/// Half width of the interval over the largest load of the kind (or `expected`) from which a load counts as unknown.
+const WIDE: f64 = 0.5;
+/// Ratio to `expected` (1 sd) above which a size or a unit is wrong.
+const FAR_BEYOND: f64 = 10.0;
+
+/// Findings on loads that the gauges don't tell, and on loads much larger than expected.
+pub fn check(s: &Sensitivity, runs: &[RunEstimate]) -> Vec<Finding> {
+    let mut out = beyond_expected(s, runs);
+    out.extend(undetermined(s, runs));
+    out
+}
+
+/// Wanted loads whose interval is as wide as the loads themselves in every run: gauges that do not tell them.
+fn undetermined(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> {
+    let mut out: Vec<(&str, f64)> = Vec::new();
+    for (l, load) in s.loads.iter().enumerate().filter(|(_, l)| l.wanted) {
+        let widths = runs.iter().map(|r| {
+            let alike = s.loads.iter().enumerate();
+            let largest = alike
+                .filter(|(_, m)| m.wanted && m.quantity == load.quantity)
+                .filter_map(|(m, _)| r.estimate.values.get(m).map(|v| v.abs()))
+                .fold(load.expected.unwrap_or(0.0), f64::max);
+            let [low, high] = r.estimate.interval(l);
+            (high - low) / 2.0 / largest
+        });
+        let best = widths.filter(|w| !w.is_nan()).fold(f64::INFINITY, f64::min);
+        if best > WIDE && best.is_finite() {
+            out.push((&load.name, best));
+        }
+    }
+    let worst = out.iter().map(|o| o.1).max_by(f64::total_cmp)?;
+    let names: Vec<&str> = out.iter().map(|o| o.0).collect();
+    Some(
+        Finding::new(
+            Severity::Error,
+            "loads-not-determined",
+            names.join(", "),
+            format!(
+                "in every run the 95 % interval of these loads is wider than half the largest load: the gauges do not tell them (condition \
+                 number {:.0}), and their values are mostly noise and model error",
+                s.condition_number_scaled()
+            ),
+            "add gauges where these loads differ (`place`), or drop loads",
+        )
+        .with_numbers(worst, WIDE),
+    )
+}
+
+/// Loads many times larger than `expected`.
+fn beyond_expected(s: &Sensitivity, runs: &[RunEstimate]) -> Vec<Finding> {
+    let with_size = s
+        .loads
+        .iter()
+        .enumerate()
+        .filter_map(|(l, load)| Some((l, load, load.expected.filter(|e| *e > 0.0)?)));
+    with_size
+        .filter_map(|(l, load, expected)| {
+            let largest = runs
+                .iter()
+                .filter_map(|r| r.estimate.values.get(l).map(|v| v.abs()))
+                .fold(0.0, f64::max);
+            let ratio = largest / expected;
+            (ratio > FAR_BEYOND).then(|| {
+                Finding::new(
+                    Severity::Warning,
+                    "load-beyond-expected",
+                    &load.name,
+                    format!(
+                        "load `{}` comes out up to {ratio:.0} times its `expected` size",
+                        load.name
+                    ),
+                    "check `applied`, units of the strain file, and `expected`",
+                )
+                .with_numbers(ratio, FAR_BEYOND)
+            })
+        })
+        .collect()
+}

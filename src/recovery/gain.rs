@@ -1,0 +1,195 @@
+//! The one linear estimate of loads that runs and records share, with its covariance.
+
+use super::errors::ErrorModel;
+use super::solve::{Fit, fit};
+use super::types::{Shift, ShiftKind, Widening};
+use crate::linalg::Matrix;
+use crate::sensitivity::Sensitivity;
+
+/// `f = gain y` for readings `y` of the gauges [`Self::used`], weighed for the model's error at typical loads.
+///
+/// With `N` the noise, `M(f)` the errors of single coefficients at loads `f`, `C(f)` those of whole columns and `P` the stated sizes of
+/// nuisance loads, its errors have the covariance
+/// `gain (N + M(f)) gain' + (gain S - 1) P (gain S - 1)' + C(f)`:
+/// that of the posterior where the weights are those of `f` itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gain {
+    /// Gauges of S that read, ascending.
+    pub used: Vec<usize>,
+    /// `n_loads x n_used`.
+    pub gain: Matrix,
+    /// Leverage of each used gauge.
+    pub leverage: Vec<f64>,
+    /// Rank of the system; under the number of loads, some loads are arbitrary ([`Self::is_seen`]).
+    pub rank: usize,
+    /// `n_used x n_loads`.
+    s: Matrix,
+    /// `n_loads x n_loads`, from noise and nuisance loads; infinite on the diagonal of a load that the readings don't see.
+    base: Matrix,
+    /// `n_loads x n_loads`: variance of load l for the square of load m, from errors of single coefficients and of whole columns.
+    model_variance: Matrix,
+    errors: ErrorModel,
+}
+
+impl Gain {
+    /// The estimate from the gauges `used`; `noise_factor` multiplies the noise variance, `typical` loads weigh the model's error.
+    /// `None` where numbers are not finite.
+    pub fn new(
+        s: &Sensitivity,
+        used: &[usize],
+        errors: ErrorModel,
+        noise_factor: f64,
+        typical: &[f64],
+    ) -> Option<Self> {
+        let (n, k) = (used.len(), s.loads.len());
+        let rows = Matrix::from_fn(n, k, |i, l| s.values[(used[i], l)]);
+        let variances = errors.variances(&rows, typical, noise_factor);
+        let priors = s.priors();
+        let Fit {
+            covariance,
+            gain,
+            leverage,
+            rank,
+            ..
+        } = fit(&rows, &vec![0.0; n], &variances, &priors, &s.scales())?;
+        let mut base = (&gain * gain.transpose()) * errors.noise_variance(noise_factor);
+        let passed = &gain * &rows;
+        for (m, prior) in priors.iter().enumerate() {
+            let Some(sd) = prior else { continue };
+            let column: Vec<f64> = (0..k)
+                .map(|l| (passed[(l, m)] - f64::from(u8::from(l == m))) * sd)
+                .collect();
+            for a in 0..k {
+                for b in 0..k {
+                    base[(a, b)] += column[a] * column[b];
+                }
+            }
+        }
+        for l in (0..k).filter(|&l| covariance[(l, l)].is_infinite()) {
+            base[(l, l)] = f64::INFINITY;
+        }
+        let rel2 = errors.model_rel * errors.model_rel;
+        let model_variance = Matrix::from_fn(k, k, |l, m| {
+            let single: f64 = (0..n).map(|i| (gain[(l, i)] * rows[(i, m)]).powi(2)).sum();
+            rel2 * (single + if l == m { 1.0 } else { 0.0 })
+        });
+        Some(Self {
+            used: used.to_vec(),
+            gain,
+            leverage,
+            rank,
+            s: rows,
+            base,
+            model_variance,
+            errors,
+        })
+    }
+
+    /// Number of loads.
+    pub fn n_loads(&self) -> usize {
+        self.gain.nrows()
+    }
+
+    /// Whether the readings say anything of load `l`.
+    pub fn is_seen(&self, l: usize) -> bool {
+        self.base[(l, l)].is_finite()
+    }
+
+    /// Loads from the strain of all gauges of S.
+    pub fn loads(&self, strain: &[f64]) -> Vec<f64> {
+        (0..self.n_loads())
+            .map(|l| {
+                let terms = self.used.iter().enumerate();
+                terms.map(|(i, &g)| self.gain[(l, i)] * strain[g]).sum()
+            })
+            .collect()
+    }
+
+    /// Covariance of the estimate at loads `f`, by rows.
+    pub fn covariance(&self, f: &[f64], widening: &Widening) -> Vec<f64> {
+        let k = self.n_loads();
+        let model: Vec<f64> = self
+            .s
+            .row_iter()
+            .map(|row| self.errors.shared(row.iter().copied(), f, f))
+            .collect();
+        let shifts = self.shifts(f, widening);
+        let mut out = vec![0.0; k * k];
+        for a in 0..k {
+            for b in 0..k {
+                let single: f64 = model
+                    .iter()
+                    .enumerate()
+                    .map(|(i, m)| self.gain[(a, i)] * self.gain[(b, i)] * m)
+                    .sum();
+                let column = if a == b {
+                    self.errors.column_variance(f[a])
+                } else {
+                    0.0
+                };
+                let gauges: f64 = shifts.iter().map(|c| c[a] * c[b]).sum();
+                out[a * k + b] =
+                    widening.variance_factor * (self.base[(a, b)] + single + column) + gauges;
+            }
+        }
+        out
+    }
+
+    /// Standard deviation of each load at loads `f`: the roots of the diagonal of [`Self::covariance`].
+    pub fn sigma(&self, f: &[f64], widening: &Widening) -> Vec<f64> {
+        let shifts = self.shifts(f, widening);
+        (0..self.n_loads())
+            .map(|l| {
+                let own = self.base[(l, l)] + self.model_part(l, f);
+                let gauges: f64 = shifts.iter().map(|c| c[l] * c[l]).sum();
+                (widening.variance_factor * own + gauges).sqrt()
+            })
+            .collect()
+    }
+
+    /// Standard deviation of a change of load `l` between two samples, `change` that of all loads. Noise enters twice; errors of the
+    /// model, which both samples share, with what changes; nuisance loads as if they changed as well.
+    pub fn sigma_of_change(&self, l: usize, change: &[f64], widening: &Widening) -> f64 {
+        let shifts: f64 = self
+            .shifts_of(change, widening, |kind| kind == ShiftKind::Gain)
+            .iter()
+            .map(|c| c[l] * c[l])
+            .sum();
+        let own = 2.0 * self.base[(l, l)] + self.model_part(l, change);
+        (widening.variance_factor * own + shifts).sqrt()
+    }
+
+    fn model_part(&self, l: usize, f: &[f64]) -> f64 {
+        let row = self.model_variance.row(l);
+        row.iter().zip(f).map(|(b, v)| b * v * v).sum()
+    }
+
+    fn shifts(&self, f: &[f64], widening: &Widening) -> Vec<Vec<f64>> {
+        self.shifts_of(f, widening, |_| true)
+    }
+
+    /// What the errors of single gauges put into every load.
+    fn shifts_of(
+        &self,
+        f: &[f64],
+        widening: &Widening,
+        taken: impl Fn(ShiftKind) -> bool,
+    ) -> Vec<Vec<f64>> {
+        let list = widening.shifts.iter().filter(|s| taken(s.kind));
+        list.filter_map(|s| self.shift(f, s)).collect()
+    }
+
+    /// What the error of one gauge puts into every load at loads `f`; `None` where it does not read.
+    pub fn shift(&self, f: &[f64], shift: &Shift) -> Option<Vec<f64>> {
+        let i = self.used.binary_search(&shift.gauge).ok()?;
+        let strain = match shift.kind {
+            ShiftKind::Offset => shift.size,
+            ShiftKind::Gain => {
+                let row = self.s.row(i);
+                shift.size * row.iter().zip(f).map(|(s, f)| s * f).sum::<f64>()
+            }
+        };
+        let k = self.n_loads();
+        Some((0..k).map(|l| self.gain[(l, i)] * strain).collect())
+    }
+}

@@ -1,0 +1,398 @@
+//! What the readings of runs say beyond the loads: their part that no load can make, with its covariance across the runs.
+//!
+//! The model's error is the same in every run, so residuals of runs are not independent: with `r_i = T (e_i + D f_i)`, `T` the
+//! projection that no load passes, `e_i` noise and `D` the errors of the influence coefficients,
+//! `cov(r_i, r_j) = T (d_ij N + M(f_i, f_j)) T'`. Turned over the runs by the left singular vectors of the loads, all of `M` stands in
+//! the first few turned runs; the others hold noise alone.
+
+use super::errors::ErrorModel;
+use super::types::ShiftKind;
+use crate::linalg::{Matrix, SymmetricEigen, dense, spd};
+use crate::sensitivity::Sensitivity;
+
+/// Unknowns of one covariance of turned runs at most: a second of work. Turned runs beyond it are taken one by one, the strongest first.
+const TOGETHER: usize = 1200;
+/// Share of the largest loads under which a turned run holds no load: rounding.
+const EMPTY: f64 = 1e-9;
+/// Squared length of a gauge's part that no load can make, under which nothing checks the gauge: rounding.
+const UNCHECKED: f64 = 1e-9;
+
+/// Runs in which the same gauges read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pattern {
+    /// Gauges of S that read.
+    pub used: Vec<usize>,
+    /// Noise variance in units of that of a single reading.
+    pub noise_factor: f64,
+    /// Runs.
+    pub runs: Vec<usize>,
+}
+
+/// The error of one gauge, as the residuals of all runs suggest it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GaugeTest {
+    /// Gauge of S.
+    pub gauge: usize,
+    /// What the error is like.
+    pub kind: ShiftKind,
+    /// Its size over its standard deviation: normal with variance 1 where all gauges are right.
+    pub t: f64,
+    /// Its size: a share, or strain.
+    pub size: f64,
+}
+
+/// What residuals of runs say together.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Joint {
+    /// Sum of squares over their covariance.
+    pub chi2: f64,
+    /// Degrees of freedom.
+    pub dof: usize,
+    /// Samples of independent error behind them.
+    pub effective: f64,
+    /// Errors of single gauges.
+    pub gauges: Vec<GaugeTest>,
+}
+
+/// The part of readings that a set of loads can't make.
+pub(super) struct Projection {
+    /// `m x n_used`; orthonormal rows times one over the typical sd of each reading.
+    t: Matrix,
+    /// `m x m` by rows: Cholesky factor of the covariance of noise and nuisance loads.
+    noise: Vec<f64>,
+    /// `m x m` by rows.
+    noise_covariance: Vec<f64>,
+    /// 1 sd of each reading at typical loads.
+    sd: Vec<f64>,
+    s: Matrix,
+    errors: ErrorModel,
+}
+
+/// Which loads a projection takes out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Out {
+    /// All of them, whatever is stated of their size.
+    All,
+    /// Those without a stated size; the others count as scatter of that size.
+    Unstated,
+}
+
+impl Projection {
+    /// `None` where no reading is spare.
+    pub fn new(
+        s: &Sensitivity,
+        pattern: &Pattern,
+        errors: ErrorModel,
+        typical: &[f64],
+        out: Out,
+    ) -> Option<Self> {
+        let (n, k) = (pattern.used.len(), s.loads.len());
+        let rows = Matrix::from_fn(n, k, |i, l| s.values[(pattern.used[i], l)]);
+        let noise = errors.noise_variance(pattern.noise_factor);
+        let sd: Vec<f64> = errors
+            .variances(&rows, typical, pattern.noise_factor)
+            .iter()
+            .map(|v| v.sqrt())
+            .collect();
+        let priors = s.priors();
+        let weighted = Matrix::from_fn(n, k, |i, l| {
+            if out == Out::All || priors[l].is_none() {
+                rows[(i, l)] / sd[i]
+            } else {
+                0.0
+            }
+        });
+        let basis = complement(&dense::unit_columns(&weighted))?;
+        let m = basis.ncols();
+        let t = Matrix::from_fn(m, n, |a, i| basis[(i, a)] / sd[i]);
+        let mut covariance = (&t * t.transpose()) * noise;
+        if out == Out::Unstated {
+            for (l, prior) in priors.iter().enumerate() {
+                let Some(p) = prior else { continue };
+                let column = &t * rows.column(l) * *p;
+                covariance += &column * column.transpose();
+            }
+        }
+        let noise_covariance: Vec<f64> = covariance.transpose().iter().copied().collect();
+        let noise = spd::cholesky(&noise_covariance, m)?;
+        Some(Self {
+            t,
+            noise,
+            noise_covariance,
+            sd,
+            s: rows,
+            errors,
+        })
+    }
+
+    /// Dimensions.
+    pub fn m(&self) -> usize {
+        self.t.nrows()
+    }
+
+    /// `T y`.
+    pub fn of(&self, pattern: &Pattern, strain: &[f64]) -> Vec<f64> {
+        (0..self.m())
+            .map(|a| {
+                let terms = pattern.used.iter().enumerate();
+                terms.map(|(i, &g)| self.t[(a, i)] * strain[g]).sum()
+            })
+            .collect()
+    }
+
+    /// `T M(f, g) T'`, by rows.
+    fn shared(&self, f: &[f64], g: &[f64]) -> Vec<f64> {
+        let m = self.m();
+        let by_gauge: Vec<f64> = self
+            .s
+            .row_iter()
+            .map(|row| self.errors.shared(row.iter().copied(), f, g))
+            .collect();
+        let mut out = vec![0.0; m * m];
+        for a in 0..m {
+            for b in 0..m {
+                let terms = by_gauge.iter().enumerate();
+                out[a * m + b] = terms
+                    .map(|(i, v)| self.t[(a, i)] * self.t[(b, i)] * v)
+                    .sum();
+            }
+        }
+        out
+    }
+
+    /// Sum of squares of one run's residual `z` over its own covariance at loads `f`.
+    pub fn chi2_of_run(&self, z: &[f64], f: &[f64]) -> f64 {
+        let mut x = z.to_vec();
+        if self.errors.model_rel > 0.0 {
+            let mut covariance = self.shared(f, f);
+            covariance
+                .iter_mut()
+                .zip(&self.noise_covariance)
+                .for_each(|(c, n)| *c += n);
+            let Some(l) = spd::cholesky(&covariance, self.m()) else {
+                return f64::INFINITY;
+            };
+            spd::solve_lower(&l, &mut x);
+        } else {
+            spd::solve_lower(&self.noise, &mut x);
+        }
+        spd::dot(&x, &x)
+    }
+
+    /// All runs of a pattern together; `strain` and `loads` by run of the pattern.
+    pub fn judge(&self, pattern: &Pattern, strain: &[&[f64]], loads: &[Vec<f64>]) -> Option<Joint> {
+        let m = self.m();
+        let runs = strain.len();
+        let white: Vec<Vec<f64>> = strain
+            .iter()
+            .map(|y| {
+                let mut z = self.of(pattern, y);
+                spd::solve_lower(&self.noise, &mut z);
+                z
+            })
+            .collect();
+        let turned = self.turned(pattern, strain, loads)?;
+        let mut chi2: f64 = white.iter().map(|z| spd::dot(z, z)).sum();
+        for block in &turned {
+            chi2 += block.chi2 - block.chi2_of_noise;
+        }
+        let dof = m * runs;
+        let share = self.share_of_model(loads);
+        let independent = (turned.iter().map(|b| b.over_runs.len()).sum::<usize>() * m)
+            .clamp(m.min(dof), dof.max(1));
+        let effective = (dof as f64).min(
+            1.0 / (share * share / independent.max(1) as f64
+                + (1.0 - share) * (1.0 - share) / dof.max(1) as f64),
+        );
+        let mut gauges = Vec::new();
+        for (i, &gauge) in pattern.used.iter().enumerate() {
+            let column: Vec<f64> = self.t.column(i).iter().copied().collect();
+            if spd::dot(&column, &column) * self.sd[i] * self.sd[i] < UNCHECKED {
+                continue;
+            }
+            let mut own = column.clone();
+            spd::solve_lower(&self.noise, &mut own);
+            let own_square = spd::dot(&own, &own);
+            let by_run: Vec<f64> = white.iter().map(|z| spd::dot(&own, z)).collect();
+            let gain: Vec<f64> = loads
+                .iter()
+                .map(|f| self.s.row(i).iter().zip(f).map(|(s, f)| s * f).sum())
+                .collect();
+            for (kind, along) in [
+                (ShiftKind::Gain, gain),
+                (ShiftKind::Offset, vec![1.0; runs]),
+            ] {
+                let mut rest = along.clone();
+                let (mut information, mut score) = (0.0, 0.0);
+                for block in &turned {
+                    let shares = block.shares(&along);
+                    for (r, u) in shares.iter().zip(&block.over_runs) {
+                        rest.iter_mut().zip(u).for_each(|(v, u)| *v -= r * u);
+                    }
+                    let mut d: Vec<f64> = shares
+                        .iter()
+                        .flat_map(|b| column.iter().map(move |c| b * c))
+                        .collect();
+                    spd::solve_lower(&block.factor, &mut d);
+                    information += spd::dot(&d, &d);
+                    score += spd::dot(&d, &block.white);
+                }
+                information += own_square * rest.iter().map(|v| v * v).sum::<f64>();
+                score += spd::dot(&rest, &by_run);
+                if information > 0.0 && information.is_finite() {
+                    gauges.push(GaugeTest {
+                        gauge,
+                        kind,
+                        t: score / information.sqrt(),
+                        size: score / information,
+                    });
+                }
+            }
+        }
+        Some(Joint {
+            chi2,
+            dof,
+            effective,
+            gauges,
+        })
+    }
+
+    /// Share of the model's error in the variance of the residuals.
+    fn share_of_model(&self, loads: &[Vec<f64>]) -> f64 {
+        if self.errors.model_rel <= 0.0 {
+            return 0.0;
+        }
+        let m = self.m();
+        let trace = |c: &[f64]| (0..m).map(|a| c[a * m + a]).sum::<f64>();
+        let noise = trace(&self.noise_covariance) * loads.len() as f64;
+        let model: f64 = loads.iter().map(|f| trace(&self.shared(f, f))).sum();
+        model / (model + noise)
+    }
+
+    /// The turned runs that hold errors of the model.
+    fn turned(
+        &self,
+        pattern: &Pattern,
+        strain: &[&[f64]],
+        loads: &[Vec<f64>],
+    ) -> Option<Vec<Block>> {
+        if self.errors.model_rel <= 0.0 {
+            return Some(Vec::new());
+        }
+        let m = self.m();
+        let (runs, k) = (loads.len(), self.s.ncols());
+        let d = dense::svd(&Matrix::from_fn(runs, k, |i, l| loads[i][l]))?;
+        let least = d.s.first().copied().unwrap_or(0.0) * EMPTY;
+        let held = d.s.iter().filter(|s| **s > least && **s > 0.0).count();
+        let z: Vec<Vec<f64>> = strain.iter().map(|y| self.of(pattern, y)).collect();
+        let together = (TOGETHER / m.max(1)).clamp(1, held.max(1)).min(held);
+        let sets = std::iter::once((0..together).collect::<Vec<_>>())
+            .chain((together..held).map(|j| vec![j]));
+        sets.filter(|set| !set.is_empty())
+            .map(|set| {
+                let over_runs: Vec<Vec<f64>> = set
+                    .iter()
+                    .map(|&j| (0..runs).map(|i| d.u[(i, j)]).collect())
+                    .collect();
+                let loads: Vec<Vec<f64>> = set
+                    .iter()
+                    .map(|&j| (0..k).map(|l| d.s[j] * d.v[(l, j)]).collect())
+                    .collect();
+                self.block(over_runs, &loads, &z)
+            })
+            .collect()
+    }
+
+    fn block(&self, over_runs: Vec<Vec<f64>>, loads: &[Vec<f64>], z: &[Vec<f64>]) -> Option<Block> {
+        let (m, q) = (self.m(), loads.len());
+        let size = q * m;
+        let mut covariance = vec![0.0; size * size];
+        for (a, f) in loads.iter().enumerate() {
+            for (b, g) in loads.iter().enumerate() {
+                let shared = self.shared(f, g);
+                for i in 0..m {
+                    for j in 0..m {
+                        let noise = if a == b {
+                            self.noise_covariance[i * m + j]
+                        } else {
+                            0.0
+                        };
+                        covariance[(a * m + i) * size + b * m + j] = noise + shared[i * m + j];
+                    }
+                }
+            }
+        }
+        let factor = spd::cholesky(&covariance, size)?;
+        let turned: Vec<f64> = over_runs
+            .iter()
+            .flat_map(|u| (0..m).map(move |a| u.iter().zip(z).map(|(u, z)| u * z[a]).sum::<f64>()))
+            .collect();
+        let chi2_of_noise = turned
+            .chunks_exact(m.max(1))
+            .map(|z| {
+                let mut x = z.to_vec();
+                spd::solve_lower(&self.noise, &mut x);
+                spd::dot(&x, &x)
+            })
+            .sum();
+        let mut white = turned;
+        spd::solve_lower(&factor, &mut white);
+        Some(Block {
+            chi2: spd::dot(&white, &white),
+            chi2_of_noise,
+            over_runs,
+            factor,
+            white,
+        })
+    }
+}
+
+/// Turned runs whose residuals depend on each other.
+struct Block {
+    /// Unit vectors over the runs.
+    over_runs: Vec<Vec<f64>>,
+    /// Cholesky factor of the covariance.
+    factor: Vec<f64>,
+    /// Their residuals over it.
+    white: Vec<f64>,
+    chi2: f64,
+    /// The same were there noise alone.
+    chi2_of_noise: f64,
+}
+
+impl Block {
+    /// A vector over the runs in the turned ones.
+    fn shares(&self, along: &[f64]) -> Vec<f64> {
+        self.over_runs.iter().map(|u| spd::dot(u, along)).collect()
+    }
+}
+
+/// Orthonormal columns that no column of `a` has a part in, `n x (n - rank)`; `None` where there is none or numbers are not finite.
+fn complement(a: &Matrix) -> Option<Matrix> {
+    let n = a.nrows();
+    let d = dense::svd(a)?;
+    let largest = d.s.first().copied().unwrap_or(0.0);
+    let rank =
+        d.s.iter()
+            .filter(|&&v| v > largest * dense::RANK_TOLERANCE && v > 0.0)
+            .count();
+    if rank >= n {
+        return None;
+    }
+    let mut projector = Matrix::identity(n, n);
+    for i in 0..rank {
+        let u = d.u.column(i);
+        projector -= u * u.transpose();
+    }
+    let e = SymmetricEigen::new(projector);
+    let mut order: Vec<usize> = (0..n).collect();
+    order.sort_by(|&i, &j| {
+        e.eigenvalues[j]
+            .total_cmp(&e.eigenvalues[i])
+            .then(i.cmp(&j))
+    });
+    order.truncate(n - rank);
+    Some(Matrix::from_fn(n, n - rank, |r, c| {
+        e.eigenvectors[(r, order[c])]
+    }))
+}

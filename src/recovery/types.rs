@@ -1,0 +1,97 @@
+//! What goes in and what comes out.
+
+use crate::estimate::LoadEstimate;
+use crate::finding::Finding;
+
+/// Readings of one static state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Readings {
+    /// Run name.
+    pub run: String,
+    /// Strain by gauge, zero and reference taken into account; NaN where a gauge gave nothing.
+    pub strain: Vec<f64>,
+    /// Noise variance of these readings in units of that of a single one: `1/n_run + 1/n_zero` for means of `n` effective samples.
+    pub noise_factor: f64,
+}
+
+/// The estimate of one run with its residual.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunEstimate {
+    /// Loads with covariance.
+    pub estimate: LoadEstimate,
+    /// Predicted strain by gauge.
+    pub predicted: Vec<f64>,
+    /// Reading less prediction; NaN where a gauge gave nothing.
+    pub residual: Vec<f64>,
+    /// 1 sd of each reading, stated noise and model error together; NaN where a gauge gave nothing.
+    pub sd: Vec<f64>,
+    /// Least sum of squares of residuals (and of nuisance loads over their stated sizes) over their own covariance.
+    pub chi2: f64,
+    /// Its degrees of freedom: readings less loads without a stated size.
+    pub dof: usize,
+    /// Leverage by gauge.
+    pub leverage: Vec<f64>,
+    /// Rank of the system; under the number of loads, some of the values are arbitrary.
+    pub rank: usize,
+}
+
+/// All runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recovery {
+    /// In the order given.
+    pub runs: Vec<RunEstimate>,
+    /// Root mean square of all residuals, strain, over the degrees of freedom.
+    pub residual_rms: f64,
+    /// Root mean square residual by gauge, strain.
+    pub gauge_residual_rms: Vec<f64>,
+    /// Mean leverage by gauge.
+    pub gauge_leverage: Vec<f64>,
+    /// What was noticed.
+    pub findings: Vec<Finding>,
+    /// What the residuals do to the intervals.
+    pub widening: Widening,
+    /// Root mean square of each load over the runs: the weights of a stated model error are those at these loads.
+    pub typical: Vec<f64>,
+}
+
+/// How much wider than stated errors make them the intervals are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Widening {
+    /// Factor on every covariance (Birge); 1 where the residuals are as small as stated.
+    pub variance_factor: f64,
+    /// Factor on sigma of a 95 % interval: normal, or Student's where the scale was judged from residuals.
+    pub coverage_factor: f64,
+    /// Errors of single gauges that stand out.
+    pub shifts: Vec<Shift>,
+}
+
+/// What the error of one gauge does to the loads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shift {
+    /// Gauge of S.
+    pub gauge: usize,
+    /// What its error is like.
+    pub kind: ShiftKind,
+    /// Its size: a share of the reading, or strain.
+    pub size: f64,
+}
+
+/// Kinds of error of a gauge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShiftKind {
+    /// The same share of the strain in every run.
+    Gain,
+    /// The same strain in every run.
+    Offset,
+}
+
+impl Widening {
+    /// Intervals as stated errors make them.
+    pub fn none() -> Self {
+        Self {
+            variance_factor: 1.0,
+            coverage_factor: super::NORMAL_95,
+            shifts: Vec::new(),
+        }
+    }
+}
