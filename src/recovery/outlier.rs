@@ -13,6 +13,8 @@ use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 /// Chance, over all gauges of a job, under which the largest of their errors counts as real: half of the 1 % of right jobs that may be
 /// stopped.
 const ALARM: f64 = 0.005;
+/// The same chance under which it is said, and the intervals are widened: one right job in twenty is so noted.
+const NOTE: f64 = 0.05;
 /// Share of what the residuals have too much that one gauge must account for: with less, something else is wrong as well, and the
 /// gauge nearest to it would be blamed.
 const ACCOUNTS_FOR: f64 = 0.5;
@@ -24,7 +26,8 @@ pub(super) struct Suspects {
 }
 
 /// The gauge whose gain or zero error stands out most, where chance doesn't make it so: an error where it shifts a wanted load by more
-/// than the half width of its interval, else a warning. Either way the intervals are widened by what it does.
+/// than the half width of its interval, else a warning, or a note where chance is not quite ruled out. Either way the intervals are widened
+/// by what it does.
 pub(super) fn check(s: &Sensitivity, solved: &Solved, joint: Option<&Joint>) -> Suspects {
     let mut out = Suspects {
         findings: Vec::new(),
@@ -41,7 +44,8 @@ pub(super) fn check(s: &Sensitivity, solved: &Solved, joint: Option<&Joint>) -> 
         return out;
     };
     let excess = joint.chi2 - joint.dof as f64;
-    let found = joint.gauges.len() as f64 * chance(joint, test) < ALARM
+    let p = joint.gauges.len() as f64 * chance(joint, test);
+    let found = p < NOTE
         && test.t * test.t > ACCOUNTS_FOR * excess;
     if !found {
         return out;
@@ -66,14 +70,19 @@ pub(super) fn check(s: &Sensitivity, solved: &Solved, joint: Option<&Joint>) -> 
             half / MICROSTRAIN
         ),
     };
-    let (severity, then) = if ratio > 1.0 {
+    let (severity, then) = if p < ALARM && ratio > 1.0 {
         let then = format!(
             "that shifts load `{load}` by {ratio:.1} times the half width of its 95 % interval"
         );
         (Severity::Error, then)
     } else {
         let then = "the intervals are widened by what that does to the loads".to_owned();
-        (Severity::Warning, then)
+        let severity = if p < ALARM {
+            Severity::Warning
+        } else {
+            Severity::Info
+        };
+        (severity, then)
     };
     out.findings.push(
         Finding::new(
