@@ -45,8 +45,7 @@ pub(super) fn check(s: &Sensitivity, solved: &Solved, joint: Option<&Joint>) -> 
     };
     let excess = joint.chi2 - joint.dof as f64;
     let p = joint.gauges.len() as f64 * chance(joint, test);
-    let found = p < NOTE
-        && test.t * test.t > ACCOUNTS_FOR * excess;
+    let found = p < NOTE && test.t * test.t > ACCOUNTS_FOR * excess;
     if !found {
         return out;
     }
