@@ -1,7 +1,6 @@
 //! Records: samples streamed through one filter, pieces in parallel, a few pieces in memory at a time.
 
 use super::Task;
-use super::Task;
 use super::content::{check_content, content_of_loads};
 use super::csv_record;
 use super::derived::{self, History};
