@@ -3,8 +3,8 @@
 //! Run: `cargo bench --bench stream`. A million samples of f32 in memory; the ratio of the two holds for any length.
 
 use strainbridge::linalg::Matrix;
-use strainbridge::recovery::ErrorModel;
-use strainbridge::recovery::history::{Filter, Sums};
+use strainbridge::recovery::history::{Filter, SampleLoads};
+use strainbridge::recovery::{ErrorModel, Sums, Widening};
 use strainbridge::sensitivity::{Load, Sensitivity};
 use strainbridge::series::binary::{Header, read_header, read_samples, write_header};
 
@@ -69,12 +69,21 @@ fn recover_six_loads(bencher: divan::Bencher) {
         noise: 1e-6,
         model_rel: 0.0,
     };
-    let filter = Filter::new(&s, vec![0.0; GAUGES], errors, 1.0, &[1e3; LOADS]).unwrap();
+    let filter = Filter::new(
+        &s,
+        vec![0.0; GAUGES],
+        errors,
+        1.0,
+        &[1e3; LOADS],
+        Widening::none(),
+    )
+    .unwrap();
     bencher.bench_local(|| {
-        let mut loads = Vec::new();
+        let mut loads = SampleLoads::default();
         let mut sums = Sums::new(GAUGES, LOADS);
         each_piece(&h, &bytes, |v| {
-            loads.clear();
+            loads.values.clear();
+            loads.gaps.clear();
             filter.apply(v, h.unit, &mut loads, &mut sums);
         });
         sums.samples
