@@ -31,6 +31,31 @@ impl LoadEstimate {
             .sqrt()
     }
 
+    /// Appends sums of loads, each a list of loads and factors: `c' f` with the variance `c' C c`.
+    pub fn add_sums(&mut self, names: &[String], sums: &[Vec<(usize, f64)>]) {
+        let k = self.values.len();
+        let own = (0..k).map(|l| vec![(l, 1.0)]);
+        let rows: Vec<Vec<(usize, f64)>> = own.chain(sums.iter().cloned()).collect();
+        let values = rows
+            .iter()
+            .map(|row| row.iter().map(|(l, c)| c * self.values[*l]).sum())
+            .collect();
+        let between = |a: &[(usize, f64)], b: &[(usize, f64)]| -> f64 {
+            let pairs = a.iter().flat_map(|x| b.iter().map(move |y| (x, y)));
+            pairs
+                .map(|((i, c), (j, d))| c * d * self.covariance[i * k + j])
+                .sum()
+        };
+        let covariance = rows
+            .iter()
+            .flat_map(|a| rows.iter().map(move |b| (a, b)))
+            .map(|(a, b)| between(a, b))
+            .collect();
+        self.values = values;
+        self.covariance = covariance;
+        self.names.extend_from_slice(names);
+    }
+
     /// The 95 % interval of load `i`.
     pub fn interval(&self, i: usize) -> [f64; 2] {
         let half = self.coverage_factor * self.sigma(i);

@@ -1,9 +1,8 @@
 //! Gauges that look wired backwards, dead, or wrong: each one tried, exactly, on all runs together.
 
 use super::errors::ErrorModel;
-use super::runs::solve;
-use super::types::{Readings, RunEstimate};
-use super::verdict::GAUGE_SUSPECT;
+use super::solved::solve;
+use super::types::{GAUGE_SUSPECT, Readings, RunEstimate};
 use crate::finding::{Finding, Severity};
 use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;

@@ -24,10 +24,12 @@ pub struct Gain {
     pub rank: usize,
     /// `n_used x n_loads`.
     s: Matrix,
-    /// `n_loads x n_loads`, from noise and nuisance loads; infinite on the diagonal of a load that the readings don't see.
+    /// `n_loads x n_loads`, from noise and nuisance loads, sums among them; infinite on the diagonal of a load that the readings don't see.
     base: Matrix,
     /// `n_loads x n_loads`: variance of load l for the square of load m, from errors of single coefficients and of whole columns.
     model_variance: Matrix,
+    /// Loads and factors behind every row of `gain`: itself, or a sum of loads.
+    rows: Vec<Vec<(usize, f64)>>,
     errors: ErrorModel,
 }
 
@@ -81,11 +83,45 @@ impl Gain {
             s: rows,
             base,
             model_variance,
+            rows: (0..k).map(|l| vec![(l, 1.0)]).collect(),
             errors,
         })
     }
 
-    /// Number of loads.
+    /// The same with a row for each sum of loads (loads and factors), so that sums have intervals of their own.
+    pub fn with_sums(&self, sums: &[Vec<(usize, f64)>]) -> Self {
+        let (k, n) = self.gain.shape();
+        let own = (0..k).map(|l| vec![(l, 1.0)]);
+        let rows: Vec<Vec<(usize, f64)>> = own.chain(sums.iter().cloned()).collect();
+        let gain = Matrix::from_fn(rows.len(), n, |a, i| {
+            rows[a].iter().map(|(l, c)| c * self.gain[(*l, i)]).sum()
+        });
+        let base = Matrix::from_fn(rows.len(), rows.len(), |a, b| {
+            let pairs = rows[a]
+                .iter()
+                .flat_map(|x| rows[b].iter().map(move |y| (x, y)));
+            pairs
+                .map(|((i, c), (j, d))| c * d * self.base[(*i, *j)])
+                .sum()
+        });
+        let rel2 = self.errors.model_rel * self.errors.model_rel;
+        let model_variance = Matrix::from_fn(rows.len(), self.s.ncols(), |a, m| {
+            let single: f64 = (0..n)
+                .map(|i| (gain[(a, i)] * self.s[(i, m)]).powi(2))
+                .sum();
+            let column: f64 = rows[a].iter().filter(|t| t.0 == m).map(|t| t.1).sum();
+            rel2 * (single + column * column)
+        });
+        Self {
+            gain,
+            base,
+            model_variance,
+            rows,
+            ..self.clone()
+        }
+    }
+
+    /// Number of loads, sums among them.
     pub fn n_loads(&self) -> usize {
         self.gain.nrows()
     }
@@ -122,11 +158,13 @@ impl Gain {
                     .enumerate()
                     .map(|(i, m)| self.gain[(a, i)] * self.gain[(b, i)] * m)
                     .sum();
-                let column = if a == b {
-                    self.errors.column_variance(f[a])
-                } else {
-                    0.0
-                };
+                let pairs = self.rows[a]
+                    .iter()
+                    .flat_map(|x| self.rows[b].iter().map(move |y| (x, y)));
+                let column: f64 = pairs
+                    .filter(|(x, y)| x.0 == y.0)
+                    .map(|(x, y)| x.1 * y.1 * self.errors.column_variance(f[x.0]))
+                    .sum();
                 let gauges: f64 = shifts.iter().map(|c| c[a] * c[b]).sum();
                 out[a * k + b] =
                     widening.variance_factor * (self.base[(a, b)] + single + column) + gauges;

@@ -29,6 +29,8 @@ pub struct Filter {
     noise_factor: f64,
     typical: Vec<f64>,
     widening: Widening,
+    /// Sums of loads that are listed beside them.
+    sums: Vec<Vec<(usize, f64)>>,
     /// Estimates by the gauges that read.
     others: RwLock<HashMap<Vec<usize>, Option<Arc<Gain>>>>,
 }
@@ -53,19 +55,12 @@ impl Filter {
         typical: &[f64],
         widening: Widening,
     ) -> Option<Self> {
-        let (n, k) = (s.gauges.len(), s.loads.len());
-        let all: Vec<usize> = (0..n).collect();
-        let whole = Gain::new(s, &all, errors, noise_factor, typical)?;
-        Some(Self {
-            gain: (0..k)
-                .flat_map(|l| (0..n).map(move |g| (l, g)))
-                .map(|(l, g)| whole.gain[(l, g)])
-                .collect(),
-            rows: (0..n)
-                .flat_map(|g| (0..k).map(move |l| (g, l)))
-                .map(|(g, l)| s.values[(g, l)])
-                .collect(),
-            whole: Arc::new(whole),
+        let all: Vec<usize> = (0..s.gauges.len()).collect();
+        let mut filter = Self {
+            whole: Arc::new(Gain::new(s, &all, errors, noise_factor, typical)?),
+            gain: Vec::new(),
+            rows: Vec::new(),
+            sums: Vec::new(),
             zero,
             s: s.clone(),
             errors,
@@ -73,7 +68,31 @@ impl Filter {
             typical: typical.to_vec(),
             widening,
             others: RwLock::new(HashMap::new()),
-        })
+        };
+        filter.lay_out();
+        Some(filter)
+    }
+
+    /// Lists sums of loads (loads and factors) after the loads.
+    pub fn combine(&mut self, sums: &[Vec<(usize, f64)>]) {
+        self.whole = Arc::new(self.whole.with_sums(sums));
+        self.sums = sums.to_vec();
+        self.others = RwLock::new(HashMap::new());
+        self.lay_out();
+    }
+
+    /// The numbers in the order in which samples meet them. Sums of loads strain nothing beyond their loads.
+    fn lay_out(&mut self) {
+        let (n, k) = (self.s.gauges.len(), self.whole.n_loads());
+        let own = self.s.loads.len();
+        self.gain = (0..k)
+            .flat_map(|l| (0..n).map(move |g| (l, g)))
+            .map(|at| self.whole.gain[at])
+            .collect();
+        self.rows = (0..n)
+            .flat_map(|g| (0..k).map(move |l| (g, l)))
+            .map(|(g, l)| if l < own { self.s.values[(g, l)] } else { 0.0 })
+            .collect();
     }
 
     /// Loads of samples (`n_gauges` readings each, times `to_strain`), appended to `out` and to `sums`.
@@ -167,7 +186,7 @@ impl Filter {
             self.noise_factor,
             &self.typical,
         )
-        .map(Arc::new);
+        .map(|g| Arc::new(g.with_sums(&self.sums)));
         let mut kept = self.others.write().unwrap_or_else(PoisonError::into_inner);
         if kept.len() < KEPT {
             kept.insert(used, new.clone());

@@ -5,11 +5,13 @@
 //! runs; [`verdict`] judges it, [`outlier`] and [`faults`] name gauges that look wrong, [`determined`] and [`plausible`] say whether
 //! readings and loads can be what they are taken for.
 
+pub mod clock;
 mod determined;
 pub mod errors;
 pub mod faults;
 pub mod gain;
 pub mod history;
+mod interval;
 mod kernel;
 pub mod net;
 mod outlier;
@@ -17,14 +19,17 @@ pub mod plausible;
 pub mod residuals;
 mod runs;
 mod solve;
+mod solved;
 mod sums;
 mod types;
 pub mod verdict;
 
 pub use errors::ErrorModel;
 pub use gain::Gain;
-pub use runs::{NORMAL_95, estimate, recover, student_95};
+pub use interval::{NORMAL_95, student_95};
+pub use runs::recover;
 pub use solve::*;
+pub use solved::estimate;
 pub use sums::Sums;
 pub use types::*;
 

@@ -1,11 +1,10 @@
 //! A gauge whose error stands out of the others', and what it does to the loads.
 
+use super::interval::NORMAL_95;
 use super::residuals::{GaugeTest, Joint};
-use super::runs::Solved;
-use super::types::{Shift, ShiftKind, Widening};
-use super::verdict::GAUGE_SUSPECT;
+use super::solved::Solved;
+use super::types::{GAUGE_SUSPECT, Shift, ShiftKind, Widening};
 use crate::finding::{Finding, Severity};
-use crate::recovery::NORMAL_95;
 use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};

@@ -1,24 +1,11 @@
 //! Static states, or samples of a record: one estimate each, all judged together.
 
 use super::errors::ErrorModel;
-use super::gain::Gain;
-use super::residuals::{Out, Pattern, Projection};
-use super::types::{Readings, Recovery, RunEstimate, Widening};
+use super::solved::{Solved, solve};
+use super::types::{GAUGE_SUSPECT, Readings, Recovery, RunEstimate};
 use super::{determined, faults, plausible, verdict};
-use crate::estimate::LoadEstimate;
 use crate::finding::Finding;
 use crate::sensitivity::Sensitivity;
-use rayon::prelude::*;
-use statrs::distribution::{ContinuousCDF, StudentsT};
-use std::collections::BTreeMap;
-
-/// Factor on sigma of a 95 % interval where sigma is known.
-pub const NORMAL_95: f64 = 1.959_963_984_540_054;
-
-/// Factor on sigma of a 95 % interval where sigma is estimated with `dof` degrees of freedom.
-pub fn student_95(dof: f64) -> f64 {
-    StudentsT::new(0.0, 1.0, dof.max(1.0)).map_or(NORMAL_95, |t| t.inverse_cdf(0.975))
-}
 
 /// Loads of every run with intervals, and findings on what the residuals say.
 ///
@@ -73,14 +60,12 @@ pub fn recover(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Re
 /// stands out more than that it does.
 fn unlike(mut judged: Vec<Finding>, mut named: Vec<Finding>) -> Vec<Finding> {
     named.retain(|n| {
-        n.code != verdict::GAUGE_SUSPECT
+        n.code != GAUGE_SUSPECT
             || !judged
                 .iter()
                 .any(|f| f.code == n.code && f.subject == n.subject)
     });
-    judged.retain(|f| {
-        f.code != verdict::GAUGE_SUSPECT || !named.iter().any(|n| n.subject == f.subject)
-    });
+    judged.retain(|f| f.code != GAUGE_SUSPECT || !named.iter().any(|n| n.subject == f.subject));
     judged.extend(named);
     judged
 }
@@ -104,160 +89,4 @@ fn residual_sizes(n: usize, runs: &[RunEstimate]) -> (f64, Vec<f64>, Vec<f64>) {
     let rms = |q: f64, m: usize| if m > 0 { (q / m as f64).sqrt() } else { 0.0 };
     let gauges = by_gauge.iter().map(|(q, m)| rms(*q, *m)).collect();
     (rms(sum, dof), gauges, leverage)
-}
-
-/// Iterations between loads and the variances that depend on them; they settle in two or three.
-const ITERATIONS: usize = 4;
-
-/// Estimates with intervals as stated errors make them.
-pub(super) struct Solved {
-    pub runs: Vec<RunEstimate>,
-    /// Runs by the gauges that read in them, the most frequent first, and their estimate; `None` where S is not finite.
-    pub patterns: Vec<(Pattern, Option<Gain>)>,
-    /// Loads whose model error weighs the readings.
-    pub typical: Vec<f64>,
-}
-
-/// The runs by the gauges that read in them and by their noise, the most frequent first.
-pub(super) fn patterns(n: usize, readings: &[Readings]) -> Vec<Pattern> {
-    let mut map: BTreeMap<(Vec<usize>, u64), Vec<usize>> = BTreeMap::new();
-    for (i, r) in readings.iter().enumerate() {
-        let used = (0..n)
-            .filter(|&g| r.strain.get(g).is_some_and(|v| v.is_finite()))
-            .collect();
-        map.entry((used, r.noise_factor.to_bits()))
-            .or_default()
-            .push(i);
-    }
-    let mut list: Vec<Pattern> = map
-        .into_iter()
-        .map(|((used, noise), runs)| Pattern {
-            used,
-            noise_factor: f64::from_bits(noise),
-            runs,
-        })
-        .collect();
-    list.sort_by(|a, b| b.runs.len().cmp(&a.runs.len()).then(a.runs.cmp(&b.runs)));
-    list
-}
-
-/// Loads of every run: weights depend on typical loads through the model's error, so solution and weights alternate.
-pub(super) fn solve(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Solved {
-    let k = s.loads.len();
-    let patterns = patterns(s.gauges.len(), readings);
-    let mut typical = vec![0.0; k];
-    let mut last = at_typical(s, readings, errors, &patterns, &typical);
-    if errors.model_rel > 0.0 {
-        for _ in 0..ITERATIONS {
-            typical = root_mean_squares(k, &last.1);
-            last = at_typical(s, readings, errors, &patterns, &typical);
-        }
-    }
-    let (gains, loads) = last;
-    let mut runs: Vec<Option<RunEstimate>> = vec![None; readings.len()];
-    for (p, gain) in patterns.iter().zip(&gains) {
-        let projection = Projection::new(s, p, errors, &typical, Out::Unstated);
-        for &i in &p.runs {
-            let run = estimate_of(s, &readings[i], errors, p, gain.as_ref(), &loads[i]);
-            runs[i] = Some(match &projection {
-                Some(projection) => RunEstimate {
-                    chi2: projection.chi2_of_run(&projection.of(p, &readings[i].strain), &loads[i]),
-                    dof: projection.m(),
-                    ..run
-                },
-                None => run,
-            });
-        }
-    }
-    Solved {
-        runs: runs.into_iter().flatten().collect(),
-        patterns: patterns.into_iter().zip(gains).collect(),
-        typical,
-    }
-}
-
-/// The estimate of each pattern for weights at `typical` loads, and the loads of every run.
-fn at_typical(
-    s: &Sensitivity,
-    readings: &[Readings],
-    errors: ErrorModel,
-    patterns: &[Pattern],
-    typical: &[f64],
-) -> (Vec<Option<Gain>>, Vec<Vec<f64>>) {
-    let gains: Vec<Option<Gain>> = patterns
-        .par_iter()
-        .map(|p| Gain::new(s, &p.used, errors, p.noise_factor, typical))
-        .collect();
-    let mut loads = vec![vec![0.0; s.loads.len()]; readings.len()];
-    for (p, gain) in patterns.iter().zip(&gains) {
-        let Some(gain) = gain else { continue };
-        for &i in &p.runs {
-            loads[i] = gain.loads(&readings[i].strain);
-        }
-    }
-    (gains, loads)
-}
-
-fn root_mean_squares(k: usize, loads: &[Vec<f64>]) -> Vec<f64> {
-    (0..k)
-        .map(|l| {
-            let sum: f64 = loads.iter().map(|f| f[l] * f[l]).sum();
-            (sum / loads.len().max(1) as f64).sqrt()
-        })
-        .collect()
-}
-
-/// One run without its residual's judgement.
-fn estimate_of(
-    s: &Sensitivity,
-    r: &Readings,
-    errors: ErrorModel,
-    pattern: &Pattern,
-    gain: Option<&Gain>,
-    f: &[f64],
-) -> RunEstimate {
-    let (n, k) = (s.gauges.len(), s.loads.len());
-    let mut out = RunEstimate {
-        estimate: LoadEstimate {
-            run: r.run.clone(),
-            names: s.loads.iter().map(|l| l.name.clone()).collect(),
-            values: f.to_vec(),
-            covariance: vec![f64::INFINITY; k * k],
-            coverage_factor: NORMAL_95,
-            findings: Vec::new(),
-        },
-        predicted: vec![f64::NAN; n],
-        residual: vec![f64::NAN; n],
-        sd: vec![f64::NAN; n],
-        chi2: 0.0,
-        dof: 0,
-        leverage: vec![0.0; n],
-        rank: 0,
-    };
-    let Some(gain) = gain else { return out };
-    out.estimate.covariance = gain.covariance(f, &Widening::none());
-    out.rank = gain.rank;
-    for (g, row) in s.values.row_iter().enumerate() {
-        out.predicted[g] = row.iter().zip(f).map(|(s, f)| s * f).sum();
-    }
-    let noise = errors.noise_variance(r.noise_factor);
-    for (&g, leverage) in pattern.used.iter().zip(&gain.leverage) {
-        out.residual[g] = r.strain[g] - out.predicted[g];
-        out.sd[g] = (noise + errors.shared(s.values.row(g).iter().copied(), f, f)).sqrt();
-        out.leverage[g] = *leverage;
-    }
-    out
-}
-
-/// One run by itself, its interval as stated errors make it.
-pub fn estimate(s: &Sensitivity, r: &Readings, errors: ErrorModel) -> RunEstimate {
-    let solved = solve(s, std::slice::from_ref(r), errors);
-    solved.runs.into_iter().next().unwrap_or_else(|| {
-        let nothing = Pattern {
-            used: Vec::new(),
-            noise_factor: r.noise_factor,
-            runs: Vec::new(),
-        };
-        estimate_of(s, r, errors, &nothing, None, &vec![f64::NAN; s.loads.len()])
-    })
 }

@@ -1,7 +1,11 @@
 //! What goes in and what comes out.
 
+use super::interval::NORMAL_95;
 use crate::estimate::LoadEstimate;
 use crate::finding::Finding;
+
+/// Code of a finding on a gauge whose error stands out.
+pub const GAUGE_SUSPECT: &str = "gauge-suspect";
 
 /// Readings of one static state.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,7 +94,7 @@ impl Widening {
     pub fn none() -> Self {
         Self {
             variance_factor: 1.0,
-            coverage_factor: super::NORMAL_95,
+            coverage_factor: NORMAL_95,
             shifts: Vec::new(),
         }
     }

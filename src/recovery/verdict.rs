@@ -1,19 +1,16 @@
 //! What the residual says: do stated noise and model error explain it, and if not, can the loads be trusted?
 
-use super::NORMAL_95;
 use super::errors::ErrorModel;
+use super::interval::{NORMAL_95, student_95};
 use super::outlier;
 use super::residuals::{Joint, Out, Projection};
-use super::runs::{Solved, student_95};
+use super::solved::Solved;
 use super::types::{Readings, RunEstimate, Widening};
 use crate::finding::{Finding, Severity};
 use crate::linalg::{Matrix, dense};
 use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
-
-/// Code of a finding on a gauge whose error stands out.
-pub const GAUGE_SUSPECT: &str = "gauge-suspect";
 
 /// Chance under which a sum of squares counts as larger than stated errors make it.
 const SIGNIFICANT: f64 = 1e-3;

@@ -288,6 +288,8 @@ fn edits_of(
                     card.to_moment_card()
                 });
             }
+            // A job without a model has no cases.
+            LoadActs::Named => {}
             LoadActs::Set(set) => {
                 let fields = [
                     Field::from(sid),

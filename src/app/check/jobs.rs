@@ -144,7 +144,7 @@ fn missing_ids(job: &Job, model: &Model) -> Vec<Fault> {
                     &l.name,
                 ));
             }
-            job::LoadActs::Set(_) => {}
+            job::LoadActs::Set(_) | job::LoadActs::Named => {}
         }
     }
     for g in &job.gauges {

@@ -2,6 +2,7 @@
 //! structs of [`types`]; [`gauges`], [`strain`] and [`runs`] read the tables a job names; [`schema`] describes
 //! a job to editors.
 
+pub mod correct;
 mod faults;
 pub mod gauges;
 mod parse;
@@ -60,6 +61,7 @@ pub fn read_job(inputs: &mut Inputs, path: &Path) -> Result<Job, Faults> {
     job.gauges
         .extend(gauges::read_gauge_file(inputs, &job, &mut faults));
     resolve::check_names(&job, &mut faults);
+    resolve::check_named(&job, &mut faults);
     faults.sort_by(|a, b| {
         (a.file != given, &a.file, a.line).cmp(&(b.file != given, &b.file, b.line))
     });

@@ -17,6 +17,8 @@ pub(super) struct RawJob {
     pub report_units: Option<RawUnits>,
     pub model: S<RawModel>,
     pub load: Vec<Spanned<RawLoad>>,
+    pub combination: Vec<Spanned<RawCombination>>,
+    pub correction: Vec<Spanned<RawChannelCorrection>>,
     pub gauge: Vec<Spanned<RawGauge>>,
     pub gauges: S<RawGauges>,
     pub candidates: S<RawCandidates>,
@@ -66,6 +68,25 @@ pub(super) struct RawLoad {
     pub role: S<String>,
     pub expected: S<f64>,
     pub weight: S<f64>,
+}
+
+#[derive(Deserialize, JsonSchema, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawCombination {
+    pub name: S<String>,
+    pub terms: BTreeMap<Spanned<String>, Spanned<f64>>,
+}
+
+#[derive(Deserialize, JsonSchema, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawChannelCorrection {
+    pub gauge: S<String>,
+    pub sign: S<f64>,
+    pub gain: S<f64>,
+    pub offset_microstrain: S<f64>,
+    pub exchanged_with: S<String>,
+    pub angle_deg: S<f64>,
+    pub ignore: S<bool>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]
@@ -155,6 +176,7 @@ pub(super) struct RawMeasured {
     pub noise_microstrain: S<f64>,
     pub model_uncertainty_rel: S<f64>,
     pub hold_out: S<Texts>,
+    pub time_unit: S<String>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

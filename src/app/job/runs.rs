@@ -2,7 +2,7 @@
 
 use super::suggest;
 use super::table::read_table;
-use super::types::{Component, Job, LoadActs, Runs};
+use super::types::{Component, Job, Runs};
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::files::Inputs;
 use crate::units::Quantity;
@@ -109,8 +109,8 @@ pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunR
 fn known_columns(job: &Job) -> Vec<(String, Quantity)> {
     let mut out: Vec<(String, Quantity)> = Vec::new();
     for load in &job.loads {
-        if let LoadActs::AtGrid { component, .. } = load.acts {
-            out.push((load.name.clone(), component.quantity()));
+        if let Some(quantity) = load.quantity() {
+            out.push((load.name.clone(), quantity));
         }
     }
     if let Some(s) = &job.sensitivity {
@@ -130,11 +130,17 @@ fn known_columns(job: &Job) -> Vec<(String, Quantity)> {
     out
 }
 
-/// Force or moment by the last part of a load's name (`LF.MX` is a moment); a force where the name does not tell.
+/// Force or moment by the parts of a load's name (`LF.MX`, `MX_LF` and `M_LF` are moments); a force where the name does not tell.
 pub fn quantity_of_name(name: &str) -> Quantity {
-    let tail = name.rsplit(['.', '_', ' ']).next().unwrap_or("");
-    Component::ALL
-        .into_iter()
-        .find(|c| c.name().eq_ignore_ascii_case(tail))
-        .map_or(Quantity::Force, Component::quantity)
+    let is_moment = name.split(['.', '_', ' ']).any(|part| {
+        part == "M"
+            || Component::ALL
+                .into_iter()
+                .any(|c| !c.is_force() && c.name().eq_ignore_ascii_case(part))
+    });
+    if is_moment {
+        Quantity::Moment
+    } else {
+        Quantity::Force
+    }
 }

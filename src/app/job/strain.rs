@@ -1,8 +1,9 @@
 //! The strain file: a column a gauge in microstrain, a row a run (`run`) or a sample (`time`); or RPC III, Parquet, MDF4, a channel a
 //! gauge.
 
+use super::correct::{Channel, channel_of, column_of};
 use super::table::{Table, read_table};
-use super::types::{Job, NamedFile};
+use super::types::{Correction, Job, NamedFile};
 use crate::app::fault::{Fault, FaultList, Faults, split_message};
 use crate::app::files::Inputs;
 use crate::series::Channels;
@@ -45,13 +46,47 @@ impl StrainTable {
         let w = self.gauges.len();
         self.microstrain.get(i * w..(i + 1) * w).unwrap_or(&[])
     }
+
+    /// Gives every column its gauge's name and every reading its gauge's strain.
+    fn put_right(&mut self, corrections: &[Correction]) {
+        if corrections.is_empty() {
+            return;
+        }
+        let w = self.gauges.len().max(1);
+        self.gauges = self
+            .gauges
+            .iter()
+            .map(|c| column_of(corrections, c).to_owned())
+            .collect();
+        let channels: Vec<Channel> = self
+            .gauges
+            .iter()
+            .map(|g| channel_of(corrections, g))
+            .collect();
+        for row in self.microstrain.chunks_exact_mut(w) {
+            for (v, c) in row.iter_mut().zip(&channels).filter(|(_, c)| !c.is_right()) {
+                *v = c.put_right(*v);
+            }
+        }
+    }
 }
 
-/// A whole strain file in memory. Long histories are better streamed.
+/// A whole strain file in memory, its channels put right as `[[correction]]` says. Long histories are better streamed.
 ///
 /// # Errors
 /// Every fault: no `run` or `time` column, fields that are no numbers, runs named twice, times that don't ascend.
 pub fn read_strain(
+    inputs: &mut Inputs,
+    job: &Job,
+    named: &NamedFile,
+) -> Result<StrainTable, Faults> {
+    let mut table = strain_as_read(inputs, job, named)?;
+    table.put_right(&job.corrections);
+    Ok(table)
+}
+
+/// The file as it stands.
+fn strain_as_read(
     inputs: &mut Inputs,
     job: &Job,
     named: &NamedFile,
@@ -208,6 +243,15 @@ pub fn strain_from_table(t: &Table) -> Result<StrainTable, Faults> {
             "add `run` with the runs' names, or `time` in seconds",
         )));
     };
+    if t.rows.is_empty() {
+        return Err(Faults::from(Fault::at(
+            &*t.file,
+            1,
+            "rows",
+            "a header and no rows",
+            "write a row a run or a sample",
+        )));
+    }
     let mut faults = FaultList::new();
     let columns: Vec<usize> = (0..t.header.len()).filter(|c| *c != key).collect();
     let mut microstrain = Vec::with_capacity(t.rows.len() * columns.len());

@@ -38,6 +38,10 @@ pub struct Job {
     pub model: Option<ModelFiles>,
     /// `[[load]]`, in job order.
     pub loads: Vec<JobLoad>,
+    /// `[[combination]]`, in job order.
+    pub combinations: Vec<Combination>,
+    /// `[[correction]]`, in job order.
+    pub corrections: Vec<Correction>,
     /// `[[gauge]]`, then those of `[gauges] file`.
     pub gauges: Vec<JobGauge>,
     /// `[gauges] file`.
@@ -145,6 +149,40 @@ pub enum LoadActs {
     },
     /// A load set of the deck.
     Set(u32),
+    /// A column of a given S: nothing but its name is known.
+    Named,
+}
+
+/// `[[combination]]`: a sum of loads with an interval of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Combination {
+    /// Name.
+    pub name: String,
+    /// Loads and their factors.
+    pub terms: Vec<(String, f64)>,
+    /// Line of the job.
+    pub line: u32,
+}
+
+/// `[[correction]]`: what is known to be wrong with a channel. It reads `sign gain strain + offset`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Correction {
+    /// Channel.
+    pub gauge: String,
+    /// 1, or -1 where it is wired backwards.
+    pub sign: f64,
+    /// What it reads of the strain.
+    pub gain: f64,
+    /// What it reads without strain, microstrain.
+    pub offset_microstrain: f64,
+    /// The channel with which it is exchanged.
+    pub exchanged_with: Option<String>,
+    /// What the gauge is turned by, degrees, beyond its stated angle.
+    pub angle_deg: Option<f64>,
+    /// The channel is taken for silent.
+    pub ignore: bool,
+    /// Line of the job.
+    pub line: u32,
 }
 
 /// Whether a load is asked for.
@@ -190,16 +228,14 @@ impl JobLoad {
     pub fn quantity(&self) -> Option<Quantity> {
         match self.acts {
             LoadActs::AtGrid { component, .. } => Some(component.quantity()),
+            LoadActs::Named => Some(super::runs::quantity_of_name(&self.name)),
             LoadActs::Set(_) => None,
         }
     }
 
     /// The unit in which it is reported; `None` for a load set, which is counted in times the set.
     pub fn report_unit(&self, units: &ReportUnits) -> Option<Unit> {
-        match self.acts {
-            LoadActs::AtGrid { component, .. } => Some(units.unit(component.quantity())),
-            LoadActs::Set(_) => None,
-        }
+        Some(units.unit(self.quantity()?))
     }
 }
 
@@ -511,6 +547,8 @@ pub struct Measured {
     pub model_uncertainty_rel: f64,
     /// Runs kept from fitting.
     pub hold_out: HoldOut,
+    /// Seconds in the unit of the column `time`, where the job states it.
+    pub time_unit_s: Option<f64>,
     /// Line of the job.
     pub line: u32,
 }

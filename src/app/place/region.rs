@@ -126,7 +126,7 @@ fn load_points(job: &Job, fields: &Fields) -> Vec<Segment> {
                 let x = model.grids.get(model.grid_ix(grid)?.us())?.x;
                 Some([x, x])
             }
-            LoadActs::Set(_) => None,
+            LoadActs::Set(_) | LoadActs::Named => None,
         })
         .collect()
 }

@@ -121,7 +121,7 @@ fn reference_of(task: &Task, g: &Gauge) -> Option<(String, [f64; 3])> {
     let model = task.fields.model();
     let loads = task.job.loads.iter().filter_map(|l| match l.acts {
         LoadActs::AtGrid { grid, .. } => Some((grid.to_string(), grid)),
-        LoadActs::Set(_) => None,
+        LoadActs::Set(_) | LoadActs::Named => None,
     });
     let named = task.job.placement.references.iter();
     let points: Vec<(String, u32)> = if task.job.placement.references.is_empty() {

@@ -3,10 +3,12 @@
 //! [`runs`] static states, a row each; [`stream`] records of any length, CSV, RPC III or binary ([`crate::series::binary`]), at constant
 //! memory, Parquet and MDF4 read whole; [`derived`] what else is made of the loads.
 
+mod combined;
 mod content;
 mod csv_record;
 mod derived;
 mod history_files;
+mod known_payload;
 mod record;
 mod runs;
 mod stream;

@@ -3,10 +3,12 @@
 use super::csv_record::{self, Layout};
 use crate::app::fault::Fault;
 use crate::app::files::FileBytes;
+use crate::app::job::correct::Channel;
 use crate::recovery::Sums;
 use crate::recovery::history::{Filter, SampleLoads};
 use crate::series::binary::{self, Header};
 use crate::series::{Channels, rpc};
+use crate::units::MICROSTRAIN;
 
 /// Samples a piece of a binary record.
 const SAMPLES: usize = 16_384;
@@ -34,6 +36,10 @@ pub(super) struct Record {
     pub columns: Vec<Option<usize>>,
     /// Strain of one unit of the file.
     pub unit: f64,
+    /// Seconds in the unit of its times.
+    pub second: f64,
+    /// What puts the readings of each column right; empty where nothing is to be put right.
+    pub channels: Vec<Channel>,
 }
 
 impl Record {
@@ -85,7 +91,22 @@ impl Record {
                 )?;
             }
         }
+        self.put_right(&mut values);
+        times.iter_mut().for_each(|t| *t *= self.second);
         Ok((times, values))
+    }
+
+    /// Readings as `[[correction]]` says.
+    fn put_right(&self, values: &mut [f64]) {
+        if self.channels.is_empty() {
+            return;
+        }
+        let microstrain = self.unit / MICROSTRAIN;
+        for row in values.chunks_exact_mut(self.channels.len()) {
+            for (v, c) in row.iter_mut().zip(&self.channels) {
+                *v = c.put_right(*v * microstrain) / microstrain;
+            }
+        }
     }
 }
 
@@ -109,9 +130,12 @@ pub(super) fn process(record: &Record, filter: &Filter, i: usize) -> Result<Piec
                 values.clear();
                 let end = (block + BLOCK).min(to);
                 binary::read_samples(h, &record.bytes, block, end, &record.columns, &mut values);
+                record.put_right(&mut values);
                 filter.apply(&values, record.unit, &mut loads, &mut sums);
             }
-            (from..to).map(|s| h.t0 + h.dt * s as f64).collect()
+            (from..to)
+                .map(|s| (h.t0 + h.dt * s as f64) * record.second)
+                .collect()
         }
         Source::Csv(..) | Source::Rpc(_) | Source::Whole(_) => {
             let (times, values) = record.piece(i)?;

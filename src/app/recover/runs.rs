@@ -1,12 +1,14 @@
 //! Static states.
 
 use super::Task;
+use super::combined::listed;
 use super::derived::{write_arrows, write_nastran_runs};
+use super::known_payload;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::strain::{StrainRows, StrainTable, read_strain};
 use crate::app::job::{Job, LoadActs, LoadFile, Measured, NamedFile};
 use crate::app::spreadsheets::write_spreadsheet;
-use crate::app::strain::{LoadUnits, load_units};
+use crate::app::strain::LoadUnits;
 use crate::app::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::recovery::net::effective_samples;
@@ -124,7 +126,8 @@ pub(super) fn solve(
             "name the columns after the gauges",
         )));
     }
-    let readings = readings_of(&table, names, &columns, task);
+    let mut readings = readings_of(&table, names, &columns, task);
+    known_payload::take_out(session, task, &mut readings)?;
     let recovery = session.stage("recover", |_| recover(s, &readings, task.errors));
     session.findings.extend(recovery.findings.iter().cloned());
     Ok((readings, recovery))
@@ -136,12 +139,16 @@ pub(super) fn run(
     task: &Task,
 ) -> Result<(), Faults> {
     let s = &task.prepared.sensitivity;
-    let (readings, recovery) = solve(session, task)?;
-    let units = load_units(
-        task.job,
-        &s.loads.iter().map(|l| l.name.clone()).collect::<Vec<_>>(),
-    );
-    session.findings.extend(sums(task, &recovery, &units));
+    let (readings, mut recovery) = solve(session, task)?;
+    let listed = listed(task.job, s)?;
+    let units = listed.units;
+    session
+        .findings
+        .extend(sums(task, &recovery, &units[..s.loads.len()]));
+    for run in &mut recovery.runs {
+        run.estimate
+            .add_sums(&listed.names[s.loads.len()..], &listed.sums);
+    }
     put(session, task, &recovery, &units)?;
     let shown: Vec<RecoveredRun> = recovery.runs.iter().map(|r| shown_run(r, &units)).collect();
     let points: Vec<GaugePoints> = (0..s.gauges.len())
@@ -203,7 +210,7 @@ pub(super) fn run(
                 let half = r.estimate.coverage_factor * r.estimate.sigma(l);
                 format!(
                     "{} {:.4} +- {:.4} {}",
-                    s.loads[l].name,
+                    r.estimate.names[l],
                     r.estimate.values[l] * u.factor,
                     half * u.factor,
                     u.name
@@ -216,7 +223,7 @@ pub(super) fn run(
     out.write("loads.csv", |w| loads_csv(w, &recovery, &units))
         .map_err(Faults::from)?;
     session.write_page(&arguments.job, page)?;
-    let names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
+    let names = listed.names;
     let files = &task.job.recover.files;
     if files
         .as_ref()
@@ -281,7 +288,7 @@ fn put(
             let [low, high] = r.estimate.interval(l).map(|v| v * u.factor);
             loads.push(json!({
                 "run": r.estimate.run,
-                "name": s.loads[l].name,
+                "name": r.estimate.names[l],
                 "value": r.estimate.values[l] * u.factor,
                 "sigma": r.estimate.sigma(l) * u.factor,
                 "low": low,

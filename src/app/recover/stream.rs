@@ -1,6 +1,7 @@
 //! Records: samples streamed through one filter, pieces in parallel, a few pieces in memory at a time.
 
 use super::Task;
+use super::combined::{Listed, listed};
 use super::content::{check_content, content_of_loads};
 use super::csv_record;
 use super::derived::{self, History};
@@ -10,15 +11,19 @@ use super::runs::columns_of;
 use super::trace::Spans;
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::FileBytes;
+use crate::app::job::correct::{channel_of, column_of};
 use crate::app::job::strain::{in_microstrain, read_strain_header, strain_record};
+use crate::app::outcome::finite;
 use crate::app::solved::first_mode_of;
 use crate::app::spreadsheets::write_spreadsheet;
-use crate::app::strain::{LoadUnits, load_units};
+use crate::app::strain::LoadUnits;
 use crate::app::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::linalg::Matrix;
+use crate::recovery::clock;
 use crate::recovery::history::Filter;
 use crate::recovery::{Readings, Recovery, Sums, recover};
+use crate::report::csv_cell;
 use crate::report::scene::{Shown, run_arrows, scene_of_job};
 use crate::report::spreadsheet::{HistoryLoad, history_sheet, residual_sheet};
 use crate::report::strain::{Recovered, RecoveredRun, recover_page};
@@ -78,10 +83,16 @@ pub(super) fn run(
         let names = l.names.clone();
         (Source::Csv(l, pieces), names, MICROSTRAIN)
     };
+    let corrections = &task.job.corrections;
+    let names: Vec<String> = names
+        .iter()
+        .map(|n| column_of(corrections, n).to_owned())
+        .collect();
     let found = columns_of(session, named, &names, &all.gauges);
     // Gauges without a column take no part.
-    let used: Vec<usize> = (0..found.len())
+    let mut used: Vec<usize> = (0..found.len())
         .filter(|&g| found[g].is_some() && task.zero[g].is_finite())
+        .filter(|&g| !channel_of(corrections, &all.gauges[g]).ignore)
         .collect();
     if used.is_empty() {
         return Err(Faults::from(Fault::at(
@@ -92,18 +103,25 @@ pub(super) fn run(
             "name the columns after the gauges",
         )));
     }
-    let s = Sensitivity {
-        gauges: used.iter().map(|&g| all.gauges[g].clone()).collect(),
-        loads: all.loads.clone(),
-        values: Matrix::from_fn(used.len(), all.loads.len(), |i, l| all.values[(used[i], l)]),
-    };
-    let zero: Vec<f64> = used.iter().map(|&g| task.zero[g]).collect();
-    let record = Record {
+    let source_is_text = matches!(source, Source::Csv(..));
+    let mut record = Record {
         bytes,
         file: file.clone(),
         source,
         columns: used.iter().map(|&g| found[g]).collect(),
         unit,
+        // Binary formats count in seconds.
+        second: match source_is_text {
+            true => task.measured.time_unit_s.unwrap_or(1.0),
+            false => 1.0,
+        },
+        channels: if corrections.is_empty() {
+            Vec::new()
+        } else {
+            used.iter()
+                .map(|&g| channel_of(corrections, &all.gauges[g]))
+                .collect()
+        },
     };
     if record.n_pieces() == 0 {
         return Err(Faults::from(Fault::at(
@@ -114,13 +132,49 @@ pub(super) fn run(
             "write a row a sample",
         )));
     }
-    let units = load_units(
-        task.job,
-        &s.loads.iter().map(|l| l.name.clone()).collect::<Vec<_>>(),
-    );
+    let silent = silent(&record)?;
+    if silent.iter().any(|s| *s) {
+        let dead = used.iter().zip(&silent).filter(|(_, s)| **s);
+        let names: Vec<&str> = dead.map(|(g, _)| all.gauges[*g].as_str()).collect();
+        session.findings.push(Finding::new(
+            Severity::Warning,
+            "gauge-silent",
+            names.join(", "),
+            "these gauges give nothing: the loads are those of the others, with wider intervals",
+            "repair the channel, or leave its gauge out: [[correction]] ignore = true",
+        ));
+        let mut speaks = silent.iter().map(|s| !s);
+        used.retain(|_| speaks.next().unwrap_or(true));
+        record.columns = used.iter().map(|&g| found[g]).collect();
+        if !record.channels.is_empty() {
+            let channels = used.iter();
+            record.channels = channels
+                .map(|&g| channel_of(corrections, &all.gauges[g]))
+                .collect();
+        }
+    }
+    if used.is_empty() {
+        return Err(Faults::from(Fault::of(
+            &*file,
+            "gauge",
+            "no gauge gives a single reading",
+            "check the export of the record",
+        )));
+    }
+    let s = Sensitivity {
+        gauges: used.iter().map(|&g| all.gauges[g].clone()).collect(),
+        loads: all.loads.clone(),
+        values: Matrix::from_fn(used.len(), all.loads.len(), |i, l| all.values[(used[i], l)]),
+    };
+    let zero: Vec<f64> = used.iter().map(|&g| task.zero[g]).collect();
+    let Listed {
+        names: names_of,
+        units,
+        sums: combinations,
+    } = listed(task.job, &s)?;
     let judged = judge(task, &record, &s, &zero)?;
     session.findings.extend(judged.findings.iter().cloned());
-    let filter = Filter::new(
+    let mut filter = Filter::new(
         &s,
         zero,
         task.errors,
@@ -136,6 +190,7 @@ pub(super) fn run(
             "check the results of the unit loads",
         ))
     })?;
+    filter.combine(&combinations);
     let total = match &record.source {
         Source::Binary(h) => Some(h.samples),
         Source::Rpc(h) => Some(h.samples),
@@ -156,7 +211,7 @@ pub(super) fn run(
         _ => 0,
     });
     let stride = about.div_ceil(MOST_ROWS).max(1);
-    let (t0, dt) = match &record.source {
+    let (t0, dt): (f64, f64) = match &record.source {
         Source::Binary(h) => (h.t0, h.dt),
         Source::Rpc(h) => (0.0, h.dt),
         Source::Whole(c) => (c.start_s, 1.0 / c.rate_hz),
@@ -166,14 +221,19 @@ pub(super) fn run(
             _ => (0.0, 0.0),
         },
     };
-    let names_of: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
     let fields = task.prepared.fields.as_ref();
+    if task.measured.time_unit_s.is_none() {
+        let (_, readings) = record.piece(0).map_err(Faults::from)?;
+        session
+            .findings
+            .extend(clock::check(dt, &readings, record.columns.len()));
+    }
     let first_mode = fields.and_then(|f| {
         f.first_mode
             .or_else(|| first_mode_of(session, task.job, &f.deck))
     });
     if let Some(first_mode) = first_mode {
-        let sigma = filter.sigma(&vec![0.0; s.loads.len()]);
+        let sigma = filter.sigma(&vec![0.0; filter.n_loads()]);
         let pieces = sampled_pieces(&record, &filter).map_err(Faults::from)?;
         let content = content_of_loads(&pieces, &sigma, if dt > 0.0 { 1.0 / dt } else { 0.0 });
         session
@@ -202,7 +262,10 @@ pub(super) fn run(
     };
     let mut columns = "time".to_owned();
     for name in &names_of {
-        columns.push_str(&format!(",{name},{name}.low,{name}.high"));
+        for column in [name.clone(), format!("{name}.low"), format!("{name}.high")] {
+            columns.push(',');
+            columns.push_str(&csv_cell(&column));
+        }
     }
     columns.push('\n');
     csv.put(columns.as_bytes())
@@ -217,7 +280,7 @@ pub(super) fn run(
         stride,
         numbers: bin.is_some(),
     };
-    let mut spans = Spans::new(s.loads.len());
+    let mut spans = Spans::new(filter.n_loads());
     let sums = stream(
         &record,
         &form,
@@ -268,6 +331,7 @@ pub(super) fn run(
         &filter,
         &sums,
         &spans,
+        &names_of,
         &units,
         &file,
         (stride > 1).then_some(stride),
@@ -290,6 +354,26 @@ fn sampled_pieces(record: &Record, filter: &Filter) -> Result<Vec<Vec<f64>>, Fau
         .into_par_iter()
         .map(|i| process(record, filter, i * n / taken).map(|p| p.loads.values))
         .collect()
+}
+
+/// Which columns give nothing anywhere over the record, looked at in ten pieces spread over it.
+fn silent(record: &Record) -> Result<Vec<bool>, Faults> {
+    let (n, pieces) = (record.columns.len(), record.n_pieces());
+    let mut out = vec![true; n];
+    for p in 0..pieces.min(10) {
+        let (_, values) = record
+            .piece(p * pieces / pieces.min(10))
+            .map_err(Faults::from)?;
+        for row in values.chunks_exact(n.max(1)) {
+            out.iter_mut()
+                .zip(row)
+                .for_each(|(s, v)| *s &= !v.is_finite());
+        }
+        if out.iter().all(|s| !s) {
+            break;
+        }
+    }
+    Ok(out)
 }
 
 /// What samples over the record say of the loads asked for, of the gauges, and of the intervals.
@@ -321,6 +405,15 @@ fn judge(task: &Task, record: &Record, s: &Sensitivity, zero: &[f64]) -> Result<
             });
         }
     }
+    if readings.is_empty() {
+        return Err(Faults::from(Fault::at(
+            &*record.file,
+            1,
+            "rows",
+            "a header and no rows",
+            "write a row a sample",
+        )));
+    }
     Ok(recover(s, &readings, task.errors))
 }
 
@@ -333,11 +426,14 @@ fn finish(
     filter: &Filter,
     sums: &Sums,
     spans: &Spans,
+    names: &[String],
     units: &[LoadUnits],
     file: &str,
     thinned: Option<usize>,
 ) -> Result<(), Faults> {
-    let known: Vec<f64> = (0..s.loads.len()).map(|l| sums.known(l) as f64).collect();
+    let known: Vec<f64> = (0..filter.n_loads())
+        .map(|l| sums.known(l) as f64)
+        .collect();
     let rms: Vec<f64> = sums
         .sum_of_squares
         .iter()
@@ -352,7 +448,7 @@ fn finish(
         let mean = sums.sum[l] / known[l];
         loads.push(json!({
             "run": file,
-            "name": s.loads[l].name,
+            "name": names[l],
             "value": mean * u.factor,
             "sigma": sigma[l] * u.factor,
             "unit": u.name,
@@ -361,7 +457,7 @@ fn finish(
             "rms": rms[l] * u.factor,
         }));
         summary.push(HistoryLoad {
-            name: s.loads[l].name.clone(),
+            name: names[l].clone(),
             unit: u.name.clone(),
             min: sums.min[l] * u.factor,
             mean: mean * u.factor,
@@ -370,7 +466,7 @@ fn finish(
             sigma: sigma[l] * u.factor,
         });
         shown.push((
-            s.loads[l].name.clone(),
+            names[l].clone(),
             [sums.min[l], mean, sums.max[l]].map(|v| v * u.factor),
             u.name.clone(),
         ));
@@ -396,8 +492,12 @@ fn finish(
         .map(|(n, r, h)| json!({ "name": n, "residual_rms_microstrain": r, "leverage": h }))
         .collect();
     session.put("gauges", gauges)?;
-    session.put("samples", sums.samples)?;
+    session.put("samples", sums.samples + sums.gaps)?;
     session.put("gaps", sums.gaps)?;
+    let [from, to] = spans.time();
+    let steps = (sums.samples + sums.gaps).saturating_sub(1) as f64;
+    session.put("duration_s", to - from)?;
+    session.put("sample_rate_hz", finite(steps / (to - from)))?;
     if sums.gaps > 0 {
         session.findings.push(
             Finding::new(
@@ -413,6 +513,34 @@ fn finish(
             .with_numbers(sums.gaps as f64, 0.0),
         );
     }
+    if sums.impossible > 0 {
+        session.findings.push(
+            Finding::new(
+                Severity::Error,
+                "reading-impossible",
+                file,
+                format!(
+                    "{} readings are too large to be strain: they are taken for no reading",
+                    sums.impossible
+                ),
+                "check the unit (microstrain is expected), the channel's overload, and the file",
+            )
+            .with_numbers(sums.impossible as f64, 0.0),
+        );
+    }
+    let unknown: Vec<&str> = (0..s.loads.len())
+        .filter(|&l| s.loads[l].wanted && sums.known(l) == 0)
+        .map(|l| names[l].as_str())
+        .collect();
+    if !unknown.is_empty() {
+        session.findings.push(Finding::new(
+            Severity::Error,
+            "loads-without-values",
+            unknown.join(", "),
+            "in no sample do the gauges that read tell these loads",
+            "bring the silent gauges back, or drop these loads",
+        ));
+    }
     if let Some(stride) = thinned {
         session.findings.push(Finding::new(
             Severity::Info,
@@ -423,11 +551,20 @@ fn finish(
         ));
     }
     session.say(format!(
-        "{}: {} samples, residual {residual:.2} microstrain rms",
-        file, sums.samples
+        "{file}: {} samples at {:.4} Hz, {:.4} s, {} with gaps, residual {residual:.2} microstrain rms",
+        sums.samples + sums.gaps,
+        steps / (to - from),
+        to - from,
+        sums.gaps
     ));
     let numbers = vec![
-        ("Samples".to_owned(), sums.samples.to_string()),
+        ("Samples".to_owned(), (sums.samples + sums.gaps).to_string()),
+        (
+            "Sample rate, Hz".to_owned(),
+            format!("{:.4}", steps / (to - from)),
+        ),
+        ("Duration, s".to_owned(), format!("{:.4}", to - from)),
+        ("Samples with gaps".to_owned(), sums.gaps.to_string()),
         (
             "Residual, microstrain rms".to_owned(),
             format!("{residual:.3}"),
@@ -437,7 +574,6 @@ fn finish(
         run: format!("{file}: smallest, mean, largest"),
         loads: shown,
     }];
-    let names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
     let scene = scene_of_job(task.job, task.prepared).map(|mut scene| {
         scene.arrows = run_arrows(task.job, scene.model, &runs, Shown::Extremes);
         scene
@@ -446,7 +582,7 @@ fn finish(
         sensitivity: s,
         runs: &runs,
         points: &[],
-        traces: &spans.traces(&names, units, filter, &rms),
+        traces: &spans.traces(names, units, filter, &rms),
         by_gauge: &by_gauge,
         numbers: &numbers,
     };

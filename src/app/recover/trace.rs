@@ -63,6 +63,14 @@ impl Spans {
         }
     }
 
+    /// Time of the first and the last sample; NaN without samples.
+    pub(super) fn time(&self) -> [f64; 2] {
+        match (self.list.first(), self.list.last()) {
+            (Some(first), Some(last)) => [first.time[0], last.time[1]],
+            _ => [f64::NAN; 2],
+        }
+    }
+
     /// Two neighbours become one.
     fn halve(&mut self) {
         self.samples *= 2;

@@ -1,6 +1,7 @@
 //! Histories as CSV and the envelope as arrays by element.
 
 use crate::model::Model;
+use crate::recovery::NORMAL_95;
 use crate::respond::{LoadState, Peak, Place, ResponseRow, von_mises_history};
 use std::io::Write;
 
@@ -57,7 +58,7 @@ pub(super) fn histories(
             for x in stress {
                 write!(w, ",{}", x * u)?;
             }
-            let half = 1.959_964 * sigma;
+            let half = NORMAL_95 * sigma;
             write!(
                 w,
                 ",{},{},{}",

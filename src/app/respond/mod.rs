@@ -10,6 +10,7 @@ use super::strain::{Fields, Prepared, prepare, read_fields};
 use super::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::model::{GridIx, Model, RigidKind, Vec3};
+use crate::recovery::NORMAL_95;
 use crate::report::csv_cell;
 use crate::report::figure::agreement;
 use crate::report::page::{Page, figure_section, number, table_section};
@@ -221,8 +222,8 @@ fn put(
             "max_von_mises": p.von_mises * u,
             "at": states.get(p.at).map(|s| s.label.as_str()),
             "sigma": p.sigma * u,
-            "low": (p.von_mises - 1.959_964 * p.sigma).max(0.0) * u,
-            "high": (p.von_mises + 1.959_964 * p.sigma) * u,
+            "low": (p.von_mises - NORMAL_95 * p.sigma).max(0.0) * u,
+            "high": (p.von_mises + NORMAL_95 * p.sigma) * u,
         })
     };
     session.put("elements", order.iter().map(entry).collect::<Vec<_>>())?;
@@ -256,7 +257,7 @@ fn write(
                     r.element.to_string(),
                     r.surface_word(),
                     number(p.von_mises * u),
-                    format!("± {}", number(1.959_964 * p.sigma * u)),
+                    format!("± {}", number(NORMAL_95 * p.sigma * u)),
                     states
                         .get(p.at)
                         .map_or_else(String::new, |s| s.label.clone()),
@@ -271,7 +272,7 @@ fn write(
             r.element,
             r.surface_word(),
             p.von_mises * u,
-            p.sigma * u,
+            NORMAL_95 * p.sigma * u,
             states.get(p.at).map_or("", |s| s.label.as_str())
         ));
     }
@@ -294,7 +295,7 @@ fn write(
         .iter()
         .map(|i| {
             let (r, p) = (&rows[*i], &peaks[*i]);
-            let [value, half] = [p.von_mises, 1.959_964 * p.sigma].map(|v| number(v * u));
+            let [value, half] = [p.von_mises, NORMAL_95 * p.sigma].map(|v| number(v * u));
             let at = states.get(p.at).map_or("", |s| s.label.as_str());
             let at = csv_cell(at);
             let note = format!("{} {value} ± {half} {unit} in {at}", r.surface_word());

@@ -257,6 +257,16 @@ pub fn unit_loads(job: &Job, model: &Model) -> Result<Vec<UnitLoad>, Faults> {
                 })
             }
             LoadActs::Set(sid) => Some(UnitLoad::Set(sid)),
+            LoadActs::Named => {
+                faults.push(Fault::at(
+                    &*job.file,
+                    l.line,
+                    "load.grid",
+                    format!("load `{}` acts nowhere", l.name),
+                    "add `grid` and `component`, or `load_set`",
+                ));
+                None
+            }
             LoadActs::AtGrid {
                 grid,
                 component,

@@ -2,6 +2,7 @@
 
 use super::Fields;
 use crate::app::fault::{Fault, FaultList, Faults};
+use crate::app::job::correct::turned_by;
 use crate::app::job::{self, Job, JobGauge};
 use crate::app::work::Work;
 use crate::fe::strain_tensor::Surface;
@@ -19,19 +20,22 @@ pub fn lay_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<Vec<Gau
     let corners = fields.corner_rows(job);
     for g in &job.gauges {
         match spec_of(fields.model(), g) {
-            Ok(spec) => match build(fields.model(), &spec, corners) {
-                Ok((channels, findings)) => {
-                    gauges.extend(channels);
-                    work.findings.extend(findings);
+            Ok(mut spec) => {
+                spec.angle_rad += turned_by(&job.corrections, &g.name).to_radians();
+                match build(fields.model(), &spec, corners) {
+                    Ok((channels, findings)) => {
+                        gauges.extend(channels);
+                        work.findings.extend(findings);
+                    }
+                    Err(e) => faults.push(Fault::at(
+                        &*g.file,
+                        g.line,
+                        "gauge",
+                        e.to_string(),
+                        "correct the gauge",
+                    )),
                 }
-                Err(e) => faults.push(Fault::at(
-                    &*g.file,
-                    g.line,
-                    "gauge",
-                    e.to_string(),
-                    "correct the gauge",
-                )),
-            },
+            }
             Err(f) => faults.push(f),
         }
     }

@@ -1,18 +1,13 @@
 //! S from a table that the job names.
 
 use crate::app::fault::{Fault, FaultList, Faults};
+use crate::app::job::runs::quantity_of_name;
 use crate::app::job::table::read_table;
-use crate::app::job::{Job, Role};
+use crate::app::job::{Job, JobLoad, Role};
 use crate::app::work::Work;
 use crate::linalg::Matrix;
 use crate::sensitivity::{Load, Sensitivity};
-use crate::units::{MICROSTRAIN, Quantity, factor};
-
-/// Whether a load's name says that it is a moment: `LF.MX`, `MX_LF`, `M_LF`.
-pub fn is_moment(name: &str) -> bool {
-    name.split(['.', '_', ' '])
-        .any(|part| matches!(part, "MX" | "MY" | "MZ" | "M"))
-}
+use crate::units::{MICROSTRAIN, factor};
 
 /// The table of `[sensitivity]` as S in strain per job unit, rows in the order of the job's gauges where it has some.
 ///
@@ -70,24 +65,16 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
             continue;
         };
         let stated = job.loads.iter().find(|l| &l.name == name);
-        let moment = stated
-            .and_then(|l| l.report_unit(&given.per))
-            .map_or_else(|| is_moment(name), |u| u.quantity == Quantity::Moment);
-        let per = if moment {
-            given.per.moment
-        } else {
-            given.per.force
-        };
+        let quantity = stated
+            .and_then(JobLoad::quantity)
+            .unwrap_or_else(|| quantity_of_name(name));
+        let per = given.per.unit(quantity);
         at.push((c, MICROSTRAIN * factor(job.units, per)));
         loads.push(Load {
             name: name.clone(),
             expected: stated.and_then(|l| l.expected),
             wanted: stated.is_none_or(|l| l.role == Role::Wanted),
-            quantity: Some(if moment {
-                Quantity::Moment
-            } else {
-                Quantity::Force
-            }),
+            quantity: Some(quantity),
         });
     }
     let names: Vec<String> = table

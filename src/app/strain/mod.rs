@@ -10,8 +10,9 @@ pub use gauges::{lay_gauges, side, spec_of, without_strain};
 pub use given::read_given;
 pub use units::{LoadSigma, LoadUnits, load_units};
 
-use super::fault::Faults;
+use super::fault::{Fault, Faults};
 use super::job::Job;
+use super::job::correct::noted;
 use super::outcome::finite;
 use super::work::Work;
 use crate::finding::{Finding, Severity};
@@ -34,6 +35,20 @@ pub struct Prepared {
 /// # Errors
 /// Every fault on the way.
 pub fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
+    work.findings.extend(noted(job));
+    let turned = job.corrections.iter().find(|c| c.angle_deg.is_some());
+    if let (Some(c), true) = (turned, job.sensitivity.is_some()) {
+        return Err(Faults::from(Fault::at(
+            &*job.file,
+            c.line,
+            "correction.angle_deg",
+            format!(
+                "S is given, so the row of gauge `{}` can't be turned",
+                c.gauge
+            ),
+            "turn it in the table of [sensitivity], or give a [model]",
+        )));
+    }
     let prepared = if job.sensitivity.is_some() {
         let sensitivity = read_given(work, job)?;
         Prepared {

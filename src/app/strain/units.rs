@@ -1,6 +1,7 @@
 //! Units of loads: job units inside, report units outside.
 
 use crate::app::job::Job;
+use crate::app::job::runs::quantity_of_name;
 use crate::units::factor;
 use serde::Serialize;
 
@@ -44,11 +45,7 @@ pub fn load_units(job: &Job, names: &[String]) -> Vec<LoadUnits> {
                 },
             },
             None => {
-                let unit = if super::given::is_moment(name) {
-                    job.report_units.moment
-                } else {
-                    job.report_units.force
-                };
+                let unit = job.report_units.unit(quantity_of_name(name));
                 LoadUnits {
                     name: unit.name.to_owned(),
                     of_job: job.units.unit(unit.quantity).name.to_owned(),

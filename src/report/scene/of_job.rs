@@ -33,6 +33,7 @@ pub fn scene_of<'a>(job: &Job, fields: &'a Fields, marks: Vec<Mark>) -> Scene<'a
     let model = fields.model();
     let arrows = job.loads.iter().flat_map(|l| match l.acts {
         LoadActs::Set(sid) => arrows_of_set(model, sid),
+        LoadActs::Named => Vec::new(),
         LoadActs::AtGrid { grid, .. } => {
             let label = format!("{}, grid {grid}", l.name);
             let arrow = placed(job, model, &l.name).map(|(at, along, twist)| Arrow {

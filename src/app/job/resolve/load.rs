@@ -54,11 +54,20 @@ fn support(c: &mut Collector, raw: &S<NumberOrWord>) -> SupportChoice {
 
 const SUPPORT_REMEDY: &str = "write \"deck\" for the set that case control selects, \"free\" for inertia relief, or the set's id";
 
-pub(super) fn loads(c: &mut Collector, raw: &[Spanned<RawLoad>]) -> Vec<JobLoad> {
+/// What stands behind the loads of a job.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Behind {
+    /// A model: a load acts somewhere on it.
+    Model,
+    /// A given S: a name is enough.
+    Table,
+}
+
+pub(super) fn loads(c: &mut Collector, raw: &[Spanned<RawLoad>], behind: Behind) -> Vec<JobLoad> {
     let mut out: Vec<JobLoad> = Vec::new();
     for (i, section) in raw.iter().enumerate() {
         let number = i as u32 + 1;
-        let Some(load) = load(c, section, number) else {
+        let Some(load) = load(c, section, number, behind) else {
             continue;
         };
         if let Some(first) = out.iter().find(|l| l.name == load.name) {
@@ -73,10 +82,15 @@ pub(super) fn loads(c: &mut Collector, raw: &[Spanned<RawLoad>]) -> Vec<JobLoad>
     out
 }
 
-fn load(c: &mut Collector, section: &Spanned<RawLoad>, number: u32) -> Option<JobLoad> {
+fn load(
+    c: &mut Collector,
+    section: &Spanned<RawLoad>,
+    number: u32,
+    behind: Behind,
+) -> Option<JobLoad> {
     let raw = section.get_ref();
     let name = c.require(&raw.name, section, "load.name", "name = \"LF.FZ\"");
-    let acts = acts(c, section);
+    let acts = acts(c, section, behind);
     let applied = c.number(&raw.applied, "load.applied", "a number other than 0", |x| {
         x != 0.0
     });
@@ -101,7 +115,7 @@ fn load(c: &mut Collector, section: &Spanned<RawLoad>, number: u32) -> Option<Jo
     })
 }
 
-fn acts(c: &mut Collector, section: &Spanned<RawLoad>) -> Option<LoadActs> {
+fn acts(c: &mut Collector, section: &Spanned<RawLoad>, behind: Behind) -> Option<LoadActs> {
     let raw = section.get_ref();
     let only_with_grid = |c: &mut Collector, key: &str, at: &Spanned<u32>| {
         c.fault(
@@ -149,6 +163,7 @@ fn acts(c: &mut Collector, section: &Spanned<RawLoad>) -> Option<LoadActs> {
             );
             None
         }
+        (None, None) if behind == Behind::Table => Some(LoadActs::Named),
         (None, None) => {
             c.fault(
                 section,

@@ -73,6 +73,10 @@ pub(super) fn measured(
             .at_least_zero(&raw.model_uncertainty_rel, "measured.model_uncertainty_rel")
             .unwrap_or(0.0),
         hold_out,
+        time_unit_s: raw
+            .time_unit
+            .as_ref()
+            .and_then(|word| c.choose_at(word, "measured.time_unit", &[("s", 1.0), ("ms", 1e-3)])),
         line: c.line(section),
     })
 }

@@ -1,5 +1,6 @@
 //! Raw job to [`Job`]: required keys, words, defaults, contradictions.
 
+mod channel;
 mod gauge;
 mod load;
 mod measured;
@@ -7,6 +8,7 @@ mod placement;
 mod units;
 mod vehicle;
 
+pub(super) use channel::check_names as check_named;
 pub(super) use gauge::{check_gauge, point_from, rosette_from, surface_from};
 
 use super::faults::Collector;
@@ -35,7 +37,12 @@ pub(super) fn resolve_job(
     let stem = Path::new(file)
         .file_stem()
         .map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    let loads = load::loads(&mut c, &raw.load);
+    let behind = if raw.model.is_none() && raw.sensitivity.is_some() {
+        load::Behind::Table
+    } else {
+        load::Behind::Model
+    };
+    let loads = load::loads(&mut c, &raw.load, behind);
     let criterion = placement::default_criterion(&loads);
     let model = load::model(&mut c, raw.model.as_ref());
     load::check_results(&mut c, model.as_ref(), &loads);
@@ -45,6 +52,8 @@ pub(super) fn resolve_job(
         units,
         report_units,
         model,
+        combinations: channel::combinations(&mut c, &raw.combination),
+        corrections: channel::corrections(&mut c, &raw.correction),
         gauges: gauge::gauges(&mut c, &raw.gauge),
         gauge_file: gauge::gauge_file(&mut c, raw.gauges.as_ref()),
         candidates: placement::candidates(&mut c, raw.candidates.as_ref()),

@@ -38,6 +38,7 @@ fn unit_sets(task: &Task, names: &[String]) -> (String, Vec<Unit>, u32) {
         };
         text.push_str(&format!("$ {}\n", plain(name)));
         let set = match load.acts {
+            LoadActs::Named => continue,
             LoadActs::Set(set) => set,
             LoadActs::AtGrid { .. } => {
                 text.push_str(&unit_card(load, next));

@@ -1,0 +1,125 @@
+//! `[[combination]]` and `[[correction]]`.
+
+use super::super::faults::Collector;
+use super::super::raw::{RawChannelCorrection, RawCombination};
+use super::super::spanned::Spanned;
+use super::super::suggest;
+use super::super::types::*;
+use crate::app::fault::{Fault, FaultList};
+
+pub(super) fn combinations(c: &mut Collector, raw: &[Spanned<RawCombination>]) -> Vec<Combination> {
+    let mut out: Vec<Combination> = Vec::new();
+    for section in raw {
+        let terms: Vec<(String, f64)> = section
+            .get_ref()
+            .terms
+            .iter()
+            .map(|(name, factor)| (name.get_ref().clone(), *factor.get_ref()))
+            .collect();
+        if terms.is_empty() {
+            let remedy = "name loads and factors: terms = { \"LF.FZ\" = 1, \"RF.FZ\" = 1 }";
+            c.fault(section, "combination.terms", "no terms", remedy);
+        }
+        if terms.iter().any(|t| !t.1.is_finite()) {
+            let wrong = "a factor is no finite number";
+            c.fault(section, "combination.terms", wrong, "write a number");
+        }
+        let name = &section.get_ref().name;
+        let Some(name) = c.require(name, section, "combination.name", "name = \"total\"") else {
+            continue;
+        };
+        if out.iter().any(|o| o.name == name) {
+            let wrong = format!("combination `{name}` stands twice");
+            let remedy = "give every combination its own name";
+            c.fault(section, "combination.name", wrong, remedy);
+        }
+        out.push(Combination {
+            name,
+            terms,
+            line: c.line(section),
+        });
+    }
+    out
+}
+
+pub(super) fn corrections(
+    c: &mut Collector,
+    raw: &[Spanned<RawChannelCorrection>],
+) -> Vec<Correction> {
+    raw.iter()
+        .filter_map(|section| {
+            let raw = section.get_ref();
+            let gauge = c.require(&raw.gauge, section, "correction.gauge", "gauge = \"P05\"");
+            let sign = c.number(&raw.sign, "correction.sign", "1 or -1", |x| x.abs() == 1.0);
+            let gain = c.number(&raw.gain, "correction.gain", "a number other than 0", |x| {
+                x != 0.0
+            });
+            let any = |_: f64| true;
+            let offset = c.number(
+                &raw.offset_microstrain,
+                "correction.offset_microstrain",
+                "a number",
+                any,
+            );
+            Some(Correction {
+                gauge: gauge?,
+                sign: sign.unwrap_or(1.0),
+                gain: gain.unwrap_or(1.0),
+                offset_microstrain: offset.unwrap_or(0.0),
+                exchanged_with: raw.exchanged_with.as_ref().map(|s| s.get_ref().clone()),
+                angle_deg: c.number(&raw.angle_deg, "correction.angle_deg", "a number", any),
+                ignore: raw.ignore.as_ref().is_some_and(|v| *v.get_ref()),
+                line: c.line(section),
+            })
+        })
+        .collect()
+}
+
+/// Corrections name gauges of the job, combinations its loads, where the job itself lists these.
+pub(in crate::app::job) fn check_names(job: &Job, faults: &mut FaultList) {
+    let gauges: Vec<&str> = job.gauges.iter().map(|g| g.name.as_str()).collect();
+    // A rosette's legs are channels: `R1.a`.
+    let is_gauge = |name: &str| {
+        gauges.is_empty()
+            || gauges.iter().any(|g| {
+                name.strip_prefix(g)
+                    .is_some_and(|r| r.is_empty() || r.starts_with('.'))
+            })
+    };
+    for correction in &job.corrections {
+        let named = std::iter::once(&correction.gauge).chain(&correction.exchanged_with);
+        for name in named.filter(|n| !is_gauge(n)) {
+            faults.push(Fault::at(
+                &*job.file,
+                correction.line,
+                "correction.gauge",
+                format!("the job has no gauge `{name}`"),
+                suggest::remedy(name, gauges.iter().copied()),
+            ));
+        }
+    }
+    if job.sensitivity.is_some() {
+        return;
+    }
+    let loads: Vec<&str> = job.loads.iter().map(|l| l.name.as_str()).collect();
+    for combination in &job.combinations {
+        for (name, _) in combination.terms.iter().filter(|t| !loads.contains(&&*t.0)) {
+            faults.push(Fault::at(
+                &*job.file,
+                combination.line,
+                "combination.terms",
+                format!("the job has no load `{name}`"),
+                suggest::remedy(name, loads.iter().copied()),
+            ));
+        }
+        if loads.contains(&&*combination.name) {
+            faults.push(Fault::at(
+                &*job.file,
+                combination.line,
+                "combination.name",
+                format!("`{}` is the name of a load", combination.name),
+                "give the combination another name",
+            ));
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! Whether the time of a record can be in seconds.
+
+use crate::finding::{Finding, Severity};
+
+/// Step, s, from which a record is slower than any logger of loads that move: 1 Hz.
+const SLOW: f64 = 1.0;
+/// Samples under which a few readings noted by hand look alike.
+const ENOUGH: usize = 200;
+/// Mean square of steps over variance (2 for samples that have nothing to do with each other): below it the logger was far faster than
+/// what it logged, and nobody logs a second apart what does not change within many.
+///
+/// # Reference
+/// J. von Neumann, Ann. Math. Stat. 12 (1941) 367.
+const SMOOTH: f64 = 0.5;
+
+/// An error where samples lie `step_s` or more apart and yet follow each other as those of a fast logger do: time in milliseconds.
+/// `readings` are those of one piece, `n` gauges a sample.
+pub fn check(step_s: f64, readings: &[f64], n: usize) -> Option<Finding> {
+    let samples = readings.len() / n.max(1);
+    if !(step_s >= SLOW) || samples < ENOUGH {
+        return None;
+    }
+    let ratio = (0..n)
+        .filter_map(|g| steps_over_variance(readings.iter().skip(g).step_by(n)))
+        .max_by(|a, b| a.1.total_cmp(&b.1))?
+        .0;
+    (ratio < SMOOTH).then(|| {
+        Finding::new(
+            Severity::Error,
+            "time-unit-doubtful",
+            "time",
+            format!(
+                "a sample every {step_s} s, and each follows the one before as if a thousand times faster: is `time` in milliseconds? \
+                 Sample rate, duration and everything in Hz hang on it"
+            ),
+            "state it: [measured] time_unit = \"ms\", or \"s\" where it is right",
+        )
+        .with_numbers(step_s, SLOW)
+    })
+}
+
+/// Mean square of steps over variance, and the variance; `None` where nothing changes.
+fn steps_over_variance<'a>(values: impl Iterator<Item = &'a f64>) -> Option<(f64, f64)> {
+    let v: Vec<f64> = values.copied().filter(|v| v.is_finite()).collect();
+    let mean = v.iter().sum::<f64>() / v.len().max(1) as f64;
+    let variance: f64 = v.iter().map(|x| (x - mean) * (x - mean)).sum();
+    let steps: f64 = v
+        .iter()
+        .zip(v.iter().skip(1))
+        .map(|(a, b)| (b - a) * (b - a))
+        .sum();
+    (variance > 0.0).then(|| (steps / variance, variance))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sine of `period` samples.
+    fn wave(period: f64) -> Vec<f64> {
+        (0..600)
+            .map(|i| (std::f64::consts::TAU * i as f64 / period).sin())
+            .collect()
+    }
+
+    #[test]
+    fn milliseconds_are_asked_for_where_two_seconds_apart_samples_follow_each_other() {
+        let found = check(2.0, &wave(100.0), 1).expect("a finding");
+        assert_eq!(found.severity, Severity::Error);
+    }
+
+    #[test]
+    fn a_fast_record_and_a_few_static_rows_are_let_be() {
+        assert_eq!(check(0.002, &wave(100.0), 1), None);
+        // Rows that have nothing to do with each other.
+        assert_eq!(check(2.0, &wave(2.3), 1), None);
+        assert_eq!(check(1.0, &wave(100.0)[..50], 1), None);
+    }
+}

@@ -1,0 +1,250 @@
+//! `recover` of a job whose S is given: sums of loads, channels put right, records with a dead channel, and input that can't be right.
+//!
+//! Two loads A and B, four gauges; strain is made here from S, so every expected load is known.
+
+use serde_json::Value;
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::process::Command;
+
+/// Microstrain per N, gauge by gauge.
+const S: [[f64; 2]; 4] = [[1.0, 0.2], [-0.3, 1.1], [0.8, -0.5], [0.4, 0.9]];
+
+fn folder(name: &str) -> PathBuf {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+        .join("recovering")
+        .join(name);
+    let _ = std::fs::remove_dir_all(&path);
+    std::fs::create_dir_all(&path).unwrap();
+    path
+}
+
+/// Readings of the four gauges, microstrain, at these loads.
+fn strain(a: f64, b: f64) -> [f64; 4] {
+    S.map(|row| row[0] * a + row[1] * b)
+}
+
+/// Loads of row `i`: hundreds of N that change from row to row.
+fn loads(i: usize) -> [f64; 2] {
+    let t = i as f64 * 0.37;
+    [300.0 + 100.0 * t.sin(), 200.0 * (0.7 * t).cos()]
+}
+
+/// A table of `rows` rows, `key` first; `change` gives the text of a reading.
+fn table(key: &str, rows: usize, change: impl Fn(usize, usize, f64) -> String) -> String {
+    let mut text = format!("{key},G1,G2,G3,G4\n");
+    for i in 0..rows {
+        let [a, b] = loads(i);
+        // A record at 100 Hz; runs by name.
+        let _ = match key {
+            "time" => write!(text, "{}", i as f64 * 0.01),
+            _ => write!(text, "R{i}"),
+        };
+        for (g, v) in strain(a, b).into_iter().enumerate() {
+            // What noise there is repeats every seven rows, half a microstrain at most.
+            let noise = ((i * 5 + g * 3) % 7) as f64 / 7.0 - 0.43;
+            let _ = write!(text, ",{}", change(i, g, v + noise));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn as_is(_: usize, _: usize, v: f64) -> String {
+    v.to_string()
+}
+
+/// Runs `recover` on that table and these further lines of the job; exit code, standard error, `result.json`.
+fn recover(name: &str, strain: &str, more: &str) -> (i32, String, Value, PathBuf) {
+    let dir = folder(name);
+    let mut s = "gauge,A,B\n".to_owned();
+    for (g, row) in S.iter().enumerate() {
+        let _ = writeln!(s, "G{},{},{}", g + 1, row[0], row[1]);
+    }
+    std::fs::write(dir.join("S.csv"), s).unwrap();
+    std::fs::write(dir.join("strain.csv"), strain).unwrap();
+    let job = format!(
+        "units = \"m-kg-s\"\n[sensitivity]\nfile = \"S.csv\"\nper = {{ force = \"N\" }}\n\
+         [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.3\n{more}"
+    );
+    std::fs::write(dir.join("job.toml"), job).unwrap();
+    let out = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .args(["recover", &dir.join("job.toml").display().to_string()])
+        .output()
+        .unwrap();
+    let result = std::fs::read(dir.join("job.out/result.json"))
+        .ok()
+        .and_then(|b| serde_json::from_slice(&b).ok())
+        .unwrap_or(Value::Null);
+    (
+        out.status.code().unwrap_or(-1),
+        String::from_utf8_lossy(&out.stderr).into_owned(),
+        result,
+        dir,
+    )
+}
+
+/// Value and sigma of a load of a run.
+fn load(result: &Value, run: &str, name: &str) -> [f64; 2] {
+    let list = result["loads"].as_array().unwrap();
+    let row = list
+        .iter()
+        .find(|l| l["run"] == run && l["name"] == name)
+        .unwrap_or_else(|| panic!("{run} {name}"));
+    [&row["value"], &row["sigma"]].map(|v| v.as_f64().unwrap())
+}
+
+fn codes(result: &Value) -> Vec<String> {
+    let list = result["findings"].as_array().unwrap();
+    list.iter()
+        .map(|f| f["code"].as_str().unwrap().to_owned())
+        .collect()
+}
+
+#[test]
+fn a_sum_of_loads_has_the_interval_of_their_covariance() {
+    let more = "[[load]]\nname = \"A\"\n[[load]]\nname = \"B\"\n\
+                [[combination]]\nname = \"total\"\nterms = { A = 1, B = 1 }\n\
+                [[combination]]\nname = \"difference\"\nterms = { A = 1, B = -1 }\n";
+    let (code, errors, result, dir) = recover("sum", &table("run", 12, as_is), more);
+    assert_eq!(code, 0, "{errors}");
+    let [a, b, sum, difference] = ["A", "B", "total", "difference"].map(|n| load(&result, "R3", n));
+    assert!((sum[0] - a[0] - b[0]).abs() < 1e-9 * sum[0].abs());
+    assert!((difference[0] - a[0] + b[0]).abs() < 1e-9 * a[0].abs());
+    // var(A + B) + var(A - B) = 2 var A + 2 var B, whatever their covariance; which is not zero here.
+    let square = |v: [f64; 2]| v[1] * v[1];
+    let both = 2.0 * (square(a) + square(b));
+    assert!((square(sum) + square(difference) - both).abs() < 1e-9 * both);
+    assert!((square(sum) - square(difference)).abs() > 1e-3 * both);
+    let csv = std::fs::read_to_string(dir.join("job.out/loads.csv")).unwrap();
+    assert!(
+        csv.starts_with("run,A,A.low,A.high,B,B.low,B.high,total,total.low"),
+        "{csv}"
+    );
+    // The same rows as a record: the same sums with the same intervals, to the digits of its table.
+    let (code, errors, _, dir) = recover("sum_record", &table("time", 12, as_is), more);
+    assert_eq!(code, 0, "{errors}");
+    let record = std::fs::read_to_string(dir.join("job.out/loads.csv")).unwrap();
+    let numbers = |text: &str, row: usize| -> Vec<f64> {
+        let line = text.lines().nth(row + 1).unwrap();
+        line.split(',')
+            .skip(1)
+            .map(|v| v.parse().unwrap())
+            .collect()
+    };
+    for (x, y) in numbers(&csv, 3).iter().zip(numbers(&record, 3)) {
+        assert!((x - y).abs() < 1e-5 * x.abs().max(1.0), "{x} {y}");
+    }
+}
+
+#[test]
+fn channels_are_put_right_in_runs_and_in_records() {
+    // G1 backwards, G2 and G3 exchanged, G4 with 0.7 of the strain and 20 microstrain too much.
+    let wrong = |_: usize, g: usize, v: f64| match g {
+        0 => (-v).to_string(),
+        3 => (0.7 * v + 20.0).to_string(),
+        _ => v.to_string(),
+    };
+    let more = "[[correction]]\ngauge = \"G1\"\nsign = -1\n\
+                [[correction]]\ngauge = \"G2\"\nexchanged_with = \"G3\"\n\
+                [[correction]]\ngauge = \"G4\"\ngain = 0.7\noffset_microstrain = 20\n";
+    for key in ["run", "time"] {
+        let right = recover("right", &table(key, 30, as_is), "").3;
+        let exchanged = table(key, 30, wrong).replacen("G1,G2,G3,G4", "G1,G3,G2,G4", 1);
+        let (code, errors, _, dir) = recover("put_right", &exchanged, more);
+        assert_eq!(code, 0, "{errors}");
+        let read = |dir: &PathBuf| std::fs::read_to_string(dir.join("job.out/loads.csv")).unwrap();
+        let numbers = |text: &str| -> Vec<f64> {
+            let fields = text.lines().skip(1).flat_map(|l| l.split(',').skip(1));
+            fields.map(|v| v.parse().unwrap()).collect()
+        };
+        for (x, y) in numbers(&read(&right)).iter().zip(numbers(&read(&dir))) {
+            assert!((x - y).abs() < 1e-4 * x.abs().max(1.0), "{key}: {x} {y}");
+        }
+    }
+}
+
+#[test]
+fn a_gauge_that_is_ignored_or_gives_nothing_leaves_the_others_at_work() {
+    let blank = |_: usize, g: usize, v: f64| match g {
+        2 => String::new(),
+        _ => v.to_string(),
+    };
+    for key in ["run", "time"] {
+        let (code, errors, dead, _) = recover("dead", &table(key, 300, blank), "");
+        assert_eq!(code, 0, "{errors}");
+        let ignored = "[[correction]]\ngauge = \"G3\"\nignore = true\n";
+        let (code, errors, left_out, _) = recover("ignored", &table(key, 300, as_is), ignored);
+        assert_eq!(code, 0, "{errors}");
+        let (_, _, whole, _) = recover("whole", &table(key, 300, as_is), "");
+        let run = if key == "run" { "R7" } else { "strain.csv" };
+        for name in ["A", "B"] {
+            let [value, sigma] = load(&dead, run, name);
+            assert!((value - load(&left_out, run, name)[0]).abs() < 1e-6 * value.abs().max(1.0));
+            assert!(sigma.is_finite() && value.is_finite());
+            assert!(load(&left_out, run, name)[1] > load(&whole, run, name)[1]);
+        }
+    }
+}
+
+#[test]
+fn every_result_of_a_record_states_rate_duration_and_gaps() {
+    let gap = |i: usize, g: usize, v: f64| match (i, g) {
+        (40..=59, 1) => String::new(),
+        _ => v.to_string(),
+    };
+    let (code, errors, result, dir) = recover("rate", &table("time", 501, gap), "");
+    assert_eq!(code, 0, "{errors}");
+    let number = |key: &str| result[key].as_f64().unwrap();
+    assert!((number("sample_rate_hz") - 100.0).abs() < 1e-6);
+    assert!((number("duration_s") - 5.0).abs() < 1e-9);
+    assert_eq!((number("samples"), number("gaps")), (501.0, 20.0));
+    // Three gauges are left for two loads: no sample is blank.
+    let csv = std::fs::read_to_string(dir.join("job.out/loads.csv")).unwrap();
+    assert!(!csv.contains(",,"), "blank loads");
+}
+
+#[test]
+fn readings_and_times_in_another_unit_are_asked_for() {
+    let strain = |_: usize, _: usize, v: f64| format!("{:e}", v * 1e-6);
+    for key in ["run", "time"] {
+        let (code, _, result, _) = recover("unit", &table(key, 300, strain), "");
+        assert_eq!(code, 1);
+        assert!(
+            codes(&result).contains(&"readings-below-noise".to_owned()),
+            "{result}"
+        );
+    }
+    // 1 kHz in milliseconds, loads that take a second to change.
+    let mut text = "time,G1,G2,G3,G4\n".to_owned();
+    for i in 0..2000 {
+        let t = f64::from(i) * 1e-3;
+        let v = self::strain(300.0 * t.sin(), 200.0 * (1.3 * t).cos());
+        let _ = writeln!(text, "{i},{},{},{},{}", v[0], v[1], v[2], v[3]);
+    }
+    let (code, errors, result, _) = recover("ms", &text, "");
+    assert_eq!(code, 1, "{errors}");
+    assert!(codes(&result).contains(&"time-unit-doubtful".to_owned()));
+    let (_, _, result, _) = recover("ms_stated", &text, "time_unit = \"ms\"\n");
+    assert!(!codes(&result).contains(&"time-unit-doubtful".to_owned()));
+    let rate = result["sample_rate_hz"].as_f64().unwrap();
+    assert!((rate - 1000.0).abs() < 1e-6, "{rate}");
+}
+
+#[test]
+fn a_reading_of_1e308_is_no_reading_and_a_header_alone_is_a_fault() {
+    let huge = |i: usize, g: usize, v: f64| match (i, g) {
+        (5, 1) => "1e308".to_owned(),
+        _ => v.to_string(),
+    };
+    for key in ["run", "time"] {
+        let (code, _, result, _) = recover("huge", &table(key, 30, huge), "");
+        assert_eq!(code, 1);
+        assert!(
+            codes(&result).contains(&"reading-impossible".to_owned()),
+            "{result}"
+        );
+        let (code, errors, _, _) = recover("no_rows", &table(key, 0, as_is), "");
+        assert_eq!(code, 2, "{errors}");
+    }
+}
