@@ -53,7 +53,7 @@ pub fn run(arguments: Arguments) -> ExitCode {
         }
         Command::Ballast(a) => Run::of(&a.common, &a.job).job(&a.job, app::ballast::ballast),
         Command::Payload(a) => Run::of(&a.common, &a.job).job(&a.job, app::payload::payload),
-        Command::Respond(a) => on_job("respond", &a, app::respond::run),
+        Command::Respond(a) => Run::of(&a.common, &a.job).job(&a.job, app::respond::respond),
         Command::Study(a) => Run::of(&a.common, &a.job).job(&a.job, app::study::study),
         Command::Demo(a) => {
             Run::of(&a.common, demo::DECK_NAME.as_ref()).session(|cx| demo::run(&a, cx))

@@ -1,11 +1,11 @@
 //! What a payload that `[runs]` states strains the gauges of a job whose S is given: `[sensitivity] signatures.payload`.
 
 use super::Task;
-use crate::app::Session;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::runs::{RunRow, read_runs};
 use crate::app::job::table::read_table;
 use crate::app::job::{GivenSensitivity, Job};
+use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::recovery::Readings;
 use crate::units::MICROSTRAIN;
@@ -20,7 +20,7 @@ const COLUMNS: [&str; 4] = ["b0", "b_dx", "b_dy", "b_dxdy"];
 /// # Errors
 /// Unreadable tables, gauges without a row in the signature.
 pub(super) fn take_out(
-    session: &mut Session,
+    session: &mut Work,
     task: &Task,
     readings: &mut [Readings],
 ) -> Result<(), Faults> {
@@ -91,7 +91,7 @@ fn payload_of(job: &Job, row: &RunRow) -> Option<(f64, f64, f64)> {
 
 /// By gauge of S: strain per kg, per kg m along x, y, and per kg m^2.
 fn signature(
-    session: &mut Session,
+    session: &mut Work,
     task: &Task,
     given: &GivenSensitivity,
 ) -> Result<Vec<[f64; 4]>, Faults> {

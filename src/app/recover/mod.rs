@@ -19,6 +19,7 @@ use super::job::{self, Job, Measured, Reference};
 use super::solved::stands_on_wheels;
 use super::strain::{Prepared, prepare};
 use super::wheels::{floor_fault, wheels_of};
+use super::work::Work;
 use super::{JobArguments, Session};
 use crate::fe::floor::solve_standing;
 use crate::finding::{Finding, Severity};
@@ -82,7 +83,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
 
 /// What runs and records share: zero, reference, stated errors.
 fn task_of<'a>(
-    session: &mut Session,
+    session: &mut Work,
     job: &'a Job,
     measured: &'a Measured,
     prepared: &'a Prepared,
@@ -112,7 +113,7 @@ fn task_of<'a>(
 /// # Errors
 /// Unreadable tables; a record, which `recover` streams.
 pub(super) fn recovered_runs(
-    session: &mut Session,
+    session: &mut Work,
     job: &Job,
     measured: &Measured,
     prepared: &Prepared,

@@ -9,6 +9,7 @@ use crate::app::job::strain::{StrainRows, StrainTable, read_strain};
 use crate::app::job::{Job, LoadActs, LoadFile, Measured, NamedFile};
 use crate::app::spreadsheets::write_spreadsheet;
 use crate::app::strain::LoadUnits;
+use crate::app::work::Work;
 use crate::app::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::recovery::net::effective_samples;
@@ -24,7 +25,7 @@ use std::io::Write;
 
 /// Where a gauge's column stands; `None`: it has none.
 pub(super) fn columns_of(
-    session: &mut Session,
+    session: &mut Work,
     named: &NamedFile,
     header: &[String],
     gauges: &[String],
@@ -70,7 +71,7 @@ pub(super) fn columns_of(
 
 /// The zero readings, strain by gauge, and the effective number of samples behind them; zeros and `None` without a file.
 pub(super) fn zero_of(
-    session: &mut Session,
+    session: &mut Work,
     job: &Job,
     measured: &Measured,
     gauges: &[String],
@@ -99,10 +100,7 @@ pub(super) fn zero_of(
 }
 
 /// Reads the strain of the runs and recovers their loads.
-pub(super) fn solve(
-    session: &mut Session,
-    task: &Task,
-) -> Result<(Vec<Readings>, Recovery), Faults> {
+pub(super) fn solve(session: &mut Work, task: &Task) -> Result<(Vec<Readings>, Recovery), Faults> {
     let s = &task.prepared.sensitivity;
     let named = &task.measured.strain;
     let table = session.stage("read strain", |x| {

@@ -1,40 +1,45 @@
 //! Predicted against measured strain at the installed gauges.
 
-use crate::app::Session;
 use crate::app::fault::Faults;
 use crate::app::job::strain::{StrainRows, read_strain};
 use crate::app::job::{Job, Reference};
+use crate::app::outcome::finite;
 use crate::app::strain::Prepared;
+use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
-use crate::report::csv_cell;
-use crate::report::figure::GaugePoints;
 use crate::respond::LoadState;
 use crate::units::MICROSTRAIN;
-use serde_json::json;
-use std::fmt::Write;
+use serde::Serialize;
 
-/// Points a drawing takes.
-const MOST_POINTS: usize = 2000;
 /// Residual over measured rms of a gauge from which its prediction is poor.
 const POOR: f64 = 0.1;
 
 /// One gauge over all states, microstrain.
-pub(super) struct GaugeCheck {
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GaugeCheck {
+    /// Gauge.
     pub name: String,
+    /// Root mean square of what it measured.
+    #[serde(rename = "measured_rms_microstrain")]
     pub measured_rms: f64,
+    /// Root mean square of measured less predicted.
+    #[serde(rename = "residual_rms_microstrain")]
     pub residual_rms: f64,
-    /// NaN where one of them does not vary.
-    pub correlation: f64,
+    /// Between the two; `None` where one of them does not vary.
+    pub correlation: Option<f64>,
 }
 
 /// All gauges.
-pub(super) struct Check {
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Check {
+    /// A row a gauge with readings.
     pub rows: Vec<GaugeCheck>,
-    /// Predicted, measured, microstrain; thinned.
-    pub points: Vec<GaugePoints>,
-    /// Names of the states behind the points.
+    /// Gauges of S.
+    pub gauges: Vec<String>,
+    /// States that have a row of strain.
     pub states: Vec<String>,
-    pub csv: String,
+    /// By state and gauge: predicted and measured, microstrain; NaN where nothing was measured.
+    pub pairs: Vec<Vec<(f64, f64)>>,
 }
 
 /// Compares where the job has gauges and measured strain whose rows are the states.
@@ -42,17 +47,12 @@ pub(super) struct Check {
 /// # Errors
 /// Unreadable strain.
 pub(super) fn check(
-    session: &mut Session,
+    work: &mut Work,
     job: &Job,
     prepared: &Prepared,
     states: &[LoadState],
 ) -> Result<Check, Faults> {
-    let mut out = Check {
-        rows: Vec::new(),
-        points: Vec::new(),
-        states: Vec::new(),
-        csv: String::new(),
-    };
+    let mut out = Check::default();
     let s = &prepared.sensitivity;
     let Some(measured) = job
         .measured
@@ -61,9 +61,9 @@ pub(super) fn check(
     else {
         return Ok(out);
     };
-    let table = read_strain(&mut session.inputs, job, &measured.strain)?;
+    let table = read_strain(&mut work.inputs, job, &measured.strain)?;
     let zero = match &measured.zero {
-        Some(named) => Some(read_strain(&mut session.inputs, job, named)?),
+        Some(named) => Some(read_strain(&mut work.inputs, job, named)?),
         None => None,
     };
     let mean = |gauge: &str| -> f64 {
@@ -96,7 +96,7 @@ pub(super) fn check(
             .collect(),
     };
     if row_of.iter().all(Option::is_none) {
-        session.findings.push(Finding::new(
+        work.findings.push(Finding::new(
             Severity::Info,
             "gauges-not-compared",
             "gauges",
@@ -105,18 +105,11 @@ pub(super) fn check(
         ));
         return Ok(out);
     }
-    out.csv.push_str("state");
-    for g in &s.gauges {
-        let measured = format!("{g}.measured");
-        let _ = write!(out.csv, ",{},{}", csv_cell(g), csv_cell(&measured));
-    }
-    out.csv.push('\n');
+    out.gauges.clone_from(&s.gauges);
     let mut pairs: Vec<Vec<(f64, f64)>> = vec![Vec::new(); s.gauges.len()];
-    // With the missing ones, so that every point keeps its state.
-    let mut drawn = pairs.clone();
     for (state, row) in states.iter().zip(&row_of) {
         let Some(row) = row else { continue };
-        out.csv.push_str(&state.label);
+        let mut of_state = Vec::new();
         for (g, name) in s.gauges.iter().enumerate() {
             let predicted = state
                 .values
@@ -131,14 +124,13 @@ pub(super) fn check(
                 .position(|h| h == name)
                 .and_then(|c| table.row(*row).get(c).copied())
                 .map_or(f64::NAN, |v| v - mean(name));
-            let _ = write!(out.csv, ",{predicted},");
             if read.is_finite() {
-                let _ = write!(out.csv, "{read}");
                 pairs[g].push((predicted, read));
             }
-            drawn[g].push((predicted, read));
+            of_state.push((predicted, read));
         }
-        out.csv.push('\n');
+        out.states.push(state.label.clone());
+        out.pairs.push(of_state);
     }
     let mut poor: Vec<&str> = Vec::new();
     for (name, pairs) in s.gauges.iter().zip(&pairs) {
@@ -162,7 +154,7 @@ pub(super) fn check(
             name: name.clone(),
             measured_rms: rms(&|p| p.1),
             residual_rms: rms(&|p| p.1 - p.0),
-            correlation: cov / (vp * vm).sqrt(),
+            correlation: finite(cov / (vp * vm).sqrt()),
         };
         if row.residual_rms > POOR * row.measured_rms
             && row.residual_rms > 3.0 * measured.noise_microstrain
@@ -172,7 +164,7 @@ pub(super) fn check(
         out.rows.push(row);
     }
     if !poor.is_empty() {
-        session.findings.push(
+        work.findings.push(
             Finding::new(
                 Severity::Warning,
                 "prediction-poor",
@@ -183,46 +175,5 @@ pub(super) fn check(
             .with_numbers(poor.len() as f64, 0.0),
         );
     }
-    let stride = drawn
-        .iter()
-        .map(Vec::len)
-        .sum::<usize>()
-        .div_ceil(MOST_POINTS)
-        .max(1);
-    out.states = states
-        .iter()
-        .zip(&row_of)
-        .filter(|(_, row)| row.is_some())
-        .map(|(s, _)| s.label.clone())
-        .step_by(stride)
-        .collect();
-    let residual = |name: &String| {
-        let row = out.rows.iter().find(|r| &r.name == name);
-        row.map_or(0.0, |r| r.residual_rms)
-    };
-    out.points = s
-        .gauges
-        .iter()
-        .zip(drawn)
-        .map(|(name, list)| GaugePoints {
-            name: name.clone(),
-            residual: residual(name),
-            points: [list.into_iter().step_by(stride).collect(), Vec::new()],
-        })
-        .collect();
-    let finite = |v: f64| v.is_finite().then_some(v);
-    let rows: Vec<serde_json::Value> = out
-        .rows
-        .iter()
-        .map(|g| {
-            json!({
-                "name": g.name,
-                "measured_rms_microstrain": g.measured_rms,
-                "residual_rms_microstrain": g.residual_rms,
-                "correlation": finite(g.correlation),
-            })
-        })
-        .collect();
-    session.put("gauges", rows)?;
     Ok(out)
 }

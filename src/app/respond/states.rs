@@ -1,11 +1,11 @@
 //! Load states: a table that `recover` wrote, or the job's static runs recovered here.
 
-use crate::app::Session;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::table::read_table;
 use crate::app::job::{Job, NamedFile};
 use crate::app::recover::recovered_runs;
 use crate::app::strain::{Prepared, load_units};
+use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::recovery::NORMAL_95;
 use crate::respond::{LoadState, Spread};
@@ -15,12 +15,12 @@ use crate::respond::{LoadState, Spread};
 /// # Errors
 /// Neither loads nor measured strain; tables that can't be read.
 pub(super) fn read(
-    session: &mut Session,
+    work: &mut Work,
     job: &Job,
     prepared: &Prepared,
 ) -> Result<Vec<LoadState>, Faults> {
     if let Some(named) = &job.respond.loads {
-        return from_table(session, job, named);
+        return from_table(work, job, named);
     }
     let Some(measured) = job.measured.as_ref().filter(|_| !job.gauges.is_empty()) else {
         return Err(Faults::from(Fault::at(
@@ -31,7 +31,7 @@ pub(super) fn read(
             "name the table that `recover` wrote: [respond] loads = \"job.out/loads.csv\"",
         )));
     };
-    let (_, recovery) = recovered_runs(session, job, measured, prepared)?;
+    let (_, recovery) = recovered_runs(work, job, measured, prepared)?;
     Ok(recovery
         .runs
         .into_iter()
@@ -50,12 +50,8 @@ pub(super) fn read(
 }
 
 /// Columns `<load>`, and where there `<load>.low`, `<load>.high`, in report units, as `recover` writes them.
-fn from_table(
-    session: &mut Session,
-    job: &Job,
-    named: &NamedFile,
-) -> Result<Vec<LoadState>, Faults> {
-    let text = session
+fn from_table(work: &mut Work, job: &Job, named: &NamedFile) -> Result<Vec<LoadState>, Faults> {
+    let text = work
         .inputs
         .read_named_text(job, named)
         .map_err(Faults::from)?;
@@ -131,7 +127,7 @@ fn from_table(
         )));
     }
     if blank > 0 {
-        session.findings.push(
+        work.findings.push(
             Finding::new(
                 Severity::Warning,
                 "states-left-out",
@@ -142,7 +138,7 @@ fn from_table(
             .with_numbers(blank as f64, 0.0),
         );
     }
-    session.findings.push(Finding::new(
+    work.findings.push(Finding::new(
         Severity::Info,
         "load-errors-independent",
         &named.given,

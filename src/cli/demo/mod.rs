@@ -227,7 +227,10 @@ fn play(
             &app::payload::payload(&Job::read(job, cx.files)?, &cx)?,
             &folder.join(out),
         ),
-        _ => run(app::respond::run),
+        _ => asked(
+            &app::respond::respond(&Job::read(job, cx.files)?, &cx)?,
+            &folder.join(out),
+        ),
     })
 }
 

@@ -12,6 +12,8 @@ mod modes;
 mod pages;
 mod payload;
 mod place;
+mod respond;
+mod respond_files;
 mod sensitivity;
 mod solve;
 mod strains;

@@ -1,0 +1,240 @@
+//! Files and words of `respond`.
+
+use super::respond_files::{arrays, histories};
+use super::{Report, write_page};
+use crate::app::fault::Faults;
+use crate::app::outcome::Outcome;
+use crate::app::output::Output;
+use crate::app::respond::{Element, Responded, grids};
+use crate::model::{Model, Vec3};
+use crate::recovery::NORMAL_95;
+use crate::report::csv_cell;
+use crate::report::figure::{GaugePoints, agreement};
+use crate::report::page::{Page, Section, figure_section, number, table_section};
+use crate::report::scene::{Mark, scene_of, scene_section};
+use crate::report::write_cells_vtu;
+use crate::respond::{Place, ResponseRow};
+use crate::units::factor;
+use std::fmt::Write as _;
+
+/// Rows of a table on the page.
+const MOST_ROWS: usize = 60;
+/// Elements that are named on a terminal.
+const MOST_WORDS: usize = 5;
+/// Points a drawing takes.
+const MOST_POINTS: usize = 2000;
+
+impl Report for Outcome<Responded> {
+    fn write(&self, out: &mut Output) -> Result<(), Faults> {
+        let Some(fields) = &self.prepared.fields else {
+            return Ok(());
+        };
+        let (model, f, unit) = (fields.model(), &self.field, self.stress_unit);
+        let u = factor(self.job.units, self.job.report_units.stress);
+        out.declare(
+            "elements.csv",
+            [
+                ("element", ""),
+                ("surface", ""),
+                ("max_von_mises", unit),
+                ("sigma", unit),
+                ("at", ""),
+            ],
+        );
+        out.write("elements.csv", |w| {
+            writeln!(w, "element,surface,max_von_mises,sigma,at")?;
+            for e in &self.elements {
+                let at = csv_cell(e.at.as_deref().unwrap_or(""));
+                writeln!(
+                    w,
+                    "{},{},{},{},{at}",
+                    e.element, e.surface, e.max_von_mises, e.sigma
+                )?;
+            }
+            Ok(())
+        })?;
+        out.write("histories.csv", |w| {
+            histories(w, &f.rows, &f.order, &f.states, u)
+        })?;
+        out.write("envelope.vtu", |w| {
+            write_cells_vtu(model, &arrays(model, &f.rows, &f.peaks, u, unit), w)
+        })?;
+        if !self.check.rows.is_empty() {
+            out.write("predicted.csv", |w| predicted(w, self))?;
+        }
+        let page = Page::new(
+            &self.job.title,
+            "Stress from recovered loads",
+            &self.findings,
+            sections(self),
+        );
+        write_page(out, self, page)
+    }
+
+    fn words(&self) -> String {
+        let mut text = String::new();
+        for e in self.elements.iter().take(MOST_WORDS) {
+            let _ = writeln!(
+                text,
+                "element {} {}: {:.2} +- {:.2} {} (95 %) at {}",
+                e.element,
+                e.surface,
+                e.max_von_mises,
+                NORMAL_95 * e.sigma,
+                self.stress_unit,
+                e.at.as_deref().unwrap_or("")
+            );
+        }
+        text
+    }
+}
+
+/// A row a state: predicted and measured microstrain of every gauge.
+fn predicted(w: &mut dyn std::io::Write, r: &Responded) -> std::io::Result<()> {
+    write!(w, "state")?;
+    for g in &r.check.gauges {
+        let measured = format!("{g}.measured");
+        write!(w, ",{},{}", csv_cell(g), csv_cell(&measured))?;
+    }
+    writeln!(w)?;
+    for (state, pairs) in r.check.states.iter().zip(&r.check.pairs) {
+        write!(w, "{}", csv_cell(state))?;
+        for (predicted, read) in pairs {
+            write!(w, ",{predicted},")?;
+            if read.is_finite() {
+                write!(w, "{read}")?;
+            }
+        }
+        writeln!(w)?;
+    }
+    Ok(())
+}
+
+fn sections(r: &Responded) -> Vec<Section> {
+    let unit = r.stress_unit;
+    let header = ["element", "surface", unit, "95 %", "at"];
+    let mut out = vec![
+        table_section(
+            "Largest von Mises stress",
+            &header,
+            &shown(&r.elements),
+            "From the loads by superposition; the interval is that of the loads.",
+        ),
+        table_section(
+            "Hot spots",
+            &header,
+            &shown(&r.hot_spots),
+            "Elements hotter than all that share a grid with them.",
+        ),
+    ];
+    if let Some(fields) = &r.prepared.fields {
+        let hottest = r.field.spots.iter().zip(&r.hot_spots);
+        let marks = hottest
+            .map(|(i, e)| mark_of_row(fields.model(), &r.field.rows[*i], note(e, unit)))
+            .collect();
+        out.push(scene_section(
+            "Hot spots on the model",
+            &scene_of(&r.job, fields, marks),
+        ));
+    }
+    if !r.check.rows.is_empty() {
+        out.extend(check_sections(r));
+    }
+    out
+}
+
+fn shown(list: &[Element]) -> Vec<Vec<String>> {
+    list.iter()
+        .take(MOST_ROWS)
+        .map(|e| {
+            vec![
+                e.element.to_string(),
+                e.surface.clone(),
+                number(e.max_von_mises),
+                format!("± {}", number(NORMAL_95 * e.sigma)),
+                e.at.clone().unwrap_or_default(),
+            ]
+        })
+        .collect()
+}
+
+fn note(e: &Element, unit: &str) -> String {
+    let [value, half] = [e.max_von_mises, NORMAL_95 * e.sigma].map(number);
+    let at = e.at.as_deref().unwrap_or("");
+    format!("{} {value} ± {half} {unit} in {at}", e.surface)
+}
+
+/// An element of a row as a mark of the scene, at the middle of its grids.
+fn mark_of_row(model: &Model, row: &ResponseRow, note: String) -> Mark {
+    let at: Vec<_> = grids(model, row)
+        .iter()
+        .filter_map(|g| model.grids.get(g.us()).map(|g| g.x))
+        .collect();
+    Mark {
+        name: row.element.to_string(),
+        at: at.iter().sum::<Vec3>() / at.len().max(1) as f64,
+        axes: None,
+        surface: match row.place {
+            Place::Shell { surface, .. } => Some(surface),
+            Place::Beam { .. } => None,
+        },
+        note,
+        gap: None,
+    }
+}
+
+/// Predicted against measured strain at the gauges.
+fn check_sections(r: &Responded) -> [Section; 2] {
+    let check = &r.check;
+    let stride = (check.states.len() * check.gauges.len())
+        .div_ceil(MOST_POINTS)
+        .max(1);
+    let points: Vec<GaugePoints> = check
+        .gauges
+        .iter()
+        .enumerate()
+        .map(|(g, name)| GaugePoints {
+            name: name.clone(),
+            residual: check
+                .rows
+                .iter()
+                .find(|c| c.name == *name)
+                .map_or(0.0, |c| c.residual_rms),
+            points: [
+                check
+                    .pairs
+                    .iter()
+                    .step_by(stride)
+                    .filter_map(|pairs| pairs.get(g).copied())
+                    .collect(),
+                Vec::new(),
+            ],
+        })
+        .collect();
+    let states: Vec<String> = check.states.iter().step_by(stride).cloned().collect();
+    let rows: Vec<Vec<String>> = check
+        .rows
+        .iter()
+        .map(|g| {
+            vec![
+                g.name.clone(),
+                number(g.measured_rms),
+                number(g.residual_rms),
+                number(g.correlation.unwrap_or(f64::NAN)),
+            ]
+        })
+        .collect();
+    [
+        figure_section(
+            "Measured against predicted strain at the gauges",
+            agreement(&points, ["states", ""], [&states, &[]]),
+            "",
+        ),
+        table_section(
+            "Gauges, microstrain",
+            &["gauge", "measured rms", "residual rms", "correlation"],
+            &rows,
+            "",
+        ),
+    ]
+}
