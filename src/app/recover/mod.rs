@@ -3,6 +3,7 @@
 //! [`runs`] static states, a row each; [`stream`] records of any length, CSV, RPC III or binary ([`crate::series::binary`]), at constant
 //! memory, Parquet and MDF4 read whole; [`derived`] what else is made of the loads.
 
+mod answer;
 mod combined;
 mod content;
 mod csv_record;
@@ -14,8 +15,12 @@ mod runs;
 mod stream;
 mod trace;
 
+pub use answer::{GaugeResidual, RecoveredLoad, RecoveredRuns, RunFit};
+
+use super::context::Context;
 use super::fault::{Fault, Faults};
 use super::job::{self, Job, Measured, Reference};
+use super::outcome::{Outcome, StatedUnits};
 use super::solved::stands_on_wheels;
 use super::strain::{Prepared, prepare};
 use super::wheels::{floor_fault, wheels_of};
@@ -26,6 +31,7 @@ use crate::finding::{Finding, Severity};
 use crate::gauge::reading;
 use crate::model::Model;
 use crate::recovery::{ErrorModel, Readings, Recovery};
+use crate::sensitivity::check_separability;
 use crate::series::foreign::Foreign;
 use crate::series::{binary, rpc};
 use crate::units::MICROSTRAIN;
@@ -42,30 +48,57 @@ struct Task<'a> {
     noise_factor: f64,
 }
 
-/// Reads, recovers, writes `loads.csv` and the report.
-pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
-    let job = session.stage("read job", |s| job::read_job(&mut s.inputs, &arguments.job))?;
-    session.put_units(job.units, &job.report_units);
-    let Some(measured) = &job.measured else {
-        return Err(Faults::from(Fault::of(
+/// Loads of the static runs of a job with their intervals.
+///
+/// # Errors
+/// Every fault of the job and of what it names; a record, whose loads are written as they come (`run`).
+pub fn recover_runs(job: &Job, cx: &Context) -> Result<Outcome<RecoveredRuns>, Faults> {
+    let mut work = Work::of_job(cx, job);
+    let measured = measured_of(job)?;
+    let prepared = prepare(&mut work, job)?;
+    let s = &prepared.sensitivity;
+    work.findings.extend(check_separability(s));
+    let task = task_of(&mut work, job, measured, &prepared)?;
+    work.findings.extend(changes(measured));
+    let (_, recovery, listed) = runs::listed_runs(&mut work, &task)?;
+    let answer = RecoveredRuns::of(s, &recovery, &listed.units);
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// `[measured]` of a job.
+fn measured_of(job: &Job) -> Result<&Measured, Faults> {
+    job.measured.as_ref().ok_or_else(|| {
+        Faults::from(Fault::of(
             &*job.file,
             "measured",
             "the job has no [measured]",
             "name the strain file: [measured] strain = \"strain.csv\"",
-        )));
-    };
-    let prepared = prepare(session, &job)?;
-    session.put_conditioning(&prepared.sensitivity)?;
-    let task = task_of(session, &job, measured, &prepared)?;
-    if measured.reference == Reference::None {
-        session.findings.push(Finding::new(
+        ))
+    })
+}
+
+/// Says that loads are changes, where no reference is stated.
+fn changes(measured: &Measured) -> Option<Finding> {
+    (measured.reference == Reference::None).then(|| {
+        Finding::new(
             Severity::Info,
             "loads-are-changes",
             "measured.reference",
             "loads are changes from the state at which the gauges read zero",
             "state `reference` to get totals",
-        ));
-    }
+        )
+    })
+}
+
+/// Reads, recovers, writes `loads.csv` and the report.
+pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
+    let job = session.stage("read job", |s| job::read_job(&mut s.inputs, &arguments.job))?;
+    session.put_units(job.units, &job.report_units);
+    let measured = measured_of(&job)?;
+    let prepared = prepare(session, &job)?;
+    session.put_conditioning(&prepared.sensitivity)?;
+    let task = task_of(session, &job, measured, &prepared)?;
+    session.findings.extend(changes(measured));
     let bytes = session
         .inputs
         .read_named(&job, &measured.strain)

@@ -1,7 +1,8 @@
 //! Static states.
 
 use super::Task;
-use super::combined::listed;
+use super::answer::RecoveredRuns;
+use super::combined::{Listed, listed};
 use super::derived::{write_arrows, write_nastran_runs};
 use super::known_payload;
 use crate::app::fault::{Fault, Faults};
@@ -20,7 +21,6 @@ use crate::report::scene::{Shown, run_arrows, scene_of_job};
 use crate::report::spreadsheet::{residual_sheet, runs_sheet};
 use crate::report::strain::{Recovered, RecoveredRun, recover_page};
 use crate::units::MICROSTRAIN;
-use serde_json::{Value, json};
 use std::io::Write;
 
 /// Where a gauge's column stands; `None`: it has none.
@@ -137,17 +137,13 @@ pub(super) fn run(
     task: &Task,
 ) -> Result<(), Faults> {
     let s = &task.prepared.sensitivity;
-    let (readings, mut recovery) = solve(session, task)?;
-    let listed = listed(task.job, s)?;
+    let (readings, recovery, listed) = listed_runs(session, task)?;
     let units = listed.units;
-    session
-        .findings
-        .extend(sums(task, &recovery, &units[..s.loads.len()]));
-    for run in &mut recovery.runs {
-        run.estimate
-            .add_sums(&listed.names[s.loads.len()..], &listed.sums);
-    }
-    put(session, task, &recovery, &units)?;
+    let answer = RecoveredRuns::of(s, &recovery, &units);
+    session.put("loads", &answer.loads)?;
+    session.put("residual_rms_microstrain", answer.residual_rms_microstrain)?;
+    session.put("gauges", &answer.gauges)?;
+    session.put("runs", &answer.runs)?;
     let shown: Vec<RecoveredRun> = recovery.runs.iter().map(|r| shown_run(r, &units)).collect();
     let points: Vec<GaugePoints> = (0..s.gauges.len())
         .map(|g| GaugePoints {
@@ -273,49 +269,21 @@ fn readings_of(
         .collect()
 }
 
-fn put(
-    session: &mut Session,
+/// Loads of the runs as they are listed, sums among them, with everything that is to be said of them.
+pub(super) fn listed_runs(
+    work: &mut Work,
     task: &Task,
-    recovery: &Recovery,
-    units: &[LoadUnits],
-) -> Result<(), Faults> {
+) -> Result<(Vec<Readings>, Recovery, Listed), Faults> {
     let s = &task.prepared.sensitivity;
-    let mut loads: Vec<Value> = Vec::new();
-    for r in &recovery.runs {
-        for (l, u) in units.iter().enumerate() {
-            let [low, high] = r.estimate.interval(l).map(|v| v * u.factor);
-            loads.push(json!({
-                "run": r.estimate.run,
-                "name": r.estimate.names[l],
-                "value": r.estimate.values[l] * u.factor,
-                "sigma": r.estimate.sigma(l) * u.factor,
-                "low": low,
-                "high": high,
-                "unit": u.name,
-            }));
-        }
+    let (readings, mut recovery) = solve(work, task)?;
+    let listed = listed(task.job, s)?;
+    let k = s.loads.len();
+    work.findings
+        .extend(sums(task, &recovery, &listed.units[..k]));
+    for run in &mut recovery.runs {
+        run.estimate.add_sums(&listed.names[k..], &listed.sums);
     }
-    session.put("loads", loads)?;
-    session.put(
-        "residual_rms_microstrain",
-        recovery.residual_rms / MICROSTRAIN,
-    )?;
-    let gauges: Vec<Value> = (0..s.gauges.len())
-        .map(|g| {
-            json!({
-                "name": s.gauges[g],
-                "residual_rms_microstrain": recovery.gauge_residual_rms[g] / MICROSTRAIN,
-                "leverage": recovery.gauge_leverage[g],
-            })
-        })
-        .collect();
-    session.put("gauges", gauges)?;
-    let runs: Vec<Value> = recovery
-        .runs
-        .iter()
-        .map(|r| json!({ "run": r.estimate.run, "chi2": r.chi2, "degrees_of_freedom": r.dof, "coverage_factor": r.estimate.coverage_factor }))
-        .collect();
-    session.put("runs", runs)
+    Ok((readings, recovery, listed))
 }
 
 fn shown_run(r: &crate::recovery::RunEstimate, units: &[LoadUnits]) -> RecoveredRun {
