@@ -367,11 +367,14 @@ fn patterns(n: usize, runs: &[RunEstimate]) -> usize {
         let v = r.residual[g] / r.sd[g];
         if v.is_finite() { v } else { 0.0 }
     };
-    let a = Matrix::from_fn(
-        n.max(m),
-        m,
-        |g, i| if g < n { std(g, &runs[i]) } else { 0.0 },
-    );
+    // Gauges by runs or runs by gauges, whichever is tall: the singular values are the same, and there may be thousands of runs.
+    let a = Matrix::from_fn(n.max(m), n.min(m), |row, column| {
+        if n >= m {
+            std(row, &runs[column])
+        } else {
+            std(column, &runs[row])
+        }
+    });
     let edge = (n as f64).sqrt() + (m as f64).sqrt() + 3.0;
     dense::svd(&a).map_or(0, |d| d.s.iter().filter(|&&s| s > edge).count())
 }
