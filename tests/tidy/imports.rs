@@ -234,6 +234,8 @@ fn expanded(statement: &str) -> Vec<String> {
 
 /// Paths of two names and more in code.
 fn paths_in(code: &str) -> Vec<String> {
+    // `pub(in crate::x)` says who may see a name, not what is used.
+    let code = code.replace("(in crate::", "(in ");
     let is_path = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
     code.split(|c: char| !is_path(c))
         .filter(|word| word.contains("::"))
