@@ -24,6 +24,11 @@ impl Crate {
             if module.last().is_some_and(|m| m == "mod") {
                 module.pop();
             }
+            // Tests inside a file name it as their parent.
+            let text = match text.find("mod tests {") {
+                Some(at) => text[..at].to_owned(),
+                None => text,
+            };
             let is_root = module == ["lib"] || module == ["main"];
             if !is_root && !module.iter().any(|m| m == "tests") {
                 code.insert(module, text);
