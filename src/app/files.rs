@@ -1,6 +1,7 @@
 //! Reading files: paths relative to a base, contents in memory, and the list of inputs with their hashes.
 
 use super::context::Files;
+use super::file_read::FileRead;
 use super::fault::Fault;
 use super::job::{Job, NamedFile};
 pub use super::whole_file::FileBytes;
@@ -13,17 +14,6 @@ use std::thread::JoinHandle;
 pub struct Input {
     /// Path as given, by the user or by the job.
     pub path: String,
-    /// SHA-256 of its bytes, hexadecimal.
-    pub sha256: String,
-}
-
-/// A file that was read, with where it was found.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FileRead {
-    /// Path as given, by the user or by the job.
-    pub given: String,
-    /// Path it was read from.
-    pub path: PathBuf,
     /// SHA-256 of its bytes, hexadecimal.
     pub sha256: String,
 }

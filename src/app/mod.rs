@@ -9,6 +9,7 @@ pub mod check;
 pub mod context;
 pub mod deck;
 pub mod fault;
+pub mod file_read;
 pub mod files;
 pub mod fleet;
 pub mod half_written;

@@ -24,6 +24,11 @@ impl Crate {
             if module.last().is_some_and(|m| m == "mod") {
                 module.pop();
             }
+            // Tests inside a file name it as their parent.
+            let text = match text.find("mod tests {") {
+                Some(at) => text[..at].to_owned(),
+                None => text,
+            };
             let is_root = module == ["lib"] || module == ["main"];
             if !is_root && !module.iter().any(|m| m == "tests") {
                 code.insert(module, text);
@@ -234,6 +239,8 @@ fn expanded(statement: &str) -> Vec<String> {
 
 /// Paths of two names and more in code.
 fn paths_in(code: &str) -> Vec<String> {
+    // `pub(in crate::x)` says who may see a name, not what is used.
+    let code = code.replace("(in crate::", "(in ");
     let is_path = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
     code.split(|c: char| !is_path(c))
         .filter(|word| word.contains("::"))

@@ -1,7 +1,7 @@
 //! A job with its defaults filled in and its words checked. Lengths, forces and masses are in the job's units unless a field says so.
 
 pub use super::shapes::Ids;
-use crate::app::files::FileRead;
+use crate::app::file_read::FileRead;
 use crate::fe::SupportChoice;
 use crate::units::{Quantity, ReportUnits, Unit, UnitSystem};
 use crate::vehicle::chassis::LeafSeat;

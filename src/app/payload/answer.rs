@@ -2,6 +2,7 @@
 
 use super::judge::words;
 use super::model::Parts;
+use super::readings::{NetReading, Readings};
 use super::task::Task;
 use crate::app::job::Job;
 use crate::app::outcome::{Answer, finite};
@@ -95,21 +96,6 @@ pub struct SingleGauge {
     pub reason: String,
 }
 
-/// What a gauge reads of a run, less its zero.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct NetReading {
-    /// The run.
-    pub run: String,
-    /// The gauge.
-    pub name: String,
-    /// Reading.
-    pub net_microstrain: Option<f64>,
-    /// Its standard deviation.
-    pub sigma_microstrain: Option<f64>,
-    /// Their ratio.
-    pub signal_to_noise: Option<f64>,
-}
-
 /// A value where it is not refused.
 fn kept(r: &WeighedRun, v: f64) -> Option<f64> {
     if r.refused.is_some() { None } else { finite(v) }
@@ -119,7 +105,7 @@ fn kept(r: &WeighedRun, v: f64) -> Option<f64> {
 pub(super) fn weighed(
     task: &Task,
     parts: Parts,
-    readings: super::readings::Readings,
+    readings: Readings,
     spec: &WeighSpec,
     weighing: Weighing,
 ) -> Weighed {

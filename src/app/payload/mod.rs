@@ -6,7 +6,8 @@ mod model;
 mod readings;
 mod task;
 
-pub use answer::{Ellipse, NetReading, SingleGauge, Weighed, WeighedPayload};
+pub use answer::{Ellipse, SingleGauge, Weighed, WeighedPayload};
+pub use readings::NetReading;
 
 use super::context::Context;
 use super::fault::{Fault, Faults};

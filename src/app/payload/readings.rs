@@ -1,6 +1,5 @@
 //! What the runs read: net strain with its noise, changes of the wheel forces, known places.
 
-use super::answer::NetReading;
 use super::task::Task;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::runs::{RunRow, read_runs};
@@ -12,9 +11,25 @@ use crate::finding::{Finding, Severity};
 use crate::payload::{PayloadModel, PayloadRun};
 use crate::recovery::net::{Net, WEAK, mean_of, net};
 use crate::units::MICROSTRAIN;
+use serde::Serialize;
 
 /// Noise of a wheel force where the job states none, of the largest.
 pub(super) const ASSUMED_NOISE: f64 = 0.01;
+
+/// What a gauge reads of a run, less its zero.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NetReading {
+    /// The run.
+    pub run: String,
+    /// The gauge.
+    pub name: String,
+    /// Reading.
+    pub net_microstrain: Option<f64>,
+    /// Its standard deviation.
+    pub sigma_microstrain: Option<f64>,
+    /// Their ratio.
+    pub signal_to_noise: Option<f64>,
+}
 
 /// What was read.
 pub(super) struct Readings {
