@@ -403,3 +403,148 @@ fn strain_is_written_where_the_deck_asks_for_it() {
         assert_eq!(types, [written], "{request}");
     }
 }
+
+/// A cantilever plate of 1,000 x 100 x 10 mm, 40 x 4 quadrilaterals, clamped at x = 0 by SPC set 1; 100 N along z at the middle of its tip.
+fn cantilever(case_control: &str) -> String {
+    let mut deck = format!(
+        "SOL 101\nCEND\n{case_control}SUBCASE 1\n  LOAD = 1\nBEGIN BULK\nMAT1,1,210000.,,.3,7.85-9\nPSHELL,1,1,10.,1,,1\n\
+         FORCE,1,203,0,100.,0.,0.,1.\nSPC1,1,123456,1,THRU,5\n"
+    );
+    for i in 0..41 {
+        for j in 0..5 {
+            let _ = writeln!(deck, "GRID,{},,{}.,{}.,0.", 5 * i + j + 1, 25 * i, 25 * j);
+        }
+    }
+    for i in 0..40 {
+        for j in 0..4 {
+            let (a, id) = (5 * i + j + 1, 4 * i + j + 1);
+            let _ = writeln!(deck, "CQUAD4,{id},1,{a},{},{},{}", a + 5, a + 6, a + 1);
+        }
+    }
+    deck.push_str("ENDDATA\n");
+    deck
+}
+
+/// A job with the tip load of 100 N and a gauge on element 21 (x = 137.5 mm), lengthwise on top; `support` is a line of [model].
+fn on_support(name: &str, support: &str) -> PathBuf {
+    let dir = folder(name);
+    std::fs::write(dir.join("canti.bdf"), cantilever("SPC = 1\n")).unwrap();
+    let job = format!(
+        "title = \"c\"\nunits = \"mm-t-s\"\n[model]\ndeck = \"canti.bdf\"\n{support}\n\
+         [[load]]\nname = \"tip\"\ngrid = 203\ncomponent = \"FZ\"\napplied = 100.0\nexpected = 100.0\n\
+         [[gauge]]\nname = \"a\"\nelement = 22\nsurface = \"top\"\ndirection = [1, 0, 0]\n"
+    );
+    let path = dir.join("job.toml");
+    std::fs::write(&path, job).unwrap();
+    path
+}
+
+fn json_of(command: &str, job: &Path) -> serde_json::Value {
+    let out = strainbridge(&[command, job.to_str().unwrap(), "--json"]);
+    assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+    serde_json::from_slice(&out.stdout).unwrap()
+}
+
+/// Microstrain of the gauge per newton at the tip, from sensitivity.csv.
+fn sensitivity_of(job: &Path) -> f64 {
+    json_of("sensitivity", job);
+    let table = std::fs::read_to_string(job.with_file_name("job.out/sensitivity.csv")).unwrap();
+    let row = table.lines().nth(1).unwrap();
+    row.split(',').nth(1).unwrap().parse().unwrap()
+}
+
+#[test]
+fn a_job_whose_deck_selects_supports_is_solved_on_them_and_free_where_it_says_so() {
+    let job = on_support("held_job", "");
+    // Beam theory: strain at the surface under the tip load, M t / 2 / (E I) with I = b t^3 / 12.
+    let exact = |x: f64| 1e6 * (1000.0 - x) * 5.0 / (210_000.0 * 100.0 * 1000.0 / 12.0);
+    let held = sensitivity_of(&job);
+    // Element 22 is the second of its row, at x = 137.5: the plate's Poisson effect and shear lag are a few per cent.
+    assert!((held.abs() / exact(137.5) - 1.0).abs() < 0.03, "{held}");
+    let solved = json_of("solve", &job);
+    assert_eq!(solved["support"], "held by SPC set 1");
+    let total = solved["reactions"][0]["total"].as_array().unwrap();
+    assert!(
+        (total[2].as_f64().unwrap() + 100.0).abs() < 1e-6,
+        "{total:?}"
+    );
+    // Named by its number: the same. Free: hardly any strain.
+    let named = sensitivity_of(&on_support("named_job", "support = 1"));
+    assert_eq!(named, held);
+    let free = sensitivity_of(&on_support("free_job", "support = \"free\""));
+    assert!(free.abs() < 0.2 * held.abs(), "{free} {held}");
+}
+
+#[test]
+fn a_support_that_the_deck_lacks_is_refused_with_the_line_of_the_job() {
+    let job = on_support("missing_support", "support = 9");
+    for command in ["solve", "place", "cases", "modes"] {
+        let out = strainbridge(&[command, job.to_str().unwrap()]);
+        assert_eq!(out.status.code(), Some(2), "{command}");
+        let told = text(&out.stderr);
+        assert!(
+            told.contains("job.toml:5") && told.contains("SPC set 9"),
+            "{told}"
+        );
+    }
+    let job = on_support("odd_support", "support = \"floating\"");
+    let out = strainbridge(&["solve", job.to_str().unwrap()]);
+    assert_eq!(out.status.code(), Some(2));
+}
+
+#[test]
+fn the_unit_load_deck_keeps_the_support_and_asks_for_no_relief() {
+    let job = on_support("held_cases", "");
+    json_of("cases", &job);
+    let deck = std::fs::read_to_string(job.with_file_name("job.out/unit_loads.bdf")).unwrap();
+    assert!(
+        deck.contains("SPC = 1") && !deck.contains("INREL"),
+        "{deck}"
+    );
+    let job = on_support("free_cases", "support = \"free\"");
+    json_of("cases", &job);
+    let deck = std::fs::read_to_string(job.with_file_name("job.out/unit_loads.bdf")).unwrap();
+    assert!(
+        !deck.contains("SPC = 1") && deck.contains("PARAM,INREL,-2"),
+        "{deck}"
+    );
+}
+
+#[test]
+fn modes_of_a_held_deck_of_sol_103_are_those_of_the_clamped_beam() {
+    let dir = folder("modes_deck");
+    let path = dir.join("canti.bdf");
+    let deck = cantilever("SPC = 1\n")
+        .replace("SOL 101", "SOL 103")
+        .replace("  LOAD = 1\n", "");
+    std::fs::write(&path, deck).unwrap();
+    let out = strainbridge(&["modes", path.to_str().unwrap(), "--modes", "3", "--json"]);
+    assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+    let result: serde_json::Value = serde_json::from_slice(&out.stdout).unwrap();
+    let hz = result["modes"][0]["hz"].as_f64().unwrap();
+    // Euler: 1.8751^2 / (2 pi l^2) sqrt(E t^2 / (12 rho)); a strip a tenth as wide as long is stiffer by less than 1 %.
+    let exact = 1.875_104_f64.powi(2) / (std::f64::consts::TAU * 1e6)
+        * (210_000.0 * 100.0 / (12.0 * 7.85e-9_f64)).sqrt();
+    assert!((hz / exact - 1.0).abs() < 0.01, "{hz} {exact}");
+    assert_eq!(result["rigid_motions"], 0);
+    assert!((result["modes"][0]["generalised_mass"].as_f64().unwrap() - 1.0).abs() < 1e-9);
+    for file in ["modes.csv", "modes.op2", "modes.vtu", "report.html"] {
+        assert!(dir.join("canti.out").join(file).exists(), "{file}");
+    }
+    // The shapes come back from the result file: eigenvectors of as many modes.
+    let bytes = std::fs::read(dir.join("canti.out/modes.op2")).unwrap();
+    let file = nastran::results::ResultsFile::read(&bytes, "modes.op2").unwrap();
+    let shapes = file
+        .blocks()
+        .iter()
+        .filter(|b| b.quantity == nastran::results::Quantity::Eigenvector);
+    assert_eq!(shapes.count(), 3);
+}
+
+#[test]
+fn a_free_deck_without_relief_says_that_relief_was_assumed() {
+    let deck = strip("").replace("PARAM,INREL,-2\n", "");
+    let (code, told, _) = solve("assumed_relief", &deck);
+    assert_eq!(code, 0, "{told}");
+    assert!(told.contains("Nastran would stop"), "{told}");
+}

@@ -18,6 +18,9 @@ const VECTORS_A_MODE: usize = 8;
 /// Six components by grid.
 pub(super) type Field = Vec<[f64; 6]>;
 
+/// No bound on a frequency is below this: what the factor's rounding leaves.
+const ROUNDING: f64 = 1e-12;
+
 /// When modes count as found.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Accuracy {
@@ -54,7 +57,7 @@ fn frequency_error(residual: f64, gap: f64) -> f64 {
     } else {
         f64::INFINITY
     };
-    0.5 * residual.min(quadratic)
+    (0.5 * residual.min(quadratic)).max(ROUNDING)
 }
 
 /// Residual over value, and gap over value, of the first `count` Ritz pairs.

@@ -12,6 +12,7 @@ mod moved;
 mod on_refined;
 mod spec;
 mod surface;
+mod unverified;
 
 pub use arms::{Arm, Gauge, Spot, reading, shell_strain};
 pub use build::{CornerRows, build};
@@ -20,6 +21,7 @@ pub use moved::moved;
 pub use on_refined::on_refined;
 pub use spec::{Bridge, GaugePlace, GaugeSpec, Rosette};
 pub use surface::{Foot, centre, nearest, to_side};
+pub use unverified::on_unverified_elements;
 
 #[cfg(test)]
 mod tests;

@@ -6,7 +6,7 @@ use crate::app::job::correct::turned_by;
 use crate::app::job::{self, Job, JobGauge};
 use crate::app::work::Work;
 use crate::fe::strain_tensor::Surface;
-use crate::gauge::{Bridge, Gauge, GaugePlace, GaugeSpec, Rosette, build};
+use crate::gauge::{Bridge, Gauge, GaugePlace, GaugeSpec, Rosette, build, on_unverified_elements};
 use crate::model::{Model, Vec3};
 use crate::sensitivity::NoStrain;
 
@@ -40,6 +40,10 @@ pub fn lay_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<Vec<Gau
         }
     }
     Faults::check(faults)?;
+    if job.model.as_ref().is_some_and(|m| m.results.is_empty()) {
+        work.findings
+            .extend(on_unverified_elements(fields.model(), &gauges));
+    }
     Ok(gauges)
 }
 
