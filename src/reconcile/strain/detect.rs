@@ -7,8 +7,16 @@ use crate::linalg::precision::Precision;
 use crate::reconcile::effect::{Candidate, Member, full_id};
 use crate::reconcile::outcome::Detectable;
 
-/// Log evidence beyond its prior cost that an effect must raise to be named.
-pub const DECISIVE: f64 = 5.0;
+/// A name on a truck that has nothing: one in a hundred at most.
+const FALSE_NAMES: f64 = 0.01;
+
+/// Log evidence beyond its prior cost that an effect must raise to be named: ln(1 / 0.01).
+///
+/// Where nothing is wrong, the mean of a likelihood ratio is one, and so is that of the sum of all of them over effects and places with
+/// prior weights that sum to one. By Markov's inequality the sum, and each of its terms, passes 100 in one case of a hundred at most,
+/// however many places are searched.
+pub const DECISIVE: f64 = 4.605_170_185_988_091;
+const _: () = assert!(FALSE_NAMES * 100.0 == 1.0);
 
 /// Sizes at which the expected gain of evidence pays for the effect's prior weight, its width and [`DECISIVE`].
 pub fn detectable(frame: &StrainFrame, candidates: &[Candidate]) -> Vec<Detectable> {

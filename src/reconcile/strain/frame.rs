@@ -31,14 +31,29 @@ pub struct GaugeFacts {
 /// In-plane strain at a gauge per unit of every column, in the frame that `angle_deg` counts from: exx, eyy, gxy (engineering shear).
 pub type PlaneStrainRow = Vec<[f64; 3]>;
 
+/// What a change of stiffness is one of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StiffnessOf {
+    /// The thickness of a zone, in percent.
+    Zone,
+    /// A joint, natural log of its stiffness times 100.
+    Joint,
+    /// A small region (a crack, a missing patch), natural log of its stiffness times 100.
+    Local,
+    /// What the user described, in a unit of its own.
+    Described,
+}
+
 /// A change of stiffness somewhere: what it does to the influence matrix.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StiffnessSignature {
-    /// Effect id with its place: `rail_stiffness:L4`, `joint_stiffness:12`.
-    pub id: String,
-    /// Changes of the influence matrix (`n_gauges x n_columns`) at sizes in percent, ascending in size, zero left out.
+    /// What it is one of.
+    pub of: StiffnessOf,
+    /// Zone, joint, element; of a described change its id.
+    pub place: String,
+    /// Changes of the influence matrix (`n_gauges x n_columns`) at sizes, ascending, zero left out.
     pub at_percent: Vec<(f64, Vec<f64>)>,
-    /// Prior standard deviation of the size in percent (of its natural log times 100 for joints).
+    /// Prior standard deviation of the size.
     pub prior_percent: f64,
 }
 
@@ -150,6 +165,12 @@ impl StrainFrame {
     /// Number of columns of `influence`.
     pub fn n_columns(&self) -> usize {
         self.load_names.len() + N_PAYLOAD_COLUMNS
+    }
+
+    /// Root mean square of the wheel loads over all runs, kN; one where there are none.
+    pub fn usual_load(&self) -> f64 {
+        let power = self.loads.iter().map(|f| f * f).sum::<f64>() / self.loads.len().max(1) as f64;
+        if power > 0.0 { power.sqrt() } else { 1.0 }
     }
 
     /// By gauge: relative error, 1 sd, of the strain that a load of its own makes there: stated uncertainty and `scatter` over the wheel

@@ -6,7 +6,7 @@ pub mod judge;
 use std::path::{Path, PathBuf};
 use strainbridge::reconcile::Observations;
 use strainbridge::reconcile::strain::{
-    GaugeFacts, MassSignature, PayloadWeight, StiffnessSignature, StrainFrame, WheelForces, Wiring,
+    GaugeFacts, MassSignature, PayloadWeight, StiffnessOf, StiffnessSignature, StrainFrame, WheelForces, Wiring,
 };
 
 /// Folder of the shared material, where present.
@@ -123,7 +123,8 @@ pub fn frame_of(dir: &Path) -> StrainFrame {
             }
         }
         StiffnessSignature {
-            id: format!("rail_stiffness:Z{k}"),
+            of: StiffnessOf::Zone,
+            place: format!("Z{k}"),
             at_percent: vec![(1.0, change)],
             prior_percent: 15.0,
         }
