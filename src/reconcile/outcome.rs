@@ -66,6 +66,8 @@ pub enum GapBasis {
     HeldOut,
     /// No run was held out: every run in turn, with sizes and amplitudes found from the others.
     CrossValidated,
+    /// Nothing was held out, and what is judged was fitted.
+    Fitted,
 }
 
 impl GapBasis {
@@ -74,6 +76,7 @@ impl GapBasis {
         match self {
             Self::HeldOut => "held-out",
             Self::CrossValidated => "cross-validated",
+            Self::Fitted => "fitted",
         }
     }
 }

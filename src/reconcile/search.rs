@@ -198,11 +198,17 @@ fn exchange<S: Scorer>(scorer: &mut S, breadth: Breadth, seen: &mut Seen<S::Fit>
                 .clone();
             if let Some(base) = scored {
                 extend(scorer, &base, breadth, seen);
-                for other in best.set.get(skip).map(|m| scorer.variants(*m)).unwrap_or_default() {
+                for other in best
+                    .set
+                    .get(skip)
+                    .map(|m| scorer.variants(*m))
+                    .unwrap_or_default()
+                {
                     let mut set = base.set.clone();
                     set.push(other);
                     set.sort_unstable();
-                    seen.entry(set.clone()).or_insert_with(|| scorer.score(&set, None));
+                    seen.entry(set.clone())
+                        .or_insert_with(|| scorer.score(&set, None));
                 }
             }
         }

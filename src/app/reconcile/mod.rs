@@ -12,6 +12,7 @@ mod extended_job;
 mod extended_loads;
 mod finer;
 mod matrix_frame;
+mod one_file;
 mod relative;
 mod signature_table;
 mod static_path;

@@ -22,7 +22,12 @@ impl CardGain {
         let mut out = Vec::new();
         for length in 2..=MOST.min(n / 2) {
             for first in 0..=n - length {
-                out.push(OnGauges::new(frame, (first..first + length).collect(), Self, place));
+                out.push(OnGauges::new(
+                    frame,
+                    (first..first + length).collect(),
+                    Self,
+                    place,
+                ));
             }
         }
         out
@@ -40,9 +45,14 @@ impl ChannelFault for CardGain {
         scale(at, parameters, row);
     }
     fn extension(&self, names: &[String], parameters: &[f64]) -> Extension {
-        Extension::channel(names, Correction::Gain(parameters.first().copied().unwrap_or(1.0)))
+        Extension::channel(
+            names,
+            Correction::Gain(parameters.first().copied().unwrap_or(1.0)),
+        )
     }
     fn separate_by(&self, place: &str) -> String {
-        format!("shunt-calibrate one gauge of {place} and one outside: a wrong amplifier shows in the first alone")
+        format!(
+            "shunt-calibrate one gauge of {place} and one outside: a wrong amplifier shows in the first alone"
+        )
     }
 }

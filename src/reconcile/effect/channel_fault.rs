@@ -31,7 +31,12 @@ pub trait ChannelFault: Send + Sync {
     /// Turns strain at all gauges of a run (`row`) into readings.
     fn read(&self, _at: At<'_>, _parameters: &[f64], _row: &mut [f64]) {}
     /// Change of the influence row of a gauge, for faults of the gauge itself.
-    fn influence_change(&self, _frame: &StrainFrame, _gauge: usize, _parameters: &[f64]) -> Vec<f64> {
+    fn influence_change(
+        &self,
+        _frame: &StrainFrame,
+        _gauge: usize,
+        _parameters: &[f64],
+    ) -> Vec<f64> {
         Vec::new()
     }
     /// Amplitudes that differ from run to run.
@@ -63,10 +68,26 @@ pub struct OnGauges<F> {
 
 impl<F> OnGauges<F> {
     /// `fault` on `gauges`, placed in the words that `place` makes of their names.
-    pub fn new(frame: &StrainFrame, gauges: Vec<usize>, fault: F, place: impl Fn(&[String]) -> String) -> Self {
-        let name = |g: &usize| frame.gauges.get(*g).map(|f| f.name.clone()).unwrap_or_default();
+    pub fn new(
+        frame: &StrainFrame,
+        gauges: Vec<usize>,
+        fault: F,
+        place: impl Fn(&[String]) -> String,
+    ) -> Self {
+        let name = |g: &usize| {
+            frame
+                .gauges
+                .get(*g)
+                .map(|f| f.name.clone())
+                .unwrap_or_default()
+        };
         let names: Vec<String> = gauges.iter().map(name).collect();
-        Self { place: place(&names), gauges, names, fault }
+        Self {
+            place: place(&names),
+            gauges,
+            names,
+            fault,
+        }
     }
 
     /// `fault` on one gauge.
@@ -97,8 +118,20 @@ impl<F: ChannelFault> StrainEffect for OnGauges<F> {
             }
         }
     }
-    fn read(&self, frame: &StrainFrame, parameters: &[f64], run: usize, row: &mut [f64], part: Part) {
-        let at = At { frame, run, gauges: &self.gauges, part };
+    fn read(
+        &self,
+        frame: &StrainFrame,
+        parameters: &[f64],
+        run: usize,
+        row: &mut [f64],
+        part: Part,
+    ) {
+        let at = At {
+            frame,
+            run,
+            gauges: &self.gauges,
+            part,
+        };
         self.fault.read(at, parameters, row);
     }
     fn amplitudes(&self, frame: &StrainFrame) -> Option<Amplitudes> {
@@ -120,5 +153,7 @@ impl<F: ChannelFault> StrainEffect for OnGauges<F> {
 
 /// `fault` on every gauge by itself.
 pub fn on_every_gauge<F: Clone>(frame: &StrainFrame, fault: &F) -> Vec<OnGauges<F>> {
-    (0..frame.n_gauges()).map(|g| OnGauges::one(frame, g, fault.clone())).collect()
+    (0..frame.n_gauges())
+        .map(|g| OnGauges::one(frame, g, fault.clone()))
+        .collect()
 }

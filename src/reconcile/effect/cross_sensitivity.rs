@@ -32,10 +32,18 @@ impl ChannelFault for CrossSensitivity {
     }
     fn parameters(&self) -> Vec<Parameter> {
         let unit = "of its neighbour";
-        vec![Parameter { unit, neutral: 0.0, prior_sd: 0.2, step: 0.005, starts: vec![0.0], plausible: 1.0 }]
+        vec![Parameter {
+            unit,
+            neutral: 0.0,
+            prior_sd: 0.2,
+            step: 0.005,
+            starts: vec![0.0],
+            plausible: 1.0,
+        }]
     }
     fn read(&self, at: At<'_>, parameters: &[f64], row: &mut [f64]) {
-        let (Some(share), Some(leaks)) = (parameters.first(), row.get(self.neighbour).copied()) else {
+        let (Some(share), Some(leaks)) = (parameters.first(), row.get(self.neighbour).copied())
+        else {
             return;
         };
         for &g in at.gauges {
@@ -48,6 +56,8 @@ impl ChannelFault for CrossSensitivity {
         Extension::channel(names, Correction::Ignore)
     }
     fn separate_by(&self, place: &str) -> String {
-        format!("shunt the neighbours of gauge {place} in the list of channels and see whether it moves")
+        format!(
+            "shunt the neighbours of gauge {place} in the list of channels and see whether it moves"
+        )
     }
 }

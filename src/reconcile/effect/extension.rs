@@ -116,6 +116,11 @@ pub enum Extension {
 impl Extension {
     /// The same correction of every channel of `names`.
     pub fn channel(names: &[String], correction: Correction) -> Self {
-        Self::Channels(names.iter().map(|n| (n.clone(), correction.clone())).collect())
+        Self::Channels(
+            names
+                .iter()
+                .map(|n| (n.clone(), correction.clone()))
+                .collect(),
+        )
     }
 }

@@ -13,7 +13,9 @@ impl GainDrift {
     pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         let n = frame.n_gauges();
         let all = OnGauges::new(frame, (0..n).collect(), Self, |_| "all".into());
-        std::iter::once(all).chain((0..n).map(|g| OnGauges::one(frame, g, Self))).collect()
+        std::iter::once(all)
+            .chain((0..n).map(|g| OnGauges::one(frame, g, Self)))
+            .collect()
     }
 }
 
@@ -23,7 +25,14 @@ impl ChannelFault for GainDrift {
     }
     fn parameters(&self) -> Vec<Parameter> {
         let unit = "of the gain, first run to last";
-        vec![Parameter { unit, neutral: 0.0, prior_sd: 0.2, step: 0.005, starts: vec![0.0], plausible: 2.0 }]
+        vec![Parameter {
+            unit,
+            neutral: 0.0,
+            prior_sd: 0.2,
+            step: 0.005,
+            starts: vec![0.0],
+            plausible: 2.0,
+        }]
     }
     fn read(&self, at: At<'_>, parameters: &[f64], row: &mut [f64]) {
         let Some(size) = parameters.first() else {
@@ -42,6 +51,8 @@ impl ChannelFault for GainDrift {
         Extension::channel(names, Correction::Ignore)
     }
     fn separate_by(&self, place: &str) -> String {
-        format!("repeat the first run at the end, and shunt-calibrate {place} before and after: a gain that moves shows")
+        format!(
+            "repeat the first run at the end, and shunt-calibrate {place} before and after: a gain that moves shows"
+        )
     }
 }

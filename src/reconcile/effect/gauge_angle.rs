@@ -12,7 +12,10 @@ impl GaugeAngle {
     /// One on every gauge whose in-plane strain is known.
     pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         let known = |g: &usize| frame.tensors.get(*g).is_some_and(|t| !t.is_empty());
-        (0..frame.n_gauges()).filter(known).map(|g| OnGauges::one(frame, g, Self)).collect()
+        (0..frame.n_gauges())
+            .filter(known)
+            .map(|g| OnGauges::one(frame, g, Self))
+            .collect()
     }
 }
 
@@ -31,7 +34,10 @@ pub fn angle_change(frame: &StrainFrame, gauge: usize, degrees: f64) -> Vec<f64>
     let (Some(facts), Some(tensors)) = (frame.gauges.get(gauge), frame.tensors.get(gauge)) else {
         return Vec::new();
     };
-    let (drawn, glued) = (facts.angle_deg.to_radians(), (facts.angle_deg + degrees).to_radians());
+    let (drawn, glued) = (
+        facts.angle_deg.to_radians(),
+        (facts.angle_deg + degrees).to_radians(),
+    );
     let change = |&t: &[f64; 3]| reading(t, glued, facts.wiring) - reading(t, drawn, facts.wiring);
     tensors.iter().map(change).collect()
 }
@@ -47,15 +53,27 @@ impl ChannelFault for GaugeAngle {
         // A first-order step is zero for a gauge along a principal direction: start on both sides. A gauge glued across is as usual a
         // mistake as one glued askew: the prior is wide.
         let starts = vec![-75.0, -30.0, -8.0, 8.0, 30.0, 75.0];
-        vec![Parameter { unit: "degree", neutral: 0.0, prior_sd: 30.0, step: 0.25, starts, plausible: 95.0 }]
+        vec![Parameter {
+            unit: "degree",
+            neutral: 0.0,
+            prior_sd: 30.0,
+            step: 0.25,
+            starts,
+            plausible: 95.0,
+        }]
     }
     fn influence_change(&self, frame: &StrainFrame, gauge: usize, parameters: &[f64]) -> Vec<f64> {
         angle_change(frame, gauge, parameters.first().copied().unwrap_or(0.0))
     }
     fn extension(&self, names: &[String], parameters: &[f64]) -> Extension {
-        Extension::channel(names, Correction::AngleDeg(parameters.first().copied().unwrap_or(0.0)))
+        Extension::channel(
+            names,
+            Correction::AngleDeg(parameters.first().copied().unwrap_or(0.0)),
+        )
     }
     fn separate_by(&self, place: &str) -> String {
-        format!("photograph gauge {place} with a protractor; a load that shears the member there shows an angle, not a gain")
+        format!(
+            "photograph gauge {place} with a protractor; a load that shears the member there shows an angle, not a gain"
+        )
     }
 }

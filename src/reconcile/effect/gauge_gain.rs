@@ -17,7 +17,14 @@ impl GaugeGain {
 
 /// A gain that may be wrong by a bridge factor of 1/4 to 4, a common mistake, or by some tenths, a wrong gauge factor.
 pub(super) fn gain_parameter() -> Parameter {
-    Parameter { unit: "1", neutral: 1.0, prior_sd: 0.5, step: 0.01, starts: vec![1.0], plausible: 4.0 }
+    Parameter {
+        unit: "1",
+        neutral: 1.0,
+        prior_sd: 0.5,
+        step: 0.01,
+        starts: vec![1.0],
+        plausible: 4.0,
+    }
 }
 
 impl ChannelFault for GaugeGain {
@@ -31,10 +38,15 @@ impl ChannelFault for GaugeGain {
         scale(at, parameters, row);
     }
     fn extension(&self, names: &[String], parameters: &[f64]) -> Extension {
-        Extension::channel(names, Correction::Gain(parameters.first().copied().unwrap_or(1.0)))
+        Extension::channel(
+            names,
+            Correction::Gain(parameters.first().copied().unwrap_or(1.0)),
+        )
     }
     fn separate_by(&self, place: &str) -> String {
-        format!("shunt-calibrate gauge {place}: a wrong gain shows, a wrong angle or place does not")
+        format!(
+            "shunt-calibrate gauge {place}: a wrong gain shows, a wrong angle or place does not"
+        )
     }
 }
 

@@ -16,7 +16,9 @@ impl GaugeSwap {
         for a in 0..n {
             let legs = frame.rosette(a);
             let others = (a + 1..n).filter(|b| !legs.contains(b));
-            out.extend(others.map(|b| OnGauges::new(frame, vec![a, b], Self, |names| names.join("+"))));
+            out.extend(
+                others.map(|b| OnGauges::new(frame, vec![a, b], Self, |names| names.join("+"))),
+            );
         }
         out
     }
@@ -41,6 +43,9 @@ impl ChannelFault for GaugeSwap {
         }
     }
     fn separate_by(&self, place: &str) -> String {
-        format!("warm one of the gauges {} with a hand and see which channel moves", place.replace('+', " and "))
+        format!(
+            "warm one of the gauges {} with a hand and see which channel moves",
+            place.replace('+', " and ")
+        )
     }
 }

@@ -20,13 +20,20 @@ impl IntermittentChannel {
         let predicted = predict(frame, &[]);
         let mut out = Vec::new();
         for g in 0..frame.n_gauges() {
-            let at = |r: usize| (frame.observations.value(r, g), predicted.get(r * frame.n_gauges() + g));
+            let at = |r: usize| {
+                (
+                    frame.observations.value(r, g),
+                    predicted.get(r * frame.n_gauges() + g),
+                )
+            };
             let runs = 0..frame.n_runs();
             let open: Vec<bool> = runs
                 .clone()
                 .map(|r| matches!(at(r), (y, Some(p)) if y.abs() < NOTHING * frame.noise && p.abs() > CLEAR * frame.noise))
                 .collect();
-            let reads = runs.clone().any(|r| matches!(at(r), (y, Some(_)) if y.abs() > CLEAR * frame.noise));
+            let reads = runs
+                .clone()
+                .any(|r| matches!(at(r), (y, Some(_)) if y.abs() > CLEAR * frame.noise));
             if reads && open.iter().any(|o| *o) {
                 out.push(OnGauges::one(frame, g, Self { open }));
             }

@@ -10,7 +10,13 @@ pub struct LateralWheelLoads;
 /// Components with their usual sizes as shares of a usual wheel force, moments per metre: a scrubbing tyre pushes sideways with a quarter
 /// of its load (a third of what it can before it slides), rolling resistance and brakes left on make a tenth; the side force acts half a
 /// metre below the hub, the others a few centimetres off.
-const USUAL: [(&str, f64); 5] = [("FX", 0.1), ("FY", 0.25), ("MX", 0.12), ("MY", 0.04), ("MZ", 0.04)];
+const USUAL: [(&str, f64); 5] = [
+    ("FX", 0.1),
+    ("FY", 0.25),
+    ("MX", 0.12),
+    ("MY", 0.04),
+    ("MZ", 0.04),
+];
 
 /// Usual size of each component in `frame`, kN and kN m.
 fn usual(frame: &StrainFrame) -> Vec<f64> {
@@ -62,7 +68,11 @@ impl StrainEffect for LateralWheelLoads {
     }
     fn extension(&self, frame: &StrainFrame, _parameters: &[f64]) -> Extension {
         let usual = usual(frame);
-        let sized = |n: &String| component(n).and_then(|k| usual.get(k)).map(|u| (n.clone(), *u));
+        let sized = |n: &String| {
+            component(n)
+                .and_then(|k| usual.get(k))
+                .map(|u| (n.clone(), *u))
+        };
         let loads = frame
             .other_loads
             .iter()

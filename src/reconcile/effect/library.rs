@@ -40,7 +40,10 @@ pub struct Candidate {
 type Everywhere = fn(&StrainFrame) -> Vec<Box<dyn StrainEffect>>;
 
 fn boxed<E: StrainEffect + 'static>(effects: Vec<E>) -> Vec<Box<dyn StrainEffect>> {
-    effects.into_iter().map(|e| Box::new(e) as Box<dyn StrainEffect>).collect()
+    effects
+        .into_iter()
+        .map(|e| Box::new(e) as Box<dyn StrainEffect>)
+        .collect()
 }
 
 const LIBRARY: [Everywhere; 27] = [
@@ -80,17 +83,24 @@ const LIBRARY: [Everywhere; 27] = [
 pub fn library(frame: &StrainFrame, only: &[String]) -> Vec<Candidate> {
     let wanted = |e: &dyn StrainEffect| {
         let full = super::full_id(e);
-        only.is_empty() || e.discrepancy().is_some() || only.iter().any(|w| w == e.id() || *w == full)
+        only.is_empty()
+            || e.discrepancy().is_some()
+            || only.iter().any(|w| w == e.id() || *w == full)
     };
     let everywhere = LIBRARY.iter().map(|all| all(frame));
-    let mut groups: Vec<Vec<Box<dyn StrainEffect>>> =
-        everywhere.map(|group| group.into_iter().filter(|e| wanted(e.as_ref())).collect()).collect();
+    let mut groups: Vec<Vec<Box<dyn StrainEffect>>> = everywhere
+        .map(|group| group.into_iter().filter(|e| wanted(e.as_ref())).collect())
+        .collect();
     groups.retain(|g: &Vec<_>| !g.is_empty());
     let n_groups = groups.len().max(1) as f64;
     let mut out = Vec::new();
     for group in groups {
         let log_prior = -(n_groups * group.len() as f64).ln();
-        out.extend(group.into_iter().map(|effect| Candidate { effect, log_prior }));
+        out.extend(
+            group
+                .into_iter()
+                .map(|effect| Candidate { effect, log_prior }),
+        );
     }
     out
 }

@@ -66,7 +66,10 @@ pub enum FaultKind {
 impl FaultKind {
     /// Can the two be told apart on one gauge?
     pub fn besides(self, other: Self) -> bool {
-        matches!((self, other), (Self::Zero, Self::Whole) | (Self::Whole, Self::Zero))
+        matches!(
+            (self, other),
+            (Self::Zero, Self::Whole) | (Self::Whole, Self::Zero)
+        )
     }
 }
 
@@ -126,7 +129,15 @@ pub trait StrainEffect: Send + Sync {
     /// Changes structure or loads.
     fn alter(&self, _frame: &StrainFrame, _parameters: &[f64], _state: &mut StrainState) {}
     /// Changes the readings of one run, a row of gauges.
-    fn read(&self, _frame: &StrainFrame, _parameters: &[f64], _run: usize, _row: &mut [f64], _part: Part) {}
+    fn read(
+        &self,
+        _frame: &StrainFrame,
+        _parameters: &[f64],
+        _run: usize,
+        _row: &mut [f64],
+        _part: Part,
+    ) {
+    }
     /// Amplitudes that differ from run to run.
     fn amplitudes(&self, _frame: &StrainFrame) -> Option<Amplitudes> {
         None

@@ -14,7 +14,14 @@ pub struct RosetteLegs {
 impl RosetteLegs {
     /// Every other order of two or three legs at one place; the rosette is named by its first leg.
     pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
-        const ORDERS: [&[usize]; 6] = [&[1, 0], &[1, 0, 2], &[0, 2, 1], &[2, 1, 0], &[1, 2, 0], &[2, 0, 1]];
+        const ORDERS: [&[usize]; 6] = [
+            &[1, 0],
+            &[1, 0, 2],
+            &[0, 2, 1],
+            &[2, 1, 0],
+            &[1, 2, 0],
+            &[2, 0, 1],
+        ];
         let mut out = Vec::new();
         for first in 0..frame.n_gauges() {
             let legs = frame.rosette(first);
@@ -22,7 +29,9 @@ impl RosetteLegs {
                 continue;
             }
             for order in ORDERS.iter().filter(|o| o.len() == legs.len()) {
-                let fault = Self { order: order.to_vec() };
+                let fault = Self {
+                    order: order.to_vec(),
+                };
                 let by_first = |names: &[String]| names.first().cloned().unwrap_or_default();
                 out.push(OnGauges::new(frame, legs.clone(), fault, by_first));
             }
@@ -36,7 +45,11 @@ impl ChannelFault for RosetteLegs {
         "rosette_legs"
     }
     fn read(&self, at: At<'_>, _parameters: &[f64], row: &mut [f64]) {
-        let felt: Vec<f64> = at.gauges.iter().map(|&g| row.get(g).copied().unwrap_or(f64::NAN)).collect();
+        let felt: Vec<f64> = at
+            .gauges
+            .iter()
+            .map(|&g| row.get(g).copied().unwrap_or(f64::NAN))
+            .collect();
         for (&channel, &leg) in at.gauges.iter().zip(&self.order) {
             if let (Some(cell), Some(v)) = (row.get_mut(channel), felt.get(leg)) {
                 *cell = *v;
@@ -59,6 +72,8 @@ impl ChannelFault for RosetteLegs {
         Extension::Channels(steps)
     }
     fn separate_by(&self, place: &str) -> String {
-        format!("follow the leads of the rosette at {place}, or shunt one leg and see which channel moves")
+        format!(
+            "follow the leads of the rosette at {place}, or shunt one leg and see which channel moves"
+        )
     }
 }

@@ -20,7 +20,10 @@ impl RunExchange {
         let mut out = Vec::new();
         for a in 0..frame.n_runs() {
             let others = (a + 1..frame.n_runs()).filter(|b| fit.contains(&a) || fit.contains(b));
-            out.extend(others.map(|b| Self { pair: [a, b], names: [name(a), name(b)] }));
+            out.extend(others.map(|b| Self {
+                pair: [a, b],
+                names: [name(a), name(b)],
+            }));
         }
         out
     }
@@ -47,10 +50,15 @@ impl StrainEffect for RunExchange {
         }
     }
     fn extension(&self, _frame: &StrainFrame, _parameters: &[f64]) -> Extension {
-        Extension::RunExchange { runs: self.names.clone() }
+        Extension::RunExchange {
+            runs: self.names.clone(),
+        }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
-        format!("look up the notes and the times of runs {} in the log of the measurement", self.names.join(" and "))
+        format!(
+            "look up the notes and the times of runs {} in the log of the measurement",
+            self.names.join(" and ")
+        )
     }
     fn runs(&self) -> Vec<usize> {
         self.pair.to_vec()

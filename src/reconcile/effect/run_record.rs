@@ -36,7 +36,10 @@ impl RunRecord {
             let (sum, n) = v.fold((0.0, 0usize), |(s, n), x| (s + x * x, n + 1));
             (sum / n.max(1) as f64).sqrt()
         };
-        let (n_l, payload) = (frame.n_loads(), rms(&mut frame.payload.iter().map(|p| p[0])));
+        let (n_l, payload) = (
+            frame.n_loads(),
+            rms(&mut frame.payload.iter().map(|p| p[0])),
+        );
         let load = SHARE * rms(&mut frame.loads.iter().copied());
         let mut kinds: Vec<(Noted, f64)> = Vec::new();
         if load > 0.0 {
@@ -48,8 +51,18 @@ impl RunRecord {
         }
         let mut out = Vec::new();
         for run in frame.observations.fit_runs() {
-            let name = frame.observations.runs.get(run).cloned().unwrap_or_default();
-            out.extend(kinds.iter().map(|&(noted, usual)| Self { run, name: name.clone(), noted, usual }));
+            let name = frame
+                .observations
+                .runs
+                .get(run)
+                .cloned()
+                .unwrap_or_default();
+            out.extend(kinds.iter().map(|&(noted, usual)| Self {
+                run,
+                name: name.clone(),
+                noted,
+                usual,
+            }));
         }
         out
     }
@@ -72,7 +85,14 @@ impl StrainEffect for RunRecord {
             Noted::Mass => "kg",
         };
         let (sd, step) = (self.usual, 0.02 * self.usual);
-        vec![Parameter { unit, neutral: 0.0, prior_sd: sd, step, starts: vec![0.0], plausible: 10.0 * sd }]
+        vec![Parameter {
+            unit,
+            neutral: 0.0,
+            prior_sd: sd,
+            step,
+            starts: vec![0.0],
+            plausible: 10.0 * sd,
+        }]
     }
     fn alter(&self, frame: &StrainFrame, parameters: &[f64], state: &mut StrainState) {
         let Some(&size) = parameters.first() else {
@@ -90,7 +110,10 @@ impl StrainEffect for RunRecord {
                 }
             }
             Noted::Loads => row.iter_mut().take(n_l).for_each(|f| *f *= 1.0 + size),
-            Noted::Mass if mass > 0.0 => row.iter_mut().skip(n_l).for_each(|f| *f *= (mass + size) / mass),
+            Noted::Mass if mass > 0.0 => row
+                .iter_mut()
+                .skip(n_l)
+                .for_each(|f| *f *= (mass + size) / mass),
             // Noted as empty: what is there acts at the nominal place.
             Noted::Mass => {
                 if let Some(cell) = row.get_mut(n_l) {
@@ -100,7 +123,9 @@ impl StrainEffect for RunRecord {
         }
     }
     fn extension(&self, _frame: &StrainFrame, _parameters: &[f64]) -> Extension {
-        Extension::RunRecord { run: self.name.clone() }
+        Extension::RunRecord {
+            run: self.name.clone(),
+        }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
         format!("repeat run {}, or look up its weighing notes", self.name)

@@ -20,11 +20,14 @@ impl SaturatedChannel {
         let near = ALIKE * frame.noise;
         let mut out = Vec::new();
         for gauge in 0..frame.n_gauges() {
-            let read: Vec<f64> =
-                (0..frame.n_runs()).map(|r| frame.observations.value(r, gauge).abs()).filter(|v| v.is_finite()).collect();
+            let read: Vec<f64> = (0..frame.n_runs())
+                .map(|r| frame.observations.value(r, gauge).abs())
+                .filter(|v| v.is_finite())
+                .collect();
             let largest = read.iter().copied().fold(0.0, f64::max);
             let at_limit = read.iter().filter(|v| **v > largest - near).count();
-            let expected = (0..frame.n_runs()).filter_map(|r| predicted.get(r * frame.n_gauges() + gauge));
+            let expected =
+                (0..frame.n_runs()).filter_map(|r| predicted.get(r * frame.n_gauges() + gauge));
             let beyond = expected.filter(|p| p.abs() > largest + near).count();
             if largest > near && at_limit >= 2 && beyond >= 1 {
                 out.push(OnGauges::one(frame, gauge, Self { largest }));

@@ -30,6 +30,8 @@ impl ChannelFault for SignFlip {
         Extension::channel(names, Correction::Sign)
     }
     fn separate_by(&self, place: &str) -> String {
-        format!("press or warm the structure by hand at gauge {place} and look at the sign, or shunt one arm")
+        format!(
+            "press or warm the structure by hand at gauge {place} and look at the sign, or shunt one arm"
+        )
     }
 }

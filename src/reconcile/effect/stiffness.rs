@@ -35,16 +35,29 @@ impl Stiffness {
             name: s.place.clone(),
             prior: s.prior_percent,
         };
-        frame.stiffness.iter().enumerate().filter(|(_, s)| wanted(s.of)).map(one).collect()
+        frame
+            .stiffness
+            .iter()
+            .enumerate()
+            .filter(|(_, s)| wanted(s.of))
+            .map(one)
+            .collect()
     }
 }
 
 /// Weights of the known sizes at `size`: the polynomial through zero and all of them (Lagrange); beyond the outermost of them on the
 /// straight line through zero and it, since a polynomial goes astray there.
 fn weights(sizes: &[f64], size: f64) -> Vec<f64> {
-    let outermost = sizes.iter().copied().filter(|s| s * size > 0.0).max_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let outermost = sizes
+        .iter()
+        .copied()
+        .filter(|s| s * size > 0.0)
+        .max_by(|a, b| a.abs().total_cmp(&b.abs()));
     if let Some(last) = outermost.filter(|last| size.abs() > last.abs()) {
-        return sizes.iter().map(|s| if *s == last { size / last } else { 0.0 }).collect();
+        return sizes
+            .iter()
+            .map(|s| if *s == last { size / last } else { 0.0 })
+            .collect();
     }
     let weight = |i: usize| {
         let mut w = size / sizes[i];
@@ -79,10 +92,19 @@ impl StrainEffect for Stiffness {
         };
         // Four times the prior: a plate of half or one and a half times its thickness, a joint twenty times as stiff.
         let plausible = 4.0 * self.prior;
-        vec![Parameter { unit, neutral: 0.0, prior_sd: self.prior, step, starts: vec![0.0], plausible }]
+        vec![Parameter {
+            unit,
+            neutral: 0.0,
+            prior_sd: self.prior,
+            step,
+            starts: vec![0.0],
+            plausible,
+        }]
     }
     fn alter(&self, frame: &StrainFrame, parameters: &[f64], state: &mut StrainState) {
-        let (Some(&size), Some(signature)) = (parameters.first(), frame.stiffness.get(self.signature)) else {
+        let (Some(&size), Some(signature)) =
+            (parameters.first(), frame.stiffness.get(self.signature))
+        else {
             return;
         };
         let sizes: Vec<f64> = signature.at_percent.iter().map(|p| p.0).collect();
@@ -99,16 +121,28 @@ impl StrainEffect for Stiffness {
             StiffnessOf::Zone => Extension::ZoneStiffness { place, percent },
             StiffnessOf::Joint => Extension::JointStiffness { place, percent },
             StiffnessOf::Local => Extension::LocalStiffness { place, percent },
-            StiffnessOf::Described => Extension::Described { id: place, size: percent },
+            StiffnessOf::Described => Extension::Described {
+                id: place,
+                size: percent,
+            },
         }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
         match self.of {
-            StiffnessOf::Zone => format!("measure the thickness at {0}, or add a gauge inside and one outside that zone", self.name),
+            StiffnessOf::Zone => format!(
+                "measure the thickness at {0}, or add a gauge inside and one outside that zone",
+                self.name
+            ),
             StiffnessOf::Joint => {
-                format!("measure how far the two sides of joint {} move against each other under load", self.name)
+                format!(
+                    "measure how far the two sides of joint {} move against each other under load",
+                    self.name
+                )
             }
-            StiffnessOf::Local => format!("look for a crack or a loose joint at {}, and add a gauge on either side of it", self.name),
+            StiffnessOf::Local => format!(
+                "look for a crack or a loose joint at {}, and add a gauge on either side of it",
+                self.name
+            ),
             StiffnessOf::Described => format!("look whether {} is there", self.name),
         }
     }

@@ -32,7 +32,9 @@ impl Thermal {
 
     fn known(frame: &StrainFrame, pattern: Pattern) -> Vec<Self> {
         let one = Self { pattern };
-        let strains = one.signature(frame).is_some_and(|s| s.iter().any(|v| *v != 0.0));
+        let strains = one
+            .signature(frame)
+            .is_some_and(|s| s.iter().any(|v| *v != 0.0));
         if strains { vec![one] } else { Vec::new() }
     }
 

@@ -20,7 +20,11 @@ impl WheelScale {
         if frame.wheel_forces != WheelForces::Measured {
             return Vec::new();
         }
-        let one = |(load, name): (usize, &String)| Self { load, name: name.clone(), place: stem(&frame.load_names, name) };
+        let one = |(load, name): (usize, &String)| Self {
+            load,
+            name: name.clone(),
+            place: stem(&frame.load_names, name),
+        };
         frame.load_names.iter().enumerate().map(one).collect()
     }
 }
@@ -29,7 +33,11 @@ impl WheelScale {
 pub(super) fn stem(names: &[String], name: &str) -> String {
     let cut = |n: &str| n.split_once('.').map_or(n.to_owned(), |p| p.0.to_owned());
     let own = cut(name);
-    if names.iter().filter(|n| cut(n) == own).count() == 1 { own } else { name.to_owned() }
+    if names.iter().filter(|n| cut(n) == own).count() == 1 {
+        own
+    } else {
+        name.to_owned()
+    }
 }
 
 impl StrainEffect for WheelScale {
@@ -44,7 +52,14 @@ impl StrainEffect for WheelScale {
     }
     fn parameters(&self) -> Vec<Parameter> {
         // Scales are calibrated to a percent; one that is wrong is wrong by some.
-        vec![Parameter { unit: "percent", neutral: 0.0, prior_sd: 10.0, step: 0.1, starts: vec![0.0], plausible: 60.0 }]
+        vec![Parameter {
+            unit: "percent",
+            neutral: 0.0,
+            prior_sd: 10.0,
+            step: 0.1,
+            starts: vec![0.0],
+            plausible: 60.0,
+        }]
     }
     fn alter(&self, _frame: &StrainFrame, parameters: &[f64], state: &mut StrainState) {
         let factor = 1.0 + parameters.first().copied().unwrap_or(0.0) / 100.0;
@@ -57,9 +72,15 @@ impl StrainEffect for WheelScale {
     }
     fn extension(&self, _frame: &StrainFrame, parameters: &[f64]) -> Extension {
         let factor = 1.0 + parameters.first().copied().unwrap_or(0.0) / 100.0;
-        Extension::LoadScale { load: self.name.clone(), factor }
+        Extension::LoadScale {
+            load: self.name.clone(),
+            factor,
+        }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
-        format!("exchange the scale under {} with that of another wheel and repeat: the factor goes with the scale", self.place)
+        format!(
+            "exchange the scale under {} with that of another wheel and repeat: the factor goes with the scale",
+            self.place
+        )
     }
 }

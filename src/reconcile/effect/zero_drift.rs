@@ -26,7 +26,9 @@ impl ZeroDrift {
     /// All kinds on every gauge.
     pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         let kinds = [Self::Step, Self::Creep, Self::Wander];
-        (0..frame.n_gauges()).flat_map(|g| kinds.map(|k| OnGauges::one(frame, g, k))).collect()
+        (0..frame.n_gauges())
+            .flat_map(|g| kinds.map(|k| OnGauges::one(frame, g, k)))
+            .collect()
     }
 
     fn unit(self) -> &'static str {
@@ -72,7 +74,11 @@ impl ChannelFault for ZeroDrift {
         if *self != Self::Wander {
             return None;
         }
-        let own = |g: &usize| (0..frame.n_gauges()).map(|h| if h == *g { 1.0 } else { 0.0 }).collect();
+        let own = |g: &usize| {
+            (0..frame.n_gauges())
+                .map(|h| if h == *g { 1.0 } else { 0.0 })
+                .collect()
+        };
         Some(Amplitudes {
             patterns: gauges.iter().map(own).collect(),
             kinds: vec![0; gauges.len()],
@@ -91,6 +97,8 @@ impl ChannelFault for ZeroDrift {
         }
     }
     fn separate_by(&self, place: &str) -> String {
-        format!("read gauge {place} in the installation state again (empty, level, reference temperature): a drifted zero stays")
+        format!(
+            "read gauge {place} in the installation state again (empty, level, reference temperature): a drifted zero stays"
+        )
     }
 }

@@ -114,7 +114,11 @@ pub fn adequacy(
     Adequacy {
         fit: fit_chi2 / n_fit.max(1.0),
         n_fit,
-        held_out: if n_held > 0.0 { held_chi2 / n_held } else { fit_chi2 / n_fit.max(1.0) },
+        held_out: if n_held > 0.0 {
+            held_chi2 / n_held
+        } else {
+            fit_chi2 / n_fit.max(1.0)
+        },
         n_held_out: n_held,
         gauges,
         runs,

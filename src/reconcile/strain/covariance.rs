@@ -21,7 +21,9 @@ impl SizedAmplitudes {
 
     /// Variance of what repeats in all runs.
     pub fn steady_variance(&self, kind: usize) -> f64 {
-        self.sizes.get(self.amplitudes.usual.len() + kind).map_or(0.0, |s| s * s)
+        self.sizes
+            .get(self.amplitudes.usual.len() + kind)
+            .map_or(0.0, |s| s * s)
     }
 }
 
@@ -99,11 +101,16 @@ pub fn covariance(
         add_outer(&mut block, pattern, frame.load_noise * frame.load_noise);
     }
     let doubt = frame.relative_doubt();
-    for u in unknown {
+    let known = frame.nuisance_amplitudes();
+    for u in unknown.iter().chain(&known) {
         let read = read_patterns(frame, members, &u.amplitudes.patterns);
         for (pattern, &kind) in read.iter().zip(&u.amplitudes.kinds) {
             // The model errs in these patterns as in all others.
-            let own: Vec<f64> = pattern.iter().zip(&doubt).map(|(p, d)| (p * d).powi(2)).collect();
+            let own: Vec<f64> = pattern
+                .iter()
+                .zip(&doubt)
+                .map(|(p, d)| (p * d).powi(2))
+                .collect();
             let (scatter, steady) = (u.scatter_variance(kind), u.steady_variance(kind));
             for (target, variance) in [(&mut block, scatter + steady), (&mut repeats, steady)] {
                 add_outer(target, pattern, variance);
@@ -130,7 +137,11 @@ pub fn covariance(
     let mut out = vec![0.0; n * n];
     for (i, &(r, g)) in selection.0.iter().enumerate() {
         for (j, &(s, h)) in selection.0.iter().enumerate().take(i + 1) {
-            let within = if r == s { block[g * n_g + h] } else { repeats[g * n_g + h] };
+            let within = if r == s {
+                block[g * n_g + h]
+            } else {
+                repeats[g * n_g + h]
+            };
             let persistent = if g == h { across(g, r, s) } else { 0.0 };
             out[i * n + j] = within + persistent;
             out[j * n + i] = within + persistent;
@@ -146,7 +157,9 @@ pub(super) fn add_outer(block: &mut [f64], pattern: &[f64], variance: f64) {
     }
     for (row, a) in block.chunks_exact_mut(pattern.len().max(1)).zip(pattern) {
         if *a != 0.0 {
-            row.iter_mut().zip(pattern).for_each(|(cell, b)| *cell += variance * a * b);
+            row.iter_mut()
+                .zip(pattern)
+                .for_each(|(cell, b)| *cell += variance * a * b);
         }
     }
 }

@@ -10,7 +10,12 @@ use crate::reconcile::outcome::Outcome;
 use crate::reconcile::search::{Breadth, Scored, Scorer, search, search_near, settle};
 
 /// How far the search looks in static problems: three effects at once are as many as a few runs can part, with noise as a fourth.
-const BREADTH: Breadth = Breadth { largest: 4, beam: 4, tries: 6, decisive: DECISIVE };
+const BREADTH: Breadth = Breadth {
+    largest: 4,
+    beam: 4,
+    tries: 6,
+    decisive: DECISIVE,
+};
 
 /// Judges `frame` with the effects of the library that `only` lists (all, where it is empty).
 pub fn examine(frame: &StrainFrame, only: &[String]) -> Outcome {
@@ -39,19 +44,31 @@ pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
             (Some(new), None) => new.set.is_empty(),
             _ => true,
         };
-        reference = found.iter().flat_map(|s| s.set.iter().copied().zip(s.fit.parameters.clone())).collect();
+        reference = found
+            .iter()
+            .flat_map(|s| s.set.iter().copied().zip(s.fit.parameters.clone()))
+            .collect();
         best = found;
         if stable {
             break;
         }
     }
-    let empty = Scored { set: Vec::new(), log_evidence: 0.0, fit: Fit::default() };
+    let empty = Scored {
+        set: Vec::new(),
+        log_evidence: 0.0,
+        fit: Fit::default(),
+    };
     let best = best.unwrap_or(empty);
     if is_unmodelled(candidates, &best.set).is_some() {
         // A general form is called upon only where no names come to the floor.
         let likelihood = Likelihood::new(frame, candidates, &fit_runs, &reference);
-        let named = named_instead(&mut likelihood.names_only(), candidates, &all[..all.len().min(KEPT)]);
-        let found = settle(&named, DECISIVE).filter(|s| at_floor(&adequacy_of(frame, candidates, s)));
+        let named = named_instead(
+            &mut likelihood.names_only(),
+            candidates,
+            &all[..all.len().min(KEPT)],
+        );
+        let found =
+            settle(&named, DECISIVE).filter(|s| at_floor(&adequacy_of(frame, candidates, s)));
         all.extend(named);
         all.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
         all.dedup_by(|a, b| a.set == b.set);
@@ -64,8 +81,17 @@ pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
 }
 
 /// The best sets of names alone, found from the best sets with general forms.
-fn named_instead(likelihood: &mut Likelihood<'_>, candidates: &[Candidate], known: &[Scored<Fit>]) -> Vec<Scored<Fit>> {
-    let form = |c: &usize| matches!(candidates.get(*c).and_then(|c| c.effect.discrepancy()), Some(Discrepancy::Form(_)));
+fn named_instead(
+    likelihood: &mut Likelihood<'_>,
+    candidates: &[Candidate],
+    known: &[Scored<Fit>],
+) -> Vec<Scored<Fit>> {
+    let form = |c: &usize| {
+        matches!(
+            candidates.get(*c).and_then(|c| c.effect.discrepancy()),
+            Some(Discrepancy::Form(_))
+        )
+    };
     let mut plain: Vec<Scored<Fit>> = Vec::new();
     for s in known {
         let set: Vec<usize> = s.set.iter().copied().filter(|c| !form(c)).collect();
@@ -84,6 +110,11 @@ fn without_needless_noise(
     best: Scored<Fit>,
 ) -> Scored<Fit> {
     let kept = named_part(candidates, &best.set);
-    let plain = all.iter().find(|s| s.set == kept && s.set.len() < best.set.len());
-    plain.filter(|s| at_floor(&adequacy_of(frame, candidates, s))).cloned().unwrap_or(best)
+    let plain = all
+        .iter()
+        .find(|s| s.set == kept && s.set.len() < best.set.len());
+    plain
+        .filter(|s| at_floor(&adequacy_of(frame, candidates, s)))
+        .cloned()
+        .unwrap_or(best)
 }

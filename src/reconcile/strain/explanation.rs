@@ -18,14 +18,25 @@ impl<'a> Explanation<'a> {
     /// The explanation that a fit is.
     pub fn of(frame: &StrainFrame, candidates: &'a [Candidate], scored: &'a Scored<Fit>) -> Self {
         let member = |(&c, p): (&usize, &'a Vec<f64>)| {
-            candidates.get(c).map(|c| Member { effect: c.effect.as_ref(), parameters: p.as_slice() })
+            candidates.get(c).map(|c| Member {
+                effect: c.effect.as_ref(),
+                parameters: p.as_slice(),
+            })
         };
         let sized = |(c, sizes): &(usize, Vec<f64>)| {
             let amplitudes = candidates.get(*c)?.effect.amplitudes(frame)?;
-            Some(SizedAmplitudes { amplitudes, sizes: sizes.clone() })
+            Some(SizedAmplitudes {
+                amplitudes,
+                sizes: sizes.clone(),
+            })
         };
         Self {
-            members: scored.set.iter().zip(&scored.fit.parameters).filter_map(member).collect(),
+            members: scored
+                .set
+                .iter()
+                .zip(&scored.fit.parameters)
+                .filter_map(member)
+                .collect(),
             unknown: scored.fit.sizes.iter().filter_map(sized).collect(),
         }
     }
@@ -53,5 +64,9 @@ pub fn is_unmodelled(candidates: &[Candidate], set: &[usize]) -> Option<&'static
 /// Ids with places of the effects of a set, noise left out.
 pub fn ids(candidates: &[Candidate], set: &[usize]) -> Vec<String> {
     let named = named_part(candidates, set);
-    named.iter().filter_map(|&c| candidates.get(c)).map(|c| full_id(c.effect.as_ref())).collect()
+    named
+        .iter()
+        .filter_map(|&c| candidates.get(c))
+        .map(|c| full_id(c.effect.as_ref()))
+        .collect()
 }

@@ -1,20 +1,102 @@
-//! Influence with named effects in it: what the extended model of a job in matrix form holds.
+//! What a model and readings are with named effects in them: what the extended model holds.
 
 use super::frame::StrainFrame;
 use super::state::StrainState;
-use crate::reconcile::effect::{Member, full_id, library};
+use crate::reconcile::effect::{Correction, Extension, Member, full_id, library};
 use crate::reconcile::outcome::NamedEffect;
 
-/// Influence with the effects of structure in it; the same as before where there are none.
-pub fn extended_influence(frame: &StrainFrame, effects: &[NamedEffect]) -> Vec<f64> {
+/// The model with the effects of structure and loads in it: influence, and what acts in every run.
+pub fn extended_state(frame: &StrainFrame, effects: &[NamedEffect]) -> StrainState {
     let ids: Vec<String> = effects.iter().map(|e| e.id.clone()).collect();
     let candidates = library(frame, &ids);
-    let member = |e: &'_ NamedEffect| {
-        let parameters = |n: usize| e.size.get(..n);
-        let found = candidates.iter().find(|c| full_id(c.effect.as_ref()) == e.id)?;
-        Some((found.effect.as_ref(), parameters(found.effect.parameters().len())?.to_vec()))
+    let mut chosen = Vec::new();
+    for e in effects {
+        // An effect may have several forms: the one with as many parameters, that makes the same of them.
+        let same = |c: &&crate::reconcile::effect::Candidate| {
+            let parameters = e.size.get(..c.effect.parameters().len());
+            full_id(c.effect.as_ref()) == e.id
+                && parameters.is_some_and(|p| c.effect.extension(frame, p) == e.extension)
+        };
+        if let Some(c) = candidates.iter().find(same) {
+            chosen.push((
+                c.effect.as_ref(),
+                e.size
+                    .get(..c.effect.parameters().len())
+                    .unwrap_or_default(),
+            ));
+        }
+    }
+    let members: Vec<Member<'_>> = chosen
+        .iter()
+        .map(|(effect, p)| Member {
+            effect: *effect,
+            parameters: p,
+        })
+        .collect();
+    StrainState::with(frame, &members)
+}
+
+/// Readings with faults of channels undone, `n_runs x n_gauges`, and the strain of masses that came aboard after the zero was taken off
+/// them; `None` where no effect asks for it. Faults are undone in the reverse of the order in which they act.
+pub fn corrected_readings(frame: &StrainFrame, effects: &[NamedEffect]) -> Option<Vec<f64>> {
+    let at = |name: &str| frame.gauges.iter().position(|g| g.name == name);
+    let n_g = frame.n_gauges();
+    let mut out = frame.observations.values.clone();
+    let mut changed = false;
+    for e in effects.iter().rev() {
+        match &e.extension {
+            Extension::Channels(corrections) => {
+                for (name, correction) in corrections {
+                    let Some(g) = at(name) else { continue };
+                    for row in out.chunks_exact_mut(n_g.max(1)) {
+                        changed |= undo(row, g, correction, &at);
+                    }
+                }
+            }
+            Extension::Mass { place, kilogram } => {
+                let Some(mass) = frame.masses.iter().find(|m| m.place == *place) else {
+                    continue;
+                };
+                changed = true;
+                for row in out.chunks_exact_mut(n_g.max(1)) {
+                    row.iter_mut()
+                        .zip(&mass.per_kg)
+                        .for_each(|(cell, per_kg)| *cell -= kilogram * per_kg);
+                }
+            }
+            _ => {}
+        }
+    }
+    changed.then_some(out)
+}
+
+/// Undoes a fault in one row of readings; false where it is one of the gauge, not of its reading.
+fn undo(
+    row: &mut [f64],
+    gauge: usize,
+    correction: &Correction,
+    at: &dyn Fn(&str) -> Option<usize>,
+) -> bool {
+    let other = match correction {
+        Correction::ExchangedWith(name) => at(name),
+        _ => None,
     };
-    let chosen: Vec<_> = effects.iter().filter_map(member).collect();
-    let members: Vec<Member<'_>> = chosen.iter().map(|(effect, p)| Member { effect: *effect, parameters: p }).collect();
-    StrainState::with(frame, &members).influence
+    if let Some(other) = other.filter(|o| gauge < row.len() && *o < row.len()) {
+        row.swap(gauge, other);
+        return true;
+    }
+    let Some(cell) = row.get_mut(gauge) else {
+        return false;
+    };
+    match correction {
+        Correction::Sign => *cell = -*cell,
+        Correction::Gain(gain) if *gain != 0.0 => *cell /= gain,
+        Correction::Offset(offset) => *cell -= offset,
+        Correction::Ignore => *cell = f64::NAN,
+        Correction::Gain(_)
+        | Correction::ExchangedWith(_)
+        | Correction::AngleDeg(_)
+        | Correction::PositionMm(_) => return false,
+    }
+    true
 }

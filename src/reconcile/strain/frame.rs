@@ -2,7 +2,9 @@
 //!
 //! Units throughout this module: microstrain, kN, kN m, kg, m, degrees Celsius, degrees of angle, percent of stiffness.
 
+use super::covariance::SizedAmplitudes;
 use crate::reconcile::Observations;
+use crate::reconcile::effect::Amplitudes;
 
 /// How a gauge's arms are wired, as far as an angle error is concerned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,6 +95,17 @@ pub enum Scatter {
     Single(Vec<f64>),
 }
 
+/// A load that the job knows of as a nuisance: present in every run, never noted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NuisanceLoad {
+    /// Name.
+    pub name: String,
+    /// Microstrain per unit, by gauge.
+    pub per_unit: Vec<f64>,
+    /// Its usual size, one standard deviation.
+    pub size: f64,
+}
+
 /// Number of payload columns that follow the load columns: weight, weight times dx, times dy, times dx dy.
 pub const N_PAYLOAD_COLUMNS: usize = 4;
 
@@ -125,6 +138,8 @@ pub struct StrainFrame {
     pub wheel_forces: WheelForces,
     /// Forces and moments at the wheels that the model leaves out: (name `FY_LF`, microstrain per kN or kN m by gauge).
     pub other_loads: Vec<(String, Vec<f64>)>,
+    /// Loads that the model has as nuisance loads: found anew in every run, before, after and in the floor alike.
+    pub nuisance: Vec<NuisanceLoad>,
     /// Microstrain per degree of a uniform temperature change, by gauge.
     pub thermal_uniform: Option<Vec<f64>>,
     /// Microstrain per degree of a temperature gradient, by gauge.
@@ -165,6 +180,26 @@ impl StrainFrame {
     /// Number of columns of `influence`.
     pub fn n_columns(&self) -> usize {
         self.load_names.len() + N_PAYLOAD_COLUMNS
+    }
+
+    /// The nuisance loads of the model as amplitudes of their stated sizes: as much may repeat in all runs as differs from run to run.
+    pub fn nuisance_amplitudes(&self) -> Option<SizedAmplitudes> {
+        if self.nuisance.is_empty() {
+            return None;
+        }
+        let sizes: Vec<f64> = self.nuisance.iter().map(|n| n.size).collect();
+        let amplitudes = Amplitudes {
+            patterns: self.nuisance.iter().map(|n| n.per_unit.clone()).collect(),
+            kinds: (0..sizes.len()).collect(),
+            usual: sizes.clone(),
+            steady: sizes.clone(),
+            unit: "1",
+            plausible: f64::INFINITY,
+        };
+        Some(SizedAmplitudes {
+            amplitudes,
+            sizes: [sizes.as_slice(), &sizes].concat(),
+        })
     }
 
     /// Root mean square of the wheel loads over all runs, kN; one where there are none.

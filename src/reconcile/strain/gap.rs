@@ -37,9 +37,20 @@ pub struct Judged {
 impl Judged {
     /// The readings of gauges whose number in file order has this remainder by two.
     pub fn half(&self, remainder: usize) -> Self {
-        let kept = |v: &[f64]| v.iter().zip(&self.gauges).filter(|(_, g)| **g % 2 == remainder).map(|(v, _)| *v).collect();
+        let kept = |v: &[f64]| {
+            v.iter()
+                .zip(&self.gauges)
+                .filter(|(_, g)| **g % 2 == remainder)
+                .map(|(v, _)| *v)
+                .collect()
+        };
         Self {
-            gauges: self.gauges.iter().copied().filter(|g| g % 2 == remainder).collect(),
+            gauges: self
+                .gauges
+                .iter()
+                .copied()
+                .filter(|g| g % 2 == remainder)
+                .collect(),
             reading: kept(&self.reading),
             before: kept(&self.before),
             after: kept(&self.after),
@@ -61,16 +72,45 @@ impl Judged {
     /// RMS over RMS of the readings: before, after, floor.
     pub fn numbers(&self) -> GapNumbers {
         let scale = rms(self.reading.iter().copied());
-        let relative = |v: &[f64]| if scale > 0.0 { rms(v.iter().copied()) / scale } else { 0.0 };
-        GapNumbers { before: relative(&self.before), after: relative(&self.after), floor: relative(&self.floor) }
+        let relative = |v: &[f64]| {
+            if scale > 0.0 {
+                rms(v.iter().copied()) / scale
+            } else {
+                0.0
+            }
+        };
+        GapNumbers {
+            before: relative(&self.before),
+            after: relative(&self.after),
+            floor: relative(&self.floor),
+        }
     }
 
     /// The gap over all and by gauge. `finer`: was a finer mesh solved? `loads_found` is the same with the wheel loads found anew as well.
-    pub fn gap(&self, frame: &StrainFrame, basis: GapBasis, loads_found: &Self) -> (Gap, Vec<ChannelGap>) {
-        let GapNumbers { before, after, floor } = self.numbers();
+    pub fn gap(
+        &self,
+        frame: &StrainFrame,
+        basis: GapBasis,
+        loads_found: &Self,
+    ) -> (Gap, Vec<ChannelGap>) {
+        let GapNumbers {
+            before,
+            after,
+            floor,
+        } = self.numbers();
         let scale = rms(self.reading.iter().copied());
-        let mesh = frame.as_modelled.as_ref().map(|_| rms(self.mesh.iter().copied()) / scale.max(f64::MIN_POSITIVE));
-        let of = |g: usize, v: &[f64]| rms(self.gauges.iter().zip(v).filter(|(e, _)| **e == g).map(|(_, v)| *v));
+        let mesh = frame
+            .as_modelled
+            .as_ref()
+            .map(|_| rms(self.mesh.iter().copied()) / scale.max(f64::MIN_POSITIVE));
+        let of = |g: usize, v: &[f64]| {
+            rms(self
+                .gauges
+                .iter()
+                .zip(v)
+                .filter(|(e, _)| **e == g)
+                .map(|(_, v)| *v))
+        };
         let channel = |(g, f): (usize, &super::frame::GaugeFacts)| ChannelGap {
             channel: f.name.clone(),
             before: of(g, &self.before),
@@ -79,7 +119,17 @@ impl Judged {
             reading: of(g, &self.reading),
         };
         let channels = frame.gauges.iter().enumerate().map(channel).collect();
-        (Gap { before, after, floor, mesh, basis, loads_found: Some(loads_found.numbers()) }, channels)
+        (
+            Gap {
+                before,
+                after,
+                floor,
+                mesh,
+                basis,
+                loads_found: Some(loads_found.numbers()),
+            },
+            channels,
+        )
     }
 }
 
@@ -111,14 +161,25 @@ struct Patterns {
 impl Patterns {
     /// Strain of the mean amplitudes at a gauge.
     fn expected(&self, gauge: usize) -> f64 {
-        self.values.iter().zip(&self.mean).map(|(p, m)| p[gauge] * m).sum()
+        self.values
+            .iter()
+            .zip(&self.mean)
+            .map(|(p, m)| p[gauge] * m)
+            .sum()
     }
 
     /// Covariance of the strain at two gauges.
     fn between(&self, g: usize, h: usize) -> f64 {
         let n = self.mean.len();
         let rows = self.covariance.chunks_exact(n.max(1)).zip(&self.values);
-        rows.map(|(row, p)| p[g] * row.iter().zip(&self.values).map(|(c, q)| c * q[h]).sum::<f64>()).sum()
+        rows.map(|(row, p)| {
+            p[g] * row
+                .iter()
+                .zip(&self.values)
+                .map(|(c, q)| c * q[h])
+                .sum::<f64>()
+        })
+        .sum()
     }
 }
 
@@ -134,11 +195,22 @@ struct Told<'a> {
 }
 
 impl<'a> Told<'a> {
-    fn of(frame: &'a StrainFrame, members: &'a [Member<'a>], unknown: &'a [SizedAmplitudes]) -> Option<Self> {
+    fn of(
+        frame: &'a StrainFrame,
+        members: &'a [Member<'a>],
+        unknown: &'a [SizedAmplitudes],
+    ) -> Option<Self> {
         let fit = Selection::of_runs(frame, &frame.observations.fit_runs());
         let precision = Precision::of(&covariance(frame, members, &fit, unknown), fit.len())?;
         let weighted = precision.apply(&residual(frame, members, &fit));
-        Some(Self { frame, members, unknown, fit, precision, weighted })
+        Some(Self {
+            frame,
+            members,
+            unknown,
+            fit,
+            precision,
+            weighted,
+        })
     }
 
     /// What is found anew. Amplitudes that repeat are learned from the fit runs: m = T B P r, M = T - T B P B' T, with B the patterns over
@@ -146,22 +218,37 @@ impl<'a> Told<'a> {
     fn patterns(&self, anew: FoundAnew) -> Patterns {
         let mut values = Vec::new();
         let (mut steady, mut scatter) = (Vec::new(), Vec::new());
-        for u in self.unknown {
-            values.extend(read_patterns(self.frame, self.members, &u.amplitudes.patterns));
+        let known = self.frame.nuisance_amplitudes();
+        for u in self.unknown.iter().chain(&known) {
+            values.extend(read_patterns(
+                self.frame,
+                self.members,
+                &u.amplitudes.patterns,
+            ));
             steady.extend(u.amplitudes.kinds.iter().map(|&k| u.steady_variance(k)));
             scatter.extend(u.amplitudes.kinds.iter().map(|&k| u.scatter_variance(k)));
         }
         if anew == FoundAnew::AmplitudesAndLoads {
             let state = StrainState::with(self.frame, self.members);
             let [n_g, _, n_c] = state.shape;
-            let column = |l: usize| (0..n_g).map(|g| state.influence[g * n_c + l]).collect::<Vec<f64>>();
+            let column = |l: usize| {
+                (0..n_g)
+                    .map(|g| state.influence[g * n_c + l])
+                    .collect::<Vec<f64>>()
+            };
             let columns: Vec<Vec<f64>> = (0..self.frame.n_loads()).map(column).collect();
             values.extend(read_patterns(self.frame, self.members, &columns));
             steady.resize(values.len(), 0.0);
             scatter.resize(values.len(), self.frame.load_noise * self.frame.load_noise);
         }
         let n = values.len();
-        let over_fit = |p: usize| self.fit.0.iter().map(|e| values[p][e.1]).collect::<Vec<f64>>();
+        let over_fit = |p: usize| {
+            self.fit
+                .0
+                .iter()
+                .map(|e| values[p][e.1])
+                .collect::<Vec<f64>>()
+        };
         let mut mean = vec![0.0; n];
         let mut covariance = vec![0.0; n * n];
         for p in 0..n {
@@ -176,7 +263,11 @@ impl<'a> Told<'a> {
                 covariance[p * n + q] -= steady[*p] * dot(&told, other) * steady[*q];
             }
         }
-        Patterns { values, mean, covariance }
+        Patterns {
+            values,
+            mean,
+            covariance,
+        }
     }
 }
 
@@ -228,9 +319,17 @@ struct ProofRun<'a> {
 }
 
 impl<'a> Proof<'a> {
-    fn of(frame: &'a StrainFrame, members: &'a [Member<'a>], unknown: &'a [SizedAmplitudes], anew: FoundAnew) -> Option<Self> {
+    fn of(
+        frame: &'a StrainFrame,
+        members: &'a [Member<'a>],
+        unknown: &'a [SizedAmplitudes],
+        anew: FoundAnew,
+    ) -> Option<Self> {
         let told = Told::of(frame, members, unknown)?;
-        Some(Self { patterns: told.patterns(anew), told })
+        Some(Self {
+            patterns: told.patterns(anew),
+            told,
+        })
     }
 
     fn run(&self, own: &StrainFrame, run: usize) -> ProofRun<'_> {
@@ -242,7 +341,9 @@ impl<'a> Proof<'a> {
         let mesh: Vec<f64> = on_own.iter().zip(&on_finer).map(|(a, b)| a - b).collect();
         let offset = all.0.iter().zip(mean.iter().zip(&mesh));
         ProofRun {
-            offset: offset.map(|(e, (m, d))| m - self.patterns.expected(e.1) + d).collect(),
+            offset: offset
+                .map(|(e, (m, d))| m - self.patterns.expected(e.1) + d)
+                .collect(),
             innovation: on_finer.iter().zip(&mean).map(|(r, m)| r - m).collect(),
             residual: on_own,
             proof: self,
@@ -262,16 +363,32 @@ impl ProofRun<'_> {
         let gauge = |i: usize| self.all.0[i].1;
         let patterns = &self.proof.patterns;
         let expected: Vec<f64> = (0..n).map(|i| patterns.expected(gauge(i))).collect();
-        let mut left: Vec<f64> = self.residual.iter().zip(&expected).map(|(r, e)| r - e).collect();
+        let mut left: Vec<f64> = self
+            .residual
+            .iter()
+            .zip(&expected)
+            .map(|(r, e)| r - e)
+            .collect();
         let mut floor = vec![0.0; n];
         for half in [0, 1] {
-            let of = |even: usize| (0..n).filter(|i| gauge(*i) % 2 == even).collect::<Vec<usize>>();
+            let of = |even: usize| {
+                (0..n)
+                    .filter(|i| gauge(*i) % 2 == even)
+                    .collect::<Vec<usize>>()
+            };
             let (used, seen) = (of(half), of(1 - half));
-            let block: Vec<f64> = used.iter().flat_map(|&i| used.iter().map(move |&j| (i, j))).map(|(i, j)| self.spread[i * n + j]).collect();
+            let block: Vec<f64> = used
+                .iter()
+                .flat_map(|&i| used.iter().map(move |&j| (i, j)))
+                .map(|(i, j)| self.spread[i * n + j])
+                .collect();
             let precision = Precision::of(&block, used.len());
             let innovation: Vec<f64> = used.iter().map(|&i| self.innovation[i]).collect();
             for &i in &seen {
-                let shared: Vec<f64> = used.iter().map(|&j| patterns.between(gauge(i), gauge(j))).collect();
+                let shared: Vec<f64> = used
+                    .iter()
+                    .map(|&j| patterns.between(gauge(i), gauge(j)))
+                    .collect();
                 let whole: Vec<f64> = used.iter().map(|&j| self.spread[i * n + j]).collect();
                 let Some(p) = &precision else {
                     floor[i] = self.spread[i * n + i].max(0.0).sqrt();
@@ -300,7 +417,12 @@ impl ProofRun<'_> {
 /// the innovation (the residual less what the fit runs tell of it), G its covariance, and J V J' the part of it that the patterns make.
 /// Of a right model is left, given i_u, (m_j + (G_ju G_uu^-1 - K) i_u)^2 + G_jj - G_ju G_uu^-1 G_uj, with m the errors of the model
 /// that the fit runs tell of. Before, the same is done with the loads alone, or with nothing.
-pub fn judged(finer: &StrainFrame, members: &[Member<'_>], unknown: &[SizedAmplitudes], anew: FoundAnew) -> Option<Judged> {
+pub fn judged(
+    finer: &StrainFrame,
+    members: &[Member<'_>],
+    unknown: &[SizedAmplitudes],
+    anew: FoundAnew,
+) -> Option<Judged> {
     let own = finer.as_modelled();
     let with = Proof::of(finer, members, unknown, anew)?;
     let without = Proof::of(finer, &[], &[], anew)?;

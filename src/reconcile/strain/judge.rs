@@ -38,14 +38,21 @@ pub(super) fn at_floor(a: &Adequacy) -> bool {
         deviate(reduced * n / known, n) <= limit::DEVIATE
     };
     let held = a.n_held_out == 0.0 || inside(a.held_out, a.n_held_out);
-    let parts = a.gauges.iter().chain(&a.runs).all(|m| m.deviate <= limit::PART);
+    let parts = a
+        .gauges
+        .iter()
+        .chain(&a.runs)
+        .all(|m| m.deviate <= limit::PART);
     inside(a.fit, a.n_fit) && held && parts
 }
 
 fn named(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) -> Vec<NamedEffect> {
     let mut out = Vec::new();
     for (m, &c) in scored.set.iter().enumerate() {
-        let Some(candidate) = candidates.get(c).filter(|c| !matches!(c.effect.discrepancy(), Some(Discrepancy::Noise(_)))) else {
+        let Some(candidate) = candidates
+            .get(c)
+            .filter(|c| !matches!(c.effect.discrepancy(), Some(Discrepancy::Noise(_))))
+        else {
             continue;
         };
         let effect = candidate.effect.as_ref();
@@ -54,14 +61,23 @@ fn named(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) ->
         let mut size = parameters.clone();
         let mut sigma = scored.fit.sigma.get(m).cloned().unwrap_or_default();
         let mut unit = described.first().map_or("1", |p| p.unit);
-        let mut plausible = described.iter().zip(&parameters).all(|(p, v)| (v - p.neutral).abs() <= p.plausible);
+        let mut plausible = described
+            .iter()
+            .zip(&parameters)
+            .all(|(p, v)| (v - p.neutral).abs() <= p.plausible);
         let sizes = scored.fit.sizes.iter().find(|s| s.0 == c);
         if let (Some(a), Some((_, sizes))) = (effect.amplitudes(frame), sizes) {
             // Root mean square over the runs, what repeats and what scatters together; from n amplitudes it is known to one part in the
             // root of 2 n.
             let n = (frame.observations.fit_runs().len() * a.patterns.len()).max(1) as f64;
             let kinds = a.usual.len();
-            let rms = |k: usize| sizes.get(k).copied().unwrap_or(0.0).hypot(sizes.get(kinds + k).copied().unwrap_or(0.0));
+            let rms = |k: usize| {
+                sizes
+                    .get(k)
+                    .copied()
+                    .unwrap_or(0.0)
+                    .hypot(sizes.get(kinds + k).copied().unwrap_or(0.0))
+            };
             let whole: Vec<f64> = (0..kinds).map(rms).collect();
             plausible &= whole.iter().all(|s| *s <= a.plausible);
             sigma.extend(whole.iter().map(|s| s / (2.0 * n).sqrt()));
@@ -82,7 +98,11 @@ fn named(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) ->
 }
 
 fn worst_first(parts: &[Misfit], limit: f64) -> Vec<Misfit> {
-    let mut off: Vec<Misfit> = parts.iter().filter(|m| m.deviate > limit).cloned().collect();
+    let mut off: Vec<Misfit> = parts
+        .iter()
+        .filter(|m| m.deviate > limit)
+        .cloned()
+        .collect();
     off.sort_by(|a, b| b.deviate.total_cmp(&a.deviate));
     off
 }
@@ -90,21 +110,39 @@ fn worst_first(parts: &[Misfit], limit: f64) -> Vec<Misfit> {
 /// Noise over the stated one where a set holds noise besides.
 fn noise_factor(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) -> f64 {
     let is_noise = |c: usize| matches!(discrepancy(candidates, c), Some(Discrepancy::Noise(_)));
-    let added = scored.fit.sizes.iter().find(|s| is_noise(s.0)).and_then(|s| s.1.first().copied());
+    let added = scored
+        .fit
+        .sizes
+        .iter()
+        .find(|s| is_noise(s.0))
+        .and_then(|s| s.1.first().copied());
     (1.0 + (added.unwrap_or(0.0) / frame.noise.max(f64::MIN_POSITIVE)).powi(2)).sqrt()
 }
 
 /// Judges a set: how far it comes, how many parameters it took.
-pub(super) fn adequacy_of(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) -> Adequacy {
+pub(super) fn adequacy_of(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    scored: &Scored<Fit>,
+) -> Adequacy {
     let e = Explanation::of(frame, candidates, scored);
     let n_parameters: usize = scored.fit.parameters.iter().map(Vec::len).sum();
     adequacy(frame, &e.members, &e.unknown, n_parameters)
 }
 
-pub(super) fn judge(frame: &StrainFrame, candidates: &[Candidate], all: &[Scored<Fit>], best: &Scored<Fit>) -> Outcome {
+pub(super) fn judge(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    all: &[Scored<Fit>],
+    best: &Scored<Fit>,
+) -> Outcome {
     let explained = Explanation::of(frame, candidates, best);
     let before = adequacy(frame, &[], &[], 0);
-    let after = if best.set.is_empty() { before.clone() } else { adequacy_of(frame, candidates, best) };
+    let after = if best.set.is_empty() {
+        before.clone()
+    } else {
+        adequacy_of(frame, candidates, best)
+    };
     let attempt = named(frame, candidates, best);
     let (gap, channels) = validated(frame, candidates, best);
     let noise = noise_factor(frame, candidates, best);
@@ -114,7 +152,9 @@ pub(super) fn judge(frame: &StrainFrame, candidates: &[Candidate], all: &[Scored
     let null_evidence = null.map_or(0.0, |s| s.log_evidence);
     let hint = all
         .iter()
-        .filter(|s| !s.set.is_empty() && s.set.iter().all(|c| discrepancy(candidates, *c).is_none()))
+        .filter(|s| {
+            !s.set.is_empty() && s.set.iter().all(|c| discrepancy(candidates, *c).is_none())
+        })
         .max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence));
     let hinted = hint.is_some_and(|s| s.log_evidence > null_evidence.max(best.log_evidence));
     let unmodelled = is_unmodelled(candidates, &best.set);
@@ -141,10 +181,20 @@ pub(super) fn judge(frame: &StrainFrame, candidates: &[Candidate], all: &[Scored
         None => "none needed".into(),
     };
     let mut contest = vec![best];
-    contest.extend(others.iter().copied().chain(null).filter(|s| s.set != best.set));
+    contest.extend(
+        others
+            .iter()
+            .copied()
+            .chain(null)
+            .filter(|s| s.set != best.set),
+    );
     Outcome {
         verdict,
-        effects: if verdict == Verdict::Named { attempt.clone() } else { Vec::new() },
+        effects: if verdict == Verdict::Named {
+            attempt.clone()
+        } else {
+            Vec::new()
+        },
         best_attempt: attempt,
         rivals,
         evidence: best.log_evidence - null_evidence,
@@ -161,7 +211,7 @@ pub(super) fn judge(frame: &StrainFrame, candidates: &[Candidate], all: &[Scored
         runs_off: worst_first(&after.runs, limit::PART),
         remains: remains(frame, &explained.members, &after, unmodelled),
         next_measurement: next,
-        detectable: detectable(frame, candidates),
+        detectable: detectable(frame, candidates, hint.map_or(&[], |h| h.set.as_slice())),
     }
 }
 
@@ -182,7 +232,11 @@ fn look_again(after: &Adequacy) -> String {
 }
 
 /// Other sets of at most the same number of effects, nearest first, that do not contain the best one.
-fn rival_sets<'a>(candidates: &[Candidate], all: &'a [Scored<Fit>], best: &Scored<Fit>) -> Vec<&'a Scored<Fit>> {
+fn rival_sets<'a>(
+    candidates: &[Candidate],
+    all: &'a [Scored<Fit>],
+    best: &Scored<Fit>,
+) -> Vec<&'a Scored<Fit>> {
     const MOST: usize = 5;
     let own = named_part(candidates, &best.set);
     let other = |s: &&Scored<Fit>| {

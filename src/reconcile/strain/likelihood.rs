@@ -5,7 +5,9 @@ use super::frame::StrainFrame;
 use super::size::{RunBlocks, RunPrecision, run_by_run_log_likelihood, usual_sizes};
 use super::state::{Part, predict};
 use crate::linalg::precision::Precision;
-use crate::reconcile::effect::{Amplitudes, Candidate, Discrepancy, Member, Parameter, Stage, full_id};
+use crate::reconcile::effect::{
+    Amplitudes, Candidate, Discrepancy, Member, Parameter, Stage, full_id,
+};
 use crate::reconcile::search::{Addition, Scored, Scorer};
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -91,7 +93,10 @@ impl<'a> Likelihood<'a> {
 
     /// The same with the general forms of discrepancy left out of the search.
     pub fn names_only(self) -> Self {
-        Self { names_only: true, ..self }
+        Self {
+            names_only: true,
+            ..self
+        }
     }
 
     /// The selection.
@@ -439,7 +444,9 @@ impl Scorer for Likelihood<'_> {
             families: base.fit.sizes.iter().map(|s| s.0).collect(),
             members,
         };
-        let alone = self.blocks.precisions(&self.sized(&base.fit.sizes, &now.members));
+        let alone = self
+            .blocks
+            .precisions(&self.sized(&base.fit.sizes, &now.members));
         let without = run_by_run_log_likelihood(
             &self.blocks,
             &base.fit.residual,
@@ -462,7 +469,12 @@ impl Scorer for Likelihood<'_> {
                     (gain, theta, Vec::new())
                 }
             };
-            out.push(Addition { candidate: c, gain: gain + candidate.log_prior, parameters, sizes });
+            out.push(Addition {
+                candidate: c,
+                gain: gain + candidate.log_prior,
+                parameters,
+                sizes,
+            });
         }
         out.retain(|a| a.gain.is_finite());
         out.sort_by(|a, b| b.gain.total_cmp(&a.gain));
@@ -496,11 +508,21 @@ impl Scorer for Likelihood<'_> {
     }
 
     fn variants(&self, candidate: usize) -> Vec<usize> {
-        let Some(own) = self.candidates.get(candidate).map(|c| full_id(c.effect.as_ref())) else {
+        let Some(own) = self
+            .candidates
+            .get(candidate)
+            .map(|c| full_id(c.effect.as_ref()))
+        else {
             return Vec::new();
         };
-        let same = |(c, o): (usize, &Candidate)| (c != candidate && full_id(o.effect.as_ref()) == own).then_some(c);
-        self.candidates.iter().enumerate().filter_map(same).collect()
+        let same = |(c, o): (usize, &Candidate)| {
+            (c != candidate && full_id(o.effect.as_ref()) == own).then_some(c)
+        };
+        self.candidates
+            .iter()
+            .enumerate()
+            .filter_map(same)
+            .collect()
     }
 }
 
@@ -523,7 +545,10 @@ impl Likelihood<'_> {
         let one = |(c, s): &(usize, Vec<f64>)| {
             let mut amplitudes = self.candidates.get(*c)?.effect.amplitudes(self.frame)?;
             amplitudes.patterns = read_patterns(self.frame, members, &amplitudes.patterns);
-            Some(SizedAmplitudes { amplitudes, sizes: s.clone() })
+            Some(SizedAmplitudes {
+                amplitudes,
+                sizes: s.clone(),
+            })
         };
         sizes.iter().filter_map(one).collect()
     }
@@ -535,10 +560,19 @@ impl Likelihood<'_> {
         };
         let effect = candidate.effect.as_ref();
         let n_g = self.frame.n_gauges();
-        let all = |some: Vec<usize>, n: usize| if some.is_empty() { (0..n).collect() } else { some };
+        let all = |some: Vec<usize>, n: usize| {
+            if some.is_empty() {
+                (0..n).collect()
+            } else {
+                some
+            }
+        };
         let gauges: Vec<usize> = all(effect.gauges(), n_g);
         let touched = effect.runs();
-        let runs = self.runs.iter().filter(|r| touched.is_empty() || touched.contains(r));
+        let runs = self
+            .runs
+            .iter()
+            .filter(|r| touched.is_empty() || touched.contains(r));
         let place = |run: usize, g: usize| self.index.get(run * n_g + g).copied().flatten();
         let mut out = Vec::new();
         if effect.stage() == Stage::Reading {
@@ -549,16 +583,28 @@ impl Likelihood<'_> {
                 };
                 let mut row = before.to_vec();
                 effect.read(self.frame, theta, run, &mut row, Part::Whole);
-                out.extend(gauges.iter().filter_map(|&g| Some((place(run, g)?, row[g] - before[g]))));
+                out.extend(
+                    gauges
+                        .iter()
+                        .filter_map(|&g| Some((place(run, g)?, row[g] - before[g]))),
+                );
             }
             return out;
         }
         let mut members = base.members.clone();
-        members.push(Member { effect, parameters: theta });
+        members.push(Member {
+            effect,
+            parameters: theta,
+        });
         // Members are read in the order of the set, as when it is fitted.
         let now = predict(self.frame, &members);
         for &run in runs {
-            let at = |&g: &usize| Some((place(run, g)?, now[run * n_g + g] - base.predicted[run * n_g + g]));
+            let at = |&g: &usize| {
+                Some((
+                    place(run, g)?,
+                    now[run * n_g + g] - base.predicted[run * n_g + g],
+                ))
+            };
             out.extend(gauges.iter().filter_map(at));
         }
         out
@@ -586,7 +632,12 @@ impl Likelihood<'_> {
 
     /// Gain and parameter of a candidate that is as good as linear in its only parameter, and its slope:
     /// gain = (x' P r)^2 / (2 k) - ln(k s^2) / 2 with k = x' P x + 1 / s^2.
-    fn linear_step(&self, c: usize, base: &Base<'_>, p: &Parameter) -> (f64, f64, Vec<(usize, f64)>) {
+    fn linear_step(
+        &self,
+        c: usize,
+        base: &Base<'_>,
+        p: &Parameter,
+    ) -> (f64, f64, Vec<(usize, f64)>) {
         let mut slope = self.change(c, base, &[p.neutral + p.step]);
         slope.iter_mut().for_each(|e| e.1 /= p.step);
         let variance = p.prior_sd * p.prior_sd;
@@ -606,7 +657,11 @@ impl Likelihood<'_> {
         let mut best = (f64::NEG_INFINITY, Vec::new());
         let starts: Vec<Vec<f64>> = match described {
             [one] => one.starts.iter().map(|s| vec![*s]).collect(),
-            many => vec![many.iter().map(|p| p.starts.first().copied().unwrap_or(p.neutral)).collect()],
+            many => vec![
+                many.iter()
+                    .map(|p| p.starts.first().copied().unwrap_or(p.neutral))
+                    .collect(),
+            ],
         };
         for mut theta in starts {
             let mut log_width = 0.0;
@@ -618,19 +673,28 @@ impl Likelihood<'_> {
                     let mut moved = theta.clone();
                     moved[k] += p.step;
                     let there = self.change(c, base, &moved);
-                    let slope: Vec<(usize, f64)> =
-                        here.iter().zip(&there).map(|(a, b)| (a.0, (b.1 - a.1) / p.step)).collect();
+                    let slope: Vec<(usize, f64)> = here
+                        .iter()
+                        .zip(&there)
+                        .map(|(a, b)| (a.0, (b.1 - a.1) / p.step))
+                        .collect();
                     let (own, cross) = products(base.precision, &slope, &here);
                     let curvature = own + 1.0 / (p.prior_sd * p.prior_sd);
-                    let pull: f64 = slope.iter().map(|&(i, v)| v * base.weighted[i]).sum::<f64>()
+                    let pull: f64 = slope
+                        .iter()
+                        .map(|&(i, v)| v * base.weighted[i])
+                        .sum::<f64>()
                         - cross
                         - (theta[k] - p.neutral) / (p.prior_sd * p.prior_sd);
                     theta[k] += pull / curvature;
                     log_width += 0.5 * curvature.ln() + p.prior_sd.ln();
                 }
             }
-            let prior: f64 =
-                described.iter().zip(&theta).map(|(p, t)| 0.5 * ((t - p.neutral) / p.prior_sd).powi(2)).sum();
+            let prior: f64 = described
+                .iter()
+                .zip(&theta)
+                .map(|(p, t)| 0.5 * ((t - p.neutral) / p.prior_sd).powi(2))
+                .sum();
             let value = gain(&self.change(c, base, &theta)) - prior - log_width;
             if value > best.0 {
                 best = (value, theta);
@@ -652,9 +716,11 @@ impl Likelihood<'_> {
         /// Sizes tried, of the usual one.
         const SIZES: [f64; 9] = [0.1, 0.2, 0.35, 0.6, 1.0, 1.7, 3.0, 6.0, 12.0];
         let nothing = (f64::NEG_INFINITY, Vec::new(), Vec::new());
-        let (Some(candidate), [pattern], [usual]) =
-            (self.candidates.get(c), amplitudes.patterns.as_slice(), amplitudes.usual.as_slice())
-        else {
+        let (Some(candidate), [pattern], [usual]) = (
+            self.candidates.get(c),
+            amplitudes.patterns.as_slice(),
+            amplitudes.usual.as_slice(),
+        ) else {
             return nothing;
         };
         let described = candidate.effect.parameters();
@@ -671,13 +737,20 @@ impl Likelihood<'_> {
         let sums: Vec<[f64; 5]> = alone
             .iter()
             .map(|run| {
-                let of = |f: &dyn Fn(usize) -> f64| run.at.iter().map(|i| f(*i)).collect::<Vec<f64>>();
+                let of =
+                    |f: &dyn Fn(usize) -> f64| run.at.iter().map(|i| f(*i)).collect::<Vec<f64>>();
                 let r = of(&|i| base.scored.fit.residual[i]);
                 let x = of(&|i| at.get(&i).copied().unwrap_or(0.0));
                 let own: Vec<f64> = run.gauges.iter().map(|&g| pattern[g]).collect();
                 let (wp, wx) = (run.precision.apply(&own), run.precision.apply(&x));
                 let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-                [dot(&wp, &r), dot(&wp, &x), dot(&wp, &own), dot(&wx, &r), dot(&wx, &x)]
+                [
+                    dot(&wp, &r),
+                    dot(&wp, &x),
+                    dot(&wp, &own),
+                    dot(&wx, &r),
+                    dot(&wx, &x),
+                ]
             })
             .collect();
         let variance = p.prior_sd * p.prior_sd;

@@ -10,9 +10,9 @@ mod extended;
 mod frame;
 mod gap;
 mod judge;
-mod recovered;
 mod likelihood;
 mod next;
+mod recovered;
 mod remains;
 mod resampled;
 mod size;
@@ -24,13 +24,13 @@ pub use adequacy::{Adequacy, adequacy, deviate};
 pub use covariance::{Selection, SizedAmplitudes, covariance, read_patterns};
 pub use detect::DECISIVE;
 pub use examine::{examine, examine_with};
-pub use extended::extended_influence;
+pub use extended::{corrected_readings, extended_state};
 pub use frame::{
-    GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, PayloadWeight, PlaneStrainRow, Scatter,
-    StiffnessOf, StiffnessSignature, StrainFrame, WheelForces, Wiring,
+    GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, NuisanceLoad, PayloadWeight, PlaneStrainRow,
+    Scatter, StiffnessOf, StiffnessSignature, StrainFrame, WheelForces, Wiring,
 };
 pub use gap::{FoundAnew, Judged, judged};
-pub use recovered::loads_before_after;
 pub use likelihood::{Fit, Likelihood};
+pub use recovered::loads_before_after;
 pub use state::{Part, StrainState, predict, read_all};
 pub use tolerance::angle_scatter;

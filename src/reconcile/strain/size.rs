@@ -39,9 +39,17 @@ impl RunBlocks {
             let here = selection.0.iter().enumerate().filter(|(_, e)| e.0 == run);
             let (at, gauges): (Vec<usize>, Vec<usize>) = here.map(|(i, e)| (i, e.1)).unzip();
             let part = Selection(gauges.iter().map(|&g| (run, g)).collect());
-            RunBlock { at, gauges, covariance: covariance(frame, members, &part, &[]) }
+            RunBlock {
+                at,
+                gauges,
+                covariance: covariance(frame, members, &part, &[]),
+            }
         };
-        Self { blocks: runs.iter().map(block).collect(), n_gauges: frame.n_gauges(), doubt: frame.relative_doubt() }
+        Self {
+            blocks: runs.iter().map(block).collect(),
+            n_gauges: frame.n_gauges(),
+            doubt: frame.relative_doubt(),
+        }
     }
 
     /// Precisions run by run with the scatter of `unknown`; those that can't be made are left out.
@@ -49,7 +57,12 @@ impl RunBlocks {
         let added = self.added(unknown);
         let one = |b: &'_ RunBlock| b.precision(&added, self.n_gauges);
         let made = self.blocks.iter().filter_map(|b| Some((b, one(b)?)));
-        made.map(|(b, precision)| RunPrecision { at: &b.at, gauges: &b.gauges, precision }).collect()
+        made.map(|(b, precision)| RunPrecision {
+            at: &b.at,
+            gauges: &b.gauges,
+            precision,
+        })
+        .collect()
     }
 
     /// What the scatter of unknown amplitudes adds to the covariance of a run, `n_gauges x n_gauges`.
@@ -97,11 +110,23 @@ struct Pattern<'a> {
 
 fn patterns_of(unknown: &[SizedAmplitudes]) -> Vec<Pattern<'_>> {
     let one = |(family, u): (usize, &'_ SizedAmplitudes)| -> Vec<(usize, usize, f64)> {
-        u.amplitudes.kinds.iter().map(|&k| (family, k, u.steady_variance(k))).collect()
+        u.amplitudes
+            .kinds
+            .iter()
+            .map(|&k| (family, k, u.steady_variance(k)))
+            .collect()
     };
     let listed = unknown.iter().enumerate().flat_map(one);
     let values = unknown.iter().flat_map(|u| &u.amplitudes.patterns);
-    listed.zip(values).map(|((family, kind, steady), v)| Pattern { family, kind, values: v, steady }).collect()
+    listed
+        .zip(values)
+        .map(|((family, kind, steady), v)| Pattern {
+            family,
+            kind,
+            values: v,
+            steady,
+        })
+        .collect()
 }
 
 /// Amplitudes that repeat in all runs, given the runs: their mean and covariance, and the log likelihood they gain.
@@ -116,15 +141,27 @@ struct Steady {
 
 /// m = (H + T^-1)^-1 sum of A' P r, H = sum of A' P A over runs; gain = (m' (H + T^-1) m - ln det(I + T H)) / 2.
 fn steady(runs: &[RunPrecision<'_>], residual: &[f64], patterns: &[Pattern<'_>]) -> Steady {
-    let which: Vec<usize> = (0..patterns.len()).filter(|p| patterns[*p].steady > 0.0).collect();
+    let which: Vec<usize> = (0..patterns.len())
+        .filter(|p| patterns[*p].steady > 0.0)
+        .collect();
     let n = which.len();
-    let nothing = Steady { which: Vec::new(), mean: Vec::new(), posterior: None, gain: 0.0 };
+    let nothing = Steady {
+        which: Vec::new(),
+        mean: Vec::new(),
+        posterior: None,
+        gain: 0.0,
+    };
     if n == 0 {
         return nothing;
     }
     let (mut h, mut s) = (vec![0.0; n * n], vec![0.0; n]);
     for run in runs {
-        let here = |p: usize| run.gauges.iter().map(|&g| patterns[p].values[g]).collect::<Vec<f64>>();
+        let here = |p: usize| {
+            run.gauges
+                .iter()
+                .map(|&g| patterns[p].values[g])
+                .collect::<Vec<f64>>()
+        };
         let columns: Vec<Vec<f64>> = which.iter().map(|&p| here(p)).collect();
         let r: Vec<f64> = run.at.iter().map(|&i| residual[i]).collect();
         let pr = run.precision.apply(&r);
@@ -146,12 +183,21 @@ fn steady(runs: &[RunPrecision<'_>], residual: &[f64], patterns: &[Pattern<'_>])
     };
     let mean = posterior.apply(&s);
     let gain = 0.5 * (dot(&mean, &s) - posterior.log_det() - log_prior);
-    Steady { which, mean, posterior: Some(posterior), gain }
+    Steady {
+        which,
+        mean,
+        posterior: Some(posterior),
+        gain,
+    }
 }
 
 /// Sum over runs of the log density of `residual` with `unknown` amplitudes, less constants; of the correlation between runs, that of
 /// amplitudes that repeat.
-pub fn run_by_run_log_likelihood(blocks: &RunBlocks, residual: &[f64], unknown: &[SizedAmplitudes]) -> f64 {
+pub fn run_by_run_log_likelihood(
+    blocks: &RunBlocks,
+    residual: &[f64],
+    unknown: &[SizedAmplitudes],
+) -> f64 {
     let runs = blocks.precisions(unknown);
     if runs.len() < blocks.blocks.len() {
         return f64::NEG_INFINITY;
@@ -180,7 +226,10 @@ struct Squares {
 
 impl Squares {
     fn prior(usual: &[f64]) -> Self {
-        Self { sum: usual.iter().map(|u| draw::NU * u * u).collect(), count: vec![draw::NU; usual.len()] }
+        Self {
+            sum: usual.iter().map(|u| draw::NU * u * u).collect(),
+            count: vec![draw::NU; usual.len()],
+        }
     }
 
     fn add(&mut self, kind: usize, square: f64) {
@@ -195,7 +244,11 @@ impl Squares {
         let known = |k: &usize| usual[*k] > 0.0;
         let logs: Vec<f64> = (0..usual.len())
             .filter(known)
-            .map(|k| 0.5 * (self.sum[k] / self.count[k] / (usual[k] * usual[k])).max(f64::MIN_POSITIVE).ln())
+            .map(|k| {
+                0.5 * (self.sum[k] / self.count[k] / (usual[k] * usual[k]))
+                    .max(f64::MIN_POSITIVE)
+                    .ln()
+            })
             .collect();
         let scale = (logs.iter().sum::<f64>() / logs.len().max(1) as f64).exp();
         let one = |k: usize| {
@@ -203,7 +256,9 @@ impl Squares {
             let common = (scale * usual[k]).powi(2);
             ((self.sum[k] + drawn * common) / (self.count[k] + drawn)).sqrt()
         };
-        (0..usual.len()).map(|k| if known(&k) { one(k) } else { 0.0 }).collect()
+        (0..usual.len())
+            .map(|k| if known(&k) { one(k) } else { 0.0 })
+            .collect()
     }
 }
 
@@ -216,7 +271,10 @@ pub fn usual_sizes(blocks: &RunBlocks, residual: &[f64], families: &[Amplitudes]
     const STEPS: usize = 30;
     /// Natural log of a size: far less than what sizes are known to.
     const SETTLED: f64 = 0.04;
-    let sized = |a: &Amplitudes| SizedAmplitudes { amplitudes: a.clone(), sizes: [a.usual.as_slice(), &a.steady].concat() };
+    let sized = |a: &Amplitudes| SizedAmplitudes {
+        amplitudes: a.clone(),
+        sizes: [a.usual.as_slice(), &a.steady].concat(),
+    };
     let mut unknown: Vec<SizedAmplitudes> = families.iter().map(sized).collect();
     if families.is_empty() {
         return Vec::new();
@@ -233,9 +291,19 @@ pub fn usual_sizes(blocks: &RunBlocks, residual: &[f64], families: &[Amplitudes]
         }
         for run in &runs {
             let repeats = |g: usize| -> f64 {
-                repeated.which.iter().zip(&repeated.mean).map(|(&p, m)| m * patterns[p].values[g]).sum()
+                repeated
+                    .which
+                    .iter()
+                    .zip(&repeated.mean)
+                    .map(|(&p, m)| m * patterns[p].values[g])
+                    .sum()
             };
-            let r: Vec<f64> = run.at.iter().zip(run.gauges).map(|(&i, &g)| residual[i] - repeats(g)).collect();
+            let r: Vec<f64> = run
+                .at
+                .iter()
+                .zip(run.gauges)
+                .map(|(&i, &g)| residual[i] - repeats(g))
+                .collect();
             let pr = run.precision.apply(&r);
             for p in &patterns {
                 let here: Vec<f64> = run.gauges.iter().map(|&g| p.values[g]).collect();
@@ -247,8 +315,17 @@ pub fn usual_sizes(blocks: &RunBlocks, residual: &[f64], families: &[Amplitudes]
         }
         let mut moved = 0.0f64;
         for (f, family) in families.iter().enumerate() {
-            let next = [scatter[f].sizes(&family.usual), steady[f].sizes(&family.steady)].concat();
-            for (old, new) in unknown[f].sizes.iter().zip(&next).filter(|(old, _)| **old > 0.0) {
+            let next = [
+                scatter[f].sizes(&family.usual),
+                steady[f].sizes(&family.steady),
+            ]
+            .concat();
+            for (old, new) in unknown[f]
+                .sizes
+                .iter()
+                .zip(&next)
+                .filter(|(old, _)| **old > 0.0)
+            {
                 moved = moved.max((new / old).ln().abs());
             }
             unknown[f].sizes = next;

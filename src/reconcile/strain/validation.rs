@@ -16,18 +16,32 @@ type Both = [Judged; 2];
 
 fn judged_both(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) -> Both {
     let e = Explanation::of(frame, candidates, scored);
-    [FoundAnew::Amplitudes, FoundAnew::AmplitudesAndLoads].map(|a| judged(frame, &e.members, &e.unknown, a).unwrap_or_default())
+    [FoundAnew::Amplitudes, FoundAnew::AmplitudesAndLoads]
+        .map(|a| judged(frame, &e.members, &e.unknown, a).unwrap_or_default())
 }
 
-fn refitted(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) -> Option<Scored<Fit>> {
-    let reference: Vec<(usize, Vec<f64>)> = scored.set.iter().copied().zip(scored.fit.parameters.clone()).collect();
+fn refitted(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    scored: &Scored<Fit>,
+) -> Option<Scored<Fit>> {
+    let reference: Vec<(usize, Vec<f64>)> = scored
+        .set
+        .iter()
+        .copied()
+        .zip(scored.fit.parameters.clone())
+        .collect();
     let runs = frame.observations.fit_runs();
     Likelihood::new(frame, candidates, &runs, &reference).score(&scored.set, Some((scored, None)))
 }
 
 /// The gap over all and by gauge: on held-out runs, else every run in turn. Effects of single runs (two exchanged, a wrong note) can't show
 /// on runs that they don't touch: those they touch are judged besides, half of the gauges by what was fitted without it.
-pub fn validated(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) -> (Gap, Vec<ChannelGap>) {
+pub fn validated(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    scored: &Scored<Fit>,
+) -> (Gap, Vec<ChannelGap>) {
     let held_out = frame.observations.held_out.iter().any(|h| *h);
     let [mut plain, mut loads_found] = if held_out {
         judged_both(frame, candidates, scored)
@@ -38,7 +52,14 @@ pub fn validated(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<
     let mut touched: Vec<usize> = effects.flat_map(|c| c.effect.runs()).collect();
     touched.sort_unstable();
     touched.dedup();
-    touched.retain(|r| !frame.observations.held_out.get(*r).copied().unwrap_or(false));
+    touched.retain(|r| {
+        !frame
+            .observations
+            .held_out
+            .get(*r)
+            .copied()
+            .unwrap_or(false)
+    });
     if !touched.is_empty() && held_out {
         for half in [0, 1] {
             let [a, b] = judged_by_halves(frame, candidates, scored, &touched, half);
@@ -46,7 +67,11 @@ pub fn validated(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<
             loads_found.extend(b);
         }
     }
-    let basis = if held_out { GapBasis::HeldOut } else { GapBasis::CrossValidated };
+    let basis = if held_out {
+        GapBasis::HeldOut
+    } else {
+        GapBasis::CrossValidated
+    };
     plain.gap(frame, basis, &loads_found)
 }
 
@@ -68,10 +93,24 @@ fn in_turn(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) 
 }
 
 /// The gauges of one half in the runs `touched`, judged by what all other readings tell.
-fn judged_by_halves(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>, touched: &[usize], half: usize) -> Both {
+fn judged_by_halves(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    scored: &Scored<Fit>,
+    touched: &[usize],
+    half: usize,
+) -> Both {
     let mut hidden = frame.clone();
-    for (run, row) in hidden.observations.values.chunks_exact_mut(frame.n_gauges().max(1)).enumerate() {
-        let masked = row.iter_mut().enumerate().filter(|(g, _)| touched.contains(&run) && g % 2 == half);
+    for (run, row) in hidden
+        .observations
+        .values
+        .chunks_exact_mut(frame.n_gauges().max(1))
+        .enumerate()
+    {
+        let masked = row
+            .iter_mut()
+            .enumerate()
+            .filter(|(g, _)| touched.contains(&run) && g % 2 == half);
         masked.for_each(|(_, v)| *v = f64::NAN);
     }
     let Some(fitted) = refitted(&hidden, candidates, scored) else {
