@@ -6,7 +6,7 @@ use super::finer::Finer;
 use super::matrix_frame::{ModelPart, facts, nominal_x_m};
 use crate::app::Session;
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::{Component, Job, LoadActs, Role};
+use crate::app::job::{Component, Job, JobLoad, LoadActs, Role};
 use crate::app::solved::{support_of_job, unit_loads_kept};
 use crate::app::strain::{Fields, lay_gauges, read_fields, unit_loads, without_strain};
 use crate::fe::{Solution, SolveOptions, UnitLoad, solve_unit_loads_on};
@@ -226,6 +226,15 @@ pub(super) fn read(
         base: own,
     };
     part.stiffness = session.stage("solve zones", |_| deck.signatures(job))?;
+    // Tables count in microstrain per unit of the job, as sensitivity.csv does.
+    let wanted = job.loads.iter().filter(|l| l.role == Role::Wanted);
+    let per = |l: &JobLoad| match l.acts {
+        LoadActs::AtGrid { component, .. } => KILO / job.units.si(component.quantity()),
+        LoadActs::Set(_) => 1.0,
+    };
+    let known: Vec<(String, f64)> = wanted.map(|l| (l.name.clone(), per(l))).collect();
+    let described = deck.described(&mut session.inputs, job, channels, &known)?;
+    part.stiffness.extend(described);
     Ok((part, deck))
 }
 

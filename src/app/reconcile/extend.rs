@@ -7,7 +7,7 @@ use super::deck_frame::DeckFrame;
 use super::deck_thermal;
 use super::extended_deck::NamedStiffness;
 use super::extended_job::ExtendedJob;
-use super::extended_loads::{entries, side_loads};
+use super::extended_loads::{self, entries, side_loads};
 use super::words::Sized;
 use crate::app::Session;
 use crate::app::fault::Faults;
@@ -291,6 +291,10 @@ fn matrix_with(
         for (name, _, size) in &nuisance {
             let mut t = Table::new();
             t.insert("name".into(), Value::String(name.clone()));
+            // Where S is given a load acts nowhere on a model: grid and component stand for nothing but its kind.
+            let component = extended_loads::component_word(name);
+            t.insert("grid".into(), Value::Integer(0));
+            t.insert("component".into(), Value::String(component.into()));
             t.insert("role".into(), Value::String("nuisance".into()));
             t.insert("expected".into(), Value::Float(*size));
             list.push(Value::Table(t));

@@ -64,6 +64,15 @@ pub(super) fn side_loads(job: &Job, effects: &[NamedEffect]) -> Vec<SideLoad> {
     out
 }
 
+/// The component that a load's name begins or ends with; `FZ` where it has none (a temperature).
+pub(super) fn component_word(name: &str) -> &'static str {
+    let has = |c: &Component| name.starts_with(c.name()) || name.ends_with(c.name());
+    COMPONENTS
+        .iter()
+        .find(|c| has(c))
+        .map_or("FZ", |c| c.name())
+}
+
 fn grid_of_wheel(job: &Job, wheel: &str) -> Option<u32> {
     job.loads.iter().find_map(|l| match l.acts {
         LoadActs::AtGrid { grid, .. } if l.name.split('.').next() == Some(wheel) => Some(grid),

@@ -1,5 +1,6 @@
 //! The static frame of a job whose S and signatures are given as CSV files.
 
+use super::described;
 use super::signature_table::SignatureTable;
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::Inputs;
@@ -231,6 +232,12 @@ pub(super) fn read(
             prior_percent: 15.0,
         });
     }
+    let known: Vec<(String, f64)> = columns
+        .iter()
+        .map(|(name, c)| (c.clone(), scale(name)))
+        .collect();
+    part.stiffness
+        .extend(described::from_tables(inputs, job, channels, &known, n_c)?);
     if n_l == 0 {
         return Err(Faults::from(Fault::of(
             &*given.file.given,

@@ -4,6 +4,7 @@ mod background;
 mod causes;
 mod deck_frame;
 mod deck_thermal;
+mod described;
 mod dynamic;
 mod dynamic_extend;
 mod extend;

@@ -95,7 +95,7 @@ impl DeckFrame {
         Ok(now.iter().zip(&self.base).map(|(a, b)| a - b).collect())
     }
 
-    fn with_joint(&self, place: &str, factor: f64) -> Model {
+    pub(super) fn with_joint(&self, place: &str, factor: f64) -> Model {
         let mut model = self.fields.model().clone();
         for b in model
             .bushes
@@ -114,25 +114,29 @@ impl DeckFrame {
         let Some(ids) = job.reconcile.as_ref().and_then(|r| r.zones.get(zone)) else {
             return Err(fault(format!("no zone `{zone}`"), "name its properties"));
         };
+        self.with_properties(|id| ids.contains(id), factor)
+            .ok_or_else(|| {
+                fault(
+                    format!("zone `{zone}` names no PSHELL of the deck"),
+                    "name PSHELL ids",
+                )
+            })
+    }
+
+    /// The model with the thickness of the shell properties `wanted` scaled; `None` where there are none.
+    pub(super) fn with_properties(
+        &self,
+        wanted: impl Fn(u32) -> bool,
+        factor: f64,
+    ) -> Option<Model> {
         let mut deck = self.fields.deck.deck.clone();
-        let mut changed = 0;
-        for p in deck
-            .cards
-            .pshells
-            .iter_mut()
-            .filter(|p| ids.contains(p.card.id))
-        {
+        let mut changed = false;
+        for p in deck.cards.pshells.iter_mut().filter(|p| wanted(p.card.id)) {
             p.card.t = p.card.t.map(|t| t * factor);
             p.card.z1 = p.card.z1.map(|z| z * factor);
             p.card.z2 = p.card.z2.map(|z| z * factor);
-            changed += 1;
+            changed = true;
         }
-        if changed == 0 {
-            return Err(fault(
-                format!("zone `{zone}` names no PSHELL of the deck"),
-                "name PSHELL ids",
-            ));
-        }
-        Ok(Model::from_deck(&deck).0)
+        changed.then(|| Model::from_deck(&deck).0)
     }
 }

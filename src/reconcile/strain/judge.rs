@@ -5,6 +5,7 @@ use super::detect::detectable;
 use super::explanation::{Explanation, discrepancy, ids, is_unmodelled, named_part};
 use super::frame::StrainFrame;
 use super::likelihood::Fit;
+use super::neighbours::neighbours_that_fail;
 use super::next::next_measurement;
 use super::recovered::loads_before_after;
 use super::remains::{remains, sits};
@@ -157,7 +158,8 @@ pub(super) fn judge(
         })
         .max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence));
     let hinted = hint.is_some_and(|s| s.log_evidence > null_evidence.max(best.log_evidence));
-    let unmodelled = is_unmodelled(candidates, &best.set);
+    let together = neighbours_that_fail(frame, &attempt);
+    let unmodelled = is_unmodelled(candidates, &best.set).or(together.as_deref());
     let falls = gap.after < gap.before;
     let verdict = match (attempt.is_empty(), reached) {
         (true, true) if hinted => Verdict::BelowDetectability,

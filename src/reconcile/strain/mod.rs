@@ -11,6 +11,7 @@ mod frame;
 mod gap;
 mod judge;
 mod likelihood;
+mod neighbours;
 mod next;
 mod recovered;
 mod remains;

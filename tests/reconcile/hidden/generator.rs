@@ -279,9 +279,10 @@ fn apply(
             parts.push(format!("zero_drift:{name}"));
         }
         "wheel_scale" => {
-            let l = rng.random_range(0..frame.n_loads());
+            let n_l = frame.n_loads();
+            let l = rng.random_range(0..n_l);
             for r in 0..n_r {
-                frame.loads[r * frame.n_loads() + l] *= 1.0 + sign * size / 100.0;
+                frame.loads[r * n_l + l] *= 1.0 + sign * size / 100.0;
             }
             let load = frame.load_names[l]
                 .split('.')
