@@ -605,7 +605,7 @@ fn say(session: &mut Session, outcome: &Outcome) {
         effects,
         &outcome.gap,
         &outcome.rivals,
-        "held-out runs",
+        &format!("{} runs", outcome.gap.basis.words()),
     );
     session.say(format!("where: {}", outcome.sits));
     session.say(format!("left: {}", outcome.remains));
