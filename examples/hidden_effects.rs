@@ -8,7 +8,7 @@
 #[path = "../tests/reconcile/hidden/mod.rs"]
 mod hidden;
 
-use hidden::generator::{Background, EFFECTS, STRANGERS, hide};
+use hidden::generator::{Background, EFFECTS, UNMODELLED, hide};
 use hidden::judge::{Answer, judge};
 use rayon::prelude::*;
 use strainbridge::reconcile::strain::{StrainFrame, examine};
@@ -123,16 +123,16 @@ fn main() {
             let lines = run(each.collect());
             row(&say(effect), &lines, &always_hit(&lines, sizes));
         }
-        for stranger in STRANGERS
+        for form in UNMODELLED
             .iter()
-            .filter(|s| wanted(s) || wanted("strangers"))
+            .filter(|s| wanted(s) || wanted("unmodelled"))
         {
             let sizes = [0.3, 0.6, 1.0];
             let each = sizes.iter().enumerate().flat_map(|(i, s)| {
-                (0..seeds).map(move |k| (*stranger, *s, background, 5000 + 100 * (i as u64) + k))
+                (0..seeds).map(move |k| (*form, *s, background, 5000 + 100 * (i as u64) + k))
             });
             row(
-                &say(&format!("stranger: {stranger}")),
+                &say(&format!("unmodelled: {form}")),
                 &run(each.collect()),
                 "",
             );

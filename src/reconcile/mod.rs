@@ -14,6 +14,7 @@ pub mod strain;
 pub use cause::{Cause, CauseOutcome, CauseSet, weigh_causes};
 pub use observation::Observations;
 pub use outcome::{
-    ChannelGap, Detectable, Gap, LoadShift, Misfit, NamedEffect, Outcome, Rival, Verdict,
+    ChannelGap, Detectable, Gap, GapBasis, GapNumbers, LoadShift, Misfit, NamedEffect, Outcome,
+    Rival, Verdict,
 };
 pub use search::{Addition, Breadth, Scored, Scorer, search, search_near, settle};

@@ -59,7 +59,40 @@ pub struct Rival {
     pub indistinguishable: bool,
 }
 
-/// The gap on held-out runs: RMS(reading - model) / RMS(reading).
+/// Which runs the gap is judged on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GapBasis {
+    /// Runs that were never used for fitting.
+    HeldOut,
+    /// No run was held out: every run in turn, with sizes and amplitudes found from the others.
+    CrossValidated,
+    /// Nothing was held out, and what is judged was fitted.
+    Fitted,
+}
+
+impl GapBasis {
+    /// The word in results and on reports.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::HeldOut => "held-out",
+            Self::CrossValidated => "cross-validated",
+            Self::Fitted => "fitted",
+        }
+    }
+}
+
+/// RMS(reading - model) / RMS(reading): before, after, and what a right model would leave, made alike.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GapNumbers {
+    /// The analyst's model.
+    pub before: f64,
+    /// With the named effects.
+    pub after: f64,
+    /// What noise, stated model uncertainty and the mesh leave.
+    pub floor: f64,
+}
+
+/// The gap on runs that were not fitted: RMS(reading - model) / RMS(reading).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
     /// The analyst's model.
@@ -68,8 +101,12 @@ pub struct Gap {
     pub after: f64,
     /// What noise, stated model uncertainty and the mesh leave.
     pub floor: f64,
-    /// What the mesh alone makes: the difference from a mesh half as wide; zero where none was solved.
-    pub mesh: f64,
+    /// What the mesh alone makes: the difference from a mesh half as wide; `None` where none was solved.
+    pub mesh: Option<f64>,
+    /// Which runs it is judged on.
+    pub basis: GapBasis,
+    /// The same with the errors of the noted wheel loads found anew in every run, before, after and in the floor.
+    pub loads_found: Option<GapNumbers>,
 }
 
 impl Gap {
@@ -158,6 +195,12 @@ pub struct Outcome {
     pub rivals: Vec<Rival>,
     /// Log evidence of the named set (or best attempt) less that of no effect.
     pub evidence: f64,
+    /// Of 100 drawings of the runs, those in which it stays ahead of every rival and of no effect.
+    pub wins: usize,
+    /// Joint covariance of the parameters of the named set (or best attempt), effects in order, by rows.
+    pub covariance: Vec<f64>,
+    /// Noise that the readings show over the stated one; 1 where the stated one holds.
+    pub noise_factor: f64,
     /// Gap.
     pub gap: Gap,
     /// Where the gap sits, in words.

@@ -42,6 +42,10 @@ pub trait Scorer {
     fn compatible(&self, a: usize, b: usize) -> bool;
     /// Candidates that differ in nothing that matters share a number: the screen keeps few of each.
     fn kin(&self, candidate: usize) -> usize;
+    /// Other forms of the same effect at the same place.
+    fn variants(&self, _candidate: usize) -> Vec<usize> {
+        Vec::new()
+    }
 }
 
 /// How far the search looks.
@@ -173,7 +177,7 @@ fn extend<S: Scorer>(
     out
 }
 
-/// Replaces each member of the best set by what explains its absence best, until nothing improves.
+/// Replaces each member of the best set by what explains its absence best, and by its other forms, until nothing improves.
 fn exchange<S: Scorer>(scorer: &mut S, breadth: Breadth, seen: &mut Seen<S::Fit>) {
     /// Rounds: each strictly improves; two are seen in practice.
     const ROUNDS: usize = 4;
@@ -182,7 +186,7 @@ fn exchange<S: Scorer>(scorer: &mut S, breadth: Breadth, seen: &mut Seen<S::Fit>
         let Some(best) = settle(&all, breadth.decisive) else {
             return;
         };
-        if best.set.len() < 2 {
+        if best.set.is_empty() {
             return;
         }
         for skip in 0..best.set.len() {
@@ -194,6 +198,18 @@ fn exchange<S: Scorer>(scorer: &mut S, breadth: Breadth, seen: &mut Seen<S::Fit>
                 .clone();
             if let Some(base) = scored {
                 extend(scorer, &base, breadth, seen);
+                for other in best
+                    .set
+                    .get(skip)
+                    .map(|m| scorer.variants(*m))
+                    .unwrap_or_default()
+                {
+                    let mut set = base.set.clone();
+                    set.push(other);
+                    set.sort_unstable();
+                    seen.entry(set.clone())
+                        .or_insert_with(|| scorer.score(&set, None));
+                }
             }
         }
         let all: Vec<_> = seen.values().flatten().cloned().collect();

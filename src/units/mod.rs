@@ -21,3 +21,8 @@ pub use unit::*;
 pub const MICROSTRAIN: f64 = 1e-6;
 /// Units in one thousand of them: newtons in a kilonewton.
 pub const KILO: f64 = 1e3;
+/// Standard gravity, m/s^2.
+///
+/// # Reference
+/// CGPM 3 (1901), resolution 2.
+pub const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;

@@ -1,11 +1,11 @@
 //! The static workflow on cases whose hidden effect is known, and on seeded ones of our own.
 
 use super::hidden;
-use super::hidden::generator::{Background, EFFECTS, STRANGERS, hide};
+use super::hidden::generator::{Background, EFFECTS, UNMODELLED, hide};
 use super::hidden::judge::{Answer, judge};
 use strainbridge::reconcile::effect::{Member, library};
-use strainbridge::reconcile::strain::{StrainFrame, examine, predict};
-use strainbridge::reconcile::{Outcome, Verdict};
+use strainbridge::reconcile::strain::{FoundAnew, StrainFrame, examine, judged, predict};
+use strainbridge::reconcile::{GapBasis, Outcome, Verdict};
 
 fn case(name: &str) -> Option<(StrainFrame, serde_json::Value)> {
     let Some(dir) = hidden::shared() else {
@@ -40,24 +40,27 @@ fn named(outcome: &Outcome) -> Vec<String> {
 
 #[test]
 fn hidden_effects_of_the_shared_static_cases_are_named_and_the_held_out_gap_closes() {
-    for name in ["dev-s1", "dev-s2", "dev-s3", "dev-s4"] {
+    for name in [
+        "dev-s1", "dev-s2", "dev-s3", "dev-s4", "dev-s5", "dev-s6", "dev-s7", "dev-s8", "dev-s9",
+    ] {
         let Some((frame, truth)) = case(name) else {
             return;
         };
         let outcome = examine(&frame, &[]);
         assert_eq!(named(&outcome), expected(&truth), "{name}");
         // Readings that four digits of the tables round: the gap of the analyst's model is that of the case's author.
-        let before = truth["gap_before"].as_f64().unwrap_or(f64::NAN);
-        assert!(
-            (outcome.gap.before - before).abs() < 1e-3 * before,
-            "{name}"
-        );
-        if outcome.verdict == Verdict::Named {
+        if let Some(before) = truth["gap_before"].as_f64() {
             assert!(
-                outcome.gap.explained_share() > 0.7,
-                "{name}: {:?}",
-                outcome.gap
+                (outcome.gap.before - before).abs() < 1e-3 * before,
+                "{name}"
             );
+        }
+        if outcome.verdict == Verdict::Named {
+            // With the errors of the wheel scales in it before and after alike, an effect hardly above them closes a part.
+            let (share, gap) = (outcome.gap.explained_share(), outcome.gap);
+            assert!(share > 0.5 && share < 1.1, "{name}: {gap:?}");
+            let found = gap.loads_found.expect("both pairs");
+            assert!(found.after < found.before, "{name}: {gap:?}");
             assert!(
                 outcome.gauges_off.is_empty(),
                 "{name}: {:?}",
@@ -123,11 +126,78 @@ fn what_no_effect_of_the_library_makes_is_called_unknown_and_described() {
     let Some((base, _)) = case("dev-s1") else {
         return;
     };
-    for stranger in STRANGERS {
-        let hidden = hide(&base, stranger, 1.0, Background::Messy, 5200);
+    for form in UNMODELLED {
+        let hidden = hide(&base, form, 1.0, Background::Messy, 5200);
         let outcome = examine(&hidden.frame, &[]);
-        assert_eq!(named(&outcome), ["unknown"], "{stranger}");
-        assert!(!outcome.remains.is_empty(), "{stranger}");
+        assert_eq!(named(&outcome), ["unknown"], "{form}");
+        assert!(!outcome.remains.is_empty(), "{form}");
+    }
+}
+
+#[test]
+fn an_effect_of_size_zero_explains_nothing_of_the_gap() {
+    for name in ["dev-s1", "dev-s3", "dev-s4", "dev-s5"] {
+        let Some((frame, _)) = case(name) else {
+            return;
+        };
+        for c in library(
+            &frame,
+            &[
+                "gauge_gain".into(),
+                "wheel_scale".into(),
+                "global_scale".into(),
+            ],
+        ) {
+            let effect = c.effect.as_ref();
+            if effect.discrepancy().is_some() {
+                continue;
+            }
+            let neutral: Vec<f64> = effect.parameters().iter().map(|p| p.neutral).collect();
+            let member = [Member {
+                effect,
+                parameters: &neutral,
+            }];
+            for anew in [FoundAnew::Amplitudes, FoundAnew::AmplitudesAndLoads] {
+                let gap = judged(&frame, &member, &[], anew)
+                    .expect("a covariance")
+                    .numbers();
+                // The same numbers in another order of summation.
+                assert!(
+                    (gap.after - gap.before).abs() < 1e-9,
+                    "{name} {} {gap:?}",
+                    effect.id()
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn without_held_out_runs_the_gap_is_cross_validated_and_called_that() {
+    let Some((mut frame, _)) = case("dev-s3") else {
+        return;
+    };
+    frame.observations.held_out.fill(false);
+    let outcome = examine(&frame, &[]);
+    assert_eq!(named(&outcome), ["sign_flip:G08"]);
+    assert_eq!(outcome.gap.basis, GapBasis::CrossValidated);
+    assert!(outcome.gap.after < outcome.gap.before, "{:?}", outcome.gap);
+}
+
+#[test]
+fn noise_half_above_what_is_stated_brings_no_name_and_no_unknown() {
+    let Some((base, _)) = case("dev-s1") else {
+        return;
+    };
+    for seed in 1000..1006 {
+        let hidden = hide(&base, "none", 0.0, Background::Noisy, seed);
+        let outcome = examine(&hidden.frame, &[]);
+        assert_eq!(named(&outcome), ["none"], "{seed}");
+        assert!(
+            (outcome.noise_factor - 1.5).abs() < 0.2,
+            "{seed}: {}",
+            outcome.noise_factor
+        );
     }
 }
 

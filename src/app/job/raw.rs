@@ -335,6 +335,34 @@ pub(super) struct RawReconcile {
     pub joints: Option<Ids>,
     pub causes: BTreeMap<String, String>,
     pub tolerance: Option<RawGluing>,
+    /// Hypotheses of the user's own.
+    pub effect: Vec<Spanned<RawEffect>>,
+}
+
+#[derive(Deserialize, JsonSchema, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawEffect {
+    /// Its id in results.
+    pub id: S<String>,
+    /// A CSV file: a row a gauge, a column a load, the change of S for an effect of size one.
+    pub signature: S<String>,
+    /// An edit of the deck, which is an effect of size one.
+    pub edit: Option<RawEdit>,
+    /// One standard deviation of its size before a run is seen; default 1.
+    pub prior: S<f64>,
+}
+
+#[derive(Deserialize, JsonSchema, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawEdit {
+    /// A shell property whose thickness is scaled.
+    pub property: Option<u32>,
+    /// Its factor.
+    pub thickness_scale: Option<f64>,
+    /// A bush whose stiffness is scaled.
+    pub cbush: Option<u32>,
+    /// Its factor.
+    pub stiffness_scale: Option<f64>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

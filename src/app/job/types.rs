@@ -808,8 +808,44 @@ pub struct Reconcile {
     pub angle_tolerance_deg: Option<f64>,
     /// Gluing tolerance of places, mm, 1 sd.
     pub position_tolerance_mm: Option<f64>,
+    /// Hypotheses of the user's own.
+    pub described: Vec<DescribedEffect>,
     /// Line of the job.
     pub line: u32,
+}
+
+/// `[[reconcile.effect]]`: a hypothesis of the user's own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DescribedEffect {
+    /// Its id in results.
+    pub id: String,
+    /// What it does at size one.
+    pub source: EffectSource,
+    /// One standard deviation of its size before a run is seen.
+    pub prior: f64,
+    /// Line of the job.
+    pub line: u32,
+}
+
+/// What a described effect does at size one.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EffectSource {
+    /// A table: the change of S, a row a gauge, a column a load.
+    Signature(NamedFile),
+    /// The thickness of a shell property times a factor.
+    Thickness {
+        /// Property id.
+        property: u32,
+        /// Factor.
+        factor: f64,
+    },
+    /// The stiffness of a bush times a factor.
+    Bush {
+        /// Element id.
+        element: u32,
+        /// Factor.
+        factor: f64,
+    },
 }
 
 /// `[sensitivity]`.

@@ -15,7 +15,7 @@ const ANGLE_DEG: f64 = 0.5;
 /// square of the width), at a point load or a corner as much again.
 const STILL_TO_COME: f64 = 1.0;
 /// Where no finer mesh was solved: share of the stated model uncertainty that single coefficients have besides the common factor.
-const ENTRY_SHARE: f64 = 0.5;
+pub(super) const ENTRY_SHARE: f64 = 0.5;
 
 /// A direction of a gauge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,28 +1,30 @@
 //! The static frame of a job with a deck: signatures of loads, masses, stiffness and gauge angles from the built-in solver.
 
-use super::background::{Axis, background, gradients};
+use super::background::{Axis, ENTRY_SHARE, background, gradients};
 use super::deck_thermal::{Heated, NOTHING};
 use super::finer::Finer;
 use super::matrix_frame::{ModelPart, facts, nominal_x_m};
 use crate::app::Session;
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::{Component, Job, LoadActs};
+use crate::app::job::{Component, Job, JobLoad, LoadActs, Role};
 use crate::app::solved::{support_of_job, unit_loads_kept};
-use crate::app::strain::{Fields, lay_gauges, read_fields};
+use crate::app::strain::{Fields, lay_gauges, read_fields, unit_loads, without_strain};
 use crate::fe::{Solution, SolveOptions, UnitLoad, solve_unit_loads_on};
+use crate::finding::{Finding, Severity};
 use crate::gauge::{Gauge, reading};
 use crate::model::{GridIx, Model, Vec3};
-use crate::reconcile::strain::{MassSignature, N_PAYLOAD_COLUMNS, PlaneStrainRow, Wiring};
-
-/// Strain in microstrain.
-const MICRO: f64 = 1e6;
+use crate::reconcile::strain::{
+    MassSignature, N_PAYLOAD_COLUMNS, NuisanceLoad, PlaneStrainRow, Wiring,
+};
+use crate::sensitivity::from_cases;
+use crate::units::{KILO, MICROSTRAIN, STANDARD_GRAVITY_M_S2};
 
 /// The model with everything needed to solve it again.
 pub(super) struct DeckFrame {
     pub(super) fields: Fields,
     pub(super) gauges: Vec<Gauge>,
     pub(super) columns: Vec<UnitLoad>,
-    /// Influence on the mesh as it stands.
+    /// Influence on the mesh as it stands, by the built-in solver.
     pub(super) base: Vec<f64>,
 }
 
@@ -50,7 +52,11 @@ pub(super) fn read(
     let model = fields.model();
     let heated = Heated::of(job, model)?;
     let model = &heated.model;
-    let (wheels, columns) = columns(job, model)?;
+    let JobLoads {
+        wheels,
+        columns,
+        nuisance,
+    } = job_loads(job, model)?;
     let mut loads = columns.clone();
     let components = [
         Component::FX,
@@ -61,7 +67,11 @@ pub(super) fn read(
     ];
     let mut other_names = Vec::new();
     for (name, grid) in &wheels {
-        for c in components {
+        // A side load that the job has as a nuisance load is no effect that is missing.
+        for c in components
+            .into_iter()
+            .filter(|c| !has_nuisance(job, model, *grid, *c))
+        {
             other_names.push(format!(
                 "{}_{}",
                 c.name(),
@@ -80,10 +90,16 @@ pub(super) fn read(
     }
     let first_heat = loads.len();
     loads.extend(heated.loads());
+    let first_nuisance = loads.len();
+    loads.extend(nuisance.iter().map(|n| n.load.clone()));
     let support = support_of_job(job, model)?;
     // Signatures come from a mesh half as wide, where that can be made: what the mesh makes is computed, not guessed.
     let laid = [&gauges, &turned[0], &turned[1]];
     let finer = session.stage("refine", |_| Finer::of(model, laid));
+    if let Err(why) = &finer {
+        session.findings.push(mesh_unknown(job, why));
+    }
+    let finer = finer.ok();
     let heat = format!("temperature set {:?}", reconcile.map(|r| r.temperature_set));
     let solution = session.stage("solve signatures", |s| match &finer {
         Some(f) => {
@@ -108,8 +124,16 @@ pub(super) fn read(
     let own = session.stage("solve signatures", |s| {
         unit_loads_kept(s, (&fields.deck, &heat), (model, support), &columns)
     })?;
-    let base = influence(job, model, &gauges, &own, n_c);
+    let mut base = influence(job, model, &gauges, &own, n_c);
     let n_g = gauges.len();
+    let mut table = table;
+    if job.model.as_ref().is_some_and(|m| !m.results.is_empty()) {
+        // S of the job comes from its results; what else strains the structure from the built-in solver.
+        from_results(job, &fields, &gauges, &mut base, n_c)?;
+        if finer.is_none() {
+            table.clone_from(&base);
+        }
+    }
     let plane = |g: usize| -> PlaneStrainRow {
         let one = |c: usize| {
             let i = g * n_c + c;
@@ -153,6 +177,18 @@ pub(super) fn read(
             per_kg: column(first_mass + k),
         })
         .collect();
+    part.nuisance = nuisance
+        .iter()
+        .enumerate()
+        .map(|(k, n)| NuisanceLoad {
+            name: n.name.clone(),
+            per_unit: column(first_nuisance + k)
+                .iter()
+                .map(|v| v / n.applied)
+                .collect(),
+            size: n.size,
+        })
+        .collect();
     // Microstrain a degree: mechanical strain from the model, and what the gauge shows of heat besides.
     let apparent: Vec<f64> = channels.iter().map(|c| apparent(job, c)).collect();
     let mechanical = |load: &Option<UnitLoad>, c: usize| load.as_ref().map(|_| column(c));
@@ -163,10 +199,15 @@ pub(super) fn read(
     };
     part.thermal_uniform = even.iter().any(|v| v.abs() > NOTHING).then_some(even);
     let pattern = first_heat + usize::from(heated.even.is_some());
-    part.thermal_gradient = mechanical(&heated.pattern, pattern).map(|m| {
-        let besides = apparent.iter().zip(heated.rises(&gauges));
-        m.iter().zip(besides).map(|(m, (a, t))| m + a * t).collect()
-    });
+    let known =
+        |n: &JobNuisance| Some(n.set) == reconcile.map(|r| r.temperature_set) && n.set.is_some();
+    let missing = !nuisance.iter().any(known);
+    part.thermal_gradient = mechanical(&heated.pattern, pattern)
+        .filter(|_| missing)
+        .map(|m| {
+            let besides = apparent.iter().zip(heated.rises(&gauges));
+            m.iter().zip(besides).map(|(m, (a, t))| m + a * t).collect()
+        });
     let along = gradients(job, model, &gauges, &own, n_c, Axis::Along);
     let across = gradients(job, model, &gauges, &own, n_c, Axis::Across);
     part.scatter = background(
@@ -177,13 +218,23 @@ pub(super) fn read(
     );
     part.per_mm = Some(along);
     part.as_modelled = finer.is_some().then(|| base.clone());
+    let own = influence(job, model, &gauges, &own, n_c);
     let deck = DeckFrame {
         fields,
         gauges,
         columns,
-        base,
+        base: own,
     };
     part.stiffness = session.stage("solve zones", |_| deck.signatures(job))?;
+    // Tables count in microstrain per unit of the job, as sensitivity.csv does.
+    let wanted = job.loads.iter().filter(|l| l.role == Role::Wanted);
+    let per = |l: &JobLoad| match l.acts {
+        LoadActs::AtGrid { component, .. } => KILO / job.units.si(component.quantity()),
+        LoadActs::Set(_) => 1.0,
+    };
+    let known: Vec<(String, f64)> = wanted.map(|l| (l.name.clone(), per(l))).collect();
+    let described = deck.described(&mut session.inputs, job, channels, &known)?;
+    part.stiffness.extend(described);
     Ok((part, deck))
 }
 
@@ -199,9 +250,6 @@ fn apparent(job: &Job, channel: &str) -> f64 {
         .and_then(|r| r.thermal_microstrain_per_degc.get(bridge).copied())
         .unwrap_or(0.0)
 }
-
-/// The frame counts in kN.
-const KILO: f64 = 1e3;
 
 /// Channels in the order of the strain file.
 fn in_order(job: &Job, laid: Vec<Gauge>, channels: &[String]) -> Result<Vec<Gauge>, Faults> {
@@ -251,7 +299,7 @@ fn readings(gauges: &[Gauge], solution: &Solution, range: std::ops::Range<usize>
     for g in gauges {
         for c in range.clone() {
             let value = solution.cases.get(c).and_then(|case| reading(g, case));
-            out.push(MICRO * value.unwrap_or(f64::NAN));
+            out.push(value.unwrap_or(f64::NAN) / MICROSTRAIN);
         }
     }
     out
@@ -270,7 +318,7 @@ pub(super) fn gravity(job: &Job) -> f64 {
     job.payload
         .as_ref()
         .and_then(|p| p.gravity_m_s2)
-        .unwrap_or(9.806_65)
+        .unwrap_or(STANDARD_GRAVITY_M_S2)
 }
 
 fn grid_of(job: &Job, model: &Model, id: u32) -> Result<GridIx, Faults> {
@@ -304,34 +352,148 @@ fn unit(job: &Job, grid: GridIx, component: Component, size: f64) -> UnitLoad {
     }
 }
 
-/// The wheels (name, grid) and the columns of the influence matrix: each wheel load, then the payload per kg: its weight, and the
-/// moments that moving it by a metre forward and to the left brings (W dx about y, -W dy about x).
-#[allow(
-    clippy::type_complexity,
-    reason = "a list of names with grids, and the loads"
-)]
-fn columns(job: &Job, model: &Model) -> Result<(Vec<(String, GridIx)>, Vec<UnitLoad>), Faults> {
-    let mut wheels = Vec::new();
-    let mut loads = Vec::new();
-    for l in &job.loads {
-        let LoadActs::AtGrid {
-            grid, component, ..
-        } = l.acts
-        else {
-            continue;
-        };
-        let ix = grid_of(job, model, grid)?;
-        wheels.push((l.name.clone(), ix));
-        loads.push(unit(job, ix, component, 1.0));
+/// What the job says of its loads.
+struct JobLoads {
+    /// Name and grid of each load that is asked for.
+    wheels: Vec<(String, GridIx)>,
+    /// Columns of the influence matrix: each of these loads per kN or kN m, then the payload per kg: its weight, and the moments that
+    /// moving it by a metre forward and to the left brings (W dx about y, -W dy about x).
+    columns: Vec<UnitLoad>,
+    nuisance: Vec<JobNuisance>,
+}
+
+/// A nuisance load of the job.
+struct JobNuisance {
+    name: String,
+    /// Of size `applied`.
+    load: UnitLoad,
+    applied: f64,
+    /// One standard deviation, in the units of `applied`.
+    size: f64,
+    /// Its set, where it is one of the deck.
+    set: Option<u32>,
+}
+
+/// The loads as every command has them, in the axes of `cid`; those at the payload's grid are left out, since the runs note the payload.
+fn job_loads(job: &Job, model: &Model) -> Result<JobLoads, Faults> {
+    let mut out = JobLoads {
+        wheels: Vec::new(),
+        columns: Vec::new(),
+        nuisance: Vec::new(),
+    };
+    let mut faults = FaultList::new();
+    let payload = payload_grid(job, model);
+    for (l, load) in job.loads.iter().zip(unit_loads(job, model)?) {
+        match (&l.acts, l.role) {
+            (LoadActs::AtGrid { grid, component, .. }, Role::Wanted) => {
+                out.wheels.push((l.name.clone(), grid_of(job, model, *grid)?));
+                out.columns.push(scaled(&load, KILO / (l.applied * job.units.si(component.quantity()))));
+            }
+            (LoadActs::Set(sid), Role::Wanted) => faults.push(Fault::at(
+                &*job.file,
+                l.line,
+                "load.load_set",
+                format!("load `{}` is load set {sid}: how much of a set acts in a run, `reconcile` does not read", l.name),
+                "give the load as a grid and a component, or role = \"nuisance\"",
+            )),
+            (LoadActs::AtGrid { grid, .. }, Role::Nuisance) if payload.is_some() && model.grid_ix(*grid) == payload => {}
+            (acts, Role::Nuisance) => out.nuisance.push(JobNuisance {
+                name: l.name.clone(),
+                load,
+                applied: l.applied,
+                size: l.expected.unwrap_or(l.applied.abs()),
+                set: match acts {
+                    LoadActs::Set(sid) => Some(*sid),
+                    LoadActs::AtGrid { .. } => None,
+                },
+            }),
+        }
     }
+    Faults::check(faults)?;
     let weight = gravity(job) / KILO;
     // Without a payload grid its columns stand for nothing and are blanked.
-    let first = wheels.first().map_or(GridIx(0), |w| w.1);
-    let at = payload_grid(job, model).unwrap_or(first);
-    loads.push(unit(job, at, Component::FZ, -weight));
-    loads.push(unit(job, at, Component::MY, weight));
-    loads.push(unit(job, at, Component::MX, -weight));
+    let first = out.wheels.first().map_or(GridIx(0), |w| w.1);
+    let at = payload.unwrap_or(first);
+    out.columns.push(unit(job, at, Component::FZ, -weight));
+    out.columns.push(unit(job, at, Component::MY, weight));
+    out.columns.push(unit(job, at, Component::MX, -weight));
     // Bending is linear in the place: the product term stands for nothing and is blanked.
-    loads.push(unit(job, at, Component::MX, -weight));
-    Ok((wheels, loads))
+    out.columns.push(unit(job, at, Component::MX, -weight));
+    Ok(out)
+}
+
+/// A load times `factor`; sets stay as they are.
+fn scaled(load: &UnitLoad, factor: f64) -> UnitLoad {
+    match load {
+        UnitLoad::AtGrid {
+            grid,
+            force,
+            moment,
+        } => UnitLoad::AtGrid {
+            grid: *grid,
+            force: force * factor,
+            moment: moment * factor,
+        },
+        other => other.clone(),
+    }
+}
+
+/// Has the job a nuisance load of this component at the grid, in the basic frame?
+fn has_nuisance(job: &Job, model: &Model, at: GridIx, component: Component) -> bool {
+    job.loads.iter().any(|l| match l.acts {
+        LoadActs::AtGrid {
+            grid,
+            component: c,
+            cid: 0,
+        } => l.role == Role::Nuisance && c == component && model.grid_ix(grid) == Some(at),
+        _ => false,
+    })
+}
+
+/// Puts S of the job's results into the columns of its loads, microstrain per kN or kN m.
+fn from_results(
+    job: &Job,
+    fields: &Fields,
+    gauges: &[Gauge],
+    base: &mut [f64],
+    n_columns: usize,
+) -> Result<(), Faults> {
+    let s = from_cases(gauges, &fields.load_cases(job))
+        .map_err(|missing| without_strain(job, &missing))?;
+    let wanted = job
+        .loads
+        .iter()
+        .enumerate()
+        .filter(|(_, l)| l.role == Role::Wanted);
+    for (c, (j, l)) in wanted.enumerate() {
+        let LoadActs::AtGrid { component, .. } = l.acts else {
+            continue;
+        };
+        let per = KILO / job.units.si(component.quantity()) / MICROSTRAIN;
+        for g in 0..gauges.len() {
+            if let (Some(cell), Some(v)) = (base.get_mut(g * n_columns + c), s.values.get((g, j))) {
+                *cell = v * per;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// No finer mesh was solved: what is assumed instead.
+fn mesh_unknown(job: &Job, why: &str) -> Finding {
+    let stated = job
+        .measured
+        .as_ref()
+        .map_or(0.0, |m| m.model_uncertainty_rel);
+    Finding::new(
+        Severity::Warning,
+        "mesh-not-checked",
+        "model",
+        format!(
+            "what the mesh makes of the strain is not known, since no finer mesh was solved: {why}. Each influence coefficient is taken to err by {:.2} % (1 sd), {:.0} % of the stated model uncertainty",
+            100.0 * ENTRY_SHARE * stated,
+            100.0 * ENTRY_SHARE
+        ),
+        "compare the strain at the gauges with that of a finer mesh, and state `model_uncertainty_rel` accordingly",
+    )
 }

@@ -11,7 +11,7 @@ use crate::fe::strain_tensor::Surface;
 use crate::gauge::Gauge;
 use crate::model::{ElementTemperature, GridIx, MaterialKind, Model, TemperatureSet};
 use crate::reconcile::NamedEffect;
-use crate::reconcile::effect::Extension;
+use crate::reconcile::effect::{Extension, Nuisance};
 use std::collections::HashMap;
 use toml::{Table, Value};
 
@@ -213,15 +213,15 @@ pub(super) fn entry(job: &Job, model: &Model, effects: &[NamedEffect]) -> Option
     let sid = job.reconcile.as_ref()?.temperature_set?;
     let usual = effects.iter().find_map(|e| match &e.extension {
         Extension::NuisanceLoads {
-            id: id @ "thermal_gradient",
+            source: Nuisance::TemperatureGradient,
             loads,
             ..
-        } => loads.first().map(|l| (*id, l.1)),
+        } => loads.first().cloned(),
         _ => None,
     })?;
     let [low, high] = extremes(model, model.temperatures.iter().find(|t| t.sid == sid)?);
     let mut t = Table::new();
-    t.insert("name".into(), Value::String(usual.0.into()));
+    t.insert("name".into(), Value::String(usual.0));
     t.insert("load_set".into(), Value::Integer(i64::from(sid)));
     t.insert("role".into(), Value::String("nuisance".into()));
     t.insert("expected".into(), Value::Float(usual.1 / (high - low)));

@@ -2,16 +2,19 @@
 
 use super::deck_frame::DeckFrame;
 use super::extended_loads::{SideLoad, cards};
-use super::stiffness::{JOINT, factor};
+use super::one_file::one_file;
+use super::stiffness::factor;
 use crate::app::job::Job;
+use crate::reconcile::strain::StiffnessOf;
 use nastran::bdf::{Edits, Field, format_card, write_edited};
 use nastran::cards::{Bush, Orientation, Pbush};
 
-/// A stiffness that was named: effect id, place, size.
-pub(super) type NamedStiffness = (&'static str, String, f64);
+/// A stiffness that was named: what it is one of, place, size.
+pub(super) type NamedStiffness = (StiffnessOf, String, f64);
 
 impl DeckFrame {
-    /// The deck with zones thickened, joints changed, masses and a load set of side loads added; `None` where it is spread over several files or nothing changes.
+    /// The deck with zones thickened, joints changed, masses and a load set of side loads added, in one file, each edited card behind a
+    /// comment; `None` where nothing changes or it can't be written.
     pub(super) fn extended(
         &self,
         job: &Job,
@@ -20,26 +23,26 @@ impl DeckFrame {
         side: &[SideLoad],
     ) -> Option<Vec<u8>> {
         let deck = &self.fields.deck.deck;
-        if deck.sources.len() != 1 || (stiffness.is_empty() && masses.is_empty() && side.is_empty())
-        {
+        if stiffness.is_empty() && masses.is_empty() && side.is_empty() {
             return None;
         }
         let mut edits = Edits::default();
-        for (id, place, percent) in stiffness {
-            let factor = factor(id, *percent);
-            if *id == JOINT {
-                self.change_joint(&mut edits, place, factor)?;
-            } else {
-                self.change_zone(&mut edits, job, place, factor)?;
+        for (of, place, percent) in stiffness {
+            let factor = factor(*of, *percent);
+            match of {
+                StiffnessOf::Joint => self.change_joint(&mut edits, place, factor)?,
+                StiffnessOf::Zone => self.change_zone(&mut edits, job, place, factor)?,
+                StiffnessOf::Local | StiffnessOf::Described => return None,
             }
         }
         self.add_masses(&mut edits, job, masses)?;
         if !side.is_empty() {
             let sets = self.fields.model().load_sets.iter().map(|s| s.sid);
             let sid = sets.max().unwrap_or(0).checked_add(1)?;
-            edits.insert_cards(deck, &cards(job, sid, side));
+            let note = noted("side loads as found, root mean square over the runs");
+            edits.insert_cards(deck, &(note + &cards(job, sid, side)));
         }
-        write_edited(deck, &edits).into_iter().next().map(|f| f.1)
+        one_file(deck, write_edited(deck, &edits))
     }
 
     fn change_zone(&self, edits: &mut Edits, job: &Job, zone: &str, factor: f64) -> Option<()> {
@@ -67,7 +70,12 @@ impl DeckFrame {
                 c.mid4.into(),
             ];
             edits
-                .replace_card(deck, p.at, &format_card("PSHELL", &fields))
+                .replace_card(
+                    deck,
+                    p.at,
+                    &(noted(&format!("zone {zone}: thickness times {factor:.4}"))
+                        + &format_card("PSHELL", &fields)),
+                )
                 .ok()?;
         }
         Some(())
@@ -96,17 +104,19 @@ impl DeckFrame {
         let id = highest?.checked_add(bush.card.id)?;
         edits.insert_cards(
             deck,
-            &pbush(&Pbush {
-                id,
-                k: old.k.map(|k| k * factor),
-                ..old
-            }),
+            &(noted(&format!("joint {place}: stiffness times {factor:.4}"))
+                + &pbush(&Pbush {
+                    id,
+                    k: old.k.map(|k| k * factor),
+                    ..old
+                })),
         );
         let card = cbush(&Bush {
             pid: Some(id),
             ..bush.card
         });
-        edits.replace_card(deck, bush.at, &card).ok()
+        let note = noted(&format!("joint {place}: the property of its own is {id}"));
+        edits.replace_card(deck, bush.at, &(note + &card)).ok()
     }
 
     fn add_masses(&self, edits: &mut Edits, job: &Job, masses: &[(String, f64)]) -> Option<()> {
@@ -124,10 +134,16 @@ impl DeckFrame {
                 Field::Blank,
                 mass.into(),
             ];
-            edits.insert_cards(deck, &format_card("CONM2", &fields));
+            let note = noted(&format!("a mass that the model lacked at {place}"));
+            edits.insert_cards(deck, &(note + &format_card("CONM2", &fields)));
         }
         Some(())
     }
+}
+
+/// A comment line before an edited card.
+fn noted(words: &str) -> String {
+    format!("$ reconcile: {words}\n")
 }
 
 fn pbush(p: &Pbush) -> String {

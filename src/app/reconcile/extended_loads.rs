@@ -4,8 +4,9 @@
 use super::deck_frame::gravity;
 use crate::app::job::{Component, Job, LoadActs};
 use crate::reconcile::NamedEffect;
-use crate::reconcile::effect::Extension;
+use crate::reconcile::effect::{Extension, Nuisance};
 use crate::reconcile::strain::StrainFrame;
+use crate::units::KILO;
 use nastran::bdf::{Field, format_card};
 use toml::{Table, Value};
 
@@ -27,7 +28,6 @@ const COMPONENTS: [Component; 5] = [
     Component::MY,
     Component::MZ,
 ];
-const KILO: f64 = 1e3;
 /// Moment of the payload per weight: half a metre off its grid, one standard deviation.
 const OFF_GRID_M: f64 = 0.5;
 
@@ -35,12 +35,14 @@ const OFF_GRID_M: f64 = 0.5;
 pub(super) fn side_loads(job: &Job, effects: &[NamedEffect]) -> Vec<SideLoad> {
     let mut out = Vec::new();
     for e in effects {
-        let Extension::NuisanceLoads { id, loads, .. } = &e.extension else {
+        let Extension::NuisanceLoads {
+            source: Nuisance::SideLoads,
+            loads,
+            ..
+        } = &e.extension
+        else {
             continue;
         };
-        if *id != "lateral_wheel_loads" {
-            continue;
-        }
         for (name, usual) in loads {
             let Some((word, wheel)) = name.split_once('_') else {
                 continue;
@@ -60,6 +62,15 @@ pub(super) fn side_loads(job: &Job, effects: &[NamedEffect]) -> Vec<SideLoad> {
         }
     }
     out
+}
+
+/// The component that a load's name begins or ends with; `FZ` where it has none (a temperature).
+pub(super) fn component_word(name: &str) -> &'static str {
+    let has = |c: &Component| name.starts_with(c.name()) || name.ends_with(c.name());
+    COMPONENTS
+        .iter()
+        .find(|c| has(c))
+        .map_or("FZ", |c| c.name())
 }
 
 fn grid_of_wheel(job: &Job, wheel: &str) -> Option<u32> {

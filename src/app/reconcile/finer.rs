@@ -13,19 +13,27 @@ pub(super) struct Finer {
 }
 
 impl Finer {
-    /// `None` where the model can't be refined without tearing it, or needs no finer mesh.
-    pub(super) fn of(model: &Model, laid: [&Vec<Gauge>; 3]) -> Option<Self> {
-        if model.shells.len() > MOST_SHELLS {
-            return None;
+    /// # Errors
+    /// Why no finer mesh was made.
+    pub(super) fn of(model: &Model, laid: [&Vec<Gauge>; 3]) -> Result<Self, String> {
+        let n = model.shells.len();
+        if n > MOST_SHELLS {
+            return Err(format!(
+                "the model has {n} shells, and beyond {MOST_SHELLS} four times as many are not solved"
+            ));
         }
-        let refined = model.refined()?;
+        let refined = model.refined().ok_or(
+            "the mesh can't be divided without tearing it (solids, shear panels, shells with mid-side grids, bars along the sides of shells, or no shells)",
+        )?;
+        let lost = || "a gauge is on no part of the divided mesh".to_owned();
         let on = |gauges: &Vec<Gauge>| -> Option<Vec<Gauge>> {
             gauges
                 .iter()
                 .map(|g| on_refined(g, model, &refined))
                 .collect()
         };
-        let laid = [on(laid[0])?, on(laid[1])?, on(laid[2])?];
-        Some(Self { refined, laid })
+        let of = |k: usize| laid.get(k).and_then(|g| on(g)).ok_or_else(lost);
+        let laid = [of(0)?, of(1)?, of(2)?];
+        Ok(Self { refined, laid })
     }
 }

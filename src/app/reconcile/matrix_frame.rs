@@ -1,13 +1,15 @@
 //! The static frame of a job whose S and signatures are given as CSV files.
 
+use super::described;
 use super::signature_table::SignatureTable;
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::Inputs;
-use crate::app::job::{Bridge, GivenSensitivity, Job};
+use crate::app::job::{Bridge, GivenSensitivity, Job, Role};
 use crate::reconcile::strain::{
-    GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, PlaneStrainRow, Scatter, StiffnessSignature,
-    Wiring,
+    GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, NuisanceLoad, PlaneStrainRow, Scatter,
+    StiffnessOf, StiffnessSignature, Wiring,
 };
+use crate::units::{KILO, Quantity};
 
 /// What the model says, however it was computed: the part of a frame that no run enters.
 #[derive(Clone, Debug, Default)]
@@ -19,6 +21,7 @@ pub(super) struct ModelPart {
     pub(super) tensors: Vec<PlaneStrainRow>,
     pub(super) per_mm: Option<Vec<f64>>,
     pub(super) other_loads: Vec<(String, Vec<f64>)>,
+    pub(super) nuisance: Vec<NuisanceLoad>,
     pub(super) thermal_uniform: Option<Vec<f64>>,
     pub(super) thermal_gradient: Option<Vec<f64>>,
     pub(super) masses: Vec<MassSignature>,
@@ -50,8 +53,7 @@ pub(super) fn read(
     given: &GivenSensitivity,
     channels: &[String],
 ) -> Result<ModelPart, Faults> {
-    /// The frame counts in kN, kN m, kg and m.
-    const KILO: f64 = 1e3;
+    // The frame counts in kN, kN m, kg and m.
     let (per_kn, per_knm) = (KILO / given.per.force.si, KILO / given.per.moment.si);
     let (per_kg, per_m) = (1.0 / given.per.mass.si, 1.0 / given.per.length.si);
     let s = SignatureTable::read(inputs, job, &given.file, channels)?;
@@ -61,6 +63,28 @@ pub(super) fn read(
         given.columns.clone()
     };
     let scale = |name: &str| if is_moment(name) { per_knm } else { per_kn };
+    let mut nuisance = Vec::new();
+    for (name, column) in columns.iter().filter(|c| is_nuisance(job, &c.0)) {
+        let usual = job
+            .loads
+            .iter()
+            .find(|l| l.name == *name)
+            .and_then(|l| l.expected);
+        let job_si = job.units.si(if is_moment(name) {
+            Quantity::Moment
+        } else {
+            Quantity::Force
+        });
+        nuisance.push(NuisanceLoad {
+            name: name.clone(),
+            per_unit: s.column(column, scale(name))?,
+            size: usual.unwrap_or(0.0) * job_si / KILO,
+        });
+    }
+    let columns: Vec<(String, String)> = columns
+        .into_iter()
+        .filter(|c| !is_nuisance(job, &c.0))
+        .collect();
     let mut by_column: Vec<Vec<f64>> = Vec::new();
     for (name, column) in &columns {
         by_column.push(s.column(column, scale(name))?);
@@ -96,6 +120,7 @@ pub(super) fn read(
         .collect();
     let gauges: Vec<GaugeFacts> = channels.iter().map(|name| facts(job, name)).collect();
     let mut part = ModelPart {
+        nuisance,
         load_names: columns.iter().map(|c| c.0.clone()).collect(),
         payload_origin: [nominal_x_m(job).unwrap_or(0.0), 0.0],
         influence,
@@ -147,9 +172,9 @@ pub(super) fn read(
     part.gauges = gauges;
     if let Some(file) = &given.signatures.lateral_wheel_loads {
         let t = SignatureTable::read(inputs, job, file, channels)?;
-        for name in t.names() {
-            part.other_loads
-                .push((name.clone(), t.column(&name, scale(&name))?));
+        for name in t.names().into_iter().filter(|n| !is_nuisance(job, n)) {
+            let column = t.column(&name, scale(&name))?;
+            part.other_loads.push((name, column));
         }
     }
     if let Some(file) = &given.signatures.thermal {
@@ -161,8 +186,13 @@ pub(super) fn read(
                 .map(|n| t.column(n, 1.0))
                 .transpose()
         };
-        part.thermal_uniform = one(["thermal_uniform", "uniform"])?;
-        part.thermal_gradient = one(["thermal_gradient", "gradient"])?;
+        // What the job has as a nuisance load is no effect that is missing.
+        if !is_nuisance(job, "thermal_uniform") {
+            part.thermal_uniform = one(["thermal_uniform", "uniform"])?;
+        }
+        if !is_nuisance(job, "thermal_gradient") {
+            part.thermal_gradient = one(["thermal_gradient", "gradient"])?;
+        }
     }
     if let Some(file) = &given.signatures.unaccounted_mass {
         let t = SignatureTable::read(inputs, job, file, channels)?;
@@ -196,11 +226,18 @@ pub(super) fn read(
             }
         }
         part.stiffness.push(StiffnessSignature {
-            id: format!("rail_stiffness:{zone}"),
+            of: StiffnessOf::Zone,
+            place: zone.clone(),
             at_percent: vec![(1.0, change)],
             prior_percent: 15.0,
         });
     }
+    let known: Vec<(String, f64)> = columns
+        .iter()
+        .map(|(name, c)| (c.clone(), scale(name)))
+        .collect();
+    part.stiffness
+        .extend(described::from_tables(inputs, job, channels, &known, n_c)?);
     if n_l == 0 {
         return Err(Faults::from(Fault::of(
             &*given.file.given,
@@ -215,6 +252,13 @@ pub(super) fn read(
 /// Nominal place of the payload, m, where the job states it.
 pub(super) fn nominal_x_m(job: &Job) -> Option<f64> {
     Some(job.payload.as_ref()?.nominal_x? * job.units.length_m())
+}
+
+/// Has the job a nuisance load of this name?
+fn is_nuisance(job: &Job, name: &str) -> bool {
+    job.loads
+        .iter()
+        .any(|l| l.name == name && l.role == Role::Nuisance)
 }
 
 fn is_moment(name: &str) -> bool {

@@ -3,7 +3,7 @@
 use super::deck_frame::{self, DeckFrame};
 use super::extend::{self, sized};
 use super::matrix_frame::{self, ModelPart};
-use super::{causes, stiffness, tables, words};
+use super::{causes, tables, words};
 use crate::app::Session;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::runs::{RunRow, read_runs};
@@ -11,9 +11,9 @@ use crate::app::job::strain::{StrainRows, StrainTable, read_strain};
 use crate::app::job::{HoldOut, Job, WheelForces as JobWheelForces};
 use crate::finding::{Finding, Severity};
 use crate::model::{Model, Vec3};
-use crate::reconcile::effect::Extension;
+use crate::reconcile::effect::{Correction, Extension};
 use crate::reconcile::strain::{
-    PayloadWeight, StrainFrame, WheelForces, angle_scatter, examine, predict,
+    PayloadWeight, StiffnessOf, StrainFrame, WheelForces, angle_scatter, examine, predict,
 };
 use crate::reconcile::{NamedEffect, Observations, Outcome, Verdict};
 use crate::report::figure::GaugePoints;
@@ -21,6 +21,7 @@ use crate::report::page::Paper;
 use crate::report::scene::{Mark, Scene};
 use crate::report::scene::{fields_of, mark_of_gap};
 use crate::report::strain::{RunStrain, reconcile_page};
+use crate::units::{KILO, STANDARD_GRAVITY_M_S2};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -89,23 +90,28 @@ fn resolve_stiffness(
     const LEAST: f64 = -80.0;
     let mut added = false;
     for e in &outcome.best_attempt {
-        let Extension::Stiffness { id, place, percent } = &e.extension else {
-            continue;
+        let (of, place, percent) = match &e.extension {
+            Extension::ZoneStiffness { place, percent } => (StiffnessOf::Zone, place, percent),
+            Extension::JointStiffness { place, percent } => (StiffnessOf::Joint, place, percent),
+            _ => continue,
         };
-        let name = format!("{id}:{place}");
-        let Some(signature) = frame.stiffness.iter_mut().find(|s| s.id == name) else {
+        let Some(signature) = frame
+            .stiffness
+            .iter_mut()
+            .find(|s| s.of == of && s.place == *place)
+        else {
             continue;
         };
         let known = signature
             .at_percent
             .iter()
             .any(|p| (p.0 - percent).abs() < NEAR);
-        let thickness = *id == stiffness::ZONE;
+        let thickness = of == StiffnessOf::Zone;
         if known || percent.abs() < NEAR || (thickness && *percent < LEAST) {
             continue;
         }
         let change = session.stage("solve zones", |_| {
-            deck.stiffness_change(job, id, place, *percent)
+            deck.stiffness_change(job, of, place, *percent)
         })?;
         signature.at_percent.push((*percent, change));
         signature.at_percent.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -193,7 +199,7 @@ fn observations(job: &Job, session: &mut Session) -> Result<Observations, Faults
             Severity::Warning,
             "no-hold-out",
             &*table.file,
-            "no run is held out: the gap is judged on the runs that were fitted",
+            "no run is held out: the gap is cross-validated, every run in turn judged by what the others tell",
             "keep a third of the runs with `hold_out`",
         ));
     }
@@ -207,8 +213,6 @@ fn frame(
     observations: Observations,
     part: ModelPart,
 ) -> Result<StrainFrame, Faults> {
-    /// The frame counts in kN.
-    const KILO: f64 = 1e3;
     let Some(runs) = &job.runs else {
         let remedy = "add `[runs]` with the wheel forces and the payload of each run";
         return Err(Faults::from(Fault::of(
@@ -223,7 +227,7 @@ fn frame(
         .payload
         .as_ref()
         .and_then(|p| p.gravity_m_s2)
-        .unwrap_or(9.806_65);
+        .unwrap_or(STANDARD_GRAVITY_M_S2);
     let mut faults = FaultList::new();
     let (mut loads, mut payload) = (Vec::new(), Vec::new());
     for run in &observations.runs {
@@ -277,6 +281,7 @@ fn frame(
             JobWheelForces::FlatGroundModel => WheelForces::FlatGroundModel,
         },
         other_loads: part.other_loads,
+        nuisance: part.nuisance,
         thermal_uniform: part.thermal_uniform,
         thermal_gradient: part.thermal_gradient,
         masses: part.masses,
@@ -308,11 +313,15 @@ fn payload_of(row: &RunRow, gravity: f64, origin: [f64; 2]) -> [f64; 3] {
     ]
 }
 
-/// The size of a fault that has no parameter: -1 for a turned sign.
+/// The size of a fault that has no parameter: -1 for a turned sign, 0 for a channel that says nothing, 1 for an exchange.
 fn channel_size(e: &NamedEffect) -> Option<f64> {
-    match e.extension {
-        Extension::Channel { size, .. } => Some(size),
-        _ => None,
+    let Extension::Channels(list) = &e.extension else {
+        return None;
+    };
+    match &list.first()?.1 {
+        Correction::Sign => Some(-1.0),
+        Correction::Ignore => Some(0.0),
+        _ => Some(1.0),
     }
 }
 
@@ -377,16 +386,25 @@ fn report(
     session.put(
         "gap",
         json!({
-            "metric": "RMS(reading - model) / RMS(reading) over held-out runs; after, what differs from run to run is found from one half \
-                       of the gauges and judged on the other",
+            "metric": "RMS(reading - model) / RMS(reading); amplitudes of the named effects that differ from run to run are found from one \
+                       half of the gauges and judged on the other; nothing else is found anew, before, after or in the floor",
+            "basis": outcome.gap.basis.words(),
             "before": outcome.gap.before,
             "after": outcome.gap.after,
             "floor": outcome.gap.floor,
             "mesh": outcome.gap.mesh,
             "explained_share": outcome.gap.explained_share(),
+            "loads_found": outcome.gap.loads_found.map(|g| json!({ "before": g.before, "after": g.after, "floor": g.floor })),
         }),
     )?;
     session.put("evidence", outcome.evidence)?;
+    session.put("wins_of_100", outcome.wins)?;
+    session.put("noise_factor", outcome.noise_factor)?;
+    let n = outcome.covariance.len().isqrt();
+    session.put(
+        "covariance",
+        outcome.covariance.chunks(n.max(1)).collect::<Vec<_>>(),
+    )?;
     let [before, after, held_out] = outcome.reduced_chi2;
     session.put(
         "reduced_chi2",
@@ -495,6 +513,20 @@ fn run_strain(frame: &StrainFrame) -> RunStrain {
 }
 
 fn findings(session: &mut Session, outcome: &Outcome) {
+    /// A stated noise is known to 15 %: what the readings show beyond is told.
+    const NOISE_KNOWN: f64 = 1.15;
+    if outcome.noise_factor > NOISE_KNOWN {
+        session.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "noise-above-stated",
+                "measured.noise_microstrain",
+                format!("the readings scatter {:.2} times as much as their stated noise allows, alike at all gauges", outcome.noise_factor),
+                "find what scatters (repeat a run three times), or state the noise that the repeats show",
+            )
+            .with_numbers(outcome.noise_factor, NOISE_KNOWN),
+        );
+    }
     match outcome.verdict {
         Verdict::Unknown => session.findings.push(
             Finding::new(
@@ -573,7 +605,7 @@ fn say(session: &mut Session, outcome: &Outcome) {
         effects,
         &outcome.gap,
         &outcome.rivals,
-        "held-out runs",
+        &format!("{} runs", outcome.gap.basis.words()),
     );
     session.say(format!("where: {}", outcome.sits));
     session.say(format!("left: {}", outcome.remains));

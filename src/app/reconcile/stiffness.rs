@@ -4,7 +4,7 @@ use super::deck_frame::{DeckFrame, influence, solve};
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::Job;
 use crate::model::Model;
-use crate::reconcile::strain::StiffnessSignature;
+use crate::reconcile::strain::{StiffnessOf, StiffnessSignature};
 use rayon::prelude::*;
 
 /// Thickness change at which a zone's signature is computed first, percent.
@@ -18,17 +18,11 @@ const JOINT_PRIOR: f64 = 70.0;
 /// Bushes of a deck that names none: more of them are springs of something else.
 const MOST_JOINTS: usize = 12;
 
-/// Id of a zone's stiffness.
-pub(super) const ZONE: &str = "rail_stiffness";
-/// Id of a joint's stiffness.
-pub(super) const JOINT: &str = "joint_stiffness";
-
 /// Factor of a stiffness at a size: a zone counts in percent, a joint in its natural log times 100.
-pub(super) fn factor(id: &str, percent: f64) -> f64 {
-    if id == JOINT {
-        (percent / 100.0).exp()
-    } else {
-        1.0 + percent / 100.0
+pub(super) fn factor(of: StiffnessOf, percent: f64) -> f64 {
+    match of {
+        StiffnessOf::Joint | StiffnessOf::Local => (percent / 100.0).exp(),
+        StiffnessOf::Zone | StiffnessOf::Described => 1.0 + percent / 100.0,
     }
 }
 
@@ -54,15 +48,18 @@ impl DeckFrame {
     /// Signatures of all zones and joints.
     pub(super) fn signatures(&self, job: &Job) -> Result<Vec<StiffnessSignature>, Faults> {
         let zones = job.reconcile.iter().flat_map(|r| r.zones.keys());
-        let mut wanted: Vec<(&str, String, Vec<f64>, f64)> = zones
-            .map(|z| (ZONE, z.clone(), vec![ZONE_PERCENT], ZONE_PRIOR))
+        let mut wanted: Vec<(StiffnessOf, String, Vec<f64>, f64)> = zones
+            .map(|z| (StiffnessOf::Zone, z.clone(), vec![ZONE_PERCENT], ZONE_PRIOR))
             .collect();
         let joints = joints(job, self.fields.model());
-        wanted.extend(
-            joints
-                .iter()
-                .map(|j| (JOINT, j.to_string(), JOINT_PERCENT.to_vec(), JOINT_PRIOR)),
-        );
+        wanted.extend(joints.iter().map(|j| {
+            (
+                StiffnessOf::Joint,
+                j.to_string(),
+                JOINT_PERCENT.to_vec(),
+                JOINT_PRIOR,
+            )
+        }));
         let solved = wanted
             .into_par_iter()
             .map(|(id, place, sizes, prior_percent)| {
@@ -70,9 +67,10 @@ impl DeckFrame {
                     .into_iter()
                     .map(|p| Ok((p, self.stiffness_change(job, id, &place, p)?)));
                 Ok(StiffnessSignature {
-                    id: format!("{id}:{place}"),
+                    of: id,
                     at_percent: at.collect::<Result<_, Faults>>()?,
                     prior_percent,
+                    place,
                 })
             });
         solved.collect()
@@ -83,22 +81,21 @@ impl DeckFrame {
     pub(super) fn stiffness_change(
         &self,
         job: &Job,
-        id: &str,
+        of: StiffnessOf,
         place: &str,
         percent: f64,
     ) -> Result<Vec<f64>, Faults> {
-        let factor = factor(id, percent);
-        let model = if id == JOINT {
-            self.with_joint(place, factor)
-        } else {
-            self.with_zone(job, place, factor)?
+        let factor = factor(of, percent);
+        let model = match of {
+            StiffnessOf::Joint => self.with_joint(place, factor),
+            _ => self.with_zone(job, place, factor)?,
         };
         let solution = solve(job, &model, &self.columns)?;
         let now = influence(job, &model, &self.gauges, &solution, self.columns.len());
         Ok(now.iter().zip(&self.base).map(|(a, b)| a - b).collect())
     }
 
-    fn with_joint(&self, place: &str, factor: f64) -> Model {
+    pub(super) fn with_joint(&self, place: &str, factor: f64) -> Model {
         let mut model = self.fields.model().clone();
         for b in model
             .bushes
@@ -117,25 +114,29 @@ impl DeckFrame {
         let Some(ids) = job.reconcile.as_ref().and_then(|r| r.zones.get(zone)) else {
             return Err(fault(format!("no zone `{zone}`"), "name its properties"));
         };
+        self.with_properties(|id| ids.contains(id), factor)
+            .ok_or_else(|| {
+                fault(
+                    format!("zone `{zone}` names no PSHELL of the deck"),
+                    "name PSHELL ids",
+                )
+            })
+    }
+
+    /// The model with the thickness of the shell properties `wanted` scaled; `None` where there are none.
+    pub(super) fn with_properties(
+        &self,
+        wanted: impl Fn(u32) -> bool,
+        factor: f64,
+    ) -> Option<Model> {
         let mut deck = self.fields.deck.deck.clone();
-        let mut changed = 0;
-        for p in deck
-            .cards
-            .pshells
-            .iter_mut()
-            .filter(|p| ids.contains(p.card.id))
-        {
+        let mut changed = false;
+        for p in deck.cards.pshells.iter_mut().filter(|p| wanted(p.card.id)) {
             p.card.t = p.card.t.map(|t| t * factor);
             p.card.z1 = p.card.z1.map(|z| z * factor);
             p.card.z2 = p.card.z2.map(|z| z * factor);
-            changed += 1;
+            changed = true;
         }
-        if changed == 0 {
-            return Err(fault(
-                format!("zone `{zone}` names no PSHELL of the deck"),
-                "name PSHELL ids",
-            ));
-        }
-        Ok(Model::from_deck(&deck).0)
+        changed.then(|| Model::from_deck(&deck).0)
     }
 }

@@ -1,27 +1,69 @@
 //! What has to be added to the model for a named effect to be in it.
 
+/// What undoes a fault of one channel, on the readings at hand and on all to come.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Correction {
+    /// The channel reads with its sign turned.
+    Sign,
+    /// It reads this factor of the strain.
+    Gain(f64),
+    /// It reads this much too much, microstrain.
+    Offset(f64),
+    /// It carries the other channel's name, and the other one its own.
+    ExchangedWith(String),
+    /// The gauge is turned by this much, degrees.
+    AngleDeg(f64),
+    /// The gauge sits this far along its axis, millimetres.
+    PositionMm(f64),
+    /// Nothing can be made of it: it is left out.
+    Ignore,
+}
+
+/// Loads that a model leaves out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Nuisance {
+    /// Side and longitudinal forces and moments at the wheels.
+    SideLoads,
+    /// An even temperature.
+    UniformTemperature,
+    /// A temperature that differs from place to place.
+    TemperatureGradient,
+    /// Wheel forces of ground that is not flat.
+    Ground,
+}
+
 /// The addition, in words that a job or a deck can hold.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Extension {
-    /// A correction of one channel's reading.
-    Channel {
-        /// Effect id without place.
-        id: &'static str,
-        /// Gauge, or `a+b`.
-        gauge: String,
-        /// Size (microstrain, factor, degrees, mm).
-        size: f64,
-        /// Unit.
-        unit: &'static str,
-    },
-    /// The stiffness of a zone or a joint times `1 + percent / 100`.
-    Stiffness {
-        /// Effect id without place.
-        id: &'static str,
-        /// Zone or joint.
+    /// Corrections of channels, one after the other.
+    Channels(Vec<(String, Correction)>),
+    /// The stiffness of a zone times `1 + percent / 100`.
+    ZoneStiffness {
+        /// Zone.
         place: String,
         /// Percent.
         percent: f64,
+    },
+    /// The stiffness of a joint times `exp(percent / 100)`.
+    JointStiffness {
+        /// Joint.
+        place: String,
+        /// Natural log times 100.
+        percent: f64,
+    },
+    /// The stiffness of a small region times `exp(percent / 100)`.
+    LocalStiffness {
+        /// Element in its middle.
+        place: String,
+        /// Natural log times 100.
+        percent: f64,
+    },
+    /// A change of the structure that the user described, times `size`.
+    Described {
+        /// Effect id.
+        id: String,
+        /// Size in its own unit.
+        size: f64,
     },
     /// A lumped mass.
     Mass {
@@ -41,15 +83,44 @@ pub enum Extension {
     PayloadWeight,
     /// All strain of the model times a factor.
     Scale(f64),
-    /// Nothing can be added: no effect of the library.
-    Nothing,
+    /// The noted value of a load divided by a factor, in every run.
+    LoadScale {
+        /// Load.
+        load: String,
+        /// What the scale reads of the true load.
+        factor: f64,
+    },
+    /// Two runs exchange what was noted of them.
+    RunExchange {
+        /// The runs.
+        runs: [String; 2],
+    },
+    /// What was noted of one run is wrong.
+    RunRecord {
+        /// Run.
+        run: String,
+    },
     /// Nuisance loads to be found in every run.
     NuisanceLoads {
-        /// Effect id.
-        id: &'static str,
+        /// Where they come from.
+        source: Nuisance,
         /// Names of the patterns, with their usual size.
         loads: Vec<(String, f64)>,
         /// Unit of the sizes.
         unit: &'static str,
     },
+    /// Nothing can be added: no effect of the library.
+    Nothing,
+}
+
+impl Extension {
+    /// The same correction of every channel of `names`.
+    pub fn channel(names: &[String], correction: Correction) -> Self {
+        Self::Channels(
+            names
+                .iter()
+                .map(|n| (n.clone(), correction.clone()))
+                .collect(),
+        )
+    }
 }

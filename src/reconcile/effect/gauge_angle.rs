@@ -1,27 +1,20 @@
 //! `gauge_angle`: a gauge glued at another angle than drawn.
 
-use super::{Extension, Parameter, Stage, StrainEffect, gauge_name};
-use crate::reconcile::strain::{StrainFrame, StrainState, Wiring};
+use super::channel_fault::{ChannelFault, OnGauges};
+use super::{Correction, Extension, Parameter, Stage};
+use crate::reconcile::strain::{StrainFrame, Wiring};
 
 /// Influence = exx cos^2 + eyy sin^2 + gxy sin cos at angle + size; in a bending bridge the shear of both sides cancels.
 #[derive(Clone, Debug)]
-pub struct GaugeAngle {
-    /// Gauge.
-    pub gauge: usize,
-    /// Its name.
-    pub name: String,
-}
+pub struct GaugeAngle;
 
 impl GaugeAngle {
     /// One on every gauge whose in-plane strain is known.
-    pub fn all(frame: &StrainFrame) -> Vec<Self> {
+    pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         let known = |g: &usize| frame.tensors.get(*g).is_some_and(|t| !t.is_empty());
         (0..frame.n_gauges())
             .filter(known)
-            .map(|gauge| Self {
-                gauge,
-                name: gauge_name(frame, gauge),
-            })
+            .map(|g| OnGauges::one(frame, g, Self))
             .collect()
     }
 }
@@ -45,18 +38,13 @@ pub fn angle_change(frame: &StrainFrame, gauge: usize, degrees: f64) -> Vec<f64>
         facts.angle_deg.to_radians(),
         (facts.angle_deg + degrees).to_radians(),
     );
-    tensors
-        .iter()
-        .map(|&t| reading(t, glued, facts.wiring) - reading(t, drawn, facts.wiring))
-        .collect()
+    let change = |&t: &[f64; 3]| reading(t, glued, facts.wiring) - reading(t, drawn, facts.wiring);
+    tensors.iter().map(change).collect()
 }
 
-impl StrainEffect for GaugeAngle {
+impl ChannelFault for GaugeAngle {
     fn id(&self) -> &'static str {
         "gauge_angle"
-    }
-    fn place(&self) -> Option<String> {
-        Some(self.name.clone())
     }
     fn stage(&self) -> Stage {
         Stage::Structure
@@ -64,41 +52,28 @@ impl StrainEffect for GaugeAngle {
     fn parameters(&self) -> Vec<Parameter> {
         // A first-order step is zero for a gauge along a principal direction: start on both sides. A gauge glued across is as usual a
         // mistake as one glued askew: the prior is wide.
+        let starts = vec![-75.0, -30.0, -8.0, 8.0, 30.0, 75.0];
         vec![Parameter {
             unit: "degree",
             neutral: 0.0,
             prior_sd: 30.0,
             step: 0.25,
-            starts: vec![-75.0, -30.0, -8.0, 8.0, 30.0, 75.0],
+            starts,
             plausible: 95.0,
         }]
     }
-    fn alter(&self, frame: &StrainFrame, parameters: &[f64], state: &mut StrainState) {
-        let Some(&degrees) = parameters.first() else {
-            return;
-        };
-        let n_c = state.shape[2];
-        let row = &mut state.influence[self.gauge * n_c..(self.gauge + 1) * n_c];
-        for (cell, d) in row.iter_mut().zip(angle_change(frame, self.gauge, degrees)) {
-            *cell += d;
-        }
+    fn influence_change(&self, frame: &StrainFrame, gauge: usize, parameters: &[f64]) -> Vec<f64> {
+        angle_change(frame, gauge, parameters.first().copied().unwrap_or(0.0))
     }
-    fn extension(&self, _frame: &StrainFrame, parameters: &[f64]) -> Extension {
-        let size = parameters.first().copied().unwrap_or(0.0);
-        Extension::Channel {
-            id: self.id(),
-            gauge: self.name.clone(),
-            size,
-            unit: "degree",
-        }
-    }
-    fn separate_by(&self, _frame: &StrainFrame) -> String {
-        format!(
-            "photograph gauge {} with a protractor; a load that shears the member there shows an angle, not a gain",
-            self.name
+    fn extension(&self, names: &[String], parameters: &[f64]) -> Extension {
+        Extension::channel(
+            names,
+            Correction::AngleDeg(parameters.first().copied().unwrap_or(0.0)),
         )
     }
-    fn gauges(&self) -> Vec<usize> {
-        vec![self.gauge]
+    fn separate_by(&self, place: &str) -> String {
+        format!(
+            "photograph gauge {place} with a protractor; a load that shears the member there shows an angle, not a gain"
+        )
     }
 }

@@ -1,78 +1,63 @@
 //! `gauge_gain`: a wrong gauge factor, amplifier gain or bridge factor.
 
-use super::{Extension, Parameter, Stage, StrainEffect, gauge_name};
-use crate::reconcile::strain::{Part, StrainFrame};
+use super::channel_fault::{At, ChannelFault, OnGauges, on_every_gauge};
+use super::{Correction, Extension, Parameter};
+use crate::reconcile::strain::StrainFrame;
 
 /// Reading = gain times strain.
 #[derive(Clone, Debug)]
-pub struct GaugeGain {
-    /// Gauge.
-    pub gauge: usize,
-    /// Its name.
-    pub name: String,
-}
+pub struct GaugeGain;
 
 impl GaugeGain {
     /// One on every gauge.
-    pub fn all(frame: &StrainFrame) -> Vec<Self> {
-        (0..frame.n_gauges())
-            .map(|gauge| Self {
-                gauge,
-                name: gauge_name(frame, gauge),
-            })
-            .collect()
+    pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
+        on_every_gauge(frame, &Self)
     }
 }
 
-impl StrainEffect for GaugeGain {
+/// A gain that may be wrong by a bridge factor of 1/4 to 4, a common mistake, or by some tenths, a wrong gauge factor.
+pub(super) fn gain_parameter() -> Parameter {
+    Parameter {
+        unit: "1",
+        neutral: 1.0,
+        prior_sd: 0.5,
+        step: 0.01,
+        starts: vec![1.0],
+        plausible: 4.0,
+    }
+}
+
+impl ChannelFault for GaugeGain {
     fn id(&self) -> &'static str {
         "gauge_gain"
     }
-    fn place(&self) -> Option<String> {
-        Some(self.name.clone())
-    }
-    fn stage(&self) -> Stage {
-        Stage::Reading
-    }
     fn parameters(&self) -> Vec<Parameter> {
-        // Bridge factors of 1/4 to 4 are common mistakes; a few tenths, a wrong gauge factor.
-        vec![Parameter {
-            unit: "1",
-            neutral: 1.0,
-            prior_sd: 0.5,
-            step: 0.01,
-            starts: vec![1.0],
-            plausible: 4.0,
-        }]
+        vec![gain_parameter()]
     }
-    fn read(
-        &self,
-        _frame: &StrainFrame,
-        parameters: &[f64],
-        _run: usize,
-        row: &mut [f64],
-        _part: Part,
-    ) {
-        if let (Some(cell), [gain, ..]) = (row.get_mut(self.gauge), parameters) {
-            *cell *= gain;
-        }
+    fn read(&self, at: At<'_>, parameters: &[f64], row: &mut [f64]) {
+        scale(at, parameters, row);
     }
-    fn extension(&self, _frame: &StrainFrame, parameters: &[f64]) -> Extension {
-        let size = parameters.first().copied().unwrap_or(1.0);
-        Extension::Channel {
-            id: self.id(),
-            gauge: self.name.clone(),
-            size,
-            unit: "1",
-        }
-    }
-    fn separate_by(&self, _frame: &StrainFrame) -> String {
-        format!(
-            "shunt-calibrate gauge {}: a wrong gain shows, a wrong angle or place does not",
-            self.name
+    fn extension(&self, names: &[String], parameters: &[f64]) -> Extension {
+        Extension::channel(
+            names,
+            Correction::Gain(parameters.first().copied().unwrap_or(1.0)),
         )
     }
-    fn gauges(&self) -> Vec<usize> {
-        vec![self.gauge]
+    fn separate_by(&self, place: &str) -> String {
+        format!(
+            "shunt-calibrate gauge {place}: a wrong gain shows, a wrong angle or place does not"
+        )
+    }
+}
+
+/// Multiplies the cells of the gauges by the first parameter.
+pub(super) fn scale(at: At<'_>, parameters: &[f64], row: &mut [f64]) {
+    let Some(gain) = parameters.first() else {
+        return;
+    };
+    for &g in at.gauges {
+        if let Some(cell) = row.get_mut(g) {
+            *cell *= gain;
+        }
     }
 }

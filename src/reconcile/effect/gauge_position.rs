@@ -1,45 +1,36 @@
 //! `gauge_position`: a gauge glued some way off along its axis.
 
-use super::{Extension, Parameter, Stage, StrainEffect, gauge_name};
-use crate::reconcile::strain::{StrainFrame, StrainState};
+use super::channel_fault::{ChannelFault, OnGauges};
+use super::{Correction, Extension, Parameter, Stage};
+use crate::reconcile::strain::StrainFrame;
 
 /// Influence = influence + size times its gradient along the gauge axis.
 #[derive(Clone, Debug)]
-pub struct GaugePosition {
-    /// Gauge.
-    pub gauge: usize,
-    /// Its name.
-    pub name: String,
-}
+pub struct GaugePosition;
 
 impl GaugePosition {
     /// One on every gauge whose gradient is known.
-    pub fn all(frame: &StrainFrame) -> Vec<Self> {
-        let Some(per_mm) = &frame.per_mm else {
-            return Vec::new();
-        };
-        let n_c = frame.n_columns();
-        let known = |g: &usize| {
-            per_mm
-                .get(g * n_c..(g + 1) * n_c)
-                .is_some_and(|r| r.iter().any(|v| *v != 0.0))
-        };
+    pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
+        let known = |g: &usize| gradient(frame, *g).iter().any(|v| *v != 0.0);
         (0..frame.n_gauges())
             .filter(known)
-            .map(|gauge| Self {
-                gauge,
-                name: gauge_name(frame, gauge),
-            })
+            .map(|g| OnGauges::one(frame, g, Self))
             .collect()
     }
 }
 
-impl StrainEffect for GaugePosition {
+fn gradient(frame: &StrainFrame, gauge: usize) -> &[f64] {
+    let n_c = frame.n_columns();
+    let row = frame
+        .per_mm
+        .as_ref()
+        .and_then(|m| m.get(gauge * n_c..(gauge + 1) * n_c));
+    row.unwrap_or(&[])
+}
+
+impl ChannelFault for GaugePosition {
     fn id(&self) -> &'static str {
         "gauge_position"
-    }
-    fn place(&self) -> Option<String> {
-        Some(self.name.clone())
     }
     fn stage(&self) -> Stage {
         Stage::Structure
@@ -54,31 +45,17 @@ impl StrainEffect for GaugePosition {
             plausible: 60.0,
         }]
     }
-    fn alter(&self, frame: &StrainFrame, parameters: &[f64], state: &mut StrainState) {
-        let (Some(mm), Some(per_mm)) = (parameters.first(), &frame.per_mm) else {
-            return;
-        };
-        let n_c = state.shape[2];
-        let at = self.gauge * n_c..(self.gauge + 1) * n_c;
-        if let Some(gradient) = per_mm.get(at.clone()) {
-            for (cell, d) in state.influence[at].iter_mut().zip(gradient) {
-                *cell += mm * d;
-            }
-        }
+    fn influence_change(&self, frame: &StrainFrame, gauge: usize, parameters: &[f64]) -> Vec<f64> {
+        let mm = parameters.first().copied().unwrap_or(0.0);
+        gradient(frame, gauge).iter().map(|d| mm * d).collect()
     }
-    fn extension(&self, _frame: &StrainFrame, parameters: &[f64]) -> Extension {
-        let size = parameters.first().copied().unwrap_or(0.0);
-        Extension::Channel {
-            id: self.id(),
-            gauge: self.name.clone(),
-            size,
-            unit: "mm",
-        }
+    fn extension(&self, names: &[String], parameters: &[f64]) -> Extension {
+        Extension::channel(
+            names,
+            Correction::PositionMm(parameters.first().copied().unwrap_or(0.0)),
+        )
     }
-    fn separate_by(&self, _frame: &StrainFrame) -> String {
-        format!("measure where gauge {} sits", self.name)
-    }
-    fn gauges(&self) -> Vec<usize> {
-        vec![self.gauge]
+    fn separate_by(&self, place: &str) -> String {
+        format!("measure where gauge {place} sits")
     }
 }

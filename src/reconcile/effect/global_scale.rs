@@ -8,7 +8,7 @@ use crate::reconcile::strain::{StrainFrame, StrainState};
 pub struct GlobalScale;
 
 impl StrainEffect for GlobalScale {
-    fn id(&self) -> &'static str {
+    fn id(&self) -> &str {
         "global_scale"
     }
     fn stage(&self) -> Stage {

@@ -1,23 +1,30 @@
-//! All effects that the frame's data allow, sensor faults first.
+//! All effects that the frame's data allow, sensor faults first. This list is the only place that names them all.
 
 use super::StrainEffect;
+use super::card_gain::CardGain;
+use super::cross_sensitivity::CrossSensitivity;
 use super::dead_channel::DeadChannel;
+use super::gain_drift::GainDrift;
 use super::gauge_angle::GaugeAngle;
 use super::gauge_gain::GaugeGain;
 use super::gauge_position::GaugePosition;
 use super::gauge_swap::GaugeSwap;
 use super::global_scale::GlobalScale;
+use super::intermittent_channel::IntermittentChannel;
 use super::lateral_wheel_loads::LateralWheelLoads;
+use super::model_discrepancy::ModelDiscrepancy;
 use super::payload_gravity_missing::PayloadGravityMissing;
 use super::payload_offset::PayloadOffset;
 use super::rosette_legs::RosetteLegs;
+use super::run_exchange::RunExchange;
+use super::run_record::RunRecord;
 use super::saturated_channel::SaturatedChannel;
 use super::sign_flip::SignFlip;
 use super::stiffness::Stiffness;
-use super::stranger::Stranger;
 use super::thermal::Thermal;
 use super::unaccounted_mass::UnaccountedMass;
 use super::uneven_ground::UnevenGround;
+use super::wheel_scale::WheelScale;
 use super::zero_drift::ZeroDrift;
 use crate::reconcile::strain::StrainFrame;
 
@@ -29,50 +36,71 @@ pub struct Candidate {
     pub log_prior: f64,
 }
 
-/// The candidates of `frame`; with `only` not empty, those whose id (or id with place) it lists.
-pub fn library(frame: &StrainFrame, only: &[String]) -> Vec<Candidate> {
-    let mut groups: Vec<Vec<Box<dyn StrainEffect>>> = Vec::new();
-    fn boxed<E: StrainEffect + 'static>(effects: Vec<E>) -> Vec<Box<dyn StrainEffect>> {
-        effects
-            .into_iter()
-            .map(|e| Box::new(e) as Box<dyn StrainEffect>)
-            .collect()
-    }
-    groups.push(boxed(ZeroDrift::all(frame)));
-    groups.push(boxed(SignFlip::all(frame)));
-    groups.push(boxed(GaugeGain::all(frame)));
-    groups.push(boxed(GaugeSwap::all(frame)));
-    groups.push(boxed(RosetteLegs::all(frame)));
-    groups.push(boxed(GaugeAngle::all(frame)));
-    groups.push(boxed(GaugePosition::all(frame)));
-    groups.push(boxed(DeadChannel::all(frame)));
-    groups.push(boxed(SaturatedChannel::all(frame)));
-    groups.push(boxed(PayloadGravityMissing::all(frame)));
-    groups.push(boxed(PayloadOffset::all(frame)));
-    groups.push(boxed(UnaccountedMass::all(frame)));
-    groups.push(boxed(UnevenGround::all(frame)));
-    let (uniform, gradient): (Vec<_>, Vec<_>) = Thermal::all(frame)
+/// An effect at every place where it could be.
+type Everywhere = fn(&StrainFrame) -> Vec<Box<dyn StrainEffect>>;
+
+fn boxed<E: StrainEffect + 'static>(effects: Vec<E>) -> Vec<Box<dyn StrainEffect>> {
+    effects
         .into_iter()
-        .partition(|t| t.id() == "thermal_uniform");
-    groups.push(boxed(uniform));
-    groups.push(boxed(gradient));
-    groups.push(boxed(LateralWheelLoads::all(frame)));
-    groups.push(boxed(Stiffness::all(frame)));
-    groups.push(boxed(vec![GlobalScale]));
-    groups.push(boxed(Stranger::all()));
-    groups.retain(|g| !g.is_empty());
+        .map(|e| Box::new(e) as Box<dyn StrainEffect>)
+        .collect()
+}
+
+const LIBRARY: [Everywhere; 27] = [
+    |f| boxed(ZeroDrift::all(f)),
+    |f| boxed(SignFlip::all(f)),
+    |f| boxed(GaugeGain::all(f)),
+    |f| boxed(GaugeSwap::all(f)),
+    |f| boxed(RosetteLegs::all(f)),
+    |f| boxed(GaugeAngle::all(f)),
+    |f| boxed(GaugePosition::all(f)),
+    |f| boxed(DeadChannel::all(f)),
+    |f| boxed(SaturatedChannel::all(f)),
+    |f| boxed(IntermittentChannel::all(f)),
+    |f| boxed(CardGain::all(f)),
+    |f| boxed(GainDrift::all(f)),
+    |f| boxed(CrossSensitivity::all(f)),
+    |f| boxed(WheelScale::all(f)),
+    |f| boxed(RunExchange::all(f)),
+    |f| boxed(RunRecord::all(f)),
+    |f| boxed(PayloadGravityMissing::all(f)),
+    |f| boxed(PayloadOffset::all(f)),
+    |f| boxed(UnaccountedMass::all(f)),
+    |f| boxed(UnevenGround::all(f)),
+    |f| boxed(Thermal::uniform(f)),
+    |f| boxed(Thermal::gradient(f)),
+    |f| boxed(LateralWheelLoads::all(f)),
+    |f| boxed(Stiffness::all(f)),
+    |f| boxed(Stiffness::described(f)),
+    |_| boxed(vec![GlobalScale]),
+    |_| boxed(ModelDiscrepancy::all()),
+];
+
+/// The candidates of `frame`; with `only` not empty, those whose id (or id with place) it lists, and the general forms of discrepancy,
+/// which are no names.
+///
+/// Prior weights sum to one: alike for all effects that could be, shared within an effect by its places.
+pub fn library(frame: &StrainFrame, only: &[String]) -> Vec<Candidate> {
+    let wanted = |e: &dyn StrainEffect| {
+        let full = super::full_id(e);
+        only.is_empty()
+            || e.discrepancy().is_some()
+            || only.iter().any(|w| w == e.id() || *w == full)
+    };
+    let everywhere = LIBRARY.iter().map(|all| all(frame));
+    let mut groups: Vec<Vec<Box<dyn StrainEffect>>> = everywhere
+        .map(|group| group.into_iter().filter(|e| wanted(e.as_ref())).collect())
+        .collect();
+    groups.retain(|g: &Vec<_>| !g.is_empty());
     let n_groups = groups.len().max(1) as f64;
     let mut out = Vec::new();
     for group in groups {
         let log_prior = -(n_groups * group.len() as f64).ln();
-        for effect in group {
-            let wanted = only
-                .iter()
-                .any(|w| w == effect.id() || *w == super::full_id(effect.as_ref()));
-            if only.is_empty() || wanted || effect.outside().is_some() {
-                out.push(Candidate { effect, log_prior });
-            }
-        }
+        out.extend(
+            group
+                .into_iter()
+                .map(|effect| Candidate { effect, log_prior }),
+        );
     }
     out
 }

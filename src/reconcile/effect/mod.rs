@@ -1,33 +1,43 @@
-//! The library: one file per effect, with its physics, its parameters and a plausible size.
+//! Effects that can part simulation and measurement of static strain.
 //!
-//! An effect is known by what it does to the prediction; the search never asks which one it is. Others may add theirs: implement
-//! [`StrainEffect`] and push it to the list of [`library`].
+//! Each effect is a file of its own: physics, parameters with plausible sizes, what it does to the prediction, what it adds to the model.
+//! The search never asks which one it is. To add one: write its file, name it in [`library`]. A fault of channels says what it does to a
+//! reading as a [`channel_fault::ChannelFault`]; everything else implements [`StrainEffect`].
 
 mod amplitude;
+mod card_gain;
+pub mod channel_fault;
+mod cross_sensitivity;
 mod dead_channel;
 mod extension;
+mod gain_drift;
 mod gauge_angle;
 mod gauge_gain;
 mod gauge_position;
 mod gauge_swap;
 mod global_scale;
+mod intermittent_channel;
 mod lateral_wheel_loads;
 mod library;
+mod model_discrepancy;
 mod payload_gravity_missing;
 mod payload_offset;
 mod rosette_legs;
+mod run_exchange;
+mod run_record;
 mod saturated_channel;
 mod sign_flip;
 mod stiffness;
-mod stranger;
 mod thermal;
 mod unaccounted_mass;
 mod uneven_ground;
+mod wheel_scale;
 mod zero_drift;
 
 pub use amplitude::Amplitudes;
-pub use extension::Extension;
+pub use extension::{Correction, Extension, Nuisance};
 pub use library::{Candidate, library};
+pub use model_discrepancy::ModelDiscrepancy;
 
 use crate::reconcile::strain::{Part, StrainFrame, StrainState};
 
@@ -40,6 +50,45 @@ pub enum Stage {
     Loads,
     /// It changes what a channel says of the strain.
     Reading,
+}
+
+/// Whether two effects may sit on one gauge: two faults there are told as one, but a zero may drift besides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FaultKind {
+    /// It changes how the channel reads strain.
+    Whole,
+    /// It adds to what the channel reads.
+    Zero,
+    /// Nothing else shows through it.
+    Silent,
+}
+
+impl FaultKind {
+    /// Can the two be told apart on one gauge?
+    pub fn besides(self, other: Self) -> bool {
+        matches!(
+            (self, other),
+            (Self::Zero, Self::Whole) | (Self::Whole, Self::Zero)
+        )
+    }
+}
+
+/// What a general form of discrepancy says of the gap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Discrepancy {
+    /// Noise alike at all gauges: the stated noise is too small.
+    Noise(&'static str),
+    /// A form that is in no model and no channel of the library.
+    Form(&'static str),
+}
+
+impl Discrepancy {
+    /// Its words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Noise(words) | Self::Form(words) => words,
+        }
+    }
 }
 
 /// A parameter of an effect, with its plausible size.
@@ -62,13 +111,13 @@ pub struct Parameter {
 /// A discrepancy with its physics.
 pub trait StrainEffect: Send + Sync {
     /// Id without the place, as in results.
-    fn id(&self) -> &'static str;
+    fn id(&self) -> &str;
     /// The place: a gauge, a zone, `a+b`.
     fn place(&self) -> Option<String> {
         None
     }
-    /// For a general form that is no effect of the library: what it says of the gap.
-    fn outside(&self) -> Option<&'static str> {
+    /// For a general form of discrepancy that is no effect of the library: what it says of the gap.
+    fn discrepancy(&self) -> Option<Discrepancy> {
         None
     }
     /// Where it acts.
@@ -101,6 +150,14 @@ pub trait StrainEffect: Send + Sync {
     fn gauges(&self) -> Vec<usize> {
         Vec::new()
     }
+    /// The runs it touches, where it touches only some.
+    fn runs(&self) -> Vec<usize> {
+        Vec::new()
+    }
+    /// Whether another fault may sit on the same gauge.
+    fn kind(&self) -> FaultKind {
+        FaultKind::Whole
+    }
 }
 
 /// An effect with values for its parameters.
@@ -118,12 +175,4 @@ pub fn full_id(effect: &dyn StrainEffect) -> String {
         Some(place) => format!("{}:{place}", effect.id()),
         None => effect.id().to_string(),
     }
-}
-
-fn gauge_name(frame: &StrainFrame, gauge: usize) -> String {
-    frame
-        .gauges
-        .get(gauge)
-        .map(|g| g.name.clone())
-        .unwrap_or_default()
 }

@@ -20,7 +20,7 @@ impl PayloadGravityMissing {
 }
 
 impl StrainEffect for PayloadGravityMissing {
-    fn id(&self) -> &'static str {
+    fn id(&self) -> &str {
         "payload_gravity_missing"
     }
     fn stage(&self) -> Stage {

@@ -44,7 +44,7 @@ impl PayloadOffset {
 }
 
 impl StrainEffect for PayloadOffset {
-    fn id(&self) -> &'static str {
+    fn id(&self) -> &str {
         "payload_offset"
     }
     fn stage(&self) -> Stage {

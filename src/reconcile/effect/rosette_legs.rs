@@ -1,93 +1,79 @@
 //! `rosette_legs`: the legs of a rosette connected in another order.
 
-use super::{Extension, Stage, StrainEffect, gauge_name};
-use crate::reconcile::strain::{Part, StrainFrame};
+use super::channel_fault::{At, ChannelFault, OnGauges};
+use super::{Correction, Extension};
+use crate::reconcile::strain::StrainFrame;
 
 /// Channel i of the rosette reads leg `order[i]`.
 #[derive(Clone, Debug)]
 pub struct RosetteLegs {
-    /// The channels, in file order.
-    pub legs: Vec<usize>,
-    /// Which leg each of them reads.
+    /// Which of the gauges each channel, in file order, reads: indices into the rosette.
     pub order: Vec<usize>,
-    /// Name of the first leg.
-    pub name: String,
 }
 
 impl RosetteLegs {
-    /// Every other order of two or three legs at one place.
-    pub fn all(frame: &StrainFrame) -> Vec<Self> {
-        const ORDERS: [[usize; 3]; 5] = [[1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]];
+    /// Every other order of two or three legs at one place; the rosette is named by its first leg.
+    pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
+        const ORDERS: [&[usize]; 6] = [
+            &[1, 0],
+            &[1, 0, 2],
+            &[0, 2, 1],
+            &[2, 1, 0],
+            &[1, 2, 0],
+            &[2, 0, 1],
+        ];
         let mut out = Vec::new();
         for first in 0..frame.n_gauges() {
             let legs = frame.rosette(first);
             if legs.first() != Some(&first) {
                 continue;
             }
-            let name = gauge_name(frame, first);
-            match legs.len() {
-                2 => out.push(Self {
-                    order: vec![legs[1], legs[0]],
-                    legs,
-                    name,
-                }),
-                3 => out.extend(ORDERS.iter().map(|o| Self {
-                    order: o.iter().map(|&i| legs[i]).collect(),
-                    legs: legs.clone(),
-                    name: name.clone(),
-                })),
-                _ => {}
+            for order in ORDERS.iter().filter(|o| o.len() == legs.len()) {
+                let fault = Self {
+                    order: order.to_vec(),
+                };
+                let by_first = |names: &[String]| names.first().cloned().unwrap_or_default();
+                out.push(OnGauges::new(frame, legs.clone(), fault, by_first));
             }
         }
         out
     }
 }
 
-impl StrainEffect for RosetteLegs {
+impl ChannelFault for RosetteLegs {
     fn id(&self) -> &'static str {
         "rosette_legs"
     }
-    fn place(&self) -> Option<String> {
-        Some(self.name.clone())
-    }
-    fn stage(&self) -> Stage {
-        Stage::Reading
-    }
-    fn read(
-        &self,
-        _frame: &StrainFrame,
-        _parameters: &[f64],
-        _run: usize,
-        row: &mut [f64],
-        _part: Part,
-    ) {
-        let read: Vec<f64> = self
-            .order
+    fn read(&self, at: At<'_>, _parameters: &[f64], row: &mut [f64]) {
+        let felt: Vec<f64> = at
+            .gauges
             .iter()
             .map(|&g| row.get(g).copied().unwrap_or(f64::NAN))
             .collect();
-        for (&leg, value) in self.legs.iter().zip(read) {
-            if let Some(cell) = row.get_mut(leg) {
-                *cell = value;
+        for (&channel, &leg) in at.gauges.iter().zip(&self.order) {
+            if let (Some(cell), Some(v)) = (row.get_mut(channel), felt.get(leg)) {
+                *cell = *v;
             }
         }
     }
-    fn extension(&self, frame: &StrainFrame, _parameters: &[f64]) -> Extension {
-        let order: Vec<String> = self.order.iter().map(|&g| gauge_name(frame, g)).collect();
-        Extension::Channel {
-            id: self.id(),
-            gauge: order.join("+"),
-            size: 1.0,
-            unit: "1",
+    fn extension(&self, names: &[String], _parameters: &[f64]) -> Extension {
+        // A turn of three is two exchanges, one after the other.
+        let mut now: Vec<usize> = self.order.clone();
+        let mut steps = Vec::new();
+        for leg in 0..now.len() {
+            let Some(at) = now.iter().position(|l| *l == leg).filter(|at| *at != leg) else {
+                continue;
+            };
+            now.swap(leg, at);
+            if let (Some(a), Some(b)) = (names.get(leg), names.get(at)) {
+                steps.push((a.clone(), Correction::ExchangedWith(b.clone())));
+            }
         }
+        Extension::Channels(steps)
     }
-    fn separate_by(&self, _frame: &StrainFrame) -> String {
+    fn separate_by(&self, place: &str) -> String {
         format!(
-            "follow the leads of the rosette at {}, or shunt one leg and see which channel moves",
-            self.name
+            "follow the leads of the rosette at {place}, or shunt one leg and see which channel moves"
         )
-    }
-    fn gauges(&self) -> Vec<usize> {
-        self.legs.clone()
     }
 }

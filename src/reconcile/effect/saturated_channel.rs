@@ -1,23 +1,23 @@
 //! `saturated_channel`: a channel that stops at the end of its range.
 
-use super::{Extension, Parameter, Stage, StrainEffect, gauge_name};
+use super::channel_fault::{At, ChannelFault, OnGauges};
+use super::{Correction, Extension, Parameter};
 use crate::reconcile::strain::{Part, StrainFrame, predict};
 
 /// Reading = strain, held between -limit and +limit.
 #[derive(Clone, Debug)]
 pub struct SaturatedChannel {
-    /// Gauge.
-    pub gauge: usize,
-    /// Its name.
-    pub name: String,
     /// Largest reading of the channel: the limit is there or it did not act.
     pub largest: f64,
 }
 
 impl SaturatedChannel {
     /// One on every gauge with two or more readings at its largest size, where the model predicts more.
-    pub fn all(frame: &StrainFrame) -> Vec<Self> {
+    pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
+        /// Readings held at a limit differ by noise only: five standard deviations.
+        const ALIKE: f64 = 5.0;
         let predicted = predict(frame, &[]);
+        let near = ALIKE * frame.noise;
         let mut out = Vec::new();
         for gauge in 0..frame.n_gauges() {
             let read: Vec<f64> = (0..frame.n_runs())
@@ -25,37 +25,21 @@ impl SaturatedChannel {
                 .filter(|v| v.is_finite())
                 .collect();
             let largest = read.iter().copied().fold(0.0, f64::max);
-            // Readings held at a limit differ by noise only.
-            let at_limit = read
-                .iter()
-                .filter(|v| **v > largest - 5.0 * frame.noise)
-                .count();
+            let at_limit = read.iter().filter(|v| **v > largest - near).count();
             let expected =
                 (0..frame.n_runs()).filter_map(|r| predicted.get(r * frame.n_gauges() + gauge));
-            let beyond = expected
-                .filter(|p| p.abs() > largest + 5.0 * frame.noise)
-                .count();
-            if largest > 4.0 * frame.noise && at_limit >= 2 && beyond >= 1 {
-                out.push(Self {
-                    gauge,
-                    name: gauge_name(frame, gauge),
-                    largest,
-                });
+            let beyond = expected.filter(|p| p.abs() > largest + near).count();
+            if largest > near && at_limit >= 2 && beyond >= 1 {
+                out.push(OnGauges::one(frame, gauge, Self { largest }));
             }
         }
         out
     }
 }
 
-impl StrainEffect for SaturatedChannel {
+impl ChannelFault for SaturatedChannel {
     fn id(&self) -> &'static str {
         "saturated_channel"
-    }
-    fn place(&self) -> Option<String> {
-        Some(self.name.clone())
-    }
-    fn stage(&self) -> Stage {
-        Stage::Reading
     }
     fn parameters(&self) -> Vec<Parameter> {
         vec![Parameter {
@@ -67,37 +51,20 @@ impl StrainEffect for SaturatedChannel {
             plausible: f64::INFINITY,
         }]
     }
-    fn read(
-        &self,
-        _frame: &StrainFrame,
-        parameters: &[f64],
-        _run: usize,
-        row: &mut [f64],
-        part: Part,
-    ) {
-        let (Part::Whole, [limit, ..]) = (part, parameters) else {
+    fn read(&self, at: At<'_>, parameters: &[f64], row: &mut [f64]) {
+        let (Part::Whole, [limit, ..]) = (at.part, parameters) else {
             return;
         };
-        if let Some(cell) = row.get_mut(self.gauge) {
-            *cell = cell.clamp(-limit.abs(), limit.abs());
+        for &g in at.gauges {
+            if let Some(cell) = row.get_mut(g) {
+                *cell = cell.clamp(-limit.abs(), limit.abs());
+            }
         }
     }
-    fn extension(&self, _frame: &StrainFrame, parameters: &[f64]) -> Extension {
-        let size = parameters.first().copied().unwrap_or(0.0);
-        Extension::Channel {
-            id: self.id(),
-            gauge: self.name.clone(),
-            size,
-            unit: "microstrain",
-        }
+    fn extension(&self, names: &[String], _parameters: &[f64]) -> Extension {
+        Extension::channel(names, Correction::Ignore)
     }
-    fn separate_by(&self, _frame: &StrainFrame) -> String {
-        format!(
-            "lower the amplifier's gain of gauge {} and repeat the heaviest run",
-            self.name
-        )
-    }
-    fn gauges(&self) -> Vec<usize> {
-        vec![self.gauge]
+    fn separate_by(&self, place: &str) -> String {
+        format!("lower the amplifier's gain of gauge {place} and repeat the heaviest run")
     }
 }

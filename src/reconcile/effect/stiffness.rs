@@ -1,49 +1,68 @@
-//! `rail_stiffness`, `joint_stiffness`: a zone or a joint stiffer or softer than modelled.
+//! `rail_stiffness`, `joint_stiffness`, `local_stiffness`: a zone, a joint or a small region stiffer or softer than modelled; and changes
+//! of the structure that the user described.
 
 use super::{Extension, Parameter, Stage, StrainEffect};
-use crate::reconcile::strain::{StrainFrame, StrainState};
+use crate::reconcile::strain::{StiffnessOf, StiffnessSignature, StrainFrame, StrainState};
 
 /// Influence = influence + change(size), from solutions of the changed model, interpolated between them.
 #[derive(Clone, Debug)]
 pub struct Stiffness {
     /// Index into the frame's signatures.
     pub signature: usize,
-    /// `rail_stiffness` or `joint_stiffness`.
-    pub id: &'static str,
-    /// Zone or joint.
+    /// What is changed.
+    pub of: StiffnessOf,
+    /// Zone, joint, element or grid; of a described change its id.
     pub name: String,
     /// Prior standard deviation of its size.
-    pub prior_percent: f64,
+    pub prior: f64,
 }
 
 impl Stiffness {
-    /// One for every signature.
+    /// One for every signature of zones, joints and regions.
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
-        let named = frame.stiffness.iter().enumerate().map(|(signature, s)| {
-            let (id, place) = s.id.split_once(':').unwrap_or((&s.id, ""));
-            let id = if id == "joint_stiffness" {
-                "joint_stiffness"
-            } else {
-                "rail_stiffness"
-            };
-            Self {
-                signature,
-                id,
-                name: place.to_string(),
-                prior_percent: s.prior_percent,
-            }
-        });
-        named.collect()
+        Self::where_it(frame, |of| of != StiffnessOf::Described)
+    }
+
+    /// One for every change that the user described.
+    pub fn described(frame: &StrainFrame) -> Vec<Self> {
+        Self::where_it(frame, |of| of == StiffnessOf::Described)
+    }
+
+    fn where_it(frame: &StrainFrame, wanted: impl Fn(StiffnessOf) -> bool) -> Vec<Self> {
+        let one = |(signature, s): (usize, &StiffnessSignature)| Self {
+            signature,
+            of: s.of,
+            name: s.place.clone(),
+            prior: s.prior_percent,
+        };
+        frame
+            .stiffness
+            .iter()
+            .enumerate()
+            .filter(|(_, s)| wanted(s.of))
+            .map(one)
+            .collect()
     }
 }
 
-/// Weights of the known sizes at `percent`: the polynomial through zero and all of them (Lagrange).
-fn weights(sizes: &[f64], percent: f64) -> Vec<f64> {
+/// Weights of the known sizes at `size`: the polynomial through zero and all of them (Lagrange); beyond the outermost of them on the
+/// straight line through zero and it, since a polynomial goes astray there.
+fn weights(sizes: &[f64], size: f64) -> Vec<f64> {
+    let outermost = sizes
+        .iter()
+        .copied()
+        .filter(|s| s * size > 0.0)
+        .max_by(|a, b| a.abs().total_cmp(&b.abs()));
+    if let Some(last) = outermost.filter(|last| size.abs() > last.abs()) {
+        return sizes
+            .iter()
+            .map(|s| if *s == last { size / last } else { 0.0 })
+            .collect();
+    }
     let weight = |i: usize| {
-        let mut w = percent / sizes[i];
-        for (j, &other) in sizes.iter().enumerate().filter(|(j, _)| *j != i) {
-            debug_assert!(i != j);
-            w *= (percent - other) / (sizes[i] - other);
+        let mut w = size / sizes[i];
+        for (_, &other) in sizes.iter().enumerate().filter(|(j, _)| *j != i) {
+            w *= (size - other) / (sizes[i] - other);
         }
         w
     };
@@ -51,38 +70,45 @@ fn weights(sizes: &[f64], percent: f64) -> Vec<f64> {
 }
 
 impl StrainEffect for Stiffness {
-    fn id(&self) -> &'static str {
-        self.id
+    fn id(&self) -> &str {
+        match self.of {
+            StiffnessOf::Zone => "rail_stiffness",
+            StiffnessOf::Joint => "joint_stiffness",
+            StiffnessOf::Local => "local_stiffness",
+            StiffnessOf::Described => &self.name,
+        }
     }
     fn place(&self) -> Option<String> {
-        Some(self.name.clone())
+        (self.of != StiffnessOf::Described).then(|| self.name.clone())
     }
     fn stage(&self) -> Stage {
         Stage::Structure
     }
     fn parameters(&self) -> Vec<Parameter> {
+        let (unit, step) = match self.of {
+            StiffnessOf::Zone => ("percent", 0.5),
+            StiffnessOf::Joint | StiffnessOf::Local => ("percent (natural log times 100)", 0.5),
+            StiffnessOf::Described => ("1", 0.01 * self.prior),
+        };
         // Four times the prior: a plate of half or one and a half times its thickness, a joint twenty times as stiff.
+        let plausible = 4.0 * self.prior;
         vec![Parameter {
-            unit: if self.id == "joint_stiffness" {
-                "percent (natural log times 100)"
-            } else {
-                "percent"
-            },
+            unit,
             neutral: 0.0,
-            prior_sd: self.prior_percent,
-            step: 0.5,
+            prior_sd: self.prior,
+            step,
             starts: vec![0.0],
-            plausible: 4.0 * self.prior_percent,
+            plausible,
         }]
     }
     fn alter(&self, frame: &StrainFrame, parameters: &[f64], state: &mut StrainState) {
-        let (Some(&percent), Some(signature)) =
+        let (Some(&size), Some(signature)) =
             (parameters.first(), frame.stiffness.get(self.signature))
         else {
             return;
         };
         let sizes: Vec<f64> = signature.at_percent.iter().map(|p| p.0).collect();
-        for (w, (_, change)) in weights(&sizes, percent).iter().zip(&signature.at_percent) {
+        for (w, (_, change)) in weights(&sizes, size).iter().zip(&signature.at_percent) {
             for (cell, d) in state.influence.iter_mut().zip(change) {
                 *cell += w * d;
             }
@@ -90,22 +116,34 @@ impl StrainEffect for Stiffness {
     }
     fn extension(&self, _frame: &StrainFrame, parameters: &[f64]) -> Extension {
         let percent = parameters.first().copied().unwrap_or(0.0);
-        Extension::Stiffness {
-            id: self.id,
-            place: self.name.clone(),
-            percent,
+        let place = self.name.clone();
+        match self.of {
+            StiffnessOf::Zone => Extension::ZoneStiffness { place, percent },
+            StiffnessOf::Joint => Extension::JointStiffness { place, percent },
+            StiffnessOf::Local => Extension::LocalStiffness { place, percent },
+            StiffnessOf::Described => Extension::Described {
+                id: place,
+                size: percent,
+            },
         }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
-        if self.id == "joint_stiffness" {
-            return format!(
-                "measure how far the two sides of joint {} move against each other under load",
+        match self.of {
+            StiffnessOf::Zone => format!(
+                "measure the thickness at {0}, or add a gauge inside and one outside that zone",
                 self.name
-            );
+            ),
+            StiffnessOf::Joint => {
+                format!(
+                    "measure how far the two sides of joint {} move against each other under load",
+                    self.name
+                )
+            }
+            StiffnessOf::Local => format!(
+                "look for a crack or a loose joint at {}, and add a gauge on either side of it",
+                self.name
+            ),
+            StiffnessOf::Described => format!("look whether {} is there", self.name),
         }
-        format!(
-            "measure the thickness at {}, or add a gauge inside and one outside that zone",
-            self.name
-        )
     }
 }

@@ -1,6 +1,6 @@
 //! `thermal_uniform`, `thermal_gradient`: the structure is warmer than in the installation state, evenly or on one side.
 
-use super::{Amplitudes, Extension, Stage, StrainEffect};
+use super::{Amplitudes, Extension, Nuisance, Stage, StrainEffect};
 use crate::reconcile::strain::StrainFrame;
 
 /// The two patterns.
@@ -20,15 +20,22 @@ pub struct Thermal {
 }
 
 impl Thermal {
-    /// Every pattern the frame knows.
-    pub fn all(frame: &StrainFrame) -> Vec<Self> {
-        let both = [Pattern::Uniform, Pattern::Gradient].map(|pattern| Self { pattern });
-        both.into_iter()
-            .filter(|t| {
-                t.signature(frame)
-                    .is_some_and(|s| s.iter().any(|v| *v != 0.0))
-            })
-            .collect()
+    /// An even temperature, where the frame knows its strain.
+    pub fn uniform(frame: &StrainFrame) -> Vec<Self> {
+        Self::known(frame, Pattern::Uniform)
+    }
+
+    /// A gradient, where the frame knows its strain.
+    pub fn gradient(frame: &StrainFrame) -> Vec<Self> {
+        Self::known(frame, Pattern::Gradient)
+    }
+
+    fn known(frame: &StrainFrame, pattern: Pattern) -> Vec<Self> {
+        let one = Self { pattern };
+        let strains = one
+            .signature(frame)
+            .is_some_and(|s| s.iter().any(|v| *v != 0.0));
+        if strains { vec![one] } else { Vec::new() }
     }
 
     fn signature<'a>(&self, frame: &'a StrainFrame) -> Option<&'a Vec<f64>> {
@@ -38,6 +45,7 @@ impl Thermal {
         }
     }
 
+    /// Usual size, degrees: what a day outdoors changes, and what sun makes of one side.
     fn usual_degrees(&self) -> f64 {
         match self.pattern {
             Pattern::Uniform => 12.0,
@@ -47,7 +55,7 @@ impl Thermal {
 }
 
 impl StrainEffect for Thermal {
-    fn id(&self) -> &'static str {
+    fn id(&self) -> &str {
         match self.pattern {
             Pattern::Uniform => "thermal_uniform",
             Pattern::Gradient => "thermal_gradient",
@@ -62,13 +70,17 @@ impl StrainEffect for Thermal {
             patterns: vec![signature.clone()],
             kinds: vec![0],
             usual: vec![self.usual_degrees()],
+            steady: vec![self.usual_degrees()],
             unit: "degC",
             plausible: 60.0,
         })
     }
     fn extension(&self, _frame: &StrainFrame, _parameters: &[f64]) -> Extension {
         Extension::NuisanceLoads {
-            id: self.id(),
+            source: match self.pattern {
+                Pattern::Uniform => Nuisance::UniformTemperature,
+                Pattern::Gradient => Nuisance::TemperatureGradient,
+            },
             loads: vec![(self.id().into(), self.usual_degrees())],
             unit: "degC",
         }

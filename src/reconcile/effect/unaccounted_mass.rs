@@ -28,7 +28,7 @@ impl UnaccountedMass {
 }
 
 impl StrainEffect for UnaccountedMass {
-    fn id(&self) -> &'static str {
+    fn id(&self) -> &str {
         "unaccounted_mass"
     }
     fn place(&self) -> Option<String> {

@@ -1,14 +1,14 @@
 //! `uneven_ground`: the wheels stand on ground that is not flat, so the forces differ from those computed for flat ground.
 
-use super::{Amplitudes, Extension, Stage, StrainEffect};
+use super::{Amplitudes, Extension, Nuisance, Stage, StrainEffect};
 use crate::reconcile::strain::{StrainFrame, WheelForces};
 
 /// Strain = strain + influence times a self-balanced change of the wheel forces, unknown in every run.
 #[derive(Clone, Debug)]
 pub struct UnevenGround;
 
-/// Usual change of a wheel force, kN.
-const USUAL_KN: f64 = 2.0;
+/// Usual change of a wheel force, of a usual wheel force.
+const USUAL: f64 = 0.25;
 
 impl UnevenGround {
     /// Itself where the wheel forces are computed, not measured.
@@ -77,7 +77,7 @@ fn warps(frame: &StrainFrame) -> Vec<Vec<f64>> {
 }
 
 impl StrainEffect for UnevenGround {
-    fn id(&self) -> &'static str {
+    fn id(&self) -> &str {
         "uneven_ground"
     }
     fn stage(&self) -> Stage {
@@ -94,19 +94,20 @@ impl StrainEffect for UnevenGround {
         Some(Amplitudes {
             kinds: vec![0; patterns.len()],
             patterns,
-            usual: vec![USUAL_KN],
+            usual: vec![USUAL * frame.usual_load()],
+            steady: vec![USUAL * frame.usual_load()],
             unit: "kN",
-            plausible: 60.0,
+            plausible: 4.0 * frame.usual_load(),
         })
     }
     fn extension(&self, frame: &StrainFrame, _parameters: &[f64]) -> Extension {
         let loads = frame
             .load_names
             .iter()
-            .map(|n| (n.clone(), USUAL_KN))
+            .map(|n| (n.clone(), USUAL * frame.usual_load()))
             .collect();
         Extension::NuisanceLoads {
-            id: self.id(),
+            source: Nuisance::Ground,
             loads,
             unit: "kN",
         }

@@ -1,106 +1,104 @@
 //! `zero_drift`: a channel's zero has moved since the installation state.
 
-use super::{Extension, Parameter, Stage, StrainEffect, gauge_name};
+use super::channel_fault::{At, ChannelFault, OnGauges};
+use super::{Amplitudes, Correction, Extension, FaultKind, Parameter};
 use crate::reconcile::strain::{Part, StrainFrame};
 
 /// How the zero moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Drift {
+pub enum ZeroDrift {
     /// By the same amount in all runs.
     Step,
     /// In proportion to the number of the run: it creeps; the size is that of the last run.
     Creep,
+    /// It stays away and scatters about where it went.
+    Wander,
 }
 
-/// Reading = strain + size (in `Creep` times run number over number of runs).
-#[derive(Clone, Debug)]
-pub struct ZeroDrift {
-    /// Gauge.
-    pub gauge: usize,
-    /// Its name.
-    pub name: String,
-    /// How.
-    pub drift: Drift,
-}
+/// Usual drift of a zero, microstrain: a bridge balanced to some hundredths of a millivolt per volt.
+const USUAL: f64 = 40.0;
+/// Usual scatter of a zero that wanders, microstrain.
+const USUAL_SCATTER: f64 = 10.0;
+/// A bridge that is further off can't be balanced.
+const PLAUSIBLE: f64 = 1000.0;
 
 impl ZeroDrift {
-    /// Both kinds on every gauge.
-    pub fn all(frame: &StrainFrame) -> Vec<Self> {
-        let on = |gauge, drift| Self {
-            gauge,
-            name: gauge_name(frame, gauge),
-            drift,
-        };
+    /// All kinds on every gauge.
+    pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
+        let kinds = [Self::Step, Self::Creep, Self::Wander];
         (0..frame.n_gauges())
-            .flat_map(|g| [on(g, Drift::Step), on(g, Drift::Creep)])
+            .flat_map(|g| kinds.map(|k| OnGauges::one(frame, g, k)))
             .collect()
     }
-}
 
-impl ZeroDrift {
-    fn unit(&self) -> &'static str {
-        match self.drift {
-            Drift::Step => "microstrain",
-            Drift::Creep => "microstrain at the last run",
+    fn unit(self) -> &'static str {
+        match self {
+            Self::Creep => "microstrain at the last run",
+            Self::Step | Self::Wander => "microstrain",
         }
     }
 }
 
-impl StrainEffect for ZeroDrift {
+impl ChannelFault for ZeroDrift {
     fn id(&self) -> &'static str {
         "zero_drift"
     }
-    fn place(&self) -> Option<String> {
-        Some(self.name.clone())
-    }
-    fn stage(&self) -> Stage {
-        Stage::Reading
+    fn kind(&self) -> FaultKind {
+        FaultKind::Zero
     }
     fn parameters(&self) -> Vec<Parameter> {
         vec![Parameter {
             unit: self.unit(),
             neutral: 0.0,
-            prior_sd: 40.0,
+            prior_sd: USUAL,
             step: 0.5,
             starts: vec![0.0],
-            plausible: 1000.0,
+            plausible: PLAUSIBLE,
         }]
     }
-    fn read(
-        &self,
-        frame: &StrainFrame,
-        parameters: &[f64],
-        run: usize,
-        row: &mut [f64],
-        part: Part,
-    ) {
-        let (Part::Whole, [size, ..]) = (part, parameters) else {
+    fn read(&self, at: At<'_>, parameters: &[f64], row: &mut [f64]) {
+        let (Part::Whole, [size, ..]) = (at.part, parameters) else {
             return;
         };
-        let share = match self.drift {
-            Drift::Step => 1.0,
-            Drift::Creep => (run + 1) as f64 / frame.n_runs().max(1) as f64,
+        let share = match self {
+            Self::Creep => (at.run + 1) as f64 / at.frame.n_runs().max(1) as f64,
+            Self::Step | Self::Wander => 1.0,
         };
-        if let Some(cell) = row.get_mut(self.gauge) {
-            *cell += size * share;
+        for &g in at.gauges {
+            if let Some(cell) = row.get_mut(g) {
+                *cell += size * share;
+            }
         }
     }
-    fn extension(&self, _frame: &StrainFrame, parameters: &[f64]) -> Extension {
-        let size = parameters.first().copied().unwrap_or(0.0);
-        Extension::Channel {
-            id: self.id(),
-            gauge: self.name.clone(),
-            size,
+    fn amplitudes(&self, frame: &StrainFrame, gauges: &[usize]) -> Option<Amplitudes> {
+        if *self != Self::Wander {
+            return None;
+        }
+        let own = |g: &usize| {
+            (0..frame.n_gauges())
+                .map(|h| if h == *g { 1.0 } else { 0.0 })
+                .collect()
+        };
+        Some(Amplitudes {
+            patterns: gauges.iter().map(own).collect(),
+            kinds: vec![0; gauges.len()],
+            usual: vec![USUAL_SCATTER],
+            steady: vec![0.0],
             unit: self.unit(),
+            plausible: PLAUSIBLE,
+        })
+    }
+    fn extension(&self, names: &[String], parameters: &[f64]) -> Extension {
+        let size = parameters.first().copied().unwrap_or(0.0);
+        match self {
+            Self::Step => Extension::channel(names, Correction::Offset(size)),
+            // Where it will be in a run to come nobody knows.
+            Self::Creep | Self::Wander => Extension::channel(names, Correction::Ignore),
         }
     }
-    fn separate_by(&self, _frame: &StrainFrame) -> String {
+    fn separate_by(&self, place: &str) -> String {
         format!(
-            "read gauge {} in the installation state again (empty, level, reference temperature): a drifted zero stays",
-            self.name
+            "read gauge {place} in the installation state again (empty, level, reference temperature): a drifted zero stays"
         )
-    }
-    fn gauges(&self) -> Vec<usize> {
-        vec![self.gauge]
     }
 }

@@ -9,13 +9,13 @@ use super::examine::{DECISIVE, Found};
 use super::fit::{Effort, fit};
 use super::fitted::MotionFit;
 use super::floor::NOISE_FACTOR;
-use super::gap::{RecordGap, fitted_gap, proof, proof_gap};
+use super::gap::{Proof, RecordGap, fitted_gap, proof, proof_gap};
 use super::limits::beyond_tolerance;
 use super::noise::Background;
 use super::outcome::{MotionEffect, MotionOutcome};
 use super::scorer::MotionScorer;
 use super::sentences::{next_measurement, remains};
-use crate::reconcile::outcome::{Gap, Rival, Verdict};
+use crate::reconcile::outcome::{Gap, GapBasis, Rival, Verdict};
 use crate::reconcile::search::{Scored, settle};
 use crate::vehicle::motion::VehicleError;
 
@@ -95,7 +95,7 @@ pub(super) fn judged(
     let evidence = best.log_evidence - null_evidence;
     let taken = |g: &Option<RecordGap>| g.as_ref().map_or(0.0, |g| g.gap * g.gap);
     let excess = (taken(&before.fitted) - taken(&after.fitted)).max(0.0);
-    let gap = gap_of(&before.proof, &after.proof);
+    let gap = gap_of(&before.proof, &after.proof, proof(frame, &best.fit));
     let decided = !best.set.is_empty()
         && evidence > DECISIVE
         && after.at_floor(excess)
@@ -151,14 +151,20 @@ pub(super) fn judged(
     })
 }
 
-fn gap_of(before: &Option<RecordGap>, after: &Option<RecordGap>) -> Gap {
+fn gap_of(before: &Option<RecordGap>, after: &Option<RecordGap>, by: Proof) -> Gap {
     let of = |g: &Option<RecordGap>| g.as_ref().map_or(f64::NAN, |g| g.gap);
     let floor = after.as_ref().or(before.as_ref());
     Gap {
         before: of(before),
         after: of(after),
         floor: floor.map_or(f64::NAN, |g| g.floor.expected()),
-        mesh: 0.0,
+        mesh: None,
+        basis: match by {
+            Proof::HeldOut => GapBasis::HeldOut,
+            Proof::CrossValidated => GapBasis::CrossValidated,
+            Proof::Fitted => GapBasis::Fitted,
+        },
+        loads_found: None,
     }
 }
 

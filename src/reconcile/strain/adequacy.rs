@@ -12,12 +12,12 @@ use crate::reconcile::outcome::Misfit;
 pub struct Adequacy {
     /// Reduced chi-square of the fit runs.
     pub fit: f64,
-    /// Its standard normal deviate.
-    pub fit_deviate: f64,
-    /// Reduced chi-square of the held-out runs given the fit runs.
+    /// Readings less parameters.
+    pub n_fit: f64,
+    /// Reduced chi-square of the held-out runs given the fit runs; that of the fit runs where none is held out.
     pub held_out: f64,
-    /// Its standard normal deviate.
-    pub held_out_deviate: f64,
+    /// Readings of held-out runs; zero where none is held out.
+    pub n_held_out: f64,
     /// By gauge over the fit runs.
     pub gauges: Vec<Misfit>,
     /// By run over the fit runs.
@@ -66,7 +66,7 @@ pub fn adequacy(
     let fit_chi2 = chi2(&cov, &r);
     let n_fit = fit.len() as f64 - n_parameters as f64;
     let (held_chi2, n_held) = if proof_runs == fit_runs {
-        (fit_chi2, fit.len() as f64)
+        (fit_chi2, 0.0)
     } else {
         // Chain rule of Gaussians: what the held-out runs add, given the fit runs.
         let all = Selection::of_runs(frame, &[fit_runs, proof_runs].concat());
@@ -113,9 +113,13 @@ pub fn adequacy(
         .collect();
     Adequacy {
         fit: fit_chi2 / n_fit.max(1.0),
-        fit_deviate: deviate(fit_chi2, n_fit),
-        held_out: held_chi2 / n_held.max(1.0),
-        held_out_deviate: deviate(held_chi2, n_held),
+        n_fit,
+        held_out: if n_held > 0.0 {
+            held_chi2 / n_held
+        } else {
+            fit_chi2 / n_fit.max(1.0)
+        },
+        n_held_out: n_held,
         gauges,
         runs,
     }

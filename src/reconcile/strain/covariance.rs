@@ -4,13 +4,27 @@ use super::frame::{Scatter, StrainFrame};
 use super::state::{Part, StrainState, read_all};
 use crate::reconcile::effect::{Amplitudes, Member};
 
-/// Amplitudes with the size (variance root) of each of their kinds.
+/// Amplitudes with the sizes (variance roots) of each of their kinds.
 #[derive(Clone, Debug)]
 pub struct SizedAmplitudes {
     /// Patterns.
     pub amplitudes: Amplitudes,
-    /// By kind: standard deviation.
+    /// By kind: standard deviation from run to run; then, by kind again, of the part that repeats in all runs.
     pub sizes: Vec<f64>,
+}
+
+impl SizedAmplitudes {
+    /// Variance from run to run of the amplitudes of `kind`.
+    pub fn scatter_variance(&self, kind: usize) -> f64 {
+        self.sizes.get(kind).map_or(0.0, |s| s * s)
+    }
+
+    /// Variance of what repeats in all runs.
+    pub fn steady_variance(&self, kind: usize) -> f64 {
+        self.sizes
+            .get(self.amplitudes.usual.len() + kind)
+            .map_or(0.0, |s| s * s)
+    }
 }
 
 /// Readings under consideration: (run, gauge), in a fixed order.
@@ -61,7 +75,7 @@ pub fn read_patterns(
 /// C = noise^2 I + load_noise^2 S S' (run by run: an error of a measured wheel force enters all gauges at once) + model_rel^2 m m'
 /// (gauge by gauge, all runs together: a wrong influence stays wrong) + sum over `scatter` of b b' (the same, with b the strain that an
 /// error of one standard deviation makes) + V (amplitudes unknown in every run, run by run, and their part in doubt), with S, m, b as read
-/// with `members` on.
+/// with `members` on. Between runs of a gauge, and of any two gauges, stays what repeats of V.
 pub fn covariance(
     frame: &StrainFrame,
     members: &[Member<'_>],
@@ -80,33 +94,34 @@ pub fn covariance(
         read_all(frame, members, run, &mut row, Part::Linear);
         predicted.extend(row);
     }
-    // Within a run: noise, wheel forces, unknown amplitudes; the same block for every run.
+    // Within a run: noise, wheel forces, unknown amplitudes; the same block for every run. Between runs: what repeats of the amplitudes.
     let mut block = vec![0.0; n_g * n_g];
-    let mut add = |pattern: &[f64], variance: f64| {
-        for g in 0..n_g {
-            for h in 0..n_g {
-                block[g * n_g + h] += variance * pattern[g] * pattern[h];
-            }
-        }
-    };
+    let mut repeats = vec![0.0; n_g * n_g];
     for pattern in columns.iter().take(frame.n_loads()) {
-        add(pattern, frame.load_noise * frame.load_noise);
+        add_outer(&mut block, pattern, frame.load_noise * frame.load_noise);
     }
-    let mut own = vec![frame.noise * frame.noise; n_g];
     let doubt = frame.relative_doubt();
-    for u in unknown {
+    let known = frame.nuisance_amplitudes();
+    for u in unknown.iter().chain(&known) {
         let read = read_patterns(frame, members, &u.amplitudes.patterns);
         for (pattern, &kind) in read.iter().zip(&u.amplitudes.kinds) {
-            let size = u.sizes.get(kind).copied().unwrap_or(0.0);
-            add(pattern, size * size);
             // The model errs in these patterns as in all others.
-            for ((cell, p), doubt) in own.iter_mut().zip(pattern).zip(&doubt) {
-                *cell += (doubt * size * p).powi(2);
+            let own: Vec<f64> = pattern
+                .iter()
+                .zip(&doubt)
+                .map(|(p, d)| (p * d).powi(2))
+                .collect();
+            let (scatter, steady) = (u.scatter_variance(kind), u.steady_variance(kind));
+            for (target, variance) in [(&mut block, scatter + steady), (&mut repeats, steady)] {
+                add_outer(target, pattern, variance);
+                for (g, o) in own.iter().enumerate() {
+                    target[g * n_g + g] += variance * o;
+                }
             }
         }
     }
-    for (g, variance) in own.iter().enumerate() {
-        block[g * n_g + g] += variance;
+    for g in 0..n_g {
+        block[g * n_g + g] += frame.noise * frame.noise;
     }
     let model = frame.model_rel * frame.model_rel;
     let errors = scattered(frame, members, &state);
@@ -122,13 +137,31 @@ pub fn covariance(
     let mut out = vec![0.0; n * n];
     for (i, &(r, g)) in selection.0.iter().enumerate() {
         for (j, &(s, h)) in selection.0.iter().enumerate().take(i + 1) {
-            let within = if r == s { block[g * n_g + h] } else { 0.0 };
+            let within = if r == s {
+                block[g * n_g + h]
+            } else {
+                repeats[g * n_g + h]
+            };
             let persistent = if g == h { across(g, r, s) } else { 0.0 };
             out[i * n + j] = within + persistent;
             out[j * n + i] = within + persistent;
         }
     }
     out
+}
+
+/// Adds `variance` times the outer product of `pattern` with itself.
+pub(super) fn add_outer(block: &mut [f64], pattern: &[f64], variance: f64) {
+    if variance == 0.0 {
+        return;
+    }
+    for (row, a) in block.chunks_exact_mut(pattern.len().max(1)).zip(pattern) {
+        if *a != 0.0 {
+            row.iter_mut()
+                .zip(pattern)
+                .for_each(|(cell, b)| *cell += variance * a * b);
+        }
+    }
 }
 
 /// Strain, `n_runs x n_gauges`, that each independent error of the influence makes, as read with `members` on.

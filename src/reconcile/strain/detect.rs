@@ -7,11 +7,24 @@ use crate::linalg::precision::Precision;
 use crate::reconcile::effect::{Candidate, Member, full_id};
 use crate::reconcile::outcome::Detectable;
 
-/// Log evidence beyond its prior cost that an effect must raise to be named.
-pub const DECISIVE: f64 = 5.0;
+/// A name on a truck that has nothing: one in a hundred at most.
+const FALSE_NAMES: f64 = 0.01;
+
+/// Log evidence beyond its prior cost that an effect must raise to be named: ln(1 / 0.01).
+///
+/// Where nothing is wrong, the mean of a likelihood ratio is one, and so is that of the sum of all of them over effects and places with
+/// prior weights that sum to one. By Markov's inequality the sum, and each of its terms, passes 100 in one case of a hundred at most,
+/// however many places are searched.
+pub const DECISIVE: f64 = 4.605_170_185_988_091;
+const _: () = assert!(FALSE_NAMES * 100.0 == 1.0);
 
 /// Sizes at which the expected gain of evidence pays for the effect's prior weight, its width and [`DECISIVE`].
-pub fn detectable(frame: &StrainFrame, candidates: &[Candidate]) -> Vec<Detectable> {
+/// Of effects that may sit at many places which overlap (stretches of a card, notes of a run), those of `also` alone are listed.
+pub fn detectable(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    also: &[usize],
+) -> Vec<Detectable> {
     let fit = Selection::of_runs(frame, &frame.observations.fit_runs());
     let Some(precision) = Precision::of(&covariance(frame, &[], &fit, &[]), fit.len()) else {
         return Vec::new();
@@ -19,8 +32,14 @@ pub fn detectable(frame: &StrainFrame, candidates: &[Candidate]) -> Vec<Detectab
     let n_g = frame.n_gauges();
     let nominal = fit.pick(&predict(frame, &[]), n_g);
     let mut out = Vec::new();
-    for c in candidates {
+    for (number, c) in candidates.iter().enumerate() {
         let effect = c.effect.as_ref();
+        let overlaps = effect.gauges().len() > 1 || !effect.runs().is_empty();
+        // A form of an effect that scatters besides is seen as the plain one is.
+        let scatters = !effect.parameters().is_empty() && effect.amplitudes(frame).is_some();
+        if effect.discrepancy().is_some() || scatters || (overlaps && !also.contains(&number)) {
+            continue;
+        }
         let id = full_id(effect);
         if let Some(a) = effect.amplitudes(frame) {
             // Amplitudes: expected gain of a size s times the usual one, patterns taken one by one.
@@ -121,6 +140,14 @@ fn smallest(
     };
     let curvature = 2.0 * power(step) / (step * step);
     let needed = DECISIVE - c.log_prior + 0.5 * (prior_sd * prior_sd * curvature).ln_1p();
+    if c.effect
+        .parameters()
+        .iter()
+        .all(|p| p.starts == [p.neutral])
+    {
+        // As good as linear in its size.
+        return (2.0 * needed / curvature.max(f64::MIN_POSITIVE)).sqrt();
+    }
     let mut size = step;
     while power(size) < needed && size < 1e4 * step {
         size *= 1.25;

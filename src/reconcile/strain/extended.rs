@@ -1,178 +1,102 @@
-//! Readings and influence with named effects in them: what the extended model holds.
+//! What a model and readings are with named effects in them: what the extended model holds.
 
 use super::frame::StrainFrame;
-use crate::reconcile::effect::Extension;
+use super::state::StrainState;
+use crate::reconcile::effect::{Correction, Extension, Member, full_id, library};
+use crate::reconcile::outcome::NamedEffect;
 
-/// What undoes a channel's fault in its readings.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Correction {
-    /// Reading = (reading - offset of the run) * factor.
-    Affine {
-        /// Gauge.
-        gauge: usize,
-        /// Subtracted first, microstrain, by run.
-        offset: Vec<f64>,
-        /// Then multiplied.
-        factor: f64,
-    },
-    /// Channel `to[i]` gets what channel `from[i]` read.
-    Permute {
-        /// Gauges that felt the strain.
-        to: Vec<usize>,
-        /// Channels that read it.
-        from: Vec<usize>,
-    },
-    /// The channel says nothing: its readings are left blank.
-    Blank(usize),
-}
-
-impl Correction {
-    /// The corrections that `extensions` ask for; those of structure and loads ask for none.
-    pub fn of(frame: &StrainFrame, extensions: &[&Extension]) -> Vec<Self> {
-        let at = |name: &str| frame.gauges.iter().position(|g| g.name == name);
-        let mut out = Vec::new();
-        for e in extensions {
-            match e {
-                Extension::Channel {
-                    id,
-                    gauge,
-                    size,
-                    unit,
-                } => {
-                    let gauges: Vec<usize> = gauge.split('+').filter_map(at).collect();
-                    let Some(&first) = gauges.first() else {
-                        continue;
-                    };
-                    let none = vec![0.0; frame.n_runs()];
-                    let affine = |offset, factor| Self::Affine {
-                        gauge: first,
-                        offset,
-                        factor,
-                    };
-                    match *id {
-                        "sign_flip" => out.push(affine(none, -1.0)),
-                        "gauge_gain" if *size != 0.0 => out.push(affine(none, 1.0 / size)),
-                        "zero_drift" => {
-                            let n = frame.n_runs();
-                            let creeps = unit.ends_with("last run");
-                            let share = |r: usize| {
-                                if creeps {
-                                    (r + 1) as f64 / n.max(1) as f64
-                                } else {
-                                    1.0
-                                }
-                            };
-                            out.push(affine((0..n).map(|r| size * share(r)).collect(), 1.0));
-                        }
-                        "gauge_swap" if gauges.len() == 2 => out.push(Self::Permute {
-                            to: gauges.clone(),
-                            from: gauges.iter().rev().copied().collect(),
-                        }),
-                        "rosette_legs" => {
-                            // The extension lists, channel by channel in file order, the leg that was read.
-                            let mut channels = gauges.clone();
-                            channels.sort_unstable();
-                            out.push(Self::Permute {
-                                to: gauges,
-                                from: channels,
-                            });
-                        }
-                        "dead_channel" | "saturated_channel" => out.push(Self::Blank(first)),
-                        _ => {}
-                    }
-                }
-                Extension::Mass { place, kilogram } => {
-                    // Its strain is the same in all runs: part of the zero.
-                    let Some(mass) = frame.masses.iter().find(|m| m.place == *place) else {
-                        continue;
-                    };
-                    for (gauge, per_kg) in mass.per_kg.iter().enumerate() {
-                        out.push(Self::Affine {
-                            gauge,
-                            offset: vec![kilogram * per_kg; frame.n_runs()],
-                            factor: 1.0,
-                        });
-                    }
-                }
-                _ => {}
-            }
+/// The model with the effects of structure and loads in it: influence, and what acts in every run.
+pub fn extended_state(frame: &StrainFrame, effects: &[NamedEffect]) -> StrainState {
+    let ids: Vec<String> = effects.iter().map(|e| e.id.clone()).collect();
+    let candidates = library(frame, &ids);
+    let mut chosen = Vec::new();
+    for e in effects {
+        // An effect may have several forms: the one with as many parameters, that makes the same of them.
+        let same = |c: &&crate::reconcile::effect::Candidate| {
+            let parameters = e.size.get(..c.effect.parameters().len());
+            full_id(c.effect.as_ref()) == e.id
+                && parameters.is_some_and(|p| c.effect.extension(frame, p) == e.extension)
+        };
+        if let Some(c) = candidates.iter().find(same) {
+            chosen.push((
+                c.effect.as_ref(),
+                e.size
+                    .get(..c.effect.parameters().len())
+                    .unwrap_or_default(),
+            ));
         }
-        out
     }
+    let members: Vec<Member<'_>> = chosen
+        .iter()
+        .map(|(effect, p)| Member {
+            effect: *effect,
+            parameters: p,
+        })
+        .collect();
+    StrainState::with(frame, &members)
 }
 
-/// Readings with the corrections applied, `n_runs x n_gauges`.
-pub fn corrected_readings(frame: &StrainFrame, corrections: &[Correction]) -> Vec<f64> {
+/// Readings with faults of channels undone, `n_runs x n_gauges`, and the strain of masses that came aboard after the zero was taken off
+/// them; `None` where no effect asks for it. Faults are undone in the reverse of the order in which they act.
+pub fn corrected_readings(frame: &StrainFrame, effects: &[NamedEffect]) -> Option<Vec<f64>> {
+    let at = |name: &str| frame.gauges.iter().position(|g| g.name == name);
     let n_g = frame.n_gauges();
     let mut out = frame.observations.values.clone();
-    for (run, row) in out.chunks_exact_mut(n_g.max(1)).enumerate() {
-        for c in corrections {
-            match c {
-                Correction::Affine {
-                    gauge,
-                    offset,
-                    factor,
-                } => {
-                    if let Some(cell) = row.get_mut(*gauge) {
-                        *cell = (*cell - offset.get(run).copied().unwrap_or(0.0)) * factor;
-                    }
-                }
-                Correction::Permute { to, from } => {
-                    let read: Vec<f64> = from
-                        .iter()
-                        .map(|&g| row.get(g).copied().unwrap_or(f64::NAN))
-                        .collect();
-                    for (&g, v) in to.iter().zip(read) {
-                        if let Some(cell) = row.get_mut(g) {
-                            *cell = v;
-                        }
-                    }
-                }
-                Correction::Blank(gauge) => {
-                    if let Some(cell) = row.get_mut(*gauge) {
-                        *cell = f64::NAN;
+    let mut changed = false;
+    for e in effects.iter().rev() {
+        match &e.extension {
+            Extension::Channels(corrections) => {
+                for (name, correction) in corrections {
+                    let Some(g) = at(name) else { continue };
+                    for row in out.chunks_exact_mut(n_g.max(1)) {
+                        changed |= undo(row, g, correction, &at);
                     }
                 }
             }
-        }
-    }
-    out
-}
-
-/// Influence with the structural effects in it, `None` where `extensions` hold none.
-pub fn extended_influence(frame: &StrainFrame, extensions: &[&Extension]) -> Option<Vec<f64>> {
-    use crate::reconcile::effect::{Member, full_id, library};
-    let mut wanted: Vec<(String, Vec<f64>)> = Vec::new();
-    for e in extensions {
-        match e {
-            Extension::Scale(factor) => {
-                wanted.push(("global_scale".into(), vec![100.0 * (factor - 1.0)]));
-            }
-            Extension::Stiffness { id, place, percent } => {
-                wanted.push((format!("{id}:{place}"), vec![*percent]));
-            }
-            Extension::Channel {
-                id, gauge, size, ..
-            } if *id == "gauge_angle" || *id == "gauge_position" => {
-                wanted.push((format!("{id}:{gauge}"), vec![*size]));
+            Extension::Mass { place, kilogram } => {
+                let Some(mass) = frame.masses.iter().find(|m| m.place == *place) else {
+                    continue;
+                };
+                changed = true;
+                for row in out.chunks_exact_mut(n_g.max(1)) {
+                    row.iter_mut()
+                        .zip(&mass.per_kg)
+                        .for_each(|(cell, per_kg)| *cell -= kilogram * per_kg);
+                }
             }
             _ => {}
         }
     }
-    if wanted.is_empty() {
-        return None;
+    changed.then_some(out)
+}
+
+/// Undoes a fault in one row of readings; false where it is one of the gauge, not of its reading.
+fn undo(
+    row: &mut [f64],
+    gauge: usize,
+    correction: &Correction,
+    at: &dyn Fn(&str) -> Option<usize>,
+) -> bool {
+    let other = match correction {
+        Correction::ExchangedWith(name) => at(name),
+        _ => None,
+    };
+    if let Some(other) = other.filter(|o| gauge < row.len() && *o < row.len()) {
+        row.swap(gauge, other);
+        return true;
     }
-    let ids: Vec<String> = wanted.iter().map(|w| w.0.clone()).collect();
-    let candidates = library(frame, &ids);
-    let mut members = Vec::new();
-    for (id, parameters) in &wanted {
-        let found = candidates
-            .iter()
-            .find(|c| full_id(c.effect.as_ref()) == *id)?;
-        members.push(Member {
-            effect: found.effect.as_ref(),
-            parameters,
-        });
+    let Some(cell) = row.get_mut(gauge) else {
+        return false;
+    };
+    match correction {
+        Correction::Sign => *cell = -*cell,
+        Correction::Gain(gain) if *gain != 0.0 => *cell /= gain,
+        Correction::Offset(offset) => *cell -= offset,
+        Correction::Ignore => *cell = f64::NAN,
+        Correction::Gain(_)
+        | Correction::ExchangedWith(_)
+        | Correction::AngleDeg(_)
+        | Correction::PositionMm(_) => return false,
     }
-    Some(super::state::StrainState::with(frame, &members).influence)
+    true
 }

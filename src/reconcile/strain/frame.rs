@@ -2,7 +2,9 @@
 //!
 //! Units throughout this module: microstrain, kN, kN m, kg, m, degrees Celsius, degrees of angle, percent of stiffness.
 
+use super::covariance::SizedAmplitudes;
 use crate::reconcile::Observations;
+use crate::reconcile::effect::Amplitudes;
 
 /// How a gauge's arms are wired, as far as an angle error is concerned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,14 +33,29 @@ pub struct GaugeFacts {
 /// In-plane strain at a gauge per unit of every column, in the frame that `angle_deg` counts from: exx, eyy, gxy (engineering shear).
 pub type PlaneStrainRow = Vec<[f64; 3]>;
 
+/// What a change of stiffness is one of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StiffnessOf {
+    /// The thickness of a zone, in percent.
+    Zone,
+    /// A joint, natural log of its stiffness times 100.
+    Joint,
+    /// A small region (a crack, a missing patch), natural log of its stiffness times 100.
+    Local,
+    /// What the user described, in a unit of its own.
+    Described,
+}
+
 /// A change of stiffness somewhere: what it does to the influence matrix.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StiffnessSignature {
-    /// Effect id with its place: `rail_stiffness:L4`, `joint_stiffness:12`.
-    pub id: String,
-    /// Changes of the influence matrix (`n_gauges x n_columns`) at sizes in percent, ascending in size, zero left out.
+    /// What it is one of.
+    pub of: StiffnessOf,
+    /// Zone, joint, element; of a described change its id.
+    pub place: String,
+    /// Changes of the influence matrix (`n_gauges x n_columns`) at sizes, ascending, zero left out.
     pub at_percent: Vec<(f64, Vec<f64>)>,
-    /// Prior standard deviation of the size in percent (of its natural log times 100 for joints).
+    /// Prior standard deviation of the size.
     pub prior_percent: f64,
 }
 
@@ -78,6 +95,17 @@ pub enum Scatter {
     Single(Vec<f64>),
 }
 
+/// A load that the job knows of as a nuisance: present in every run, never noted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NuisanceLoad {
+    /// Name.
+    pub name: String,
+    /// Microstrain per unit, by gauge.
+    pub per_unit: Vec<f64>,
+    /// Its usual size, one standard deviation.
+    pub size: f64,
+}
+
 /// Number of payload columns that follow the load columns: weight, weight times dx, times dy, times dx dy.
 pub const N_PAYLOAD_COLUMNS: usize = 4;
 
@@ -110,6 +138,8 @@ pub struct StrainFrame {
     pub wheel_forces: WheelForces,
     /// Forces and moments at the wheels that the model leaves out: (name `FY_LF`, microstrain per kN or kN m by gauge).
     pub other_loads: Vec<(String, Vec<f64>)>,
+    /// Loads that the model has as nuisance loads: found anew in every run, before, after and in the floor alike.
+    pub nuisance: Vec<NuisanceLoad>,
     /// Microstrain per degree of a uniform temperature change, by gauge.
     pub thermal_uniform: Option<Vec<f64>>,
     /// Microstrain per degree of a temperature gradient, by gauge.
@@ -150,6 +180,32 @@ impl StrainFrame {
     /// Number of columns of `influence`.
     pub fn n_columns(&self) -> usize {
         self.load_names.len() + N_PAYLOAD_COLUMNS
+    }
+
+    /// The nuisance loads of the model as amplitudes of their stated sizes: as much may repeat in all runs as differs from run to run.
+    pub fn nuisance_amplitudes(&self) -> Option<SizedAmplitudes> {
+        if self.nuisance.is_empty() {
+            return None;
+        }
+        let sizes: Vec<f64> = self.nuisance.iter().map(|n| n.size).collect();
+        let amplitudes = Amplitudes {
+            patterns: self.nuisance.iter().map(|n| n.per_unit.clone()).collect(),
+            kinds: (0..sizes.len()).collect(),
+            usual: sizes.clone(),
+            steady: sizes.clone(),
+            unit: "1",
+            plausible: f64::INFINITY,
+        };
+        Some(SizedAmplitudes {
+            amplitudes,
+            sizes: [sizes.as_slice(), &sizes].concat(),
+        })
+    }
+
+    /// Root mean square of the wheel loads over all runs, kN; one where there are none.
+    pub fn usual_load(&self) -> f64 {
+        let power = self.loads.iter().map(|f| f * f).sum::<f64>() / self.loads.len().max(1) as f64;
+        if power > 0.0 { power.sqrt() } else { 1.0 }
     }
 
     /// By gauge: relative error, 1 sd, of the strain that a load of its own makes there: stated uncertainty and `scatter` over the wheel

@@ -1,151 +1,136 @@
-//! The gap on held-out runs, before and after, over all and by gauge, with its floor; loads recovered before and after.
+//! The gap on runs that were not fitted, before and after, over all and by gauge, with its floor, all three made alike.
 
 use super::covariance::{Selection, SizedAmplitudes, covariance, read_patterns};
 use super::frame::StrainFrame;
-use super::state::{Part, StrainState, predict, read_all};
+use super::state::{StrainState, predict};
 use crate::linalg::precision::Precision;
 use crate::reconcile::effect::Member;
-use crate::reconcile::outcome::{ChannelGap, Gap, LoadShift};
+use crate::reconcile::outcome::{ChannelGap, Gap, GapBasis, GapNumbers};
 
-/// Residuals of the proof runs by the analyst's model as it stands.
-fn plain_residual(frame: &StrainFrame, members: &[Member<'_>], selection: &Selection) -> Vec<f64> {
-    let n_g = frame.n_gauges();
-    let predicted = selection.pick(&predict(frame, members), n_g);
-    selection
-        .pick(&frame.observations.values, n_g)
-        .iter()
-        .zip(predicted)
-        .map(|(y, p)| y - p)
-        .collect()
+/// What of a run is found anew from one half of its gauges (in file order, odd and even) and judged on the other, in the gap before, the gap
+/// after and the floor alike.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FoundAnew {
+    /// The amplitudes of the effects that are on: none before, since an effect of size zero has none.
+    Amplitudes,
+    /// They, and the errors of the noted wheel loads.
+    AmplitudesAndLoads,
 }
 
-/// Patterns over the gauges with their variances: errors of the wheel forces, and unknown amplitudes.
-fn run_patterns(
-    frame: &StrainFrame,
-    members: &[Member<'_>],
-    unknown: &[SizedAmplitudes],
-) -> Vec<(Vec<f64>, f64)> {
-    let state = StrainState::with(frame, members);
-    let [n_g, _, n_c] = state.shape;
-    let column = |l: usize| {
-        (0..n_g)
-            .map(|g| state.influence[g * n_c + l])
-            .collect::<Vec<f64>>()
-    };
-    let columns: Vec<Vec<f64>> = (0..frame.n_loads()).map(column).collect();
-    let noise = frame.load_noise * frame.load_noise;
-    let mut out: Vec<(Vec<f64>, f64)> = read_patterns(frame, members, &columns)
-        .into_iter()
-        .map(|c| (c, noise))
-        .collect();
-    for u in unknown {
-        let read = read_patterns(frame, members, &u.amplitudes.patterns);
-        let size = |k: &usize| u.sizes.get(*k).copied().unwrap_or(0.0);
-        out.extend(
-            read.into_iter()
-                .zip(u.amplitudes.kinds.iter().map(|k| size(k).powi(2))),
-        );
-    }
-    out
+/// Residuals of runs that were not fitted.
+#[derive(Clone, Debug, Default)]
+pub struct Judged {
+    /// By reading: gauge.
+    pub gauges: Vec<usize>,
+    /// Reading, microstrain.
+    pub reading: Vec<f64>,
+    /// Residual of the analyst's model.
+    pub before: Vec<f64>,
+    /// Residual with the effects.
+    pub after: Vec<f64>,
+    /// Root of the mean square that a right model would leave.
+    pub floor: Vec<f64>,
+    /// What the mesh makes of the prediction.
+    pub mesh: Vec<f64>,
 }
 
-/// What the errors that stay from run to run (influence, gains) make of each reading of `proof`, mean and variance, as the fit runs tell,
-/// and with the variance of noise and wheel forces in it: the conditional Gaussian of the proof runs given the fit runs.
-fn learned(
-    frame: &StrainFrame,
-    members: &[Member<'_>],
-    unknown: &[SizedAmplitudes],
-    proof: &Selection,
-) -> (Vec<f64>, Vec<f64>) {
-    let n = proof.len();
-    let alone = covariance(frame, members, proof, &[]);
-    let prior: Vec<f64> = (0..n).map(|i| alone[i * n + i]).collect();
-    let nothing = (vec![0.0; n], prior.clone());
-    let fit_runs = frame.observations.fit_runs();
-    if frame.observations.proof_runs() == fit_runs {
-        return nothing;
-    }
-    let fit = Selection::of_runs(frame, &fit_runs);
-    let Some(precision) = Precision::of(&covariance(frame, members, &fit, unknown), fit.len())
-    else {
-        return nothing;
-    };
-    let both = Selection([fit.0.as_slice(), proof.0.as_slice()].concat());
-    let joint = covariance(frame, members, &both, unknown);
-    let weighted = precision.apply(&plain_residual(frame, members, &fit));
-    let (mut mean, mut variance) = (Vec::with_capacity(n), Vec::with_capacity(n));
-    for (i, before) in prior.iter().enumerate() {
-        let row = (fit.len() + i) * both.len();
-        let shared = &joint[row..row + fit.len()];
-        mean.push(shared.iter().zip(&weighted).map(|(a, b)| a * b).sum());
-        let told = precision.apply(shared);
-        variance.push(before - shared.iter().zip(&told).map(|(a, b)| a * b).sum::<f64>());
-    }
-    (mean, variance)
-}
-
-/// Residuals of the proof runs with `members` on, and by how much the variance of each falls when the errors of the wheel forces are
-/// found from the other half of the gauges.
-///
-/// What differs from run to run (amplitudes of the effects, the errors of the wheel forces) is found from the odd gauges in file order
-/// and judged on the even ones, and the other way round.
-pub fn held_out_residual(
-    frame: &StrainFrame,
-    members: &[Member<'_>],
-    unknown: &[SizedAmplitudes],
-) -> (Selection, Vec<f64>, Vec<f64>) {
-    let all = Selection::of_runs(frame, &frame.observations.proof_runs());
-    let mut residual = plain_residual(frame, members, &all);
-    let plain = residual.clone();
-    let n = all.len();
-    let mut found = vec![0.0; n];
-    let patterns = run_patterns(frame, members, unknown);
-    for &run in &frame.observations.proof_runs() {
-        for half in [0, 1] {
-            let of = |even: usize| {
-                (0..n)
-                    .filter(|&i| all.0[i].0 == run && all.0[i].1 % 2 == even)
-                    .collect::<Vec<usize>>()
-            };
-            let (used, judged) = (of(half), of(1 - half));
-            let part = Selection(used.iter().map(|&i| all.0[i]).collect());
-            let Some(p) = Precision::of(&covariance(frame, members, &part, unknown), part.len())
-            else {
-                continue;
-            };
-            let pr = p.apply(&used.iter().map(|&i| plain[i]).collect::<Vec<f64>>());
-            // Conditional mean of the judged readings: J V J' (J V J' + C)^-1 r.
-            for &i in &judged {
-                let shared = |&j: &usize| {
-                    patterns
-                        .iter()
-                        .map(|(p, v)| v * p[all.0[i].1] * p[all.0[j].1])
-                        .sum::<f64>()
-                };
-                residual[i] -= used
-                    .iter()
-                    .zip(&pr)
-                    .map(|(j, w)| shared(j) * w)
-                    .sum::<f64>();
-            }
-            // Floor: the same with the errors of the wheel forces alone.
-            let Some(p) = Precision::of(&covariance(frame, members, &part, &[]), part.len()) else {
-                continue;
-            };
-            for &i in &judged {
-                let forces = &patterns[..frame.n_loads().min(patterns.len())];
-                let shared = |&j: &usize| {
-                    forces
-                        .iter()
-                        .map(|(p, v)| v * p[all.0[i].1] * p[all.0[j].1])
-                        .sum::<f64>()
-                };
-                let c: Vec<f64> = used.iter().map(shared).collect();
-                found[i] += c.iter().zip(p.apply(&c)).map(|(a, b)| a * b).sum::<f64>();
-            }
+impl Judged {
+    /// The readings of gauges whose number in file order has this remainder by two.
+    pub fn half(&self, remainder: usize) -> Self {
+        let kept = |v: &[f64]| {
+            v.iter()
+                .zip(&self.gauges)
+                .filter(|(_, g)| **g % 2 == remainder)
+                .map(|(v, _)| *v)
+                .collect()
+        };
+        Self {
+            gauges: self
+                .gauges
+                .iter()
+                .copied()
+                .filter(|g| g % 2 == remainder)
+                .collect(),
+            reading: kept(&self.reading),
+            before: kept(&self.before),
+            after: kept(&self.after),
+            floor: kept(&self.floor),
+            mesh: kept(&self.mesh),
         }
     }
-    (all, residual, found)
+
+    /// Joins the residuals of other runs.
+    pub fn extend(&mut self, other: Self) {
+        self.gauges.extend(other.gauges);
+        self.reading.extend(other.reading);
+        self.before.extend(other.before);
+        self.after.extend(other.after);
+        self.floor.extend(other.floor);
+        self.mesh.extend(other.mesh);
+    }
+
+    /// RMS over RMS of the readings: before, after, floor.
+    pub fn numbers(&self) -> GapNumbers {
+        let scale = rms(self.reading.iter().copied());
+        let relative = |v: &[f64]| {
+            if scale > 0.0 {
+                rms(v.iter().copied()) / scale
+            } else {
+                0.0
+            }
+        };
+        GapNumbers {
+            before: relative(&self.before),
+            after: relative(&self.after),
+            floor: relative(&self.floor),
+        }
+    }
+
+    /// The gap over all and by gauge. `finer`: was a finer mesh solved? `loads_found` is the same with the wheel loads found anew as well.
+    pub fn gap(
+        &self,
+        frame: &StrainFrame,
+        basis: GapBasis,
+        loads_found: &Self,
+    ) -> (Gap, Vec<ChannelGap>) {
+        let GapNumbers {
+            before,
+            after,
+            floor,
+        } = self.numbers();
+        let scale = rms(self.reading.iter().copied());
+        let mesh = frame
+            .as_modelled
+            .as_ref()
+            .map(|_| rms(self.mesh.iter().copied()) / scale.max(f64::MIN_POSITIVE));
+        let of = |g: usize, v: &[f64]| {
+            rms(self
+                .gauges
+                .iter()
+                .zip(v)
+                .filter(|(e, _)| **e == g)
+                .map(|(_, v)| *v))
+        };
+        let channel = |(g, f): (usize, &super::frame::GaugeFacts)| ChannelGap {
+            channel: f.name.clone(),
+            before: of(g, &self.before),
+            after: of(g, &self.after),
+            floor: of(g, &self.floor),
+            reading: of(g, &self.reading),
+        };
+        let channels = frame.gauges.iter().enumerate().map(channel).collect();
+        (
+            Gap {
+                before,
+                after,
+                floor,
+                mesh,
+                basis,
+                loads_found: Some(loads_found.numbers()),
+            },
+            channels,
+        )
+    }
 }
 
 /// Root mean square of some numbers; zero of none.
@@ -158,145 +143,301 @@ pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
     if n == 0 { 0.0 } else { (sum / n as f64).sqrt() }
 }
 
-/// Gap over all and by gauge, of the model on the analyst's own mesh. Without effects nothing is found anew in a run: before and after
-/// are the same. The floor holds noise, errors of the influence as the fit runs tell of them, and the mesh.
-pub fn gap(
+fn residual(frame: &StrainFrame, members: &[Member<'_>], selection: &Selection) -> Vec<f64> {
+    let n_g = frame.n_gauges();
+    let predicted = selection.pick(&predict(frame, members), n_g);
+    let readings = selection.pick(&frame.observations.values, n_g);
+    readings.iter().zip(predicted).map(|(y, p)| y - p).collect()
+}
+
+/// Patterns that are found anew, with the covariance of their amplitudes and its mean, as the fit runs tell.
+struct Patterns {
+    values: Vec<Vec<f64>>,
+    mean: Vec<f64>,
+    /// `n x n` by rows.
+    covariance: Vec<f64>,
+}
+
+impl Patterns {
+    /// Strain of the mean amplitudes at a gauge.
+    fn expected(&self, gauge: usize) -> f64 {
+        self.values
+            .iter()
+            .zip(&self.mean)
+            .map(|(p, m)| p[gauge] * m)
+            .sum()
+    }
+
+    /// Covariance of the strain at two gauges.
+    fn between(&self, g: usize, h: usize) -> f64 {
+        let n = self.mean.len();
+        let rows = self.covariance.chunks_exact(n.max(1)).zip(&self.values);
+        rows.map(|(row, p)| {
+            p[g] * row
+                .iter()
+                .zip(&self.values)
+                .map(|(c, q)| c * q[h])
+                .sum::<f64>()
+        })
+        .sum()
+    }
+}
+
+/// The fit runs with a set of effects on: what they tell of the runs to be judged.
+struct Told<'a> {
+    frame: &'a StrainFrame,
+    members: &'a [Member<'a>],
+    unknown: &'a [SizedAmplitudes],
+    fit: Selection,
+    precision: Precision,
+    /// Precision times residual.
+    weighted: Vec<f64>,
+}
+
+impl<'a> Told<'a> {
+    fn of(
+        frame: &'a StrainFrame,
+        members: &'a [Member<'a>],
+        unknown: &'a [SizedAmplitudes],
+    ) -> Option<Self> {
+        let fit = Selection::of_runs(frame, &frame.observations.fit_runs());
+        let precision = Precision::of(&covariance(frame, members, &fit, unknown), fit.len())?;
+        let weighted = precision.apply(&residual(frame, members, &fit));
+        Some(Self {
+            frame,
+            members,
+            unknown,
+            fit,
+            precision,
+            weighted,
+        })
+    }
+
+    /// What is found anew. Amplitudes that repeat are learned from the fit runs: m = T B P r, M = T - T B P B' T, with B the patterns over
+    /// the readings of the fit runs and T the variances of what repeats.
+    fn patterns(&self, anew: FoundAnew) -> Patterns {
+        let mut values = Vec::new();
+        let (mut steady, mut scatter) = (Vec::new(), Vec::new());
+        let known = self.frame.nuisance_amplitudes();
+        for u in self.unknown.iter().chain(&known) {
+            values.extend(read_patterns(
+                self.frame,
+                self.members,
+                &u.amplitudes.patterns,
+            ));
+            steady.extend(u.amplitudes.kinds.iter().map(|&k| u.steady_variance(k)));
+            scatter.extend(u.amplitudes.kinds.iter().map(|&k| u.scatter_variance(k)));
+        }
+        if anew == FoundAnew::AmplitudesAndLoads {
+            let state = StrainState::with(self.frame, self.members);
+            let [n_g, _, n_c] = state.shape;
+            let column = |l: usize| {
+                (0..n_g)
+                    .map(|g| state.influence[g * n_c + l])
+                    .collect::<Vec<f64>>()
+            };
+            let columns: Vec<Vec<f64>> = (0..self.frame.n_loads()).map(column).collect();
+            values.extend(read_patterns(self.frame, self.members, &columns));
+            steady.resize(values.len(), 0.0);
+            scatter.resize(values.len(), self.frame.load_noise * self.frame.load_noise);
+        }
+        let n = values.len();
+        let over_fit = |p: usize| {
+            self.fit
+                .0
+                .iter()
+                .map(|e| values[p][e.1])
+                .collect::<Vec<f64>>()
+        };
+        let mut mean = vec![0.0; n];
+        let mut covariance = vec![0.0; n * n];
+        for p in 0..n {
+            covariance[p * n + p] = scatter[p] + steady[p];
+        }
+        let repeats: Vec<usize> = (0..n).filter(|p| steady[*p] > 0.0).collect();
+        let columns: Vec<Vec<f64>> = repeats.iter().map(|&p| over_fit(p)).collect();
+        for (p, column) in repeats.iter().zip(&columns) {
+            mean[*p] = steady[*p] * dot(column, &self.weighted);
+            let told = self.precision.apply(column);
+            for (q, other) in repeats.iter().zip(&columns) {
+                covariance[p * n + q] -= steady[*p] * dot(&told, other) * steady[*q];
+            }
+        }
+        Patterns {
+            values,
+            mean,
+            covariance,
+        }
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// Readings of one run given the fit runs: mean and covariance (`n x n`) of the residual.
+fn given_fit(told: &Told<'_>, run: &Selection) -> (Vec<f64>, Vec<f64>) {
+    let n = run.len();
+    let both = Selection([told.fit.0.as_slice(), &run.0].concat());
+    let joint = covariance(told.frame, told.members, &both, told.unknown);
+    let shared = |i: usize| {
+        let row = (told.fit.len() + i) * both.len();
+        &joint[row..row + told.fit.len()]
+    };
+    let mean = (0..n).map(|i| dot(shared(i), &told.weighted)).collect();
+    let mut out = vec![0.0; n * n];
+    for i in 0..n {
+        let known = told.precision.apply(shared(i));
+        for j in 0..n {
+            let prior = joint[(told.fit.len() + i) * both.len() + told.fit.len() + j];
+            out[i * n + j] = prior - dot(&known, shared(j));
+        }
+    }
+    (mean, out)
+}
+
+/// The runs to be judged, given the fit runs, with one model.
+struct Proof<'a> {
+    told: Told<'a>,
+    patterns: Patterns,
+}
+
+/// One run of them.
+struct ProofRun<'a> {
+    proof: &'a Proof<'a>,
+    all: Selection,
+    /// Residual of the model on the analyst's own mesh.
+    residual: Vec<f64>,
+    /// What of it no run tells: residual less its mean given the fit runs, on the finer mesh.
+    innovation: Vec<f64>,
+    /// Mean that stays when the patterns' own mean is taken off: errors of the model that the fit runs tell of, and the mesh.
+    offset: Vec<f64>,
+    /// What the mesh makes.
+    mesh: Vec<f64>,
+    /// Covariance of the innovation, `n x n`.
+    spread: Vec<f64>,
+}
+
+impl<'a> Proof<'a> {
+    fn of(
+        frame: &'a StrainFrame,
+        members: &'a [Member<'a>],
+        unknown: &'a [SizedAmplitudes],
+        anew: FoundAnew,
+    ) -> Option<Self> {
+        let told = Told::of(frame, members, unknown)?;
+        Some(Self {
+            patterns: told.patterns(anew),
+            told,
+        })
+    }
+
+    fn run(&self, own: &StrainFrame, run: usize) -> ProofRun<'_> {
+        let t = &self.told;
+        let all = Selection::of_runs(t.frame, &[run]);
+        let on_own = residual(own, t.members, &all);
+        let on_finer = residual(t.frame, t.members, &all);
+        let (mean, spread) = given_fit(t, &all);
+        let mesh: Vec<f64> = on_own.iter().zip(&on_finer).map(|(a, b)| a - b).collect();
+        let offset = all.0.iter().zip(mean.iter().zip(&mesh));
+        ProofRun {
+            offset: offset
+                .map(|(e, (m, d))| m - self.patterns.expected(e.1) + d)
+                .collect(),
+            innovation: on_finer.iter().zip(&mean).map(|(r, m)| r - m).collect(),
+            residual: on_own,
+            proof: self,
+            all,
+            mesh,
+            spread,
+        }
+    }
+}
+
+impl ProofRun<'_> {
+    /// By reading: its residual when the patterns are found from the other half of the gauges, and the floor of that.
+    fn judged(&self) -> (Vec<f64>, Vec<f64>) {
+        /// What the other half tells of the errors of the loads counts up to this many standard deviations: more is no error of a load.
+        const BELIEVED: f64 = 3.0;
+        let n = self.all.len();
+        let gauge = |i: usize| self.all.0[i].1;
+        let patterns = &self.proof.patterns;
+        let expected: Vec<f64> = (0..n).map(|i| patterns.expected(gauge(i))).collect();
+        let mut left: Vec<f64> = self
+            .residual
+            .iter()
+            .zip(&expected)
+            .map(|(r, e)| r - e)
+            .collect();
+        let mut floor = vec![0.0; n];
+        for half in [0, 1] {
+            let of = |even: usize| {
+                (0..n)
+                    .filter(|i| gauge(*i) % 2 == even)
+                    .collect::<Vec<usize>>()
+            };
+            let (used, seen) = (of(half), of(1 - half));
+            let block: Vec<f64> = used
+                .iter()
+                .flat_map(|&i| used.iter().map(move |&j| (i, j)))
+                .map(|(i, j)| self.spread[i * n + j])
+                .collect();
+            let precision = Precision::of(&block, used.len());
+            let innovation: Vec<f64> = used.iter().map(|&i| self.innovation[i]).collect();
+            for &i in &seen {
+                let shared: Vec<f64> = used
+                    .iter()
+                    .map(|&j| patterns.between(gauge(i), gauge(j)))
+                    .collect();
+                let whole: Vec<f64> = used.iter().map(|&j| self.spread[i * n + j]).collect();
+                let Some(p) = &precision else {
+                    floor[i] = self.spread[i * n + i].max(0.0).sqrt();
+                    continue;
+                };
+                let (k, k_whole) = (p.apply(&shared), p.apply(&whole));
+                left[i] -= dot(&k, &innovation);
+                let rest: Vec<f64> = k_whole.iter().zip(&k).map(|(a, b)| a - b).collect();
+                let spread_of = |v: &[f64]| -> f64 {
+                    let row = |a: usize| dot(&block[a * used.len()..(a + 1) * used.len()], v);
+                    (0..used.len()).map(|a| v[a] * row(a)).sum()
+                };
+                let most = BELIEVED * spread_of(&rest).max(0.0).sqrt();
+                let realised = dot(&rest, &innovation).clamp(-most, most);
+                let conditional = self.spread[i * n + i] - dot(&k_whole, &whole);
+                floor[i] = (conditional.max(0.0) + (self.offset[i] + realised).powi(2)).sqrt();
+            }
+        }
+        (left, floor)
+    }
+}
+
+/// Residuals of the proof runs by the analyst's model and with `members`, and their floor.
+///
+/// A reading j that is judged is predicted anew from the readings u of its run that are used: it loses K i_u, K = J_j V J_u' G_uu^-1, with i
+/// the innovation (the residual less what the fit runs tell of it), G its covariance, and J V J' the part of it that the patterns make.
+/// Of a right model is left, given i_u, (m_j + (G_ju G_uu^-1 - K) i_u)^2 + G_jj - G_ju G_uu^-1 G_uj, with m the errors of the model
+/// that the fit runs tell of. Before, the same is done with the loads alone, or with nothing.
+pub fn judged(
     finer: &StrainFrame,
     members: &[Member<'_>],
     unknown: &[SizedAmplitudes],
-) -> (Gap, Vec<ChannelGap>) {
-    let frame = &finer.as_modelled();
-    let all = Selection::of_runs(frame, &frame.observations.proof_runs());
-    let on = |f: &StrainFrame| all.pick(&predict(f, members), f.n_gauges());
-    let mesh: Vec<f64> = on(finer)
-        .iter()
-        .zip(on(frame))
-        .map(|(a, b)| a - b)
-        .collect();
-    let before = plain_residual(frame, &[], &all);
-    let readings = all.pick(&frame.observations.values, frame.n_gauges());
-    let (after, found) = if members.is_empty() {
-        (before.clone(), vec![0.0; all.len()])
-    } else {
-        let (_, after, found) = held_out_residual(frame, members, unknown);
-        (after, found)
-    };
-    let (mean, variance) = learned(finer, members, unknown, &all);
-    let floor: Vec<f64> = (0..all.len())
-        .map(|i| {
-            let known = (variance[i] - found[i]).max(0.0);
-            (known + (mean[i] + mesh[i]).powi(2)).sqrt()
-        })
-        .collect();
-    let scale = rms(readings.iter().copied());
-    let relative = |v: &[f64]| {
-        if scale > 0.0 {
-            rms(v.iter().copied()) / scale
-        } else {
-            0.0
-        }
-    };
-    let total = Gap {
-        before: relative(&before),
-        after: relative(&after),
-        floor: relative(&floor),
-        mesh: relative(&mesh),
-    };
-    let of = |g: usize, v: &[f64]| {
-        rms(all
-            .0
-            .iter()
-            .zip(v)
-            .filter(|(e, _)| e.1 == g)
-            .map(|(_, v)| *v))
-    };
-    let channel = |(g, f): (usize, &super::frame::GaugeFacts)| ChannelGap {
-        channel: f.name.clone(),
-        before: of(g, &before),
-        after: of(g, &after),
-        floor: of(g, &floor),
-        reading: of(g, &readings),
-    };
-    (
-        total,
-        frame.gauges.iter().enumerate().map(channel).collect(),
-    )
-}
-
-/// Wheel loads recovered from the strain of each proof run, by generalised least squares, without and with the effects.
-pub fn loads_before_after(
-    frame: &StrainFrame,
-    members: &[Member<'_>],
-    unknown: &[SizedAmplitudes],
-) -> Vec<LoadShift> {
-    let mut out = Vec::new();
-    for run in frame.observations.proof_runs() {
-        let (Some(before), Some(after)) = (
-            recover(&frame.as_modelled(), &[], &[], run),
-            recover(frame, members, unknown, run),
-        ) else {
-            continue;
-        };
-        for (l, name) in frame.load_names.iter().enumerate() {
-            out.push(LoadShift {
-                run: frame.observations.runs[run].clone(),
-                load: name.clone(),
-                stated: frame.loads[run * frame.n_loads() + l],
-                before: before[l].0,
-                after: after[l].0,
-                sigma: after[l].1,
-            });
-        }
+    anew: FoundAnew,
+) -> Option<Judged> {
+    let own = finer.as_modelled();
+    let with = Proof::of(finer, members, unknown, anew)?;
+    let without = Proof::of(finer, &[], &[], anew)?;
+    let mut out = Judged::default();
+    for run in finer.observations.proof_runs() {
+        let now = with.run(&own, run);
+        let (after, floor) = now.judged();
+        out.extend(Judged {
+            gauges: now.all.0.iter().map(|e| e.1).collect(),
+            reading: now.all.pick(&finer.observations.values, finer.n_gauges()),
+            before: without.run(&own, run).judged().0,
+            after,
+            floor,
+            mesh: now.mesh,
+        });
     }
-    out
-}
-
-/// Loads of one run with their standard deviations.
-fn recover(
-    frame: &StrainFrame,
-    members: &[Member<'_>],
-    unknown: &[SizedAmplitudes],
-    run: usize,
-) -> Option<Vec<(f64, f64)>> {
-    let (n_l, n_g) = (frame.n_loads(), frame.n_gauges());
-    let mut state = StrainState::with(frame, members);
-    let [_, _, n_c] = state.shape;
-    let column = |l: usize| {
-        (0..n_g)
-            .map(|g| state.influence[g * n_c + l])
-            .collect::<Vec<f64>>()
-    };
-    let columns = read_patterns(frame, members, &(0..n_l).map(column).collect::<Vec<_>>());
-    state.columns[run * n_c..run * n_c + n_l].fill(0.0);
-    let mut rest = state.strain(run);
-    read_all(frame, members, run, &mut rest, Part::Whole);
-    let used = Selection::of_runs(frame, &[run]);
-    let r: Vec<f64> = used
-        .0
-        .iter()
-        .map(|&(k, g)| frame.observations.value(k, g) - rest[g])
-        .collect();
-    // The loads are to be found: their measured values and noise stay out.
-    let mut free = frame.clone();
-    free.load_noise = 0.0;
-    let p = Precision::of(&covariance(&free, members, &used, unknown), used.len())?;
-    let mut normal = vec![0.0; n_l * n_l];
-    let mut right = vec![0.0; n_l];
-    let here = |l: usize| used.0.iter().map(|e| columns[l][e.1]).collect::<Vec<f64>>();
-    for l in 0..n_l {
-        let w = p.apply(&here(l));
-        for k in 0..n_l {
-            normal[l * n_l + k] = here(k).iter().zip(&w).map(|(a, b)| a * b).sum();
-        }
-        right[l] = r.iter().zip(&w).map(|(a, b)| a * b).sum();
-    }
-    let solved = Precision::of(&normal, n_l)?;
-    Some(
-        solved
-            .apply(&right)
-            .into_iter()
-            .enumerate()
-            .map(|(l, v)| (v, solved.entry(l, l).max(0.0).sqrt()))
-            .collect(),
-    )
+    Some(out)
 }

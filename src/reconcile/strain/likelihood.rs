@@ -2,10 +2,12 @@
 
 use super::covariance::{Selection, SizedAmplitudes, covariance, read_patterns};
 use super::frame::StrainFrame;
-use super::size::{RunBlocks, run_by_run_log_likelihood, usual_sizes};
+use super::size::{RunBlocks, RunPrecision, run_by_run_log_likelihood, usual_sizes};
 use super::state::{Part, predict};
 use crate::linalg::precision::Precision;
-use crate::reconcile::effect::{Candidate, Member, Parameter, Stage, full_id};
+use crate::reconcile::effect::{
+    Amplitudes, Candidate, Discrepancy, Member, Parameter, Stage, full_id,
+};
 use crate::reconcile::search::{Addition, Scored, Scorer};
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -17,7 +19,9 @@ pub struct Fit {
     pub parameters: Vec<Vec<f64>>,
     /// By member: standard deviations of its parameters.
     pub sigma: Vec<Vec<f64>>,
-    /// Members with amplitudes: candidate number and size of each kind.
+    /// Covariance of all parameters, members in order, by rows.
+    pub covariance: Vec<f64>,
+    /// Members with amplitudes: candidate number and sizes (see [`SizedAmplitudes::sizes`]).
     pub sizes: Vec<(usize, Vec<f64>)>,
     /// Residual of the selection, parameters in.
     pub residual: Vec<f64>,
@@ -43,6 +47,8 @@ pub struct Likelihood<'a> {
     runs: Vec<usize>,
     /// Covariance run by run.
     blocks: RunBlocks,
+    /// Are general forms of discrepancy left out of the search?
+    names_only: bool,
 }
 
 /// Sizes of amplitudes are rounded to this step of their natural log, so that sets share a factorisation.
@@ -81,6 +87,15 @@ impl<'a> Likelihood<'a> {
             index,
             runs: runs.to_vec(),
             blocks,
+            names_only: false,
+        }
+    }
+
+    /// The same with the general forms of discrepancy left out of the search.
+    pub fn names_only(self) -> Self {
+        Self {
+            names_only: true,
+            ..self
         }
     }
 
@@ -351,7 +366,8 @@ impl Scorer for Likelihood<'_> {
             });
             let added =
                 from.and_then(|(_, a)| a.filter(|a| a.candidate == c).map(|a| a.sizes.clone()));
-            let usual = self.candidates.get(c)?.effect.amplitudes(self.frame)?.usual;
+            let a = self.candidates.get(c)?.effect.amplitudes(self.frame)?;
+            let usual = [a.usual, a.steady].concat();
             sizes.push((
                 c,
                 known
@@ -374,6 +390,7 @@ impl Scorer for Likelihood<'_> {
         }
         let n = best.hessian.len().isqrt();
         let mut log_evidence = -best.value - 0.5 * precision.log_det();
+        let mut joint = Vec::new();
         let mut sigma: Vec<Vec<f64>> = best.theta.iter().map(|t| vec![0.0; t.len()]).collect();
         if n > 0 {
             let posterior = Precision::of(&best.hessian, n)?;
@@ -386,11 +403,13 @@ impl Scorer for Likelihood<'_> {
                     i += 1;
                 }
             }
+            joint = (0..n * n).map(|k| posterior.entry(k / n, k % n)).collect();
         }
         let runs = self.runs.len();
         for (_, s) in &sizes {
             // Each size is a parameter, known to a factor from as many runs.
-            log_evidence -= 0.5 * (runs.max(1) as f64).ln() * s.len() as f64;
+            let n_sizes = s.iter().filter(|s| **s > 0.0).count();
+            log_evidence -= 0.5 * (runs.max(1) as f64).ln() * n_sizes as f64;
         }
         log_evidence += set
             .iter()
@@ -400,6 +419,7 @@ impl Scorer for Likelihood<'_> {
         let fit = Fit {
             parameters: best.theta,
             sigma,
+            covariance: joint,
             sizes,
             residual: best.residual,
             chi2: best.chi2,
@@ -415,25 +435,39 @@ impl Scorer for Likelihood<'_> {
         let Some(precision) = self.precision(&base.fit.sizes) else {
             return Vec::new();
         };
-        let pr = precision.apply(&base.fit.residual);
         let members = self.members(&base.set, &base.fit.parameters);
-        let predicted = predict(self.frame, &members);
-        let families: Vec<usize> = base.fit.sizes.iter().map(|s| s.0).collect();
-        let mut without = None;
+        let now = Base {
+            scored: base,
+            predicted: predict(self.frame, &members),
+            weighted: precision.apply(&base.fit.residual),
+            precision: precision.as_ref(),
+            families: base.fit.sizes.iter().map(|s| s.0).collect(),
+            members,
+        };
+        let alone = self
+            .blocks
+            .precisions(&self.sized(&base.fit.sizes, &now.members));
+        let without = run_by_run_log_likelihood(
+            &self.blocks,
+            &base.fit.residual,
+            &self.sized(&base.fit.sizes, &now.members),
+        );
         let mut out = Vec::new();
         for (c, candidate) in self.candidates.iter().enumerate() {
-            if base.set.contains(&c) {
+            let form = matches!(candidate.effect.discrepancy(), Some(Discrepancy::Form(_)));
+            if base.set.contains(&c) || (form && self.names_only) {
                 continue;
             }
-            let (gain, parameters, sizes) = if candidate.effect.amplitudes(self.frame).is_some() {
-                let before =
-                    *without.get_or_insert_with(|| self.run_by_run(&families, &members, base).0);
-                let (after, sizes) =
-                    self.run_by_run(&[families.as_slice(), &[c]].concat(), &members, base);
-                (after - before, Vec::new(), sizes)
-            } else {
-                let (gain, theta) = self.screen_parameters(c, base, &predicted, &precision, &pr);
-                (gain, theta, Vec::new())
+            let (gain, parameters, sizes) = match candidate.effect.amplitudes(self.frame) {
+                Some(_) if candidate.effect.parameters().is_empty() => {
+                    let (after, sizes) = self.run_by_run(c, &now);
+                    (after - without, Vec::new(), sizes)
+                }
+                Some(a) => self.screen_scattering(c, &a, &now, &alone),
+                None => {
+                    let (gain, theta) = self.screen_parameters(c, &now);
+                    (gain, theta, Vec::new())
+                }
             };
             out.push(Addition {
                 candidate: c,
@@ -455,82 +489,120 @@ impl Scorer for Likelihood<'_> {
         if full_id(a.as_ref()) == full_id(b.as_ref()) {
             return false;
         }
-        // On one gauge a zero may drift besides another fault; two other faults are told as one.
-        let drift = a.id() == "zero_drift" || b.id() == "zero_drift";
         let shared = a.gauges().iter().any(|g| b.gauges().contains(g));
-        let dead = a.id() == "dead_channel" || b.id() == "dead_channel";
-        !shared || (drift && !dead)
+        !shared || a.kind().besides(b.kind())
     }
 
     fn kin(&self, candidate: usize) -> usize {
         let Some(c) = self.candidates.get(candidate) else {
             return usize::MAX;
         };
-        match c.effect.gauges().as_slice() {
-            [one] => *one,
-            _ => self.frame.n_gauges() + candidate,
+        if let [one] = c.effect.gauges().as_slice() {
+            return *one;
         }
+        // One effect at many places that overlap: pairs of gauges, stretches of a card, runs.
+        let same = |o: &Candidate| o.effect.id() == c.effect.id() && o.effect.gauges().len() != 1;
+        let first = self.candidates.iter().position(same).unwrap_or(candidate);
+        let places = !c.effect.gauges().is_empty() || !c.effect.runs().is_empty();
+        self.frame.n_gauges() + if places { first } else { candidate }
+    }
+
+    fn variants(&self, candidate: usize) -> Vec<usize> {
+        let Some(own) = self
+            .candidates
+            .get(candidate)
+            .map(|c| full_id(c.effect.as_ref()))
+        else {
+            return Vec::new();
+        };
+        let same = |(c, o): (usize, &Candidate)| {
+            (c != candidate && full_id(o.effect.as_ref()) == own).then_some(c)
+        };
+        self.candidates
+            .iter()
+            .enumerate()
+            .filter_map(same)
+            .collect()
     }
 }
 
+/// A fitted set that candidates are tried on top of.
+struct Base<'b> {
+    scored: &'b Scored<Fit>,
+    members: Vec<Member<'b>>,
+    /// Members with amplitudes.
+    families: Vec<usize>,
+    /// Its prediction of all readings.
+    predicted: Vec<f64>,
+    precision: &'b Precision,
+    /// Precision times residual.
+    weighted: Vec<f64>,
+}
+
 impl Likelihood<'_> {
-    /// Change of the prediction of the selection from `predicted` (that of `base`), as few entries where the effect touches few gauges.
-    fn change(
-        &self,
-        c: usize,
-        base: &Scored<Fit>,
-        predicted: &[f64],
-        theta: &[f64],
-    ) -> Vec<(usize, f64)> {
+    /// Amplitudes of candidates with their sizes, as `members` let the gauges read them.
+    fn sized(&self, sizes: &[(usize, Vec<f64>)], members: &[Member<'_>]) -> Vec<SizedAmplitudes> {
+        let one = |(c, s): &(usize, Vec<f64>)| {
+            let mut amplitudes = self.candidates.get(*c)?.effect.amplitudes(self.frame)?;
+            amplitudes.patterns = read_patterns(self.frame, members, &amplitudes.patterns);
+            Some(SizedAmplitudes {
+                amplitudes,
+                sizes: s.clone(),
+            })
+        };
+        sizes.iter().filter_map(one).collect()
+    }
+
+    /// Change of the prediction of the selection by candidate `c`, at the readings that it touches.
+    fn change(&self, c: usize, base: &Base<'_>, theta: &[f64]) -> Vec<(usize, f64)> {
         let Some(candidate) = self.candidates.get(c) else {
             return Vec::new();
         };
+        let effect = candidate.effect.as_ref();
         let n_g = self.frame.n_gauges();
-        let gauges = candidate.effect.gauges();
-        let mut out = Vec::new();
-        if candidate.effect.stage() == Stage::Reading {
-            // Reading effects come last: they act on what is predicted.
-            let gauges = if gauges.is_empty() {
-                (0..n_g).collect()
+        let all = |some: Vec<usize>, n: usize| {
+            if some.is_empty() {
+                (0..n).collect()
             } else {
-                gauges
-            };
-            for &run in &self.runs {
-                let Some(before) = predicted.get(run * n_g..(run + 1) * n_g) else {
+                some
+            }
+        };
+        let gauges: Vec<usize> = all(effect.gauges(), n_g);
+        let touched = effect.runs();
+        let runs = self
+            .runs
+            .iter()
+            .filter(|r| touched.is_empty() || touched.contains(r));
+        let place = |run: usize, g: usize| self.index.get(run * n_g + g).copied().flatten();
+        let mut out = Vec::new();
+        if effect.stage() == Stage::Reading {
+            // Reading effects come last: they act on what is predicted.
+            for &run in runs {
+                let Some(before) = base.predicted.get(run * n_g..(run + 1) * n_g) else {
                     continue;
                 };
                 let mut row = before.to_vec();
-                candidate
-                    .effect
-                    .read(self.frame, theta, run, &mut row, Part::Whole);
-                out.extend(gauges.iter().filter_map(|&g| {
-                    Some((
-                        *self.index.get(run * n_g + g)?.as_ref()?,
-                        row[g] - before[g],
-                    ))
-                }));
+                effect.read(self.frame, theta, run, &mut row, Part::Whole);
+                out.extend(
+                    gauges
+                        .iter()
+                        .filter_map(|&g| Some((place(run, g)?, row[g] - before[g]))),
+                );
             }
             return out;
         }
-        let mut set = base.set.clone();
-        let mut parameters = base.fit.parameters.clone();
-        set.push(c);
-        parameters.push(theta.to_vec());
-        let now = predict(self.frame, &self.members(&set, &parameters));
-        if gauges.is_empty() {
-            return self
-                .selection
-                .0
-                .iter()
-                .enumerate()
-                .map(|(i, &(r, g))| (i, now[r * n_g + g] - predicted[r * n_g + g]))
-                .collect();
-        }
-        for &run in &self.runs {
+        let mut members = base.members.clone();
+        members.push(Member {
+            effect,
+            parameters: theta,
+        });
+        // Members are read in the order of the set, as when it is fitted.
+        let now = predict(self.frame, &members);
+        for &run in runs {
             let at = |&g: &usize| {
                 Some((
-                    *self.index.get(run * n_g + g)?.as_ref()?,
-                    now[run * n_g + g] - predicted[run * n_g + g],
+                    place(run, g)?,
+                    now[run * n_g + g] - base.predicted[run * n_g + g],
                 ))
             };
             out.extend(gauges.iter().filter_map(at));
@@ -538,28 +610,52 @@ impl Likelihood<'_> {
         out
     }
 
-    /// Approximate gain of log evidence by adding candidate `c`: one Newton step per parameter from each start, then exact.
-    fn screen_parameters(
-        &self,
-        c: usize,
-        base: &Scored<Fit>,
-        predicted: &[f64],
-        precision: &Precision,
-        pr: &[f64],
-    ) -> (f64, Vec<f64>) {
+    /// Approximate gain of log evidence by adding candidate `c`: one Newton step per parameter from each start.
+    fn screen_parameters(&self, c: usize, base: &Base<'_>) -> (f64, Vec<f64>) {
         let Some(candidate) = self.candidates.get(c) else {
             return (f64::NEG_INFINITY, Vec::new());
         };
         let described = candidate.effect.parameters();
         let gain = |change: &[(usize, f64)]| {
-            let along: f64 = change.iter().map(|&(i, v)| v * pr[i]).sum();
-            along - 0.5 * quadratic(precision, change)
+            let along: f64 = change.iter().map(|&(i, v)| v * base.weighted[i]).sum();
+            along - 0.5 * quadratic(base.precision, change)
         };
-        if described.is_empty() {
-            return (gain(&self.change(c, base, predicted, &[])), Vec::new());
+        match described.as_slice() {
+            [] => (gain(&self.change(c, base, &[])), Vec::new()),
+            [one] if one.starts == [one.neutral] => {
+                let (gain, theta, _) = self.linear_step(c, base, one);
+                (gain, vec![theta])
+            }
+            _ => self.newton_steps(c, base, &described, &gain),
         }
+    }
+
+    /// Gain and parameter of a candidate that is as good as linear in its only parameter, and its slope:
+    /// gain = (x' P r)^2 / (2 k) - ln(k s^2) / 2 with k = x' P x + 1 / s^2.
+    fn linear_step(
+        &self,
+        c: usize,
+        base: &Base<'_>,
+        p: &Parameter,
+    ) -> (f64, f64, Vec<(usize, f64)>) {
+        let mut slope = self.change(c, base, &[p.neutral + p.step]);
+        slope.iter_mut().for_each(|e| e.1 /= p.step);
+        let variance = p.prior_sd * p.prior_sd;
+        let curvature = quadratic(base.precision, &slope) + 1.0 / variance;
+        let pull: f64 = slope.iter().map(|&(i, v)| v * base.weighted[i]).sum();
+        let gain = 0.5 * pull * pull / curvature - 0.5 * (curvature * variance).ln();
+        (gain, p.neutral + pull / curvature, slope)
+    }
+
+    fn newton_steps(
+        &self,
+        c: usize,
+        base: &Base<'_>,
+        described: &[Parameter],
+        gain: &dyn Fn(&[(usize, f64)]) -> f64,
+    ) -> (f64, Vec<f64>) {
         let mut best = (f64::NEG_INFINITY, Vec::new());
-        let starts: Vec<Vec<f64>> = match described.as_slice() {
+        let starts: Vec<Vec<f64>> = match described {
             [one] => one.starts.iter().map(|s| vec![*s]).collect(),
             many => vec![
                 many.iter()
@@ -573,18 +669,21 @@ impl Likelihood<'_> {
             for _ in 0..2 {
                 log_width = 0.0;
                 for (k, p) in described.iter().enumerate() {
-                    let here = self.change(c, base, predicted, &theta);
+                    let here = self.change(c, base, &theta);
                     let mut moved = theta.clone();
                     moved[k] += p.step;
-                    let there = self.change(c, base, predicted, &moved);
+                    let there = self.change(c, base, &moved);
                     let slope: Vec<(usize, f64)> = here
                         .iter()
                         .zip(&there)
                         .map(|(a, b)| (a.0, (b.1 - a.1) / p.step))
                         .collect();
-                    let (own, cross) = products(precision, &slope, &here);
+                    let (own, cross) = products(base.precision, &slope, &here);
                     let curvature = own + 1.0 / (p.prior_sd * p.prior_sd);
-                    let pull: f64 = slope.iter().map(|&(i, v)| v * pr[i]).sum::<f64>()
+                    let pull: f64 = slope
+                        .iter()
+                        .map(|&(i, v)| v * base.weighted[i])
+                        .sum::<f64>()
                         - cross
                         - (theta[k] - p.neutral) / (p.prior_sd * p.prior_sd);
                     theta[k] += pull / curvature;
@@ -596,7 +695,7 @@ impl Likelihood<'_> {
                 .zip(&theta)
                 .map(|(p, t)| 0.5 * ((t - p.neutral) / p.prior_sd).powi(2))
                 .sum();
-            let value = gain(&self.change(c, base, predicted, &theta)) - prior - log_width;
+            let value = gain(&self.change(c, base, &theta)) - prior - log_width;
             if value > best.0 {
                 best = (value, theta);
             }
@@ -604,29 +703,83 @@ impl Likelihood<'_> {
         best
     }
 
-    /// Log likelihood with the amplitudes of `families`, run by run, and the sizes of the last of them.
-    fn run_by_run(
+    /// A candidate with one parameter and, besides, one pattern whose amplitude scatters from run to run: the parameter by its linear step
+    /// with the scatter in, then the scatter size of a few that gains most. With s = p' P r and h = p' P p of a run, scatter of variance v
+    /// gains the sum over runs of s^2 v / (2 (1 + v h)) - ln(1 + v h) / 2.
+    fn screen_scattering(
         &self,
-        families: &[usize],
-        members: &[Member<'_>],
-        base: &Scored<Fit>,
-    ) -> (f64, Vec<f64>) {
-        let list: Vec<_> = families
+        c: usize,
+        amplitudes: &Amplitudes,
+        base: &Base<'_>,
+        alone: &[RunPrecision<'_>],
+    ) -> (f64, Vec<f64>, Vec<f64>) {
+        /// Sizes tried, of the usual one.
+        const SIZES: [f64; 9] = [0.1, 0.2, 0.35, 0.6, 1.0, 1.7, 3.0, 6.0, 12.0];
+        let nothing = (f64::NEG_INFINITY, Vec::new(), Vec::new());
+        let (Some(candidate), [pattern], [usual]) = (
+            self.candidates.get(c),
+            amplitudes.patterns.as_slice(),
+            amplitudes.usual.as_slice(),
+        ) else {
+            return nothing;
+        };
+        let described = candidate.effect.parameters();
+        let [p] = described.as_slice() else {
+            return nothing;
+        };
+        let slope: Vec<(usize, f64)> = {
+            let mut change = self.change(c, base, &[p.neutral + p.step]);
+            change.iter_mut().for_each(|e| e.1 /= p.step);
+            change
+        };
+        let at: BTreeMap<usize, f64> = slope.into_iter().collect();
+        // By run, of the residual r and the parameter's slope x: p'Pr, p'Px, p'Pp, and x'Pr, x'Px.
+        let sums: Vec<[f64; 5]> = alone
             .iter()
-            .filter_map(|&c| self.candidates.get(c)?.effect.amplitudes(self.frame))
-            .collect();
-        let sized = self.sizes_from(families, members, &base.fit.residual);
-        let unknown: Vec<SizedAmplitudes> = list
-            .into_iter()
-            .zip(&sized)
-            .map(|(amplitudes, s)| SizedAmplitudes {
-                amplitudes,
-                sizes: s.1.clone(),
+            .map(|run| {
+                let of =
+                    |f: &dyn Fn(usize) -> f64| run.at.iter().map(|i| f(*i)).collect::<Vec<f64>>();
+                let r = of(&|i| base.scored.fit.residual[i]);
+                let x = of(&|i| at.get(&i).copied().unwrap_or(0.0));
+                let own: Vec<f64> = run.gauges.iter().map(|&g| pattern[g]).collect();
+                let (wp, wx) = (run.precision.apply(&own), run.precision.apply(&x));
+                let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+                [
+                    dot(&wp, &r),
+                    dot(&wp, &x),
+                    dot(&wp, &own),
+                    dot(&wx, &r),
+                    dot(&wx, &x),
+                ]
             })
             .collect();
-        let last = sized.last().map(|s| s.1.clone()).unwrap_or_default();
-        let value = run_by_run_log_likelihood(&self.blocks, &base.fit.residual, &unknown);
-        (value, last)
+        let variance = p.prior_sd * p.prior_sd;
+        let mut best = nothing;
+        for size in SIZES.map(|s| s * usual) {
+            let v = size * size;
+            let (mut pull, mut own, mut gain) = (0.0, 1.0 / variance, 0.0);
+            for [pr, px, pp, xr, xx] in &sums {
+                let share = v / (1.0 + v * pp);
+                pull += xr - share * px * pr;
+                own += xx - share * px * px;
+                gain += 0.5 * pr * pr * share - 0.5 * (v * pp).ln_1p();
+            }
+            gain += 0.5 * pull * pull / own - 0.5 * (own * variance).ln();
+            gain -= 0.5 * (sums.len().max(1) as f64).ln();
+            if gain > best.0 {
+                best = (gain, vec![p.neutral + pull / own], vec![size, 0.0]);
+            }
+        }
+        best
+    }
+
+    /// Log likelihood with the amplitudes of `c` besides those of `base`, run by run, and their sizes.
+    fn run_by_run(&self, c: usize, base: &Base<'_>) -> (f64, Vec<f64>) {
+        let families = [base.families.as_slice(), &[c]].concat();
+        let sizes = self.sizes_from(&families, &base.members, &base.scored.fit.residual);
+        let unknown = self.sized(&sizes, &base.members);
+        let value = run_by_run_log_likelihood(&self.blocks, &base.scored.fit.residual, &unknown);
+        (value, sizes.last().map(|s| s.1.clone()).unwrap_or_default())
     }
 }
 

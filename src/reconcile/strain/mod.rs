@@ -5,26 +5,33 @@ mod bias;
 mod covariance;
 mod detect;
 mod examine;
+mod explanation;
 mod extended;
 mod frame;
 mod gap;
+mod judge;
 mod likelihood;
+mod neighbours;
 mod next;
+mod recovered;
 mod remains;
+mod resampled;
 mod size;
 mod state;
 mod tolerance;
+mod validation;
 
 pub use adequacy::{Adequacy, adequacy, deviate};
 pub use covariance::{Selection, SizedAmplitudes, covariance, read_patterns};
 pub use detect::DECISIVE;
-pub use examine::examine;
-pub use extended::{Correction, corrected_readings, extended_influence};
+pub use examine::{examine, examine_with};
+pub use extended::{corrected_readings, extended_state};
 pub use frame::{
-    GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, PayloadWeight, PlaneStrainRow, Scatter,
-    StiffnessSignature, StrainFrame, WheelForces, Wiring,
+    GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, NuisanceLoad, PayloadWeight, PlaneStrainRow,
+    Scatter, StiffnessOf, StiffnessSignature, StrainFrame, WheelForces, Wiring,
 };
-pub use gap::{gap, held_out_residual, loads_before_after};
+pub use gap::{FoundAnew, Judged, judged};
 pub use likelihood::{Fit, Likelihood};
+pub use recovered::loads_before_after;
 pub use state::{Part, StrainState, predict, read_all};
 pub use tolerance::angle_scatter;

@@ -1,18 +1,10 @@
 //! The measurement that would separate two explanations.
 
-use super::covariance::{Selection, SizedAmplitudes, covariance};
+use super::covariance::{Selection, covariance};
+use super::explanation::Explanation;
 use super::frame::StrainFrame;
 use super::state::predict;
 use crate::linalg::precision::Precision;
-use crate::reconcile::effect::Member;
-
-/// An explanation: effects with parameters, and amplitudes.
-pub struct Explanation<'a> {
-    /// Effects with parameters.
-    pub members: Vec<Member<'a>>,
-    /// Amplitudes with sizes.
-    pub unknown: Vec<SizedAmplitudes>,
-}
 
 /// A run that could be made, in words and numbers.
 struct Design {

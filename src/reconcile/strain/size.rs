@@ -1,6 +1,7 @@
-//! How large amplitudes that differ from run to run usually are, from a residual: run by run, gauges in one covariance.
+//! How large amplitudes that differ from run to run usually are, from a residual: run by run, gauges in one covariance; what repeats in
+//! all runs besides.
 
-use super::covariance::{Selection, SizedAmplitudes, covariance};
+use super::covariance::{Selection, SizedAmplitudes, add_outer, covariance};
 use super::frame::StrainFrame;
 use crate::linalg::precision::Precision;
 use crate::reconcile::effect::{Amplitudes, Member};
@@ -17,6 +18,16 @@ struct RunBlock {
     at: Vec<usize>,
     gauges: Vec<usize>,
     covariance: Vec<f64>,
+}
+
+/// A run with its precision, amplitudes in: what quick sums need.
+pub struct RunPrecision<'a> {
+    /// Places of its readings in the selection.
+    pub at: &'a [usize],
+    /// Their gauges.
+    pub gauges: &'a [usize],
+    /// Precision of these readings, scatter of amplitudes in, correlation with other runs left out.
+    pub precision: Precision,
 }
 
 impl RunBlocks {
@@ -41,20 +52,30 @@ impl RunBlocks {
         }
     }
 
-    /// What unknown amplitudes add to the covariance of a run, `n_gauges x n_gauges`.
-    fn added(&self, families: &[(&Amplitudes, &[f64])]) -> Vec<f64> {
+    /// Precisions run by run with the scatter of `unknown`; those that can't be made are left out.
+    pub fn precisions(&self, unknown: &[SizedAmplitudes]) -> Vec<RunPrecision<'_>> {
+        let added = self.added(unknown);
+        let one = |b: &'_ RunBlock| b.precision(&added, self.n_gauges);
+        let made = self.blocks.iter().filter_map(|b| Some((b, one(b)?)));
+        made.map(|(b, precision)| RunPrecision {
+            at: &b.at,
+            gauges: &b.gauges,
+            precision,
+        })
+        .collect()
+    }
+
+    /// What the scatter of unknown amplitudes adds to the covariance of a run, `n_gauges x n_gauges`.
+    fn added(&self, unknown: &[SizedAmplitudes]) -> Vec<f64> {
         let n = self.n_gauges;
         let mut out = vec![0.0; n * n];
-        for (f, sizes) in families {
-            for (pattern, &kind) in f.patterns.iter().zip(&f.kinds) {
-                let variance = sizes.get(kind).map_or(0.0, |s| s * s);
-                for (g, (row, a)) in out.chunks_exact_mut(n.max(1)).zip(pattern).enumerate() {
-                    for (cell, b) in row.iter_mut().zip(pattern) {
-                        *cell += variance * a * b;
-                    }
-                    if let (Some(own), Some(doubt)) = (row.get_mut(g), self.doubt.get(g)) {
-                        *own += variance * (doubt * a).powi(2);
-                    }
+        for u in unknown {
+            for (pattern, &kind) in u.amplitudes.patterns.iter().zip(&u.amplitudes.kinds) {
+                let scatter = u.scatter_variance(kind);
+                add_outer(&mut out, pattern, scatter);
+                let doubted = scatter + u.steady_variance(kind);
+                for (g, (a, doubt)) in pattern.iter().zip(&self.doubt).enumerate() {
+                    out[g * n + g] += doubted * (doubt * a).powi(2);
                 }
             }
         }
@@ -75,98 +96,243 @@ impl RunBlock {
     }
 }
 
-/// Sum over runs of the log density of `residual` with `unknown` amplitudes, less constants; correlation between runs left out.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// A pattern with its family, its kind, and the variance of what repeats of it.
+struct Pattern<'a> {
+    family: usize,
+    kind: usize,
+    values: &'a [f64],
+    steady: f64,
+}
+
+fn patterns_of(unknown: &[SizedAmplitudes]) -> Vec<Pattern<'_>> {
+    let one = |(family, u): (usize, &'_ SizedAmplitudes)| -> Vec<(usize, usize, f64)> {
+        u.amplitudes
+            .kinds
+            .iter()
+            .map(|&k| (family, k, u.steady_variance(k)))
+            .collect()
+    };
+    let listed = unknown.iter().enumerate().flat_map(one);
+    let values = unknown.iter().flat_map(|u| &u.amplitudes.patterns);
+    listed
+        .zip(values)
+        .map(|((family, kind, steady), v)| Pattern {
+            family,
+            kind,
+            values: v,
+            steady,
+        })
+        .collect()
+}
+
+/// Amplitudes that repeat in all runs, given the runs: their mean and covariance, and the log likelihood they gain.
+struct Steady {
+    /// Numbers of the patterns that repeat.
+    which: Vec<usize>,
+    mean: Vec<f64>,
+    /// (H + T^-1), inverted.
+    posterior: Option<Precision>,
+    gain: f64,
+}
+
+/// m = (H + T^-1)^-1 sum of A' P r, H = sum of A' P A over runs; gain = (m' (H + T^-1) m - ln det(I + T H)) / 2.
+fn steady(runs: &[RunPrecision<'_>], residual: &[f64], patterns: &[Pattern<'_>]) -> Steady {
+    let which: Vec<usize> = (0..patterns.len())
+        .filter(|p| patterns[*p].steady > 0.0)
+        .collect();
+    let n = which.len();
+    let nothing = Steady {
+        which: Vec::new(),
+        mean: Vec::new(),
+        posterior: None,
+        gain: 0.0,
+    };
+    if n == 0 {
+        return nothing;
+    }
+    let (mut h, mut s) = (vec![0.0; n * n], vec![0.0; n]);
+    for run in runs {
+        let here = |p: usize| {
+            run.gauges
+                .iter()
+                .map(|&g| patterns[p].values[g])
+                .collect::<Vec<f64>>()
+        };
+        let columns: Vec<Vec<f64>> = which.iter().map(|&p| here(p)).collect();
+        let r: Vec<f64> = run.at.iter().map(|&i| residual[i]).collect();
+        let pr = run.precision.apply(&r);
+        for (i, a) in columns.iter().enumerate() {
+            let weighted = run.precision.apply(a);
+            s[i] += dot(a, &pr);
+            for (j, b) in columns.iter().enumerate().take(i + 1) {
+                h[i * n + j] += dot(&weighted, b);
+            }
+        }
+    }
+    let mut log_prior = 0.0;
+    for (i, &p) in which.iter().enumerate() {
+        h[i * n + i] += 1.0 / patterns[p].steady;
+        log_prior += patterns[p].steady.ln();
+    }
+    let Some(posterior) = Precision::of(&h, n) else {
+        return nothing;
+    };
+    let mean = posterior.apply(&s);
+    let gain = 0.5 * (dot(&mean, &s) - posterior.log_det() - log_prior);
+    Steady {
+        which,
+        mean,
+        posterior: Some(posterior),
+        gain,
+    }
+}
+
+/// Sum over runs of the log density of `residual` with `unknown` amplitudes, less constants; of the correlation between runs, that of
+/// amplitudes that repeat.
 pub fn run_by_run_log_likelihood(
     blocks: &RunBlocks,
     residual: &[f64],
     unknown: &[SizedAmplitudes],
 ) -> f64 {
-    let families: Vec<(&Amplitudes, &[f64])> = unknown
-        .iter()
-        .map(|u| (&u.amplitudes, u.sizes.as_slice()))
-        .collect();
-    let added = blocks.added(&families);
-    let mut sum = 0.0;
-    for block in &blocks.blocks {
-        let r: Vec<f64> = block.at.iter().map(|&i| residual[i]).collect();
-        let Some(p) = block.precision(&added, blocks.n_gauges) else {
-            return f64::NEG_INFINITY;
-        };
-        let pr = p.apply(&r);
-        sum -= 0.5 * (p.log_det() + r.iter().zip(&pr).map(|(a, b)| a * b).sum::<f64>());
+    let runs = blocks.precisions(unknown);
+    if runs.len() < blocks.blocks.len() {
+        return f64::NEG_INFINITY;
+    }
+    let mut sum = steady(&runs, residual, &patterns_of(unknown)).gain;
+    for run in &runs {
+        let r: Vec<f64> = run.at.iter().map(|&i| residual[i]).collect();
+        sum -= 0.5 * (run.precision.log_det() + dot(&r, &run.precision.apply(&r)));
     }
     sum
 }
 
-/// By family and kind: the size (standard deviation) that explains `residual` best, drawn towards the usual one.
-///
-/// Expectation maximisation: with a_r the amplitudes of run r given its residual, size_k^2 = (sum E[a^2] + nu usual_k^2) / (count + nu).
-pub fn usual_sizes(blocks: &RunBlocks, residual: &[f64], families: &[Amplitudes]) -> Vec<Vec<f64>> {
+/// Draws on each size by the usual one and by its family.
+mod draw {
     /// The usual size counts as much as this many amplitudes seen.
-    const NU: f64 = 1.0;
+    pub(super) const NU: f64 = 1.0;
     /// Weight of the common scale of a family against the amplitudes of one kind.
-    const SHARED: f64 = 0.5;
+    pub(super) const SHARED: f64 = 0.5;
+}
+
+/// Sums of squares of the amplitudes of each kind, and how many there were.
+struct Squares {
+    sum: Vec<f64>,
+    count: Vec<f64>,
+}
+
+impl Squares {
+    fn prior(usual: &[f64]) -> Self {
+        Self {
+            sum: usual.iter().map(|u| draw::NU * u * u).collect(),
+            count: vec![draw::NU; usual.len()],
+        }
+    }
+
+    fn add(&mut self, kind: usize, square: f64) {
+        if let (Some(sum), Some(count)) = (self.sum.get_mut(kind), self.count.get_mut(kind)) {
+            *sum += square;
+            *count += 1.0;
+        }
+    }
+
+    /// New sizes: all kinds of a family share one scale, and each has its own size in part, as side forces bring their moments along.
+    fn sizes(&self, usual: &[f64]) -> Vec<f64> {
+        let known = |k: &usize| usual[*k] > 0.0;
+        let logs: Vec<f64> = (0..usual.len())
+            .filter(known)
+            .map(|k| {
+                0.5 * (self.sum[k] / self.count[k] / (usual[k] * usual[k]))
+                    .max(f64::MIN_POSITIVE)
+                    .ln()
+            })
+            .collect();
+        let scale = (logs.iter().sum::<f64>() / logs.len().max(1) as f64).exp();
+        let one = |k: usize| {
+            let drawn = draw::SHARED * self.count[k];
+            let common = (scale * usual[k]).powi(2);
+            ((self.sum[k] + drawn * common) / (self.count[k] + drawn)).sqrt()
+        };
+        (0..usual.len())
+            .map(|k| if known(&k) { one(k) } else { 0.0 })
+            .collect()
+    }
+}
+
+/// By family: the sizes (see [`SizedAmplitudes::sizes`]) that explain `residual` best, drawn towards the usual ones.
+///
+/// Expectation maximisation: with a_r the amplitudes of run r and m what repeats of them, given the residuals,
+/// scatter_k^2 = (sum E[(a - m)^2] + nu usual_k^2) / (count + nu), and likewise for the steady part from E[m^2].
+pub fn usual_sizes(blocks: &RunBlocks, residual: &[f64], families: &[Amplitudes]) -> Vec<Vec<f64>> {
     /// Steps; sizes move by less than a rounding step after a few tens.
     const STEPS: usize = 30;
     /// Natural log of a size: far less than what sizes are known to.
     const SETTLED: f64 = 0.04;
-    let mut sizes: Vec<Vec<f64>> = families.iter().map(|f| f.usual.clone()).collect();
+    let sized = |a: &Amplitudes| SizedAmplitudes {
+        amplitudes: a.clone(),
+        sizes: [a.usual.as_slice(), &a.steady].concat(),
+    };
+    let mut unknown: Vec<SizedAmplitudes> = families.iter().map(sized).collect();
     if families.is_empty() {
-        return sizes;
+        return Vec::new();
     }
     for _ in 0..STEPS {
-        let usual = |f: &Amplitudes| f.usual.iter().map(|u| NU * u * u).collect();
-        let mut sums: Vec<Vec<f64>> = families.iter().map(usual).collect();
-        let mut counts: Vec<Vec<f64>> = families.iter().map(|f| vec![NU; f.usual.len()]).collect();
-        let sized: Vec<(&Amplitudes, &[f64])> = families
-            .iter()
-            .zip(sizes.iter().map(Vec::as_slice))
-            .collect();
-        let added = blocks.added(&sized);
-        for block in &blocks.blocks {
-            let Some(p) = block.precision(&added, blocks.n_gauges) else {
-                return sizes;
+        let patterns = patterns_of(&unknown);
+        let runs = blocks.precisions(&unknown);
+        let repeated = steady(&runs, residual, &patterns);
+        let mut scatter: Vec<Squares> = families.iter().map(|f| Squares::prior(&f.usual)).collect();
+        let mut steady: Vec<Squares> = families.iter().map(|f| Squares::prior(&f.steady)).collect();
+        for (i, &p) in repeated.which.iter().enumerate() {
+            let known = repeated.posterior.as_ref().map_or(0.0, |q| q.entry(i, i));
+            steady[patterns[p].family].add(patterns[p].kind, repeated.mean[i].powi(2) + known);
+        }
+        for run in &runs {
+            let repeats = |g: usize| -> f64 {
+                repeated
+                    .which
+                    .iter()
+                    .zip(&repeated.mean)
+                    .map(|(&p, m)| m * patterns[p].values[g])
+                    .sum()
             };
-            let r: Vec<f64> = block.at.iter().map(|&i| residual[i]).collect();
-            let pr = p.apply(&r);
-            for (f, family) in families.iter().enumerate() {
-                for (pattern, &kind) in family.patterns.iter().zip(&family.kinds) {
-                    let here: Vec<f64> = block.gauges.iter().map(|&g| pattern[g]).collect();
-                    let variance = sizes[f].get(kind).map_or(0.0, |s| s * s);
-                    let along: f64 = here.iter().zip(&pr).map(|(a, b)| a * b).sum();
-                    let mean = variance * along;
-                    let known: f64 = here.iter().zip(p.apply(&here)).map(|(a, b)| a * b).sum();
-                    let slots = (sums[f].get_mut(kind), counts[f].get_mut(kind));
-                    if let (Some(sum), Some(count)) = slots {
-                        *sum += mean * mean + variance - variance * variance * known;
-                        *count += 1.0;
-                    }
-                }
+            let r: Vec<f64> = run
+                .at
+                .iter()
+                .zip(run.gauges)
+                .map(|(&i, &g)| residual[i] - repeats(g))
+                .collect();
+            let pr = run.precision.apply(&r);
+            for p in &patterns {
+                let here: Vec<f64> = run.gauges.iter().map(|&g| p.values[g]).collect();
+                let variance = unknown[p.family].scatter_variance(p.kind);
+                let mean = variance * dot(&here, &pr);
+                let told = variance * variance * dot(&here, &run.precision.apply(&here));
+                scatter[p.family].add(p.kind, mean * mean + variance - told);
             }
         }
         let mut moved = 0.0f64;
-        for (f, s) in sizes.iter_mut().enumerate() {
-            // All kinds of a family share one scale, and each its own size in part: side forces bring their moments along.
-            let usual = &families[f].usual;
-            let free = |k: usize| sums[f][k] / counts[f][k].max(1.0);
-            let logs = (0..usual.len()).map(|k| {
-                0.5 * (free(k) / (usual[k] * usual[k]))
-                    .max(f64::MIN_POSITIVE)
-                    .ln()
-            });
-            let scale = (logs.sum::<f64>() / usual.len().max(1) as f64).exp();
-            for (kind, size) in s.iter_mut().enumerate() {
-                let drawn = SHARED * counts[f][kind];
-                let common = (scale * usual[kind]).powi(2);
-                let next = (sums[f][kind] + drawn * common) / (counts[f][kind] + drawn);
-                let next = next.max(f64::MIN_POSITIVE).sqrt();
-                moved = moved.max((next / *size).ln().abs());
-                *size = next;
+        for (f, family) in families.iter().enumerate() {
+            let next = [
+                scatter[f].sizes(&family.usual),
+                steady[f].sizes(&family.steady),
+            ]
+            .concat();
+            for (old, new) in unknown[f]
+                .sizes
+                .iter()
+                .zip(&next)
+                .filter(|(old, _)| **old > 0.0)
+            {
+                moved = moved.max((new / old).ln().abs());
             }
+            unknown[f].sizes = next;
         }
         if moved < SETTLED {
             break;
         }
     }
-    sizes
+    unknown.into_iter().map(|u| u.sizes).collect()
 }

@@ -28,10 +28,12 @@ pub enum Background {
     Clean,
     /// Gains, angles and coefficients are off as stated above.
     Messy,
+    /// They are, and the noise is 1.5 times what the job states.
+    Noisy,
 }
 
 /// Effects with five sizes each.
-pub const EFFECTS: [(&str, [f64; 5]); 17] = [
+pub const EFFECTS: [(&str, [f64; 5]); 26] = [
     ("lateral_wheel_loads", [0.1, 0.2, 0.4, 0.8, 1.5]),
     ("thermal_uniform", [2.0, 5.0, 10.0, 18.0, 30.0]),
     ("thermal_gradient", [1.0, 2.0, 4.0, 8.0, 12.0]),
@@ -49,15 +51,23 @@ pub const EFFECTS: [(&str, [f64; 5]); 17] = [
     ("dead_channel", [1.0, 1.0, 1.0, 1.0, 1.0]),
     ("saturated_channel", [0.3, 0.4, 0.5, 0.6, 0.7]),
     ("zero_drift_creep", [10.0, 20.0, 40.0, 60.0, 80.0]),
+    ("zero_drift_wander", [10.0, 20.0, 40.0, 60.0, 80.0]),
+    ("lateral_that_repeats", [0.2, 0.4, 0.8, 1.3, 2.0]),
+    ("wheel_scale", [3.0, 5.0, 8.0, 12.0, 25.0]),
+    ("run_exchange", [1.0, 1.0, 1.0, 1.0, 1.0]),
+    ("run_record", [0.05, 0.1, 0.2, 0.4, 0.8]),
+    ("card_gain", [0.8, 0.9, 1.1, 1.2, 1.5]),
+    ("gain_drift", [0.05, 0.1, 0.2, 0.3, 0.5]),
+    ("cross_sensitivity", [0.05, 0.1, 0.2, 0.3, 0.5]),
+    ("intermittent_channel", [1.0, 1.0, 1.0, 1.0, 1.0]),
 ];
 
-/// Strangers: discrepancies that no effect of the library makes.
-pub const STRANGERS: [&str; 8] = [
+/// Discrepancies that no effect of the library makes.
+pub const UNMODELLED: [&str; 7] = [
     "hysteresis",
     "hardening",
     "unknown_load",
     "one_run",
-    "gain_creep",
     "cross_talk",
     "warm_spot",
     "loose_joint",
@@ -91,7 +101,7 @@ fn flat_ground(base: &StrainFrame) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// A case with the given effect (`none`, a stranger, or several joined by `+`) of the given size.
+/// A case with the given effect (`none`, one of [`UNMODELLED`], or several joined by `+`) of the given size.
 pub fn hide(
     base: &StrainFrame,
     effect: &str,
@@ -108,12 +118,12 @@ pub fn hide(
     frame.load_noise = 0.06;
     frame.payload_weight = PayloadWeight::InModel;
     frame.wheel_forces = WheelForces::Measured;
-    frame.model_rel = if background == Background::Messy {
+    frame.model_rel = if background != Background::Clean {
         0.01
     } else {
         0.0
     };
-    if background == Background::Messy {
+    if background != Background::Clean {
         // The tolerance that the job declares.
         frame.scatter.push(angle_scatter(&frame, 1.0));
     }
@@ -133,7 +143,7 @@ pub fn hide(
     // The analyst's model as it stands, and the truth: gains, angles, coefficients off.
     frame.loads = loads;
     let mut truth = frame.clone();
-    if background == Background::Messy {
+    if background != Background::Clean {
         let angles: Vec<f64> = (0..n_g).map(|_| normal(&mut rng)).collect();
         for (g, angle) in angles.iter().enumerate() {
             let gain = 1.0 + 0.01 * normal(&mut rng);
@@ -176,8 +186,13 @@ pub fn hide(
         .sum::<f64>()
         / readings.len() as f64;
     let signal = difference.sqrt() / frame.noise;
+    let true_noise = if background == Background::Noisy {
+        1.5 * frame.noise
+    } else {
+        frame.noise
+    };
     for v in &mut readings {
-        *v += frame.noise * normal(&mut rng);
+        *v += true_noise * normal(&mut rng);
     }
     if frame.wheel_forces == WheelForces::Measured {
         for f in &mut frame.loads {
@@ -254,6 +269,109 @@ fn apply(
                 v + sign * size * (r + 1) as f64 / n_r as f64
             });
             parts.push(format!("zero_drift:{name}"));
+        }
+        "zero_drift_wander" => {
+            let mut wanders: Vec<f64> = (0..n_r)
+                .map(|_| sign * size * (1.0 + 0.13 * normal(rng)))
+                .collect();
+            wanders.reverse();
+            on(readings, g, &mut |r, v| v + wanders[r]);
+            parts.push(format!("zero_drift:{name}"));
+        }
+        "wheel_scale" => {
+            let n_l = frame.n_loads();
+            let l = rng.random_range(0..n_l);
+            for r in 0..n_r {
+                frame.loads[r * n_l + l] *= 1.0 + sign * size / 100.0;
+            }
+            let load = frame.load_names[l]
+                .split('.')
+                .next()
+                .unwrap_or_default()
+                .to_owned();
+            parts.push(format!("wheel_scale:{load}"));
+        }
+        "run_exchange" => {
+            // Two runs with different payloads: exchanged twins show nothing.
+            let fit = frame.observations.fit_runs();
+            let mass = |r: usize| frame.payload[r][0];
+            let a = fit[rng.random_range(0..fit.len())];
+            let other = fit.iter().copied().max_by(|&x, &y| {
+                (mass(x) - mass(a))
+                    .abs()
+                    .total_cmp(&(mass(y) - mass(a)).abs())
+            });
+            let b = other.expect("a second run");
+            let n_l = frame.n_loads();
+            for l in 0..n_l {
+                frame.loads.swap(a * n_l + l, b * n_l + l);
+            }
+            frame.payload.swap(a, b);
+            let runs = &frame.observations.runs;
+            parts.push(format!(
+                "run_exchange:{}+{}",
+                runs[a.min(b)],
+                runs[a.max(b)]
+            ));
+        }
+        "run_record" => {
+            // A mass that was written down wrong, in a run with some.
+            let loaded: Vec<usize> = frame
+                .observations
+                .fit_runs()
+                .into_iter()
+                .filter(|r| frame.payload[*r][0] > 2000.0)
+                .collect();
+            let r = loaded[rng.random_range(0..loaded.len())];
+            frame.payload[r][0] *= 1.0 + size;
+            parts.push(format!("run_record:{}", frame.observations.runs[r]));
+        }
+        "card_gain" => {
+            let length = rng.random_range(4..=8);
+            let first = rng.random_range(0..n_g - length);
+            for h in first..first + length {
+                on(readings, h, &mut |_, v| size * v);
+            }
+            let (a, b) = (
+                &frame.gauges[first].name,
+                &frame.gauges[first + length - 1].name,
+            );
+            parts.push(format!("card_gain:{a}-{b}"));
+        }
+        "gain_drift" => {
+            on(readings, g, &mut |r, v| {
+                v * (1.0 + sign * size * r as f64 / (n_r - 1) as f64)
+            });
+            parts.push(format!("gain_drift:{name}"));
+        }
+        "cross_sensitivity" => {
+            let h = if g + 1 < n_g { g + 1 } else { g - 1 };
+            let leaks: Vec<f64> = (0..n_r).map(|r| readings[r * n_g + h]).collect();
+            on(readings, g, &mut |r, v| v + size * leaks[r]);
+            parts.push(format!("cross_sensitivity:{name}"));
+        }
+        "intermittent_channel" => {
+            let open: Vec<bool> = (0..n_r).map(|r| r % 3 == 1).collect();
+            on(readings, g, &mut |r, v| if open[r] { 0.0 } else { v });
+            parts.push(format!("intermittent_channel:{name}"));
+        }
+        "lateral_that_repeats" => {
+            let all: Vec<f64> = frame.other_loads.iter().map(|_| normal(rng)).collect();
+            for r in 0..n_r {
+                for (k, (load, pattern)) in frame.other_loads.iter().enumerate() {
+                    let usual = match &load[..2] {
+                        "FY" => 2.5,
+                        "FX" => 1.0,
+                        "MX" => 0.9,
+                        _ => 0.25,
+                    };
+                    let a = usual * (all[k] + 0.5 * normal(rng));
+                    for h in 0..n_g {
+                        readings[r * n_g + h] += size * a * pattern[h];
+                    }
+                }
+            }
+            parts.push("lateral_wheel_loads".into());
         }
         "sign_flip" => {
             on(readings, g, &mut |_, v| -v);
@@ -398,14 +516,14 @@ fn apply(
             }
             parts.push(effect.into());
         }
-        stranger => {
-            strange(stranger, size, rng, frame, truth, readings, &order);
+        form => {
+            unmodelled(form, size, rng, frame, truth, readings, &order);
             parts.push("unknown".into());
         }
     }
 }
 
-fn strange(
+fn unmodelled(
     which: &str,
     size: f64,
     rng: &mut ChaCha8Rng,
@@ -455,14 +573,6 @@ fn strange(
             let r = rng.random_range(0..n_r * 2 / 3);
             for g in 0..n_g {
                 readings[r * n_g + g] += size * scale * normal(rng);
-            }
-        }
-        // All gains creep with time.
-        "gain_creep" => {
-            for r in 0..n_r {
-                for g in 0..n_g {
-                    readings[r * n_g + g] *= 1.0 + 0.4 * size * r as f64 / n_r as f64;
-                }
             }
         }
         // Channels leak into their neighbours.

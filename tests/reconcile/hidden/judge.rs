@@ -6,7 +6,7 @@ use strainbridge::reconcile::{Outcome, Verdict};
 /// The answer against the truth, effects by their kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Answer {
-    /// All of it and nothing else; for strangers, `unknown`; for controls, `none`.
+    /// All of it and nothing else; for what is unmodelled, `unknown`; for controls, `none`.
     Hit,
     /// A rival was named, and the truth is listed as one that can't be told from it.
     Alias,

@@ -6,7 +6,8 @@ pub mod judge;
 use std::path::{Path, PathBuf};
 use strainbridge::reconcile::Observations;
 use strainbridge::reconcile::strain::{
-    GaugeFacts, MassSignature, PayloadWeight, StiffnessSignature, StrainFrame, WheelForces, Wiring,
+    GaugeFacts, MassSignature, PayloadWeight, StiffnessOf, StiffnessSignature, StrainFrame,
+    WheelForces, Wiring,
 };
 
 /// Folder of the shared material, where present.
@@ -123,7 +124,8 @@ pub fn frame_of(dir: &Path) -> StrainFrame {
             }
         }
         StiffnessSignature {
-            id: format!("rail_stiffness:Z{k}"),
+            of: StiffnessOf::Zone,
+            place: format!("Z{k}"),
             at_percent: vec![(1.0, change)],
             prior_percent: 15.0,
         }
@@ -176,6 +178,7 @@ pub fn frame_of(dir: &Path) -> StrainFrame {
             .iter()
             .map(|h| (h.clone(), other.column(h)))
             .collect(),
+        nuisance: Vec::new(),
         thermal_uniform: Some(thermal.column("thermal_uniform")),
         thermal_gradient: Some(thermal.column("thermal_gradient")),
         masses: mass.header[1..]

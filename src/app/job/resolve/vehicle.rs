@@ -1,7 +1,7 @@
 //! `[vehicle]`, `[reconcile]`, `[sensitivity]`.
 
 use super::super::faults::Collector;
-use super::super::raw::{RawReconcile, RawSensitivity, RawVehicle};
+use super::super::raw::{RawEdit, RawEffect, RawReconcile, RawSensitivity, RawVehicle};
 use super::super::shapes::Texts;
 use super::super::spanned::Spanned;
 use super::super::types::*;
@@ -180,7 +180,69 @@ pub(super) fn reconcile(
         causes: raw.causes.clone(),
         angle_tolerance_deg: angle,
         position_tolerance_mm: place,
+        described: raw.effect.iter().filter_map(|e| described(c, e)).collect(),
         line: c.line(section),
+    })
+}
+
+/// A hypothesis of the user's own: by a table or by an edit of the deck.
+fn described(c: &mut Collector, entry: &Spanned<RawEffect>) -> Option<DescribedEffect> {
+    let raw = entry.get_ref();
+    c.require(
+        &raw.id,
+        entry,
+        "reconcile.effect.id",
+        "id = \"bracket_loose\"",
+    )?;
+    let source = match (&raw.signature, &raw.edit) {
+        (Some(_), None) => {
+            EffectSource::Signature(c.named(&raw.signature, "reconcile.effect.signature")?)
+        }
+        (
+            None,
+            Some(RawEdit {
+                property: Some(property),
+                thickness_scale: Some(factor),
+                cbush: None,
+                stiffness_scale: None,
+            }),
+        ) => EffectSource::Thickness {
+            property: *property,
+            factor: *factor,
+        },
+        (
+            None,
+            Some(RawEdit {
+                property: None,
+                thickness_scale: None,
+                cbush: Some(element),
+                stiffness_scale: Some(factor),
+            }),
+        ) => EffectSource::Bush {
+            element: *element,
+            factor: *factor,
+        },
+        _ => {
+            c.fault(
+                entry,
+                "reconcile.effect",
+                "neither a `signature` nor one whole `edit`",
+                "give signature = \"change.csv\", edit = { property = 14, thickness_scale = 0.9 } or edit = { cbush = 77, stiffness_scale = 0.5 }",
+            );
+            return None;
+        }
+    };
+    let prior = if raw.prior.is_some() {
+        c.positive(&raw.prior, "reconcile.effect.prior")?
+    } else {
+        1.0
+    };
+    let id = raw.id.as_ref().map(|i| i.get_ref().clone())?;
+    Some(DescribedEffect {
+        id,
+        source,
+        prior,
+        line: c.line(entry),
     })
 }
 

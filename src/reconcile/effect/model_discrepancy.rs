@@ -1,20 +1,18 @@
-//! Strangers: discrepancies that no named effect makes, in general forms. Where one of them explains most, the verdict is `unknown`
-//! and its words say what remains. They also keep flexible effects honest: side loads must beat plain scatter.
+//! Model discrepancy: what no named effect makes, in general forms. Where one of them explains most, the verdict is `unknown` and its
+//! words say what remains. They also keep flexible effects in bounds: side loads must beat plain scatter.
 
-use super::{Amplitudes, Extension, Parameter, Stage, StrainEffect};
-use crate::reconcile::strain::{Part, StrainFrame, StrainState};
+use super::{Amplitudes, Discrepancy, Extension, Parameter, Stage, StrainEffect};
+use crate::reconcile::strain::{N_PAYLOAD_COLUMNS, Part, StrainFrame, StrainState};
 
-/// The forms.
+/// The general forms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stranger {
+pub enum ModelDiscrepancy {
     /// All strain grows more, or less, than in proportion to the load of the run.
     LoadDependent,
     /// Every gauge for itself reads more, or less, than in proportion.
     StrainDependent,
     /// Strain follows the load of the run before in part.
     Memory,
-    /// All gains creep from run to run.
-    Creep,
     /// Channels leak into their neighbours in file order.
     CrossTalk,
     /// Scatter of the same size at all gauges that no load explains.
@@ -23,14 +21,13 @@ pub enum Stranger {
     RelativeScatter,
 }
 
-impl Stranger {
+impl ModelDiscrepancy {
     /// All of them.
     pub fn all() -> Vec<Self> {
         vec![
             Self::LoadDependent,
             Self::StrainDependent,
             Self::Memory,
-            Self::Creep,
             Self::CrossTalk,
             Self::Scatter,
             Self::RelativeScatter,
@@ -47,7 +44,6 @@ impl Stranger {
                 "readings are not in proportion to strain (range, yielding, bonding)"
             }
             Self::Memory => "strain depends on the run before (friction, hysteresis)",
-            Self::Creep => "all gains creep with time (supply voltage, bonding)",
             Self::CrossTalk => "channels leak into their neighbours (wiring, multiplexer)",
             Self::Scatter => "readings scatter from run to run as no load explains",
             Self::RelativeScatter => "readings scatter from run to run in proportion to their size",
@@ -61,7 +57,7 @@ fn load_level(state: &StrainState, run: usize) -> f64 {
     let size = |r: usize| {
         let row = &state.columns[r * n_c..(r + 1) * n_c];
         row.iter()
-            .take(n_c.saturating_sub(4))
+            .take(n_c.saturating_sub(N_PAYLOAD_COLUMNS))
             .map(|f| f.abs())
             .sum::<f64>()
     };
@@ -69,20 +65,22 @@ fn load_level(state: &StrainState, run: usize) -> f64 {
     if most > 0.0 { size(run) / most } else { 0.0 }
 }
 
-impl StrainEffect for Stranger {
-    fn id(&self) -> &'static str {
+impl StrainEffect for ModelDiscrepancy {
+    fn id(&self) -> &str {
         match self {
             Self::LoadDependent => "load_dependent",
             Self::StrainDependent => "strain_dependent",
             Self::Memory => "memory",
-            Self::Creep => "gain_creep",
             Self::CrossTalk => "cross_talk",
             Self::Scatter => "scatter",
             Self::RelativeScatter => "relative_scatter",
         }
     }
-    fn outside(&self) -> Option<&'static str> {
-        Some(self.words())
+    fn discrepancy(&self) -> Option<Discrepancy> {
+        Some(match self {
+            Self::Scatter => Discrepancy::Noise(self.words()),
+            _ => Discrepancy::Form(self.words()),
+        })
     }
     fn stage(&self) -> Stage {
         match self {
@@ -123,12 +121,6 @@ impl StrainEffect for Stranger {
                         let change = before[(r - 1) * n_c + c] - before[r * n_c + c];
                         state.columns[r * n_c + c] += size * change;
                     }
-                }
-            }
-            Self::Creep => {
-                for (r, row) in state.columns.chunks_exact_mut(n_c).enumerate() {
-                    let share = r as f64 / n_r.max(1) as f64;
-                    row.iter_mut().for_each(|f| *f *= 1.0 + size * share);
                 }
             }
             Self::CrossTalk => {
@@ -195,6 +187,7 @@ impl StrainEffect for Stranger {
             patterns: height.iter().enumerate().map(pattern).collect(),
             kinds: vec![0; n_g],
             usual: vec![size],
+            steady: vec![0.0],
             unit: if *self == Self::Scatter {
                 "microstrain"
             } else {
@@ -211,7 +204,6 @@ impl StrainEffect for Stranger {
             Self::Memory => {
                 "approach one load from below and from above: friction shows as a loop".into()
             }
-            Self::Creep => "repeat the first run at the end".into(),
             Self::CrossTalk => "shunt one gauge and look at its neighbours".into(),
             Self::LoadDependent | Self::StrainDependent => {
                 "load in equal steps to the full payload and back".into()

@@ -1,0 +1,148 @@
+//! Signatures of the user's own hypotheses: from a table, or from the edited deck solved again.
+
+use super::deck_frame::{DeckFrame, influence, solve};
+use super::signature_table::SignatureTable;
+use crate::app::fault::{Fault, Faults};
+use crate::app::files::Inputs;
+use crate::app::job::{DescribedEffect, EffectSource, Job, NamedFile};
+use crate::reconcile::strain::{StiffnessOf, StiffnessSignature};
+
+/// The columns of a frame that a table may give: name, and factor from the table's unit to microstrain per unit of the frame.
+pub(super) type Columns = [(String, f64)];
+
+/// The hypotheses of `[[reconcile.effect]]`, in job order.
+pub(super) fn effects(job: &Job) -> &[DescribedEffect] {
+    job.reconcile
+        .as_ref()
+        .map_or(&[], |r| r.described.as_slice())
+}
+
+/// Signatures of the hypotheses that a table gives; an `edit` needs a deck.
+///
+/// # Errors
+/// Tables that can't be read, an edit where there is no deck.
+pub(super) fn from_tables(
+    inputs: &mut Inputs,
+    job: &Job,
+    channels: &[String],
+    columns: &Columns,
+    n_columns: usize,
+) -> Result<Vec<StiffnessSignature>, Faults> {
+    let one = |e: &DescribedEffect| match &e.source {
+        EffectSource::Signature(file) => Ok(signature(
+            e,
+            from_table(inputs, job, file, channels, columns, n_columns)?,
+        )),
+        _ => Err(Faults::from(Fault::at(
+            &*job.file,
+            e.line,
+            "reconcile.effect.edit",
+            format!("`{}` edits a deck, and S is given", e.id),
+            "give a `signature`, or the deck in `[model]`",
+        ))),
+    };
+    effects(job).iter().map(one).collect()
+}
+
+fn signature(e: &DescribedEffect, change: Vec<f64>) -> StiffnessSignature {
+    StiffnessSignature {
+        of: StiffnessOf::Described,
+        place: e.id.clone(),
+        at_percent: vec![(1.0, change)],
+        prior_percent: e.prior,
+    }
+}
+
+fn from_table(
+    inputs: &mut Inputs,
+    job: &Job,
+    file: &NamedFile,
+    channels: &[String],
+    columns: &Columns,
+    n_columns: usize,
+) -> Result<Vec<f64>, Faults> {
+    let t = SignatureTable::read(inputs, job, file, channels)?;
+    let mut change = vec![0.0; channels.len() * n_columns];
+    let known: Vec<(usize, &(String, f64))> = columns
+        .iter()
+        .enumerate()
+        .filter(|(_, c)| t.has(&c.0))
+        .collect();
+    if known.is_empty() {
+        return Err(Faults::from(Fault::of(
+            &*file.given,
+            "header",
+            "no column bears the name of a load",
+            "give a column a load, named as in S",
+        )));
+    }
+    for (c, (name, factor)) in known {
+        for (g, v) in t.column(name, *factor)?.into_iter().enumerate() {
+            if let Some(cell) = change.get_mut(g * n_columns + c) {
+                *cell = v;
+            }
+        }
+    }
+    Ok(change)
+}
+
+impl DeckFrame {
+    /// Signatures of all hypotheses of a job with a deck.
+    ///
+    /// # Errors
+    /// Tables that can't be read, edits of what the deck lacks, what stops the solver.
+    pub(super) fn described(
+        &self,
+        inputs: &mut Inputs,
+        job: &Job,
+        channels: &[String],
+        columns: &Columns,
+    ) -> Result<Vec<StiffnessSignature>, Faults> {
+        let n = self.columns.len();
+        let mut out = Vec::new();
+        for e in effects(job) {
+            let change = match &e.source {
+                EffectSource::Signature(file) => {
+                    from_table(inputs, job, file, channels, columns, n)?
+                }
+                edit => self.edited(job, e, edit)?,
+            };
+            out.push(signature(e, change));
+        }
+        Ok(out)
+    }
+
+    /// Change of the influence matrix by an edit of the deck.
+    fn edited(
+        &self,
+        job: &Job,
+        e: &DescribedEffect,
+        edit: &EffectSource,
+    ) -> Result<Vec<f64>, Faults> {
+        let lacks = |what: String| {
+            Faults::from(Fault::at(
+                &*job.file,
+                e.line,
+                "reconcile.effect.edit",
+                format!("the deck has no {what}"),
+                "correct the id",
+            ))
+        };
+        let model = match edit {
+            EffectSource::Thickness { property, factor } => {
+                let scaled = self.with_properties(|id| id == *property, *factor);
+                scaled.ok_or_else(|| lacks(format!("PSHELL {property}")))?
+            }
+            EffectSource::Bush { element, factor } => {
+                if !self.fields.model().bushes.iter().any(|b| b.id == *element) {
+                    return Err(lacks(format!("CBUSH {element}")));
+                }
+                self.with_joint(&element.to_string(), *factor)
+            }
+            EffectSource::Signature(_) => self.fields.model().clone(),
+        };
+        let solution = solve(job, &model, &self.columns)?;
+        let now = influence(job, &model, &self.gauges, &solution, self.columns.len());
+        Ok(now.iter().zip(&self.base).map(|(a, b)| a - b).collect())
+    }
+}

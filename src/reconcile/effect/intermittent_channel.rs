@@ -1,0 +1,65 @@
+//! `intermittent_channel`: a channel that reads nothing in some runs (a loose contact).
+
+use super::channel_fault::{At, ChannelFault, OnGauges};
+use super::{Correction, Extension};
+use crate::reconcile::strain::{StrainFrame, predict};
+
+/// Reading = 0 in some runs, strain in the others.
+#[derive(Clone, Debug)]
+pub struct IntermittentChannel {
+    /// By run: is the contact open?
+    pub open: Vec<bool>,
+}
+
+impl IntermittentChannel {
+    /// Every gauge that reads nothing but noise in a run where the model has it read clearly more, and something in another.
+    pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
+        /// In units of the noise: what is no reading, and what is one.
+        const NOTHING: f64 = 3.0;
+        const CLEAR: f64 = 6.0;
+        let predicted = predict(frame, &[]);
+        let mut out = Vec::new();
+        for g in 0..frame.n_gauges() {
+            let at = |r: usize| {
+                (
+                    frame.observations.value(r, g),
+                    predicted.get(r * frame.n_gauges() + g),
+                )
+            };
+            let runs = 0..frame.n_runs();
+            let open: Vec<bool> = runs
+                .clone()
+                .map(|r| matches!(at(r), (y, Some(p)) if y.abs() < NOTHING * frame.noise && p.abs() > CLEAR * frame.noise))
+                .collect();
+            let reads = runs
+                .clone()
+                .any(|r| matches!(at(r), (y, Some(_)) if y.abs() > CLEAR * frame.noise));
+            if reads && open.iter().any(|o| *o) {
+                out.push(OnGauges::one(frame, g, Self { open }));
+            }
+        }
+        out
+    }
+}
+
+impl ChannelFault for IntermittentChannel {
+    fn id(&self) -> &'static str {
+        "intermittent_channel"
+    }
+    fn read(&self, at: At<'_>, _parameters: &[f64], row: &mut [f64]) {
+        if !self.open.get(at.run).copied().unwrap_or(false) {
+            return;
+        }
+        for &g in at.gauges {
+            if let Some(cell) = row.get_mut(g) {
+                *cell = 0.0;
+            }
+        }
+    }
+    fn extension(&self, names: &[String], _parameters: &[f64]) -> Extension {
+        Extension::channel(names, Correction::Ignore)
+    }
+    fn separate_by(&self, place: &str) -> String {
+        format!("move the leads of gauge {place} while it is read: a loose contact jumps")
+    }
+}

@@ -1,0 +1,136 @@
+//! `run_record`: what was noted of one run (a load, its mass) is wrong.
+
+use super::{Extension, Parameter, Stage, StrainEffect};
+use crate::reconcile::strain::{StrainFrame, StrainState};
+
+/// What of the run is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Noted {
+    /// One load, kN.
+    Load(usize),
+    /// All loads, by one factor.
+    Loads,
+    /// The payload's mass, kg.
+    Mass,
+}
+
+/// The load or mass of one run is its noted value plus the size.
+#[derive(Clone, Debug)]
+pub struct RunRecord {
+    /// Run.
+    pub run: usize,
+    /// Its name.
+    pub name: String,
+    /// What is wrong.
+    pub noted: Noted,
+    /// Usual size of an error.
+    pub usual: f64,
+}
+
+impl RunRecord {
+    /// Every load and the mass of every run that is used for fitting.
+    pub fn all(frame: &StrainFrame) -> Vec<Self> {
+        /// A slip is of the order of what is noted: its usual size is a third of the root mean square over all runs.
+        const SHARE: f64 = 0.3;
+        let rms = |v: &mut dyn Iterator<Item = f64>| {
+            let (sum, n) = v.fold((0.0, 0usize), |(s, n), x| (s + x * x, n + 1));
+            (sum / n.max(1) as f64).sqrt()
+        };
+        let (n_l, payload) = (
+            frame.n_loads(),
+            rms(&mut frame.payload.iter().map(|p| p[0])),
+        );
+        let load = SHARE * rms(&mut frame.loads.iter().copied());
+        let mut kinds: Vec<(Noted, f64)> = Vec::new();
+        if load > 0.0 {
+            kinds.extend((0..n_l).map(|l| (Noted::Load(l), load)));
+            kinds.push((Noted::Loads, SHARE));
+        }
+        if payload > 0.0 {
+            kinds.push((Noted::Mass, SHARE * payload));
+        }
+        let mut out = Vec::new();
+        for run in frame.observations.fit_runs() {
+            let name = frame
+                .observations
+                .runs
+                .get(run)
+                .cloned()
+                .unwrap_or_default();
+            out.extend(kinds.iter().map(|&(noted, usual)| Self {
+                run,
+                name: name.clone(),
+                noted,
+                usual,
+            }));
+        }
+        out
+    }
+}
+
+impl StrainEffect for RunRecord {
+    fn id(&self) -> &str {
+        "run_record"
+    }
+    fn place(&self) -> Option<String> {
+        Some(self.name.clone())
+    }
+    fn stage(&self) -> Stage {
+        Stage::Loads
+    }
+    fn parameters(&self) -> Vec<Parameter> {
+        let unit = match self.noted {
+            Noted::Load(_) => "kN",
+            Noted::Loads => "of all loads",
+            Noted::Mass => "kg",
+        };
+        let (sd, step) = (self.usual, 0.02 * self.usual);
+        vec![Parameter {
+            unit,
+            neutral: 0.0,
+            prior_sd: sd,
+            step,
+            starts: vec![0.0],
+            plausible: 10.0 * sd,
+        }]
+    }
+    fn alter(&self, frame: &StrainFrame, parameters: &[f64], state: &mut StrainState) {
+        let Some(&size) = parameters.first() else {
+            return;
+        };
+        let (n_c, n_l) = (state.shape[2], frame.n_loads());
+        let [mass, ..] = frame.payload.get(self.run).copied().unwrap_or([0.0; 3]);
+        let Some(row) = state.columns.get_mut(self.run * n_c..(self.run + 1) * n_c) else {
+            return;
+        };
+        match self.noted {
+            Noted::Load(l) => {
+                if let Some(cell) = row.get_mut(l) {
+                    *cell += size;
+                }
+            }
+            Noted::Loads => row.iter_mut().take(n_l).for_each(|f| *f *= 1.0 + size),
+            Noted::Mass if mass > 0.0 => row
+                .iter_mut()
+                .skip(n_l)
+                .for_each(|f| *f *= (mass + size) / mass),
+            // Noted as empty: what is there acts at the nominal place.
+            Noted::Mass => {
+                if let Some(cell) = row.get_mut(n_l) {
+                    *cell += size;
+                }
+            }
+        }
+    }
+    fn extension(&self, _frame: &StrainFrame, _parameters: &[f64]) -> Extension {
+        Extension::RunRecord {
+            run: self.name.clone(),
+        }
+    }
+    fn separate_by(&self, _frame: &StrainFrame) -> String {
+        format!("repeat run {}, or look up its weighing notes", self.name)
+    }
+    fn runs(&self) -> Vec<usize> {
+        vec![self.run]
+    }
+}

@@ -1,0 +1,255 @@
+//! What is said of the best set of effects: named or not, and what else could be.
+
+use super::adequacy::{Adequacy, adequacy, deviate};
+use super::detect::detectable;
+use super::explanation::{Explanation, discrepancy, ids, is_unmodelled, named_part};
+use super::frame::StrainFrame;
+use super::likelihood::Fit;
+use super::neighbours::neighbours_that_fail;
+use super::next::next_measurement;
+use super::recovered::loads_before_after;
+use super::remains::{remains, sits};
+use super::resampled::wins;
+use super::validation::validated;
+use crate::reconcile::effect::{Candidate, Discrepancy, full_id};
+use crate::reconcile::outcome::{Misfit, NamedEffect, Outcome, Rival, Verdict};
+use crate::reconcile::search::Scored;
+
+/// Rivals within this log evidence can't be told apart: odds below twenty to one.
+const INDISTINGUISHABLE: f64 = 3.0;
+/// Rivals beyond this log evidence are not worth naming.
+const WORTH_NAMING: f64 = 25.0;
+
+/// Limits of what counts as at the floor.
+mod limit {
+    /// A stated noise comes from some twenty repeats, or from a data sheet: it is known to 15 % (1 / sqrt(2 * 20)).
+    pub(super) const NOISE_KNOWN: f64 = 1.15;
+    /// Deviate of a chi-square over all that one case in a thousand has by chance.
+    pub(super) const DEVIATE: f64 = 3.1;
+    /// Deviate of a single gauge or run. Of fifty of them one passes 3.5 by chance in one case of a hundred; noise that is 15 % above what
+    /// is stated brings that to 4.
+    pub(super) const PART: f64 = 4.0;
+    /// Noise up to twice the stated one is noise that was stated too small; more is something else.
+    pub(super) const NOISE: f64 = 2.0;
+}
+
+pub(super) fn at_floor(a: &Adequacy) -> bool {
+    let inside = |reduced: f64, n: f64| {
+        let known = limit::NOISE_KNOWN * limit::NOISE_KNOWN;
+        deviate(reduced * n / known, n) <= limit::DEVIATE
+    };
+    let held = a.n_held_out == 0.0 || inside(a.held_out, a.n_held_out);
+    let parts = a
+        .gauges
+        .iter()
+        .chain(&a.runs)
+        .all(|m| m.deviate <= limit::PART);
+    inside(a.fit, a.n_fit) && held && parts
+}
+
+fn named(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) -> Vec<NamedEffect> {
+    let mut out = Vec::new();
+    for (m, &c) in scored.set.iter().enumerate() {
+        let Some(candidate) = candidates
+            .get(c)
+            .filter(|c| !matches!(c.effect.discrepancy(), Some(Discrepancy::Noise(_))))
+        else {
+            continue;
+        };
+        let effect = candidate.effect.as_ref();
+        let parameters = scored.fit.parameters.get(m).cloned().unwrap_or_default();
+        let described = effect.parameters();
+        let mut size = parameters.clone();
+        let mut sigma = scored.fit.sigma.get(m).cloned().unwrap_or_default();
+        let mut unit = described.first().map_or("1", |p| p.unit);
+        let mut plausible = described
+            .iter()
+            .zip(&parameters)
+            .all(|(p, v)| (v - p.neutral).abs() <= p.plausible);
+        let sizes = scored.fit.sizes.iter().find(|s| s.0 == c);
+        if let (Some(a), Some((_, sizes))) = (effect.amplitudes(frame), sizes) {
+            // Root mean square over the runs, what repeats and what scatters together; from n amplitudes it is known to one part in the
+            // root of 2 n.
+            let n = (frame.observations.fit_runs().len() * a.patterns.len()).max(1) as f64;
+            let kinds = a.usual.len();
+            let rms = |k: usize| {
+                sizes
+                    .get(k)
+                    .copied()
+                    .unwrap_or(0.0)
+                    .hypot(sizes.get(kinds + k).copied().unwrap_or(0.0))
+            };
+            let whole: Vec<f64> = (0..kinds).map(rms).collect();
+            plausible &= whole.iter().all(|s| *s <= a.plausible);
+            sigma.extend(whole.iter().map(|s| s / (2.0 * n).sqrt()));
+            size.extend(whole);
+            unit = a.unit;
+        }
+        out.push(NamedEffect {
+            id: full_id(effect),
+            place: effect.place(),
+            size,
+            sigma,
+            unit,
+            plausible,
+            extension: effect.extension(frame, &parameters),
+        });
+    }
+    out
+}
+
+fn worst_first(parts: &[Misfit], limit: f64) -> Vec<Misfit> {
+    let mut off: Vec<Misfit> = parts
+        .iter()
+        .filter(|m| m.deviate > limit)
+        .cloned()
+        .collect();
+    off.sort_by(|a, b| b.deviate.total_cmp(&a.deviate));
+    off
+}
+
+/// Noise over the stated one where a set holds noise besides.
+fn noise_factor(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) -> f64 {
+    let is_noise = |c: usize| matches!(discrepancy(candidates, c), Some(Discrepancy::Noise(_)));
+    let added = scored
+        .fit
+        .sizes
+        .iter()
+        .find(|s| is_noise(s.0))
+        .and_then(|s| s.1.first().copied());
+    (1.0 + (added.unwrap_or(0.0) / frame.noise.max(f64::MIN_POSITIVE)).powi(2)).sqrt()
+}
+
+/// Judges a set: how far it comes, how many parameters it took.
+pub(super) fn adequacy_of(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    scored: &Scored<Fit>,
+) -> Adequacy {
+    let e = Explanation::of(frame, candidates, scored);
+    let n_parameters: usize = scored.fit.parameters.iter().map(Vec::len).sum();
+    adequacy(frame, &e.members, &e.unknown, n_parameters)
+}
+
+pub(super) fn judge(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    all: &[Scored<Fit>],
+    best: &Scored<Fit>,
+) -> Outcome {
+    let explained = Explanation::of(frame, candidates, best);
+    let before = adequacy(frame, &[], &[], 0);
+    let after = if best.set.is_empty() {
+        before.clone()
+    } else {
+        adequacy_of(frame, candidates, best)
+    };
+    let attempt = named(frame, candidates, best);
+    let (gap, channels) = validated(frame, candidates, best);
+    let noise = noise_factor(frame, candidates, best);
+    let reached = at_floor(&after) && noise <= limit::NOISE;
+    let plausible = attempt.iter().all(|e| e.plausible);
+    let null = all.iter().find(|s| s.set.is_empty());
+    let null_evidence = null.map_or(0.0, |s| s.log_evidence);
+    let hint = all
+        .iter()
+        .filter(|s| {
+            !s.set.is_empty() && s.set.iter().all(|c| discrepancy(candidates, *c).is_none())
+        })
+        .max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence));
+    let hinted = hint.is_some_and(|s| s.log_evidence > null_evidence.max(best.log_evidence));
+    let together = neighbours_that_fail(frame, &attempt);
+    let unmodelled = is_unmodelled(candidates, &best.set).or(together.as_deref());
+    let falls = gap.after < gap.before;
+    let verdict = match (attempt.is_empty(), reached) {
+        (true, true) if hinted => Verdict::BelowDetectability,
+        (true, true) => Verdict::None,
+        (false, true) if plausible && unmodelled.is_none() && falls => Verdict::Named,
+        _ => Verdict::Unknown,
+    };
+    let others = rival_sets(candidates, all, best);
+    let rivals: Vec<Rival> = others
+        .iter()
+        .map(|s| Rival {
+            ids: ids(candidates, &s.set),
+            evidence_difference: best.log_evidence - s.log_evidence,
+            gap_after: validated(frame, candidates, s).0.after,
+            indistinguishable: best.log_evidence - s.log_evidence < INDISTINGUISHABLE,
+        })
+        .collect();
+    let next = match others.first().copied().or(hint) {
+        Some(s) => next_measurement(frame, &explained, &Explanation::of(frame, candidates, s)),
+        None if verdict == Verdict::Unknown => look_again(&after),
+        None => "none needed".into(),
+    };
+    let mut contest = vec![best];
+    contest.extend(
+        others
+            .iter()
+            .copied()
+            .chain(null)
+            .filter(|s| s.set != best.set),
+    );
+    Outcome {
+        verdict,
+        effects: if verdict == Verdict::Named {
+            attempt.clone()
+        } else {
+            Vec::new()
+        },
+        best_attempt: attempt,
+        rivals,
+        evidence: best.log_evidence - null_evidence,
+        wins: wins(frame, candidates, &contest),
+        covariance: best.fit.covariance.clone(),
+        noise_factor: noise,
+        gap,
+        sits: sits(&channels, &worst_first(&before.gauges, limit::PART)),
+        channels,
+        loads: loads_before_after(frame, &explained.members, &explained.unknown),
+        reduced_chi2: [before.fit, after.fit, after.held_out],
+        gauges_off_before: worst_first(&before.gauges, limit::PART),
+        gauges_off: worst_first(&after.gauges, limit::PART),
+        runs_off: worst_first(&after.runs, limit::PART),
+        remains: remains(frame, &explained.members, &after, unmodelled),
+        next_measurement: next,
+        detectable: detectable(frame, candidates, hint.map_or(&[], |h| h.set.as_slice())),
+    }
+}
+
+/// What to measure where no effect of the library comes near: is it the gauges or the runs?
+fn look_again(after: &Adequacy) -> String {
+    /// As many gauges as one shunts in an hour.
+    const MOST: usize = 4;
+    let names = |parts: &[Misfit]| -> Vec<String> {
+        let worst = worst_first(parts, 0.0);
+        worst.iter().take(MOST).map(|m| m.name.clone()).collect()
+    };
+    let run = names(&after.runs).into_iter().next();
+    format!(
+        "shunt gauges {} before and after {}, made twice: readings that do not repeat are no effect of the loads",
+        names(&after.gauges).join(", "),
+        run.map_or("a run".into(), |r| format!("run {r}"))
+    )
+}
+
+/// Other sets of at most the same number of effects, nearest first, that do not contain the best one.
+fn rival_sets<'a>(
+    candidates: &[Candidate],
+    all: &'a [Scored<Fit>],
+    best: &Scored<Fit>,
+) -> Vec<&'a Scored<Fit>> {
+    const MOST: usize = 5;
+    let own = named_part(candidates, &best.set);
+    let other = |s: &&Scored<Fit>| {
+        let named = named_part(candidates, &s.set);
+        !named.is_empty()
+            && is_unmodelled(candidates, &s.set).is_none()
+            && named != own
+            && named.len() <= own.len().max(1)
+            && best.log_evidence - s.log_evidence < WORTH_NAMING
+    };
+    let mut out: Vec<&Scored<Fit>> = all.iter().filter(other).collect();
+    out.truncate(MOST);
+    out
+}

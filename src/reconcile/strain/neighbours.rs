@@ -1,0 +1,77 @@
+//! Gauges next to each other that fail together: a crack or a loose joint between them rather than as many bad gauges.
+
+use super::frame::StrainFrame;
+use crate::reconcile::effect::{Correction, Extension};
+use crate::reconcile::outcome::NamedEffect;
+
+/// A gauge is a neighbour within this many usual distances from gauge to nearest gauge.
+const NEAR: f64 = 2.5;
+/// Gains that bridges and amplifiers are wired wrong by lie outside of this; within, strain that goes another way looks the same.
+const GAIN: [f64; 2] = [0.5, 1.5];
+
+/// Names of gauges that read more or less than modelled and are neighbours of each other, in words; `None` where there are not two.
+pub fn neighbours_that_fail(frame: &StrainFrame, effects: &[NamedEffect]) -> Option<String> {
+    let off: Vec<usize> = effects
+        .iter()
+        .filter_map(|e| reads_otherwise(frame, e))
+        .collect();
+    let near = NEAR * usual_distance(frame)?;
+    let close = |a: usize, b: usize| a != b && distance(frame, a, b).is_some_and(|d| d <= near);
+    let together: Vec<&str> = off
+        .iter()
+        .filter(|a| off.iter().any(|b| close(**a, *b)))
+        .map(|&g| frame.gauges[g].name.as_str())
+        .collect();
+    (together.len() > 1).then(|| {
+        format!(
+            "gauges {} lie next to each other and are off together: stiffness of a small region between them (a crack, a loose joint, a missing \
+             patch) rather than as many bad gauges",
+            together.join(", ")
+        )
+    })
+}
+
+/// The gauge of an effect that says one gauge reads another strain: by some gain, at another angle or place.
+fn reads_otherwise(frame: &StrainFrame, e: &NamedEffect) -> Option<usize> {
+    let Extension::Channels(list) = &e.extension else {
+        return None;
+    };
+    let [(name, correction)] = list.as_slice() else {
+        return None;
+    };
+    let may_be_strain = match correction {
+        Correction::Gain(gain) => *gain > GAIN[0] && *gain < GAIN[1],
+        Correction::AngleDeg(_) | Correction::PositionMm(_) => true,
+        _ => false,
+    };
+    may_be_strain.then(|| frame.gauges.iter().position(|g| g.name == *name))?
+}
+
+fn distance(frame: &StrainFrame, a: usize, b: usize) -> Option<f64> {
+    let (p, q) = (
+        frame.gauges.get(a)?.position?,
+        frame.gauges.get(b)?.position?,
+    );
+    Some(
+        p.iter()
+            .zip(&q)
+            .map(|(x, y)| (x - y) * (x - y))
+            .sum::<f64>()
+            .sqrt(),
+    )
+}
+
+/// Median over gauges of the distance to the nearest other one that is not a leg of the same rosette; `None` where places are not known.
+fn usual_distance(frame: &StrainFrame) -> Option<f64> {
+    let n = frame.n_gauges();
+    let nearest = |g: usize| {
+        let legs = frame.rosette(g);
+        let others = (0..n)
+            .filter(|h| !legs.contains(h))
+            .filter_map(|h| distance(frame, g, h));
+        others.min_by(f64::total_cmp)
+    };
+    let mut all: Vec<f64> = (0..n).filter_map(nearest).collect();
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 2).copied().filter(|d| *d > 0.0)
+}
