@@ -6,7 +6,7 @@ mod states;
 
 use super::fault::{Fault, Faults};
 use super::job::{self, Job};
-use super::strain::{Fields, Prepared, prepare, read_fields};
+use super::strain::{Fields, Prepared, has_covariance, prepare, read_fields};
 use super::{JobArguments, Session};
 use crate::finding::{Finding, Severity};
 use crate::model::{GridIx, Model, RigidKind, Vec3};
@@ -26,7 +26,8 @@ use std::collections::BTreeSet;
 pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
     let job = session.stage("read job", |s| job::read_job(&mut s.inputs, &arguments.job))?;
     session.put_units(job.units, &job.report_units);
-    if job.sensitivity.is_some() {
+    let calibrated = has_covariance(&job) && job.model.is_some();
+    if job.sensitivity.is_some() && !calibrated {
         return Err(Faults::from(Fault::of(
             &*job.file,
             "sensitivity",
@@ -40,6 +41,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
                 gauges: Vec::new(),
                 loads: Vec::new(),
                 values: crate::linalg::Matrix::zeros(0, job.loads.len()),
+                uncertainty: None,
             },
             fields: Some(read_fields(session, &job)?),
             gauges: Vec::new(),
