@@ -7,6 +7,7 @@
 //! | 9 | [`cli`] | arguments and files (the only input and output) | exit code |
 //! | 8 | [`report`] | plain results | text, json, csv, html |
 //! | 7 | [`reconcile`] | measured and predicted channels, a library of effects | the effect that parts them, the gap before and after |
+//! | 7 | [`calibrate`] | runs of known load, a prior S | S with its covariance |
 //! | 6 | [`placement`], [`recovery`] | a [`sensitivity::Sensitivity`], strain | gauge layouts, [`estimate::LoadEstimate`]s |
 //! | 5 | [`sensitivity`] | [`fe::Solution`]s and [`gauge::Gauge`]s | S in eps = S f |
 //! | 4 | [`gauge`] | strain at a place | what that gauge reads |
@@ -26,6 +27,7 @@
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
 pub mod app;
+pub mod calibrate;
 pub mod cli;
 pub mod estimate;
 pub mod fe;

@@ -57,6 +57,18 @@ fn run(line: &str, folder: &Path) {
     }
 }
 
+/// Puts the files of a folder of `examples/` beside the commands.
+fn copy_example(name: &str, folder: &Path) {
+    let from = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("examples")
+        .join(name);
+    let to = folder.join(name);
+    std::fs::create_dir_all(&to).unwrap();
+    for file in std::fs::read_dir(from).unwrap().flatten() {
+        std::fs::copy(file.path(), to.join(file.file_name())).unwrap();
+    }
+}
+
 /// Paths in backticks that lead into a folder and end in a file.
 fn named_files(page: &str) -> Vec<&str> {
     let spans = page.split('`').skip(1).step_by(2);
@@ -75,7 +87,10 @@ fn every_command_of_the_guide_works_and_the_files_it_names_are_written() {
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
     let pages = pages();
-    assert_eq!(pages.len(), 5);
+    assert_eq!(pages.len(), 6);
+    for example in ["bridge", "onboard"] {
+        copy_example(example, &folder);
+    }
     for (name, page) in &pages {
         let commands = boxes(page, "sh").concat();
         assert!(!commands.is_empty(), "{name}");

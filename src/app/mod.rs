@@ -4,6 +4,7 @@
 //! [`fault`] (bad input), [`job`] (job.toml and the tables it names), [`strain`] (the one chain from job to S).
 
 pub mod ballast;
+pub mod calibrate;
 pub mod cases;
 pub mod check;
 pub mod context;

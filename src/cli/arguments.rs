@@ -57,6 +57,11 @@ pub enum Command {
         after_help = "Example:\n  strainbridge place job.toml    # job.out/gauges.csv, gauges.xlsx, gluing_sheet.md, report.html (report.pdf with feature pdf)"
     )]
     Place(JobArguments),
+    /// Learn S from runs of known load, fused with the model's S where there is one
+    #[command(
+        after_help = "Example:\n  strainbridge calibrate job.toml --out cal && strainbridge recover cal/calibrated.toml"
+    )]
+    Calibrate(JobArguments),
     /// Recover loads from measured strain, with intervals
     #[command(after_help = "Example:\n  strainbridge recover job.toml --json | jq .loads")]
     Recover(JobArguments),

@@ -32,6 +32,7 @@ pub fn run(arguments: Arguments) -> ExitCode {
         Command::Init(a) => Run::of(&a.common, &a.deck).init(&a.deck, &a.results),
         Command::Cases(a) => Run::of(&a.common, &a.job).job(&a.job, app::cases::cases),
         Command::Place(a) => Run::of(&a.common, &a.job).job(&a.job, app::place::place),
+        Command::Calibrate(a) => Run::of(&a.common, &a.job).job(&a.job, app::calibrate::calibrate),
         Command::Recover(a) => on_job("recover", &a, app::recover::run),
         Command::Fleet(a) => {
             let run = Run::of(&a.common, &a.job);

@@ -1,10 +1,11 @@
 //! The one linear estimate of loads that runs and records share, with its covariance.
 
+use super::calibrated::fit_correlated;
 use super::errors::ErrorModel;
 use super::solve::{Fit, fit};
 use super::types::{Shift, ShiftKind, Widening};
 use crate::linalg::Matrix;
-use crate::sensitivity::Sensitivity;
+use crate::sensitivity::{Sensitivity, Uncertainty};
 
 /// `f = gain y` for readings `y` of the gauges [`Self::used`], weighed for the model's error at typical loads.
 ///
@@ -31,6 +32,8 @@ pub struct Gain {
     /// Loads and factors behind every row of `gain`: itself, or a sum of loads.
     rows: Vec<Vec<(usize, f64)>>,
     errors: ErrorModel,
+    /// Of a calibrated S, for the gauges used; and `k x k` a load, by rows: its variance at loads `f` is `f' B f`.
+    calibrated: Option<(Uncertainty, Vec<f64>)>,
 }
 
 impl Gain {
@@ -47,13 +50,23 @@ impl Gain {
         let rows = Matrix::from_fn(n, k, |i, l| s.values[(used[i], l)]);
         let variances = errors.variances(&rows, typical, noise_factor);
         let priors = s.priors();
+        let known = s.uncertainty.as_ref().map(|u| u.of_gauges(used));
         let Fit {
             covariance,
             gain,
             leverage,
             rank,
             ..
-        } = fit(&rows, &vec![0.0; n], &variances, &priors, &s.scales())?;
+        } = match &known {
+            None => fit(&rows, &vec![0.0; n], &variances, &priors, &s.scales())?,
+            Some(known) => {
+                let mut covariance = known.strain_covariance(n, typical);
+                for (g, v) in variances.iter().enumerate() {
+                    covariance[g * n + g] += v;
+                }
+                fit_correlated(&rows, &vec![0.0; n], &covariance, &priors, &s.scales())?.0
+            }
+        };
         let mut base = (&gain * gain.transpose()) * errors.noise_variance(noise_factor);
         let passed = &gain * &rows;
         for (m, prior) in priors.iter().enumerate() {
@@ -77,7 +90,6 @@ impl Gain {
         });
         Some(Self {
             used: used.to_vec(),
-            gain,
             leverage,
             rank,
             s: rows,
@@ -85,6 +97,11 @@ impl Gain {
             model_variance,
             rows: (0..k).map(|l| vec![(l, 1.0)]).collect(),
             errors,
+            calibrated: known.map(|u| {
+                let forms = u.load_forms(&gain);
+                (u, forms)
+            }),
+            gain,
         })
     }
 
@@ -149,6 +166,7 @@ impl Gain {
             .row_iter()
             .map(|row| self.errors.shared(row.iter().copied(), f, f))
             .collect();
+        let calibrated = self.calibrated_covariance(f);
         let shifts = self.shifts(f, widening);
         let mut out = vec![0.0; k * k];
         for a in 0..k {
@@ -166,8 +184,9 @@ impl Gain {
                     .map(|(x, y)| x.1 * y.1 * self.errors.column_variance(f[x.0]))
                     .sum();
                 let gauges: f64 = shifts.iter().map(|c| c[a] * c[b]).sum();
-                out[a * k + b] =
-                    widening.variance_factor * (self.base[(a, b)] + single + column) + gauges;
+                out[a * k + b] = widening.variance_factor * (self.base[(a, b)] + single + column)
+                    + calibrated.get(a * k + b).copied().unwrap_or(0.0)
+                    + gauges;
             }
         }
         out
@@ -199,7 +218,30 @@ impl Gain {
 
     fn model_part(&self, l: usize, f: &[f64]) -> f64 {
         let row = self.model_variance.row(l);
-        row.iter().zip(f).map(|(b, v)| b * v * v).sum()
+        let stated: f64 = row.iter().zip(f).map(|(b, v)| b * v * v).sum();
+        stated + self.calibrated_part(l, f)
+    }
+
+    /// Variance of load `l` at loads `f` that the uncertainty of a calibrated S and the scatter of repeats make.
+    fn calibrated_part(&self, l: usize, f: &[f64]) -> f64 {
+        let (k, Some((_, forms))) = (self.n_loads(), &self.calibrated) else {
+            return 0.0;
+        };
+        let form = forms.get(l * k * k..(l + 1) * k * k).unwrap_or(&[]);
+        let rows = form.chunks_exact(k.max(1)).zip(f);
+        rows.map(|(row, fj)| fj * row.iter().zip(f).map(|(b, fm)| b * fm).sum::<f64>())
+            .sum()
+    }
+
+    /// `scale^2 gain Cov(eps | f) gain'` of a calibrated S, by rows; empty without one.
+    fn calibrated_covariance(&self, f: &[f64]) -> Vec<f64> {
+        let Some((known, _)) = &self.calibrated else {
+            return Vec::new();
+        };
+        let n = self.used.len();
+        let strain = Matrix::from_row_slice(n, n, &known.strain_covariance(n, f));
+        let loads = &self.gain * strain * self.gain.transpose() * (known.scale * known.scale);
+        loads.iter().copied().collect()
     }
 
     fn shifts(&self, f: &[f64], widening: &Widening) -> Vec<Vec<f64>> {

@@ -3,8 +3,9 @@
 //! `eps = S f + e`, with `e` the noise of the readings and the model's own error. One estimate ([`gain`]) serves static states ([`runs`])
 //! and records of any length ([`history`]), so that both have the same intervals. [`residuals`] weighs what no load can make, across the
 //! runs; [`verdict`] judges it, [`outlier`] and [`faults`] name gauges that look wrong, [`determined`] and [`plausible`] say whether
-//! readings and loads can be what they are taken for.
+//! readings and loads can be what they are taken for. [`calibrated`] is the same for a calibrated S, [`suspects`] and [`unlike`] its judges.
 
+pub mod calibrated;
 pub mod clock;
 mod determined;
 pub mod errors;
@@ -21,7 +22,9 @@ mod runs;
 mod solve;
 mod solved;
 mod sums;
+mod suspects;
 mod types;
+pub mod unlike;
 pub mod verdict;
 
 pub use errors::ErrorModel;

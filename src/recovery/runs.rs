@@ -1,11 +1,11 @@
 //! Static states, or samples of a record: one estimate each, all judged together.
 
 use super::errors::ErrorModel;
-use super::solved::{Solved, solve};
-use super::types::{GAUGE_SUSPECT, Readings, Recovery, RunEstimate};
-use super::{determined, faults, plausible, verdict};
+use super::solved::{Solved, root_mean_squares, solve};
+use super::types::{GAUGE_SUSPECT, Readings, Recovery, RunEstimate, Widening};
+use super::{calibrated, determined, faults, plausible, verdict};
 use crate::finding::Finding;
-use crate::sensitivity::Sensitivity;
+use crate::sensitivity::{Sensitivity, Uncertainty};
 
 /// Loads of every run with intervals, and findings on what the residuals say.
 ///
@@ -16,6 +16,9 @@ use crate::sensitivity::Sensitivity;
 /// R. T. Birge, Phys. Rev. 40 (1932) 207; A. C. Aitken, Proc. R. Soc. Edinburgh 55 (1935) 42.
 pub fn recover(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Recovery {
     let (readings, mut findings) = plausible::check(s, readings, errors);
+    if let Some(known) = &s.uncertainty {
+        return recover_calibrated(s, &readings, errors, known, findings);
+    }
     let solved = solve(s, &readings, errors);
     let verdict = verdict::check(s, &readings, &solved, errors);
     let named = match verdict.misfit {
@@ -53,6 +56,33 @@ pub fn recover(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Re
         findings,
         widening: verdict.widening,
         typical,
+    }
+}
+
+/// As [`recover`] by a calibrated S, whose uncertainty and scatter stand for all errors but noise.
+fn recover_calibrated(
+    s: &Sensitivity,
+    readings: &[Readings],
+    errors: ErrorModel,
+    known: &Uncertainty,
+    mut findings: Vec<Finding>,
+) -> Recovery {
+    let (runs, judged) = calibrated::recover(s, readings, errors, known);
+    findings.extend(judged);
+    let (residual_rms, gauge_residual_rms, gauge_leverage) = residual_sizes(s.gauges.len(), &runs);
+    findings.extend(determined::check(s, &runs));
+    let loads: Vec<Vec<f64>> = runs.iter().map(|r| r.estimate.values.clone()).collect();
+    Recovery {
+        residual_rms,
+        gauge_residual_rms,
+        gauge_leverage,
+        findings,
+        widening: Widening {
+            coverage_factor: calibrated::student_95_of(known.dof),
+            ..Widening::none()
+        },
+        typical: root_mean_squares(s.loads.len(), &loads),
+        runs,
     }
 }
 

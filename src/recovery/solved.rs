@@ -102,7 +102,7 @@ fn at_typical(
     (gains, loads)
 }
 
-fn root_mean_squares(k: usize, loads: &[Vec<f64>]) -> Vec<f64> {
+pub(super) fn root_mean_squares(k: usize, loads: &[Vec<f64>]) -> Vec<f64> {
     (0..k)
         .map(|l| {
             let sum: f64 = loads.iter().map(|f| f[l] * f[l]).sum();
@@ -155,6 +155,9 @@ fn estimate_of(
 
 /// One run by itself, its interval as stated errors make it.
 pub fn estimate(s: &Sensitivity, r: &Readings, errors: ErrorModel) -> RunEstimate {
+    if let Some(known) = &s.uncertainty {
+        return super::calibrated::estimate(s, r, errors, known);
+    }
     let solved = solve(s, std::slice::from_ref(r), errors);
     solved.runs.into_iter().next().unwrap_or_else(|| {
         let nothing = Pattern {

@@ -62,6 +62,7 @@ pub fn from_cases(gauges: &[Gauge], loads: &[LoadCaseOf]) -> Result<Sensitivity,
         gauges: gauges.iter().map(|g| g.name.clone()).collect(),
         loads: loads.iter().map(|l| l.load.clone()).collect(),
         values,
+        uncertainty: None,
     })
 }
 

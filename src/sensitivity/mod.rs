@@ -3,10 +3,12 @@
 mod from_solution;
 mod separate;
 mod types;
+mod uncertainty;
 
 pub use from_solution::*;
 pub use separate::*;
 pub use types::*;
+pub use uncertainty::*;
 
 #[cfg(test)]
 mod tests;

@@ -7,6 +7,7 @@ fn s(rows: usize, values: &[f64], names: &[&str]) -> Sensitivity {
         gauges: (0..rows).map(|i| format!("G{i}")).collect(),
         loads: names.iter().map(|n| Load::named(*n)).collect(),
         values: Matrix::from_row_slice(rows, names.len(), values),
+        uncertainty: None,
     }
 }
 

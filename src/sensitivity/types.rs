@@ -1,5 +1,6 @@
 //! The matrix with its names and scales.
 
+use super::Uncertainty;
 use crate::linalg::{Matrix, dense};
 use crate::units::Quantity;
 
@@ -42,6 +43,8 @@ pub struct Sensitivity {
     pub loads: Vec<Load>,
     /// Values.
     pub values: Matrix,
+    /// How far a calibrated S may be off; `None` where only the stated error of a model is known.
+    pub uncertainty: Option<Uncertainty>,
 }
 
 impl Sensitivity {

@@ -14,6 +14,7 @@ const ROWS: [(&str, f64); 21] = [
     ("reconcile", 7.0),
     ("calibrate", 7.0),
     ("study", 7.0),
+    ("calibrate", 7.0),
     ("payload", 7.0),
     ("placement", 6.0),
     ("recovery", 6.0),

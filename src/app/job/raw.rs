@@ -17,6 +17,7 @@ pub(super) struct RawJob {
     pub report_units: Option<RawUnits>,
     pub model: S<RawModel>,
     pub load: Vec<Spanned<RawLoad>>,
+    pub calibration: S<RawCalibration>,
     pub combination: Vec<Spanned<RawCombination>>,
     pub correction: Vec<Spanned<RawChannelCorrection>>,
     pub gauge: Vec<Spanned<RawGauge>>,
@@ -75,6 +76,15 @@ pub(super) struct RawLoad {
 pub(super) struct RawCombination {
     pub name: S<String>,
     pub terms: BTreeMap<Spanned<String>, Spanned<f64>>,
+}
+
+#[derive(Deserialize, JsonSchema, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawCalibration {
+    pub runs: S<Vec<Spanned<String>>>,
+    pub repeats: S<Vec<Spanned<String>>>,
+    pub depends_on: S<String>,
+    pub model_uncertainty_rel: S<f64>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]
@@ -379,6 +389,7 @@ pub(super) struct RawSensitivity {
     pub per: Option<RawUnits>,
     pub columns: BTreeMap<Spanned<String>, Spanned<String>>,
     pub signatures: Option<RawSignatures>,
+    pub covariance: S<String>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

@@ -260,6 +260,47 @@ const KEYS: &[(&str, &str, &[&str])] = &[
         "S computed elsewhere, instead of [model]",
         &[],
     ),
+    (
+        "sensitivity.covariance",
+        "How far that S may be off: calibration.bin, as `calibrate` writes it",
+        &[],
+    ),
+    (
+        "combination",
+        "A sum of loads with an interval of its own",
+        &[],
+    ),
+    ("combination.name", "Its name in tables and reports", &[]),
+    (
+        "combination.terms",
+        "Factor by load, such as { \"LF.FZ\" = 1, \"RF.FZ\" = 1 }",
+        &[],
+    ),
+    (
+        "calibration",
+        "How `calibrate` learns S from runs of known load",
+        &[],
+    ),
+    (
+        "calibration.runs",
+        "Runs that teach; left out: every run of [measured] whose loads [runs] gives",
+        &[],
+    ),
+    (
+        "calibration.repeats",
+        "Columns of the runs file: runs alike in these are repeats; left out: runs of equal loads",
+        &[],
+    ),
+    (
+        "calibration.depends_on",
+        "Column of the runs file, such as speed: whether loads come out larger with it is tested",
+        &[],
+    ),
+    (
+        "calibration.model_uncertainty_rel",
+        "How far the model's S may be off, 1 sd, entry by entry and common to a gauge; default 0.1",
+        &[],
+    ),
 ];
 
 /// The schema as JSON text (draft 2020-12).

@@ -411,3 +411,12 @@ fn rows_of_another_length_are_faults() {
         f[0]
     );
 }
+
+#[test]
+fn without_a_model_a_load_needs_a_name_alone_and_with_one_it_must_act_somewhere() {
+    let job = read_text("units = \"m-kg-s\"\n[[load]]\nname = \"west\"\n[calibration]\n").unwrap();
+    assert_eq!(job.loads[0].acts, LoadActs::Named);
+    let found =
+        faults("units = \"m-kg-s\"\n[model]\ndeck = \"d.bdf\"\n[[load]]\nname = \"west\"\n");
+    assert!(found.iter().any(|f| f.field == "load.grid"), "{found:?}");
+}

@@ -38,6 +38,8 @@ pub struct Job {
     pub model: Option<ModelFiles>,
     /// `[[load]]`, in job order.
     pub loads: Vec<JobLoad>,
+    /// `[calibration]`; the default where absent.
+    pub calibration: CalibrationKeys,
     /// `[[combination]]`, in job order.
     pub combinations: Vec<Combination>,
     /// `[[correction]]`, in job order.
@@ -151,6 +153,21 @@ pub enum LoadActs {
     Set(u32),
     /// A column of a given S: nothing but its name is known.
     Named,
+}
+
+/// `[calibration]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CalibrationKeys {
+    /// Runs that teach; `None`: every run whose loads are known.
+    pub runs: Option<Vec<String>>,
+    /// Columns of the runs file: runs alike in these are repeats.
+    pub repeats: Vec<String>,
+    /// Column of the runs file that the scale may depend on.
+    pub depends_on: Option<String>,
+    /// Stated relative error of the model's S, 1 sd: entry by entry, and common to a gauge.
+    pub model_uncertainty_rel: f64,
+    /// Line of the job; 0 where the section is absent.
+    pub line: u32,
 }
 
 /// `[[combination]]`: a sum of loads with an interval of its own.
@@ -859,6 +876,8 @@ pub struct GivenSensitivity {
     pub columns: Vec<(String, String)>,
     /// Signature files.
     pub signatures: Signatures,
+    /// Covariance of S, as `calibrate` writes it.
+    pub covariance: Option<NamedFile>,
     /// Line of the job.
     pub line: u32,
 }

@@ -75,9 +75,17 @@ impl ExtendedJob {
 }
 
 /// Makes every file name of the job relative to the output folder.
-fn redirect(table: &mut Table, prefix: &str) {
-    const FILE_KEYS: [&str; 8] = [
-        "file", "deck", "strain", "zero", "data", "loads", "result", "results",
+pub(in crate::app) fn redirect(table: &mut Table, prefix: &str) {
+    const FILE_KEYS: [&str; 9] = [
+        "covariance",
+        "file",
+        "deck",
+        "strain",
+        "zero",
+        "data",
+        "loads",
+        "result",
+        "results",
     ];
     let join = |name: &str| {
         if Path::new(name).is_absolute() {

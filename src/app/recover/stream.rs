@@ -165,6 +165,7 @@ pub(super) fn run(
         gauges: used.iter().map(|&g| all.gauges[g].clone()).collect(),
         loads: all.loads.clone(),
         values: Matrix::from_fn(used.len(), all.loads.len(), |i, l| all.values[(used[i], l)]),
+        uncertainty: all.uncertainty.as_ref().map(|u| u.of_gauges(&used)),
     };
     let zero: Vec<f64> = used.iter().map(|&g| task.zero[g]).collect();
     let Listed {

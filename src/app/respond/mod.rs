@@ -11,7 +11,7 @@ use super::context::Context;
 use super::fault::{Fault, Faults};
 use super::job::{self, Job};
 use super::outcome::{Outcome, StatedUnits};
-use super::strain::{Prepared, prepare, read_fields};
+use super::strain::{Prepared, has_covariance, prepare, read_fields};
 use super::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::model::{GridIx, Model, RigidKind};
@@ -31,7 +31,8 @@ pub fn respond(job: &Job, cx: &Context) -> Result<Outcome<Responded>, Faults> {
 }
 
 fn responded(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
-    if job.sensitivity.is_some() {
+    let calibrated = has_covariance(job) && job.model.is_some();
+    if job.sensitivity.is_some() && !calibrated {
         return Err(Faults::from(Fault::of(
             &*job.file,
             "sensitivity",
@@ -45,6 +46,7 @@ fn responded(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
                 gauges: Vec::new(),
                 loads: Vec::new(),
                 values: crate::linalg::Matrix::zeros(0, job.loads.len()),
+                uncertainty: None,
             },
             fields: Some(read_fields(work, job)?),
             gauges: Vec::new(),

@@ -1,5 +1,6 @@
 //! S from a table that the job names.
 
+use super::covariance::read_covariance;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::runs::quantity_of_name;
 use crate::app::job::table::read_table;
@@ -125,9 +126,19 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
         }
     }
     Faults::check(faults)?;
+    let gauges: Vec<String> = order.into_iter().map(|o| o.0).collect();
+    let uncertainty = match &given.covariance {
+        None => None,
+        Some(named) => {
+            let bytes = work.inputs.read_named(job, named).map_err(Faults::from)?;
+            let names: Vec<String> = loads.iter().map(|l: &Load| l.name.clone()).collect();
+            Some(read_covariance(&named.given, &bytes, &gauges, &names)?)
+        }
+    };
     Ok(Sensitivity {
-        gauges: order.into_iter().map(|o| o.0).collect(),
+        gauges,
         loads,
         values,
+        uncertainty,
     })
 }

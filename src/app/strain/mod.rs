@@ -1,10 +1,12 @@
 //! What the strain commands share: the model with its unit-load strain, gauges laid onto it, S from there or from a table.
 
+mod covariance;
 mod fields;
 mod gauges;
 mod given;
 mod units;
 
+pub use covariance::{covariance_bytes, read_covariance};
 pub use fields::{Fields, read_fields, unit_loads};
 pub use gauges::{lay_gauges, side, spec_of, without_strain};
 pub use given::read_given;
@@ -51,10 +53,19 @@ pub fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
     }
     let prepared = if job.sensitivity.is_some() {
         let sensitivity = read_given(work, job)?;
+        // A calibrated S stands beside its model, whose fields are wanted for responses and pictures.
+        let (fields, gauges) = match &job.model {
+            Some(_) if has_covariance(job) => {
+                let fields = read_fields(work, job)?;
+                let gauges = lay_gauges(work, job, &fields)?;
+                (Some(fields), gauges)
+            }
+            _ => (None, Vec::new()),
+        };
         Prepared {
             sensitivity,
-            fields: None,
-            gauges: Vec::new(),
+            fields,
+            gauges,
         }
     } else {
         let fields = read_fields(work, job)?;
@@ -68,6 +79,12 @@ pub fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
         }
     };
     Ok(prepared)
+}
+
+/// Whether the job's S is a calibrated one.
+pub fn has_covariance(job: &Job) -> bool {
+    let given = job.sensitivity.as_ref();
+    given.is_some_and(|s| s.covariance.is_some())
 }
 
 /// Rank and condition numbers of S, as they stand in `result.json`.

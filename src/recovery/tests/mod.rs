@@ -60,6 +60,7 @@ fn frame(loads: usize) -> Option<Frame> {
     let (_, _, f) = table(&shared(&format!("{folder}/loads_truth.csv"))?, 2);
     let s = Sensitivity {
         values: Matrix::from_fn(gauges.len(), loads, |g, l| m[g][l] * 1e-6 / KN),
+        uncertainty: None,
         gauges,
         loads: names.iter().take(loads).map(Load::named).collect(),
     };
@@ -270,6 +271,7 @@ fn a_nuisance_load_with_a_stated_size_lets_fewer_gauges_do() {
         gauges: vec!["1".into(), "2".into()],
         loads,
         values: Matrix::from_row_slice(2, 3, &[1e-3, 0.0, 1e-5, 0.0, 1e-3, 1e-5]),
+        uncertainty: None,
     };
     let r = Readings {
         run: "R".into(),

@@ -28,6 +28,7 @@ pub(super) fn many_nuisances() -> Sensitivity {
         gauges: (0..14).map(|g| format!("G{g}")).collect(),
         loads,
         values: Matrix::from_fn(14, 16, |_, _| 10e-6 * gaussian(&mut rng)),
+        uncertainty: None,
     }
 }
 
@@ -117,6 +118,7 @@ fn a_nuisance_load_with_a_stated_size_widens_the_interval_of_a_sample_as_that_of
         gauges: vec!["1".into(), "2".into()],
         loads,
         values: Matrix::from_row_slice(2, 3, &[1e-3, 0.0, 1e-5, 0.0, 1e-3, 1e-5]),
+        uncertainty: None,
     };
     let sigma = filter(&s, NOISE, &[0.0; 3]).sigma(&[0.0; 3]);
     assert!(
@@ -131,6 +133,7 @@ fn whole_blocks_give_what_single_samples_give_and_a_gap_spoils_its_sample_alone(
         gauges: ["1", "2", "3"].map(String::from).to_vec(),
         loads: ["A", "B"].map(Load::named).to_vec(),
         values: Matrix::from_row_slice(3, 2, &[1e-3, 2e-4, -3e-4, 1e-3, 5e-4, 7e-4]),
+        uncertainty: None,
     };
     let filter = Filter::new(
         &s,
@@ -180,6 +183,7 @@ fn a_load_that_the_other_gauges_do_not_tell_is_blank_and_the_rest_is_not() {
         gauges: ["1", "2", "3"].map(String::from).to_vec(),
         loads: ["A", "B"].map(Load::named).to_vec(),
         values: Matrix::from_row_slice(3, 2, &[1e-3, 0.0, 1e-3, 0.0, 0.0, 1e-3]),
+        uncertainty: None,
     };
     let filter = filter(&s, NOISE, &[0.0; 2]);
     let samples = [1e-3, 1e-3, 2e-3, 1e-3, 1e-3, f64::NAN, 1e-3, 1e-3, 1e308];

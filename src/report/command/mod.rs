@@ -1,6 +1,7 @@
 //! What each command writes and says of its outcome: one file a command.
 
 mod ballast;
+mod calibrate;
 mod cases;
 mod check;
 mod fleet;

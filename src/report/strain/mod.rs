@@ -1,5 +1,6 @@
 //! Tables and pages of the strain commands.
 
+mod calibrate_page;
 mod fields;
 mod gap_page;
 mod gluing;
@@ -8,6 +9,7 @@ mod points;
 mod solution;
 mod tables;
 
+pub use calibrate_page::calibrate_page;
 pub use fields::strains_page;
 pub use gap_page::{RunStrain, reconcile_page};
 pub use gluing::gluing_sheet_md;

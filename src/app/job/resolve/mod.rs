@@ -1,5 +1,6 @@
 //! Raw job to [`Job`]: required keys, words, defaults, contradictions.
 
+mod calibration;
 mod channel;
 mod gauge;
 mod load;
@@ -37,7 +38,9 @@ pub(super) fn resolve_job(
     let stem = Path::new(file)
         .file_stem()
         .map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    let behind = if raw.model.is_none() && raw.sensitivity.is_some() {
+    // S is given, or learnt from runs of known load.
+    let taught = raw.sensitivity.is_some() || raw.calibration.is_some() || raw.runs.is_some();
+    let behind = if raw.model.is_none() && taught {
         load::Behind::Table
     } else {
         load::Behind::Model
@@ -52,6 +55,7 @@ pub(super) fn resolve_job(
         units,
         report_units,
         model,
+        calibration: calibration::calibration(&mut c, raw.calibration.as_ref()),
         combinations: channel::combinations(&mut c, &raw.combination),
         corrections: channel::corrections(&mut c, &raw.correction),
         gauges: gauge::gauges(&mut c, &raw.gauge),

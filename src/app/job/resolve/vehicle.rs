@@ -300,6 +300,7 @@ pub(super) fn sensitivity(
             .map(|(k, v)| (k.get_ref().clone(), v.get_ref().clone()))
             .collect(),
         signatures,
+        covariance: c.named(&raw.covariance, "sensitivity.covariance"),
         line: c.line(section),
     })
 }

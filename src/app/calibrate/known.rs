@@ -1,0 +1,407 @@
+//! Known loads of the runs file: values, their sd, sums, repeats.
+
+use crate::app::fault::{Fault, FaultList, Faults};
+use crate::app::job::runs::quantity_of_name;
+use crate::app::job::suggest;
+use crate::app::job::table::{Table, read_table};
+use crate::app::job::{HoldOut, Job, JobLoad, LoadActs, Measured, Runs};
+use crate::app::work::Work;
+use crate::calibrate::KnownLoads;
+use crate::sensitivity::Load;
+use crate::units::{Quantity, factor};
+
+/// Prior sd of a load that a run leaves unknown, in units of the largest known load of its kind: nothing is known of it.
+const UNKNOWN: f64 = 10.0;
+
+/// A run that teaches.
+pub(super) struct Known {
+    /// Row of the strain table.
+    pub row: usize,
+    /// Its loads, job units.
+    pub loads: KnownLoads,
+    /// Number of its group of repeats.
+    pub group: usize,
+}
+
+/// What the runs file says.
+pub(super) struct KnownRuns {
+    /// Runs that teach, in the order of the strain table.
+    pub runs: Vec<Known>,
+    /// Name and values, a run each (NaN where blank), of the column that the scale may depend on.
+    pub column: Option<(String, Vec<f64>)>,
+}
+
+/// A quantity of the runs file: a load or a sum of loads.
+struct Stated {
+    terms: Vec<(usize, f64)>,
+    value: usize,
+    sd: Option<usize>,
+    /// Job units of one unit of the file.
+    unit: f64,
+    /// Sd where no column states it, job units.
+    noise: f64,
+}
+
+/// The runs that teach, with their loads.
+///
+/// # Errors
+/// Columns that the job names and the file lacks, fields that are no numbers, runs without strain or without known loads.
+pub(super) fn read_known(
+    work: &mut Work,
+    job: &Job,
+    runs: &Runs,
+    measured: &Measured,
+    strain: &[String],
+    loads: &[Load],
+) -> Result<KnownRuns, Faults> {
+    let text = work
+        .inputs
+        .read_named_text(job, &runs.file)
+        .map_err(Faults::from)?;
+    let table = read_table(&runs.file.given, &text)?;
+    let mut faults = FaultList::new();
+    let Some(key) = table.column(&["run"]) else {
+        return Err(Fault::at(
+            &*table.file,
+            1,
+            "run",
+            "no column `run`",
+            "add a column `run` with the runs' names",
+        )
+        .into());
+    };
+    let stated = stated(job, runs, &table, loads, &mut faults);
+    let repeats: Vec<usize> = job
+        .calibration
+        .repeats
+        .iter()
+        .filter_map(|name| column(job, &table, name, "calibration.repeats", &mut faults))
+        .collect();
+    let depends = job.calibration.depends_on.as_ref();
+    let depends = depends.and_then(|name| {
+        Some((
+            name.clone(),
+            column(job, &table, name, "calibration.depends_on", &mut faults)?,
+        ))
+    });
+    let name_of = |row: usize| {
+        table
+            .rows
+            .get(row)
+            .and_then(|r| r.1.get(key))
+            .map_or("", String::as_str)
+    };
+    for (i, (line, _)) in table.rows.iter().enumerate() {
+        if (0..i).any(|j| name_of(j) == name_of(i)) {
+            let wrong = format!("run `{}` stands twice", name_of(i));
+            faults.push(Fault::at(
+                &*table.file,
+                *line,
+                "run",
+                wrong,
+                "give every run its own name",
+            ));
+        }
+    }
+    let asked = asked_rows(job, &table, key, strain, &mut faults);
+    let largest = largest_known(&table, &stated, loads.len(), &mut faults);
+    let held_out = |run: &str| matches!(&measured.hold_out, HoldOut::Runs(list) if list.iter().any(|r| r == run));
+    let (mut out, mut groups): (Vec<Known>, Vec<Vec<String>>) = (Vec::new(), Vec::new());
+    let mut values = Vec::new();
+    for (row, run) in strain.iter().enumerate() {
+        let Some(at) = (0..table.rows.len()).find(|i| name_of(*i) == run) else {
+            continue;
+        };
+        let listed = asked.as_ref().is_some_and(|a| a.contains(&at));
+        let left_out = match asked {
+            Some(_) => !listed,
+            None => held_out(run),
+        };
+        if left_out {
+            continue;
+        }
+        let Some(known) = loads_of(&table, at, &stated, loads, &largest) else {
+            if listed {
+                let line = table.rows.get(at).map_or(0, |r| r.0);
+                let wrong = format!("run `{run}` is to teach and its loads are not known");
+                faults.push(Fault::at(&*table.file, line, "run", wrong, "fill in its loads (0 where there is none), or drop it from `[calibration] runs`"));
+            }
+            continue;
+        };
+        let cells = |columns: &[usize]| -> Vec<String> {
+            columns
+                .iter()
+                .map(|c| table.rows[at].1.get(*c).cloned().unwrap_or_default())
+                .collect()
+        };
+        let alike = if repeats.is_empty() {
+            known.mean.iter().map(|f| format!("{f:.6e}")).collect()
+        } else {
+            cells(&repeats)
+        };
+        let group = groups.iter().position(|g| *g == alike).unwrap_or_else(|| {
+            groups.push(alike);
+            groups.len() - 1
+        });
+        if let Some((_, c)) = &depends {
+            match table.number(at, *c) {
+                Ok(v) => values.push(v.unwrap_or(f64::NAN)),
+                Err(f) => faults.push(f),
+            }
+        }
+        out.push(Known {
+            row,
+            loads: known,
+            group,
+        });
+    }
+    if out.is_empty() && faults.is_empty() {
+        let names: Vec<&str> = loads.iter().map(|l| l.name.as_str()).collect();
+        faults.push(Fault::of(
+            &*table.file,
+            "run",
+            "no run has both strain and known loads",
+            format!("name its columns after the loads ({}), or map them in [runs] columns; blank: unknown, 0: known to be zero", names.join(", ")),
+        ));
+    }
+    Faults::check(faults)?;
+    Ok(KnownRuns {
+        runs: out,
+        column: depends.map(|(name, _)| (name, values)),
+    })
+}
+
+/// Rows of the runs that `[calibration] runs` names; `None` where it names none.
+fn asked_rows(
+    job: &Job,
+    table: &Table,
+    key: usize,
+    strain: &[String],
+    faults: &mut FaultList,
+) -> Option<Vec<usize>> {
+    let list = job.calibration.runs.as_ref()?;
+    let names: Vec<&str> = table
+        .rows
+        .iter()
+        .filter_map(|r| r.1.get(key))
+        .map(String::as_str)
+        .collect();
+    let mut out = Vec::new();
+    for run in list {
+        let place = names.iter().position(|n| n == run);
+        let known = [
+            (place.is_some(), &*table.file, names.clone()),
+            (
+                strain.contains(run),
+                "the strain file",
+                strain.iter().map(String::as_str).collect(),
+            ),
+        ];
+        for (found, file, choices) in known {
+            if !found {
+                let wrong = format!("`{file}` has no run `{run}`");
+                faults.push(Fault::at(
+                    &*job.file,
+                    job.calibration.line,
+                    "calibration.runs",
+                    wrong,
+                    suggest::remedy(run, choices),
+                ));
+            }
+        }
+        out.extend(place);
+    }
+    Some(out)
+}
+
+fn column(
+    job: &Job,
+    table: &Table,
+    name: &str,
+    key: &str,
+    faults: &mut FaultList,
+) -> Option<usize> {
+    let found = table.column(&[name]);
+    if found.is_none() {
+        let wrong = format!("`{}` has no column `{name}`", table.file);
+        let remedy = suggest::remedy(name, table.header.iter().map(String::as_str));
+        faults.push(Fault::at(
+            &*job.file,
+            job.calibration.line,
+            key,
+            wrong,
+            remedy,
+        ));
+    }
+    found
+}
+
+fn quantity(load: Option<&JobLoad>, name: &str) -> Option<Quantity> {
+    match load.map(|l| l.acts) {
+        Some(LoadActs::AtGrid { component, .. }) => Some(component.quantity()),
+        Some(LoadActs::Set(_)) => None,
+        Some(LoadActs::Named) | None => Some(quantity_of_name(name)),
+    }
+}
+
+/// Columns of loads and of combinations that the file has.
+fn stated(
+    job: &Job,
+    runs: &Runs,
+    table: &Table,
+    loads: &[Load],
+    faults: &mut FaultList,
+) -> Vec<Stated> {
+    let place = |name: &str| loads.iter().position(|l| l.name == name);
+    let mut wanted: Vec<(&str, Vec<(usize, f64)>)> = loads
+        .iter()
+        .enumerate()
+        .map(|(i, l)| (l.name.as_str(), vec![(i, 1.0)]))
+        .collect();
+    for c in &job.combinations {
+        let terms = c
+            .terms
+            .iter()
+            .filter_map(|(n, f)| Some((place(n)?, *f)))
+            .collect();
+        wanted.push((c.name.as_str(), terms));
+    }
+    let mut out = Vec::new();
+    for (name, terms) in wanted {
+        let given = runs.columns.get(name).map_or(name, String::as_str);
+        let Some(value) = table.column(&[given]) else {
+            if runs.columns.contains_key(name) {
+                let wrong = format!("`{}` has no column `{given}`", table.file);
+                let remedy = suggest::remedy(given, table.header.iter().map(String::as_str));
+                faults.push(Fault::at(
+                    &*job.file,
+                    runs.line,
+                    format!("runs.columns.{name}"),
+                    wrong,
+                    remedy,
+                ));
+            }
+            continue;
+        };
+        let first = terms
+            .first()
+            .and_then(|t| loads.get(t.0))
+            .map_or(name, |l| l.name.as_str());
+        let quantity = quantity(job.loads.iter().find(|l| l.name == first), first);
+        let unit = quantity.map_or(1.0, |q| 1.0 / factor(job.units, runs.units.unit(q)));
+        let noise = match quantity {
+            Some(Quantity::Force) => runs.noise.force,
+            Some(Quantity::Moment) => runs.noise.moment,
+            _ => None,
+        };
+        out.push(Stated {
+            terms,
+            value,
+            sd: table.column(&[&format!("{name}_sd"), &format!("{given}_sd")]),
+            unit,
+            noise: noise.unwrap_or(0.0) * unit,
+        });
+    }
+    out
+}
+
+/// Value and sd of a quantity in a row, job units; `None` where it is blank.
+fn cell(table: &Table, row: usize, s: &Stated) -> Result<Option<(f64, f64)>, Fault> {
+    let Some(value) = table.number(row, s.value)? else {
+        return Ok(None);
+    };
+    let sd = s.sd.map_or(Ok(None), |c| table.number(row, c))?;
+    Ok(Some((
+        value * s.unit,
+        sd.map_or(s.noise, |v| (v * s.unit).abs()),
+    )))
+}
+
+/// The largest known value of any quantity; every fault of its cells on the way.
+fn largest_known(
+    table: &Table,
+    stated: &[Stated],
+    n_loads: usize,
+    faults: &mut FaultList,
+) -> Vec<f64> {
+    let mut largest = 0.0_f64;
+    for s in stated {
+        for row in 0..table.rows.len() {
+            match cell(table, row, s) {
+                Ok(v) => largest = largest.max(v.map_or(0.0, |v| v.0.abs())),
+                Err(f) => faults.push(f),
+            }
+        }
+    }
+    vec![if largest > 0.0 { largest } else { 1.0 }; n_loads]
+}
+
+/// Loads of one run, unknown ones wide, conditioned on the sums that are known; `None` where a wanted load is in nothing that is known.
+fn loads_of(
+    table: &Table,
+    row: usize,
+    stated: &[Stated],
+    loads: &[Load],
+    largest: &[f64],
+) -> Option<KnownLoads> {
+    let k = loads.len();
+    let mut mean = vec![0.0; k];
+    let mut covariance = vec![0.0; k * k];
+    let mut known = vec![false; k];
+    let mut sums = Vec::new();
+    for s in stated {
+        let Ok(Some((value, sd))) = cell(table, row, s) else {
+            continue;
+        };
+        match s.terms.as_slice() {
+            [(l, f)] if *f == 1.0 => {
+                mean[*l] = value;
+                covariance[l * k + l] = sd * sd;
+                known[*l] = true;
+            }
+            terms => sums.push((terms, value, sd)),
+        }
+    }
+    for l in (0..k).filter(|l| !known[*l]) {
+        let in_sum = sums
+            .iter()
+            .any(|s| s.0.iter().any(|t| t.0 == l && t.1 != 0.0));
+        if loads[l].wanted && !in_sum {
+            return None;
+        }
+        let sd = loads[l].expected.unwrap_or(UNKNOWN * largest[l]);
+        covariance[l * k + l] = sd * sd;
+    }
+    if !known.iter().any(|k| *k) && sums.is_empty() {
+        return None;
+    }
+    for (terms, value, sd) in sums {
+        condition(&mut mean, &mut covariance, terms, value, sd);
+    }
+    Some(KnownLoads { mean, covariance })
+}
+
+/// Gaussian loads given that a sum of them is `value` to within `sd`.
+fn condition(
+    mean: &mut [f64],
+    covariance: &mut [f64],
+    terms: &[(usize, f64)],
+    value: f64,
+    sd: f64,
+) {
+    let k = mean.len();
+    let carried: Vec<f64> = (0..k)
+        .map(|l| terms.iter().map(|(m, f)| f * covariance[l * k + m]).sum())
+        .collect();
+    let variance: f64 = terms.iter().map(|(m, f)| f * carried[*m]).sum::<f64>() + sd * sd;
+    if !(variance > 0.0) {
+        return;
+    }
+    let left = value - terms.iter().map(|(m, f)| f * mean[*m]).sum::<f64>();
+    for l in 0..k {
+        mean[l] += carried[l] * left / variance;
+        for m in 0..k {
+            covariance[l * k + m] -= carried[l] * carried[m] / variance;
+        }
+    }
+}

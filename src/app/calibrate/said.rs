@@ -1,0 +1,158 @@
+//! The calibration in the units of reports.
+
+use super::outcome::*;
+use crate::app::strain::LoadUnits;
+use crate::calibrate::{Calibration, Dependence, LeftOut, Task, depends_on, next_runs};
+use crate::finding::{Finding, Severity};
+use std::collections::BTreeMap;
+
+/// Chance under which a dependence is worth a word.
+const SIGNIFICANT: f64 = 0.01;
+
+impl DependenceSummary {
+    /// A finding where the dependence is no chance.
+    pub(super) fn finding(&self) -> Option<Finding> {
+        (self.chance < SIGNIFICANT).then(|| {
+            let message = format!(
+                "the strain of the runs depends on `{}`: loads come out {:+.2} % per unit of it (+- {:.2}, chance {:.1e})",
+                self.column,
+                100.0 * self.slope_rel,
+                196.0 * self.sigma,
+                self.chance
+            );
+            Finding::new(
+                Severity::Warning,
+                "calibration-depends-on-column",
+                &self.column,
+                message,
+                "calibrate with the runs of one setting, or keep the width that the scatter gives",
+            )
+            .with_numbers(self.chance, SIGNIFICANT)
+        })
+    }
+}
+
+/// The best next run.
+pub(super) fn next_run(
+    task: &Task,
+    found: &Calibration,
+    units: &[LoadUnits],
+) -> Option<NextRunSummary> {
+    let size = |l: usize| {
+        let known = task.runs.iter().map(|r| r.loads.mean[l].abs());
+        let largest = known.fold(0.0, f64::max);
+        if largest > 0.0 {
+            Some(largest)
+        } else {
+            task.loads[l].expected
+        }
+    };
+    let sizes: Vec<Option<f64>> = (0..task.loads.len()).map(size).collect();
+    let other = sizes.iter().flatten().copied().fold(0.0, f64::max);
+    let sizes: Vec<f64> = sizes.into_iter().map(|s| s.unwrap_or(other)).collect();
+    let best = next_runs(found, task.noise, &sizes).into_iter().next()?;
+    let unit = &units[best.load];
+    Some(NextRunSummary {
+        loads: task
+            .loads
+            .iter()
+            .zip(units)
+            .zip(&best.loads)
+            .map(|((l, u), f)| (l.name.clone(), f * u.factor))
+            .collect(),
+        information: best.information,
+        load: task.loads[best.load].name.clone(),
+        sigma_before: best.sigma_before * unit.factor,
+        sigma_after: best.sigma_after * unit.factor,
+        unit: unit.name.clone(),
+    })
+}
+
+/// The test on a column.
+pub(super) fn dependence(
+    task: &Task,
+    found: &Calibration,
+    column: &(String, Vec<f64>),
+) -> Option<DependenceSummary> {
+    let Dependence {
+        slope_rel,
+        sigma,
+        chance,
+    } = depends_on(task, &found.left_out, &column.1)?;
+    Some(DependenceSummary {
+        column: column.0.clone(),
+        slope_rel,
+        sigma,
+        chance,
+    })
+}
+
+/// `calibration` of `result.json`.
+pub(super) fn words(
+    task: &Task,
+    found: &Calibration,
+    units: &[LoadUnits],
+    next_run: Option<NextRunSummary>,
+    dependence: Option<DependenceSummary>,
+) -> CalibrationSummary {
+    let left_out = |l: &LeftOut| LeftOutSummary {
+        run: l.estimate.run.clone(),
+        distance: (l.distance / l.loads.max(1) as f64).sqrt(),
+        loads: units
+            .iter()
+            .enumerate()
+            .map(|(i, u)| LeftOutLoad {
+                name: task.loads[i].name.clone(),
+                known: l.known[i] * u.factor,
+                value: l.estimate.values[i] * u.factor,
+                sigma: l.estimate.sigma(i) * found.coverage.factor * u.factor,
+                unit: u.name.clone(),
+            })
+            .collect(),
+    };
+    let terms = |u: &crate::calibrate::Undetermined| -> BTreeMap<String, f64> {
+        task.loads
+            .iter()
+            .zip(&u.terms)
+            .map(|(l, t)| (l.name.clone(), *t))
+            .collect()
+    };
+    CalibrationSummary {
+        runs: task.runs.len() - found.refused.len(),
+        prior: if task.model.is_some() {
+            "model"
+        } else {
+            "none"
+        },
+        gauges: found
+            .shifts
+            .iter()
+            .map(|s| CalibratedGauge {
+                name: s.name.clone(),
+                shift: s.shift,
+                scale: s.scale,
+                looks_like: s.word.name(),
+            })
+            .collect(),
+        repeat_scatter_rel: found.repeat_scatter_rel,
+        noise_rel: found.noise_rel,
+        coverage: CoverageSummary {
+            held: found.coverage.held,
+            of: found.coverage.of,
+            factor: found.coverage.factor,
+        },
+        next_run,
+        model_error: found.model_error.map(|e| ModelErrorSummary {
+            common_rel: e.common,
+            entry_rel: e.entry,
+        }),
+        left_out: found.left_out.iter().map(left_out).collect(),
+        refused: found
+            .refused
+            .iter()
+            .map(|r| task.runs[*r].run.clone())
+            .collect(),
+        undetermined: found.undetermined.iter().map(terms).collect(),
+        dependence,
+    }
+}

@@ -1,0 +1,36 @@
+//! `[calibration]`.
+
+use super::super::faults::Collector;
+use super::super::raw::RawCalibration;
+use super::super::spanned::Spanned;
+use super::super::types::CalibrationKeys;
+
+/// Relative error of a model's S where the job says nothing: models are off by 1 to 10 %, nobody knows where.
+const DEFAULT_MODEL_UNCERTAINTY_REL: f64 = 0.1;
+
+pub(super) fn calibration(
+    c: &mut Collector,
+    raw: Option<&Spanned<RawCalibration>>,
+) -> CalibrationKeys {
+    let mut out = CalibrationKeys {
+        runs: None,
+        repeats: Vec::new(),
+        depends_on: None,
+        model_uncertainty_rel: DEFAULT_MODEL_UNCERTAINTY_REL,
+        line: 0,
+    };
+    let Some(section) = raw else { return out };
+    let raw = section.get_ref();
+    let words = |list: &Spanned<Vec<Spanned<String>>>| -> Vec<String> {
+        list.get_ref().iter().map(|w| w.get_ref().clone()).collect()
+    };
+    out.runs = raw.runs.as_ref().map(words);
+    out.repeats = raw.repeats.as_ref().map(words).unwrap_or_default();
+    out.depends_on = raw.depends_on.as_ref().map(|w| w.get_ref().clone());
+    let key = "calibration.model_uncertainty_rel";
+    if let Some(rel) = c.positive(&raw.model_uncertainty_rel, key) {
+        out.model_uncertainty_rel = rel;
+    }
+    out.line = c.line(section);
+    out
+}

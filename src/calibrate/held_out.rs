@@ -1,0 +1,319 @@
+//! Runs left out one by one: their loads recovered by what the others taught, held against what is known.
+
+use super::fit::{State, left, sensitivity_of};
+use super::posterior::{Equation, Posterior, solve};
+use super::scatter::{Left, Scatter};
+use super::types::{Coverage, Task};
+use crate::estimate::LoadEstimate;
+use crate::linalg::spd;
+use crate::recovery::{ErrorModel, Readings, estimate};
+use rayon::prelude::*;
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
+
+/// A run that was left out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeftOut {
+    /// Number of the run.
+    pub number: usize,
+    /// Its loads as the other runs teach them, with covariance.
+    pub estimate: LoadEstimate,
+    /// What was known of them.
+    pub known: Vec<f64>,
+    /// Squared distance between the two in units of their covariance.
+    pub distance: f64,
+    /// Loads compared.
+    pub loads: usize,
+    /// Degrees of freedom behind the covariance.
+    pub dof: f64,
+    /// Mean over loads of the squared distance of each by itself, in units of its variance.
+    pub each: f64,
+    /// Squared distance of each sum of loads that the task names, in units of its variance.
+    pub sums: Vec<f64>,
+    /// What is left of the strain over what is expected: chi2 over its degrees of freedom.
+    pub misfit: f64,
+}
+
+/// Chance under which left-out runs count as farther off than expected: then a factor is applied.
+const WIDEN: f64 = 0.05;
+/// Chance, over all runs together, under which a run contradicts the others beyond doubt and is not used. Scatter of repeats has longer tails
+/// than a Gaussian (a truck off its lane), so that a thousandth is not enough.
+const REFUSE: f64 = 1e-6;
+/// Chance, over all runs together, under which a run is named and does not widen the intervals of the others.
+const SUSPECT: f64 = 1e-3;
+/// Chance of a 95 % region.
+const HELD: f64 = 0.95;
+
+/// Every run that the others determine, recovered without itself.
+pub(super) fn leave_out(task: &Task, state: &State) -> Vec<LeftOut> {
+    (0..state.used.len())
+        .into_par_iter()
+        .filter_map(|i| one(task, state, i))
+        .collect()
+}
+
+fn one(task: &Task, state: &State, i: usize) -> Option<LeftOut> {
+    let number = *state.used.get(i)?;
+    let run = task.runs.get(number)?;
+    if task.model.is_none() && !others_span(state, i) {
+        return None;
+    }
+    let mut posterior = state.posterior.without(&state.equations[i])?;
+    let others: Vec<Left> = (0..state.used.len())
+        .filter(|j| *j != i)
+        .map(|j| {
+            left(
+                task,
+                &task.runs[state.used[j]],
+                &posterior,
+                &state.equations[j].phi,
+            )
+        })
+        .collect();
+    let scatter = if state.scatter.dof.is_finite() {
+        Scatter::of(&others, state.fitted, &posterior.matrix())
+    } else {
+        Scatter::none(posterior.n)
+    };
+    if state.scatter.dof.is_finite() && !scatter.dof.is_finite() {
+        return None;
+    }
+    let order = (posterior.n * posterior.k) as f64;
+    if scatter.dof.is_finite() && order.powi(3) * state.used.len() as f64 <= AFFORDABLE {
+        posterior = again(state, i, &scatter)?;
+    }
+    let dof = scatter.dof;
+    let s = sensitivity_of(task, &state.scales, &posterior, &scatter, 1.0);
+    let readings = Readings {
+        run: run.run.clone(),
+        strain: run.strain.clone(),
+        noise_factor: run.noise_factor,
+    };
+    let errors = ErrorModel {
+        noise: task.noise,
+        model_rel: 0.0,
+    };
+    let found = estimate(&s, &readings, errors);
+    let k = task.loads.len();
+    if found.rank < k {
+        return None;
+    }
+    let wanted: Vec<usize> = (0..k).filter(|&l| task.loads[l].wanted).collect();
+    let w = wanted.len();
+    let entry = |i: usize| {
+        let at = wanted[i / w] * k + wanted[i % w];
+        found.estimate.covariance[at] + run.loads.covariance[at]
+    };
+    let covariance: Vec<f64> = (0..w * w).map(entry).collect();
+    let apart: Vec<f64> = wanted
+        .iter()
+        .map(|&l| found.estimate.values[l] - run.loads.mean[l])
+        .collect();
+    let sum = |terms: &Vec<f64>| -> f64 {
+        let terms: Vec<f64> = wanted
+            .iter()
+            .map(|&l| terms.get(l).copied().unwrap_or(0.0))
+            .collect();
+        let off = spd::dot(&terms, &apart);
+        let variance: f64 = (0..w * w)
+            .map(|i| terms[i / w] * terms[i % w] * covariance[i])
+            .sum();
+        off * off / variance
+    };
+    let each = (0..w)
+        .map(|i| apart[i] * apart[i] / covariance[i * w + i])
+        .sum::<f64>()
+        / w.max(1) as f64;
+    Some(LeftOut {
+        each,
+        sums: task
+            .sums
+            .iter()
+            .map(sum)
+            .filter(|z| z.is_finite())
+            .collect(),
+        number,
+        distance: mahalanobis(&covariance, &apart)?,
+        loads: w,
+        dof,
+        misfit: found.chi2 / found.dof.max(1) as f64,
+        known: run.loads.mean.clone(),
+        estimate: found.estimate,
+    })
+}
+
+/// Operations up to which every left-out run gets a posterior of its own with its own scatter: about a second. Beyond, the scatter behind
+/// the covariance of S (not that of the run) keeps the run's own share.
+const AFFORDABLE: f64 = 1e9;
+
+/// The posterior of the other runs with the scatter that they show without run `i`.
+fn again(state: &State, i: usize, scatter: &Scatter) -> Option<Posterior> {
+    let n = state.posterior.n;
+    let others = (0..state.equations.len()).filter(|j| *j != i);
+    let equations: Vec<Equation> = others
+        .map(|j| {
+            let (e, q2) = (&state.equations[j], state.q2_used[j]);
+            let m = e.gauges.len();
+            let change = |at: usize| {
+                let entry = e.gauges[at / m] * n + e.gauges[at % m];
+                q2 * (scatter.covariance[entry] - state.scatter_used.covariance[entry])
+            };
+            Equation {
+                covariance: e
+                    .covariance
+                    .iter()
+                    .enumerate()
+                    .map(|(at, c)| c + change(at))
+                    .collect(),
+                ..e.clone()
+            }
+        })
+        .collect();
+    solve(&state.prior, &equations)
+}
+
+/// Whether the other runs' loads span what this run's do.
+fn others_span(state: &State, i: usize) -> bool {
+    let k = state.scales.len();
+    let rank = |skip: Option<usize>| {
+        let mut gram = vec![0.0; k * k];
+        for (_, e) in state
+            .equations
+            .iter()
+            .enumerate()
+            .filter(|(j, _)| Some(*j) != skip)
+        {
+            spd::add_outer(&mut gram, &e.phi, 1.0);
+        }
+        let all = spd::eigenvalues(&gram, k);
+        let top = all.last().copied().unwrap_or(0.0);
+        all.iter().filter(|v| **v > SPANNED * top).count()
+    };
+    rank(Some(i)) == rank(None)
+}
+
+/// Share of the largest eigenvalue of the loads' squares from which a combination counts as applied.
+pub(super) const SPANNED: f64 = 1e-6;
+
+/// `x' C^-1 x`, with scales of the entries evened out first.
+fn mahalanobis(covariance: &[f64], x: &[f64]) -> Option<f64> {
+    let k = x.len();
+    let sd: Vec<f64> = (0..k).map(|i| covariance[i * k + i].sqrt()).collect();
+    let even: Vec<f64> = (0..k * k)
+        .map(|i| covariance[i] / (sd[i / k] * sd[i % k]))
+        .collect();
+    let root = spd::inverse_lower(&spd::cholesky(&even, k)?, k);
+    let z: Vec<f64> = x.iter().zip(&sd).map(|(v, s)| v / s).collect();
+    Some(
+        (0..k)
+            .map(|i| spd::dot(&root[i * k..i * k + i + 1], &z[..=i]).powi(2))
+            .sum(),
+    )
+}
+
+/// Mean of `distance / loads` where the covariance was estimated with `dof` degrees of freedom.
+fn expected_ratio(dof: f64) -> f64 {
+    if dof > 4.0 && dof.is_finite() {
+        dof / (dof - 2.0)
+    } else if dof.is_finite() {
+        // The mean of F has no use at so few; its value at 4 degrees of freedom.
+        2.0
+    } else {
+        1.0
+    }
+}
+
+/// Tally and factor. The factor is 1 where left-out runs are no farther off than expected, the loads each by itself and each sum;
+/// else the root of the largest ratio.
+pub(super) fn judge(left_out: &[LeftOut], dof: f64) -> Coverage {
+    let suspect = suspects(left_out);
+    let kept = || left_out.iter().filter(|l| !suspect.contains(&l.number));
+    let mut scores =
+        vec![score(kept().map(|l| {
+            (l.each * l.loads as f64 / expected_ratio(l.dof), l.loads)
+        }))];
+    let sums = left_out.iter().map(|l| l.sums.len()).min().unwrap_or(0);
+    for i in 0..sums {
+        scores.push(score(
+            kept().map(|l| (l.sums[i] / expected_ratio(l.dof), 1)),
+        ));
+    }
+    let limit = WIDEN / scores.len() as f64;
+    let factor = scores
+        .iter()
+        .filter(|s| s.1 < limit)
+        .map(|s| s.0.sqrt())
+        .fold(1.0, f64::max);
+    let held = left_out
+        .iter()
+        .filter(|l| l.distance <= factor * factor * region(l.loads, dof))
+        .count();
+    Coverage {
+        held,
+        of: left_out.len(),
+        factor,
+    }
+}
+
+/// Runs, by number, that lie farther off than the others' scatter makes likely.
+pub(super) fn suspects(left_out: &[LeftOut]) -> Vec<usize> {
+    let scale = typical_scale(left_out);
+    let most = SUSPECT / left_out.len().max(1) as f64;
+    left_out
+        .iter()
+        .filter(|l| chance(l, scale) < most)
+        .map(|l| l.number)
+        .collect()
+}
+
+/// Mean of squared distances over the loads behind them, and the chance of one at least as large.
+fn score(distances: impl Iterator<Item = (f64, usize)>) -> (f64, f64) {
+    let (sum, loads) = distances.fold((0.0, 0), |a, d| (a.0 + d.0, a.1 + d.1));
+    let chance = if loads > 0 {
+        crate::recovery::verdict::chance(sum, loads)
+    } else {
+        1.0
+    };
+    (sum / loads.max(1) as f64, chance)
+}
+
+/// Squared radius of the 95 % region of `loads` loads.
+fn region(loads: usize, dof: f64) -> f64 {
+    let k = loads.max(1) as f64;
+    if dof.is_finite() {
+        FisherSnedecor::new(k, dof.max(1.0)).map_or(f64::INFINITY, |d| k * d.inverse_cdf(HELD))
+    } else {
+        ChiSquared::new(k).map_or(f64::INFINITY, |d| d.inverse_cdf(HELD))
+    }
+}
+
+/// Chance that a run lies at least as far off, where `scale` widens everything.
+fn chance(l: &LeftOut, scale: f64) -> f64 {
+    crate::recovery::unlike::chance_estimated(l.distance / (scale * scale), l.loads, l.dof)
+}
+
+/// How much farther than expected the runs in the middle lie: the ratio of medians, at least 1. One wrong run does not move it.
+fn typical_scale(left_out: &[LeftOut]) -> f64 {
+    let mut ratios: Vec<f64> = left_out
+        .iter()
+        .map(|l| {
+            let median = ChiSquared::new(l.loads.max(1) as f64).map_or(1.0, |d| d.inverse_cdf(0.5));
+            l.distance / median
+        })
+        .collect();
+    ratios.sort_by(f64::total_cmp);
+    ratios
+        .get(ratios.len() / 2)
+        .copied()
+        .unwrap_or(1.0)
+        .sqrt()
+        .max(1.0)
+}
+
+/// The run that contradicts the others most, where it does so beyond doubt: its number.
+pub(super) fn contradicting(left_out: &[LeftOut]) -> Option<usize> {
+    let scale = typical_scale(left_out);
+    let worst = left_out
+        .iter()
+        .min_by(|a, b| chance(a, scale).total_cmp(&chance(b, scale)))?;
+    (chance(worst, scale) * (left_out.len() as f64) < REFUSE).then_some(worst.number)
+}

@@ -1,0 +1,30 @@
+//! S learnt from runs of known load, fused with the model's S where there is one.
+//!
+//! `eps_r = S f_r + e_r`, S unknown with a Gaussian prior: rows of the model with a stated relative error ([`prior`]), or next to nothing.
+//! [`posterior`] solves for all entries together, because the scatter of repeats ([`scatter`]) goes across gauges; [`known`] carries the
+//! errors of the loads themselves; [`held_out`] leaves out run by run and states how far intervals must be widened; [`shift`] says how
+//! each gauge moved, [`next`] which load would tell most, [`undetermined`] what no run has shown.
+
+mod dependence;
+mod fit;
+mod held_out;
+mod known;
+mod next;
+mod posterior;
+mod prior;
+mod runs;
+mod scatter;
+mod shift;
+mod types;
+mod undetermined;
+
+pub use dependence::{Dependence, depends_on};
+pub use fit::calibrate;
+pub use held_out::LeftOut;
+pub use next::{NextRun, next_runs};
+pub use shift::{GaugeShift, ShiftWord};
+pub use types::*;
+pub use undetermined::Undetermined;
+
+#[cfg(test)]
+mod tests;

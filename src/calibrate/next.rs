@@ -1,0 +1,138 @@
+//! The next known load worth applying: the one whose readings would tell most of S.
+
+use super::types::Calibration;
+use crate::linalg::spd;
+use crate::recovery::{ErrorModel, Readings, estimate};
+use crate::sensitivity::{Sensitivity, Uncertainty};
+
+/// A load that could be applied, with what it would buy.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NextRun {
+    /// Loads, job units.
+    pub loads: Vec<f64>,
+    /// Information gained on S, natural units: half the log of the ratio of determinants.
+    pub information: f64,
+    /// For the load of the list that gains most: its number.
+    pub load: usize,
+    /// Standard deviation of that load, recovered at its size in the list, today.
+    pub sigma_before: f64,
+    /// And after such a run.
+    pub sigma_after: f64,
+}
+
+/// Candidates by information gained, the best first. `sizes`: how large each load would be; every load by itself is tried, and all
+/// together.
+pub fn next_runs(calibration: &Calibration, noise: f64, sizes: &[f64]) -> Vec<NextRun> {
+    let s = &calibration.sensitivity;
+    let Some(known) = &s.uncertainty else {
+        return Vec::new();
+    };
+    let k = sizes.len();
+    let mut candidates: Vec<Vec<f64>> = (0..k)
+        .map(|l| {
+            (0..k)
+                .map(|m| if l == m { sizes[l] } else { 0.0 })
+                .collect()
+        })
+        .collect();
+    if k > 1 {
+        candidates.push(sizes.to_vec());
+    }
+    let mut out: Vec<NextRun> = candidates
+        .iter()
+        .filter_map(|f| tried(s, known, noise, f, sizes))
+        .collect();
+    out.sort_by(|a, b| b.information.total_cmp(&a.information));
+    out
+}
+
+fn tried(
+    s: &Sensitivity,
+    known: &Uncertainty,
+    noise: f64,
+    f: &[f64],
+    sizes: &[f64],
+) -> Option<NextRun> {
+    let (n, k) = s.values.shape();
+    let order = n * k;
+    let mut own = Uncertainty {
+        covariance: Vec::new(),
+        scale: 1.0,
+        ..known.clone()
+    }
+    .strain_covariance(n, f);
+    for g in 0..n {
+        own[g * n + g] += noise * noise;
+    }
+    // V A', by gauge of the run.
+    let columns: Vec<Vec<f64>> = (0..n)
+        .map(|g| {
+            let mut c = vec![0.0; order];
+            for (l, p) in f.iter().enumerate().filter(|(_, p)| **p != 0.0) {
+                let row = known
+                    .covariance
+                    .get((g * k + l) * order..(g * k + l + 1) * order)
+                    .unwrap_or(&[]);
+                c.iter_mut().zip(row).for_each(|(o, v)| *o += p * v);
+            }
+            c
+        })
+        .collect();
+    let mut total = own.clone();
+    for (g, column) in columns.iter().enumerate() {
+        for h in 0..n {
+            total[g * n + h] += column[h * k..(h + 1) * k]
+                .iter()
+                .zip(f)
+                .map(|(c, p)| c * p)
+                .sum::<f64>();
+        }
+    }
+    let lower = spd::cholesky(&total, n)?;
+    let information = 0.5 * (spd::log_det(&lower, n) - spd::log_det(&spd::cholesky(&own, n)?, n));
+    let root = spd::inverse_lower(&lower, n);
+    let mut after = s.clone();
+    let mut covariance = known.covariance.clone();
+    for i in 0..n {
+        let mut row = vec![0.0; order];
+        for (j, column) in columns.iter().enumerate().take(i + 1) {
+            let w = root[i * n + j];
+            row.iter_mut().zip(column).for_each(|(r, c)| *r += w * c);
+        }
+        spd::add_outer(&mut covariance, &row, -1.0);
+    }
+    after.uncertainty = Some(Uncertainty {
+        covariance,
+        ..known.clone()
+    });
+    let (mut load, mut best, mut sigmas) = (0, 0.0, (f64::NAN, f64::NAN));
+    for l in 0..k {
+        let (before, then) = (sigma(s, noise, sizes, l), sigma(&after, noise, sizes, l));
+        let gain = before / then;
+        if gain > best {
+            (load, best, sigmas) = (l, gain, (before, then));
+        }
+    }
+    Some(NextRun {
+        loads: f.to_vec(),
+        information,
+        load,
+        sigma_before: sigmas.0,
+        sigma_after: sigmas.1,
+    })
+}
+
+/// Standard deviation of load `l`, recovered where it acts at its size and no other.
+fn sigma(s: &Sensitivity, noise: f64, sizes: &[f64], l: usize) -> f64 {
+    let size = sizes.get(l).copied().unwrap_or(0.0);
+    let readings = Readings {
+        run: String::new(),
+        strain: s.values.column(l).iter().map(|v| v * size).collect(),
+        noise_factor: 1.0,
+    };
+    let errors = ErrorModel {
+        noise,
+        model_rel: 0.0,
+    };
+    estimate(s, &readings, errors).estimate.sigma(l)
+}

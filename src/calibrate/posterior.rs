@@ -1,0 +1,173 @@
+//! Gaussian posterior of all entries of S together.
+
+use super::prior::RowPrior;
+use crate::linalg::precision::Precision;
+use crate::linalg::{Matrix, spd};
+
+/// One run as an equation for S: `y = S phi + e`, `Cov e = covariance`, in loads of unit size.
+#[derive(Clone, Debug)]
+pub(super) struct Equation {
+    /// Gauges that read, ascending.
+    pub gauges: Vec<usize>,
+    /// Their strain.
+    pub y: Vec<f64>,
+    /// Loads over their scale.
+    pub phi: Vec<f64>,
+    /// Covariance of the readings, by rows, over `gauges`.
+    pub covariance: Vec<f64>,
+}
+
+/// Mean and covariance of S with columns times load scales: strain.
+#[derive(Clone, Debug)]
+pub(super) struct Posterior {
+    pub n: usize,
+    pub k: usize,
+    /// Entry (g, l) at `g k + l`.
+    pub mean: Vec<f64>,
+    /// `(n k) x (n k)` by rows.
+    pub covariance: Vec<f64>,
+}
+
+/// The posterior: precision `blockdiag(P_g^-1) + sum_r R_r^-1 (x) phi_r phi_r'`. `None` where a covariance is not positive definite.
+pub(super) fn solve(prior: &[RowPrior], equations: &[Equation]) -> Option<Posterior> {
+    let n = prior.len();
+    let k = prior.first().map_or(0, |p| p.mean.len());
+    let order = n * k;
+    let mut information = vec![0.0; order * order];
+    let mut right = vec![0.0; order];
+    for (g, row) in prior.iter().enumerate() {
+        let inverse = Precision::of(&row.covariance, k)?;
+        let weighted = inverse.apply(&row.mean);
+        for l in 0..k {
+            right[g * k + l] += weighted[l];
+            for m in 0..k {
+                information[(g * k + l) * order + g * k + m] += inverse.entry(l, m);
+            }
+        }
+    }
+    for e in equations {
+        let inverse = Precision::of(&e.covariance, e.gauges.len())?;
+        let weighted = inverse.apply(&e.y);
+        for (i, &g) in e.gauges.iter().enumerate() {
+            for (l, p) in e.phi.iter().enumerate() {
+                right[g * k + l] += weighted[i] * p;
+                if *p == 0.0 {
+                    continue;
+                }
+                for (j, &h) in e.gauges.iter().enumerate() {
+                    let w = inverse.entry(i, j) * p;
+                    let row = (g * k + l) * order + h * k;
+                    for (slot, q) in information[row..row + k].iter_mut().zip(&e.phi) {
+                        *slot += w * q;
+                    }
+                }
+            }
+        }
+    }
+    let lower = Precision::of(&information, order)?;
+    let mean = lower.apply(&right);
+    let covariance = (0..order * order)
+        .map(|i| lower.entry(i / order, i % order))
+        .collect();
+    Some(Posterior {
+        n,
+        k,
+        mean,
+        covariance,
+    })
+}
+
+impl Posterior {
+    /// S, `n x k`, for loads of unit size.
+    pub fn matrix(&self) -> Matrix {
+        Matrix::from_row_slice(self.n, self.k, &self.mean)
+    }
+
+    /// `S phi` by gauge.
+    pub fn predict(&self, phi: &[f64]) -> Vec<f64> {
+        self.mean
+            .chunks_exact(self.k.max(1))
+            .map(|row| row.iter().zip(phi).map(|(s, p)| s * p).sum())
+            .collect()
+    }
+
+    /// `V A'` for the equations `S phi` of some gauges: `(n k) x gauges`, by columns.
+    fn columns(&self, gauges: &[usize], phi: &[f64]) -> Vec<Vec<f64>> {
+        let (k, order) = (self.k, self.n * self.k);
+        let column = |g: &usize| -> Vec<f64> {
+            let mut out = vec![0.0; order];
+            for (l, p) in phi.iter().enumerate().filter(|(_, p)| **p != 0.0) {
+                let row = (g * k + l) * order;
+                for (o, c) in out.iter_mut().zip(&self.covariance[row..row + order]) {
+                    *o += p * c;
+                }
+            }
+            out
+        };
+        gauges.iter().map(column).collect()
+    }
+
+    /// Covariance of `S phi` over some gauges, by rows.
+    pub fn spread(&self, gauges: &[usize], phi: &[f64]) -> Vec<f64> {
+        let columns = self.columns(gauges, phi);
+        project(&columns, gauges, phi, self.k)
+    }
+
+    /// The posterior without one of its equations, and that equation's residual there; `None` where the rest does not determine it.
+    ///
+    /// `s' = s - V A' M^-1 (y - A s)`, `V' = V + V A' M^-1 A V`, `M = R - A V A'`.
+    pub fn without(&self, e: &Equation) -> Option<Self> {
+        let m = e.gauges.len();
+        let columns = self.columns(&e.gauges, &e.phi);
+        let spread = project(&columns, &e.gauges, &e.phi, self.k);
+        let rest: Vec<f64> = e
+            .covariance
+            .iter()
+            .zip(&spread)
+            .map(|(r, h)| r - h)
+            .collect();
+        let root = spd::inverse_lower(&spd::cholesky(&rest, m)?, m);
+        let all = self.predict(&e.phi);
+        let left: Vec<f64> = e
+            .gauges
+            .iter()
+            .zip(&e.y)
+            .map(|(g, y)| y - all[*g])
+            .collect();
+        let white: Vec<f64> = (0..m)
+            .map(|i| spd::dot(&root[i * m..i * m + i + 1], &left[..=i]))
+            .collect();
+        let order = self.n * self.k;
+        // Rows of L^-1 A V.
+        let rows: Vec<Vec<f64>> = (0..m)
+            .map(|i| {
+                let mut row = vec![0.0; order];
+                for (j, column) in columns.iter().enumerate().take(i + 1) {
+                    let w = root[i * m + j];
+                    row.iter_mut().zip(column).for_each(|(r, c)| *r += w * c);
+                }
+                row
+            })
+            .collect();
+        let mut out = self.clone();
+        for (row, w) in rows.iter().zip(&white) {
+            for (s, r) in out.mean.iter_mut().zip(row) {
+                *s -= w * r;
+            }
+            spd::add_outer(&mut out.covariance, row, 1.0);
+        }
+        Some(out)
+    }
+}
+
+/// `A V A'` from the columns of `V A'`.
+fn project(columns: &[Vec<f64>], gauges: &[usize], phi: &[f64], k: usize) -> Vec<f64> {
+    let entry = |h: usize, column: &[f64]| -> f64 {
+        let row = column.get(h * k..(h + 1) * k).unwrap_or(&[]);
+        row.iter().zip(phi).map(|(c, p)| c * p).sum()
+    };
+    let pairs = columns
+        .iter()
+        .flat_map(|c| gauges.iter().map(move |h| (c, *h)));
+    pairs.map(|(c, h)| entry(h, c)).collect()
+}

@@ -1,0 +1,157 @@
+//! Prior of the rows of S: the model with its relative error, or next to nothing.
+
+use super::types::{KnownRun, ModelError, ModelPrior};
+use crate::linalg::precision::Precision;
+use crate::linalg::spd;
+
+/// Prior of one row, in loads of unit size.
+#[derive(Clone, Debug)]
+pub(super) struct RowPrior {
+    /// Strain by load.
+    pub mean: Vec<f64>,
+    /// `k x k` by rows.
+    pub covariance: Vec<f64>,
+}
+
+/// Standard deviation of an entry without a model over the largest strain measured: knows nothing, and still inverts.
+const DIFFUSE: f64 = 100.0;
+/// Error of an entry near zero over the row's root mean square, in units of the relative error: an entry that is zero in the model is not
+/// known exactly.
+const ENTRY_FLOOR: f64 = 0.1;
+
+/// Without a model.
+pub(super) fn diffuse(n: usize, k: usize, largest_strain: f64) -> Vec<RowPrior> {
+    let sd = DIFFUSE * largest_strain;
+    let row = RowPrior {
+        mean: vec![0.0; k],
+        covariance: (0..k * k)
+            .map(|i| if i / k == i % k { sd * sd } else { 0.0 })
+            .collect(),
+    };
+    vec![row; n]
+}
+
+/// With a model: `common^2 s s' + entry^2 diag(s^2) + angle^2 t t'`, `s` the row and `t` its change with the gauge's angle.
+pub(super) fn rows(model: &ModelPrior, scales: &[f64], error: ModelError) -> Vec<RowPrior> {
+    let (n, k) = model.values.shape();
+    let all: f64 = (0..n)
+        .flat_map(|g| (0..k).map(move |l| (g, l)))
+        .map(|(g, l)| (model.values[(g, l)] * scales[l]).powi(2))
+        .sum::<f64>()
+        / (n * k).max(1) as f64;
+    (0..n)
+        .map(|g| {
+            let s: Vec<f64> = (0..k).map(|l| model.values[(g, l)] * scales[l]).collect();
+            let own = s.iter().map(|v| v * v).sum::<f64>() / k.max(1) as f64;
+            let floor = ENTRY_FLOOR * ENTRY_FLOOR * own.max(ENTRY_FLOOR * ENTRY_FLOOR * all);
+            let mut covariance = vec![0.0; k * k];
+            for l in 0..k {
+                for m in 0..k {
+                    let turned = model.turned.as_ref().map_or(0.0, |t| {
+                        t[(g, l)] * scales[l] * t[(g, m)] * scales[m] * model.angle_rad.powi(2)
+                    });
+                    covariance[l * k + m] = error.common.powi(2) * s[l] * s[m] + turned;
+                }
+                covariance[l * k + l] += error.entry.powi(2) * (s[l] * s[l]).max(floor);
+            }
+            RowPrior {
+                mean: s,
+                covariance,
+            }
+        })
+        .collect()
+}
+
+/// Steps from the stated error, in factors of the square root of two, that are tried.
+const STEPS: i32 = 8;
+/// How far the stated error may be off, 1 sd of its natural logarithm: half or double is common.
+const STATED_LN_SD: f64 = 0.7;
+
+/// The relative error of the model that the runs make most probable, near the stated one: maximum of the marginal likelihood of the
+/// readings (each gauge by itself) times a log-normal prior around what was stated.
+///
+/// `variance[r][g]`: variance of the reading of gauge g in run r, S aside; `phi[r]`: its loads of unit size.
+pub(super) fn learn_error(
+    model: &ModelPrior,
+    scales: &[f64],
+    runs: &[&KnownRun],
+    phi: &[Vec<f64>],
+    variance: &[Vec<f64>],
+) -> ModelError {
+    let stated = ModelError {
+        common: model.uncertainty_rel,
+        entry: model.uncertainty_rel,
+    };
+    let (n, k) = model.values.shape();
+    let equations: Vec<Normal> = (0..n)
+        .map(|g| normal_equations(g, k, runs, phi, variance))
+        .collect();
+    let step = |i: i32| 2f64.powf(f64::from(i) / 2.0);
+    let mut best = (f64::NEG_INFINITY, stated);
+    for i in -STEPS..=STEPS {
+        for j in -STEPS..=STEPS {
+            let error = ModelError {
+                common: stated.common * step(i),
+                entry: stated.entry * step(j),
+            };
+            let off = |i: i32| 0.5 * (step(i).ln() / STATED_LN_SD).powi(2);
+            let rows = rows(model, scales, error);
+            let score = evidence(&rows, &equations) - off(i) - off(j);
+            if score > best.0 {
+                best = (score, error);
+            }
+        }
+    }
+    best.1
+}
+
+/// What the runs say of one row: `sum phi phi' / v`, `sum phi y / v`.
+struct Normal {
+    matrix: Vec<f64>,
+    right: Vec<f64>,
+}
+
+fn normal_equations(
+    g: usize,
+    k: usize,
+    runs: &[&KnownRun],
+    phi: &[Vec<f64>],
+    variance: &[Vec<f64>],
+) -> Normal {
+    let mut out = Normal {
+        matrix: vec![0.0; k * k],
+        right: vec![0.0; k],
+    };
+    for (r, run) in runs.iter().enumerate() {
+        let Some(y) = run.strain.get(g).filter(|v| v.is_finite()) else {
+            continue;
+        };
+        spd::add_outer(&mut out.matrix, &phi[r], 1.0 / variance[r][g]);
+        for (b, p) in out.right.iter_mut().zip(&phi[r]) {
+            *b += p * y / variance[r][g];
+        }
+    }
+    out
+}
+
+/// Log marginal likelihood of the readings, up to what does not depend on the prior:
+/// `-(ln |P| + ln |P^-1 + A| - d' (P^-1 + A)^-1 d) / 2`, `d = b - A s0`.
+fn evidence(rows: &[RowPrior], equations: &[Normal]) -> f64 {
+    let one = |(row, e): (&RowPrior, &Normal)| -> Option<f64> {
+        let k = row.mean.len();
+        let prior = Precision::of(&row.covariance, k)?;
+        let total: Vec<f64> = (0..k * k)
+            .map(|i| prior.entry(i / k, i % k) + e.matrix[i])
+            .collect();
+        let posterior = Precision::of(&total, k)?;
+        let mut known = vec![0.0; k];
+        spd::times(&e.matrix, &row.mean, &mut known);
+        let d: Vec<f64> = e.right.iter().zip(&known).map(|(b, a)| b - a).collect();
+        // `log_det` is that of what was inverted: P, and P^-1 + A.
+        Some(0.5 * (spd::dot(&posterior.apply(&d), &d) - prior.log_det() - posterior.log_det()))
+    };
+    rows.iter()
+        .zip(equations)
+        .map(|pair| one(pair).unwrap_or(f64::NEG_INFINITY))
+        .sum()
+}

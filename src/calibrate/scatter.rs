@@ -1,0 +1,183 @@
+//! Scatter of repeats: covariance over gauges of what the fitted runs leave, shrunk because runs are few and gauges many.
+
+use crate::linalg::{Matrix, dense, spd};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+/// Scatter over gauges in units of the run's root mean square strain.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Scatter {
+    /// `n x n` by rows; zeros where noise explains everything.
+    pub covariance: Vec<f64>,
+    /// Degrees of freedom behind it; infinite where it is zero.
+    pub dof: f64,
+}
+
+/// What one run leaves.
+#[derive(Clone, Debug)]
+pub(super) struct Left {
+    /// Reading less prediction by gauge, strain; NaN without reading.
+    pub residual: Vec<f64>,
+    /// Mean square of the predicted strain.
+    pub q2: f64,
+    /// Variance of each reading that is explained otherwise: noise, errors of the loads.
+    pub explained: Vec<f64>,
+}
+
+/// Chance under which residuals count as larger than noise makes them.
+const SIGNIFICANT: f64 = 1e-3;
+/// Degrees of freedom under which scatter can't be told from the fit.
+const FEWEST: f64 = 0.9;
+
+impl Scatter {
+    /// No scatter besides noise.
+    pub fn none(n: usize) -> Self {
+        Self {
+            covariance: vec![0.0; n * n],
+            dof: f64::INFINITY,
+        }
+    }
+
+    /// From what runs leave; `fitted` is the number of runs' worth of freedom that the fit of S took from each gauge, `columns` those of S
+    /// by gauge.
+    ///
+    /// Scatter is of two kinds: patterns that loads make (size and place of the load: dynamic share, lateral place), which decide how far
+    /// recovered loads scatter, and all others. The sample is shrunk towards one with these kinds apart: the block within the span of S,
+    /// itself shrunk towards its mean, and the mean of the rest; their cross terms vanish.
+    ///
+    /// # Reference
+    /// Weight of the target: Y. Chen, A. Wiesel, Y. C. Eldar, A. O. Hero, IEEE Trans. Signal Process. 58 (2010) 5016, eq. 23 (oracle
+    /// approximating shrinkage), with degrees of freedom for the number of samples.
+    pub fn of(runs: &[Left], fitted: f64, columns: &Matrix) -> Self {
+        let n = runs.first().map_or(0, |r| r.residual.len());
+        let dof = runs.len() as f64 - fitted;
+        if dof < FEWEST || n == 0 || !exceeds_noise(runs, dof) {
+            return Self::none(n);
+        }
+        let mut sample = vec![0.0; n * n];
+        let mut weight = vec![0.0; n * n];
+        let mut explained = 0.0;
+        for r in runs.iter().filter(|r| r.q2 > 0.0) {
+            for g in (0..n).filter(|&g| r.residual[g].is_finite()) {
+                for h in (0..n).filter(|&h| r.residual[h].is_finite()) {
+                    sample[g * n + h] += r.residual[g] * r.residual[h] / r.q2;
+                    weight[g * n + h] += 1.0;
+                }
+                explained += r.explained[g] / r.q2;
+            }
+        }
+        let runs_left = dof / runs.len() as f64;
+        for (s, w) in sample.iter_mut().zip(&weight) {
+            *s /= (w * runs_left).max(FEWEST);
+        }
+        let trace: f64 = (0..n).map(|g| sample[g * n + g]).sum();
+        // Noise stands in the residuals too; it is counted beside the scatter.
+        let readings: f64 = (0..n).map(|g| weight[g * n + g]).sum();
+        let noise_share = explained / readings.max(1.0) * n as f64 / trace;
+        let keep = (1.0 - noise_share).max(LEAST_KEPT);
+        let shrink = shrinkage(&sample, n, dof);
+        let target = target(&sample, columns, dof);
+        let covariance = (0..n * n)
+            .map(|i| keep * ((1.0 - shrink) * sample[i] + shrink * target[i]))
+            .collect();
+        Self { covariance, dof }
+    }
+
+    /// Root mean square over gauges.
+    pub fn rms(&self) -> f64 {
+        let n = (self.covariance.len() as f64).sqrt().round() as usize;
+        let trace: f64 = (0..n).map(|g| self.covariance[g * n + g]).sum();
+        (trace / n.max(1) as f64).sqrt()
+    }
+}
+
+/// The sample with patterns that loads make and all others apart, `n x n`.
+fn target(sample: &[f64], columns: &Matrix, dof: f64) -> Vec<f64> {
+    let n = columns.nrows();
+    let all: f64 = (0..n).map(|g| sample[g * n + g]).sum();
+    let Some(d) = dense::svd(&dense::unit_columns(columns)) else {
+        return (0..n * n)
+            .map(|i| if i / n == i % n { all / n as f64 } else { 0.0 })
+            .collect();
+    };
+    let limit = d.s.first().copied().unwrap_or(0.0) * dense::RANK_TOLERANCE;
+    let basis: Vec<Vec<f64>> = (0..d.s.len())
+        .filter(|&i| d.s[i] > limit)
+        .map(|i| d.u.column(i).iter().copied().collect())
+        .collect();
+    let k = basis.len();
+    let mut inside = vec![0.0; k * k];
+    for (i, u) in basis.iter().enumerate() {
+        let mut cu = vec![0.0; n];
+        spd::times(sample, u, &mut cu);
+        for (j, v) in basis.iter().enumerate() {
+            inside[i * k + j] = spd::dot(&cu, v);
+        }
+    }
+    let within: f64 = (0..k).map(|i| inside[i * k + i]).sum();
+    let rest = ((all - within) / (n - k).max(1) as f64).max(0.0);
+    let shrink = if k > 1 {
+        shrinkage(&inside, k, dof)
+    } else {
+        0.0
+    };
+    for (i, v) in inside.iter_mut().enumerate() {
+        let mean = if i / k == i % k {
+            within / k as f64
+        } else {
+            0.0
+        };
+        *v = (1.0 - shrink) * *v + shrink * mean;
+    }
+    let mut out = vec![0.0; n * n];
+    for g in 0..n {
+        out[g * n + g] = rest;
+        for h in 0..n {
+            for (i, u) in basis.iter().enumerate() {
+                out[g * n + h] -= rest * u[g] * u[h];
+                for (j, v) in basis.iter().enumerate() {
+                    out[g * n + h] += inside[i * k + j] * u[g] * v[h];
+                }
+            }
+        }
+    }
+    out
+}
+
+/// Share of the residuals' variance that is kept as scatter however large the stated noise.
+const LEAST_KEPT: f64 = 0.05;
+
+/// Weight of the identity in the shrunk covariance.
+fn shrinkage(sample: &[f64], n: usize, dof: f64) -> f64 {
+    let square: f64 = sample.iter().map(|v| v * v).sum();
+    let trace: f64 = (0..n).map(|g| sample[g * n + g]).sum();
+    let p = n as f64;
+    let above = (1.0 - 2.0 / p) * square + trace * trace;
+    let below = (dof + 1.0 - 2.0 / p) * (square - trace * trace / p);
+    if below > 0.0 {
+        (above / below).clamp(SHRINK_LEAST, 1.0)
+    } else {
+        1.0
+    }
+}
+
+/// Some of the identity always stays: with fewer runs than gauges the sample has directions without any scatter at all, which is not
+/// believed.
+const SHRINK_LEAST: f64 = 0.02;
+
+/// Whether the residuals are larger than noise makes them.
+fn exceeds_noise(runs: &[Left], dof: f64) -> bool {
+    let (mut chi2, mut readings) = (0.0, 0usize);
+    for r in runs {
+        for (e, v) in r
+            .residual
+            .iter()
+            .zip(&r.explained)
+            .filter(|(e, _)| e.is_finite())
+        {
+            chi2 += e * e / v.max(f64::MIN_POSITIVE);
+            readings += 1;
+        }
+    }
+    let free = readings as f64 * dof / runs.len().max(1) as f64;
+    free > 0.0 && ChiSquared::new(free).is_ok_and(|d| d.sf(chi2) < SIGNIFICANT)
+}

@@ -1,0 +1,2 @@
+mod bridges;
+mod synthetic;

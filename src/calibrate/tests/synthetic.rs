@@ -1,0 +1,151 @@
+//! Structures made of random numbers, whose truth is known.
+
+use crate::calibrate::*;
+use crate::linalg::Matrix;
+use crate::recovery::{ErrorModel, Readings, estimate};
+use crate::sensitivity::{Load, Sensitivity};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+
+fn normal(random: &mut ChaCha8Rng) -> f64 {
+    let (u, v): (f64, f64) = (
+        random.random_range(1e-300..1.0),
+        random.random_range(0.0..1.0),
+    );
+    (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+}
+
+/// One trial of the frame's protocol: rows of the truth off by 5 % common to a gauge and 2 % entry by entry.
+struct Trial {
+    /// Errors of the loads of one further run, by model alone, runs alone (where they determine S) and both.
+    model: Vec<f64>,
+    runs: Option<Vec<f64>>,
+    both: Vec<f64>,
+    /// Sigma of the last.
+    sigma: Vec<f64>,
+    held: usize,
+}
+
+fn trial(n: usize, k: usize, m: usize, seed: u64) -> Trial {
+    const NOISE: f64 = 1e-6;
+    const LOAD: f64 = 1e4;
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let model = Matrix::from_fn(n, k, |_, _| 1e-8 * normal(&mut random));
+    let gains: Vec<f64> = (0..n).map(|_| 1.0 + 0.05 * normal(&mut random)).collect();
+    let truth = Matrix::from_fn(n, k, |g, l| {
+        model[(g, l)] * gains[g] * (1.0 + 0.02 * normal(&mut random))
+    });
+    let draw = |random: &mut ChaCha8Rng| -> Vec<f64> {
+        (0..k)
+            .map(|_| LOAD * (1.0 + 0.5 * normal(random)))
+            .collect()
+    };
+    let read = |f: &[f64], random: &mut ChaCha8Rng| -> Vec<f64> {
+        (0..n)
+            .map(|g| (0..k).map(|l| truth[(g, l)] * f[l]).sum::<f64>() + NOISE * normal(random))
+            .collect()
+    };
+    let runs: Vec<KnownRun> = (0..m)
+        .map(|i| {
+            let f = draw(&mut random);
+            KnownRun {
+                run: format!("R{i}"),
+                strain: read(&f, &mut random),
+                noise_factor: 1.0,
+                loads: KnownLoads::exact(f),
+                group: i,
+            }
+        })
+        .collect();
+    let loads: Vec<Load> = (0..k).map(|l| Load::named(format!("L{l}"))).collect();
+    let task = |prior: bool| Task {
+        gauges: (0..n).map(|g| format!("G{g}")).collect(),
+        loads: loads.clone(),
+        noise: NOISE,
+        model: prior.then(|| ModelPrior {
+            values: model.clone(),
+            turned: None,
+            uncertainty_rel: 0.05,
+            angle_rad: 0.0,
+        }),
+        runs: runs.clone(),
+        sums: Vec::new(),
+    };
+    let f = draw(&mut random);
+    let readings = Readings {
+        run: "new".into(),
+        strain: read(&f, &mut random),
+        noise_factor: 1.0,
+    };
+    let errors = ErrorModel {
+        noise: NOISE,
+        model_rel: 0.0,
+    };
+    let apart = |s: &Sensitivity| -> Vec<f64> {
+        let e = estimate(s, &readings, errors).estimate;
+        e.values.iter().zip(&f).map(|(a, b)| a - b).collect()
+    };
+    let both = calibrate(&task(true)).unwrap();
+    let e = estimate(&both.sensitivity, &readings, errors).estimate;
+    let alone = (m >= k)
+        .then(|| calibrate(&task(false)).unwrap())
+        .map(|c| apart(&c.sensitivity));
+    let plain = Sensitivity {
+        gauges: task(true).gauges,
+        loads: loads.clone(),
+        values: model.clone(),
+        uncertainty: None,
+    };
+    Trial {
+        model: apart(&plain),
+        runs: alone,
+        both: apart(&both.sensitivity),
+        sigma: (0..k).map(|l| e.sigma(l)).collect(),
+        held: (0..k)
+            .filter(|l| (e.values[*l] - f[*l]).abs() <= e.coverage_factor * e.sigma(*l))
+            .count(),
+    }
+}
+
+fn rms<'a>(v: impl Iterator<Item = &'a f64>) -> f64 {
+    let (s, n) = v.fold((0.0, 0), |a, x| (a.0 + x * x, a.1 + 1));
+    (s / f64::from(n)).sqrt()
+}
+
+#[test]
+fn model_and_runs_together_beat_either_and_their_intervals_hold() {
+    const TRIALS: u64 = 60;
+    let (n, k) = (12, 6);
+    let mut before = f64::INFINITY;
+    for m in [3, 6, 12] {
+        let trials: Vec<Trial> = (0..TRIALS)
+            .into_par_iter()
+            .map(|s| trial(n, k, m, s))
+            .collect();
+        let model = rms(trials.iter().flat_map(|t| &t.model));
+        let runs = rms(trials.iter().filter_map(|t| t.runs.as_ref()).flatten());
+        let both = rms(trials.iter().flat_map(|t| &t.both));
+        let sigma = rms(trials.iter().flat_map(|t| &t.sigma));
+        let held =
+            trials.iter().map(|t| t.held).sum::<usize>() as f64 / (TRIALS as usize * k) as f64;
+        let better = if runs.is_nan() {
+            model
+        } else {
+            model.min(runs)
+        };
+        assert!(
+            both < 1.02 * better,
+            "{m} runs: model {model}, runs {runs}, both {both}"
+        );
+        assert!(both < before, "more runs tell more");
+        before = both;
+        // 360 intervals, errors of six loads of a trial go together: three sd of a binomial of 95 % with a third as many is 6 %.
+        assert!((held - 0.95).abs() < 0.06, "{m} runs: {held}");
+        // Six hundred numbers whose sizes differ from trial to trial: a fifth is three of their standard errors.
+        assert!(
+            (both / sigma - 1.0).abs() < 0.2,
+            "{m} runs: error {both}, stated {sigma}"
+        );
+    }
+}

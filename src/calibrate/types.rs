@@ -1,0 +1,118 @@
+//! What calibration takes and gives.
+
+use super::held_out::LeftOut;
+use super::shift::GaugeShift;
+use super::undetermined::Undetermined;
+use crate::finding::Finding;
+use crate::linalg::Matrix;
+use crate::sensitivity::{Load, Sensitivity};
+
+/// What is known of the loads of one run: Gaussian, job units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KnownLoads {
+    /// Mean by load.
+    pub mean: Vec<f64>,
+    /// Covariance, `k x k` by rows; zero where a load is known exactly.
+    pub covariance: Vec<f64>,
+}
+
+impl KnownLoads {
+    /// Loads known exactly.
+    pub fn exact(mean: Vec<f64>) -> Self {
+        let k = mean.len();
+        Self {
+            mean,
+            covariance: vec![0.0; k * k],
+        }
+    }
+}
+
+/// One run of known load.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KnownRun {
+    /// Name.
+    pub run: String,
+    /// Strain by gauge, zero subtracted; NaN where a gauge gave nothing.
+    pub strain: Vec<f64>,
+    /// Noise variance of these readings in units of that of a single one.
+    pub noise_factor: f64,
+    /// Its loads.
+    pub loads: KnownLoads,
+    /// Runs with the same number are repeats of each other.
+    pub group: usize,
+}
+
+/// The model's S and how far it is trusted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelPrior {
+    /// `n x k`, strain per job unit.
+    pub values: Matrix,
+    /// Change of each row per radian that its gauge is turned, where the model gives one.
+    pub turned: Option<Matrix>,
+    /// Stated relative error, 1 sd: entry by entry, and common to a gauge.
+    pub uncertainty_rel: f64,
+    /// Angle of a gauge, rad, 1 sd; counts where `turned` is given.
+    pub angle_rad: f64,
+}
+
+/// What to calibrate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Task {
+    /// Row names.
+    pub gauges: Vec<String>,
+    /// Columns.
+    pub loads: Vec<Load>,
+    /// Noise of a reading, strain, 1 sd.
+    pub noise: f64,
+    /// The model, where there is one.
+    pub model: Option<ModelPrior>,
+    /// Runs of known load.
+    pub runs: Vec<KnownRun>,
+    /// Sums of loads whose intervals count too when runs are left out: coefficients by load.
+    pub sums: Vec<Vec<f64>>,
+}
+
+/// How many left-out runs lay within their 95 % regions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coverage {
+    /// Runs whose known loads lay within.
+    pub held: usize,
+    /// Runs left out, one by one.
+    pub of: usize,
+    /// Factor on sigma that was applied for it.
+    pub factor: f64,
+}
+
+/// How far the model was off, as the runs say: 1 sd, relative.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModelError {
+    /// Common to a gauge.
+    pub common: f64,
+    /// Entry by entry.
+    pub entry: f64,
+}
+
+/// A calibrated S with all that was learnt.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Calibration {
+    /// Posterior mean, with covariance and scatter.
+    pub sensitivity: Sensitivity,
+    /// Relative error of the model as used: stated, corrected by what the runs say; `None` without a model.
+    pub model_error: Option<ModelError>,
+    /// By gauge: how far it moved.
+    pub shifts: Vec<GaugeShift>,
+    /// Scatter between repeats of one loading over the strain, root mean square over gauges; `None` without repeats.
+    pub repeat_scatter_rel: Option<f64>,
+    /// Noise over the strain, both root mean squares.
+    pub noise_rel: f64,
+    /// Runs left out one by one.
+    pub left_out: Vec<LeftOut>,
+    /// Their tally.
+    pub coverage: Coverage,
+    /// Runs that contradict the others beyond doubt and were not used, by number.
+    pub refused: Vec<usize>,
+    /// Combinations of loads that no run determines.
+    pub undetermined: Vec<Undetermined>,
+    /// What was noticed.
+    pub findings: Vec<Finding>,
+}

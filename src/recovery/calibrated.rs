@@ -1,0 +1,181 @@
+//! Loads by a calibrated S: the covariance of the strain given the loads is known, scatter of repeats and uncertainty of S together.
+//!
+//! `eps = S f + e`, `Cov e = noise + Cov(eps | f)` of [`Uncertainty`], which grows with the loads, so that solution and weights alternate.
+
+use super::errors::ErrorModel;
+use super::interval::NORMAL_95;
+use super::solve::{Fit, fit};
+use super::types::{Readings, RunEstimate};
+use super::{suspects, unlike};
+use crate::estimate::LoadEstimate;
+use crate::finding::{Finding, Severity};
+use crate::linalg::{Matrix, Vector, spd};
+use crate::sensitivity::{Sensitivity, Uncertainty};
+use rayon::prelude::*;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// Rounds between loads and the covariance that depends on them; they settle in three.
+const ROUNDS: usize = 5;
+
+/// Factor on sigma of a 95 % interval whose sigma was learnt with `dof` degrees of freedom; the normal one where nothing was learnt.
+pub fn student_95_of(dof: f64) -> f64 {
+    if !dof.is_finite() {
+        return NORMAL_95;
+    }
+    StudentsT::new(0.0, 1.0, dof.max(1.0)).map_or(NORMAL_95, |t| t.inverse_cdf(0.975))
+}
+
+/// Every run, and findings. Gauges that contradict the others are named and left out; a run that no loads explain is estimated loosely
+/// ([`unlike::estimate_loosely`]).
+pub(super) fn recover(
+    s: &Sensitivity,
+    readings: &[Readings],
+    errors: ErrorModel,
+    known: &Uncertainty,
+) -> (Vec<RunEstimate>, Vec<Finding>) {
+    let (mut findings, readings) = suspects::check(s, readings, errors, known);
+    let mut runs: Vec<RunEstimate> = readings
+        .par_iter()
+        .map(|r| estimate(s, r, errors, known))
+        .collect();
+    findings.extend(unlike::check(&s.gauges, &runs, known));
+    for (run, r) in runs.iter_mut().zip(&readings) {
+        if unlike::is_unlike(run, known) {
+            *run = unlike::estimate_loosely(s, r, errors, known);
+        }
+    }
+    let unsolved = runs.iter().filter(|r| r.rank < s.loads.len());
+    findings.extend(unsolved.map(|r| {
+        Finding::new(
+            Severity::Error,
+            "run-not-solvable",
+            &r.estimate.run,
+            "the gauges that read in this run don't separate the loads: some of its values are arbitrary",
+            "bring the silent gauges back, drop loads, or state `expected` for loads with role \"nuisance\"",
+        )
+    }));
+    (runs, findings)
+}
+
+/// One run.
+pub fn estimate(
+    s: &Sensitivity,
+    r: &Readings,
+    errors: ErrorModel,
+    known: &Uncertainty,
+) -> RunEstimate {
+    let (n, k) = (s.gauges.len(), s.loads.len());
+    let used: Vec<usize> = (0..n)
+        .filter(|&g| r.strain.get(g).is_some_and(|v| v.is_finite()))
+        .collect();
+    let a = Matrix::from_fn(used.len(), k, |i, l| s.values[(used[i], l)]);
+    let y: Vec<f64> = used.iter().map(|&g| r.strain[g]).collect();
+    let priors = s.priors();
+    let mut out = RunEstimate {
+        estimate: LoadEstimate {
+            run: r.run.clone(),
+            names: s.loads.iter().map(|l| l.name.clone()).collect(),
+            values: vec![0.0; k],
+            covariance: vec![f64::INFINITY; k * k],
+            coverage_factor: student_95_of(known.dof),
+            findings: Vec::new(),
+        },
+        predicted: vec![f64::NAN; n],
+        residual: vec![f64::NAN; n],
+        sd: vec![f64::NAN; n],
+        chi2: 0.0,
+        dof: 0,
+        leverage: vec![0.0; n],
+        rank: 0,
+    };
+    let noise = (errors.noise * errors.noise * r.noise_factor).max(f64::MIN_POSITIVE);
+    let Some(solved) = solve(&a, &y, noise, &priors, &s.scales(), &known.of_gauges(&used)) else {
+        return out;
+    };
+    let f = solved.fit.f;
+    for l in 0..k {
+        for m in 0..k {
+            out.estimate.covariance[l * k + m] =
+                known.scale * known.scale * solved.fit.covariance[(l, m)];
+        }
+    }
+    for g in 0..n {
+        out.predicted[g] = (0..k).map(|l| s.values[(g, l)] * f[l]).sum();
+    }
+    for (i, &g) in used.iter().enumerate() {
+        out.residual[g] = y[i] - out.predicted[g];
+        out.sd[g] = solved.variances[i].sqrt();
+        out.leverage[g] = solved.fit.leverage[i];
+    }
+    let stated = f.iter().zip(&priors).filter_map(|(f, p)| Some(f / (*p)?));
+    out.chi2 = solved.chi2 + stated.map(|z| z * z).sum::<f64>();
+    out.dof = (used.len() + priors.iter().flatten().count()).saturating_sub(solved.fit.rank);
+    out.rank = solved.fit.rank;
+    out.estimate.values = f;
+    out
+}
+
+/// A run's system solved: variances of the readings, and the sum of squares that is left, whitened.
+struct Solved {
+    fit: Fit,
+    variances: Vec<f64>,
+    chi2: f64,
+}
+
+fn solve(
+    a: &Matrix,
+    y: &[f64],
+    noise: f64,
+    priors: &[Option<f64>],
+    scales: &[f64],
+    known: &Uncertainty,
+) -> Option<Solved> {
+    let n = y.len();
+    let mut f = fit(a, y, &vec![noise; n], priors, scales)?.f;
+    let mut out = None;
+    for _ in 0..ROUNDS {
+        let mut covariance = known.strain_covariance(n, &f);
+        (0..n).for_each(|g| covariance[g * n + g] += noise);
+        let (fit, chi2) = fit_correlated(a, y, &covariance, priors, scales)?;
+        f.clone_from(&fit.f);
+        out = Some(Solved {
+            fit,
+            variances: (0..n).map(|g| covariance[g * n + g]).collect(),
+            chi2,
+        });
+    }
+    out
+}
+
+/// As [`fit`] for readings whose errors go together: `covariance` is `n x n` by rows. Beside the fit the sum of squares of what is left,
+/// whitened. `None` where numbers are not finite or the covariance is not positive definite.
+pub(super) fn fit_correlated(
+    s: &Matrix,
+    y: &[f64],
+    covariance: &[f64],
+    prior_sd: &[Option<f64>],
+    scales: &[f64],
+) -> Option<(Fit, f64)> {
+    let (n, k) = s.shape();
+    let root = spd::inverse_lower(&spd::cholesky(covariance, n)?, n);
+    let white = |v: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        (0..n)
+            .map(|i| (0..=i).map(|j| root[i * n + j] * v(j)).sum())
+            .collect()
+    };
+    let columns: Vec<Vec<f64>> = (0..k).map(|l| white(&|g| s[(g, l)])).collect();
+    let a = Matrix::from_fn(n, k, |g, l| columns[l][g]);
+    let y_white = white(&|g| y[g]);
+    let mut out = fit(&a, &y_white, &vec![1.0; n], prior_sd, scales)?;
+    let left = Vector::from_column_slice(&y_white) - &a * Vector::from_column_slice(&out.f);
+    let gain = out.gain.clone();
+    for l in 0..k {
+        for g in 0..n {
+            out.gain[(l, g)] = (g..n).map(|i| gain[(l, i)] * root[i * n + g]).sum();
+        }
+    }
+    for (g, h) in out.leverage.iter_mut().enumerate() {
+        *h = (0..k).map(|l| s[(g, l)] * out.gain[(l, g)]).sum();
+    }
+    Some((out, left.norm_squared()))
+}

@@ -1,0 +1,167 @@
+//! Gauges that contradict the others by the measure of a calibrated S: each one left out in turn, the worst one given a name.
+
+use super::calibrated::estimate;
+use super::errors::ErrorModel;
+use super::types::{Readings, RunEstimate};
+use crate::finding::{Finding, Severity};
+use crate::sensitivity::{Sensitivity, Uncertainty};
+use rayon::prelude::*;
+
+/// Sigmas, root mean square over runs, from which a gauge is named. A few repeats know their own scatter to a factor of two at best, and
+/// healthy gauges near a wheel reach five: calibrations of two runs a lane on two measured bridges.
+const NAMED: f64 = 8.0;
+/// How close to the chi2 without the gauge a repair must come to be the cause.
+const AS_GOOD: f64 = 1.5;
+/// Share of what the others expect under which a gauge reads nothing.
+const NOTHING: f64 = 0.1;
+/// Gauges that are tried for an exchange with the worst.
+const PARTNERS: usize = 6;
+/// Faults looked for one after the other.
+const MOST: usize = 3;
+
+/// A gauge left out of all runs.
+struct Without {
+    gauge: usize,
+    /// Fall of chi2 a run.
+    fall: f64,
+    chi2: f64,
+}
+
+/// What the named gauges' readings come to: findings, and the readings without these gauges.
+pub(super) fn check(
+    s: &Sensitivity,
+    readings: &[Readings],
+    errors: ErrorModel,
+    known: &Uncertainty,
+) -> (Vec<Finding>, Vec<Readings>) {
+    let mut readings = readings.to_vec();
+    let mut findings = Vec::new();
+    for _ in 0..MOST {
+        let base = chi2(s, &readings, errors, known);
+        let mut order: Vec<Without> = (0..s.gauges.len())
+            .into_par_iter()
+            .map(|gauge| {
+                let chi2 = chi2(s, &silent(&readings, gauge), errors, known);
+                let runs = count(&readings, gauge).max(1) as f64;
+                let fall = (base - chi2) / runs;
+                Without { gauge, fall, chi2 }
+            })
+            .collect();
+        order.sort_by(|a, b| b.fall.total_cmp(&a.fall));
+        let Some(worst) = order.first().filter(|w| w.fall > NAMED * NAMED) else {
+            break;
+        };
+        let g = worst.gauge;
+        let sigmas = worst.fall.sqrt();
+        let partners = order.iter().skip(1).take(PARTNERS).map(|w| w.gauge);
+        let exchanged = partners
+            .map(|h| {
+                let both = chi2(s, &silent(&silent(&readings, g), h), errors, known);
+                (h, chi2(s, &swapped(&readings, g, h), errors, known), both)
+            })
+            .filter(|(_, swapped, both)| {
+                *swapped < AS_GOOD * both && *swapped < worst.chi2 / AS_GOOD
+            })
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((h, ..)) = exchanged {
+            findings.push(exchange(&s.gauges[g], &s.gauges[h], sigmas));
+            readings = silent(&silent(&readings, g), h);
+            continue;
+        }
+        let turned = chi2(s, &flipped(&readings, g), errors, known);
+        let without = silent(&readings, g);
+        let scale = scale_of(s, &readings, &without, g, errors, known);
+        findings.push(name(
+            &s.gauges[g],
+            sigmas,
+            turned < AS_GOOD * worst.chi2,
+            scale,
+        ));
+        readings = without;
+    }
+    (findings, readings)
+}
+
+fn chi2(s: &Sensitivity, readings: &[Readings], errors: ErrorModel, known: &Uncertainty) -> f64 {
+    let runs = readings.iter();
+    runs.map(|r| estimate(s, r, errors, known).chi2).sum()
+}
+
+fn count(readings: &[Readings], gauge: usize) -> usize {
+    let read = |r: &&Readings| r.strain.get(gauge).is_some_and(|v| v.is_finite());
+    readings.iter().filter(read).count()
+}
+
+fn changed(readings: &[Readings], change: impl Fn(&mut Vec<f64>)) -> Vec<Readings> {
+    let mut out = readings.to_vec();
+    out.iter_mut().for_each(|r| change(&mut r.strain));
+    out
+}
+
+fn silent(readings: &[Readings], gauge: usize) -> Vec<Readings> {
+    changed(readings, |v| v[gauge] = f64::NAN)
+}
+
+fn flipped(readings: &[Readings], gauge: usize) -> Vec<Readings> {
+    changed(readings, |v| v[gauge] = -v[gauge])
+}
+
+fn swapped(readings: &[Readings], a: usize, b: usize) -> Vec<Readings> {
+    changed(readings, |v| v.swap(a, b))
+}
+
+/// Reading over what the other gauges expect, in the last half of the runs, where a gauge that failed on the way has failed: the median.
+fn scale_of(
+    s: &Sensitivity,
+    readings: &[Readings],
+    without: &[Readings],
+    gauge: usize,
+    errors: ErrorModel,
+    known: &Uncertainty,
+) -> f64 {
+    let ratio = |(r, w): (&Readings, &Readings)| -> f64 {
+        let run: RunEstimate = estimate(s, w, errors, known);
+        r.strain[gauge] / run.predicted[gauge]
+    };
+    let last = readings.iter().zip(without).skip(readings.len() / 2);
+    let mut all: Vec<f64> = last.map(ratio).filter(|v| v.is_finite()).collect();
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+fn exchange(a: &str, b: &str, sigmas: f64) -> Finding {
+    Finding::new(
+        Severity::Warning,
+        "gauges-exchanged",
+        format!("{a}, {b}"),
+        format!("gauges `{a}` and `{b}` read each other's strain ({sigmas:.0} sigma): they are left out here"),
+        "exchange their columns, or their plugs",
+    )
+    .with_numbers(sigmas, NAMED)
+}
+
+fn name(gauge: &str, sigmas: f64, turned: bool, scale: f64) -> Finding {
+    let (code, what, remedy) = if scale.abs() < NOTHING {
+        (
+            "gauge-dead",
+            "reads nothing where the others expect strain".to_owned(),
+            "check its wiring, or leave its column blank",
+        )
+    } else if turned && scale < 0.0 {
+        (
+            "gauge-wired-backwards",
+            "reads with its sign turned".to_owned(),
+            "check the wiring; if so, turn the sign of its column",
+        )
+    } else {
+        (
+            "gauge-suspect",
+            format!("reads {scale:.2} of what the others expect"),
+            "check its gain, its bridge factor and its zero, or leave its column blank",
+        )
+    };
+    let message = format!(
+        "gauge `{gauge}` {what} ({sigmas:.0} sigma by the scatter of the calibration): it is left out here"
+    );
+    Finding::new(Severity::Warning, code, gauge, message, remedy).with_numbers(sigmas, NAMED)
+}

@@ -1,0 +1,101 @@
+//! Files and words of `calibrate`.
+
+use super::sensitivity::columns;
+use super::{Report, mistake, write_page};
+use crate::app::calibrate::{Calibrated, calibrated_job};
+use crate::app::fault::Faults;
+use crate::app::outcome::Outcome;
+use crate::app::output::Output;
+use crate::app::strain::covariance_bytes;
+use crate::report::csv_cell;
+use crate::report::strain::{calibrate_page, sensitivity_csv};
+use std::fmt::Write as _;
+
+impl Report for Outcome<Calibrated> {
+    fn write(&self, out: &mut Output) -> Result<(), Faults> {
+        let s = &self.sensitivity;
+        out.declare("sensitivity.csv", columns(&self.job, s));
+        out.write("sensitivity.csv", |w| sensitivity_csv(w, s))?;
+        let bytes = covariance_bytes(s)
+            .ok_or_else(|| mistake("calibration.bin", &"S has no covariance"))?;
+        out.write_bytes("calibration.bin", &bytes)?;
+        let text = calibrated_job(self, out.folder())?;
+        out.write_bytes("calibrated.toml", text.as_bytes())?;
+        out.declare(
+            "left_out.csv",
+            [
+                ("run", ""),
+                ("load", ""),
+                ("known", ""),
+                ("value", ""),
+                ("sigma", ""),
+                ("unit", ""),
+            ],
+        );
+        out.write("left_out.csv", |w| {
+            writeln!(w, "run,load,known,value,sigma,unit")?;
+            for r in &self.calibration.left_out {
+                for l in &r.loads {
+                    writeln!(
+                        w,
+                        "{},{},{},{},{},{}",
+                        csv_cell(&r.run),
+                        csv_cell(&l.name),
+                        l.known,
+                        l.value,
+                        l.sigma,
+                        csv_cell(&l.unit)
+                    )?;
+                }
+            }
+            Ok(())
+        })?;
+        let page = calibrate_page(&self.job.title, self, &self.findings);
+        write_page(out, self, page)
+    }
+
+    fn words(&self) -> String {
+        let c = &self.calibration;
+        let prior = match c.prior {
+            "model" => "with the model's S",
+            _ => "without a model",
+        };
+        let mut text = format!(
+            "S of {} gauges and {} loads from {} runs, {prior}\n",
+            self.sensitivity.gauges.len(),
+            self.sensitivity.loads.len(),
+            c.runs
+        );
+        if let Some(scatter) = c.repeat_scatter_rel {
+            let _ = writeln!(
+                text,
+                "repeats scatter by {:.1} % of the strain, noise makes {:.2} %",
+                100.0 * scatter,
+                100.0 * c.noise_rel
+            );
+        }
+        let _ = writeln!(
+            text,
+            "left out one by one: {} of {} runs held, intervals times {:.2}",
+            c.coverage.held, c.coverage.of, c.coverage.factor
+        );
+        if let Some(n) = &c.next_run {
+            let loads: Vec<String> = n
+                .loads
+                .iter()
+                .filter(|(_, v)| **v != 0.0)
+                .map(|(k, v)| format!("{k} {v:.4}"))
+                .collect();
+            let _ = writeln!(
+                text,
+                "next run worth making: {} ({}: +- {:.3} becomes +- {:.3} {})",
+                loads.join(", "),
+                n.load,
+                1.96 * n.sigma_before,
+                1.96 * n.sigma_after,
+                n.unit
+            );
+        }
+        text
+    }
+}

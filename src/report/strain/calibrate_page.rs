@@ -1,0 +1,133 @@
+//! The page of `calibrate`.
+
+use crate::app::calibrate::Calibrated;
+use crate::finding::Finding;
+use crate::report::page::{Block, Page, Section, number, table_section};
+
+/// The page of `calibrate`: what was learnt, left-out runs against what is known, each gauge's model and calibrated row.
+pub fn calibrate_page(title: &str, answer: &Calibrated, findings: &[Finding]) -> Page {
+    let sections = vec![summary(answer), left_out(answer), gauges(answer)];
+    Page::new(
+        title,
+        "Sensitivity calibrated by known loads",
+        findings,
+        sections,
+    )
+}
+
+fn summary(answer: &Calibrated) -> Section {
+    let c = &answer.calibration;
+    let percent = |x: f64| format!("{:.2} %", 100.0 * x);
+    let mut pairs = vec![
+        ("Runs that taught".to_owned(), c.runs.to_string()),
+        ("Prior".to_owned(), c.prior.to_owned()),
+        (
+            "Scatter between repeats".to_owned(),
+            c.repeat_scatter_rel
+                .map_or("within noise".to_owned(), percent),
+        ),
+        ("Noise over strain".to_owned(), percent(c.noise_rel)),
+        (
+            "Left-out runs that held".to_owned(),
+            format!("{} of {}", c.coverage.held, c.coverage.of),
+        ),
+        (
+            "Factor on intervals".to_owned(),
+            format!("{:.2}", c.coverage.factor),
+        ),
+    ];
+    if let Some(e) = c.model_error {
+        pairs.push((
+            "Model off, common to a gauge".to_owned(),
+            percent(e.common_rel),
+        ));
+        pairs.push(("Model off, entry by entry".to_owned(), percent(e.entry_rel)));
+    }
+    if let Some(n) = &c.next_run {
+        let loads: Vec<String> = n
+            .loads
+            .iter()
+            .filter(|(_, v)| **v != 0.0)
+            .map(|(k, v)| format!("{k} {}", number(*v)))
+            .collect();
+        let gain = format!(
+            "{}: sigma of {} {} becomes {} {}",
+            loads.join(", "),
+            n.load,
+            number(n.sigma_before),
+            number(n.sigma_after),
+            n.unit
+        );
+        pairs.push(("Next run worth making".to_owned(), gain));
+    }
+    Section::new("What was learnt", vec![Block::pairs(&pairs)])
+}
+
+fn left_out(answer: &Calibrated) -> Section {
+    let rows: Vec<Vec<String>> = answer
+        .calibration
+        .left_out
+        .iter()
+        .flat_map(|r| {
+            r.loads.iter().map(|l| {
+                vec![
+                    r.run.clone(),
+                    l.name.clone(),
+                    number(l.known),
+                    format!("{} +- {}", number(l.value), number(1.96 * l.sigma)),
+                    l.unit.clone(),
+                    format!("{:.1}", r.distance),
+                ]
+            })
+        })
+        .collect();
+    let note = "Each run recovered by what the other runs taught. Distance of the run in sigmas before the factor.";
+    table_section(
+        "Runs left out",
+        &["run", "load", "known", "recovered", "unit", "distance"],
+        &rows,
+        note,
+    )
+}
+
+fn gauges(answer: &Calibrated) -> Section {
+    let s = &answer.sensitivity;
+    let mut head: Vec<String> = vec![
+        "gauge".to_owned(),
+        "looks like".to_owned(),
+        "shift, sigma".to_owned(),
+        "scale".to_owned(),
+    ];
+    for l in &s.loads {
+        if answer.model.is_some() {
+            head.push(format!("{}, model", l.name));
+        }
+        head.push(format!("{}, calibrated", l.name));
+    }
+    let rows: Vec<Vec<String>> = answer
+        .calibration
+        .gauges
+        .iter()
+        .enumerate()
+        .map(|(g, c)| {
+            let mut row = vec![
+                c.name.clone(),
+                c.looks_like.to_owned(),
+                format!("{:.1}", c.shift),
+                format!("{:.3}", c.scale),
+            ];
+            for l in 0..s.loads.len() {
+                row.extend(answer.model.as_ref().map(|m| number(1e6 * m[(g, l)])));
+                row.push(number(1e6 * s.values[(g, l)]));
+            }
+            row
+        })
+        .collect();
+    let head: Vec<&str> = head.iter().map(String::as_str).collect();
+    table_section(
+        "Gauges",
+        &head,
+        &rows,
+        "Rows of S in microstrain per job unit of the load.",
+    )
+}

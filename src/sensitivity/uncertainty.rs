@@ -1,0 +1,111 @@
+//! How far a calibrated S may be off, and how much strain scatters between repeats of one loading.
+
+use crate::linalg::Matrix;
+
+/// What stands behind the interval of a load besides noise: `Cov(eps | f) = q(f)^2 C + sum_jk f_j f_k Cov(S_.j, S_.k)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Uncertainty {
+    /// Covariance of the entries of S, `(n k) x (n k)` by rows, entry `g k + l` for gauge `g` and load `l`; strain^2 per load^2.
+    pub covariance: Vec<f64>,
+    /// `C`, `n x n` by rows: covariance over gauges of what repeats of one loading scatter by, in units of `q^2`: scatter grows with the
+    /// load.
+    pub scatter: Vec<f64>,
+    /// `S' S / n` of all calibrated gauges, `k x k` by rows: `q(f)^2 = f' (S' S / n) f` is the mean square of the predicted strain.
+    pub mean_square: Vec<f64>,
+    /// Factor on the sigma of recovered loads, learnt from runs left out; 1 where they fall as far off as expected.
+    pub scale: f64,
+    /// Degrees of freedom behind scatter and scale: the 95 % interval takes Student's factor; infinite where nothing was estimated.
+    pub dof: f64,
+}
+
+impl Uncertainty {
+    /// Covariance of the strain that loads `f` cause, `n x n` by rows, noise and `scale` left out.
+    pub fn strain_covariance(&self, n: usize, f: &[f64]) -> Vec<f64> {
+        let k = f.len();
+        let q2 = self.mean_square_of(f);
+        let mut out = vec![0.0; n * n];
+        for g in 0..n {
+            for h in 0..=g {
+                let mut sum = q2 * self.scatter.get(g * n + h).copied().unwrap_or(0.0);
+                for (j, fj) in f.iter().enumerate() {
+                    let row = (g * k + j) * n * k + h * k;
+                    let entries = self.covariance.get(row..row + k).unwrap_or(&[]);
+                    sum += fj * entries.iter().zip(f).map(|(c, fk)| c * fk).sum::<f64>();
+                }
+                out[g * n + h] = sum;
+                out[h * n + g] = sum;
+            }
+        }
+        out
+    }
+
+    /// Quadratic forms of a filter `f = G eps`: for each load `l` the `k x k` matrix `B_l` with `f' B_l f` its variance for loads `f`;
+    /// `gain` is `k x n`.
+    pub fn load_forms(&self, gain: &Matrix) -> Vec<f64> {
+        let (k, n) = gain.shape();
+        let scale2 = self.scale * self.scale;
+        let mut out = Vec::with_capacity(k * k * k);
+        for l in 0..k {
+            let mut own = 0.0;
+            for g in 0..n {
+                for h in 0..n {
+                    own += gain[(l, g)]
+                        * gain[(l, h)]
+                        * self.scatter.get(g * n + h).copied().unwrap_or(0.0);
+                }
+            }
+            for j in 0..k {
+                for m in 0..k {
+                    let mut sum = own * self.mean_square.get(j * k + m).copied().unwrap_or(0.0);
+                    for g in 0..n {
+                        for h in 0..n {
+                            let at = (g * k + j) * n * k + h * k + m;
+                            sum += gain[(l, g)]
+                                * gain[(l, h)]
+                                * self.covariance.get(at).copied().unwrap_or(0.0);
+                        }
+                    }
+                    out.push(scale2 * sum);
+                }
+            }
+        }
+        out
+    }
+
+    /// The same for some of the gauges, in the order given by their numbers.
+    pub fn of_gauges(&self, gauges: &[usize]) -> Self {
+        let n = (self.scatter.len() as f64).sqrt().round() as usize;
+        let nk = (self.covariance.len() as f64).sqrt().round() as usize;
+        let k = nk.checked_div(n).unwrap_or(0);
+        let pick = |matrix: &[f64], order: usize, rows: &[usize]| -> Vec<f64> {
+            let entries = rows.iter().flat_map(|&i| rows.iter().map(move |&j| (i, j)));
+            entries
+                .map(|(i, j)| matrix.get(i * order + j).copied().unwrap_or(0.0))
+                .collect()
+        };
+        let entries: Vec<usize> = gauges
+            .iter()
+            .flat_map(|g| (0..k).map(move |l| g * k + l))
+            .collect();
+        Self {
+            covariance: pick(&self.covariance, nk, &entries),
+            scatter: pick(&self.scatter, n, gauges),
+            mean_square: self.mean_square.clone(),
+            scale: self.scale,
+            dof: self.dof,
+        }
+    }
+
+    /// `q(f)^2`, strain^2.
+    fn mean_square_of(&self, f: &[f64]) -> f64 {
+        let rows = self.mean_square.chunks_exact(f.len().max(1)).zip(f);
+        rows.map(|(row, fj)| fj * row.iter().zip(f).map(|(a, fk)| a * fk).sum::<f64>())
+            .sum()
+    }
+}
+
+/// `S' S / n`, `k x k` by rows.
+pub fn mean_square(s: &Matrix) -> Vec<f64> {
+    let gram = s.transpose() * s / s.nrows().max(1) as f64;
+    gram.iter().copied().collect()
+}
