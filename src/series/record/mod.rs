@@ -13,15 +13,17 @@ mod open;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod reader;
+mod span;
 mod stored;
 mod tdms;
 mod uff;
 mod whole;
 
-pub use clock::{Clock, Evenness, Gap};
+pub use clock::{Clock, Evenness};
 pub use even::Record;
-pub use open::{Options, open_record, read_channels};
+pub use open::{Options, is_format, open_record, read_channels};
 pub use reader::{Block, Bytes, Column, Pick, RecordReader, Sink, Times, name_and_unit};
+pub use span::Gap;
 pub use whole::Whole;
 
 #[cfg(test)]

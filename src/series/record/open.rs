@@ -31,6 +31,17 @@ pub fn open_record(bytes: Bytes, options: &Options) -> Result<Record, SeriesErro
     Record::new(reader, options.declared_hz)
 }
 
+/// Whether the bytes begin as one of the formats of records, and are no table of text.
+pub fn is_format(bytes: &[u8]) -> bool {
+    binary::is_record(bytes)
+        || rpc::is_rpc(bytes)
+        || is_tdms(bytes)
+        || is_uff(bytes)
+        || [&b"PAR1"[..], b"MDF ", b"UnFinMF"]
+            .iter()
+            .any(|m| bytes.starts_with(m))
+}
+
 fn reader_of(bytes: Bytes, options: &Options) -> Result<Box<dyn RecordReader>, SeriesError> {
     let begin = (*bytes).as_ref();
     if binary::is_record(begin) {

@@ -1,7 +1,13 @@
 //! One number of a record.
 
 use falcon_mdf::blocks::{ChannelType, DataType};
-use falcon_mdf::{Channel, Conversion};
+use falcon_mdf::{Channel, ChannelGroup, Conversion};
+
+/// Channels that hold numbers and are not the group's clock.
+pub(super) fn values(g: &ChannelGroup) -> impl Iterator<Item = &Channel> {
+    let channels = g.channels.iter();
+    channels.filter(|c| !c.is_master() && c.is_numeric() && !c.is_array())
+}
 
 /// How the bits of a number are meant.
 #[derive(Clone, Copy, PartialEq)]

@@ -1,8 +1,7 @@
 //! Groups of fixed records, a piece at a time.
 
-use super::broken;
-use super::field::Field;
-use super::values;
+use super::fault::broken;
+use super::field::{Field, values};
 use crate::series::error::SeriesError;
 use crate::series::record::reader::{BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times};
 use falcon_mdf::blocks::CompressionType;

@@ -4,6 +4,7 @@
 //! ([`fixed`]); what is stored otherwise (groups whose records alternate, values apart from invalidation, Zstandard, LZ4) is decoded
 //! whole by the library.
 
+mod fault;
 mod field;
 mod fixed;
 
@@ -12,18 +13,13 @@ use super::whole::Whole;
 use crate::series::error::SeriesError;
 use falcon_mdf::io::{ByteSlice, ByteSource};
 use falcon_mdf::{ChannelGroup, Mf4Error, Mf4File};
-use field::Field;
+use fault::broken;
+use field::{Field, values};
 use fixed::{Fixed, Group};
 use std::sync::Arc;
 
 /// Times of two groups that are the same to this share of a step count as one clock.
 const SAME: f64 = 1e-3;
-
-fn broken(what: impl std::fmt::Display) -> SeriesError {
-    SeriesError::Broken(format!(
-        "it can't be read as MDF4 ({what}): save it as MDF 4.1 with its measuring program or asammdf"
-    ))
-}
 
 /// The bytes of the file as the library asks for them.
 struct Source(Bytes);
@@ -103,12 +99,6 @@ pub(super) fn open(bytes: Bytes, wanted: &[String]) -> Result<Box<dyn RecordRead
         return Err(SeriesError::Apart { names: apart });
     }
     Ok(Box::new(Fixed::new(bytes, list)))
-}
-
-/// Channels that hold numbers and are not the group's clock.
-fn values(g: &ChannelGroup) -> impl Iterator<Item = &falcon_mdf::Channel> {
-    let channels = g.channels.iter();
-    channels.filter(|c| !c.is_master() && c.is_numeric() && !c.is_array())
 }
 
 /// A group decoded whole.

@@ -3,20 +3,16 @@
 //! A segment lists objects that changed and holds their samples, channel after channel or interleaved; [`segments`] reads the lists,
 //! this file the samples. Channels of `DAQmx` raw data and scalings other than lines and polynomials are refused by name.
 
+mod fault;
 mod segments;
 
 use super::reader::{BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times, is_time};
 use crate::series::error::SeriesError;
+use fault::broken;
 use segments::{Channel, Kind, Value, channels_of};
 
 /// Samples a piece.
 const PIECE: usize = 65_536;
-
-fn broken(what: impl std::fmt::Display) -> SeriesError {
-    SeriesError::Broken(format!(
-        "it can't be read as TDMS ({what}): save it again with its measuring program or export it as CSV"
-    ))
-}
 
 /// Whether the bytes begin as TDMS.
 pub(super) fn is_tdms(bytes: &[u8]) -> bool {

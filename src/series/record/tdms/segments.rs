@@ -1,6 +1,6 @@
 //! The lists of a TDMS file: which channels there are and where their samples lie.
 
-use super::broken;
+use super::fault::broken;
 use crate::series::error::SeriesError;
 use std::collections::BTreeMap;
 

@@ -1,6 +1,6 @@
 //! One data set 58: its head, and where its numbers are.
 
-use super::broken;
+use super::fault::broken;
 use crate::series::error::SeriesError;
 use crate::series::record::reader::Column;
 

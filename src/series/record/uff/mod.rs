@@ -1,19 +1,15 @@
 //! Universal file, data sets 58 and 58b: time histories, a data set a channel.
 
 mod dataset;
+mod fault;
 
 use super::reader::{BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times};
 use crate::series::error::SeriesError;
 use dataset::{Dataset, Samples, datasets};
+use fault::broken;
 
 /// Samples a piece.
 const PIECE: usize = 65_536;
-
-fn broken(what: impl std::fmt::Display) -> SeriesError {
-    SeriesError::Broken(format!(
-        "it can't be read as a universal file ({what}): export time histories as data sets 58 or 58b on even steps"
-    ))
-}
 
 /// Whether the bytes begin as a universal file: a line with -1 alone, then the number of a data set.
 pub(super) fn is_uff(bytes: &[u8]) -> bool {

@@ -1,0 +1,10 @@
+//! What is wrong with a file.
+
+use crate::series::error::SeriesError;
+
+/// The error of a file that can't be read.
+pub(super) fn broken(what: impl std::fmt::Display) -> SeriesError {
+    SeriesError::Broken(format!(
+        "it can't be read as a universal file ({what}): export time histories as data sets 58 or 58b on even steps"
+    ))
+}
