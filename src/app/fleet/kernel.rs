@@ -2,10 +2,13 @@
 
 use super::day::{Day, DayFinding, LoadDay};
 use super::health::Health;
+use crate::app::job::Correction;
+use crate::app::job::correct::{Channel, channel_of, column_of};
 use crate::app::strain::LoadUnits;
 use crate::finding::Severity;
 use crate::linalg::Matrix;
 use crate::recovery::ErrorModel;
+use crate::recovery::clock;
 use crate::recovery::history::{Filter, SampleLoads};
 use crate::recovery::{Sums, Widening};
 use crate::sensitivity::Sensitivity;
@@ -37,6 +40,10 @@ pub struct Kernel {
     pub law: Law,
     /// Width of a class, by load, report units.
     pub widths: Vec<f64>,
+    /// Seconds in the unit of times in tables that state none; `None`: seconds.
+    pub time_unit_s: Option<f64>,
+    /// What is known to be wrong with channels.
+    pub corrections: Vec<Correction>,
     /// Microstrain in one of a unit that a file states; `None` where it is no strain.
     pub microstrain_in: fn(&str) -> Option<f64>,
 }
@@ -48,7 +55,7 @@ struct Recovering {
     used: Vec<usize>,
     columns: Vec<Option<usize>>,
     /// Strain of one unit of each column.
-    scale: Vec<f64>,
+    scale: Vec<[f64; 2]>,
     zero: Vec<f64>,
     /// S of the used gauges, strain per report unit.
     s: Vec<Vec<f64>>,
@@ -71,6 +78,10 @@ impl Kernel {
     pub fn day(&self, record: &Record) -> Result<Day, String> {
         let text = |e: SeriesError| e.to_string();
         let mut findings = Vec::new();
+        let second = match self.time_unit_s {
+            Some(unit) if !record.is_time_unit_stated() => unit,
+            _ => 1.0,
+        };
         self.check_clock(record, &mut findings)?;
         let r = self.prepared(record, &mut findings)?;
         let k = self.sensitivity.loads.len();
@@ -123,8 +134,8 @@ impl Kernel {
             .cloned()
             .collect();
         Ok(Day {
-            rate_hz: record.clock.rate_hz,
-            hours: record.clock.duration_s() / 3600.0,
+            rate_hz: record.clock.rate_hz / second,
+            hours: record.clock.duration_s() * second / 3600.0,
             missing: record.clock.missing,
             loads: loads.collect(),
             gauges: health.days(&names, &r.filter.whole().leverage),
@@ -134,12 +145,6 @@ impl Kernel {
 
     fn check_clock(&self, record: &Record, findings: &mut Vec<DayFinding>) -> Result<(), String> {
         let clock = &record.clock;
-        if clock.doubtful_unit {
-            return Err(format!(
-                "its times are whole numbers of an unstated unit, {} apart: name the column `time [s]` or `time [ms]`",
-                1.0 / clock.rate_hz
-            ));
-        }
         if let Evenness::Resampled { largest, .. } = clock.evenness {
             findings.push(said(
                 Severity::Warning,
@@ -181,15 +186,19 @@ impl Kernel {
         }
         let mut found = Vec::new();
         for (g, name) in all.gauges.iter().enumerate() {
+            let channel = channel_of(&self.corrections, name);
+            if channel.ignore {
+                continue;
+            }
             match places
-                .get(name.as_str())
+                .get(column_of(&self.corrections, name))
                 .and_then(|c| Some((*c, record.columns().get(*c)?)))
             {
                 Some((c, column)) => {
                     let micro = (self.microstrain_in)(&column.unit).ok_or_else(|| {
                         format!("`{}` of `{name}` is no unit of strain", column.unit)
                     })?;
-                    found.push((g, c, micro * MICRO));
+                    found.push((g, c, line_of(micro, channel)));
                 }
                 None => findings.push(said(
                     Severity::Warning,
@@ -200,6 +209,12 @@ impl Kernel {
             }
         }
         let sampled = sampled(record, &found)?;
+        if !record.is_time_unit_stated() && self.time_unit_s.is_none() {
+            let wrong = clock::check(1.0 / record.clock.rate_hz, &sampled, found.len());
+            if let Some(f) = wrong {
+                return Err(format!("{}: {}", f.message, f.remedy));
+            }
+        }
         let n = found.len();
         let mut alive = Vec::new();
         for (j, &(g, c, scale)) in found.iter().enumerate() {
@@ -234,7 +249,7 @@ impl Kernel {
 
     fn recovering(
         &self,
-        alive: &[(usize, usize, f64)],
+        alive: &[(usize, usize, [f64; 2])],
         sampled: &[f64],
     ) -> Result<Recovering, String> {
         let all = &self.sensitivity;
@@ -361,7 +376,9 @@ impl Recovering {
         record.read(piece, &self.columns, &mut |block| {
             strain.clear();
             let rows = block.values.chunks_exact(n);
-            strain.extend(rows.flat_map(|row| row.iter().zip(&self.scale).map(|(v, s)| v * s)));
+            strain.extend(
+                rows.flat_map(|row| row.iter().zip(&self.scale).map(|(v, [a, b])| v * a + b)),
+            );
             recovered.values.clear();
             recovered.gaps.clear();
             self.filter.apply(&strain, 1.0, &mut recovered, &mut sums);
@@ -380,8 +397,13 @@ impl Recovering {
     }
 }
 
+/// Strain from a reading: it times the first, plus the second.
+fn line_of(micro: f64, channel: Channel) -> [f64; 2] {
+    [micro, -channel.offset].map(|v| v * MICRO / channel.factor)
+}
+
 /// Readings of the first block of some pieces spread over the record, strain.
-fn sampled(record: &Record, found: &[(usize, usize, f64)]) -> Result<Vec<f64>, String> {
+fn sampled(record: &Record, found: &[(usize, usize, [f64; 2])]) -> Result<Vec<f64>, String> {
     let columns: Vec<Option<usize>> = found.iter().map(|f| Some(f.1)).collect();
     let n = record.n_pieces();
     let taken = n.min(LOOKED_AT);
@@ -389,7 +411,7 @@ fn sampled(record: &Record, found: &[(usize, usize, f64)]) -> Result<Vec<f64>, S
     for i in 0..taken {
         let read = record.read(i * n / taken, &columns, &mut |block| {
             for row in block.values.chunks_exact(found.len().max(1)) {
-                out.extend(row.iter().zip(found).map(|(v, f)| v * f.2));
+                out.extend(row.iter().zip(found).map(|(v, (_, _, [a, b]))| v * a + b));
             }
             ControlFlow::Break(())
         });
@@ -401,8 +423,8 @@ fn sampled(record: &Record, found: &[(usize, usize, f64)]) -> Result<Vec<f64>, S
 /// The columns of `found` that are in `alive`, row by row.
 fn kept_columns(
     values: &[f64],
-    found: &[(usize, usize, f64)],
-    alive: &[(usize, usize, f64)],
+    found: &[(usize, usize, [f64; 2])],
+    alive: &[(usize, usize, [f64; 2])],
 ) -> Vec<f64> {
     let keep: Vec<bool> = found
         .iter()

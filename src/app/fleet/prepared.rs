@@ -69,6 +69,8 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
         units,
         law,
         widths,
+        time_unit_s: measured.time_unit_s,
+        corrections: job.corrections.clone(),
         microstrain_in,
     })
 }

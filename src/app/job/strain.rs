@@ -5,10 +5,11 @@ use super::correct::{Channel, channel_of, column_of};
 use super::table::{Table, read_table};
 use super::types::{Correction, Job, NamedFile};
 use crate::app::fault::{Fault, FaultList, Faults, split_message};
-use crate::app::files::Inputs;
+use crate::app::files::{FileBytes, Inputs};
 use crate::series::Channels;
-use crate::series::foreign::{Foreign, read_foreign};
-use crate::series::rpc;
+use crate::series::record::{Column, Options, is_format, open_record, read_channels};
+use std::collections::HashSet;
+use std::sync::Arc;
 
 /// What the rows of a strain file are.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,43 +93,12 @@ fn strain_as_read(
     named: &NamedFile,
 ) -> Result<StrainTable, Faults> {
     let bytes = inputs.read_named(job, named).map_err(Faults::from)?;
-    if rpc::is_rpc(&bytes) {
-        return strain_from_rpc(&named.given, &bytes);
-    }
-    if let Some(kind) = Foreign::of(&bytes) {
-        let record = strain_record(&named.given, kind, &bytes, &[])?;
+    if is_format(&bytes) {
+        let record = strain_record(&named.given, bytes)?;
         return Ok(strain_from_record(&named.given, &record));
     }
     let text = inputs.read_named_text(job, named).map_err(Faults::from)?;
     strain_from_table(&read_table(&named.given, &text)?)
-}
-
-/// The header of an RPC III file.
-///
-/// # Errors
-/// A fault of the file.
-pub fn read_strain_header(file: &str, bytes: &[u8]) -> Result<rpc::Header, Faults> {
-    rpc::read_header(bytes).map_err(|e| {
-        let (wrong, remedy) = split_message(&e);
-        Faults::from(Fault::of(file, "header", wrong, remedy))
-    })
-}
-
-/// Turns the channels that are named after gauges into microstrain. No unit means microstrain.
-///
-/// # Errors
-/// A fault for each of them whose unit is none of strain.
-pub fn in_microstrain(file: &str, h: &mut rpc::Header, gauges: &[String]) -> Result<(), Faults> {
-    let mut faults = FaultList::new();
-    let used = h.channels.iter_mut().filter(|c| gauges.contains(&c.name));
-    for channel in used {
-        match microstrain_in(&channel.unit) {
-            Some(factor) => channel.scale *= factor,
-            None => faults.push(no_strain(file, &channel.name, &channel.unit)),
-        }
-    }
-    Faults::check(faults)?;
-    Ok(())
 }
 
 /// Microstrain in one of a unit, as measuring systems write it.
@@ -148,36 +118,56 @@ pub fn microstrain_in(unit: &str) -> Option<f64> {
     }
 }
 
-/// A Parquet or MDF4 record in microstrain; `gauges` must be sampled together and have a unit of strain, other channels whose unit is
-/// none are left out.
-///
-/// # Errors
-/// Faults of the file.
-pub fn strain_record(
-    file: &str,
-    kind: Foreign,
-    bytes: &[u8],
-    gauges: &[String],
-) -> Result<Channels, Faults> {
-    let mut record = read_foreign(kind, bytes, None, gauges).map_err(|e| {
+/// A whole record in microstrain; channels whose unit is none of strain are left out.
+fn strain_record(file: &str, bytes: FileBytes) -> Result<Channels, Faults> {
+    let read = open_record(Arc::new(bytes), &Options::default()).and_then(|r| read_channels(&r));
+    let mut record = read.map_err(|e| {
         let (wrong, remedy) = split_message(&e);
         Faults::from(Fault::of(file, "record", wrong, remedy))
     })?;
-    let mut faults = FaultList::new();
     record.list.retain_mut(|c| match microstrain_in(&c.unit) {
         Some(factor) => {
             c.samples.iter_mut().for_each(|v| *v *= factor);
             true
         }
-        None => {
-            if gauges.contains(&c.name) {
+        None => false,
+    });
+    Ok(record)
+}
+
+/// Names of a record's columns as `gauges` are called, and microstrain in one of each (1 for columns that are no gauges). A gauge may be
+/// named with what looks like a unit: `SG1 (left)`.
+///
+/// # Errors
+/// A fault for each gauge whose unit is none of strain.
+pub fn strain_columns(
+    file: &str,
+    columns: &[Column],
+    gauges: &[String],
+) -> Result<(Vec<String>, Vec<f64>), Faults> {
+    let known: HashSet<&str> = gauges.iter().map(String::as_str).collect();
+    let mut faults = FaultList::new();
+    let (mut names, mut scales) = (Vec::new(), Vec::new());
+    for c in columns {
+        let whole = [
+            format!("{} [{}]", c.name, c.unit),
+            format!("{} ({})", c.name, c.unit),
+        ];
+        let (name, scale) = if known.contains(c.name.as_str()) {
+            let scale = microstrain_in(&c.unit);
+            if scale.is_none() {
                 faults.push(no_strain(file, &c.name, &c.unit));
             }
-            false
-        }
-    });
+            (c.name.clone(), scale.unwrap_or(1.0))
+        } else {
+            let full = whole.into_iter().find(|w| known.contains(w.as_str()));
+            (full.unwrap_or_else(|| c.name.clone()), 1.0)
+        };
+        names.push(name);
+        scales.push(scale);
+    }
     Faults::check(faults)?;
-    Ok(record)
+    Ok((names, scales))
 }
 
 fn no_strain(file: &str, channel: &str, unit: &str) -> Fault {
@@ -203,28 +193,6 @@ fn strain_from_record(file: &str, record: &Channels) -> StrainTable {
         ),
         microstrain: (0..n).flat_map(row).collect(),
     }
-}
-
-/// A whole RPC III file; columns whose unit is none of strain are left out.
-fn strain_from_rpc(file: &str, bytes: &[u8]) -> Result<StrainTable, Faults> {
-    let mut h = read_strain_header(file, bytes)?;
-    let columns: Vec<Option<usize>> = (0..h.channels.len())
-        .filter(|c| microstrain_in(&h.channels[*c].unit).is_some())
-        .map(Some)
-        .collect();
-    let gauges: Vec<String> = columns
-        .iter()
-        .filter_map(|c| h.channels.get((*c)?).map(|c| c.name.clone()))
-        .collect();
-    in_microstrain(file, &mut h, &gauges)?;
-    let mut microstrain = Vec::new();
-    rpc::read_samples(&h, bytes, 0, h.samples, &columns, &mut microstrain);
-    Ok(StrainTable {
-        file: file.to_owned(),
-        gauges,
-        rows: StrainRows::Times((0..h.samples).map(|i| h.dt * i as f64).collect()),
-        microstrain,
-    })
 }
 
 /// The strain in a table.

@@ -6,7 +6,6 @@
 mod answer;
 mod combined;
 mod content;
-mod csv_record;
 mod derived;
 mod history_files;
 mod known_payload;
@@ -32,8 +31,8 @@ use crate::gauge::reading;
 use crate::model::Model;
 use crate::recovery::{ErrorModel, Readings, Recovery};
 use crate::sensitivity::check_separability;
-use crate::series::foreign::Foreign;
-use crate::series::{binary, rpc};
+use crate::series::record::csv::Layout;
+use crate::series::record::is_format;
 use crate::units::MICROSTRAIN;
 
 /// What runs and records share.
@@ -103,11 +102,7 @@ pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults
         .inputs
         .read_named(&job, &measured.strain)
         .map_err(Faults::from)?;
-    if binary::is_record(&bytes)
-        || rpc::is_rpc(&bytes)
-        || Foreign::of(&bytes).is_some()
-        || csv_record::is_record(&bytes)
-    {
+    if is_format(&bytes) || Layout::of(&bytes).is_ok_and(|l| l.is_record()) {
         session.stage("stream", |s| stream::run(s, arguments, &task, bytes))
     } else {
         runs::run(session, arguments, &task)

@@ -1,112 +1,203 @@
 //! A record of any length, a piece at a time: readings, and the loads that a filter makes of them.
 
-use super::csv_record::{self, Layout};
-use crate::app::fault::Fault;
+use crate::app::fault::{Fault, Faults, split_message};
 use crate::app::files::FileBytes;
-use crate::app::job::correct::Channel;
+use crate::app::job::correct::{Channel, column_of};
+use crate::app::job::strain::strain_columns;
+use crate::app::job::{Job, Measured};
+use crate::finding::{Finding, Severity};
 use crate::recovery::Sums;
 use crate::recovery::history::{Filter, SampleLoads};
-use crate::series::binary::{self, Header};
-use crate::series::{Channels, rpc};
+use crate::series::SeriesError;
+use crate::series::record::{self as series, Clock, Evenness, Options, is_format, open_record};
 use crate::units::MICROSTRAIN;
+use std::ops::ControlFlow;
+use std::sync::Arc;
 
-/// Samples a piece of a binary record.
-const SAMPLES: usize = 16_384;
-/// Samples of a piece taken at a time, few enough to stay in the processor's cache.
-const BLOCK: usize = 512;
-/// Bytes a piece of a CSV record.
-pub(super) const BYTES: usize = 4 << 20;
 /// Pieces in memory at a time.
 pub(super) const GROUP: usize = 8;
 
-/// How a record is stored.
-pub(super) enum Source {
-    Binary(Header),
-    /// RPC III, channels in microstrain.
-    Rpc(rpc::Header),
-    Csv(Layout, Vec<(usize, usize)>),
-    /// Parquet, MDF4: in memory, microstrain.
-    Whole(Channels),
-}
-
+/// A record whose columns are read as strain.
 pub(super) struct Record {
-    pub bytes: FileBytes,
-    pub file: String,
-    pub source: Source,
-    pub columns: Vec<Option<usize>>,
-    /// Strain of one unit of the file.
-    pub unit: f64,
+    inner: series::Record,
+    file: String,
+    /// The gauge that each column holds the readings of, as the job calls it.
+    pub names: Vec<String>,
+    /// Microstrain in one unit of each column.
+    micro: Vec<f64>,
+    /// Columns that are read, and what puts their readings right.
+    columns: Vec<(Option<usize>, Channel)>,
     /// Seconds in the unit of its times.
-    pub second: f64,
-    /// What puts the readings of each column right; empty where nothing is to be put right.
-    pub channels: Vec<Channel>,
+    second: f64,
+    /// Neither the file nor the job states the unit of its times.
+    time_unit_open: bool,
 }
 
 impl Record {
+    /// The record in the strain file of a job, of which channels named after `gauges` will be read.
+    ///
+    /// # Errors
+    /// Faults of the file: its format, its times, units that are none of strain.
+    pub fn open(
+        job: &Job,
+        measured: &Measured,
+        bytes: FileBytes,
+        gauges: &[String],
+    ) -> Result<Self, Faults> {
+        let file = measured.strain.given.as_str();
+        // Formats of instruments count in seconds or say what they count in.
+        let unit_open = !is_format(&bytes);
+        let options = Options {
+            declared_hz: None,
+            wanted: gauges.to_vec(),
+        };
+        let inner = open_record(Arc::new(bytes), &options).map_err(|e| record_fault(file, &e))?;
+        let unit_open = unit_open && !inner.is_time_unit_stated();
+        let (names, micro) = strain_columns(file, inner.columns(), gauges)?;
+        let gauge = |n: &String| column_of(&job.corrections, n).to_owned();
+        Ok(Self {
+            names: names.iter().map(gauge).collect(),
+            file: file.to_owned(),
+            micro,
+            columns: Vec::new(),
+            second: match (unit_open, measured.time_unit_s) {
+                (true, Some(unit)) => unit,
+                _ => 1.0,
+            },
+            time_unit_open: unit_open && measured.time_unit_s.is_none(),
+            inner,
+        })
+    }
+
+    /// The same, with the columns that are read.
+    pub fn with_columns(self, columns: Vec<(Option<usize>, Channel)>) -> Self {
+        Self { columns, ..self }
+    }
+
+    /// When its samples were taken, in the unit of the file's times.
+    pub fn clock(&self) -> &Clock {
+        &self.inner.clock
+    }
+
+    /// Time of the first sample and between samples, s.
+    pub fn first_and_step(&self) -> (f64, f64) {
+        let clock = self.clock();
+        (clock.start_s * self.second, self.second / clock.rate_hz)
+    }
+
+    /// Whether neither the file nor the job states the unit of its times.
+    pub fn is_time_unit_open(&self) -> bool {
+        self.time_unit_open
+    }
+
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
     pub fn n_pieces(&self) -> usize {
-        match &self.source {
-            Source::Binary(h) => h.samples.div_ceil(SAMPLES),
-            Source::Rpc(h) => h.samples.div_ceil(SAMPLES),
-            Source::Csv(_, pieces) => pieces.len(),
-            Source::Whole(c) => c.n_samples().div_ceil(SAMPLES),
-        }
+        self.inner.n_pieces()
     }
 
-    /// Times and readings of a piece.
+    pub fn n_columns(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Hands the readings of a piece on, strain, a block at a time.
+    fn each(&self, i: usize, mut sink: impl FnMut(&[f64])) -> Result<(), Fault> {
+        let n = self.columns.len().max(1);
+        let columns: Vec<Option<usize>> = self.columns.iter().map(|c| c.0).collect();
+        let micro_of = |c: &Option<usize>| c.and_then(|c| self.micro.get(c)).copied();
+        let right: Vec<(f64, Channel)> = self
+            .columns
+            .iter()
+            .map(|(c, channel)| (micro_of(c).unwrap_or(f64::NAN), *channel))
+            .collect();
+        let mut strain = Vec::new();
+        let read = self.inner.read(i, &columns, &mut |block| {
+            strain.clear();
+            for row in block.values.chunks_exact(n) {
+                let put_right =
+                    |(v, (micro, c)): (&f64, &(f64, Channel))| c.put_right(v * micro) * MICROSTRAIN;
+                strain.extend(row.iter().zip(&right).map(put_right));
+            }
+            sink(&strain);
+            ControlFlow::Continue(())
+        });
+        read.map_err(|e| record_fault(&self.file, &e))
+    }
+
+    /// Times, s, and readings of a piece, strain.
     pub fn piece(&self, i: usize) -> Result<(Vec<f64>, Vec<f64>), Fault> {
-        let (mut times, mut values) = (Vec::new(), Vec::new());
-        match &self.source {
-            Source::Binary(h) => {
-                let (from, to) = (i * SAMPLES, ((i + 1) * SAMPLES).min(h.samples));
-                values.reserve((to - from) * self.columns.len());
-                binary::read_samples(h, &self.bytes, from, to, &self.columns, &mut values);
-                times.extend((from..to).map(|s| h.t0 + h.dt * s as f64));
-            }
-            Source::Rpc(h) => {
-                let (from, to) = (i * SAMPLES, ((i + 1) * SAMPLES).min(h.samples));
-                rpc::read_samples(h, &self.bytes, from, to, &self.columns, &mut values);
-                times.extend((from..to).map(|s| h.dt * s as f64));
-            }
-            Source::Whole(c) => {
-                let to = ((i + 1) * SAMPLES).min(c.n_samples());
-                for s in i * SAMPLES..to {
-                    times.push(c.start_s + s as f64 / c.rate_hz);
-                    let of = |column: &Option<usize>| {
-                        let channel = column.and_then(|c_ix| c.list.get(c_ix));
-                        channel.and_then(|x| x.samples.get(s)).copied()
-                    };
-                    let row = self.columns.iter().map(|k| of(k).unwrap_or(f64::NAN));
-                    values.extend(row);
-                }
-            }
-            Source::Csv(l, pieces) => {
-                csv_record::read_piece(
-                    &self.file,
-                    &self.bytes,
-                    pieces.get(i).copied().unwrap_or_default(),
-                    l,
-                    &self.columns,
-                    &mut times,
-                    &mut values,
-                )?;
-            }
-        }
-        self.put_right(&mut values);
-        times.iter_mut().for_each(|t| *t *= self.second);
-        Ok((times, values))
+        let mut values = Vec::new();
+        self.each(i, |strain| values.extend_from_slice(strain))?;
+        Ok((self.times(i), values))
     }
 
-    /// Readings as `[[correction]]` says.
-    fn put_right(&self, values: &mut [f64]) {
-        if self.channels.is_empty() {
-            return;
+    fn times(&self, i: usize) -> Vec<f64> {
+        let (from, to) = self.inner.span(i);
+        let time = |s| self.inner.clock.time_s(s) * self.second;
+        (from..to).map(time).collect()
+    }
+
+    /// What is to be known of its times.
+    pub fn findings(&self) -> Vec<Finding> {
+        let (clock, mut out) = (self.clock(), Vec::new());
+        let file = self.file.as_str();
+        if let Evenness::Resampled { largest, .. } = clock.evenness {
+            let rate = clock.rate_hz / self.second;
+            out.push(
+                Finding::new(
+                    Severity::Warning,
+                    "record-resampled",
+                    file,
+                    format!("steps of time differ by up to {:.0} %: samples are interpolated to {rate:.6} Hz", 100.0 * largest),
+                    "record with a steady clock where the loads' peaks matter",
+                )
+                .with_numbers(largest, 0.02),
+            );
         }
-        let microstrain = self.unit / MICROSTRAIN;
-        for row in values.chunks_exact_mut(self.channels.len()) {
-            for (v, c) in row.iter_mut().zip(&self.channels) {
-                *v = c.put_right(*v * microstrain) / microstrain;
-            }
+        if clock.n_gaps > 0 {
+            let first = clock.gaps.first().map_or(0.0, |g| g.from_s * self.second);
+            out.push(
+                Finding::new(
+                    Severity::Warning,
+                    "record-gaps",
+                    file,
+                    format!("{} samples are missing in {} gaps, the first after {first} s: they are left blank", clock.missing, clock.n_gaps),
+                    "look at the logger",
+                )
+                .with_numbers(clock.missing as f64, 0.0),
+            );
         }
+        out
+    }
+}
+
+/// The fault of a record that can't be read.
+fn record_fault(file: &str, e: &SeriesError) -> Fault {
+    let (wrong, remedy) = split_message(e);
+    match e {
+        SeriesError::Line { line, what, remedy } => {
+            Fault::at(file, *line as u32, "row", what, *remedy)
+        }
+        SeriesError::NotAscending { line, .. } | SeriesError::NoTime { line } => {
+            Fault::at(file, *line as u32, "time", wrong, remedy)
+        }
+        SeriesError::Empty => Fault::at(
+            file,
+            1,
+            "rows",
+            "a header and no rows",
+            "write a row a sample",
+        ),
+        SeriesError::NoRate => Fault::at(
+            file,
+            1,
+            "time",
+            "no column `time`",
+            "add a column `time` in seconds",
+        ),
+        _ => Fault::of(file, "record", wrong, remedy),
     }
 }
 
@@ -121,27 +212,10 @@ pub(super) struct Piece {
 pub(super) fn process(record: &Record, filter: &Filter, i: usize) -> Result<Piece, Fault> {
     let mut sums = Sums::new(filter.n_gauges(), filter.n_loads());
     let mut loads = SampleLoads::default();
-    let times = match &record.source {
-        Source::Binary(h) => {
-            let (from, to) = (i * SAMPLES, ((i + 1) * SAMPLES).min(h.samples));
-            loads.values.reserve((to - from) * filter.n_loads());
-            let mut values = Vec::with_capacity(BLOCK * record.columns.len());
-            for block in (from..to).step_by(BLOCK) {
-                values.clear();
-                let end = (block + BLOCK).min(to);
-                binary::read_samples(h, &record.bytes, block, end, &record.columns, &mut values);
-                record.put_right(&mut values);
-                filter.apply(&values, record.unit, &mut loads, &mut sums);
-            }
-            (from..to)
-                .map(|s| (h.t0 + h.dt * s as f64) * record.second)
-                .collect()
-        }
-        Source::Csv(..) | Source::Rpc(_) | Source::Whole(_) => {
-            let (times, values) = record.piece(i)?;
-            filter.apply(&values, record.unit, &mut loads, &mut sums);
-            times
-        }
-    };
-    Ok(Piece { times, loads, sums })
+    record.each(i, |strain| filter.apply(strain, 1.0, &mut loads, &mut sums))?;
+    Ok(Piece {
+        times: record.times(i),
+        loads,
+        sums,
+    })
 }

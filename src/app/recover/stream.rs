@@ -3,16 +3,14 @@
 use super::Task;
 use super::combined::{Listed, listed};
 use super::content::{check_content, content_of_loads};
-use super::csv_record;
 use super::derived::{self, History};
 use super::history_files::{Form, Named, stream};
-use super::record::{BYTES, GROUP, Record, Source, process};
+use super::record::{GROUP, Record, process};
 use super::runs::columns_of;
 use super::trace::Spans;
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::FileBytes;
-use crate::app::job::correct::{channel_of, column_of};
-use crate::app::job::strain::{in_microstrain, read_strain_header, strain_record};
+use crate::app::job::correct::channel_of;
 use crate::app::outcome::finite;
 use crate::app::solved::first_mode_of;
 use crate::app::spreadsheets::write_spreadsheet;
@@ -28,8 +26,7 @@ use crate::report::scene::{Shown, run_arrows, scene_of_job};
 use crate::report::spreadsheet::{HistoryLoad, history_sheet, residual_sheet};
 use crate::report::strain::{Recovered, RecoveredRun, recover_page};
 use crate::sensitivity::Sensitivity;
-use crate::series::foreign::Foreign;
-use crate::series::{binary, rpc};
+use crate::series::binary;
 use crate::units::MICROSTRAIN;
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -53,42 +50,11 @@ pub(super) fn run(
     let all = &task.prepared.sensitivity;
     let named = &task.measured.strain;
     let file = named.given.clone();
-    let (source, names, unit) = if binary::is_record(&bytes) {
-        let h = binary::read_header(&bytes).map_err(|e| {
-            let remedy = "write the record again as README.md describes it";
-            Faults::from(Fault::of(&*file, "header", e.to_string(), remedy))
-        })?;
-        let (names, unit) = (h.names.clone(), h.unit);
-        (Source::Binary(h), names, unit)
-    } else if rpc::is_rpc(&bytes) {
-        let mut h = read_strain_header(&file, &bytes)?;
-        let names = h.channels.iter().map(|c| c.name.clone()).collect();
-        in_microstrain(&file, &mut h, &all.gauges)?;
-        (Source::Rpc(h), names, MICROSTRAIN)
-    } else if let Some(kind) = Foreign::of(&bytes) {
-        let record = strain_record(&file, kind, &bytes, &all.gauges)?;
-        let names = record.list.iter().map(|c| c.name.clone()).collect();
-        (Source::Whole(record), names, MICROSTRAIN)
-    } else {
-        let l = csv_record::layout(&bytes).ok_or_else(|| {
-            Faults::from(Fault::at(
-                &*file,
-                1,
-                "time",
-                "no column `time`",
-                "add a column `time` in seconds",
-            ))
-        })?;
-        let pieces = csv_record::pieces(&bytes, l.start, BYTES);
-        let names = l.names.clone();
-        (Source::Csv(l, pieces), names, MICROSTRAIN)
-    };
     let corrections = &task.job.corrections;
-    let names: Vec<String> = names
-        .iter()
-        .map(|n| column_of(corrections, n).to_owned())
-        .collect();
-    let found = columns_of(session, named, &names, &all.gauges);
+    let record = Record::open(task.job, task.measured, bytes, &all.gauges)?;
+    session.findings.extend(record.findings());
+    let names = &record.names;
+    let found = columns_of(session, named, names, &all.gauges);
     // Gauges without a column take no part.
     let mut used: Vec<usize> = (0..found.len())
         .filter(|&g| found[g].is_some() && task.zero[g].is_finite())
@@ -103,35 +69,9 @@ pub(super) fn run(
             "name the columns after the gauges",
         )));
     }
-    let source_is_text = matches!(source, Source::Csv(..));
-    let mut record = Record {
-        bytes,
-        file: file.clone(),
-        source,
-        columns: used.iter().map(|&g| found[g]).collect(),
-        unit,
-        // Binary formats count in seconds.
-        second: match source_is_text {
-            true => task.measured.time_unit_s.unwrap_or(1.0),
-            false => 1.0,
-        },
-        channels: if corrections.is_empty() {
-            Vec::new()
-        } else {
-            used.iter()
-                .map(|&g| channel_of(corrections, &all.gauges[g]))
-                .collect()
-        },
-    };
-    if record.n_pieces() == 0 {
-        return Err(Faults::from(Fault::at(
-            &*file,
-            1,
-            "rows",
-            "a header and no rows",
-            "write a row a sample",
-        )));
-    }
+    let gauge = |g: usize| channel_of(corrections, &all.gauges[g]);
+    let channels = used.iter().map(|&g| (found[g], gauge(g)));
+    let mut record = record.with_columns(channels.collect());
     let silent = silent(&record)?;
     if silent.iter().any(|s| *s) {
         let dead = used.iter().zip(&silent).filter(|(_, s)| **s);
@@ -145,13 +85,8 @@ pub(super) fn run(
         ));
         let mut speaks = silent.iter().map(|s| !s);
         used.retain(|_| speaks.next().unwrap_or(true));
-        record.columns = used.iter().map(|&g| found[g]).collect();
-        if !record.channels.is_empty() {
-            let channels = used.iter();
-            record.channels = channels
-                .map(|&g| channel_of(corrections, &all.gauges[g]))
-                .collect();
-        }
+        let channels = used.iter().map(|&g| (found[g], gauge(g)));
+        record = record.with_columns(channels.collect());
     }
     if used.is_empty() {
         return Err(Faults::from(Fault::of(
@@ -192,42 +127,15 @@ pub(super) fn run(
         ))
     })?;
     filter.combine(&combinations);
-    let total = match &record.source {
-        Source::Binary(h) => Some(h.samples),
-        Source::Rpc(h) => Some(h.samples),
-        Source::Whole(c) => Some(c.n_samples()),
-        Source::Csv(..) => None,
-    };
-    // A CSV record's rows are not counted beforehand: those of its first piece tell how long one is.
-    let first = match &record.source {
-        Source::Csv(..) => record.piece(0).ok(),
-        _ => None,
-    };
-    let about = total.unwrap_or_else(|| match (&record.source, &first) {
-        (Source::Csv(l, pieces), Some((times, _))) => {
-            let of_first = pieces.first().map_or(1, |p| p.1 - p.0).max(1);
-            let rows = record.bytes.len().saturating_sub(l.start) as f64 / of_first as f64;
-            (rows * times.len() as f64).round() as usize
-        }
-        _ => 0,
-    });
+    let about = record.clock().samples;
     let stride = about.div_ceil(MOST_ROWS).max(1);
-    let (t0, dt): (f64, f64) = match &record.source {
-        Source::Binary(h) => (h.t0, h.dt),
-        Source::Rpc(h) => (0.0, h.dt),
-        Source::Whole(c) => (c.start_s, 1.0 / c.rate_hz),
-        Source::Csv(..) => match first.as_ref().map(|p| &p.0[..]) {
-            Some([a, b, ..]) => (*a, b - a),
-            Some([a]) => (*a, 0.0),
-            _ => (0.0, 0.0),
-        },
-    };
+    let (t0, dt) = record.first_and_step();
     let fields = task.prepared.fields.as_ref();
-    if task.measured.time_unit_s.is_none() {
+    if record.is_time_unit_open() {
         let (_, readings) = record.piece(0).map_err(Faults::from)?;
         session
             .findings
-            .extend(clock::check(dt, &readings, record.columns.len()));
+            .extend(clock::check(dt, &readings, record.n_columns()));
     }
     let first_mode = fields.and_then(|f| {
         f.first_mode
@@ -359,7 +267,7 @@ fn sampled_pieces(record: &Record, filter: &Filter) -> Result<Vec<Vec<f64>>, Fau
 
 /// Which columns give nothing anywhere over the record, looked at in ten pieces spread over it.
 fn silent(record: &Record) -> Result<Vec<bool>, Faults> {
-    let (n, pieces) = (record.columns.len(), record.n_pieces());
+    let (n, pieces) = (record.n_columns(), record.n_pieces());
     let mut out = vec![true; n];
     for p in 0..pieces.min(10) {
         let (_, values) = record
@@ -394,11 +302,7 @@ fn judge(task: &Task, record: &Record, s: &Sensitivity, zero: &[f64]) -> Result<
         let each = each.min(take);
         for i in (0..each).map(|i| i * take / each) {
             let row = &values[i * n..(i + 1) * n];
-            let strain = row
-                .iter()
-                .zip(zero)
-                .map(|(v, z)| v * record.unit - z)
-                .collect();
+            let strain = row.iter().zip(zero).map(|(v, z)| v - z).collect();
             readings.push(Readings {
                 run: format!("t = {}", times[i]),
                 strain,
@@ -408,7 +312,7 @@ fn judge(task: &Task, record: &Record, s: &Sensitivity, zero: &[f64]) -> Result<
     }
     if readings.is_empty() {
         return Err(Faults::from(Fault::at(
-            &*record.file,
+            &*record.file(),
             1,
             "rows",
             "a header and no rows",

@@ -1,7 +1,7 @@
 //! A record on even steps: stored samples, NaN in gaps, interpolated samples where the stored ones are uneven.
 
 use super::clock::{Clock, Evenness, Steps, clock_of, counts};
-use super::reader::{BLOCK, Block, Column, Pick, RecordReader, Sink};
+use super::reader::{BLOCK, Block, Column, Pick, RecordReader, Sink, Times};
 use crate::series::error::SeriesError;
 use std::ops::ControlFlow;
 
@@ -44,6 +44,18 @@ impl Record {
             steps,
             starts,
         })
+    }
+
+    /// Whether the file states the unit of its times, or its format does.
+    pub fn is_time_unit_stated(&self) -> bool {
+        match self.reader.times() {
+            Times::Stored {
+                unit_stated,
+                epoch_s,
+                ..
+            } => unit_stated || epoch_s.is_some(),
+            Times::Even { .. } | Times::None { .. } => true,
+        }
     }
 
     /// Its columns, in file order.
