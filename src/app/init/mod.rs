@@ -94,10 +94,14 @@ pub fn init(
         folder,
         system,
         from: found.first().map_or(StrainFrom::Solver, |p| p.from),
-        without_results: "no static subcase of it has strain of shells and a load",
+        without_results: match strained.iter().all(|s| s.1.is_empty()) {
+            true => "no static subcase of them has strain of shells",
+            false => "their subcases aren't the loads below",
+        },
         loads: found.first().map_or(&[], |p| &p.loads),
         left_out: &[],
         spacing: usual_spacing(&deck),
+        angle_step_deg: 15,
     };
     let verdict = match obstacle(&deck, &given, system.is_none()) {
         Some(finding) => {

@@ -31,6 +31,8 @@ pub(super) struct JobPlan<'a> {
     pub left_out: &'a [ProposedLoad],
     /// Least distance between gauges.
     pub spacing: f64,
+    /// Degrees between the angles of candidates.
+    pub angle_step_deg: u32,
 }
 
 /// The least distance between gauges that suits a mesh: two sides of a shell.
@@ -178,9 +180,10 @@ impl JobPlan<'_> {
         let _ = write!(
             t,
             "surfaces = [\"top\", \"bottom\"]         # drop the side that can't be reached\n\
-             angle_step_deg = 15                  # or \"continuous\"\n\
+             angle_step_deg = {}                  # or \"continuous\"\n\
              # grid_length = {grid:?}                  # strain is averaged over the gauge's grid; the shells have sides of {:?}\n\
              # clear_of = {{ edges = {clear:?}, holes = {clear:?}, joints = {clear:?}, loads = {far:?}, attachments = {far:?} }}  # strain there is not to be trusted\n",
+            self.angle_step_deg,
             round(side)
         );
         t

@@ -41,7 +41,7 @@ impl Verdict {
     }
 }
 
-/// The first of the proposals that `place` answers without an error; else the first that it answers at all; else the first.
+/// The first of the proposals that `place` answers, even if with doubts of its own that it will tell; else the first.
 pub(super) fn first_that_places(cx: &Context, plan: &JobPlan, proposals: &[Proposal]) -> Verdict {
     if plan.deck.model.grids.len() > MOST_GRIDS {
         return Verdict {
@@ -52,16 +52,12 @@ pub(super) fn first_that_places(cx: &Context, plan: &JobPlan, proposals: &[Propo
     // Solutions are kept for the length of the trials, and for `place` afterwards where the caller keeps them.
     let memory = Memory::default();
     let store = cx.store.unwrap_or(&memory);
-    let (mut doubtful, mut first_fault) = (None, None);
+    let mut first_fault = None;
     for trial in trials(plan, proposals).take(MOST_TRIALS) {
         match try_place(cx, &trial, store) {
-            Ok(Reliable::Yes) => return answer(&trial),
-            Ok(Reliable::No) => doubtful = doubtful.or_else(|| Some(answer(&trial))),
+            Ok(()) => return answer(&trial),
             Err(faults) => first_fault = first_fault.or(Some(faults)),
         }
-    }
-    if let Some(found) = doubtful {
-        return found;
     }
     let why = first_fault
         .as_ref()
@@ -121,18 +117,17 @@ fn trials<'a>(
     whole.chain(fewer)
 }
 
-/// Whether an answer holds.
-enum Reliable {
-    Yes,
-    No,
-}
-
 fn try_place(
     cx: &Context,
     trial: &JobPlan,
     store: &dyn crate::app::store::SolutionStore,
-) -> Result<Reliable, Faults> {
-    let path = trial.folder.join("job.toml");
+) -> Result<(), Faults> {
+    let path = trial.folder.join(super::JOB);
+    // Whether loads can be told apart shows with four angles a place; the certificate of many is for `place`.
+    let trial = JobPlan {
+        angle_step_deg: 45,
+        ..trial.clone()
+    };
     let files = WithJob {
         inner: cx.files,
         path: path.clone(),
@@ -143,12 +138,7 @@ fn try_place(
         store: Some(store),
         progress: cx.progress,
     };
-    let outcome = place(&Job::read(&path, &files)?, &cx)?;
-    Ok(if outcome.is_reliable() {
-        Reliable::Yes
-    } else {
-        Reliable::No
-    })
+    place(&Job::read(&path, &files)?, &cx).map(|_| ())
 }
 
 /// The files of a context and a job that isn't written yet.
