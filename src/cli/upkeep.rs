@@ -1,7 +1,7 @@
 //! `verify` and `clean`: what is done to results and kept solutions that stand already.
 
+use super::arguments::{CleanArguments, VerifyArguments};
 use super::run::{Run, print, refuse};
-use super::{CleanArguments, VerifyArguments};
 use crate::app::fault::{Fault, Faults};
 use crate::app::outcome::StatedUnits;
 use crate::app::store::Folder;

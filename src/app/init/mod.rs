@@ -22,6 +22,7 @@ use nastran::results::ResultsFile;
 use propose::{StrainFrom, Strained, proposals};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+pub use text::JOB;
 use text::{JobPlan, usual_spacing};
 use trial::{Verdict, first_that_places};
 
@@ -45,9 +46,6 @@ pub struct Proposal {
 impl Answer for Proposal {
     const COMMAND: &'static str = "init";
 }
-
-/// The file of a proposed job.
-pub const JOB: &str = "job.toml";
 
 /// A commented job from a deck and its results, to stand in `folder`.
 ///

@@ -13,6 +13,9 @@ use std::path::{Path, PathBuf};
 /// Properties listed at most: a longer list is shorter as "all", which leaving it out means.
 const MOST_PROPERTIES: usize = 60;
 
+/// The file of a proposed job.
+pub const JOB: &str = "job.toml";
+
 /// What a job is written of.
 #[derive(Clone)]
 pub(super) struct JobPlan<'a> {

@@ -1,7 +1,8 @@
 //! `place` tried on proposed jobs, so that `init` recommends only what works.
 
 use super::propose::{Proposal, ProposedLoad};
-use super::text::JobPlan;
+use super::round::round;
+use super::text::{JOB, JobPlan};
 use crate::app::context::{Context, Files};
 use crate::app::deck::without_dots;
 use crate::app::fault::Faults;
@@ -106,7 +107,7 @@ fn trials<'a>(
     };
     let usual = plan.spacing;
     let whole = proposals.iter().flat_map(move |p| {
-        [usual, super::round::round(usual / 4.0), 0.0]
+        [usual, round(usual / 4.0), 0.0]
             .into_iter()
             .map(move |spacing| with(p, p.loads.len(), spacing))
     });
@@ -122,7 +123,11 @@ fn try_place(
     trial: &JobPlan,
     store: &dyn crate::app::store::SolutionStore,
 ) -> Result<(), Faults> {
+<<<<<<< HEAD
     let path = trial.folder.join(super::JOB);
+=======
+    let path = trial.folder.join(JOB);
+>>>>>>> inputs
     // Whether loads can be told apart shows with four angles a place; the certificate of many is for `place`.
     let trial = JobPlan {
         angle_step_deg: 45,

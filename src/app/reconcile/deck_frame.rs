@@ -230,7 +230,7 @@ pub(super) fn read(
     let wanted = job.loads.iter().filter(|l| l.role == Role::Wanted);
     let per = |l: &JobLoad| match l.acts {
         LoadActs::AtGrid { component, .. } => KILO / job.units.si(component.quantity()),
-        LoadActs::Set(_) => 1.0,
+        LoadActs::Set(_) | LoadActs::Named => 1.0,
     };
     let known: Vec<(String, f64)> = wanted.map(|l| (l.name.clone(), per(l))).collect();
     let described = deck.described(&mut session.inputs, job, channels, &known)?;
@@ -397,6 +397,13 @@ fn job_loads(job: &Job, model: &Model) -> Result<JobLoads, Faults> {
                 "give the load as a grid and a component, or role = \"nuisance\"",
             )),
             (LoadActs::AtGrid { grid, .. }, Role::Nuisance) if payload.is_some() && model.grid_ix(*grid) == payload => {}
+            (LoadActs::Named, Role::Wanted) => faults.push(Fault::at(
+                &*job.file,
+                l.line,
+                "load.grid",
+                format!("load `{}` is a name alone: where it acts on the model is not said", l.name),
+                "state `grid` and `component`",
+            )),
             (acts, Role::Nuisance) => out.nuisance.push(JobNuisance {
                 name: l.name.clone(),
                 load,
@@ -404,7 +411,7 @@ fn job_loads(job: &Job, model: &Model) -> Result<JobLoads, Faults> {
                 size: l.expected.unwrap_or(l.applied.abs()),
                 set: match acts {
                     LoadActs::Set(sid) => Some(*sid),
-                    LoadActs::AtGrid { .. } => None,
+                    LoadActs::AtGrid { .. } | LoadActs::Named => None,
                 },
             }),
         }
