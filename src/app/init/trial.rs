@@ -123,11 +123,7 @@ fn try_place(
     trial: &JobPlan,
     store: &dyn crate::app::store::SolutionStore,
 ) -> Result<(), Faults> {
-<<<<<<< HEAD
-    let path = trial.folder.join(super::JOB);
-=======
     let path = trial.folder.join(JOB);
->>>>>>> inputs
     // Whether loads can be told apart shows with four angles a place; the certificate of many is for `place`.
     let trial = JobPlan {
         angle_step_deg: 45,
