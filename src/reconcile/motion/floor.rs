@@ -12,6 +12,9 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Declared noise may be wrong by this factor: it is a data sheet's, or was estimated at rest.
 pub const NOISE_FACTOR: f64 = 1.5;
+/// What no job declares (a weak coupling to the other side or axle, a rate that wanders) is taken to be as large as what this one does: the
+/// squared size of tolerances counts twice in a limit.
+const UNDECLARED: f64 = 2.0;
 /// Share of complete models that stay below a limit.
 const CONFIDENCE: f64 = 0.99;
 
@@ -32,9 +35,11 @@ impl Floor {
         (self.noise + self.tolerance).sqrt()
     }
 
-    /// The most that a complete model leaves: noise wrong by [`NOISE_FACTOR`], tolerances as they are in one job of a hundred.
+    /// The most that a complete model leaves: noise wrong by [`NOISE_FACTOR`], tolerances as they are in one job of a hundred, and as much
+    /// again that nobody declared.
     pub fn limit(&self) -> f64 {
-        (self.noise * NOISE_FACTOR * NOISE_FACTOR + self.tolerance_limit).sqrt()
+        let noise = self.noise * NOISE_FACTOR * NOISE_FACTOR;
+        (noise + UNDECLARED * self.tolerance_limit).sqrt()
     }
 
     /// Mean of squares.

@@ -43,6 +43,18 @@ pub fn within_tolerance(columns: &mut [PriorColumn], target: &[f64]) -> Solved {
         }
         s = solved(columns, target);
     }
+    if columns.iter().zip(&declared).any(|(c, d)| c.prior != *d) {
+        // Sigmas are those of the declared tolerances: a narrowed prior knows nothing.
+        let as_declared: Vec<PriorColumn> = columns
+            .iter()
+            .zip(&declared)
+            .map(|(c, d)| PriorColumn {
+                rows: c.rows.clone(),
+                prior: *d,
+            })
+            .collect();
+        s.covariance = solved(&as_declared, target).covariance;
+    }
     // What was taken counts as the declared tolerance has it.
     s.penalty = declared
         .iter()
