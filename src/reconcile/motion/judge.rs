@@ -162,8 +162,8 @@ fn gap_of(before: &Option<RecordGap>, after: &Option<RecordGap>) -> Gap {
     }
 }
 
-/// The best set, or the best one all of whose members may be named: channels beyond their tolerance, and nothing that closes less of the
-/// gap than tolerances make from job to job.
+/// The best set, or the best one all of whose members may be named: channels beyond their tolerance, and no effect of the vehicle that
+/// closes less of the gap than declared tolerances leave on average.
 fn nameable(
     scorer: &MotionScorer,
     all: &[Scored<MotionFit>],
@@ -180,10 +180,10 @@ fn nameable(
             return true;
         };
         let Some(own) = &gaps[at] else { return false };
-        let varies = (own.floor.tolerance_limit - own.floor.tolerance).max(0.0);
-        s.set.iter().all(|member| {
-            let rest: Vec<usize> = s.set.iter().copied().filter(|m| m != member).collect();
-            power(&rest).is_none_or(|without| without - own.gap * own.gap > varies)
+        let vehicles = (s.set.iter()).filter(|m| !scorer.candidates[**m].is_channel());
+        vehicles.copied().all(|member| {
+            let rest: Vec<usize> = s.set.iter().copied().filter(|m| *m != member).collect();
+            power(&rest).is_none_or(|without| without - own.gap * own.gap > own.floor.tolerance)
         })
     };
     let fine = |s: &Scored<MotionFit>| material(s) && beyond_tolerance(frame, &s.fit);
