@@ -112,8 +112,7 @@ pub fn fitted_gap(frame: &MotionFrame, fit: &MotionFit) -> Option<RecordGap> {
 pub fn record_gap(frame: &MotionFrame, fit: &MotionFit, record: &Channels) -> Option<RecordGap> {
     let values = plain_values(frame, fit, &[&fit.design]);
     let v = &fit.assembled.vehicle;
-    let stepped = fit.parts.iter().any(|p| p.shape.is_of_time());
-    let vehicles: Vec<Vehicle> = if stepped {
+    let vehicles: Vec<Vehicle> = if v.changes() {
         [f64::MIN, f64::MAX]
             .into_iter()
             .map(|at_s| {

@@ -14,7 +14,7 @@ pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
         .bodies
         .iter()
         .copied()
-        .filter(|&b| v.bodies[b].sprung)
+        .filter(|&b| v.bodies[b].sprung && v.steps.iter().all(|s| s.body != b))
         .collect();
     let (start, length) = (frame.data.start_s, frame.data.duration_s());
     sprung

@@ -59,10 +59,11 @@ pub fn library(frame: &MotionFrame, motion: &Motion, only: &[String]) -> Vec<Can
     all
 }
 
-/// Coupling links by name, each as inertia, as spring, and as spring with damper.
+/// Coupling links by name that the vehicle has not, each as inertia, as spring, and as spring with damper.
 fn coupling_forms(frame: &MotionFrame, names: &[&str]) -> Vec<Change> {
     let mut out = Vec::new();
-    for name in names {
+    let has = |name: &str| frame.vehicle.links.iter().any(|l| l.name == name);
+    for name in names.iter().filter(|n| !has(n)) {
         let Some(link) = coupling(&frame.vehicle, name) else {
             continue;
         };
