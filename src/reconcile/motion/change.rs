@@ -130,15 +130,6 @@ pub fn with_adjustment(list: &[Adjustment], more: Adjustment) -> Vec<Adjustment>
 }
 
 impl Change {
-    /// Whether it changes during the record.
-    pub fn is_of_time(&self) -> bool {
-        match self {
-            Self::Step(_) => true,
-            Self::Terms { terms, .. } => terms.iter().any(Term::is_of_time),
-            _ => false,
-        }
-    }
-
     /// Shapes of the same kind with the constant a little smaller and larger; empty where there is none to find.
     ///
     /// `gravity` is what a change of mass may bring with it.
