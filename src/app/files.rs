@@ -1,8 +1,8 @@
 //! Reading files: paths relative to a base, contents in memory, and the list of inputs with their hashes.
 
 use super::context::Files;
-use super::file_read::FileRead;
 use super::fault::Fault;
+use super::file_read::FileRead;
 use super::job::{Job, NamedFile};
 pub use super::whole_file::FileBytes;
 use sha2::{Digest, Sha256};

@@ -124,7 +124,8 @@ fn imports_go_strictly_downward() {
                         .collect();
                     let Some(other) = row(&name) else { continue };
                     let vehicle = own == "vehicle" && other > 1.0 && !is_test(&path);
-                    let writes = name == "report" && WRITES_AS_IT_GOES.iter().any(|p| path.starts_with(p));
+                    let writes =
+                        name == "report" && WRITES_AS_IT_GOES.iter().any(|p| path.starts_with(p));
                     if name != own && (other >= own_row || vehicle) && !writes {
                         wrong.push_str(&format!("{path}:{}: `{own}` imports `{name}`\n", n + 1));
                     }
