@@ -1,7 +1,7 @@
 //! S from a table that the job names.
 
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::runs::quantity_of_name;
+use crate::app::job::quantity::quantity_of_name;
 use crate::app::job::table::read_table;
 use crate::app::job::{Job, JobLoad, Role};
 use crate::app::work::Work;
