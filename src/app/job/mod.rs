@@ -6,6 +6,7 @@ pub mod correct;
 mod faults;
 pub mod gauges;
 mod parse;
+pub mod quantity;
 mod raw;
 mod resolve;
 pub mod runs;

@@ -1,8 +1,9 @@
 //! The runs file: what else was measured in each run, by the job's names, in SI units.
 
+use super::quantity::quantity_of_name;
 use super::suggest;
 use super::table::read_table;
-use super::types::{Component, Job, Runs};
+use super::types::{Job, Runs};
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::files::Inputs;
 use crate::units::Quantity;
@@ -128,19 +129,4 @@ fn known_columns(job: &Job) -> Vec<(String, Quantity)> {
     ];
     out.extend(payload.map(|(n, q)| (n.to_owned(), q)));
     out
-}
-
-/// Force or moment by the parts of a load's name (`LF.MX`, `MX_LF` and `M_LF` are moments); a force where the name does not tell.
-pub fn quantity_of_name(name: &str) -> Quantity {
-    let is_moment = name.split(['.', '_', ' ']).any(|part| {
-        part == "M"
-            || Component::ALL
-                .into_iter()
-                .any(|c| !c.is_force() && c.name().eq_ignore_ascii_case(part))
-    });
-    if is_moment {
-        Quantity::Moment
-    } else {
-        Quantity::Force
-    }
 }

@@ -245,7 +245,7 @@ impl JobLoad {
     pub fn quantity(&self) -> Option<Quantity> {
         match self.acts {
             LoadActs::AtGrid { component, .. } => Some(component.quantity()),
-            LoadActs::Named => Some(super::runs::quantity_of_name(&self.name)),
+            LoadActs::Named => Some(super::quantity::quantity_of_name(&self.name)),
             LoadActs::Set(_) => None,
         }
     }

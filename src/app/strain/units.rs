@@ -1,7 +1,7 @@
 //! Units of loads: job units inside, report units outside.
 
 use crate::app::job::Job;
-use crate::app::job::runs::quantity_of_name;
+use crate::app::job::quantity::quantity_of_name;
 use crate::units::factor;
 use serde::Serialize;
 

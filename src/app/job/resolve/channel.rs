@@ -76,7 +76,7 @@ pub(super) fn corrections(
 }
 
 /// Corrections name gauges of the job, combinations its loads, where the job itself lists these.
-pub(in crate::app::job) fn check_names(job: &Job, faults: &mut FaultList) {
+pub fn check_names(job: &Job, faults: &mut FaultList) {
     let gauges: Vec<&str> = job.gauges.iter().map(|g| g.name.as_str()).collect();
     // A rosette's legs are channels: `R1.a`.
     let is_gauge = |name: &str| {

@@ -1,0 +1,18 @@
+//! What a load's name says of it.
+
+use crate::units::Quantity;
+
+/// Parts of a name that say that a load is a moment.
+const MOMENTS: [&str; 3] = ["MX", "MY", "MZ"];
+
+/// Force or moment by the parts of a load's name (`LF.MX`, `MX_LF` and `M_LF` are moments); a force where the name does not tell.
+pub fn quantity_of_name(name: &str) -> Quantity {
+    let is_moment = name
+        .split(['.', '_', ' '])
+        .any(|part| part == "M" || MOMENTS.iter().any(|m| m.eq_ignore_ascii_case(part)));
+    if is_moment {
+        Quantity::Moment
+    } else {
+        Quantity::Force
+    }
+}
