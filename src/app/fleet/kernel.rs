@@ -253,6 +253,7 @@ impl Kernel {
                 .collect(),
             loads: all.loads.clone(),
             values: Matrix::from_fn(used.len(), k, |i, l| all.values[(used[i], l)]),
+            uncertainty: all.uncertainty.as_ref().map(|u| u.of_gauges(&used)),
         };
         let zero: Vec<f64> = used
             .iter()
