@@ -1,7 +1,7 @@
 //! `recover`: loads from measured strain.
 //!
-//! [`runs`] static states, a row each; [`stream`] records of any length, CSV, RPC III or binary ([`crate::series::binary`]), at constant
-//! memory, Parquet and MDF4 read whole; [`derived`] what else is made of the loads.
+//! [`runs`] static states, a row each; [`stream`] records of any length and format ([`crate::series::record`]), at constant memory;
+//! [`derived`] what else is made of the loads.
 
 mod answer;
 mod combined;
