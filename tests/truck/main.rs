@@ -1,4 +1,4 @@
-//! The rows of the thesis (Stellenbosch 2020, chapters 3.5 and 6) on the truck of `models/`: what README's table "The truck" shows.
+//! The rows of the thesis (Stellenbosch 2020, chapters 3.5 and 6) on the truck of `models/`: what the table in `docs/reference/truck.md` shows.
 //!
 //! "Other model": readings from the same truck meshed half as fine in every direction, at points up to millimetres from where the gauges
 //! should be, turned by a degree, with 1 % of gain and 1 microstrain of noise.

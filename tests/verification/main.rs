@@ -1,6 +1,6 @@
 //! The built-in solver against closed forms, published benchmarks and other solvers' results.
 
-#![allow(clippy::print_stderr, reason = "numbers for the tables of the README")]
+#![allow(clippy::print_stderr, reason = "numbers for the tables in docs")]
 
 mod coupled_mass;
 mod decks;
