@@ -175,7 +175,11 @@ fn what_is_broken_is_said_and_nothing_else_is_lost() {
     let whole = fleet(&dir, "before", &files, &[]).1;
     // Cut in the middle of a line, a gauge left out, a gauge dead for good from day 15 on, a second copy, a name that tells nothing.
     let text = std::fs::read_to_string(dir.join("T0_3.csv")).unwrap();
-    std::fs::write(dir.join("T0_3.csv"), &text[..text.len() / 2 - 3]).unwrap();
+    std::fs::write(
+        dir.join("T0_3.csv"),
+        &text[..text[..text.len() / 2].rfind('\n').unwrap() + 6],
+    )
+    .unwrap();
     std::fs::write(dir.join("T1_5.csv"), table(1, 5, Some(4), None)).unwrap();
     for day in 15..=20 {
         std::fs::write(

@@ -2,6 +2,7 @@
 
 use crate::finding::Severity;
 use crate::series::rainflow::Tally;
+use crate::series::rainflow::absent::number;
 use serde::{Deserialize, Serialize};
 
 /// One load over the record.
@@ -25,14 +26,19 @@ pub struct GaugeDay {
     /// Its name.
     pub name: String,
     /// Mean reading less the job's zero, microstrain.
+    #[serde(deserialize_with = "number")]
     pub mean: f64,
     /// Standard deviation of its readings, microstrain.
+    #[serde(deserialize_with = "number")]
     pub sd: f64,
     /// Noise from second differences of its readings, microstrain.
+    #[serde(deserialize_with = "number")]
     pub noise: f64,
     /// What the loads leave unexplained, rms, microstrain.
+    #[serde(deserialize_with = "number")]
     pub residual: f64,
     /// Its reading over what the loads recovered from all gauges predict for it, by least squares.
+    #[serde(deserialize_with = "number")]
     pub gain: f64,
     /// Samples without a reading.
     pub missing: u64,

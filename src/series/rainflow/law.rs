@@ -8,6 +8,7 @@ pub struct Knee {
     /// Ranges below this one do less harm than the power would say.
     pub range: f64,
     /// The power below; infinite for no harm at all.
+    #[serde(deserialize_with = "super::absent::infinite")]
     pub slope: f64,
 }
 

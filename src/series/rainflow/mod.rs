@@ -1,11 +1,13 @@
 //! Rainflow cycles and the pseudo-damage they make.
 //!
+//! - [`absent`]: numbers that are not finite, kept in JSON
 //! - [`count`]: the four-point count, whose residues join; with the residue as half cycles it is the count of ASTM E1049
 //! - [`law`]: the harm of a cycle, by the slope and knee of an S-N line
 //! - [`tally`]: cycles by class, levels, extremes and sums of a load over a time; tallies of days join to that of the year
 //! - [`interval`]: damage with what is known of its errors
 //! - [`damage`]: damage of one record, range by range
 
+pub mod absent;
 pub mod count;
 mod damage;
 pub mod interval;

@@ -27,6 +27,7 @@ pub struct Left {
     /// Value.
     pub value: f64,
     /// All loads then.
+    #[serde(deserialize_with = "super::absent::numbers")]
     pub loads: Vec<f64>,
 }
 
@@ -36,6 +37,7 @@ pub struct Sums {
     /// Damage, by [`NOISE`].
     pub damage: [f64; 3],
     /// Change of the damage with each scale error: `sum of d'(R) sign(dF) dF_m`, by load m.
+    #[serde(deserialize_with = "super::absent::numbers")]
     pub by_load: Vec<f64>,
     /// Variance of the damage for noise of variance one in each sample: `sum of 2 d'(R)^2`.
     pub scatter: f64,

@@ -89,6 +89,27 @@ fn parts_join_to_the_whole_to_the_last_cycle_wherever_they_are_cut() {
 }
 
 #[test]
+fn what_is_kept_as_json_comes_back_whole_gaps_and_an_endless_slope_too() {
+    let law = Law {
+        slope: 5.0,
+        knee: Some(Knee {
+            range: 1.0,
+            slope: f64::INFINITY,
+        }),
+    };
+    let mut counter = Counter::new(0, 2, 0.1, 0.25, law);
+    // The second load is missing where the first turns.
+    counter.push(&[0.0, f64::NAN, 3.0, f64::NAN, -1.0, 2.0, 2.0, 1.0]);
+    let tally = counter.finish();
+    let text = serde_json::to_string(&tally).unwrap();
+    let back: Tally = serde_json::from_str(&text).unwrap();
+    assert_eq!(back.law, law);
+    assert_eq!((&back.cycles, &back.levels), (&tally.cycles, &tally.levels));
+    let first = |t: &Tally| t.residues[0][0].loads.clone();
+    assert!(first(&back)[1].is_nan() && first(&back)[0] == first(&tally)[0]);
+}
+
+#[test]
 fn joining_in_two_steps_is_joining_at_once() {
     let rows = history(9000);
     let parts: Vec<Tally> = rows.chunks(2 * 1000).map(|c| tally(c, 2, 0, 0.1)).collect();
