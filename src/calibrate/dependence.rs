@@ -1,7 +1,6 @@
 //! Whether loads come out larger with a column of the runs, such as speed.
 
-use super::held_out::LeftOut;
-use super::types::Task;
+use super::types::{LeftOut, Task};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Change of the scale with a column.

@@ -1,37 +1,13 @@
 //! Runs left out one by one: their loads recovered by what the others taught, held against what is known.
 
-use super::fit::{State, left, sensitivity_of};
 use super::posterior::{Equation, Posterior, solve};
 use super::scatter::{Left, Scatter};
-use super::types::{Coverage, Task};
-use crate::estimate::LoadEstimate;
+use super::state::{State, left, sensitivity_of};
+use super::types::{Coverage, LeftOut, Task};
 use crate::linalg::spd;
 use crate::recovery::{ErrorModel, Readings, estimate};
 use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
-
-/// A run that was left out.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LeftOut {
-    /// Number of the run.
-    pub number: usize,
-    /// Its loads as the other runs teach them, with covariance.
-    pub estimate: LoadEstimate,
-    /// What was known of them.
-    pub known: Vec<f64>,
-    /// Squared distance between the two in units of their covariance.
-    pub distance: f64,
-    /// Loads compared.
-    pub loads: usize,
-    /// Degrees of freedom behind the covariance.
-    pub dof: f64,
-    /// Mean over loads of the squared distance of each by itself, in units of its variance.
-    pub each: f64,
-    /// Squared distance of each sum of loads that the task names, in units of its variance.
-    pub sums: Vec<f64>,
-    /// What is left of the strain over what is expected: chi2 over its degrees of freedom.
-    pub misfit: f64,
-}
 
 /// Chance under which left-out runs count as farther off than expected: then a factor is applied.
 const WIDEN: f64 = 0.05;

@@ -15,16 +15,14 @@ mod prior;
 mod runs;
 mod scatter;
 mod shift;
+mod state;
 mod types;
 mod undetermined;
 
 pub use dependence::{Dependence, depends_on};
 pub use fit::calibrate;
-pub use held_out::LeftOut;
 pub use next::{NextRun, next_runs};
-pub use shift::{GaugeShift, ShiftWord};
 pub use types::*;
-pub use undetermined::Undetermined;
 
 #[cfg(test)]
 mod tests;

@@ -1,7 +1,7 @@
 //! Words for runs that contradict the others.
 
-use super::held_out::{LeftOut, suspects};
-use super::types::Task;
+use super::held_out::suspects;
+use super::types::{LeftOut, Task};
 use crate::finding::{Finding, Severity};
 
 /// Share of a run's loads from which one load counts as the whole of it.

@@ -1,54 +1,10 @@
 //! How far each gauge's row moved, and what that looks like.
 
-use super::fit::State;
-use super::types::Task;
+use super::state::State;
+use super::types::{GaugeShift, ShiftWord, Task};
 use crate::finding::{Finding, Severity};
 use crate::linalg::precision::Precision;
 use crate::sensitivity::Sensitivity;
-
-/// What a change of a row looks like.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ShiftWord {
-    /// Within what the model's error makes.
-    None,
-    /// It reads nothing.
-    Dead,
-    /// Its sign is turned.
-    Sign,
-    /// Every load by the same factor.
-    Gain,
-    /// Turned by an angle.
-    Angle,
-    /// Neither: it sits elsewhere.
-    Place,
-}
-
-impl ShiftWord {
-    /// As in result.json.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Dead => "dead",
-            Self::Sign => "sign",
-            Self::Gain => "gain",
-            Self::Angle => "angle",
-            Self::Place => "place",
-        }
-    }
-}
-
-/// One gauge.
-#[derive(Clone, Debug, PartialEq)]
-pub struct GaugeShift {
-    /// Name.
-    pub name: String,
-    /// Distance between model and calibrated row in prior sigmas, root mean square over loads; 0 without a model.
-    pub shift: f64,
-    /// Calibrated row along the model's: 1 where its size was right; 1 without a model.
-    pub scale: f64,
-    /// What it looks like.
-    pub word: ShiftWord,
-}
 
 /// Distance from which a shift is worth a word.
 const NOTABLE: f64 = 3.0;

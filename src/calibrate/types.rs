@@ -1,8 +1,6 @@
 //! What calibration takes and gives.
 
-use super::held_out::LeftOut;
-use super::shift::GaugeShift;
-use super::undetermined::Undetermined;
+use crate::estimate::LoadEstimate;
 use crate::finding::Finding;
 use crate::linalg::Matrix;
 use crate::sensitivity::{Load, Sensitivity};
@@ -115,4 +113,78 @@ pub struct Calibration {
     pub undetermined: Vec<Undetermined>,
     /// What was noticed.
     pub findings: Vec<Finding>,
+}
+
+/// A run that was left out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeftOut {
+    /// Number of the run.
+    pub number: usize,
+    /// Its loads as the other runs teach them, with covariance.
+    pub estimate: LoadEstimate,
+    /// What was known of them.
+    pub known: Vec<f64>,
+    /// Squared distance between the two in units of their covariance.
+    pub distance: f64,
+    /// Loads compared.
+    pub loads: usize,
+    /// Degrees of freedom behind the covariance.
+    pub dof: f64,
+    /// Mean over loads of the squared distance of each by itself, in units of its variance.
+    pub each: f64,
+    /// Squared distance of each sum of loads that the task names, in units of its variance.
+    pub sums: Vec<f64>,
+    /// What is left of the strain over what is expected: chi2 over its degrees of freedom.
+    pub misfit: f64,
+}
+
+/// What a change of a row looks like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShiftWord {
+    /// Within what the model's error makes.
+    None,
+    /// It reads nothing.
+    Dead,
+    /// Its sign is turned.
+    Sign,
+    /// Every load by the same factor.
+    Gain,
+    /// Turned by an angle.
+    Angle,
+    /// Neither: it sits elsewhere.
+    Place,
+}
+
+impl ShiftWord {
+    /// As in result.json.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Dead => "dead",
+            Self::Sign => "sign",
+            Self::Gain => "gain",
+            Self::Angle => "angle",
+            Self::Place => "place",
+        }
+    }
+}
+
+/// One gauge.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GaugeShift {
+    /// Name.
+    pub name: String,
+    /// Distance between model and calibrated row in prior sigmas, root mean square over loads; 0 without a model.
+    pub shift: f64,
+    /// Calibrated row along the model's: 1 where its size was right; 1 without a model.
+    pub scale: f64,
+    /// What it looks like.
+    pub word: ShiftWord,
+}
+
+/// A combination that no run determines.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Undetermined {
+    /// Share of each load, in job units, the largest 1.
+    pub terms: Vec<f64>,
 }

@@ -1,17 +1,10 @@
 //! Combinations of loads that no run has shown: known from the model only, or not at all.
 
-use super::fit::State;
 use super::held_out::SPANNED;
-use super::types::Task;
+use super::state::State;
+use super::types::{Task, Undetermined};
 use crate::finding::{Finding, Severity};
 use crate::linalg::{Matrix, dense, spd};
-
-/// A combination that no run determines.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Undetermined {
-    /// Share of each load, in job units, the largest 1.
-    pub terms: Vec<f64>,
-}
 
 /// Share of a load in a combination from which it is named.
 const NAMED: f64 = 0.1;

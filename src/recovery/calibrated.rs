@@ -6,12 +6,9 @@ use super::errors::ErrorModel;
 use super::interval::NORMAL_95;
 use super::solve::{Fit, fit};
 use super::types::{Readings, RunEstimate};
-use super::{suspects, unlike};
 use crate::estimate::LoadEstimate;
-use crate::finding::{Finding, Severity};
 use crate::linalg::{Matrix, Vector, spd};
 use crate::sensitivity::{Sensitivity, Uncertainty};
-use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Rounds between loads and the covariance that depends on them; they settle in three.
@@ -23,38 +20,6 @@ pub fn student_95_of(dof: f64) -> f64 {
         return NORMAL_95;
     }
     StudentsT::new(0.0, 1.0, dof.max(1.0)).map_or(NORMAL_95, |t| t.inverse_cdf(0.975))
-}
-
-/// Every run, and findings. Gauges that contradict the others are named and left out; a run that no loads explain is estimated loosely
-/// ([`unlike::estimate_loosely`]).
-pub(super) fn recover(
-    s: &Sensitivity,
-    readings: &[Readings],
-    errors: ErrorModel,
-    known: &Uncertainty,
-) -> (Vec<RunEstimate>, Vec<Finding>) {
-    let (mut findings, readings) = suspects::check(s, readings, errors, known);
-    let mut runs: Vec<RunEstimate> = readings
-        .par_iter()
-        .map(|r| estimate(s, r, errors, known))
-        .collect();
-    findings.extend(unlike::check(&s.gauges, &runs, known));
-    for (run, r) in runs.iter_mut().zip(&readings) {
-        if unlike::is_unlike(run, known) {
-            *run = unlike::estimate_loosely(s, r, errors, known);
-        }
-    }
-    let unsolved = runs.iter().filter(|r| r.rank < s.loads.len());
-    findings.extend(unsolved.map(|r| {
-        Finding::new(
-            Severity::Error,
-            "run-not-solvable",
-            &r.estimate.run,
-            "the gauges that read in this run don't separate the loads: some of its values are arbitrary",
-            "bring the silent gauges back, drop loads, or state `expected` for loads with role \"nuisance\"",
-        )
-    }));
-    (runs, findings)
 }
 
 /// One run.

@@ -5,6 +5,7 @@
 //! runs; [`verdict`] judges it, [`outlier`] and [`faults`] name gauges that look wrong, [`determined`] and [`plausible`] say whether
 //! readings and loads can be what they are taken for. [`calibrated`] is the same for a calibrated S, [`suspects`] and [`unlike`] its judges.
 
+mod by_calibration;
 pub mod calibrated;
 pub mod clock;
 mod determined;

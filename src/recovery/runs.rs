@@ -3,7 +3,7 @@
 use super::errors::ErrorModel;
 use super::solved::{Solved, root_mean_squares, solve};
 use super::types::{GAUGE_SUSPECT, Readings, Recovery, RunEstimate, Widening};
-use super::{calibrated, determined, faults, plausible, verdict};
+use super::{by_calibration, calibrated, determined, faults, plausible, verdict};
 use crate::finding::Finding;
 use crate::sensitivity::{Sensitivity, Uncertainty};
 
@@ -67,7 +67,7 @@ fn recover_calibrated(
     known: &Uncertainty,
     mut findings: Vec<Finding>,
 ) -> Recovery {
-    let (runs, judged) = calibrated::recover(s, readings, errors, known);
+    let (runs, judged) = by_calibration::recover(s, readings, errors, known);
     findings.extend(judged);
     let (residual_rms, gauge_residual_rms, gauge_leverage) = residual_sizes(s.gauges.len(), &runs);
     findings.extend(determined::check(s, &runs));

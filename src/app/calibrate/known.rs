@@ -91,18 +91,7 @@ pub(super) fn read_known(
             .and_then(|r| r.1.get(key))
             .map_or("", String::as_str)
     };
-    for (i, (line, _)) in table.rows.iter().enumerate() {
-        if (0..i).any(|j| name_of(j) == name_of(i)) {
-            let wrong = format!("run `{}` stands twice", name_of(i));
-            faults.push(Fault::at(
-                &*table.file,
-                *line,
-                "run",
-                wrong,
-                "give every run its own name",
-            ));
-        }
-    }
+    faults.extend(named_twice(&table, key));
     let asked = asked_rows(job, &table, key, strain, &mut faults);
     let largest = largest_known(&table, &stated, loads.len(), &mut faults);
     let held_out = |run: &str| matches!(&measured.hold_out, HoldOut::Runs(list) if list.iter().any(|r| r == run));
@@ -169,6 +158,31 @@ pub(super) fn read_known(
         runs: out,
         column: depends.map(|(name, _)| (name, values)),
     })
+}
+
+/// A fault for every run whose name stood before.
+fn named_twice(table: &Table, key: usize) -> FaultList {
+    let name_of = |row: &(u32, Vec<String>)| row.1.get(key).cloned().unwrap_or_default();
+    let rows = table.rows.iter().enumerate();
+    let again = rows.filter(|(i, row)| {
+        table
+            .rows
+            .iter()
+            .take(*i)
+            .any(|r| name_of(r) == name_of(row))
+    });
+    again
+        .map(|(_, row)| {
+            let wrong = format!("run `{}` stands twice", name_of(row));
+            Fault::at(
+                &*table.file,
+                row.0,
+                "run",
+                wrong,
+                "give every run its own name",
+            )
+        })
+        .collect()
 }
 
 /// Rows of the runs that `[calibration] runs` names; `None` where it names none.

@@ -1,0 +1,275 @@
+//! One fit of all used runs: posterior of S, error of the model, scatter of repeats and corrected loads in turn.
+
+use super::known::correct;
+use super::posterior::{Equation, Posterior, solve};
+use super::prior::{RowPrior, diffuse, learn_error, rows};
+use super::scatter::{Left, Scatter};
+use super::types::{KnownRun, ModelError, Task};
+use crate::linalg::Matrix;
+use crate::sensitivity::{Sensitivity, Uncertainty, mean_square};
+
+/// Rounds between S, model error, scatter and corrected loads; they settle in three.
+const ROUNDS: usize = 4;
+/// One fit of all used runs.
+pub(super) struct State {
+    /// Runs used, by number.
+    pub used: Vec<usize>,
+    /// Size of each load: columns are S times these.
+    pub scales: Vec<f64>,
+    /// Prior of the rows.
+    pub prior: Vec<RowPrior>,
+    /// Entries of S.
+    pub posterior: Posterior,
+    /// One a used run.
+    pub equations: Vec<Equation>,
+    /// What each used run leaves.
+    pub lefts: Vec<Left>,
+    /// Scatter of repeats.
+    pub scatter: Scatter,
+    /// Scatter and mean squares that the equations were made with: those of the round before.
+    pub scatter_used: Scatter,
+    /// See `scatter_used`.
+    pub q2_used: Vec<f64>,
+    /// Runs' worth of freedom that the fit took from each gauge.
+    pub fitted: f64,
+    /// Error of the model as learnt.
+    pub model_error: Option<ModelError>,
+}
+
+impl State {
+    /// The fit; `None` where numbers are not finite.
+    pub fn of(task: &Task, used: &[usize]) -> Option<Self> {
+        let runs: Vec<&KnownRun> = used.iter().filter_map(|&r| task.runs.get(r)).collect();
+        let (n, k) = (task.gauges.len(), task.loads.len());
+        let scales = load_scales(task, &runs);
+        let largest = runs
+            .iter()
+            .flat_map(|r| &r.strain)
+            .filter(|v| v.is_finite())
+            .fold(0.0_f64, |a, v| a.max(v.abs()));
+        let first = |r: &KnownRun| -> Vec<f64> {
+            r.loads
+                .mean
+                .iter()
+                .zip(&scales)
+                .map(|(f, c)| f / c)
+                .collect()
+        };
+        let mut phi: Vec<Vec<f64>> = runs.iter().map(|r| first(r)).collect();
+        let mut scatter = Scatter::none(n);
+        let mut state: Option<Self> = None;
+        for _ in 0..ROUNDS {
+            let model_error = task.model.as_ref().map(|m| {
+                let variance = variances(task, &runs, &scatter, state.as_ref());
+                learn_error(m, &scales, &runs, &phi, &variance)
+            });
+            let prior = match (&task.model, model_error) {
+                (Some(m), Some(e)) => rows(m, &scales, e),
+                _ => diffuse(n, k, largest),
+            };
+            let mean: Vec<Vec<f64>> = match &state {
+                Some(s) => s
+                    .posterior
+                    .mean
+                    .chunks_exact(k)
+                    .map(<[f64]>::to_vec)
+                    .collect(),
+                None => prior.iter().map(|p| p.mean.clone()).collect(),
+            };
+            let mut equations = Vec::new();
+            let mut freedom = 0.0;
+            for (i, run) in runs.iter().enumerate() {
+                let (equation, taken) = equation(
+                    task,
+                    run,
+                    &scales,
+                    &mean,
+                    &scatter,
+                    state.as_ref().map(|s| s.lefts[i].q2),
+                )?;
+                phi[i].clone_from(&equation.phi);
+                freedom += taken / equation.gauges.len().max(1) as f64;
+                equations.push(equation);
+            }
+            let posterior = solve(&prior, &equations)?;
+            let lefts: Vec<Left> = runs
+                .iter()
+                .zip(&equations)
+                .map(|(run, e)| left(task, run, &posterior, &e.phi))
+                .collect();
+            let fitted = freedom + fitted(&posterior, &equations);
+            let scatter_used = std::mem::replace(
+                &mut scatter,
+                Scatter::of(&lefts, fitted, &posterior.matrix()),
+            );
+            let q2_used = (0..runs.len())
+                .map(|i| state.as_ref().map_or(0.0, |s| s.lefts[i].q2))
+                .collect();
+            state = Some(Self {
+                scatter_used,
+                q2_used,
+                used: used.to_vec(),
+                scales: scales.clone(),
+                prior,
+                posterior,
+                equations,
+                lefts,
+                scatter: scatter.clone(),
+                fitted,
+                model_error,
+            });
+        }
+        state
+    }
+
+    /// S with its uncertainty, in job units of load.
+    pub fn sensitivity(&self, task: &Task, factor: f64) -> Sensitivity {
+        sensitivity_of(task, &self.scales, &self.posterior, &self.scatter, factor)
+    }
+}
+
+/// S of a posterior with what stands behind its intervals, in job units of load.
+pub(super) fn sensitivity_of(
+    task: &Task,
+    scales: &[f64],
+    posterior: &Posterior,
+    scatter: &Scatter,
+    factor: f64,
+) -> Sensitivity {
+    let (n, k) = (posterior.n, posterior.k);
+    let order = n * k;
+    let values = Matrix::from_fn(n, k, |g, l| posterior.mean[g * k + l] / scales[l]);
+    let covariance = (0..order * order)
+        .map(|i| posterior.covariance[i] / (scales[(i / order) % k] * scales[(i % order) % k]))
+        .collect();
+    Sensitivity {
+        gauges: task.gauges.clone(),
+        loads: task.loads.clone(),
+        uncertainty: Some(Uncertainty {
+            covariance,
+            scatter: scatter.covariance.clone(),
+            mean_square: mean_square(&values),
+            scale: factor,
+            dof: scatter.dof,
+        }),
+        values,
+    }
+}
+
+/// Size of each load: the root mean square over the runs in which it acts, else `expected`, else that of the others.
+fn load_scales(task: &Task, runs: &[&KnownRun]) -> Vec<f64> {
+    let rms = |l: usize| {
+        let known: Vec<f64> = runs
+            .iter()
+            .filter_map(|r| r.loads.mean.get(l).copied())
+            .filter(|f| *f != 0.0)
+            .collect();
+        (!known.is_empty())
+            .then(|| (known.iter().map(|f| f * f).sum::<f64>() / known.len() as f64).sqrt())
+    };
+    let found: Vec<Option<f64>> = (0..task.loads.len())
+        .map(|l| rms(l).or(task.loads[l].expected.filter(|e| *e > 0.0)))
+        .collect();
+    let known: Vec<f64> = found.iter().flatten().copied().collect();
+    let other = if known.is_empty() {
+        1.0
+    } else {
+        known.iter().sum::<f64>() / known.len() as f64
+    };
+    found.into_iter().map(|f| f.unwrap_or(other)).collect()
+}
+
+/// Variance of each reading besides S, by run and gauge: noise, scatter and the loads' own error so far.
+fn variances(
+    task: &Task,
+    runs: &[&KnownRun],
+    scatter: &Scatter,
+    state: Option<&State>,
+) -> Vec<Vec<f64>> {
+    let n = task.gauges.len();
+    (0..runs.len())
+        .map(|r| {
+            let mut own = vec![task.noise * task.noise * runs[r].noise_factor; n];
+            let Some(state) = state else { return own };
+            let e = &state.equations[r];
+            for (i, &g) in e.gauges.iter().enumerate() {
+                own[g] = own[g].max(e.covariance[i * e.gauges.len() + i]);
+            }
+            for (g, v) in own.iter_mut().enumerate() {
+                *v = v.max(state.lefts[r].q2 * scatter.covariance[g * n + g]);
+            }
+            own
+        })
+        .collect()
+}
+
+/// A run as an equation, and the readings' worth of freedom that the correction of its loads takes.
+fn equation(
+    task: &Task,
+    run: &KnownRun,
+    scales: &[f64],
+    mean: &[Vec<f64>],
+    scatter: &Scatter,
+    q2: Option<f64>,
+) -> Option<(Equation, f64)> {
+    let n = task.gauges.len();
+    let gauges: Vec<usize> = (0..n)
+        .filter(|&g| run.strain.get(g).is_some_and(|v| v.is_finite()))
+        .collect();
+    let m = gauges.len();
+    let noise = (task.noise * task.noise * run.noise_factor).max(f64::MIN_POSITIVE);
+    let mut own = vec![0.0; m * m];
+    for (i, g) in gauges.iter().enumerate() {
+        for (j, h) in gauges.iter().enumerate() {
+            own[i * m + j] = q2.unwrap_or(0.0) * scatter.covariance[g * n + h];
+        }
+        own[i * m + i] += noise;
+    }
+    let y: Vec<f64> = gauges.iter().map(|&g| run.strain[g]).collect();
+    let s: Vec<Vec<f64>> = gauges.iter().map(|&g| mean[g].clone()).collect();
+    let corrected = correct(&run.loads, scales, &s, &y, &own)?;
+    Some((
+        Equation {
+            y: y.iter().zip(&corrected.shift).map(|(y, d)| y + d).collect(),
+            covariance: own
+                .iter()
+                .zip(&corrected.spread)
+                .map(|(a, b)| a + b)
+                .collect(),
+            phi: corrected.phi,
+            gauges,
+        },
+        corrected.freedom,
+    ))
+}
+
+/// What a run leaves at loads `phi`.
+pub(super) fn left(task: &Task, run: &KnownRun, posterior: &Posterior, phi: &[f64]) -> Left {
+    let predicted = posterior.predict(phi);
+    let n = predicted.len();
+    let noise = task.noise * task.noise * run.noise_factor;
+    Left {
+        residual: run
+            .strain
+            .iter()
+            .zip(&predicted)
+            .map(|(y, p)| y - p)
+            .collect(),
+        q2: predicted.iter().map(|p| p * p).sum::<f64>() / n.max(1) as f64,
+        explained: vec![noise.max(f64::MIN_POSITIVE); n],
+    }
+}
+
+/// `sum_r trace(R_r^-1 A_r V A_r')` a gauge.
+fn fitted(posterior: &Posterior, equations: &[Equation]) -> f64 {
+    let one = |e: &Equation| -> Option<f64> {
+        let inverse = crate::linalg::precision::Precision::of(&e.covariance, e.gauges.len())?;
+        let spread = posterior.spread(&e.gauges, &e.phi);
+        let m = e.gauges.len();
+        let trace: f64 = (0..m * m)
+            .map(|i| inverse.entry(i / m, i % m) * spread[i])
+            .sum();
+        Some(trace / m.max(1) as f64)
+    };
+    equations.iter().filter_map(one).sum()
+}

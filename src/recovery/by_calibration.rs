@@ -1,0 +1,41 @@
+//! All runs by a calibrated S: gauges that contradict the others named and left out, runs that no loads explain estimated loosely.
+
+use super::calibrated::estimate;
+use super::errors::ErrorModel;
+use super::types::{Readings, RunEstimate};
+use super::{suspects, unlike};
+use crate::finding::{Finding, Severity};
+use crate::sensitivity::{Sensitivity, Uncertainty};
+use rayon::prelude::*;
+
+/// Every run, and findings. Gauges that contradict the others are named and left out; a run that no loads explain is estimated loosely
+/// ([`unlike::estimate_loosely`]).
+pub(super) fn recover(
+    s: &Sensitivity,
+    readings: &[Readings],
+    errors: ErrorModel,
+    known: &Uncertainty,
+) -> (Vec<RunEstimate>, Vec<Finding>) {
+    let (mut findings, readings) = suspects::check(s, readings, errors, known);
+    let mut runs: Vec<RunEstimate> = readings
+        .par_iter()
+        .map(|r| estimate(s, r, errors, known))
+        .collect();
+    findings.extend(unlike::check(&s.gauges, &runs, known));
+    for (run, r) in runs.iter_mut().zip(&readings) {
+        if unlike::is_unlike(run, known) {
+            *run = unlike::estimate_loosely(s, r, errors, known);
+        }
+    }
+    let unsolved = runs.iter().filter(|r| r.rank < s.loads.len());
+    findings.extend(unsolved.map(|r| {
+        Finding::new(
+            Severity::Error,
+            "run-not-solvable",
+            &r.estimate.run,
+            "the gauges that read in this run don't separate the loads: some of its values are arbitrary",
+            "bring the silent gauges back, drop loads, or state `expected` for loads with role \"nuisance\"",
+        )
+    }));
+    (runs, findings)
+}
