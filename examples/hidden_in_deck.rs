@@ -26,7 +26,8 @@ use strainbridge::gauge::{Bridge, CornerRows, Gauge, GaugeSpec, build, on_refine
 use strainbridge::model::{Model, Vec3};
 use strainbridge::reconcile::Observations;
 use strainbridge::reconcile::strain::{
-    GaugeFacts, MassSignature, PayloadWeight, StiffnessSignature, StrainFrame, WheelForces, Wiring,
+    GaugeFacts, MassSignature, PayloadWeight, StiffnessOf, StiffnessSignature, StrainFrame,
+    WheelForces, Wiring,
 };
 
 /// Wheels in the order of the case's files, with their grids.
@@ -207,7 +208,8 @@ fn truth(text: &str, gauges: &[Glued], runs: &str) -> StrainFrame {
             (percent, change)
         };
         StiffnessSignature {
-            id: format!("rail_stiffness:{zone}"),
+            of: StiffnessOf::Zone,
+            place: zone.to_string(),
             at_percent: vec![change(-size), change(size)],
             prior_percent: 15.0,
         }
@@ -275,6 +277,7 @@ fn truth(text: &str, gauges: &[Glued], runs: &str) -> StrainFrame {
         payload_origin: [NOMINAL_X_M, 0.0],
         payload_weight: PayloadWeight::InModel,
         wheel_forces: WheelForces::Measured,
+        nuisance: Vec::new(),
         other_loads: other_names
             .into_iter()
             .enumerate()

@@ -258,6 +258,7 @@ fn gauges_12_and_13_of_the_thesis_are_unfit_for_the_payload_and_no_gain_or_sign_
         payload_origin: [0.0; 2],
         payload_weight: PayloadWeight::Missing,
         wheel_forces: WheelForces::Measured,
+        nuisance: Vec::new(),
         other_loads: Vec::new(),
         thermal_uniform: None,
         thermal_gradient: None,

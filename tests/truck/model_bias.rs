@@ -70,6 +70,7 @@ fn frame() -> StrainFrame {
         payload_weight: PayloadWeight::InModel,
         wheel_forces: WheelForces::Measured,
         other_loads: Vec::new(),
+        nuisance: Vec::new(),
         thermal_uniform: None,
         thermal_gradient: None,
         masses: Vec::new(),

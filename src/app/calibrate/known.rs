@@ -1,7 +1,7 @@
 //! Known loads of the runs file: values, their sd, sums, repeats.
 
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::runs::quantity_of_name;
+use crate::app::job::quantity::quantity_of_name;
 use crate::app::job::suggest;
 use crate::app::job::table::{Table, read_table};
 use crate::app::job::{HoldOut, Job, JobLoad, LoadActs, Measured, Runs};

@@ -1,7 +1,6 @@
 //! Two measured county bridges under a truck of known weight (`shared/bridges`): half of the runs teach, the others are weighed.
 
 use crate::calibrate::*;
-use crate::linalg::Matrix;
 use crate::recovery::{ErrorModel, Readings, recover};
 use crate::sensitivity::Load;
 use rand::seq::SliceRandom;

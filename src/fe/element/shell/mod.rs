@@ -35,9 +35,10 @@ pub(crate) use output_frame::output_frame;
 pub(crate) use quad4::quad4;
 #[cfg(test)]
 pub(crate) use tria3::tria3;
-#[cfg(test)]
-pub(crate) use types::{BadShape, Heat, ShellInput, ShellLaw, ShellMatrices, Sides};
 pub(crate) use types::{Parts, StrainRows};
+#[cfg(test)]
+#[cfg(test)]
+pub(crate) use types::{ShellInput, ShellLaw, Sides};
 
 #[cfg(test)]
 mod tests;
