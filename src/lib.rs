@@ -4,12 +4,12 @@
 //!
 //! | row | module | turns | into |
 //! |---|---|---|---|
-//! | 9 | [`cli`] | arguments and files (the only input and output) | exit code |
-//! | 8 | [`report`] | plain results | text, json, csv, html |
-//! | 7 | [`reconcile`] | measured and predicted channels, a library of effects | the effect that parts them, the gap before and after |
-//! | 7 | [`calibrate`] | runs of known load, a prior S | S with its covariance |
-//! | 6 | [`placement`], [`recovery`] | a [`sensitivity::Sensitivity`], strain | gauge layouts, [`estimate::LoadEstimate`]s |
-//! | 5 | [`sensitivity`] | [`fe::Solution`]s and [`gauge::Gauge`]s | S in eps = S f |
+//! | 10 | [`cli`] | arguments | calls of row 8, exit codes |
+//! | 9 | [`report`] | outcomes | html, pdf, csv, xlsx, vtu, op2 |
+//! | 8 | [`app`] | a [`Job`] and a [`Context`] | an [`Outcome`] |
+//! | 7 | [`reconcile`], [`mod@study`], [`mod@payload`], [`mod@calibrate`] | measured and predicted channels | ranked effects, studies, weighings, a learnt S |
+//! | 6 | [`placement`], [`recovery`], [`mod@respond`], [`vehicle`] | S, strain, accelerations | layouts, loads, stress |
+//! | 5 | [`mod@sensitivity`] | [`fe::Solution`]s and [`gauge::Gauge`]s | S in eps = S f |
 //! | 4 | [`gauge`] | strain at a place | what that gauge reads |
 //! | 3 | [`fe`] | [`model::Model`] and load cases, or result files | [`fe::Solution`] |
 //! | 2 | [`model`] | a deck's cards | a checked, immutable [`model::Model`] |
@@ -46,3 +46,26 @@ pub mod series;
 pub mod study;
 pub mod units;
 pub mod vehicle;
+
+pub use app::context::{Context, Disk};
+pub use app::fault::{Fault, Faults};
+pub use app::job::Job;
+pub use app::outcome::Outcome;
+pub use finding::Severity;
+
+pub use app::ballast::ballast;
+pub use app::calibrate::calibrate;
+pub use app::cases::cases;
+pub use app::check::check;
+pub use app::fleet::fleet;
+pub use app::identify::identify;
+pub use app::init::init;
+pub use app::modes::{modes, modes_of_deck};
+pub use app::payload::payload;
+pub use app::place::place;
+pub use app::recover::recover_runs;
+pub use app::respond::respond;
+pub use app::sensitivity::sensitivity;
+pub use app::solve::{solve, solve_deck};
+pub use app::strains::strains;
+pub use app::study::study;
