@@ -10,7 +10,11 @@ fn strip() -> String {
     for i in 0..11 {
         for j in 0..2 {
             let id = 1 + i + 100 * j;
-            deck += &format!("GRID,{id},,{:.1},{:.1},0.\n", 20.0 * f64::from(i), 20.0 * f64::from(j));
+            deck += &format!(
+                "GRID,{id},,{:.1},{:.1},0.\n",
+                20.0 * f64::from(i),
+                20.0 * f64::from(j)
+            );
         }
     }
     for i in 0..10 {
@@ -77,10 +81,17 @@ fn s_is_linear_in_the_size_of_the_unit_load() {
         sensitivity(&job, &Context::new(&files)).unwrap()
     };
     let (one, two) = (ask("job.toml"), ask("doubled.toml"));
-    let (a, b) = (&one.prepared.sensitivity.values, &two.prepared.sensitivity.values);
+    let (a, b) = (
+        &one.prepared.sensitivity.values,
+        &two.prepared.sensitivity.values,
+    );
     let largest = a.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     // S is per unit of the load: rounding of one factor and two substitutions.
-    assert!(a.iter().zip(b.iter()).all(|(x, y)| (x - y).abs() < 1e-12 * largest));
+    assert!(
+        a.iter()
+            .zip(b.iter())
+            .all(|(x, y)| (x - y).abs() < 1e-12 * largest)
+    );
 }
 
 #[test]

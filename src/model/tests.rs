@@ -486,8 +486,8 @@ fn sets_that_sum_each_other_in_a_circle_are_called_that() {
     assert_eq!(
         said,
         [
-            "SPCADD 7: the sets name each other in a circle: 7 -> 8 -> 7",
             "LOAD 3: the sets name each other in a circle: 3 -> 4 -> 5 -> 3",
+            "SPCADD 7: the sets name each other in a circle: 7 -> 8 -> 7",
         ]
     );
     assert!(

@@ -56,6 +56,7 @@ impl Deck {
             && self.sol_text.is_none()
             && self.case_control.lines.is_empty()
             && self.cards == Cards::default()
+            && self.others.iter().all(|c| c.first.is_none())
     }
 
     /// The text of a card that has no struct; bytes that are not UTF-8 as Latin-1.

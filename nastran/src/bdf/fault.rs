@@ -148,7 +148,8 @@ impl Wrong {
             Self::NotACard { found } => {
                 format!("the line is neither a card nor a continuation: {found}")
             }
-            Self::Orphan { label } if label.is_empty() => {
+            // A name of a continuation has a number in it; a word may be of a file that is no deck, and is not shown.
+            Self::Orphan { label } if !label.contains(|c: char| c.is_ascii_digit()) => {
                 "the continuation belongs to no card".to_owned()
             }
             Self::Orphan { label } => format!("the continuation belongs to no card: {label}"),

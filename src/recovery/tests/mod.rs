@@ -3,7 +3,7 @@ mod records;
 mod residual;
 
 use super::*;
-use crate::finding::Severity;
+use crate::finding::{Finding, Severity};
 use crate::linalg::Matrix;
 use crate::sensitivity::{Load, Sensitivity};
 use rand::{RngExt, SeedableRng};
@@ -89,7 +89,9 @@ const NOISE: ErrorModel = ErrorModel {
 fn nine_loads_of_the_ladder_frame_are_recovered_within_their_intervals() {
     let Some(frame) = frame(9) else { return };
     let got = recover(&frame.s, &frame.readings, NOISE);
-    assert!(got.findings.is_empty(), "{:?}", got.findings);
+    // A gauge that stands out by chance, one job in twenty, is noted and widens the intervals: no more than that.
+    let harmless = |f: &Finding| f.severity == Severity::Info && f.code == "gauge-suspect";
+    assert!(got.findings.iter().all(harmless), "{:?}", got.findings);
     let (mut sum, mut covered, mut worst) = (0.0, 0, 0.0_f64);
     for (r, truth) in got.runs.iter().zip(&frame.truth) {
         for (l, t) in truth.iter().enumerate() {
