@@ -84,7 +84,7 @@ fn frame() -> StrainFrame {
 }
 
 #[test]
-fn table_6_9_shells_against_bars_are_called_a_bias_of_the_model_and_no_fault_of_a_gauge() {
+fn table_6_9_shells_against_bars_are_no_fault_of_a_gauge() {
     let outcome = examine(&frame(), &[]);
     let named: Vec<&String> = outcome.effects.iter().map(|e| &e.id).collect();
     println!(
@@ -98,9 +98,11 @@ fn table_6_9_shells_against_bars_are_called_a_bias_of_the_model_and_no_fault_of_
         outcome.verdict == Verdict::Unknown || named == ["global_scale"],
         "{named:?}"
     );
+    // What is left is told by gauge, so that a reader sees that it is spread over many.
     assert!(
-        outcome.remains.contains("a bias of the model"),
-        "{}",
+        outcome.remains.contains("reduced chi-square") && outcome.sits.matches('T').count() > 2,
+        "{}; {}",
+        outcome.sits,
         outcome.remains
     );
 }
