@@ -62,11 +62,12 @@ pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
     if is_unmodelled(candidates, &best.set).is_some() {
         // A general form is called upon only where no names come to the floor.
         let likelihood = Likelihood::new(frame, candidates, &fit_runs, &reference);
-        let named = named_instead(
-            &mut likelihood.names_only(),
-            candidates,
-            &all[..all.len().min(KEPT)],
-        );
+        let mut names = likelihood.names_only();
+        let mut named = named_instead(&mut names, candidates, &all[..all.len().min(KEPT)]);
+        // What a form stood in for need not be near it: the names are looked through from the start as well.
+        named.extend(search(&mut names, BREADTH));
+        named.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+        named.dedup_by(|a, b| a.set == b.set);
         let found =
             settle(&named, DECISIVE).filter(|s| at_floor(&adequacy_of(frame, candidates, s)));
         all.extend(named);
