@@ -94,7 +94,7 @@ impl Run {
         A: Answer + Send,
         Outcome<A>: Report,
     {
-        self.into_folder(folder, |cx| ask(&Job::read(path, cx.files)?, cx))
+        self.ask_into(folder, |cx| ask(&Job::read(path, cx.files)?, cx))
     }
 
     /// Asks a question of files, writes the outcome into `--out`, else `<name>.out` beside the first of them.
@@ -107,10 +107,10 @@ impl Run {
         A: Answer + Send,
         Outcome<A>: Report,
     {
-        self.into_folder(&self.folder(first), ask)
+        self.ask_into(&self.folder(first), ask)
     }
 
-    fn into_folder<A>(
+    fn ask_into<A>(
         &self,
         folder: &Path,
         ask: impl FnOnce(&Context) -> Result<Outcome<A>, Faults> + Send,

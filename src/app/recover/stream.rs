@@ -312,7 +312,7 @@ fn judge(task: &Task, record: &Record, s: &Sensitivity, zero: &[f64]) -> Result<
     }
     if readings.is_empty() {
         return Err(Faults::from(Fault::at(
-            &*record.file(),
+            record.file(),
             1,
             "rows",
             "a header and no rows",

@@ -72,7 +72,7 @@ pub fn read_covariance(
         .filter_map(|c| c.try_into().ok().map(f64::from_le_bytes))
         .collect();
     if numbers.len() as u128 != sizes.iter().map(|s| *s as u128).sum::<u128>()
-        || (rest.len() - length) % 8 != 0
+        || !(rest.len() - length).is_multiple_of(8)
         || numbers.iter().any(|v| !v.is_finite())
         || !header.scale.is_finite()
     {

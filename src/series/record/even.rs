@@ -182,7 +182,7 @@ impl Record {
                 if share > 1.0 + 1e-6 {
                     break;
                 }
-                let keep = share < 1e-6 || share > 1.0 - 1e-6;
+                let keep = !(1e-6..=1.0 - 1e-6).contains(&share);
                 let line = a.iter().zip(row).take(k).map(|(a, b)| {
                     if keep {
                         if share < 0.5 { *a } else { *b }

@@ -370,7 +370,7 @@ fn samples(
     if chunk == 0 {
         return Ok(());
     }
-    if (end - data) % chunk != 0 {
+    if !(end - data).is_multiple_of(chunk) {
         return Err(broken(
             "the file is cut off: samples are missing in its last segment",
         ));
