@@ -5,6 +5,7 @@ use super::explanation::{is_unmodelled, named_part};
 use super::frame::StrainFrame;
 use super::judge::{adequacy_of, at_floor, judge};
 use super::likelihood::{Fit, Likelihood};
+use super::own_covariance::best_by_own_covariance;
 use crate::reconcile::effect::{Candidate, Discrepancy, library};
 use crate::reconcile::outcome::Outcome;
 use crate::reconcile::search::{Breadth, Scored, Scorer, search, search_near, settle};
@@ -38,7 +39,10 @@ pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
             0 => search(&mut likelihood, BREADTH),
             n => search_near(&mut likelihood, BREADTH, &all[..n.min(KEPT)]),
         };
-        let found = settle(&all, DECISIVE);
+        let found = settle(&all, DECISIVE).and_then(|found| {
+            let contenders = &all[..all.len().min(KEPT)];
+            best_by_own_covariance(frame, candidates, &mut likelihood, contenders, &found)
+        });
         let stable = match (&found, &best) {
             (Some(new), Some(old)) => new.set == old.set,
             (Some(new), None) => new.set.is_empty(),
@@ -48,6 +52,11 @@ pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
             .iter()
             .flat_map(|s| s.set.iter().copied().zip(s.fit.parameters.clone()))
             .collect();
+        if let Some(found) = &found
+            && all.iter().all(|s| s.set != found.set)
+        {
+            all.insert(0, found.clone());
+        }
         best = found;
         if stable {
             break;

@@ -13,6 +13,7 @@ mod judge;
 mod likelihood;
 mod neighbours;
 mod next;
+mod own_covariance;
 mod recovered;
 mod remains;
 mod resampled;

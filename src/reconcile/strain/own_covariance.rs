@@ -1,0 +1,76 @@
+//! Evidence of a set under the covariance of its own prediction.
+//!
+//! The error of the model and of the loads is read by the gauges as they are: a channel with a turned sign turns its share of the covariance
+//! with it. Under the covariance of the model without effects a fault of the channel itself therefore looks worse than a form that leaves
+//! the covariance alone, and amplitudes of the form win. Contenders are compared each under its own covariance.
+
+use super::detect::DECISIVE;
+use super::frame::StrainFrame;
+use super::likelihood::{Fit, Likelihood};
+use crate::reconcile::effect::{Candidate, Stage};
+use crate::reconcile::search::{Scored, Scorer, settle};
+
+/// The best of `contenders`, and of what may stand for members of `found` at the same gauges, each under its own covariance.
+pub(super) fn best_by_own_covariance(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    likelihood: &mut Likelihood<'_>,
+    contenders: &[Scored<Fit>],
+    found: &Scored<Fit>,
+) -> Option<Scored<Fit>> {
+    if found.set.is_empty() {
+        return Some(found.clone());
+    }
+    let mut first: Vec<Scored<Fit>> = contenders.to_vec();
+    for set in at_same_gauges(candidates, likelihood, &found.set) {
+        if first.iter().all(|s| s.set != set) {
+            first.extend(likelihood.score(&set, None));
+        }
+    }
+    if first.iter().all(|s| s.set != found.set) {
+        first.push(found.clone());
+    }
+    let runs = frame.observations.fit_runs();
+    let own = |s: Scored<Fit>| {
+        let members = s.set.iter().copied();
+        let reference: Vec<(usize, Vec<f64>)> =
+            members.zip(s.fit.parameters.iter().cloned()).collect();
+        Likelihood::new(frame, candidates, &runs, &reference).score(&s.set, Some((&s, None)))
+    };
+    let all: Vec<Scored<Fit>> = first.into_iter().filter_map(own).collect();
+    settle(&all, DECISIVE)
+}
+
+/// Sets in which a fault of one or two channels takes the place of all that `set` says of those channels alone.
+fn at_same_gauges(
+    candidates: &[Candidate],
+    likelihood: &Likelihood<'_>,
+    set: &[usize],
+) -> Vec<Vec<usize>> {
+    let gauges = |c: usize| {
+        candidates
+            .get(c)
+            .map(|c| c.effect.gauges())
+            .unwrap_or_default()
+    };
+    let mut out = Vec::new();
+    for (c, candidate) in candidates.iter().enumerate() {
+        let own = candidate.effect.gauges();
+        if candidate.effect.stage() != Stage::Reading || !(1..=2).contains(&own.len()) {
+            continue;
+        }
+        let (replaced, kept): (Vec<usize>, Vec<usize>) = set.iter().partition(|&&m| {
+            let at = gauges(m);
+            !at.is_empty() && at.iter().all(|g| own.contains(g))
+        });
+        let covered = own
+            .iter()
+            .all(|g| replaced.iter().any(|&m| gauges(m).contains(g)));
+        if covered && !replaced.contains(&c) && kept.iter().all(|&m| likelihood.compatible(m, c)) {
+            let mut new = [kept.as_slice(), &[c]].concat();
+            new.sort_unstable();
+            out.push(new);
+        }
+    }
+    out
+}
