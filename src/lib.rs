@@ -28,6 +28,7 @@
 
 pub mod app;
 pub mod calibrate;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod estimate;
 pub mod fe;
@@ -39,6 +40,7 @@ pub mod payload;
 pub mod placement;
 pub mod reconcile;
 pub mod recovery;
+#[cfg(feature = "report")]
 pub mod report;
 pub mod respond;
 pub mod sensitivity;

@@ -1,6 +1,7 @@
 //! The library asked as a program of somebody else's would: files in memory, no folder, no terminal.
 
 use strainbridge::app::context::InMemory;
+use strainbridge::app::recover::recover_runs;
 use strainbridge::app::store::Memory;
 use strainbridge::{Context, Job, Severity, place, sensitivity};
 
@@ -68,6 +69,46 @@ fn a_layout_comes_as_a_value_with_its_certificate() {
     let again = place(&job, &context).unwrap();
     assert_eq!(plan.gauges, again.gauges);
     assert!(again.notes.iter().any(|n| n.contains("kept")));
+}
+
+/// What is planned and what is recovered from readings without error are the same covariance, asked twice.
+#[test]
+fn the_planned_sigma_is_the_recovered_one_at_the_expected_loads() {
+    let errors = "noise_microstrain = 1.0\nmodel_uncertainty_rel = 0.02\n";
+    let plan = files().with(
+        "plan.toml",
+        format!("{JOB}spacing = 15.0\nangle_tolerance_deg = 2.0\n{errors}"),
+    );
+    let job = Job::read("plan.toml", &plan).unwrap();
+    let placed = place(&job, &Context::new(&plan)).unwrap();
+    let s = &placed.sensitivity;
+    let mut job = JOB.split("[placement]").next().unwrap().to_owned();
+    let (mut head, mut row) = ("run".to_owned(), "R1".to_owned());
+    for (i, g) in placed.gauges.iter().enumerate() {
+        let [x, y, z] = g.direction;
+        job += &format!(
+            "[[gauge]]\nname = \"{}\"\nelement = {}\nsurface = \"{}\"\ndirection = [{x}, {y}, {z}]\n",
+            g.name, g.element, g.surface
+        );
+        head += &format!(",{}", g.name);
+        // Ten of both loads, in microstrain.
+        row += &format!(",{}", 1e7 * (s.values[(i, 0)] + s.values[(i, 1)]));
+    }
+    job += &format!("[measured]\nstrain = \"strain.csv\"\n{errors}");
+    let files = files()
+        .with("recover.toml", job)
+        .with("strain.csv", format!("{head}\n{row}\n"));
+    let job = Job::read("recover.toml", &files).unwrap();
+    let got = recover_runs(&job, &Context::new(&files)).unwrap();
+    assert_eq!(got.loads.len(), 2);
+    for (planned, got) in placed.load_sigma.iter().zip(&got.loads) {
+        let value = got.value;
+        assert!((value - 10.0).abs() < 1e-6, "{value}");
+        // Only the chi-square of readings without error could differ, and it widens nothing.
+        let ratio = got.sigma / planned.sigma;
+        assert!((ratio - 1.0).abs() < 0.01, "{} {ratio}", planned.name);
+        assert!(planned.sigma_as_glued.unwrap() > planned.sigma);
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Decks in `result.json` and in words.
 
-use super::Checked;
 use crate::app::deck::{DeckModel, model_of_deck};
+use crate::app::fault::FaultList;
 use crate::app::words::short;
 use crate::app::work::Work;
 use crate::model::Model;
@@ -39,11 +39,16 @@ pub struct DeckEntry {
     pub(super) model: Option<Model>,
 }
 
-pub(super) fn look(work: &mut Work, base: &Path, given: &str, bytes: &[u8], found: &mut Checked) {
+pub(super) fn look(
+    work: &mut Work,
+    base: &Path,
+    given: &str,
+    bytes: &[u8],
+) -> (DeckEntry, FaultList) {
     let read = model_of_deck(&mut work.inputs, base, given, bytes);
     work.findings.extend(read.findings.iter().cloned());
-    found.faults.extend(read.faults.iter().cloned());
-    found.decks.push(DeckEntry::of(read));
+    let faults = read.faults.clone();
+    (DeckEntry::of(read), faults)
 }
 
 impl DeckEntry {

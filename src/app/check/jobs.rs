@@ -1,6 +1,6 @@
 //! A job: its own faults, then the files it names.
 
-use super::{Checked, look as look_at};
+use super::checked::Checked;
 use crate::app::deck;
 use crate::app::fault::Fault;
 use crate::app::job::{self, HoldOut, Job, NamedFile};
@@ -12,7 +12,10 @@ use crate::model::Model;
 use crate::units::check_units;
 use std::path::Path;
 
-pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checked) {
+/// Looks into a file: of a folder, as named.
+type Look = fn(&mut Work, &Path, &str, &mut Checked);
+
+pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checked, into: Look) {
     let job = match job::read_job(&mut work.inputs, &base.join(given)) {
         Ok(job) => job,
         Err(f) => return found.faults.extend(f),
@@ -24,7 +27,7 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
         job.gauges.len(),
         job.units.name()
     ));
-    files(work, &job, found);
+    files(work, &job, found, into);
     if let Some(m) = &job.measured {
         match job::strain::read_strain(&mut work.inputs, &job, &m.strain) {
             Ok(t) => work.findings.extend(gauges_and_strain(&job, &t.gauges)),
@@ -41,12 +44,12 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
 }
 
 /// Opens every file that the job names; decks and results are looked into.
-fn files(work: &mut Work, job: &Job, found: &mut Checked) {
+fn files(work: &mut Work, job: &Job, found: &mut Checked, into: Look) {
     if let Some(m) = &job.model {
         let before = found.decks.len();
         for named in std::iter::once(&m.deck).chain(&m.results) {
             match work.inputs.read_named(job, named) {
-                Ok(_) => look_at(work, &job.folder, &named.given, found),
+                Ok(_) => into(work, &job.folder, &named.given, found),
                 Err(f) => found.faults.push(f),
             }
         }

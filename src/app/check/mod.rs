@@ -1,8 +1,9 @@
 //! `check`: what is in the files, every fault, and whether deck and results belong together.
 //!
-//! [`kind`] tells files apart by content; [`decks`] and [`results`] describe them; [`jobs`] follows a job to the files it names;
+//! [`kind`] tells files apart by content; [`checked`] is the answer; [`decks`] and [`results`] describe them; [`jobs`] follows a job to the files it names;
 //! [`together`] compares.
 
+mod checked;
 mod decks;
 mod jobs;
 mod kind;
@@ -10,39 +11,14 @@ mod results;
 mod together;
 
 use super::context::Context;
-use super::fault::{FaultList, Faults};
-use super::outcome::{Answer, Outcome, StatedUnits};
+use super::fault::Faults;
+use super::outcome::Outcome;
 use super::work::Work;
+pub use checked::Checked;
 pub use decks::DeckEntry;
 use kind::{Kind, kind_of};
 pub use results::ResultEntry;
-use serde::{Serialize, Serializer};
 use std::path::{Path, PathBuf};
-
-/// What was found in all files.
-#[derive(Default, Serialize)]
-pub struct Checked {
-    /// Decks.
-    pub decks: Vec<DeckEntry>,
-    /// Result files.
-    pub results: Vec<ResultEntry>,
-    /// Every fault; where there is one, the files are bad input.
-    #[serde(serialize_with = "as_lines")]
-    pub faults: FaultList,
-    /// Jobs in words.
-    #[serde(skip)]
-    pub jobs: Vec<String>,
-    #[serde(skip)]
-    units: StatedUnits,
-}
-
-fn as_lines<S: Serializer>(faults: &FaultList, s: S) -> Result<S::Ok, S::Error> {
-    s.collect_seq(faults.iter().map(ToString::to_string))
-}
-
-impl Answer for Checked {
-    const COMMAND: &'static str = "check";
-}
 
 /// What is in decks, results and jobs, every fault, and whether they belong together. Faults of the files are part of the answer.
 ///
@@ -67,8 +43,16 @@ fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checked) {
         Err(f) => return found.faults.push(f),
     };
     match kind_of(given, &bytes) {
-        Kind::Job => jobs::look(work, base, given, found),
-        Kind::Deck => decks::look(work, base, given, &bytes, found),
-        Kind::Results => results::look(work, given, bytes, found),
+        Kind::Job => jobs::look(work, base, given, found, look),
+        Kind::Deck => {
+            let (entry, faults) = decks::look(work, base, given, &bytes);
+            found.faults.extend(faults);
+            found.decks.push(entry);
+        }
+        Kind::Results => {
+            let (entry, faults) = results::look(work, given, bytes);
+            found.faults.extend(faults);
+            found.results.extend(entry);
+        }
     }
 }

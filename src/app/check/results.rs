@@ -1,7 +1,6 @@
 //! Result files in `result.json` and in words. Every block is decoded, so that damage shows.
 
-use super::Checked;
-use crate::app::fault::Fault;
+use crate::app::fault::{Fault, FaultList};
 use crate::app::files::FileBytes;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
@@ -79,22 +78,22 @@ impl ResultEntry {
     }
 }
 
-pub(super) fn look(work: &mut Work, given: &str, bytes: FileBytes, found: &mut Checked) {
-    let read = ResultsFile::salvage(&bytes, given);
-    let (entry, findings, faults) = match read {
-        Ok(read) => describe(given, &bytes, &read),
-        Err(e) => {
-            return found.faults.push(Fault::of(
-                given,
-                "results",
-                e.to_string(),
-                "write the file again",
-            ));
+pub(super) fn look(
+    work: &mut Work,
+    given: &str,
+    bytes: FileBytes,
+) -> (Option<ResultEntry>, FaultList) {
+    match ResultsFile::salvage(&bytes, given) {
+        Ok(read) => {
+            let (entry, findings, faults) = describe(given, &bytes, &read);
+            work.findings.extend(findings);
+            (Some(entry), faults)
         }
-    };
-    work.findings.extend(findings);
-    found.faults.extend(faults);
-    found.results.push(entry);
+        Err(e) => {
+            let fault = Fault::of(given, "results", e.to_string(), "write the file again");
+            (None, vec![fault])
+        }
+    }
 }
 
 fn describe(

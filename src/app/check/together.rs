@@ -1,6 +1,6 @@
 //! Deck against results.
 
-use super::Checked;
+use super::checked::Checked;
 use super::decks::DeckEntry;
 use crate::app::deck::model_of_op2;
 use crate::app::work::Work;

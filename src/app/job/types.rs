@@ -493,11 +493,11 @@ pub struct Placement {
     pub criterion: Criterion,
     /// Smallest distance between gauges; default 0.
     pub spacing: f64,
-    /// Noise, microstrain; default 1.
+    /// Noise, microstrain; default: that of `[measured]`, else 1.
     pub noise_microstrain: f64,
     /// Gluing tolerance, degrees, 1 sd; default 0.
     pub angle_tolerance_deg: f64,
-    /// Model uncertainty, of the predicted strain; default 0.
+    /// Model uncertainty, of the predicted strain; default: that of `[measured]`, else 0.
     pub model_uncertainty_rel: f64,
     /// Seed of everything random.
     pub seed: u64,

@@ -1,6 +1,7 @@
 //! How many gauges: what each number of them gives, and what the next one buys.
 
 use super::choose::{Refused, choose_once};
+use super::judge::chosen_as_recovered;
 use super::outcome::{BoughtSigma, CurvePoint};
 use super::pool::Kind;
 use super::task::Task;
@@ -46,7 +47,12 @@ pub(super) fn curve(
         };
         let mut sigma = vec![0.0; k];
         for (c, &l) in task.order.iter().enumerate() {
-            sigma[l] = q.sigma[c] * task.scales[l] * units[l].factor;
+            sigma[l] = q.sigma[c];
+        }
+        let recovered = chosen_as_recovered(task, &spec, &chosen.channels);
+        let mut sigma = recovered.unwrap_or(sigma);
+        for (l, s) in sigma.iter_mut().enumerate() {
+            *s *= task.scales[l] * units[l].factor;
         }
         let all: Vec<&Vec<f64>> = rows.iter().chain(&task.kept_rows).collect();
         let sds = chosen.channels.iter().map(|c| c.sd);

@@ -1,6 +1,6 @@
 //! The gauges that the job already has, by the same measures.
 
-use super::judge::{in_job_order, sigma_rows};
+use super::judge::{as_recovered, in_job_order, sigma_rows};
 use super::outcome::{Installed, InstalledQuality, WorstLoss};
 use super::pool::MICRO;
 use super::task::Task;
@@ -9,13 +9,12 @@ use crate::app::outcome::finite;
 use crate::app::strain::lay_gauges;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
-use crate::linalg::spd;
 use crate::placement::candidates::Candidates;
 use crate::placement::quality::judge_rows;
 use crate::placement::{self, Spec, place};
 use crate::sensitivity::from_cases;
 
-/// The installed layout by the same measures, noise alone; `None` without gauges in the job.
+/// The installed layout by the same measures, its determinant with noise alone; `None` without gauges in the job.
 pub(super) fn installed(
     work: &mut Work,
     task: &Task,
@@ -42,19 +41,20 @@ pub(super) fn installed(
     };
     let k = cases.len();
     // Without the gauges that stay: they are among the installed ones.
-    let mut spec = spec.clone();
-    for row in &task.kept_rows {
-        spd::add_outer(&mut spec.prior, row, -1.0);
-    }
-    let noise = job.placement.noise_microstrain * MICRO;
+    let spec = Spec {
+        prior: task.without_kept(spec),
+        ..spec.clone()
+    };
+    let noise = job.placement.noise_microstrain;
     let order = &task.order;
-    let rows: Vec<Vec<f64>> = (0..gauges.len())
+    let strain: Vec<(Vec<f64>, f64)> = (0..gauges.len())
         .map(|g| {
-            (0..k)
-                .map(|l| s.values[(g, order[l])] * scales[order[l]] / noise)
-                .collect()
+            let of = |&l: &usize| s.values[(g, l)] * scales[l] / MICRO;
+            (order.iter().map(of).collect(), noise)
         })
         .collect();
+    let over_noise = |(row, noise): &(Vec<f64>, f64)| row.iter().map(|v| v / noise).collect();
+    let rows: Vec<Vec<f64>> = strain.iter().map(over_noise).collect();
     let Some(q) = judge_rows(&rows, &spec.prior, k).map(|q| in_job_order(q, order)) else {
         return Ok(Some(Installed {
             gauges: gauges.len(),
@@ -80,12 +80,13 @@ pub(super) fn installed(
         place(&plain, &other).ok().map(|l| l.upper_bound)
     };
     let log_det = crate::placement::quality::value(&rows, &spec.prior, k, &spec.criterion);
+    let recovered = as_recovered(task, &spec.prior, &strain);
     let quality = InstalledQuality {
         log_det,
         upper_bound: bound,
         condition_number: finite(s.condition_number()),
         condition_number_scaled: finite(s.condition_number_scaled()),
-        load_sigma: sigma_rows(job, &s, &q, scales),
+        load_sigma: sigma_rows(job, &s, recovered.as_deref(), &q, scales),
         worst_loss: WorstLoss {
             gauge: s.gauges[q.worst].clone(),
             leverage: q.leverage[q.worst],

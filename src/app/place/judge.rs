@@ -1,14 +1,17 @@
 //! What is to be said of a layout.
 
-use super::choose::Chosen;
+use super::choose::{Channel, Chosen};
 use super::outcome::PlacedGauge;
+use super::task::Task;
 use crate::app::job::Job;
 use crate::app::strain::{LoadSigma, load_units};
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
+use crate::linalg::spd;
 use crate::placement::quality::Quality;
 use crate::placement::{Loss, Spec};
 use crate::sensitivity::Sensitivity;
+use crate::units::Quantity;
 
 /// The standard deviations in job order.
 pub(super) fn in_job_order(mut q: Quality, order: &[usize]) -> Quality {
@@ -19,35 +22,153 @@ pub(super) fn in_job_order(mut q: Quality, order: &[usize]) -> Quality {
     q
 }
 
-/// Standard deviations of the loads in report units.
+/// Standard deviations that `recover` states for loads of their expected size `e`, before any widening, in shares of `e` and job order:
+/// `sigma_l^2 = [(P + sum_g a_g a_g' / sd_g^2)^-1]_ll + u^2`, `sd_g^2 = noise^2 + u^2 a_g'a_g`, with `a_g` the strain of gauge `g` under
+/// the loads of size `e`, `u` the model uncertainty, `P` what is known of loads beforehand. Tolerances of gluing have no part in it.
+/// `prior` is `P`; `strain` has `a_g` in the candidates' order, microstrain, with the noise of each gauge. `None` where the gauges do not
+/// tell the loads.
+pub(super) fn as_recovered(
+    task: &Task,
+    prior: &[f64],
+    strain: &[(Vec<f64>, f64)],
+) -> Option<Vec<f64>> {
+    let k = task.cases.len();
+    let u = task.job.placement.model_uncertainty_rel;
+    let mut m = prior.to_vec();
+    for (row, noise) in strain {
+        let variance = noise * noise + u * u * spd::dot(row, row);
+        spd::add_outer(&mut m, row, 1.0 / variance);
+    }
+    let inverse = spd::gram_of_lower(&spd::inverse_lower(&spd::cholesky(&m, k)?, k), k);
+    let mut out = vec![0.0; k];
+    for (c, &l) in task.order.iter().enumerate() {
+        out[l] = (inverse[c * k + c] + u * u).sqrt();
+    }
+    Some(out)
+}
+
+/// [`as_recovered`] of chosen channels beside the gauges that stay.
+pub(super) fn chosen_as_recovered(
+    task: &Task,
+    spec: &Spec,
+    channels: &[Channel],
+) -> Option<Vec<f64>> {
+    let p = &task.job.placement;
+    let chosen = channels.iter().map(|c| {
+        let own = p.noise_by_bridge.iter().find(|(b, _)| b.name() == c.bridge);
+        let strain = c.row.iter().map(|v| v * c.sd).collect();
+        (strain, own.map_or(p.noise_microstrain, |n| n.1))
+    });
+    let kept = task.kept_strain.iter();
+    let kept = kept.map(|row| (row.clone(), p.noise_microstrain));
+    let strain: Vec<(Vec<f64>, f64)> = chosen.chain(kept).collect();
+    as_recovered(task, &task.without_kept(spec), &strain)
+}
+
+/// Standard deviations of the loads in report units: as recovered, and as glued where that is more.
 pub(super) fn sigma_rows(
     job: &Job,
     s: &Sensitivity,
+    recovered: Option<&[f64]>,
     q: &Quality,
     scales: &[f64],
 ) -> Vec<LoadSigma> {
+    let p = &job.placement;
+    let tolerances =
+        p.angle_tolerance_deg > 0.0 || p.position_tolerance > 0.0 || p.gauge_factor_rel > 0.0;
+    let as_glued = |l: usize| q.sigma[l].hypot(p.model_uncertainty_rel);
     let names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
     load_units(job, &names)
         .into_iter()
         .zip(names)
         .enumerate()
-        .map(|(l, (u, name))| LoadSigma {
-            name,
-            sigma: q.sigma[l] * scales[l] * u.factor,
-            unit: u.name,
+        .map(|(l, (u, name))| {
+            let share = recovered.map_or_else(|| as_glued(l), |r| r[l]);
+            LoadSigma {
+                name,
+                sigma: share * scales[l] * u.factor,
+                sigma_as_glued: tolerances.then(|| as_glued(l) * scales[l] * u.factor),
+                unit: u.name,
+            }
         })
         .collect()
+}
+
+/// Strain, microstrain, beyond which foil gauges tire within a test (makers rate their fatigue life at 1,500 to 2,000) and steel yields.
+const STRAIN: f64 = 2000.0;
+/// What a technician with a rule can keep, mm.
+const PLACE: f64 = 1.0;
+
+/// Findings on what the workshop has to keep.
+fn judge_workshop(work: &mut Work, job: &Job, placed: &[PlacedGauge]) {
+    let strained = placed
+        .iter()
+        .filter(|g| g.expected_microstrain > STRAIN)
+        .max_by(|a, b| a.expected_microstrain.total_cmp(&b.expected_microstrain));
+    if let Some(g) = strained {
+        let n = placed
+            .iter()
+            .filter(|g| g.expected_microstrain > STRAIN)
+            .count();
+        work.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "expected-strain-high",
+                &g.name,
+                format!(
+                    "{n} gauges see more than {STRAIN:.0} microstrain if all loads of expected size add up, `{}` sees {:.0}: foil gauges tire and mild steel yields",
+                    g.name, g.expected_microstrain
+                ),
+                "state smaller `expected` loads if they are too large, or exclude these elements in [candidates]",
+            )
+            .with_numbers(g.expected_microstrain, STRAIN),
+        );
+    }
+    let mm = job.units.unit(Quantity::Length).si * 1000.0;
+    let budget = |g: &PlacedGauge| g.position_budget.map_or(f64::INFINITY, |b| b * mm);
+    let tight = placed
+        .iter()
+        .filter(|g| budget(g) < PLACE)
+        .min_by(|a, b| budget(a).total_cmp(&budget(b)));
+    if let Some(g) = tight {
+        let n = placed.iter().filter(|g| budget(g) < PLACE).count();
+        work.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "position-budget-small",
+                &g.name,
+                format!(
+                    "{n} gauges have to be glued within {PLACE} mm, `{}` within {:.2} mm: a load moves by a twentieth of its expected size otherwise",
+                    g.name,
+                    budget(g)
+                ),
+                "state [placement] position_tolerance (1 to 3 mm is usual), so that steep places are avoided",
+            )
+            .with_numbers(budget(g), PLACE),
+        );
+    }
+    if job.placement.model_uncertainty_rel == 0.0 {
+        work.findings.push(Finding::new(
+            Severity::Info,
+            "model-uncertainty-unstated",
+            "placement.model_uncertainty_rel",
+            "no model uncertainty is stated: gauges are chosen, and sigmas planned, as if the model's strain were exact",
+            "state model_uncertainty_rel in [placement] or [measured] (0.02 is a good model away from welds)",
+        ));
+    }
 }
 
 /// Findings on the layout.
 pub(super) fn judge_layout(
     work: &mut Work,
+    job: &Job,
     layout: &Chosen,
     q: &Quality,
     spec: &Spec,
     placed: &[PlacedGauge],
     k: usize,
 ) {
+    judge_workshop(work, job, placed);
     if q.worst_loss == 0.0 {
         work.findings.push(Finding::new(
             Severity::Warning,

@@ -75,7 +75,8 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
         None => None,
     };
     work.findings.extend(check_separability(&s));
-    judge::judge_layout(work, &chosen, &quality, &spec, &gauges, k);
+    judge::judge_layout(work, job, &chosen, &quality, &spec, &gauges, k);
+    let recovered = judge::chosen_as_recovered(&task, &spec, &chosen.channels);
     let how_many = if job.placement.curve.is_empty() {
         Vec::new()
     } else {
@@ -97,7 +98,7 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
             places: task.sites.len(),
             rows: kinds.iter().map(|k| k.candidates.n_rows()).sum(),
         },
-        load_sigma: judge::sigma_rows(job, &s, &quality, &task.scales),
+        load_sigma: judge::sigma_rows(job, &s, recovered.as_deref(), &quality, &task.scales),
         worst_loss: WorstLoss {
             gauge: gauges[quality.worst].gauge.name.clone(),
             leverage: quality.leverage[quality.worst],

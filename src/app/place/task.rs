@@ -30,6 +30,8 @@ pub(super) struct Task<'a> {
     pub kept: Vec<Gauge>,
     /// Their rows, columns in the candidates' order, over their standard deviations.
     pub kept_rows: Vec<Vec<f64>>,
+    /// The same in microstrain.
+    pub kept_strain: Vec<Vec<f64>>,
 }
 
 impl<'a> Task<'a> {
@@ -77,6 +79,7 @@ impl<'a> Task<'a> {
                 .collect();
             let sd = p.noise_microstrain.hypot(rel * spd::dot(&row, &row).sqrt());
             self.kept_rows.push(row.iter().map(|v| v / sd).collect());
+            self.kept_strain.push(row);
         }
         let points: Vec<_> = laid.iter().map(|g| [g.position, g.position]).collect();
         let here: Vec<Vec3> = self
@@ -124,6 +127,15 @@ impl<'a> Task<'a> {
             spd::add_outer(&mut spec.prior, row, 1.0);
         }
         spec
+    }
+
+    /// What is known beforehand without the gauges that stay.
+    pub fn without_kept(&self, spec: &Spec) -> Vec<f64> {
+        let mut prior = spec.prior.clone();
+        for row in &self.kept_rows {
+            spd::add_outer(&mut prior, row, -1.0);
+        }
+        prior
     }
 
     fn criterion(&self) -> Criterion {
@@ -232,6 +244,7 @@ pub(super) fn task<'a>(
         sites,
         kept: Vec::new(),
         kept_rows: Vec::new(),
+        kept_strain: Vec::new(),
     }
 }
 

@@ -2,13 +2,13 @@
 
 use crate::app::deck::{DeckModel, moduli_and_densities, read_model};
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::{Job, JobLoad, LoadActs, Reference, Role};
+use crate::app::job::{Job, JobLoad, Reference, Role};
 use crate::app::solved::{MODES, cases_of_job, solve_kept};
 use crate::app::work::Work;
 use crate::fe::from_results::{Displacements, ReadOptions, solution_from_file};
-use crate::fe::{CaseResult, Solution, SolveOptions, UnitLoad};
+use crate::fe::{CaseResult, Solution, SolveOptions};
 use crate::gauge::CornerRows;
-use crate::model::{Model, Vec3};
+use crate::model::Model;
 use crate::sensitivity::{Load, LoadCaseOf};
 use crate::units::check_units;
 use nastran::results::ResultsFile;
@@ -234,83 +234,4 @@ fn find_cases(job: &Job, solutions: &[Solution]) -> Result<Vec<(usize, usize)>, 
 
 fn has_strain(c: &CaseResult) -> bool {
     !c.shells.elements.is_empty() || !c.beams.elements.is_empty()
-}
-
-/// Unit loads of the job, each of its size `applied`.
-///
-/// # Errors
-/// Grids and coordinate systems that the deck lacks.
-pub fn unit_loads(job: &Job, model: &Model) -> Result<Vec<UnitLoad>, Faults> {
-    let mut faults = FaultList::new();
-    let loads = job
-        .loads
-        .iter()
-        .filter_map(|l| match l.acts {
-            // A set of temperatures alone heats the structure.
-            LoadActs::Set(sid)
-                if model.load_sets.iter().all(|s| s.sid != sid)
-                    && model.temperatures.iter().any(|t| t.sid == sid) =>
-            {
-                Some(UnitLoad::Temperature {
-                    set: sid,
-                    initial: None,
-                })
-            }
-            LoadActs::Set(sid) => Some(UnitLoad::Set(sid)),
-            LoadActs::Named => {
-                faults.push(Fault::at(
-                    &*job.file,
-                    l.line,
-                    "load.grid",
-                    format!("load `{}` acts nowhere", l.name),
-                    "add `grid` and `component`, or `load_set`",
-                ));
-                None
-            }
-            LoadActs::AtGrid {
-                grid,
-                component,
-                cid,
-            } => {
-                let (ix, frame) = (model.grid_ix(grid), model.frame_ix(cid));
-                let mut lacks = |field: &str, what: String| {
-                    faults.push(Fault::at(
-                        &*job.file,
-                        l.line,
-                        field,
-                        what,
-                        "correct the id, or name another deck",
-                    ));
-                };
-                if ix.is_none() {
-                    lacks(
-                        "load.grid",
-                        format!("load `{}`: the deck has no grid {grid}", l.name),
-                    );
-                }
-                if frame.is_none() {
-                    lacks(
-                        "load.cid",
-                        format!("load `{}`: the deck has no coordinate system {cid}", l.name),
-                    );
-                }
-                let (ix, frame) = (ix?, frame?);
-                let v = component.vector(l.applied);
-                let at = model.grids.get(ix.us())?.x;
-                let v = model.frames.get(frame.us())?.vector_to_basic(v, at);
-                let (force, moment) = if component.is_force() {
-                    (v, Vec3::zeros())
-                } else {
-                    (Vec3::zeros(), v)
-                };
-                Some(UnitLoad::AtGrid {
-                    grid: ix,
-                    force,
-                    moment,
-                })
-            }
-        })
-        .collect();
-    Faults::check(faults)?;
-    Ok(loads)
 }

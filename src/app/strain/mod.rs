@@ -4,12 +4,14 @@ mod covariance;
 mod fields;
 mod gauges;
 mod given;
+mod unit_loads;
 mod units;
 
 pub use covariance::{covariance_bytes, read_covariance};
-pub use fields::{Fields, read_fields, unit_loads};
+pub use fields::{Fields, read_fields};
 pub use gauges::{lay_gauges, side, spec_of, without_strain};
 pub use given::read_given;
+pub use unit_loads::unit_loads;
 pub use units::{LoadSigma, LoadUnits, load_units};
 
 use super::fault::{Fault, Faults};

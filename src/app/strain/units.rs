@@ -21,8 +21,11 @@ pub struct LoadUnits {
 pub struct LoadSigma {
     /// Load.
     pub name: String,
-    /// One standard deviation, report units.
+    /// One standard deviation, report units: what `recover` states for loads of their expected size, from noise and model uncertainty.
     pub sigma: f64,
+    /// The same with the tolerances of gluing and of the gauge factor, where the job states some.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sigma_as_glued: Option<f64>,
     /// Report unit.
     pub unit: String,
 }

@@ -31,6 +31,9 @@ pub(super) const HOLD_OUT: [&str; 3] = ["R10", "R11", "R12"];
 /// Noise of a reading, microstrain, and of a wheel force, kN.
 pub(super) const NOISE: (f64, f64) = (1.0, 0.06);
 
+/// Model uncertainty, of the predicted strain.
+const MODEL: f64 = 0.02;
+
 /// kN, kN m, m, kg, MPa.
 pub(super) fn report_units() -> ReportUnits {
     let mut units = ReportUnits::of(crate::units::UnitSystem::MmTS);
@@ -66,15 +69,15 @@ fn wheel_loads() -> String {
 
 fn payload_loads() -> String {
     load("payload.FZ", PAYLOAD, "FZ", 40_000.0)
-        + &load("payload.MX", PAYLOAD, "MX", 1.0e7)
-        + &load("payload.MY", PAYLOAD, "MY", 2.0e7)
+        + &load("payload.MX", PAYLOAD, "MX", 5.0e6)
+        + &load("payload.MY", PAYLOAD, "MY", 1.0e7)
 }
 
 fn measured(strain: &str) -> String {
     let held: Vec<String> = HOLD_OUT.iter().map(|r| format!("\"{r}\"")).collect();
     format!(
         "[gauges]\nfile = \"2-place/gauges.csv\"\n\n[measured]\nstrain = \"{strain}\"\nnoise_microstrain = {:.1}\n\
-         model_uncertainty_rel = 0.02\nhold_out = [{}]\n\n",
+         model_uncertainty_rel = {MODEL}\nhold_out = [{}]\n\n",
         NOISE.0,
         held.join(", ")
     )
@@ -101,8 +104,9 @@ pub(super) fn plan(results: Option<&str>) -> String {
         + &payload_loads()
         + &format!(
             "[candidates]\nproperties = [{}]\nsurfaces = [\"top\", \"bottom\"]\nangle_step_deg = 15\n\n[placement]\ngauges = 24\n\
-             spacing = 60.0\nnoise_microstrain = 1.0\nangle_tolerance_deg = 1.0\n",
-            properties.join(", ")
+             spacing = 60.0\nnoise_microstrain = {:.1}\nmodel_uncertainty_rel = {MODEL}\nangle_tolerance_deg = 1.0\nposition_tolerance = 2.0\n",
+            properties.join(", "),
+            NOISE.0
         )
 }
 

@@ -1,9 +1,10 @@
 //! The smallest size of every effect that a record would have shown.
 
 use super::change::Change;
+use super::column_of::ColumnOf;
 use super::effect_units::unit_of_change;
-use super::examine::DECISIVE;
-use super::fitted::{ColumnOf, MotionFit};
+use super::fitted::MotionFit;
+use super::found::DECISIVE;
 use super::gls::Basis;
 use super::limits::tolerance_limit;
 use super::outcome::Smallest;

@@ -3,10 +3,11 @@
 use super::at_rest::rest_row;
 use super::candidate::Candidate;
 use super::change::{Assembled, Change, assemble};
+use super::column_of::ColumnOf;
 use super::columns::{fault_column, nuisance, parameter_column, slices};
 use super::corrections::adjustments;
 use super::design::{Bins, Design, design};
-use super::fitted::{ColumnOf, MotionFit, Part, whitened};
+use super::fitted::{MotionFit, Part, whitened};
 use super::frame::MotionFrame;
 use super::gls::{PriorColumn, Solved};
 use super::limits::{plausible, within_tolerance};

@@ -2,6 +2,7 @@
 
 use super::at_rest::RestRow;
 use super::change::{Assembled, Change};
+use super::column_of::ColumnOf;
 use super::design::{Bins, Design};
 use super::gls::PriorColumn;
 use super::noise::Whitener;
@@ -17,19 +18,6 @@ pub struct Part {
     pub shape: Change,
     /// 1 / gain of a gain fault, delay in s of a delay fault; not used otherwise.
     pub fault: f64,
-}
-
-/// What a column of the least squares stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ColumnOf {
-    /// A parameter of the vehicle.
-    Parameter(usize),
-    /// The fault of a part (its number in the set).
-    Fault(usize),
-    /// The gain of a channel (its number in the design) within its tolerance.
-    Gain(usize),
-    /// The timing of a channel within its tolerance.
-    Delay(usize),
 }
 
 /// A fit.

@@ -2,7 +2,8 @@
 
 use super::candidate::{Candidate, Sign};
 use super::change::Change;
-use super::fitted::{ColumnOf, MotionFit};
+use super::column_of::ColumnOf;
+use super::fitted::MotionFit;
 use super::frame::MotionFrame;
 use super::gls::{PriorColumn, Solved, solved};
 use crate::vehicle::term::{Side, Term, share_done};

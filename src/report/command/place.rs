@@ -5,6 +5,7 @@ use crate::app::fault::Faults;
 use crate::app::outcome::Outcome;
 use crate::app::output::Output;
 use crate::app::place::{Installed, InstalledQuality, Placed};
+use crate::app::strain::LoadSigma;
 use crate::placement::Role;
 use crate::report::figure::CountPoint;
 use crate::report::page::{Paper, number};
@@ -42,10 +43,11 @@ impl Report for Outcome<Placed> {
             s,
             &self.findings,
             &numbers(self),
+            &load_sigma(self),
             &how_many(self),
         );
         write_page(out, self, page.on_paper(Paper::Signed))?;
-        let sheets = gauge_sheets(&self.gauges, model, s);
+        let sheets = gauge_sheets(&self.gauges, model, s, &self.load_sigma, &self.worst_loss);
         write_book(out, self, job, "gauges.xlsx", &sheets)
     }
 
@@ -82,6 +84,21 @@ impl Report for Outcome<Placed> {
                 p.name, p.element, p.surface, p.angle_deg
             );
         }
+        for l in load_sigma(self) {
+            let glued = match l[2].as_str() {
+                "" => String::new(),
+                v => format!(" ({v} as glued)"),
+            };
+            let _ = writeln!(text, "  {} sigma {}{glued} {}", l[0], l[1], l[3]);
+        }
+        let worst = &self.worst_loss;
+        let _ = writeln!(
+            text,
+            "losing {} (leverage {:.2}) leaves {:.0} % of the efficiency",
+            worst.gauge,
+            worst.leverage,
+            100.0 * worst.efficiency_left
+        );
         for p in &self.how_many {
             let sigma: Vec<String> = p
                 .load_sigma
@@ -162,6 +179,14 @@ fn numbers(placed: &Placed) -> Vec<(String, String)> {
             format!("{:.2}", placed.sensitivity.condition_number_scaled()),
         ),
     ];
+    let worst = &placed.worst_loss;
+    out.push((
+        format!(
+            "Efficiency left when {} is lost, the worst loss",
+            worst.gauge
+        ),
+        format!("{:.3}", worst.efficiency_left),
+    ));
     let mut row = |name: &str, value: Option<f64>, digits: usize| {
         out.extend(value.map(|v| (name.to_owned(), format!("{v:.digits$}"))));
     };
@@ -182,6 +207,15 @@ fn numbers(placed: &Placed) -> Vec<(String, String)> {
         4,
     );
     out
+}
+
+/// Load, sigma, sigma as glued, unit.
+fn load_sigma(placed: &Placed) -> Vec<Vec<String>> {
+    let row = |l: &LoadSigma| {
+        let glued = l.sigma_as_glued.map(number).unwrap_or_default();
+        vec![l.name.clone(), number(l.sigma), glued, l.unit.clone()]
+    };
+    placed.load_sigma.iter().map(row).collect()
 }
 
 fn how_many(placed: &Placed) -> HowMany {

@@ -1,14 +1,43 @@
 //! The gauge plan: where each gauge goes, what the technician takes along, and what it reads.
 
 use super::book::{Cell, Sheet};
-use crate::app::place::PlacedGauge;
+use crate::app::place::{PlacedGauge, WorstLoss};
+use crate::app::strain::LoadSigma;
 use crate::model::Model;
 use crate::report::strain::corner_distances;
 use crate::sensitivity::Sensitivity;
 
-/// Sheets `Gauges` (basic frame, the model's length unit), `Gluing sheet` and `Sensitivity` (microstrain per job unit of each load).
-pub fn gauge_sheets(placed: &[PlacedGauge], model: &Model, s: &Sensitivity) -> Vec<Sheet> {
-    vec![plan(placed), gluing(placed, model), sensitivity(s)]
+/// Sheets `Gauges` (basic frame, the model's length unit), `Gluing sheet`, `Loads` and `Sensitivity` (microstrain per job unit of each load).
+pub fn gauge_sheets(
+    placed: &[PlacedGauge],
+    model: &Model,
+    s: &Sensitivity,
+    load_sigma: &[LoadSigma],
+    worst: &WorstLoss,
+) -> Vec<Sheet> {
+    vec![
+        plan(placed),
+        gluing(placed, model),
+        loads(load_sigma, worst),
+        sensitivity(s),
+    ]
+}
+
+fn loads(load_sigma: &[LoadSigma], worst: &WorstLoss) -> Sheet {
+    let mut sheet = Sheet::new("Loads", &["load", "sigma", "sigma as glued", "unit"]);
+    for l in load_sigma {
+        sheet.rows.push(vec![
+            l.name.clone().into(),
+            l.sigma.into(),
+            l.sigma_as_glued.unwrap_or(f64::NAN).into(),
+            l.unit.clone().into(),
+        ]);
+    }
+    sheet.rows.push(vec![
+        format!("efficiency left when gauge {} is lost", worst.gauge).into(),
+        worst.efficiency_left.into(),
+    ]);
+    sheet
 }
 
 fn plan(placed: &[PlacedGauge]) -> Sheet {

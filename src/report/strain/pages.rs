@@ -72,9 +72,16 @@ pub fn place_page(
     s: &Sensitivity,
     findings: &[Finding],
     numbers: &[(String, String)],
+    load_sigma: &[Vec<String>],
     counts: &HowMany,
 ) -> Page {
     let mut sections = vec![Section::new("Layout", vec![Block::pairs(numbers)])];
+    sections.push(table_section(
+        "Standard deviation of the loads",
+        &["load", "sigma", "as glued", "unit"],
+        load_sigma,
+        "What `recover` will state for loads of their expected size, from noise and model uncertainty; as glued: with the tolerances of angle, place and gauge factor.",
+    ));
     sections.extend(model_section(Some(scene)));
     if !counts.points.is_empty() {
         sections.push(figure_section(

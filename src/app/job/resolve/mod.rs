@@ -49,6 +49,7 @@ pub(super) fn resolve_job(
     let criterion = placement::default_criterion(&loads);
     let model = load::model(&mut c, raw.model.as_ref());
     load::check_results(&mut c, model.as_ref(), &loads);
+    let measured = measured::measured(&mut c, raw.measured.as_ref(), raw.fleet.as_ref());
     Job {
         read: Vec::new(),
         title: raw.title.map_or(stem, |t| t.into_inner()),
@@ -61,8 +62,13 @@ pub(super) fn resolve_job(
         gauges: gauge::gauges(&mut c, &raw.gauge),
         gauge_file: gauge::gauge_file(&mut c, raw.gauges.as_ref()),
         candidates: placement::candidates(&mut c, raw.candidates.as_ref()),
-        placement: placement::placement(&mut c, raw.placement.as_ref(), criterion),
-        measured: measured::measured(&mut c, raw.measured.as_ref(), raw.fleet.as_ref()),
+        placement: placement::placement(
+            &mut c,
+            raw.placement.as_ref(),
+            measured.as_ref(),
+            criterion,
+        ),
+        measured,
         runs: measured::runs(&mut c, raw.runs.as_ref(), report_units),
         ballast: measured::ballast(&mut c, raw.ballast.as_ref()),
         payload: measured::payload(&mut c, raw.payload.as_ref()),

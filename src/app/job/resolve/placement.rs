@@ -147,15 +147,19 @@ fn boxes(c: &mut Collector, raw: &Option<Spanned<Vec<Vec<[f64; 2]>>>>, key: &str
 pub(super) fn placement(
     c: &mut Collector,
     raw: Option<&Spanned<RawPlacement>>,
+    measured: Option<&Measured>,
     criterion: Criterion,
 ) -> Placement {
+    // What is stated of the measurement holds for its plan, until the plan says otherwise.
+    let noise = measured.map_or(DEFAULT_NOISE_MICROSTRAIN, |m| m.noise_microstrain);
+    let model = measured.map_or(0.0, |m| m.model_uncertainty_rel);
     let mut out = Placement {
         gauges: None,
         criterion,
         spacing: 0.0,
-        noise_microstrain: DEFAULT_NOISE_MICROSTRAIN,
+        noise_microstrain: noise,
         angle_tolerance_deg: 0.0,
-        model_uncertainty_rel: 0.0,
+        model_uncertainty_rel: model,
         seed: 1,
         position_tolerance: 0.0,
         gauge_factor_rel: 0.0,
@@ -193,7 +197,7 @@ pub(super) fn placement(
         .unwrap_or(0.0);
     out.noise_microstrain = c
         .positive(&raw.noise_microstrain, "placement.noise_microstrain")
-        .unwrap_or(DEFAULT_NOISE_MICROSTRAIN);
+        .unwrap_or(noise);
     out.angle_tolerance_deg = c
         .at_least_zero(&raw.angle_tolerance_deg, "placement.angle_tolerance_deg")
         .unwrap_or(0.0);
@@ -202,7 +206,7 @@ pub(super) fn placement(
             &raw.model_uncertainty_rel,
             "placement.model_uncertainty_rel",
         )
-        .unwrap_or(0.0);
+        .unwrap_or(model);
     out.seed = raw.seed.as_ref().map_or(1, |s| *s.get_ref());
     out.position_tolerance = c
         .at_least_zero(&raw.position_tolerance, "placement.position_tolerance")
