@@ -49,6 +49,10 @@ pub mod study;
 pub mod units;
 pub mod vehicle;
 
+#[cfg(test)]
+#[path = "../nastran/tests/support/mod.rs"]
+mod support;
+
 pub use app::context::{Context, Disk};
 pub use app::fault::{Fault, Faults};
 pub use app::job::Job;

@@ -1,15 +1,13 @@
 //! Inputs that are cut, devices or no decks at all: every command that reads them ends in a sentence and not with 0.
 
+#[path = "../nastran/tests/support/mod.rs"]
+mod support;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 fn shared() -> Option<PathBuf> {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/nastran");
-    let found = path.is_dir();
-    if !found {
-        eprintln!("skipped: {} is not here", path.display());
-    }
-    found.then_some(path)
+    support::shared("nastran")
 }
 
 fn scratch(name: &str) -> PathBuf {

@@ -1,5 +1,8 @@
 //! `identify` from job to result.json.
 
+#[path = "../nastran/tests/support/mod.rs"]
+mod support;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -23,12 +26,9 @@ fn folder(name: &str) -> PathBuf {
 
 #[test]
 fn the_control_job_gives_the_contracts_keys_and_a_closed_mass_balance() {
-    let case = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../shared/hidden_effects/dynamics/dev-d1/job.toml");
-    if !case.exists() {
-        eprintln!("skipped: {} is absent", case.display());
+    let Some(case) = support::shared("hidden_effects/dynamics/dev-d1/job.toml") else {
         return;
-    }
+    };
     let out = folder("identify_control");
     let output = run(&case, &out);
     assert!(
@@ -126,12 +126,9 @@ fn bad_records_end_with_code_2_and_name_file_line_and_remedy() {
 /// levers say.
 #[test]
 fn the_chassis_force_is_told_by_mass_by_springs_and_at_the_seats_of_the_leaf() {
-    let case =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/hidden_effects/dynamics/dev-d1");
-    if !case.exists() {
-        eprintln!("skipped: {} is absent", case.display());
+    let Some(case) = support::shared("hidden_effects/dynamics/dev-d1") else {
         return;
-    }
+    };
     let out = folder("identify_chassis");
     std::fs::create_dir_all(&out).unwrap();
     let mut text = std::fs::read_to_string(case.join("job.toml")).unwrap();

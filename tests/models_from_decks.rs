@@ -1,5 +1,8 @@
 //! Every case of the shared set as a model: ids, places, frames, masses against what another reader and the solvers say.
 
+#[path = "../nastran/tests/support/mod.rs"]
+mod support;
+
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use strainbridge::app::deck::{DeckModel, read_model};
@@ -8,12 +11,7 @@ use strainbridge::fe::shell_frame::quad_axes;
 use strainbridge::model::{GridIx, Model, Vec3};
 
 fn shared() -> Option<PathBuf> {
-    let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/nastran"));
-    if !path.is_dir() {
-        eprintln!("skipped: no ../shared/nastran");
-        return None;
-    }
-    Some(path)
+    support::shared("nastran")
 }
 
 fn json(path: &Path) -> Option<Value> {

@@ -1,6 +1,8 @@
 //! The dynamic workflow on cases whose hidden effect is known, and on seeded ones of our own.
 
 mod moving;
+#[path = "../nastran/tests/support/mod.rs"]
+mod support;
 
 use moving::generator::{Background, Layout, hide};
 use moving::{Score, frame_of, score};
@@ -12,14 +14,7 @@ use strainbridge::reconcile::motion::{MotionFrame, MotionOutcome, examine};
 use strainbridge::vehicle::preset::{Wish, vehicle};
 
 fn shared(case: &str) -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../shared/hidden_effects/dynamics")
-        .join(case);
-    if folder.exists() {
-        return Some(folder);
-    }
-    eprintln!("skipped: {} is absent", folder.display());
-    None
+    support::shared(&format!("hidden_effects/dynamics/{case}"))
 }
 
 fn run(command: &str, job: &Path, out: &Path) -> serde_json::Value {

@@ -1,5 +1,8 @@
 //! The dynamic workflow on records that others measured: Silverbox (Wigren & Schoukens 2013), F-16 (Noel & Schoukens 2017).
 
+#[path = "../nastran/tests/support/mod.rs"]
+mod support;
+
 use std::collections::BTreeMap;
 use std::path::Path;
 use strainbridge::reconcile::Verdict;
@@ -20,13 +23,7 @@ fn frame(
     band: [f64; 2],
     measures: Measures,
 ) -> Option<MotionFrame> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../shared/hidden_effects/real")
-        .join(file);
-    let Ok(bytes) = std::fs::read(&path) else {
-        eprintln!("skipped: {} is absent", path.display());
-        return None;
-    };
+    let bytes = support::bytes(&format!("hidden_effects/real/{file}"))?;
     let all = read_csv(&bytes, Some(rate_hz)).unwrap();
     let part = |from: usize, to: usize| {
         let list = columns

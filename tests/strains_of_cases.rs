@@ -1,6 +1,9 @@
 //! Walks `../shared/nastran`: shell strain of every case, in the element and the basic frame, and displacements in basic, against
 //! `expected.json` (pyNastran's reading, rotated with the verified bisector frame). A new case needs no code.
 
+#[path = "../nastran/tests/support/mod.rs"]
+mod support;
+
 use nastran::bdf::{IncludeRequest, Loaded, Loader, read_deck};
 use nastran::results::ResultsFile;
 use serde_json::Value;
@@ -20,11 +23,10 @@ fn tolerance(word_bytes: u64) -> f64 {
 
 /// The set's cases: folder, case.json, expected.json.
 fn cases() -> Vec<(PathBuf, Value, Value)> {
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/nastran"));
-    let Ok(entries) = std::fs::read_dir(folder) else {
-        eprintln!("skipped: {} is absent", folder.display());
+    let Some(folder) = support::shared("nastran") else {
         return Vec::new();
     };
+    let entries = std::fs::read_dir(folder).unwrap();
     let json = |path: PathBuf| serde_json::from_slice(&std::fs::read(path).ok()?).ok();
     let mut all: Vec<_> = entries
         .flatten()
@@ -136,7 +138,7 @@ fn as_row(strain: [PlaneStrain; 2], z: [f64; 2], row: usize, is_fibre: bool) -> 
 
 /// The solution of a case's OP2, where it has both deck and OP2.
 fn solve(folder: &Path, case: &Value) -> Option<(Model, Solution)> {
-    let model = model(folder, case)?;
+    let model = model(&folder, case)?;
     let bytes = std::fs::read(folder.join(case["op2"].as_str()?)).unwrap();
     let file = ResultsFile::read(&bytes, "op2").unwrap();
     let solution = solution_from_results(&model, &[("op2", &file)], &ReadOptions::default());
@@ -335,15 +337,12 @@ fn displacements_of_every_case_turned_back_to_their_frames_are_those_of_the_file
 
 #[test]
 fn the_same_run_read_from_hdf5_gives_the_same_bar_strain_in_double_precision() {
-    let folder = Path::new(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../shared/nastran/msc_svanberg_beam"
-    ));
-    let Ok(h5) = std::fs::read(folder.join("static.h5")) else {
+    let Some(folder) = support::shared("nastran/msc_svanberg_beam") else {
         return;
     };
+    let h5 = std::fs::read(folder.join("static.h5")).unwrap();
     let op2 = std::fs::read(folder.join("static.op2")).unwrap();
-    let model = model(folder, &serde_json::json!({"bdf": "static.dat"})).unwrap();
+    let model = model(&folder, &serde_json::json!({"bdf": "static.dat"})).unwrap();
     let (h5, op2) = (
         ResultsFile::read(&h5, "static.h5").unwrap(),
         ResultsFile::read(&op2, "static.op2").unwrap(),

@@ -15,6 +15,10 @@ pub mod place;
 pub mod punch;
 pub mod results;
 
+#[cfg(test)]
+#[path = "../tests/support/mod.rs"]
+mod support;
+
 /// The example of README.md compiles.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -1,15 +1,15 @@
 //! Every result file of the shared set opens through the common front, told apart by content.
 
+mod support;
+
 use nastran::results::{ResultsError, ResultsFile};
-use std::path::Path;
 
 #[test]
 fn every_op2_punch_and_h5_of_the_set_opens_and_each_block_decodes_or_says_why_not() {
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/nastran"));
-    let Ok(cases) = std::fs::read_dir(folder) else {
-        eprintln!("skipped: {} is absent", folder.display());
+    let Some(folder) = support::shared("nastran") else {
         return;
     };
+    let cases = std::fs::read_dir(folder).unwrap();
     let mut n_files = 0;
     for case in cases.flatten().filter(|c| c.path().is_dir()) {
         for file in std::fs::read_dir(case.path())

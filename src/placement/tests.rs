@@ -6,17 +6,9 @@ mod workshop;
 use super::candidates::{Angles, Candidates, Choice, Scatter};
 use super::{Criterion, Spec, place, quality, quartic};
 use crate::linalg::spd;
+use crate::support::bytes as shared;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-
-fn shared(path: &str) -> Option<Vec<u8>> {
-    let full = format!("{}/../shared/{path}", env!("CARGO_MANIFEST_DIR"));
-    let bytes = std::fs::read(&full).ok();
-    if bytes.is_none() {
-        eprintln!("skipped: {full} is not there");
-    }
-    bytes
-}
 
 fn matrix(path: &str) -> Option<Vec<Vec<f64>>> {
     let text = String::from_utf8(shared(path)?).ok()?;

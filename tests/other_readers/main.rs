@@ -14,4 +14,6 @@ mod python;
 mod records;
 mod report;
 mod solve;
+#[path = "../../nastran/tests/support/mod.rs"]
+mod support;
 mod vehicle;

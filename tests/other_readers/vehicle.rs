@@ -1,6 +1,7 @@
 //! Accelerations in the files of other programs.
 
 use crate::python::read_by;
+use crate::support;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -24,12 +25,10 @@ fn identified(dir: &Path, text: &str, ending: &str) -> Vec<Value> {
 
 #[test]
 fn accelerations_in_rpc_iii_parquet_and_mdf4_give_the_parameters_of_the_table() {
-    let case = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../shared/hidden_effects/dynamics/dev-d1/job.toml");
-    let Ok(text) = std::fs::read_to_string(&case) else {
-        eprintln!("skipped: {} is absent", case.display());
+    let Some(case) = support::shared("hidden_effects/dynamics/dev-d1/job.toml") else {
         return;
     };
+    let text = std::fs::read_to_string(&case).unwrap();
     let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("accelerations");
     let _ = std::fs::remove_dir_all(&dir);
     std::fs::create_dir_all(&dir).unwrap();

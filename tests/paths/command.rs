@@ -3,15 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A file or folder of the shared reference material; `None`, with a message, where it is absent.
-pub fn shared(path: &str) -> Option<PathBuf> {
-    let full = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared")).join(path);
-    if !full.exists() {
-        eprintln!("skipped: {} is not there", full.display());
-        return None;
-    }
-    std::fs::canonicalize(full).ok()
-}
+pub use crate::support::shared;
 
 /// An empty folder for one test.
 pub fn scratch(name: &str) -> PathBuf {

@@ -5,4 +5,6 @@ mod command;
 mod frame;
 mod placement;
 mod sites;
+#[path = "../../nastran/tests/support/mod.rs"]
+mod support;
 mod wing;

@@ -8,10 +8,7 @@ use strainbridge::reconcile::strain::{FoundAnew, StrainFrame, examine, judged, p
 use strainbridge::reconcile::{GapBasis, Outcome, Verdict};
 
 fn case(name: &str) -> Option<(StrainFrame, serde_json::Value)> {
-    let Some(dir) = hidden::shared() else {
-        eprintln!("skipped: ../shared/hidden_effects is absent");
-        return None;
-    };
+    let dir = hidden::shared()?;
     let truth = std::fs::read_to_string(dir.join("truth").join(format!("{name}.json"))).ok()?;
     let frame = hidden::frame_of(&dir.join("static").join(name));
     Some((frame, serde_json::from_str(&truth).ok()?))

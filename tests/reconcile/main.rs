@@ -7,3 +7,5 @@ mod hidden;
 mod joint;
 mod real;
 mod strips;
+#[path = "../../nastran/tests/support/mod.rs"]
+mod support;

@@ -1,8 +1,9 @@
 //! Decks of `../shared`, read and turned into models.
 
 use nastran::bdf::{IncludeRequest, Loaded, Loader, read_deck};
-use std::path::PathBuf;
 use strainbridge::model::Model;
+
+pub use crate::support::shared;
 
 struct Files;
 
@@ -15,16 +16,6 @@ impl Loader for Files {
         }
         Err("not found".to_owned())
     }
-}
-
-/// A file of the shared material; `None` (with a message) where it is absent.
-pub fn shared(path: &str) -> Option<PathBuf> {
-    let full = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared")).join(path);
-    let found = full.exists();
-    if !found {
-        eprintln!("skipped: {} is absent", full.display());
-    }
-    found.then_some(full)
 }
 
 /// The model of a deck and its case control; faults of weight error fail the test.

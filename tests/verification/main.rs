@@ -17,6 +17,8 @@ mod quadratic_shells;
 mod real_cases;
 mod real_decks;
 mod solids;
+#[path = "../../nastran/tests/support/mod.rs"]
+mod support;
 mod supports;
 mod thermal;
 mod whole_decks;

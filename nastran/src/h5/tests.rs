@@ -3,10 +3,7 @@ use crate::results::{Analysis, ElementType, Quantity, RowId, Rows, ShellForm};
 use serde_json::Value;
 
 fn shared(path: &str) -> Option<Vec<u8>> {
-    let full = format!("{}/../../shared/nastran/{path}", env!("CARGO_MANIFEST_DIR"));
-    std::fs::read(&full)
-        .map_err(|_| eprintln!("skipped: {full} is absent"))
-        .ok()
+    crate::support::bytes(&format!("nastran/{path}"))
 }
 
 /// The oracle's table of that name: rows of (ids, values).

@@ -48,10 +48,7 @@ fn reals(values: impl IntoIterator<Item = f64>) -> Vec<String> {
 }
 
 fn shared(path: &str) -> Option<Vec<u8>> {
-    let full = format!("{}/../../shared/nastran/{path}", env!("CARGO_MANIFEST_DIR"));
-    std::fs::read(&full)
-        .map_err(|_| eprintln!("skipped: {full} is absent"))
-        .ok()
+    crate::support::bytes(&format!("nastran/{path}"))
 }
 
 #[test]

@@ -8,12 +8,7 @@ use nastran::bdf::{Deck, IncludeRequest, Loaded, Loader, read_deck};
 
 /// The folder of real cases, where it is present.
 pub(crate) fn cases_folder() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/nastran");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    eprintln!("skipped: ../shared/nastran is absent");
-    None
+    crate::support::shared("nastran")
 }
 
 /// A case: its folder, and its `case.json` and `expected.json`.

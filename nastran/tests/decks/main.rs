@@ -2,6 +2,8 @@
 
 mod common;
 mod robust;
+#[path = "../support/mod.rs"]
+mod support;
 
 use std::collections::BTreeMap;
 

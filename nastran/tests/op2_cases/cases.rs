@@ -4,14 +4,12 @@ use nastran::op2::Op2;
 use serde_json::Value;
 use std::path::Path;
 
-const SHARED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/nastran");
-
 /// Calls `check` with name, file and oracle of every case that has an OP2.
 pub fn each_op2(mut check: impl FnMut(&str, &Op2<'_>, &Value)) {
-    let Ok(folders) = std::fs::read_dir(SHARED) else {
-        eprintln!("skipped: {SHARED} is not here");
+    let Some(shared) = crate::support::shared("nastran") else {
         return;
     };
+    let folders = std::fs::read_dir(shared).unwrap();
     let mut folders: Vec<_> = folders.flatten().map(|f| f.path()).collect();
     folders.sort();
     for folder in folders {

@@ -4,6 +4,8 @@ mod cases;
 mod columns;
 mod mesh;
 mod raw_strain;
+#[path = "../support/mod.rs"]
+mod support;
 mod tables;
 
 use cases::each_op2;

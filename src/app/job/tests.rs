@@ -17,8 +17,7 @@ fn faults(text: &str) -> Vec<Fault> {
 }
 
 fn shared() -> Option<PathBuf> {
-    let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared"));
-    path.is_dir().then_some(path)
+    crate::support::shared(".")
 }
 
 fn jobs_below(folder: &Path, out: &mut Vec<PathBuf>) {
@@ -34,10 +33,7 @@ fn jobs_below(folder: &Path, out: &mut Vec<PathBuf>) {
 
 #[test]
 fn every_shared_job_is_read_with_all_files_it_names() {
-    let Some(shared) = shared() else {
-        eprintln!("skipped: no ../shared");
-        return;
-    };
+    let Some(shared) = shared() else { return };
     let mut jobs = Vec::new();
     jobs_below(&shared, &mut jobs);
     assert!(jobs.len() >= 10, "{jobs:?}");
@@ -67,10 +63,7 @@ fn every_shared_job_is_read_with_all_files_it_names() {
 
 #[test]
 fn a_runs_file_is_read_in_si_by_the_jobs_names() {
-    let Some(shared) = shared() else {
-        eprintln!("skipped: no ../shared");
-        return;
-    };
+    let Some(shared) = shared() else { return };
     let mut inputs = Inputs::of(&crate::app::context::Disk);
     let job = read_job(
         &mut inputs,

@@ -21,10 +21,7 @@ struct Bridge {
 }
 
 fn shared(path: &str) -> Option<PathBuf> {
-    let p = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../shared/bridges")
-        .join(path);
-    p.exists().then_some(p)
+    crate::support::shared(&format!("bridges/{path}"))
 }
 
 /// Cells of a table by row; quoted commas inside notes are respected.

@@ -6,19 +6,11 @@ use super::*;
 use crate::finding::{Finding, Severity};
 use crate::linalg::Matrix;
 use crate::sensitivity::{Load, Sensitivity};
+use crate::support::text as shared;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 const KN: f64 = 1e3;
-
-fn shared(path: &str) -> Option<String> {
-    let full = format!("{}/../shared/{path}", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(&full).ok();
-    if text.is_none() {
-        eprintln!("skipped: {full} is not there");
-    }
-    text
-}
 
 /// Header after `skip` columns, and the numbers there.
 fn table(text: &str, skip: usize) -> (Vec<String>, Vec<String>, Vec<Vec<f64>>) {

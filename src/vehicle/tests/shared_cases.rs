@@ -3,14 +3,8 @@
 use super::*;
 
 fn case(name: &str) -> Option<(Channels, Channels, serde_json::Value)> {
-    let root = PathBuf::from(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../shared/hidden_effects"
-    ));
-    let Ok(truth) = std::fs::read(root.join(format!("truth/{name}.json"))) else {
-        eprintln!("skipped: {} is absent", root.display());
-        return None;
-    };
+    let truth = crate::support::bytes(&format!("hidden_effects/truth/{name}.json"))?;
+    let root = crate::support::shared("hidden_effects")?;
     let read = |file: &str| {
         read_csv(
             &std::fs::read(root.join("dynamics").join(name).join(file)).unwrap(),

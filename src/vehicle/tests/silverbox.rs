@@ -10,14 +10,7 @@ const RATE_HZ: f64 = 610.35;
 const FITTED: usize = 20_000;
 
 fn record() -> Option<(Channels, Channels)> {
-    let path = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../shared/hidden_effects/real/silverbox_estimation.csv"
-    );
-    let Ok(bytes) = std::fs::read(path) else {
-        eprintln!("skipped: {path} is absent");
-        return None;
-    };
+    let bytes = crate::support::bytes("hidden_effects/real/silverbox_estimation.csv")?;
     let all = read_csv(&bytes, Some(RATE_HZ)).unwrap();
     let part = |from: usize, to: usize| {
         let channel = |name: &str, new: &str| Channel {

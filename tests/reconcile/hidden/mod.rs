@@ -12,11 +12,7 @@ use strainbridge::reconcile::strain::{
 
 /// Folder of the shared material, where present.
 pub fn shared() -> Option<PathBuf> {
-    let path = Path::new(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../shared/hidden_effects"
-    ));
-    path.is_dir().then(|| path.to_path_buf())
+    crate::support::shared("hidden_effects")
 }
 
 struct Table {

@@ -1,0 +1,45 @@
+//! Reference material beside the repository (`../shared`), for the tests of both crates.
+//!
+//! Where a file is absent its test is skipped, and the skip is counted: a line in the file that `STRAINBRIDGE_SKIPPED` names. With
+//! `STRAINBRIDGE_SHARED=required` an absent file fails the test.
+#![allow(dead_code, clippy::panic, clippy::print_stderr)]
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// A file or folder of the reference material; `None` where it is absent.
+pub fn shared(path: &str) -> Option<PathBuf> {
+    let own = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = if own.ends_with("nastran") {
+        own.parent().unwrap_or(own)
+    } else {
+        own
+    };
+    let full = root.join("../shared").join(path);
+    // Without the steps up: decks resolve what they include against it.
+    if let Ok(found) = std::fs::canonicalize(&full) {
+        return Some(found);
+    }
+    let required = std::env::var("STRAINBRIDGE_SHARED").is_ok_and(|v| v == "required");
+    assert!(!required, "../shared/{path} is absent, and required");
+    eprintln!("skipped: ../shared/{path} is absent");
+    if let Ok(list) = std::env::var("STRAINBRIDGE_SKIPPED") {
+        let mut list = std::fs::OpenOptions::new()
+            .create(true)
+            .append(true)
+            .open(list)
+            .ok()?;
+        let _ = writeln!(list, "{path}");
+    }
+    None
+}
+
+/// The bytes of a file of the reference material.
+pub fn bytes(path: &str) -> Option<Vec<u8>> {
+    std::fs::read(shared(path)?).ok()
+}
+
+/// The text of a file of the reference material.
+pub fn text(path: &str) -> Option<String> {
+    std::fs::read_to_string(shared(path)?).ok()
+}
