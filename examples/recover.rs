@@ -1,0 +1,33 @@
+//! Two loads from three gauges whose sensitivity is known, readings with errors: loads with intervals, everything in memory.
+
+use std::error::Error;
+use strainbridge::app::context::InMemory;
+use strainbridge::{Context, Job, recover_runs};
+
+const JOB: &str = r#"
+units = "m-kg-s"
+load = [{ name = "left" }, { name = "right" }]
+sensitivity = { file = "s.csv" }
+measured = { strain = "strain.csv", noise_microstrain = 1.0 }
+"#;
+
+/// Microstrain per newton.
+const S: &str = "gauge,left,right\nG1,0.10,0.02\nG2,0.02,0.10\nG3,0.05,0.05\n";
+/// Under 2000 N and 1000 N, each gauge off by one microstrain.
+const STRAIN: &str = "run,G1,G2,G3\nR1,221,139,151\n";
+
+/// Recovers, and compares with what was put on.
+pub fn main() -> Result<(), Box<dyn Error>> {
+    let files = InMemory::default()
+        .with("job.toml", JOB)
+        .with("s.csv", S)
+        .with("strain.csv", STRAIN);
+    let job = Job::read("job.toml", &files)?;
+    let loads = recover_runs(&job, &Context::new(&files))?;
+    for (load, truth) in loads.loads.iter().zip([2000.0, 1000.0]) {
+        let half = 0.5 * (load.high - load.low);
+        println!("{} = {:.0} +- {half:.0} {}", load.name, load.value, load.unit);
+        assert!(load.low <= truth && truth <= load.high);
+    }
+    Ok(())
+}

@@ -1,0 +1,16 @@
+//! The examples of the library end in a number that they check themselves.
+
+#[path = "../examples/place.rs"]
+mod place;
+#[path = "../examples/recover.rs"]
+mod recover;
+
+#[test]
+fn four_gauges_are_placed_with_their_certificate() {
+    place::main().unwrap();
+}
+
+#[test]
+fn the_intervals_hold_the_loads_that_were_put_on() {
+    recover::main().unwrap();
+}
