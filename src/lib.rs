@@ -7,7 +7,7 @@
 //! | 10 | [`cli`] | arguments | calls of row 8, exit codes |
 //! | 9 | [`report`] | outcomes | html, pdf, csv, xlsx, vtu, op2 |
 //! | 8 | [`app`] | a [`Job`] and a [`Context`] | an [`Outcome`] |
-//! | 7 | [`reconcile`], [`mod@study`], [`mod@payload`], [`mod@calibrate`] | measured and predicted channels | ranked effects, studies, weighings, a learnt S |
+//! | 7 | [`mod@reconcile`], [`mod@study`], [`mod@payload`], [`mod@calibrate`] | measured and predicted channels | ranked effects, studies, weighings, a learnt S |
 //! | 6 | [`placement`], [`recovery`], [`mod@respond`], [`vehicle`] | S, strain, accelerations | layouts, loads, stress |
 //! | 5 | [`mod@sensitivity`] | [`fe::Solution`]s and [`gauge::Gauge`]s | S in eps = S f |
 //! | 4 | [`gauge`] | strain at a place | what that gauge reads |
@@ -69,6 +69,7 @@ pub use app::init::init;
 pub use app::modes::{modes, modes_of_deck};
 pub use app::payload::payload;
 pub use app::place::place;
+pub use app::reconcile::reconcile;
 pub use app::recover::recover_runs;
 pub use app::respond::respond;
 pub use app::sensitivity::sensitivity;

@@ -2,8 +2,10 @@
 
 use strainbridge::app::context::InMemory;
 use strainbridge::app::recover::recover_runs;
+use strainbridge::app::reconcile::extended_job;
 use strainbridge::app::store::Memory;
-use strainbridge::{Context, Job, Severity, place, sensitivity};
+use strainbridge::reconcile::Verdict;
+use strainbridge::{Context, Job, Severity, place, reconcile, sensitivity};
 
 /// A free strip of plates along x, 11 by 2 grids 20 mm apart, 2 mm thick.
 fn strip() -> String {
@@ -142,4 +144,127 @@ fn faults_come_with_file_line_and_remedy() {
     let first = faults.first().unwrap();
     assert_eq!((first.file.as_str(), first.line), ("job.toml", Some(1)));
     assert!(!first.remedy.is_empty());
+}
+
+/// Twelve gauges under three loads, 14 runs: readings with a repeating scatter below a microstrain, gauge `G05` wired the wrong way round.
+fn yard() -> InMemory {
+    let at = |g: usize, l: usize| 20.0 * ((1.3 + 0.7 * l as f64) * (g as f64 + 1.0)).sin();
+    let load = |r: usize, l: usize| 3.0 + 2.5 * ((2.1 + l as f64) * (r as f64 + 1.0)).cos();
+    let names: Vec<String> = (1..=12).map(|g| format!("G{g:02}")).collect();
+    let mut s = String::from("gauge,A,B,C\n");
+    for (g, name) in names.iter().enumerate() {
+        s += &format!("{name},{},{},{}\n", at(g, 0), at(g, 1), at(g, 2));
+    }
+    let mut strain = format!("run,{}\n", names.join(","));
+    let mut runs = String::from("run,A,B,C\n");
+    for r in 0..14 {
+        runs += &format!("R{r},{},{},{}\n", load(r, 0), load(r, 1), load(r, 2));
+        strain += &format!("R{r}");
+        for g in 0..12 {
+            let sign = if g == 4 { -1.0 } else { 1.0 };
+            let told: f64 = (0..3).map(|l| at(g, l) * load(r, l)).sum();
+            let scatter = 0.8 * (((r * 5 + g * 3) % 7) as f64 / 3.0 - 1.0);
+            strain += &format!(",{:.4}", sign * told + scatter);
+        }
+        strain.push('\n');
+    }
+    let job = r#"
+title = "yard"
+units = "m-kg-s"
+[sensitivity]
+file = "s.csv"
+per = { force = "kN" }
+[measured]
+strain = "strain.csv"
+noise_microstrain = 1.0
+hold_out = ["R10", "R11", "R12", "R13"]
+[runs]
+file = "runs.csv"
+units = { force = "kN" }
+noise = { force = 0.02 }
+[reconcile]
+path = "static"
+"#;
+    InMemory::default()
+        .with("job.toml", job)
+        .with("s.csv", s)
+        .with("strain.csv", strain)
+        .with("runs.csv", runs)
+}
+
+#[test]
+fn what_is_missing_comes_as_a_value_with_the_job_that_has_it() {
+    let files = yard();
+    let job = Job::read("job.toml", &files).unwrap();
+    let mut found = reconcile(&job, &Context::new(&files)).unwrap();
+    assert_eq!(found.verdict, Verdict::Named, "{:?}", found.best_attempt);
+    assert_eq!(found.effects.len(), 1);
+    let effect = &found.effects[0];
+    assert_eq!(effect.place.as_deref(), Some("G05"), "{}", effect.id);
+    // A turned sign has no parameter: -1 stands for it.
+    assert_eq!(effect.size.as_ref().and_then(|s| s.size), Some(-1.0));
+    let gap = &found.gap;
+    // A twelfth of the readings has twice its size for a residual; what is left is scatter.
+    assert!(gap.before > 0.1 && gap.after < 0.05, "{gap:?}");
+    let strain = found.strain.as_ref().expect("strain was compared");
+    assert!(found.motion.is_none() && found.causes.is_none());
+    // The extended model turns the readings of that gauge and no others.
+    let extended = found.extended_model.as_ref().expect("a model");
+    let now = extended.readings.as_ref().expect("other readings");
+    let turned = strain.frame.observations.values.iter().zip(now);
+    for (k, (before, after)) in turned.enumerate() {
+        let sign = if k % 12 == 4 { -1.0 } else { 1.0 };
+        assert_eq!(sign * before, *after, "reading {k}");
+    }
+    let text = extended_job(&found, "out".as_ref()).unwrap().expect("text");
+    assert!(text.contains("strain = \"strain_extended.csv\""), "{text}");
+    assert!(text.contains("title = \"yard, with "), "{text}");
+    // Its path is known once the folder is.
+    assert_eq!(extended.path, extended.name);
+    found.answer.put_into("out".as_ref());
+    let json = serde_json::to_value(&found.answer).unwrap();
+    assert_eq!(json["extended_model"], "out/job_extended.toml");
+    assert_eq!(json["verdict"], "named");
+    assert_eq!(json["effects"][0]["where"], "G05");
+    assert!(json.get("simulation").is_none() && json.get("sits").is_some());
+}
+
+#[test]
+fn causes_that_changed_together_come_as_rivals_of_the_same_type() {
+    let job = r#"
+units = "m-kg-s"
+[measured]
+strain = "strain.csv"
+noise_microstrain = 3.0
+[runs]
+file = "runs.csv"
+[reconcile]
+path = "static"
+causes = { settlement = "lowered", temperature = "air_C" }
+"#;
+    let files = InMemory::default()
+        .with("job.toml", job)
+        .with(
+            "strain.csv",
+            "run,a,b\nbefore,238.59,1.51\nafter,215.19,35.79\n",
+        )
+        .with("runs.csv", "run,lowered,air_C\nbefore,0,2.0\nafter,1,4.0\n");
+    let job = Job::read("job.toml", &files).unwrap();
+    let found = reconcile(&job, &Context::new(&files)).unwrap();
+    assert_eq!(found.verdict, Verdict::Unknown);
+    assert_eq!(found.rivals.len(), 2);
+    assert!(found.strain.is_none() && found.motion.is_none());
+    assert!(found.best_attempt.is_none() && found.extended_model.is_none());
+}
+
+#[test]
+fn motion_without_a_vehicle_is_refused() {
+    let files = InMemory::default().with(
+        "job.toml",
+        "units = \"m-kg-s\"\n[reconcile]\npath = \"dynamic\"\n",
+    );
+    let asked = Job::read("job.toml", &files)
+        .and_then(|job| reconcile(&job, &Context::new(&files)).map(|_| ()));
+    let faults = asked.unwrap_err();
+    assert!(faults.iter().any(|f| f.to_string().contains("vehicle")));
 }

@@ -35,14 +35,7 @@ pub struct VehicleRecords {
 /// # Errors
 /// Every fault of section, files and model.
 pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults> {
-    let Some(section) = &job.vehicle else {
-        return Err(Faults::from(Fault::of(
-            &*job.file,
-            "vehicle",
-            "the job has no [vehicle] section",
-            "add one with `model` and `data`",
-        )));
-    };
+    let section = section_of(job)?;
     let data = read_record(work, job, section, &section.data)?;
     let hold_out = section
         .hold_out
@@ -157,6 +150,21 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
         question,
         data,
         hold_out,
+    })
+}
+
+/// `[vehicle]` of a job.
+///
+/// # Errors
+/// A job that has none.
+pub fn section_of(job: &Job) -> Result<&VehicleJob, Faults> {
+    job.vehicle.as_ref().ok_or_else(|| {
+        Faults::from(Fault::of(
+            &*job.file,
+            "vehicle",
+            "the job has no [vehicle] section",
+            "add one with `model` and `data`",
+        ))
     })
 }
 

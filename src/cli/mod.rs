@@ -77,7 +77,15 @@ pub fn run(arguments: Arguments) -> ExitCode {
                 _ => app::modes::modes_of_deck(&a.input, a.modes, cx),
             })
         }
-        Command::Reconcile(a) => on_job("reconcile", &a, app::reconcile::run),
+        Command::Reconcile(a) => {
+            let run = Run::of(&a.common, &a.job);
+            let folder = run.folder(&a.job);
+            run.job_into(&a.job, &folder, |job, cx| {
+                let mut found = app::reconcile::reconcile(job, cx)?;
+                found.answer.put_into(&folder);
+                Ok(found)
+            })
+        }
         Command::Identify(a) => Run::of(&a.common, &a.job).job(&a.job, app::identify::identify),
         Command::Verify(a) => upkeep::verify(&a),
         Command::Clean(a) => upkeep::clean(&a),

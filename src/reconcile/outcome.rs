@@ -1,6 +1,7 @@
 //! What the workflow has to say, for strain and acceleration alike.
 
 use crate::reconcile::effect::Extension;
+use serde::Serialize;
 
 /// The verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,7 +83,7 @@ impl GapBasis {
 }
 
 /// RMS(reading - model) / RMS(reading): before, after, and what a right model would leave, made alike.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct GapNumbers {
     /// The analyst's model.
     pub before: f64,
@@ -172,7 +173,7 @@ pub struct Detectable {
 }
 
 /// How far something lies from its floor.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Misfit {
     /// Gauge or run.
     pub name: String,

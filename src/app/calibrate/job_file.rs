@@ -2,19 +2,10 @@
 
 use super::Calibrated;
 use crate::app::fault::{Fault, Faults};
-use crate::app::job::Job;
-use crate::app::reconcile::extended_job::redirect;
+use crate::app::reconcile::redirect::redirect;
 use crate::app::reconcile::relative::relative;
-use crate::app::work::Work;
 use std::path::Path;
 use toml::{Table, Value};
-
-/// The job's text as it was read.
-pub(super) fn text_of(work: &mut Work, job: &Job) -> Result<String, Faults> {
-    work.inputs
-        .read_text(Path::new(""), &job.file)
-        .map_err(Faults::from)
-}
 
 /// The job as it stands in folder `out`: everything kept, file names found from there, S and its covariance from `calibrate`. The model's
 /// error, which is in the covariance now, is no longer added.

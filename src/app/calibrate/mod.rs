@@ -13,6 +13,7 @@ use super::fault::{Fault, Faults};
 use super::job::strain::{StrainRows, StrainTable, read_strain};
 use super::job::{Job, Measured, Reference, Role, Runs};
 use super::outcome::{Outcome, StatedUnits};
+use super::reconcile::redirect::text_of;
 use super::strain::{Prepared, load_units, prepare};
 use super::work::Work;
 use crate::calibrate::{KnownRun, ModelPrior, Task};
@@ -105,7 +106,7 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
         sensitivity: found.sensitivity.clone(),
         model: task.model.as_ref().map(|m| m.values.clone()),
         found,
-        job_text: job_file::text_of(&mut work, job)?,
+        job_text: text_of(&mut work, job)?,
         job: job.clone(),
     };
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))

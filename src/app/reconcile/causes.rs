@@ -1,124 +1,30 @@
 //! Readings against causes measured in every run, where no model gives their strain: `[reconcile] causes`.
 
-use crate::app::Session;
+use super::answer::{EffectFound, GapFound, Reconciled, RivalFound, SlopeFound};
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::table::read_table;
 use crate::app::job::{Job, Reconcile};
+use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
-use crate::reconcile::{Cause, CauseOutcome, CauseSet, Observations, weigh_causes};
-use crate::report::page::{Page, Paper, table_section};
-use serde_json::{Value, json};
-use std::collections::BTreeMap;
-use std::path::Path;
+use crate::reconcile::{Cause, CauseOutcome, CauseSet, Observations, Verdict, weigh_causes};
 
-/// Weighs the causes of the job and writes what it finds.
-pub(super) fn run(
+/// Weighs the causes of the job.
+///
+/// # Errors
+/// A runs file that lacks a cause, or one of the runs.
+pub(super) fn answer(
     job: &Job,
     reconcile: &Reconcile,
-    path: &Path,
-    session: &mut Session,
+    work: &mut Work,
     observations: &Observations,
-) -> Result<(), Faults> {
-    let causes = read(job, reconcile, session, observations)?;
+) -> Result<Reconciled, Faults> {
+    let causes = read(job, reconcile, work, observations)?;
     let noise = job.measured.as_ref().map_or(1.0, |m| m.noise_microstrain);
     let noise = vec![noise; observations.n_channels()];
-    let outcome = session.stage("search", |_| weigh_causes(observations, &noise, &causes));
-    let best = outcome.sets.first();
-    let named = outcome.verdict == crate::reconcile::Verdict::Named;
-    session.put("verdict", outcome.verdict.word())?;
-    session.put(
-        "named",
-        best.filter(|_| named)
-            .map_or(Vec::new(), |b| b.names.clone()),
-    )?;
-    let effects = best
-        .filter(|_| named)
-        .map_or(Vec::new(), |b| slopes(b, observations));
-    session.put("effects", effects)?;
-    let evidence = best.map_or(0.0, |b| b.log_evidence);
-    let rival = |s: &CauseSet| {
-        json!({ "id": s.names.join(" + "), "where": Value::Null, "evidence_difference": evidence - s.log_evidence, "gap_after": s.gap,
-                "indistinguishable": outcome.rivals.contains(s) })
-    };
-    let rivals: Vec<Value> = if outcome.rivals.is_empty() {
-        outcome
-            .sets
-            .iter()
-            .skip(1)
-            .filter(|s| !s.names.is_empty())
-            .map(rival)
-            .collect()
-    } else {
-        outcome.rivals.iter().map(rival).collect()
-    };
-    session.put("rivals", rivals)?;
-    let before = outcome
-        .sets
-        .iter()
-        .find(|s| s.names.is_empty())
-        .map_or(0.0, |s| s.gap);
-    session.put(
-        "gap",
-        json!({ "metric": "RMS(reading - prediction) / RMS(reading) over held-out runs, from the mean of the others, each channel over its range",
-                "before": before, "after": best.map_or(before, |b| b.gap) }),
-    )?;
-    session.put("next_measurement", &outcome.next_measurement)?;
-    session.put("extended_model", Value::Null)?;
-    say(session, &outcome);
-    let row = |s: &CauseSet| {
-        vec![
-            s.names.join(" + "),
-            format!("{:.1}", evidence - s.log_evidence),
-            format!("{:.2} %", 100.0 * s.gap),
-        ]
-    };
-    let rows: Vec<Vec<String>> = outcome.sets.iter().map(row).collect();
-    let head = ["causes", "log evidence behind", "gap"];
-    let section = table_section("Causes", &head, &rows, "");
-    let lead = format!(
-        "Verdict: {}. Next measurement: {}",
-        outcome.verdict.word(),
-        outcome.next_measurement
-    );
-    let page = Page::new(&job.title, &lead, &session.findings, vec![section]);
-    session.write_page(path, page.on_paper(Paper::Report))
-}
-
-fn slopes(best: &CauseSet, observations: &Observations) -> Vec<Value> {
-    let by_channel = |slopes: &Vec<(f64, f64)>| -> BTreeMap<String, Value> {
-        let channels = observations.channels.iter().cloned();
-        channels
-            .zip(
-                slopes
-                    .iter()
-                    .map(|s| json!({ "per_unit": s.0, "sigma": s.1 })),
-            )
-            .collect()
-    };
-    best.names
-        .iter()
-        .zip(&best.slopes)
-        .map(|(name, s)| json!({ "id": name, "where": Value::Null, "channels": by_channel(s), "plausible": true }))
-        .collect()
-}
-
-fn say(session: &mut Session, outcome: &CauseOutcome) {
-    session.say(format!("verdict: {}", outcome.verdict.word()));
-    for s in &outcome.sets {
-        let names = if s.names.is_empty() {
-            "nothing".into()
-        } else {
-            s.names.join(" + ")
-        };
-        session.say(format!(
-            "  {names}: log evidence {:.1}, gap {:.2} %",
-            s.log_evidence,
-            100.0 * s.gap
-        ));
-    }
+    let outcome = work.stage("search", |_| weigh_causes(observations, &noise, &causes));
     if !outcome.rivals.is_empty() {
         let names: Vec<String> = outcome.rivals.iter().map(|r| r.names.join(" + ")).collect();
-        session.findings.push(Finding::new(
+        work.findings.push(Finding::new(
             Severity::Warning,
             "rival",
             names.join(", "),
@@ -126,14 +32,82 @@ fn say(session: &mut Session, outcome: &CauseOutcome) {
             outcome.next_measurement.clone(),
         ));
     }
-    session.say(format!("next measurement: {}", outcome.next_measurement));
+    let best = outcome.sets.first();
+    let named = best.filter(|_| outcome.verdict == Verdict::Named);
+    let before = outcome.sets.iter().find(|s| s.names.is_empty());
+    let before = before.map_or(0.0, |s| s.gap);
+    Ok(Reconciled {
+        verdict: outcome.verdict,
+        named: named.map_or(Vec::new(), |b| b.names.clone()),
+        effects: named.map_or(Vec::new(), |b| effects(b, observations)),
+        best_attempt: None,
+        rivals: rivals(&outcome),
+        gap: GapFound {
+            metric: "RMS(reading - prediction) / RMS(reading) over held-out runs, from the mean of the others, each channel over its range"
+                .to_owned(),
+            before,
+            after: best.map_or(before, |b| b.gap),
+            floor: None,
+            explained_share: None,
+            strain: None,
+            judged_by: None,
+        },
+        evidence: None,
+        reduced_chi2: None,
+        remains: None,
+        next_measurement: outcome.next_measurement.clone(),
+        detectable: None,
+        strain: None,
+        motion: None,
+        causes: Some(outcome),
+        extended_model: None,
+        job: job.clone(),
+    })
+}
+
+/// Sets that can't be told from the best one; where there are none, the others.
+fn rivals(outcome: &CauseOutcome) -> Vec<RivalFound> {
+    let evidence = outcome.sets.first().map_or(0.0, |b| b.log_evidence);
+    let rival = |s: &CauseSet| RivalFound {
+        id: s.names.join(" + "),
+        place: None,
+        evidence_difference: evidence - s.log_evidence,
+        gap_after: s.gap,
+        indistinguishable: outcome.rivals.contains(s),
+    };
+    if !outcome.rivals.is_empty() {
+        return outcome.rivals.iter().map(rival).collect();
+    }
+    let others = outcome.sets.iter().skip(1);
+    others.filter(|s| !s.names.is_empty()).map(rival).collect()
+}
+
+/// The causes of a set, each with what the channels do under it.
+fn effects(best: &CauseSet, observations: &Observations) -> Vec<EffectFound> {
+    let by_channel = |slopes: &Vec<(f64, f64)>| {
+        let channels = observations.channels.iter().cloned();
+        let slopes = slopes
+            .iter()
+            .map(|&(per_unit, sigma)| SlopeFound { per_unit, sigma });
+        channels.zip(slopes).collect()
+    };
+    let slopes = best.names.iter().zip(&best.slopes);
+    slopes
+        .map(|(name, s)| EffectFound {
+            id: name.clone(),
+            place: None,
+            size: None,
+            plausible: true,
+            channels: Some(by_channel(s)),
+        })
+        .collect()
 }
 
 /// Columns of the runs file that the job names as causes, in the order of the observed runs.
 fn read(
     job: &Job,
     reconcile: &Reconcile,
-    session: &mut Session,
+    work: &mut Work,
     observations: &Observations,
 ) -> Result<Vec<Cause>, Faults> {
     let Some(runs) = &job.runs else {
@@ -145,7 +119,7 @@ fn read(
             remedy,
         )));
     };
-    let text = session
+    let text = work
         .inputs
         .read_named_text(job, &runs.file)
         .map_err(Faults::from)?;

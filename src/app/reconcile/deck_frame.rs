@@ -4,11 +4,11 @@ use super::background::{Axis, ENTRY_SHARE, background, gradients};
 use super::deck_thermal::{Heated, NOTHING};
 use super::finer::Finer;
 use super::matrix_frame::{ModelPart, facts, nominal_x_m};
-use crate::app::Session;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Component, Job, JobLoad, LoadActs, Role};
 use crate::app::solved::{support_of_job, unit_loads_kept};
 use crate::app::strain::{Fields, lay_gauges, read_fields, unit_loads, without_strain};
+use crate::app::work::Work;
 use crate::fe::{Solution, SolveOptions, UnitLoad, solve_unit_loads_on};
 use crate::finding::{Finding, Severity};
 use crate::gauge::{Gauge, reading};
@@ -30,25 +30,21 @@ pub(super) struct DeckFrame {
 
 /// Solves all signatures. `channels` are the gauges in the order of the strain file.
 pub(super) fn read(
-    session: &mut Session,
+    work: &mut Work,
     job: &Job,
     channels: &[String],
 ) -> Result<(ModelPart, DeckFrame), Faults> {
-    let fields = read_fields(session, job)?;
-    let gauges = in_order(job, lay_gauges(session, job, &fields)?, channels)?;
+    let fields = read_fields(work, job)?;
+    let gauges = in_order(job, lay_gauges(work, job, &fields)?, channels)?;
     // The same gauges turned: what they read at three angles holds their in-plane strain.
-    let noted = session.findings.len();
+    let noted = work.findings.len();
     let mut turned = Vec::new();
     for degrees in [45.0, 90.0] {
         let mut other = job.clone();
         other.gauges.iter_mut().for_each(|g| g.angle_deg += degrees);
-        turned.push(in_order(
-            job,
-            lay_gauges(session, &other, &fields)?,
-            channels,
-        )?);
+        turned.push(in_order(job, lay_gauges(work, &other, &fields)?, channels)?);
     }
-    session.findings.truncate(noted);
+    work.findings.truncate(noted);
     let model = fields.model();
     let heated = Heated::of(job, model)?;
     let model = &heated.model;
@@ -95,23 +91,23 @@ pub(super) fn read(
     let support = support_of_job(job, model)?;
     // Signatures come from a mesh half as wide, where that can be made: what the mesh makes is computed, not guessed.
     let laid = [&gauges, &turned[0], &turned[1]];
-    let finer = session.stage("refine", |_| Finer::of(model, laid));
+    let finer = work.stage("refine", |_| Finer::of(model, laid));
     if let Err(why) = &finer {
-        session.findings.push(mesh_unknown(job, why));
+        work.findings.push(mesh_unknown(job, why));
     }
     let finer = finer.ok();
     let heat = format!("temperature set {:?}", reconcile.map(|r| r.temperature_set));
-    let solution = session.stage("solve signatures", |s| match &finer {
+    let solution = work.stage("solve signatures", |w| match &finer {
         Some(f) => {
             let made = format!("mesh half as wide, {heat}");
             unit_loads_kept(
-                s,
+                w,
                 (&fields.deck, &made),
                 (&f.refined.model, support),
                 &loads,
             )
         }
-        None => unit_loads_kept(s, (&fields.deck, &heat), (model, support), &loads),
+        None => unit_loads_kept(w, (&fields.deck, &heat), (model, support), &loads),
     })?;
     let n_c = columns.len();
     let [seen, seen_45, seen_90] = match &finer {
@@ -121,8 +117,8 @@ pub(super) fn read(
     let table = influence(job, model, seen, &solution, n_c);
     let at_45 = influence(job, model, seen_45, &solution, n_c);
     let at_90 = influence(job, model, seen_90, &solution, n_c);
-    let own = session.stage("solve signatures", |s| {
-        unit_loads_kept(s, (&fields.deck, &heat), (model, support), &columns)
+    let own = work.stage("solve signatures", |w| {
+        unit_loads_kept(w, (&fields.deck, &heat), (model, support), &columns)
     })?;
     let mut base = influence(job, model, &gauges, &own, n_c);
     let n_g = gauges.len();
@@ -225,7 +221,7 @@ pub(super) fn read(
         columns,
         base: own,
     };
-    part.stiffness = session.stage("solve zones", |_| deck.signatures(job))?;
+    part.stiffness = work.stage("solve zones", |_| deck.signatures(job))?;
     // Tables count in microstrain per unit of the job, as sensitivity.csv does.
     let wanted = job.loads.iter().filter(|l| l.role == Role::Wanted);
     let per = |l: &JobLoad| match l.acts {
@@ -233,7 +229,7 @@ pub(super) fn read(
         LoadActs::Set(_) | LoadActs::Named => 1.0,
     };
     let known: Vec<(String, f64)> = wanted.map(|l| (l.name.clone(), per(l))).collect();
-    let described = deck.described(&mut session.inputs, job, channels, &known)?;
+    let described = deck.described(&mut work.inputs, job, channels, &known)?;
     part.stiffness.extend(described);
     Ok((part, deck))
 }

@@ -1,35 +1,23 @@
-//! The extended model: a copy of the job whose files hold the named effects, so that every command runs it as it is.
-//!
-//! Effects of a channel go into the readings (`strain_extended.csv`), effects of structure into S (`sensitivity_extended.csv`), loads that
-//! were left out become columns of S or loads of the job, the payload's place goes into `runs_extended.csv`.
+//! What the named effects of strain change: readings, S, what acts in the runs, the deck.
 
 use super::deck_frame::DeckFrame;
-use super::deck_thermal;
+use super::extended::{ExtendedModel, ExtendedS};
 use super::extended_deck::NamedStiffness;
-use super::extended_job::ExtendedJob;
-use super::extended_loads::{self, entries, side_loads};
-use super::words::Sized;
-use crate::app::Session;
+use super::extended_loads::side_loads;
+use super::redirect::text_of;
 use crate::app::fault::Faults;
 use crate::app::job::Job;
+use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::reconcile::effect::{Correction, Extension, Nuisance};
 use crate::reconcile::strain::{
     StiffnessOf, StrainFrame, StrainState, corrected_readings, extended_state,
 };
 use crate::reconcile::{NamedEffect, Outcome};
-use crate::report::csv_cell;
 use crate::units::KILO;
-use std::fmt::Write;
-use std::path::Path;
-use toml::{Table, Value};
 
-const DECK: &str = "deck_extended.bdf";
+/// File name of the job.
 const JOB: &str = "job_extended.toml";
-const STRAIN: &str = "strain_extended.csv";
-const SENSITIVITY: &str = "sensitivity_extended.csv";
-const PAYLOAD: &str = "payload_extended.csv";
-const RUNS: &str = "runs_extended.csv";
 
 /// Why an effect can't be put into the model of this job; `None` where it can.
 fn out_of_reach(job: &Job, e: &NamedEffect, deck: Option<&DeckFrame>) -> Option<&'static str> {
@@ -80,99 +68,44 @@ fn out_of_reach(job: &Job, e: &NamedEffect, deck: Option<&DeckFrame>) -> Option<
     }
 }
 
-/// Writes the extended job; its path, relative to the folder the command was called in. `None`, with a finding for each effect that can't be
-/// put into the model, where there is one.
-pub(super) fn write(
+/// The extended model; `None`, with a finding for each effect that can't be put into it, where there is one.
+///
+/// # Errors
+/// A job that can't be read again.
+pub(super) fn extended(
     job: &Job,
-    path: &Path,
-    session: &mut Session,
+    work: &mut Work,
     frame: &StrainFrame,
     outcome: &Outcome,
     deck: Option<&DeckFrame>,
-) -> Result<Option<String>, Faults> {
-    let not_in: Vec<Finding> = outcome
-        .effects
-        .iter()
-        .filter_map(|e| out_of_reach(job, e, deck).map(|why| effect_not_in_model(&e.id, why)))
-        .collect();
+) -> Result<Option<ExtendedModel>, Faults> {
+    let effects = &outcome.effects;
+    let not_in = |e| out_of_reach(job, e, deck).map(|why| effect_not_in_model(&e.id, why));
+    let not_in: Vec<Finding> = effects.iter().filter_map(not_in).collect();
     if !not_in.is_empty() {
-        session.findings.extend(not_in);
+        work.findings.extend(not_in);
         return Ok(None);
     }
-    let extended_deck = match deck {
-        Some(d) => match deck_with(job, d, outcome) {
-            Ok(bytes) => bytes,
-            Err(finding) => {
-                session.findings.push(finding);
-                return Ok(None);
-            }
-        },
-        None => None,
+    let deck_bytes = match deck.map(|d| deck_with(job, d, outcome)).transpose() {
+        Ok(bytes) => bytes.flatten(),
+        Err(finding) => {
+            work.findings.push(finding);
+            return Ok(None);
+        }
     };
-    let names: Vec<&str> = outcome.effects.iter().map(|e| e.id.as_str()).collect();
-    let mut extended = ExtendedJob::of(job, path, session, &names)?;
-    let table = &mut extended.table;
-    let mut files: Vec<(&str, String)> = Vec::new();
-    if let Some(readings) = corrected_readings(frame, &outcome.effects) {
-        files.push((STRAIN, strain_csv(frame, &readings)));
-        set(table, "measured", "strain", STRAIN);
-    }
-    let state = extended_state(frame, &outcome.effects);
-    let side = side_loads(job, &outcome.effects);
-    match deck {
-        None => files.extend(matrix_with(table, frame, outcome, &state)),
-        Some(d) => {
-            let list = table
-                .entry("load")
-                .or_insert_with(|| Value::Array(Vec::new()));
-            if let Value::Array(list) = list {
-                list.extend(entries(job, frame, &side));
-                list.extend(deck_thermal::entry(job, d.fields.model(), &outcome.effects));
-            }
-        }
-    }
-    if outcome.effects.iter().any(|e| changes_notes(&e.extension)) {
-        files.push((RUNS, runs_csv(frame, &state)));
-        set(table, "runs", "file", RUNS);
-        if let Some(Value::Table(runs)) = table.get_mut("runs") {
-            runs.remove("columns");
-            runs.insert(
-                "units".into(),
-                Value::Table(words_of(&[
-                    ("force", "kN"),
-                    ("mass", "kg"),
-                    ("length", "m"),
-                ])),
-            );
-        }
-    }
-    if outcome
-        .effects
-        .iter()
-        .any(|e| matches!(e.extension, Extension::PayloadWeight))
-    {
-        let payload = table
-            .entry("payload")
-            .or_insert_with(|| Value::Table(Table::new()));
-        if let Value::Table(p) = payload {
-            p.insert("weight_in_model".into(), Value::Boolean(true));
-        }
-    }
-    if extended_deck.is_some() {
-        set(table, "model", "deck", DECK);
-    }
-    let output = session.output_for(path)?;
-    for (name, content) in &files {
-        output
-            .write_bytes(name, content.as_bytes())
-            .map_err(Faults::from)?;
-    }
-    if let Some(bytes) = &extended_deck {
-        output.write_bytes(DECK, bytes).map_err(Faults::from)?;
-    }
-    extended
-        .write(JOB, path, session, outcome.effects.iter().map(sized))
-        .map(Some)
+    let state = extended_state(frame, effects);
+    let sensitivity = match deck {
+        None => sensitivity_with(frame, outcome, &state),
+        Some(_) => None,
+    };
+    let noted = effects.iter().any(|e| changes_notes(&e.extension));
+    Ok(Some(ExtendedModel {
+        deck: deck_bytes,
+        readings: corrected_readings(frame, effects),
+        sensitivity,
+        runs: noted.then_some(state.columns),
+        ..ExtendedModel::of(JOB, text_of(work, job)?)
+    }))
 }
 
 fn effect_not_in_model(id: &str, why: &str) -> Finding {
@@ -228,95 +161,26 @@ fn changes_notes(e: &Extension) -> bool {
     )
 }
 
-fn words_of(pairs: &[(&str, &str)]) -> Table {
-    pairs
-        .iter()
-        .map(|(k, v)| ((*k).to_owned(), Value::String((*v).to_owned())))
-        .collect()
-}
-
-/// S, the payload's signature and nuisance loads of a job in matrix form.
-fn matrix_with(
-    table: &mut Table,
+/// S with effects in it and with the loads that were left out; `None` where it stays as it is.
+fn sensitivity_with(
     frame: &StrainFrame,
     outcome: &Outcome,
     state: &StrainState,
-) -> Vec<(&'static str, String)> {
-    let nuisance = nuisance(frame, &outcome.effects);
+) -> Option<ExtendedS> {
+    let left_out = nuisance(frame, &outcome.effects);
     let changed = state.influence != frame.influence;
-    let mut files = Vec::new();
-    if !changed && nuisance.is_empty() {
-        return files;
+    if !changed && left_out.is_empty() {
+        return None;
     }
-    let known = frame
-        .nuisance
-        .iter()
-        .map(|n| (n.name.clone(), n.per_unit.clone()));
-    let columns: Vec<(String, Vec<f64>)> = known
-        .chain(nuisance.iter().map(|n| (n.0.clone(), n.1.clone())))
-        .collect();
-    files.push((
-        SENSITIVITY,
-        sensitivity_csv(frame, &state.influence, &columns),
-    ));
-    set(table, "sensitivity", "file", SENSITIVITY);
-    if let Some(Value::Table(s)) = table.get_mut("sensitivity") {
-        // The extended files count in kN, kN m and kg.
-        let per = words_of(&[
-            ("force", "kN"),
-            ("moment", "kN m"),
-            ("mass", "kg"),
-            ("length", "m"),
-        ]);
-        s.insert("per".into(), Value::Table(per));
-        let names = frame.load_names.iter().chain(columns.iter().map(|n| &n.0));
-        let columns: Table = names
-            .map(|n| (n.clone(), Value::String(n.clone())))
-            .collect();
-        s.insert("columns".into(), Value::Table(columns));
-    }
-    if changed {
-        files.push((PAYLOAD, payload_csv(frame, &state.influence)));
-        if let Some(Value::Table(signatures)) = table
-            .get_mut("sensitivity")
-            .and_then(|s| s.get_mut("signatures"))
-        {
-            signatures.insert("payload".into(), Value::String(PAYLOAD.into()));
-        }
-    }
-    let list = table
-        .entry("load")
-        .or_insert_with(|| Value::Array(Vec::new()));
-    if let Value::Array(list) = list {
-        for (name, _, size) in &nuisance {
-            let mut t = Table::new();
-            t.insert("name".into(), Value::String(name.clone()));
-            // Where S is given a load acts nowhere on a model: grid and component stand for nothing but its kind.
-            let component = extended_loads::component_word(name);
-            t.insert("grid".into(), Value::Integer(0));
-            t.insert("component".into(), Value::String(component.into()));
-            t.insert("role".into(), Value::String("nuisance".into()));
-            t.insert("expected".into(), Value::Float(*size));
-            list.push(Value::Table(t));
-        }
-    }
-    files
-}
-
-/// An effect with its sizes, as words are made of it.
-pub(super) fn sized(e: &NamedEffect) -> Sized<'_> {
-    Sized {
-        id: &e.id,
-        size: &e.size,
-        sigma: &e.sigma,
-        unit: e.unit,
-    }
-}
-
-fn set(table: &mut Table, section: &str, key: &str, value: &str) {
-    if let Some(Value::Table(t)) = table.get_mut(section) {
-        t.insert(key.into(), Value::String(value.into()));
-    }
+    let known = frame.nuisance.iter();
+    Some(ExtendedS {
+        influence: state.influence.clone(),
+        changed,
+        known: known
+            .map(|n| (n.name.clone(), n.per_unit.clone()))
+            .collect(),
+        left_out,
+    })
 }
 
 /// Columns of loads that were left out, with their usual size in the units of the job (forces count in kN in the column: so do degrees).
@@ -347,104 +211,6 @@ fn nuisance(frame: &StrainFrame, effects: &[NamedEffect]) -> Vec<(String, Vec<f6
             };
             out.extend(pattern(name).map(|p| (name.clone(), p, size * KILO)));
         }
-    }
-    out
-}
-
-fn strain_csv(frame: &StrainFrame, values: &[f64]) -> String {
-    let channels = frame.observations.channels.iter();
-    let channels: Vec<_> = channels.map(|c| csv_cell(c)).collect();
-    let mut out = format!("run,{}\n", channels.join(","));
-    for (run, row) in frame
-        .observations
-        .runs
-        .iter()
-        .zip(values.chunks_exact(frame.n_gauges().max(1)))
-    {
-        let cells: Vec<String> = row
-            .iter()
-            .map(|v| {
-                if v.is_finite() {
-                    format!("{v:.4}")
-                } else {
-                    String::new()
-                }
-            })
-            .collect();
-        let _ = writeln!(out, "{},{}", csv_cell(run), cells.join(","));
-    }
-    out
-}
-
-fn sensitivity_csv(
-    frame: &StrainFrame,
-    influence: &[f64],
-    nuisance: &[(String, Vec<f64>)],
-) -> String {
-    let names: Vec<_> = frame
-        .load_names
-        .iter()
-        .chain(nuisance.iter().map(|n| &n.0))
-        .map(|n| csv_cell(n))
-        .collect();
-    let mut out = format!("gauge,{}\n", names.join(","));
-    for (g, gauge) in frame.gauges.iter().enumerate() {
-        let row = influence
-            .iter()
-            .skip(g * frame.n_columns())
-            .take(frame.n_loads());
-        let more = nuisance.iter().filter_map(|n| n.1.get(g));
-        let cells: Vec<String> = row.chain(more).map(|v| format!("{v:.9e}")).collect();
-        let _ = writeln!(out, "{},{}", csv_cell(&gauge.name), cells.join(","));
-    }
-    out
-}
-
-fn payload_csv(frame: &StrainFrame, influence: &[f64]) -> String {
-    let mut out = String::from("gauge,b0,b_dx,b_dy,b_dxdy\n");
-    for (gauge, row) in frame
-        .gauges
-        .iter()
-        .zip(influence.chunks_exact(frame.n_columns()))
-    {
-        let cells: Vec<String> = row
-            .iter()
-            .skip(frame.n_loads())
-            .map(|v| format!("{v:.9e}"))
-            .collect();
-        let _ = writeln!(out, "{},{}", csv_cell(&gauge.name), cells.join(","));
-    }
-    out
-}
-
-/// What acts in each run of the extended model, as a runs file.
-fn runs_csv(frame: &StrainFrame, state: &StrainState) -> String {
-    let [at_x, at_y] = frame.payload_origin;
-    let (n_l, n_c) = (frame.n_loads(), frame.n_columns());
-    let names: Vec<_> = frame.load_names.iter().map(|n| csv_cell(n)).collect();
-    let mut out = format!("run,payload_mass,payload_x,payload_y,{}\n", names.join(","));
-    for (r, (run, row)) in frame
-        .observations
-        .runs
-        .iter()
-        .zip(state.columns.chunks_exact(n_c.max(1)))
-        .enumerate()
-    {
-        let noted = frame.payload.get(r).copied().unwrap_or([0.0; 3]);
-        // Columns of the payload are its mass times 1, x, y; without its weight in the model, what was noted stands.
-        let [mass, x, y] = match row.get(n_l..n_l + 3) {
-            Some([m, mx, my]) if *m > 0.0 => [*m, mx / m, my / m],
-            _ => noted,
-        };
-        let loads: Vec<String> = row.iter().take(n_l).map(|f| format!("{f:.6}")).collect();
-        let _ = writeln!(
-            out,
-            "{},{mass:.6},{:.6},{:.6},{}",
-            csv_cell(run),
-            at_x + x,
-            at_y + y,
-            loads.join(",")
-        );
     }
     out
 }

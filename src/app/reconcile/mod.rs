@@ -1,43 +1,53 @@
 //! `reconcile`: where simulation and measurement disagree, which effect is missing, and the model with the effect in it.
 
+mod answer;
 mod background;
 mod causes;
 mod deck_frame;
 mod deck_thermal;
 mod described;
-mod dynamic;
-mod dynamic_extend;
 mod extend;
+pub mod extended;
 mod extended_deck;
-pub(super) mod extended_job;
+mod extended_job;
 mod extended_loads;
 mod finer;
 mod matrix_frame;
+mod motion_findings;
+mod motion_job;
+mod motion_path;
 mod one_file;
+mod readings;
+pub(super) mod redirect;
 pub(super) mod relative;
+mod run_frame;
 mod signature_table;
-mod static_path;
 mod stiffness;
-mod tables;
+mod strain_findings;
+mod strain_job;
+mod strain_path;
 mod words;
 
-use super::fault::Faults;
-use super::job::{ReconcilePath, read_job};
-use super::{JobArguments, Session};
+pub use answer::*;
+pub use extended_job::extended_job;
+pub use words::effect_in_words;
 
-/// Runs the workflow of the job's path.
+use super::context::Context;
+use super::fault::Faults;
+use super::job::{Job, ReconcilePath};
+use super::outcome::{Outcome, StatedUnits};
+use super::work::Work;
+
+/// The gap between the job's model and its measurement, the effect that is missing, and the job with that effect in it.
 ///
 /// # Errors
 /// Faults of the job and of the files it names.
-pub fn run(arguments: &JobArguments, session: &mut Session) -> Result<(), Faults> {
-    let job = read_job(&mut session.inputs, &arguments.job)?;
-    session.put_units(job.units, &job.report_units);
-    match job
-        .reconcile
-        .as_ref()
-        .map_or(ReconcilePath::Static, |r| r.path)
-    {
-        ReconcilePath::Static => static_path::run(&job, &arguments.job, session),
-        ReconcilePath::Dynamic => dynamic::run(&job, &arguments.job, session),
-    }
+pub fn reconcile(job: &Job, cx: &Context) -> Result<Outcome<Reconciled>, Faults> {
+    let mut work = Work::of_job(cx, job);
+    let path = job.reconcile.as_ref().map(|r| r.path);
+    let answer = match path.unwrap_or(ReconcilePath::Static) {
+        ReconcilePath::Static => strain_path::answer(job, &mut work)?,
+        ReconcilePath::Dynamic => motion_path::answer(job, &mut work)?,
+    };
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }

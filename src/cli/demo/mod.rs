@@ -222,7 +222,11 @@ fn play(
             &folder.join(out),
         ),
         "recover" => run(app::recover::run),
-        "reconcile" => run(app::reconcile::run),
+        "reconcile" => {
+            let mut found = app::reconcile::reconcile(&Job::read(job, cx.files)?, &cx)?;
+            found.answer.put_into(&folder.join(out));
+            asked(&found, &folder.join(out))
+        }
         "payload" => asked(
             &app::payload::payload(&Job::read(job, cx.files)?, &cx)?,
             &folder.join(out),

@@ -1,45 +1,14 @@
-//! The job with the named effects of motion in it: terms, couplings, a change of mass, corrections of channels.
+//! The named effects of motion in a job: terms, couplings, a change of mass, corrections of channels.
 
-use super::extended_job::ExtendedJob;
-use super::words::Sized;
-use crate::app::Session;
-use crate::app::fault::Faults;
-use crate::app::job::Job;
 use crate::reconcile::motion::change::Change;
-use crate::reconcile::motion::{MotionEffect, MotionFrame, MotionOutcome};
-use std::path::Path;
+use crate::reconcile::motion::{MotionFrame, MotionOutcome};
 use toml::{Table, Value};
 
-const JOB: &str = "extended_job.toml";
-
-/// Writes the extended job; its path, relative to the folder the command was called in.
-pub(super) fn write(
-    job: &Job,
-    path: &Path,
-    session: &mut Session,
-    frame: &MotionFrame,
-    outcome: &MotionOutcome,
-) -> Result<String, Faults> {
-    let names: Vec<&str> = outcome.effects.iter().map(|e| e.id.as_str()).collect();
-    let mut extended = ExtendedJob::of(job, path, session, &names)?;
-    if let Some(Value::Table(section)) = extended.table.get_mut("vehicle") {
-        extend(section, frame, outcome);
-    }
-    extended.write(JOB, path, session, outcome.effects.iter().map(sized))
-}
-
-/// An effect with its sizes, as words are made of it.
-pub(super) fn sized(e: &MotionEffect) -> Sized<'_> {
-    Sized {
-        id: &e.id,
-        size: &e.size,
-        sigma: &e.sigma,
-        unit: &e.unit,
-    }
-}
+/// File name of the job.
+pub(super) const JOB: &str = "extended_job.toml";
 
 /// Puts the changes into `[vehicle]`.
-fn extend(section: &mut Table, frame: &MotionFrame, outcome: &MotionOutcome) {
+pub(super) fn edit(section: &mut Table, frame: &MotionFrame, outcome: &MotionOutcome) {
     let mut terms: Vec<String> = match section.get("terms") {
         Some(Value::Array(a)) => a
             .iter()

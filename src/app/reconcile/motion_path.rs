@@ -1,0 +1,232 @@
+//! Motion: record and vehicle, verdict, extended job.
+
+use super::answer::{
+    DetectableSize, EffectFound, GapFound, MotionPart, Reconciled, ReducedChi2, RivalFound,
+    Simulation, SizeFound, WheelMisfit, first,
+};
+use super::extended::ExtendedModel;
+use super::motion_findings::findings;
+use super::motion_job;
+use super::redirect::text_of;
+use crate::app::fault::Faults;
+use crate::app::job::{Job, Vehicle as VehicleJob};
+use crate::app::vehicle::{VehicleRecords, read_vehicle, section_of, vehicle_fault, wish_of};
+use crate::app::work::Work;
+use crate::reconcile::Verdict;
+use crate::reconcile::motion::{MotionEffect, MotionFrame, MotionOutcome, examine, simulated_gap};
+use crate::vehicle::identify::{Identification, Question, identify};
+use crate::vehicle::layout::Vehicle;
+use crate::vehicle::motion::{Motion, Treatment, motion};
+use crate::vehicle::preset::{NEXT, Wish, add_next, vehicle};
+use crate::vehicle::stretch::slow_stretches;
+
+/// What motion says.
+///
+/// # Errors
+/// Faults of the job and of its records.
+pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
+    let section = section_of(job)?;
+    let records = work.stage("read", |w| read_vehicle(w, job))?;
+    let frame = frame(section, &records);
+    let only = job
+        .reconcile
+        .as_ref()
+        .and_then(|r| r.effects.clone())
+        .unwrap_or_default();
+    let outcome = work
+        .stage("search", |_| examine(&frame, &only))
+        .map_err(|e| Faults::from(vehicle_fault(job, &section.data.given, &e)))?;
+    work.go_on()?;
+    let (wheel_force, found) =
+        work.stage("wheel forces", |_| wheel_forces(&records, &frame, &outcome));
+    let identified = found.and_then(|f| driven(&records, f));
+    let named = outcome.verdict == Verdict::Named && repairable(&outcome);
+    work.go_on()?;
+    let simulation = named.then(|| work.stage("simulate", |_| simulated_gap(&frame, &outcome)));
+    let simulation = simulation.map(|s| match s {
+        Ok(found) => Simulation::Done(found.into()),
+        Err(not_simulated) => Simulation::NotDone { not_simulated },
+    });
+    findings(work, &outcome);
+    let extended_model = match named {
+        true => Some(ExtendedModel::of(motion_job::JOB, text_of(work, job)?)),
+        false => None,
+    };
+    let list = |effects: &[MotionEffect]| effects.iter().map(effect_found).collect();
+    let [before, after] = outcome.reduced_chi2;
+    let size = |s: &crate::reconcile::motion::outcome::Smallest| DetectableSize {
+        id: s.id.clone(),
+        size: s.size,
+        unit: s.unit.clone(),
+    };
+    Ok(Reconciled {
+        verdict: outcome.verdict,
+        named: outcome.effects.iter().map(|e| e.id.clone()).collect(),
+        effects: list(&outcome.effects),
+        best_attempt: Some(list(&outcome.best_attempt)),
+        rivals: outcome.rivals.iter().map(RivalFound::from).collect(),
+        gap: gap_found(&outcome),
+        evidence: Some(outcome.evidence),
+        reduced_chi2: Some(ReducedChi2 {
+            before,
+            after,
+            held_out: None,
+        }),
+        remains: Some(outcome.remains.clone()),
+        next_measurement: outcome.next_measurement.clone(),
+        detectable: Some(outcome.smallest.iter().map(size).collect()),
+        strain: None,
+        motion: Some(MotionPart {
+            wheel_force,
+            simulation,
+            outcome,
+            frame,
+            identified,
+        }),
+        causes: None,
+        extended_model,
+        job: job.clone(),
+    })
+}
+
+fn gap_found(outcome: &MotionOutcome) -> GapFound {
+    let gap = &outcome.gap;
+    GapFound {
+        metric: format!(
+            "RMS of the equations' residual / RMS of the measured quantity (wheel force, mass times acceleration), in band, \
+             on {}, root mean square over equations",
+            outcome.judged_by.words()
+        ),
+        before: gap.before,
+        after: gap.after,
+        floor: Some(gap.floor),
+        explained_share: Some(gap.explained_share()),
+        strain: None,
+        judged_by: Some(outcome.judged_by),
+    }
+}
+
+fn effect_found(e: &MotionEffect) -> EffectFound {
+    EffectFound {
+        id: e.id.clone(),
+        place: e.place.clone(),
+        size: Some(SizeFound {
+            size: first(&e.size),
+            sigma: first(&e.sigma),
+            unit: e.unit.clone(),
+            sizes: e.size.clone(),
+            sigmas: e.sigma.clone(),
+        }),
+        plausible: e.plausible,
+        channels: None,
+    }
+}
+
+/// A dead channel can't be put right by a model.
+fn repairable(outcome: &MotionOutcome) -> bool {
+    outcome
+        .effects
+        .iter()
+        .all(|e| !e.id.starts_with("dead_channel") && !e.id.starts_with("saturated_channel"))
+}
+
+/// The frame of a job: one side of an axle is compared, the other is a witness where it was measured.
+fn frame(section: &VehicleJob, records: &VehicleRecords) -> MotionFrame {
+    let q = &records.question;
+    let mut model = q.vehicle.clone();
+    let recorded = |name: &str| {
+        records.data.has(name) && records.hold_out.as_ref().is_none_or(|h| h.has(name))
+    };
+    let witnessed = ["a_body_other", "a_wheel_other"]
+        .iter()
+        .all(|c| recorded(section.columns.get(*c).map_or(*c, String::as_str)));
+    if section.model == "front2" && witnessed {
+        let wish = Wish {
+            model: "front_pair".into(),
+            ..wish_of(section)
+        };
+        if let Ok(pair) = vehicle(&wish) {
+            model = Vehicle {
+                steps: model.steps.clone(),
+                ..pair
+            };
+        }
+    }
+    let bodies = if model.name == "front_pair" {
+        vec![0, 1]
+    } else {
+        (0..model.bodies.len())
+            .filter(|&b| !model.is_witness(b))
+            .collect()
+    };
+    let next = section.columns.get(NEXT).map_or(NEXT, String::as_str);
+    if recorded(next) {
+        add_next(&mut model, next);
+    }
+    MotionFrame {
+        bodies,
+        vehicle: model,
+        known: q.known.clone(),
+        data: records.data.clone(),
+        hold_out: records.hold_out.clone(),
+        band: q.band,
+        gravity: q.gravity,
+        noise_acc: section.noise_acc,
+        noise_force: section.noise_force,
+        gain_tolerance: q.gain_tolerance,
+        sync_tolerance_s: q.sync_tolerance_s,
+        corrections: q.corrections.clone(),
+        units: q.units.clone(),
+    }
+}
+
+/// The analyst's vehicle as identified, with its motion over the fitted record.
+fn driven(records: &VehicleRecords, found: Identification) -> Option<(Identification, Motion)> {
+    let q = &records.question;
+    let slow = slow_stretches(&found.vehicle, &found.values, &records.data, &q.corrections);
+    let treatment = Treatment {
+        adjust: q.corrections.clone(),
+        slow,
+        ..Treatment::of(q.band)
+    };
+    let moved = motion(&found.vehicle, &records.data, &treatment).ok()?;
+    Some((found, moved))
+}
+
+/// Misfit of each measured wheel force, without and with the effects in, as `identify` leaves it on held-out data; and the analyst's
+/// vehicle as identified.
+fn wheel_forces(
+    records: &VehicleRecords,
+    frame: &MotionFrame,
+    outcome: &MotionOutcome,
+) -> (Vec<WheelMisfit>, Option<Identification>) {
+    let identified = |q: &Question| identify(q, &records.data, records.hold_out.as_ref()).ok();
+    let misfits = |id: &Identification| -> Vec<(String, f64)> {
+        id.fit
+            .iter()
+            .filter(|f| id.vehicle.wheels.iter().any(|w| w.channel == f.channel))
+            .map(|f| (f.channel.clone(), f.relative_rms))
+            .collect()
+    };
+    let found = identified(&records.question);
+    let before = found.as_ref().map(misfits).unwrap_or_default();
+    let after = (outcome.verdict == Verdict::Named && repairable(outcome)).then(|| {
+        let q = Question {
+            vehicle: outcome
+                .after
+                .as_ref()
+                .map_or_else(|| frame.vehicle.clone(), |g| g.vehicle.clone()),
+            corrections: outcome.corrections.clone(),
+            ..records.question.clone()
+        };
+        identified(&q).as_ref().map(misfits).unwrap_or_default()
+    });
+    let list = before.into_iter().map(|(channel, before)| WheelMisfit {
+        after: after
+            .as_ref()
+            .and_then(|a| a.iter().find(|x| x.0 == channel).map(|x| x.1)),
+        before,
+        channel,
+    });
+    (list.collect(), found)
+}

@@ -1,0 +1,91 @@
+//! Findings on a gap of strain.
+
+use crate::app::work::Work;
+use crate::finding::{Finding, Severity};
+use crate::reconcile::{Outcome, Verdict};
+
+/// Notes what is to be known of the verdict.
+pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
+    /// A stated noise is known to 15 %: what the readings show beyond is told.
+    const NOISE_KNOWN: f64 = 1.15;
+    if outcome.noise_factor > NOISE_KNOWN {
+        work.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "noise-above-stated",
+                "measured.noise_microstrain",
+                format!("the readings scatter {:.2} times as much as their stated noise allows, alike at all gauges", outcome.noise_factor),
+                "find what scatters (repeat a run three times), or state the noise that the repeats show",
+            )
+            .with_numbers(outcome.noise_factor, NOISE_KNOWN),
+        );
+    }
+    match outcome.verdict {
+        Verdict::Unknown => work.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "gap-unexplained",
+                "model",
+                format!(
+                    "there is a gap that nothing in the library closes: {}",
+                    outcome.remains
+                ),
+                outcome.next_measurement.clone(),
+            )
+            .with_numbers(outcome.reduced_chi2[1], 1.0),
+        ),
+        Verdict::BelowDetectability => {
+            let hint = outcome
+                .rivals
+                .first()
+                .map(|r| r.ids.join(" + "))
+                .unwrap_or_default();
+            let size = outcome.detectable.iter().find(|d| d.id == hint).map(|d| {
+                format!(
+                    "; the smallest that would be seen: {:.3} {}",
+                    d.size, d.unit
+                )
+            });
+            work.findings.push(Finding::new(
+                Severity::Info,
+                "below-detectability",
+                hint,
+                format!(
+                    "a hint of an effect, too small to name{}",
+                    size.unwrap_or_default()
+                ),
+                outcome.next_measurement.clone(),
+            ));
+        }
+        Verdict::Named => {
+            for r in outcome.rivals.iter().filter(|r| r.indistinguishable) {
+                work.findings.push(
+                    Finding::new(
+                        Severity::Warning,
+                        "rival",
+                        r.ids.join(" + "),
+                        "explains these data as well as what was named",
+                        outcome.next_measurement.clone(),
+                    )
+                    .with_numbers(r.evidence_difference, 3.0),
+                );
+            }
+            for l in outcome.loads.iter().filter(|l| l.moved()) {
+                work.findings.push(
+                    Finding::new(
+                        Severity::Info,
+                        "load-moved",
+                        format!("{} in {}", l.load, l.run),
+                        format!(
+                            "the recovered load moves from {:.2} to {:.2} kN with the effect in",
+                            l.before, l.after
+                        ),
+                        "use the extended model",
+                    )
+                    .with_numbers((l.after - l.before).abs(), 2.0 * l.sigma),
+                );
+            }
+        }
+        Verdict::None => {}
+    }
+}

@@ -1,0 +1,134 @@
+//! Files of the extended model.
+
+use crate::app::fault::Faults;
+use crate::app::output::Output;
+use crate::app::reconcile::extended::{DECK, ExtendedS, PAYLOAD, RUNS, SENSITIVITY, STRAIN};
+use crate::app::reconcile::{Reconciled, extended_job};
+use crate::reconcile::strain::StrainFrame;
+use crate::report::csv_cell;
+use std::fmt::Write;
+
+/// Writes the extended job and what it names, where there is one.
+pub(super) fn write_extended(found: &Reconciled, out: &mut Output) -> Result<(), Faults> {
+    let Some(extended) = &found.extended_model else {
+        return Ok(());
+    };
+    let mut write = |name: &str, text: String| out.write_bytes(name, text.as_bytes());
+    if let Some(strain) = &found.strain {
+        let frame = &strain.frame;
+        if let Some(readings) = &extended.readings {
+            write(STRAIN, strain_csv(frame, readings))?;
+        }
+        if let Some(s) = &extended.sensitivity {
+            write(SENSITIVITY, sensitivity_csv(frame, s))?;
+            if s.changed {
+                write(PAYLOAD, payload_csv(frame, &s.influence))?;
+            }
+        }
+        if let Some(columns) = &extended.runs {
+            write(RUNS, runs_csv(frame, columns))?;
+        }
+    }
+    if let Some(bytes) = &extended.deck {
+        out.write_bytes(DECK, bytes)?;
+    }
+    if let Some(text) = extended_job(found, out.folder())? {
+        out.write_bytes(extended.name, text.as_bytes())?;
+    }
+    Ok(())
+}
+
+fn strain_csv(frame: &StrainFrame, values: &[f64]) -> String {
+    let channels = frame.observations.channels.iter();
+    let channels: Vec<_> = channels.map(|c| csv_cell(c)).collect();
+    let mut out = format!("run,{}\n", channels.join(","));
+    for (run, row) in frame
+        .observations
+        .runs
+        .iter()
+        .zip(values.chunks_exact(frame.n_gauges().max(1)))
+    {
+        let cells: Vec<String> = row
+            .iter()
+            .map(|v| {
+                if v.is_finite() {
+                    format!("{v:.4}")
+                } else {
+                    String::new()
+                }
+            })
+            .collect();
+        let _ = writeln!(out, "{},{}", csv_cell(run), cells.join(","));
+    }
+    out
+}
+
+fn sensitivity_csv(frame: &StrainFrame, s: &ExtendedS) -> String {
+    let names: Vec<_> = frame
+        .load_names
+        .iter()
+        .chain(s.besides().map(|n| n.0))
+        .map(|n| csv_cell(n))
+        .collect();
+    let mut out = format!("gauge,{}\n", names.join(","));
+    for (g, gauge) in frame.gauges.iter().enumerate() {
+        let row = s
+            .influence
+            .iter()
+            .skip(g * frame.n_columns())
+            .take(frame.n_loads());
+        let more = s.besides().filter_map(|n| n.1.get(g));
+        let cells: Vec<String> = row.chain(more).map(|v| format!("{v:.9e}")).collect();
+        let _ = writeln!(out, "{},{}", csv_cell(&gauge.name), cells.join(","));
+    }
+    out
+}
+
+fn payload_csv(frame: &StrainFrame, influence: &[f64]) -> String {
+    let mut out = String::from("gauge,b0,b_dx,b_dy,b_dxdy\n");
+    for (gauge, row) in frame
+        .gauges
+        .iter()
+        .zip(influence.chunks_exact(frame.n_columns()))
+    {
+        let cells: Vec<String> = row
+            .iter()
+            .skip(frame.n_loads())
+            .map(|v| format!("{v:.9e}"))
+            .collect();
+        let _ = writeln!(out, "{},{}", csv_cell(&gauge.name), cells.join(","));
+    }
+    out
+}
+
+/// What acts in each run of the extended model, as a runs file.
+fn runs_csv(frame: &StrainFrame, columns: &[f64]) -> String {
+    let [at_x, at_y] = frame.payload_origin;
+    let (n_l, n_c) = (frame.n_loads(), frame.n_columns());
+    let names: Vec<_> = frame.load_names.iter().map(|n| csv_cell(n)).collect();
+    let mut out = format!("run,payload_mass,payload_x,payload_y,{}\n", names.join(","));
+    for (r, (run, row)) in frame
+        .observations
+        .runs
+        .iter()
+        .zip(columns.chunks_exact(n_c.max(1)))
+        .enumerate()
+    {
+        let noted = frame.payload.get(r).copied().unwrap_or([0.0; 3]);
+        // Columns of the payload are its mass times 1, x, y; without its weight in the model, what was noted stands.
+        let [mass, x, y] = match row.get(n_l..n_l + 3) {
+            Some([m, mx, my]) if *m > 0.0 => [*m, mx / m, my / m],
+            _ => noted,
+        };
+        let loads: Vec<String> = row.iter().take(n_l).map(|f| format!("{f:.6}")).collect();
+        let _ = writeln!(
+            out,
+            "{},{mass:.6},{:.6},{:.6},{}",
+            csv_cell(run),
+            at_x + x,
+            at_y + y,
+            loads.join(",")
+        );
+    }
+    out
+}

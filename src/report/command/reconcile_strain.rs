@@ -1,0 +1,119 @@
+//! Files of `reconcile` for strain: gap by gauge, loads before and after, page.
+
+use super::write_page;
+use crate::app::fault::Faults;
+use crate::app::outcome::Outcome;
+use crate::app::output::Output;
+use crate::app::reconcile::{Reconciled, StrainPart};
+use crate::model::{Model, Vec3};
+use crate::reconcile::strain::StrainFrame;
+use crate::report::csv_cell;
+use crate::report::figure::GaugePoints;
+use crate::report::page::Paper;
+use crate::report::scene::{Mark, Scene, fields_of, mark_of_gap};
+use crate::report::strain::{RunStrain, reconcile_page};
+use std::fmt::Write;
+
+/// Writes `gap.csv`, `loads_before_after.csv` and the page.
+pub(super) fn write_strain(
+    outcome: &Outcome<Reconciled>,
+    found: &StrainPart,
+    out: &mut Output,
+) -> Result<(), Faults> {
+    out.write_bytes("gap.csv", gap_csv(found).as_bytes())?;
+    out.write_bytes("loads_before_after.csv", loads_csv(found).as_bytes())?;
+    let job = &outcome.job;
+    let metres = match found.fields {
+        Some(_) => job.units.length_m(),
+        None => 1.0,
+    };
+    let gauges = found.frame.gauges.iter().zip(&found.outcome.channels);
+    let mark = |(g, gap): (&crate::reconcile::strain::GaugeFacts, _)| {
+        let at = Vec3::from(g.position?) / metres;
+        Some(mark_of_gap(at, gap))
+    };
+    let marks: Vec<Mark> = gauges.filter_map(mark).collect();
+    // Where S is given there is no model to draw: the gauges alone.
+    let nothing = Model::default();
+    let fields = found.fields.as_ref();
+    let scene = (!marks.is_empty()).then(|| Scene {
+        model: fields.map_or(&nothing, |f| f.model()),
+        marks,
+        fields: fields.map_or_else(Vec::new, |f| fields_of(job, f)),
+        arrows: Vec::new(),
+    });
+    let page = reconcile_page(
+        &job.title,
+        &found.outcome,
+        scene.as_ref(),
+        &run_strain(&found.frame, &found.predicted),
+        &outcome.findings,
+    );
+    write_page(out, outcome, page.on_paper(Paper::Report))
+}
+
+fn gap_csv(found: &StrainPart) -> String {
+    let mut text = String::from(
+        "gauge,before_microstrain,after_microstrain,floor_microstrain,reading_microstrain\n",
+    );
+    for c in &found.outcome.channels {
+        let _ = writeln!(
+            text,
+            "{},{:.4},{:.4},{:.4},{:.4}",
+            csv_cell(&c.channel),
+            c.before,
+            c.after,
+            c.floor,
+            c.reading
+        );
+    }
+    text
+}
+
+fn loads_csv(found: &StrainPart) -> String {
+    let mut text = String::from("run,load,stated_kN,before_kN,after_kN,sigma_kN,moved\n");
+    for l in &found.outcome.loads {
+        let moved = if l.moved() { "yes" } else { "no" };
+        let _ = writeln!(
+            text,
+            "{},{},{:.4},{:.4},{:.4},{:.4},{moved}",
+            csv_cell(&l.run),
+            csv_cell(&l.load),
+            l.stated,
+            l.before,
+            l.after,
+            l.sigma
+        );
+    }
+    text
+}
+
+/// Measured and predicted strain of the runs, by the model as it was given.
+fn run_strain(frame: &StrainFrame, predicted: &[f64]) -> RunStrain {
+    let o = &frame.observations;
+    let n = frame.n_gauges();
+    let held = |run: &usize| o.held_out.get(*run).copied().unwrap_or(false);
+    let (held_out, used): (Vec<usize>, Vec<usize>) = (0..frame.n_runs()).partition(held);
+    let points = (0..n)
+        .map(|g| {
+            let pairs = [&used, &held_out].map(|runs| -> Vec<(f64, f64)> {
+                let of = |r: &usize| (predicted[r * n + g], o.value(*r, g));
+                runs.iter().map(of).collect()
+            });
+            let square = |p: &(f64, f64)| (p.1 - p.0).powi(2);
+            let known: Vec<f64> = pairs.iter().flatten().map(square).collect();
+            let known: Vec<f64> = known.into_iter().filter(|v| v.is_finite()).collect();
+            GaugePoints {
+                name: o.channels.get(g).cloned().unwrap_or_default(),
+                residual: (known.iter().sum::<f64>() / known.len().max(1) as f64).sqrt(),
+                points: pairs,
+            }
+        })
+        .collect();
+    let names = |runs: &[usize]| runs.iter().map(|r| o.runs[*r].clone()).collect();
+    RunStrain {
+        points,
+        used: names(&used),
+        held_out: names(&held_out),
+    }
+}
