@@ -26,7 +26,10 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let loads = recover_runs(&job, &Context::new(&files))?;
     for (load, truth) in loads.loads.iter().zip([2000.0, 1000.0]) {
         let half = 0.5 * (load.high - load.low);
-        println!("{} = {:.0} +- {half:.0} {}", load.name, load.value, load.unit);
+        println!(
+            "{} = {:.0} +- {half:.0} {}",
+            load.name, load.value, load.unit
+        );
         assert!(load.low <= truth && truth <= load.high);
     }
     Ok(())

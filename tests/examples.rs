@@ -2,6 +2,8 @@
 
 #[path = "../examples/place.rs"]
 mod place;
+#[path = "../examples/reconcile.rs"]
+mod reconcile;
 #[path = "../examples/recover.rs"]
 mod recover;
 
@@ -13,4 +15,9 @@ fn four_gauges_are_placed_with_their_certificate() {
 #[test]
 fn the_intervals_hold_the_loads_that_were_put_on() {
     recover::main().unwrap();
+}
+
+#[test]
+fn the_gauge_that_reads_the_negative_is_named() {
+    reconcile::main().unwrap();
 }

@@ -1,8 +1,8 @@
 //! The library asked as a program of somebody else's would: files in memory, no folder, no terminal.
 
 use strainbridge::app::context::InMemory;
-use strainbridge::app::recover::recover_runs;
 use strainbridge::app::reconcile::extended_job;
+use strainbridge::app::recover::recover_runs;
 use strainbridge::app::store::Memory;
 use strainbridge::reconcile::Verdict;
 use strainbridge::{Context, Job, Severity, place, reconcile, sensitivity};
