@@ -1,6 +1,5 @@
 //! Eight gauges under two known loads, one of them wired the wrong way round: which one, and what is left of the gap.
 
-use std::error::Error;
 use strainbridge::app::context::InMemory;
 use strainbridge::{Context, Job, reconcile};
 
@@ -34,7 +33,7 @@ fn tables() -> [String; 3] {
 }
 
 /// Names the gauge.
-pub fn main() -> Result<(), Box<dyn Error>> {
+pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [s, strain, runs] = tables();
     let files = InMemory::default().with("job.toml", JOB).with("s.csv", s);
     let files = files.with("strain.csv", strain).with("runs.csv", runs);
