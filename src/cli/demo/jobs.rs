@@ -63,7 +63,7 @@ fn load(name: &str, grid: u32, component: &str, expected: f64) -> String {
 fn wheel_loads() -> String {
     WHEELS
         .iter()
-        .map(|(name, grid)| load(&format!("{name}.FZ"), *grid, "FZ", 10_000.0))
+        .map(|(name, grid)| load(&format!("{name}.FZ"), *grid, "FZ", 8_000.0))
         .collect()
 }
 

@@ -109,8 +109,6 @@ const RUNS: [(f64, f64); 12] = [
 const GROUND: f64 = 4.0;
 /// Scatter of gauge factors, 1 sd.
 const GAIN: f64 = 0.002;
-/// The gauge whose wires are swapped.
-const FLIPPED: usize = 4;
 const SEED: u64 = 11;
 const GRAVITY: f64 = 9.806_65;
 const KILO: f64 = 1e3;
@@ -187,18 +185,19 @@ pub(super) fn drive(glued: &[Glued]) -> Result<Yard, Faults> {
         })
         .collect::<Option<_>>()
         .ok_or_else(|| program("a gauge can't be laid".into()))?;
+    let at = model.grids.get(payload.us()).map_or(none, |g| g.x);
+    let flipped = reads_most(&gauges, &standing, &turns, at);
     let gains: Vec<f64> = gauges
         .iter()
         .enumerate()
-        .map(|(g, _)| (1.0 + GAIN * normal()) * if g == FLIPPED { -1.0 } else { 1.0 })
+        .map(|(g, _)| (1.0 + GAIN * normal()) * if g == flipped { -1.0 } else { 1.0 })
         .collect();
-    let at = model.grids.get(payload.us()).map_or(none, |g| g.x);
     let mut yard = Yard {
         strain_csv: "run".into(),
         runs_csv: "run,payload_mass,payload_x,payload_y".into(),
         hidden: format!(
             "sign_flip:{}",
-            glued.get(FLIPPED).map_or("", |g| g.name.as_str())
+            glued.get(flipped).map_or("", |g| g.name.as_str())
         ),
         truth: Vec::new(),
     };
@@ -237,6 +236,19 @@ pub(super) fn drive(glued: &[Glued]) -> Result<Yard, Faults> {
     yard.strain_csv.push('\n');
     yard.runs_csv.push('\n');
     Ok(yard)
+}
+
+/// The gauge that reads most under a payload in the middle on flat ground: the one that is wired the wrong way round.
+fn reads_most(gauges: &[Gauge], standing: &Standing, turns: &[(Vec3, Vec3); 3], at: Vec3) -> usize {
+    let amounts = [-1.0, 0.0, 0.0];
+    let reactions = reactions(standing, turns, at, &amounts, &[0.0; WHEELS.len()]);
+    let reading = |g: &Gauge| {
+        superposed(g, &standing.contacts, &reactions) + superposed(g, &standing.others, &amounts)
+    };
+    let sizes = gauges.iter().map(|g| reading(g).abs()).enumerate();
+    sizes
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .map_or(0, |largest| largest.0)
 }
 
 /// Reactions to the payload on ground of these heights.
