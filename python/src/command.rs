@@ -23,9 +23,13 @@ const ON_JOB: [(&str, OnJob); 10] = [
     ("identify", |j, cx| tell(strainbridge::identify(j, cx)?)),
     ("payload", |j, cx| tell(strainbridge::payload(j, cx)?)),
     ("place", |j, cx| tell(strainbridge::place(j, cx)?)),
-    ("recover", |j, cx| tell_unwritten(strainbridge::recover_runs(j, cx)?)),
+    ("recover", |j, cx| {
+        tell_unwritten(strainbridge::recover_runs(j, cx)?)
+    }),
     ("respond", |j, cx| tell(strainbridge::respond(j, cx)?)),
-    ("sensitivity", |j, cx| tell(strainbridge::sensitivity(j, cx)?)),
+    ("sensitivity", |j, cx| {
+        tell(strainbridge::sensitivity(j, cx)?)
+    }),
     ("study", |j, cx| tell(strainbridge::study(j, cx)?)),
 ];
 
@@ -97,7 +101,10 @@ pub(crate) fn ask(
 fn shard_of(py: Python, text: &str) -> PyResult<Shard> {
     Shard::of(text).ok_or_else(|| {
         let said = format!("`{text}` is no part of a whole");
-        raise(py, wrong("fleet", "shard", &said, "write it as 3/64").into())
+        raise(
+            py,
+            wrong("fleet", "shard", &said, "write it as 3/64").into(),
+        )
     })
 }
 

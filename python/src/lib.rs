@@ -8,6 +8,7 @@
 //! - [`job`]: a checked job
 //! - [`outcome`]: an outcome, whatever the command
 //! - [`placing`], [`recovering`]: layouts and loads of bare matrices
+//! - [`reading`]: decks and result files as arrays
 //! - [`work`]: threads, the interpreter's lock, Ctrl-C, bugs
 //!
 //! What users see, with its documentation, is Python: `python/strainbridge`.
@@ -20,6 +21,7 @@ mod files;
 mod job;
 mod outcome;
 mod placing;
+mod reading;
 mod recovering;
 mod work;
 
@@ -36,6 +38,8 @@ mod _strainbridge {
     use crate::outcome::Told;
     #[pymodule_export]
     use crate::placing::place_rows;
+    #[pymodule_export]
+    use crate::reading::{ReadDeck, ReadResults, shell_strain};
     #[pymodule_export]
     use crate::recovering::recover_rows;
     #[pymodule_export]

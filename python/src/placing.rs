@@ -71,7 +71,11 @@ fn points(a: &Bound<PyAny>, n: usize) -> PyResult<Vec<[f64; 3]>> {
     }
     let rows = array.as_slice()?.as_chunks::<3>().0;
     if !rows.as_flattened().iter().all(|v| v.is_finite()) {
-        return Err(POSITIONS.fault(a.py(), "it holds numbers that are not finite", "drop those rows"));
+        return Err(POSITIONS.fault(
+            a.py(),
+            "it holds numbers that are not finite",
+            "drop those rows",
+        ));
     }
     Ok(rows.to_vec())
 }
@@ -87,18 +91,30 @@ fn layout(
         Faults::from(wrong(S.function, argument, said, remedy))
     };
     if k == 0 || rows.is_empty() {
-        return Err(fault("S", "it is empty", "give a row a gauge and a column a load"));
+        return Err(fault(
+            "S",
+            "it is empty",
+            "give a row a gauge and a column a load",
+        ));
     }
     if let Some(at) = rows.iter().position(|v| !v.is_finite()) {
         let said = format!("row {}, column {} is not a finite number", at / k, at % k);
         return Err(fault("S", &said, "drop that row"));
     }
     if !(spec.spacing >= 0.0 && spec.spacing.is_finite()) {
-        return Err(fault("spacing", "it is no distance", "give a number of 0 or more"));
+        return Err(fault(
+            "spacing",
+            "it is no distance",
+            "give a number of 0 or more",
+        ));
     }
     if spec.spacing > 0.0 && positions.is_none() {
         let remedy = "pass positions=, rows x 3, in the unit of the spacing";
-        return Err(fault("spacing", "a spacing needs to know where the rows are", remedy));
+        return Err(fault(
+            "spacing",
+            "a spacing needs to know where the rows are",
+            remedy,
+        ));
     }
     let n = rows.len() / k;
     let mut candidates = Candidates::from_rows(k, n, Scatter::uniform(1.0), |place, row| {

@@ -87,11 +87,21 @@ pub(crate) fn recover_rows<'py>(
 }
 
 /// A finding by its parts.
-type Parts = (String, &'static str, String, String, Option<f64>, Option<f64>, String);
+type Parts = (
+    String,
+    &'static str,
+    String,
+    String,
+    Option<f64>,
+    Option<f64>,
+    String,
+);
 
 fn parts(f: Finding) -> Parts {
     let severity = format!("{:?}", f.severity).to_lowercase();
-    (severity, f.code, f.subject, f.message, f.measured, f.limit, f.remedy)
+    (
+        severity, f.code, f.subject, f.message, f.measured, f.limit, f.remedy,
+    )
 }
 
 /// The loads of readings, `n` a run.
@@ -199,7 +209,10 @@ fn of_runs(judged: &Recovery, half: &[f64]) -> (Vec<f64>, Vec<(usize, Vec<f64>)>
         let own: Vec<f64> = (0..half.len())
             .map(|l| e.coverage_factor * e.sigma(l))
             .collect();
-        let alike = own.iter().zip(half).all(|(a, b)| (a - b).abs() <= 1e-12 * b);
+        let alike = own
+            .iter()
+            .zip(half)
+            .all(|(a, b)| (a - b).abs() <= 1e-12 * b);
         (!alike).then_some((i, own))
     });
     (loads.collect(), others.collect())
@@ -237,7 +250,10 @@ fn of_record(
                 None => vec![f64::NAN; k],
             };
             let factor = filter.coverage_factor();
-            others.push((number * BLOCK + at, sigma.iter().map(|v| factor * v).collect()));
+            others.push((
+                number * BLOCK + at,
+                sigma.iter().map(|v| factor * v).collect(),
+            ));
         }
     }
     let mut loads = Vec::with_capacity(samples.len() / n * k);

@@ -97,7 +97,12 @@ pub(crate) fn run<T: Send>(
         .stack_size(STACK)
         .build();
     let pool = pool.map_err(|e| {
-        let fault = wrong("threads", "threads", &e.to_string(), "ask for fewer threads");
+        let fault = wrong(
+            "threads",
+            "threads",
+            &e.to_string(),
+            "ask for fewer threads",
+        );
         raise(py, fault.into())
     })?;
     let heard = Heard::default();

@@ -40,17 +40,23 @@ from ._commands import (
 )
 from ._faults import Fault, Faults
 from ._job import Job
+from ._model import Model
 from ._outcome import Finding, Outcome, Record
+from ._reading import Deck, Results, Strain
 
 __all__ = [
+    "Deck",
     "Fault",
     "Faults",
     "Finding",
     "Job",
+    "Model",
     "Outcome",
     "Placement",
     "Record",
     "RecoveredRows",
+    "Results",
+    "Strain",
     "ballast",
     "calibrate",
     "cases",

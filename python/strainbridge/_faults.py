@@ -34,7 +34,7 @@ class Faults(ValueError):
     faults: tuple[Fault, ...]
 
     def __init__(self, faults: Iterable[Parts]) -> None:
-        listed = [tuple(f) for f in faults]
+        listed: list[Parts] = list(faults)
         super().__init__(listed)
         self.faults = tuple(Fault(*f) for f in listed)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Iterator, Mapping
 
@@ -13,26 +14,29 @@ from ._toml import plain, text_of
 #: Name under which a job that was made of a dictionary stands in its folder; nothing is written there.
 _NAME = "job.toml"
 
-_keys: frozenset[str] | None = None
+
+@lru_cache(maxsize=None)
+def _schema() -> dict[str, Any]:
+    """What a job can hold, by key."""
+    keys: dict[str, Any] = json.loads(_engine.schema())["properties"]
+    return keys
 
 
-def _known(name: str) -> bool:
-    """Whether a job can have this key."""
-    global _keys
-    if _keys is None:
-        _keys = frozenset(json.loads(_engine.schema())["properties"])
-    return name in _keys
+def _is_section(name: str) -> bool:
+    """Whether a key stands for one section."""
+    return "properties" in _schema()[name]
 
 
 class Section:
     """A section of a job: its keys are attributes, and can be set. ``del`` takes a key out; a key that is absent is None."""
 
-    __slots__ = ("_job", "_table", "_found")
+    __slots__ = ("_job", "_table", "_absent")
 
-    def __init__(self, job: Job, table: dict[str, Any], found: bool | Mapping[str, Any]) -> None:
+    def __init__(self, job: Job, table: dict[str, Any], absent: str | None = None) -> None:
         object.__setattr__(self, "_job", job)
         object.__setattr__(self, "_table", table)
-        object.__setattr__(self, "_found", found)
+        # Its name, where the job does not have it until a key is set.
+        object.__setattr__(self, "_absent", absent)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
@@ -120,7 +124,8 @@ class Job:
 
     def to_dict(self) -> dict[str, Any]:
         """The keys as they stand in the text; what is left to its default is absent."""
-        return plain(self._keys())
+        copy: dict[str, Any] = plain(self._keys())
+        return copy
 
     def check(self) -> Job:
         """Checks the job as it stands now, and returns it.
@@ -148,30 +153,28 @@ class Job:
 
     def _view(self, value: Any) -> Any:
         if isinstance(value, dict):
-            return Section(self, value, True)
+            return Section(self, value)
         if isinstance(value, list):
             # A copy: a list is changed by setting it anew.
             return [self._view(v) for v in value]
         return value
 
     def _change(self, section: Section | None = None) -> None:
-        if section is not None and not isinstance(section._found, bool):
-            # A section that the job did not have yet.
-            for name in section._found:
-                self._keys()[name] = section._table
+        if section is not None and section._absent is not None:
+            self._keys()[section._absent] = section._table
         object.__setattr__(self, "_text", text_of(self._keys()))
         object.__setattr__(self, "_native", None)
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("_") or not _known(name):
+        if name.startswith("_") or name not in _schema():
             raise AttributeError(f"a job has no `{name}`")
         table = self._keys()
         if name in table:
             return self._view(table[name])
-        return Section(self, {}, {name: None}) if _is_section(name) else None
+        return Section(self, {}, name) if _is_section(name) else None
 
     def __setattr__(self, name: str, value: Any) -> None:
-        if not _known(name):
+        if name not in _schema():
             raise AttributeError(f"a job has no `{name}`")
         if value is None:
             self._keys().pop(name, None)
@@ -183,7 +186,7 @@ class Job:
         setattr(self, name, None)
 
     def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *json.loads(_engine.schema())["properties"]]
+        return [*super().__dir__(), *_schema()]
 
     def __getstate__(self) -> dict[str, Any]:
         return {"_path": self._path, "_text": self._text, "_files": self._files}
@@ -194,12 +197,6 @@ class Job:
 
     def __repr__(self) -> str:
         return f"Job({self._path!r})"
-
-
-def _is_section(name: str) -> bool:
-    """Whether a key stands for a section, by the schema."""
-    schema = json.loads(_engine.schema())
-    return '"type": "array"' not in json.dumps(schema["properties"][name]) and "$ref" in json.dumps(schema["properties"][name])
 
 
 def job_of(job: Job | str | os.PathLike[str] | Mapping[str, Any]) -> Job:

@@ -7,7 +7,7 @@ import json
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Iterable, Iterator, Literal, Sequence
+from typing import Any, Iterator, Literal, Mapping, Sequence
 
 import numpy as np
 
@@ -50,7 +50,7 @@ class Finding:
         return f"{self.severity}: {self.code}: {self.subject}: {self.message}: {self.remedy}"
 
 
-class Record:
+class Record(Mapping[str, Any]):
     """An object of ``result.json``: its keys are attributes and items. Lists of numbers are numpy arrays."""
 
     __slots__ = ("_keys", "_seen")
@@ -59,21 +59,15 @@ class Record:
         self._keys = keys
         self._seen: dict[str, Any] = {}
 
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_") or name not in self._keys:
-            raise AttributeError(f"no `{name}` here, but {', '.join(self._keys)}")
+    def __getitem__(self, name: str) -> Any:
         if name not in self._seen:
             self._seen[name] = _value(self._keys[name])
         return self._seen[name]
 
-    def __getitem__(self, name: str) -> Any:
-        try:
-            return getattr(self, name)
-        except AttributeError as e:
-            raise KeyError(name) from e
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._keys
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or name not in self._keys:
+            raise AttributeError(f"no `{name}` here, but {', '.join(self._keys)}")
+        return self[name]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._keys)
@@ -81,21 +75,10 @@ class Record:
     def __len__(self) -> int:
         return len(self._keys)
 
-    def keys(self) -> Iterable[str]:
-        """The names of the attributes."""
-        return self._keys.keys()
-
-    def get(self, name: str, otherwise: Any = None) -> Any:
-        """The attribute, or something else where there is none."""
-        return self[name] if name in self._keys else otherwise
-
-    def items(self) -> Iterator[tuple[str, Any]]:
-        """Names and attributes."""
-        return ((name, self[name]) for name in self._keys)
-
     def to_dict(self) -> dict[str, Any]:
         """The keys as JSON has them."""
-        return json.loads(json.dumps(self._keys))
+        copy: dict[str, Any] = json.loads(json.dumps(self._keys))
+        return copy
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Record) and self._keys == other._keys
@@ -150,7 +133,8 @@ class Outcome(Record):
     @property
     def findings(self) -> Sequence[Finding]:
         """What is to be known of the answer, the worst first."""
-        return self._seen["findings"]
+        listed: Sequence[Finding] = self["findings"]
+        return listed
 
     @property
     def is_reliable(self) -> bool:
@@ -200,7 +184,7 @@ class Outcome(Record):
         if name is None or name not in self._keys:
             raise KeyError(f"no table `{name}`, but {', '.join(self._tables()) or 'none'}")
         try:
-            import pyarrow  # type: ignore[import-not-found,import-untyped]
+            import pyarrow  # type: ignore
         except ImportError as e:
             raise ImportError("to_arrow needs pyarrow: pip install pyarrow") from e
         return pyarrow.Table.from_pylist(self._keys[name])

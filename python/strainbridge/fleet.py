@@ -111,4 +111,5 @@ def _command(job: AnyJob, files: Sequence[str], out: str, kept: str, threads: in
     done = subprocess.run(call, capture_output=True, text=True, check=False)
     if done.returncode not in (0, 1):
         raise FleetError(done.stderr.strip())
-    return json.loads(done.stdout)
+    answer: dict[str, Any] = json.loads(done.stdout)
+    return answer
