@@ -122,7 +122,33 @@ fn recovered(rows: &[f64], k: usize, samples: &[f64], noise: f64) -> Result<Reco
     if samples.is_empty() {
         return Err(wrong(S.function, "strain", "it has no rows", "give a row a run").into());
     }
-    let unit = unit_of(samples);
+    // A record is looked through once: readings between those that are judged are rarely in another unit.
+    let judged: Vec<f64> = judged_rows(samples, n)
+        .flat_map(|(_, row)| row.to_vec())
+        .collect();
+    match in_unit(rows, k, samples, noise, unit_of(&judged))? {
+        Some(found) => Ok(found),
+        None => in_unit(rows, k, samples, noise, unit_of(samples))?.ok_or_else(|| {
+            wrong(
+                S.function,
+                "strain",
+                "its numbers can't be told apart",
+                "check its unit",
+            )
+            .into()
+        }),
+    }
+}
+
+/// The loads with `unit` as the strain of a unit of the readings; `None` where some reading is too large for it.
+fn in_unit(
+    rows: &[f64],
+    k: usize,
+    samples: &[f64],
+    noise: f64,
+    unit: f64,
+) -> Result<Option<Recovered>, Faults> {
+    let n = rows.len() / k;
     let s = Sensitivity {
         gauges: (0..n).map(|g| format!("row {g}")).collect(),
         loads: (0..k).map(|l| Load::named(format!("column {l}"))).collect(),
@@ -149,15 +175,18 @@ fn recovered(rows: &[f64], k: usize, samples: &[f64], noise: f64) -> Result<Reco
     let (loads, others) = if runs <= MOST_RUNS {
         of_runs(&judged, &half)
     } else {
-        of_record(&s, samples, unit, errors, &judged)?
+        match of_record(&s, samples, unit, errors, &judged)? {
+            Some(found) => found,
+            None => return Ok(None),
+        }
     };
-    Ok(Recovered {
+    Ok(Some(Recovered {
         loads,
         half,
         others,
         covariance,
         findings,
-    })
+    }))
 }
 
 /// Strain of one unit of the readings: microstrain, and where that can't be, a power of two that keeps all of them.
@@ -185,18 +214,23 @@ fn separable(s: &Sensitivity, findings: &[Finding]) -> Result<(), Faults> {
     Faults::check(faults)
 }
 
-/// The readings that are judged: all of a few runs, of a record as many samples, evenly spread.
-fn readings(samples: &[f64], n: usize, unit: f64) -> Vec<Readings> {
+/// The rows that are judged, with their numbers: all of a few runs, of a record as many samples, evenly spread.
+fn judged_rows(samples: &[f64], n: usize) -> impl Iterator<Item = (usize, &[f64])> {
     let runs = samples.len() / n;
     let judged = runs.min(MOST_RUNS);
-    (0..judged)
-        .map(|i| {
-            let at = i * runs / judged;
-            Readings {
-                run: at.to_string(),
-                strain: samples[at * n..][..n].iter().map(|v| v * unit).collect(),
-                noise_factor: 1.0,
-            }
+    (0..judged).map(move |i| {
+        let at = i * runs / judged;
+        (at, &samples[at * n..][..n])
+    })
+}
+
+/// The readings that are judged.
+fn readings(samples: &[f64], n: usize, unit: f64) -> Vec<Readings> {
+    judged_rows(samples, n)
+        .map(|(at, row)| Readings {
+            run: at.to_string(),
+            strain: row.iter().map(|v| v * unit).collect(),
+            noise_factor: 1.0,
         })
         .collect()
 }
@@ -218,31 +252,44 @@ fn of_runs(judged: &Recovery, half: &[f64]) -> (Vec<f64>, Vec<(usize, Vec<f64>)>
     (loads.collect(), others.collect())
 }
 
-/// Loads of a record, streamed through one estimate, and the widths of samples in which some gauge gives nothing.
+/// Loads of a record, streamed through one estimate, and the widths of samples in which some gauge gives nothing; `None` where a reading is too
+/// large to be strain in this unit.
 fn of_record(
     s: &Sensitivity,
     samples: &[f64],
     unit: f64,
     errors: ErrorModel,
     judged: &Recovery,
-) -> Result<(Vec<f64>, Vec<(usize, Vec<f64>)>), Faults> {
+) -> Result<Option<(Vec<f64>, Vec<(usize, Vec<f64>)>)>, Faults> {
     let (n, k) = (s.gauges.len(), s.loads.len());
     let widening: Widening = judged.widening.clone();
     let filter = Filter::new(s, vec![0.0; n], errors, 1.0, &judged.typical, widening)
         .ok_or_else(|| wrong(S.function, "S", "it can't be solved", "check its numbers"))?;
-    let blocks: Vec<SampleLoads> = samples
+    let blocks: Vec<(SampleLoads, u64)> = samples
         .par_chunks(BLOCK * n)
         .map(|block| {
             let mut out = SampleLoads {
                 values: Vec::with_capacity(block.len() / n * k),
                 gaps: Vec::new(),
             };
-            filter.apply(block, unit, &mut out, &mut Sums::new(n, k));
-            out
+            let mut sums = Sums::new(n, k);
+            filter.apply(block, unit, &mut out, &mut sums);
+            // An infinite reading is none in any unit.
+            let impossible = match sums.impossible {
+                0 => 0,
+                _ => block
+                    .iter()
+                    .filter(|v| v.is_finite() && (*v * unit).abs() > LARGEST_STRAIN)
+                    .count(),
+            };
+            (out, impossible as u64)
         })
         .collect();
+    if blocks.iter().any(|b| b.1 > 0) {
+        return Ok(None);
+    }
     let mut others = Vec::new();
-    for (number, block) in blocks.iter().enumerate() {
+    for (number, (block, _)) in blocks.iter().enumerate() {
         for (at, gain) in &block.gaps {
             let f = &block.values[at * k..][..k];
             let sigma = match gain {
@@ -257,8 +304,8 @@ fn of_record(
         }
     }
     let mut loads = Vec::with_capacity(samples.len() / n * k);
-    for block in blocks {
+    for (block, _) in blocks {
         loads.extend_from_slice(&block.values);
     }
-    Ok((loads, others))
+    Ok(Some((loads, others)))
 }

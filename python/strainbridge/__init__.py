@@ -20,6 +20,7 @@ that it can't be relied on, and the outcome says so when it is printed.
 
 from . import fleet
 from ._arrays import Placement, RecoveredRows, place_rows, rainflow, recover_rows
+from ._calibrate import CalibratedRows, calibrate_rows
 from ._commands import (
     ballast,
     calibrate,
@@ -45,6 +46,7 @@ from ._outcome import Finding, Outcome, Record
 from ._reading import Deck, Results, Strain
 
 __all__ = [
+    "CalibratedRows",
     "Deck",
     "Fault",
     "Faults",
@@ -59,6 +61,7 @@ __all__ = [
     "Strain",
     "ballast",
     "calibrate",
+    "calibrate_rows",
     "cases",
     "check",
     "fleet",

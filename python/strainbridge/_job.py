@@ -27,6 +27,12 @@ def _is_section(name: str) -> bool:
     return "properties" in _schema()[name]
 
 
+def in_folder(folder: str | os.PathLike[str], name: str) -> str:
+    """The path of a file in a folder, as a job in that folder finds it."""
+    base = os.fspath(folder)
+    return name if base in ("", ".") else os.path.join(base, name)
+
+
 class Section:
     """A section of a job: its keys are attributes, and can be set. ``del`` takes a key out; a key that is absent is None."""
 
@@ -110,7 +116,7 @@ class Job:
         Raises:
             Faults: every fault; lines are those of ``job.text``, had it been written.
         """
-        return cls(os.path.join(os.fspath(folder), _NAME), text_of(job), files)
+        return cls(in_folder(folder, _NAME), text_of(job), files)
 
     @property
     def path(self) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ._commands import solve
-from ._job import Job
+from ._job import Job, in_folder
 from ._outcome import Outcome
 from ._toml import plain
 
@@ -85,7 +85,7 @@ class Model:
             if "point" in load:
                 load["grid"] = load.pop("point") + 1
         keys["model"] = {**keys.get("model", {}), "deck": _NAME}
-        return Job.from_dict(keys, folder, {os.path.join(os.fspath(folder), _NAME): self.deck.encode()})
+        return Job.from_dict(keys, folder, {in_folder(folder, _NAME): self.deck.encode()})
 
     def solve(self, job: Mapping[str, Any], **more: Any) -> Outcome:
         """The unit loads of :meth:`job`, by the built-in solver; what :func:`strainbridge.solve` takes beside."""

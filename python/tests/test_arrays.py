@@ -130,7 +130,7 @@ def test_what_is_wrong_with_an_array_is_said(array, error, said):
     with pytest.raises(error, match=said):
         sb.place_rows(array, 2)
     with pytest.raises(error, match=said):
-        sb.recover_rows(array, np.ones((1, 4)))
+        sb.recover_rows(array, np.ones((1, len(array))))
 
 
 def test_arguments_that_make_no_sense_are_said():
@@ -151,3 +151,19 @@ def test_cycles_are_those_of_the_standard():
     count = {r: cycles["count"][cycles["range"] == r].sum() for r in (3.0, 4.0, 6.0, 8.0, 9.0)}
     assert count == {3.0: 0.5, 4.0: 1.5, 6.0: 0.5, 8.0: 1.0, 9.0: 0.5}
     assert cycles["count"].sum() == 4.0
+
+
+def test_a_calibration_learns_the_matrix_that_made_the_readings():
+    rng = np.random.default_rng(11)
+    S = rng.normal(size=(6, 2)) * 10.0
+    loads = rng.normal(0.0, 30.0, (12, 2))
+    strain = loads @ S.T + rng.normal(0.0, 0.5, (12, 6))
+    learnt = sb.calibrate_rows(strain, loads, noise=0.5)
+    # Least squares run by run: sd of an entry is the noise over the root of the sum of squares of its load.
+    sd = 0.5 / np.sqrt((loads**2).sum(axis=0))
+    assert (np.abs(learnt.S - S) < 6.0 * sd).all()
+    assert learnt.outcome.calibration.runs == 12
+    better = sb.calibrate_rows(strain[:3], loads[:3], noise=0.5, prior=S, prior_rel=0.01)
+    assert np.abs(better.S / S - 1.0).max() < 0.05
+    with pytest.raises(ValueError, match="runs"):
+        sb.calibrate_rows(strain, loads[:5])
