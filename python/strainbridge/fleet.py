@@ -1,13 +1,15 @@
 """Records of many vehicles and days: this machine's cores, a Dask cluster, or any scheduler.
 
-    from strainbridge import fleet
-    result = fleet.run("job.toml", ["data/T1_2026-05-01.parquet", ...], out="fleet")
-    result = fleet.run("job.toml", files, out="/shared/fleet", client=dask.distributed.Client("tcp://scheduler:8786"))
+    import strainbridge as sb
+    result = sb.fleet.run("job.toml", ["data/T1_2026-05-01.parquet", ...], out="fleet")
+    result = sb.fleet.run("job.toml", files, out="/shared/fleet", client=dask.distributed.Client("tcp://scheduler:8786"))
 
-A task is one call of the command `strainbridge fleet` on some files. It keeps a small result a file in the folder `out`, by the digest of file,
-job and version, so a task that is repeated, or a run that is begun again, does what is new alone; at the end one call without files merges
-what the folder holds. The same files give the same bytes of `fleet.csv` whoever did them. `out`, `job` and `files` must be reachable under
-the same paths by every worker.
+A task does some files. It keeps a small result a file in the folder `out`, by the digest of file, job and version, so a task that is
+repeated, or a run that is begun again, does what is new alone; at the end what the folder holds is merged. The same files give the same bytes
+of `fleet.csv` whoever did them. `out`, `job` and `files` must be reachable under the same paths by every worker.
+
+Where the environment variable STRAINBRIDGE names a command, or the engine of the package is missing (this file alone will do), that command
+does the work.
 """
 
 from __future__ import annotations
@@ -18,10 +20,20 @@ import shutil
 import subprocess
 import tempfile
 from pathlib import Path
-from typing import Any, Iterable, Sequence
+from typing import Any, Iterable, Mapping, Sequence
 
-#: Files of one task of a cluster: enough that starting a process costs little, few enough that a lost task loses little.
+try:
+    from . import _strainbridge as _engine
+    from ._job import job_of
+    from ._outcome import Outcome
+except ImportError:  # the file alone
+    _engine = None  # type: ignore[assignment]
+
+#: Files of one task of a cluster: enough that starting a task costs little, few enough that a lost task loses little.
 FILES_A_TASK = 8
+
+#: A job, or the path of one.
+AnyJob = Any
 
 
 class FleetError(RuntimeError):
@@ -36,41 +48,68 @@ def program() -> str:
     return found
 
 
-def part(job: str, files: Sequence[str], out: str, threads: int | None = None) -> list[dict[str, str]]:
+def part(job: AnyJob, files: Sequence[str], out: str, threads: int | None = None) -> list[dict[str, str]]:
     """Does some files and returns path, status and message of each: a pure function of its arguments but for the results kept in `out`."""
     files = [str(f) for f in files]
     if not files:
         return []
     # The answer of a task goes to a folder of its own; what counts is kept under `out/days`, which all tasks share.
     with tempfile.TemporaryDirectory() as own:
-        answer = _call([job, *files, "--out", own, "--kept", out, "--json"], threads)
+        answer = _call(job, files, own, out, threads)
     return [{k: f[k] for k in ("path", "status", "message")} for f in answer["files"]]
 
 
-def merge(job: str, out: str) -> dict[str, Any]:
+def merge(job: AnyJob, out: str | Path) -> Mapping[str, Any]:
     """The result of everything that `out` holds of this job; `fleet.csv`, `fleet.parquet` and the report are written there."""
-    return _call([job, "--out", out, "--json"], None)
+    return _call(job, [], str(out), str(out), None)
 
 
-def run(job: str | Path, files: Iterable[str | Path], out: str | Path = "fleet", client: Any = None, threads: int | None = None) -> dict[str, Any]:
-    """Does all files and returns what `result.json` holds.
+def run(
+    job: AnyJob,
+    files: Iterable[str | Path],
+    out: str | Path = "fleet",
+    client: Any = None,
+    threads: int | None = None,
+) -> Mapping[str, Any]:
+    """Does all files, writes what the command writes into `out`, and returns the outcome: ``vehicles``, ``files``, as in `result.json`.
 
-    `client` is a `dask.distributed.Client`, whose workers do the files in tasks of eight; None does them here, on all cores or `threads`.
+    Args:
+        job: a job with ``[fleet]``, or the path of one.
+        files: records, relative to the working folder.
+        out: where the results of single files are kept, and those of the fleet written.
+        client: a `dask.distributed.Client`, whose workers do the files in tasks of eight; None: they are done here.
+        threads: how many here, all cores where None; on a worker 1 where None.
+
+    Raises:
+        Faults: bad input. A record that can't be read is no fault but a failed file, and a finding.
     """
-    job, out = str(job), str(out)
-    files = sorted({str(f) for f in files})
-    if client is None:
-        return _call([job, *files, "--out", out, "--json"], threads)
-    tasks = [files[i : i + FILES_A_TASK] for i in range(0, len(files), FILES_A_TASK)]
-    futures = client.map(part, [job] * len(tasks), tasks, [out] * len(tasks), [threads or 1] * len(tasks), pure=False, retries=3)
-    client.gather(futures)
-    # Files whose results were kept by the workers are not decoded again.
-    return _call([job, *files, "--out", out, "--json"], threads)
+    job = str(job) if isinstance(job, os.PathLike) else job
+    out = str(out)
+    listed = sorted({str(f) for f in files})
+    if client is not None:
+        tasks = [listed[i : i + FILES_A_TASK] for i in range(0, len(listed), FILES_A_TASK)]
+        n = len(tasks)
+        futures = client.map(part, [job] * n, tasks, [out] * n, [threads or 1] * n, pure=False, retries=3)
+        client.gather(futures)
+    # Files whose results were kept by workers are not decoded again.
+    return _call(job, listed, out, out, threads)
 
 
-def _call(arguments: list[str], threads: int | None) -> dict[str, Any]:
+def _call(job: AnyJob, files: Sequence[str], out: str, kept: str, threads: int | None) -> Mapping[str, Any]:
+    if _engine is None or os.environ.get("STRAINBRIDGE"):
+        return _command(job, files, out, kept, threads)
+    outcome = Outcome(_engine.ask("fleet", job_of(job)._checked(), files=files, folder=kept, threads=threads))
+    outcome.save(out)
+    return outcome
+
+
+def _command(job: AnyJob, files: Sequence[str], out: str, kept: str, threads: int | None) -> dict[str, Any]:
+    path = str(getattr(job, "path", job))
     more = ["--threads", str(threads)] if threads else []
-    done = subprocess.run([program(), "fleet", *arguments, *more], capture_output=True, text=True, check=False)
+    more += ["--kept", kept] if kept != out else []
+    call = [program(), "fleet", path, *files, "--out", out, "--json", *more]
+    done = subprocess.run(call, capture_output=True, text=True, check=False)
     if done.returncode not in (0, 1):
         raise FleetError(done.stderr.strip())
-    return json.loads(done.stdout)
+    answer: dict[str, Any] = json.loads(done.stdout)
+    return answer

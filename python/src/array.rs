@@ -1,0 +1,67 @@
+//! numpy arrays as slices, without a copy, or a sentence on what is wrong with them.
+
+use crate::fault::{raise, wrong};
+use numpy::{PyArrayDescrMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArray};
+use numpy::{PyUntypedArrayMethods, prelude::*};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+
+/// What an array is called and what its axes are.
+#[derive(Clone, Copy)]
+pub(crate) struct Named<'a> {
+    /// The function that takes it.
+    pub function: &'a str,
+    /// Its name there.
+    pub name: &'a str,
+    /// Its axes, `gauges x loads`.
+    pub axes: &'a str,
+}
+
+impl Named<'_> {
+    fn untyped<'a, 'py>(
+        &self,
+        a: &'a Bound<'py, PyAny>,
+        ndim: usize,
+    ) -> PyResult<&'a Bound<'py, PyUntypedArray>> {
+        let Self { name, axes, .. } = self;
+        let remedy = format!("pass numpy.ascontiguousarray({name}, dtype=numpy.float64)");
+        let Ok(array) = a.cast::<PyUntypedArray>() else {
+            let kind = a.get_type().name()?;
+            return Err(PyTypeError::new_err(format!(
+                "{name} is a {kind}, and a numpy array of float64 ({axes}) is needed: {remedy}"
+            )));
+        };
+        if !array.dtype().is_equiv_to(&numpy::dtype::<f64>(a.py())) {
+            let dtype = array.dtype().str()?;
+            return Err(PyTypeError::new_err(format!(
+                "{name} holds {dtype}, and float64 is needed: {remedy}"
+            )));
+        }
+        if array.ndim() != ndim {
+            let said = format!("it has {} dimensions and needs {ndim}", array.ndim());
+            return Err(self.fault(a.py(), &said, &format!("give it the shape {axes}")));
+        }
+        if !array.is_c_contiguous() {
+            let said = "its rows do not lie one after the other in memory (it is a view, a transpose, or in Fortran order)";
+            return Err(self.fault(a.py(), said, &remedy));
+        }
+        Ok(array)
+    }
+
+    /// Two dimensions.
+    pub fn matrix<'py>(&self, a: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArray2<'py, f64>> {
+        self.untyped(a, 2)?;
+        Ok(a.cast::<numpy::PyArray2<f64>>()?.try_readonly()?)
+    }
+
+    /// One dimension.
+    pub fn vector<'py>(&self, a: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArray1<'py, f64>> {
+        self.untyped(a, 1)?;
+        Ok(a.cast::<numpy::PyArray1<f64>>()?.try_readonly()?)
+    }
+
+    /// What is wrong with it.
+    pub fn fault(&self, py: Python, said: &str, remedy: &str) -> PyErr {
+        raise(py, wrong(self.function, self.name, said, remedy).into())
+    }
+}

@@ -1,0 +1,142 @@
+//! Every command that asks a job or files, by its name.
+
+use crate::fault::{raise, wrong};
+use crate::files::Desk;
+use crate::job::CheckedJob;
+use crate::outcome::{Told, tell, tell_unwritten};
+use crate::work::{Asked, run};
+use pyo3::prelude::*;
+use std::path::{Path, PathBuf};
+use strainbridge::app::fleet::{FleetSpec, name::Shard};
+use strainbridge::app::store::Folder;
+use strainbridge::fe::{HeatedStrain, SolveOptions};
+use strainbridge::{Context, Faults, Job};
+
+/// A question of a job alone.
+type OnJob = fn(&Job, &Context) -> Result<Told, Faults>;
+
+/// Commands that ask a job alone, and the question of the library behind each.
+const ON_JOB: [(&str, OnJob); 10] = [
+    ("ballast", |j, cx| tell(strainbridge::ballast(j, cx)?)),
+    ("calibrate", |j, cx| tell(strainbridge::calibrate(j, cx)?)),
+    ("cases", |j, cx| tell(strainbridge::cases(j, cx)?)),
+    ("identify", |j, cx| tell(strainbridge::identify(j, cx)?)),
+    ("payload", |j, cx| tell(strainbridge::payload(j, cx)?)),
+    ("place", |j, cx| tell(strainbridge::place(j, cx)?)),
+    ("recover", |j, cx| {
+        tell_unwritten(strainbridge::recover_runs(j, cx)?)
+    }),
+    ("respond", |j, cx| tell(strainbridge::respond(j, cx)?)),
+    ("sensitivity", |j, cx| {
+        tell(strainbridge::sensitivity(j, cx)?)
+    }),
+    ("study", |j, cx| tell(strainbridge::study(j, cx)?)),
+];
+
+/// Commands that ask files, or a job with more.
+const WITH_MORE: [&str; 6] = ["check", "fleet", "init", "modes", "solve", "strains"];
+
+/// What a command is asked beside its job.
+struct More {
+    files: Vec<PathBuf>,
+    folder: PathBuf,
+    modes: usize,
+    heated: HeatedStrain,
+    shard: Option<Shard>,
+}
+
+/// Names of the commands that [`ask`] knows.
+#[pyfunction]
+pub(crate) fn commands() -> Vec<&'static str> {
+    let on_job = ON_JOB.iter().map(|c| c.0);
+    let mut names: Vec<&str> = on_job.chain(WITH_MORE).collect();
+    names.sort_unstable();
+    names
+}
+
+/// The JSON schema of a job.
+#[pyfunction]
+pub(crate) fn schema() -> String {
+    strainbridge::app::job::schema::job_schema()
+}
+
+/// The outcome of a command.
+#[pyfunction]
+#[pyo3(signature = (command, job=None, *, files=Vec::new(), folder=PathBuf::new(), modes=0, total_strain=false, shard=None, threads=None, cache=true, progress=None))]
+pub(crate) fn ask(
+    py: Python,
+    command: &str,
+    job: Option<&Bound<CheckedJob>>,
+    files: Vec<PathBuf>,
+    folder: PathBuf,
+    modes: usize,
+    total_strain: bool,
+    shard: Option<&str>,
+    threads: Option<usize>,
+    cache: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Told> {
+    let shard = shard.map(|text| shard_of(py, text)).transpose()?;
+    let more = More {
+        files,
+        folder,
+        modes,
+        heated: match total_strain {
+            true => HeatedStrain::Total,
+            false => HeatedStrain::Mechanical,
+        },
+        shard,
+    };
+    let (none, job) = (Desk::default(), job.map(Bound::get));
+    let store = cache.then(Folder::of_user);
+    let asked = Asked { threads, progress };
+    let done = run(py, &asked, |heard| {
+        let mut cx = Context::new(job.map_or(&none, |j| &j.desk)).progress(heard);
+        cx.store = store.as_ref().map(|s| s as _);
+        answer(command, job.map(|j| &j.job), &more, &cx)
+    })?;
+    done.map_err(|f| raise(py, f))
+}
+
+fn shard_of(py: Python, text: &str) -> PyResult<Shard> {
+    Shard::of(text).ok_or_else(|| {
+        let said = format!("`{text}` is no part of a whole");
+        raise(
+            py,
+            wrong("fleet", "shard", &said, "write it as 3/64").into(),
+        )
+    })
+}
+
+fn answer(command: &str, job: Option<&Job>, more: &More, cx: &Context) -> Result<Told, Faults> {
+    let none = PathBuf::new();
+    let first: &Path = more.files.first().unwrap_or(&none);
+    let rest = more.files.get(1..).unwrap_or_default();
+    let options = SolveOptions {
+        modes: more.modes,
+        heated: more.heated,
+        ..SolveOptions::default()
+    };
+    match (command, job) {
+        ("check", _) => tell(strainbridge::check(&more.files, cx)?),
+        ("init", _) => tell(strainbridge::init(first, rest, &more.folder, cx)?),
+        ("strains", _) => tell(strainbridge::strains(first, rest, cx)?),
+        ("modes", Some(job)) => tell(strainbridge::modes(job, more.modes, cx)?),
+        ("modes", None) => tell(strainbridge::modes_of_deck(first, more.modes, cx)?),
+        ("solve", Some(job)) => tell(strainbridge::solve(job, options, cx)?),
+        ("solve", None) => tell(strainbridge::solve_deck(first, options, cx)?),
+        ("fleet", Some(job)) => {
+            let spec = FleetSpec {
+                files: more.files.clone(),
+                shard: more.shard,
+                folder: more.folder.clone(),
+            };
+            tell(strainbridge::fleet(job, &spec, cx)?)
+        }
+        (name, Some(job)) => match ON_JOB.iter().find(|c| c.0 == name) {
+            Some((_, question)) => question(job, cx),
+            None => Err(wrong("ask", "command", name, "see `commands()`").into()),
+        },
+        (name, None) => Err(wrong(name, "job", "no job is given", "give a job").into()),
+    }
+}

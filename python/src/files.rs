@@ -1,0 +1,20 @@
+//! Files on the disk, and some held in memory under paths of their own.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use strainbridge::Disk;
+use strainbridge::app::context::Files;
+use strainbridge::app::files::FileBytes;
+
+/// The disk with files from memory before it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Desk(pub BTreeMap<PathBuf, Vec<u8>>);
+
+impl Files for Desk {
+    fn load(&self, path: &Path) -> std::io::Result<FileBytes> {
+        match self.0.get(path) {
+            Some(bytes) => Ok(FileBytes::from(bytes.clone())),
+            None => Disk.load(path),
+        }
+    }
+}

@@ -1,0 +1,314 @@
+//! Decks and result files as arrays.
+
+use crate::fault::raise;
+use crate::work::{Asked, run};
+use nastran::cards::{MaterialAngle, Shell};
+use nastran::results::{ResultsError, ResultsFile, Rows, ShellForm};
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use strainbridge::app::deck::{DeckModel, read_model};
+use strainbridge::app::files::{FileBytes, Inputs};
+use strainbridge::fe::strain_rows::{Location, Point, each_row, n_elements};
+use strainbridge::fe::strain_tensor::Surface;
+use strainbridge::units::MICROSTRAIN;
+use strainbridge::{Context, Disk, Fault, Faults};
+
+/// Numbers of a table, `columns` a row.
+struct Columns<T> {
+    values: Vec<T>,
+    columns: usize,
+}
+
+/// Puts columns into a dictionary: one number a row as a vector, more as a matrix.
+fn put<T: numpy::Element>(out: &Bound<PyDict>, name: &str, c: Columns<T>) -> PyResult<()> {
+    let rows = c.values.len() / c.columns.max(1);
+    let array = PyArray1::from_vec(out.py(), c.values);
+    match c.columns {
+        1 => out.set_item(name, array),
+        n => out.set_item(name, array.reshape([rows, n])?),
+    }
+}
+
+fn ids(values: impl Iterator<Item = i64>) -> Columns<i64> {
+    Columns {
+        values: values.collect(),
+        columns: 1,
+    }
+}
+
+/// A deck with what it means.
+#[pyclass(frozen, name = "_Deck", module = "strainbridge._strainbridge")]
+pub(crate) struct ReadDeck(DeckModel);
+
+#[pymethods]
+impl ReadDeck {
+    #[new]
+    fn new(py: Python, path: PathBuf) -> PyResult<Self> {
+        let given = path.display().to_string();
+        let read = run(py, &Asked::default(), |_| {
+            read_model(&mut Inputs::of(&Disk), Path::new(""), &given)
+        })?;
+        Ok(Self(read.map_err(|f| raise(py, f.into()))?))
+    }
+
+    /// Number of cards by name.
+    #[getter]
+    fn counts(&self) -> BTreeMap<String, usize> {
+        self.0.deck.counts.clone()
+    }
+
+    /// Everything that is wrong with it, as the parts of faults.
+    #[getter]
+    fn faults(&self) -> Vec<(String, Option<u32>, String, String, String)> {
+        let parts = |f: &Fault| {
+            let f = f.clone();
+            (f.file, f.line, f.field, f.wrong, f.remedy)
+        };
+        self.0.faults.iter().map(parts).collect()
+    }
+
+    /// Ids and locations in the basic frame of its grids.
+    fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (out, grids) = (PyDict::new(py), &self.0.model.grids);
+        put(&out, "id", ids(grids.iter().map(|g| i64::from(g.id))))?;
+        let values = grids.iter().flat_map(|g| [g.x.x, g.x.y, g.x.z]).collect();
+        put(&out, "x", Columns { values, columns: 3 })?;
+        Ok(out)
+    }
+
+    /// Cards of one name as columns; `None` for a name that has no columns here.
+    fn cards<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let (out, cards) = (PyDict::new(py), &self.0.deck.cards);
+        match name {
+            "GRID" => {
+                let list = &cards.grids;
+                put(&out, "id", ids(list.iter().map(|c| i64::from(c.card.id))))?;
+                let cp = |c: Option<u32>| c.map_or(0, i64::from);
+                put(&out, "cp", ids(list.iter().map(|c| cp(c.card.cp))))?;
+                let cd = list.iter().map(|c| i64::from(c.card.cd.unwrap_or(0)));
+                put(&out, "cd", ids(cd))?;
+                let values = list.iter().flat_map(|c| c.card.x).collect();
+                put(&out, "x", Columns { values, columns: 3 })?;
+            }
+            "CONM2" => {
+                let list = &cards.conm2s;
+                put(&out, "id", ids(list.iter().map(|c| i64::from(c.card.id))))?;
+                put(
+                    &out,
+                    "grid",
+                    ids(list.iter().map(|c| i64::from(c.card.grid))),
+                )?;
+                let values = list.iter().map(|c| c.card.mass).collect();
+                put(&out, "mass", Columns { values, columns: 1 })?;
+                let values = list.iter().flat_map(|c| c.card.offset).collect();
+                put(&out, "offset", Columns { values, columns: 3 })?;
+            }
+            "CQUAD4" | "CQUADR" | "CQUAD8" | "CTRIA3" | "CTRIAR" | "CTRIA6" => {
+                let list = cards.shells.iter().map(|c| &c.card);
+                let list: Vec<&Shell> = list.filter(|c| c.shape.card() == name).collect();
+                let width = list.first().map_or(4, |c| c.shape.n_grids());
+                let rows = list.iter().map(|c| (c.id, c.pid, &c.grids[..width]));
+                elements(&out, rows, width)?;
+                let theta = list.iter().map(|c| match c.angle {
+                    MaterialAngle::Theta(degrees) => degrees,
+                    MaterialAngle::Mcid(_) => f64::NAN,
+                });
+                let values = theta.collect();
+                put(&out, "theta", Columns { values, columns: 1 })?;
+            }
+            "CHEXA" | "CPENTA" | "CTETRA" | "CPYRAM" => {
+                let list = cards.solids.iter().map(|c| &c.card);
+                let list: Vec<_> = list.filter(|c| c.shape.card() == name).collect();
+                elements(&out, list.iter().map(|c| (c.id, c.pid, &c.grids[..])), 20)?;
+            }
+            "CBAR" => {
+                let list = cards.bars.iter().map(|c| &c.card);
+                elements(&out, list.map(|c| (c.id, c.pid, &c.grids[..])), 2)?;
+            }
+            "CBEAM" => {
+                let list = cards.beams.iter().map(|c| &c.card.bar);
+                elements(&out, list.map(|c| (c.id, c.pid, &c.grids[..])), 2)?;
+            }
+            "CROD" | "CTUBE" => {
+                let list = cards.rods.iter().map(|c| &c.card);
+                let list = list.filter(|c| c.is_tube == (name == "CTUBE"));
+                elements(&out, list.map(|c| (c.id, c.pid, &c.grids[..])), 2)?;
+            }
+            _ => return Ok(None),
+        }
+        Ok(Some(out))
+    }
+}
+
+/// Ids, properties (the element's id where blank) and grids of elements.
+fn elements<'a>(
+    out: &Bound<PyDict>,
+    rows: impl Iterator<Item = (u32, Option<u32>, &'a [u32])>,
+    width: usize,
+) -> PyResult<()> {
+    let (mut id, mut pid, mut grids) = (Vec::new(), Vec::new(), Vec::new());
+    for (number, property, corners) in rows {
+        id.push(i64::from(number));
+        pid.push(i64::from(property.unwrap_or(number)));
+        grids.extend(corners.iter().map(|g| i64::from(*g)));
+    }
+    put(out, "id", ids(id.into_iter()))?;
+    put(out, "pid", ids(pid.into_iter()))?;
+    let columns = width;
+    put(
+        out,
+        "grids",
+        Columns {
+            values: grids,
+            columns,
+        },
+    )
+}
+
+/// A result file.
+#[pyclass(frozen, name = "_Results", module = "strainbridge._strainbridge")]
+pub(crate) struct ReadResults {
+    name: String,
+    bytes: FileBytes,
+}
+
+impl ReadResults {
+    fn with<T: Send>(
+        &self,
+        py: Python,
+        ask: impl FnOnce(&ResultsFile) -> Result<T, ResultsError> + Send,
+    ) -> PyResult<T> {
+        let done = run(py, &Asked::default(), |_| {
+            ask(&ResultsFile::read(&self.bytes, &self.name)?)
+        })?;
+        done.map_err(|e| {
+            let remedy = "give an OP2, punch or HDF5 file of Nastran";
+            raise(
+                py,
+                Fault::of(&*self.name, "results", e.to_string(), remedy).into(),
+            )
+        })
+    }
+}
+
+#[pymethods]
+impl ReadResults {
+    #[new]
+    fn new(py: Python, path: PathBuf) -> PyResult<Self> {
+        let name = path.display().to_string();
+        let read = run(py, &Asked::default(), |_| {
+            Inputs::of(&Disk).read(Path::new(""), &name)
+        })?;
+        let bytes = read.map_err(|f| raise(py, f.into()))?;
+        let this = Self { name, bytes };
+        this.with(py, |_| Ok(()))?;
+        Ok(this)
+    }
+
+    /// What its tables hold, as JSON.
+    fn tables(&self, py: Python) -> PyResult<String> {
+        self.with(py, |file| {
+            let blocks = file.blocks().iter().map(|b| {
+                serde_json::json!({
+                    "table": b.table,
+                    "quantity": b.quantity.word(),
+                    "analysis": b.analysis.word(),
+                    "subcase": b.subcase,
+                    "mode": b.mode,
+                    "step": b.step,
+                    "element_type": b.element.and_then(|e| e.name()),
+                    "fibre": b.form == Some(ShellForm::Fiber),
+                    "titles": b.titles,
+                })
+            });
+            Ok(serde_json::Value::from_iter(blocks).to_string())
+        })
+    }
+
+    /// The rows of a table: `entity`, `at`, `layer`, and its own columns.
+    fn rows<'py>(&self, py: Python<'py>, table: usize) -> PyResult<Bound<'py, PyDict>> {
+        let rows: Rows = self.with(py, |file| file.rows(table))?;
+        let out = PyDict::new(py);
+        put(
+            &out,
+            "entity",
+            ids(rows.ids.iter().map(|r| i64::from(r.entity))),
+        )?;
+        put(&out, "at", ids(rows.ids.iter().map(|r| i64::from(r.at))))?;
+        put(
+            &out,
+            "layer",
+            ids(rows.ids.iter().map(|r| i64::from(r.layer))),
+        )?;
+        for (c, name) in rows.columns.iter().enumerate() {
+            let values = (0..rows.len()).map(|i| rows.row(i)[c]).collect();
+            put(&out, name, Columns { values, columns: 1 })?;
+        }
+        Ok(out)
+    }
+}
+
+/// Strain of the shells of a subcase, microstrain: `element`, `grid` (0: the centre), `top`, `local` (n x 3), `basic` (n x 6).
+#[pyfunction]
+pub(crate) fn shell_strain<'py>(
+    py: Python<'py>,
+    deck: PathBuf,
+    results: PathBuf,
+    subcase: u32,
+) -> PyResult<Bound<'py, PyDict>> {
+    let found = run(py, &Asked::default(), |heard| {
+        let cx = Context::new(&Disk).progress(heard);
+        let read = strainbridge::strains(&deck, std::slice::from_ref(&results), &cx)?;
+        let case = read.solution.cases.iter().find(|c| c.subcase == subcase);
+        let case = case.ok_or_else(|| {
+            let said = format!("it has no static subcase {subcase}");
+            let remedy = format!("ask for one of {:?}", read.subcase_ids);
+            Faults::from(Fault::of(
+                results.display().to_string(),
+                "subcase",
+                said,
+                remedy,
+            ))
+        })?;
+        let mut rows = (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        each_row(&read.model, case, 0..n_elements(case), |r| {
+            let Point::Surface(surface) = r.point else {
+                return;
+            };
+            rows.0.push(i64::from(r.element));
+            rows.1.push(match r.location {
+                Location::Grid(id) => i64::from(id),
+                Location::Centre | Location::Station(_) => 0,
+            });
+            rows.2.push(i64::from(surface == Surface::Top));
+            rows.3.extend(r.local.map(|v| v / MICROSTRAIN));
+            rows.4.extend(r.basic.map(|v| v / MICROSTRAIN));
+        });
+        Ok(rows)
+    })?;
+    let rows = found.map_err(|f: Faults| raise(py, f))?;
+    let out = PyDict::new(py);
+    put(&out, "element", ids(rows.0.into_iter()))?;
+    put(&out, "grid", ids(rows.1.into_iter()))?;
+    put(&out, "top", ids(rows.2.into_iter()))?;
+    put(
+        &out,
+        "local",
+        Columns {
+            values: rows.3,
+            columns: 3,
+        },
+    )?;
+    put(
+        &out,
+        "basic",
+        Columns {
+            values: rows.4,
+            columns: 6,
+        },
+    )?;
+    Ok(out)
+}

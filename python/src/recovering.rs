@@ -1,0 +1,311 @@
+//! Loads of bare readings.
+
+use crate::array::Named;
+use crate::fault::{raise, wrong};
+use crate::work::{Asked, run};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rayon::prelude::*;
+use strainbridge::finding::Finding;
+use strainbridge::linalg::Matrix;
+use strainbridge::recovery::history::{Filter, SampleLoads};
+use strainbridge::recovery::plausible::LARGEST_STRAIN;
+use strainbridge::recovery::{ErrorModel, Gain, Readings, Recovery, Sums, Widening, recover};
+use strainbridge::sensitivity::{Load, Sensitivity, check_separability};
+use strainbridge::units::MICROSTRAIN;
+use strainbridge::{Fault, Faults, Severity};
+
+const S: Named = Named {
+    function: "recover_rows",
+    name: "S",
+    axes: "gauges x loads",
+};
+const STRAIN: Named = Named {
+    name: "strain",
+    axes: "runs x gauges",
+    ..S
+};
+
+/// Runs up to which each is judged with its own residual, as the command does; a longer record is judged on as many samples.
+const MOST_RUNS: usize = 2000;
+/// Samples handled together.
+const BLOCK: usize = 8192;
+
+/// Loads with what their intervals take.
+struct Recovered {
+    /// `k` a run.
+    loads: Vec<f64>,
+    /// Half width of the interval of each load, where every gauge reads.
+    half: Vec<f64>,
+    /// Runs whose intervals have another width, and those widths, `k` a run.
+    others: Vec<(usize, Vec<f64>)>,
+    /// `k x k` by rows, where every gauge reads.
+    covariance: Vec<f64>,
+    findings: Vec<Finding>,
+}
+
+/// Loads of every row of `strain`, by name.
+#[pyfunction]
+#[pyo3(signature = (s, strain, noise, threads))]
+pub(crate) fn recover_rows<'py>(
+    py: Python<'py>,
+    s: &Bound<'py, PyAny>,
+    strain: &Bound<'py, PyAny>,
+    noise: f64,
+    threads: Option<usize>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let s = S.matrix(s)?;
+    let strain = STRAIN.matrix(strain)?;
+    let (n, k, runs) = (s.shape()[0], s.shape()[1], strain.shape()[0]);
+    if strain.shape()[1] != n {
+        let said = format!("it has {} columns and S has {n} rows", strain.shape()[1]);
+        return Err(STRAIN.fault(py, &said, "give a column a gauge, in the order of S"));
+    }
+    let (rows, samples) = (s.as_slice()?, strain.as_slice()?);
+    let asked = Asked {
+        threads,
+        progress: None,
+    };
+    let found = run(py, &asked, |_| recovered(rows, k, samples, noise))?;
+    let found = found.map_err(|f| raise(py, f))?;
+    let findings: Vec<_> = found.findings.into_iter().map(parts).collect();
+    let (at, widths): (Vec<i64>, Vec<Vec<f64>>) =
+        found.others.into_iter().map(|(i, w)| (i as i64, w)).unzip();
+    let others = (widths.len(), widths.concat());
+    let out = PyDict::new(py);
+    let matrix = |v: Vec<f64>, shape: [usize; 2]| -> PyResult<Bound<'py, PyArray2<f64>>> {
+        PyArray1::from_vec(py, v).reshape(shape)
+    };
+    out.set_item("loads", matrix(found.loads, [runs, k])?)?;
+    out.set_item("covariance", matrix(found.covariance, [k, k])?)?;
+    out.set_item("half", PyArray1::from_vec(py, found.half))?;
+    out.set_item("others", PyArray1::from_vec(py, at))?;
+    out.set_item("other_halves", matrix(others.1, [others.0, k])?)?;
+    out.set_item("findings", findings)?;
+    Ok(out)
+}
+
+/// A finding by its parts.
+type Parts = (
+    String,
+    &'static str,
+    String,
+    String,
+    Option<f64>,
+    Option<f64>,
+    String,
+);
+
+fn parts(f: Finding) -> Parts {
+    let severity = format!("{:?}", f.severity).to_lowercase();
+    (
+        severity, f.code, f.subject, f.message, f.measured, f.limit, f.remedy,
+    )
+}
+
+/// The loads of readings, `n` a run.
+fn recovered(rows: &[f64], k: usize, samples: &[f64], noise: f64) -> Result<Recovered, Faults> {
+    if !(noise > 0.0 && noise.is_finite()) {
+        let remedy = "give one standard deviation of a reading, in the unit of the readings";
+        return Err(wrong(S.function, "noise", "it is no positive number", remedy).into());
+    }
+    let n = rows.len().checked_div(k).unwrap_or(0);
+    if n == 0 {
+        let remedy = "give a row a gauge and a column a load";
+        return Err(wrong(S.function, "S", "it is empty", remedy).into());
+    }
+    if let Some(at) = rows.iter().position(|v| !v.is_finite()) {
+        let said = format!("row {}, column {} is not a finite number", at / k, at % k);
+        return Err(wrong(S.function, "S", &said, "leave that gauge out").into());
+    }
+    if samples.is_empty() {
+        return Err(wrong(S.function, "strain", "it has no rows", "give a row a run").into());
+    }
+    // A record is looked through once: readings between those that are judged are rarely in another unit.
+    let judged: Vec<f64> = judged_rows(samples, n)
+        .flat_map(|(_, row)| row.to_vec())
+        .collect();
+    match in_unit(rows, k, samples, noise, unit_of(&judged))? {
+        Some(found) => Ok(found),
+        None => in_unit(rows, k, samples, noise, unit_of(samples))?.ok_or_else(|| {
+            wrong(
+                S.function,
+                "strain",
+                "its numbers can't be told apart",
+                "check its unit",
+            )
+            .into()
+        }),
+    }
+}
+
+/// The loads with `unit` as the strain of a unit of the readings; `None` where some reading is too large for it.
+fn in_unit(
+    rows: &[f64],
+    k: usize,
+    samples: &[f64],
+    noise: f64,
+    unit: f64,
+) -> Result<Option<Recovered>, Faults> {
+    let n = rows.len() / k;
+    let s = Sensitivity {
+        gauges: (0..n).map(|g| format!("row {g}")).collect(),
+        loads: (0..k).map(|l| Load::named(format!("column {l}"))).collect(),
+        values: Matrix::from_fn(n, k, |g, l| rows[g * k + l] * unit),
+        uncertainty: None,
+    };
+    let mut findings = check_separability(&s);
+    separable(&s, &findings)?;
+    let errors = ErrorModel {
+        noise: noise * unit,
+        model_rel: 0.0,
+    };
+    let runs = samples.len() / n;
+    let judged = recover(&s, &readings(samples, n, unit), errors);
+    findings.extend(judged.findings.iter().cloned());
+    findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
+    let all: Vec<usize> = (0..n).collect();
+    let whole = Gain::new(&s, &all, errors, 1.0, &judged.typical)
+        .ok_or_else(|| wrong(S.function, "S", "it can't be solved", "check its numbers"))?;
+    let covariance = whole.covariance(&judged.typical, &judged.widening);
+    let half: Vec<f64> = (0..k)
+        .map(|l| judged.widening.coverage_factor * covariance[l * k + l].max(0.0).sqrt())
+        .collect();
+    let (loads, others) = if runs <= MOST_RUNS {
+        of_runs(&judged, &half)
+    } else {
+        match of_record(&s, samples, unit, errors, &judged)? {
+            Some(found) => found,
+            None => return Ok(None),
+        }
+    };
+    Ok(Some(Recovered {
+        loads,
+        half,
+        others,
+        covariance,
+        findings,
+    }))
+}
+
+/// Strain of one unit of the readings: microstrain, and where that can't be, a power of two that keeps all of them.
+fn unit_of(samples: &[f64]) -> f64 {
+    let largest = samples.par_iter().filter(|v| v.is_finite());
+    let largest = largest.map(|v| v.abs()).reduce(|| 0.0, f64::max);
+    if largest * MICROSTRAIN <= LARGEST_STRAIN {
+        MICROSTRAIN
+    } else {
+        (-largest.log2().ceil() - 1.0).exp2()
+    }
+}
+
+/// Loads that can't be told apart are no answer.
+fn separable(s: &Sensitivity, findings: &[Finding]) -> Result<(), Faults> {
+    let (rank, k) = (s.rank(), s.loads.len());
+    let errors = findings.iter().filter(|f| f.severity == Severity::Error);
+    let mut faults: Vec<Fault> = errors
+        .map(|f| Fault::of(S.function, "S", &*f.message, &*f.remedy))
+        .collect();
+    if rank < k && faults.is_empty() {
+        let said = format!("its rank is {rank}, and it has {k} columns");
+        faults.push(wrong(S.function, "S", &said, "drop loads that act alike"));
+    }
+    Faults::check(faults)
+}
+
+/// The rows that are judged, with their numbers: all of a few runs, of a record as many samples, evenly spread.
+fn judged_rows(samples: &[f64], n: usize) -> impl Iterator<Item = (usize, &[f64])> {
+    let runs = samples.len() / n;
+    let judged = runs.min(MOST_RUNS);
+    (0..judged).map(move |i| {
+        let at = i * runs / judged;
+        (at, &samples[at * n..][..n])
+    })
+}
+
+/// The readings that are judged.
+fn readings(samples: &[f64], n: usize, unit: f64) -> Vec<Readings> {
+    judged_rows(samples, n)
+        .map(|(at, row)| Readings {
+            run: at.to_string(),
+            strain: row.iter().map(|v| v * unit).collect(),
+            noise_factor: 1.0,
+        })
+        .collect()
+}
+
+/// Loads of runs as they were judged, and the widths of those that differ from `half`.
+fn of_runs(judged: &Recovery, half: &[f64]) -> (Vec<f64>, Vec<(usize, Vec<f64>)>) {
+    let loads = judged.runs.iter().flat_map(|r| r.estimate.values.clone());
+    let others = judged.runs.iter().enumerate().filter_map(|(i, r)| {
+        let e = &r.estimate;
+        let own: Vec<f64> = (0..half.len())
+            .map(|l| e.coverage_factor * e.sigma(l))
+            .collect();
+        let alike = own
+            .iter()
+            .zip(half)
+            .all(|(a, b)| (a - b).abs() <= 1e-12 * b);
+        (!alike).then_some((i, own))
+    });
+    (loads.collect(), others.collect())
+}
+
+/// Loads of a record, streamed through one estimate, and the widths of samples in which some gauge gives nothing; `None` where a reading is too
+/// large to be strain in this unit.
+fn of_record(
+    s: &Sensitivity,
+    samples: &[f64],
+    unit: f64,
+    errors: ErrorModel,
+    judged: &Recovery,
+) -> Result<Option<(Vec<f64>, Vec<(usize, Vec<f64>)>)>, Faults> {
+    let (n, k) = (s.gauges.len(), s.loads.len());
+    let widening: Widening = judged.widening.clone();
+    let filter = Filter::new(s, vec![0.0; n], errors, 1.0, &judged.typical, widening)
+        .ok_or_else(|| wrong(S.function, "S", "it can't be solved", "check its numbers"))?;
+    let blocks: Vec<(SampleLoads, u64)> = samples
+        .par_chunks(BLOCK * n)
+        .map(|block| {
+            let mut out = SampleLoads {
+                values: Vec::with_capacity(block.len() / n * k),
+                gaps: Vec::new(),
+            };
+            let mut sums = Sums::new(n, k);
+            filter.apply(block, unit, &mut out, &mut sums);
+            // An infinite reading is none in any unit.
+            let impossible = match sums.impossible {
+                0 => 0,
+                _ => block
+                    .iter()
+                    .filter(|v| v.is_finite() && (*v * unit).abs() > LARGEST_STRAIN)
+                    .count(),
+            };
+            (out, impossible as u64)
+        })
+        .collect();
+    if blocks.iter().any(|b| b.1 > 0) {
+        return Ok(None);
+    }
+    let mut others = Vec::new();
+    for (number, (block, _)) in blocks.iter().enumerate() {
+        for (at, gain) in &block.gaps {
+            let f = &block.values[at * k..][..k];
+            let sigma = match gain {
+                Some(gain) => filter.sigma_with(gain, f),
+                None => vec![f64::NAN; k],
+            };
+            let factor = filter.coverage_factor();
+            others.push((
+                number * BLOCK + at,
+                sigma.iter().map(|v| factor * v).collect(),
+            ));
+        }
+    }
+    let mut loads = Vec::with_capacity(samples.len() / n * k);
+    for (block, _) in blocks {
+        loads.extend_from_slice(&block.values);
+    }
+    Ok(Some((loads, others)))
+}

@@ -1,0 +1,156 @@
+//! Work without the interpreter's lock, on threads of its own: Ctrl-C stops it between stages, a bug in it is an exception.
+//!
+//! Every call has its own pool, which ends with it: a process forked from this one finds no threads missing.
+
+use crate::fault::{raise, wrong};
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use std::any::Any;
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+use strainbridge::app::context::Progress;
+
+/// Bytes of stack of a working thread, as in the command.
+const STACK: usize = 8 << 20;
+/// How often the calling thread looks for Ctrl-C and tells of progress.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// On how many threads, and who hears of progress.
+#[derive(Default)]
+pub(crate) struct Asked {
+    /// As many as the machine has where `None`.
+    pub threads: Option<usize>,
+    /// Called with stage, parts done, parts in all (0: not known).
+    pub progress: Option<Py<PyAny>>,
+}
+
+/// What unwinds work that was stopped.
+struct Stopped;
+
+/// What the work says of itself, and whether it is to stop.
+#[derive(Default)]
+pub(crate) struct Heard {
+    stage: Mutex<String>,
+    done: AtomicUsize,
+    total: AtomicUsize,
+    stop: AtomicBool,
+}
+
+impl Progress for Heard {
+    fn begin(&self, stage: &str) {
+        self.leave_if_stopped();
+        *self.stage.lock().unwrap_or_else(PoisonError::into_inner) = stage.to_owned();
+        self.parts(0);
+    }
+
+    fn parts(&self, total: usize) {
+        self.done.store(0, Ordering::Relaxed);
+        self.total.store(total, Ordering::Relaxed);
+    }
+
+    fn advance(&self, parts: usize) {
+        self.leave_if_stopped();
+        self.done.fetch_add(parts, Ordering::Relaxed);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+}
+
+impl Heard {
+    /// Leaves work that is to stop, from where it says how far it is: [`run`] ends the unwinding. What is half written is removed on the way.
+    fn leave_if_stopped(&self) {
+        if self.is_cancelled() && !std::thread::panicking() {
+            resume_unwind(Box::new(Stopped));
+        }
+    }
+
+    /// Looks for Ctrl-C and tells of progress.
+    fn look(&self, asked: &Asked) -> PyResult<()> {
+        Python::attach(|py| {
+            py.check_signals()?;
+            if let Some(told) = &asked.progress {
+                let stage = self.stage.lock().map(|s| s.clone()).unwrap_or_default();
+                let load = |n: &AtomicUsize| n.load(Ordering::Relaxed);
+                told.call1(py, (stage, load(&self.done), load(&self.total)))?;
+            }
+            Ok(())
+        })
+    }
+}
+
+/// What `work` returns.
+///
+/// # Errors
+/// `KeyboardInterrupt`, and what the one who hears of progress raises, once the work has stopped; `RuntimeError` where it panics.
+pub(crate) fn run<T: Send>(
+    py: Python,
+    asked: &Asked,
+    work: impl FnOnce(&Heard) -> T + Send,
+) -> PyResult<T> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(asked.threads.map_or(0, |n| n.max(1)))
+        .stack_size(STACK)
+        .build();
+    let pool = pool.map_err(|e| {
+        let fault = wrong(
+            "threads",
+            "threads",
+            &e.to_string(),
+            "ask for fewer threads",
+        );
+        raise(py, fault.into())
+    })?;
+    let heard = Heard::default();
+    py.detach(|| {
+        std::thread::scope(|scope| {
+            let (alive, ended) = channel::<()>();
+            let (heard, pool) = (&heard, &pool);
+            let worker = scope.spawn(move || {
+                let _alive = alive;
+                pool.install(|| work(heard))
+            });
+            let mut stopped = None;
+            while let Err(RecvTimeoutError::Timeout) = ended.recv_timeout(LOOK) {
+                if stopped.is_none()
+                    && let Err(e) = heard.look(asked)
+                {
+                    heard.stop.store(true, Ordering::Relaxed);
+                    stopped = Some(e);
+                }
+            }
+            match (stopped, worker.join()) {
+                (Some(e), _) => Err(e),
+                (None, Ok(done)) => Ok(done),
+                (None, Err(panic)) => Err(bug(&*panic)),
+            }
+        })
+    })
+}
+
+/// The exception for a mistake of the program.
+fn bug(panic: &(dyn Any + Send)) -> PyErr {
+    let text = panic.downcast_ref::<&str>().map(|s| (*s).to_owned());
+    let said = text.or_else(|| panic.downcast_ref::<String>().cloned());
+    PyRuntimeError::new_err(format!(
+        "a mistake of strainbridge, not of its input: {}: report it with the call that led to it",
+        said.unwrap_or_default()
+    ))
+}
+
+/// Fails as a bug would, for tests.
+#[pyfunction(name = "_fail")]
+pub(crate) fn fail(py: Python, threads: Option<usize>) -> PyResult<usize> {
+    let asked = Asked {
+        threads,
+        progress: None,
+    };
+    run(py, &asked, |heard| {
+        assert!(heard.is_cancelled(), "asked to fail");
+        0
+    })
+}

@@ -1,0 +1,83 @@
+"""Turns a structure into its own load cell: strain gauges and a finite element model in, wheel loads with intervals out.
+
+Bare arrays::
+
+    import strainbridge as sb
+    plan = sb.place_rows(S, 8)                 # S: candidates x loads; plan.rows, plan.efficiency_bound
+    out = sb.recover_rows(S[plan.rows], strain)  # strain: runs x gauges; out.loads, out.low, out.high
+
+Jobs, as the command takes them::
+
+    job = sb.Job.read("truck.toml")
+    job.placement.gauges = 12
+    plan = sb.place(job)
+    plan.gauges, plan.log_det, plan.findings
+    plan.save("truck.out")
+
+Bad input raises :class:`Faults`, which holds every fault with file and line. An outcome carries findings; one of severity ``error`` says
+that it can't be relied on, and the outcome says so when it is printed.
+"""
+
+from . import fleet
+from ._arrays import Placement, RecoveredRows, place_rows, rainflow, recover_rows
+from ._calibrate import CalibratedRows, calibrate_rows
+from ._commands import (
+    ballast,
+    calibrate,
+    cases,
+    check,
+    identify,
+    init,
+    modes,
+    payload,
+    place,
+    reconcile,
+    recover,
+    respond,
+    sensitivity,
+    solve,
+    strains,
+    study,
+)
+from ._faults import Fault, Faults
+from ._job import Job
+from ._model import Model
+from ._outcome import Finding, Outcome, Record
+from ._reading import Deck, Results, Strain
+
+__all__ = [
+    "CalibratedRows",
+    "Deck",
+    "Fault",
+    "Faults",
+    "Finding",
+    "Job",
+    "Model",
+    "Outcome",
+    "Placement",
+    "Record",
+    "RecoveredRows",
+    "Results",
+    "Strain",
+    "ballast",
+    "calibrate",
+    "calibrate_rows",
+    "cases",
+    "check",
+    "fleet",
+    "identify",
+    "init",
+    "modes",
+    "payload",
+    "place",
+    "place_rows",
+    "rainflow",
+    "reconcile",
+    "recover",
+    "recover_rows",
+    "respond",
+    "sensitivity",
+    "solve",
+    "strains",
+    "study",
+]

@@ -1,0 +1,109 @@
+"""S learnt from bare arrays: readings under known loads."""
+
+from __future__ import annotations
+
+import csv
+import io
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Iterable, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._commands import calibrate
+from ._job import Job
+from ._outcome import Finding, Outcome
+
+
+@dataclass(frozen=True)
+class CalibratedRows:
+    """S as runs of known load teach it."""
+
+    #: gauges x loads, microstrain per unit of load.
+    S: NDArray[np.float64]
+    #: What the command `calibrate` says of it: ``outcome.calibration``.
+    outcome: Outcome
+
+    @property
+    def findings(self) -> Sequence[Finding]:
+        """What is to be known of it, the worst first."""
+        return self.outcome.findings
+
+    @property
+    def is_reliable(self) -> bool:
+        """Whether no finding says that it can't be relied on."""
+        return self.outcome.is_reliable
+
+    def __repr__(self) -> str:
+        return repr(self.outcome)
+
+
+def calibrate_rows(
+    strain: ArrayLike,
+    loads: ArrayLike,
+    noise: float = 1.0,
+    *,
+    prior: ArrayLike | None = None,
+    prior_rel: float = 0.1,
+    repeats: Sequence[object] | None = None,
+    threads: int | None = None,
+) -> CalibratedRows:
+    """S from runs of known load, as the command `calibrate` learns it.
+
+    Args:
+        strain: runs x gauges, microstrain; NaN where a gauge gave nothing.
+        loads: runs x loads, any one unit; NaN: unknown, 0: known to be zero.
+        noise: sd of one reading, microstrain.
+        prior: a model's S, gauges x loads, microstrain per unit of load.
+        prior_rel: how far the model is off, 1 sd, entry by entry and common to a gauge.
+        repeats: a label a run; runs of the same label are repeats, whose scatter goes into the intervals.
+        threads: how many; all of the machine where None.
+
+    Raises:
+        Faults: runs too few, or tables that make no sense.
+        ValueError: shapes that don't fit.
+    """
+    readings, known = np.asarray(strain, dtype=float), np.asarray(loads, dtype=float)
+    if readings.ndim != 2 or known.ndim != 2 or len(readings) != len(known):
+        raise ValueError(f"strain is runs x gauges and loads is runs x loads, not {readings.shape} and {known.shape}")
+    gauges = [f"G{g}" for g in range(readings.shape[1])]
+    names = [f"L{load}" for load in range(known.shape[1])]
+    runs = [f"R{r}" for r in range(len(readings))]
+    labels = runs if repeats is None else [str(label) for label in repeats]
+    if len(labels) != len(runs):
+        raise ValueError(f"repeats has {len(labels)} labels and strain {len(runs)} runs")
+    job: dict[str, Any] = {
+        "title": "calibrate_rows",
+        "units": "m-kg-s",
+        "report_units": {"force": "N"},
+        "load": [{"name": name} for name in names],
+        "measured": {"strain": "strain.csv", "noise_microstrain": float(noise)},
+        "runs": {"file": "runs.csv", "units": {"force": "N"}},
+        "calibration": {"model_uncertainty_rel": float(prior_rel)} if repeats is None else {"model_uncertainty_rel": float(prior_rel), "repeats": ["set"]},
+    }
+    files = {
+        "strain.csv": _table(["run", *gauges], ([run, *row] for run, row in zip(runs, readings))),
+        "runs.csv": _table(["run", "set", *names], ([run, label, *row] for run, label, row in zip(runs, labels, known))),
+    }
+    if prior is not None:
+        rows = np.asarray(prior, dtype=float)
+        if rows.shape != (len(gauges), len(names)):
+            raise ValueError(f"prior is gauges x loads, {(len(gauges), len(names))}, not {rows.shape}")
+        job["sensitivity"] = {"file": "S.csv", "per": {"force": "N"}}
+        files["S.csv"] = _table(["gauge", *names], ([gauge, *row] for gauge, row in zip(gauges, rows)))
+    outcome = calibrate(Job.from_dict(job, files=files), threads=threads)
+    with tempfile.TemporaryDirectory() as folder:
+        with open(outcome.save(Path(folder)) / "sensitivity.csv", encoding="utf-8", newline="") as file:
+            learnt = [[float(v) for v in row[1:]] for row in list(csv.reader(file))[1:]]
+    return CalibratedRows(np.array(learnt), outcome)
+
+
+def _table(header: list[str], rows: Iterable[Sequence[Any]]) -> bytes:
+    text = io.StringIO()
+    out = csv.writer(text, lineterminator="\n")
+    out.writerow(header)
+    for row in rows:
+        out.writerow([v if isinstance(v, str) else "" if np.isnan(v) else repr(float(v)) for v in row])
+    return text.getvalue().encode()

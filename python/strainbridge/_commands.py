@@ -1,0 +1,189 @@
+"""The commands, a function each. A job is a :class:`Job`, the path of one, or a dictionary with its keys.
+
+All of them take `threads` (all of the machine where None), `cache` (whether solutions of the built-in solver are kept in the user's cache, as
+the command keeps them) and `progress` (called with stage, parts done and parts in all, 0: not known, about twenty times a second). They raise
+:class:`Faults` with every fault of the input, and ``KeyboardInterrupt`` once the work has stopped between two stages. Nothing is written
+before :meth:`Outcome.save`.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+from typing import Any, Callable, Mapping, Optional, Union
+
+from . import _strainbridge as _engine
+from ._job import Job, job_of
+from ._outcome import Outcome
+
+Path = Union[str, "os.PathLike[str]"]
+AnyJob = Union[Job, Path, Mapping[str, Any]]
+Progress = Optional[Callable[[str, int, int], object]]
+
+_log = logging.getLogger("strainbridge")
+
+
+def _ask(command: str, job: AnyJob | None, **more: Any) -> Outcome:
+    checked = None if job is None else job_of(job)._checked()
+    out = Outcome(_engine.ask(command, checked, **more))
+    for note in out.notes:
+        _log.info("%s: %s", command, note)
+    return out
+
+
+def _is_job(what: AnyJob) -> bool:
+    return isinstance(what, (Job, Mapping)) or os.fspath(what).lower().endswith(".toml")
+
+
+def sensitivity(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
+    """S of the job's gauges, or of its candidates.
+
+    The outcome holds ``rank``, ``condition_number``, ``condition_number_scaled``; ``sensitivity.csv`` once saved.
+    """
+    return _ask("sensitivity", job, threads=threads, cache=cache, progress=progress)
+
+
+def place(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
+    """Where to put gauges.
+
+    The outcome holds ``gauges`` (name, element, surface, position, direction, angle_deg, leverage), ``log_det``, ``efficiency_bound``, ``condition_number``, ``load_sigma``.
+    """
+    return _ask("place", job, threads=threads, cache=cache, progress=progress)
+
+
+def recover(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
+    """Loads from measured strain.
+
+    The outcome holds ``loads`` (run, name, value, sigma, unit), ``condition_number``, ``residual_rms_microstrain``, ``gauges``.
+    """
+    return _ask("recover", job, threads=threads, cache=cache, progress=progress)
+
+
+def respond(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
+    """Strain and stress anywhere on the structure from recovered loads.
+
+    The outcome holds ``elements`` (element, surface, max_von_mises, at, sigma).
+    """
+    return _ask("respond", job, threads=threads, cache=cache, progress=progress)
+
+
+def payload(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
+    """Mass and position of the payload.
+
+    The outcome holds ``payload`` (run, force, mass, position, their sigmas), ``by_gauge``.
+    """
+    return _ask("payload", job, threads=threads, cache=cache, progress=progress)
+
+
+def ballast(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
+    """Lumped masses that bring the model's reactions to the measured ones.
+
+    The outcome holds ``masses`` (mass, position), ``reactions``.
+    """
+    return _ask("ballast", job, threads=threads, cache=cache, progress=progress)
+
+
+def study(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
+    """Recovery repeated under stated errors, for a range of layouts and gauge counts.
+
+    The outcome holds ``study`` (layout, gauges, error, condition_number, loads).
+    """
+    return _ask("study", job, threads=threads, cache=cache, progress=progress)
+
+
+def identify(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
+    """Parameters of the vehicle and wheel loads from accelerations.
+
+    The outcome holds ``parameters`` (name, value, sigma, unit, identifiable), ``unidentifiable``, ``fit``, ``mass_closure``.
+    """
+    return _ask("identify", job, threads=threads, cache=cache, progress=progress)
+
+
+def calibrate(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
+    """S learnt from runs of known load.
+
+    The outcome holds ``calibration`` (runs, prior, gauges, repeat_scatter_rel, noise_rel, coverage).
+    """
+    return _ask("calibrate", job, threads=threads, cache=cache, progress=progress)
+
+
+def cases(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
+    """The job's deck with one unit-load subcase a load, ready for Nastran.
+
+    The outcome holds ``subcases``; ``unit_loads.bdf`` once saved.
+    """
+    return _ask("cases", job, threads=threads, cache=cache, progress=progress)
+
+
+def reconcile(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
+    """Where simulation and measurement disagree, which missing effect that is, and how the gap shrinks with it.
+
+    The outcome holds ``verdict``, ``named``, ``effects``, ``rivals``, ``gap``, ``next_measurement``.
+    """
+    if "reconcile" not in _engine.commands():
+        raise NotImplementedError("the command `strainbridge reconcile` does it; a function of the library does not yet")
+    return _ask("reconcile", job, threads=threads, cache=cache, progress=progress)
+
+
+def check(*files: Path, threads: int | None = None, progress: Progress = None) -> Outcome:
+    """What is in decks, results and jobs, every fault, and whether they belong together.
+
+    The outcome holds ``decks`` (path, cards, grids, elements, mass, cg), ``results`` (path, solver, tables) and ``faults``, which are part of
+    the answer here.
+    """
+    return _ask("check", None, files=list(files), threads=threads, progress=progress)
+
+
+def init(deck: Path, *results: Path, folder: Path = ".", threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
+    """A job proposed from a deck and its results, to stand in `folder`, where :meth:`Outcome.save` writes it as ``job.toml``.
+
+    The outcome holds ``job``, ``loads``, ``placeable``.
+
+    Raises:
+        Faults: files that can't be read; a job that stands in the folder already.
+    """
+    return _ask("init", None, files=[deck, *results], folder=folder, threads=threads, cache=cache, progress=progress)
+
+
+def strains(deck: Path, *results: Path, threads: int | None = None, progress: Progress = None) -> Outcome:
+    """Strain of shells and bars of every static subcase, element frame and basic frame; ``strains.csv`` once saved.
+
+    The outcome holds ``rows`` and ``subcases``.
+    """
+    return _ask("strains", None, files=[deck, *results], threads=threads, progress=progress)
+
+
+def solve(
+    job: AnyJob,
+    *,
+    modes: int = 10,
+    total_strain: bool = False,
+    threads: int | None = None,
+    cache: bool = True,
+    progress: Progress = None,
+) -> Outcome:
+    """The unit loads of a job, or the static subcases of a deck, by the built-in solver.
+
+    The outcome holds ``grids``, ``dofs``, ``balance``, ``peak_memory_bytes``; ``results.op2`` and ``results.vtu`` once saved.
+
+    Args:
+        job: a job, or the path of a deck.
+        modes: elastic modes beside the static solution.
+        total_strain: whether strain of a heated structure includes thermal expansion.
+    """
+    files, asked = ([], job) if _is_job(job) else ([job], None)
+    more: dict[str, Any] = {"modes": modes, "total_strain": total_strain, "threads": threads, "cache": cache, "progress": progress}
+    return _ask("solve", asked, files=files, **more)
+
+
+def modes(job: AnyJob, *, modes: int = 10, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
+    """Elastic modes of the structure of a job or of a deck.
+
+    The outcome holds ``modes`` (hz, generalised_mass).
+
+    Args:
+        job: a job, or the path of a deck.
+        modes: how many.
+    """
+    files, asked = ([], job) if _is_job(job) else ([job], None)
+    return _ask("modes", asked, files=files, modes=modes, threads=threads, cache=cache, progress=progress)

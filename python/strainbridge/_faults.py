@@ -1,0 +1,43 @@
+"""Bad input: every fault at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Iterable, Optional, Tuple
+
+Parts = Tuple[str, Optional[int], str, str, str]
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One fault of the input."""
+
+    #: File as given; a function's name where an argument is wrong.
+    file: str
+    #: Line, from 1; None where it is the file as a whole.
+    line: int | None
+    #: Key of a job, field of a card, column of a table, argument.
+    field: str
+    #: What is wrong.
+    wrong: str
+    #: What to do.
+    remedy: str
+
+    def __str__(self) -> str:
+        line = "" if self.line is None else f"{self.line}:"
+        return f"{self.file}:{line} {self.field}: {self.wrong}: {self.remedy}"
+
+
+class Faults(ValueError):
+    """Bad input: ``.faults`` holds every fault that was found, one at least."""
+
+    faults: tuple[Fault, ...]
+
+    def __init__(self, faults: Iterable[Parts]) -> None:
+        listed: list[Parts] = list(faults)
+        super().__init__(listed)
+        self.faults = tuple(Fault(*f) for f in listed)
+
+    def __str__(self) -> str:
+        n = len(self.faults)
+        return "\n".join([*map(str, self.faults), f"{n} fault{'' if n == 1 else 's'} found"])

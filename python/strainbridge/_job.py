@@ -1,0 +1,214 @@
+"""A job: read from a file or made of a dictionary, changed in place."""
+
+from __future__ import annotations
+
+import json
+import os
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Iterator, Mapping
+
+from . import _strainbridge as _engine
+from ._toml import plain, text_of
+
+#: Name under which a job that was made of a dictionary stands in its folder; nothing is written there.
+_NAME = "job.toml"
+
+
+@lru_cache(maxsize=None)
+def _schema() -> dict[str, Any]:
+    """What a job can hold, by key."""
+    keys: dict[str, Any] = json.loads(_engine.schema())["properties"]
+    return keys
+
+
+def _is_section(name: str) -> bool:
+    """Whether a key stands for one section."""
+    return "properties" in _schema()[name]
+
+
+def in_folder(folder: str | os.PathLike[str], name: str) -> str:
+    """The path of a file in a folder, as a job in that folder finds it."""
+    base = os.fspath(folder)
+    return name if base in ("", ".") else os.path.join(base, name)
+
+
+class Section:
+    """A section of a job: its keys are attributes, and can be set. ``del`` takes a key out; a key that is absent is None."""
+
+    __slots__ = ("_job", "_table", "_absent")
+
+    def __init__(self, job: Job, table: dict[str, Any], absent: str | None = None) -> None:
+        object.__setattr__(self, "_job", job)
+        object.__setattr__(self, "_table", table)
+        # Its name, where the job does not have it until a key is set.
+        object.__setattr__(self, "_absent", absent)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return self._job._view(self._table.get(name))
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        self._table[name] = plain(value)
+        self._job._change(self)
+
+    def __delattr__(self, name: str) -> None:
+        if name not in self._table:
+            raise AttributeError(name)
+        del self._table[name]
+        self._job._change(self)
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._table
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._table)
+
+    def __dir__(self) -> list[str]:
+        return list(self._table)
+
+    def __repr__(self) -> str:
+        return repr(self._table)
+
+
+class Job:
+    """A job, as the file that the command takes: ``Job.read(path)`` or ``Job.from_dict({...})``.
+
+    Keys and sections are attributes, as in the file, and can be changed in place: ``job.placement.gauges = 12``. A change is checked when the
+    job is used next, or by :meth:`check`; what is wrong raises :class:`strainbridge.Faults`. A job can be pickled.
+    """
+
+    _path: str
+    _text: str
+    _files: dict[str, bytes]
+    _table: dict[str, Any] | None
+    _native: _engine._Job | None
+
+    def __init__(self, path: str | os.PathLike[str], text: str | None = None, files: Mapping[str, bytes] | None = None) -> None:
+        put = object.__setattr__
+        put(self, "_path", os.fspath(path))
+        put(self, "_files", dict(files or {}))
+        put(self, "_table", None)
+        put(self, "_native", None)
+        # The text of the file itself is read by the engine, with its faults.
+        put(self, "_text", text)
+        self.check()
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str]) -> Job:
+        """The job in a file. Paths in it are relative to its folder.
+
+        Raises:
+            Faults: every fault with its line: syntax, unknown keys, wrong types, contradictions.
+        """
+        return cls(path)
+
+    @classmethod
+    def from_dict(cls, job: Mapping[str, Any], folder: str | os.PathLike[str] = ".", files: Mapping[str, bytes] | None = None) -> Job:
+        """A job made of a dictionary with the keys of the file; numpy arrays, paths and tuples are taken.
+
+        Args:
+            job: sections are dictionaries, ``[[load]]`` and its like are lists of dictionaries.
+            folder: what paths in it are relative to. Nothing is written there.
+            files: files that are held in memory, by path; they go before those of the disk.
+
+        Raises:
+            Faults: every fault; lines are those of ``job.text``, had it been written.
+        """
+        return cls(in_folder(folder, _NAME), text_of(job), files)
+
+    @property
+    def path(self) -> str:
+        """The file; for a job made of a dictionary, the one that it would be."""
+        return self._path
+
+    @property
+    def text(self) -> str:
+        """The job as TOML, changes included."""
+        return Path(self._path).read_text(encoding="utf-8") if self._text is None else self._text
+
+    def to_dict(self) -> dict[str, Any]:
+        """The keys as they stand in the text; what is left to its default is absent."""
+        copy: dict[str, Any] = plain(self._keys())
+        return copy
+
+    def check(self) -> Job:
+        """Checks the job as it stands now, and returns it.
+
+        Raises:
+            Faults: every fault.
+        """
+        self._checked()
+        return self
+
+    def _checked(self) -> _engine._Job:
+        if self._native is None:
+            files = dict(self._files)
+            if self._text is not None:
+                files[self._path] = self._text.encode()
+            object.__setattr__(self, "_native", _engine._Job(self._path, files))
+        assert self._native is not None
+        return self._native
+
+    def _keys(self) -> dict[str, Any]:
+        if self._table is None:
+            object.__setattr__(self, "_table", json.loads(_engine.job_to_json(self._path, self.text)))
+        assert self._table is not None
+        return self._table
+
+    def _view(self, value: Any) -> Any:
+        if isinstance(value, dict):
+            return Section(self, value)
+        if isinstance(value, list):
+            # A copy: a list is changed by setting it anew.
+            return [self._view(v) for v in value]
+        return value
+
+    def _change(self, section: Section | None = None) -> None:
+        if section is not None and section._absent is not None:
+            self._keys()[section._absent] = section._table
+        object.__setattr__(self, "_text", text_of(self._keys()))
+        object.__setattr__(self, "_native", None)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or name not in _schema():
+            raise AttributeError(f"a job has no `{name}`")
+        table = self._keys()
+        if name in table:
+            return self._view(table[name])
+        return Section(self, {}, name) if _is_section(name) else None
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name not in _schema():
+            raise AttributeError(f"a job has no `{name}`")
+        if value is None:
+            self._keys().pop(name, None)
+        else:
+            self._keys()[name] = plain(value)
+        self._change()
+
+    def __delattr__(self, name: str) -> None:
+        setattr(self, name, None)
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *_schema()]
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"_path": self._path, "_text": self._text, "_files": self._files}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        for name, value in {**state, "_table": None, "_native": None}.items():
+            object.__setattr__(self, name, value)
+
+    def __repr__(self) -> str:
+        return f"Job({self._path!r})"
+
+
+def job_of(job: Job | str | os.PathLike[str] | Mapping[str, Any]) -> Job:
+    """The job itself, read from a file, or made of a dictionary."""
+    if isinstance(job, Job):
+        return job
+    if isinstance(job, Mapping):
+        return Job.from_dict(job)
+    return Job.read(job)

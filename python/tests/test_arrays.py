@@ -1,0 +1,169 @@
+"""Bare arrays against numpy."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+import strainbridge as sb
+
+
+def log_det(rows):
+    return np.linalg.slogdet(rows.T @ rows)[1]
+
+
+def test_the_layout_is_the_best_of_all_layouts():
+    S = np.random.default_rng(1).normal(size=(14, 3))
+    plan = sb.place_rows(S, 5)
+    best = max(itertools.combinations(range(14), 5), key=lambda rows: log_det(S[list(rows)]))
+    assert plan.rows.tolist() == list(best)
+    assert plan.proved
+    assert plan.efficiency_bound == pytest.approx(1.0, abs=1e-12)
+
+
+def test_the_determinant_is_that_of_the_rows_and_the_bound_is_above_it():
+    S = np.random.default_rng(2).normal(size=(500, 6)) * [1.0, 10.0, 1e3, 1e-3, 1.0, 5.0]
+    plan = sb.place_rows(S, 12, proof=False)
+    assert len(set(plan.rows.tolist())) == 12
+    assert plan.log_det == pytest.approx(log_det(S[plan.rows]), abs=1e-8)
+    assert plan.upper_bound >= plan.log_det - 1e-12
+    assert plan.efficiency_bound == pytest.approx(np.exp((plan.log_det - plan.upper_bound) / 6), rel=1e-12)
+    assert plan.condition_number == pytest.approx(np.linalg.cond(S[plan.rows]), rel=1e-8)
+    # Better than the best of many random layouts.
+    rng = np.random.default_rng(0)
+    assert all(log_det(S[rng.choice(500, 12, replace=False)]) < plan.log_det for _ in range(300))
+
+
+def test_rows_chosen_keep_the_spacing():
+    rng = np.random.default_rng(4)
+    S, positions = rng.normal(size=(200, 3)), rng.uniform(0.0, 100.0, (200, 3))
+    at = positions[sb.place_rows(S, 8, spacing=30.0, positions=positions).rows]
+    distance = np.linalg.norm(at[:, None] - at[None], axis=2)
+    assert distance[np.triu_indices(8, 1)].min() >= 30.0
+    with pytest.raises(sb.Faults, match="positions"):
+        sb.place_rows(S, 8, spacing=30.0)
+
+
+def test_loads_are_those_of_least_squares():
+    rng = np.random.default_rng(5)
+    S = rng.normal(size=(9, 4)) * 50.0
+    strain = rng.normal(0.0, 3.0, (7, 4)) @ S.T + rng.normal(0.0, 1.0, (7, 9))
+    out = sb.recover_rows(S, strain, noise=1.0)
+    expected = np.linalg.lstsq(S, strain.T, rcond=None)[0].T
+    assert out.loads.shape == (7, 4)
+    np.testing.assert_allclose(out.loads, expected, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(out.covariance, np.linalg.inv(S.T @ S), rtol=1e-9)
+    sigma = np.sqrt(np.diag(out.covariance))
+    np.testing.assert_allclose(out.high - out.low, np.broadcast_to(2 * 1.959963984540054 * sigma, (7, 4)), rtol=1e-9)
+    assert out.is_reliable
+
+
+def test_a_record_has_the_loads_of_least_squares_too_and_gaps_take_the_others():
+    rng = np.random.default_rng(6)
+    S = rng.normal(size=(8, 3)) * 20.0
+    strain = rng.normal(0.0, 5.0, (20_000, 3)) @ S.T + rng.normal(0.0, 1.0, (20_000, 8))
+    strain[17_000, 2] = np.nan
+    strain[123, :6] = np.nan
+    out = sb.recover_rows(S, strain)
+    whole = np.isfinite(strain).all(axis=1)
+    expected = np.linalg.lstsq(S, strain[whole].T, rcond=None)[0].T
+    np.testing.assert_allclose(out.loads[whole], expected, rtol=1e-9, atol=1e-9)
+    others = [g for g in range(8) if g != 2]
+    np.testing.assert_allclose(out.loads[17_000], np.linalg.lstsq(S[others], strain[17_000, others], rcond=None)[0], rtol=1e-9)
+    wider = (out.high - out.low)[17_000] > (out.high - out.low)[0]
+    assert wider.all()
+    # Two gauges don't tell three loads.
+    assert np.isnan(out.loads[123]).any()
+
+
+def test_intervals_hold_the_truth_nineteen_times_in_twenty():
+    rng = np.random.default_rng(7)
+    S = rng.normal(size=(8, 3))
+    truth = rng.normal(0.0, 100.0, (5_000, 3))
+    out = sb.recover_rows(S, truth @ S.T + rng.normal(0.0, 2.0, (5_000, 8)), noise=2.0)
+    held = ((out.low <= truth) & (truth <= out.high)).mean()
+    # The runs share nothing: the share of 15,000 is 0.95 +- 0.004.
+    assert 0.944 < held < 0.956
+
+
+def test_readings_worse_than_the_noise_stated_widen_the_intervals_and_are_said():
+    rng = np.random.default_rng(8)
+    S = rng.normal(size=(12, 2)) * 10.0
+    strain = rng.normal(0.0, 50.0, (40, 2)) @ S.T + rng.normal(0.0, 20.0, (40, 12))
+    out = sb.recover_rows(S, strain, noise=1.0)
+    assert out.covariance[0, 0] > 100.0 * np.linalg.inv(S.T @ S)[0, 0]
+    assert any(f.severity in ("warning", "error") for f in out.findings)
+
+
+def test_numbers_of_any_size_are_taken():
+    S = np.random.default_rng(9).normal(size=(6, 2))
+    loads = np.array([[1e9, -3e8], [2e7, 5e9]])
+    np.testing.assert_allclose(sb.recover_rows(S, loads @ S.T, noise=1e3).loads, loads, rtol=1e-9)
+
+
+@pytest.mark.parametrize("ask", [lambda S: sb.place_rows(S, 5), lambda S: sb.recover_rows(S, np.ones((2, len(S))))])
+def test_loads_that_cannot_be_told_apart_raise(ask):
+    S = np.random.default_rng(10).normal(size=(8, 3))
+    S[:, 2] = S[:, 0] - 2.0 * S[:, 1]
+    with pytest.raises(sb.Faults):
+        ask(S)
+    with pytest.raises(ValueError):
+        ask(np.zeros((8, 2)))
+    few = np.random.default_rng(10).normal(size=(2, 3))
+    with pytest.raises(sb.Faults):
+        ask(few)
+
+
+@pytest.mark.parametrize(
+    ("array", "error", "said"),
+    [
+        ([[1.0, 2.0], [3.0, 4.0]], TypeError, "numpy array"),
+        (np.ones((4, 2), dtype=np.float32), TypeError, "float64"),
+        (np.ones((4, 2), dtype=int), TypeError, "float64"),
+        (np.asfortranarray(np.random.default_rng(0).normal(size=(4, 2))), ValueError, "ascontiguousarray"),
+        (np.ones(4), ValueError, "dimensions"),
+        (np.full((4, 2), np.nan), ValueError, "finite"),
+        (np.ones((0, 2)), ValueError, "empty"),
+    ],
+)
+def test_what_is_wrong_with_an_array_is_said(array, error, said):
+    with pytest.raises(error, match=said):
+        sb.place_rows(array, 2)
+    with pytest.raises(error, match=said):
+        sb.recover_rows(array, np.ones((1, len(array))))
+
+
+def test_arguments_that_make_no_sense_are_said():
+    S = np.random.default_rng(0).normal(size=(6, 2))
+    with pytest.raises(ValueError, match="columns"):
+        sb.recover_rows(S, np.ones((2, 5)))
+    with pytest.raises(ValueError, match="noise"):
+        sb.recover_rows(S, np.ones((2, 6)), noise=0.0)
+    with pytest.raises(ValueError):
+        sb.place_rows(S, 7)
+    with pytest.raises(ValueError):
+        sb.place_rows(S, 0)
+
+
+def test_cycles_are_those_of_the_standard():
+    # ASTM E1049-85, figure 6: ranges 3, 4, 6, 8, 9 with counts 0.5, 1.5, 0.5, 1, 0.5.
+    cycles = sb.rainflow(np.array([-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0]))
+    count = {r: cycles["count"][cycles["range"] == r].sum() for r in (3.0, 4.0, 6.0, 8.0, 9.0)}
+    assert count == {3.0: 0.5, 4.0: 1.5, 6.0: 0.5, 8.0: 1.0, 9.0: 0.5}
+    assert cycles["count"].sum() == 4.0
+
+
+def test_a_calibration_learns_the_matrix_that_made_the_readings():
+    rng = np.random.default_rng(11)
+    S = rng.normal(size=(6, 2)) * 10.0
+    loads = rng.normal(0.0, 30.0, (12, 2))
+    strain = loads @ S.T + rng.normal(0.0, 0.5, (12, 6))
+    learnt = sb.calibrate_rows(strain, loads, noise=0.5)
+    # Least squares run by run: sd of an entry is the noise over the root of the sum of squares of its load.
+    sd = 0.5 / np.sqrt((loads**2).sum(axis=0))
+    assert (np.abs(learnt.S - S) < 6.0 * sd).all()
+    assert learnt.outcome.calibration.runs == 12
+    better = sb.calibrate_rows(strain[:3], loads[:3], noise=0.5, prior=S, prior_rel=0.01)
+    assert np.abs(better.S / S - 1.0).max() < 0.05
+    with pytest.raises(ValueError, match="runs"):
+        sb.calibrate_rows(strain, loads[:5])

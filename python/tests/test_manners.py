@@ -1,0 +1,116 @@
+"""Bugs, threads, forks, Ctrl-C."""
+
+import os
+import signal
+import sys
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+
+import strainbridge as sb
+from strainbridge import _strainbridge as engine
+
+S = np.random.default_rng(0).normal(size=(60, 4))
+
+
+def test_a_bug_is_an_exception_and_the_next_call_works():
+    for threads in (None, 1):
+        with pytest.raises(RuntimeError, match="asked to fail"):
+            engine._fail(threads)
+    assert len(sb.place_rows(S, 6).rows) == 6
+
+
+def test_threads_at_once_give_the_same_answers():
+    expected = [sb.place_rows(S, n).rows.tolist() for n in range(5, 13)]
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(lambda n: sb.place_rows(S, n).rows.tolist(), range(5, 13)))
+    assert found == expected
+
+
+def test_other_threads_run_meanwhile():
+    ticks = []
+    strain = np.random.default_rng(1).normal(size=(400_000, 60))
+
+    def tick():
+        while not done.is_set():
+            ticks.append(time.perf_counter())
+            time.sleep(0.002)
+
+    done = threading.Event()
+    thread = threading.Thread(target=tick)
+    thread.start()
+    begin = time.perf_counter()
+    sb.recover_rows(S, strain, threads=1)
+    end = time.perf_counter()
+    done.set()
+    thread.join()
+    # Were the lock held, no tick would fall between begin and end.
+    assert sum(begin < t < end for t in ticks) >= 3
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="the system has no fork")
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
+def test_a_fork_after_use_works():
+    expected = sb.place_rows(S, 6).rows.tolist()
+    child = os.fork()
+    if child == 0:
+        os._exit(0 if sb.place_rows(S, 6).rows.tolist() == expected else 1)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
+def test_ctrl_c_stops_the_work():
+    job = sb.Job.read(ROOT / "models" / "truck-shell" / "job.toml")
+    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        sb.place(job, cache=False)
+    assert len(sb.place_rows(S, 6).rows) == 6
+
+
+def test_progress_is_told():
+    heard = []
+    sb.place(ROOT / "models" / "truck-shell" / "job.toml", cache=False, progress=lambda *said: heard.append(said))
+    assert len({stage for stage, _, _ in heard}) >= 2
+    assert all(isinstance(stage, str) and done >= 0 and total >= 0 for stage, done, total in heard)
+
+
+def test_what_the_one_who_hears_raises_comes_out():
+    def stop(*_):
+        raise LookupError("enough")
+
+    with pytest.raises(LookupError, match="enough"):
+        sb.place(ROOT / "models" / "truck-shell" / "job.toml", cache=False, progress=stop)
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="memory is read from /proc")
+def test_many_calls_leak_nothing():
+    def resident():
+        return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+    strain = np.ones((500, 60))
+    for _ in range(200):
+        sb.recover_rows(S, strain, threads=1)
+    before = resident()
+    for _ in range(1000):
+        sb.recover_rows(S, strain, threads=1)
+    # A result alone, kept a thousand times, would be 16 MB.
+    assert resident() - before < 8e6
+
+
+def test_a_long_record_is_not_copied():
+    resource = pytest.importorskip("resource")
+    strain = np.random.default_rng(2).normal(size=(1_000_000, 60))
+    sb.recover_rows(S, strain[:3000])
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    out = sb.recover_rows(S, strain)
+    after = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    scale = 1024 if sys.platform != "darwin" else 1
+    # Loads twice (blocks, then all), 64 MB, and little else; the record has 480 MB.
+    assert (after - before) * scale < 0.5 * strain.nbytes
+    assert out.loads.shape == (1_000_000, 4)
