@@ -228,13 +228,8 @@ fn main_is_a_summary_and_every_model_says_what_it_proves() {
 /// Circles that are still to be untied; the list only shrinks.
 const CIRCLES: &[&str] = &[
     "app::check, app::check::decks, app::check::jobs, app::check::results, app::check::together",
-    "app::reconcile::background, app::reconcile::deck_frame, app::reconcile::described, app::reconcile::matrix_frame",
     "app::recover, app::recover::derived, app::recover::derived::damage, app::recover::derived::nastran, app::recover::derived::parquet, app::recover::derived::rpc, app::recover::derived::vtu, app::recover::known_payload, app::recover::runs, app::recover::stream",
     "app::solved, app::strain::fields",
-    "reconcile::effect, reconcile::strain::covariance, reconcile::strain::frame, reconcile::strain::state",
-    "reconcile::motion::at_rest, reconcile::motion::corrections, reconcile::motion::fitted",
-    "reconcile::motion::detectable, reconcile::motion::examine, reconcile::motion::judge",
-    "reconcile::motion::effect, reconcile::motion::effect::asymmetric_damper, reconcile::motion::effect::axle_coupling, reconcile::motion::effect::bump_stop, reconcile::motion::effect::coulomb_friction, reconcile::motion::effect::cubic_stiffness, reconcile::motion::effect::dead_zone, reconcile::motion::effect::pitch_coupling, reconcile::motion::effect::progressive_leaf, reconcile::motion::effect::quadratic_damping, reconcile::motion::effect::quadratic_stiffness, reconcile::motion::effect::roll_coupling, reconcile::motion::effect::stiffness_drift, reconcile::motion::effect::viscous_damper",
 ];
 
 #[test]

@@ -1,17 +1,14 @@
 //! What a record says of the vehicle at rest: the mean wheel force is its weight, an accelerometer's mean is gravity times its gain.
 
 use super::change::Change;
-use super::corrections::adjustments;
 use super::design::Design;
-use super::fitted::{ColumnOf, MotionFit};
 use super::frame::MotionFrame;
+use super::part::ColumnOf;
 use crate::vehicle::layout::Measures;
 use std::f64::consts::PI;
 
 /// Mean over gravity between which a channel is taken to carry its static part.
-const STATIC: std::ops::Range<f64> = 0.5..2.0;
-/// Zero of an accelerometer, one sd, in g: 50 mg is what data sheets of capacitive sensors state.
-const ZERO_G: f64 = 0.05;
+pub(super) const STATIC: std::ops::Range<f64> = 0.5..2.0;
 /// What slower motion than the band's adds to the velocity between the ends of a record, as a factor.
 const SLOWER: f64 = 2.0;
 
@@ -155,32 +152,8 @@ impl RestRow {
     }
 }
 
-/// Squared deviates of the accelerometers' means from gravity times the gain that a fit gives them, their zeros unknown within
-/// [`ZERO_G`]. A channel without its static part says nothing.
-pub fn zeros(frame: &MotionFrame, fit: &MotionFit) -> f64 {
-    let adjust = adjustments(frame, &fit.parts);
-    let gain = |channel: &str| -> f64 {
-        adjust
-            .iter()
-            .filter(|a| a.channel == channel)
-            .map(|a| a.gain)
-            .product()
-    };
-    let v = &fit.assembled.vehicle;
-    v.sensors
-        .iter()
-        .filter(|s| s.measures == Measures::Acceleration && frame.bodies.contains(&s.at.body))
-        .filter_map(|s| {
-            let (mean, _) = finite_mean(frame.data.samples(&s.channel).ok()?)?;
-            let in_g = mean / frame.gravity;
-            STATIC
-                .contains(&in_g.abs())
-                .then(|| ((in_g - gain(&s.channel)) / ZERO_G).powi(2))
-        })
-        .sum()
-}
-
-fn finite_mean(x: &[f64]) -> Option<(f64, usize)> {
+/// Mean and number of the samples that are numbers.
+pub(super) fn finite_mean(x: &[f64]) -> Option<(f64, usize)> {
     let (sum, n) = x
         .iter()
         .filter(|v| v.is_finite())

@@ -2,8 +2,8 @@
 
 use super::change::Change;
 use super::design::{Bins, Design};
-use super::fitted::{ColumnOf, Part};
 use super::frame::MotionFrame;
+use super::part::{ColumnOf, Part};
 use rustfft::num_complex::Complex64;
 use std::f64::consts::PI;
 

@@ -2,11 +2,12 @@
 
 use super::change::Change;
 use super::effect_units::unit_of_change;
-use super::examine::DECISIVE;
-use super::fitted::{ColumnOf, MotionFit};
+use super::fitted::MotionFit;
+use super::found::DECISIVE;
 use super::gls::Basis;
 use super::limits::tolerance_limit;
 use super::outcome::Smallest;
+use super::part::ColumnOf;
 use super::scorer::MotionScorer;
 
 /// Sizes by candidate, in the library's order: those that would raise the log evidence to the level of a name, in the form that shows

@@ -1,10 +1,10 @@
 //! Log evidence of a set of effects: likelihood of the channels, prior of sizes, price of freedom.
 
-use super::at_rest::zeros;
 use super::candidate::Candidate;
 use super::change::Change;
 use super::fitted::MotionFit;
 use super::frame::MotionFrame;
+use super::zeros::zeros;
 
 /// Scatter of the logarithm of gains that are at fault, one sd: by some per cent; more is ever less likely.
 const GAIN: f64 = 0.1;

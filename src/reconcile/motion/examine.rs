@@ -6,20 +6,19 @@ use super::channel_check::{BrokenChannel, broken_channels};
 use super::design::design;
 use super::effect::library;
 use super::fit::{Effort, fit};
-use super::fitted::{MotionFit, Part};
+use super::fitted::MotionFit;
+use super::found::{DECISIVE, Found};
 use super::frame::MotionFrame;
 use super::gap::fitted_gap;
 use super::judge::judged;
 use super::noise::Background;
 use super::outcome::MotionOutcome;
+use super::part::Part;
 use super::scorer::MotionScorer;
 use super::unexplained_background::{of_fit, power, unexplained_background};
 use crate::reconcile::search::{Breadth, Scored, search, settle};
 use crate::vehicle::motion::VehicleError;
 
-/// Log evidence that an effect must bring to be named: odds of 400, so that a set of up to three effects holds a chance one in fewer than
-/// one job of a hundred.
-pub(super) const DECISIVE: f64 = 6.0;
 /// How far the search looks.
 const BREADTH: Breadth = Breadth {
     largest: 3,
@@ -31,18 +30,6 @@ const BREADTH: Breadth = Breadth {
 const ROUNDS: usize = 3;
 /// Fall of the background's power that makes another round worth while.
 const LOWERED: f64 = 0.7;
-
-/// What a search found: all sets that were scored, best first, and the best one.
-pub(super) struct Found {
-    /// The analyst's model under sensor noise alone.
-    pub null: MotionFit,
-    /// Every set, best first.
-    pub all: Vec<Scored<MotionFit>>,
-    /// The best set, empty where nothing pays.
-    pub best: Scored<MotionFit>,
-    /// Channels that show by themselves that they can't be relied on.
-    pub broken: Vec<BrokenChannel>,
-}
 
 /// Looks for the effects that part a record from its vehicle model; `only` limits the library to some ids.
 ///

@@ -1,36 +1,13 @@
 //! A set of effects as it was fitted: parameters, sizes, residuals, and what a further column would meet.
 
 use super::at_rest::RestRow;
-use super::change::{Assembled, Change};
+use super::change::Assembled;
 use super::design::{Bins, Design};
 use super::gls::PriorColumn;
 use super::noise::Whitener;
+use super::part::{ColumnOf, Part};
 use rustfft::num_complex::Complex64;
 use std::sync::Arc;
-
-/// One effect of a set, in the form that was chosen.
-#[derive(Clone, Debug)]
-pub struct Part {
-    /// Number of the candidate.
-    pub candidate: usize,
-    /// Its form.
-    pub shape: Change,
-    /// 1 / gain of a gain fault, delay in s of a delay fault; not used otherwise.
-    pub fault: f64,
-}
-
-/// What a column of the least squares stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ColumnOf {
-    /// A parameter of the vehicle.
-    Parameter(usize),
-    /// The fault of a part (its number in the set).
-    Fault(usize),
-    /// The gain of a channel (its number in the design) within its tolerance.
-    Gain(usize),
-    /// The timing of a channel within its tolerance.
-    Delay(usize),
-}
 
 /// A fit.
 #[derive(Clone, Debug)]

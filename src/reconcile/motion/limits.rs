@@ -2,9 +2,10 @@
 
 use super::candidate::{Candidate, Sign};
 use super::change::Change;
-use super::fitted::{ColumnOf, MotionFit};
+use super::fitted::MotionFit;
 use super::frame::MotionFrame;
 use super::gls::{PriorColumn, Solved, solved};
+use super::part::ColumnOf;
 use crate::vehicle::term::{Side, Term, share_done};
 use statrs::distribution::{ContinuousCDF, Normal};
 

@@ -10,6 +10,7 @@ mod cubic_stiffness;
 mod dead_zone;
 mod mass_change;
 mod pitch_coupling;
+mod places;
 mod progressive_leaf;
 mod quadratic_damping;
 mod quadratic_stiffness;
@@ -20,13 +21,8 @@ mod time_offset;
 mod viscous_damper;
 
 use super::candidate::Candidate;
-use super::change::Change;
 use super::frame::MotionFrame;
-use crate::series::detrend::rms;
-use crate::vehicle::layout::Link;
 use crate::vehicle::motion::Motion;
-use crate::vehicle::preset::coupling;
-use crate::vehicle::term::Term;
 
 /// Every effect that the frame could show, in a fixed order; `only` keeps the ids (or families) given, all where empty.
 pub fn library(frame: &MotionFrame, motion: &Motion, only: &[String]) -> Vec<Candidate> {
@@ -57,61 +53,4 @@ pub fn library(frame: &MotionFrame, motion: &Motion, only: &[String]) -> Vec<Can
         all.retain(|c| only.iter().any(|o| *o == c.id || *o == c.family()));
     }
     all
-}
-
-/// Coupling links by name that the vehicle has not, each as inertia, as spring, and as spring with damper.
-fn coupling_forms(frame: &MotionFrame, names: &[&str]) -> Vec<Change> {
-    let mut out = Vec::new();
-    let has = |name: &str| frame.vehicle.links.iter().any(|l| l.name == name);
-    for name in names.iter().filter(|n| !has(n)) {
-        let Some(link) = coupling(&frame.vehicle, name) else {
-            continue;
-        };
-        let with = |terms: Vec<Term>| {
-            Change::Links(vec![Link {
-                terms,
-                ..link.clone()
-            }])
-        };
-        if !matches!(*name, "bar" | "cross") {
-            out.push(with(vec![Term::Inertance]));
-        }
-        out.push(with(vec![Term::Stiffness]));
-        out.push(with(vec![Term::Stiffness, Term::Damping]));
-    }
-    out
-}
-
-/// Links between compared bodies with the word for their place; none where there is but one.
-fn links(frame: &MotionFrame) -> Vec<(usize, Option<String>)> {
-    let v = &frame.vehicle;
-    let own: Vec<usize> = (0..v.links.len())
-        .filter(|&l| {
-            v.links[l]
-                .ends
-                .iter()
-                .all(|e| frame.bodies.contains(&e.1.body))
-        })
-        .collect();
-    let word = |l: usize| {
-        let wheel = v
-            .wheels
-            .iter()
-            .find(|w| v.links[l].ends.iter().any(|e| e.1.body == w.at.body));
-        let one = wheel.filter(|w| v.wheels.iter().filter(|o| o.at.body == w.at.body).count() == 1);
-        one.and_then(|w| w.channel.split_once('_').map(|p| p.1.to_owned()))
-            .unwrap_or_else(|| v.links[l].name.clone())
-    };
-    own.iter()
-        .map(|&l| (l, (own.len() > 1).then(|| word(l))))
-        .collect()
-}
-
-/// Largest stretch and rms rate of a link.
-fn extent(motion: &Motion, link: usize) -> (f64, f64) {
-    let largest = motion
-        .stretch
-        .get(link)
-        .map_or(0.0, |d| d.iter().fold(0.0f64, |a, d| a.max(d.abs())));
-    (largest, motion.rate.get(link).map_or(0.0, |v| rms(v)))
 }

@@ -1,0 +1,34 @@
+//! What the means of accelerometers say of a fit: gravity times their gain, their zeros unknown within what data sheets state.
+
+use super::at_rest::{STATIC, finite_mean};
+use super::corrections::adjustments;
+use super::fitted::MotionFit;
+use super::frame::MotionFrame;
+use crate::vehicle::layout::Measures;
+
+/// Zero of an accelerometer, one sd, in g: 50 mg is what data sheets of capacitive sensors state.
+const ZERO_G: f64 = 0.05;
+/// Squared deviates of the accelerometers' means from gravity times the gain that a fit gives them, their zeros unknown within
+/// [`ZERO_G`]. A channel without its static part says nothing.
+pub fn zeros(frame: &MotionFrame, fit: &MotionFit) -> f64 {
+    let adjust = adjustments(frame, &fit.parts);
+    let gain = |channel: &str| -> f64 {
+        adjust
+            .iter()
+            .filter(|a| a.channel == channel)
+            .map(|a| a.gain)
+            .product()
+    };
+    let v = &fit.assembled.vehicle;
+    v.sensors
+        .iter()
+        .filter(|s| s.measures == Measures::Acceleration && frame.bodies.contains(&s.at.body))
+        .filter_map(|s| {
+            let (mean, _) = finite_mean(frame.data.samples(&s.channel).ok()?)?;
+            let in_g = mean / frame.gravity;
+            STATIC
+                .contains(&in_g.abs())
+                .then(|| ((in_g - gain(&s.channel)) / ZERO_G).powi(2))
+        })
+        .sum()
+}
