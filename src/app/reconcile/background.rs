@@ -1,7 +1,7 @@
 //! What is never exact: where and at what angle gauges sit, and the mesh.
 
-use super::deck_frame::influence;
-use super::matrix_frame::ModelPart;
+use super::influence::influence;
+use super::model_part::ModelPart;
 use crate::app::job::Job;
 use crate::fe::Solution;
 use crate::gauge::{Gauge, moved};

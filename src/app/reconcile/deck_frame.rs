@@ -3,19 +3,18 @@
 use super::background::{Axis, ENTRY_SHARE, background, gradients};
 use super::deck_thermal::{Heated, NOTHING};
 use super::finer::Finer;
-use super::matrix_frame::{ModelPart, facts, nominal_x_m};
+use super::influence::{influence, payload_grid, readings};
+use super::model_part::{ModelPart, facts, nominal_x_m};
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Component, Job, JobLoad, LoadActs, Role};
 use crate::app::solved::{support_of_job, unit_loads_kept};
 use crate::app::strain::{Fields, lay_gauges, read_fields, unit_loads, without_strain};
 use crate::app::work::Work;
-use crate::fe::{Solution, SolveOptions, UnitLoad, solve_unit_loads_on};
+use crate::fe::UnitLoad;
 use crate::finding::{Finding, Severity};
-use crate::gauge::{Gauge, reading};
+use crate::gauge::Gauge;
 use crate::model::{GridIx, Model, Vec3};
-use crate::reconcile::strain::{
-    MassSignature, N_PAYLOAD_COLUMNS, NuisanceLoad, PlaneStrainRow, Wiring,
-};
+use crate::reconcile::strain::{MassSignature, NuisanceLoad, PlaneStrainRow, Wiring};
 use crate::sensitivity::from_cases;
 use crate::units::{KILO, MICROSTRAIN, STANDARD_GRAVITY_M_S2};
 
@@ -269,47 +268,6 @@ fn in_order(job: &Job, laid: Vec<Gauge>, channels: &[String]) -> Result<Vec<Gaug
     Ok(out)
 }
 
-/// Influence of the columns, `n_gauges x n_columns`, those that stand for nothing zero.
-pub(super) fn influence(
-    job: &Job,
-    model: &Model,
-    gauges: &[Gauge],
-    solution: &Solution,
-    n_columns: usize,
-) -> Vec<f64> {
-    let mut out = readings(gauges, solution, 0..n_columns);
-    let blank = if payload_grid(job, model).is_some() {
-        1
-    } else {
-        N_PAYLOAD_COLUMNS
-    };
-    for row in out.chunks_exact_mut(n_columns.max(1)) {
-        row.iter_mut().rev().take(blank).for_each(|v| *v = 0.0);
-    }
-    out
-}
-
-/// Microstrain per unit of each case of `range`, `n_gauges x n_cases` by rows; NaN where there is no strain.
-fn readings(gauges: &[Gauge], solution: &Solution, range: std::ops::Range<usize>) -> Vec<f64> {
-    let mut out = Vec::with_capacity(gauges.len() * range.len());
-    for g in gauges {
-        for c in range.clone() {
-            let value = solution.cases.get(c).and_then(|case| reading(g, case));
-            out.push(value.unwrap_or(f64::NAN) / MICROSTRAIN);
-        }
-    }
-    out
-}
-
-pub(super) fn solve(job: &Job, model: &Model, loads: &[UnitLoad]) -> Result<Solution, Faults> {
-    let remedy = "repair the deck, or give S as CSV files in `[sensitivity]`";
-    let support = support_of_job(job, model)?;
-    let solved = solve_unit_loads_on(model, support, loads, &SolveOptions::default());
-    solved
-        .map(|s| s.0)
-        .map_err(|e| Faults::from(Fault::of(&*job.file, "model", e.to_string(), remedy)))
-}
-
 pub(super) fn gravity(job: &Job) -> f64 {
     job.payload
         .as_ref()
@@ -327,10 +285,6 @@ fn grid_of(job: &Job, model: &Model, id: u32) -> Result<GridIx, Faults> {
         ))
     };
     model.grid_ix(id).ok_or_else(wrong)
-}
-
-fn payload_grid(job: &Job, model: &Model) -> Option<GridIx> {
-    model.grid_ix(job.payload.as_ref()?.grid?)
 }
 
 /// `size` kN or kN m at a grid, in the deck's units.

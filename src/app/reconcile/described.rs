@@ -1,6 +1,7 @@
 //! Signatures of the user's own hypotheses: from a table, or from the edited deck solved again.
 
-use super::deck_frame::{DeckFrame, influence, solve};
+use super::deck_frame::DeckFrame;
+use super::influence::{influence, solve};
 use super::signature_table::SignatureTable;
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::Inputs;

@@ -1,50 +1,19 @@
 //! The static frame of a job whose S and signatures are given as CSV files.
 
 use super::described;
+use super::model_part::{ModelPart, facts, nominal_x_m};
 use super::signature_table::SignatureTable;
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::Inputs;
-use crate::app::job::{Bridge, GivenSensitivity, Job, Role};
+use crate::app::job::{GivenSensitivity, Job, Role};
 use crate::reconcile::strain::{
-    GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, NuisanceLoad, PlaneStrainRow, Scatter,
-    StiffnessOf, StiffnessSignature, Wiring,
+    GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, NuisanceLoad, PlaneStrainRow, StiffnessOf,
+    StiffnessSignature, Wiring,
 };
 use crate::units::{KILO, Quantity};
 
-/// What the model says, however it was computed: the part of a frame that no run enters.
-#[derive(Clone, Debug, Default)]
-pub(super) struct ModelPart {
-    pub(super) gauges: Vec<GaugeFacts>,
-    pub(super) load_names: Vec<String>,
-    pub(super) load_positions: Option<Vec<[f64; 2]>>,
-    pub(super) influence: Vec<f64>,
-    pub(super) tensors: Vec<PlaneStrainRow>,
-    pub(super) per_mm: Option<Vec<f64>>,
-    pub(super) other_loads: Vec<(String, Vec<f64>)>,
-    pub(super) nuisance: Vec<NuisanceLoad>,
-    pub(super) thermal_uniform: Option<Vec<f64>>,
-    pub(super) thermal_gradient: Option<Vec<f64>>,
-    pub(super) masses: Vec<MassSignature>,
-    pub(super) stiffness: Vec<StiffnessSignature>,
-    /// Influence on the analyst's own mesh, where `influence` is that of a finer one.
-    pub(super) as_modelled: Option<Vec<f64>>,
-    /// Errors that every gauge may have.
-    pub(super) scatter: Vec<Scatter>,
-    /// Nominal place of the payload, m.
-    pub(super) payload_origin: [f64; 2],
-}
-
 /// Ratio of the transverse to the axial strain where a table gives the axial one alone: a rail flange in bending.
 const POISSON: f64 = 0.29;
-
-/// Wiring of a bridge, as far as angles go.
-pub(super) fn wiring(bridge: Bridge) -> Wiring {
-    match bridge {
-        Bridge::Quarter => Wiring::Quarter,
-        Bridge::HalfBending | Bridge::FullBending => Wiring::Bending,
-        Bridge::Shear => Wiring::Shear,
-    }
-}
 
 /// Reads everything that `[sensitivity]` names. `channels` are the gauges in the order of the strain file.
 pub(super) fn read(
@@ -249,11 +218,6 @@ pub(super) fn read(
     Ok(part)
 }
 
-/// Nominal place of the payload, m, where the job states it.
-pub(super) fn nominal_x_m(job: &Job) -> Option<f64> {
-    Some(job.payload.as_ref()?.nominal_x? * job.units.length_m())
-}
-
 /// Has the job a nuisance load of this name?
 fn is_nuisance(job: &Job, name: &str) -> bool {
     job.loads
@@ -264,16 +228,4 @@ fn is_nuisance(job: &Job, name: &str) -> bool {
 fn is_moment(name: &str) -> bool {
     name.split(['.', '_', ' '])
         .any(|part| ["MX", "MY", "MZ"].contains(&part.to_ascii_uppercase().as_str()))
-}
-
-/// What the job says of a gauge.
-pub(super) fn facts(job: &Job, name: &str) -> GaugeFacts {
-    let known = job.gauges.iter().find(|g| g.name == name);
-    let metres = |x: [f64; 3]| x.map(|v| v * job.units.length_m());
-    GaugeFacts {
-        name: name.to_owned(),
-        wiring: known.map_or(Wiring::Quarter, |g| wiring(g.bridge)),
-        angle_deg: known.map_or(0.0, |g| g.angle_deg),
-        position: known.and_then(|g| g.position).map(metres),
-    }
 }

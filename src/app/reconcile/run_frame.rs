@@ -1,6 +1,6 @@
 //! What the model says, joined with what was measured and noted of the runs.
 
-use super::matrix_frame::ModelPart;
+use super::model_part::ModelPart;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::runs::{RunRow, read_runs};
 use crate::app::job::{Job, WheelForces as JobWheelForces};

@@ -1,6 +1,7 @@
 //! Signatures of a stiffness that may be wrong: the changed model solved again.
 
-use super::deck_frame::{DeckFrame, influence, solve};
+use super::deck_frame::DeckFrame;
+use super::influence::{influence, solve};
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::Job;
 use crate::model::Model;

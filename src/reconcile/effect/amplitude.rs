@@ -17,3 +17,26 @@ pub struct Amplitudes {
     /// Above this root mean square an amplitude is not plausible.
     pub plausible: f64,
 }
+
+/// Amplitudes with the sizes (variance roots) of each of their kinds.
+#[derive(Clone, Debug)]
+pub struct SizedAmplitudes {
+    /// Patterns.
+    pub amplitudes: Amplitudes,
+    /// By kind: standard deviation from run to run; then, by kind again, of the part that repeats in all runs.
+    pub sizes: Vec<f64>,
+}
+
+impl SizedAmplitudes {
+    /// Variance from run to run of the amplitudes of `kind`.
+    pub fn scatter_variance(&self, kind: usize) -> f64 {
+        self.sizes.get(kind).map_or(0.0, |s| s * s)
+    }
+
+    /// Variance of what repeats in all runs.
+    pub fn steady_variance(&self, kind: usize) -> f64 {
+        self.sizes
+            .get(self.amplitudes.usual.len() + kind)
+            .map_or(0.0, |s| s * s)
+    }
+}

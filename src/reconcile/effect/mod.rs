@@ -34,7 +34,7 @@ mod uneven_ground;
 mod wheel_scale;
 mod zero_drift;
 
-pub use amplitude::Amplitudes;
+pub use amplitude::{Amplitudes, SizedAmplitudes};
 pub use extension::{Correction, Extension, Nuisance};
 pub use library::{Candidate, library};
 pub use model_discrepancy::ModelDiscrepancy;

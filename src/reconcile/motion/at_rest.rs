@@ -1,9 +1,9 @@
 //! What a record says of the vehicle at rest: the mean wheel force is its weight, an accelerometer's mean is gravity times its gain.
 
 use super::change::Change;
-use super::column_of::ColumnOf;
 use super::design::Design;
 use super::frame::MotionFrame;
+use super::part::ColumnOf;
 use crate::vehicle::layout::Measures;
 use std::f64::consts::PI;
 
@@ -152,7 +152,7 @@ impl RestRow {
     }
 }
 
-/// Mean of the finite samples, and their number.
+/// Mean and number of the samples that are numbers.
 pub(super) fn finite_mean(x: &[f64]) -> Option<(f64, usize)> {
     let (sum, n) = x
         .iter()

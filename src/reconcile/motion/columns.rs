@@ -1,10 +1,9 @@
 //! Columns of the least squares: parameters, faults of channels, and what is declared to be uncertain.
 
 use super::change::Change;
-use super::column_of::ColumnOf;
 use super::design::{Bins, Design};
-use super::fitted::Part;
 use super::frame::MotionFrame;
+use super::part::{ColumnOf, Part};
 use rustfft::num_complex::Complex64;
 use std::f64::consts::PI;
 

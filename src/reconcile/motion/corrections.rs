@@ -1,8 +1,8 @@
 //! Corrections of channels: those of the job and those of a set of effects.
 
 use super::change::{Change, with_adjustment};
-use super::fitted::Part;
 use super::frame::MotionFrame;
+use super::part::Part;
 use crate::vehicle::motion::Adjustment;
 
 /// Corrections of the job joined by those of a set.

@@ -1,13 +1,13 @@
 //! The smallest size of every effect that a record would have shown.
 
 use super::change::Change;
-use super::column_of::ColumnOf;
 use super::effect_units::unit_of_change;
 use super::fitted::MotionFit;
 use super::found::DECISIVE;
 use super::gls::Basis;
 use super::limits::tolerance_limit;
 use super::outcome::Smallest;
+use super::part::ColumnOf;
 use super::scorer::MotionScorer;
 
 /// Sizes by candidate, in the library's order: those that would raise the log evidence to the level of a name, in the form that shows

@@ -3,15 +3,15 @@
 use super::at_rest::rest_row;
 use super::candidate::Candidate;
 use super::change::{Assembled, Change, assemble};
-use super::column_of::ColumnOf;
 use super::columns::{fault_column, nuisance, parameter_column, slices};
 use super::corrections::adjustments;
 use super::design::{Bins, Design, design};
-use super::fitted::{MotionFit, Part, whitened};
+use super::fitted::{MotionFit, whitened};
 use super::frame::MotionFrame;
 use super::gls::{PriorColumn, Solved};
 use super::limits::{plausible, within_tolerance};
 use super::noise::{Background, Whitener, covariance, log_determinant};
+use super::part::{ColumnOf, Part};
 use super::response::responses;
 use crate::series::channels::Channels;
 use crate::vehicle::layout::Vehicle;

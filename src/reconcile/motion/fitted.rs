@@ -1,24 +1,13 @@
 //! A set of effects as it was fitted: parameters, sizes, residuals, and what a further column would meet.
 
 use super::at_rest::RestRow;
-use super::change::{Assembled, Change};
-use super::column_of::ColumnOf;
+use super::change::Assembled;
 use super::design::{Bins, Design};
 use super::gls::PriorColumn;
 use super::noise::Whitener;
+use super::part::{ColumnOf, Part};
 use rustfft::num_complex::Complex64;
 use std::sync::Arc;
-
-/// One effect of a set, in the form that was chosen.
-#[derive(Clone, Debug)]
-pub struct Part {
-    /// Number of the candidate.
-    pub candidate: usize,
-    /// Its form.
-    pub shape: Change,
-    /// 1 / gain of a gain fault, delay in s of a delay fault; not used otherwise.
-    pub fault: f64,
-}
 
 /// A fit.
 #[derive(Clone, Debug)]

@@ -2,10 +2,10 @@
 
 use super::columns::{nuisance, parameter_column, slices};
 use super::design::{Bins, Design, reference, size};
-use super::fitted::Part;
 use super::frame::MotionFrame;
 use super::gls::{PriorColumn, solved};
 use super::noise::{Background, Whitener, covariance};
+use super::part::Part;
 use super::response::responses;
 use rustfft::num_complex::Complex64;
 use statrs::distribution::{ChiSquared, ContinuousCDF};

@@ -2,10 +2,10 @@
 
 use super::candidate::{Candidate, Sign};
 use super::change::Change;
-use super::column_of::ColumnOf;
 use super::fitted::MotionFit;
 use super::frame::MotionFrame;
 use super::gls::{PriorColumn, Solved, solved};
+use super::part::ColumnOf;
 use crate::vehicle::term::{Side, Term, share_done};
 use statrs::distribution::{ContinuousCDF, Normal};
 

@@ -1,4 +1,4 @@
-//! Accelerometers at rest: an accelerometer's mean is gravity times its gain.
+//! What the means of accelerometers say of a fit: gravity times their gain, their zeros unknown within what data sheets state.
 
 use super::at_rest::{STATIC, finite_mean};
 use super::corrections::adjustments;
@@ -8,7 +8,6 @@ use crate::vehicle::layout::Measures;
 
 /// Zero of an accelerometer, one sd, in g: 50 mg is what data sheets of capacitive sensors state.
 const ZERO_G: f64 = 0.05;
-
 /// Squared deviates of the accelerometers' means from gravity times the gain that a fit gives them, their zeros unknown within
 /// [`ZERO_G`]. A channel without its static part says nothing.
 pub fn zeros(frame: &MotionFrame, fit: &MotionFit) -> f64 {

@@ -1,10 +1,10 @@
 //! Is a set of effects enough? Chi-square against what noise and stated uncertainty allow: over all, by gauge, by run, held out.
 
-use super::covariance::{Selection, SizedAmplitudes, covariance};
+use super::covariance::{Selection, covariance};
 use super::frame::StrainFrame;
-use super::state::predict;
+use super::prediction::predict;
 use crate::linalg::precision::Precision;
-use crate::reconcile::effect::Member;
+use crate::reconcile::effect::{Member, SizedAmplitudes};
 use crate::reconcile::outcome::Misfit;
 
 /// Chi-squares of a set of effects.

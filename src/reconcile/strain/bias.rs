@@ -1,7 +1,7 @@
 //! Does the gap follow the loads at every gauge? Then it is the model that is off, not the readings.
 
 use super::frame::StrainFrame;
-use super::state::predict;
+use super::prediction::predict;
 use crate::linalg::{Matrix, dense};
 
 /// Share of the squared gap that loads must explain.

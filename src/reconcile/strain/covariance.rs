@@ -1,31 +1,9 @@
 //! What noise and stated model uncertainty do to the residual, runs and gauges together.
 
 use super::frame::{Scatter, StrainFrame};
-use super::state::{Part, StrainState, read_all};
-use crate::reconcile::effect::{Amplitudes, Member};
-
-/// Amplitudes with the sizes (variance roots) of each of their kinds.
-#[derive(Clone, Debug)]
-pub struct SizedAmplitudes {
-    /// Patterns.
-    pub amplitudes: Amplitudes,
-    /// By kind: standard deviation from run to run; then, by kind again, of the part that repeats in all runs.
-    pub sizes: Vec<f64>,
-}
-
-impl SizedAmplitudes {
-    /// Variance from run to run of the amplitudes of `kind`.
-    pub fn scatter_variance(&self, kind: usize) -> f64 {
-        self.sizes.get(kind).map_or(0.0, |s| s * s)
-    }
-
-    /// Variance of what repeats in all runs.
-    pub fn steady_variance(&self, kind: usize) -> f64 {
-        self.sizes
-            .get(self.amplitudes.usual.len() + kind)
-            .map_or(0.0, |s| s * s)
-    }
-}
+use super::prediction::read_all;
+use super::state::{Part, StrainState};
+use crate::reconcile::effect::{Member, SizedAmplitudes};
 
 /// Readings under consideration: (run, gauge), in a fixed order.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::covariance::{Selection, covariance, read_patterns};
 use super::frame::StrainFrame;
-use super::state::predict;
+use super::prediction::predict;
 use crate::linalg::precision::Precision;
 use crate::reconcile::effect::{Candidate, Member, full_id};
 use crate::reconcile::outcome::Detectable;

@@ -1,9 +1,8 @@
 //! An explanation: effects with their parameters, and amplitudes with their sizes.
 
-use super::covariance::SizedAmplitudes;
 use super::frame::StrainFrame;
 use super::likelihood::Fit;
-use crate::reconcile::effect::{Candidate, Discrepancy, Member, full_id};
+use crate::reconcile::effect::{Candidate, Discrepancy, Member, SizedAmplitudes, full_id};
 use crate::reconcile::search::Scored;
 
 /// An explanation: effects with parameters, and amplitudes.

@@ -2,9 +2,8 @@
 //!
 //! Units throughout this module: microstrain, kN, kN m, kg, m, degrees Celsius, degrees of angle, percent of stiffness.
 
-use super::covariance::SizedAmplitudes;
 use crate::reconcile::Observations;
-use crate::reconcile::effect::Amplitudes;
+use crate::reconcile::effect::{Amplitudes, SizedAmplitudes};
 
 /// How a gauge's arms are wired, as far as an angle error is concerned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

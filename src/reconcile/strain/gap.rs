@@ -1,10 +1,11 @@
 //! The gap on runs that were not fitted, before and after, over all and by gauge, with its floor, all three made alike.
 
-use super::covariance::{Selection, SizedAmplitudes, covariance, read_patterns};
+use super::covariance::{Selection, covariance, read_patterns};
 use super::frame::StrainFrame;
-use super::state::{StrainState, predict};
+use super::prediction::predict;
+use super::state::StrainState;
 use crate::linalg::precision::Precision;
-use crate::reconcile::effect::Member;
+use crate::reconcile::effect::{Member, SizedAmplitudes};
 use crate::reconcile::outcome::{ChannelGap, Gap, GapBasis, GapNumbers};
 
 /// What of a run is found anew from one half of its gauges (in file order, odd and even) and judged on the other, in the gap before, the gap

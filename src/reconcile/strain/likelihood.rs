@@ -1,12 +1,13 @@
 //! Evidence of a set of effects: exact prediction, parameters optimised, amplitudes integrated out.
 
-use super::covariance::{Selection, SizedAmplitudes, covariance, read_patterns};
+use super::covariance::{Selection, covariance, read_patterns};
 use super::frame::StrainFrame;
+use super::prediction::predict;
 use super::size::{RunBlocks, RunPrecision, run_by_run_log_likelihood, usual_sizes};
-use super::state::{Part, predict};
+use super::state::Part;
 use crate::linalg::precision::Precision;
 use crate::reconcile::effect::{
-    Amplitudes, Candidate, Discrepancy, Member, Parameter, Stage, full_id,
+    Amplitudes, Candidate, Discrepancy, Member, Parameter, SizedAmplitudes, Stage, full_id,
 };
 use crate::reconcile::search::{Addition, Scored, Scorer};
 use std::collections::BTreeMap;

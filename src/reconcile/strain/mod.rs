@@ -14,6 +14,7 @@ mod likelihood;
 mod neighbours;
 mod next;
 mod own_covariance;
+mod prediction;
 mod recovered;
 mod remains;
 mod resampled;
@@ -23,7 +24,7 @@ mod tolerance;
 mod validation;
 
 pub use adequacy::{Adequacy, adequacy, deviate};
-pub use covariance::{Selection, SizedAmplitudes, covariance, read_patterns};
+pub use covariance::{Selection, covariance, read_patterns};
 pub use detect::DECISIVE;
 pub use examine::{examine, examine_with};
 pub use extended::{corrected_readings, extended_state};
@@ -33,6 +34,7 @@ pub use frame::{
 };
 pub use gap::{FoundAnew, Judged, judged};
 pub use likelihood::{Fit, Likelihood};
+pub use prediction::{predict, read_all};
 pub use recovered::loads_before_after;
-pub use state::{Part, StrainState, predict, read_all};
+pub use state::{Part, StrainState};
 pub use tolerance::angle_scatter;

@@ -3,7 +3,7 @@
 use super::covariance::{Selection, covariance};
 use super::explanation::Explanation;
 use super::frame::StrainFrame;
-use super::state::predict;
+use super::prediction::predict;
 use crate::linalg::precision::Precision;
 
 /// A run that could be made, in words and numbers.

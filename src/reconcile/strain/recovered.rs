@@ -1,10 +1,11 @@
 //! Wheel loads recovered from the strain of runs that were not fitted, without and with the effects.
 
-use super::covariance::{Selection, SizedAmplitudes, covariance, read_patterns};
+use super::covariance::{Selection, covariance, read_patterns};
 use super::frame::StrainFrame;
-use super::state::{Part, StrainState, read_all};
+use super::prediction::read_all;
+use super::state::{Part, StrainState};
 use crate::linalg::precision::Precision;
-use crate::reconcile::effect::Member;
+use crate::reconcile::effect::{Member, SizedAmplitudes};
 use crate::reconcile::outcome::LoadShift;
 
 /// Wheel loads recovered from the strain of each proof run, by generalised least squares, without and with the effects.

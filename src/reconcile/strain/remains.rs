@@ -5,7 +5,7 @@ use super::bias::model_bias;
 use super::covariance::Selection;
 use super::frame::StrainFrame;
 use super::gap::rms;
-use super::state::predict;
+use super::prediction::predict;
 use crate::reconcile::effect::Member;
 use crate::reconcile::outcome::{ChannelGap, Misfit};
 

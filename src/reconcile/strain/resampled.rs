@@ -4,8 +4,8 @@ use super::covariance::Selection;
 use super::explanation::Explanation;
 use super::frame::StrainFrame;
 use super::likelihood::Fit;
+use super::prediction::predict;
 use super::size::RunBlocks;
-use super::state::predict;
 use crate::reconcile::effect::Candidate;
 use crate::reconcile::search::Scored;
 

@@ -1,10 +1,10 @@
 //! How large amplitudes that differ from run to run usually are, from a residual: run by run, gauges in one covariance; what repeats in
 //! all runs besides.
 
-use super::covariance::{Selection, SizedAmplitudes, add_outer, covariance};
+use super::covariance::{Selection, add_outer, covariance};
 use super::frame::StrainFrame;
 use crate::linalg::precision::Precision;
-use crate::reconcile::effect::{Amplitudes, Member};
+use crate::reconcile::effect::{Amplitudes, Member, SizedAmplitudes};
 
 /// The covariance of each run by itself, without unknown amplitudes.
 pub struct RunBlocks {

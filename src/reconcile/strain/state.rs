@@ -1,6 +1,5 @@
-//! The prediction, evaluated exactly with any set of effects on.
+//! What strains the structure: influence, and what acts in each run.
 
-use crate::reconcile::effect::{Member, Stage};
 use crate::reconcile::strain::frame::{PayloadWeight, StrainFrame};
 
 /// The model with effects on: influence, what acts, and strain that no load explains.
@@ -42,17 +41,6 @@ impl StrainState {
         state
     }
 
-    /// The model with `members` on, each with its parameters: structure first, then loads; readings are left to [`read_all`].
-    pub fn with(frame: &StrainFrame, members: &[Member<'_>]) -> Self {
-        let mut state = Self::nominal(frame);
-        for stage in [Stage::Structure, Stage::Loads] {
-            for m in members.iter().filter(|m| m.effect.stage() == stage) {
-                m.effect.alter(frame, m.parameters, &mut state);
-            }
-        }
-        state
-    }
-
     /// Lets the payload act, moved by `dx`, `dy` metres from where the analyst believes it.
     pub fn set_payload(&mut self, frame: &StrainFrame, dx: f64, dy: f64) {
         let [_, n_r, n_c] = self.shape;
@@ -89,32 +77,4 @@ pub enum Part {
     Whole,
     /// The linear part: for columns of unknown amplitude and for noise.
     Linear,
-}
-
-/// What the gauges read of `strain` (one row of gauges in `run`) with the reading effects of `members`.
-pub fn read_all(
-    frame: &StrainFrame,
-    members: &[Member<'_>],
-    run: usize,
-    strain: &mut [f64],
-    part: Part,
-) {
-    for m in members
-        .iter()
-        .filter(|m| m.effect.stage() == Stage::Reading)
-    {
-        m.effect.read(frame, m.parameters, run, strain, part);
-    }
-}
-
-/// Predicted readings of every run, `n_runs x n_gauges`, with `members` on.
-pub fn predict(frame: &StrainFrame, members: &[Member<'_>]) -> Vec<f64> {
-    let state = StrainState::with(frame, members);
-    let mut out = Vec::with_capacity(frame.n_runs() * frame.n_gauges());
-    for run in 0..frame.n_runs() {
-        let mut row = state.strain(run);
-        read_all(frame, members, run, &mut row, Part::Whole);
-        out.extend(row);
-    }
-    out
 }

@@ -1,6 +1,6 @@
 //! One axle joined to the next along the vehicle: a walking beam, a balancer, springs that see both axles.
 
-use super::forms::coupling_forms;
+use super::places::coupling_forms;
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::frame::MotionFrame;
 

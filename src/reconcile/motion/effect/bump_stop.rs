@@ -1,6 +1,6 @@
 //! End stops: kb (|d| - gap) beyond a gap, on either side or both.
 
-use super::forms::{extent, links};
+use super::places::{extent, links};
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::frame::MotionFrame;

@@ -1,6 +1,6 @@
 //! Friction between leaves: fc tanh(v / velocity), for several velocities below which it fades.
 
-use super::forms::{extent, links};
+use super::places::{extent, links};
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::frame::MotionFrame;

@@ -1,6 +1,6 @@
 //! A spring that stiffens (or softens) with the cube of stretch: k3 d^3, with k2 d^2 where its middle is not at rest.
 
-use super::forms::links;
+use super::places::links;
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::frame::MotionFrame;

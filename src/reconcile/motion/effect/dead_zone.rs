@@ -1,6 +1,6 @@
 //! Free play of a spring: no (or next to no) force until the stretch exceeds a gap.
 
-use super::forms::{extent, links};
+use super::places::{extent, links};
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::frame::MotionFrame;

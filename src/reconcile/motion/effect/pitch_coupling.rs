@@ -1,6 +1,6 @@
 //! Sprung bodies over two axles that are not free of each other: the pitch inertia of the frame, or what stands in for it.
 
-use super::forms::coupling_forms;
+use super::places::coupling_forms;
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::frame::MotionFrame;
 

@@ -1,6 +1,6 @@
 //! A leaf spring that stiffens as leaves close: kp d |d|.
 
-use super::forms::links;
+use super::places::links;
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::frame::MotionFrame;

@@ -1,6 +1,6 @@
 //! A spring whose rate differs between rebound and compression: k2 d^2.
 
-use super::forms::links;
+use super::places::links;
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::frame::MotionFrame;

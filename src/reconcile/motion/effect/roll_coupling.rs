@@ -1,6 +1,6 @@
 //! Left and right of one axle joined: an anti-roll bar, roll inertia or stiffness of body and axle.
 
-use super::forms::coupling_forms;
+use super::places::coupling_forms;
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::frame::MotionFrame;
 

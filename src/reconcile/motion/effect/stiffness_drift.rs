@@ -1,6 +1,6 @@
 //! A spring that changes during the record: warming rubber, a leaf that breaks.
 
-use super::forms::links;
+use super::places::links;
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::frame::MotionFrame;

@@ -1,6 +1,6 @@
 //! A damper that the model lacks: c v.
 
-use super::forms::links;
+use super::places::links;
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::frame::MotionFrame;

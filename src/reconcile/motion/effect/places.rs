@@ -1,4 +1,4 @@
-//! What several effects are made of: links, coupling links, how far a link moves.
+//! Where effects may sit: links of the vehicle, couplings that it lacks.
 
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::frame::MotionFrame;

@@ -1,0 +1,64 @@
+//! What gauges read of a solution: rows of the influence matrix.
+
+use crate::app::fault::{Fault, Faults};
+use crate::app::job::Job;
+use crate::app::solved::support_of_job;
+use crate::fe::{Solution, SolveOptions, UnitLoad, solve_unit_loads_on};
+use crate::gauge::{Gauge, reading};
+use crate::model::{GridIx, Model};
+use crate::reconcile::strain::N_PAYLOAD_COLUMNS;
+use crate::units::MICROSTRAIN;
+
+/// Influence of the columns, `n_gauges x n_columns`, those that stand for nothing zero.
+pub(super) fn influence(
+    job: &Job,
+    model: &Model,
+    gauges: &[Gauge],
+    solution: &Solution,
+    n_columns: usize,
+) -> Vec<f64> {
+    let mut out = readings(gauges, solution, 0..n_columns);
+    let blank = if payload_grid(job, model).is_some() {
+        1
+    } else {
+        N_PAYLOAD_COLUMNS
+    };
+    for row in out.chunks_exact_mut(n_columns.max(1)) {
+        row.iter_mut().rev().take(blank).for_each(|v| *v = 0.0);
+    }
+    out
+}
+
+/// Microstrain per unit of each case of `range`, `n_gauges x n_cases` by rows; NaN where there is no strain.
+pub(super) fn readings(
+    gauges: &[Gauge],
+    solution: &Solution,
+    range: std::ops::Range<usize>,
+) -> Vec<f64> {
+    let mut out = Vec::with_capacity(gauges.len() * range.len());
+    for g in gauges {
+        for c in range.clone() {
+            let value = solution.cases.get(c).and_then(|case| reading(g, case));
+            out.push(value.unwrap_or(f64::NAN) / MICROSTRAIN);
+        }
+    }
+    out
+}
+
+/// The model under these loads.
+///
+/// # Errors
+/// What stops the solver.
+pub(super) fn solve(job: &Job, model: &Model, loads: &[UnitLoad]) -> Result<Solution, Faults> {
+    let remedy = "repair the deck, or give S as CSV files in `[sensitivity]`";
+    let support = support_of_job(job, model)?;
+    let solved = solve_unit_loads_on(model, support, loads, &SolveOptions::default());
+    solved
+        .map(|s| s.0)
+        .map_err(|e| Faults::from(Fault::of(&*job.file, "model", e.to_string(), remedy)))
+}
+
+/// Where the payload stands.
+pub(super) fn payload_grid(job: &Job, model: &Model) -> Option<GridIx> {
+    model.grid_ix(job.payload.as_ref()?.grid?)
+}

@@ -1,0 +1,27 @@
+//! The members of a set of effects, and what the columns of its least squares stand for.
+
+use super::change::Change;
+
+/// One effect of a set, in the form that was chosen.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// Number of the candidate.
+    pub candidate: usize,
+    /// Its form.
+    pub shape: Change,
+    /// 1 / gain of a gain fault, delay in s of a delay fault; not used otherwise.
+    pub fault: f64,
+}
+
+/// What a column of the least squares stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ColumnOf {
+    /// A parameter of the vehicle.
+    Parameter(usize),
+    /// The fault of a part (its number in the set).
+    Fault(usize),
+    /// The gain of a channel (its number in the design) within its tolerance.
+    Gain(usize),
+    /// The timing of a channel within its tolerance.
+    Delay(usize),
+}

@@ -1,0 +1,46 @@
+//! The prediction, evaluated exactly with any set of effects on.
+
+use super::frame::StrainFrame;
+use super::state::{Part, StrainState};
+use crate::reconcile::effect::{Member, Stage};
+
+impl StrainState {
+    /// The model with `members` on, each with its parameters: structure first, then loads; readings are left to [`read_all`].
+    pub fn with(frame: &StrainFrame, members: &[Member<'_>]) -> Self {
+        let mut state = Self::nominal(frame);
+        for stage in [Stage::Structure, Stage::Loads] {
+            for m in members.iter().filter(|m| m.effect.stage() == stage) {
+                m.effect.alter(frame, m.parameters, &mut state);
+            }
+        }
+        state
+    }
+}
+
+/// What the gauges read of `strain` (one row of gauges in `run`) with the reading effects of `members`.
+pub fn read_all(
+    frame: &StrainFrame,
+    members: &[Member<'_>],
+    run: usize,
+    strain: &mut [f64],
+    part: Part,
+) {
+    for m in members
+        .iter()
+        .filter(|m| m.effect.stage() == Stage::Reading)
+    {
+        m.effect.read(frame, m.parameters, run, strain, part);
+    }
+}
+
+/// Predicted readings of every run, `n_runs x n_gauges`, with `members` on.
+pub fn predict(frame: &StrainFrame, members: &[Member<'_>]) -> Vec<f64> {
+    let state = StrainState::with(frame, members);
+    let mut out = Vec::with_capacity(frame.n_runs() * frame.n_gauges());
+    for run in 0..frame.n_runs() {
+        let mut row = state.strain(run);
+        read_all(frame, members, run, &mut row, Part::Whole);
+        out.extend(row);
+    }
+    out
+}
