@@ -4,7 +4,6 @@
 mod support;
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use strainbridge::reconcile::Verdict;
 use strainbridge::reconcile::motion::{MotionFrame, examine, simulated_gap};
 use strainbridge::series::channels::{Channel, Channels};

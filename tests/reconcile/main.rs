@@ -7,5 +7,3 @@ mod hidden;
 mod joint;
 mod real;
 mod strips;
-#[path = "../../nastran/tests/support/mod.rs"]
-mod support;

@@ -1,5 +1,8 @@
 //! Cases of `../shared/hidden_effects/static` as frames, and a seeded generator that hides effects in them.
 
+#[path = "../../../nastran/tests/support/mod.rs"]
+mod support;
+
 pub mod generator;
 pub mod judge;
 
@@ -12,7 +15,7 @@ use strainbridge::reconcile::strain::{
 
 /// Folder of the shared material, where present.
 pub fn shared() -> Option<PathBuf> {
-    crate::support::shared("hidden_effects")
+    support::shared("hidden_effects")
 }
 
 struct Table {
