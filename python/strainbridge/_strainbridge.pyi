@@ -6,6 +6,8 @@ from typing import Any, Callable, Mapping, Sequence, final
 import numpy as np
 from numpy.typing import NDArray
 
+__all__ = ["ask", "commands", "schema", "rainflow", "_Job", "job_to_json", "_Outcome", "place_rows", "_Deck", "_Results", "shell_strain", "recover_rows", "_fail"]
+
 _Path = str | os.PathLike[str]
 
 @final
