@@ -93,14 +93,15 @@ def test_many_calls_leak_nothing():
     def resident():
         return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
-    strain = np.ones((500, 60))
-    for _ in range(200):
-        sb.recover_rows(S, strain, threads=1)
-    before = resident()
-    for _ in range(1000):
-        sb.recover_rows(S, strain, threads=1)
-    # A result alone, kept a thousand times, would be 16 MB.
-    assert resident() - before < 8e6
+    # A result has 64 kB: kept a thousand times it would be 64 MB.
+    signal_of_2000 = np.random.default_rng(1).normal(size=2000)
+    for ask in (lambda: sb.rainflow(signal_of_2000), lambda: sb.place_rows(S, 5, threads=1)):
+        for _ in range(200):
+            ask()
+        before = resident()
+        for _ in range(1000):
+            ask()
+        assert resident() - before < 8e6
 
 
 def test_a_long_record_is_not_copied():
