@@ -86,10 +86,14 @@ pub(super) fn extended(
         work.findings.extend(not_in);
         return Ok(None);
     }
-    let deck_bytes = match deck.map(|d| deck_with(job, d, outcome)).transpose() {
-        Ok(bytes) => bytes.flatten(),
-        Err(finding) => {
-            work.findings.push(finding);
+    let deck_bytes = match deck.map_or(Edited::Unchanged, |d| deck_with(job, d, outcome)) {
+        Edited::Unchanged => None,
+        Edited::Deck(bytes) => Some(bytes),
+        Edited::Refused => {
+            let ids: Vec<&str> = effects.iter().map(|e| e.id.as_str()).collect();
+            let why = "the cards of the deck could not be edited (a property that is no PSHELL or PBUSH, files that do not join)";
+            work.findings
+                .push(effect_not_in_model(&ids.join(" + "), why));
             return Ok(None);
         }
     };
@@ -118,8 +122,18 @@ fn effect_not_in_model(id: &str, why: &str) -> Finding {
     )
 }
 
-/// The deck with the effects that it can hold; `None` where it stays as it is.
-fn deck_with(job: &Job, deck: &DeckFrame, outcome: &Outcome) -> Result<Option<Vec<u8>>, Finding> {
+/// What becomes of the deck.
+enum Edited {
+    /// It stays as it is.
+    Unchanged,
+    /// It holds the effects.
+    Deck(Vec<u8>),
+    /// Its cards can't be edited.
+    Refused,
+}
+
+/// The deck with the effects that it can hold.
+fn deck_with(job: &Job, deck: &DeckFrame, outcome: &Outcome) -> Edited {
     let mut stiffness: Vec<NamedStiffness> = Vec::new();
     let mut masses: Vec<(String, f64)> = Vec::new();
     for e in &outcome.effects {
@@ -136,20 +150,10 @@ fn deck_with(job: &Job, deck: &DeckFrame, outcome: &Outcome) -> Result<Option<Ve
     }
     let side = side_loads(job, &outcome.effects);
     if stiffness.is_empty() && masses.is_empty() && side.is_empty() {
-        return Ok(None);
+        return Edited::Unchanged;
     }
-    let ids = || {
-        outcome
-            .effects
-            .iter()
-            .map(|e| e.id.as_str())
-            .collect::<Vec<_>>()
-            .join(" + ")
-    };
-    let why = "the cards of the deck could not be edited (a property that is no PSHELL or PBUSH, files that do not join)";
     deck.extended(job, &stiffness, &masses, &side)
-        .map(Some)
-        .ok_or_else(|| effect_not_in_model(&ids(), why))
+        .map_or(Edited::Refused, Edited::Deck)
 }
 
 /// Does an effect change what was noted of runs?
