@@ -16,13 +16,14 @@ use strainbridge::{Context, Faults, Job};
 type OnJob = fn(&Job, &Context) -> Result<Told, Faults>;
 
 /// Commands that ask a job alone, and the question of the library behind each.
-const ON_JOB: [(&str, OnJob); 10] = [
+const ON_JOB: [(&str, OnJob); 11] = [
     ("ballast", |j, cx| tell(strainbridge::ballast(j, cx)?)),
     ("calibrate", |j, cx| tell(strainbridge::calibrate(j, cx)?)),
     ("cases", |j, cx| tell(strainbridge::cases(j, cx)?)),
     ("identify", |j, cx| tell(strainbridge::identify(j, cx)?)),
     ("payload", |j, cx| tell(strainbridge::payload(j, cx)?)),
     ("place", |j, cx| tell(strainbridge::place(j, cx)?)),
+    ("reconcile", |j, cx| tell(strainbridge::reconcile(j, cx)?)),
     ("recover", |j, cx| {
         tell_unwritten(strainbridge::recover_runs(j, cx)?)
     }),

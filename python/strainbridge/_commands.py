@@ -120,8 +120,6 @@ def reconcile(job: AnyJob, *, threads: int | None = None, cache: bool = True, pr
 
     The outcome holds ``verdict``, ``named``, ``effects``, ``rivals``, ``gap``, ``next_measurement``.
     """
-    if "reconcile" not in _engine.commands():
-        raise NotImplementedError("the command `strainbridge reconcile` does it; a function of the library does not yet")
     return _ask("reconcile", job, threads=threads, cache=cache, progress=progress)
 
 
