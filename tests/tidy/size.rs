@@ -20,7 +20,6 @@ const LONGER: &[&str] = &[
     "src/app/reconcile/dynamic.rs write_tables",
     "src/app/reconcile/static_path.rs",
     "src/app/reconcile/static_path.rs report",
-    "src/app/recover/stream.rs finish",
     "src/app/strain/given.rs read_given",
     "src/app/vehicle.rs read_vehicle",
     "src/cli/demo/mod.rs story",

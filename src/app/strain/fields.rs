@@ -127,6 +127,7 @@ pub fn read_fields(work: &mut Work, job: &Job) -> Result<Fields, Faults> {
             first_mode: report.modes.first().copied(),
         });
     }
+    check_places(job, &deck.model)?;
     let mut wanted: BTreeSet<u32> = job.loads.iter().map(JobLoad::subcase).collect();
     if let Some(Reference::Subcase(id)) = job.measured.as_ref().map(|m| m.reference) {
         wanted.insert(id);
@@ -236,6 +237,30 @@ fn has_strain(c: &CaseResult) -> bool {
     !c.shells.elements.is_empty() || !c.beams.elements.is_empty()
 }
 
+/// Refuses loads at grids that the deck lacks: results of another program don't say where its loads acted.
+///
+/// # Errors
+/// Every such load.
+fn check_places(job: &Job, model: &Model) -> Result<(), Faults> {
+    let lacking = job.loads.iter().filter_map(|l| match l.acts {
+        LoadActs::AtGrid { grid, .. } if model.grid_ix(grid).is_none() => {
+            Some(no_grid(job, l, grid))
+        }
+        LoadActs::AtGrid { .. } | LoadActs::Set(_) | LoadActs::Named => None,
+    });
+    Faults::check(lacking.collect())
+}
+
+fn no_grid(job: &Job, load: &JobLoad, grid: u32) -> Fault {
+    Fault::at(
+        &*job.file,
+        load.line,
+        "load.grid",
+        format!("load `{}`: the deck has no grid {grid}", load.name),
+        "correct the id, or name another deck",
+    )
+}
+
 /// Unit loads of the job, each of its size `applied`.
 ///
 /// # Errors
@@ -273,26 +298,17 @@ pub fn unit_loads(job: &Job, model: &Model) -> Result<Vec<UnitLoad>, Faults> {
                 cid,
             } => {
                 let (ix, frame) = (model.grid_ix(grid), model.frame_ix(cid));
-                let mut lacks = |field: &str, what: String| {
+                if ix.is_none() {
+                    faults.push(no_grid(job, l, grid));
+                }
+                if frame.is_none() {
                     faults.push(Fault::at(
                         &*job.file,
                         l.line,
-                        field,
-                        what,
-                        "correct the id, or name another deck",
-                    ));
-                };
-                if ix.is_none() {
-                    lacks(
-                        "load.grid",
-                        format!("load `{}`: the deck has no grid {grid}", l.name),
-                    );
-                }
-                if frame.is_none() {
-                    lacks(
                         "load.cid",
                         format!("load `{}`: the deck has no coordinate system {cid}", l.name),
-                    );
+                        "correct the id, or name another deck",
+                    ));
                 }
                 let (ix, frame) = (ix?, frame?);
                 let v = component.vector(l.applied);

@@ -13,6 +13,7 @@ mod modes;
 mod pages;
 mod payload;
 mod place;
+mod recover;
 mod respond;
 mod respond_files;
 mod sensitivity;
@@ -22,6 +23,7 @@ mod study;
 mod verify;
 
 pub use pages::{write_book, write_page};
+pub use recover::RecordFolder;
 
 use crate::app::fault::{Fault, Faults};
 use crate::app::outcome::{Answer, Outcome, Tables};
