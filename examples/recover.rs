@@ -2,7 +2,7 @@
 
 use std::error::Error;
 use strainbridge::app::context::InMemory;
-use strainbridge::{Context, Job, recover_runs};
+use strainbridge::{Context, Job, recover};
 
 const JOB: &str = r#"
 units = "m-kg-s"
@@ -23,7 +23,8 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         .with("s.csv", S)
         .with("strain.csv", STRAIN);
     let job = Job::read("job.toml", &files)?;
-    let loads = recover_runs(&job, &Context::new(&files))?;
+    let found = recover(&job, &Context::new(&files))?;
+    let loads = found.runs().ok_or("a table of runs")?;
     for (load, truth) in loads.loads.iter().zip([2000.0, 1000.0]) {
         let half = 0.5 * (load.high - load.low);
         println!(

@@ -70,7 +70,7 @@ pub use app::modes::{modes, modes_of_deck};
 pub use app::payload::payload;
 pub use app::place::place;
 pub use app::reconcile::reconcile;
-pub use app::recover::recover_runs;
+pub use app::recover::recover;
 pub use app::respond::respond;
 pub use app::sensitivity::sensitivity;
 pub use app::solve::{solve, solve_deck};

@@ -1,11 +1,14 @@
 //! The library asked as a program of somebody else's would: files in memory, no folder, no terminal.
 
+use std::fmt::Write;
+use std::sync::Arc;
 use strainbridge::app::context::InMemory;
 use strainbridge::app::reconcile::extended_job;
-use strainbridge::app::recover::recover_runs;
+use strainbridge::app::recover::{Block, RecordHead, RecordSink, Samples, recover_into};
 use strainbridge::app::store::Memory;
 use strainbridge::reconcile::Verdict;
-use strainbridge::{Context, Job, Severity, place, reconcile, sensitivity};
+use strainbridge::report::command::{RecordFolder, Report, finish, save};
+use strainbridge::{Context, Fault, Job, Severity, place, reconcile, recover, sensitivity};
 
 /// A free strip of plates along x, 11 by 2 grids 20 mm apart, 2 mm thick.
 fn strip() -> String {
@@ -101,7 +104,8 @@ fn the_planned_sigma_is_the_recovered_one_at_the_expected_loads() {
         .with("recover.toml", job)
         .with("strain.csv", format!("{head}\n{row}\n"));
     let job = Job::read("recover.toml", &files).unwrap();
-    let got = recover_runs(&job, &Context::new(&files)).unwrap();
+    let answer = recover(&job, &Context::new(&files)).unwrap();
+    let got = answer.runs().unwrap();
     assert_eq!(got.loads.len(), 2);
     for (planned, got) in placed.load_sigma.iter().zip(&got.loads) {
         let value = got.value;
@@ -268,4 +272,248 @@ fn motion_without_a_vehicle_is_refused() {
         .and_then(|job| reconcile(&job, &Context::new(&files)).map(|_| ()));
     let faults = asked.unwrap_err();
     assert!(faults.iter().any(|f| f.to_string().contains("vehicle")));
+}
+
+/// Two loads, three gauges, S given, microstrain per N.
+const GIVEN: [[f64; 2]; 3] = [[1.0, 0.2], [-0.3, 1.1], [0.8, -0.5]];
+
+const RECOVER: &str = r#"
+units = "m-kg-s"
+report_units = { force = "kN" }
+[sensitivity]
+file = "S.csv"
+per = { force = "N" }
+[[load]]
+name = "A"
+[[load]]
+name = "B"
+[[combination]]
+name = "both"
+terms = { A = 1, B = 1 }
+[measured]
+strain = "strain.csv"
+noise_microstrain = 0.01
+"#;
+
+/// Loads of row `i`, N.
+fn loads(i: usize) -> [f64; 2] {
+    let t = i as f64 * 0.1;
+    [100.0 * t.sin(), 50.0 * (0.7 * t).cos()]
+}
+
+/// A job and its strain without noise: `rows` runs (`key` is `run`), or samples at 10 Hz (`time`); `blank` rows lack gauge 2.
+fn measured(key: &str, rows: usize, blank: std::ops::Range<usize>) -> InMemory {
+    let mut table = format!("{key},G1,G2,G3\n");
+    for i in 0..rows {
+        let [a, b] = loads(i);
+        let _ = match key {
+            "time" => write!(table, "{}", i as f64 * 0.1),
+            _ => write!(table, "R{i}"),
+        };
+        for (g, row) in GIVEN.iter().enumerate() {
+            let _ = match g == 1 && blank.contains(&i) {
+                true => write!(table, ","),
+                false => write!(table, ",{}", row[0] * a + row[1] * b),
+            };
+        }
+        table.push('\n');
+    }
+    let mut s = "gauge,A,B\n".to_owned();
+    for (g, row) in GIVEN.iter().enumerate() {
+        let _ = writeln!(s, "G{},{},{}", g + 1, row[0], row[1]);
+    }
+    InMemory::default()
+        .with("S.csv", s)
+        .with("strain.csv", table)
+        .with("job.toml", RECOVER)
+}
+
+/// Keys of the answer in `result.json`.
+fn keys<A: serde::Serialize>(answer: &A) -> Vec<String> {
+    let json = serde_json::to_value(answer).unwrap();
+    json.as_object().unwrap().keys().cloned().collect()
+}
+
+#[test]
+fn loads_of_runs_come_as_values_with_intervals_around_the_truth() {
+    let files = measured("run", 5, 0..0);
+    let job = Job::read("job.toml", &files).unwrap();
+    let answer = recover(&job, &Context::new(&files)).unwrap();
+    let runs = answer.runs().unwrap();
+    assert!(answer.record().is_none());
+    assert_eq!(runs.loads.len(), 5 * 3);
+    for (i, of_run) in runs.loads.chunks(3).enumerate() {
+        let [a, b] = loads(i);
+        for (load, truth) in of_run.iter().zip([a, b, a + b].map(|v| v * 1e-3)) {
+            assert_eq!(
+                (load.run.as_str(), load.unit.as_str()),
+                (&*format!("R{i}"), "kN")
+            );
+            assert!(
+                (load.value - truth).abs() < 1e-9 && load.low < truth && truth < load.high,
+                "{load:?} {truth}"
+            );
+        }
+    }
+    assert_eq!(
+        keys(&answer.answer),
+        [
+            "condition_number",
+            "condition_number_scaled",
+            "gauges",
+            "loads",
+            "rank",
+            "residual_rms_microstrain",
+            "runs"
+        ]
+    );
+}
+
+#[test]
+fn loads_of_a_record_stay_in_memory_sample_by_sample() {
+    let files = measured("time", 500, 100..120);
+    let job = Job::read("job.toml", &files).unwrap();
+    let answer = recover(&job, &Context::new(&files)).unwrap();
+    let record = answer.record().unwrap();
+    assert_eq!((record.samples, record.gaps), (500, 20));
+    assert!((record.sample_rate_hz.unwrap() - 10.0).abs() < 1e-6);
+    let history = record.history.as_ref().unwrap();
+    let mut widths = Vec::new();
+    for (i, row) in history.rows().enumerate() {
+        assert!((row.time - i as f64 * 0.1).abs() < 1e-9);
+        let [a, b] = loads(i);
+        for (load, truth) in row.loads.iter().zip([a, b, a + b]) {
+            let [value, low, high] = load.unwrap();
+            assert!((value - truth * 1e-3).abs() < 1e-9 && low < value && value < high);
+        }
+        let [_, low, high] = row.loads[0].unwrap();
+        widths.push(high - low);
+    }
+    assert_eq!(widths.len(), 500);
+    assert!(widths[110] > 1.01 * widths[99], "a gauge less tells less");
+    // Whatever part is asked for, the same samples come.
+    let (mut all, mut parts) = (Vec::new(), Vec::new());
+    history.read(0, 500, &[0, 1, 2], &mut all);
+    for from in (0..500).step_by(77) {
+        history.read(from, (from + 77).min(500), &[0, 1, 2], &mut parts);
+    }
+    assert_eq!((history.n_samples(), all.len()), (500, 1500));
+    assert_eq!(all, parts);
+    let damage = record.damage.as_ref().unwrap();
+    let range = all.iter().step_by(3).fold(0.0_f64, |m, v| m.max(v.abs()));
+    assert!(damage[0].largest_range <= 2.0 * range + 1e-12 && damage[0].cycles > 5.0);
+    assert_eq!(
+        keys(&answer.answer),
+        [
+            "condition_number",
+            "condition_number_scaled",
+            "damage",
+            "duration_s",
+            "gaps",
+            "gauges",
+            "loads",
+            "rank",
+            "residual_rms_microstrain",
+            "sample_rate_hz",
+            "samples"
+        ]
+    );
+}
+
+/// Counts what it is given, and has enough after some samples.
+#[derive(Default)]
+struct Counter {
+    samples: usize,
+    most: Option<usize>,
+    ended: Option<u64>,
+}
+
+impl RecordSink for Counter {
+    fn begin(&mut self, head: &Arc<RecordHead>) -> Result<(), Fault> {
+        assert_eq!(head.names, ["A", "B", "both"]);
+        Ok(())
+    }
+
+    fn take(&mut self, blocks: Vec<Block>) -> Result<(), Fault> {
+        for block in blocks {
+            assert_eq!(block.first, self.samples);
+            self.samples += block.times.len();
+        }
+        match self.most.is_some_and(|most| self.samples > most) {
+            true => Err(Fault::of("counter", "samples", "too many", "none")),
+            false => Ok(()),
+        }
+    }
+
+    fn end(&mut self, samples: u64) -> Result<(), Fault> {
+        self.ended = Some(samples);
+        Ok(())
+    }
+
+    fn samples(&self) -> Result<Box<dyn Samples + '_>, Fault> {
+        panic!("the job asks for no file that has to read all samples again")
+    }
+}
+
+#[test]
+fn a_sink_of_somebody_else_gets_every_sample_once_and_may_refuse() {
+    let job = RECOVER.to_owned() + "[recover]\nfiles = []\n";
+    let files = measured("time", 20_000, 0..0).with("job.toml", job);
+    let job = Job::read("job.toml", &files).unwrap();
+    let mut sink = Counter::default();
+    let answer = recover_into(&job, &Context::new(&files), &mut sink).unwrap();
+    assert_eq!((sink.samples, sink.ended), (20_000, Some(20_000)));
+    assert!(answer.record().unwrap().history.is_none());
+    let mut sink = Counter {
+        most: Some(10),
+        ..Counter::default()
+    };
+    let faults = recover_into(&job, &Context::new(&files), &mut sink)
+        .err()
+        .unwrap();
+    assert_eq!(faults.first().unwrap().wrong, "too many");
+    assert_eq!(sink.ended, None);
+    // Runs are no record.
+    let files = measured("run", 5, 0..0);
+    let job = Job::read("job.toml", &files).unwrap();
+    let mut sink = Counter::default();
+    recover_into(&job, &Context::new(&files), &mut sink).unwrap();
+    assert_eq!((sink.samples, sink.ended), (0, None));
+}
+
+#[test]
+fn a_record_kept_in_memory_and_one_written_as_it_comes_give_the_same_files() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("library_record");
+    let _ = std::fs::remove_dir_all(&folder);
+    let (kept, streamed) = (folder.join("kept"), folder.join("streamed"));
+    let files = measured("time", 30_000, 17_000..17_010);
+    let job = Job::read("job.toml", &files).unwrap();
+    let context = Context::new(&files);
+    save(&recover(&job, &context).unwrap(), &kept).unwrap();
+    let mut sink = RecordFolder::at(&streamed);
+    let outcome = recover_into(&job, &context, &mut sink).unwrap();
+    assert!(!streamed.join("loads.csv").exists(), "files appear whole");
+    let mut out = sink.into_output().unwrap();
+    outcome.write(&mut out).unwrap();
+    finish(&outcome, out).unwrap();
+    let names = |folder| -> Vec<String> {
+        let entries = std::fs::read_dir(folder).unwrap();
+        let mut names: Vec<String> = entries
+            .map(|e| e.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    };
+    assert_eq!(names(&kept), names(&streamed));
+    for name in ["loads.csv", "loads.bin", "loads.rsp", "rainflow.csv"] {
+        let [one, two] = [&kept, &streamed].map(|f| std::fs::read(f.join(name)).unwrap());
+        assert!(one == two, "{name}");
+    }
+    let result = |folder: &std::path::Path| -> serde_json::Value {
+        let mut json: serde_json::Value =
+            serde_json::from_slice(&std::fs::read(folder.join("result.json")).unwrap()).unwrap();
+        json.as_object_mut().unwrap().remove("seconds");
+        json
+    };
+    assert_eq!(result(&kept), result(&streamed));
 }

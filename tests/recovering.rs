@@ -248,3 +248,67 @@ fn a_reading_of_1e308_is_no_reading_and_a_header_alone_is_a_fault() {
         assert_eq!(code, 2, "{errors}");
     }
 }
+
+#[test]
+fn a_load_at_a_grid_that_the_deck_lacks_is_a_fault_with_results_too() {
+    let dir = folder("missing_grid");
+    // A free strip of ten plates, 20 mm long each.
+    let mut deck = "SOL 101\nCEND\nBEGIN BULK\n".to_owned();
+    for i in 0..11 {
+        for j in 0..2 {
+            let _ = writeln!(deck, "GRID,{},,{}.,{}.,0.", 1 + i + 100 * j, 20 * i, 20 * j);
+        }
+    }
+    for i in 1..11 {
+        let _ = writeln!(deck, "CQUAD4,{i},1,{i},{},{},{}", i + 1, i + 101, i + 100);
+    }
+    deck += "PSHELL,1,1,2.,1,,1\nMAT1,1,210000.,,.3,7.85-9\nENDDATA\n";
+    std::fs::write(dir.join("strip.bdf"), deck).unwrap();
+    std::fs::write(dir.join("strain.csv"), "run,a,b\nR1,1,2\n").unwrap();
+    let job = |name: &str, grid: u32, results: &str| {
+        let mut text = format!("units = \"mm-t-s\"\n[model]\ndeck = \"strip.bdf\"\n{results}\n");
+        for (load, grid) in [("left", 1), ("middle", grid)] {
+            let _ = writeln!(
+                text,
+                "[[load]]\nname = \"{load}\"\ngrid = {grid}\ncomponent = \"FZ\"\nexpected = 10.0"
+            );
+        }
+        for (gauge, element) in [("a", 3), ("b", 7)] {
+            let _ = writeln!(
+                text,
+                "[[gauge]]\nname = \"{gauge}\"\nelement = {element}\nsurface = \"top\"\ndirection = [1, 0, 0]"
+            );
+        }
+        text += "[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 1.0\n";
+        std::fs::write(dir.join(name), text).unwrap();
+        dir.join(name).display().to_string()
+    };
+    let run = |command: &str, job: &str| {
+        let out = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+            .args([command, job])
+            .output()
+            .unwrap();
+        let errors = String::from_utf8_lossy(&out.stderr).into_owned();
+        (out.status.code().unwrap_or(-1), errors)
+    };
+    let (code, errors) = run("solve", &job("solved.toml", 6, ""));
+    assert_eq!(code, 0, "{errors}");
+    let results = "results = [\"solved.out/results.op2\"]";
+    let (code, errors) = run("recover", &job("there.toml", 6, results));
+    assert!(code != 2, "{errors}");
+    // Line 10 of the job: the second [[load]].
+    for (name, results) in [("with.toml", results), ("without.toml", "")] {
+        let lacking = job(name, 999, results);
+        for command in ["recover", "sensitivity", "place", "respond"] {
+            let (code, errors) = run(command, &lacking);
+            assert_eq!(code, 2, "{command}: {errors}");
+            assert!(
+                errors.contains(&format!(
+                    "{name}:10: load.grid: load `middle`: the deck has no grid 999"
+                )) && errors.contains("correct the id, or name another deck"),
+                "{command}: {errors}"
+            );
+        }
+        assert!(!dir.join(name).with_extension("out").exists());
+    }
+}

@@ -3,7 +3,7 @@
 use crate::fault::{raise, wrong};
 use crate::files::Desk;
 use crate::job::CheckedJob;
-use crate::outcome::{Told, tell, tell_unwritten};
+use crate::outcome::{Told, tell};
 use crate::work::{Asked, run};
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
@@ -24,9 +24,7 @@ const ON_JOB: [(&str, OnJob); 11] = [
     ("payload", |j, cx| tell(strainbridge::payload(j, cx)?)),
     ("place", |j, cx| tell(strainbridge::place(j, cx)?)),
     ("reconcile", |j, cx| tell(strainbridge::reconcile(j, cx)?)),
-    ("recover", |j, cx| {
-        tell_unwritten(strainbridge::recover_runs(j, cx)?)
-    }),
+    ("recover", |j, cx| tell(strainbridge::recover(j, cx)?)),
     ("respond", |j, cx| tell(strainbridge::respond(j, cx)?)),
     ("sensitivity", |j, cx| {
         tell(strainbridge::sensitivity(j, cx)?)

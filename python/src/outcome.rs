@@ -5,9 +5,9 @@ use crate::work::{Asked, run};
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
-use strainbridge::app::outcome::{Answer, Tables};
+use strainbridge::app::outcome::Answer;
 use strainbridge::report::command::{Report, save, unsaved};
-use strainbridge::{Fault, Faults, Outcome};
+use strainbridge::{Faults, Outcome};
 
 /// What can be asked of an outcome of any type.
 pub(crate) trait Kept: Send {
@@ -51,31 +51,6 @@ where
         words: outcome.words(),
         notes: outcome.notes.clone(),
         kept: Mutex::new(Box::new(outcome)),
-    })
-}
-
-/// An outcome whose command writes its files as it goes: it has none of its own.
-struct Unwritten;
-
-impl Kept for Unwritten {
-    fn save(&self, folder: &Path) -> Result<String, Faults> {
-        let shown = folder.display().to_string();
-        let (said, remedy) = ("this outcome has no files", "call the command for them");
-        Err(Fault::of(shown, "save", said, remedy).into())
-    }
-}
-
-/// An outcome for Python, without files.
-pub(crate) fn tell_unwritten<A: Answer>(outcome: Outcome<A>) -> Result<Told, Faults> {
-    let json = outcome.to_json(&Tables::new()).map_err(|e| {
-        let remedy = "report this as an error of the program";
-        Fault::of("result.json", "file", e.to_string(), remedy)
-    })?;
-    Ok(Told {
-        json,
-        words: String::new(),
-        notes: outcome.notes.clone(),
-        kept: Mutex::new(Box::new(Unwritten)),
     })
 }
 

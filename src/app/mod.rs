@@ -31,7 +31,6 @@ pub mod sensitivity;
 mod session;
 pub mod solve;
 mod solved;
-mod spreadsheets;
 pub mod store;
 pub mod strain;
 pub mod strains;

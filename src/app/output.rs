@@ -13,6 +13,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Counts temporary files of this process.
 static PARTS: AtomicU64 = AtomicU64::new(0);
 
+/// A file that is written piece by piece.
+pub type OpenFile = BufWriter<File>;
+
 /// The output folder of one command. Files are written under temporary names and renamed by [`Output::commit`]; dropped
 /// without it, nothing is left behind.
 pub struct Output {
@@ -72,11 +75,17 @@ impl Output {
     ///
     /// # Errors
     /// A fault where it can't be created.
-    pub fn open(&mut self, name: &str) -> Result<BufWriter<File>, Fault> {
+    pub fn open(&mut self, name: &str) -> Result<OpenFile, Fault> {
         let part = self.begin_file(name);
         File::create(part)
             .map(|f| BufWriter::with_capacity(1 << 20, f))
             .map_err(|e| unwritable(&self.folder.join(name), &e))
+    }
+
+    /// Whether file `name` was begun.
+    pub fn holds(&self, name: &str) -> bool {
+        let target = self.folder.join(name);
+        self.pending.iter().any(|p| p.1 == target)
     }
 
     /// Bytes of file `name` as written so far, which must be flushed. Drop them before [`Output::commit`].

@@ -33,7 +33,7 @@ pub fn run(arguments: Arguments) -> ExitCode {
         Command::Cases(a) => Run::of(&a.common, &a.job).job(&a.job, app::cases::cases),
         Command::Place(a) => Run::of(&a.common, &a.job).job(&a.job, app::place::place),
         Command::Calibrate(a) => Run::of(&a.common, &a.job).job(&a.job, app::calibrate::calibrate),
-        Command::Recover(a) => on_job("recover", &a, app::recover::run),
+        Command::Recover(a) => Run::of(&a.common, &a.job).recover(&a.job),
         Command::Fleet(a) => {
             let run = Run::of(&a.common, &a.job);
             let folder = run.folder(&a.job);

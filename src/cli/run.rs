@@ -10,10 +10,11 @@ use crate::app::init::init;
 use crate::app::job::Job;
 use crate::app::outcome::{Answer, Findings, Outcome};
 use crate::app::output::Output;
+use crate::app::recover::{Recovered, recover_into};
 use crate::app::store::Folder;
 use crate::app::words::finding_text;
 use crate::finding::Severity;
-use crate::report::command::{Report, save, unsaved};
+use crate::report::command::{RecordFolder, Report, finish, save, unsaved};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -131,6 +132,23 @@ impl Run {
                 findings: &outcome.findings,
                 notes: &outcome.notes,
                 folder: Some(folder),
+                faults: &[],
+            }),
+            Err(faults) => refuse(&faults),
+        }
+    }
+
+    /// Recovers the loads of a job into `--out`, else `<job name>.out` beside the job; those of a record are written as they come.
+    pub fn recover(&self, path: &Path) -> ExitCode {
+        let folder = self.folder(path);
+        let done = self.pooled(|cx| recover_and_save(&Job::read(path, cx.files)?, cx, &folder));
+        match done {
+            Ok((outcome, json)) => self.say(&Said {
+                text: &outcome.words(),
+                json: &json,
+                findings: &outcome.findings,
+                notes: &outcome.notes,
+                folder: Some(&folder),
                 faults: &[],
             }),
             Err(faults) => refuse(&faults),
@@ -276,6 +294,23 @@ impl Run {
             _ => ExitCode::SUCCESS,
         }
     }
+}
+
+/// Recovers the loads of a job into a folder; the outcome and the text of `result.json`.
+///
+/// # Errors
+/// Every fault of the job, a file that can't be written.
+pub(super) fn recover_and_save(
+    job: &Job,
+    cx: &Context,
+    folder: &Path,
+) -> Result<(Outcome<Recovered>, String), Faults> {
+    let mut sink = RecordFolder::at(folder);
+    let outcome = recover_into(job, cx, &mut sink)?;
+    let mut out = sink.into_output()?;
+    outcome.write(&mut out)?;
+    let json = finish(&outcome, out)?;
+    Ok((outcome, json))
 }
 
 /// `<stem>.out` beside the file.

@@ -15,7 +15,6 @@ const LONGER: &[&str] = &[
     "src/app/job/types.rs",
     "src/app/payload/model.rs standing",
     "src/app/place/choose.rs within_budget",
-    "src/app/recover/stream.rs finish",
     "src/app/strain/given.rs read_given",
     "src/cli/demo/mod.rs story",
     "src/payload/locate.rs solve_run",

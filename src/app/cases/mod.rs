@@ -145,7 +145,7 @@ pub fn cases(job: &Job, cx: &Context) -> Result<Outcome<UnitLoadDeck>, Faults> {
 }
 
 /// Ids of all load sets.
-pub(in crate::app) fn load_ids(deck: &Deck) -> Vec<u32> {
+pub fn load_ids(deck: &Deck) -> Vec<u32> {
     let c = &deck.cards;
     let mut ids: Vec<u32> = c
         .forces
@@ -177,7 +177,7 @@ const DYNAMIC: [&str; 14] = [
 ];
 
 /// Ids of dynamic loads and tables of a deck.
-pub(in crate::app) fn dynamic_ids(deck: &Deck) -> Vec<u32> {
+pub fn dynamic_ids(deck: &Deck) -> Vec<u32> {
     let cards = deck.others.iter();
     let of_kind = cards.filter(|c| DYNAMIC.contains(&c.name.as_str()));
     of_kind.filter_map(|c| c.first).collect()

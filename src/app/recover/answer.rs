@@ -1,18 +1,70 @@
-//! What `recover` answers for static runs.
+//! What `recover` answers.
 
+use super::damage::LoadDamage;
+use super::history::History;
+use super::sink::RecordHead;
+use super::trace::Spans;
+use crate::app::job::Job;
 use crate::app::outcome::Answer;
-use crate::app::strain::{Conditioning, LoadUnits};
-use crate::recovery::Recovery;
+use crate::app::strain::{Conditioning, LoadUnits, Prepared};
+use crate::recovery::{Readings, Recovery, Sums};
 use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
 use serde::Serialize;
+use std::sync::Arc;
+
+/// Loads from measured strain.
+#[derive(Serialize)]
+pub struct Recovered {
+    /// Rank and condition numbers of S.
+    #[serde(flatten)]
+    pub conditioning: Conditioning,
+    /// Loads of what was measured.
+    #[serde(flatten)]
+    pub states: States,
+    /// S, gauges, model and strain fields.
+    #[serde(skip)]
+    pub prepared: Prepared,
+    /// The job.
+    #[serde(skip)]
+    pub job: Job,
+}
+
+impl Answer for Recovered {
+    const COMMAND: &'static str = "recover";
+}
+
+impl Recovered {
+    /// Loads of static runs; `None` where a record was measured.
+    pub fn runs(&self) -> Option<&RecoveredRuns> {
+        match &self.states {
+            States::Runs(runs) => Some(runs),
+            States::Record(_) => None,
+        }
+    }
+
+    /// Loads of a record; `None` where runs were measured.
+    pub fn record(&self) -> Option<&RecoveredRecord> {
+        match &self.states {
+            States::Record(record) => Some(record),
+            States::Runs(_) => None,
+        }
+    }
+}
+
+/// What was measured.
+#[derive(Serialize)]
+#[serde(untagged)]
+pub enum States {
+    /// Static states, a row each.
+    Runs(Box<RecoveredRuns>),
+    /// Samples over time.
+    Record(Box<RecoveredRecord>),
+}
 
 /// Loads of the static runs of a job, sums of loads among them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecoveredRuns {
-    /// Rank and condition numbers of S.
-    #[serde(flatten)]
-    pub conditioning: Conditioning,
     /// By run, then by load.
     pub loads: Vec<RecoveredLoad>,
     /// Root mean square of all residuals over their degrees of freedom.
@@ -21,10 +73,18 @@ pub struct RecoveredRuns {
     pub gauges: Vec<GaugeResidual>,
     /// How well each run agrees.
     pub runs: Vec<RunFit>,
-}
-
-impl Answer for RecoveredRuns {
-    const COMMAND: &'static str = "recover";
+    /// Readings of the runs, zero, reference and known payload taken into account.
+    #[serde(skip)]
+    pub readings: Vec<Readings>,
+    /// The estimates, job units.
+    #[serde(skip)]
+    pub recovery: Recovery,
+    /// Loads, then combinations.
+    #[serde(skip)]
+    pub names: Vec<String>,
+    /// Units of both.
+    #[serde(skip)]
+    pub units: Vec<LoadUnits>,
 }
 
 /// A load of a run, report units; not a number where the gauges that read don't tell it.
@@ -46,7 +106,7 @@ pub struct RecoveredLoad {
     pub unit: String,
 }
 
-/// A gauge over all runs.
+/// A gauge over all runs, or over a record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GaugeResidual {
     /// Gauge.
@@ -70,9 +130,85 @@ pub struct RunFit {
     pub coverage_factor: f64,
 }
 
+/// Loads of a record, sums of loads among them.
+#[derive(Serialize)]
+pub struct RecoveredRecord {
+    /// By load.
+    pub loads: Vec<RecordLoad>,
+    /// Root mean square of all residuals over their degrees of freedom.
+    pub residual_rms_microstrain: f64,
+    /// How well each gauge agrees.
+    pub gauges: Vec<GaugeResidual>,
+    /// Samples, those with gaps among them.
+    pub samples: u64,
+    /// Samples in which some gauge gave nothing.
+    pub gaps: u64,
+    /// From the first sample to the last.
+    pub duration_s: f64,
+    /// Steps between samples over the duration.
+    pub sample_rate_hz: Option<f64>,
+    /// Content of the loads against the first elastic mode, where that is known.
+    #[serde(flatten)]
+    pub content: Option<Content>,
+    /// Cycles and pseudo-damage by load, where they are asked for or the record is short.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub damage: Option<Vec<LoadDamage>>,
+    /// S of the gauges that read.
+    #[serde(skip)]
+    pub sensitivity: Sensitivity,
+    /// Names, units, estimate, clock.
+    #[serde(skip)]
+    pub head: Arc<RecordHead>,
+    /// Sums over the record, job units.
+    #[serde(skip)]
+    pub sums: Sums,
+    /// Smallest, mean and largest by span of time, job units.
+    #[serde(skip)]
+    pub spans: Spans,
+    /// Every sample, where they were kept in memory.
+    #[serde(skip)]
+    pub history: Option<History>,
+}
+
+/// What the loads of a record hold by frequency.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Content {
+    /// First elastic mode of the free structure.
+    pub first_elastic_mode_hz: f64,
+    /// Up to where each load has content; `None`: it can't be told from noise.
+    pub content_hz: Vec<Option<f64>>,
+}
+
+/// A load over a record, report units.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RecordLoad {
+    /// The file.
+    pub run: String,
+    /// Load or combination.
+    pub name: String,
+    /// Mean.
+    pub value: f64,
+    /// One standard deviation of a sample at the root mean square of all loads.
+    pub sigma: f64,
+    /// Report unit.
+    pub unit: String,
+    /// Smallest sample.
+    pub min: f64,
+    /// Largest sample.
+    pub max: f64,
+    /// Root mean square.
+    pub rms: f64,
+}
+
 impl RecoveredRuns {
     /// The answer in report units; `units` are those of the loads that the estimates list.
-    pub(super) fn of(s: &Sensitivity, recovery: &Recovery, units: &[LoadUnits]) -> Self {
+    pub(super) fn of(
+        s: &Sensitivity,
+        readings: Vec<Readings>,
+        recovery: Recovery,
+        names: Vec<String>,
+        units: Vec<LoadUnits>,
+    ) -> Self {
         let loads = recovery.runs.iter().flat_map(|r| {
             units.iter().enumerate().map(move |(l, u)| {
                 let [low, high] = r.estimate.interval(l).map(|v| v * u.factor);
@@ -99,11 +235,14 @@ impl RecoveredRuns {
             coverage_factor: r.estimate.coverage_factor,
         });
         Self {
-            conditioning: Conditioning::of(s),
             loads: loads.collect(),
             residual_rms_microstrain: recovery.residual_rms / MICROSTRAIN,
             gauges: gauges.collect(),
             runs: runs.collect(),
+            readings,
+            recovery,
+            names,
+            units,
         }
     }
 }

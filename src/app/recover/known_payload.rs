@@ -1,6 +1,6 @@
 //! What a payload that `[runs]` states strains the gauges of a job whose S is given: `[sensitivity] signatures.payload`.
 
-use super::Task;
+use super::task::Task;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::runs::{RunRow, read_runs};
 use crate::app::job::table::read_table;
@@ -20,7 +20,7 @@ const COLUMNS: [&str; 4] = ["b0", "b_dx", "b_dy", "b_dxdy"];
 /// # Errors
 /// Unreadable tables, gauges without a row in the signature.
 pub(super) fn take_out(
-    session: &mut Work,
+    work: &mut Work,
     task: &Task,
     readings: &mut [Readings],
 ) -> Result<(), Faults> {
@@ -32,8 +32,8 @@ pub(super) fn take_out(
     if given.signatures.payload.is_none() || !weighs {
         return Ok(());
     }
-    let rows = read_runs(&mut session.inputs, job, runs)?;
-    let signature = signature(session, task, given)?;
+    let rows = read_runs(&mut work.inputs, job, runs)?;
+    let signature = signature(work, task, given)?;
     let mut unknown: Vec<&str> = Vec::new();
     let mut known = 0;
     for run in readings.iter_mut() {
@@ -50,7 +50,7 @@ pub(super) fn take_out(
     if known == 0 {
         return Ok(());
     }
-    session.findings.push(Finding::new(
+    work.findings.push(Finding::new(
         Severity::Info,
         "payload-known",
         "runs",
@@ -58,7 +58,7 @@ pub(super) fn take_out(
         "",
     ));
     if !unknown.is_empty() {
-        session.findings.push(Finding::new(
+        work.findings.push(Finding::new(
             Severity::Warning,
             "payload-unknown",
             unknown.join(", "),
@@ -91,14 +91,14 @@ fn payload_of(job: &Job, row: &RunRow) -> Option<(f64, f64, f64)> {
 
 /// By gauge of S: strain per kg, per kg m along x, y, and per kg m^2.
 fn signature(
-    session: &mut Work,
+    work: &mut Work,
     task: &Task,
     given: &GivenSensitivity,
 ) -> Result<Vec<[f64; 4]>, Faults> {
     let Some(file) = &given.signatures.payload else {
         return Ok(Vec::new());
     };
-    let text = session
+    let text = work
         .inputs
         .read_named_text(task.job, file)
         .map_err(Faults::from)?;

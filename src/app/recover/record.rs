@@ -1,221 +1,255 @@
-//! A record of any length, a piece at a time: readings, and the loads that a filter makes of them.
+//! Records: samples streamed through one estimate, pieces in parallel, a few pieces in memory at a time.
 
-use crate::app::fault::{Fault, Faults, split_message};
+use super::answer::{Content, GaugeResidual, RecordLoad, RecoveredRecord};
+use super::combined::{Listed, listed};
+use super::damage::{LoadDamage, about_damage, damage};
+use super::files;
+use super::judged::{check_times, content, judge};
+use super::reading::{Record, block};
+use super::sink::{Block, RecordHead, RecordSink};
+use super::speaking::{Speaking, speaking};
+use super::task::Task;
+use super::trace::Spans;
+use crate::app::fault::{Fault, Faults};
 use crate::app::files::FileBytes;
-use crate::app::job::correct::{Channel, column_of};
-use crate::app::job::strain::strain_columns;
-use crate::app::job::{Job, Measured};
+use crate::app::job::LoadFile;
+use crate::app::outcome::finite;
+use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::recovery::Sums;
-use crate::recovery::history::{Filter, SampleLoads};
-use crate::series::SeriesError;
-use crate::series::record::{self as series, Clock, Evenness, Options, is_format, open_record};
+use crate::recovery::history::Filter;
+use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
-use std::ops::ControlFlow;
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Pieces in memory at a time.
-pub(super) const GROUP: usize = 8;
+const GROUP: usize = 8;
 
-/// A record whose columns are read as strain.
-pub(super) struct Record {
-    inner: series::Record,
-    file: String,
-    /// The gauge that each column holds the readings of, as the job calls it.
-    pub names: Vec<String>,
-    /// Microstrain in one unit of each column.
-    micro: Vec<f64>,
-    /// Columns that are read, and what puts their readings right.
-    columns: Vec<(Option<usize>, Channel)>,
-    /// Seconds in the unit of its times.
-    second: f64,
-    /// Neither the file nor the job states the unit of its times.
-    time_unit_open: bool,
+/// Recovers the loads of the record in `bytes`; they go to `sink` as they come.
+///
+/// # Errors
+/// A record that can't be read; what `sink` refuses.
+pub(super) fn record(
+    work: &mut Work,
+    task: &Task,
+    bytes: FileBytes,
+    sink: &mut dyn RecordSink,
+) -> Result<RecoveredRecord, Faults> {
+    let Speaking {
+        record,
+        sensitivity,
+        zero,
+    } = speaking(work, task, bytes)?;
+    let Listed {
+        names,
+        units,
+        sums: combinations,
+    } = listed(task.job, &sensitivity)?;
+    let filter = filter(work, task, &record, &sensitivity, zero, &combinations)?;
+    check_times(work, &record)?;
+    let content = content(work, task, &record, &filter, &names)?;
+    let about = record.clock().samples;
+    let (first_s, step_s) = record.first_and_step();
+    let head = Arc::new(RecordHead {
+        file: record.file().to_owned(),
+        names,
+        units,
+        filter,
+        first_s,
+        step_s,
+        stride: files::stride(about),
+        files: files::wanted(task.job, about)?,
+    });
+    sink.begin(&head)?;
+    let (sums, spans) = stream(work, &record, &head, sink)?;
+    sink.end(sums.samples + sums.gaps)?;
+    let slope = task.job.recover.slope;
+    let damage = match head.files.contains(&LoadFile::Rainflow) {
+        true => {
+            work.findings.push(about_damage(slope));
+            let samples = sink.samples()?;
+            Some(work.stage("rainflow", |_| damage(&head, &sums, &*samples, slope)))
+        }
+        false => None,
+    };
+    work.findings
+        .extend(files::findings(task.job, &head, &sums));
+    work.findings.extend(gaps(&head, &sensitivity, &sums));
+    Ok(answer(sensitivity, head, sums, spans, content, damage))
 }
 
-impl Record {
-    /// The record in the strain file of a job, of which channels named after `gauges` will be read.
-    ///
-    /// # Errors
-    /// Faults of the file: its format, its times, units that are none of strain.
-    pub fn open(
-        job: &Job,
-        measured: &Measured,
-        bytes: FileBytes,
-        gauges: &[String],
-    ) -> Result<Self, Faults> {
-        let file = measured.strain.given.as_str();
-        // Formats of instruments count in seconds or say what they count in.
-        let unit_open = !is_format(&bytes);
-        let options = Options {
-            declared_hz: None,
-            wanted: gauges.to_vec(),
-        };
-        let inner = open_record(Arc::new(bytes), &options).map_err(|e| record_fault(file, &e))?;
-        let unit_open = unit_open && !inner.is_time_unit_stated();
-        let (names, micro) = strain_columns(file, inner.columns(), gauges)?;
-        let gauge = |n: &String| column_of(&job.corrections, n).to_owned();
-        Ok(Self {
-            names: names.iter().map(gauge).collect(),
-            file: file.to_owned(),
-            micro,
-            columns: Vec::new(),
-            second: match (unit_open, measured.time_unit_s) {
-                (true, Some(unit)) => unit,
-                _ => 1.0,
-            },
-            time_unit_open: unit_open && measured.time_unit_s.is_none(),
-            inner,
-        })
-    }
-
-    /// The same, with the columns that are read.
-    pub fn with_columns(self, columns: Vec<(Option<usize>, Channel)>) -> Self {
-        Self { columns, ..self }
-    }
-
-    /// When its samples were taken, in the unit of the file's times.
-    pub fn clock(&self) -> &Clock {
-        &self.inner.clock
-    }
-
-    /// Time of the first sample and between samples, s.
-    pub fn first_and_step(&self) -> (f64, f64) {
-        let clock = self.clock();
-        (clock.start_s * self.second, self.second / clock.rate_hz)
-    }
-
-    /// Whether neither the file nor the job states the unit of its times.
-    pub fn is_time_unit_open(&self) -> bool {
-        self.time_unit_open
-    }
-
-    pub fn file(&self) -> &str {
-        &self.file
-    }
-
-    pub fn n_pieces(&self) -> usize {
-        self.inner.n_pieces()
-    }
-
-    pub fn n_columns(&self) -> usize {
-        self.columns.len()
-    }
-
-    /// Hands the readings of a piece on, strain, a block at a time.
-    fn each(&self, i: usize, mut sink: impl FnMut(&[f64])) -> Result<(), Fault> {
-        let n = self.columns.len().max(1);
-        let columns: Vec<Option<usize>> = self.columns.iter().map(|c| c.0).collect();
-        let micro_of = |c: &Option<usize>| c.and_then(|c| self.micro.get(c)).copied();
-        let right: Vec<(f64, Channel)> = self
-            .columns
-            .iter()
-            .map(|(c, channel)| (micro_of(c).unwrap_or(f64::NAN), *channel))
-            .collect();
-        let mut strain = Vec::new();
-        let read = self.inner.read(i, &columns, &mut |block| {
-            strain.clear();
-            for row in block.values.chunks_exact(n) {
-                let put_right =
-                    |(v, (micro, c)): (&f64, &(f64, Channel))| c.put_right(v * micro) * MICROSTRAIN;
-                strain.extend(row.iter().zip(&right).map(put_right));
-            }
-            sink(&strain);
-            ControlFlow::Continue(())
-        });
-        read.map_err(|e| record_fault(&self.file, &e))
-    }
-
-    /// Times, s, and readings of a piece, strain.
-    pub fn piece(&self, i: usize) -> Result<(Vec<f64>, Vec<f64>), Fault> {
-        let mut values = Vec::new();
-        self.each(i, |strain| values.extend_from_slice(strain))?;
-        Ok((self.times(i), values))
-    }
-
-    fn times(&self, i: usize) -> Vec<f64> {
-        let (from, to) = self.inner.span(i);
-        let time = |s| self.inner.clock.time_s(s) * self.second;
-        (from..to).map(time).collect()
-    }
-
-    /// What is to be known of its times.
-    pub fn findings(&self) -> Vec<Finding> {
-        let (clock, mut out) = (self.clock(), Vec::new());
-        let file = self.file.as_str();
-        if let Evenness::Resampled { largest, .. } = clock.evenness {
-            let rate = clock.rate_hz / self.second;
-            out.push(
-                Finding::new(
-                    Severity::Warning,
-                    "record-resampled",
-                    file,
-                    format!("steps of time differ by up to {:.0} %: samples are interpolated to {rate:.6} Hz", 100.0 * largest),
-                    "record with a steady clock where the loads' peaks matter",
-                )
-                .with_numbers(largest, 0.02),
-            );
-        }
-        if clock.n_gaps > 0 {
-            let first = clock.gaps.first().map_or(0.0, |g| g.from_s * self.second);
-            out.push(
-                Finding::new(
-                    Severity::Warning,
-                    "record-gaps",
-                    file,
-                    format!("{} samples are missing in {} gaps, the first after {first} s: they are left blank", clock.missing, clock.n_gaps),
-                    "look at the logger",
-                )
-                .with_numbers(clock.missing as f64, 0.0),
-            );
-        }
-        out
-    }
+/// The estimate of every sample, its weights and intervals judged on samples spread over the record.
+fn filter(
+    work: &mut Work,
+    task: &Task,
+    record: &Record,
+    s: &Sensitivity,
+    zero: Vec<f64>,
+    combinations: &[Vec<(usize, f64)>],
+) -> Result<Filter, Faults> {
+    let judged = judge(task, record, s, &zero)?;
+    work.findings.extend(judged.findings.iter().cloned());
+    let filter = Filter::new(
+        s,
+        zero,
+        task.errors,
+        task.noise_factor,
+        &judged.typical,
+        judged.widening,
+    );
+    let mut filter = filter.ok_or_else(|| {
+        Fault::of(
+            record.file(),
+            "sensitivity",
+            "S holds numbers that are not finite",
+            "check the results of the unit loads",
+        )
+    })?;
+    filter.combine(combinations);
+    Ok(filter)
 }
 
-/// The fault of a record that can't be read.
-fn record_fault(file: &str, e: &SeriesError) -> Fault {
-    let (wrong, remedy) = split_message(e);
-    match e {
-        SeriesError::Line { line, what, remedy } => {
-            Fault::at(file, *line as u32, "row", what, *remedy)
-        }
-        SeriesError::NotAscending { line, .. } | SeriesError::NoTime { line } => {
-            Fault::at(file, *line as u32, "time", wrong, remedy)
-        }
-        SeriesError::Empty => Fault::at(
-            file,
-            1,
-            "rows",
-            "a header and no rows",
-            "write a row a sample",
-        ),
-        SeriesError::NoRate => Fault::at(
-            file,
-            1,
-            "time",
-            "no column `time`",
-            "add a column `time` in seconds",
-        ),
-        _ => Fault::of(file, "record", wrong, remedy),
-    }
-}
-
-/// Loads of a piece.
-pub(super) struct Piece {
-    pub times: Vec<f64>,
-    pub loads: SampleLoads,
-    pub sums: Sums,
-}
-
-/// Loads of piece `i`.
-pub(super) fn process(record: &Record, filter: &Filter, i: usize) -> Result<Piece, Fault> {
+/// Recovers the record piece by piece, in parallel, and hands the loads on; the sums over it.
+///
+/// # Errors
+/// The first piece that can't be read; what `sink` refuses; one fault where the work is stopped.
+fn stream(
+    work: &Work,
+    record: &Record,
+    head: &RecordHead,
+    sink: &mut dyn RecordSink,
+) -> Result<(Sums, Spans), Faults> {
+    let progress = work.cx.progress;
+    progress.parts(record.n_pieces());
+    let filter = &head.filter;
     let mut sums = Sums::new(filter.n_gauges(), filter.n_loads());
-    let mut loads = SampleLoads::default();
-    record.each(i, |strain| filter.apply(strain, 1.0, &mut loads, &mut sums))?;
-    Ok(Piece {
-        times: record.times(i),
-        loads,
+    let mut spans = Spans::new(filter.n_loads());
+    let mut first = 0;
+    let pieces: Vec<usize> = (0..record.n_pieces()).collect();
+    for group in pieces.chunks(GROUP) {
+        work.go_on()?;
+        let done: Result<Vec<(Block, Sums)>, Fault> = group
+            .par_iter()
+            .map(|&i| block(record, filter, i))
+            .collect();
+        let mut blocks = Vec::with_capacity(group.len());
+        for (mut block, of_block) in done? {
+            sums.merge(&of_block);
+            spans.add(&block);
+            block.first = first;
+            first += block.times.len();
+            blocks.push(block);
+        }
+        sink.take(blocks)?;
+        progress.advance(group.len());
+    }
+    Ok((sums, spans))
+}
+
+/// What gaps and impossible readings left.
+fn gaps(head: &RecordHead, s: &Sensitivity, sums: &Sums) -> Vec<Finding> {
+    let (file, mut out) = (head.file.as_str(), Vec::new());
+    if sums.gaps > 0 {
+        out.push(
+            Finding::new(
+                Severity::Warning,
+                "samples-with-gaps",
+                file,
+                format!(
+                    "in {} samples some gauge gives nothing: their loads are those of the others, with wider intervals, or blank",
+                    sums.gaps
+                ),
+                "repair the channel, or leave its gauge out: [[correction]] ignore = true",
+            )
+            .with_numbers(sums.gaps as f64, 0.0),
+        );
+    }
+    if sums.impossible > 0 {
+        out.push(
+            Finding::new(
+                Severity::Error,
+                "reading-impossible",
+                file,
+                format!(
+                    "{} readings are too large to be strain: they are taken for no reading",
+                    sums.impossible
+                ),
+                "check the unit (microstrain is expected), the channel's overload, and the file",
+            )
+            .with_numbers(sums.impossible as f64, 0.0),
+        );
+    }
+    let unknown: Vec<&str> = (0..s.loads.len())
+        .filter(|&l| s.loads[l].wanted && sums.known(l) == 0)
+        .map(|l| head.names[l].as_str())
+        .collect();
+    if !unknown.is_empty() {
+        out.push(Finding::new(
+            Severity::Error,
+            "loads-without-values",
+            unknown.join(", "),
+            "in no sample do the gauges that read tell these loads",
+            "bring the silent gauges back, or drop these loads",
+        ));
+    }
+    out
+}
+
+/// Everything in report units.
+fn answer(
+    sensitivity: Sensitivity,
+    head: Arc<RecordHead>,
+    sums: Sums,
+    spans: Spans,
+    content: Option<Content>,
+    damage: Option<Vec<LoadDamage>>,
+) -> RecoveredRecord {
+    let known: Vec<f64> = (0..head.n_loads()).map(|l| sums.known(l) as f64).collect();
+    let rms: Vec<f64> = sums
+        .sum_of_squares
+        .iter()
+        .zip(&known)
+        .map(|(q, n)| (q / n.max(1.0)).sqrt())
+        .collect();
+    let sigma = head.filter.sigma(&rms);
+    let loads = head.units.iter().enumerate().map(|(l, u)| RecordLoad {
+        run: head.file.clone(),
+        name: head.names[l].clone(),
+        value: sums.sum[l] / known[l] * u.factor,
+        sigma: sigma[l] * u.factor,
+        unit: u.name.clone(),
+        min: sums.min[l] * u.factor,
+        max: sums.max[l] * u.factor,
+        rms: rms[l] * u.factor,
+    });
+    let (n, whole) = (sensitivity.gauges.len(), head.filter.whole());
+    let dof = n.saturating_sub(whole.rank).max(1) as f64;
+    let free: f64 = (0..n).map(|g| sums.read(g) as f64 * dof / n as f64).sum();
+    let residual = (sums.residual.iter().sum::<f64>() / free.max(1.0)).sqrt();
+    let gauges = sensitivity.gauges.iter().enumerate();
+    let gauges = gauges.map(|(g, name)| GaugeResidual {
+        name: name.clone(),
+        residual_rms_microstrain: (sums.residual[g] / sums.read(g).max(1) as f64).sqrt()
+            / MICROSTRAIN,
+        leverage: whole.leverage[g],
+    });
+    let [from, to] = spans.time();
+    let samples = sums.samples + sums.gaps;
+    RecoveredRecord {
+        loads: loads.collect(),
+        residual_rms_microstrain: residual / MICROSTRAIN,
+        gauges: gauges.collect(),
+        samples,
+        gaps: sums.gaps,
+        duration_s: to - from,
+        sample_rate_hz: finite(samples.saturating_sub(1) as f64 / (to - from)),
+        content,
+        damage,
+        sensitivity,
+        head,
         sums,
-    })
+        spans,
+        history: None,
+    }
 }

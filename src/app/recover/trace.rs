@@ -1,15 +1,13 @@
-//! What a page shows of a history: by span of samples the smallest, mean and largest of each load.
+//! What can be drawn of a history of any length: by span of samples the smallest, mean and largest of each load.
 
-use super::record::Piece;
-use crate::app::strain::LoadUnits;
-use crate::recovery::history::Filter;
-use crate::report::figure::LoadTrace;
+use super::sink::Block;
 
 /// Spans at most, an even number: from here on two neighbours become one. Twice what a wide screen has of points.
 const MOST: usize = 4000;
 
 /// Spans of equally many samples so far.
-pub(super) struct Spans {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spans {
     k: usize,
     /// Samples of a span.
     samples: usize,
@@ -18,12 +16,22 @@ pub(super) struct Spans {
 
 /// Some samples on end.
 #[derive(Clone, Debug, PartialEq)]
-struct Span {
-    /// Time of the first and the last.
-    time: [f64; 2],
+pub struct Span {
+    /// Time of the first and the last, s.
+    pub time: [f64; 2],
     samples: usize,
     /// By load: smallest, sum, largest, count.
     loads: Vec<[f64; 4]>,
+}
+
+impl Span {
+    /// Smallest, mean and largest sample of load `l`, job units; not numbers where none is known.
+    pub fn of_load(&self, l: usize) -> [f64; 3] {
+        match self.loads.get(l) {
+            Some([low, sum, high, count]) if *count > 0.0 => [*low, sum / count, *high],
+            _ => [f64::NAN; 3],
+        }
+    }
 }
 
 const NOTHING: [f64; 4] = [f64::INFINITY, 0.0, f64::NEG_INFINITY, 0.0];
@@ -38,10 +46,10 @@ impl Spans {
         }
     }
 
-    /// Takes the next piece.
-    pub(super) fn add(&mut self, piece: &Piece) {
-        let loads = piece.loads.values.chunks_exact(self.k.max(1));
-        for (time, f) in piece.times.iter().zip(loads) {
+    /// Takes the next samples.
+    pub(super) fn add(&mut self, block: &Block) {
+        let loads = block.loads.values.chunks_exact(self.k.max(1));
+        for (time, f) in block.times.iter().zip(loads) {
             if self.list.last().is_none_or(|s| s.samples == self.samples) {
                 if self.list.len() == MOST {
                     self.halve();
@@ -61,6 +69,11 @@ impl Spans {
                 merge(s, &[*v, *v, *v, 1.0]);
             }
         }
+    }
+
+    /// The spans in order of time.
+    pub fn list(&self) -> &[Span] {
+        &self.list
     }
 
     /// Time of the first and the last sample; NaN without samples.
@@ -91,37 +104,6 @@ impl Spans {
             })
             .collect();
     }
-
-    /// Traces by load in report units; `rms` loads say how wide the interval of a sample is.
-    pub(super) fn traces(
-        &self,
-        names: &[String],
-        units: &[LoadUnits],
-        filter: &Filter,
-        rms: &[f64],
-    ) -> Vec<LoadTrace> {
-        let sigma = filter.sigma(rms);
-        (0..self.k)
-            .map(|l| {
-                let factor = units[l].factor;
-                let spans = self.list.iter().map(|span| {
-                    let [low, sum, high, count] = span.loads[l];
-                    if count > 0.0 {
-                        [low, sum / count, high].map(|v| v * factor)
-                    } else {
-                        [f64::NAN; 3]
-                    }
-                });
-                LoadTrace {
-                    name: names[l].clone(),
-                    unit: units[l].name.clone(),
-                    times: self.list.iter().map(|s| s.time).collect(),
-                    half: filter.coverage_factor() * sigma[l] * factor,
-                    spans: spans.collect(),
-                }
-            })
-            .collect()
-    }
 }
 
 /// Adds a span to another.
@@ -132,17 +114,16 @@ fn merge(a: &mut [f64; 4], b: &[f64; 4]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recovery::Sums;
     use crate::recovery::history::SampleLoads;
 
-    fn piece(from: usize, values: &[f64]) -> Piece {
-        Piece {
+    fn piece(from: usize, values: &[f64]) -> Block {
+        Block {
+            first: from,
             times: (from..from + values.len()).map(|i| i as f64).collect(),
             loads: SampleLoads {
                 values: values.to_vec(),
                 gaps: Vec::new(),
             },
-            sums: Sums::new(0, 1),
         }
     }
 

@@ -1,5 +1,6 @@
 //! Loads of the job as loads on the model.
 
+use super::fields::no_grid;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Job, LoadActs};
 use crate::fe::UnitLoad;
@@ -42,26 +43,17 @@ pub fn unit_loads(job: &Job, model: &Model) -> Result<Vec<UnitLoad>, Faults> {
                 cid,
             } => {
                 let (ix, frame) = (model.grid_ix(grid), model.frame_ix(cid));
-                let mut lacks = |field: &str, what: String| {
+                if ix.is_none() {
+                    faults.push(no_grid(job, l, grid));
+                }
+                if frame.is_none() {
                     faults.push(Fault::at(
                         &*job.file,
                         l.line,
-                        field,
-                        what,
-                        "correct the id, or name another deck",
-                    ));
-                };
-                if ix.is_none() {
-                    lacks(
-                        "load.grid",
-                        format!("load `{}`: the deck has no grid {grid}", l.name),
-                    );
-                }
-                if frame.is_none() {
-                    lacks(
                         "load.cid",
                         format!("load `{}`: the deck has no coordinate system {cid}", l.name),
-                    );
+                        "correct the id, or name another deck",
+                    ));
                 }
                 let (ix, frame) = (ix?, frame?);
                 let v = component.vector(l.applied);

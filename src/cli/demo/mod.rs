@@ -9,6 +9,7 @@ mod yard;
 pub(super) use chapter::DECK_NAME;
 
 use super::DemoArguments;
+use super::run::recover_and_save;
 use crate::app::context::Context;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::Job;
@@ -221,7 +222,11 @@ fn play(
             &app::place::place(&Job::read(job, cx.files)?, &cx)?,
             &folder.join(out),
         ),
-        "recover" => run(app::recover::run),
+        "recover" => {
+            let (job, folder) = (Job::read(job, cx.files)?, folder.join(out));
+            let (outcome, json) = recover_and_save(&job, &cx, &folder)?;
+            Ok(closed(&outcome, json, &folder))
+        }
         "reconcile" => {
             let mut found = app::reconcile::reconcile(&Job::read(job, cx.files)?, &cx)?;
             found.answer.put_into(&folder.join(out));
@@ -243,8 +248,16 @@ fn asked<A: Answer>(outcome: &Outcome<A>, folder: &Path) -> Result<Closed, Fault
 where
     Outcome<A>: Report,
 {
-    Ok(Closed {
-        json: save(outcome, folder)?,
+    Ok(closed(outcome, save(outcome, folder)?, folder))
+}
+
+/// An outcome whose files are written.
+fn closed<A: Answer>(outcome: &Outcome<A>, json: String, folder: &Path) -> Closed
+where
+    Outcome<A>: Report,
+{
+    Closed {
+        json,
         text: outcome.words(),
         findings: outcome.findings.clone(),
         notes: outcome.notes.clone(),
@@ -252,7 +265,7 @@ where
         faults: Vec::new(),
         result: serde_json::to_value(&outcome.answer).unwrap_or_default(),
         seconds: outcome.seconds.total(),
-    })
+    }
 }
 
 /// What the story asks of the solver.

@@ -17,6 +17,7 @@ mod reconcile;
 mod reconcile_extended;
 mod reconcile_motion;
 mod reconcile_strain;
+mod recover;
 mod respond;
 mod respond_files;
 mod sensitivity;
@@ -26,6 +27,7 @@ mod study;
 mod verify;
 
 pub use pages::{write_book, write_page};
+pub use recover::RecordFolder;
 
 use crate::app::fault::{Fault, Faults};
 use crate::app::outcome::{Answer, Outcome, Tables};

@@ -3,14 +3,13 @@
 //! Every load is a FORCE or MOMENT of 1 in a set of its own. A run is a LOAD that adds them up; a history is a TLOAD1 and a TABLED1 a
 //! load and one DLOAD for all.
 
-use super::{History, PIECE};
+use super::tables::LoadsFile;
 use crate::app::cases::{dynamic_ids, load_ids};
 use crate::app::fault::Faults;
 use crate::app::job::{JobLoad, LoadActs};
-use crate::app::recover::Task;
+use crate::app::output::Output;
+use crate::app::recover::{RecordHead, Recovered, RecoveredRuns, Samples};
 use crate::app::strain::LoadUnits;
-use crate::app::{JobArguments, Session};
-use crate::recovery::Recovery;
 use nastran::bdf::{Field, format_card};
 use nastran::cards::Force;
 use std::io::Write;
@@ -18,6 +17,8 @@ use std::io::Write;
 const NAME: &str = "loads.bdf";
 /// The first set where no deck says which are taken.
 const FIRST_SET: u32 = 1001;
+/// Samples read at a time.
+const PIECE: usize = 16_384;
 
 /// A load and the set that holds 1 of it.
 struct Unit {
@@ -27,13 +28,14 @@ struct Unit {
 }
 
 /// Cards of 1 of each load, which loads they are, and the next free set. Loads without a place in the job are left out.
-fn unit_sets(task: &Task, names: &[String]) -> (String, Vec<Unit>, u32) {
-    let deck = task.prepared.fields.as_ref().map(|f| &f.deck.deck);
+fn unit_sets(recovered: &Recovered, names: &[String]) -> (String, Vec<Unit>, u32) {
+    let fields = recovered.prepared.fields.as_ref();
+    let deck = fields.map(|f| &f.deck.deck);
     let taken = deck.and_then(|d| load_ids(d).into_iter().chain(dynamic_ids(d)).max());
     let mut next = taken.map_or(FIRST_SET, |last| (last + 1).max(FIRST_SET));
     let (mut text, mut units) = (String::new(), Vec::new());
     for (column, name) in names.iter().enumerate() {
-        let Some(load) = task.job.loads.iter().find(|l| &l.name == name) else {
+        let Some(load) = recovered.job.loads.iter().find(|l| &l.name == name) else {
             continue;
         };
         text.push_str(&format!("$ {}\n", plain(name)));
@@ -82,11 +84,11 @@ fn plain(text: &str) -> String {
         .collect()
 }
 
-fn heading(task: &Task, what: &str) -> String {
+fn heading(recovered: &Recovered, what: &str) -> String {
     format!(
         "$ Recovered loads of {}, units {}\n$ {what}\n",
-        plain(&task.job.title),
-        task.job.units.name()
+        plain(&recovered.job.title),
+        recovered.job.units.name()
     )
 }
 
@@ -94,20 +96,18 @@ fn heading(task: &Task, what: &str) -> String {
 ///
 /// # Errors
 /// A file that can't be written.
-pub(in crate::app::recover) fn write_runs(
-    session: &mut Session,
-    arguments: &JobArguments,
-    task: &Task,
-    names: &[String],
-    recovery: &Recovery,
+pub(super) fn write_runs(
+    out: &mut Output,
+    recovered: &Recovered,
+    runs: &RecoveredRuns,
 ) -> Result<(), Faults> {
-    let (cards, units, mut next) = unit_sets(task, names);
+    let (cards, units, mut next) = unit_sets(recovered, &runs.names);
     if units.is_empty() {
         return Ok(());
     }
     let mut case = String::from("$ For the case control of the deck:\n");
     let mut bulk = String::new();
-    for (number, run) in (1..).zip(&recovery.runs) {
+    for (number, run) in (1..).zip(&runs.recovery.runs) {
         let values: Vec<(f64, u32)> = units
             .iter()
             .map(|u| (rounded(run.estimate.values[u.column], 9), u.set))
@@ -129,11 +129,9 @@ pub(in crate::app::recover) fn write_runs(
         bulk.push_str(&format!("$ Run {label}\n{}", format_card("LOAD", &fields)));
         next += 1;
     }
-    let head = heading(task, "1 of each load, then a LOAD a run");
-    session
-        .output_for(&arguments.job)?
-        .write_bytes(NAME, [head, case, cards, bulk].concat().as_bytes())
-        .map_err(Faults::from)
+    let head = heading(recovered, "1 of each load, then a LOAD a run");
+    out.write_bytes(NAME, [head, case, cards, bulk].concat().as_bytes())?;
+    Ok(())
 }
 
 /// Writes the loads of a history as tables over time.
@@ -141,20 +139,20 @@ pub(in crate::app::recover) fn write_runs(
 /// # Errors
 /// A file that can't be written.
 pub(super) fn write_history(
-    session: &mut Session,
-    arguments: &JobArguments,
-    task: &Task,
-    history: &History,
+    out: &mut Output,
+    recovered: &Recovered,
+    head: &RecordHead,
+    loads: &LoadsFile,
 ) -> Result<(), Faults> {
-    let (cards, units, next) = unit_sets(task, history.names);
-    if units.is_empty() || history.header.samples == 0 {
+    let (cards, units, next) = unit_sets(recovered, &head.names);
+    if units.is_empty() || loads.header.samples == 0 {
         return Ok(());
     }
     let n = units.len() as u32;
     // Tables have ids of their own; the same number for TLOAD1 and its table is easy to follow.
     let (first, all) = (next, next + n);
     let mut text = heading(
-        task,
+        recovered,
         &format!("1 of each load, its history as a table, DLOAD = {all} for all of them"),
     );
     text.push_str(&cards);
@@ -171,38 +169,32 @@ pub(super) fn write_history(
         fields.extend([Field::Real(1.0), Field::from(id)]);
     }
     text.push_str(&format_card("DLOAD", &fields));
-    session
-        .output_for(&arguments.job)?
-        .write(NAME, |w| {
-            w.write_all(text.as_bytes())?;
-            for (id, unit) in (first..).zip(&units) {
-                table(w, history, id, unit.column, &history.units[unit.column])?;
-            }
-            Ok(())
-        })
-        .map_err(Faults::from)
+    out.write(NAME, |w| {
+        w.write_all(text.as_bytes())?;
+        for (id, unit) in (first..).zip(&units) {
+            table(w, loads, id, unit.column, &head.units[unit.column])?;
+        }
+        Ok(())
+    })?;
+    Ok(())
 }
 
 /// TABLED1 of one load: time in s, the load in the job's unit; a gap is left to the straight line across it.
 fn table(
     w: &mut dyn Write,
-    history: &History,
+    loads: &LoadsFile,
     id: u32,
     column: usize,
     unit: &LoadUnits,
 ) -> std::io::Result<()> {
-    let h = &history.header;
+    let h = &loads.header;
     let mut fields = vec![Field::from(id)];
     fields.resize(8, Field::Blank);
     let mut values = Vec::new();
     for from in (0..h.samples).step_by(PIECE) {
         values.clear();
-        history.samples(
-            from,
-            (from + PIECE).min(h.samples),
-            &[Some(column)],
-            &mut values,
-        );
+        let to = (from + PIECE).min(h.samples);
+        loads.read(from, to, &[column], &mut values);
         for (i, v) in (from..).zip(&values).filter(|(_, v)| v.is_finite()) {
             let time = rounded(h.t0 + h.dt * i as f64, 10);
             fields.extend([Field::Real(time), Field::Real(rounded(v / unit.factor, 7))]);

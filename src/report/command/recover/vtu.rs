@@ -2,32 +2,27 @@
 
 use crate::app::fault::Faults;
 use crate::app::job::LoadActs;
-use crate::app::recover::Task;
-use crate::app::strain::LoadUnits;
-use crate::app::{JobArguments, Session};
-use crate::recovery::Recovery;
+use crate::app::output::Output;
+use crate::app::recover::{Recovered, RecoveredRuns};
 use crate::report::{PointValues, write_points_vtu};
 
 /// Writes a point a loaded grid with force and moment of every run, basic frame, report units; nothing without a model.
 ///
 /// # Errors
 /// A file that can't be written.
-pub(in crate::app::recover) fn write_arrows(
-    session: &mut Session,
-    arguments: &JobArguments,
-    task: &Task,
-    names: &[String],
-    units: &[LoadUnits],
-    recovery: &Recovery,
+pub(super) fn write(
+    out: &mut Output,
+    recovered: &Recovered,
+    runs: &RecoveredRuns,
 ) -> Result<(), Faults> {
-    let Some(model) = task.prepared.fields.as_ref().map(|f| f.model()) else {
+    let Some(model) = recovered.prepared.fields.as_ref().map(|f| f.model()) else {
         return Ok(());
     };
     let mut grids: Vec<(u32, [f64; 3])> = Vec::new();
     // Column, point, unit vector in the basic frame, moment rather than force.
     let mut parts: Vec<(usize, usize, [f64; 3], usize)> = Vec::new();
-    for (column, name) in names.iter().enumerate() {
-        let load = task.job.loads.iter().find(|l| &l.name == name);
+    for (column, name) in runs.names.iter().enumerate() {
+        let load = recovered.job.loads.iter().find(|l| &l.name == name);
         let Some(LoadActs::AtGrid {
             grid,
             component,
@@ -56,10 +51,10 @@ pub(in crate::app::recover) fn write_arrows(
         "grid".to_owned(),
         PointValues::Ids(grids.iter().map(|g| g.0).collect()),
     )];
-    for run in &recovery.runs {
+    for run in &runs.recovery.runs {
         let mut sums = [vec![[0.0; 3]; grids.len()], vec![[0.0; 3]; grids.len()]];
         for (column, point, v, kind) in &parts {
-            let value = run.estimate.values[*column] * units[*column].factor;
+            let value = run.estimate.values[*column] * runs.units[*column].factor;
             for (sum, v) in sums[*kind][*point].iter_mut().zip(v) {
                 *sum += value * v;
             }
@@ -72,8 +67,6 @@ pub(in crate::app::recover) fn write_arrows(
         }
     }
     let points: Vec<[f64; 3]> = grids.iter().map(|g| g.1).collect();
-    session
-        .output_for(&arguments.job)?
-        .write("loads.vtu", |w| write_points_vtu(&points, &arrays, w))
-        .map_err(Faults::from)
+    out.write("loads.vtu", |w| write_points_vtu(&points, &arrays, w))?;
+    Ok(())
 }

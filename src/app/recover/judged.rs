@@ -1,0 +1,120 @@
+//! What samples spread over a record say of it before all of it is read.
+
+use super::answer::Content;
+use super::content::{check_content, content_of_loads};
+use super::reading::{Record, block};
+use super::task::Task;
+use crate::app::fault::{Fault, Faults};
+use crate::app::solved::first_mode_of;
+use crate::app::work::Work;
+use crate::recovery::history::Filter;
+use crate::recovery::{Readings, Recovery, clock, recover};
+use crate::sensitivity::Sensitivity;
+use rayon::prelude::*;
+
+/// Samples on which the residual of a long record is judged.
+const JUDGED: usize = 200;
+/// Samples up to which a record that is read in one piece is judged whole.
+const JUDGED_OF_SHORT: usize = 2000;
+/// Samples from which typical loads are taken for the weights of a stated model error.
+const TYPICAL: usize = 20_000;
+/// Pieces whose content is looked at.
+const LOOKED_AT: usize = 8;
+
+/// What samples over the record say of the loads asked for, of the gauges, and of the intervals.
+pub(super) fn judge(
+    task: &Task,
+    record: &Record,
+    s: &Sensitivity,
+    zero: &[f64],
+) -> Result<Recovery, Faults> {
+    let n = s.gauges.len();
+    let pieces = record.n_pieces();
+    let mut readings: Vec<Readings> = Vec::new();
+    let spread = pieces.min(10);
+    // A short record is judged on all of its samples, as the same rows would be as runs.
+    let each = match pieces {
+        1 => JUDGED_OF_SHORT,
+        _ => JUDGED.div_ceil(spread.max(1)),
+    };
+    for p in 0..spread {
+        let (times, values) = record.piece(p * pieces / spread).map_err(Faults::from)?;
+        let take = times.len().min(TYPICAL);
+        let each = each.min(take);
+        for i in (0..each).map(|i| i * take / each) {
+            let row = &values[i * n..(i + 1) * n];
+            let strain = row.iter().zip(zero).map(|(v, z)| v - z).collect();
+            readings.push(Readings {
+                run: format!("t = {}", times[i]),
+                strain,
+                noise_factor: task.noise_factor,
+            });
+        }
+    }
+    if readings.is_empty() {
+        return Err(Faults::from(Fault::at(
+            record.file(),
+            1,
+            "rows",
+            "a header and no rows",
+            "write a row a sample",
+        )));
+    }
+    Ok(recover(s, &readings, task.errors))
+}
+
+/// Says where its times look like those of another unit.
+///
+/// # Errors
+/// A piece that can't be read.
+pub(super) fn check_times(work: &mut Work, record: &Record) -> Result<(), Faults> {
+    if record.is_time_unit_open() {
+        let (_, readings) = record.piece(0)?;
+        let (_, step) = record.first_and_step();
+        work.findings
+            .extend(clock::check(step, &readings, record.n_columns()));
+    }
+    Ok(())
+}
+
+/// Content of its loads against the first elastic mode; `None` where that is not known.
+///
+/// # Errors
+/// A piece that can't be read.
+pub(super) fn content(
+    work: &mut Work,
+    task: &Task,
+    record: &Record,
+    filter: &Filter,
+    names: &[String],
+) -> Result<Option<Content>, Faults> {
+    let fields = task.prepared.fields.as_ref();
+    let first_mode = fields.and_then(|f| {
+        f.first_mode
+            .or_else(|| first_mode_of(work, task.job, &f.deck))
+    });
+    let Some(first_elastic_mode_hz) = first_mode else {
+        return Ok(None);
+    };
+    let sigma = filter.sigma(&vec![0.0; filter.n_loads()]);
+    let pieces = sampled_pieces(record, filter)?;
+    let (_, step) = record.first_and_step();
+    let rate = if step > 0.0 { 1.0 / step } else { 0.0 };
+    let content_hz = content_of_loads(&pieces, &sigma, rate);
+    work.findings
+        .extend(check_content(names, &content_hz, first_elastic_mode_hz));
+    Ok(Some(Content {
+        first_elastic_mode_hz,
+        content_hz,
+    }))
+}
+
+/// Loads of some pieces spread over the record.
+fn sampled_pieces(record: &Record, filter: &Filter) -> Result<Vec<Vec<f64>>, Fault> {
+    let n = record.n_pieces();
+    let taken = n.min(LOOKED_AT);
+    (0..taken)
+        .into_par_iter()
+        .map(|i| block(record, filter, i * n / taken).map(|(b, _)| b.loads.values))
+        .collect()
+}

@@ -1,0 +1,213 @@
+//! A record of any length, a piece at a time: readings, and the loads that a filter makes of them.
+
+use super::sink::Block;
+use crate::app::fault::{Fault, Faults, split_message};
+use crate::app::files::FileBytes;
+use crate::app::job::correct::{Channel, column_of};
+use crate::app::job::strain::strain_columns;
+use crate::app::job::{Job, Measured};
+use crate::finding::{Finding, Severity};
+use crate::recovery::Sums;
+use crate::recovery::history::{Filter, SampleLoads};
+use crate::series::SeriesError;
+use crate::series::record::{self as series, Clock, Evenness, Options, is_format, open_record};
+use crate::units::MICROSTRAIN;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// A record whose columns are read as strain.
+pub(super) struct Record {
+    inner: series::Record,
+    file: String,
+    /// The gauge that each column holds the readings of, as the job calls it.
+    pub names: Vec<String>,
+    /// Microstrain in one unit of each column.
+    micro: Vec<f64>,
+    /// Columns that are read, and what puts their readings right.
+    columns: Vec<(Option<usize>, Channel)>,
+    /// Seconds in the unit of its times.
+    second: f64,
+    /// Neither the file nor the job states the unit of its times.
+    time_unit_open: bool,
+}
+
+impl Record {
+    /// The record in the strain file of a job, of which channels named after `gauges` will be read.
+    ///
+    /// # Errors
+    /// Faults of the file: its format, its times, units that are none of strain.
+    pub fn open(
+        job: &Job,
+        measured: &Measured,
+        bytes: FileBytes,
+        gauges: &[String],
+    ) -> Result<Self, Faults> {
+        let file = measured.strain.given.as_str();
+        // Formats of instruments count in seconds or say what they count in.
+        let unit_open = !is_format(&bytes);
+        let options = Options {
+            declared_hz: None,
+            wanted: gauges.to_vec(),
+        };
+        let inner = open_record(Arc::new(bytes), &options).map_err(|e| record_fault(file, &e))?;
+        let unit_open = unit_open && !inner.is_time_unit_stated();
+        let (names, micro) = strain_columns(file, inner.columns(), gauges)?;
+        let gauge = |n: &String| column_of(&job.corrections, n).to_owned();
+        Ok(Self {
+            names: names.iter().map(gauge).collect(),
+            file: file.to_owned(),
+            micro,
+            columns: Vec::new(),
+            second: match (unit_open, measured.time_unit_s) {
+                (true, Some(unit)) => unit,
+                _ => 1.0,
+            },
+            time_unit_open: unit_open && measured.time_unit_s.is_none(),
+            inner,
+        })
+    }
+
+    /// The same, with the columns that are read.
+    pub fn with_columns(self, columns: Vec<(Option<usize>, Channel)>) -> Self {
+        Self { columns, ..self }
+    }
+
+    /// When its samples were taken, in the unit of the file's times.
+    pub fn clock(&self) -> &Clock {
+        &self.inner.clock
+    }
+
+    /// Time of the first sample and between samples, s.
+    pub fn first_and_step(&self) -> (f64, f64) {
+        let clock = self.clock();
+        (clock.start_s * self.second, self.second / clock.rate_hz)
+    }
+
+    /// Whether neither the file nor the job states the unit of its times.
+    pub fn is_time_unit_open(&self) -> bool {
+        self.time_unit_open
+    }
+
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    pub fn n_pieces(&self) -> usize {
+        self.inner.n_pieces()
+    }
+
+    pub fn n_columns(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Hands the readings of a piece on, strain, a block at a time.
+    fn each(&self, i: usize, mut sink: impl FnMut(&[f64])) -> Result<(), Fault> {
+        let n = self.columns.len().max(1);
+        let columns: Vec<Option<usize>> = self.columns.iter().map(|c| c.0).collect();
+        let micro_of = |c: &Option<usize>| c.and_then(|c| self.micro.get(c)).copied();
+        let right: Vec<(f64, Channel)> = self
+            .columns
+            .iter()
+            .map(|(c, channel)| (micro_of(c).unwrap_or(f64::NAN), *channel))
+            .collect();
+        let mut strain = Vec::new();
+        let read = self.inner.read(i, &columns, &mut |block| {
+            strain.clear();
+            for row in block.values.chunks_exact(n) {
+                let put_right =
+                    |(v, (micro, c)): (&f64, &(f64, Channel))| c.put_right(v * micro) * MICROSTRAIN;
+                strain.extend(row.iter().zip(&right).map(put_right));
+            }
+            sink(&strain);
+            ControlFlow::Continue(())
+        });
+        read.map_err(|e| record_fault(&self.file, &e))
+    }
+
+    /// Times, s, and readings of a piece, strain.
+    pub fn piece(&self, i: usize) -> Result<(Vec<f64>, Vec<f64>), Fault> {
+        let mut values = Vec::new();
+        self.each(i, |strain| values.extend_from_slice(strain))?;
+        Ok((self.times(i), values))
+    }
+
+    fn times(&self, i: usize) -> Vec<f64> {
+        let (from, to) = self.inner.span(i);
+        let time = |s| self.inner.clock.time_s(s) * self.second;
+        (from..to).map(time).collect()
+    }
+
+    /// What is to be known of its times.
+    pub fn findings(&self) -> Vec<Finding> {
+        let (clock, mut out) = (self.clock(), Vec::new());
+        let file = self.file.as_str();
+        if let Evenness::Resampled { largest, .. } = clock.evenness {
+            let rate = clock.rate_hz / self.second;
+            out.push(
+                Finding::new(
+                    Severity::Warning,
+                    "record-resampled",
+                    file,
+                    format!("steps of time differ by up to {:.0} %: samples are interpolated to {rate:.6} Hz", 100.0 * largest),
+                    "record with a steady clock where the loads' peaks matter",
+                )
+                .with_numbers(largest, 0.02),
+            );
+        }
+        if clock.n_gaps > 0 {
+            let first = clock.gaps.first().map_or(0.0, |g| g.from_s * self.second);
+            out.push(
+                Finding::new(
+                    Severity::Warning,
+                    "record-gaps",
+                    file,
+                    format!("{} samples are missing in {} gaps, the first after {first} s: they are left blank", clock.missing, clock.n_gaps),
+                    "look at the logger",
+                )
+                .with_numbers(clock.missing as f64, 0.0),
+            );
+        }
+        out
+    }
+}
+
+/// The fault of a record that can't be read.
+fn record_fault(file: &str, e: &SeriesError) -> Fault {
+    let (wrong, remedy) = split_message(e);
+    match e {
+        SeriesError::Line { line, what, remedy } => {
+            Fault::at(file, *line as u32, "row", what, *remedy)
+        }
+        SeriesError::NotAscending { line, .. } | SeriesError::NoTime { line } => {
+            Fault::at(file, *line as u32, "time", wrong, remedy)
+        }
+        SeriesError::Empty => Fault::at(
+            file,
+            1,
+            "rows",
+            "a header and no rows",
+            "write a row a sample",
+        ),
+        SeriesError::NoRate => Fault::at(
+            file,
+            1,
+            "time",
+            "no column `time`",
+            "add a column `time` in seconds",
+        ),
+        _ => Fault::of(file, "record", wrong, remedy),
+    }
+}
+
+/// Loads of piece `i`, and the sums over it. Where the piece stands in the record is left to whoever puts pieces in order.
+pub(super) fn block(record: &Record, filter: &Filter, i: usize) -> Result<(Block, Sums), Fault> {
+    let mut sums = Sums::new(filter.n_gauges(), filter.n_loads());
+    let mut loads = SampleLoads::default();
+    record.each(i, |strain| filter.apply(strain, 1.0, &mut loads, &mut sums))?;
+    let block = Block {
+        first: 0,
+        times: record.times(i),
+        loads,
+    };
+    Ok((block, sums))
+}

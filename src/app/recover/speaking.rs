@@ -1,0 +1,101 @@
+//! The gauges of a record that read, and S of them.
+
+use super::reading::Record;
+use super::task::{Task, columns_of};
+use crate::app::fault::{Fault, Faults};
+use crate::app::files::FileBytes;
+use crate::app::job::correct::channel_of;
+use crate::app::work::Work;
+use crate::finding::{Finding, Severity};
+use crate::linalg::Matrix;
+use crate::sensitivity::Sensitivity;
+
+/// A record whose columns are the gauges of S, every one of which gives something somewhere.
+pub(super) struct Speaking {
+    pub record: Record,
+    pub sensitivity: Sensitivity,
+    /// Subtracted from readings, strain by gauge.
+    pub zero: Vec<f64>,
+}
+
+/// Opens the record of a job and leaves out the gauges that have no column, are ignored, or give nothing.
+///
+/// # Errors
+/// A record that can't be read, or without a single reading.
+pub(super) fn speaking(work: &mut Work, task: &Task, bytes: FileBytes) -> Result<Speaking, Faults> {
+    let all = &task.prepared.sensitivity;
+    let named = &task.measured.strain;
+    let file = named.given.as_str();
+    let corrections = &task.job.corrections;
+    let record = Record::open(task.job, task.measured, bytes, &all.gauges)?;
+    work.findings.extend(record.findings());
+    let found = columns_of(work, named, &record.names, &all.gauges);
+    let channel = |g: usize| (found[g], channel_of(corrections, &all.gauges[g]));
+    // Gauges without a column take no part.
+    let mut used: Vec<usize> = (0..found.len())
+        .filter(|&g| found[g].is_some() && task.zero[g].is_finite() && !channel(g).1.ignore)
+        .collect();
+    if used.is_empty() {
+        return Err(Faults::from(Fault::at(
+            file,
+            1,
+            "gauge",
+            "no column is named after a gauge of the job",
+            "name the columns after the gauges",
+        )));
+    }
+    let mut record = record.with_columns(used.iter().map(|&g| channel(g)).collect());
+    let silent = silent(&record)?;
+    if silent.iter().any(|s| *s) {
+        let dead = used.iter().zip(&silent).filter(|(_, s)| **s);
+        let names: Vec<&str> = dead.map(|(g, _)| all.gauges[*g].as_str()).collect();
+        work.findings.push(Finding::new(
+            Severity::Warning,
+            "gauge-silent",
+            names.join(", "),
+            "these gauges give nothing: the loads are those of the others, with wider intervals",
+            "repair the channel, or leave its gauge out: [[correction]] ignore = true",
+        ));
+        let mut speaks = silent.iter().map(|s| !s);
+        used.retain(|_| speaks.next().unwrap_or(true));
+        record = record.with_columns(used.iter().map(|&g| channel(g)).collect());
+    }
+    if used.is_empty() {
+        return Err(Faults::from(Fault::of(
+            file,
+            "gauge",
+            "no gauge gives a single reading",
+            "check the export of the record",
+        )));
+    }
+    Ok(Speaking {
+        sensitivity: Sensitivity {
+            gauges: used.iter().map(|&g| all.gauges[g].clone()).collect(),
+            loads: all.loads.clone(),
+            values: Matrix::from_fn(used.len(), all.loads.len(), |i, l| all.values[(used[i], l)]),
+            uncertainty: all.uncertainty.as_ref().map(|u| u.of_gauges(&used)),
+        },
+        zero: used.iter().map(|&g| task.zero[g]).collect(),
+        record,
+    })
+}
+
+/// Which columns give nothing anywhere over the record, looked at in ten pieces spread over it.
+fn silent(record: &Record) -> Result<Vec<bool>, Faults> {
+    let (n, pieces) = (record.n_columns(), record.n_pieces());
+    let mut out = vec![true; n];
+    for p in 0..pieces.min(10) {
+        let (_, values) = record
+            .piece(p * pieces / pieces.min(10))
+            .map_err(Faults::from)?;
+        for row in values.chunks_exact(n.max(1)) {
+            out.iter_mut()
+                .zip(row)
+                .for_each(|(s, v)| *s &= !v.is_finite());
+        }
+        if out.iter().all(|s| !s) {
+            break;
+        }
+    }
+    Ok(out)
+}

@@ -1,0 +1,225 @@
+//! What runs and records share: measured strain, S, zero and reference, stated errors.
+
+use crate::app::fault::{Fault, Faults};
+use crate::app::job::strain::read_strain;
+use crate::app::job::{Job, Measured, NamedFile, Reference};
+use crate::app::solved::stands_on_wheels;
+use crate::app::strain::Prepared;
+use crate::app::wheels::{floor_fault, wheels_of};
+use crate::app::work::Work;
+use crate::fe::floor::solve_standing;
+use crate::finding::{Finding, Severity};
+use crate::gauge::reading;
+use crate::model::Model;
+use crate::recovery::ErrorModel;
+use crate::recovery::net::effective_samples;
+use crate::units::MICROSTRAIN;
+
+/// What runs and records share.
+pub(super) struct Task<'a> {
+    pub job: &'a Job,
+    pub measured: &'a Measured,
+    pub prepared: &'a Prepared,
+    pub errors: ErrorModel,
+    /// Strain subtracted from readings, by gauge of S.
+    pub zero: Vec<f64>,
+    /// Noise variance of a reading less zero, in units of that of a reading.
+    pub noise_factor: f64,
+}
+
+/// `[measured]` of a job.
+pub(super) fn measured_of(job: &Job) -> Result<&Measured, Faults> {
+    job.measured.as_ref().ok_or_else(|| {
+        Faults::from(Fault::of(
+            &*job.file,
+            "measured",
+            "the job has no [measured]",
+            "name the strain file: [measured] strain = \"strain.csv\"",
+        ))
+    })
+}
+
+/// Says that loads are changes, where no reference is stated.
+pub(super) fn changes(measured: &Measured) -> Option<Finding> {
+    (measured.reference == Reference::None).then(|| {
+        Finding::new(
+            Severity::Info,
+            "loads-are-changes",
+            "measured.reference",
+            "loads are changes from the state at which the gauges read zero",
+            "state `reference` to get totals",
+        )
+    })
+}
+
+/// What runs and records share: zero, reference, stated errors.
+pub(super) fn task_of<'a>(
+    work: &mut Work,
+    job: &'a Job,
+    measured: &'a Measured,
+    prepared: &'a Prepared,
+) -> Result<Task<'a>, Faults> {
+    let (mut zero, n_zero) = zero_of(work, job, measured, &prepared.sensitivity.gauges)?;
+    for (z, r) in zero
+        .iter_mut()
+        .zip(reference_strain(job, measured, prepared)?)
+    {
+        *z -= r;
+    }
+    Ok(Task {
+        job,
+        measured,
+        prepared,
+        errors: ErrorModel {
+            noise: measured.noise_microstrain * MICROSTRAIN,
+            model_rel: measured.model_uncertainty_rel,
+        },
+        zero,
+        noise_factor: 1.0 + n_zero.map_or(0.0, |n| 1.0 / n),
+    })
+}
+
+/// Where a gauge's column stands; `None`: it has none.
+pub(super) fn columns_of(
+    work: &mut Work,
+    named: &NamedFile,
+    header: &[String],
+    gauges: &[String],
+) -> Vec<Option<usize>> {
+    let columns: Vec<Option<usize>> = gauges
+        .iter()
+        .map(|g| header.iter().position(|h| h == g))
+        .collect();
+    let mut note = |code, list: Vec<&str>, message: &str, remedy: &str| {
+        if !list.is_empty() {
+            work.findings.push(Finding::new(
+                Severity::Warning,
+                code,
+                list.join(", "),
+                format!("`{}`: {message}", named.given),
+                remedy,
+            ));
+        }
+    };
+    note(
+        "gauge-without-strain",
+        gauges
+            .iter()
+            .zip(&columns)
+            .filter(|(_, c)| c.is_none())
+            .map(|(g, _)| g.as_str())
+            .collect(),
+        "gauges without a column are left out",
+        "name the columns after the gauges",
+    );
+    note(
+        "strain-without-gauge",
+        header
+            .iter()
+            .filter(|h| !gauges.contains(h))
+            .map(String::as_str)
+            .collect(),
+        "columns that belong to no gauge are left out",
+        "add the gauges, or drop the columns",
+    );
+    columns
+}
+
+/// The zero readings, strain by gauge, and the effective number of samples behind them; zeros and `None` without a file.
+fn zero_of(
+    work: &mut Work,
+    job: &Job,
+    measured: &Measured,
+    gauges: &[String],
+) -> Result<(Vec<f64>, Option<f64>), Faults> {
+    let Some(named) = &measured.zero else {
+        return Ok((vec![0.0; gauges.len()], None));
+    };
+    let table = read_strain(&mut work.inputs, job, named)?;
+    let columns = columns_of(work, named, &table.gauges, gauges);
+    let mut effective = f64::INFINITY;
+    let mut zero = vec![0.0; gauges.len()];
+    for (z, c) in zero.iter_mut().zip(&columns) {
+        let Some(c) = c else { continue };
+        let v: Vec<f64> = (0..table.n_rows())
+            .filter_map(|i| table.row(i).get(*c).copied())
+            .filter(|v| v.is_finite())
+            .collect();
+        if v.is_empty() {
+            *z = f64::NAN;
+            continue;
+        }
+        *z = v.iter().sum::<f64>() / v.len() as f64 * MICROSTRAIN;
+        effective = effective.min(effective_samples(&v));
+    }
+    Ok((zero, effective.is_finite().then_some(effective)))
+}
+
+/// Strain of the reference state by gauge: it is added to the readings, so that loads are totals.
+pub(in crate::app) fn reference_strain(
+    job: &Job,
+    measured: &Measured,
+    prepared: &Prepared,
+) -> Result<Vec<f64>, Faults> {
+    let n = prepared.sensitivity.gauges.len();
+    let fault = |wrong: String, remedy: &str| {
+        Faults::from(Fault::at(
+            &*job.file,
+            measured.line,
+            "measured.reference",
+            wrong,
+            remedy,
+        ))
+    };
+    match (measured.reference, &prepared.fields) {
+        (Reference::None, _) => Ok(vec![0.0; n]),
+        (Reference::Subcase(id), Some(fields)) => {
+            let case = fields.subcase(id).ok_or_else(|| {
+                fault(
+                    format!("the results have no subcase {id}"),
+                    "name the subcase of the reference state",
+                )
+            })?;
+            prepared
+                .gauges
+                .iter()
+                .map(|g| {
+                    reading(g, case).ok_or_else(|| {
+                        fault(
+                            format!("gauge `{}` has no strain in subcase {id}", g.name),
+                            "ask for STRAIN of its element there",
+                        )
+                    })
+                })
+                .collect()
+        }
+        (Reference::Gravity, Some(fields)) => Ok(standing_strain(job, fields.model(), prepared)?),
+        (_, None) => Err(fault(
+            "a given S has no subcases and no weight".to_owned(),
+            "write reference = \"none\", or give a [model] instead of [sensitivity]",
+        )),
+    }
+}
+
+/// Strain by gauge of the model standing on its wheels under its own weight: `S R`, `R` the reactions at the job's wheels on a flat floor.
+/// A free structure that gravity and its reactions hold in balance is strained by the reactions with their inertia relief alone.
+fn standing_strain(job: &Job, model: &Model, prepared: &Prepared) -> Result<Vec<f64>, Faults> {
+    stands_on_wheels(job, model, "the reference \"gravity\"")?;
+    let wheels = wheels_of(job, model)?;
+    let standing = solve_standing(model, wheels.axis, &wheels.grids, &[], None)
+        .map_err(|e| floor_fault(job, &e))?;
+    let reactions = standing.under_weight(model, job.units.standard_gravity());
+    let s = &prepared.sensitivity;
+    Ok((0..s.gauges.len())
+        .map(|g| {
+            let by_wheel = wheels.loads.iter().zip(&reactions);
+            by_wheel
+                .filter_map(|(l, r)| {
+                    let name = &job.loads.get(*l)?.name;
+                    let column = s.loads.iter().position(|c| c.name == *name)?;
+                    Some(s.values[(g, column)] * r)
+                })
+                .sum()
+        })
+        .collect())
+}

@@ -1,0 +1,74 @@
+//! Where the loads of a record are written while they are recovered.
+
+use super::tables::{LoadTables, LoadsFile};
+use crate::app::fault::Fault;
+use crate::app::output::Output;
+use crate::app::recover::{Block, RecordHead, RecordSink, Samples};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Takes the loads of a record into `loads.csv` and `loads.bin` of a folder, under temporary names: [`RecordFolder::into_output`] gives the
+/// folder to whoever adds the other files and puts all of them in place. Before a record begins nothing is touched.
+pub struct RecordFolder {
+    // Dropped before `out`, which removes the files.
+    tables: Option<LoadTables>,
+    out: Option<Output>,
+    folder: PathBuf,
+}
+
+impl RecordFolder {
+    /// Into this folder.
+    pub fn at(folder: &Path) -> Self {
+        Self {
+            tables: None,
+            out: None,
+            folder: folder.to_owned(),
+        }
+    }
+
+    /// The folder with what was written so far.
+    ///
+    /// # Errors
+    /// A fault where it can't be created.
+    pub fn into_output(self) -> Result<Output, Fault> {
+        match self.out {
+            Some(out) => Ok(out),
+            None => Output::begin(&self.folder),
+        }
+    }
+}
+
+impl RecordSink for RecordFolder {
+    fn begin(&mut self, head: &Arc<RecordHead>) -> Result<(), Fault> {
+        let out = match self.out.take() {
+            Some(out) => out,
+            None => Output::begin(&self.folder)?,
+        };
+        let out = self.out.insert(out);
+        self.tables = Some(LoadTables::begin(out, head)?);
+        Ok(())
+    }
+
+    fn take(&mut self, blocks: Vec<Block>) -> Result<(), Fault> {
+        match (&mut self.tables, &self.out) {
+            (Some(tables), Some(out)) => tables.take(out, &blocks),
+            _ => Ok(()),
+        }
+    }
+
+    fn end(&mut self, samples: u64) -> Result<(), Fault> {
+        match (self.tables.take(), &self.out) {
+            (Some(tables), Some(out)) => tables.end(out, samples),
+            _ => Ok(()),
+        }
+    }
+
+    fn samples(&self) -> Result<Box<dyn Samples + '_>, Fault> {
+        let nothing = || {
+            let remedy = "report this as an error of the program";
+            Fault::of("loads.bin", "samples", "no record was taken", remedy)
+        };
+        let out = self.out.as_ref().ok_or_else(nothing)?;
+        Ok(Box::new(LoadsFile::read_back(out)?))
+    }
+}

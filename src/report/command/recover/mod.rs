@@ -1,0 +1,38 @@
+//! Files and words of `recover`.
+//!
+//! Loads of a record are written while they are recovered, by a [`RecordFolder`]; everything else is written of the outcome.
+
+mod columns;
+mod folder;
+mod nastran;
+#[cfg(feature = "parquet")]
+mod parquet;
+mod record;
+mod rpc;
+mod runs;
+mod tables;
+mod vtu;
+
+pub use folder::RecordFolder;
+
+use super::Report;
+use crate::app::fault::Faults;
+use crate::app::outcome::Outcome;
+use crate::app::output::Output;
+use crate::app::recover::{Recovered, States};
+
+impl Report for Outcome<Recovered> {
+    fn write(&self, out: &mut Output) -> Result<(), Faults> {
+        match &self.states {
+            States::Runs(runs) => runs::write(out, self, runs),
+            States::Record(record) => record::write(out, self, record),
+        }
+    }
+
+    fn words(&self) -> String {
+        match &self.states {
+            States::Runs(runs) => runs::words(runs),
+            States::Record(record) => record::words(record),
+        }
+    }
+}

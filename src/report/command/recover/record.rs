@@ -1,0 +1,194 @@
+//! Records: what is made of `loads.bin`, the page, `loads.xlsx`.
+
+use super::columns::{by_gauge, columns_with_units};
+use super::tables::{BIN, CSV, LoadTables, LoadsFile};
+use super::{nastran, rpc};
+use crate::app::fault::Faults;
+use crate::app::job::LoadFile;
+use crate::app::outcome::Outcome;
+use crate::app::output::Output;
+use crate::app::recover::{LoadDamage, Recovered, RecoveredRecord};
+use crate::report::command::{write_book, write_page};
+use crate::report::csv_cell;
+use crate::report::figure::LoadTrace;
+use crate::report::page::Page;
+use crate::report::scene::{Shown, run_arrows, scene_of_job};
+use crate::report::spreadsheet::{HistoryLoad, history_sheet, residual_sheet};
+use crate::report::strain::{Recovered as OnPage, RecoveredRun, recover_page};
+use std::io::Write;
+
+/// Blocks formed at a time.
+const GROUP: usize = 8;
+
+/// Writes everything; `loads.csv` and `loads.bin` only where the outcome holds its history, else a [`super::RecordFolder`] wrote them.
+///
+/// # Errors
+/// The first file that can't be written.
+pub(super) fn write(
+    out: &mut Output,
+    outcome: &Outcome<Recovered>,
+    record: &RecoveredRecord,
+) -> Result<(), Faults> {
+    let head = &record.head;
+    if let Some(history) = &record.history {
+        let mut tables = LoadTables::begin(out, head)?;
+        for blocks in history.blocks().chunks(GROUP) {
+            tables.take(out, blocks)?;
+        }
+        tables.end(out, record.samples)?;
+    }
+    if out.holds(CSV) {
+        let columns = columns_with_units(["time", "s"], &head.names, &head.units);
+        out.declare(CSV, columns);
+    }
+    if let Some(damage) = &record.damage {
+        out.declare("rainflow.csv", RAINFLOW);
+        out.write("rainflow.csv", |w| rainflow_csv(w, damage))?;
+    }
+    if head.is_read_again() && out.holds(BIN) {
+        derived(out, outcome, record)?;
+    }
+    let loads: Vec<HistoryLoad> = record.loads.iter().map(of_history).collect();
+    write_page(out, outcome, page(outcome, record))?;
+    let sheets = [
+        history_sheet(&loads),
+        residual_sheet(&by_gauge(&record.gauges)),
+    ];
+    write_book(out, outcome, &outcome.job, "loads.xlsx", &sheets)
+}
+
+/// Files that are made of `loads.bin`.
+fn derived(
+    out: &mut Output,
+    outcome: &Outcome<Recovered>,
+    record: &RecoveredRecord,
+) -> Result<(), Faults> {
+    let loads = LoadsFile::read_back(out)?;
+    for file in &record.head.files {
+        match file {
+            LoadFile::Rainflow => {}
+            LoadFile::Rpc => rpc::write(out, record, &loads)?,
+            LoadFile::Nastran => nastran::write_history(out, outcome, &record.head, &loads)?,
+            #[cfg(feature = "parquet")]
+            LoadFile::Parquet => super::parquet::write(out, &record.head, &loads)?,
+            #[cfg(not(feature = "parquet"))]
+            LoadFile::Parquet => {}
+        }
+    }
+    Ok(())
+}
+
+/// One line.
+pub(super) fn words(record: &RecoveredRecord) -> String {
+    format!(
+        "{}: {} samples at {:.4} Hz, {:.4} s, {} with gaps, residual {:.2} microstrain rms\n",
+        record.head.file,
+        record.samples,
+        rate(record),
+        record.duration_s,
+        record.gaps,
+        record.residual_rms_microstrain
+    )
+}
+
+fn rate(record: &RecoveredRecord) -> f64 {
+    record.sample_rate_hz.unwrap_or(f64::NAN)
+}
+
+/// Columns of rainflow.csv.
+const RAINFLOW: [(&str, &str); 7] = [
+    ("load", ""),
+    ("unit", ""),
+    ("range_from", "report unit of the load"),
+    ("range_to", "report unit of the load"),
+    ("cycles", ""),
+    ("mean", "report unit of the load"),
+    ("damage", "report unit to the power of the slope"),
+];
+
+fn rainflow_csv(w: &mut dyn Write, damage: &[LoadDamage]) -> std::io::Result<()> {
+    writeln!(w, "{}", RAINFLOW.map(|c| c.0).join(","))?;
+    for d in damage {
+        let bins = &d.count.bins;
+        let width = d.count.limit / bins.len() as f64;
+        for (b, bin) in bins.iter().enumerate().filter(|(_, b)| b.cycles > 0.0) {
+            writeln!(
+                w,
+                "{},{},{:.7e},{:.7e},{},{:.7e},{:.7e}",
+                csv_cell(&d.name),
+                d.unit,
+                width * b as f64,
+                width * (b + 1) as f64,
+                bin.cycles,
+                bin.sum_of_means / bin.cycles,
+                bin.damage
+            )?;
+        }
+    }
+    Ok(())
+}
+
+fn of_history(l: &crate::app::recover::RecordLoad) -> HistoryLoad {
+    HistoryLoad {
+        name: l.name.clone(),
+        unit: l.unit.clone(),
+        min: l.min,
+        mean: l.value,
+        max: l.max,
+        rms: l.rms,
+        sigma: l.sigma,
+    }
+}
+
+fn page(outcome: &Outcome<Recovered>, record: &RecoveredRecord) -> Page {
+    let (job, file) = (&outcome.job, &record.head.file);
+    let number = |name: &str, value: String| (name.to_owned(), value);
+    let numbers = [
+        number("Samples", record.samples.to_string()),
+        number("Sample rate, Hz", format!("{:.4}", rate(record))),
+        number("Duration, s", format!("{:.4}", record.duration_s)),
+        number("Samples with gaps", record.gaps.to_string()),
+        number(
+            "Residual, microstrain rms",
+            format!("{:.3}", record.residual_rms_microstrain),
+        ),
+    ];
+    let loads = record.loads.iter();
+    let runs = [RecoveredRun {
+        run: format!("{file}: smallest, mean, largest"),
+        loads: loads
+            .map(|l| (l.name.clone(), [l.min, l.value, l.max], l.unit.clone()))
+            .collect(),
+    }];
+    let scene = scene_of_job(job, &outcome.prepared).map(|mut scene| {
+        scene.arrows = run_arrows(job, scene.model, &runs, Shown::Extremes);
+        scene
+    });
+    let found = OnPage {
+        sensitivity: &record.sensitivity,
+        runs: &runs,
+        points: &[],
+        traces: &traces(record),
+        by_gauge: &by_gauge(&record.gauges),
+        numbers: &numbers,
+    };
+    recover_page(&job.title, scene.as_ref(), &found, &outcome.findings)
+}
+
+/// Loads over time, report units; how wide the interval of a sample is, their root mean square says.
+fn traces(record: &RecoveredRecord) -> Vec<LoadTrace> {
+    let spans = record.spans.list();
+    let loads = record.loads.iter().zip(&record.head.units).enumerate();
+    loads
+        .map(|(l, (load, unit))| LoadTrace {
+            name: load.name.clone(),
+            unit: load.unit.clone(),
+            times: spans.iter().map(|s| s.time).collect(),
+            half: record.head.filter.coverage_factor() * load.sigma,
+            spans: spans
+                .iter()
+                .map(|s| s.of_load(l).map(|v| v * unit.factor))
+                .collect(),
+        })
+        .collect()
+}

@@ -1,0 +1,30 @@
+//! `loads.rsp`.
+
+use super::tables::LoadsFile;
+use crate::app::fault::Faults;
+use crate::app::output::Output;
+use crate::app::recover::{RecoveredRecord, Samples, rpc_targets};
+use crate::series::rpc::write_rpc;
+
+/// Writes the history in RPC III, report units.
+///
+/// # Errors
+/// A file that can't be written.
+pub(super) fn write(
+    out: &mut Output,
+    record: &RecoveredRecord,
+    loads: &LoadsFile,
+) -> Result<(), Faults> {
+    let targets = rpc_targets(&record.head, &record.sums);
+    let h = &loads.header;
+    // A record of one sample has no step: the format wants one.
+    let dt = if h.dt > 0.0 { h.dt } else { 1.0 };
+    let columns: Vec<usize> = (0..targets.len()).collect();
+    out.write("loads.rsp", |w| {
+        write_rpc(w, &targets, dt, h.samples, |from, to, out| {
+            loads.read(from, to, &columns, out);
+        })
+        .map(|_| ())
+    })?;
+    Ok(())
+}

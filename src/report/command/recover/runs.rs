@@ -1,0 +1,170 @@
+//! Static states: `loads.csv`, `loads.xlsx`, the page, `loads.bdf`, `loads.vtu`.
+
+use super::columns::{by_gauge, columns, columns_with_units};
+use super::{nastran, vtu};
+use crate::app::fault::Faults;
+use crate::app::job::LoadFile;
+use crate::app::outcome::Outcome;
+use crate::app::output::Output;
+use crate::app::recover::{Recovered, RecoveredRuns};
+use crate::recovery::RunEstimate;
+use crate::report::command::{write_book, write_page};
+use crate::report::csv_cell;
+use crate::report::figure::GaugePoints;
+use crate::report::page::Page;
+use crate::report::scene::{Shown, run_arrows, scene_of_job};
+use crate::report::spreadsheet::{residual_sheet, runs_sheet};
+use crate::report::strain::{Recovered as OnPage, RecoveredRun, recover_page};
+use crate::units::MICROSTRAIN;
+use std::fmt::Write as _;
+use std::io::Write;
+
+/// Writes everything.
+///
+/// # Errors
+/// The first file that can't be written.
+pub(super) fn write(
+    out: &mut Output,
+    outcome: &Outcome<Recovered>,
+    runs: &RecoveredRuns,
+) -> Result<(), Faults> {
+    let job = &outcome.job;
+    let columns = columns_with_units(["run", ""], &runs.names, &runs.units);
+    out.declare("loads.csv", columns);
+    out.write("loads.csv", |w| loads_csv(w, runs))?;
+    let files = &job.recover.files;
+    if files
+        .as_ref()
+        .is_none_or(|f| f.contains(&LoadFile::Nastran))
+    {
+        nastran::write_runs(out, outcome, runs)?;
+    }
+    vtu::write(out, outcome, runs)?;
+    let shown: Vec<RecoveredRun> = runs.recovery.runs.iter().map(|r| shown(runs, r)).collect();
+    write_page(out, outcome, page(outcome, runs, &shown))?;
+    let sheets = [runs_sheet(&shown), residual_sheet(&by_gauge(&runs.gauges))];
+    write_book(out, outcome, job, "loads.xlsx", &sheets)
+}
+
+/// A line a run.
+pub(super) fn words(runs: &RecoveredRuns) -> String {
+    let mut text = String::new();
+    for r in &runs.recovery.runs {
+        let list: Vec<String> = runs
+            .units
+            .iter()
+            .enumerate()
+            .map(|(l, u)| {
+                let half = r.estimate.coverage_factor * r.estimate.sigma(l);
+                format!(
+                    "{} {:.4} +- {:.4} {}",
+                    r.estimate.names[l],
+                    r.estimate.values[l] * u.factor,
+                    half * u.factor,
+                    u.name
+                )
+            })
+            .collect();
+        let _ = writeln!(text, "{}: {}", r.estimate.run, list.join(", "));
+    }
+    text
+}
+
+fn loads_csv(w: &mut dyn Write, runs: &RecoveredRuns) -> std::io::Result<()> {
+    let names: Vec<String> = columns("run", &runs.names);
+    let names: Vec<_> = names.iter().map(|n| csv_cell(n)).collect();
+    writeln!(w, "{}", names.join(","))?;
+    for r in &runs.recovery.runs {
+        write!(w, "{}", csv_cell(&r.estimate.run))?;
+        for (l, u) in runs.units.iter().enumerate() {
+            let [low, high] = r.estimate.interval(l);
+            for v in [r.estimate.values[l], low, high] {
+                let v = v * u.factor;
+                if v.is_finite() {
+                    write!(w, ",{v}")?
+                } else {
+                    write!(w, ",")?
+                }
+            }
+        }
+        writeln!(w)?;
+    }
+    Ok(())
+}
+
+fn shown(runs: &RecoveredRuns, r: &RunEstimate) -> RecoveredRun {
+    let loads = runs.units.iter().enumerate().map(|(l, u)| {
+        let [low, high] = r.estimate.interval(l);
+        (
+            r.estimate.names[l].clone(),
+            [low, r.estimate.values[l], high].map(|v| v * u.factor),
+            u.name.clone(),
+        )
+    });
+    RecoveredRun {
+        run: r.estimate.run.clone(),
+        loads: loads.collect(),
+    }
+}
+
+fn page(outcome: &Outcome<Recovered>, runs: &RecoveredRuns, shown: &[RecoveredRun]) -> Page {
+    let (job, s) = (&outcome.job, &outcome.prepared.sensitivity);
+    let numbers = vec![
+        ("Runs".to_owned(), runs.recovery.runs.len().to_string()),
+        (
+            "Residual, microstrain rms".to_owned(),
+            format!("{:.3}", runs.residual_rms_microstrain),
+        ),
+        (
+            "Condition number, scaled".to_owned(),
+            format!("{:.2}", s.condition_number_scaled()),
+        ),
+    ];
+    let scene = scene_of_job(job, &outcome.prepared).map(|mut scene| {
+        scene.arrows = run_arrows(job, scene.model, shown, Shown::Interval);
+        scene
+    });
+    let found = OnPage {
+        sensitivity: s,
+        runs: shown,
+        points: &points(runs),
+        traces: &[],
+        by_gauge: &by_gauge(&runs.gauges),
+        numbers: &numbers,
+    };
+    recover_page(&job.title, scene.as_ref(), &found, &outcome.findings)
+}
+
+/// Predicted and measured microstrain of each gauge, by all gauges and by all others.
+fn points(runs: &RecoveredRuns) -> Vec<GaugePoints> {
+    let of_gauge = |g: usize, leverage: f64| {
+        let pairs = runs.recovery.runs.iter().zip(&runs.readings);
+        let pairs = pairs.map(|(r, y)| {
+            let (predicted, measured) = (r.predicted[g], y.strain[g]);
+            (
+                held_out(predicted, measured, leverage) / MICROSTRAIN,
+                measured / MICROSTRAIN,
+            )
+        });
+        pairs.collect()
+    };
+    let gauges = runs.gauges.iter().enumerate();
+    gauges
+        .map(|(g, of)| GaugePoints {
+            name: of.name.clone(),
+            residual: of.residual_rms_microstrain,
+            points: [0.0, of.leverage].map(|leverage| of_gauge(g, leverage)),
+        })
+        .collect()
+}
+
+/// What all other gauges predict of this one, from its own prediction and leverage; NaN where the others say nothing of it.
+fn held_out(predicted: f64, measured: f64, leverage: f64) -> f64 {
+    /// Leverage from which the others say next to nothing.
+    const ALONE: f64 = 0.999;
+    if leverage < ALONE {
+        measured - (measured - predicted) / (1.0 - leverage)
+    } else {
+        f64::NAN
+    }
+}
