@@ -142,18 +142,8 @@ impl<A: Answer> Outcome<A> {
     /// # Errors
     /// Where the answer has no JSON form, which is a mistake of the program.
     pub fn to_json(&self, tables: &Tables) -> Result<String, serde_json::Error> {
-        self.to_json_of(A::COMMAND, tables)
-    }
-}
-
-impl<A: Serialize> Outcome<A> {
-    pub(super) fn to_json_of(
-        &self,
-        command: &str,
-        tables: &Tables,
-    ) -> Result<String, serde_json::Error> {
         let file = ResultFile {
-            command,
+            command: A::COMMAND,
             version: env!("CARGO_PKG_VERSION"),
             schema: SCHEMA,
             units: &self.units,

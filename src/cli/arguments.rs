@@ -195,15 +195,6 @@ pub struct CommonArguments {
     pub no_cache: bool,
 }
 
-impl CommonArguments {
-    /// What the application is asked.
-    pub(super) fn to_app(&self) -> crate::app::CommonArguments {
-        crate::app::CommonArguments {
-            out: self.out.clone(),
-        }
-    }
-}
-
 /// A command on a job.
 #[derive(clap::Args, Debug)]
 pub struct JobArguments {

@@ -9,7 +9,7 @@ mod upkeep;
 
 pub use arguments::*;
 
-use crate::app::{self, Session};
+use crate::app;
 use clap::CommandFactory;
 use run::{Run, print};
 use std::process::ExitCode;
@@ -17,14 +17,6 @@ use std::process::ExitCode;
 /// Runs the command and returns the exit code: 0 done, 1 done with error findings, 2 bad input.
 pub fn run(arguments: Arguments) -> ExitCode {
     interrupt::watch();
-    let on_job = |command: &'static str, a: &JobArguments, work: JobCommand| {
-        let job = app::JobArguments {
-            job: a.job.clone(),
-            common: a.common.to_app(),
-        };
-        Run::of(&a.common, &a.job)
-            .session(|cx| Session::run(command, &job.common, cx, |s| work(&job, s)))
-    };
     match arguments.command {
         Command::Strains(a) => Run::of(&a.common, &a.deck)
             .files(&a.deck, |cx| app::strains::strains(&a.deck, &a.results, cx)),
@@ -57,7 +49,10 @@ pub fn run(arguments: Arguments) -> ExitCode {
         Command::Respond(a) => Run::of(&a.common, &a.job).job(&a.job, app::respond::respond),
         Command::Study(a) => Run::of(&a.common, &a.job).job(&a.job, app::study::study),
         Command::Demo(a) => {
-            Run::of(&a.common, demo::DECK_NAME.as_ref()).session(|cx| demo::run(&a, cx))
+            let run = Run::of(&a.common, demo::DECK_NAME.as_ref());
+            let folder = a.common.out.clone().or(a.folder);
+            let folder = folder.unwrap_or_else(|| demo::FOLDER.into());
+            run.ask_into(&folder, |cx| demo::story(&folder, cx))
         }
         Command::Solve(a) => {
             let (run, options) = (Run::of(&a.job.common, &a.job.job), a.options());
@@ -102,6 +97,3 @@ pub fn run(arguments: Arguments) -> ExitCode {
         }
     }
 }
-
-/// A command on a job that writes as it goes.
-type JobCommand = fn(&app::JobArguments, &mut Session) -> Result<(), app::fault::Faults>;

@@ -2,7 +2,6 @@
 
 use super::CommonArguments;
 use super::progress::Terminal;
-use crate::app::Closed;
 use crate::app::check::check;
 use crate::app::context::{Context, Disk};
 use crate::app::fault::{Fault, Faults};
@@ -44,24 +43,6 @@ impl Run {
         Self {
             common: common.clone(),
             store: (!common.no_cache).then(Folder::of_user),
-        }
-    }
-
-    /// Runs a command that writes as it goes.
-    pub fn session(
-        &self,
-        work: impl FnOnce(&Context) -> Result<Closed, Faults> + Send,
-    ) -> ExitCode {
-        match self.pooled(work) {
-            Ok(closed) => self.say(&Said {
-                text: &closed.text,
-                json: &closed.json,
-                findings: &closed.findings,
-                notes: &closed.notes,
-                folder: closed.folder.as_deref(),
-                faults: &closed.faults,
-            }),
-            Err(faults) => refuse(&faults),
         }
     }
 
@@ -111,7 +92,8 @@ impl Run {
         self.ask_into(&self.folder(first), ask)
     }
 
-    fn ask_into<A>(
+    /// Asks a question, writes the outcome into `folder`.
+    pub fn ask_into<A>(
         &self,
         folder: &Path,
         ask: impl FnOnce(&Context) -> Result<Outcome<A>, Faults> + Send,

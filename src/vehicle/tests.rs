@@ -5,7 +5,6 @@ use crate::series::channels::Channels;
 use crate::series::csv::read_csv;
 use crate::series::spectrum::Band;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 mod full_truck;
 mod parts;

@@ -1,6 +1,7 @@
 //! A chapter of the story, and the deck that it is told of.
 
-use crate::app::Closed;
+use crate::app::outcome::Findings;
+use serde_json::Value;
 
 /// The model, as in models/truck-shell.
 pub(super) const DECK: &str = include_str!("../../../models/truck-shell/truck.bdf");
@@ -12,5 +13,15 @@ pub(super) struct Chapter {
     pub folder: &'static str,
     pub words: String,
     pub command: &'static str,
-    pub step: Closed,
+    pub step: Step,
+}
+
+/// A command of the story, done and written.
+pub(super) struct Step {
+    /// The answer as `result.json` has it.
+    pub result: Value,
+    /// What the command said.
+    pub text: String,
+    pub findings: Findings,
+    pub seconds: f64,
 }

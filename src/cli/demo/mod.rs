@@ -8,39 +8,98 @@ mod yard;
 
 pub(super) use chapter::DECK_NAME;
 
-use super::DemoArguments;
 use super::run::recover_and_save;
+use crate::app;
 use crate::app::context::Context;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::Job;
-use crate::app::outcome::{Answer, Outcome};
-use crate::app::{self, Closed, CommonArguments, JobArguments, Session};
+use crate::app::outcome::{Answer, Outcome, StatedUnits};
+use crate::app::output::Output;
+use crate::app::work::Work;
 use crate::fe::SolveOptions;
 use crate::report::command::{Report, save};
-use chapter::{Chapter, DECK};
-use serde_json::{Value, json};
+use crate::units::UnitSystem;
+use chapter::{Chapter, DECK, Step};
+use serde::Serialize;
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Where the story goes if nobody says.
-const FOLDER: &str = "strainbridge-demo";
+pub(super) const FOLDER: &str = "strainbridge-demo";
 
-/// Plays the story.
-pub fn run(arguments: &DemoArguments, cx: &Context) -> Result<Closed, Faults> {
-    Session::run("demo", &CommonArguments::default(), cx, |s| {
-        story(arguments, s)
-    })
+/// What was hidden in the story, what of it was found, and what that is worth.
+#[derive(Serialize)]
+pub struct Story {
+    /// Its chapters.
+    steps: Vec<StepTold>,
+    /// Effects that `reconcile` named.
+    named: Vec<String>,
+    /// The effect that was hidden.
+    hidden: String,
+    /// Error of the wheel loads, rms, relative.
+    wheel_force_error: BeforeAfter,
+    /// Error of the payload, rms, relative.
+    payload_error: f64,
+    #[serde(skip)]
+    chapters: Vec<Chapter>,
+    #[serde(skip)]
+    folder: PathBuf,
 }
 
-fn story(arguments: &DemoArguments, session: &mut Session) -> Result<(), Faults> {
-    let folder = arguments
-        .common
-        .out
-        .clone()
-        .or_else(|| arguments.folder.clone())
-        .unwrap_or_else(|| PathBuf::from(FOLDER));
-    session.put_units(crate::units::UnitSystem::MmTS, &jobs::report_units());
-    // The first write makes the folder.
-    session.output_at(&folder)?;
+/// A chapter in `result.json`.
+#[derive(Serialize)]
+struct StepTold {
+    command: &'static str,
+    folder: &'static str,
+    words: String,
+}
+
+/// Without and with the effect in the model.
+#[derive(Serialize)]
+struct BeforeAfter {
+    before: f64,
+    after: f64,
+}
+
+impl Answer for Story {
+    const COMMAND: &'static str = "demo";
+}
+
+impl Report for Outcome<Story> {
+    fn write(&self, out: &mut Output) -> Result<(), Faults> {
+        let html = page::page(&self.chapters).to_html();
+        Ok(out.write_bytes("report.html", html.as_bytes())?)
+    }
+
+    fn words(&self) -> String {
+        let mut text = String::new();
+        for c in &self.chapters {
+            let (folder, seconds, words) = (c.folder, c.step.seconds, &c.words);
+            let _ = writeln!(text, "{folder:<16} {seconds:>6.1} s  {words}");
+        }
+        let page = self.folder.join("report.html");
+        let _ = writeln!(text, "open {}", page.display());
+        text
+    }
+}
+
+/// Plays the story in `folder`.
+///
+/// # Errors
+/// A folder that can't be written.
+pub fn story(folder: &Path, cx: &Context) -> Result<Outcome<Story>, Faults> {
+    let mut work = Work::new(cx);
+    let units = StatedUnits::of(UnitSystem::MmTS, &jobs::report_units());
+    let story = told(folder, &mut work)?;
+    Ok(work.finish(units, story))
+}
+
+fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
+    std::fs::create_dir_all(folder).map_err(|e| {
+        let shown = folder.display().to_string();
+        let remedy = "name another folder: strainbridge demo DIR";
+        Fault::of(shown, "output", format!("can't be made ({e})"), remedy)
+    })?;
     let write = |name: &str, text: &str| -> Result<PathBuf, Faults> {
         let path = folder.join(name);
         std::fs::write(&path, text)
@@ -57,7 +116,7 @@ fn story(arguments: &DemoArguments, session: &mut Session) -> Result<(), Faults>
     let mut story: Vec<Chapter> = Vec::new();
     write("truck.bdf", DECK)?;
     let plan = write("solve.toml", &jobs::plan(None))?;
-    let step = play(session, "solve", &folder, "1-solve", &plan)?;
+    let step = play(work, "solve", folder, "1-solve", &plan)?;
     story.push(Chapter {
         folder: "1-solve",
         words: format!(
@@ -68,7 +127,7 @@ fn story(arguments: &DemoArguments, session: &mut Session) -> Result<(), Faults>
         step,
     });
     let place = write("place.toml", &jobs::plan(Some("1-solve/results.op2")))?;
-    let step = play(session, "place", &folder, "2-place", &place)?;
+    let step = play(work, "place", folder, "2-place", &place)?;
     let gauges = yard::Glued::of(&step.result);
     story.push(Chapter {
         folder: "2-place",
@@ -82,11 +141,11 @@ fn story(arguments: &DemoArguments, session: &mut Session) -> Result<(), Faults>
         step,
     });
     // The truck in the yard stands on uneven ground, its gauge factors scatter, its readings are noisy, and two wires are swapped.
-    let yard = session.stage("drive the truck", |_| yard::drive(&gauges))?;
+    let yard = work.stage("drive the truck", |_| yard::drive(&gauges))?;
     write("strain.csv", &yard.strain_csv)?;
     write("runs.csv", &yard.runs_csv)?;
     let job = write("recover.toml", &jobs::recover("strain.csv"))?;
-    let step = play(session, "recover", &folder, "3-recover", &job)?;
+    let step = play(work, "recover", folder, "3-recover", &job)?;
     let before = yard.error_of(&step.result);
     story.push(Chapter {
         folder: "3-recover",
@@ -98,7 +157,7 @@ fn story(arguments: &DemoArguments, session: &mut Session) -> Result<(), Faults>
         step,
     });
     let job = write("reconcile.toml", &jobs::reconcile())?;
-    let step = play(session, "reconcile", &folder, "4-reconcile", &job)?;
+    let step = play(work, "reconcile", folder, "4-reconcile", &job)?;
     let named: Vec<String> = step.result["named"]
         .as_array()
         .into_iter()
@@ -132,7 +191,7 @@ fn story(arguments: &DemoArguments, session: &mut Session) -> Result<(), Faults>
         "strain.csv"
     };
     let job = write("recover_again.toml", &jobs::recover(strain))?;
-    let step = play(session, "recover", &folder, "5-recover-again", &job)?;
+    let step = play(work, "recover", folder, "5-recover-again", &job)?;
     let after = yard.error_of(&step.result);
     story.push(Chapter {
         folder: "5-recover-again",
@@ -144,7 +203,7 @@ fn story(arguments: &DemoArguments, session: &mut Session) -> Result<(), Faults>
         step,
     });
     let job = write("payload.toml", &jobs::payload(strain))?;
-    let step = play(session, "payload", &folder, "6-payload", &job)?;
+    let step = play(work, "payload", folder, "6-payload", &job)?;
     let off = yard.payload_error_of(&step.result);
     story.push(Chapter {
         folder: "6-payload",
@@ -156,7 +215,7 @@ fn story(arguments: &DemoArguments, session: &mut Session) -> Result<(), Faults>
         step,
     });
     let job = write("respond.toml", &jobs::respond(strain))?;
-    let step = play(session, "respond", &folder, "7-respond", &job)?;
+    let step = play(work, "respond", folder, "7-respond", &job)?;
     let hottest = &step.result["elements"][0];
     story.push(Chapter {
         folder: "7-respond",
@@ -170,100 +229,66 @@ fn story(arguments: &DemoArguments, session: &mut Session) -> Result<(), Faults>
         command: "respond",
         step,
     });
-    for c in &story {
-        session.say(format!(
-            "{:<16} {:>6.1} s  {}",
-            c.folder, c.step.seconds, c.words
-        ));
-    }
-    session.say(format!("open {}", folder.join("report.html").display()));
-    let steps: Vec<Value> = story
-        .iter()
-        .map(|c| json!({ "command": c.command, "folder": c.folder, "words": c.words }))
-        .collect();
-    session.put("steps", steps)?;
-    session.put("named", named)?;
-    session.put("hidden", &yard.hidden)?;
-    session.put(
-        "wheel_force_error",
-        json!({ "before": before, "after": after }),
-    )?;
-    session.put("payload_error", off)?;
-    let html = page::page(&story).to_html();
-    session
-        .output_at(&folder)?
-        .write_bytes("report.html", html.as_bytes())
-        .map_err(Faults::from)
+    let step = |c: &Chapter| StepTold {
+        command: c.command,
+        folder: c.folder,
+        words: c.words.clone(),
+    };
+    Ok(Story {
+        steps: story.iter().map(step).collect(),
+        named,
+        hidden: yard.hidden.clone(),
+        wheel_force_error: BeforeAfter { before, after },
+        payload_error: off,
+        chapters: story,
+        folder: folder.to_owned(),
+    })
 }
 
+/// Runs a command of the story and writes its files.
 fn play(
-    session: &mut Session,
+    work: &mut Work,
     command: &'static str,
     folder: &Path,
     out: &str,
     job: &Path,
-) -> Result<Closed, Faults> {
-    let arguments = JobArguments {
-        job: job.to_owned(),
-        common: CommonArguments {
-            out: Some(folder.join(out)),
-        },
-    };
-    let cx = session.cx;
-    let run = |work: fn(&JobArguments, &mut Session) -> Result<(), Faults>| {
-        Session::run(command, &arguments.common, &cx, |s| work(&arguments, s))
-    };
-    session.stage(command, |_| match command {
-        "solve" => asked(
-            &app::solve::solve(&Job::read(job, cx.files)?, solving(), &cx)?,
-            &folder.join(out),
-        ),
-        "place" => asked(
-            &app::place::place(&Job::read(job, cx.files)?, &cx)?,
-            &folder.join(out),
-        ),
-        "recover" => {
-            let (job, folder) = (Job::read(job, cx.files)?, folder.join(out));
-            let (outcome, json) = recover_and_save(&job, &cx, &folder)?;
-            Ok(closed(&outcome, json, &folder))
+) -> Result<Step, Faults> {
+    let cx = work.cx;
+    let folder = folder.join(out);
+    work.stage(command, |_| {
+        let job = Job::read(job, cx.files)?;
+        match command {
+            "solve" => asked(&app::solve::solve(&job, solving(), &cx)?, &folder),
+            "place" => asked(&app::place::place(&job, &cx)?, &folder),
+            "recover" => Ok(step_of(&recover_and_save(&job, &cx, &folder)?.0)),
+            "reconcile" => {
+                let mut found = app::reconcile::reconcile(&job, &cx)?;
+                found.answer.put_into(&folder);
+                asked(&found, &folder)
+            }
+            "payload" => asked(&app::payload::payload(&job, &cx)?, &folder),
+            _ => asked(&app::respond::respond(&job, &cx)?, &folder),
         }
-        "reconcile" => {
-            let mut found = app::reconcile::reconcile(&Job::read(job, cx.files)?, &cx)?;
-            found.answer.put_into(&folder.join(out));
-            asked(&found, &folder.join(out))
-        }
-        "payload" => asked(
-            &app::payload::payload(&Job::read(job, cx.files)?, &cx)?,
-            &folder.join(out),
-        ),
-        _ => asked(
-            &app::respond::respond(&Job::read(job, cx.files)?, &cx)?,
-            &folder.join(out),
-        ),
     })
 }
 
 /// An outcome written into its folder.
-fn asked<A: Answer>(outcome: &Outcome<A>, folder: &Path) -> Result<Closed, Faults>
+fn asked<A: Answer>(outcome: &Outcome<A>, folder: &Path) -> Result<Step, Faults>
 where
     Outcome<A>: Report,
 {
-    Ok(closed(outcome, save(outcome, folder)?, folder))
+    save(outcome, folder)?;
+    Ok(step_of(outcome))
 }
 
-/// An outcome whose files are written.
-fn closed<A: Answer>(outcome: &Outcome<A>, json: String, folder: &Path) -> Closed
+fn step_of<A: Answer>(outcome: &Outcome<A>) -> Step
 where
     Outcome<A>: Report,
 {
-    Closed {
-        json,
+    Step {
+        result: serde_json::to_value(&outcome.answer).unwrap_or_default(),
         text: outcome.words(),
         findings: outcome.findings.clone(),
-        notes: outcome.notes.clone(),
-        folder: Some(folder.to_owned()),
-        faults: Vec::new(),
-        result: serde_json::to_value(&outcome.answer).unwrap_or_default(),
         seconds: outcome.seconds.total(),
     }
 }
