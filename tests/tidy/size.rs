@@ -16,7 +16,6 @@ const LONGER: &[&str] = &[
     "src/app/payload/model.rs standing",
     "src/app/place/choose.rs within_budget",
     "src/app/strain/given.rs read_given",
-    "src/cli/demo/mod.rs story",
     "src/payload/locate.rs solve_run",
     "src/placement/layout.rs place",
     "src/placement/units.rs",

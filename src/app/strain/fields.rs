@@ -1,8 +1,9 @@
 //! The job's model and the strain of its unit loads, from result files or from the built-in solver.
 
+use super::unit_loads::check_places;
 use crate::app::deck::{DeckModel, moduli_and_densities, read_model};
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::{Job, JobLoad, LoadActs, Reference, Role};
+use crate::app::job::{Job, JobLoad, Reference, Role};
 use crate::app::solved::{MODES, cases_of_job, solve_kept};
 use crate::app::work::Work;
 use crate::fe::from_results::{Displacements, ReadOptions, solution_from_file};
@@ -235,29 +236,4 @@ fn find_cases(job: &Job, solutions: &[Solution]) -> Result<Vec<(usize, usize)>, 
 
 fn has_strain(c: &CaseResult) -> bool {
     !c.shells.elements.is_empty() || !c.beams.elements.is_empty()
-}
-
-/// Refuses loads at grids that the deck lacks: results of another program don't say where its loads acted.
-///
-/// # Errors
-/// Every such load.
-fn check_places(job: &Job, model: &Model) -> Result<(), Faults> {
-    let lacking = job.loads.iter().filter_map(|l| match l.acts {
-        LoadActs::AtGrid { grid, .. } if model.grid_ix(grid).is_none() => {
-            Some(no_grid(job, l, grid))
-        }
-        LoadActs::AtGrid { .. } | LoadActs::Set(_) | LoadActs::Named => None,
-    });
-    Faults::check(lacking.collect())
-}
-
-/// The fault of a load at a grid that the deck lacks.
-pub(super) fn no_grid(job: &Job, load: &JobLoad, grid: u32) -> Fault {
-    Fault::at(
-        &*job.file,
-        load.line,
-        "load.grid",
-        format!("load `{}`: the deck has no grid {grid}", load.name),
-        "correct the id, or name another deck",
-    )
 }

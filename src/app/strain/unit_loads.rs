@@ -1,8 +1,7 @@
 //! Loads of the job as loads on the model.
 
-use super::fields::no_grid;
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::{Job, LoadActs};
+use crate::app::job::{Job, JobLoad, LoadActs};
 use crate::fe::UnitLoad;
 use crate::model::{Model, Vec3};
 
@@ -74,4 +73,29 @@ pub fn unit_loads(job: &Job, model: &Model) -> Result<Vec<UnitLoad>, Faults> {
         .collect();
     Faults::check(faults)?;
     Ok(loads)
+}
+
+/// Refuses loads at grids that the deck lacks: results of another program don't say where its loads acted.
+///
+/// # Errors
+/// Every such load.
+pub(super) fn check_places(job: &Job, model: &Model) -> Result<(), Faults> {
+    let lacking = job.loads.iter().filter_map(|l| match l.acts {
+        LoadActs::AtGrid { grid, .. } if model.grid_ix(grid).is_none() => {
+            Some(no_grid(job, l, grid))
+        }
+        LoadActs::AtGrid { .. } | LoadActs::Set(_) | LoadActs::Named => None,
+    });
+    Faults::check(lacking.collect())
+}
+
+/// The fault of a load at a grid that the deck lacks.
+fn no_grid(job: &Job, load: &JobLoad, grid: u32) -> Fault {
+    Fault::at(
+        &*job.file,
+        load.line,
+        "load.grid",
+        format!("load `{}`: the deck has no grid {grid}", load.name),
+        "correct the id, or name another deck",
+    )
 }

@@ -94,28 +94,14 @@ pub fn story(folder: &Path, cx: &Context) -> Result<Outcome<Story>, Faults> {
     Ok(work.finish(units, story))
 }
 
-fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
-    std::fs::create_dir_all(folder).map_err(|e| {
-        let shown = folder.display().to_string();
-        let remedy = "name another folder: strainbridge demo DIR";
-        Fault::of(shown, "output", format!("can't be made ({e})"), remedy)
-    })?;
-    let write = |name: &str, text: &str| -> Result<PathBuf, Faults> {
-        let path = folder.join(name);
-        std::fs::write(&path, text)
-            .map_err(|e| {
-                Faults::from(Fault::of(
-                    path.display().to_string(),
-                    "output",
-                    format!("can't be written ({e})"),
-                    "name another folder: strainbridge demo DIR",
-                ))
-            })
-            .map(|()| path)
-    };
-    let mut story: Vec<Chapter> = Vec::new();
-    write("truck.bdf", DECK)?;
-    let plan = write("solve.toml", &jobs::plan(None))?;
+/// Solves, and chooses the gauges.
+fn planned(
+    folder: &Path,
+    work: &mut Work,
+    story: &mut Vec<Chapter>,
+) -> Result<Vec<yard::Glued>, Faults> {
+    write(folder, "truck.bdf", DECK)?;
+    let plan = write(folder, "solve.toml", &jobs::plan(None))?;
     let step = play(work, "solve", folder, "1-solve", &plan)?;
     story.push(Chapter {
         folder: "1-solve",
@@ -126,7 +112,11 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
         command: "solve",
         step,
     });
-    let place = write("place.toml", &jobs::plan(Some("1-solve/results.op2")))?;
+    let place = write(
+        folder,
+        "place.toml",
+        &jobs::plan(Some("1-solve/results.op2")),
+    )?;
     let step = play(work, "place", folder, "2-place", &place)?;
     let gauges = yard::Glued::of(&step.result);
     story.push(Chapter {
@@ -140,11 +130,18 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
         command: "place",
         step,
     });
+    Ok(gauges)
+}
+
+fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
+    std::fs::create_dir_all(folder).map_err(|e| unwritable(folder, &e))?;
+    let mut story: Vec<Chapter> = Vec::new();
+    let gauges = planned(folder, work, &mut story)?;
     // The truck in the yard stands on uneven ground, its gauge factors scatter, its readings are noisy, and two wires are swapped.
     let yard = work.stage("drive the truck", |_| yard::drive(&gauges))?;
-    write("strain.csv", &yard.strain_csv)?;
-    write("runs.csv", &yard.runs_csv)?;
-    let job = write("recover.toml", &jobs::recover("strain.csv"))?;
+    write(folder, "strain.csv", &yard.strain_csv)?;
+    write(folder, "runs.csv", &yard.runs_csv)?;
+    let job = write(folder, "recover.toml", &jobs::recover("strain.csv"))?;
     let step = play(work, "recover", folder, "3-recover", &job)?;
     let before = yard.error_of(&step.result);
     story.push(Chapter {
@@ -156,7 +153,7 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
         command: "recover",
         step,
     });
-    let job = write("reconcile.toml", &jobs::reconcile())?;
+    let job = write(folder, "reconcile.toml", &jobs::reconcile())?;
     let step = play(work, "reconcile", folder, "4-reconcile", &job)?;
     let named: Vec<String> = step.result["named"]
         .as_array()
@@ -190,7 +187,7 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
     } else {
         "strain.csv"
     };
-    let job = write("recover_again.toml", &jobs::recover(strain))?;
+    let job = write(folder, "recover_again.toml", &jobs::recover(strain))?;
     let step = play(work, "recover", folder, "5-recover-again", &job)?;
     let after = yard.error_of(&step.result);
     story.push(Chapter {
@@ -202,7 +199,7 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
         command: "recover",
         step,
     });
-    let job = write("payload.toml", &jobs::payload(strain))?;
+    let job = write(folder, "payload.toml", &jobs::payload(strain))?;
     let step = play(work, "payload", folder, "6-payload", &job)?;
     let off = yard.payload_error_of(&step.result);
     story.push(Chapter {
@@ -214,7 +211,7 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
         command: "payload",
         step,
     });
-    let job = write("respond.toml", &jobs::respond(strain))?;
+    let job = write(folder, "respond.toml", &jobs::respond(strain))?;
     let step = play(work, "respond", folder, "7-respond", &job)?;
     let hottest = &step.result["elements"][0];
     story.push(Chapter {
@@ -243,6 +240,18 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
         chapters: story,
         folder: folder.to_owned(),
     })
+}
+
+fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, Faults> {
+    let path = folder.join(name);
+    std::fs::write(&path, text).map_err(|e| unwritable(&path, &e))?;
+    Ok(path)
+}
+
+fn unwritable(path: &Path, e: &std::io::Error) -> Fault {
+    let shown = path.display().to_string();
+    let remedy = "name another folder: strainbridge demo DIR";
+    Fault::of(shown, "output", format!("can't be written ({e})"), remedy)
 }
 
 /// Runs a command of the story and writes its files.
