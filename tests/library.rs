@@ -178,7 +178,6 @@ units = "m-kg-s"
 [sensitivity]
 file = "s.csv"
 per = { force = "kN" }
-columns = { A = "A", B = "B", C = "C" }
 [measured]
 strain = "strain.csv"
 noise_microstrain = 1.0

@@ -1,6 +1,6 @@
 //! The runs file: what else was measured in each run, by the job's names, in SI units.
 
-use super::quantity::quantity_of_name;
+use super::quantity::{columns_of_given, quantity_of_name};
 use super::suggest;
 use super::table::read_table;
 use super::types::{Job, Runs};
@@ -48,7 +48,8 @@ pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunR
         )));
     };
     let mut columns: Vec<(String, usize, f64)> = Vec::new();
-    for (name, quantity) in known_columns(job) {
+    let given = given_loads(inputs, job)?;
+    for (name, quantity) in known_columns(job, &given) {
         let stated = runs.columns.get(&name);
         let column = stated.unwrap_or(&name);
         match t.header.iter().position(|h| h == column) {
@@ -106,19 +107,40 @@ pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunR
     Ok(out)
 }
 
+/// Loads of a given S; where the job does not list them, S's own table does.
+fn given_loads(inputs: &mut Inputs, job: &Job) -> Result<Vec<String>, Faults> {
+    let Some(given) = &job.sensitivity else {
+        return Ok(Vec::new());
+    };
+    let mut header = Vec::new();
+    if given.columns.is_empty() {
+        let text = inputs
+            .read_named_text(job, &given.file)
+            .map_err(Faults::from)?;
+        let table = read_table(&given.file.given, &text)?;
+        let names = ["gauge", "name", "run"];
+        header.extend(
+            table
+                .header
+                .into_iter()
+                .filter(|h| !names.contains(&h.as_str())),
+        );
+    }
+    let columns = columns_of_given(job, given, header);
+    Ok(columns.into_iter().map(|c| c.0).collect())
+}
+
 /// Names that a runs file may carry, with what they measure.
-fn known_columns(job: &Job) -> Vec<(String, Quantity)> {
+fn known_columns(job: &Job, given: &[String]) -> Vec<(String, Quantity)> {
     let mut out: Vec<(String, Quantity)> = Vec::new();
     for load in &job.loads {
         if let Some(quantity) = load.quantity() {
             out.push((load.name.clone(), quantity));
         }
     }
-    if let Some(s) = &job.sensitivity {
-        for (name, _) in &s.columns {
-            if !out.iter().any(|o| &o.0 == name) {
-                out.push((name.clone(), quantity_of_name(name)));
-            }
+    for name in given {
+        if !out.iter().any(|o| &o.0 == name) {
+            out.push((name.clone(), quantity_of_name(name)));
         }
     }
     let payload = [

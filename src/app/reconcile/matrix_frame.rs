@@ -5,6 +5,7 @@ use super::model_part::{ModelPart, facts, nominal_x_m};
 use super::signature_table::SignatureTable;
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::Inputs;
+use crate::app::job::quantity::{columns_of_given, quantity_of_name};
 use crate::app::job::{GivenSensitivity, Job, Role};
 use crate::reconcile::strain::{
     GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, NuisanceLoad, PlaneStrainRow, StiffnessOf,
@@ -26,11 +27,7 @@ pub(super) fn read(
     let (per_kn, per_knm) = (KILO / given.per.force.si, KILO / given.per.moment.si);
     let (per_kg, per_m) = (1.0 / given.per.mass.si, 1.0 / given.per.length.si);
     let s = SignatureTable::read(inputs, job, &given.file, channels)?;
-    let columns: Vec<(String, String)> = if given.columns.is_empty() {
-        s.names().into_iter().map(|n| (n.clone(), n)).collect()
-    } else {
-        given.columns.clone()
-    };
+    let columns = columns_of_given(job, given, s.names());
     let scale = |name: &str| if is_moment(name) { per_knm } else { per_kn };
     let mut nuisance = Vec::new();
     for (name, column) in columns.iter().filter(|c| is_nuisance(job, &c.0)) {
@@ -226,6 +223,5 @@ fn is_nuisance(job: &Job, name: &str) -> bool {
 }
 
 fn is_moment(name: &str) -> bool {
-    name.split(['.', '_', ' '])
-        .any(|part| ["MX", "MY", "MZ"].contains(&part.to_ascii_uppercase().as_str()))
+    quantity_of_name(name) == Quantity::Moment
 }

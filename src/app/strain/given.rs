@@ -2,7 +2,7 @@
 
 use super::covariance::read_covariance;
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::quantity::quantity_of_name;
+use crate::app::job::quantity::{columns_of_given, quantity_of_name};
 use crate::app::job::table::read_table;
 use crate::app::job::{Job, JobLoad, Role};
 use crate::app::work::Work;
@@ -39,18 +39,9 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
             "name the gauges in a column `gauge`",
         )));
     };
-    let columns: Vec<(String, String)> = if given.columns.is_empty() {
-        let stated: Vec<&String> = job.loads.iter().map(|l| &l.name).collect();
-        table
-            .header
-            .iter()
-            .enumerate()
-            .filter(|(i, h)| *i != key && (stated.is_empty() || stated.contains(h)))
-            .map(|(_, h)| (h.clone(), h.clone()))
-            .collect()
-    } else {
-        given.columns.clone()
-    };
+    let header = table.header.iter().enumerate();
+    let header = header.filter(|(i, _)| *i != key).map(|(_, h)| h.clone());
+    let columns = columns_of_given(job, given, header);
     let mut loads = Vec::new();
     let mut at = Vec::new();
     for (name, column) in &columns {
