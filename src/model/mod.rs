@@ -31,6 +31,7 @@ mod unsupported_cards;
 mod tests;
 
 pub(crate) use curved::{face_edges, face_functions, solid_edges, solid_functions};
+#[cfg(feature = "report")]
 pub(crate) use face::faces as solid_faces;
 pub use fault::*;
 pub use mass::Weight;

@@ -30,7 +30,7 @@ pub fn cost(candidate: &Candidate, shape: &Change, n_candidates: usize, n_rows: 
 
 /// Log evidence of a fit: -1/2 (squared residual over its covariance, balance of weight included, squared nuisance over its tolerance,
 /// means of accelerometers) - log-determinants of the covariances (equations: over that of sensors alone), less prior and price of the
-/// effects, plus the log of the chance that every mass is one.
+/// effects.
 pub fn evidence(frame: &MotionFrame, candidates: &[Candidate], fit: &MotionFit) -> f64 {
     let cost: f64 = fit
         .parts
@@ -46,30 +46,6 @@ pub fn evidence(frame: &MotionFrame, candidates: &[Candidate], fit: &MotionFit) 
         - at_rest
         - cost
         - unusual(fit)
-        + masses_are_positive(frame, fit)
-}
-
-/// Log of the share of the posterior in which each mass is positive: `sum ln Phi(m / sigma)`. A sign turned at the wrong sensor fits as well
-/// as the right one, by masses below zero.
-fn masses_are_positive(frame: &MotionFrame, fit: &MotionFit) -> f64 {
-    let masses = fit.assembled.vehicle.masses(&frame.bodies);
-    masses
-        .iter()
-        .filter_map(|&i| Some((*fit.values.get(i)?, *fit.sigmas.get(i)?)))
-        .filter(|(m, s)| m.is_finite() && *s > 0.0)
-        .map(|(m, s)| log_normal_cdf(m / s))
-        .sum()
-}
-
-/// `ln Phi(z)`, by its asymptote where `Phi` underflows.
-fn log_normal_cdf(z: f64) -> f64 {
-    /// From here the first term of the expansion in `1/z^2` is right to a thousandth of the log.
-    const FAR: f64 = -30.0;
-    if z < FAR {
-        -0.5 * z * z - (-z).ln() - 0.5 * (2.0 * std::f64::consts::PI).ln()
-    } else {
-        (0.5 * statrs::function::erf::erfc(-z / std::f64::consts::SQRT_2)).ln()
-    }
 }
 
 /// What the sizes of channel faults cost.
