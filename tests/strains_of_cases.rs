@@ -138,7 +138,7 @@ fn as_row(strain: [PlaneStrain; 2], z: [f64; 2], row: usize, is_fibre: bool) -> 
 
 /// The solution of a case's OP2, where it has both deck and OP2.
 fn solve(folder: &Path, case: &Value) -> Option<(Model, Solution)> {
-    let model = model(&folder, case)?;
+    let model = model(folder, case)?;
     let bytes = std::fs::read(folder.join(case["op2"].as_str()?)).unwrap();
     let file = ResultsFile::read(&bytes, "op2").unwrap();
     let solution = solution_from_results(&model, &[("op2", &file)], &ReadOptions::default());

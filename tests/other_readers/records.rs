@@ -71,7 +71,7 @@ fn records_that_nptdms_pyuff_asammdf_and_pandas_write_hold_the_samples_they_were
             "{file}"
         );
         let place = |name: &&str| record.columns().iter().position(|c| c.name == **name);
-        let columns: Vec<Option<usize>> = NAMES.iter().map(|n| place(n)).collect();
+        let columns: Vec<Option<usize>> = NAMES.iter().map(place).collect();
         assert!(
             columns.iter().all(Option::is_some),
             "{file}: {:?}",
