@@ -15,7 +15,6 @@ const LONGER: &[&str] = &[
     "src/app/job/types.rs",
     "src/app/payload/model.rs standing",
     "src/app/place/choose.rs within_budget",
-    "src/app/strain/given.rs read_given",
     "src/payload/locate.rs solve_run",
     "src/placement/layout.rs place",
     "src/placement/units.rs",

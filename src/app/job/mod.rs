@@ -5,6 +5,7 @@
 pub mod correct;
 mod faults;
 pub mod gauges;
+pub mod given_columns;
 mod parse;
 pub mod quantity;
 mod raw;

@@ -1,6 +1,7 @@
 //! The runs file: what else was measured in each run, by the job's names, in SI units.
 
-use super::quantity::{columns_of_given, quantity_of_name};
+use super::given_columns::columns_of_given;
+use super::quantity::quantity_of_name;
 use super::suggest;
 use super::table::read_table;
 use super::types::{Job, Runs};

@@ -5,7 +5,8 @@ use super::model_part::{ModelPart, facts, nominal_x_m};
 use super::signature_table::SignatureTable;
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::Inputs;
-use crate::app::job::quantity::{columns_of_given, quantity_of_name};
+use crate::app::job::given_columns::columns_of_given;
+use crate::app::job::quantity::quantity_of_name;
 use crate::app::job::{GivenSensitivity, Job, Role};
 use crate::reconcile::strain::{
     GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, NuisanceLoad, PlaneStrainRow, StiffnessOf,

@@ -2,7 +2,8 @@
 
 use super::covariance::read_covariance;
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::quantity::{columns_of_given, quantity_of_name};
+use crate::app::job::given_columns::columns_of_given;
+use crate::app::job::quantity::quantity_of_name;
 use crate::app::job::table::read_table;
 use crate::app::job::{Job, JobLoad, Role};
 use crate::app::work::Work;
