@@ -107,34 +107,14 @@ impl Run {
             let json = save(&outcome, folder)?;
             Ok((outcome, json))
         });
-        match done {
-            Ok((outcome, json)) => self.say(&Said {
-                text: &outcome.words(),
-                json: &json,
-                findings: &outcome.findings,
-                notes: &outcome.notes,
-                folder: Some(folder),
-                faults: &[],
-            }),
-            Err(faults) => refuse(&faults),
-        }
+        self.told(done, Some(folder))
     }
 
     /// Recovers the loads of a job into `--out`, else `<job name>.out` beside the job; those of a record are written as they come.
     pub fn recover(&self, path: &Path) -> ExitCode {
         let folder = self.folder(path);
         let done = self.pooled(|cx| recover_and_save(&Job::read(path, cx.files)?, cx, &folder));
-        match done {
-            Ok((outcome, json)) => self.say(&Said {
-                text: &outcome.words(),
-                json: &json,
-                findings: &outcome.findings,
-                notes: &outcome.notes,
-                folder: Some(&folder),
-                faults: &[],
-            }),
-            Err(faults) => refuse(&faults),
-        }
+        self.told(done, Some(&folder))
     }
 
     /// Checks files: written only with `--out`; their faults are part of the answer.
@@ -178,17 +158,7 @@ impl Run {
             };
             Ok((outcome, json))
         });
-        match done {
-            Ok((outcome, json)) => self.say(&Said {
-                text: &outcome.words(),
-                json: &json,
-                findings: &outcome.findings,
-                notes: &outcome.notes,
-                folder: self.common.out.as_deref(),
-                faults: &[],
-            }),
-            Err(faults) => refuse(&faults),
-        }
+        self.told(done, self.common.out.as_deref())
     }
 
     /// Asks a question that writes only into `--out`, where that names a folder.
@@ -209,17 +179,7 @@ impl Run {
             };
             Ok((outcome, json))
         });
-        match done {
-            Ok((outcome, json)) => self.say(&Said {
-                text: &outcome.words(),
-                json: &json,
-                findings: &outcome.findings,
-                notes: &outcome.notes,
-                folder: out,
-                faults: &[],
-            }),
-            Err(faults) => refuse(&faults),
-        }
+        self.told(done, out)
     }
 
     /// Work on the asked number of threads. It begins on a thread of the pool: from outside, each of a factorisation's many small
@@ -245,6 +205,24 @@ impl Run {
         let mut cx = Context::new(&Disk).progress(&terminal);
         cx.store = self.store.as_ref().map(|s| s as _);
         pool.install(|| work(&cx))
+    }
+
+    /// Says an outcome whose files are in `folder`, or its faults.
+    fn told<A>(&self, done: Result<(Outcome<A>, String), Faults>, folder: Option<&Path>) -> ExitCode
+    where
+        Outcome<A>: Report,
+    {
+        match done {
+            Ok((outcome, json)) => self.say(&Said {
+                text: &outcome.words(),
+                json: &json,
+                findings: &outcome.findings,
+                notes: &outcome.notes,
+                folder,
+                faults: &[],
+            }),
+            Err(faults) => refuse(&faults),
+        }
     }
 
     fn say(&self, said: &Said) -> ExitCode {
