@@ -2,18 +2,16 @@
 
 use super::kernel::Kernel;
 use crate::app::fault::{Fault, Faults};
-use crate::app::job::strain::{microstrain_in, read_strain};
-use crate::app::job::{Job, Measured};
-use crate::app::recover::reference_strain;
+use crate::app::job::Job;
+use crate::app::job::strain::microstrain_in;
+use crate::app::recover::{reference_strain, zero_of};
 use crate::app::strain::{load_units, prepare};
 use crate::app::work::Work;
 use crate::recovery::ErrorModel;
-use crate::recovery::net::effective_samples;
 use crate::sensitivity::check_separability;
 use crate::series::rainflow::{Knee, Law};
+use crate::units::MICROSTRAIN;
 
-/// Strain in a microstrain.
-const MICRO: f64 = 1e-6;
 /// Classes up to the expected size of a load.
 const CLASSES: f64 = 32.0;
 
@@ -30,6 +28,11 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
     let s = &prepared.sensitivity;
     work.findings.extend(check_separability(s));
     let (mut zero, effective) = zero_of(work, job, measured, &s.gauges)?;
+    // Every record would lack that gauge.
+    if let (Some(named), Some(g)) = (&measured.zero, zero.iter().position(|z| z.is_nan())) {
+        let remedy = "repair the channel of the zero file, or leave its gauge out of the job";
+        return Err(Fault::of(&*named.given, &*s.gauges[g], "no zero reading", remedy).into());
+    }
     for (z, r) in zero
         .iter_mut()
         .zip(reference_strain(job, measured, &prepared)?)
@@ -62,7 +65,7 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
         sensitivity: prepared.sensitivity,
         zero,
         errors: ErrorModel {
-            noise: measured.noise_microstrain * MICRO,
+            noise: measured.noise_microstrain * MICROSTRAIN,
             model_rel: measured.model_uncertainty_rel,
         },
         noise_factor: 1.0 + effective.map_or(0.0, |n| 1.0 / n),
@@ -82,34 +85,4 @@ fn round(x: f64) -> f64 {
         .into_iter()
         .find(|d| d * power >= x * (1.0 - 1e-9));
     first.unwrap_or(10.0) * power
-}
-
-/// Mean strain of the zero file by gauge, and how many independent samples the worst of them has.
-fn zero_of(
-    work: &mut Work,
-    job: &Job,
-    measured: &Measured,
-    gauges: &[String],
-) -> Result<(Vec<f64>, Option<f64>), Faults> {
-    let Some(named) = &measured.zero else {
-        return Ok((vec![0.0; gauges.len()], None));
-    };
-    let table = read_strain(&mut work.inputs, job, named)?;
-    let mut effective = f64::INFINITY;
-    let mut zero = vec![0.0; gauges.len()];
-    for (z, gauge) in zero.iter_mut().zip(gauges) {
-        let Some(c) = table.gauges.iter().position(|g| g == gauge) else {
-            let remedy = "add the gauge to the zero file, or leave it out of the job";
-            return Err(Fault::of(&*named.given, gauge, "no such column", remedy).into());
-        };
-        let values = (0..table.n_rows()).filter_map(|i| table.row(i).get(c).copied());
-        let values: Vec<f64> = values.filter(|v| v.is_finite()).collect();
-        if values.is_empty() {
-            let remedy = "repair the channel, or leave its gauge out of the job";
-            return Err(Fault::of(&*named.given, gauge, "no reading", remedy).into());
-        }
-        *z = values.iter().sum::<f64>() / values.len() as f64 * MICRO;
-        effective = effective.min(effective_samples(&values));
-    }
-    Ok((zero, effective.is_finite().then_some(effective)))
 }

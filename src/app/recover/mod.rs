@@ -27,7 +27,7 @@ pub use damage::LoadDamage;
 pub use files::rpc_targets;
 pub use history::{History, HistoryRow};
 pub use sink::{Block, RecordHead, RecordSink, Sample, Samples};
-pub(super) use task::reference_strain;
+pub(super) use task::{reference_strain, zero_of};
 pub use trace::{Span, Spans};
 
 use super::context::Context;

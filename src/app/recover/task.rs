@@ -125,8 +125,9 @@ pub(super) fn columns_of(
     columns
 }
 
-/// The zero readings, strain by gauge, and the effective number of samples behind them; zeros and `None` without a file.
-fn zero_of(
+/// The zero readings, strain by gauge, and the effective number of samples behind them; zeros and `None` without a file. Not a number for a
+/// gauge that the file says nothing of: its readings have no zero, and it is left out.
+pub(in crate::app) fn zero_of(
     work: &mut Work,
     job: &Job,
     measured: &Measured,
@@ -138,7 +139,7 @@ fn zero_of(
     let table = read_strain(&mut work.inputs, job, named)?;
     let columns = columns_of(work, named, &table.gauges, gauges);
     let mut effective = f64::INFINITY;
-    let mut zero = vec![0.0; gauges.len()];
+    let mut zero = vec![f64::NAN; gauges.len()];
     for (z, c) in zero.iter_mut().zip(&columns) {
         let Some(c) = c else { continue };
         let v: Vec<f64> = (0..table.n_rows())
@@ -146,7 +147,6 @@ fn zero_of(
             .filter(|v| v.is_finite())
             .collect();
         if v.is_empty() {
-            *z = f64::NAN;
             continue;
         }
         *z = v.iter().sum::<f64>() / v.len() as f64 * MICROSTRAIN;
