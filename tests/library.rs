@@ -419,6 +419,37 @@ fn loads_of_a_record_stay_in_memory_sample_by_sample() {
     );
 }
 
+/// A gauge without a zero reading has an offset that nobody knows: its readings are no strain.
+#[test]
+fn a_gauge_that_the_zero_file_lacks_has_no_part_in_the_loads() {
+    let mut strain = "run,G1,G2,G3\n".to_owned();
+    for i in 0..5 {
+        let [a, b] = loads(i);
+        let told = GIVEN.map(|row| row[0] * a + row[1] * b);
+        let _ = writeln!(strain, "R{i},{},{},{}", told[0], told[1], told[2] + 100.0);
+    }
+    let job = RECOVER.replace("[measured]\n", "[measured]\nzero = \"zero.csv\"\n");
+    let files = measured("run", 5, 0..0)
+        .with("strain.csv", strain)
+        .with("zero.csv", "run,G1,G2\nparked,0,0\n")
+        .with("job.toml", job);
+    let job = Job::read("job.toml", &files).unwrap();
+    let answer = recover(&job, &Context::new(&files)).unwrap();
+    for (i, of_run) in answer.runs().unwrap().loads.chunks(3).enumerate() {
+        let [a, b] = loads(i).map(|v| v * 1e-3);
+        for (load, truth) in of_run.iter().zip([a, b]) {
+            // Two gauges, two loads, no noise: exact but for rounding.
+            assert!((load.value - truth).abs() < 1e-9, "{load:?} {truth}");
+        }
+    }
+    assert!(
+        answer
+            .findings
+            .iter()
+            .any(|f| f.code == "gauge-without-strain")
+    );
+}
+
 /// Counts what it is given, and has enough after some samples.
 #[derive(Default)]
 struct Counter {
