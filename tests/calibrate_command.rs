@@ -151,3 +151,166 @@ fn runs_that_do_not_determine_s_are_said_so_and_known_loads_that_are_missing_are
         "{said}"
     );
 }
+
+/// A strip of plates, 400 by 80 mm, clamped at x = 0, with a rigid end plate at x = 400.
+fn strip() -> String {
+    use std::fmt::Write;
+    let (nx, ny, h) = (20_u32, 4_u32, 20.0);
+    let mut deck = String::from(
+        "SOL 101\nCEND\nSPC = 1\nSTRAIN(FIBER,CORNER) = ALL\nBEGIN BULK\nPSHELL,1,1,5.,1,,1\nMAT1,1,210000.,,.3,7.85-9\n",
+    );
+    let grid = |i: u32, j: u32| 1 + i + 100 * j;
+    for j in 0..=ny {
+        for i in 0..=nx {
+            let (x, y) = (h * f64::from(i), h * f64::from(j) - 40.0);
+            let _ = writeln!(deck, "GRID,{},,{x:.1},{y:.1},0.", grid(i, j));
+        }
+        let _ = writeln!(deck, "SPC1,1,123456,{}", grid(0, j));
+    }
+    for j in 0..ny {
+        for i in 0..nx {
+            let id = 1 + i + 100 * j;
+            let [a, b] = [grid(i, j), grid(i, j + 1)];
+            let _ = writeln!(deck, "CQUAD4,{id},1,{a},{},{},{b}", a + 1, b + 1);
+        }
+    }
+    let end: Vec<String> = (0..=ny).map(|j| grid(nx, j).to_string()).collect();
+    deck += "GRID,9001,,400.,0.,0.\n";
+    let _ = writeln!(deck, "RBE2,900,9001,123456,{}", end.join(","));
+    deck + "ENDDATA\n"
+}
+
+/// Gauges of the strip: x, y, angle from x in degrees. All on top.
+const DRAWN: [[f64; 3]; 6] = [
+    [90.0, 30.0, 0.0],
+    [90.0, -30.0, 0.0],
+    [150.0, 10.0, 45.0],
+    [150.0, -10.0, -45.0],
+    [250.0, 30.0, 30.0],
+    [250.0, -30.0, 60.0],
+];
+/// Where they were glued in fact: off along, across (mm), turned (degrees).
+const GLUED: [[f64; 3]; 6] = [
+    [5.0, -4.0, 3.0],
+    [-6.0, 3.0, -2.0],
+    [2.0, 6.0, 4.0],
+    [-4.0, -5.0, -3.0],
+    [7.0, 2.0, -4.0],
+    [3.0, -6.0, 2.0],
+];
+
+/// A job of the strip with gauges off their drawing by `share` of [`GLUED`].
+fn strip_job(share: f64) -> String {
+    use std::fmt::Write;
+    let mut job = String::from("units = \"mm-t-s\"\n[model]\ndeck = \"strip.bdf\"\n");
+    for (name, component) in [
+        ("bend", "FZ"),
+        ("side", "MZ"),
+        ("pull", "FX"),
+        ("twist", "MX"),
+    ] {
+        let _ = write!(
+            job,
+            "[[load]]\nname = \"{name}\"\ngrid = 9001\ncomponent = \"{component}\"\n"
+        );
+    }
+    for (g, ([x, y, deg], off)) in DRAWN.iter().zip(GLUED).enumerate() {
+        let [along, across, turned] = off.map(|v| share * v);
+        let (s, c) = deg.to_radians().sin_cos();
+        let (x, y) = (x + along * c - across * s, y + along * s + across * c);
+        let _ = write!(
+            job,
+            "[[gauge]]\nname = \"G{g}\"\nposition = [{x}, {y}, 2.5]\nsurface = \"top\"\ndirection = [1, 0, 0]\nangle_deg = {}\n",
+            deg + turned
+        );
+    }
+    job
+}
+
+/// S of a job: a row a gauge.
+fn sensitivity(folder: &Path, job: &str, out: &str) -> Vec<Vec<f64>> {
+    let path = folder.join(format!("{out}.toml"));
+    std::fs::write(&path, job).unwrap();
+    let (code, _, said) = run("sensitivity", &path, &folder.join(out));
+    assert_eq!(code, Some(0), "{said}");
+    let text = std::fs::read_to_string(folder.join(out).join("sensitivity.csv")).unwrap();
+    let row = |l: &str| l.split(',').skip(1).map(|v| v.parse().unwrap()).collect();
+    text.lines().skip(1).map(row).collect()
+}
+
+#[test]
+fn gauges_are_found_where_they_were_glued_and_their_table_makes_the_true_s() {
+    use std::fmt::Write;
+    let folder = scratch("calibrate-as-glued");
+    std::fs::write(folder.join("strip.bdf"), strip()).unwrap();
+    let truth = sensitivity(&folder, &strip_job(1.0), "glued");
+    let drawn = sensitivity(&folder, &strip_job(0.0), "drawn");
+    // Some 300 microstrain at the hottest gauge of each load; noise of 1 microstrain, written here.
+    let hot = |l: usize| truth.iter().map(|r| r[l].abs()).fold(0.0, f64::max);
+    let sizes: [f64; 4] = std::array::from_fn(|l| 300.0 / hot(l));
+    let pushes: [[f64; 4]; 6] = [
+        [1.0, 0.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0, 0.0],
+        [0.0, 0.0, 1.0, 0.0],
+        [0.0, 0.0, 0.0, 1.0],
+        [1.0, -1.0, 0.0, 0.5],
+        [-0.5, 0.5, 0.5, 1.0],
+    ];
+    let noise = [0.7, -1.2, 0.3, 1.1, -0.5, -0.9, 1.4, 0.2, -1.0];
+    let mut strain = "run,G0,G1,G2,G3,G4,G5\n".to_owned();
+    let mut runs = "run,bend,side,pull,twist\n".to_owned();
+    for (p, push) in pushes.iter().enumerate() {
+        let f: Vec<f64> = push.iter().zip(sizes).map(|(p, s)| p * s).collect();
+        let _ = writeln!(runs, "P{p},{},{},{},{}", f[0], f[1], f[2], f[3]);
+        let _ = write!(strain, "P{p}");
+        for (g, row) in truth.iter().enumerate() {
+            let e: f64 = row.iter().zip(&f).map(|(s, f)| s * f).sum();
+            let _ = write!(strain, ",{}", e + noise[(5 * p + 2 * g) % 9]);
+        }
+        strain += "\n";
+    }
+    std::fs::write(folder.join("strain.csv"), strain).unwrap();
+    std::fs::write(folder.join("runs.csv"), runs).unwrap();
+    let job = strip_job(0.0)
+        + "[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 1.0\n[runs]\nfile = \"runs.csv\"\nunits = { force = \"N\", moment = \"N mm\" }\n\
+           [calibration]\nmodel_uncertainty_rel = 0.001\nposition_tolerance = 5.0\nangle_tolerance_deg = 3.0\n";
+    std::fs::write(folder.join("job.toml"), &job).unwrap();
+    let (code, result, said) = run("calibrate", &folder.join("job.toml"), &folder.join("cal"));
+    assert_eq!(code, Some(0), "{said}");
+    let (mut told, mut off) = (0, 0);
+    for (g, truth) in GLUED.iter().enumerate() {
+        let found = &result["calibration"]["gauges"][g]["as_glued"];
+        for (what, truth) in ["along", "across", "angle_deg"].iter().zip(truth) {
+            let at = |key: &str| found[what][key].as_f64().unwrap();
+            let distance = (at("value") - truth).abs() / at("sigma");
+            assert!(distance < 3.5, "G{g} {what}: {found} for {truth}");
+            off += usize::from(distance > 2.0);
+            told += usize::from(found[what]["told"] == true);
+        }
+    }
+    // Of 18 intervals one lies outside two sigma; three would be a chance of one in a hundred.
+    assert!(off < 4 && told > 9, "{off} off, {told} told: {result}");
+    // The table stands for the gauges of the job.
+    let (head, _) = strip_job(0.0)
+        .split_once("[[gauge]]")
+        .map(|(a, b)| (a.to_owned(), b.len()))
+        .unwrap();
+    let table = head + "[gauges]\nfile = \"cal/gauges_as_glued.csv\"\n";
+    let glued = sensitivity(&folder, &table, "table");
+    let rms = |s: &[Vec<f64>]| -> f64 {
+        let apart = s
+            .iter()
+            .zip(&truth)
+            .flat_map(|(a, b)| a.iter().zip(b).zip(sizes));
+        apart
+            .map(|((a, b), f)| ((a - b) * f).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    };
+    assert!(
+        rms(&glued) < 0.3 * rms(&drawn),
+        "{} {}",
+        rms(&glued),
+        rms(&drawn)
+    );
+}

@@ -312,3 +312,109 @@ fn a_load_at_a_grid_that_the_deck_lacks_is_a_fault_with_results_too() {
         assert!(!dir.join(name).with_extension("out").exists());
     }
 }
+
+/// Rows at which nothing acts, among the others.
+const EMPTY: [usize; 4] = [0, 4, 9, 13];
+
+/// Strain of runs whose gauges' zeros move by up to 6 microstrain from row to row, and of which some are without load.
+fn drifting() -> String {
+    table("run", 14, |i, g, v| {
+        let [a, b] = loads(i);
+        let acts = if EMPTY.contains(&i) {
+            0.0
+        } else {
+            strain(a, b)[g]
+        };
+        // What `table` adds as noise stays.
+        let noise = v - strain(a, b)[g];
+        let zero = 40.0 - 6.0 * (g as f64 - 1.0) * i as f64;
+        (acts + noise + zero).to_string()
+    })
+}
+
+#[test]
+fn a_zero_that_drifts_is_followed_through_runs_without_load() {
+    let names = EMPTY.map(|i| format!("\"R{i}\"")).join(", ");
+    let more = format!("zero_runs = [{names}]\n");
+    let (code, said, result, _) = recover("zero-runs", &drifting(), &more);
+    assert_eq!(code, 0, "{said}");
+    let of = |run: usize, name: &str| {
+        let all = result["loads"].as_array().unwrap();
+        let found = all
+            .iter()
+            .find(|l| l["run"] == format!("R{run}") && l["name"] == name)
+            .unwrap();
+        let at = |key: &str| found[key].as_f64().unwrap();
+        (at("value"), at("sigma"))
+    };
+    // Half a microstrain of noise and the zero's own, on gauges of one microstrain per N; the drift itself would make 100 N.
+    for run in 0..14 {
+        let [a, b] = if EMPTY.contains(&run) {
+            [0.0, 0.0]
+        } else {
+            loads(run)
+        };
+        for (name, truth) in [("A", a), ("B", b)] {
+            let (value, sigma) = of(run, name);
+            // The first and the last run without load have a neighbour on one side alone, which is a step of the drift away.
+            let near = (value - truth).abs() < 2.0 || [0, 13].contains(&run);
+            assert!(near, "R{run} {name}: {value}, truth {truth}");
+            assert!(
+                (value - truth).abs() < 4.0 * sigma,
+                "R{run} {name}: {value} +- {sigma}"
+            );
+        }
+    }
+    let codes = result["findings"].as_array().unwrap();
+    assert!(codes.iter().any(|f| f["code"] == "zero-followed"));
+    let (code, said, _, _) = recover("zero-runs-none", &drifting(), "zero_runs = [\"R99\"]\n");
+    assert_eq!(code, 2);
+    assert!(
+        said.contains("measured.zero_runs: `strain.csv` has no run `R99`"),
+        "{said}"
+    );
+    let record = table("time", 200, as_is);
+    let (code, said, _, _) = recover("zero-runs-record", &record, "zero_runs = [\"R0\"]\n");
+    assert_eq!(code, 2);
+    assert!(said.contains("is a record and has no runs"), "{said}");
+}
+
+/// What `reconcile` answers of the same runs, plain and with 300 microstrain more at every gauge that the zero file takes off.
+#[test]
+fn a_zero_file_counts_in_reconcile_as_in_recover() {
+    let mut runs = "run,A,B\n".to_owned();
+    for i in 0..12 {
+        let [a, b] = loads(i);
+        let _ = writeln!(runs, "R{i},{a},{b}");
+    }
+    let more = "hold_out = [\"R9\", \"R10\", \"R11\"]\n[runs]\nfile = \"runs.csv\"\nunits = { force = \"N\" }\nnoise = { force = 0.5 }\n";
+    let answer = |name: &str, offset: f64, zero: &str| {
+        let shifted = table("run", 12, |_, g, v| {
+            (v + offset * (1.0 + g as f64)).to_string()
+        });
+        let (_, _, _, dir) = recover(name, &shifted, &format!("{zero}{more}"));
+        std::fs::write(dir.join("runs.csv"), &runs).unwrap();
+        std::fs::write(
+            dir.join("zero.csv"),
+            "run,G1,G2,G3,G4\nZ,300,600,900,1200\n",
+        )
+        .unwrap();
+        let out = dir.join("reconciled");
+        let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+            .arg("reconcile")
+            .arg(dir.join("job.toml"))
+            .arg("--out")
+            .arg(&out)
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&done.stderr).into_owned();
+        let text = std::fs::read(out.join("result.json")).unwrap_or_else(|_| panic!("{said}"));
+        serde_json::from_slice::<Value>(&text).unwrap()
+    };
+    let plain = answer("zero-plain", 0.0, "");
+    let taken = answer("zero-taken", 300.0, "zero = \"zero.csv\"\n");
+    assert_eq!(plain["verdict"], "none");
+    assert_eq!(taken["verdict"], "none");
+    let gap = |r: &Value| r["gap"]["before"].as_f64().unwrap();
+    assert!((gap(&plain) / gap(&taken) - 1.0).abs() < 1e-9);
+}

@@ -39,3 +39,4 @@ mod wheels;
 mod whole_file;
 pub mod words;
 pub mod work;
+pub(crate) mod zeroed;

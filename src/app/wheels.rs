@@ -20,7 +20,7 @@ pub struct Wheels {
 /// # Errors
 /// Fewer than three, grids that the deck lacks.
 pub fn wheels_of(job: &Job, model: &Model) -> Result<Wheels, Faults> {
-    let payload = job.payload.as_ref().and_then(|p| p.grid);
+    let payload = job.payload_grid();
     let force = |l: &JobLoad| match l.acts {
         LoadActs::AtGrid {
             grid,

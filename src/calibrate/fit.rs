@@ -2,7 +2,7 @@
 
 use super::state::State;
 use super::types::{Calibration, Coverage, LeftOut, Task};
-use super::{held_out, runs, shift, undetermined};
+use super::{glued, held_out, runs, shift, undetermined};
 use crate::finding::{Finding, Severity};
 
 /// Share of the runs that may be refused: with more, it is not the runs that are wrong.
@@ -51,6 +51,7 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
         sensitivity,
         model_error: state.model_error,
         shifts,
+        as_glued: glued::as_glued(task, &state),
         repeat_scatter_rel: state.scatter.dof.is_finite().then(|| state.scatter.rms()),
         noise_rel: task.noise / signal.sqrt(),
         left_out,

@@ -31,7 +31,7 @@ pub(super) fn diffuse(n: usize, k: usize, largest_strain: f64) -> Vec<RowPrior> 
     vec![row; n]
 }
 
-/// With a model: `common^2 s s' + entry^2 diag(s^2) + angle^2 t t'`, `s` the row and `t` its change with the gauge's angle.
+/// With a model: `common^2 s s' + entry^2 diag(s^2) + sum sd^2 t t'`, `s` the row and `t` its change with each move of the gauge.
 pub(super) fn rows(model: &ModelPrior, scales: &[f64], error: ModelError) -> Vec<RowPrior> {
     let (n, k) = model.values.shape();
     let all: f64 = (0..n)
@@ -47,15 +47,20 @@ pub(super) fn rows(model: &ModelPrior, scales: &[f64], error: ModelError) -> Vec
             let mut covariance = vec![0.0; k * k];
             for l in 0..k {
                 for m in 0..k {
-                    let turned = model.turned.as_ref().map_or(0.0, |t| {
-                        t[(g, l)] * scales[l] * t[(g, m)] * scales[m] * model.angle_rad.powi(2)
+                    let moved = model.moves.iter().map(|t| {
+                        let change = t.change[(g, l)] * scales[l] * t.change[(g, m)] * scales[m];
+                        t.sd * t.sd * change
                     });
-                    covariance[l * k + m] = error.common.powi(2) * s[l] * s[m] + turned;
+                    covariance[l * k + m] = error.common.powi(2) * s[l] * s[m] + moved.sum::<f64>();
                 }
                 covariance[l * k + l] += error.entry.powi(2) * (s[l] * s[l]).max(floor);
             }
+            let drawn = |l: usize| {
+                let at = model.moves.iter().map(|t| t.change[(g, l)] * t.at[g]);
+                s[l] - scales[l] * at.sum::<f64>()
+            };
             RowPrior {
-                mean: s,
+                mean: (0..k).map(drawn).collect(),
                 covariance,
             }
         })

@@ -1,7 +1,7 @@
 //! How far each gauge's row moved, and what that looks like.
 
 use super::state::State;
-use super::types::{GaugeShift, ShiftWord, Task};
+use super::types::{GaugeShift, MoveKind, ShiftWord, Task};
 use crate::finding::{Finding, Severity};
 use crate::linalg::precision::Precision;
 use crate::sensitivity::Sensitivity;
@@ -67,9 +67,10 @@ pub(super) fn check(task: &Task, state: &State, calibrated: &Sensitivity) -> Vec
                 (q / k.max(1) as f64).sqrt()
             });
             let scale = 1.0 + along(&prior.mean);
-            let turned = task.model.as_ref().and_then(|m| m.turned.as_ref());
+            let moves = task.model.as_ref().map_or(&[][..], |m| &m.moves);
+            let turned = moves.iter().find(|m| m.kind == MoveKind::Turned);
             let turned: Option<Vec<f64>> =
-                turned.map(|t| (0..k).map(|l| t[(g, l)] * state.scales[l]).collect());
+                turned.map(|t| (0..k).map(|l| t.change[(g, l)] * state.scales[l]).collect());
             let expected = prior.mean.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
             let word = if silent && expected > LIVE * LIVE * task.noise || scale.abs() < DEAD {
                 ShiftWord::Dead

@@ -45,12 +45,34 @@ pub struct KnownRun {
 pub struct ModelPrior {
     /// `n x k`, strain per job unit.
     pub values: Matrix,
-    /// Change of each row per radian that its gauge is turned, where the model gives one.
-    pub turned: Option<Matrix>,
+    /// Ways in which gauges may sit off their drawing; empty where nothing is stated.
+    pub moves: Vec<Move>,
     /// Stated relative error, 1 sd: entry by entry, and common to a gauge.
     pub uncertainty_rel: f64,
-    /// Angle of a gauge, rad, 1 sd; counts where `turned` is given.
-    pub angle_rad: f64,
+}
+
+/// How a gauge may sit off its drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MoveKind {
+    /// Along its axis.
+    Along,
+    /// Across it.
+    Across,
+    /// Turned, right-handed about the element's normal, radians.
+    Turned,
+}
+
+/// The change that a move makes: `row(move) = values - change at + change move`, where `values` and `change` belong to the move `at`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Move {
+    /// Which.
+    pub kind: MoveKind,
+    /// `n x k`, strain per job unit and unit of the move.
+    pub change: Matrix,
+    /// 1 sd.
+    pub sd: f64,
+    /// By gauge.
+    pub at: Vec<f64>,
 }
 
 /// What to calibrate.
@@ -99,6 +121,8 @@ pub struct Calibration {
     pub model_error: Option<ModelError>,
     /// By gauge: how far it moved.
     pub shifts: Vec<GaugeShift>,
+    /// By gauge: where it sits; empty where no tolerance is stated.
+    pub as_glued: Vec<AsGlued>,
     /// Scatter between repeats of one loading over the strain, root mean square over gauges; `None` without repeats.
     pub repeat_scatter_rel: Option<f64>,
     /// Noise over the strain, both root mean squares.
@@ -180,6 +204,43 @@ pub struct GaugeShift {
     pub scale: f64,
     /// What it looks like.
     pub word: ShiftWord,
+}
+
+/// A size that the runs say of a gauge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Glue {
+    /// Posterior mean.
+    pub value: f64,
+    /// 1 sd.
+    pub sigma: f64,
+    /// 1 sd before any run.
+    pub stated: f64,
+}
+
+/// Share of the stated sd from which on the runs don't tell a size.
+const TOLD: f64 = 0.7;
+
+impl Glue {
+    /// Whether the runs tell it: at least half of the stated variance is gone.
+    pub fn is_told(&self) -> bool {
+        self.sigma < TOLD * self.stated
+    }
+}
+
+/// How a gauge was glued.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AsGlued {
+    /// Factor on its readings.
+    pub gain: Glue,
+    /// Off its drawing, for each move of the task.
+    pub moves: Vec<(MoveKind, Glue)>,
+}
+
+impl AsGlued {
+    /// What the runs say of a move; `None` where it was not asked for.
+    pub fn of(&self, kind: MoveKind) -> Option<Glue> {
+        self.moves.iter().find(|m| m.0 == kind).map(|m| m.1)
+    }
 }
 
 /// A combination that no run determines.

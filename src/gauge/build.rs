@@ -31,6 +31,16 @@ pub fn build(
     spec: &GaugeSpec,
     corners: CornerRows,
 ) -> Result<(Vec<Gauge>, Vec<Finding>), GaugeError> {
+    build_by(model, spec, corners, |x| nearest(model, x, |_| true))
+}
+
+/// [`build`] with a point of the shells found by `nearest_to`.
+pub(super) fn build_by(
+    model: &Model,
+    spec: &GaugeSpec,
+    corners: CornerRows,
+    nearest_to: impl Fn(Vec3) -> Option<Foot>,
+) -> Result<(Vec<Gauge>, Vec<Finding>), GaugeError> {
     let mut findings = Vec::new();
     if let GaugePlace::Beam {
         beam,
@@ -51,7 +61,7 @@ pub fn build(
     };
     let (shell, foot) = match spec.place {
         GaugePlace::Nearest(x) => {
-            let foot = nearest(model, x, |_| true).ok_or_else(|| GaugeError::NoShells {
+            let foot = nearest_to(x).ok_or_else(|| GaugeError::NoShells {
                 gauge: spec.name.clone(),
             })?;
             (foot.shell, Some(foot))
@@ -343,7 +353,7 @@ enum Reach {
     Grid,
 }
 
-fn opposite(s: Surface) -> Surface {
+pub(super) fn opposite(s: Surface) -> Surface {
     match s {
         Surface::Top => Surface::Bottom,
         Surface::Bottom => Surface::Top,

@@ -48,12 +48,21 @@ pub fn to_side(model: &Model, shell: &Shell, side: Surface) -> f64 {
 ///
 /// Every shell is looked at: a bounding sphere excludes most at the cost of one distance.
 pub fn nearest(model: &Model, x: Vec3, among: impl Fn(ShellIx) -> bool) -> Option<Foot> {
+    let all = (0..model.shells.len() as u32).map(ShellIx);
+    nearest_of(model, x, all.filter(|ix| among(*ix)))
+}
+
+/// The nearest point of these shells; `None` without shells.
+pub fn nearest_of(
+    model: &Model,
+    x: Vec3,
+    shells: impl IntoIterator<Item = ShellIx>,
+) -> Option<Foot> {
     let mut best: Option<Foot> = None;
-    for (i, shell) in model.shells.iter().enumerate() {
-        let ix = ShellIx(i as u32);
-        if !among(ix) {
+    for ix in shells {
+        let Some(shell) = model.shells.get(ix.us()) else {
             continue;
-        }
+        };
         let (Some(p), Some(c)) = (corners(model, shell), centre(model, shell)) else {
             continue;
         };

@@ -59,6 +59,11 @@ fn functions(lines: &[String]) -> Vec<(String, usize)> {
     for (start, line) in lines.iter().enumerate() {
         let bare = line.trim_start();
         let indent = &line[..line.len() - bare.len()];
+        // `pub(super) fn` has a bracket before its name.
+        let bare = match bare.strip_prefix("pub(") {
+            Some(rest) => rest.split_once(") ").map_or(bare, |r| r.1),
+            None => bare,
+        };
         let head = bare.split('(').next().unwrap_or("");
         let words: Vec<&str> = head.split_whitespace().collect();
         let Some(at) = words.iter().position(|w| *w == "fn") else {

@@ -75,9 +75,7 @@ pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
         read: &read,
         wheels,
         standing,
-        gravity: ballast
-            .gravity_m_s2
-            .map_or(job.units.standard_gravity(), |g| g / job.units.length_m()),
+        gravity: ballast.gravity_m_s2 / job.units.length_m(),
     };
     let (run, measured, sigma) = measured(&mut work, &task)?;
     let carriers = Carriers::of(&read.model, task.wheels.axis, |p| {

@@ -1,5 +1,6 @@
 //! `calibrate`: S from runs of known load, fused with the model's where there is one; the job that the other workflows run with it.
 
+mod glued;
 mod job_file;
 mod known;
 mod outcome;
@@ -10,19 +11,17 @@ pub use outcome::*;
 
 use super::context::Context;
 use super::fault::{Fault, Faults};
-use super::job::strain::{StrainRows, StrainTable, read_strain};
+use super::job::strain::{StrainRows, StrainTable};
 use super::job::{Job, Measured, Reference, Role, Runs};
 use super::outcome::{Outcome, StatedUnits};
 use super::reconcile::redirect::text_of;
 use super::strain::{Prepared, load_units, prepare};
 use super::work::Work;
-use crate::calibrate::{KnownRun, ModelPrior, Task};
+use super::zeroed::{Zeroed, read_zeroed};
+use crate::calibrate::{KnownRun, ModelPrior, Task, calibrate_as_glued};
 use crate::linalg::Matrix;
-use crate::recovery::net::effective_samples;
 use crate::sensitivity::{Load, Sensitivity};
-
-/// Strain in one microstrain.
-const MICRO: f64 = 1e-6;
+use crate::units::MICROSTRAIN;
 
 /// S of a job's gauges learnt from its runs of known load.
 ///
@@ -31,8 +30,11 @@ const MICRO: f64 = 1e-6;
 pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults> {
     let mut work = Work::of_job(cx, job);
     let (measured, runs) = sections(job)?;
-    let table = work.stage("read strain", |w| {
-        read_strain(&mut w.inputs, job, &measured.strain)
+    let Zeroed {
+        table,
+        noise_factor,
+    } = work.stage("read strain", |w| {
+        read_zeroed(w, job, measured, &measured.strain)
     })?;
     let StrainRows::Runs(names) = &table.rows else {
         return Err(Fault::of(
@@ -52,27 +54,34 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
         names,
         &prepared.sensitivity.loads,
     )?;
-    let strain = readings(&mut work, job, measured, &table, &prepared)?;
+    let strain = readings(job, measured, &table, &prepared)?;
     let task = Task {
         gauges: prepared.sensitivity.gauges.clone(),
         loads: prepared.sensitivity.loads.clone(),
-        noise: measured.noise_microstrain * MICRO,
+        noise: measured.noise_microstrain * MICROSTRAIN,
         model: prior,
         runs: known
             .runs
             .iter()
             .map(|k| KnownRun {
                 run: names[k.row].clone(),
-                strain: strain.rows[k.row].clone(),
-                noise_factor: strain.noise_factor,
+                strain: strain[k.row].clone(),
+                noise_factor: noise_factor[k.row],
                 loads: k.loads.clone(),
                 group: k.group,
             })
             .collect(),
         sums: sums(job, &prepared.sensitivity.loads),
     };
+    let sites = match glued::tolerance(&job.calibration) {
+        Some(t) => Some((t, glued::Sites::of(job, &prepared, t)?)),
+        None => None,
+    };
     let found = work
-        .stage("calibrate", |_| crate::calibrate::calibrate(&task))
+        .stage("calibrate", |_| match &sites {
+            Some((t, sites)) => calibrate_as_glued(&task, *t, |g, offset| sites.row(g, offset)),
+            None => crate::calibrate::calibrate(&task),
+        })
         .map_err(|wrong| {
             Faults::from(Fault::of(
                 &*runs.file.given,
@@ -101,8 +110,14 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
             .flatten()
             .filter_map(DependenceSummary::finding),
     );
+    let calibration = said::words(&task, &found, &units, next, dependence.flatten());
+    work.findings.extend(glued::untold(&calibration.gauges));
+    let glued = found.as_glued.iter().enumerate();
     let answer = Calibrated {
-        calibration: said::words(&task, &found, &units, next, dependence.flatten()),
+        calibration,
+        glued: glued
+            .map(|(g, a)| sites.as_ref().and_then(|(_, s)| s.found(g, a)))
+            .collect(),
         sensitivity: found.sensitivity.clone(),
         model: task.model.as_ref().map(|m| m.values.clone()),
         found,
@@ -156,9 +171,8 @@ fn prior(
         let prepared = prepare(work, job)?;
         let prior = ModelPrior {
             values: prepared.sensitivity.values.clone(),
-            turned: None,
+            moves: Vec::new(),
             uncertainty_rel: job.calibration.model_uncertainty_rel,
-            angle_rad: 0.0,
         };
         return Ok((prepared, Some(prior)));
     }
@@ -200,19 +214,13 @@ fn prior(
     Ok((prepared, None))
 }
 
-/// Strain of every row of the table by gauge, zero subtracted.
-struct Strain {
-    rows: Vec<Vec<f64>>,
-    noise_factor: f64,
-}
-
+/// Strain of every row of the table by gauge.
 fn readings(
-    work: &mut Work,
     job: &Job,
     measured: &Measured,
     table: &StrainTable,
     prepared: &Prepared,
-) -> Result<Strain, Faults> {
+) -> Result<Vec<Vec<f64>>, Faults> {
     if measured.reference != Reference::None {
         let wrong = "known loads are changes from the state at which the gauges read zero";
         return Err(Fault::at(
@@ -224,9 +232,10 @@ fn readings(
         )
         .into());
     }
-    let gauges = &prepared.sensitivity.gauges;
-    let place = |t: &StrainTable, g: &String| t.gauges.iter().position(|h| h == g);
-    let columns: Vec<Option<usize>> = gauges.iter().map(|g| place(table, g)).collect();
+    let gauges = prepared.sensitivity.gauges.iter();
+    let columns: Vec<Option<usize>> = gauges
+        .map(|g| table.gauges.iter().position(|h| h == g))
+        .collect();
     if columns.iter().all(Option::is_none) {
         return Err(Fault::at(
             &*measured.strain.given,
@@ -237,34 +246,12 @@ fn readings(
         )
         .into());
     }
-    let (mut zero, mut effective) = (vec![0.0; gauges.len()], f64::INFINITY);
-    if let Some(named) = &measured.zero {
-        let unloaded = read_strain(&mut work.inputs, job, named)?;
-        for (z, g) in zero.iter_mut().zip(gauges) {
-            let column = place(&unloaded, g);
-            let cell = |i: usize| column.and_then(|c| unloaded.row(i).get(c).copied());
-            let v: Vec<f64> = (0..unloaded.n_rows())
-                .filter_map(cell)
-                .filter(|v| v.is_finite())
-                .collect();
-            if v.is_empty() {
-                *z = f64::NAN;
-                continue;
-            }
-            *z = v.iter().sum::<f64>() / v.len() as f64;
-            effective = effective.min(effective_samples(&v));
-        }
-    }
     let of_row = |i: usize| -> Vec<f64> {
         let row = table.row(i);
         let reading = |c: &Option<usize>| c.and_then(|c| row.get(c)).copied().unwrap_or(f64::NAN);
-        let pairs = columns.iter().zip(&zero);
-        pairs.map(|(c, z)| (reading(c) - z) * MICRO).collect()
+        columns.iter().map(|c| reading(c) * MICROSTRAIN).collect()
     };
-    Ok(Strain {
-        rows: (0..table.n_rows()).map(of_row).collect(),
-        noise_factor: 1.0 + 1.0 / effective,
-    })
+    Ok((0..table.n_rows()).map(of_row).collect())
 }
 
 /// Coefficients of the job's combinations; where it names none, the sum of all wanted loads, whose interval is to hold all the same.

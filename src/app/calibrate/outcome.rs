@@ -3,7 +3,10 @@
 use crate::app::job::Job;
 use crate::app::outcome::Answer;
 use crate::calibrate::Calibration;
+use crate::fe::strain_tensor::Surface;
+use crate::gauge::{Gauge, GaugeSpec};
 use crate::linalg::Matrix;
+use crate::model::Vec3;
 use crate::sensitivity::Sensitivity;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -19,6 +22,9 @@ pub struct Calibrated {
     /// The model's S, where there is one.
     #[serde(skip)]
     pub model: Option<Matrix>,
+    /// Gauges where they sit, `None` for those on bars; empty where `[calibration]` states no tolerance.
+    #[serde(skip)]
+    pub glued: Vec<Option<GluedGauge>>,
     /// All of it.
     #[serde(skip)]
     pub found: Calibration,
@@ -74,6 +80,50 @@ pub struct CalibratedGauge {
     pub scale: f64,
     /// `none`, `gain`, `angle`, `place`, `sign`, `dead`.
     pub looks_like: &'static str,
+    /// Where it sits, as the runs say; null where `[calibration]` states no tolerance.
+    pub as_glued: Option<AsGluedSummary>,
+}
+
+/// How a gauge was glued: off its drawing along and across its axis (job units), turned (degrees, right-handed about the element's
+/// normal); null where no tolerance is stated.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct AsGluedSummary {
+    pub along: Option<GlueSummary>,
+    pub across: Option<GlueSummary>,
+    pub angle_deg: Option<GlueSummary>,
+    /// Factor on its readings.
+    pub gain: GlueSummary,
+}
+
+/// One size of it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct GlueSummary {
+    /// Posterior mean.
+    pub value: f64,
+    /// 1 sd.
+    pub sigma: f64,
+    /// Whether the runs tell it: at least half of the stated variance is gone.
+    pub told: bool,
+}
+
+/// A gauge laid onto the model where the runs say that it sits.
+#[derive(Clone, Debug)]
+pub struct GluedGauge {
+    /// There.
+    pub gauge: Gauge,
+    /// On the reference surface, basic frame.
+    pub at: Vec3,
+    /// Whether strain is read at that point; else in the middle of its element.
+    pub by_position: bool,
+    /// As drawn.
+    pub spec: GaugeSpec,
+    /// Its wiring, as a job writes it.
+    pub bridge: &'static str,
+    /// Element and side of the other pair of a bridge.
+    pub pair: Option<(u32, Surface)>,
+    /// Factor on its readings.
+    pub gain: f64,
 }
 
 /// Tally of left-out runs.

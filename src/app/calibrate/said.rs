@@ -127,11 +127,13 @@ pub(super) fn words(
         gauges: found
             .shifts
             .iter()
-            .map(|s| CalibratedGauge {
+            .enumerate()
+            .map(|(g, s)| CalibratedGauge {
                 name: s.name.clone(),
                 shift: s.shift,
                 scale: s.scale,
                 looks_like: s.word.name(),
+                as_glued: found.as_glued.get(g).map(super::glued::summary),
             })
             .collect(),
         repeat_scatter_rel: found.repeat_scatter_rel,

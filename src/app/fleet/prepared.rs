@@ -7,6 +7,7 @@ use crate::app::job::strain::microstrain_in;
 use crate::app::recover::{reference_strain, zero_of};
 use crate::app::strain::{load_units, prepare};
 use crate::app::work::Work;
+use crate::app::zeroed::no_zero_runs;
 use crate::recovery::ErrorModel;
 use crate::sensitivity::check_separability;
 use crate::series::rainflow::{Knee, Law};
@@ -24,6 +25,7 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
         let remedy = "add [measured] with the noise and the model's uncertainty";
         return Err(Fault::of(&*job.file, "measured", "the job has no [measured]", remedy).into());
     };
+    no_zero_runs(job, measured, "FILES")?;
     let prepared = prepare(work, job)?;
     let s = &prepared.sensitivity;
     work.findings.extend(check_separability(s));

@@ -27,6 +27,7 @@ pub use types::*;
 use super::context::Files;
 use super::fault::Faults;
 use super::files::Inputs;
+use crate::units::STANDARD_GRAVITY_M_S2;
 use std::path::Path;
 
 impl Job {
@@ -39,6 +40,32 @@ impl Job {
         let mut job = read_job(&mut inputs, path.as_ref())?;
         job.read = inputs.files_read();
         Ok(job)
+    }
+
+    /// Gravity, m/s^2 whatever the unit system: that of `[payload]`, else standard gravity.
+    pub fn gravity_m_s2(&self) -> f64 {
+        let payload = self.payload.as_ref();
+        payload.map_or(STANDARD_GRAVITY_M_S2, |p| p.gravity_m_s2)
+    }
+
+    /// Gravity in the job's units.
+    pub fn gravity(&self) -> f64 {
+        self.gravity_m_s2() / self.units.length_m()
+    }
+
+    /// Where the payload of `[payload]` acts: the grid stated, else the one grid at which wanted moments act.
+    pub fn payload_grid(&self) -> Option<u32> {
+        let payload = self.payload.as_ref()?;
+        let mut with_moment = self.loads.iter().filter_map(|l| match l.acts {
+            LoadActs::AtGrid {
+                grid, component, ..
+            } if !component.is_force() && l.role == Role::Wanted => Some(grid),
+            _ => None,
+        });
+        payload.grid.or_else(|| {
+            let first = with_moment.next()?;
+            with_moment.all(|g| g == first).then_some(first)
+        })
     }
 }
 

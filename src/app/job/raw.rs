@@ -85,6 +85,8 @@ pub(super) struct RawCalibration {
     pub repeats: S<Vec<Spanned<String>>>,
     pub depends_on: S<String>,
     pub model_uncertainty_rel: S<f64>,
+    pub position_tolerance: S<f64>,
+    pub angle_tolerance_deg: S<f64>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]
@@ -182,6 +184,7 @@ pub(super) struct RawPlacement {
 pub(super) struct RawMeasured {
     pub strain: S<String>,
     pub zero: S<String>,
+    pub zero_runs: S<Vec<Spanned<String>>>,
     pub reference: S<NumberOrWord>,
     pub noise_microstrain: S<f64>,
     pub model_uncertainty_rel: S<f64>,

@@ -169,6 +169,11 @@ const KEYS: &[(&str, &str, &[&str])] = &[
         &[],
     ),
     (
+        "measured.zero_runs",
+        "Runs of the strain file at which no load acts: the zero is followed through them, straight from one to the next; instead of `zero`",
+        &[],
+    ),
+    (
         "measured.reference",
         "none: loads are changes; gravity or a subcase: they are totals",
         &[],
@@ -299,6 +304,16 @@ const KEYS: &[(&str, &str, &[&str])] = &[
     (
         "calibration.model_uncertainty_rel",
         "How far the model's S may be off, 1 sd, entry by entry and common to a gauge; default 0.1",
+        &[],
+    ),
+    (
+        "calibration.position_tolerance",
+        "How far gauges may sit from their drawing along and across their axis, 1 sd, job length; stated, it is found from the runs; default 0",
+        &[],
+    ),
+    (
+        "calibration.angle_tolerance_deg",
+        "How far gauges may be turned from their drawing, 1 sd; stated, it is found from the runs; default 0",
         &[],
     ),
 ];

@@ -166,6 +166,10 @@ pub struct CalibrationKeys {
     pub depends_on: Option<String>,
     /// Stated relative error of the model's S, 1 sd: entry by entry, and common to a gauge.
     pub model_uncertainty_rel: f64,
+    /// How far a gauge may sit from its drawing along and across its axis, 1 sd, job length; 0: it sits there.
+    pub position_tolerance: f64,
+    /// How far it may be turned, 1 sd; 0: it is not.
+    pub angle_tolerance_deg: f64,
     /// Line of the job; 0 where the section is absent.
     pub line: u32,
 }
@@ -556,6 +560,8 @@ pub struct Measured {
     pub strain: NamedFile,
     /// Its mean is subtracted.
     pub zero: Option<NamedFile>,
+    /// Runs of the strain file at which no load acts: the zero is followed through them.
+    pub zero_runs: Vec<String>,
     /// Changes or totals.
     pub reference: Reference,
     /// Noise, microstrain, 1 sd; default 1.
@@ -621,8 +627,8 @@ pub struct Ballast {
     pub max_mass: Option<f64>,
     /// Run whose reactions count; default the first.
     pub run: Option<String>,
-    /// Gravity, m/s^2.
-    pub gravity_m_s2: Option<f64>,
+    /// Gravity, m/s^2 whatever the unit system; default 9.80665.
+    pub gravity_m_s2: f64,
     /// Line of the job.
     pub line: u32,
 }
@@ -642,8 +648,8 @@ pub struct Payload {
     pub grid: Option<u32>,
     /// Known or free.
     pub position: PayloadPosition,
-    /// Gravity, m/s^2 whatever the unit system; `None`: 9.80665.
-    pub gravity_m_s2: Option<f64>,
+    /// Gravity, m/s^2 whatever the unit system; default 9.80665.
+    pub gravity_m_s2: f64,
     /// The payload's weight acts in the analyst's model.
     pub weight_in_model: bool,
     /// Where it may be.

@@ -5,7 +5,7 @@ use super::task::Task;
 use crate::app::words::short;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
-use crate::payload::{PayloadRun, Place, Refusal, WeighSpec, Weighing};
+use crate::payload::{PayloadRun, Place, Refusal, WeighSpec, WeighedRun, Weighing};
 
 /// A share of the weight that an interval leaves open from which the answer says little.
 const VAGUE: f64 = 0.5;
@@ -36,6 +36,128 @@ pub(super) fn words(task: &Task, refusal: &Refusal) -> String {
     }
 }
 
+/// A refusal as a finding.
+fn refused(task: &Task, run: &str, refusal: &Refusal) -> Finding {
+    let (code, remedy) = match refusal {
+        Refusal::Negative { .. } => (
+            "payload-negative",
+            "check the signs of gauges and wheel forces, the zero, and which run is the unloaded one",
+        ),
+        Refusal::OutsideRegion { .. } => (
+            "payload-outside-region",
+            "check `region`, signs and names of gauges, and for a load that is not the payload",
+        ),
+        Refusal::OutOfBalance { .. } => (
+            "payload-out-of-balance",
+            "check scale and sign of the channels, the zero of both, and `use` one of them alone",
+        ),
+        Refusal::Undetermined => (
+            "payload-undetermined",
+            "glue gauges where the payload strains the structure, or measure wheel forces",
+        ),
+    };
+    Finding::new(Severity::Error, code, run, words(task, refusal), remedy)
+}
+
+/// Wheels that structure and payload together leave without load.
+fn lift_off(work: &mut Work, task: &Task, parts: &Parts, run: &PayloadRun, r: &WeighedRun) {
+    // Wheels under structure and payload together.
+    let total: Vec<f64> = match (&parts.model.floor, run.reactions.is_empty()) {
+        (Some(floor), true) => {
+            let p = [r.force, r.force * r.shift[0], r.force * r.shift[1]];
+            task.empty
+                .iter()
+                .enumerate()
+                .map(|(w, e)| e + (0..3).map(|k| floor[(w, k)] * p[k]).sum::<f64>())
+                .collect()
+        }
+        _ => task
+            .empty
+            .iter()
+            .zip(&run.reactions)
+            .map(|(e, r)| e + r)
+            .collect(),
+    };
+    for (w, t) in total.iter().enumerate().filter(|t| *t.1 < 0.0) {
+        work.findings.push(
+            Finding::new(
+                Severity::Error,
+                "wheel-lifts-off",
+                format!("{}: {}", r.run, task.wheels[w]),
+                "this payload at this place lifts the wheel off the floor: the structure does not stand as the model says",
+                "check the place of the payload, and the model's masses (`ballast`)",
+            )
+            .with_numbers(*t, 0.0),
+        );
+    }
+}
+
+/// A free place that the readings don't tell.
+fn place_told(work: &mut Work, spec: &WeighSpec, r: &WeighedRun) {
+    let (axes, _) = r.ellipse();
+    let room = spec.region.map_or(f64::INFINITY, |v| {
+        (v[0][1] - v[0][0]).max(v[1][1] - v[1][0]) / 2.0
+    });
+    if axes[0] > room {
+        work.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "place-not-determined",
+                &r.run,
+                "the 95 % region of the place is as large as the region where the payload can be: the readings don't tell it",
+                "add gauges between the axles on both rails, or wheel forces",
+            )
+            .with_numbers(axes[0], room),
+        );
+    }
+}
+
+/// Moments of measured wheel forces against the place that the job states.
+fn elsewhere(
+    work: &mut Work,
+    task: &Task,
+    spec: &WeighSpec,
+    arms: &[[f64; 2]],
+    run: &PayloadRun,
+    r: &WeighedRun,
+) {
+    let sum: f64 = run.reactions.iter().sum();
+    let at = [0, 1].map(|k| {
+        run.reactions
+            .iter()
+            .zip(arms)
+            .map(|(r, a)| r * a[k])
+            .sum::<f64>()
+            / sum
+    });
+    let sd = [0, 1].map(|k| {
+        arms.iter()
+            .map(|a| ((a[k] - at[k]) * spec.reaction_sigma / sum).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    });
+    let worst = (0..2)
+        .map(|k| (at[k] - r.shift[k]).abs() / sd[k])
+        .fold(0.0, f64::max);
+    if worst > 4.0 {
+        let unit = task.job.report_units.length.name;
+        work.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "payload-elsewhere",
+                &r.run,
+                format!(
+                    "the moments of the wheel forces put the payload at {}, {} {unit}, not where the job states it",
+                    short(task.nominal[0] + at[0]),
+                    short(task.nominal[1] + at[1])
+                ),
+                "correct the place, or let it free: position = \"free\"",
+            )
+            .with_numbers(worst, 4.0),
+        );
+    }
+}
+
 /// What there is to say of every run, and of the gauges that carry nothing.
 pub(super) fn findings(
     work: &mut Work,
@@ -47,31 +169,7 @@ pub(super) fn findings(
 ) {
     for (r, run) in weighing.runs.iter().zip(runs) {
         if let Some(refusal) = &r.refused {
-            let (code, remedy) = match refusal {
-                Refusal::Negative { .. } => (
-                    "payload-negative",
-                    "check the signs of gauges and wheel forces, the zero, and which run is the unloaded one",
-                ),
-                Refusal::OutsideRegion { .. } => (
-                    "payload-outside-region",
-                    "check `region`, signs and names of gauges, and for a load that is not the payload",
-                ),
-                Refusal::OutOfBalance { .. } => (
-                    "payload-out-of-balance",
-                    "check scale and sign of the channels, the zero of both, and `use` one of them alone",
-                ),
-                Refusal::Undetermined => (
-                    "payload-undetermined",
-                    "glue gauges where the payload strains the structure, or measure wheel forces",
-                ),
-            };
-            work.findings.push(Finding::new(
-                Severity::Error,
-                code,
-                &r.run,
-                words(task, refusal),
-                remedy,
-            ));
+            work.findings.push(refused(task, &r.run, refusal));
             continue;
         }
         let wide = (r.interval[1] - r.interval[0]) / r.force;
@@ -87,89 +185,11 @@ pub(super) fn findings(
                 .with_numbers(wide, VAGUE),
             );
         }
-        // Wheels under structure and payload together.
-        let total: Vec<f64> = match (&parts.model.floor, run.reactions.is_empty()) {
-            (Some(floor), true) => {
-                let p = [r.force, r.force * r.shift[0], r.force * r.shift[1]];
-                task.empty
-                    .iter()
-                    .enumerate()
-                    .map(|(w, e)| e + (0..3).map(|k| floor[(w, k)] * p[k]).sum::<f64>())
-                    .collect()
-            }
-            _ => task
-                .empty
-                .iter()
-                .zip(&run.reactions)
-                .map(|(e, r)| e + r)
-                .collect(),
-        };
-        for (w, t) in total.iter().enumerate().filter(|t| *t.1 < 0.0) {
-            work.findings.push(
-                Finding::new(
-                    Severity::Error,
-                    "wheel-lifts-off",
-                    format!("{}: {}", r.run, task.wheels[w]),
-                    "this payload at this place lifts the wheel off the floor: the structure does not stand as the model says",
-                    "check the place of the payload, and the model's masses (`ballast`)",
-                )
-                .with_numbers(*t, 0.0),
-            );
-        }
+        lift_off(work, task, parts, run, r);
         if spec.place == Place::Free {
-            let (axes, _) = r.ellipse();
-            let room = spec.region.map_or(f64::INFINITY, |v| {
-                (v[0][1] - v[0][0]).max(v[1][1] - v[1][0]) / 2.0
-            });
-            if axes[0] > room {
-                work.findings.push(
-                    Finding::new(
-                        Severity::Warning,
-                        "place-not-determined",
-                        &r.run,
-                        "the 95 % region of the place is as large as the region where the payload can be: the readings don't tell it",
-                        "add gauges between the axles on both rails, or wheel forces",
-                    )
-                    .with_numbers(axes[0], room),
-                );
-            }
+            place_told(work, spec, r);
         } else if let (Some(arms), false) = (&parts.model.arms, run.reactions.is_empty()) {
-            // Moments of measured wheel forces against the place that the job states.
-            let sum: f64 = run.reactions.iter().sum();
-            let at = [0, 1].map(|k| {
-                run.reactions
-                    .iter()
-                    .zip(arms)
-                    .map(|(r, a)| r * a[k])
-                    .sum::<f64>()
-                    / sum
-            });
-            let sd = [0, 1].map(|k| {
-                arms.iter()
-                    .map(|a| ((a[k] - at[k]) * spec.reaction_sigma / sum).powi(2))
-                    .sum::<f64>()
-                    .sqrt()
-            });
-            let worst = (0..2)
-                .map(|k| (at[k] - r.shift[k]).abs() / sd[k])
-                .fold(0.0, f64::max);
-            if worst > 4.0 {
-                let unit = task.job.report_units.length.name;
-                work.findings.push(
-                    Finding::new(
-                        Severity::Warning,
-                        "payload-elsewhere",
-                        &r.run,
-                        format!(
-                            "the moments of the wheel forces put the payload at {}, {} {unit}, not where the job states it",
-                            short(task.nominal[0] + at[0]),
-                            short(task.nominal[1] + at[1])
-                        ),
-                        "correct the place, or let it free: position = \"free\"",
-                    )
-                    .with_numbers(worst, 4.0),
-                );
-            }
+            elsewhere(work, task, spec, arms, run, r);
         }
     }
     let rejected: Vec<&str> = weighing

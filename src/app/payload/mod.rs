@@ -43,12 +43,11 @@ pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
             "add [measured] strain = \"strain.csv\" or [runs] file = \"runs.csv\", and name them in `use`",
         )));
     }
-    let gravity = payload.gravity_m_s2.unwrap_or(9.806_65);
     let si = job.report_units.mass.si / job.report_units.force.si;
     let mut task = Task {
         job,
         payload,
-        weight_of_mass: gravity * si,
+        weight_of_mass: payload.gravity_m_s2 * si,
         force: factor(job.units, job.report_units.force),
         length: factor(job.units, job.report_units.length),
         nominal: [0.0; 2],

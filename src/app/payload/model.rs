@@ -76,7 +76,7 @@ pub(super) fn model_of(
     }
 }
 
-/// The grid of the payload: the job's, else the one grid with moments among the loads.
+/// The grid of the payload, which the deck must have.
 fn payload_grid(task: &Task, model: &Model) -> Result<(GridIx, u32), Faults> {
     let fault = |wrong: String| {
         Faults::from(Fault::at(
@@ -88,16 +88,8 @@ fn payload_grid(task: &Task, model: &Model) -> Result<(GridIx, u32), Faults> {
         ))
     };
     let id = task
-        .payload
-        .grid
-        .or_else(|| {
-            task.job.loads.iter().find_map(|l| match l.acts {
-                LoadActs::AtGrid {
-                    grid, component, ..
-                } if component.dof() > 2 && l.role == crate::app::job::Role::Wanted => Some(grid),
-                _ => None,
-            })
-        })
+        .job
+        .payload_grid()
         .ok_or_else(|| fault("the key is missing".into()))?;
     model
         .grid_ix(id)
@@ -155,12 +147,8 @@ fn standing(
             floor[(w, shift_of[k])] = signs[k] * r;
         }
     }
-    let gravity = task
-        .payload
-        .gravity_m_s2
-        .map_or(job.units.standard_gravity(), |g| g / job.units.length_m());
     task.empty = standing
-        .under_weight(model, gravity)
+        .under_weight(model, job.gravity())
         .iter()
         .map(|r| r * task.force)
         .collect();

@@ -7,6 +7,7 @@ use crate::app::job::strain::{StrainRows, StrainTable, read_strain};
 use crate::app::job::{NamedFile, PayloadPosition, WheelForces};
 use crate::app::outcome::finite;
 use crate::app::work::Work;
+use crate::app::zeroed::{no_zero_runs, zeros_by_row};
 use crate::finding::{Finding, Severity};
 use crate::payload::{PayloadModel, PayloadRun};
 use crate::recovery::net::{Net, WEAK, mean_of, net};
@@ -95,41 +96,7 @@ pub(super) fn runs_of(
             shift: [0.0; 2],
         }));
     }
-    let metre = job.report_units.length.si;
-    let newton = job.report_units.force.si;
-    let mut without: Vec<String> = Vec::new();
-    for run in &mut out {
-        let row = rows.iter().find(|r| r.run == run.run);
-        let known = task.payload.position == PayloadPosition::Known;
-        if let Some(row) = row.filter(|_| known) {
-            for (k, at) in [row.payload_x_m, row.payload_y_m].into_iter().enumerate() {
-                if let Some(at) = at {
-                    run.shift[k] = at / metre - task.nominal[k];
-                }
-            }
-        }
-        if let (true, None, Some(at)) = (known, row, task.payload.nominal_x) {
-            run.shift[0] = at * task.length - task.nominal[0];
-        }
-        if reactions {
-            let of = |row: &RunRow| -> Vec<f64> {
-                task.wheels
-                    .iter()
-                    .map(|w| row.loads_si.get(w).map_or(f64::NAN, |v| v / newton))
-                    .collect()
-            };
-            let values = row.map_or_else(|| vec![f64::NAN; task.wheels.len()], of);
-            let values: Vec<f64> = match unloaded {
-                Some(u) => values.iter().zip(of(u)).map(|(v, u)| v - u).collect(),
-                None => values,
-            };
-            if values.iter().all(|v| v.is_finite()) {
-                run.reactions = values;
-            } else {
-                without.push(run.run.clone());
-            }
-        }
-    }
+    let without = shifts_and_reactions(task, &rows, unloaded, reactions, &mut out);
     if !without.is_empty() {
         if model.floor.is_none() || !use_strain {
             return Err(Faults::from(Fault::at(
@@ -169,6 +136,53 @@ pub(super) fn runs_of(
         out.iter_mut().for_each(|r| r.reactions.clear());
     }
     Ok(Readings { runs: out, net })
+}
+
+/// Puts the runs' known places and, where asked for, wheel forces in; names the runs that lack wheel forces.
+fn shifts_and_reactions(
+    task: &Task,
+    rows: &[RunRow],
+    unloaded: Option<&RunRow>,
+    reactions: bool,
+    out: &mut [PayloadRun],
+) -> Vec<String> {
+    let job = task.job;
+    let metre = job.report_units.length.si;
+    let newton = job.report_units.force.si;
+    let mut without: Vec<String> = Vec::new();
+    for run in out {
+        let row = rows.iter().find(|r| r.run == run.run);
+        let known = task.payload.position == PayloadPosition::Known;
+        if let Some(row) = row.filter(|_| known) {
+            for (k, at) in [row.payload_x_m, row.payload_y_m].into_iter().enumerate() {
+                if let Some(at) = at {
+                    run.shift[k] = at / metre - task.nominal[k];
+                }
+            }
+        }
+        if let (true, None, Some(at)) = (known, row, task.payload.nominal_x) {
+            run.shift[0] = at * task.length - task.nominal[0];
+        }
+        if reactions {
+            let of = |row: &RunRow| -> Vec<f64> {
+                task.wheels
+                    .iter()
+                    .map(|w| row.loads_si.get(w).map_or(f64::NAN, |v| v / newton))
+                    .collect()
+            };
+            let values = row.map_or_else(|| vec![f64::NAN; task.wheels.len()], of);
+            let values: Vec<f64> = match unloaded {
+                Some(u) => values.iter().zip(of(u)).map(|(v, u)| v - u).collect(),
+                None => values,
+            };
+            if values.iter().all(|v| v.is_finite()) {
+                run.reactions = values;
+            } else {
+                without.push(run.run.clone());
+            }
+        }
+    }
+    without
 }
 
 /// Whether the wheel forces count as evidence; says so where they don't.
@@ -252,6 +266,7 @@ fn strain(
     }
     let runs: Vec<(String, Vec<Net>)> = match &table.rows {
         StrainRows::Times(_) => {
+            no_zero_runs(task.job, measured, &measured.strain.given)?;
             let means = readings.iter().map(|v| mean_of(v, noise));
             vec![(stem(&measured.strain), nets(means, &zero))]
         }
@@ -270,14 +285,23 @@ fn strain(
                     .collect(),
                 None => zero,
             };
-            names
-                .iter()
-                .enumerate()
-                .map(|(i, name)| {
-                    let means = readings.iter().map(|v| mean_of(&v[i..=i], noise));
-                    (name.clone(), nets(means, &zero))
-                })
-                .collect()
+            let followed = zeros_by_row(work, task.job, measured, &table)?;
+            let of_run = |i: usize| -> Vec<Net> {
+                let means = readings.iter().map(|v| mean_of(&v[i..=i], noise));
+                let Some(z) = &followed else {
+                    return nets(means, &zero);
+                };
+                let column = |g: &String| table.gauges.iter().position(|h| h == g);
+                let sigma = noise * (z.noise_factor[i] - 1.0).sqrt();
+                let zeros = model.gauges.iter().map(|g| Net {
+                    value: column(g).map_or(f64::NAN, |c| z.zero[i][c] * MICROSTRAIN),
+                    sigma,
+                });
+                means.zip(zeros).map(|(m, z)| net(m, Some(z))).collect()
+            };
+            let empty = |name: &String| measured.zero_runs.contains(name);
+            let runs = names.iter().enumerate().filter(|(_, n)| !empty(n));
+            runs.map(|(i, name)| (name.clone(), of_run(i))).collect()
         }
     };
     judge_net(work, task, model, &runs);

@@ -16,7 +16,7 @@ use crate::gauge::Gauge;
 use crate::model::{GridIx, Model, Vec3};
 use crate::reconcile::strain::{MassSignature, NuisanceLoad, PlaneStrainRow, Wiring};
 use crate::sensitivity::from_cases;
-use crate::units::{KILO, MICROSTRAIN, STANDARD_GRAVITY_M_S2};
+use crate::units::{KILO, MICROSTRAIN};
 
 /// The model with everything needed to solve it again.
 pub(super) struct DeckFrame {
@@ -76,7 +76,7 @@ pub(super) fn read(
         }
     }
     let reconcile = job.reconcile.as_ref();
-    let gravity = gravity(job);
+    let gravity = job.gravity_m_s2();
     let mut places = Vec::new();
     for (place, id) in reconcile.iter().flat_map(|r| &r.places) {
         let grid = grid_of(job, model, *id)?;
@@ -268,13 +268,6 @@ fn in_order(job: &Job, laid: Vec<Gauge>, channels: &[String]) -> Result<Vec<Gaug
     Ok(out)
 }
 
-pub(super) fn gravity(job: &Job) -> f64 {
-    job.payload
-        .as_ref()
-        .and_then(|p| p.gravity_m_s2)
-        .unwrap_or(STANDARD_GRAVITY_M_S2)
-}
-
 fn grid_of(job: &Job, model: &Model, id: u32) -> Result<GridIx, Faults> {
     let wrong = || {
         Faults::from(Fault::of(
@@ -332,6 +325,9 @@ fn job_loads(job: &Job, model: &Model) -> Result<JobLoads, Faults> {
         nuisance: Vec::new(),
     };
     let mut faults = FaultList::new();
+    if let Some(id) = job.payload_grid() {
+        grid_of(job, model, id)?;
+    }
     let payload = payload_grid(job, model);
     for (l, load) in job.loads.iter().zip(unit_loads(job, model)?) {
         match (&l.acts, l.role) {
@@ -367,7 +363,7 @@ fn job_loads(job: &Job, model: &Model) -> Result<JobLoads, Faults> {
         }
     }
     Faults::check(faults)?;
-    let weight = gravity(job) / KILO;
+    let weight = job.gravity_m_s2() / KILO;
     // Without a payload grid its columns stand for nothing and are blanked.
     let first = out.wheels.first().map_or(GridIx(0), |w| w.1);
     let at = payload.unwrap_or(first);

@@ -1,7 +1,6 @@
 //! Loads that the extended job of a deck asks for as well: side loads at the wheels that were named, and the payload, which strains
 //! the structure in every run.
 
-use super::deck_frame::gravity;
 use crate::app::job::{Component, Job, LoadActs};
 use crate::reconcile::NamedEffect;
 use crate::reconcile::effect::{Extension, Nuisance};
@@ -108,7 +107,7 @@ pub(super) fn entries(job: &Job, frame: &StrainFrame, side: &[SideLoad]) -> Vec<
         && heaviest > 0.0
         && !taken(grid)
     {
-        let weight = heaviest * gravity(job) / KILO;
+        let weight = heaviest * job.gravity_m_s2() / KILO;
         for (component, size) in [
             (Component::FZ, weight),
             (Component::MX, weight * OFF_GRID_M),

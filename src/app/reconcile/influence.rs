@@ -60,5 +60,5 @@ pub(super) fn solve(job: &Job, model: &Model, loads: &[UnitLoad]) -> Result<Solu
 
 /// Where the payload stands.
 pub(super) fn payload_grid(job: &Job, model: &Model) -> Option<GridIx> {
-    model.grid_ix(job.payload.as_ref()?.grid?)
+    model.grid_ix(job.payload_grid()?)
 }

@@ -1,9 +1,10 @@
 //! Readings of a job by run and gauge, with those that are held out.
 
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::strain::{StrainRows, StrainTable, read_strain};
+use crate::app::job::strain::{StrainRows, StrainTable};
 use crate::app::job::{HoldOut, Job};
 use crate::app::work::Work;
+use crate::app::zeroed::read_zeroed;
 use crate::finding::{Finding, Severity};
 use crate::reconcile::Observations;
 
@@ -17,7 +18,7 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
             "name the strain file",
         )));
     };
-    let table = read_strain(&mut work.inputs, job, &measured.strain)?;
+    let table = read_zeroed(work, job, measured, &measured.strain)?.table;
     let runs_of = |t: &StrainTable| match &t.rows {
         StrainRows::Runs(runs) => Ok(runs.clone()),
         StrainRows::Times(_) => {
@@ -58,7 +59,7 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
         _ => vec![false; out.runs.len()],
     };
     if let HoldOut::File(named) = &measured.hold_out {
-        let kept = read_strain(&mut work.inputs, job, named)?;
+        let kept = read_zeroed(work, job, measured, named)?.table;
         if kept.gauges != out.channels {
             return Err(Faults::from(Fault::of(
                 &*kept.file,

@@ -7,7 +7,7 @@ use crate::app::job::{Job, WheelForces as JobWheelForces};
 use crate::app::work::Work;
 use crate::reconcile::Observations;
 use crate::reconcile::strain::{PayloadWeight, StrainFrame, WheelForces, angle_scatter};
-use crate::units::{KILO, STANDARD_GRAVITY_M_S2};
+use crate::units::KILO;
 
 /// Noise of a measured wheel force where the runs file states none: nothing is assumed better than this, kN.
 const LOAD_NOISE_KN: f64 = 0.05;
@@ -29,11 +29,7 @@ pub(super) fn frame(
         )));
     };
     let rows = read_runs(&mut work.inputs, job, runs)?;
-    let gravity = job
-        .payload
-        .as_ref()
-        .and_then(|p| p.gravity_m_s2)
-        .unwrap_or(STANDARD_GRAVITY_M_S2);
+    let gravity = job.gravity_m_s2();
     let mut faults = FaultList::new();
     let (mut loads, mut payload) = (Vec::new(), Vec::new());
     for run in &observations.runs {

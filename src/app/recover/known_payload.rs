@@ -73,12 +73,9 @@ pub(super) fn take_out(
 fn payload_of(job: &Job, row: &RunRow) -> Option<(f64, f64, f64)> {
     let length = job.units.length_m();
     let payload = job.payload.as_ref();
-    let gravity = payload
-        .and_then(|p| p.gravity_m_s2)
-        .unwrap_or(job.units.standard_gravity() * length);
     let kg = row
         .payload_mass_kg
-        .or(row.payload_force_n.map(|n| n / gravity))?;
+        .or(row.payload_force_n.map(|n| n / job.gravity_m_s2()))?;
     let from = |at: Option<f64>, nominal: Option<f64>| {
         at.map_or(0.0, |x| x - nominal.unwrap_or(0.0) * length)
     };

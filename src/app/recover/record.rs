@@ -15,6 +15,7 @@ use crate::app::files::FileBytes;
 use crate::app::job::LoadFile;
 use crate::app::outcome::finite;
 use crate::app::work::Work;
+use crate::app::zeroed::no_zero_runs;
 use crate::finding::{Finding, Severity};
 use crate::recovery::Sums;
 use crate::recovery::history::Filter;
@@ -36,6 +37,7 @@ pub(super) fn record(
     bytes: FileBytes,
     sink: &mut dyn RecordSink,
 ) -> Result<RecoveredRecord, Faults> {
+    no_zero_runs(task.job, task.measured, &task.measured.strain.given)?;
     let Speaking {
         record,
         sensitivity,

@@ -9,6 +9,7 @@ use crate::app::job::LoadActs;
 use crate::app::job::strain::{StrainRows, StrainTable, read_strain};
 use crate::app::strain::LoadUnits;
 use crate::app::work::Work;
+use crate::app::zeroed::{RowZeros, zeros_by_row};
 use crate::finding::{Finding, Severity};
 use crate::recovery::{NORMAL_95, Readings, Recovery, recover};
 use crate::units::MICROSTRAIN;
@@ -38,7 +39,8 @@ pub(super) fn solve(work: &mut Work, task: &Task) -> Result<(Vec<Readings>, Reco
             "name the columns after the gauges",
         )));
     }
-    let mut readings = readings_of(&table, names, &columns, task);
+    let zeros = zeros_by_row(work, task.job, task.measured, &table)?;
+    let mut readings = readings_of(&table, names, &columns, task, zeros.as_ref());
     known_payload::take_out(work, task, &mut readings)?;
     let recovery = work.stage("recover", |_| recover(s, &readings, task.errors));
     work.findings.extend(recovery.findings.iter().cloned());
@@ -50,24 +52,24 @@ fn readings_of(
     names: &[String],
     columns: &[Option<usize>],
     task: &Task,
+    zeros: Option<&RowZeros>,
 ) -> Vec<Readings> {
     names
         .iter()
         .enumerate()
         .map(|(i, run)| {
             let row = table.row(i);
-            let strain = columns
-                .iter()
-                .zip(&task.zero)
-                .map(|(c, z)| {
-                    c.and_then(|c| row.get(c))
-                        .map_or(f64::NAN, |v| v * MICROSTRAIN - z)
-                })
-                .collect();
+            let strain = columns.iter().zip(&task.zero).map(|(c, z)| {
+                let reading = c.and_then(|c| {
+                    let own = zeros.map_or(Some(0.0), |z| z.zero[i].get(c).copied())?;
+                    Some((row.get(c)? - own) * MICROSTRAIN)
+                });
+                reading.unwrap_or(f64::NAN) - z
+            });
             Readings {
                 run: run.clone(),
-                strain,
-                noise_factor: task.noise_factor,
+                strain: strain.collect(),
+                noise_factor: zeros.map_or(task.noise_factor, |z| z.noise_factor[i]),
             }
         })
         .collect()

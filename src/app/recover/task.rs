@@ -208,7 +208,7 @@ fn standing_strain(job: &Job, model: &Model, prepared: &Prepared) -> Result<Vec<
     let wheels = wheels_of(job, model)?;
     let standing = solve_standing(model, wheels.axis, &wheels.grids, &[], None)
         .map_err(|e| floor_fault(job, &e))?;
-    let reactions = standing.under_weight(model, job.units.standard_gravity());
+    let reactions = standing.under_weight(model, job.gravity());
     let s = &prepared.sensitivity;
     Ok((0..s.gauges.len())
         .map(|g| {

@@ -1,11 +1,12 @@
 //! Predicted against measured strain at the installed gauges.
 
 use crate::app::fault::Faults;
-use crate::app::job::strain::{StrainRows, read_strain};
+use crate::app::job::strain::StrainRows;
 use crate::app::job::{Job, Reference};
 use crate::app::outcome::finite;
 use crate::app::strain::Prepared;
 use crate::app::work::Work;
+use crate::app::zeroed::read_zeroed;
 use crate::finding::{Finding, Severity};
 use crate::respond::LoadState;
 use crate::units::MICROSTRAIN;
@@ -61,22 +62,7 @@ pub(super) fn check(
     else {
         return Ok(out);
     };
-    let table = read_strain(&mut work.inputs, job, &measured.strain)?;
-    let zero = match &measured.zero {
-        Some(named) => Some(read_strain(&mut work.inputs, job, named)?),
-        None => None,
-    };
-    let mean = |gauge: &str| -> f64 {
-        let Some(z) = &zero else { return 0.0 };
-        let Some(c) = z.gauges.iter().position(|g| g == gauge) else {
-            return 0.0;
-        };
-        let v: Vec<f64> = (0..z.n_rows())
-            .filter_map(|i| z.row(i).get(c).copied())
-            .filter(|v| v.is_finite())
-            .collect();
-        v.iter().sum::<f64>() / v.len().max(1) as f64
-    };
+    let table = read_zeroed(work, job, measured, &measured.strain)?.table;
     // The row of the strain table that belongs to each state: by name, or by order where there are as many samples.
     let row_of: Vec<Option<usize>> = match &table.rows {
         StrainRows::Runs(names) => states
@@ -123,7 +109,7 @@ pub(super) fn check(
                 .iter()
                 .position(|h| h == name)
                 .and_then(|c| table.row(*row).get(c).copied())
-                .map_or(f64::NAN, |v| v - mean(name));
+                .unwrap_or(f64::NAN);
             if read.is_finite() {
                 pairs[g].push((predicted, read));
             }

@@ -1,2 +1,3 @@
 mod bridges;
+mod glued;
 mod synthetic;

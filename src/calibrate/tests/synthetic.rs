@@ -65,9 +65,8 @@ fn trial(n: usize, k: usize, m: usize, seed: u64) -> Trial {
         noise: NOISE,
         model: prior.then(|| ModelPrior {
             values: model.clone(),
-            turned: None,
+            moves: Vec::new(),
             uncertainty_rel: 0.05,
-            angle_rad: 0.0,
         }),
         runs: runs.clone(),
         sums: Vec::new(),

@@ -8,8 +8,12 @@ use crate::app::outcome::Outcome;
 use crate::app::output::Output;
 use crate::app::strain::covariance_bytes;
 use crate::report::csv_cell;
-use crate::report::strain::{calibrate_page, sensitivity_csv};
+use crate::report::strain::{GLUED_COLUMNS, calibrate_page, glued_csv, sensitivity_csv};
+use crate::units::Quantity;
 use std::fmt::Write as _;
+
+/// The gauges where the runs say that they sit, as a table that a job can name.
+const GLUED: &str = "gauges_as_glued.csv";
 
 impl Report for Outcome<Calibrated> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
@@ -50,6 +54,14 @@ impl Report for Outcome<Calibrated> {
             }
             Ok(())
         })?;
+        if !self.glued.is_empty() {
+            let length = self.job.units.unit(Quantity::Length).name;
+            let unit = |u: &'static str| if u == "L" { length } else { u };
+            out.declare(GLUED, GLUED_COLUMNS.map(|(c, u)| (c, unit(u))));
+            out.write(GLUED, |w| {
+                glued_csv(w, &self.job, &self.calibration.gauges, &self.glued)
+            })?;
+        }
         let page = calibrate_page(&self.job.title, self, &self.findings);
         write_page(out, self, page)
     }
@@ -79,6 +91,12 @@ impl Report for Outcome<Calibrated> {
             "left out one by one: {} of {} runs held, intervals times {:.2}",
             c.coverage.held, c.coverage.of, c.coverage.factor
         );
+        if !self.glued.is_empty() {
+            let _ = writeln!(
+                text,
+                "gauges as glued: {GLUED}, a table for [gauges] of a job"
+            );
+        }
         if let Some(n) = &c.next_run {
             let loads: Vec<String> = n
                 .loads

@@ -3,6 +3,7 @@
 mod calibrate_page;
 mod fields;
 mod gap_page;
+mod glued;
 mod gluing;
 mod pages;
 mod points;
@@ -12,6 +13,7 @@ mod tables;
 pub use calibrate_page::calibrate_page;
 pub use fields::strains_page;
 pub use gap_page::{RunStrain, reconcile_page};
+pub use glued::{COLUMNS as GLUED_COLUMNS, glued_csv};
 pub use gluing::gluing_sheet_md;
 pub use pages::{HowMany, Recovered, RecoveredRun, place_page, recover_page, sensitivity_page};
 pub use points::gauges_vtu;

@@ -17,6 +17,8 @@ pub(super) fn calibration(
         repeats: Vec::new(),
         depends_on: None,
         model_uncertainty_rel: DEFAULT_MODEL_UNCERTAINTY_REL,
+        position_tolerance: 0.0,
+        angle_tolerance_deg: 0.0,
         line: 0,
     };
     let Some(section) = raw else { return out };
@@ -30,6 +32,20 @@ pub(super) fn calibration(
     let key = "calibration.model_uncertainty_rel";
     if let Some(rel) = c.positive(&raw.model_uncertainty_rel, key) {
         out.model_uncertainty_rel = rel;
+    }
+    for (raw, key, out) in [
+        (
+            &raw.position_tolerance,
+            "calibration.position_tolerance",
+            &mut out.position_tolerance,
+        ),
+        (
+            &raw.angle_tolerance_deg,
+            "calibration.angle_tolerance_deg",
+            &mut out.angle_tolerance_deg,
+        ),
+    ] {
+        *out = c.positive(raw, key).unwrap_or(0.0);
     }
     out.line = c.line(section);
     out

@@ -9,7 +9,7 @@ use super::super::spanned::Spanned;
 use super::super::types::*;
 use super::placement::DEFAULT_NOISE_MICROSTRAIN;
 use super::units::units;
-use crate::units::ReportUnits;
+use crate::units::{ReportUnits, STANDARD_GRAVITY_M_S2};
 
 /// Elements that `respond` reports where the job says nothing.
 const DEFAULT_HOTTEST: usize = 20;
@@ -62,8 +62,17 @@ pub(super) fn measured(
             c.named(&raw.strain, "measured.strain")?
         }
     };
+    if let (Some(at), Some(_)) = (&raw.zero_runs, &raw.zero) {
+        let wrong = "both `zero` and `zero_runs`";
+        c.fault(at, "measured.zero_runs", wrong, "state one of the two");
+    }
+    let zero_runs = raw.zero_runs.as_ref().map_or_else(Vec::new, |list| {
+        let names = list.get_ref().iter();
+        names.map(|w| w.get_ref().clone()).collect()
+    });
     Some(Measured {
         strain,
+        zero_runs,
         zero: c.named(&raw.zero, "measured.zero"),
         reference,
         noise_microstrain: c
@@ -149,7 +158,9 @@ pub(super) fn ballast(c: &mut Collector, raw: Option<&Spanned<RawBallast>>) -> O
         properties: raw.properties.as_ref().map(|p| p.get_ref().clone()),
         max_mass: c.positive(&raw.max_mass, "ballast.max_mass"),
         run: raw.run.as_ref().map(|r| r.get_ref().clone()),
-        gravity_m_s2: c.positive(&raw.gravity, "ballast.gravity"),
+        gravity_m_s2: c
+            .positive(&raw.gravity, "ballast.gravity")
+            .unwrap_or(STANDARD_GRAVITY_M_S2),
         line: c.line(section),
     })
 }
@@ -193,7 +204,9 @@ pub(super) fn payload(c: &mut Collector, raw: Option<&Spanned<RawPayload>>) -> O
             &positions,
             PayloadPosition::Known,
         ),
-        gravity_m_s2: c.positive(&raw.gravity, "payload.gravity"),
+        gravity_m_s2: c
+            .positive(&raw.gravity, "payload.gravity")
+            .unwrap_or(STANDARD_GRAVITY_M_S2),
         weight_in_model: raw.weight_in_model.as_ref().is_none_or(|w| *w.get_ref()),
         region: region(c, &raw.region, "payload.region"),
         use_strain,

@@ -1,0 +1,172 @@
+//! Rows of S for gauges a little way off their drawing.
+
+use super::outcome::{AsGluedSummary, CalibratedGauge, GlueSummary, GluedGauge};
+use crate::app::fault::{Fault, Faults};
+use crate::app::job::correct::turned_by;
+use crate::app::job::{CalibrationKeys, Job};
+use crate::app::strain::{Prepared, spec_of};
+use crate::calibrate::{AsGlued, GlueTolerance, MoveKind};
+use crate::finding::{Finding, Severity};
+use crate::gauge::{CornerRows, Drawn, Offset, reading};
+use crate::model::Model;
+use crate::sensitivity::LoadCaseOf;
+
+/// Sd of the tolerance over which a gauge may be looked for.
+const REACH: f64 = 6.0;
+
+/// The job's gauges on its model, free to move.
+pub(super) struct Sites<'a> {
+    model: &'a Model,
+    corners: CornerRows,
+    gauges: Vec<Option<Drawn<'a>>>,
+    bridges: Vec<&'static str>,
+    cases: Vec<LoadCaseOf<'a>>,
+}
+
+/// What `[calibration]` states; `None` where it states no tolerance.
+pub(super) fn tolerance(keys: &CalibrationKeys) -> Option<GlueTolerance> {
+    let stated = keys.position_tolerance > 0.0 || keys.angle_tolerance_deg > 0.0;
+    stated.then(|| GlueTolerance {
+        position: keys.position_tolerance,
+        angle_rad: keys.angle_tolerance_deg.to_radians(),
+    })
+}
+
+impl<'a> Sites<'a> {
+    /// The gauges of a job that has a model.
+    ///
+    /// # Errors
+    /// S that is given: gauges can't be moved in a table. Ids that the deck lacks.
+    pub fn of(job: &Job, prepared: &'a Prepared, tolerance: GlueTolerance) -> Result<Self, Faults> {
+        let fields = match &prepared.fields {
+            Some(f) if job.sensitivity.is_none() => f,
+            _ => {
+                return Err(Fault::at(
+                    &*job.file,
+                    job.calibration.line,
+                    "calibration.position_tolerance",
+                    "gauges can be moved and turned on a model alone, and S is given",
+                    "leave position_tolerance and angle_tolerance_deg out, or give a [model] and the gauges on it",
+                )
+                .into());
+            }
+        };
+        let corners = fields.corner_rows(job);
+        let reach = REACH * tolerance.position;
+        let (mut gauges, mut bridges) = (Vec::new(), Vec::new());
+        for g in &job.gauges {
+            let mut spec = spec_of(fields.model(), g).map_err(Faults::from)?;
+            spec.angle_rad += turned_by(&job.corrections, &g.name).to_radians();
+            let channels = if spec.rosette.is_some() { 3 } else { 1 };
+            for _ in 0..channels {
+                let channel = prepared.gauges.get(gauges.len());
+                bridges.push(g.bridge.name());
+                gauges.push(
+                    channel.and_then(|c| Drawn::new(fields.model(), &spec, c, corners, reach)),
+                );
+            }
+        }
+        Ok(Self {
+            model: fields.model(),
+            corners,
+            gauges,
+            bridges,
+            cases: fields.load_cases(job),
+        })
+    }
+
+    /// Row of S of a gauge that sits elsewhere: along, across (job units of length), angle (radians).
+    pub fn row(&self, gauge: usize, [along, across, angle_rad]: [f64; 3]) -> Option<Vec<f64>> {
+        let (gauge, _) = self.gauges.get(gauge)?.as_ref()?.glued(Offset {
+            along,
+            across,
+            angle_rad,
+        })?;
+        let cases = self.cases.iter();
+        cases
+            .map(|l| Some(reading(&gauge, l.case)? / l.applied))
+            .collect()
+    }
+
+    /// Where a gauge was found; `None` for one on a bar.
+    pub fn found(&self, gauge: usize, glued: &AsGlued) -> Option<GluedGauge> {
+        let of = |kind| glued.of(kind).map_or(0.0, |m| m.value);
+        let drawn = self.gauges.get(gauge)?.as_ref()?;
+        let bridge = self.bridges.get(gauge)?;
+        let (gauge, at) = drawn.glued(Offset {
+            along: of(MoveKind::Along),
+            across: of(MoveKind::Across),
+            angle_rad: of(MoveKind::Turned),
+        })?;
+        Some(GluedGauge {
+            gauge,
+            at,
+            by_position: self.corners == CornerRows::Present,
+            spec: drawn.spec().clone(),
+            bridge,
+            pair: drawn
+                .spec()
+                .pair
+                .and_then(|(ix, side)| Some((self.model.shells.get(ix.us())?.id, side))),
+            gain: glued.gain.value,
+        })
+    }
+}
+
+/// What the runs say of each gauge, in job units of length and degrees.
+pub(super) fn summary(glued: &AsGlued) -> AsGluedSummary {
+    let of = |kind, unit: f64| {
+        glued.of(kind).map(|m| GlueSummary {
+            value: m.value * unit,
+            sigma: m.sigma * unit,
+            told: m.is_told(),
+        })
+    };
+    AsGluedSummary {
+        along: of(MoveKind::Along, 1.0),
+        across: of(MoveKind::Across, 1.0),
+        angle_deg: of(MoveKind::Turned, 1f64.to_degrees()),
+        gain: GlueSummary {
+            value: glued.gain.value,
+            sigma: glued.gain.sigma,
+            told: glued.gain.is_told(),
+        },
+    }
+}
+
+/// A note on what the runs don't tell of the gauges; `None` where they tell everything.
+pub(super) fn untold(gauges: &[CalibratedGauge]) -> Option<Finding> {
+    type Size = fn(&AsGluedSummary) -> Option<GlueSummary>;
+    let sizes: [(&str, Size); 4] = [
+        ("place along the axis", |a| a.along),
+        ("place across it", |a| a.across),
+        ("angle", |a| a.angle_deg),
+        ("gain", |a| Some(a.gain)),
+    ];
+    let mut parts = Vec::new();
+    let mut count = 0;
+    for (what, size) in sizes {
+        let names: Vec<&str> = gauges
+            .iter()
+            .filter(|g| g.as_glued.as_ref().and_then(size).is_some_and(|s| !s.told))
+            .map(|g| g.name.as_str())
+            .collect();
+        count += names.len();
+        if !names.is_empty() {
+            parts.push(format!("{what} of {}", names.join(", ")));
+        }
+    }
+    (count > 0).then(|| {
+        Finding::new(
+            Severity::Info,
+            "as-glued-untold",
+            "calibration",
+            format!(
+                "the runs leave more than half of the stated variance open: {}",
+                parts.join("; ")
+            ),
+            "push where the strain under these gauges changes most over their length, or measure their place",
+        )
+        .with_numbers(count as f64, 0.0)
+    })
+}

@@ -1,0 +1,191 @@
+//! Measured strain less its zero: one answer for every command that reads runs.
+//!
+//! The zero is a file's mean (`[measured] zero`), or what the runs of `zero_runs` read, at which no load acts: between two of them a
+//! gauge's zero is taken as straight over the rows of the file, before the first and after the last as constant. How far it wanders from
+//! row to row is seen between them, and the readings count with that much more noise.
+
+use super::fault::{Fault, FaultList, Faults};
+use super::job::strain::{StrainRows, StrainTable, read_strain};
+use super::job::{Job, Measured, NamedFile};
+use super::recover::zero_of;
+use super::work::Work;
+use crate::finding::{Finding, Severity};
+use crate::units::MICROSTRAIN;
+
+/// A strain table less its zero.
+pub(super) struct Zeroed {
+    /// A reading without a zero is not a number.
+    pub table: StrainTable,
+    /// Noise variance of each row's readings, in units of that of a single one.
+    pub noise_factor: Vec<f64>,
+}
+
+/// A strain file of the job less its zero.
+///
+/// # Errors
+/// Faults of the files; zero runs that the table lacks.
+pub(super) fn read_zeroed(
+    work: &mut Work,
+    job: &Job,
+    measured: &Measured,
+    named: &NamedFile,
+) -> Result<Zeroed, Faults> {
+    let mut table = read_strain(&mut work.inputs, job, named)?;
+    let (zero, effective) = zero_of(work, job, measured, &table.gauges)?;
+    let own = 1.0 + effective.map_or(0.0, |n| 1.0 / n);
+    let rows = zeros_by_row(work, job, measured, &table)?;
+    let width = table.gauges.len().max(1);
+    for (i, row) in table.microstrain.chunks_exact_mut(width).enumerate() {
+        for (g, v) in row.iter_mut().enumerate() {
+            *v -= zero[g] / MICROSTRAIN + rows.as_ref().map_or(0.0, |z| z.zero[i][g]);
+        }
+    }
+    let noise_factor = match rows {
+        Some(z) => z.noise_factor,
+        None => vec![own; table.n_rows()],
+    };
+    Ok(Zeroed {
+        table,
+        noise_factor,
+    })
+}
+
+/// The zero that belongs to each row of a table.
+pub(super) struct RowZeros {
+    /// Microstrain by row and column of the table.
+    pub zero: Vec<Vec<f64>>,
+    /// Noise variance of each row's readings less zero, in units of that of a single one.
+    pub noise_factor: Vec<f64>,
+}
+
+/// Zeros from the runs of `zero_runs`; `None` where the job names none.
+///
+/// A run of `zero_runs` itself gets its zero from the others, so that its loads show how well the zero was followed.
+///
+/// # Errors
+/// Runs that the table lacks, rows that are samples.
+pub(super) fn zeros_by_row(
+    work: &mut Work,
+    job: &Job,
+    measured: &Measured,
+    table: &StrainTable,
+) -> Result<Option<RowZeros>, Faults> {
+    if measured.zero_runs.is_empty() {
+        return Ok(None);
+    }
+    let StrainRows::Runs(names) = &table.rows else {
+        no_zero_runs(job, measured, &table.file)?;
+        return Ok(None);
+    };
+    let mut faults = FaultList::new();
+    let mut at = Vec::new();
+    for run in &measured.zero_runs {
+        match names.iter().position(|n| n == run) {
+            Some(i) => at.push(i),
+            None => faults.push(Fault::at(
+                &*job.file,
+                measured.line,
+                "measured.zero_runs",
+                format!("`{}` has no run `{run}`", table.file),
+                "name runs of the strain file at which no load acts",
+            )),
+        }
+    }
+    Faults::check(faults)?;
+    at.sort_unstable();
+    at.dedup();
+    let drift = drift_variance(table, &at, measured.noise_microstrain);
+    let noise = measured.noise_microstrain * measured.noise_microstrain;
+    let (mut zero, mut noise_factor) = (Vec::new(), Vec::new());
+    for i in 0..names.len() {
+        let others: Vec<usize> = at.iter().copied().filter(|a| *a != i).collect();
+        let Between { weights, wander } = between(if others.is_empty() { &at } else { &others }, i);
+        let of = |g: usize| -> f64 {
+            let parts = weights.iter().map(|(a, w)| w * table.row(*a)[g]);
+            parts.sum()
+        };
+        zero.push((0..table.gauges.len()).map(of).collect());
+        let measured: f64 = weights.iter().map(|(_, w)| w * w).sum();
+        noise_factor.push(1.0 + measured + drift * wander / noise);
+    }
+    work.findings.push(
+        Finding::new(
+            Severity::Info,
+            "zero-followed",
+            "measured.zero_runs",
+            format!(
+                "the zero is followed through {} runs without load; it wanders by {:.2} microstrain from run to run (rms over gauges)",
+                at.len(),
+                drift.sqrt()
+            ),
+            "",
+        )
+        .with_numbers(drift.sqrt(), measured.noise_microstrain),
+    );
+    Ok(Some(RowZeros { zero, noise_factor }))
+}
+
+/// A record has no runs.
+///
+/// # Errors
+/// `zero_runs` of a job whose strain is a record.
+pub(super) fn no_zero_runs(job: &Job, measured: &Measured, file: &str) -> Result<(), Faults> {
+    if measured.zero_runs.is_empty() {
+        return Ok(());
+    }
+    Err(Fault::at(
+        &*job.file,
+        measured.line,
+        "measured.zero_runs",
+        format!("`{file}` is a record and has no runs"),
+        "name a zero file: zero = \"zero.csv\"",
+    )
+    .into())
+}
+
+/// Rows whose readings make a zero, with their weights, and the variance of a walk there in units of that of one step.
+struct Between {
+    weights: Vec<(usize, f64)>,
+    wander: f64,
+}
+
+fn between(at: &[usize], i: usize) -> Between {
+    let after = at.partition_point(|a| *a < i);
+    let steps = |a: usize| (i as f64 - a as f64).abs();
+    match (after.checked_sub(1).and_then(|b| at.get(b)), at.get(after)) {
+        (Some(&a), Some(&b)) => {
+            let (from, to) = (steps(a), steps(b));
+            let w = from / (from + to);
+            Between {
+                weights: vec![(a, 1.0 - w), (b, w)],
+                wander: from * to / (from + to),
+            }
+        }
+        (Some(&a), None) | (None, Some(&a)) => Between {
+            weights: vec![(a, 1.0)],
+            wander: steps(a),
+        },
+        (None, None) => Between {
+            weights: Vec::new(),
+            wander: 0.0,
+        },
+    }
+}
+
+/// Variance of a gauge's zero from one row to the next, mean over gauges, microstrain^2: differences between one zero run and the next less
+/// what their noise makes.
+fn drift_variance(table: &StrainTable, at: &[usize], noise: f64) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for pair in at.windows(2) {
+        let rows = table.row(pair[0]).iter().zip(table.row(pair[1]));
+        for (a, b) in rows.filter(|(a, b)| a.is_finite() && b.is_finite()) {
+            sum += ((b - a).powi(2) - 2.0 * noise * noise) / (pair[1] - pair[0]) as f64;
+            count += 1.0;
+        }
+    }
+    if count > 0.0 {
+        (sum / count).max(0.0)
+    } else {
+        0.0
+    }
+}

@@ -1,0 +1,89 @@
+//! Calibration of gauges that may sit off their drawing. A row of S is not linear in the moves of its gauge: it is taken anew where the
+//! gauge was found, until that settles.
+
+use super::fit::calibrate;
+use super::types::{Calibration, ModelPrior, Move, MoveKind, Task};
+use crate::linalg::Matrix;
+
+/// How far gauges may sit from their drawing, 1 sd.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GlueTolerance {
+    /// Along and across, length.
+    pub position: f64,
+    /// Turned, radians.
+    pub angle_rad: f64,
+}
+
+/// Rounds in which rows are taken where gauges were found.
+const ROUNDS: usize = 4;
+/// Half step of the central differences over the tolerance: within it rows are near to straight.
+const STEP: f64 = 0.5;
+
+/// S from runs of known load with gauges that may sit off their drawing. `row(gauge, [along, across, angle])` is the model's row there,
+/// strain per job unit; `None` where there is none, and the gauge is taken as drawn.
+///
+/// # Errors
+/// As [`calibrate`].
+pub fn calibrate_as_glued(
+    task: &Task,
+    tolerance: GlueTolerance,
+    row: impl Fn(usize, [f64; 3]) -> Option<Vec<f64>>,
+) -> Result<Calibration, String> {
+    let (n, k) = (task.gauges.len(), task.loads.len());
+    let Some(drawn) = &task.model else {
+        return calibrate(task);
+    };
+    let kinds: Vec<(MoveKind, f64)> = [
+        (MoveKind::Along, tolerance.position),
+        (MoveKind::Across, tolerance.position),
+        (MoveKind::Turned, tolerance.angle_rad),
+    ]
+    .into_iter()
+    .filter(|m| m.1 > 0.0)
+    .collect();
+    let mut at = vec![[0.0; 3]; n];
+    let mut gain = vec![1.0; n];
+    let mut found = None;
+    for _ in 0..ROUNDS {
+        let mut values = drawn.values.clone();
+        let mut changes = vec![Matrix::zeros(n, k); kinds.len()];
+        for g in 0..n {
+            let Some(here) = row(g, at[g]) else { continue };
+            (0..k).for_each(|l| values[(g, l)] = here[l]);
+            for (change, (kind, sd)) in changes.iter_mut().zip(&kinds) {
+                let side = |sign: f64| {
+                    let mut place = at[g];
+                    place[*kind as usize] += sign * STEP * sd;
+                    row(g, place)
+                };
+                let (Some(more), Some(less)) = (side(1.0), side(-1.0)) else {
+                    continue;
+                };
+                for l in 0..k {
+                    change[(g, l)] = gain[g] * (more[l] - less[l]) / (2.0 * STEP * sd);
+                }
+            }
+        }
+        let moves = kinds.iter().zip(changes).map(|((kind, sd), change)| Move {
+            kind: *kind,
+            change,
+            sd: *sd,
+            at: at.iter().map(|a| a[*kind as usize]).collect(),
+        });
+        let mut task = task.clone();
+        task.model = Some(ModelPrior {
+            values,
+            moves: moves.collect(),
+            uncertainty_rel: drawn.uncertainty_rel,
+        });
+        let calibration = calibrate(&task)?;
+        for (g, glued) in calibration.as_glued.iter().enumerate() {
+            gain[g] = glued.gain.value;
+            for (kind, m) in &glued.moves {
+                at[g][*kind as usize] = m.value;
+            }
+        }
+        found = Some(calibration);
+    }
+    found.ok_or_else(|| "no round was made".to_owned())
+}

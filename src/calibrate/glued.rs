@@ -1,0 +1,67 @@
+//! Where each gauge sits, how it is turned and what gain it has, as the runs say.
+//!
+//! With `r` a row of S and `u = (gain, along, across, angle)`, the prior of a row is `r = r0 + D' u + e`: `D` holds the row itself and its
+//! change with each move, `e` is the model's error entry by entry. The posterior of `r`, mean `m` and covariance `V`, says of `u`
+//! `E = K (m - r0)`, `Cov = C - K D' C + K V K'` with `K = C D (D' C D + E_e)^-1`, C the prior of `u`.
+
+use super::state::State;
+use super::types::{AsGlued, Glue, ModelPrior, Task};
+use crate::linalg::Matrix;
+use crate::linalg::precision::Precision;
+
+/// Where each gauge sits as the posterior says; empty without stated moves.
+pub(super) fn as_glued(task: &Task, state: &State) -> Vec<AsGlued> {
+    let (Some(model), Some(error)) = (&task.model, state.model_error) else {
+        return Vec::new();
+    };
+    if model.moves.is_empty() {
+        return Vec::new();
+    }
+    let all = (0..task.gauges.len()).map(|g| one(model, state, g, error.common));
+    all.collect::<Option<Vec<_>>>().unwrap_or_default()
+}
+
+fn one(model: &ModelPrior, state: &State, g: usize, common: f64) -> Option<AsGlued> {
+    let k = state.scales.len();
+    let prior = state.prior.get(g)?;
+    let scaled = |m: &Matrix| -> Vec<f64> { (0..k).map(|l| m[(g, l)] * state.scales[l]).collect() };
+    let rows: Vec<Vec<f64>> = std::iter::once(&model.values)
+        .chain(model.moves.iter().map(|m| &m.change))
+        .map(scaled)
+        .collect();
+    let sd: Vec<f64> = std::iter::once(common)
+        .chain(model.moves.iter().map(|m| m.sd))
+        .collect();
+    let inverse = Precision::of(&prior.covariance, k)?;
+    // Rows of K.
+    let gains: Vec<Vec<f64>> = rows
+        .iter()
+        .zip(&sd)
+        .map(|(d, s)| inverse.apply(d).iter().map(|v| s * s * v).collect())
+        .collect();
+    let order = state.posterior.n * k;
+    let mean = state.posterior.mean.get(g * k..(g + 1) * k)?;
+    let left: Vec<f64> = mean.iter().zip(&prior.mean).map(|(m, p)| m - p).collect();
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+    let covariance = |i: usize, j: usize| -> f64 {
+        let own = if i == j { sd[i] * sd[i] } else { 0.0 };
+        let mut learnt = 0.0;
+        for l in 0..k {
+            for m in 0..k {
+                let v = state.posterior.covariance[(g * k + l) * order + g * k + m];
+                learnt += gains[i][l] * v * gains[j][m];
+            }
+        }
+        own - dot(&gains[i], &rows[j]) * sd[j] * sd[j] + learnt
+    };
+    let estimate = |i: usize, offset: f64| Glue {
+        value: offset + dot(&gains[i], &left),
+        sigma: covariance(i, i).max(0.0).sqrt(),
+        stated: sd[i],
+    };
+    let moves = model.moves.iter().enumerate();
+    Some(AsGlued {
+        gain: estimate(0, 1.0),
+        moves: moves.map(|(i, m)| (m.kind, estimate(i + 1, 0.0))).collect(),
+    })
+}

@@ -1,0 +1,108 @@
+//! A gauge where it was glued, a little way off its drawing.
+
+use super::arms::Gauge;
+use super::build::{CornerRows, build_by, opposite};
+use super::spec::{GaugePlace, GaugeSpec};
+use super::surface::{centre, corners, nearest_of, to_side};
+use crate::fe::shell_frame::{ShellPlace, shell_axes};
+use crate::model::{Model, ShellIx, Vec3};
+
+/// How far a gauge sits from its drawing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Offset {
+    /// Along its axis, length of the deck.
+    pub along: f64,
+    /// Across it: along normal x axis, the normal being that of the element.
+    pub across: f64,
+    /// Turned, right-handed about the element's normal, radians.
+    pub angle_rad: f64,
+}
+
+/// A gauge on shells as drawn, and the shells that it may sit on.
+#[derive(Clone, Debug)]
+pub struct Drawn<'m> {
+    model: &'m Model,
+    spec: GaugeSpec,
+    gauge: Gauge,
+    corners: CornerRows,
+    near: Vec<ShellIx>,
+    /// On the reference surface.
+    at: Vec3,
+}
+
+/// Cosine of the angle beyond which a shell lies round a bend: that of PARAM,SNORM's default, 20 degrees.
+const SMOOTH: f64 = 0.939_692_620_785_908_4;
+
+impl<'m> Drawn<'m> {
+    /// A channel of `spec` and what lies within `reach` of it. `None` for gauges on bars.
+    pub fn new(
+        model: &'m Model,
+        spec: &GaugeSpec,
+        gauge: &Gauge,
+        corner_rows: CornerRows,
+        reach: f64,
+    ) -> Option<Self> {
+        if matches!(spec.place, GaugePlace::Beam { .. }) {
+            return None;
+        }
+        let home = model.shell_ix(gauge.element)?;
+        let side = to_side(model, model.shells.get(home.us())?, gauge.surface);
+        let at = gauge.position - gauge.normal * side;
+        let close = |ix: &ShellIx| -> Option<bool> {
+            let shell = model.shells.get(ix.us())?;
+            let (p, c) = (corners(model, shell)?, centre(model, shell)?);
+            let radius = p.iter().map(|q| (q - c).norm()).fold(0.0, f64::max);
+            if (c - at).norm() > radius + reach {
+                return Some(false);
+            }
+            let axes = shell_axes(model, shell, ShellPlace::Centre)?;
+            Some(axes.row(2).transpose().dot(&gauge.normal).abs() >= SMOOTH)
+        };
+        let all = (0..model.shells.len() as u32).map(ShellIx);
+        Some(Self {
+            model,
+            spec: spec.clone(),
+            gauge: gauge.clone(),
+            corners: corner_rows,
+            near: all.filter(|ix| close(ix) == Some(true)).collect(),
+            at,
+        })
+    }
+
+    /// As it was drawn.
+    pub fn spec(&self) -> &GaugeSpec {
+        &self.spec
+    }
+
+    /// The gauge at an offset, as a job with this position and direction would lay it, and its point on the reference surface. Past the
+    /// edge of the surface it stays on the edge.
+    pub fn glued(&self, offset: Offset) -> Option<(Gauge, Vec3)> {
+        let axis = self.gauge.direction;
+        let across = self.gauge.normal.cross(&axis);
+        // Without corner rows a gauge reads the middle of its shell wherever it sits on it.
+        let x = match self.corners {
+            CornerRows::Present => self.at + axis * offset.along + across * offset.across,
+            CornerRows::Absent => self.at,
+        };
+        let foot = nearest_of(self.model, x, self.near.iter().copied())?;
+        let shell = self.model.shells.get(foot.shell.us())?;
+        let axes = shell_axes(self.model, shell, ShellPlace::Centre)?;
+        let facing = axes.row(2).transpose().dot(&self.gauge.normal) >= 0.0;
+        let (sin, cos) = offset.angle_rad.sin_cos();
+        let spec = GaugeSpec {
+            name: self.gauge.name.clone(),
+            place: GaugePlace::Nearest(foot.point),
+            surface: Some(if facing {
+                self.gauge.surface
+            } else {
+                opposite(self.gauge.surface)
+            }),
+            direction: Some(axis * cos + across * sin),
+            angle_rad: 0.0,
+            rosette: None,
+            ..self.spec.clone()
+        };
+        let (built, _) = build_by(self.model, &spec, self.corners, |_| Some(foot)).ok()?;
+        Some((built.into_iter().next()?, foot.point))
+    }
+}
