@@ -476,6 +476,38 @@ fn a_job_whose_deck_selects_supports_is_solved_on_them_and_free_where_it_says_so
 }
 
 #[test]
+fn a_payload_on_supports_is_weighed_by_strain_alone() {
+    let job = on_support("payload_held", "");
+    let dir = job.parent().unwrap();
+    // 200 N and 500 N down at the tip by beam theory: the upper side is pulled; the plate is within 3 % of it.
+    let exact = |newton: f64| 1e6 * newton * 862.5 * 5.0 / (210_000.0 * 100.0 * 1000.0 / 12.0);
+    let rows = [("empty", 0.0), ("light", 200.0), ("heavy", 500.0)];
+    let lines: Vec<String> = rows
+        .iter()
+        .map(|(run, n)| format!("{run},{}", exact(*n)))
+        .collect();
+    std::fs::write(
+        dir.join("strain.csv"),
+        format!("run,a\n{}\n", lines.join("\n")),
+    )
+    .unwrap();
+    let text = std::fs::read_to_string(&job).unwrap()
+        + "[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.1\n\
+           [payload]\ngrid = 203\nunloaded = \"empty\"\nposition = \"known\"\n";
+    std::fs::write(&job, text).unwrap();
+    let result = json_of("payload", &job);
+    let found = result["payload"].as_array().unwrap();
+    for (run, newton) in [("light", 200.0), ("heavy", 500.0)] {
+        let row = found.iter().find(|r| r["run"] == run).unwrap();
+        // Report units of this system are kN.
+        let force = 1e3 * row["force"].as_f64().unwrap();
+        assert!((force / newton - 1.0).abs() < 0.03, "{run}: {row}");
+    }
+    let codes = result["findings"].as_array().unwrap();
+    assert!(codes.iter().any(|f| f["code"] == "payload-on-supports"));
+}
+
+#[test]
 fn a_support_that_the_deck_lacks_is_refused_with_the_line_of_the_job() {
     let job = on_support("missing_support", "support = 9");
     for command in ["solve", "place", "cases", "modes"] {

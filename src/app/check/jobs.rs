@@ -2,11 +2,12 @@
 
 use super::checked::Checked;
 use crate::app::deck;
-use crate::app::fault::Fault;
+use crate::app::fault::{Fault, Faults};
 use crate::app::job::{self, HoldOut, Job, NamedFile};
 use crate::app::outcome::StatedUnits;
 use crate::app::solved::{support_finding, support_of_job};
 use crate::app::work::Work;
+use crate::app::zeroed::zeros_by_row;
 use crate::finding::{Finding, Severity};
 use crate::model::Model;
 use crate::units::check_units;
@@ -30,17 +31,30 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
     files(work, &job, found, into);
     if let Some(m) = &job.measured {
         match job::strain::read_strain(&mut work.inputs, &job, &m.strain) {
-            Ok(t) => work.findings.extend(gauges_and_strain(&job, &t.gauges)),
+            Ok(t) => {
+                work.findings.extend(gauges_and_strain(&job, &t.gauges));
+                let zeros = zeros_by_row(work, &job, m, &t);
+                found.faults.extend(faults_of(zeros));
+            }
             Err(f) => found.faults.extend(f),
+        }
+        let mut others: Vec<&NamedFile> = m.zero.iter().collect();
+        if let HoldOut::File(f) = &m.hold_out {
+            others.push(f);
+        }
+        for named in others {
+            let read = job::strain::read_strain(&mut work.inputs, &job, named);
+            found.faults.extend(faults_of(read));
         }
     }
     if let Some(r) = &job.runs {
-        found.faults.extend(
-            job::runs::read_runs(&mut work.inputs, &job, r)
-                .err()
-                .map_or_else(Vec::new, crate::app::fault::Faults::into_list),
-        );
+        let read = job::runs::read_runs(&mut work.inputs, &job, r);
+        found.faults.extend(faults_of(read));
     }
+}
+
+fn faults_of<T>(read: Result<T, Faults>) -> Vec<Fault> {
+    read.err().map_or_else(Vec::new, Faults::into_list)
 }
 
 /// Opens every file that the job names; decks and results are looked into.
@@ -69,15 +83,9 @@ fn files(work: &mut Work, job: &Job, found: &mut Checked, into: Look) {
     }
 }
 
-/// Files beside model, strain, runs and gauges.
+/// Files beside model, measured strain, runs and gauges.
 fn other_files(job: &Job) -> Vec<&NamedFile> {
     let mut out: Vec<&NamedFile> = Vec::new();
-    if let Some(m) = &job.measured {
-        out.extend(&m.zero);
-        if let HoldOut::File(f) = &m.hold_out {
-            out.push(f);
-        }
-    }
     if let Some(s) = &job.sensitivity {
         let g = &s.signatures;
         out.push(&s.file);

@@ -64,9 +64,6 @@ pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
-/// A limit far above any payload, in weights of the largest reading.
-const FAR: f64 = 1.0e3;
-
 fn spec_of(task: &Task, model: &PayloadModel, runs: &[PayloadRun]) -> WeighSpec {
     let job = task.job;
     let reactions = runs.iter().flat_map(|r| &r.reactions).map(|r| r.abs());
@@ -76,7 +73,6 @@ fn spec_of(task: &Task, model: &PayloadModel, runs: &[PayloadRun]) -> WeighSpec 
         .as_ref()
         .and_then(|r| Some(r.noise.force? * r.units.force.si / job.report_units.force.si))
         .filter(|s| *s > 0.0);
-    let empty: f64 = task.empty.iter().sum();
     let place = match task.payload.position {
         PayloadPosition::Known => Place::Known,
         PayloadPosition::Free => Place::Free,
@@ -101,11 +97,6 @@ fn spec_of(task: &Task, model: &PayloadModel, runs: &[PayloadRun]) -> WeighSpec 
             .as_ref()
             .map_or(0.0, |m| m.model_uncertainty_rel),
         reaction_sigma: stated.unwrap_or(readings::ASSUMED_NOISE * largest_reaction),
-        largest: if empty > 0.0 {
-            10.0 * empty
-        } else {
-            FAR * largest_reaction.max(1.0)
-        },
         region: region
             .map(|r| [0, 1].map(|k| r[k].map(|v| v - task.nominal[k])))
             .or(between),

@@ -4,13 +4,13 @@ use super::task::Task;
 use crate::app::deck::read_model;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::table::read_table;
-use crate::app::job::{Component, LoadActs};
-use crate::app::solved::stands_on_wheels;
-use crate::app::strain::{Prepared, prepare};
+use crate::app::job::{Component, Job, LoadActs};
+use crate::app::solved::{stands_on_wheels, support_of_job, unit_loads_kept};
+use crate::app::strain::{Fields, Prepared, prepare};
 use crate::app::wheels::{floor_fault, wheels_of};
 use crate::app::work::Work;
-use crate::fe::UnitLoad;
 use crate::fe::floor::solve_standing;
+use crate::fe::{CaseResult, Support, UnitLoad};
 use crate::finding::{Finding, Severity};
 use crate::gauge::reading;
 use crate::linalg::Matrix;
@@ -49,7 +49,11 @@ pub(super) fn model_of(
     }
     match prepared.as_ref().and_then(|p| p.fields.as_ref()) {
         Some(fields) => {
-            let model = standing(work, task, fields.model(), prepared.as_ref())?;
+            let support = support_of_job(task.job, fields.model())?;
+            let model = match (support.is_held(), &prepared) {
+                (true, Some(p)) => held(work, task, p, fields, support)?,
+                _ => standing(work, task, fields.model(), prepared.as_ref())?,
+            };
             Ok(Parts { model, prepared })
         }
         None => {
@@ -97,6 +101,128 @@ fn payload_grid(task: &Task, model: &Model) -> Result<(GridIx, u32), Faults> {
         .ok_or_else(|| fault(format!("the deck has no grid {id}")))
 }
 
+/// Where the payload acts: its grid and the axis of its weight.
+#[derive(Clone, Copy)]
+struct Place {
+    grid: GridIx,
+    id: u32,
+    axis: usize,
+}
+
+/// Weight down; its shift along b turns about c, along c against b.
+const SIGNS: [f64; 3] = [-1.0, -1.0, 1.0];
+/// Part of `p = (F, F dx, F dy)` that each of [`Place::parts`] stands for.
+const SHIFT_OF: [usize; 3] = [0, 2, 1];
+
+impl Place {
+    fn axes(self) -> [usize; 3] {
+        [self.axis, (self.axis + 1) % 3, (self.axis + 2) % 3]
+    }
+
+    /// Force and moment: along the axis, about each of the others.
+    fn parts(self) -> [(Vec3, Vec3); 3] {
+        let [a, b, c] = self.axes();
+        let unit = |axis: usize| {
+            let mut v = Vec3::zeros();
+            v[axis] = 1.0;
+            v
+        };
+        [
+            (unit(a), Vec3::zeros()),
+            (Vec3::zeros(), unit(b)),
+            (Vec3::zeros(), unit(c)),
+        ]
+    }
+
+    fn unit_loads(self) -> Vec<UnitLoad> {
+        let parts = self.parts();
+        let at_grid = parts.iter().map(|(force, moment)| UnitLoad::AtGrid {
+            grid: self.grid,
+            force: *force,
+            moment: *moment,
+        });
+        at_grid.collect()
+    }
+}
+
+/// Strain of the payload's parts by gauge: the job's own column where it has one, else the solution `others` made for it.
+fn direct(job: &Job, p: &Prepared, place: Place, others: &[CaseResult]) -> Matrix {
+    let [a, b, c] = place.axes();
+    let mut out = Matrix::zeros(p.gauges.len(), 3);
+    for (k, component) in [a, 3 + b, 3 + c].into_iter().enumerate() {
+        let own = job.loads.iter().position(|l| {
+            matches!(l.acts, LoadActs::AtGrid { grid, component: d, cid: 0 } if grid == place.id && d == Component::ALL[component])
+        });
+        for (g, gauge) in p.gauges.iter().enumerate() {
+            let v = match own {
+                Some(l) => p.sensitivity.values[(g, l)],
+                None => reading(gauge, &others[k]).unwrap_or(0.0),
+            };
+            out[(g, SHIFT_OF[k])] = SIGNS[k] * v;
+        }
+    }
+    out
+}
+
+/// Strain per report force, and per report force and length of shift.
+fn in_report_units(task: &Task, columns: &Matrix) -> Matrix {
+    let shift = 1.0 / (task.force * task.length);
+    let per = [1.0 / task.force, shift, shift];
+    Matrix::from_fn(columns.nrows(), 3, |g, k| columns[(g, k)] * per[k])
+}
+
+/// From the deck of a structure on supports: they carry the payload, strain alone weighs it.
+fn held(
+    work: &mut Work,
+    task: &mut Task,
+    prepared: &Prepared,
+    fields: &Fields,
+    support: Support,
+) -> Result<PayloadModel, Faults> {
+    let job = task.job;
+    let (grid, id) = payload_grid(task, fields.model())?;
+    // The weight acts along the job's own force at that grid, else along z.
+    let own = job.loads.iter().find_map(|l| match l.acts {
+        LoadActs::AtGrid {
+            grid,
+            component,
+            cid: 0,
+        } if grid == id && component.is_force() => Some(component.dof()),
+        _ => None,
+    });
+    let place = Place {
+        grid,
+        id,
+        axis: own.unwrap_or(2),
+    };
+    let solution = work.stage("solve on the supports", |w| {
+        let made = (&fields.deck, "payload on supports");
+        unit_loads_kept(w, made, (fields.model(), support), &place.unit_loads())
+    })?;
+    let [_, b, c] = place.axes();
+    let at = fields.model().grids.get(grid.us());
+    let at = at.map_or_else(Vec3::zeros, |g| g.x);
+    task.nominal = [at[b] * task.length, at[c] * task.length];
+    work.findings.push(Finding::new(
+        Severity::Info,
+        "payload-on-supports",
+        "payload",
+        format!(
+            "the structure is {}: its supports carry the payload, and strain alone weighs it",
+            support.words()
+        ),
+        "write support = \"free\" where wheels carry it",
+    ));
+    let columns = direct(job, prepared, place, &solution.cases);
+    Ok(PayloadModel {
+        gauges: prepared.sensitivity.gauges.clone(),
+        wheels: Matrix::zeros(columns.nrows(), 0),
+        payload: in_report_units(task, &columns),
+        floor: Some(Matrix::zeros(0, 3)),
+        arms: None,
+    })
+}
+
 /// From the deck: unit loads at wheels and payload on the free structure, and the floor.
 fn standing(
     work: &mut Work,
@@ -109,24 +235,9 @@ fn standing(
     let wheels = wheels_of(job, model)?;
     let (grid, id) = payload_grid(task, model)?;
     let (a, b, c) = (wheels.axis, (wheels.axis + 1) % 3, (wheels.axis + 2) % 3);
-    let unit = |axis: usize| {
-        let mut v = Vec3::zeros();
-        v[axis] = 1.0;
-        v
-    };
-    let others = [
-        (unit(a), Vec3::zeros()),
-        (Vec3::zeros(), unit(b)),
-        (Vec3::zeros(), unit(c)),
-    ];
-    let loads: Vec<UnitLoad> = others
-        .iter()
-        .map(|(force, moment)| UnitLoad::AtGrid {
-            grid,
-            force: *force,
-            moment: *moment,
-        })
-        .collect();
+    let place = Place { grid, id, axis: a };
+    let others = place.parts();
+    let loads = place.unit_loads();
     let standing = work
         .stage("solve on the floor", |_| {
             solve_standing(model, a, &wheels.grids, &loads, None)
@@ -134,9 +245,6 @@ fn standing(
         .map_err(|e| floor_fault(job, &e))?;
     let at = model.grids.get(grid.us()).map_or_else(Vec3::zeros, |g| g.x);
     let n = wheels.grids.len();
-    // Weight down; its shift along b turns about c, along c against b.
-    let signs = [-1.0, -1.0, 1.0];
-    let shift_of = [0, 2, 1];
     let mut floor = Matrix::zeros(n, 3);
     for (k, (force, moment)) in others.iter().enumerate() {
         let lift = standing.lift(&standing.others[k]);
@@ -144,7 +252,7 @@ fn standing(
             .floor
             .reactions(&standing.floor.load(at, *force, *moment, lift));
         for (w, r) in r.iter().enumerate() {
-            floor[(w, shift_of[k])] = signs[k] * r;
+            floor[(w, SHIFT_OF[k])] = SIGNS[k] * r;
         }
     }
     task.empty = standing
@@ -173,31 +281,11 @@ fn standing(
             let rows = s.gauges.len();
             let columns =
                 Matrix::from_fn(rows, n, |g, w| s.values[(g, wheels.loads[w])] / task.force);
-            let mut direct = Matrix::zeros(rows, 3);
-            for k in 0..3 {
-                // The job's own column where it has one, else the solution made here.
-                let component = [a, 3 + b, 3 + c][k];
-                let own = job.loads.iter().position(|l| {
-                    matches!(l.acts, LoadActs::AtGrid { grid, component: d, cid: 0 } if grid == id && d == Component::ALL[component])
-                });
-                for (g, gauge) in p.gauges.iter().enumerate() {
-                    let v = match own {
-                        Some(l) => s.values[(g, l)],
-                        None => reading(gauge, &standing.others[k]).unwrap_or(0.0),
-                    };
-                    direct[(g, shift_of[k])] = signs[k] * v;
-                }
-            }
+            let direct = direct(job, p, place, &standing.others);
             (s.gauges.clone(), columns, direct)
         }
     };
-    // Shifts count in report lengths.
-    let per = [
-        1.0 / task.force,
-        1.0 / (task.force * task.length),
-        1.0 / (task.force * task.length),
-    ];
-    let payload = Matrix::from_fn(gauges.len(), 3, |g, k| payload_columns[(g, k)] * per[k]);
+    let payload = in_report_units(task, &payload_columns);
     let floor = Matrix::from_fn(n, 3, |w, k| {
         floor[(w, k)] / if k == 0 { 1.0 } else { task.length }
     });

@@ -2,7 +2,7 @@
 
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::strain::{StrainRows, StrainTable};
-use crate::app::job::{HoldOut, Job};
+use crate::app::job::{HoldOut, Job, Reference};
 use crate::app::work::Work;
 use crate::app::zeroed::read_zeroed;
 use crate::finding::{Finding, Severity};
@@ -18,6 +18,15 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
             "name the strain file",
         )));
     };
+    if measured.reference != Reference::None {
+        return Err(Faults::from(Fault::at(
+            &*job.file,
+            measured.line,
+            "measured.reference",
+            "runs are compared as changes from the state at which the gauges read zero",
+            "write reference = \"none\", and the loads of [runs] as changes from that state",
+        )));
+    }
     let table = read_zeroed(work, job, measured, &measured.strain)?.table;
     let runs_of = |t: &StrainTable| match &t.rows {
         StrainRows::Runs(runs) => Ok(runs.clone()),
