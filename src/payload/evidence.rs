@@ -53,6 +53,8 @@ pub struct WeighSpec {
     pub model_rel: f64,
     /// Standard deviation of a measured wheel force.
     pub reaction_sigma: f64,
+    /// Largest weight that is possible.
+    pub largest: f64,
     /// Where the payload may be, as shifts; `None`: anywhere between the wheels.
     pub region: Option<[[f64; 2]; 2]>,
 }

@@ -94,6 +94,7 @@ fn size_and_place_of_the_payload_from_wheel_forces_and_from_strain_of_the_other_
         // 1 % of gain, a degree, two millimetres and the mesh: about 3 % of a reading.
         model_rel: 0.03,
         reaction_sigma: sigma_wheel,
+        largest: 1e6,
         // Between tarper gantry and the truck's rear (6.5): 3 m and 0.5 m either way.
         region: Some([[-3000.0, 3000.0], [-500.0, 500.0]]),
     };

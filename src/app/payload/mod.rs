@@ -64,6 +64,23 @@ pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
+/// Weight that makes the gauge which the payload strains most read the largest of all readings; 1 where nothing does.
+fn by_strongest(model: &PayloadModel, runs: &[PayloadRun]) -> f64 {
+    let readings = runs.iter().flat_map(|r| &r.strain).map(|e| e.abs());
+    let largest = readings.filter(|e| e.is_finite()).fold(0.0, f64::max);
+    let rows = 0..model.payload.nrows();
+    let strongest = rows.fold(0.0, |a: f64, g| a.max(model.payload[(g, 0)].abs()));
+    let weight = largest / strongest;
+    if weight > 0.0 && weight.is_finite() {
+        weight
+    } else {
+        1.0
+    }
+}
+
+/// A limit far above any payload, in weights of the largest reading.
+const FAR: f64 = 1.0e3;
+
 fn spec_of(task: &Task, model: &PayloadModel, runs: &[PayloadRun]) -> WeighSpec {
     let job = task.job;
     let reactions = runs.iter().flat_map(|r| &r.reactions).map(|r| r.abs());
@@ -97,6 +114,12 @@ fn spec_of(task: &Task, model: &PayloadModel, runs: &[PayloadRun]) -> WeighSpec 
             .as_ref()
             .map_or(0.0, |m| m.model_uncertainty_rel),
         reaction_sigma: stated.unwrap_or(readings::ASSUMED_NOISE * largest_reaction),
+        largest: match (task.empty.iter().sum::<f64>(), largest_reaction) {
+            (empty, _) if empty > 0.0 => 10.0 * empty,
+            (_, r) if r > 0.0 => FAR * r.max(1.0),
+            // On supports: what the strongest gauge would need for the largest reading.
+            _ => FAR * by_strongest(model, runs),
+        },
         region: region
             .map(|r| [0, 1].map(|k| r[k].map(|v| v - task.nominal[k])))
             .or(between),

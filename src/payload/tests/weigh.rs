@@ -58,6 +58,7 @@ fn spec(place: Place) -> WeighSpec {
         place,
         model_rel: 0.0,
         reaction_sigma: 0.1,
+        largest: 1e4,
         region: Some([[-3.0, 3.0], [-0.5, 0.5]]),
     }
 }
