@@ -6,7 +6,8 @@ use arrow_array::builder::{
 };
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
 use arrow_array::{
-    Array, ArrayRef, Float64Array, Int64Array, RecordBatch, RecordBatchIterator, StringArray,
+    Array, ArrayRef, Float64Array, Int64Array, RecordBatch, RecordBatchIterator,
+    RecordBatchOptions, StringArray,
 };
 use arrow_schema::{DataType, Field, Schema, ffi::FFI_ArrowSchema};
 use numpy::PyReadonlyArray1;
@@ -38,9 +39,13 @@ impl Table {
             .iter()
             .map(|(name, a)| Field::new(name, a.data_type().clone(), true))
             .collect();
+        // Without a column there is nothing to count rows by.
+        let n = of.first().map_or(0, |c| c.1.len());
         let arrays = of.into_iter().map(|c| c.1).collect();
-        let batch = RecordBatch::try_new(Arc::new(Schema::new(fields)), arrays)
-            .map_err(|e| fault(py, &e.to_string(), "give columns of one length"))?;
+        let options = RecordBatchOptions::new().with_row_count(Some(n));
+        let batch =
+            RecordBatch::try_new_with_options(Arc::new(Schema::new(fields)), arrays, &options)
+                .map_err(|e| fault(py, &e.to_string(), "give columns of one length"))?;
         Ok(Self(batch))
     }
 

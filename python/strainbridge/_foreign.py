@@ -80,7 +80,8 @@ def _nodal(op2: Any) -> Iterator[dict[str, Any]]:
 def _shells(op2: Any) -> Iterator[dict[str, Any]]:
     holder = getattr(getattr(op2, "op2_results", None), "strain", None)
     for name in _RESULTS:
-        tables = getattr(holder, name, None) or getattr(op2, name, None) or {}
+        # Where pyNastran kept them before 1.4.
+        tables = getattr(op2 if holder is None else holder, name, None) or {}
         for subcase, table in tables.items():
             kind = _TYPES.get(int(table.element_type))
             if kind is None or not _is_static(table):

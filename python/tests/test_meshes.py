@@ -33,8 +33,8 @@ def test_a_mesh_is_read_by_other_programs(tmp_path):
     np.testing.assert_array_equal(read.points, POINTS)
     assert {b.type: b.data.tolist() for b in read.cells} == {k: v.tolist() for k, v in CELLS.items()}
     np.testing.assert_array_equal(read.point_data["u & v"], vectors)
-    np.testing.assert_array_equal(np.concatenate(read.cell_data["strain"]), reals)
-    assert np.concatenate(read.cell_data["element"]).tolist() == [7, 8, 9]
+    np.testing.assert_array_equal(np.concatenate(read.cell_data["strain"]).ravel(), reals)
+    assert np.concatenate(read.cell_data["element"]).ravel().tolist() == [7, 8, 9]
 
 
 def test_a_mesh_goes_to_pyvista():
@@ -85,9 +85,9 @@ def test_a_table_goes_to_any_reader_of_arrow(strip_folder):
     frame = polars.DataFrame(table)
     assert frame["name"].to_list() == names and frame["leverage"].to_list() == leverage
     assert frame["position"].to_list() == [g.position.tolist() for g in plan.gauges]
-    assert polars.DataFrame(plan).equals(frame)
     pyarrow = needed("pyarrow")
     # A stream is read once; a table gives as many as are asked for.
+    assert pyarrow.table(table).equals(pyarrow.table(plan))
     assert pyarrow.table(table).equals(pyarrow.table(table))
     assert table["name"].to_pylist() == names
     pandas = needed("pandas")
