@@ -92,7 +92,7 @@ def test_a_table_goes_to_any_reader_of_arrow(strip_folder):
     assert pyarrow.table(table).equals(pyarrow.table(table))
     assert table["name"].to_pylist() == names
     pandas = needed("pandas")
-    assert pandas.DataFrame.from_arrow(table)["leverage"].tolist() == leverage if hasattr(pandas.DataFrame, "from_arrow") else True
+    assert pandas.DataFrame.from_arrow(table)["leverage"].tolist() == leverage
     with pytest.raises(KeyError):
         plan.to_arrow("nothing")
 
