@@ -3,12 +3,15 @@
 use crate::fault::{raise, wrong};
 use crate::files::Desk;
 use crate::job::CheckedJob;
-use crate::outcome::{Told, tell};
+use crate::outcome::{Told, tell, tell_loads};
 use crate::work::{Asked, run};
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
 use strainbridge::app::fleet::{FleetSpec, name::Shard};
+use strainbridge::app::outcome::StatedUnits;
 use strainbridge::app::store::Folder;
+use strainbridge::app::verify;
+use strainbridge::app::work::Work;
 use strainbridge::fe::{HeatedStrain, SolveOptions};
 use strainbridge::{Context, Faults, Job};
 
@@ -24,7 +27,7 @@ const ON_JOB: [(&str, OnJob); 11] = [
     ("payload", |j, cx| tell(strainbridge::payload(j, cx)?)),
     ("place", |j, cx| tell(strainbridge::place(j, cx)?)),
     ("reconcile", |j, cx| tell(strainbridge::reconcile(j, cx)?)),
-    ("recover", |j, cx| tell(strainbridge::recover(j, cx)?)),
+    ("recover", |j, cx| tell_loads(strainbridge::recover(j, cx)?)),
     ("respond", |j, cx| tell(strainbridge::respond(j, cx)?)),
     ("sensitivity", |j, cx| {
         tell(strainbridge::sensitivity(j, cx)?)
@@ -33,7 +36,9 @@ const ON_JOB: [(&str, OnJob); 11] = [
 ];
 
 /// Commands that ask files, or a job with more.
-const WITH_MORE: [&str; 6] = ["check", "fleet", "init", "modes", "solve", "strains"];
+const WITH_MORE: [&str; 7] = [
+    "check", "fleet", "init", "modes", "solve", "strains", "verify",
+];
 
 /// What a command is asked beside its job.
 struct More {
@@ -119,6 +124,7 @@ fn answer(command: &str, job: Option<&Job>, more: &More, cx: &Context) -> Result
     match (command, job) {
         ("check", _) => tell(strainbridge::check(&more.files, cx)?),
         ("init", _) => tell(strainbridge::init(first, rest, &more.folder, cx)?),
+        ("verify", _) => compared(first, &more.folder, cx),
         ("strains", _) => tell(strainbridge::strains(first, rest, cx)?),
         ("modes", Some(job)) => tell(strainbridge::modes(job, more.modes, cx)?),
         ("modes", None) => tell(strainbridge::modes_of_deck(first, more.modes, cx)?),
@@ -138,4 +144,41 @@ fn answer(command: &str, job: Option<&Job>, more: &More, cx: &Context) -> Result
         },
         (name, None) => Err(wrong(name, "job", "no job is given", "give a job").into()),
     }
+}
+
+/// The command that wrote a folder, the job or deck that it was given, and the results it names.
+#[pyfunction]
+pub(crate) fn made(py: Python, folder: PathBuf) -> PyResult<(String, PathBuf, Vec<String>)> {
+    let made = verify::made(&folder).map_err(|f| raise(py, f.into()))?;
+    let main = verify::main_input(&folder, &made).ok_or_else(|| {
+        let said = "the job or deck that it was made from isn't found";
+        let remedy = "call it from the folder that the command was called from";
+        let name = folder.display().to_string();
+        raise(py, wrong(&name, "inputs", said, remedy).into())
+    })?;
+    let results = made.results().iter().map(|r| (*r).to_owned()).collect();
+    Ok((made.command, main, results))
+}
+
+/// A folder against another in which the same was made again.
+fn compared(folder: &Path, again: &Path, cx: &Context) -> Result<Told, Faults> {
+    let mut work = Work::new(cx);
+    let found = work.stage("compare", |_| verify::compare(folder, again))?;
+    work.findings.extend(found.findings(folder));
+    tell(work.finish(StatedUnits::default(), found))
+}
+
+/// Removes kept solutions from a folder, that of the user where `None`: its path, how many, and their bytes.
+#[pyfunction]
+#[pyo3(signature = (folder=None))]
+pub(crate) fn clean(py: Python, folder: Option<PathBuf>) -> PyResult<(PathBuf, usize, u64)> {
+    let folder = folder.map_or_else(Folder::of_user, Folder::at);
+    let (removed, bytes) = folder.clean().map_err(|e| {
+        let (name, said) = (folder.path().display().to_string(), e.to_string());
+        raise(
+            py,
+            wrong(&name, "clean", &said, "check the permissions").into(),
+        )
+    })?;
+    Ok((folder.path().to_owned(), removed, bytes))
 }

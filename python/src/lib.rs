@@ -3,19 +3,26 @@
 //! - [`array`]: numpy arrays as slices, without a copy
 //! - [`command`]: every command that asks a job or files, by its name
 //! - [`counting`]: rainflow cycles of a signal
+//! - [`directions`]: strain of shells along any direction
+//! - [`editing`]: cards of a deck changed by columns
 //! - [`fault`]: bad input as the exception `strainbridge.Faults`
 //! - [`files`]: files on the disk, and some held in memory
 //! - [`job`]: a checked job
 //! - [`outcome`]: an outcome, whatever the command
 //! - [`placing`], [`recovering`]: layouts and loads of bare matrices
 //! - [`reading`]: decks and result files as arrays
+//! - [`relaxing`]: weights in place of gauges, and the bound they give
+//! - [`table`]: tables for readers of Arrow
 //! - [`work`]: threads, the interpreter's lock, Ctrl-C, bugs
+//! - [`writing`]: result files and meshes of arrays
 //!
 //! What users see, with its documentation, is Python: `python/strainbridge`.
 
 mod array;
 mod command;
 mod counting;
+mod directions;
+mod editing;
 mod fault;
 mod files;
 mod job;
@@ -23,15 +30,20 @@ mod outcome;
 mod placing;
 mod reading;
 mod recovering;
+mod relaxing;
+mod table;
 mod work;
+mod writing;
 
 /// The engine, as `strainbridge` sees it.
 #[pyo3::pymodule]
 mod _strainbridge {
     #[pymodule_export]
-    use crate::command::{ask, commands, schema};
+    use crate::command::{ask, clean, commands, made, schema};
     #[pymodule_export]
     use crate::counting::rainflow;
+    #[pymodule_export]
+    use crate::directions::strain_along;
     #[pymodule_export]
     use crate::job::{CheckedJob, job_to_json};
     #[pymodule_export]
@@ -43,5 +55,11 @@ mod _strainbridge {
     #[pymodule_export]
     use crate::recovering::recover_rows;
     #[pymodule_export]
+    use crate::relaxing::relax;
+    #[pymodule_export]
+    use crate::table::Table;
+    #[pymodule_export]
     use crate::work::fail;
+    #[pymodule_export]
+    use crate::writing::{op2_bytes, vtu_bytes};
 }

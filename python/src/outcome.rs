@@ -2,10 +2,13 @@
 
 use crate::fault::raise;
 use crate::work::{Asked, run};
+use numpy::PyArray1;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use strainbridge::app::outcome::Answer;
+use strainbridge::app::recover::Recovered;
 use strainbridge::report::command::{Report, save, unsaved};
 use strainbridge::{Faults, Outcome};
 
@@ -13,6 +16,39 @@ use strainbridge::{Faults, Outcome};
 pub(crate) trait Kept: Send {
     /// Writes the files of the command; the text of `result.json`.
     fn save(&self, folder: &Path) -> Result<String, Faults>;
+
+    /// Names and values of the columns of a record's samples, where it has any.
+    fn history(&self) -> Option<Vec<(String, Vec<f64>)>> {
+        None
+    }
+}
+
+/// Loads of what was measured, samples among them.
+struct Measured(Outcome<Recovered>);
+
+impl Kept for Measured {
+    fn save(&self, folder: &Path) -> Result<String, Faults> {
+        save(&self.0, folder)
+    }
+
+    fn history(&self) -> Option<Vec<(String, Vec<f64>)>> {
+        let record = self.0.record()?;
+        let history = record.history.as_ref()?;
+        let mut columns = vec![("time".to_owned(), Vec::new())];
+        for name in &record.head.names {
+            for end in ["", ".low", ".high"] {
+                columns.push((format!("{name}{end}"), Vec::new()));
+            }
+        }
+        for row in history.rows() {
+            let loads = row.loads.iter().flat_map(|l| l.unwrap_or([f64::NAN; 3]));
+            let numbers = std::iter::once(row.time).chain(loads);
+            for ((_, column), number) in columns.iter_mut().zip(numbers) {
+                column.push(number);
+            }
+        }
+        Some(columns)
+    }
 }
 
 impl<A> Kept for Outcome<A>
@@ -46,11 +82,26 @@ where
     A: Answer + Send + 'static,
     Outcome<A>: Report,
 {
+    tell_kept(outcome, |o| Box::new(o))
+}
+
+/// Loads for Python.
+pub(crate) fn tell_loads(outcome: Outcome<Recovered>) -> Result<Told, Faults> {
+    tell_kept(outcome, |o| Box::new(Measured(o)))
+}
+
+fn tell_kept<A: Answer>(
+    outcome: Outcome<A>,
+    keep: impl FnOnce(Outcome<A>) -> Box<dyn Kept>,
+) -> Result<Told, Faults>
+where
+    Outcome<A>: Report,
+{
     Ok(Told {
         json: unsaved(&outcome)?,
         words: outcome.words(),
         notes: outcome.notes.clone(),
-        kept: Mutex::new(Box::new(outcome)),
+        kept: Mutex::new(keep(outcome)),
     })
 }
 
@@ -63,5 +114,21 @@ impl Told {
             kept.save(&folder)
         })?;
         done.map_err(|f| raise(py, f))
+    }
+
+    /// Samples of a record by column, `time` first; `None` where no record was measured.
+    fn history<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let found = run(py, &Asked::default(), |_| {
+            let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+            kept.history()
+        })?;
+        let Some(columns) = found else {
+            return Ok(None);
+        };
+        let out = PyDict::new(py);
+        for (name, values) in columns {
+            out.set_item(name, PyArray1::from_vec(py, values))?;
+        }
+        Ok(Some(out))
     }
 }

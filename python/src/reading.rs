@@ -1,7 +1,10 @@
 //! Decks and result files as arrays.
 
+use crate::editing::{Columns as Changed, edit};
 use crate::fault::raise;
+use crate::files::Desk;
 use crate::work::{Asked, run};
+use nastran::bdf::Edits;
 use nastran::cards::{MaterialAngle, Shell};
 use nastran::results::{ResultsError, ResultsFile, Rows, ShellForm};
 use numpy::{PyArray1, PyArrayMethods};
@@ -9,12 +12,14 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use strainbridge::app::cases::edited_files;
 use strainbridge::app::deck::{DeckModel, read_model};
 use strainbridge::app::files::{FileBytes, Inputs};
 use strainbridge::fe::strain_rows::{Location, Point, each_row, n_elements};
 use strainbridge::fe::strain_tensor::Surface;
+use strainbridge::report::vtk_cells;
 use strainbridge::units::MICROSTRAIN;
-use strainbridge::{Context, Disk, Fault, Faults};
+use strainbridge::{Context, Fault, Faults};
 
 /// Numbers of a table, `columns` a row.
 struct Columns<T> {
@@ -45,13 +50,56 @@ pub(crate) struct ReadDeck(DeckModel);
 
 #[pymethods]
 impl ReadDeck {
+    /// Reads the deck at `path`; `files` are held in memory, by path, and go before those of the disk.
     #[new]
-    fn new(py: Python, path: PathBuf) -> PyResult<Self> {
-        let given = path.display().to_string();
+    #[pyo3(signature = (path, files=BTreeMap::new()))]
+    fn new(py: Python, path: PathBuf, files: BTreeMap<PathBuf, Vec<u8>>) -> PyResult<Self> {
+        let (given, desk) = (path.display().to_string(), Desk(files));
         let read = run(py, &Asked::default(), |_| {
-            read_model(&mut Inputs::of(&Disk), Path::new(""), &given)
+            read_model(&mut Inputs::of(&desk), Path::new(""), &given)
         })?;
         Ok(Self(read.map_err(|f| raise(py, f.into()))?))
+    }
+
+    /// Its mesh: `points` (n x 3, basic frame), `grid` (ids), and of the cells, as VTK has them, `connectivity`, `offsets` (ends), `types`, `element`.
+    fn mesh<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (out, model) = (PyDict::new(py), &self.0.model);
+        let values = model.grids.iter().flat_map(|g| [g.x.x, g.x.y, g.x.z]);
+        let values = values.collect();
+        put(&out, "points", Columns { values, columns: 3 })?;
+        put(
+            &out,
+            "grid",
+            ids(model.grids.iter().map(|g| i64::from(g.id))),
+        )?;
+        let cells = vtk_cells(model);
+        let (mut ends, mut end) = (Vec::with_capacity(cells.len()), 0);
+        for cell in &cells {
+            end += cell.2.len() as i64;
+            ends.push(end);
+        }
+        let corners = cells.iter().flat_map(|c| &c.2);
+        put(&out, "connectivity", ids(corners.map(|g| i64::from(g.0))))?;
+        put(&out, "offsets", ids(ends.into_iter()))?;
+        put(&out, "element", ids(cells.iter().map(|c| i64::from(c.1))))?;
+        let types = cells.iter().map(|c| c.0).collect();
+        out.set_item("types", PyArray1::<u8>::from_vec(py, types))?;
+        Ok(out)
+    }
+
+    /// Name and bytes of the files of the deck with cards changed by columns, INCLUDEs as they are found from `folder`; the first is the deck.
+    fn edited(
+        &self,
+        py: Python,
+        folder: PathBuf,
+        stem: &str,
+        changed: BTreeMap<String, Changed>,
+    ) -> PyResult<Vec<(String, Vec<u8>)>> {
+        let mut edits = Edits::default();
+        for (name, columns) in &changed {
+            edit(&self.0.deck, &mut edits, name, columns).map_err(|f| raise(py, f))?;
+        }
+        Ok(edited_files(&self.0.deck, &edits, &folder, stem))
     }
 
     /// Number of cards by name.
@@ -196,11 +244,13 @@ impl ReadResults {
 
 #[pymethods]
 impl ReadResults {
+    /// Reads the results at `path`; `files` are held in memory, by path, and go before those of the disk.
     #[new]
-    fn new(py: Python, path: PathBuf) -> PyResult<Self> {
-        let name = path.display().to_string();
+    #[pyo3(signature = (path, files=BTreeMap::new()))]
+    fn new(py: Python, path: PathBuf, files: BTreeMap<PathBuf, Vec<u8>>) -> PyResult<Self> {
+        let (name, desk) = (path.display().to_string(), Desk(files));
         let read = run(py, &Asked::default(), |_| {
-            Inputs::of(&Disk).read(Path::new(""), &name)
+            Inputs::of(&desk).read(Path::new(""), &name)
         })?;
         let bytes = read.map_err(|f| raise(py, f.into()))?;
         let this = Self { name, bytes };
@@ -253,14 +303,17 @@ impl ReadResults {
 
 /// Strain of the shells of a subcase, microstrain: `element`, `grid` (0: the centre), `top`, `local` (n x 3), `basic` (n x 6).
 #[pyfunction]
+#[pyo3(signature = (deck, results, subcase, files=BTreeMap::new()))]
 pub(crate) fn shell_strain<'py>(
     py: Python<'py>,
     deck: PathBuf,
     results: PathBuf,
     subcase: u32,
+    files: BTreeMap<PathBuf, Vec<u8>>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let desk = Desk(files);
     let found = run(py, &Asked::default(), |heard| {
-        let cx = Context::new(&Disk).progress(heard);
+        let cx = Context::new(&desk).progress(heard);
         let read = strainbridge::strains(&deck, std::slice::from_ref(&results), &cx)?;
         let case = read.solution.cases.iter().find(|c| c.subcase == subcase);
         let case = case.ok_or_else(|| {

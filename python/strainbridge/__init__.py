@@ -19,13 +19,14 @@ that it can't be relied on, and the outcome says so when it is printed.
 """
 
 from . import fleet
-from ._arrays import Placement, RecoveredRows, place_rows, rainflow, recover_rows
+from ._arrays import Placement, RecoveredRows, Relaxation, place_rows, rainflow, recover_rows, relax, strain_along
 from ._calibrate import CalibratedRows, calibrate_rows
 from ._commands import (
     ballast,
     calibrate,
     cases,
     check,
+    clean,
     identify,
     init,
     modes,
@@ -38,12 +39,15 @@ from ._commands import (
     solve,
     strains,
     study,
+    verify,
 )
 from ._faults import Fault, Faults
 from ._job import Job
+from ._mesh import Mesh
 from ._model import Model
 from ._outcome import Finding, Outcome, Record
-from ._reading import Deck, Results, Strain
+from ._reading import Deck, Results, Strain, write_op2
+from ._table import Table
 
 __all__ = [
     "CalibratedRows",
@@ -52,18 +56,22 @@ __all__ = [
     "Faults",
     "Finding",
     "Job",
+    "Mesh",
     "Model",
     "Outcome",
     "Placement",
     "Record",
     "RecoveredRows",
+    "Relaxation",
     "Results",
     "Strain",
+    "Table",
     "ballast",
     "calibrate",
     "calibrate_rows",
     "cases",
     "check",
+    "clean",
     "fleet",
     "identify",
     "init",
@@ -75,9 +83,13 @@ __all__ = [
     "reconcile",
     "recover",
     "recover_rows",
+    "relax",
     "respond",
     "sensitivity",
     "solve",
+    "strain_along",
     "strains",
     "study",
+    "verify",
+    "write_op2",
 ]

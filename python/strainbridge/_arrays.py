@@ -10,10 +10,11 @@ from dataclasses import dataclass, field
 from typing import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _strainbridge as _engine
 from ._outcome import Finding
+from ._table import Table
 
 Floats = NDArray[np.float64]
 
@@ -69,6 +70,18 @@ class RecoveredRows:
         """runs x loads: upper ends of the 95 % intervals."""
         return self.loads + self.half_width
 
+    def to_arrow(self, names: Sequence[str] | None = None) -> Table:
+        """A row a run, for any reader of the Arrow PyCapsule interface: of each load its value, ``<name>.low`` and ``<name>.high``.
+
+        Args:
+            names: of the loads; ``f0``, ``f1`` .. where left out.
+        """
+        labels = list(names) if names is not None else [f"f{i}" for i in range(self.loads.shape[1])]
+        if len(labels) != self.loads.shape[1]:
+            raise ValueError(f"{len(labels)} names are given and there are {self.loads.shape[1]} loads")
+        ends = (("", self.loads), (".low", self.low), (".high", self.high))
+        return Table.from_columns({f"{name}{end}": values[:, i] for i, name in enumerate(labels) for end, values in ends})
+
     @property
     def is_reliable(self) -> bool:
         """Whether no finding says that the loads can't be relied on."""
@@ -79,6 +92,18 @@ class RecoveredRows:
         bad = [f.message for f in self.findings if f.severity == "error"]
         verdict = f", CAN'T BE RELIED ON: {'; '.join(bad)}" if bad else ""
         return f"RecoveredRows({runs} runs x {loads} loads{verdict})"
+
+
+@dataclass(frozen=True)
+class Relaxation:
+    """A placement with weights in place of gauges."""
+
+    #: A weight a row of S, 0 to 1; they sum to n.
+    weights: Floats
+    #: Natural log of det of the sum of w a a' over the rows a of S.
+    log_det: float
+    #: No n rows of S have a larger log det(S'S).
+    upper_bound: float
 
 
 def place_rows(
@@ -104,7 +129,67 @@ def place_rows(
         Faults: S is empty, not finite or not in C order, or no n of its rows separate the loads.
         TypeError: not a numpy array of float64.
     """
-    return Placement(**_engine.place_rows(S, _count(n), spacing, positions, proof, threads))
+    found = _engine.place_rows(S, _count(n), spacing, positions, proof, threads)
+    del found["seconds"]
+    return Placement(**found)
+
+
+def relax(S: Floats, n: int, tolerance: float = 1e-6, *, threads: int | None = None) -> Relaxation:
+    """Weights of the rows of S, 0 to 1 and n in sum, with the largest log det(S' diag(w) S), and the bound that no n rows can pass.
+
+    A layout of your own with log det d has at least the share exp((d - upper_bound) / loads) of the best possible efficiency; rows of
+    weight 0 are those that a good layout does without.
+
+    Args:
+        S: candidates x loads, float64 in C order; any unit. Divide each row by the sd of its reading where these differ.
+        n: how many gauges.
+        tolerance: gap per load to which weights and bound are brought together; the bound holds at any.
+        threads: how many; all of the machine where None.
+
+    Raises:
+        Faults: S is empty, not finite or not in C order, or no n of its rows separate the loads.
+        TypeError: not a numpy array of float64.
+
+    Reference:
+        Boyd and Vandenberghe, Convex Optimization, 2004, section 7.5.2 (D-optimal design).
+    """
+    return Relaxation(*_engine.relax(S, _count(n), float(tolerance), threads))
+
+
+def strain_along(
+    strain: ArrayLike,
+    direction: ArrayLike | None = None,
+    *,
+    angle_deg: ArrayLike | None = None,
+    corners: ArrayLike | None = None,
+) -> Floats:
+    """Normal strain of shells along a direction: what a gauge of zero length glued that way reads. The unit is that of `strain`.
+
+    Args:
+        strain: places x 3, exx, eyy, gxy (engineering shear) in the element's frame, as an OP2 holds them; or places x 6, Exx, Eyy, Ezz, Exy,
+            Eyz, Ezx (tensor shear) in the basic frame.
+        direction: 3, or places x 3, of any length. In the frame of `strain`; with `corners` in the basic frame, and laid onto the element.
+        angle_deg: instead of a direction: degrees from the element's x axis, right-handed about its normal; one, or one a place.
+        corners: places x 4 x 3 or places x 3 x 3, the grids of quadrilaterals (CQUAD4) or triangles (CTRIA3) in the basic frame.
+
+    Returns:
+        A strain a place; NaN where an element has no area or the direction is its normal.
+
+    Raises:
+        Faults: shapes that don't fit.
+    """
+    values = np.ascontiguousarray(strain, dtype=np.float64)
+    if (direction is None) == (angle_deg is None) or (angle_deg is not None and corners is not None):
+        raise ValueError("give a direction, with corners or without, or an angle_deg")
+    if angle_deg is not None:
+        angle = np.deg2rad(np.asarray(angle_deg, dtype=np.float64))
+        axis = np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=-1)
+    else:
+        axis = np.asarray(direction, dtype=np.float64)
+    if axis.ndim == 1 and values.ndim == 2:
+        axis = np.broadcast_to(axis, (len(values), len(axis)))
+    where = None if corners is None else np.ascontiguousarray(corners, dtype=np.float64)
+    return _engine.strain_along(values, np.ascontiguousarray(axis), where)
 
 
 def recover_rows(S: Floats, strain: Floats, noise: float = 1.0, *, threads: int | None = None) -> RecoveredRows:

@@ -1,7 +1,8 @@
 """The commands, a function each. A job is a :class:`Job`, the path of one, or a dictionary with its keys.
 
 All of them take `threads` (all of the machine where None), `cache` (whether solutions of the built-in solver are kept in the user's cache, as
-the command keeps them) and `progress` (called with stage, parts done and parts in all, 0: not known, about twenty times a second). They raise
+the command keeps them) and `progress` (True: a bar of tqdm, where that is installed; or a function, called with stage, parts done and parts in
+all, 0: not known, about twenty times a second). They raise
 :class:`Faults` with every fault of the input, and ``KeyboardInterrupt`` once the work has stopped between two stages. Nothing is written
 before :meth:`Outcome.save`.
 """
@@ -10,22 +11,26 @@ from __future__ import annotations
 
 import logging
 import os
+import tempfile
+from pathlib import Path as _Folder
 from typing import Any, Callable, Mapping, Optional, Union
 
 from . import _strainbridge as _engine
 from ._job import Job, job_of
-from ._outcome import Outcome
+from ._outcome import Outcome, Record
+from ._progress import shown
 
 Path = Union[str, "os.PathLike[str]"]
 AnyJob = Union[Job, Path, Mapping[str, Any]]
-Progress = Optional[Callable[[str, int, int], object]]
+Progress = Optional[Union[bool, Callable[[str, int, int], object]]]
 
 _log = logging.getLogger("strainbridge")
 
 
 def _ask(command: str, job: AnyJob | None, **more: Any) -> Outcome:
     checked = None if job is None else job_of(job)._checked()
-    out = Outcome(_engine.ask(command, checked, **more))
+    with shown(more.pop("progress", None)) as told:
+        out = Outcome(_engine.ask(command, checked, progress=told, **more))
     for note in out.notes:
         _log.info("%s: %s", command, note)
     return out
@@ -185,3 +190,41 @@ def modes(job: AnyJob, *, modes: int = 10, threads: int | None = None, cache: bo
     """
     files, asked = ([], job) if _is_job(job) else ([job], None)
     return _ask("modes", asked, files=files, modes=modes, threads=threads, cache=cache, progress=progress)
+
+
+def verify(folder: Path, *, threads: int | None = None, progress: Progress = None) -> Outcome:
+    """A result folder recomputed from its inputs, without kept solutions, and compared file by file and number by number.
+
+    The outcome holds ``same`` and ``differs`` (file, at, was, now).
+
+    Args:
+        folder: what a command or :meth:`Outcome.save` wrote.
+
+    Raises:
+        Faults: it is no such folder; its inputs are gone.
+    """
+    command, main, results = _engine.made(folder)
+    with tempfile.TemporaryDirectory() as again:
+        more: dict[str, Any] = {"threads": threads, "progress": progress}
+        if command in ("fleet", "verify"):
+            raise ValueError(f"{os.fspath(folder)} was written by `{command}`, which is repeated by calling it")
+        if command in ("strains", "check"):
+            out = _ask(command, None, files=[main, *(results if command == "strains" else [])], **more)
+        elif command == "init":
+            out = _ask(command, None, files=[main], folder=again, **more)
+        elif command in ("solve", "modes"):
+            out = {"solve": solve, "modes": modes}[command](os.fspath(main), cache=False, **more)
+        else:
+            out = _ask(command, os.fspath(main), cache=False, **more)
+        out.save(again)
+        return _ask("verify", None, files=[folder], folder=again, threads=threads)
+
+
+def clean(folder: Path | None = None) -> Record:
+    """Removes kept solutions of the built-in solver: ``folder``, ``removed`` (how many), ``bytes``.
+
+    Args:
+        folder: where they are; the user's folder for caches where None.
+    """
+    where, removed, size = _engine.clean(None if folder is None else _Folder(folder))
+    return Record({"command": "clean", "folder": os.fspath(where), "removed": removed, "bytes": size})

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Iterator, Mapping
 
 from . import _strainbridge as _engine
+from ._foreign import deck_bytes, is_deck, is_results, op2_bytes
 from ._toml import plain, text_of
 
 #: Name under which a job that was made of a dictionary stands in its folder; nothing is written there.
@@ -109,14 +110,16 @@ class Job:
         """A job made of a dictionary with the keys of the file; numpy arrays, paths and tuples are taken.
 
         Args:
-            job: sections are dictionaries, ``[[load]]`` and its like are lists of dictionaries.
+            job: sections are dictionaries, ``[[load]]`` and its like are lists of dictionaries. ``deck`` and ``results`` of ``model`` may be a
+                `BDF` and `OP2` of pyNastran instead of paths.
             folder: what paths in it are relative to. Nothing is written there.
             files: files that are held in memory, by path; they go before those of the disk.
 
         Raises:
             Faults: every fault; lines are those of ``job.text``, had it been written.
         """
-        return cls(in_folder(folder, _NAME), text_of(job), files)
+        held = dict(files or {})
+        return cls(in_folder(folder, _NAME), text_of(_without_objects(job, folder, held)), held)
 
     @property
     def path(self) -> str:
@@ -203,6 +206,26 @@ class Job:
 
     def __repr__(self) -> str:
         return f"Job({self._path!r})"
+
+
+def _without_objects(job: Mapping[str, Any], folder: str | os.PathLike[str], files: dict[str, bytes]) -> Mapping[str, Any]:
+    """The job with objects of pyNastran as files in memory."""
+    model = job.get("model")
+    if not isinstance(model, Mapping):
+        return job
+    keys = dict(model)
+    if is_deck(keys.get("deck")):
+        files[in_folder(folder, "pynastran.bdf")] = deck_bytes(keys["deck"])
+        keys["deck"] = "pynastran.bdf"
+    results = keys.get("results")
+    if results is not None:
+        listed = list(results) if isinstance(results, (list, tuple)) else [results]
+        for i, one in enumerate(listed):
+            if is_results(one):
+                files[in_folder(folder, f"pynastran_{i + 1}.op2")] = op2_bytes(one)
+                listed[i] = f"pynastran_{i + 1}.op2"
+        keys["results"] = listed
+    return {**job, "model": keys}
 
 
 def job_of(job: Job | str | os.PathLike[str] | Mapping[str, Any]) -> Job:

@@ -8,8 +8,10 @@ from typing import Any, Iterable, Mapping, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
+from . import _strainbridge as _engine
 from ._commands import solve
 from ._job import Job, in_folder
+from ._mesh import Mesh, of_native
 from ._outcome import Outcome
 from ._toml import plain
 
@@ -90,6 +92,10 @@ class Model:
     def solve(self, job: Mapping[str, Any], **more: Any) -> Outcome:
         """The unit loads of :meth:`job`, by the built-in solver; what :func:`strainbridge.solve` takes beside."""
         return solve(self.job(job), **more)
+
+    def mesh(self) -> Mesh:
+        """Points and cells, for pyvista and meshio; ``grid`` and ``element`` are the ids in the deck."""
+        return of_native(_engine._Deck(_NAME, {_NAME: self.deck.encode()}).mesh())
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Writes the deck."""

@@ -10,8 +10,11 @@ from pathlib import Path
 from typing import Any, Iterator, Literal, Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _strainbridge as _engine
+from ._mesh import Mesh, read_vtu
+from ._table import Table
 
 #: Rows of a table that are shown in a notebook.
 _SHOWN = 20
@@ -171,23 +174,53 @@ class Outcome(Record):
         with tempfile.TemporaryDirectory() as folder:
             return (self.save(folder) / "report.html").read_text(encoding="utf-8")
 
-    def to_arrow(self, table: str | None = None) -> Any:
-        """A table of the answer as a ``pyarrow.Table``: the list of records named, else the first (``loads``, ``gauges``).
-
-        Any reader of the Arrow PyCapsule interface takes it: pandas, polars, DuckDB.
+    def history(self) -> dict[str, NDArray[np.float64]]:
+        """Every sample of a record that :func:`strainbridge.recover` was given: ``time`` (s), then of each load its value, ``<load>.low`` and
+        ``<load>.high`` (95 %), as `loads.csv` has them, report units; NaN where the gauges that read don't tell a load.
 
         Raises:
-            ImportError: pyarrow is not installed.
+            KeyError: the outcome holds no record.
+        """
+        found = self._native.history()
+        if found is None:
+            raise KeyError("no history: static runs were measured, or another question was asked")
+        return found
+
+    def to_arrow(self, table: str | None = None) -> Table:
+        """A table of the answer for any reader of the Arrow PyCapsule interface (pandas, polars, DuckDB, pyarrow): the list of records named,
+        else the first (``loads``, ``gauges``); ``history``: every sample of a record, as :meth:`history`.
+
+        Raises:
             KeyError: there is no such table.
         """
+        if table == "history":
+            return Table.from_columns(self.history())
         name = table or next(iter(self._tables()), None)
         if name is None or name not in self._keys:
             raise KeyError(f"no table `{name}`, but {', '.join(self._tables()) or 'none'}")
-        try:
-            import pyarrow  # type: ignore
-        except ImportError as e:
-            raise ImportError("to_arrow needs pyarrow: pip install pyarrow") from e
-        return pyarrow.Table.from_pylist(self._keys[name])
+        return Table.from_records(self._keys[name])
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
+        """The first table, by the Arrow PyCapsule interface."""
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
+
+    def mesh(self, file: str | None = None) -> Mesh:
+        """Points and cells with the numbers of the answer on them, those of the VTU that the command writes: the mesh with displacement and
+        strain (`solve`, `modes`), with the envelope of stress (`respond`); gauges with their axes (`place`), loads as arrows (`recover`).
+        The bare mesh of a deck: ``Deck.read(path).mesh()``.
+
+        Args:
+            file: which VTU, where there are several.
+
+        Raises:
+            KeyError: the answer has no picture in space.
+        """
+        with tempfile.TemporaryDirectory() as folder:
+            found = {p.name: p for p in sorted(self.save(folder).glob("*.vtu"))}
+            name = file or next(iter(found), "")
+            if name not in found:
+                raise KeyError(f"no mesh `{name}`" if found else f"`{self._keys['command']}` has no mesh: take `Deck.read(path).mesh()`")
+            return read_vtu(found[name])
 
     def _tables(self) -> list[str]:
         of_the_way = ("inputs", "findings")

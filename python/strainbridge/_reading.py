@@ -5,14 +5,18 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import dataclass
-from typing import Any, Literal, Sequence
+from pathlib import Path as _Path
+from typing import Any, Iterable, Literal, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _strainbridge as _engine
 from ._faults import Fault, Faults
+from ._foreign import deck_bytes, is_deck, is_results, op2_bytes
+from ._mesh import Mesh, of_native
 from ._outcome import Record
+from ._table import Table
 
 Path = os.PathLike[str] | str
 
@@ -21,20 +25,23 @@ class Deck:
     """A Nastran deck, INCLUDE files and all."""
 
     _native: _engine._Deck
-    #: The file.
+    #: The file; of a `BDF` of pyNastran the name it has in memory.
     path: str
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, files: Mapping[str, bytes] | None = None) -> None:
         self.path = os.fspath(path)
-        self._native = _engine._Deck(path)
+        self._native = _engine._Deck(path, dict(files or {}))
+        self._changed: dict[str, dict[str, NDArray[Any]]] = {}
 
     @classmethod
-    def read(cls, path: Path) -> Deck:
-        """The deck in a file, or the mesh of an OP2. What is wrong with cards is in :attr:`faults`.
+    def read(cls, path: Path | Any) -> Deck:
+        """The deck in a file, the mesh of an OP2, or a `BDF` of pyNastran. What is wrong with cards is in :attr:`faults`.
 
         Raises:
             Faults: the file can't be read at all.
         """
+        if is_deck(path):
+            return cls("pynastran.bdf", {"pynastran.bdf": deck_bytes(path)})
         return cls(path)
 
     @property
@@ -48,7 +55,8 @@ class Deck:
         return tuple(Fault(*f) for f in self._native.faults)
 
     def cards(self, name: str) -> dict[str, NDArray[Any]]:
-        """The cards of a name as columns, in the order of the file.
+        """The cards of a name as columns, in the order of the file. Columns of ``GRID``, ``CONM2`` and shells may be changed in place, rows of
+        them left out or added (``deck.cards("GRID")["x"] = ..``): :meth:`write` writes them.
 
         ``GRID``: ``id``, ``cp``, ``cd``, ``x`` (n x 3, in cp). Elements (``CQUAD4``, ``CQUADR``, ``CQUAD8``, ``CTRIA3``, ``CTRIAR``,
         ``CTRIA6``, ``CHEXA``, ``CPENTA``, ``CTETRA``, ``CPYRAM``, ``CBAR``, ``CBEAM``, ``CROD``, ``CTUBE``): ``id``, ``pid``, ``grids`` (ids; 0: no
@@ -57,10 +65,42 @@ class Deck:
         Raises:
             KeyError: cards of that name have no columns here.
         """
-        found = self._native.cards(name.upper())
-        if found is None:
-            raise KeyError(f"cards `{name}` have no columns here; the deck has {', '.join(self.counts)}")
-        return found
+        name = name.upper()
+        if name not in self._changed:
+            found = self._native.cards(name)
+            if found is None:
+                raise KeyError(f"cards `{name}` have no columns here; the deck has {', '.join(self.counts)}")
+            self._changed[name] = found
+        return self._changed[name]
+
+    def write(self, path: Path) -> list[str]:
+        """Writes the deck with the cards as :meth:`cards` holds them now; lines of others keep every byte. Cards whose id is gone are left out,
+        those of a new id added. INCLUDE files that change are written beside it.
+
+        Returns:
+            The files written.
+
+        Raises:
+            Faults: columns that make no cards; cards that can't be changed.
+        """
+        to = _Path(path)
+        changed = {}
+        for name, columns in self._changed.items():
+            before = self._native.cards(name)
+            assert before is not None
+            if any(not np.array_equal(b, columns.get(c, np.empty(0)), equal_nan=b.dtype.kind == "f") for c, b in before.items()):
+                flat = {c: np.ascontiguousarray(v, dtype=np.float64).ravel() for c, v in columns.items()}
+                changed[name] = flat
+        written = []
+        for i, (name, data) in enumerate(self._native.edited(to.parent, to.stem, changed)):
+            file = to if i == 0 else to.parent / name
+            file.write_bytes(bytes(data))
+            written.append(os.fspath(file))
+        return written
+
+    def mesh(self) -> Mesh:
+        """Points and cells, for pyvista and meshio; ``grid`` and ``element`` are ids. Corners only; changes of :meth:`cards` are not in it."""
+        return of_native(self._native.mesh())
 
     def positions(self) -> dict[str, NDArray[Any]]:
         """``id`` (ascending) and ``x`` (n x 3, basic frame) of the grids."""
@@ -83,6 +123,11 @@ class Strain:
     #: What the columns of `values` are.
     columns: tuple[str, ...]
 
+    def to_arrow(self) -> Table:
+        """A row a place, for any reader of the Arrow PyCapsule interface."""
+        values = {name: self.values[:, i] for i, name in enumerate(self.columns)}
+        return Table.from_columns({"element": self.element, "grid": self.grid, **values})
+
 
 _LOCAL = ("exx", "eyy", "gxy")
 _BASIC = ("Exx", "Eyy", "Ezz", "Exy", "Eyz", "Ezx")
@@ -97,19 +142,26 @@ class Results:
     #: Its deck, where one was given.
     deck: str | None
 
-    def __init__(self, path: Path, deck: Path | None = None) -> None:
+    def __init__(self, path: Path, deck: Path | None = None, files: Mapping[str, bytes] | None = None) -> None:
         self.path = os.fspath(path)
         self.deck = None if deck is None else os.fspath(deck)
-        self._native = _engine._Results(path)
+        self._files = dict(files or {})
+        self._native = _engine._Results(path, self._files)
 
     @classmethod
-    def read(cls, path: Path, deck: Path | None = None) -> Results:
-        """The results in a file. Strain in the basic frame needs the mesh: the deck, or a file that holds it.
+    def read(cls, path: Path | Any, deck: Path | Any | None = None) -> Results:
+        """The results in a file, or an `OP2` of pyNastran. Strain in the basic frame needs the mesh: the deck (or a `BDF` of pyNastran), or a
+        file that holds it.
 
         Raises:
             Faults: the file can't be read, or is none of those.
         """
-        return cls(path, deck)
+        files = {}
+        if is_deck(deck):
+            files["pynastran.bdf"], deck = deck_bytes(deck), "pynastran.bdf"
+        if is_results(path):
+            files["pynastran.op2"], path = op2_bytes(path), "pynastran.op2"
+        return cls(path, deck, files)
 
     @property
     def tables(self) -> Sequence[Record]:
@@ -144,7 +196,7 @@ class Results:
         if surface not in ("top", "bottom") or frame not in ("element", "basic"):
             raise ValueError(f"surface is top or bottom, and frame element or basic, not {surface!r} and {frame!r}")
         try:
-            rows = _engine.shell_strain(self.deck or self.path, self.path, subcase)
+            rows = _engine.shell_strain(self.deck or self.path, self.path, subcase, self._files)
         except Faults:
             if self.deck is not None or frame == "basic":
                 raise
@@ -178,3 +230,42 @@ class Results:
 
     def __repr__(self) -> str:
         return f"Results({self.path!r}: {len(self.tables)} tables)"
+
+
+def write_op2(path: Path, tables: Iterable[tuple[Mapping[str, Any], Mapping[str, ArrayLike]]]) -> None:
+    """Writes an OP2 that Nastran's readers take: displacements, strain, stress, forces.
+
+    Args:
+        path: the file.
+        tables: each what it holds and its columns, as :attr:`Results.tables` and :meth:`Results.table` have them: ``{"quantity": "strain",
+            "element_type": "CQUAD4", "subcase": 1}`` and ``{"entity": ids, "at": .., "layer": .., "exx": .., ..}``. Strain of shells has two
+            rows an element, ``layer`` 1 (Z1) and 2 (Z2), strain without a unit (not micro); ``fiber``, ``angle``, ``emax``, ``emin`` and ``vm``
+            are NaN where left out, other columns are needed. Give all subcases of a kind together.
+
+    Raises:
+        Faults: columns that no table has, rows that don't fit the element type.
+    """
+    made = []
+    for what, columns in tables:
+        given = {name: np.ascontiguousarray(c) for name, c in columns.items()}
+        ids = {name: given.pop(name, None) for name in ("entity", "at", "layer")}
+        if ids["entity"] is None:
+            raise ValueError("a table has a column `entity`: ids of grids or elements")
+        n = len(ids["entity"])
+        if {"exx", "eyy", "gxy"} <= given.keys():
+            for name in ("fiber", "angle", "emax", "emin", "vm"):
+                given.setdefault(name, np.full(n, np.nan))
+        titles = [str(t) for t in what.get("titles") or ("", "", "")]
+        made.append({
+            "quantity": what["quantity"],
+            "analysis": what.get("analysis", "statics"),
+            "subcase": int(what.get("subcase", 1)),
+            "mode": int(what.get("mode", 0)),
+            "step": float(what.get("step", 0.0)),
+            "element_type": what.get("element_type"),
+            "fibre": bool(what.get("fibre", True)),
+            "titles": titles,
+            **{name: np.ascontiguousarray(np.zeros(n) if v is None else v, dtype=np.int64) for name, v in ids.items()},
+            "columns": {name: np.ascontiguousarray(c, dtype=np.float64) for name, c in given.items()},
+        })
+    _Path(path).write_bytes(bytes(_engine.op2_bytes(made)))

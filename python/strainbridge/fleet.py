@@ -26,6 +26,7 @@ try:
     from . import _strainbridge as _engine
     from ._job import job_of
     from ._outcome import Outcome
+    from ._progress import shown
 except ImportError:  # the file alone
     _engine = None  # type: ignore[assignment]
 
@@ -70,6 +71,8 @@ def run(
     out: str | Path = "fleet",
     client: Any = None,
     threads: int | None = None,
+    shard: str | None = None,
+    progress: Any = None,
 ) -> Mapping[str, Any]:
     """Does all files, writes what the command writes into `out`, and returns the outcome: ``vehicles``, ``files``, as in `result.json`.
 
@@ -79,6 +82,9 @@ def run(
         out: where the results of single files are kept, and those of the fleet written.
         client: a `dask.distributed.Client`, whose workers do the files in tasks of eight; None: they are done here.
         threads: how many here, all cores where None; on a worker 1 where None.
+        shard: ``"3/64"``: the third of 64 parts of the files alone, for a scheduler of your own. The outcome of the part goes to a folder of its
+            own within `out`; :func:`merge` makes the fleet of all parts.
+        progress: as of every command; True: a bar of tqdm. Of the files done here.
 
     Raises:
         Faults: bad input. A record that can't be read is no fault but a failed file, and a finding.
@@ -86,27 +92,36 @@ def run(
     job = str(job) if isinstance(job, os.PathLike) else job
     out = str(out)
     listed = sorted({str(f) for f in files})
+    if shard is not None:
+        number, _, of = shard.partition("/")
+        return _call(job, listed, os.path.join(out, f"shard-{number}-of-{of}"), out, threads, shard, progress)
     if client is not None:
         tasks = [listed[i : i + FILES_A_TASK] for i in range(0, len(listed), FILES_A_TASK)]
         n = len(tasks)
         futures = client.map(part, [job] * n, tasks, [out] * n, [threads or 1] * n, pure=False, retries=3)
-        client.gather(futures)
+        # What a task that failed for good leaves undone is done here, or raises here.
+        client.gather(futures, errors="skip")
     # Files whose results were kept by workers are not decoded again.
-    return _call(job, listed, out, out, threads)
+    return _call(job, listed, out, out, threads, progress=progress)
 
 
-def _call(job: AnyJob, files: Sequence[str], out: str, kept: str, threads: int | None) -> Mapping[str, Any]:
+def _call(
+    job: AnyJob, files: Sequence[str], out: str, kept: str, threads: int | None, shard: str | None = None, progress: Any = None
+) -> Mapping[str, Any]:
     if _engine is None or os.environ.get("STRAINBRIDGE"):
-        return _command(job, files, out, kept, threads)
-    outcome = Outcome(_engine.ask("fleet", job_of(job)._checked(), files=files, folder=kept, threads=threads))
+        return _command(job, files, out, kept, threads, shard)
+    with shown(progress) as told:
+        asked = _engine.ask("fleet", job_of(job)._checked(), files=files, folder=kept, shard=shard, threads=threads, progress=told)
+    outcome = Outcome(asked)
     outcome.save(out)
     return outcome
 
 
-def _command(job: AnyJob, files: Sequence[str], out: str, kept: str, threads: int | None) -> dict[str, Any]:
+def _command(job: AnyJob, files: Sequence[str], out: str, kept: str, threads: int | None, shard: str | None) -> dict[str, Any]:
     path = str(getattr(job, "path", job))
     more = ["--threads", str(threads)] if threads else []
     more += ["--kept", kept] if kept != out else []
+    more += ["--shard", shard] if shard else []
     call = [program(), "fleet", path, *files, "--out", out, "--json", *more]
     done = subprocess.run(call, capture_output=True, text=True, check=False)
     if done.returncode not in (0, 1):

@@ -1,5 +1,6 @@
 """A small model, a small matrix, and the command where it is built."""
 
+import importlib
 import json
 import os
 import subprocess
@@ -9,6 +10,13 @@ import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
+
+
+def needed(name: str):
+    """The package that a test compares with; the test is skipped without, but where STRAINBRIDGE_TESTS is `required`."""
+    if os.environ.get("STRAINBRIDGE_TESTS") == "required":
+        return importlib.import_module(name)
+    return pytest.importorskip(name)
 
 
 def strip() -> str:

@@ -44,6 +44,61 @@ def test_rows_chosen_keep_the_spacing():
         sb.place_rows(S, 8, spacing=30.0)
 
 
+def test_weights_bound_every_layout():
+    S = np.random.default_rng(21).normal(size=(14, 3))
+    relaxed = sb.relax(S, 5)
+    w = relaxed.weights
+    assert w.shape == (14,) and w.sum() == pytest.approx(5.0) and w.min() >= 0.0 and w.max() <= 1.0 + 1e-9
+    assert relaxed.log_det == pytest.approx(log_det(np.sqrt(w)[:, None] * S), abs=1e-9)
+    best = max(log_det(S[list(rows)]) for rows in itertools.combinations(range(14), 5))
+    assert best <= relaxed.upper_bound
+    assert relaxed.log_det <= relaxed.upper_bound <= relaxed.log_det + 3 * 1.1e-6
+
+
+def test_weights_of_rows_alike_are_known():
+    # Each of three axes ten times: the best sum of weights 6 puts 2 on each axis, det = 2^3.
+    relaxed = sb.relax(np.repeat(np.eye(3), 10, axis=0), 6)
+    assert relaxed.upper_bound == pytest.approx(3 * np.log(2.0), abs=1e-5)
+    assert relaxed.weights.reshape(3, 10).sum(axis=1) == pytest.approx([2.0, 2.0, 2.0], rel=1e-2)
+    with pytest.raises(ValueError):
+        sb.relax(np.eye(3), 4)
+    with pytest.raises(sb.Faults, match="tolerance"):
+        sb.relax(np.eye(3), 3, tolerance=0.0)
+
+
+def test_strain_along_a_direction_is_that_of_the_tensor():
+    rng = np.random.default_rng(22)
+    n = 40
+    # Warped quadrilaterals and triangles anywhere; a strain tensor in each plane.
+    corners = np.array([[0.0, 0, 0], [3, 0, 0], [3, 2, 0], [0, 2, 0]]) + rng.normal(0.0, 0.2, (n, 4, 3))
+    d13, d24 = corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]
+    unit = lambda v: v / np.linalg.norm(v, axis=1, keepdims=True)  # noqa: E731
+    z = unit(np.cross(d13, d24))
+    x = unit(unit(d13) - unit(d24))
+    axes = np.stack([x, np.cross(z, x), z], axis=1)
+    e = rng.normal(0.0, 500.0, (n, 3))
+    local = np.zeros((n, 3, 3))
+    local[:, 0, 0], local[:, 1, 1], local[:, 0, 1] = e[:, 0], e[:, 1], e[:, 2] / 2
+    local[:, 1, 0] = local[:, 0, 1]
+    basic = np.einsum("nki,nkl,nlj->nij", axes, local, axes)
+    direction = np.array([1.0, 0.3, 0.1])
+    laid = direction - z * (z @ direction)[:, None]
+    expected = np.einsum("ni,nij,nj->n", unit(laid), basic, unit(laid))
+    np.testing.assert_allclose(sb.strain_along(e, direction, corners=corners), expected, rtol=1e-9, atol=1e-9)
+    six = np.stack([basic[:, i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))], axis=1)
+    np.testing.assert_allclose(sb.strain_along(six, laid), expected, rtol=1e-9, atol=1e-9)
+    # Pure shear gamma: half of it along 45 degrees, nothing along the axes.
+    shear = np.array([[0.0, 0.0, 100.0]])
+    assert sb.strain_along(np.repeat(shear, 3, axis=0), angle_deg=[0.0, 45.0, 135.0]) == pytest.approx([0.0, 50.0, -50.0])
+    side = np.array([[[0.0, 0, 0], [0, 0, 1], [0, 1, 0]]])
+    assert sb.strain_along([[7.0, 3.0, 0.0]], [0, 0, 1], corners=side) == pytest.approx([7.0])
+    assert np.isnan(sb.strain_along([[7.0, 3.0, 0.0]], [1, 0, 0], corners=side)).all()
+    with pytest.raises(ValueError):
+        sb.strain_along(shear)
+    with pytest.raises(sb.Faults, match="corners"):
+        sb.strain_along(shear, [1, 0, 0], corners=np.zeros((2, 4, 3)))
+
+
 def test_loads_are_those_of_least_squares():
     rng = np.random.default_rng(5)
     S = rng.normal(size=(9, 4)) * 50.0

@@ -86,7 +86,7 @@ def test_a_fleet_is_that_of_the_command(matrix_folder, command, monkeypatch):
         def map(self, function, *arguments, **_):
             return [function(*a) for a in zip(*arguments)]
 
-        def gather(self, futures):
+        def gather(self, futures, errors):
             return futures
 
     spread = sb.fleet.run(sb.Job.read("job.toml"), files, out="spread", client=Client())
@@ -97,3 +97,4 @@ def test_every_command_is_a_function():
     from strainbridge import _strainbridge
 
     assert all(hasattr(sb, name) for name in _strainbridge.commands())
+    assert callable(sb.verify) and callable(sb.clean) and callable(sb.fleet.run)

@@ -98,17 +98,6 @@ def test_an_outcome_that_cannot_be_relied_on_says_so(matrix_folder):
     assert "RELIED" in repr(out) and "RELIED" in out._repr_html_()
 
 
-def test_a_table_goes_to_arrow(strip_folder):
-    pytest.importorskip("pyarrow")
-    plan = sb.place("job.toml")
-    table = plan.to_arrow()
-    assert table.num_rows == 4
-    assert table["name"].to_pylist() == [g.name for g in plan.gauges]
-    assert hasattr(table, "__arrow_c_stream__")
-    with pytest.raises(KeyError):
-        plan.to_arrow("nothing")
-
-
 def test_the_text_of_a_dictionary_is_read_back_as_it_was(matrix_folder):
     job = sb.Job.read("job.toml")
     assert sb.Job.from_dict(job.to_dict()).to_dict() == job.to_dict()

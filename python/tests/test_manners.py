@@ -2,6 +2,7 @@
 
 import os
 import signal
+import subprocess
 import sys
 import threading
 import time
@@ -10,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT
+from conftest import ROOT, needed
 
 import strainbridge as sb
 from strainbridge import _strainbridge as engine
@@ -75,8 +76,8 @@ def test_ctrl_c_stops_the_work():
 
 def test_progress_is_told():
     heard = []
-    sb.place(ROOT / "models" / "truck-shell" / "job.toml", cache=False, progress=lambda *said: heard.append(said))
-    assert len({stage for stage, _, _ in heard}) >= 2
+    out = sb.place(ROOT / "models" / "truck-shell" / "job.toml", cache=False, progress=lambda *said: heard.append(said))
+    assert len({stage for stage, _, _ in heard}) >= 2 and len(out.gauges) > 0
     assert all(isinstance(stage, str) and done >= 0 and total >= 0 for stage, done, total in heard)
 
 
@@ -93,15 +94,21 @@ def test_many_calls_leak_nothing():
     def resident():
         return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
-    # A result has 64 kB: kept a thousand times it would be 64 MB.
+    # Ten thousand calls in all. A result has 2.5 kB or more: kept, they would be 8 MB and more.
     signal_of_2000 = np.random.default_rng(1).normal(size=2000)
-    for ask in (lambda: sb.rainflow(signal_of_2000), lambda: sb.place_rows(S, 5, threads=1)):
-        for _ in range(200):
+    many, strain = np.random.default_rng(2).normal(size=(60, 10)), np.random.default_rng(2).normal(size=(20, 60))
+    table = {"a": np.zeros(1000)}
+    for ask in (
+        lambda: sb.rainflow(signal_of_2000),
+        lambda: sb.recover_rows(many, strain, threads=1),
+        lambda: sb.Table.from_columns(table).__arrow_c_stream__(),
+    ):
+        for _ in range(300):
             ask()
         before = resident()
-        for _ in range(1000):
+        for _ in range(3_400):
             ask()
-        assert resident() - before < 8e6
+        assert resident() - before < 4e6
 
 
 def test_a_long_record_is_not_copied():
@@ -115,3 +122,69 @@ def test_a_long_record_is_not_copied():
     # Loads twice (blocks, then all), 64 MB, and little else; the record has 480 MB.
     assert (after - before) * scale < 0.5 * strain.nbytes
     assert out.loads.shape == (1_000_000, 4)
+
+
+def test_a_bar_is_drawn_where_tqdm_is_installed(monkeypatch):
+    drawn = needed("tqdm.auto")
+    bars = []
+
+    class Bar(drawn.tqdm):
+        def __init__(self, *args, **more):
+            super().__init__(*args, **{**more, "disable": False, "file": open(os.devnull, "w")})
+            bars.append(self)
+
+        def refresh(self, *args, **more):
+            seen.append((self.desc, self.n, self.total))
+            if len({desc for desc, _, _ in seen}) == 2:
+                raise LookupError("enough")
+
+    seen = []
+    monkeypatch.setattr(drawn, "tqdm", Bar)
+    with pytest.raises(LookupError, match="enough"):
+        sb.place(ROOT / "models" / "truck-shell" / "job.toml", cache=False, progress=True)
+    assert len(bars) == 1
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    with pytest.raises(ImportError, match="tqdm"):
+        sb.check(ROOT / "models" / "truck-shell" / "job.toml", progress=True)
+
+
+def test_notes_go_to_the_log(caplog, strip_folder):
+    with caplog.at_level("DEBUG", logger="strainbridge"):
+        out = sb.place("job.toml")
+    assert [r.getMessage() for r in caplog.records] == [f"place: {note}" for note in out.notes]
+
+
+def test_work_stops_between_two_cases():
+    begun = []
+
+    def stop(stage, done, total):
+        begun.append(stage)
+        if len(set(begun)) == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        sb.place(ROOT / "models" / "truck-shell" / "job.toml", cache=False, progress=stop)
+    assert len(sb.place_rows(S, 6).rows) == 6
+
+
+def test_stubs_fit_the_package(tmp_path):
+    needed("mypy")
+    done = subprocess.run(
+        [sys.executable, "-m", "mypy.stubtest", "strainbridge._strainbridge", "--ignore-disjoint-bases"], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_the_way_to_the_library_costs_little():
+    strain = np.random.default_rng(3).normal(size=(1_000_000, 41))
+    rows = np.random.default_rng(4).normal(size=(2_000_000, 6))
+    for ask, calls in (
+        (lambda: engine.recover_rows(np.ascontiguousarray(S[:41]), strain, 1.0, None), 2),
+        (lambda: engine.place_rows(rows, 12, None, None, False, None), 1),
+    ):
+        ratios = []
+        for _ in range(calls):
+            begin = time.perf_counter()
+            inside = ask()["seconds"]
+            ratios.append((time.perf_counter() - begin) / inside)
+        assert min(ratios) < 1.1

@@ -14,10 +14,12 @@ pub mod strain;
 mod strains;
 pub mod vehicle;
 mod vtu;
+mod vtu_arrays;
 mod vtu_points;
 
 pub use csv_cell::csv_cell;
 pub use result_blocks::{PlannedBlock, planned_blocks, rows_of_block};
 pub use strains::{STRAINS_HEADER, strains_columns, write_strains};
-pub use vtu::{write_cells_vtu, write_vtu};
+pub use vtu::{vtk_cells, write_cells_vtu, write_vtu};
+pub use vtu_arrays::{MeshArrays, NamedArray, Numbers, write_arrays_vtu};
 pub use vtu_points::{PointValues, write_points_vtu};

@@ -130,8 +130,9 @@ pub fn write_cells_vtu(
 /// Cells of the mesh: VTK type, element id, grids.
 type Cells = Vec<(u8, u32, Vec<GridIx>)>;
 
-/// The document up to the grid numbers among the point data.
-fn mesh(model: &Model) -> (Appended, Cells) {
+/// The cells of a model as VTK has them, type, element id and corner grids: shells, bars and beams, rods, solids, shear panels, each in the
+/// order of the model.
+pub fn vtk_cells(model: &Model) -> Vec<(u8, u32, Vec<GridIx>)> {
     let mut cells: Cells = Vec::new();
     for s in &model.shells {
         let n = s.shape.n_corners();
@@ -155,6 +156,12 @@ fn mesh(model: &Model) -> (Appended, Cells) {
     }
     let panels = model.shear_panels.iter();
     cells.extend(panels.map(|p| (QUAD, p.id, p.grids.to_vec())));
+    cells
+}
+
+/// The document up to the grid numbers among the point data.
+fn mesh(model: &Model) -> (Appended, Cells) {
+    let cells = vtk_cells(model);
     let mut a = begin(model.grids.len(), cells.len());
     a.array(
         "Points",

@@ -73,9 +73,18 @@ pub struct EditedDeck {
 impl EditedDeck {
     /// Name and bytes of every file of the edited deck, its INCLUDEs as they are found from `folder`; the first is `unit_loads.bdf`.
     pub fn files(&self, folder: &Path) -> Vec<(String, Vec<u8>)> {
-        let edited = write_edited(&self.deck, &self.edits);
-        includes::relocated(&self.deck, edited, folder, "unit_loads")
+        edited_files(&self.deck, &self.edits, folder, "unit_loads")
     }
+}
+
+/// Name and bytes of every file of a deck with these edits made, its INCLUDEs as they are found from `folder`; the first is `<stem>.bdf`.
+pub fn edited_files(
+    deck: &Deck,
+    edits: &Edits,
+    folder: &Path,
+    stem: &str,
+) -> Vec<(String, Vec<u8>)> {
+    includes::relocated(deck, write_edited(deck, edits), folder, stem)
 }
 
 /// The job's deck with one unit-load subcase a load, ready for Nastran.

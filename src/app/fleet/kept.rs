@@ -110,7 +110,10 @@ impl KeptDays {
         let bytes = serde_json::to_vec(&kept).map_err(std::io::Error::other)?;
         std::fs::create_dir_all(&self.folder)?;
         let place = self.place(&file.sha256, &file.path);
-        let part = place.with_extension(format!("{}.part", std::process::id()));
+        // Processes of other machines and containers that share the folder may have this one's number.
+        let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
+        let nanos = now.map_or(0, |t| t.as_nanos());
+        let part = place.with_extension(format!("{}-{nanos}.part", std::process::id()));
         let mut out = std::fs::File::create(&part)?;
         out.write_all(&bytes)?;
         drop(out);

@@ -1,0 +1,40 @@
+"""Progress as a bar of tqdm, where it is installed."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import Any, Callable, Iterator, Optional, Union
+
+Told = Optional[Callable[[str, int, int], object]]
+
+
+@contextmanager
+def shown(progress: Union[bool, Told]) -> Iterator[Told]:
+    """Who is told: the function given; for True a bar, closed at the end.
+
+    Raises:
+        ImportError: a bar is asked for and tqdm is not installed.
+    """
+    if not isinstance(progress, bool):
+        yield progress
+        return
+    if not progress:
+        yield None
+        return
+    try:
+        from tqdm.auto import tqdm  # type: ignore[import-untyped, unused-ignore]
+    except ImportError as e:
+        raise ImportError("progress=True needs tqdm: pip install tqdm, or pass a function of stage, done, total") from e
+    bar: Any = tqdm(total=0, leave=False)
+
+    def told(stage: str, done: int, total: int) -> None:
+        if (stage, total) != (bar.desc.rstrip(": "), bar.total):
+            bar.reset(total=total)
+            bar.set_description(stage, refresh=False)
+        bar.n = done
+        bar.refresh()
+
+    try:
+        yield told
+    finally:
+        bar.close()

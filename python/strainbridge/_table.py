@@ -1,0 +1,80 @@
+"""Tables for pandas, polars, DuckDB and whoever else reads Arrow."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+
+from . import _strainbridge as _engine
+
+
+class Table:
+    """A table in the Arrow format: ``polars.DataFrame(table)``, ``pandas.DataFrame.from_arrow(table)``, ``duckdb.sql("select * from table")``,
+    ``pyarrow.table(table)`` take it by the Arrow PyCapsule interface, without a package of Arrow here. Where pyarrow is installed, a table
+    also answers as a ``pyarrow.Table`` does: ``table["name"]``, ``table.to_pandas()``."""
+
+    __slots__ = ("_native",)
+
+    def __init__(self, native: _engine._Table) -> None:
+        self._native = native
+
+    @classmethod
+    def from_records(cls, records: Sequence[Mapping[str, Any]]) -> Table:
+        """A row a record: numbers, truths, texts, lists of numbers; what else there is stands as JSON."""
+        return cls(_engine._Table(json.dumps(list(records))))
+
+    @classmethod
+    def from_columns(cls, columns: Mapping[str, Any]) -> Table:
+        """A column a name: arrays of numbers of one dimension, or lists of texts."""
+        return cls(_engine._Table(columns={name: _column(c) for name, c in columns.items()}))
+
+    @property
+    def num_rows(self) -> int:
+        """How many rows."""
+        return self._native.num_rows
+
+    @property
+    def column_names(self) -> list[str]:
+        """Names of the columns."""
+        return self._native.column_names
+
+    def __arrow_c_schema__(self) -> object:
+        """The schema, by the Arrow PyCapsule interface."""
+        return self._native.__arrow_c_schema__()
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
+        """The rows, by the Arrow PyCapsule interface."""
+        return self._native.__arrow_c_stream__(requested_schema)
+
+    def __len__(self) -> int:
+        return self.num_rows
+
+    def _pyarrow(self, what: str) -> Any:
+        try:
+            import pyarrow  # type: ignore[import-untyped, import-not-found, unused-ignore]
+        except ImportError as e:
+            said = f"`{what}` is pyarrow's: pip install pyarrow, or hand the table to pandas, polars or DuckDB as it is"
+            raise ImportError(said) from e
+        return pyarrow.table(self)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return getattr(self._pyarrow(name), name)
+
+    def __getitem__(self, key: Any) -> Any:
+        return self._pyarrow("[]")[key]
+
+    def __repr__(self) -> str:
+        return f"Table({self.num_rows} rows: {', '.join(self.column_names)})"
+
+
+def _column(values: Any) -> Any:
+    array = np.asarray(values)
+    if array.dtype.kind in "iub":
+        return np.ascontiguousarray(array, dtype=np.int64)
+    if array.dtype.kind == "f":
+        return np.ascontiguousarray(array, dtype=np.float64)
+    return [str(v) for v in values]

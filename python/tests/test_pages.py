@@ -1,0 +1,53 @@
+"""The page of names is that of the docstrings; the notebooks run."""
+
+import json
+import runpy
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+from conftest import ROOT, needed
+
+NOTEBOOKS = sorted((ROOT / "examples" / "notebooks").glob("*.ipynb"))
+
+
+def test_the_page_of_names_is_made_from_the_docstrings():
+    made = runpy.run_path(str(ROOT / "python" / "api.py"))["page"]()
+    kept = (ROOT / "docs" / "reference" / "python-api.md").read_text(encoding="utf-8")
+    assert made == kept, "python python/api.py > docs/reference/python-api.md"
+
+
+def test_notebooks_are_kept_without_their_outputs():
+    assert len(NOTEBOOKS) == 3
+    for path in NOTEBOOKS:
+        cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+        assert all(c["outputs"] == [] and c["execution_count"] is None for c in cells if c["cell_type"] == "code"), path
+
+
+def test_notebooks_run_and_have_pictures(tmp_path):
+    nbclient, nbformat = needed("nbclient"), needed("nbformat")
+    for name in ("ipykernel", "matplotlib", "pandas", "pyarrow"):
+        needed(name)
+
+    def pictures(path):
+        folder = tmp_path / path.stem
+        folder.mkdir()
+        book = nbformat.read(path, as_version=4)
+        nbclient.NotebookClient(book, timeout=120, resources={"metadata": {"path": str(folder)}}).execute()
+        outputs = [o for c in book.cells if c.cell_type == "code" for o in c.outputs]
+        kinds = [kind for o in outputs for kind in o.get("data", {})]
+        return kinds.count("image/png"), kinds.count("text/html")
+
+    # Kernels start side by side.
+    with ThreadPoolExecutor(3) as pool:
+        for path, (images, pages) in zip(NOTEBOOKS, pool.map(pictures, NOTEBOOKS)):
+            assert images >= 1 and pages >= 1, path
+
+
+@pytest.mark.parametrize("name", ["README.md", "docs/reference/python.md"])
+def test_names_of_the_pages_exist(name):
+    import re
+
+    import strainbridge as sb
+
+    used = set(re.findall(r"\bsb\.(\w+)", (ROOT / name).read_text(encoding="utf-8")))
+    assert used and all(hasattr(sb, n) for n in used), used
