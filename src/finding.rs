@@ -1,5 +1,7 @@
 //! What a stage has to say about its own result.
 
+pub mod explain;
+
 use serde::Serialize;
 
 /// How much a finding matters.
@@ -19,7 +21,7 @@ pub enum Severity {
 pub struct Finding {
     /// How much it matters.
     pub severity: Severity,
-    /// Stable kebab-case code, such as `loads-not-separable`.
+    /// Stable code, such as `loads-not-separable`; [`explain`] has an entry for each.
     pub code: &'static str,
     /// What it is about: a gauge, a load, a file, an element.
     pub subject: String,
@@ -31,6 +33,17 @@ pub struct Finding {
     pub limit: Option<f64>,
     /// What the reader can do.
     pub remedy: String,
+}
+
+impl Severity {
+    /// The word of it in messages.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Info => "note",
+            Self::Warning => "warning",
+            Self::Error => "error",
+        }
+    }
 }
 
 impl Finding {

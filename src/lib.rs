@@ -63,6 +63,7 @@ pub use app::ballast::ballast;
 pub use app::calibrate::calibrate;
 pub use app::cases::cases;
 pub use app::check::check;
+pub use app::explain::{explain, explain_all};
 pub use app::fleet::fleet;
 pub use app::identify::identify;
 pub use app::init::init;

@@ -304,3 +304,101 @@ fn the_schema_knows_every_key_of_a_job_and_no_misspelt_one() {
         assert!(list.is_empty(), "{}: {list:?}", path.display());
     }
 }
+
+#[test]
+fn explain_says_what_a_finding_means_and_offers_the_code_that_was_meant() {
+    let out = strainbridge(&["explain", "loads-not-separable"]);
+    assert_eq!(out.status.code(), Some(0));
+    let said = text(&out.stdout);
+    for word in ["cause", "limit", "remedy", "example"] {
+        assert!(said.contains(word), "{said}");
+    }
+    let out = strainbridge(&["explain", "loads-not-seperable"]);
+    assert_eq!(out.status.code(), Some(2));
+    assert!(text(&out.stderr).contains("did you mean `loads-not-separable`?"));
+    let out = strainbridge(&["explain", "--list", "--json"]);
+    let list: serde_json::Value = serde_json::from_slice(&out.stdout).unwrap();
+    let list = list.as_array().unwrap();
+    assert!(list.len() > 150);
+    for entry in list {
+        for key in [
+            "code", "severity", "said_by", "cause", "limit", "remedy", "example",
+        ] {
+            assert!(!entry[key].is_null(), "{entry}");
+        }
+    }
+}
+
+#[test]
+fn faults_are_json_where_that_is_asked_for() {
+    let dir = folder("fault_json");
+    let job = dir.join("job.toml");
+    std::fs::write(&job, "units = \"m-kg-s\"\n[placement]\ngauges = \"ten\"\n").unwrap();
+    let out = strainbridge(&["place", job.to_str().unwrap(), "--json"]);
+    assert_eq!(out.status.code(), Some(2));
+    let said: serde_json::Value = serde_json::from_slice(&out.stdout).unwrap();
+    let faults = said["faults"].as_array().unwrap();
+    assert_eq!(faults[0]["line"], 3);
+    for key in ["file", "field", "wrong", "remedy"] {
+        assert!(faults[0][key].is_string(), "{said}");
+    }
+    assert!(!dir.join("job.out").exists());
+}
+
+#[test]
+fn a_deck_given_as_a_job_is_one_fault_that_names_init() {
+    let dir = folder("deck_as_job");
+    let deck = dir.join("plate.bdf");
+    std::fs::write(&deck, PLATE).unwrap();
+    let out = strainbridge(&["place", deck.to_str().unwrap()]);
+    assert_eq!(out.status.code(), Some(2));
+    let err = text(&out.stderr);
+    assert!(
+        err.contains("this is a deck") && err.contains("strainbridge init"),
+        "{err}"
+    );
+    assert!(err.contains("1 fault found"), "{err}");
+}
+
+#[test]
+fn quiet_says_errors_alone_and_verbose_says_seconds() {
+    let dir = folder("quiet");
+    let deck = dir.join("plate.bdf");
+    // Grids 11 to 13 belong to nothing: one note that begins with its place.
+    let grids: String = (11..14)
+        .map(|g| format!("GRID,{g},,5.,{g}.,0.\n"))
+        .collect();
+    let deck_text = PLATE.replace("ENDDATA", &format!("{grids}ENDDATA"));
+    std::fs::write(&deck, deck_text).unwrap();
+    let path = deck.to_str().unwrap();
+    let plain = strainbridge(&["check", path]);
+    let err = text(&plain.stderr);
+    assert!(
+        err.lines()
+            .any(|l| l.starts_with(&format!("{path}:11: note [grid-unattached]"))),
+        "{err}"
+    );
+    assert!(!err.contains('\u{1b}'), "colour without a terminal: {err}");
+    let quiet = strainbridge(&["check", path, "-q"]);
+    assert_eq!(quiet.status.code(), Some(0));
+    assert!(quiet.stderr.is_empty() && quiet.stdout.is_empty());
+    let json = strainbridge(&["check", path, "-q", "--json"]);
+    assert!(serde_json::from_slice::<serde_json::Value>(&json.stdout).is_ok());
+    let verbose = strainbridge(&["check", path, "-v"]);
+    assert!(text(&verbose.stderr).contains("time: "));
+}
+
+#[test]
+fn man_pages_are_written_for_the_program_and_each_command() {
+    let dir = folder("man");
+    let out = strainbridge(&["man", dir.to_str().unwrap()]);
+    assert_eq!(out.status.code(), Some(0), "{}", text(&out.stderr));
+    for page in [
+        "strainbridge.1",
+        "strainbridge-place.1",
+        "strainbridge-explain.1",
+    ] {
+        let page = std::fs::read_to_string(dir.join(page)).unwrap();
+        assert!(page.contains(".TH") && page.contains("SYNOPSIS"), "{page}");
+    }
+}

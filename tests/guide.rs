@@ -102,4 +102,126 @@ fn every_command_of_the_guide_works_and_the_files_it_names_are_written() {
             assert!(toml.parse::<toml::Table>().is_ok(), "{name}: {toml}");
         }
     }
+    documented(&folder);
+}
+
+/// Whether a documented field, with `*` for any name and for all below where it comes last, is this one.
+fn is_field(pattern: &str, path: &str) -> bool {
+    let (mut a, mut b) = (pattern.split('.').peekable(), path.split('.'));
+    while let Some(p) = a.next() {
+        match (p, b.next()) {
+            (_, None) => return false,
+            ("*", Some(_)) if a.peek().is_none() => return true,
+            ("*", Some(_)) => {}
+            (p, Some(name)) if p == name => {}
+            _ => return false,
+        }
+    }
+    b.next().is_none()
+}
+
+/// Fields of a value, lists looked through; what a name of the job leads to has dots of its own and is not followed.
+fn fields_of(value: &serde_json::Value, path: &str, out: &mut std::collections::BTreeSet<String>) {
+    match value {
+        serde_json::Value::Object(map) => {
+            for (name, below) in map {
+                let path = format!(
+                    "{path}{}{}",
+                    if path.is_empty() { "" } else { "." },
+                    name.replace('.', "_")
+                );
+                fields_of(below, &path, out);
+                out.insert(path);
+            }
+        }
+        serde_json::Value::Array(list) => list.iter().for_each(|v| fields_of(v, path, out)),
+        _ => {}
+    }
+}
+
+/// Every field and every column that the commands of the guide wrote stands in the reference.
+fn documented(folder: &Path) {
+    use strainbridge::report::reference::{columns, fields};
+    let mut seen = 0;
+    let mut missing = std::collections::BTreeSet::new();
+    for entry in std::fs::read_dir(folder).unwrap().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            documented_in(&path, &mut seen, &mut missing, &fields(), &columns());
+            for inner in std::fs::read_dir(&path)
+                .unwrap()
+                .flatten()
+                .filter(|e| e.path().is_dir())
+            {
+                documented_in(
+                    &inner.path(),
+                    &mut seen,
+                    &mut missing,
+                    &fields(),
+                    &columns(),
+                );
+            }
+        }
+    }
+    assert!(seen >= 10, "{seen} results");
+    assert!(
+        missing.is_empty(),
+        "not in src/report/reference: {missing:#?}"
+    );
+}
+
+fn documented_in(
+    folder: &Path,
+    seen: &mut usize,
+    missing: &mut std::collections::BTreeSet<String>,
+    fields: &[[&str; 4]],
+    columns: &[[&str; 5]],
+) {
+    let Ok(text) = std::fs::read_to_string(folder.join("result.json")) else {
+        return;
+    };
+    *seen += 1;
+    let result: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let command = result["command"].as_str().unwrap();
+    let mut found = std::collections::BTreeSet::new();
+    fields_of(&result, "", &mut found);
+    let known = |path: &str| {
+        fields
+            .iter()
+            .any(|f| [command, "*"].contains(&f[0]) && is_field(f[1], path))
+    };
+    missing.extend(
+        found
+            .iter()
+            .filter(|p| !known(p))
+            .map(|p| format!("{command}: {p}")),
+    );
+    // The tables of `reconcile` are inputs of the job that it writes, in the form of such inputs.
+    if command == "reconcile" {
+        return;
+    }
+    for file in std::fs::read_dir(folder).unwrap().flatten() {
+        let name = file.file_name().to_string_lossy().into_owned();
+        if !name.ends_with(".csv") {
+            continue;
+        }
+        let header = std::fs::read_to_string(file.path()).unwrap();
+        let stated = &result["tables"][&name];
+        for column in header.lines().next().unwrap().split(',') {
+            let column = column.trim_matches('"');
+            if stated.get(column).is_none() {
+                missing.insert(format!(
+                    "{command}: {name}: `{column}` without a unit in `tables`"
+                ));
+            }
+            let of_file = columns.iter().filter(|c| c[0] == command && c[1] == name);
+            let named = |pattern: &str| match pattern.split_once('>') {
+                Some((_, end)) => column.ends_with(end),
+                None => pattern == column,
+            };
+            if !of_file.clone().any(|c| named(c[2])) {
+                missing.insert(format!("{command}: {name}: {column}"));
+            }
+        }
+    }
 }

@@ -9,6 +9,7 @@ pub mod cases;
 pub mod check;
 pub mod context;
 pub mod deck;
+pub mod explain;
 pub mod fault;
 pub mod file_read;
 pub mod files;

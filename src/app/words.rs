@@ -1,14 +1,10 @@
 //! Findings in plain words.
 
-use crate::finding::{Finding, Severity};
+use crate::finding::Finding;
 
-/// One finding as lines of text: severity, subject, sentence, numbers, remedy.
+/// One finding as one line: file and line where they are known, severity, code, subject, sentence, numbers, remedy.
 pub fn finding_text(f: &Finding) -> String {
-    let severity = match f.severity {
-        Severity::Info => "note",
-        Severity::Warning => "warning",
-        Severity::Error => "error",
-    };
+    let (place, message) = placed(&f.message);
     let numbers = match (f.measured, f.limit) {
         (Some(m), Some(l)) => format!(" (measured {}, limit {})", short(m), short(l)),
         (Some(m), None) => format!(" (measured {})", short(m)),
@@ -17,12 +13,25 @@ pub fn finding_text(f: &Finding) -> String {
     let remedy = if f.remedy.is_empty() {
         String::new()
     } else {
-        format!("\n    remedy: {}", f.remedy)
+        format!(". Remedy: {}", f.remedy)
     };
-    format!(
-        "{severity} [{}] {}: {}{numbers}{remedy}",
-        f.code, f.subject, f.message
-    )
+    let (word, message) = (f.severity.word(), message.trim_end_matches('.'));
+    let line = format!(
+        "{place}{word} [{}] {}: {message}{numbers}{remedy}",
+        f.code, f.subject
+    );
+    line.replace('\n', " ")
+}
+
+/// The place that a message begins with, as `file:line: `, and what follows; editors go there.
+fn placed(message: &str) -> (String, &str) {
+    let place = || {
+        let (file, rest) = message.strip_prefix('`')?.split_once("` line ")?;
+        let (line, rest) = rest.split_once(": ")?;
+        let line: u32 = line.parse().ok()?;
+        Some((format!("{file}:{line}: "), rest))
+    };
+    place().unwrap_or((String::new(), message))
 }
 
 /// A number with four significant digits, plain where that is readable.
@@ -40,5 +49,27 @@ pub fn short(x: f64) -> String {
         }
     } else {
         format!("{x:.3e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::finding::Severity;
+
+    #[test]
+    fn a_finding_is_one_line_that_begins_with_its_place() {
+        let message = "`a b.bdf` line 12: GRID 7 belongs to no element";
+        let f = Finding::new(
+            Severity::Info,
+            "grid-unattached",
+            "a b.bdf",
+            message,
+            "join it",
+        );
+        let line = "a b.bdf:12: note [grid-unattached] a b.bdf: GRID 7 belongs to no element (measured 2, limit 0). Remedy: join it";
+        assert_eq!(finding_text(&f.with_numbers(2.0, 0.0)), line);
+        let f = Finding::new(Severity::Error, "gauge-dead", "P1", "two\nlines.", "");
+        assert_eq!(finding_text(&f), "error [gauge-dead] P1: two lines");
     }
 }

@@ -16,7 +16,8 @@ use std::path::{Path, PathBuf};
                   strainbridge init truck.bdf truck.op2           a commented job from them\n  \
                   strainbridge place job.toml                     where to glue gauges\n  \
                   strainbridge recover job.toml                   loads from measured strain\n\n\
-                  Exit code: 0 done; 1 done, but an answer can't be relied on; 2 bad input, every fault listed.\n\
+                  Exit code: 0 done; 1 done, but an answer can't be relied on; 2 bad input, every fault listed;\n\
+                  130 stopped by Ctrl-C, no half-written file is left.\n\
                   `strainbridge COMMAND --help` shows an example of each."
 )]
 pub struct Arguments {
@@ -112,6 +113,11 @@ pub enum Command {
     /// Remove kept solutions of the built-in solver
     #[command(after_help = "Example:\n  strainbridge clean")]
     Clean(CleanArguments),
+    /// What a finding means: cause, limit, remedy, an example
+    #[command(
+        after_help = "Example:\n  strainbridge explain loads-not-separable\n  strainbridge explain --list --json"
+    )]
+    Explain(ExplainArguments),
     /// Print the JSON schema of a job, for editors that complete and check TOML by it
     #[command(
         after_help = "Example:\n  strainbridge schema > job.schema.json    # and `#:schema job.schema.json` as first line of job.toml"
@@ -122,6 +128,9 @@ pub enum Command {
         after_help = "Example:\n  strainbridge completions bash > ~/.local/share/bash-completion/completions/strainbridge"
     )]
     Completions(CompletionsArguments),
+    /// Write man pages, one a command
+    #[command(after_help = "Example:\n  strainbridge man ~/.local/share/man/man1")]
+    Man(ManArguments),
 }
 
 /// A job, records, which of them.
@@ -154,6 +163,34 @@ pub struct CompletionsArguments {
     /// The shell
     #[arg(value_enum, value_name = "SHELL")]
     pub shell: clap_complete::Shell,
+}
+
+/// Where man pages go.
+#[derive(clap::Args, Debug)]
+pub struct ManArguments {
+    /// Folder for the pages
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: CommonArguments,
+}
+
+/// Which finding.
+#[derive(clap::Args, Debug)]
+pub struct ExplainArguments {
+    /// Its code, as findings state it in brackets
+    #[arg(value_name = "CODE", required_unless_present_any = ["list", "reference"])]
+    pub code: Option<String>,
+    /// All codes
+    #[arg(long)]
+    pub list: bool,
+    /// Write the reference of job keys, fields, columns, findings and exit codes into this folder
+    #[arg(long, value_name = "DIR")]
+    pub reference: Option<PathBuf>,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: CommonArguments,
 }
 
 /// What is verified.
@@ -193,6 +230,12 @@ pub struct CommonArguments {
     /// Neither take solutions of the built-in solver from those kept nor keep them
     #[arg(long)]
     pub no_cache: bool,
+    /// Say faults and findings of severity error alone
+    #[arg(short, long, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Say every finding, equal ones too, and seconds by stage
+    #[arg(short, long)]
+    pub verbose: bool,
 }
 
 /// A command on a job.

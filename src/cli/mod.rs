@@ -2,10 +2,13 @@
 
 mod arguments;
 mod demo;
+mod explain;
 mod interrupt;
+mod manual;
 mod progress;
 mod run;
 mod upkeep;
+mod voice;
 
 pub use arguments::*;
 
@@ -84,6 +87,8 @@ pub fn run(arguments: Arguments) -> ExitCode {
         Command::Identify(a) => Run::of(&a.common, &a.job).job(&a.job, app::identify::identify),
         Command::Verify(a) => upkeep::verify(&a),
         Command::Clean(a) => upkeep::clean(&a),
+        Command::Explain(a) => explain::explain(&a),
+        Command::Man(a) => manual::man(&a),
         Command::Schema => print(app::job::schema::job_schema().as_bytes()),
         Command::Completions(a) => {
             let mut text = Vec::new();

@@ -2,16 +2,16 @@
 
 use super::CommonArguments;
 use super::progress::Terminal;
+use super::voice::Voice;
 use crate::app::check::check;
 use crate::app::context::{Context, Disk};
 use crate::app::fault::{Fault, Faults};
 use crate::app::init::init;
 use crate::app::job::Job;
-use crate::app::outcome::{Answer, Findings, Outcome};
+use crate::app::outcome::{Answer, Findings, Outcome, Seconds};
 use crate::app::output::Output;
 use crate::app::recover::{Recovered, recover_into};
 use crate::app::store::Folder;
-use crate::app::words::finding_text;
 use crate::finding::Severity;
 use crate::report::command::{RecordFolder, Report, finish, save, unsaved};
 use std::io::Write;
@@ -33,6 +33,7 @@ struct Said<'a> {
     json: &'a str,
     findings: &'a Findings,
     notes: &'a [String],
+    seconds: &'a Seconds,
     folder: Option<&'a Path>,
     faults: &'a [Fault],
 }
@@ -134,10 +135,11 @@ impl Run {
                 json: &json,
                 findings: &outcome.findings,
                 notes: &outcome.notes,
+                seconds: &outcome.seconds,
                 folder: self.common.out.as_deref(),
                 faults: &outcome.faults,
             }),
-            Err(faults) => refuse(&faults),
+            Err(faults) => refuse(&faults, &self.common),
         }
     }
 
@@ -202,7 +204,10 @@ impl Run {
                     "ask for fewer threads",
                 )
             })?;
-        let mut cx = Context::new(&Disk).progress(&terminal);
+        let mut cx = Context::new(&Disk);
+        if !Voice::of(&self.common).is_quiet() {
+            cx = cx.progress(&terminal);
+        }
         cx.store = self.store.as_ref().map(|s| s as _);
         pool.install(|| work(&cx))
     }
@@ -218,35 +223,25 @@ impl Run {
                 json: &json,
                 findings: &outcome.findings,
                 notes: &outcome.notes,
+                seconds: &outcome.seconds,
                 folder,
                 faults: &[],
             }),
-            Err(faults) => refuse(&faults),
+            Err(faults) => refuse(&faults, &self.common),
         }
     }
 
     fn say(&self, said: &Said) -> ExitCode {
-        print(
-            if self.common.json {
-                said.json
-            } else {
-                said.text
-            }
-            .as_bytes(),
-        );
-        let mut notes = String::new();
-        said.findings
-            .iter()
-            .for_each(|f| notes.push_str(&(finding_text(f) + "\n")));
-        for note in said.notes {
-            notes.push_str(&format!("note: {note}\n"));
-        }
-        if let Some(folder) = said.folder {
-            notes.push_str(&format!("written to `{}`\n", folder.display()));
-        }
-        let _ = std::io::stderr().write_all(notes.as_bytes());
+        let voice = Voice::of(&self.common);
+        voice.answer(said.text, said.json);
+        voice.findings(said.findings);
+        let notes = said.notes.iter().map(|note| format!("note: {note}"));
+        let written = said.folder.map(|f| format!("written to `{}`", f.display()));
+        let lines: Vec<String> = notes.chain(written).collect();
+        voice.notes(lines.iter().map(String::as_str));
+        voice.seconds(said.seconds);
         if !said.faults.is_empty() {
-            print_faults(said.faults);
+            voice.fault_lines(said.faults);
             return ExitCode::from(2);
         }
         match said.findings.worst() {
@@ -281,20 +276,12 @@ fn default_folder(main_input: &Path) -> PathBuf {
     main_input.with_file_name(name)
 }
 
-pub(super) fn refuse(faults: &Faults) -> ExitCode {
-    print_faults(faults);
-    let _ = std::io::stderr().write_all(b"nothing was written\n");
+/// Says faults and that nothing came of it.
+pub(super) fn refuse(faults: &Faults, common: &CommonArguments) -> ExitCode {
+    let voice = Voice::of(common);
+    voice.faults(faults);
+    voice.notes(["nothing was written"]);
     ExitCode::from(2)
-}
-
-fn print_faults(faults: &[Fault]) {
-    let mut text: String = faults.iter().map(|f| format!("{f}\n")).collect();
-    let n = faults.len();
-    text.push_str(&format!(
-        "{n} fault{} found\n",
-        if n == 1 { "" } else { "s" }
-    ));
-    let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
 /// Prints to standard output.

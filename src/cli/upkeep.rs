@@ -102,6 +102,7 @@ pub(super) fn clean(a: &CleanArguments) -> ExitCode {
                 "check the permissions",
             )
             .into(),
+            &a.common,
         ),
     }
 }

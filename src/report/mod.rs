@@ -7,6 +7,7 @@ mod mode_blocks;
 pub mod page;
 #[cfg(feature = "pdf")]
 pub mod pdf;
+pub mod reference;
 mod result_blocks;
 pub mod scene;
 pub mod spreadsheet;

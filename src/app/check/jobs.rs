@@ -3,6 +3,7 @@
 use super::checked::Checked;
 use crate::app::deck;
 use crate::app::fault::{Fault, Faults};
+use crate::app::job::suggest;
 use crate::app::job::{self, HoldOut, Job, NamedFile};
 use crate::app::outcome::StatedUnits;
 use crate::app::solved::{support_finding, support_of_job};
@@ -225,7 +226,7 @@ fn gauges_and_strain(job: &Job, columns: &[String]) -> Vec<Finding> {
             "gauge-without-strain",
             "gauges have no column in the strain file",
             &silent,
-            "name the columns after the gauges",
+            &suggest::column_remedy(&silent, &unknown),
         );
         note(
             "strain-without-gauge",

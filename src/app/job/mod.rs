@@ -6,6 +6,7 @@ pub mod correct;
 mod faults;
 pub mod gauges;
 pub mod given_columns;
+mod not_a_job;
 mod parse;
 pub mod quantity;
 mod raw;
@@ -81,9 +82,11 @@ impl AsRef<Path> for Job {
 /// Every fault found: syntax, unknown keys, wrong types, contradictions, missing files.
 pub fn read_job(inputs: &mut Inputs, path: &Path) -> Result<Job, Faults> {
     let given = path.display().to_string();
+    not_a_job::check_name(&given)?;
     let text = inputs
         .read_text(Path::new(""), &given)
         .map_err(Faults::from)?;
+    not_a_job::check_text(&given, &text)?;
     let (raw, mut faults) = parse::parse_job(&given, &text);
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     let mut job = resolve::resolve_job(&given, &text, &folder, raw, &mut faults);

@@ -4,319 +4,66 @@ use super::raw::RawJob;
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
-/// Meaning of a key, and the words it takes where only those will do.
-const KEYS: &[(&str, &str, &[&str])] = &[
-    ("title", "Title of reports", &[]),
-    (
-        "units",
-        "Unit system of the deck, never guessed",
-        &["m-kg-s", "mm-t-s", "mm-kg-s", "in-lbf-s"],
-    ),
-    (
-        "report_units",
-        "Units of reports, such as { force = \"kN\", moment = \"kN m\" }",
-        &[],
-    ),
-    ("model", "The finite element model", &[]),
-    (
-        "model.deck",
-        "Nastran deck, or an OP2 that holds the mesh",
-        &[],
-    ),
-    (
-        "model.results",
-        "OP2, HDF5 or punch files; none: the built-in solver computes them",
-        &[],
-    ),
-    (
-        "model.support",
-        "What holds the structure: \"deck\" (the SPC set that case control selects, if any, else free), \"free\" (inertia relief), or the id of an SPC set",
-        &[],
-    ),
-    ("load", "A load to be recovered: a column of S", &[]),
-    ("load.name", "Its name in tables and reports", &[]),
-    ("load.grid", "Grid where it acts", &[]),
-    (
-        "load.load_set",
-        "Load set of the deck, instead of a grid",
-        &[],
-    ),
-    (
-        "load.component",
-        "Force or moment component, basic frame or that of cid",
-        &["FX", "FY", "FZ", "MX", "MY", "MZ"],
-    ),
-    (
-        "load.cid",
-        "Coordinate system of the component; default 0, basic",
-        &[],
-    ),
-    (
-        "load.applied",
-        "The load in its subcase, job units, signed; default 1",
-        &[],
-    ),
-    (
-        "load.subcase",
-        "Subcase in the results; default: its number in the job",
-        &[],
-    ),
-    ("load.result", "Which of the results files", &[]),
-    (
-        "load.role",
-        "wanted, or nuisance: present but not asked for",
-        &["wanted", "nuisance"],
-    ),
-    (
-        "load.expected",
-        "Its size, one standard deviation, job units",
-        &[],
-    ),
-    ("gauge", "An installed gauge", &[]),
-    ("gauge.name", "Its column in the strain file", &[]),
-    ("gauge.element", "Shell or bar it sits on", &[]),
-    (
-        "gauge.position",
-        "Point instead of an element: the nearest shell is taken",
-        &[],
-    ),
-    (
-        "gauge.surface",
-        "top is Z2, bottom is Z1",
-        &["top", "bottom"],
-    ),
-    ("gauge.direction", "Direction, laid onto the surface", &[]),
-    (
-        "gauge.angle_deg",
-        "Angle from that direction, right-handed about the element normal",
-        &[],
-    ),
-    (
-        "gauge.bridge",
-        "Wiring of the arms",
-        &[
-            "quarter",
-            "half-bending",
-            "full-bending",
-            "shear",
-            "half",
-            "full",
-        ],
-    ),
-    (
-        "gauge.bridge_factor",
-        "The sum of signed arm strains is divided by this; default 1",
-        &[],
-    ),
-    (
-        "gauge.grid_length",
-        "Length over which strain is averaged",
-        &[],
-    ),
-    ("gauges", "Installed gauges in a table", &[]),
-    (
-        "gauges.file",
-        "CSV with the keys of [[gauge]] as columns",
-        &[],
-    ),
-    ("candidates", "Where `place` may put gauges", &[]),
-    (
-        "candidates.properties",
-        "Property ids; default: all shells",
-        &[],
-    ),
-    (
-        "candidates.elements",
-        "Element ids, such as \"1 THRU 5000\"",
-        &[],
-    ),
-    (
-        "candidates.angle_step_deg",
-        "Step of angles, or \"continuous\"",
-        &[],
-    ),
-    ("placement", "What `place` looks for", &[]),
-    ("placement.gauges", "How many", &[]),
-    (
-        "placement.criterion",
-        "What is best: all loads (D), the wanted ones (Ds), mean variance (A), mean error of predicted strain (I)",
-        &["D", "Ds", "A", "I", "Bayesian-D"],
-    ),
-    (
-        "placement.spacing",
-        "Least distance between gauges, job unit of length",
-        &[],
-    ),
-    (
-        "placement.noise_microstrain",
-        "Noise of a gauge, one standard deviation",
-        &[],
-    ),
-    (
-        "placement.angle_tolerance_deg",
-        "How well gauges are aligned, one standard deviation",
-        &[],
-    ),
-    ("measured", "Measured strain", &[]),
-    (
-        "measured.strain",
-        "CSV, RPC III or binary record; a column a gauge, microstrain",
-        &[],
-    ),
-    (
-        "measured.zero",
-        "Record or runs whose mean is subtracted",
-        &[],
-    ),
-    (
-        "measured.zero_runs",
-        "Runs of the strain file at which no load acts: the zero is followed through them, straight from one to the next; instead of `zero`",
-        &[],
-    ),
-    (
-        "measured.reference",
-        "none: loads are changes; gravity or a subcase: they are totals",
-        &[],
-    ),
-    (
-        "measured.noise_microstrain",
-        "Noise of a reading, one standard deviation",
-        &[],
-    ),
-    (
-        "measured.model_uncertainty_rel",
-        "Error of the predicted strain, one standard deviation",
-        &[],
-    ),
-    (
-        "measured.hold_out",
-        "Runs, or a second file, never used for fitting",
-        &[],
-    ),
-    ("runs", "What else was measured in each run", &[]),
-    (
-        "runs.wheel_forces",
-        "Where wheel forces come from",
-        &["measured", "flat_ground_model"],
-    ),
-    (
-        "ballast",
-        "Lumped masses that bring the model's reactions to the measured ones",
-        &[],
-    ),
-    ("payload", "Payload mass and position", &[]),
-    (
-        "payload.position",
-        "Whether its place is known",
-        &["known", "free"],
-    ),
-    ("recover", "What `recover` writes beside loads.csv", &[]),
-    (
-        "recover.files",
-        "Which of them; default all, but for long histories",
-        &["rpc", "nastran", "rainflow", "parquet"],
-    ),
-    (
-        "recover.slope",
-        "Power of the load range in pseudo-damage; default 5",
-        &[],
-    ),
-    ("fleet", "Records of many vehicles and days", &[]),
-    (
-        "fleet.file_name",
-        "Form of their file names: text with {vehicle} and {day}, and {any} for what doesn't matter",
-        &[],
-    ),
-    (
-        "fleet.knee_range",
-        "Load range below which the S-N line is flatter, report unit; default none",
-        &[],
-    ),
-    (
-        "fleet.slope_below_knee",
-        "Power below the knee; default: cycles below do no harm",
-        &[],
-    ),
-    (
-        "respond",
-        "Strain and stress anywhere from recovered loads",
-        &[],
-    ),
-    ("study", "Recovery repeated under stated errors", &[]),
-    ("vehicle", "A vehicle identified from accelerations", &[]),
-    (
-        "vehicle.model",
-        "Which vehicle",
-        &crate::vehicle::preset::MODELS,
-    ),
-    ("vehicle.data", "CSV or RPC III record", &[]),
-    (
-        "reconcile",
-        "Where simulation and measurement disagree",
-        &[],
-    ),
-    (
-        "reconcile.path",
-        "Strain of runs, or accelerations",
-        &["static", "dynamic"],
-    ),
-    (
-        "sensitivity",
-        "S computed elsewhere, instead of [model]",
-        &[],
-    ),
-    (
-        "sensitivity.covariance",
-        "How far that S may be off: calibration.bin, as `calibrate` writes it",
-        &[],
-    ),
-    (
-        "combination",
-        "A sum of loads with an interval of its own",
-        &[],
-    ),
-    ("combination.name", "Its name in tables and reports", &[]),
-    (
-        "combination.terms",
-        "Factor by load, such as { \"LF.FZ\" = 1, \"RF.FZ\" = 1 }",
-        &[],
-    ),
-    (
-        "calibration",
-        "How `calibrate` learns S from runs of known load",
-        &[],
-    ),
-    (
-        "calibration.runs",
-        "Runs that teach; left out: every run of [measured] whose loads [runs] gives",
-        &[],
-    ),
-    (
-        "calibration.repeats",
-        "Columns of the runs file: runs alike in these are repeats; left out: runs of equal loads",
-        &[],
-    ),
-    (
-        "calibration.depends_on",
-        "Column of the runs file, such as speed: whether loads come out larger with it is tested",
-        &[],
-    ),
-    (
-        "calibration.model_uncertainty_rel",
-        "How far the model's S may be off, 1 sd, entry by entry and common to a gauge; default 0.1",
-        &[],
-    ),
-    (
-        "calibration.position_tolerance",
-        "How far gauges may sit from their drawing along and across their axis, 1 sd, job length; stated, it is found from the runs; default 0",
-        &[],
-    ),
-    (
-        "calibration.angle_tolerance_deg",
-        "How far gauges may be turned from their drawing, 1 sd; stated, it is found from the runs; default 0",
-        &[],
-    ),
-];
+/// The keys: path, meaning, unit, default, words.
+const KEYS: &str = include_str!("keys.txt");
+/// What stands in the table for the names of vehicle models.
+const MODELS: &str = "@models";
+
+/// What a key of a job means.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Key {
+    /// Its path, such as `load.grid`; sections and lists of sections alike.
+    pub path: &'static str,
+    /// What it means.
+    pub meaning: &'static str,
+    /// Its unit; `None` for words, counts and fractions.
+    pub unit: Option<&'static str>,
+    /// What holds where it is left out, in words; `None` for sections and for keys of which one or another is needed.
+    pub default: Option<&'static str>,
+    /// The words that it takes, where only those will do.
+    pub words: Vec<&'static str>,
+}
+
+/// Every key of a job, in the order of the reference.
+pub fn keys() -> Vec<Key> {
+    let lines = KEYS.lines().filter(|l| !l.starts_with('#'));
+    lines.filter_map(read_key).collect()
+}
+
+fn read_key(line: &'static str) -> Option<Key> {
+    let mut parts = line.split(" | ");
+    let mut next = || parts.next();
+    let (path, meaning, unit, default, words) = (next()?, next()?, next()?, next()?, next()?);
+    let stated = |word: &'static str| (word != "-").then_some(word);
+    Some(Key {
+        path,
+        meaning,
+        unit: stated(unit),
+        default: stated(default),
+        words: match words {
+            "-" => Vec::new(),
+            MODELS => crate::vehicle::preset::MODELS.to_vec(),
+            list => list.split(", ").collect(),
+        },
+    })
+}
+
+impl Key {
+    /// Meaning, unit and default in one sentence, for editors.
+    fn description(&self) -> String {
+        let mut text = self.meaning.to_owned();
+        if let Some(unit) = self.unit {
+            text.push_str(&format!(" [{unit}]"));
+        }
+        match self.default {
+            Some("required") => text.push_str("; required"),
+            Some(d) if d.starts_with("required ") => text.push_str(&format!("; {d}")),
+            Some(d) => text.push_str(&format!("; default: {d}")),
+            None => {}
+        }
+        text
+    }
+}
 
 /// The schema as JSON text (draft 2020-12).
 pub fn job_schema() -> String {
@@ -329,30 +76,47 @@ pub fn job_schema() -> String {
     if let Some(top) = value.as_object_mut() {
         top.insert("title".into(), "strainbridge job".into());
     }
-    for (path, meaning, words) in KEYS {
-        if let Some(key) = key_at(&mut value, path) {
-            key.insert("description".into(), (*meaning).into());
-            let words = (!words.is_empty()).then(|| json!(words));
-            let list = key.get("items").is_some_and(Value::is_object);
-            match (words, key.get_mut("items").and_then(Value::as_object_mut)) {
-                (Some(words), Some(items)) if list => items.insert("enum".into(), words),
-                (Some(words), _) => key.insert("enum".into(), words),
-                (None, _) => None,
-            };
+    for k in keys() {
+        let Some(key) = key_at(&mut value, k.path) else {
+            continue;
+        };
+        key.insert("description".into(), k.description().into());
+        if let Some(unit) = k.unit {
+            key.insert("x-unit".into(), unit.into());
         }
+        if let Some(default) = k.default.filter(|d| !d.starts_with("required")) {
+            key.insert("x-default".into(), default.into());
+        }
+        if k.words.is_empty() {
+            continue;
+        }
+        let words = json!(k.words);
+        let other_forms = takes_other_forms(key);
+        match key.get_mut("items").and_then(Value::as_object_mut) {
+            Some(items) if !other_forms => items.insert("enum".into(), words),
+            None if !other_forms => key.insert("enum".into(), words),
+            _ => None,
+        };
     }
     // A map of plain values always has a text form.
     serde_json::to_string_pretty(&value).unwrap_or_default() + "\n"
 }
 
-/// The schema of a key such as `load.grid`.
+/// Whether a key takes lists or numbers too, so that its words are not all it takes.
+fn takes_other_forms(key: &Map<String, Value>) -> bool {
+    key.get("type").is_some_and(Value::is_array)
+}
+
+/// The schema of a key such as `load.grid`: through lists, and through tables whose keys are names.
 fn key_at<'a>(root: &'a mut Value, path: &str) -> Option<&'a mut Map<String, Value>> {
     let mut at = root;
     for name in path.split('.') {
         let below = if at.get("properties").is_some() {
             at
-        } else {
+        } else if at.get("items").is_some() {
             at.get_mut("items")?
+        } else {
+            at.get_mut("additionalProperties")?
         };
         at = below.get_mut("properties")?.get_mut(name)?;
     }
@@ -392,12 +156,42 @@ fn without_null(value: &mut Value) {
 mod tests {
     use super::*;
 
-    #[test]
-    fn every_key_with_a_meaning_exists() {
-        let mut schema: Value = serde_json::from_str(&job_schema()).unwrap();
-        for (path, ..) in KEYS {
-            assert!(key_at(&mut schema, path).is_some(), "{path}");
+    /// Every property below, with its path.
+    fn walk(value: &Value, path: &str, out: &mut Vec<(String, bool)>) {
+        for (name, below) in value
+            .get("properties")
+            .and_then(Value::as_object)
+            .into_iter()
+            .flatten()
+        {
+            let path = format!("{path}{}{name}", if path.is_empty() { "" } else { "." });
+            out.push((path.clone(), below.get("description").is_some()));
+            walk(below, &path, out);
         }
+        for inner in ["items", "additionalProperties"] {
+            if let Some(below) = value.get(inner).filter(|b| b.is_object()) {
+                walk(below, path, out);
+            }
+        }
+    }
+
+    #[test]
+    fn every_key_has_a_meaning_and_every_meaning_a_key() {
+        let schema: Value = serde_json::from_str(&job_schema()).unwrap();
+        let mut found = Vec::new();
+        walk(&schema, "", &mut found);
+        let bare: Vec<&String> = found.iter().filter(|f| !f.1).map(|f| &f.0).collect();
+        assert!(bare.is_empty(), "without a line in keys.txt: {bare:?}");
+        let known: Vec<&str> = keys().iter().map(|k| k.path).collect();
+        let gone: Vec<&&str> = known
+            .iter()
+            .filter(|k| !found.iter().any(|f| f.0 == **k))
+            .collect();
+        assert!(gone.is_empty(), "in keys.txt and no key: {gone:?}");
+        assert_eq!(
+            known.len(),
+            KEYS.lines().filter(|l| !l.starts_with('#')).count()
+        );
         assert!(!job_schema().contains("null"));
     }
 }

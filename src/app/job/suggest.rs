@@ -24,6 +24,40 @@ pub fn remedy<'a>(word: &str, names: impl IntoIterator<Item = &'a str> + Clone) 
     }
 }
 
+/// What to do about gauges without a column: the columns that may be meant, each next to its gauge, else what to do in general. A column that
+/// comes close to several gauges is named for the closest of them alone.
+pub fn column_remedy(gauges: &[&str], columns: &[&str]) -> String {
+    let mut pairs: Vec<(usize, &str, &str)> = Vec::new();
+    for gauge in gauges {
+        let column = closest(gauge, columns.iter().copied());
+        pairs.extend(column.map(|c| {
+            (
+                edit_distance(&gauge.to_lowercase(), &c.to_lowercase()),
+                c,
+                *gauge,
+            )
+        }));
+    }
+    pairs.sort_unstable();
+    let mut told: Vec<(usize, &str, &str)> = Vec::new();
+    for p in pairs {
+        if told.iter().all(|t| t.1 != p.1) {
+            told.push(p);
+        }
+    }
+    if told.is_empty() {
+        return "name the columns after the gauges".to_owned();
+    }
+    let list: Vec<String> = told
+        .iter()
+        .map(|(_, c, g)| format!("`{c}` for `{g}`"))
+        .collect();
+    format!(
+        "name the columns after the gauges: did you mean {}?",
+        list.join(", ")
+    )
+}
+
 /// Levenshtein distance, a transposition counted as one.
 fn edit_distance(a: &str, b: &str) -> usize {
     let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());

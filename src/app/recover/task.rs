@@ -2,6 +2,7 @@
 
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::strain::read_strain;
+use crate::app::job::suggest;
 use crate::app::job::{Job, Measured, NamedFile, Reference};
 use crate::app::solved::stands_on_wheels;
 use crate::app::strain::Prepared;
@@ -101,24 +102,20 @@ pub(super) fn columns_of(
             ));
         }
     };
+    let silent = gauges.iter().zip(&columns).filter(|(_, c)| c.is_none());
+    let silent: Vec<&str> = silent.map(|(g, _)| g.as_str()).collect();
+    let unknown = header.iter().filter(|h| !gauges.contains(h));
+    let unknown: Vec<&str> = unknown.map(String::as_str).collect();
+    let remedy = suggest::column_remedy(&silent, &unknown);
     note(
         "gauge-without-strain",
-        gauges
-            .iter()
-            .zip(&columns)
-            .filter(|(_, c)| c.is_none())
-            .map(|(g, _)| g.as_str())
-            .collect(),
+        silent,
         "gauges without a column are left out",
-        "name the columns after the gauges",
+        &remedy,
     );
     note(
         "strain-without-gauge",
-        header
-            .iter()
-            .filter(|h| !gauges.contains(h))
-            .map(String::as_str)
-            .collect(),
+        unknown,
         "columns that belong to no gauge are left out",
         "add the gauges, or drop the columns",
     );

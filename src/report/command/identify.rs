@@ -1,5 +1,6 @@
 //! Files and words of `identify`.
 
+use super::columns::declare_written;
 use super::{Report, write_page};
 use crate::app::fault::Faults;
 use crate::app::identify::Identified;
@@ -38,6 +39,7 @@ impl Report for Outcome<Identified> {
             let text = write_chassis_forces(&self.forces, &leaves, &fitted.motion);
             write("chassis_forces.csv", text)?;
         }
+        declare(out)?;
         let shown = self.held_out.as_ref().unwrap_or(fitted);
         let page = identify_page(
             &self.job.title,
@@ -82,6 +84,27 @@ impl Report for Outcome<Identified> {
         }
         text
     }
+}
+
+/// States the units of the tables: forces are N, about their means.
+fn declare(out: &mut Output) -> Result<(), Faults> {
+    declare_written(out, "parameters.csv", |c| match c {
+        "name" | "unit" | "identifiable" => String::new(),
+        _ => "that of column unit".to_owned(),
+    })?;
+    let by_time = |c: &str| if c == "time" { "s" } else { "N" }.to_owned();
+    for table in ["loads.csv", "loads_hold_out.csv", "chassis_forces.csv"] {
+        if out.holds(table) {
+            declare_written(out, table, by_time)?;
+        }
+    }
+    let restoring = |c: &str| match c {
+        "stretch" => "m".to_owned(),
+        "rate" => "m/s".to_owned(),
+        "force_model" | "force_measured" => "N".to_owned(),
+        _ => String::new(),
+    };
+    Ok(declare_written(out, "restoring_force.csv", restoring)?)
 }
 
 /// Seconds of wheel force that the page shows.

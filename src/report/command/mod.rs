@@ -4,6 +4,7 @@ mod ballast;
 mod calibrate;
 mod cases;
 mod check;
+mod columns;
 mod fleet;
 #[cfg(feature = "parquet")]
 mod fleet_parquet;

@@ -1,5 +1,6 @@
 //! Files and words of `place`.
 
+use super::columns::declare_written;
 use super::{Report, write_book, write_page};
 use crate::app::fault::Faults;
 use crate::app::outcome::Outcome;
@@ -24,12 +25,17 @@ impl Report for Outcome<Placed> {
         out.write("gauges.csv", |w| gauges_csv(w, &self.gauges))?;
         out.declare("sensitivity.csv", super::sensitivity::columns(job, s));
         out.write("sensitivity.csv", |w| sensitivity_csv(w, s))?;
-        out.declare(
-            "gluing_sheet.csv",
-            GLUING.map(|(c, u)| (c, unit(u, length))),
-        );
         out.write("gluing_sheet.csv", |w| {
             gluing_sheet_csv(w, &self.gauges, model)
+        })?;
+        declare_written(out, "gluing_sheet.csv", |c| {
+            let stated = GLUING.iter().find(|g| g.0 == c).map_or("", |g| g.1);
+            let word = if c.ends_with("microstrain") {
+                "microstrain"
+            } else {
+                stated
+            };
+            unit(word, length).to_owned()
         })?;
         let sheet = gluing_sheet_md(&job.title, &self.gauges, model);
         out.write_bytes("gluing_sheet.md", sheet.as_bytes())?;
@@ -139,7 +145,7 @@ const GAUGES: [(&str, &str); 15] = [
 ];
 
 /// Columns of gluing_sheet.csv with a unit.
-const GLUING: [(&str, &str); 11] = [
+const GLUING: [(&str, &str); 10] = [
     ("x", "L"),
     ("y", "L"),
     ("z", "L"),
@@ -147,7 +153,6 @@ const GLUING: [(&str, &str); 11] = [
     ("dy", "L"),
     ("dz", "L"),
     ("angle_seen_deg", "deg"),
-    ("expected_microstrain", "microstrain"),
     ("corner_distances", "L"),
     ("angle_budget_deg", "deg"),
     ("position_budget", "L"),

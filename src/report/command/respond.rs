@@ -1,5 +1,6 @@
 //! Files and words of `respond`.
 
+use super::columns::declare_written;
 use super::respond_files::{arrays, histories};
 use super::{Report, write_page};
 use crate::app::fault::Faults;
@@ -56,11 +57,16 @@ impl Report for Outcome<Responded> {
         out.write("histories.csv", |w| {
             histories(w, &f.rows, &f.order, &f.states, u)
         })?;
+        declare_written(out, "histories.csv", |c| history_unit(c, unit))?;
         out.write("envelope.vtu", |w| {
             write_cells_vtu(model, &arrays(model, &f.rows, &f.peaks, u, unit), w)
         })?;
         if !self.check.rows.is_empty() {
             out.write("predicted.csv", |w| predicted(w, self))?;
+            declare_written(out, "predicted.csv", |c| match c {
+                "state" => String::new(),
+                _ => "microstrain".to_owned(),
+            })?;
         }
         let page = Page::new(
             &self.job.title,
@@ -86,6 +92,15 @@ impl Report for Outcome<Responded> {
             );
         }
         text
+    }
+}
+
+/// The unit of a column of histories.csv: strains end in exx, eyy, gxy.
+fn history_unit(column: &str, stress: &str) -> String {
+    match column.rsplit('.').next() {
+        Some("state") => String::new(),
+        Some("exx" | "eyy" | "gxy") => "microstrain".to_owned(),
+        _ => stress.to_owned(),
     }
 }
 

@@ -1,0 +1,69 @@
+//! `explain`: what findings mean.
+
+use super::arguments::ExplainArguments;
+use super::run::{print, refuse};
+use crate::app;
+use crate::app::output::Output;
+use crate::finding::Severity;
+use crate::finding::explain::Code;
+use crate::report::reference;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Prints the entry of a code, or all codes.
+pub(super) fn explain(a: &ExplainArguments) -> ExitCode {
+    if let Some(folder) = &a.reference {
+        return write_reference(a, folder);
+    }
+    let all = app::explain::explain_all();
+    match (&a.code, a.common.json) {
+        (Some(code), json) => match app::explain::explain(code) {
+            Ok(entry) if json => print_json(entry),
+            Ok(entry) => print(words(entry).as_bytes()),
+            Err(faults) => refuse(&faults, &a.common),
+        },
+        (None, true) => print_json(&all),
+        (None, false) => print(list(all).as_bytes()),
+    }
+}
+
+fn print_json(value: &impl serde::Serialize) -> ExitCode {
+    // Plain text always has a JSON form.
+    let text = serde_json::to_string_pretty(value).unwrap_or_default() + "\n";
+    print(text.as_bytes())
+}
+
+/// An entry as a page for a terminal.
+fn words(c: &Code) -> String {
+    let severities: Vec<&str> = c.severity.iter().copied().map(Severity::word).collect();
+    format!(
+        "{}: {}, from {}\n\n  cause    {}\n  limit    {}\n  remedy   {}\n  example  {}\n",
+        c.code,
+        severities.join(" or "),
+        c.said_by,
+        c.cause,
+        c.limit,
+        c.remedy,
+        c.example
+    )
+}
+
+/// A line a code.
+fn list(all: &[Code]) -> String {
+    let width = all.iter().map(|c| c.code.len()).max().unwrap_or(0);
+    let line = |c: &Code| format!("{:<width$}  {}\n", c.code, c.cause);
+    all.iter().map(line).collect()
+}
+
+fn write_reference(a: &ExplainArguments, folder: &Path) -> ExitCode {
+    let written = Output::begin(folder).and_then(|mut out| {
+        for (name, text) in reference::pages() {
+            out.write_bytes(name, text.as_bytes())?;
+        }
+        out.rename_all()
+    });
+    match written {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(fault) => refuse(&fault.into(), &a.common),
+    }
+}

@@ -1,0 +1,119 @@
+//! What every code of a finding means: cause, limit, remedy, an example. The one place where codes are listed.
+//!
+//! The tables stand in `codes/*.txt`, four fields a code under its head `code | severities | who says it`. A test compares them with the codes
+//! that the program gives: one without an entry fails it, so does an entry that nothing gives.
+
+use super::Severity;
+use serde::Serialize;
+use std::sync::LazyLock;
+
+/// The tables, by where the judgement is made.
+const TABLES: [&str; 4] = [
+    include_str!("codes/model.txt"),
+    include_str!("codes/layout.txt"),
+    include_str!("codes/strain.txt"),
+    include_str!("codes/vehicle.txt"),
+];
+
+/// What a code of a finding means.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Code {
+    /// The code, such as `loads-not-separable`.
+    pub code: &'static str,
+    /// The severities that it comes with, the mildest first.
+    pub severity: Vec<Severity>,
+    /// The commands that say it.
+    pub said_by: &'static str,
+    /// What brings it about, with the consequence.
+    pub cause: &'static str,
+    /// What is measured against, or `None.`
+    pub limit: &'static str,
+    /// What to do.
+    pub remedy: &'static str,
+    /// A case of it.
+    pub example: &'static str,
+}
+
+static CODES: LazyLock<Vec<Code>> = LazyLock::new(|| {
+    let mut codes: Vec<Code> = TABLES.iter().flat_map(|t| read_table(t)).collect();
+    codes.sort_by_key(|c| c.code);
+    codes
+});
+
+/// Every code, by name.
+pub fn codes() -> &'static [Code] {
+    &CODES
+}
+
+/// The entry of a code; `None` where no finding has it.
+pub fn code(name: &str) -> Option<&'static Code> {
+    let i = CODES.binary_search_by(|c| c.code.cmp(name)).ok()?;
+    CODES.get(i)
+}
+
+/// The entries of a table.
+fn read_table(table: &'static str) -> Vec<Code> {
+    let mut codes: Vec<Code> = Vec::new();
+    for line in table.lines().filter(|l| !l.starts_with('#')) {
+        let Some(field) = line.strip_prefix("  ") else {
+            codes.extend(read_head(line));
+            continue;
+        };
+        let (Some((name, words)), Some(entry)) = (field.split_once(": "), codes.last_mut()) else {
+            continue;
+        };
+        match name {
+            "cause" => entry.cause = words,
+            "limit" => entry.limit = words,
+            "remedy" => entry.remedy = words,
+            "example" => entry.example = words,
+            _ => {}
+        }
+    }
+    codes
+}
+
+/// An entry without words yet; `None` for an empty line.
+fn read_head(line: &'static str) -> Option<Code> {
+    let mut parts = line.split(" | ");
+    let (code, severity, said_by) = (parts.next()?, parts.next()?, parts.next()?);
+    Some(Code {
+        code,
+        severity: severity.split(", ").filter_map(severity_of).collect(),
+        said_by,
+        cause: "",
+        limit: "",
+        remedy: "",
+        example: "",
+    })
+}
+
+fn severity_of(word: &str) -> Option<Severity> {
+    match word {
+        "info" => Some(Severity::Info),
+        "warning" => Some(Severity::Warning),
+        "error" => Some(Severity::Error),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_entry_is_whole_and_stands_once() {
+        for c in codes() {
+            let words = [c.said_by, c.cause, c.limit, c.remedy, c.example];
+            assert!(words.iter().all(|w| !w.is_empty()), "{}", c.code);
+            assert!(!c.severity.is_empty(), "{}", c.code);
+            assert_eq!(code(c.code), Some(c));
+        }
+        assert!(codes().windows(2).all(|w| w[0].code < w[1].code));
+        let heads = TABLES
+            .iter()
+            .flat_map(|t| t.lines())
+            .filter(|l| l.contains(" | "));
+        assert_eq!(heads.count(), codes().len());
+    }
+}
