@@ -66,6 +66,19 @@ impl Sensitivity {
         })
     }
 
+    /// S without the columns whose size is known beforehand ([`Load::prior`]): what the gauges alone must tell apart.
+    pub fn unconditioned(&self) -> Self {
+        let free: Vec<usize> = (0..self.loads.len())
+            .filter(|&l| self.loads[l].prior().is_none())
+            .collect();
+        Self {
+            gauges: self.gauges.clone(),
+            loads: free.iter().map(|&l| self.loads[l].clone()).collect(),
+            values: self.values.select_columns(&free),
+            uncertainty: None,
+        }
+    }
+
     /// [`Load::prior`] of every load.
     pub fn priors(&self) -> Vec<Option<f64>> {
         self.loads.iter().map(Load::prior).collect()

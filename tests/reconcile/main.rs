@@ -1,6 +1,7 @@
 //! Find the gap, name the missing effect, add it, show the gap shrink: cases whose effect is known.
 
 mod deck;
+mod extended;
 mod given;
 mod heat;
 mod hidden;

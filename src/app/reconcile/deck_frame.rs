@@ -4,7 +4,7 @@ use super::background::{Axis, ENTRY_SHARE, background, gradients};
 use super::deck_thermal::{Heated, NOTHING};
 use super::finer::Finer;
 use super::influence::{influence, payload_grid, readings};
-use super::model_part::{ModelPart, facts, nominal_x_m};
+use super::model_part::{ModelPart, facts, nominal_x_m, nominal_y_m};
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Component, Job, JobLoad, LoadActs, Role};
 use crate::app::solved::{support_of_job, unit_loads_kept};
@@ -149,7 +149,10 @@ pub(super) fn read(
         load_positions: Some(wheels.iter().map(|w| place_of(&w.1)).collect()),
         influence: table.clone(),
         tensors: (0..n_g).map(plane).collect(),
-        payload_origin: [nominal_x_m(job).unwrap_or(at_grid[0]), at_grid[1]],
+        payload_origin: [
+            nominal_x_m(job).unwrap_or(at_grid[0]),
+            nominal_y_m(job).unwrap_or(at_grid[1]),
+        ],
         ..ModelPart::default()
     };
     for (g, laid) in part.gauges.iter_mut().zip(&gauges) {

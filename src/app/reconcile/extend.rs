@@ -1,5 +1,6 @@
 //! What the named effects of strain change: readings, S, what acts in the runs, the deck.
 
+use super::corrected::corrections;
 use super::deck_frame::DeckFrame;
 use super::extended::{ExtendedModel, ExtendedS};
 use super::extended_deck::NamedStiffness;
@@ -11,7 +12,7 @@ use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::reconcile::effect::{Correction, Extension, Nuisance};
 use crate::reconcile::strain::{
-    StiffnessOf, StrainFrame, StrainState, corrected_readings, extended_state,
+    N_PAYLOAD_COLUMNS, StiffnessOf, StrainFrame, StrainState, corrected_readings, extended_state,
 };
 use crate::reconcile::{NamedEffect, Outcome};
 use crate::units::KILO;
@@ -21,13 +22,10 @@ const JOB: &str = "job_extended.toml";
 
 /// Why an effect can't be put into the model of this job; `None` where it can.
 fn out_of_reach(job: &Job, e: &NamedEffect, deck: Option<&DeckFrame>) -> Option<&'static str> {
-    let turned = |c: &Correction| matches!(c, Correction::AngleDeg(_) | Correction::PositionMm(_));
+    let moved = |c: &Correction| matches!(c, Correction::PositionMm(_));
     match (&e.extension, deck) {
-        (Extension::Channels(list), Some(_)) if list.iter().any(|(_, c)| turned(c)) => {
-            Some("another angle or place of the gauge: change it in the list of gauges")
-        }
-        (Extension::Scale(_), Some(_)) => {
-            Some("one factor on all strain: change the modulus in the deck, or the gains")
+        (Extension::Channels(list), Some(_)) if list.iter().any(|(_, c)| moved(c)) => {
+            Some("another place of the gauge: change it in the list of gauges")
         }
         (Extension::LocalStiffness { .. } | Extension::Described { .. }, Some(_)) => {
             Some("a change of a region of the deck that no property bounds")
@@ -97,19 +95,69 @@ pub(super) fn extended(
             return Ok(None);
         }
     };
-    let state = extended_state(frame, effects);
+    let corrections = corrections(job, frame, effects, deck.is_some());
+    let scaled = |e: &&NamedEffect| matches!(e.extension, Extension::Scale(_));
+    if let (None, Some(e), true) = (&corrections, effects.iter().find(scaled), deck.is_some()) {
+        let why = "one factor on all strain: change the modulus in the deck, or the gains";
+        work.findings.push(effect_not_in_model(&e.id, why));
+        return Ok(None);
+    }
+    // The payload's place is moved in the model, for all runs to come, as far as the model can say it.
+    let moved = payload_moved(frame, effects, deck.is_some());
+    let is_moved = |e: &&NamedEffect| {
+        matches!(e.extension, Extension::PayloadOffset { .. }) && moved != Moved::InNotes
+    };
+    let others: Vec<NamedEffect> = effects.iter().filter(|e| !is_moved(e)).cloned().collect();
+    let state = extended_state(frame, &others);
     let sensitivity = match deck {
-        None => sensitivity_with(frame, outcome, &state),
+        None => sensitivity_with(frame, outcome, &state, moved),
         Some(_) => None,
     };
-    let noted = effects.iter().any(|e| changes_notes(&e.extension));
+    let noted = others.iter().any(|e| changes_notes(&e.extension));
     Ok(Some(ExtendedModel {
         deck: deck_bytes,
-        readings: corrected_readings(frame, effects),
+        readings: match &corrections {
+            Some(_) => None,
+            None => corrected_readings(frame, effects),
+        },
+        corrections: corrections.unwrap_or_default(),
         sensitivity,
         runs: noted.then_some(state.columns),
+        nominal_x_m: match moved {
+            Moved::Origin { x_m } => Some(x_m),
+            Moved::Not | Moved::Signature { .. } | Moved::InNotes => None,
+        },
         ..ExtendedModel::of(JOB, text_of(work, job)?)
     }))
+}
+
+/// Where a payload that stands elsewhere than noted is moved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Moved {
+    /// Nowhere.
+    Not,
+    /// In its signature, m: S is given.
+    Signature { dx: f64, dy: f64 },
+    /// By another nominal x, m, from which every run's x counts.
+    Origin { x_m: f64 },
+    /// In what is noted of every run.
+    InNotes,
+}
+
+fn payload_moved(frame: &StrainFrame, effects: &[NamedEffect], has_deck: bool) -> Moved {
+    let offset = effects.iter().find_map(|e| match e.extension {
+        Extension::PayloadOffset { dx, dy } => Some((dx, dy)),
+        _ => None,
+    });
+    let noted = frame.payload.iter().any(|p| p[1] != 0.0);
+    match offset {
+        None => Moved::Not,
+        Some((dx, dy)) if !has_deck => Moved::Signature { dx, dy },
+        Some((dx, dy)) if dy == 0.0 && noted => Moved::Origin {
+            x_m: frame.payload_origin[0] - dx,
+        },
+        Some(_) => Moved::InNotes,
+    }
 }
 
 fn effect_not_in_model(id: &str, why: &str) -> Finding {
@@ -170,15 +218,28 @@ fn sensitivity_with(
     frame: &StrainFrame,
     outcome: &Outcome,
     state: &StrainState,
+    moved: Moved,
 ) -> Option<ExtendedS> {
     let left_out = nuisance(frame, &outcome.effects);
-    let changed = state.influence != frame.influence;
+    let mut influence = state.influence.clone();
+    if let Moved::Signature { dx, dy } = moved {
+        let (n_c, n_l) = (frame.n_columns(), frame.n_loads());
+        for row in influence.chunks_exact_mut(n_c.max(1)) {
+            // strain per kg = b0 + x b_x + y b_y + x y b_xy at (x + dx, y + dy)
+            if let Some([b0, b_x, b_y, b_xy]) = row.get_mut(n_l..n_l + N_PAYLOAD_COLUMNS) {
+                *b0 += dx * *b_x + dy * *b_y + dx * dy * *b_xy;
+                *b_x += dy * *b_xy;
+                *b_y += dx * *b_xy;
+            }
+        }
+    }
+    let changed = influence != frame.influence;
     if !changed && left_out.is_empty() {
         return None;
     }
     let known = frame.nuisance.iter();
     Some(ExtendedS {
-        influence: state.influence.clone(),
+        influence,
         changed,
         known: known
             .map(|n| (n.name.clone(), n.per_unit.clone()))

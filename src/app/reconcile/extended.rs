@@ -1,7 +1,8 @@
 //! The extended model: a copy of the job whose files hold the named effects, so that every command runs it as it is.
 //!
-//! Effects of a channel go into the readings (`strain_extended.csv`), effects of structure into S (`sensitivity_extended.csv`), loads that
-//! were left out become columns of S or loads of the job, the payload's place goes into `runs_extended.csv`.
+//! Faults of a channel become `[[correction]]` entries, effects of structure go into S (`sensitivity_extended.csv`) or the deck, loads that
+//! were left out become columns of S or loads of the job, what was noted wrong of a run goes into `runs_extended.csv`. Readings are
+//! written anew (`strain_extended.csv`) only where no entry can say what is wrong with them.
 
 use serde::{Serialize, Serializer};
 use std::path::Path;
@@ -28,8 +29,12 @@ pub struct ExtendedModel {
     pub job_text: String,
     /// The deck, where it changes.
     pub deck: Option<Vec<u8>>,
-    /// Readings, microstrain, `n_runs x n_gauges`, where they change.
+    /// Faults of channels, put right in every reading.
+    pub corrections: Vec<Corrected>,
+    /// Readings, microstrain, `n_runs x n_gauges`, where corrections can't say what is wrong with them.
     pub readings: Option<Vec<f64>>,
+    /// Nominal x of the payload, m, where it stands elsewhere than every run says.
+    pub nominal_x_m: Option<f64>,
     /// S, where it is given and changes.
     pub sensitivity: Option<ExtendedS>,
     /// What acts, `n_runs x n_columns`: wheel loads, then payload mass times 1, dx, dy, dx dy; where it changes.
@@ -44,7 +49,9 @@ impl ExtendedModel {
             path: name.to_owned(),
             job_text,
             deck: None,
+            corrections: Vec::new(),
             readings: None,
+            nominal_x_m: None,
             sensitivity: None,
             runs: None,
         }
@@ -61,6 +68,23 @@ impl Serialize for ExtendedModel {
     fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
         s.serialize_str(&self.path)
     }
+}
+
+/// What puts the readings of a channel right: `(reading - offset) / factor`, as `[[correction]]` has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Corrected {
+    /// Gauge.
+    pub gauge: String,
+    /// What it reads of the strain, its sign included.
+    pub factor: f64,
+    /// What it reads without strain, microstrain.
+    pub offset_microstrain: f64,
+    /// The gauge whose channel it has.
+    pub exchanged_with: Option<String>,
+    /// What it is turned by, degrees.
+    pub angle_deg: f64,
+    /// Whether it is left out.
+    pub ignore: bool,
 }
 
 /// S with effects in it.

@@ -27,8 +27,12 @@ const COMPONENTS: [Component; 5] = [
     Component::MY,
     Component::MZ,
 ];
-/// Moment of the payload per weight: half a metre off its grid, one standard deviation.
+/// Moment of the payload per weight where no place is noted: half a metre off its grid, one standard deviation.
 const OFF_GRID_M: f64 = 0.5;
+/// What a weighed payload may differ from its note, one standard deviation, as a share: two per cent of a vehicle's scale.
+const NOTED: f64 = 0.02;
+/// What its noted place may be off, m, one standard deviation.
+const NOTED_PLACE_M: f64 = 0.05;
 
 /// Side loads of the effects, by the grids of the job's wheels.
 pub(super) fn side_loads(job: &Job, effects: &[NamedEffect]) -> Vec<SideLoad> {
@@ -107,11 +111,14 @@ pub(super) fn entries(job: &Job, frame: &StrainFrame, side: &[SideLoad]) -> Vec<
         && heaviest > 0.0
         && !taken(grid)
     {
+        // `recover` knows the payload of each run from its notes: the sizes are those of what the notes leave open.
         let weight = heaviest * job.gravity_m_s2() / KILO;
+        let placed = frame.payload.iter().any(|p| p[1] != 0.0 || p[2] != 0.0);
+        let off = if placed { NOTED_PLACE_M } else { OFF_GRID_M };
         for (component, size) in [
-            (Component::FZ, weight),
-            (Component::MX, weight * OFF_GRID_M),
-            (Component::MY, weight * OFF_GRID_M),
+            (Component::FZ, weight * NOTED),
+            (Component::MX, weight * off),
+            (Component::MY, weight * off),
         ] {
             let name = format!("payload.{}", component.name());
             out.push(entry(&name, grid, component, size));

@@ -1,7 +1,7 @@
 //! The static frame of a job whose S and signatures are given as CSV files.
 
 use super::described;
-use super::model_part::{ModelPart, facts, nominal_x_m};
+use super::model_part::{ModelPart, facts, nominal_x_m, nominal_y_m};
 use super::signature_table::SignatureTable;
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::Inputs;
@@ -89,7 +89,10 @@ pub(super) fn read(
     let mut part = ModelPart {
         nuisance,
         load_names: columns.iter().map(|c| c.0.clone()).collect(),
-        payload_origin: [nominal_x_m(job).unwrap_or(0.0), 0.0],
+        payload_origin: [
+            nominal_x_m(job).unwrap_or(0.0),
+            nominal_y_m(job).unwrap_or(0.0),
+        ],
         influence,
         ..ModelPart::default()
     };

@@ -3,6 +3,7 @@
 mod answer;
 mod background;
 mod causes;
+mod corrected;
 mod deck_frame;
 mod deck_thermal;
 mod described;

@@ -42,6 +42,11 @@ pub(super) fn nominal_x_m(job: &Job) -> Option<f64> {
     Some(job.payload.as_ref()?.nominal_x? * job.units.length_m())
 }
 
+/// The same across.
+pub(super) fn nominal_y_m(job: &Job) -> Option<f64> {
+    Some(job.payload.as_ref()?.nominal_y? * job.units.length_m())
+}
+
 /// What the job says of a gauge.
 pub(super) fn facts(job: &Job, name: &str) -> GaugeFacts {
     let known = job.gauges.iter().find(|g| g.name == name);

@@ -1,25 +1,30 @@
 //! The named effects of strain in a job: names of the files that hold them, loads that were left out.
 
 use super::answer::StrainPart;
+use super::corrected::entry;
 use super::deck_thermal;
 use super::extended::{DECK, ExtendedModel, ExtendedS, PAYLOAD, RUNS, SENSITIVITY, STRAIN};
 use super::extended_loads::{component_word, entries, side_loads};
 use crate::app::job::Job;
 use crate::reconcile::effect::Extension;
+use crate::reconcile::strain::StrainFrame;
 use toml::{Table, Value};
 
 /// Puts the effects into the job's text, a table.
 pub(super) fn edit(table: &mut Table, job: &Job, found: &StrainPart, extended: &ExtendedModel) {
     let effects = &found.outcome.effects;
     if extended.readings.is_some() {
-        set(table, "measured", "strain", STRAIN);
+        put_readings(table, job, &found.frame);
     }
+    add_to(table, "correction", |list| {
+        list.extend(extended.corrections.iter().map(entry));
+    });
     if let Some(s) = &extended.sensitivity {
         edit_sensitivity(table, &found.frame.load_names, s);
     }
     if let Some(fields) = &found.fields {
         let side = side_loads(job, effects);
-        add_loads(table, |list| {
+        add_to(table, "load", |list| {
             list.extend(entries(job, &found.frame, &side));
             list.extend(deck_thermal::entry(job, fields.model(), effects));
         });
@@ -32,14 +37,13 @@ pub(super) fn edit(table: &mut Table, job: &Job, found: &StrainPart, extended: &
             runs.insert("units".into(), Value::Table(words_of(&units)));
         }
     }
+    if let Some(x_m) = extended.nominal_x_m {
+        let x = x_m / job.units.length_m();
+        put(table, "payload", "nominal_x", Value::Float(x));
+    }
     let weighs = |e: &Extension| matches!(e, Extension::PayloadWeight);
     if effects.iter().any(|e| weighs(&e.extension)) {
-        let payload = table
-            .entry("payload")
-            .or_insert_with(|| Value::Table(Table::new()));
-        if let Value::Table(p) = payload {
-            p.insert("weight_in_model".into(), Value::Boolean(true));
-        }
+        put(table, "payload", "weight_in_model", Value::Boolean(true));
     }
     if extended.deck.is_some() {
         set(table, "model", "deck", DECK);
@@ -69,7 +73,7 @@ fn edit_sensitivity(table: &mut Table, load_names: &[String], s: &ExtendedS) {
             signatures.insert("payload".into(), Value::String(PAYLOAD.into()));
         }
     }
-    add_loads(table, |list| {
+    add_to(table, "load", |list| {
         for (name, _, size) in &s.left_out {
             let mut t = Table::new();
             t.insert("name".into(), Value::String(name.clone()));
@@ -86,12 +90,52 @@ fn edit_sensitivity(table: &mut Table, load_names: &[String], s: &ExtendedS) {
     });
 }
 
-fn add_loads(table: &mut Table, add: impl FnOnce(&mut Vec<Value>)) {
+/// Readings that stand as they were put right: what the job corrects, zeroes and holds out of the old ones is in them.
+fn put_readings(table: &mut Table, job: &Job, frame: &StrainFrame) {
+    set(table, "measured", "strain", STRAIN);
+    let o = &frame.observations;
+    if let Some(Value::Table(measured)) = table.get_mut("measured") {
+        measured.remove("zero");
+        measured.remove("zero_runs");
+        if o.held_out.contains(&true) {
+            let held_out = o.runs.iter().zip(&o.held_out).filter(|r| *r.1);
+            let names = held_out.map(|r| Value::String(r.0.clone())).collect();
+            measured.insert("hold_out".into(), Value::Array(names));
+        }
+    }
+    table.remove("correction");
+    // A turned gauge is no matter of its readings.
+    let turned = job.corrections.iter().filter_map(|c| {
+        let mut t = Table::new();
+        t.insert("gauge".into(), Value::String(c.gauge.clone()));
+        t.insert("angle_deg".into(), Value::Float(c.angle_deg?));
+        Some(Value::Table(t))
+    });
+    add_to(table, "correction", |list| list.extend(turned));
+}
+
+/// Adds to a list of sections; one that would be empty is not written.
+fn add_to(table: &mut Table, name: &str, add: impl FnOnce(&mut Vec<Value>)) {
+    let mut more = Vec::new();
+    add(&mut more);
+    if more.is_empty() {
+        return;
+    }
     let list = table
-        .entry("load")
+        .entry(name)
         .or_insert_with(|| Value::Array(Vec::new()));
     if let Value::Array(list) = list {
-        add(list);
+        list.extend(more);
+    }
+}
+
+/// Sets a key of a section, which is made where there is none.
+fn put(table: &mut Table, section: &str, key: &str, value: Value) {
+    let section = table
+        .entry(section)
+        .or_insert_with(|| Value::Table(Table::new()));
+    if let Value::Table(t) = section {
+        t.insert(key.into(), value);
     }
 }
 

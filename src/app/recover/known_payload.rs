@@ -1,10 +1,11 @@
-//! What a payload that `[runs]` states strains the gauges of a job whose S is given: `[sensitivity] signatures.payload`.
+//! A payload that `[runs]` states is known: its strain is taken from the readings. Where S is given it is that of
+//! `[sensitivity] signatures.payload`; from a deck that of the job's nuisance loads at `[payload] grid`.
 
 use super::task::Task;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::runs::{RunRow, read_runs};
 use crate::app::job::table::read_table;
-use crate::app::job::{GivenSensitivity, Job};
+use crate::app::job::{Component, GivenSensitivity, Job, JobLoad, LoadActs, Role};
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::recovery::Readings;
@@ -12,6 +13,9 @@ use crate::units::MICROSTRAIN;
 
 /// Columns of the signature: microstrain per mass, per mass and length along x, along y, and along both.
 const COLUMNS: [&str; 4] = ["b0", "b_dx", "b_dy", "b_dxdy"];
+
+/// Loads that are known, by run: number of the load, value in job units. What the recovery finds of them is what is left besides.
+pub(super) type KnownLoads = Vec<Vec<(usize, f64)>>;
 
 /// Takes the strain of the known payload from the readings of every run; what is left is that of the loads.
 ///
@@ -23,22 +27,35 @@ pub(super) fn take_out(
     work: &mut Work,
     task: &Task,
     readings: &mut [Readings],
-) -> Result<(), Faults> {
+) -> Result<KnownLoads, Faults> {
     let job = task.job;
-    let (Some(given), Some(runs)) = (&job.sensitivity, &job.runs) else {
-        return Ok(());
+    let mut loads: KnownLoads = vec![Vec::new(); readings.len()];
+    let Some(runs) = &job.runs else {
+        return Ok(loads);
     };
-    let weighs = job.payload.as_ref().is_none_or(|p| p.weight_in_model);
-    if given.signatures.payload.is_none() || !weighs {
-        return Ok(());
+    if !job.payload.as_ref().is_none_or(|p| p.weight_in_model) {
+        return Ok(loads);
+    }
+    let at_grid = at_grid(task);
+    let signed = job.sensitivity.as_ref();
+    let signed = signed.filter(|s| s.signatures.payload.is_some());
+    if signed.is_none() && at_grid.is_none() {
+        return Ok(loads);
     }
     let rows = read_runs(&mut work.inputs, job, runs)?;
-    let signature = signature(work, task, given)?;
+    let signature = match signed {
+        Some(given) => signature(work, task, given)?,
+        None => Vec::new(),
+    };
+    let origin = match &at_grid {
+        Some(a) if signed.is_none() => a.origin,
+        _ => [0.0; 2],
+    };
     let mut unknown: Vec<&str> = Vec::new();
     let mut known = 0;
-    for run in readings.iter_mut() {
+    for (run, loads) in readings.iter_mut().zip(&mut loads) {
         let row = rows.iter().find(|r| r.run == run.run);
-        let Some((kg, dx, dy)) = row.and_then(|r| payload_of(job, r)) else {
+        let Some((kg, dx, dy)) = row.and_then(|r| payload_of(job, r, origin)) else {
             unknown.push(&run.run);
             continue;
         };
@@ -46,9 +63,19 @@ pub(super) fn take_out(
         for (v, b) in run.strain.iter_mut().zip(&signature) {
             *v -= kg * (b[0] + dx * b[1] + dy * b[2] + dx * dy * b[3]);
         }
+        if let (Some(at_grid), None) = (&at_grid, signed) {
+            *loads = at_grid.loads_of(job, kg, dx, dy);
+            let s = &task.prepared.sensitivity.values;
+            for (g, v) in run.strain.iter_mut().enumerate() {
+                *v -= loads
+                    .iter()
+                    .filter_map(|(l, f)| Some(s.get((g, *l))? * f))
+                    .sum::<f64>();
+            }
+        }
     }
     if known == 0 {
-        return Ok(());
+        return Ok(loads);
     }
     work.findings.push(Finding::new(
         Severity::Info,
@@ -66,23 +93,78 @@ pub(super) fn take_out(
             "state its mass (0 where there is none) and its place",
         ));
     }
-    Ok(())
+    Ok(loads)
 }
 
-/// Mass, kg, and distance from the nominal place, m.
-fn payload_of(job: &Job, row: &RunRow) -> Option<(f64, f64, f64)> {
+/// Nuisance loads of a deck's job at the grid of the payload.
+struct AtGrid {
+    /// Number of the load, what of the payload it is.
+    loads: Vec<(usize, Component)>,
+    /// Place of the grid, m.
+    origin: [f64; 2],
+}
+
+impl AtGrid {
+    /// The loads of a payload, job units: its weight down, and the moments of a place off the grid (W dx about y, -W dy about x).
+    fn loads_of(&self, job: &Job, kg: f64, dx: f64, dy: f64) -> Vec<(usize, f64)> {
+        let weight = kg * job.gravity_m_s2();
+        let of = |c: Component| match c {
+            Component::FZ => -weight,
+            Component::MY => weight * dx,
+            Component::MX => -weight * dy,
+            _ => 0.0,
+        };
+        let units = &job.units;
+        self.loads
+            .iter()
+            .map(|(l, c)| (*l, of(*c) / units.si(c.quantity())))
+            .collect()
+    }
+}
+
+/// `None` where no weight acts there.
+fn at_grid(task: &Task) -> Option<AtGrid> {
+    let job = task.job;
+    let model = task.prepared.fields.as_ref()?.model();
+    let id = job.payload_grid()?;
+    let place = model.grids.get(model.grid_ix(id)?.us())?.x;
+    let length = job.units.length_m();
+    let here = |l: &JobLoad| match l.acts {
+        LoadActs::AtGrid {
+            grid,
+            component,
+            cid: 0,
+        } if grid == id && l.role == Role::Nuisance => Some(component),
+        _ => None,
+    };
+    let loads: Vec<(usize, Component)> = job
+        .loads
+        .iter()
+        .enumerate()
+        .filter_map(|(i, l)| Some((i, here(l)?)))
+        .collect();
+    let weighs = loads.iter().any(|l| l.1 == Component::FZ);
+    weighs.then(|| AtGrid {
+        loads,
+        origin: [place[0] * length, place[1] * length],
+    })
+}
+
+/// Mass, kg, and distance from the nominal place, m, which is `origin` where the job states none.
+fn payload_of(job: &Job, row: &RunRow, origin: [f64; 2]) -> Option<(f64, f64, f64)> {
     let length = job.units.length_m();
     let payload = job.payload.as_ref();
     let kg = row
         .payload_mass_kg
         .or(row.payload_force_n.map(|n| n / job.gravity_m_s2()))?;
-    let from = |at: Option<f64>, nominal: Option<f64>| {
-        at.map_or(0.0, |x| x - nominal.unwrap_or(0.0) * length)
+    let from = |at: Option<f64>, nominal: Option<f64>, origin: f64| {
+        at.map_or(0.0, |x| x - nominal.map_or(origin, |n| n * length))
     };
+    let [x, y] = origin;
     Some((
         kg,
-        from(row.payload_x_m, payload.and_then(|p| p.nominal_x)),
-        from(row.payload_y_m, payload.and_then(|p| p.nominal_y)),
+        from(row.payload_x_m, payload.and_then(|p| p.nominal_x), x),
+        from(row.payload_y_m, payload.and_then(|p| p.nominal_y), y),
     ))
 }
 

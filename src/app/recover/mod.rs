@@ -68,7 +68,7 @@ pub fn recover_into(
     let measured = task::measured_of(job)?;
     let prepared = prepare(&mut work, job)?;
     work.findings
-        .extend(check_separability(&prepared.sensitivity));
+        .extend(check_separability(&prepared.sensitivity.unconditioned()));
     let task = task::task_of(&mut work, job, measured, &prepared)?;
     work.findings.extend(task::changes(measured));
     let bytes = work.inputs.read_named(job, &measured.strain)?;

@@ -41,8 +41,15 @@ pub(super) fn solve(work: &mut Work, task: &Task) -> Result<(Vec<Readings>, Reco
     }
     let zeros = zeros_by_row(work, task.job, task.measured, &table)?;
     let mut readings = readings_of(&table, names, &columns, task, zeros.as_ref());
-    known_payload::take_out(work, task, &mut readings)?;
-    let recovery = work.stage("recover", |_| recover(s, &readings, task.errors));
+    let known = known_payload::take_out(work, task, &mut readings)?;
+    let mut recovery = work.stage("recover", |_| recover(s, &readings, task.errors));
+    for (run, loads) in recovery.runs.iter_mut().zip(&known) {
+        for (l, value) in loads {
+            if let Some(found) = run.estimate.values.get_mut(*l) {
+                *found += value;
+            }
+        }
+    }
     work.findings.extend(recovery.findings.iter().cloned());
     Ok((readings, recovery))
 }

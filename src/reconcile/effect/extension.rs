@@ -1,5 +1,7 @@
 //! What has to be added to the model for a named effect to be in it.
 
+use super::run_record::Noted;
+
 /// What undoes a fault of one channel, on the readings at hand and on all to come.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Correction {
@@ -99,6 +101,10 @@ pub enum Extension {
     RunRecord {
         /// Run.
         run: String,
+        /// What of it.
+        noted: Noted,
+        /// By how much the truth is above what was noted.
+        size: f64,
     },
     /// Nuisance loads to be found in every run.
     NuisanceLoads {

@@ -38,6 +38,7 @@ pub use amplitude::{Amplitudes, SizedAmplitudes};
 pub use extension::{Correction, Extension, Nuisance};
 pub use library::{Candidate, library};
 pub use model_discrepancy::ModelDiscrepancy;
+pub use run_record::Noted;
 
 use crate::reconcile::strain::{Part, StrainFrame, StrainState};
 

@@ -122,9 +122,11 @@ impl StrainEffect for RunRecord {
             }
         }
     }
-    fn extension(&self, _frame: &StrainFrame, _parameters: &[f64]) -> Extension {
+    fn extension(&self, _frame: &StrainFrame, parameters: &[f64]) -> Extension {
         Extension::RunRecord {
             run: self.name.clone(),
+            noted: self.noted,
+            size: parameters.first().copied().unwrap_or(0.0),
         }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {

@@ -16,7 +16,7 @@ use super::outcome::MotionOutcome;
 use super::part::Part;
 use super::scorer::MotionScorer;
 use super::unexplained_background::{of_fit, power, unexplained_background};
-use crate::reconcile::search::{Breadth, Scored, search, settle};
+use crate::reconcile::search::{Breadth, Scored, Scorer, search, settle};
 use crate::vehicle::motion::VehicleError;
 
 /// How far the search looks.
@@ -75,10 +75,10 @@ fn searched(scorer: &mut MotionScorer, null: MotionFit, broken: Vec<BrokenChanne
     };
     let mut all = Vec::new();
     let mut best = None;
-    if let Some(found) = upheaval(scorer, &null) {
-        scorer.background = of_fit(scorer.frame, &found.fit);
-        best = Some(found.clone());
-        all = vec![found, empty.clone()];
+    let found = upheavals(scorer, &null);
+    if let Some(first) = found.first() {
+        best = Some(first.clone());
+        all = found;
     } else if broken.is_empty() {
         scorer.background = unexplained_background(scorer, &null);
         for _ in 0..ROUNDS {
@@ -101,14 +101,16 @@ fn searched(scorer: &mut MotionScorer, null: MotionFit, broken: Vec<BrokenChanne
     }
 }
 
-/// An exchanged or turned channel, where nearly nothing is explained without and nearly everything with it.
-fn upheaval(scorer: &MotionScorer, null: &MotionFit) -> Option<Scored<MotionFit>> {
+/// Exchanged or turned channels, where nearly nothing is explained without and nearly everything with one, best first; the empty set last.
+///
+/// They differ in what turns with the channel: the balance of weight, the accelerometers' own means, the sign of masses and springs.
+fn upheavals(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Scored<MotionFit>> {
     /// Share of the measured quantity left that makes one look.
     const LOST: f64 = 0.3;
     /// Fall of the squared residual that settles it.
     const FALL: f64 = 10.0;
-    if fitted_gap(scorer.frame, null)?.gap < LOST {
-        return None;
+    if fitted_gap(scorer.frame, null).is_none_or(|g| g.gap < LOST) {
+        return vec![];
     }
     let tried = |(c, candidate): (usize, &Candidate)| {
         let part = Part {
@@ -125,18 +127,28 @@ fn upheaval(scorer: &MotionScorer, null: &MotionFit) -> Option<Scored<MotionFit>
             &Background::default(),
             Effort::Settled,
         )?;
-        Some((c, f))
+        (FALL * f.chi2 < null.chi2).then_some((c, f))
     };
-    let (c, f) = scorer
+    let mut found: Vec<(usize, MotionFit)> = scorer
         .candidates
         .iter()
         .enumerate()
         .filter(|(_, c)| c.is_upheaval())
         .filter_map(tried)
-        .min_by(|a, b| a.1.chi2.total_cmp(&b.1.chi2))?;
-    (FALL * f.chi2 < null.chi2).then(|| Scored {
-        set: vec![c],
-        log_evidence: -0.5 * f.chi2,
-        fit: f,
-    })
+        .collect();
+    found.sort_by(|a, b| a.1.chi2.total_cmp(&b.1.chi2));
+    let Some((_, best)) = found.first() else {
+        return vec![];
+    };
+    // All of them, and none, under the background of the one that leaves least.
+    scorer.background = of_fit(scorer.frame, best);
+    let mut out: Vec<Scored<MotionFit>> = found
+        .iter()
+        .filter_map(|(c, _)| scorer.score(&[*c], None))
+        .collect();
+    out.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+    if !out.is_empty() {
+        out.extend(scorer.score(&[], None));
+    }
+    out
 }

@@ -56,6 +56,12 @@ impl MotionFit {
         whitened(&self.whitener, self.rest.as_ref(), bins, at_rest)
     }
 
+    /// What a form is chosen by, -2 log likelihood but for constants: squared residual, squared nuisance, log-determinants.
+    pub fn misfit(&self) -> f64 {
+        let at_rest = self.rest.as_ref().map_or(0.0, |r| r.sigma.ln());
+        self.chi2 + self.penalty + 2.0 * (self.log_det + at_rest)
+    }
+
     /// Squared residual by degree of freedom.
     pub fn reduced_chi2(&self) -> f64 {
         self.chi2 / self.n_rows.saturating_sub(self.columns.len()).max(1) as f64

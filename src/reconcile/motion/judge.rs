@@ -10,7 +10,7 @@ use super::fitted::MotionFit;
 use super::floor::NOISE_FACTOR;
 use super::found::{DECISIVE, Found};
 use super::gap::{Proof, RecordGap, fitted_gap, proof, proof_gap};
-use super::limits::beyond_tolerance;
+use super::limits::{beyond_tolerance, stands_out};
 use super::noise::Background;
 use super::outcome::{MotionEffect, MotionOutcome};
 use super::scorer::MotionScorer;
@@ -98,6 +98,7 @@ pub(super) fn judged(
     let gap = gap_of(&before.proof, &after.proof, proof(frame, &best.fit));
     let decided = !best.set.is_empty()
         && evidence > DECISIVE
+        && stands_out(&best.fit)
         && after.at_floor(excess)
         && gap.after < gap.before;
     let hint = all

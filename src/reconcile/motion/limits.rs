@@ -106,6 +106,7 @@ pub fn plausible(candidates: &[Candidate], fit: &MotionFit) -> bool {
         match &p.shape {
             Change::Gain { .. } => GAINS.contains(x),
             Change::Delay { .. } => x.abs() < LONGEST_DELAY_S,
+            Change::Flip { .. } | Change::Swap { .. } => is_upright(fit),
             // What comes may be any mass; what leaves is less than what was there.
             Change::Step(s) => {
                 let m = fit.values[fit.assembled.vehicle.inertia_index(s.body, 0, 0)];
@@ -119,6 +120,35 @@ pub fn plausible(candidates: &[Candidate], fit: &MotionFit) -> bool {
                 signed && stiffness_is_sensible(shape, *x, fit)
             }
         }
+    })
+}
+
+/// Whether no mass and no spring of the analyst's is negative: the mirror image of a vehicle, which a channel turned the wrong way makes, is none.
+fn is_upright(fit: &MotionFit) -> bool {
+    let v = &fit.assembled.vehicle;
+    let bodies: Vec<usize> = (0..v.bodies.len()).collect();
+    let springs = v.links.iter().enumerate().flat_map(|(l, link)| {
+        let terms = link.terms.iter().enumerate();
+        terms.filter_map(move |(t, term)| (*term == Term::Stiffness).then(|| v.term_index(l, t)))
+    });
+    v.masses(&bodies)
+        .into_iter()
+        .chain(springs)
+        .all(|i| fit.values.get(i).is_none_or(|x| !(*x < 0.0)))
+}
+
+/// Whether every effect that has a size has one beyond its own scatter: three and a half standard deviations are what the evidence of a
+/// name, odds of 400, comes to.
+pub fn stands_out(fit: &MotionFit) -> bool {
+    let least = (2.0 * super::found::DECISIVE).sqrt();
+    fit.parts.iter().zip(&fit.sizes).all(|(p, sizes)| {
+        let neutral = match p.shape {
+            Change::Gain { .. } => 1.0,
+            Change::Flip { .. } | Change::Swap { .. } => return true,
+            _ => 0.0,
+        };
+        let seen = |s: &[f64; 2]| !((s[0] - neutral).abs() < least * s[1]);
+        sizes.is_empty() || sizes.iter().any(seen)
     })
 }
 

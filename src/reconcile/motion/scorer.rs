@@ -74,30 +74,50 @@ impl MotionScorer<'_> {
                     continue;
                 }
                 let varied = best.parts[i].shape.neighbours(*step, self.frame.gravity);
-                let Some((shape, _)) = self.best_of(&best, i, &varied) else {
-                    continue;
-                };
-                let mut parts = best.parts.clone();
-                parts[i].shape = shape;
-                let again = fit(
-                    self.frame,
-                    self.candidates,
-                    &self.frame.data,
-                    parts,
-                    Some(&best),
-                    &self.background,
-                    Effort::Touch,
-                );
-                if let Some(f) = again.filter(|f| f.chi2 + f.penalty < best.chi2 + best.penalty) {
-                    best = f;
+                for shape in self.best_of(&best, i, &varied) {
+                    let mut parts = best.parts.clone();
+                    parts[i].shape = shape;
+                    let again = fit(
+                        self.frame,
+                        self.candidates,
+                        &self.frame.data,
+                        parts,
+                        Some(&best),
+                        &self.background,
+                        Effort::Touch,
+                    );
+                    if let Some(f) = again.filter(|f| f.misfit() < best.misfit()) {
+                        best = f;
+                    }
                 }
             }
         }
         best
     }
 
-    /// The form among several that leaves least with everything else as it is; `None` where the present one does.
-    fn best_of(&self, now: &MotionFit, part: usize, varied: &[Change]) -> Option<(Change, f64)> {
+    /// Of several forms those that leave least with everything else as it is; none where the present one does.
+    ///
+    /// Of a change of mass the best with its weight and the best without: the balance of weight is another row for the two, so only a
+    /// fit compares them.
+    fn best_of(&self, now: &MotionFit, part: usize, varied: &[Change]) -> Vec<Change> {
+        self.gains_of(now, part, varied)
+            .map_or(vec![], |(present, gains)| {
+                let weighs = |c: &Change| matches!(c, Change::Step(s) if s.gravity > 0.0);
+                let own = weighs(&now.parts[part].shape);
+                let best = |with: bool| {
+                    varied
+                        .iter()
+                        .zip(&gains)
+                        .filter(|(c, g)| weighs(c) == with && (with != own || **g > present))
+                        .max_by(|a, b| a.1.total_cmp(b.1))
+                        .map(|(c, _)| c.clone())
+                };
+                [best(true), best(false)].into_iter().flatten().collect()
+            })
+    }
+
+    /// Falls of the squared residual that the present form of a part and others bring, with everything else as it is.
+    fn gains_of(&self, now: &MotionFit, part: usize, varied: &[Change]) -> Option<(f64, Vec<f64>)> {
         if varied.is_empty() {
             return None;
         }
@@ -152,12 +172,9 @@ impl MotionScorer<'_> {
             basis.gain(&residual, &columns).0
         };
         let present = gain(&own, &now.parts[part].shape);
-        varied
-            .iter()
-            .enumerate()
-            .map(|(k, shape)| (shape.clone(), gain(&all.own[n_parts + k], shape)))
-            .filter(|(_, g)| *g > present)
-            .max_by(|a, b| a.1.total_cmp(&b.1))
+        let others = varied.iter().enumerate();
+        let gains = others.map(|(k, shape)| gain(&all.own[n_parts + k], shape));
+        Some((present, gains.collect()))
     }
 
     /// The design with all forms for the corrections of a fit.
