@@ -499,8 +499,8 @@ fn a_payload_on_supports_is_weighed_by_strain_alone() {
     let found = result["payload"].as_array().unwrap();
     for (run, newton) in [("light", 200.0), ("heavy", 500.0)] {
         let row = found.iter().find(|r| r["run"] == run).unwrap();
-        // Report units of this system are kN.
-        let force = 1e3 * row["force"].as_f64().unwrap();
+        assert_eq!(row["unit"], "N");
+        let force = row["force"].as_f64().unwrap();
         assert!((force / newton - 1.0).abs() < 0.03, "{run}: {row}");
     }
     let codes = result["findings"].as_array().unwrap();

@@ -15,6 +15,8 @@ const LONGER: &[&str] = &[
     "src/app/job/types.rs",
     "src/app/payload/model.rs standing",
     "src/app/place/choose.rs within_budget",
+    "src/app/reconcile/deck_frame.rs read",
+    "src/app/reconcile/matrix_frame.rs read",
     "src/payload/locate.rs solve_run",
     "src/placement/layout.rs place",
     "src/placement/units.rs",
