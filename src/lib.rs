@@ -66,7 +66,7 @@ pub use app::check::check;
 pub use app::explain::{explain, explain_all};
 pub use app::fleet::fleet;
 pub use app::identify::identify;
-pub use app::init::init;
+pub use app::init::{init, init_for};
 pub use app::modes::{modes, modes_of_deck};
 pub use app::payload::payload;
 pub use app::place::place;

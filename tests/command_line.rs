@@ -402,3 +402,44 @@ fn man_pages_are_written_for_the_program_and_each_command() {
         assert!(page.contains(".TH") && page.contains("SYNOPSIS"), "{page}");
     }
 }
+
+#[test]
+fn init_writes_a_job_for_a_purpose_whose_only_faults_are_files_to_be_named() {
+    let frame = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/frame/frame.bdf");
+    let frame = frame.to_str().unwrap();
+    for (purpose, deck) in [
+        ("payload", true),
+        ("reconcile", true),
+        ("calibrate", true),
+        ("calibrate", false),
+        ("identify", false),
+    ] {
+        let dir = folder(&format!("init_{purpose}_{deck}"));
+        let out = dir.to_str().unwrap();
+        let mut arguments = vec!["init"];
+        arguments.extend(deck.then_some(frame));
+        arguments.extend(["--for", purpose, "--out", out]);
+        let done = strainbridge(&arguments);
+        assert_eq!(
+            done.status.code(),
+            Some(0),
+            "{purpose}: {}",
+            text(&done.stderr)
+        );
+        let job = std::fs::read_to_string(dir.join("job.toml")).unwrap();
+        assert!(job.contains("# check"), "{job}");
+        // The keys are known and of the right type: what `check` finds wanting is files, and what is to be filled in.
+        let path = dir.join("job.toml");
+        let checked = strainbridge(&["check", path.to_str().unwrap(), "--json"]);
+        let said: serde_json::Value = serde_json::from_slice(&checked.stdout).unwrap();
+        for fault in said["faults"].as_array().unwrap() {
+            let wrong = fault["wrong"].as_str().unwrap();
+            assert!(
+                wrong.contains("no such file") || fault["field"] == "payload.grid",
+                "{purpose}: {fault}"
+            );
+        }
+    }
+    let out = strainbridge(&["init", "--for", "payload"]);
+    assert_eq!(out.status.code(), Some(2), "a payload needs a deck");
+}

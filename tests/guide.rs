@@ -185,6 +185,16 @@ fn documented_in(
     let command = result["command"].as_str().unwrap();
     let mut found = std::collections::BTreeSet::new();
     fields_of(&result, "", &mut found);
+    for finding in result["findings"].as_array().unwrap() {
+        let code = finding["code"].as_str().unwrap();
+        let entry = strainbridge::explain(code).unwrap_or_else(|f| panic!("{f}"));
+        let severity = serde_json::to_value(&entry.severity).unwrap();
+        assert!(
+            severity.as_array().unwrap().contains(&finding["severity"]),
+            "{code}: {}",
+            finding["severity"]
+        );
+    }
     let known = |path: &str| {
         fields
             .iter()
@@ -196,8 +206,8 @@ fn documented_in(
             .filter(|p| !known(p))
             .map(|p| format!("{command}: {p}")),
     );
-    // The tables of `reconcile` are inputs of the job that it writes, in the form of such inputs.
-    if command == "reconcile" {
+    // The tables of `reconcile` and of the story are inputs of jobs, in the form of such inputs.
+    if ["reconcile", "demo"].contains(&command) {
         return;
     }
     for file in std::fs::read_dir(folder).unwrap().flatten() {
@@ -215,9 +225,11 @@ fn documented_in(
                 ));
             }
             let of_file = columns.iter().filter(|c| c[0] == command && c[1] == name);
-            let named = |pattern: &str| match pattern.split_once('>') {
-                Some((_, end)) => column.ends_with(end),
-                None => pattern == column,
+            let named = |pattern: &str| match (pattern.split_once('<'), pattern.split_once('>')) {
+                (Some((start, _)), Some((_, end))) => {
+                    column.starts_with(start) && column.ends_with(end)
+                }
+                _ => pattern == column,
             };
             if !of_file.clone().any(|c| named(c[2])) {
                 missing.insert(format!("{command}: {name}: {column}"));

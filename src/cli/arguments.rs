@@ -1,14 +1,16 @@
 //! Arguments as the user types them.
 
 use crate::app::fleet::name::Shard;
+use crate::app::init::Purpose;
 use crate::fe::{HeatedStrain, SolveOptions};
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 /// Strain gauges and a finite element model in, wheel loads with intervals out.
 #[derive(clap::Parser, Debug)]
 #[command(
     name = "strainbridge",
-    version,
+    version = version(),
     about,
     arg_required_else_help = true,
     after_help = "First steps:\n  strainbridge demo                               the truck story in a folder, in seconds\n  \
@@ -24,6 +26,28 @@ pub struct Arguments {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
+}
+
+/// Version, commit where the build knows it, and features.
+fn version() -> &'static str {
+    static TEXT: LazyLock<String> = LazyLock::new(|| {
+        let all = [
+            ("parquet", cfg!(feature = "parquet")),
+            ("mdf", cfg!(feature = "mdf")),
+            ("pdf", cfg!(feature = "pdf")),
+        ];
+        let built: Vec<&str> = all.iter().filter(|f| f.1).map(|f| f.0).collect();
+        let features = match built.as_slice() {
+            [] => "no features".to_owned(),
+            some => format!("features {}", some.join(", ")),
+        };
+        let commit = match env!("STRAINBRIDGE_COMMIT") {
+            "" => String::new(),
+            known => format!("commit {}, ", known.get(..10).unwrap_or(known)),
+        };
+        format!("{} ({commit}{features})", env!("CARGO_PKG_VERSION"))
+    });
+    &TEXT
 }
 
 /// The commands; each has its file beside this one.
@@ -42,9 +66,11 @@ pub enum Command {
     Strains(DeckArguments),
     /// Write a commented job.toml from a deck and its results
     #[command(
-        after_help = "Example:\n  strainbridge init truck.bdf truck.op2 --out .    # then read job.toml and correct it"
+        after_help = "Example:\n  strainbridge init truck.bdf truck.op2 --out .    # then read job.toml and correct it\n  \
+                      strainbridge init truck.bdf --for payload    # with the sections that `payload` needs\n  \
+                      strainbridge init --for identify"
     )]
-    Init(DeckArguments),
+    Init(InitArguments),
     /// Write unit_loads.bdf: the job's deck with one unit-load subcase a load, ready for Nastran
     #[command(
         after_help = "Example:\n  strainbridge cases job.toml --out nastran && cd nastran && nastran unit_loads.bdf"
@@ -325,6 +351,38 @@ impl FilesArguments {
     pub(super) fn first(&self) -> &Path {
         self.files.first().map_or(Path::new(""), |f| f)
     }
+}
+
+/// What a job is written from, and for.
+#[derive(clap::Args, Debug)]
+pub struct InitArguments {
+    /// The deck, or an OP2 that holds the mesh; `--for identify` and `--for calibrate` do without
+    #[arg(value_name = "DECK", required_unless_present = "purpose")]
+    pub deck: Option<PathBuf>,
+    /// Result files
+    #[arg(value_name = "RESULTS")]
+    pub results: Vec<PathBuf>,
+    /// Write the sections that this command needs: payload, identify, reconcile or calibrate
+    #[arg(long = "for", value_name = "COMMAND", value_parser = purpose)]
+    pub purpose: Option<Purpose>,
+    #[command(flatten)]
+    #[allow(missing_docs)]
+    pub common: CommonArguments,
+}
+
+impl InitArguments {
+    /// The deck, where one is given.
+    pub(super) fn main(&self) -> &Path {
+        self.deck.as_deref().unwrap_or(Path::new(""))
+    }
+}
+
+fn purpose(text: &str) -> Result<Purpose, String> {
+    let found = Purpose::ALL.iter().find(|p| p.0 == text);
+    let names = || Purpose::ALL.map(|p| p.0).join(", ");
+    found
+        .map(|p| p.1)
+        .ok_or_else(|| format!("expected one of {}", names()))
 }
 
 /// A command on a deck and its results.

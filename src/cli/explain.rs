@@ -1,7 +1,8 @@
 //! `explain`: what findings mean.
 
 use super::arguments::ExplainArguments;
-use super::run::{print, refuse};
+use super::run::refuse;
+use super::voice::print;
 use crate::app;
 use crate::app::output::Output;
 use crate::finding::Severity;

@@ -14,8 +14,9 @@ pub use arguments::*;
 
 use crate::app;
 use clap::CommandFactory;
-use run::{Run, print};
+use run::Run;
 use std::process::ExitCode;
+use voice::print;
 
 /// Runs the command and returns the exit code: 0 done, 1 done with error findings, 2 bad input.
 pub fn run(arguments: Arguments) -> ExitCode {
@@ -24,7 +25,7 @@ pub fn run(arguments: Arguments) -> ExitCode {
         Command::Strains(a) => Run::of(&a.common, &a.deck)
             .files(&a.deck, |cx| app::strains::strains(&a.deck, &a.results, cx)),
         Command::Check(a) => Run::of(&a.common, a.first()).check(&a.files),
-        Command::Init(a) => Run::of(&a.common, &a.deck).init(&a.deck, &a.results),
+        Command::Init(a) => Run::of(&a.common, a.main()).init(&a),
         Command::Cases(a) => Run::of(&a.common, &a.job).job(&a.job, app::cases::cases),
         Command::Place(a) => Run::of(&a.common, &a.job).job(&a.job, app::place::place),
         Command::Calibrate(a) => Run::of(&a.common, &a.job).job(&a.job, app::calibrate::calibrate),

@@ -1,12 +1,12 @@
 //! One run of a command: context, threads, what is printed, exit code.
 
-use super::CommonArguments;
 use super::progress::Terminal;
 use super::voice::Voice;
+use super::{CommonArguments, InitArguments};
 use crate::app::check::check;
 use crate::app::context::{Context, Disk};
 use crate::app::fault::{Fault, Faults};
-use crate::app::init::init;
+use crate::app::init::{init, init_for};
 use crate::app::job::Job;
 use crate::app::outcome::{Answer, Findings, Outcome, Seconds};
 use crate::app::output::Output;
@@ -14,7 +14,6 @@ use crate::app::recover::{Recovered, recover_into};
 use crate::app::store::Folder;
 use crate::finding::Severity;
 use crate::report::command::{RecordFolder, Report, finish, save, unsaved};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -144,11 +143,15 @@ impl Run {
     }
 
     /// Writes a job from files: alone into the current folder, with `result.json` into `--out`.
-    pub fn init(&self, deck: &Path, results: &[PathBuf]) -> ExitCode {
+    pub fn init(&self, a: &InitArguments) -> ExitCode {
         let folder = self.common.out.clone();
         let into = folder.clone().unwrap_or_else(|| PathBuf::from("."));
         let done = self.pooled(|cx| {
-            let outcome = init(deck, results, &into, cx)?;
+            let (deck, results) = (a.deck.as_deref(), &a.results);
+            let outcome = match a.purpose {
+                Some(purpose) => init_for(purpose, deck, results, &into, cx)?,
+                None => init(a.main(), results, &into, cx)?,
+            };
             let json = match folder {
                 Some(_) => save(&outcome, &into)?,
                 None => {
@@ -282,11 +285,4 @@ pub(super) fn refuse(faults: &Faults, common: &CommonArguments) -> ExitCode {
     voice.faults(faults);
     voice.notes(["nothing was written"]);
     ExitCode::from(2)
-}
-
-/// Prints to standard output.
-pub(super) fn print(text: &[u8]) -> ExitCode {
-    // A closed pipe (`| head`) is no fault of ours.
-    let _ = std::io::stdout().write_all(text);
-    ExitCode::SUCCESS
 }

@@ -1,7 +1,8 @@
 //! `verify` and `clean`: what is done to results and kept solutions that stand already.
 
 use super::arguments::{CleanArguments, VerifyArguments};
-use super::run::{Run, print, refuse};
+use super::run::{Run, refuse};
+use super::voice::print;
 use crate::app::fault::{Fault, Faults};
 use crate::app::outcome::StatedUnits;
 use crate::app::store::Folder;

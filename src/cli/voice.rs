@@ -1,13 +1,13 @@
 //! What a command says on standard error: faults and findings one line each, quieter or louder as asked, in colour on a terminal.
 
 use super::CommonArguments;
-use super::run::print;
 use crate::app::fault::Fault;
 use crate::app::outcome::Seconds;
 use crate::app::words::finding_text;
 use crate::finding::{Finding, Severity};
 use serde_json::{Value, json};
 use std::io::{IsTerminal, Write};
+use std::process::ExitCode;
 
 /// How much is said.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -151,4 +151,11 @@ fn colour(severity: Severity) -> &'static str {
 fn say(text: &str) {
     // A closed pipe is no fault of ours.
     let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
+/// Prints to standard output.
+pub(super) fn print(text: &[u8]) -> ExitCode {
+    // A closed pipe (`| head`) is no fault of ours.
+    let _ = std::io::stdout().write_all(text);
+    ExitCode::SUCCESS
 }

@@ -6,6 +6,7 @@
 mod mesh;
 mod points;
 mod propose;
+mod purpose;
 mod round;
 mod text;
 mod trial;
@@ -20,6 +21,7 @@ use crate::finding::{Finding, Severity};
 use crate::units::likely_system;
 use nastran::results::ResultsFile;
 use propose::{StrainFrom, Strained, proposals};
+pub use purpose::{Purpose, init_for};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 pub use text::JOB;
@@ -58,15 +60,7 @@ pub fn init(
     cx: &Context,
 ) -> Result<Outcome<Proposal>, Faults> {
     let mut work = Work::new(cx);
-    let target = folder.join(JOB);
-    if cx.files.load(&target).is_ok() {
-        return Err(Faults::from(Fault::of(
-            target.display().to_string(),
-            JOB,
-            "there is one already, and it is not overwritten",
-            "move it away, or name another folder with `--out`",
-        )));
-    }
+    let target = free_target(folder, cx)?;
     let given = deck_path.display().to_string();
     let deck = work.stage("read deck", |s| {
         read_model(&mut s.inputs, Path::new(""), &given)
@@ -117,6 +111,23 @@ pub fn init(
         path: target,
     };
     Ok(work.finish(StatedUnits::default(), answer))
+}
+
+/// Where the job is to stand.
+///
+/// # Errors
+/// A job that is there already.
+fn free_target(folder: &Path, cx: &Context) -> Result<PathBuf, Fault> {
+    let target = folder.join(JOB);
+    if cx.files.load(&target).is_ok() {
+        return Err(Fault::of(
+            target.display().to_string(),
+            JOB,
+            "there is one already, and it is not overwritten",
+            "move it away, or name another folder with `--out`",
+        ));
+    }
+    Ok(target)
 }
 
 /// What stops placing before it is tried; `None`: nothing that shows.

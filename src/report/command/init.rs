@@ -12,6 +12,9 @@ impl Report for Outcome<Proposal> {
     }
 
     fn words(&self) -> String {
+        if self.loads.is_empty() && !self.placeable && self.inputs.is_empty() {
+            return format!("{}: read it, and name your files in it\n", self.job);
+        }
         let n = self.loads.len();
         let plural = if n == 1 { "" } else { "s" };
         let what = format!("{}: {n} load{plural} proposed", self.job);

@@ -31,8 +31,8 @@ impl Page {
                     h1 { (self.title) }
                     p.muted { (self.lead) }
                     h2 { "Findings" }
-                    @if findings.is_empty() { p { "None." } }
-                    @for f in findings { (finding(f)) }
+                    (verdict(&findings))
+                    (listed(&findings))
                     (sections)
                     @if drawn { (PreEscaped(scripts())) }
                 }
@@ -75,6 +75,66 @@ fn table(t: &Table) -> Markup {
     }
 }
 
+/// Whether the answer can be relied on, and how much there is to say of it.
+fn verdict(findings: &[&Finding]) -> Markup {
+    let count = |severity, one: &str, many: &str| {
+        let n = findings.iter().filter(|f| f.severity == severity).count();
+        match n {
+            0 => None,
+            1 => Some(format!("1 {one}")),
+            n => Some(format!("{n} {many}")),
+        }
+    };
+    let errors = count(Severity::Error, "error", "errors");
+    let lead = match errors {
+        Some(_) => "This answer can't be relied on: ",
+        None => "Nothing speaks against this answer: ",
+    };
+    let counts = [
+        errors,
+        count(Severity::Warning, "warning", "warnings"),
+        count(Severity::Info, "note", "notes"),
+    ];
+    let said: Vec<String> = counts.into_iter().flatten().collect();
+    html! {
+        @if said.is_empty() { p { "None." } } @else { p { b { (lead) } (said.join(", ")) "." } }
+    }
+}
+
+/// The findings by code: of those that are alike the first, the others folded; notes folded altogether.
+fn listed(findings: &[&Finding]) -> Markup {
+    let mut groups: Vec<Vec<&Finding>> = Vec::new();
+    for &f in findings {
+        let alike = |g: &&mut Vec<&Finding>| {
+            g.iter()
+                .any(|o| (o.severity, o.code) == (f.severity, f.code))
+        };
+        match groups.iter_mut().find(alike) {
+            Some(group) => group.push(f),
+            None => groups.push(vec![f]),
+        }
+    }
+    let is_note = |g: &Vec<&Finding>| g.iter().all(|f| f.severity == Severity::Info);
+    let (notes, serious): (Vec<_>, Vec<_>) = groups.into_iter().partition(is_note);
+    html! {
+        @for g in &serious { (group(g)) }
+        @if !notes.is_empty() {
+            details { summary { "Notes" } @for g in &notes { (group(g)) } }
+        }
+    }
+}
+
+/// Findings of one code.
+fn group(findings: &[&Finding]) -> Markup {
+    let more = findings.len().saturating_sub(1);
+    html! {
+        @for f in findings.iter().take(1) { (finding(f)) }
+        @if more > 0 {
+            details { summary { (more) " more like it" } @for f in findings.iter().skip(1) { (finding(f)) } }
+        }
+    }
+}
+
 fn finding(f: &Finding) -> Markup {
     let (class, word) = match f.severity {
         Severity::Error => ("f error", "error"),
@@ -83,11 +143,11 @@ fn finding(f: &Finding) -> Markup {
     };
     html! {
         div class=(class) {
-            b { (word) } " · " (f.subject) ": " (f.message) "."
+            b { (word) } " · " (f.subject) ": " (f.message.trim_end_matches('.')) "."
             @if let Some(m) = f.measured {
                 small { " Measured " (number(m)) @if let Some(l) = f.limit { ", limit " (number(l)) } "." }
             }
-            @if !f.remedy.is_empty() { div { small { "What to do: " (f.remedy) "." } } }
+            @if !f.remedy.is_empty() { div { small { "What to do: " (f.remedy.trim_end_matches('.')) "." } } }
         }
     }
 }

@@ -1,0 +1,208 @@
+//! The jobs in `examples/`: each runs, and comes to what its data were made of (`examples/make_data.py`).
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Runs a command on files of a folder of `examples/`; exit code 0; `result.json`.
+fn run(command: &str, folder: &str, files: &[&str]) -> Value {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let out: PathBuf = Path::new(env!("CARGO_TARGET_TMPDIR")).join("examples");
+    let out = out.join(format!("{command}-{}", files[0].replace('.', "-")));
+    let _ = std::fs::remove_dir_all(&out);
+    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .arg(command)
+        .args(files)
+        .arg("--out")
+        .arg(&out)
+        .current_dir(examples.join(folder))
+        .output()
+        .unwrap();
+    let error = String::from_utf8_lossy(&done.stderr);
+    assert_eq!(done.status.code(), Some(0), "{command} {files:?}\n{error}");
+    serde_json::from_str(&std::fs::read_to_string(out.join("result.json")).unwrap()).unwrap()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+/// The entries of a list, by a key.
+fn by<'a>(list: &'a Value, key: &str, name: &str) -> Vec<&'a Value> {
+    let all = list.as_array().unwrap().iter();
+    all.filter(|e| e[key] == name).collect()
+}
+
+/// Mass (kg) and place (m) of the payload of the runs, as they were made.
+const PAYLOADS: [(f64, f64, f64); 9] = [
+    (300.0, 2.0, 0.0),
+    (600.0, 2.0, 0.1),
+    (900.0, 2.1, -0.1),
+    (1200.0, 1.9, 0.0),
+    (500.0, 2.3, 0.15),
+    (800.0, 1.7, -0.15),
+    (1000.0, 2.0, 0.05),
+    (700.0, 2.2, 0.0),
+    (1100.0, 1.8, 0.1),
+];
+
+#[test]
+fn the_carrier_s_unit_loads_are_in_balance_and_its_gauges_told_apart() {
+    let solved = run("solve", "frame", &["place.toml"]);
+    for case in solved["balance"].as_array().unwrap() {
+        assert!(number(&case["residual"]) < 1e-9, "{case}");
+    }
+    // Steel of 7.85e-9 t/mm3: plates of 6 mm (rails, 2 x 4 m of 200 and twice 60 mm) and 8 mm (five of 800 by 200 mm).
+    let mass = 7.85e-9 * (2.0 * 4000.0 * 320.0 * 6.0 + 5.0 * 800.0 * 200.0 * 8.0);
+    assert!((number(&solved["mass"]["mass"]) / mass - 1.0).abs() < 1e-9);
+    assert_eq!(
+        run("cases", "frame", &["place.toml"])["subcases"]
+            .as_array()
+            .unwrap()
+            .len(),
+        6
+    );
+    let placed = run("place", "frame", &["place.toml"]);
+    assert_eq!(placed["gauges"].as_array().unwrap().len(), 12);
+    assert_eq!(run("sensitivity", "frame", &["recover.toml"])["rank"], 6);
+    assert!(number(&run("modes", "frame", &["place.toml"])["modes"][0]["hz"]) > 0.0);
+}
+
+#[test]
+fn recovered_wheel_forces_hold_those_of_statics() {
+    let recovered = run("recover", "frame", &["recover.toml"]);
+    let (mut held, mut of) = (0, 0);
+    for (i, (mass, x, y)) in PAYLOADS.iter().enumerate() {
+        let w = mass * 9.80665 / 1000.0;
+        // Three wheels, at (0, 0) and (3.5, -.4), (3.5, .4): the lever rule.
+        let rear = w * x / 3.5;
+        let truth = [
+            ("N.FZ", w - rear),
+            ("L.FZ", rear / 2.0 - w * y / 0.8),
+            ("R.FZ", rear / 2.0 + w * y / 0.8),
+        ];
+        for (name, force) in truth {
+            let run = format!("R{:02}", i + 1);
+            let load = by(&recovered["loads"], "run", &run)
+                .into_iter()
+                .find(|l| l["name"] == name)
+                .unwrap();
+            of += 1;
+            held += i32::from((number(&load["low"])..=number(&load["high"])).contains(&force));
+        }
+    }
+    assert!(held * 10 >= of * 8, "{held} of {of}");
+}
+
+#[test]
+fn the_payload_is_weighed_and_found() {
+    let weighed = run("payload", "frame", &["payload.toml"]);
+    for (answer, (mass, x, y)) in weighed["payload"].as_array().unwrap().iter().zip(PAYLOADS) {
+        // Four standard deviations of 27 answers.
+        let off = (number(&answer["mass"]) - mass) / number(&answer["mass_sigma"]);
+        assert!(off.abs() < 4.0, "{answer}");
+        for (k, at) in [x, y].into_iter().enumerate() {
+            let off = (number(&answer["position"][k]) - at) / number(&answer["position_sigma"][k]);
+            assert!(off.abs() < 4.0, "{answer}");
+        }
+    }
+}
+
+#[test]
+fn the_gearbox_that_the_model_lacks_is_found() {
+    let found = run("ballast", "frame", &["ballast.toml"]);
+    let mass = &found["masses"][0];
+    assert!((number(&mass["mass"]) - 250.0).abs() < 0.5, "{mass}");
+    for (k, at) in [(0, 3.0), (1, 0.1)] {
+        assert!((number(&mass["position"][k]) - at).abs() < 0.005, "{mass}");
+    }
+}
+
+#[test]
+fn stress_and_study_answer_for_the_same_runs() {
+    let hot = run("respond", "frame", &["respond.toml"]);
+    assert_eq!(hot["states"], 9);
+    // The gauges' own strain is predicted to the noise that was put on it.
+    for g in hot["gauges"].as_array().unwrap() {
+        assert!(number(&g["residual_rms_microstrain"]) < 1.5, "{g}");
+    }
+    let study = run("study", "frame", &["study.toml"]);
+    let noise = by(&study["study"], "error", "absolute-normal 1");
+    // More gauges of the same layout never do worse.
+    assert_eq!(noise.len(), 2);
+    assert!(number(&noise[1]["mean_relative_rms"]) <= number(&noise[0]["mean_relative_rms"]));
+}
+
+#[test]
+fn reconcile_names_what_was_hidden_on_all_three_paths() {
+    for job in ["reconcile.toml", "reconcile_matrix.toml"] {
+        let found = run("reconcile", "frame", &[job]);
+        assert_eq!(
+            found["named"],
+            serde_json::json!(["sign_flip:P05"]),
+            "{job}"
+        );
+        assert!(number(&found["gap"]["after"]) < 0.1 * number(&found["gap"]["before"]));
+    }
+    let found = run("reconcile", "quarter_truck", &["reconcile.toml"]);
+    assert_eq!(
+        found["named"].as_array().unwrap().len(),
+        1,
+        "{}",
+        found["named"]
+    );
+    assert!(
+        found["named"][0]
+            .as_str()
+            .unwrap()
+            .starts_with("cubic_stiffness")
+    );
+    // Made with 2e8 N/m3.
+    assert!((number(&found["effects"][0]["size"]) / 2.0e8 - 1.0).abs() < 0.02);
+}
+
+#[test]
+fn the_quarter_truck_is_identified() {
+    let found = run("identify", "quarter_truck", &["identify.toml"]);
+    for (name, truth) in [
+        ("m_b", 3000.0),
+        ("m_f", 600.0),
+        ("k_s", 4.0e5),
+        ("c_s", 1.1e4),
+    ] {
+        let p = by(&found["parameters"], "name", name)[0];
+        let off = (number(&p["value"]) - truth) / number(&p["sigma"]);
+        assert!(off.abs() < 3.5, "{p}");
+    }
+}
+
+#[test]
+fn a_fifth_more_load_is_a_fifth_more_to_the_power_of_the_slope() {
+    let files = [
+        "fleet.toml",
+        "A_2026-05-01.csv",
+        "A_2026-05-02.csv",
+        "B_2026-05-01.csv",
+        "B_2026-05-02.csv",
+    ];
+    let found = run("fleet", "fleet", &files);
+    let damage = |vehicle: &str, load: &str| {
+        let v = by(&found["vehicles"], "name", vehicle)[0];
+        number(&by(&v["loads"], "load", load)[0]["damage"])
+    };
+    // N.FZ swings between -2 and 2 kN, or a fifth more: noise of .05 microstrain moves a range by less than 1 %, damage by less than 5 %.
+    let ratio = damage("B", "N.FZ") / damage("A", "N.FZ");
+    assert!((ratio / 1.2_f64.powi(5) - 1.0).abs() < 0.05, "{ratio}");
+}
+
+#[test]
+fn calibrations_hold_the_runs_left_out() {
+    for folder in ["bridge", "onboard"] {
+        let found = run("calibrate", folder, &["calibrate.toml"]);
+        let coverage = &found["calibration"]["coverage"];
+        assert!(
+            number(&coverage["held"]) >= 0.8 * number(&coverage["of"]),
+            "{coverage}"
+        );
+    }
+}
