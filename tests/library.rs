@@ -210,18 +210,22 @@ fn what_is_missing_comes_as_a_value_with_the_job_that_has_it() {
     let gap = &found.gap;
     // A twelfth of the readings has twice its size for a residual; what is left is scatter.
     assert!(gap.before > 0.1 && gap.after < 0.05, "{gap:?}");
-    let strain = found.strain.as_ref().expect("strain was compared");
-    assert!(found.motion.is_none() && found.causes.is_none());
-    // The extended model turns the readings of that gauge and no others.
+    assert!(found.strain.is_some() && found.motion.is_none() && found.causes.is_none());
+    // The extended model turns the channel of that gauge and no others.
     let extended = found.extended_model.as_ref().expect("a model");
-    let now = extended.readings.as_ref().expect("other readings");
-    let turned = strain.frame.observations.values.iter().zip(now);
-    for (k, (before, after)) in turned.enumerate() {
-        let sign = if k % 12 == 4 { -1.0 } else { 1.0 };
-        assert_eq!(sign * before, *after, "reading {k}");
-    }
+    assert!(extended.readings.is_none());
+    let [correction] = extended.corrections.as_slice() else {
+        panic!("{:?}", extended.corrections)
+    };
+    assert_eq!(
+        (correction.gauge.as_str(), correction.factor),
+        ("G05", -1.0)
+    );
     let text = extended_job(&found, "out".as_ref()).unwrap().expect("text");
-    assert!(text.contains("strain = \"strain_extended.csv\""), "{text}");
+    assert!(
+        text.contains("[[correction]]") && text.contains("sign = -1"),
+        "{text}"
+    );
     assert!(text.contains("title = \"yard, with "), "{text}");
     // Its path is known once the folder is.
     assert_eq!(extended.path, extended.name);

@@ -218,15 +218,24 @@ fn declared_tolerances_enter_by_their_size() {
 /// A roll-off truck leaves its container, 60 % of the body goes; or takes one up.
 #[test]
 fn a_mass_that_changes_much_is_named_with_its_size() {
-    for (share, seed) in [(-0.6, 5), (-0.35, 6), (0.25, 7), (0.5, 8)] {
+    for (share, seed, found) in [
+        // Without the change nothing of this record is explained at all: `unknown` may be said, another size may not.
+        (-0.6, 5, &[Score::Exact, Score::Abstained][..]),
+        (-0.35, 6, &[Score::Exact]),
+        (0.25, 7, &[Score::Exact]),
+        (0.5, 8, &[Score::Exact]),
+    ] {
         let case = moving::generator::hide_mass_change(Layout::Front, share, seed);
         let o = examine(&frame_of(&case), &[]).unwrap();
-        assert_eq!(
-            score(&case, &o),
-            Score::Exact,
-            "{share}: {:?}",
+        let scored = score(&case, &o);
+        assert!(
+            found.contains(&scored),
+            "{share}: {scored:?} {:?}",
             o.best_attempt
         );
+        if o.effects.is_empty() {
+            continue;
+        }
         let size = o.effects[0].size[0];
         let truth = share * case.sprung;
         // Sensor noise of a few tenths of a per cent.

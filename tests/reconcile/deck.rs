@@ -102,16 +102,17 @@ fn a_turned_sign_is_found_on_a_deck_whose_mesh_makes_two_percent_and_nothing_els
         &out.join("recover"),
     );
     assert!(done.status.code().is_some_and(|c| c < 2));
-    // The channel reads the other way round in the extended readings.
-    let strain = std::fs::read_to_string(out.join("strain_extended.csv")).expect("readings");
-    let own = std::fs::read_to_string(
-        hidden::shared()
-            .expect("shared")
-            .join("deck/dev-f2/strain.csv"),
-    );
-    let first = |text: &str| -> f64 {
-        let cell = text.lines().nth(1).and_then(|l| l.split(',').nth(9));
-        cell.expect("G09").parse().expect("a number")
-    };
-    assert!((first(&strain) + first(&own.expect("readings"))).abs() < 1e-3);
+    // The channel is put right in all readings, those to come as well; nothing is left to name.
+    let job = out.join("job_extended.toml");
+    let text = std::fs::read_to_string(&job).expect("the extended job");
+    let table: toml::Table = text.parse().expect("valid toml");
+    let correction = &table["correction"][0];
+    assert_eq!(correction["gauge"].as_str(), Some("G09"));
+    assert_eq!(correction["sign"].as_integer(), Some(-1));
+    let done = run("reconcile", &job, &out.join("again"));
+    assert!(done.status.success());
+    let again = result(&out.join("again"));
+    assert_eq!(again["verdict"], "none", "{}", again["named"]);
+    let gap = |of: &Value, key: &str| of["gap"][key].as_f64().expect("a gap");
+    assert!((gap(&again, "before") / gap(&found, "after") - 1.0).abs() < 0.01);
 }

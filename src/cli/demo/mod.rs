@@ -178,16 +178,12 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
         command: "reconcile",
         step,
     });
-    let corrected = folder
-        .join("4-reconcile")
-        .join("strain_extended.csv")
-        .is_file();
-    let strain = if corrected {
-        "4-reconcile/strain_extended.csv"
-    } else {
-        "strain.csv"
-    };
-    let job = write(folder, "recover_again.toml", &jobs::recover(strain))?;
+    // What was found of the channels goes on with them.
+    let corrections = corrections_of(&folder.join("4-reconcile").join("job_extended.toml"));
+    let strain = "strain.csv";
+    let corrected = |job: String| format!("{job}\n{corrections}");
+    let job = corrected(jobs::recover(strain));
+    let job = write(folder, "recover_again.toml", &job)?;
     let step = play(work, "recover", folder, "5-recover-again", &job)?;
     let after = yard.error_of(&step.result);
     story.push(Chapter {
@@ -199,7 +195,7 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
         command: "recover",
         step,
     });
-    let job = write(folder, "payload.toml", &jobs::payload(strain))?;
+    let job = write(folder, "payload.toml", &corrected(jobs::payload(strain)))?;
     let step = play(work, "payload", folder, "6-payload", &job)?;
     let off = yard.payload_error_of(&step.result);
     story.push(Chapter {
@@ -211,7 +207,7 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
         command: "payload",
         step,
     });
-    let job = write(folder, "respond.toml", &jobs::respond(strain))?;
+    let job = write(folder, "respond.toml", &corrected(jobs::respond(strain)))?;
     let step = play(work, "respond", folder, "7-respond", &job)?;
     let hottest = &step.result["elements"][0];
     story.push(Chapter {
@@ -308,4 +304,12 @@ fn solving() -> SolveOptions {
         modes: app::solve::MODES,
         ..SolveOptions::default()
     }
+}
+
+/// The `[[correction]]` entries of a job, as text; empty where it has none.
+fn corrections_of(job: &Path) -> String {
+    let text = std::fs::read_to_string(job).unwrap_or_default();
+    let mut table: toml::Table = text.parse().unwrap_or_default();
+    table.retain(|key, _| key == "correction");
+    toml::to_string(&table).unwrap_or_default()
 }

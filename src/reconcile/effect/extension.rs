@@ -1,7 +1,5 @@
 //! What has to be added to the model for a named effect to be in it.
 
-use super::run_record::Noted;
-
 /// What undoes a fault of one channel, on the readings at hand and on all to come.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Correction {
@@ -19,6 +17,17 @@ pub enum Correction {
     PositionMm(f64),
     /// Nothing can be made of it: it is left out.
     Ignore,
+}
+
+/// What was noted wrong of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Noted {
+    /// One load, kN.
+    Load(usize),
+    /// All loads, by one factor.
+    Loads,
+    /// The payload's mass, kg.
+    Mass,
 }
 
 /// Loads that a model leaves out.

@@ -35,10 +35,9 @@ mod wheel_scale;
 mod zero_drift;
 
 pub use amplitude::{Amplitudes, SizedAmplitudes};
-pub use extension::{Correction, Extension, Nuisance};
+pub use extension::{Correction, Extension, Noted, Nuisance};
 pub use library::{Candidate, library};
 pub use model_discrepancy::ModelDiscrepancy;
-pub use run_record::Noted;
 
 use crate::reconcile::strain::{Part, StrainFrame, StrainState};
 

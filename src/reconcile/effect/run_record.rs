@@ -1,18 +1,7 @@
 //! `run_record`: what was noted of one run (a load, its mass) is wrong.
 
-use super::{Extension, Parameter, Stage, StrainEffect};
+use super::{Extension, Noted, Parameter, Stage, StrainEffect};
 use crate::reconcile::strain::{StrainFrame, StrainState};
-
-/// What of the run is wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Noted {
-    /// One load, kN.
-    Load(usize),
-    /// All loads, by one factor.
-    Loads,
-    /// The payload's mass, kg.
-    Mass,
-}
 
 /// The load or mass of one run is its noted value plus the size.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@ use super::change::Change;
 use super::design::Design;
 use super::frame::MotionFrame;
 use super::part::ColumnOf;
-use crate::vehicle::layout::Measures;
+use crate::vehicle::layout::{Measures, Vehicle};
 use std::f64::consts::PI;
 
 /// Mean over gravity between which a channel is taken to carry its static part.
@@ -63,7 +63,11 @@ pub fn rest_row(frame: &MotionFrame, design: &Design, values: &[f64]) -> Option<
     }
     let weight: f64 = masses.iter().map(|&(i, g)| g * value(i)).sum();
     let force: f64 = forces.iter().map(|f| f.1).sum();
-    if !STATIC.contains(&(weight / force)) {
+    // A force that was zeroed reads less than the weight. One that stays well above nothing was not, and masses that came out at next to
+    // none beside it are those of a fit that went astray: a body without outside force is at rest for masses and springs of zero, too.
+    let ratio = weight / force;
+    let astray = force > 0.0 && ratio < STATIC.start && stays_above_nothing(frame, v);
+    if !(STATIC.contains(&ratio) || astray) {
         return None;
     }
     // The mean of m a over the record is its change of momentum over its duration.
@@ -80,6 +84,22 @@ pub fn rest_row(frame: &MotionFrame, design: &Design, values: &[f64]) -> Option<
         forces,
         sigma,
     })
+}
+
+/// Whether every wheel force of the compared bodies has a mean of more than one and a half of its standard deviations.
+fn stays_above_nothing(frame: &MotionFrame, v: &Vehicle) -> bool {
+    const TIMES: f64 = 1.5;
+    let stays = |channel: &str| {
+        let x = frame.data.samples(channel).ok()?;
+        let (mean, n) = finite_mean(x)?;
+        let finite = x.iter().filter(|v| v.is_finite());
+        let variance = finite.map(|v| (v - mean).powi(2)).sum::<f64>() / n as f64;
+        Some(mean > TIMES * variance.sqrt())
+    };
+    v.wheels
+        .iter()
+        .filter(|w| frame.bodies.contains(&w.at.body))
+        .all(|w| stays(&w.channel).unwrap_or(false))
 }
 
 /// Share of the record during which a change of mass is there.

@@ -27,6 +27,10 @@ const CLOSE: f64 = 3.0;
 /// from it, to about a fifth of their amplitude at the worst (the lower band edge).
 const FORM: f64 = 0.04;
 
+/// Share of what other effects of the vehicle take that a further one must take beside them: forms are made from noisy stretch to about a
+/// twentieth of their amplitude within the band, and what a form leaves of itself looks like another one.
+const NEXT_FORM: f64 = 0.0025;
+
 /// Gaps of a model.
 struct Gaps {
     fitted: Option<RecordGap>,
@@ -187,10 +191,16 @@ fn nameable(
             return true;
         };
         let Some(own) = &gaps[at] else { return false };
-        let vehicles = (s.set.iter()).filter(|m| !scorer.candidates[**m].is_channel());
-        vehicles.copied().all(|member| {
+        let of_vehicle = |m: &usize| !scorer.candidates[*m].is_channel();
+        let vehicles = s.set.iter().copied().filter(of_vehicle);
+        vehicles.into_iter().all(|member| {
             let rest: Vec<usize> = s.set.iter().copied().filter(|m| *m != member).collect();
-            power(&rest).is_none_or(|without| without - own.gap * own.gap > own.floor.tolerance)
+            let beside = rest.iter().any(of_vehicle);
+            power(&rest).is_none_or(|without| {
+                let others = power(&[]).filter(|_| beside).map_or(0.0, |p| p - without);
+                let least = own.floor.tolerance + NEXT_FORM * others.max(0.0);
+                without - own.gap * own.gap > least
+            })
         })
     };
     let fine = |s: &Scored<MotionFit>| material(s) && beyond_tolerance(frame, &s.fit);

@@ -7,7 +7,7 @@ use super::frame::MotionFrame;
 use super::gls::{PriorColumn, Solved, solved};
 use super::part::ColumnOf;
 use crate::vehicle::term::{Side, Term, share_done};
-use statrs::distribution::{ContinuousCDF, Normal};
+use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
 /// Rate at which a job of healthy channels may have one beyond its limit.
 const FALSE_RATE: f64 = 0.01;
@@ -80,6 +80,20 @@ pub fn beyond_tolerance(frame: &MotionFrame, fit: &MotionFit) -> bool {
         .count();
     let limit = tolerance_limit(tolerances);
     let beyond = |off: f64, tolerance: f64, sigma: f64| off.abs() > limit * tolerance.hypot(sigma);
+    let of = |is: fn(&Change) -> Option<f64>| -> Vec<f64> {
+        let parts = fit.parts.iter().zip(&fit.sizes);
+        parts
+            .filter_map(|(p, sizes)| Some(sizes.first()?[0] - is(&p.shape)?))
+            .collect()
+    };
+    let gains = of(|c| matches!(c, Change::Gain { .. }).then_some(1.0));
+    let delays = of(|c| matches!(c, Change::Delay { .. }).then_some(0.0));
+    let n = fit.design.channels.len();
+    if are_healthy(&gains, n, frame.gain_tolerance)
+        || are_healthy(&delays, n, frame.sync_tolerance_s)
+    {
+        return false;
+    }
     fit.parts.iter().zip(&fit.sizes).all(|(p, sizes)| {
         let Some([size, sigma]) = sizes.first() else {
             return true;
@@ -90,6 +104,21 @@ pub fn beyond_tolerance(frame: &MotionFrame, fit: &MotionFit) -> bool {
             _ => true,
         }
     })
+}
+
+/// Whether several faults of a kind are what `n` healthy channels may have together: what all of them have in common shows in nothing, so
+/// that the channels without a fault may be off as well, the other way. Sum of squares about the mean of all, over the tolerance, against
+/// the chi-square of n - 1 degrees that one healthy job in a hundred exceeds.
+fn are_healthy(off: &[f64], n: usize, tolerance: f64) -> bool {
+    if off.len() < 2 || n < 2 || tolerance <= 0.0 {
+        return false;
+    }
+    let mean = off.iter().sum::<f64>() / n as f64;
+    let about: f64 = off.iter().map(|x| (x - mean).powi(2)).sum();
+    let rest = n.saturating_sub(off.len()) as f64 * mean * mean;
+    let chi2 = (about + rest) / (tolerance * tolerance);
+    let most = ChiSquared::new((n - 1) as f64).map(|c| c.inverse_cdf(1.0 - FALSE_RATE));
+    most.is_ok_and(|most| chi2 < most)
 }
 
 /// Gains that a channel may have and still be the channel that was meant: beyond, it is another fault (unit, sensor, wire).
