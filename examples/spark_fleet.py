@@ -1,20 +1,19 @@
-"""A fleet on Spark: every task takes some paths, does them with `strainbridge fleet`, and yields a row a file.
+"""A fleet on Spark: every task takes some paths, does them with the Python package, and yields a row a file.
 
     spark-submit examples/spark_fleet.py JOB.toml OUT FILE...
 
-Job, records and OUT must be reachable under the same paths by every executor. What a task did is kept in OUT/days, so a task that Spark repeats
-costs nothing; the driver merges at the end. Prints how many files are done, failed and second copies.
+The package is installed where the executors run (`pip install .`). Job, records and OUT must be reachable under the same paths by every executor.
+What a task did is kept in OUT/days, so a task that Spark repeats costs nothing; the driver merges at the end. Prints how many files are done,
+failed and second copies.
 """
 
 import collections
 import sys
-from pathlib import Path
 
 import pyarrow as pa
 from pyspark.sql import SparkSession
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "python"))
-from strainbridge import fleet  # noqa: E402
+from strainbridge import fleet
 
 
 def main(job: str, out: str, files: list[str]) -> None:
