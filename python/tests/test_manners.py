@@ -173,18 +173,3 @@ def test_stubs_fit_the_package(tmp_path):
         [sys.executable, "-m", "mypy.stubtest", "strainbridge._strainbridge", "--ignore-disjoint-bases"], cwd=tmp_path, capture_output=True, text=True
     )
     assert done.returncode == 0, done.stdout + done.stderr
-
-
-def test_the_way_to_the_library_costs_little():
-    strain = np.random.default_rng(3).normal(size=(1_000_000, 41))
-    rows = np.random.default_rng(4).normal(size=(2_000_000, 6))
-    for ask, calls in (
-        (lambda: engine.recover_rows(np.ascontiguousarray(S[:41]), strain, 1.0, None), 2),
-        (lambda: engine.place_rows(rows, 12, None, None, False, None), 1),
-    ):
-        ratios = []
-        for _ in range(calls):
-            begin = time.perf_counter()
-            inside = ask()["seconds"]
-            ratios.append((time.perf_counter() - begin) / inside)
-        assert min(ratios) < 1.1
