@@ -31,7 +31,10 @@ impl Undo {
     }
 }
 
-/// Corrections of the named effects; `None` where they can't be said as entries of a job: channels exchanged in a ring or corrected by the
+/// What the weight of a mass at a place gains by the deck that is written, microstrain per kg by gauge.
+pub(super) type Weight = (String, Vec<f64>);
+
+/// Corrections of the named effects, `deck`: of a job with a deck; `None` where they can't be said as entries of a job: channels exchanged in a ring or corrected by the
 /// job before, an offset beside a zero record (which it would be taken off, too).
 ///
 /// Faults of channels are undone first, in the reverse of the order in which they act; then the strain of masses that came aboard after
@@ -40,8 +43,9 @@ pub(super) fn corrections(
     job: &Job,
     frame: &StrainFrame,
     effects: &[NamedEffect],
-    has_deck: bool,
+    deck: Option<&[Weight]>,
 ) -> Option<Vec<Corrected>> {
+    let has_deck = deck.is_some();
     let at = |name: &str| frame.gauges.iter().position(|g| g.name == name);
     let mut undo = vec![Undo::NOTHING; frame.n_gauges()];
     let mut exchanged: Vec<[usize; 2]> = Vec::new();
@@ -78,8 +82,12 @@ pub(super) fn corrections(
         match &e.extension {
             Extension::Mass { place, kilogram } => {
                 let mass = frame.masses.iter().find(|m| m.place == *place)?;
-                for (own, per_kg) in undo.iter_mut().zip(&mass.per_kg) {
-                    own.less(kilogram * per_kg);
+                let gains = deck.iter().flat_map(|d| d.iter());
+                let gains = gains.filter(|g| g.0 == *place).map(|g| &g.1);
+                for per_kg in gains.chain([&mass.per_kg]) {
+                    for (own, per_kg) in undo.iter_mut().zip(per_kg) {
+                        own.less(kilogram * per_kg);
+                    }
                 }
             }
             Extension::Scale(factor) if has_deck => {

@@ -1,6 +1,6 @@
 //! What the named effects of strain change: readings, S, what acts in the runs, the deck.
 
-use super::corrected::corrections;
+use super::corrected::{Weight, corrections};
 use super::deck_frame::DeckFrame;
 use super::extended::{ExtendedModel, ExtendedS};
 use super::extended_deck::NamedStiffness;
@@ -95,7 +95,12 @@ pub(super) fn extended(
             return Ok(None);
         }
     };
-    let corrections = corrections(job, frame, effects, deck.is_some());
+    let weights = match (deck, &deck_bytes) {
+        (Some(d), Some(bytes)) => Some(weights_in(job, d, bytes, effects)?),
+        (Some(_), None) => Some(Vec::new()),
+        (None, _) => None,
+    };
+    let corrections = corrections(job, frame, effects, weights.as_deref());
     let scaled = |e: &&NamedEffect| matches!(e.extension, Extension::Scale(_));
     if let (None, Some(e), true) = (&corrections, effects.iter().find(scaled), deck.is_some()) {
         let why = "one factor on all strain: change the modulus in the deck, or the gains";
@@ -129,6 +134,28 @@ pub(super) fn extended(
         },
         ..ExtendedModel::of(JOB, text_of(work, job)?)
     }))
+}
+
+/// What the weights of named masses gain by the deck that is written.
+fn weights_in(
+    job: &Job,
+    deck: &DeckFrame,
+    written: &[u8],
+    effects: &[NamedEffect],
+) -> Result<Vec<Weight>, Faults> {
+    let mut out = Vec::new();
+    for e in effects {
+        let Extension::Mass { place, .. } = &e.extension else {
+            continue;
+        };
+        let id = job.reconcile.as_ref().and_then(|r| r.places.get(place));
+        if let Some(id) = id
+            && let Some(gains) = deck.weight_gains(job, written, *id)?
+        {
+            out.push((place.clone(), gains));
+        }
+    }
+    Ok(out)
 }
 
 /// Where a payload that stands elsewhere than noted is moved.

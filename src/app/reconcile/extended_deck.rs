@@ -1,12 +1,17 @@
 //! The analyst's deck with named effects in it.
 
-use super::deck_frame::DeckFrame;
+use super::deck_frame::{DeckFrame, gravity, unit};
+use super::extended::DECK;
 use super::extended_loads::{SideLoad, cards};
+use super::influence::{readings, solve};
 use super::one_file::one_file;
 use super::stiffness::factor;
-use crate::app::job::Job;
+use crate::app::fault::Faults;
+use crate::app::job::{Component, Job};
+use crate::model::Model;
 use crate::reconcile::strain::StiffnessOf;
-use nastran::bdf::{Edits, Field, format_card, write_edited};
+use crate::units::KILO;
+use nastran::bdf::{Edits, Field, MemoryLoader, format_card, read_deck, write_edited};
 use nastran::cards::{Bush, Orientation, Pbush};
 
 /// A stiffness that was named: what it is one of, place, size.
@@ -138,6 +143,35 @@ impl DeckFrame {
             edits.insert_cards(deck, &(note + &format_card("CONM2", &fields)));
         }
         Some(())
+    }
+}
+
+impl DeckFrame {
+    /// What the strain of a kilogram's weight at grid `id` gains by the deck that is written, microstrain by gauge: under inertia relief a mass
+    /// that is in the model is accelerated with it.
+    ///
+    /// # Errors
+    /// What stops the solver.
+    pub(super) fn weight_gains(
+        &self,
+        job: &Job,
+        written: &[u8],
+        id: u32,
+    ) -> Result<Option<Vec<f64>>, Faults> {
+        let deck = read_deck(DECK, written.to_vec(), &mut MemoryLoader::default());
+        let model = Model::from_deck(&deck).0;
+        let strain = |model: &Model| -> Result<Option<Vec<f64>>, Faults> {
+            let Some(grid) = model.grid_ix(id) else {
+                return Ok(None);
+            };
+            let weight = unit(job, grid, Component::FZ, -gravity(job) / KILO);
+            let solution = solve(job, model, &[weight])?;
+            Ok(Some(readings(&self.gauges, &solution, 0..1)))
+        };
+        let (Some(now), Some(before)) = (strain(&model)?, strain(self.fields.model())?) else {
+            return Ok(None);
+        };
+        Ok(Some(now.iter().zip(&before).map(|(a, b)| a - b).collect()))
     }
 }
 
