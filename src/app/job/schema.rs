@@ -33,6 +33,11 @@ const KEYS: &[(&str, &str, &[&str])] = &[
         "What holds the structure: \"deck\" (the SPC set that case control selects, if any, else free), \"free\" (inertia relief), or the id of an SPC set",
         &[],
     ),
+    (
+        "model.mesh_error",
+        "true: the built-in solver solves a mesh half as wide as well (four times the grids, about five times the time), S is what the strain tends to as the mesh gets finer, and `recover` and `place` weigh what is left of the mesh's error (default false)",
+        &[],
+    ),
     ("load", "A load to be recovered: a column of S", &[]),
     ("load.name", "Its name in tables and reports", &[]),
     ("load.grid", "Grid where it acts", &[]),
