@@ -6,7 +6,8 @@ use super::job::{AngleStep, Job};
 use super::outcome::{Answer, Outcome, StatedUnits};
 use super::place::allowed_sites;
 use super::strain::{
-    Conditioning, Prepared, lay_gauges, load_units, prepare, read_fields, without_strain,
+    Conditioning, GaugeMeshError, Prepared, lay_gauges, load_units, mesh_errors, prepare,
+    read_fields, without_strain,
 };
 use super::work::Work;
 use crate::gauge::{Gauge, GaugeSpec, build};
@@ -25,6 +26,9 @@ pub struct Sensed {
     pub loads: Vec<String>,
     /// What reports count each load in.
     pub report_units_of_loads: Vec<String>,
+    /// By gauge, what the deck's mesh makes, where the job asks for it: S is without it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub mesh_error: Vec<GaugeMeshError>,
     /// S itself, with the model and the gauges it was made of.
     #[serde(skip)]
     pub prepared: Prepared,
@@ -57,6 +61,7 @@ pub fn sensitivity(job: &Job, cx: &Context) -> Result<Outcome<Sensed>, Faults> {
         gauges: s.gauges.len(),
         report_units_of_loads: units.collect(),
         loads,
+        mesh_error: prepared.mesh_error.clone(),
         prepared,
         job: job.clone(),
     };
@@ -92,9 +97,11 @@ fn of_candidates(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
     gauges.extend(lay_gauges(work, job, &fields)?);
     let sensitivity =
         from_cases(&gauges, &cases).map_err(|missing| without_strain(job, &missing))?;
+    let mesh_error = mesh_errors(&gauges, &sensitivity, &fields.mesh_cases(job));
     Ok(Prepared {
         sensitivity,
         fields: Some(fields),
         gauges: Vec::new(),
+        mesh_error,
     })
 }

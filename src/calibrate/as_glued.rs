@@ -41,6 +41,13 @@ pub fn calibrate_as_glued(
     .into_iter()
     .filter(|m| m.1 > 0.0)
     .collect();
+    // S may hold more than the field that rows are taken from, such as what its mesh makes: that moves with the gauge.
+    let besides: Vec<Vec<f64>> = (0..n)
+        .map(|g| match row(g, [0.0; 3]) {
+            Some(r) => (0..k).map(|l| drawn.values[(g, l)] - r[l]).collect(),
+            None => vec![0.0; k],
+        })
+        .collect();
     let mut at = vec![[0.0; 3]; n];
     let mut gain = vec![1.0; n];
     let mut found = None;
@@ -49,7 +56,7 @@ pub fn calibrate_as_glued(
         let mut changes = vec![Matrix::zeros(n, k); kinds.len()];
         for g in 0..n {
             let Some(here) = row(g, at[g]) else { continue };
-            (0..k).for_each(|l| values[(g, l)] = here[l]);
+            (0..k).for_each(|l| values[(g, l)] = here[l] + besides[g][l]);
             for (change, (kind, sd)) in changes.iter_mut().zip(&kinds) {
                 let side = |sign: f64| {
                     let mut place = at[g];

@@ -20,7 +20,7 @@ pub use build::{CornerRows, build};
 pub use error::GaugeError;
 pub use glued::{Drawn, Offset};
 pub use moved::moved;
-pub use on_refined::on_refined;
+pub use on_refined::{change_by_refining, on_refined};
 pub use spec::{Bridge, GaugePlace, GaugeSpec, Rosette};
 pub use surface::{Foot, centre, nearest, to_side};
 pub use unverified::on_unverified_elements;

@@ -1,8 +1,11 @@
 //! A gauge on a mesh that was divided.
 
-use super::arms::{Arm, Gauge, Spot};
+use super::arms::{Arm, Gauge, Spot, shell_strain};
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
+use crate::fe::strain_tensor::Surface;
+use crate::fe::{BeamField, CaseResult, PlaneStrain, ShellField};
 use crate::model::{Model, RefinedModel, ShellIx};
+use rayon::prelude::*;
 
 /// The same gauge on `fine`, the refinement of `coarse`: the mean over the four parts of its shell, so that it reads the same place and
 /// the same length; an arm at a corner stays at that corner. `None` where a shell has no area.
@@ -18,12 +21,7 @@ pub fn on_refined(gauge: &Gauge, coarse: &Model, fine: &RefinedModel) -> Option<
             arms.push(*arm);
             continue;
         };
-        let parts = fine.children.get(shell.us())?;
-        let taken: Vec<(ShellIx, f64)> = match place {
-            ShellPlace::Centre => parts.iter().map(|p| (*p, 0.25)).collect(),
-            ShellPlace::Corner(c) => vec![(*parts.get(c)?, 1.0)],
-        };
-        for (part, weight) in taken {
+        for (part, weight) in parts_at(fine, shell, place)? {
             let coefficient = turned(
                 coarse,
                 (shell, place),
@@ -45,6 +43,96 @@ pub fn on_refined(gauge: &Gauge, coarse: &Model, fine: &RefinedModel) -> Option<
         arms,
         ..gauge.clone()
     })
+}
+
+/// The parts of a shell that strain at one of its places is taken from, with their weights.
+fn parts_at(fine: &RefinedModel, shell: ShellIx, place: ShellPlace) -> Option<Vec<(ShellIx, f64)>> {
+    let parts = fine.children.get(shell.us())?;
+    Some(match place {
+        ShellPlace::Centre => parts.iter().map(|p| (*p, 0.25)).collect(),
+        ShellPlace::Corner(c) => vec![(*parts.get(c)?, 1.0)],
+    })
+}
+
+/// By case, the strain on `fine` less that on `coarse`, on the shells of `coarse` and in their output frames, taken as [`on_refined`] takes
+/// it; bars change by nothing, solids are left out. Not a number where either mesh has no strain.
+pub fn change_by_refining(
+    coarse: &Model,
+    fine: &RefinedModel,
+    cases: &[(&CaseResult, &CaseResult)],
+) -> Vec<CaseResult> {
+    cases
+        .iter()
+        .map(|(own, refined)| CaseResult {
+            subcase: own.subcase,
+            label: own.label.clone(),
+            shells: change_of_shells(coarse, fine, own, refined),
+            beams: unchanged(&own.beams),
+            ..CaseResult::default()
+        })
+        .collect()
+}
+
+fn change_of_shells(
+    coarse: &Model,
+    fine: &RefinedModel,
+    own: &CaseResult,
+    refined: &CaseResult,
+) -> ShellField {
+    let sides = |shell: ShellIx, place: ShellPlace| {
+        [Surface::Bottom, Surface::Top].map(|surface| {
+            let now = shell_strain(own, shell, surface, place);
+            let then = strain_on_parts((coarse, fine), refined, shell, (surface, place));
+            match (now, then) {
+                (Some(now), Some(then)) => std::array::from_fn(|c| then[c] - now[c]),
+                _ => [f64::NAN; 3],
+            }
+        })
+    };
+    let elements = own.shells.elements.par_iter();
+    let centre = elements.clone().map(|&s| sides(s, ShellPlace::Centre));
+    let corners = elements.map(|&s| [0, 1, 2, 3].map(|c| sides(s, ShellPlace::Corner(c))));
+    ShellField {
+        elements: own.shells.elements.clone(),
+        centre: centre.collect(),
+        corners: match own.shells.corners.is_empty() {
+            true => Vec::new(),
+            false => corners.collect(),
+        },
+        from_stress: false,
+    }
+}
+
+/// The strain of the refined mesh at a place of a shell of the coarse one, in that shell's output frame.
+fn strain_on_parts(
+    (coarse, fine): (&Model, &RefinedModel),
+    case: &CaseResult,
+    shell: ShellIx,
+    (surface, place): (Surface, ShellPlace),
+) -> Option<PlaneStrain> {
+    let mut out = [0.0; 3];
+    for (part, weight) in parts_at(fine, shell, place)? {
+        let strain = shell_strain(case, part, surface, place)?;
+        for (c, sum) in out.iter_mut().enumerate() {
+            let mut unit = [0.0; 3];
+            unit[c] = 1.0;
+            let row = turned(coarse, (shell, place), &fine.model, (part, place), unit)?;
+            *sum += weight * row.iter().zip(strain).map(|(a, e)| a * e).sum::<f64>();
+        }
+    }
+    Some(out)
+}
+
+/// No strain, where `field` has some.
+fn unchanged(field: &BeamField) -> BeamField {
+    let stations = field.stations.iter();
+    BeamField {
+        elements: field.elements.clone(),
+        stations: stations
+            .map(|s| s.iter().map(|(x, _)| (*x, [0.0; 4])).collect())
+            .collect(),
+        axial: field.axial.iter().map(|a| vec![0.0; a.len()]).collect(),
+    }
 }
 
 /// Coefficients of exx, eyy, gxy (engineering shear) in the output frame of `to` that take the same strain in the same direction as

@@ -1,14 +1,17 @@
 //! The same model on a mesh half as wide: how much of an answer is the mesh.
 
-use super::types::{FrameIx, Grid, GridIx, Model, Shell, ShellIx, SpcSet, TemperatureSet};
-use nastran::cards::{Dofs, ShellShape};
+use super::types::{
+    FrameIx, Grid, GridIx, Load, LoadSet, Model, MpcSet, Shell, ShellIx, SpcSet, TemperatureSet,
+};
+use nastran::cards::{CoordKind, Dofs, ShellShape};
+use nastran::place::Place;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A model whose shells are divided in four, and where each went.
 #[derive(Clone, Debug)]
 pub struct RefinedModel {
-    /// The finer model. Load sets are left out: they would have to be divided too. New grids have the mean temperature of their
-    /// side or shell.
+    /// The finer model. Load sets that act on elements are left out: they would have to be divided too. New grids have the mean
+    /// temperature of their side or shell.
     pub model: Model,
     /// By shell of the coarse model: the shells it was divided into. Child k of a quadrilateral has its corner k, child k of a
     /// triangle (k < 3) too; a triangle's fourth is the middle one.
@@ -16,20 +19,25 @@ pub struct RefinedModel {
 }
 
 impl Model {
-    /// Every shell divided in four at the middles of its sides; `None` where that would tear the mesh or leave it as it is: solids, shear
-    /// panels, shells with mid-side grids, bars along the sides of shells, no shells at all.
+    /// Every shell divided in four at the middles of its sides; `None` where that would tear the mesh or leave it as it is: shells with
+    /// mid-side grids, no shells at all, and what else stands on a side of a shell in a displacement frame of its own.
     ///
     /// Grids keep their index, so loads, masses and rigid elements stay where they are. New grids lie on the straight sides: a curved
-    /// surface keeps its facets. They are constrained where both ends of their side are, by PS as by SPC sets.
+    /// surface keeps its facets. They are constrained where both ends of their side are, by PS as by SPC sets. Bars, rods, shear panels
+    /// and solids stay as they are; where one of them goes along a side of a shell, the new grid there moves as the mean of the ends does,
+    /// linear as the edges of those elements and of the shell itself were.
     pub fn refined(&self) -> Option<RefinedModel> {
         if !self.can_be_refined() {
             return None;
         }
+        let ties = self.sides_of_others()?;
         let mut builder = Builder {
             grids: self.grids.clone(),
             middles: BTreeMap::new(),
             next_id: self.grids.last()?.id,
             parents: Vec::new(),
+            ties,
+            tied: BTreeSet::new(),
         };
         let mut shells = Vec::with_capacity(self.shells.len().checked_mul(4)?);
         let mut children = Vec::with_capacity(self.shells.len());
@@ -57,17 +65,34 @@ impl Model {
         let spcs = self
             .spcs
             .iter()
-            .map(|s| self.finer_supports(s, &builder.parents))
+            .map(|s| self.finer_supports(s, &builder))
             .collect();
+        let (mpcs, mpc) = self.finer_equations(&builder);
         let model = Self {
             grids: builder.grids,
             spcs,
+            mpcs,
+            mpc,
             shells,
-            load_sets: Vec::new(),
+            load_sets: self.load_sets_at_grids(),
             temperatures,
             ..self.clone()
         };
         Some(RefinedModel { model, children })
+    }
+
+    /// Load sets that act at grids and by inertia alone.
+    fn load_sets_at_grids(&self) -> Vec<LoadSet> {
+        let stays = |load: &Load| match load {
+            Load::Force(..) | Load::Moment(..) | Load::Gravity(_) | Load::Spin { .. } => true,
+            Load::ShellPressure { .. }
+            | Load::FacePressure { .. }
+            | Load::Line { .. }
+            | Load::Enforced { .. }
+            | Load::Unsupported(..) => false,
+        };
+        let whole = |s: &&LoadSet| s.loads.iter().all(|(_, load)| stays(load));
+        self.load_sets.iter().filter(whole).cloned().collect()
     }
 
     /// A temperature set on the divided mesh; `parents` are those of each new grid.
@@ -95,7 +120,7 @@ impl Model {
     }
 
     /// An SPC set on the divided mesh: a new grid is held where all its parents are, at their mean value.
-    fn finer_supports(&self, set: &SpcSet, parents: &[Vec<GridIx>]) -> SpcSet {
+    fn finer_supports(&self, set: &SpcSet, made: &Builder) -> SpcSet {
         let mut held: BTreeMap<GridIx, [Option<f64>; 6]> = BTreeMap::new();
         for (g, dofs, value) in &set.terms {
             let of = held.entry(*g).or_default();
@@ -103,8 +128,8 @@ impl Model {
         }
         let mut out = set.clone();
         let frame = |g: &GridIx| self.grids.get(g.us()).map(|g| g.cd);
-        for (new, of) in (self.grids.len() as u32..).map(GridIx).zip(parents) {
-            if of.windows(2).any(|w| frame(&w[0]) != frame(&w[1])) {
+        for (new, of) in (self.grids.len() as u32..).map(GridIx).zip(&made.parents) {
+            if made.tied.contains(&new) || of.windows(2).any(|w| frame(&w[0]) != frame(&w[1])) {
                 continue;
             }
             for dof in 0..6 {
@@ -121,14 +146,43 @@ impl Model {
         out
     }
 
+    /// The sets of equations with those of the tied grids, and the set that holds under unit loads.
+    fn finer_equations(&self, made: &Builder) -> (Vec<MpcSet>, Option<u32>) {
+        let mut sets = self.mpcs.clone();
+        if made.tied.is_empty() {
+            return (sets, self.mpc);
+        }
+        let free = sets.iter().map(|s| s.sid).max().unwrap_or(0).checked_add(1);
+        let mpc = self.mpc.or(free);
+        if let Some(sid) = mpc.filter(|sid| sets.iter().all(|s| s.sid != *sid)) {
+            let equations = Vec::new();
+            sets.push(MpcSet { sid, equations });
+        }
+        let middles = (self.grids.len() as u32..).map(GridIx).zip(&made.parents);
+        let tied = middles.filter(|(new, _)| made.tied.contains(new));
+        for (new, of) in tied {
+            for dof in 0..6 {
+                let share = -1.0 / of.len() as f64;
+                let ends = of.iter().map(|g| (*g, dof, share));
+                let terms: Vec<_> = std::iter::once((new, dof, 1.0)).chain(ends).collect();
+                for set in &mut sets {
+                    set.equations.push((terms.clone(), Place::default()));
+                }
+            }
+        }
+        (sets, mpc)
+    }
+
     fn can_be_refined(&self) -> bool {
         let plain = |s: &Shell| {
             use ShellShape::{Quad4, QuadR, Tria3, TriaR};
             matches!(s.shape, Quad4 | QuadR | Tria3 | TriaR)
         };
-        if self.shells.is_empty() || !self.solids.is_empty() || !self.shear_panels.is_empty() {
-            return false;
-        }
+        !self.shells.is_empty() && self.shells.iter().all(plain)
+    }
+
+    /// Sides of shells along which another element goes. `None` where the ends of one don't share a rectangular displacement frame.
+    fn sides_of_others(&self) -> Option<BTreeSet<(GridIx, GridIx)>> {
         let mut sides = BTreeSet::new();
         for s in &self.shells {
             let n = s.shape.n_corners();
@@ -136,10 +190,27 @@ impl Model {
                 sides.insert(side(s.grids[i], s.grids[(i + 1) % n]));
             }
         }
-        let along = |a: GridIx, b: GridIx| sides.contains(&side(a, b));
-        self.shells.iter().all(plain)
-            && !self.beams.iter().any(|b| along(b.grids[0], b.grids[1]))
-            && !self.rods.iter().any(|r| along(r.grids[0], r.grids[1]))
+        let mut out = BTreeSet::new();
+        let mut all_of = |grids: &[GridIx]| {
+            for (i, a) in grids.iter().enumerate() {
+                let pairs = grids[i + 1..].iter().map(|b| side(*a, *b));
+                out.extend(pairs.filter(|pair| sides.contains(pair)));
+            }
+        };
+        self.beams.iter().for_each(|b| all_of(&b.grids[..2]));
+        self.rods.iter().for_each(|r| all_of(&r.grids));
+        self.shear_panels.iter().for_each(|p| all_of(&p.grids));
+        for solid in &self.solids {
+            let corners = solid.grids.iter().take(solid.shape.n_corners());
+            let corners: Vec<GridIx> = corners.copied().flatten().collect();
+            all_of(&corners);
+        }
+        let level = |(a, b): &(GridIx, GridIx)| {
+            let frame = |g: &GridIx| self.grids.get(g.us()).map(|g| g.cd);
+            let kind = |f: FrameIx| self.frames.get(f.us()).map(|f| f.kind);
+            frame(a) == frame(b) && frame(a).and_then(kind) == Some(CoordKind::Rectangular)
+        };
+        out.iter().all(level).then_some(out)
     }
 }
 
@@ -153,6 +224,10 @@ struct Builder {
     next_id: u32,
     /// Of each grid that was made.
     parents: Vec<Vec<GridIx>>,
+    /// Sides along which other elements go.
+    ties: BTreeSet<(GridIx, GridIx)>,
+    /// Grids made on those.
+    tied: BTreeSet<GridIx>,
 }
 
 /// Grids and corner thicknesses of a child.
@@ -167,16 +242,24 @@ impl Builder {
         let sum = parents.iter().fold(first.x * 0.0, |s, g| s + g.x);
         self.next_id = self.next_id.checked_add(1)?;
         let same_frame = parents.iter().all(|g| g.cd == first.cd);
-        let constrained = same_frame && parents.iter().all(|g| g.ps == first.ps);
+        let tied = matches!(of, [a, b] if self.ties.contains(&side(*a, *b)));
+        let constrained = same_frame && !tied && parents.iter().all(|g| g.ps == first.ps);
         let ix = GridIx(u32::try_from(self.grids.len()).ok()?);
         self.grids.push(Grid {
             id: self.next_id,
             x: sum / parents.len() as f64,
-            cd: if constrained { first.cd } else { FrameIx(0) },
+            cd: if constrained || tied {
+                first.cd
+            } else {
+                FrameIx(0)
+            },
             ps: if constrained { first.ps } else { Dofs(0) },
             ..first
         });
         self.parents.push(of.to_vec());
+        if tied {
+            self.tied.insert(ix);
+        }
         Some(ix)
     }
 

@@ -437,16 +437,25 @@ fn a_refined_mesh_weighs_the_same_and_divides_every_shell_at_the_middles_of_its_
 }
 
 #[test]
-fn a_mesh_with_bars_along_its_shells_is_not_refined() {
+fn the_middle_of_a_side_with_a_bar_along_it_moves_as_the_mean_of_its_ends() {
     let bar = "CROD,7,3,1,2\nPROD,3,1,1.-4";
     let (m, _) = model(&format!("{QUAD}CQUAD4,1,1,1,2,3,4\n{bar}"));
-    assert!(m.refined().is_none());
+    let fine = m.refined().unwrap().model;
+    let set = fine.mpcs.iter().find(|s| Some(s.sid) == fine.mpc).unwrap();
+    assert_eq!(set.equations.len(), 6);
+    for (dof, (terms, _)) in set.equations.iter().enumerate() {
+        let ends = [(GridIx(0), dof as u8, -0.5), (GridIx(1), dof as u8, -0.5)];
+        assert_eq!(terms[0].2, 1.0);
+        assert_eq!(terms[1..], ends);
+        let middle = fine.grids[terms[0].0.us()].x;
+        assert_eq!(middle, 0.5 * (m.grids[0].x + m.grids[1].x));
+    }
     // Across, it ties two corners that share no side.
     let (m, _) = model(&format!(
         "{QUAD}CQUAD4,1,1,1,2,3,4\n{}",
         bar.replace("1,2", "1,3")
     ));
-    assert!(m.refined().is_some());
+    assert!(m.refined().unwrap().model.mpcs.is_empty());
 }
 
 #[test]

@@ -161,7 +161,7 @@ fn name(gauge: &str, sigmas: f64, turned: bool, scale: f64) -> Finding {
         )
     };
     let message = format!(
-        "gauge `{gauge}` {what} ({sigmas:.0} sigma by the scatter of the calibration): it is left out here"
+        "gauge `{gauge}` {what} ({sigmas:.0} sigma by noise, scatter and the uncertainty of S): it is left out here"
     );
     Finding::new(Severity::Warning, code, gauge, message, remedy).with_numbers(sigmas, NAMED)
 }

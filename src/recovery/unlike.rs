@@ -38,7 +38,7 @@ pub fn check(gauges: &[String], runs: &[RunEstimate], known: &Uncertainty) -> Ve
                 CODE,
                 &r.estimate.run,
                 format!(
-                    "run `{}`: what the loads leave is {birge:.1} times what the runs of the calibration scatter by, most at {}. Its loads are estimated with \
+                    "run `{}`: what the loads leave is {birge:.1} times what noise, scatter and the uncertainty of S make, most at {}. Its loads are estimated with \
                      that much more error on every gauge, their intervals accordingly",
                     r.estimate.run,
                     worst(gauges, r)

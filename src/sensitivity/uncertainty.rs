@@ -19,6 +19,35 @@ pub struct Uncertainty {
 }
 
 impl Uncertainty {
+    /// Of a model whose influence coefficients err by `model_rel` each, by as much again a load as a whole, and by `off` (what is left of a
+    /// mesh's error, `n x k`) each, and as much again by one common factor on all of them:
+    /// `Cov(S_gl, S_hm) = off_gl off_hm (1 + [g = h] [l = m]) + model_rel^2 S_gl S_hm [l = m] (1 + [g = h])`.
+    pub fn of_model(s: &Matrix, model_rel: f64, off: &Matrix) -> Self {
+        let (n, k) = s.shape();
+        let rel2 = model_rel * model_rel;
+        let on = |yes: bool| f64::from(u8::from(yes));
+        let mut covariance = Vec::with_capacity(n * k * n * k);
+        for g in 0..n {
+            for l in 0..k {
+                for h in 0..n {
+                    for m in 0..k {
+                        let (same_gauge, same_load) = (on(g == h), on(l == m));
+                        let mesh = off[(g, l)] * off[(h, m)] * (1.0 + same_gauge * same_load);
+                        let stated = rel2 * s[(g, l)] * s[(h, m)] * same_load;
+                        covariance.push(mesh + stated * (1.0 + same_gauge));
+                    }
+                }
+            }
+        }
+        Self {
+            covariance,
+            scatter: vec![0.0; n * n],
+            mean_square: mean_square(s),
+            scale: 1.0,
+            dof: f64::INFINITY,
+        }
+    }
+
     /// Covariance of the strain that loads `f` cause, `n x n` by rows, noise and `scale` left out.
     pub fn strain_covariance(&self, n: usize, f: &[f64]) -> Vec<f64> {
         let k = f.len();

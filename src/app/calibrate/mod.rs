@@ -210,6 +210,7 @@ fn prior(
         sensitivity,
         fields: None,
         gauges: Vec::new(),
+        mesh_error: Vec::new(),
     };
     Ok((prepared, None))
 }

@@ -5,13 +5,11 @@ use crate::app::fault::{Fault, Faults};
 use crate::app::job::Job;
 use crate::app::job::strain::microstrain_in;
 use crate::app::recover::{reference_strain, zero_of};
-use crate::app::strain::{load_units, prepare};
+use crate::app::strain::{load_units, prepare, stated_errors};
 use crate::app::work::Work;
 use crate::app::zeroed::no_zero_runs;
-use crate::recovery::ErrorModel;
 use crate::sensitivity::check_separability;
 use crate::series::rainflow::{Knee, Law};
-use crate::units::MICROSTRAIN;
 
 /// Classes up to the expected size of a load.
 const CLASSES: f64 = 32.0;
@@ -63,13 +61,11 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
                 .map_or(1.0, |e| round(e * u.factor / CLASSES))
         })
         .collect();
+    let errors = stated_errors(measured, s, prepared.fields.as_ref());
     Ok(Kernel {
         sensitivity: prepared.sensitivity,
         zero,
-        errors: ErrorModel {
-            noise: measured.noise_microstrain * MICROSTRAIN,
-            model_rel: measured.model_uncertainty_rel,
-        },
+        errors,
         noise_factor: 1.0 + effective.map_or(0.0, |n| 1.0 / n),
         units,
         law,

@@ -53,6 +53,7 @@ pub(super) struct RawModel {
     pub deck: S<String>,
     pub results: Vec<Spanned<String>>,
     pub support: S<NumberOrWord>,
+    pub mesh_error: S<bool>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

@@ -87,6 +87,8 @@ pub struct ModelFiles {
     pub support: SupportChoice,
     /// Line of `support`, or of the section.
     pub support_line: u32,
+    /// Whether what the mesh makes is taken out of the strain of the built-in solver, and what is left of it weighed.
+    pub mesh_error: bool,
 }
 
 /// A force or moment component.

@@ -57,10 +57,14 @@ pub(super) fn chosen_as_recovered(
     let chosen = channels.iter().map(|c| {
         let own = p.noise_by_bridge.iter().find(|(b, _)| b.name() == c.bridge);
         let strain = c.row.iter().map(|v| v * c.sd).collect();
-        (strain, own.map_or(p.noise_microstrain, |n| n.1))
+        let noise = own.map_or(p.noise_microstrain, |n| n.1);
+        (strain, task.with_mesh_error(&c.gauge, noise))
     });
-    let kept = task.kept_strain.iter();
-    let kept = kept.map(|row| (row.clone(), p.noise_microstrain));
+    let kept = task.kept_strain.iter().zip(&task.kept);
+    let kept = kept.map(|(row, g)| {
+        let noise = task.with_mesh_error(g, p.noise_microstrain);
+        (row.clone(), noise)
+    });
     let strain: Vec<(Vec<f64>, f64)> = chosen.chain(kept).collect();
     as_recovered(task, &task.without_kept(spec), &strain)
 }

@@ -18,7 +18,10 @@ use super::context::Context;
 use super::fault::{Fault, Faults};
 use super::job::Job;
 use super::outcome::{Outcome, StatedUnits, finite};
-use super::strain::{Conditioning, Fields, LoadSigma, load_units, read_fields, without_strain};
+use super::strain::{
+    Conditioning, Fields, GaugeMeshError, LoadSigma, coarse_at_gauges, load_units, mesh_errors,
+    read_fields, without_strain,
+};
 use super::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::placement::quality::{judge_rows, reserve};
@@ -47,9 +50,18 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     let mut task = task::task(job, fields, cases, scales, sites);
     task.keep(work)?;
     let (led, led_scales) = task.led();
+    let errors = task.errors_led();
     let kinds = work.stage("candidates", |_| {
         let angles = angles(job.candidates.angles);
-        pool::kinds(job, fields.model(), &task.sites, &led, &led_scales, &angles)
+        let strain = (led.as_slice(), errors.as_slice());
+        pool::kinds(
+            job,
+            fields.model(),
+            &task.sites,
+            strain,
+            &led_scales,
+            &angles,
+        )
     });
     let mut spec = task.spec(work);
     let chosen = work.stage("place", |w| choose::choose(w, &task, &kinds, &mut spec))?;
@@ -67,6 +79,8 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     let chosen_gauges = chosen.channels.iter().map(|c| c.gauge.clone());
     let all: Vec<_> = chosen_gauges.chain(task.kept.clone()).collect();
     let s = from_cases(&all, &task.cases).map_err(|missing| without_strain(job, &missing))?;
+    let mesh_error = mesh_errors(&all, &s, &task.errors);
+    work.findings.extend(coarse_at_gauges(&all, &mesh_error));
     let names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
     let units = load_units(job, &names);
     let gauges = sheet::placed(&task, &chosen, &spec.prior, &quality, &validation);
@@ -105,6 +119,7 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
             efficiency_left: quality.worst_loss,
         },
         kept: task.kept.iter().map(|g| g.name.clone()).collect(),
+        mesh_error,
         sensitivity: s,
         gauges,
         chosen,
@@ -119,6 +134,7 @@ struct LayoutOf {
     candidates: Candidates,
     chosen: choose::Chosen,
     kept: Vec<String>,
+    mesh_error: Vec<GaugeMeshError>,
     sensitivity: Sensitivity,
     load_sigma: Vec<LoadSigma>,
     worst_loss: WorstLoss,
@@ -140,6 +156,7 @@ impl LayoutOf {
             nodes: self.chosen.nodes,
             cost: self.chosen.cost,
             kept: self.kept,
+            mesh_error: self.mesh_error,
             conditioning: Conditioning::of(&self.sensitivity),
             least_condition_number_scaled: self.chosen.least_condition.and_then(finite),
             load_sigma: self.load_sigma,

@@ -2,7 +2,7 @@
 
 use crate::app::job::Job;
 use crate::app::outcome::Answer;
-use crate::app::strain::{Conditioning, Fields, LoadSigma};
+use crate::app::strain::{Conditioning, Fields, GaugeMeshError, LoadSigma};
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::Gauge;
 use crate::placement::Role;
@@ -33,6 +33,9 @@ pub struct Placed {
     pub cost: Option<f64>,
     /// Gauges that stay.
     pub kept: Vec<String>,
+    /// By gauge, what the deck's mesh makes, where the job asks for it: the layout is without it, and what may be left of it is weighed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub mesh_error: Vec<GaugeMeshError>,
     /// Rank and condition numbers of S.
     #[serde(flatten)]
     pub conditioning: Conditioning,

@@ -1,13 +1,15 @@
 //! Candidates of the job: wirings, angles, scales, what scatters a reading.
 
 use crate::app::job::{AngleStep, Bridge as JobBridge, Job, Role};
+use crate::app::strain::left_squared;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::gauge::Bridge;
 use crate::model::{Model, ShellIx};
 use crate::placement::candidates::{Angles, Candidates, Scatter};
 use crate::placement::gradient::forms;
-use crate::placement::sites::{Site, bridges};
+use crate::placement::quartic::Form;
+use crate::placement::sites::{Site, bridges, wired};
 use crate::sensitivity::LoadCaseOf;
 
 /// Strain in one microstrain.
@@ -60,12 +62,38 @@ pub(in crate::app) fn scatter(
     }
 }
 
-/// Candidates of every wiring that the job allows.
+/// Adds what may be left of the mesh error at each site to the forms of its scatter, microstrain squared at the expected loads.
+fn add_mesh_error(
+    forms: &mut Vec<Form>,
+    sites: &[Site],
+    bridge: Bridge,
+    errors: &[LoadCaseOf],
+    scales: &[f64],
+) {
+    if errors.is_empty() {
+        return;
+    }
+    forms.resize(sites.len(), [0.0; 6]);
+    for (form, &site) in forms.iter_mut().zip(sites) {
+        for (error, scale) in errors.iter().zip(scales) {
+            let Some(strain) = wired(bridge, error.case, site) else {
+                continue;
+            };
+            let [x, y, g] = strain.map(|v| v * scale / error.applied / MICRO);
+            let squares = [x * x, y * y, g * g, x * y, x * g, y * g];
+            for (f, v) in form.iter_mut().zip(squares) {
+                *f += left_squared() * v;
+            }
+        }
+    }
+}
+
+/// Candidates of every wiring that the job allows; `errors` are the mesh errors of the loads, where they are known.
 pub(super) fn kinds(
     job: &Job,
     model: &Model,
     sites: &[Site],
-    loads: &[LoadCaseOf],
+    (loads, errors): (&[LoadCaseOf], &[LoadCaseOf]),
     scales: &[f64],
     angles: &Angles,
 ) -> Vec<Kind> {
@@ -77,8 +105,9 @@ pub(super) fn kinds(
     wirings
         .into_iter()
         .map(|b| {
-            let scatter = scatter(job, model, sites, b, loads, scales);
+            let mut scatter = scatter(job, model, sites, b, loads, scales);
             let bridge = wiring(b);
+            add_mesh_error(&mut scatter.forms, sites, bridge, errors, scales);
             Kind {
                 bridge,
                 name: b.name(),

@@ -3,7 +3,7 @@
 use super::pool::{MICRO, column_order};
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::{Criterion as Wanted, Job, Keep, Role};
-use crate::app::strain::{Fields, lay_gauges, without_strain};
+use crate::app::strain::{Fields, lay_gauges, left_in_reading, without_strain};
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::gauge::{Bridge, Gauge, reading};
@@ -20,6 +20,8 @@ pub(super) struct Task<'a> {
     pub fields: &'a Fields,
     /// Loads in job order.
     pub cases: Vec<LoadCaseOf<'a>>,
+    /// Their mesh errors; empty where they are not known.
+    pub errors: Vec<LoadCaseOf<'a>>,
     /// Column scales in job order.
     pub scales: Vec<f64>,
     /// Job index of each column of the candidates.
@@ -41,6 +43,17 @@ impl<'a> Task<'a> {
             .iter()
             .map(|&l| (self.cases[l].clone(), self.scales[l]))
             .unzip()
+    }
+
+    /// Mesh errors in the candidates' order.
+    pub fn errors_led(&self) -> Vec<LoadCaseOf<'a>> {
+        let order = self.order.iter();
+        order.filter_map(|&l| self.errors.get(l).cloned()).collect()
+    }
+
+    /// Noise of a gauge with what may be left of its mesh error, microstrain, 1 sd.
+    pub fn with_mesh_error(&self, gauge: &Gauge, noise: f64) -> f64 {
+        noise.hypot(left_in_reading(gauge, &self.errors, &self.scales) / MICRO)
     }
 
     /// Lays the gauges that stay and takes away the sites too close to them.
@@ -77,7 +90,8 @@ impl<'a> Task<'a> {
                 .iter()
                 .map(|&l| s.values[(g, l)] * self.scales[l] / MICRO)
                 .collect();
-            let sd = p.noise_microstrain.hypot(rel * spd::dot(&row, &row).sqrt());
+            let noise = self.with_mesh_error(&laid[g], p.noise_microstrain);
+            let sd = noise.hypot(rel * spd::dot(&row, &row).sqrt());
             self.kept_rows.push(row.iter().map(|v| v / sd).collect());
             self.kept_strain.push(row);
         }
@@ -239,6 +253,7 @@ pub(super) fn task<'a>(
         job,
         fields,
         cases,
+        errors: fields.mesh_cases(job),
         scales,
         order: column_order(job),
         sites,

@@ -1,10 +1,8 @@
 //! The deck's model on a mesh half as wide, with the gauges on it.
 
+use crate::app::strain::refined_mesh;
 use crate::gauge::{Gauge, on_refined};
 use crate::model::{Model, RefinedModel};
-
-/// Beyond this many shells the mesh is fine enough as it is, and four times as many would take their time.
-const MOST_SHELLS: usize = 20_000;
 
 /// The finer model with the gauges as drawn, turned by 45 and by 90 degrees.
 pub(super) struct Finer {
@@ -16,15 +14,7 @@ impl Finer {
     /// # Errors
     /// Why no finer mesh was made.
     pub(super) fn of(model: &Model, laid: [&Vec<Gauge>; 3]) -> Result<Self, String> {
-        let n = model.shells.len();
-        if n > MOST_SHELLS {
-            return Err(format!(
-                "the model has {n} shells, and beyond {MOST_SHELLS} four times as many are not solved"
-            ));
-        }
-        let refined = model.refined().ok_or(
-            "the mesh can't be divided without tearing it (solids, shear panels, shells with mid-side grids, bars along the sides of shells, or no shells)",
-        )?;
+        let refined = refined_mesh(model)?;
         let lost = || "a gauge is on no part of the divided mesh".to_owned();
         let on = |gauges: &Vec<Gauge>| -> Option<Vec<Gauge>> {
             gauges

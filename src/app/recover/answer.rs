@@ -6,7 +6,7 @@ use super::sink::RecordHead;
 use super::trace::Spans;
 use crate::app::job::Job;
 use crate::app::outcome::Answer;
-use crate::app::strain::{Conditioning, LoadUnits, Prepared};
+use crate::app::strain::{Conditioning, GaugeMeshError, LoadUnits, Prepared};
 use crate::recovery::{Readings, Recovery, Sums};
 use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
@@ -22,6 +22,9 @@ pub struct Recovered {
     /// Loads of what was measured.
     #[serde(flatten)]
     pub states: States,
+    /// By gauge, what the deck's mesh makes, where the job asks for it: S is without it, and what may be left of it is weighed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub mesh_error: Vec<GaugeMeshError>,
     /// S, gauges, model and strain fields.
     #[serde(skip)]
     pub prepared: Prepared,

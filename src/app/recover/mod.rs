@@ -81,6 +81,7 @@ pub fn recover_into(
     let answer = Recovered {
         conditioning: Conditioning::of(&prepared.sensitivity),
         states,
+        mesh_error: prepared.mesh_error.clone(),
         prepared,
         job: job.clone(),
     };

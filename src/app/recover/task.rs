@@ -5,7 +5,7 @@ use crate::app::job::strain::read_strain;
 use crate::app::job::suggest;
 use crate::app::job::{Job, Measured, NamedFile, Reference};
 use crate::app::solved::stands_on_wheels;
-use crate::app::strain::Prepared;
+use crate::app::strain::{Prepared, stated_errors};
 use crate::app::wheels::{floor_fault, wheels_of};
 use crate::app::work::Work;
 use crate::fe::floor::solve_standing;
@@ -71,10 +71,7 @@ pub(super) fn task_of<'a>(
         job,
         measured,
         prepared,
-        errors: ErrorModel {
-            noise: measured.noise_microstrain * MICROSTRAIN,
-            model_rel: measured.model_uncertainty_rel,
-        },
+        errors: stated_errors(measured, &prepared.sensitivity, prepared.fields.as_ref()),
         zero,
         noise_factor: 1.0 + n_zero.map_or(0.0, |n| 1.0 / n),
     })

@@ -50,6 +50,7 @@ fn responded(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
             },
             fields: Some(read_fields(work, job)?),
             gauges: Vec::new(),
+            mesh_error: Vec::new(),
         }
     } else {
         prepare(work, job)?

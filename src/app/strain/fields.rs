@@ -1,5 +1,6 @@
 //! The job's model and the strain of its unit loads, from result files or from the built-in solver.
 
+use super::mesh::take_out;
 use super::unit_loads::check_places;
 use crate::app::deck::{DeckModel, moduli_and_densities, read_model};
 use crate::app::fault::{Fault, FaultList, Faults};
@@ -23,6 +24,9 @@ pub struct Fields {
     pub solutions: Vec<Solution>,
     /// By load: solution, case.
     of_load: Vec<(usize, usize)>,
+    /// By load of the job, the mesh error that was taken out of `solutions`: strain on the deck's mesh less the limit. `None` where that was
+    /// not computed.
+    pub mesh_error: Option<Vec<CaseResult>>,
     /// First elastic frequency of the free structure, cycles per unit of time; `None` where another program solved it.
     pub first_mode: Option<f64>,
 }
@@ -35,20 +39,13 @@ impl Fields {
 
     /// Every load with the case in which it acts, job order.
     pub fn load_cases<'a>(&'a self, job: &Job) -> Vec<LoadCaseOf<'a>> {
-        job.loads
-            .iter()
-            .zip(&self.of_load)
-            .map(|(l, &(s, c))| LoadCaseOf {
-                load: Load {
-                    name: l.name.clone(),
-                    expected: l.expected,
-                    wanted: l.role == Role::Wanted,
-                    quantity: l.quantity(),
-                },
-                applied: l.applied,
-                case: &self.solutions[s].cases[c],
-            })
-            .collect()
+        let cases = self.of_load.iter();
+        of_loads(job, cases.map(|&(s, c)| &self.solutions[s].cases[c]))
+    }
+
+    /// Every load with the mesh error in its case, job order; empty where that was not computed.
+    pub fn mesh_cases<'a>(&'a self, job: &Job) -> Vec<LoadCaseOf<'a>> {
+        of_loads(job, self.mesh_error.iter().flatten())
     }
 
     /// A case by its subcase id.
@@ -71,6 +68,24 @@ impl Fields {
             CornerRows::Absent
         }
     }
+}
+
+/// The loads of a job with their cases.
+fn of_loads<'a>(job: &Job, cases: impl Iterator<Item = &'a CaseResult>) -> Vec<LoadCaseOf<'a>> {
+    job.loads
+        .iter()
+        .zip(cases)
+        .map(|(l, case)| LoadCaseOf {
+            load: Load {
+                name: l.name.clone(),
+                expected: l.expected,
+                wanted: l.role == Role::Wanted,
+                quantity: l.quantity(),
+            },
+            applied: l.applied,
+            case,
+        })
+        .collect()
 }
 
 /// Reads the model and finds the case of every load.
@@ -110,7 +125,7 @@ pub fn read_fields(work: &mut Work, job: &Job) -> Result<Fields, Faults> {
     ));
     if files.results.is_empty() {
         let cases = cases_of_job(job, &deck)?;
-        let (solved, report) = solve_kept(
+        let (mut solved, report) = solve_kept(
             work,
             &deck,
             &cases,
@@ -120,11 +135,13 @@ pub fn read_fields(work: &mut Work, job: &Job) -> Result<Fields, Faults> {
             },
         )?;
         work.findings.extend(solved.findings.iter().cloned());
+        let mesh_error = take_out(work, job, &deck, &mut solved);
         let of_load = (0..job.loads.len()).map(|i| (0, i)).collect();
         return Ok(Fields {
             deck,
             solutions: vec![solved],
             of_load,
+            mesh_error,
             first_mode: report.modes.first().copied(),
         });
     }
@@ -169,6 +186,7 @@ pub fn read_fields(work: &mut Work, job: &Job) -> Result<Fields, Faults> {
         deck,
         solutions,
         of_load,
+        mesh_error: None,
         first_mode: None,
     })
 }

@@ -4,6 +4,7 @@ mod covariance;
 mod fields;
 mod gauges;
 mod given;
+mod mesh;
 mod unit_loads;
 mod units;
 
@@ -11,17 +12,23 @@ pub use covariance::{covariance_bytes, read_covariance};
 pub use fields::{Fields, read_fields};
 pub use gauges::{lay_gauges, side, spec_of, without_strain};
 pub use given::read_given;
+pub use mesh::{
+    GaugeMeshError, LoadMeshError, coarse_at_gauges, left_in_reading, left_squared, mesh_errors,
+    refined_mesh,
+};
 pub use unit_loads::unit_loads;
 pub use units::{LoadSigma, LoadUnits, load_units};
 
 use super::fault::{Fault, Faults};
-use super::job::Job;
 use super::job::correct::noted;
+use super::job::{Job, Measured};
 use super::outcome::finite;
 use super::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::gauge::Gauge;
+use crate::recovery::ErrorModel;
 use crate::sensitivity::{Sensitivity, from_cases};
+use crate::units::MICROSTRAIN;
 use serde::Serialize;
 
 /// S of the job's gauges with all there is to know of them.
@@ -32,6 +39,8 @@ pub struct Prepared {
     pub fields: Option<Fields>,
     /// Gauges on the model; empty where S is given.
     pub gauges: Vec<Gauge>,
+    /// By gauge, what the deck's mesh made; empty where that was not computed. S is without it.
+    pub mesh_error: Vec<GaugeMeshError>,
 }
 
 /// S of the job's gauges: from the table of `[sensitivity]`, else from the model and its results.
@@ -68,19 +77,39 @@ pub fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
             sensitivity,
             fields,
             gauges,
+            mesh_error: Vec::new(),
         }
     } else {
         let fields = read_fields(work, job)?;
         let gauges = lay_gauges(work, job, &fields)?;
-        let sensitivity = from_cases(&gauges, &fields.load_cases(job))
+        let mut sensitivity = from_cases(&gauges, &fields.load_cases(job))
             .map_err(|missing| without_strain(job, &missing))?;
+        let errors = fields.mesh_cases(job);
+        let measured = job.measured.as_ref();
+        sensitivity.uncertainty = mesh::uncertainty(measured, &gauges, &sensitivity, &errors);
+        let mesh_error = mesh_errors(&gauges, &sensitivity, &errors);
+        work.findings.extend(coarse_at_gauges(&gauges, &mesh_error));
         Prepared {
             sensitivity,
             fields: Some(fields),
             gauges,
+            mesh_error,
         }
     };
     Ok(prepared)
+}
+
+/// What `[measured]` states of errors: those of the model stand in the uncertainty of S where that has one.
+pub fn stated_errors(measured: &Measured, s: &Sensitivity, fields: Option<&Fields>) -> ErrorModel {
+    let in_s = s.uncertainty.is_some() && fields.is_some_and(|f| f.mesh_error.is_some());
+    ErrorModel {
+        noise: measured.noise_microstrain * MICROSTRAIN,
+        model_rel: if in_s {
+            0.0
+        } else {
+            measured.model_uncertainty_rel
+        },
+    }
 }
 
 /// Whether the job's S is a calibrated one.

@@ -1,0 +1,259 @@
+//! What the mesh makes of the strain: the same loads on a mesh half as wide, and what the strain tends to as it gets finer.
+//!
+//! With strain `e(h)` on a mesh of width `h`, what halving the width changes is `e(h/2) - e(h)`. Where errors fall with the square of the width
+//! the error at `h` is 4/3 of that; at folds, edges and corners they fall otherwise. The error is taken as [`WHOLE`] times the change.
+//! It is taken out of the strain of the built-in solver, and what may be left of it is a part of the covariance of S.
+//!
+//! # Reference
+//! L. F. Richardson, Phil. Trans. R. Soc. A 210 (1911) 307.
+
+use crate::app::deck::DeckModel;
+use crate::app::job::{Job, Measured};
+use crate::app::solved::{support_of_job, unit_loads_kept};
+use crate::app::work::Work;
+use crate::fe::{CaseResult, ShellField, Solution};
+use crate::finding::{Finding, Severity};
+use crate::gauge::{Gauge, change_by_refining, reading};
+use crate::model::{Model, RefinedModel};
+use crate::sensitivity::{LoadCaseOf, Sensitivity, Uncertainty};
+use serde::Serialize;
+
+/// Beyond this many shells four times as many would take their time.
+const MOST_SHELLS: usize = 20_000;
+/// The error of a mesh over what halving its width changes. Richardson's 4/3 overshoots where the finer mesh meets a corner or the thickness
+/// of the shell; on open, closed and kicked frames of 40 mm against 13 mm this leaves least (docs/reference/verification.md).
+const WHOLE: f64 = 1.2;
+/// Share of the error that may be left once it is taken out, 1 sd, of each entry of S by itself and of the pattern as a whole: where errors
+/// fall with the width itself two thirds are left, which is 1.96 of these.
+const LEFT: f64 = 1.0 / 3.0;
+/// Beyond this a gauge's mesh error is more than angle, place and gauge factor of a gauge glued with care make together.
+const LARGE: f64 = 0.05;
+/// Entries of S, beyond which their covariance would take more than 128 MB: the rest of the error is then not weighed.
+const MOST_ENTRIES: usize = 4_000;
+/// Gauges that a finding names.
+const NAMED: usize = 6;
+
+/// The mesh error of a gauge.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GaugeMeshError {
+    /// Gauge or channel.
+    pub name: String,
+    /// Root mean square over the loads at their expected size of the deck's mesh less the limit, over that of the reading; positive where the
+    /// mesh reads too much.
+    pub mesh_error_rel: f64,
+    /// By load.
+    pub by_load: Vec<LoadMeshError>,
+}
+
+/// The mesh error of a gauge under one load.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LoadMeshError {
+    /// Load.
+    pub name: String,
+    /// Reading on the deck's mesh less the limit, over the limit; `None` where the load does not strain the gauge.
+    pub mesh_error_rel: Option<f64>,
+}
+
+/// The model on a mesh half as wide.
+///
+/// # Errors
+/// Why none was made, in words.
+pub fn refined_mesh(model: &Model) -> Result<RefinedModel, String> {
+    let n = model.shells.len();
+    if n > MOST_SHELLS {
+        return Err(format!(
+            "the model has {n} shells, and beyond {MOST_SHELLS} four times as many are not solved"
+        ));
+    }
+    model.refined().ok_or_else(|| {
+        "the mesh can't be divided (shells with mid-side grids, bars or solids along shells in displacement frames of their own, or no shells)"
+            .to_owned()
+    })
+}
+
+/// Takes the mesh error out of the strain of a job's unit loads, and gives it: by load, strain on the deck's mesh less the limit. `None`
+/// where the job doesn't ask, or no finer mesh could be solved, which a finding then says.
+pub(super) fn take_out(
+    work: &mut Work,
+    job: &Job,
+    deck: &DeckModel,
+    solution: &mut Solution,
+) -> Option<Vec<CaseResult>> {
+    if !job.model.as_ref().is_some_and(|m| m.mesh_error) {
+        return None;
+    }
+    match finer(work, job, deck, solution) {
+        Ok(changes) => {
+            let errors: Vec<CaseResult> = changes.into_iter().map(|c| times(c, -WHOLE)).collect();
+            for (case, error) in solution.cases.iter_mut().zip(&errors) {
+                subtract(&mut case.shells, &error.shells);
+            }
+            Some(errors)
+        }
+        Err(why) => {
+            work.findings.push(Finding::new(
+                Severity::Warning,
+                "mesh-not-checked",
+                "model.mesh_error",
+                format!("what the mesh makes of the strain is not known, since no finer mesh was solved: {why}"),
+                "state `model_uncertainty_rel`, or compare with a finer deck",
+            ));
+            None
+        }
+    }
+}
+
+/// By load, the strain on a mesh half as wide less that on the deck's.
+fn finer(
+    work: &mut Work,
+    job: &Job,
+    deck: &DeckModel,
+    solution: &Solution,
+) -> Result<Vec<CaseResult>, String> {
+    let of_fault = |f: crate::app::fault::Faults| {
+        f.first()
+            .map_or_else(String::new, |f| format!("{}: {}", f.field, f.wrong))
+    };
+    let refined = work.stage("refine", |_| refined_mesh(&deck.model))?;
+    let support = support_of_job(job, &deck.model).map_err(of_fault)?;
+    let loads = super::unit_loads::unit_loads(job, &deck.model).map_err(of_fault)?;
+    let fine = work
+        .stage("solve the finer mesh", |w| {
+            let made = (deck, "mesh half as wide");
+            unit_loads_kept(w, made, (&refined.model, support), &loads)
+        })
+        .map_err(of_fault)?;
+    let pairs: Vec<_> = solution.cases.iter().zip(&fine.cases).collect();
+    Ok(work.stage("mesh error", |_| {
+        change_by_refining(&deck.model, &refined, &pairs)
+    }))
+}
+
+/// A strain field times a number.
+fn times(mut case: CaseResult, factor: f64) -> CaseResult {
+    let shells = &mut case.shells;
+    let corners = shells.corners.iter_mut().flatten();
+    let sides = shells.centre.iter_mut().chain(corners);
+    sides.flatten().flatten().for_each(|v| *v *= factor);
+    case
+}
+
+fn subtract(from: &mut ShellField, what: &ShellField) {
+    let corners = from.corners.iter_mut().flatten();
+    let others = what.corners.iter().flatten();
+    let sides = from.centre.iter_mut().chain(corners);
+    for (a, b) in sides.zip(what.centre.iter().chain(others)) {
+        for (a, b) in a.iter_mut().flatten().zip(b.iter().flatten()) {
+            *a -= b;
+        }
+    }
+}
+
+/// What may be left of the mesh error in a reading, 1 sd, strain: root of the sum of squares over loads of the size `scales`.
+pub fn left_in_reading(gauge: &Gauge, errors: &[LoadCaseOf], scales: &[f64]) -> f64 {
+    let of = |(e, f): (&LoadCaseOf, &f64)| {
+        let strain = reading(gauge, e.case).unwrap_or(0.0);
+        (strain * f / e.applied).powi(2)
+    };
+    (left_squared() * errors.iter().zip(scales).map(of).sum::<f64>()).sqrt()
+}
+
+/// Share of the mesh error that may be left once it is taken out, squared: its own part and that of the pattern.
+pub fn left_squared() -> f64 {
+    2.0 * LEFT * LEFT
+}
+
+/// The mesh error of every gauge of S; empty where none was computed.
+pub fn mesh_errors(
+    gauges: &[Gauge],
+    s: &Sensitivity,
+    errors: &[LoadCaseOf],
+) -> Vec<GaugeMeshError> {
+    let scales = s.scales();
+    let of_gauge = |(g, gauge): (usize, &Gauge)| {
+        let (mut off, mut read, mut sign) = (0.0, 0.0, 0.0);
+        let by_load = errors.iter().enumerate().map(|(l, e)| {
+            let error = reading(gauge, e.case).unwrap_or(f64::NAN) / e.applied;
+            let limit = s.values[(g, l)];
+            let scale = scales.get(l).copied().unwrap_or(1.0);
+            off += (error * scale).powi(2);
+            read += (limit * scale).powi(2);
+            sign += error * limit * scale * scale;
+            LoadMeshError {
+                name: e.load.name.clone(),
+                mesh_error_rel: Some(error / limit).filter(|r| r.is_finite()),
+            }
+        });
+        let by_load = by_load.collect();
+        let size = if read > 0.0 { (off / read).sqrt() } else { 0.0 };
+        GaugeMeshError {
+            name: gauge.name.clone(),
+            mesh_error_rel: size.copysign(sign),
+            by_load,
+        }
+    };
+    if errors.is_empty() {
+        return Vec::new();
+    }
+    gauges.iter().enumerate().map(of_gauge).collect()
+}
+
+/// Says where the mesh is too coarse for the gauges on it.
+pub fn coarse_at_gauges(gauges: &[Gauge], errors: &[GaugeMeshError]) -> Option<Finding> {
+    let mut large: Vec<(&Gauge, f64)> = gauges
+        .iter()
+        .zip(errors)
+        .map(|(g, e)| (g, e.mesh_error_rel))
+        .filter(|(_, e)| e.abs() > LARGE)
+        .collect();
+    large.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    let worst = large.first()?.1.abs();
+    let n = large.len();
+    large.truncate(NAMED);
+    let named: Vec<String> = large
+        .iter()
+        .map(|(g, e)| format!("`{}` {:+.0} % (element {})", g.name, 100.0 * e, g.element))
+        .collect();
+    let more = match n - large.len() {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    Some(
+        Finding::new(
+            Severity::Warning,
+            "mesh-coarse-at-gauges",
+            "model",
+            format!(
+                "the deck's mesh is too coarse at {n} of {} gauges: it reads {}{more}. This is taken out of S, and {:.0} % of it counts as not known",
+                gauges.len(),
+                named.join(", "),
+                100.0 * LEFT
+            ),
+            "refine the deck around these elements, elements half as wide leave a quarter of it; or move the gauges",
+        )
+        .with_numbers(worst, LARGE),
+    )
+}
+
+/// How far S may be off by what the model's error and the mesh leave; `None` where no mesh error was computed, or S is too large.
+pub(super) fn uncertainty(
+    measured: Option<&Measured>,
+    gauges: &[Gauge],
+    s: &Sensitivity,
+    errors: &[LoadCaseOf],
+) -> Option<Uncertainty> {
+    let measured = measured?;
+    let (n, k) = s.values.shape();
+    if n * k > MOST_ENTRIES || errors.len() != k || gauges.len() != n {
+        return None;
+    }
+    let left = crate::linalg::Matrix::from_fn(n, k, |g, l| {
+        let error = reading(&gauges[g], errors[l].case).unwrap_or(0.0);
+        LEFT * error / errors[l].applied
+    });
+    Some(Uncertainty::of_model(
+        &s.values,
+        measured.model_uncertainty_rel,
+        &left,
+    ))
+}

@@ -1,0 +1,422 @@
+//! The mesh error that `[model] mesh_error = true` predicts and takes out, against a mesh a third as wide: open rails, where 40 mm are coarse.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Width of the coarse elements.
+const WIDTH: f64 = 40.0;
+/// Coarse cells along a rail, from rail to rail, over the height and width of a rail, where cross members stand and how high they are.
+const RAIL: usize = 40;
+const SPAN: usize = 20;
+const HEIGHT: usize = 6;
+const FLANGE: usize = 2;
+const CROSS: [usize; 2] = [10, 30];
+const WEB: [usize; 2] = [1, 5];
+/// Loads at the tips of the rails.
+const LOADS: [(&str, usize); 6] = [
+    ("FX", 0),
+    ("FY", 0),
+    ("FZ", 0),
+    ("FX", 1),
+    ("FY", 1),
+    ("FZ", 1),
+];
+/// Their expected size, N.
+const EXPECTED: f64 = 1.0e4;
+
+/// Half a ladder frame: two C rails (240 x 80 x 8 mm) held at x = 0, two cross members, loaded through RBE3 below the tips; `k` elements on
+/// 40 mm.
+struct Frame {
+    k: usize,
+    grids: BTreeMap<[usize; 3], usize>,
+    quads: Vec<[usize; 4]>,
+    /// By quad: its coarse cell (patch, along, across).
+    cells: Vec<[usize; 3]>,
+}
+
+impl Frame {
+    fn new(k: usize) -> Self {
+        let mut frame = Self {
+            k,
+            grids: BTreeMap::new(),
+            quads: Vec::new(),
+            cells: Vec::new(),
+        };
+        let [rail, height, flange, span] = [RAIL, HEIGHT, FLANGE, SPAN].map(|n| n * k);
+        for side in 0..2 {
+            let y = move |j: usize| if side == 0 { j } else { span - j };
+            frame.patch([rail, height], |i, j| [i, y(0), j]);
+            frame.patch([rail, flange], |i, j| [i, y(j), 0]);
+            frame.patch([rail, flange], |i, j| [i, y(j), height]);
+        }
+        let [low, high] = WEB.map(|n| n * k);
+        for x in CROSS.map(|n| n * k) {
+            frame.patch([span, high - low], |i, j| [x, i, low + j]);
+            frame.patch([span, flange], |i, j| [x + j, i, low]);
+            frame.patch([span, flange], |i, j| [x + j, i, high]);
+        }
+        frame
+    }
+
+    fn patch(&mut self, size: [usize; 2], at: impl Fn(usize, usize) -> [usize; 3]) {
+        let number = self.cells.last().map_or(0, |c| c[0] + 1);
+        for i in 0..size[0] {
+            for j in 0..size[1] {
+                let corners = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                let quad = corners.map(|c| self.grid(c));
+                self.quads.push(quad);
+                self.cells.push([number, i / self.k, j / self.k]);
+            }
+        }
+    }
+
+    fn grid(&mut self, at: [usize; 3]) -> usize {
+        let next = self.grids.len() + 1;
+        *self.grids.entry(at).or_insert(next)
+    }
+
+    fn deck(&self) -> String {
+        let mut deck = String::from(
+            "SOL 101\nCEND\nSPC = 1\nBEGIN BULK\nMAT1,1,210000.,,.3,7.85-9\nPSHELL,1,1,8.,1,,1\n",
+        );
+        let step = WIDTH / self.k as f64;
+        for (at, id) in &self.grids {
+            let [x, y, z] = at.map(|c| c as f64 * step);
+            let _ = writeln!(deck, "GRID,{id},,{x:.4},{y:.4},{z:.4}");
+            if at[0] == 0 {
+                let _ = writeln!(deck, "SPC1,1,123456,{id}");
+            }
+        }
+        for (id, q) in (1..).zip(&self.quads) {
+            let _ = writeln!(deck, "CQUAD4,{id},1,{},{},{},{}", q[0], q[1], q[2], q[3]);
+        }
+        // A patch of the web, 240 x 120 mm, on grids that both meshes have.
+        for (side, web) in [0, SPAN * self.k].into_iter().enumerate() {
+            let patch = |at: &&[usize; 3]| {
+                at.iter().all(|c| c.is_multiple_of(self.k))
+                    && at[0] >= (RAIL - 6) * self.k
+                    && at[1] == web
+                    && at[2] <= 3 * self.k
+            };
+            let arms = self
+                .grids
+                .keys()
+                .filter(patch)
+                .map(|at| self.grids[at].to_string());
+            let id = 900_001 + side;
+            let y = [-60.0, 40.0 * SPAN as f64 + 60.0][side];
+            let _ = writeln!(
+                deck,
+                "GRID,{id},,{:.1},{y:.1},-200.",
+                WIDTH * (RAIL - 3) as f64
+            );
+            let mut fields: Vec<String> = [
+                &(910_001 + side).to_string(),
+                "",
+                &id.to_string(),
+                "123456",
+                "1.",
+                "123",
+            ]
+            .map(str::to_owned)
+            .to_vec();
+            fields.extend(arms);
+            let lines: Vec<String> = fields.chunks(8).map(|c| c.join(",")).collect();
+            let _ = writeln!(deck, "RBE3,{}", lines.join("\n,"));
+        }
+        deck.push_str("ENDDATA\n");
+        deck
+    }
+
+    /// Gauges on every quad of the `cells`: `cell number`.
+    fn gauges(&self, cells: &[[usize; 3]]) -> String {
+        let mut out = String::new();
+        for (id, cell) in (1..).zip(&self.cells) {
+            let Some(number) = cells.iter().position(|c| c == cell) else {
+                continue;
+            };
+            for angle in [0, 45, 90] {
+                for surface in ["top", "bottom"] {
+                    let _ = writeln!(
+                        out,
+                        "[[gauge]]\nname = \"{number}_{angle}_{surface}_{id}\"\nelement = {id}\nsurface = \"{surface}\"\nangle_deg = {angle}"
+                    );
+                }
+            }
+        }
+        out
+    }
+}
+
+fn job(deck: &str, mesh_error: bool) -> String {
+    let mut job =
+        format!("units = \"mm-t-s\"\n[model]\ndeck = \"{deck}\"\nmesh_error = {mesh_error}\n");
+    for (component, side) in LOADS {
+        let _ = writeln!(
+            job,
+            "[[load]]\nname = \"{component}{side}\"\ngrid = {}\ncomponent = \"{component}\"\nexpected = {EXPECTED:.1}",
+            900_001 + side
+        );
+    }
+    job
+}
+
+fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("mesh_error")
+        .join(name);
+    let _ = std::fs::remove_dir_all(&path);
+    std::fs::create_dir_all(&path).unwrap();
+    path
+}
+
+fn run(folder: &Path, command: &str, job: &str) -> serde_json::Value {
+    let output = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .args([command, job, "--out", &format!("{job}.out"), "--json"])
+        .current_dir(folder)
+        .env("STRAINBRIDGE_CACHE", folder.join("kept"))
+        .output()
+        .unwrap();
+    assert!(
+        output.status.code().is_some_and(|c| c < 2),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// Rows of `sensitivity.csv` by name less the element's number, the mean where several have it.
+fn rows(folder: &Path, job: &str) -> BTreeMap<String, Vec<f64>> {
+    let text = std::fs::read_to_string(folder.join(format!("{job}.out/sensitivity.csv"))).unwrap();
+    let mut sums: BTreeMap<String, (Vec<f64>, f64)> = BTreeMap::new();
+    for line in text.lines().skip(1) {
+        let mut fields = line.split(',');
+        let name = fields.next().unwrap();
+        let name = name.rsplit_once('_').unwrap().0.to_owned();
+        let values: Vec<f64> = fields.map(|v| v.parse().unwrap()).collect();
+        let (sum, n) = sums.entry(name).or_insert((vec![0.0; values.len()], 0.0));
+        sum.iter_mut().zip(&values).for_each(|(a, b)| *a += b);
+        *n += 1.0;
+    }
+    let mean = |(sum, n): (Vec<f64>, f64)| sum.iter().map(|v| v / n).collect();
+    sums.into_iter().map(|(name, s)| (name, mean(s))).collect()
+}
+
+/// Cells of the first rail at least 200 mm from the support and from the load.
+fn middle() -> Vec<[usize; 3]> {
+    let mut cells = Vec::new();
+    for i in (6..29).step_by(3) {
+        for (patch, across) in [(0, HEIGHT), (1, FLANGE), (2, FLANGE)] {
+            cells.extend((0..across).map(|j| [patch, i, j]));
+        }
+    }
+    cells
+}
+
+/// The job's folder with both meshes; readings of gauges are means over the elements of the coarse mesh.
+fn meshes(name: &str, cells: &[[usize; 3]]) -> PathBuf {
+    let folder = folder(name);
+    let write = |name: &str, text: String| std::fs::write(folder.join(name), text).unwrap();
+    for (k, deck) in [(1, "coarse.bdf"), (3, "fine.bdf")] {
+        let frame = Frame::new(k);
+        write(deck, frame.deck());
+        let gauges = frame.gauges(cells);
+        if k == 1 {
+            write("with.toml", job(deck, true) + &gauges);
+        }
+        let stem = deck.trim_end_matches(".bdf");
+        write(&format!("{stem}.toml"), job(deck, false) + &gauges);
+    }
+    folder
+}
+
+/// Where a load strains a gauge by at least this share of what the load that strains it most does.
+const STRAINS: f64 = 0.3;
+
+/// Entries of S worth a look, times expected loads: coarse, limit (by the command), fine, relative error as predicted.
+fn entries(folder: &Path) -> Vec<[f64; 4]> {
+    let with = run(folder, "sensitivity", "with.toml");
+    run(folder, "sensitivity", "coarse.toml");
+    run(folder, "sensitivity", "fine.toml");
+    let [coarse, limit, fine] = ["coarse.toml", "with.toml", "fine.toml"].map(|j| rows(folder, j));
+    let mut out = Vec::new();
+    for gauge in with["mesh_error"].as_array().unwrap() {
+        let name = gauge["name"].as_str().unwrap().rsplit_once('_').unwrap().0;
+        let scaled = |rows: &BTreeMap<String, Vec<f64>>| -> Vec<f64> {
+            rows[name].iter().map(|v| v * EXPECTED).collect()
+        };
+        let (coarse, limit, fine) = (scaled(&coarse), scaled(&limit), scaled(&fine));
+        let largest = fine.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        for (l, by_load) in gauge["by_load"].as_array().unwrap().iter().enumerate() {
+            if fine[l].abs() > STRAINS * largest {
+                let predicted = by_load["mesh_error_rel"].as_f64().unwrap();
+                out.push([coarse[l], limit[l], fine[l], predicted]);
+            }
+        }
+    }
+    out
+}
+
+/// Nine in ten errors above 1 % are predicted within a factor of 1.5, sign included; where the error is smaller, so is the prediction.
+/// And S of the command is much nearer to the fine mesh than that of the deck.
+#[test]
+fn the_mesh_error_of_open_rails_is_that_against_a_mesh_a_third_as_wide() {
+    let folder = meshes("frame", &middle());
+    let entries = entries(&folder);
+    assert!(entries.len() > 300, "{}", entries.len());
+    let (mut large, mut near, mut small, mut quiet) = (0, 0, 0, 0);
+    let (mut before, mut after) = (0.0, 0.0);
+    for [coarse, limit, fine, predicted] in &entries {
+        let error = (coarse - fine) / fine;
+        before += (coarse - fine).powi(2);
+        after += (limit - fine).powi(2);
+        if error.abs() > 0.01 {
+            large += 1;
+            near += usize::from((1.0 / 1.5..1.5).contains(&(predicted / error)));
+        } else {
+            small += 1;
+            quiet += usize::from(predicted.abs() < 0.015);
+        }
+    }
+    println!(
+        "{near} of {large} near, {quiet} of {small} quiet, rms error {:.3}",
+        (after / before).sqrt()
+    );
+    assert!(large > 50, "{large}");
+    assert!(near * 10 >= large * 9, "{near} of {large}");
+    assert!(quiet * 10 >= small * 9, "{quiet} of {small}");
+    // The fine mesh has an error itself: an eighth of what the coarse one has against it.
+    assert!(after < before / 9.0, "{}", (after / before).sqrt());
+}
+
+/// Numbers between 0 and 1, the same every time.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Of variance 1: twelve of them less six.
+    fn normal(&mut self) -> f64 {
+        (0..12).map(|_| self.next()).sum::<f64>() - 6.0
+    }
+}
+
+/// A frame that is the fine mesh, read with noise: loads recovered from the coarse deck. All 100 runs share one error of the mesh, so that what
+/// their intervals hold scatters more than that of independent runs.
+#[test]
+fn loads_are_recovered_better_without_the_mesh_error_and_intervals_hold_them() {
+    let all = middle();
+    let cells: Vec<_> = all.iter().copied().step_by(14).collect();
+    let folder = meshes("recover", &cells);
+    run(&folder, "sensitivity", "fine.toml");
+    run(&folder, "sensitivity", "coarse.toml");
+    let fine = rows(&folder, "fine.toml");
+    let header = std::fs::read_to_string(folder.join("coarse.toml.out/sensitivity.csv")).unwrap();
+    let names: Vec<&str> = header
+        .lines()
+        .skip(1)
+        .map(|l| l.split(',').next().unwrap())
+        .collect();
+    let mut random = Random(7);
+    let (mut strain, mut truth) = (format!("run,{}\n", names.join(",")), Vec::new());
+    for run in 0..100 {
+        let loads = LOADS.map(|_| EXPECTED * random.normal());
+        let _ = write!(strain, "r{run}");
+        for name in &names {
+            let row = &fine[name.rsplit_once('_').unwrap().0];
+            let reading: f64 = row.iter().zip(loads).map(|(s, f)| s * f).sum();
+            let _ = write!(strain, ",{:.4}", reading + random.normal());
+        }
+        strain.push('\n');
+        truth.push(loads);
+    }
+    std::fs::write(folder.join("strain.csv"), strain).unwrap();
+    let measured =
+        "[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 1.0\nreference = \"none\"\n";
+    let mut rms = Vec::new();
+    for job in ["coarse.toml", "with.toml"] {
+        let text = std::fs::read_to_string(folder.join(job)).unwrap() + measured;
+        let name = format!("recover_{job}");
+        std::fs::write(folder.join(&name), text).unwrap();
+        let answer = run(&folder, "recover", &name);
+        let (mut sum, mut held, mut n) = (0.0, 0, 0);
+        for (load, row) in answer["loads"].as_array().unwrap().iter().enumerate() {
+            let (run, l) = (load / LOADS.len(), load % LOADS.len());
+            let (component, side) = LOADS[l];
+            assert_eq!(row["name"], format!("{component}{side}"));
+            assert_eq!(row["unit"], "N");
+            let value = |key: &str| row[key].as_f64().unwrap();
+            let true_one = truth[run][l];
+            sum += ((value("value") - true_one) / EXPECTED).powi(2);
+            held += usize::from((value("low")..=value("high")).contains(&true_one));
+            n += 1;
+        }
+        assert_eq!(n, 600);
+        println!(
+            "{job}: rms error {:.4}, held {:.3}",
+            (sum / f64::from(n)).sqrt(),
+            held as f64 / f64::from(n)
+        );
+        rms.push(((sum / f64::from(n)).sqrt(), held as f64 / f64::from(n)));
+    }
+    assert!(rms[1].0 < 0.2 * rms[0].0, "{rms:?}");
+    assert!(rms[1].1 > 0.88, "{rms:?}");
+}
+
+/// A strip of 4 x 2 elements with rods along its long sides and its loaded end, of a material that does not contract: uniform strain
+/// `F / (E (A + 2 A_rod))` on any mesh. Where rods go along shells the divided mesh is tied to them.
+#[test]
+fn uniform_strain_beside_rods_has_no_mesh_error() {
+    let folder = folder("rods");
+    let mut deck = String::from(
+        "SOL 101\nCEND\nSPC = 1\nBEGIN BULK\nMAT1,1,210000.,,0.\nPSHELL,1,1,2.,1,,1\nPROD,2,1,50.\n\
+         GRID,900,,80.,20.,0.\nRBE2,901,900,123456,13,14,15\nSPC1,1,123456,1,2,3\n",
+    );
+    for i in 0..5 {
+        for j in 0..3 {
+            let _ = writeln!(deck, "GRID,{},,{}.,{}.,0.", 3 * i + j + 1, 20 * i, 20 * j);
+        }
+    }
+    for i in 0..4 {
+        for j in 0..2 {
+            let a = 3 * i + j + 1;
+            let id = 2 * i + j + 1;
+            let _ = writeln!(deck, "CQUAD4,{id},1,{a},{},{},{}", a + 3, a + 4, a + 1);
+        }
+        let a = 3 * i + 1;
+        let _ = writeln!(deck, "CROD,{},2,{a},{}", 101 + i, a + 3);
+        let _ = writeln!(deck, "CROD,{},2,{},{}", 111 + i, a + 2, a + 5);
+    }
+    deck.push_str("CROD,121,2,13,14\nCROD,122,2,14,15\nENDDATA\n");
+    std::fs::write(folder.join("strip.bdf"), deck).unwrap();
+    let mut job = String::from(
+        "units = \"mm-t-s\"\n[model]\ndeck = \"strip.bdf\"\nmesh_error = true\n[[load]]\nname = \"F\"\ngrid = 900\ncomponent = \"FX\"\n",
+    );
+    for id in 1..=8 {
+        let _ = writeln!(
+            job,
+            "[[gauge]]\nname = \"g_{id}\"\nelement = {id}\nsurface = \"top\"\nangle_deg = 0"
+        );
+    }
+    std::fs::write(folder.join("strip.toml"), job).unwrap();
+    let answer = run(&folder, "sensitivity", "strip.toml");
+    let gauges = answer["mesh_error"].as_array().unwrap();
+    assert_eq!(gauges.len(), 8);
+    let error = |g: &serde_json::Value| g["mesh_error_rel"].as_f64().unwrap();
+    assert!(gauges.iter().all(|g| error(g).abs() < 1e-9), "{gauges:?}");
+    let expected = 1e6 / (210_000.0 * (2.0 * 40.0 + 2.0 * 50.0));
+    for row in rows(&folder, "strip.toml").values() {
+        assert!(
+            (row[0] - expected).abs() < 1e-9 * expected,
+            "{row:?} {expected}"
+        );
+    }
+}
