@@ -1,6 +1,6 @@
 //! The analyst's deck with named effects in it.
 
-use super::deck_frame::{DeckFrame, gravity, unit};
+use super::deck_frame::{DeckFrame, unit};
 use super::extended::DECK;
 use super::extended_loads::{SideLoad, cards};
 use super::influence::{readings, solve};
@@ -164,7 +164,7 @@ impl DeckFrame {
             let Some(grid) = model.grid_ix(id) else {
                 return Ok(None);
             };
-            let weight = unit(job, grid, Component::FZ, -gravity(job) / KILO);
+            let weight = unit(job, grid, Component::FZ, -job.gravity_m_s2() / KILO);
             let solution = solve(job, model, &[weight])?;
             Ok(Some(readings(&self.gauges, &solution, 0..1)))
         };
