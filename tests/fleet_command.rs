@@ -251,5 +251,5 @@ fn what_fleet_can_not_do_is_said() {
     std::fs::write(dir.join("job.toml"), JOB.replace("{day}", "{tag}")).unwrap();
     let (code, said) = fleet(&dir, "form", &files, &[]);
     assert_eq!(code, 2);
-    assert!(said.as_str().unwrap().contains("fleet.file_name"), "{said}");
+    assert!(said.to_string().contains("fleet.file_name"), "{said}");
 }

@@ -551,3 +551,41 @@ fn a_record_kept_in_memory_and_one_written_as_it_comes_give_the_same_files() {
     };
     assert_eq!(result(&kept), result(&streamed));
 }
+
+#[test]
+fn wanted_elements_and_picked_lists_are_kept() {
+    let picked =
+        "[candidates]\nelements = \"1 THRU 8\"\nexclude_elements = [3]\nwanted_elements = [7, 8]\n";
+    let job = |more: &str| format!("{JOB}spacing = 15.0\n[candidates]\n{more}");
+    let files = files()
+        .with("picked.toml", picked)
+        .with("wanted.toml", job("file = \"picked.toml\"\n"))
+        .with("plain.toml", job("elements = \"1 THRU 8\"\n"))
+        .with(
+            "twice.toml",
+            job("file = \"picked.toml\"\nelements = [1]\n"),
+        )
+        .with("none.toml", job("wanted_elements = [99]\n"));
+    let plan = |name: &str| {
+        let job = Job::read(name, &files).unwrap();
+        place(&job, &Context::new(&files))
+    };
+    let wanted = plan("wanted.toml").unwrap();
+    let on: Vec<u32> = wanted.gauges.iter().map(|g| g.element).collect();
+    assert_eq!(on.len(), 4);
+    assert!(on.contains(&7) && on.contains(&8), "{on:?}");
+    assert!(on.iter().all(|e| *e <= 8 && *e != 3), "{on:?}");
+    // What a wish costs can't be less than nothing, and the certificate says it.
+    let free = plan("plain.toml").unwrap();
+    assert!(wanted.log_det <= free.upper_bound + 1e-9);
+    assert!(wanted.efficiency_bound <= 1.0 + 1e-12);
+    let faults = Job::read("twice.toml", &files).unwrap_err().to_string();
+    assert!(
+        faults.contains("picked.toml:1: candidates.elements: `elements` stands in the job too"),
+        "{faults}"
+    );
+    let Err(faults) = plan("none.toml") else {
+        panic!("element 99 is none of the deck");
+    };
+    assert!(faults.to_string().contains("element 99 is no candidate"));
+}

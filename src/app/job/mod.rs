@@ -8,6 +8,7 @@ pub mod gauges;
 pub mod given_columns;
 mod not_a_job;
 mod parse;
+mod picked;
 pub mod quantity;
 mod raw;
 mod resolve;
@@ -92,6 +93,7 @@ pub fn read_job(inputs: &mut Inputs, path: &Path) -> Result<Job, Faults> {
     let mut job = resolve::resolve_job(&given, &text, &folder, raw, &mut faults);
     job.gauges
         .extend(gauges::read_gauge_file(inputs, &job, &mut faults));
+    picked::read_picked(inputs, &mut job, &mut faults);
     resolve::check_names(&job, &mut faults);
     resolve::check_named(&job, &mut faults);
     faults.sort_by(|a, b| {

@@ -142,6 +142,8 @@ pub(super) struct RawCandidates {
     pub sets: S<Ids>,
     pub exclude_properties: S<Ids>,
     pub exclude_elements: S<Ids>,
+    pub wanted_elements: S<Ids>,
+    pub file: S<String>,
     pub boxes: S<Vec<Vec<[f64; 2]>>>,
     pub exclude_boxes: S<Vec<Vec<[f64; 2]>>>,
     pub clear_of: Option<RawClear>,

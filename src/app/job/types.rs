@@ -423,6 +423,10 @@ pub struct Candidates {
     pub exclude_properties: Option<Ids>,
     /// Elements left out.
     pub exclude_elements: Option<Ids>,
+    /// Elements of which each gets a gauge.
+    pub wanted_elements: Option<Ids>,
+    /// A file with lists of properties and elements.
+    pub file: Option<NamedFile>,
     /// Boxes in which gauges may sit; empty: anywhere.
     pub boxes: Vec<Region>,
     /// Boxes in which they may not.

@@ -2,6 +2,7 @@
 
 use super::pool::Kind;
 use super::task::{Task, know_the_loads, position};
+use super::wanted::on_wanted;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::{Criterion as Wanted, Rosette as JobRosette};
 use crate::app::work::Work;
@@ -97,6 +98,7 @@ pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Ch
     {
         let mut layout = place(&kind.candidates, spec).map_err(Refused::By)?;
         let least_condition = well_conditioned(task, kind, spec, &mut layout);
+        on_wanted(task, kind, spec, &mut layout)?;
         let n = layout.gauges.len();
         let channels = layout
             .gauges
@@ -122,6 +124,15 @@ pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Ch
             "placement.criterion",
             "the least condition number is looked for among single gauges of one wiring, without pairs, costs or a budget",
             "write criterion = \"D\", or leave those keys out",
+        )));
+    }
+    if task.job.candidates.wanted_elements.is_some() {
+        return Err(Refused::Job(Fault::at(
+            &*task.job.file,
+            task.job.candidates.line,
+            "candidates.wanted_elements",
+            "wanted elements are for single gauges of one wiring, without pairs, costs or a budget",
+            "leave those keys out, or state the gauges of these elements as [[gauge]] and keep them",
         )));
     }
     within_budget(task, kinds, spec)

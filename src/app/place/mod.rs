@@ -9,6 +9,7 @@ mod pool;
 mod region;
 mod sheet;
 mod task;
+mod wanted;
 
 pub use outcome::*;
 pub(super) use pool::{angles, column_order, scales, scatter};

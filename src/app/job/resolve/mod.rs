@@ -11,6 +11,7 @@ mod vehicle;
 
 pub(super) use channel::check_names as check_named;
 pub(super) use gauge::{check_gauge, point_from, rosette_from, surface_from};
+pub(super) use placement::candidates as candidates_of;
 
 use super::faults::Collector;
 use super::raw::RawJob;

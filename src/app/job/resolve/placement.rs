@@ -20,7 +20,10 @@ pub(super) fn default_criterion(loads: &[JobLoad]) -> Criterion {
     }
 }
 
-pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>) -> Candidates {
+pub(in super::super) fn candidates(
+    c: &mut Collector,
+    raw: Option<&Spanned<RawCandidates>>,
+) -> Candidates {
     let mut out = Candidates {
         properties: None,
         elements: None,
@@ -32,6 +35,8 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
         sets: None,
         exclude_properties: None,
         exclude_elements: None,
+        wanted_elements: None,
+        file: None,
         boxes: Vec::new(),
         exclude_boxes: Vec::new(),
         clear: Clearances::default(),
@@ -110,6 +115,8 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
     out.sets = ids(&raw.sets);
     out.exclude_properties = ids(&raw.exclude_properties);
     out.exclude_elements = ids(&raw.exclude_elements);
+    out.wanted_elements = ids(&raw.wanted_elements);
+    out.file = c.named(&raw.file, "candidates.file");
     out.boxes = boxes(c, &raw.boxes, "candidates.boxes");
     out.exclude_boxes = boxes(c, &raw.exclude_boxes, "candidates.exclude_boxes");
     if let Some(clear) = &raw.clear_of {

@@ -1,0 +1,77 @@
+//! The file of `[candidates]`: lists of properties and elements that were picked elsewhere, such as in a report.
+
+use super::faults::Collector;
+use super::parse::parse_job;
+use super::resolve::candidates_of;
+use super::types::{Candidates, Ids, Job, NamedFile};
+use crate::app::fault::{Fault, FaultList, Faults};
+use crate::app::files::Inputs;
+
+type Lists<'a> = [(&'static str, &'a mut Option<Ids>); 5];
+
+fn lists(c: &mut Candidates) -> Lists<'_> {
+    [
+        ("properties", &mut c.properties),
+        ("elements", &mut c.elements),
+        ("exclude_properties", &mut c.exclude_properties),
+        ("exclude_elements", &mut c.exclude_elements),
+        ("wanted_elements", &mut c.wanted_elements),
+    ]
+}
+
+/// Puts the lists of the file that `[candidates] file` names beside those of the job; faults are added to the list.
+pub(super) fn read_picked(inputs: &mut Inputs, job: &mut Job, faults: &mut FaultList) {
+    let Some(named) = job.candidates.file.clone() else {
+        return;
+    };
+    match inputs.read_named_text(job, &named) {
+        Ok(text) => put(job, &named, &text, faults),
+        Err(f) => faults.extend(Faults::from(f).into_list()),
+    }
+}
+
+fn put(job: &mut Job, named: &NamedFile, text: &str, faults: &mut FaultList) {
+    let file = &*named.given;
+    let (raw, found) = parse_job(file, text);
+    let broken = !found.is_empty();
+    faults.extend(found);
+    let Some(section) = &raw.candidates else {
+        if !broken {
+            faults.push(Fault::at(
+                file,
+                1,
+                "candidates",
+                "the file has no [candidates]",
+                "write `[candidates]` above its lists",
+            ));
+        }
+        return;
+    };
+    let mut c = Collector { file, text, faults };
+    let mut picked = candidates_of(&mut c, Some(section));
+    if picked.file.is_some() {
+        c.fault(
+            section,
+            "candidates.file",
+            "a picked file names another",
+            "put its lists here",
+        );
+    }
+    for ((name, own), (_, other)) in lists(&mut job.candidates)
+        .into_iter()
+        .zip(lists(&mut picked))
+    {
+        if own.is_some() && other.is_some() {
+            let wrong = format!("`{name}` stands in the job too");
+            c.fault(
+                section,
+                &format!("candidates.{name}"),
+                wrong,
+                "state it in one of the two",
+            );
+        }
+        if own.is_none() {
+            *own = other.take();
+        }
+    }
+}
