@@ -289,3 +289,74 @@ fn curved_elements_weigh_what_the_solver_says() {
         "{ours} printed {printed}"
     );
 }
+
+/// The model of a deck's text.
+fn model_of(case_control: &str, bulk: &str) -> (Model, usize) {
+    let text = format!("SOL 101\nCEND\n{case_control}\nBEGIN BULK\n{bulk}\nENDDATA\n");
+    let mut loader = nastran::bdf::MemoryLoader::default();
+    let deck = nastran::bdf::read_deck("test.bdf", text.into_bytes(), &mut loader);
+    assert!(deck.faults.is_empty(), "{:?}", deck.faults);
+    let (model, faults) = Model::from_deck(&deck);
+    (model, faults.len())
+}
+
+/// Two plates of 2 x 1 and 1 x 1 and a bar of length 3.
+const PLATES: &str = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,2.,1.,0.\nGRID,4,,0.,1.,0.\nGRID,5,,3.,0.,0.\nGRID,6,,3.,1.,0.\n\
+     GRID,7,,0.,0.,3.\nCQUAD4,1,1,1,2,3,4\nCQUAD4,2,2,2,5,6,3\nPSHELL,1,1,.01,1,,1,,.5\nPSHELL,2,1,.01,1,,1\nMAT1,1,2.+11,,.3,1000.\n\
+     CBAR,3,3,1,7,1.,0.,0.\nPBAR,3,1,.01,1.-4,1.-4,1.-4\n";
+
+#[test]
+fn non_structural_mass_weighs_where_case_control_selects_it() {
+    let nsm = "NSM1,5,PSHELL,4.,1,2\nNSML1,6,PSHELL,9.,ALL\nNSML,7,PBAR,3,6.\nNSM,8,PSHELL,1,1.,2,2.\nNSMADD,10,5,7\nNSM1,11,PSHELL,1.,77";
+    // .01 x 1000 on 3, .5 on 2, .01 x 1000 on 3.
+    let structure = 30.0 + 1.0 + 30.0;
+    for (selected, more) in [
+        ("", 0.0),
+        ("NSM = 5", 4.0 * 3.0),
+        ("NSM = 6", 9.0),
+        ("NSM = 7", 6.0),
+        ("NSM = 8", 1.0 * 2.0 + 2.0 * 1.0),
+        ("NSM = 10", 4.0 * 3.0 + 6.0),
+    ] {
+        let (model, faults) = model_of(selected, &format!("{PLATES}{nsm}"));
+        assert_eq!(faults, 0, "{selected}");
+        assert!(model.unsupported_cards.is_empty());
+        let mass = model.weight().mass;
+        assert!((mass - structure - more).abs() < 1e-9, "{selected}: {mass}");
+    }
+    // A total is spread evenly over the areas: its centre is that of the plates.
+    let (bare, _) = model_of("", PLATES);
+    let (with, _) = model_of("NSM = 6", &format!("{PLATES}{nsm}"));
+    let (a, b) = (bare.weight(), with.weight());
+    let added = (b.cg * b.mass - a.cg * a.mass) / 9.0;
+    assert!((added - Vec3::new(1.5, 0.5, 0.0)).amax() < 1e-9, "{added}");
+    assert_eq!(model_of("NSM = 11", &format!("{PLATES}{nsm}")).1, 1);
+}
+
+#[test]
+fn non_structural_mass_by_element_is_refused_by_name() {
+    let (model, _) = model_of("NSM = 5", &format!("{PLATES}NSM1,5,ELEMENT,4.,1"));
+    let refused: Vec<_> = model
+        .unsupported_cards
+        .iter()
+        .map(|c| (c.card.as_str(), c.id))
+        .collect();
+    assert_eq!(refused, [("NSM of ELEMENT", Some(5))]);
+}
+
+/// RBAR1 is the RBE2 from A to B, RTRPLT the RBE1 of its three grids.
+#[test]
+fn rigid_bars_and_triangles_are_those_of_older_cards() {
+    let kinds = |card: &str| {
+        let (model, faults) = model_of("", &format!("{PLATES}{card}"));
+        assert_eq!(faults, 0, "{card}");
+        assert!(model.unsupported_cards.is_empty(), "{card}");
+        model.rigids.into_iter().map(|r| r.kind).collect::<Vec<_>>()
+    };
+    assert_eq!(kinds("RBAR1,9,1,6,123"), kinds("RBE2,9,1,123,6"));
+    assert_eq!(kinds("RBAR1,9,1,6"), kinds("RBE2,9,1,123456,6"));
+    assert_eq!(
+        kinds("RTRPLT,9,1,5,7,12,3,123,,\n,3,12"),
+        kinds("RBE1,9,1,12,5,3,7,123\n,UM,1,3,5,12")
+    );
+}

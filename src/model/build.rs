@@ -32,9 +32,14 @@ impl Model {
     /// The model that a deck means: its cards, PARAMs of case control (which win), names of properties and components.
     pub fn from_deck(deck: &Deck) -> (Model, Vec<ModelFault>) {
         let (structure, loads) = super::unsupported_cards::of_deck(deck);
-        let (mut model, faults) =
+        let (mut model, mut faults) =
             Self::build(&deck.cards, &deck.case_control.global.params, &loads);
         model.unsupported_cards = structure;
+        if let Some(set) = super::nonstructural::selected(deck) {
+            let (refused, missing) = super::nonstructural::add(&mut model, &deck.cards, set);
+            model.unsupported_cards.extend(refused);
+            faults.extend(missing);
+        }
         model.mpc = deck.case_control.mpc_of_structure();
         let subcases = deck.case_control.effective_subcases();
         model.selected_spcs = subcases.iter().filter_map(|s| s.spc).collect();

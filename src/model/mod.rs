@@ -16,6 +16,7 @@ mod load;
 mod load_sum;
 mod mass;
 mod material;
+mod nonstructural;
 mod params;
 mod point_mass;
 mod refine;

@@ -1,4 +1,6 @@
-//! Concentrated masses.
+//! Concentrated and non-structural masses.
+
+use super::IdList;
 
 /// CONM1: a symmetric 6 x 6 mass matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,4 +31,19 @@ pub struct Conm2 {
     /// I11, I21, I22, I31, I32, I33 about the centre of gravity; products are stored as the card states them
     /// (`I21 = integral x1 x2 dm`, the tensor's off-diagonal is its negative).
     pub inertia: [f64; 6],
+}
+
+/// NSM, NSM1, NSML, NSML1: non-structural mass of properties or elements, acting where case control selects the set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NonstructuralMass {
+    /// Set id.
+    pub sid: u32,
+    /// NSML, NSML1: `value` is a mass, spread over all that is named; else it is mass per area or length.
+    pub lumped: bool,
+    /// PSHELL, PCOMP, PBAR .. or ELEMENT.
+    pub of: String,
+    /// Properties or elements; `None`: all of that type.
+    pub ids: Option<Vec<IdList>>,
+    /// Mass, or mass per area or length.
+    pub value: f64,
 }

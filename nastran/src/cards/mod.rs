@@ -47,6 +47,8 @@ pub struct Cards {
     pub solids: Vec<Placed<Solid>>,
     pub conm1s: Vec<Placed<Conm1>>,
     pub conm2s: Vec<Placed<Conm2>>,
+    pub nsms: Vec<Placed<NonstructuralMass>>,
+    pub nsmadds: Vec<Placed<SetSum>>,
     pub rbe1s: Vec<Placed<Rbe1>>,
     pub rbe2s: Vec<Placed<Rbe2>>,
     pub rbe3s: Vec<Placed<Rbe3>>,

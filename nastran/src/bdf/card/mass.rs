@@ -1,7 +1,9 @@
-//! CONM1, CONM2.
+//! CONM1, CONM2, NSM, NSM1, NSML, NSML1.
 
 use super::super::fields::Fields;
-use crate::cards::{Conm1, Conm2};
+use super::ids::id_lists;
+use crate::cards::{Cards, Conm1, Conm2, IdList, NonstructuralMass};
+use crate::place::Placed;
 
 pub(super) fn conm1(f: &mut Fields) -> Conm1 {
     Conm1 {
@@ -21,4 +23,43 @@ pub(super) fn conm2(f: &mut Fields) -> Conm2 {
         offset: f.reals(4, ["X1", "X2", "X3"]),
         inertia: f.reals(8, ["I11", "I21", "I22", "I31", "I32", "I33"]),
     }
+}
+
+/// NSM and NSML: pairs of id and value, an entry each; NSM1 and NSML1: one value for a list.
+pub(super) fn nonstructural(f: &mut Fields, cards: &mut Cards) {
+    let lumped = f.name.starts_with(b"NSML");
+    let (sid, of) = (f.id(0, "SID"), f.word(1).to_uppercase());
+    let mut entries: Vec<(Option<Vec<IdList>>, f64)> = Vec::new();
+    if f.name.ends_with(b"1") {
+        let value = f.real_or(2, "VALUE", 0.0);
+        let ids = if f.is_word(3, "ALL") {
+            None
+        } else {
+            Some(id_lists(f, 3, "ID"))
+        };
+        entries.push((ids, value));
+    } else {
+        for i in (2..f.len()).step_by(2) {
+            if !f.is_blank(i) {
+                let id = f.id(i, "ID");
+                let value = f.real_or(i + 1, "VALUE", 0.0);
+                entries.push((Some(vec![IdList::Each(vec![id])]), value));
+            }
+        }
+    }
+    if f.unusable {
+        return;
+    }
+    let card = |(ids, value)| NonstructuralMass {
+        sid,
+        lumped,
+        of: of.clone(),
+        ids,
+        value,
+    };
+    let cards_of = entries.into_iter().map(|e| Placed {
+        card: card(e),
+        at: f.at,
+    });
+    cards.nsms.extend(cards_of);
 }

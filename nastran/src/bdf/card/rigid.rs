@@ -1,4 +1,4 @@
-//! RBE1, RBE2, RBE3, RBAR.
+//! RBE1, RBE2, RBE3, RBAR, RBAR1, RTRPLT.
 
 use super::super::fault::Wrong;
 use super::super::fields::{Fields, Value};
@@ -152,5 +152,38 @@ pub(super) fn rbar(f: &mut Fields) -> Rbar {
         independent: [f.dofs(3, "CNA"), f.dofs(4, "CNB")],
         dependent: [f.dofs(5, "CMA"), f.dofs(6, "CMB")],
         alpha: f.real_or(7, "ALPHA", 0.0),
+    }
+}
+
+/// RBAR1: an RBAR whose six dofs at A are independent, those of CB at B dependent (all where it is blank).
+pub(super) fn rbar1(f: &mut Fields) -> Rbar {
+    let of_b = Some(f.dofs(3, "CB")).filter(|d| !d.is_empty());
+    Rbar {
+        id: f.id(0, "EID"),
+        grids: [f.id(1, "GA"), f.id(2, "GB")],
+        independent: [Dofs::ALL, Dofs::default()],
+        dependent: [Dofs::default(), of_b.unwrap_or(Dofs::ALL)],
+        alpha: f.real_or(4, "ALPHA", 0.0),
+    }
+}
+
+/// RTRPLT: a rigid triangle; what is not independent is dependent where CMA, CMB, CMC are blank.
+pub(super) fn rtrplt(f: &mut Fields) -> Rbe1 {
+    let id = f.id(0, "EID");
+    let grids = [f.id(1, "GA"), f.id(2, "GB"), f.id(3, "GC")];
+    let independent = [f.dofs(4, "CNA"), f.dofs(5, "CNB"), f.dofs(6, "CNC")];
+    let mut dependent = [f.dofs(8, "CMA"), f.dofs(9, "CMB"), f.dofs(10, "CMC")];
+    if dependent.iter().all(|d| d.is_empty()) {
+        dependent = independent.map(|d| Dofs(Dofs::ALL.0 & !d.0));
+    }
+    let terms = |dofs: [Dofs; 3]| {
+        let all = grids.into_iter().zip(dofs);
+        all.filter(|t| !t.1.is_empty()).collect()
+    };
+    Rbe1 {
+        id,
+        independent: terms(independent),
+        dependent: terms(dependent),
+        alpha: f.real_or(11, "ALPHA", 0.0),
     }
 }
