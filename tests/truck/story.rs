@@ -59,12 +59,10 @@ fn the_story_names_what_was_hidden_and_gets_the_loads_back() {
         &std::fs::read_to_string(folder.join("7-respond/result.json")).unwrap(),
     )
     .unwrap();
-    let with_table = job(
-        &folder,
-        "respond_table.toml",
-        "respond.toml",
-        "loads = \"5-recover-again/loads.csv\"\n",
-    );
+    let with_table = job(&folder, "respond_table.toml", "respond.toml", "");
+    let text = std::fs::read_to_string(&with_table).unwrap();
+    let named = "[respond]\nloads = \"5-recover-again/loads.csv\"";
+    std::fs::write(&with_table, text.replace("[respond]", named)).unwrap();
     let (code, table, err) = run(&["respond", &with_table], &folder.join("respond_table"));
     assert_eq!(code, 0, "{err}");
     let (a, b) = (&inside["elements"][0], &table["elements"][0]);

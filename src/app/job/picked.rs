@@ -48,7 +48,7 @@ fn put(job: &mut Job, named: &NamedFile, text: &str, faults: &mut FaultList) {
         return;
     };
     let mut c = Collector { file, text, faults };
-    let mut picked = candidates_of(&mut c, Some(section));
+    let mut picked = candidates_of(&mut c, section);
     if picked.file.is_some() {
         c.fault(
             section,

@@ -98,7 +98,7 @@ pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Ch
     {
         let mut layout = place(&kind.candidates, spec).map_err(Refused::By)?;
         let least_condition = well_conditioned(task, kind, spec, &mut layout);
-        on_wanted(task, kind, spec, &mut layout)?;
+        on_wanted(task, kind, spec, &mut layout).map_err(Refused::Job)?;
         let n = layout.gauges.len();
         let channels = layout
             .gauges

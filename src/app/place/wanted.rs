@@ -1,6 +1,5 @@
 //! Elements that the job wants a gauge on.
 
-use super::choose::Refused;
 use super::pool::Kind;
 use super::task::Task;
 use crate::app::fault::Fault;
@@ -20,19 +19,13 @@ pub(super) fn on_wanted(
     kind: &Kind,
     spec: &Spec,
     layout: &mut Layout,
-) -> Result<(), Refused> {
+) -> Result<(), Fault> {
     let Some(wanted) = &task.job.candidates.wanted_elements else {
         return Ok(());
     };
     let refuse = |wrong: String, remedy: &str| {
         let (file, line) = (&*task.job.file, task.job.candidates.line);
-        Refused::Job(Fault::at(
-            file,
-            line,
-            "candidates.wanted_elements",
-            wrong,
-            remedy,
-        ))
+        Fault::at(file, line, "candidates.wanted_elements", wrong, remedy)
     };
     let element = |place: usize| -> Option<u32> {
         let (shell, _) = task.sites.get(place)?;

@@ -11,10 +11,10 @@ mod vehicle;
 
 pub(super) use channel::check_names as check_named;
 pub(super) use gauge::{check_gauge, point_from, rosette_from, surface_from};
-pub(super) use placement::candidates as candidates_of;
 
 use super::faults::Collector;
-use super::raw::RawJob;
+use super::raw::{RawCandidates, RawJob};
+use super::spanned::Spanned;
 use super::types::*;
 use crate::app::fault::{Fault, FaultList};
 use std::path::Path;
@@ -84,6 +84,11 @@ pub(super) fn resolve_job(
         file: file.to_owned(),
         folder: folder.to_owned(),
     }
+}
+
+/// The candidates of a file of their own.
+pub(super) fn candidates_of(c: &mut Collector, raw: &Spanned<RawCandidates>) -> Candidates {
+    placement::candidates(c, Some(raw))
 }
 
 /// Gauge names are unique.

@@ -20,10 +20,7 @@ pub(super) fn default_criterion(loads: &[JobLoad]) -> Criterion {
     }
 }
 
-pub(in super::super) fn candidates(
-    c: &mut Collector,
-    raw: Option<&Spanned<RawCandidates>>,
-) -> Candidates {
+pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>) -> Candidates {
     let mut out = Candidates {
         properties: None,
         elements: None,
