@@ -182,3 +182,28 @@ pub(crate) fn clean(py: Python, folder: Option<PathBuf>) -> PyResult<(PathBuf, u
     })?;
     Ok((folder.path().to_owned(), removed, bytes))
 }
+
+/// What a finding means, as JSON: one code's, or every code's where `None`.
+#[pyfunction]
+#[pyo3(signature = (code=None))]
+pub(crate) fn explain(py: Python, code: Option<&str>) -> PyResult<String> {
+    let said = match code {
+        Some(code) => {
+            let found = strainbridge::explain(code).map_err(|f| raise(py, f))?;
+            serde_json::to_string(found)
+        }
+        None => serde_json::to_string(strainbridge::explain_all()),
+    };
+    said.map_err(|e| {
+        raise(
+            py,
+            wrong(
+                "explain",
+                "code",
+                &e.to_string(),
+                "report this as an error of the program",
+            )
+            .into(),
+        )
+    })
+}

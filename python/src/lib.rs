@@ -39,7 +39,7 @@ mod writing;
 #[pyo3::pymodule]
 mod _strainbridge {
     #[pymodule_export]
-    use crate::command::{ask, clean, commands, made, schema};
+    use crate::command::{ask, clean, commands, explain, made, schema};
     #[pymodule_export]
     use crate::counting::rainflow;
     #[pymodule_export]

@@ -9,6 +9,7 @@ before :meth:`Outcome.save`.
 
 from __future__ import annotations
 
+import json
 import logging
 import os
 import tempfile
@@ -228,3 +229,16 @@ def clean(folder: Path | None = None) -> Record:
     """
     where, removed, size = _engine.clean(None if folder is None else _Folder(folder))
     return Record({"command": "clean", "folder": os.fspath(where), "removed": removed, "bytes": size})
+
+
+def explain(code: str | None = None) -> Record | list[Record]:
+    """What a finding means: ``code``, ``severity``, ``said_by``, ``cause``, ``limit``, ``remedy``, ``example``.
+
+    Args:
+        code: as findings have it, such as ``loads-not-separable``; every code where None.
+
+    Raises:
+        Faults: no finding has the code; the closest that one has.
+    """
+    said = json.loads(_engine.explain(code))
+    return Record(said) if code is not None else [Record(c) for c in said]

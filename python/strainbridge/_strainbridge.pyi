@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
-    "ask", "clean", "commands", "made", "schema", "rainflow", "strain_along", "_Job", "job_to_json", "_Outcome", "place_rows", "_Deck", "_Results",
+    "ask", "clean", "commands", "explain", "made", "schema", "rainflow", "strain_along", "_Job", "job_to_json", "_Outcome", "place_rows", "_Deck", "_Results",
     "shell_strain", "recover_rows", "relax", "_Table", "_fail", "op2_bytes", "vtu_bytes",
 ]
 
@@ -68,6 +68,7 @@ def vtu_bytes(
     cell_data: Mapping[str, NDArray[Any]],
 ) -> bytes: ...
 def made(folder: _Path) -> tuple[str, Any, list[str]]: ...
+def explain(code: str | None = None) -> str: ...
 def clean(folder: _Path | None = None) -> tuple[Any, int, int]: ...
 def ask(
     command: str,

@@ -98,3 +98,11 @@ def test_every_command_is_a_function():
 
     assert all(hasattr(sb, name) for name in _strainbridge.commands())
     assert callable(sb.verify) and callable(sb.clean) and callable(sb.fleet.run)
+
+
+def test_a_finding_explains_itself():
+    code = sb.explain("gauge-suspect")
+    assert code.code == "gauge-suspect" and code.cause and code.remedy and code.severity
+    assert [c.code for c in sb.explain()] == sorted(c.code for c in sb.explain())
+    with pytest.raises(sb.Faults, match="did you mean"):
+        sb.explain("gauge-suspekt")
