@@ -158,7 +158,9 @@ fn is_upright(fit: &MotionFit) -> bool {
     let bodies: Vec<usize> = (0..v.bodies.len()).collect();
     let springs = v.links.iter().enumerate().flat_map(|(l, link)| {
         let terms = link.terms.iter().enumerate();
-        terms.filter_map(move |(t, term)| (*term == Term::Stiffness).then(|| v.term_index(l, t)))
+        terms
+            .filter(|(_, term)| **term == Term::Stiffness)
+            .map(move |(t, _)| v.term_index(l, t))
     });
     v.masses(&bodies)
         .into_iter()
