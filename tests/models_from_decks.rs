@@ -307,7 +307,7 @@ const PLATES: &str = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,2.,1.,0.\nGRID
 
 #[test]
 fn non_structural_mass_weighs_where_case_control_selects_it() {
-    let nsm = "NSM1,5,PSHELL,4.,1,2\nNSML1,6,PSHELL,9.,ALL\nNSML,7,PBAR,3,6.\nNSM,8,PSHELL,1,1.,2,2.\nNSMADD,10,5,7\nNSM1,11,PSHELL,1.,77";
+    let nsm = "NSM1,5,PSHELL,4.,1,2\nNSML1,6,PSHELL,9.,ALL\nNSML,7,PBAR,3,6.\nNSM,8,PSHELL,1,1.,2,2.\nNSMADD,10,5,7\nNSM1,11,PSHELL,1.,77\nNSML1,12,PBEAM,5.,ALL";
     // .01 x 1000 on 3, .5 on 2, .01 x 1000 on 3.
     let structure = 30.0 + 1.0 + 30.0;
     for (selected, more) in [
@@ -317,6 +317,8 @@ fn non_structural_mass_weighs_where_case_control_selects_it() {
         ("NSM = 7", 6.0),
         ("NSM = 8", 1.0 * 2.0 + 2.0 * 1.0),
         ("NSM = 10", 4.0 * 3.0 + 6.0),
+        // All beams, and there are none: the bar is left alone.
+        ("NSM = 12", 0.0),
     ] {
         let (model, faults) = model_of(selected, &format!("{PLATES}{nsm}"));
         assert_eq!(faults, 0, "{selected}");
@@ -331,6 +333,21 @@ fn non_structural_mass_weighs_where_case_control_selects_it() {
     let added = (b.cg * b.mass - a.cg * a.mass) / 9.0;
     assert!((added - Vec3::new(1.5, 0.5, 0.0)).amax() < 1e-9, "{added}");
     assert_eq!(model_of("NSM = 11", &format!("{PLATES}{nsm}")).1, 1);
+}
+
+#[test]
+fn non_structural_mass_that_differs_between_subcases_is_refused() {
+    let cards = format!("{PLATES}NSM1,5,PSHELL,4.,1,2\nNSM1,6,PSHELL,9.,1");
+    for cases in [
+        "NSM = 5\nSUBCASE 1\nSUBCASE 2\nNSM = 6",
+        "SUBCASE 1\nSUBCASE 2\nNSM = 6",
+    ] {
+        let (model, _) = model_of(cases, &cards);
+        let [card] = &model.unsupported_cards[..] else {
+            panic!("{cases}: {:?}", model.unsupported_cards);
+        };
+        assert_eq!(card.card, "NSM that differs between subcases");
+    }
 }
 
 #[test]

@@ -35,11 +35,9 @@ impl Model {
         let (mut model, mut faults) =
             Self::build(&deck.cards, &deck.case_control.global.params, &loads);
         model.unsupported_cards = structure;
-        if let Some(set) = super::nonstructural::selected(deck) {
-            let (refused, missing) = super::nonstructural::add(&mut model, &deck.cards, set);
-            model.unsupported_cards.extend(refused);
-            faults.extend(missing);
-        }
+        let (refused, missing) = super::nonstructural::add_selected(&mut model, deck);
+        model.unsupported_cards.extend(refused);
+        faults.extend(missing);
         model.mpc = deck.case_control.mpc_of_structure();
         let subcases = deck.case_control.effective_subcases();
         model.selected_spcs = subcases.iter().filter_map(|s| s.spc).collect();

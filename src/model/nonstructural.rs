@@ -4,25 +4,28 @@ use super::fault::{FaultKind, ModelFault};
 use super::types::{BeamProperty, Model, ShellKind, ShellProperty, UnsupportedCard};
 use nastran::bdf::Deck;
 use nastran::cards::{Cards, IdList, NonstructuralMass};
-use nastran::place::Placed;
+use nastran::place::{Place, Placed};
 use std::collections::BTreeSet;
 
-/// The set that case control selects, that of the first subcase where none stands above.
-pub(super) fn selected(deck: &Deck) -> Option<u32> {
-    let lines = deck.case_control.lines.iter();
-    let mut of_nsm = lines.filter(|l| !l.in_packet && l.name == "NSM");
-    let value = of_nsm.next()?.text.split('=').nth(1)?;
-    value.trim().parse().ok()
-}
-
-/// Adds the mass of a set to the properties that it names. Mass per area or length adds to that of the property; a total is spread over the
-/// area or length of all its elements. What is named by element, and properties whose mass elements hold themselves, are handed back.
-pub(super) fn add(
+/// Adds the mass of the set that case control selects to the properties that it names. Mass per area or length adds to that of the property; a
+/// total is spread over the area or length of all its elements. What is named by element, and properties whose mass elements hold
+/// themselves, are handed back; so are sets that differ from subcase to subcase: the structure has one mass.
+pub(super) fn add_selected(
     model: &mut Model,
-    cards: &Cards,
-    set: u32,
+    deck: &Deck,
 ) -> (Vec<UnsupportedCard>, Vec<ModelFault>) {
     let (mut refused, mut faults) = (Vec::new(), Vec::new());
+    let subcases = deck.case_control.effective_subcases();
+    let Some(set) = subcases.first().and_then(|s| s.nsm) else {
+        let odd = subcases.iter().find(|s| s.nsm.is_some());
+        refused.extend(odd.map(|s| differing(s.nsm, s.at)));
+        return (refused, faults);
+    };
+    if let Some(odd) = subcases.iter().find(|s| s.nsm != Some(set)) {
+        refused.push(differing(Some(set), odd.at));
+        return (refused, faults);
+    }
+    let cards = &deck.cards;
     let sets = parts(cards, set);
     for card in cards.nsms.iter().filter(|c| sets.contains(&c.sid)) {
         let found = match card.of.as_str() {
@@ -32,7 +35,22 @@ pub(super) fn add(
             "PCOMP" | "PCOMPG" => shells(model, card, |p| {
                 matches!(p.kind, ShellKind::Laminate { .. })
             }),
-            "PBAR" | "PBARL" | "PBEAM" | "PBEAML" => beams(model, card),
+            "PBAR" | "PBARL" => {
+                let numbers = cards.pbars.iter().map(|p| p.id);
+                beams(
+                    model,
+                    card,
+                    &numbers.chain(cards.pbarls.iter().map(|p| p.id)).collect(),
+                )
+            }
+            "PBEAM" | "PBEAML" => {
+                let numbers = cards.pbeams.iter().map(|p| p.id);
+                beams(
+                    model,
+                    card,
+                    &numbers.chain(cards.pbeamls.iter().map(|p| p.id)).collect(),
+                )
+            }
             _ => {
                 refused.push(UnsupportedCard {
                     card: format!("NSM of {}", card.of),
@@ -55,6 +73,14 @@ pub(super) fn add(
         }
     }
     (refused, faults)
+}
+
+fn differing(set: Option<u32>, at: Place) -> UnsupportedCard {
+    UnsupportedCard {
+        card: "NSM that differs between subcases".to_owned(),
+        id: set,
+        at,
+    }
 }
 
 /// A set and those that NSMADD puts into it.
@@ -106,9 +132,9 @@ fn shells(
     all.filter(|p| wanted(p)).map(|p| p.id).collect()
 }
 
-/// Adds to bars and beams; the properties it was added to.
-fn beams(model: &mut Model, card: &Placed<NonstructuralMass>) -> Vec<u32> {
-    let wanted = |p: &BeamProperty| names(card, p.id);
+/// Adds to bars or beams, whose properties are `of_type`; the properties it was added to.
+fn beams(model: &mut Model, card: &Placed<NonstructuralMass>, of_type: &BTreeSet<u32>) -> Vec<u32> {
+    let wanted = |p: &BeamProperty| of_type.contains(&p.id) && names(card, p.id);
     let add = |model: &mut Model, value: f64| {
         let all = model.beam_properties.iter_mut().filter(|p| wanted(p));
         all.flat_map(|p| &mut p.sections)
@@ -124,9 +150,15 @@ fn spread(model: &mut Model, card: &NonstructuralMass, add: impl Fn(&mut Model, 
     if !card.lumped {
         return add(model, card.value);
     }
-    let mut heavier = model.clone();
-    add(&mut heavier, 1.0);
-    let measure = (heavier.weight().mass - model.weight().mass) / model.params.wtmass;
+    let before = model.weight().mass;
+    let (shells, beams) = (
+        model.shell_properties.clone(),
+        model.beam_properties.clone(),
+    );
+    add(model, 1.0);
+    let measure = (model.weight().mass - before) / model.params.wtmass;
+    model.shell_properties = shells;
+    model.beam_properties = beams;
     if measure > 0.0 {
         add(model, card.value / measure);
     }

@@ -77,6 +77,8 @@ pub struct Subcase {
     pub spc: Option<u32>,
     /// MPC.
     pub mpc: Option<u32>,
+    /// NSM.
+    pub nsm: Option<u32>,
     /// SUPORT1.
     pub suport1: Option<u32>,
     /// TEMPERATURE(LOAD), or without an option.
@@ -146,6 +148,7 @@ impl CaseControl {
         full.load = subcase.load.or(global.load);
         full.spc = subcase.spc.or(global.spc);
         full.mpc = subcase.mpc.or(global.mpc);
+        full.nsm = subcase.nsm.or(global.nsm);
         full.suport1 = subcase.suport1.or(global.suport1);
         full.temperature_load = subcase.temperature_load.or(global.temperature_load);
         full.temperature_initial = subcase.temperature_initial.or(global.temperature_initial);

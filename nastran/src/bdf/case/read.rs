@@ -181,6 +181,7 @@ impl Reader<'_> {
             "LOAD" => self.current().load = self.number(name, value),
             "SPC" => self.current().spc = self.number(name, value),
             "MPC" => self.current().mpc = self.number(name, value),
+            "NSM" => self.current().nsm = self.number(name, value),
             "SUPORT1" | "SUPPORT1" => self.current().suport1 = self.number(name, value),
             "DEFORM" => self.current().deform = self.number(name, value),
             n if n.starts_with("METH") => self.current().method = self.number(name, value),
