@@ -36,6 +36,15 @@ pub struct Finding {
 }
 
 impl Severity {
+    /// Its name in files and in the reference.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Info => "info",
+            Self::Warning => "warning",
+            Self::Error => "error",
+        }
+    }
+
     /// The word of it in messages.
     pub fn word(self) -> &'static str {
         match self {

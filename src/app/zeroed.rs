@@ -105,8 +105,8 @@ pub(super) fn zeros_by_row(
             parts.sum()
         };
         zero.push((0..table.gauges.len()).map(of).collect());
-        let measured: f64 = weights.iter().map(|(_, w)| w * w).sum();
-        noise_factor.push(1.0 + measured + drift * wander / noise);
+        let of_zero: f64 = weights.iter().map(|(_, w)| w * w).sum();
+        noise_factor.push(1.0 + of_zero + drift * wander / noise);
     }
     work.findings.push(
         Finding::new(

@@ -5,7 +5,6 @@ use super::run::refuse;
 use super::voice::print;
 use crate::app;
 use crate::app::output::Output;
-use crate::finding::Severity;
 use crate::finding::explain::Code;
 use crate::report::reference;
 use std::path::Path;
@@ -36,11 +35,10 @@ fn print_json(value: &impl serde::Serialize) -> ExitCode {
 
 /// An entry as a page for a terminal.
 fn words(c: &Code) -> String {
-    let severities: Vec<&str> = c.severity.iter().copied().map(Severity::word).collect();
     format!(
         "{}: {}, from {}\n\n  cause    {}\n  limit    {}\n  remedy   {}\n  example  {}\n",
         c.code,
-        severities.join(" or "),
+        c.severities(),
         c.said_by,
         c.cause,
         c.limit,

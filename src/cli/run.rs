@@ -128,18 +128,7 @@ impl Run {
             };
             Ok((outcome, json))
         });
-        match done {
-            Ok((outcome, json)) => self.say(&Said {
-                text: &outcome.words(),
-                json: &json,
-                findings: &outcome.findings,
-                notes: &outcome.notes,
-                seconds: &outcome.seconds,
-                folder: self.common.out.as_deref(),
-                faults: &outcome.faults,
-            }),
-            Err(faults) => refuse(&faults, &self.common),
-        }
+        self.told_with(done, folder, |checked| &checked.faults)
     }
 
     /// Writes a job from files: alone into the current folder, with `result.json` into `--out`.
@@ -220,6 +209,19 @@ impl Run {
     where
         Outcome<A>: Report,
     {
+        self.told_with(done, folder, |_| &[])
+    }
+
+    /// The same for an outcome that may hold faults.
+    fn told_with<A>(
+        &self,
+        done: Result<(Outcome<A>, String), Faults>,
+        folder: Option<&Path>,
+        faults: impl Fn(&A) -> &[Fault],
+    ) -> ExitCode
+    where
+        Outcome<A>: Report,
+    {
         match done {
             Ok((outcome, json)) => self.say(&Said {
                 text: &outcome.words(),
@@ -228,7 +230,7 @@ impl Run {
                 notes: &outcome.notes,
                 seconds: &outcome.seconds,
                 folder,
-                faults: &[],
+                faults: faults(&outcome.answer),
             }),
             Err(faults) => refuse(&faults, &self.common),
         }

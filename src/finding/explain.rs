@@ -34,6 +34,14 @@ pub struct Code {
     pub example: &'static str,
 }
 
+impl Code {
+    /// The severities in words.
+    pub fn severities(&self) -> String {
+        let names: Vec<&str> = self.severity.iter().map(|s| s.name()).collect();
+        names.join(" or ")
+    }
+}
+
 static CODES: LazyLock<Vec<Code>> = LazyLock::new(|| {
     let mut codes: Vec<Code> = TABLES.iter().flat_map(|t| read_table(t)).collect();
     codes.sort_by_key(|c| c.code);
@@ -89,12 +97,8 @@ fn read_head(line: &'static str) -> Option<Code> {
 }
 
 fn severity_of(word: &str) -> Option<Severity> {
-    match word {
-        "info" => Some(Severity::Info),
-        "warning" => Some(Severity::Warning),
-        "error" => Some(Severity::Error),
-        _ => None,
-    }
+    let all = [Severity::Info, Severity::Warning, Severity::Error];
+    all.into_iter().find(|s| s.name() == word)
 }
 
 #[cfg(test)]

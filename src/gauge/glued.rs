@@ -2,6 +2,7 @@
 
 use super::arms::Gauge;
 use super::build::{CornerRows, build_by, opposite};
+use super::grid_average::SMOOTH;
 use super::spec::{GaugePlace, GaugeSpec};
 use super::surface::{centre, corners, nearest_of, to_side};
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
@@ -29,9 +30,6 @@ pub struct Drawn<'m> {
     /// On the reference surface.
     at: Vec3,
 }
-
-/// Cosine of the angle beyond which a shell lies round a bend: that of PARAM,SNORM's default, 20 degrees.
-const SMOOTH: f64 = 0.939_692_620_785_908_4;
 
 impl<'m> Drawn<'m> {
     /// A channel of `spec` and what lies within `reach` of it. `None` for gauges on bars.

@@ -19,7 +19,7 @@ pub const POINTS: [(f64, f64); 5] = [
 ];
 
 /// Cosine of the angle beyond which a neighbour lies round a bend: that of PARAM,SNORM's default, 20 degrees.
-const SMOOTH: f64 = 0.939_692_620_785_908_4;
+pub(super) const SMOOTH: f64 = 0.939_692_620_785_908_4;
 
 /// Shells that share an edge with `shell` and go on smoothly.
 pub fn neighbours(model: &Model, shell: ShellIx) -> Vec<ShellIx> {

@@ -2,9 +2,8 @@
 
 use super::outcome::{AsGluedSummary, CalibratedGauge, GlueSummary, GluedGauge};
 use crate::app::fault::{Fault, Faults};
-use crate::app::job::correct::turned_by;
 use crate::app::job::{CalibrationKeys, Job};
-use crate::app::strain::{Prepared, spec_of};
+use crate::app::strain::{Prepared, corrected_spec_of};
 use crate::calibrate::{AsGlued, GlueTolerance, MoveKind};
 use crate::finding::{Finding, Severity};
 use crate::gauge::{CornerRows, Drawn, Offset, reading};
@@ -55,9 +54,8 @@ impl<'a> Sites<'a> {
         let reach = REACH * tolerance.position;
         let (mut gauges, mut bridges) = (Vec::new(), Vec::new());
         for g in &job.gauges {
-            let mut spec = spec_of(fields.model(), g).map_err(Faults::from)?;
-            spec.angle_rad += turned_by(&job.corrections, &g.name).to_radians();
-            let channels = if spec.rosette.is_some() { 3 } else { 1 };
+            let spec = corrected_spec_of(fields.model(), job, g).map_err(Faults::from)?;
+            let channels = spec.rosette.map_or(1, |r| r.legs().len());
             for _ in 0..channels {
                 let channel = prepared.gauges.get(gauges.len());
                 bridges.push(g.bridge.name());

@@ -1,6 +1,5 @@
 //! What is kept of one file: a few kilobytes that merge to the result of a vehicle.
 
-use crate::finding::Severity;
 use crate::series::rainflow::Tally;
 use crate::series::rainflow::absent::number;
 use serde::{Deserialize, Serialize};
@@ -55,17 +54,6 @@ pub struct DayFinding {
     pub subject: String,
     /// What was found.
     pub message: String,
-}
-
-impl DayFinding {
-    /// The word of a severity.
-    pub fn word(severity: Severity) -> &'static str {
-        match severity {
-            Severity::Error => "error",
-            Severity::Warning => "warning",
-            Severity::Info => "info",
-        }
-    }
 }
 
 /// What a record came to.

@@ -438,7 +438,7 @@ fn kept_columns(
 
 fn said(severity: Severity, code: &str, subject: &str, message: String) -> DayFinding {
     DayFinding {
-        severity: DayFinding::word(severity).to_owned(),
+        severity: severity.name().to_owned(),
         code: code.to_owned(),
         subject: subject.to_owned(),
         message,

@@ -1,7 +1,7 @@
 //! What a job is written for: the sections that its command needs, commented, instead of those that come after placing.
 
 use super::Proposal;
-use super::text::JOB;
+use super::text::{JOB, LATER};
 use crate::app::context::Context;
 use crate::app::fault::{Fault, Faults};
 use crate::app::outcome::{Outcome, StatedUnits};
@@ -20,9 +20,6 @@ pub enum Purpose {
     /// `calibrate`.
     Calibrate,
 }
-
-/// Where the sections begin that are written once gauges are glued.
-const LATER: &str = "\n# Once gauges are glued and read:\n";
 
 const GAUGES: &str = r#"
 [gauges]

@@ -10,6 +10,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+/// Where the sections begin that are written once gauges are glued.
+pub(super) const LATER: &str = "\n# Once gauges are glued and read:\n";
 /// Properties listed at most: a longer list is shorter as "all", which leaving it out means.
 const MOST_PROPERTIES: usize = 60;
 
@@ -211,14 +213,13 @@ impl JobPlan<'_> {
     }
 
     fn measured(&self) -> String {
-        "\n# Once gauges are glued and read:\n\
-         # [gauges]\n\
+        LATER.to_owned()
+            + "# [gauges]\n\
          # file = \"job.out/gauges.csv\"\n\
          # [measured]\n\
          # strain = \"strain.csv\"                # a column a gauge, microstrain; a row a run (`run`) or a sample (`time`)\n\
          # zero = \"zero.csv\"\n\
          # noise_microstrain = 1.0\n\
          # model_uncertainty_rel = 0.02\n"
-            .to_owned()
     }
 }

@@ -18,7 +18,7 @@ pub(in crate::app) fn text_of(work: &mut Work, job: &Job) -> Result<String, Faul
 
 /// Makes every file name of the job relative to the output folder.
 pub(in crate::app) fn redirect(table: &mut Table, prefix: &str) {
-    const FILE_KEYS: [&str; 9] = [
+    const FILE_KEYS: [&str; 10] = [
         "covariance",
         "file",
         "deck",
@@ -28,6 +28,7 @@ pub(in crate::app) fn redirect(table: &mut Table, prefix: &str) {
         "loads",
         "result",
         "results",
+        "signature",
     ];
     let join = |name: &str| {
         if Path::new(name).is_absolute() {

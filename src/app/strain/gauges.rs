@@ -19,23 +19,20 @@ pub fn lay_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<Vec<Gau
     let mut gauges = Vec::new();
     let corners = fields.corner_rows(job);
     for g in &job.gauges {
-        match spec_of(fields.model(), g) {
-            Ok(mut spec) => {
-                spec.angle_rad += turned_by(&job.corrections, &g.name).to_radians();
-                match build(fields.model(), &spec, corners) {
-                    Ok((channels, findings)) => {
-                        gauges.extend(channels);
-                        work.findings.extend(findings);
-                    }
-                    Err(e) => faults.push(Fault::at(
-                        &*g.file,
-                        g.line,
-                        "gauge",
-                        e.to_string(),
-                        "correct the gauge",
-                    )),
+        match corrected_spec_of(fields.model(), job, g) {
+            Ok(spec) => match build(fields.model(), &spec, corners) {
+                Ok((channels, findings)) => {
+                    gauges.extend(channels);
+                    work.findings.extend(findings);
                 }
-            }
+                Err(e) => faults.push(Fault::at(
+                    &*g.file,
+                    g.line,
+                    "gauge",
+                    e.to_string(),
+                    "correct the gauge",
+                )),
+            },
             Err(f) => faults.push(f),
         }
     }
@@ -53,6 +50,16 @@ pub fn side(s: job::Surface) -> Surface {
         job::Surface::Top => Surface::Top,
         job::Surface::Bottom => Surface::Bottom,
     }
+}
+
+/// A gauge of the job as it is glued: turned as `[[correction]]` says.
+///
+/// # Errors
+/// Ids that the deck lacks.
+pub fn corrected_spec_of(model: &Model, job: &Job, g: &JobGauge) -> Result<GaugeSpec, Fault> {
+    let mut spec = spec_of(model, g)?;
+    spec.angle_rad += turned_by(&job.corrections, &g.name).to_radians();
+    Ok(spec)
 }
 
 /// A gauge of the job with its ids resolved on the model.

@@ -86,15 +86,13 @@ fn verdict(findings: &[&Finding]) -> Markup {
         }
     };
     let errors = count(Severity::Error, "error", "errors");
-    let lead = match errors {
-        Some(_) => "This answer can't be relied on: ",
-        None => "Nothing speaks against this answer: ",
+    let warnings = count(Severity::Warning, "warning", "warnings");
+    let lead = match (&errors, &warnings) {
+        (Some(_), _) => "This answer can't be relied on: ",
+        (None, Some(_)) => "Look before you trust this answer: ",
+        (None, None) => "Nothing speaks against this answer: ",
     };
-    let counts = [
-        errors,
-        count(Severity::Warning, "warning", "warnings"),
-        count(Severity::Info, "note", "notes"),
-    ];
+    let counts = [errors, warnings, count(Severity::Info, "note", "notes")];
     let said: Vec<String> = counts.into_iter().flatten().collect();
     html! {
         @if said.is_empty() { p { "None." } } @else { p { b { (lead) } (said.join(", ")) "." } }

@@ -1,7 +1,6 @@
 //! The reference as pages, made from the code: keys of a job, fields and columns of results, findings.
 
 use crate::app::job::schema::keys;
-use crate::finding::Severity;
 use crate::finding::explain::codes;
 use std::fmt::Write;
 
@@ -125,12 +124,11 @@ fn finding_page() -> String {
         out.push_str(&row(&[code, meaning]));
     }
     for c in codes() {
-        let severities: Vec<&str> = c.severity.iter().copied().map(word).collect();
         let _ = write!(
             out,
             "\n## {}\n\n{}; from: {}.\n\n- cause: {}\n- limit: {}\n- remedy: {}\n- example: {}\n",
             c.code,
-            severities.join(" or "),
+            c.severities(),
             c.said_by,
             c.cause,
             c.limit,
@@ -154,11 +152,3 @@ pub const EXIT_CODES: [(&str, &str); 4] = [
     ),
     ("130", "stopped by Ctrl-C: no half-written file is left"),
 ];
-
-fn word(severity: Severity) -> &'static str {
-    match severity {
-        Severity::Info => "info",
-        Severity::Warning => "warning",
-        Severity::Error => "error",
-    }
-}

@@ -1,6 +1,6 @@
 //! Sheets of plain cells to the bytes of a workbook.
 
-use crate::finding::{Finding, Severity};
+use crate::finding::Finding;
 use rust_xlsxwriter::{
     DocProperties, ExcelDateTime, Format, FormatAlign, FormatBorder, Workbook, Worksheet, XlsxError,
 };
@@ -171,13 +171,8 @@ fn findings_sheet(findings: &[Finding]) -> Sheet {
     sheet.rows = findings
         .iter()
         .map(|f| {
-            let severity = match f.severity {
-                Severity::Info => "info",
-                Severity::Warning => "warning",
-                Severity::Error => "error",
-            };
             vec![
-                severity.into(),
+                f.severity.name().into(),
                 f.code.into(),
                 f.subject.clone().into(),
                 f.message.clone().into(),
