@@ -6,7 +6,7 @@ use super::fault::{Fault, Faults};
 use super::job::Job;
 use super::outcome::{Answer, Outcome, StatedUnits, finite};
 use super::solved::{faults_of, support_of_job};
-use super::strain::spec_of;
+use super::strain::corrected_spec_of;
 use super::work::Work;
 use crate::fe::{
     LoadCase, ModalSolution, SolveOptions, Support, SupportChoice, solve_modes, support_of,
@@ -147,8 +147,11 @@ fn solved(
         .map_err(|e| faults_of(&e, &read))?;
     work.findings.extend(solution.findings.iter().cloned());
     let mut gauges = Vec::new();
-    for g in job.iter().flat_map(|j| &j.gauges) {
-        let spec = spec_of(model, g).map_err(Faults::from)?;
+    let of_job = job
+        .iter()
+        .flat_map(|j| j.gauges.iter().map(move |g| (j, g)));
+    for (job, g) in of_job {
+        let spec = corrected_spec_of(model, job, g).map_err(Faults::from)?;
         let laid = build(model, &spec, CornerRows::Present).map_err(|e| {
             Fault::at(
                 &*g.file,

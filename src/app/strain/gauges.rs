@@ -66,7 +66,7 @@ pub fn corrected_spec_of(model: &Model, job: &Job, g: &JobGauge) -> Result<Gauge
 ///
 /// # Errors
 /// Ids that the deck lacks.
-pub fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
+fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
     let fault = |field: &str, wrong: String, remedy: &str| {
         Fault::at(&*g.file, g.line, field, wrong, remedy)
     };

@@ -2,7 +2,7 @@
 
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::{Job, Role, Study};
-use crate::app::strain::{Fields, read_fields, read_given, spec_of};
+use crate::app::strain::{Fields, corrected_spec_of, read_fields, read_given};
 use crate::app::work::Work;
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::gauge::{Gauge, GaugePlace, GaugeSpec, build, reading};
@@ -71,8 +71,8 @@ pub(super) fn prepare(work: &mut Work, job: &Job, _study: &Study) -> Result<Prep
         })?;
         let mut channel = 0;
         for g in &job.gauges {
-            let spec = spec_of(fields.model(), g).map_err(Faults::from)?;
-            let n = if spec.rosette.is_some() { 3 } else { 1 };
+            let spec = corrected_spec_of(fields.model(), job, g).map_err(Faults::from)?;
+            let n = spec.rosette.map_or(1, |r| r.legs().len());
             for leg in 0..n {
                 let row: Vec<f64> = s.values.row(channel).iter().copied().collect();
                 pool.push(variants(&fields, job, &cases, &spec, leg, row));
