@@ -565,6 +565,11 @@ fn wanted_elements_and_picked_lists_are_kept() {
             "twice.toml",
             job("file = \"picked.toml\"\nelements = [1]\n"),
         )
+        .with("odd.toml", job("file = \"odd_list.toml\"\n"))
+        .with(
+            "odd_list.toml",
+            "units = \"m-kg-s\"\n[candidates]\nsurfaces = [\"top\"]\n",
+        )
         .with("none.toml", job("wanted_elements = [99]\n"));
     let plan = |name: &str| {
         let job = Job::read(name, &files).unwrap();
@@ -582,6 +587,11 @@ fn wanted_elements_and_picked_lists_are_kept() {
     let faults = Job::read("twice.toml", &files).unwrap_err().to_string();
     assert!(
         faults.contains("picked.toml:1: candidates.elements: `elements` stands in the job too"),
+        "{faults}"
+    );
+    let faults = Job::read("odd.toml", &files).unwrap_err().to_string();
+    assert!(
+        faults.contains("candidates.surfaces") && faults.contains("units"),
         "{faults}"
     );
     let Err(faults) = plan("none.toml") else {

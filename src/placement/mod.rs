@@ -39,6 +39,7 @@ pub mod spacing;
 mod spec;
 mod table;
 pub mod units;
+pub mod wanted;
 
 pub use criterion::Criterion;
 pub use layout::{Layout, PlaceError, place};

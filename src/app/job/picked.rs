@@ -30,6 +30,28 @@ pub(super) fn read_picked(inputs: &mut Inputs, job: &mut Job, faults: &mut Fault
     }
 }
 
+/// Keys of a picked file that are none of its lists: they would not count.
+fn strangers(file: &str, text: &str, candidates: &mut Candidates) -> FaultList {
+    let known = lists(candidates).map(|l| l.0);
+    let table: toml::Table = text.parse().unwrap_or_default();
+    let below = table.get("candidates").and_then(toml::Value::as_table);
+    let sections = table.keys().filter(|k| *k != "candidates").cloned();
+    let keys = below.into_iter().flat_map(toml::Table::keys);
+    let keys = keys.filter(|k| !known.contains(&k.as_str()));
+    let remedy = format!("keep {} here, and the rest in the job", known.join(", "));
+    sections
+        .chain(keys.map(|k| format!("candidates.{k}")))
+        .map(|k| {
+            Fault::of(
+                file,
+                k,
+                "it does not count in a file of picked lists",
+                &*remedy,
+            )
+        })
+        .collect()
+}
+
 fn put(job: &mut Job, named: &NamedFile, text: &str, faults: &mut FaultList) {
     let file = &*named.given;
     let (raw, found) = parse_job(file, text);
@@ -47,16 +69,9 @@ fn put(job: &mut Job, named: &NamedFile, text: &str, faults: &mut FaultList) {
         }
         return;
     };
+    faults.extend(strangers(file, text, &mut job.candidates));
     let mut c = Collector { file, text, faults };
     let mut picked = candidates_of(&mut c, section);
-    if picked.file.is_some() {
-        c.fault(
-            section,
-            "candidates.file",
-            "a picked file names another",
-            "put its lists here",
-        );
-    }
     for ((name, own), (_, other)) in lists(&mut job.candidates)
         .into_iter()
         .zip(lists(&mut picked))

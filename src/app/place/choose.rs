@@ -12,7 +12,8 @@ use crate::model::Vec3;
 use crate::placement::candidates::{Angles, Choice};
 use crate::placement::sites::axis_of;
 use crate::placement::units::{UnitSpec, Units, place_units};
-use crate::placement::{Layout, PlaceError, Spec, condition, place, quality};
+use crate::placement::wanted::value;
+use crate::placement::{Layout, PlaceError, Spec, condition, place};
 use std::collections::HashMap;
 
 /// A channel chosen.
@@ -98,7 +99,9 @@ pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Ch
     {
         let mut layout = place(&kind.candidates, spec).map_err(Refused::By)?;
         let least_condition = well_conditioned(task, kind, spec, &mut layout);
-        on_wanted(task, kind, spec, &mut layout).map_err(Refused::Job)?;
+        if let Some(gauges) = on_wanted(task, kind, spec, &layout).map_err(Refused::Job)? {
+            put_instead(kind, spec, &mut layout, gauges);
+        }
         let n = layout.gauges.len();
         let channels = layout
             .gauges
@@ -117,29 +120,31 @@ pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Ch
             least_condition,
         });
     }
-    if task.job.placement.criterion == Wanted::Condition {
-        return Err(Refused::Job(Fault::at(
-            &*task.job.file,
-            task.job.placement.line,
+    let job = task.job;
+    let single = |line, field, what, remedy| {
+        let wrong = format!("{what} single gauges of one wiring, without pairs, costs or a budget");
+        Refused::Job(Fault::at(&*job.file, line, field, wrong, remedy))
+    };
+    if job.placement.criterion == Wanted::Condition {
+        return Err(single(
+            job.placement.line,
             "placement.criterion",
-            "the least condition number is looked for among single gauges of one wiring, without pairs, costs or a budget",
+            "the least condition number is looked for among",
             "write criterion = \"D\", or leave those keys out",
-        )));
+        ));
     }
-    if task.job.candidates.wanted_elements.is_some() {
-        return Err(Refused::Job(Fault::at(
-            &*task.job.file,
-            task.job.candidates.line,
+    if job.candidates.wanted_elements.is_some() {
+        return Err(single(
+            job.candidates.line,
             "candidates.wanted_elements",
-            "wanted elements are for single gauges of one wiring, without pairs, costs or a budget",
+            "wanted elements are for",
             "leave those keys out, or state the gauges of these elements as [[gauge]] and keep them",
-        )));
+        ));
     }
     within_budget(task, kinds, spec)
 }
 
-/// Puts the layout of least condition number in place of the best one by D, where the job asks for it; the certificate then says how much
-/// of the largest determinant is left.
+/// Puts the layout of least condition number in place of the best one by D, where the job asks for it.
 fn well_conditioned(task: &Task, kind: &Kind, spec: &Spec, layout: &mut Layout) -> Option<f64> {
     if task.job.placement.criterion != Wanted::Condition {
         return None;
@@ -152,16 +157,20 @@ fn well_conditioned(task: &Task, kind: &Kind, spec: &Spec, layout: &mut Layout) 
         spd::add_outer(&mut base, row, noise * noise);
     }
     let found = condition::best(&kind.candidates, spec, layout, &base)?;
-    let rows: Vec<Vec<f64>> = found
-        .gauges
-        .iter()
-        .map(|&g| kind.candidates.row(g))
-        .collect();
-    layout.log_det = quality::value(&rows, &spec.prior, k, &spec.criterion)?;
-    layout.efficiency_bound = ((layout.log_det - layout.upper_bound) / k as f64).exp();
-    layout.gauges = found.gauges;
-    layout.proved = false;
+    put_instead(kind, spec, layout, found.gauges)?;
     Some(found.least)
+}
+
+/// Puts other gauges in the place of the best ones by D; the certificate then says how much of the largest determinant is left. `None` where
+/// they don't tell the loads apart, and nothing is changed.
+fn put_instead(kind: &Kind, spec: &Spec, layout: &mut Layout, gauges: Vec<Choice>) -> Option<()> {
+    let log_det = value(&kind.candidates, spec, &gauges)?;
+    let k = kind.candidates.n_loads() as f64;
+    layout.proved &= gauges == layout.gauges;
+    layout.log_det = log_det;
+    layout.efficiency_bound = ((log_det - layout.upper_bound) / k).exp();
+    layout.gauges = gauges;
+    Some(())
 }
 
 fn name(i: usize, n: usize) -> String {
