@@ -368,6 +368,8 @@ fn loads_are_recovered_better_without_the_mesh_error_and_intervals_hold_them() {
         rms.push(((sum / f64::from(n)).sqrt(), held as f64 / f64::from(n)));
     }
     assert!(rms[1].0 < 0.2 * rms[0].0, "{rms:?}");
+    // Asked 95 %; 91 % is what is reached, since free torsion beside folds converges more slowly than is taken for granted. Six hundred
+    // intervals of a hundred runs: three standard errors of the share are 3 %.
     assert!(rms[1].1 > 0.88, "{rms:?}");
 }
 

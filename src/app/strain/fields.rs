@@ -1,6 +1,6 @@
 //! The job's model and the strain of its unit loads, from result files or from the built-in solver.
 
-use super::mesh::take_out;
+use super::mesh::{not_checked, take_out};
 use super::unit_loads::check_places;
 use crate::app::deck::{DeckModel, moduli_and_densities, read_model};
 use crate::app::fault::{Fault, FaultList, Faults};
@@ -144,6 +144,11 @@ pub fn read_fields(work: &mut Work, job: &Job) -> Result<Fields, Faults> {
             mesh_error,
             first_mode: report.modes.first().copied(),
         });
+    }
+    if files.mesh_error {
+        work.findings.push(not_checked(
+            "the strain comes from results, and the built-in solver alone can solve a finer mesh",
+        ));
     }
     check_places(job, &deck.model)?;
     let mut wanted: BTreeSet<u32> = job.loads.iter().map(JobLoad::subcase).collect();

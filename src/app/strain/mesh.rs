@@ -91,16 +91,22 @@ pub(super) fn take_out(
             Some(errors)
         }
         Err(why) => {
-            work.findings.push(Finding::new(
-                Severity::Warning,
-                "mesh-not-checked",
-                "model.mesh_error",
-                format!("what the mesh makes of the strain is not known, since no finer mesh was solved: {why}"),
-                "state `model_uncertainty_rel`, or compare with a finer deck",
-            ));
+            work.findings
+                .push(not_checked(&format!("no finer mesh was solved: {why}")));
             None
         }
     }
+}
+
+/// Says that what the mesh makes stays unknown though the job asks for it.
+pub(super) fn not_checked(why: &str) -> Finding {
+    Finding::new(
+        Severity::Warning,
+        "mesh-not-checked",
+        "model.mesh_error",
+        format!("what the mesh makes of the strain is not known: {why}"),
+        "state `model_uncertainty_rel`, or compare with a finer deck",
+    )
 }
 
 /// By load, the strain on a mesh half as wide less that on the deck's.
@@ -235,8 +241,10 @@ pub fn coarse_at_gauges(gauges: &[Gauge], errors: &[GaugeMeshError]) -> Option<F
     )
 }
 
-/// How far S may be off by what the model's error and the mesh leave; `None` where no mesh error was computed, or S is too large.
+/// How far S may be off by what the model's error and the mesh leave; `None` where no mesh error was computed, or S is too large, which a
+/// finding then says.
 pub(super) fn uncertainty(
+    work: &mut Work,
     measured: Option<&Measured>,
     gauges: &[Gauge],
     s: &Sensitivity,
@@ -244,7 +252,20 @@ pub(super) fn uncertainty(
 ) -> Option<Uncertainty> {
     let measured = measured?;
     let (n, k) = s.values.shape();
-    if n * k > MOST_ENTRIES || errors.len() != k || gauges.len() != n {
+    if errors.len() != k || gauges.len() != n {
+        return None;
+    }
+    if n * k > MOST_ENTRIES {
+        let message = format!(
+            "S has {} entries, and beyond {MOST_ENTRIES} their covariance is not kept: the mesh's error is taken out, what may be left of it is not weighed",
+            n * k
+        );
+        let remedy = "use fewer gauges at a time, or state the rest in `model_uncertainty_rel`";
+        let code = "mesh-error-not-weighed";
+        work.findings.push(
+            Finding::new(Severity::Warning, code, "model.mesh_error", message, remedy)
+                .with_numbers((n * k) as f64, MOST_ENTRIES as f64),
+        );
         return None;
     }
     let left = crate::linalg::Matrix::from_fn(n, k, |g, l| {
