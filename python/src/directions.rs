@@ -13,8 +13,9 @@ const STRAIN: Named = Named {
     axes: "places x 3 or 6",
 };
 
-/// Exx Eyy Ezz Exy Eyz Ezx (tensor shear, places x 6) along directions as they are given, or exx, eyy, gxy (engineering shear) of elements along directions: in the element's frame without `corners`, else in the frame of `corners`
-/// (places x 3 or 4 x 3), the direction laid onto the element. NaN where an element has no area or the direction is its normal.
+/// Exx Eyy Ezz Exy Eyz Ezx (tensor shear, places x 6) along directions as they are given; or exx, eyy, gxy (engineering shear, places x 3) of
+/// elements, in the element's frame without `corners`, else in the frame of `corners` (places x 3 or 4 x 3), the direction laid onto the
+/// element. NaN where an element has no area or the direction is its normal.
 #[pyfunction]
 #[pyo3(signature = (strain, direction, corners))]
 pub(crate) fn strain_along<'py>(

@@ -34,8 +34,8 @@ impl Undo {
 /// What the weight of a mass at a place gains by the deck that is written, microstrain per kg by gauge.
 pub(super) type Weight = (String, Vec<f64>);
 
-/// Corrections of the named effects, `deck`: of a job with a deck; `None` where they can't be said as entries of a job: channels exchanged in a ring or corrected by the
-/// job before, an offset beside a zero record (which it would be taken off, too).
+/// Corrections of the named effects; `deck` of a job with a deck. `None` where they can't be said as entries of a job: channels exchanged in
+/// a ring or corrected by the job before, an offset beside a zero record (which it would be taken off, too).
 ///
 /// Faults of channels are undone first, in the reverse of the order in which they act; then the strain of masses that came aboard after
 /// the zero is taken off, and, from a deck, a factor on all strain.
