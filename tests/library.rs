@@ -599,3 +599,33 @@ fn wanted_elements_and_picked_lists_are_kept() {
     };
     assert!(faults.to_string().contains("element 99 is no candidate"));
 }
+
+/// A gauge drawn at 30 degrees and known to be turned by 60 reads what one drawn at 90 does.
+#[test]
+fn a_gauge_that_is_known_to_be_turned_is_turned_in_modes_too() {
+    let gauge = |angle: u32| {
+        format!(
+            "[[gauge]]\nname = \"G\"\nelement = 5\nsurface = \"top\"\ndirection = [1, 0, 0]\nangle_deg = {angle}\n"
+        )
+    };
+    let head = JOB.split("[placement]").next().unwrap();
+    let correction = "[[correction]]\ngauge = \"G\"\nangle_deg = 60\n";
+    let files = files()
+        .with("drawn.toml", format!("{head}{}", gauge(90)))
+        .with("turned.toml", format!("{head}{}{correction}", gauge(30)));
+    let strain = |name: &str| -> Vec<f64> {
+        let job = Job::read(name, &files).unwrap();
+        let modes = strainbridge::modes(&job, 4, &Context::new(&files)).unwrap();
+        modes
+            .modes
+            .iter()
+            .map(|m| m.gauge_microstrain[0].unwrap())
+            .collect()
+    };
+    let (drawn, turned) = (strain("drawn.toml"), strain("turned.toml"));
+    let size = drawn.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
+    assert!(size > 0.0);
+    for (a, b) in drawn.iter().zip(&turned) {
+        assert!((a - b).abs() < 1e-9 * size, "{a} {b}");
+    }
+}

@@ -71,3 +71,23 @@ fn redirect_all(table: &mut Table, join: &dyn Fn(&str) -> String) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_file_of_a_job_is_found_from_the_folder_of_its_answer() {
+        let mut job: Table = "[model]\ndeck = \"a.bdf\"\nresults = [\"a.op2\"]\n\
+             [[reconcile.effect]]\nid = \"bracket\"\nsignature = \"bracket.csv\"\n\
+             [candidates]\nfile = \"picked.toml\"\n"
+            .parse()
+            .unwrap();
+        redirect(&mut job, "..");
+        let text = toml::to_string(&job).unwrap();
+        for name in ["a.bdf", "a.op2", "bracket.csv", "picked.toml"] {
+            assert!(text.contains(&format!("\"../{name}\"")), "{text}");
+        }
+        assert!(text.contains("id = \"bracket\""));
+    }
+}
