@@ -304,6 +304,8 @@ fn truth(text: &str, gauges: &[Glued], runs: &str) -> StrainFrame {
         model_rel: 0.0,
         as_modelled: None,
         scatter: Vec::new(),
+        learnt: None,
+        learnt: None,
         influence,
     }
 }

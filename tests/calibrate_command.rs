@@ -1,6 +1,11 @@
 //! `calibrate` through the program: the examples of the guide, whose unknown runs were made with loads written here.
 
+#[path = "../nastran/tests/support/mod.rs"]
+mod support;
+
 use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -313,4 +318,125 @@ fn gauges_are_found_where_they_were_glued_and_their_table_makes_the_true_s() {
         rms(&glued),
         rms(&drawn)
     );
+}
+
+/// A measured bridge: gauges; name, lane and readings of each run.
+struct Bridge {
+    gauges: Vec<String>,
+    runs: Vec<(String, String, Vec<f64>)>,
+}
+
+/// Runs of the bridge at Ponca that are fit for weighing and in which every gauge was recorded.
+fn ponca() -> Option<Bridge> {
+    let rows = |text: String| -> Vec<Vec<String>> {
+        let row = |l: &str| l.split(',').map(str::to_owned).collect();
+        text.lines().map(row).collect()
+    };
+    let (runs, peaks) = (
+        rows(support::text("bridges/ponca/runs.csv")?),
+        rows(support::text("bridges/ponca/peaks.csv")?),
+    );
+    let column = |name: &str| runs[0].iter().position(|h| h == name).unwrap();
+    let (lane, fit) = (column("lane"), column("fit_for_weighing"));
+    let fit: BTreeMap<&String, &String> = runs[1..]
+        .iter()
+        .filter(|r| r[fit] == "1")
+        .map(|r| (&r[0], &r[lane]))
+        .collect();
+    let whole = |r: &&Vec<String>| fit.contains_key(&r[0]) && r[1..].iter().all(|v| !v.is_empty());
+    let numbers = |r: &Vec<String>| r[1..].iter().map(|v| v.parse().unwrap()).collect();
+    Some(Bridge {
+        gauges: peaks[0][1..].to_vec(),
+        runs: peaks[1..]
+            .iter()
+            .filter(whole)
+            .map(|r| (r[0].clone(), fit[&r[0]].clone(), numbers(r)))
+            .collect(),
+    })
+}
+
+/// Strain and runs files of some runs, the channel `turned` with its sign the wrong way round.
+fn write_runs(folder: &Path, of: &Bridge, keep: impl Fn(usize) -> bool, turned: Option<usize>) {
+    let lanes = ["east", "middle", "west"];
+    let mut strain = format!("run,{}\n", of.gauges.join(","));
+    let mut runs = format!("run,lane,{}\n", lanes.join(","));
+    for (name, lane, values) in of
+        .runs
+        .iter()
+        .enumerate()
+        .filter(|r| keep(r.0))
+        .map(|r| r.1)
+    {
+        strain += name;
+        for (g, v) in values.iter().enumerate() {
+            let sign = if turned == Some(g) { -1.0 } else { 1.0 };
+            let _ = write!(strain, ",{}", sign * v);
+        }
+        strain.push('\n');
+        let _ = write!(runs, "{name},{lane}");
+        for l in lanes {
+            let _ = write!(runs, ",{}", if l == lane { 219.386 } else { 0.0 });
+        }
+        runs.push('\n');
+    }
+    std::fs::write(folder.join("strain.csv"), strain).unwrap();
+    std::fs::write(folder.join("runs.csv"), runs).unwrap();
+}
+
+const PONCA: &str = r#"
+units = "m-kg-s"
+[[load]]
+name = "east"
+[[load]]
+name = "middle"
+[[load]]
+name = "west"
+[measured]
+strain = "strain.csv"
+noise_microstrain = 0.05
+[runs]
+file = "runs.csv"
+units = { force = "kN" }
+[calibration]
+repeats = ["lane"]
+"#;
+
+/// Calibrated by every other run, the bridge says of the others that nothing is missing, and names the one channel that was turned. Noise
+/// alone (.05 of 20 microstrain, repeats scatter by a tenth) makes every run of the others a contradiction.
+#[test]
+fn against_a_calibrated_s_reconcile_counts_what_repeats_scatter_by() {
+    let Some(bridge) = ponca() else { return };
+    assert!(bridge.runs.len() > 20, "{}", bridge.runs.len());
+    let largest = |g: &usize| {
+        let power = bridge.runs.iter().map(|r| r.2[*g] * r.2[*g]);
+        power.sum::<f64>()
+    };
+    let hot = (0..bridge.gauges.len()).max_by(|a, b| largest(a).total_cmp(&largest(b)));
+    let hot = hot.unwrap();
+    for (name, turned) in [("control", None), ("turned", Some(hot))] {
+        let folder = scratch(&format!("calibrated-reconcile-{name}"));
+        std::fs::write(folder.join("job.toml"), PONCA).unwrap();
+        write_runs(&folder, &bridge, |r| r % 2 == 0, None);
+        let (code, _, said) = run("calibrate", &folder.join("job.toml"), &folder.join("cal"));
+        assert_eq!(code, Some(0), "{said}");
+        write_runs(&folder, &bridge, |r| r % 2 == 1, turned);
+        let job = folder.join("cal/calibrated.toml");
+        let (_, result, said) = run("reconcile", &job, &folder.join("found"));
+        let named: Vec<&str> = result["named"]
+            .as_array()
+            .unwrap_or_else(|| panic!("{said}"))
+            .iter()
+            .filter_map(Value::as_str)
+            .collect();
+        match turned {
+            // Whether a gain of a few per cent hides in the scatter may be left open: neither names anything.
+            None => assert!(
+                named.is_empty()
+                    && (result["verdict"] == "none" || result["verdict"] == "below-detectability"),
+                "{} {named:?}",
+                result["verdict"]
+            ),
+            Some(g) => assert_eq!(named, [format!("sign_flip:{}", bridge.gauges[g])]),
+        }
+    }
 }

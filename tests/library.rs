@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 use std::sync::Arc;
-use strainbridge::app::context::InMemory;
+use strainbridge::app::context::{Files, InMemory};
 use strainbridge::app::reconcile::extended_job;
 use strainbridge::app::recover::{Block, RecordHead, RecordSink, Samples, recover_into};
 use strainbridge::app::store::Memory;
@@ -628,4 +628,57 @@ fn a_gauge_that_is_known_to_be_turned_is_turned_in_modes_too() {
     for (a, b) in drawn.iter().zip(&turned) {
         assert!((a - b).abs() < 1e-9 * size, "{a} {b}");
     }
+}
+
+/// A moment that is not called one is a moment to `reconcile` too, and S is that of `sensitivity` to the last digits.
+#[test]
+fn reconcile_has_the_s_that_every_command_has() {
+    let files = yard();
+    let bytes = files.load("job.toml".as_ref()).unwrap();
+    let mut text = String::from_utf8_lossy(&bytes).into_owned();
+    text = text.replace(
+        "[measured]",
+        "[[load]]\nname = \"A\"\ngrid = 0\ncomponent = \"MX\"\n[[load]]\nname = \"C\"\n[[load]]\nname = \"B\"\n[measured]",
+    );
+    text = text.replace(
+        "per = { force = \"kN\" }",
+        "per = { force = \"kN\", moment = \"N mm\" }",
+    );
+    text = text.replace(
+        "units = { force = \"kN\" }",
+        "units = { force = \"kN\", moment = \"N mm\" }",
+    );
+    let files = files.with("job.toml", text);
+    let job = Job::read("job.toml", &files).unwrap();
+    let context = Context::new(&files);
+    let s = sensitivity(&job, &context)
+        .unwrap()
+        .answer
+        .prepared
+        .sensitivity;
+    let found = reconcile(&job, &context).unwrap().answer;
+    let frame = found.strain.unwrap().frame;
+    let n_c = frame.n_columns();
+    for (g, gauge) in s.gauges.iter().enumerate() {
+        let row = frame.gauges.iter().position(|f| f.name == *gauge).unwrap();
+        for (l, load) in s.loads.iter().enumerate() {
+            let column = frame
+                .load_names
+                .iter()
+                .position(|n| *n == load.name)
+                .unwrap();
+            // Microstrain a kilonewton (or kN m) against strain a newton.
+            let asked = frame.influence[row * n_c + column] * 1e-6 / 1e3;
+            let had = s.values[(g, l)];
+            assert!(
+                (asked - had).abs() <= 1e-14 * had.abs(),
+                "{gauge} {}",
+                load.name
+            );
+        }
+    }
+    // The runs file counts the moment in N mm: a millionth of a kN m.
+    let a = frame.load_names.iter().position(|n| n == "A").unwrap();
+    let stated = 3.0 + 2.5 * (2.1_f64).cos();
+    assert!((frame.loads[a] - 1e-6 * stated).abs() < 1e-12);
 }

@@ -125,8 +125,37 @@ impl Uncertainty {
         }
     }
 
+    /// The same for some of the loads, each in another unit: `loads` has their numbers, and the old units in a new one.
+    pub fn of_loads(&self, loads: &[(usize, f64)]) -> Self {
+        let k = (self.mean_square.len() as f64).sqrt().round() as usize;
+        let n = (self.scatter.len() as f64).sqrt().round() as usize;
+        let of_gauge = |g: usize| loads.iter().map(move |&(l, unit)| (g * k + l, unit));
+        let entries: Vec<(usize, f64)> = (0..n).flat_map(of_gauge).collect();
+        let pick = |matrix: &[f64], order: usize, rows: &[(usize, f64)]| -> Vec<f64> {
+            let pairs = rows.iter().flat_map(|a| rows.iter().map(move |b| (a, b)));
+            let value = |((i, p), (j, q)): (&(usize, f64), &(usize, f64))| {
+                p * q * matrix.get(i * order + j).copied().unwrap_or(0.0)
+            };
+            pairs.map(value).collect()
+        };
+        Self {
+            covariance: pick(&self.covariance, n * k, &entries),
+            scatter: self.scatter.clone(),
+            mean_square: pick(&self.mean_square, k, loads),
+            scale: self.scale,
+            dof: self.dof,
+        }
+    }
+
+    /// Sum of the variances of the entries of gauge `g` of S with `k` loads.
+    pub fn power(&self, g: usize, k: usize) -> f64 {
+        let n = (self.scatter.len() as f64).sqrt().round() as usize;
+        let variance = |e: usize| self.covariance.get(e * (n * k + 1)).copied().unwrap_or(0.0);
+        self.scale * self.scale * (g * k..(g + 1) * k).map(variance).sum::<f64>()
+    }
+
     /// `q(f)^2`, strain^2.
-    fn mean_square_of(&self, f: &[f64]) -> f64 {
+    pub fn mean_square_of(&self, f: &[f64]) -> f64 {
         let rows = self.mean_square.chunks_exact(f.len().max(1)).zip(f);
         rows.map(|(row, fj)| fj * row.iter().zip(f).map(|(a, fk)| a * fk).sum::<f64>())
             .sum()

@@ -263,6 +263,7 @@ fn gauges_12_and_13_of_the_thesis_are_unfit_for_the_payload_and_no_gain_or_sign_
         model_rel: 0.1,
         as_modelled: None,
         scatter: Vec::new(),
+        learnt: None,
     };
     let outcome = examine(&frame, &[]);
     // Estimates of 281 and -381 kN in one run, -940 and -2599 in the next: of no fixed ratio to the load, so no gain, sign or angle.

@@ -80,6 +80,7 @@ fn frame() -> StrainFrame {
         model_rel: 0.0,
         as_modelled: None,
         scatter: Vec::new(),
+        learnt: None,
     }
 }
 

@@ -3,20 +3,20 @@
 use super::background::{Axis, ENTRY_SHARE, background, gradients};
 use super::deck_thermal::{Heated, NOTHING};
 use super::finer::Finer;
+use super::frame_columns::FrameColumns;
 use super::influence::{influence, payload_grid, readings};
 use super::model_part::{ModelPart, facts, nominal_x_m, nominal_y_m};
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Component, Job, JobLoad, LoadActs, Role};
 use crate::app::solved::{support_of_job, unit_loads_kept};
-use crate::app::strain::{Fields, lay_gauges, read_fields, unit_loads, without_strain};
+use crate::app::strain::{Fields, Prepared, lay_gauges, prepare, unit_loads};
 use crate::app::work::Work;
 use crate::fe::UnitLoad;
 use crate::finding::{Finding, Severity};
 use crate::gauge::Gauge;
 use crate::model::{GridIx, Model, Vec3};
 use crate::reconcile::strain::{MassSignature, NuisanceLoad, PlaneStrainRow, Wiring};
-use crate::sensitivity::from_cases;
-use crate::units::{KILO, MICROSTRAIN};
+use crate::units::KILO;
 
 /// The model with everything needed to solve it again.
 pub(super) struct DeckFrame {
@@ -33,8 +33,22 @@ pub(super) fn read(
     job: &Job,
     channels: &[String],
 ) -> Result<(ModelPart, DeckFrame), Faults> {
-    let fields = read_fields(work, job)?;
-    let gauges = in_order(job, lay_gauges(work, job, &fields)?, channels)?;
+    let Prepared {
+        sensitivity,
+        fields: Some(fields),
+        gauges,
+        ..
+    } = prepare(work, job)?
+    else {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "model",
+            "S comes from no model",
+            "name the deck in [model]",
+        )));
+    };
+    let gauges = in_order(job, gauges, channels)?;
+    let s = FrameColumns::of(job, sensitivity, channels)?;
     // The same gauges turned: what they read at three angles holds their in-plane strain.
     let noted = work.findings.len();
     let mut turned = Vec::new();
@@ -121,13 +135,16 @@ pub(super) fn read(
     })?;
     let mut base = influence(job, model, &gauges, &own, n_c);
     let n_g = gauges.len();
-    let mut table = table;
-    if job.model.as_ref().is_some_and(|m| !m.results.is_empty()) {
-        // S of the job comes from its results; what else strains the structure from the built-in solver.
-        from_results(job, &fields, &gauges, &mut base, n_c)?;
-        if finer.is_none() {
-            table.clone_from(&base);
+    // S is that of the job: where its results are Nastran's, the built-in solver has the rest.
+    for (c, (_, column)) in s.wanted_columns().iter().enumerate() {
+        for (row, v) in base.chunks_exact_mut(n_c).zip(column) {
+            row[c] = *v;
         }
+    }
+    let mut table = table;
+    let from_results = job.model.as_ref().is_some_and(|m| !m.results.is_empty());
+    if from_results && finer.is_none() {
+        table.clone_from(&base);
     }
     let plane = |g: usize| -> PlaneStrainRow {
         let one = |c: usize| {
@@ -404,35 +421,6 @@ fn has_nuisance(job: &Job, model: &Model, at: GridIx, component: Component) -> b
         } => l.role == Role::Nuisance && c == component && model.grid_ix(grid) == Some(at),
         _ => false,
     })
-}
-
-/// Puts S of the job's results into the columns of its loads, microstrain per kN or kN m.
-fn from_results(
-    job: &Job,
-    fields: &Fields,
-    gauges: &[Gauge],
-    base: &mut [f64],
-    n_columns: usize,
-) -> Result<(), Faults> {
-    let s = from_cases(gauges, &fields.load_cases(job))
-        .map_err(|missing| without_strain(job, &missing))?;
-    let wanted = job
-        .loads
-        .iter()
-        .enumerate()
-        .filter(|(_, l)| l.role == Role::Wanted);
-    for (c, (j, l)) in wanted.enumerate() {
-        let LoadActs::AtGrid { component, .. } = l.acts else {
-            continue;
-        };
-        let per = KILO / job.units.si(component.quantity()) / MICROSTRAIN;
-        for g in 0..gauges.len() {
-            if let (Some(cell), Some(v)) = (base.get_mut(g * n_columns + c), s.values.get((g, j))) {
-                *cell = v * per;
-            }
-        }
-    }
-    Ok(())
 }
 
 /// No finer mesh was solved: what is assumed instead.

@@ -118,6 +118,13 @@ pub(super) fn extended(
         None => sensitivity_with(frame, outcome, &state, moved),
         Some(_) => None,
     };
+    if sensitivity.is_some() && frame.learnt.is_some() {
+        let ids: Vec<&str> = effects.iter().map(|e| e.id.as_str()).collect();
+        let why = "S was calibrated without it, and its covariance knows nothing of the change: calibrate again with the effect in the job";
+        work.findings
+            .push(effect_not_in_model(&ids.join(" + "), why));
+        return Ok(None);
+    }
     let noted = others.iter().any(|e| changes_notes(&e.extension));
     Ok(Some(ExtendedModel {
         deck: deck_bytes,

@@ -1,16 +1,17 @@
 //! The static frame of a job whose S and signatures are given as CSV files.
 
 use super::described;
+use super::frame_columns::FrameColumns;
 use super::model_part::{ModelPart, facts, nominal_x_m, nominal_y_m};
 use super::signature_table::SignatureTable;
 use crate::app::fault::{Fault, Faults};
-use crate::app::files::Inputs;
-use crate::app::job::given_columns::columns_of_given;
 use crate::app::job::quantity::quantity_of_name;
-use crate::app::job::{GivenSensitivity, Job, Role};
+use crate::app::job::{GivenSensitivity, Job, JobLoad, Role};
+use crate::app::strain::read_given;
+use crate::app::work::Work;
 use crate::reconcile::strain::{
-    GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, NuisanceLoad, PlaneStrainRow, StiffnessOf,
-    StiffnessSignature, Wiring,
+    GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, PlaneStrainRow, StiffnessOf, StiffnessSignature,
+    Wiring,
 };
 use crate::units::{KILO, Quantity};
 
@@ -19,7 +20,7 @@ const POISSON: f64 = 0.29;
 
 /// Reads everything that `[sensitivity]` names. `channels` are the gauges in the order of the strain file.
 pub(super) fn read(
-    inputs: &mut Inputs,
+    work: &mut Work,
     job: &Job,
     given: &GivenSensitivity,
     channels: &[String],
@@ -27,35 +28,22 @@ pub(super) fn read(
     // The frame counts in kN, kN m, kg and m.
     let (per_kn, per_knm) = (KILO / given.per.force.si, KILO / given.per.moment.si);
     let (per_kg, per_m) = (1.0 / given.per.mass.si, 1.0 / given.per.length.si);
-    let s = SignatureTable::read(inputs, job, &given.file, channels)?;
-    let columns = columns_of_given(job, given, s.names());
-    let scale = |name: &str| if is_moment(name) { per_knm } else { per_kn };
-    let mut nuisance = Vec::new();
-    for (name, column) in columns.iter().filter(|c| is_nuisance(job, &c.0)) {
-        let usual = job
-            .loads
-            .iter()
-            .find(|l| l.name == *name)
-            .and_then(|l| l.expected);
-        let job_si = job.units.si(if is_moment(name) {
-            Quantity::Moment
-        } else {
-            Quantity::Force
-        });
-        nuisance.push(NuisanceLoad {
-            name: name.clone(),
-            per_unit: s.column(column, scale(name))?,
-            size: usual.unwrap_or(0.0) * job_si / KILO,
-        });
-    }
-    let columns: Vec<(String, String)> = columns
+    let s = FrameColumns::of(job, read_given(work, job)?, channels)?;
+    let scale = |name: &str| match quantity_of_load(job, name) {
+        Quantity::Moment => per_knm,
+        _ => per_kn,
+    };
+    let nuisance = s.nuisance();
+    // Tables name their columns as that of S does.
+    let column_of = |name: &String| {
+        let stated = given.columns.iter().find(|c| c.0 == *name);
+        stated.map_or_else(|| name.clone(), |c| c.1.clone())
+    };
+    let (columns, mut by_column): (Vec<(String, String)>, Vec<Vec<f64>>) = s
+        .wanted_columns()
         .into_iter()
-        .filter(|c| !is_nuisance(job, &c.0))
-        .collect();
-    let mut by_column: Vec<Vec<f64>> = Vec::new();
-    for (name, column) in &columns {
-        by_column.push(s.column(column, scale(name))?);
-    }
+        .map(|(name, values)| ((name.clone(), column_of(&name)), values))
+        .unzip();
     // Payload columns: weight, times dx, times dy, times dx dy.
     let payload_names = [
         ["b0", ""],
@@ -72,7 +60,7 @@ pub(super) fn read(
     let n = channels.len();
     let mut payload = vec![vec![0.0; n]; N_PAYLOAD_COLUMNS];
     if let Some(file) = &given.signatures.payload {
-        let t = SignatureTable::read(inputs, job, file, channels)?;
+        let t = SignatureTable::read(&mut work.inputs, job, file, channels)?;
         for ((column, names), f) in payload.iter_mut().zip(payload_names).zip(payload_scale) {
             if let Some(name) = names.iter().find(|n| t.has(n)) {
                 *column = t.column(name, f)?;
@@ -88,6 +76,7 @@ pub(super) fn read(
     let gauges: Vec<GaugeFacts> = channels.iter().map(|name| facts(job, name)).collect();
     let mut part = ModelPart {
         nuisance,
+        learnt: s.learnt(),
         load_names: columns.iter().map(|c| c.0.clone()).collect(),
         payload_origin: [
             nominal_x_m(job).unwrap_or(0.0),
@@ -98,7 +87,7 @@ pub(super) fn read(
     };
     part.tensors = vec![Vec::new(); n];
     if let Some(file) = &given.signatures.gauge_angle {
-        let t = SignatureTable::read(inputs, job, file, channels)?;
+        let t = SignatureTable::read(&mut work.inputs, job, file, channels)?;
         let mut names: Vec<(String, f64)> = columns
             .iter()
             .map(|(name, c)| (c.clone(), scale(name)))
@@ -141,14 +130,14 @@ pub(super) fn read(
     }
     part.gauges = gauges;
     if let Some(file) = &given.signatures.lateral_wheel_loads {
-        let t = SignatureTable::read(inputs, job, file, channels)?;
+        let t = SignatureTable::read(&mut work.inputs, job, file, channels)?;
         for name in t.names().into_iter().filter(|n| !is_nuisance(job, n)) {
             let column = t.column(&name, scale(&name))?;
             part.other_loads.push((name, column));
         }
     }
     if let Some(file) = &given.signatures.thermal {
-        let t = SignatureTable::read(inputs, job, file, channels)?;
+        let t = SignatureTable::read(&mut work.inputs, job, file, channels)?;
         let one = |names: [&str; 2]| {
             names
                 .iter()
@@ -165,7 +154,7 @@ pub(super) fn read(
         }
     }
     if let Some(file) = &given.signatures.unaccounted_mass {
-        let t = SignatureTable::read(inputs, job, file, channels)?;
+        let t = SignatureTable::read(&mut work.inputs, job, file, channels)?;
         for place in t.names() {
             part.masses.push(MassSignature {
                 per_kg: t.column(&place, per_kg)?,
@@ -174,7 +163,7 @@ pub(super) fn read(
         }
     }
     for (zone, file) in &given.signatures.rail_stiffness {
-        let t = SignatureTable::read(inputs, job, file, channels)?;
+        let t = SignatureTable::read(&mut work.inputs, job, file, channels)?;
         let mut change = vec![0.0; n * n_c];
         let mut names: Vec<(String, f64)> = columns
             .iter()
@@ -206,8 +195,13 @@ pub(super) fn read(
         .iter()
         .map(|(name, c)| (c.clone(), scale(name)))
         .collect();
-    part.stiffness
-        .extend(described::from_tables(inputs, job, channels, &known, n_c)?);
+    part.stiffness.extend(described::from_tables(
+        &mut work.inputs,
+        job,
+        channels,
+        &known,
+        n_c,
+    )?);
     if n_l == 0 {
         return Err(Faults::from(Fault::of(
             &*given.file.given,
@@ -226,6 +220,10 @@ fn is_nuisance(job: &Job, name: &str) -> bool {
         .any(|l| l.name == name && l.role == Role::Nuisance)
 }
 
-fn is_moment(name: &str) -> bool {
-    quantity_of_name(name) == Quantity::Moment
+/// Force or moment: what a stated load is, else what the name says.
+fn quantity_of_load(job: &Job, name: &str) -> Quantity {
+    let stated = job.loads.iter().find(|l| l.name == name);
+    stated
+        .and_then(JobLoad::quantity)
+        .unwrap_or_else(|| quantity_of_name(name))
 }

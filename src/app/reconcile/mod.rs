@@ -13,6 +13,7 @@ mod extended_deck;
 mod extended_job;
 mod extended_loads;
 mod finer;
+mod frame_columns;
 mod influence;
 mod matrix_frame;
 mod model_part;

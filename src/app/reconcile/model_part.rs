@@ -4,6 +4,7 @@ use crate::app::job::{Bridge, Job};
 use crate::reconcile::strain::{
     GaugeFacts, MassSignature, NuisanceLoad, PlaneStrainRow, Scatter, StiffnessSignature, Wiring,
 };
+use crate::sensitivity::Uncertainty;
 
 /// What the model says, however it was computed: the part of a frame that no run enters.
 #[derive(Clone, Debug, Default)]
@@ -24,6 +25,8 @@ pub(super) struct ModelPart {
     pub(super) as_modelled: Option<Vec<f64>>,
     /// Errors that every gauge may have.
     pub(super) scatter: Vec<Scatter>,
+    /// How far a calibrated S may be off.
+    pub(super) learnt: Option<Uncertainty>,
     /// Nominal place of the payload, m.
     pub(super) payload_origin: [f64; 2],
 }

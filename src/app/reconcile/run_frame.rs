@@ -93,6 +93,7 @@ pub(super) fn frame(
         model_rel: measured.map_or(0.0, |m| m.model_uncertainty_rel),
         as_modelled: part.as_modelled,
         scatter: part.scatter,
+        learnt: part.learnt,
     };
     // From a deck it is known at the gauges themselves, and there already.
     let stated = job.reconcile.as_ref().and_then(|r| r.angle_tolerance_deg);

@@ -30,7 +30,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
     }
     let (part, deck) = match (&job.sensitivity, &job.model) {
         (Some(given), _) => {
-            let read = |w: &mut Work| matrix_frame::read(&mut w.inputs, job, given, &channels);
+            let read = |w: &mut Work| matrix_frame::read(w, job, given, &channels);
             (work.stage("signatures", read)?, None)
         }
         (None, Some(_)) => {

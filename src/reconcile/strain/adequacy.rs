@@ -6,6 +6,7 @@ use super::prediction::predict;
 use crate::linalg::precision::Precision;
 use crate::reconcile::effect::{Member, SizedAmplitudes};
 use crate::reconcile::outcome::Misfit;
+use statrs::distribution::{ContinuousCDF, FisherSnedecor, Normal};
 
 /// Chi-squares of a set of effects.
 #[derive(Clone, Debug)]
@@ -22,6 +23,8 @@ pub struct Adequacy {
     pub gauges: Vec<Misfit>,
     /// By run over the fit runs.
     pub runs: Vec<Misfit>,
+    /// Degrees of freedom with which the covariance was estimated; infinite where it is stated.
+    pub from: f64,
 }
 
 /// Standard normal deviate of a chi-square of `n` degrees of freedom (Wilson and Hilferty 1931).
@@ -31,6 +34,22 @@ pub fn deviate(chi2: f64, n: f64) -> f64 {
     }
     let spread = 2.0 / (9.0 * n);
     ((chi2.max(0.0) / n).cbrt() - (1.0 - spread)) / spread.sqrt()
+}
+
+/// The same where the covariance was itself estimated with `from` degrees of freedom: chi-square over `n` follows an F distribution.
+pub fn deviate_estimated(chi2: f64, n: f64, from: f64) -> f64 {
+    /// Chances below this are beyond what a distribution function resolves.
+    const LEAST: f64 = 1e-300;
+    if !from.is_finite() || n <= 0.0 || !chi2.is_finite() {
+        return deviate(chi2, n);
+    }
+    let chance = FisherSnedecor::new(n, from.max(1.0)).map_or(1.0, |d| d.sf(chi2.max(0.0) / n));
+    if chance > f64::EPSILON {
+        Normal::standard().inverse_cdf(1.0 - chance)
+    } else {
+        // Far out the deviate z has a chance of about exp(-z^2 / 2).
+        (-2.0 * chance.max(LEAST).ln()).sqrt()
+    }
 }
 
 fn residual(frame: &StrainFrame, members: &[Member<'_>], selection: &Selection) -> Vec<f64> {
@@ -76,6 +95,7 @@ pub fn adequacy(
         );
         (total - fit_chi2, (all.len() - fit.len()) as f64)
     };
+    let from = frame.learnt.as_ref().map_or(f64::INFINITY, |u| u.dof);
     let part = |name: &str, keep: &dyn Fn((usize, usize)) -> bool| {
         let at: Vec<usize> = fit
             .0
@@ -96,7 +116,7 @@ pub fn adequacy(
         Misfit {
             name: name.to_string(),
             reduced_chi2: c / count.max(1.0),
-            deviate: deviate(c, count),
+            deviate: deviate_estimated(c, count, from),
         }
     };
     let gauges = frame
@@ -122,5 +142,6 @@ pub fn adequacy(
         n_held_out: n_held,
         gauges,
         runs,
+        from,
     }
 }

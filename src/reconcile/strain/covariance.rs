@@ -1,6 +1,7 @@
 //! What noise and stated model uncertainty do to the residual, runs and gauges together.
 
 use super::frame::{Scatter, StrainFrame};
+use super::learnt::learnt;
 use super::prediction::read_all;
 use super::state::{Part, StrainState};
 use crate::reconcile::effect::{Member, SizedAmplitudes};
@@ -53,7 +54,7 @@ pub fn read_patterns(
 /// C = noise^2 I + load_noise^2 S S' (run by run: an error of a measured wheel force enters all gauges at once) + model_rel^2 m m'
 /// (gauge by gauge, all runs together: a wrong influence stays wrong) + sum over `scatter` of b b' (the same, with b the strain that an
 /// error of one standard deviation makes) + V (amplitudes unknown in every run, run by run, and their part in doubt), with S, m, b as read
-/// with `members` on. Between runs of a gauge, and of any two gauges, stays what repeats of V.
+/// with `members` on, + what a calibrated S leaves in doubt ([`learnt`]). Between runs of a gauge, and of any two gauges, stays what repeats of V.
 pub fn covariance(
     frame: &StrainFrame,
     members: &[Member<'_>],
@@ -112,7 +113,7 @@ pub fn covariance(
                 .sum::<f64>()
     };
     let n = selection.len();
-    let mut out = vec![0.0; n * n];
+    let mut out = learnt(frame, members, &selection.0, &state).unwrap_or_else(|| vec![0.0; n * n]);
     for (i, &(r, g)) in selection.0.iter().enumerate() {
         for (j, &(s, h)) in selection.0.iter().enumerate().take(i + 1) {
             let within = if r == s {
@@ -121,8 +122,8 @@ pub fn covariance(
                 repeats[g * n_g + h]
             };
             let persistent = if g == h { across(g, r, s) } else { 0.0 };
-            out[i * n + j] = within + persistent;
-            out[j * n + i] = within + persistent;
+            out[i * n + j] += within + persistent;
+            out[j * n + i] = out[i * n + j];
         }
     }
     out

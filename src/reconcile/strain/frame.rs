@@ -4,6 +4,7 @@
 
 use crate::reconcile::Observations;
 use crate::reconcile::effect::{Amplitudes, SizedAmplitudes};
+use crate::sensitivity::Uncertainty;
 
 /// How a gauge's arms are wired, as far as an angle error is concerned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -158,6 +159,8 @@ pub struct StrainFrame {
     /// What else leaves each gauge's influence in doubt, each an error of one standard deviation (`n_gauges x n_columns`), independent
     /// from gauge to gauge and common to all runs: an angle, a place, an influence coefficient on the mesh.
     pub scatter: Vec<Scatter>,
+    /// Where S was calibrated: how far it may be off, microstrain per kN of the wheel loads, and what repeats of one loading scatter by.
+    pub learnt: Option<Uncertainty>,
 }
 
 impl StrainFrame {
@@ -207,8 +210,8 @@ impl StrainFrame {
         if power > 0.0 { power.sqrt() } else { 1.0 }
     }
 
-    /// By gauge: relative error, 1 sd, of the strain that a load of its own makes there: stated uncertainty and `scatter` over the wheel
-    /// loads.
+    /// By gauge: relative error, 1 sd, of the strain that a load of its own makes there: stated uncertainty, `scatter` and what a
+    /// calibrated S leaves in doubt, over the wheel loads.
     pub fn relative_doubt(&self) -> Vec<f64> {
         let (n_c, n_l) = (self.n_columns(), self.n_loads());
         let power = |m: &[f64], g: usize| -> f64 {
@@ -220,8 +223,9 @@ impl StrainFrame {
             let scatter = self.scatter.iter().map(|s| match s {
                 Scatter::Together(m) | Scatter::Single(m) => power(m, g),
             });
+            let learnt = self.learnt.as_ref().map_or(0.0, |u| u.power(g, n_l));
             let relative = if own > 0.0 {
-                scatter.sum::<f64>() / own
+                (scatter.sum::<f64>() + learnt) / own
             } else {
                 0.0
             };

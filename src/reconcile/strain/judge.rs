@@ -1,6 +1,6 @@
 //! What is said of the best set of effects: named or not, and what else could be.
 
-use super::adequacy::{Adequacy, adequacy, deviate};
+use super::adequacy::{Adequacy, adequacy, deviate_estimated};
 use super::detect::detectable;
 use super::explanation::{Explanation, discrepancy, ids, is_unmodelled, named_part};
 use super::frame::StrainFrame;
@@ -36,7 +36,7 @@ mod limit {
 pub(super) fn at_floor(a: &Adequacy) -> bool {
     let inside = |reduced: f64, n: f64| {
         let known = limit::NOISE_KNOWN * limit::NOISE_KNOWN;
-        deviate(reduced * n / known, n) <= limit::DEVIATE
+        deviate_estimated(reduced * n / known, n, a.from) <= limit::DEVIATE
     };
     let held = a.n_held_out == 0.0 || inside(a.held_out, a.n_held_out);
     let parts = a

@@ -2,6 +2,7 @@
 
 use super::covariance::{Selection, covariance, read_patterns};
 use super::frame::StrainFrame;
+use super::learnt::heavier_tail;
 use super::prediction::predict;
 use super::size::{RunBlocks, RunPrecision, run_by_run_log_likelihood, usual_sizes};
 use super::state::Part;
@@ -390,7 +391,8 @@ impl Scorer for Likelihood<'_> {
             best = self.optimise(set, best.theta, &precision)?;
         }
         let n = best.hessian.len().isqrt();
-        let mut log_evidence = -best.value - 0.5 * precision.log_det();
+        let tail = heavier_tail(self.frame, best.chi2, self.selection.len());
+        let mut log_evidence = tail - best.value - 0.5 * precision.log_det();
         let mut joint = Vec::new();
         let mut sigma: Vec<Vec<f64>> = best.theta.iter().map(|t| vec![0.0; t.len()]).collect();
         if n > 0 {

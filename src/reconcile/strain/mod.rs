@@ -10,6 +10,7 @@ mod extended;
 mod frame;
 mod gap;
 mod judge;
+mod learnt;
 mod likelihood;
 mod neighbours;
 mod next;

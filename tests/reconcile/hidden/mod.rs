@@ -193,5 +193,6 @@ pub fn frame_of(dir: &Path) -> StrainFrame {
         model_rel: number("model_uncertainty_rel"),
         as_modelled: None,
         scatter: Vec::new(),
+        learnt: None,
     }
 }
