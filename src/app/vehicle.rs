@@ -134,10 +134,14 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
         corrections: section
             .corrections
             .iter()
-            .map(|(channel, [gain, delay_s])| Adjustment {
-                channel: channel.clone(),
-                gain: *gain,
-                delay_s: *delay_s,
+            .map(|(channel, c)| Adjustment {
+                gain: c.gain,
+                delay_s: c.delay_s,
+                clock: c.clock_ppm * 1e-6,
+                slips: c.slip.into_iter().collect(),
+                lags: c.lag.into_iter().collect(),
+                lines_hz: c.line_hz.into_iter().collect(),
+                ..Adjustment::none(channel)
             })
             .collect(),
         units: UnitNames {
@@ -183,6 +187,10 @@ pub fn vehicle_fault(job: &Job, file: &str, e: &VehicleError) -> Fault {
     let line = job.vehicle.as_ref().map_or(0, |v| v.line);
     let (wrong, remedy) = split_message(&e);
     match e {
+        VehicleError::HeldOut(inner) => {
+            let hold_out = job.vehicle.as_ref().and_then(|v| v.hold_out.as_ref());
+            vehicle_fault(job, hold_out.map_or(file, |h| &h.given), inner)
+        }
         VehicleError::Series(_) => Fault::of(file, "record", wrong, remedy),
         _ => Fault::at(&*job.file, line, "vehicle", wrong, remedy),
     }

@@ -14,6 +14,7 @@ mod extended_job;
 mod extended_loads;
 mod finer;
 mod influence;
+mod local;
 mod matrix_frame;
 mod model_part;
 mod motion_findings;

@@ -2,7 +2,7 @@
 
 use super::change::Change;
 use super::channel_check::BrokenChannel;
-use super::corrections::adjustments;
+use super::corrections::stated;
 use super::detectable::smallest_sizes;
 use super::effect_units::unit_of_change;
 use super::fit::{Effort, fit};
@@ -140,7 +140,7 @@ pub(super) fn judged(
             vec![]
         },
         best_attempt: attempt,
-        corrections: adjustments(frame, &best.fit.parts),
+        corrections: stated(frame, &best.fit.parts),
         remains: remains(verdict, chi, left, judged_by, after.proof.as_ref()),
         next_measurement: next_measurement(scorer, verdict, &rivals),
         rivals,
