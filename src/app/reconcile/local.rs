@@ -24,8 +24,10 @@ const PRIOR: f64 = 70.0;
 const BUDGET: usize = 2_000_000;
 /// Fewest and most regions solved in the first look.
 const LOOKS: [usize; 2] = [6, 32];
-/// Regions that are moved, widened and narrowed.
+/// Regions that are moved, widened and narrowed, by shares of their radius.
 const REFINED: usize = 2;
+/// Each finer.
+const STEPS: [f64; 3] = [0.9, 0.5, 0.3];
 /// Regions that stand beside the library.
 const KEPT: usize = 4;
 /// Gauges that are looked round, worst first.
@@ -112,13 +114,23 @@ impl DeckFrame {
             Ok(out)
         };
         let mut all = try_all(first)?;
-        let near: Vec<Region> = all
-            .iter()
-            .take(REFINED)
-            .flat_map(|t| ground.near(&t.region, n / (2 * REFINED)))
-            .collect();
-        all.extend(try_all(near)?);
-        all.sort_by(|a, b| b.takes.total_cmp(&a.takes));
+        for step in STEPS {
+            let near: Vec<Region> = all
+                .iter()
+                .take(REFINED)
+                .flat_map(|t| ground.near(&t.region, step, n))
+                .collect();
+            let mut fresh: Vec<Region> = Vec::new();
+            for r in near {
+                let known = all.iter().any(|t| t.region.shells == r.shells)
+                    || fresh.iter().any(|f| f.shells == r.shells);
+                if !known && fresh.len() < n {
+                    fresh.push(r);
+                }
+            }
+            all.extend(try_all(fresh)?);
+            all.sort_by(|a, b| b.takes.total_cmp(&a.takes));
+        }
         let mut kept: Vec<Tried> = Vec::new();
         for t in all {
             if kept.len() < KEPT && kept.iter().all(|k| k.region.place != t.region.place) {
@@ -280,8 +292,8 @@ impl<'a> Ground<'a> {
         })
     }
 
-    fn region(&self, shell: usize, radius: f64) -> Option<Region> {
-        let centre = *self.middles.get(shell)?;
+    fn region(&self, centre: Vec3, radius: f64) -> Option<Region> {
+        let shell = closest(&self.middles, &centre)?;
         let inside = |m: &Vec3| (m - centre).norm() <= radius;
         Some(Region {
             place: self.model.shells.get(shell)?.id.to_string(),
@@ -329,30 +341,36 @@ impl<'a> Ground<'a> {
         let chosen = self.thinned(shells, radius, n);
         chosen
             .into_iter()
-            .filter_map(|s| self.region(s, radius))
+            .filter_map(|s| self.region(*self.middles.get(s)?, radius))
             .collect()
     }
 
-    /// The same region narrower and wider, and neighbours half a radius away.
-    fn near(&self, r: &Region, n: usize) -> Vec<Region> {
-        let Some(own) = closest(&self.middles, &r.centre) else {
-            return vec![];
-        };
-        let mut out: Vec<Region> = [0.6, 1.6, 2.4]
-            .into_iter()
-            .filter_map(|times| self.region(own, times * r.radius))
+    /// Regions round grids and shells about a region's middle, `step` of a radius apart, narrower, as wide and wider.
+    fn near(&self, r: &Region, step: f64, n: usize) -> Vec<Region> {
+        let reach = (1.5 * step * r.radius).max(0.8 * self.element);
+        let grids = self.model.grids.iter().map(|g| g.x);
+        let mut centres: Vec<Vec3> = (self.middles.iter().copied())
+            .chain(grids)
+            .filter(|x| (x - r.centre).norm() <= reach)
             .collect();
-        let close = |i: &usize| {
-            let far = self.middles.get(*i).map(|m| (m - r.centre).norm());
-            *i != own && far.is_some_and(|d| d <= 1.01 * r.radius)
-        };
-        let shells = (0..self.middles.len()).filter(close).collect();
-        for s in self.thinned(shells, 0.5 * r.radius, n) {
-            out.extend(self.region(s, r.radius));
-            out.extend(self.region(s, 1.6 * r.radius));
+        centres.sort_by(|a, b| {
+            (a - r.centre)
+                .norm_squared()
+                .total_cmp(&(b - r.centre).norm_squared())
+        });
+        let apart = (0.7 * step * r.radius).max(0.6 * self.element);
+        let mut chosen: Vec<Vec3> = Vec::new();
+        for c in centres {
+            if chosen.len() < n && chosen.iter().all(|k| (k - c).norm() >= apart) {
+                chosen.push(c);
+            }
         }
-        out.retain(|x| x.shells != r.shells && !x.shells.is_empty());
-        out
+        let around = |c: Vec3| {
+            [1.0, 1.0 + 0.5 * step, 1.0 / (1.0 + 0.5 * step), 1.0 + step]
+                .map(|times| self.region(c, times * r.radius))
+        };
+        let all = chosen.into_iter().flat_map(around).flatten();
+        all.filter(|x| !x.shells.is_empty()).collect()
     }
 }
 
