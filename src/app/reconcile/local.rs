@@ -6,6 +6,7 @@
 
 use super::deck_frame::DeckFrame;
 use super::influence::{influence, solve};
+use super::region::Region;
 use crate::app::fault::Faults;
 use crate::app::job::Job;
 use crate::model::{MaterialIx, MaterialKind};
@@ -32,17 +33,6 @@ const STEPS: [f64; 3] = [0.9, 0.5, 0.3];
 const KEPT: usize = 4;
 /// Gauges that are looked round, worst first.
 const GAUGES: usize = 8;
-
-/// Shells within a radius of one.
-#[derive(Clone, Debug)]
-pub(super) struct Region {
-    /// Id of the shell in its middle.
-    pub(super) place: String,
-    centre: Vec3,
-    radius: f64,
-    /// Indices of its shells.
-    shells: Vec<usize>,
-}
 
 /// A region with what halving its stiffness does to the influence matrix.
 struct Tried {
