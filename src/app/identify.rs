@@ -13,7 +13,7 @@ use crate::vehicle::chassis::{ChassisForce, chassis_forces};
 use crate::vehicle::checks::MassClosure;
 use crate::vehicle::identify::{ChannelFit, Estimate, Identification, identify as fit_vehicle};
 use crate::vehicle::loads::{LoadHistory, static_loads, wheel_force_history};
-use crate::vehicle::motion::{Motion, Treatment, motion};
+use crate::vehicle::motion::{Adjustment, Motion, Treatment, motion};
 use crate::vehicle::stretch::slow_stretches;
 use serde::Serialize;
 
@@ -125,11 +125,11 @@ pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<Identified>, Faults> 
         .map_err(|e| vehicle_fault(job, data_name, &e))?;
     work.findings.extend(found.findings.iter().cloned());
     work.findings.extend(found.verdict());
-    let drive = |record: &Channels, name: &str| -> Result<Driven, Faults> {
+    let drive = |record: &Channels, name: &str, adjust: &[Adjustment]| -> Result<Driven, Faults> {
         let treatment = Treatment {
             keep_every: 1,
-            adjust: question.corrections.clone(),
-            slow: slow_stretches(&found.vehicle, &found.values, record, &question.corrections),
+            adjust: adjust.to_vec(),
+            slow: slow_stretches(&found.vehicle, &found.values, record, adjust),
             ..Treatment::of(question.band)
         };
         let motion = motion(&found.vehicle, record, &treatment);
@@ -141,12 +141,16 @@ pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<Identified>, Faults> 
     };
     let unit = &question.units.force;
     let rows = |name: &str, d: &Driven| load_rows(&found, question.gravity, unit, name, &d.loads);
-    let fitted = drive(data, data_name)?;
+    let fitted = drive(data, data_name, &question.corrections)?;
     let mut loads = rows(data_name, &fitted);
     let named = job.vehicle.as_ref().and_then(|v| v.hold_out.as_ref());
     let held_out = match (hold_out, named) {
         (Some(record), Some(named)) => {
-            let driven = drive(record, &named.given)?;
+            let driven = drive(
+                record,
+                &named.given,
+                &Adjustment::elsewhere(&question.corrections),
+            )?;
             loads.extend(rows(&named.given, &driven));
             Some(driven)
         }

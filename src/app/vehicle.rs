@@ -1,7 +1,7 @@
 //! The vehicle of a job and its records, in the job's units: what `identify` and `reconcile` start from.
 
 use super::fault::{Fault, FaultList, Faults, split_message};
-use super::job::{Job, NamedFile, Vehicle as VehicleJob};
+use super::job::{ChannelCorrection, Job, NamedFile, Vehicle as VehicleJob};
 use super::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::series::csv::read_csv;
@@ -131,15 +131,7 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
         sync_tolerance_s: section.tolerance_sync.unwrap_or(0.0),
         noise_acc: section.noise_acc,
         noise_force: section.noise_force,
-        corrections: section
-            .corrections
-            .iter()
-            .map(|(channel, [gain, delay_s])| Adjustment {
-                channel: channel.clone(),
-                gain: *gain,
-                delay_s: *delay_s,
-            })
-            .collect(),
+        corrections: corrections_of(section),
         units: UnitNames {
             mass: unit(Quantity::Mass),
             length: unit(Quantity::Length),
@@ -151,6 +143,20 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
         data,
         hold_out,
     })
+}
+
+/// Known faults of channels.
+fn corrections_of(section: &VehicleJob) -> Vec<Adjustment> {
+    let one = |(channel, c): (&String, &ChannelCorrection)| Adjustment {
+        gain: c.gain,
+        delay_s: c.delay_s,
+        clock: c.clock_ppm * 1e-6,
+        slips: c.slip.into_iter().collect(),
+        lags: c.lag.into_iter().collect(),
+        lines_hz: c.line_hz.into_iter().collect(),
+        ..Adjustment::none(channel)
+    };
+    section.corrections.iter().map(one).collect()
 }
 
 /// `[vehicle]` of a job.
@@ -183,6 +189,10 @@ pub fn vehicle_fault(job: &Job, file: &str, e: &VehicleError) -> Fault {
     let line = job.vehicle.as_ref().map_or(0, |v| v.line);
     let (wrong, remedy) = split_message(&e);
     match e {
+        VehicleError::HeldOut(inner) => {
+            let hold_out = job.vehicle.as_ref().and_then(|v| v.hold_out.as_ref());
+            vehicle_fault(job, hold_out.map_or(file, |h| &h.given), inner)
+        }
         VehicleError::Series(_) => Fault::of(file, "record", wrong, remedy),
         _ => Fault::at(&*job.file, line, "vehicle", wrong, remedy),
     }

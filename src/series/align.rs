@@ -4,6 +4,39 @@ use super::spectrum::Fourier;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::PI;
 
+/// x as it would read without a lateness that changes with time: out(t) = x(t + late(t)), `late` in s by sample, interpolated by a
+/// sinc under a Lanczos window; beyond the ends the end samples stand.
+pub fn retimed(x: &[f64], rate_hz: f64, late: impl Fn(usize) -> f64) -> Vec<f64> {
+    /// Samples to either side: signals up to three quarters of half the rate pass to better than a per mille.
+    const SIDE: isize = 12;
+    let last = x.len() as isize - 1;
+    let sinc = |u: f64| {
+        if u == 0.0 {
+            1.0
+        } else {
+            (PI * u).sin() / (PI * u)
+        }
+    };
+    (0..x.len())
+        .map(|i| {
+            let at = (i as f64 + late(i) * rate_hz).clamp(0.0, last.max(0) as f64);
+            let base = at.floor();
+            let share = at - base;
+            if share == 0.0 {
+                return x[base as usize];
+            }
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for k in 1 - SIDE..=SIDE {
+                let u = share - k as f64;
+                let w = sinc(u) * sinc(u / SIDE as f64);
+                sum += w * x[(base as isize + k).clamp(0, last) as usize];
+                weights += w;
+            }
+            sum / weights
+        })
+        .collect()
+}
+
 /// x delayed by a time that need not be a whole number of samples (negative: advanced); ends repeat zero-padding.
 pub fn delayed(x: &[f64], rate_hz: f64, seconds: f64) -> Vec<f64> {
     let offset = super::detrend::mean(x);

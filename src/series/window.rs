@@ -15,6 +15,7 @@ pub struct Windowed {
     /// Frequencies of the bins in the band, Hz.
     pub f_hz: Vec<f64>,
     first: usize,
+    step_hz: f64,
 }
 
 impl Windowed {
@@ -53,7 +54,25 @@ impl Windowed {
             planner: RealFftPlanner::new(),
             f_hz: inside.iter().map(|k| *k as f64 * step).collect(),
             first: inside.first().copied().unwrap_or(0),
+            step_hz: step,
         }
+    }
+
+    /// From one bin to the next, Hz.
+    pub fn step_hz(&self) -> f64 {
+        self.step_hz
+    }
+
+    /// Transform at any frequency f, Hz, of a signal at `rate_hz`: sum of x w exp(-2 pi i f t).
+    pub fn at(&self, x: &[f64], rate_hz: f64, f_hz: f64) -> Complex64 {
+        let turn = Complex64::from_polar(1.0, -2.0 * PI * f_hz / rate_hz);
+        let mut now = Complex64::new(1.0, 0.0);
+        let mut sum = Complex64::default();
+        for (x, w) in x.iter().zip(&self.window) {
+            sum += now * (x * w);
+            now *= turn;
+        }
+        sum
     }
 
     /// Bins of a signal within the band; E|X|^2 of white noise is its variance.

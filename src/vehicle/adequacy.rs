@@ -101,9 +101,9 @@ pub fn channel_floors(
                 continue;
             }
             let trial = Adjustment {
-                channel: (*name).clone(),
                 gain,
                 delay_s,
+                ..Adjustment::none(name)
             };
             let moved = Treatment {
                 adjust: treatment.adjust.iter().cloned().chain([trial]).collect(),

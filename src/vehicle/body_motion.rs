@@ -30,13 +30,17 @@ impl ChannelSpectra {
         fourier: &mut Fourier,
     ) -> Result<Self, VehicleError> {
         let mut transform = |name: &str, measures: Measures| -> Result<Spectrum, VehicleError> {
-            let x = without_mean(record.samples(name)?);
+            let mut x = without_mean(record.samples(name)?);
+            let adjust = Adjustment::of_channel(&treatment.adjust, name);
+            if let Some(right) =
+                (adjust.as_ref()).and_then(|a| a.retimed(&x, record.start_s, record.rate_hz))
+            {
+                x = right;
+            }
             let spectrum = fourier.spectrum(&x, record.rate_hz);
-            let adjust = combined(&treatment.adjust, name);
             if adjust.is_none() && measures == Measures::Acceleration {
                 return Ok(spectrum);
             }
-            let (gain, delay) = adjust.map_or((1.0, 0.0), |a| (a.gain, a.delay_s));
             Ok(spectrum.times(|f| {
                 let w = 2.0 * PI * f;
                 let twice = if measures == Measures::Displacement {
@@ -44,7 +48,8 @@ impl ChannelSpectra {
                 } else {
                     1.0
                 };
-                Complex64::from_polar(twice.abs() / gain, w * delay) * twice.signum()
+                let undone = adjust.as_ref().map(|a| a.undone(w));
+                undone.unwrap_or(Complex64::new(1.0, 0.0)) * twice
             }))
         };
         let sensors = vehicle
@@ -87,17 +92,6 @@ pub(super) fn body_motions(
             },
         )
         .collect()
-}
-
-/// All corrections of a channel in one.
-fn combined(adjust: &[Adjustment], name: &str) -> Option<Adjustment> {
-    let mut own = adjust.iter().filter(|a| a.channel == name);
-    let first = own.next()?.clone();
-    Some(own.fold(first, |sum, a| Adjustment {
-        gain: sum.gain * a.gain,
-        delay_s: sum.delay_s + a.delay_s,
-        ..sum
-    }))
 }
 
 /// Motions of each body as weighted sums of its sensors.

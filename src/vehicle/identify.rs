@@ -62,16 +62,26 @@ pub fn identify(
         vehicle: vehicle.clone(),
     };
     let mut any = false;
+    let all_of = record;
     for bodies in vehicle.components() {
         let part = fit_part(question, &vehicle.part(&bodies), record, &treatment)?;
         any |= part.fit.is_some();
-        let in_record = |record: &Channels| Treatment {
-            slow: slow_stretches(&part.part, &part.values, record, &treatment.adjust),
-            ..treatment.clone()
+        let in_record = |record: &Channels| {
+            let adjust = if std::ptr::eq(record, all_of) {
+                treatment.adjust.clone()
+            } else {
+                Adjustment::elsewhere(&treatment.adjust)
+            };
+            Treatment {
+                slow: slow_stretches(&part.part, &part.values, record, &adjust),
+                adjust,
+                ..treatment.clone()
+            }
         };
         let held = hold_out
             .map(|h| motion(&part.part, h, &in_record(h)))
-            .transpose()?;
+            .transpose()
+            .map_err(|e| VehicleError::HeldOut(Box::new(e)))?;
         // A change of mass or spring has its time in the fitted record: it alone can judge.
         let judged = hold_out.filter(|_| !part.part.changes()).unwrap_or(record);
         let floors = if part.fit.is_some() {
@@ -285,16 +295,14 @@ fn add_tolerances(
     for channel in channels {
         if question.gain_tolerance > 0.0 {
             trials.push(Adjustment {
-                channel: channel.clone(),
                 gain: 1.0 + question.gain_tolerance,
-                delay_s: 0.0,
+                ..Adjustment::none(channel)
             });
         }
         if question.sync_tolerance_s > 0.0 {
             trials.push(Adjustment {
-                channel: channel.clone(),
-                gain: 1.0,
                 delay_s: question.sync_tolerance_s,
+                ..Adjustment::none(channel)
             });
         }
     }

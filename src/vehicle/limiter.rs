@@ -13,6 +13,8 @@ pub(super) struct Limiter {
     pub rate_hz: f64,
     pub keep: usize,
     pub trim: usize,
+    /// Mains lines that are left out.
+    lines_hz: Vec<f64>,
     n_kept: usize,
 }
 
@@ -62,14 +64,24 @@ impl Limiter {
             keep,
             trim: ((settle_s * rate_hz).ceil() as usize).div_ceil(keep),
             n_kept: record.n_samples().div_ceil(keep),
+            lines_hz: (treatment.adjust.iter())
+                .flat_map(|a| a.lines_hz.iter().copied())
+                .collect(),
         })
     }
 
     /// Samples of a spectrum in the band, so many times integrated.
     pub fn limited(&mut self, s: &Spectrum, times: i32) -> Vec<f64> {
-        let x = self
-            .fourier
-            .samples(&s.band_integrated(self.band, times), self.keep);
+        /// Width of what is left out about a line, one sd of its bell: mains wander by less, and its echo dies within a second.
+        const WIDTH_HZ: f64 = 0.15;
+        let mut in_band = s.band_integrated(self.band, times);
+        if !self.lines_hz.is_empty() {
+            in_band = in_band.times(|f| {
+                let kept = |line: &f64| 1.0 - (-0.5 * ((f - line) / WIDTH_HZ).powi(2)).exp();
+                self.lines_hz.iter().map(kept).product::<f64>().into()
+            });
+        }
+        let x = self.fourier.samples(&in_band, self.keep);
         let trim = self.trim;
         x[trim.min(x.len())..self.n_kept.saturating_sub(trim).max(trim).min(x.len())].to_vec()
     }

@@ -10,6 +10,7 @@
 //! - [`simulate`]: forward in time; [`refine`]: nonlinear parameters by simulation error
 
 pub mod adequacy;
+pub mod adjustment;
 mod body_motion;
 pub mod chassis;
 pub mod checks;

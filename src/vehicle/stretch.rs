@@ -86,15 +86,15 @@ fn link_force(
 fn adjusted(record: &Channels, name: &str, adjust: &[Adjustment]) -> Option<Vec<f64>> {
     let x = record.samples(name).ok()?;
     let m = mean(x);
-    let (gain, delay) = adjust
-        .iter()
-        .filter(|a| a.channel == name)
-        .fold((1.0, 0.0), |(g, d), a| (g * a.gain, d + a.delay_s));
-    let shift = (delay * record.rate_hz).round() as isize;
+    let own = Adjustment::of_channel(adjust, name).unwrap_or_else(|| Adjustment::none(name));
     let last = x.len() as isize - 1;
+    let shift = |i: isize| {
+        let t_s = record.start_s + i as f64 / record.rate_hz;
+        (own.lateness(t_s, record.start_s) * record.rate_hz).round() as isize
+    };
     Some(
         (0..=last)
-            .map(|i| (x[(i + shift).clamp(0, last) as usize] - m) / gain)
+            .map(|i| (x[(i + shift(i)).clamp(0, last) as usize] - m) / own.gain)
             .collect(),
     )
 }

@@ -1,5 +1,6 @@
 //! How channels of a record are taken: corrections, band, slow stretch; and what stops the acceleration path.
 
+pub use super::adjustment::{Adjustment, Lag, Slip};
 use crate::series::SeriesError;
 use crate::series::spectrum::Band;
 use thiserror::Error;
@@ -27,6 +28,9 @@ pub enum VehicleError {
         "no equation of motion of model `{0}` holds measured quantities only: measure wheel forces, or accelerations of the body and its wheels"
     )]
     NoEquation(String),
+    /// The record that judges, not the fitted one.
+    #[error(transparent)]
+    HeldOut(Box<VehicleError>),
     /// A known parameter that the model has not.
     #[error("`{name}` is declared known, but the model's parameters are {}", .present.join(", "))]
     Known {
@@ -35,17 +39,6 @@ pub enum VehicleError {
         /// Names of the model.
         present: Vec<String>,
     },
-}
-
-/// A sensor taken as it may truly be: reading = gain . truth, late by delay.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Adjustment {
-    /// Channel.
-    pub channel: String,
-    /// The channel is divided by this.
-    pub gain: f64,
-    /// The channel is advanced by this, s.
-    pub delay_s: f64,
 }
 
 /// How channels are treated.

@@ -3,6 +3,7 @@
 #![allow(dead_code)]
 
 pub mod generator;
+pub mod logger;
 
 use generator::{Background, Case, Layout, RATE_HZ};
 use std::collections::BTreeMap;

@@ -6,5 +6,6 @@ mod given;
 mod heat;
 mod hidden;
 mod joint;
+mod local;
 mod real;
 mod strips;

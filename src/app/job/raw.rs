@@ -313,6 +313,12 @@ pub(super) struct RawLeaf {
 pub(super) struct RawCorrection {
     pub gain: S<f64>,
     pub delay_s: S<f64>,
+    pub clock_ppm: S<f64>,
+    pub slip_at_s: S<f64>,
+    pub slip_s: S<f64>,
+    pub low_pass_s: S<f64>,
+    pub low_pass_order: S<u8>,
+    pub line_hz: S<f64>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

@@ -4,6 +4,7 @@ pub use super::shapes::Ids;
 use crate::app::file_read::FileRead;
 use crate::fe::SupportChoice;
 use crate::units::{Quantity, ReportUnits, Unit, UnitSystem};
+use crate::vehicle::adjustment::{Lag, Slip};
 use crate::vehicle::chassis::LeafSeat;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -783,14 +784,31 @@ pub struct Vehicle {
     pub places: BTreeMap<String, [f64; 2]>,
     /// Limits of parameters.
     pub bounds: BTreeMap<String, [f64; 2]>,
-    /// Faults of channels that are known: gain (reading over truth) and delay (reading late), s.
-    pub corrections: BTreeMap<String, [f64; 2]>,
+    /// Faults of channels that are known.
+    pub corrections: BTreeMap<String, ChannelCorrection>,
     /// A mass that changes during the record.
     pub mass_change: Option<MassChange>,
     /// Leaf springs by link (`s`), whose force is divided between hanger and shackle.
     pub leaf: BTreeMap<String, LeafSeat>,
     /// Line of the job.
     pub line: u32,
+}
+
+/// A known fault of a channel of `[vehicle]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChannelCorrection {
+    /// Reading over truth.
+    pub gain: f64,
+    /// How late it reads, s.
+    pub delay_s: f64,
+    /// How much later it reads with every second of a record, millionths.
+    pub clock_ppm: f64,
+    /// Samples lost or written twice, in the fitted record.
+    pub slip: Option<Slip>,
+    /// A low-pass that it alone went through.
+    pub lag: Option<Lag>,
+    /// A mains line on it, Hz.
+    pub line_hz: Option<f64>,
 }
 
 /// `mass_change` of `[vehicle]`.

@@ -6,6 +6,7 @@ use super::finer::Finer;
 use super::frame_columns::FrameColumns;
 use super::influence::{influence, payload_grid, readings};
 use super::model_part::{ModelPart, facts, nominal_x_m, nominal_y_m};
+use super::region::Region;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Component, Job, JobLoad, LoadActs, Role};
 use crate::app::solved::{support_of_job, unit_loads_kept};
@@ -25,6 +26,8 @@ pub(super) struct DeckFrame {
     pub(super) columns: Vec<UnitLoad>,
     /// Influence on the mesh as it stands, by the built-in solver.
     pub(super) base: Vec<f64>,
+    /// Small regions whose stiffness is tried.
+    pub(super) regions: Vec<Region>,
 }
 
 /// Solves all signatures. `channels` are the gauges in the order of the strain file.
@@ -239,6 +242,7 @@ pub(super) fn read(
         gauges,
         columns,
         base: own,
+        regions: vec![],
     };
     part.stiffness = work.stage("solve zones", |_| deck.signatures(job))?;
     // Tables count in microstrain per unit of the job, as sensitivity.csv does.

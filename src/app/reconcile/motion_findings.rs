@@ -23,7 +23,8 @@ pub(super) fn findings(work: &mut Work, outcome: &MotionOutcome) {
             .with_numbers(outcome.reduced_chi2[1], 1.0),
         );
     }
-    if outcome.judged_by != Proof::HeldOut {
+    let said = work.findings.iter().any(|f| f.code == "no-hold-out");
+    if outcome.judged_by != Proof::HeldOut && !said {
         work.findings.push(Finding::new(
             Severity::Warning,
             "no-hold-out",

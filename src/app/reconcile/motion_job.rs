@@ -2,10 +2,17 @@
 
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::{MotionFrame, MotionOutcome};
+use crate::vehicle::motion::Adjustment;
 use toml::{Table, Value};
 
 /// File name of the job.
 pub(super) const JOB: &str = "extended_job.toml";
+
+/// Whether a job can state the corrections: one slip, one low-pass, one line a channel.
+pub(super) fn can_state(outcome: &MotionOutcome) -> bool {
+    let one = |a: &Adjustment| a.slips.len() <= 1 && a.lags.len() <= 1 && a.lines_hz.len() <= 1;
+    outcome.corrections.iter().all(one)
+}
 
 /// Puts the changes into `[vehicle]`.
 pub(super) fn edit(section: &mut Table, frame: &MotionFrame, outcome: &MotionOutcome) {
@@ -63,7 +70,13 @@ pub(super) fn edit(section: &mut Table, frame: &MotionFrame, outcome: &MotionOut
                     columns.insert(kb, Value::String(a.clone()));
                 }
             }
-            Change::Gain { .. } | Change::Delay { .. } | Change::Flip { .. } => {}
+            Change::Gain { .. }
+            | Change::Delay { .. }
+            | Change::Clock { .. }
+            | Change::Slip { .. }
+            | Change::Lag { .. }
+            | Change::Line { .. }
+            | Change::Flip { .. } => {}
         }
     }
     section.insert(
@@ -74,8 +87,23 @@ pub(super) fn edit(section: &mut Table, frame: &MotionFrame, outcome: &MotionOut
         let mut corrections = Table::new();
         for a in &outcome.corrections {
             let mut one = Table::new();
-            one.insert("gain".into(), Value::Float(a.gain));
-            one.insert("delay_s".into(), Value::Float(a.delay_s));
+            for l in &a.lags {
+                one.insert("low_pass_s".into(), Value::Float(l.time_s));
+                one.insert("low_pass_order".into(), Value::Integer(l.order.into()));
+            }
+            let mut state = |key: &str, value: f64| one.insert(key.into(), Value::Float(value));
+            state("gain", a.gain);
+            state("delay_s", a.delay_s);
+            if a.clock != 0.0 {
+                state("clock_ppm", 1e6 * a.clock);
+            }
+            for s in &a.slips {
+                state("slip_at_s", s.at_s);
+                state("slip_s", s.by_s);
+            }
+            for hz in &a.lines_hz {
+                state("line_hz", *hz);
+            }
             corrections.insert(a.channel.clone(), Value::Table(one));
         }
         section.insert("corrections".into(), Value::Table(corrections));

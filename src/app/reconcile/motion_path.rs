@@ -12,7 +12,9 @@ use crate::app::fault::Faults;
 use crate::app::job::{Job, Vehicle as VehicleJob};
 use crate::app::vehicle::{VehicleRecords, read_vehicle, section_of, vehicle_fault, wish_of};
 use crate::app::work::Work;
+use crate::finding::{Finding, Severity};
 use crate::reconcile::Verdict;
+use crate::reconcile::motion::channel_check::broken_channels;
 use crate::reconcile::motion::{MotionEffect, MotionFrame, MotionOutcome, examine, simulated_gap};
 use crate::vehicle::identify::{Identification, Question, identify};
 use crate::vehicle::layout::Vehicle;
@@ -27,7 +29,9 @@ use crate::vehicle::stretch::slow_stretches;
 pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
     let section = section_of(job)?;
     let records = work.stage("read", |w| read_vehicle(w, job))?;
-    let frame = frame(section, &records);
+    let mut frame = frame(section, &records);
+    without_dead_hold_out(work, section, &mut frame);
+    let frame = frame;
     let only = job
         .reconcile
         .as_ref()
@@ -48,7 +52,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
         Err(not_simulated) => Simulation::NotDone { not_simulated },
     });
     findings(work, &outcome);
-    let extended_model = match named {
+    let extended_model = match named && motion_job::can_state(&outcome) {
         true => Some(ExtendedModel::of(motion_job::JOB, text_of(work, job)?)),
         false => None,
     };
@@ -120,6 +124,33 @@ fn effect_found(e: &MotionEffect) -> EffectFound {
         plausible: e.plausible,
         channels: None,
     }
+}
+
+/// Leaves the held-out record out where a channel of it says nothing: it would judge any model by that channel alone.
+fn without_dead_hold_out(work: &mut Work, section: &VehicleJob, frame: &mut MotionFrame) {
+    let Some(record) = &frame.hold_out else {
+        return;
+    };
+    let dead: Vec<String> = broken_channels(frame, record)
+        .into_iter()
+        .filter(|b| b.id == "dead_channel")
+        .map(|b| format!("`{}`", b.channel))
+        .collect();
+    if dead.is_empty() {
+        return;
+    }
+    frame.hold_out = None;
+    let file = section.hold_out.as_ref().map_or("", |h| &h.given);
+    work.findings.push(Finding::new(
+        Severity::Warning,
+        "no-hold-out",
+        "vehicle.hold_out",
+        format!(
+            "`{file}` can't judge: {} carries no signal there. Gaps are those of the fitted record.",
+            dead.join(", ")
+        ),
+        "Name a record in which every channel is alive as `hold_out` in [vehicle].",
+    ));
 }
 
 /// A dead channel can't be put right by a model.

@@ -89,6 +89,7 @@ impl DeckFrame {
         let factor = factor(of, percent);
         let model = match of {
             StiffnessOf::Joint => self.with_joint(place, factor),
+            StiffnessOf::Local => self.with_region(place, factor),
             _ => self.with_zone(job, place, factor)?,
         };
         let solution = solve(job, &model, &self.columns)?;

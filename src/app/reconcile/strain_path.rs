@@ -5,6 +5,7 @@ use super::answer::{
     StrainGap, StrainPart, first,
 };
 use super::deck_frame::{self, DeckFrame};
+use super::local::gauges_that_disagree;
 use super::readings::observations;
 use super::run_frame::frame;
 use super::strain_findings::findings;
@@ -28,7 +29,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
     {
         return causes::answer(job, r, work, &observations);
     }
-    let (part, deck) = match (&job.sensitivity, &job.model) {
+    let (part, mut deck) = match (&job.sensitivity, &job.model) {
         (Some(given), _) => {
             let read = |w: &mut Work| matrix_frame::read(w, job, given, &channels);
             (work.stage("signatures", read)?, None)
@@ -54,6 +55,17 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
         .and_then(|r| r.effects.clone())
         .unwrap_or_default();
     let mut outcome = work.stage("search", |_| examine(&frame, &only));
+    if let Some(deck) = &mut deck {
+        let off = gauges_that_disagree(&outcome);
+        if !off.is_empty() {
+            let found = work.stage("solve regions", |_| deck.regions_round(job, &frame, &off))?;
+            work.go_on()?;
+            if !found.is_empty() {
+                frame.stiffness.extend(found);
+                outcome = work.stage("search", |_| examine(&frame, &only));
+            }
+        }
+    }
     if let Some(deck) = &deck {
         // A stiffness is solved again at the size that was found, until it stays.
         for _ in 0..RESOLVED {
@@ -184,6 +196,7 @@ fn resolve_stiffness(
         let (of, place, percent) = match &e.extension {
             Extension::ZoneStiffness { place, percent } => (StiffnessOf::Zone, place, percent),
             Extension::JointStiffness { place, percent } => (StiffnessOf::Joint, place, percent),
+            Extension::LocalStiffness { place, percent } => (StiffnessOf::Local, place, percent),
             _ => continue,
         };
         let Some(signature) = frame

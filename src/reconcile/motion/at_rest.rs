@@ -139,7 +139,7 @@ impl RestRow {
                 .filter(|f| f.0 == *c)
                 .map(|f| f.1)
                 .sum::<f64>(),
-            ColumnOf::Fault(_) | ColumnOf::Delay(_) => 0.0,
+            ColumnOf::Fault(_) | ColumnOf::Line(_) | ColumnOf::Delay(_) => 0.0,
         };
         sum / self.sigma
     }

@@ -57,15 +57,8 @@ impl Candidate {
 
     /// Whether a channel is at fault, not the vehicle.
     pub fn is_channel(&self) -> bool {
-        matches!(
-            self.shapes.first(),
-            Some(
-                Change::Gain { .. }
-                    | Change::Delay { .. }
-                    | Change::Swap { .. }
-                    | Change::Flip { .. }
-            )
-        )
+        let own = |s: &Change| s.channel().is_some() || matches!(s, Change::Swap { .. });
+        self.shapes.first().is_some_and(own)
     }
 
     /// Whether it changes everything at once, beyond what a linear look ahead can see.

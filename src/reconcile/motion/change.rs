@@ -28,6 +28,32 @@ pub enum Change {
         /// The channel.
         channel: String,
     },
+    /// The clock of a channel runs off: it reads later with every second.
+    Clock {
+        /// The channel.
+        channel: String,
+    },
+    /// A channel lost samples, or wrote some twice, at a moment of the fitted record.
+    Slip {
+        /// The channel.
+        channel: String,
+        /// When, s of the record's time.
+        at_s: f64,
+    },
+    /// A channel went through a low-pass that the others did not.
+    Lag {
+        /// The channel.
+        channel: String,
+        /// Order of the filter: see [`crate::vehicle::adjustment::Lag`].
+        order: u8,
+    },
+    /// A mains line on a channel.
+    Line {
+        /// The channel.
+        channel: String,
+        /// Its frequency.
+        hz: f64,
+    },
     /// A channel reads with its sign turned.
     Flip {
         /// The channel.
@@ -87,7 +113,13 @@ pub fn assemble(base: &Vehicle, changes: &[&Change]) -> Assembled {
                     }
                 }
             }
-            Change::Gain { .. } | Change::Delay { .. } | Change::Flip { .. } => {}
+            Change::Gain { .. }
+            | Change::Delay { .. }
+            | Change::Clock { .. }
+            | Change::Slip { .. }
+            | Change::Lag { .. }
+            | Change::Line { .. }
+            | Change::Flip { .. } => {}
         }
         places.push(own);
     }
@@ -120,10 +152,7 @@ enum Place {
 pub fn with_adjustment(list: &[Adjustment], more: Adjustment) -> Vec<Adjustment> {
     let mut out = list.to_vec();
     match out.iter_mut().find(|a| a.channel == more.channel) {
-        Some(a) => {
-            a.gain *= more.gain;
-            a.delay_s += more.delay_s;
-        }
+        Some(a) => a.join(&more),
         None => out.push(more),
     }
     out
@@ -205,7 +234,40 @@ impl Change {
                 }
                 out
             }
+            // Filters of either order begin like a delay: only a fit tells them apart.
+            Self::Lag { channel, order } if step > 0.1 => vec![Self::Lag {
+                channel: channel.clone(),
+                order: 3 - order,
+            }],
+            Self::Slip { channel, at_s } => vary(&|s| {
+                Some(Self::Slip {
+                    channel: channel.clone(),
+                    at_s: at_s + SPAN_S * s,
+                })
+            }),
             _ => vec![],
+        }
+    }
+
+    /// The channel at fault; `None` for what is not a fault of one channel.
+    pub fn channel(&self) -> Option<&str> {
+        match self {
+            Self::Gain { channel }
+            | Self::Delay { channel }
+            | Self::Clock { channel }
+            | Self::Slip { channel, .. }
+            | Self::Lag { channel, .. }
+            | Self::Line { channel, .. }
+            | Self::Flip { channel } => Some(channel),
+            Self::Terms { .. } | Self::Links(_) | Self::Step(_) | Self::Swap { .. } => None,
+        }
+    }
+
+    /// What a fault's parameter is multiplied by to be stated: a clock's rate in millionths.
+    pub fn stated(&self) -> f64 {
+        match self {
+            Self::Clock { .. } => 1e6,
+            _ => 1.0,
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::frame::MotionFrame;
 use crate::finding::Finding;
+use crate::series::channels::Channels;
 use crate::series::quality::{Kind, check_channels};
 
 /// A channel at fault: effect id without place, channel, what was measured of it.
@@ -15,8 +16,8 @@ pub struct BrokenChannel {
     pub measured: f64,
 }
 
-/// Dead and saturated channels among those compared, in the fitted record.
-pub fn broken_channels(frame: &MotionFrame) -> Vec<BrokenChannel> {
+/// Dead and saturated channels among those compared, in a record.
+pub fn broken_channels(frame: &MotionFrame, record: &Channels) -> Vec<BrokenChannel> {
     let own = frame.channels();
     let kind = |name: &str| {
         if frame.vehicle.wheels.iter().any(|w| w.channel == name) {
@@ -32,7 +33,7 @@ pub fn broken_channels(frame: &MotionFrame) -> Vec<BrokenChannel> {
         "saturated-channel" => Some("saturated_channel"),
         _ => None,
     };
-    check_channels(&frame.data, frame.gravity, kind)
+    check_channels(record, frame.gravity, kind)
         .iter()
         .filter(|f| own.contains(&f.subject))
         .filter_map(|f| {

@@ -4,8 +4,19 @@ use super::change::Change;
 use super::design::{Bins, Design};
 use super::frame::MotionFrame;
 use super::part::{ColumnOf, Part};
+use crate::series::spectrum::Fourier;
+use crate::series::window::Windowed;
+use crate::vehicle::adjustment::Lag;
 use rustfft::num_complex::Complex64;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, SQRT_2};
+
+/// What a signal in one channel makes in every equation.
+fn heard(responses: &[Vec<Vec<Complex64>>], channel: usize, signal: &[Complex64]) -> Vec<Bins> {
+    let one = |r: &Vec<Vec<Complex64>>| -> Bins {
+        r[channel].iter().zip(signal).map(|(h, a)| h * a).collect()
+    };
+    responses.iter().map(one).collect()
+}
 
 /// The column of one channel in every equation, times a function of angular frequency.
 fn channel_column(
@@ -14,39 +25,109 @@ fn channel_column(
     channel: usize,
     factor: impl Fn(f64) -> Complex64,
 ) -> Vec<Bins> {
-    responses
-        .iter()
-        .map(|r| {
-            r[channel]
-                .iter()
-                .zip(&design.channels[channel].bins)
-                .zip(&design.f_hz)
-                .map(|((h, a), f)| h * a * factor(2.0 * PI * f))
-                .collect()
-        })
-        .collect()
+    let own = &design.channels[channel].bins;
+    let signal: Bins = (own.iter().zip(&design.f_hz))
+        .map(|(a, f)| a * factor(2.0 * PI * f))
+        .collect();
+    heard(responses, channel, &signal)
 }
 
-/// Column of a fault of a channel per unit of its parameter (1 / gain, or delay).
-pub fn fault_column(
+/// The column of one channel's rate of change times a function of the record's time, s.
+fn rate_column(
+    design: &Design,
+    responses: &[Vec<Vec<Complex64>>],
+    channel: usize,
+    share: impl Fn(f64) -> f64,
+) -> Option<Vec<Bins>> {
+    let x = design.signal(&design.channels[channel].name)?;
+    let m = &design.motion;
+    let mut fourier = Fourier::default();
+    let rate = fourier
+        .spectrum(x, m.rate_hz)
+        .times(|f| Complex64::new(0.0, 2.0 * PI * f));
+    let shared: Vec<f64> = (fourier.samples(&rate, 1).iter().enumerate())
+        .map(|(i, v)| v * share(m.start_s + i as f64 / m.rate_hz))
+        .collect();
+    let mut window = Windowed::of(m.n_samples(), m.rate_hz, design.band);
+    Some(heard(responses, channel, &window.bins(&shared)))
+}
+
+/// Cosine and sine of a line in one channel, of amplitude one in its readings.
+fn line_columns(
+    design: &Design,
+    responses: &[Vec<Vec<Complex64>>],
+    channel: usize,
+    hz: f64,
+) -> Vec<Vec<Bins>> {
+    let m = &design.motion;
+    let mut window = Windowed::of(m.n_samples(), m.rate_hz, design.band);
+    let gain = design.band.gain(hz);
+    [0.0, 0.5 * PI]
+        .map(|phase| {
+            let wave: Vec<f64> = (0..m.n_samples())
+                .map(|i| gain * (2.0 * PI * hz * i as f64 / m.rate_hz - phase).cos())
+                .collect();
+            heard(responses, channel, &window.bins(&wave))
+        })
+        .into()
+}
+
+/// Columns of a fault of a channel per unit of its parameter (see [`Part::fault`]); two for a line, none for what is no such fault.
+pub fn fault_columns(
     design: &Design,
     responses: &[Vec<Vec<Complex64>>],
     shape: &Change,
     fault: f64,
-) -> Option<Vec<Bins>> {
-    let (channel, is_gain) = match shape {
-        Change::Gain { channel } => (channel, true),
-        Change::Delay { channel } => (channel, false),
-        _ => return None,
+) -> Vec<Vec<Bins>> {
+    let Some(c) = shape
+        .channel()
+        .and_then(|name| design.channels.iter().position(|x| x.name == name))
+    else {
+        return vec![];
     };
-    let c = design.channels.iter().position(|x| x.name == *channel)?;
-    Some(channel_column(design, responses, c, |w| {
-        if is_gain {
-            Complex64::new(1.0 / fault, 0.0)
-        } else {
-            Complex64::new(0.0, w)
+    let by = |factor: &dyn Fn(f64) -> Complex64| channel_column(design, responses, c, factor);
+    match shape {
+        Change::Gain { .. } => vec![by(&|_| Complex64::new(1.0 / fault, 0.0))],
+        Change::Delay { .. } => vec![by(&|w| Complex64::new(0.0, w))],
+        Change::Lag { order, .. } => {
+            let lag = Lag {
+                order: *order,
+                time_s: fault,
+            };
+            vec![by(&|w| {
+                let slope = match order {
+                    1 => Complex64::new(0.0, w),
+                    _ => Complex64::new(-2.0 * w * w * fault, SQRT_2 * w),
+                };
+                slope / lag.undone(w)
+            })]
         }
-    }))
+        Change::Clock { .. } => {
+            let begin = design.record_start_s;
+            let column = rate_column(design, responses, c, |t| t - begin);
+            column.into_iter().collect()
+        }
+        Change::Slip { at_s, .. } => {
+            let after = |t: f64| f64::from(u8::from(t >= *at_s));
+            let column = rate_column(design, responses, c, after);
+            column.into_iter().collect()
+        }
+        Change::Line { hz, .. } => line_columns(design, responses, c, *hz),
+        _ => vec![],
+    }
+}
+
+/// The column of a channel that is late by one second between two times.
+pub fn late_between(
+    design: &Design,
+    responses: &[Vec<Vec<Complex64>>],
+    channel: &str,
+    times_s: [f64; 2],
+) -> Option<Vec<Bins>> {
+    let c = design.channels.iter().position(|x| x.name == channel)?;
+    let [begin, end] = times_s;
+    let between = |t: f64| f64::from(u8::from(t >= begin && t < end));
+    rate_column(design, responses, c, between)
 }
 
 /// What is declared to be uncertain, as columns with priors (one sd).

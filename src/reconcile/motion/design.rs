@@ -2,11 +2,12 @@
 
 use super::frame::MotionFrame;
 use crate::series::channels::Channels;
+use crate::series::spectrum::Band;
 use crate::series::window::Windowed;
 use crate::vehicle::equations::equations;
 use crate::vehicle::layout::{Measures, Vehicle};
 use crate::vehicle::motion::{Adjustment, Motion, Treatment, VehicleError, motion};
-use crate::vehicle::treatment::SlowStretch;
+use crate::vehicle::treatment::{Lag, SlowStretch};
 use rustfft::num_complex::Complex64;
 
 /// Transform of a signal within the band, a value a bin.
@@ -38,6 +39,8 @@ pub struct BinChannel {
     pub noise: Option<f64>,
     /// What its readings were divided by.
     pub gain: f64,
+    /// Low-passes that were undone: noise grows as readings do.
+    pub lags: Vec<Lag>,
 }
 
 /// Everything a fit needs to know of a record.
@@ -51,6 +54,10 @@ pub struct Design {
     pub channels: Vec<BinChannel>,
     /// Samples of the record to one of the thinned signals.
     pub thinning: f64,
+    /// Time of the record's first sample, s.
+    pub record_start_s: f64,
+    /// The band of its bins.
+    pub band: Band,
     /// The vehicle.
     pub vehicle: Vehicle,
     /// Its motion.
@@ -86,6 +93,7 @@ pub fn design(
     let motion = motion(vehicle, record, &treatment)?;
     let mut out = of_motion(frame, vehicle, motion, adjust)?;
     out.thinning = keep as f64;
+    out.record_start_s = record.start_s;
     Ok(out)
 }
 
@@ -122,6 +130,7 @@ fn of_motion(
         let own = adjust.iter().filter(|a| a.channel == channel);
         own.map(|a| a.gain.abs()).product()
     };
+    let lags = |channel: &str| Adjustment::of_channel(adjust, channel).map_or(vec![], |a| a.lags);
     let mut channels = Vec::new();
     for (s, signal) in vehicle.sensors.iter().zip(&motion.sensors) {
         if frame.bodies.contains(&s.at.body) {
@@ -134,6 +143,7 @@ fn of_motion(
                 bins: window.bins(signal),
                 noise: noise.map(|n| n / gain),
                 gain,
+                lags: lags(&s.channel),
             });
         }
     }
@@ -145,6 +155,7 @@ fn of_motion(
                 bins: window.bins(signal),
                 noise: frame.noise_force.map(|n| n / gain),
                 gain,
+                lags: lags(&w.channel),
             });
         }
     }
@@ -156,6 +167,8 @@ fn of_motion(
         equations: out,
         channels,
         thinning: 1.0,
+        record_start_s: 0.0,
+        band: frame.band,
         vehicle: vehicle.clone(),
         motion,
     })
@@ -191,9 +204,44 @@ impl Design {
             let motion = self.motion.stretch_of(k * length, length);
             let mut d = of_motion(frame, &self.vehicle, motion, adjust).ok()?;
             d.thinning = self.thinning;
+            d.record_start_s = self.record_start_s;
             Some(d)
         });
         parts.collect::<Option<Vec<_>>>().unwrap_or_default()
+    }
+
+    /// The same with everything at some frequencies silent, to two and a half bins on either side: what a window spreads a line over.
+    pub fn silenced(&self, lines_hz: &[f64]) -> Self {
+        const BINS: f64 = 2.5;
+        let mut out = self.clone();
+        let length =
+            Windowed::of(self.motion.n_samples(), self.motion.rate_hz, self.band).step_hz();
+        let near = |f: f64| lines_hz.iter().any(|l| (f - l).abs() <= BINS * length);
+        let quiet: Vec<usize> = (0..out.f_hz.len()).filter(|&k| near(out.f_hz[k])).collect();
+        let silence = |bins: &mut Bins| {
+            for &k in &quiet {
+                if let Some(b) = bins.get_mut(k) {
+                    *b = Complex64::default();
+                }
+            }
+        };
+        for e in &mut out.equations {
+            e.columns.iter_mut().for_each(|c| silence(&mut c.1));
+            silence(&mut e.target);
+        }
+        out.channels.iter_mut().for_each(|c| silence(&mut c.bins));
+        out
+    }
+
+    /// Samples of a channel within the band.
+    pub fn signal(&self, channel: &str) -> Option<&[f64]> {
+        let (v, m) = (&self.vehicle, &self.motion);
+        let sensor = v.sensors.iter().position(|s| s.channel == channel);
+        if let Some(s) = sensor {
+            return m.sensors.get(s).map(Vec::as_slice);
+        }
+        let wheel = v.wheels.iter().position(|w| w.channel == channel)?;
+        m.forces.get(wheel)?.as_deref()
     }
 
     /// Mean over the compared stretch of a function of the record's time, s.

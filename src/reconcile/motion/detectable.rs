@@ -40,14 +40,20 @@ pub fn smallest_sizes(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Smalle
         let seen = sigma * (2.0 * (DECISIVE + price)).sqrt();
         let tolerance = match shape {
             Change::Gain { .. } => scorer.frame.gain_tolerance,
-            Change::Delay { .. } => scorer.frame.sync_tolerance_s,
+            Change::Delay { .. } | Change::Lag { .. } => scorer.frame.sync_tolerance_s,
+            // See `super::limits::late_on_average`.
+            Change::Slip { .. } => 2.0 * scorer.frame.sync_tolerance_s,
+            Change::Clock { .. } => {
+                let [begin, end] = null.design.span_s();
+                12f64.sqrt() * scorer.frame.sync_tolerance_s / (end - begin)
+            }
             _ => 0.0,
         };
         let size = seen.max(limit * tolerance.hypot(sigma));
         if out[c].as_ref().is_none_or(|s| size < s.size) {
             out[c] = Some(Smallest {
                 id: candidate.id.clone(),
-                size,
+                size: size * shape.stated(),
                 unit: unit_of_change(scorer.frame, shape, null),
             });
         }

@@ -9,7 +9,12 @@ use crate::vehicle::term::Quantity;
 pub fn unit_of_change(frame: &MotionFrame, change: &Change, fit: &MotionFit) -> String {
     let quantity = match change {
         Change::Gain { .. } | Change::Flip { .. } | Change::Swap { .. } => return "-".to_owned(),
-        Change::Delay { .. } => return "s".to_owned(),
+        Change::Delay { .. } | Change::Slip { .. } | Change::Lag { .. } => return "s".to_owned(),
+        Change::Clock { .. } => return "ppm".to_owned(),
+        Change::Line { channel, .. } if frame.is_sensor(channel) => {
+            return format!("{}/s2", frame.units.length);
+        }
+        Change::Line { .. } => Some(Quantity::Force),
         Change::Terms { terms, .. } => terms.first().map(|t| t.quantity()),
         Change::Links(links) => {
             let term = links.first().and_then(|l| l.terms.first());

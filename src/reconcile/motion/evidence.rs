@@ -20,6 +20,8 @@ pub fn cost(candidate: &Candidate, shape: &Change, n_candidates: usize, n_rows: 
     let n = match shape {
         Change::Terms { terms, .. } => terms.len(),
         Change::Links(links) => links.iter().map(|l| l.terms.len()).sum(),
+        // Amplitude, phase, frequency.
+        Change::Line { .. } => 3,
         _ => 1,
     };
     // A constant that is looked for among several forms is a parameter, too.
@@ -54,7 +56,9 @@ fn unusual(fit: &MotionFit) -> f64 {
         .iter()
         .map(|p| match &p.shape {
             Change::Gain { .. } => 0.5 * ((1.0 / p.fault).ln() / GAIN).powi(2),
-            Change::Delay { .. } => 0.5 * (p.fault / DELAY_S).powi(2),
+            Change::Delay { .. } | Change::Slip { .. } | Change::Lag { .. } => {
+                0.5 * (p.fault / DELAY_S).powi(2)
+            }
             _ => 0.0,
         })
         .sum()

@@ -17,7 +17,7 @@ use super::part::Part;
 use super::scorer::MotionScorer;
 use super::unexplained_background::{of_fit, power, unexplained_background};
 use crate::reconcile::search::{Breadth, Scored, Scorer, search, settle};
-use crate::vehicle::motion::VehicleError;
+use crate::vehicle::motion::{Adjustment, VehicleError};
 
 /// How far the search looks.
 const BREADTH: Breadth = Breadth {
@@ -36,7 +36,7 @@ const LOWERED: f64 = 0.7;
 /// # Errors
 /// [`VehicleError`] when the record can't be fitted at all.
 pub fn examine(frame: &MotionFrame, only: &[String]) -> Result<MotionOutcome, VehicleError> {
-    let broken = broken_channels(frame);
+    let broken = broken_channels(frame, &frame.data);
     let first = design(
         frame,
         &frame.vehicle,
@@ -44,6 +44,11 @@ pub fn examine(frame: &MotionFrame, only: &[String]) -> Result<MotionOutcome, Ve
         &frame.corrections,
         vec![],
     )?;
+    if let Some(record) = &frame.hold_out {
+        let adjust = Adjustment::elsewhere(&frame.corrections);
+        design(frame, &frame.vehicle, record, &adjust, vec![])
+            .map_err(|e| VehicleError::HeldOut(Box::new(e)))?;
+    }
     let candidates = library(frame, &first.motion, only);
     let none = Background::default();
     let null = fit(

@@ -3,7 +3,7 @@
 use super::at_rest::rest_row;
 use super::candidate::Candidate;
 use super::change::{Assembled, Change, assemble};
-use super::columns::{fault_column, nuisance, parameter_column, slices};
+use super::columns::{fault_columns, nuisance, parameter_column, slices};
 use super::corrections::adjustments;
 use super::design::{Bins, Design, design};
 use super::fitted::{MotionFit, whitened};
@@ -185,8 +185,14 @@ impl Problem {
         }
         if values.is_some() {
             for (i, p) in parts.iter().enumerate() {
-                if let Some(c) = fault_column(d, &out.responses, &p.shape, p.fault) {
-                    out.push(ColumnOf::Fault(i), &slices(&c), None);
+                let is_line = matches!(p.shape, Change::Line { .. });
+                let of = if is_line {
+                    ColumnOf::Line(i)
+                } else {
+                    ColumnOf::Fault(i)
+                };
+                for c in fault_columns(d, &out.responses, &p.shape, p.fault) {
+                    out.push(of, &slices(&c), None);
                     out.extra.push(c);
                 }
             }
@@ -250,7 +256,23 @@ impl Problem {
                     let gain = 1.0 / part.fault;
                     vec![[gain, fault_sd(p) * gain * gain]]
                 }
-                Change::Delay { .. } => vec![[part.fault, fault_sd(p)]],
+                Change::Delay { .. }
+                | Change::Clock { .. }
+                | Change::Slip { .. }
+                | Change::Lag { .. } => {
+                    let unit = part.shape.stated();
+                    vec![[unit * part.fault, unit * fault_sd(p)]]
+                }
+                Change::Line { .. } => {
+                    let own = (0..self.column_of.len())
+                        .filter(|&k| self.column_of[k] == ColumnOf::Line(p));
+                    let [mut power, mut variance] = [0.0; 2];
+                    for k in own {
+                        power += s.x[k] * s.x[k];
+                        variance += 0.5 * sd(k).powi(2);
+                    }
+                    vec![[power.sqrt(), variance.sqrt()]]
+                }
                 Change::Flip { .. } => vec![[-1.0, 0.0]],
                 _ => assembled.own[p]
                     .iter()
@@ -288,18 +310,27 @@ impl Problem {
     }
 }
 
+/// A time constant below which a low-pass is none.
+const LEAST_LAG_S: f64 = 1e-5;
+
 /// Moves the faults of channels by what a round found; the largest step over one that counts as settled.
 fn advance(parts: &mut [Part], problem: &Problem, s: &Solved) -> f64 {
     let mut moved = 0.0f64;
     for (of, step) in problem.column_of.iter().zip(&s.x) {
         let ColumnOf::Fault(i) = of else { continue };
         // A step beyond any sensible fault is cut; the next round goes on from there.
+        let motion = &problem.design.motion;
+        let length_s = (motion.n_samples() as f64 / motion.rate_hz).max(1.0);
         let (settled, most) = match parts[*i].shape {
             Change::Gain { .. } => (1e-4, 0.3),
+            Change::Clock { .. } => (1e-6 / length_s, 0.02 / length_s),
             _ => (1e-6, 0.02),
         };
         moved = moved.max((step / settled).abs());
         parts[*i].fault += step.clamp(-most, most);
+        if matches!(parts[*i].shape, Change::Lag { .. }) {
+            parts[*i].fault = parts[*i].fault.max(LEAST_LAG_S);
+        }
     }
     moved
 }

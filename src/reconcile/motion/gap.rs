@@ -1,6 +1,6 @@
 //! How large the disagreement is: residual of the equations over what was measured, in the band.
 
-use super::corrections::adjustments;
+use super::corrections::{adjustments, lines};
 use super::design::{Bins, Design, design, measured, size};
 use super::fit::held;
 use super::fitted::MotionFit;
@@ -10,6 +10,7 @@ use super::gap_profile::{GapProfile, gap_profile};
 use super::noise::{BANDS, band_of};
 use crate::series::channels::Channels;
 use crate::vehicle::layout::Vehicle;
+use crate::vehicle::motion::Adjustment;
 use crate::vehicle::stretch::slow_stretches;
 use serde::Serialize;
 
@@ -100,9 +101,16 @@ pub fn proof_gap(frame: &MotionFrame, fit: &MotionFit) -> Option<RecordGap> {
 
 /// The gap on the fitted record.
 pub fn fitted_gap(frame: &MotionFrame, fit: &MotionFit) -> Option<RecordGap> {
-    let d = &*fit.design;
+    let quiet = quiet(fit);
+    let d = quiet.as_ref().unwrap_or(&fit.design);
     let values = plain_values(frame, fit, &[d]);
     Some(gap_of(frame, fit, &[d], d, values))
+}
+
+/// The design of a fit without the lines that it holds; `None` where it holds none.
+fn quiet(fit: &MotionFit) -> Option<Design> {
+    let lines = lines(&fit.parts);
+    (!lines.is_empty()).then(|| fit.design.silenced(&lines))
 }
 
 /// The gap of a record under the model of a fit, its parameters found anew on the fitted record without the help of nuisance: what
@@ -110,7 +118,10 @@ pub fn fitted_gap(frame: &MotionFrame, fit: &MotionFit) -> Option<RecordGap> {
 ///
 /// A mass or spring that changed during the fitted record is taken as it was before or after in another one, whichever fits.
 pub fn record_gap(frame: &MotionFrame, fit: &MotionFit, record: &Channels) -> Option<RecordGap> {
-    let values = plain_values(frame, fit, &[&fit.design]);
+    let quiet = quiet(fit);
+    let learnt = quiet.as_ref().unwrap_or(&fit.design);
+    let lines = lines(&fit.parts);
+    let values = plain_values(frame, fit, &[learnt]);
     let v = &fit.assembled.vehicle;
     let vehicles: Vec<Vehicle> = if v.changes() {
         [f64::MIN, f64::MAX]
@@ -127,10 +138,13 @@ pub fn record_gap(frame: &MotionFrame, fit: &MotionFit, record: &Channels) -> Op
     vehicles
         .into_iter()
         .filter_map(|v| {
-            let adjust = adjustments(frame, &fit.parts);
+            let adjust = Adjustment::elsewhere(&adjustments(frame, &fit.parts));
             let slow = slow_stretches(&v, &values, record, &adjust);
-            let d = design(frame, &v, record, &adjust, slow).ok()?;
-            Some(gap_of(frame, fit, &[&fit.design], &d, values.clone()))
+            let mut d = design(frame, &v, record, &adjust, slow).ok()?;
+            if !lines.is_empty() {
+                d = d.silenced(&lines);
+            }
+            Some(gap_of(frame, fit, &[learnt], &d, values.clone()))
         })
         .min_by(|a, b| a.gap.total_cmp(&b.gap))
 }
@@ -139,7 +153,11 @@ pub fn record_gap(frame: &MotionFrame, fit: &MotionFit, record: &Channels) -> Op
 fn cross_validated_gap(frame: &MotionFrame, fit: &MotionFit) -> Option<RecordGap> {
     let adjust = adjustments(frame, &fit.parts);
     let n = n_segments(frame, fit);
-    let segments = fit.design.segments(frame, &adjust, n);
+    let mut segments = fit.design.segments(frame, &adjust, n);
+    let lines = lines(&fit.parts);
+    if !lines.is_empty() {
+        segments.iter_mut().for_each(|d| *d = d.silenced(&lines));
+    }
     let gaps: Vec<RecordGap> = (0..segments.len())
         .map(|k| {
             let others: Vec<&Design> = (segments.iter().enumerate())

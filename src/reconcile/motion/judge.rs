@@ -2,7 +2,7 @@
 
 use super::change::Change;
 use super::channel_check::BrokenChannel;
-use super::corrections::adjustments;
+use super::corrections::stated;
 use super::detectable::smallest_sizes;
 use super::effect_units::unit_of_change;
 use super::fit::{Effort, fit};
@@ -26,6 +26,10 @@ const CLOSE: f64 = 3.0;
 /// Share of an effect's own power that its form may leave: stretch is integrated from noisy accelerations and nonlinear terms are formed
 /// from it, to about a fifth of their amplitude at the worst (the lower band edge).
 const FORM: f64 = 0.04;
+
+/// A fit whose squared residual is that of noise, but which leaves this many times the limit of the gap, went astray: parameters at which
+/// noise would be as large as what was measured explain anything.
+const ASTRAY: f64 = 4.0;
 
 /// Share of what other effects of the vehicle take that a further one must take beside them: forms are made from noisy stretch to about a
 /// twentieth of their amplitude within the band, and what a form leaves of itself looks like another one.
@@ -52,11 +56,12 @@ impl Gaps {
     /// Whether a complete model may leave this: by its squared residual, or by the size of its gap on the fitted record and on what judges.
     /// `excess` is the squared size of what named effects took, over that of what was measured.
     fn at_floor(&self, excess: f64) -> bool {
-        let within = |g: &Option<RecordGap>| {
+        let within_times = |g: &Option<RecordGap>, times: f64| {
             g.as_ref()
-                .is_some_and(|g| g.gap.powi(2) <= g.floor.limit().powi(2) + FORM * excess)
+                .is_some_and(|g| g.gap.powi(2) <= (times * g.floor.limit()).powi(2) + FORM * excess)
         };
-        self.reduced_chi2 < NOISE_FACTOR * NOISE_FACTOR
+        let within = |g: &Option<RecordGap>| within_times(g, 1.0);
+        self.reduced_chi2 < NOISE_FACTOR * NOISE_FACTOR && within_times(&self.fitted, ASTRAY)
             || within(&self.fitted) && within(&self.proof)
     }
 }
@@ -140,7 +145,7 @@ pub(super) fn judged(
             vec![]
         },
         best_attempt: attempt,
-        corrections: adjustments(frame, &best.fit.parts),
+        corrections: stated(frame, &best.fit.parts),
         remains: remains(verdict, chi, left, judged_by, after.proof.as_ref()),
         next_measurement: next_measurement(scorer, verdict, &rivals),
         rivals,
@@ -192,13 +197,18 @@ fn nameable(
         };
         let Some(own) = &gaps[at] else { return false };
         let of_vehicle = |m: &usize| !scorer.candidates[*m].is_channel();
-        let vehicles = s.set.iter().copied().filter(of_vehicle);
-        vehicles.into_iter().all(|member| {
+        s.set.iter().copied().all(|member| {
             let rest: Vec<usize> = s.set.iter().copied().filter(|m| *m != member).collect();
             let beside = rest.iter().any(of_vehicle);
+            // A channel alone is held against its tolerance; beside an effect of the vehicle it may be what that one's form leaves.
+            let tolerance = match (of_vehicle(&member), beside) {
+                (true, _) => own.floor.tolerance,
+                (false, true) => 0.0,
+                (false, false) => return true,
+            };
             power(&rest).is_none_or(|without| {
                 let others = power(&[]).filter(|_| beside).map_or(0.0, |p| p - without);
-                let least = own.floor.tolerance + NEXT_FORM * others.max(0.0);
+                let least = tolerance + NEXT_FORM * others.max(0.0);
                 without - own.gap * own.gap > least
             })
         })

@@ -101,9 +101,26 @@ pub fn beyond_tolerance(frame: &MotionFrame, fit: &MotionFit) -> bool {
         match p.shape {
             Change::Gain { .. } => beyond(size - 1.0, frame.gain_tolerance, *sigma),
             Change::Delay { .. } => beyond(*size, frame.sync_tolerance_s, *sigma),
+            Change::Clock { .. } | Change::Slip { .. } | Change::Lag { .. } => {
+                let late = late_on_average(&p.shape, fit) / p.shape.stated();
+                beyond(late * size, frame.sync_tolerance_s, late * *sigma)
+            }
             _ => true,
         }
     })
+}
+
+/// How much a fault of timing of size one makes a channel late, RMS over the record about its mean, s: what a tolerance of
+/// synchronisation, which speaks of one delay, is held against.
+fn late_on_average(shape: &Change, fit: &MotionFit) -> f64 {
+    let [begin, end] = fit.design.span_s();
+    match shape {
+        // Even from begin to end.
+        Change::Clock { .. } => (end - begin) / 12f64.sqrt(),
+        // Half a step to either side.
+        Change::Slip { .. } => 0.5,
+        _ => 1.0,
+    }
 }
 
 /// Whether several faults of a kind are what `n` healthy channels may have together: what all of them have in common shows in nothing, so
@@ -126,6 +143,9 @@ const GAINS: std::ops::Range<f64> = 0.5..2.0;
 /// Longest delay, s, that the search follows: a tenth of the period of the lowest frequencies that vehicles are compared at.
 const LONGEST_DELAY_S: f64 = 0.15;
 
+/// Rate by which a clock may be off and still be a clock, millionths.
+const MOST_CLOCK_PPM: f64 = 1e4;
+
 /// Whether every effect's size is one that nature allows.
 pub fn plausible(candidates: &[Candidate], fit: &MotionFit) -> bool {
     fit.parts.iter().zip(&fit.sizes).all(|(p, sizes)| {
@@ -135,6 +155,12 @@ pub fn plausible(candidates: &[Candidate], fit: &MotionFit) -> bool {
         match &p.shape {
             Change::Gain { .. } => GAINS.contains(x),
             Change::Delay { .. } => x.abs() < LONGEST_DELAY_S,
+            Change::Lag { .. } => *x > 0.0 && *x < LONGEST_DELAY_S,
+            Change::Slip { at_s, .. } => {
+                x.abs() < LONGEST_DELAY_S && is_seen(fit, |t_s| f64::from(u8::from(t_s >= *at_s)))
+            }
+            Change::Clock { .. } => x.abs() < MOST_CLOCK_PPM,
+            Change::Line { .. } => x.is_finite(),
             Change::Flip { .. } | Change::Swap { .. } => is_upright(fit),
             // What comes may be any mass; what leaves is less than what was there.
             Change::Step(s) => {

@@ -3,6 +3,7 @@
 use super::design::{Bins, Design};
 use super::frame::MotionFrame;
 use rustfft::num_complex::Complex64;
+use std::f64::consts::PI;
 
 /// Power of what no effect explains, by equation and band of frequencies, on top of sensor noise.
 #[derive(Clone, Debug, Default)]
@@ -60,7 +61,14 @@ pub fn covariance(
             for i in 0..n {
                 for j in 0..n {
                     s[i * n + j] = (0..design.channels.len())
-                        .map(|c| responses[i][c][k] * responses[j][c][k].conj() * powers[c])
+                        .map(|c| {
+                            let lags = &design.channels[c].lags;
+                            let louder: f64 = lags
+                                .iter()
+                                .map(|l| l.undone(2.0 * PI * f).norm_sqr())
+                                .product();
+                            responses[i][c][k] * responses[j][c][k].conj() * powers[c] * louder
+                        })
                         .sum::<Complex64>()
                         * (gain * gain);
                 }

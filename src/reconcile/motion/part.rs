@@ -9,7 +9,8 @@ pub struct Part {
     pub candidate: usize,
     /// Its form.
     pub shape: Change,
-    /// 1 / gain of a gain fault, delay in s of a delay fault; not used otherwise.
+    /// 1 / gain of a gain fault, delay in s of a delay fault, rate of a clock, step in s of a slip, time constant in s of a low-pass; not used
+    /// otherwise.
     pub fault: f64,
 }
 
@@ -20,6 +21,8 @@ pub enum ColumnOf {
     Parameter(usize),
     /// The fault of a part (its number in the set).
     Fault(usize),
+    /// A mains line of a part: its cosine or its sine.
+    Line(usize),
     /// The gain of a channel (its number in the design) within its tolerance.
     Gain(usize),
     /// The timing of a channel within its tolerance.

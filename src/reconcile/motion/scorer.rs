@@ -2,7 +2,7 @@
 
 use super::candidate::Candidate;
 use super::change::{Change, assemble};
-use super::columns::{fault_column, parameter_column, slices};
+use super::columns::{fault_columns, late_between, parameter_column, slices};
 use super::corrections::adjustments;
 use super::design::{Design, design};
 use super::evidence::{cost, evidence};
@@ -56,7 +56,13 @@ impl MotionScorer<'_> {
         let shape = shapes[index].clone();
         let fault = match &shape {
             Change::Gain { .. } => 1.0 + start.unwrap_or(0.0).clamp(-0.4, 0.6),
-            Change::Delay { .. } => start.unwrap_or(0.0).clamp(-0.02, 0.02),
+            Change::Delay { .. } | Change::Slip { .. } => start.unwrap_or(0.0).clamp(-0.02, 0.02),
+            Change::Clock { .. } => {
+                let most = 0.02 / self.frame.data.duration_s().max(1.0);
+                start.unwrap_or(0.0).clamp(-most, most)
+            }
+            // A low-pass that starts at none has the column of a delay.
+            Change::Lag { .. } => start.unwrap_or(0.0).clamp(0.001, 0.03),
             _ => 0.0,
         };
         Part {
@@ -116,10 +122,99 @@ impl MotionScorer<'_> {
             })
     }
 
+    /// The fit of a set in which a fault of timing is new, from the start that leaves least: beyond a quarter of a wave of what was
+    /// measured, a linear step does not know its way.
+    fn from_afar(&self, first: MotionFit, known: &[usize]) -> MotionFit {
+        /// Lateness at the end of the record that is tried, s.
+        const LATE_S: [f64; 6] = [-0.12, -0.06, -0.03, 0.03, 0.06, 0.12];
+        /// Squared residual by degree of freedom below which a fit has found its way: noise is known to a factor of one and a half.
+        const FOUND: f64 = 2.25;
+        let length_s = self.frame.data.duration_s().max(1.0);
+        let mut best = first;
+        for i in 0..best.parts.len() {
+            if best.reduced_chi2() < FOUND {
+                break;
+            }
+            if known.contains(&best.parts[i].candidate) {
+                continue;
+            }
+            let unit = match best.parts[i].shape {
+                Change::Clock { .. } => 1.0 / length_s,
+                Change::Slip { .. } => 1.0,
+                _ => continue,
+            };
+            let started = best.clone();
+            for late in LATE_S {
+                let mut parts = started.parts.clone();
+                parts[i].fault = unit * late;
+                let again = fit(
+                    self.frame,
+                    self.candidates,
+                    &self.frame.data,
+                    parts,
+                    Some(&started),
+                    &self.background,
+                    Effort::Touch,
+                );
+                if let Some(f) = again.filter(|f| f.misfit() < best.misfit()) {
+                    best = f;
+                }
+            }
+            let settled = fit(
+                self.frame,
+                self.candidates,
+                &self.frame.data,
+                best.parts.clone(),
+                Some(&best),
+                &self.background,
+                Effort::Settled,
+            );
+            if let Some(f) = settled.filter(|f| f.misfit() < best.misfit()) {
+                best = f;
+            }
+        }
+        best
+    }
+
+    /// Falls of the squared residual that other moments of a slip bring, with everything else as it is.
+    fn gains_of_slip(&self, now: &MotionFit, part: usize, varied: &[Change]) -> Option<Vec<f64>> {
+        /// Share of the slip that the better moment must take up, and its inverse.
+        const SAME: f64 = 0.3;
+        let Change::Slip { channel, at_s } = &now.parts[part].shape else {
+            return None;
+        };
+        let by_s = now.parts[part].fault;
+        let basis = Basis::of(&now.columns);
+        let gain = |shape: &Change| {
+            let Change::Slip { at_s: other, .. } = shape else {
+                return 0.0;
+            };
+            let times = [at_s.min(*other), at_s.max(*other)];
+            let column = late_between(&now.design, &now.responses, channel, times);
+            let Some(column) = column else { return 0.0 };
+            let rows = now.rows(&slices(&column), 0.0);
+            let (fall, found) = basis.gain(&now.residual, &[rows]);
+            let wanted = if *other > *at_s { -by_s } else { by_s };
+            let share = found / wanted;
+            if share > SAME && share < 1.0 / SAME {
+                fall
+            } else {
+                0.0
+            }
+        };
+        Some(varied.iter().map(gain).collect())
+    }
+
     /// Falls of the squared residual that the present form of a part and others bring, with everything else as it is.
     fn gains_of(&self, now: &MotionFit, part: usize, varied: &[Change]) -> Option<(f64, Vec<f64>)> {
         if varied.is_empty() {
             return None;
+        }
+        if matches!(now.parts[part].shape, Change::Lag { .. }) {
+            return Some((0.0, vec![1.0; varied.len()]));
+        }
+        if let Some(gains) = self.gains_of_slip(now, part, varied) {
+            return Some((0.0, gains));
         }
         let mut changes: Vec<&Change> = now.parts.iter().map(|p| &p.shape).collect();
         changes.extend(varied);
@@ -243,16 +338,20 @@ impl MotionScorer<'_> {
             }
         }
         for (c, candidate) in self.candidates.iter().enumerate() {
-            let Some(shape) = candidate.shapes.first().filter(|_| !set.contains(&c)) else {
+            if set.contains(&c) {
                 continue;
-            };
-            let start = if matches!(shape, Change::Gain { .. }) {
-                1.0
-            } else {
-                0.0
-            };
-            if let Some(column) = fault_column(&base.design, &base.responses, shape, start) {
-                out.push((c, 0, vec![base.rows(&slices(&column), 0.0)]));
+            }
+            for (k, shape) in candidate.shapes.iter().enumerate() {
+                let start = if matches!(shape, Change::Gain { .. }) {
+                    1.0
+                } else {
+                    0.0
+                };
+                let columns = fault_columns(&base.design, &base.responses, shape, start);
+                if !columns.is_empty() {
+                    let rows = columns.iter().map(|c| base.rows(&slices(c), 0.0));
+                    out.push((c, k, rows.collect()));
+                }
             }
         }
         out
@@ -288,7 +387,7 @@ impl Scorer for MotionScorer<'_> {
         let before = from.map_or(f64::INFINITY, |(f, _)| f.fit.chi2);
         let fit = if before - first.chi2 > WORTH_REFINING {
             let settled: Vec<usize> = from.map_or(vec![], |(f, _)| f.set.clone());
-            self.refined(first, &settled)
+            self.refined(self.from_afar(first, &settled), &settled)
         } else {
             first
         };
@@ -325,7 +424,12 @@ impl Scorer for MotionScorer<'_> {
 
     fn compatible(&self, a: usize, b: usize) -> bool {
         let whole = |c: usize| self.candidates[c].is_upheaval();
-        a != b && !(whole(a) || whole(b))
+        // A filter is late by itself; with a delay of its own, of either sign, it would stand for filters that are not in the library.
+        let filtered_and_late = |a: usize, b: usize| {
+            let (a, b) = (&self.candidates[a], &self.candidates[b]);
+            a.family() == "low_pass" && b.family() == "time_offset" && a.place == b.place
+        };
+        a != b && !(whole(a) || whole(b) || filtered_and_late(a, b) || filtered_and_late(b, a))
     }
 
     fn kin(&self, candidate: usize) -> usize {

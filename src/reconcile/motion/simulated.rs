@@ -6,7 +6,6 @@
 use super::frame::MotionFrame;
 use super::gap::RecordGap;
 use super::outcome::MotionOutcome;
-use crate::series::align::delayed;
 use crate::series::channels::Channels;
 use crate::series::detrend::rms;
 use crate::series::spectrum::Band;
@@ -94,7 +93,13 @@ fn simulated(
         return Err("a mass or spring that changes is not simulated".into());
     }
     let fitted = first(&corrected(&frame.data, adjust), FITTED);
-    let judging = corrected(frame.hold_out.as_ref().unwrap_or(&frame.data), adjust);
+    if adjust.iter().any(|a| !a.lines_hz.is_empty()) {
+        return Err("a record with a mains line is not simulated".into());
+    }
+    let judging = match &frame.hold_out {
+        Some(record) => corrected(record, &Adjustment::elsewhere(adjust)),
+        None => corrected(&frame.data, adjust),
+    };
     let free = free(frame, v, &model.values);
     let mut last = SimulationError::Diverged { at_s: 0.0 };
     for steps in STEPS {
@@ -174,10 +179,7 @@ fn corrected(record: &Channels, adjust: &[Adjustment]) -> Channels {
     let (mut record, _) = record.with_gaps_filled();
     for a in adjust {
         for c in record.list.iter_mut().filter(|c| c.name == a.channel) {
-            if a.delay_s != 0.0 {
-                c.samples = delayed(&c.samples, record.rate_hz, -a.delay_s);
-            }
-            c.samples.iter_mut().for_each(|x| *x /= a.gain);
+            c.samples = a.applied(&c.samples, record.start_s, record.rate_hz);
         }
     }
     record

@@ -84,11 +84,12 @@ pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
         all.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
         all.dedup_by(|a, b| a.set == b.set);
         if let Some(found) = found {
+            let found = that_prove_themselves(frame, candidates, &all, found);
             return judge(frame, candidates, &all, &found);
         }
     }
     let best = without_needless_noise(frame, candidates, &all, best);
-    let best = without_needless_names(frame, candidates, &all, best);
+    let best = that_prove_themselves(frame, candidates, &all, best);
     judge(frame, candidates, &all, &best)
 }
 
@@ -114,6 +115,35 @@ fn named_instead(
     search_near(likelihood, BREADTH, &plain)
 }
 
+/// The set less members without which the gap on runs that were not fitted is smaller and everything is still at the floor: a name needs a
+/// gap that falls.
+fn that_prove_themselves(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    all: &[Scored<Fit>],
+    mut best: Scored<Fit>,
+) -> Scored<Fit> {
+    let after = |s: &Scored<Fit>| validated(frame, candidates, s).0.after;
+    while best.set.len() > 1 {
+        let own = after(&best);
+        let fewer = |s: &&Scored<Fit>| {
+            s.set.len() + 1 == best.set.len()
+                && !s.set.is_empty()
+                && s.set.iter().all(|c| best.set.contains(c))
+                && !named_part(candidates, &s.set).is_empty()
+        };
+        let proven = all
+            .iter()
+            .filter(fewer)
+            .find(|s| at_floor(&adequacy_of(frame, candidates, s)) && after(s) < own);
+        match proven {
+            Some(s) => best = s.clone(),
+            None => break,
+        }
+    }
+    best
+}
+
 /// The set without noise that was stated too small, where it reaches the floor without.
 fn without_needless_noise(
     frame: &StrainFrame,
@@ -129,32 +159,4 @@ fn without_needless_noise(
         .filter(|s| at_floor(&adequacy_of(frame, candidates, s)))
         .cloned()
         .unwrap_or(best)
-}
-
-/// The set without names that prove nothing: what is left reaches the floor without them, and runs that it was not fitted on are
-/// predicted no worse.
-fn without_needless_names(
-    frame: &StrainFrame,
-    candidates: &[Candidate],
-    all: &[Scored<Fit>],
-    mut best: Scored<Fit>,
-) -> Scored<Fit> {
-    while best.set.len() > 1 {
-        let fewer = |s: &&Scored<Fit>| {
-            s.set.len() + 1 == best.set.len()
-                && s.set.iter().all(|c| best.set.contains(c))
-                && at_floor(&adequacy_of(frame, candidates, s))
-        };
-        let left: Vec<&Scored<Fit>> = all.iter().filter(fewer).collect();
-        if left.is_empty() {
-            break;
-        }
-        let after = validated(frame, candidates, &best).0.after;
-        let no_worse = |s: &&&Scored<Fit>| validated(frame, candidates, s).0.after <= after;
-        let Some(enough) = left.iter().find(no_worse) else {
-            break;
-        };
-        best = (*enough).clone();
-    }
-    best
 }

@@ -10,7 +10,26 @@ const NEAR: f64 = 2.5;
 const GAIN: [f64; 2] = [0.5, 1.5];
 
 /// Names of gauges that read more or less than modelled and are neighbours of each other, in words; `None` where there are not two.
+///
+/// Beside a small region whose stiffness changed, what its unknown shape leaves looks like such gauges, too: then none of them is named.
 pub fn neighbours_that_fail(frame: &StrainFrame, effects: &[NamedEffect]) -> Option<String> {
+    let region = (effects.iter()).find_map(|e| match &e.extension {
+        Extension::LocalStiffness { place, .. } => Some(place),
+        _ => None,
+    });
+    if let Some(place) = region {
+        let besides: Vec<&str> = (effects.iter())
+            .filter(|e| scales_or_turns(e))
+            .map(|e| e.id.as_str())
+            .collect();
+        if !besides.is_empty() {
+            return Some(format!(
+                "the stiffness of a small region at {place} changed, by its sign and size; {} beside it may be what the region's shape, which is \
+                 not known, leaves",
+                besides.join(", ")
+            ));
+        }
+    }
     let off: Vec<usize> = effects
         .iter()
         .filter_map(|e| reads_otherwise(frame, e))
@@ -45,6 +64,19 @@ fn reads_otherwise(frame: &StrainFrame, e: &NamedEffect) -> Option<usize> {
         _ => false,
     };
     may_be_strain.then(|| frame.gauges.iter().position(|g| g.name == *name))?
+}
+
+/// Whether an effect is one of channels that read a share more or less, or of another direction, place or neighbour.
+fn scales_or_turns(e: &NamedEffect) -> bool {
+    let of_strain = |c: &Correction| {
+        matches!(
+            c,
+            Correction::Gain(_) | Correction::AngleDeg(_) | Correction::PositionMm(_)
+        )
+    };
+    let listed =
+        matches!(&e.extension, Extension::Channels(list) if list.iter().any(|c| of_strain(&c.1)));
+    listed || e.id.starts_with("cross_sensitivity")
 }
 
 fn distance(frame: &StrainFrame, a: usize, b: usize) -> Option<f64> {

@@ -1,15 +1,75 @@
 //! `[vehicle]`, `[reconcile]`, `[sensitivity]`.
 
 use super::super::faults::Collector;
-use super::super::raw::{RawEdit, RawEffect, RawReconcile, RawSensitivity, RawVehicle};
+use super::super::raw::{
+    RawCorrection, RawEdit, RawEffect, RawReconcile, RawSensitivity, RawVehicle,
+};
 use super::super::shapes::Texts;
 use super::super::spanned::Spanned;
 use super::super::types::*;
 use super::units::units;
 use crate::units::{ReportUnits, UnitSystem};
 
+use crate::vehicle::adjustment::{Lag, Slip};
 use crate::vehicle::chassis::LeafSeat;
 use crate::vehicle::preset::MODELS;
+
+/// Known faults of a channel.
+fn correction(c: &mut Collector, channel: &str, r: &RawCorrection) -> ChannelCorrection {
+    let key = |k: &str| format!("vehicle.corrections.{channel}.{k}");
+    let gain = match r.gain.as_ref() {
+        Some(g) if *g.get_ref() == 0.0 || !g.get_ref().is_finite() => {
+            c.fault(
+                g,
+                &key("gain"),
+                "a gain of 0 leaves nothing to divide by".to_owned(),
+                "write reading over truth, such as 1.05, or -1 for a turned sign",
+            );
+            1.0
+        }
+        Some(g) => *g.get_ref(),
+        None => 1.0,
+    };
+    let number = |v: &super::super::raw::S<f64>| v.as_ref().map(|x| *x.get_ref());
+    let slip = match (&r.slip_at_s, &r.slip_s) {
+        (Some(at), Some(by)) => Some(Slip {
+            at_s: *at.get_ref(),
+            by_s: *by.get_ref(),
+        }),
+        (Some(one), None) | (None, Some(one)) => {
+            c.fault(
+                one,
+                &key("slip_s"),
+                "a slip has a time and a size, one of them is missing".to_owned(),
+                "state `slip_at_s` and `slip_s`",
+            );
+            None
+        }
+        (None, None) => None,
+    };
+    let order = match r.low_pass_order.as_ref() {
+        Some(o) if !matches!(*o.get_ref(), 1 | 2) => {
+            c.fault(
+                o,
+                &key("low_pass_order"),
+                format!("`{}`, expected 1 or 2", o.get_ref()),
+                "write 1, or 2 for Butterworth's",
+            );
+            1
+        }
+        Some(o) => *o.get_ref(),
+        None => 1,
+    };
+    let time_s = c.at_least_zero(&r.low_pass_s, &key("low_pass_s"));
+    ChannelCorrection {
+        gain,
+        delay_s: number(&r.delay_s).unwrap_or(0.0),
+        clock_ppm: number(&r.clock_ppm).unwrap_or(0.0),
+        slip,
+        lag: time_s.map(|time_s| Lag { order, time_s }),
+        line_hz: c.positive(&r.line_hz, &key("line_hz")),
+    }
+}
 
 pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> Option<Vehicle> {
     let section = raw?;
@@ -45,24 +105,9 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
         sync = c.at_least_zero(&t.sync, "vehicle.tolerance.sync");
     }
     let sample_rate = c.positive(&raw.sample_rate, "vehicle.sample_rate");
-    let mut corrections = std::collections::BTreeMap::new();
-    for (channel, r) in &raw.corrections {
-        let gain = match r.gain.as_ref() {
-            Some(g) if *g.get_ref() == 0.0 || !g.get_ref().is_finite() => {
-                c.fault(
-                    g,
-                    &format!("vehicle.corrections.{channel}.gain"),
-                    "a gain of 0 leaves nothing to divide by".to_owned(),
-                    "write reading over truth, such as 1.05, or -1 for a turned sign",
-                );
-                1.0
-            }
-            Some(g) => *g.get_ref(),
-            None => 1.0,
-        };
-        let delay = r.delay_s.as_ref().map_or(0.0, |d| *d.get_ref());
-        corrections.insert(channel.clone(), [gain, delay]);
-    }
+    let corrections = (raw.corrections.iter())
+        .map(|(channel, r)| (channel.clone(), correction(c, channel, r)))
+        .collect();
     let mass_change = raw.mass_change.as_ref().and_then(|m| {
         let at = c.require(&m.at_s, section, "vehicle.mass_change.at_s", "at_s = 30.0")?;
         Some(MassChange {

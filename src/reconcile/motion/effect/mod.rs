@@ -5,9 +5,13 @@ mod asymmetric_damper;
 mod axle_coupling;
 mod bump_stop;
 mod channel_swap;
+mod clock_drift;
 mod coulomb_friction;
 mod cubic_stiffness;
 mod dead_zone;
+mod dropped_samples;
+mod hum;
+mod low_pass;
 mod mass_change;
 mod pitch_coupling;
 mod places;
@@ -46,6 +50,10 @@ pub fn library(frame: &MotionFrame, motion: &Motion, only: &[String]) -> Vec<Can
         time_offset::candidates(frame),
         sign_flip::candidates(frame),
         channel_swap::candidates(frame),
+        clock_drift::candidates(frame),
+        dropped_samples::candidates(frame),
+        low_pass::candidates(frame),
+        hum::candidates(frame, motion),
     ] {
         all.extend(list);
     }

@@ -1,0 +1,449 @@
+//! Small regions of shells whose stiffness may be wrong, looked for round gauges that disagree: a crack, a loose joint, a missing patch.
+//!
+//! A region is the shells within a radius of one of them, all its moduli times one factor. Regions round the gauges that disagree are solved
+//! at half their stiffness and ranked by what one amplitude of each takes of the residual; the best are moved, widened and narrowed, and the
+//! best of those stand beside the library's effects.
+
+use super::deck_frame::DeckFrame;
+use super::influence::{influence, solve};
+use super::region::Region;
+use crate::app::fault::Faults;
+use crate::app::job::Job;
+use crate::model::{MaterialIx, MaterialKind};
+use crate::model::{Model, Shell, ShellKind, ShellPropertyIx, Vec3};
+use crate::reconcile::effect::{Correction, Extension};
+use crate::reconcile::strain::{StiffnessOf, StiffnessSignature, StrainFrame, StrainState};
+use crate::reconcile::{NamedEffect, Outcome, Verdict};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Stiffness at which a region is solved first, natural log times 100: half.
+const HALF: f64 = -69.314_718_055_994_53;
+/// Prior sd of a region's stiffness, natural log times 100: known to a factor of two, as a joint's.
+const PRIOR: f64 = 70.0;
+/// Grids that the solutions of all regions may have together: minutes on two cores.
+const BUDGET: usize = 2_000_000;
+/// Fewest and most regions solved in the first look.
+const LOOKS: [usize; 2] = [6, 32];
+/// Regions that are moved, widened and narrowed, by shares of their radius.
+const REFINED: usize = 2;
+/// Each finer.
+const STEPS: [f64; 3] = [0.9, 0.5, 0.3];
+/// Regions that stand beside the library.
+const KEPT: usize = 4;
+/// Gauges that are looked round, worst first.
+const GAUGES: usize = 8;
+
+/// A region with what halving its stiffness does to the influence matrix.
+struct Tried {
+    region: Region,
+    change: Vec<f64>,
+    /// Share of the squared residual that one amplitude takes.
+    takes: f64,
+}
+
+/// Gauges round which a region is looked for: where nothing explains the gap, or several gauges would each be at fault; none otherwise.
+pub(super) fn gauges_that_disagree(outcome: &Outcome) -> Vec<String> {
+    let at_fault: Vec<&String> = outcome
+        .best_attempt
+        .iter()
+        .filter_map(reads_otherwise)
+        .collect();
+    if outcome.verdict != Verdict::Unknown && at_fault.len() < 2 {
+        return vec![];
+    }
+    let mut out: Vec<String> = Vec::new();
+    let off = outcome.gauges_off_before.iter().map(|m| &m.name);
+    for name in at_fault.into_iter().chain(off) {
+        if !out.contains(name) && out.len() < GAUGES {
+            out.push(name.clone());
+        }
+    }
+    out
+}
+
+/// The gauge of which an effect says that it reads another strain.
+fn reads_otherwise(e: &NamedEffect) -> Option<&String> {
+    let Extension::Channels(list) = &e.extension else {
+        return None;
+    };
+    match list.as_slice() {
+        [(name, Correction::Gain(_) | Correction::AngleDeg(_) | Correction::PositionMm(_))] => {
+            Some(name)
+        }
+        _ => None,
+    }
+}
+
+impl DeckFrame {
+    /// Signatures of the regions that take most of what the gauges `off` read besides; kept by place for [`DeckFrame::with_region`].
+    pub(super) fn regions_round(
+        &mut self,
+        job: &Job,
+        frame: &StrainFrame,
+        off: &[String],
+    ) -> Result<Vec<StiffnessSignature>, Faults> {
+        let Some(ground) = Ground::of(self.fields.model(), self, frame, off) else {
+            return Ok(vec![]);
+        };
+        let n = (BUDGET / ground.model.grids.len().max(1)).clamp(LOOKS[0], LOOKS[1]);
+        let first = ground.first_regions(n);
+        let residual = Residual::of(frame);
+        let try_all = |regions: Vec<Region>| -> Result<Vec<Tried>, Faults> {
+            let tried = regions.into_par_iter().map(|region| {
+                let change = self.change_of_region(job, &region, (HALF / 100.0).exp())?;
+                let takes = residual.takes(frame, &change);
+                Ok(Tried {
+                    region,
+                    change,
+                    takes,
+                })
+            });
+            let mut out: Vec<Tried> = tried.collect::<Result<_, Faults>>()?;
+            out.sort_by(|a, b| b.takes.total_cmp(&a.takes));
+            Ok(out)
+        };
+        let mut all = try_all(first)?;
+        for step in STEPS {
+            let near: Vec<Region> = all
+                .iter()
+                .take(REFINED)
+                .flat_map(|t| ground.near(&t.region, step, n))
+                .collect();
+            let mut fresh: Vec<Region> = Vec::new();
+            for r in near {
+                let known = all.iter().any(|t| t.region.shells == r.shells)
+                    || fresh.iter().any(|f| f.shells == r.shells);
+                if !known && fresh.len() < n {
+                    fresh.push(r);
+                }
+            }
+            all.extend(try_all(fresh)?);
+            all.sort_by(|a, b| b.takes.total_cmp(&a.takes));
+        }
+        let mut kept: Vec<Tried> = Vec::new();
+        for t in all {
+            if kept.len() < KEPT && kept.iter().all(|k| k.region.place != t.region.place) {
+                kept.push(t);
+            }
+        }
+        self.regions = kept.iter().map(|t| t.region.clone()).collect();
+        Ok(kept
+            .into_iter()
+            .map(|t| StiffnessSignature {
+                of: StiffnessOf::Local,
+                place: t.region.place,
+                at_percent: vec![(HALF, t.change)],
+                prior_percent: PRIOR,
+            })
+            .collect())
+    }
+
+    /// The model with the moduli of the region at `place` times `factor`; unchanged where there is no such region.
+    pub(super) fn with_region(&self, place: &str, factor: f64) -> Model {
+        let model = self.fields.model();
+        match self.regions.iter().find(|r| r.place == place) {
+            Some(r) => softened(model, &r.shells, factor),
+            None => model.clone(),
+        }
+    }
+
+    fn change_of_region(&self, job: &Job, r: &Region, factor: f64) -> Result<Vec<f64>, Faults> {
+        let model = softened(self.fields.model(), &r.shells, factor);
+        let solution = solve(job, &model, &self.columns)?;
+        let now = influence(job, &model, &self.gauges, &solution, self.columns.len());
+        Ok(now.iter().zip(&self.base).map(|(a, b)| a - b).collect())
+    }
+}
+
+/// The model with shells' moduli times `factor`: properties and materials of their own behind all others.
+fn softened(model: &Model, shells: &[usize], factor: f64) -> Model {
+    let mut out = model.clone();
+    let mut materials: BTreeMap<u32, MaterialIx> = BTreeMap::new();
+    let mut properties: BTreeMap<u32, ShellPropertyIx> = BTreeMap::new();
+    let next_material = out.materials.iter().map(|m| m.id).max().unwrap_or(0);
+    let next_property = out.shell_properties.iter().map(|p| p.id).max().unwrap_or(0);
+    for &s in shells {
+        let Some(old) = out.shells.get(s).map(|s| s.property) else {
+            continue;
+        };
+        let new = match properties.get(&old.0) {
+            Some(new) => *new,
+            None => {
+                let Some(mut property) = out.shell_properties.get(old.us()).cloned() else {
+                    continue;
+                };
+                let mut weaker = |m: MaterialIx, list: &mut Vec<crate::model::Material>| {
+                    *materials.entry(m.0).or_insert_with(|| {
+                        let Some(mut material) = list.get(m.us()).copied() else {
+                            return m;
+                        };
+                        scale(&mut material.kind, factor);
+                        let n = list.len() as u32;
+                        material.id = next_material.saturating_add(n + 1);
+                        list.push(material);
+                        MaterialIx(n)
+                    })
+                };
+                match &mut property.kind {
+                    ShellKind::Homogeneous {
+                        membrane,
+                        bending,
+                        shear,
+                        coupling,
+                        ..
+                    } => {
+                        for m in [membrane, bending, shear, coupling].into_iter().flatten() {
+                            *m = weaker(*m, &mut out.materials);
+                        }
+                    }
+                    ShellKind::Laminate { plies, .. } => {
+                        for p in plies {
+                            p.material = weaker(p.material, &mut out.materials);
+                        }
+                    }
+                }
+                let n = out.shell_properties.len() as u32;
+                property.id = next_property.saturating_add(n + 1);
+                out.shell_properties.push(property);
+                *properties.entry(old.0).or_insert(ShellPropertyIx(n))
+            }
+        };
+        if let Some(shell) = out.shells.get_mut(s) {
+            shell.property = new;
+        }
+    }
+    out
+}
+
+/// All moduli times a factor, Poisson's ratio as it is.
+fn scale(kind: &mut MaterialKind, factor: f64) {
+    match kind {
+        MaterialKind::Isotropic { e, g, .. } => {
+            *e *= factor;
+            *g *= factor;
+        }
+        MaterialKind::Anisotropic2d { g, .. } => g.iter_mut().for_each(|v| *v *= factor),
+        MaterialKind::Orthotropic {
+            e1,
+            e2,
+            g12,
+            g1z,
+            g2z,
+            ..
+        } => {
+            for v in [e1, e2, g12, g1z, g2z] {
+                *v *= factor;
+            }
+        }
+        MaterialKind::Anisotropic3d { g, .. } => g.iter_mut().for_each(|v| *v *= factor),
+    }
+}
+
+/// Where regions may lie.
+struct Ground<'a> {
+    model: &'a Model,
+    /// Middles of the shells.
+    middles: Vec<Vec3>,
+    /// Places of the gauges that disagree.
+    off: Vec<Vec3>,
+    /// Usual distance from gauge to gauge, at least three elements.
+    apart: f64,
+    /// Usual size of an element at these gauges.
+    element: f64,
+}
+
+impl<'a> Ground<'a> {
+    fn of(model: &'a Model, deck: &DeckFrame, frame: &StrainFrame, off: &[String]) -> Option<Self> {
+        let middles: Vec<Vec3> = model.shells.iter().map(|s| middle(model, s)).collect();
+        let places: Vec<Vec3> = deck.gauges.iter().map(|g| g.position).collect();
+        let is_off = |g: &usize| frame.gauges.get(*g).is_some_and(|f| off.contains(&f.name));
+        let off: Vec<Vec3> = (0..places.len())
+            .filter(is_off)
+            .filter_map(|g| places.get(g).copied())
+            .collect();
+        let nearest = |to: &Vec3, among: &[Vec3], least: f64| {
+            let far = among.iter().map(|p| (p - to).norm()).filter(|d| *d > least);
+            far.min_by(f64::total_cmp)
+        };
+        let element = median(off.iter().filter_map(|p| {
+            let own = closest(&middles, p)?;
+            nearest(middles.get(own)?, &middles, 0.0)
+        }))?;
+        let apart = median(places.iter().filter_map(|p| nearest(p, &places, element)))
+            .unwrap_or(element)
+            .max(3.0 * element);
+        Some(Self {
+            model,
+            middles,
+            off,
+            apart,
+            element,
+        })
+    }
+
+    fn region(&self, centre: Vec3, radius: f64) -> Option<Region> {
+        let shell = closest(&self.middles, &centre)?;
+        let inside = |m: &Vec3| (m - centre).norm() <= radius;
+        Some(Region {
+            place: self.model.shells.get(shell)?.id.to_string(),
+            centre,
+            radius,
+            shells: (0..self.middles.len())
+                .filter(|&i| self.middles.get(i).is_some_and(inside))
+                .collect(),
+        })
+    }
+
+    /// Shells by their distance from the nearest gauges that disagree, so thinned that two lie `apart` at least.
+    fn thinned(&self, mut shells: Vec<usize>, apart: f64, n: usize) -> Vec<usize> {
+        let key = |s: &usize| -> f64 {
+            let Some(m) = self.middles.get(*s) else {
+                return f64::INFINITY;
+            };
+            let mut far: Vec<f64> = self.off.iter().map(|p| (p - m).norm()).collect();
+            far.sort_by(f64::total_cmp);
+            // Between two gauges that fail together before beyond either.
+            far.iter().take(2).sum()
+        };
+        shells.sort_by(|a, b| key(a).total_cmp(&key(b)));
+        let mut out: Vec<usize> = Vec::new();
+        for s in shells {
+            let Some(m) = self.middles.get(s) else {
+                continue;
+            };
+            let free = |k: &usize| self.middles.get(*k).is_none_or(|p| (p - m).norm() >= apart);
+            if out.len() < n && out.iter().all(free) {
+                out.push(s);
+            }
+        }
+        out
+    }
+
+    /// Regions of a third of the gauges' distance round the gauges that disagree.
+    fn first_regions(&self, n: usize) -> Vec<Region> {
+        let radius = (0.35 * self.apart).max(1.2 * self.element);
+        let close = |i: &usize| {
+            let m = self.middles.get(*i);
+            m.is_some_and(|m| self.off.iter().any(|p| (p - m).norm() <= self.apart))
+        };
+        let shells = (0..self.middles.len()).filter(close).collect();
+        let chosen = self.thinned(shells, radius, n);
+        chosen
+            .into_iter()
+            .filter_map(|s| self.region(*self.middles.get(s)?, radius))
+            .collect()
+    }
+
+    /// Regions round grids and shells about a region's middle, `step` of a radius apart, narrower, as wide and wider.
+    fn near(&self, r: &Region, step: f64, n: usize) -> Vec<Region> {
+        let reach = (1.5 * step * r.radius).max(0.8 * self.element);
+        let grids = self.model.grids.iter().map(|g| g.x);
+        let mut centres: Vec<Vec3> = (self.middles.iter().copied())
+            .chain(grids)
+            .filter(|x| (x - r.centre).norm() <= reach)
+            .collect();
+        centres.sort_by(|a, b| {
+            (a - r.centre)
+                .norm_squared()
+                .total_cmp(&(b - r.centre).norm_squared())
+        });
+        let apart = (0.7 * step * r.radius).max(0.6 * self.element);
+        let mut chosen: Vec<Vec3> = Vec::new();
+        for c in centres {
+            if chosen.len() < n && chosen.iter().all(|k| (k - c).norm() >= apart) {
+                chosen.push(c);
+            }
+        }
+        let around = |c: Vec3| {
+            [1.0, 1.0 + 0.5 * step, 1.0 / (1.0 + 0.5 * step), 1.0 + step]
+                .map(|times| self.region(c, times * r.radius))
+        };
+        let all = chosen.into_iter().flat_map(around).flatten();
+        all.filter(|x| !x.shells.is_empty()).collect()
+    }
+}
+
+fn middle(model: &Model, s: &Shell) -> Vec3 {
+    let corners = &s.grids[..s.shape.n_corners().min(s.grids.len())];
+    let sum: Vec3 = corners
+        .iter()
+        .filter_map(|g| model.grids.get(g.us()))
+        .map(|g| g.x)
+        .sum();
+    sum / corners.len().max(1) as f64
+}
+
+fn closest(places: &[Vec3], to: &Vec3) -> Option<usize> {
+    let far = |i: &usize| {
+        places
+            .get(*i)
+            .map_or(f64::INFINITY, |p| (p - to).norm_squared())
+    };
+    (0..places.len()).min_by(|a, b| far(a).total_cmp(&far(b)))
+}
+
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut all: Vec<f64> = values.collect();
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 2).copied()
+}
+
+/// Readings less prediction over the runs that are fitted, each over its own standard deviation.
+struct Residual {
+    /// Run, gauge, residual, weight.
+    entries: Vec<(usize, usize, f64, f64)>,
+    nominal: StrainState,
+}
+
+impl Residual {
+    fn of(frame: &StrainFrame) -> Self {
+        let nominal = StrainState::nominal(frame);
+        let doubt = frame.relative_doubt();
+        let runs = frame.observations.fit_runs();
+        let entries = frame
+            .observations
+            .entries(&runs)
+            .into_iter()
+            .filter_map(|(run, g)| {
+                let there = *nominal.strain(run).get(g)?;
+                let sd = frame.noise.hypot(doubt.get(g)? * there);
+                let weight = 1.0 / sd.max(f64::MIN_POSITIVE);
+                Some((run, g, frame.observations.value(run, g) - there, weight))
+            })
+            .collect();
+        Self { entries, nominal }
+    }
+
+    /// Share of the squared residual that one amplitude of a change of the influence matrix takes.
+    fn takes(&self, frame: &StrainFrame, change: &[f64]) -> f64 {
+        let mut moved = self.nominal.clone();
+        moved
+            .influence
+            .iter_mut()
+            .zip(change)
+            .for_each(|(i, d)| *i += d);
+        let runs = 0..frame.n_runs();
+        let rows: Vec<[Vec<f64>; 2]> = runs
+            .map(|r| [self.nominal.strain(r), moved.strain(r)])
+            .collect();
+        let (mut rs, mut ss, mut rr) = (0.0, 0.0, 0.0);
+        for &(run, g, residual, weight) in &self.entries {
+            let Some([before, after]) = rows.get(run) else {
+                continue;
+            };
+            let (Some(b), Some(a)) = (before.get(g), after.get(g)) else {
+                continue;
+            };
+            let (s, r) = (weight * (a - b), weight * residual);
+            rs += r * s;
+            ss += s * s;
+            rr += r * r;
+        }
+        if ss > 0.0 && rr > 0.0 {
+            rs * rs / (ss * rr)
+        } else {
+            0.0
+        }
+    }
+}

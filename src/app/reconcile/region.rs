@@ -1,0 +1,14 @@
+//! A small region of shells.
+
+use crate::model::Vec3;
+
+/// Shells within a radius of a point.
+#[derive(Clone, Debug)]
+pub(super) struct Region {
+    /// Id of the shell in its middle.
+    pub(super) place: String,
+    pub(super) centre: Vec3,
+    pub(super) radius: f64,
+    /// Indices of its shells.
+    pub(super) shells: Vec<usize>,
+}

@@ -1,0 +1,13 @@
+//! A channel whose clock runs faster or slower than that of the others: late by a share of the time since the record began.
+
+use crate::reconcile::motion::candidate::Candidate;
+use crate::reconcile::motion::change::Change;
+use crate::reconcile::motion::frame::MotionFrame;
+
+pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
+    let one = |channel: String| {
+        let id = channel.clone();
+        Candidate::of("clock_drift", Some(&id), vec![Change::Clock { channel }])
+    };
+    frame.channels().into_iter().map(one).collect()
+}

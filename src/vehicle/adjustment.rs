@@ -1,0 +1,154 @@
+//! What is wrong with a channel and known: gain, timing, a filter that is too slow, a mains line.
+
+use crate::series::align::{delayed, retimed};
+use crate::series::spectrum::Fourier;
+use rustfft::num_complex::Complex64;
+use std::f64::consts::{PI, SQRT_2};
+
+/// A channel taken as it may truly be: reading(t) = gain . filtered truth(t - lateness(t)).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Adjustment {
+    /// Channel.
+    pub channel: String,
+    /// The channel is divided by this.
+    pub gain: f64,
+    /// The channel is advanced by this, s.
+    pub delay_s: f64,
+    /// Seconds by which it reads later with every second of the record: its clock against that of the others.
+    pub clock: f64,
+    /// Steps of its lateness: samples that a logger lost or wrote twice.
+    pub slips: Vec<Slip>,
+    /// Low-passes that it went through alone.
+    pub lags: Vec<Lag>,
+    /// Mains lines on it, Hz. Every channel of a record is taken without these frequencies, so that equations between them hold.
+    pub lines_hz: Vec<f64>,
+}
+
+/// A step of a channel's lateness at a moment of one record.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slip {
+    /// When, s of the record's time.
+    pub at_s: f64,
+    /// How much later it reads from then on, s; negative where samples were lost.
+    pub by_s: f64,
+}
+
+/// A low-pass: order 1 is 1 / (1 + i w T), order 2 Butterworth's 1 / (1 + i w T sqrt 2 - w^2 T^2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lag {
+    /// 1 or 2.
+    pub order: u8,
+    /// T = 1 / (2 pi cut-off), s.
+    pub time_s: f64,
+}
+
+impl Lag {
+    /// Truth over reading at an angular frequency.
+    pub fn undone(&self, w: f64) -> Complex64 {
+        let x = w * self.time_s;
+        match self.order {
+            1 => Complex64::new(1.0, x),
+            _ => Complex64::new(1.0 - x * x, SQRT_2 * x),
+        }
+    }
+
+    /// What it makes late of slow motion, s.
+    pub fn delay_s(&self) -> f64 {
+        self.time_s * if self.order == 1 { 1.0 } else { SQRT_2 }
+    }
+}
+
+impl Adjustment {
+    /// Nothing wrong.
+    pub fn none(channel: &str) -> Self {
+        Self {
+            channel: channel.to_owned(),
+            gain: 1.0,
+            delay_s: 0.0,
+            clock: 0.0,
+            slips: vec![],
+            lags: vec![],
+            lines_hz: vec![],
+        }
+    }
+
+    /// Both at once.
+    pub fn join(&mut self, other: &Self) {
+        self.gain *= other.gain;
+        self.delay_s += other.delay_s;
+        self.clock += other.clock;
+        self.slips.extend(&other.slips);
+        self.lags.extend(&other.lags);
+        self.lines_hz.extend(&other.lines_hz);
+    }
+
+    /// All corrections of a channel in one; `None` where there are none.
+    pub fn of_channel(list: &[Self], name: &str) -> Option<Self> {
+        let mut own = list.iter().filter(|a| a.channel == name);
+        let mut out = own.next()?.clone();
+        own.for_each(|a| out.join(a));
+        Some(out)
+    }
+
+    /// Corrections for another record: slips happened in the fitted one.
+    pub fn elsewhere(list: &[Self]) -> Vec<Self> {
+        let kept = |a: &Self| Self {
+            slips: vec![],
+            ..a.clone()
+        };
+        list.iter().map(kept).collect()
+    }
+
+    /// How late the channel reads but for `delay_s`, s, at a time of the record that began at `start_s`.
+    fn moving_lateness(&self, t_s: f64, start_s: f64) -> f64 {
+        let slipped = self.slips.iter().filter(|s| t_s >= s.at_s);
+        self.clock * (t_s - start_s) + slipped.map(|s| s.by_s).sum::<f64>()
+    }
+
+    /// How late the channel reads slow motion, s, at a time of the record that began at `start_s`.
+    pub fn lateness(&self, t_s: f64, start_s: f64) -> f64 {
+        let lags: f64 = self.lags.iter().map(Lag::delay_s).sum();
+        self.delay_s + lags + self.moving_lateness(t_s, start_s)
+    }
+
+    /// Truth over reading at an angular frequency, but for what changes with time.
+    pub fn undone(&self, w: f64) -> Complex64 {
+        let lags: Complex64 = self.lags.iter().map(|l| l.undone(w)).product();
+        Complex64::from_polar(1.0 / self.gain.abs(), w * self.delay_s) * self.gain.signum() * lags
+    }
+
+    /// Samples with the clock's drift and slips taken out; those given where there are none.
+    pub fn retimed(&self, x: &[f64], start_s: f64, rate_hz: f64) -> Option<Vec<f64>> {
+        if self.clock == 0.0 && self.slips.is_empty() {
+            return None;
+        }
+        let late = |i: usize| self.moving_lateness(start_s + i as f64 / rate_hz, start_s);
+        Some(retimed(x, rate_hz, late))
+    }
+
+    /// Samples put right, their mean kept as read over the gain.
+    pub fn applied(&self, x: &[f64], start_s: f64, rate_hz: f64) -> Vec<f64> {
+        let mut out = self
+            .retimed(x, start_s, rate_hz)
+            .unwrap_or_else(|| x.to_vec());
+        if self.delay_s != 0.0 {
+            out = delayed(&out, rate_hz, -self.delay_s);
+        }
+        if !self.lags.is_empty() {
+            let mean = crate::series::detrend::mean(&out);
+            out.iter_mut().for_each(|v| *v -= mean);
+            let mut fourier = Fourier::default();
+            let undone = |f: f64| {
+                self.lags
+                    .iter()
+                    .map(|l| l.undone(2.0 * PI * f))
+                    .product::<Complex64>()
+            };
+            let s = fourier.spectrum(&out, rate_hz).times(undone);
+            out = fourier.samples(&s, 1);
+            out.iter_mut().for_each(|v| *v += mean);
+        }
+        out.iter_mut().for_each(|v| *v /= self.gain);
+        out
+    }
+}
