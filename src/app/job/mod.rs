@@ -17,6 +17,8 @@ pub mod schema;
 mod shapes;
 mod spanned;
 pub mod strain;
+pub mod strain_means;
+mod strain_text;
 pub mod suggest;
 pub mod table;
 mod types;
