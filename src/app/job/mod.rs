@@ -18,6 +18,7 @@ mod shapes;
 mod spanned;
 pub mod strain;
 pub mod strain_means;
+mod strain_table;
 mod strain_text;
 pub mod suggest;
 pub mod table;

@@ -1,6 +1,6 @@
 //! Strain in a CSV text: a row a run or a sample.
 
-use super::strain::{StrainRows, StrainTable};
+use super::strain_table::{StrainRows, StrainTable};
 use super::table::{Table, each_part};
 use crate::app::fault::{Fault, FaultList, Faults};
 use std::collections::HashSet;
