@@ -229,9 +229,9 @@ fn gauges_and_strain(job: &Job, columns: &[String]) -> Vec<Finding> {
             ));
         }
     };
-    // A rosette's legs have columns of their own, `<name>.a` and so on.
-    let rosette = job.gauges.iter().any(|g| g.rosette.is_some());
-    if !rosette {
+    // A rosette's legs have columns of their own, `<name>.a` and so on; where S is given its table names the gauges.
+    let told = !job.gauges.is_empty() && job.gauges.iter().all(|g| g.rosette.is_none());
+    if told {
         note(
             "gauge-without-strain",
             "gauges have no column in the strain file",
