@@ -4,6 +4,7 @@ use super::context::Files;
 use super::fault::Fault;
 use super::file_read::FileRead;
 use super::job::{Job, NamedFile};
+use super::sheet::{csv_of_sheet, is_sheet};
 pub use super::whole_file::FileBytes;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -93,12 +94,18 @@ impl<'a> Inputs<'a> {
         Ok(bytes)
     }
 
-    /// Text of the file `given`, which is relative to `base`; a byte order mark is dropped.
+    /// Text of the file `given`, which is relative to `base`; a byte order mark is dropped, a spreadsheet is turned into the CSV text
+    /// of its first sheet.
     ///
     /// # Errors
     /// A fault where it can't be read or isn't UTF-8.
     pub fn read_text(&mut self, base: &Path, given: &str) -> Result<String, Fault> {
         let bytes = self.read(base, given)?;
+        if is_sheet(&bytes) {
+            return csv_of_sheet(&bytes).map_err(|wrong| {
+                Fault::of(given, "sheet", wrong, "save the sheet as CSV (UTF-8)")
+            });
+        }
         match std::str::from_utf8(&bytes) {
             Ok(text) => Ok(text.strip_prefix('\u{feff}').unwrap_or(text).to_owned()),
             Err(e) => {

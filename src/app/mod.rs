@@ -28,6 +28,7 @@ pub mod reconcile;
 pub mod recover;
 pub mod respond;
 pub mod sensitivity;
+mod sheet;
 pub mod solve;
 mod solved;
 pub mod store;

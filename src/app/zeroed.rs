@@ -6,7 +6,8 @@
 
 use super::fault::{Fault, FaultList, Faults};
 use super::job::strain::{StrainRows, StrainTable, read_strain};
-use super::job::{Job, Measured, NamedFile};
+use super::job::strain_means::is_long_record;
+use super::job::{HoldOut, Job, Measured, NamedFile};
 use super::recover::zero_of;
 use super::work::Work;
 use crate::finding::{Finding, Severity};
@@ -23,13 +24,23 @@ pub(super) struct Zeroed {
 /// A strain file of the job less its zero.
 ///
 /// # Errors
-/// Faults of the files; zero runs that the table lacks.
+/// Faults of the files, a long record among them; zero runs that the table lacks.
 pub(super) fn read_zeroed(
     work: &mut Work,
     job: &Job,
     measured: &Measured,
     named: &NamedFile,
 ) -> Result<Zeroed, Faults> {
+    let bytes = work.inputs.read_named(job, named)?;
+    if is_long_record(&bytes) {
+        return Err(Fault::of(
+            &*named.given,
+            "run",
+            "rows are samples of one record",
+            "give the means of static runs, a row each, with a column `run`",
+        )
+        .into());
+    }
     let mut table = read_strain(&mut work.inputs, job, named)?;
     let (zero, effective) = zero_of(work, job, measured, &table.gauges)?;
     let own = 1.0 + effective.map_or(0.0, |n| 1.0 / n);
@@ -77,21 +88,7 @@ pub(super) fn zeros_by_row(
         no_zero_runs(job, measured, &table.file)?;
         return Ok(None);
     };
-    let mut faults = FaultList::new();
-    let mut at = Vec::new();
-    for run in &measured.zero_runs {
-        match names.iter().position(|n| n == run) {
-            Some(i) => at.push(i),
-            None => faults.push(Fault::at(
-                &*job.file,
-                measured.line,
-                "measured.zero_runs",
-                format!("`{}` has no run `{run}`", table.file),
-                "name runs of the strain file at which no load acts",
-            )),
-        }
-    }
-    Faults::check(faults)?;
+    let mut at = zero_rows(job, measured, table, names)?;
     at.sort_unstable();
     at.dedup();
     let drift = drift_variance(table, &at, measured.noise_microstrain);
@@ -123,6 +120,49 @@ pub(super) fn zeros_by_row(
         .with_numbers(drift.sqrt(), measured.noise_microstrain),
     );
     Ok(Some(RowZeros { zero, noise_factor }))
+}
+
+/// Rows of the runs of `zero_runs`. Where runs are held out in a file of their own, its zeros are its own: between two files nothing says
+/// how far a zero has wandered, so each needs one of these runs at least, and a name may belong to one of the two alone.
+///
+/// # Errors
+/// Runs that the table lacks.
+fn zero_rows(
+    job: &Job,
+    measured: &Measured,
+    table: &StrainTable,
+    names: &[String],
+) -> Result<Vec<usize>, Faults> {
+    let two_files = matches!(measured.hold_out, HoldOut::File(_));
+    let place = |run: &String| names.iter().position(|n| n == run);
+    let at: Vec<usize> = measured.zero_runs.iter().filter_map(place).collect();
+    if two_files && !at.is_empty() {
+        return Ok(at);
+    }
+    let fault = |wrong: String, remedy: &str| {
+        Fault::at(
+            &*job.file,
+            measured.line,
+            "measured.zero_runs",
+            wrong,
+            remedy,
+        )
+    };
+    if two_files {
+        let wrong = format!("`{}` has none of these runs", table.file);
+        let remedy = "add to it a run without load, measured beside its runs, and name that run here too; or move its runs into the strain file and name them in `hold_out`";
+        return Err(fault(wrong, remedy).into());
+    }
+    let missing = measured.zero_runs.iter().filter(|r| place(r).is_none());
+    let faults: FaultList = missing
+        .map(|run| {
+            let wrong = format!("`{}` has no run `{run}`", table.file);
+            let remedy = "name runs of the strain file at which no load acts";
+            fault(wrong, remedy)
+        })
+        .collect();
+    Faults::check(faults)?;
+    Ok(at)
 }
 
 /// A record has no runs.

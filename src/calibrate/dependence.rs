@@ -1,7 +1,7 @@
 //! Whether loads come out larger with a column of the runs, such as speed.
 
 use super::types::{LeftOut, Task};
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use crate::linalg::tail::student_tail;
 
 /// Change of the scale with a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,8 +48,7 @@ pub fn depends_on(task: &Task, left_out: &[LeftOut], column: &[f64]) -> Option<D
         .map(|p| (p.1 - my - slope_rel * (p.0 - mx)).powi(2))
         .sum();
     let sigma = (left / (n - 2.0) / sxx).sqrt();
-    let chance =
-        StudentsT::new(0.0, 1.0, n - 2.0).map_or(1.0, |t| 2.0 * t.sf((slope_rel / sigma).abs()));
+    let chance = (2.0 * student_tail((slope_rel / sigma).abs(), n - 2.0)).min(1.0);
     Some(Dependence {
         slope_rel,
         sigma,

@@ -1,7 +1,7 @@
 //! Scatter of repeats: covariance over gauges of what the fitted runs leave, shrunk because runs are few and gauges many.
 
+use crate::linalg::tail::chi_square_tail;
 use crate::linalg::{Matrix, dense, spd};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Scatter over gauges in units of the run's root mean square strain.
 #[derive(Clone, Debug, PartialEq)]
@@ -179,5 +179,5 @@ fn exceeds_noise(runs: &[Left], dof: f64) -> bool {
         }
     }
     let free = readings as f64 * dof / runs.len().max(1) as f64;
-    free > 0.0 && ChiSquared::new(free).is_ok_and(|d| d.sf(chi2) < SIGNIFICANT)
+    chi_square_tail(chi2, free) < SIGNIFICANT
 }

@@ -4,12 +4,14 @@
 //! - [`tall`]: least squares with many rows and few columns
 //! - [`levenberg`]: nonlinear least squares
 //! - [`precision`]: the inverse of a dense covariance
+//! - [`tail`]: chances of a value at least as large
 
 pub mod dense;
 pub mod levenberg;
 pub mod precision;
 pub mod sparse;
 pub mod spd;
+pub mod tail;
 pub mod tall;
 
 pub use dense::{Matrix, Vector};

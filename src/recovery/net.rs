@@ -16,6 +16,72 @@ impl Net {
     }
 }
 
+/// Sums over readings one after the other, as of a record that is never whole in memory.
+///
+/// Readings count from the first of them, so that a large mean takes no digits from a small scatter.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Series {
+    n: u64,
+    first: f64,
+    last: f64,
+    sum: f64,
+    squares: f64,
+    /// Products of neighbours.
+    products: f64,
+}
+
+impl Series {
+    /// Adds a reading; one that is not finite is passed over.
+    pub fn add(&mut self, reading: f64) {
+        if !reading.is_finite() {
+            return;
+        }
+        if self.n == 0 {
+            self.first = reading;
+        }
+        let (x, before) = (reading - self.first, self.last - self.first);
+        if self.n > 0 {
+            self.products += x * before;
+        }
+        self.n += 1;
+        self.sum += x;
+        self.squares += x * x;
+        self.last = reading;
+    }
+
+    /// Their mean; `None` without readings.
+    pub fn mean(&self) -> Option<f64> {
+        (self.n > 0).then(|| self.first + self.sum / self.n as f64)
+    }
+
+    /// As [`effective_samples`] of the same readings.
+    pub fn effective_samples(&self) -> f64 {
+        let n = self.n as f64;
+        let mean = self.sum / n;
+        let var = (self.squares - n * mean * mean).max(0.0);
+        // Sums of all but the last and of all but the first, which is zero.
+        let ends = 2.0 * self.sum - (self.last - self.first);
+        let lag = self.products - mean * ends + (n - 1.0) * mean * mean;
+        effective(n, var, lag)
+    }
+
+    /// As [`mean_of`] of the same readings.
+    pub fn net(&self, noise: f64) -> Net {
+        let n = self.n as f64;
+        let Some(value) = self.mean() else {
+            return NOTHING;
+        };
+        let var = (self.squares - self.sum * self.sum / n).max(0.0) / (n - 1.0);
+        net_of(n, value, var, noise, || self.effective_samples())
+    }
+}
+
+/// No reading.
+const NOTHING: Net = Net {
+    value: f64::NAN,
+    sigma: f64::NAN,
+};
+
 /// Signal to noise under which a gauge is too weak for the job.
 pub const WEAK: f64 = 3.0;
 
@@ -28,6 +94,10 @@ pub fn effective_samples(v: &[f64]) -> f64 {
     let mean = v.iter().sum::<f64>() / n;
     let var: f64 = v.iter().map(|x| (x - mean).powi(2)).sum();
     let lag: f64 = v.windows(2).map(|w| (w[0] - mean) * (w[1] - mean)).sum();
+    effective(n, var, lag)
+}
+
+fn effective(n: f64, var: f64, lag: f64) -> f64 {
     let r = if var > 0.0 {
         (lag / var).clamp(0.0, 0.999)
     } else {
@@ -42,28 +112,29 @@ pub fn mean_of(readings: &[f64], noise: f64) -> Net {
     let v: Vec<f64> = readings.iter().copied().filter(|x| x.is_finite()).collect();
     let n = v.len() as f64;
     if v.is_empty() {
-        return Net {
-            value: f64::NAN,
-            sigma: f64::NAN,
-        };
+        return NOTHING;
     }
     let mean = v.iter().sum::<f64>() / n;
-    if v.len() < FEW {
+    let var = v.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    net_of(n, mean, var, noise, || effective_samples(&v))
+}
+
+fn net_of(n: f64, value: f64, var: f64, noise: f64, effective: impl Fn() -> f64) -> Net {
+    if n < FEW {
         return Net {
-            value: mean,
+            value,
             sigma: noise / n.sqrt(),
         };
     }
-    let var = v.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0);
     // A record that happens to stand still is no better than its gauge over the same number of samples.
     Net {
-        value: mean,
-        sigma: (var / effective_samples(&v)).max(noise * noise / n).sqrt(),
+        value,
+        sigma: (var / effective()).max(noise * noise / n).sqrt(),
     }
 }
 
 /// Samples under which a record's own scatter says too little.
-const FEW: usize = 8;
+const FEW: f64 = 8.0;
 
 /// A run less its zero.
 pub fn net(run: Net, zero: Option<Net>) -> Net {

@@ -5,9 +5,10 @@ use super::residuals::{GaugeTest, Joint};
 use super::solved::Solved;
 use super::types::{GAUGE_SUSPECT, Shift, ShiftKind, Widening};
 use crate::finding::{Finding, Severity};
+use crate::linalg::tail::student_tail;
 use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
-use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Chance, over all gauges of a job, under which the largest of their errors counts as real: half of the 1 % of right jobs that may be
 /// stopped.
@@ -103,7 +104,7 @@ fn chance(joint: &Joint, test: &GaugeTest) -> f64 {
     let rest = (joint.chi2 - test.t * test.t) / free;
     let tail = if rest > 1.0 {
         let t = test.t.abs() / rest.sqrt();
-        StudentsT::new(0.0, 1.0, free).map_or(1.0, |d| d.sf(t))
+        student_tail(t, free)
     } else {
         Normal::new(0.0, 1.0).map_or(1.0, |d| d.sf(test.t.abs()))
     };

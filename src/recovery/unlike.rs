@@ -5,8 +5,8 @@ use super::errors::ErrorModel;
 use super::types::{Readings, RunEstimate};
 use super::verdict::chance;
 use crate::finding::{Finding, Severity};
+use crate::linalg::tail::f_tail;
 use crate::sensitivity::{Sensitivity, Uncertainty};
-use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 /// Code of a run that no combination of the loads explains.
 pub const CODE: &str = "run-unlike-calibration";
@@ -19,7 +19,7 @@ pub fn chance_estimated(chi2: f64, dof: usize, from: f64) -> f64 {
     if !from.is_finite() || dof == 0 {
         return chance(chi2, dof);
     }
-    FisherSnedecor::new(dof as f64, from.max(1.0)).map_or(1.0, |d| d.sf(chi2 / dof as f64))
+    f_tail(chi2 / dof as f64, dof as f64, from.max(1.0))
 }
 
 /// Whether a run's residual is larger than noise, scatter and the uncertainty of S make it.

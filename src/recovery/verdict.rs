@@ -7,10 +7,10 @@ use super::residuals::{Joint, Out, Projection};
 use super::solved::Solved;
 use super::types::{Readings, RunEstimate, Widening};
 use crate::finding::{Finding, Severity};
+use crate::linalg::tail::chi_square_tail;
 use crate::linalg::{Matrix, dense};
 use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
-use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Chance under which a sum of squares counts as larger than stated errors make it.
 const SIGNIFICANT: f64 = 1e-3;
@@ -38,10 +38,7 @@ pub(super) struct Verdict {
 
 /// Chance of a sum of squares at least as large, where the stated errors are right.
 pub fn chance(chi2: f64, dof: usize) -> f64 {
-    if dof == 0 {
-        return 1.0;
-    }
-    ChiSquared::new(dof as f64).map_or(1.0, |d| d.sf(chi2))
+    chi_square_tail(chi2, dof as f64)
 }
 
 /// How far residuals exceed stated errors.

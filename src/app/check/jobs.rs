@@ -3,12 +3,13 @@
 use super::checked::Checked;
 use crate::app::deck;
 use crate::app::fault::{Fault, Faults};
+use crate::app::job::strain_means::{StrainFile, read_strain_file};
 use crate::app::job::suggest;
-use crate::app::job::{self, HoldOut, Job, NamedFile};
+use crate::app::job::{self, HoldOut, Job, Measured, NamedFile};
 use crate::app::outcome::StatedUnits;
 use crate::app::solved::{support_finding, support_of_job};
 use crate::app::work::Work;
-use crate::app::zeroed::zeros_by_row;
+use crate::app::zeroed::{no_zero_runs, zeros_by_row};
 use crate::finding::{Finding, Severity};
 use crate::model::Model;
 use crate::units::check_units;
@@ -31,26 +32,35 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
     ));
     files(work, &job, found, into);
     if let Some(m) = &job.measured {
-        match job::strain::read_strain(&mut work.inputs, &job, &m.strain) {
-            Ok(t) => {
-                work.findings.extend(gauges_and_strain(&job, &t.gauges));
-                let zeros = zeros_by_row(work, &job, m, &t);
-                found.faults.extend(faults_of(zeros));
+        match read_strain_file(&mut work.inputs, &job, &m.strain) {
+            Ok(file) => {
+                work.findings.extend(gauges_and_strain(&job, file.gauges()));
+                found.faults.extend(zero_faults(work, &job, m, &file));
             }
             Err(f) => found.faults.extend(f),
         }
-        let mut others: Vec<&NamedFile> = m.zero.iter().collect();
-        if let HoldOut::File(f) = &m.hold_out {
-            others.push(f);
-        }
-        for named in others {
-            let read = job::strain::read_strain(&mut work.inputs, &job, named);
+        if let Some(named) = &m.zero {
+            let read = read_strain_file(&mut work.inputs, &job, named);
             found.faults.extend(faults_of(read));
+        }
+        if let HoldOut::File(named) = &m.hold_out {
+            match read_strain_file(&mut work.inputs, &job, named) {
+                Ok(file) => found.faults.extend(zero_faults(work, &job, m, &file)),
+                Err(f) => found.faults.extend(f),
+            }
         }
     }
     if let Some(r) = &job.runs {
         let read = job::runs::read_runs(&mut work.inputs, &job, r);
         found.faults.extend(faults_of(read));
+    }
+}
+
+/// What stands in the way of following the zero through the runs of a strain file.
+fn zero_faults(work: &mut Work, job: &Job, m: &Measured, file: &StrainFile) -> Vec<Fault> {
+    match file {
+        StrainFile::Table(table) => faults_of(zeros_by_row(work, job, m, table)),
+        StrainFile::Means(means) => faults_of(no_zero_runs(job, m, &means.file)),
     }
 }
 
@@ -219,9 +229,9 @@ fn gauges_and_strain(job: &Job, columns: &[String]) -> Vec<Finding> {
             ));
         }
     };
-    // A rosette's legs have columns of their own, `<name>.a` and so on.
-    let rosette = job.gauges.iter().any(|g| g.rosette.is_some());
-    if !rosette {
+    // A rosette's legs have columns of their own, `<name>.a` and so on; where S is given its table names the gauges.
+    let told = !job.gauges.is_empty() && job.gauges.iter().all(|g| g.rosette.is_none());
+    if told {
         note(
             "gauge-without-strain",
             "gauges have no column in the strain file",

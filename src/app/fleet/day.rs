@@ -87,3 +87,48 @@ pub struct FileResult {
     /// What it came to, or why to nothing.
     pub result: Result<Day, String>,
 }
+
+/// What a record came to but for its loads and gauges, which are large.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct DayHead {
+    /// Samples a second.
+    pub rate_hz: f64,
+    /// Span of the record, hours.
+    pub hours: f64,
+    /// Samples missing in gaps.
+    pub missing: usize,
+    /// Findings of the record.
+    pub findings: Vec<DayFinding>,
+}
+
+/// A file and what became of it, in a few hundred bytes: all files of a fleet are in memory as these.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileHead {
+    /// Path as given.
+    pub path: String,
+    /// Digest of its bytes; empty where it can't be read.
+    pub sha256: String,
+    /// The vehicle.
+    pub vehicle: String,
+    /// The day.
+    pub day: String,
+    /// What it came to, or why to nothing.
+    pub result: Result<DayHead, String>,
+}
+
+impl From<FileResult> for FileHead {
+    fn from(file: FileResult) -> Self {
+        Self {
+            path: file.path,
+            sha256: file.sha256,
+            vehicle: file.vehicle,
+            day: file.day,
+            result: file.result.map(|d| DayHead {
+                rate_hz: d.rate_hz,
+                hours: d.hours,
+                missing: d.missing,
+                findings: d.findings,
+            }),
+        }
+    }
+}

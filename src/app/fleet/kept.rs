@@ -1,6 +1,7 @@
 //! Results of single files, kept in the output folder by what they depend on.
 
-use super::day::{Day, FileResult};
+use super::day::{Day, DayHead, FileHead, FileResult};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::io::Write;
@@ -11,9 +12,9 @@ pub const FOLDER: &str = "days";
 /// Counts up when what is kept changes its meaning.
 const FORM: u32 = 1;
 
-/// A kept result.
+/// A kept result; `D` is what is read of its day.
 #[derive(Serialize, Deserialize)]
-struct Kept {
+struct Kept<D> {
     form: u32,
     version: String,
     /// Digest of the job and of every file it stands on.
@@ -22,7 +23,7 @@ struct Kept {
     sha256: String,
     vehicle: String,
     day: String,
-    done: Option<Day>,
+    done: Option<D>,
     failed: Option<String>,
 }
 
@@ -35,8 +36,8 @@ pub struct KeptDays {
 /// What a folder holds.
 #[derive(Default)]
 pub struct Held {
-    /// Results of this job, by path.
-    pub files: Vec<FileResult>,
+    /// Files of this job, by path.
+    pub files: Vec<FileHead>,
     /// Results of another job, version or form, and files that can't be read.
     pub others: usize,
 }
@@ -68,18 +69,22 @@ impl KeptDays {
             .join(format!("{}.json", key.get(..32).unwrap_or(&key)))
     }
 
-    /// The result of a file with these bytes and this path, where it is kept.
-    pub fn get(&self, path: &str, sha256: &str) -> Option<FileResult> {
+    /// What became of a file with these bytes and this path, where it is kept.
+    pub fn head(&self, path: &str, sha256: &str) -> Option<FileHead> {
         let bytes = std::fs::read(self.place(sha256, path)).ok()?;
-        self.read(&bytes)
+        self.head_of(&bytes)
             .filter(|f| f.path == path && f.sha256 == sha256)
     }
 
-    fn read(&self, bytes: &[u8]) -> Option<FileResult> {
-        let kept: Kept = serde_json::from_slice(bytes).ok()?;
-        let own =
-            kept.form == FORM && kept.version == env!("CARGO_PKG_VERSION") && kept.job == self.job;
-        own.then_some(FileResult {
+    /// The day of a file that [`KeptDays::head`] knows.
+    pub fn day(&self, file: &FileHead) -> Option<Day> {
+        let bytes = std::fs::read(self.place(&file.sha256, &file.path)).ok()?;
+        self.read(&bytes)?.done
+    }
+
+    fn head_of(&self, bytes: &[u8]) -> Option<FileHead> {
+        let kept: Kept<DayHead> = self.read(bytes)?;
+        Some(FileHead {
             path: kept.path,
             sha256: kept.sha256,
             vehicle: kept.vehicle,
@@ -89,6 +94,13 @@ impl KeptDays {
                 (None, failed) => Err(failed.unwrap_or_default()),
             },
         })
+    }
+
+    fn read<D: DeserializeOwned>(&self, bytes: &[u8]) -> Option<Kept<D>> {
+        let kept: Kept<D> = serde_json::from_slice(bytes).ok()?;
+        let own =
+            kept.form == FORM && kept.version == env!("CARGO_PKG_VERSION") && kept.job == self.job;
+        own.then_some(kept)
     }
 
     /// Keeps the result of a file; another run may do the same at the same time, the file is whole at any moment.
@@ -120,7 +132,7 @@ impl KeptDays {
         std::fs::rename(&part, &place)
     }
 
-    /// All that the folder holds of this job.
+    /// All that the folder holds of this job, without the days themselves.
     ///
     /// # Errors
     /// Those of the system.
@@ -134,7 +146,7 @@ impl KeptDays {
         for entry in entries {
             let path = entry?.path();
             if path.extension().is_some_and(|e| e == "json") {
-                match self.read(&std::fs::read(&path)?) {
+                match self.head_of(&std::fs::read(&path)?) {
                     Some(file) => held.files.push(file),
                     None => held.others += 1,
                 }

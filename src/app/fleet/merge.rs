@@ -1,6 +1,6 @@
 //! Days of a vehicle, one after the other, as one.
 
-use super::day::{Day, FileResult, GaugeDay, LoadDay};
+use super::day::{Day, FileHead, GaugeDay, LoadDay};
 use super::name::by_day;
 use crate::series::rainflow::{DamageInterval, Tally, damage_interval};
 use std::collections::{BTreeMap, BTreeSet};
@@ -67,16 +67,16 @@ pub struct Vehicle {
     pub gauges: Vec<(String, Vec<GaugeDay>)>,
 }
 
-/// Vehicles by name, and the status of every file in the order given.
+/// Files that count, by vehicle and in the order of their days, and the status of every file in the order given.
 ///
-/// Files of a vehicle are taken in the order of their days; of two for one day, or with the same bytes, that with the first path counts.
-/// What comes out does not depend on the order of `files`.
-pub fn merged(files: &[FileResult]) -> (Vec<Vehicle>, Vec<Status>) {
+/// Of two files for one day, or with the same bytes, that with the first path counts. What comes out does not depend on the order of
+/// `files`.
+pub fn sorted(files: &[FileHead]) -> (BTreeMap<&str, Vec<&FileHead>>, Vec<Status>) {
     let mut order: Vec<usize> = (0..files.len()).collect();
     let key = |i: &usize| files.get(*i).map(|f| f.path.as_str()).unwrap_or_default();
     order.sort_by(|a, b| key(a).cmp(key(b)));
     let mut status = vec![Status::Done; files.len()];
-    let mut days: BTreeMap<&str, Vec<(&FileResult, &Day)>> = BTreeMap::new();
+    let mut days: BTreeMap<&str, Vec<&FileHead>> = BTreeMap::new();
     let mut seen_bytes: BTreeMap<&str, &str> = BTreeMap::new();
     let mut seen_days: BTreeMap<(&str, &str), &str> = BTreeMap::new();
     for i in order {
@@ -95,19 +95,17 @@ pub fn merged(files: &[FileResult]) -> (Vec<Vehicle>, Vec<Status>) {
                     file.vehicle, file.day
                 ));
             }
-            (Ok(day), None, None) => {
+            (Ok(_), None, None) => {
                 seen_bytes.insert(&file.sha256, &file.path);
                 seen_days.insert((&file.vehicle, &file.day), &file.path);
-                days.entry(&file.vehicle).or_default().push((file, day));
+                days.entry(&file.vehicle).or_default().push(file);
             }
         }
     }
-    let mut vehicles = Vec::new();
-    for (name, mut list) in days {
-        list.sort_by(|a, b| by_day(&a.0.day, &b.0.day).then(a.0.day.cmp(&b.0.day)));
-        vehicles.push(vehicle(name, &list));
+    for list in days.values_mut() {
+        list.sort_by(|a, b| by_day(&a.day, &b.day).then(a.day.cmp(&b.day)));
     }
-    (vehicles, status)
+    (days, status)
 }
 
 /// The errors of all days together: where they differ (a gauge that died), by the share of damage that each day did.
@@ -128,7 +126,8 @@ fn errors(days: &[(&str, &LoadDay)], first: &LoadDay) -> LoadDay {
     }
 }
 
-fn vehicle(name: &str, list: &[(&FileResult, &Day)]) -> Vehicle {
+/// A vehicle from its days in order, each with its name.
+pub fn vehicle(name: &str, list: &[(&str, Day)]) -> Vehicle {
     // Loads of the first day; a job that has changed has other results, so they are those of every day.
     let first = list
         .first()
@@ -138,12 +137,7 @@ fn vehicle(name: &str, list: &[(&FileResult, &Day)]) -> Vehicle {
     for (l, load) in first.iter().enumerate() {
         let of_load: Vec<_> = list
             .iter()
-            .filter_map(|(f, d)| {
-                Some((
-                    f.day.as_str(),
-                    d.loads.get(l).filter(|x| x.name == load.name)?,
-                ))
-            })
+            .filter_map(|(f, d)| Some((*f, d.loads.get(l).filter(|x| x.name == load.name)?)))
             .collect();
         let tallies: Vec<&Tally> = of_load.iter().map(|d| &d.1.tally).collect();
         let Some(tally) = Tally::joined(&tallies) else {
@@ -200,7 +194,7 @@ fn vehicle(name: &str, list: &[(&FileResult, &Day)]) -> Vehicle {
         .collect();
     Vehicle {
         name: name.to_owned(),
-        days: list.iter().map(|f| f.0.day.clone()).collect(),
+        days: list.iter().map(|f| f.0.to_owned()).collect(),
         hours: list.iter().map(|f| f.1.hours).sum(),
         loads,
         gauges,

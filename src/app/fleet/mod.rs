@@ -24,10 +24,10 @@ use super::outcome::{Outcome, StatedUnits};
 use super::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::series::record::{Options, open_record};
-use day::FileResult;
+use day::{Day, FileHead, FileResult};
 use kept::{KeptDays, digest};
 use kernel::Kernel;
-use merge::merged;
+use merge::{Status, sorted, vehicle};
 use name::{NameForm, Shard};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
@@ -74,10 +74,41 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
     } else {
         work.stage("records", |w| done(w, &kernel, &kept, &form, spec))?
     };
-    let (vehicles, status) = work.stage("merge", |_| merged(&files));
+    let (vehicles, status) = work.stage("merge", |w| merged(w, &kept, &files))?;
     let answer = Fleet::of(job, &kernel, vehicles, &files, &status, reused);
     work.findings.extend(answer.findings(&files, &status));
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// Vehicles by name, and the status of every file. The days of one vehicle are in memory at a time.
+///
+/// # Errors
+/// A kept result that is gone; one fault where the work is stopped.
+fn merged(
+    work: &mut Work,
+    kept: &KeptDays,
+    files: &[FileHead],
+) -> Result<(Vec<VehicleAnswer>, Vec<Status>), Faults> {
+    let (by_vehicle, status) = sorted(files);
+    let mut vehicles = Vec::with_capacity(by_vehicle.len());
+    for (name, list) in by_vehicle {
+        work.go_on()?;
+        let days: Result<Vec<(&str, Day)>, Fault> = list
+            .par_iter()
+            .map(|file| match kept.day(file) {
+                Some(day) => Ok((file.day.as_str(), day)),
+                None => Err(Fault::of(
+                    &*file.path,
+                    "days",
+                    "its kept result was removed or changed while results were merged",
+                    "run again",
+                )),
+            })
+            .collect();
+        vehicles.push(VehicleAnswer::of(vehicle(name, &days?)));
+    }
+    VehicleAnswer::compare(&mut vehicles);
+    Ok((vehicles, status))
 }
 
 /// A digest of the job and of all that it stands on: every file read so far.
@@ -88,11 +119,7 @@ fn job_digest(work: &mut Work) -> String {
 }
 
 /// What the output folder holds.
-fn held(
-    work: &mut Work,
-    kept: &KeptDays,
-    folder: &Path,
-) -> Result<(Vec<FileResult>, usize), Faults> {
+fn held(work: &mut Work, kept: &KeptDays, folder: &Path) -> Result<(Vec<FileHead>, usize), Faults> {
     let shown = folder.display().to_string();
     let held = kept.all().map_err(|e| {
         Faults::from(Fault::of(
@@ -130,7 +157,7 @@ fn done(
     kept: &KeptDays,
     form: &NameForm,
     spec: &FleetSpec,
-) -> Result<(Vec<FileResult>, usize), Faults> {
+) -> Result<(Vec<FileHead>, usize), Faults> {
     let mut paths: Vec<String> = spec.files.iter().map(|p| p.display().to_string()).collect();
     paths.sort();
     paths.dedup();
@@ -142,7 +169,7 @@ fn done(
         .collect();
     let cx = work.cx;
     cx.progress.parts(mine.len());
-    let results: Vec<Result<(FileResult, bool), Fault>> = mine
+    let results: Vec<Result<(FileHead, bool), Fault>> = mine
         .par_iter()
         .map(|path| {
             let bytes = cx.files.load(Path::new(path));
@@ -169,7 +196,7 @@ fn one(
     form: &NameForm,
     path: &str,
     bytes: std::io::Result<FileBytes>,
-) -> Result<(FileResult, bool), Fault> {
+) -> Result<(FileHead, bool), Fault> {
     let named = form.read(path);
     let mut file = FileResult {
         path: path.to_owned(),
@@ -182,7 +209,7 @@ fn one(
         Ok(bytes) => bytes,
         Err(e) => {
             file.result = Err(format!("it can't be read: {e}"));
-            return Ok((file, false));
+            return Ok((file.into(), false));
         }
     };
     file.sha256 = Sha256::digest(&*bytes)
@@ -191,9 +218,9 @@ fn one(
         .collect();
     if named.is_none() {
         file.result = Err("its name is not of the form that [fleet] file_name states".to_owned());
-        return Ok((file, false));
+        return Ok((file.into(), false));
     }
-    if let Some(before) = kept.get(path, &file.sha256) {
+    if let Some(before) = kept.head(path, &file.sha256) {
         return Ok((before, true));
     }
     file.result = day_of(kernel, bytes);
@@ -207,14 +234,17 @@ fn one(
         )
     })?;
     // What is read back is what a later run would read, to the last digit: a merge of kept results has the same bytes.
-    Ok((kept.get(path, &file.sha256).unwrap_or(file), false))
+    Ok((
+        kept.head(path, &file.sha256).unwrap_or_else(|| file.into()),
+        false,
+    ))
 }
 
 /// What the bytes of a record come to.
 ///
 /// # Errors
 /// Why they come to nothing.
-pub fn day_of(kernel: &Kernel, bytes: FileBytes) -> Result<day::Day, String> {
+pub fn day_of(kernel: &Kernel, bytes: FileBytes) -> Result<Day, String> {
     let options = Options {
         declared_hz: None,
         wanted: kernel.sensitivity.gauges.clone(),

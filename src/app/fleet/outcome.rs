@@ -1,13 +1,14 @@
 //! The answer of `fleet`.
 
-use super::day::{FileResult, GaugeDay};
+use super::day::{FileHead, GaugeDay};
 use super::kernel::Kernel;
-use super::merge::{Status, Vehicle};
+use super::merge::{Status, Vehicle, VehicleLoad};
 use crate::app::job::Job;
 use crate::app::outcome::Answer;
 use crate::finding::{Finding, Severity};
 use crate::series::rainflow::DamageInterval;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// A gauge is called dead on a day when it reads less than this many times what it read on its typical day.
 const DEAD: f64 = 0.01;
@@ -141,75 +142,88 @@ impl Answer for Fleet {
     const COMMAND: &'static str = "fleet";
 }
 
-impl Fleet {
-    /// The answer of merged vehicles.
-    pub(super) fn of(
-        job: &Job,
-        kernel: &Kernel,
-        vehicles: Vec<Vehicle>,
-        files: &[FileResult],
-        status: &[Status],
-        reused: usize,
-    ) -> Self {
-        let all_hours: f64 = vehicles.iter().map(|v| v.hours).sum();
-        let of_all = |name: &str| -> f64 {
-            let loads = vehicles
-                .iter()
-                .flat_map(|v| &v.loads)
-                .filter(|l| l.name == name);
-            loads.map(|l| l.damage.value).sum::<f64>() / all_hours
-        };
-        let answers = vehicles.iter().map(|v| VehicleAnswer {
-            name: v.name.clone(),
+impl VehicleAnswer {
+    /// What is told of a vehicle; [`VehicleAnswer::compare`] sees the others.
+    pub(super) fn of(v: Vehicle) -> Self {
+        Self {
             files: v.days.len(),
-            days: v.days.clone(),
             hours: v.hours,
-            loads: v
-                .loads
-                .iter()
-                .map(|l| {
-                    let DamageInterval {
-                        value,
-                        low,
-                        high,
-                        counted,
-                        noise_bias,
-                        sigma_s,
-                        sigma_noise,
-                        sigma_bias,
-                    } = l.damage;
-                    let [max_day, min_day] = l.extreme_days.clone();
-                    VehicleLoadAnswer {
-                        load: l.name.clone(),
-                        unit: l.unit.clone(),
-                        max: l.tally.max.map(|e| e.value),
-                        max_day,
-                        min: l.tally.min.map(|e| e.value),
-                        min_day,
-                        cycles: l.tally.n_cycles(),
-                        damage: value,
-                        damage_low: low,
-                        damage_high: high,
-                        damage_counted: counted,
-                        noise_bias,
-                        sigma_s,
-                        sigma_noise,
-                        sigma_bias,
-                        relative: value / v.hours / of_all(&l.name),
-                        by_day: l.by_day.clone(),
-                        width: l.tally.width,
-                        range_pairs: l.tally.range_pairs(),
-                        from_to: l.tally.cycles.clone(),
-                        levels: l.tally.levels.clone(),
-                    }
-                })
-                .collect(),
             gauges: v
                 .gauges
                 .iter()
                 .map(|(name, days)| history(name, days, &v.days))
                 .collect(),
-        });
+            loads: v.loads.into_iter().map(VehicleLoadAnswer::of).collect(),
+            name: v.name,
+            days: v.days,
+        }
+    }
+
+    /// Sets the damage of each relative to that of all.
+    pub(super) fn compare(all: &mut [Self]) {
+        let hours: f64 = all.iter().map(|v| v.hours).sum();
+        let mut damage: BTreeMap<String, f64> = BTreeMap::new();
+        for l in all.iter().flat_map(|v| &v.loads) {
+            *damage.entry(l.load.clone()).or_insert(0.0) += l.damage;
+        }
+        for v in all {
+            for l in &mut v.loads {
+                let of_all = damage.get(&l.load).map_or(f64::NAN, |d| d / hours);
+                l.relative = l.damage / v.hours / of_all;
+            }
+        }
+    }
+}
+
+impl VehicleLoadAnswer {
+    fn of(l: VehicleLoad) -> Self {
+        let DamageInterval {
+            value,
+            low,
+            high,
+            counted,
+            noise_bias,
+            sigma_s,
+            sigma_noise,
+            sigma_bias,
+        } = l.damage;
+        let [max_day, min_day] = l.extreme_days;
+        Self {
+            max: l.tally.max.map(|e| e.value),
+            max_day,
+            min: l.tally.min.map(|e| e.value),
+            min_day,
+            cycles: l.tally.n_cycles(),
+            damage: value,
+            damage_low: low,
+            damage_high: high,
+            damage_counted: counted,
+            noise_bias,
+            sigma_s,
+            sigma_noise,
+            sigma_bias,
+            relative: f64::NAN,
+            by_day: l.by_day,
+            width: l.tally.width,
+            range_pairs: l.tally.range_pairs(),
+            from_to: l.tally.cycles,
+            levels: l.tally.levels,
+            load: l.name,
+            unit: l.unit,
+        }
+    }
+}
+
+impl Fleet {
+    /// The answer of merged vehicles.
+    pub(super) fn of(
+        job: &Job,
+        kernel: &Kernel,
+        vehicles: Vec<VehicleAnswer>,
+        files: &[FileHead],
+        status: &[Status],
+        reused: usize,
+    ) -> Self {
         let mut listed: Vec<FileAnswer> = files
             .iter()
             .zip(status)
@@ -232,14 +246,14 @@ impl Fleet {
         Self {
             title: job.title.clone(),
             slope: kernel.law.slope,
-            vehicles: answers.collect(),
+            vehicles,
             files: listed,
             reused,
         }
     }
 
     /// What is to be known: files that don't count, gauges that died, findings of single records.
-    pub(super) fn findings(&self, files: &[FileResult], status: &[Status]) -> Vec<Finding> {
+    pub(super) fn findings(&self, files: &[FileHead], status: &[Status]) -> Vec<Finding> {
         let mut out = Vec::new();
         for (file, status) in files.iter().zip(status) {
             let (severity, code, remedy) = match status {
@@ -287,9 +301,8 @@ impl Fleet {
 }
 
 /// Findings of single records, one for all that say the same of the same subject.
-fn of_records(files: &[FileResult], status: &[Status]) -> Vec<Finding> {
-    let mut grouped: std::collections::BTreeMap<(&str, &str), (usize, &str, &str)> =
-        Default::default();
+fn of_records(files: &[FileHead], status: &[Status]) -> Vec<Finding> {
+    let mut grouped: BTreeMap<(&str, &str), (usize, &str, &str)> = Default::default();
     for (file, status) in files.iter().zip(status) {
         let (Status::Done, Ok(day)) = (status, &file.result) else {
             continue;

@@ -21,6 +21,22 @@ pub struct Table {
 /// # Errors
 /// Rows of another length, an empty file.
 pub fn read_table(file: &str, text: &str) -> Result<Table, Faults> {
+    let mut whole: Option<Table> = None;
+    each_part(file, text, usize::MAX, &mut |part| whole = Some(part))?;
+    whole.ok_or_else(|| Faults::from(empty(file)))
+}
+
+/// The same, `most` rows at a time: fields of a long table take many times its text. `take` gets the last rows too, and a table without
+/// rows once.
+///
+/// # Errors
+/// As [`read_table`]; `take` may have seen rows before a fault was met.
+pub fn each_part(
+    file: &str,
+    text: &str,
+    most: usize,
+    take: &mut dyn FnMut(Table),
+) -> Result<(), Faults> {
     let first = text
         .lines()
         .find(|l| !l.trim().is_empty() && !l.starts_with('#'))
@@ -48,27 +64,15 @@ pub fn read_table(file: &str, text: &str) -> Result<Table, Faults> {
         }
     };
     if header.iter().all(String::is_empty) {
-        return Err(Faults::from(Fault::of(
-            file,
-            "header",
-            "the file is empty",
-            "write a header and a row an entry",
-        )));
+        return Err(Faults::from(empty(file)));
     }
-    let mut seen = std::collections::HashSet::with_capacity(header.len());
-    for name in &header {
-        if !seen.insert(name) {
-            faults.push(Fault::at(
-                file,
-                1,
-                name,
-                "column named twice",
-                "give every column its own name",
-            ));
-        }
-    }
+    faults.extend(named_twice(file, &header));
     let mark = DecimalMark::beside(delimiter);
-    let mut rows = Vec::new();
+    let mut part = Table {
+        file: file.to_owned(),
+        header,
+        rows: Vec::new(),
+    };
     for record in reader.records() {
         match record {
             Ok(r) => {
@@ -76,8 +80,8 @@ pub fn read_table(file: &str, text: &str) -> Result<Table, Faults> {
                 if r.iter().all(str::is_empty) {
                     continue;
                 }
-                if r.len() != header.len() {
-                    let wrong = format!("{} fields, the header has {}", r.len(), header.len());
+                if r.len() != part.header.len() {
+                    let wrong = format!("{} fields, the header has {}", r.len(), part.header.len());
                     faults.push(Fault::at(
                         file,
                         line,
@@ -87,7 +91,15 @@ pub fn read_table(file: &str, text: &str) -> Result<Table, Faults> {
                     ));
                     continue;
                 }
-                rows.push((
+                if part.rows.len() == most {
+                    let next = Table {
+                        file: part.file.clone(),
+                        header: part.header.clone(),
+                        rows: Vec::new(),
+                    };
+                    take(std::mem::replace(&mut part, next));
+                }
+                part.rows.push((
                     line,
                     r.iter().map(|s| with_point(unguarded(s), mark)).collect(),
                 ));
@@ -96,11 +108,23 @@ pub fn read_table(file: &str, text: &str) -> Result<Table, Faults> {
         }
     }
     Faults::check(faults)?;
-    Ok(Table {
-        file: file.to_owned(),
-        header,
-        rows,
-    })
+    take(part);
+    Ok(())
+}
+
+fn empty(file: &str) -> Fault {
+    let remedy = "write a header and a row an entry";
+    Fault::of(file, "header", "the file is empty", remedy)
+}
+
+fn named_twice(file: &str, header: &[String]) -> Vec<Fault> {
+    let mut seen = std::collections::HashSet::with_capacity(header.len());
+    let twice = header.iter().filter(|name| !seen.insert(*name));
+    let fault = |name: &String| {
+        let remedy = "give every column its own name";
+        Fault::at(file, 1, name, "column named twice", remedy)
+    };
+    twice.map(fault).collect()
 }
 
 /// A field, a number's decimal comma turned into a point.

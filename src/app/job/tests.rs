@@ -380,18 +380,27 @@ fn positions_in_metres_become_job_units() {
 
 #[test]
 fn strain_tables_hold_runs_or_samples() {
-    let t = table::read_table("s.csv", "run,G1,G2\nR1,1.5,\nR2,3,4\n").unwrap();
-    let s = strain::strain_from_table(&t).unwrap();
+    let read = |text: &str| strain_text::strain_from_text("s.csv", text);
+    let s = read("run,G1,G2\nR1,1.5,\nR2,3,4\n").unwrap();
     assert_eq!(
         s.rows,
         strain::StrainRows::Runs(vec!["R1".into(), "R2".into()])
     );
     assert!(s.row(0)[1].is_nan());
-    let t = table::read_table("s.csv", "time;G1\n0;1\n0.1;2\n0.1;3\n").unwrap();
-    let f = strain::strain_from_table(&t).unwrap_err();
+    let f = read("time;G1\n0;1\n0.1;2\n0.1;3\n").unwrap_err();
     assert_eq!((f[0].line, f[0].field.as_str()), (Some(4), "time"));
-    let t = table::read_table("s.csv", "G1\n1\n").unwrap();
-    assert!(strain::strain_from_table(&t).is_err());
+    let f = read("run,G1\nR1,1\nR2,2\nR1,3\n").unwrap_err();
+    assert_eq!((f[0].line, f[0].field.as_str()), (Some(4), "run"));
+    assert!(read("G1\n1\n").is_err() && read("run,G1\n").is_err());
+}
+
+#[test]
+fn a_long_table_in_parts_is_the_whole_table() {
+    let rows = (0..25_001).map(|i| format!("R{i},{i},-{i}\n"));
+    let text = format!("run,G1,G2\n{}", rows.collect::<String>());
+    let s = strain_text::strain_from_text("s.csv", &text).unwrap();
+    assert_eq!(s.n_rows(), 25_001);
+    assert!((0..25_001).all(|i| s.row(i) == [i as f64, -(i as f64)]));
 }
 
 #[test]

@@ -3,8 +3,9 @@
 use super::task::Task;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::runs::{RunRow, read_runs};
-use crate::app::job::strain::{StrainRows, StrainTable, read_strain};
-use crate::app::job::{NamedFile, PayloadPosition, WheelForces};
+use crate::app::job::strain::{StrainRows, StrainTable};
+use crate::app::job::strain_means::{StrainFile, read_strain_file};
+use crate::app::job::{Measured, NamedFile, PayloadPosition, WheelForces};
 use crate::app::outcome::finite;
 use crate::app::work::Work;
 use crate::app::zeroed::{no_zero_runs, zeros_by_row};
@@ -240,22 +241,19 @@ fn strain(
     let Some(measured) = &task.job.measured else {
         return Ok(Vec::new());
     };
-    let table = work.stage("read strain", |s| {
-        read_strain(&mut s.inputs, task.job, &measured.strain)
+    let file = work.stage("read strain", |s| {
+        read_strain_file(&mut s.inputs, task.job, &measured.strain)
     })?;
     let noise = measured.noise_microstrain * MICROSTRAIN;
     let zero: Vec<Option<Net>> = match &measured.zero {
         Some(named) => {
-            let t = read_strain(&mut work.inputs, task.job, named)?;
-            by_gauge(&t, model)
-                .into_iter()
-                .map(|v| Some(mean_of(&v, noise)))
-                .collect()
+            let zero = read_strain_file(&mut work.inputs, task.job, named)?;
+            means(&zero, model, noise).into_iter().map(Some).collect()
         }
         None => vec![None; model.gauges.len()],
     };
-    let readings = by_gauge(&table, model);
-    if readings.iter().flatten().all(|v| !v.is_finite()) {
+    let all = means(&file, model, noise);
+    if all.iter().all(|v| !v.value.is_finite()) {
         return Err(Faults::from(Fault::at(
             &*measured.strain.given,
             1,
@@ -264,48 +262,75 @@ fn strain(
             "name the columns after the gauges",
         )));
     }
-    let runs: Vec<(String, Vec<Net>)> = match &table.rows {
-        StrainRows::Times(_) => {
-            no_zero_runs(task.job, measured, &measured.strain.given)?;
-            let means = readings.iter().map(|v| mean_of(v, noise));
-            vec![(stem(&measured.strain), nets(means, &zero))]
-        }
-        StrainRows::Runs(names) => {
-            // Without a zero file an unloaded run of the same table is the zero.
-            let own = task
-                .payload
-                .unloaded
-                .as_ref()
-                .and_then(|u| names.iter().position(|n| n == u))
-                .filter(|_| measured.zero.is_none());
-            let zero: Vec<Option<Net>> = match own {
-                Some(i) => readings
-                    .iter()
-                    .map(|v| Some(mean_of(&v[i..=i], noise)))
-                    .collect(),
-                None => zero,
-            };
-            let followed = zeros_by_row(work, task.job, measured, &table)?;
-            let of_run = |i: usize| -> Vec<Net> {
-                let means = readings.iter().map(|v| mean_of(&v[i..=i], noise));
-                let Some(z) = &followed else {
-                    return nets(means, &zero);
-                };
-                let column = |g: &String| table.gauges.iter().position(|h| h == g);
-                let sigma = noise * (z.noise_factor[i] - 1.0).sqrt();
-                let zeros = model.gauges.iter().map(|g| Net {
-                    value: column(g).map_or(f64::NAN, |c| z.zero[i][c] * MICROSTRAIN),
-                    sigma,
-                });
-                means.zip(zeros).map(|(m, z)| net(m, Some(z))).collect()
-            };
-            let empty = |name: &String| measured.zero_runs.contains(name);
-            let runs = names.iter().enumerate().filter(|(_, n)| !empty(n));
-            runs.map(|(i, name)| (name.clone(), of_run(i))).collect()
-        }
+    let runs = if let StrainFile::Table(table) = &file
+        && let StrainRows::Runs(names) = &table.rows
+    {
+        of_runs(work, task, model, measured, (table, names), zero)?
+    } else {
+        no_zero_runs(task.job, measured, &measured.strain.given)?;
+        vec![(stem(&measured.strain), nets(all.into_iter(), &zero))]
     };
     judge_net(work, task, model, &runs);
     Ok(runs)
+}
+
+/// A row a run.
+fn of_runs(
+    work: &mut Work,
+    task: &Task,
+    model: &PayloadModel,
+    measured: &Measured,
+    (table, names): (&StrainTable, &[String]),
+    zero: Vec<Option<Net>>,
+) -> Result<Vec<(String, Vec<Net>)>, Faults> {
+    let noise = measured.noise_microstrain * MICROSTRAIN;
+    let readings = by_gauge(table, model);
+    // Without a zero file an unloaded run of the same table is the zero.
+    let own = task
+        .payload
+        .unloaded
+        .as_ref()
+        .and_then(|u| names.iter().position(|n| n == u))
+        .filter(|_| measured.zero.is_none());
+    let zero: Vec<Option<Net>> = match own {
+        Some(i) => readings
+            .iter()
+            .map(|v| Some(mean_of(&v[i..=i], noise)))
+            .collect(),
+        None => zero,
+    };
+    let followed = zeros_by_row(work, task.job, measured, table)?;
+    let of_run = |i: usize| -> Vec<Net> {
+        let means = readings.iter().map(|v| mean_of(&v[i..=i], noise));
+        let Some(z) = &followed else {
+            return nets(means, &zero);
+        };
+        let column = |g: &String| table.gauges.iter().position(|h| h == g);
+        let sigma = noise * (z.noise_factor[i] - 1.0).sqrt();
+        let zeros = model.gauges.iter().map(|g| Net {
+            value: column(g).map_or(f64::NAN, |c| z.zero[i][c] * MICROSTRAIN),
+            sigma,
+        });
+        means.zip(zeros).map(|(m, z)| net(m, Some(z))).collect()
+    };
+    let empty = |name: &String| measured.zero_runs.contains(name);
+    let runs = names.iter().enumerate().filter(|(_, n)| !empty(n));
+    Ok(runs.map(|(i, name)| (name.clone(), of_run(i))).collect())
+}
+
+/// Means over all rows of a strain file by gauge of the model, strain; NaN where the file has no column.
+fn means(file: &StrainFile, model: &PayloadModel, noise: f64) -> Vec<Net> {
+    let readings = file.readings();
+    let of = |gauge: &String| {
+        let column = file.gauges().iter().position(|h| h == gauge);
+        let series = column.and_then(|c| readings.get(c)).copied();
+        let net = series.unwrap_or_default().net(noise / MICROSTRAIN);
+        Net {
+            value: net.value * MICROSTRAIN,
+            sigma: net.sigma * MICROSTRAIN,
+        }
+    };
+    model.gauges.iter().map(of).collect()
 }
 
 fn nets(means: impl Iterator<Item = Net>, zero: &[Option<Net>]) -> Vec<Net> {

@@ -7,6 +7,7 @@ use super::task::{Task, columns_of};
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::LoadActs;
 use crate::app::job::strain::{StrainRows, StrainTable, read_strain};
+use crate::app::job::strain_means::is_long_record;
 use crate::app::strain::LoadUnits;
 use crate::app::work::Work;
 use crate::app::zeroed::{RowZeros, zeros_by_row};
@@ -18,16 +19,23 @@ use crate::units::MICROSTRAIN;
 pub(super) fn solve(work: &mut Work, task: &Task) -> Result<(Vec<Readings>, Recovery), Faults> {
     let s = &task.prepared.sensitivity;
     let named = &task.measured.strain;
+    let a_record = || {
+        Faults::from(Fault::of(
+            &*named.given,
+            "time",
+            "a record can't be read as runs",
+            "name the column of runs `run`; loads of a record come from `recover`, whose table [respond] loads names",
+        ))
+    };
+    let bytes = work.inputs.read_named(task.job, named)?;
+    if is_long_record(&bytes) {
+        return Err(a_record());
+    }
     let table = work.stage("read strain", |x| {
         read_strain(&mut x.inputs, task.job, named)
     })?;
     let StrainRows::Runs(names) = &table.rows else {
-        return Err(Faults::from(Fault::of(
-            &*named.given,
-            "time",
-            "a record can't be read as runs",
-            "name the column of runs `run`",
-        )));
+        return Err(a_record());
     };
     let columns = columns_of(work, named, &table.gauges, &s.gauges);
     if columns.iter().all(Option::is_none) {

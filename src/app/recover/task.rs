@@ -1,7 +1,7 @@
 //! What runs and records share: measured strain, S, zero and reference, stated errors.
 
 use crate::app::fault::{Fault, Faults};
-use crate::app::job::strain::read_strain;
+use crate::app::job::strain_means::read_strain_file;
 use crate::app::job::suggest;
 use crate::app::job::{Job, Measured, NamedFile, Reference};
 use crate::app::solved::stands_on_wheels;
@@ -13,7 +13,6 @@ use crate::finding::{Finding, Severity};
 use crate::gauge::reading;
 use crate::model::Model;
 use crate::recovery::ErrorModel;
-use crate::recovery::net::effective_samples;
 use crate::units::MICROSTRAIN;
 
 /// What runs and records share.
@@ -130,21 +129,17 @@ pub(in crate::app) fn zero_of(
     let Some(named) = &measured.zero else {
         return Ok((vec![0.0; gauges.len()], None));
     };
-    let table = read_strain(&mut work.inputs, job, named)?;
-    let columns = columns_of(work, named, &table.gauges, gauges);
+    let file = read_strain_file(&mut work.inputs, job, named)?;
+    let columns = columns_of(work, named, file.gauges(), gauges);
+    let readings = file.readings();
     let mut effective = f64::INFINITY;
     let mut zero = vec![f64::NAN; gauges.len()];
     for (z, c) in zero.iter_mut().zip(&columns) {
-        let Some(c) = c else { continue };
-        let v: Vec<f64> = (0..table.n_rows())
-            .filter_map(|i| table.row(i).get(*c).copied())
-            .filter(|v| v.is_finite())
-            .collect();
-        if v.is_empty() {
-            continue;
+        let series = c.and_then(|c| readings.get(c));
+        if let Some((series, mean)) = series.and_then(|s| Some((s, s.mean()?))) {
+            *z = mean * MICROSTRAIN;
+            effective = effective.min(series.effective_samples());
         }
-        *z = v.iter().sum::<f64>() / v.len() as f64 * MICROSTRAIN;
-        effective = effective.min(effective_samples(&v));
     }
     Ok((zero, effective.is_finite().then_some(effective)))
 }

@@ -1,14 +1,17 @@
 //! Load states: a table that `recover` wrote, or the job's static runs recovered here.
 
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::table::read_table;
+use crate::app::job::table::{Table, each_part};
 use crate::app::job::{Job, NamedFile};
 use crate::app::recover::recovered_runs;
-use crate::app::strain::{Prepared, load_units};
+use crate::app::strain::{LoadUnits, Prepared, load_units};
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::recovery::NORMAL_95;
 use crate::respond::{LoadState, Spread};
+
+/// Rows of the table whose fields are in memory at a time.
+const PART: usize = 10_000;
 
 /// The states of the job.
 ///
@@ -55,72 +58,25 @@ fn from_table(work: &mut Work, job: &Job, named: &NamedFile) -> Result<Vec<LoadS
         .inputs
         .read_named_text(job, named)
         .map_err(Faults::from)?;
-    let t = read_table(&named.given, &text)?;
     let names: Vec<String> = job.loads.iter().map(|l| l.name.clone()).collect();
     let units = load_units(job, &names);
     let mut faults = FaultList::new();
-    let key = t.column(&["run", "time", "t", "state"]).unwrap_or(0);
-    let mut columns = Vec::new();
-    let mut without_interval = Vec::new();
-    for name in &names {
-        let of = |suffix: &str| {
-            t.header
-                .iter()
-                .position(|h| *h == format!("{name}{suffix}"))
-        };
-        match of("") {
-            Some(c) => {
-                let interval = of(".low").zip(of(".high"));
-                if interval.is_none() {
-                    without_interval.push(name.clone());
-                }
-                columns.push((c, interval));
-            }
-            None => faults.push(Fault::at(
-                &*t.file,
-                1,
-                name.clone(),
-                format!("no column `{name}`"),
-                "name the columns after the loads of the job",
-            )),
-        }
-    }
-    Faults::check(std::mem::take(&mut faults))?;
+    let mut columns: Option<Columns> = None;
     let mut states = Vec::new();
     let mut blank = 0_usize;
-    for (row, (_, fields)) in t.rows.iter().enumerate() {
-        let mut number = |c: usize| {
-            t.number(row, c).unwrap_or_else(|f| {
-                faults.push(f);
-                None
-            })
-        };
-        let mut values = Vec::new();
-        let mut sigma = Vec::new();
-        for ((c, interval), u) in columns.iter().zip(&units) {
-            values.push(number(*c).map_or(f64::NAN, |v| v / u.factor));
-            sigma.push(match interval {
-                Some((low, high)) => match (number(*low), number(*high)) {
-                    (Some(l), Some(h)) => (h - l) / (2.0 * NORMAL_95) / u.factor,
-                    _ => 0.0,
-                },
-                None => 0.0,
-            });
+    each_part(&named.given, &text, PART, &mut |part| {
+        let columns = columns.get_or_insert_with(|| Columns::of(&part, &names, &mut faults));
+        for row in 0..part.rows.len() {
+            match columns.state(&part, row, &units, &mut faults) {
+                Some(state) => states.push(state),
+                None => blank += 1,
+            }
         }
-        if values.iter().any(|v| !v.is_finite()) {
-            blank += 1;
-            continue;
-        }
-        states.push(LoadState {
-            label: fields.get(key).cloned().unwrap_or_default(),
-            values,
-            spread: Spread::Sigma(sigma),
-        });
-    }
+    })?;
     Faults::check(faults)?;
     if states.is_empty() {
         return Err(Faults::from(Fault::of(
-            &*t.file,
+            &*named.given,
             "loads",
             "no row with all loads",
             "give a row a run or a sample",
@@ -138,16 +94,87 @@ fn from_table(work: &mut Work, job: &Job, named: &NamedFile) -> Result<Vec<LoadS
             .with_numbers(blank as f64, 0.0),
         );
     }
+    let exact = columns.map_or_else(Vec::new, |c| c.without_interval);
     work.findings.push(Finding::new(
         Severity::Info,
         "load-errors-independent",
         &named.given,
-        if without_interval.is_empty() {
+        if exact.is_empty() {
             "a table of intervals holds no correlations between loads: their errors are taken as independent".to_owned()
         } else {
-            format!("{} have no interval in the table and count as exact", without_interval.join(", "))
+            format!("{} have no interval in the table and count as exact", exact.join(", "))
         },
         "let `respond` recover the runs itself ([measured], no [respond] loads) to keep correlations",
     ));
     Ok(states)
+}
+
+/// Where in the table the loads stand.
+struct Columns {
+    key: usize,
+    /// Of each load its value and its interval.
+    loads: Vec<(usize, Option<(usize, usize)>)>,
+    without_interval: Vec<String>,
+}
+
+impl Columns {
+    fn of(t: &Table, names: &[String], faults: &mut FaultList) -> Self {
+        let mut out = Self {
+            key: t.column(&["run", "time", "t", "state"]).unwrap_or(0),
+            loads: Vec::new(),
+            without_interval: Vec::new(),
+        };
+        for name in names {
+            let of = |suffix: &str| t.column(&[&format!("{name}{suffix}")]);
+            let Some(c) = of("") else {
+                faults.push(Fault::at(
+                    &*t.file,
+                    1,
+                    name.clone(),
+                    format!("no column `{name}`"),
+                    "name the columns after the loads of the job",
+                ));
+                continue;
+            };
+            let interval = of(".low").zip(of(".high"));
+            if interval.is_none() {
+                out.without_interval.push(name.clone());
+            }
+            out.loads.push((c, interval));
+        }
+        out
+    }
+
+    /// The state of a row; `None` where it lacks a load.
+    fn state(
+        &self,
+        t: &Table,
+        row: usize,
+        units: &[LoadUnits],
+        faults: &mut FaultList,
+    ) -> Option<LoadState> {
+        let mut number = |c: usize| {
+            t.number(row, c).unwrap_or_else(|f| {
+                faults.push(f);
+                None
+            })
+        };
+        let (mut values, mut sigma) = (Vec::new(), Vec::new());
+        for ((c, interval), u) in self.loads.iter().zip(units) {
+            values.push(number(*c)? / u.factor);
+            sigma.push(match interval {
+                Some((low, high)) => match (number(*low), number(*high)) {
+                    (Some(l), Some(h)) => (h - l) / (2.0 * NORMAL_95) / u.factor,
+                    _ => 0.0,
+                },
+                None => 0.0,
+            });
+        }
+        let label = t.rows.get(row).and_then(|r| r.1.get(self.key));
+        Some(LoadState {
+            label: label.cloned().unwrap_or_default(),
+            values,
+            spread: Spread::Sigma(sigma),
+        })
+    }
 }

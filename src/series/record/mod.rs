@@ -11,6 +11,8 @@ mod even;
 mod mdf;
 mod open;
 #[cfg(feature = "parquet")]
+mod pages;
+#[cfg(feature = "parquet")]
 mod parquet;
 mod reader;
 mod span;

@@ -1,5 +1,6 @@
 //! Parquet: a column a channel, a row a sample; read by parts of row groups, a page of each column at a time.
 
+use super::pages::Pages;
 use super::reader::{BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times, is_time};
 use super::reader::{name_and_unit, seconds_in};
 use crate::series::error::SeriesError;
@@ -167,6 +168,7 @@ impl Parquet {
         let whole = Arc::new(Whole(self.bytes.clone()));
         let pages = SerializedPageReader::new(whole, chunk, rows, None).map_err(broken)?;
         let descriptor = self.metadata.file_metadata().schema_descr().column(leaf);
+        let pages = Pages::of(pages, &descriptor);
         let mut reader = get_column_reader(descriptor, Box::new(pages));
         if from > 0 {
             skip(&mut reader, from)?;

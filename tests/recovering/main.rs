@@ -2,6 +2,9 @@
 //!
 //! Two loads A and B, four gauges; strain is made here from S, so every expected load is known.
 
+mod files;
+mod supported;
+
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::PathBuf;

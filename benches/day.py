@@ -1,0 +1,135 @@
+"""A day's record, 8 hours of 500 Hz and 41 channels: time and peak memory of `fleet` beside the plain reading of pyarrow and asammdf.
+
+    STRAINBRIDGE=target/release/strainbridge python benches/day.py [HOURS] [FOLDER]
+
+Every reading is a process of its own, the files in the page cache; `fleet` reads, recovers, counts and hashes the record. The peak is that
+of resident memory; the file, which is read into it, is taken off. Needs numpy and pyarrow, and asammdf for MDF4.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+RATE, GAUGES, LOADS = 500, 40, 6
+GROUP = 500_000
+
+JOB = """units = "m-kg-s"
+report_units = {{ force = "kN" }}
+[sensitivity]
+file = "S.csv"
+per = {{ force = "kN" }}
+{loads}
+[measured]
+noise_microstrain = 1.0
+[fleet]
+file_name = "{{vehicle}}_{{day}}.{ending}"
+"""
+
+PLAIN = {
+    "parquet": """
+import sys, pyarrow.parquet as pq
+n = 0
+for batch in pq.ParquetFile(sys.argv[1]).iter_batches(batch_size=65536):
+    n += batch.num_rows
+print(n)
+""",
+    "mf4": """
+import sys, asammdf
+file = asammdf.MDF(sys.argv[1])
+n = 0
+for channel in file.groups[0].channels:
+    n = len(file.get(channel.name, group=0).samples)
+print(n)
+""",
+}
+
+
+def blocks(samples, random):
+    """Strain of slowly changing loads with noise, block by block."""
+    s = random.normal(size=(LOADS, GAUGES))
+    for begin in range(0, samples, GROUP):
+        t = np.arange(begin, min(begin + GROUP, samples)) / RATE
+        f = 20 * np.sin(np.outer(t, [1.1, 1.7, 2.3, 3.1, 4.3, 5.9]) * 2) * (1 + 0.3 * np.sin(0.01 * t))[:, None]
+        yield t, (f @ s + random.normal(size=(len(t), GAUGES))).astype(np.float32)
+
+
+def written(folder, ending, samples):
+    """The record and its job in a folder."""
+    random = np.random.default_rng(8)
+    names = [f"G{g}" for g in range(GAUGES)]
+    path = folder / f"T1_day.{ending}"
+    if ending == "parquet":
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        schema = pa.schema([("time", pa.float64())] + [(n, pa.float32()) for n in names])
+        with pq.ParquetWriter(path, schema) as writer:
+            for t, strain in blocks(samples, random):
+                writer.write_table(pa.table([t, *strain.T], schema=schema))
+    else:
+        import asammdf
+
+        parts = list(blocks(samples, random))
+        t = np.concatenate([p[0] for p in parts])
+        signals = [asammdf.Signal(np.concatenate([p[1][:, g] for p in parts]), t, name=n, unit="um/m") for g, n in enumerate(names)]
+        del parts
+        file = asammdf.MDF(version="4.10")
+        file.append(signals)
+        file.save(path, overwrite=True)
+    random = np.random.default_rng(8)
+    s = random.normal(size=(LOADS, GAUGES))
+    rows = [f"{n}," + ",".join(str(v) for v in s[:, g]) for g, n in enumerate(names)]
+    loads = [f"F{i}" for i in range(LOADS)]
+    (folder / "S.csv").write_text("\n".join(["gauge," + ",".join(loads), *rows, ""]))
+    listed = "\n".join(f'[[load]]\nname = "{n}"\nexpected = 20e3' for n in loads)
+    (folder / f"{ending}.toml").write_text(JOB.format(loads=listed, ending=ending))
+    return path
+
+
+def run(call):
+    """Seconds and peak memory of a command, bytes."""
+    begin = time.perf_counter()
+    child = subprocess.Popen(call, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    said = child.stderr.read()
+    _, status, usage = os.wait4(child.pid, 0)
+    seconds = time.perf_counter() - begin
+    if os.waitstatus_to_exitcode(status) not in (0, 1):
+        raise RuntimeError(said.decode())
+    return seconds, usage.ru_maxrss * 1024
+
+
+if __name__ == "__main__":
+    hours = float(sys.argv[1]) if len(sys.argv) > 1 else 8.0
+    kept = Path(sys.argv[2]) if len(sys.argv) > 2 else None
+    program = os.environ.get("STRAINBRIDGE", "strainbridge")
+    samples = int(hours * 3600 * RATE)
+    with tempfile.TemporaryDirectory(dir=kept) as name:
+        folder = Path(name)
+        for ending in ["parquet", "mf4"]:
+            try:
+                path = written(folder, ending, samples)
+            except ImportError as absent:
+                print(f"{ending}: {absent}")
+                continue
+            size = path.stat().st_size
+            path.read_bytes()
+            plain = [run([sys.executable, "-c", PLAIN[ending], str(path)])[0] for _ in range(3)]
+            ours = []
+            for i in range(3):
+                call = [program, "fleet", str(folder / f"{ending}.toml"), str(path), "--out", str(folder / f"out{i}")]
+                ours.append(run(call))
+            seconds, peak = min(o[0] for o in ours), max(o[1] for o in ours)
+            answer = json.loads((folder / "out0" / "result.json").read_text())
+            if answer["files"][0]["status"] != "done":
+                raise RuntimeError(answer["files"][0]["message"])
+            print(
+                f"{ending}: {samples} samples, {size / 1e6:.0f} MB; plain reading {min(plain):.1f} s, fleet {seconds:.1f} s "
+                f"({min(plain) / seconds:.2f} of its throughput), peak {(peak - size) / 1e6:.0f} MB above the file"
+            )
+            path.unlink()

@@ -1,0 +1,67 @@
+"""Two Dask workers against one on the same files: time of `fleet.run`, the smaller of two.
+
+    python benches/fleet.py          (with the package, numpy, pyarrow and distributed installed)
+
+Aim: .6 of the time. Workers are processes of one thread on this machine; the digests and the merge at the end are the caller's.
+"""
+
+import os
+import tempfile
+import time
+from pathlib import Path
+
+import distributed
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+try:
+    from strainbridge import fleet
+except ImportError:  # this checkout's file alone, with the command that STRAINBRIDGE names
+    import sys
+
+    sys.path.insert(0, str(Path(__file__).parent.parent / "python" / "strainbridge"))
+    import fleet
+
+FILES, SAMPLES, GAUGES, LOADS = 32, 120_000, 40, 6
+
+
+def records(folder):
+    """A job and its records."""
+    random = np.random.default_rng(8)
+    names = [f"G{g}" for g in range(GAUGES)]
+    s = random.normal(size=(LOADS, GAUGES))
+    rows = [f"{n}," + ",".join(str(v) for v in s[:, g]) for g, n in enumerate(names)]
+    loads = [f"F{i}" for i in range(LOADS)]
+    (folder / "S.csv").write_text("\n".join(["gauge," + ",".join(loads), *rows, ""]))
+    listed = "\n".join(f'[[load]]\nname = "{n}"\nexpected = 20e3' for n in loads)
+    (folder / "job.toml").write_text(
+        f'units = "m-kg-s"\n[sensitivity]\nfile = "S.csv"\nper = {{ force = "kN" }}\n{listed}\n'
+        '[measured]\nnoise_microstrain = 1.0\n[fleet]\nfile_name = "{vehicle}_{day}.parquet"\n'
+    )
+    t = np.arange(SAMPLES) / 500
+    files = []
+    for i in range(FILES):
+        f = 20 * np.sin(np.outer(t, random.uniform(1, 12, LOADS)))
+        strain = (f @ s + random.normal(size=(SAMPLES, GAUGES))).astype(np.float32)
+        files.append(str(folder / f"T{i % 4}_{i:02}.parquet"))
+        pq.write_table(pa.table([t, *strain.T], names=["time", *names]), files[-1])
+    return folder / "job.toml", files
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        job, files = records(folder)
+        best = {}
+        for turn in range(2):
+            for workers in (1, 2):
+                with distributed.LocalCluster(workers, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
+                    with distributed.Client(cluster) as client:
+                        client.wait_for_workers(workers)
+                        client.run(os.getpid)
+                        begin = time.perf_counter()
+                        fleet.run(str(job), files, folder / f"out-{turn}-{workers}", client=client)
+                        took = time.perf_counter() - begin
+                best[workers] = min(took, best.get(workers, took))
+        print(f"{FILES} files of {SAMPLES} samples: one worker {best[1]:.1f} s, two {best[2]:.1f} s: {best[2] / best[1]:.2f} of the time")

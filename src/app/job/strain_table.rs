@@ -1,0 +1,65 @@
+//! Measured strain in memory: a row a run or a sample.
+
+use super::correct::{Channel, channel_of, column_of};
+use super::types::Correction;
+
+/// What the rows of a strain file are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StrainRows {
+    /// Static states by name.
+    Runs(Vec<String>),
+    /// Samples of one record, seconds.
+    Times(Vec<f64>),
+}
+
+/// A strain file, microstrain as written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StrainTable {
+    /// File as given.
+    pub file: String,
+    /// Gauge names.
+    pub gauges: Vec<String>,
+    /// Runs or samples.
+    pub rows: StrainRows,
+    /// Row-major, `n_rows x n_gauges`; a blank is NaN.
+    pub microstrain: Vec<f64>,
+}
+
+impl StrainTable {
+    /// Number of rows.
+    pub fn n_rows(&self) -> usize {
+        match &self.rows {
+            StrainRows::Runs(r) => r.len(),
+            StrainRows::Times(t) => t.len(),
+        }
+    }
+
+    /// Readings of row `i`.
+    pub fn row(&self, i: usize) -> &[f64] {
+        let w = self.gauges.len();
+        self.microstrain.get(i * w..(i + 1) * w).unwrap_or(&[])
+    }
+
+    /// Gives every column its gauge's name and every reading its gauge's strain.
+    pub(super) fn put_right(&mut self, corrections: &[Correction]) {
+        if corrections.is_empty() {
+            return;
+        }
+        let w = self.gauges.len().max(1);
+        self.gauges = self
+            .gauges
+            .iter()
+            .map(|c| column_of(corrections, c).to_owned())
+            .collect();
+        let channels: Vec<Channel> = self
+            .gauges
+            .iter()
+            .map(|g| channel_of(corrections, g))
+            .collect();
+        for row in self.microstrain.chunks_exact_mut(w) {
+            for (v, c) in row.iter_mut().zip(&channels).filter(|(_, c)| !c.is_right()) {
+                *v = c.put_right(*v);
+            }
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! Spreadsheets as tables: the first sheet of an XLSX file as CSV text, so that whoever reads a table reads it too.
+//!
+//! Cells come one after the other and none is kept but as text: an address far to the right or below costs its separators alone, and
+//! those are bounded. What the archive says it unpacks to is bounded before anything is unpacked.
+
+/// Bytes that an archive may unpack to.
+#[cfg(feature = "xlsx")]
+const MOST_UNPACKED: u64 = 1 << 30;
+/// Bytes of text that a sheet may come to.
+#[cfg(feature = "xlsx")]
+const MOST_TEXT: usize = 256 << 20;
+
+/// Whether the bytes begin as an archive, which XLSX is.
+pub(super) fn is_sheet(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"PK\x03\x04")
+}
+
+/// The first sheet as CSV: a line a row, rows that hold nothing among them, as many fields in each as in the first, in quotes where they
+/// need them. A cell that holds an error such as `#N/A` is blank.
+///
+/// # Errors
+/// Why it can't be had.
+#[cfg(feature = "xlsx")]
+pub(super) fn csv_of_sheet(bytes: &[u8]) -> Result<String, String> {
+    use calamine::{DataRef, Reader, Xlsx, XlsxError};
+    let unpacked = unpacked_size(bytes).ok_or("an archive whose list of contents is damaged")?;
+    if unpacked > MOST_UNPACKED {
+        return Err(format!("a spreadsheet of {} MB, unpacked", unpacked >> 20));
+    }
+    let fail = |e: XlsxError| format!("no spreadsheet that can be read ({e})");
+    let mut book = Xlsx::new(std::io::Cursor::new(bytes)).map_err(fail)?;
+    let names = book.sheet_names();
+    let first = names.first().ok_or("a spreadsheet without a sheet")?;
+    let mut cells = book.worksheet_cells_reader(first).map_err(fail)?;
+    let mut lines = Lines::default();
+    while let Some(cell) = cells.next_cell().map_err(fail)? {
+        let text = match cell.get_value() {
+            DataRef::Int(n) => n.to_string(),
+            DataRef::Float(x) => x.to_string(),
+            DataRef::String(s) => s.clone(),
+            DataRef::SharedString(s) => (*s).to_owned(),
+            DataRef::Bool(b) => b.to_string(),
+            DataRef::DateTime(t) => t.to_string(),
+            DataRef::DateTimeIso(t) | DataRef::DurationIso(t) => t.clone(),
+            DataRef::Error(_) | DataRef::Empty => continue,
+        };
+        lines.add(cell.get_position(), &text)?;
+    }
+    lines.end(0)?;
+    Ok(lines.text)
+}
+
+/// As above.
+#[cfg(not(feature = "xlsx"))]
+pub(super) fn csv_of_sheet(_: &[u8]) -> Result<String, String> {
+    Err("a spreadsheet, which this build can't read (feature `xlsx`)".to_owned())
+}
+
+/// CSV text as its cells come.
+#[cfg(feature = "xlsx")]
+#[derive(Default)]
+struct Lines {
+    text: String,
+    /// Row and column of the last cell.
+    last: Option<(u32, u32)>,
+    /// Column of the last cell of the first row that has any.
+    width: Option<u32>,
+}
+
+#[cfg(feature = "xlsx")]
+impl Lines {
+    fn add(&mut self, (row, column): (u32, u32), text: &str) -> Result<(), String> {
+        let before = match self.last {
+            Some(last) if last >= (row, column) => {
+                return Err("a spreadsheet whose cells are out of order".to_owned());
+            }
+            Some((r, c)) if r == row => c,
+            Some((r, _)) => {
+                self.end(row - r)?;
+                0
+            }
+            None => {
+                self.push('\n', row)?;
+                0
+            }
+        };
+        self.push(',', column - before)?;
+        self.last = Some((row, column));
+        if text.contains([',', ';', '\t', '"', '\n', '\r', '#']) {
+            self.text.push('"');
+            self.text
+                .push_str(&text.replace('"', "\"\"").replace(['\n', '\r'], " "));
+            self.text.push('"');
+        } else {
+            self.text.push_str(text);
+        }
+        Ok(())
+    }
+
+    /// Ends a row that has cells, and leaves `rows - 1` empty ones.
+    fn end(&mut self, rows: u32) -> Result<(), String> {
+        let Some((_, column)) = self.last else {
+            return Ok(());
+        };
+        let width = *self.width.get_or_insert(column);
+        self.push(',', width.saturating_sub(column))?;
+        self.push('\n', rows.max(1))
+    }
+
+    fn push(&mut self, c: char, n: u32) -> Result<(), String> {
+        if self.text.len() + n as usize > MOST_TEXT {
+            return Err(format!("a sheet of more than {} MB", MOST_TEXT >> 20));
+        }
+        self.text.extend(std::iter::repeat_n(c, n as usize));
+        Ok(())
+    }
+}
+
+/// Bytes that the members of an archive unpack to, as its list at the end says.
+///
+/// # Reference
+/// PKWARE, APPNOTE.TXT - .ZIP File Format Specification, 4.3.12 and 4.3.16.
+#[cfg(feature = "xlsx")]
+fn unpacked_size(bytes: &[u8]) -> Option<u64> {
+    const END: &[u8] = b"PK\x05\x06";
+    const MEMBER: &[u8] = b"PK\x01\x02";
+    let word = |at: usize| {
+        let b: [u8; 4] = bytes.get(at..at.checked_add(4)?)?.try_into().ok()?;
+        Some(u32::from_le_bytes(b))
+    };
+    let half = |at: usize| {
+        let b: [u8; 2] = bytes.get(at..at.checked_add(2)?)?.try_into().ok()?;
+        Some(u16::from_le_bytes(b))
+    };
+    let end = memchr::memmem::rfind(bytes, END)?;
+    let (members, mut at) = (half(end + 10)?, word(end + 16)? as usize);
+    let mut sum = 0;
+    for _ in 0..members {
+        if !bytes.get(at..)?.starts_with(MEMBER) {
+            return None;
+        }
+        sum += u64::from(word(at + 24)?);
+        let more: usize = [28, 30, 32]
+            .iter()
+            .map(|o| half(at + o).map(usize::from))
+            .sum::<Option<usize>>()?;
+        at += 46 + more;
+    }
+    Some(sum)
+}

@@ -1,0 +1,63 @@
+//! Chances of a value at least as large, for any number that arithmetic may come to: not a number (nothing over nothing) tells nothing, 1.
+
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, StudentsT};
+
+/// A ratio beyond which the chance is 0 to every digit, and whose square and products don't overflow.
+const FAR: f64 = 1e100;
+
+fn of(x: f64, tail: impl Fn(f64) -> Option<f64>) -> f64 {
+    if x.is_nan() {
+        1.0
+    } else if x > FAR {
+        0.0
+    } else {
+        tail(x.max(-FAR)).filter(|p| !p.is_nan()).unwrap_or(1.0)
+    }
+}
+
+/// Of chi-square with `dof` degrees of freedom; 1 without any.
+pub fn chi_square_tail(chi2: f64, dof: f64) -> f64 {
+    of(chi2, |x| Some(ChiSquared::new(dof).ok()?.sf(x)))
+}
+
+/// Of Student's t, one side; 1 without degrees of freedom.
+pub fn student_tail(t: f64, dof: f64) -> f64 {
+    of(t, |x| Some(StudentsT::new(0.0, 1.0, dof).ok()?.sf(x)))
+}
+
+/// Of a ratio of variances with `dof` and `from` degrees of freedom; 1 where either has none.
+pub fn f_tail(ratio: f64, dof: f64, from: f64) -> f64 {
+    of(ratio, |x| Some(FisherSnedecor::new(dof, from).ok()?.sf(x)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Abramowitz and Stegun, Handbook of Mathematical Functions (1964), tables 26.8, 26.9, 26.10.
+    #[test]
+    fn tails_are_those_of_tables() {
+        assert!((chi_square_tail(11.0705, 5.0) - 0.05).abs() < 1e-6);
+        assert!((student_tail(2.776, 4.0) - 0.025).abs() < 1e-5);
+        assert!((f_tail(5.19, 4.0, 5.0) - 0.05).abs() < 1e-4);
+    }
+
+    #[test]
+    fn nothing_over_nothing_tells_nothing_and_what_is_far_is_impossible() {
+        for tail in [
+            |x| chi_square_tail(x, 3.0),
+            |x| 2.0 * student_tail(x, 3.0),
+            |x| f_tail(x, 3.0, 4.0),
+        ] {
+            assert_eq!(
+                (tail(f64::NAN), tail(f64::INFINITY), tail(1e308)),
+                (1.0, 0.0, 0.0)
+            );
+            assert!((tail(0.0) - 1.0).abs() < 1e-12);
+        }
+        assert_eq!(
+            (chi_square_tail(1.0, 0.0), f_tail(1.0, f64::NAN, 1.0)),
+            (1.0, 1.0)
+        );
+    }
+}

@@ -1,0 +1,151 @@
+//! Jobs with all their files in memory, one of which is damaged, and the commands that answer them.
+
+use super::{Context, InMemory, Job, Random, mutate};
+use std::fmt;
+use std::path::{Path, PathBuf};
+use strainbridge::app::outcome::Outcome;
+use strainbridge::{Faults, app};
+
+/// The files of a folder of `examples/`.
+pub struct Folder {
+    name: String,
+    jobs: Vec<PathBuf>,
+    files: Vec<(PathBuf, Vec<u8>)>,
+}
+
+/// A folder with a damaged file, and what is asked of it.
+pub struct Damaged {
+    files: InMemory,
+    bytes: Vec<u8>,
+    job: PathBuf,
+    command: Command,
+    damaged: PathBuf,
+}
+
+type Ask = fn(&Path, &Context) -> Result<(), Faults>;
+type Command = (&'static str, Ask);
+
+/// Turns any answer into nothing; its serialisation must not fail either.
+fn told<A: app::outcome::Answer>(outcome: Outcome<A>) -> Result<(), Faults> {
+    outcome.to_json(&app::outcome::Tables::new()).unwrap();
+    Ok(())
+}
+
+macro_rules! command {
+    ($name:ident) => {
+        (stringify!($name), |job, cx| {
+            told(strainbridge::$name(&Job::read(job, cx.files)?, cx)?)
+        })
+    };
+}
+
+const COMMANDS: [Command; 11] = [
+    ("check", |job, cx| {
+        told(strainbridge::check(&[job.to_owned()], cx)?)
+    }),
+    command!(cases),
+    command!(sensitivity),
+    command!(place),
+    command!(recover),
+    command!(respond),
+    command!(payload),
+    command!(ballast),
+    command!(reconcile),
+    command!(calibrate),
+    ("check", |job, cx| {
+        told(strainbridge::check(&[job.to_owned()], cx)?)
+    }),
+];
+
+/// Small jobs of every kind but those whose answer takes seconds.
+pub fn folders() -> Vec<Folder> {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let all = ["bridge", "frame", "onboard"].map(|name| {
+        let mut files: Vec<(PathBuf, Vec<u8>)> = std::fs::read_dir(examples.join(name))
+            .unwrap()
+            .map(|e| e.unwrap().path())
+            .filter(|p| p.is_file())
+            .map(|p| {
+                (
+                    PathBuf::from(p.file_name().unwrap()),
+                    std::fs::read(&p).unwrap(),
+                )
+            })
+            .collect();
+        files.sort();
+        let is_job = |p: &&PathBuf| p.extension().is_some_and(|e| e == "toml");
+        let jobs = files.iter().map(|f| &f.0).filter(is_job).cloned().collect();
+        Folder {
+            name: name.to_owned(),
+            jobs,
+            files,
+        }
+    });
+    all.into()
+}
+
+impl Folder {
+    /// The folder with one file changed, a job of it and a command.
+    pub fn damaged(&self, random: &mut Random) -> Damaged {
+        let job = &self.jobs[random.below(self.jobs.len())];
+        // The job itself half the time, else any other file.
+        let tables: Vec<&PathBuf> = self
+            .files
+            .iter()
+            .map(|f| &f.0)
+            .filter(|p| !self.jobs.contains(p))
+            .collect();
+        let damaged = match random.below(2) {
+            0 => job.clone(),
+            _ => tables[random.below(tables.len())].clone(),
+        };
+        let (mut files, mut changed) = (InMemory::default(), Vec::new());
+        for (path, original) in &self.files {
+            let mut bytes = original.clone();
+            if *path == damaged {
+                (0..=random.below(3)).for_each(|_| mutate(&mut bytes, random));
+                changed.clone_from(&bytes);
+            }
+            files = files.with(path, bytes);
+        }
+        // What the job is made for, or any.
+        let stem = job.file_stem().map_or("", |s| s.to_str().unwrap());
+        let own = COMMANDS.iter().find(|c| stem.starts_with(c.0));
+        let command = match (own, random.below(4)) {
+            (Some(own), 1..) => *own,
+            _ => COMMANDS[random.below(COMMANDS.len())],
+        };
+        Damaged {
+            files,
+            bytes: changed,
+            job: job.clone(),
+            command,
+            damaged: Path::new(&self.name).join(damaged),
+        }
+    }
+}
+
+impl Damaged {
+    /// The bytes of the damaged file.
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// Asks; faults are as good as an answer.
+    pub fn run(&self) {
+        let cx = Context::new(&self.files);
+        let _ = (self.command.1)(&self.job, &cx);
+    }
+}
+
+impl fmt::Display for Damaged {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(
+            f,
+            "{} of {} with {}",
+            self.command.0,
+            self.job.display(),
+            self.damaged.display()
+        )
+    }
+}

@@ -1,0 +1,127 @@
+//! Runs in files of their own, and in spreadsheets.
+
+use super::{as_is, loads, recover, table};
+use serde_json::Value;
+use std::fmt::Write;
+use std::process::Command;
+
+/// Runs `from .. to` with another zero at every gauge, and a run without load before and after them.
+fn with_own_zero(from: usize, to: usize, offset: f64, zeros: [&str; 2]) -> String {
+    let plain = table("run", to, |_, g, v| {
+        (v + offset * (1.0 + g as f64)).to_string()
+    });
+    let mut lines = plain.lines();
+    let header = lines.next().unwrap();
+    let empty = |name: &str| {
+        let readings = [1.0, 2.0, 3.0, 4.0].map(|k| (offset * k).to_string());
+        format!("{name},{}\n", readings.join(","))
+    };
+    let rows: String = lines.skip(from).map(|l| format!("{l}\n")).collect();
+    format!("{header}\n{}{rows}{}", empty(zeros[0]), empty(zeros[1]))
+}
+
+#[test]
+fn runs_held_out_in_a_file_of_their_own_have_zeros_of_their_own() {
+    let mut runs = "run,A,B\n".to_owned();
+    for i in 0..12 {
+        let [a, b] = loads(i);
+        let _ = writeln!(runs, "R{i},{a},{b}");
+    }
+    for zero in ["Z1", "Z2", "Z3", "Z4"] {
+        let _ = writeln!(runs, "{zero},0,0");
+    }
+    let more = "hold_out = \"held.csv\"\nzero_runs = [\"Z1\", \"Z2\", \"Z3\", \"Z4\"]\n[runs]\nfile = \"runs.csv\"\n\
+                units = { force = \"N\" }\nnoise = { force = 0.5 }\n";
+    let strain = with_own_zero(0, 9, 300.0, ["Z1", "Z2"]);
+    let reconcile = |name: &str, held: &str| {
+        let (code, said, _, dir) = recover(name, &strain, more);
+        assert_eq!(code, 0, "{said}");
+        std::fs::write(dir.join("runs.csv"), &runs).unwrap();
+        std::fs::write(dir.join("held.csv"), held).unwrap();
+        let job = dir.join("job.toml");
+        let out = dir.join("reconciled");
+        let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+            .arg("reconcile")
+            .arg(job)
+            .arg("--out")
+            .arg(&out)
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&done.stderr).into_owned();
+        let text = std::fs::read_to_string(out.join("result.json"));
+        let result = text.map_or(Value::Null, |t| serde_json::from_str(&t).unwrap());
+        (done.status.code(), said, result)
+    };
+    // The logger was switched off between the files: every zero is elsewhere.
+    let (code, said, result) = reconcile("held-zero", &with_own_zero(9, 12, -700.0, ["Z3", "Z4"]));
+    assert_eq!(code, Some(0), "{said}");
+    assert_eq!(result["verdict"], "none");
+    // Readings are off by half a microstrain, a thousandth of what the other zero would make.
+    let gap = result["gap"]["before"].as_f64().unwrap();
+    assert!(gap < 5e-3, "{gap}");
+    let none = table("run", 12, as_is);
+    let (code, said, _) = reconcile("held-without-zero", &none);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(
+        said.contains("`held.csv` has none of these runs: add to it a run without load"),
+        "{said}"
+    );
+    let unknown = with_own_zero(9, 12, -700.0, ["Z3", "other"]);
+    let (code, said, _) = reconcile("held-unknown-zero", &unknown);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("has a run `Z4`"), "{said}");
+}
+
+#[cfg(feature = "xlsx")]
+#[test]
+fn a_spreadsheet_of_runs_is_read_as_the_same_table_in_text() {
+    let text = table("run", 12, as_is);
+    let (code, said, from_text, dir) = recover("runs-text", &text, "");
+    assert_eq!(code, 0, "{said}");
+    let mut book = rust_xlsxwriter::Workbook::new();
+    let sheet = book.add_worksheet();
+    for (r, line) in text.lines().enumerate() {
+        for (c, field) in line.split(',').enumerate() {
+            let (r, c) = (r as u32, c as u16);
+            match field.parse::<f64>() {
+                Ok(v) => sheet.write_number(r, c, v).unwrap(),
+                Err(_) => sheet.write_string(r, c, field).unwrap(),
+            };
+        }
+    }
+    let bytes = book.save_to_buffer().unwrap();
+    std::fs::write(dir.join("strain.xlsx"), &bytes).unwrap();
+    let job = std::fs::read_to_string(dir.join("job.toml")).unwrap();
+    std::fs::write(
+        dir.join("sheet.toml"),
+        job.replace("strain.csv", "strain.xlsx"),
+    )
+    .unwrap();
+    let run = |command: &str| {
+        Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+            .args([command, dir.join("sheet.toml").to_str().unwrap()])
+            .output()
+            .unwrap()
+    };
+    for command in ["recover", "check"] {
+        let done = run(command);
+        let said = String::from_utf8_lossy(&done.stderr);
+        assert_eq!(done.status.code(), Some(0), "{command}: {said}");
+    }
+    let result = std::fs::read(dir.join("sheet.out/result.json")).unwrap();
+    let from_sheet: Value = serde_json::from_slice(&result).unwrap();
+    assert_eq!(from_sheet["loads"], from_text["loads"]);
+    // Half of it, and the list at its end claiming what no memory holds.
+    std::fs::write(dir.join("strain.xlsx"), &bytes[..bytes.len() / 2]).unwrap();
+    assert_eq!(run("recover").status.code(), Some(2));
+    let mut bomb = bytes;
+    let list = bomb.windows(4).position(|w| w == b"PK\x01\x02").unwrap();
+    bomb[list + 24..list + 28].copy_from_slice(&u32::MAX.to_le_bytes());
+    std::fs::write(dir.join("strain.xlsx"), &bomb).unwrap();
+    let done = run("recover");
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert!(
+        done.status.code() == Some(2) && said.contains("unpacked"),
+        "{said}"
+    );
+}

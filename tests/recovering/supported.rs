@@ -1,0 +1,169 @@
+//! Intervals on a structure that its deck holds: S by the built-in solver on the supports, 2,000 seeded trials of runs and of samples.
+
+use std::fmt::Write;
+use strainbridge::app::context::InMemory;
+use strainbridge::recovery::history::{Filter, SampleLoads};
+use strainbridge::recovery::{ErrorModel, Readings, Sums, recover};
+use strainbridge::sensitivity::Sensitivity;
+use strainbridge::{Context, Job};
+
+const TRIALS: usize = 2000;
+/// Squares along and across a plate of 10 mm squares, held along its short edge.
+const LONG: usize = 12;
+const WIDE: usize = 3;
+
+fn grid(i: usize, j: usize) -> usize {
+    1 + i * (WIDE + 1) + j
+}
+
+fn deck() -> String {
+    let mut text =
+        "SOL 101\nCEND\nSPC = 1\nBEGIN BULK\nMAT1,1,2.1+5,,.3,7.85-9\nPSHELL,1,1,4.,1,,1\n"
+            .to_owned();
+    for i in 0..=LONG {
+        for j in 0..=WIDE {
+            let _ = writeln!(text, "GRID,{},,{}.,{}.,0.", grid(i, j), 10 * i, 10 * j);
+        }
+    }
+    for i in 0..LONG {
+        for j in 0..WIDE {
+            let corners = [
+                grid(i, j),
+                grid(i + 1, j),
+                grid(i + 1, j + 1),
+                grid(i, j + 1),
+            ];
+            let [a, b, c, d] = corners;
+            let _ = writeln!(text, "CQUAD4,{},1,{a},{b},{c},{d}", 1 + i * WIDE + j);
+        }
+    }
+    let _ = writeln!(text, "SPC1,1,123456,1,THRU,{}\nENDDATA", 1 + WIDE);
+    text
+}
+
+fn job() -> String {
+    let mut text = "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n".to_owned();
+    for (name, at, component) in [
+        ("tip", grid(LONG, 1), "FZ"),
+        ("corner", grid(LONG, WIDE), "FZ"),
+        ("middle", grid(LONG / 2, 1), "FZ"),
+        ("pull", grid(LONG, 2), "FX"),
+    ] {
+        let _ = writeln!(
+            text,
+            "[[load]]\nname = \"{name}\"\ngrid = {at}\ncomponent = \"{component}\"\nexpected = 50.0"
+        );
+    }
+    for g in 0..9 {
+        let (element, surface) = (2 + 4 * g, ["top", "bottom"][g % 2]);
+        let (x, y) = [(1, 0), (0, 1), (1, 1)][g % 3];
+        let _ = writeln!(
+            text,
+            "[[gauge]]\nname = \"G{g}\"\nelement = {element}\nsurface = \"{surface}\"\ndirection = [{x}, {y}, 0]"
+        );
+    }
+    text
+}
+
+/// Sum of twelve even draws less six: normal but for the far tails.
+fn normal(state: &mut u64) -> f64 {
+    let mut next = || {
+        *state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (*state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    (0..12).map(|_| next()).sum::<f64>() - 6.0
+}
+
+fn trials(s: &Sensitivity, errors: ErrorModel) -> Vec<(Vec<f64>, Vec<f64>)> {
+    let mut state = 19;
+    let trial = |_| {
+        let f: Vec<f64> = s.loads.iter().map(|_| 50.0 * normal(&mut state)).collect();
+        let strain = s.values.row_iter().map(|row| {
+            let own: f64 = row.iter().zip(&f).map(|(s, f)| s * f).sum();
+            own + errors.noise * normal(&mut state)
+        });
+        let strain = strain.collect();
+        (f, strain)
+    };
+    (0..TRIALS).map(trial).collect()
+}
+
+#[test]
+fn intervals_on_a_supported_structure_cover() {
+    let files = InMemory::default()
+        .with("plate.bdf", deck())
+        .with("job.toml", job());
+    let cx = Context::new(&files);
+    let job = Job::read("job.toml", &files).unwrap_or_else(|f| panic!("{f:?}"));
+    let sensed = strainbridge::sensitivity(&job, &cx).unwrap_or_else(|f| panic!("{f:?}"));
+    let s = &sensed.prepared.sensitivity;
+    // On its support one load bends the plate as F L over the section: under inertia relief it would not.
+    let root = s.gauges.iter().position(|g| g == "G0").unwrap();
+    let bending = 6.0 * (10.0 * LONG as f64 - 5.0) / (10.0 * WIDE as f64 * 16.0) / 2.1e5;
+    let got = s.values[(root, 0)].abs();
+    assert!((got / bending - 1.0).abs() < 0.2, "{got} against {bending}");
+    let errors = ErrorModel {
+        noise: 1e-6,
+        model_rel: 0.0,
+    };
+    let trials = trials(s, errors);
+    let held = |covered: usize| covered as f64 / (TRIALS * s.loads.len()) as f64;
+    let mut covered = 0;
+    for (f, strain) in &trials {
+        let readings = Readings {
+            run: "R".into(),
+            strain: strain.clone(),
+            noise_factor: 1.0,
+        };
+        let got = recover(s, &[readings], errors);
+        for (l, f) in f.iter().enumerate() {
+            let [low, high] = got.runs[0].estimate.interval(l);
+            covered += usize::from(low <= *f && *f <= high);
+        }
+    }
+    let runs = held(covered);
+    let (n, k) = (s.gauges.len(), s.loads.len());
+    let judged: Vec<Readings> = trials
+        .iter()
+        .step_by(10)
+        .map(|t| Readings {
+            run: "t".into(),
+            strain: t.1.clone(),
+            noise_factor: 1.0,
+        })
+        .collect();
+    let judged = recover(s, &judged, errors);
+    let filter = Filter::new(
+        s,
+        vec![0.0; n],
+        errors,
+        1.0,
+        &judged.typical,
+        judged.widening,
+    )
+    .unwrap();
+    let samples: Vec<f64> = trials.iter().flat_map(|t| t.1.clone()).collect();
+    let (mut out, mut sums) = (SampleLoads::default(), Sums::new(n, k));
+    filter.apply(&samples, 1.0, &mut out, &mut sums);
+    covered = 0;
+    for ((f, _), got) in trials.iter().zip(out.values.chunks_exact(k)) {
+        let sigma = filter.sigma(got);
+        let half = sigma.iter().map(|s| filter.coverage_factor() * s);
+        covered += f
+            .iter()
+            .zip(got)
+            .zip(half)
+            .filter(|((f, got), half)| (*f - *got).abs() <= *half)
+            .count();
+    }
+    let samples = held(covered);
+    // 8,000 intervals tell the share to .25 %.
+    for share in [runs, samples] {
+        assert!(
+            (0.935..=0.965).contains(&share),
+            "runs {runs}, samples {samples}"
+        );
+    }
+}
