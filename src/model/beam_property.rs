@@ -94,6 +94,7 @@ impl Builder<'_> {
             sections: vec![(0.0, s), (1.0, s)],
             k,
             section_type: String::new(),
+            warping: [0.0; 2],
             at: p.at,
         })
     }
@@ -115,6 +116,7 @@ impl Builder<'_> {
             sections: vec![(0.0, s), (1.0, s)],
             k: shape.k,
             section_type,
+            warping: [0.0; 2],
             at: p.at,
         })
     }
@@ -162,6 +164,7 @@ impl Builder<'_> {
             sections,
             k,
             section_type: String::new(),
+            warping: end(&p.cw, &[p.cw[0], p.cw[0]]),
             at: p.at,
         })
     }
@@ -191,6 +194,7 @@ impl Builder<'_> {
             sections,
             k,
             section_type: p.section.clone(),
+            warping: [0.0; 2],
             at: p.at,
         })
     }
