@@ -35,6 +35,7 @@ pub(super) fn formulations(model: &Model) -> Vec<Finding> {
         .collect();
     all.extend(connectors(model));
     all.extend(gaps(model));
+    all.extend(warping_beams(model));
     all.extend(bushes_in_the_basic_frame(model));
     all
 }
@@ -52,6 +53,22 @@ fn connectors(model: &Model) -> Option<Finding> {
                 "{n} connectors: six springs at the middle between two points, each following the translations of its patch (by the slopes of its shape functions, or by four auxiliary points)"
             ),
             "nothing; a gauge nearer to a connector than a few diameters reads the tie",
+        )
+    })
+}
+
+/// CBEAMs with warping points: what their strain leaves out.
+fn warping_beams(model: &Model) -> Option<Finding> {
+    let n = model.beams.iter().filter(|b| b.warping.is_some()).count();
+    (n > 0).then(|| {
+        Finding::new(
+            Severity::Info,
+            "formulation",
+            "CBEAM",
+            format!(
+                "{n} beams twist with warping (Vlasov); their strain at C, D, E, F is that of axial force and bending, without the bimoment's"
+            ),
+            "model the rail by shells where a gauge sits on the edge of a flange near a restraint of its warping",
         )
     })
 }

@@ -147,3 +147,53 @@ fn an_i_beam_of_shells_twists_as_the_warping_beam() {
     let g = E / (2.0 + 2.0 * NU);
     assert!(1e6 * length / (g * j) > 2.0 * twist);
 }
+
+#[test]
+fn the_warping_constants_of_open_sections_are_those_of_the_books() {
+    let of = |kind: &str, dims: &[f64]| {
+        let mut b = Bulk::default();
+        b.card("MAT1,1,210000.,,.3");
+        let fields: Vec<String> = dims.iter().map(|d| format!("{d:?}")).collect();
+        b.card(&format!("PBEAML,2,1,,{kind},,,,,\n,{}", fields.join(",")));
+        let (a, c) = (b.grid([0.0; 3]), b.grid([100.0, 0.0, 0.0]));
+        b.card(&format!("CBEAM,1,2,{a},{c},0.,1.,0."));
+        assert!(b.faults().is_empty(), "{:?}", b.faults());
+        b.model().beam_properties[0].warping[0]
+    };
+    // I, equal flanges: h^2 b^3 t / 24 with midline sizes.
+    let (h, b, t, tw) = (194.0_f64, 100.0_f64, 6.0, 4.0);
+    let i = h * h * b.powi(3) * t / 24.0;
+    near("I", of("I", &[200.0, b, b, tw, t, t]), i, 1e-9);
+    near("I1", of("I1", &[b - tw, tw, 188.0, 200.0]), i, 1e-9);
+    near("H", of("H", &[194.0 - 6.0, 12.0, b, tw]), i, 1e-9);
+    // Unequal flanges: h^2 I1 I2 / (I1 + I2).
+    let (i1, i2) = (6.0 * b.powi(3) / 12.0, 6.0 * 60.0_f64.powi(3) / 12.0);
+    near(
+        "I, one narrow",
+        of("I", &[200.0, b, 60.0, tw, t, t]),
+        h * h * i1 * i2 / (i1 + i2),
+        1e-9,
+    );
+    // Channel: b^3 h^2 t / 12 (3 b t + 2 h tw) / (6 b t + h tw), midline sizes.
+    let (h, b) = (194.0_f64, 58.0_f64);
+    let channel =
+        b.powi(3) * h * h * t / 12.0 * (3.0 * b * t + 2.0 * h * tw) / (6.0 * b * t + h * tw);
+    near("CHAN", of("CHAN", &[60.0, 200.0, tw, t]), channel, 1e-9);
+    near(
+        "CHAN1",
+        of("CHAN1", &[56.0, tw, 188.0, 200.0]),
+        channel,
+        1e-9,
+    );
+    near("CHAN2", of("CHAN2", &[t, tw, 60.0, 200.0]), channel, 1e-9);
+    // Z: b^3 h^2 t / 12 (b t + 2 h tw) / (2 b t + h tw).
+    let z = b.powi(3) * h * h * t / 12.0 * (b * t + 2.0 * h * tw) / (2.0 * b * t + h * tw);
+    near("Z", of("Z", &[56.0, tw, 188.0, 200.0]), z, 1e-9);
+    for (kind, dims) in [
+        ("T", [100.0, 80.0, 5.0, 5.0]),
+        ("L", [100.0, 80.0, 5.0, 5.0]),
+        ("BOX", [100.0, 80.0, 5.0, 5.0]),
+    ] {
+        assert_eq!(of(kind, &dims), 0.0, "{kind}");
+    }
+}
