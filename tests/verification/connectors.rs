@@ -300,6 +300,10 @@ fn what_a_connector_lacks_is_a_fault_that_says_what_to_do() {
             "shell property 5 is missing",
         ),
         (
+            "CWELD,500,7,101,PARTPAT,,,,,\n,1,1",
+            "both ends on one shell",
+        ),
+        (
             "CWELD,500,7,101,ELEMID,,,,,\n,1,26",
             "meets no shell of side A",
         ),

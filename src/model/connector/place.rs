@@ -105,6 +105,16 @@ impl Builder<'_> {
             feet.push(found);
         }
         let [(patch_a, a), (patch_b, b)] = <[(Patch, Foot); 2]>::try_from(feet).ok()?;
+        if patch_a.grids == patch_b.grids {
+            self.refuse(
+                stated.name,
+                "GS",
+                stated.at,
+                "a connector with both ends on one shell",
+                "name the shell of each side (ELEM, ELPAT), or give the sheets properties of their own",
+            );
+            return None;
+        }
         let axes = connector_axes(a.x, b.x, a.normal, stated.diameter)?;
         let thickness = [patch_a.thickness, patch_b.thickness];
         let mut ends = Vec::with_capacity(2);
