@@ -352,6 +352,75 @@ fn the_formats_agree_where_a_lap_joint_of_two_plates_is_pulled() {
     }
 }
 
+/// The deck that a manual would have a user write instead: auxiliary grids tied by RBE3 with the shape functions as weights, the ends by
+/// RBE3 over them, a round bar between.
+#[test]
+fn a_weld_on_a_property_is_the_deck_that_spells_its_ties_out() {
+    let load = "FORCE,1,50,0,100.,.3,-.5,1.\nMOMENT,1,46,0,70.,1.,.2,.4";
+    let weld = solved(&plates("CWELD,500,7,101,PARTPAT,,,,,\n,1,2", load));
+    let mut b = plates("", load);
+    let half = std::f64::consts::PI.sqrt() / 4.0 * D;
+    for (side, z) in [(0_u32, 0.0), (1, GAP)] {
+        let mut auxiliary = Vec::new();
+        for (k, (a, c)) in (1_u32..).zip([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]) {
+            let (x, y) = (AT[0] + a * half, AT[1] + c * half);
+            let id = 110 + 10 * side + k;
+            b.card(&format!(
+                "GRID*   {id:16}{:16}{x:16.9}{y:16.9}\n*       {z:16.9}",
+                ""
+            ));
+            // The element under it, and its bilinear functions.
+            let (i, j) = ((x / 10.0).floor(), (y / 10.0).floor());
+            let (r, s) = (x / 10.0 - i, y / 10.0 - j);
+            let g = 25 * side + (5.0 * i + j) as u32 + 1;
+            let weights = [
+                (g, (1.0 - r) * (1.0 - s)),
+                (g + 5, r * (1.0 - s)),
+                (g + 6, r * s),
+                (g + 1, (1.0 - r) * s),
+            ];
+            let fields: Vec<String> = weights
+                .iter()
+                .map(|(g, w)| format!("{w:.12},123,{g}"))
+                .collect();
+            let all: Vec<&str> = fields.iter().flat_map(|f| f.split(',')).collect();
+            // Four fields stand before the first weight; eight a line.
+            let (first, rest) = all.split_at(4);
+            let lines: Vec<String> = rest
+                .chunks(8)
+                .map(|l| format!(",{}", l.join(",")))
+                .collect();
+            b.card(&format!(
+                "RBE3,{},,{id},123,{}\n{}",
+                900 + id,
+                first.join(","),
+                lines.join("\n")
+            ));
+            auxiliary.push(id);
+        }
+        b.card(&format!(
+            "RBE3,{},,{},123456,1.,123,{},{},\n,{},{}",
+            950 + side,
+            102 + side,
+            auxiliary[0],
+            auxiliary[1],
+            auxiliary[2],
+            auxiliary[3]
+        ));
+    }
+    b.card(&format!("PBARL,8,1,,ROD,,,,,\n,{:?}", D / 2.0));
+    b.card("CBAR,501,8,102,103,1.,0.,0.");
+    let spelt = solved(&b);
+    for id in 26..=50 {
+        let (a, e) = (weld.at(id), spelt.at(id));
+        let size = spelt.at(50)[2].abs();
+        for k in 0..3 {
+            // Weights are written with twelve figures, places with nine.
+            assert!((a[k] - e[k]).abs() < 1e-6 * size, "grid {id}: {a:?} {e:?}");
+        }
+    }
+}
+
 impl Bulk {
     /// What stops a solution, in words.
     pub fn faults(&self) -> Vec<String> {

@@ -146,7 +146,7 @@ impl Builder<'_> {
                 let a = self.shell_of(*a, name, w)?;
                 let shell = *self.model.shells.get(a)?;
                 let patch = Patch::of_shell(&self.model, &shell);
-                self.to_grid(patch, point, grids, w, p, name, tied)
+                self.patch_and_grid(patch, point, grids, w, p, name, tied)
             }
             WeldPatches::Grids(lists) => {
                 if w.mid_sides {
@@ -212,7 +212,7 @@ impl Builder<'_> {
         let [list_a, list_b] = lists;
         let a = self.patch_of_grids(list_a, name, w)?;
         if list_b.is_empty() {
-            return self.to_grid(Some(a), point, grids, w, p, name, tied);
+            return self.patch_and_grid(Some(a), point, grids, w, p, name, tied);
         }
         let b = self.patch_of_grids(list_b, name, w)?;
         let x = |g: Option<GridIx>| g.map(|g| self.x(g));
@@ -257,7 +257,7 @@ impl Builder<'_> {
 
     /// From a patch to the grid GB (GS where GB is blank).
     #[allow(clippy::too_many_arguments, reason = "the parts of one card")]
-    fn to_grid(
+    fn patch_and_grid(
         &mut self,
         patch: Option<Patch>,
         point: Option<Vec3>,
