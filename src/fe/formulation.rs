@@ -1,7 +1,7 @@
-//! Where an element stands for another than its card names.
+//! Where an element stands for another than its card names, or for one of the states that its card allows.
 
 use crate::finding::{Finding, Severity};
-use crate::model::Model;
+use crate::model::{Joint, JointCard, Model};
 use nastran::cards::ShellShape;
 
 /// Says where an element stands for another than its card names.
@@ -18,7 +18,8 @@ pub(super) fn formulations(model: &Model) -> Vec<Finding> {
             "solved as one quadrilateral a corner around a point in the middle, on the curved surface through the grids",
         ),
     ];
-    told.into_iter()
+    let mut all: Vec<Finding> = told
+        .into_iter()
         .filter_map(|(shapes, cards, what)| {
             let n = model.shells.iter().filter(|s| shapes.contains(&s.shape)).count();
             (n > 0).then(|| {
@@ -31,5 +32,115 @@ pub(super) fn formulations(model: &Model) -> Vec<Finding> {
                 )
             })
         })
-        .collect()
+        .collect();
+    all.extend(connectors(model));
+    all.extend(gaps(model));
+    all.extend(warping_beams(model));
+    all.extend(bushes_in_the_basic_frame(model));
+    all
+}
+
+/// CWELD and CFAST: how they are tied.
+fn connectors(model: &Model) -> Option<Finding> {
+    let on_patches = |j: &&Joint| matches!(j.card, JointCard::Cweld | JointCard::Cfast);
+    let n = model.joints.iter().filter(on_patches).count();
+    (n > 0).then(|| {
+        Finding::new(
+            Severity::Info,
+            "formulation",
+            "CWELD, CFAST",
+            format!(
+                "{n} connectors: six springs at the middle between two points, each following the translations of its patch (by the slopes of its shape functions, or by four auxiliary points)"
+            ),
+            "nothing; a gauge nearer to a connector than a few diameters reads the tie",
+        )
+    })
+}
+
+/// CBEAMs with warping points: what their strain leaves out.
+fn warping_beams(model: &Model) -> Option<Finding> {
+    let n = model.beams.iter().filter(|b| b.warping.is_some()).count();
+    (n > 0).then(|| {
+        Finding::new(
+            Severity::Info,
+            "formulation",
+            "CBEAM",
+            format!(
+                "{n} beams twist with warping (Vlasov); their strain at C, D, E, F is that of axial force and bending, without the bimoment's"
+            ),
+            "model the rail by shells where a gauge sits on the edge of a flange near a restraint of its warping",
+        )
+    })
+}
+
+/// CGAP: which are carried as closed, which as open.
+fn gaps(model: &Model) -> Option<Finding> {
+    let mut closed = Vec::new();
+    let mut open = Vec::new();
+    let mut preloaded = 0;
+    for j in &model.joints {
+        if let JointCard::Cgap { open: is, preload } = j.card {
+            if is { &mut open } else { &mut closed }.push(j.id);
+            preloaded += usize::from(preload != 0.0);
+        }
+    }
+    let n = closed.len() + open.len();
+    (n > 0).then(|| {
+        let preload = if preloaded > 0 {
+            format!("; the preload of {preloaded} strains nothing in a linear solution")
+        } else {
+            String::new()
+        };
+        Finding::new(
+            Severity::Warning,
+            "gap-linear",
+            "CGAP",
+            format!(
+                "{n} gaps stay as their initial opening has them under every load: {} closed ({}), {} open ({}){preload}",
+                closed.len(),
+                first_of(&closed),
+                open.len(),
+                first_of(&open),
+            ),
+            "check that each stays so under the loads of the job: a closed one must be in compression; else solve with Nastran, nonlinear",
+        )
+        .with_numbers(n as f64, 0.0)
+    })
+}
+
+/// Bushes without axes of their own whose stiffness differs by direction.
+fn bushes_in_the_basic_frame(model: &Model) -> Option<Finding> {
+    let ids: Vec<u32> = model
+        .bushes
+        .iter()
+        .filter(|b| b.frame_assumed)
+        .map(|b| b.id)
+        .collect();
+    (!ids.is_empty()).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "bush-frame-assumed",
+            format!("CBUSH {}", first_of(&ids)),
+            format!(
+                "{} bushes join coincident grids, or a grid and ground, without CID, and their stiffness differs by direction: the basic frame is taken",
+                ids.len()
+            ),
+            "state CID (0 for the basic frame)",
+        )
+        .with_numbers(ids.len() as f64, 0.0)
+    })
+}
+
+/// A few ids of a list.
+fn first_of(ids: &[u32]) -> String {
+    const SHOWN: usize = 5;
+    let mut text: Vec<String> = ids.iter().take(SHOWN).map(u32::to_string).collect();
+    if ids.len() > SHOWN {
+        text.push("..".to_owned());
+    }
+    if text.is_empty() {
+        "none".to_owned()
+    } else {
+        text.join(", ")
+    }
 }

@@ -226,6 +226,9 @@ fn orthonormal(
     for _ in 0..2 {
         let weight = gram(&block, &mass_times(mass, &block));
         let n = block.len();
+        if n == 0 {
+            break;
+        }
         let eigen = weight.symmetric_eigen();
         let largest = scale.iter().fold(0.0_f64, |a, s| a.max(s * s));
         let kept: Vec<usize> = (0..n)

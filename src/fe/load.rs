@@ -3,7 +3,7 @@
 use super::element::beam::beam_end_forces;
 use super::element::shell::{linear_part, many_grids, over_face};
 use super::mass::Mass;
-use crate::model::{GridIx, Load, LoadSet, Model, Vec3, solid_edges};
+use crate::model::{Direction, GridIx, Load, LoadSet, Model, Vec3, solid_edges};
 use std::collections::HashMap;
 
 /// Forces and moments at all grids, basic frame, of one load set.
@@ -122,14 +122,15 @@ fn pressure_on(
     model: &Model,
     corners: &[GridIx],
     pressure: &[f64; 4],
-    direction: &Option<Vec3>,
+    direction: &Option<Direction>,
     factor: f64,
     f: &mut [[f64; 6]],
 ) {
     let x: Vec<Vec3> = corners.iter().map(|g| model.grids[g.us()].x).collect();
     let mut at_point = |h: &[f64], area: Vec3| {
         let p: f64 = h.iter().zip(pressure).map(|(h, p)| h * p).sum::<f64>() * factor;
-        let along = direction.map_or(area, |d| d * area.norm());
+        let here = || x.iter().zip(h).map(|(x, h)| x * *h).sum::<Vec3>();
+        let along = direction.map_or(area, |d| d.at(model, here()) * area.norm());
         for (g, h) in corners.iter().zip(h) {
             push(f, *g, 0, &(along * (p * h)));
         }
@@ -165,7 +166,7 @@ fn pressure_on_curved(
     model: &Model,
     (n, grids, sides): (usize, &[GridIx], &[usize]),
     pressure: &[f64; 4],
-    direction: &Option<Vec3>,
+    direction: &Option<Direction>,
     factor: f64,
     f: &mut [[f64; 6]],
 ) {
@@ -175,7 +176,8 @@ fn pressure_on_curved(
             .map(|c| linear_part(n, functions, sides, c) * pressure[c])
             .sum::<f64>()
             * factor;
-        let along = direction.map_or(area, |d| d * area.norm());
+        let here = || x.iter().zip(functions).map(|(x, h)| x * h[0]).sum::<Vec3>();
+        let along = direction.map_or(area, |d| d.at(model, here()) * area.norm());
         for (g, h) in grids.iter().zip(functions) {
             push(f, *g, 0, &(along * (p * h[0])));
         }

@@ -1,6 +1,6 @@
 //! What hangs at a grid, for messages.
 
-use crate::model::{GridIx, Model, RigidKind};
+use crate::model::{GridIx, Model};
 
 /// Elements with a grid, in words, at most four named.
 pub(crate) fn what_hangs(model: &Model, grid: GridIx) -> String {
@@ -53,18 +53,14 @@ pub(crate) fn what_hangs(model: &Model, grid: GridIx) -> String {
             .map(|m| format!("mass {}", m.id)),
     );
     for r in &model.rigids {
-        let touches = match &r.kind {
-            RigidKind::Body {
-                independent,
-                dependent,
-                ..
-            } => independent.iter().chain(dependent).any(|(g, _)| *g == grid),
-            RigidKind::Mean {
-                reference, arms, ..
-            } => *reference == grid || arms.iter().any(|a| a.2 == grid),
-        };
-        if touches {
+        if r.kind.grids().contains(&grid) {
             all.push(format!("rigid element {}", r.id));
+        }
+    }
+    for j in &model.joints {
+        let mut motion = j.ends.iter().flat_map(|e| &e.motion);
+        if motion.any(|m| m.0 == grid) {
+            all.push(format!("{} {}", j.card.name(), j.id));
         }
     }
     let more = all.len().saturating_sub(4);

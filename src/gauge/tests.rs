@@ -370,6 +370,7 @@ fn a_gauge_on_a_bar_reads_at_its_recovery_point_and_station() {
         offsets: [Vec3::zeros(); 2],
         axes: Mat3::identity(),
         pins: Default::default(),
+        warping: None,
         at: Place::default(),
     });
     let case = CaseResult {

@@ -20,17 +20,22 @@ impl Builder<'_> {
         let bars = cards
             .bars
             .iter()
-            .map(|b| (b.at, &b.card, "CBAR", &cards.baror));
+            .map(|b| (b.at, &b.card, "CBAR", &cards.baror, [None; 2]));
         let beams = cards
             .beams
             .iter()
-            .map(|b| (b.at, &b.card.bar, "CBEAM", &cards.beamor));
-        for (at, bar, card, defaults) in bars.chain(beams) {
+            .map(|b| (b.at, &b.card.bar, "CBEAM", &cards.beamor, b.card.warping));
+        for (at, bar, card, defaults, points) in bars.chain(beams) {
             if !self.element(bar.id, card, at) {
                 continue;
             }
             let placed = Placed { card: *bar, at };
-            out.extend(self.beam(&placed, card, defaults.as_ref().map(|d| &d.card), &ix));
+            let Some(mut beam) = self.beam(&placed, card, defaults.as_ref().map(|d| &d.card), &ix)
+            else {
+                continue;
+            };
+            beam.warping = self.warping(&beam, points);
+            out.push(beam);
         }
         out.sort_by_key(|b: &Beam| b.id);
         self.model.beams = out;
@@ -119,8 +124,39 @@ impl Builder<'_> {
             offsets,
             axes,
             pins: b.pins,
+            warping: None,
             at,
         })
+    }
+
+    /// The warping points of a CBEAM: SA and SB together, where its property has a warping constant.
+    fn warping(&mut self, beam: &Beam, points: [Option<u32>; 2]) -> Option<[GridIx; 2]> {
+        let name = format!("CBEAM {}", beam.id);
+        let [Some(a), Some(b)] = points.map(|p| p.filter(|p| *p > 0)) else {
+            if points.iter().flatten().any(|p| *p > 0) {
+                let kind = FaultKind::Unsupported {
+                    what: "a warping point at one end alone".into(),
+                    remedy: "give SA and SB, or neither",
+                };
+                self.fault(name, "SA", beam.at, kind);
+            }
+            return None;
+        };
+        let (a, b) = (
+            self.grid(a, &name, "SA", beam.at)?,
+            self.grid(b, &name, "SB", beam.at)?,
+        );
+        if !(self.is_scalar(a) && self.is_scalar(b)) {
+            let kind = FaultKind::Unsupported {
+                what: "a warping point that is a grid".into(),
+                remedy: "name SPOINTs as SA and SB",
+            };
+            self.fault(name, "SA", beam.at, kind);
+            return None;
+        }
+        let property = self.model.beam_properties.get(beam.property.us())?;
+        let warps = property.warping.iter().any(|cw| *cw != 0.0);
+        warps.then_some([a, b])
     }
 }
 

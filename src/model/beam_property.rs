@@ -94,6 +94,7 @@ impl Builder<'_> {
             sections: vec![(0.0, s), (1.0, s)],
             k,
             section_type: String::new(),
+            warping: [0.0; 2],
             at: p.at,
         })
     }
@@ -115,6 +116,7 @@ impl Builder<'_> {
             sections: vec![(0.0, s), (1.0, s)],
             k: shape.k,
             section_type,
+            warping: [0.0; 2],
             at: p.at,
         })
     }
@@ -162,6 +164,7 @@ impl Builder<'_> {
             sections,
             k,
             section_type: String::new(),
+            warping: end(&p.cw, &[p.cw[0], p.cw[0]]),
             at: p.at,
         })
     }
@@ -171,11 +174,13 @@ impl Builder<'_> {
         let material = self.material(p.mid, &name, "MID", p.at)?;
         let mut sections = Vec::new();
         let mut k = [1.0; 2];
+        let mut warping = Vec::new();
         for (i, s) in p.stations.iter().enumerate() {
             let shape = self.section(&p.section, &s.dims, &name, p.at)?;
             if i == 0 {
                 k = shape.k;
             }
+            warping.push(shape.cw);
             sections.push((
                 s.x_xb,
                 Section {
@@ -191,6 +196,7 @@ impl Builder<'_> {
             sections,
             k,
             section_type: p.section.clone(),
+            warping: [warping.first(), warping.last()].map(|cw| cw.copied().unwrap_or(0.0)),
             at: p.at,
         })
     }

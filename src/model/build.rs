@@ -79,6 +79,8 @@ impl Model {
         b.shear_panels();
         b.masses();
         b.rigids();
+        b.joints();
+        b.check_dependents();
         b.constraints();
         b.loads();
         b.attachments();
@@ -262,12 +264,13 @@ impl Model {
             .map(|i| FrameIx(i as u32))
     }
 
-    /// Number of elements: shells, beams, rods, bushes, springs, solids, shear panels, masses and rigid elements.
+    /// Number of elements: shells, beams, rods, bushes, joints, springs, solids, shear panels, masses and rigid elements.
     pub fn n_elements(&self) -> usize {
         self.shells.len()
             + self.beams.len()
             + self.rods.len()
             + self.bushes.len()
+            + self.joints.len()
             + self.springs.len()
             + self.solids.len()
             + self.shear_panels.len()

@@ -237,25 +237,20 @@ impl Builder<'_> {
             .flat_map(|s| &s.equations)
             .flat_map(|e| &e.0)
             .for_each(|t| mark(t.0));
-        for r in &m.rigids {
-            match &r.kind {
-                RigidKind::Body {
-                    independent,
-                    dependent,
-                    ..
-                } => independent.iter().chain(dependent).for_each(|t| mark(t.0)),
-                RigidKind::Mean {
-                    reference,
-                    arms,
-                    um,
-                    ..
-                } => {
-                    mark(*reference);
-                    arms.iter().for_each(|a| mark(a.2));
-                    um.iter().for_each(|t| mark(t.0));
-                }
-            }
-        }
+        m.joints
+            .iter()
+            .flat_map(|j| &j.ends)
+            .flat_map(|e| &e.motion)
+            .for_each(|t| mark(t.0));
+        m.rigids
+            .iter()
+            .flat_map(|r| r.kind.grids())
+            .for_each(&mut mark);
+        m.beams
+            .iter()
+            .filter_map(|b| b.warping)
+            .flatten()
+            .for_each(&mut mark);
         let free: Vec<(u32, Place)> = m
             .grids
             .iter()

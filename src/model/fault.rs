@@ -75,6 +75,8 @@ pub enum FaultKind {
     Unsupported { what: String, remedy: &'static str },
     /// A grid that no element uses.
     Unattached,
+    /// A point of a connector that no shell of its patch lies under.
+    OffPatch { what: &'static str, side: char },
     /// A word that isn't one of the card's.
     Word {
         found: String,
@@ -126,6 +128,7 @@ impl ModelFault {
             Underdetermined => "give two of E, G and NU".into(),
             Unsupported { remedy, .. } => (*remedy).into(),
             Unattached => "delete it, attach it, or leave it to AUTOSPC".into(),
+            OffPatch { .. } => "move the point over the patch, name the property or shell that lies there, or give a smaller diameter; shells with mid-side grids are no patch".into(),
             Word { expected, .. } => format!("write {expected}"),
         }
     }
@@ -191,6 +194,9 @@ impl fmt::Display for FaultKind {
             Underdetermined => write!(f, "E, G and NU don't fix the material"),
             Unsupported { what, .. } => write!(f, "{what} is not supported"),
             Unattached => write!(f, "no element uses it"),
+            OffPatch { what, side } => {
+                write!(f, "{what} meets no shell of side {side}")
+            }
             Word { found, .. } => write!(f, "`{found}` is not known"),
         }
     }

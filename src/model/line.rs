@@ -223,22 +223,20 @@ impl<'a> Builder<'a> {
                 );
                 continue;
             };
-            if p.rigid.iter().any(|r| *r) {
-                let what = "RIGID on a PBUSH".to_owned();
-                let kind = FaultKind::Unsupported {
-                    what,
-                    remedy: "give a stiffness, or use an RBE2 or RBAR",
-                };
-                self.fault(format!("PBUSH {pid}"), "K", p.at, kind);
-            }
-            out.extend(self.bush(b, p, &name));
+            let Some(bush) = self.bush(b, p, &name) else {
+                continue;
+            };
+            let rigid = self.rigid_components(&bush, &p.rigid);
+            self.model.rigids.extend(rigid);
+            out.push(bush);
         }
         out.sort_by_key(|b: &Bush| b.id);
         self.model.bushes = out;
     }
 
     /// The frame of a bush: CID where stated; else from the line and the orientation; else the line alone, which is enough for
-    /// stiffness along and about it only.
+    /// stiffness along and about it only. Between coincident grids, or to ground, without CID: the basic frame, which is no matter for
+    /// stiffness that is the same in all directions, and noted in the bush otherwise.
     ///
     /// # Reference
     /// MSC Nastran Quick Reference Guide, CBUSH, remarks 3 to 7.
@@ -260,6 +258,7 @@ impl<'a> Builder<'a> {
             }
             Orientation::Blank => None,
         };
+        let mut frame_assumed = false;
         let axes = match (b.cid, v) {
             (Some(cid), _) => {
                 let f = self.frame(cid.into(), name, "CID", b.at)?;
@@ -273,9 +272,9 @@ impl<'a> Builder<'a> {
                 }
             },
             (None, None) if apart => {
-                let across = [1, 2, 4, 5]
-                    .iter()
-                    .any(|i| p.k.get(*i).is_some_and(|k| *k != 0.0));
+                let across = [1, 2, 4, 5].iter().any(|i| {
+                    p.k.get(*i).is_some_and(|k| *k != 0.0) || p.rigid.get(*i) == Some(&true)
+                });
                 if across {
                     self.fault(name.to_owned(), "X1", b.at, FaultKind::Orientation);
                     return None;
@@ -283,12 +282,12 @@ impl<'a> Builder<'a> {
                 any_axes(xb - xa)?
             }
             _ => {
-                let kind = FaultKind::Unsupported {
-                    what: "a bush between coincident grids, or to ground, without CID".into(),
-                    remedy: "state CID (0 for the basic system)",
-                };
-                self.fault(name.to_owned(), "CID", b.at, kind);
-                return None;
+                let [k1, k2, k3, k4, k5, k6] = p.k;
+                let [r1, r2, r3, r4, r5, r6] = p.rigid;
+                let alike = k1 == k2 && k2 == k3 && k4 == k5 && k5 == k6;
+                let rigid_alike = r1 == r2 && r2 == r3 && r4 == r5 && r5 == r6;
+                frame_assumed = !(alike && rigid_alike);
+                Mat3::identity()
             }
         };
         let location = match b.ocid {
@@ -304,6 +303,7 @@ impl<'a> Builder<'a> {
             axes,
             location,
             k: p.k,
+            frame_assumed,
             recovery: p.recovery,
             at: b.at,
         })

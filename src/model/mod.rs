@@ -5,6 +5,7 @@
 mod beam;
 mod beam_property;
 mod build;
+mod connector;
 mod constraint;
 mod curved;
 mod face;
@@ -21,10 +22,12 @@ mod params;
 mod point_mass;
 mod refine;
 mod rigid;
+mod rigid_bush;
 mod section;
 mod set_sum;
 mod shell;
 mod solid;
+mod spline;
 mod types;
 mod unsupported_cards;
 

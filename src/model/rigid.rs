@@ -1,4 +1,4 @@
-//! RBE1, RBE2, RBE3, RBAR.
+//! RBE1, RBE2, RBE3, RBAR; the dofs that all rigid elements make dependent.
 
 use super::build::Builder;
 use super::fault::FaultKind;
@@ -58,9 +58,14 @@ impl Builder<'_> {
                 out.extend(self.rbe3(r));
             }
         }
-        out.sort_by_key(|r| r.id);
-        self.check_dependents(&out);
-        self.model.rigids = out;
+        for r in &cards.rsplines {
+            if self.element(r.id, "RSPLINE", r.at) {
+                out.extend(self.rspline(r));
+            }
+        }
+        // Rigid components of bushes stand there already.
+        self.model.rigids.extend(out);
+        self.model.rigids.sort_by_key(|r| r.id);
     }
 
     fn grid_dofs(
@@ -161,25 +166,15 @@ impl Builder<'_> {
     }
 
     /// A dof may be dependent once, in all rigid elements together, and not independent in the same one.
-    fn check_dependents(&mut self, rigids: &[Rigid]) {
+    pub(super) fn check_dependents(&mut self) {
         let mut first: HashMap<(GridIx, usize), Place> = HashMap::new();
         let mut found = Vec::new();
-        for r in rigids {
-            let (dependent, independent): (Vec<(GridIx, Dofs)>, &[(GridIx, Dofs)]) = match &r.kind {
-                RigidKind::Body {
-                    dependent,
-                    independent,
-                    ..
-                } => (dependent.clone(), independent),
-                RigidKind::Mean {
-                    reference,
-                    refc,
-                    um,
-                    ..
-                } if um.is_empty() => (vec![(*reference, *refc)], &[]),
-                RigidKind::Mean { um, .. } => (um.clone(), &[]),
+        for r in &self.model.rigids {
+            let independent: &[(GridIx, Dofs)] = match &r.kind {
+                RigidKind::Body { independent, .. } => independent,
+                RigidKind::Mean { .. } | RigidKind::Equations { .. } => &[],
             };
-            for (g, dofs) in dependent {
+            for (g, dofs) in r.kind.dependent() {
                 for i in dofs.iter0() {
                     let id = self.model.grids.get(g.us()).map_or(0, |g| g.id);
                     if independent
@@ -187,7 +182,7 @@ impl Builder<'_> {
                         .any(|(h, d)| *h == g && d.has(i as u8 + 1))
                     {
                         found.push((
-                            r,
+                            (r.id, r.at),
                             FaultKind::DependentAndIndependent {
                                 grid: id,
                                 dof: i as u8 + 1,
@@ -196,7 +191,7 @@ impl Builder<'_> {
                     }
                     match first.get(&(g, i)) {
                         Some(at) => found.push((
-                            r,
+                            (r.id, r.at),
                             FaultKind::DependentTwice {
                                 grid: id,
                                 dof: i as u8 + 1,
@@ -210,8 +205,8 @@ impl Builder<'_> {
                 }
             }
         }
-        for (r, kind) in found {
-            self.fault(format!("rigid element {}", r.id), "GM", r.at, kind);
+        for ((id, at), kind) in found {
+            self.fault(format!("rigid element {id}"), "GM", at, kind);
         }
     }
 }

@@ -398,14 +398,14 @@ fn a_scalar_point_with_the_id_of_a_grid_and_an_endless_range_are_faults() {
 #[test]
 fn cards_that_the_model_does_not_carry_are_told_and_their_loads_are_no_part_of_a_set_in_silence() {
     let (m, _) = model(&format!(
-        "{QUAD}CQUAD4,9,1,1,2,3,4\nCFAST,3,5,PROP,1,1,1\nCVISC,4,5,1,2\nFORCE,6,2,,1.,0.,0.,1.\nFORCEAX,6,2,1.,1,3\nLOAD,7,1.,2.,6"
+        "{QUAD}CQUAD4,9,1,1,2,3,4\nCSEAM,3,5,1,1,1\nCVISC,4,5,1,2\nFORCE,6,2,,1.,0.,0.,1.\nFORCEAX,6,2,1.,1,3\nLOAD,7,1.,2.,6"
     ));
     let cards: Vec<(&str, Option<u32>)> = m
         .unsupported_cards
         .iter()
         .map(|c| (c.card.as_str(), c.id))
         .collect();
-    assert_eq!(cards, [("CFAST", Some(3))]);
+    assert_eq!(cards, [("CSEAM", Some(3))]);
     for set in &m.load_sets {
         let refused = set
             .loads

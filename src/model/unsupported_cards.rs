@@ -6,12 +6,12 @@ use super::types::UnsupportedCard;
 use nastran::bdf::Deck;
 
 /// Stiffness, mass and constraints.
-const STRUCTURE: [&str; 43] = [
-    "CBEAM3", "CBEND", "CBUSH1D", "CBUSH2D", "CCONEAX", "CFAST", "CGAP", "CMASS1", "CMASS2",
-    "CMASS3", "CMASS4", "CPLSTN3", "CPLSTN4", "CPLSTN6", "CPLSTN8", "CPLSTS3", "CPLSTS4",
-    "CPLSTS6", "CPLSTS8", "CQUAD", "CQUADX", "CQUADX4", "CQUADX8", "CRAC2D", "CRAC3D", "CSEAM",
-    "CTRAX3", "CTRAX6", "CTRIAX", "CTRIAX6", "CWELD", "CYSYM", "GENEL", "RJOINT", "RROD",
-    "RSPLINE", "RSSCON", "RTRPLT1", "RBE2GS", "BEDGE", "CHACAB", "CINTC", "SNORM",
+const STRUCTURE: [&str; 39] = [
+    "CBEAM3", "CBEND", "CBUSH1D", "CBUSH2D", "CCONEAX", "CMASS1", "CMASS2", "CMASS3", "CMASS4",
+    "CPLSTN3", "CPLSTN4", "CPLSTN6", "CPLSTN8", "CPLSTS3", "CPLSTS4", "CPLSTS6", "CPLSTS8",
+    "CQUAD", "CQUADX", "CQUADX4", "CQUADX8", "CRAC2D", "CRAC3D", "CSEAM", "CTRAX3", "CTRAX6",
+    "CTRIAX", "CTRIAX6", "CYSYM", "GENEL", "RJOINT", "RROD", "RSSCON", "RTRPLT1", "RBE2GS",
+    "BEDGE", "CHACAB", "CINTC", "SNORM",
 ];
 
 /// Structure that acts only where case control selects it, by the word that does.

@@ -24,10 +24,8 @@ impl Carriers {
             .rigids
             .iter()
             .flat_map(|r| match &r.kind {
-                RigidKind::Body { dependent, .. } => {
-                    dependent.iter().map(|d| d.0).collect::<Vec<_>>()
-                }
                 RigidKind::Mean { reference, .. } => vec![*reference],
+                other => other.dependent().iter().map(|d| d.0).collect(),
             })
             .collect();
         let shells = model.shells.iter().filter(|s| {

@@ -1,7 +1,7 @@
 //! Where strain is not to be trusted: how far places are from free edges, joints of plates, loads and attachments.
 
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
-use crate::model::{Model, RigidKind, ShellIx, Vec3};
+use crate::model::{Model, ShellIx, Vec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
@@ -161,23 +161,14 @@ fn by_edge(model: &Model, taken: impl Fn(&[ShellIx]) -> bool) -> Vec<Segment> {
         .collect()
 }
 
-/// Grids that rigid elements, RBE3 and bushes hold.
+/// Grids that rigid elements, RBE3, bushes, welds, fasteners and gaps hold.
 pub fn attachments(model: &Model) -> Vec<Segment> {
     let mut grids: Vec<u32> = Vec::new();
     for r in &model.rigids {
-        match &r.kind {
-            RigidKind::Body {
-                independent,
-                dependent,
-                ..
-            } => grids.extend(independent.iter().chain(dependent).map(|g| g.0.0)),
-            RigidKind::Mean {
-                reference, arms, ..
-            } => {
-                grids.push(reference.0);
-                grids.extend(arms.iter().map(|a| a.2.0));
-            }
-        }
+        grids.extend(r.kind.grids().iter().map(|g| g.0));
+    }
+    for end in model.joints.iter().flat_map(|j| &j.ends) {
+        grids.extend(end.motion.iter().map(|m| m.0.0));
     }
     for b in &model.bushes {
         grids.push(b.grids.0.0);

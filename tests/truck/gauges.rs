@@ -42,7 +42,8 @@ fn joints(model: &Model) -> Vec<Vec3> {
         .iter()
         .filter_map(|r| match &r.kind {
             strainbridge::model::RigidKind::Body { dependent, .. } => Some(dependent),
-            strainbridge::model::RigidKind::Mean { .. } => None,
+            strainbridge::model::RigidKind::Mean { .. }
+            | strainbridge::model::RigidKind::Equations { .. } => None,
         })
         .flatten()
         .map(|d| model.grids[d.0.us()].x)

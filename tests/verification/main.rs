@@ -2,6 +2,7 @@
 
 #![allow(clippy::print_stderr, reason = "numbers for the tables in docs")]
 
+mod connectors;
 mod coupled_mass;
 mod decks;
 mod frame_refined;
@@ -13,13 +14,18 @@ mod macneal_harder;
 mod mesh;
 mod modes;
 mod plates;
+mod pressures;
 mod quadratic_shells;
 mod real_cases;
+mod real_deck_limits;
 mod real_decks;
+mod sections;
 mod solids;
 #[path = "../../nastran/tests/support/mod.rs"]
 mod support;
 mod supports;
 mod thermal;
+mod ties;
+mod warping;
 mod whole_decks;
 mod written;

@@ -3,7 +3,7 @@
 use nastran::bdf::{IncludeRequest, Loaded, Loader, read_deck};
 use std::fmt::Write;
 use strainbridge::fe::*;
-use strainbridge::model::Model;
+use strainbridge::model::{Model, ModelFault};
 
 struct NoFiles;
 
@@ -105,13 +105,18 @@ impl Bulk {
     }
 
     pub fn model(&self) -> Model {
+        self.read_model().0
+    }
+
+    /// The model and what is wrong with it.
+    pub fn read_model(&self) -> (Model, Vec<ModelFault>) {
         let deck = read_deck(
             "test.bdf",
             format!("BEGIN BULK\n{}ENDDATA\n", self.text).into_bytes(),
             &mut NoFiles,
         );
         assert!(deck.faults.is_empty(), "{:?}", deck.faults);
-        Model::from_cards(&deck.cards).0
+        Model::from_cards(&deck.cards)
     }
 
     /// Displacements under load set 1 with SPC set 1.

@@ -42,9 +42,9 @@ fn append_cards(to: &mut Cards, from: Cards) {
         from,
         one: grdset baror beamor,
         many:
-        grids spoints coords shells shear_panels bars beams rods conrods bushes springs solids
-        conm1s conm2s nsms nsmadds rbe1s rbe2s rbe3s rbars mpcs mpcadds spcs spcds spc1s spcadds suports
-        pshells pcomps pshears pbars pbarls pbeams pbeamls prods ptubes pbushes pelas psolids
+        grids spoints coords shells shear_panels bars beams rods conrods bushes springs welds fasteners gaps solids
+        conm1s conm2s nsms nsmadds rbe1s rbe2s rbe3s rbars rsplines mpcs mpcadds spcs spcds spc1s spcadds suports
+        pshells pcomps pshears pbars pbarls pbeams pbeamls prods ptubes pbushes pelas pwelds pfasts pgaps psolids
         mat1s mat2s mat8s mat9s forces moments forces_along sloads ploads pload1s pload2s
         pload4s gravs rforces loads temps tempds tempp1s temprbs params
     );

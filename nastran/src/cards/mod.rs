@@ -1,5 +1,6 @@
 //! One plain struct per card, as the file states it: ids are numbers, a blank field is `None`, nothing is resolved.
 
+mod connector;
 mod constraint;
 mod geometry;
 mod line;
@@ -12,6 +13,7 @@ mod rigid;
 mod shell;
 mod solid;
 
+pub use connector::*;
 pub use constraint::*;
 pub use geometry::*;
 pub use line::*;
@@ -44,6 +46,9 @@ pub struct Cards {
     pub conrods: Vec<Placed<Conrod>>,
     pub bushes: Vec<Placed<Bush>>,
     pub springs: Vec<Placed<Spring>>,
+    pub welds: Vec<Placed<Weld>>,
+    pub fasteners: Vec<Placed<Fastener>>,
+    pub gaps: Vec<Placed<Gap>>,
     pub solids: Vec<Placed<Solid>>,
     pub conm1s: Vec<Placed<Conm1>>,
     pub conm2s: Vec<Placed<Conm2>>,
@@ -53,6 +58,7 @@ pub struct Cards {
     pub rbe2s: Vec<Placed<Rbe2>>,
     pub rbe3s: Vec<Placed<Rbe3>>,
     pub rbars: Vec<Placed<Rbar>>,
+    pub rsplines: Vec<Placed<Rspline>>,
     pub mpcs: Vec<Placed<Mpc>>,
     pub mpcadds: Vec<Placed<SetSum>>,
     pub spcs: Vec<Placed<Spc>>,
@@ -71,6 +77,9 @@ pub struct Cards {
     pub ptubes: Vec<Placed<Ptube>>,
     pub pbushes: Vec<Placed<Pbush>>,
     pub pelas: Vec<Placed<Pelas>>,
+    pub pwelds: Vec<Placed<Pweld>>,
+    pub pfasts: Vec<Placed<Pfast>>,
+    pub pgaps: Vec<Placed<Pgap>>,
     pub psolids: Vec<Placed<Psolid>>,
     pub mat1s: Vec<Placed<Mat1>>,
     pub mat2s: Vec<Placed<Mat2>>,

@@ -68,6 +68,17 @@ pub struct Rbar {
     pub alpha: f64,
 }
 
+/// RSPLINE: an elastic tube through grids, of which those without dependent dofs, the first and the last carry the others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rspline {
+    /// Element id.
+    pub id: u32,
+    /// D/L: diameter of the tube over the length of all segments.
+    pub diameter: f64,
+    /// Grids in order along the line, each with its dependent dofs (none: independent).
+    pub grids: Vec<(u32, Dofs)>,
+}
+
 /// MPC: sum of coefficient times dof = 0; the first term is the dependent one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mpc {

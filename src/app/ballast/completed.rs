@@ -31,6 +31,7 @@ pub(super) fn cards(
         m.beams.iter().map(|e| e.id).max(),
         m.rods.iter().map(|e| e.id).max(),
         m.bushes.iter().map(|e| e.id).max(),
+        m.joints.iter().map(|e| e.id).max(),
         m.springs.iter().map(|e| e.id).max(),
         m.solids.iter().map(|e| e.id).max(),
         m.shear_panels.iter().map(|e| e.id).max(),

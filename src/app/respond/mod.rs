@@ -14,7 +14,7 @@ use super::outcome::{Outcome, StatedUnits};
 use super::strain::{Prepared, has_covariance, prepare, read_fields};
 use super::work::Work;
 use crate::finding::{Finding, Severity};
-use crate::model::{GridIx, Model, RigidKind};
+use crate::model::{GridIx, Model};
 use crate::recovery::NORMAL_95;
 use crate::respond::{Peak, Place, ResponseRow, envelope, hot_spots, response_rows};
 use crate::units::factor;
@@ -155,18 +155,14 @@ fn say_findings(
     let joints: BTreeSet<GridIx> = model
         .rigids
         .iter()
-        .flat_map(|r| match &r.kind {
-            RigidKind::Body {
-                independent,
-                dependent,
-                ..
-            } => independent
+        .flat_map(|r| r.kind.grids())
+        .chain(
+            model
+                .joints
                 .iter()
-                .chain(dependent)
-                .map(|d| d.0)
-                .collect::<Vec<_>>(),
-            RigidKind::Mean { arms, .. } => arms.iter().map(|a| a.2).collect(),
-        })
+                .flat_map(|j| &j.ends)
+                .flat_map(|e| e.motion.iter().map(|m| m.0)),
+        )
         .collect();
     let at_joint: Vec<String> = order
         .iter()

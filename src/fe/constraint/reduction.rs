@@ -148,6 +148,13 @@ pub(crate) fn reduce(
                 "RBE3",
                 mean::relations(model, axes, rigid, (*reference, *refc), arms, um, claim),
             ),
+            RigidKind::Equations { card, equations } => (
+                *card,
+                Ok(equations
+                    .iter()
+                    .filter_map(|terms| following(terms, claim))
+                    .collect()),
+            ),
         };
         claims.push(Claim {
             card: format!("{name} {}", rigid.id),
@@ -165,16 +172,9 @@ pub(crate) fn reduce(
                 card: format!("MPC {}", set.sid),
                 at: *at,
             });
-            match terms.split_first() {
-                Some((&(g, i, a), rest)) if a != 0.0 => relations.push(Relation {
-                    dependent: 6 * g.0 + u32::from(i),
-                    terms: rest
-                        .iter()
-                        .map(|&(g, i, c)| (6 * g.0 + u32::from(i), -c / a))
-                        .collect(),
-                    claim,
-                }),
-                _ => refused.push(Refusal {
+            match following(terms, claim) {
+                Some(relation) => relations.push(relation),
+                None => refused.push(Refusal {
                     card: format!("MPC {}", set.sid),
                     at: *at,
                     reason: "coefficient of the first, dependent, term: 0".to_owned(),
@@ -187,6 +187,19 @@ pub(crate) fn reduce(
         return Err(FeError::Refused(refused));
     }
     resolve(model, &relations, &claims, (spc, enforced))
+}
+
+/// The first term by the others; `None` where it has no coefficient.
+fn following(terms: &[(GridIx, u8, f64)], claim: u32) -> Option<Relation> {
+    let (&(g, i, a), rest) = terms.split_first()?;
+    (a != 0.0).then(|| Relation {
+        dependent: 6 * g.0 + u32::from(i),
+        terms: rest
+            .iter()
+            .map(|&(g, i, c)| (6 * g.0 + u32::from(i), -c / a))
+            .collect(),
+        claim,
+    })
 }
 
 fn resolve(

@@ -123,6 +123,7 @@ fn element_ids(model: &Model) -> BTreeSet<u32> {
     ids.extend(model.beams.iter().map(|e| e.id));
     ids.extend(model.rods.iter().map(|e| e.id));
     ids.extend(model.bushes.iter().map(|e| e.id));
+    ids.extend(model.joints.iter().map(|e| e.id));
     ids.extend(model.springs.iter().map(|e| e.id));
     ids.extend(model.solids.iter().map(|e| e.id));
     ids.extend(model.shear_panels.iter().map(|e| e.id));

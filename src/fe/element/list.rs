@@ -1,7 +1,8 @@
 //! All stiff elements of a model as one list.
 
-use super::beam::beam_stiffness;
+use super::beam::{beam_grids, beam_stiffness};
 use super::bush::bush_stiffness;
+use super::joint::{joint_dofs, joint_grids, joint_stiffness};
 use super::matrix::ElementMatrix;
 use super::rod::rod_stiffness;
 use super::shear_panel::shear_panel_stiffness;
@@ -19,6 +20,7 @@ pub(crate) enum ElementRef {
     Beam(usize),
     Rod(usize),
     Bush(usize),
+    Joint(usize),
     Spring(usize),
     Solid(usize),
     ShearPanel(usize),
@@ -36,6 +38,7 @@ impl Prepared<'_> {
             .chain(beams)
             .chain(rods)
             .chain(bushes)
+            .chain((0..m.joints.len()).map(ElementRef::Joint))
             .chain((0..m.springs.len()).map(ElementRef::Spring))
             .chain((0..m.solids.len()).map(ElementRef::Solid))
             .chain((0..m.shear_panels.len()).map(ElementRef::ShearPanel))
@@ -47,12 +50,13 @@ impl Prepared<'_> {
         let m = self.model;
         match element {
             ElementRef::Shell(i) => many_grids(&m.shells[i]).0,
-            ElementRef::Beam(i) => m.beams[i].grids.to_vec(),
+            ElementRef::Beam(i) => beam_grids(&m.beams[i]),
             ElementRef::Rod(i) => m.rods[i].grids.to_vec(),
             ElementRef::Bush(i) => [Some(m.bushes[i].grids.0), m.bushes[i].grids.1]
                 .into_iter()
                 .flatten()
                 .collect(),
+            ElementRef::Joint(i) => joint_grids(&m.joints[i]),
             ElementRef::Spring(i) => {
                 let mut list: Vec<GridIx> =
                     m.springs[i].ends.iter().flatten().map(|e| e.0).collect();
@@ -68,6 +72,7 @@ impl Prepared<'_> {
     pub(crate) fn dofs(&self, element: ElementRef) -> u8 {
         match element {
             ElementRef::Solid(_) | ElementRef::ShearPanel(_) => 0b000_111,
+            ElementRef::Joint(i) => joint_dofs(&self.model.joints[i]),
             _ => 0b111_111,
         }
     }
@@ -82,6 +87,7 @@ impl Prepared<'_> {
             ElementRef::Beam(i) => beam_stiffness(self.model, i),
             ElementRef::Rod(i) => rod_stiffness(self.model, i),
             ElementRef::Bush(i) => Ok(bush_stiffness(self.model, i)),
+            ElementRef::Joint(i) => Ok(joint_stiffness(&self.model.joints[i])),
             ElementRef::Spring(i) => Ok(spring_stiffness(self, i)),
             ElementRef::Solid(i) => solid_stiffness(self.model, i),
             ElementRef::ShearPanel(i) => shear_panel_stiffness(self.model, i),

@@ -5,6 +5,7 @@
 
 pub(crate) mod beam;
 mod bush;
+mod joint;
 mod list;
 mod matrix;
 mod rod;

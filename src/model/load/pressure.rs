@@ -51,16 +51,10 @@ impl Builder<'_> {
                 let Some(f) = self.frame(cid.into(), &name, "CID", p.at) else {
                     return Vec::new();
                 };
-                let Some(frame) = self.model.frames.get(f.us()) else {
-                    return Vec::new();
-                };
-                if frame.kind != nastran::cards::CoordKind::Rectangular {
-                    return vec![Load::Unsupported(
-                        "PLOAD4 in a cylindrical or spherical system".into(),
-                        p.at,
-                    )];
-                }
-                unit(frame.vector_to_basic(n, Vec3::zeros()))
+                Some(Direction {
+                    frame: f,
+                    components: n,
+                })
             }
             _ => None,
         };
@@ -156,5 +150,15 @@ impl Builder<'_> {
             Some(d) => [Some(a), Some(d), Some(c), Some(b)],
             None => [Some(a), Some(c), Some(b), None],
         }
+    }
+}
+
+impl Direction {
+    /// The unit vector at the basic location `x`; zero where it has no length.
+    pub fn at(&self, model: &Model, x: Vec3) -> Vec3 {
+        let frame = model.frames.get(self.frame.us());
+        frame
+            .and_then(|f| unit(f.vector_to_basic(self.components, x)))
+            .unwrap_or_default()
     }
 }

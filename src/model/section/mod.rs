@@ -1,7 +1,9 @@
-//! Cross-sections of PBARL and PBEAML: [`shape`] knows the types of the manual ([`massive`], [`open`]), [`area`] integrates over their parts,
-//! [`thin`] finds the shear centre of open walls.
+//! Cross-sections of PBARL and PBEAML: [`shape`] knows the types of the manual ([`massive`], [`open`], [`boxes`]), [`area`] integrates over their parts,
+//! [`thin`] finds the shear centre of open walls, [`cells`] that and the torsion of closed ones.
 
 mod area;
+mod boxes;
+mod cells;
 mod massive;
 mod open;
 mod parts;

@@ -2,7 +2,7 @@
 
 use super::area::of_rectangles;
 use super::parts::{RECTANGLE_SHEAR, Shape, corners, finish, open_torsion, rectangle};
-use super::thin::{Wall, shear_centre};
+use super::thin::{Wall, open_walls};
 
 /// Height, width of bottom and top flange, thickness of web, bottom and top flange.
 pub(super) fn i_section(
@@ -39,7 +39,7 @@ pub(super) fn i_section(
         wall(1, 4, top_t),
         wall(1, 5, top_t),
     ];
-    let centre = shear_centre(&points, &walls)?;
+    let (centre, cw) = open_walls(&points, &walls)?;
     let j = open_torsion(&[(bottom_w, bottom_t), (top_w, top_t), (y1 - y0, web)]);
     let flanges = bottom_w * bottom_t + top_w * top_t;
     let k = [
@@ -52,7 +52,7 @@ pub(super) fn i_section(
         [0.0, -bottom_w / 2.0],
         [h, -top_w / 2.0],
     ];
-    finish(a, centre, j, k, recovery)
+    finish(a, centre, j, k, recovery).map(|s| s.with_warping(cw))
 }
 
 /// Web on the left, flanges to the right: width, height, thickness of web and flanges.
@@ -66,7 +66,7 @@ pub(super) fn channel(w: f64, h: f64, web: f64, flange: f64) -> Option<Shape> {
         rectangle([h - flange, h], [web, w]),
     ]);
     let (y0, y1, z0) = (flange / 2.0, h - flange / 2.0, web / 2.0);
-    let centre = shear_centre(
+    let (centre, cw) = open_walls(
         &[[y0, w], [y0, z0], [y1, z0], [y1, w]],
         &[
             Wall {
@@ -91,7 +91,7 @@ pub(super) fn channel(w: f64, h: f64, web: f64, flange: f64) -> Option<Shape> {
         (y1 - y0) * web / a.area,
         RECTANGLE_SHEAR * 2.0 * w * flange / a.area,
     ];
-    finish(a, centre, j, k, corners([0.0, h], [0.0, w]))
+    finish(a, centre, j, k, corners([0.0, h], [0.0, w])).map(|s| s.with_warping(cw))
 }
 
 /// Web at the bottom, legs up: thickness of legs and web, height, width.
@@ -106,7 +106,7 @@ pub(super) fn channel2(leg: f64, web: f64, h: f64, w: f64) -> Option<Shape> {
         rectangle([web, h], [half - leg, half]),
     ]);
     let (y0, z1) = (web / 2.0, half - leg / 2.0);
-    let centre = shear_centre(
+    let (centre, cw) = open_walls(
         &[[h, -z1], [y0, -z1], [y0, z1], [h, z1]],
         &[
             Wall {
@@ -131,7 +131,7 @@ pub(super) fn channel2(leg: f64, web: f64, h: f64, w: f64) -> Option<Shape> {
         RECTANGLE_SHEAR * 2.0 * h * leg / a.area,
         2.0 * z1 * web / a.area,
     ];
-    finish(a, centre, j, k, corners([0.0, h], [-half, half]))
+    finish(a, centre, j, k, corners([0.0, h], [-half, half])).map(|s| s.with_warping(cw))
 }
 
 /// Flange on top: width, height, thickness of flange and web. C top middle, D right end of the flange, E foot, F left end.
@@ -258,6 +258,8 @@ pub(super) fn h_section(inner: f64, flange: f64, h: f64, web: f64) -> Option<Sha
         RECTANGLE_SHEAR * 2.0 * h * flange / a.area,
         inner * web / a.area,
     ];
+    // Two flanges that bend against each other.
+    let cw = flange * h.powi(3) * (inner + flange).powi(2) / 24.0;
     finish(
         a,
         [0.0; 2],
@@ -265,6 +267,7 @@ pub(super) fn h_section(inner: f64, flange: f64, h: f64, web: f64) -> Option<Sha
         k,
         corners(y, [-half - flange, half + flange]),
     )
+    .map(|s| s.with_warping(cw))
 }
 
 /// Top flange to the left, bottom flange to the right: free width of a flange, thickness of the web, inner and outer height.
@@ -279,6 +282,15 @@ pub(super) fn z_section(free: f64, web: f64, inner: f64, h: f64) -> Option<Shape
         rectangle([inner / 2.0, top], [-half - free, half]),
         rectangle([-top, -inner / 2.0], [-half, half + free]),
     ]);
+    let (y, wall) = (top - t / 2.0, |from, t| Wall {
+        from,
+        to: from + 1,
+        t,
+    });
+    let (_, cw) = open_walls(
+        &[[y, -half - free], [y, 0.0], [-y, 0.0], [-y, half + free]],
+        &[wall(0, t), wall(1, web), wall(2, t)],
+    )?;
     let j = open_torsion(&[(free + half, t), (free + half, t), (h - t, web)]);
     let flanges = 2.0 * (free + web) * t;
     let k = [
@@ -297,6 +309,7 @@ pub(super) fn z_section(free: f64, web: f64, inner: f64, h: f64) -> Option<Shape
             [top, -half - free],
         ],
     )
+    .map(|s| s.with_warping(cw))
 }
 
 /// Crown on top, brims at the bottom: height, wall thickness, width of the crown, width of a brim.
@@ -318,7 +331,7 @@ pub(super) fn hat(h: f64, t: f64, crown: f64, brim: f64) -> Option<Shape> {
         to: from + 1,
         t,
     };
-    let centre = shear_centre(
+    let (centre, cw) = open_walls(
         &[
             [y0, -wide],
             [y0, -z],
@@ -341,4 +354,5 @@ pub(super) fn hat(h: f64, t: f64, crown: f64, brim: f64) -> Option<Shape> {
         k,
         [[h, half], [0.0, wide], [0.0, -wide], [h, -half]],
     )
+    .map(|s| s.with_warping(cw))
 }

@@ -9,6 +9,14 @@ pub(in crate::model) struct Shape {
     pub section: Section,
     /// K1, K2.
     pub k: [f64; 2],
+    /// Warping constant; 0 for massive and closed sections and for walls that meet in one point.
+    pub cw: f64,
+}
+
+impl Shape {
+    pub(super) fn with_warping(self, cw: f64) -> Self {
+        Self { cw, ..self }
+    }
 }
 
 /// Share of a rectangle that carries its transverse shear.
@@ -54,7 +62,11 @@ pub(super) fn finish(
         nsm_centre: from(a.centroid),
         ..Section::default()
     };
-    Some(Shape { section, k })
+    Some(Shape {
+        section,
+        k,
+        cw: 0.0,
+    })
 }
 
 /// Corners: C upper right, D lower right, E lower left, F upper left.

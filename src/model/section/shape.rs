@@ -8,6 +8,7 @@
 //! and Strain, table 20 (bar), Bredt's formula (box), sum of b t^3 / 3 (open walls). Shear factors: share of the walls that carry
 //! the shear, 5/6 where it varies as in a rectangle; 0.9 for a solid and 0.5 for a hollow circle.
 
+use super::boxes::{double_box, hat_on_plate};
 use super::massive::{bar, box1, circle, cross, hexagon};
 use super::open::{
     angle, channel, channel2, h_section, hat, i_section, tee, tee1, tee2, z_section,
@@ -30,7 +31,9 @@ pub(in super::super) fn bar_section(kind: &str, dims: &[f64]) -> Result<Shape, S
         "HEXA" => 3,
         "BOX" | "CHAN" | "CHAN1" | "CHAN2" | "T" | "T1" | "T2" | "L" | "H" | "Z" | "HAT"
         | "CROSS" | "I1" => 4,
+        "HAT1" => 5,
         "BOX1" | "I" => 6,
+        "DBOX" => 10,
         _ => return Err(SectionFault::Unknown),
     };
     if dims.len() < expected {
@@ -68,6 +71,8 @@ pub(in super::super) fn bar_section(kind: &str, dims: &[f64]) -> Result<Shape, S
         "H" => h_section(d(0), d(1) / 2.0, d(2), d(3)),
         "Z" => z_section(d(0), d(1), d(2), d(3)),
         "HAT" => hat(d(0), d(1), d(2), d(3)),
+        "HAT1" => hat_on_plate([d(0), d(1), d(2), d(3), d(4)]),
+        "DBOX" => double_box(std::array::from_fn(d)),
         "CROSS" => cross(d(0), d(1), d(2), d(3)),
         _ => hexagon(d(0), d(1), d(2)),
     };

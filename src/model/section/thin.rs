@@ -1,4 +1,4 @@
-//! Shear centre of an open thin-walled section.
+//! Shear centre and warping constant of an open thin-walled section.
 
 /// A straight wall between two points of the midline (indices), with its thickness. Walls are listed so that each begins where an
 /// earlier one has been (the first anywhere): a tree.
@@ -69,4 +69,23 @@ pub(super) fn shear_centre(points: &[[f64; 2]], walls: &[Wall]) -> Option<[f64; 
     let a = (wz * yy - wy * yz) / det;
     let b = (wz * yz - wy * zz) / det;
     Some([centroid[0] + pole[0] + a, centroid[1] + pole[1] + b])
+}
+
+/// Shear centre (y, z) and warping constant: integral over the walls of w^2 dA, w the sectorial coordinate about the shear centre less
+/// its mean.
+pub(super) fn open_walls(points: &[[f64; 2]], walls: &[Wall]) -> Option<([f64; 2], f64)> {
+    let centre = shear_centre(points, walls)?;
+    let mut sectorial = vec![0.0; points.len()];
+    let (mut area, mut first, mut second) = (0.0, 0.0, 0.0);
+    for w in walls {
+        let (a, b) = (points.get(w.from)?, points.get(w.to)?);
+        let swept = (a[0] - centre[0]) * (b[1] - a[1]) - (a[1] - centre[1]) * (b[0] - a[0]);
+        let (from, to) = (*sectorial.get(w.from)?, sectorial.get(w.from)? + swept);
+        *sectorial.get_mut(w.to)? = to;
+        let da = (b[0] - a[0]).hypot(b[1] - a[1]) * w.t;
+        area += da;
+        first += da * (from + to) / 2.0;
+        second += da * (from * from + from * to + to * to) / 3.0;
+    }
+    Some((centre, second - first * first / area))
 }

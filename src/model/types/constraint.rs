@@ -36,6 +36,57 @@ pub enum RigidKind {
         /// UM: dofs made dependent instead of REFC; empty: REFC is dependent.
         um: Vec<(GridIx, Dofs)>,
     },
+    /// RSPLINE, RIGID on a PBUSH, piercing grids of CWELD and CFAST: equations between dofs.
+    Equations {
+        /// The card they come from.
+        card: &'static str,
+        /// Terms grid, dof (0-based), coefficient, of each; they sum to zero, the first is dependent.
+        equations: Vec<Vec<(GridIx, u8, f64)>>,
+    },
+}
+
+impl RigidKind {
+    /// Its grids, dependent or not; some may stand several times.
+    pub fn grids(&self) -> Vec<GridIx> {
+        match self {
+            Self::Body {
+                independent,
+                dependent,
+                ..
+            } => independent.iter().chain(dependent).map(|t| t.0).collect(),
+            Self::Mean {
+                reference,
+                arms,
+                um,
+                ..
+            } => std::iter::once(*reference)
+                .chain(arms.iter().map(|a| a.2))
+                .chain(um.iter().map(|t| t.0))
+                .collect(),
+            Self::Equations { equations, .. } => equations.iter().flatten().map(|t| t.0).collect(),
+        }
+    }
+
+    /// Its dependent dofs.
+    pub fn dependent(&self) -> Vec<(GridIx, Dofs)> {
+        match self {
+            Self::Body { dependent, .. } => dependent.clone(),
+            Self::Mean {
+                reference,
+                refc,
+                um,
+                ..
+            } => match um.as_slice() {
+                [] => vec![(*reference, *refc)],
+                um => um.to_vec(),
+            },
+            Self::Equations { equations, .. } => equations
+                .iter()
+                .filter_map(|e| e.first())
+                .map(|t| (t.0, Dofs(1 << t.1)))
+                .collect(),
+        }
+    }
 }
 
 /// The equations of one MPC set id (MPCADD resolved): terms grid, dof (0-based), coefficient; the first is dependent.

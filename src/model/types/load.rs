@@ -1,6 +1,6 @@
 //! What acts.
 
-use super::index::{BeamIx, GridIx, ShellIx, Vec3};
+use super::index::{BeamIx, FrameIx, GridIx, ShellIx, Vec3};
 use nastran::cards::Dofs;
 use nastran::place::Place;
 
@@ -59,6 +59,15 @@ pub enum ElementTemperature {
     },
 }
 
+/// A direction in a coordinate system: of a cylindrical or spherical one it differs from place to place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Direction {
+    /// The system.
+    pub frame: FrameIx,
+    /// Components, of any length.
+    pub components: [f64; 3],
+}
+
 /// A primitive load, vectors in the basic frame.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Load {
@@ -72,8 +81,8 @@ pub enum Load {
         shells: Vec<ShellIx>,
         /// Pressure at the corners.
         pressure: [f64; 4],
-        /// Direction instead of the normal, unit vector.
-        direction: Option<Vec3>,
+        /// Direction instead of the normal.
+        direction: Option<Direction>,
     },
     /// Pressure on a face given by grids (PLOAD, PLOAD4 on solids), right-hand rule of the order; the fourth may be missing.
     FacePressure {
@@ -82,7 +91,7 @@ pub enum Load {
         /// Pressure at them.
         pressure: [f64; 4],
         /// Direction instead of the normal.
-        direction: Option<Vec3>,
+        direction: Option<Direction>,
     },
     /// Acceleration field of GRAV.
     Gravity(Vec3),

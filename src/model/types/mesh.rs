@@ -82,6 +82,8 @@ pub struct Beam {
     pub axes: Mat3,
     /// Released dofs at A, B, element frame.
     pub pins: [Dofs; 2],
+    /// Scalar points of the warping dtheta/dx at A, B (CBEAM with SA and SB, and a property with CW).
+    pub warping: Option<[GridIx; 2]>,
     /// Where it stands.
     pub at: Place,
 }
@@ -122,8 +124,10 @@ pub struct Bush {
     pub axes: Mat3,
     /// Location of the spring, basic frame.
     pub location: Vec3,
-    /// Stiffness by component.
+    /// Stiffness by component; 0 where the property says RIGID: equations hold that component.
     pub k: [f64; 6],
+    /// Neither CID nor the line of its grids gives its axes, and the stiffness differs by direction: the basic frame is taken.
+    pub frame_assumed: bool,
     /// Stress and strain recovery coefficients SA, ST, EA, ET.
     pub recovery: [f64; 4],
     /// Where it stands.

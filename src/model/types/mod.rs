@@ -2,6 +2,7 @@
 
 mod constraint;
 mod index;
+mod joint;
 mod load;
 mod mesh;
 mod model;
@@ -11,6 +12,7 @@ mod unsupported_card;
 
 pub use constraint::*;
 pub use index::*;
+pub use joint::*;
 pub use load::*;
 pub use mesh::*;
 pub use model::*;

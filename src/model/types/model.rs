@@ -2,6 +2,7 @@
 
 use super::constraint::{MpcSet, Rigid, SpcSet};
 use super::index::GridIx;
+use super::joint::Joint;
 use super::load::{LoadSet, TemperatureSet};
 use super::mesh::{Beam, Bush, Frame, Grid, PointMass, Rod, ShearPanel, Shell, Solid, Spring};
 use super::params::Params;
@@ -28,6 +29,8 @@ pub struct Model {
     pub rods: Vec<Rod>,
     /// CBUSH.
     pub bushes: Vec<Bush>,
+    /// CWELD, CFAST, CGAP, ascending id.
+    pub joints: Vec<Joint>,
     /// CELAS1, CELAS2.
     pub springs: Vec<Spring>,
     /// CHEXA, CPENTA, CTETRA.
@@ -40,7 +43,7 @@ pub struct Model {
     pub materials: Vec<Material>,
     /// CONM1, CONM2.
     pub masses: Vec<PointMass>,
-    /// RBE1, RBE2, RBE3, RBAR.
+    /// RBE1, RBE2, RBE3, RBAR, RSPLINE; what stands for rigid components of bushes and for grids that pierce a connector's patch.
     pub rigids: Vec<Rigid>,
     /// MPC sets.
     pub mpcs: Vec<MpcSet>,

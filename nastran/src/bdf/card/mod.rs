@@ -1,5 +1,6 @@
 //! Reads one card's fields into its struct, a file a family.
 
+mod connector;
 mod constraint;
 mod geometry;
 mod ids;
@@ -43,6 +44,9 @@ pub(super) fn read_card(f: &mut Fields, cards: &mut Cards) -> bool {
         b"CBUSH" => keep(&mut cards.bushes, f, springs::bush),
         b"CELAS1" | b"CELAS2" => keep(&mut cards.springs, f, springs::spring),
         b"CELAS3" | b"CELAS4" => keep(&mut cards.springs, f, springs::scalar_spring),
+        b"CWELD" => keep(&mut cards.welds, f, connector::weld),
+        b"CFAST" => keep(&mut cards.fasteners, f, connector::fastener),
+        b"CGAP" => keep(&mut cards.gaps, f, connector::gap),
         b"CTETRA" | b"CPENTA" | b"CHEXA" | b"CPYRAM" => keep(&mut cards.solids, f, solid::solid),
         b"CONM1" => keep(&mut cards.conm1s, f, mass::conm1),
         b"CONM2" => keep(&mut cards.conm2s, f, mass::conm2),
@@ -53,6 +57,7 @@ pub(super) fn read_card(f: &mut Fields, cards: &mut Cards) -> bool {
         b"RBE3" => keep(&mut cards.rbe3s, f, rigid::rbe3),
         b"RBAR" => keep(&mut cards.rbars, f, rigid::rbar),
         b"RBAR1" => keep(&mut cards.rbars, f, rigid::rbar1),
+        b"RSPLINE" => keep(&mut cards.rsplines, f, rigid::rspline),
         b"RTRPLT" => keep(&mut cards.rbe1s, f, rigid::rtrplt),
         b"MPC" => keep(&mut cards.mpcs, f, constraint::mpc),
         b"MPCADD" => keep(&mut cards.mpcadds, f, constraint::set_sum),
@@ -72,6 +77,9 @@ pub(super) fn read_card(f: &mut Fields, cards: &mut Cards) -> bool {
         b"PTUBE" => keep(&mut cards.ptubes, f, property::ptube),
         b"PBUSH" => keep(&mut cards.pbushes, f, springs::pbush),
         b"PELAS" => springs::pelas(f, cards),
+        b"PWELD" => keep(&mut cards.pwelds, f, connector::pweld),
+        b"PFAST" => keep(&mut cards.pfasts, f, connector::pfast),
+        b"PGAP" => keep(&mut cards.pgaps, f, connector::pgap),
         b"PSOLID" => keep(&mut cards.psolids, f, property::psolid),
         b"MAT1" => keep(&mut cards.mat1s, f, material::mat1),
         b"MAT2" => keep(&mut cards.mat2s, f, material::mat2),

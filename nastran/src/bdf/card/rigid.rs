@@ -1,9 +1,9 @@
-//! RBE1, RBE2, RBE3, RBAR, RBAR1, RTRPLT.
+//! RBE1, RBE2, RBE3, RBAR, RBAR1, RTRPLT, RSPLINE.
 
 use super::super::fault::Wrong;
 use super::super::fields::{Fields, Value};
 use super::ids::id_lists;
-use crate::cards::{Dofs, IdList, Rbar, Rbe1, Rbe2, Rbe3, Rbe3Group};
+use crate::cards::{Dofs, IdList, Rbar, Rbe1, Rbe2, Rbe3, Rbe3Group, Rspline};
 
 /// Grids up to the first real, which is ALPHA.
 pub(super) fn rbe2(f: &mut Fields) -> Rbe2 {
@@ -185,5 +185,24 @@ pub(super) fn rtrplt(f: &mut Fields) -> Rbe1 {
         independent: terms(independent),
         dependent: terms(dependent),
         alpha: f.real_or(11, "ALPHA", 0.0),
+    }
+}
+
+/// RSPLINE: G1, then pairs of grid and dependent dofs.
+pub(super) fn rspline(f: &mut Fields) -> Rspline {
+    let id = f.id(0, "EID");
+    let diameter = f.real_or(1, "D/L", 0.1);
+    let mut grids = vec![(f.id(2, "G1"), Dofs::default())];
+    let mut i = 3;
+    while i < f.len() {
+        if !f.is_blank(i) || !f.is_blank(i + 1) {
+            grids.push((f.id(i, "G"), f.dofs(i + 1, "C")));
+        }
+        i += 2;
+    }
+    Rspline {
+        id,
+        diameter,
+        grids,
     }
 }

@@ -19,7 +19,8 @@ fn n_dims(section: &str) -> Option<usize> {
     })
 }
 
-/// Dimensions from field `first` on. A blank inner radius of a TUBE is 0.
+/// Dimensions from field `first` on. A blank inner radius of a TUBE is 0; blank inner and flange thicknesses of a DBOX are those of
+/// the wall on their side: DIM5 to DIM8 as DIM4, DIM9 and DIM10 as DIM6.
 fn dims(
     f: &mut Fields,
     first: usize,
@@ -27,18 +28,22 @@ fn dims(
     n: usize,
     of_end_a: Option<&[f64]>,
 ) -> Vec<f64> {
-    (0..n)
-        .map(|k| {
-            let given = f.opt_real(first + k, "DIM");
-            let default = of_end_a
-                .and_then(|a| a.get(k).copied())
-                .or((section == "TUBE" && k == 1).then_some(0.0));
-            if given.is_none() && default.is_none() && f.is_blank(first + k) {
-                f.fault(first + k, "DIM", Wrong::Missing);
-            }
-            given.or(default).unwrap_or(0.0)
-        })
-        .collect()
+    let mut all: Vec<f64> = Vec::with_capacity(n);
+    for k in 0..n {
+        let given = f.opt_real(first + k, "DIM");
+        let of_type = match (section, k) {
+            ("TUBE", 1) => Some(0.0),
+            ("DBOX", 4 | 6 | 7) => all.get(3).copied(),
+            ("DBOX", 8 | 9) => all.get(5).copied(),
+            _ => None,
+        };
+        let default = of_end_a.and_then(|a| a.get(k).copied()).or(of_type);
+        if given.is_none() && default.is_none() && f.is_blank(first + k) {
+            f.fault(first + k, "DIM", Wrong::Missing);
+        }
+        all.push(given.or(default).unwrap_or(0.0));
+    }
+    all
 }
 
 /// Dimensions a section has: of an unknown type, up to the last field.

@@ -2,10 +2,11 @@
 
 use super::flexibility::{LocalBeam, release, section_at};
 use super::interior::Interior;
+use super::warping::{self, warping_torsion};
 use crate::fe::element::ElementMatrix;
 use crate::fe::error::Refusal;
 use crate::linalg::{SMatrix, SVector, Vector3};
-use crate::model::{Beam, BeamProperty, MaterialKind, Model};
+use crate::model::{Beam, BeamProperty, GridIx, MaterialKind, Model};
 
 type Matrix12 = SMatrix<f64, 12, 12>;
 
@@ -148,11 +149,52 @@ pub(crate) fn beam_end_forces(
 pub(crate) fn beam_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, Refusal> {
     let beam = &model.beams[i];
     let t = to_element(beam);
-    let k = t.transpose() * pinned(model, beam, &Interior::default())?.0 * t;
+    let k = pinned(model, beam, &Interior::default())?.0;
+    if beam.warping.is_some() {
+        return warped(model, beam, k, &t);
+    }
+    let k = t.transpose() * k * t;
     Ok(ElementMatrix {
         grids: beam.grids.to_vec(),
         values: k.transpose().as_slice().to_vec(),
     })
+}
+
+/// Grids of a beam, then its warping points.
+pub(crate) fn beam_grids(beam: &Beam) -> Vec<GridIx> {
+    let points = beam.warping.into_iter().flatten();
+    beam.grids.into_iter().chain(points).collect()
+}
+
+/// The stiffness `k` of a beam (element frame) with its torsion replaced by that of a bar that warps.
+fn warped(model: &Model, beam: &Beam, k: Matrix12, t: &Matrix12) -> Result<ElementMatrix, Refusal> {
+    let (local, property) = local(model, beam)?;
+    let uniform = |of: &dyn Fn(&crate::model::Section) -> f64| {
+        let first = property.sections.first().map_or(0.0, |s| of(&s.1));
+        property
+            .sections
+            .iter()
+            .all(|s| (of(&s.1) - first).abs() <= 1e-6 * first.abs())
+    };
+    let [cw, cw_b] = property.warping;
+    if !uniform(&|s| s.j) || (cw - cw_b).abs() > 1e-6 * cw.abs() {
+        return Err(refuse(
+            beam,
+            "J or CW differs along a beam that warps".to_owned(),
+            "give each element the mean of its ends, or leave SA and SB out",
+        ));
+    }
+    let torsion_released = beam.pins.iter().any(|p| p.has(4));
+    if torsion_released {
+        return Err(refuse(
+            beam,
+            "pin 4 on a beam that warps".to_owned(),
+            "join the ends by separate grids, or leave SA and SB out",
+        ));
+    }
+    let j = property.sections.first().map_or(0.0, |s| s.1.j);
+    let torsion = warping_torsion(local.g * j, local.e * cw, local.length);
+    Ok(warping::assembled(&beam_grids(beam), k, t, &torsion))
 }
 
 /// Mechanical strain of a beam at one of its stations.

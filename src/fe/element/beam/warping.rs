@@ -1,0 +1,93 @@
+//! Torsion with warping: a bar of open section whose warping is held or passed on at its ends.
+
+use crate::fe::element::ElementMatrix;
+use crate::linalg::{Matrix4, SMatrix};
+use crate::model::GridIx;
+
+/// lambda L under which hyperbolic functions lose figures to cancellation and the first terms of their series are as good.
+const SHORT: f64 = 0.05;
+/// lambda L above which exp(-lambda L) is nothing beside 1.
+const LONG: f64 = 40.0;
+
+/// Stiffness over (theta_A, theta'_A, theta_B, theta'_B) of E Cw theta'''' - G J theta'' = 0, exact: with psi = L sqrt(GJ / E Cw),
+/// s = sinh psi, c = cosh psi and D = 2 - 2 c + psi s,
+/// k11 = psi^3 s, k12 = psi^2 (c - 1) L, k22 = psi (psi c - s) L^2, k24 = psi (s - psi) L^2, all times E Cw / (L^3 D).
+///
+/// # Reference
+/// V. Z. Vlasov, Thin-Walled Elastic Beams (1961), chapter I; the same equation as a beam under tension.
+pub(super) fn warping_torsion(gj: f64, ecw: f64, length: f64) -> Matrix4<f64> {
+    let psi = length * (gj / ecw).max(0.0).sqrt();
+    let [k11, k12, k22, k24] = if psi < SHORT {
+        // Cubic shape: bending of the flanges and Saint-Venant's torsion apart.
+        let p = psi * psi;
+        [
+            12.0 + 1.2 * p,
+            6.0 + 0.1 * p,
+            4.0 + 2.0 / 15.0 * p,
+            2.0 - p / 30.0,
+        ]
+    } else {
+        // Over cosh psi, so that nothing overflows.
+        let (s, one) = if psi > LONG {
+            (1.0, 0.0)
+        } else {
+            (psi.tanh(), 1.0 / psi.cosh())
+        };
+        let d = 2.0 * one - 2.0 + psi * s;
+        [
+            psi.powi(3) * s / d,
+            psi * psi * (1.0 - one) / d,
+            psi * (psi - s) / d,
+            psi * (s - psi * one) / d,
+        ]
+    };
+    let unit = ecw / length.powi(3);
+    let l = length;
+    Matrix4::new(
+        k11,
+        k12 * l,
+        -k11,
+        k12 * l, //
+        k12 * l,
+        k22 * l * l,
+        -k12 * l,
+        k24 * l * l, //
+        -k11,
+        -k12 * l,
+        k11,
+        -k12 * l, //
+        k12 * l,
+        k24 * l * l,
+        -k12 * l,
+        k22 * l * l,
+    ) * unit
+}
+
+/// The stiffness of a beam over its two grids and its two warping points, basic frame: `k` (element frame) without its torsion, and
+/// `torsion` instead. The first dof of a warping point is theta'.
+pub(super) fn assembled(
+    grids: &[GridIx],
+    mut k: SMatrix<f64, 12, 12>,
+    t: &SMatrix<f64, 12, 12>,
+    torsion: &Matrix4<f64>,
+) -> ElementMatrix {
+    for i in [3, 9] {
+        k.row_mut(i).fill(0.0);
+        k.column_mut(i).fill(0.0);
+    }
+    let mut all = SMatrix::<f64, 24, 24>::zeros();
+    all.fixed_view_mut::<12, 12>(0, 0).copy_from(&k);
+    let at = [3, 12, 9, 18];
+    for (i, r) in at.iter().enumerate() {
+        for (j, c) in at.iter().enumerate() {
+            all[(*r, *c)] += torsion[(i, j)];
+        }
+    }
+    let mut turn = SMatrix::<f64, 24, 24>::identity();
+    turn.fixed_view_mut::<12, 12>(0, 0).copy_from(t);
+    let all = turn.transpose() * all * turn;
+    ElementMatrix {
+        grids: grids.to_vec(),
+        values: all.transpose().as_slice().to_vec(),
+    }
+}

@@ -1,0 +1,103 @@
+//! CGAP with its PGAP, linear: closed or open as its initial opening has it.
+
+use crate::model::beam::line_axes;
+use crate::model::build::Builder;
+use crate::model::fault::FaultKind;
+use crate::model::types::*;
+use nastran::cards::{Gap, Orientation, Pgap};
+use nastran::place::Placed;
+
+/// KB over KA where KB is blank.
+const OPEN: f64 = 1e-14;
+
+impl Builder<'_> {
+    pub(super) fn gaps(&mut self, out: &mut Vec<Joint>) {
+        let cards = self.cards;
+        let properties = self.by_id(&cards.pgaps, |p: &Pgap| p.id, "PGAP");
+        for g in &cards.gaps {
+            if !self.element(g.id, "CGAP", g.at) {
+                continue;
+            }
+            let name = format!("CGAP {}", g.id);
+            let pid = g.pid.unwrap_or(g.id);
+            let Some(p) = properties.get(&pid).copied() else {
+                let kind = FaultKind::Missing {
+                    what: "PGAP",
+                    id: pid.into(),
+                };
+                self.fault(name, "PID", g.at, kind);
+                continue;
+            };
+            out.extend(self.gap(g, p, &name));
+        }
+    }
+
+    /// KA along the axis and KT (MU1 KA where blank) across while closed, KB along it while open.
+    ///
+    /// # Reference
+    /// MSC Nastran Quick Reference Guide, CGAP and PGAP: in linear solutions the stiffness is that of the initial state.
+    fn gap(&mut self, g: &Placed<Gap>, p: &Pgap, name: &str) -> Option<Joint> {
+        let [ga, gb] = g.grids;
+        let (a, b) = (
+            self.grid(ga, name, "GA", g.at)?,
+            self.grid(gb, name, "GB", g.at)?,
+        );
+        let (xa, xb) = (self.x(a), self.x(b));
+        let open = p.u0 > 0.0;
+        let (along, across) = if open {
+            (p.kb.unwrap_or(OPEN * p.ka), 0.0)
+        } else {
+            (p.ka, p.kt.unwrap_or(p.mu1 * p.ka))
+        };
+        let axes = match g.cid {
+            Some(cid) => {
+                let f = self.frame(cid.into(), name, "CID", g.at)?;
+                self.model.frames.get(f.us())?.axes_at(xa)
+            }
+            None => {
+                let v = match g.orientation {
+                    Orientation::Vector(v) => self.cd_axes(a).tr_mul(&Vec3::from(v)),
+                    Orientation::Grid(g0) => {
+                        let g0 = self.grid(g0, name, "GO", g.at)?;
+                        self.x(g0) - xa
+                    }
+                    // Across the axis a gap is the same all round.
+                    Orientation::Blank => {
+                        let mut v = Vec3::zeros();
+                        v[(xb - xa).iamin()] = 1.0;
+                        v
+                    }
+                };
+                match line_axes(xa, xb, v) {
+                    Some(axes) => axes,
+                    None if (xb - xa).norm() > 0.0 => {
+                        self.fault(name.to_owned(), "X1", g.at, FaultKind::Orientation);
+                        return None;
+                    }
+                    None => {
+                        self.refuse(
+                            name,
+                            "CID",
+                            g.at,
+                            "a gap between coincident grids without CID",
+                            "state CID: its x axis is that of the gap",
+                        );
+                        return None;
+                    }
+                }
+            }
+        };
+        Some(Joint {
+            id: g.id,
+            card: JointCard::Cgap {
+                open,
+                preload: p.f0,
+            },
+            ends: [JointEnd::grid(a, xa), JointEnd::grid(b, xb)],
+            axes,
+            location: (xa + xb) / 2.0,
+            k: [along, across, across, 0.0, 0.0, 0.0],
+            at: g.at,
+        })
+    }
+}

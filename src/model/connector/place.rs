@@ -1,0 +1,204 @@
+//! The ends of connectors on shells: a point, projected, tied by slopes or by auxiliary points.
+
+use super::patch::{Foot, Patch, Patches};
+use super::{connector_axes, tie};
+use crate::model::build::Builder;
+use crate::model::fault::FaultKind;
+use crate::model::types::*;
+use nastran::place::Place;
+use std::collections::HashSet;
+use std::f64::consts::PI;
+
+/// How often the diameter may be halved until the auxiliary points find the patch (NREDIA of SWLDPRM, which allows up to 4).
+const HALVINGS: i32 = 4;
+
+/// What an end may pierce.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Where {
+    /// A shell, by index.
+    Shell(usize),
+    /// A shell, or those that share a grid with it.
+    Around(usize),
+    /// Shells of a property, by id.
+    Property(u32),
+}
+
+/// A connector as its card states it, on shells.
+pub(super) struct Stated<'a> {
+    pub(super) name: &'a str,
+    pub(super) at: Place,
+    pub(super) id: u32,
+    pub(super) diameter: f64,
+    /// GS or XS, YS, ZS.
+    pub(super) point: Option<Vec3>,
+    /// GA, GB.
+    pub(super) grids: [Option<GridIx>; 2],
+    pub(super) patches: [Where; 2],
+}
+
+/// Both ends, where the line between them goes, thicknesses of the plates.
+pub(super) struct Pierced {
+    pub(super) ends: [JointEnd; 2],
+    pub(super) axes: Mat3,
+    pub(super) thickness: [f64; 2],
+}
+
+impl Builder<'_> {
+    /// The point of GS or XS, YS, ZS.
+    pub(super) fn connector_point(
+        &mut self,
+        (gs, xs): (Option<u32>, Option<[f64; 3]>),
+        name: &str,
+        at: Place,
+    ) -> Option<Vec3> {
+        match (gs, xs) {
+            (Some(gs), _) => self.grid(gs, name, "GS", at).map(|g| self.x(g)),
+            (None, xs) => xs.map(Vec3::from),
+        }
+    }
+
+    /// Grids GA and GB where they are stated.
+    pub(super) fn piercing(
+        &mut self,
+        grids: [Option<u32>; 2],
+        name: &str,
+        at: Place,
+    ) -> [Option<GridIx>; 2] {
+        let [a, b] = grids;
+        [
+            a.and_then(|g| self.grid(g, name, "GA", at)),
+            b.and_then(|g| self.grid(g, name, "GB", at)),
+        ]
+    }
+
+    fn foot(&self, patches: &mut Patches, on: Where, p: Vec3) -> Option<(Patch, Foot)> {
+        match on {
+            Where::Shell(i) => {
+                let patch = Patch::of_shell(&self.model, self.model.shells.get(i)?)?;
+                let foot = patch.foot(p)?;
+                Some((patch, foot))
+            }
+            Where::Around(i) => patches.around(&self.model, i, p),
+            Where::Property(pid) => patches.on_property(&self.model, pid, p),
+        }
+    }
+
+    /// Projects, and ties each end. A fault where a point finds no patch.
+    pub(super) fn pierce(&mut self, patches: &mut Patches, stated: &Stated<'_>) -> Option<Pierced> {
+        let mut feet = Vec::with_capacity(2);
+        for side in 0..2 {
+            let Some(p) = self.start(stated, side) else {
+                self.refuse(
+                    stated.name,
+                    "GS",
+                    stated.at,
+                    "a connector without GS, GA and GB, or XS, YS, ZS",
+                    "state the point that is projected onto the patches",
+                );
+                return None;
+            };
+            let on = stated.patches.get(side).copied()?;
+            let Some(found) = self.foot(patches, on, p) else {
+                self.off_patch(stated, side, "its point");
+                return None;
+            };
+            feet.push(found);
+        }
+        let [(patch_a, a), (patch_b, b)] = <[(Patch, Foot); 2]>::try_from(feet).ok()?;
+        if patch_a.grids == patch_b.grids {
+            self.refuse(
+                stated.name,
+                "GS",
+                stated.at,
+                "a connector with both ends on one shell",
+                "name the shell of each side (ELEM, ELPAT), or give the sheets properties of their own",
+            );
+            return None;
+        }
+        let axes = connector_axes(a.x, b.x, a.normal, stated.diameter)?;
+        let thickness = [patch_a.thickness, patch_b.thickness];
+        let mut ends = Vec::with_capacity(2);
+        for (side, (patch, foot)) in [(patch_a, a), (patch_b, b)].into_iter().enumerate() {
+            let on = stated.patches.get(side).copied()?;
+            let end = match on {
+                Where::Shell(_) => tie::by_slopes(&patch, &foot),
+                _ => self.by_auxiliary_points(patches, on, &foot, &axes, stated.diameter),
+            };
+            let Some(end) = end else {
+                self.off_patch(stated, side, "an auxiliary point about it");
+                return None;
+            };
+            ends.push(end);
+        }
+        let ends = <[JointEnd; 2]>::try_from(ends).ok()?;
+        Some(Pierced {
+            ends,
+            axes,
+            thickness,
+        })
+    }
+
+    /// The point to project onto a side: its own piercing grid, or the common one, or the other side's grid.
+    fn start(&self, stated: &Stated<'_>, side: usize) -> Option<Vec3> {
+        let grid = |i: usize| stated.grids.get(i).copied().flatten().map(|g| self.x(g));
+        grid(side).or(stated.point).or_else(|| grid(1 - side))
+    }
+
+    fn off_patch(&mut self, stated: &Stated<'_>, side: usize, what: &'static str) {
+        let kind = FaultKind::OffPatch {
+            what,
+            side: if side == 0 { 'A' } else { 'B' },
+        };
+        self.fault(stated.name.to_owned(), "GS", stated.at, kind);
+    }
+
+    /// Four points about the foot, corners of the square of the weld's area across its axis, each projected.
+    fn by_auxiliary_points(
+        &self,
+        patches: &mut Patches,
+        on: Where,
+        foot: &Foot,
+        axes: &Mat3,
+        diameter: f64,
+    ) -> Option<JointEnd> {
+        let (y, z) = (axes.row(1).transpose(), axes.row(2).transpose());
+        let mut half = PI.sqrt() / 4.0 * diameter;
+        for _ in 0..=HALVINGS {
+            let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+            let points: Option<Vec<(Patch, Foot)>> = corners
+                .iter()
+                .map(|(a, b)| self.foot(patches, on, foot.x + y * (a * half) + z * (b * half)))
+                .collect();
+            if let Some(points) = points {
+                return tie::by_points(foot.x, &points);
+            }
+            half /= 2.0;
+        }
+        None
+    }
+
+    /// Makes the piercing grids follow their ends; one that is a grid of its patch, or follows one already, is left as it is.
+    pub(super) fn tie_piercing(
+        &mut self,
+        card: &'static str,
+        stated: &Stated<'_>,
+        ends: &[JointEnd; 2],
+        tied: &mut HashSet<GridIx>,
+    ) {
+        let mut equations = Vec::new();
+        for (g, end) in stated.grids.iter().zip(ends) {
+            let Some(g) = *g else { continue };
+            if end.motion.iter().any(|m| m.0 == g) || !tied.insert(g) {
+                continue;
+            }
+            equations.extend(tie::equations(&self.model, g, end));
+        }
+        if !equations.is_empty() {
+            self.model.rigids.push(Rigid {
+                id: stated.id,
+                kind: RigidKind::Equations { card, equations },
+                at: stated.at,
+            });
+        }
+    }
+}

@@ -1,0 +1,376 @@
+//! CWELD with its PWELD.
+
+use super::patch::{Patch, Patches};
+use super::place::{Pierced, Stated, Where};
+use super::{COINCIDENT, connector_axes, tie};
+use crate::model::build::Builder;
+use crate::model::fault::FaultKind;
+use crate::model::types::*;
+use nastran::cards::{Pweld, Weld, WeldPatches};
+use nastran::place::Placed;
+use std::collections::HashSet;
+use std::f64::consts::PI;
+
+/// Share of a solid circle that carries its transverse shear.
+const CIRCLE_SHEAR: f64 = 0.9;
+
+const OTHER_FORMAT: &str =
+    "use GRIDID, ELEMID, ELPAT, PARTPAT or ALIGN, or a CBUSH between grids of the plates";
+
+impl Builder<'_> {
+    pub(super) fn welds(
+        &mut self,
+        patches: &mut Patches,
+        tied: &mut HashSet<GridIx>,
+        out: &mut Vec<Joint>,
+    ) {
+        let cards = self.cards;
+        let properties = self.by_id(&cards.pwelds, |p: &Pweld| p.id, "PWELD");
+        for w in &cards.welds {
+            if !self.element(w.id, "CWELD", w.at) {
+                continue;
+            }
+            let name = format!("CWELD {}", w.id);
+            let pid = w.pid.unwrap_or(w.id);
+            let Some(p) = properties.get(&pid).copied() else {
+                let kind = FaultKind::Missing {
+                    what: "PWELD",
+                    id: pid.into(),
+                };
+                self.fault(name, "PID", w.at, kind);
+                continue;
+            };
+            out.extend(self.weld(patches, tied, w, p, &name));
+        }
+    }
+
+    fn weld(
+        &mut self,
+        patches: &mut Patches,
+        tied: &mut HashSet<GridIx>,
+        w: &Placed<Weld>,
+        p: &Placed<Pweld>,
+        name: &str,
+    ) -> Option<Joint> {
+        let pweld = format!("PWELD {}", p.id);
+        if !(p.d > 0.0) {
+            let kind = FaultKind::NotPositive {
+                what: "diameter",
+                value: p.d,
+            };
+            self.fault(pweld, "D", p.at, kind);
+            return None;
+        }
+        let material = self.material(p.mid, &pweld, "MID", p.at)?;
+        let law = self.model.materials.get(material.us()).map(|m| m.kind);
+        let Some(MaterialKind::Isotropic { e, g, .. }) = law else {
+            self.refuse(
+                &pweld,
+                "MID",
+                p.at,
+                "a weld of other than MAT1",
+                "use a MAT1",
+            );
+            return None;
+        };
+        let pierced = self.weld_ends(patches, tied, w, p, name)?;
+        let [a, b] = &pierced.ends;
+        let length = if p.spot && pierced.thickness.iter().any(|t| *t > 0.0) {
+            pierced.thickness.iter().sum::<f64>() / 2.0
+        } else {
+            let [least, most] = p.ld;
+            (b.x - a.x)
+                .norm()
+                .clamp(least * p.d, (most * p.d).max(least * p.d))
+        };
+        if !(length > 0.0) {
+            self.fault(
+                name.to_owned(),
+                "LDMIN",
+                w.at,
+                FaultKind::ZeroLength { length },
+            );
+            return None;
+        }
+        let location = (a.x + b.x) / 2.0;
+        Some(Joint {
+            id: w.id,
+            card: JointCard::Cweld,
+            ends: pierced.ends,
+            axes: pierced.axes,
+            location,
+            k: round_beam(e, g, p.d, length),
+            at: w.at,
+        })
+    }
+
+    fn weld_ends(
+        &mut self,
+        patches: &mut Patches,
+        tied: &mut HashSet<GridIx>,
+        w: &Placed<Weld>,
+        p: &Pweld,
+        name: &str,
+    ) -> Option<Pierced> {
+        let point = self.connector_point((w.gs, w.xs), name, w.at);
+        let grids = self.piercing(w.grids, name, w.at);
+        let mut on_shells = |b: &mut Self, patches_of: [Where; 2]| {
+            let stated = Stated {
+                name,
+                at: w.at,
+                id: w.id,
+                diameter: p.d,
+                point,
+                grids,
+                patches: patches_of,
+            };
+            let pierced = b.pierce(patches, &stated)?;
+            b.tie_piercing("CWELD", &stated, &pierced.ends, tied);
+            Some(pierced)
+        };
+        match &w.patches {
+            WeldPatches::Properties(a, b) => {
+                self.known_property(*a, name, w)?;
+                self.known_property(*b, name, w)?;
+                on_shells(self, [Where::Property(*a), Where::Property(*b)])
+            }
+            WeldPatches::ElementPatches(a, b) => {
+                let (a, b) = (self.shell_of(*a, name, w)?, self.shell_of(*b, name, w)?);
+                on_shells(self, [Where::Around(a), Where::Around(b)])
+            }
+            WeldPatches::Elements(a, Some(b)) => {
+                let (a, b) = (self.shell_of(*a, name, w)?, self.shell_of(*b, name, w)?);
+                on_shells(self, [Where::Shell(a), Where::Shell(b)])
+            }
+            WeldPatches::Elements(a, None) => {
+                let a = self.shell_of(*a, name, w)?;
+                let shell = *self.model.shells.get(a)?;
+                let patch = Patch::of_shell(&self.model, &shell);
+                self.patch_and_grid(patch, point, grids, w, p, name, tied)
+            }
+            WeldPatches::Grids(lists) => {
+                if w.mid_sides {
+                    self.refuse(
+                        name,
+                        "GA5",
+                        w.at,
+                        "a patch with mid-side grids",
+                        "name its three or four corners alone",
+                    );
+                    return None;
+                }
+                self.on_grids(lists, point, grids, w, p, name, tied)
+            }
+            WeldPatches::Align => {
+                let [Some(a), Some(b)] = grids else {
+                    self.refuse(
+                        name,
+                        "GA",
+                        w.at,
+                        "ALIGN without GA and GB",
+                        "name both grids",
+                    );
+                    return None;
+                };
+                let (xa, xb) = (self.x(a), self.x(b));
+                if !((xb - xa).norm() > COINCIDENT * p.d) {
+                    let length = (xb - xa).norm();
+                    self.fault(
+                        name.to_owned(),
+                        "GB",
+                        w.at,
+                        FaultKind::ZeroLength { length },
+                    );
+                    return None;
+                }
+                Some(Pierced {
+                    axes: connector_axes(xa, xb, xb - xa, p.d)?,
+                    ends: [JointEnd::grid(a, xa), JointEnd::grid(b, xb)],
+                    thickness: [0.0; 2],
+                })
+            }
+            WeldPatches::Unknown(word) => {
+                let what = format!("format `{word}` of a CWELD");
+                self.refuse(name, "FORMAT", w.at, what, OTHER_FORMAT);
+                None
+            }
+        }
+    }
+
+    /// GRIDID: patches of named grids.
+    #[allow(clippy::too_many_arguments, reason = "the parts of one card")]
+    fn on_grids(
+        &mut self,
+        lists: &[Vec<u32>; 2],
+        point: Option<Vec3>,
+        grids: [Option<GridIx>; 2],
+        w: &Placed<Weld>,
+        p: &Pweld,
+        name: &str,
+        tied: &mut HashSet<GridIx>,
+    ) -> Option<Pierced> {
+        let [list_a, list_b] = lists;
+        let a = self.patch_of_grids(list_a, name, w)?;
+        if list_b.is_empty() {
+            return self.patch_and_grid(Some(a), point, grids, w, p, name, tied);
+        }
+        let b = self.patch_of_grids(list_b, name, w)?;
+        let x = |g: Option<GridIx>| g.map(|g| self.x(g));
+        let [ga, gb] = grids.map(x);
+        let (Some(pa), Some(pb)) = (ga.or(point).or(gb), gb.or(point).or(ga)) else {
+            self.refuse(
+                name,
+                "GS",
+                w.at,
+                "a connector without GS and without GA and GB",
+                "state the point that is projected onto the patches",
+            );
+            return None;
+        };
+        let stated = Stated {
+            name,
+            at: w.at,
+            id: w.id,
+            diameter: p.d,
+            point,
+            grids,
+            patches: [Where::Shell(0); 2],
+        };
+        let (Some(fa), Some(fb)) = (a.foot(pa), b.foot(pb)) else {
+            let side = if a.foot(pa).is_none() { 'A' } else { 'B' };
+            let kind = FaultKind::OffPatch {
+                what: "its point",
+                side,
+            };
+            self.fault(name.to_owned(), "GS", w.at, kind);
+            return None;
+        };
+        let axes = connector_axes(fa.x, fb.x, fa.normal, p.d)?;
+        let ends = [tie::by_slopes(&a, &fa)?, tie::by_slopes(&b, &fb)?];
+        self.tie_piercing("CWELD", &stated, &ends, tied);
+        Some(Pierced {
+            ends,
+            axes,
+            thickness: [0.0; 2],
+        })
+    }
+
+    /// From a patch to the grid GB (GS where GB is blank).
+    #[allow(clippy::too_many_arguments, reason = "the parts of one card")]
+    fn patch_and_grid(
+        &mut self,
+        patch: Option<Patch>,
+        point: Option<Vec3>,
+        grids: [Option<GridIx>; 2],
+        w: &Placed<Weld>,
+        p: &Pweld,
+        name: &str,
+        tied: &mut HashSet<GridIx>,
+    ) -> Option<Pierced> {
+        let far = match (grids[1], w.gs) {
+            (Some(g), _) => Some(g),
+            (None, Some(gs)) => self.grid(gs, name, "GS", w.at),
+            _ => None,
+        };
+        let (Some(far), Some(patch)) = (far, patch) else {
+            self.refuse(
+                name,
+                "GB",
+                w.at,
+                "a weld from a patch to nothing",
+                "name a second patch, or the grid GB; shells with mid-side grids are no patch",
+            );
+            return None;
+        };
+        let xb = self.x(far);
+        let start = grids[0].map(|g| self.x(g)).or(point).unwrap_or(xb);
+        let Some(foot) = patch.foot(start) else {
+            let kind = FaultKind::OffPatch {
+                what: "its point",
+                side: 'A',
+            };
+            self.fault(name.to_owned(), "GS", w.at, kind);
+            return None;
+        };
+        let axes = connector_axes(foot.x, xb, foot.normal, p.d)?;
+        let ends = [tie::by_slopes(&patch, &foot)?, JointEnd::grid(far, xb)];
+        let stated = Stated {
+            name,
+            at: w.at,
+            id: w.id,
+            diameter: p.d,
+            point,
+            grids: [grids[0], None],
+            patches: [Where::Shell(0); 2],
+        };
+        self.tie_piercing("CWELD", &stated, &ends, tied);
+        Some(Pierced {
+            ends,
+            axes,
+            thickness: [0.0; 2],
+        })
+    }
+
+    fn patch_of_grids(&mut self, list: &[u32], name: &str, w: &Placed<Weld>) -> Option<Patch> {
+        let grids: Vec<GridIx> = list
+            .iter()
+            .filter_map(|g| self.grid(*g, name, "GA1", w.at))
+            .collect();
+        if grids.len() != list.len() {
+            return None;
+        }
+        if !(3..=4).contains(&grids.len()) {
+            let what = format!("a patch of {} grids", grids.len());
+            self.refuse(name, "GA1", w.at, what, "name its three or four corners");
+            return None;
+        }
+        let x = grids.iter().map(|g| self.x(*g)).collect();
+        Some(Patch {
+            grids,
+            x,
+            thickness: 0.0,
+        })
+    }
+
+    fn shell_of(&mut self, id: u32, name: &str, w: &Placed<Weld>) -> Option<usize> {
+        let found = self.model.shell_ix(id).map(ShellIx::us);
+        if found.is_none() {
+            let kind = FaultKind::Missing {
+                what: "shell",
+                id: id.into(),
+            };
+            self.fault(name.to_owned(), "SHIDA", w.at, kind);
+        }
+        found
+    }
+
+    fn known_property(&mut self, pid: u32, name: &str, w: &Placed<Weld>) -> Option<()> {
+        if self.model.shell_properties.iter().any(|p| p.id == pid) {
+            return Some(());
+        }
+        let kind = FaultKind::Missing {
+            what: "shell property",
+            id: pid.into(),
+        };
+        self.fault(name.to_owned(), "PIDA", w.at, kind);
+        None
+    }
+}
+
+/// The six springs at the middle of a beam of round section: EA / L, 12 EI / L^3 (1 + phi) twice, GJ / L, EI / L twice, with
+/// phi = 12 EI / (k G A L^2). With rigid arms of half its length to the ends they are the beam.
+fn round_beam(e: f64, g: f64, d: f64, length: f64) -> [f64; 6] {
+    let area = PI * d * d / 4.0;
+    let i = PI * d.powi(4) / 64.0;
+    let phi = 12.0 * e * i / (CIRCLE_SHEAR * g * area * length * length);
+    let shear = 12.0 * e * i / (length.powi(3) * (1.0 + phi));
+    let bending = e * i / length;
+    [
+        e * area / length,
+        shear,
+        shear,
+        2.0 * g * i / length,
+        bending,
+        bending,
+    ]
+}

@@ -1,0 +1,467 @@
+//! CWELD and CFAST in every format that is carried: two plates that a connector alone joins, against the closed forms of a round
+//! cantilever and of springs; the tie against fields whose slopes are known.
+
+use crate::mesh::{Bulk, Solved};
+use strainbridge::fe::*;
+use strainbridge::model::FaultWeight;
+
+const E: f64 = 210_000.0;
+const NU: f64 = 0.3;
+const G: f64 = E / (2.0 + 2.0 * NU);
+/// Diameter of the weld, distance of the plates.
+const D: f64 = 6.0;
+const GAP: f64 = 10.0;
+/// Where the connector stands, off the middles of elements.
+const AT: [f64; 2] = [21.0, 17.5];
+
+/// Two plates 40 x 40, 2 thick, property 1 at z = 0 (elements 1 to 16) and 2 at z = GAP (17 to 32), 10 a side; the lower one is held.
+/// GS 101 between, GA 102 and GB 103 on the plates. Load set 1 acts at GB.
+fn plates(connector: &str, load: &str) -> Bulk {
+    let mut b = Bulk::shell(E, NU, 2.0);
+    b.card(&format!("PSHELL,2,1,2.,1,,1\nPWELD,7,1,{D:?}"));
+    let n = 5;
+    let mut lower = Vec::new();
+    for z in [0.0, GAP] {
+        let first = if z == 0.0 { 0 } else { n * n };
+        for i in 0..n {
+            for j in 0..n {
+                let id = first + n * i + j + 1;
+                let (x, y) = (10.0 * f64::from(i), 10.0 * f64::from(j));
+                b.card(&format!("GRID,{id},,{x:?},{y:?},{z:?}"));
+                if z == 0.0 {
+                    lower.push(id);
+                }
+            }
+        }
+        let (eid, pid) = if z == 0.0 { (1, 1) } else { (17, 2) };
+        for i in 0..n - 1 {
+            for j in 0..n - 1 {
+                let g = first + n * i + j + 1;
+                b.card(&format!(
+                    "CQUAD4,{},{pid},{g},{},{},{}",
+                    eid + 4 * i + j,
+                    g + n,
+                    g + n + 1,
+                    g + 1
+                ));
+            }
+        }
+    }
+    for (id, z) in [(101, 4.0), (102, 0.0), (103, GAP)] {
+        b.card(&format!("GRID,{id},,{:?},{:?},{z:?}", AT[0], AT[1]));
+    }
+    b.hold("123456", lower);
+    b.card(connector);
+    b.card(load);
+    b
+}
+
+fn solved(b: &Bulk) -> Solved {
+    let faults = b.faults();
+    assert!(faults.is_empty(), "{faults:?}");
+    b.solve()
+}
+
+/// The formats, all with GA and GB, which follow the patches.
+fn formats() -> Vec<(&'static str, String)> {
+    // The connector is over element 10 (x 20 to 30, y 10 to 20), corners 12 17 18 13; the upper ones have 25 more.
+    let card = |rest: &str| format!("CWELD,500,7,101,{rest}");
+    vec![
+        (
+            "GRIDID",
+            card("GRIDID,102,103,,,\n,12,17,18,13,,,,,\n,37,42,43,38"),
+        ),
+        ("ELEMID", card("ELEMID,102,103,,,\n,10,26")),
+        ("ELPAT", card("ELPAT,102,103,,,\n,10,26")),
+        ("PARTPAT", card("PARTPAT,102,103,,,\n,1,2")),
+    ]
+}
+
+#[test]
+fn a_weld_of_each_format_bends_stretches_and_twists_as_a_round_cantilever() {
+    let area = std::f64::consts::PI * D * D / 4.0;
+    let i = std::f64::consts::PI * D.powi(4) / 64.0;
+    let l = GAP;
+    let p = 100.0;
+    let shear = p * l / (0.9 * G * area);
+    // Load at the free end, dof there, closed form.
+    let cases = [
+        ("FORCE,1,103,0,100.,0.,0.,1.", 2, p * l / (E * area)),
+        (
+            "FORCE,1,103,0,100.,1.,0.,0.",
+            0,
+            p * l.powi(3) / (3.0 * E * i) + shear,
+        ),
+        (
+            "FORCE,1,103,0,100.,0.,1.,0.",
+            1,
+            p * l.powi(3) / (3.0 * E * i) + shear,
+        ),
+        ("FORCE,1,103,0,100.,1.,0.,0.", 4, p * l * l / (2.0 * E * i)),
+        ("MOMENT,1,103,0,100.,1.,0.,0.", 3, p * l / (E * i)),
+        ("MOMENT,1,103,0,100.,0.,0.,1.", 5, p * l / (G * 2.0 * i)),
+    ];
+    for (format, card) in formats() {
+        for (load, dof, expected) in &cases {
+            let s = solved(&plates(&card, load));
+            let got = s.at(103)[*dof];
+            // Rounding: the plates are softer than the weld by three powers of ten.
+            assert!(
+                (got - expected).abs() < 1e-7 * expected,
+                "{format}, {load}: {got:e} for {expected:e}"
+            );
+            assert!(
+                s.at(102).iter().all(|u| u.abs() < 1e-12),
+                "{format}: GA is held"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_weld_between_two_grids_or_from_a_patch_to_a_grid_is_the_same_cantilever() {
+    let i = std::f64::consts::PI * D.powi(4) / 64.0;
+    let expected = 100.0 * GAP / (E * i);
+    let load = "MOMENT,1,103,0,100.,1.,0.,0.";
+    for card in [
+        "CWELD,500,7,,ALIGN,102,103\nSPC1,1,123456,102",
+        "CWELD,500,7,,ELEMID,102,103,,,\n,10",
+        "CWELD,500,7,,GRIDID,102,103,,,\n,12,17,18,13",
+    ] {
+        let mut b = plates(card, load);
+        // The upper plate hangs on nothing else.
+        b.card("SPC1,1,123456,26,THRU,50");
+        let got = solved(&b).at(103)[3];
+        assert!(
+            (got - expected).abs() < 1e-9 * expected,
+            "{card}: {got:e} for {expected:e}"
+        );
+    }
+}
+
+#[test]
+fn a_spot_weld_and_a_short_one_count_with_their_effective_length() {
+    let area = std::f64::consts::PI * D * D / 4.0;
+    let load = "FORCE,1,103,0,100.,0.,0.,1.";
+    let stretch = |property: &str| {
+        let mut b = plates(&formats()[1].1.replace("500,7,", "500,8,"), load);
+        b.card(property);
+        solved(&b).at(103)[2]
+    };
+    // SPOT: half the sum of the plates, 2. LDMIN 3: 18. LDMAX 1: 6.
+    for (property, length) in [
+        (format!("PWELD,8,1,{D:?},,,,,SPOT"), 2.0),
+        (format!("PWELD,8,1,{D:?},,,,,,\n,3.,9."), 18.0),
+        (format!("PWELD,8,1,{D:?},,,,,,\n,.1,1."), 6.0),
+    ] {
+        let (got, expected) = (stretch(&property), 100.0 * length / (E * area));
+        assert!(
+            (got - expected).abs() < 1e-7 * expected,
+            "{property}: {got:e} for {expected:e}"
+        );
+    }
+}
+
+#[test]
+fn a_fastener_gives_way_by_its_springs_at_the_middle_between_its_ends() {
+    let property = "PFAST,9,6.,,,5000.,2000.,2000.,40000.,\n,80000.,80000.,.25";
+    let p = 100.0;
+    // Across: the spring, and the turn of the arm of half the length that its own moment makes.
+    let across = p / 2000.0 + p * GAP * GAP / 4.0 / 80_000.0;
+    let cases = [
+        ("FORCE,1,103,0,100.,0.,0.,1.", 2, p / 5000.0),
+        ("FORCE,1,103,0,100.,1.,0.,0.", 0, across),
+        ("MOMENT,1,103,0,100.,0.,1.,0.", 4, p / 80_000.0),
+        ("MOMENT,1,103,0,100.,0.,0.,1.", 5, p / 40_000.0),
+    ];
+    for card in [
+        "CFAST,500,9,PROP,1,2,101,102,103",
+        "CFAST,500,9,ELEM,10,26,101,102,103",
+        "CFAST,500,9,PROP,1,2,,102,103,\n,21.,17.5,4.",
+    ] {
+        for (load, dof, expected) in &cases {
+            let mut b = plates(card, load);
+            b.card(property);
+            let s = solved(&b);
+            let got = s.at(103)[*dof];
+            assert!(
+                (got - expected).abs() < 1e-7 * expected,
+                "{card}, {load}: {got:e} for {expected:e}"
+            );
+        }
+    }
+    // Its mass is there, half on each plate: .25 in all, in the middle of its length.
+    let mut b = plates("CFAST,500,9,PROP,1,2,101", "");
+    b.card(property);
+    let (with, without) = (b.model().weight(), plates("", "").model().weight());
+    assert!((with.mass - without.mass - 0.25).abs() < 1e-12);
+    assert!((with.cg.z - GAP / 2.0).abs() < 1e-9, "{:?}", with.cg);
+    assert!(
+        (with.cg.x - AT[0]).abs() < 1e-9 && (with.cg.y - AT[1]).abs() < 1e-9,
+        "{:?}",
+        with.cg
+    );
+}
+
+#[test]
+fn the_axes_of_a_fastener_are_those_of_mcid_where_mflag_says_so() {
+    // KT1 along basic x of system 5, 5000; the plates' normal is its third axis.
+    let cards = "CORD2R,5,0,0.,0.,0.,0.,0.,1.,\n,0.,1.,0.\nPFAST,9,6.,5,1,5000.,2000.,1000.,90000.,\n,90000.,90000.";
+    let bend = 100.0 * GAP * GAP / 4.0 / 90_000.0;
+    // x of system 5 is basic y.
+    for (load, dof, expected) in [
+        ("FORCE,1,103,0,100.,0.,1.,0.", 1, 100.0 / 5000.0 + bend),
+        ("FORCE,1,103,0,100.,1.,0.,0.", 0, 100.0 / 2000.0 + bend),
+        ("FORCE,1,103,0,100.,0.,0.,1.", 2, 100.0 / 1000.0),
+    ] {
+        let mut b = plates("CFAST,500,9,PROP,1,2,101,102,103", load);
+        b.card(cards);
+        let got = solved(&b).at(103)[dof];
+        assert!(
+            (got - expected).abs() < 1e-7 * expected,
+            "{load}: {got:e} for {expected:e}"
+        );
+    }
+    // How MCID turns it about its own axis (MFLAG 0) is refused where it matters.
+    let mut b = plates("CFAST,500,9,PROP,1,2,101,102,103", "");
+    b.card(&cards.replace("9,6.,5,1,", "9,6.,5,0,"));
+    assert!(
+        b.faults().iter().any(|f| f.contains("MFLAG 0")),
+        "{:?}",
+        b.faults()
+    );
+}
+
+/// u = 1 + 2x + 3y + .1xy and so on by component, enforced on the lower plate: at GA the translation is the field, the rotation half
+/// its curl, whether slopes or auxiliary points make it (the square about GA lies within one element).
+#[test]
+fn a_piercing_grid_moves_and_turns_with_the_field_of_its_patch() {
+    let field = |x: f64, y: f64| {
+        let c = [
+            [1.0, 2.0, 3.0, 0.1],
+            [-2.0, 1.0, 4.0, -0.2],
+            [3.0, -5.0, 2.0, 0.3],
+        ];
+        c.map(|[a, b, c, d]| (a + b * x + c * y + d * x * y) * 1e-4)
+    };
+    let mut all = formats();
+    all.push((
+        "CFAST",
+        "PFAST,9,2.,,,5000.,2000.,2000.,4000.,\n,8000.,8000.\nCFAST,500,9,ELEM,10,26,101,102,103"
+            .into(),
+    ));
+    for (format, card) in all {
+        let mut b = plates(&card.replace("500,7,", "500,6,"), "PWELD,6,1,2.");
+        for id in 1..=25_u32 {
+            let (i, j) = ((id - 1) / 5, (id - 1) % 5);
+            let u = field(10.0 * f64::from(i), 10.0 * f64::from(j));
+            for (k, v) in u.iter().enumerate() {
+                b.card(&format!("SPC,1,{id},{},{v:.7E}", k + 1));
+            }
+        }
+        b.card("FORCE,1,103,0,0.,0.,0.,1.");
+        // The lower plate is held already: SPC adds the values.
+        let s = solved(&b);
+        let (x, y) = (AT[0], AT[1]);
+        let u = field(x, y);
+        let slopes = |c: usize| {
+            let h = 1e-3;
+            let dx = (field(x + h, y)[c] - field(x - h, y)[c]) / (2.0 * h);
+            let dy = (field(x, y + h)[c] - field(x, y - h)[c]) / (2.0 * h);
+            (dx, dy)
+        };
+        let expected = [
+            u[0],
+            u[1],
+            u[2],
+            slopes(2).1,
+            -slopes(2).0,
+            (slopes(1).0 - slopes(0).1) / 2.0,
+        ];
+        let got = s.at(102);
+        for (k, (a, e)) in got.iter().zip(expected).enumerate() {
+            // Values are written with eight figures.
+            assert!(
+                (a - e).abs() < 2e-7 * e.abs().max(1e-4),
+                "{format}, dof {}: {a:e} for {e:e}",
+                k + 1
+            );
+        }
+    }
+}
+
+#[test]
+fn what_a_connector_lacks_is_a_fault_that_says_what_to_do() {
+    let cases = [
+        ("CWELD,500,7,101,GIBBON,102,103", "format `GIBBON`"),
+        ("CWELD,500,7,,PARTPAT,,,,,\n,1,2", "without GS"),
+        (
+            "CWELD,500,7,101,PARTPAT,,,,,\n,1,5",
+            "shell property 5 is missing",
+        ),
+        (
+            "CWELD,500,7,101,PARTPAT,,,,,\n,1,1",
+            "both ends on one shell",
+        ),
+        (
+            "CWELD,500,7,101,ELEMID,,,,,\n,1,26",
+            "meets no shell of side A",
+        ),
+        (
+            "CWELD,500,70,101,ELEMID,,,,,\n,10,26",
+            "PWELD 70 is missing",
+        ),
+        (
+            "CWELD,500,7,101,GRIDID,,,,,\n,12,17,18,13,1,2,3,4,\n,37,42,43,38",
+            "mid-side grids",
+        ),
+        ("CFAST,500,7,BOLT,1,2,101", "PFAST 7 is missing"),
+        (
+            "PFAST,7,6.,,,1.,1.,1.\nCFAST,500,7,BOLT,1,2,101",
+            "`BOLT` is not known",
+        ),
+    ];
+    for (card, said) in cases {
+        let faults = plates(card, "").faults();
+        assert!(
+            faults.iter().any(|f| f.contains(said)),
+            "{card}: {faults:?}"
+        );
+    }
+}
+
+#[test]
+fn the_formats_agree_where_a_lap_joint_of_two_plates_is_pulled() {
+    // Patches of one element and of a circle of the weld's size are different idealisations: the stretch of the joint agrees roughly.
+    let stretch: Vec<f64> = formats()
+        .into_iter()
+        .map(|(_, card)| {
+            let b = plates(
+                &card.replace(",102,103", ",,"),
+                "FORCE,1,48,0,100.,1.,0.,0.\nFORCE,1,46,0,100.,1.,0.,0.",
+            );
+            let s = solved(&b);
+            s.at(48)[0]
+        })
+        .collect();
+    for s in &stretch {
+        assert!(
+            (s / stretch[0] - 1.0).abs() < 0.15 && *s > 0.0,
+            "{stretch:?}"
+        );
+    }
+}
+
+/// The deck that a manual would have a user write instead: auxiliary grids tied by RBE3 with the shape functions as weights, the ends by
+/// RBE3 over them, a round bar between.
+#[test]
+fn a_weld_on_a_property_is_the_deck_that_spells_its_ties_out() {
+    let load = "FORCE,1,50,0,100.,.3,-.5,1.\nMOMENT,1,46,0,70.,1.,.2,.4";
+    let weld = solved(&plates("CWELD,500,7,101,PARTPAT,,,,,\n,1,2", load));
+    let mut b = plates("", load);
+    let half = std::f64::consts::PI.sqrt() / 4.0 * D;
+    for (side, z) in [(0_u32, 0.0), (1, GAP)] {
+        let mut auxiliary = Vec::new();
+        for (k, (a, c)) in (1_u32..).zip([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]) {
+            let (x, y) = (AT[0] + a * half, AT[1] + c * half);
+            let id = 110 + 10 * side + k;
+            b.card(&format!(
+                "GRID*   {id:16}{:16}{x:16.9}{y:16.9}\n*       {z:16.9}",
+                ""
+            ));
+            // The element under it, and its bilinear functions.
+            let (i, j) = ((x / 10.0).floor(), (y / 10.0).floor());
+            let (r, s) = (x / 10.0 - i, y / 10.0 - j);
+            let g = 25 * side + (5.0 * i + j) as u32 + 1;
+            let weights = [
+                (g, (1.0 - r) * (1.0 - s)),
+                (g + 5, r * (1.0 - s)),
+                (g + 6, r * s),
+                (g + 1, (1.0 - r) * s),
+            ];
+            let fields: Vec<String> = weights
+                .iter()
+                .map(|(g, w)| format!("{w:.12},123,{g}"))
+                .collect();
+            let all: Vec<&str> = fields.iter().flat_map(|f| f.split(',')).collect();
+            // Four fields stand before the first weight; eight a line.
+            let (first, rest) = all.split_at(4);
+            let lines: Vec<String> = rest
+                .chunks(8)
+                .map(|l| format!(",{}", l.join(",")))
+                .collect();
+            b.card(&format!(
+                "RBE3,{},,{id},123,{}\n{}",
+                900 + id,
+                first.join(","),
+                lines.join("\n")
+            ));
+            auxiliary.push(id);
+        }
+        b.card(&format!(
+            "RBE3,{},,{},123456,1.,123,{},{},\n,{},{}",
+            950 + side,
+            102 + side,
+            auxiliary[0],
+            auxiliary[1],
+            auxiliary[2],
+            auxiliary[3]
+        ));
+    }
+    b.card(&format!("PBARL,8,1,,ROD,,,,,\n,{:?}", D / 2.0));
+    b.card("CBAR,501,8,102,103,1.,0.,0.");
+    let spelt = solved(&b);
+    for id in 26..=50 {
+        let (a, e) = (weld.at(id), spelt.at(id));
+        let size = spelt.at(50)[2].abs();
+        for k in 0..3 {
+            // Weights are written with twelve figures, places with nine.
+            assert!((a[k] - e[k]).abs() < 1e-6 * size, "grid {id}: {a:?} {e:?}");
+        }
+    }
+}
+
+impl Bulk {
+    /// What stops a solution, in words.
+    pub fn faults(&self) -> Vec<String> {
+        self.read_model()
+            .1
+            .iter()
+            .filter(|f| f.weight() == FaultWeight::Error)
+            .map(|f| format!("{f}: {}", f.remedy()))
+            .collect()
+    }
+}
+
+#[test]
+fn decks_with_connectors_solve_from_cards_and_are_told_as_formulation() {
+    let b = plates(
+        "CFAST,500,9,PROP,1,2,101\nPFAST,9,6.,,,5000.,2000.,2000.,40000.,\n,80000.,80000.",
+        "FORCE,1,50,0,10.,0.,0.,1.",
+    );
+    let case = LoadCase {
+        subcase: 1,
+        label: String::new(),
+        loads: vec![UnitLoad::Set(1)],
+        spc: Some(1),
+        mpc: None,
+        relief: Relief::None,
+    };
+    let (solution, report) = solve_cases(&b.model(), &[case], &SolveOptions::default()).unwrap();
+    let told = solution.findings.iter().filter(|f| f.code == "formulation");
+    assert!(
+        told.clone().any(|f| f.message.contains("1 connectors")),
+        "{:?}",
+        solution.findings
+    );
+    // What acts arrives at the support: the tie neither takes nor gives force or moment.
+    let r = &report.reactions[0];
+    for i in 0..6 {
+        assert!(
+            (r.total[i] + r.applied[i]).abs() < 1e-6,
+            "{:?} {:?}",
+            r.total,
+            r.applied
+        );
+    }
+}

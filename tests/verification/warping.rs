@@ -1,0 +1,199 @@
+//! CBEAM with warping points: Vlasov's closed forms of restrained torsion, and an I-beam of shells.
+
+use crate::mesh::{Bulk, near};
+
+const E: f64 = 210_000.0;
+const NU: f64 = 0.3;
+
+/// `n` beams along x of J and CW, warping points 1001.., end A held, warping there too where `fixed`.
+fn bar(n: u32, length: f64, (j, cw): (f64, f64)) -> Bulk {
+    let mut b = Bulk::default();
+    b.card(&format!("MAT1,1,{E:?},,{NU:?}"));
+    b.card(&format!(
+        "PBEAM,2,1,2400.,1.6+7,1.+6,0.,{j:?},0.,\n,0.,0.,0.,0.,0.,0.,0.,0.,\n,1.,1.,0.,0.,0.,0.,{cw:?},{cw:?}"
+    ));
+    for k in 0..=n {
+        b.grid([length * f64::from(k) / f64::from(n), 0.0, 0.0]);
+        b.card(&format!("SPOINT,{}", 1001 + k));
+    }
+    for k in 1..=n {
+        b.card(&format!(
+            "CBEAM,{k},2,{k},{},0.,1.,0.,,\n,,,,,,,,,\n,{},{}",
+            k + 1,
+            1000 + k,
+            1001 + k
+        ));
+    }
+    b.hold("123456", [1]);
+    b.card(&format!("MOMENT,1,{},0,1.+6,1.,0.,0.", n + 1));
+    assert!(b.faults().is_empty(), "{:?}", b.faults());
+    b
+}
+
+#[test]
+fn torsion_with_warping_held_at_one_end_or_both_is_that_of_vlasov() {
+    let g = E / (2.0 + 2.0 * NU);
+    let torque = 1e6;
+    for (j, cw, length) in [
+        (28_800.0, 1e10, 1500.0),
+        (28_800.0, 1e10, 60.0),
+        (2.88e6, 1e8, 9000.0),
+    ] {
+        let lambda = (g * j / (E * cw)).sqrt();
+        let psi = lambda * length;
+        let one_end = torque / (g * j) * (length - psi.tanh() / lambda);
+        let both = torque * length / (g * j) * (1.0 - (psi / 2.0).tanh() / (psi / 2.0));
+        for n in [1, 3] {
+            let mut b = bar(n, length, (j, cw));
+            b.card("SPC1,1,1,1001");
+            let tip = b.solve();
+            near("warping held at the root", tip.at(n + 1)[3], one_end, 1e-7);
+            // The rate of twist at the free end, which its warping point holds.
+            let rate = torque / (g * j) * (1.0 - 1.0 / psi.cosh());
+            near("rate of twist", tip.at(1001 + n)[0], rate, 1e-6);
+            b.card(&format!("SPC1,1,1,{}", 1001 + n));
+            near(
+                "warping held at both ends",
+                b.solve().at(n + 1)[3],
+                both,
+                1e-6,
+            );
+        }
+        // Free to warp: Saint-Venant.
+        let b = bar(2, length, (j, cw));
+        near("free", b.solve().at(3)[3], torque * length / (g * j), 1e-6);
+    }
+}
+
+#[test]
+fn without_warping_points_or_constant_a_beam_twists_as_saint_venant_has_it() {
+    let g = E / (2.0 + 2.0 * NU);
+    let mut b = bar(1, 1500.0, (28_800.0, 1e10));
+    b.text = b.text.replace("\n,1001,1002", "");
+    b.card("SPC1,1,1,1001,1002");
+    near(
+        "no points",
+        b.solve().at(2)[3],
+        1e6 * 1500.0 / (g * 28_800.0),
+        1e-9,
+    );
+    let mut b = bar(1, 1500.0, (28_800.0, 0.0));
+    b.card("SPC1,1,1,1001,1002");
+    near(
+        "no constant",
+        b.solve().at(2)[3],
+        1e6 * 1500.0 / (g * 28_800.0),
+        1e-9,
+    );
+}
+
+/// An I-beam 200 high and 100 wide between midlines, 6 thick, held at the root: shells against one warping CBEAM with the section
+/// constants of thin walls, J = sum b t^3 / 3 and CW = h^2 b^3 t / 24.
+#[test]
+fn an_i_beam_of_shells_twists_as_the_warping_beam() {
+    let (h, w, t, length) = (200.0, 100.0, 6.0, 1500.0);
+    let mut b = Bulk::shell(E, NU, t);
+    let (along, across, up) = (75, 8, 12);
+    let flange =
+        |b: &mut Bulk, z: f64| b.patch(along, across, |x, y| [length * x, w * (y - 0.5), z]);
+    let bottom = flange(&mut b, -h / 2.0);
+    let top = flange(&mut b, h / 2.0);
+    let middle = across / 2;
+    let mut rows: Vec<Vec<u32>> = Vec::new();
+    for i in 0..=along {
+        let mut column = vec![bottom[i][middle]];
+        for k in 1..up {
+            column.push(b.grid([
+                length * i as f64 / along as f64,
+                0.0,
+                h * (k as f64 / up as f64 - 0.5),
+            ]));
+        }
+        column.push(top[i][middle]);
+        rows.push(column);
+    }
+    for i in 0..along {
+        for k in 0..up {
+            b.quad([
+                rows[i][k],
+                rows[i + 1][k],
+                rows[i + 1][k + 1],
+                rows[i][k + 1],
+            ]);
+        }
+    }
+    let root: Vec<u32> = bottom[0]
+        .iter()
+        .chain(&top[0])
+        .chain(&rows[0])
+        .copied()
+        .collect();
+    b.hold("123456", root);
+    // A torque of 1e6 as a couple of the flanges.
+    let p = 1e6 / h;
+    let (low, high) = (bottom[along][middle], top[along][middle]);
+    b.force(high, [0.0, -p, 0.0]);
+    b.force(low, [0.0, p, 0.0]);
+    let s = b.solve();
+    let shells = (s.at(low)[1] - s.at(high)[1]) / h;
+    let j = (2.0 * w + h) * t.powi(3) / 3.0;
+    let cw = h * h * w.powi(3) * t / 24.0;
+    let mut beam = bar(1, length, (j, cw));
+    beam.card("SPC1,1,1,1001");
+    let twist = beam.solve().at(2)[3];
+    // Thin-wall theory leaves out shear strain of the flanges and warping across the walls.
+    near("I-beam of shells over warping beam", shells, twist, 0.03);
+    // Without warping it would twist more than twice as much.
+    let g = E / (2.0 + 2.0 * NU);
+    assert!(1e6 * length / (g * j) > 2.0 * twist);
+}
+
+#[test]
+fn the_warping_constants_of_open_sections_are_those_of_the_books() {
+    let of = |kind: &str, dims: &[f64]| {
+        let mut b = Bulk::default();
+        b.card("MAT1,1,210000.,,.3");
+        let fields: Vec<String> = dims.iter().map(|d| format!("{d:?}")).collect();
+        b.card(&format!("PBEAML,2,1,,{kind},,,,,\n,{}", fields.join(",")));
+        let (a, c) = (b.grid([0.0; 3]), b.grid([100.0, 0.0, 0.0]));
+        b.card(&format!("CBEAM,1,2,{a},{c},0.,1.,0."));
+        assert!(b.faults().is_empty(), "{:?}", b.faults());
+        b.model().beam_properties[0].warping[0]
+    };
+    // I, equal flanges: h^2 b^3 t / 24 with midline sizes.
+    let (h, b, t, tw) = (194.0_f64, 100.0_f64, 6.0, 4.0);
+    let i = h * h * b.powi(3) * t / 24.0;
+    near("I", of("I", &[200.0, b, b, tw, t, t]), i, 1e-9);
+    near("I1", of("I1", &[b - tw, tw, 188.0, 200.0]), i, 1e-9);
+    near("H", of("H", &[194.0 - 6.0, 12.0, b, tw]), i, 1e-9);
+    // Unequal flanges: h^2 I1 I2 / (I1 + I2).
+    let (i1, i2) = (6.0 * b.powi(3) / 12.0, 6.0 * 60.0_f64.powi(3) / 12.0);
+    near(
+        "I, one narrow",
+        of("I", &[200.0, b, 60.0, tw, t, t]),
+        h * h * i1 * i2 / (i1 + i2),
+        1e-9,
+    );
+    // Channel: b^3 h^2 t / 12 (3 b t + 2 h tw) / (6 b t + h tw), midline sizes.
+    let (h, b) = (194.0_f64, 58.0_f64);
+    let channel =
+        b.powi(3) * h * h * t / 12.0 * (3.0 * b * t + 2.0 * h * tw) / (6.0 * b * t + h * tw);
+    near("CHAN", of("CHAN", &[60.0, 200.0, tw, t]), channel, 1e-9);
+    near(
+        "CHAN1",
+        of("CHAN1", &[56.0, tw, 188.0, 200.0]),
+        channel,
+        1e-9,
+    );
+    near("CHAN2", of("CHAN2", &[t, tw, 60.0, 200.0]), channel, 1e-9);
+    // Z: b^3 h^2 t / 12 (b t + 2 h tw) / (2 b t + h tw).
+    let z = b.powi(3) * h * h * t / 12.0 * (b * t + 2.0 * h * tw) / (2.0 * b * t + h * tw);
+    near("Z", of("Z", &[56.0, tw, 188.0, 200.0]), z, 1e-9);
+    for (kind, dims) in [
+        ("T", [100.0, 80.0, 5.0, 5.0]),
+        ("L", [100.0, 80.0, 5.0, 5.0]),
+        ("BOX", [100.0, 80.0, 5.0, 5.0]),
+    ] {
+        assert_eq!(of(kind, &dims), 0.0, "{kind}");
+    }
+}
