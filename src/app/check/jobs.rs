@@ -29,6 +29,7 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
         job.gauges.len(),
         job.units.name()
     ));
+    found.candidates = Some(job.candidates.clone());
     files(work, &job, found, into);
     if let Some(m) = &job.measured {
         match job::strain::read_strain(&mut work.inputs, &job, &m.strain) {
