@@ -1,4 +1,4 @@
-//! The scripts of a page: one for figures, one for the model, one for pointing at it; each only where it is needed.
+//! The scripts of a page: for figures, for the model, for pointing at it; each only where it is needed.
 
 /// Attributes of what they draw.
 const CHART: &str = "data-figure=\"chart\"";
@@ -22,7 +22,8 @@ pub fn scripts(body: &str) -> String {
         return String::new();
     }
     format!(
-        "<script>\n(function () {{\n\"use strict\";\n{}\n{}}})();\n</script>",
+        "<script>\n(function () {{\n\"use strict\";\n{}\n{}\n{}}})();\n</script>",
+        include_str!("../page/common.js"),
         parts.join("\n"),
         include_str!("../page/start.js")
     )

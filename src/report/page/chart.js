@@ -1,14 +1,7 @@
 // Figures in two dimensions, as SVG.
 const PALETTE = ["#1f618d", "#c0392b", "#0b7a3e", "#d68910", "#7d3c98", "#148f9c", "#8e5a2b", "#566573", "#b03a7c", "#6b8e23"];
 const HEAT = [[0, [31, 78, 140]], [0.25, [134, 177, 216]], [0.5, [246, 247, 248]], [0.75, [238, 157, 114]], [1, [178, 24, 43]]];
-const FONT = "11px system-ui, sans-serif";
 const ROW = 14;
-
-const ruler = document.createElement("canvas").getContext("2d");
-function widthOf(text, font) {
-  ruler.font = font || FONT;
-  return ruler.measureText(text).width;
-}
 
 // As much of a text as fits.
 function fitted(text, room) {
@@ -16,14 +9,6 @@ function fitted(text, room) {
   let n = text.length;
   while (n > 1 && widthOf(text.slice(0, n) + "…") > room) n--;
   return text.slice(0, n) + "…";
-}
-
-function svg(name, attributes, parent, text) {
-  const e = document.createElementNS("http://www.w3.org/2000/svg", name);
-  for (const k in attributes) e.setAttribute(k, attributes[k]);
-  if (text !== undefined) e.textContent = text;
-  if (parent) parent.appendChild(e);
-  return e;
 }
 
 function significant(v, digits) {
@@ -292,7 +277,7 @@ function chart(figure, data) {
       if (Math.abs(x(event) - from) > 12) { zoom = ends; draw(); } else said.textContent = wordsAt(s, x(event), y(event));
     });
     if (zooms) root.addEventListener("dblclick", () => { zoom = null; draw(); });
-    if (zooms && !said.textContent) said.textContent = "Drag across to look closer, double click for all of it.";
+    if (!said.textContent) said.textContent = zooms ? "Drag across to look closer, double click for all of it." : "Point at it to read its values.";
   }
 
   function wordsAt(s, x, y) {

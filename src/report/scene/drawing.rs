@@ -110,7 +110,9 @@ fn note(scene: &Scene, parts: &[Part], bytes: usize) -> Markup {
             @if scene.marks.iter().any(|m| m.axes.is_some()) { "Strokes lie along the axes of the gauges: red on the top (Z2), blue on the bottom (Z1) of the element. " }
             @if !scene.fields.is_empty() { "Colour: the largest principal strain by magnitude, from the centres of the elements. " }
             @if !scene.arrows.is_empty() { "Arrows end where the load acts: green forces, violet moments (right-hand rule); a length compares within a kind. " }
-            @if !whole { "The picture is coarser than the model, of the strains drawn together the largest. Nothing was computed on it. " }
+            @if !whole { "The picture is coarser than the model, of the strains drawn together the largest. Nothing was computed on it. "
+                @if matches!(scene.pointing, Pointing::Places(_)) { "Brush and box take elements of the properties that are drawn as they are; the others are picked as a whole. " }
+            }
             span data-role="size" { (drawn) " triangles for " (all) " faces, " (bytes.div_ceil(1000)) " kB of this page." }
         }
     }
