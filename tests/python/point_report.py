@@ -4,7 +4,7 @@
 
 The plan: {"width": 1280, "touch": false, "steps": [[word, ..]..]}. Steps: ["view", "z"], ["state", "allowed"], ["tool", "brush"],
 ["radius", 3], ["through", true], ["property", 7], ["drag", [x, y, z], ..] over these places of the model, ["two fingers"], ["undo"],
-["clear"], ["save"], ["lines"]. Prints one JSON object: "lines" (of every step "lines": those for the job, those of gauges), "saved",
+["clear"], ["save"], ["lines"], ["choose", "field", "-1"], ["picture", "scene.png"]. Prints one JSON object: "lines" (of every step "lines": those for the job, those of gauges), "saved",
 "camera" (before and after two fingers), "gauges", "errors", "requests", "seconds" of the longest drag. Exit code 77 where playwright or
 chromium is absent.
 """
@@ -113,6 +113,11 @@ def run(page, plan):
             with page.expect_download() as download:
                 hand.press("[data-written=places] [data-role=save]")
             out["saved"] = {"name": download.value.suggested_filename, "text": open(download.value.path()).read()}
+        elif word == "picture":
+            page.mouse.move(0, 0)
+            page.locator(".scene .canvas").screenshot(path=rest[0])
+        elif word == "choose":
+            page.locator(f"[data-role={rest[0]}]").select_option(rest[1])
         elif word == "gauges":
             out["gauges"].append(page.evaluate(GAUGES))
         elif word == "lines":
