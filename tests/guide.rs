@@ -87,7 +87,7 @@ fn every_command_of_the_guide_works_and_the_files_it_names_are_written() {
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
     let pages = pages();
-    assert_eq!(pages.len(), 6);
+    assert_eq!(pages.len(), 7);
     for example in ["bridge", "onboard"] {
         copy_example(example, &folder);
     }

@@ -10,6 +10,7 @@ mod exchange;
 #[cfg(feature = "pdf")]
 mod paper;
 mod plate;
+mod pointing;
 mod python;
 mod records;
 mod report;

@@ -2,9 +2,19 @@
 
 use serde_json::Value;
 use std::process::Command;
+use std::sync::Mutex;
+
+/// One browser at a time: they draw in software.
+static BROWSER: Mutex<()> = Mutex::new(());
 
 /// The JSON object that a script prints; `None`, with a message, where Python or a package is absent.
 pub fn read_by(script: &str, arguments: &[&str]) -> Option<Value> {
+    let opens = ["open_report.py", "point_report.py"].contains(&script);
+    let _alone = opens.then(|| {
+        BROWSER
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner)
+    });
     let python = std::env::var("STRAINBRIDGE_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let path = format!("{}/tests/python/{script}", env!("CARGO_MANIFEST_DIR"));
     let Ok(read) = Command::new(python).arg(path).args(arguments).output() else {

@@ -3,7 +3,8 @@
 use crate::exchange::{job, plate, strainbridge};
 use crate::python::read_by;
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// Opens reports and gives what was seen by file and width; `None` without Chromium.
 fn opened(reports: &[&Path]) -> Option<Vec<Value>> {
@@ -19,6 +20,7 @@ fn is_sound(page: &Value, titles: &[&str], figures: &[&str]) {
     assert_eq!(page["requests"], serde_json::json!([]));
     // Nothing stands out to the side, so a phone needs no scrolling there.
     assert_eq!(page["wider"], 0);
+    assert_eq!(page["overlaps"], serde_json::json!([]));
     let list = page["titles"].as_array().unwrap();
     assert_eq!(list[0], "Findings");
     for title in titles {
@@ -40,6 +42,98 @@ fn names_a_gauge(page: &Value) {
     let picked = page["picked"].as_array().unwrap();
     let hit = |p: &Value| p[1].as_str().unwrap().starts_with(p[0].as_str().unwrap());
     assert!(picked.iter().any(hit), "{picked:?}");
+}
+
+/// The model says its size, has its views, and leaves the wheel to the page until it is clicked.
+fn has_a_model(page: &Value) {
+    let size = page["size"].as_str().unwrap();
+    assert!(
+        size.contains(" triangles for ") && size.contains(" kB"),
+        "{size}"
+    );
+    assert_eq!(
+        page["views"],
+        serde_json::json!(["3D", "front", "side", "top"])
+    );
+    let Some(wheel) = page["wheel"].as_object() else {
+        return;
+    };
+    let number = |when: &str, what: &str| wheel[when][what].as_f64().unwrap();
+    assert!(
+        number("before", "scrolled") > 30.0 && number("before", "zoom") == 1.0,
+        "{wheel:?}"
+    );
+    assert!(
+        number("after", "scrolled") == 0.0 && number("after", "zoom") != 1.0,
+        "{wheel:?}"
+    );
+}
+
+/// Runs a command on files of a folder of `examples/`; where its page lies.
+fn page_of(command: &str, folder: &str, files: &[&str]) -> PathBuf {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let out = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("pages")
+        .join(command)
+        .join(folder);
+    let _ = std::fs::remove_dir_all(&out);
+    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .arg(command)
+        .args(files)
+        .arg("--out")
+        .arg(&out)
+        .current_dir(examples.join(folder))
+        .output()
+        .unwrap();
+    let error = String::from_utf8_lossy(&done.stderr);
+    assert_eq!(done.status.code(), Some(0), "{command} {files:?}\n{error}");
+    out.join("report.html")
+}
+
+/// Bytes that a page without a model may have; those here with one, of a few hundred elements, have no more.
+const MOST_BYTES: f64 = 1e6;
+
+#[test]
+fn every_kind_of_page_opens_wide_and_on_a_phone_without_errors_requests_or_texts_over_each_other() {
+    let pages = [
+        ("check", "frame", &["place.toml"][..]),
+        ("solve", "frame", &["place.toml"]),
+        ("sensitivity", "frame", &["recover.toml"]),
+        ("place", "frame", &["place.toml"]),
+        ("recover", "frame", &["recover.toml"]),
+        ("respond", "frame", &["respond.toml"]),
+        ("payload", "frame", &["payload.toml"]),
+        ("ballast", "frame", &["ballast.toml"]),
+        ("study", "frame", &["study.toml"]),
+        ("modes", "frame", &["place.toml"]),
+        ("reconcile", "frame", &["reconcile.toml"]),
+        ("reconcile", "quarter_truck", &["reconcile.toml"]),
+        ("identify", "quarter_truck", &["identify.toml"]),
+        ("calibrate", "bridge", &["calibrate.toml"]),
+        ("calibrate", "onboard", &["calibrate.toml"]),
+    ];
+    let reports: Vec<PathBuf> = pages.iter().map(|(c, d, f)| page_of(c, d, f)).collect();
+    let paths: Vec<&Path> = reports.iter().map(PathBuf::as_path).collect();
+    let Some(seen) = opened(&paths) else {
+        return;
+    };
+    for (i, page) in seen.iter().enumerate() {
+        let (command, folder, _) = pages[i / 2];
+        is_sound(page, &[], &[]);
+        assert!(
+            page["bytes"].as_f64().unwrap() < MOST_BYTES,
+            "{command} {folder}: {}",
+            page["bytes"]
+        );
+        let models = [
+            "check", "solve", "place", "recover", "respond", "payload", "modes",
+        ];
+        let drawn = page.get("size").is_some();
+        assert!(drawn || !models.contains(&command), "{command}");
+        if drawn {
+            has_a_model(page);
+        }
+    }
 }
 
 const SCENE: &str = "the model in three dimensions";
@@ -93,6 +187,7 @@ fn reports_open_without_errors_or_requests_show_their_figures_and_name_the_gauge
     for (i, page) in pages.iter().enumerate() {
         let (titles, figures) = kinds[i / 2];
         is_sound(page, titles, figures);
+        has_a_model(page);
         if i / 2 < 3 {
             names_a_gauge(page);
         }

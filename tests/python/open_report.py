@@ -3,35 +3,17 @@
     python open_report.py REPORT.html...
 
 Prints one JSON object: by file and width the seconds until all is drawn, errors of the console, requests that leave the file, titles,
-what each figure shows, whether the page is wider than the screen, and what the scene says when a gauge is pointed at. Exit code 77
-where playwright or chromium is absent. Pictures go to the folder that SHOTS names.
+what each figure shows, texts that lie over each other, whether the page is wider than the screen, whether the wheel scrolls it, the size
+of the model drawn, and what the scene says when a gauge is pointed at. Exit code 77 where playwright or chromium is absent. Pictures go to
+the folder that SHOTS names.
 """
 import base64
 import json
 import os
-import re
-import shutil
 import sys
 import time
 
-try:
-    from playwright.sync_api import sync_playwright
-except Exception as e:
-    print(f"absent: {e}")
-    sys.exit(77)
-
-chromium = shutil.which("chromium") or shutil.which("chromium-browser")
-if chromium is None:
-    print("absent: chromium")
-    sys.exit(77)
-
-FLAGS = [
-    "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic",
-    "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync",
-]
-
-# What Chromium says of software rendering, and of our own look at the pixels.
-HARMLESS = re.compile("GPU stall|willReadFrequently")
+from browser import HARMLESS, OVERLAPS, chromium
 
 # Share of the pixels that differ from the one in the corner, and the number of colours, of a PNG.
 COLOURS = """async (png) => {
@@ -50,20 +32,8 @@ COLOURS = """async (png) => {
 
 # Where the gauges stand on the screen, and their names.
 GAUGES = """() => {
-  const plot = document.querySelector(".scene .canvas");
-  const scene = plot._fullLayout.scene._scene;
-  const box = scene.container.getBoundingClientRect();
-  const { model, view, projection } = scene.glplot.cameraParams;
-  const times = (m, v) => [0, 1, 2, 3].map((r) => [0, 1, 2, 3].reduce((s, c) => s + m[4 * c + r] * v[c], 0));
-  const out = [];
-  for (const trace of plot.data.filter((t) => t.name === "gauges" && t.visible !== false)) {
-    trace.x.forEach((x, i) => {
-      const at = [x, trace.y[i], trace.z[i]].map((v, k) => v * scene.dataScale[k]).concat([1]);
-      const p = times(projection, times(view, times(model, at)));
-      out.push({ name: trace.text[i], x: box.left + (box.width * (1 + p[0] / p[3])) / 2, y: box.top + (box.height * (1 - p[1] / p[3])) / 2 });
-    });
-  }
-  return out;
+  const { camera, marks, box, lifted } = document.querySelector(".scene").scene, at = box.getBoundingClientRect();
+  return marks.map((m) => { const p = camera.project(lifted(m)); return { name: m.name, x: at.left + box.clientLeft + p[0], y: at.top + box.clientTop + p[1] }; });
 }"""
 
 
@@ -83,6 +53,7 @@ def look(browser, path, width):
     page.wait_for_timeout(300)
     seen = {
         "seconds": time.time() - start - 0.3,
+        "bytes": os.path.getsize(path),
         "titles": page.locator("h2").all_inner_texts(),
         "wider": page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth"),
         "figures": [],
@@ -96,8 +67,11 @@ def look(browser, path, width):
         drawn = page.evaluate(COLOURS, base64.b64encode(png).decode())
         seen["figures"].append({"kind": figure.get_attribute("data-figure"), "label": figure.get_attribute("aria-label"), **drawn})
     if page.locator(".scene").count():
-        page.locator(".scene .canvas").scroll_into_view_if_needed()
+        view = page.locator(".scene .canvas")
+        view.scroll_into_view_if_needed()
         page.wait_for_timeout(300)
+        seen["size"] = page.locator("[data-role=size]").inner_text()
+        seen["views"] = page.locator(".scene [data-view]").all_inner_texts()
         gauges = page.evaluate(GAUGES)
         seen["picked"] = []
         for gauge in gauges[:12]:
@@ -108,6 +82,16 @@ def look(browser, path, width):
             seen["picked"].append([gauge["name"], page.locator(".scene .pick").inner_text()])
             if seen["picked"][-1][1].startswith(gauge["name"] + ":"):
                 break
+        if not phone:
+            seen["wheel"] = wheel(page, view)
+        # Every view, so that no names lie over each other in any.
+        seen["overlaps"] = []
+        for button in page.locator(".scene [data-view]").all():
+            button.click()
+            page.wait_for_timeout(150)
+            seen["overlaps"] += page.evaluate(OVERLAPS)
+    else:
+        seen["overlaps"] = page.evaluate(OVERLAPS)
     if os.environ.get("SHOTS"):
         name = os.path.basename(os.path.dirname(os.path.abspath(path))) + f"-{width}.png"
         page.evaluate("window.scrollTo(0, 0)")
@@ -117,8 +101,40 @@ def look(browser, path, width):
     return seen
 
 
-with sync_playwright() as play:
-    browser = play.chromium.launch(executable_path=chromium, args=FLAGS)
+def wheel(page, view):
+    """How far the wheel scrolls the page over the picture, before and after it is clicked, and by how much it zooms."""
+    far = "document.querySelector('.scene').scene.camera.far"
+    out = {}
+    for name in ["before", "after"]:
+        page.evaluate("window.scrollTo(0, 0)")
+        view.scroll_into_view_if_needed()
+        box = view.bounding_box()
+        x, y = box["x"] + 20, box["y"] + 20
+        if name == "after":
+            page.mouse.click(x, y)
+        page.mouse.move(x, y)
+        top, was = page.evaluate("window.scrollY"), page.evaluate(far)
+        page.mouse.wheel(0, -60 if top > 60 else 60)
+        page.wait_for_timeout(200)
+        out[name] = {"scrolled": abs(page.evaluate("window.scrollY") - top), "zoom": page.evaluate(far) / was}
+    return out
+
+
+def sees_overlaps(browser):
+    """Of two words over each other, one beside them and one that is clipped away, the first pair is said."""
+    page = browser.new_page()
+    at = "margin:0;position:absolute;left:20px;top:%dpx"
+    page.set_content(
+        f"<p style='{at % 20}'>one</p><p style='{at % 26}'>two</p><p style='{at % 90}'>three</p>"
+        f"<div style='{at % 120};height:10px;overflow:hidden'><p style='margin:0'>a<br>b</p></div><p style='{at % 132}'>four</p>"
+    )
+    pairs = page.evaluate(OVERLAPS)
+    page.close()
+    return pairs
+
+
+with chromium() as browser:
+    pairs = sees_overlaps(browser)
+    assert pairs == [["one", "two"]], pairs
     found = {path: {str(width): look(browser, path, width) for width in (1280, 390)} for path in sys.argv[1:]}
-    browser.close()
 print(json.dumps(found))

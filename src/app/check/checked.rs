@@ -3,6 +3,7 @@
 use super::decks::DeckEntry;
 use super::results::ResultEntry;
 use crate::app::fault::FaultList;
+use crate::app::job::Candidates;
 use crate::app::outcome::{Answer, StatedUnits};
 use serde::{Serialize, Serializer};
 
@@ -19,6 +20,9 @@ pub struct Checked {
     /// Jobs in words.
     #[serde(skip)]
     pub jobs: Vec<String>,
+    /// What the last job says of where gauges may go.
+    #[serde(skip)]
+    pub candidates: Option<Candidates>,
     #[serde(skip)]
     pub(super) units: StatedUnits,
 }

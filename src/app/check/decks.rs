@@ -75,6 +75,11 @@ impl DeckEntry {
         }
     }
 
+    /// Its mesh.
+    pub fn model(&self) -> Option<&Model> {
+        self.model.as_ref()
+    }
+
     /// For people.
     pub fn text(&self) -> String {
         let cards: Vec<String> = self.cards.iter().map(|(k, n)| format!("{k} {n}")).collect();

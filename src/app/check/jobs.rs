@@ -30,6 +30,7 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
         job.gauges.len(),
         job.units.name()
     ));
+    found.candidates = Some(job.candidates.clone());
     files(work, &job, found, into);
     if let Some(m) = &job.measured {
         match read_strain_file(&mut work.inputs, &job, &m.strain) {

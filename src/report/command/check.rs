@@ -5,7 +5,9 @@ use crate::app::check::Checked;
 use crate::app::fault::Faults;
 use crate::app::outcome::Outcome;
 use crate::app::output::Output;
+use crate::model::Model;
 use crate::report::page::{Block, Page, Section};
+use crate::report::scene::{Places, scene_of_model, scene_section};
 
 impl Report for Outcome<Checked> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
@@ -32,12 +34,19 @@ fn page(found: &Outcome<Checked>) -> Page {
         false => Block::table(&["file:line: field: what is wrong: what to do"], faults),
     };
     let mut sections = vec![Section::new("Faults", vec![list])];
-    let decks = found.decks.iter().map(|d| ("Deck", d.text()));
-    let results = found.results.iter().map(|r| ("Results", r.text()));
-    sections.extend(
-        decks
-            .chain(results)
-            .map(|(title, text)| Section::new(title, vec![Block::Lines(text)])),
-    );
+    let said = |title: &str, text: String| Section::new(title, vec![Block::Lines(text)]);
+    for d in &found.decks {
+        sections.push(said("Deck", d.text()));
+        let drawn = |m: &&Model| !(m.shells.is_empty() && m.solids.is_empty());
+        if let Some(model) = d.model().filter(drawn) {
+            let places = found
+                .candidates
+                .as_ref()
+                .map_or_else(Places::default, Places::of);
+            sections.push(scene_section("Model", &scene_of_model(model, places)));
+        }
+    }
+    let results = found.results.iter();
+    sections.extend(results.map(|r| said("Results", r.text())));
     Page::new("Check", "What is in the files", &found.findings, sections)
 }

@@ -10,7 +10,7 @@ use crate::app::strain::LoadSigma;
 use crate::placement::Role;
 use crate::report::figure::CountPoint;
 use crate::report::page::{Paper, number};
-use crate::report::scene::{placed_mark, scene_of};
+use crate::report::scene::{Places, Pointing, placed_mark, scene_of};
 use crate::report::spreadsheet::gauge_sheets;
 use crate::report::strain::{
     HowMany, gauges_csv, gauges_vtu, gluing_sheet_csv, gluing_sheet_md, place_page, sensitivity_csv,
@@ -41,7 +41,8 @@ impl Report for Outcome<Placed> {
         out.write_bytes("gluing_sheet.md", sheet.as_bytes())?;
         out.write("gauges.vtu", |w| gauges_vtu(w, &self.gauges))?;
         let marks = self.gauges.iter().map(placed_mark).collect();
-        let scene = scene_of(job, &self.fields, marks);
+        let mut scene = scene_of(job, &self.fields, marks);
+        scene.pointing = Pointing::Places(Places::of(&job.candidates));
         let page = place_page(
             &job.title,
             &scene,

@@ -10,7 +10,7 @@ use crate::reconcile::strain::StrainFrame;
 use crate::report::csv_cell;
 use crate::report::figure::GaugePoints;
 use crate::report::page::Paper;
-use crate::report::scene::{Mark, Scene, fields_of, mark_of_gap};
+use crate::report::scene::{Mark, Pointing, Scene, fields_of, mark_of_gap};
 use crate::report::strain::{RunStrain, reconcile_page};
 use std::fmt::Write;
 
@@ -41,6 +41,8 @@ pub(super) fn write_strain(
         marks,
         fields: fields.map_or_else(Vec::new, |f| fields_of(job, f)),
         arrows: Vec::new(),
+        length: job.units.unit(crate::units::Quantity::Length).name,
+        pointing: Pointing::Nothing,
     });
     let page = reconcile_page(
         &job.title,

@@ -3,8 +3,7 @@
 use maud::{Markup, PreEscaped, Render, html};
 use serde_json::{Value, json};
 
-/// What plotly.js is given: traces and axes. Written as its own JSON, for the typed builders of the crate know neither packed arrays nor
-/// figures that share a choice.
+/// Traces and axes, in words of their own that `page/chart.js` draws as SVG and `report::pdf` on paper.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     /// What it shows, for screen readers and tests.

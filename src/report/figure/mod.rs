@@ -1,4 +1,4 @@
-//! Figures of a page: plain numbers in, what the plotting script draws out. The script and its data stand in the page: no network.
+//! Figures of a page: plain numbers in, what the script of the page draws as SVG out. The script and its data stand in the page: no network.
 
 mod agreement;
 mod chart;
@@ -20,8 +20,8 @@ pub use heat_map::heat_map;
 pub use history::{LoadTrace, history};
 pub use intervals::{IntervalRow, intervals};
 pub use lines::{Line, Scale, lines};
-pub(in crate::report) use packed::{packed_f32, packed_i16, packed_u32, short, shorts};
-pub(in crate::report) use script::{DRAWN, scripts};
+pub(in crate::report) use packed::{STEPS, packed_deltas, short, shorts, steps_of};
+pub(in crate::report) use script::scripts;
 
 #[cfg(test)]
 mod tests;

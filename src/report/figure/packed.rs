@@ -1,4 +1,4 @@
-//! Numbers in a page: arrays as base64 of little-endian bytes (plotly.js reads `{dtype, bdata}`), single numbers with the digits that show.
+//! Numbers in a page: arrays as base64 of their steps, single numbers with the digits that show.
 
 use serde_json::{Value, json};
 
@@ -20,38 +20,38 @@ fn base64(bytes: &[u8]) -> String {
     out
 }
 
-/// Reals of 32 bits.
-pub fn packed_f32(values: impl Iterator<Item = f64>) -> Value {
-    let bytes: Vec<u8> = values.flat_map(|v| (v as f32).to_le_bytes()).collect();
-    json!({ "dtype": "f4", "bdata": base64(&bytes) })
-}
-
-/// Whole numbers, of 16 bits where all of them fit.
-pub fn packed_u32(values: &[u32]) -> Value {
-    if values.iter().all(|v| *v <= u32::from(u16::MAX)) {
-        let bytes: Vec<u8> = values
-            .iter()
-            .flat_map(|v| (*v as u16).to_le_bytes())
-            .collect();
-        return json!({ "dtype": "u2", "bdata": base64(&bytes) });
+/// Whole numbers in rows of `columns`, each less the one above it: base64 of variable-length bytes, seven bits each from the lowest, the eighth
+/// says that more follow; 0, -1, 1, -2 .. count as 0, 1, 2, 3 ..
+pub fn packed_deltas(values: &[i64], columns: usize) -> Value {
+    let mut bytes = Vec::with_capacity(2 * values.len());
+    for (i, v) in values.iter().enumerate() {
+        let above = i.checked_sub(columns).map_or(0, |k| values[k]);
+        let step = v.wrapping_sub(above);
+        let mut left = ((step << 1) ^ (step >> 63)) as u64;
+        while left > 127 {
+            bytes.push((left & 127) as u8 | 128);
+            left >>= 7;
+        }
+        bytes.push(left as u8);
     }
-    let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
-    json!({ "dtype": "u4", "bdata": base64(&bytes) })
+    json!(base64(&bytes))
 }
 
-/// Reals as shares of `most`, in 32767 steps; [`i16::MIN`] where there is none.
-pub fn packed_i16(values: impl Iterator<Item = f64>, most: f64) -> Value {
+/// Steps between nothing and the largest in [`steps_of`].
+pub const STEPS: f64 = 2047.0;
+
+/// Reals as shares of `most`, in [`STEPS`]; one step more below the least where there is none.
+pub fn steps_of(values: impl Iterator<Item = f64>, most: f64) -> Vec<i64> {
     let step = |v: f64| {
         if !v.is_finite() {
-            i16::MIN
+            -(STEPS as i64) - 1
         } else if most > 0.0 {
-            (v / most * 32767.0).round().clamp(-32767.0, 32767.0) as i16
+            (v / most * STEPS).round().clamp(-STEPS, STEPS) as i64
         } else {
             0
         }
     };
-    let bytes: Vec<u8> = values.flat_map(|v| step(v).to_le_bytes()).collect();
-    json!({ "dtype": "i2", "bdata": base64(&bytes) })
+    values.map(step).collect()
 }
 
 /// Six significant digits; null where there is no number.

@@ -1,22 +1,30 @@
-//! The scripts of a page: plotly.js as the crate `plotly` embeds it, and our own that feeds it.
+//! The scripts of a page: for figures, for the model, for pointing at it; each only where it is needed.
 
-use std::sync::OnceLock;
+/// Attributes of what they draw.
+const CHART: &str = "data-figure=\"chart\"";
+const SCENE: &str = "data-figure=\"scene\"";
+const POINTING: &str = "data-pointing";
 
-/// Attribute of everything that the scripts draw; a page without it needs none.
-pub const DRAWN: &str = "data-figure";
-
-const END: &str = "</script>";
-
-/// Script elements. The crate's string also holds MathJax, which nothing here needs: only its first script is kept.
-pub fn scripts() -> &'static str {
-    static SCRIPTS: OnceLock<String> = OnceLock::new();
-    SCRIPTS.get_or_init(|| {
-        let all = plotly::Plot::offline_js_sources();
-        let end = all.find(END).map_or(all.len(), |i| i + END.len());
-        let mut out = all[..end].to_owned();
-        out.push_str("\n<script>");
-        out.push_str(include_str!("../page.js"));
-        out.push_str(END);
-        out
-    })
+/// Script elements for a page with this body; empty where nothing is to be drawn.
+pub fn scripts(body: &str) -> String {
+    let needed = [
+        (CHART, include_str!("../page/chart.js")),
+        (SCENE, include_str!("../page/scene.js")),
+        (SCENE, include_str!("../page/scene_view.js")),
+        (POINTING, include_str!("../page/pointing.js")),
+    ];
+    let parts: Vec<&str> = needed
+        .into_iter()
+        .filter(|n| body.contains(n.0))
+        .map(|n| n.1)
+        .collect();
+    if parts.is_empty() {
+        return String::new();
+    }
+    format!(
+        "<script>\n(function () {{\n\"use strict\";\n{}\n{}\n{}}})();\n</script>",
+        include_str!("../page/common.js"),
+        parts.join("\n"),
+        include_str!("../page/start.js")
+    )
 }

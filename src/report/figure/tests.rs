@@ -1,27 +1,18 @@
-use super::packed::{packed_f32, packed_i16, packed_u32, short};
+use super::packed::{packed_deltas, short, steps_of};
 use super::*;
 use maud::Render;
 use serde_json::json;
 
 #[test]
-fn packed_numbers_are_the_base64_of_their_little_endian_bytes() {
-    // Base64 by RFC 4648 of 00 00 80 3f (1.0), of 01 00 02 00 and of 00 00 01 00 (65536), worked by hand.
+fn packed_numbers_are_the_base64_of_their_steps_in_variable_length() {
+    // Rows of two, worked by hand: 1, 2, then 301 - 1 = 300 and 1 - 2 = -1. Steps 1, 2, 300, -1 count as 2, 4, 600, 1; 600 is 4 * 128 + 88, so
+    // the bytes are 02 04 d8 04 01; base64 by RFC 4648.
+    assert_eq!(packed_deltas(&[1, 2, 301, 1], 2), json!("AgTYBAE="));
+    assert_eq!(packed_deltas(&[], 3), json!(""));
+    // 2047 stands for the largest, -2048 for nothing.
     assert_eq!(
-        packed_f32([1.0].into_iter()),
-        json!({ "dtype": "f4", "bdata": "AACAPw==" })
-    );
-    assert_eq!(
-        packed_u32(&[1, 2]),
-        json!({ "dtype": "u2", "bdata": "AQACAA==" })
-    );
-    assert_eq!(
-        packed_u32(&[65_536]),
-        json!({ "dtype": "u4", "bdata": "AAABAA==" })
-    );
-    // -32768 stands for nothing, 32767 for the largest.
-    assert_eq!(
-        packed_i16([f64::NAN, 2.0, -2.0].into_iter(), 2.0)["bdata"],
-        "AID/fwGA"
+        steps_of([f64::NAN, 2.0, -2.0, 0.0].into_iter(), 2.0),
+        [-2048, 2047, -2047, 0]
     );
 }
 
@@ -32,14 +23,22 @@ fn numbers_keep_six_digits_and_what_is_none_is_null() {
 }
 
 #[test]
-fn the_scripts_hold_plotly_and_load_nothing() {
-    let text = scripts();
-    assert!(text.contains("plotly.js v"));
-    // The second script of the crate's string.
-    assert!(!text.contains("MathJax.loader") && !text.contains("MathJax ="));
-    // Nothing is loaded by address.
-    assert!(!text.contains("<script src") && !text.contains("import(\"http"));
-    assert_eq!(text.matches("</script>").count(), 2);
+fn a_page_has_the_scripts_that_it_needs_and_they_load_nothing() {
+    assert_eq!(scripts("<p>words</p>"), "");
+    let figure = scripts("<figure data-figure=\"chart\">");
+    let scene = scripts("<figure data-figure=\"scene\"><div data-pointing>");
+    assert!(!figure.contains("webgl2") && scene.contains("webgl2"));
+    for text in [&figure, &scene] {
+        assert!(!text.contains("src=") && !text.contains("import(") && !text.contains("fetch("));
+        // The one address is a name: that of SVG's elements.
+        assert_eq!(
+            text.matches("http").count(),
+            text.matches("http://www.w3.org/2000/svg").count()
+        );
+        assert_eq!(text.matches("</script>").count(), 1);
+    }
+    // A page with figures and no scene stays far below 1 MB.
+    assert!(figure.len() < 60_000, "{}", figure.len());
 }
 
 #[test]

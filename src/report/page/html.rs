@@ -2,11 +2,11 @@
 
 use super::block::{Block, Page, Table};
 use crate::finding::{Finding, Severity};
-use crate::report::figure::{DRAWN, scripts};
+use crate::report::figure::scripts;
 use crate::units::number;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-const STYLE: &str = include_str!("../page.css");
+const STYLE: &str = include_str!("page.css");
 
 impl Page {
     /// `report.html`: works from the file, without a network.
@@ -17,7 +17,7 @@ impl Page {
                 section { h2 { (s.title) } @for b in &s.blocks { (block(b)) } }
             }
         };
-        let drawn = sections.0.contains(DRAWN);
+        let scripts = scripts(&sections.0);
         html! {
             (DOCTYPE)
             html lang="en" {
@@ -34,7 +34,7 @@ impl Page {
                     (verdict(&findings))
                     (listed(&findings))
                     (sections)
-                    @if drawn { (PreEscaped(scripts())) }
+                    (PreEscaped(scripts))
                 }
             }
         }

@@ -13,6 +13,7 @@ pub(super) fn coarsened(model: &Model, part: &Part, most: usize) -> Drawn {
         vertex_of: (0..part.grids.len() as u32).collect(),
         vertices: (0..part.grids.len() as u32).collect(),
         triangles: triangles(part, &(0..part.grids.len() as u32).collect::<Vec<_>>()),
+        whole: true,
     };
     if whole.triangles.len() <= most {
         return whole;
@@ -74,6 +75,7 @@ fn gathered(part: &Part, at: &[Vec3], lo: Vec3, h: f64) -> Drawn {
     Drawn {
         vertices: nearest.iter().map(|n| n.1).collect(),
         triangles: triangles(part, &vertex_of),
+        whole: false,
         vertex_of,
     }
 }

@@ -4,8 +4,10 @@ mod coarse;
 mod drawing;
 mod of_job;
 mod outline;
+mod pack;
 mod paint;
 mod part;
+mod pointing;
 mod skin;
 mod solids;
 mod types;
@@ -13,10 +15,10 @@ mod view;
 
 pub use drawing::scene_section;
 pub use of_job::{
-    Shown, fields_of, mark_of_gap, placed_mark, run_arrows, scene_of, scene_of_job,
+    Shown, fields_of, mark_of_gap, placed_mark, run_arrows, scene_of, scene_of_job, scene_of_model,
     scene_of_solution,
 };
-pub use types::{Arrow, ArrowSet, Field, Mark, Scene, Twist};
+pub use types::{Arrow, ArrowSet, Field, Mark, Places, Pointing, Scene, Twist};
 pub use view::SceneView;
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The scene of a job: the job's unit loads as strain and arrows, gauges, recovered loads.
 
-use super::types::{Arrow, ArrowSet, Field, Mark, Scene, Twist};
+use super::types::{Arrow, ArrowSet, Field, Mark, Places, Pointing, Scene, Twist};
 use crate::app::job::{Job, LoadActs};
 use crate::app::place::PlacedGauge;
 use crate::app::strain::{Fields, LoadUnits, Prepared, load_units};
@@ -10,6 +10,7 @@ use crate::placement::Role;
 use crate::reconcile::ChannelGap;
 use crate::report::page::number;
 use crate::report::strain::RecoveredRun;
+use crate::units::Quantity;
 
 /// Load cases to choose from, and runs.
 const MOST_FIELDS: usize = 24;
@@ -54,6 +55,8 @@ pub fn scene_of<'a>(job: &Job, fields: &'a Fields, marks: Vec<Mark>) -> Scene<'a
             name: "all unit loads".into(),
             arrows: arrows.collect(),
         }),
+        length: job.units.unit(Quantity::Length).name,
+        pointing: Pointing::Nothing,
     }
 }
 
@@ -223,6 +226,20 @@ pub fn scene_of_solution<'a>(
         marks: Vec::new(),
         fields: fields.collect(),
         arrows: arrows.collect(),
+        length: "",
+        pointing: Pointing::Nothing,
+    }
+}
+
+/// The scene of a model alone, for planning where gauges may go.
+pub fn scene_of_model<'a>(model: &'a Model, places: Places) -> Scene<'a> {
+    Scene {
+        model,
+        marks: Vec::new(),
+        fields: Vec::new(),
+        arrows: Vec::new(),
+        length: "",
+        pointing: Pointing::Places(places),
     }
 }
 

@@ -43,4 +43,6 @@ pub(super) struct Drawn {
     pub vertices: Vec<u32>,
     /// Corners, indices into `vertices`.
     pub triangles: Vec<[u32; 3]>,
+    /// Whether every face of the part is drawn as it is.
+    pub whole: bool,
 }

@@ -7,19 +7,31 @@ use crate::model::{GridIx, Model};
 use std::collections::{BTreeMap, HashMap};
 
 /// Triangles drawn at most, and with many fields to choose from: each of them has its own numbers in the page.
-const MOST_TRIANGLES: usize = 60_000;
-const LEAST_TRIANGLES: usize = 20_000;
+const MOST_TRIANGLES: usize = 120_000;
+const LEAST_TRIANGLES: usize = 40_000;
 /// Fields up to which the picture is as fine as it gets.
 const FEW_FIELDS: usize = 6;
 /// Properties that are switched on and off one by one; the smallest beyond go together.
 const MOST_PARTS: usize = 40;
 
+/// When the picture is as fine as it gets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Finest {
+    /// Where single elements are picked on it.
+    Always,
+    /// With few fields alone.
+    FewFields,
+}
+
 /// Faces by property, coarsened so that all together stay below a limit: small parts whole, large ones with what is left.
-pub(super) fn skin(model: &Model, fields: usize) -> Vec<Part> {
+pub(super) fn skin(model: &Model, fields: usize, finest: Finest) -> Vec<Part> {
     let mut parts = together(raw(model));
     let mut order: Vec<usize> = (0..parts.len()).collect();
     order.sort_by_key(|i| parts[*i].n_triangles());
-    let limit = MOST_TRIANGLES * FEW_FIELDS / fields.max(FEW_FIELDS);
+    let limit = match finest {
+        Finest::Always => MOST_TRIANGLES,
+        Finest::FewFields => MOST_TRIANGLES * FEW_FIELDS / fields.max(FEW_FIELDS),
+    };
     let (mut left, mut n) = (limit.max(LEAST_TRIANGLES), parts.len());
     for i in order {
         let most = left / n.max(1);

@@ -1,5 +1,6 @@
 //! What a scene shows.
 
+use crate::app::job::{Candidates, Ids};
 use crate::fe::CaseResult;
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::Gauge;
@@ -16,6 +17,62 @@ pub struct Scene<'a> {
     pub fields: Vec<Field<'a>>,
     /// Loads to choose from.
     pub arrows: Vec<ArrowSet>,
+    /// Unit of length; empty where the deck does not say.
+    pub length: &'static str,
+    /// What can be planned on it by pointing.
+    pub pointing: Pointing,
+}
+
+/// What can be planned on a scene by pointing at it.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub enum Pointing {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// Where gauges really are.
+    Gauges,
+    /// Where they are, and where others may go.
+    Places(Places),
+}
+
+/// Where gauges may go, to begin with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Places {
+    /// The file of picked lists, as the job names it.
+    pub file: String,
+    /// Keys of `[candidates]` with the ids that the job states, from and to.
+    pub lists: Vec<(&'static str, Vec<[u32; 2]>)>,
+}
+
+impl Default for Places {
+    /// Anywhere.
+    fn default() -> Self {
+        Self {
+            file: "picked.toml".to_owned(),
+            lists: Vec::new(),
+        }
+    }
+}
+
+impl Places {
+    /// What a job says of its candidates.
+    pub fn of(candidates: &Candidates) -> Self {
+        let lists = [
+            ("properties", &candidates.properties),
+            ("elements", &candidates.elements),
+            ("exclude_properties", &candidates.exclude_properties),
+            ("exclude_elements", &candidates.exclude_elements),
+            ("wanted_elements", &candidates.wanted_elements),
+        ];
+        let stated =
+            |(key, ids): (&'static str, &Option<Ids>)| Some((key, ids.as_ref()?.0.clone()));
+        let mut out = Self::default();
+        if let Some(named) = &candidates.file {
+            out.file.clone_from(&named.given);
+        }
+        out.lists.extend(lists.into_iter().filter_map(stated));
+        out
+    }
 }
 
 /// A gauge.

@@ -12,7 +12,7 @@ use crate::report::command::{write_book, write_page};
 use crate::report::csv_cell;
 use crate::report::figure::LoadTrace;
 use crate::report::page::Page;
-use crate::report::scene::{Shown, run_arrows, scene_of_job};
+use crate::report::scene::{Pointing, Shown, run_arrows, scene_of_job};
 use crate::report::spreadsheet::{HistoryLoad, history_sheet, residual_sheet};
 use crate::report::strain::{Recovered as OnPage, RecoveredRun, recover_page};
 use std::io::Write;
@@ -162,6 +162,7 @@ fn page(outcome: &Outcome<Recovered>, record: &RecoveredRecord) -> Page {
     }];
     let scene = scene_of_job(job, &outcome.prepared).map(|mut scene| {
         scene.arrows = run_arrows(job, scene.model, &runs, Shown::Extremes);
+        scene.pointing = Pointing::Gauges;
         scene
     });
     let found = OnPage {

@@ -12,7 +12,7 @@ use crate::report::command::{write_book, write_page};
 use crate::report::csv_cell;
 use crate::report::figure::GaugePoints;
 use crate::report::page::Page;
-use crate::report::scene::{Shown, run_arrows, scene_of_job};
+use crate::report::scene::{Pointing, Shown, run_arrows, scene_of_job};
 use crate::report::spreadsheet::{residual_sheet, runs_sheet};
 use crate::report::strain::{Recovered as OnPage, RecoveredRun, recover_page};
 use crate::units::MICROSTRAIN;
@@ -122,6 +122,7 @@ fn page(outcome: &Outcome<Recovered>, runs: &RecoveredRuns, shown: &[RecoveredRu
     ];
     let scene = scene_of_job(job, &outcome.prepared).map(|mut scene| {
         scene.arrows = run_arrows(job, scene.model, shown, Shown::Interval);
+        scene.pointing = Pointing::Gauges;
         scene
     });
     let found = OnPage {

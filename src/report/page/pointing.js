@@ -1,0 +1,293 @@
+// Planning by pointing: where gauges may go, where they really are.
+const STATES = ["nothing", "allowed", "forbidden", "wanted"];
+const TINTS = [[0, 0, 0, 0], [46, 160, 67, 190], [214, 40, 40, 200], [106, 61, 198, 220]];
+
+function planning(api) {
+  const { figure, box, mesh, marks, camera, paint } = api, stated = api.data.pointing;
+  const role = (name) => figure.querySelector("[data-role=" + name + "]");
+  const plan = elementsOf(mesh), done = [];
+  const overlay = svg("svg", { width: "100%", height: "100%" }, box.querySelector(".words"));
+  const ring = svg("circle", { class: "aim", r: 0 }, overlay), frame = svg("rect", { class: "aim", width: 0, height: 0 }, overlay);
+  let tool = "turn", state = 1, tinted = false;
+
+  // Elements into a state; what they were is kept until it is undone.
+  function set(list, to, undoable) {
+    const changed = list.filter((e) => plan.state[e] !== to);
+    if (!changed.length) return;
+    if (undoable) done.push({ elements: changed, before: changed.map((e) => plan.state[e]) });
+    for (const e of changed) plan.state[e] = to;
+    show(changed);
+  }
+  function show(changed) {
+    for (const e of changed) {
+      const [from, to] = plan.facesOf(e);
+      for (let c = mesh.start[from]; c < mesh.start[to]; c++) api.tint.set(TINTS[tinted ? plan.state[e] : 0], 4 * c);
+    }
+    paint.refill(api.faces.tint, api.tint);
+    api.request();
+  }
+  // The picture shows the plan while one is made: until then, its strain.
+  function colour() {
+    const now = done.length > 0 || tool === "brush" || tool === "box";
+    if (now === tinted) return;
+    tinted = now;
+    show(plan.all());
+  }
+  function undo() {
+    const last = done.pop();
+    if (!last) return;
+    if (last.mark) { Object.assign(last.mark, last.before); api.regauge(); } else {
+      last.elements.forEach((e, i) => { plan.state[e] = last.before[i]; });
+      show(last.elements);
+    }
+    write();
+  }
+
+  // Brush and box work on one picture: what is seen of it, and where the middles of the faces are.
+  function seen() {
+    const { w, h, list } = api.numbers(), at = new Float32Array(3 * mesh.nFaces);
+    for (let f = 0; f < mesh.nFaces; f++) at.set(camera.project(centreOf(mesh, f)), 3 * f);
+    const number = (x, y) => { const c = Math.floor(x), r = h - 1 - Math.floor(y); return c >= 0 && r >= 0 && c < w && r < h ? (list[r * w + c] & 0xffffff) - 1 : -1; };
+    // A face smaller than a pixel counts as seen where one close beside it is.
+    const visible = (f) => {
+      const g = number(at[3 * f], at[3 * f + 1]);
+      return g === f || (g >= 0 && Math.hypot(...V.sub(centreOf(mesh, f), centreOf(mesh, g))) <= mesh.radius[f] + mesh.radius[g] + 1.5 * camera.pixel(at[3 * f + 2]));
+    };
+    return { w, h, at, number, visible };
+  }
+  function within(view, x0, y0, x1, y1, inside, through) {
+    const found = new Set(), shown = mesh.parts.map((_, n) => api.shownPart(n));
+    for (let y = Math.max(0, Math.floor(y0)); y <= Math.min(view.h - 1, y1); y++) for (let x = Math.max(0, Math.floor(x0)); x <= Math.min(view.w - 1, x1); x++) {
+      const f = inside(x + 0.5, y + 0.5) ? view.number(x, y) : -1;
+      if (f >= 0) found.add(f);
+    }
+    for (let f = 0; f < mesh.nFaces; f++) {
+      const x = view.at[3 * f], y = view.at[3 * f + 1];
+      if (x >= x0 && x <= x1 && y >= y0 && y <= y1 && view.at[3 * f + 2] > 0 && inside(x, y) && shown[mesh.part[f]] && (through || view.visible(f))) found.add(f);
+    }
+    return [...new Set([...found].map(plan.elementOf).filter((e) => e >= 0))];
+  }
+
+  let stroke = null;
+  const tools = {
+    brush: {
+      down(x, y) { stroke = { view: seen(), last: [x, y], elements: new Map() }; this.move(x, y); return true; },
+      move(x, y) {
+        const r = +role("brush").value, [a, b] = stroke.last, steps = Math.max(1, Math.ceil(Math.hypot(x - a, y - b) / (0.5 * r)));
+        for (let k = 1; k <= steps; k++) {
+          const cx = a + (x - a) * k / steps, cy = b + (y - b) * k / steps;
+          const hit = within(stroke.view, cx - r, cy - r, cx + r, cy + r, (p, q) => Math.hypot(p - cx, q - cy) <= r, false);
+          const fresh = hit.filter((e) => !stroke.elements.has(e));
+          for (const e of fresh) stroke.elements.set(e, plan.state[e]);
+          set(fresh, state, false);
+        }
+        stroke.last = [x, y];
+        this.hover(x, y);
+      },
+      hover(x, y) { svgSet(ring, { cx: x, cy: y, r: +role("brush").value }); },
+      up() {
+        const changed = [...stroke.elements].filter(([, before]) => before !== state);
+        if (changed.length) done.push({ elements: changed.map((c) => c[0]), before: changed.map((c) => c[1]) });
+        stroke = null;
+        write();
+      },
+      cancel() {
+        if (stroke) { for (const [e, before] of stroke.elements) plan.state[e] = before; show([...stroke.elements.keys()]); }
+        stroke = null;
+      },
+    },
+    box: {
+      down(x, y) { stroke = [x, y]; return true; },
+      move(x, y) { svgSet(frame, { x: Math.min(x, stroke[0]), y: Math.min(y, stroke[1]), width: Math.abs(x - stroke[0]), height: Math.abs(y - stroke[1]) }); },
+      up(x, y) {
+        const [x0, x1] = [x, stroke[0]].sort((a, b) => a - b), [y0, y1] = [y, stroke[1]].sort((a, b) => a - b);
+        this.cancel();
+        set(within(seen(), x0, y0, x1, y1, (p, q) => p >= x0 && p <= x1 && q >= y0 && q <= y1, role("through").checked), state, true);
+        write();
+      },
+      cancel() { stroke = null; svgSet(frame, { width: 0, height: 0 }); },
+    },
+    gauge: {
+      down(x, y, event) {
+        const k = api.markAt(x, y, event.pointerType === "mouse" ? 14 : 26), mark = marks[k];
+        if (!mark || !mark.along) return false;
+        stroke = { mark, before: Object.assign({}, mark), moved: false };
+        return true;
+      },
+      move(x, y) {
+        const f = api.faceAt(x, y);
+        if (f < 0) return;
+        const [eye, along] = camera.ray(x, y), at = onFace(mesh, f, eye, along), n = normalOf(mesh, f);
+        if (!at) return;
+        const side = V.dot(n, along) < 0 ? "top" : "bottom", out = side === "top" ? n : n.map((v) => -v);
+        // Its axis is laid onto the surface; one that stands on it turns to the element's edge.
+        let axis = V.along(stroke.before.along, n, -V.dot(stroke.before.along, n));
+        if (Math.hypot(...axis) < 0.1) axis = V.sub(vertexAt(mesh, mesh.faces[4 * f + 1]), vertexAt(mesh, mesh.faces[4 * f]));
+        axis = V.unit(V.along(axis, n, -V.dot(axis, n)));
+        Object.assign(stroke.mark, { at, side, out, along: axis, moved: true, note: "moved to " + api.place(at) + ", " + side });
+        stroke.moved = true;
+        api.said.textContent = stroke.mark.name + ": " + stroke.mark.note;
+        api.regauge();
+      },
+      up() {
+        if (stroke.moved) done.push({ mark: stroke.mark, before: Object.assign({ moved: false }, stroke.before) });
+        stroke = null;
+        write();
+      },
+      cancel() { if (stroke) { Object.assign(stroke.mark, { moved: false }, stroke.before); api.regauge(); } stroke = null; },
+    },
+  };
+
+  function choose(name) {
+    tool = name;
+    api.tool = tools[name] || null;
+    box.classList.toggle("planning", name !== "turn");
+    colour();
+    svgSet(ring, { r: 0 });
+    figure.querySelectorAll("[data-tool]").forEach((b) => b.setAttribute("aria-pressed", b.dataset.tool === name));
+  }
+  figure.querySelectorAll("[data-tool]").forEach((b) => b.addEventListener("click", () => choose(b.dataset.tool)));
+  figure.querySelectorAll("[data-state]").forEach((b) => b.addEventListener("click", () => {
+    state = +b.dataset.state;
+    figure.querySelectorAll("[data-state]").forEach((o) => o.setAttribute("aria-pressed", o === b));
+  }));
+  box.addEventListener("pointerleave", () => svgSet(ring, { r: 0 }));
+  role("undo").addEventListener("click", undo);
+  box.addEventListener("keydown", (event) => { if (event.key === "z" && (event.ctrlKey || event.metaKey)) { event.preventDefault(); undo(); } });
+  if (role("clear")) role("clear").addEventListener("click", () => { set(plan.all(), 0, true); write(); });
+
+  // A button a property: all of its elements.
+  const list = role("properties");
+  if (list) for (const [id, p] of plan.properties) {
+    const b = Object.assign(document.createElement("button"), { type: "button" });
+    b.dataset.property = id;
+    b.append(p.name + " ", Object.assign(document.createElement("small"), { textContent: p.elements.length + (p.elements.length === 1 ? " element" : " elements") }));
+    b.addEventListener("click", () => { set(p.elements, state, true); write(); });
+    list.append(b);
+  }
+
+  function write() {
+    colour();
+    role("undo").disabled = done.length === 0;
+    const put = (kind, text) => {
+      const into = figure.querySelector(`[data-written=${kind}]`);
+      if (!into) return;
+      into.hidden = !text;
+      into.querySelector("pre").textContent = text;
+    };
+    if (list) {
+      const n = STATES.map((_, s) => plan.state.reduce((sum, t) => sum + (t === s), 0));
+      role("count").textContent = `${n[1]} elements allowed, ${n[2]} forbidden, ${n[3]} wanted of ${plan.ids.length}.` + (n[1] ? "" : " Where none is allowed, all are that aren't forbidden.");
+      put("places", candidateLines(plan));
+      figure.querySelectorAll("[data-property]").forEach((b) => {
+        const p = plan.properties.get(+b.dataset.property), s = plan.state[p.elements[0]];
+        b.className = p.elements.every((e) => plan.state[e] === s) ? "s" + s : "";
+      });
+    }
+    put("gauges", gaugeLines(marks, api.world));
+  }
+  for (const kind of ["places", "gauges"]) {
+    const into = figure.querySelector(`[data-written=${kind}]`);
+    if (!into) continue;
+    const pre = into.querySelector("pre"), name = kind === "places" ? stated.file.split(/[\\/]/).pop() : "moved_gauges.csv";
+    into.querySelector("[data-role=copy]").addEventListener("click", async () => {
+      const range = document.createRange();
+      range.selectNodeContents(pre);
+      getSelection().removeAllRanges();
+      getSelection().addRange(range);
+      try { await navigator.clipboard.writeText(pre.textContent); } catch { document.execCommand("copy"); }
+      api.said.textContent = "Copied.";
+    });
+    into.querySelector("[data-role=save]").addEventListener("click", () => {
+      const link = Object.assign(document.createElement("a"), { download: name, href: URL.createObjectURL(new Blob([pre.textContent], { type: "text/plain" })) });
+      link.click();
+      setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+    });
+  }
+  if (stated.lists) begin(plan, stated.lists);
+  show(plan.all());
+  write();
+  api.plan = plan;
+}
+
+// Shells of the parts. Of a part that is drawn as it is, an element is a face; of another one, all of them are all its faces.
+function elementsOf(mesh) {
+  const ids = [], pids = [], of = [], first = new Map(), properties = new Map();
+  mesh.parts.forEach((p, n) => {
+    if (!p.elements) return;
+    first.set(n, ids.length);
+    for (let e = 0; e < p.elements.length; e++) {
+      const pid = p.properties[e];
+      if (!properties.has(pid)) properties.set(pid, { name: p.name.startsWith("shells " + pid) ? p.name : "shells " + pid, elements: [] });
+      properties.get(pid).elements.push(ids.length);
+      ids.push(p.elements[e]);
+      pids.push(pid);
+      of.push(n);
+    }
+  });
+  const plan = { ids, pids, properties, state: new Uint8Array(ids.length) };
+  plan.all = () => ids.map((_, e) => e);
+  plan.facesOf = (e) => {
+    const p = mesh.parts[of[e]];
+    const f = p.face + e - first.get(of[e]);
+    return p.whole ? [f, f + 1] : e === first.get(of[e]) ? [p.face, p.face + p.nFaces] : [0, 0];
+  };
+  plan.elementOf = (f) => {
+    const n = mesh.part[f], p = mesh.parts[n];
+    return p.elements && p.whole ? first.get(n) + f - p.face : -1;
+  };
+  return plan;
+}
+
+// What the job states to begin with.
+function begin(plan, lists) {
+  const has = (key, id) => (lists[key] ? lists[key].some(([a, b]) => a <= id && id <= b) : null);
+  plan.ids.forEach((id, e) => {
+    const pid = plan.pids[e];
+    if (has("exclude_properties", pid) || has("exclude_elements", id)) plan.state[e] = 2;
+    else if (has("wanted_elements", id)) plan.state[e] = 3;
+    else if ((lists.properties || lists.elements) && has("properties", pid) !== false && has("elements", id) !== false) plan.state[e] = 1;
+  });
+}
+
+// Ids as text: runs in which no shell is left out as `a THRU b`.
+function runsOf(plan, member) {
+  const order = plan.ids.map((id, e) => [id, member(e)]).sort((a, b) => a[0] - b[0]), out = [];
+  for (let i = 0; i < order.length;) {
+    if (!order[i][1]) { i++; continue; }
+    let j = i;
+    while (j + 1 < order.length && order[j + 1][1]) j++;
+    if (j - i < 2) for (let k = i; k <= j; k++) out.push(order[k][0]);
+    else out.push(order[i][0] + " THRU " + order[j][0]);
+    i = j + 1;
+  }
+  return '"' + out.join(", ") + '"';
+}
+
+// The lines of `[candidates]`; whole properties by their ids.
+function candidateLines(plan) {
+  const out = [], any = (s) => plan.state.some((t) => t === s);
+  const of = (member) => {
+    const whole = [...plan.properties].filter(([, p]) => p.elements.every(member)).map(([id]) => id).sort((a, b) => a - b), known = new Set(whole);
+    return { whole, rest: (e) => member(e) && !known.has(plan.pids[e]) };
+  };
+  if (any(1)) {
+    const member = (e) => plan.state[e] === 1 || plan.state[e] === 3, { whole, rest } = of(member);
+    const all = plan.ids.every((_, e) => !rest(e));
+    out.push(all ? `properties = [${whole.join(", ")}]` : `elements = ${runsOf(plan, member)}`);
+  }
+  if (any(2)) {
+    const { whole, rest } = of((e) => plan.state[e] === 2);
+    if (whole.length) out.push(`exclude_properties = [${whole.join(", ")}]`);
+    if (plan.ids.some((_, e) => rest(e))) out.push(`exclude_elements = ${runsOf(plan, rest)}`);
+  }
+  if (any(3)) out.push(`wanted_elements = ${runsOf(plan, (e) => plan.state[e] === 3)}`);
+  return out.length ? "[candidates]\n" + out.join("\n") + "\n" : "";
+}
+
+// Rows of the table of gauges for those that were moved.
+function gaugeLines(marks, world) {
+  const cell = (t) => (/[",\n]/.test(t) ? '"' + t.replace(/"/g, '""') + '"' : t), n = (v) => String(+v.toPrecision(7));
+  const rows = marks.filter((m) => m.moved).map((m) => [cell(m.name), "", ...world(m.at).map(n), m.side, ...m.along.map((v) => n(+v.toFixed(6))), 0].join(","));
+  return rows.length ? ["name,element,x,y,z,surface,dir_x,dir_y,dir_z,angle_deg", ...rows].join("\n") + "\n" : "";
+}

@@ -1,0 +1,175 @@
+//! A scene as numbers in a page.
+
+use super::paint::Values;
+use super::part::{Owner, Part};
+use super::pointing::said;
+use super::types::{Arrow, Field, Mark, Pointing, Scene, Twist};
+use crate::fe::strain_tensor::Surface;
+use crate::model::{Model, Vec3};
+use crate::report::figure::{STEPS, packed_deltas, short, shorts, steps_of};
+use serde_json::{Value, json};
+
+/// Steps along the longest side of what is drawn: a millionth of it is finer than a pixel, and than a hand glues.
+const GRAIN: f64 = 1_048_576.0;
+
+/// Where points are counted from, and in what steps.
+struct Raster {
+    origin: Vec3,
+    step: f64,
+}
+
+impl Raster {
+    fn of(lo: Vec3, hi: Vec3) -> Self {
+        let longest = (hi - lo).max();
+        Self {
+            origin: lo,
+            step: if longest > 0.0 { longest / GRAIN } else { 1.0 },
+        }
+    }
+
+    fn packed(&self, points: impl Iterator<Item = Vec3>) -> Value {
+        let steps: Vec<i64> = points
+            .flat_map(|p| {
+                ((p - self.origin) / self.step)
+                    .map(|v| v.round() as i64)
+                    .data
+                    .0[0]
+            })
+            .collect();
+        packed_deltas(&steps, 3)
+    }
+}
+
+/// All that `page/scene.js` draws.
+pub(super) fn packed_scene(
+    scene: &Scene,
+    parts: &[Part],
+    edges: &[[Vec3; 2]],
+    rods: &[[Vec3; 2]],
+) -> Value {
+    let points = parts.iter().flat_map(|p| vertices(scene.model, p));
+    let ends = edges.iter().chain(rods).flatten().copied();
+    let (lo, hi) = extent(points.chain(ends).chain(scene.marks.iter().map(|m| m.at)));
+    let raster = Raster::of(lo, hi);
+    json!({
+        "size": short((hi - lo).norm()),
+        "box": [three(lo), three(hi)],
+        "origin": [lo.x, lo.y, lo.z],
+        "step": raster.step,
+        "length": scene.length,
+        "steps": STEPS,
+        "parts": parts.iter().map(|p| part(scene, p, &raster)).collect::<Vec<_>>(),
+        "edges": raster.packed(edges.iter().flatten().copied()),
+        "bars": raster.packed(rods.iter().flatten().copied()),
+        "marks": scene.marks.iter().map(mark).collect::<Vec<_>>(),
+        "fields": scene.fields.iter().map(|f| field(scene.model, f, parts)).collect::<Vec<_>>(),
+        "arrows": scene.arrows.iter().map(|set| {
+            json!({ "name": set.name, "list": set.arrows.iter().map(|a| arrow(a, scene)).collect::<Vec<_>>() })
+        }).collect::<Vec<_>>(),
+        "pointing": said(&scene.pointing),
+    })
+}
+
+fn vertices<'a>(model: &'a Model, p: &'a Part) -> impl Iterator<Item = Vec3> + 'a {
+    let at = |v: &u32| {
+        let grid = p.grids[*v as usize];
+        model.grids.get(grid.us()).map_or_else(Vec3::zeros, |g| g.x)
+    };
+    p.drawn.vertices.iter().map(at)
+}
+
+/// Points, faces (four corners, a triangle repeats its third), ids of grids; where something is planned, elements and properties too.
+fn part(scene: &Scene, p: &Part, raster: &Raster) -> Value {
+    let model = scene.model;
+    let faces: Vec<i64> = if p.drawn.whole {
+        p.faces.iter().flat_map(|f| f.1).map(i64::from).collect()
+    } else {
+        let triangles = p.drawn.triangles.iter();
+        triangles
+            .flat_map(|[a, b, c]| [*a, *b, *c, *c])
+            .map(i64::from)
+            .collect()
+    };
+    let id = |v: &u32| {
+        let grid = model.grids.get(p.grids[*v as usize].us());
+        grid.map_or(0, |g| i64::from(g.id))
+    };
+    let grids: Vec<i64> = p.drawn.vertices.iter().map(id).collect();
+    let mut out = json!({
+        "name": p.name, "whole": p.drawn.whole,
+        "points": raster.packed(vertices(model, p)),
+        "faces": packed_deltas(&faces, 4),
+        "grids": packed_deltas(&grids, 1),
+    });
+    let shells: Option<Vec<[i64; 2]>> = p.faces.iter().map(|f| shell(model, f.0)).collect();
+    if let (Some(shells), false) = (shells, scene.pointing == Pointing::Nothing) {
+        let column = |k: usize| packed_deltas(&shells.iter().map(|s| s[k]).collect::<Vec<_>>(), 1);
+        out["elements"] = column(0);
+        out["properties"] = column(1);
+    }
+    out
+}
+
+/// Ids of a shell and of its property.
+fn shell(model: &Model, owner: Owner) -> Option<[i64; 2]> {
+    let Owner::Shell(i) = owner else { return None };
+    let shell = model.shells.get(i)?;
+    let property = model.shell_properties.get(shell.property.us());
+    Some([shell.id, property.map_or(0, |p| p.id)].map(i64::from))
+}
+
+fn extent(points: impl Iterator<Item = Vec3>) -> (Vec3, Vec3) {
+    let mut out: Option<(Vec3, Vec3)> = None;
+    for x in points.filter(|x| x.iter().all(|v| v.is_finite())) {
+        out = Some(out.map_or((x, x), |(lo, hi)| (lo.inf(&x), hi.sup(&x))));
+    }
+    out.unwrap_or((Vec3::zeros(), Vec3::new(1.0, 1.0, 1.0)))
+}
+
+fn three(v: Vec3) -> Vec<Value> {
+    shorts([v.x, v.y, v.z])
+}
+
+fn mark(m: &Mark) -> Value {
+    let side = match m.surface {
+        Some(Surface::Bottom) => "bottom",
+        _ => "top",
+    };
+    json!({
+        "name": m.name, "at": three(m.at), "side": side, "note": m.note,
+        "along": m.axes.map(|a| three(a[0])), "out": m.axes.map(|a| three(a[1])), "gap": m.gap.map(shorts),
+    })
+}
+
+fn field(model: &Model, f: &Field, parts: &[Part]) -> Value {
+    let values = Values::of(model, f.case);
+    let by_part: Vec<[Vec<f64>; 2]> = parts.iter().map(|p| values.on(p)).collect();
+    let all = by_part.iter().flatten().flatten();
+    let most = all
+        .filter(|v| v.is_finite())
+        .fold(0.0, |a: f64, v| a.max(v.abs()));
+    let packed: Vec<Value> = by_part
+        .iter()
+        .map(|sides| {
+            json!(
+                sides
+                    .each_ref()
+                    .map(|v| packed_deltas(&steps_of(v.iter().copied(), most), 1))
+            )
+        })
+        .collect();
+    json!({ "name": f.name, "unit": f.unit, "step": short(most * f.scale / STEPS), "values": packed })
+}
+
+fn arrow(a: &Arrow, scene: &Scene) -> Value {
+    let of_kind = scene
+        .arrows
+        .iter()
+        .flat_map(|s| &s.arrows)
+        .filter(|b| b.twist == a.twist);
+    let most = of_kind.map(|b| b.value.abs()).fold(0.0, f64::max);
+    let share = if most > 0.0 { a.value / most } else { 0.0 };
+    json!({
+        "at": three(a.at), "along": three(a.along), "share": short(share), "label": a.label, "moment": a.twist == Twist::Moment,
+    })
+}

@@ -1,0 +1,86 @@
+//! Planning by pointing: its tools, and where its lines are written.
+
+use super::types::Pointing;
+use maud::{Markup, html};
+use serde_json::{Map, Value, json};
+
+/// What the page's script is told of it.
+pub(super) fn said(pointing: &Pointing) -> Value {
+    match pointing {
+        Pointing::Nothing => Value::Null,
+        Pointing::Gauges => json!({}),
+        Pointing::Places(places) => {
+            let stated = places.lists.iter();
+            let lists: Map<String, Value> = stated
+                .map(|(key, ids)| ((*key).to_owned(), json!(ids)))
+                .collect();
+            json!({ "file": places.file, "lists": lists })
+        }
+    }
+}
+
+/// Tools above the picture.
+pub(super) fn tools(pointing: &Pointing, gauges: usize) -> Markup {
+    let faces = matches!(pointing, Pointing::Places(_));
+    if *pointing == Pointing::Nothing || !faces && gauges == 0 {
+        return html! {};
+    }
+    let tool = |name: &str, word: &str, title: &str| {
+        html! { button type="button" data-tool=(name) aria-pressed=(name == "turn") title=(title) { (word) } }
+    };
+    html! {
+        div.controls.tools data-pointing {
+            b { "Plan" }
+            span.group role="group" aria-label="tool" {
+                (tool("turn", "turn", "drag turns the picture"))
+                @if faces {
+                    (tool("brush", "brush", "drag over elements"))
+                    (tool("box", "box", "drag a rectangle"))
+                }
+                @if gauges > 0 { (tool("gauge", "move gauges", "drag a gauge to where it really is")) }
+            }
+            @if faces {
+                span.group role="group" aria-label="what is picked becomes" {
+                    @for (state, word) in ["nothing", "allowed", "forbidden", "wanted"].iter().enumerate().skip(1).chain([(0, &"nothing")]) {
+                        button type="button" class=(format!("state s{state}")) data-state=(state) aria-pressed=(state == 1) { (word) }
+                    }
+                }
+                label { "brush " input type="range" min="2" max="60" value="14" data-role="brush" aria-label="radius of the brush"; }
+                label { input type="checkbox" data-role="through"; " box takes what is hidden, too" }
+            }
+            button type="button" data-role="undo" disabled { "undo" }
+            @if faces { button type="button" data-role="clear" { "clear" } }
+        }
+    }
+}
+
+/// Properties to pick, and the lines to copy, below the picture.
+pub(super) fn result(pointing: &Pointing) -> Markup {
+    let written = |kind: &str, about: Markup| {
+        html! {
+            div.written data-written=(kind) hidden {
+                p { (about) }
+                pre tabindex="0" {}
+                button type="button" data-role="copy" { "copy" }
+                button type="button" data-role="save" { "save as a file" }
+            }
+        }
+    };
+    let gauges = html! {
+        "Gauges that were moved, for the job's table of gauges: these columns take the place of those of the same name, "
+        code { "element" } " stays empty."
+    };
+    match pointing {
+        Pointing::Nothing => html! {},
+        Pointing::Gauges => written("gauges", gauges),
+        Pointing::Places(places) => html! {
+            details.properties { summary { "Pick by property" } div.parts data-role="properties" {} }
+            p.muted data-role="count" {}
+            (written("places", html! {
+                "Into the job in place of its lists of properties and elements; or saved beside the job and named there as "
+                code { "file = \"" (places.file) "\"" } " in " code { "[candidates]" } "."
+            }))
+            (written("gauges", gauges))
+        },
+    }
+}
