@@ -27,10 +27,6 @@ const CLOSE: f64 = 3.0;
 /// from it, to about a fifth of their amplitude at the worst (the lower band edge).
 const FORM: f64 = 0.04;
 
-/// A fit whose squared residual is that of noise, but which leaves this many times the limit of the gap, went astray: parameters at which
-/// noise would be as large as what was measured explain anything.
-const ASTRAY: f64 = 4.0;
-
 /// Share of what other effects of the vehicle take that a further one must take beside them: forms are made from noisy stretch to about a
 /// twentieth of their amplitude within the band, and what a form leaves of itself looks like another one.
 const NEXT_FORM: f64 = 0.0025;
@@ -56,12 +52,11 @@ impl Gaps {
     /// Whether a complete model may leave this: by its squared residual, or by the size of its gap on the fitted record and on what judges.
     /// `excess` is the squared size of what named effects took, over that of what was measured.
     fn at_floor(&self, excess: f64) -> bool {
-        let within_times = |g: &Option<RecordGap>, times: f64| {
+        let within = |g: &Option<RecordGap>| {
             g.as_ref()
-                .is_some_and(|g| g.gap.powi(2) <= (times * g.floor.limit()).powi(2) + FORM * excess)
+                .is_some_and(|g| g.gap.powi(2) <= g.floor.limit().powi(2) + FORM * excess)
         };
-        let within = |g: &Option<RecordGap>| within_times(g, 1.0);
-        self.reduced_chi2 < NOISE_FACTOR * NOISE_FACTOR && within_times(&self.fitted, ASTRAY)
+        self.reduced_chi2 < NOISE_FACTOR * NOISE_FACTOR
             || within(&self.fitted) && within(&self.proof)
     }
 }
@@ -197,18 +192,13 @@ fn nameable(
         };
         let Some(own) = &gaps[at] else { return false };
         let of_vehicle = |m: &usize| !scorer.candidates[*m].is_channel();
-        s.set.iter().copied().all(|member| {
+        let vehicles = s.set.iter().copied().filter(of_vehicle);
+        vehicles.into_iter().all(|member| {
             let rest: Vec<usize> = s.set.iter().copied().filter(|m| *m != member).collect();
             let beside = rest.iter().any(of_vehicle);
-            // A channel alone is held against its tolerance; beside an effect of the vehicle it may be what that one's form leaves.
-            let tolerance = match (of_vehicle(&member), beside) {
-                (true, _) => own.floor.tolerance,
-                (false, true) => 0.0,
-                (false, false) => return true,
-            };
             power(&rest).is_none_or(|without| {
                 let others = power(&[]).filter(|_| beside).map_or(0.0, |p| p - without);
-                let least = tolerance + NEXT_FORM * others.max(0.0);
+                let least = own.floor.tolerance + NEXT_FORM * others.max(0.0);
                 without - own.gap * own.gap > least
             })
         })

@@ -126,15 +126,10 @@ impl MotionScorer<'_> {
     /// measured, a linear step does not know its way.
     fn from_afar(&self, first: MotionFit, known: &[usize]) -> MotionFit {
         /// Lateness at the end of the record that is tried, s.
-        const LATE_S: [f64; 6] = [-0.12, -0.06, -0.03, 0.03, 0.06, 0.12];
-        /// Squared residual by degree of freedom below which a fit has found its way: noise is known to a factor of one and a half.
-        const FOUND: f64 = 2.25;
+        const LATE_S: [f64; 8] = [-0.25, -0.12, -0.06, -0.03, 0.03, 0.06, 0.12, 0.25];
         let length_s = self.frame.data.duration_s().max(1.0);
         let mut best = first;
         for i in 0..best.parts.len() {
-            if best.reduced_chi2() < FOUND {
-                break;
-            }
             if known.contains(&best.parts[i].candidate) {
                 continue;
             }
@@ -154,23 +149,11 @@ impl MotionScorer<'_> {
                     parts,
                     Some(&started),
                     &self.background,
-                    Effort::Touch,
+                    Effort::Settled,
                 );
                 if let Some(f) = again.filter(|f| f.misfit() < best.misfit()) {
                     best = f;
                 }
-            }
-            let settled = fit(
-                self.frame,
-                self.candidates,
-                &self.frame.data,
-                best.parts.clone(),
-                Some(&best),
-                &self.background,
-                Effort::Settled,
-            );
-            if let Some(f) = settled.filter(|f| f.misfit() < best.misfit()) {
-                best = f;
             }
         }
         best

@@ -6,7 +6,6 @@ use super::frame::StrainFrame;
 use super::judge::{adequacy_of, at_floor, judge};
 use super::likelihood::{Fit, Likelihood};
 use super::own_covariance::best_by_own_covariance;
-use super::validation::validated;
 use crate::reconcile::effect::{Candidate, Discrepancy, library};
 use crate::reconcile::outcome::Outcome;
 use crate::reconcile::search::{Breadth, Scored, Scorer, search, search_near, settle};
@@ -84,12 +83,10 @@ pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
         all.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
         all.dedup_by(|a, b| a.set == b.set);
         if let Some(found) = found {
-            let found = that_prove_themselves(frame, candidates, &all, found);
             return judge(frame, candidates, &all, &found);
         }
     }
     let best = without_needless_noise(frame, candidates, &all, best);
-    let best = that_prove_themselves(frame, candidates, &all, best);
     judge(frame, candidates, &all, &best)
 }
 
@@ -113,35 +110,6 @@ fn named_instead(
         }
     }
     search_near(likelihood, BREADTH, &plain)
-}
-
-/// The set less members without which the gap on runs that were not fitted is smaller and everything is still at the floor: a name needs a
-/// gap that falls.
-fn that_prove_themselves(
-    frame: &StrainFrame,
-    candidates: &[Candidate],
-    all: &[Scored<Fit>],
-    mut best: Scored<Fit>,
-) -> Scored<Fit> {
-    let after = |s: &Scored<Fit>| validated(frame, candidates, s).0.after;
-    while best.set.len() > 1 {
-        let own = after(&best);
-        let fewer = |s: &&Scored<Fit>| {
-            s.set.len() + 1 == best.set.len()
-                && !s.set.is_empty()
-                && s.set.iter().all(|c| best.set.contains(c))
-                && !named_part(candidates, &s.set).is_empty()
-        };
-        let proven = all
-            .iter()
-            .filter(fewer)
-            .find(|s| at_floor(&adequacy_of(frame, candidates, s)) && after(s) < own);
-        match proven {
-            Some(s) => best = s.clone(),
-            None => break,
-        }
-    }
-    best
 }
 
 /// The set without noise that was stated too small, where it reaches the floor without.
