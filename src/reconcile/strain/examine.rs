@@ -6,6 +6,7 @@ use super::frame::StrainFrame;
 use super::judge::{adequacy_of, at_floor, judge};
 use super::likelihood::{Fit, Likelihood};
 use super::own_covariance::best_by_own_covariance;
+use super::validation::validated;
 use crate::reconcile::effect::{Candidate, Discrepancy, library};
 use crate::reconcile::outcome::Outcome;
 use crate::reconcile::search::{Breadth, Scored, Scorer, search, search_near, settle};
@@ -87,6 +88,7 @@ pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
         }
     }
     let best = without_needless_noise(frame, candidates, &all, best);
+    let best = without_needless_names(frame, candidates, &all, best);
     judge(frame, candidates, &all, &best)
 }
 
@@ -127,4 +129,33 @@ fn without_needless_noise(
         .filter(|s| at_floor(&adequacy_of(frame, candidates, s)))
         .cloned()
         .unwrap_or(best)
+}
+
+/// The set without names that prove nothing: what is left reaches the floor without them, and runs that it was not fitted on are
+/// predicted no worse.
+fn without_needless_names(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    all: &[Scored<Fit>],
+    mut best: Scored<Fit>,
+) -> Scored<Fit> {
+    while best.set.len() > 1 {
+        let fewer = |s: &&Scored<Fit>| {
+            s.set.len() + 1 == best.set.len()
+                && s.set.iter().all(|c| best.set.contains(c))
+                && !named_part(candidates, &s.set).is_empty()
+                && at_floor(&adequacy_of(frame, candidates, s))
+        };
+        let left: Vec<&Scored<Fit>> = all.iter().filter(fewer).collect();
+        if left.is_empty() {
+            break;
+        }
+        let after = validated(frame, candidates, &best).0.after;
+        let no_worse = |s: &&&Scored<Fit>| validated(frame, candidates, s).0.after <= after;
+        let Some(enough) = left.iter().find(no_worse) else {
+            break;
+        };
+        best = (*enough).clone();
+    }
+    best
 }
