@@ -135,7 +135,7 @@ with chromium() as browser:
         viewport={"width": plan["width"], "height": 900}, has_touch=plan["touch"], is_mobile=plan["touch"], device_scale_factor=2 if plan["touch"] else 1
     )
     page = context.new_page()
-    page.set_default_timeout(20000)
+    page.set_default_timeout(60000)
     page.on("console", lambda m: errors.append(m.text) if m.type in ("error", "warning") and not HARMLESS.search(m.text) else None)
     page.on("pageerror", lambda e: errors.append(str(e)))
     page.on("request", lambda r: requests.append(r.url) if not r.url.startswith(("file:", "data:", "blob:")) else None)

@@ -40,7 +40,8 @@ function scaleOf(axis, values, from, to, most) {
     return { at: (v) => v > 0 ? from + (to - from) * (Math.log10(v) - a) / (b - a) : NaN, marks, lo: 10 ** a, hi: 10 ** b };
   }
   if (axis.zero) { lo = Math.min(lo, 0); hi = Math.max(hi, 0); }
-  if (lo === hi) { lo -= Math.abs(lo) * 0.1 || 0.5; hi += Math.abs(hi) * 0.1 || 0.5; }
+  // What differs by rounding alone is one value.
+  if (!(hi - lo > 1e-9 * Math.max(Math.abs(lo), Math.abs(hi)))) { lo -= Math.abs(lo) * 0.1 || 0.5; hi += Math.abs(hi) * 0.1 || 0.5; }
   if (!axis.range) { const pad = 0.04 * (hi - lo); lo = axis.zero && lo === 0 ? 0 : lo - pad; hi = axis.zero && hi === 0 ? 0 : hi + pad; }
   const step = stepFor(hi - lo, most), marks = [];
   const digits = Math.max(3, Math.ceil(Math.log10(Math.max(Math.abs(lo), Math.abs(hi)) / step)) + 1);

@@ -48,10 +48,13 @@ function planning(api) {
     const { w, h, list } = api.numbers(), at = new Float32Array(3 * mesh.nFaces);
     for (let f = 0; f < mesh.nFaces; f++) at.set(camera.project(centreOf(mesh, f)), 3 * f);
     const number = (x, y) => { const c = Math.floor(x), r = h - 1 - Math.floor(y); return c >= 0 && r >= 0 && c < w && r < h ? (list[r * w + c] & 0xffffff) - 1 : -1; };
-    // A face smaller than a pixel counts as seen where one close beside it is.
+    // A face of a pixel or less counts as seen where one of the same surface close beside it is.
     const visible = (f) => {
       const g = number(at[3 * f], at[3 * f + 1]);
-      return g === f || (g >= 0 && Math.hypot(...V.sub(centreOf(mesh, f), centreOf(mesh, g))) <= mesh.radius[f] + mesh.radius[g] + 1.5 * camera.pixel(at[3 * f + 2]));
+      if (g === f || g < 0) return g === f;
+      const pixel = camera.pixel(at[3 * f + 2]);
+      return mesh.radius[f] < 1.5 * pixel && Math.abs(V.dot(normalOf(mesh, f), normalOf(mesh, g))) > 0.7 &&
+        Math.hypot(...V.sub(centreOf(mesh, f), centreOf(mesh, g))) <= mesh.radius[f] + mesh.radius[g] + 1.5 * pixel;
     };
     return { w, h, at, number, visible };
   }
@@ -73,14 +76,16 @@ function planning(api) {
     brush: {
       down(x, y) { stroke = { view: seen(), last: [x, y], elements: new Map() }; this.move(x, y); return true; },
       move(x, y) {
-        const r = +role("brush").value, [a, b] = stroke.last, steps = Math.max(1, Math.ceil(Math.hypot(x - a, y - b) / (0.5 * r)));
-        for (let k = 1; k <= steps; k++) {
-          const cx = a + (x - a) * k / steps, cy = b + (y - b) * k / steps;
-          const hit = within(stroke.view, cx - r, cy - r, cx + r, cy + r, (p, q) => Math.hypot(p - cx, q - cy) <= r, false);
-          const fresh = hit.filter((e) => !stroke.elements.has(e));
-          for (const e of fresh) stroke.elements.set(e, plan.state[e]);
-          set(fresh, state, false);
-        }
+        // All within the brush of the way from the last place.
+        const r = +role("brush").value, [a, b] = stroke.last, dx = x - a, dy = y - b, length = dx * dx + dy * dy || 1;
+        const near = (p, q) => {
+          const t = Math.min(1, Math.max(0, ((p - a) * dx + (q - b) * dy) / length));
+          return Math.hypot(p - a - t * dx, q - b - t * dy) <= r;
+        };
+        const hit = within(stroke.view, Math.min(a, x) - r, Math.min(b, y) - r, Math.max(a, x) + r, Math.max(b, y) + r, near, false);
+        const fresh = hit.filter((e) => !stroke.elements.has(e));
+        for (const e of fresh) stroke.elements.set(e, plan.state[e]);
+        set(fresh, state, false);
         stroke.last = [x, y];
         this.hover(x, y);
       },

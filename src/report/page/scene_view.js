@@ -258,7 +258,9 @@ async function scene(figure, data) {
     });
     return best;
   };
-  const place = (p) => world(p).map((v) => digits(v)).join(", ") + (data.length ? " " + data.length : "");
+  // To a hundred thousandth of the model.
+  const grain = 10 ** Math.floor(Math.log10(size) - 5);
+  const place = (p) => world(p).map((v) => digits(Math.round(v / grain) * grain)).join(", ") + (data.length ? " " + data.length : "");
   function tell(x, y) {
     const near = touch ? 22 : 11, k = markAt(x, y, near);
     if (k >= 0) return marks[k].name + ": " + marks[k].note;
