@@ -93,7 +93,7 @@ def written(folder, ending, samples):
 
 
 def run(call):
-    """Seconds and peak memory of a command, bytes."""
+    """Seconds, seconds of processor, and peak memory (bytes) of a command."""
     begin = time.perf_counter()
     child = subprocess.Popen(call, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
     said = child.stderr.read()
@@ -101,7 +101,7 @@ def run(call):
     seconds = time.perf_counter() - begin
     if os.waitstatus_to_exitcode(status) not in (0, 1):
         raise RuntimeError(said.decode())
-    return seconds, usage.ru_maxrss * 1024
+    return seconds, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
 
 
 if __name__ == "__main__":
@@ -119,17 +119,18 @@ if __name__ == "__main__":
                 continue
             size = path.stat().st_size
             path.read_bytes()
-            plain = [run([sys.executable, "-c", PLAIN[ending], str(path)])[0] for _ in range(3)]
+            plain = [run([sys.executable, "-c", PLAIN[ending], str(path)]) for _ in range(3)]
             ours = []
             for i in range(3):
                 call = [program, "fleet", str(folder / f"{ending}.toml"), str(path), "--out", str(folder / f"out{i}")]
                 ours.append(run(call))
-            seconds, peak = min(o[0] for o in ours), max(o[1] for o in ours)
+            (theirs, busy), (seconds, spent) = ([min(r[i] for r in runs) for i in range(2)] for runs in (plain, ours))
+            peak = max(r[2] for r in ours)
             answer = json.loads((folder / "out0" / "result.json").read_text())
             if answer["files"][0]["status"] != "done":
                 raise RuntimeError(answer["files"][0]["message"])
             print(
-                f"{ending}: {samples} samples, {size / 1e6:.0f} MB; plain reading {min(plain):.1f} s, fleet {seconds:.1f} s "
-                f"({min(plain) / seconds:.2f} of its throughput), peak {(peak - size) / 1e6:.0f} MB above the file"
+                f"{ending}: {samples} samples, {size / 1e6:.0f} MB; plain reading {theirs:.1f} s ({busy:.1f} of processor), fleet {seconds:.1f} s "
+                f"({spent:.1f}): {theirs / seconds:.2f} of its throughput; peak {(peak - size) / 1e6:.0f} MB above the file"
             )
             path.unlink()

@@ -228,10 +228,6 @@ fn samples() -> Vec<(&'static str, Vec<u8>, Reader)> {
             results,
         ),
         (
-            "nastran/nx_static_shell_bar/static_solid_shell_bar.bdf",
-            deck,
-        ),
-        (
             "nastran/nx_static_shell_bar/static_solid_shell_bar.h5",
             results,
         ),
