@@ -305,7 +305,6 @@ fn truth(text: &str, gauges: &[Glued], runs: &str) -> StrainFrame {
         as_modelled: None,
         scatter: Vec::new(),
         learnt: None,
-        learnt: None,
         influence,
     }
 }
