@@ -188,11 +188,10 @@ fn a_bush_takes_its_frame_from_cid_then_orientation_then_the_line() {
         faults.iter().any(|f| f.kind == FaultKind::Orientation),
         "{faults:?}"
     );
-    let (_, faults) = bush("CBUSH,1,1,1", "5.,3.");
+    // Grounded, without a line or a CID: the basic frame, and it is said.
+    let (m, faults) = bush("CBUSH,1,1,1", "5.,3.");
     assert!(
-        faults
-            .iter()
-            .any(|f| matches!(f.kind, FaultKind::Unsupported { .. })),
+        m.bushes[0].frame_assumed && near(m.bushes[0].axes.row(0).transpose(), [1.0, 0.0, 0.0]),
         "{faults:?}"
     );
 }

@@ -4,9 +4,10 @@ use super::covariance::{Selection, covariance};
 use super::frame::StrainFrame;
 use super::prediction::predict;
 use crate::linalg::precision::Precision;
+use crate::linalg::tail::f_tail;
 use crate::reconcile::effect::{Member, SizedAmplitudes};
 use crate::reconcile::outcome::Misfit;
-use statrs::distribution::{ContinuousCDF, FisherSnedecor, Normal};
+use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Chi-squares of a set of effects.
 #[derive(Clone, Debug)]
@@ -43,7 +44,7 @@ pub fn deviate_estimated(chi2: f64, n: f64, from: f64) -> f64 {
     if !from.is_finite() || n <= 0.0 || !chi2.is_finite() {
         return deviate(chi2, n);
     }
-    let chance = FisherSnedecor::new(n, from.max(1.0)).map_or(1.0, |d| d.sf(chi2.max(0.0) / n));
+    let chance = f_tail(chi2.max(0.0) / n, n, from.max(1.0));
     if chance > f64::EPSILON {
         Normal::standard().inverse_cdf(1.0 - chance)
     } else {
