@@ -124,7 +124,7 @@ impl MotionScorer<'_> {
 
     /// The fit of a set in which a fault of timing is new, from the start that leaves least: beyond a quarter of a wave of what was
     /// measured, a linear step does not know its way.
-    fn from_afar(&self, first: MotionFit, known: &[usize]) -> MotionFit {
+    fn settled_from_afar(&self, first: MotionFit, known: &[usize]) -> MotionFit {
         /// Lateness at the end of the record that is tried, s.
         const LATE_S: [f64; 8] = [-0.25, -0.12, -0.06, -0.03, 0.03, 0.06, 0.12, 0.25];
         let length_s = self.frame.data.duration_s().max(1.0);
@@ -370,7 +370,7 @@ impl Scorer for MotionScorer<'_> {
         let before = from.map_or(f64::INFINITY, |(f, _)| f.fit.chi2);
         let fit = if before - first.chi2 > WORTH_REFINING {
             let settled: Vec<usize> = from.map_or(vec![], |(f, _)| f.set.clone());
-            self.refined(self.from_afar(first, &settled), &settled)
+            self.refined(self.settled_from_afar(first, &settled), &settled)
         } else {
             first
         };
