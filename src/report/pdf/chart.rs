@@ -1,4 +1,4 @@
-//! A figure on paper: the traces that plotly.js draws on a screen, drawn here.
+//! A figure on paper: the traces that the page draws on a screen, drawn here.
 
 use super::columns::UPRIGHT;
 use super::heat::heat;

@@ -24,7 +24,7 @@ pub(super) struct Series {
     pub(super) kind: Kind,
     /// `#rrggbb`.
     pub(super) colour: String,
-    /// plotly.js's word for a point.
+    /// The figure's word for a point.
     pub(super) symbol: String,
     /// Right and up: numbers or names.
     values: [Vec<Value>; 2],
