@@ -88,7 +88,7 @@ pub(super) fn zeros_by_row(
         no_zero_runs(job, measured, &table.file)?;
         return Ok(None);
     };
-    let mut at = zero_rows(job, measured, table, names)?;
+    let mut at = zero_rows(work, job, measured, table, names)?;
     at.sort_unstable();
     at.dedup();
     let drift = drift_variance(table, &at, measured.noise_microstrain);
@@ -123,21 +123,29 @@ pub(super) fn zeros_by_row(
 }
 
 /// Rows of the runs of `zero_runs`. Where runs are held out in a file of their own, its zeros are its own: between two files nothing says
-/// how far a zero has wandered, so each needs one of these runs at least, and a name may belong to one of the two alone.
+/// how far a zero has wandered, so each needs one of these runs at least.
 ///
 /// # Errors
-/// Runs that the table lacks.
+/// Runs that no file has, a file without any.
 fn zero_rows(
+    work: &mut Work,
     job: &Job,
     measured: &Measured,
     table: &StrainTable,
     names: &[String],
 ) -> Result<Vec<usize>, Faults> {
-    let two_files = matches!(measured.hold_out, HoldOut::File(_));
-    let place = |run: &String| names.iter().position(|n| n == run);
-    let at: Vec<usize> = measured.zero_runs.iter().filter_map(place).collect();
-    if two_files && !at.is_empty() {
-        return Ok(at);
+    let mut known = names.to_vec();
+    let mut files = format!("`{}` has no", table.file);
+    if let HoldOut::File(hold_out) = &measured.hold_out {
+        files = format!(
+            "neither `{}` nor `{}` has a",
+            measured.strain.given, hold_out.given
+        );
+        for named in [&measured.strain, hold_out] {
+            if let StrainRows::Runs(runs) = read_strain(&mut work.inputs, job, named)?.rows {
+                known.extend(runs);
+            }
+        }
     }
     let fault = |wrong: String, remedy: &str| {
         Fault::at(
@@ -148,20 +156,19 @@ fn zero_rows(
             remedy,
         )
     };
-    if two_files {
+    let missing = measured.zero_runs.iter().filter(|r| !known.contains(r));
+    let remedy = "name runs at which no load acts";
+    let faults: FaultList = missing
+        .map(|run| fault(format!("{files} run `{run}`"), remedy))
+        .collect();
+    Faults::check(faults)?;
+    let place = |run: &String| names.iter().position(|n| n == run);
+    let at: Vec<usize> = measured.zero_runs.iter().filter_map(place).collect();
+    if at.is_empty() {
         let wrong = format!("`{}` has none of these runs", table.file);
         let remedy = "add to it a run without load, measured beside its runs, and name that run here too; or move its runs into the strain file and name them in `hold_out`";
         return Err(fault(wrong, remedy).into());
     }
-    let missing = measured.zero_runs.iter().filter(|r| place(r).is_none());
-    let faults: FaultList = missing
-        .map(|run| {
-            let wrong = format!("`{}` has no run `{run}`", table.file);
-            let remedy = "name runs of the strain file at which no load acts";
-            fault(wrong, remedy)
-        })
-        .collect();
-    Faults::check(faults)?;
     Ok(at)
 }
 

@@ -106,19 +106,14 @@ impl Uncertainty {
         let n = (self.scatter.len() as f64).sqrt().round() as usize;
         let nk = (self.covariance.len() as f64).sqrt().round() as usize;
         let k = nk.checked_div(n).unwrap_or(0);
-        let pick = |matrix: &[f64], order: usize, rows: &[usize]| -> Vec<f64> {
-            let entries = rows.iter().flat_map(|&i| rows.iter().map(move |&j| (i, j)));
-            entries
-                .map(|(i, j)| matrix.get(i * order + j).copied().unwrap_or(0.0))
-                .collect()
-        };
-        let entries: Vec<usize> = gauges
+        let entries: Vec<(usize, f64)> = gauges
             .iter()
-            .flat_map(|g| (0..k).map(move |l| g * k + l))
+            .flat_map(|g| (0..k).map(move |l| (g * k + l, 1.0)))
             .collect();
+        let gauges: Vec<(usize, f64)> = gauges.iter().map(|g| (*g, 1.0)).collect();
         Self {
-            covariance: pick(&self.covariance, nk, &entries),
-            scatter: pick(&self.scatter, n, gauges),
+            covariance: picked(&self.covariance, nk, &entries),
+            scatter: picked(&self.scatter, n, &gauges),
             mean_square: self.mean_square.clone(),
             scale: self.scale,
             dof: self.dof,
@@ -131,17 +126,10 @@ impl Uncertainty {
         let n = (self.scatter.len() as f64).sqrt().round() as usize;
         let of_gauge = |g: usize| loads.iter().map(move |&(l, unit)| (g * k + l, unit));
         let entries: Vec<(usize, f64)> = (0..n).flat_map(of_gauge).collect();
-        let pick = |matrix: &[f64], order: usize, rows: &[(usize, f64)]| -> Vec<f64> {
-            let pairs = rows.iter().flat_map(|a| rows.iter().map(move |b| (a, b)));
-            let value = |((i, p), (j, q)): (&(usize, f64), &(usize, f64))| {
-                p * q * matrix.get(i * order + j).copied().unwrap_or(0.0)
-            };
-            pairs.map(value).collect()
-        };
         Self {
-            covariance: pick(&self.covariance, n * k, &entries),
+            covariance: picked(&self.covariance, n * k, &entries),
             scatter: self.scatter.clone(),
-            mean_square: pick(&self.mean_square, k, loads),
+            mean_square: picked(&self.mean_square, k, loads),
             scale: self.scale,
             dof: self.dof,
         }
@@ -160,6 +148,15 @@ impl Uncertainty {
         rows.map(|(row, fj)| fj * row.iter().zip(f).map(|(a, fk)| a * fk).sum::<f64>())
             .sum()
     }
+}
+
+/// Some rows and columns of a square matrix of `order`, each times its factor.
+fn picked(matrix: &[f64], order: usize, rows: &[(usize, f64)]) -> Vec<f64> {
+    let pairs = rows.iter().flat_map(|a| rows.iter().map(move |b| (a, b)));
+    let value = |((i, p), (j, q)): (&(usize, f64), &(usize, f64))| {
+        p * q * matrix.get(i * order + j).copied().unwrap_or(0.0)
+    };
+    pairs.map(value).collect()
 }
 
 /// `S' S / n`, `k x k` by rows.

@@ -194,7 +194,7 @@ fn payload_moved(frame: &StrainFrame, effects: &[NamedEffect], has_deck: bool) -
     }
 }
 
-fn effect_not_in_model(id: &str, why: &str) -> Finding {
+pub(super) fn effect_not_in_model(id: &str, why: &str) -> Finding {
     Finding::new(
         Severity::Warning,
         "effect-not-in-model",

@@ -4,6 +4,7 @@ use super::answer::{
     DetectableSize, EffectFound, GapFound, MotionPart, Reconciled, ReducedChi2, RivalFound,
     Simulation, SizeFound, WheelMisfit, first,
 };
+use super::extend::effect_not_in_model;
 use super::extended::ExtendedModel;
 use super::motion_findings::findings;
 use super::motion_job;
@@ -52,7 +53,14 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
         Err(not_simulated) => Simulation::NotDone { not_simulated },
     });
     findings(work, &outcome);
-    let extended_model = match named && motion_job::can_state(&outcome) {
+    let can_state = motion_job::can_state(&outcome);
+    if named && !can_state {
+        let ids: Vec<&str> = outcome.effects.iter().map(|e| e.id.as_str()).collect();
+        let why = "a channel has several slips, low-passes or lines, and [vehicle] corrections states one of each";
+        work.findings
+            .push(effect_not_in_model(&ids.join(" + "), why));
+    }
+    let extended_model = match named && can_state {
         true => Some(ExtendedModel::of(motion_job::JOB, text_of(work, job)?)),
         false => None,
     };
@@ -146,10 +154,10 @@ fn without_dead_hold_out(work: &mut Work, section: &VehicleJob, frame: &mut Moti
         "no-hold-out",
         "vehicle.hold_out",
         format!(
-            "`{file}` can't judge: {} carries no signal there. Gaps are those of the fitted record.",
+            "`{file}` can't judge: {} carries no signal there; gaps are those of the fitted record",
             dead.join(", ")
         ),
-        "Name a record in which every channel is alive as `hold_out` in [vehicle].",
+        "name a record in which every channel is alive as `hold_out` in [vehicle]",
     ));
 }
 

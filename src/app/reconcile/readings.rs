@@ -2,7 +2,7 @@
 
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::strain::{StrainRows, StrainTable};
-use crate::app::job::{HoldOut, Job, Measured, NamedFile, Reference};
+use crate::app::job::{HoldOut, Job, Reference};
 use crate::app::work::Work;
 use crate::app::zeroed::read_zeroed;
 use crate::finding::{Finding, Severity};
@@ -78,7 +78,6 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
             )));
         }
         let names = runs_of(&kept)?;
-        check_zero_runs(job, measured, [&out.runs, &names], named)?;
         out.held_out.extend(vec![true; names.len()]);
         out.runs.extend(names);
         out.values.extend(&kept.microstrain);
@@ -102,32 +101,4 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
         ));
     }
     Ok(out)
-}
-
-/// Whether one of the two files has each zero run.
-///
-/// # Errors
-/// A zero run that neither has.
-fn check_zero_runs(
-    job: &Job,
-    measured: &Measured,
-    runs: [&Vec<String>; 2],
-    hold_out: &NamedFile,
-) -> Result<(), Faults> {
-    let is_unknown = |n: &&String| !runs.iter().any(|r| r.contains(n));
-    let unknown = measured.zero_runs.iter().filter(is_unknown).map(|n| {
-        let wrong = format!(
-            "neither the strain file nor `{}` has a run `{n}`",
-            hold_out.given
-        );
-        let remedy = "name runs at which no load acts";
-        Fault::at(
-            &*job.file,
-            measured.line,
-            "measured.zero_runs",
-            wrong,
-            remedy,
-        )
-    });
-    Faults::check(unknown.collect())
 }

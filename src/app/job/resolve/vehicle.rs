@@ -2,7 +2,7 @@
 
 use super::super::faults::Collector;
 use super::super::raw::{
-    RawCorrection, RawEdit, RawEffect, RawReconcile, RawSensitivity, RawVehicle,
+    RawCorrection, RawEdit, RawEffect, RawReconcile, RawSensitivity, RawVehicle, S,
 };
 use super::super::shapes::Texts;
 use super::super::spanned::Spanned;
@@ -30,12 +30,13 @@ fn correction(c: &mut Collector, channel: &str, r: &RawCorrection) -> ChannelCor
         Some(g) => *g.get_ref(),
         None => 1.0,
     };
-    let number = |v: &super::super::raw::S<f64>| v.as_ref().map(|x| *x.get_ref());
+    let mut number = |v: &S<f64>, k: &str| c.number(v, &key(k), "a finite number", |_| true);
+    let delay_s = number(&r.delay_s, "delay_s").unwrap_or(0.0);
+    let clock_ppm = number(&r.clock_ppm, "clock_ppm").unwrap_or(0.0);
+    let at_s = number(&r.slip_at_s, "slip_at_s");
+    let by_s = number(&r.slip_s, "slip_s");
     let slip = match (&r.slip_at_s, &r.slip_s) {
-        (Some(at), Some(by)) => Some(Slip {
-            at_s: *at.get_ref(),
-            by_s: *by.get_ref(),
-        }),
+        (Some(_), Some(_)) => at_s.zip(by_s).map(|(at_s, by_s)| Slip { at_s, by_s }),
         (Some(one), None) | (None, Some(one)) => {
             c.fault(
                 one,
@@ -63,8 +64,8 @@ fn correction(c: &mut Collector, channel: &str, r: &RawCorrection) -> ChannelCor
     let time_s = c.at_least_zero(&r.low_pass_s, &key("low_pass_s"));
     ChannelCorrection {
         gain,
-        delay_s: number(&r.delay_s).unwrap_or(0.0),
-        clock_ppm: number(&r.clock_ppm).unwrap_or(0.0),
+        delay_s,
+        clock_ppm,
         slip,
         lag: time_s.map(|time_s| Lag { order, time_s }),
         line_hz: c.positive(&r.line_hz, &key("line_hz")),
