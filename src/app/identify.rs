@@ -9,11 +9,12 @@ use super::work::Work;
 use crate::series::channels::Channels;
 use crate::series::detrend::rms;
 use crate::units::ReportUnits;
+use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::chassis::{ChassisForce, chassis_forces};
 use crate::vehicle::checks::MassClosure;
 use crate::vehicle::identify::{ChannelFit, Estimate, Identification, identify as fit_vehicle};
 use crate::vehicle::loads::{LoadHistory, static_loads, wheel_force_history};
-use crate::vehicle::motion::{Adjustment, Motion, Treatment, motion};
+use crate::vehicle::motion::{Motion, Treatment, motion};
 use crate::vehicle::stretch::slow_stretches;
 use serde::Serialize;
 

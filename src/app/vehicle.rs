@@ -11,9 +11,10 @@ use crate::series::rpc::{is_rpc, read_rpc};
 use crate::series::spectrum::Band;
 use crate::series::{Channels, SeriesError};
 use crate::units::{Quantity, find_unit};
+use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::identify::Question;
 use crate::vehicle::layout::MassStep;
-use crate::vehicle::motion::{Adjustment, VehicleError};
+use crate::vehicle::motion::VehicleError;
 use crate::vehicle::preset::{PresetError, Wish, vehicle};
 use crate::vehicle::term::UnitNames;
 

@@ -1,9 +1,10 @@
 //! Whether a fitted model leaves more than its sensors do: then something is missing in it, and its parameters stand in for that.
 
+use super::adjustment::Adjustment;
 use super::layout::{Measures, Vehicle};
 use super::loads::Blend;
 use super::misfit::channel_residuals;
-use super::motion::{Adjustment, Treatment, VehicleError, motion};
+use super::motion::{Treatment, VehicleError, motion};
 use crate::finding::{Finding, Severity};
 use crate::series::channels::Channels;
 use crate::series::detrend::rms;

@@ -113,8 +113,12 @@ impl Adjustment {
 
     /// Truth over reading at an angular frequency, but for what changes with time.
     pub fn undone(&self, w: f64) -> Complex64 {
-        let lags: Complex64 = self.lags.iter().map(|l| l.undone(w)).product();
-        Complex64::from_polar(1.0 / self.gain.abs(), w * self.delay_s) * self.gain.signum() * lags
+        let delayed = Complex64::from_polar(1.0 / self.gain.abs(), w * self.delay_s);
+        delayed * self.gain.signum() * self.lags_undone(w)
+    }
+
+    fn lags_undone(&self, w: f64) -> Complex64 {
+        self.lags.iter().map(|l| l.undone(w)).product()
     }
 
     /// Samples with the clock's drift and slips taken out; those given where there are none.
@@ -138,13 +142,9 @@ impl Adjustment {
             let mean = crate::series::detrend::mean(&out);
             out.iter_mut().for_each(|v| *v -= mean);
             let mut fourier = Fourier::default();
-            let undone = |f: f64| {
-                self.lags
-                    .iter()
-                    .map(|l| l.undone(2.0 * PI * f))
-                    .product::<Complex64>()
-            };
-            let s = fourier.spectrum(&out, rate_hz).times(undone);
+            let s = fourier
+                .spectrum(&out, rate_hz)
+                .times(|f: f64| self.lags_undone(2.0 * PI * f));
             out = fourier.samples(&s, 1);
             out.iter_mut().for_each(|v| *v += mean);
         }

@@ -1,8 +1,9 @@
 //! Channels as spectra, and the motion of bodies as weighted sums of them.
 
+use super::adjustment::Adjustment;
 use super::layout::{Measures, Vehicle};
 use super::limiter::Limiter;
-use super::treatment::{Adjustment, Treatment, VehicleError};
+use super::treatment::{Treatment, VehicleError};
 use crate::finding::{Finding, Severity};
 use crate::linalg::tall::left_inverse;
 use crate::series::channels::Channels;

@@ -1,8 +1,8 @@
 //! What an identification is asked, and what it answers.
 
+use super::adjustment::Adjustment;
 use super::checks::MassClosure;
 use super::layout::Vehicle;
-use super::motion::Adjustment;
 use super::term::UnitNames;
 use crate::finding::{Finding, Severity};
 use crate::series::spectrum::Band;

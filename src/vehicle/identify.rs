@@ -1,6 +1,7 @@
 //! Parameters of a vehicle from a record, with intervals, verdicts and checks.
 
 use super::adequacy::{Declared, channel_floors};
+use super::adjustment::Adjustment;
 use super::checks::{check_mass_closure, check_sides};
 use super::equations::{Equation, equations};
 use super::fit::{Allowed, Fit, fit};
@@ -11,7 +12,7 @@ use super::loads::best_blend;
 use super::motion::{motion, resolved};
 use super::part_answer::{PartAnswer, collect};
 use super::stretch::slow_stretches;
-use super::treatment::{Adjustment, Treatment, VehicleError};
+use super::treatment::{Treatment, VehicleError};
 use crate::series::channels::Channels;
 use crate::series::detrend::rms;
 

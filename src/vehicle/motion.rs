@@ -5,7 +5,7 @@ use super::layout::Vehicle;
 use super::limiter::Limiter;
 use super::link_motion::{link_motion, step_columns};
 use super::term::Term;
-pub use super::treatment::{Adjustment, Treatment, VehicleError};
+pub use super::treatment::{Treatment, VehicleError};
 use crate::finding::{Finding, Severity};
 use crate::series::channels::Channels;
 use crate::series::detrend::{mean, rms};
@@ -41,6 +41,16 @@ impl Motion {
     /// Number of samples.
     pub fn n_samples(&self) -> usize {
         self.sensors.first().map_or(0, Vec::len)
+    }
+
+    /// Samples of the channel of a sensor or of a wheel's force.
+    pub fn signal(&self, vehicle: &Vehicle, channel: &str) -> Option<&[f64]> {
+        let sensor = vehicle.sensors.iter().position(|s| s.channel == channel);
+        if let Some(s) = sensor {
+            return self.sensors.get(s).map(Vec::as_slice);
+        }
+        let wheel = vehicle.wheels.iter().position(|w| w.channel == channel)?;
+        self.forces.get(wheel)?.as_deref()
     }
 
     /// The stretch of `length` samples from sample `from`; shorter where the motion ends.

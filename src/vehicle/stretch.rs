@@ -1,7 +1,8 @@
 //! Slow stretch of a link from the force that passes through it: what double integration of accelerations loses in drift.
 
+use super::adjustment::Adjustment;
 use super::layout::{Measures, Shape, Vehicle};
-use super::treatment::{Adjustment, SlowStretch};
+use super::treatment::SlowStretch;
 use crate::series::channels::Channels;
 use crate::series::detrend::mean;
 

@@ -1,6 +1,6 @@
 //! How channels of a record are taken: corrections, band, slow stretch; and what stops the acceleration path.
 
-pub use super::adjustment::{Adjustment, Lag, Slip};
+use super::adjustment::Adjustment;
 use crate::series::SeriesError;
 use crate::series::spectrum::Band;
 use thiserror::Error;

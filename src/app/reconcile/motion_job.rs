@@ -2,7 +2,7 @@
 
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::{MotionFrame, MotionOutcome};
-use crate::vehicle::motion::Adjustment;
+use crate::vehicle::adjustment::Adjustment;
 use toml::{Table, Value};
 
 /// File name of the job.

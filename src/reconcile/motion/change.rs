@@ -1,7 +1,7 @@
 //! What an effect changes: terms of a link, coupling links, a mass, a channel.
 
+use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::layout::{Link, MassStep, Vehicle};
-use crate::vehicle::motion::Adjustment;
 use crate::vehicle::term::Term;
 
 /// A change of the model or of a channel.

@@ -3,7 +3,7 @@
 use super::change::{Change, with_adjustment};
 use super::frame::MotionFrame;
 use super::part::Part;
-use crate::vehicle::treatment::{Adjustment, Lag, Slip};
+use crate::vehicle::adjustment::{Adjustment, Lag, Slip};
 
 /// Corrections of the job joined by those of a set; its mains lines are columns of the fit, not taken out of the record.
 pub fn adjustments(frame: &MotionFrame, parts: &[Part]) -> Vec<Adjustment> {

@@ -4,10 +4,12 @@ use super::frame::MotionFrame;
 use crate::series::channels::Channels;
 use crate::series::spectrum::Band;
 use crate::series::window::Windowed;
+use crate::vehicle::adjustment::Adjustment;
+use crate::vehicle::adjustment::Lag;
 use crate::vehicle::equations::equations;
 use crate::vehicle::layout::{Measures, Vehicle};
-use crate::vehicle::motion::{Adjustment, Motion, Treatment, VehicleError, motion};
-use crate::vehicle::treatment::{Lag, SlowStretch};
+use crate::vehicle::motion::{Motion, Treatment, VehicleError, motion};
+use crate::vehicle::treatment::SlowStretch;
 use rustfft::num_complex::Complex64;
 
 /// Transform of a signal within the band, a value a bin.
@@ -235,13 +237,7 @@ impl Design {
 
     /// Samples of a channel within the band.
     pub fn signal(&self, channel: &str) -> Option<&[f64]> {
-        let (v, m) = (&self.vehicle, &self.motion);
-        let sensor = v.sensors.iter().position(|s| s.channel == channel);
-        if let Some(s) = sensor {
-            return m.sensors.get(s).map(Vec::as_slice);
-        }
-        let wheel = v.wheels.iter().position(|w| w.channel == channel)?;
-        m.forces.get(wheel)?.as_deref()
+        self.motion.signal(&self.vehicle, channel)
     }
 
     /// Mean over the compared stretch of a function of the record's time, s.

@@ -5,7 +5,7 @@ use super::effect_units::unit_of_change;
 use super::fitted::MotionFit;
 use super::found::DECISIVE;
 use super::gls::Basis;
-use super::limits::tolerance_limit;
+use super::limits::{late_on_average, tolerance_limit};
 use super::outcome::Smallest;
 use super::part::ColumnOf;
 use super::scorer::MotionScorer;
@@ -28,10 +28,12 @@ pub fn smallest_sizes(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Smalle
         let Some(shape) = candidate.shapes.get(k) else {
             continue;
         };
-        let [column] = columns.as_slice() else {
-            continue;
+        // Of the two phases of a line the one that shows less.
+        let left = match (shape, columns.as_slice()) {
+            (_, [column]) => basis.left_of(column),
+            (Change::Line { .. }, [a, b]) => basis.left_of(a).min(basis.left_of(b)),
+            _ => continue,
         };
-        let left = basis.left_of(column);
         if left <= 0.0 {
             continue;
         }
@@ -40,13 +42,10 @@ pub fn smallest_sizes(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Smalle
         let seen = sigma * (2.0 * (DECISIVE + price)).sqrt();
         let tolerance = match shape {
             Change::Gain { .. } => scorer.frame.gain_tolerance,
-            Change::Delay { .. } | Change::Lag { .. } => scorer.frame.sync_tolerance_s,
-            // See `super::limits::late_on_average`.
-            Change::Slip { .. } => 2.0 * scorer.frame.sync_tolerance_s,
-            Change::Clock { .. } => {
-                let [begin, end] = null.design.span_s();
-                12f64.sqrt() * scorer.frame.sync_tolerance_s / (end - begin)
-            }
+            Change::Delay { .. }
+            | Change::Lag { .. }
+            | Change::Slip { .. }
+            | Change::Clock { .. } => scorer.frame.sync_tolerance_s / late_on_average(shape, null),
             _ => 0.0,
         };
         let size = seen.max(limit * tolerance.hypot(sigma));

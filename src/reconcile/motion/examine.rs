@@ -17,7 +17,8 @@ use super::part::Part;
 use super::scorer::MotionScorer;
 use super::unexplained_background::{of_fit, power, unexplained_background};
 use crate::reconcile::search::{Breadth, Scored, Scorer, search, settle};
-use crate::vehicle::motion::{Adjustment, VehicleError};
+use crate::vehicle::adjustment::Adjustment;
+use crate::vehicle::motion::VehicleError;
 
 /// How far the search looks.
 const BREADTH: Breadth = Breadth {

@@ -2,8 +2,8 @@
 
 use crate::series::channels::Channels;
 use crate::series::spectrum::Band;
+use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::layout::Vehicle;
-use crate::vehicle::motion::Adjustment;
 use crate::vehicle::term::UnitNames;
 use std::collections::BTreeMap;
 

@@ -9,8 +9,8 @@ use super::frame::MotionFrame;
 use super::gap_profile::{GapProfile, gap_profile};
 use super::noise::{BANDS, band_of};
 use crate::series::channels::Channels;
+use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::layout::Vehicle;
-use crate::vehicle::motion::Adjustment;
 use crate::vehicle::stretch::slow_stretches;
 use serde::Serialize;
 

@@ -112,7 +112,7 @@ pub fn beyond_tolerance(frame: &MotionFrame, fit: &MotionFit) -> bool {
 
 /// How much a fault of timing of size one makes a channel late, RMS over the record about its mean, s: what a tolerance of
 /// synchronisation, which speaks of one delay, is held against.
-fn late_on_average(shape: &Change, fit: &MotionFit) -> f64 {
+pub(super) fn late_on_average(shape: &Change, fit: &MotionFit) -> f64 {
     let [begin, end] = fit.design.span_s();
     match shape {
         // Even from begin to end.

@@ -3,7 +3,7 @@
 use super::change::Change;
 use super::gap::{Proof, RecordGap};
 use crate::reconcile::outcome::{Gap, Rival, Verdict};
-use crate::vehicle::motion::Adjustment;
+use crate::vehicle::adjustment::Adjustment;
 
 /// A named effect of motion.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,7 +13,7 @@ use super::gls::Basis;
 use super::noise::Background;
 use super::part::Part;
 use crate::reconcile::search::{Addition, Scored, Scorer};
-use crate::vehicle::motion::Adjustment;
+use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::stretch::slow_stretches;
 use std::sync::Arc;
 

@@ -9,8 +9,8 @@ use super::outcome::MotionOutcome;
 use crate::series::channels::Channels;
 use crate::series::detrend::rms;
 use crate::series::spectrum::Band;
+use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::layout::{Measures, Vehicle};
-use crate::vehicle::motion::Adjustment;
 use crate::vehicle::refine::{Comparison, OPEN, comparison, refine};
 use crate::vehicle::simulate::SimulationError;
 

@@ -39,10 +39,8 @@ pub fn agreement(gauges: &[GaugePoints], kinds: [&str; 2], runs: [&[String]; 2])
         label: "measured against predicted strain".into(),
         choices,
         layout: json!({
-            "xaxis": { "title": { "text": "predicted, µε" }, "zeroline": true, "zerolinecolor": "#d6dce3" },
-            "yaxis": { "title": { "text": "measured, µε" }, "zeroline": true, "zerolinecolor": "#d6dce3", "automargin": true },
-            "hovermode": "closest",
-            "legend": { "orientation": "h", "y": 1.1 },
+            "xaxis": { "title": { "text": "predicted, µε" } },
+            "yaxis": { "title": { "text": "measured, µε" } },
         }),
         height: 460,
         on_paper: 1,
@@ -68,7 +66,7 @@ fn picture(gauges: &[&GaugePoints], kinds: [&str; 2], runs: [&[String]; 2]) -> V
             out.push(json!({
                 "type": "scatter", "mode": "markers", "name": kinds[k], "x": x, "y": y, "text": text,
                 "marker": { "size": 6, "opacity": 0.75, "color": COLOURS[k], "symbol": SYMBOLS[k] },
-                "hovertemplate": "%{text}<br>predicted %{x:.4~g}, measured %{y:.4~g} µε<extra></extra>",
+                "hovertemplate": "%{text}<br>predicted %{x:.4}, measured %{y:.4} µε<extra></extra>",
             }));
         }
     }

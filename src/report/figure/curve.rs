@@ -35,7 +35,7 @@ pub fn curve(points: &[CountPoint], loads: &[(String, String)]) -> Figure {
             let of_unit = (0..loads.len()).filter(|l| loads[*l].1 == *unit);
             let traces = of_unit.map(|l| {
                 let y = points.iter().map(|p| short(p.sigma[l])).collect();
-                line(&loads[l].0, y, &format!("%{{y:.4~g}} {unit}"))
+                line(&loads[l].0, y, &format!("%{{y:.4}} {unit}"))
             });
             let name = if unit.is_empty() {
                 "times the set"
@@ -52,12 +52,12 @@ pub fn curve(points: &[CountPoint], loads: &[(String, String)]) -> Figure {
             line(
                 "certified, of the best possible",
                 percent(&|p| p.efficiency),
-                "%{y:.2f} %",
+                "%{y:.4} %",
             ),
             line(
                 "left after the worst loss of a gauge",
                 percent(&|p| p.after_loss),
-                "%{y:.1f} %",
+                "%{y:.4} %",
             ),
         ],
     ));
@@ -66,8 +66,7 @@ pub fn curve(points: &[CountPoint], loads: &[(String, String)]) -> Figure {
         choices,
         layout: json!({
             "xaxis": { "title": { "text": "gauges" }, "tickvals": counts },
-            "yaxis": { "rangemode": "tozero", "automargin": true },
-            "legend": { "orientation": "h", "y": -0.22 },
+            "yaxis": { "rangemode": "tozero" },
         }),
         height: 400,
         on_paper: 8,

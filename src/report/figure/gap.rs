@@ -11,13 +11,13 @@ pub fn gap_by_channel(channels: &[(String, [f64; 3])], unit: &str) -> Figure {
     let bar = |name: &str, k: usize, colour: &str| {
         json!({
             "type": "bar", "name": name, "x": names, "y": of(k), "marker": { "color": colour },
-            "hovertemplate": format!("%{{x}}: %{{y:.4~g}} {unit} {name}<extra></extra>"),
+            "hovertemplate": format!("%{{x}}: %{{y:.4}} {unit} {name}<extra></extra>"),
         })
     };
     let floor = json!({
         "type": "scatter", "mode": "markers", "name": "floor", "x": names, "y": of(2),
-        "marker": { "symbol": "line-ew-open", "size": 16, "color": "#1c2530", "line": { "width": 2 } },
-        "hovertemplate": format!("%{{x}}: floor %{{y:.4~g}} {unit}<extra></extra>"),
+        "marker": { "symbol": "line-ew-open", "size": 16, "color": "#1c2530" },
+        "hovertemplate": format!("%{{x}}: floor %{{y:.4}} {unit}<extra></extra>"),
     });
     Figure {
         label: "gap before and after".into(),
@@ -30,10 +30,8 @@ pub fn gap_by_channel(channels: &[(String, [f64; 3])], unit: &str) -> Figure {
             ],
         )],
         layout: json!({
-            "barmode": "group",
-            "xaxis": { "type": "category", "automargin": true, "tickangle": -60 },
-            "yaxis": { "title": { "text": format!("{unit} rms") }, "rangemode": "tozero", "automargin": true },
-            "legend": { "orientation": "h", "y": 1.12 },
+            "xaxis": { "type": "category" },
+            "yaxis": { "title": { "text": format!("{unit} rms") }, "rangemode": "tozero" },
         }),
         height: 380,
         on_paper: 1,

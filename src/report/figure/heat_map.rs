@@ -36,17 +36,14 @@ pub fn heat_map(
         "y": rows,
         "z": table(&|r, c| short((share(r, c) * 1e4).round() / 1e4)),
         "customdata": table(&|r, c| short(value(r, c))),
-        "hovertemplate": format!("%{{y}}, %{{x}}<br>%{{customdata:.4~g}} {unit}<extra></extra>"),
-        "zmin": -1, "zmax": 1, "xgap": 1, "ygap": 1,
-        "colorscale": [[0, "#1f4e8c"], [0.25, "#86b1d8"], [0.5, "#f6f7f8"], [0.75, "#ee9d72"], [1, "#b2182b"]],
-        "colorbar": { "title": { "text": "share of largest", "side": "right" }, "thickness": 12, "len": 1 },
+        "hovertemplate": format!("%{{y}}, %{{x}}<br>%{{customdata:.4}} {unit}<extra></extra>"),
     });
     Figure {
         label: "sensitivity as a heat map".into(),
         choices: vec![(String::new(), vec![trace])],
         layout: json!({
-            "xaxis": { "type": "category", "side": "top", "tickangle": -40, "automargin": true, "fixedrange": true },
-            "yaxis": { "type": "category", "autorange": "reversed", "automargin": true, "fixedrange": true, "dtick": 1 },
+            "xaxis": { "type": "category", "side": "top" },
+            "yaxis": { "type": "category" },
         }),
         height: 130 + 18 * rows.len(),
         on_paper: 1,

@@ -30,9 +30,7 @@ pub fn history(traces: &[LoadTrace]) -> Figure {
         choices: traces.iter().map(|t| (t.name.clone(), bands(t))).collect(),
         layout: json!({
             "xaxis": { "title": { "text": "time, s" }, "range": shorts(ends) },
-            "yaxis": { "automargin": true },
-            "hovermode": "x unified",
-            "legend": { "orientation": "h", "y": 1.12 },
+            "yaxis": {},
         }),
         height: 380,
         on_paper: 12,
@@ -62,7 +60,7 @@ fn bands(trace: &LoadTrace) -> Vec<Value> {
     let shown = |width: f64, colour: &str| {
         json!({
             "line": { "width": width, "color": colour }, "showlegend": true, "hoverinfo": "all",
-            "hovertemplate": format!("%{{y:.5~g}} {unit}"),
+            "hovertemplate": format!("%{{y:.5}} {unit}"),
         })
     };
     vec![
@@ -78,7 +76,7 @@ fn bands(trace: &LoadTrace) -> Vec<Value> {
         line(
             "smallest",
             &|s| s[0],
-            json!({ "hoverinfo": "all", "hovertemplate": format!("%{{y:.5~g}} {unit}") }),
+            json!({ "hoverinfo": "all", "hovertemplate": format!("%{{y:.5}} {unit}") }),
         ),
         line(
             "smallest to largest of a span",

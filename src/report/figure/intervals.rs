@@ -15,9 +15,8 @@ pub fn intervals(groups: &[(String, Vec<IntervalRow>)], unit: &str) -> Figure {
         label: format!("values with intervals, {unit}"),
         choices: drawn.collect(),
         layout: json!({
-            "xaxis": { "title": { "text": unit }, "tickformat": ".5~g", "nticks": 8, "zeroline": true, "zerolinecolor": "#9aa7b5" },
-            "yaxis": { "type": "category", "autorange": "reversed", "automargin": true, "fixedrange": true, "dtick": 1 },
-            "showlegend": false,
+            "xaxis": { "title": { "text": unit } },
+            "yaxis": { "type": "category" },
         }),
         height: 90 + 24 * most,
         on_paper: 4,
@@ -33,11 +32,10 @@ fn bars(rows: &[IntervalRow], unit: &str) -> Value {
         "y": names,
         "customdata": rows.iter().map(|r| shorts([r.1[0], r.1[2]])).collect::<Vec<_>>(),
         "error_x": {
-            "type": "data", "symmetric": false, "thickness": 2, "width": 5,
             "array": shorts(rows.iter().map(|r| r.1[2] - r.1[1])),
             "arrayminus": shorts(rows.iter().map(|r| r.1[1] - r.1[0])),
         },
         "marker": { "size": 9, "color": "#1f618d" },
-        "hovertemplate": format!("%{{y}}: %{{x:.5~g}} {unit}<br>%{{customdata[0]:.5~g}} to %{{customdata[1]:.5~g}}<extra></extra>"),
+        "hovertemplate": format!("%{{y}}: %{{x:.5}} {unit}<br>%{{customdata[0]:.5}} to %{{customdata[1]:.5}}<extra></extra>"),
     })
 }

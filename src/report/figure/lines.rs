@@ -51,8 +51,7 @@ pub fn lines(groups: &[(String, Vec<Line>)], x: &str, y: &str, scale: Scale) -> 
         choices: choices.collect(),
         layout: json!({
             "xaxis": { "title": { "text": x } },
-            "yaxis": { "title": { "text": y }, "type": kind, "automargin": true, "exponentformat": "power" },
-            "legend": { "orientation": "h", "y": 1.12 },
+            "yaxis": { "title": { "text": y }, "type": kind },
         }),
         height: 380,
         on_paper: 8,

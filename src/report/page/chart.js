@@ -11,13 +11,6 @@ function fitted(text, room) {
   return text.slice(0, n) + "…";
 }
 
-function significant(v, digits) {
-  if (!Number.isFinite(v)) return "none";
-  const short = +v.toPrecision(digits);
-  const size = Math.abs(short);
-  return size !== 0 && (size < 1e-4 || size >= 1e7) ? short.toExponential().replace("e+", "e") : String(short).replace("-", "−");
-}
-
 // A step of 1, 2 or 5 times a power of ten, for so many marks at most.
 function stepFor(span, most) {
   const raw = span / Math.max(1, most), power = 10 ** Math.floor(Math.log10(raw));
@@ -27,14 +20,15 @@ function stepFor(span, most) {
 // An axis: values or names to pixels between two ends.
 function scaleOf(axis, values, from, to, most) {
   if (axis.names) {
-    const n = Math.max(1, axis.names.length), first = axis.reversed || !axis.upward ? from : to, last = first === from ? to : from;
+    // Names go from left to right, and down from the top.
+    const n = Math.max(1, axis.names.length), first = axis.upward ? to : from, last = axis.upward ? from : to;
     return { at: (i) => first + (last - first) * (i + 0.5) / n, marks: axis.names.map((t, i) => [i, t]), wide: Math.abs(to - from) / n };
   }
   let [lo, hi] = axis.range || [Infinity, -Infinity];
   if (!axis.range) for (const v of values) if (Number.isFinite(v) && (!axis.log || v > 0)) { lo = Math.min(lo, v); hi = Math.max(hi, v); }
   if (!(lo <= hi)) [lo, hi] = axis.log ? [1, 10] : [0, 1];
   if (axis.log) {
-    const a = Math.floor(Math.log10(lo) * 1.0001), b = Math.max(a + 1, Math.ceil(Math.log10(hi) - 1e-9));
+    const a = Math.floor(Math.log10(lo) + 1e-9), b = Math.max(a + 1, Math.ceil(Math.log10(hi) - 1e-9));
     const stride = Math.ceil((b - a) / Math.max(2, most)), marks = [];
     for (let p = a; p <= b; p += stride) marks.push([10 ** p, significant(10 ** p, 2)]);
     return { at: (v) => v > 0 ? from + (to - from) * (Math.log10(v) - a) / (b - a) : NaN, marks, lo: 10 ** a, hi: 10 ** b };
@@ -50,17 +44,17 @@ function scaleOf(axis, values, from, to, most) {
   return { at: (v) => from + (to - from) * (v - lo) / (hi - lo), back: (p) => lo + (hi - lo) * (p - from) / (to - from), marks, lo, hi };
 }
 
-// Words of a point, from `%{x:.4~g}` and the like.
+// Words of a point, from `%{x:.4}` and the like: a value to so many digits.
 function worded(trace, i, j) {
   const template = trace.hovertemplate;
   const name = trace.name || "";
   const at = (list, k) => (list ? list[k] : undefined);
   if (!template) return name + ": " + significant(trace.y[i], 5) + " at " + significant(trace.x[i], 6);
   const extra = /<extra>(.*?)<\/extra>/.exec(template);
-  const text = template.replace(/<extra>.*?<\/extra>/, "").replace(/<br>/g, ", ").replace(/%\{(\w+)(?:\[(\d+)\])?(?::\.(\d+)[^}]*)?\}/g, (_, key, index, digits) => {
+  const text = template.replace(/<extra>.*?<\/extra>/, "").replace(/<br>/g, ", ").replace(/%\{(\w+)(?:\[(\d+)\])?(?::\.(\d+))?\}/g, (_, key, index, digits) => {
     let v = key === "customdata" && j !== undefined ? at(at(trace.customdata, i), j) : key === "y" && j !== undefined ? trace.y[i] : key === "x" && j !== undefined ? trace.x[j] : at(trace[key], i);
     if (index !== undefined) v = at(v, +index);
-    return typeof v === "number" ? significant(v, digits ? +digits + (/\.\d+f/.test(template) ? 3 : 0) : 5) : String(v === undefined || v === null ? "none" : v);
+    return typeof v === "number" ? significant(v, digits ? +digits : 5) : String(v === undefined || v === null ? "none" : v);
   });
   return extra && extra[1] ? extra[1] + ": " + text : text;
 }
@@ -79,7 +73,7 @@ function axisOf(layout, traces, key) {
   const named = said.type === "category" || values.some((v) => typeof v === "string");
   return {
     names: named ? [...new Set(values)] : null, title: said.title ? said.title.text : "", range: said.range, log: said.type === "log",
-    zero: said.rangemode === "tozero", at: said.tickvals, reversed: said.autorange === "reversed", upward: key === "y", above: said.side === "top",
+    zero: said.rangemode === "tozero", at: said.tickvals, upward: key === "y", above: said.side === "top",
   };
 }
 
@@ -136,6 +130,12 @@ function pathOf(xs, ys) {
   return text;
 }
 
+// The ends of the interval about a value, none where one of them is not known.
+function intervalAt(t, k) {
+  const { array, arrayminus } = t.error_x, known = [t.x[k], array[k], arrayminus[k]];
+  return known.includes(null) ? [null, null] : [t.x[k] - arrayminus[k], t.x[k] + array[k]];
+}
+
 function drawScatter(root, traces, colour, px, py) {
   let before = null;
   traces.forEach((t, i) => {
@@ -155,8 +155,8 @@ function drawScatter(root, traces, colour, px, py) {
     }
     before = ys;
     if (mode.includes("lines") && line.width !== 0) svg("path", { d: pathOf(xs, ys), fill: "none", stroke: colour(i), "stroke-width": line.width || 1.6 }, root);
-    if (t.error_x) t.x.forEach((v, k) => {
-      const [a, b] = [px(v - t.error_x.arrayminus[k]), px(v + t.error_x.array[k])];
+    if (t.error_x) t.x.forEach((_, k) => {
+      const [a, b] = intervalAt(t, k).map(px);
       if (Number.isFinite(a + b + ys[k])) svg("path", { d: `M${a} ${ys[k]}H${b}M${a} ${ys[k] - 5}v10M${b} ${ys[k] - 5}v10`, stroke: colour(i), "stroke-width": 2 }, root);
     });
     if (!mode.includes("markers")) return;
@@ -192,17 +192,16 @@ function drawAxes(root, frame, sx, sy, ax, ay) {
     const y = sy.at(v);
     if (y + ROW / 2 > low) continue;
     low = y - ROW / 2;
-    svg("text", { x: left - 6, y: y + 4, "text-anchor": "end" }, words, fitted(t, left - 10));
+    svg("text", { x: left - 6, y: y + 4, "text-anchor": "end" }, words, ay.names ? fitted(t, left - 10) : t);
   }
   if (ax.title) svg("text", { x: (left + right) / 2, y: frame.height - 5, "text-anchor": "middle" }, words, fitted(ax.title, right - left));
   if (ay.title) svg("text", { x: 2, y: 12 }, words, fitted(ay.title, frame.width - 4));
 }
 
 // Sizes around the field of a figure.
-function frameOf(width, height, ax, ay, traces) {
+function frameOf(width, height, ax, ay, values) {
   const longest = (names) => Math.max(0, ...names.map((t) => widthOf(t)));
-  const values = (key) => traces.flatMap((t) => t[key] || []);
-  const trial = scaleOf(ay, values("y"), height, 0, 6);
+  const trial = scaleOf(ay, values, height, 0, height / 40);
   const left = Math.min(0.38 * width, Math.max(28, longest(trial.marks.map((m) => m[1])) + 10));
   const right = width - 12;
   const upright = Boolean(ax.names) && longest(ax.names) + 6 > (right - left) / ax.names.length;
@@ -226,16 +225,14 @@ function chart(figure, data) {
     const width = Math.max(200, canvas.clientWidth);
     const ax = axisOf(data.layout, traces, "x"), ay = axisOf(data.layout, traces, "y");
     if (zoom && !ax.names) ax.range = zoom;
-    const frame = frameOf(width, height, ax, ay, traces);
     const root = svg("svg", { width, height, viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": figure.getAttribute("aria-label") });
     const reach = (key) => traces.flatMap((t) => {
       const list = (t[key] || []).filter((v, i) => typeof v === "number" && (!zoom || key === "x" || (t.x[i] >= zoom[0] && t.x[i] <= zoom[1])));
-      const e = key === "x" && t.error_x;
-      return e ? list.concat(t.x.map((v, i) => v - e.arrayminus[i]), t.x.map((v, i) => v + e.array[i])) : t.type === "bar" && key === "y" ? list.concat([0]) : list;
+      return key === "x" && t.error_x ? list.concat(t.x.flatMap((_, k) => intervalAt(t, k)).filter((v) => v !== null)) : t.type === "bar" && key === "y" ? list.concat([0]) : list;
     });
+    const frame = frameOf(width, height, ax, ay, reach("y"));
     const sx = scaleOf(ax, reach("x"), frame.left, frame.right, (frame.right - frame.left) / 80);
     const sy = scaleOf(ay, reach("y"), frame.bottom, frame.top, (frame.bottom - frame.top) / 40);
-    if (ay.names && ay.reversed) sy.at = (i) => frame.top + (frame.bottom - frame.top) * (i + 0.5) / Math.max(1, ay.names.length);
     drawAxes(root, frame, sx, sy, ax, ay);
     const id = "clip" + [...document.querySelectorAll("[data-figure]")].indexOf(figure);
     const clip = svg("clipPath", { id }, root);

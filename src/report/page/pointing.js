@@ -19,9 +19,16 @@ function planning(api) {
     show(changed);
   }
   function show(changed) {
+    const paintFaces = (from, to, ink) => { for (let c = mesh.start[from]; c < mesh.start[to]; c++) api.tint.set(TINTS[tinted ? ink : 0], 4 * c); };
+    const coarse = new Set();
     for (const e of changed) {
-      const [from, to] = plan.facesOf(e);
-      for (let c = mesh.start[from]; c < mesh.start[to]; c++) api.tint.set(TINTS[tinted ? plan.state[e] : 0], 4 * c);
+      const f = plan.faceOf(e);
+      if (f < 0) coarse.add(plan.partOf(e)); else paintFaces(f, f + 1, plan.state[e]);
+    }
+    // A part that is drawn coarser has a colour where all of its elements are alike.
+    for (const n of coarse) {
+      const all = plan.elementsOf(n), first = plan.state[all[0]], p = mesh.parts[n];
+      paintFaces(p.face, p.face + p.nFaces, all.every((e) => plan.state[e] === first) ? first : 0);
     }
     paint.refill(api.faces.tint, api.tint);
     api.request();
@@ -47,7 +54,7 @@ function planning(api) {
   function seen() {
     const { w, h, list } = api.numbers(), at = new Float32Array(3 * mesh.nFaces);
     for (let f = 0; f < mesh.nFaces; f++) at.set(camera.project(centreOf(mesh, f)), 3 * f);
-    const number = (x, y) => { const c = Math.floor(x), r = h - 1 - Math.floor(y); return c >= 0 && r >= 0 && c < w && r < h ? (list[r * w + c] & 0xffffff) - 1 : -1; };
+    const number = (x, y) => faceIn({ w, h, list }, x, y);
     // A face of a pixel or less counts as seen where one of the same surface close beside it is.
     const visible = (f) => {
       const g = number(at[3 * f], at[3 * f + 1]);
@@ -116,6 +123,11 @@ function planning(api) {
       down(x, y, event) {
         const k = api.markAt(x, y, event.pointerType === "mouse" ? 14 : 26), mark = marks[k];
         if (!mark || !mark.along) return false;
+        const row = mark.name.replace(/\.[a-d]$/, "");
+        if (row !== mark.name && marks.some((m) => m !== mark && m.name.replace(/\.[a-d]$/, "") === row)) {
+          api.said.textContent = row + " is a rosette: its place stands in the job's table of gauges, for all of its legs.";
+          return false;
+        }
         stroke = { mark, before: Object.assign({}, mark), moved: false };
         return true;
       },
@@ -182,7 +194,7 @@ function planning(api) {
     };
     if (list) {
       const n = STATES.map((_, s) => plan.state.reduce((sum, t) => sum + (t === s), 0));
-      role("count").textContent = `${n[1]} elements allowed, ${n[2]} forbidden, ${n[3]} wanted of ${plan.ids.length}.` + (n[1] ? "" : " Where none is allowed, all are that aren't forbidden.");
+      role("count").textContent = `${n[1]} elements allowed, ${n[2]} forbidden, ${n[3]} wanted of ${plan.ids.length}.` + (n[1] ? "" : " Where none is allowed, all are that aren't forbidden.") + (stated.also ? " The job's sets, boxes and distances limit them further." : "");
       put("places", candidateLines(plan));
       figure.querySelectorAll("[data-property]").forEach((b) => {
         const p = plan.properties.get(+b.dataset.property), s = plan.state[p.elements[0]];
@@ -232,10 +244,11 @@ function elementsOf(mesh) {
   });
   const plan = { ids, pids, properties, state: new Uint8Array(ids.length) };
   plan.all = () => ids.map((_, e) => e);
-  plan.facesOf = (e) => {
+  plan.partOf = (e) => of[e];
+  plan.elementsOf = (n) => mesh.parts[n].elements.map((_, k) => first.get(n) + k);
+  plan.faceOf = (e) => {
     const p = mesh.parts[of[e]];
-    const f = p.face + e - first.get(of[e]);
-    return p.whole ? [f, f + 1] : e === first.get(of[e]) ? [p.face, p.face + p.nFaces] : [0, 0];
+    return p.whole ? p.face + e - first.get(of[e]) : -1;
   };
   plan.elementOf = (f) => {
     const n = mesh.part[f], p = mesh.parts[n];

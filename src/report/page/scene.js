@@ -82,6 +82,12 @@ function onFace(m, f, from, along) {
   return null;
 }
 
+// The face that is seen at a pixel of a picture of numbers, -1 where none is.
+function faceIn({ w, h, list }, x, y) {
+  const c = Math.floor(x), r = h - 1 - Math.floor(y);
+  return c >= 0 && r >= 0 && c < w && r < h ? (list[r * w + c] & 0xffffff) - 1 : -1;
+}
+
 // A camera that turns about a point, z up.
 function cameraOf(size) {
   const half = Math.tan(Math.PI / 8);
@@ -94,7 +100,7 @@ function cameraOf(size) {
   // Column by column, as WebGL takes it.
   c.matrix = () => {
     const { e, right, up, eye } = c.frame(), aspect = c.width / c.height;
-    const near = Math.max(c.far - size, 0.01 * c.far), far = c.far + 1.2 * size + Math.hypot(...c.target), a = 1 / (half * aspect), b = 1 / half;
+    const near = Math.max(c.far - size - Math.hypot(...c.target), 0.01 * c.far), far = c.far + 1.2 * size + Math.hypot(...c.target), a = 1 / (half * aspect), b = 1 / half;
     const p = (far + near) / (far - near), q = 2 * far * near / (far - near);
     const row = (v, s) => [v[0] * s, v[1] * s, v[2] * s, -V.dot(v, eye) * s];
     const x = row(right, a), y = row(up, b), back = row(e, 1);
@@ -106,7 +112,8 @@ function cameraOf(size) {
   // Pixels, and how far away.
   c.project = (p) => {
     const { e, right, up, eye } = c.frame(), d = V.sub(p, eye), away = -V.dot(d, e), s = c.height / (2 * half * away);
-    return [c.width / 2 + V.dot(d, right) * s, c.height / 2 - V.dot(d, up) * s, away];
+    // What is behind the eye is nowhere.
+    return away > 0 ? [c.width / 2 + V.dot(d, right) * s, c.height / 2 - V.dot(d, up) * s, away] : [NaN, NaN, away];
   };
   c.ray = (x, y) => {
     const { e, right, up, eye } = c.frame(), s = 2 * half / c.height;

@@ -4,7 +4,6 @@ const SIGNED = ["#1f4e8c", "#7fb0d9", "#eef1f4", "#eb9a6b", "#b2182b"];
 const UNSIGNED = ["#e6ebf0", "#f3dc8e", "#f0a04b", "#d1492e", "#7a0f1d"];
 const SIDES = { top: "#c0392b", bottom: "#1f5fa8" };
 const rgb = (hex) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16));
-const digits = (v) => (Number.isFinite(v) ? String(+v.toPrecision(4)).replace("-", "−") : "none");
 
 // Triangles of one colour each, for arrows and axes of gauges.
 function solidShapes() {
@@ -106,7 +105,7 @@ async function scene(figure, data) {
       const ramp = document.createElement("i");
       ramp.style.background = "linear-gradient(to right," + stops.join(",") + ")";
       const word = (t) => Object.assign(document.createElement("span"), { textContent: t });
-      bar.append(word(digits(ends[0])), ramp, word(digits(ends[1]) + " " + data.fields[f].unit));
+      bar.append(word(significant(ends[0], 4)), ramp, word(significant(ends[1], 4) + " " + data.fields[f].unit));
     }
     paint.refill(faces.value, list);
   }
@@ -180,7 +179,6 @@ async function scene(figure, data) {
       gl.drawArrays(gl.POINTS, 0, gaugeDiscs.n);
     }
     letters();
-    canvas.dataset.frames = 1 + (+canvas.dataset.frames || 0);
   }
 
   // Names beside what they name, the nearest first; one that would lie over another is left out.
@@ -205,7 +203,7 @@ async function scene(figure, data) {
     const taken = [], seen = new Set();
     for (const w of wanted.filter((w) => w.first !== null).sort((a, b) => a.first - b.first)) {
       const wide = widthOf(w.text, "12px system-ui, sans-serif") + 4, x0 = w.x - wide / 2, y0 = w.y - 8;
-      if (x0 < 0 || x0 + wide > camera.width || y0 < 0 || y0 + 16 > camera.height) continue;
+      if (!(x0 >= 0 && x0 + wide <= camera.width && y0 >= 0 && y0 + 16 <= camera.height)) continue;
       if (taken.some((t) => x0 < t[0] + t[2] + 2 && t[0] < x0 + wide + 2 && y0 < t[1] + 17 && t[1] < y0 + 17)) continue;
       taken.push([x0, y0, wide]);
       let span = made.get(w.key);
@@ -245,10 +243,7 @@ async function scene(figure, data) {
     numbered = { w, h, list: new Uint32Array(bytes.buffer) };
     return numbered;
   }
-  const faceAt = (x, y) => {
-    const { w, h, list } = numbers(), c = Math.floor(x), r = h - 1 - Math.floor(y);
-    return c >= 0 && r >= 0 && c < w && r < h ? (list[r * w + c] & 0xffffff) - 1 : -1;
-  };
+  const faceAt = (x, y) => faceIn(numbers(), x, y);
 
   const markAt = (x, y, near) => {
     let best = -1;
@@ -260,7 +255,7 @@ async function scene(figure, data) {
   };
   // To a hundred thousandth of the model.
   const grain = 10 ** Math.floor(Math.log10(size) - 5);
-  const place = (p) => world(p).map((v) => digits(Math.round(v / grain) * grain)).join(", ") + (data.length ? " " + data.length : "");
+  const place = (p) => world(p).map((v) => rounded(v, grain)).join(", ") + (data.length ? " " + data.length : "");
   function tell(x, y) {
     const near = touch ? 22 : 11, k = markAt(x, y, near);
     if (k >= 0) return marks[k].name + ": " + marks[k].note;
@@ -274,9 +269,10 @@ async function scene(figure, data) {
       const w = mesh.faces[4 * f + c], away = Math.hypot(...V.sub(vertexAt(mesh, w), hit));
       if (away < best) { best = away; v = w; }
     }
-    const unit = values ? data.fields[chosen("field", -1)].unit : "";
+    // Strain is kept in steps: no digit below one is said.
+    const field = values ? data.fields[chosen("field", -1)] : null, unit = field ? field.unit : "", step = field ? 10 ** Math.floor(Math.log10(Math.abs(field.step) || 1)) : 1;
     return [part.name, part.whole && part.elements ? "element " + part.elements[f - part.face] : "", "grid " + mesh.grids[v],
-      values && !Number.isNaN(values[v]) ? digits(values[v]) + " " + unit : "", "at " + place(hit)].filter(Boolean).join(", ");
+      values && !Number.isNaN(values[v]) ? rounded(values[v], step) + " " + unit : "", "at " + place(hit)].filter(Boolean).join(", ");
   }
 
   // Points that a view must show: also what may be switched on.

@@ -14,7 +14,7 @@ pub(super) fn said(pointing: &Pointing) -> Value {
             let lists: Map<String, Value> = stated
                 .map(|(key, ids)| ((*key).to_owned(), json!(ids)))
                 .collect();
-            json!({ "file": places.file, "lists": lists })
+            json!({ "file": places.file, "lists": lists, "also": places.also })
         }
     }
 }
@@ -42,7 +42,7 @@ pub(super) fn tools(pointing: &Pointing, gauges: usize) -> Markup {
             @if faces {
                 span.group role="group" aria-label="what is picked becomes" {
                     @for (state, word) in ["nothing", "allowed", "forbidden", "wanted"].iter().enumerate().skip(1).chain([(0, &"nothing")]) {
-                        button type="button" class=(format!("state s{state}")) data-state=(state) aria-pressed=(state == 1) { (word) }
+                        button type="button" class=(format!("s{state}")) data-state=(state) aria-pressed=(state == 1) { (word) }
                     }
                 }
                 label { "brush " input type="range" min="2" max="60" value="14" data-role="brush" aria-label="radius of the brush"; }

@@ -4,7 +4,8 @@ use super::coarse::coarsened;
 use super::part::{Owner, Part};
 use super::solids::outside;
 use crate::model::{GridIx, Model};
-use std::collections::{BTreeMap, HashMap};
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Triangles drawn at most, and with many fields to choose from: each of them has its own numbers in the page.
 const MOST_TRIANGLES: usize = 120_000;
@@ -81,22 +82,28 @@ fn raw(model: &Model) -> Vec<(String, Vec<RawFace>)> {
     by_kind.into_iter().map(|(k, f)| (word(k), f)).collect()
 }
 
-/// Numbers the grids of every part; the smallest beyond [`MOST_PARTS`] become one.
+/// Numbers the grids of every part; the smallest beyond [`MOST_PARTS`] become one of shells and one of the rest.
 fn together(mut list: Vec<(String, Vec<RawFace>)>) -> Vec<Part> {
     if list.len() > MOST_PARTS {
-        let mut sizes: Vec<usize> = list.iter().map(|p| p.1.len()).collect();
-        sizes.sort_unstable_by(|a, b| b.cmp(a));
-        let least = sizes[MOST_PARTS - 2];
-        let (mut kept, mut rest, mut n) = (Vec::new(), Vec::new(), 0);
-        for part in list {
-            if part.1.len() >= least && kept.len() < MOST_PARTS - 1 {
+        // Shells stand apart from the rest: an element of a part of shells is a face.
+        let mut order: Vec<usize> = (0..list.len()).collect();
+        order.sort_by_key(|i| (Reverse(list[*i].1.len()), *i));
+        let largest: HashSet<usize> = order.into_iter().take(MOST_PARTS - 2).collect();
+        let mut small = ["shell", "other"].map(|kind| (kind, 0, Vec::new()));
+        let mut kept = Vec::new();
+        for (i, part) in list.into_iter().enumerate() {
+            if largest.contains(&i) {
                 kept.push(part);
-            } else {
-                n += 1;
-                rest.extend(part.1);
+                continue;
             }
+            let shells = matches!(part.1.first(), Some((Owner::Shell(_), _)));
+            let (_, n, faces) = &mut small[usize::from(!shells)];
+            *n += 1;
+            faces.extend(part.1);
         }
-        kept.push((format!("{n} small properties"), rest));
+        for (kind, n, faces) in small.into_iter().filter(|s| s.1 > 0) {
+            kept.push((format!("{n} small {kind} properties"), faces));
+        }
         list = kept;
     }
     list.into_iter()

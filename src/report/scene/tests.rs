@@ -1,6 +1,6 @@
 use super::outline::outline;
 use super::paint::Values;
-use super::part::Part;
+use super::part::{Owner, Part};
 use super::skin::{Finest, skin};
 use super::*;
 use crate::fe::strain_tensor::largest_in_plane;
@@ -103,6 +103,52 @@ fn a_small_model_is_drawn_whole_with_a_part_a_property() {
     // Six squares and ten.
     assert_eq!(area(&model, &parts[0]), 6.0);
     assert_eq!(area(&model, &parts[1]), 10.0);
+}
+
+/// Elements are picked on parts of shells alone, so that a part is of shells or has none; the largest property keeps a part of its own.
+#[test]
+fn small_properties_go_together_shells_apart_from_the_rest() {
+    let mut model = plate(24, 0);
+    let property = model.shell_properties[0].clone();
+    model.shell_properties = (0..50)
+        .map(|p| ShellProperty {
+            id: 100 + p,
+            ..property.clone()
+        })
+        .collect();
+    for (i, shell) in model.shells.iter_mut().enumerate() {
+        shell.property = ShellPropertyIx((i as u32 / 7).min(49));
+    }
+    let first = model.grids.len() as u32;
+    for (k, z) in [5.0, 6.0].into_iter().enumerate() {
+        for (i, [x, y]) in [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+            .into_iter()
+            .enumerate()
+        {
+            let id = first + 4 * k as u32 + i as u32 + 1;
+            model.grids.push(grid(id, [x, y, z]));
+        }
+    }
+    let mut grids = [None; 20];
+    for (i, g) in grids.iter_mut().enumerate().take(8) {
+        *g = Some(GridIx(first + i as u32));
+    }
+    model.solids.push(Solid {
+        id: 1000,
+        shape: SolidShape::Hexa,
+        grids,
+        property: 0,
+        at: Place::default(),
+    });
+    let parts = skin(&model, 0, Finest::Always);
+    assert!(parts.len() <= 40, "{}", parts.len());
+    assert_eq!(parts.iter().map(|p| p.faces.len()).sum::<usize>(), 576 + 6);
+    assert!(parts.iter().any(|p| p.name == "shells 149"));
+    for part in &parts {
+        let shells = part.faces.iter().filter(|f| matches!(f.0, Owner::Shell(_)));
+        let n = shells.count();
+        assert!(n == 0 || n == part.faces.len(), "{}: {n}", part.name);
+    }
 }
 
 #[test]

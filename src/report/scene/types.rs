@@ -1,6 +1,6 @@
 //! What a scene shows.
 
-use crate::app::job::{Candidates, Ids};
+use crate::app::job::{Candidates, Clearances, Ids};
 use crate::fe::CaseResult;
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::Gauge;
@@ -42,6 +42,8 @@ pub struct Places {
     pub file: String,
     /// Keys of `[candidates]` with the ids that the job states, from and to.
     pub lists: Vec<(&'static str, Vec<[u32; 2]>)>,
+    /// Whether the job limits them further: by sets, boxes, distances.
+    pub also: bool,
 }
 
 impl Default for Places {
@@ -50,6 +52,7 @@ impl Default for Places {
         Self {
             file: "picked.toml".to_owned(),
             lists: Vec::new(),
+            also: false,
         }
     }
 }
@@ -70,6 +73,10 @@ impl Places {
         if let Some(named) = &candidates.file {
             out.file.clone_from(&named.given);
         }
+        out.also = candidates.sets.is_some()
+            || !candidates.boxes.is_empty()
+            || !candidates.exclude_boxes.is_empty()
+            || candidates.clear != Clearances::default();
         out.lists.extend(lists.into_iter().filter_map(stated));
         out
     }

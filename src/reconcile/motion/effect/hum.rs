@@ -16,21 +16,12 @@ const WANDER: f64 = 0.005;
 const STANDS_OUT: f64 = 16.0;
 
 pub(super) fn candidates(frame: &MotionFrame, motion: &Motion) -> Vec<Candidate> {
-    let v = &frame.vehicle;
-    let signal = |name: &str| {
-        let sensor = v.sensors.iter().position(|s| s.channel == name);
-        match sensor {
-            Some(s) => motion.sensors.get(s).cloned(),
-            None => {
-                let wheel = v.wheels.iter().position(|w| w.channel == name)?;
-                motion.forces.get(wheel)?.clone()
-            }
-        }
-    };
     let mut out: Vec<Candidate> = Vec::new();
     for channel in frame.channels() {
-        let Some(x) = signal(&channel) else { continue };
-        for hz in lines(frame, motion, &x) {
+        let Some(x) = motion.signal(&frame.vehicle, &channel) else {
+            continue;
+        };
+        for hz in lines(frame, motion, x) {
             let id = format!("{channel}@{hz:.1} Hz");
             let line = Change::Line {
                 channel: channel.clone(),
