@@ -36,7 +36,12 @@ class Hand:
     def press(self, selector):
         locator = self.page.locator(selector)
         locator.scroll_into_view_if_needed()
-        (locator.tap if self.touch else locator.click)()
+        if not self.touch:
+            return locator.click()
+        # A tap is over before the click that it makes is heard.
+        locator.evaluate("(e) => { window.clicked = false; e.addEventListener('click', () => { window.clicked = true; }, { once: true }); }")
+        locator.tap()
+        self.page.wait_for_function("window.clicked")
 
     def fingers(self, kind, points):
         spots = [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)]
