@@ -30,12 +30,17 @@ fn runs_held_out_in_a_file_of_their_own_have_zeros_of_their_own() {
     for zero in ["Z1", "Z2", "Z3", "Z4"] {
         let _ = writeln!(runs, "{zero},0,0");
     }
-    let more = "hold_out = \"held.csv\"\nzero_runs = [\"Z1\", \"Z2\", \"Z3\", \"Z4\"]\n[runs]\nfile = \"runs.csv\"\n\
-                units = { force = \"N\" }\nnoise = { force = 0.5 }\n";
+    let more = |zeros: &[&str]| {
+        format!(
+            "hold_out = \"held.csv\"\nzero_runs = {zeros:?}\n[runs]\nfile = \"runs.csv\"\n\
+             units = {{ force = \"N\" }}\nnoise = {{ force = 0.5 }}\n"
+        )
+    };
     let strain = with_own_zero(0, 9, 300.0, ["Z1", "Z2"]);
-    let reconcile = |name: &str, held: &str| {
-        let (code, said, _, dir) = recover(name, &strain, more);
-        assert_eq!(code, 0, "{said}");
+    let reconcile = |name: &str, zeros: &[&str], held: &str| {
+        // The file is asked for: its runs may be those without load.
+        let (code, said, _, dir) = recover(name, &strain, &more(zeros));
+        assert_eq!(code, 2, "{said}");
         std::fs::write(dir.join("runs.csv"), &runs).unwrap();
         std::fs::write(dir.join("held.csv"), held).unwrap();
         let job = dir.join("job.toml");
@@ -53,21 +58,26 @@ fn runs_held_out_in_a_file_of_their_own_have_zeros_of_their_own() {
         (done.status.code(), said, result)
     };
     // The logger was switched off between the files: every zero is elsewhere.
-    let (code, said, result) = reconcile("held-zero", &with_own_zero(9, 12, -700.0, ["Z3", "Z4"]));
+    let all = ["Z1", "Z2", "Z3", "Z4"];
+    let (code, said, result) = reconcile(
+        "held-zero",
+        &all,
+        &with_own_zero(9, 12, -700.0, ["Z3", "Z4"]),
+    );
     assert_eq!(code, Some(0), "{said}");
     assert_eq!(result["verdict"], "none");
     // Readings are off by half a microstrain, a thousandth of what the other zero would make.
     let gap = result["gap"]["before"].as_f64().unwrap();
     assert!(gap < 5e-3, "{gap}");
     let none = table("run", 12, as_is);
-    let (code, said, _) = reconcile("held-without-zero", &none);
+    let (code, said, _) = reconcile("held-without-zero", &all[..2], &none);
     assert_eq!(code, Some(2), "{said}");
     assert!(
         said.contains("`held.csv` has none of these runs: add to it a run without load"),
         "{said}"
     );
     let unknown = with_own_zero(9, 12, -700.0, ["Z3", "other"]);
-    let (code, said, _) = reconcile("held-unknown-zero", &unknown);
+    let (code, said, _) = reconcile("held-unknown-zero", &all, &unknown);
     assert_eq!(code, Some(2), "{said}");
     assert!(said.contains("has a run `Z4`"), "{said}");
 }

@@ -315,6 +315,8 @@ function listen(api, tell) {
   let held = false, hover = null;
   const spread = () => { const [a, b] = [...fingers.values()]; return { x: (a[0] + b[0]) / 2, y: (a[1] + b[1]) / 2, d: Math.hypot(a[0] - b[0], a[1] - b[1]) }; };
   box.addEventListener("contextmenu", (event) => event.preventDefault());
+  // A finger that leaves a tool in full swing would set the page flinging, and a browser swallows the next tap to stop that.
+  box.addEventListener("touchmove", (event) => { if (api.tool) event.preventDefault(); }, { passive: false });
   box.addEventListener("pointerdown", (event) => {
     if (event.pointerType === "mouse") box.focus({ preventScroll: true });
     box.setPointerCapture(event.pointerId);
