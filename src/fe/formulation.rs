@@ -78,10 +78,15 @@ fn gaps(model: &Model) -> Option<Finding> {
     let mut closed = Vec::new();
     let mut open = Vec::new();
     let mut preloaded = 0;
+    let mut unbalanced = Vec::new();
     for j in &model.joints {
         if let JointCard::Cgap { open: is, preload } = j.card {
             if is { &mut open } else { &mut closed }.push(j.id);
             preloaded += usize::from(preload != 0.0);
+            let [a, b] = &j.ends;
+            if j.k[1] > 0.0 && a.x != b.x {
+                unbalanced.push(j.id);
+            }
         }
     }
     let n = closed.len() + open.len();
@@ -91,12 +96,21 @@ fn gaps(model: &Model) -> Option<Finding> {
         } else {
             String::new()
         };
+        let friction = if unbalanced.is_empty() {
+            String::new()
+        } else {
+            format!(
+                "; the stiffness across of {} ({}) acts between grids that are apart, and the moment of its two forces is balanced by nothing",
+                unbalanced.len(),
+                first_of(&unbalanced)
+            )
+        };
         Finding::new(
             Severity::Warning,
             "gap-linear",
             "CGAP",
             format!(
-                "{n} gaps stay as their initial opening has them under every load: {} closed ({}), {} open ({}){preload}",
+                "{n} gaps stay as their initial opening has them under every load: {} closed ({}), {} open ({}){preload}{friction}",
                 closed.len(),
                 first_of(&closed),
                 open.len(),

@@ -67,4 +67,14 @@ impl JointEnd {
             motion: vec![(g, Matrix6::identity())],
         }
     }
+
+    /// The translations of a grid, whatever its rotation.
+    pub fn translations(g: GridIx, x: Vec3) -> Self {
+        let mut motion = Matrix6::zeros();
+        motion.fixed_view_mut::<3, 3>(0, 0).fill_diagonal(1.0);
+        Self {
+            x,
+            motion: vec![(g, motion)],
+        }
+    }
 }
