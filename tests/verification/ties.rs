@@ -258,6 +258,15 @@ fn a_bush_without_axes_takes_the_basic_frame_and_says_so_where_it_matters() {
         assert!(b.faults().is_empty(), "{:?}", b.faults());
         (b.solve().at(1), findings(&b))
     };
+    // A vector without a line to go with is not thrown away in silence.
+    for (property, faulty) in [("50.,30.,10.", true), ("10.,10.,10.", false)] {
+        let mut b = Bulk::default();
+        b.grid([3.0, 4.0, 5.0]);
+        b.grid([3.0, 4.0, 5.0]);
+        b.card(&format!("PBUSH,7,K,{property}\nCBUSH,5,7,1,2,0.,1.,0."));
+        let told = b.faults().iter().any(|f| f.contains("without CID"));
+        assert_eq!(told, faulty, "{:?}", b.faults());
+    }
     for second in ["2", ""] {
         let (u, told) = at("PBUSH,7,K,50.,30.,10.,1.,1.,1.", second);
         assert!(
