@@ -223,12 +223,7 @@ impl<'a> Builder<'a> {
                 );
                 continue;
             };
-            let Some(bush) = self.bush(b, p, &name) else {
-                continue;
-            };
-            let rigid = self.rigid_components(&bush, &p.rigid);
-            self.model.rigids.extend(rigid);
-            out.push(bush);
+            out.extend(self.bush(b, p, &name));
         }
         out.sort_by_key(|b: &Bush| b.id);
         self.model.bushes = out;
@@ -311,6 +306,7 @@ impl<'a> Builder<'a> {
             axes,
             location,
             k: p.k,
+            rigid: p.rigid,
             frame_assumed,
             recovery: p.recovery,
             at: b.at,

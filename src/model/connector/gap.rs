@@ -98,6 +98,7 @@ impl Builder<'_> {
             axes,
             location: (xa + xb) / 2.0,
             k: [along, across, across, 0.0, 0.0, 0.0],
+            placed: Placement::default(),
             at: g.at,
         })
     }

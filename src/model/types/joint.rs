@@ -19,8 +19,19 @@ pub struct Joint {
     pub location: Vec3,
     /// Stiffness by component: three translations, three rotations.
     pub k: [f64; 6],
+    /// How it came onto its patches.
+    pub placed: Placement,
     /// Where it stands.
     pub at: Place,
+}
+
+/// How a connector came onto its patches.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Placement {
+    /// How often its diameter was halved until the auxiliary points found the patch, the greater of both sides.
+    pub halvings: u8,
+    /// Angle between the normals of the patches, degrees, at most 90; 0 where an end is a grid.
+    pub angle_deg: f64,
 }
 
 /// Which card a joint came from.
