@@ -107,16 +107,23 @@ fn a_double_box_has_the_area_inertia_and_torsion_of_its_cells() {
     );
     close("J of two cells", s.j, 2.0 * (a1 * q1 + a2 * q2), 1e-9);
     // Blank DIM5 to DIM8 are DIM4, DIM9 and DIM10 DIM6.
-    let short = section("DBOX", &[w, h, 80.0, 4.0, 4.0, 6.0, 4.0, 4.0, 6.0, 6.0]);
-    let mut b = Bulk::default();
-    b.card("MAT1,1,210000.,,.3\nPBARL,2,1,,DBOX,,,,,\n,200.,80.,80.,4.,,6.");
-    assert!(b.faults().is_empty(), "{:?}", b.faults());
-    close(
-        "defaults",
-        b.model().beam_properties[0].sections[0].1.area,
-        short.area,
-        1e-12,
-    );
+    for (right, dims) in [(6.0, "4.,,6."), (4.0, "4.")] {
+        let short = section(
+            "DBOX",
+            &[w, h, 80.0, 4.0, 4.0, right, 4.0, 4.0, right, right],
+        );
+        let mut b = Bulk::default();
+        b.card(&format!(
+            "MAT1,1,210000.,,.3\nPBARL,2,1,,DBOX,,,,,\n,200.,80.,80.,{dims}"
+        ));
+        assert!(b.faults().is_empty(), "{:?}", b.faults());
+        close(
+            "defaults",
+            b.model().beam_properties[0].sections[0].1.area,
+            short.area,
+            1e-12,
+        );
+    }
 }
 
 /// Shear flow of one cell with unlike sides: that of the box cut open in the middle of its left wall, and the one around that closes the cut
