@@ -267,7 +267,7 @@ fn a_rigid_bush_follows_whichever_end_is_free_to() {
 #[test]
 fn which_dofs_a_rigid_bush_makes_dependent_does_not_hang_on_the_unit_of_length() {
     // Translations alone are rigid, the rotations of the arm's end are held: the force acts in the middle of the arm.
-    for unit in [1.0, 1e-3] {
+    for unit in [1.0_f64, 1e-3] {
         let (l, i, a) = (500.0 * unit, 9000.0 * unit.powi(4), 40.0 * unit);
         let (area, e) = (200.0 * unit * unit, E / (unit * unit));
         let mut b = Bulk::default();
