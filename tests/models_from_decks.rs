@@ -377,3 +377,18 @@ fn rigid_bars_and_triangles_are_those_of_older_cards() {
         kinds("RBE1,9,1,12,5,3,7,123\n,UM,1,3,5,12")
     );
 }
+
+/// SWLDPRM changes how connectors are projected, and nothing where there are none.
+#[test]
+fn swldprm_is_refused_by_name_beside_connectors() {
+    let cards = |connector: &str| {
+        let (model, _) = model_of(
+            "",
+            &format!("{PLATES}{connector}SWLDPRM,GSPROJ,30.,CNRAGI,2"),
+        );
+        let unsupported = model.unsupported_cards.into_iter();
+        unsupported.map(|c| c.card).collect::<Vec<_>>()
+    };
+    assert_eq!(cards("CWELD,9,8,,ALIGN,1,7\nPWELD,8,1,.1\n"), ["SWLDPRM"]);
+    assert!(cards("").is_empty());
+}

@@ -104,7 +104,8 @@ pub(super) fn applied_forces(
                             sid: *sid,
                             subcase: case.subcase,
                         })?;
-                for (f, add) in f.iter_mut().zip(load_vector(model, mass, set)) {
+                let loads = load_vector(model, mass, set).map_err(|r| FeError::Refused(vec![r]))?;
+                for (f, add) in f.iter_mut().zip(loads) {
                     f.iter_mut().zip(add).for_each(|(f, a)| *f += a);
                 }
             }

@@ -1,7 +1,7 @@
 //! Where an element stands for another than its card names, or for one of the states that its card allows.
 
 use crate::finding::{Finding, Severity};
-use crate::model::{Joint, JointCard, Model};
+use crate::model::{Joint, JointCard, Model, RigidKind};
 use nastran::cards::ShellShape;
 
 /// Says where an element stands for another than its card names.
@@ -34,9 +34,12 @@ pub(super) fn formulations(model: &Model) -> Vec<Finding> {
         })
         .collect();
     all.extend(connectors(model));
+    all.extend(halved_diameters(model));
+    all.extend(connectors_at_an_angle(model));
     all.extend(gaps(model));
     all.extend(warping_beams(model));
     all.extend(bushes_in_the_basic_frame(model));
+    all.extend(ground_of_rigid_bushes(model));
     all
 }
 
@@ -55,6 +58,52 @@ fn connectors(model: &Model) -> Option<Finding> {
             "nothing; a gauge nearer to a connector than a few diameters reads the tie",
         )
     })
+}
+
+/// Connectors whose diameter is wider than their patch.
+fn halved_diameters(model: &Model) -> Option<Finding> {
+    let halved = model.joints.iter().filter(|j| j.placed.halvings > 0);
+    let ids: Vec<u32> = halved.clone().map(|j| j.id).collect();
+    let most = halved.map(|j| j.placed.halvings).max()?;
+    Some(
+        Finding::new(
+            Severity::Warning,
+            "connector-halved",
+            format!("CWELD, CFAST {}", first_of(&ids)),
+            format!(
+                "{} connectors are wider than what they stand on: the square of their auxiliary points is that of a diameter halved up to {most} times",
+                ids.len()
+            ),
+            "give a diameter that lies on the patch, or name more shells; the sheet around is less stiff than the true diameter makes it",
+        )
+        .with_numbers(f64::from(most), 0.0),
+    )
+}
+
+/// Angle between two sheets, degrees, beyond which Nastran makes no connector (default of GSPROJ on SWLDPRM).
+const GSPROJ_DEG: f64 = 20.0;
+
+/// Connectors between sheets that stand at an angle to each other.
+fn connectors_at_an_angle(model: &Model) -> Option<Finding> {
+    let tilted = model
+        .joints
+        .iter()
+        .filter(|j| j.placed.angle_deg > GSPROJ_DEG);
+    let ids: Vec<u32> = tilted.clone().map(|j| j.id).collect();
+    let largest = tilted.map(|j| j.placed.angle_deg).max_by(f64::total_cmp)?;
+    Some(
+        Finding::new(
+            Severity::Warning,
+            "connector-angle",
+            format!("CWELD, CFAST {}", first_of(&ids)),
+            format!(
+                "{} connectors join sheets at up to {largest:.0} degrees to each other; Nastran makes none beyond {GSPROJ_DEG:.0} (GSPROJ of SWLDPRM)",
+                ids.len()
+            ),
+            "check which shells or properties they name: a connector belongs between sheets that lie on each other",
+        )
+        .with_numbers(largest, GSPROJ_DEG),
+    )
 }
 
 /// CBEAMs with warping points: what their strain leaves out.
@@ -78,10 +127,15 @@ fn gaps(model: &Model) -> Option<Finding> {
     let mut closed = Vec::new();
     let mut open = Vec::new();
     let mut preloaded = 0;
+    let mut unbalanced = Vec::new();
     for j in &model.joints {
         if let JointCard::Cgap { open: is, preload } = j.card {
             if is { &mut open } else { &mut closed }.push(j.id);
             preloaded += usize::from(preload != 0.0);
+            let [a, b] = &j.ends;
+            if j.k[1] > 0.0 && a.x != b.x {
+                unbalanced.push(j.id);
+            }
         }
     }
     let n = closed.len() + open.len();
@@ -91,12 +145,21 @@ fn gaps(model: &Model) -> Option<Finding> {
         } else {
             String::new()
         };
+        let friction = if unbalanced.is_empty() {
+            String::new()
+        } else {
+            format!(
+                "; the stiffness across of {} ({}) acts between grids that are apart, and the moment of its two forces is balanced by nothing",
+                unbalanced.len(),
+                first_of(&unbalanced)
+            )
+        };
         Finding::new(
             Severity::Warning,
             "gap-linear",
             "CGAP",
             format!(
-                "{n} gaps stay as their initial opening has them under every load: {} closed ({}), {} open ({}){preload}",
+                "{n} gaps stay as their initial opening has them under every load: {} closed ({}), {} open ({}){preload}{friction}",
                 closed.len(),
                 first_of(&closed),
                 open.len(),
@@ -126,6 +189,35 @@ fn bushes_in_the_basic_frame(model: &Model) -> Option<Finding> {
                 ids.len()
             ),
             "state CID (0 for the basic frame)",
+        )
+        .with_numbers(ids.len() as f64, 0.0)
+    })
+}
+
+/// Rigid bushes to ground that tie dofs of their grid to each other: their force is on no single dof.
+fn ground_of_rigid_bushes(model: &Model) -> Option<Finding> {
+    let ids: Vec<u32> = model
+        .rigids
+        .iter()
+        .filter(|r| match &r.kind {
+            RigidKind::Equations { equations, .. } => equations.iter().any(|terms| {
+                let grid = terms.first().map(|t| t.0);
+                terms.len() > 1 && terms.iter().all(|t| Some(t.0) == grid)
+            }),
+            RigidKind::Body { .. } | RigidKind::Mean { .. } => false,
+        })
+        .map(|r| r.id)
+        .collect();
+    (!ids.is_empty()).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "bush-reaction-missing",
+            format!("CBUSH {}", first_of(&ids)),
+            format!(
+                "{} bushes hold their grid rigidly to ground in directions that are not those of its displacement frame: their force is not among the reactions",
+                ids.len()
+            ),
+            "give the grid a CD along the bush's axes, or a stiff spring for RIGID, where reactions matter",
         )
         .with_numbers(ids.len() as f64, 0.0)
     })

@@ -2,12 +2,20 @@
 
 use super::element::beam::beam_end_forces;
 use super::element::shell::{linear_part, many_grids, over_face};
+use super::error::Refusal;
 use super::mass::Mass;
 use crate::model::{Direction, GridIx, Load, LoadSet, Model, Vec3, solid_edges};
 use std::collections::HashMap;
 
 /// Forces and moments at all grids, basic frame, of one load set.
-pub(crate) fn load_vector(model: &Model, mass: &Mass, set: &LoadSet) -> Vec<[f64; 6]> {
+///
+/// # Errors
+/// A load along a beam that can't be formed.
+pub(crate) fn load_vector(
+    model: &Model,
+    mass: &Mass,
+    set: &LoadSet,
+) -> Result<Vec<[f64; 6]>, Refusal> {
     let mut f = vec![[0.0; 6]; model.grids.len()];
     let on_faces = |l: &(f64, Load)| matches!(l.1, Load::FacePressure { .. });
     let mids = if set.loads.iter().any(on_faces) {
@@ -16,9 +24,9 @@ pub(crate) fn load_vector(model: &Model, mass: &Mass, set: &LoadSet) -> Vec<[f64
         HashMap::new()
     };
     for (factor, load) in &set.loads {
-        add(model, mass, &mids, *factor, load, &mut f);
+        add(model, mass, &mids, *factor, load, &mut f)?;
     }
-    f
+    Ok(f)
 }
 
 fn push(f: &mut [[f64; 6]], grid: GridIx, at: usize, v: &Vec3) {
@@ -34,7 +42,7 @@ fn add(
     factor: f64,
     load: &Load,
     f: &mut [[f64; 6]],
-) {
+) -> Result<(), Refusal> {
     match load {
         Load::Force(g, v) => push(f, *g, 0, &(v * factor)),
         Load::Moment(g, v) => push(f, *g, 3, &(v * factor)),
@@ -99,22 +107,16 @@ fn add(
         }
         Load::Line { beam, .. } => {
             let interior = super::line_load::alone(load);
-            // A beam that can't be formed is refused with the stiffness.
-            if let Ok(ends) = beam_end_forces(model, beam.us(), &interior) {
-                for (g, v) in model.beams[beam.us()]
-                    .grids
-                    .iter()
-                    .zip(ends.chunks_exact(6))
-                {
-                    f[g.us()]
-                        .iter_mut()
-                        .zip(v)
-                        .for_each(|(f, v)| *f += factor * v);
-                }
+            for (g, v) in beam_end_forces(model, beam.us(), &interior)? {
+                f[g.us()]
+                    .iter_mut()
+                    .zip(v)
+                    .for_each(|(f, v)| *f += factor * v);
             }
         }
         Load::Enforced { .. } | Load::Unsupported(..) => {}
     }
+    Ok(())
 }
 
 /// Consistent forces of a pressure over a triangle or a quadrilateral: integral of shape function, pressure and area vector.

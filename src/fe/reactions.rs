@@ -5,7 +5,7 @@ use super::grid_frames::{to_basic, to_local};
 use super::mass::resultant;
 use super::prepared::Prepared;
 use super::system::System;
-use crate::model::Vec3;
+use crate::model::{Model, Vec3};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -28,7 +28,7 @@ pub struct Reaction {
 pub struct Reactions {
     /// Subcase id.
     pub subcase: u32,
-    /// Resultant of what acts (inertia included where it balances), about the basic origin: three forces, three moments.
+    /// Resultant of what acts on grids (inertia included where it balances), about the basic origin: three forces, three moments.
     pub applied: [f64; 6],
     /// Resultant of the reactions about the same point: the applied one with its sign turned.
     pub total: [f64; 6],
@@ -74,13 +74,17 @@ pub(super) fn reactions(
             *v = to_basic(axes, *v);
         }
         let origin = Vec3::zeros();
-        let (applied, total) = (resultant(&x, f, &origin), resultant(&x, &held, &origin));
         let largest = super::applied::largest(&held);
+        let (acts, holds) = (without_points(model, f), without_points(model, &held));
+        let (applied, total) = (
+            resultant(&x, &acts, &origin),
+            resultant(&x, &holds, &origin),
+        );
         Reactions {
             subcase: *case,
             applied,
             total,
-            residual: unbalanced(&x, f, &held, &applied, &total),
+            residual: unbalanced(&x, &acts, &holds, &applied, &total),
             grids: model
                 .grids
                 .iter()
@@ -95,6 +99,14 @@ pub(super) fn reactions(
         .zip(forces.iter().zip(internal))
         .map(of_case)
         .collect())
+}
+
+/// A field without what stands at scalar points: a bimoment there is no force.
+fn without_points(model: &Model, field: &[[f64; 6]]) -> Vec<[f64; 6]> {
+    let pairs = model.grids.iter().zip(field);
+    pairs
+        .map(|(g, v)| if g.is_scalar() { [0.0; 6] } else { *v })
+        .collect()
 }
 
 /// K u of the elements at the grids marked, basic frame, one field a case.

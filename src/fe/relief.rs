@@ -7,7 +7,7 @@ use super::grid_frames::to_local;
 use super::mass::{Mass, MassProperties, resultant};
 use super::rigid_motion::rigid;
 use crate::linalg::{DMatrix, DVector, Matrix6};
-use crate::model::{GridIx, Mat3, Vec3};
+use crate::model::{Grid, GridIx, Mat3, Model, Vec3};
 use nastran::cards::Dofs;
 use serde::Serialize;
 
@@ -19,6 +19,8 @@ const FREE_MOTION: f64 = 1e-10;
 pub(crate) struct RigidBody {
     /// Grid locations.
     x: Vec<Vec3>,
+    /// Scalar points: no motion of the body moves them, and what acts there is no force on it.
+    scalar: Vec<bool>,
     pub(crate) properties: MassProperties,
     /// Columns: free motions as combinations of three translations and three rotations about the centre of gravity.
     basis: DMatrix<f64>,
@@ -50,14 +52,17 @@ impl RigidBody {
     /// # Errors
     /// Free motions, and no mass to balance loads along them.
     pub(crate) fn new(
-        x: Vec<Vec3>,
+        model: &Model,
         axes: &[Option<Mat3>],
         mass: &Mass,
         reduction: &Reduction,
         touched: &[bool],
     ) -> Result<Option<Self>, FeError> {
+        let x: Vec<Vec3> = model.grids.iter().map(|g| g.x).collect();
+        let scalar: Vec<bool> = model.grids.iter().map(Grid::is_scalar).collect();
+        let touched: Vec<bool> = touched.iter().zip(&scalar).map(|(t, s)| *t && !s).collect();
         let properties = mass.properties(&x);
-        let parts = || x.iter().zip(touched).filter(|t| *t.1).map(|t| t.0);
+        let parts = || x.iter().zip(&touched).filter(|t| *t.1).map(|t| t.0);
         let centre = match &properties {
             Some(p) => p.cg,
             None => parts().sum::<Vec3>() / parts().count().max(1) as f64,
@@ -96,6 +101,7 @@ impl RigidBody {
         let modal = basis.transpose() * rigid_mass * &basis;
         Ok(Some(Self {
             x,
+            scalar,
             properties,
             basis,
             modal,
@@ -118,27 +124,39 @@ impl RigidBody {
             Vec3::new(amounts[0], amounts[1], amounts[2]),
             Vec3::new(amounts[3], amounts[4], amounts[5]),
         );
-        self.x
-            .iter()
-            .map(|x| {
+        let points = self.x.iter().zip(&self.scalar);
+        points
+            .map(|(x, scalar)| {
                 let u = t + w.cross(&(x - self.properties.cg));
-                [u.x, u.y, u.z, w.x, w.y, w.z]
+                if *scalar {
+                    [0.0; 6]
+                } else {
+                    [u.x, u.y, u.z, w.x, w.y, w.z]
+                }
             })
             .collect()
     }
 
+    /// Force and moment on the body about its centre of gravity.
+    fn resultant(&self, f: &[[f64; 6]]) -> [f64; 6] {
+        let on_body = f.iter().zip(&self.scalar);
+        let on_body: Vec<[f64; 6]> = on_body
+            .map(|(f, scalar)| if *scalar { [0.0; 6] } else { *f })
+            .collect();
+        resultant(&self.x, &on_body, &self.properties.cg)
+    }
+
     /// f - M R a with a = (R'MR)^-1 R'f over the free motions, and what it amounts to.
     pub(crate) fn balance(&self, subcase: u32, mass: &Mass, f: &mut [[f64; 6]]) -> Balance {
-        let applied = resultant(&self.x, f, &self.properties.cg);
+        let applied = self.resultant(f);
         let generalized = self.basis.transpose() * DVector::from_column_slice(&applied);
         let amounts = &self.basis * self.modal_solve(&generalized);
         let inertia_field = mass.times(&self.field(&amounts));
         for (f, m) in f.iter_mut().zip(&inertia_field) {
             f.iter_mut().zip(m).for_each(|(f, m)| *f -= m);
         }
-        let inertia = resultant(&self.x, &inertia_field, &self.properties.cg).map(|v| -v);
-        let left = self.basis.transpose()
-            * DVector::from_column_slice(&resultant(&self.x, f, &self.properties.cg));
+        let inertia = self.resultant(&inertia_field).map(|v| -v);
+        let left = self.basis.transpose() * DVector::from_column_slice(&self.resultant(f));
         let scale = generalized.amax().max(f64::MIN_POSITIVE);
         Balance {
             subcase,
@@ -181,7 +199,7 @@ impl RigidBody {
 
     /// Takes the free motions out of a displacement field so that R'M u = 0.
     pub(crate) fn take_out(&self, mass: &Mass, u: &mut [[f64; 6]]) {
-        let momentum = resultant(&self.x, &mass.times(u), &self.properties.cg);
+        let momentum = self.resultant(&mass.times(u));
         let generalized = self.basis.transpose() * DVector::from_column_slice(&momentum);
         let field = self.field(&(&self.basis * self.modal_solve(&generalized)));
         for (u, r) in u.iter_mut().zip(field) {

@@ -48,16 +48,13 @@ impl System {
         let mut assembled = assemble(prepared, &reduction)?;
         let body = match relief {
             Relief::None => None,
-            _ => {
-                let x = model.grids.iter().map(|g| g.x).collect();
-                RigidBody::new(
-                    x,
-                    &prepared.axes,
-                    mass,
-                    &reduction,
-                    &touched(prepared, &reduction),
-                )?
-            }
+            _ => RigidBody::new(
+                model,
+                &prepared.axes,
+                mass,
+                &reduction,
+                &touched(prepared, &reduction),
+            )?,
         };
         if let Some(body) = &body {
             findings.extend(ties(prepared, &assembled, body));

@@ -45,13 +45,12 @@ pub(crate) fn thermal_forces(
             f[g.us()].iter_mut().zip(v).for_each(|(f, v)| *f += v);
         }
     }
-    for (i, beam) in model.beams.iter().enumerate() {
+    for i in 0..model.beams.len() {
         let interior = Interior {
             thermal: beam_expansion(model, i, t),
             ..Interior::default()
         };
-        let ends = beam_end_forces(model, i, &interior).map_err(refused)?;
-        for (g, v) in beam.grids.iter().zip(ends.chunks_exact(6)) {
+        for (g, v) in beam_end_forces(model, i, &interior).map_err(refused)? {
             f[g.us()].iter_mut().zip(v).for_each(|(f, v)| *f += v);
         }
     }

@@ -16,5 +16,6 @@ pub mod tall;
 
 pub use dense::{Matrix, Vector};
 pub use nalgebra::{
-    DMatrix, DVector, Matrix3, Matrix4, Matrix6, SMatrix, SVector, SymmetricEigen, Vector3, Vector6,
+    DMatrix, DVector, Matrix3, Matrix4, Matrix6, SMatrix, SVector, SymmetricEigen, Vector3,
+    Vector4, Vector6,
 };

@@ -18,6 +18,8 @@ pub(super) struct Builder<'a> {
     pub grid_ix: HashMap<u32, GridIx>,
     pub material_ix: HashMap<u32, MaterialIx>,
     pub element_ids: HashMap<u32, (&'static str, Place)>,
+    /// Grids that only say where a connector stands (GS).
+    pub points: Vec<GridIx>,
 }
 
 impl Model {
@@ -66,6 +68,7 @@ impl Model {
             grid_ix: HashMap::new(),
             material_ix: HashMap::new(),
             element_ids: HashMap::new(),
+            points: Vec::new(),
         };
         b.params();
         b.frames_and_grids();
@@ -80,8 +83,9 @@ impl Model {
         b.masses();
         b.rigids();
         b.joints();
-        b.check_dependents();
         b.constraints();
+        b.rigid_bushes();
+        b.check_dependents();
         b.loads();
         b.attachments();
         b.faults.sort_by_key(|f| f.at);

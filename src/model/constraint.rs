@@ -251,6 +251,7 @@ impl Builder<'_> {
             .filter_map(|b| b.warping)
             .flatten()
             .for_each(&mut mark);
+        self.points.iter().copied().for_each(&mut mark);
         let free: Vec<(u32, Place)> = m
             .grids
             .iter()

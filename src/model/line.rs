@@ -223,12 +223,7 @@ impl<'a> Builder<'a> {
                 );
                 continue;
             };
-            let Some(bush) = self.bush(b, p, &name) else {
-                continue;
-            };
-            let rigid = self.rigid_components(&bush, &p.rigid);
-            self.model.rigids.extend(rigid);
-            out.push(bush);
+            out.extend(self.bush(b, p, &name));
         }
         out.sort_by_key(|b: &Bush| b.id);
         self.model.bushes = out;
@@ -236,7 +231,7 @@ impl<'a> Builder<'a> {
 
     /// The frame of a bush: CID where stated; else from the line and the orientation; else the line alone, which is enough for
     /// stiffness along and about it only. Between coincident grids, or to ground, without CID: the basic frame, which is no matter for
-    /// stiffness that is the same in all directions, and noted in the bush otherwise.
+    /// stiffness that is the same in all directions, and noted in the bush otherwise; a vector there has no line to go with and is a fault.
     ///
     /// # Reference
     /// MSC Nastran Quick Reference Guide, CBUSH, remarks 3 to 7.
@@ -281,12 +276,20 @@ impl<'a> Builder<'a> {
                 }
                 any_axes(xb - xa)?
             }
-            _ => {
+            (None, stated) => {
                 let [k1, k2, k3, k4, k5, k6] = p.k;
                 let [r1, r2, r3, r4, r5, r6] = p.rigid;
                 let alike = k1 == k2 && k2 == k3 && k4 == k5 && k5 == k6;
                 let rigid_alike = r1 == r2 && r2 == r3 && r4 == r5 && r5 == r6;
                 frame_assumed = !(alike && rigid_alike);
+                if frame_assumed && stated.is_some() {
+                    let kind = FaultKind::Unsupported {
+                        what: "a bush between coincident grids, or to ground, with a vector and without CID".into(),
+                        remedy: "state CID (0 for the basic frame)",
+                    };
+                    self.fault(name.to_owned(), "CID", b.at, kind);
+                    return None;
+                }
                 Mat3::identity()
             }
         };
@@ -303,6 +306,7 @@ impl<'a> Builder<'a> {
             axes,
             location,
             k: p.k,
+            rigid: p.rigid,
             frame_assumed,
             recovery: p.recovery,
             at: b.at,

@@ -63,9 +63,8 @@ impl Builder<'_> {
                 out.extend(self.rspline(r));
             }
         }
-        // Rigid components of bushes stand there already.
-        self.model.rigids.extend(out);
-        self.model.rigids.sort_by_key(|r| r.id);
+        out.sort_by_key(|r| r.id);
+        self.model.rigids = out;
     }
 
     fn grid_dofs(
@@ -182,7 +181,7 @@ impl Builder<'_> {
                         .any(|(h, d)| *h == g && d.has(i as u8 + 1))
                     {
                         found.push((
-                            (r.id, r.at),
+                            (r.kind.card(), r.id, r.at),
                             FaultKind::DependentAndIndependent {
                                 grid: id,
                                 dof: i as u8 + 1,
@@ -191,7 +190,7 @@ impl Builder<'_> {
                     }
                     match first.get(&(g, i)) {
                         Some(at) => found.push((
-                            (r.id, r.at),
+                            (r.kind.card(), r.id, r.at),
                             FaultKind::DependentTwice {
                                 grid: id,
                                 dof: i as u8 + 1,
@@ -205,8 +204,8 @@ impl Builder<'_> {
                 }
             }
         }
-        for ((id, at), kind) in found {
-            self.fault(format!("rigid element {id}"), "GM", at, kind);
+        for ((card, id, at), kind) in found {
+            self.fault(format!("{card} {id}"), "GM", at, kind);
         }
     }
 }

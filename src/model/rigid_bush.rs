@@ -1,20 +1,90 @@
 //! RIGID on a PBUSH: components of a bush that don't give way.
 
 use super::build::Builder;
+use super::fault::FaultKind;
 use super::types::*;
 use crate::linalg::DMatrix;
+use std::collections::HashSet;
+
+/// A pivot of directions, whose rows have length 1, under which a row counts as a sum of others.
+const NOTHING_LEFT: f64 = 1e-9;
+
+type Terms = Vec<(GridIx, u8, f64)>;
 
 impl Builder<'_> {
-    /// Equations that hold the relative displacement of the rigid components at zero: rows axes (u_B - u_A) at the bush's location, solved
-    /// for as many dofs of B (of A where the bush is grounded), pivots largest first.
-    pub(super) fn rigid_components(&self, bush: &Bush, rigid: &[bool; 6]) -> Option<Rigid> {
+    /// The equations of rigid bushes, after all that makes dofs dependent or holds them.
+    pub(super) fn rigid_bushes(&mut self) {
+        let mut taken = self.taken();
+        for i in 0..self.model.bushes.len() {
+            let Some(bush) = self.model.bushes.get(i).copied() else {
+                continue;
+            };
+            if !bush.rigid.contains(&true) {
+                continue;
+            }
+            // B follows A, or A follows B where something else moves B; to ground, A stands still.
+            let ends: Vec<GridIx> = bush.grids.1.into_iter().chain([bush.grids.0]).collect();
+            let found: Vec<Vec<Terms>> = ends
+                .iter()
+                .filter_map(|g| self.rigid_components(&bush, *g))
+                .collect();
+            let free = |e: &&Vec<Terms>| {
+                let mut first = e.iter().filter_map(|terms| terms.first());
+                first.all(|t| !taken.contains(&(t.0, t.1)))
+            };
+            let Some(equations) = found.iter().find(free).or(found.first()).cloned() else {
+                let kind = FaultKind::Unsupported {
+                    what: "RIGID in directions that hold each other".into(),
+                    remedy: "give stiffnesses, or use an RBE2 or RBAR",
+                };
+                self.fault(format!("CBUSH {}", bush.id), "PID", bush.at, kind);
+                continue;
+            };
+            let first = equations.iter().filter_map(|terms| terms.first());
+            taken.extend(first.map(|t| (t.0, t.1)));
+            self.model.rigids.push(Rigid {
+                id: bush.id,
+                kind: RigidKind::Equations {
+                    card: "CBUSH",
+                    equations,
+                },
+                at: bush.at,
+            });
+        }
+        self.model.rigids.sort_by_key(|r| r.id);
+    }
+
+    /// Dofs that rigid elements or MPCs make dependent, or that a grid or an SPC set holds.
+    fn taken(&self) -> HashSet<(GridIx, u8)> {
+        let m = &self.model;
+        let each = |(g, dofs): (GridIx, nastran::cards::Dofs)| {
+            dofs.iter0().map(move |i| (g, i as u8)).collect::<Vec<_>>()
+        };
+        let mut all: HashSet<(GridIx, u8)> = HashSet::new();
+        all.extend(
+            m.rigids
+                .iter()
+                .flat_map(|r| r.kind.dependent())
+                .flat_map(each),
+        );
+        let held = m.spcs.iter().flat_map(|s| &s.terms);
+        all.extend(held.map(|t| (t.0, t.1)).flat_map(each));
+        let permanent = m.grids.iter().enumerate();
+        all.extend(permanent.flat_map(|(i, g)| each((GridIx(i as u32), g.ps))));
+        let equations = m.mpcs.iter().flat_map(|s| &s.equations);
+        all.extend(equations.filter_map(|e| e.0.first()).map(|t| (t.0, t.1)));
+        all
+    }
+
+    /// Equations that hold the relative displacement of the rigid components at zero: rows axes (u_B - u_A) at the bush's location,
+    /// solved for as many dofs of the grid `dependent`: displacements for rows of displacements and rotations for those of rotations,
+    /// so that no unit of length comes in, the largest pivot first. `None` where a row has none.
+    fn rigid_components(&self, bush: &Bush, dependent: GridIx) -> Option<Vec<Terms>> {
         let ends: Vec<(GridIx, f64)> = std::iter::once((bush.grids.0, -1.0))
             .chain(bush.grids.1.map(|g| (g, 1.0)))
             .collect();
-        let wanted: Vec<usize> = (0..6).filter(|i| rigid.get(*i) == Some(&true)).collect();
-        if wanted.is_empty() {
-            return None;
-        }
+        let flags = bush.rigid.iter().enumerate();
+        let wanted: Vec<usize> = flags.filter(|(_, r)| **r).map(|(i, _)| i).collect();
         let mut rows = DMatrix::zeros(wanted.len(), 6 * ends.len());
         for (end, (g, sign)) in ends.iter().enumerate() {
             let frame = self.cd_axes(*g).transpose();
@@ -32,16 +102,15 @@ impl Builder<'_> {
                 }
             }
         }
-        let dependent_end = ends.len() - 1;
-        let mut equations = Vec::with_capacity(wanted.len());
+        let dependent_end = ends.iter().position(|e| e.0 == dependent)?;
         let mut pivots = Vec::with_capacity(wanted.len());
-        for r in 0..wanted.len() {
-            let columns = 6 * dependent_end..6 * dependent_end + 6;
-            let column = columns
+        for (r, i) in wanted.iter().enumerate() {
+            let half = 6 * dependent_end + 3 * (i / 3);
+            let column = (half..half + 3)
                 .filter(|c| !pivots.contains(c))
                 .max_by(|a, b| rows[(r, *a)].abs().total_cmp(&rows[(r, *b)].abs()))?;
             let pivot = rows[(r, column)];
-            if !(pivot.abs() > 1e-12) {
+            if !(pivot.abs() > NOTHING_LEFT) {
                 return None;
             }
             let scaled = rows.row(r) / pivot;
@@ -54,22 +123,32 @@ impl Builder<'_> {
             }
             pivots.push(column);
         }
-        for (r, pivot) in pivots.iter().enumerate() {
-            let term = |c: usize| -> Option<(GridIx, u8, f64)> {
-                Some((ends.get(c / 6)?.0, (c % 6) as u8, rows[(r, c)]))
-            };
-            let mut terms = vec![term(*pivot)?];
-            let others = (0..6 * ends.len()).filter(|c| !pivots.contains(c));
-            terms.extend(others.filter_map(term).filter(|t| t.2.abs() > 1e-14));
-            equations.push(terms);
-        }
-        Some(Rigid {
-            id: bush.id,
-            kind: RigidKind::Equations {
-                card: "CBUSH",
-                equations,
-            },
-            at: bush.at,
-        })
+        // Rounding of arms is counted beside the longest of them.
+        let reach = ends
+            .iter()
+            .map(|(g, _)| (bush.location - self.x(*g)).norm())
+            .fold(0.0, f64::max);
+        let rounding = |r: usize, c: usize| {
+            let lengths = [c % 6 < 3, wanted.get(r).is_none_or(|i| *i < 3)];
+            if lengths == [false, true] {
+                1e-14 * reach
+            } else {
+                1e-14
+            }
+        };
+        pivots
+            .iter()
+            .enumerate()
+            .map(|(r, pivot)| {
+                let term = |c: usize| -> Option<(GridIx, u8, f64)> {
+                    Some((ends.get(c / 6)?.0, (c % 6) as u8, rows[(r, c)]))
+                };
+                let mut terms = vec![term(*pivot)?];
+                let others = (0..6 * ends.len()).filter(|c| !pivots.contains(c));
+                let others = others.filter(|c| rows[(r, *c)].abs() > rounding(r, *c));
+                terms.extend(others.filter_map(term));
+                Some(terms)
+            })
+            .collect()
     }
 }

@@ -51,5 +51,9 @@ pub(super) fn of_deck(deck: &Deck) -> (Vec<UnsupportedCard>, Vec<UnsupportedCard
     };
     let mut structure: Vec<&str> = STRUCTURE.to_vec();
     structure.extend(SELECTED.iter().filter(|s| selected(s.1)).map(|s| s.0));
+    // How connectors are projected: of no matter without them.
+    if !(deck.cards.welds.is_empty() && deck.cards.fasteners.is_empty()) {
+        structure.push("SWLDPRM");
+    }
     (listed(&structure), listed(&LOADS))
 }

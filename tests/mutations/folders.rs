@@ -39,6 +39,8 @@ macro_rules! command {
     };
 }
 
+/// Not so `identify` and `study`, whose answer takes seconds; `fleet`, which keeps results in a folder; `solve`, whose deck and solver
+/// `sensitivity`, `place` and `modes` go through; `strains` and `init`, which have no job.
 const COMMANDS: [Command; 11] = [
     ("check", |job, cx| {
         told(strainbridge::check(&[job.to_owned()], cx)?)
@@ -52,8 +54,8 @@ const COMMANDS: [Command; 11] = [
     command!(ballast),
     command!(reconcile),
     command!(calibrate),
-    ("check", |job, cx| {
-        told(strainbridge::check(&[job.to_owned()], cx)?)
+    ("modes", |job, cx| {
+        told(strainbridge::modes(&Job::read(job, cx.files)?, 4, cx)?)
     }),
 ];
 

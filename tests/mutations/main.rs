@@ -242,12 +242,16 @@ fn samples() -> Vec<(&'static str, Vec<u8>, Reader)> {
 #[test]
 fn every_sample_is_read_as_long_as_it_is_whole() {
     for (name, bytes, read) in samples() {
-        // This job's deck is elsewhere.
-        assert!(read(&bytes) || name == "job", "{name}");
+        assert!(read(&bytes), "{name}");
     }
 }
 
-/// The most memory that this process has taken, bytes; `None` where the system doesn't tell.
+/// Lets the peak begin anew from what is taken now; where the system can't, it goes on rising.
+fn forget_peak() {
+    let _ = std::fs::write("/proc/self/clear_refs", "5");
+}
+
+/// The most memory that this process has taken since the peak was forgotten, bytes; `None` where the system doesn't tell.
 fn peak() -> Option<usize> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
@@ -295,6 +299,7 @@ fn try_one(
     folders: &[Folder],
 ) -> (Option<Failure>, Duration) {
     let mut random = Random(seed);
+    forget_peak();
     let before = peak();
     let start = spent();
     let (of, size, is_reader, ended) = if random.below(COMMANDS) == 0 && !folders.is_empty() {

@@ -1,5 +1,6 @@
 //! Runs a script of `tests/python`.
 
+use crate::support::count_skip;
 use serde_json::Value;
 use std::process::Command;
 use std::sync::Mutex;
@@ -7,7 +8,15 @@ use std::sync::Mutex;
 /// One browser at a time: they draw in software.
 static BROWSER: Mutex<()> = Mutex::new(());
 
-/// The JSON object that a script prints; `None`, with a message, where Python or a package is absent.
+/// Says and counts what is absent; with `STRAINBRIDGE_TESTS=required` it fails the test.
+fn skip(absent: &str) {
+    let required = std::env::var("STRAINBRIDGE_TESTS").is_ok_and(|v| v == "required");
+    assert!(!required, "{absent}, and required");
+    eprintln!("skipped: {absent}");
+    count_skip(absent);
+}
+
+/// The JSON object that a script prints; `None`, said and counted, where Python, a package or the browser is absent.
 pub fn read_by(script: &str, arguments: &[&str]) -> Option<Value> {
     let opens = ["open_report.py", "point_report.py"].contains(&script);
     let _alone = opens.then(|| {
@@ -18,12 +27,12 @@ pub fn read_by(script: &str, arguments: &[&str]) -> Option<Value> {
     let python = std::env::var("STRAINBRIDGE_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let path = format!("{}/tests/python/{script}", env!("CARGO_MANIFEST_DIR"));
     let Ok(read) = Command::new(python).arg(path).args(arguments).output() else {
-        eprintln!("skipped: no Python here");
+        skip("no Python here");
         return None;
     };
     let text = String::from_utf8_lossy(&read.stdout);
     if read.status.code() == Some(77) {
-        eprintln!("skipped: {text}");
+        skip(text.trim());
         return None;
     }
     let Some(json) = text.lines().rfind(|l| l.starts_with('{')) else {

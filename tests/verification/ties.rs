@@ -6,7 +6,7 @@ use strainbridge::finding::Finding;
 
 const E: f64 = 210_000.0;
 
-fn findings(b: &Bulk) -> Vec<Finding> {
+pub fn findings(b: &Bulk) -> Vec<Finding> {
     let case = LoadCase {
         subcase: 1,
         label: String::new(),
@@ -164,7 +164,6 @@ fn a_gap_carries_ka_and_kt_while_closed_and_kb_alone_while_open_and_says_so() {
         b.card(property);
         b.card("CELAS2,8,1.,2,1\nCELAS2,9,1.,2,2\nCELAS2,10,1.,2,3");
         b.hold("123456", [1]);
-        b.hold("456", [2]);
         b.card(load);
         b
     };
@@ -178,7 +177,7 @@ fn a_gap_carries_ka_and_kt_while_closed_and_kb_alone_while_open_and_says_so() {
     ] {
         let b = with(property, load);
         let got = b.solve().at(2)[dof].abs();
-        // Across, rigid arms of half the length turn no end: the rotations are held.
+        // The grid's rotations are free, as a solid's are: the stiffness across acts on translations.
         close(property, got, 100.0 / (k + 1.0), 1e-9);
         let told = findings(&b);
         let gap = told
@@ -191,6 +190,14 @@ fn a_gap_carries_ka_and_kt_while_closed_and_kb_alone_while_open_and_says_so() {
             "1 closed (5)"
         };
         assert!(gap.message.contains(word), "{}", gap.message);
+        let leaves_a_moment = property.ends_with("300.") && !property.contains(".5,");
+        let leaves_a_moment = leaves_a_moment || property.ends_with(".3");
+        assert_eq!(
+            gap.message.contains("balanced by nothing"),
+            leaves_a_moment,
+            "{property}: {}",
+            gap.message
+        );
     }
     let preloaded = findings(&with("PGAP,6,0.,50.,1000.", along));
     let gap = preloaded
@@ -236,6 +243,98 @@ fn rigid_components_of_a_bush_hand_on_motion_and_the_others_give_way() {
 }
 
 #[test]
+fn a_rigid_bush_follows_whichever_end_is_free_to() {
+    // The arm of the test above with its end moved by an RBE2: the bush makes the other end follow.
+    let (l, i, a) = (500.0, 9000.0, 40.0);
+    let mut b = Bulk::default();
+    b.card("MAT1,1,210000.,,.3\nPBAR,2,1,200.,9000.,9000.,18000.");
+    let (root, tip) = (b.grid([0.0; 3]), b.grid([l, 0.0, 0.0]));
+    let (arm, load) = (b.grid([l, a, 0.0]), b.grid([l, a, 0.0]));
+    b.card(&format!("CBAR,1,2,{root},{tip},0.,1.,0."));
+    b.card(&format!("CBUSH,5,7,{tip},{arm},1.,0.,0."));
+    b.card("PBUSH,7,K,RIGID,RIGID,RIGID,RIGID,RIGID,RIGID");
+    b.card(&format!("RBE2,90,{load},123456,{arm}"));
+    b.hold("123456", [root]);
+    b.card(&format!("FORCE,1,{load},0,100.,1.,0.,0."));
+    assert!(b.faults().is_empty(), "{:?}", b.faults());
+    let s = b.solve();
+    let turn = -100.0 * a * l / (E * i);
+    let expected = 100.0 * l / (E * 200.0) - turn * a;
+    close("arm, x", s.at(load)[0], expected, 1e-9);
+    close("arm, turn", s.at(load)[5], turn, 1e-9);
+}
+
+#[test]
+fn which_dofs_a_rigid_bush_makes_dependent_does_not_hang_on_the_unit_of_length() {
+    // Translations alone are rigid, the rotations of the arm's end are held: the force acts in the middle of the arm.
+    for unit in [1.0_f64, 1e-3] {
+        let (l, i, a) = (500.0 * unit, 9000.0 * unit.powi(4), 40.0 * unit);
+        let (area, e) = (200.0 * unit * unit, E / (unit * unit));
+        let mut b = Bulk::default();
+        b.card(&format!("MAT1,1,{e:?},,.3"));
+        b.card(&format!("PBAR,2,1,{area:.6E},{i:.6E},{i:.6E},{i:.6E}"));
+        let (root, tip) = (b.grid([0.0; 3]), b.grid([l, 0.0, 0.0]));
+        let arm = b.grid([l, a, 0.0]);
+        b.card(&format!("CBAR,1,2,{root},{tip},0.,1.,0."));
+        b.card(&format!("CBUSH,5,7,{tip},{arm},1.,0.,0."));
+        b.card("PBUSH,7,K,RIGID,RIGID,RIGID");
+        b.hold("123456", [root]);
+        b.hold("456", [arm]);
+        b.card(&format!("FORCE,1,{arm},0,100.,1.,0.,0."));
+        assert!(b.faults().is_empty(), "{:?}", b.faults());
+        let turn = 100.0 * a / 2.0 * l / (e * i);
+        let expected = 100.0 * l / (e * area) + turn * a / 2.0;
+        close("arm, x", b.solve().at(arm)[0], expected, 1e-9);
+    }
+}
+
+#[test]
+fn a_rigid_bush_to_ground_is_a_support_with_a_reaction() {
+    let with = |cid: &str, property: &str| {
+        let mut b = Bulk::default();
+        b.card("MAT1,1,210000.,,.3\nPBAR,2,1,200.,9000.,9000.,18000.");
+        let (root, tip) = (b.grid([0.0; 3]), b.grid([500.0, 0.0, 0.0]));
+        // The bar hangs on an RBE2 from the bush's grid: its force comes through that to the ground.
+        let ground = b.grid([0.0, 30.0, 0.0]);
+        b.card(&format!("CBAR,1,2,{root},{tip},0.,1.,0."));
+        b.card(&format!("RBE2,90,{ground},123456,{root}"));
+        b.card("CORD2R,3,0,0.,0.,0.,0.,0.,1.,\n,.866025403784,.5,0.");
+        b.card(&format!("CBUSH,5,7,{ground},,,,,{cid}"));
+        b.card(&format!("PBUSH,7,K,{property}"));
+        b.card(&format!("FORCE,1,{tip},0,100.,1.,2.,3."));
+        b.card(&format!("SPC1,1,6,{tip}"));
+        assert!(b.faults().is_empty(), "{:?}", b.faults());
+        b
+    };
+    let told = |b: &Bulk| {
+        let found = findings(b);
+        found.iter().any(|f| f.code == "bush-reaction-missing")
+    };
+    for cid in ["0", "3"] {
+        let b = with(cid, "RIGID,RIGID,RIGID,RIGID,RIGID,RIGID");
+        let case = LoadCase {
+            subcase: 1,
+            label: String::new(),
+            loads: vec![UnitLoad::Set(1)],
+            spc: Some(1),
+            mpc: None,
+            relief: Relief::None,
+        };
+        let (_, report) = solve_cases(&b.model(), &[case], &SolveOptions::default())
+            .unwrap_or_else(|e| panic!("{e}"));
+        let r = &report.reactions[0];
+        assert!(r.residual < 1e-9, "{}", r.residual);
+        close("x", r.total[0], -100.0, 1e-9);
+        close("y", r.total[1], -200.0, 1e-9);
+        close("z", r.total[2], -300.0, 1e-9);
+        assert!(!told(&b));
+    }
+    // One direction alone, askew: no single dof holds it, and that is said.
+    assert!(told(&with("3", "RIGID,1.+6,1.+6,1.+8,1.+8,1.+8")));
+    assert!(!told(&with("0", "RIGID,1.+6,1.+6,1.+8,1.+8,1.+8")));
+}
+
+#[test]
 fn a_bush_without_axes_takes_the_basic_frame_and_says_so_where_it_matters() {
     let at = |property: &str, second: &str| {
         let mut b = Bulk::default();
@@ -251,6 +350,15 @@ fn a_bush_without_axes_takes_the_basic_frame_and_says_so_where_it_matters() {
         assert!(b.faults().is_empty(), "{:?}", b.faults());
         (b.solve().at(1), findings(&b))
     };
+    // A vector without a line to go with is not thrown away in silence.
+    for (property, faulty) in [("50.,30.,10.", true), ("10.,10.,10.", false)] {
+        let mut b = Bulk::default();
+        b.grid([3.0, 4.0, 5.0]);
+        b.grid([3.0, 4.0, 5.0]);
+        b.card(&format!("PBUSH,7,K,{property}\nCBUSH,5,7,1,2,0.,1.,0."));
+        let told = b.faults().iter().any(|f| f.contains("without CID"));
+        assert_eq!(told, faulty, "{:?}", b.faults());
+    }
     for second in ["2", ""] {
         let (u, told) = at("PBUSH,7,K,50.,30.,10.,1.,1.,1.", second);
         assert!(

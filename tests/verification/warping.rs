@@ -1,6 +1,7 @@
 //! CBEAM with warping points: Vlasov's closed forms of restrained torsion, and an I-beam of shells.
 
 use crate::mesh::{Bulk, near};
+use strainbridge::fe::*;
 
 const E: f64 = 210_000.0;
 const NU: f64 = 0.3;
@@ -196,4 +197,115 @@ fn the_warping_constants_of_open_sections_are_those_of_the_books() {
     ] {
         assert_eq!(of(kind, &dims), 0.0, "{kind}");
     }
+}
+
+/// From E CW theta'''' - GJ theta'' = m with theta = theta' = 0 at the root and nothing at the tip.
+#[test]
+fn torques_along_a_warping_beam_twist_it_as_vlasov_has_it_however_few_the_elements() {
+    let g = E / (2.0 + 2.0 * NU);
+    let (m, length) = (100.0, 1500.0);
+    for (j, cw) in [(28_800.0, 1e10), (2.88e6, 1e8), (1.0, 1e14)] {
+        let lambda = (g * j / (E * cw)).sqrt();
+        let psi = lambda * length;
+        let uniform = if psi < 0.01 {
+            // Without Saint-Venant's part it is a cantilever of E CW under m.
+            m * length.powi(4) / (8.0 * E * cw)
+        } else {
+            let curl = (1.0 + psi * psi.sinh()) / psi.cosh() - 1.0;
+            m / (g * j) * (length * length / 2.0 - curl / (lambda * lambda))
+        };
+        for n in [1_u32, 3] {
+            let mut b = bar(n, length, (j, cw));
+            b.text = b.text.replace("MOMENT,1,", "MOMENT,2,");
+            b.card("SPC1,1,1,1001");
+            for k in 1..=n {
+                b.card(&format!("PLOAD1,1,{k},MXE,FR,0.,{m:?},1.,{m:?}"));
+            }
+            let s = b.solve();
+            near("uniform torque", s.at(n + 1)[3], uniform, 1e-6);
+        }
+    }
+}
+
+/// What the tip of a bar does depends on the torque along it alone, not on where elements end: spans and places within one element
+/// against elements that end there, a linear torque over all of it against its parts.
+#[test]
+fn a_torque_within_a_warping_beam_is_the_same_wherever_elements_end() {
+    for (j, cw) in [(28_800.0, 1e10), (2.88e6, 1e8), (1.0, 1e14)] {
+        let solved = |n: u32, loads: &[String]| {
+            let mut b = bar(n, 1500.0, (j, cw));
+            b.text = b.text.replace("MOMENT,1,", "MOMENT,2,");
+            b.card("SPC1,1,1,1001");
+            loads.iter().for_each(|l| b.card(l));
+            let s = b.solve();
+            [s.at(n + 1)[3], s.at(1001 + n)[0]]
+        };
+        let card = |element: u32, rest: &str| format!("PLOAD1,1,{element},MXE,FR,{rest}");
+        let pairs = [
+            // Concentrated at two thirds.
+            (
+                vec![card(1, ".666666666667,500.")],
+                vec![card(2, "1.,500.")],
+            ),
+            // Over the middle third, from 30 to 90.
+            (
+                vec![card(1, ".333333333333,30.,.666666666667,90.")],
+                vec![card(2, "0.,30.,1.,90.")],
+            ),
+            // Over all of it, from nothing to 90.
+            (
+                vec![card(1, "0.,0.,1.,90.")],
+                vec![
+                    card(1, "0.,0.,1.,30."),
+                    card(2, "0.,30.,1.,60."),
+                    card(3, "0.,60.,1.,90."),
+                ],
+            ),
+        ];
+        for (one, three) in pairs {
+            let (a, b) = (solved(1, &one), solved(3, &three));
+            near(&one[0], a[0], b[0], 1e-6);
+            // Far from a torque the rate dies out to nothing.
+            let rate = (a[1] - b[1]).abs();
+            assert!(rate < 1e-6 * (b[0] / 1500.0), "{}: {a:?} {b:?}", one[0]);
+        }
+    }
+}
+
+#[test]
+fn bimoments_count_neither_as_forces_of_supports_nor_as_forces_on_a_free_body() {
+    let mut b = bar(1, 1500.0, (28_800.0, 1e10));
+    b.card("SPC1,1,1,1001\nPLOAD1,1,1,MXE,FR,0.,100.,1.,100.");
+    let model = b.model();
+    let case = |relief, spc| LoadCase {
+        subcase: 1,
+        label: String::new(),
+        loads: vec![UnitLoad::Set(1)],
+        spc,
+        mpc: None,
+        relief,
+    };
+    let options = SolveOptions::default();
+    let (_, report) = solve_cases(&model, &[case(Relief::None, Some(1))], &options)
+        .unwrap_or_else(|e| panic!("{e}"));
+    let r = &report.reactions[0];
+    assert!(r.residual < 1e-9, "{}", r.residual);
+    near("reaction", r.total[3], -(1e6 + 100.0 * 1500.0), 1e-9);
+    assert!(r.total[0].abs() < 1e-6 * r.total[3].abs(), "{:?}", r.total);
+    // Free, under a torque that grows along it: the bimoments of its ends don't cancel, and push nothing.
+    let mut b = bar(1, 1500.0, (28_800.0, 1e10));
+    b.card("PLOAD1,1,1,MXE,FR,0.,0.,1.,100.");
+    b.card("CONM2,51,1,,2.,,,,,\n,900.,,900.,,,900.\nCONM2,52,2,,2.,,,,,\n,900.,,900.,,,900.");
+    let (_, report) = solve_cases(&b.model(), &[case(Relief::Automatic, None)], &options)
+        .unwrap_or_else(|e| panic!("{e}"));
+    let balance = &report.balance[0];
+    near("torque", balance.applied[3], 1e6 + 50.0 * 1500.0, 1e-9);
+    near(
+        "spin",
+        balance.acceleration[3],
+        balance.applied[3] / 1800.0,
+        1e-9,
+    );
+    assert!(balance.applied[0].abs() < 1e-6, "{:?}", balance.applied);
+    assert!(balance.acceleration[0].abs() < 1e-6, "{balance:?}");
 }

@@ -23,15 +23,20 @@ pub fn shared(path: &str) -> Option<PathBuf> {
     let required = std::env::var("STRAINBRIDGE_SHARED").is_ok_and(|v| v == "required");
     assert!(!required, "../shared/{path} is absent, and required");
     eprintln!("skipped: ../shared/{path} is absent");
-    if let Ok(list) = std::env::var("STRAINBRIDGE_SKIPPED") {
-        let mut list = std::fs::OpenOptions::new()
-            .create(true)
-            .append(true)
-            .open(list)
-            .ok()?;
-        let _ = writeln!(list, "{path}");
-    }
+    count_skip(path);
     None
+}
+
+/// Writes what a test is skipped for into the file that `STRAINBRIDGE_SKIPPED` names.
+pub fn count_skip(absent: &str) {
+    let list = std::env::var("STRAINBRIDGE_SKIPPED").ok();
+    let list = list.and_then(|list| {
+        let mut open = std::fs::OpenOptions::new();
+        open.create(true).append(true).open(list).ok()
+    });
+    if let Some(mut list) = list {
+        let _ = writeln!(list, "{absent}");
+    }
 }
 
 /// The bytes of a file of the reference material.

@@ -130,34 +130,25 @@ pub(crate) fn reduce(
     let mut refused: Vec<Refusal> = Vec::new();
     for rigid in &model.rigids {
         let claim = claims.len() as u32;
-        let (name, result) = match &rigid.kind {
+        let result = match &rigid.kind {
             RigidKind::Body {
                 independent,
                 dependent,
                 ..
-            } => (
-                "rigid element",
-                body::relations(model, axes, rigid, independent, dependent, claim),
-            ),
+            } => body::relations(model, axes, rigid, independent, dependent, claim),
             RigidKind::Mean {
                 reference,
                 refc,
                 arms,
                 um,
-            } => (
-                "RBE3",
-                mean::relations(model, axes, rigid, (*reference, *refc), arms, um, claim),
-            ),
-            RigidKind::Equations { card, equations } => (
-                *card,
-                Ok(equations
-                    .iter()
-                    .filter_map(|terms| following(terms, claim))
-                    .collect()),
-            ),
+            } => mean::relations(model, axes, rigid, (*reference, *refc), arms, um, claim),
+            RigidKind::Equations { equations, .. } => Ok(equations
+                .iter()
+                .filter_map(|terms| following(terms, claim))
+                .collect()),
         };
         claims.push(Claim {
-            card: format!("{name} {}", rigid.id),
+            card: format!("{} {}", rigid.kind.card(), rigid.id),
             at: rigid.at,
         });
         match result {
@@ -269,7 +260,13 @@ fn resolve(
                 at: claim.at,
             });
         }
-        state[dof as usize] = State::Dependent(r as u32);
+        if relation.terms.is_empty() {
+            // Follows nothing: a support, such as a rigid bush to ground, with a reaction.
+            state[dof as usize] = State::Held;
+            held_by.insert(dof, claim.card.clone());
+        } else {
+            state[dof as usize] = State::Dependent(r as u32);
+        }
     }
     let rows = rows_without_dependent(model, relations, claims, &state, &enforced)?;
     Ok(Reduction {

@@ -109,6 +109,7 @@ impl Builder<'_> {
             axes,
             location,
             k: p.k,
+            placed: pierced.placed,
             at: c.at,
         })
     }

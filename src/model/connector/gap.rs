@@ -32,7 +32,8 @@ impl Builder<'_> {
         }
     }
 
-    /// KA along the axis and KT (MU1 KA where blank) across while closed, KB along it while open.
+    /// KA along the axis and KT (MU1 KA where blank) across while closed, KB along it while open, all between the translations of the
+    /// grids: a grid of solids has no rotation to lean on.
     ///
     /// # Reference
     /// MSC Nastran Quick Reference Guide, CGAP and PGAP: in linear solutions the stiffness is that of the initial state.
@@ -93,10 +94,11 @@ impl Builder<'_> {
                 open,
                 preload: p.f0,
             },
-            ends: [JointEnd::grid(a, xa), JointEnd::grid(b, xb)],
+            ends: [JointEnd::translations(a, xa), JointEnd::translations(b, xb)],
             axes,
             location: (xa + xb) / 2.0,
             k: [along, across, across, 0.0, 0.0, 0.0],
+            placed: Placement::default(),
             at: g.at,
         })
     }

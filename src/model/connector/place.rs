@@ -10,7 +10,7 @@ use std::collections::HashSet;
 use std::f64::consts::PI;
 
 /// How often the diameter may be halved until the auxiliary points find the patch (NREDIA of SWLDPRM, which allows up to 4).
-const HALVINGS: i32 = 4;
+const HALVINGS: u8 = 4;
 
 /// What an end may pierce.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +41,7 @@ pub(super) struct Pierced {
     pub(super) ends: [JointEnd; 2],
     pub(super) axes: Mat3,
     pub(super) thickness: [f64; 2],
+    pub(super) placed: Placement,
 }
 
 impl Builder<'_> {
@@ -52,7 +53,11 @@ impl Builder<'_> {
         at: Place,
     ) -> Option<Vec3> {
         match (gs, xs) {
-            (Some(gs), _) => self.grid(gs, name, "GS", at).map(|g| self.x(g)),
+            (Some(gs), _) => {
+                let g = self.grid(gs, name, "GS", at)?;
+                self.points.push(g);
+                Some(self.x(g))
+            }
             (None, xs) => xs.map(Vec3::from),
         }
     }
@@ -117,17 +122,22 @@ impl Builder<'_> {
         }
         let axes = connector_axes(a.x, b.x, a.normal, stated.diameter)?;
         let thickness = [patch_a.thickness, patch_b.thickness];
+        let mut placed = Placement {
+            halvings: 0,
+            angle_deg: a.normal.dot(&b.normal).abs().min(1.0).acos().to_degrees(),
+        };
         let mut ends = Vec::with_capacity(2);
         for (side, (patch, foot)) in [(patch_a, a), (patch_b, b)].into_iter().enumerate() {
             let on = stated.patches.get(side).copied()?;
             let end = match on {
-                Where::Shell(_) => tie::by_slopes(&patch, &foot),
+                Where::Shell(_) => tie::by_slopes(&patch, &foot).map(|end| (end, 0)),
                 _ => self.by_auxiliary_points(patches, on, &foot, &axes, stated.diameter),
             };
-            let Some(end) = end else {
+            let Some((end, halvings)) = end else {
                 self.off_patch(stated, side, "an auxiliary point about it");
                 return None;
             };
+            placed.halvings = placed.halvings.max(halvings);
             ends.push(end);
         }
         let ends = <[JointEnd; 2]>::try_from(ends).ok()?;
@@ -135,6 +145,7 @@ impl Builder<'_> {
             ends,
             axes,
             thickness,
+            placed,
         })
     }
 
@@ -152,7 +163,8 @@ impl Builder<'_> {
         self.fault(stated.name.to_owned(), "GS", stated.at, kind);
     }
 
-    /// Four points about the foot, corners of the square of the weld's area across its axis, each projected.
+    /// Four points about the foot, corners of the square of the weld's area across its axis, each projected; with the halvings of the
+    /// diameter that it took.
     fn by_auxiliary_points(
         &self,
         patches: &mut Patches,
@@ -160,17 +172,17 @@ impl Builder<'_> {
         foot: &Foot,
         axes: &Mat3,
         diameter: f64,
-    ) -> Option<JointEnd> {
+    ) -> Option<(JointEnd, u8)> {
         let (y, z) = (axes.row(1).transpose(), axes.row(2).transpose());
         let mut half = PI.sqrt() / 4.0 * diameter;
-        for _ in 0..=HALVINGS {
+        for halvings in 0..=HALVINGS {
             let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
             let points: Option<Vec<(Patch, Foot)>> = corners
                 .iter()
                 .map(|(a, b)| self.foot(patches, on, foot.x + y * (a * half) + z * (b * half)))
                 .collect();
             if let Some(points) = points {
-                return tie::by_points(foot.x, &points);
+                return tie::by_points(foot.x, &points).map(|end| (end, halvings));
             }
             half /= 2.0;
         }

@@ -100,6 +100,7 @@ impl Builder<'_> {
             axes: pierced.axes,
             location,
             k: round_beam(e, g, p.d, length),
+            placed: pierced.placed,
             at: w.at,
         })
     }
@@ -187,6 +188,7 @@ impl Builder<'_> {
                     axes: connector_axes(xa, xb, xb - xa, p.d)?,
                     ends: [JointEnd::grid(a, xa), JointEnd::grid(b, xb)],
                     thickness: [0.0; 2],
+                    placed: Placement::default(),
                 })
             }
             WeldPatches::Unknown(word) => {
@@ -252,6 +254,7 @@ impl Builder<'_> {
             ends,
             axes,
             thickness: [0.0; 2],
+            placed: Placement::default(),
         })
     }
 
@@ -308,6 +311,7 @@ impl Builder<'_> {
             ends,
             axes,
             thickness: [0.0; 2],
+            placed: Placement::default(),
         })
     }
 

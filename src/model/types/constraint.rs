@@ -46,6 +46,15 @@ pub enum RigidKind {
 }
 
 impl RigidKind {
+    /// Its card in messages.
+    pub fn card(&self) -> &'static str {
+        match self {
+            Self::Body { .. } => "rigid element",
+            Self::Mean { .. } => "RBE3",
+            Self::Equations { card, .. } => card,
+        }
+    }
+
     /// Its grids, dependent or not; some may stand several times.
     pub fn grids(&self) -> Vec<GridIx> {
         match self {

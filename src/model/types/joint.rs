@@ -19,8 +19,19 @@ pub struct Joint {
     pub location: Vec3,
     /// Stiffness by component: three translations, three rotations.
     pub k: [f64; 6],
+    /// How it came onto its patches.
+    pub placed: Placement,
     /// Where it stands.
     pub at: Place,
+}
+
+/// How a connector came onto its patches.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Placement {
+    /// How often its diameter was halved until the auxiliary points found the patch, the greater of both sides.
+    pub halvings: u8,
+    /// Angle between the normals of the patches, degrees, at most 90; 0 where an end is a grid.
+    pub angle_deg: f64,
 }
 
 /// Which card a joint came from.
@@ -65,6 +76,16 @@ impl JointEnd {
         Self {
             x,
             motion: vec![(g, Matrix6::identity())],
+        }
+    }
+
+    /// The translations of a grid, whatever its rotation.
+    pub fn translations(g: GridIx, x: Vec3) -> Self {
+        let mut motion = Matrix6::zeros();
+        motion.fixed_view_mut::<3, 3>(0, 0).fill_diagonal(1.0);
+        Self {
+            x,
+            motion: vec![(g, motion)],
         }
     }
 }

@@ -126,6 +126,8 @@ pub struct Bush {
     pub location: Vec3,
     /// Stiffness by component; 0 where the property says RIGID: equations hold that component.
     pub k: [f64; 6],
+    /// Components that the property says are RIGID.
+    pub rigid: [bool; 6],
     /// Neither CID nor the line of its grids gives its axes, and the stiffness differs by direction: the basic frame is taken.
     pub frame_assumed: bool,
     /// Stress and strain recovery coefficients SA, ST, EA, ET.

@@ -19,8 +19,8 @@ fn n_dims(section: &str) -> Option<usize> {
     })
 }
 
-/// Dimensions from field `first` on. A blank inner radius of a TUBE is 0; blank inner and flange thicknesses of a DBOX are those of
-/// the wall on their side: DIM5 to DIM8 as DIM4, DIM9 and DIM10 as DIM6.
+/// Dimensions from field `first` on. A blank inner radius of a TUBE is 0; blank thicknesses of a DBOX are DIM4 for DIM5 to DIM8 and
+/// DIM6 for DIM9 and DIM10.
 fn dims(
     f: &mut Fields,
     first: usize,
@@ -33,7 +33,7 @@ fn dims(
         let given = f.opt_real(first + k, "DIM");
         let of_type = match (section, k) {
             ("TUBE", 1) => Some(0.0),
-            ("DBOX", 4 | 6 | 7) => all.get(3).copied(),
+            ("DBOX", 4..=7) => all.get(3).copied(),
             ("DBOX", 8 | 9) => all.get(5).copied(),
             _ => None,
         };

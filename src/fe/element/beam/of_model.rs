@@ -2,7 +2,7 @@
 
 use super::flexibility::{LocalBeam, release, section_at};
 use super::interior::Interior;
-use super::warping::{self, warping_torsion};
+use super::warping::{self, torque_at_ends, warping_torsion};
 use crate::fe::element::ElementMatrix;
 use crate::fe::error::Refusal;
 use crate::linalg::{SMatrix, SVector, Vector3};
@@ -128,7 +128,8 @@ fn pinned(
     Ok((k, f))
 }
 
-/// Forces at the grids of beam `i`, six each, basic frame, that act as what is between its ends.
+/// Forces at the grids of beam `i` (and bimoments at its warping points, in the first place), basic frame, that act as what is between
+/// its ends.
 ///
 /// # Errors
 /// As `beam_stiffness`.
@@ -136,10 +137,30 @@ pub(crate) fn beam_end_forces(
     model: &Model,
     i: usize,
     interior: &Interior,
-) -> Result<[f64; 12], Refusal> {
+) -> Result<Vec<(GridIx, [f64; 6])>, Refusal> {
     let beam = &model.beams[i];
-    let (_, f) = pinned(model, beam, interior)?;
-    Ok((to_element(beam).transpose() * f).into())
+    let (_, mut f) = pinned(model, beam, interior)?;
+    let mut bimoments = Vec::new();
+    if let Some([at_a, at_b]) = beam.warping {
+        let torques = interior
+            .loads
+            .iter()
+            .map(|l| (l.span, l.moment.map(|m| m.x)));
+        let torsion = torque_at_ends(torsion_of(model, beam)?, torques);
+        (f[3], f[9]) = (torsion[0], torsion[2]);
+        bimoments = vec![(at_a, torsion[1]), (at_b, torsion[3])];
+    }
+    let ends: [f64; 12] = (to_element(beam).transpose() * f).into();
+    let at_grids = beam.grids.iter().zip(ends.chunks_exact(6));
+    let mut all: Vec<(GridIx, [f64; 6])> = at_grids
+        .map(|(g, v)| (*g, std::array::from_fn(|i| v[i])))
+        .collect();
+    all.extend(
+        bimoments
+            .into_iter()
+            .map(|(g, b)| (g, [b, 0.0, 0.0, 0.0, 0.0, 0.0])),
+    );
+    Ok(all)
 }
 
 /// Stiffness of beam `i`, basic frame.
@@ -168,6 +189,13 @@ pub(crate) fn beam_grids(beam: &Beam) -> Vec<GridIx> {
 
 /// The stiffness `k` of a beam (element frame) with its torsion replaced by that of a bar that warps.
 fn warped(model: &Model, beam: &Beam, k: Matrix12, t: &Matrix12) -> Result<ElementMatrix, Refusal> {
+    let (gj, ecw, length) = torsion_of(model, beam)?;
+    let torsion = warping_torsion(gj, ecw, length);
+    Ok(warping::assembled(&beam_grids(beam), k, t, &torsion))
+}
+
+/// GJ, E CW and length of a beam that warps.
+fn torsion_of(model: &Model, beam: &Beam) -> Result<(f64, f64, f64), Refusal> {
     let (local, property) = local(model, beam)?;
     let uniform = |of: &dyn Fn(&crate::model::Section) -> f64| {
         let first = property.sections.first().map_or(0.0, |s| of(&s.1));
@@ -193,8 +221,7 @@ fn warped(model: &Model, beam: &Beam, k: Matrix12, t: &Matrix12) -> Result<Eleme
         ));
     }
     let j = property.sections.first().map_or(0.0, |s| s.1.j);
-    let torsion = warping_torsion(local.g * j, local.e * cw, local.length);
-    Ok(warping::assembled(&beam_grids(beam), k, t, &torsion))
+    Ok((local.g * j, local.e * cw, local.length))
 }
 
 /// Mechanical strain of a beam at one of its stations.

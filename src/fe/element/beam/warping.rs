@@ -1,7 +1,7 @@
 //! Torsion with warping: a bar of open section whose warping is held or passed on at its ends.
 
 use crate::fe::element::ElementMatrix;
-use crate::linalg::{Matrix4, SMatrix};
+use crate::linalg::{Matrix4, SMatrix, Vector4};
 use crate::model::GridIx;
 
 /// lambda L under which hyperbolic functions lose figures to cancellation and the first terms of their series are as good.
@@ -61,6 +61,76 @@ pub(super) fn warping_torsion(gj: f64, ecw: f64, length: f64) -> Matrix4<f64> {
         -k12 * l,
         k22 * l * l,
     ) * unit
+}
+
+/// Twist and its rate at the share `xi` of the length by theta_A, theta'_A, theta_B, theta'_B, exact: the two pieces that meet there,
+/// solved for their common point.
+fn between(gj: f64, ecw: f64, length: f64, xi: f64) -> SMatrix<f64, 2, 4> {
+    let mut rows = SMatrix::<f64, 2, 4>::zeros();
+    if !(xi > 0.0 && xi < 1.0) {
+        let end = if xi > 0.0 { 2 } else { 0 };
+        rows[(0, end)] = 1.0;
+        rows[(1, end + 1)] = 1.0;
+        return rows;
+    }
+    let a = warping_torsion(gj, ecw, length * xi);
+    let b = warping_torsion(gj, ecw, length * (1.0 - xi));
+    let own = a.fixed_view::<2, 2>(2, 2) + b.fixed_view::<2, 2>(0, 0);
+    let det = own[(0, 0)] * own[(1, 1)] - own[(0, 1)] * own[(1, 0)];
+    let inverse =
+        SMatrix::<f64, 2, 2>::new(own[(1, 1)], -own[(0, 1)], -own[(1, 0)], own[(0, 0)]) / det;
+    rows.fixed_view_mut::<2, 2>(0, 0)
+        .copy_from(&(-inverse * a.fixed_view::<2, 2>(2, 0)));
+    rows.fixed_view_mut::<2, 2>(0, 2)
+        .copy_from(&(-inverse * b.fixed_view::<2, 2>(0, 2)));
+    rows
+}
+
+/// Torques and bimoments at both ends that act as a torque per length of mean c with the slope 2 d from end to end:
+/// (c / 2 -+ d (1/6 + 2 gamma)) L and (+-c beta - d gamma) L^2 with beta = (psi / 2 coth(psi / 2) - 1) / psi^2 and
+/// gamma = (1 / (12 beta) - 1) / psi^2, which are 1/12 and 1/60 (a clamped beam's) without GJ.
+fn of_linear_torque(gj: f64, ecw: f64, length: f64, torque: [f64; 2]) -> Vector4<f64> {
+    let psi = length * (gj / ecw).max(0.0).sqrt();
+    let p = psi * psi;
+    let (beta, gamma) = if psi < SHORT {
+        (
+            1.0 / 12.0 - p / 720.0 + p * p / 30_240.0,
+            1.0 / 60.0 - p / 8400.0,
+        )
+    } else {
+        let half = psi / 2.0;
+        let beta = (half / half.tanh() - 1.0) / p;
+        (beta, (1.0 / (12.0 * beta) - 1.0) / p)
+    };
+    let [at_a, at_b] = torque;
+    let (c, d) = ((at_a + at_b) / 2.0, (at_b - at_a) / 2.0);
+    let slope = d * (1.0 / 6.0 + 2.0 * gamma);
+    Vector4::new(
+        c / 2.0 - slope,
+        (c * beta - d * gamma) * length,
+        c / 2.0 + slope,
+        (-c * beta - d * gamma) * length,
+    ) * length
+}
+
+/// Over (theta_A, theta'_A, theta_B, theta'_B): what acts as torques along the beam do, each over a span of shares of the length, per
+/// length at both ends of it; of equal ends: concentrated, the first number.
+pub(super) fn torque_at_ends(
+    (gj, ecw, length): (f64, f64, f64),
+    torques: impl Iterator<Item = ([f64; 2], [f64; 2])>,
+) -> Vector4<f64> {
+    let mut f = Vector4::zeros();
+    for ([from, to], torque) in torques {
+        let here = between(gj, ecw, length, from);
+        if from == to {
+            f += here.row(0).transpose() * torque[0];
+            continue;
+        }
+        let piece = of_linear_torque(gj, ecw, length * (to - from), torque);
+        f += here.transpose() * piece.fixed_rows::<2>(0);
+        f += between(gj, ecw, length, to).transpose() * piece.fixed_rows::<2>(2);
+    }
+    f
 }
 
 /// The stiffness of a beam over its two grids and its two warping points, basic frame: `k` (element frame) without its torsion, and
