@@ -10,6 +10,8 @@ pub(super) struct Scatter {
     pub covariance: Vec<f64>,
     /// Degrees of freedom behind it; infinite where it is zero.
     pub dof: f64,
+    /// Those behind it in a pattern that no loads make: shrunk towards what all such patterns have in common.
+    pub dof_outside: f64,
 }
 
 /// What one run leaves.
@@ -34,6 +36,7 @@ impl Scatter {
         Self {
             covariance: vec![0.0; n * n],
             dof: f64::INFINITY,
+            dof_outside: f64::INFINITY,
         }
     }
 
@@ -76,10 +79,15 @@ impl Scatter {
         let keep = (1.0 - noise_share).max(LEAST_KEPT);
         let shrink = shrinkage(&sample, n, dof);
         let target = target(&sample, columns, dof);
+        let outside = n.saturating_sub(columns.ncols()).max(1) as f64;
         let covariance = (0..n * n)
             .map(|i| keep * ((1.0 - shrink) * sample[i] + shrink * target[i]))
             .collect();
-        Self { covariance, dof }
+        Self {
+            covariance,
+            dof,
+            dof_outside: dof_of_shrunk(dof, shrink, outside),
+        }
     }
 
     /// Root mean square over gauges.
@@ -145,6 +153,18 @@ fn target(sample: &[f64], columns: &Matrix, dof: f64) -> Vec<f64> {
 
 /// Share of the residuals' variance that is kept as scatter however large the stated noise.
 const LEAST_KEPT: f64 = 0.05;
+
+/// Degrees of freedom of a variance that is `1 - w` times a sample's in one of `n` patterns, of `dof` each, and `w` times their mean, all of one
+/// size (the relative variance of such an estimate is 2 over them):
+///
+/// `1 / v = ((1 - w)^2 + (1 - (1 - w)^2) / n) / dof`
+///
+/// # Reference
+/// F. E. Satterthwaite, Biometrics Bulletin 2 (1946) 110, with the pattern's own share in the mean.
+fn dof_of_shrunk(dof: f64, w: f64, n: f64) -> f64 {
+    let own = (1.0 - w).powi(2);
+    dof / (own + (1.0 - own) / n)
+}
 
 /// Weight of the identity in the shrunk covariance.
 fn shrinkage(sample: &[f64], n: usize, dof: f64) -> f64 {

@@ -151,6 +151,7 @@ pub(super) fn sensitivity_of(
             mean_square: mean_square(&values),
             scale: factor,
             dof: scatter.dof,
+            dof_outside: scatter.dof_outside,
         }),
         values,
     }

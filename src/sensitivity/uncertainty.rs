@@ -16,6 +16,9 @@ pub struct Uncertainty {
     pub scale: f64,
     /// Degrees of freedom behind scatter and scale: the 95 % interval takes Student's factor; infinite where nothing was estimated.
     pub dof: f64,
+    /// Those behind the scatter in a pattern over the gauges that no loads make, such as a fault of one gauge; more than `dof`, as the
+    /// scatter of all such patterns was estimated together.
+    pub dof_outside: f64,
 }
 
 impl Uncertainty {
@@ -45,6 +48,7 @@ impl Uncertainty {
             mean_square: mean_square(s),
             scale: 1.0,
             dof: f64::INFINITY,
+            dof_outside: f64::INFINITY,
         }
     }
 
@@ -117,6 +121,7 @@ impl Uncertainty {
             mean_square: self.mean_square.clone(),
             scale: self.scale,
             dof: self.dof,
+            dof_outside: self.dof_outside,
         }
     }
 
@@ -132,6 +137,7 @@ impl Uncertainty {
             mean_square: picked(&self.mean_square, k, loads),
             scale: self.scale,
             dof: self.dof,
+            dof_outside: self.dof_outside,
         }
     }
 

@@ -16,6 +16,8 @@ struct Header {
     scale: f64,
     /// `None`: nothing was estimated.
     dof: Option<f64>,
+    #[serde(default)]
+    dof_outside: Option<f64>,
 }
 
 /// The file of a calibrated S; `None` where it has no uncertainty.
@@ -26,6 +28,7 @@ pub fn covariance_bytes(s: &Sensitivity) -> Option<Vec<u8>> {
         loads: s.loads.iter().map(|l| l.name.clone()).collect(),
         scale: u.scale,
         dof: u.dof.is_finite().then_some(u.dof),
+        dof_outside: u.dof_outside.is_finite().then_some(u.dof_outside),
     };
     let header = serde_json::to_vec(&header).ok()?;
     let mut out = MAGIC.to_vec();
@@ -106,6 +109,7 @@ pub fn read_covariance(
         mean_square: squares.to_vec(),
         scale: header.scale,
         dof: header.dof.unwrap_or(f64::INFINITY),
+        dof_outside: header.dof_outside.or(header.dof).unwrap_or(f64::INFINITY),
     };
     let order: Vec<usize> = places.into_iter().flatten().collect();
     Ok(all.of_gauges(&order))

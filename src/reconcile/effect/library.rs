@@ -104,7 +104,7 @@ pub fn library(frame: &StrainFrame, only: &[String]) -> Vec<Candidate> {
         );
     }
     if let Some(learnt) = &frame.learnt {
-        let cost = cost_of_estimate(learnt.dof, out.len());
+        let cost = cost_of_estimate(learnt.dof_outside, out.len());
         out.iter_mut().for_each(|c| c.log_prior -= cost);
     }
     out

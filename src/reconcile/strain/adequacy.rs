@@ -96,7 +96,10 @@ pub fn adequacy(
         );
         (total - fit_chi2, (all.len() - fit.len()) as f64)
     };
-    let from = frame.learnt.as_ref().map_or(f64::INFINITY, |u| u.dof);
+    let from = frame
+        .learnt
+        .as_ref()
+        .map_or(f64::INFINITY, |u| u.dof_outside);
     let part = |name: &str, keep: &dyn Fn((usize, usize)) -> bool| {
         let at: Vec<usize> = fit
             .0
