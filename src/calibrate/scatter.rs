@@ -161,7 +161,7 @@ const LEAST_KEPT: f64 = 0.05;
 ///
 /// # Reference
 /// F. E. Satterthwaite, Biometrics Bulletin 2 (1946) 110, with the pattern's own share in the mean.
-fn dof_of_shrunk(dof: f64, w: f64, n: f64) -> f64 {
+pub(super) fn dof_of_shrunk(dof: f64, w: f64, n: f64) -> f64 {
     let own = (1.0 - w).powi(2);
     dof / (own + (1.0 - own) / n)
 }

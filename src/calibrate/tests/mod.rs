@@ -1,3 +1,4 @@
 mod bridges;
 mod glued;
+mod scatter;
 mod synthetic;
