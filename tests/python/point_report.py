@@ -4,8 +4,9 @@
 
 The plan: {"width": 1280, "touch": false, "steps": [[word, ..]..]}. Steps: ["view", "z"], ["state", "allowed"], ["tool", "brush"],
 ["radius", 3], ["through", true], ["property", 7], ["drag", [x, y, z], ..] over these places of the model, ["two fingers"], ["undo"],
-["clear"], ["save"], ["lines"], ["choose", "field", "-1"], ["picture", "scene.png"]. Prints one JSON object: "lines" (of every step "lines": those for the job, those of gauges), "saved",
-"camera" (before and after two fingers), "gauges", "errors", "requests", "seconds" of the longest drag. Exit code 77 where playwright or
+["clear"], ["save"], ["lines"], ["choose", "field", "-1"], ["picture", "scene.png"] (the model), ["page", "page.png"] (what the window
+shows, "height" pixels of it, 900 if left out). Prints one JSON object: "lines" (of every step "lines": those for the job, those of
+gauges), "saved", "camera" (before and after two fingers), "gauges", "errors", "requests", "seconds" of the longest drag. Exit code 77 where playwright or
 chromium is absent.
 """
 import json
@@ -121,6 +122,8 @@ def run(page, plan):
         elif word == "picture":
             page.mouse.move(0, 0)
             page.locator(".scene .canvas").screenshot(path=rest[0])
+        elif word == "page":
+            page.screenshot(path=rest[0])
         elif word == "choose":
             page.locator(f"[data-role={rest[0]}]").select_option(rest[1])
         elif word == "gauges":
@@ -137,7 +140,7 @@ path, plan = sys.argv[1], json.loads(open(sys.argv[2]).read())
 errors, requests = [], []
 with chromium() as browser:
     context = browser.new_context(
-        viewport={"width": plan["width"], "height": 900}, has_touch=plan["touch"], is_mobile=plan["touch"], device_scale_factor=2 if plan["touch"] else 1
+        viewport={"width": plan["width"], "height": plan.get("height", 900)}, has_touch=plan["touch"], is_mobile=plan["touch"], device_scale_factor=2 if plan["touch"] else 1
     )
     page = context.new_page()
     page.set_default_timeout(60000)
