@@ -182,7 +182,7 @@ fn numbers(placed: &Placed) -> Vec<(String, String)> {
         ("log det".to_owned(), format!("{:.4}", placed.log_det)),
         (
             "Condition number, scaled".to_owned(),
-            format!("{:.2}", placed.sensitivity.condition_number_scaled()),
+            number(placed.sensitivity.condition_number_scaled()),
         ),
     ];
     let worst = &placed.worst_loss;

@@ -11,7 +11,7 @@ use crate::app::recover::{LoadDamage, Recovered, RecoveredRecord};
 use crate::report::command::{write_book, write_page};
 use crate::report::csv_cell;
 use crate::report::figure::LoadTrace;
-use crate::report::page::Page;
+use crate::report::page::{Page, number};
 use crate::report::scene::{Pointing, Shown, run_arrows, scene_of_job};
 use crate::report::spreadsheet::{HistoryLoad, history_sheet, residual_sheet};
 use crate::report::strain::{Recovered as OnPage, RecoveredRun, recover_page};
@@ -142,15 +142,15 @@ fn of_history(l: &crate::app::recover::RecordLoad) -> HistoryLoad {
 
 fn page(outcome: &Outcome<Recovered>, record: &RecoveredRecord) -> Page {
     let (job, file) = (&outcome.job, &record.head.file);
-    let number = |name: &str, value: String| (name.to_owned(), value);
+    let row = |name: &str, value: String| (name.to_owned(), value);
     let numbers = [
-        number("Samples", record.samples.to_string()),
-        number("Sample rate, Hz", format!("{:.4}", rate(record))),
-        number("Duration, s", format!("{:.4}", record.duration_s)),
-        number("Samples with gaps", record.gaps.to_string()),
-        number(
+        row("Samples", record.samples.to_string()),
+        row("Sample rate, Hz", format!("{:.4}", rate(record))),
+        row("Duration, s", format!("{:.4}", record.duration_s)),
+        row("Samples with gaps", record.gaps.to_string()),
+        row(
             "Residual, microstrain rms",
-            format!("{:.3}", record.residual_rms_microstrain),
+            number(record.residual_rms_microstrain),
         ),
     ];
     let loads = record.loads.iter();

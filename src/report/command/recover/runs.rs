@@ -11,7 +11,7 @@ use crate::recovery::RunEstimate;
 use crate::report::command::{write_book, write_page};
 use crate::report::csv_cell;
 use crate::report::figure::GaugePoints;
-use crate::report::page::Page;
+use crate::report::page::{Page, number};
 use crate::report::scene::{Pointing, Shown, run_arrows, scene_of_job};
 use crate::report::spreadsheet::{residual_sheet, runs_sheet};
 use crate::report::strain::{Recovered as OnPage, RecoveredRun, recover_page};
@@ -113,11 +113,11 @@ fn page(outcome: &Outcome<Recovered>, runs: &RecoveredRuns, shown: &[RecoveredRu
         ("Runs".to_owned(), runs.recovery.runs.len().to_string()),
         (
             "Residual, microstrain rms".to_owned(),
-            format!("{:.3}", runs.residual_rms_microstrain),
+            number(runs.residual_rms_microstrain),
         ),
         (
             "Condition number, scaled".to_owned(),
-            format!("{:.2}", s.condition_number_scaled()),
+            number(s.condition_number_scaled()),
         ),
     ];
     let scene = scene_of_job(job, &outcome.prepared).map(|mut scene| {
