@@ -104,8 +104,15 @@ pub fn library(frame: &StrainFrame, only: &[String]) -> Vec<Candidate> {
         );
     }
     if let Some(learnt) = &frame.learnt {
-        let cost = cost_of_estimate(learnt.dof_outside, out.len());
-        out.iter_mut().for_each(|c| c.log_prior -= cost);
+        let n = out.len();
+        for c in &mut out {
+            // What one or two gauges do is like no load; what many do may be what a load makes.
+            let dof = match c.effect.gauges().len() {
+                1 | 2 => learnt.dof_outside,
+                _ => learnt.dof,
+            };
+            c.log_prior -= cost_of_estimate(dof, n);
+        }
     }
     out
 }

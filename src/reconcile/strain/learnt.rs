@@ -58,9 +58,8 @@ pub(super) fn learnt(
 /// `chi^2 / 2 - (v + n) / 2 ln(1 + chi^2 / v)`, a multivariate Student's t; 0 where the covariance is stated. Constants are left out.
 pub(super) fn heavier_tail(frame: &StrainFrame, chi2: f64, n: usize) -> f64 {
     match &frame.learnt {
-        Some(u) if u.dof_outside.is_finite() => {
-            0.5 * (chi2
-                - (u.dof_outside + n as f64) * (chi2.max(0.0) / u.dof_outside.max(1.0)).ln_1p())
+        Some(u) if u.dof.is_finite() => {
+            0.5 * (chi2 - (u.dof + n as f64) * (chi2.max(0.0) / u.dof.max(1.0)).ln_1p())
         }
         _ => 0.0,
     }
