@@ -7,6 +7,9 @@ const THINNED: usize = 16;
 /// Strain in a microstrain.
 const MICRO: f64 = 1e-6;
 
+/// Gauges whose sums stand in registers at a time: two vectors of four, a line of the cache.
+const TOGETHER: usize = 8;
+
 /// Sums over the readings of one gauge, strain.
 #[derive(Clone, Debug, Default)]
 struct Sums {
@@ -25,55 +28,62 @@ struct Sums {
 #[derive(Clone, Debug)]
 pub struct Health {
     sums: Vec<Sums>,
-    /// `n_gauges x n_loads`, strain per load as `loads` of [`Health::add`] count it.
-    s: Vec<Vec<f64>>,
+    /// `n_gauges x n_loads`, strain per load as `loads` of [`Health::add`] count it; by columns.
+    s: Vec<f64>,
 }
 
 impl Health {
     /// Nothing yet, for S by rows.
-    pub fn new(s: Vec<Vec<f64>>) -> Self {
+    pub fn new(s: &[Vec<f64>]) -> Self {
+        let k = s.first().map_or(0, Vec::len);
+        let column = |l: usize| s.iter().filter_map(move |row| row.get(l).copied());
         Self {
             sums: vec![Sums::default(); s.len()],
-            s,
+            s: (0..k).flat_map(column).collect(),
         }
     }
 
     /// Adds samples: strain less zero (`n_gauges` a row) and the loads recovered from it (`n_loads` a row).
     pub fn add(&mut self, strain: &[f64], loads: &[f64]) {
-        let n = self.s.len().max(1);
-        let k = self.s.first().map_or(1, Vec::len).max(1);
-        for (g, sums) in self.sums.iter_mut().enumerate() {
-            let mut before = [f64::NAN; 2];
-            for y in strain.iter().skip(g).step_by(n) {
-                if y.is_finite() {
-                    sums.n += 1;
-                    sums.sum += y;
-                    sums.squares += y * y;
-                } else {
-                    sums.missing += 1;
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || self.add_rows(strain, loads),
+        );
+    }
+
+    #[inline(always)]
+    fn add_rows(&mut self, strain: &[f64], loads: &[f64]) {
+        let n = self.sums.len().max(1);
+        let mut first = 0;
+        for sums in self.sums.chunks_mut(TOGETHER) {
+            match <&mut [Sums; TOGETHER]>::try_from(&mut *sums) {
+                Ok(all) => added(all, strain, n, first),
+                Err(_) => {
+                    for (own, g) in sums.iter_mut().zip(first..) {
+                        added(std::array::from_mut(own), strain, n, g);
+                    }
                 }
-                let [b, a] = before;
-                let second = b - 2.0 * a + y;
-                if second.is_finite() {
-                    sums.seconds += second * second;
-                    sums.n_seconds += 1;
-                }
-                before = [a, *y];
             }
+            first += sums.len();
         }
+        let k = (self.s.len() / n).max(1);
+        let mut residual = vec![0.0; n];
         let rows = strain.chunks_exact(n).zip(loads.chunks_exact(k));
         for (row, f) in rows.step_by(THINNED) {
             if !f.iter().all(|v| v.is_finite()) {
                 continue;
             }
-            for ((y, s), sums) in row.iter().zip(&self.s).zip(&mut self.sums) {
-                let r = y - s.iter().zip(f).map(|(s, f)| s * f).sum::<f64>();
+            residual.fill(0.0);
+            for (s, f) in self.s.chunks_exact(n).zip(f) {
+                for (r, s) in residual.iter_mut().zip(s) {
+                    *r += s * f;
+                }
+            }
+            for ((y, r), sums) in row.iter().zip(&residual).zip(&mut self.sums) {
+                let r = y - r;
                 if r.is_finite() {
-                    for (sum, v) in sums
-                        .thinned
-                        .iter_mut()
-                        .zip([1.0, *y, r, y * y, y * r, r * r])
-                    {
+                    let more = [1.0, *y, r, y * y, y * r, r * r];
+                    for (sum, v) in sums.thinned.iter_mut().zip(more) {
                         *sum += v;
                     }
                 }
@@ -100,6 +110,42 @@ impl Health {
     pub fn days(&self, names: &[String], leverage: &[f64]) -> Vec<GaugeDay> {
         let gauges = names.iter().zip(&self.sums).zip(leverage);
         gauges.map(|((name, s), h)| s.day(name, *h)).collect()
+    }
+}
+
+/// Adds the readings of `W` gauges from number `first` on, of `n` in a row.
+#[inline(always)]
+fn added<const W: usize>(sums: &mut [Sums; W], strain: &[f64], n: usize, first: usize) {
+    let [mut sum, mut squares, mut seconds] = [[0.0; W]; 3];
+    let [mut read, mut n_seconds] = [[0; W]; 2];
+    for (i, s) in sums.iter().enumerate() {
+        (sum[i], squares[i], seconds[i]) = (s.sum, s.squares, s.seconds);
+    }
+    let [mut a, mut b] = [[f64::NAN; W]; 2];
+    let rows = strain.chunks_exact(n);
+    let samples = rows.len() as u64;
+    for row in rows {
+        let Some(y) = row.get(first..).and_then(|r| r.first_chunk::<W>()) else {
+            continue;
+        };
+        for i in 0..W {
+            let y = y[i];
+            let finite = y.is_finite();
+            read[i] += u64::from(finite);
+            sum[i] += if finite { y } else { 0.0 };
+            squares[i] += if finite { y * y } else { 0.0 };
+            let second = b[i] - 2.0 * a[i] + y;
+            let finite = second.is_finite();
+            n_seconds[i] += u64::from(finite);
+            seconds[i] += if finite { second * second } else { 0.0 };
+            (b[i], a[i]) = (a[i], y);
+        }
+    }
+    for (i, s) in sums.iter_mut().enumerate() {
+        (s.sum, s.squares, s.seconds) = (sum[i], squares[i], seconds[i]);
+        s.n += read[i];
+        s.missing += samples - read[i];
+        s.n_seconds += n_seconds[i];
     }
 }
 
