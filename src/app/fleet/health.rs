@@ -45,10 +45,11 @@ impl Health {
 
     /// Adds samples: strain less zero (`n_gauges` a row) and the loads recovered from it (`n_loads` a row).
     pub fn add(&mut self, strain: &[f64], loads: &[f64]) {
-        pulp::Arch::new().dispatch(
-            #[inline(always)]
-            || self.add_rows(strain, loads),
-        );
+        pulp::Arch::new().dispatch(Add {
+            to: self,
+            strain,
+            loads,
+        });
     }
 
     #[inline(always)]
@@ -110,6 +111,22 @@ impl Health {
     pub fn days(&self, names: &[String], leverage: &[f64]) -> Vec<GaugeDay> {
         let gauges = names.iter().zip(&self.sums).zip(leverage);
         gauges.map(|((name, s), h)| s.day(name, *h)).collect()
+    }
+}
+
+/// Samples on their way into the sums.
+struct Add<'a> {
+    to: &'a mut Health,
+    strain: &'a [f64],
+    loads: &'a [f64],
+}
+
+impl pulp::WithSimd for Add<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        self.to.add_rows(self.strain, self.loads);
     }
 }
 

@@ -64,6 +64,22 @@ struct Noisy {
     damage: f64,
 }
 
+/// Samples on their way into a count.
+struct Push<'a> {
+    counter: &'a mut Counter,
+    rows: &'a [f64],
+}
+
+impl pulp::WithSimd for Push<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let k = self.counter.carried.len();
+        self.counter.push_rows(self.rows, k);
+    }
+}
+
 /// Room for a block.
 struct Room {
     values: [f64; BLOCK],
@@ -108,10 +124,10 @@ impl Counter {
     pub fn push(&mut self, rows: &[f64]) {
         let k = self.carried.len();
         if self.load < k {
-            pulp::Arch::new().dispatch(
-                #[inline(always)]
-                || self.push_rows(rows, k),
-            );
+            pulp::Arch::new().dispatch(Push {
+                counter: self,
+                rows,
+            });
         }
         self.next += rows.len() / k.max(1);
     }

@@ -18,6 +18,8 @@ mod reader;
 mod span;
 mod stored;
 mod tdms;
+#[cfg(any(feature = "parquet", feature = "mdf"))]
+mod tile;
 mod uff;
 mod whole;
 

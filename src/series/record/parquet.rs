@@ -3,6 +3,7 @@
 use super::pages::Pages;
 use super::reader::{BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times, is_time};
 use super::reader::{name_and_unit, seconds_in};
+use super::tile::Tile;
 use crate::series::error::SeriesError;
 use parquet::basic::{ConvertedType, LogicalType, SortOrder, TimeUnit, Type as Kind};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
@@ -48,7 +49,7 @@ impl Parquet {
     /// # Errors
     /// A file that is cut off or damaged.
     pub fn new(bytes: Bytes) -> Result<Self, SeriesError> {
-        let whole = Whole(bytes.clone());
+        let whole = Whole::of(&bytes);
         let metadata = ParquetMetaDataReader::new()
             .parse_and_finish(&whole)
             .map_err(broken)?;
@@ -165,7 +166,7 @@ impl Parquet {
             return Err(cut());
         }
         let rows = usize::try_from(group.num_rows()).map_err(|_| cut())?;
-        let whole = Arc::new(Whole(self.bytes.clone()));
+        let whole = Arc::new(Whole::of(&self.bytes));
         let pages = SerializedPageReader::new(whole, chunk, rows, None).map_err(broken)?;
         let descriptor = self.metadata.file_metadata().schema_descr().column(leaf);
         let pages = Pages::of(pages, &descriptor);
@@ -218,19 +219,21 @@ impl RecordReader for Parquet {
         let k = picks.len();
         let mut values = vec![f64::NAN; BLOCK * k];
         let mut buffers = Buffers::default();
+        let mut tile = Tile::new();
         for first in (0..rows).step_by(BLOCK) {
             let count = BLOCK.min(rows - first);
             for (j, worth, off, descriptor, reader) in &mut open {
-                buffers.out.clear();
-                append(reader, descriptor, count, &mut buffers)?;
-                if buffers.out.len() != count {
+                let place = tile.column(*j, count, &mut values, k);
+                let read = append(reader, descriptor, place, &mut buffers)?;
+                if read != count {
                     let wrong = "a column ends before its row group";
                     return Err(broken(ParquetError::EOF(wrong.into())));
                 }
-                for (slot, v) in values.iter_mut().skip(*j).step_by(k).zip(&buffers.out) {
-                    *slot = v * *worth - *off;
+                for slot in place {
+                    *slot = *slot * *worth - *off;
                 }
             }
+            tile.lay_out(&mut values, k);
             let block = Block {
                 first,
                 rows: count,
@@ -287,7 +290,6 @@ fn meaning(c: &ColumnDescriptor) -> Option<Meaning> {
 /// Room for the values of a block of one column.
 #[derive(Default)]
 struct Buffers {
-    out: Vec<f64>,
     levels: Vec<i16>,
     bools: Vec<bool>,
     i32s: Vec<i32>,
@@ -296,77 +298,78 @@ struct Buffers {
     f64s: Vec<f64>,
 }
 
-/// Decodes `count` rows of a column into `b.out`.
+/// Decodes the next rows of a column into `out`; how many there were.
 fn append(
     reader: &mut ColumnReader,
     column: &ColumnDescriptor,
-    count: usize,
+    out: &mut [f64],
     b: &mut Buffers,
-) -> Result<(), SeriesError> {
+) -> Result<usize, SeriesError> {
     let most = column.max_def_level();
     let unsigned = column.sort_order() == SortOrder::UNSIGNED;
-    let (out, levels) = (&mut b.out, &mut b.levels);
+    let levels = &mut b.levels;
     match reader {
         ColumnReader::BoolColumnReader(r) => {
             let of = |v: &bool| f64::from(u8::from(*v));
-            numbers(r, most, count, &mut b.bools, levels, out, of)
+            numbers(r, most, &mut b.bools, levels, out, of)
         }
         ColumnReader::Int32ColumnReader(r) if unsigned => {
             let of = |v: &i32| f64::from(v.cast_unsigned());
-            numbers(r, most, count, &mut b.i32s, levels, out, of)
+            numbers(r, most, &mut b.i32s, levels, out, of)
         }
         ColumnReader::Int64ColumnReader(r) if unsigned => {
             let of = |v: &i64| v.cast_unsigned() as f64;
-            numbers(r, most, count, &mut b.i64s, levels, out, of)
+            numbers(r, most, &mut b.i64s, levels, out, of)
         }
         ColumnReader::Int32ColumnReader(r) => {
-            numbers(r, most, count, &mut b.i32s, levels, out, |v| f64::from(*v))
+            numbers(r, most, &mut b.i32s, levels, out, |v| f64::from(*v))
         }
         ColumnReader::Int64ColumnReader(r) => {
-            numbers(r, most, count, &mut b.i64s, levels, out, |v| *v as f64)
+            numbers(r, most, &mut b.i64s, levels, out, |v| *v as f64)
         }
         ColumnReader::FloatColumnReader(r) => {
-            numbers(r, most, count, &mut b.f32s, levels, out, |v| f64::from(*v))
+            numbers(r, most, &mut b.f32s, levels, out, |v| f64::from(*v))
         }
-        ColumnReader::DoubleColumnReader(r) => {
-            numbers(r, most, count, &mut b.f64s, levels, out, |v| *v)
-        }
-        _ => Ok(()),
+        ColumnReader::DoubleColumnReader(r) => numbers(r, most, &mut b.f64s, levels, out, |v| *v),
+        _ => Ok(0),
     }
 }
 
 fn numbers<T: DataType>(
     reader: &mut ColumnReaderImpl<T>,
     most: i16,
-    count: usize,
     values: &mut Vec<T::T>,
     levels: &mut Vec<i16>,
-    out: &mut Vec<f64>,
+    out: &mut [f64],
     number: impl Fn(&T::T) -> f64,
-) -> Result<(), SeriesError> {
-    while out.len() < count {
+) -> Result<usize, SeriesError> {
+    let mut done = 0;
+    while let Some(rest) = out.get_mut(done..).filter(|r| !r.is_empty()) {
         levels.clear();
         values.clear();
         let known = if most > 0 { Some(&mut *levels) } else { None };
-        let read = reader.read_records(count - out.len(), known, None, values);
+        let read = reader.read_records(rest.len(), known, None, values);
         let (records, _, _) = read.map_err(broken)?;
         if records == 0 {
-            return Ok(());
+            break;
         }
-        let mut known = values.iter().map(&number);
-        if most == 0 {
-            out.extend(known);
+        if values.len() == records {
+            for (slot, v) in rest.iter_mut().zip(&*values) {
+                *slot = number(v);
+            }
         } else {
-            out.extend(levels.iter().map(|l| {
-                if *l == most {
+            let mut known = values.iter().map(&number);
+            for (slot, level) in rest.iter_mut().zip(&*levels) {
+                *slot = if *level == most {
                     known.next().unwrap_or(f64::NAN)
                 } else {
                     f64::NAN
-                }
-            }));
+                };
+            }
         }
+        done += records;
     }
-    Ok(())
+    Ok(done)
 }
 
 fn skip(reader: &mut ColumnReader, rows: usize) -> Result<(), SeriesError> {
@@ -381,12 +384,31 @@ fn skip(reader: &mut ColumnReader, rows: usize) -> Result<(), SeriesError> {
     skipped.map(|_| ()).map_err(broken)
 }
 
-/// The bytes of the file as this library asks for them; what it takes is copied, a page at a time.
-struct Whole(Bytes);
+/// The bytes of the file as this library asks for them: a page is a part of them, not a copy.
+struct Whole {
+    bytes: Bytes,
+    shared: bytes::Bytes,
+}
+
+/// Lends the bytes of the file.
+struct Owner(Bytes);
+
+impl AsRef<[u8]> for Owner {
+    fn as_ref(&self) -> &[u8] {
+        (*self.0).as_ref()
+    }
+}
 
 impl Whole {
+    fn of(bytes: &Bytes) -> Self {
+        Self {
+            bytes: bytes.clone(),
+            shared: bytes::Bytes::from_owner(Owner(bytes.clone())),
+        }
+    }
+
     fn from(&self, start: u64) -> Result<&[u8], ParquetError> {
-        let bytes: &[u8] = (*self.0).as_ref();
+        let bytes: &[u8] = (*self.bytes).as_ref();
         usize::try_from(start)
             .ok()
             .and_then(|s| bytes.get(s..))
@@ -396,7 +418,7 @@ impl Whole {
 
 impl Length for Whole {
     fn len(&self) -> u64 {
-        (*self.0).as_ref().len() as u64
+        (*self.bytes).as_ref().len() as u64
     }
 }
 
@@ -425,7 +447,7 @@ impl ChunkReader for Whole {
     fn get_read(&self, start: u64) -> Result<Self::T, ParquetError> {
         self.from(start)?;
         Ok(Reading {
-            bytes: self.0.clone(),
+            bytes: self.bytes.clone(),
             at: start as usize,
         })
     }
@@ -435,6 +457,6 @@ impl ChunkReader for Whole {
         let taken = rest
             .get(..length)
             .ok_or_else(|| ParquetError::EOF("the file ends early".into()))?;
-        Ok(bytes::Bytes::copy_from_slice(taken))
+        Ok(self.shared.slice_ref(taken))
     }
 }
