@@ -55,17 +55,25 @@ impl Health {
     #[inline(always)]
     fn add_rows(&mut self, strain: &[f64], loads: &[f64]) {
         let n = self.sums.len().max(1);
-        let mut first = 0;
-        for sums in self.sums.chunks_mut(TOGETHER) {
-            match <&mut [Sums; TOGETHER]>::try_from(&mut *sums) {
-                Ok(all) => added(all, strain, n, first),
-                Err(_) => {
-                    for (own, g) in sums.iter_mut().zip(first..) {
-                        added(std::array::from_mut(own), strain, n, g);
+        // Squares of larger ones would not be finite; they are no strain.
+        const LARGE: f64 = 1e100;
+        if strain.iter().fold(true, |all, y| all & (y.abs() < LARGE)) {
+            let mut first = 0;
+            for sums in self.sums.chunks_mut(TOGETHER) {
+                match <&mut [Sums; TOGETHER]>::try_from(&mut *sums) {
+                    Ok(all) => added(all, strain, n, first),
+                    Err(_) => {
+                        for (own, g) in sums.iter_mut().zip(first..) {
+                            added(std::array::from_mut(own), strain, n, g);
+                        }
                     }
                 }
+                first += sums.len();
             }
-            first += sums.len();
+        } else {
+            for (g, sums) in self.sums.iter_mut().enumerate() {
+                sums.add(strain.iter().skip(g).step_by(n));
+            }
         }
         let k = (self.s.len() / n).max(1);
         let mut residual = vec![0.0; n];
@@ -130,43 +138,61 @@ impl pulp::WithSimd for Add<'_> {
     }
 }
 
-/// Adds the readings of `W` gauges from number `first` on, of `n` in a row.
+/// Adds the readings of `W` gauges from number `first` on, of `n` in a row, all of them known.
 #[inline(always)]
 fn added<const W: usize>(sums: &mut [Sums; W], strain: &[f64], n: usize, first: usize) {
     let [mut sum, mut squares, mut seconds] = [[0.0; W]; 3];
-    let [mut read, mut n_seconds] = [[0; W]; 2];
     for (i, s) in sums.iter().enumerate() {
         (sum[i], squares[i], seconds[i]) = (s.sum, s.squares, s.seconds);
     }
-    let [mut a, mut b] = [[f64::NAN; W]; 2];
-    let rows = strain.chunks_exact(n);
-    let samples = rows.len() as u64;
-    for row in rows {
+    let [mut a, mut b] = [[0.0; W]; 2];
+    let mut samples = 0;
+    for row in strain.chunks_exact(n) {
         let Some(y) = row.get(first..).and_then(|r| r.first_chunk::<W>()) else {
             continue;
         };
         for i in 0..W {
-            let y = y[i];
-            let finite = y.is_finite();
-            read[i] += u64::from(finite);
-            sum[i] += if finite { y } else { 0.0 };
-            squares[i] += if finite { y * y } else { 0.0 };
-            let second = b[i] - 2.0 * a[i] + y;
-            let finite = second.is_finite();
-            n_seconds[i] += u64::from(finite);
-            seconds[i] += if finite { second * second } else { 0.0 };
-            (b[i], a[i]) = (a[i], y);
+            sum[i] += y[i];
+            squares[i] += y[i] * y[i];
         }
+        if samples > 1 {
+            for i in 0..W {
+                let second = b[i] - 2.0 * a[i] + y[i];
+                seconds[i] += second * second;
+            }
+        }
+        samples += 1;
+        (b, a) = (a, *y);
     }
     for (i, s) in sums.iter_mut().enumerate() {
         (s.sum, s.squares, s.seconds) = (sum[i], squares[i], seconds[i]);
-        s.n += read[i];
-        s.missing += samples - read[i];
-        s.n_seconds += n_seconds[i];
+        s.n += samples;
+        s.n_seconds += samples.saturating_sub(2);
     }
 }
 
 impl Sums {
+    /// Adds readings, some of them missing.
+    fn add<'a>(&mut self, readings: impl Iterator<Item = &'a f64>) {
+        let mut before = [f64::NAN; 2];
+        for y in readings {
+            if y.is_finite() {
+                self.n += 1;
+                self.sum += y;
+                self.squares += y * y;
+            } else {
+                self.missing += 1;
+            }
+            let [b, a] = before;
+            let second = b - 2.0 * a + y;
+            if second.is_finite() {
+                self.seconds += second * second;
+                self.n_seconds += 1;
+            }
+            before = [a, *y];
+        }
+    }
+
     fn day(&self, name: &str, leverage: f64) -> GaugeDay {
         let n = self.n as f64;
         let mean = self.sum / n;

@@ -367,8 +367,9 @@ impl Kernel {
 impl Recovering {
     fn part(&self, record: &Record, piece: usize) -> Result<Part, SeriesError> {
         let (n, k) = (self.used.len(), self.factors.len());
+        let (begin, end) = record.span(piece);
         let mut part = Part {
-            loads: Vec::new(),
+            loads: Vec::with_capacity((end - begin) * k),
             health: Health::new(&self.s),
         };
         let [factors, offsets] = &self.scale;
@@ -423,7 +424,7 @@ fn sampled(record: &Record, found: &[(usize, usize, [f64; 2])]) -> Result<Vec<f6
         .into_par_iter()
         .map(|i| {
             let mut out = Vec::new();
-            record.read(i * n / taken, &columns, &mut |block| {
+            record.head(i * n / taken, &columns, &mut |block| {
                 for row in block.values.chunks_exact(found.len().max(1)) {
                     out.extend(row.iter().zip(found).map(|(v, (_, _, [a, b]))| v * a + b));
                 }

@@ -128,22 +128,25 @@ impl<T> Rainflow<T> {
     ) {
         let began = self.open.last().map(|r| r.point.value);
         let under_way = self.latest.zip(began).filter(|(l, b)| l.value != *b);
-        let Some((latest, began)) = under_way.filter(|(l, _)| moves(l.value, values)) else {
-            for (at, &value) in (first..).zip(values) {
-                self.push_tagged(Point { at, value }, heard);
-            }
-            return;
-        };
-        // Every sample rises or falls: where that changes, the one before was a reversal. Listed first, without a jump that depends on
-        // the samples, which no processor can foresee.
+        let (latest, began) = under_way.unwrap_or((Point { at: 0, value: 0.0 }, 0.0));
+        // Where every sample rises or falls, the one before a change of that was a reversal. They are listed first, without a jump that
+        // depends on the samples, which no processor can foresee.
         let (mut n, mut rising, mut before) = (0, latest.value > began, latest.value);
+        let mut moves = under_way.is_some();
         for (i, &value) in (0..).zip(values) {
             let rises = value > before;
             if let Some(slot) = turns.get_mut(n) {
                 *slot = i;
             }
             n += usize::from(rises != rising);
+            moves &= (value != before) & value.is_finite();
             (rising, before) = (rises, value);
+        }
+        if !moves {
+            for (at, &value) in (first..).zip(values) {
+                self.push_tagged(Point { at, value }, heard);
+            }
+            return;
         }
         for &next in turns.iter().take(n) {
             let before = (next as usize).checked_sub(1);
@@ -236,15 +239,6 @@ impl Rainflow {
             counted(cycle);
         }
     }
-}
-
-/// Whether every sample after one of value `before` is finite and differs from the one before it.
-#[inline(always)]
-fn moves(before: f64, values: &[f64]) -> bool {
-    let finite = values.iter().fold(true, |all, v| all & v.is_finite());
-    let pairs = values.iter().zip(values.iter().skip(1));
-    let differ = pairs.fold(true, |all, (a, b)| all & (a != b));
-    finite & differ & (values.first() != Some(&before))
 }
 
 /// The ranges of a residue as half cycles.

@@ -1,4 +1,4 @@
-//! Parquet: a column a channel, a row a sample; read by parts of row groups, a page of each column at a time.
+//! Parquet: a column a channel, a row a sample; read by parts of row groups, column by column, a page at a time.
 
 use super::pages::Pages;
 use super::reader::{BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times, is_time};
@@ -12,9 +12,9 @@ use parquet::errors::ParquetError;
 use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
 use parquet::file::reader::{ChunkReader, Length};
 use parquet::file::serialized_reader::SerializedPageReader;
-use parquet::schema::types::ColumnDescriptor;
+use parquet::schema::types::{ColumnDescPtr, ColumnDescriptor};
 use std::ops::ControlFlow;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Rows of a row group that are a piece: few enough that a file of one group is read by several threads, enough that a page on the
 /// border, which both neighbours decode, costs little.
@@ -33,6 +33,8 @@ pub struct Parquet {
     epoch: f64,
     /// Row group, first row in it, rows.
     pieces: Vec<(usize, usize, usize)>,
+    /// Room of pieces that were decoded before, for the next ones: memory that is given back and taken anew costs as much as decoding.
+    room: Mutex<Vec<Room>>,
 }
 
 /// What an index column says beside its values: a plain number, or a point in time.
@@ -99,6 +101,7 @@ impl Parquet {
             },
             epoch: 0.0,
             pieces,
+            room: Mutex::default(),
         };
         if let Some((leaf, meaning, unit, _)) = time {
             file.set_time(leaf, meaning, &unit)?;
@@ -124,7 +127,7 @@ impl Parquet {
         if instant {
             let mut first = None;
             for piece in 0..self.pieces.len() {
-                self.read(piece, &[Pick::Time], &mut |block| {
+                self.head(piece, &[Pick::Time], &mut |block| {
                     first = block.values.first().copied();
                     ControlFlow::Break(())
                 })?;
@@ -168,7 +171,7 @@ impl Parquet {
         let rows = usize::try_from(group.num_rows()).map_err(|_| cut())?;
         let whole = Arc::new(Whole::of(&self.bytes));
         let pages = SerializedPageReader::new(whole, chunk, rows, None).map_err(broken)?;
-        let descriptor = self.metadata.file_metadata().schema_descr().column(leaf);
+        let descriptor = self.descriptor(leaf);
         let pages = Pages::of(pages, &descriptor);
         let mut reader = get_column_reader(descriptor, Box::new(pages));
         if from > 0 {
@@ -196,12 +199,31 @@ impl RecordReader for Parquet {
     }
 
     fn read(&self, piece: usize, picks: &[Pick], sink: &mut Sink) -> Result<(), SeriesError> {
+        self.read_rows(piece, usize::MAX, picks, sink)
+    }
+
+    fn head(&self, piece: usize, picks: &[Pick], sink: &mut Sink) -> Result<(), SeriesError> {
+        self.read_rows(piece, BLOCK, picks, sink)
+    }
+}
+
+impl Parquet {
+    /// The first rows of a piece, `most` or all that it has: column by column, so that one page is in memory at a time, then in blocks.
+    fn read_rows(
+        &self,
+        piece: usize,
+        most: usize,
+        picks: &[Pick],
+        sink: &mut Sink,
+    ) -> Result<(), SeriesError> {
         let Some(&(group, from, rows)) = self.pieces.get(piece) else {
             return Ok(());
         };
-        let schema = self.metadata.file_metadata().schema_descr();
-        let mut open = Vec::new();
-        for (j, pick) in picks.iter().enumerate() {
+        let rows = rows.min(most);
+        let mut room = self.room().pop().unwrap_or_default();
+        room.strips.resize_with(picks.len(), Strip::default);
+        let mut columns = Vec::new();
+        for (j, (pick, strip)) in picks.iter().zip(&mut room.strips).enumerate() {
             let (leaf, worth, off) = match pick {
                 Pick::Nothing => continue,
                 Pick::Column(c) => match self.leaves.get(*c) {
@@ -213,24 +235,19 @@ impl RecordReader for Parquet {
                     None => continue,
                 },
             };
-            let reader = self.column(group, leaf, from)?;
-            open.push((j, worth, off, schema.column(leaf), reader));
+            let mut reader = self.column(group, leaf, from)?;
+            strip.decode(&mut reader, &self.descriptor(leaf), rows, &mut room.buffers)?;
+            columns.push((j, worth, off));
         }
         let k = picks.len();
-        let mut values = vec![f64::NAN; BLOCK * k];
-        let mut buffers = Buffers::default();
+        let mut values = vec![f64::NAN; BLOCK.min(rows) * k];
         let mut tile = Tile::new();
         for first in (0..rows).step_by(BLOCK) {
             let count = BLOCK.min(rows - first);
-            for (j, worth, off, descriptor, reader) in &mut open {
+            for (j, worth, off) in &columns {
                 let place = tile.column(*j, count, &mut values, k);
-                let read = append(reader, descriptor, place, &mut buffers)?;
-                if read != count {
-                    let wrong = "a column ends before its row group";
-                    return Err(broken(ParquetError::EOF(wrong.into())));
-                }
-                for slot in place {
-                    *slot = *slot * *worth - *off;
+                if let Some(strip) = room.strips.get(*j) {
+                    strip.put(first, *worth, *off, place);
                 }
             }
             tile.lay_out(&mut values, k);
@@ -243,7 +260,16 @@ impl RecordReader for Parquet {
                 break;
             }
         }
+        self.room().push(room);
         Ok(())
+    }
+
+    fn descriptor(&self, leaf: usize) -> ColumnDescPtr {
+        self.metadata.file_metadata().schema_descr().column(leaf)
+    }
+
+    fn room(&self) -> MutexGuard<'_, Vec<Room>> {
+        self.room.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -287,7 +313,17 @@ fn meaning(c: &ColumnDescriptor) -> Option<Meaning> {
     }
 }
 
-/// Room for the values of a block of one column.
+/// Room to decode a piece in; used again for the next one.
+#[derive(Default)]
+struct Room {
+    strips: Vec<Strip>,
+    buffers: Buffers,
+}
+
+/// Rows of a column that are decoded at a time.
+const ROWS: usize = 8192;
+
+/// Room for some values of one column.
 #[derive(Default)]
 struct Buffers {
     levels: Vec<i16>,
@@ -298,78 +334,115 @@ struct Buffers {
     f64s: Vec<f64>,
 }
 
-/// Decodes the next rows of a column into `out`; how many there were.
-fn append(
-    reader: &mut ColumnReader,
-    column: &ColumnDescriptor,
-    out: &mut [f64],
-    b: &mut Buffers,
-) -> Result<usize, SeriesError> {
-    let most = column.max_def_level();
-    let unsigned = column.sort_order() == SortOrder::UNSIGNED;
-    let levels = &mut b.levels;
-    match reader {
-        ColumnReader::BoolColumnReader(r) => {
-            let of = |v: &bool| f64::from(u8::from(*v));
-            numbers(r, most, &mut b.bools, levels, out, of)
+/// Decoded rows of one column: reals of 32 bits as they are, other numbers in 64.
+#[derive(Default)]
+struct Strip {
+    singles: Vec<f32>,
+    doubles: Vec<f64>,
+}
+
+impl Strip {
+    /// Decodes the next rows of a column in the place of what was here.
+    fn decode(
+        &mut self,
+        reader: &mut ColumnReader,
+        column: &ColumnDescriptor,
+        rows: usize,
+        b: &mut Buffers,
+    ) -> Result<(), SeriesError> {
+        self.singles.clear();
+        self.doubles.clear();
+        let most = column.max_def_level();
+        let unsigned = column.sort_order() == SortOrder::UNSIGNED;
+        let (out, levels) = (&mut self.doubles, &mut b.levels);
+        let nan = f64::NAN;
+        match reader {
+            ColumnReader::BoolColumnReader(r) => {
+                let of = |v: &bool| f64::from(u8::from(*v));
+                numbers(r, most, rows, &mut b.bools, levels, out, nan, of)
+            }
+            ColumnReader::Int32ColumnReader(r) if unsigned => {
+                let of = |v: &i32| f64::from(v.cast_unsigned());
+                numbers(r, most, rows, &mut b.i32s, levels, out, nan, of)
+            }
+            ColumnReader::Int64ColumnReader(r) if unsigned => {
+                let of = |v: &i64| v.cast_unsigned() as f64;
+                numbers(r, most, rows, &mut b.i64s, levels, out, nan, of)
+            }
+            ColumnReader::Int32ColumnReader(r) => {
+                let of = |v: &i32| f64::from(*v);
+                numbers(r, most, rows, &mut b.i32s, levels, out, nan, of)
+            }
+            ColumnReader::Int64ColumnReader(r) => {
+                let of = |v: &i64| *v as f64;
+                numbers(r, most, rows, &mut b.i64s, levels, out, nan, of)
+            }
+            ColumnReader::FloatColumnReader(r) => {
+                let (out, nan) = (&mut self.singles, f32::NAN);
+                numbers(r, most, rows, &mut b.f32s, levels, out, nan, |v| *v)
+            }
+            ColumnReader::DoubleColumnReader(r) => {
+                numbers(r, most, rows, &mut b.f64s, levels, out, nan, |v| *v)
+            }
+            _ => Ok(()),
+        }?;
+        if self.singles.len().max(self.doubles.len()) == rows {
+            Ok(())
+        } else {
+            let wrong = "a column ends before its row group";
+            Err(broken(ParquetError::EOF(wrong.into())))
         }
-        ColumnReader::Int32ColumnReader(r) if unsigned => {
-            let of = |v: &i32| f64::from(v.cast_unsigned());
-            numbers(r, most, &mut b.i32s, levels, out, of)
+    }
+
+    /// The rows from number `first` on, times `worth` less `off`.
+    fn put(&self, first: usize, worth: f64, off: f64, out: &mut [f64]) {
+        if let Some(singles) = self.singles.get(first..).filter(|s| !s.is_empty()) {
+            for (slot, v) in out.iter_mut().zip(singles) {
+                *slot = f64::from(*v) * worth - off;
+            }
+        } else {
+            let doubles = self.doubles.get(first..).unwrap_or_default();
+            for (slot, v) in out.iter_mut().zip(doubles) {
+                *slot = v * worth - off;
+            }
         }
-        ColumnReader::Int64ColumnReader(r) if unsigned => {
-            let of = |v: &i64| v.cast_unsigned() as f64;
-            numbers(r, most, &mut b.i64s, levels, out, of)
-        }
-        ColumnReader::Int32ColumnReader(r) => {
-            numbers(r, most, &mut b.i32s, levels, out, |v| f64::from(*v))
-        }
-        ColumnReader::Int64ColumnReader(r) => {
-            numbers(r, most, &mut b.i64s, levels, out, |v| *v as f64)
-        }
-        ColumnReader::FloatColumnReader(r) => {
-            numbers(r, most, &mut b.f32s, levels, out, |v| f64::from(*v))
-        }
-        ColumnReader::DoubleColumnReader(r) => numbers(r, most, &mut b.f64s, levels, out, |v| *v),
-        _ => Ok(0),
     }
 }
 
-fn numbers<T: DataType>(
+/// Decodes `rows` rows of a column into `out`, or as many as there are; `blank` for a null.
+fn numbers<T: DataType, O: Copy>(
     reader: &mut ColumnReaderImpl<T>,
     most: i16,
+    rows: usize,
     values: &mut Vec<T::T>,
     levels: &mut Vec<i16>,
-    out: &mut [f64],
-    number: impl Fn(&T::T) -> f64,
-) -> Result<usize, SeriesError> {
-    let mut done = 0;
-    while let Some(rest) = out.get_mut(done..).filter(|r| !r.is_empty()) {
+    out: &mut Vec<O>,
+    blank: O,
+    number: impl Fn(&T::T) -> O,
+) -> Result<(), SeriesError> {
+    while out.len() < rows {
         levels.clear();
         values.clear();
         let known = if most > 0 { Some(&mut *levels) } else { None };
-        let read = reader.read_records(rest.len(), known, None, values);
+        let read = reader.read_records(ROWS.min(rows - out.len()), known, None, values);
         let (records, _, _) = read.map_err(broken)?;
         if records == 0 {
-            break;
+            return Ok(());
         }
-        if values.len() == records {
-            for (slot, v) in rest.iter_mut().zip(&*values) {
-                *slot = number(v);
-            }
+        let mut known = values.iter().map(&number);
+        if known.len() == records {
+            out.extend(known);
         } else {
-            let mut known = values.iter().map(&number);
-            for (slot, level) in rest.iter_mut().zip(&*levels) {
-                *slot = if *level == most {
-                    known.next().unwrap_or(f64::NAN)
+            out.extend(levels.iter().map(|l| {
+                if *l == most {
+                    known.next().unwrap_or(blank)
                 } else {
-                    f64::NAN
-                };
-            }
+                    blank
+                }
+            }));
         }
-        done += records;
     }
-    Ok(done)
+    Ok(())
 }
 
 fn skip(reader: &mut ColumnReader, rows: usize) -> Result<(), SeriesError> {
