@@ -213,3 +213,39 @@ impl Sums {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mean_scatter_noise_and_missing_readings_are_those_of_each_gauge() {
+        // Eleven gauges: eight together and three apart. Gauge g reads g, plus g + 1 up and down in turn.
+        let (n, rows) = (11, 96);
+        let swing = |g: usize, i: usize| (g + 1) as f64 * if i % 2 == 0 { 1.0 } else { -1.0 };
+        let block: Vec<f64> = (0..rows)
+            .flat_map(|i| (0..n).map(move |g| MICRO * (g as f64 + swing(g, i))))
+            .collect();
+        let loads = vec![0.0; rows];
+        let s = vec![vec![1.0]; n];
+        let names: Vec<String> = (0..n).map(|g| g.to_string()).collect();
+        for gap in [None, Some(3)] {
+            let mut health = Health::new(&s);
+            let mut strain = block.clone();
+            if let Some(g) = gap {
+                strain[g] = f64::NAN;
+                strain[n + g] = f64::INFINITY;
+            }
+            health.add(&strain, &loads);
+            health.add(&block, &loads);
+            for (g, day) in health.days(&names, &vec![0.1; n]).iter().enumerate() {
+                let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-9 * (1.0 + b), "{a} {b}");
+                assert_eq!(day.missing, if gap == Some(g) { 2 } else { 0 });
+                close(day.mean, g as f64);
+                close(day.sd, (g + 1) as f64);
+                // Second differences of a swing of one up and down are four.
+                close(day.noise, 4.0 * (g + 1) as f64 / 6.0_f64.sqrt());
+            }
+        }
+    }
+}

@@ -66,3 +66,19 @@ impl<K: Key> Counts<K> {
         self.all
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn classes_that_share_a_place_are_counted_each() {
+        let mut counts = Counts::new();
+        for i in 0..7000_i32 {
+            counts.add((i % 7 * 1024, -(i % 5) * 3));
+        }
+        let all = counts.sorted();
+        assert_eq!(all.len(), 35);
+        assert!(all.values().all(|n| *n == 200));
+    }
+}

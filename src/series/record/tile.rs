@@ -71,3 +71,28 @@ impl Tile {
         self.n = 0;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_stand_in_their_places_and_those_left_out_stay() {
+        let (k, rows) = (21, 37);
+        let mut values = vec![-1.0; rows * k];
+        let mut tile = Tile::new();
+        for j in (0..k).filter(|j| *j != 5) {
+            let column = tile.column(j, rows, &mut values, k);
+            for (i, slot) in column.iter_mut().enumerate() {
+                *slot = (100 * j + i) as f64;
+            }
+        }
+        tile.lay_out(&mut values, k);
+        for (i, row) in values.chunks(k).enumerate() {
+            for (j, v) in row.iter().enumerate() {
+                let right = if j == 5 { -1.0 } else { (100 * j + i) as f64 };
+                assert_eq!(*v, right);
+            }
+        }
+    }
+}
