@@ -3,11 +3,11 @@
 use super::pages::Pages;
 use super::reader::{BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times, is_time};
 use super::reader::{name_and_unit, seconds_in};
+use super::strip::{Room, Strip, broken};
 use super::tile::Tile;
 use crate::series::error::SeriesError;
-use parquet::basic::{ConvertedType, LogicalType, SortOrder, TimeUnit, Type as Kind};
-use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
-use parquet::data_type::DataType;
+use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type as Kind};
+use parquet::column::reader::{ColumnReader, get_column_reader};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
 use parquet::file::reader::{ChunkReader, Length};
@@ -279,12 +279,6 @@ fn worth(m: Meaning) -> f64 {
     }
 }
 
-fn broken(e: ParquetError) -> SeriesError {
-    SeriesError::Broken(format!(
-        "it can't be read as Parquet ({e}): write it again, columns of numbers and one `time` in seconds"
-    ))
-}
-
 /// What a stored value is; `None` for what is no number.
 fn meaning(c: &ColumnDescriptor) -> Option<Meaning> {
     let of_unit = |unit: &TimeUnit| match unit {
@@ -311,138 +305,6 @@ fn meaning(c: &ColumnDescriptor) -> Option<Meaning> {
         (Kind::BOOLEAN | Kind::FLOAT | Kind::DOUBLE, _) => Some(Meaning::Number(1.0)),
         _ => None,
     }
-}
-
-/// Room to decode a piece in; used again for the next one.
-#[derive(Default)]
-struct Room {
-    strips: Vec<Strip>,
-    buffers: Buffers,
-}
-
-/// Rows of a column that are decoded at a time.
-const ROWS: usize = 8192;
-
-/// Room for some values of one column.
-#[derive(Default)]
-struct Buffers {
-    levels: Vec<i16>,
-    bools: Vec<bool>,
-    i32s: Vec<i32>,
-    i64s: Vec<i64>,
-    f32s: Vec<f32>,
-    f64s: Vec<f64>,
-}
-
-/// Decoded rows of one column: reals of 32 bits as they are, other numbers in 64.
-#[derive(Default)]
-struct Strip {
-    singles: Vec<f32>,
-    doubles: Vec<f64>,
-}
-
-impl Strip {
-    /// Decodes the next rows of a column in the place of what was here.
-    fn decode(
-        &mut self,
-        reader: &mut ColumnReader,
-        column: &ColumnDescriptor,
-        rows: usize,
-        b: &mut Buffers,
-    ) -> Result<(), SeriesError> {
-        self.singles.clear();
-        self.doubles.clear();
-        let most = column.max_def_level();
-        let unsigned = column.sort_order() == SortOrder::UNSIGNED;
-        let (out, levels) = (&mut self.doubles, &mut b.levels);
-        let nan = f64::NAN;
-        match reader {
-            ColumnReader::BoolColumnReader(r) => {
-                let of = |v: &bool| f64::from(u8::from(*v));
-                numbers(r, most, rows, &mut b.bools, levels, out, nan, of)
-            }
-            ColumnReader::Int32ColumnReader(r) if unsigned => {
-                let of = |v: &i32| f64::from(v.cast_unsigned());
-                numbers(r, most, rows, &mut b.i32s, levels, out, nan, of)
-            }
-            ColumnReader::Int64ColumnReader(r) if unsigned => {
-                let of = |v: &i64| v.cast_unsigned() as f64;
-                numbers(r, most, rows, &mut b.i64s, levels, out, nan, of)
-            }
-            ColumnReader::Int32ColumnReader(r) => {
-                let of = |v: &i32| f64::from(*v);
-                numbers(r, most, rows, &mut b.i32s, levels, out, nan, of)
-            }
-            ColumnReader::Int64ColumnReader(r) => {
-                let of = |v: &i64| *v as f64;
-                numbers(r, most, rows, &mut b.i64s, levels, out, nan, of)
-            }
-            ColumnReader::FloatColumnReader(r) => {
-                let (out, nan) = (&mut self.singles, f32::NAN);
-                numbers(r, most, rows, &mut b.f32s, levels, out, nan, |v| *v)
-            }
-            ColumnReader::DoubleColumnReader(r) => {
-                numbers(r, most, rows, &mut b.f64s, levels, out, nan, |v| *v)
-            }
-            _ => Ok(()),
-        }?;
-        if self.singles.len().max(self.doubles.len()) == rows {
-            Ok(())
-        } else {
-            let wrong = "a column ends before its row group";
-            Err(broken(ParquetError::EOF(wrong.into())))
-        }
-    }
-
-    /// The rows from number `first` on, times `worth` less `off`.
-    fn put(&self, first: usize, worth: f64, off: f64, out: &mut [f64]) {
-        if let Some(singles) = self.singles.get(first..).filter(|s| !s.is_empty()) {
-            for (slot, v) in out.iter_mut().zip(singles) {
-                *slot = f64::from(*v) * worth - off;
-            }
-        } else {
-            let doubles = self.doubles.get(first..).unwrap_or_default();
-            for (slot, v) in out.iter_mut().zip(doubles) {
-                *slot = v * worth - off;
-            }
-        }
-    }
-}
-
-/// Decodes `rows` rows of a column into `out`, or as many as there are; `blank` for a null.
-fn numbers<T: DataType, O: Copy>(
-    reader: &mut ColumnReaderImpl<T>,
-    most: i16,
-    rows: usize,
-    values: &mut Vec<T::T>,
-    levels: &mut Vec<i16>,
-    out: &mut Vec<O>,
-    blank: O,
-    number: impl Fn(&T::T) -> O,
-) -> Result<(), SeriesError> {
-    while out.len() < rows {
-        levels.clear();
-        values.clear();
-        let known = if most > 0 { Some(&mut *levels) } else { None };
-        let read = reader.read_records(ROWS.min(rows - out.len()), known, None, values);
-        let (records, _, _) = read.map_err(broken)?;
-        if records == 0 {
-            return Ok(());
-        }
-        let mut known = values.iter().map(&number);
-        if known.len() == records {
-            out.extend(known);
-        } else {
-            out.extend(levels.iter().map(|l| {
-                if *l == most {
-                    known.next().unwrap_or(blank)
-                } else {
-                    blank
-                }
-            }));
-        }
-    }
-    Ok(())
 }
 
 fn skip(reader: &mut ColumnReader, rows: usize) -> Result<(), SeriesError> {
