@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use strainbridge::Disk;
-use strainbridge::app::context::Files;
+use strainbridge::app::context::{Files, InMemory};
 use strainbridge::app::files::FileBytes;
 
 /// The disk with files from memory before it.
@@ -15,6 +15,15 @@ impl Files for Desk {
         match self.0.get(path) {
             Some(bytes) => Ok(FileBytes::from(bytes.clone())),
             None => Disk.load(path),
+        }
+    }
+
+    fn load_hashed(&self, path: &Path) -> std::io::Result<(FileBytes, String)> {
+        match self.0.get(path) {
+            Some(bytes) => InMemory::default()
+                .with(path, bytes.clone())
+                .load_hashed(path),
+            None => Disk.load_hashed(path),
         }
     }
 }

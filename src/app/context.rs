@@ -1,7 +1,8 @@
 //! What a question is asked in: where files come from, where solutions are kept, who hears of progress and may stop the work.
 
 use super::store::SolutionStore;
-use super::whole_file::{FileBytes, load};
+use super::whole_file::{FileBytes, hex, load, load_hashed};
+use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -12,6 +13,16 @@ pub trait Files: Sync {
     /// # Errors
     /// Those of the system; [`std::io::ErrorKind::NotFound`] where there is none.
     fn load(&self, path: &Path) -> std::io::Result<FileBytes>;
+
+    /// The bytes of a file and their SHA-256, hexadecimal.
+    ///
+    /// # Errors
+    /// As [`Files::load`].
+    fn load_hashed(&self, path: &Path) -> std::io::Result<(FileBytes, String)> {
+        let bytes = self.load(path)?;
+        let hash = hex(&Sha256::digest(&*bytes));
+        Ok((bytes, hash))
+    }
 }
 
 /// The file system.
@@ -21,6 +32,10 @@ pub struct Disk;
 impl Files for Disk {
     fn load(&self, path: &Path) -> std::io::Result<FileBytes> {
         load(path)
+    }
+
+    fn load_hashed(&self, path: &Path) -> std::io::Result<(FileBytes, String)> {
+        load_hashed(path)
     }
 }
 

@@ -3,6 +3,7 @@
 //! Files are read, not mapped: a mapped file that another program shortens ends this one by a signal, and one that it rewrites
 //! gives half old and half new numbers. Reading costs a copy, a third of a second a gigabyte.
 
+use sha2::{Digest, Sha256};
 use std::fs::{File, Metadata};
 use std::io::{Error, ErrorKind, Read};
 use std::path::Path;
@@ -39,9 +40,61 @@ impl std::ops::Deref for FileBytes {
 /// - [`ErrorKind::OutOfMemory`] for a file larger than the free memory;
 /// - [`ErrorKind::ResourceBusy`] for one that changed meanwhile.
 pub fn load(path: &Path) -> std::io::Result<FileBytes> {
+    let (mut file, before, mut bytes) = opened(path)?;
+    (&mut file).take(before.len()).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 != before.len() || differs(&before, &file.metadata()?) {
+        return Err(ErrorKind::ResourceBusy.into());
+    }
+    Ok(bytes.into())
+}
+
+/// Bytes of a file and their SHA-256, formed on a thread of its own while the rest is read.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_hashed(path: &Path) -> std::io::Result<(FileBytes, String)> {
+    /// Bytes handed over at a time: they are still in the processor's cache.
+    const PART: usize = 1 << 20;
+    let (mut file, before, room) = opened(path)?;
+    let size = usize::try_from(before.len()).map_err(|_| ErrorKind::OutOfMemory)?;
+    // There was room; zeros cost nothing that the system has not written yet.
+    drop(room);
+    let mut bytes = vec![0; size];
+    let hash = std::thread::scope(|s| {
+        let (send, parts) = std::sync::mpsc::channel::<&[u8]>();
+        let hashing = s.spawn(move || {
+            let mut hash = Sha256::new();
+            parts.iter().for_each(|part| hash.update(part));
+            hex(&hash.finalize())
+        });
+        for part in bytes.chunks_mut(PART) {
+            file.read_exact(part).map_err(|e| match e.kind() {
+                ErrorKind::UnexpectedEof => ErrorKind::ResourceBusy.into(),
+                _ => e,
+            })?;
+            // It is received as long as the other thread lives.
+            let _ = send.send(part);
+        }
+        drop(send);
+        let stopped = |_| Error::other("the thread of the digest has stopped");
+        hashing.join().map_err(stopped)
+    })?;
+    if differs(&before, &file.metadata()?) {
+        return Err(ErrorKind::ResourceBusy.into());
+    }
+    Ok((bytes.into(), hash))
+}
+
+/// A digest as it is written.
+pub fn hex(digest: &[u8]) -> String {
+    digest.iter().map(|b| format!("{b:02x}")).collect()
+}
+
+/// A file, what the system says of it, and room for its bytes.
+fn opened(path: &Path) -> std::io::Result<(File, Metadata, Vec<u8>)> {
     // Before it is opened: opening a pipe waits for its writer.
     check_kind(&std::fs::metadata(path)?)?;
-    let mut file = File::open(path)?;
+    let file = File::open(path)?;
     let before = file.metadata()?;
     check_kind(&before)?;
     let size = before.len();
@@ -53,11 +106,7 @@ pub fn load(path: &Path) -> std::io::Result<FileBytes> {
     bytes
         .try_reserve_exact(room)
         .map_err(|_| ErrorKind::OutOfMemory)?;
-    (&mut file).take(size).read_to_end(&mut bytes)?;
-    if bytes.len() != room || differs(&before, &file.metadata()?) {
-        return Err(ErrorKind::ResourceBusy.into());
-    }
-    Ok(bytes.into())
+    Ok((file, before, bytes))
 }
 
 fn check_kind(meta: &Metadata) -> std::io::Result<()> {
@@ -98,6 +147,9 @@ mod tests {
         for bytes in [vec![], vec![7_u8; 3_000_000]] {
             std::fs::write(&path, &bytes).unwrap();
             assert!(*load(&path).unwrap() == *bytes);
+            let (read, hash) = load_hashed(&path).unwrap();
+            assert!(*read == *bytes);
+            assert_eq!(hash, hex(&Sha256::digest(&bytes)));
         }
         std::fs::remove_file(&path).unwrap();
     }

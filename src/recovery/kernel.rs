@@ -26,8 +26,8 @@ pub(super) struct Samples<'a> {
     pub out: &'a mut Vec<f64>,
     /// Those samples are appended by number; the sums leave them out.
     pub gaps: &'a mut Vec<usize>,
-    /// Sums to add to.
-    pub sums: &'a mut Sums,
+    /// Sums to add to, where they are wanted.
+    pub sums: Option<&'a mut Sums>,
 }
 
 impl pulp::WithSimd for Samples<'_> {
@@ -35,8 +35,9 @@ impl pulp::WithSimd for Samples<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) {
-        let (n, k) = (self.zero.len(), self.sums.sum.len());
-        if n == 0 || k == 0 {
+        let n = self.zero.len();
+        let k = self.gain.len() / n.max(1);
+        if k == 0 {
             return;
         }
         let mut y = vec![0.0; n * LANES];
@@ -47,42 +48,72 @@ impl pulp::WithSimd for Samples<'_> {
             if count < LANES {
                 y.fill(0.0);
             }
-            for (lane, sample) in block.chunks_exact(n).enumerate() {
-                for ((v, &raw), z) in y.chunks_exact_mut(LANES).zip(sample).zip(self.zero) {
-                    let strain = raw * self.to_strain - z;
-                    v[lane] = if strain.abs() <= LARGEST_STRAIN {
-                        strain
-                    } else {
-                        f64::NAN
-                    };
-                }
-            }
+            self.by_gauge(block, &mut y);
             product(simd, self.gain, &y, &mut f);
             for lane in 0..count {
                 self.out.extend(f.chunks_exact(LANES).map(|f| f[lane]));
             }
             if count < LANES || !all_finite(simd, &f) {
                 self.set_apart(number * LANES, count, &mut y, &mut f);
-            } else {
-                self.sums.samples += LANES as u64;
-                self.extremes(simd, &f);
+            } else if let Some(sums) = &mut self.sums {
+                sums.samples += LANES as u64;
+                extremes(sums, simd, &f);
             }
-            self.squares(simd, &y, &f);
+            if let Some(sums) = &mut self.sums {
+                squares(sums, self.s, simd, &y, &f);
+            }
         }
     }
 }
 
 impl Samples<'_> {
+    /// Readings of some samples as strain less zero, each gauge's beside each other; NaN for what is too large to be strain.
+    #[inline(always)]
+    fn by_gauge(&self, block: &[f64], y: &mut [f64]) {
+        /// Samples taken together.
+        const FOUR: usize = 4;
+        let n = self.zero.len();
+        let strain = |raw: f64, z: f64| {
+            let strain = raw * self.to_strain - z;
+            if strain.abs() <= LARGEST_STRAIN {
+                strain
+            } else {
+                f64::NAN
+            }
+        };
+        for (at, samples) in (0..).step_by(FOUR).zip(block.chunks(FOUR * n)) {
+            let mut rows = samples.chunks_exact(n);
+            let places = y.chunks_exact_mut(LANES).zip(self.zero);
+            if let [Some(a), Some(b), Some(c), Some(d)] = [(); FOUR].map(|()| rows.next()) {
+                let rows = a.iter().zip(b).zip(c).zip(d);
+                for ((v, z), (((a, b), c), d)) in places.zip(rows) {
+                    let four = [a, b, c, d].map(|raw| strain(*raw, *z));
+                    if let Some(v) = v.get_mut(at..at + FOUR) {
+                        v.copy_from_slice(&four);
+                    }
+                }
+            } else {
+                for (g, (v, z)) in places.enumerate() {
+                    let raw = samples.iter().skip(g).step_by(n);
+                    for (v, raw) in v.iter_mut().skip(at).zip(raw) {
+                        *v = strain(*raw, *z);
+                    }
+                }
+            }
+        }
+    }
+
     /// Counts the samples of a block that is not whole: those with a gap, and lanes without a sample, are zero from here on.
     fn set_apart(&mut self, first: usize, count: usize, y: &mut [f64], f: &mut [f64]) {
-        let k = self.sums.sum.len();
+        let k = f.len() / LANES;
         for lane in 0..LANES {
             let whole = lane < count && f.chunks_exact(LANES).all(|f| f[lane].is_finite());
             if whole {
-                self.sums.samples += 1;
+                let Some(sums) = &mut self.sums else { continue };
+                sums.samples += 1;
                 for (l, f) in f.chunks_exact(LANES).enumerate() {
-                    self.sums.min[l] = self.sums.min[l].min(f[lane]);
-                    self.sums.max[l] = self.sums.max[l].max(f[lane]);
+                    sums.min[l] = sums.min[l].min(f[lane]);
+                    sums.max[l] = sums.max[l].max(f[lane]);
                 }
                 continue;
             }
@@ -96,71 +127,72 @@ impl Samples<'_> {
             }
         }
     }
+}
 
-    #[inline(always)]
-    fn extremes<S: Simd>(&mut self, simd: S, f: &[f64]) {
-        for (l, f) in f.chunks_exact(LANES).enumerate() {
-            let (f, _) = S::as_simd_f64s(f);
-            let (mut low, mut high) = (f[0], f[0]);
-            for &v in &f[1..] {
-                low = simd.min_f64s(low, v);
-                high = simd.max_f64s(high, v);
-            }
-            self.sums.min[l] = self.sums.min[l].min(simd.reduce_min_f64s(low));
-            self.sums.max[l] = self.sums.max[l].max(simd.reduce_max_f64s(high));
-        }
-    }
-
-    /// Adds loads and their squares, squared readings and squared residuals.
-    #[inline(always)]
-    fn squares<S: Simd>(&mut self, simd: S, y: &[f64], f: &[f64]) {
-        let (n, k) = (self.zero.len(), self.sums.sum.len());
-        let zero = simd.splat_f64s(0.0);
-        let per = LANES / S::F64_LANES;
-        let (y, _) = S::as_simd_f64s(y);
+/// Widens the extremes by the loads of a block.
+#[inline(always)]
+fn extremes<S: Simd>(all: &mut Sums, simd: S, f: &[f64]) {
+    for (l, f) in f.chunks_exact(LANES).enumerate() {
         let (f, _) = S::as_simd_f64s(f);
-        for (l, f) in f.chunks_exact(per).enumerate() {
-            let (mut sum, mut squares) = (zero, zero);
-            for &v in f {
-                sum = simd.add_f64s(sum, v);
-                squares = simd.mul_add_f64s(v, v, squares);
-            }
-            self.sums.sum[l] += simd.reduce_sum_f64s(sum);
-            self.sums.sum_of_squares[l] += simd.reduce_sum_f64s(squares);
+        let (mut low, mut high) = (f[0], f[0]);
+        for &v in &f[1..] {
+            low = simd.min_f64s(low, v);
+            high = simd.max_f64s(high, v);
         }
-        for g in (0..n).step_by(2) {
-            let pair = [g, (g + 1).min(n - 1)];
-            let mut reading = [zero; 2];
-            let mut residual = [zero; 2];
-            for v in (0..per).step_by(UNROLL) {
-                let mut left = [[zero; UNROLL]; 2];
+        all.min[l] = all.min[l].min(simd.reduce_min_f64s(low));
+        all.max[l] = all.max[l].max(simd.reduce_max_f64s(high));
+    }
+}
+
+/// Adds loads and their squares, squared readings and squared residuals.
+#[inline(always)]
+fn squares<S: Simd>(all: &mut Sums, s: &[f64], simd: S, y: &[f64], f: &[f64]) {
+    let (n, k) = (y.len() / LANES, f.len() / LANES);
+    let zero = simd.splat_f64s(0.0);
+    let per = LANES / S::F64_LANES;
+    let (y, _) = S::as_simd_f64s(y);
+    let (f, _) = S::as_simd_f64s(f);
+    for (l, f) in f.chunks_exact(per).enumerate() {
+        let (mut sum, mut squares) = (zero, zero);
+        for &v in f {
+            sum = simd.add_f64s(sum, v);
+            squares = simd.mul_add_f64s(v, v, squares);
+        }
+        all.sum[l] += simd.reduce_sum_f64s(sum);
+        all.sum_of_squares[l] += simd.reduce_sum_f64s(squares);
+    }
+    for g in (0..n).step_by(2) {
+        let pair = [g, (g + 1).min(n - 1)];
+        let mut reading = [zero; 2];
+        let mut residual = [zero; 2];
+        for v in (0..per).step_by(UNROLL) {
+            let mut left = [[zero; UNROLL]; 2];
+            for (p, left) in left.iter_mut().enumerate() {
+                let y = &y[pair[p] * per + v..][..UNROLL];
+                for (a, &b) in left.iter_mut().zip(y) {
+                    *a = b;
+                    reading[p] = simd.mul_add_f64s(b, b, reading[p]);
+                }
+            }
+            for l in 0..k {
+                let f = &f[l * per + v..][..UNROLL];
                 for (p, left) in left.iter_mut().enumerate() {
-                    let y = &y[pair[p] * per + v..][..UNROLL];
-                    for (a, &b) in left.iter_mut().zip(y) {
-                        *a = b;
-                        reading[p] = simd.mul_add_f64s(b, b, reading[p]);
-                    }
-                }
-                for l in 0..k {
-                    let f = &f[l * per + v..][..UNROLL];
-                    for (p, left) in left.iter_mut().enumerate() {
-                        let c = simd.splat_f64s(-self.s[pair[p] * k + l]);
-                        for (a, &b) in left.iter_mut().zip(f) {
-                            *a = simd.mul_add_f64s(c, b, *a);
-                        }
-                    }
-                }
-                for (p, left) in left.iter().enumerate() {
-                    for &a in left {
-                        residual[p] = simd.mul_add_f64s(a, a, residual[p]);
+                    let c = simd.splat_f64s(-s[pair[p] * k + l]);
+                    for (a, &b) in left.iter_mut().zip(f) {
+                        *a = simd.mul_add_f64s(c, b, *a);
                     }
                 }
             }
-            // An odd last gauge stands in both places and counts once.
-            for p in 0..if pair[1] > g { 2 } else { 1 } {
-                self.sums.reading[pair[p]] += simd.reduce_sum_f64s(reading[p]);
-                self.sums.residual[pair[p]] += simd.reduce_sum_f64s(residual[p]);
+            for (p, left) in left.iter().enumerate() {
+                for &a in left {
+                    residual[p] = simd.mul_add_f64s(a, a, residual[p]);
+                }
             }
+        }
+        // An odd last gauge stands in both places and counts once.
+        for p in 0..if pair[1] > g { 2 } else { 1 } {
+            all.reading[pair[p]] += simd.reduce_sum_f64s(reading[p]);
+            all.residual[pair[p]] += simd.reduce_sum_f64s(residual[p]);
         }
     }
 }

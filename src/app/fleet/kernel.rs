@@ -54,8 +54,8 @@ struct Recovering {
     /// Gauges of the job.
     used: Vec<usize>,
     columns: Vec<Option<usize>>,
-    /// Strain of one unit of each column.
-    scale: Vec<[f64; 2]>,
+    /// Strain of one unit of each column, and of none.
+    scale: [Vec<f64>; 2],
     zero: Vec<f64>,
     /// S of the used gauges, strain per report unit.
     s: Vec<Vec<f64>>,
@@ -97,21 +97,20 @@ impl Kernel {
                 Counter::new(l, k, at(&noise), at(&self.widths), self.law)
             })
             .collect();
-        let mut health = Health::new(r.s.clone());
+        let mut health = Health::new(&r.s);
         let pieces: Vec<usize> = (0..record.n_pieces()).collect();
-        for group in pieces.chunks(2 * rayon::current_num_threads().max(1)) {
-            let parts: Vec<Part> = group
-                .par_iter()
-                .map(|p| r.part(record, *p))
-                .collect::<Result<_, _>>()
-                .map_err(text)?;
-            counters.par_iter_mut().for_each(|c| {
-                for part in &parts {
-                    c.push(&part.loads);
-                }
-            });
+        let mut parts: Vec<Part> = Vec::new();
+        // While some pieces are decoded, the ones before them are counted.
+        for group in pieces.chunks(rayon::current_num_threads().max(1)) {
+            let decode = || group.par_iter().map(|p| r.part(record, *p));
+            let (next, ()) = rayon::join(
+                || decode().collect::<Result<_, _>>(),
+                || counted(&mut counters, &parts),
+            );
+            parts = next.map_err(text)?;
             parts.iter().for_each(|p| health.merge(&p.health));
         }
+        counted(&mut counters, &parts);
         let scales = self.scale_covariances(&r, &zero_sigma);
         let loads = counters
             .into_iter()
@@ -325,7 +324,7 @@ impl Kernel {
         Ok(Recovering {
             filter,
             columns: alive.iter().map(|a| Some(a.1)).collect(),
-            scale: alive.iter().map(|a| a.2).collect(),
+            scale: [0, 1].map(|i| alive.iter().map(|a| a.2[i]).collect()),
             zero,
             s: (0..used.len()).map(values).collect(),
             used,
@@ -368,21 +367,25 @@ impl Kernel {
 impl Recovering {
     fn part(&self, record: &Record, piece: usize) -> Result<Part, SeriesError> {
         let (n, k) = (self.used.len(), self.factors.len());
+        let (begin, end) = record.span(piece);
         let mut part = Part {
-            loads: Vec::new(),
-            health: Health::new(self.s.clone()),
+            loads: Vec::with_capacity((end - begin) * k),
+            health: Health::new(&self.s),
         };
-        let mut sums = Sums::new(n, k);
+        let [factors, offsets] = &self.scale;
         let (mut strain, mut recovered) = (Vec::new(), SampleLoads::default());
         record.read(piece, &self.columns, &mut |block| {
-            strain.clear();
+            strain.resize(block.values.len(), f64::NAN);
             let rows = block.values.chunks_exact(n);
-            strain.extend(
-                rows.flat_map(|row| row.iter().zip(&self.scale).map(|(v, [a, b])| v * a + b)),
-            );
+            for (out, row) in strain.chunks_exact_mut(n).zip(rows) {
+                let scale = factors.iter().zip(offsets);
+                for ((out, v), (a, b)) in out.iter_mut().zip(row).zip(scale) {
+                    *out = v * a + b;
+                }
+            }
             recovered.values.clear();
             recovered.gaps.clear();
-            self.filter.apply(&strain, 1.0, &mut recovered, &mut sums);
+            self.filter.loads_of(&strain, 1.0, &mut recovered);
             let loads = &mut recovered.values;
             for row in loads.chunks_exact_mut(k) {
                 row.iter_mut().zip(&self.factors).for_each(|(v, f)| *v *= f);
@@ -398,6 +401,15 @@ impl Recovering {
     }
 }
 
+/// Counts what pieces that follow each other give.
+fn counted(counters: &mut [Counter], parts: &[Part]) {
+    counters.par_iter_mut().for_each(|c| {
+        for part in parts {
+            c.push(&part.loads);
+        }
+    });
+}
+
 /// Strain from a reading: it times the first, plus the second.
 fn line_of(micro: f64, channel: Channel) -> [f64; 2] {
     [micro, -channel.offset].map(|v| v * MICRO / channel.factor)
@@ -408,17 +420,21 @@ fn sampled(record: &Record, found: &[(usize, usize, [f64; 2])]) -> Result<Vec<f6
     let columns: Vec<Option<usize>> = found.iter().map(|f| Some(f.1)).collect();
     let n = record.n_pieces();
     let taken = n.min(LOOKED_AT);
-    let mut out = Vec::new();
-    for i in 0..taken {
-        let read = record.read(i * n / taken, &columns, &mut |block| {
-            for row in block.values.chunks_exact(found.len().max(1)) {
-                out.extend(row.iter().zip(found).map(|(v, (_, _, [a, b]))| v * a + b));
-            }
-            ControlFlow::Break(())
-        });
-        read.map_err(|e| e.to_string())?;
-    }
-    Ok(out)
+    let looked_at: Vec<Vec<f64>> = (0..taken)
+        .into_par_iter()
+        .map(|i| {
+            let mut out = Vec::new();
+            record.head(i * n / taken, &columns, &mut |block| {
+                for row in block.values.chunks_exact(found.len().max(1)) {
+                    out.extend(row.iter().zip(found).map(|(v, (_, _, [a, b]))| v * a + b));
+                }
+                ControlFlow::Break(())
+            })?;
+            Ok(out)
+        })
+        .collect::<Result<_, SeriesError>>()
+        .map_err(|e| e.to_string())?;
+    Ok(looked_at.concat())
 }
 
 /// The columns of `found` that are in `alive`, row by row.

@@ -30,7 +30,6 @@ use kernel::Kernel;
 use merge::{Status, sorted, vehicle};
 use name::{NameForm, Shard};
 use rayon::prelude::*;
-use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -172,7 +171,7 @@ fn done(
     let results: Vec<Result<(FileHead, bool), Fault>> = mine
         .par_iter()
         .map(|path| {
-            let bytes = cx.files.load(Path::new(path));
+            let bytes = cx.files.load_hashed(Path::new(path));
             let done = one(kernel, kept, form, path, bytes);
             cx.progress.advance(1);
             done
@@ -195,7 +194,7 @@ fn one(
     kept: &KeptDays,
     form: &NameForm,
     path: &str,
-    bytes: std::io::Result<FileBytes>,
+    bytes: std::io::Result<(FileBytes, String)>,
 ) -> Result<(FileHead, bool), Fault> {
     let named = form.read(path);
     let mut file = FileResult {
@@ -205,17 +204,14 @@ fn one(
         day: named.as_ref().map_or(String::new(), |n| n.day.clone()),
         result: Err(String::new()),
     };
-    let bytes = match bytes {
-        Ok(bytes) => bytes,
+    let (bytes, hash) = match bytes {
+        Ok(read) => read,
         Err(e) => {
             file.result = Err(format!("it can't be read: {e}"));
             return Ok((file.into(), false));
         }
     };
-    file.sha256 = Sha256::digest(&*bytes)
-        .iter()
-        .map(|b| format!("{b:02x}"))
-        .collect();
+    file.sha256 = hash;
     if named.is_none() {
         file.result = Err("its name is not of the form that [fleet] file_name states".to_owned());
         return Ok((file.into(), false));

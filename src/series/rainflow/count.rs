@@ -59,6 +59,29 @@ pub struct Rainflow<T = ()> {
     latest: Option<Point>,
 }
 
+/// Who hears of a count under way.
+pub(super) trait Heard<T> {
+    /// What belongs to a sample that has become a reversal.
+    fn tag(&mut self, point: Point) -> T;
+    /// A cycle has closed: its two reversals, which are not seen again.
+    fn closed(&mut self, from: &Reversal<T>, to: &Reversal<T>);
+}
+
+/// Two functions that hear.
+struct Both<F, G>(F, G);
+
+impl<T, F: FnMut(Point) -> T, G: FnMut(&Reversal<T>, &Reversal<T>)> Heard<T> for Both<F, G> {
+    #[inline(always)]
+    fn tag(&mut self, point: Point) -> T {
+        (self.0)(point)
+    }
+
+    #[inline(always)]
+    fn closed(&mut self, from: &Reversal<T>, to: &Reversal<T>) {
+        (self.1)(from, to);
+    }
+}
+
 impl<T> Default for Rainflow<T> {
     fn default() -> Self {
         Self {
@@ -69,20 +92,14 @@ impl<T> Default for Rainflow<T> {
 }
 
 impl<T> Rainflow<T> {
-    /// Takes the next sample; `counted` gets the two reversals of every cycle that closes, `tag` gives what belongs to a sample that has
-    /// become a reversal. A value that is not finite is passed over.
-    #[inline]
-    pub fn push_tagged(
-        &mut self,
-        point: Point,
-        tag: &mut impl FnMut(Point) -> T,
-        counted: &mut impl FnMut(&Reversal<T>, &Reversal<T>),
-    ) {
+    /// Takes the next sample. A value that is not finite is passed over.
+    #[inline(always)]
+    pub(super) fn push_tagged(&mut self, point: Point, heard: &mut impl Heard<T>) {
         if !point.value.is_finite() {
             return;
         }
         let Some(latest) = self.latest else {
-            let tag = tag(point);
+            let tag = heard.tag(point);
             self.open.push(Reversal { point, tag });
             self.latest = Some(point);
             return;
@@ -93,10 +110,57 @@ impl<T> Rainflow<T> {
         // The last open reversal is where the present rise or fall began.
         let began = self.open.last().map_or(latest.value, |r| r.point.value);
         if (point.value > latest.value) != (latest.value > began) && latest.value != began {
-            let tag = tag(latest);
-            self.reversal(Reversal { point: latest, tag }, counted);
+            let tag = heard.tag(latest);
+            self.reversal(Reversal { point: latest, tag }, heard);
         }
         self.latest = Some(point);
+    }
+
+    /// Takes samples that follow each other, the first being number `first` of the record; as [`Rainflow::push_tagged`] of each.
+    /// `turns` is room for as many numbers.
+    #[inline(always)]
+    pub(super) fn push_block(
+        &mut self,
+        first: usize,
+        values: &[f64],
+        turns: &mut [u32],
+        heard: &mut impl Heard<T>,
+    ) {
+        let began = self.open.last().map(|r| r.point.value);
+        let under_way = self.latest.zip(began).filter(|(l, b)| l.value != *b);
+        let (latest, began) = under_way.unwrap_or((Point { at: 0, value: 0.0 }, 0.0));
+        // Where every sample rises or falls, the one before a change of that was a reversal. They are listed first, without a jump that
+        // depends on the samples, which no processor can foresee.
+        let (mut n, mut rising, mut before) = (0, latest.value > began, latest.value);
+        let mut moves = under_way.is_some();
+        for (i, &value) in (0..).zip(values) {
+            let rises = value > before;
+            if let Some(slot) = turns.get_mut(n) {
+                *slot = i;
+            }
+            n += usize::from(rises != rising);
+            moves &= (value != before) & value.is_finite();
+            (rising, before) = (rises, value);
+        }
+        if !moves {
+            for (at, &value) in (first..).zip(values) {
+                self.push_tagged(Point { at, value }, heard);
+            }
+            return;
+        }
+        for &next in turns.iter().take(n) {
+            let before = (next as usize).checked_sub(1);
+            let point = match before.and_then(|i| Some((first + i, *values.get(i)?))) {
+                Some((at, value)) => Point { at, value },
+                None => latest,
+            };
+            let tag = heard.tag(point);
+            self.reversal(Reversal { point, tag }, heard);
+        }
+        if let Some((i, &value)) = values.iter().enumerate().next_back() {
+            let at = first + i;
+            self.latest = Some(Point { at, value });
+        }
     }
 
     /// The residue: the reversals that are still open and the last sample, in time order.
@@ -115,28 +179,20 @@ impl<T> Rainflow<T> {
         self.latest
     }
 
-    fn reversal(
-        &mut self,
-        reversal: Reversal<T>,
-        counted: &mut impl FnMut(&Reversal<T>, &Reversal<T>),
-    ) {
-        self.open.push(reversal);
-        while let [.., a, b, c, d] = self.open.as_slice() {
-            let [av, bv, cv, dv] = [a, b, c, d].map(|r| r.point.value);
+    #[inline(always)]
+    fn reversal(&mut self, d: Reversal<T>, heard: &mut impl Heard<T>) {
+        while let [.., a, b, c] = self.open.as_slice() {
+            let [av, bv, cv, dv] = [a, b, c, &d].map(|r| r.point.value);
             // Equal values: the later is the higher.
-            let closed = if bv > av {
-                cv >= av && dv >= bv
-            } else {
-                cv < av && dv < bv
-            };
-            if !closed {
+            let rise = (cv >= av) & (dv >= bv);
+            let fall = (cv < av) & (dv < bv);
+            if !(if bv > av { rise } else { fall }) {
                 break;
             }
-            counted(b, c);
-            let last = self.open.pop();
-            self.open.truncate(self.open.len().saturating_sub(2));
-            self.open.extend(last);
+            heard.closed(b, c);
+            self.open.truncate(self.open.len() - 2);
         }
+        self.open.push(d);
     }
 }
 
@@ -149,9 +205,9 @@ impl<T: Clone> Rainflow<T> {
         let mut count = Self::default();
         let mut latest: Option<T> = None;
         for r in residues.iter().flatten() {
-            let mut before = |_: Point| latest.clone().unwrap_or_else(|| r.tag.clone());
+            let before = |_: Point| latest.clone().unwrap_or_else(|| r.tag.clone());
             let changed = count.latest.is_none_or(|l| l.value != r.point.value);
-            count.push_tagged(r.point, &mut before, counted);
+            count.push_tagged(r.point, &mut Both(before, &mut *counted));
             // A sample that repeats the latest is not taken, and what belongs to it neither.
             if changed && r.point.value.is_finite() {
                 latest = Some(r.tag.clone());
@@ -167,13 +223,14 @@ impl<T: Clone> Rainflow<T> {
 impl Rainflow {
     /// Takes the next sample; `counted` gets every full cycle that closes. A value that is not finite is passed over.
     pub fn push(&mut self, point: Point, counted: &mut impl FnMut(Cycle)) {
-        self.push_tagged(point, &mut |_| (), &mut |b, c| {
+        let closed = |b: &Reversal<()>, c: &Reversal<()>| {
             counted(Cycle {
                 from: b.point,
                 to: c.point,
                 count: 1.0,
             });
-        });
+        };
+        self.push_tagged(point, &mut Both(|_| (), closed));
     }
 
     /// Counts what is left as ASTM E1049 does: the last sample is a reversal, and every open range half a cycle.

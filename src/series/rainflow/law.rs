@@ -29,6 +29,7 @@ impl Law {
     }
 
     /// Damage of one cycle of a range.
+    #[inline(always)]
     pub fn damage(&self, range: f64) -> f64 {
         match self.knee {
             Some(k) if range < k.range => {
@@ -39,6 +40,7 @@ impl Law {
     }
 
     /// Change of the damage with the range.
+    #[inline(always)]
     pub fn derivative(&self, range: f64) -> f64 {
         match self.knee {
             Some(k) if range < k.range => {
@@ -53,11 +55,22 @@ impl Law {
     }
 }
 
-/// A power; whole ones, which most S-N lines have, by products.
+/// A power; whole ones, which most S-N lines have, by squares and products.
+#[inline(always)]
 fn power(x: f64, p: f64) -> f64 {
-    if p.fract() == 0.0 && (0.0..=64.0).contains(&p) {
-        x.powi(p as i32)
-    } else {
-        x.powf(p)
+    let whole = p as u8;
+    if f64::from(whole) != p || whole > 64 {
+        return x.powf(p);
+    }
+    let (mut square, mut left, mut out) = (x, whole, 1.0);
+    loop {
+        if left & 1 == 1 {
+            out *= square;
+        }
+        left >>= 1;
+        if left == 0 {
+            return out;
+        }
+        square *= square;
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! - [`absent`]: numbers that are not finite, kept in JSON
 //! - [`count`]: the four-point count, whose residues join; with the residue as half cycles it is the count of ASTM E1049
+//! - `counter`: a tally under way, `counts` its cycles and rises by class
 //! - [`law`]: the harm of a cycle, by the slope and knee of an S-N line
 //! - [`tally`]: cycles by class, levels, extremes and sums of a load over a time; tallies of days join to that of the year
 //! - [`interval`]: damage with what is known of its errors
@@ -9,16 +10,19 @@
 
 pub mod absent;
 pub mod count;
+mod counter;
+mod counts;
 mod damage;
 pub mod interval;
 pub mod law;
 pub mod tally;
 
 pub use count::{Cycle, Point, Rainflow, Reversal, half_cycles};
+pub use counter::Counter;
 pub use damage::{Bin, Damage};
 pub use interval::{DamageInterval, damage_interval};
 pub use law::{Knee, Law};
-pub use tally::{Counter, Extreme, Tally};
+pub use tally::{Extreme, Tally};
 
 #[cfg(test)]
 mod tests;

@@ -1,7 +1,7 @@
 //! What is kept of one load over a record: its cycles by class, its residue, the sums its damage needs. Tallies of parts join to that of
 //! the whole.
 
-use super::count::{Cycle, Point, Rainflow, Reversal, half_cycles};
+use super::count::{Point, Rainflow, Reversal, half_cycles};
 use super::law::Law;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -68,182 +68,16 @@ pub struct Tally {
     pub sums: Sums,
 }
 
-/// A tally under way.
-pub struct Counter {
-    load: usize,
-    seed: u64,
-    /// Standard deviation of the noise in a sample.
-    noise: f64,
-    width: f64,
-    law: Law,
-    plain: Rainflow<Vec<f64>>,
-    noisy: [Rainflow; 2],
-    /// Loads of the latest sample of the plain count.
-    carried: Vec<f64>,
-    cycles: BTreeMap<(i32, i32), u64>,
-    levels: BTreeMap<i32, u64>,
-    max: Option<Extreme>,
-    min: Option<Extreme>,
-    next: usize,
-    missing: usize,
-    sums: Sums,
-}
-
-impl Counter {
-    /// A count of load number `load` of `n_loads`, whose samples carry white noise of standard deviation `noise`.
-    pub fn new(load: usize, n_loads: usize, noise: f64, width: f64, law: Law) -> Self {
-        Self {
-            load,
-            seed: mixed(load as u64 + 1),
-            noise: if noise.is_finite() { noise } else { 0.0 },
-            width,
-            law,
-            plain: Rainflow::default(),
-            noisy: [Rainflow::default(), Rainflow::default()],
-            carried: vec![f64::NAN; n_loads],
-            cycles: BTreeMap::new(),
-            levels: BTreeMap::new(),
-            max: None,
-            min: None,
-            next: 0,
-            missing: 0,
-            sums: Sums {
-                damage: [0.0; 3],
-                by_load: vec![0.0; n_loads],
-                scatter: 0.0,
-            },
-        }
-    }
-
-    /// Takes the next samples, all loads of each, row by row.
-    pub fn push(&mut self, rows: &[f64]) {
-        let k = self.sums.by_load.len().max(1);
-        let first = self.next;
-        let Self {
-            plain,
-            carried,
-            cycles,
-            levels,
-            sums,
-            ..
-        } = self;
-        let (law, width, load) = (self.law, self.width, self.load);
-        let mut latest = None;
-        let mut borders = Borders { width, levels };
-        for (i, row) in rows.chunks_exact(k).enumerate() {
-            let Some(&value) = row.get(load) else {
-                continue;
-            };
-            if !value.is_finite() {
-                self.missing += 1;
-                continue;
-            }
-            let point = Point {
-                at: first + i,
-                value,
-            };
-            extremes(&mut self.max, &mut self.min, point);
-            if let Some(before) = plain.latest() {
-                borders.rise(before.value, value);
-            }
-            let mut tag = |p: Point| {
-                let row =
-                    p.at.checked_sub(first)
-                        .and_then(|i| rows.get(i * k..(i + 1) * k));
-                row.map_or_else(|| carried.clone(), <[f64]>::to_vec)
-            };
-            plain.push_tagged(point, &mut tag, &mut |a, b| {
-                let cell = (class(a.point.value, width), class(b.point.value, width));
-                *cycles.entry(cell).or_insert(0) += 1;
-                sums.add(&law, 1.0, a, b);
-            });
-            if plain.latest() == Some(point) {
-                latest = Some(row);
-            }
-        }
-        if let Some(row) = latest {
-            carried.clear();
-            carried.extend_from_slice(row);
-        }
-        if self.noise > 0.0 {
-            self.push_noisy(rows, k, first);
-        }
-        self.next += rows.len() / k;
-    }
-
-    fn push_noisy(&mut self, rows: &[f64], k: usize, first: usize) {
-        let [one, ..] = NOISE;
-        for (level, count) in (1..).zip(&mut self.noisy) {
-            let total: f64 = NOISE.get(level).copied().unwrap_or(one);
-            let added = self.noise * (total * total - one * one).sqrt();
-            let (law, mut damage) = (self.law, 0.0);
-            for (i, row) in rows.chunks_exact(k).enumerate() {
-                let Some(&value) = row.get(self.load) else {
-                    continue;
-                };
-                let at = first + i;
-                let value = value + added * white(self.seed, at as u64);
-                count.push(Point { at, value }, &mut |c: Cycle| {
-                    damage += law.damage(c.range())
-                });
-            }
-            if let Some(sum) = self.sums.damage.get_mut(level) {
-                *sum += damage;
-            }
-        }
-    }
-
-    /// The tally.
-    pub fn finish(self) -> Tally {
-        let carried = self.carried;
-        let left = |r: Reversal<Vec<f64>>| Left {
-            at: r.point.at,
-            value: r.point.value,
-            loads: r.tag,
-        };
-        let bare = |count: Rainflow| -> Vec<Left> {
-            let residue = count.residue(&mut |_| ());
-            let left = |r: Reversal<()>| Left {
-                at: r.point.at,
-                value: r.point.value,
-                loads: Vec::new(),
-            };
-            residue.into_iter().map(left).collect()
-        };
-        let residue = self.plain.residue(&mut |_| carried.clone());
-        let [twice, thrice] = self.noisy;
-        Tally {
-            width: self.width,
-            law: self.law,
-            cycles: self
-                .cycles
-                .into_iter()
-                .map(|((a, b), n)| (a, b, n))
-                .collect(),
-            levels: self.levels.into_iter().collect(),
-            max: self.max,
-            min: self.min,
-            samples: self.next,
-            missing: self.missing,
-            residues: [
-                residue.into_iter().map(left).collect(),
-                bare(twice),
-                bare(thrice),
-            ],
-            sums: self.sums,
-        }
-    }
-}
-
 impl Sums {
-    fn add(&mut self, law: &Law, count: f64, a: &Reversal<Vec<f64>>, b: &Reversal<Vec<f64>>) {
-        let change = b.point.value - a.point.value;
+    /// Adds a cycle, or a share of one, from a value to another; `from` and `to` are all loads then.
+    #[inline(always)]
+    pub(super) fn add(&mut self, law: &Law, count: f64, change: f64, from: &[f64], to: &[f64]) {
         let range = change.abs();
         let [plain, ..] = &mut self.damage;
         *plain += count * law.damage(range);
         let slope = count * law.derivative(range);
         self.scatter += 2.0 * slope * slope;
-        for ((sum, from), to) in self.by_load.iter_mut().zip(&a.tag).zip(&b.tag) {
+        for ((sum, from), to) in self.by_load.iter_mut().zip(from).zip(to) {
             *sum += slope * change.signum() * (to - from);
         }
     }
@@ -315,28 +149,28 @@ impl Tally {
             }
         }
         let (law, width) = (all.law, all.width);
-        let mut borders = Borders {
-            width,
-            levels: &mut levels,
-        };
         let [plain, ..] = &residues;
         let whole: Vec<_> = plain.iter().filter(|r| !r.is_empty()).collect();
         for w in whole.windows(2) {
             if let [a, b] = w
                 && let (Some(a), Some(b)) = (a.last(), b.first())
             {
-                borders.rise(a.point.value, b.point.value);
+                let (from, to) = (class(a.point.value, width), class(b.point.value, width));
+                for border in risen(from, to) {
+                    *levels.entry(border).or_insert(0) += 1;
+                }
             }
         }
         for (level, parts) in residues.iter().enumerate() {
             let sums = &mut all.sums;
             let residue = Rainflow::joined(parts, &mut |a, b| {
+                let change = b.point.value - a.point.value;
                 if level == 0 {
                     let cell = (class(a.point.value, width), class(b.point.value, width));
                     *cycles.entry(cell).or_insert(0) += 1;
-                    sums.add(&law, 1.0, a, b);
+                    sums.add(&law, 1.0, change, &a.tag, &b.tag);
                 } else if let Some(sum) = sums.damage.get_mut(level) {
-                    *sum += law.damage((b.point.value - a.point.value).abs());
+                    *sum += law.damage(change.abs());
                 }
             });
             if let Some(slot) = all.residues.get_mut(level) {
@@ -362,10 +196,11 @@ impl Tally {
             let reversals: Vec<Reversal<Vec<f64>>> = residue.iter().map(reversal).collect();
             for w in reversals.windows(2) {
                 let [a, b] = w else { continue };
+                let change = b.point.value - a.point.value;
                 if level == 0 {
-                    sums.add(&self.law, 0.5, a, b);
+                    sums.add(&self.law, 0.5, change, &a.tag, &b.tag);
                 } else if let Some(sum) = sums.damage.get_mut(level) {
-                    *sum += 0.5 * self.law.damage((b.point.value - a.point.value).abs());
+                    *sum += 0.5 * self.law.damage(change.abs());
                 }
             }
         }
@@ -414,11 +249,12 @@ fn reversal(l: &Left) -> Reversal<Vec<f64>> {
 }
 
 /// The class of a value.
+#[inline(always)]
 pub fn class(value: f64, width: f64) -> i32 {
     (value / width).floor() as i32
 }
 
-fn extremes(max: &mut Option<Extreme>, min: &mut Option<Extreme>, p: Point) {
+pub(super) fn extremes(max: &mut Option<Extreme>, min: &mut Option<Extreme>, p: Point) {
     let here = Extreme {
         value: p.value,
         at: p.at,
@@ -431,38 +267,8 @@ fn extremes(max: &mut Option<Extreme>, min: &mut Option<Extreme>, p: Point) {
     }
 }
 
-/// Counts rises through borders of classes.
-struct Borders<'a> {
-    width: f64,
-    levels: &'a mut BTreeMap<i32, u64>,
-}
-
-impl Borders<'_> {
-    #[inline]
-    fn rise(&mut self, from: f64, to: f64) {
-        if to > from {
-            let (a, b) = (class(from, self.width), class(to, self.width));
-            // A step through more borders than this is no load.
-            for border in (a.saturating_add(1)..=b).take(1 << 20) {
-                *self.levels.entry(border).or_insert(0) += 1;
-            }
-        }
-    }
-}
-
-/// A number of mean 0 and variance 1 that belongs to a sample: the sum of four even ones, much like a normal one up to three standard
-/// deviations. The same wherever a record is cut.
-fn white(seed: u64, at: u64) -> f64 {
-    let bits = mixed(seed ^ at.wrapping_mul(0x9E37_79B9_7F4A_7C15));
-    let sum: u32 = (0..4).map(|i| (bits >> (16 * i)) as u32 & 0xffff).sum();
-    // Four whole numbers of 0 to 65535: mean 2 x 65535, variance (65536^2 - 1) / 3.
-    (f64::from(sum) - 131_070.0) / 37_837.227_237
-}
-
-/// A number without likeness to its neighbours (splitmix64).
-fn mixed(x: u64) -> u64 {
-    let mut z = x.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    z ^ (z >> 31)
+/// The borders that a rise from one class to another goes through, by the class above.
+pub(super) fn risen(from: i32, to: i32) -> impl Iterator<Item = i32> {
+    // A step through more borders than this is no load.
+    (from.saturating_add(1)..=to).take(1 << 20)
 }

@@ -103,3 +103,73 @@ fn damage_is_the_sum_of_powers_and_its_interval_holds_it() {
     let cycles: f64 = d.bins.iter().map(|b| b.cycles).sum();
     assert_eq!(cycles, d.cycles);
 }
+
+#[test]
+fn a_tally_counts_what_samples_taken_one_by_one_give() {
+    let mut seed = 11_u64;
+    let mut next = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (seed >> 40) as f64 / (1_u64 << 24) as f64
+    };
+    let rough: Vec<f64> = (0..3000)
+        .map(|i| 4.0 * (0.01 * f64::from(i)).sin() + next())
+        .collect();
+    let rounded: Vec<f64> = rough.iter().map(|v| (v * 2.0).round() / 2.0).collect();
+    let mut broken = rough.clone();
+    broken[700..720].fill(f64::NAN);
+    broken[1500] = f64::INFINITY;
+    for history in [rough, rounded, broken] {
+        let mut cycles = std::collections::BTreeMap::new();
+        let mut levels = std::collections::BTreeMap::new();
+        let mut count = Rainflow::default();
+        let class = |v: f64| (v / 0.25).floor() as i32;
+        let mut before: Option<f64> = None;
+        for (at, &value) in history.iter().enumerate() {
+            count.push(Point { at, value }, &mut |c| {
+                *cycles
+                    .entry((class(c.from.value), class(c.to.value)))
+                    .or_insert(0) += 1;
+            });
+            if value.is_finite() {
+                for border in before.map_or(1, class) + 1..=before.map_or(0, |_| class(value)) {
+                    *levels.entry(border).or_insert(0) += 1;
+                }
+                before = Some(value);
+            }
+        }
+        let mut counter = Counter::new(0, 1, 0.0, 0.25, Law::straight(5.0));
+        counter.push(&history[..1]);
+        counter.push(&history[1..2300]);
+        counter.push(&history[2300..]);
+        let tally = counter.finish();
+        assert_eq!(
+            tally.cycles,
+            cycles
+                .into_iter()
+                .map(|((a, b), n)| (a, b, n))
+                .collect::<Vec<_>>()
+        );
+        assert_eq!(tally.levels, levels.into_iter().collect::<Vec<_>>());
+        let open: Vec<(usize, f64)> = count
+            .residue(&mut |_| ())
+            .iter()
+            .map(|r| (r.point.at, r.point.value))
+            .collect();
+        let [own, ..] = &tally.residues;
+        assert_eq!(
+            own.iter().map(|l| (l.at, l.value)).collect::<Vec<_>>(),
+            open
+        );
+        assert!(own.iter().all(|l| l.loads == [l.value]));
+        let known = history.iter().filter(|v| v.is_finite());
+        assert_eq!(
+            tally.max.unwrap().value,
+            known.clone().fold(f64::MIN, |a, v| a.max(*v))
+        );
+        assert_eq!(
+            tally.min.unwrap().value,
+            known.clone().fold(f64::MAX, |a, v| a.min(*v))
+        );
+        assert_eq!(tally.missing, history.len() - known.count());
+    }
+}

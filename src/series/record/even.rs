@@ -15,6 +15,14 @@ pub struct Record {
     starts: Vec<usize>,
 }
 
+/// How much of a piece is decoded.
+#[derive(Clone, Copy)]
+enum Extent {
+    Whole,
+    /// A block of stored rows, which give a block of samples or more where the stored ones are taken.
+    Head,
+}
+
 impl Record {
     /// The record of a reader after a pass over its times.
     ///
@@ -98,6 +106,32 @@ impl Record {
         columns: &[Option<usize>],
         sink: &mut Sink,
     ) -> Result<(), SeriesError> {
+        self.take(Extent::Whole, piece, columns, sink)
+    }
+
+    /// Decodes the first block of a piece alone, as [`Record::read`] gives it.
+    ///
+    /// # Errors
+    /// As [`Record::read`].
+    pub fn head(
+        &self,
+        piece: usize,
+        columns: &[Option<usize>],
+        sink: &mut Sink,
+    ) -> Result<(), SeriesError> {
+        self.take(Extent::Head, piece, columns, &mut |block| {
+            let _ = sink(block);
+            ControlFlow::Break(())
+        })
+    }
+
+    fn take(
+        &self,
+        extent: Extent,
+        piece: usize,
+        columns: &[Option<usize>],
+        sink: &mut Sink,
+    ) -> Result<(), SeriesError> {
         let mut picks: Vec<Pick> = columns
             .iter()
             .map(|c| c.map_or(Pick::Nothing, Pick::Column))
@@ -110,10 +144,10 @@ impl Record {
                 if resampled {
                     self.read_uneven(steps, piece, &picks, sink)
                 } else {
-                    self.read_gaps(steps, piece, &picks, sink)
+                    self.read_gaps(steps, extent, piece, &picks, sink)
                 }
             }
-            _ => self.reader.read(piece, &picks, &mut |block| {
+            _ => self.stored(extent, piece, &picks, &mut |block| {
                 sink(Block {
                     first: start + block.first,
                     ..block
@@ -122,10 +156,25 @@ impl Record {
         }
     }
 
+    /// Stored rows of a piece.
+    fn stored(
+        &self,
+        extent: Extent,
+        piece: usize,
+        picks: &[Pick],
+        sink: &mut Sink,
+    ) -> Result<(), SeriesError> {
+        match extent {
+            Extent::Whole => self.reader.read(piece, picks, sink),
+            Extent::Head => self.reader.head(piece, picks, sink),
+        }
+    }
+
     /// Stored samples with NaN in between where some are missing; the last pick is the time.
     fn read_gaps(
         &self,
         steps: &Steps,
+        extent: Extent,
         piece: usize,
         picks: &[Pick],
         sink: &mut Sink,
@@ -138,7 +187,7 @@ impl Record {
             .rev()
             .find(|s| s.rows > 0)
             .map_or(f64::NAN, |s| s.last);
-        self.reader.read(piece, picks, &mut |block| {
+        self.stored(extent, piece, picks, &mut |block| {
             for row in block.values.chunks_exact(k + 1) {
                 let Some((&t, values)) = row.split_last() else {
                     continue;
@@ -212,7 +261,7 @@ impl Record {
         let following =
             (piece + 1..self.n_pieces()).find(|p| steps.spans.get(*p).is_some_and(|s| s.rows > 0));
         if let Some(p) = following.filter(|_| !stopped) {
-            self.reader.read(p, picks, &mut |block| {
+            self.reader.head(p, picks, &mut |block| {
                 if let Some(row) = block.values.get(..k + 1) {
                     let _ = between(row);
                 }

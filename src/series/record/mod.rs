@@ -17,7 +17,11 @@ mod parquet;
 mod reader;
 mod span;
 mod stored;
+#[cfg(feature = "parquet")]
+mod strip;
 mod tdms;
+#[cfg(any(feature = "parquet", feature = "mdf"))]
+mod tile;
 mod uff;
 mod whole;
 

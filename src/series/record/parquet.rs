@@ -1,19 +1,20 @@
-//! Parquet: a column a channel, a row a sample; read by parts of row groups, a page of each column at a time.
+//! Parquet: a column a channel, a row a sample; read by parts of row groups, column by column, a page at a time.
 
 use super::pages::Pages;
 use super::reader::{BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times, is_time};
 use super::reader::{name_and_unit, seconds_in};
+use super::strip::{Room, Strip, broken};
+use super::tile::Tile;
 use crate::series::error::SeriesError;
-use parquet::basic::{ConvertedType, LogicalType, SortOrder, TimeUnit, Type as Kind};
-use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
-use parquet::data_type::DataType;
+use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type as Kind};
+use parquet::column::reader::{ColumnReader, get_column_reader};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
 use parquet::file::reader::{ChunkReader, Length};
 use parquet::file::serialized_reader::SerializedPageReader;
-use parquet::schema::types::ColumnDescriptor;
+use parquet::schema::types::{ColumnDescPtr, ColumnDescriptor};
 use std::ops::ControlFlow;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Rows of a row group that are a piece: few enough that a file of one group is read by several threads, enough that a page on the
 /// border, which both neighbours decode, costs little.
@@ -32,6 +33,8 @@ pub struct Parquet {
     epoch: f64,
     /// Row group, first row in it, rows.
     pieces: Vec<(usize, usize, usize)>,
+    /// Room of pieces that were decoded before, for the next ones: memory that is given back and taken anew costs as much as decoding.
+    room: Mutex<Vec<Room>>,
 }
 
 /// What an index column says beside its values: a plain number, or a point in time.
@@ -48,7 +51,7 @@ impl Parquet {
     /// # Errors
     /// A file that is cut off or damaged.
     pub fn new(bytes: Bytes) -> Result<Self, SeriesError> {
-        let whole = Whole(bytes.clone());
+        let whole = Whole::of(&bytes);
         let metadata = ParquetMetaDataReader::new()
             .parse_and_finish(&whole)
             .map_err(broken)?;
@@ -98,6 +101,7 @@ impl Parquet {
             },
             epoch: 0.0,
             pieces,
+            room: Mutex::default(),
         };
         if let Some((leaf, meaning, unit, _)) = time {
             file.set_time(leaf, meaning, &unit)?;
@@ -123,7 +127,7 @@ impl Parquet {
         if instant {
             let mut first = None;
             for piece in 0..self.pieces.len() {
-                self.read(piece, &[Pick::Time], &mut |block| {
+                self.head(piece, &[Pick::Time], &mut |block| {
                     first = block.values.first().copied();
                     ControlFlow::Break(())
                 })?;
@@ -165,9 +169,9 @@ impl Parquet {
             return Err(cut());
         }
         let rows = usize::try_from(group.num_rows()).map_err(|_| cut())?;
-        let whole = Arc::new(Whole(self.bytes.clone()));
+        let whole = Arc::new(Whole::of(&self.bytes));
         let pages = SerializedPageReader::new(whole, chunk, rows, None).map_err(broken)?;
-        let descriptor = self.metadata.file_metadata().schema_descr().column(leaf);
+        let descriptor = self.descriptor(leaf);
         let pages = Pages::of(pages, &descriptor);
         let mut reader = get_column_reader(descriptor, Box::new(pages));
         if from > 0 {
@@ -195,12 +199,31 @@ impl RecordReader for Parquet {
     }
 
     fn read(&self, piece: usize, picks: &[Pick], sink: &mut Sink) -> Result<(), SeriesError> {
+        self.read_rows(piece, usize::MAX, picks, sink)
+    }
+
+    fn head(&self, piece: usize, picks: &[Pick], sink: &mut Sink) -> Result<(), SeriesError> {
+        self.read_rows(piece, BLOCK, picks, sink)
+    }
+}
+
+impl Parquet {
+    /// The first rows of a piece, `most` or all that it has: column by column, so that one page is in memory at a time, then in blocks.
+    fn read_rows(
+        &self,
+        piece: usize,
+        most: usize,
+        picks: &[Pick],
+        sink: &mut Sink,
+    ) -> Result<(), SeriesError> {
         let Some(&(group, from, rows)) = self.pieces.get(piece) else {
             return Ok(());
         };
-        let schema = self.metadata.file_metadata().schema_descr();
-        let mut open = Vec::new();
-        for (j, pick) in picks.iter().enumerate() {
+        let rows = rows.min(most);
+        let mut room = self.room().pop().unwrap_or_default();
+        room.strips.resize_with(picks.len(), Strip::default);
+        let mut columns = Vec::new();
+        for (j, (pick, strip)) in picks.iter().zip(&mut room.strips).enumerate() {
             let (leaf, worth, off) = match pick {
                 Pick::Nothing => continue,
                 Pick::Column(c) => match self.leaves.get(*c) {
@@ -212,25 +235,22 @@ impl RecordReader for Parquet {
                     None => continue,
                 },
             };
-            let reader = self.column(group, leaf, from)?;
-            open.push((j, worth, off, schema.column(leaf), reader));
+            let mut reader = self.column(group, leaf, from)?;
+            strip.decode(&mut reader, &self.descriptor(leaf), rows, &mut room.buffers)?;
+            columns.push((j, worth, off));
         }
         let k = picks.len();
-        let mut values = vec![f64::NAN; BLOCK * k];
-        let mut buffers = Buffers::default();
+        let mut values = vec![f64::NAN; BLOCK.min(rows) * k];
+        let mut tile = Tile::new();
         for first in (0..rows).step_by(BLOCK) {
             let count = BLOCK.min(rows - first);
-            for (j, worth, off, descriptor, reader) in &mut open {
-                buffers.out.clear();
-                append(reader, descriptor, count, &mut buffers)?;
-                if buffers.out.len() != count {
-                    let wrong = "a column ends before its row group";
-                    return Err(broken(ParquetError::EOF(wrong.into())));
-                }
-                for (slot, v) in values.iter_mut().skip(*j).step_by(k).zip(&buffers.out) {
-                    *slot = v * *worth - *off;
+            for (j, worth, off) in &columns {
+                let place = tile.column(*j, count, &mut values, k);
+                if let Some(strip) = room.strips.get(*j) {
+                    strip.put(first, *worth, *off, place);
                 }
             }
+            tile.lay_out(&mut values, k);
             let block = Block {
                 first,
                 rows: count,
@@ -240,7 +260,16 @@ impl RecordReader for Parquet {
                 break;
             }
         }
+        self.room().push(room);
         Ok(())
+    }
+
+    fn descriptor(&self, leaf: usize) -> ColumnDescPtr {
+        self.metadata.file_metadata().schema_descr().column(leaf)
+    }
+
+    fn room(&self) -> MutexGuard<'_, Vec<Room>> {
+        self.room.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -248,12 +277,6 @@ fn worth(m: Meaning) -> f64 {
     match m {
         Meaning::Number(w) | Meaning::Instant(w) => w,
     }
-}
-
-fn broken(e: ParquetError) -> SeriesError {
-    SeriesError::Broken(format!(
-        "it can't be read as Parquet ({e}): write it again, columns of numbers and one `time` in seconds"
-    ))
 }
 
 /// What a stored value is; `None` for what is no number.
@@ -284,91 +307,6 @@ fn meaning(c: &ColumnDescriptor) -> Option<Meaning> {
     }
 }
 
-/// Room for the values of a block of one column.
-#[derive(Default)]
-struct Buffers {
-    out: Vec<f64>,
-    levels: Vec<i16>,
-    bools: Vec<bool>,
-    i32s: Vec<i32>,
-    i64s: Vec<i64>,
-    f32s: Vec<f32>,
-    f64s: Vec<f64>,
-}
-
-/// Decodes `count` rows of a column into `b.out`.
-fn append(
-    reader: &mut ColumnReader,
-    column: &ColumnDescriptor,
-    count: usize,
-    b: &mut Buffers,
-) -> Result<(), SeriesError> {
-    let most = column.max_def_level();
-    let unsigned = column.sort_order() == SortOrder::UNSIGNED;
-    let (out, levels) = (&mut b.out, &mut b.levels);
-    match reader {
-        ColumnReader::BoolColumnReader(r) => {
-            let of = |v: &bool| f64::from(u8::from(*v));
-            numbers(r, most, count, &mut b.bools, levels, out, of)
-        }
-        ColumnReader::Int32ColumnReader(r) if unsigned => {
-            let of = |v: &i32| f64::from(v.cast_unsigned());
-            numbers(r, most, count, &mut b.i32s, levels, out, of)
-        }
-        ColumnReader::Int64ColumnReader(r) if unsigned => {
-            let of = |v: &i64| v.cast_unsigned() as f64;
-            numbers(r, most, count, &mut b.i64s, levels, out, of)
-        }
-        ColumnReader::Int32ColumnReader(r) => {
-            numbers(r, most, count, &mut b.i32s, levels, out, |v| f64::from(*v))
-        }
-        ColumnReader::Int64ColumnReader(r) => {
-            numbers(r, most, count, &mut b.i64s, levels, out, |v| *v as f64)
-        }
-        ColumnReader::FloatColumnReader(r) => {
-            numbers(r, most, count, &mut b.f32s, levels, out, |v| f64::from(*v))
-        }
-        ColumnReader::DoubleColumnReader(r) => {
-            numbers(r, most, count, &mut b.f64s, levels, out, |v| *v)
-        }
-        _ => Ok(()),
-    }
-}
-
-fn numbers<T: DataType>(
-    reader: &mut ColumnReaderImpl<T>,
-    most: i16,
-    count: usize,
-    values: &mut Vec<T::T>,
-    levels: &mut Vec<i16>,
-    out: &mut Vec<f64>,
-    number: impl Fn(&T::T) -> f64,
-) -> Result<(), SeriesError> {
-    while out.len() < count {
-        levels.clear();
-        values.clear();
-        let known = if most > 0 { Some(&mut *levels) } else { None };
-        let read = reader.read_records(count - out.len(), known, None, values);
-        let (records, _, _) = read.map_err(broken)?;
-        if records == 0 {
-            return Ok(());
-        }
-        let mut known = values.iter().map(&number);
-        if most == 0 {
-            out.extend(known);
-        } else {
-            out.extend(levels.iter().map(|l| {
-                if *l == most {
-                    known.next().unwrap_or(f64::NAN)
-                } else {
-                    f64::NAN
-                }
-            }));
-        }
-    }
-    Ok(())
-}
-
 fn skip(reader: &mut ColumnReader, rows: usize) -> Result<(), SeriesError> {
     let skipped = match reader {
         ColumnReader::BoolColumnReader(r) => r.skip_records(rows),
@@ -381,12 +319,31 @@ fn skip(reader: &mut ColumnReader, rows: usize) -> Result<(), SeriesError> {
     skipped.map(|_| ()).map_err(broken)
 }
 
-/// The bytes of the file as this library asks for them; what it takes is copied, a page at a time.
-struct Whole(Bytes);
+/// The bytes of the file as this library asks for them: a page is a part of them, not a copy.
+struct Whole {
+    bytes: Bytes,
+    shared: bytes::Bytes,
+}
+
+/// Lends the bytes of the file.
+struct Owner(Bytes);
+
+impl AsRef<[u8]> for Owner {
+    fn as_ref(&self) -> &[u8] {
+        (*self.0).as_ref()
+    }
+}
 
 impl Whole {
+    fn of(bytes: &Bytes) -> Self {
+        Self {
+            bytes: bytes.clone(),
+            shared: bytes::Bytes::from_owner(Owner(bytes.clone())),
+        }
+    }
+
     fn from(&self, start: u64) -> Result<&[u8], ParquetError> {
-        let bytes: &[u8] = (*self.0).as_ref();
+        let bytes: &[u8] = (*self.bytes).as_ref();
         usize::try_from(start)
             .ok()
             .and_then(|s| bytes.get(s..))
@@ -396,7 +353,7 @@ impl Whole {
 
 impl Length for Whole {
     fn len(&self) -> u64 {
-        (*self.0).as_ref().len() as u64
+        (*self.bytes).as_ref().len() as u64
     }
 }
 
@@ -425,7 +382,7 @@ impl ChunkReader for Whole {
     fn get_read(&self, start: u64) -> Result<Self::T, ParquetError> {
         self.from(start)?;
         Ok(Reading {
-            bytes: self.0.clone(),
+            bytes: self.bytes.clone(),
             at: start as usize,
         })
     }
@@ -435,6 +392,6 @@ impl ChunkReader for Whole {
         let taken = rest
             .get(..length)
             .ok_or_else(|| ParquetError::EOF("the file ends early".into()))?;
-        Ok(bytes::Bytes::copy_from_slice(taken))
+        Ok(self.shared.slice_ref(taken))
     }
 }

@@ -85,6 +85,16 @@ pub trait RecordReader: Send + Sync {
     /// # Errors
     /// What can't be decoded, with its place.
     fn read(&self, piece: usize, picks: &[Pick], sink: &mut Sink) -> Result<(), SeriesError>;
+    /// Decodes what is picked of the first rows of a piece: one block.
+    ///
+    /// # Errors
+    /// As [`RecordReader::read`].
+    fn head(&self, piece: usize, picks: &[Pick], sink: &mut Sink) -> Result<(), SeriesError> {
+        self.read(piece, picks, &mut |block| {
+            let _ = sink(block);
+            ControlFlow::Break(())
+        })
+    }
     /// Rows of a piece, where they are known without decoding it.
     fn rows(&self, _piece: usize) -> Option<usize> {
         None

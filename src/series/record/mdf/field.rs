@@ -115,7 +115,7 @@ impl Field {
     }
 
     /// The value in each of the records that follow each other, the first being number `first`, `size` bytes each, of which `data` are
-    /// before the invalidation bytes; to every `stride`th of `out`.
+    /// before the invalidation bytes.
     pub(super) fn decode(
         &self,
         records: &[u8],
@@ -123,11 +123,17 @@ impl Field {
         data: usize,
         first: usize,
         out: &mut [f64],
-        stride: usize,
     ) {
         let rows = records.chunks_exact(size.max(1));
-        let slots = out.iter_mut().step_by(stride.max(1));
-        for (i, (slot, row)) in slots.zip(rows).enumerate() {
+        let plain = self.invalid.is_none() && !self.all_invalid && !self.big_endian;
+        if plain && self.kind == Kind::F32 && matches!(self.conversion, Conversion::None) {
+            for (slot, row) in out.iter_mut().zip(rows) {
+                let bytes = row.get(self.at..).and_then(|r| r.first_chunk());
+                *slot = bytes.map_or(f64::NAN, |b| f64::from(f32::from_le_bytes(*b)));
+            }
+            return;
+        }
+        for (i, (slot, row)) in out.iter_mut().zip(rows).enumerate() {
             let invalid = self
                 .invalid
                 .is_some_and(|(byte, mask)| row.get(data + byte).is_none_or(|b| b & mask != 0));

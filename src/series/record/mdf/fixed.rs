@@ -4,6 +4,7 @@ use super::fault::broken;
 use super::field::{Field, values};
 use crate::series::error::SeriesError;
 use crate::series::record::reader::{BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times};
+use crate::series::record::tile::Tile;
 use falcon_mdf::blocks::CompressionType;
 use falcon_mdf::data_index::DataBlockInfo;
 use falcon_mdf::{ChannelGroup, Mf4File};
@@ -143,14 +144,7 @@ impl Group {
         let mut out = vec![f64::NAN; to - from];
         if let Some(t) = &self.time {
             let records = self.records((**bytes).as_ref(), from, to)?;
-            t.decode(
-                &self.body(&records),
-                self.size,
-                self.data,
-                from,
-                &mut out,
-                1,
-            );
+            t.decode(&self.body(&records), self.size, self.data, from, &mut out);
         }
         Ok(out)
     }
@@ -360,6 +354,7 @@ impl RecordReader for Fixed {
             .collect();
         let k = picks.len();
         let mut values = vec![f64::NAN; BLOCK * k];
+        let mut tile = Tile::new();
         for from in (begin..end).step_by(BLOCK) {
             let to = (from + BLOCK).min(end);
             for (j, pick) in picks.iter().enumerate() {
@@ -372,10 +367,12 @@ impl RecordReader for Fixed {
                     None => group.time.as_ref(),
                 };
                 let rows = body.get((from - begin) * group.size..(to - begin) * group.size);
-                if let (Some(field), Some(rows), Some(out)) = (field, rows, values.get_mut(j..)) {
-                    field.decode(rows, group.size, group.data, from, out, k);
+                if let (Some(field), Some(rows)) = (field, rows) {
+                    let out = tile.column(j, to - from, &mut values, k);
+                    field.decode(rows, group.size, group.data, from, out);
                 }
             }
+            tile.lay_out(&mut values, k);
             let block = Block {
                 first: from - begin,
                 rows: to - from,

@@ -1,0 +1,356 @@
+//! A tally under way: a load's samples as they come, counted as they are and with noise added.
+
+use super::count::{Heard, Point, Rainflow, Reversal};
+use super::counts::Counts;
+use super::law::Law;
+use super::tally::{Extreme, Left, NOISE, Sums, Tally, class, extremes, risen};
+
+/// Samples handled together: their numbers stay in the processor's first cache.
+const BLOCK: usize = 512;
+
+/// A tally under way.
+pub struct Counter {
+    load: usize,
+    seed: u64,
+    /// Standard deviation of the noise in a sample.
+    noise: f64,
+    plain: Rainflow<Tag>,
+    noisy: [Rainflow; 2],
+    /// Loads of the latest sample of the plain count.
+    carried: Vec<f64>,
+    /// What the plain count tells.
+    told: Told,
+    levels: Counts<i32>,
+    max: Option<Extreme>,
+    min: Option<Extreme>,
+    next: usize,
+    missing: usize,
+}
+
+/// What belongs to a reversal of the plain count: its class, and where all loads of that time are kept.
+#[derive(Clone, Copy)]
+struct Tag {
+    class: i32,
+    slot: u32,
+}
+
+/// Sums over the closed cycles of the plain count.
+struct Told {
+    width: f64,
+    law: Law,
+    kept: Slots,
+    cycles: Counts<(i32, i32)>,
+    sums: Sums,
+}
+
+/// Rows of loads, kept as long as their reversals are open.
+struct Slots {
+    values: Vec<f64>,
+    free: Vec<u32>,
+}
+
+/// Hears of the plain count during a push.
+struct Plain<'a> {
+    told: &'a mut Told,
+    rows: &'a [f64],
+    /// Number of the first row.
+    first: usize,
+    carried: &'a [f64],
+}
+
+/// Hears of a count with noise added: damage alone.
+struct Noisy {
+    law: Law,
+    damage: f64,
+}
+
+/// Samples on their way into a count.
+struct Push<'a> {
+    counter: &'a mut Counter,
+    rows: &'a [f64],
+}
+
+impl pulp::WithSimd for Push<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let k = self.counter.carried.len();
+        self.counter.push_rows(self.rows, k);
+    }
+}
+
+/// Room for a block.
+struct Room {
+    values: [f64; BLOCK],
+    white: [f64; BLOCK],
+    noisy: [f64; BLOCK],
+    turns: [u32; BLOCK],
+}
+
+impl Counter {
+    /// A count of load number `load` of `n_loads`, whose samples carry white noise of standard deviation `noise`.
+    pub fn new(load: usize, n_loads: usize, noise: f64, width: f64, law: Law) -> Self {
+        Self {
+            load,
+            seed: mixed(load as u64 + 1),
+            noise: if noise.is_finite() { noise } else { 0.0 },
+            plain: Rainflow::default(),
+            noisy: [Rainflow::default(), Rainflow::default()],
+            carried: vec![f64::NAN; n_loads],
+            told: Told {
+                width,
+                law,
+                kept: Slots {
+                    values: Vec::new(),
+                    free: Vec::new(),
+                },
+                cycles: Counts::new(),
+                sums: Sums {
+                    damage: [0.0; 3],
+                    by_load: vec![0.0; n_loads],
+                    scatter: 0.0,
+                },
+            },
+            levels: Counts::new(),
+            max: None,
+            min: None,
+            next: 0,
+            missing: 0,
+        }
+    }
+
+    /// Takes the next samples, all loads of each, row by row.
+    pub fn push(&mut self, rows: &[f64]) {
+        let k = self.carried.len();
+        if self.load < k {
+            pulp::Arch::new().dispatch(Push {
+                counter: self,
+                rows,
+            });
+        }
+        self.next += rows.len() / k.max(1);
+    }
+
+    #[inline(always)]
+    fn push_rows(&mut self, rows: &[f64], k: usize) {
+        let first = self.next;
+        let mut room = Room {
+            values: [0.0; BLOCK],
+            white: [0.0; BLOCK],
+            noisy: [0.0; BLOCK],
+            turns: [0; BLOCK],
+        };
+        let mut heard = Plain {
+            told: &mut self.told,
+            rows,
+            first,
+            carried: &self.carried,
+        };
+        let mut damage = [0.0; NOISE.len()];
+        let mut at = first;
+        for block in rows.chunks(BLOCK * k) {
+            let count = block.len() / k;
+            let Some(values) = room.values.get_mut(..count) else {
+                continue;
+            };
+            for (v, row) in values.iter_mut().zip(block.chunks_exact(k)) {
+                *v = row.get(self.load).copied().unwrap_or(f64::NAN);
+            }
+            let latest = self.plain.latest();
+            self.missing += values.iter().filter(|v| !v.is_finite()).count();
+            widest(&mut self.max, &mut self.min, at, values);
+            rises(&mut self.levels, heard.told.width, latest, values);
+            self.plain
+                .push_block(at, values, &mut room.turns, &mut heard);
+            if self.noise > 0.0 {
+                for (w, i) in room.white.iter_mut().zip(at..) {
+                    *w = white(self.seed, i as u64);
+                }
+                let [one, ..] = NOISE;
+                let levels = NOISE.iter().zip(&mut damage).skip(1);
+                for ((total, damage), count) in levels.zip(&mut self.noisy) {
+                    let added = self.noise * (total * total - one * one).sqrt();
+                    let numbers = values.iter().zip(&room.white);
+                    for (y, (v, w)) in room.noisy.iter_mut().zip(numbers) {
+                        *y = v + added * w;
+                    }
+                    let noisy = room.noisy.get(..values.len()).unwrap_or_default();
+                    let mut heard = Noisy {
+                        law: heard.told.law,
+                        damage: *damage,
+                    };
+                    count.push_block(at, noisy, &mut room.turns, &mut heard);
+                    *damage = heard.damage;
+                }
+            }
+            at += count;
+        }
+        for (sum, more) in heard.told.sums.damage.iter_mut().zip(damage).skip(1) {
+            *sum += more;
+        }
+        let latest = self.plain.latest().and_then(|p| p.at.checked_sub(first));
+        if let Some(row) = latest.and_then(|i| rows.get(i * k..(i + 1) * k)) {
+            self.carried.clear();
+            self.carried.extend_from_slice(row);
+        }
+    }
+
+    /// The tally.
+    pub fn finish(self) -> Tally {
+        let Told {
+            width,
+            law,
+            mut kept,
+            cycles,
+            sums,
+        } = self.told;
+        let carried = self.carried;
+        let bare = |count: Rainflow| -> Vec<Left> {
+            let residue = count.residue(&mut |_| ());
+            let left = |r: Reversal<()>| Left {
+                at: r.point.at,
+                value: r.point.value,
+                loads: Vec::new(),
+            };
+            residue.into_iter().map(left).collect()
+        };
+        let residue = self.plain.residue(&mut |p| Tag {
+            class: class(p.value, width),
+            slot: kept.keep(&carried),
+        });
+        let left = |r: Reversal<Tag>| Left {
+            at: r.point.at,
+            value: r.point.value,
+            loads: kept.row(r.tag.slot, carried.len()).to_vec(),
+        };
+        let [twice, thrice] = self.noisy;
+        let cycles = cycles.sorted().into_iter();
+        Tally {
+            width,
+            law,
+            cycles: cycles.map(|((a, b), n)| (a, b, n)).collect(),
+            levels: self.levels.sorted().into_iter().collect(),
+            max: self.max,
+            min: self.min,
+            samples: self.next,
+            missing: self.missing,
+            residues: [
+                residue.into_iter().map(left).collect(),
+                bare(twice),
+                bare(thrice),
+            ],
+            sums,
+        }
+    }
+}
+
+impl Heard<Tag> for Plain<'_> {
+    #[inline(always)]
+    fn tag(&mut self, p: Point) -> Tag {
+        let k = self.carried.len();
+        let row =
+            p.at.checked_sub(self.first)
+                .and_then(|i| self.rows.get(i * k..(i + 1) * k));
+        Tag {
+            class: class(p.value, self.told.width),
+            slot: self.told.kept.keep(row.unwrap_or(self.carried)),
+        }
+    }
+
+    #[inline(always)]
+    fn closed(&mut self, a: &Reversal<Tag>, b: &Reversal<Tag>) {
+        let k = self.carried.len();
+        let told = &mut *self.told;
+        told.cycles.add((a.tag.class, b.tag.class));
+        let (from, to) = (told.kept.row(a.tag.slot, k), told.kept.row(b.tag.slot, k));
+        let change = b.point.value - a.point.value;
+        told.sums.add(&told.law, 1.0, change, from, to);
+        told.kept.free.extend([a.tag.slot, b.tag.slot]);
+    }
+}
+
+impl Heard<()> for Noisy {
+    #[inline(always)]
+    fn tag(&mut self, _: Point) {}
+
+    #[inline(always)]
+    fn closed(&mut self, a: &Reversal<()>, b: &Reversal<()>) {
+        self.damage += self.law.damage((b.point.value - a.point.value).abs());
+    }
+}
+
+impl Slots {
+    /// Keeps a row; its place.
+    #[inline(always)]
+    fn keep(&mut self, row: &[f64]) -> u32 {
+        let k = row.len();
+        if let Some(slot) = self.free.pop()
+            && let Some(place) = self
+                .values
+                .get_mut(slot as usize * k..(slot as usize + 1) * k)
+        {
+            place.copy_from_slice(row);
+            return slot;
+        }
+        let slot = self.values.len() / k.max(1);
+        self.values.extend_from_slice(row);
+        slot as u32
+    }
+
+    /// The row at a place, `k` numbers.
+    #[inline(always)]
+    fn row(&self, slot: u32, k: usize) -> &[f64] {
+        let at = slot as usize * k;
+        self.values.get(at..at + k).unwrap_or_default()
+    }
+}
+
+/// Widens the extremes by samples, the first being number `first`; of equal ones the earlier stays.
+#[inline(always)]
+fn widest(max: &mut Option<Extreme>, min: &mut Option<Extreme>, first: usize, values: &[f64]) {
+    // What is not finite is greater than no largest and less than no smallest.
+    let finite = |v: f64, none: f64| if v.is_finite() { v } else { none };
+    let low = |a: f64, v: &f64| a.min(finite(*v, f64::INFINITY));
+    let high = |a: f64, v: &f64| a.max(finite(*v, f64::NEG_INFINITY));
+    let lowest = values.iter().fold(f64::INFINITY, low);
+    let highest = values.iter().fold(f64::NEG_INFINITY, high);
+    let wider = max.is_none_or(|m| highest > m.value) || min.is_none_or(|m| lowest < m.value);
+    if wider {
+        for (at, &value) in (first..).zip(values).filter(|p| p.1.is_finite()) {
+            extremes(max, min, Point { at, value });
+        }
+    }
+}
+
+/// Counts the rises of samples through borders of classes, that from the latest one before them included.
+#[inline(always)]
+fn rises(levels: &mut Counts<i32>, width: f64, latest: Option<Point>, values: &[f64]) {
+    let mut before = latest.map(|p| class(p.value, width));
+    for value in values.iter().filter(|v| v.is_finite()) {
+        let here = class(*value, width);
+        if let Some(before) = before.filter(|b| here > *b) {
+            risen(before, here).for_each(|border| levels.add(border));
+        }
+        before = Some(here);
+    }
+}
+
+/// A number of mean 0 and variance 1 that belongs to a sample: the sum of four even ones, much like a normal one up to three standard
+/// deviations. The same wherever a record is cut.
+#[inline(always)]
+fn white(seed: u64, at: u64) -> f64 {
+    let bits = mixed(seed ^ at.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+    let sum: u32 = (0..4).map(|i| (bits >> (16 * i)) as u32 & 0xffff).sum();
+    // Four whole numbers of 0 to 65535: mean 2 x 65535, variance (65536^2 - 1) / 3.
+    (f64::from(sum) - 131_070.0) / 37_837.227_237
+}
+
+/// A number without likeness to its neighbours (splitmix64).
+#[inline(always)]
+fn mixed(x: u64) -> u64 {
+    let mut z = x.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
+}

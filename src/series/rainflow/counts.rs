@@ -1,0 +1,84 @@
+//! Counts by class: those met lately in a small table, the others in an ordered one.
+
+use std::collections::BTreeMap;
+
+/// Places of the small table; a power of two.
+const PLACES: usize = 1024;
+
+/// A class, or a pair of them.
+pub(super) trait Key: Copy + Ord {
+    /// A number that neighbours don't share.
+    fn number(self) -> u32;
+}
+
+impl Key for i32 {
+    #[inline(always)]
+    fn number(self) -> u32 {
+        self.cast_unsigned()
+    }
+}
+
+impl Key for (i32, i32) {
+    #[inline(always)]
+    fn number(self) -> u32 {
+        // Loads are seldom more than 37 classes from one reversal to the next.
+        let (a, b) = (self.0.cast_unsigned(), self.1.cast_unsigned());
+        a.wrapping_mul(37).wrapping_add(b)
+    }
+}
+
+/// How often each class was met. A load stays among few classes for a while: they are found in the small table.
+pub(super) struct Counts<K> {
+    lately: Vec<Option<(K, u64)>>,
+    all: BTreeMap<K, u64>,
+}
+
+impl<K: Key> Counts<K> {
+    /// Nothing yet.
+    pub(super) fn new() -> Self {
+        Self {
+            lately: vec![None; PLACES],
+            all: BTreeMap::new(),
+        }
+    }
+
+    /// Counts one.
+    #[inline(always)]
+    pub(super) fn add(&mut self, key: K) {
+        let Some(slot) = self.lately.get_mut(key.number() as usize % PLACES) else {
+            return;
+        };
+        match slot {
+            Some((k, n)) if *k == key => *n += 1,
+            _ => {
+                if let Some((k, n)) = slot.replace((key, 1)) {
+                    *self.all.entry(k).or_insert(0) += n;
+                }
+            }
+        }
+    }
+
+    /// Classes in order, with how often each was met.
+    pub(super) fn sorted(mut self) -> BTreeMap<K, u64> {
+        for (k, n) in self.lately.into_iter().flatten() {
+            *self.all.entry(k).or_insert(0) += n;
+        }
+        self.all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn classes_that_share_a_place_are_counted_each() {
+        let mut counts = Counts::new();
+        for i in 0..7000_i32 {
+            counts.add((i % 7 * 1024, -(i % 5) * 3));
+        }
+        let all = counts.sorted();
+        assert_eq!(all.len(), 35);
+        assert!(all.values().all(|n| *n == 200));
+    }
+}

@@ -1,0 +1,150 @@
+//! Decoded columns of a Parquet file, in memory that is used again.
+
+use crate::series::error::SeriesError;
+use parquet::basic::SortOrder;
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::DataType;
+use parquet::errors::ParquetError;
+use parquet::schema::types::ColumnDescriptor;
+
+/// Room to decode a piece in; used again for the next one.
+#[derive(Default)]
+pub(super) struct Room {
+    pub strips: Vec<Strip>,
+    pub buffers: Buffers,
+}
+
+/// Rows of a column that are decoded at a time.
+const ROWS: usize = 8192;
+
+/// Room for some values of one column.
+#[derive(Default)]
+pub(super) struct Buffers {
+    levels: Vec<i16>,
+    bools: Vec<bool>,
+    i32s: Vec<i32>,
+    i64s: Vec<i64>,
+    f32s: Vec<f32>,
+    f64s: Vec<f64>,
+}
+
+/// Decoded rows of one column: reals of 32 bits as they are, other numbers in 64.
+#[derive(Default)]
+pub(super) struct Strip {
+    singles: Vec<f32>,
+    doubles: Vec<f64>,
+}
+
+impl Strip {
+    /// Decodes the next rows of a column in the place of what was here.
+    ///
+    /// # Errors
+    /// Pages that can't be decoded, or too few of them.
+    pub(super) fn decode(
+        &mut self,
+        reader: &mut ColumnReader,
+        column: &ColumnDescriptor,
+        rows: usize,
+        b: &mut Buffers,
+    ) -> Result<(), SeriesError> {
+        self.singles.clear();
+        self.doubles.clear();
+        let most = column.max_def_level();
+        let unsigned = column.sort_order() == SortOrder::UNSIGNED;
+        let (out, levels) = (&mut self.doubles, &mut b.levels);
+        let nan = f64::NAN;
+        match reader {
+            ColumnReader::BoolColumnReader(r) => {
+                let of = |v: &bool| f64::from(u8::from(*v));
+                numbers(r, most, rows, &mut b.bools, levels, out, nan, of)
+            }
+            ColumnReader::Int32ColumnReader(r) if unsigned => {
+                let of = |v: &i32| f64::from(v.cast_unsigned());
+                numbers(r, most, rows, &mut b.i32s, levels, out, nan, of)
+            }
+            ColumnReader::Int64ColumnReader(r) if unsigned => {
+                let of = |v: &i64| v.cast_unsigned() as f64;
+                numbers(r, most, rows, &mut b.i64s, levels, out, nan, of)
+            }
+            ColumnReader::Int32ColumnReader(r) => {
+                let of = |v: &i32| f64::from(*v);
+                numbers(r, most, rows, &mut b.i32s, levels, out, nan, of)
+            }
+            ColumnReader::Int64ColumnReader(r) => {
+                let of = |v: &i64| *v as f64;
+                numbers(r, most, rows, &mut b.i64s, levels, out, nan, of)
+            }
+            ColumnReader::FloatColumnReader(r) => {
+                let (out, nan) = (&mut self.singles, f32::NAN);
+                numbers(r, most, rows, &mut b.f32s, levels, out, nan, |v| *v)
+            }
+            ColumnReader::DoubleColumnReader(r) => {
+                numbers(r, most, rows, &mut b.f64s, levels, out, nan, |v| *v)
+            }
+            _ => Ok(()),
+        }?;
+        if self.singles.len().max(self.doubles.len()) == rows {
+            Ok(())
+        } else {
+            let wrong = "a column ends before its row group";
+            Err(broken(ParquetError::EOF(wrong.into())))
+        }
+    }
+
+    /// The rows from number `first` on, times `worth` less `off`.
+    pub(super) fn put(&self, first: usize, worth: f64, off: f64, out: &mut [f64]) {
+        if let Some(singles) = self.singles.get(first..).filter(|s| !s.is_empty()) {
+            for (slot, v) in out.iter_mut().zip(singles) {
+                *slot = f64::from(*v) * worth - off;
+            }
+        } else {
+            let doubles = self.doubles.get(first..).unwrap_or_default();
+            for (slot, v) in out.iter_mut().zip(doubles) {
+                *slot = v * worth - off;
+            }
+        }
+    }
+}
+
+/// Decodes `rows` rows of a column into `out`, or as many as there are; `blank` for a null.
+fn numbers<T: DataType, O: Copy>(
+    reader: &mut ColumnReaderImpl<T>,
+    most: i16,
+    rows: usize,
+    values: &mut Vec<T::T>,
+    levels: &mut Vec<i16>,
+    out: &mut Vec<O>,
+    blank: O,
+    number: impl Fn(&T::T) -> O,
+) -> Result<(), SeriesError> {
+    while out.len() < rows {
+        levels.clear();
+        values.clear();
+        let known = if most > 0 { Some(&mut *levels) } else { None };
+        let read = reader.read_records(ROWS.min(rows - out.len()), known, None, values);
+        let (records, _, _) = read.map_err(broken)?;
+        if records == 0 {
+            return Ok(());
+        }
+        let mut known = values.iter().map(&number);
+        if known.len() == records {
+            out.extend(known);
+        } else {
+            out.extend(levels.iter().map(|l| {
+                if *l == most {
+                    known.next().unwrap_or(blank)
+                } else {
+                    blank
+                }
+            }));
+        }
+    }
+    Ok(())
+}
+
+/// What is wrong with a file, and what to do.
+pub(super) fn broken(e: ParquetError) -> SeriesError {
+    SeriesError::Broken(format!(
+        "it can't be read as Parquet ({e}): write it again, columns of numbers and one `time` in seconds"
+    ))
+}
