@@ -61,6 +61,11 @@ impl Candidate {
         self.shapes.first().is_some_and(own)
     }
 
+    /// Whether it may be as large as what it acts on, so that nothing of a record is explained without it.
+    pub fn overturns(&self) -> bool {
+        matches!(self.shapes.first(), Some(Change::Step(_)))
+    }
+
     /// Whether it changes everything at once, beyond what a linear look ahead can see.
     pub fn is_upheaval(&self) -> bool {
         matches!(
