@@ -2,6 +2,7 @@
 
 use super::alias::with_aliases;
 use super::candidate::Candidate;
+use super::change::Change;
 use super::channel_check::{BrokenChannel, broken_channels};
 use super::design::design;
 use super::effect::library;
@@ -10,6 +11,7 @@ use super::fitted::MotionFit;
 use super::found::{DECISIVE, Found};
 use super::frame::MotionFrame;
 use super::gap::fitted_gap;
+use super::growing::fit_of_clock;
 use super::judge::judged;
 use super::noise::Background;
 use super::outcome::MotionOutcome;
@@ -91,8 +93,10 @@ fn searched(scorer: &mut MotionScorer, null: MotionFit, broken: Vec<BrokenChanne
         best = Some(first.clone());
         all = found;
     } else if broken.is_empty() {
-        // A change of mass leaves room for more; without it nothing that is looked for near the empty set means anything.
-        let mut near: Vec<Scored<MotionFit>> = found.into_iter().take(1).collect();
+        // A change of mass or a clock leaves room for more; without it nothing that is looked for near the empty set means anything.
+        let mut near = found;
+        near.retain(|s| !s.set.is_empty() && !whole(s));
+        near.truncate(BREADTH.beam);
         if near.is_empty() {
             scorer.background = unexplained_background(scorer, &null);
         }
@@ -123,7 +127,7 @@ fn searched(scorer: &mut MotionScorer, null: MotionFit, broken: Vec<BrokenChanne
     }
 }
 
-/// Exchanged or turned channels, or a mass that changed, where nearly nothing is explained without and nearly everything with one, best
+/// Exchanged or turned channels, a mass that changed, or a clock, where nearly nothing is explained without and nearly everything with one, best
 /// first; the empty set last.
 ///
 /// Channels differ in what turns with them: the balance of weight, the accelerometers' own means, the sign of masses and springs.
@@ -134,20 +138,25 @@ fn upheavals(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Scored<MotionFi
         return vec![];
     }
     let tried = |(c, candidate): (usize, &Candidate)| {
-        let part = Part {
-            candidate: c,
-            shape: candidate.shapes.first()?.clone(),
-            fault: 0.0,
+        let shape = candidate.shapes.first()?;
+        let f = if matches!(shape, Change::Clock { .. }) {
+            fit_of_clock(scorer.frame, scorer.candidates, c, shape)?
+        } else {
+            let part = Part {
+                candidate: c,
+                shape: shape.clone(),
+                fault: 0.0,
+            };
+            fit(
+                scorer.frame,
+                scorer.candidates,
+                &scorer.frame.data,
+                vec![part],
+                None,
+                &Background::default(),
+                Effort::Settled,
+            )?
         };
-        let f = fit(
-            scorer.frame,
-            scorer.candidates,
-            &scorer.frame.data,
-            vec![part],
-            None,
-            &Background::default(),
-            Effort::Settled,
-        )?;
         (FALL * f.chi2 < null.chi2).then_some((c, f))
     };
     let mut found: Vec<(usize, MotionFit)> = scorer
@@ -165,7 +174,14 @@ fn upheavals(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Scored<MotionFi
     scorer.background = of_fit(scorer.frame, best);
     let mut out: Vec<Scored<MotionFit>> = found
         .iter()
-        .filter_map(|(c, _)| scorer.score(&[*c], None))
+        .filter_map(|(c, f)| {
+            let there = Scored {
+                set: vec![*c],
+                log_evidence: 0.0,
+                fit: f.clone(),
+            };
+            scorer.score(&[*c], Some((&there, None)))
+        })
         .collect();
     out.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
     if !out.is_empty() {

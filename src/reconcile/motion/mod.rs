@@ -26,6 +26,7 @@ pub mod frame;
 pub mod gap;
 pub mod gap_profile;
 pub mod gls;
+mod growing;
 pub mod judge;
 pub mod limits;
 pub mod moments;

@@ -376,10 +376,13 @@ impl Scorer for MotionScorer<'_> {
         let anew = if lost { from_there(None) } else { None };
         let first = (from_there(start).into_iter().chain(anew))
             .min_by(|a, b| a.misfit().total_cmp(&b.misfit()))?;
-        let before = from.map_or(f64::INFINITY, |(f, _)| f.fit.chi2);
+        // The same set anew stands before another background: constants that were found before a larger one are found anew.
+        let neighbour = from.map(|(f, _)| f).filter(|f| f.set != set);
+        let before = neighbour.map_or(f64::INFINITY, |f| f.fit.chi2);
         let fit = if before - first.chi2 > WORTH_REFINING {
-            let settled: Vec<usize> = from.map_or(vec![], |(f, _)| f.set.clone());
-            self.refined(self.settled_from_afar(first, &settled), &settled)
+            let known = from.map_or(&[][..], |(f, _)| &f.set);
+            let settled: Vec<usize> = neighbour.map_or(vec![], |f| f.set.clone());
+            self.refined(self.settled_from_afar(first, known), &settled)
         } else {
             first
         };
