@@ -38,10 +38,11 @@ fn named(
 
 #[test]
 fn a_clock_that_is_off_is_named_by_its_channel() {
-    // 40 ppm make 2.6 ms in 64 s, 200 ppm 13 ms: an eighth of a wave of the axle.
+    // 40 ppm make 2.6 ms in 64 s, 200 ppm 13 ms: an eighth of a wave of the axle; 3,000 ppm are two waves of it.
     for (layout, channel, share) in [
         (Layout::Front, "a_body", 4e-5),
         (Layout::Front, "a_wheel", -2e-4),
+        (Layout::Front, "a_wheel", 3e-3),
     ] {
         named(
             layout,
