@@ -38,10 +38,11 @@ fn named(
 
 #[test]
 fn a_clock_that_is_off_is_named_by_its_channel() {
-    // 40 ppm make 2.6 ms in 64 s, 200 ppm 13 ms: an eighth of a wave of the axle.
+    // 40 ppm make 2.6 ms in 64 s, 200 ppm 13 ms: an eighth of a wave of the axle; 3,000 ppm are two waves of it.
     for (layout, channel, share) in [
         (Layout::Front, "a_body", 4e-5),
         (Layout::Front, "a_wheel", -2e-4),
+        (Layout::Front, "a_wheel", 3e-3),
     ] {
         named(
             layout,
@@ -264,4 +265,32 @@ fn a_second_record_that_cannot_judge_is_said_by_its_name() {
         });
         assert!(said, "{channel}: {findings:?}");
     }
+}
+
+/// A gap that no equation states is null, not a number.
+#[test]
+fn a_dead_accelerometer_is_told_by_the_command_without_a_made_up_gap() {
+    let mut case = hide(Layout::Front, "none", 0, Background::Clean, 28);
+    let still = |name: &str, x: &mut Vec<f64>| {
+        if name == "a_body" {
+            x.fill(9.8);
+        }
+    };
+    case.data.iter_mut().for_each(|(name, x)| still(name, x));
+    let folder = workplace("still", &case, "[\"time_offset\"]", still);
+    let done = run("reconcile", &folder.join("job.toml"), &folder.join("out"));
+    let r = answer(&done);
+    assert_eq!(
+        r["named"],
+        serde_json::json!(["dead_channel:a_body"]),
+        "{r}"
+    );
+    assert!(
+        r["gap"]["before"].is_null() && r["gap"]["after"].is_null(),
+        "{}",
+        r["gap"]
+    );
+    assert!(r["extended_model"].is_null());
+    let said = std::fs::read_to_string(folder.join("out/report.html")).unwrap();
+    assert!(said.contains("No equation can be compared without"));
 }

@@ -46,6 +46,7 @@ fn frame(
     Some(MotionFrame {
         vehicle: model,
         bodies: vec![0],
+        not_compared: vec![],
         known: BTreeMap::new(),
         data: part(0, cut),
         hold_out: Some(part(cut, (2 * cut).min(all.n_samples()))),

@@ -10,13 +10,15 @@ pub fn retimed(x: &[f64], rate_hz: f64, late: impl Fn(usize) -> f64) -> Vec<f64>
     /// Samples to either side: signals up to three quarters of half the rate pass to better than a per mille.
     const SIDE: isize = 12;
     let last = x.len() as isize - 1;
-    let sinc = |u: f64| {
-        if u == 0.0 {
-            1.0
-        } else {
-            (PI * u).sin() / (PI * u)
-        }
-    };
+    // sin(pi (share - k)) is sin(pi share) with alternating sign, which cancels with the weights but for the sign; that of the window follows
+    // from one sine and one cosine of pi share / SIDE.
+    let turns: Vec<(f64, f64, f64)> = (1 - SIDE..=SIDE)
+        .map(|k| {
+            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            let (sin, cos) = (PI * k as f64 / SIDE as f64).sin_cos();
+            (k as f64, sign * cos, sign * sin)
+        })
+        .collect();
     (0..x.len())
         .map(|i| {
             let at = (i as f64 + late(i) * rate_hz).clamp(0.0, last.max(0) as f64);
@@ -25,11 +27,12 @@ pub fn retimed(x: &[f64], rate_hz: f64, late: impl Fn(usize) -> f64) -> Vec<f64>
             if share == 0.0 {
                 return x[base as usize];
             }
+            let (sin, cos) = (PI * share / SIDE as f64).sin_cos();
             let (mut sum, mut weights) = (0.0, 0.0);
-            for k in 1 - SIDE..=SIDE {
-                let u = share - k as f64;
-                let w = sinc(u) * sinc(u / SIDE as f64);
-                sum += w * x[(base as isize + k).clamp(0, last) as usize];
+            for ((k, c, s), at) in turns.iter().zip(base as isize + 1 - SIDE..) {
+                let u = share - k;
+                let w = (sin * c - cos * s) / (u * u);
+                sum += w * x[at.clamp(0, last) as usize];
                 weights += w;
             }
             sum / weights

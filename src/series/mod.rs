@@ -10,6 +10,7 @@
 //! - [`number`]: numbers read and written fast
 //! - [`quality`]: dead, clipped, spiky, drifting, reversed, wrongly scaled channels as findings
 //! - [`detrend`]: mean, line and zero-run removal
+//! - [`plans`]: plans of transforms, kept between calls
 //! - [`spectrum`]: zero-padded transforms, band limiting and integration in one pass
 //! - [`integrate`]: velocity and displacement from acceleration
 //! - [`window`]: tapered transforms with independent bins
@@ -32,6 +33,7 @@ pub mod integrate;
 pub mod number;
 #[cfg(feature = "parquet")]
 pub mod parquet;
+pub mod plans;
 pub mod quality;
 pub mod rainflow;
 pub mod record;

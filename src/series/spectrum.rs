@@ -1,13 +1,12 @@
 //! Zero-padded transforms: band limiting, integration and decimation in one pass.
 
-use realfft::RealFftPlanner;
+use super::plans::{forward, inverse};
 use rustfft::num_complex::Complex64;
 use std::f64::consts::PI;
 
-/// Plans of transforms, kept between calls.
-pub struct Fourier {
-    planner: RealFftPlanner<f64>,
-}
+/// Transforms and their inverses.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Fourier {}
 
 /// Positive-frequency transform of a zero-padded signal.
 #[derive(Clone, Debug)]
@@ -56,14 +55,6 @@ impl Band {
     }
 }
 
-impl Default for Fourier {
-    fn default() -> Self {
-        Self {
-            planner: RealFftPlanner::new(),
-        }
-    }
-}
-
 impl Fourier {
     /// Transform of x followed by zeros to at least twice its length (a power of two).
     ///
@@ -71,7 +62,7 @@ impl Fourier {
     /// Brandt & Brincker, Integrating time signals in frequency domain, Measurement 58 (2014) 511; thesis equation 4.7.
     pub fn spectrum(&mut self, x: &[f64], rate_hz: f64) -> Spectrum {
         let n_padded = (2 * x.len()).next_power_of_two().max(4);
-        let plan = self.planner.plan_fft_forward(n_padded);
+        let plan = forward(n_padded);
         let mut input = plan.make_input_vec();
         input[..x.len()].copy_from_slice(x);
         let mut bins = plan.make_output_vec();
@@ -88,9 +79,9 @@ impl Fourier {
 
     /// Every `keep_every`-th sample of the signal of a spectrum (a power of two; frequencies above the new half rate are cut off).
     pub fn samples(&mut self, s: &Spectrum, keep_every: usize) -> Vec<f64> {
-        let step = keep_every.max(1).next_power_of_two().min(s.n_padded / 4);
-        let n = s.n_padded / step;
-        let plan = self.planner.plan_fft_inverse(n);
+        let n = s.n_thinned(keep_every);
+        let step = s.n_padded / n;
+        let plan = inverse(n);
         let mut bins: Vec<Complex64> = s.bins[..n / 2 + 1].to_vec();
         bins[0].im = 0.0;
         bins[n / 2].im = 0.0;
@@ -121,18 +112,31 @@ impl Spectrum {
 
     /// Limited to a band and integrated `times` times over time (negative: differentiated); the mean is dropped.
     pub fn band_integrated(&self, band: Band, times: i32) -> Self {
+        self.band_integrated_for(band, times, 1)
+    }
+
+    /// The same for every `keep_every`-th sample alone: frequencies above the new half rate are left out.
+    pub fn band_integrated_for(&self, band: Band, times: i32, keep_every: usize) -> Self {
         let step = self.rate_hz / self.n_padded as f64;
-        let mut out = self.clone();
         let unit = Complex64::new(0.0, 1.0).powi(-times);
-        for (k, b) in out.bins.iter_mut().enumerate() {
+        let n = self.n_thinned(keep_every) / 2 + 1;
+        let limited = |(k, b): (usize, &Complex64)| {
             let f = k as f64 * step;
-            *b = if k == 0 {
-                Complex64::default()
-            } else {
-                *b * unit * (band.gain(f) * (2.0 * PI * f).powi(-times))
-            };
+            match k {
+                0 => Complex64::default(),
+                _ => b * unit * (band.gain(f) * (2.0 * PI * f).powi(-times)),
+            }
+        };
+        Self {
+            bins: self.bins.iter().take(n).enumerate().map(limited).collect(),
+            ..*self
         }
-        out
+    }
+
+    /// Samples, padding included, of which every `keep_every`-th is kept.
+    fn n_thinned(&self, keep_every: usize) -> usize {
+        let step = keep_every.max(1).next_power_of_two();
+        self.n_padded / step.min(self.n_padded / 4)
     }
 
     /// Weighted sum of spectra of one length; `None` when there is none or lengths differ.
@@ -180,7 +184,7 @@ impl Fourier {
     /// The padded signal of a spectrum at `factor` times its rate.
     pub fn denser_samples(&mut self, s: &Spectrum, factor: usize) -> Vec<f64> {
         let n = s.n_padded * factor.max(1);
-        let plan = self.planner.plan_fft_inverse(n);
+        let plan = inverse(n);
         let mut bins = vec![Complex64::default(); n / 2 + 1];
         bins[..s.bins.len()].copy_from_slice(&s.bins);
         if factor > 1 {

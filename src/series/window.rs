@@ -1,17 +1,16 @@
 //! Tapered transforms of a stretch of a record: bins that are independent where noise is.
 
+use super::plans::forward;
 use super::spectrum::Band;
-use realfft::RealFftPlanner;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::PI;
 
 /// Share of the record that the taper takes, both ends together.
 const TAPER: f64 = 0.15;
 
-/// Plans of windowed transforms of one length.
+/// Windowed transforms of one length.
 pub struct Windowed {
     window: Vec<f64>,
-    planner: RealFftPlanner<f64>,
     /// Frequencies of the bins in the band, Hz.
     pub f_hz: Vec<f64>,
     first: usize,
@@ -51,11 +50,15 @@ impl Windowed {
             .collect();
         Self {
             window,
-            planner: RealFftPlanner::new(),
             f_hz: inside.iter().map(|k| *k as f64 * step).collect(),
             first: inside.first().copied().unwrap_or(0),
             step_hz: step,
         }
+    }
+
+    /// The window, its power one: as long as the transform.
+    pub fn taper(&self) -> &[f64] {
+        &self.window
     }
 
     /// From one bin to the next, Hz.
@@ -77,7 +80,7 @@ impl Windowed {
 
     /// Bins of a signal within the band; E|X|^2 of white noise is its variance.
     pub fn bins(&mut self, x: &[f64]) -> Vec<Complex64> {
-        let plan = self.planner.plan_fft_forward(self.window.len());
+        let plan = forward(self.window.len());
         let mut input = plan.make_input_vec();
         input
             .iter_mut()

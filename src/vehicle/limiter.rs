@@ -74,7 +74,7 @@ impl Limiter {
     pub fn limited(&mut self, s: &Spectrum, times: i32) -> Vec<f64> {
         /// Width of what is left out about a line, one sd of its bell: mains wander by less, and its echo dies within a second.
         const WIDTH_HZ: f64 = 0.15;
-        let mut in_band = s.band_integrated(self.band, times);
+        let mut in_band = s.band_integrated_for(self.band, times, self.keep);
         if !self.lines_hz.is_empty() {
             in_band = in_band.times(|f| {
                 let kept = |line: &f64| 1.0 - (-0.5 * ((f - line) / WIDTH_HZ).powi(2)).exp();

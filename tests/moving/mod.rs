@@ -45,6 +45,7 @@ pub fn frame_of(case: &Case) -> MotionFrame {
         } else {
             vec![0, 1]
         },
+        not_compared: vec![],
         known: BTreeMap::new(),
         data: record(&case.data),
         hold_out: Some(record(&case.hold_out)),

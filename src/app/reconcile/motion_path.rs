@@ -205,6 +205,7 @@ fn frame(section: &VehicleJob, records: &VehicleRecords) -> MotionFrame {
     MotionFrame {
         bodies,
         vehicle: model,
+        not_compared: vec![],
         known: q.known.clone(),
         data: records.data.clone(),
         hold_out: records.hold_out.clone(),
@@ -239,6 +240,11 @@ fn wheel_forces(
     frame: &MotionFrame,
     outcome: &MotionOutcome,
 ) -> (Vec<WheelMisfit>, Option<Identification>) {
+    let dead = |e: &MotionEffect| e.id.starts_with("dead_channel");
+    if outcome.effects.iter().any(dead) {
+        // Forces of a vehicle that was fitted to a reading that is none.
+        return (vec![], None);
+    }
     let identified = |q: &Question| identify(q, &records.data, records.hold_out.as_ref()).ok();
     let misfits = |id: &Identification| -> Vec<(String, f64)> {
         id.fit

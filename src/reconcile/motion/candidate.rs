@@ -61,6 +61,14 @@ impl Candidate {
         self.shapes.first().is_some_and(own)
     }
 
+    /// Whether it may be so large that nothing of a record is explained without it, and more may be found beside it.
+    pub fn overturns(&self) -> bool {
+        matches!(
+            self.shapes.first(),
+            Some(Change::Step(_) | Change::Clock { .. })
+        )
+    }
+
     /// Whether it changes everything at once, beyond what a linear look ahead can see.
     pub fn is_upheaval(&self) -> bool {
         matches!(

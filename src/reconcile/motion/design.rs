@@ -112,7 +112,7 @@ fn of_motion(
         let Some((body, index)) = body_of(vehicle, &e.name) else {
             continue;
         };
-        if !frame.bodies.contains(&body) {
+        if !frame.bodies.contains(&body) || frame.not_compared.contains(&body) {
             continue;
         }
         out.push(BinEquation {

@@ -2,6 +2,7 @@
 
 use super::alias::with_aliases;
 use super::candidate::Candidate;
+use super::change::Change;
 use super::channel_check::{BrokenChannel, broken_channels};
 use super::design::design;
 use super::effect::library;
@@ -10,13 +11,15 @@ use super::fitted::MotionFit;
 use super::found::{DECISIVE, Found};
 use super::frame::MotionFrame;
 use super::gap::fitted_gap;
+use super::growing::fit_of_clock;
 use super::judge::judged;
 use super::noise::Background;
 use super::outcome::MotionOutcome;
 use super::part::Part;
-use super::scorer::MotionScorer;
+use super::scorer::{LOST, MotionScorer};
+use super::sound::outcome_of_dead;
 use super::unexplained_background::{of_fit, power, unexplained_background};
-use crate::reconcile::search::{Breadth, Scored, Scorer, search, settle};
+use crate::reconcile::search::{Breadth, Scored, Scorer, search, search_near, settle};
 use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::motion::VehicleError;
 
@@ -50,7 +53,10 @@ pub fn examine(frame: &MotionFrame, only: &[String]) -> Result<MotionOutcome, Ve
         design(frame, &frame.vehicle, record, &adjust, vec![])
             .map_err(|e| VehicleError::HeldOut(Box::new(e)))?;
     }
-    let candidates = library(frame, &first.motion, only);
+    if let Some(outcome) = outcome_of_dead(frame, &broken) {
+        return Ok(outcome);
+    }
+    let candidates = library(frame, &first, only);
     let none = Background::default();
     let null = fit(
         frame,
@@ -82,13 +88,24 @@ fn searched(scorer: &mut MotionScorer, null: MotionFit, broken: Vec<BrokenChanne
     let mut all = Vec::new();
     let mut best = None;
     let found = upheavals(scorer, &null);
-    if let Some(first) = found.first() {
+    let whole = |s: &Scored<MotionFit>| s.set.iter().any(|&c| scorer.candidates[c].is_upheaval());
+    if let Some(first) = found.first().filter(|s| whole(s)) {
         best = Some(first.clone());
         all = found;
     } else if broken.is_empty() {
-        scorer.background = unexplained_background(scorer, &null);
+        // A change of mass or a clock leaves room for more; without it nothing that is looked for near the empty set means anything.
+        let mut near = found;
+        near.retain(|s| !s.set.is_empty() && !whole(s));
+        near.truncate(BREADTH.beam);
+        if near.is_empty() {
+            scorer.background = unexplained_background(scorer, &null);
+        }
         for _ in 0..ROUNDS {
-            all = search(scorer, BREADTH);
+            all = if near.is_empty() {
+                search(scorer, BREADTH)
+            } else {
+                search_near(scorer, BREADTH, &near)
+            };
             with_aliases(scorer, &mut all, DECISIVE);
             best = settle(&all, DECISIVE);
             let Some(b) = &best else { break };
@@ -97,6 +114,9 @@ fn searched(scorer: &mut MotionScorer, null: MotionFit, broken: Vec<BrokenChanne
                 break;
             }
             scorer.background = lower;
+            if !near.is_empty() {
+                near = vec![b.clone()];
+            }
         }
     }
     Found {
@@ -107,39 +127,43 @@ fn searched(scorer: &mut MotionScorer, null: MotionFit, broken: Vec<BrokenChanne
     }
 }
 
-/// Exchanged or turned channels, where nearly nothing is explained without and nearly everything with one, best first; the empty set last.
+/// Exchanged or turned channels, a mass that changed, or a clock, where nearly nothing is explained without and nearly everything with one, best
+/// first; the empty set last.
 ///
-/// They differ in what turns with the channel: the balance of weight, the accelerometers' own means, the sign of masses and springs.
+/// Channels differ in what turns with them: the balance of weight, the accelerometers' own means, the sign of masses and springs.
 fn upheavals(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Scored<MotionFit>> {
-    /// Share of the measured quantity left that makes one look.
-    const LOST: f64 = 0.3;
     /// Fall of the squared residual that settles it.
     const FALL: f64 = 10.0;
     if fitted_gap(scorer.frame, null).is_none_or(|g| g.gap < LOST) {
         return vec![];
     }
     let tried = |(c, candidate): (usize, &Candidate)| {
-        let part = Part {
-            candidate: c,
-            shape: candidate.shapes.first()?.clone(),
-            fault: 0.0,
+        let shape = candidate.shapes.first()?;
+        let f = if matches!(shape, Change::Clock { .. }) {
+            fit_of_clock(scorer.frame, scorer.candidates, c, shape)?
+        } else {
+            let part = Part {
+                candidate: c,
+                shape: shape.clone(),
+                fault: 0.0,
+            };
+            fit(
+                scorer.frame,
+                scorer.candidates,
+                &scorer.frame.data,
+                vec![part],
+                None,
+                &Background::default(),
+                Effort::Settled,
+            )?
         };
-        let f = fit(
-            scorer.frame,
-            scorer.candidates,
-            &scorer.frame.data,
-            vec![part],
-            None,
-            &Background::default(),
-            Effort::Settled,
-        )?;
         (FALL * f.chi2 < null.chi2).then_some((c, f))
     };
     let mut found: Vec<(usize, MotionFit)> = scorer
         .candidates
         .iter()
         .enumerate()
-        .filter(|(_, c)| c.is_upheaval())
+        .filter(|(_, c)| c.is_upheaval() || c.overturns())
         .filter_map(tried)
         .collect();
     found.sort_by(|a, b| a.1.chi2.total_cmp(&b.1.chi2));
@@ -150,7 +174,14 @@ fn upheavals(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Scored<MotionFi
     scorer.background = of_fit(scorer.frame, best);
     let mut out: Vec<Scored<MotionFit>> = found
         .iter()
-        .filter_map(|(c, _)| scorer.score(&[*c], None))
+        .filter_map(|(c, f)| {
+            let there = Scored {
+                set: vec![*c],
+                log_evidence: 0.0,
+                fit: f.clone(),
+            };
+            scorer.score(&[*c], Some((&there, None)))
+        })
         .collect();
     out.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
     if !out.is_empty() {

@@ -14,6 +14,8 @@ pub struct MotionFrame {
     pub vehicle: Vehicle,
     /// Bodies whose equations are compared.
     pub bodies: Vec<usize>,
+    /// Those among them whose equations are left out: a channel that enters them is dead.
+    pub not_compared: Vec<usize>,
     /// Parameters measured elsewhere.
     pub known: BTreeMap<String, f64>,
     /// The record that is fitted.

@@ -1,7 +1,7 @@
 //! The gap of an equation over time and over the size of what was measured: an effect that comes and goes, or grows.
 
 use super::design::Bins;
-use realfft::RealFftPlanner;
+use crate::series::plans::inverse;
 use rustfft::num_complex::Complex64;
 
 /// Stretches of equal length in time.
@@ -38,8 +38,7 @@ pub fn gap_profile(
     }
     let length = (rate_hz / step).round() as usize;
     let at = (first / step).round() as usize;
-    let mut planner = RealFftPlanner::new();
-    let plan = planner.plan_fft_inverse(length);
+    let plan = inverse(length);
     let in_time = |bins: &Bins| -> Vec<f64> {
         let mut input = plan.make_input_vec();
         for (cell, b) in input.iter_mut().skip(at).zip(bins) {

@@ -106,6 +106,11 @@ impl Basis {
         out
     }
 
+    /// The orthonormal columns, rows of priors at their end.
+    pub fn columns(&self) -> &[Vec<f64>] {
+        &self.columns
+    }
+
     /// Adds what is new in a column; false where nothing is.
     fn join(&mut self, mut rows: Vec<f64>) -> bool {
         let before = norm(&rows);

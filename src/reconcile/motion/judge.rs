@@ -124,12 +124,7 @@ pub(super) fn judged(
         broken.iter().map(broken_effect).collect()
     };
     let rivals = rivals(scorer, &best, &all);
-    let share = |g: &Option<RecordGap>, of: fn(&RecordGap) -> f64| g.as_ref().map_or(f64::NAN, of);
-    let left = [
-        share(&before.fitted, |g| g.gap),
-        share(&after.fitted, |g| g.gap),
-        share(&after.fitted, |g| g.floor.expected()),
-    ];
+    let left = shares_left(&before.fitted, &after.fitted);
     let chi = [before.reduced_chi2, after.reduced_chi2];
     let judged_by = proof(frame, &best.fit);
     Ok(MotionOutcome {
@@ -156,7 +151,17 @@ pub(super) fn judged(
     })
 }
 
-fn gap_of(before: &Option<RecordGap>, after: &Option<RecordGap>, by: Proof) -> Gap {
+/// Shares of the measured quantity left on the fitted record before and after, and the floor.
+pub(super) fn shares_left(before: &Option<RecordGap>, after: &Option<RecordGap>) -> [f64; 3] {
+    let share = |g: &Option<RecordGap>, of: fn(&RecordGap) -> f64| g.as_ref().map_or(f64::NAN, of);
+    [
+        share(before, |g| g.gap),
+        share(after, |g| g.gap),
+        share(after, |g| g.floor.expected()),
+    ]
+}
+
+pub(super) fn gap_of(before: &Option<RecordGap>, after: &Option<RecordGap>, by: Proof) -> Gap {
     let of = |g: &Option<RecordGap>| g.as_ref().map_or(f64::NAN, |g| g.gap);
     let floor = after.as_ref().or(before.as_ref());
     Gap {
@@ -173,8 +178,9 @@ fn gap_of(before: &Option<RecordGap>, after: &Option<RecordGap>, by: Proof) -> G
     }
 }
 
-/// The best set, or the best one all of whose members may be named: channels beyond their tolerance, and no effect of the vehicle that
-/// closes less of the gap than declared tolerances leave on average.
+/// The best set, or the best one all of whose members may be named: channels beyond their tolerance, no effect of the vehicle that closes
+/// less of the gap than declared tolerances leave on average, and none beside one of the vehicle that closes no more than what that one's
+/// form leaves of itself.
 fn nameable(
     scorer: &MotionScorer,
     all: &[Scored<MotionFit>],
@@ -192,13 +198,18 @@ fn nameable(
         };
         let Some(own) = &gaps[at] else { return false };
         let of_vehicle = |m: &usize| !scorer.candidates[*m].is_channel();
-        let vehicles = s.set.iter().copied().filter(of_vehicle);
-        vehicles.into_iter().all(|member| {
+        s.set.iter().copied().all(|member| {
             let rest: Vec<usize> = s.set.iter().copied().filter(|m| *m != member).collect();
             let beside = rest.iter().any(of_vehicle);
+            // A channel is held against its tolerance by its size.
+            let tolerance = match (of_vehicle(&member), beside) {
+                (true, _) => own.floor.tolerance,
+                (false, true) => 0.0,
+                (false, false) => return true,
+            };
             power(&rest).is_none_or(|without| {
                 let others = power(&[]).filter(|_| beside).map_or(0.0, |p| p - without);
-                let least = own.floor.tolerance + NEXT_FORM * others.max(0.0);
+                let least = tolerance + NEXT_FORM * others.max(0.0);
                 without - own.gap * own.gap > least
             })
         })
@@ -211,7 +222,8 @@ fn nameable(
     settle(&rest, DECISIVE).unwrap_or(best)
 }
 
-fn broken_effect(b: &BrokenChannel) -> MotionEffect {
+/// A channel that can't be relied on, as an effect.
+pub(super) fn broken_effect(b: &BrokenChannel) -> MotionEffect {
     MotionEffect {
         id: format!("{}:{}", b.id, b.channel),
         place: Some(b.channel.clone()),

@@ -26,8 +26,10 @@ pub mod frame;
 pub mod gap;
 pub mod gap_profile;
 pub mod gls;
+mod growing;
 pub mod judge;
 pub mod limits;
+pub mod moments;
 pub mod noise;
 pub mod outcome;
 pub mod part;
@@ -35,6 +37,7 @@ pub mod response;
 pub mod scorer;
 mod sentences;
 pub mod simulated;
+mod sound;
 pub mod unexplained_background;
 mod zeros;
 

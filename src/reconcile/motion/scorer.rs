@@ -8,6 +8,7 @@ use super::design::{Design, design};
 use super::evidence::{cost, evidence};
 use super::fit::{Effort, fit};
 use super::fitted::MotionFit;
+use super::floor::share;
 use super::frame::MotionFrame;
 use super::gls::Basis;
 use super::noise::Background;
@@ -36,10 +37,12 @@ pub struct Forms {
     own: Vec<(usize, usize, Vec<usize>)>,
 }
 
+/// Share of the measured quantity left at which a fit has lost its way: its parameters are those of no vehicle, and no start for others.
+pub(super) const LOST: f64 = 0.3;
 /// Fall of the squared residual below which a form's constant isn't refined.
 const WORTH_REFINING: f64 = 30.0;
 /// Steps of refinement, each finer.
-const REFINE: [f64; 7] = [0.2, 0.07, 0.025, 0.009, 0.003, 0.001, 0.0003];
+const REFINE: [f64; 8] = [0.2, 0.07, 0.025, 0.009, 0.003, 0.001, 0.0003, 0.0001];
 
 impl MotionScorer<'_> {
     /// What a candidate in a form costs: [`cost`].
@@ -358,19 +361,28 @@ impl Scorer for MotionScorer<'_> {
             })
             .collect();
         let start = from.map(|(f, _)| &f.fit);
-        let first = fit(
-            self.frame,
-            self.candidates,
-            &self.frame.data,
-            parts,
-            start,
-            &self.background,
-            Effort::Settled,
-        )?;
-        let before = from.map_or(f64::INFINITY, |(f, _)| f.fit.chi2);
+        let from_there = |start: Option<&MotionFit>| {
+            fit(
+                self.frame,
+                self.candidates,
+                &self.frame.data,
+                parts.clone(),
+                start,
+                &self.background,
+                Effort::Settled,
+            )
+        };
+        let lost = start.is_some_and(|f| share(&f.design, &f.left, &f.values) > LOST);
+        let anew = if lost { from_there(None) } else { None };
+        let first = (from_there(start).into_iter().chain(anew))
+            .min_by(|a, b| a.misfit().total_cmp(&b.misfit()))?;
+        // The same set anew stands before another background: constants that were found before a larger one are found anew.
+        let neighbour = from.map(|(f, _)| f).filter(|f| f.set != set);
+        let before = neighbour.map_or(f64::INFINITY, |f| f.fit.chi2);
         let fit = if before - first.chi2 > WORTH_REFINING {
-            let settled: Vec<usize> = from.map_or(vec![], |(f, _)| f.set.clone());
-            self.refined(self.settled_from_afar(first, &settled), &settled)
+            let known = from.map_or(&[][..], |(f, _)| &f.set);
+            let settled: Vec<usize> = neighbour.map_or(vec![], |f| f.set.clone());
+            self.refined(self.settled_from_afar(first, known), &settled)
         } else {
             first
         };

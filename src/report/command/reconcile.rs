@@ -56,6 +56,11 @@ fn effects_words(found: &Reconciled) -> String {
     }
     let gap = &found.gap;
     let percent = |v: Option<f64>| 100.0 * v.unwrap_or(f64::NAN);
+    if !gap.before.is_finite() {
+        // What remains says why.
+        text.push_str("no gap can be stated\n");
+        return text;
+    }
     let _ = writeln!(
         text,
         "gap on {}: {:.2} % before, {:.2} % after, floor {:.2} %, explained {:.0} %",

@@ -2,13 +2,15 @@
 
 use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::change::Change;
+use crate::reconcile::motion::design::Design;
 use crate::reconcile::motion::frame::MotionFrame;
+use crate::reconcile::motion::moments::best_steps;
 use crate::vehicle::layout::MassStep;
 
 /// Steps tried through the record.
 const STEPS: usize = 13;
 
-pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
+pub(super) fn candidates(frame: &MotionFrame, design: &Design) -> Vec<Candidate> {
     let v = &frame.vehicle;
     let sprung: Vec<usize> = frame
         .bodies
@@ -20,7 +22,9 @@ pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {
     sprung
         .iter()
         .map(|&body| {
-            let mut shapes = Vec::new();
+            // The moments that the record itself shows, then those of a grid.
+            let found = best_steps(frame, design, body);
+            let mut shapes: Vec<Change> = found.into_iter().map(Change::Step).collect();
             for gravity in [0.0, frame.gravity] {
                 let step = |at_s: f64, over_s: f64| {
                     Change::Step(MassStep {

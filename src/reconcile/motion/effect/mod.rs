@@ -25,11 +25,12 @@ mod time_offset;
 mod viscous_damper;
 
 use super::candidate::Candidate;
+use super::design::Design;
 use super::frame::MotionFrame;
-use crate::vehicle::motion::Motion;
 
-/// Every effect that the frame could show, in a fixed order; `only` keeps the ids (or families) given, all where empty.
-pub fn library(frame: &MotionFrame, motion: &Motion, only: &[String]) -> Vec<Candidate> {
+/// Every effect that the frame could show in the design of its record, in a fixed order; `only` keeps the ids (or families) given, all where empty.
+pub fn library(frame: &MotionFrame, design: &Design, only: &[String]) -> Vec<Candidate> {
+    let motion = &design.motion;
     let mut all = Vec::new();
     for list in [
         viscous_damper::candidates(frame),
@@ -42,7 +43,7 @@ pub fn library(frame: &MotionFrame, motion: &Motion, only: &[String]) -> Vec<Can
         quadratic_damping::candidates(frame),
         dead_zone::candidates(frame, motion),
         stiffness_drift::candidates(frame),
-        mass_change::candidates(frame),
+        mass_change::candidates(frame, design),
         axle_coupling::candidates(frame),
         roll_coupling::candidates(frame),
         pitch_coupling::candidates(frame),

@@ -1,0 +1,129 @@
+//! What of a record can be compared where a channel of it is dead: the equations that the channel does not enter.
+
+use super::channel_check::BrokenChannel;
+use super::detectable::smallest_sizes;
+use super::effect::library;
+use super::fit::{Effort, fit};
+use super::found::DECISIVE;
+use super::frame::MotionFrame;
+use super::gap::{Proof, proof, proof_gap};
+use super::judge::{broken_effect, gap_of, shares_left};
+use super::noise::Background;
+use super::outcome::MotionOutcome;
+use super::scorer::MotionScorer;
+use super::{design::design, gap::fitted_gap};
+use crate::reconcile::outcome::Verdict;
+use crate::series::channels::Channels;
+
+/// The outcome of a record with dead channels, which are named; `None` where all are alive.
+///
+/// A reading that is none has no equation: parameters fitted to it are those of no vehicle, and a share of nothing measured is no number.
+/// Gaps before and after are one and the same, of the equations without the channel; NaN where there are none.
+pub(super) fn outcome_of_dead(
+    frame: &MotionFrame,
+    broken: &[BrokenChannel],
+) -> Option<MotionOutcome> {
+    let dead: Vec<&str> = (broken.iter())
+        .filter(|b| b.id == "dead_channel")
+        .map(|b| b.channel.as_str())
+        .collect();
+    if dead.is_empty() {
+        return None;
+    }
+    let sound = sound_part(frame, &dead);
+    let first = design(
+        &sound,
+        &sound.vehicle,
+        &sound.data,
+        &sound.corrections,
+        vec![],
+    );
+    let candidates = first.map_or(vec![], |d| library(&sound, &d, &[]));
+    let none = Background::default();
+    let null = fit(
+        &sound,
+        &candidates,
+        &sound.data,
+        vec![],
+        None,
+        &none,
+        Effort::Settled,
+    );
+    let gap = null.as_ref().and_then(|f| proof_gap(&sound, f));
+    let fitted = null.as_ref().and_then(|f| fitted_gap(&sound, f));
+    let judged_by = null.as_ref().map_or(Proof::Fitted, |f| proof(&sound, f));
+    let chi2 = null.as_ref().map_or(f64::NAN, |f| f.reduced_chi2());
+    let smallest = null.map_or(vec![], |f| {
+        let mut scorer = MotionScorer {
+            frame: &sound,
+            candidates: &candidates,
+            background: none,
+            forms: vec![],
+        };
+        smallest_sizes(&mut scorer, &f)
+    });
+    let names: Vec<String> = dead.iter().map(|name| format!("`{name}`")).collect();
+    let names = names.join(", ");
+    let compared: Vec<String> = (gap.iter().flat_map(|g| &g.equations))
+        .map(|e| format!("`{}`", e.name))
+        .collect();
+    let remains = match compared.as_slice() {
+        [] => format!("No equation can be compared without {names}: there is no gap to state."),
+        list => format!(
+            "Gaps are those of the equations that {names} does not enter: {}.",
+            list.join(", ")
+        ),
+    };
+    let effects: Vec<_> = broken.iter().map(broken_effect).collect();
+    Some(MotionOutcome {
+        verdict: Verdict::Named,
+        best_attempt: effects.clone(),
+        effects,
+        corrections: frame.corrections.clone(),
+        rivals: vec![],
+        evidence: 0.0,
+        decisive: DECISIVE,
+        gap: gap_of(&gap, &gap, judged_by),
+        judged_by,
+        before: gap.clone(),
+        after: gap,
+        reduced_chi2: [chi2; 2],
+        left: shares_left(&fitted, &fitted),
+        smallest,
+        remains,
+        next_measurement: format!("Repair {names} and drive again."),
+    })
+}
+
+/// The frame without the equations that dead channels enter. A dead wheel force is one that was not measured.
+fn sound_part(frame: &MotionFrame, dead: &[&str]) -> MotionFrame {
+    let v = &frame.vehicle;
+    let still: Vec<usize> = (v.sensors.iter())
+        .filter(|s| dead.contains(&s.channel.as_str()))
+        .map(|s| s.at.body)
+        .collect();
+    let tied = |body: usize| {
+        still.contains(&body)
+            || v.links.iter().any(|l| {
+                let on = |b: usize| l.ends.iter().any(|e| e.1.body == b);
+                on(body) && still.iter().any(|&b| on(b))
+            })
+    };
+    let is_force = |name: &str| v.wheels.iter().any(|w| w.channel == name);
+    let without = |record: &Channels| {
+        let mut out = record.clone();
+        out.list
+            .retain(|c| !(dead.contains(&c.name.as_str()) && is_force(&c.name)));
+        out
+    };
+    MotionFrame {
+        not_compared: (frame.bodies.iter())
+            .copied()
+            .filter(|&b| tied(b))
+            .chain(frame.not_compared.iter().copied())
+            .collect(),
+        data: without(&frame.data),
+        hold_out: frame.hold_out.as_ref().map(without),
+        ..frame.clone()
+    }
+}

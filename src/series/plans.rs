@@ -1,0 +1,42 @@
+//! Plans of Fourier transforms, kept between calls: their twiddle factors take as long as some transforms.
+
+use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use std::cell::RefCell;
+use std::sync::Arc;
+
+/// Lengths of which a thread keeps plans; one more, and it begins anew. A job has a few: its records, padded, thinned, windowed.
+const MOST: usize = 24;
+
+struct Plans {
+    planner: RealFftPlanner<f64>,
+    lengths: Vec<usize>,
+}
+
+thread_local! {
+    static PLANS: RefCell<Plans> = RefCell::new(Plans { planner: RealFftPlanner::new(), lengths: vec![] });
+}
+
+fn planned<T>(length: usize, plan: impl FnOnce(&mut RealFftPlanner<f64>) -> T) -> T {
+    PLANS.with_borrow_mut(|p| {
+        if !p.lengths.contains(&length) {
+            if p.lengths.len() >= MOST {
+                *p = Plans {
+                    planner: RealFftPlanner::new(),
+                    lengths: vec![],
+                };
+            }
+            p.lengths.push(length);
+        }
+        plan(&mut p.planner)
+    })
+}
+
+/// The plan of a transform of `length` real samples.
+pub fn forward(length: usize) -> Arc<dyn RealToComplex<f64>> {
+    planned(length, |p| p.plan_fft_forward(length))
+}
+
+/// The plan of a transform to `length` real samples.
+pub fn inverse(length: usize) -> Arc<dyn ComplexToReal<f64>> {
+    planned(length, |p| p.plan_fft_inverse(length))
+}
