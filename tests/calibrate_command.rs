@@ -366,7 +366,7 @@ fn bridge(folder: &str, most: usize) -> Option<Bridge> {
             name: row[0].clone(),
             lane: note[lane].clone(),
             strain,
-            teaches: role.map_or(runs.len() % 2 == 0, |r| note[r] == "calibration"),
+            teaches: role.map_or(runs.len().is_multiple_of(2), |r| note[r] == "calibration"),
         });
     }
     runs.retain(|r| !r.lane.is_empty());
