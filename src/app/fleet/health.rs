@@ -222,7 +222,8 @@ mod tests {
     fn mean_scatter_noise_and_missing_readings_are_those_of_each_gauge() {
         // Eleven gauges: eight together and three apart. Gauge g reads g, plus g + 1 up and down in turn.
         let (n, rows) = (11, 96);
-        let swing = |g: usize, i: usize| (g + 1) as f64 * if i % 2 == 0 { 1.0 } else { -1.0 };
+        let swing =
+            |g: usize, i: usize| (g + 1) as f64 * if i.is_multiple_of(2) { 1.0 } else { -1.0 };
         let block: Vec<f64> = (0..rows)
             .flat_map(|i| (0..n).map(move |g| MICRO * (g as f64 + swing(g, i))))
             .collect();
