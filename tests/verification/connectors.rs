@@ -331,6 +331,48 @@ fn what_a_connector_lacks_is_a_fault_that_says_what_to_do() {
 }
 
 #[test]
+fn what_a_connector_does_in_silence_is_a_finding() {
+    let codes = |b: &Bulk| -> Vec<(String, String)> {
+        let found = crate::ties::findings(b).into_iter();
+        found
+            .filter(|f| f.code.starts_with("connector-"))
+            .map(|f| (f.code.to_string(), f.message))
+            .collect()
+    };
+    let push = "FORCE,1,40,0,1.,0.,0.,-1.";
+    // Element 10 and its neighbours reach from 10 to 40 and from 0 to 30: a square of 53 about (21, 17.5) fits after two halvings.
+    let wide = plates(
+        "CWELD,500,8,101,ELPAT,,,,,\n,10,26",
+        &format!("PWELD,8,1,60.\n{push}"),
+    );
+    let told = codes(&wide);
+    assert!(
+        told.len() == 1 && told[0].0 == "connector-halved" && told[0].1.contains("2 times"),
+        "{told:?}"
+    );
+    let narrow = plates("CWELD,500,7,101,ELPAT,,,,,\n,10,26", push);
+    assert!(codes(&narrow).is_empty());
+    // The upper plate at a slope of 1 in 2, 27 degrees.
+    let mut tilted = plates("CWELD,500,7,101,PARTPAT,,,,,\n,1,2", push);
+    let lines = tilted
+        .text
+        .lines()
+        .map(|line| match line.strip_suffix(",10.0") {
+            Some(rest) if line.starts_with("GRID,") => {
+                let x: f64 = rest.split(',').nth(3).unwrap().parse().unwrap();
+                format!("{rest},{:?}", 10.0 + x / 2.0)
+            }
+            _ => line.to_owned(),
+        });
+    tilted.text = lines.collect::<Vec<_>>().join("\n") + "\n";
+    let told = codes(&tilted);
+    assert!(
+        told.len() == 1 && told[0].0 == "connector-angle" && told[0].1.contains("27 degrees"),
+        "{told:?}"
+    );
+}
+
+#[test]
 fn faults_name_the_card_of_a_connector_and_its_point_counts_as_used() {
     let b = plates(
         "CFAST,500,9,ELEM,10,26,101,102,103\nPFAST,9,6.,,,1.,1.,1.\nRBE2,90,1,123456,102",
@@ -345,6 +387,17 @@ fn faults_name_the_card_of_a_connector_and_its_point_counts_as_used() {
     );
     let (_, all) = plates("CWELD,500,7,101,ELPAT,102,103,,,\n,10,26", "").read_model();
     assert!(all.is_empty(), "{all:?}");
+    // A field is that of its own side.
+    for (card, field) in [
+        ("CWELD,500,7,101,ELPAT,,,,,\n,10,99", "SHIDB"),
+        ("CWELD,500,7,101,ELPAT,,,,,\n,99,10", "SHIDA"),
+        ("CWELD,500,7,101,PARTPAT,,,,,\n,1,9", "PIDB"),
+        ("PFAST,7,6.,,,1.,1.,1.\nCFAST,500,7,PROP,1,9,101", "IDB"),
+        ("PFAST,7,6.,,,1.,1.,1.\nCFAST,500,7,ELEM,99,10,101", "IDA"),
+    ] {
+        let (_, all) = plates(card, "").read_model();
+        assert!(all.iter().any(|f| f.field == field), "{card}: {all:?}");
+    }
 }
 
 #[test]

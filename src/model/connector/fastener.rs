@@ -54,27 +54,10 @@ impl Builder<'_> {
             return None;
         }
         let mut on = Vec::with_capacity(2);
-        for id in c.patches {
+        for (id, field) in c.patches.into_iter().zip(["IDA", "IDB"]) {
             on.push(match c.kind.as_str() {
-                "PROP" if self.model.shell_properties.iter().any(|p| p.id == id) => {
-                    Where::Property(id)
-                }
-                "ELEM" if self.model.shell_ix(id).is_some() => {
-                    Where::Around(self.model.shell_ix(id)?.us())
-                }
-                "PROP" | "ELEM" => {
-                    let what = if c.kind == "PROP" {
-                        "shell property"
-                    } else {
-                        "shell"
-                    };
-                    let kind = FaultKind::Missing {
-                        what,
-                        id: id.into(),
-                    };
-                    self.fault(name.to_owned(), "IDA", c.at, kind);
-                    return None;
-                }
+                "PROP" => self.named_property(id, (name, field, c.at))?,
+                "ELEM" => self.named_shell(id, Where::Around, (name, field, c.at))?,
                 found => {
                     let kind = FaultKind::Word {
                         found: found.to_owned(),

@@ -45,6 +45,35 @@ pub(super) struct Pierced {
 }
 
 impl Builder<'_> {
+    /// The shell that a field names, to be pierced with its neighbours or alone (`on`); a fault where there is none.
+    pub(super) fn named_shell(
+        &mut self,
+        id: u32,
+        on: impl Fn(usize) -> Where,
+        (name, field, at): (&str, &'static str, Place),
+    ) -> Option<Where> {
+        let found = self.model.shell_ix(id).map(|s| on(s.us()));
+        if found.is_none() {
+            let (what, id) = ("shell", id.into());
+            self.fault(name.to_owned(), field, at, FaultKind::Missing { what, id });
+        }
+        found
+    }
+
+    /// The shells of the property that a field names; a fault where there is none.
+    pub(super) fn named_property(
+        &mut self,
+        id: u32,
+        (name, field, at): (&str, &'static str, Place),
+    ) -> Option<Where> {
+        if self.model.shell_properties.iter().any(|p| p.id == id) {
+            return Some(Where::Property(id));
+        }
+        let (what, id) = ("shell property", id.into());
+        self.fault(name.to_owned(), field, at, FaultKind::Missing { what, id });
+        None
+    }
+
     /// The point of GS or XS, YS, ZS.
     pub(super) fn connector_point(
         &mut self,

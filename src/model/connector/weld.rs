@@ -7,7 +7,7 @@ use crate::model::build::Builder;
 use crate::model::fault::FaultKind;
 use crate::model::types::*;
 use nastran::cards::{Pweld, Weld, WeldPatches};
-use nastran::place::Placed;
+use nastran::place::{Place, Placed};
 use std::collections::HashSet;
 use std::f64::consts::PI;
 
@@ -131,20 +131,23 @@ impl Builder<'_> {
         };
         match &w.patches {
             WeldPatches::Properties(a, b) => {
-                self.known_property(*a, name, w)?;
-                self.known_property(*b, name, w)?;
-                on_shells(self, [Where::Property(*a), Where::Property(*b)])
+                let a = self.named_property(*a, (name, "PIDA", w.at))?;
+                let b = self.named_property(*b, (name, "PIDB", w.at))?;
+                on_shells(self, [a, b])
             }
             WeldPatches::ElementPatches(a, b) => {
-                let (a, b) = (self.shell_of(*a, name, w)?, self.shell_of(*b, name, w)?);
-                on_shells(self, [Where::Around(a), Where::Around(b)])
+                let a = self.named_shell(*a, Where::Around, (name, "SHIDA", w.at))?;
+                let b = self.named_shell(*b, Where::Around, (name, "SHIDB", w.at))?;
+                on_shells(self, [a, b])
             }
             WeldPatches::Elements(a, Some(b)) => {
-                let (a, b) = (self.shell_of(*a, name, w)?, self.shell_of(*b, name, w)?);
-                on_shells(self, [Where::Shell(a), Where::Shell(b)])
+                let a = self.named_shell(*a, Where::Shell, (name, "SHIDA", w.at))?;
+                let b = self.named_shell(*b, Where::Shell, (name, "SHIDB", w.at))?;
+                on_shells(self, [a, b])
             }
             WeldPatches::Elements(a, None) => {
-                let a = self.shell_of(*a, name, w)?;
+                let on = self.named_shell(*a, Where::Shell, (name, "SHIDA", w.at))?;
+                let Where::Shell(a) = on else { return None };
                 let shell = *self.model.shells.get(a)?;
                 let patch = Patch::of_shell(&self.model, &shell);
                 self.patch_and_grid(patch, point, grids, w, p, name, tied)
@@ -212,11 +215,11 @@ impl Builder<'_> {
         tied: &mut HashSet<GridIx>,
     ) -> Option<Pierced> {
         let [list_a, list_b] = lists;
-        let a = self.patch_of_grids(list_a, name, w)?;
+        let a = self.patch_of_grids(list_a, (name, "GA1", w.at))?;
         if list_b.is_empty() {
             return self.patch_and_grid(Some(a), point, grids, w, p, name, tied);
         }
-        let b = self.patch_of_grids(list_b, name, w)?;
+        let b = self.patch_of_grids(list_b, (name, "GB1", w.at))?;
         let x = |g: Option<GridIx>| g.map(|g| self.x(g));
         let [ga, gb] = grids.map(x);
         let (Some(pa), Some(pb)) = (ga.or(point).or(gb), gb.or(point).or(ga)) else {
@@ -315,17 +318,21 @@ impl Builder<'_> {
         })
     }
 
-    fn patch_of_grids(&mut self, list: &[u32], name: &str, w: &Placed<Weld>) -> Option<Patch> {
+    fn patch_of_grids(
+        &mut self,
+        list: &[u32],
+        (name, field, at): (&str, &'static str, Place),
+    ) -> Option<Patch> {
         let grids: Vec<GridIx> = list
             .iter()
-            .filter_map(|g| self.grid(*g, name, "GA1", w.at))
+            .filter_map(|g| self.grid(*g, name, field, at))
             .collect();
         if grids.len() != list.len() {
             return None;
         }
         if !(3..=4).contains(&grids.len()) {
             let what = format!("a patch of {} grids", grids.len());
-            self.refuse(name, "GA1", w.at, what, "name its three or four corners");
+            self.refuse(name, field, at, what, "name its three or four corners");
             return None;
         }
         let x = grids.iter().map(|g| self.x(*g)).collect();
@@ -334,30 +341,6 @@ impl Builder<'_> {
             x,
             thickness: 0.0,
         })
-    }
-
-    fn shell_of(&mut self, id: u32, name: &str, w: &Placed<Weld>) -> Option<usize> {
-        let found = self.model.shell_ix(id).map(ShellIx::us);
-        if found.is_none() {
-            let kind = FaultKind::Missing {
-                what: "shell",
-                id: id.into(),
-            };
-            self.fault(name.to_owned(), "SHIDA", w.at, kind);
-        }
-        found
-    }
-
-    fn known_property(&mut self, pid: u32, name: &str, w: &Placed<Weld>) -> Option<()> {
-        if self.model.shell_properties.iter().any(|p| p.id == pid) {
-            return Some(());
-        }
-        let kind = FaultKind::Missing {
-            what: "shell property",
-            id: pid.into(),
-        };
-        self.fault(name.to_owned(), "PIDA", w.at, kind);
-        None
     }
 }
 
