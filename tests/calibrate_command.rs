@@ -344,7 +344,11 @@ fn bridge(folder: &str, most: usize) -> Option<Bridge> {
     };
     let (notes, peaks) = (table("runs.csv")?, table("peaks.csv")?);
     let column = |name: &str| notes[0].iter().position(|h| h == name);
-    let (lane, fit, role) = (column("lane")?, column("fit_for_weighing"), column("role"));
+    let (lane, fit, role) = (
+        column("lane").unwrap(),
+        column("fit_for_weighing"),
+        column("role"),
+    );
     let power = |g: &usize| -> f64 {
         let read = peaks[1..].iter().filter_map(|r| r[*g].parse::<f64>().ok());
         read.map(|v| v * v).sum()

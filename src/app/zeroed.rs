@@ -136,13 +136,13 @@ fn zero_rows(
 ) -> Result<Vec<usize>, Faults> {
     let mut known = names.to_vec();
     let mut files = format!("`{}` has no", table.file);
-    if let HoldOut::File(hold_out) = &measured.hold_out {
-        files = format!(
-            "neither `{}` nor `{}` has a",
-            measured.strain.given, hold_out.given
-        );
-        for named in [&measured.strain, hold_out] {
-            if let StrainRows::Runs(runs) = read_strain(&mut work.inputs, job, named)?.rows {
+    if let HoldOut::File(hold_out) = &measured.hold_out
+        && measured.zero_runs.iter().any(|r| !names.contains(r))
+    {
+        let both = [&measured.strain, hold_out];
+        files = format!("neither `{}` nor `{}` has a", both[0].given, both[1].given);
+        for other in both.into_iter().filter(|f| f.given != table.file) {
+            if let StrainRows::Runs(runs) = read_strain(&mut work.inputs, job, other)?.rows {
                 known.extend(runs);
             }
         }

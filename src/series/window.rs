@@ -61,6 +61,11 @@ impl Windowed {
         &self.window
     }
 
+    /// Number of the first bin in the band.
+    pub fn first(&self) -> usize {
+        self.first
+    }
+
     /// From one bin to the next, Hz.
     pub fn step_hz(&self) -> f64 {
         self.step_hz

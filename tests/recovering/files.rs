@@ -38,9 +38,8 @@ fn runs_held_out_in_a_file_of_their_own_have_zeros_of_their_own() {
     };
     let strain = with_own_zero(0, 9, 300.0, ["Z1", "Z2"]);
     let reconcile = |name: &str, zeros: &[&str], held: &str| {
-        // The file is asked for: its runs may be those without load.
-        let (code, said, _, dir) = recover(name, &strain, &more(zeros));
-        assert_eq!(code, 2, "{said}");
+        // Makes the job; the file that it holds out is written below.
+        let (_, _, _, dir) = recover(name, &strain, &more(zeros));
         std::fs::write(dir.join("runs.csv"), &runs).unwrap();
         std::fs::write(dir.join("held.csv"), held).unwrap();
         let job = dir.join("job.toml");

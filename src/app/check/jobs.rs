@@ -46,7 +46,12 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
         }
         if let HoldOut::File(named) = &m.hold_out {
             match read_strain_file(&mut work.inputs, &job, named) {
-                Ok(file) => found.faults.extend(zero_faults(work, &job, m, &file)),
+                Ok(file) => {
+                    // A run that neither file has was said of the first.
+                    let mut more = zero_faults(work, &job, m, &file);
+                    more.retain(|f| !found.faults.contains(f));
+                    found.faults.extend(more);
+                }
                 Err(f) => found.faults.extend(f),
             }
         }

@@ -112,7 +112,7 @@ fn gap_found(outcome: &MotionOutcome) -> GapFound {
         before: gap.before,
         after: gap.after,
         floor: Some(gap.floor),
-        explained_share: Some(gap.explained_share()),
+        explained_share: (!gap.before.is_nan()).then(|| gap.explained_share()),
         strain: None,
         judged_by: Some(outcome.judged_by),
     }
@@ -154,7 +154,7 @@ fn without_dead_hold_out(work: &mut Work, section: &VehicleJob, frame: &mut Moti
         "no-hold-out",
         "vehicle.hold_out",
         format!(
-            "`{file}` can't judge: {} carries no signal there; gaps are those of the fitted record",
+            "`{file}` can't judge: {} carries no signal there",
             dead.join(", ")
         ),
         "name a record in which every channel is alive as `hold_out` in [vehicle]",

@@ -53,7 +53,7 @@ pub fn examine(frame: &MotionFrame, only: &[String]) -> Result<MotionOutcome, Ve
         design(frame, &frame.vehicle, record, &adjust, vec![])
             .map_err(|e| VehicleError::HeldOut(Box::new(e)))?;
     }
-    if let Some(outcome) = outcome_of_dead(frame, &broken) {
+    if let Some(outcome) = outcome_of_dead(frame, &broken, only) {
         return Ok(outcome);
     }
     let candidates = library(frame, &first, only);
@@ -138,10 +138,10 @@ fn upheavals(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Scored<MotionFi
         return vec![];
     }
     let tried = |(c, candidate): (usize, &Candidate)| {
-        let shape = candidate.shapes.first()?;
-        let f = if matches!(shape, Change::Clock { .. }) {
-            fit_of_clock(scorer.frame, scorer.candidates, c, shape)?
-        } else {
+        let fitted = |shape: &Change| {
+            if matches!(shape, Change::Clock { .. }) {
+                return fit_of_clock(scorer.frame, scorer.candidates, c, shape);
+            }
             let part = Part {
                 candidate: c,
                 shape: shape.clone(),
@@ -155,8 +155,15 @@ fn upheavals(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Scored<MotionFi
                 None,
                 &Background::default(),
                 Effort::Settled,
-            )?
+            )
         };
+        // Of a step the moments that were looked for: with its weight and without, which only a fit compares.
+        let starts = match candidate.shapes.first()? {
+            Change::Step(_) => 2,
+            _ => 1,
+        };
+        let f = (candidate.shapes.iter().take(starts).filter_map(fitted))
+            .min_by(|a, b| a.chi2.total_cmp(&b.chi2))?;
         (FALL * f.chi2 < null.chi2).then_some((c, f))
     };
     let mut found: Vec<(usize, MotionFit)> = scorer

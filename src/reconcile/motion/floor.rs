@@ -75,7 +75,7 @@ pub fn plain(designs: &[&Design], free: &[usize], target: &[Vec<Bins>]) -> Vec<f
 }
 
 /// Equal weights of all equations and bins.
-pub(super) fn even(d: &Design) -> Whitener {
+fn even(d: &Design) -> Whitener {
     let n = d.equations.len();
     let mut s = vec![Complex64::default(); n * n];
     for i in 0..n {

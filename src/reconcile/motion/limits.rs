@@ -209,10 +209,12 @@ pub fn stands_out(fit: &MotionFit) -> bool {
     })
 }
 
-/// Whether at least half of a change happens within the compared stretch, a tenth of it from either end: what happens before or after is
+/// Share of the compared stretch at either end where nothing is looked for.
+pub(super) const END: f64 = 0.1;
+
+/// Whether at least half of a change happens within the compared stretch, [`END`] of it from either end: what happens before or after is
 /// no change to this record.
 fn is_seen(fit: &MotionFit, done: impl Fn(f64) -> f64) -> bool {
-    const END: f64 = 0.1;
     let [begin, end] = fit.design.span_s();
     let margin = END * (end - begin);
     done(end - margin) - done(begin + margin) >= 0.5

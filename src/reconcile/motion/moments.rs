@@ -6,181 +6,267 @@
 use super::columns::{parameter_column, slices};
 use super::design::{Bins, Design};
 use super::fit::held;
-use super::floor::even;
 use super::frame::MotionFrame;
-use super::gls::{Basis, PriorColumn, solved};
+use super::gls::{Basis, PriorColumn};
+use super::limits::END;
+use crate::series::plans::{forward, inverse};
 use crate::series::window::Windowed;
 use crate::vehicle::layout::MassStep;
 use rustfft::num_complex::Complex64;
-use std::f64::consts::PI;
 
-/// Share of the record at either end where nothing is looked for: [`super::limits::plausible`] asks for as much.
-const END: f64 = 0.1;
-/// Of the samples of the thinned record, every so many is a moment: at three samples to a wave of the upper band edge, a tenth of that wave
-/// is lost at most, which the fit of the moment finds.
-const EVERY: usize = 2;
-
-/// A step with the fall of the squared residual that it brings.
-type Fall = (MassStep, f64);
-
-/// The step of a body's mass that explains most of what its vehicle leaves of a record, with its weight and without it, the better one first.
+/// For each body the steps of its mass that explain most of what the vehicle leaves of a record: one with its weight, one without; the better
+/// one first.
 ///
-/// Equations weigh alike, as at the start of every fit: the moment needs no parameter that was found without the step, and those may be
+/// Equations and bins weigh alike, as at the start of every fit: the moment needs no parameter that was found without the step, and those may be
 /// far from any vehicle.
-pub fn best_steps(frame: &MotionFrame, d: &Design, body: usize) -> Vec<MassStep> {
+pub fn best_steps(frame: &MotionFrame, d: &Design, bodies: &[usize]) -> Vec<Vec<MassStep>> {
     let fixed: Vec<Option<f64>> = held(frame, &d.vehicle, d);
-    let whitener = even(d);
+    let bins = d.f_hz.len();
     let columns: Vec<PriorColumn> = (0..fixed.len())
         .filter(|&i| fixed[i].is_none() && d.has(i))
         .map(|i| PriorColumn {
-            rows: whitener.rows(&parameter_column(d, i)),
+            rows: rows(&parameter_column(d, i), bins),
             prior: None,
         })
         .collect();
+    let basis = Basis::of(&columns);
     let values: Vec<f64> = fixed.iter().map(|v| v.unwrap_or(0.0)).collect();
-    let target: Vec<Bins> = d
-        .residual(&values)
-        .into_iter()
-        .map(|r| r.into_iter().map(|v| -v).collect())
+    let mut left = rows(&slices(&d.residual(&values)), bins);
+    for q in basis.columns() {
+        let share: f64 = q.iter().zip(&left).map(|(q, r)| q * r).sum();
+        left.iter_mut().zip(q).for_each(|(r, q)| *r -= share * q);
+    }
+    let all: Vec<&[f64]> = std::iter::once(left.as_slice())
+        .chain(basis.columns().iter().map(Vec::as_slice))
         .collect();
-    let residual = solved(&columns, &whitener.rows(&slices(&target))).residual;
-    let Some(equation) = (d.equations.iter()).position(|e| e.body == body && e.motion == 0) else {
-        return vec![];
-    };
-    // What one in a bin of the body's equation makes in the rows.
-    let one: Vec<Bins> = (0..d.equations.len())
-        .map(|i| vec![Complex64::new(f64::from(u8::from(i == equation)), 0.0); d.f_hz.len()])
-        .collect();
-    let look = Look {
-        design: d,
-        body,
-        unit: whitener.rows(&slices(&one)),
-        rows: std::iter::once(residual.as_slice())
-            .chain(Basis::of(&columns).columns().iter().map(Vec::as_slice))
-            .map(<[f64]>::to_vec)
-            .collect(),
-    };
-    let mut best: Vec<Fall> = look
-        .falls([frame.gravity, 0.0])
-        .into_iter()
-        .flatten()
-        .collect();
-    best.sort_by(|a, b| b.1.total_cmp(&a.1));
-    best.into_iter().map(|(step, _)| step).collect()
-}
-
-/// What a step is looked for in.
-struct Look<'a> {
-    design: &'a Design,
-    body: usize,
-    /// Whitened rows of one in every bin of the body's equation.
-    unit: Vec<f64>,
-    /// The whitened residual, then an orthonormal basis of what the vehicle explains.
-    rows: Vec<Vec<f64>>,
-}
-
-impl Look<'_> {
-    /// The best moment for each acceleration that a step's weight may have.
-    ///
-    /// The column of a step at t is A + g B, with A and B the transforms of the body's acceleration and of one after t. Going back in time
-    /// a sample adds to both; what a column takes is (r . c)^2 / (c . c - sum (q . c)^2), all of them sums over bins.
-    fn falls(&self, gravities: [f64; 2]) -> [Option<Fall>; 2] {
-        let d = self.design;
-        let m = &d.motion;
-        let mut best: [Option<Fall>; 2] = [None; 2];
-        let Some(a) = m.bodies.get(self.body).and_then(|b| b.first()) else {
-            return best;
+    let of_body = |&body: &usize| -> Vec<MassStep> {
+        let equation = d
+            .equations
+            .iter()
+            .position(|e| e.body == body && e.motion == 0);
+        let acceleration = d.motion.bodies.get(body).and_then(|b| b.first());
+        let (Some(equation), Some(acceleration)) = (equation, acceleration) else {
+            return vec![];
         };
+        let own = 2 * bins * equation..2 * bins * (equation + 1);
+        let own: Vec<Bins> = all.iter().map(|r| complex(&r[own.clone()])).collect();
+        let m = &d.motion;
         let window = Windowed::of(m.n_samples(), m.rate_hz, d.band);
-        let (taper, bins) = (window.taper(), d.f_hz.len());
-        let along = self.along();
-        let weight = self.weights();
-        let turn: Vec<Complex64> = (d.f_hz.iter())
-            .map(|f| Complex64::from_polar(1.0, 2.0 * PI * f / m.rate_hz))
+        let gain: Vec<f64> = d.f_hz.iter().map(|f| d.band.gain(*f)).collect();
+        let look = Look::of(window.taper(), acceleration, &gain, window.first());
+        let mut best: Vec<(MassStep, f64)> = [frame.gravity, 0.0]
+            .into_iter()
+            .filter_map(|gravity| {
+                let (i, fall) = look.best(&own, gravity)?;
+                let step = MassStep {
+                    body,
+                    at_s: m.start_s + i as f64 / m.rate_hz,
+                    over_s: 0.0,
+                    gravity,
+                };
+                Some((step, fall))
+            })
             .collect();
-        let last = taper.len().saturating_sub(1) as f64;
-        let mut phase: Vec<Complex64> = (d.f_hz.iter())
-            .map(|f| Complex64::from_polar(d.band.gain(*f), -2.0 * PI * f * last / m.rate_hz))
-            .collect();
-        let (mut moved, mut pressed) = (
-            vec![Complex64::default(); bins],
-            vec![Complex64::default(); bins],
-        );
-        let margin = (END * taper.len() as f64) as usize;
-        for i in (0..taper.len()).rev() {
-            let (w, wa) = (taper[i], taper[i] * a[i]);
-            for k in 0..bins {
-                moved[k] += phase[k] * wa;
-                pressed[k] += phase[k] * w;
-                phase[k] *= turn[k];
-            }
-            if i < margin || i + margin > taper.len() || !i.is_multiple_of(EVERY) {
+        best.sort_by(|a, b| b.1.total_cmp(&a.1));
+        best.into_iter().map(|(step, _)| step).collect()
+    };
+    bodies.iter().map(of_body).collect()
+}
+
+/// Real and imaginary parts by equation and bin; zeros where an equation has none.
+fn rows(column: &[&[Complex64]], bins: usize) -> Vec<f64> {
+    let mut out = Vec::with_capacity(2 * bins * column.len());
+    for equation in column {
+        let cells = equation.iter().flat_map(|c| [c.re, c.im]);
+        out.extend(cells.chain(std::iter::repeat(0.0)).take(2 * bins));
+    }
+    out
+}
+
+fn complex(rows: &[f64]) -> Bins {
+    let pairs = rows.chunks_exact(2);
+    pairs.map(|p| Complex64::new(p[0], p[1])).collect()
+}
+
+/// A step's column at every moment.
+///
+/// With the tapered acceleration u and the taper v the column of a step at sample t is A + g B in the bins,
+/// `A_k = G_k sum_{i >= t} u_i exp(-j w_k i)` and B the same of v. A product with bins p is then a sum over samples from t on,
+/// `Re sum_k conj(p_k) A_k = sum_{i >= t} u_i s_i` with `s_i = Re sum_k conj(p_k) G_k exp(-j w_k i)`, and going back a sample adds to
+/// `A . B = sum_{i, l >= t} u_i v_l h(i - l)`, `h(m) = sum_k G_k^2 cos(w_k m)`, what that sample has to do with those after it. Both are transforms
+/// of the record's length.
+struct Look<'a> {
+    /// Tapered acceleration, and the taper.
+    signals: [Vec<f64>; 2],
+    /// Gain of the band in the bins.
+    gain: &'a [f64],
+    /// Number of the first bin.
+    first: usize,
+    /// A . A, A . B, B . B by sample.
+    products: Vec<[f64; 3]>,
+}
+
+impl<'a> Look<'a> {
+    fn of(taper: &[f64], acceleration: &[f64], gain: &'a [f64], first: usize) -> Self {
+        let u: Vec<f64> = taper.iter().zip(acceleration).map(|(w, a)| w * a).collect();
+        let v = taper[..u.len()].to_vec();
+        let n = u.len();
+        let squares = gain.iter().map(|g| Complex64::new(g * g, 0.0));
+        let h = in_time(squares, first, n);
+        let [after_u, after_v] = [&u, &v].map(|x| those_after(x, &h));
+        let at_once = h.first().copied().unwrap_or(0.0);
+        let mut sum = [0.0; 3];
+        let mut products = vec![sum; n];
+        for i in (0..n).rev() {
+            let (u, v, fu, fv) = (u[i], v[i], after_u[i], after_v[i]);
+            sum[0] += u * (u * at_once + 2.0 * fu);
+            sum[1] += u * v * at_once + u * fv + v * fu;
+            sum[2] += v * (v * at_once + 2.0 * fv);
+            products[i] = sum;
+        }
+        Self {
+            signals: [u, v],
+            gain,
+            first,
+            products,
+        }
+    }
+
+    /// The sample at which a step with `gravity` takes most of the first of `own` (r) beside the others (q, orthonormal), and how much:
+    /// `(r . c)^2 / (c . c - sum (q . c)^2)`.
+    fn best(&self, own: &[Bins], gravity: f64) -> Option<(usize, f64)> {
+        let n = self.products.len();
+        let margin = (END * n as f64) as usize;
+        let dots: Vec<Vec<f64>> = own.iter().map(|p| self.dots(p, gravity)).collect();
+        let (r, known) = dots.split_first()?;
+        let mut best: Option<(usize, f64)> = None;
+        for i in margin..n.saturating_sub(margin) {
+            let [aa, ab, bb] = self.products[i];
+            let whole = aa + gravity * (2.0 * ab + gravity * bb);
+            let own = whole - known.iter().map(|q| q[i] * q[i]).sum::<f64>();
+            // A column that the vehicle's own explain but for a thousandth says nothing; neither does one that is none.
+            if !(own > 1e-3 * whole) {
                 continue;
             }
-            let dots: Vec<[f64; 2]> = (along.iter())
-                .map(|p| [dot(p, &moved), dot(p, &pressed)])
-                .collect();
-            let norms = norms(&weight, &moved, &pressed);
-            for (best, gravity) in best.iter_mut().zip(gravities) {
-                let of = |d: &[f64; 2]| d[0] + gravity * d[1];
-                let whole = norms[0] + gravity * (2.0 * norms[1] + gravity * norms[2]);
-                let known: f64 = dots.iter().skip(1).map(|d| of(d).powi(2)).sum();
-                // A column that the vehicle's own explain but for a thousandth says nothing.
-                if whole - known < 1e-3 * whole {
-                    continue;
-                }
-                let fall = dots.first().map_or(0.0, |d| of(d).powi(2)) / (whole - known);
-                if best.is_none_or(|b| fall > b.1) {
-                    let step = MassStep {
-                        body: self.body,
-                        at_s: m.start_s + i as f64 / m.rate_hz,
-                        over_s: 0.0,
-                        gravity,
-                    };
-                    *best = Some((step, fall));
-                }
+            let fall = r[i] * r[i] / own;
+            if best.is_none_or(|b| fall > b.1) {
+                best = Some((i, fall));
             }
         }
         best
     }
 
-    /// For each of the rows the bins p of which its dot product with the rows of a column c of the body's equation is the sum of Re(p c).
-    fn along(&self) -> Vec<Bins> {
-        let n = self.design.equations.len();
-        let at = |rows: &[f64], i: usize| Complex64::new(rows[i], rows[i + 1]);
-        let one = |rows: &Vec<f64>| -> Bins {
-            (0..self.design.f_hz.len())
-                .map(|k| {
-                    let own = (0..n).map(|i| 2 * (k * n + i));
-                    own.map(|i| at(rows, i).conj() * at(&self.unit, i)).sum()
-                })
-                .collect()
-        };
-        self.rows.iter().map(one).collect()
-    }
-
-    /// Squared norm of the rows of one in each bin.
-    fn weights(&self) -> Vec<f64> {
-        let n = 2 * self.design.equations.len();
-        let norm = |rows: &[f64]| rows.iter().map(|v| v * v).sum();
-        self.unit.chunks_exact(n).map(norm).collect()
+    /// Product with the bins `p` at every moment.
+    fn dots(&self, p: &[Complex64], gravity: f64) -> Vec<f64> {
+        let weighed = p.iter().zip(self.gain).map(|(p, g)| p.conj() * g);
+        let s = in_time(weighed, self.first, self.products.len());
+        let mut sum = 0.0;
+        let mut out = vec![0.0; s.len()];
+        for i in (0..s.len()).rev() {
+            sum += (self.signals[0][i] + gravity * self.signals[1][i]) * s[i];
+            out[i] = sum;
+        }
+        out
     }
 }
 
-fn dot(p: &[Complex64], c: &[Complex64]) -> f64 {
-    p.iter()
-        .zip(c)
-        .map(|(p, c)| p.re * c.re - p.im * c.im)
-        .sum()
-}
-
-/// Weighted a . a, a . b and b . b.
-fn norms(weight: &[f64], a: &[Complex64], b: &[Complex64]) -> [f64; 3] {
-    let mut out = [0.0; 3];
-    for ((w, a), b) in weight.iter().zip(a).zip(b) {
-        out[0] += w * a.norm_sqr();
-        out[1] += w * (a.re * b.re + a.im * b.im);
-        out[2] += w * b.norm_sqr();
+/// `Re sum_k p_k exp(-2 pi j k i / n)` for the samples i of n, of bins from `first` on.
+fn in_time(p: impl Iterator<Item = Complex64>, first: usize, n: usize) -> Vec<f64> {
+    let plan = inverse(n);
+    let mut input = plan.make_input_vec();
+    for (cell, p) in input.iter_mut().skip(first).zip(p) {
+        *cell = 0.5 * p.conj();
     }
+    let mut out = plan.make_output_vec();
+    // The lengths come from the plan itself, and bins lie between the constant and half the rate, so this can't fail.
+    let done = plan.process(&mut input, &mut out);
+    debug_assert!(done.is_ok());
     out
+}
+
+/// `sum_{l > i} x_l h(l - i)` for each sample i.
+fn those_after(x: &[f64], h: &[f64]) -> Vec<f64> {
+    let n = x.len();
+    // Long enough that what comes round at the end meets zeros.
+    let length = (2 * n).next_power_of_two();
+    let (there, back) = (forward(length), inverse(length));
+    let transformed = |values: &mut dyn Iterator<Item = f64>| {
+        let mut input = there.make_input_vec();
+        input.iter_mut().zip(values).for_each(|(i, v)| *i = v);
+        let mut out = there.make_output_vec();
+        let done = there.process(&mut input, &mut out);
+        debug_assert!(done.is_ok());
+        out
+    };
+    let later = transformed(&mut std::iter::once(0.0).chain(h.iter().skip(1).copied()));
+    let mut both = transformed(&mut x.iter().copied());
+    for (x, h) in both.iter_mut().zip(&later) {
+        *x *= h.conj() / length as f64;
+    }
+    // Constant and half the rate are real, but for rounding.
+    for end in [0, length / 2] {
+        if let Some(cell) = both.get_mut(end) {
+            cell.im = 0.0;
+        }
+    }
+    let mut out = back.make_output_vec();
+    let done = back.process(&mut both, &mut out);
+    debug_assert!(done.is_ok());
+    out.truncate(n);
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    /// Sums as they are written: a column by its transform at one moment, its products bin by bin.
+    #[test]
+    fn all_moments_at_once_are_each_moment_alone() {
+        let (n, first, gravity) = (60_usize, 3_usize, 9.81);
+        let wave = |i: usize, s: f64| (s * i as f64).sin() + (0.31 * s * i as f64 + s).cos();
+        let taper: Vec<f64> = (0..n).map(|i| 0.2 + wave(i, 0.05).abs()).collect();
+        let acceleration: Vec<f64> = (0..n).map(|i| wave(i, 0.7)).collect();
+        let gain: Vec<f64> = (0..9).map(|k| 1.0 / (1.0 + f64::from(k))).collect();
+        let row = |s: f64| -> Bins {
+            let bin = |k: usize| Complex64::new(wave(k, s), wave(k + 9, s));
+            (0..gain.len()).map(bin).collect()
+        };
+        // Small ones, which leave most of the column its own.
+        let own: Vec<Bins> = vec![row(0.9), row(1.7).iter().map(|c| c * 1e-2).collect()];
+        let look = Look::of(&taper, &acceleration, &gain, first);
+        let margin = (END * n as f64) as usize;
+        let mut best = (0, f64::NEG_INFINITY);
+        for t in margin..n - margin {
+            let column: Bins = (0..gain.len())
+                .map(|k| {
+                    let w = -2.0 * PI * (first + k) as f64 / n as f64;
+                    let after = (t..n).map(|i| {
+                        taper[i] * (acceleration[i] + gravity) * Complex64::cis(w * i as f64)
+                    });
+                    gain[k] * after.sum::<Complex64>()
+                })
+                .collect();
+            let dot = |a: &Bins, b: &Bins| -> f64 {
+                a.iter().zip(b).map(|(a, b)| (a.conj() * b).re).sum()
+            };
+            let whole = dot(&column, &column);
+            let [aa, ab, bb] = look.products[t];
+            let found = aa + gravity * (2.0 * ab + gravity * bb);
+            assert!((found - whole).abs() < 1e-9 * whole, "{t}: {found} {whole}");
+            for p in &own {
+                let (found, alone) = (look.dots(p, gravity)[t], dot(p, &column));
+                let size = (whole * dot(p, p)).sqrt();
+                assert!((found - alone).abs() < 1e-9 * size, "{t}: {found} {alone}");
+            }
+            let fall = dot(&own[0], &column).powi(2) / (whole - dot(&own[1], &column).powi(2));
+            if fall > best.1 {
+                best = (t, fall);
+            }
+        }
+        let (at, fall) = look.best(&own, gravity).unwrap();
+        assert_eq!(at, best.0);
+        assert!((fall - best.1).abs() < 1e-9 * best.1);
+    }
 }

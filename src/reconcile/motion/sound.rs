@@ -22,6 +22,7 @@ use crate::series::channels::Channels;
 pub(super) fn outcome_of_dead(
     frame: &MotionFrame,
     broken: &[BrokenChannel],
+    only: &[String],
 ) -> Option<MotionOutcome> {
     let dead: Vec<&str> = (broken.iter())
         .filter(|b| b.id == "dead_channel")
@@ -38,7 +39,7 @@ pub(super) fn outcome_of_dead(
         &sound.corrections,
         vec![],
     );
-    let candidates = first.map_or(vec![], |d| library(&sound, &d, &[]));
+    let candidates = first.map_or(vec![], |d| library(&sound, &d, only));
     let none = Background::default();
     let null = fit(
         &sound,
@@ -49,6 +50,7 @@ pub(super) fn outcome_of_dead(
         &none,
         Effort::Settled,
     );
+    let is_fitted = null.is_some();
     let gap = null.as_ref().and_then(|f| proof_gap(&sound, f));
     let fitted = null.as_ref().and_then(|f| fitted_gap(&sound, f));
     let judged_by = null.as_ref().map_or(Proof::Fitted, |f| proof(&sound, f));
@@ -68,6 +70,11 @@ pub(super) fn outcome_of_dead(
         .map(|e| format!("`{}`", e.name))
         .collect();
     let remains = match compared.as_slice() {
+        [] if is_fitted => {
+            format!(
+                "The held-out record says nothing of the equations that {names} does not enter: there is no gap to state."
+            )
+        }
         [] => format!("No equation can be compared without {names}: there is no gap to state."),
         list => format!(
             "Gaps are those of the equations that {names} does not enter: {}.",

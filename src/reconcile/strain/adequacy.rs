@@ -24,7 +24,8 @@ pub struct Adequacy {
     pub gauges: Vec<Misfit>,
     /// By run over the fit runs.
     pub runs: Vec<Misfit>,
-    /// Degrees of freedom with which the covariance was estimated; infinite where it is stated.
+    /// Degrees of freedom with which the covariance was estimated; infinite where it is stated. A gauge's own misfit is judged by those of a
+    /// pattern that no loads make.
     pub from: f64,
 }
 
@@ -96,11 +97,10 @@ pub fn adequacy(
         );
         (total - fit_chi2, (all.len() - fit.len()) as f64)
     };
-    let from = frame
-        .learnt
-        .as_ref()
-        .map_or(f64::INFINITY, |u| u.dof_outside);
-    let part = |name: &str, keep: &dyn Fn((usize, usize)) -> bool| {
+    let learnt = frame.learnt.as_ref();
+    let from = learnt.map_or(f64::INFINITY, |u| u.dof);
+    let from_outside = learnt.map_or(f64::INFINITY, |u| u.dof_outside);
+    let part = |name: &str, from: f64, keep: &dyn Fn((usize, usize)) -> bool| {
         let at: Vec<usize> = fit
             .0
             .iter()
@@ -127,13 +127,13 @@ pub fn adequacy(
         .gauges
         .iter()
         .enumerate()
-        .map(|(g, f)| part(&f.name, &|e| e.1 == g))
+        .map(|(g, f)| part(&f.name, from_outside, &|e| e.1 == g))
         .collect();
     let runs = frame
         .observations
         .fit_runs()
         .iter()
-        .map(|&k| part(&frame.observations.runs[k], &|e| e.0 == k))
+        .map(|&k| part(&frame.observations.runs[k], from, &|e| e.0 == k))
         .collect();
     Adequacy {
         fit: fit_chi2 / n_fit.max(1.0),

@@ -19,11 +19,12 @@ pub(super) fn candidates(frame: &MotionFrame, design: &Design) -> Vec<Candidate>
         .filter(|&b| v.bodies[b].sprung && v.steps.iter().all(|s| s.body != b))
         .collect();
     let (start, length) = (frame.data.start_s, frame.data.duration_s());
+    let found = best_steps(frame, design, &sprung);
     sprung
         .iter()
-        .map(|&body| {
+        .zip(found)
+        .map(|(&body, found)| {
             // The moments that the record itself shows, then those of a grid.
-            let found = best_steps(frame, design, body);
             let mut shapes: Vec<Change> = found.into_iter().map(Change::Step).collect();
             for gravity in [0.0, frame.gravity] {
                 let step = |at_s: f64, over_s: f64| {
