@@ -179,19 +179,12 @@ fn bushes_in_the_basic_frame(model: &Model) -> Option<Finding> {
         .filter(|b| b.frame_assumed)
         .map(|b| b.id)
         .collect();
-    (!ids.is_empty()).then(|| {
-        Finding::new(
-            Severity::Warning,
-            "bush-frame-assumed",
-            format!("CBUSH {}", first_of(&ids)),
-            format!(
-                "{} bushes join coincident grids, or a grid and ground, without CID, and their stiffness differs by direction: the basic frame is taken",
-                ids.len()
-            ),
-            "state CID (0 for the basic frame)",
-        )
-        .with_numbers(ids.len() as f64, 0.0)
-    })
+    of_bushes(
+        &ids,
+        "bush-frame-assumed",
+        "join coincident grids, or a grid and ground, without CID, and their stiffness differs by direction: the basic frame is taken",
+        "state CID (0 for the basic frame)",
+    )
 }
 
 /// Rigid bushes to ground that tie dofs of their grid to each other: their force is on no single dof.
@@ -208,16 +201,23 @@ fn ground_of_rigid_bushes(model: &Model) -> Option<Finding> {
         })
         .map(|r| r.id)
         .collect();
+    of_bushes(
+        &ids,
+        "bush-reaction-missing",
+        "hold their grid rigidly to ground in directions that are not those of its displacement frame: their force is not among the reactions",
+        "give the grid a CD along the bush's axes, or a stiff spring for RIGID, where reactions matter",
+    )
+}
+
+/// A warning about bushes, if there are any.
+fn of_bushes(ids: &[u32], code: &'static str, what: &str, remedy: &'static str) -> Option<Finding> {
     (!ids.is_empty()).then(|| {
         Finding::new(
             Severity::Warning,
-            "bush-reaction-missing",
-            format!("CBUSH {}", first_of(&ids)),
-            format!(
-                "{} bushes hold their grid rigidly to ground in directions that are not those of its displacement frame: their force is not among the reactions",
-                ids.len()
-            ),
-            "give the grid a CD along the bush's axes, or a stiff spring for RIGID, where reactions matter",
+            code,
+            format!("CBUSH {}", first_of(ids)),
+            format!("{} bushes {what}", ids.len()),
+            remedy,
         )
         .with_numbers(ids.len() as f64, 0.0)
     })

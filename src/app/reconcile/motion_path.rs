@@ -166,7 +166,11 @@ fn repairable(outcome: &MotionOutcome) -> bool {
     outcome
         .effects
         .iter()
-        .all(|e| !e.id.starts_with("dead_channel") && !e.id.starts_with("saturated_channel"))
+        .all(|e| !is_dead(e) && !e.id.starts_with("saturated_channel"))
+}
+
+fn is_dead(effect: &MotionEffect) -> bool {
+    effect.id.starts_with("dead_channel")
 }
 
 /// The frame of a job: one side of an axle is compared, the other is a witness where it was measured.
@@ -240,8 +244,7 @@ fn wheel_forces(
     frame: &MotionFrame,
     outcome: &MotionOutcome,
 ) -> (Vec<WheelMisfit>, Option<Identification>) {
-    let dead = |e: &MotionEffect| e.id.starts_with("dead_channel");
-    if outcome.effects.iter().any(dead) {
+    if outcome.effects.iter().any(is_dead) {
         // Forces of a vehicle that was fitted to a reading that is none.
         return (vec![], None);
     }

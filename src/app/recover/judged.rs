@@ -45,6 +45,7 @@ pub(super) fn judge(
             let row = &values[i * n..(i + 1) * n];
             let strain = row.iter().zip(zero).map(|(v, z)| v - z).collect();
             readings.push(Readings {
+                // To the nanosecond: what start plus number over rate leaves behind it is no time.
                 run: format!("t = {}", (times[i] * 1e9).round() / 1e9),
                 strain,
                 noise_factor: task.noise_factor,
