@@ -13,7 +13,7 @@ pub mod errors;
 pub mod faults;
 pub mod gain;
 pub mod history;
-mod interval;
+pub mod interval;
 mod kernel;
 pub mod net;
 mod outlier;

@@ -48,6 +48,24 @@ pub struct Sensitivity {
 }
 
 impl Sensitivity {
+    /// How far the strain under loads of expected size may be off, 1 sd, as a share of it: roots of mean squares over the gauges; 0 where S is
+    /// taken as exact.
+    pub fn relative_sd(&self) -> f64 {
+        let Some(u) = &self.uncertainty else {
+            return 0.0;
+        };
+        let (n, scales) = (self.values.nrows(), self.scales());
+        let c = u.expected_covariance(n, &scales);
+        let off: f64 = (0..n).map(|g| c[g * n + g]).sum();
+        let columns = self.values.column_iter().zip(&scales);
+        let whole: f64 = columns.map(|(s, f)| s.norm_squared() * f * f).sum();
+        if whole > 0.0 {
+            (off / whole).sqrt()
+        } else {
+            0.0
+        }
+    }
+
     /// Column scales: `expected` where every load states it, else 1 over the column's norm (1 for a zero column).
     pub fn scales(&self) -> Vec<f64> {
         let stated: Option<Vec<f64>> = self

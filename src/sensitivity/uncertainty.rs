@@ -72,6 +72,19 @@ impl Uncertainty {
         out
     }
 
+    /// Mean of the covariance of the strain over loads of standard deviations `scales` that are independent of each other, `n x n` by rows,
+    /// noise left out, `scale` in.
+    pub fn expected_covariance(&self, n: usize, scales: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; n * n];
+        for l in 0..scales.len() {
+            let mut one = vec![0.0; scales.len()];
+            one[l] = self.scale * scales[l];
+            let of_load = self.strain_covariance(n, &one);
+            out.iter_mut().zip(of_load).for_each(|(a, b)| *a += b);
+        }
+        out
+    }
+
     /// Quadratic forms of a filter `f = G eps`: for each load `l` the `k x k` matrix `B_l` with `f' B_l f` its variance for loads `f`;
     /// `gain` is `k x n`.
     pub fn load_forms(&self, gain: &Matrix) -> Vec<f64> {

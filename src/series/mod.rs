@@ -11,6 +11,7 @@
 //! - [`quality`]: dead, clipped, spiky, drifting, reversed, wrongly scaled channels as findings
 //! - [`detrend`]: mean, line and zero-run removal
 //! - [`plans`]: plans of transforms, kept between calls
+//! - [`still`]: columns that give nothing, or one and the same value
 //! - [`spectrum`]: zero-padded transforms, band limiting and integration in one pass
 //! - [`integrate`]: velocity and displacement from acceleration
 //! - [`window`]: tapered transforms with independent bins
@@ -40,6 +41,7 @@ pub mod record;
 pub mod resample;
 pub mod rpc;
 pub mod spectrum;
+pub mod still;
 pub mod welch;
 pub mod window;
 

@@ -37,6 +37,16 @@ pub fn calibrated_job(answer: &Calibrated, out: &Path) -> Result<String, Faults>
     s.insert("covariance".into(), Value::String("calibration.bin".into()));
     table.insert("sensitivity".into(), Value::Table(s));
     table.remove("calibration");
+    // How gauges are turned is in the rows of S now.
+    if let Some(Value::Array(list)) = table.get_mut("correction") {
+        for c in list.iter_mut().filter_map(Value::as_table_mut) {
+            c.remove("angle_deg");
+        }
+        list.retain(|c| c.as_table().is_none_or(|c| c.keys().any(|k| k != "gauge")));
+        if list.is_empty() {
+            table.remove("correction");
+        }
+    }
     if let Some(Value::Table(measured)) = table.get_mut("measured") {
         measured.remove("model_uncertainty_rel");
     }

@@ -15,6 +15,7 @@ use crate::sensitivity::Sensitivity;
 use crate::series::SeriesError;
 use crate::series::rainflow::{Counter, Law};
 use crate::series::record::{Evenness, Record};
+use crate::series::still::{Gives, Still};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::ControlFlow;
@@ -216,25 +217,19 @@ impl Kernel {
         }
         let n = found.len();
         let mut alive = Vec::new();
-        for (j, &(g, c, scale)) in found.iter().enumerate() {
-            let mut values = sampled
-                .iter()
-                .skip(j)
-                .step_by(n.max(1))
-                .filter(|v| v.is_finite());
-            let first = values.next();
+        let mut looked = Still::new(n);
+        looked.look(&sampled);
+        for (&(g, c, scale), gives) in found.iter().zip(looked.columns()) {
             let name = all.gauges.get(g).map_or("", String::as_str);
-            match first {
-                Some(first) if sampled.len() < 4 * n || values.any(|v| v != first) => {
-                    alive.push((g, c, scale))
-                }
-                Some(_) => findings.push(said(
+            match gives {
+                Gives::Signal => alive.push((g, c, scale)),
+                Gives::OneValue => findings.push(said(
                     Severity::Warning,
                     "dead_channel",
                     name,
                     "it reads one and the same value".into(),
                 )),
-                None => findings.push(said(
+                Gives::Nothing => findings.push(said(
                     Severity::Warning,
                     "dead_channel",
                     name,

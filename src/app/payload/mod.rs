@@ -13,9 +13,13 @@ use super::context::Context;
 use super::fault::{Fault, Faults};
 use super::job::{Job, PayloadPosition};
 use super::outcome::{Outcome, StatedUnits};
+use super::strain::has_covariance;
 use super::work::Work;
 use crate::payload::{PayloadModel, PayloadRun, Place, WeighSpec, weigh};
+use crate::recovery::interval::{NORMAL_95, student_95};
+use crate::sensitivity::Sensitivity;
 use crate::units::factor;
+use model::Parts;
 use task::Task;
 
 /// Mass and, where it can be told, position of a payload, from strain, from wheel forces, or from both.
@@ -57,7 +61,7 @@ pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
     let parts = model::model_of(&mut work, &mut task, use_strain)?;
     let readings = readings::runs_of(&mut work, &task, &parts.model, use_strain, use_reactions)?;
     let runs = &readings.runs;
-    let spec = spec_of(&task, &parts.model, runs);
+    let spec = spec_of(&task, &parts, runs);
     let weighing = work.stage("weigh", |_| weigh(&parts.model, runs, &spec));
     judge::findings(&mut work, &task, &parts, runs, &spec, &weighing);
     let answer = answer::weighed(&task, parts, readings, &spec, weighing);
@@ -81,8 +85,27 @@ fn by_strongest(model: &PayloadModel, runs: &[PayloadRun]) -> f64 {
 /// A limit far above any payload, in weights of the largest reading.
 const FAR: f64 = 1.0e3;
 
-fn spec_of(task: &Task, model: &PayloadModel, runs: &[PayloadRun]) -> WeighSpec {
-    let job = task.job;
+/// Error of the strain coefficients, 1 sd, of each and of the whole: as stated, or what the covariance of a calibrated S leaves. Few repeats
+/// know their own scatter badly: Student's factor over that of the normal distribution comes on top.
+fn model_rel(job: &Job, s: Option<&Sensitivity>) -> f64 {
+    let measured = job.measured.as_ref();
+    let stated = measured.map_or(0.0, |m| m.model_uncertainty_rel);
+    let known = s.and_then(|s| Some((s, s.uncertainty.as_ref()?)));
+    match known.filter(|(_, u)| u.dof.is_finite() || has_covariance(job)) {
+        Some((s, u)) => {
+            let wider = match u.dof.is_finite() {
+                true => student_95(u.dof) / NORMAL_95,
+                false => 1.0,
+            };
+            stated.hypot(wider * s.relative_sd())
+        }
+        None => stated,
+    }
+}
+
+fn spec_of(task: &Task, parts: &Parts, runs: &[PayloadRun]) -> WeighSpec {
+    let (job, model) = (task.job, &parts.model);
+    let s = parts.prepared.as_ref().map(|p| &p.sensitivity);
     let reactions = runs.iter().flat_map(|r| &r.reactions).map(|r| r.abs());
     let largest_reaction = reactions.filter(|r| r.is_finite()).fold(0.0, f64::max);
     let stated = job
@@ -109,10 +132,7 @@ fn spec_of(task: &Task, model: &PayloadModel, runs: &[PayloadRun]) -> WeighSpec 
     });
     WeighSpec {
         place,
-        model_rel: job
-            .measured
-            .as_ref()
-            .map_or(0.0, |m| m.model_uncertainty_rel),
+        model_rel: model_rel(job, s),
         reaction_sigma: stated.unwrap_or(readings::ASSUMED_NOISE * largest_reaction),
         largest: match (task.empty.iter().sum::<f64>(), largest_reaction) {
             (empty, _) if empty > 0.0 => 10.0 * empty,

@@ -6,7 +6,7 @@ use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::table::read_table;
 use crate::app::job::{Component, Job, LoadActs};
 use crate::app::solved::{stands_on_wheels, support_of_job, unit_loads_kept};
-use crate::app::strain::{Fields, Prepared, prepare};
+use crate::app::strain::{Fields, Prepared, has_covariance, prepare};
 use crate::app::wheels::{floor_fault, wheels_of};
 use crate::app::work::Work;
 use crate::fe::floor::solve_standing;
@@ -36,7 +36,9 @@ pub(super) fn model_of(
     task: &mut Task,
     use_strain: bool,
 ) -> Result<Parts, Faults> {
-    if task.job.sensitivity.is_some() {
+    // A calibrated S stands beside its model, which has the payload's signature.
+    let beside_model = has_covariance(task.job) && task.job.model.is_some();
+    if task.job.sensitivity.is_some() && !beside_model {
         return given(work, task, use_strain);
     }
     let prepared = if use_strain {

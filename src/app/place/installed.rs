@@ -2,7 +2,6 @@
 
 use super::judge::{as_recovered, in_job_order, sigma_rows};
 use super::outcome::{Installed, InstalledQuality, WorstLoss};
-use super::pool::MICRO;
 use super::task::Task;
 use crate::app::fault::Faults;
 use crate::app::outcome::finite;
@@ -12,7 +11,6 @@ use crate::finding::{Finding, Severity};
 use crate::placement::candidates::Candidates;
 use crate::placement::quality::judge_rows;
 use crate::placement::{self, Spec, place};
-use crate::sensitivity::from_cases;
 
 /// The installed layout by the same measures, its determinant with noise alone; `None` without gauges in the job.
 pub(super) fn installed(
@@ -21,12 +19,12 @@ pub(super) fn installed(
     c: &Candidates,
     spec: &Spec,
 ) -> Result<Option<Installed>, Faults> {
-    let (job, fields, cases, scales) = (task.job, task.fields, &task.cases, &task.scales);
+    let (job, fields, scales) = (task.job, task.fields, &task.scales);
     if job.gauges.is_empty() {
         return Ok(None);
     }
     let gauges = lay_gauges(work, job, fields)?;
-    let s = match from_cases(&gauges, cases) {
+    let s = match task.s_of(&gauges) {
         Ok(s) => s,
         Err(missing) => {
             work.findings.push(Finding::new(
@@ -39,7 +37,7 @@ pub(super) fn installed(
             return Ok(None);
         }
     };
-    let k = cases.len();
+    let k = task.cases.len();
     // Without the gauges that stay: they are among the installed ones.
     let spec = Spec {
         prior: task.without_kept(spec),
@@ -47,14 +45,9 @@ pub(super) fn installed(
     };
     let noise = job.placement.noise_microstrain;
     let order = &task.order;
-    let strain: Vec<(Vec<f64>, f64)> = (0..gauges.len())
-        .map(|g| {
-            let of = |&l: &usize| s.values[(g, l)] * scales[l] / MICRO;
-            (order.iter().map(of).collect(), noise)
-        })
-        .collect();
-    let over_noise = |(row, noise): &(Vec<f64>, f64)| row.iter().map(|v| v / noise).collect();
-    let rows: Vec<Vec<f64>> = strain.iter().map(over_noise).collect();
+    let read = task.rows_of(&gauges, &s, job.placement.model_uncertainty_rel);
+    let over_noise = |row: &Vec<f64>| row.iter().map(|v| v / noise).collect();
+    let rows: Vec<Vec<f64>> = read.strain.iter().map(over_noise).collect();
     let Some(q) = judge_rows(&rows, &spec.prior, k).map(|q| in_job_order(q, order)) else {
         return Ok(Some(Installed {
             gauges: gauges.len(),
@@ -80,7 +73,11 @@ pub(super) fn installed(
         place(&plain, &other).ok().map(|l| l.upper_bound)
     };
     let log_det = crate::placement::quality::value(&rows, &spec.prior, k, &spec.criterion);
-    let recovered = as_recovered(task, &spec.prior, &strain);
+    let u = match task.all_calibrated(&gauges) {
+        true => 0.0,
+        false => job.placement.model_uncertainty_rel,
+    };
+    let recovered = as_recovered(task, &spec.prior, &read.over_sd, u);
     let quality = InstalledQuality {
         log_det,
         upper_bound: bound,

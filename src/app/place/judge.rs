@@ -23,21 +23,20 @@ pub(super) fn in_job_order(mut q: Quality, order: &[usize]) -> Quality {
 }
 
 /// Standard deviations that `recover` states for loads of their expected size `e`, before any widening, in shares of `e` and job order:
-/// `sigma_l^2 = [(P + sum_g a_g a_g' / sd_g^2)^-1]_ll + u^2`, `sd_g^2 = noise^2 + u^2 a_g'a_g`, with `a_g` the strain of gauge `g` under
-/// the loads of size `e`, `u` the model uncertainty, `P` what is known of loads beforehand. Tolerances of gluing have no part in it.
-/// `prior` is `P`; `strain` has `a_g` in the candidates' order, microstrain, with the noise of each gauge. `None` where the gauges do not
-/// tell the loads.
+/// `sigma_l^2 = [(P + A' W^-1 A)^-1]_ll + u^2`, with `A` the strain of the gauges under the loads of size `e`, `W` the covariance of their
+/// readings (`noise^2 + u^2 a_g'a_g` for gauge `g` of the model), `u` the model uncertainty, `P` what is known of loads beforehand. Tolerances
+/// of gluing have no part in it. `prior` is `P`; `rows` are those of `W^-1/2 A` in the candidates' order; `u` is 0 where no gauge is the
+/// model's. `None` where the gauges do not tell the loads.
 pub(super) fn as_recovered(
     task: &Task,
     prior: &[f64],
-    strain: &[(Vec<f64>, f64)],
+    rows: &[Vec<f64>],
+    u: f64,
 ) -> Option<Vec<f64>> {
     let k = task.cases.len();
-    let u = task.job.placement.model_uncertainty_rel;
     let mut m = prior.to_vec();
-    for (row, noise) in strain {
-        let variance = noise * noise + u * u * spd::dot(row, row);
-        spd::add_outer(&mut m, row, 1.0 / variance);
+    for row in rows {
+        spd::add_outer(&mut m, row, 1.0);
     }
     let inverse = spd::gram_of_lower(&spd::inverse_lower(&spd::cholesky(&m, k)?, k), k);
     let mut out = vec![0.0; k];
@@ -56,17 +55,20 @@ pub(super) fn chosen_as_recovered(
     let p = &task.job.placement;
     let chosen = channels.iter().map(|c| {
         let own = p.noise_by_bridge.iter().find(|(b, _)| b.name() == c.bridge);
-        let strain = c.row.iter().map(|v| v * c.sd).collect();
+        let strain: Vec<f64> = c.row.iter().map(|v| v * c.sd).collect();
         let noise = own.map_or(p.noise_microstrain, |n| n.1);
-        (strain, task.with_mesh_error(&c.gauge, noise))
+        let noise = task.with_mesh_error(&c.gauge, noise);
+        let sd = noise.hypot(p.model_uncertainty_rel * spd::dot(&strain, &strain).sqrt());
+        strain.iter().map(|v| v / sd).collect()
     });
-    let kept = task.kept_strain.iter().zip(&task.kept);
-    let kept = kept.map(|(row, g)| {
-        let noise = task.with_mesh_error(g, p.noise_microstrain);
-        (row.clone(), noise)
-    });
-    let strain: Vec<(Vec<f64>, f64)> = chosen.chain(kept).collect();
-    as_recovered(task, &task.without_kept(spec), &strain)
+    let kept = task.kept_recovered.iter().cloned();
+    let rows: Vec<Vec<f64>> = chosen.chain(kept).collect();
+    as_recovered(
+        task,
+        &task.without_kept(spec),
+        &rows,
+        p.model_uncertainty_rel,
+    )
 }
 
 /// Standard deviations of the loads in report units: as recovered, and as glued where that is more.

@@ -4,6 +4,7 @@ mod choose;
 mod curve;
 mod installed;
 mod judge;
+mod known;
 mod outcome;
 mod pool;
 mod region;
@@ -26,7 +27,7 @@ use super::strain::{
 use super::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::placement::quality::{judge_rows, reserve};
-use crate::sensitivity::{Sensitivity, check_separability, common_shells, from_cases};
+use crate::sensitivity::{Sensitivity, check_separability, common_shells};
 
 /// Gauges for the loads of a job: chosen from its candidates with a certificate, beside the installed ones where it has some.
 ///
@@ -48,7 +49,8 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     let sites = allowed_sites(job, fields, &common)?;
     let k = cases.len();
     let scales = scales(work, &cases, &common);
-    let mut task = task::task(job, fields, cases, scales, sites);
+    let given = known::given(work, job)?;
+    let mut task = task::task(job, fields, cases, scales, sites, given);
     task.keep(work)?;
     let (led, led_scales) = task.led();
     let errors = task.errors_led();
@@ -79,7 +81,9 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     let validation = reserved(work, &task, &rows, &spec.prior)?;
     let chosen_gauges = chosen.channels.iter().map(|c| c.gauge.clone());
     let all: Vec<_> = chosen_gauges.chain(task.kept.clone()).collect();
-    let s = from_cases(&all, &task.cases).map_err(|missing| without_strain(job, &missing))?;
+    let s = task
+        .s_of(&all)
+        .map_err(|missing| without_strain(job, &missing))?;
     let mesh_error = mesh_errors(&all, &s, &task.errors);
     work.findings.extend(coarse_at_gauges(&all, &mesh_error));
     let names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();

@@ -12,7 +12,7 @@ use crate::model::Vec3;
 use crate::placement::region::clear_of;
 use crate::placement::sites::{Site, wired};
 use crate::placement::{Criterion, PlaceError, Spec};
-use crate::sensitivity::LoadCaseOf;
+use crate::sensitivity::{LoadCaseOf, Sensitivity};
 
 /// The task.
 pub(super) struct Task<'a> {
@@ -30,10 +30,12 @@ pub(super) struct Task<'a> {
     pub sites: Vec<Site>,
     /// Gauges that stay.
     pub kept: Vec<Gauge>,
-    /// Their rows, columns in the candidates' order, over their standard deviations.
+    /// Their rows, columns in the candidates' order, made independent and of unit variance.
     pub kept_rows: Vec<Vec<f64>>,
-    /// The same in microstrain.
-    pub kept_strain: Vec<Vec<f64>>,
+    /// The same as `recover` weighs them: without the gauge factor's tolerance.
+    pub kept_recovered: Vec<Vec<f64>>,
+    /// The S of `[sensitivity]`.
+    pub given: Option<Sensitivity>,
 }
 
 impl<'a> Task<'a> {
@@ -82,19 +84,11 @@ impl<'a> Task<'a> {
             laid.retain(|g| names.iter().any(|n| own(g, n)));
         }
         let rel = p.model_uncertainty_rel.hypot(p.gauge_factor_rel);
-        let s = crate::sensitivity::from_cases(&laid, &self.cases)
+        let s = self
+            .s_of(&laid)
             .map_err(|missing| without_strain(self.job, &missing))?;
-        for g in 0..laid.len() {
-            let row: Vec<f64> = self
-                .order
-                .iter()
-                .map(|&l| s.values[(g, l)] * self.scales[l] / MICRO)
-                .collect();
-            let noise = self.with_mesh_error(&laid[g], p.noise_microstrain);
-            let sd = noise.hypot(rel * spd::dot(&row, &row).sqrt());
-            self.kept_rows.push(row.iter().map(|v| v / sd).collect());
-            self.kept_strain.push(row);
-        }
+        self.kept_rows = self.rows_of(&laid, &s, rel).over_sd;
+        self.kept_recovered = self.rows_of(&laid, &s, p.model_uncertainty_rel).over_sd;
         let points: Vec<_> = laid.iter().map(|g| [g.position, g.position]).collect();
         let here: Vec<Vec3> = self
             .sites
@@ -248,6 +242,7 @@ pub(super) fn task<'a>(
     cases: Vec<LoadCaseOf<'a>>,
     scales: Vec<f64>,
     sites: Vec<Site>,
+    given: Option<Sensitivity>,
 ) -> Task<'a> {
     Task {
         job,
@@ -259,7 +254,8 @@ pub(super) fn task<'a>(
         sites,
         kept: Vec::new(),
         kept_rows: Vec::new(),
-        kept_strain: Vec::new(),
+        kept_recovered: Vec::new(),
+        given,
     }
 }
 

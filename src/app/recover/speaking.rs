@@ -9,6 +9,7 @@ use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::linalg::Matrix;
 use crate::sensitivity::Sensitivity;
+use crate::series::still::{Gives, Still};
 
 /// A record whose columns are the gauges of S, every one of which gives something somewhere.
 pub(super) struct Speaking {
@@ -45,18 +46,36 @@ pub(super) fn speaking(work: &mut Work, task: &Task, bytes: FileBytes) -> Result
         )));
     }
     let mut record = record.with_columns(used.iter().map(|&g| channel(g)).collect());
-    let silent = silent(&record)?;
-    if silent.iter().any(|s| *s) {
-        let dead = used.iter().zip(&silent).filter(|(_, s)| **s);
-        let names: Vec<&str> = dead.map(|(g, _)| all.gauges[*g].as_str()).collect();
-        work.findings.push(Finding::new(
-            Severity::Warning,
-            "gauge-silent",
-            names.join(", "),
-            "these gauges give nothing: the loads are those of the others, with wider intervals",
-            "repair the channel, or leave its gauge out: [[correction]] ignore = true",
-        ));
-        let mut speaks = silent.iter().map(|s| !s);
+    let given = columns_of_record(&record)?;
+    // Where nothing varies the truck may stand still.
+    let any_signal = given.contains(&Gives::Signal);
+    let silent = |g: &Gives| *g == Gives::Nothing || any_signal && *g == Gives::OneValue;
+    if given.iter().any(silent) {
+        let of = |what: Gives| -> Vec<&str> {
+            let those = used.iter().zip(&given).filter(|(_, g)| **g == what);
+            those.map(|(g, _)| all.gauges[*g].as_str()).collect()
+        };
+        let still = if any_signal {
+            of(Gives::OneValue)
+        } else {
+            vec![]
+        };
+        for (names, what) in [
+            (of(Gives::Nothing), "nothing"),
+            (still, "one and the same value"),
+        ] {
+            if names.is_empty() {
+                continue;
+            }
+            work.findings.push(Finding::new(
+                Severity::Warning,
+                "gauge-silent",
+                names.join(", "),
+                format!("these gauges give {what}: the loads are those of the others, with wider intervals"),
+                "repair the channel, or leave its gauge out: [[correction]] ignore = true",
+            ));
+        }
+        let mut speaks = given.iter().map(|g| !silent(g));
         used.retain(|_| speaks.next().unwrap_or(true));
         record = record.with_columns(used.iter().map(|&g| channel(g)).collect());
     }
@@ -80,22 +99,18 @@ pub(super) fn speaking(work: &mut Work, task: &Task, bytes: FileBytes) -> Result
     })
 }
 
-/// Which columns give nothing anywhere over the record, looked at in ten pieces spread over it.
-fn silent(record: &Record) -> Result<Vec<bool>, Faults> {
+/// What the columns give over the record, looked at in ten pieces spread over it.
+fn columns_of_record(record: &Record) -> Result<Vec<Gives>, Faults> {
     let (n, pieces) = (record.n_columns(), record.n_pieces());
-    let mut out = vec![true; n];
+    let mut looked = Still::new(n);
     for p in 0..pieces.min(10) {
         let (_, values) = record
             .piece(p * pieces / pieces.min(10))
             .map_err(Faults::from)?;
-        for row in values.chunks_exact(n.max(1)) {
-            out.iter_mut()
-                .zip(row)
-                .for_each(|(s, v)| *s &= !v.is_finite());
-        }
-        if out.iter().all(|s| !s) {
+        looked.look(&values);
+        if looked.columns().iter().all(|g| *g == Gives::Signal) && p > 0 {
             break;
         }
     }
-    Ok(out)
+    Ok(looked.columns())
 }
