@@ -255,6 +255,7 @@ fn truth(text: &str, gauges: &[Glued], runs: &str) -> StrainFrame {
                 position: Some(g.place),
             })
             .collect(),
+        moments: Vec::new(),
         load_names: WHEELS.iter().map(|w| format!("{}.FZ", w.0)).collect(),
         load_positions: None,
         tensors: (0..gauges.len())

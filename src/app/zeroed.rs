@@ -69,18 +69,40 @@ pub(super) struct RowZeros {
     pub noise_factor: Vec<f64>,
 }
 
+/// Runs of `hold_out` that the strain file lacks, as every command that reads its runs says.
+fn held_out_runs(job: &Job, measured: &Measured, table: &StrainTable) -> Result<(), Faults> {
+    let (HoldOut::Runs(names), StrainRows::Runs(runs)) = (&measured.hold_out, &table.rows) else {
+        return Ok(());
+    };
+    let unknown: FaultList = names
+        .iter()
+        .filter(|n| !runs.contains(n))
+        .map(|n| {
+            Fault::at(
+                &*job.file,
+                measured.line,
+                "measured.hold_out",
+                format!("`{}` has no run `{n}`", table.file),
+                "name runs of the strain file",
+            )
+        })
+        .collect();
+    Faults::check(unknown)
+}
+
 /// Zeros from the runs of `zero_runs`; `None` where the job names none.
 ///
 /// A run of `zero_runs` itself gets its zero from the others, so that its loads show how well the zero was followed.
 ///
 /// # Errors
-/// Runs that the table lacks, rows that are samples.
+/// Runs that the table lacks, those of `hold_out` among them; rows that are samples.
 pub(super) fn zeros_by_row(
     work: &mut Work,
     job: &Job,
     measured: &Measured,
     table: &StrainTable,
 ) -> Result<Option<RowZeros>, Faults> {
+    held_out_runs(job, measured, table)?;
     if measured.zero_runs.is_empty() {
         return Ok(None);
     }

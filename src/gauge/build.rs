@@ -9,7 +9,7 @@ use super::surface::{Foot, centre, nearest, to_side};
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::fe::strain_tensor::Surface;
 use crate::finding::{Finding, Severity};
-use crate::model::{Mat3, Model, ShellIx, Vec3};
+use crate::model::{Mat3, Model, Shell, ShellIx, Vec3};
 
 /// Whether the result has strain at the corners of shells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +95,8 @@ pub(super) fn build_by(
         _ => middle,
     };
     if let Some(f) = foot {
-        findings.push(found(spec, element.id, side, &f, corners));
+        let size = reach(model, element, middle);
+        findings.push(found(spec, element.id, side, &f, corners, size));
     }
     let drawn = foot.map_or(middle, |f| f.point);
     let legs: Vec<(String, f64)> = match spec.rosette {
@@ -137,7 +138,44 @@ pub(super) fn build_by(
     Ok((gauges, findings))
 }
 
-fn found(spec: &GaugeSpec, element: u32, side: Surface, f: &Foot, corners: CornerRows) -> Finding {
+/// How far from an element's reference surface a place on its skin may be stated: as far as its corners are from each other, which the chord of
+/// a curved skin is not, and its offset and thickness.
+fn reach(model: &Model, element: &Shell, middle: Vec3) -> f64 {
+    let corners = super::surface::corners(model, element);
+    let far = |x: f64, c: &Vec3| x.max((c - middle).norm());
+    let across = 2.0 * corners.iter().flatten().fold(0.0, far);
+    let sides = [Surface::Bottom, Surface::Top].map(|s| to_side(model, element, s).abs());
+    across + sides[0].max(sides[1])
+}
+
+/// Distances, in those that a place on the skin may have, beyond which no rounding of a drawing explains it.
+const FAR: f64 = 5.0;
+
+fn found(
+    spec: &GaugeSpec,
+    element: u32,
+    side: Surface,
+    f: &Foot,
+    corners: CornerRows,
+    reach: f64,
+) -> Finding {
+    if f.distance > reach {
+        let severity = match f.distance > FAR * reach {
+            true => Severity::Error,
+            false => Severity::Warning,
+        };
+        return Finding::new(
+            severity,
+            "gauge-off-structure",
+            &spec.name,
+            format!(
+                "gauge `{}` is stated {:.4} from the nearest shell, element {element}, which is farther than that is wide",
+                spec.name, f.distance
+            ),
+            "check the position's unit, its coordinate system and the deck's origin",
+        )
+        .with_numbers(f.distance, reach);
+    }
     let how = match corners {
         CornerRows::Present => "strain is interpolated there from the corner rows",
         CornerRows::Absent => {

@@ -144,13 +144,15 @@ pub struct LoadShift {
     pub run: String,
     /// Load.
     pub load: String,
-    /// As measured or computed for the run, kN.
+    /// Unit of what follows: kN, kN m for a moment.
+    pub unit: &'static str,
+    /// As measured or computed for the run.
     pub stated: f64,
-    /// Recovered by the analyst's model, kN.
+    /// Recovered by the analyst's model.
     pub before: f64,
-    /// Recovered with the effects in, kN.
+    /// Recovered with the effects in.
     pub after: f64,
-    /// One standard deviation of `after`, kN.
+    /// One standard deviation of `after`.
     pub sigma: f64,
 }
 

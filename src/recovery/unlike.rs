@@ -27,12 +27,23 @@ pub fn is_unlike(run: &RunEstimate, known: &Uncertainty) -> bool {
     chance_estimated(run.chi2, run.dof, known.dof) < SIGNIFICANT
 }
 
-/// A finding a run, with the gauges that deviate most.
+/// Root of chi-square over its degrees of freedom (R. T. Birge, Phys. Rev. 40 (1932) 207).
+fn birge(run: &RunEstimate) -> f64 {
+    (run.chi2 / run.dof.max(1) as f64).sqrt()
+}
+
+/// A finding a run, with the gauges that deviate most; one for all where nothing was calibrated.
 pub fn check(gauges: &[String], runs: &[RunEstimate], known: &Uncertainty) -> Vec<Finding> {
     let unlike = runs.iter().filter(|r| is_unlike(r, known));
+    if !known.dof.is_finite() {
+        let list: Vec<&RunEstimate> = unlike.collect();
+        return above_stated(gauges, &list, runs.len())
+            .into_iter()
+            .collect();
+    }
     unlike
         .map(|r| {
-            let birge = (r.chi2 / r.dof.max(1) as f64).sqrt();
+            let birge = birge(r);
             Finding::new(
                 Severity::Warning,
                 CODE,
@@ -48,6 +59,27 @@ pub fn check(gauges: &[String], runs: &[RunEstimate], known: &Uncertainty) -> Ve
             .with_numbers(birge, 1.0)
         })
         .collect()
+}
+
+/// What is to be said where the errors of S are those of a model and its mesh.
+fn above_stated(gauges: &[String], unlike: &[&RunEstimate], of: usize) -> Option<Finding> {
+    let worst_run = (unlike.iter()).max_by(|a, b| birge(a).total_cmp(&birge(b)))?;
+    let most = birge(worst_run);
+    Some(
+        Finding::new(
+            Severity::Warning,
+            "residual-above-stated-errors",
+            "residual",
+            format!(
+                "in {} of {of} runs residuals are up to {most:.1} times what noise, model uncertainty and what may be left of the mesh's error make, most in                  `{}` at {}. The loads of these runs are estimated with that much more error on every gauge, their intervals accordingly",
+                unlike.len(),
+                worst_run.estimate.run,
+                worst(gauges, worst_run)
+            ),
+            "state the noise and `model_uncertainty_rel` you believe in, or refine the deck; if you do, a small load is missing or a gauge is off",
+        )
+        .with_numbers(most, 1.0),
+    )
 }
 
 /// Halvings of the interval in which the added error is sought: more than any reading has digits.

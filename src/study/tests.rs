@@ -24,6 +24,7 @@ fn spec(trials: usize) -> StudySpec {
     StudySpec {
         truth: vec![100.0, 40.0],
         prior: vec![None, None],
+        sizes: None,
         noise: 1e-6,
         trials,
         seed: 5,

@@ -27,6 +27,8 @@ pub struct StudySpec {
     pub truth: Vec<f64>,
     /// Prior standard deviation of nuisance loads, `None` for wanted ones.
     pub prior: Vec<Option<f64>>,
+    /// Sizes that scale the columns of S for its condition number; `None` scales them to unit norm.
+    pub sizes: Option<Vec<f64>>,
     /// Noise that the recovery is told, strain: weighs readings against priors.
     pub noise: f64,
     /// Trials a layout and error.
@@ -38,7 +40,7 @@ pub struct StudySpec {
 /// What became of the loads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StudyRow {
-    /// Of S in microstrain per job unit; the median over the layouts.
+    /// Of S with its columns scaled; the median over the layouts.
     pub condition_number: f64,
     /// Mean error by load.
     pub bias: Vec<f64>,
@@ -48,6 +50,16 @@ pub struct StudyRow {
     pub coverage: Vec<f64>,
     /// Layouts that do not separate the loads.
     pub singular: usize,
+}
+
+/// Columns times `sizes`, else of unit norm.
+fn scaled(mut s: Matrix, sizes: Option<&[f64]>) -> Matrix {
+    for (c, mut column) in s.column_iter_mut().enumerate() {
+        let norm = column.norm();
+        let unit = if norm > 0.0 { 1.0 / norm } else { 1.0 };
+        column *= sizes.and_then(|z| z.get(c).copied()).unwrap_or(unit);
+    }
+    s
 }
 
 /// Recovers `spec.trials` times, the trials dealt over `layouts` (lists of pool gauges) in turn. In parallel; every trial has its own
@@ -63,7 +75,10 @@ pub fn study_layout(
         layouts.par_iter().map(|l| solver(pool, l, spec)).collect();
     let mut conditions: Vec<f64> = layouts
         .iter()
-        .map(|l| dense::condition(&Matrix::from_fn(l.len(), k, |g, c| pool[l[g]].row[c])))
+        .map(|l| {
+            let s = Matrix::from_fn(l.len(), k, |g, c| pool[l[g]].row[c]);
+            dense::condition(&scaled(s, spec.sizes.as_deref()))
+        })
         .collect();
     conditions.sort_by(f64::total_cmp);
     let usable: Vec<usize> = (0..layouts.len())

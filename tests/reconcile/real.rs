@@ -239,6 +239,7 @@ fn gauges_12_and_13_of_the_thesis_are_unfit_for_the_payload_and_no_gain_or_sign_
                 position: None,
             })
             .collect(),
+        moments: Vec::new(),
         load_names: vec!["payload".into()],
         load_positions: None,
         influence: per_kn

@@ -59,6 +59,7 @@ fn frame() -> StrainFrame {
                 position: None,
             })
             .collect(),
+        moments: Vec::new(),
         load_names: NAMES.map(str::to_owned).to_vec(),
         load_positions: None,
         influence,

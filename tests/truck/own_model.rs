@@ -78,6 +78,7 @@ fn tables_6_8_and_6_9_noise_in_proportion_at_ten_gauges() {
     let spec = StudySpec {
         truth: own().reactions(),
         prior: vec![None; 6],
+        sizes: None,
         noise: MICRO,
         trials: 2000,
         seed: 1,

@@ -1,7 +1,7 @@
 //! The gauge file: a row a gauge, columns as the keys of `[[gauge]]`.
 //!
 //! `direction` is `dir_x`, `dir_y`, `dir_z`; `position` is `x`, `y`, `z` in job units, or `x_m`, `y_m`, `z_m` in metres. `gauge`
-//! may stand for `name` and `kind` for `bridge`. Columns that are not known are left alone.
+//! may stand for `name` and `kind` for `bridge`. Columns that are not known are left alone, but for those that look like one of these.
 
 use super::resolve::{check_gauge, surface_from};
 use super::suggest;
@@ -42,6 +42,7 @@ pub fn gauges_from_table(t: &Table, length_m: f64, faults: &mut FaultList) -> Ve
         faults.push(Fault::at(&*t.file, 1, "name", "no column `name`", remedy));
         return Vec::new();
     }
+    misspelt(t, faults);
     let mut out = Vec::new();
     for row in 0..t.rows.len() {
         let before = faults.len();
@@ -52,6 +53,49 @@ pub fn gauges_from_table(t: &Table, length_m: f64, faults: &mut FaultList) -> Ve
         }
     }
     out
+}
+
+/// Columns whose names are long enough to be told from others when misspelt.
+const LONG_NAMES: [&str; 12] = [
+    "element",
+    "surface",
+    "angle_deg",
+    "bridge",
+    "bridge_factor",
+    "grid_length",
+    "station",
+    "transverse_sensitivity",
+    "rosette",
+    "point",
+    "element2",
+    "surface2",
+];
+
+/// Columns that look like one that the table lacks: an angle that is not read would be 0.
+fn misspelt(t: &Table, faults: &mut FaultList) {
+    let lacking: Vec<&str> = LONG_NAMES
+        .into_iter()
+        .filter(|n| t.column(&[n]).is_none())
+        .collect();
+    for h in t
+        .header
+        .iter()
+        .filter(|h| !LONG_NAMES.contains(&h.as_str()))
+    {
+        let lower = h.to_lowercase();
+        let whole = |n: &&str| n.split_once('_').is_some_and(|(first, _)| first == lower);
+        let meant = lacking.iter().copied().find(whole);
+        let meant = meant.or_else(|| suggest::closest(h, lacking.iter().copied()));
+        if let Some(n) = meant.filter(|_| h.len() > 4) {
+            faults.push(Fault::at(
+                &*t.file,
+                1,
+                h.as_str(),
+                format!("`{h}` is no column of a gauge file"),
+                format!("did you mean `{n}`? Call it otherwise if it is something else"),
+            ));
+        }
+    }
 }
 
 fn gauge_of_row(t: &Table, row: usize, length_m: f64, faults: &mut FaultList) -> JobGauge {

@@ -72,6 +72,12 @@ pub(super) fn runs_of(
     let mut net = Vec::new();
     if use_strain {
         let read = strain(work, task, model)?;
+        if let Some(name) = &task.payload.unloaded
+            && rows.is_empty()
+            && !read.iter().any(|(run, _)| run == name)
+        {
+            return Err(no_unloaded_run(task, "the strain file", name));
+        }
         net = net_rows(model, &read);
         for (run, nets) in read {
             if Some(&run) == task.payload.unloaded.as_ref() {
@@ -222,14 +228,18 @@ fn unloaded<'a>(task: &Task, rows: &'a [RunRow]) -> Result<Option<&'a RunRow>, F
     match rows.iter().find(|r| r.run == *name) {
         Some(row) => Ok(Some(row)),
         None if task.job.runs.is_none() => Ok(None),
-        None => Err(Faults::from(Fault::at(
-            &*task.job.file,
-            task.payload.line,
-            "payload.unloaded",
-            format!("the runs file has no run `{name}`"),
-            "name the run without payload",
-        ))),
+        None => Err(no_unloaded_run(task, "the runs file", name)),
     }
+}
+
+fn no_unloaded_run(task: &Task, file: &str, name: &str) -> Faults {
+    Faults::from(Fault::at(
+        &*task.job.file,
+        task.payload.line,
+        "payload.unloaded",
+        format!("{file} has no run `{name}`"),
+        "name the run without payload",
+    ))
 }
 
 /// Net strain of every run by gauge of the model; says which gauges are too weak.

@@ -1,6 +1,6 @@
 //! Readings of a job by run and gauge, with those that are held out.
 
-use crate::app::fault::{Fault, FaultList, Faults};
+use crate::app::fault::{Fault, Faults};
 use crate::app::job::strain::{StrainRows, StrainTable};
 use crate::app::job::{HoldOut, Job, Reference};
 use crate::app::work::Work;
@@ -47,24 +47,7 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
         held_out: Vec::new(),
     };
     out.held_out = match &measured.hold_out {
-        HoldOut::Runs(names) => {
-            let unknown: FaultList = names
-                .iter()
-                .filter(|n| !out.runs.contains(n))
-                .map(|n| {
-                    let wrong = format!("`{}` has no run `{n}`", table.file);
-                    Fault::at(
-                        &*job.file,
-                        measured.line,
-                        "measured.hold_out",
-                        wrong,
-                        "name runs of the strain file",
-                    )
-                })
-                .collect();
-            Faults::check(unknown)?;
-            out.runs.iter().map(|r| names.contains(r)).collect()
-        }
+        HoldOut::Runs(names) => out.runs.iter().map(|r| names.contains(r)).collect(),
         _ => vec![false; out.runs.len()],
     };
     if let HoldOut::File(named) = &measured.hold_out {

@@ -2,12 +2,13 @@
 
 use super::model_part::ModelPart;
 use crate::app::fault::{Fault, FaultList, Faults};
+use crate::app::job::quantity::quantity_of_name;
 use crate::app::job::runs::{RunRow, read_runs};
 use crate::app::job::{Job, WheelForces as JobWheelForces};
 use crate::app::work::Work;
 use crate::reconcile::Observations;
 use crate::reconcile::strain::{PayloadWeight, StrainFrame, WheelForces, angle_scatter};
-use crate::units::KILO;
+use crate::units::{KILO, Quantity};
 
 /// Noise of a measured wheel force where the runs file states none: nothing is assumed better than this, kN.
 const LOAD_NOISE_KN: f64 = 0.05;
@@ -65,6 +66,7 @@ pub(super) fn frame(
     let mut frame = StrainFrame {
         observations,
         gauges: part.gauges,
+        moments: part.load_names.iter().map(|n| is_moment(job, n)).collect(),
         load_names: part.load_names,
         load_positions: part.load_positions,
         influence: part.influence,
@@ -114,4 +116,14 @@ fn payload_of(row: &RunRow, gravity: f64, origin: [f64; 2]) -> [f64; 3] {
         row.payload_x_m.map_or(0.0, |x| x - origin[0]),
         row.payload_y_m.map_or(0.0, |y| y - origin[1]),
     ]
+}
+
+/// Whether a load of the job is a moment.
+fn is_moment(job: &Job, name: &str) -> bool {
+    let stated = job.loads.iter().find(|l| l.name == name);
+    let quantity = match stated {
+        Some(l) => l.quantity(),
+        None => Some(quantity_of_name(name)),
+    };
+    quantity == Some(Quantity::Moment)
 }

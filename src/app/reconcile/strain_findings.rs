@@ -77,8 +77,8 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
                         "load-moved",
                         format!("{} in {}", l.load, l.run),
                         format!(
-                            "the recovered load moves from {:.2} to {:.2} kN with the effect in",
-                            l.before, l.after
+                            "the recovered load moves from {:.2} to {:.2} {} with the effect in",
+                            l.before, l.after, l.unit
                         ),
                         "use the extended model",
                     )

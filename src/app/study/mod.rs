@@ -104,6 +104,7 @@ pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
             .iter()
             .map(|l| if l.wanted { None } else { l.expected })
             .collect(),
+        sizes: loads.iter().map(|l| l.expected).collect(),
         noise: MICROSTRAIN
             * job
                 .measured

@@ -118,6 +118,8 @@ pub struct StrainFrame {
     pub gauges: Vec<GaugeFacts>,
     /// Names of the wheel loads: the first columns.
     pub load_names: Vec<String>,
+    /// Which of them are moments, kN m; others, and all where this is empty, are forces, kN.
+    pub moments: Vec<bool>,
     /// Plan position (x forward or back, y left), metres, of each wheel load, where known.
     pub load_positions: Option<Vec<[f64; 2]>>,
     /// Microstrain per kN of each wheel load, then per kg of payload: 1, dx, dy, dx dy; `n_gauges x (n_loads + 4)` by rows.
@@ -177,6 +179,11 @@ impl StrainFrame {
     /// Number of wheel loads.
     pub fn n_loads(&self) -> usize {
         self.load_names.len()
+    }
+
+    /// Whether a load is a moment.
+    pub fn is_moment(&self, load: usize) -> bool {
+        self.moments.get(load).copied().unwrap_or(false)
     }
 
     /// Number of columns of `influence`.

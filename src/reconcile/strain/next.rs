@@ -38,7 +38,8 @@ fn designs(frame: &StrainFrame) -> Vec<Design> {
     });
     /// A jack under a wheel changes its force by about this much, kN.
     const JACK_KN: f64 = 10.0;
-    for (l, name) in frame.load_names.iter().enumerate() {
+    let forces = (0..n_l).filter(|l| !frame.is_moment(*l));
+    for (l, name) in forces.filter_map(|l| Some((l, frame.load_names.get(l)?))) {
         let mut jacked = vec![0.0; n_l];
         jacked[l] = JACK_KN;
         out.push(Design {

@@ -26,6 +26,7 @@ pub fn loads_before_after(
             out.push(LoadShift {
                 run: frame.observations.runs[run].clone(),
                 load: name.clone(),
+                unit: if frame.is_moment(l) { "kN m" } else { "kN" },
                 stated: frame.loads[run * frame.n_loads() + l],
                 before: before[l].0,
                 after: after[l].0,

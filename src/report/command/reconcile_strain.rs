@@ -73,14 +73,15 @@ fn gap_csv(found: &StrainPart) -> String {
 }
 
 fn loads_csv(found: &StrainPart) -> String {
-    let mut text = String::from("run,load,stated_kN,before_kN,after_kN,sigma_kN,moved\n");
+    let mut text = String::from("run,load,unit,stated,before,after,sigma,moved\n");
     for l in &found.outcome.loads {
         let moved = if l.moved() { "yes" } else { "no" };
         let _ = writeln!(
             text,
-            "{},{},{:.4},{:.4},{:.4},{:.4},{moved}",
+            "{},{},{},{:.4},{:.4},{:.4},{:.4},{moved}",
             csv_cell(&l.run),
             csv_cell(&l.load),
+            l.unit,
             l.stated,
             l.before,
             l.after,

@@ -73,6 +73,7 @@ pub fn reconcile_page(
             [l.run.clone(), l.load.clone()]
                 .into_iter()
                 .chain(kn)
+                .chain([l.unit.to_owned()])
                 .collect()
         })
         .collect();
@@ -84,9 +85,10 @@ pub fn reconcile_page(
             "recovered before",
             "after",
             "sigma",
+            "unit",
         ];
         sections.push(table_section(
-            "Loads that moved by more than two sigma, kN",
+            "Loads that moved by more than two sigma",
             &head,
             &moved,
             "",

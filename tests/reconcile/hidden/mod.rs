@@ -145,6 +145,7 @@ pub fn frame_of(dir: &Path) -> StrainFrame {
                 .collect(),
         },
         gauges: facts,
+        moments: Vec::new(),
         load_names: vertical.header[1..]
             .iter()
             .map(|h| format!("{}.FZ", h.trim_start_matches("FZ_")))
