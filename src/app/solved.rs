@@ -204,7 +204,8 @@ pub fn first_mode_of(work: &mut Work, job: &Job, read: &DeckModel) -> Option<f64
     None
 }
 
-/// Everything that the displacements depend on: the program's sources and version, the bytes of the deck and its includes, the load cases.
+/// Everything that the displacements depend on: the program's version, sources, dependencies and features (`build.rs`), the bytes of the
+/// deck and its includes, the load cases.
 fn identity(work: &mut Work, read: &DeckModel, cases: &[LoadCase], made: &str) -> String {
     let mut text = format!(
         "strainbridge {} {} {made}\n",
