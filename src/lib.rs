@@ -7,7 +7,7 @@
 //! | 10 | [`cli`] | arguments | calls of row 8, exit codes |
 //! | 9 | [`report`] | outcomes | html, pdf, csv, xlsx, vtu, op2 |
 //! | 8 | [`app`] | a [`Job`] and a [`Context`] | an [`Outcome`] |
-//! | 7 | [`mod@reconcile`], [`mod@study`], [`mod@payload`], [`mod@calibrate`] | measured and predicted channels | ranked effects, studies, weighings, a learnt S |
+//! | 7 | [`mod@reconcile`], [`mod@study`], [`mod@payload`], [`mod@calibrate`] | channels | ranked effects, studies, weighings, a learnt S |
 //! | 6 | [`placement`], [`recovery`], [`mod@respond`], [`vehicle`] | S, strain, accelerations | layouts, loads, stress |
 //! | 5 | [`mod@sensitivity`] | [`fe::Solution`]s and [`gauge::Gauge`]s | S in eps = S f |
 //! | 4 | [`gauge`] | strain at a place | what that gauge reads |
