@@ -1,4 +1,5 @@
-//! What a build knows of itself: a fingerprint of its sources, for the keys of kept solutions, and in release builds the commit.
+//! What a build knows of itself: a fingerprint of all that its numbers come from (sources, dependencies, features), for the keys of kept
+//! solutions, and in release builds the commit.
 
 use std::hash::{DefaultHasher, Hasher};
 use std::path::{Path, PathBuf};
@@ -11,9 +12,21 @@ fn main() {
         collect(&root.join(folder), &mut files);
     }
     files.sort();
+    // Another version of a solver or of a transform rounds otherwise. A crate that is somebody's dependency has no file of its own.
+    let lock = root.join("Cargo.lock");
+    if lock.is_file() {
+        println!("cargo::rerun-if-changed=Cargo.lock");
+        files.push(lock);
+    }
     let mut hasher = DefaultHasher::new();
     for file in &files {
         hasher.write(&std::fs::read(file).unwrap_or_default());
+    }
+    // Cargo runs this again for other features.
+    for feature in features() {
+        hasher.write(feature.as_bytes());
+        // So that no two lists of names run together into the same bytes.
+        hasher.write_u8(0);
     }
     println!(
         "cargo::rustc-env=STRAINBRIDGE_SOURCES={:016x}",
@@ -25,6 +38,14 @@ fn main() {
         _ => String::new(),
     };
     println!("cargo::rustc-env=STRAINBRIDGE_COMMIT={commit}");
+}
+
+/// Features of the crate that are built, in the order of their names.
+fn features() -> Vec<String> {
+    let names = std::env::vars_os().filter_map(|(name, _)| name.into_string().ok());
+    let mut features: Vec<String> = names.filter(|n| n.starts_with("CARGO_FEATURE_")).collect();
+    features.sort();
+    features
 }
 
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) {

@@ -7,7 +7,7 @@
 //! | 10 | [`cli`] | arguments | calls of row 8, exit codes |
 //! | 9 | [`report`] | outcomes | html, pdf, csv, xlsx, vtu, op2 |
 //! | 8 | [`app`] | a [`Job`] and a [`Context`] | an [`Outcome`] |
-//! | 7 | [`mod@reconcile`], [`mod@study`], [`mod@payload`], [`mod@calibrate`] | measured and predicted channels | ranked effects, studies, weighings, a learnt S |
+//! | 7 | [`mod@reconcile`], [`mod@study`], [`mod@payload`], [`mod@calibrate`] | channels | ranked effects, studies, weighings, a learnt S |
 //! | 6 | [`placement`], [`recovery`], [`mod@respond`], [`vehicle`] | S, strain, accelerations | layouts, loads, stress |
 //! | 5 | [`mod@sensitivity`] | [`fe::Solution`]s and [`gauge::Gauge`]s | S in eps = S f |
 //! | 4 | [`gauge`] | strain at a place | what that gauge reads |
@@ -15,6 +15,37 @@
 //! | 2 | [`model`] | a deck's cards | a checked, immutable [`model::Model`] |
 //! | 1 | [`units`], [`linalg`], [`series`], [`estimate`], [`finding`] | no word of finite elements here | |
 //! | 0 | crate `nastran` | bytes | cards and tables |
+//!
+//! Gauges placed and loads recovered by one job:
+//!
+//! ```
+//! use strainbridge::{Context, Disk, Folder, Job, Severity};
+//!
+//! # // The carrier of `examples/frame` with a layout asked for, in a folder of its own.
+//! # let examples = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/frame");
+//! # let folder = std::env::temp_dir().join(format!("strainbridge-lines-{}", std::process::id()));
+//! # std::fs::create_dir_all(&folder)?;
+//! # for name in ["frame.bdf", "gauges.csv", "strain.csv"] {
+//! #     std::fs::copy(examples.join(name), folder.join(name))?;
+//! # }
+//! # let layout = "[candidates]\nproperties = [1, 2]\nangle_step_deg = 45\n[placement]\ngauges = 12\nspacing = 100.0\n";
+//! # let text = std::fs::read_to_string(examples.join("recover.toml"))?;
+//! # std::fs::write(folder.join("truck.toml"), format!("{text}\n{layout}"))?;
+//! # std::env::set_current_dir(&folder)?;
+//! let job = Job::read("truck.toml", &Disk)?; // every fault with file:line
+//! let cx = Context::new(&Disk).store(&Folder::beside(&job));
+//! let plan = strainbridge::place(&job, &cx)?;
+//! for g in &plan.gauges {
+//!     println!("{} {} {:.1} deg", g.name, g.element, g.angle_deg);
+//! }
+//! let loads = strainbridge::recover(&job, &cx)?; // runs, sigma, units, findings
+//! assert!(loads.findings.worst() < Some(Severity::Error));
+//! # assert_eq!(plan.gauges.len(), 12);
+//! # assert!(folder.join("truck.cache").is_dir(), "solutions are kept beside the job");
+//! # std::env::set_current_dir(examples)?;
+//! # std::fs::remove_dir_all(&folder)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! Conventions, once and for all:
 //! - strain is dimensionless inside (microstrain only in files and reports), tension positive; shear in an element frame is engineering
@@ -57,6 +88,7 @@ pub use app::context::{Context, Disk};
 pub use app::fault::{Fault, Faults};
 pub use app::job::Job;
 pub use app::outcome::Outcome;
+pub use app::store::Folder;
 pub use finding::Severity;
 
 pub use app::ballast::ballast;

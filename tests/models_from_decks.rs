@@ -18,7 +18,10 @@ fn json(path: &Path) -> Option<Value> {
     serde_json::from_slice(&std::fs::read(path).ok()?).ok()
 }
 
-/// Name, expected mesh and our model of every case with a mesh.
+/// Cases with a mesh that the set has at least (30 in November 2026).
+const LEAST: usize = 27;
+
+/// Name, expected mesh and our model of every case with a mesh; none where the set is absent.
 fn cases() -> Vec<(String, Value, DeckModel)> {
     let Some(folder) = shared() else {
         return Vec::new();
@@ -57,7 +60,27 @@ fn cases() -> Vec<(String, Value, DeckModel)> {
             read,
         ));
     }
+    assert!(out.len() >= LEAST, "{} cases", out.len());
     out
+}
+
+/// Calls `check` for every case, and adds up what it compared; fails where that is less than the set is known to hold, so that a test can't
+/// pass by comparing nothing.
+fn at_least(least: usize, mut check: impl FnMut(&str, &Value, &DeckModel) -> usize) {
+    let cases = cases();
+    let compared = cases.iter().map(|(n, mesh, read)| check(n, mesh, read));
+    let compared: usize = compared.sum();
+    assert!(cases.is_empty() || compared >= least, "{compared} compared");
+}
+
+/// Our model of a case, which is in the set wherever the set is there.
+fn case(name: &str) -> Option<DeckModel> {
+    let cases = cases();
+    if cases.is_empty() {
+        return None;
+    }
+    let found = cases.into_iter().find(|c| c.0 == name);
+    Some(found.unwrap_or_else(|| panic!("no case {name}")).2)
 }
 
 fn vec3(v: &Value) -> Vec3 {
@@ -89,7 +112,8 @@ fn every_real_deck_is_a_model_without_faults() {
 #[test]
 fn grids_stand_where_another_reader_puts_them() {
     let mut wrong = String::new();
-    for (name, mesh, read) in cases() {
+    // The set holds 841.
+    at_least(800, |name, mesh, read| {
         let m = &read.model;
         // Coordinates of a 32-bit OP2 are exact singles on both sides; what remains is the arithmetic of frames.
         let tolerance = 1e-9 * size(m);
@@ -100,7 +124,8 @@ fn grids_stand_where_another_reader_puts_them() {
                 mesh["nodes"]
             ));
         }
-        for g in mesh["grids"].as_array().unwrap() {
+        let grids = mesh["grids"].as_array().unwrap();
+        for g in grids {
             let id = g["id"].as_u64().unwrap() as u32;
             let Some(ix) = m.grid_ix(id) else {
                 wrong.push_str(&format!("{name}: no grid {id}\n"));
@@ -121,16 +146,21 @@ fn grids_stand_where_another_reader_puts_them() {
                 ));
             }
         }
-    }
+        grids.len()
+    });
     assert!(wrong.is_empty(), "{wrong}");
 }
 
 #[test]
 fn shells_have_the_output_frames_and_material_axes_of_the_oracle() {
     let mut wrong = String::new();
-    for (name, mesh, read) in cases() {
+    // The set holds 586.
+    at_least(550, |name, mesh, read| {
         let m = &read.model;
-        for f in mesh["cquad4_frames"].as_array().into_iter().flatten() {
+        let Some(frames) = mesh["cquad4_frames"].as_array() else {
+            return 0;
+        };
+        for f in frames {
             let id = f["eid"].as_u64().unwrap() as u32;
             let s = &m.shells[m
                 .shell_ix(id)
@@ -167,14 +197,16 @@ fn shells_have_the_output_frames_and_material_axes_of_the_oracle() {
                 ));
             }
         }
-    }
+        frames.len()
+    });
     assert!(wrong.is_empty(), "{wrong}");
 }
 
 #[test]
 fn masses_agree_with_another_reader_where_it_is_right() {
     let mut wrong = String::new();
-    for (name, mesh, read) in cases() {
+    // The set holds 20.
+    at_least(18, |name, mesh, read| {
         // The other reader ignores offsets of CBARs; the printed mass of the ring has a test of its own.
         // Where the mesh oracle is the geometry of an OP2, its mass is not the solver's (radial_cd: 3.41 against 2.56 of the same mesh
         // read from its sister decks). It takes curved elements by their corners; the next tests hold us to OGPWG there.
@@ -183,17 +215,17 @@ fn masses_agree_with_another_reader_where_it_is_right() {
             "nx_radial_cd",
             "nx_quad8_replicated_deck",
         ]
-        .contains(&name.as_str())
+        .contains(&name)
         {
-            continue;
+            return 0;
         }
         let Some(expected) = mesh["mass"]["mass"].as_f64() else {
-            continue;
+            return 0;
         };
         let w = read.model.weight();
         if (w.mass - expected).abs() > 1e-6 * expected {
             wrong.push_str(&format!("{name}: mass {} expected {expected}\n", w.mass));
-            continue;
+            return 1;
         }
         let d = (w.cg - vec3(&mesh["mass"]["cg"])).amax();
         if d > 1e-5 * size(&read.model) {
@@ -202,16 +234,14 @@ fn masses_agree_with_another_reader_where_it_is_right() {
                 size(&read.model)
             ));
         }
-    }
+        1
+    });
     assert!(wrong.is_empty(), "{wrong}");
 }
 
 #[test]
 fn the_ring_weighs_what_its_solver_printed_about_grid_19() {
-    let Some((_, _, read)) = cases()
-        .into_iter()
-        .find(|c| c.0 == "n95_inertia_relief_ring")
-    else {
+    let Some(read) = case("n95_inertia_relief_ring") else {
         return;
     };
     let expected = json(
@@ -245,7 +275,7 @@ fn the_ring_weighs_what_its_solver_printed_about_grid_19() {
 #[test]
 fn grid_point_weight_of_the_solver_is_ours() {
     for name in ["nx_gpwg_1", "nx_opg_1"] {
-        let Some((_, _, read)) = cases().into_iter().find(|c| c.0 == name) else {
+        let Some(read) = case(name) else {
             return;
         };
         let expected = json(&shared().unwrap().join(name).join("expected.json")).unwrap();
@@ -274,7 +304,7 @@ fn grid_point_weight_of_the_solver_is_ours() {
 #[test]
 fn curved_elements_weigh_what_the_solver_says() {
     let name = "nx_quad8_replicated_deck";
-    let Some((_, _, read)) = cases().into_iter().find(|c| c.0 == name) else {
+    let Some(read) = case(name) else {
         return;
     };
     let expected = json(&shared().unwrap().join(name).join("expected.json")).unwrap();

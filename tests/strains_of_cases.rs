@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use strainbridge::fe::from_results::{ReadOptions, solution_from_results};
 use strainbridge::fe::shell_frame::{ShellPlace, shell_axes};
 use strainbridge::fe::strain_rows::components;
-use strainbridge::fe::strain_tensor::{basic_tensor, strain_at_fibre};
+use strainbridge::fe::strain_tensor::basic_tensor;
 use strainbridge::fe::{CaseResult, PlaneStrain, Solution, from_results::surface_z};
 use strainbridge::model::{GridIx, Model, ShellIx, Vec3};
 
@@ -127,11 +127,13 @@ fn at(model: &Model, case: &CaseResult, element: u32, grid: u32) -> [PlaneStrain
     case.shells.corners[i][corner]
 }
 
-/// What the file's row states, from strain at the surfaces: strain at the fibre, or mid-plane strain and minus its derivative.
+/// What the file's row states, from strain at the surfaces: strain at the fibre, or mid-plane strain and minus its derivative. Strain is
+/// linear through the thickness.
 fn as_row(strain: [PlaneStrain; 2], z: [f64; 2], row: usize, is_fibre: bool) -> PlaneStrain {
+    let w = -z[0] / (z[1] - z[0]);
     match (is_fibre, row) {
         (true, r) => strain[r - 1],
-        (false, 1) => strain_at_fibre(strain, z, 0.0),
+        (false, 1) => std::array::from_fn(|k| strain[0][k] * (1.0 - w) + strain[1][k] * w),
         (false, _) => std::array::from_fn(|k| -(strain[1][k] - strain[0][k]) / (z[1] - z[0])),
     }
 }

@@ -96,7 +96,9 @@ pub(crate) fn ask(
     let asked = Asked { threads, progress };
     let done = run(py, &asked, |heard| {
         let mut cx = Context::new(job.map_or(&none, |j| &j.desk)).progress(heard);
-        cx.store = store.as_ref().map(|s| s as _);
+        if let Some(folder) = &store {
+            cx = cx.store(folder);
+        }
         answer(command, job.map(|j| &j.job), &more, &cx)
     })?;
     done.map_err(|f| raise(py, f))

@@ -5,6 +5,7 @@ use super::whole_file::{FileBytes, hex, load, load_hashed};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Where files come from.
 pub trait Files: Sync {
@@ -96,12 +97,12 @@ pub struct Silent;
 impl Progress for Silent {}
 
 /// What a question is asked in.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct Context<'a> {
     /// Where files come from.
     pub files: &'a dyn Files,
     /// Where solutions of the built-in solver are kept; `None`: nowhere.
-    pub store: Option<&'a dyn SolutionStore>,
+    pub store: Option<Arc<dyn SolutionStore + 'a>>,
     /// Who hears of progress.
     pub progress: &'a dyn Progress,
 }
@@ -116,11 +117,11 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// The same with a place for solutions.
+    /// The same with a place for solutions. It is a handle and is cloned, so that one made in the call itself will do.
     #[must_use]
-    pub fn store(self, store: &'a dyn SolutionStore) -> Self {
+    pub fn store(self, store: &(impl SolutionStore + Clone + 'a)) -> Self {
         Self {
-            store: Some(store),
+            store: Some(Arc::new(store.clone())),
             ..self
         }
     }

@@ -44,11 +44,6 @@ pub fn looks_like_op2(bytes: &[u8]) -> bool {
     matches!(bytes.get(..4), Some([4 | 8, 0, 0, 0] | [0, 0, 0, 4 | 8]))
 }
 
-/// The deck alone, with the faults of its cards.
-pub fn deck_of(inputs: &mut Inputs, base: &Path, given: &str, bytes: &[u8]) -> Deck {
-    deck_and_files(inputs, base, given, bytes).0
-}
-
 /// The deck, and the files it was read from.
 fn deck_and_files(
     inputs: &mut Inputs,

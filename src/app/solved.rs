@@ -1,4 +1,5 @@
-//! The built-in solver as every command uses it: solutions are kept beside the job and taken from there while their inputs are the same.
+//! The built-in solver as every command uses it: solutions are kept in the store of the context and taken from there while
+//! their inputs are the same.
 
 use super::deck::DeckModel;
 use super::fault::{Fault, FaultList, Faults};
@@ -142,8 +143,11 @@ fn kept(
     options: &SolveOptions,
 ) -> Result<Solved, FeError> {
     let key = Key::of(identity);
-    let mut store = work.cx.store;
-    let kept = match store.map(|s| read_solution(s, &key, model.grids.len(), cases.len())) {
+    let mut store = work.cx.store.clone();
+    let read = store
+        .as_deref()
+        .map(|s| read_solution(s, &key, model.grids.len(), cases.len()));
+    let kept = match read {
         Some(Ok(Some(solved))) => {
             work.notes.push(
                 "the solution is taken from those kept (`--no-cache` solves anew)".to_owned(),
@@ -161,7 +165,8 @@ fn kept(
         Some(solved) => solved,
         None => work.stage("solve", |_| solve_displacements(model, cases, options))?,
     };
-    if let Some(Err(why)) = store.map(|s| write_solution(s, &key, &solved)) {
+    let written = store.as_deref().map(|s| write_solution(s, &key, &solved));
+    if let Some(Err(why)) = written {
         work.notes.push(format!(
             "the solution is not kept for the next command: {why}"
         ));
@@ -199,7 +204,8 @@ pub fn first_mode_of(work: &mut Work, job: &Job, read: &DeckModel) -> Option<f64
     None
 }
 
-/// Everything that the displacements depend on: the program's sources and version, the bytes of the deck and its includes, the load cases.
+/// Everything that the displacements depend on: the program's version, sources, dependencies and features (`build.rs`), the bytes of the
+/// deck and its includes, the load cases.
 fn identity(work: &mut Work, read: &DeckModel, cases: &[LoadCase], made: &str) -> String {
     let mut text = format!(
         "strainbridge {} {} {made}\n",

@@ -26,7 +26,7 @@ impl<'a> Work<'a> {
     /// A question that is asked of files alone.
     pub fn new(cx: &Context<'a>) -> Self {
         Self {
-            cx: *cx,
+            cx: cx.clone(),
             inputs: Inputs::of(cx.files),
             findings: Vec::new(),
             notes: Vec::new(),

@@ -200,7 +200,9 @@ impl Run {
         if !Voice::of(&self.common).is_quiet() {
             cx = cx.progress(&terminal);
         }
-        cx.store = self.store.as_ref().map(|s| s as _);
+        if let Some(folder) = &self.store {
+            cx = cx.store(folder);
+        }
         pool.install(|| work(&cx))
     }
 

@@ -240,13 +240,6 @@ impl Mass {
     }
 }
 
-/// Mass, centre of gravity and rigid mass matrix of a model, WTMASS applied; `None` without mass.
-pub fn mass_properties(model: &crate::model::Model) -> Option<MassProperties> {
-    let mass = Mass::new(&Prepared::new(model));
-    let x: Vec<Vec3> = model.grids.iter().map(|g| g.x).collect();
-    mass.properties(&x)
-}
-
 /// Force and moment about a point of nodal forces.
 pub(crate) fn resultant(x: &[Vec3], f: &[[f64; 6]], centre: &Vec3) -> [f64; 6] {
     let mut sum = [0.0; 6];

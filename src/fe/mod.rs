@@ -44,8 +44,8 @@ mod what_hangs;
 
 pub use error::{FeError, FreeDof, Refusal};
 pub use load_case::{LoadCase, Relief, loads_of_subcase, relief_of};
-pub use mass::{MassProperties, mass_properties};
-pub use modes::{ModalSolution, Mode, free_modes, solve_modes};
+pub use mass::MassProperties;
+pub use modes::{ModalSolution, Mode, solve_modes};
 pub use options::{Corners, HeatedStrain, SolveOptions};
 pub use ply_strain::ply_strains;
 pub use reactions::{Reaction, Reactions};

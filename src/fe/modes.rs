@@ -124,20 +124,6 @@ pub fn solve_modes(
     })
 }
 
-/// The lowest elastic modes without their strain.
-///
-/// # Errors
-/// See [`solve_modes`].
-pub fn free_modes(
-    model: &Model,
-    spc: Option<u32>,
-    mpc: Option<u32>,
-    count: usize,
-) -> Result<(Vec<Mode>, Vec<Finding>), FeError> {
-    let solved = solve_modes(model, spc, mpc, count, &SolveOptions::default())?;
-    Ok((solved.modes, solved.findings))
-}
-
 /// Frequencies of the lowest elastic modes from the factor of a static solution.
 ///
 /// # Errors

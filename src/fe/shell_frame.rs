@@ -2,10 +2,12 @@
 //!
 //! | element | x axis | z axis | evidence |
 //! |---|---|---|---|
-//! | CQUAD4, CQUADR | bisector of the diagonals: `unit(unit(d13) - unit(d24))` | `unit(d13 x d24)` | CQUAD4: MSC and NX output against displacement gradients, 1e-6; CQUADR: the manuals only |
-//! | CTRIA3, CTRIAR | side 1-2 | side 1-2 x side 1-3 | CTRIA3: MSC output against displacement gradients, all digits; CTRIAR: the manuals only |
-//! | CTRIA6 | side 1-2 (flat elements with straight sides) | as CTRIA3 | MSC output, all digits |
-//! | CQUAD8 | at the same angle to the curves of constant s as y is to those of constant r, at the place of output | r x s | the manuals only |
+//! | CQUAD4, CQUADR | bisector of the diagonals: `unit(unit(d13) - unit(d24))` | `unit(d13 x d24)` | CQUAD4: MSC, NX (note); CQUADR: the manuals |
+//! | CTRIA3, CTRIAR | side 1-2 | side 1-2 x side 1-3 | CTRIA3: MSC (note); CTRIAR: the manuals |
+//! | CTRIA6 | side 1-2 (flat elements with straight sides) | as CTRIA3 | MSC, all digits |
+//! | CQUAD8 | at the same angle to the curves of constant s as y is to those of constant r, at the place of output | r x s | the manuals |
+//!
+//! Note: output of these programs against displacement gradients, CQUAD4 to 1e-6, CTRIA3 in all digits.
 //!
 //! `d13 = G3 - G1`, `d24 = G4 - G2`; `y = z x x`. Warped quads: z is the normal of the mean plane.
 //!

@@ -80,17 +80,6 @@ pub fn largest_principal(strain: &[f64; 6]) -> f64 {
     if most + least < 0.0 { least } else { most }
 }
 
-/// Strain at fibre `z` from strain at fibres `z1` and `z2`, linear through the thickness; the mean where the fibres coincide.
-pub fn strain_at_fibre(strain: [PlaneStrain; 2], fibres: [f64; 2], z: f64) -> PlaneStrain {
-    let span = fibres[1] - fibres[0];
-    let w = if span == 0.0 {
-        0.5
-    } else {
-        (z - fibres[0]) / span
-    };
-    std::array::from_fn(|i| strain[0][i] * (1.0 - w) + strain[1][i] * w)
-}
-
 /// Strain at fibre `z` from curvature form: `row1 - z row2`, row2 being MINUS the derivative along z.
 pub fn strain_from_curvature(row1: PlaneStrain, row2: PlaneStrain, z: f64) -> PlaneStrain {
     std::array::from_fn(|i| row1[i] - z * row2[i])

@@ -1,9 +1,9 @@
 //! The best layout of a small problem, proved: branch and bound over the relaxation with variables fixed by its bound.
 //!
 //! A node has gauges that are in, rows that are free and the rest out. Its relaxation bounds every layout below it by
-//! `value + q ln((tr(G P) + T) / q)`, `P` the gauges that are in (and the prior), `T` the sum of the `s` largest slopes, one of a group. Forcing row `j` in
-//! replaces the smallest term of `T` by `d_j`, leaving it out replaces `d_j` by the next one: where that falls under the best layout
-//! known, `j` is fixed.
+//! `value + q ln((tr(G P) + T) / q)`, `P` the gauges that are in (and the prior), `T` the sum of the `s` largest slopes, one of a group.
+//! Forcing row `j` in replaces the smallest term of `T` by `d_j`, leaving it out replaces `d_j` by the next one: where that falls under
+//! the best layout known, `j` is fixed.
 
 use super::exchange::Chosen;
 use super::relax::relax;

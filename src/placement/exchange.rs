@@ -30,7 +30,8 @@ pub struct Chosen {
     pub log_det: f64,
 }
 
-/// The best layout of `s` rows found, `excludes(i, j)` being true where rows `i` and `j` can't both be chosen (and for `i == j`); `None` where fewer than `s` compatible rows exist or all layouts tried are singular.
+/// The best layout of `s` rows found, `excludes(i, j)` being true where rows `i` and `j` can't both be chosen (and for
+/// `i == j`); `None` where fewer than `s` compatible rows exist or all layouts tried are singular.
 pub fn search(
     active: &Active,
     s: usize,

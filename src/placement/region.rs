@@ -24,8 +24,8 @@ pub fn borders(model: &Model) -> Vec<Segment> {
 /// Rims of holes: closed runs of free edges that turn into the material.
 ///
 /// Along a border of a plate the angles `theta` of the material at its grids add up to `sum (pi - theta) = 2 pi`, around a hole to
-/// `-2 pi`, at the open end of a tube to 0 (Gauss and Bonnet); a run below `-pi` is a rim. `theta` is that of the shells met from one free edge to the
-/// next across edges of two shells.
+/// `-2 pi`, at the open end of a tube to 0 (Gauss and Bonnet); a run below `-pi` is a rim. `theta` is that of the shells
+/// met from one free edge to the next across edges of two shells.
 pub fn hole_rims(model: &Model) -> Vec<Segment> {
     split(model).1
 }

@@ -30,8 +30,9 @@ const POINTS: [&str; 4] = ["C", "D", "E", "F"];
 
 /// Writes the strain of every case, subcases in the solution's order, rows in the order of [`each_row`]; returns the number of rows.
 ///
-/// Strain is in microstrain. Numbers are the shortest text that reads back to the same double; a number that does not exist is an empty field. Bars: `surface` is
-/// the recovery point C, D, E or F, `location` an end grid or `x=<x/xb>` between the ends, `eyy` and `gxy` are empty.
+/// Strain is in microstrain. Numbers are the shortest text that reads back to the same double; a number that does not exist is
+/// an empty field. Bars: `surface` is the recovery point C, D, E or F, `location` an end grid or `x=<x/xb>` between the ends, `eyy` and
+/// `gxy` are empty.
 ///
 /// # Errors
 /// What `out` says.

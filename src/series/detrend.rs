@@ -24,15 +24,6 @@ pub fn without_mean(x: &[f64]) -> Vec<f64> {
     x.iter().map(|v| v - m).collect()
 }
 
-/// x less its least-squares line over the sample number.
-pub fn without_line(x: &[f64]) -> Vec<f64> {
-    let (offset, slope) = line(x);
-    x.iter()
-        .enumerate()
-        .map(|(i, v)| v - offset - slope * i as f64)
-        .collect()
-}
-
 /// Offset and slope per sample of the least-squares line through x over 0, 1, 2 ..
 pub fn line(x: &[f64]) -> (f64, f64) {
     let n = x.len() as f64;

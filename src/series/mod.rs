@@ -15,10 +15,10 @@
 //! - [`spectrum`]: zero-padded transforms, band limiting and integration in one pass
 //! - [`integrate`]: velocity and displacement from acceleration
 //! - [`window`]: tapered transforms with independent bins
-//! - [`welch`]: power and cross spectra, coherence
+//! - [`welch`]: power and cross spectra
 //! - [`content`]: up to which frequency a signal has content
 //! - [`align`]: shifting by a part of a sample
-//! - [`resample`]: another sample rate
+//! - [`resample`]: samples between samples
 //! - [`rainflow`]: cycles and pseudo-damage
 
 pub mod align;

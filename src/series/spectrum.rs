@@ -157,29 +157,6 @@ impl Spectrum {
     }
 }
 
-impl Spectrum {
-    /// conj(self) times other, bin by bin: the transform of their cross-correlation.
-    pub fn conjugate_times(&self, other: &Spectrum) -> Self {
-        let mut out = self.clone();
-        out.bins
-            .iter_mut()
-            .zip(&other.bins)
-            .for_each(|(a, b)| *a = a.conj() * b);
-        out
-    }
-}
-
-impl Fourier {
-    /// All samples of a spectrum, padding included (for circular correlations).
-    pub fn padded_samples(&mut self, s: &Spectrum) -> Vec<f64> {
-        let whole = Spectrum {
-            n_samples: s.n_padded,
-            ..s.clone()
-        };
-        self.samples(&whole, 1)
-    }
-}
-
 impl Fourier {
     /// The padded signal of a spectrum at `factor` times its rate.
     pub fn denser_samples(&mut self, s: &Spectrum, factor: usize) -> Vec<f64> {

@@ -20,25 +20,6 @@ pub struct CrossSpectra {
     pub n_segments: usize,
 }
 
-impl CrossSpectra {
-    /// Coherence |Sxy|^2 / (Sxx Syy), 0 to 1.
-    pub fn coherence(&self) -> Vec<f64> {
-        let one = |((xy, xx), yy): ((&Complex64, &f64), &f64)| {
-            if xx * yy > 0.0 {
-                xy.norm_sqr() / (xx * yy)
-            } else {
-                0.0
-            }
-        };
-        self.xy
-            .iter()
-            .zip(&self.xx)
-            .zip(&self.yy)
-            .map(one)
-            .collect()
-    }
-}
-
 /// Densities of x and y: Hann segments of `n_segment` samples, half overlapped, mean of each segment removed
 /// (the conventions of `scipy.signal.csd`).
 ///

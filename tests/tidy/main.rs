@@ -1,5 +1,7 @@
-//! The rules of the house as tests: layers, who may print, open files or be unsafe, what must have a README.
+//! The rules of the house as tests: layers, who may print, open files or be unsafe, what must have a README, what the
+//! library alone builds.
 
+mod dependencies;
 mod imports;
 mod size;
 

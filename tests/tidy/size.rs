@@ -1,11 +1,13 @@
-//! Lengths of files and functions.
+//! Lengths of files, functions and lines of comment.
 
-use super::{is_test, sources};
+use super::{is_test, root, rust_files, sources};
 
 /// Lines of a file at most.
 const FILE: usize = 500;
 /// Lines of a function at most.
 const FUNCTION: usize = 120;
+/// Characters of a line of comment at most: the formatter breaks code alone.
+const COMMENT: usize = 150;
 
 /// Files and functions (`path function`) that are longer still; the list only shrinks.
 const LONGER: &[&str] = &[
@@ -52,6 +54,24 @@ fn files_and_functions_are_short() {
         gone.is_empty(),
         "short now, take them from the list: {gone:#?}"
     );
+}
+
+#[test]
+fn lines_of_comment_fit_a_screen() {
+    let mut files = Vec::new();
+    rust_files(&root().join("src"), &mut files);
+    rust_files(&root().join("nastran/src"), &mut files);
+    let mut long = Vec::new();
+    for file in files {
+        let text = std::fs::read_to_string(&file).unwrap();
+        for (n, line) in (1..).zip(text.lines()) {
+            let is_comment = line.trim_start().starts_with("//");
+            if is_comment && line.chars().count() > COMMENT {
+                long.push(format!("{}:{n}", file.display()));
+            }
+        }
+    }
+    assert!(long.is_empty(), "break these lines: {long:#?}");
 }
 
 /// Name and lines of each function, by its indentation.

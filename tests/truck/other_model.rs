@@ -488,8 +488,10 @@ fn table_6_9_shell_sensitivities_on_the_beam_truck_are_a_bias_of_the_model() {
         run.dof
     );
     // Bars and shells of one channel: flange strain in bending is the same but for shear lag and warping at the joints.
-    assert!(mean(&hot) < 10.0, "{hot:?}");
-    assert!(mean(&e) < 32.0, "the thesis' own: {e:?}");
+    // Measured 2.3 %.
+    assert!(mean(&hot) < 4.0, "{hot:?}");
+    // Measured .8 % (the thesis: 32 %): fifteen gauges average the differences of the hot ones away.
+    assert!(mean(&e) < 1.5, "{e:?}");
     assert!(
         mean(&shares) < 5.0,
         "two models of one truck share the weight alike: {shares:?}"

@@ -13,6 +13,18 @@ impl Loader for NoFiles {
     }
 }
 
+/// Mass, centre of gravity and mass matrix as the solver reports them, with no load case to solve.
+pub fn mass_of(model: &Model) -> MassProperties {
+    let solved = solve_displacements(model, &[], &SolveOptions::default());
+    let report = solved.unwrap_or_else(|e| panic!("{e}")).report;
+    report.mass.unwrap()
+}
+
+/// The lowest elastic modes of a free structure.
+pub fn free_modes(model: &Model, mpc: Option<u32>, count: usize) -> ModalSolution {
+    solve_modes(model, None, mpc, count, &SolveOptions::default()).unwrap_or_else(|e| panic!("{e}"))
+}
+
 /// Bulk data, card by card, free format.
 #[derive(Default)]
 pub struct Bulk {

@@ -1,6 +1,7 @@
 //! Whole structures of other people, solved as free bodies: satellites and a support structure.
 
 use crate::decks::{faulty_model_of, shared};
+use crate::mesh::free_modes;
 use strainbridge::fe::*;
 use strainbridge::model::Model;
 
@@ -13,9 +14,9 @@ fn solve(
     let (mut model, control) = faulty_model_of(&path);
     alter(&mut model);
     let mpc = control.mpc_of_structure();
-    let (modes, _) = free_modes(&model, None, mpc, 4).unwrap_or_else(|e| panic!("{deck}: {e}"));
+    let modal = free_modes(&model, mpc, 4);
     // The shell grid farthest from the centre of gravity.
-    let cg = mass_properties(&model).unwrap().cg;
+    let cg = modal.mass.unwrap().cg;
     let far = model
         .shells
         .iter()
@@ -49,7 +50,7 @@ fn solve(
         .collect();
     let (solution, report) = solve_cases(&model, &cases, &SolveOptions::default())
         .unwrap_or_else(|e| panic!("{deck}: {e}"));
-    Some((model, modes, solution, report))
+    Some((model, modal.modes, solution, report))
 }
 
 fn check(deck: &str, alter: impl Fn(&mut Model)) {
@@ -105,7 +106,7 @@ fn a_satellite_of_many_files_vibrates_and_strains_freely() {
         return;
     };
     let (model, _) = faulty_model_of(&path);
-    let error = free_modes(&model, None, None, 1).unwrap_err();
+    let error = solve_modes(&model, None, None, 1, &SolveOptions::default()).unwrap_err();
     assert!(
         error.to_string().contains("not joined to the rest"),
         "{error}"

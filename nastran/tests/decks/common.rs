@@ -19,11 +19,9 @@ pub(crate) struct Case {
     pub(crate) expected: serde_json::Value,
 }
 
-/// Every case of the folder.
-pub(crate) fn cases() -> Vec<Case> {
-    let Some(folder) = cases_folder() else {
-        return Vec::new();
-    };
+/// Every case of the folder; `None` where it is absent.
+fn cases() -> Option<Vec<Case>> {
+    let folder = cases_folder()?;
     let mut list = Vec::new();
     for entry in std::fs::read_dir(folder).expect("readable folder") {
         let folder = entry.expect("readable entry").path();
@@ -45,7 +43,25 @@ pub(crate) fn cases() -> Vec<Case> {
         }
     }
     list.sort_by(|a, b| a.name.cmp(&b.name));
-    list
+    Some(list)
+}
+
+/// Cases with a deck that the folder has at least (28 in November 2026).
+const LEAST: usize = 25;
+
+/// Calls `check` for every case with a deck, and adds up what it compared; fails where that is less than the folder is known to hold,
+/// so that a test can't pass by comparing nothing. Nothing is asked where the folder is absent.
+pub(crate) fn at_least(least: usize, mut check: impl FnMut(&Case, &Deck) -> usize) {
+    let Some(cases) = cases() else { return };
+    let (mut decks, mut compared) = (0, 0);
+    for case in &cases {
+        if let Some(deck) = case.deck() {
+            compared += check(case, &deck);
+            decks += 1;
+        }
+    }
+    assert!(decks >= LEAST, "{decks} decks");
+    assert!(compared >= least, "{compared} compared");
 }
 
 impl Case {

@@ -17,23 +17,23 @@ const OP2_SPLITS: [&str; 8] = [
 
 #[test]
 fn every_deck_of_the_real_cases_is_read_without_a_fault() {
-    for case in common::cases() {
-        let Some(deck) = case.deck() else { continue };
+    // One grid a deck at the very least: a reader that reads nothing has no faults either.
+    common::at_least(25, |case, deck| {
         let shown: Vec<String> = deck
             .faults
             .iter()
             .map(|f| f.show(&deck.sources).to_string())
             .collect();
         assert!(shown.is_empty(), "{}: {shown:#?}", case.name);
-    }
+        deck.cards.grids.len()
+    });
 }
 
 #[test]
 fn card_counts_agree_with_another_reader() {
-    for case in common::cases() {
-        let Some(deck) = case.deck() else { continue };
+    common::at_least(25, |case, deck| {
         let Some(cards) = case.expected["mesh"]["cards"].as_object() else {
-            continue;
+            return 0;
         };
         let expected: BTreeMap<String, u64> = cards
             .iter()
@@ -61,18 +61,21 @@ fn card_counts_agree_with_another_reader() {
                 );
             }
         }
-    }
+        1
+    });
 }
 
 #[test]
 fn solution_and_parameters_agree_with_another_reader() {
-    for case in common::cases() {
-        let Some(deck) = case.deck() else { continue };
+    // The set states the solution of 25 decks and the parameters of 27.
+    common::at_least(48, |case, deck| {
+        let mut compared = 0;
         if let Some(sol) = case.expected["mesh"]["sol"].as_u64() {
             assert_eq!(deck.sol.map(u64::from), Some(sol), "{}", case.name);
+            compared += 1;
         }
         let Some(params) = case.expected["mesh"]["params"].as_object() else {
-            continue;
+            return compared;
         };
         // results blocks hold parameters of the run that the deck does not state
         if case.expected["mesh_source"] == "bdf" {
@@ -101,7 +104,8 @@ fn solution_and_parameters_agree_with_another_reader() {
                 }
             }
         }
-    }
+        compared + 1
+    });
 }
 
 fn n_elements(deck: &Deck) -> usize {
@@ -128,15 +132,14 @@ fn n_elements(deck: &Deck) -> usize {
 
 #[test]
 fn numbers_of_grids_elements_and_masses_agree_with_another_reader() {
-    for case in common::cases() {
-        let Some(deck) = case.deck() else { continue };
+    common::at_least(25, |case, deck| {
         let mesh = &case.expected["mesh"];
         let Some(nodes) = mesh["nodes"].as_u64() else {
-            continue;
+            return 0;
         };
         assert_eq!(deck.cards.grids.len() as u64, nodes, "{}: grids", case.name);
         assert_eq!(
-            Some(n_elements(&deck) as u64),
+            Some(n_elements(deck) as u64),
             mesh["elements"].as_u64(),
             "{}: elements",
             case.name
@@ -162,36 +165,39 @@ fn numbers_of_grids_elements_and_masses_agree_with_another_reader() {
             "{}: coordinate systems",
             case.name
         );
-    }
+        1
+    });
 }
 
 #[test]
 fn every_deck_is_written_as_it_was_read() {
-    for case in common::cases() {
-        let Some(deck) = case.deck() else { continue };
-        for (path, bytes) in nastran::bdf::write_deck(&deck) {
-            assert_eq!(bytes, std::fs::read(&path).unwrap(), "{path}");
+    common::at_least(25, |_, deck| {
+        let files = nastran::bdf::write_deck(deck);
+        for (path, bytes) in &files {
+            assert_eq!(*bytes, std::fs::read(path).unwrap(), "{path}");
         }
-    }
+        files.len()
+    });
 }
 
 #[test]
 fn the_replicated_cards_of_a_real_deck_are_made() {
-    for case in common::cases() {
-        let Some(deck) = case.deck() else { continue };
-        if case.name == "nx_quad8_replicated_deck" {
-            // one card written out, nine by `=,=,107,=`
-            assert_eq!(deck.counts["DEFORM"], 10);
+    common::at_least(1, |case, deck| {
+        if case.name != "nx_quad8_replicated_deck" {
+            return 0;
         }
-    }
+        // one card written out, nine by `=,=,107,=`
+        assert_eq!(deck.counts["DEFORM"], 10);
+        1
+    });
 }
 
 #[test]
 fn quads_agree_with_another_reader() {
-    for case in common::cases() {
-        let Some(deck) = case.deck() else { continue };
+    // The set holds 526.
+    common::at_least(500, |case, deck| {
         let Some(quads) = case.expected["mesh"]["cquad4_frames"].as_array() else {
-            continue;
+            return 0;
         };
         for quad in quads {
             let shell = deck
@@ -232,5 +238,6 @@ fn quads_agree_with_another_reader() {
                 }
             }
         }
-    }
+        quads.len()
+    });
 }

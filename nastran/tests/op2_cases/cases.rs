@@ -4,11 +4,13 @@ use nastran::op2::Op2;
 use serde_json::Value;
 use std::path::Path;
 
-/// Calls `check` with name, file and oracle of every case that has an OP2.
-pub fn each_op2(mut check: impl FnMut(&str, &Op2<'_>, &Value)) {
-    let Some(shared) = crate::support::shared("nastran") else {
-        return;
-    };
+/// Cases with an OP2 that the set has at least (28 in November 2026).
+const LEAST: usize = 25;
+
+/// Calls `check` with name, file and oracle of every case that has an OP2; what it compared, `None` where the set is absent.
+pub fn each_op2(mut check: impl FnMut(&str, &Op2<'_>, &Value) -> usize) -> Option<usize> {
+    let shared = crate::support::shared("nastran")?;
+    let (mut cases, mut compared) = (0, 0);
     let folders = std::fs::read_dir(shared).unwrap();
     let mut folders: Vec<_> = folders.flatten().map(|f| f.path()).collect();
     folders.sort();
@@ -25,8 +27,17 @@ pub fn each_op2(mut check: impl FnMut(&str, &Op2<'_>, &Value)) {
         let bytes = std::fs::read(folder.join(name)).unwrap();
         let label = folder.file_name().unwrap().to_string_lossy().into_owned();
         let op2 = Op2::read(&bytes).unwrap_or_else(|e| panic!("{label}: {e}"));
-        check(&label, &op2, &expected);
+        compared += check(&label, &op2, &expected);
+        cases += 1;
     }
+    assert!(cases >= LEAST, "{cases} cases with an OP2");
+    Some(compared)
+}
+
+/// Calls `check` for every case; fails where it compared less than the set is known to hold, so that a test can't pass by comparing nothing.
+pub fn at_least(least: usize, check: impl FnMut(&str, &Op2<'_>, &Value) -> usize) {
+    let compared = each_op2(check);
+    assert!(compared.is_none_or(|n| n >= least), "{compared:?} compared");
 }
 
 fn json(path: &Path) -> Option<Value> {

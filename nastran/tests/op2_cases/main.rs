@@ -8,12 +8,12 @@ mod raw_strain;
 mod support;
 mod tables;
 
-use cases::each_op2;
+use cases::at_least;
 use nastran::op2::{ByteOrder, Op2};
 
 #[test]
 fn byte_order_word_size_label_and_table_names_agree() {
-    each_op2(|case, op2, expected| {
+    at_least(25, |case, op2, expected| {
         let layout = &expected["op2"];
         let order = if op2.byte_order == ByteOrder::Little {
             "little"
@@ -35,27 +35,29 @@ fn byte_order_word_size_label_and_table_names_agree() {
             .map(|t| t.as_str().unwrap())
             .collect();
         assert_eq!(want, names, "{case}");
+        1
     });
 }
 
 #[test]
 fn every_result_table_agrees_in_ids_sums_and_sampled_rows() {
-    let mut compared = 0;
-    each_op2(|case, op2, expected| compared += tables::compare(case, op2, expected));
-    eprintln!("{compared} result tables compared");
+    // The set holds 433.
+    at_least(400, tables::compare);
 }
 
 #[test]
 fn shell_strain_in_a_table_named_for_stress_agrees() {
-    each_op2(raw_strain::compare);
+    // The set holds four.
+    at_least(4, raw_strain::compare);
 }
 
 #[test]
 fn grid_point_weight_agrees() {
-    each_op2(|case, op2, expected| {
+    // The set holds three.
+    at_least(3, |case, op2, expected| {
         let want = &expected["op2"]["grid_point_weight"];
         let Some((_, want)) = want.as_object().and_then(|o| o.iter().next()) else {
-            return;
+            return 0;
         };
         let got = op2
             .grid_point_weight()
@@ -83,6 +85,7 @@ fn grid_point_weight_agrees() {
         same("MO", got.mo.as_flattened());
         same("mass", &got.mass);
         same("cg", got.cg.as_flattened());
+        1
     });
 }
 
@@ -95,7 +98,8 @@ fn a_file_that_is_no_op2_is_refused_with_its_first_bytes() {
 
 #[test]
 fn cards_of_the_geometry_blocks_agree_with_the_mesh() {
-    let mut compared = 0;
-    each_op2(|case, op2, expected| compared += usize::from(mesh::compare(case, op2, expected)));
-    eprintln!("{compared} meshes compared");
+    // The set holds 21 files with geometry blocks.
+    at_least(18, |case, op2, expected| {
+        usize::from(mesh::compare(case, op2, expected))
+    });
 }

@@ -1,7 +1,7 @@
 //! `check`: what is in the files, every fault, and whether deck and results belong together.
 //!
-//! [`kind`] tells files apart by content; [`checked`] is the answer; [`decks`] and [`results`] describe them; [`jobs`] follows a job to the files it names;
-//! [`together`] compares.
+//! [`kind`] tells files apart by content; [`checked`] is the answer; [`decks`] and [`results`] describe them; [`jobs`] follows a job to
+//! the files it names; [`together`] compares.
 
 mod checked;
 mod decks;

@@ -166,14 +166,14 @@ fn done(
         .filter(|(i, _)| spec.shard.is_none_or(|s| s.holds(*i)))
         .map(|p| p.1)
         .collect();
-    let cx = work.cx;
-    cx.progress.parts(mine.len());
+    let (source, progress) = (work.cx.files, work.cx.progress);
+    progress.parts(mine.len());
     let results: Vec<Result<(FileHead, bool), Fault>> = mine
         .par_iter()
         .map(|path| {
-            let bytes = cx.files.load_hashed(Path::new(path));
+            let bytes = source.load_hashed(Path::new(path));
             let done = one(kernel, kept, form, path, bytes);
-            cx.progress.advance(1);
+            progress.advance(1);
             done
         })
         .collect();

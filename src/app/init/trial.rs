@@ -51,11 +51,13 @@ pub(super) fn first_that_places(cx: &Context, plan: &JobPlan, proposals: &[Propo
         };
     }
     // Solutions are kept for the length of the trials, and for `place` afterwards where the caller keeps them.
-    let memory = Memory::default();
-    let store = cx.store.unwrap_or(&memory);
+    let cx = match cx.store {
+        Some(_) => cx.clone(),
+        None => cx.clone().store(&Memory::default()),
+    };
     let mut first_fault = None;
     for trial in trials(plan, proposals).take(MOST_TRIALS) {
-        match try_place(cx, &trial, store) {
+        match try_place(&cx, &trial) {
             Ok(()) => return answer(&trial),
             Err(faults) => first_fault = first_fault.or(Some(faults)),
         }
@@ -118,11 +120,7 @@ fn trials<'a>(
     whole.chain(fewer)
 }
 
-fn try_place(
-    cx: &Context,
-    trial: &JobPlan,
-    store: &dyn crate::app::store::SolutionStore,
-) -> Result<(), Faults> {
+fn try_place(cx: &Context, trial: &JobPlan) -> Result<(), Faults> {
     let path = trial.folder.join(JOB);
     // Whether loads can be told apart shows with four angles a place; the certificate of many is for `place`.
     let trial = JobPlan {
@@ -136,7 +134,7 @@ fn try_place(
     };
     let cx = Context {
         files: &files,
-        store: Some(store),
+        store: cx.store.clone(),
         progress: cx.progress,
     };
     place(&Job::read(&path, &files)?, &cx).map(|_| ())

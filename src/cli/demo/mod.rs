@@ -258,7 +258,7 @@ fn play(
     out: &str,
     job: &Path,
 ) -> Result<Step, Faults> {
-    let cx = work.cx;
+    let cx = work.cx.clone();
     let folder = folder.join(out);
     work.stage(command, |_| {
         let job = Job::read(job, cx.files)?;

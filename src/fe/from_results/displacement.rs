@@ -2,10 +2,11 @@
 
 use super::ids::Ids;
 use crate::model::{Model, Vec3};
-use nastran::results::Rows;
+use nastran::results::{Block, Rows};
 
-/// Displacements by grid index in basic, NaN where the block has none: `basic = R' local` for translation and rotation alike.
-pub(super) fn to_basic(model: &Model, rows: &Rows) -> Vec<[f64; 6]> {
+/// Displacements by grid index in basic, NaN where the block has none: `basic = R' local` for translation and rotation alike; those of a
+/// table that is in basic already stay as they are.
+pub(super) fn to_basic(model: &Model, block: &Block, rows: &Rows) -> Vec<[f64; 6]> {
     let mut all = vec![[f64::NAN; 6]; model.grids.len()];
     let mut ids = Ids::new(&model.grids, |g| g.id);
     for (i, id) in rows.ids.iter().enumerate() {
@@ -19,7 +20,7 @@ pub(super) fn to_basic(model: &Model, rows: &Rows) -> Vec<[f64; 6]> {
             continue;
         };
         *place = match model.frames.get(grid.cd.us()) {
-            Some(frame) if grid.cd.0 != 0 => {
+            Some(frame) if grid.cd.0 != 0 && !block.is_in_basic() => {
                 let back = frame.axes_at(grid.x).transpose();
                 let (u, r) = (back * Vec3::new(a, b, c), back * Vec3::new(d, e, f));
                 [u.x, u.y, u.z, r.x, r.y, r.z]

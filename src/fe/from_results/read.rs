@@ -235,9 +235,10 @@ fn read_case(
         note_plies(model, &rows, &case, &mut tally);
     }
     if options.displacements == Displacements::Read
-        && let Some(rows) = of(Quantity::Displacement).next().and_then(&mut decode)
+        && let Some(ix) = of(Quantity::Displacement).next()
+        && let (Some(b), Some(rows)) = (block(ix), decode(ix))
     {
-        case.displacement = to_basic(model, &rows);
+        case.displacement = to_basic(model, b, &rows);
     }
     (case, tally, findings)
 }

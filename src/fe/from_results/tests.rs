@@ -3,6 +3,7 @@ use crate::fe::Solution;
 use crate::fe::strain_rows::{Location, Point, each_row, n_elements};
 use crate::model::Model;
 use nastran::bdf::{MemoryLoader, read_deck};
+use nastran::op2::write_blocks;
 use nastran::results::ResultsFile;
 
 /// A plate of one quad 2 x 1 and one triangle, a bar, in MPa and mm.
@@ -188,6 +189,31 @@ fn displacements_turn_from_a_cylindrical_frame_to_basic() {
     assert!((local - crate::model::Vec3::new(1.0, 2.0, 3.0)).norm() < 1e-14);
     assert_eq!(u[ix(1)][..3], [1.0, 2.0, 3.0]);
     assert!(u[ix(2)][0].is_nan());
+}
+
+#[test]
+fn displacements_of_a_table_in_the_basic_frame_stay_as_they_are() {
+    let stated = [1.0, 2.0, 3.0, 0.0, 0.0, 4.0];
+    let entry = ("         5       G", stated.to_vec());
+    let text = block(1, "DISPLACEMENTS", "", &[entry]);
+    let punch = ResultsFile::read(text.as_bytes(), "plate.pch").unwrap();
+    let rows = punch.rows(0).unwrap();
+    let mut bytes = write_blocks([(&punch.blocks()[0], &rows)], [11, 22, 2026]).unwrap();
+    let at_5 = |bytes: &[u8]| {
+        let file = ResultsFile::read(bytes, "plate.op2").unwrap();
+        let files = [("plate.op2", &file)];
+        let solution = solution_from_results(&model(), &files, &ReadOptions::default());
+        solution.cases[0].displacement[model().grid_ix(5).unwrap().us()]
+    };
+    // Grid 5 has a frame of its own.
+    assert_ne!(at_5(&bytes), stated);
+    let names: Vec<usize> = (0..bytes.len() - 8)
+        .filter(|&i| bytes[i..].starts_with(b"OUGV1   "))
+        .collect();
+    for i in names {
+        bytes[i..i + 8].copy_from_slice(b"BOUGV1  ");
+    }
+    assert_eq!(at_5(&bytes), stated);
 }
 
 #[test]

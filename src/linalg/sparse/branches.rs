@@ -1,4 +1,5 @@
-//! Branches of the elimination tree that have nothing to do with each other, and the top of the tree above them: what can be substituted side by side.
+//! Branches of the elimination tree that have nothing to do with each other, and the top of the tree above them: what can be substituted
+//! side by side.
 
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use faer::sparse::linalg::cholesky::{SymbolicCholesky, SymbolicCholeskyRaw};

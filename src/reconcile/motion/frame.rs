@@ -62,9 +62,4 @@ impl MotionFrame {
     pub fn is_sensor(&self, channel: &str) -> bool {
         self.vehicle.sensors.iter().any(|s| s.channel == channel)
     }
-
-    /// Whether the background is declared imperfect: gains and timing hold within tolerances only.
-    pub fn is_loose(&self) -> bool {
-        self.gain_tolerance > 0.0 || self.sync_tolerance_s > 0.0
-    }
 }

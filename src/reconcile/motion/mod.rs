@@ -3,7 +3,8 @@
 //! - [`frame`]: what is given; [`design`]: the equations as transforms within the band
 //! - [`response`], [`noise`], [`gls`]: how sensor noise enters, and least squares that respects it
 //! - [`change`], [`candidate`], [`effect`]: the library; [`fit`]: a set of effects fitted; [`scorer`]: its evidence
-//! - [`unexplained_background`]: what nothing explains; [`gap`]: how much is left on other data; [`examine`]: the verdict; [`simulated`]: what was named, by simulation
+//! - [`unexplained_background`]: what nothing explains; [`gap`]: how much is left on other data; [`examine`]: the verdict
+//! - [`simulated`]: what was named, by simulation
 
 pub mod alias;
 pub mod at_rest;

@@ -1,6 +1,5 @@
 //! What nothing in the library explains: the residual of a generous model, as background for every comparison.
 
-use super::fit::{Effort, fit};
 use super::fitted::MotionFit;
 use super::frame::MotionFrame;
 use super::gls::{Basis, PriorColumn, solved};
@@ -65,17 +64,4 @@ fn of_rows(frame: &MotionFrame, null: &MotionFit, rows: &[f64]) -> Background {
 /// Total power, to compare backgrounds.
 pub fn power(b: &Background) -> f64 {
     b.power.iter().flatten().sum()
-}
-
-/// A fit again under another background.
-pub fn refit(scorer: &MotionScorer, old: &MotionFit, background: &Background) -> Option<MotionFit> {
-    fit(
-        scorer.frame,
-        scorer.candidates,
-        &scorer.frame.data,
-        old.parts.clone(),
-        Some(old),
-        background,
-        Effort::Settled,
-    )
 }

@@ -1,7 +1,8 @@
 //! A three-axle truck simulated by means of its own: shares no code with the vehicle models.
 //!
 //! Rigid body with heave, pitch and roll; beam axles with heave and roll, the rear two hung from the frame near a common trunnion;
-//! springs inboard of the wheels with friction that has a memory (Dahl); tyres that can only push; a road of random waves, left and right tracks alike where waves are long.
+//! springs inboard of the wheels with friction that has a memory (Dahl); tyres that can only push; a road of random waves, left and
+//! right tracks alike where waves are long.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

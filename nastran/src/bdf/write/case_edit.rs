@@ -17,22 +17,6 @@ impl Edits {
         }
     }
 
-    /// Adds lines above the first subcase.
-    pub fn insert_case_global(&mut self, deck: &Deck, text: &str) {
-        match deck
-            .case_control
-            .lines
-            .iter()
-            .find(|l| l.subcase.is_some() && !l.in_packet)
-        {
-            Some(line) => {
-                let p = position(line);
-                self.patch(p.source, p.offset, p.offset, text);
-            }
-            None => self.insert_case_end(deck, text),
-        }
-    }
-
     /// Takes out the case control statements for which `is_unwanted` holds.
     pub fn remove_case_lines(&mut self, deck: &Deck, is_unwanted: impl Fn(&CaseLine) -> bool) {
         for line in deck.case_control.lines.iter().filter(|l| is_unwanted(l)) {
@@ -43,11 +27,6 @@ impl Edits {
     /// Takes out all subcases with their statements; comments stay.
     pub fn remove_subcases(&mut self, deck: &Deck) {
         self.remove_case_lines(deck, |l| l.subcase.is_some() && !l.in_packet);
-    }
-
-    /// Puts `text` in place of a case control statement.
-    pub fn replace_case_line(&mut self, line: &CaseLine, text: &str) {
-        self.patch(line.at.source.0 as usize, line.start, line.end, text);
     }
 
     /// Writes `SOL text` in place of the deck's SOL statement; a deck without one stays as it is.

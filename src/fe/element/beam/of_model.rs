@@ -235,7 +235,8 @@ pub(crate) struct StationStrain {
     pub(crate) axial: f64,
 }
 
-/// Mechanical axial strain at C, D, E, F and at the neutral axis of the stations of beam `i` (ends of a CBAR, all sections of a CBEAM) from displacements (basic).
+/// Mechanical axial strain at C, D, E, F and at the neutral axis of the stations of beam `i` (ends of a CBAR, all
+/// sections of a CBEAM) from displacements (basic).
 ///
 /// # Errors
 /// As `beam_stiffness`.
