@@ -2,6 +2,7 @@ use super::*;
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::fe::strain_tensor::Surface;
 use crate::fe::{BeamField, CaseResult, ShellField};
+use crate::finding::Severity;
 use crate::model::*;
 use nastran::cards::ShellShape;
 use nastran::place::Place;
@@ -248,6 +249,17 @@ fn a_position_is_interpolated_from_corner_rows_and_falls_back_to_the_centre() {
     let (g, findings) = build(&m, &spec, CornerRows::Present).unwrap();
     assert_eq!((g[0].element, g[0].surface), (2, Surface::Top));
     assert_eq!(findings[0].code, "gauge-at-nearest-surface");
+    for (off, severity) in [(40.0, Severity::Warning), (4000.0, Severity::Error)] {
+        let far = GaugeSpec {
+            place: GaugePlace::Nearest(Vec3::new(13.0, 4.0, off)),
+            ..spec.clone()
+        };
+        let (_, findings) = build(&m, &far, CornerRows::Present).unwrap();
+        assert_eq!(
+            (findings[0].code, findings[0].severity),
+            ("gauge-off-structure", severity)
+        );
+    }
     let corner = read(
         &m,
         &spec,

@@ -182,3 +182,22 @@ fn nuisance_loads_are_drawn_and_their_prior_is_used() {
     );
     assert!((known.coverage[0] - 0.95).abs() < 0.02, "{known:?}");
 }
+
+/// Loads in other units leave a condition number of scaled columns as it is; sizes scale it as they say.
+#[test]
+fn the_condition_number_is_that_of_scaled_columns() {
+    let of = |p: &[PoolGauge], sizes: Option<Vec<f64>>| {
+        let with = StudySpec { sizes, ..spec(2) };
+        study_layout(p, &all(), error(ErrorKind::AbsoluteNormal, 1.0), &with).condition_number
+    };
+    let mut other = pool();
+    for g in &mut other {
+        g.row[1] *= 1e-3;
+    }
+    let plain = of(&pool(), None);
+    assert!((of(&other, None) / plain - 1.0).abs() < 1e-9);
+    assert!(of(&other, Some(vec![1.0, 1.0])) > 100.0 * plain);
+    assert!(
+        (of(&other, Some(vec![1.0, 1e3])) / of(&pool(), Some(vec![1.0; 2])) - 1.0).abs() < 1e-9
+    );
+}

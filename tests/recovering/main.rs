@@ -2,7 +2,9 @@
 //!
 //! Two loads A and B, four gauges; strain is made here from S, so every expected load is known.
 
+mod calibrated;
 mod files;
+mod misled;
 mod supported;
 
 use serde_json::Value;

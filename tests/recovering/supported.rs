@@ -16,7 +16,7 @@ fn grid(i: usize, j: usize) -> usize {
     1 + i * (WIDE + 1) + j
 }
 
-fn deck() -> String {
+pub(super) fn deck() -> String {
     let mut text =
         "SOL 101\nCEND\nSPC = 1\nBEGIN BULK\nMAT1,1,2.1+5,,.3,7.85-9\nPSHELL,1,1,4.,1,,1\n"
             .to_owned();
@@ -41,7 +41,7 @@ fn deck() -> String {
     text
 }
 
-fn job() -> String {
+pub(super) fn job() -> String {
     let mut text = "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n".to_owned();
     for (name, at, component) in [
         ("tip", grid(LONG, 1), "FZ"),
@@ -66,7 +66,7 @@ fn job() -> String {
 }
 
 /// Sum of twelve even draws less six: normal but for the far tails.
-fn normal(state: &mut u64) -> f64 {
+pub(super) fn normal(state: &mut u64) -> f64 {
     let mut next = || {
         *state = state
             .wrapping_mul(6_364_136_223_846_793_005)

@@ -366,6 +366,31 @@ fn gauge_tables_take_the_contracts_columns_and_list_every_fault() {
     }
 }
 
+/// An angle that isn't read would be 0.
+#[test]
+fn columns_that_look_like_those_of_a_gauge_table_are_faults() {
+    for (header, meant) in [
+        ("angle", "angle_deg"),
+        ("Surface", "surface"),
+        ("elemnt", "element"),
+        ("grid_lenght", "grid_length"),
+    ] {
+        let t = table::read_table("g.csv", &format!("name,{header}\nA,1\n")).unwrap();
+        let mut found = Vec::new();
+        gauges::gauges_from_table(&t, 1.0, &mut found);
+        let named = |f: &Fault| f.field == header && f.remedy.contains(meant);
+        assert!(found.iter().any(named), "{header}: {found:?}");
+    }
+    // What others keep beside their gauges.
+    let t = table::read_table(
+        "g.csv",
+        "name,element,angle_deg,x_m,y_m,z_m,member,place,row,leverage,role,angle_seen_deg\nA,1,45,0,0,0,rail,web,2,.3,estimate,45\n",
+    );
+    let mut found = Vec::new();
+    gauges::gauges_from_table(&t.unwrap(), 1.0, &mut found);
+    assert!(found.is_empty(), "{found:?}");
+}
+
 #[test]
 fn positions_in_metres_become_job_units() {
     let t = table::read_table(
