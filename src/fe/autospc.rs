@@ -1,17 +1,54 @@
-//! Dofs without stiffness at single grids (PARAM,AUTOSPC).
+//! Dofs without stiffness at single grids (PARAM,AUTOSPC), and what acts along them.
 
-use super::assembly::Assembled;
+use super::assembly::{Assembled, Numbering};
+use crate::finding::{Finding, Severity};
 use crate::linalg::{DMatrix, sparse::BlockMatrix};
+use crate::model::Model;
 
 /// A direction at a grid is without stiffness when it has less than this share of the grid's stiffest one.
-const EPZERO: f64 = 1e-8;
+pub(super) const EPZERO: f64 = 1e-8;
 /// With AUTOSPC off: none but rounding.
 const NOTHING: f64 = 1e-13;
+/// A load is aimed along a direction when it has more than this share of its size there: grids of a nearly flat shell lean by less,
+/// and what they lose is judged once the structure is solved.
+const AIMED: f64 = 1e-3;
+/// Share of the loads that may go into held directions: that of a solution whose equations hold to six digits.
+const LOST: f64 = 1e-6;
 
-/// Unknowns (with the stiffness to give them) that, held, leave no direction at a single grid without stiffness.
+/// A direction at a grid that is held because nothing else holds it.
+#[derive(Clone, Debug)]
+pub(crate) struct Weak {
+    /// The unknown that is held: the one that moves most along the direction.
+    pub(crate) unknown: usize,
+    /// Stiffness of the spring that holds it.
+    pub(crate) k: f64,
+    /// Whether there is any stiffness along it, beyond rounding.
+    pub(crate) some: bool,
+    /// First unknown of the translations, or rotations, of the grid.
+    first: usize,
+    /// How far these move along the direction, length 1.
+    direction: Vec<f64>,
+}
+
+impl Weak {
+    /// The part of a load along the direction, where the load is aimed along it: both at the unknowns.
+    pub(crate) fn aimed(&self, packed: &[f64]) -> f64 {
+        let pairs = packed.iter().skip(self.first).zip(&self.direction);
+        let (along, square) = pairs.fold((0.0, 0.0), |(a, s), (f, d)| (a + f * d, s + f * f));
+        let along = f64::abs(along);
+        if along > AIMED * f64::sqrt(square) {
+            along
+        } else {
+            0.0
+        }
+    }
+}
+
+/// What is to be held so that no direction at a single grid is without stiffness.
 ///
 /// With AUTOSPC off, only directions without any stiffness are held: nothing can act on them, and a solver takes its null columns out.
-pub(crate) fn weak_unknowns(assembled: &Assembled, autospc: bool) -> Vec<(usize, f64)> {
+/// A negative stiffness is none of these: it moves things, and the factor tells whether the rest outweighs it.
+pub(crate) fn weak_unknowns(assembled: &Assembled, autospc: bool) -> Vec<Weak> {
     let limit = if autospc { EPZERO } else { NOTHING };
     let diagonal = assembled.stiffness.diagonal_values(&assembled.symbolic);
     let typical = diagonal.iter().fold(0.0_f64, |a, v| a.max(*v));
@@ -37,23 +74,26 @@ pub(crate) fn weak_unknowns(assembled: &Assembled, autospc: bool) -> Vec<(usize,
                 continue;
             }
             let eigen = k.symmetric_eigen();
-            let stiffest = eigen.eigenvalues.max();
+            let stiffest = eigen.eigenvalues.amax();
             let mut taken = vec![false; m];
             for (value, vector) in eigen
                 .eigenvalues
                 .iter()
                 .zip(eigen.eigenvectors.column_iter())
             {
-                if *value <= limit * stiffest || stiffest <= 0.0 {
+                if !(value.abs() > limit * stiffest) {
                     let pick = (0..m)
                         .filter(|&i| !taken[i])
                         .max_by(|&a, &b| vector[a].abs().total_cmp(&vector[b].abs()));
                     if let Some(i) = pick {
                         taken[i] = true;
-                        weak.push((
-                            start[g] + part.start + i,
-                            if stiffest > 0.0 { stiffest } else { typical },
-                        ));
+                        weak.push(Weak {
+                            unknown: start[g] + part.start + i,
+                            k: if stiffest > 0.0 { stiffest } else { typical },
+                            some: value.abs() > NOTHING * stiffest,
+                            first: start[g] + part.start,
+                            direction: vector.iter().copied().collect(),
+                        });
                     }
                 }
             }
@@ -71,4 +111,100 @@ fn well_held(k: &DMatrix<f64>, largest: f64) -> bool {
             .sum();
         k[(i, i)] - beside > 1e-4 * largest
     })
+}
+
+/// Grid and dof of the first of some unknowns, for messages.
+fn named(model: &Model, numbering: &Numbering, start: &[usize], unknowns: &[usize]) -> String {
+    const SHOWN: usize = 5;
+    let mut names: Vec<String> = unknowns
+        .iter()
+        .take(SHOWN)
+        .map(|unknown| {
+            let (g, dof) = numbering.dof_of(*unknown, start);
+            format!("{}/{}", model.grids[g].id, dof + 1)
+        })
+        .collect();
+    if unknowns.len() > SHOWN {
+        names.push("..".to_owned());
+    }
+    format!("grid/dof {}", names.join(", "))
+}
+
+/// That directions were held.
+pub(super) fn autospc_finding(
+    model: &Model,
+    assembled: &Assembled,
+    weak: &[Weak],
+) -> Option<Finding> {
+    let unknowns: Vec<usize> = weak.iter().map(|w| w.unknown).collect();
+    let start = assembled.symbolic.unknown_start();
+    (!weak.is_empty()).then(|| {
+        Finding::new(
+            Severity::Info,
+            "autospc",
+            named(model, &assembled.numbering, start, &unknowns),
+            format!(
+                "{} dofs with no stiffness, or next to none beside the stiffest of their grid, were held (AUTOSPC)",
+                weak.len()
+            ),
+            "nothing, if no load is meant to act there",
+        )
+    })
+}
+
+/// Sizes of the forces and of the moments at the unknowns, against which held loads are judged: sums, for a load spread over a million
+/// grids is small at each. `reach`, the size of the model, makes moments of forces.
+pub(super) fn load_sizes(numbering: &Numbering, acting: &[f64], reach: f64) -> [f64; 2] {
+    let mut sizes = [0.0; 2];
+    let mut values = acting.iter();
+    for free in &numbering.free {
+        for i in (0..6).filter(|i| free >> i & 1 == 1) {
+            sizes[i / 3] += values.next().map_or(0.0, |v| v.abs());
+        }
+    }
+    sizes[1] += reach * sizes[0];
+    sizes
+}
+
+/// What holds the weak directions in a solved case: a finding where loads go there instead of into the structure.
+///
+/// `sizes`: those of the loads; `moved`: displacements at the unknowns.
+pub(super) fn held_loads(
+    model: &Model,
+    (numbering, start): (&Numbering, &[usize]),
+    weak: &[Weak],
+    subcase: u32,
+    sizes: [f64; 2],
+    moved: &[f64],
+) -> Option<Finding> {
+    let mut all: Vec<(f64, usize)> = weak
+        .iter()
+        .map(|w| {
+            let (_, dof) = numbering.dof_of(w.unknown, start);
+            let force = (w.k * moved[w.unknown]).abs();
+            let size = sizes[dof / 3];
+            (if force > 0.0 { force / size } else { 0.0 }, w.unknown)
+        })
+        .filter(|(share, _)| *share > LOST)
+        .collect();
+    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let largest = all.first()?.0;
+    let unknowns: Vec<usize> = all.iter().map(|a| a.1).collect();
+    Some(
+        Finding::new(
+            Severity::Error,
+            "autospc-holds-load",
+            format!(
+                "subcase {subcase}, {}",
+                named(model, numbering, start, &unknowns)
+            ),
+            format!(
+                "AUTOSPC holds {} dofs here that carry load: up to {:.1e} of the load goes into them instead of into the structure",
+                all.len(),
+                largest
+            ),
+            "make what is stiffer by eight powers of ten than the rest a rigid element (RBE2, MPC), or give PARAM,AUTOSPC,NO; connect or hold dofs that nothing holds",
+        )
+        .with_numbers(largest, LOST),
+    )
 }

@@ -71,6 +71,8 @@ pub enum FeError {
         dof: u8,
         /// Subcase id.
         subcase: u32,
+        /// Where AUTOSPC holds it: the share of the stiffest direction of the grid that it has less than.
+        softer: Option<f64>,
         /// Where the grid stands.
         at: Place,
     },
@@ -169,13 +171,9 @@ impl FeError {
                 grid,
                 dof,
                 subcase,
+                softer,
                 at,
-            } => one(
-                format!("grid {grid}"),
-                *at,
-                format!("subcase {subcase} loads dof {dof}, which no element holds"),
-                "connect the grid, or move the load",
-            ),
+            } => load_on_nothing(*grid, *dof, *subcase, *softer, *at),
             Self::EnforcedFree { grid, dof, at } => one(
                 format!("grid {grid}"),
                 *at,
@@ -240,6 +238,33 @@ impl FeError {
             ),
         }
     }
+}
+
+fn load_on_nothing(
+    grid: u32,
+    dof: u8,
+    subcase: u32,
+    softer: Option<f64>,
+    at: Place,
+) -> Vec<Refusal> {
+    let (reason, remedy) = match softer {
+        None => (
+            format!("subcase {subcase} loads dof {dof}, which no element holds"),
+            "connect the grid, or move the load",
+        ),
+        Some(share) => (
+            format!(
+                "subcase {subcase} loads dof {dof}, which has less than {share:e} of the stiffest direction of the grid: AUTOSPC holds it, and the load with it"
+            ),
+            "make what is so much stiffer a rigid element (RBE2, MPC), give PARAM,AUTOSPC,NO, or move the load",
+        ),
+    };
+    vec![Refusal {
+        card: format!("grid {grid}"),
+        at,
+        reason,
+        remedy: remedy.to_owned(),
+    }]
 }
 
 /// One fault a loose dof and a loose part.

@@ -1,7 +1,7 @@
 //! Where an element stands for another than its card names, or for one of the states that its card allows.
 
 use crate::finding::{Finding, Severity};
-use crate::model::{Joint, JointCard, Model, RigidKind};
+use crate::model::{Joint, JointCard, Model, Rigid, RigidKind};
 use nastran::cards::ShellShape;
 
 /// Says where an element stands for another than its card names.
@@ -38,6 +38,7 @@ pub(super) fn formulations(model: &Model) -> Vec<Finding> {
     all.extend(connectors_at_an_angle(model));
     all.extend(gaps(model));
     all.extend(warping_beams(model));
+    all.extend(idle_warping_points(model));
     all.extend(bushes_in_the_basic_frame(model));
     all.extend(ground_of_rigid_bushes(model));
     all
@@ -122,6 +123,37 @@ fn warping_beams(model: &Model) -> Option<Finding> {
     })
 }
 
+/// CBEAMs with SA and SB whose property has no CW.
+fn idle_warping_points(model: &Model) -> Option<Finding> {
+    let idle = model.beams.iter().filter(|b| b.idle_points);
+    let ids: Vec<u32> = idle.map(|b| b.id).collect();
+    (!ids.is_empty()).then(|| {
+        Finding::new(
+            Severity::Info,
+            "formulation",
+            format!("CBEAM {}", first_of(&ids)),
+            format!(
+                "{} beams state SA and SB, and their property has no warping constant: they twist without warping (Saint-Venant)",
+                ids.len()
+            ),
+            "give CW(A) and CW(B) on PBEAM where warping matters",
+        )
+    })
+}
+
+/// Whether the two forces of a CGAP leave a moment: stiffness in a direction off the line between its grids.
+pub(super) fn gap_leaves_moment(j: &Joint) -> bool {
+    /// Sine of an angle that only the rounding of coordinates gives.
+    const ROUNDING: f64 = 1e-9;
+    let [a, b] = &j.ends;
+    let line = b.x - a.x;
+    let off = |i: usize| {
+        let along = j.axes.row(i).transpose() * j.k[i];
+        line.cross(&along).norm() > ROUNDING * line.norm() * j.k[i].abs()
+    };
+    matches!(j.card, JointCard::Cgap { .. }) && (0..3).any(off)
+}
+
 /// CGAP: which are carried as closed, which as open.
 fn gaps(model: &Model) -> Option<Finding> {
     let mut closed = Vec::new();
@@ -132,8 +164,7 @@ fn gaps(model: &Model) -> Option<Finding> {
         if let JointCard::Cgap { open: is, preload } = j.card {
             if is { &mut open } else { &mut closed }.push(j.id);
             preloaded += usize::from(preload != 0.0);
-            let [a, b] = &j.ends;
-            if j.k[1] > 0.0 && a.x != b.x {
+            if gap_leaves_moment(j) {
                 unbalanced.push(j.id);
             }
         }
@@ -149,7 +180,7 @@ fn gaps(model: &Model) -> Option<Finding> {
             String::new()
         } else {
             format!(
-                "; the stiffness across of {} ({}) acts between grids that are apart, and the moment of its two forces is balanced by nothing",
+                "; the forces of {} ({}) are not along the line between their grids (KT across it, or KA along a CID off it), and the moment of the two is balanced by nothing",
                 unbalanced.len(),
                 first_of(&unbalanced)
             )
@@ -192,13 +223,7 @@ fn ground_of_rigid_bushes(model: &Model) -> Option<Finding> {
     let ids: Vec<u32> = model
         .rigids
         .iter()
-        .filter(|r| match &r.kind {
-            RigidKind::Equations { equations, .. } => equations.iter().any(|terms| {
-                let grid = terms.first().map(|t| t.0);
-                terms.len() > 1 && terms.iter().all(|t| Some(t.0) == grid)
-            }),
-            RigidKind::Body { .. } | RigidKind::Mean { .. } => false,
-        })
+        .filter(|r| held_off_axes(r))
         .map(|r| r.id)
         .collect();
     of_bushes(
@@ -207,6 +232,17 @@ fn ground_of_rigid_bushes(model: &Model) -> Option<Finding> {
         "hold their grid rigidly to ground in directions that are not those of its displacement frame: their force is not among the reactions",
         "give the grid a CD along the bush's axes, or a stiff spring for RIGID, where reactions matter",
     )
+}
+
+/// Whether a rigid element ties dofs of one grid to each other, and through them to ground.
+pub(super) fn held_off_axes(r: &Rigid) -> bool {
+    match &r.kind {
+        RigidKind::Equations { equations, .. } => equations.iter().any(|terms| {
+            let grid = terms.first().map(|t| t.0);
+            terms.len() > 1 && terms.iter().all(|t| Some(t.0) == grid)
+        }),
+        RigidKind::Body { .. } | RigidKind::Mean { .. } => false,
+    }
 }
 
 /// A warning about bushes, if there are any.

@@ -1,10 +1,14 @@
 //! Reactions: what supports put onto the structure.
 
+use super::element::ElementRef;
 use super::error::FeError;
 use super::grid_frames::{to_basic, to_local};
+use super::ground::{ground_forces, grounds};
 use super::mass::resultant;
 use super::prepared::Prepared;
 use super::system::System;
+use super::unbalanced::{Left, unbalanced};
+use crate::finding::Finding;
 use crate::model::{Model, Vec3};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -14,12 +18,12 @@ const CHUNK: usize = 1024;
 /// Reactions below this share of the largest one are rounding and left out of the list.
 const ROUNDING: f64 = 1e-12;
 
-/// Force and moment that the supports put onto one grid, basic frame.
+/// Force and moment that supports, and springs to ground, put onto one grid, basic frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Reaction {
     /// Grid id.
     pub grid: u32,
-    /// Three forces, three moments; zero along dofs that no support holds.
+    /// Three forces, three moments; zero along dofs that neither a support nor a spring to ground holds.
     pub force: [f64; 6],
 }
 
@@ -30,38 +34,51 @@ pub struct Reactions {
     pub subcase: u32,
     /// Resultant of what acts on grids (inertia included where it balances), about the basic origin: three forces, three moments.
     pub applied: [f64; 6],
-    /// Resultant of the reactions about the same point: the applied one with its sign turned.
+    /// Resultant of the reactions about the same point: the applied one with its sign turned, but for `residual`.
     pub total: [f64; 6],
     /// Largest share of the applied forces, or moments, that the reactions leave unbalanced.
     pub residual: f64,
-    /// By grid, ascending.
+    /// By grid, ascending. Scalar points are none of them: a held one counts where its springs meet grids, and a bimoment is no force.
     pub grids: Vec<Reaction>,
 }
 
-/// Reactions of solved cases: K u - f at held dofs, what dependent dofs hand on included; empty where nothing is held.
-///
-/// `displacements` and `forces` (what acts, without reactions) by grid in the basic frame, one each a case.
+/// A case with its answer: subcase id, displacements, forces (what acts, without reactions; none at scalar points that follow grids).
+/// Fields are by grid in the basic frame.
+pub(super) type SolvedCase<'a> = (u32, &'a [[f64; 6]], &'a [[f64; 6]]);
+
+/// Reactions of solved cases: K u - f at held dofs, what dependent dofs hand on included, and the forces of springs to ground; each with a
+/// finding where they leave loads unbalanced. Empty where nothing is held. `mpc`: whether equations of an MPC set take part.
 ///
 /// # Errors
 /// Elements that can't be formed.
 pub(super) fn reactions(
     prepared: &Prepared<'_>,
     system: &System,
-    cases: &[u32],
-    displacements: &[Vec<[f64; 6]>],
-    forces: &[Vec<[f64; 6]>],
-) -> Result<Vec<Reactions>, FeError> {
+    cases: &[SolvedCase<'_>],
+    mpc: bool,
+) -> Result<Vec<(Reactions, Option<Finding>)>, FeError> {
     let model = prepared.model;
     let reduction = &system.reduction;
     let holds: Vec<bool> = (0..model.grids.len())
         .map(|g| (0..6).any(|i| reduction.reaches_support(6 * g + i)))
         .collect();
-    if !holds.contains(&true) {
+    // A free structure has springs to ground by mistake alone, which is told as such.
+    let grounds = match system.body {
+        None => grounds(model, reduction),
+        Some(_) => Vec::new(),
+    };
+    if grounds.is_empty() && !holds.contains(&true) {
         return Ok(Vec::new());
     }
-    let internal = internal_forces(prepared, displacements, &holds)?;
+    let elements: Vec<ElementRef> = prepared
+        .elements()
+        .into_iter()
+        .filter(|e| prepared.grids(*e).iter().any(|g| holds[g.us()]))
+        .collect();
+    let internal = internal_forces(prepared, &elements, cases)?;
     let x: Vec<Vec3> = model.grids.iter().map(|g| g.x).collect();
-    let of_case = |(case, (f, internal)): (&u32, (&Vec<[f64; 6]>, Vec<[f64; 6]>))| {
+    let of_case = |(case, internal): (&SolvedCase<'_>, Vec<[f64; 6]>)| {
+        let (subcase, u, f) = *case;
         let mut left = internal;
         for (((left, f), axes), holds) in left.iter_mut().zip(f).zip(&prepared.axes).zip(&holds) {
             *left = match holds {
@@ -73,18 +90,21 @@ pub(super) fn reactions(
         for (v, axes) in held.iter_mut().zip(&prepared.axes) {
             *v = to_basic(axes, *v);
         }
+        let of_ground = ground_forces(prepared, reduction, &grounds, u)?;
+        for (v, ground) in held.iter_mut().zip(of_ground) {
+            v.iter_mut().zip(ground).for_each(|(v, g)| *v += g);
+        }
         let origin = Vec3::zeros();
+        let (acts, held) = (without_points(model, f), without_points(model, &held));
         let largest = super::applied::largest(&held);
-        let (acts, holds) = (without_points(model, f), without_points(model, &held));
-        let (applied, total) = (
-            resultant(&x, &acts, &origin),
-            resultant(&x, &holds, &origin),
-        );
-        Reactions {
-            subcase: *case,
+        let (applied, total) = (resultant(&x, &acts, &origin), resultant(&x, &held, &origin));
+        let left = Left::of(&x, &acts, &held, &applied, &total);
+        let finding = unbalanced(prepared, &elements, (subcase, mpc), &left, u)?;
+        let reactions = Reactions {
+            subcase,
             applied,
             total,
-            residual: unbalanced(&x, &acts, &holds, &applied, &total),
+            residual: left.share(),
             grids: model
                 .grids
                 .iter()
@@ -92,13 +112,10 @@ pub(super) fn reactions(
                 .filter(|(_, v)| v.iter().any(|v| v.abs() > ROUNDING * largest))
                 .map(|(g, force)| Reaction { grid: g.id, force })
                 .collect(),
-        }
+        };
+        Ok((reactions, finding))
     };
-    Ok(cases
-        .iter()
-        .zip(forces.iter().zip(internal))
-        .map(of_case)
-        .collect())
+    cases.iter().zip(internal).map(of_case).collect()
 }
 
 /// A field without what stands at scalar points: a bimoment there is no force.
@@ -109,17 +126,12 @@ fn without_points(model: &Model, field: &[[f64; 6]]) -> Vec<[f64; 6]> {
         .collect()
 }
 
-/// K u of the elements at the grids marked, basic frame, one field a case.
+/// K u of these elements, basic frame, one field a case.
 fn internal_forces(
     prepared: &Prepared<'_>,
-    displacements: &[Vec<[f64; 6]>],
-    marked: &[bool],
+    elements: &[ElementRef],
+    cases: &[SolvedCase<'_>],
 ) -> Result<Vec<Vec<[f64; 6]>>, FeError> {
-    let elements: Vec<_> = prepared
-        .elements()
-        .into_iter()
-        .filter(|e| prepared.grids(*e).iter().any(|g| marked[g.us()]))
-        .collect();
     // By element: its grids and, case by case, six forces a grid.
     let parts: Vec<Vec<_>> = elements
         .par_chunks(CHUNK)
@@ -130,9 +142,9 @@ fn internal_forces(
                     let k = prepared
                         .stiffness(*element)
                         .map_err(|r| FeError::Refused(vec![r]))?;
-                    let forces: Vec<Vec<f64>> = displacements
+                    let forces: Vec<Vec<f64>> = cases
                         .iter()
-                        .map(|u| {
+                        .map(|(_, u, _)| {
                             let own: Vec<f64> = k.grids.iter().flat_map(|g| u[g.us()]).collect();
                             k.times(&own)
                         })
@@ -142,7 +154,7 @@ fn internal_forces(
                 .collect::<Result<_, FeError>>()
         })
         .collect::<Result<_, FeError>>()?;
-    let mut out = vec![vec![[0.0; 6]; marked.len()]; displacements.len()];
+    let mut out = vec![vec![[0.0; 6]; prepared.model.grids.len()]; cases.len()];
     for (grids, forces) in parts.iter().flatten() {
         for (field, forces) in out.iter_mut().zip(forces) {
             for (g, v) in grids.iter().zip(forces.chunks_exact(6)) {
@@ -151,27 +163,4 @@ fn internal_forces(
         }
     }
     Ok(out)
-}
-
-/// What the sum of loads and reactions leaves, as a share of the sizes that were summed: forces and moments each by their own.
-fn unbalanced(
-    x: &[Vec3],
-    applied: &[[f64; 6]],
-    held: &[[f64; 6]],
-    total_applied: &[f64; 6],
-    total_held: &[f64; 6],
-) -> f64 {
-    let (mut force, mut moment) = (0.0, 0.0);
-    for (x, v) in x.iter().zip(applied).chain(x.iter().zip(held)) {
-        let f = Vec3::new(v[0], v[1], v[2]);
-        force += f.norm();
-        moment += x.cross(&f).norm() + Vec3::new(v[3], v[4], v[5]).norm();
-    }
-    let left = |range: std::ops::Range<usize>| {
-        range
-            .map(|i| (total_applied[i] + total_held[i]).abs())
-            .fold(0.0, f64::max)
-    };
-    let share = |left: f64, size: f64| if size > 0.0 { left / size } else { 0.0 };
-    share(left(0..3), force).max(share(left(3..6), moment))
 }

@@ -9,9 +9,10 @@ use super::mass::{Mass, MassProperties};
 use super::modes::frequencies;
 use super::options::SolveOptions;
 use super::prepared::Prepared;
-use super::reactions::reactions;
+use super::reactions::{SolvedCase, reactions};
 use super::relief::Balance;
 use super::report::{Clock, SolveReport, Solved};
+use super::scalar_points::{carry_to_grids, check_free_points, follow_grids};
 use super::shape_checks::check_shapes;
 use super::strain_of_cases::with_strain;
 use super::support::{Support, contradictions};
@@ -191,6 +192,8 @@ fn solve_group(
         report.factor_nonzeros = system.symbolic.factor_nonzeros();
         report.ordering = Some(system.symbolic.method());
     }
+    // Cases that AUTOSPC takes load of: why their reactions don't balance is told.
+    let mut lost = Vec::new();
     if n == 0 {
         findings.push(nothing_free(cases));
     } else {
@@ -198,12 +201,22 @@ fn solve_group(
         let factor = system.factor(prepared, mass, stiffness)?;
         clock.note(report, "factor");
         report.smallest_pivot = factor.smallest_pivot;
+        let sizes: Vec<Option<[f64; 2]>> = columns
+            .par_chunks_exact(n)
+            .map(|acting| system.sizes_of(model, acting))
+            .collect();
         let refined = factor.solve_refined(&mut columns, REFINED_ABOVE);
         clock.note(report, "substitute");
         for (case, refined) in cases.iter().zip(refined) {
             report.epsilon[0] = report.epsilon[0].max(refined.first);
             report.epsilon[1] = report.epsilon[1].max(refined.last);
             findings.extend(inaccurate(case.subcase, refined.last));
+        }
+        for ((case, moved), sizes) in cases.iter().zip(columns.chunks_exact(n)).zip(sizes) {
+            let Some(sizes) = sizes else { continue };
+            let finding = system.held_loads(model, case.subcase, sizes, moved);
+            lost.extend(finding.is_some().then_some(case.subcase));
+            findings.extend(finding);
         }
         let still = system.reduction.enforced.is_empty() && report.mass.is_some();
         if options.modes > 0 && report.modes.is_empty() && still {
@@ -217,6 +230,7 @@ fn solve_group(
             let mut u = system.unpack(prepared, &columns[n * i..n * (i + 1)]);
             if let (Some(body), Relief::Automatic) = (&system.body, case.relief) {
                 body.take_out(mass, &mut u);
+                follow_grids(prepared, &system.reduction, &mut u);
             }
             check_finite(
                 cases[i].subcase,
@@ -226,12 +240,21 @@ fn solve_group(
             Ok(u)
         })
         .collect::<Result<_, FeError>>()?;
-    let ids: Vec<u32> = cases.iter().map(|c| c.subcase).collect();
-    let reactions = reactions(prepared, &system, &ids, &fields, &forces)?;
+    let answers: Vec<SolvedCase<'_>> = cases
+        .iter()
+        .zip(fields.iter().zip(&forces))
+        .map(|(c, (u, f))| (c.subcase, u.as_slice(), f.as_slice()))
+        .collect();
+    let equations = model.mpcs.iter().filter(|s| Some(s.sid) == case.mpc);
+    let mpc = equations.into_iter().any(|s| !s.equations.is_empty());
+    let reactions = reactions(prepared, &system, &answers, mpc)?;
     if !reactions.is_empty() {
         clock.note(report, "reactions");
     }
-    report.reactions.extend(reactions);
+    for (reactions, finding) in reactions {
+        findings.extend(finding.filter(|_| !lost.contains(&reactions.subcase)));
+        report.reactions.push(reactions);
+    }
     Ok(fields)
 }
 
@@ -290,8 +313,10 @@ fn acting(
         &system.reduction,
         case,
     ));
+    carry_to_grids(prepared, &system.reduction, &mut f);
     let mut balance = None;
     if let Some(body) = &system.body {
+        check_free_points(model, &system.reduction, case.subcase, &f)?;
         let before = largest(&f);
         balance = Some(body.balance(case.subcase, mass, &mut f));
         if largest(&f) <= 1e-9 * before && before > 0.0 {

@@ -2,12 +2,13 @@
 
 use super::applied::largest;
 use super::assembly::{Assembled, Numbering, assemble};
-use super::autospc::weak_unknowns;
+use super::autospc::{EPZERO, Weak, autospc_finding, held_loads, load_sizes, weak_unknowns};
 use super::constraint::{Reduction, Sets, State, reduce};
 use super::error::{FeError, FreeDof};
 use super::grid_frames::{to_basic, to_local};
 use super::load_case::Relief;
 use super::mass::Mass;
+use super::negative::negative_springs;
 use super::prepared::Prepared;
 use super::relief::RigidBody;
 use super::what_hangs::what_hangs;
@@ -25,7 +26,7 @@ pub(super) struct System {
     pub(super) stiffness: BlockMatrix,
     /// The free rigid motions, where inertia balances the loads.
     pub(super) body: Option<RigidBody>,
-    weak: Vec<(usize, f64)>,
+    weak: Vec<Weak>,
 }
 
 impl System {
@@ -60,10 +61,10 @@ impl System {
             findings.extend(ties(prepared, &assembled, body));
         }
         let weak = weak_unknowns(&assembled, model.params.autospc);
-        for (unknown, k) in &weak {
+        for w in &weak {
             assembled
                 .stiffness
-                .add_to_diagonal(&assembled.symbolic, *unknown, *k);
+                .add_to_diagonal(&assembled.symbolic, w.unknown, w.k);
         }
         findings.extend(autospc_finding(model, &assembled, &weak));
         let supports = match (&body, relief) {
@@ -110,7 +111,7 @@ impl System {
     /// The factor.
     ///
     /// # Errors
-    /// Mechanisms, each dof named; entries that are not numbers.
+    /// Mechanisms, each dof named; entries that are not numbers; springs of negative stiffness that outweigh the rest.
     pub(super) fn factor(
         &self,
         prepared: &Prepared<'_>,
@@ -118,12 +119,30 @@ impl System {
         stiffness: BlockMatrix,
     ) -> Result<Factor<'_>, FeError> {
         let model = prepared.model;
-        let factor = Factor::new(&self.symbolic, stiffness).map_err(|e| self.refused(model, e))?;
+        let diagonal = stiffness.diagonal_values(&self.symbolic);
+        let negative = match diagonal.iter().all(|v| v.is_finite()) {
+            true => negative_springs(model),
+            false => Vec::new(),
+        };
+        let factor = match Factor::new(&self.symbolic, stiffness) {
+            Ok(factor) => factor,
+            // A pivot that stays negative whatever holds its unknown.
+            Err(FactorError::NotANumber { .. }) if !negative.is_empty() => {
+                return Err(FeError::Refused(negative));
+            }
+            Err(e) => return Err(self.refused(model, e)),
+        };
         if factor.lost.is_empty() {
             return Ok(factor);
         }
         let dofs = self.loose_dofs(prepared, mass, &factor);
-        Err(mechanism(model, &dofs, &self.numbering, &self.graph))
+        let mechanism = mechanism(model, &dofs, &self.numbering, &self.graph);
+        if negative.is_empty() {
+            return Err(mechanism);
+        }
+        Err(FeError::Refused(
+            negative.into_iter().chain(mechanism.faults()).collect(),
+        ))
     }
 
     /// Grid and dof (0 to 5) that move most in each mechanism.
@@ -229,10 +248,11 @@ impl System {
         subcase: u32,
         f: &[[f64; 6]],
     ) -> Result<(), FeError> {
-        let fault = |g: usize, dof: usize| FeError::LoadOnNothing {
+        let fault = |g: usize, dof: usize, softer: Option<f64>| FeError::LoadOnNothing {
             grid: model.grids[g].id,
             dof: dof as u8 + 1,
             subcase,
+            softer,
             at: model.grids[g].at,
         };
         let limit = 1e-9 * largest(f);
@@ -241,25 +261,47 @@ impl System {
         for (f, axes) in arrives.iter_mut().zip(axes) {
             *f = to_local(axes, *f);
         }
-        for (g, f) in self.reduction.gather(arrives).iter().enumerate() {
+        let arrives = self.reduction.gather(arrives);
+        for (g, f) in arrives.iter().enumerate() {
             let unknown = |i: usize| {
                 self.numbering.group[g]
                     .is_some_and(|group| self.numbering.free[group as usize] >> i & 1 == 1)
             };
             let loose = |i: usize| self.reduction.state[6 * g + i] == State::Free && !unknown(i);
             if let Some(i) = (0..6).find(|&i| f[i].abs() > limit && loose(i)) {
-                return Err(fault(g, i));
+                return Err(fault(g, i, None));
             }
         }
-        for (unknown, _) in &self.weak {
-            let (g, dof) = self
-                .numbering
-                .dof_of(*unknown, self.symbolic.unknown_start());
-            if f[g][dof].abs() > limit && model.grids[g].cd.0 == 0 {
-                return Err(fault(g, dof));
+        if self.weak.is_empty() {
+            return Ok(());
+        }
+        let mut packed = vec![0.0; self.symbolic.n_unknowns()];
+        self.numbering.pack(&arrives, &mut packed);
+        for w in &self.weak {
+            if w.aimed(&packed) > limit {
+                let start = self.symbolic.unknown_start();
+                let (g, dof) = self.numbering.dof_of(w.unknown, start);
+                return Err(fault(g, dof, w.some.then_some(EPZERO)));
             }
         }
         Ok(())
+    }
+
+    /// Sizes of loads at the unknowns that [`Self::held_loads`] judges by; `None` where AUTOSPC holds nothing.
+    pub(super) fn sizes_of(&self, model: &Model, acting: &[f64]) -> Option<[f64; 2]> {
+        (!self.weak.is_empty()).then(|| load_sizes(&self.numbering, acting, extent(model)))
+    }
+
+    /// A finding where loads of these sizes go into directions that AUTOSPC holds; `moved` at the unknowns.
+    pub(super) fn held_loads(
+        &self,
+        model: &Model,
+        subcase: u32,
+        sizes: [f64; 2],
+        moved: &[f64],
+    ) -> Option<Finding> {
+        let numbers = (&self.numbering, self.symbolic.unknown_start());
+        held_loads(model, numbers, &self.weak, subcase, sizes, moved)
     }
 }
 
@@ -335,27 +377,6 @@ fn ties(prepared: &Prepared<'_>, assembled: &Assembled, body: &RigidBody) -> Opt
             "look for CELAS or CBUSH to ground, springs between grids that don't coincide, or MPC equations that forbid rigid motion",
         )
         .with_numbers(worst.0, limit)
-    })
-}
-
-fn autospc_finding(model: &Model, assembled: &Assembled, weak: &[(usize, f64)]) -> Option<Finding> {
-    let start = assembled.symbolic.unknown_start();
-    let names: Vec<String> = weak
-        .iter()
-        .take(5)
-        .map(|(unknown, _)| {
-            let (g, dof) = assembled.numbering.dof_of(*unknown, start);
-            format!("{}/{}", model.grids[g].id, dof + 1)
-        })
-        .collect();
-    (!weak.is_empty()).then(|| {
-        Finding::new(
-            Severity::Info,
-            "autospc",
-            format!("grid/dof {}", names.join(", ")),
-            format!("{} dofs without stiffness were held (AUTOSPC)", weak.len()),
-            "nothing, if no load is meant to act there",
-        )
     })
 }
 

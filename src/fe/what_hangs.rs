@@ -54,7 +54,7 @@ pub(crate) fn what_hangs(model: &Model, grid: GridIx) -> String {
     );
     for r in &model.rigids {
         if r.kind.grids().contains(&grid) {
-            all.push(format!("rigid element {}", r.id));
+            all.push(format!("{} {}", r.kind.card(), r.id));
         }
     }
     for j in &model.joints {
@@ -63,6 +63,9 @@ pub(crate) fn what_hangs(model: &Model, grid: GridIx) -> String {
             all.push(format!("{} {}", j.card.name(), j.id));
         }
     }
+    // The equations of a rigid bush or a weld go by the name of their card, which is listed already.
+    let mut seen = std::collections::HashSet::new();
+    all.retain(|name| seen.insert(name.clone()));
     let more = all.len().saturating_sub(4);
     all.truncate(4);
     match (all.is_empty(), more) {

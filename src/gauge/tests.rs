@@ -383,6 +383,7 @@ fn a_gauge_on_a_bar_reads_at_its_recovery_point_and_station() {
         axes: Mat3::identity(),
         pins: Default::default(),
         warping: None,
+        idle_points: false,
         at: Place::default(),
     });
     let case = CaseResult {

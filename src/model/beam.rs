@@ -34,7 +34,11 @@ impl Builder<'_> {
             else {
                 continue;
             };
-            beam.warping = self.warping(&beam, points);
+            (beam.warping, beam.idle_points) = match self.warping(&beam, points) {
+                Some((stated, true)) => (Some(stated), false),
+                Some((_, false)) => (None, true),
+                None => (None, false),
+            };
             out.push(beam);
         }
         out.sort_by_key(|b: &Beam| b.id);
@@ -52,7 +56,7 @@ impl Builder<'_> {
         let at = b.at;
         let pid = b.pid.or(defaults.and_then(|d| d.pid)).unwrap_or(b.id);
         let property = ix.get(&(card == "CBEAM", pid)).copied();
-        if property.is_none() {
+        if property.is_none() && !self.refused_properties.contains(&(card == "CBEAM", pid)) {
             let what = if card == "CBAR" {
                 "bar property"
             } else {
@@ -125,12 +129,13 @@ impl Builder<'_> {
             axes,
             pins: b.pins,
             warping: None,
+            idle_points: false,
             at,
         })
     }
 
-    /// The warping points of a CBEAM: SA and SB together, where its property has a warping constant.
-    fn warping(&mut self, beam: &Beam, points: [Option<u32>; 2]) -> Option<[GridIx; 2]> {
+    /// The warping points of a CBEAM, SA and SB together, and whether its property has a warping constant.
+    fn warping(&mut self, beam: &Beam, points: [Option<u32>; 2]) -> Option<([GridIx; 2], bool)> {
         let name = format!("CBEAM {}", beam.id);
         let [Some(a), Some(b)] = points.map(|p| p.filter(|p| *p > 0)) else {
             if points.iter().flatten().any(|p| *p > 0) {
@@ -156,7 +161,7 @@ impl Builder<'_> {
         }
         let property = self.model.beam_properties.get(beam.property.us())?;
         let warps = property.warping.iter().any(|cw| *cw != 0.0);
-        warps.then_some([a, b])
+        Some(([a, b], warps))
     }
 }
 

@@ -15,17 +15,27 @@ impl Builder<'_> {
     ) -> (Vec<BeamProperty>, HashMap<(bool, u32), BeamPropertyIx>) {
         let cards = self.cards;
         let mut out: Vec<(bool, BeamProperty)> = Vec::new();
+        let mut note = |b: &mut Self, id: u32, beam: bool, p: Option<BeamProperty>| match p {
+            Some(p) => out.push((beam, p)),
+            None => {
+                b.refused_properties.insert((beam, id));
+            }
+        };
         for p in &cards.pbars {
-            out.extend(self.pbar(p).map(|p| (false, p)));
+            let property = self.pbar(p);
+            note(self, p.id, false, property);
         }
         for p in &cards.pbarls {
-            out.extend(self.pbarl(p).map(|p| (false, p)));
+            let property = self.pbarl(p);
+            note(self, p.id, false, property);
         }
         for p in &cards.pbeams {
-            out.extend(self.pbeam(p).map(|p| (true, p)));
+            let property = self.pbeam(p);
+            note(self, p.id, true, property);
         }
         for p in &cards.pbeamls {
-            out.extend(self.pbeaml(p).map(|p| (true, p)));
+            let property = self.pbeaml(p);
+            note(self, p.id, true, property);
         }
         out.sort_by_key(|(beam, p)| (p.id, *beam, p.at));
         for pair in out.windows(2) {
@@ -77,6 +87,7 @@ impl Builder<'_> {
         let name = format!("PBAR {}", p.id);
         let material = self.material(p.mid, &name, "MID", p.at)?;
         self.positive("area", p.area, &name, "A", p.at);
+        self.not_negative("torsion constant", p.j, &name, "J", p.at);
         let s = Section {
             area: p.area,
             i1: p.i1,
@@ -156,6 +167,17 @@ impl Builder<'_> {
             })
             .collect();
         self.close(&mut sections, &name, p.at)?;
+        for (_, s) in &sections {
+            if self
+                .not_negative("torsion constant", s.j, &name, "J", p.at)
+                .is_none()
+            {
+                break;
+            }
+        }
+        for (cw, field) in p.cw.iter().zip(["CW(A)", "CW(B)"]) {
+            self.not_negative("warping constant", cw.unwrap_or(0.0), &name, field, p.at);
+        }
         // Blank K1 and K2 of a PBEAM are 1, stated zeros mean rigid in shear.
         let k = p.k.map(|k| k.unwrap_or(1.0));
         Some(BeamProperty {

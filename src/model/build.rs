@@ -5,7 +5,7 @@ use super::types::*;
 use nastran::bdf::{Deck, Named};
 use nastran::cards::{Cards, Param};
 use nastran::place::Place;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// What is known while the model is being built.
 pub(super) struct Builder<'a> {
@@ -18,6 +18,8 @@ pub(super) struct Builder<'a> {
     pub grid_ix: HashMap<u32, GridIx>,
     pub material_ix: HashMap<u32, MaterialIx>,
     pub element_ids: HashMap<u32, (&'static str, Place)>,
+    /// Properties of bars (false) and beams (true) that stand in the deck and have a fault of their own: they are not missing.
+    pub refused_properties: HashSet<(bool, u32)>,
     /// Grids that only say where a connector stands (GS).
     pub points: Vec<GridIx>,
 }
@@ -68,6 +70,7 @@ impl Model {
             grid_ix: HashMap::new(),
             material_ix: HashMap::new(),
             element_ids: HashMap::new(),
+            refused_properties: HashSet::new(),
             points: Vec::new(),
         };
         b.params();
@@ -101,6 +104,26 @@ impl Builder<'_> {
             at,
             kind,
         });
+    }
+
+    /// A fault, and `None`, where a number that must not be negative is.
+    pub(super) fn not_negative(
+        &mut self,
+        what: &'static str,
+        value: f64,
+        card: &str,
+        field: &'static str,
+        at: Place,
+    ) -> Option<()> {
+        if value < 0.0 {
+            let kind = FaultKind::Unsupported {
+                what: format!("the negative {what} {value}"),
+                remedy: "give a number of 0 or above",
+            };
+            self.fault(card.to_owned(), field, at, kind);
+            return None;
+        }
+        Some(())
     }
 
     /// The grid of that id; a fault where there is none.

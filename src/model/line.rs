@@ -241,6 +241,14 @@ impl<'a> Builder<'a> {
             Some(g) => Some(self.grid(g, name, "GB", b.at)?),
             None => None,
         };
+        if gb == Some(ga) {
+            let kind = FaultKind::Unsupported {
+                what: "a bush from a grid to itself".into(),
+                remedy: "name two grids, which may coincide, or leave GB blank for ground",
+            };
+            self.fault(name.to_owned(), "GB", b.at, kind);
+            return None;
+        }
         let xa = self.x(ga);
         let xb = gb.map_or(xa, |g| self.x(g));
         let length = (xb - xa).norm();

@@ -21,7 +21,8 @@ impl Builder<'_> {
             let list: Vec<(u32, Dofs)> = r.dependent.iter().map(|g| (*g, r.dofs)).collect();
             let dependent = self.grid_dofs(&list, &name, "GM", r.at);
             let Some(g) = independent else { continue };
-            out.push(body(r.id, vec![(g, Dofs::ALL)], dependent, r.alpha, r.at));
+            let independent = vec![(g, Dofs::ALL)];
+            out.push(body(("RBE2", r.id), independent, dependent, r.alpha, r.at));
         }
         for r in &cards.rbars {
             if !self.element(r.id, "RBAR", r.at) {
@@ -41,7 +42,7 @@ impl Builder<'_> {
             let independent = self.grid_dofs(&pair(r.independent), &name, "CNA", r.at);
             let dependent = self.grid_dofs(&pair(m), &name, "CMA", r.at);
             self.six(&independent, &name, r.at);
-            out.push(body(r.id, independent, dependent, r.alpha, r.at));
+            out.push(body(("RBAR", r.id), independent, dependent, r.alpha, r.at));
         }
         for r in &cards.rbe1s {
             if !self.element(r.id, "RBE1", r.at) {
@@ -51,7 +52,7 @@ impl Builder<'_> {
             let independent = self.grid_dofs(&r.independent, &name, "GN", r.at);
             let dependent = self.grid_dofs(&r.dependent, &name, "GM", r.at);
             self.six(&independent, &name, r.at);
-            out.push(body(r.id, independent, dependent, r.alpha, r.at));
+            out.push(body(("RBE1", r.id), independent, dependent, r.alpha, r.at));
         }
         for r in &cards.rbe3s {
             if self.element(r.id, "RBE3", r.at) {
@@ -173,30 +174,21 @@ impl Builder<'_> {
                 RigidKind::Body { independent, .. } => independent,
                 RigidKind::Mean { .. } | RigidKind::Equations { .. } => &[],
             };
+            let name = || format!("{} {}", r.kind.card(), r.id);
+            let mut note = |kind| found.push((name(), r.kind.field(), r.at, kind));
             for (g, dofs) in r.kind.dependent() {
                 for i in dofs.iter0() {
-                    let id = self.model.grids.get(g.us()).map_or(0, |g| g.id);
-                    if independent
-                        .iter()
-                        .any(|(h, d)| *h == g && d.has(i as u8 + 1))
-                    {
-                        found.push((
-                            (r.kind.card(), r.id, r.at),
-                            FaultKind::DependentAndIndependent {
-                                grid: id,
-                                dof: i as u8 + 1,
-                            },
-                        ));
+                    let grid = self.model.grids.get(g.us()).map_or(0, |g| g.id);
+                    let dof = i as u8 + 1;
+                    if independent.iter().any(|(h, d)| *h == g && d.has(dof)) {
+                        note(FaultKind::DependentAndIndependent { grid, dof });
                     }
                     match first.get(&(g, i)) {
-                        Some(at) => found.push((
-                            (r.kind.card(), r.id, r.at),
-                            FaultKind::DependentTwice {
-                                grid: id,
-                                dof: i as u8 + 1,
-                                first: *at,
-                            },
-                        )),
+                        Some(at) => note(FaultKind::DependentTwice {
+                            grid,
+                            dof,
+                            first: *at,
+                        }),
                         None => {
                             first.insert((g, i), r.at);
                         }
@@ -204,14 +196,14 @@ impl Builder<'_> {
                 }
             }
         }
-        for ((card, id, at), kind) in found {
-            self.fault(format!("{card} {id}"), "GM", at, kind);
+        for (name, field, at, kind) in found {
+            self.fault(name, field, at, kind);
         }
     }
 }
 
 fn body(
-    id: u32,
+    (card, id): (&'static str, u32),
     independent: Vec<(GridIx, Dofs)>,
     dependent: Vec<(GridIx, Dofs)>,
     alpha: f64,
@@ -220,6 +212,7 @@ fn body(
     Rigid {
         id,
         kind: RigidKind::Body {
+            card,
             independent,
             dependent,
             alpha,

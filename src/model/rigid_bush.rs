@@ -14,7 +14,7 @@ type Terms = Vec<(GridIx, u8, f64)>;
 impl Builder<'_> {
     /// The equations of rigid bushes, after all that makes dofs dependent or holds them.
     pub(super) fn rigid_bushes(&mut self) {
-        let mut taken = self.taken();
+        let [mut taken, in_sets] = self.taken();
         for i in 0..self.model.bushes.len() {
             let Some(bush) = self.model.bushes.get(i).copied() else {
                 continue;
@@ -28,11 +28,16 @@ impl Builder<'_> {
                 .iter()
                 .filter_map(|g| self.rigid_components(&bush, *g))
                 .collect();
-            let free = |e: &&Vec<Terms>| {
+            let outside = |e: &Vec<Terms>, dofs: &HashSet<(GridIx, u8)>| {
                 let mut first = e.iter().filter_map(|terms| terms.first());
-                first.all(|t| !taken.contains(&(t.0, t.1)))
+                first.all(|t| !dofs.contains(&(t.0, t.1)))
             };
-            let Some(equations) = found.iter().find(free).or(found.first()).cloned() else {
+            // A set that the load case does not select takes nothing: an end that rigid elements move is the worse choice.
+            let free = |e: &&Vec<Terms>| outside(e, &taken) && outside(e, &in_sets);
+            let of_rigids = |e: &&Vec<Terms>| outside(e, &taken);
+            let best = found.iter().find(free);
+            let best = best.or_else(|| found.iter().find(of_rigids));
+            let Some(equations) = best.or(found.first()).cloned() else {
                 let kind = FaultKind::Unsupported {
                     what: "RIGID in directions that hold each other".into(),
                     remedy: "give stiffnesses, or use an RBE2 or RBAR",
@@ -54,8 +59,8 @@ impl Builder<'_> {
         self.model.rigids.sort_by_key(|r| r.id);
     }
 
-    /// Dofs that rigid elements or MPCs make dependent, or that a grid or an SPC set holds.
-    fn taken(&self) -> HashSet<(GridIx, u8)> {
+    /// Dofs that rigid elements make dependent or a grid holds, whatever the load case; then those that some MPC or SPC set does.
+    fn taken(&self) -> [HashSet<(GridIx, u8)>; 2] {
         let m = &self.model;
         let each = |(g, dofs): (GridIx, nastran::cards::Dofs)| {
             dofs.iter0().map(move |i| (g, i as u8)).collect::<Vec<_>>()
@@ -67,13 +72,14 @@ impl Builder<'_> {
                 .flat_map(|r| r.kind.dependent())
                 .flat_map(each),
         );
-        let held = m.spcs.iter().flat_map(|s| &s.terms);
-        all.extend(held.map(|t| (t.0, t.1)).flat_map(each));
         let permanent = m.grids.iter().enumerate();
         all.extend(permanent.flat_map(|(i, g)| each((GridIx(i as u32), g.ps))));
+        let mut in_sets: HashSet<(GridIx, u8)> = HashSet::new();
+        let held = m.spcs.iter().flat_map(|s| &s.terms);
+        in_sets.extend(held.map(|t| (t.0, t.1)).flat_map(each));
         let equations = m.mpcs.iter().flat_map(|s| &s.equations);
-        all.extend(equations.filter_map(|e| e.0.first()).map(|t| (t.0, t.1)));
-        all
+        in_sets.extend(equations.filter_map(|e| e.0.first()).map(|t| (t.0, t.1)));
+        [all, in_sets]
     }
 
     /// Equations that hold the relative displacement of the rigid components at zero: rows axes (u_B - u_A) at the bush's location,

@@ -16,7 +16,7 @@ const AT: [f64; 2] = [21.0, 17.5];
 
 /// Two plates 40 x 40, 2 thick, property 1 at z = 0 (elements 1 to 16) and 2 at z = GAP (17 to 32), 10 a side; the lower one is held.
 /// GS 101 between, GA 102 and GB 103 on the plates. Load set 1 acts at GB.
-fn plates(connector: &str, load: &str) -> Bulk {
+pub fn plates(connector: &str, load: &str) -> Bulk {
     let mut b = Bulk::shell(E, NU, 2.0);
     b.card(&format!("PSHELL,2,1,2.,1,,1\nPWELD,7,1,{D:?}"));
     let n = 5;

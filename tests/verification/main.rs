@@ -2,6 +2,8 @@
 
 #![allow(clippy::print_stderr, reason = "numbers for the tables in docs")]
 
+mod balance;
+mod connector_faults;
 mod connectors;
 mod coupled_mass;
 mod decks;

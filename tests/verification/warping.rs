@@ -309,3 +309,25 @@ fn bimoments_count_neither_as_forces_of_supports_nor_as_forces_on_a_free_body() 
     assert!(balance.applied[0].abs() < 1e-6, "{:?}", balance.applied);
     assert!(balance.acceleration[0].abs() < 1e-6, "{balance:?}");
 }
+
+#[test]
+fn warping_points_of_a_beam_without_warping_constant_are_told() {
+    let told = |cw: f64| {
+        let mut b = bar(1, 1500.0, (28_800.0, cw));
+        b.card("SPC1,1,1,1001,1002");
+        let case = LoadCase {
+            subcase: 1,
+            label: String::new(),
+            loads: vec![UnitLoad::Set(1)],
+            spc: Some(1),
+            mpc: None,
+            relief: Relief::None,
+        };
+        let solved = solve_cases(&b.model(), &[case], &SolveOptions::default());
+        let (solution, _) = solved.unwrap_or_else(|e| panic!("{e}"));
+        let messages = solution.findings.into_iter().map(|f| f.message);
+        messages.collect::<Vec<_>>()
+    };
+    assert!(told(0.0).iter().any(|m| m.contains("without warping")));
+    assert!(told(1e10).iter().all(|m| !m.contains("without warping")));
+}

@@ -7,12 +7,13 @@ pub(in crate::app) use includes::{from_folder, relocated};
 use super::context::Context;
 use super::deck::read_model;
 use super::fault::{Fault, Faults};
-use super::job::{Job, LoadActs};
+use super::job::{Component, Job, LoadActs};
 use super::outcome::{Answer, Outcome, StatedUnits};
 use super::solved::support_of_job;
 use super::work::Work;
 use crate::fe::{Relief, Support};
 use crate::finding::{Finding, Severity};
+use crate::model::{Grid, Model};
 use nastran::bdf::{Deck, Edits, Field, format_card, write_edited};
 use nastran::cards::Force;
 use serde::Serialize;
@@ -140,7 +141,7 @@ pub fn cases(job: &Job, cx: &Context) -> Result<Outcome<UnitLoadDeck>, Faults> {
     }
     Faults::check(faults)?;
     let support = support_of_job(job, &read.model)?;
-    let (edits, subcases) = edits_of(&mut work, job, (&read.deck, support))?;
+    let (edits, subcases) = edits_of(&mut work, job, (&read.deck, &read.model, support))?;
     let answer = UnitLoadDeck {
         subcases,
         support: support.words(),
@@ -192,10 +193,25 @@ pub fn dynamic_ids(deck: &Deck) -> Vec<u32> {
     of_kind.filter_map(|c| c.first).collect()
 }
 
+/// The card of a load at a grid; at a scalar point, which has one dof and no frame, an SLOAD.
+pub fn load_card(model: Option<&Model>, load: &Force, component: Component) -> String {
+    let point = model.and_then(|m| m.grids.get(m.grid_ix(load.grid)?.us()));
+    if point.is_some_and(Grid::is_scalar) {
+        let size = load.scale * load.n[0];
+        let fields = [load.sid.into(), load.grid.into(), Field::Real(size)];
+        return format_card("SLOAD", &fields);
+    }
+    if component.is_force() {
+        load.to_force_card()
+    } else {
+        load.to_moment_card()
+    }
+}
+
 fn edits_of(
     work: &mut Work,
     job: &Job,
-    (deck, support): (&Deck, Support),
+    (deck, model, support): (&Deck, &Model, Support),
 ) -> Result<(Edits, Vec<Value>), Faults> {
     let mut edits = Edits::default();
     edits.remove_subcases(deck);
@@ -291,11 +307,7 @@ fn edits_of(
                     scale: l.applied.abs(),
                     n: component.vector(l.applied.signum()),
                 };
-                bulk.push_str(&if component.is_force() {
-                    card.to_force_card()
-                } else {
-                    card.to_moment_card()
-                });
+                bulk.push_str(&load_card(Some(model), &card, component));
             }
             // A job without a model has no cases.
             LoadActs::Named => {}

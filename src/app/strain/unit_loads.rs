@@ -1,7 +1,7 @@
 //! Loads of the job as loads on the model.
 
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::{Job, JobLoad, LoadActs};
+use crate::app::job::{Component, Job, JobLoad, LoadActs};
 use crate::fe::UnitLoad;
 use crate::model::{Model, Vec3};
 
@@ -55,9 +55,22 @@ pub fn unit_loads(job: &Job, model: &Model) -> Result<Vec<UnitLoad>, Faults> {
                     ));
                 }
                 let (ix, frame) = (ix?, frame?);
+                let point = model.grids.get(ix.us())?;
+                if point.is_scalar() && (component != Component::FX || cid != 0) {
+                    faults.push(Fault::at(
+                        &*job.file,
+                        l.line,
+                        "load.component",
+                        format!(
+                            "load `{}`: {grid} is a scalar point, with one degree of freedom and no coordinate system",
+                            l.name
+                        ),
+                        "give component = \"FX\" without cid, or name a grid",
+                    ));
+                    return None;
+                }
                 let v = component.vector(l.applied);
-                let at = model.grids.get(ix.us())?.x;
-                let v = model.frames.get(frame.us())?.vector_to_basic(v, at);
+                let v = model.frames.get(frame.us())?.vector_to_basic(v, point.x);
                 let (force, moment) = if component.is_force() {
                     (v, Vec3::zeros())
                 } else {

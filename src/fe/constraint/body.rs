@@ -20,7 +20,7 @@ pub(super) fn relations(
     claim: u32,
 ) -> Result<Vec<Relation>, Refusal> {
     let refuse = |reason: String| Refusal {
-        card: format!("rigid element {}", rigid.id),
+        card: format!("{} {}", rigid.kind.card(), rigid.id),
         at: rigid.at,
         reason,
         remedy: "name six independent dofs that together fix the rigid motion".to_owned(),

@@ -56,8 +56,8 @@ impl Builder<'_> {
         let mut on = Vec::with_capacity(2);
         for (id, field) in c.patches.into_iter().zip(["IDA", "IDB"]) {
             on.push(match c.kind.as_str() {
-                "PROP" => self.named_property(id, (name, field, c.at))?,
-                "ELEM" => self.named_shell(id, Where::Around, (name, field, c.at))?,
+                "PROP" => self.named_property(id, (name, field, c.at)),
+                "ELEM" => self.named_shell(id, Where::Around, (name, field, c.at)),
                 found => {
                     let kind = FaultKind::Word {
                         found: found.to_owned(),
@@ -68,14 +68,17 @@ impl Builder<'_> {
                 }
             });
         }
+        let point = self.connector_point((c.gs, c.xs), name, c.at);
+        let grids = self.piercing(c.grids, name, c.at);
+        let on: Option<Vec<Where>> = on.into_iter().collect();
         let stated = Stated {
             name,
             at: c.at,
             id: c.id,
             diameter: p.d,
-            point: self.connector_point((c.gs, c.xs), name, c.at),
-            grids: self.piercing(c.grids, name, c.at),
-            patches: <[Where; 2]>::try_from(on).ok()?,
+            point: point?,
+            grids: grids?,
+            patches: <[Where; 2]>::try_from(on?).ok()?,
         };
         let pierced = self.pierce(patches, &stated)?;
         self.tie_piercing("CFAST", &stated, &pierced.ends, tied);

@@ -10,6 +10,8 @@ use nastran::place::Placed;
 /// KB over KA where KB is blank.
 const OPEN: f64 = 1e-14;
 
+const TWO_GRIDS: &str = "name two grids; they may coincide";
+
 impl Builder<'_> {
     pub(super) fn gaps(&mut self, out: &mut Vec<Joint>) {
         let cards = self.cards;
@@ -37,12 +39,21 @@ impl Builder<'_> {
     ///
     /// # Reference
     /// MSC Nastran Quick Reference Guide, CGAP and PGAP: in linear solutions the stiffness is that of the initial state.
-    fn gap(&mut self, g: &Placed<Gap>, p: &Pgap, name: &str) -> Option<Joint> {
+    fn gap(&mut self, g: &Placed<Gap>, p: &Placed<Pgap>, name: &str) -> Option<Joint> {
         let [ga, gb] = g.grids;
         let (a, b) = (
             self.grid(ga, name, "GA", g.at)?,
             self.grid(gb, name, "GB", g.at)?,
         );
+        if a == b {
+            self.refuse(name, "GB", g.at, "a gap from a grid to itself", TWO_GRIDS);
+            return None;
+        }
+        let pgap = format!("PGAP {}", p.id);
+        let stated = [(Some(p.ka), "KA"), (p.kb, "KB"), (p.kt, "KT")];
+        for (k, field) in stated {
+            self.not_negative("stiffness", k.unwrap_or(0.0), &pgap, field, p.at)?;
+        }
         let (xa, xb) = (self.x(a), self.x(b));
         let open = p.u0 > 0.0;
         let (along, across) = if open {

@@ -44,6 +44,11 @@ pub(super) struct Pierced {
     pub(super) placed: Placement,
 }
 
+/// Angle between two sheets of these normals, degrees, whichever way the normals point.
+pub(super) fn between_deg(a: Vec3, b: Vec3) -> f64 {
+    a.dot(&b).abs().min(1.0).acos().to_degrees()
+}
+
 impl Builder<'_> {
     /// The shell that a field names, to be pierced with its neighbours or alone (`on`); a fault where there is none.
     pub(super) fn named_shell(
@@ -74,35 +79,41 @@ impl Builder<'_> {
         None
     }
 
-    /// The point of GS or XS, YS, ZS.
+    /// The point of GS or XS, YS, ZS, where one is stated; `None`, with a fault, where it names a grid that is missing.
     pub(super) fn connector_point(
         &mut self,
         (gs, xs): (Option<u32>, Option<[f64; 3]>),
         name: &str,
         at: Place,
-    ) -> Option<Vec3> {
+    ) -> Option<Option<Vec3>> {
         match (gs, xs) {
             (Some(gs), _) => {
                 let g = self.grid(gs, name, "GS", at)?;
                 self.points.push(g);
-                Some(self.x(g))
+                Some(Some(self.x(g)))
             }
-            (None, xs) => xs.map(Vec3::from),
+            (None, xs) => Some(xs.map(Vec3::from)),
         }
     }
 
-    /// Grids GA and GB where they are stated.
+    /// Grids GA and GB where they are stated; `None`, with a fault each, where one is missing.
     pub(super) fn piercing(
         &mut self,
         grids: [Option<u32>; 2],
         name: &str,
         at: Place,
-    ) -> [Option<GridIx>; 2] {
-        let [a, b] = grids;
-        [
-            a.and_then(|g| self.grid(g, name, "GA", at)),
-            b.and_then(|g| self.grid(g, name, "GB", at)),
-        ]
+    ) -> Option<[Option<GridIx>; 2]> {
+        let found = grids.map(|g| g.and_then(|g| self.grid_ix.get(&g).copied()));
+        for ((id, found), field) in grids.iter().zip(found).zip(["GA", "GB"]) {
+            if let (Some(id), None) = (id, found) {
+                self.grid(*id, name, field, at);
+            }
+        }
+        let whole = grids
+            .iter()
+            .zip(found)
+            .all(|(g, f)| g.is_none() || f.is_some());
+        whole.then_some(found)
     }
 
     fn foot(&self, patches: &mut Patches, on: Where, p: Vec3) -> Option<(Patch, Foot)> {
@@ -153,7 +164,7 @@ impl Builder<'_> {
         let thickness = [patch_a.thickness, patch_b.thickness];
         let mut placed = Placement {
             halvings: 0,
-            angle_deg: a.normal.dot(&b.normal).abs().min(1.0).acos().to_degrees(),
+            angle_deg: between_deg(a.normal, b.normal),
         };
         let mut ends = Vec::with_capacity(2);
         for (side, (patch, foot)) in [(patch_a, a), (patch_b, b)].into_iter().enumerate() {

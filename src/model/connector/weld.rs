@@ -1,7 +1,7 @@
 //! CWELD with its PWELD.
 
 use super::patch::{Patch, Patches};
-use super::place::{Pierced, Stated, Where};
+use super::place::{Pierced, Stated, Where, between_deg};
 use super::{COINCIDENT, connector_axes, tie};
 use crate::model::build::Builder;
 use crate::model::fault::FaultKind;
@@ -13,6 +13,10 @@ use std::f64::consts::PI;
 
 /// Share of a solid circle that carries its transverse shear.
 const CIRCLE_SHEAR: f64 = 0.9;
+
+/// Fields of the corners of a named patch.
+const CORNERS_A: [&str; 4] = ["GA1", "GA2", "GA3", "GA4"];
+const CORNERS_B: [&str; 4] = ["GB1", "GB2", "GB3", "GB4"];
 
 const OTHER_FORMAT: &str =
     "use GRIDID, ELEMID, ELPAT, PARTPAT or ALIGN, or a CBUSH between grids of the plates";
@@ -61,6 +65,9 @@ impl Builder<'_> {
             self.fault(pweld, "D", p.at, kind);
             return None;
         }
+        for (value, field) in p.ld.into_iter().zip(["LDMIN", "LDMAX"]) {
+            self.not_negative("bound of length over diameter", value, &pweld, field, p.at)?;
+        }
         let material = self.material(p.mid, &pweld, "MID", p.at)?;
         let law = self.model.materials.get(material.us()).map(|m| m.kind);
         let Some(MaterialKind::Isotropic { e, g, .. }) = law else {
@@ -84,12 +91,11 @@ impl Builder<'_> {
                 .clamp(least * p.d, (most * p.d).max(least * p.d))
         };
         if !(length > 0.0) {
-            self.fault(
-                name.to_owned(),
-                "LDMIN",
-                w.at,
-                FaultKind::ZeroLength { length },
-            );
+            let kind = FaultKind::Unsupported {
+                what: format!("length 0 of CWELD {}", w.id),
+                remedy: "give LDMIN above 0, or move the ends apart",
+            };
+            self.fault(pweld, "LDMIN", p.at, kind);
             return None;
         }
         let location = (a.x + b.x) / 2.0;
@@ -115,6 +121,7 @@ impl Builder<'_> {
     ) -> Option<Pierced> {
         let point = self.connector_point((w.gs, w.xs), name, w.at);
         let grids = self.piercing(w.grids, name, w.at);
+        let (point, grids) = (point?, grids?);
         let mut on_shells = |b: &mut Self, patches_of: [Where; 2]| {
             let stated = Stated {
                 name,
@@ -131,19 +138,19 @@ impl Builder<'_> {
         };
         match &w.patches {
             WeldPatches::Properties(a, b) => {
-                let a = self.named_property(*a, (name, "PIDA", w.at))?;
-                let b = self.named_property(*b, (name, "PIDB", w.at))?;
-                on_shells(self, [a, b])
+                let a = self.named_property(*a, (name, "PIDA", w.at));
+                let b = self.named_property(*b, (name, "PIDB", w.at));
+                on_shells(self, [a?, b?])
             }
             WeldPatches::ElementPatches(a, b) => {
-                let a = self.named_shell(*a, Where::Around, (name, "SHIDA", w.at))?;
-                let b = self.named_shell(*b, Where::Around, (name, "SHIDB", w.at))?;
-                on_shells(self, [a, b])
+                let a = self.named_shell(*a, Where::Around, (name, "SHIDA", w.at));
+                let b = self.named_shell(*b, Where::Around, (name, "SHIDB", w.at));
+                on_shells(self, [a?, b?])
             }
             WeldPatches::Elements(a, Some(b)) => {
-                let a = self.named_shell(*a, Where::Shell, (name, "SHIDA", w.at))?;
-                let b = self.named_shell(*b, Where::Shell, (name, "SHIDB", w.at))?;
-                on_shells(self, [a, b])
+                let a = self.named_shell(*a, Where::Shell, (name, "SHIDA", w.at));
+                let b = self.named_shell(*b, Where::Shell, (name, "SHIDB", w.at));
+                on_shells(self, [a?, b?])
             }
             WeldPatches::Elements(a, None) => {
                 let on = self.named_shell(*a, Where::Shell, (name, "SHIDA", w.at))?;
@@ -215,11 +222,23 @@ impl Builder<'_> {
         tied: &mut HashSet<GridIx>,
     ) -> Option<Pierced> {
         let [list_a, list_b] = lists;
-        let a = self.patch_of_grids(list_a, (name, "GA1", w.at))?;
+        let a = self.patch_of_grids(list_a, &CORNERS_A, (name, w.at));
         if list_b.is_empty() {
-            return self.patch_and_grid(Some(a), point, grids, w, p, name, tied);
+            return self.patch_and_grid(Some(a?), point, grids, w, p, name, tied);
         }
-        let b = self.patch_of_grids(list_b, (name, "GB1", w.at))?;
+        let b = self.patch_of_grids(list_b, &CORNERS_B, (name, w.at));
+        let (a, b) = (a?, b?);
+        let within = |a: &Patch, b: &Patch| a.grids.iter().all(|g| b.grids.contains(g));
+        if within(&a, &b) || within(&b, &a) {
+            self.refuse(
+                name,
+                "GB1",
+                w.at,
+                "a connector with both ends on one patch",
+                "name the corners of the other sheet",
+            );
+            return None;
+        }
         let x = |g: Option<GridIx>| g.map(|g| self.x(g));
         let [ga, gb] = grids.map(x);
         let (Some(pa), Some(pb)) = (ga.or(point).or(gb), gb.or(point).or(ga)) else {
@@ -257,7 +276,10 @@ impl Builder<'_> {
             ends,
             axes,
             thickness: [0.0; 2],
-            placed: Placement::default(),
+            placed: Placement {
+                halvings: 0,
+                angle_deg: between_deg(fa.normal, fb.normal),
+            },
         })
     }
 
@@ -288,6 +310,16 @@ impl Builder<'_> {
             );
             return None;
         };
+        if patch.grids.contains(&far) {
+            self.refuse(
+                name,
+                "GB",
+                w.at,
+                "a weld from a patch to a corner of its own",
+                "name a grid of the other sheet",
+            );
+            return None;
+        }
         let xb = self.x(far);
         let start = grids[0].map(|g| self.x(g)).or(point).unwrap_or(xb);
         let Some(foot) = patch.foot(start) else {
@@ -321,11 +353,15 @@ impl Builder<'_> {
     fn patch_of_grids(
         &mut self,
         list: &[u32],
-        (name, field, at): (&str, &'static str, Place),
+        fields: &[&'static str; 4],
+        (name, at): (&str, Place),
     ) -> Option<Patch> {
+        let [field, .., last] = *fields;
+        let of = fields.iter().copied().chain(std::iter::repeat(last));
         let grids: Vec<GridIx> = list
             .iter()
-            .filter_map(|g| self.grid(*g, name, field, at))
+            .zip(of)
+            .filter_map(|(g, field)| self.grid(*g, name, field, at))
             .collect();
         if grids.len() != list.len() {
             return None;

@@ -52,9 +52,13 @@ impl Builder<'_> {
         const BEYOND: f64 = 1e-6;
         let inside = |x: f64| (-BEYOND..=1.0 + BEYOND).contains(&x);
         if !(inside(from) && inside(to) && from <= to) {
-            let kind = FaultKind::Word {
-                found: format!("X1 {}, X2 {:?}", p.x1, p.x2),
-                expected: "places on the element, the first no farther than the second",
+            let places = match p.x2 {
+                Some(x2) => format!("from X1 {} to X2 {x2}", p.x1),
+                None => format!("at X1 {}", p.x1),
+            };
+            let kind = FaultKind::Unsupported {
+                what: format!("a load {places}, off the element or from B to A,"),
+                remedy: "give places on the element, X1 no farther than X2",
             };
             self.fault(name, "X1", p.at, kind);
             return None;

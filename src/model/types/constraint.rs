@@ -18,6 +18,8 @@ pub struct Rigid {
 pub enum RigidKind {
     /// RBE2, RBAR and RBE1: dependent dofs follow the rigid motion given by the independent ones.
     Body {
+        /// Which of the three.
+        card: &'static str,
         /// Independent dofs, six in all.
         independent: Vec<(GridIx, Dofs)>,
         /// Dependent dofs.
@@ -49,9 +51,22 @@ impl RigidKind {
     /// Its card in messages.
     pub fn card(&self) -> &'static str {
         match self {
-            Self::Body { .. } => "rigid element",
             Self::Mean { .. } => "RBE3",
-            Self::Equations { card, .. } => card,
+            Self::Body { card, .. } | Self::Equations { card, .. } => card,
+        }
+    }
+
+    /// The field of its card that names its dependent dofs.
+    pub fn field(&self) -> &'static str {
+        match self {
+            Self::Body { card: "RBAR", .. } => "CMA",
+            Self::Body { .. } => "GM",
+            Self::Mean { um, .. } if um.is_empty() => "REFC",
+            Self::Mean { .. } => "UM",
+            Self::Equations {
+                card: "RSPLINE", ..
+            } => "G",
+            Self::Equations { .. } => "GA",
         }
     }
 

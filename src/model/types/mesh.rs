@@ -84,6 +84,8 @@ pub struct Beam {
     pub pins: [Dofs; 2],
     /// Scalar points of the warping dtheta/dx at A, B (CBEAM with SA and SB, and a property with CW).
     pub warping: Option<[GridIx; 2]>,
+    /// SA and SB are stated, and the property has no CW: it twists without warping, and they stay where they are.
+    pub idle_points: bool,
     /// Where it stands.
     pub at: Place,
 }

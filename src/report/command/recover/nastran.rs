@@ -4,12 +4,13 @@
 //! load and one DLOAD for all.
 
 use super::tables::LoadsFile;
-use crate::app::cases::{dynamic_ids, load_ids};
+use crate::app::cases::{dynamic_ids, load_card, load_ids};
 use crate::app::fault::Faults;
 use crate::app::job::{JobLoad, LoadActs};
 use crate::app::output::Output;
 use crate::app::recover::{RecordHead, Recovered, RecoveredRuns, Samples};
 use crate::app::strain::LoadUnits;
+use crate::model::Model;
 use nastran::bdf::{Field, format_card};
 use nastran::cards::Force;
 use std::io::Write;
@@ -31,6 +32,7 @@ struct Unit {
 fn unit_sets(recovered: &Recovered, names: &[String]) -> (String, Vec<Unit>, u32) {
     let fields = recovered.prepared.fields.as_ref();
     let deck = fields.map(|f| &f.deck.deck);
+    let model = fields.map(|f| &f.deck.model);
     let taken = deck.and_then(|d| load_ids(d).into_iter().chain(dynamic_ids(d)).max());
     let mut next = taken.map_or(FIRST_SET, |last| (last + 1).max(FIRST_SET));
     let (mut text, mut units) = (String::new(), Vec::new());
@@ -43,7 +45,7 @@ fn unit_sets(recovered: &Recovered, names: &[String]) -> (String, Vec<Unit>, u32
             LoadActs::Named => continue,
             LoadActs::Set(set) => set,
             LoadActs::AtGrid { .. } => {
-                text.push_str(&unit_card(load, next));
+                text.push_str(&unit_card(model, load, next));
                 next += 1;
                 next - 1
             }
@@ -53,7 +55,7 @@ fn unit_sets(recovered: &Recovered, names: &[String]) -> (String, Vec<Unit>, u32
     (text, units, next)
 }
 
-fn unit_card(load: &JobLoad, sid: u32) -> String {
+fn unit_card(model: Option<&Model>, load: &JobLoad, sid: u32) -> String {
     let LoadActs::AtGrid {
         grid,
         component,
@@ -69,11 +71,7 @@ fn unit_card(load: &JobLoad, sid: u32) -> String {
         scale: 1.0,
         n: component.vector(1.0),
     };
-    if component.is_force() {
-        card.to_force_card()
-    } else {
-        card.to_moment_card()
-    }
+    load_card(model, &card, component)
 }
 
 /// Text that can stand in a comment or a label.

@@ -1,0 +1,34 @@
+//! Springs of negative stiffness.
+
+use super::error::Refusal;
+use crate::model::Model;
+use nastran::place::Place;
+
+/// Named in one refusal at most.
+const SHOWN: usize = 5;
+
+/// CELAS and CBUSH with negative stiffness, each as what stops a solution that the rest of the structure does not outweigh.
+pub(super) fn negative_springs(model: &Model) -> Vec<Refusal> {
+    let springs = model.springs.iter();
+    let springs = springs.map(|s| (format!("CELAS {}", s.id), s.at, s.k));
+    let bushes = model.bushes.iter().map(|b| {
+        let lowest = b.k.iter().fold(f64::INFINITY, |a, k| a.min(*k));
+        (format!("CBUSH {}", b.id), b.at, lowest)
+    });
+    let refusal = |(card, at, k): (String, Place, f64)| Refusal {
+        card,
+        at,
+        reason: format!(
+            "its stiffness is {k}, and the structure around it does not outweigh that: it is in no stable balance"
+        ),
+        remedy:
+            "give it a stiffness above 0, or hold the structure so that what remains is positive"
+                .to_owned(),
+    };
+    springs
+        .chain(bushes)
+        .filter(|s| s.2 < 0.0)
+        .take(SHOWN)
+        .map(refusal)
+        .collect()
+}

@@ -1,0 +1,96 @@
+//! Scalar points: they have no place, so what acts there counts at the grids that they follow, or as no force at all.
+
+use super::constraint::{Reduction, State};
+use super::error::{FeError, Refusal};
+use super::grid_frames::{to_basic, to_local};
+use super::prepared::Prepared;
+use crate::model::{Grid, Model};
+
+/// Whether each grid is a warping point of a beam: no motion of the body moves it, and what acts there is a bimoment.
+fn warping_points(model: &Model) -> Vec<bool> {
+    let mut warps = vec![false; model.grids.len()];
+    for g in model.beams.iter().filter_map(|b| b.warping).flatten() {
+        warps[g.us()] = true;
+    }
+    warps
+}
+
+/// What acts at scalar points that follow grids (MPC), carried to these by virtual work: f_j += c_j f for u = sum of c_j u_j. Basic frame.
+pub(super) fn carry_to_grids(
+    prepared: &Prepared<'_>,
+    reduction: &Reduction,
+    field: &mut [[f64; 6]],
+) {
+    for (g, grid) in prepared.model.grids.iter().enumerate() {
+        let State::Dependent(r) = reduction.state[6 * g] else {
+            continue;
+        };
+        let v = field[g][0];
+        if !grid.is_scalar() || v == 0.0 {
+            continue;
+        }
+        field[g][0] = 0.0;
+        let row = &reduction.rows[r as usize];
+        for (dof, c) in row.free.iter().chain(&row.held) {
+            let to = (*dof / 6) as usize;
+            let mut local = [0.0; 6];
+            local[(*dof % 6) as usize] = c * v;
+            let carried = to_basic(&prepared.axes[to], local);
+            field[to].iter_mut().zip(carried).for_each(|(f, v)| *f += v);
+        }
+    }
+}
+
+/// Gives scalar points that follow grids the displacement that these give them. Basic frame.
+pub(super) fn follow_grids(prepared: &Prepared<'_>, reduction: &Reduction, u: &mut [[f64; 6]]) {
+    for (g, grid) in prepared.model.grids.iter().enumerate() {
+        let State::Dependent(r) = reduction.state[6 * g] else {
+            continue;
+        };
+        if !grid.is_scalar() {
+            continue;
+        }
+        let row = &reduction.rows[r as usize];
+        let of = |(dof, c): &(u32, f64)| {
+            let from = (*dof / 6) as usize;
+            c * to_local(&prepared.axes[from], u[from])[(*dof % 6) as usize]
+        };
+        u[g][0] = row.constant + row.free.iter().map(of).sum::<f64>();
+    }
+}
+
+/// What acts on a free structure at scalar points that follow nothing: how its force arrives at the body is not known, so that no inertia
+/// could balance it. `field` after [`carry_to_grids`].
+///
+/// # Errors
+/// Such a load, by its point.
+pub(super) fn check_free_points(
+    model: &Model,
+    reduction: &Reduction,
+    subcase: u32,
+    field: &[[f64; 6]],
+) -> Result<(), FeError> {
+    let loaded = |(g, grid): &(usize, &Grid)| {
+        grid.is_scalar() && field[*g][0] != 0.0 && reduction.state[6 * g] == State::Free
+    };
+    let mut loaded = model.grids.iter().enumerate().filter(loaded).peekable();
+    if loaded.peek().is_none() {
+        return Ok(());
+    }
+    let warps = warping_points(model);
+    let refused: Vec<Refusal> = loaded
+        .filter(|(g, _)| !warps[*g])
+        .map(|(_, grid)| Refusal {
+            card: format!("SPOINT {}", grid.id),
+            at: grid.at,
+            reason: format!(
+                "subcase {subcase} loads this scalar point of a free structure: where its force acts on the body is not stated"
+            ),
+            remedy: "load the grid that the point stands for, let the point follow grids (first term of an MPC), or hold the structure".to_owned(),
+        })
+        .collect();
+    match refused.is_empty() {
+        true => Ok(()),
+        false => Err(FeError::Refused(refused)),
+    }
+}
