@@ -45,6 +45,12 @@ impl Severity {
         }
     }
 
+    /// That of a name in files; `None` where none is called so.
+    pub fn named(name: &str) -> Option<Self> {
+        let all = [Self::Info, Self::Warning, Self::Error];
+        all.into_iter().find(|s| s.name() == name)
+    }
+
     /// The word of it in messages.
     pub fn word(self) -> &'static str {
         match self {
@@ -83,7 +89,33 @@ impl Finding {
     }
 }
 
+/// Names that a finding lists: a reader looks up a few of them, and a record has thousands of times.
+const LISTED: usize = 8;
+
+/// The names, the first few of many and how many more there are.
+pub fn few(names: &[impl AsRef<str>]) -> String {
+    let shown: Vec<&str> = names.iter().take(LISTED).map(AsRef::as_ref).collect();
+    match names.len().saturating_sub(LISTED) {
+        0 => shown.join(", "),
+        more => format!("{} and {more} more", shown.join(", ")),
+    }
+}
+
 /// The worst severity of a list.
 pub fn worst(findings: &[Finding]) -> Option<Severity> {
     findings.iter().map(|f| f.severity).max()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_list_of_many_names_a_few_and_how_many_more() {
+        assert_eq!(few(&["A", "B"]), "A, B");
+        let times: Vec<String> = (0..1600).map(|i| format!("t = {i}")).collect();
+        let text = few(&times);
+        assert!(text.starts_with("t = 0, t = 1, "), "{text}");
+        assert!(text.ends_with(" and 1592 more"), "{text}");
+    }
 }

@@ -44,8 +44,22 @@ fn loads(vehicle: usize, day: usize) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// A day's table; `rows` of it, one gauge dead or left out where asked.
+/// A day's table, one gauge dead or left out where asked.
 fn table(vehicle: usize, day: usize, left_out: Option<usize>, dead: Option<usize>) -> String {
+    table_of(vehicle, day, left_out, |_, readings| {
+        if let Some(g) = dead {
+            readings[g] = 7.0;
+        }
+    })
+}
+
+/// A day's table of readings that `change` has wronged, given the sample and its readings.
+fn table_of(
+    vehicle: usize,
+    day: usize,
+    left_out: Option<usize>,
+    mut change: impl FnMut(usize, &mut [f64; GAUGES]),
+) -> String {
     let mut text = String::from("time");
     let kept: Vec<usize> = (0..GAUGES).filter(|g| Some(*g) != left_out).collect();
     kept.iter()
@@ -53,10 +67,10 @@ fn table(vehicle: usize, day: usize, left_out: Option<usize>, dead: Option<usize
     text.push('\n');
     for (i, f) in loads(vehicle, day).iter().enumerate() {
         write!(text, "{:.2}", i as f64 * 0.01).unwrap();
+        let mut readings = S.map(|row| row[0] * f[0] + row[1] * f[1]);
+        change(i, &mut readings);
         for g in &kept {
-            let strain = S[*g][0] * f[0] + S[*g][1] * f[1];
-            let shown = if Some(*g) == dead { 7.0 } else { strain };
-            write!(text, ",{shown:.6}").unwrap();
+            write!(text, ",{:.6}", readings[*g]).unwrap();
         }
         text.push('\n');
     }
@@ -123,11 +137,26 @@ fn csv(dir: &Path, out: &str) -> String {
     std::fs::read_to_string(dir.join(out).join("fleet.csv")).unwrap()
 }
 
+/// Code, subject and message of the findings of some severities.
+fn findings_of(result: &Value, severities: &[&str]) -> Vec<[String; 3]> {
+    let list = result["findings"].as_array().unwrap();
+    let of = |f: &&Value| severities.contains(&f["severity"].as_str().unwrap());
+    let words = |f: &Value| ["code", "subject", "message"].map(|k| f[k].as_str().unwrap().into());
+    list.iter().filter(of).map(words).collect()
+}
+
 #[test]
 fn one_run_threads_shards_and_a_merge_of_what_is_kept_write_the_same_bytes() {
     let (dir, files) = folder("same");
     let (code, result) = fleet(&dir, "all", &files, &[]);
     assert_eq!(code, 0, "{result}");
+    assert!(
+        findings_of(&result, &["warning", "error"]).is_empty(),
+        "{result}"
+    );
+    for file in result["files"].as_array().unwrap() {
+        assert_eq!(file["findings"], Value::Array(vec![]), "{file}");
+    }
     let all = csv(&dir, "all");
     let mut rows = all.lines();
     assert_eq!(
@@ -252,4 +281,104 @@ fn what_fleet_can_not_do_is_said() {
     let (code, said) = fleet(&dir, "form", &files, &[]);
     assert_eq!(code, 2);
     assert!(said.to_string().contains("fleet.file_name"), "{said}");
+}
+
+#[test]
+fn a_record_whose_strain_the_loads_do_not_explain_is_an_error_that_names_it() {
+    let (dir, files) = folder("unexplained");
+    let write = |name: &str, text: String| std::fs::write(dir.join(name), text).unwrap();
+    // A gauge backwards, two exchanged, a spike of one sample, a channel that ends at 40 microstrain.
+    write("T1_5.csv", table_of(1, 5, None, |_, y| y[2] = -y[2]));
+    write("T1_9.csv", table_of(1, 9, None, |_, y| y.swap(0, 1)));
+    let spike = |i: usize, y: &mut [f64; GAUGES]| y[3] += if i == 701 { 3000.0 } else { 0.0 };
+    write("T0_4.csv", table_of(0, 4, None, spike));
+    write(
+        "T2_7.csv",
+        table_of(2, 7, None, |_, y| y[0] = y[0].clamp(-40.0, 40.0)),
+    );
+    let (code, result) = fleet(&dir, "out", &files, &[]);
+    assert_eq!(code, 1, "{result}");
+    let errors = findings_of(&result, &["error"]);
+    let has = |code: &str, subject: &str, words: &str| {
+        let like = |f: &&[String; 3]| f[0] == code && f[1] == subject && f[2].contains(words);
+        assert!(
+            errors.iter().any(|f| like(&f)),
+            "{code} {subject} {words}: {errors:?}"
+        );
+    };
+    has("strain-not-explained", "T0", "T0_4.csv (t = 7.01)");
+    has(
+        "strain-not-explained",
+        "T1",
+        "2 of 20 records, the first T1_5.csv",
+    );
+    has("strain-not-explained", "T2", "T2_7.csv");
+    has("gauge-wired-backwards", "T1 G2", "T1_5.csv");
+    let all = findings_of(&result, &["warning", "error"]);
+    let suspects = |f: &&[String; 3]| f[0] == "gauge-suspect" && f[1] == "T0 G3";
+    assert_eq!(all.iter().filter(suspects).count(), 1, "{all:?}");
+    // Each with its record, and with no other.
+    let wrong = ["T0_4.csv", "T1_5.csv", "T1_9.csv", "T2_7.csv"];
+    for file in result["files"].as_array().unwrap() {
+        let found = file["findings"].as_array().unwrap();
+        let error = found.iter().any(|f| f["code"] == "strain-not-explained");
+        assert_eq!(
+            error,
+            wrong.contains(&file["path"].as_str().unwrap()),
+            "{file}"
+        );
+        assert_eq!(found.is_empty(), !error, "{file}");
+    }
+    // The same whatever the workers, and from what was kept.
+    for (out, files, more) in [
+        ("one", &files[..], &["--threads", "1"][..]),
+        ("out", &files[..], &[]),
+        ("out", &[], &[]),
+    ] {
+        let (code, again) = fleet(&dir, out, files, more);
+        assert_eq!(code, 1);
+        assert_eq!(again["findings"], result["findings"]);
+        assert_eq!(again["files"], result["files"]);
+        assert_eq!(again["vehicles"], result["vehicles"]);
+    }
+}
+
+#[test]
+fn right_records_with_the_stated_noise_have_no_finding() {
+    let (dir, files) = folder("noisy");
+    let job = JOB.replace("noise_microstrain = 0.001", "noise_microstrain = 1.0");
+    std::fs::write(dir.join("job.toml"), job).unwrap();
+    let mut numbers = Numbers(5);
+    for (vehicle, day) in (0..3).flat_map(|v| (1..=20).map(move |d| (v, d))) {
+        // Even numbers of standard deviation 1.
+        let text = table_of(vehicle, day, None, |_, y| {
+            y.iter_mut()
+                .for_each(|y| *y += 3.0_f64.sqrt() * numbers.next());
+        });
+        std::fs::write(dir.join(format!("T{vehicle}_{day}.csv")), text).unwrap();
+    }
+    let (code, result) = fleet(&dir, "out", &files, &[]);
+    assert_eq!(code, 0, "{result}");
+    let found = findings_of(&result, &["warning", "error"]);
+    assert!(found.is_empty(), "{found:?}");
+}
+
+#[test]
+fn a_gauge_that_is_stuck_on_every_day_is_told_with_all_its_days() {
+    let (dir, files) = folder("stuck");
+    for day in 1..=20 {
+        let text = table(2, day, None, Some(1));
+        std::fs::write(dir.join(format!("T2_{day}.csv")), text).unwrap();
+    }
+    let (code, result) = fleet(&dir, "out", &files, &[]);
+    assert_eq!(code, 0, "{result}");
+    let found = findings_of(&result, &["warning"]);
+    let [[code, subject, message]] = found.as_slice() else {
+        panic!("{found:?}");
+    };
+    assert_eq!((code.as_str(), subject.as_str()), ("dead_channel", "T2 G1"));
+    assert!(message.contains("20 of 20 days"), "{message}");
+    let gauges = result["vehicles"][2]["gauges"].as_array().unwrap();
+    assert_eq!(gauges.len(), GAUGES);
+    assert_eq!(gauges[1]["dead_days"].as_array().unwrap().len(), 20);
 }

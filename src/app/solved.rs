@@ -174,7 +174,7 @@ fn kept(
     Ok(solved)
 }
 
-/// The first elastic frequency of the free structure of a deck whose strain another program solved; where the built-in solver can't tell,
+/// The first elastic frequency of the structure of a deck, as the job holds it, whose strain another program solved; where the built-in solver can't tell,
 /// a finding says why.
 pub fn first_mode_of(work: &mut Work, job: &Job, read: &DeckModel) -> Option<f64> {
     let solved = cases_of_job(job, read).and_then(|cases| {
@@ -199,7 +199,7 @@ pub fn first_mode_of(work: &mut Work, job: &Job, read: &DeckModel) -> Option<f64
         "first-mode-unknown",
         &read.given,
         format!("the first elastic mode of the structure is not known ({why}): whether the record is slow enough for quasi-static recovery was not checked"),
-        "compare the content of the loads with a third of the first elastic frequency of the free structure",
+        "compare the content of the loads with a third of the first elastic frequency of the structure as it is held",
     ));
     None
 }

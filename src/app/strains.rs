@@ -9,7 +9,7 @@ use super::work::Work;
 use crate::fe::Solution;
 use crate::fe::from_results::{Displacements, ReadOptions, solution_from_results};
 use crate::fe::strain_rows::{n_rows, without_normal_strain};
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::model::Model;
 use nastran::results::ResultsFile;
 use serde::Serialize;
@@ -92,7 +92,7 @@ pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome
         work.findings.push(Finding::new(
             Severity::Info,
             "normal-strain-unknown",
-            format!("properties {}", ids.join(", ")),
+            format!("properties {}", few(&ids)),
             "their material does not give the strain along the thickness: the basic-frame tensor holds the part in the surface alone",
             "",
         ));

@@ -10,7 +10,7 @@ use super::rigid_motion::rigid;
 use super::strain_of_cases::with_strain;
 use super::system::System;
 use super::{Solution, SolveReport, Solved};
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::linalg::sparse::Factor;
 use crate::model::{Model, Vec3};
 
@@ -236,7 +236,7 @@ fn close_modes(pairs: &[Pair]) -> Option<Finding> {
         Finding::new(
             Severity::Info,
             "close-modes",
-            format!("modes {}", close.join(", ")),
+            format!("modes {}", few(&close)),
             "these frequencies coincide: each shape is one of many of the same frequency",
             "compare the space that they span, not one shape with one shape",
         )

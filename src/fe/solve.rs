@@ -18,7 +18,7 @@ use super::strain_of_cases::with_strain;
 use super::support::{Support, contradictions};
 use super::system::System;
 use super::{Solution, UnitLoad};
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::model::Model;
 use rayon::prelude::*;
 
@@ -264,7 +264,7 @@ fn nothing_free(cases: &[&LoadCase]) -> Finding {
     Finding::new(
         Severity::Warning,
         "every-dof-held",
-        format!("subcases {}", ids.join(", ")),
+        format!("subcases {}", few(&ids)),
         "supports hold every degree of freedom, so that loads strain nothing",
         "hold the structure where its supports are, and there alone",
     )

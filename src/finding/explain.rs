@@ -87,18 +87,13 @@ fn read_head(line: &'static str) -> Option<Code> {
     let (code, severity, said_by) = (parts.next()?, parts.next()?, parts.next()?);
     Some(Code {
         code,
-        severity: severity.split(", ").filter_map(severity_of).collect(),
+        severity: severity.split(", ").filter_map(Severity::named).collect(),
         said_by,
         cause: "",
         limit: "",
         remedy: "",
         example: "",
     })
-}
-
-fn severity_of(word: &str) -> Option<Severity> {
-    let all = [Severity::Info, Severity::Warning, Severity::Error];
-    all.into_iter().find(|s| s.name() == word)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Whether the readings tell the loads: the width of intervals against the loads themselves, and loads against their expected size.
 
 use super::types::RunEstimate;
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::sensitivity::Sensitivity;
 
 /// Half width of the interval over the largest load of the kind (or `expected`) from which a load counts as unknown.
@@ -40,7 +40,7 @@ fn undetermined(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> {
         Finding::new(
             Severity::Error,
             "loads-not-determined",
-            names.join(", "),
+            few(&names),
             format!(
                 "in every run the 95 % interval of these loads is wider than half the largest load: the gauges do not tell them (condition \
                  number {:.0}), and their values are mostly noise and model error",

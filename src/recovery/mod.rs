@@ -31,11 +31,13 @@ pub mod verdict;
 pub use errors::ErrorModel;
 pub use gain::Gain;
 pub use interval::{NORMAL_95, student_95};
+pub use outlier::ALARM;
 pub use runs::recover;
 pub use solve::*;
 pub use solved::estimate;
 pub use sums::Sums;
 pub use types::*;
+pub use verdict::UNEXPLAINED;
 
 #[cfg(test)]
 mod tests;

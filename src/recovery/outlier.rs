@@ -12,7 +12,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Chance, over all gauges of a job, under which the largest of their errors counts as real: half of the 1 % of right jobs that may be
 /// stopped.
-const ALARM: f64 = 0.005;
+pub const ALARM: f64 = 0.005;
 /// The same chance under which it is said, and the intervals are widened: one right job in twenty is so noted.
 const NOTE: f64 = 0.05;
 /// Share of what the residuals have too much that one gauge must account for: with less, something else is wrong as well, and the

@@ -2,7 +2,7 @@
 
 use super::errors::ErrorModel;
 use super::types::Readings;
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
 
@@ -48,7 +48,7 @@ pub fn impossible(gauges: &[&str], largest: f64) -> Option<Finding> {
         Finding::new(
             Severity::Error,
             "reading-impossible",
-            gauges.join(", "),
+            few(gauges),
             format!(
                 "readings of up to {:.1e} microstrain are no strain: they are taken for no reading",
                 largest / MICROSTRAIN

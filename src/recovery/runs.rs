@@ -87,7 +87,7 @@ fn recover_calibrated(
 }
 
 /// Both lists without saying the same of a gauge twice: a cause that is named says more than that a gauge stands out, and how far it
-/// stands out more than that it does.
+/// stands out more than that it does. What names a gauge comes first: it is what a reader can mend.
 fn unlike(mut judged: Vec<Finding>, mut named: Vec<Finding>) -> Vec<Finding> {
     named.retain(|n| {
         n.code != GAUGE_SUSPECT
@@ -96,8 +96,11 @@ fn unlike(mut judged: Vec<Finding>, mut named: Vec<Finding>) -> Vec<Finding> {
                 .any(|f| f.code == n.code && f.subject == n.subject)
     });
     judged.retain(|f| f.code != GAUGE_SUSPECT || !named.iter().any(|n| n.subject == f.subject));
-    judged.extend(named);
-    judged
+    let (of_gauges, general): (Vec<Finding>, Vec<Finding>) =
+        judged.into_iter().partition(|f| f.code == GAUGE_SUSPECT);
+    named.extend(of_gauges);
+    named.extend(general);
+    named
 }
 
 /// Root mean square of all residuals over the degrees of freedom, of each gauge's, and mean leverages.

@@ -18,6 +18,18 @@ pub struct Readings {
     pub noise_factor: f64,
 }
 
+impl Readings {
+    /// Those of a sample of a record at `time_s`.
+    pub fn of_sample(time_s: f64, strain: Vec<f64>, noise_factor: f64) -> Self {
+        Self {
+            // To the nanosecond: what start plus number over rate leaves behind it is no time.
+            run: format!("t = {}", (time_s * 1e9).round() / 1e9),
+            strain,
+            noise_factor,
+        }
+    }
+}
+
 /// The estimate of one run with its residual.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunEstimate {

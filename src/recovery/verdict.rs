@@ -6,12 +6,14 @@ use super::outlier;
 use super::residuals::{Joint, Out, Projection};
 use super::solved::Solved;
 use super::types::{Readings, RunEstimate, Widening};
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::linalg::tail::chi_square_tail;
 use crate::linalg::{Matrix, dense};
 use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
 
+/// Code of strain that the loads don't explain, beyond doubt.
+pub const UNEXPLAINED: &str = "strain-not-explained";
 /// Chance under which a sum of squares counts as larger than stated errors make it.
 const SIGNIFICANT: f64 = 1e-3;
 /// Chance from which it is beyond doubt.
@@ -142,7 +144,7 @@ fn unsolvable(s: &Sensitivity, solved: &Solved) -> Vec<Finding> {
         out.push(Finding::new(
             Severity::Error,
             "run-not-solvable",
-            names.join(", "),
+            few(&names),
             format!("{why} {}: these loads are left blank", unseen.join(", ")),
             "bring the silent gauges back, drop loads, or state `expected` for loads with role \"nuisance\"",
         ));
@@ -297,12 +299,12 @@ fn size_finding(evidence: &Evidence, sizes: &Sizes, errors: ErrorModel) -> Optio
         let subject = if sizes.bad.is_empty() || sizes.bad.len() == sizes.n {
             "all runs".to_owned()
         } else {
-            sizes.bad.join(", ")
+            few(&sizes.bad)
         };
         return Some(
             Finding::new(
                 Severity::Error,
-                "strain-not-explained",
+                UNEXPLAINED,
                 subject,
                 format!(
                     "the loads asked for leave {:.0} % of the measured strain unexplained, {excess:.1} times what {stated} make: something \

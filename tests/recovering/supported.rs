@@ -167,3 +167,82 @@ fn intervals_on_a_supported_structure_cover() {
         );
     }
 }
+
+/// A record of 2,000 samples at 1 kHz: the tip load alternates at 100 Hz and the corner's at 7 Hz; `change` wrongs the readings of a sample.
+fn record(change: impl Fn(&mut [f64])) -> InMemory {
+    let files = InMemory::default()
+        .with("plate.bdf", deck())
+        .with("job.toml", job());
+    let read = Job::read("job.toml", &files).unwrap_or_else(|f| panic!("{f:?}"));
+    let sensed =
+        strainbridge::sensitivity(&read, &Context::new(&files)).unwrap_or_else(|f| panic!("{f:?}"));
+    let s = &sensed.prepared.sensitivity;
+    let mut state = 23;
+    let mut table = format!("time,{}\n", s.gauges.join(","));
+    for i in 0..2000 {
+        let t = f64::from(i) / 1000.0;
+        let wave = |hz: f64| 50.0 * (std::f64::consts::TAU * hz * t).sin();
+        let f = [wave(100.0), wave(7.0), 0.5 * wave(3.0), wave(1.0)];
+        let made = s.values.row_iter().map(|row| {
+            let own: f64 = row.iter().zip(&f).map(|(s, f)| s * f).sum();
+            1e6 * own + normal(&mut state)
+        });
+        let mut readings: Vec<f64> = made.collect();
+        change(&mut readings);
+        let _ = write!(table, "{t:.3}");
+        for v in readings {
+            let _ = write!(table, ",{v:.4}");
+        }
+        table.push('\n');
+    }
+    let measured = "[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 1.0\nmodel_uncertainty_rel = 0.01\n";
+    files
+        .with("job.toml", job() + measured)
+        .with("strain.csv", table)
+}
+
+#[test]
+fn content_is_held_against_the_mode_of_the_structure_as_it_is_held() {
+    let files = record(|_| {});
+    let job = Job::read("job.toml", &files).unwrap_or_else(|f| panic!("{f:?}"));
+    let got =
+        strainbridge::recover(&job, &Context::new(&files)).unwrap_or_else(|f| panic!("{f:?}"));
+    let found: Vec<_> = got
+        .findings
+        .iter()
+        .filter(|f| f.code == "content-near-first-mode")
+        .collect();
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(found[0].subject, "load `tip`");
+    assert!(found[0].message.contains("held by SPC set 1"), "{found:?}");
+    assert!(!found[0].message.contains("free"), "{found:?}");
+    // A cantilever bends first at 3.516 / (2 pi) sqrt(E I / (m L^4)); a plate a third as wide as long is near it.
+    let bends = 3.516 / std::f64::consts::TAU * 4.0 / 12.0_f64.sqrt()
+        * (2.1e5_f64 / 7.85e-9).sqrt()
+        / (10.0 * LONG as f64).powi(2);
+    let limit = found[0].limit.unwrap();
+    assert!((3.0 * limit / bends - 1.0).abs() < 0.1, "{limit} {bends}");
+}
+
+#[test]
+fn a_gauge_that_is_backwards_is_the_first_thing_said_and_no_finding_is_a_list_of_thousands() {
+    let files = record(|y| y[3] = -y[3]);
+    let job = Job::read("job.toml", &files).unwrap_or_else(|f| panic!("{f:?}"));
+    let got =
+        strainbridge::recover(&job, &Context::new(&files)).unwrap_or_else(|f| panic!("{f:?}"));
+    let first = got.findings.first().unwrap();
+    assert_eq!(
+        (first.code, first.subject.as_str()),
+        ("gauge-wired-backwards", "G3")
+    );
+    let unexplained = got
+        .findings
+        .iter()
+        .find(|f| f.code == "strain-not-explained");
+    let unexplained = unexplained.unwrap();
+    // Which samples: a few of them, or all.
+    assert!(unexplained.subject.len() < 150, "{}", unexplained.subject);
+    for f in got.findings.iter() {
+        assert!(f.subject.len() + f.message.len() < 1000, "{f:?}");
+    }
+}

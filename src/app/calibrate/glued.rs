@@ -5,7 +5,7 @@ use crate::app::fault::{Fault, Faults};
 use crate::app::job::{CalibrationKeys, Job};
 use crate::app::strain::{Prepared, corrected_spec_of};
 use crate::calibrate::{AsGlued, GlueTolerance, MoveKind};
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::gauge::{CornerRows, Drawn, Offset, reading};
 use crate::model::Model;
 use crate::sensitivity::LoadCaseOf;
@@ -151,7 +151,7 @@ pub(super) fn untold(gauges: &[CalibratedGauge]) -> Option<Finding> {
             .collect();
         count += names.len();
         if !names.is_empty() {
-            parts.push(format!("{what} of {}", names.join(", ")));
+            parts.push(format!("{what} of {}", few(&names)));
         }
     }
     (count > 0).then(|| {

@@ -10,7 +10,7 @@ use crate::app::outcome::StatedUnits;
 use crate::app::solved::{support_finding, support_of_job};
 use crate::app::work::Work;
 use crate::app::zeroed::{no_zero_runs, zeros_by_row};
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::model::Model;
 use crate::units::check_units;
 use std::path::Path;
@@ -225,7 +225,7 @@ fn gauges_and_strain(job: &Job, columns: &[String]) -> Vec<Finding> {
     let mut out = Vec::new();
     let mut note = |code, what: &str, list: &[&str], remedy: &str| {
         if !list.is_empty() {
-            let message = format!("{} {what}: {}", list.len(), list.join(", "));
+            let message = format!("{} {what}: {}", list.len(), few(list));
             out.push(Finding::new(
                 Severity::Warning,
                 code,

@@ -1,5 +1,6 @@
 //! What is kept of one file: a few kilobytes that merge to the result of a vehicle.
 
+use crate::finding::Finding;
 use crate::series::rainflow::Tally;
 use crate::series::rainflow::absent::number;
 use serde::{Deserialize, Serialize};
@@ -54,6 +55,42 @@ pub struct DayFinding {
     pub subject: String,
     /// What was found.
     pub message: String,
+    /// The measured number, where there is one.
+    pub measured: Option<f64>,
+    /// The limit it is held against.
+    pub limit: Option<f64>,
+    /// What the reader can do.
+    pub remedy: String,
+}
+
+impl From<Finding> for DayFinding {
+    fn from(f: Finding) -> Self {
+        let finite = |v: &f64| v.is_finite();
+        Self {
+            severity: f.severity.name().to_owned(),
+            code: f.code.to_owned(),
+            subject: f.subject,
+            message: f.message,
+            measured: f.measured.filter(finite),
+            limit: f.limit.filter(finite),
+            remedy: f.remedy,
+        }
+    }
+}
+
+impl GaugeDay {
+    /// That of a gauge that gives nothing, or one and the same value: neither tells anything.
+    pub fn silent(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            mean: f64::NAN,
+            sd: f64::NAN,
+            noise: f64::NAN,
+            residual: f64::NAN,
+            gain: f64::NAN,
+            missing: u64::MAX,
+        }
+    }
 }
 
 /// What a record came to.

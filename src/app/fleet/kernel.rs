@@ -1,7 +1,9 @@
 //! One record to what is kept of it: no file, no printing; as many threads as the pool it runs in.
 
-use super::day::{Day, DayFinding, LoadDay};
+use super::day::{Day, DayFinding, GaugeDay, LoadDay};
 use super::health::Health;
+use super::judged::{Judged, findings_of};
+use super::recovering::{Part, Recovering, counted};
 use crate::app::job::Correction;
 use crate::app::job::correct::{Channel, channel_of, column_of};
 use crate::app::strain::LoadUnits;
@@ -10,7 +12,7 @@ use crate::linalg::Matrix;
 use crate::recovery::ErrorModel;
 use crate::recovery::clock;
 use crate::recovery::history::{Filter, SampleLoads};
-use crate::recovery::{Sums, Widening};
+use crate::recovery::{Sums, UNEXPLAINED, Widening};
 use crate::sensitivity::Sensitivity;
 use crate::series::SeriesError;
 use crate::series::rainflow::{Counter, Law};
@@ -49,28 +51,6 @@ pub struct Kernel {
     pub microstrain_in: fn(&str) -> Option<f64>,
 }
 
-/// A record being recovered: the gauges of it that read.
-struct Recovering {
-    filter: Filter,
-    /// Gauges of the job.
-    used: Vec<usize>,
-    columns: Vec<Option<usize>>,
-    /// Strain of one unit of each column, and of none.
-    scale: [Vec<f64>; 2],
-    zero: Vec<f64>,
-    /// S of the used gauges, strain per report unit.
-    s: Vec<Vec<f64>>,
-    /// Report units per job unit, by load.
-    factors: Vec<f64>,
-}
-
-/// What a piece of a record gives.
-struct Part {
-    /// Loads in report units, row by row.
-    loads: Vec<f64>,
-    health: Health,
-}
-
 impl Kernel {
     /// What a record comes to. Gauges that it lacks, or that give nothing, are said; the loads are recovered from the others.
     ///
@@ -99,6 +79,7 @@ impl Kernel {
             })
             .collect();
         let mut health = Health::new(&r.s);
+        let mut judged = Judged::new(r.used.len(), k, record.clock.samples);
         let pieces: Vec<usize> = (0..record.n_pieces()).collect();
         let mut parts: Vec<Part> = Vec::new();
         // While some pieces are decoded, the ones before them are counted.
@@ -109,10 +90,19 @@ impl Kernel {
                 || counted(&mut counters, &parts),
             );
             parts = next.map_err(text)?;
-            parts.iter().for_each(|p| health.merge(&p.health));
+            for part in &mut parts {
+                health.merge(&part.health);
+                judged.merge(std::mem::take(&mut part.judged));
+            }
         }
         counted(&mut counters, &parts);
-        let scales = self.scale_covariances(&r, &zero_sigma);
+        let widened = self.judge(
+            &r,
+            judged,
+            |i| second * record.clock.time_s(i),
+            &mut findings,
+        );
+        let scales = self.scale_covariances(widened.as_ref().unwrap_or(&r.filter), &r.factors);
         let loads = counters
             .into_iter()
             .zip(&self.sensitivity.loads)
@@ -127,20 +117,46 @@ impl Kernel {
                     scale,
                     tally: c.finish(),
                 });
-        let names: Vec<String> = r
-            .used
-            .iter()
-            .filter_map(|g| self.sensitivity.gauges.get(*g))
-            .cloned()
-            .collect();
+        let leverage = &r.filter.whole().leverage;
+        let mut gauges = health.days(&r.sensitivity.gauges, leverage);
+        gauges.extend(r.silent.iter().map(|name| GaugeDay::silent(name)));
+        let place = |g: &GaugeDay| self.sensitivity.gauges.iter().position(|n| *n == g.name);
+        gauges.sort_by_key(place);
         Ok(Day {
             rate_hz: record.clock.rate_hz / second,
             hours: record.clock.duration_s() * second / 3600.0,
             missing: record.clock.missing,
             loads: loads.collect(),
-            gauges: health.days(&names, &r.filter.whole().leverage),
+            gauges,
             findings,
         })
+    }
+
+    /// What recovery's judge says of samples of the record, and the estimate with the intervals that its residuals call for; `None` where the
+    /// stated errors stay, or where no interval can be relied on.
+    fn judge(
+        &self,
+        r: &Recovering,
+        judged: Judged,
+        time_s: impl Fn(usize) -> f64,
+        findings: &mut Vec<DayFinding>,
+    ) -> Option<Filter> {
+        let judgements = judged.recovered(&r.sensitivity, self.errors, self.noise_factor, time_s);
+        let widening = judgements.first()?.widening.clone();
+        let found = findings_of(judgements);
+        let explained = found.iter().all(|f| f.code != UNEXPLAINED);
+        findings.extend(found);
+        if !explained || widening == Widening::none() {
+            return None;
+        }
+        Filter::new(
+            &r.sensitivity,
+            r.zero.clone(),
+            self.errors,
+            self.noise_factor,
+            &r.typical,
+            widening,
+        )
     }
 
     fn check_clock(&self, record: &Record, findings: &mut Vec<DayFinding>) -> Result<(), String> {
@@ -238,7 +254,12 @@ impl Kernel {
             }
         }
         let alive_values = kept_columns(&sampled, &found, &alive);
-        self.recovering(&alive, &alive_values)
+        let silent = found.iter().filter(|f| alive.iter().all(|a| a.0 != f.0));
+        let names = silent.filter_map(|f| all.gauges.get(f.0)).cloned();
+        Ok(Recovering {
+            silent: names.collect(),
+            ..self.recovering(&alive, &alive_values)?
+        })
     }
 
     fn recovering(
@@ -316,20 +337,25 @@ impl Kernel {
         let factors: Vec<f64> = self.units.iter().map(|u| u.factor).collect();
         let row = |g: usize| factors.iter().enumerate().map(move |(l, f)| (g, l, *f));
         let values = |g: usize| row(g).map(|(g, l, f)| s.values[(g, l)] / f).collect();
+        let by_row = (0..used.len()).map(values).collect();
         Ok(Recovering {
             filter,
+            silent: Vec::new(),
+            sensitivity: s,
+            typical,
             columns: alive.iter().map(|a| Some(a.1)).collect(),
             scale: [0, 1].map(|i| alive.iter().map(|a| a.2[i]).collect()),
             zero,
-            s: (0..used.len()).map(values).collect(),
+            s: by_row,
             used,
             factors,
         })
     }
 
     /// Covariance of the errors of scale of each load with every load: what the filter's variance gains where one load acts alone.
-    fn scale_covariances(&self, r: &Recovering, zero_sigma: &[f64]) -> Vec<Vec<f64>> {
-        let k = zero_sigma.len();
+    fn scale_covariances(&self, filter: &Filter, factors: &[f64]) -> Vec<Vec<f64>> {
+        let k = factors.len();
+        let zero_sigma = filter.sigma(&vec![0.0; k]);
         // Large enough that noise is nothing beside it.
         const FAR: f64 = 1e6;
         let mut out = vec![vec![0.0; k * k]; k];
@@ -345,11 +371,11 @@ impl Kernel {
             if let Some(slot) = f.get_mut(m) {
                 *slot = FAR * one;
             }
-            for (l, sigma) in r.filter.sigma(&f).iter().enumerate() {
+            for (l, sigma) in filter.sigma(&f).iter().enumerate() {
                 let own = zero_sigma.get(l).copied().unwrap_or(0.0);
                 let per = (sigma * sigma - own * own).max(0.0) / (FAR * one).powi(2);
-                let units = r.factors.get(l).copied().unwrap_or(1.0)
-                    / r.factors.get(m).copied().unwrap_or(1.0);
+                let units =
+                    factors.get(l).copied().unwrap_or(1.0) / factors.get(m).copied().unwrap_or(1.0);
                 if let Some(slot) = out.get_mut(l).and_then(|row| row.get_mut(m * k + m)) {
                     *slot = per * units * units;
                 }
@@ -357,52 +383,6 @@ impl Kernel {
         }
         out
     }
-}
-
-impl Recovering {
-    fn part(&self, record: &Record, piece: usize) -> Result<Part, SeriesError> {
-        let (n, k) = (self.used.len(), self.factors.len());
-        let (begin, end) = record.span(piece);
-        let mut part = Part {
-            loads: Vec::with_capacity((end - begin) * k),
-            health: Health::new(&self.s),
-        };
-        let [factors, offsets] = &self.scale;
-        let (mut strain, mut recovered) = (Vec::new(), SampleLoads::default());
-        record.read(piece, &self.columns, &mut |block| {
-            strain.resize(block.values.len(), f64::NAN);
-            let rows = block.values.chunks_exact(n);
-            for (out, row) in strain.chunks_exact_mut(n).zip(rows) {
-                let scale = factors.iter().zip(offsets);
-                for ((out, v), (a, b)) in out.iter_mut().zip(row).zip(scale) {
-                    *out = v * a + b;
-                }
-            }
-            recovered.values.clear();
-            recovered.gaps.clear();
-            self.filter.loads_of(&strain, 1.0, &mut recovered);
-            let loads = &mut recovered.values;
-            for row in loads.chunks_exact_mut(k) {
-                row.iter_mut().zip(&self.factors).for_each(|(v, f)| *v *= f);
-            }
-            for row in strain.chunks_exact_mut(n) {
-                row.iter_mut().zip(&self.zero).for_each(|(v, z)| *v -= z);
-            }
-            part.health.add(&strain, loads);
-            part.loads.extend_from_slice(loads);
-            ControlFlow::Continue(())
-        })?;
-        Ok(part)
-    }
-}
-
-/// Counts what pieces that follow each other give.
-fn counted(counters: &mut [Counter], parts: &[Part]) {
-    counters.par_iter_mut().for_each(|c| {
-        for part in parts {
-            c.push(&part.loads);
-        }
-    });
 }
 
 /// Strain from a reading: it times the first, plus the second.
@@ -453,5 +433,8 @@ fn said(severity: Severity, code: &str, subject: &str, message: String) -> DayFi
         code: code.to_owned(),
         subject: subject.to_owned(),
         message,
+        measured: None,
+        limit: None,
+        remedy: "look at the logger".to_owned(),
     }
 }

@@ -179,15 +179,7 @@ pub fn vehicle(name: &str, list: &[(&str, Day)]) -> Vehicle {
         .map(|name| {
             let days = list.iter().map(|(_, d)| {
                 let found = d.gauges.iter().find(|g| g.name == name);
-                found.cloned().unwrap_or_else(|| GaugeDay {
-                    name: name.to_owned(),
-                    mean: f64::NAN,
-                    sd: f64::NAN,
-                    noise: f64::NAN,
-                    residual: f64::NAN,
-                    gain: f64::NAN,
-                    missing: u64::MAX,
-                })
+                found.cloned().unwrap_or_else(|| GaugeDay::silent(name))
             });
             (name.to_owned(), days.collect())
         })

@@ -5,13 +5,16 @@
 //! vehicle exactly.
 
 pub mod day;
+mod found;
 mod health;
+mod judged;
 pub mod kept;
 pub mod kernel;
 pub mod merge;
 pub mod name;
 mod outcome;
 mod prepared;
+mod recovering;
 
 pub use outcome::{FileAnswer, Fleet, GaugeHistory, VehicleAnswer, VehicleLoadAnswer};
 pub use prepared::kernel_of;

@@ -1,6 +1,7 @@
 //! The answer of `fleet`.
 
-use super::day::{FileHead, GaugeDay};
+use super::day::{DayFinding, FileHead, GaugeDay};
+use super::found::of_records;
 use super::kernel::Kernel;
 use super::merge::{Status, Vehicle, VehicleLoad};
 use crate::app::job::Job;
@@ -8,7 +9,7 @@ use crate::app::outcome::Answer;
 use crate::finding::{Finding, Severity};
 use crate::series::rainflow::DamageInterval;
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A gauge is called dead on a day when it reads less than this many times what it read on its typical day.
 const DEAD: f64 = 0.01;
@@ -119,6 +120,25 @@ pub struct FileAnswer {
     pub rate_hz: Option<f64>,
     /// Samples missing in gaps.
     pub missing: Option<usize>,
+    /// What was found in the record.
+    pub findings: Vec<DayFinding>,
+}
+
+impl FileAnswer {
+    /// Whether it counts though its loads can't be relied on.
+    pub fn is_doubtful(&self) -> bool {
+        let error = Severity::Error.name();
+        self.status == Status::Done.word() && self.findings.iter().any(|f| f.severity == error)
+    }
+
+    /// Why it does not count, or else the codes of what was found in it.
+    pub fn words(&self) -> String {
+        let codes: BTreeSet<&str> = self.findings.iter().map(|f| f.code.as_str()).collect();
+        match self.message.is_empty() {
+            true => codes.into_iter().collect::<Vec<_>>().join(", "),
+            false => self.message.clone(),
+        }
+    }
 }
 
 /// The answer.
@@ -239,6 +259,7 @@ impl Fleet {
                     hours: day.map(|d| d.hours),
                     rate_hz: day.map(|d| d.rate_hz),
                     missing: day.map(|d| d.missing),
+                    findings: day.map_or_else(Vec::new, |d| d.findings.clone()),
                 }
             })
             .collect();
@@ -283,7 +304,7 @@ impl Fleet {
                 if let Some(first) = g.dead_days.first() {
                     let n = g.dead_days.len();
                     let message = format!(
-                        "gives nothing on {n} of {} days, the first {first}",
+                        "gives nothing, or one and the same value, on {n} of {} days, the first {first}",
                         v.days.len()
                     );
                     let remedy = "repair it; its days were recovered from the other gauges where they can tell the loads";
@@ -298,46 +319,6 @@ impl Fleet {
         }
         out
     }
-}
-
-/// Findings of single records, one for all that say the same of the same subject.
-fn of_records(files: &[FileHead], status: &[Status]) -> Vec<Finding> {
-    let mut grouped: BTreeMap<(&str, &str), (usize, &str, &str)> = Default::default();
-    for (file, status) in files.iter().zip(status) {
-        let (Status::Done, Ok(day)) = (status, &file.result) else {
-            continue;
-        };
-        for f in day.findings.iter().filter(|f| f.code != "dead_channel") {
-            let slot = grouped
-                .entry((&f.code, &f.subject))
-                .or_insert((0, &file.path, &f.message));
-            slot.0 += 1;
-        }
-    }
-    let codes = [
-        ("record-resampled", "record-resampled"),
-        ("record-gaps", "record-gaps"),
-        ("gauge-missing", "gauge-missing"),
-    ];
-    grouped
-        .into_iter()
-        .filter_map(|((code, subject), (n, path, message))| {
-            let code = codes.iter().find(|c| c.0 == code)?.1;
-            let files = if n == 1 {
-                "1 record".to_owned()
-            } else {
-                format!("{n} records")
-            };
-            let text = format!("{files}, the first {path}: {message}");
-            Some(Finding::new(
-                Severity::Warning,
-                code,
-                subject,
-                text,
-                "look at the logger",
-            ))
-        })
-        .collect()
 }
 
 fn history(name: &str, days: &[GaugeDay], names: &[String]) -> GaugeHistory {

@@ -1,7 +1,7 @@
 //! `[[correction]]` applied to readings: a channel reads `sign gain strain + offset`.
 
 use super::types::{Correction, Job};
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 
 /// What turns the readings of a channel into strain.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,7 +71,7 @@ pub fn noted(job: &Job) -> Option<Finding> {
         Finding::new(
             Severity::Info,
             "corrections-applied",
-            names.join(", "),
+            few(&names),
             "readings and angles of these gauges are put right as [[correction]] says",
             "",
         )

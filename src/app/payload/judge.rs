@@ -4,7 +4,7 @@ use super::model::Parts;
 use super::task::Task;
 use crate::app::words::short;
 use crate::app::work::Work;
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::payload::{PayloadRun, Place, Refusal, WeighSpec, WeighedRun, Weighing};
 
 /// A share of the weight that an interval leaves open from which the answer says little.
@@ -203,7 +203,7 @@ pub(super) fn findings(
             Finding::new(
                 Severity::Warning,
                 "gauges-not-used",
-                rejected.join(", "),
+                few(&rejected),
                 "these gauges disagree with the rest and carry nothing in the answer (reasons in by_gauge)",
                 "check their wiring, place and sign",
             )

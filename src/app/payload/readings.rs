@@ -9,7 +9,7 @@ use crate::app::job::{Measured, NamedFile, PayloadPosition, WheelForces};
 use crate::app::outcome::finite;
 use crate::app::work::Work;
 use crate::app::zeroed::{no_zero_runs, zeros_by_row};
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::payload::{PayloadModel, PayloadRun};
 use crate::recovery::net::{Net, WEAK, mean_of, net};
 use crate::units::MICROSTRAIN;
@@ -110,14 +110,14 @@ pub(super) fn runs_of(
                 &*job.file,
                 job.runs.as_ref().map_or(0, |r| r.line),
                 "runs",
-                format!("no wheel forces of every wheel for {}", without.join(", ")),
+                format!("no wheel forces of every wheel for {}", few(&without)),
                 "add their rows and columns",
             )));
         }
         work.findings.push(Finding::new(
             Severity::Warning,
             "run-without-wheel-forces",
-            without.join(", "),
+            few(&without),
             "not every wheel was measured: the payload is weighed by strain on a flat floor",
             "add their rows and columns to the runs file",
         ));
@@ -393,7 +393,7 @@ fn judge_net(work: &mut Work, task: &Task, model: &PayloadModel, runs: &[(String
             Finding::new(
                 Severity::Warning,
                 "gauges-too-weak",
-                weak.join(", "),
+                few(&weak),
                 "the net reading does not stand out of the noise in any run: these gauges can say nothing of the payload",
                 "leave them out, or glue gauges where the payload strains the structure (`place`)",
             )

@@ -7,7 +7,7 @@ use crate::app::fault::Faults;
 use crate::app::outcome::finite;
 use crate::app::strain::lay_gauges;
 use crate::app::work::Work;
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::placement::candidates::Candidates;
 use crate::placement::quality::judge_rows;
 use crate::placement::{self, Spec, place};
@@ -30,7 +30,7 @@ pub(super) fn installed(
             work.findings.push(Finding::new(
                 Severity::Warning,
                 "installed-gauges-without-strain",
-                missing.iter().map(|m| m.gauge.as_str()).collect::<Vec<_>>().join(", "),
+                few(&missing.iter().map(|m| m.gauge.as_str()).collect::<Vec<_>>()),
                 "installed gauges sit where some subcase has no strain: the installed layout is not judged",
                 "ask for STRAIN of their elements in every subcase",
             ));

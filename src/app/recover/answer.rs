@@ -176,7 +176,7 @@ pub struct RecoveredRecord {
 /// What the loads of a record hold by frequency.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Content {
-    /// First elastic mode of the free structure.
+    /// First elastic mode of the structure as the job holds it.
     pub first_elastic_mode_hz: f64,
     /// Up to where each load has content; `None`: it can't be told from noise.
     pub content_hz: Vec<Option<f64>>,

@@ -1,5 +1,6 @@
-//! Whether a history is slow enough for quasi-static recovery: its content against the first elastic mode of the free structure.
+//! Whether a history is slow enough for quasi-static recovery: its content against the first elastic mode of the structure as it is held.
 
+use crate::fe::Support;
 use crate::finding::{Finding, Severity};
 use crate::series::content::content_hz;
 
@@ -33,11 +34,20 @@ pub(super) fn content_of_loads(
         .collect()
 }
 
-/// A warning for each load whose content reaches a third of the first mode.
+/// The structure that the first mode is of, in words: as it is held where unit loads strain it.
+pub(super) fn structure(support: Support) -> String {
+    match support.is_held() {
+        true => format!("the structure {}", support.words()),
+        false => "the free structure".to_owned(),
+    }
+}
+
+/// A warning for each load whose content reaches a third of the first mode of `structure`.
 pub(super) fn check_content(
     names: &[String],
     content: &[Option<f64>],
     first_mode: f64,
+    structure: &str,
 ) -> Vec<Finding> {
     let limit = SHARE_OF_FIRST_MODE * first_mode;
     names
@@ -50,7 +60,7 @@ pub(super) fn check_content(
                     Severity::Warning,
                     "content-near-first-mode",
                     format!("load `{name}`"),
-                    format!("its content reaches {f:.2} Hz, a third or more of the first elastic mode of the free structure ({first_mode:.2} Hz): quasi-static recovery reads elastic vibration as load"),
+                    format!("its content reaches {f:.2} Hz, a third or more of the first elastic mode of {structure} ({first_mode:.2} Hz): quasi-static recovery reads elastic vibration as load"),
                     "low-pass the strain below a third of the first mode, or take the loads from accelerations (`identify`)",
                 )
                 .with_numbers(f, limit),

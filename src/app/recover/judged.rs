@@ -1,11 +1,11 @@
 //! What samples spread over a record say of it before all of it is read.
 
 use super::answer::Content;
-use super::content::{check_content, content_of_loads};
+use super::content::{check_content, content_of_loads, structure};
 use super::reading::{Record, block};
 use super::task::Task;
 use crate::app::fault::{Fault, Faults};
-use crate::app::solved::first_mode_of;
+use crate::app::solved::{first_mode_of, support_of_job};
 use crate::app::work::Work;
 use crate::recovery::history::Filter;
 use crate::recovery::{Readings, Recovery, clock, recover};
@@ -44,12 +44,7 @@ pub(super) fn judge(
         for i in (0..each).map(|i| i * take / each) {
             let row = &values[i * n..(i + 1) * n];
             let strain = row.iter().zip(zero).map(|(v, z)| v - z).collect();
-            readings.push(Readings {
-                // To the nanosecond: what start plus number over rate leaves behind it is no time.
-                run: format!("t = {}", (times[i] * 1e9).round() / 1e9),
-                strain,
-                noise_factor: task.noise_factor,
-            });
+            readings.push(Readings::of_sample(times[i], strain, task.noise_factor));
         }
     }
     if readings.is_empty() {
@@ -94,16 +89,21 @@ pub(super) fn content(
         f.first_mode
             .or_else(|| first_mode_of(work, task.job, &f.deck))
     });
-    let Some(first_elastic_mode_hz) = first_mode else {
+    let (Some(first_elastic_mode_hz), Some(fields)) = (first_mode, fields) else {
         return Ok(None);
     };
+    let held = structure(support_of_job(task.job, fields.model())?);
     let sigma = filter.sigma(&vec![0.0; filter.n_loads()]);
     let pieces = sampled_pieces(record, filter)?;
     let (_, step) = record.first_and_step();
     let rate = if step > 0.0 { 1.0 / step } else { 0.0 };
     let content_hz = content_of_loads(&pieces, &sigma, rate);
-    work.findings
-        .extend(check_content(names, &content_hz, first_elastic_mode_hz));
+    work.findings.extend(check_content(
+        names,
+        &content_hz,
+        first_elastic_mode_hz,
+        &held,
+    ));
     Ok(Some(Content {
         first_elastic_mode_hz,
         content_hz,

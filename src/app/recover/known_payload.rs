@@ -7,7 +7,7 @@ use crate::app::job::runs::{RunRow, read_runs};
 use crate::app::job::table::read_table;
 use crate::app::job::{Component, GivenSensitivity, Job, JobLoad, LoadActs, Role};
 use crate::app::work::Work;
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::recovery::Readings;
 use crate::units::MICROSTRAIN;
 
@@ -88,7 +88,7 @@ pub(super) fn take_out(
         work.findings.push(Finding::new(
             Severity::Warning,
             "payload-unknown",
-            unknown.join(", "),
+            few(&unknown),
             "the runs file states no payload for these runs: it is taken for none",
             "state its mass (0 where there is none) and its place",
         ));

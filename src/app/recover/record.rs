@@ -16,7 +16,7 @@ use crate::app::job::LoadFile;
 use crate::app::outcome::finite;
 use crate::app::work::Work;
 use crate::app::zeroed::no_zero_runs;
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::recovery::Sums;
 use crate::recovery::history::Filter;
 use crate::sensitivity::Sensitivity;
@@ -190,7 +190,7 @@ fn gaps(head: &RecordHead, s: &Sensitivity, sums: &Sums) -> Vec<Finding> {
         out.push(Finding::new(
             Severity::Error,
             "loads-without-values",
-            unknown.join(", "),
+            few(&unknown),
             "in no sample do the gauges that read tell these loads",
             "bring the silent gauges back, or drop these loads",
         ));

@@ -6,7 +6,7 @@ use crate::app::fault::{Fault, Faults};
 use crate::app::files::FileBytes;
 use crate::app::job::correct::channel_of;
 use crate::app::work::Work;
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::linalg::Matrix;
 use crate::sensitivity::Sensitivity;
 use crate::series::still::{Gives, Still};
@@ -70,7 +70,7 @@ pub(super) fn speaking(work: &mut Work, task: &Task, bytes: FileBytes) -> Result
             work.findings.push(Finding::new(
                 Severity::Warning,
                 "gauge-silent",
-                names.join(", "),
+                few(&names),
                 format!("these gauges give {what}: the loads are those of the others, with wider intervals"),
                 "repair the channel, or leave its gauge out: [[correction]] ignore = true",
             ));

@@ -7,7 +7,7 @@ use crate::app::outcome::finite;
 use crate::app::strain::Prepared;
 use crate::app::work::Work;
 use crate::app::zeroed::read_zeroed;
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::respond::LoadState;
 use crate::units::MICROSTRAIN;
 use serde::Serialize;
@@ -154,7 +154,7 @@ pub(super) fn check(
             Finding::new(
                 Severity::Warning,
                 "prediction-poor",
-                poor.join(", "),
+                few(&poor),
                 "the recovered loads do not reproduce what these gauges measured to 10 %: stress near them is as uncertain",
                 "run `reconcile`",
             )

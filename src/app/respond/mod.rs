@@ -13,7 +13,7 @@ use super::job::{self, Job};
 use super::outcome::{Outcome, StatedUnits};
 use super::strain::{Prepared, has_covariance, prepare, read_fields};
 use super::work::Work;
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::model::{GridIx, Model};
 use crate::recovery::NORMAL_95;
 use crate::respond::{Peak, Place, ResponseRow, envelope, hot_spots, response_rows};
@@ -176,7 +176,7 @@ fn say_findings(
             Finding::new(
                 Severity::Warning,
                 "hot-at-a-joint",
-                at_joint.join(", "),
+                few(&at_joint),
                 "these elements touch a rigid element: their stress is that of the idealised joint and grows as the mesh is refined",
                 "judge the joint by its forces, or by elements a plate thickness away",
             )

@@ -27,7 +27,7 @@ pub struct Fields {
     /// By load of the job, the mesh error that was taken out of `solutions`: strain on the deck's mesh less the limit. `None` where that was
     /// not computed.
     pub mesh_error: Option<Vec<CaseResult>>,
-    /// First elastic frequency of the free structure, cycles per unit of time; `None` where another program solved it.
+    /// First elastic frequency of the structure as the job holds it, cycles per unit of time; `None` where another program solved it.
     pub first_mode: Option<f64>,
 }
 

@@ -5,7 +5,7 @@ use crate::app::fault::{Fault, Faults};
 use crate::app::job::{Criterion, Job, Role, Study};
 use crate::app::place::{allowed_sites, angles, column_order, scales, scatter};
 use crate::app::work::Work;
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::gauge::GaugeSpec;
 use crate::placement::candidates::{Angles, Candidates, Choice, Scatter};
 use crate::placement::sites::{Site, candidates};
@@ -93,7 +93,7 @@ pub(super) fn of(
         work.findings.push(Finding::new(
             Severity::Warning,
             "layouts-skipped",
-            skipped.join(", "),
+            few(&skipped),
             format!(
                 "the job has {} gauges: these layouts need more",
                 prepared.pool.len()

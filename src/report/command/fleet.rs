@@ -49,8 +49,12 @@ impl Report for Outcome<Fleet> {
 
     fn words(&self) -> String {
         let count = |status: &str| self.files.iter().filter(|f| f.status == status).count();
+        let doubtful = match self.files.iter().filter(|f| f.is_doubtful()).count() {
+            0 => String::new(),
+            n => format!(", {n} done whose loads can't be relied on"),
+        };
         let mut text = format!(
-            "{} of {} files done ({} kept from before), {} failed, {} second copies\n",
+            "{} of {} files done ({} kept from before), {} failed, {} second copies{doubtful}\n",
             count("done"),
             self.files.len(),
             self.reused,
@@ -134,7 +138,7 @@ fn files(fleet: &Fleet) -> String {
             &f.vehicle,
             &f.day,
             &f.status.to_owned(),
-            &f.message,
+            &f.words(),
         ];
         let words: Vec<_> = words.iter().map(|w| csv_cell(w)).collect();
         let numbers = [f.hours, f.rate_hz].map(|x| cell(x.unwrap_or(f64::NAN)));
@@ -300,7 +304,7 @@ fn page(o: &Outcome<Fleet>) -> Page {
             f.vehicle.clone(),
             f.day.clone(),
             f.status.to_owned(),
-            f.message.clone(),
+            f.words(),
             hours,
             digest,
         ]

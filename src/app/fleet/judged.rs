@@ -1,0 +1,223 @@
+//! Samples of a record by which recovery's own judge tells whether the loads explain its strain: some spread evenly over it, and those of each
+//! load's extremes, since a range to the power of the S-N slope comes from them and a single wrong sample makes one.
+
+use super::day::DayFinding;
+use crate::finding::{Severity, few};
+use crate::recovery::{ErrorModel, Readings, Recovery, UNEXPLAINED, recover, unlike};
+use crate::sensitivity::Sensitivity;
+use std::collections::BTreeMap;
+
+/// Samples that are judged: as many as recovery tries its gauges on, more say no more.
+const JUDGED: usize = 200;
+/// Share of samples unlike the calibration, two at least, from which that is said of a record: of right ones one in a thousand is by chance.
+const UNLIKE: f64 = 0.05;
+
+/// A sample at which a load is largest or smallest.
+#[derive(Clone, Debug)]
+struct Extreme {
+    at: usize,
+    /// The load, its sign turned for the smallest.
+    value: f64,
+    strain: Vec<f64>,
+}
+
+/// The samples to be judged, of a part of a record or of the whole.
+#[derive(Clone, Debug, Default)]
+pub struct Judged {
+    n_gauges: usize,
+    n_loads: usize,
+    stride: usize,
+    spread: BTreeMap<usize, Vec<f64>>,
+    /// Of each load the largest, and the smallest.
+    extremes: Vec<Extreme>,
+}
+
+impl Judged {
+    /// None yet, of a record of `samples`.
+    pub fn new(n_gauges: usize, n_loads: usize, samples: usize) -> Self {
+        let spread = JUDGED.saturating_sub(2 * n_loads).max(JUDGED / 2);
+        let none = Extreme {
+            at: 0,
+            value: f64::NEG_INFINITY,
+            strain: Vec::new(),
+        };
+        Self {
+            n_gauges,
+            n_loads,
+            stride: samples.div_ceil(spread).max(1),
+            spread: BTreeMap::new(),
+            extremes: vec![none; 2 * n_loads],
+        }
+    }
+
+    /// Looks at samples from number `first` of the record on: strain less zero (`n_gauges` a row) and the loads recovered from it.
+    pub fn add(&mut self, first: usize, strain: &[f64], loads: &[f64]) {
+        let n = self.n_gauges.max(1);
+        let rows = strain.len() / n;
+        let row = |i: usize| strain.get(i * n..(i + 1) * n).unwrap_or_default().to_vec();
+        let begin = first.next_multiple_of(self.stride) - first;
+        for i in (begin..rows).step_by(self.stride) {
+            self.spread.insert(first + i, row(i));
+        }
+        for (l, pair) in self.extremes.chunks_exact_mut(2).enumerate() {
+            let mut best: Vec<(f64, Option<usize>)> =
+                pair.iter().map(|e| (e.value, None)).collect();
+            if let [high, low] = best.as_mut_slice() {
+                for (i, v) in loads
+                    .iter()
+                    .skip(l)
+                    .step_by(self.n_loads.max(1))
+                    .enumerate()
+                {
+                    if *v > high.0 {
+                        *high = (*v, Some(i));
+                    }
+                    if -*v > low.0 {
+                        *low = (-*v, Some(i));
+                    }
+                }
+            }
+            for (extreme, (value, at)) in pair.iter_mut().zip(best) {
+                if let Some(i) = at {
+                    *extreme = Extreme {
+                        at: first + i,
+                        value,
+                        strain: row(i),
+                    };
+                }
+            }
+        }
+    }
+
+    /// Adds what the part of the record that follows gave.
+    pub fn merge(&mut self, next: Self) {
+        self.spread.extend(next.spread);
+        for (a, b) in self.extremes.iter_mut().zip(next.extremes) {
+            if b.value > a.value {
+                *a = b;
+            }
+        }
+    }
+
+    /// What recovery makes of all of them, and, where the loads explain these, of the extremes alone: among two hundred a single wrong one may
+    /// drown. None where no gauge reads.
+    pub fn recovered(
+        self,
+        s: &Sensitivity,
+        errors: ErrorModel,
+        noise_factor: f64,
+        time_s: impl Fn(usize) -> f64,
+    ) -> Vec<Recovery> {
+        let extremes = self.extremes.into_iter().map(|e| (e.at, e.strain));
+        let extremes: BTreeMap<usize, Vec<f64>> =
+            extremes.filter(|(_, strain)| !strain.is_empty()).collect();
+        let mut all = self.spread;
+        all.extend(extremes.clone());
+        let mut out = Vec::new();
+        for samples in [all, extremes] {
+            let readings: Vec<Readings> = samples
+                .into_iter()
+                // Nothing was measured in a gap.
+                .filter(|(_, strain)| strain.iter().any(|v| v.is_finite()))
+                .map(|(i, strain)| Readings::of_sample(time_s(i), strain, noise_factor))
+                .collect();
+            if readings.is_empty() {
+                continue;
+            }
+            let recovery = recover(s, &readings, errors);
+            let unexplained = recovery.findings.iter().any(|f| f.code == UNEXPLAINED);
+            out.push(recovery);
+            if unexplained {
+                break;
+            }
+        }
+        out
+    }
+}
+
+/// Findings of the record: those on all samples, and what the extremes alone add.
+pub fn findings_of(recoveries: Vec<Recovery>) -> Vec<DayFinding> {
+    let mut out: Vec<DayFinding> = Vec::new();
+    for recovery in recoveries {
+        for f in findings_of_one(recovery) {
+            let said =
+                |o: &DayFinding| o.code == f.code && (o.subject == f.subject || is_of_samples(&f));
+            if !out.iter().any(said) {
+                out.push(f);
+            }
+        }
+    }
+    out
+}
+
+/// Codes of findings whose subjects are samples.
+pub const OF_SAMPLES: [&str; 3] = [UNEXPLAINED, NOT_SOLVABLE, unlike::CODE];
+
+fn is_of_samples(f: &DayFinding) -> bool {
+    OF_SAMPLES.contains(&f.code.as_str())
+}
+
+/// What recovery says of its samples as findings of the record. Notes are left out: by chance one right record in twenty has one.
+fn findings_of_one(recovery: Recovery) -> Vec<DayFinding> {
+    let mut out: Vec<DayFinding> = Vec::new();
+    let mut subjects: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    for f in recovery.findings {
+        if f.severity == Severity::Info {
+            continue;
+        }
+        // One a sample where they are of single samples.
+        let of_sample = f.code == unlike::CODE || f.code == NOT_SOLVABLE;
+        if of_sample {
+            let list = subjects.entry(f.code).or_default();
+            list.push(f.subject.clone());
+            if list.len() > 1 {
+                continue;
+            }
+        }
+        out.push(f.into());
+    }
+    let enough = (UNLIKE * recovery.runs.len() as f64).max(2.0);
+    let n_unlike = subjects.get(unlike::CODE).map_or(0, Vec::len);
+    out.retain(|f| f.code != unlike::CODE || n_unlike as f64 >= enough);
+    for f in &mut out {
+        if let Some(list) = subjects.get(f.code.as_str()) {
+            f.subject = few(list);
+        }
+    }
+    out
+}
+
+/// Code of samples whose gauges don't tell some of the loads.
+const NOT_SOLVABLE: &str = "run-not-solvable";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_are_the_same_however_the_record_is_cut_and_hold_every_extreme() {
+        let samples = 5000;
+        let strain: Vec<f64> = (0..3 * samples).map(|i| i as f64).collect();
+        let mut loads: Vec<f64> = (0..2 * samples).map(|i| (i % 97) as f64).collect();
+        (loads[2 * 777], loads[2 * 4001 + 1]) = (1e3, -1e3);
+        let judge = |piece: usize| {
+            let mut all = Judged::new(3, 2, samples);
+            for first in (0..samples).step_by(piece) {
+                let end = (first + piece).min(samples);
+                let mut part = Judged::new(3, 2, samples);
+                part.add(
+                    first,
+                    &strain[3 * first..3 * end],
+                    &loads[2 * first..2 * end],
+                );
+                all.merge(part);
+            }
+            all
+        };
+        let (whole, cut) = (judge(samples), judge(33));
+        assert_eq!(format!("{whole:?}"), format!("{cut:?}"));
+        assert!((150..=JUDGED).contains(&(whole.spread.len() + whole.extremes.len())));
+        assert_eq!((whole.extremes[0].at, whole.extremes[3].at), (777, 4001));
+        assert_eq!(whole.extremes[0].strain, strain[3 * 777..3 * 778]);
+    }
+}
