@@ -507,6 +507,67 @@ fn a_payload_on_supports_is_weighed_by_strain_alone() {
     assert!(codes.iter().any(|f| f["code"] == "payload-on-supports"));
 }
 
+/// The plate on supports with strain of the runs as beam theory gives it for forces down at the tip, times `unit`, and a [payload].
+fn weighed_plate(name: &str, forces: &[f64], unit: f64, keys: &str) -> PathBuf {
+    let job = on_support(name, "");
+    let mut table = "run,a\n".to_owned();
+    for (i, newton) in forces.iter().enumerate() {
+        let strain = 1e6 * newton * 862.5 * 5.0 / (210_000.0 * 100.0 * 1000.0 / 12.0);
+        let _ = writeln!(table, "R{},{}", i + 1, strain * unit);
+    }
+    std::fs::write(job.with_file_name("strain.csv"), table).unwrap();
+    let text = std::fs::read_to_string(&job).unwrap()
+        + "[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 5\n[payload]\ngrid = 203\n"
+        + keys;
+    std::fs::write(&job, text).unwrap();
+    job
+}
+
+#[test]
+fn a_refused_payload_says_why_in_its_row_and_leaves_the_others_alone() {
+    let job = weighed_plate("payload_refused", &[200.0, -300.0, 500.0], 1.0, "");
+    let out = strainbridge(&["payload", job.to_str().unwrap()]);
+    assert_eq!(out.status.code(), Some(1), "{}", text(&out.stderr));
+    let table = std::fs::read_to_string(job.with_file_name("job.out/payload.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = table.lines().map(|l| l.splitn(10, ',').collect()).collect();
+    assert_eq!(rows[0][9], "refused");
+    for (row, newton) in [(1, 200.0), (3, 500.0)] {
+        // Beam theory and the plate differ by 3 %.
+        let force: f64 = rows[row][1].parse().unwrap();
+        assert!((force / newton - 1.0).abs() < 0.03, "{table}");
+        assert_eq!(rows[row][9], "");
+    }
+    assert_eq!(rows[2][1], "");
+    assert!(rows[2][9].contains("pull the structure up"), "{table}");
+    // 200 N are 0.0204 t.
+    let said = text(&out.stdout);
+    assert!(said.contains("(0.020") || said.contains("(0.019"), "{said}");
+}
+
+#[test]
+fn a_payload_from_readings_in_millistrain_is_an_error_as_for_recovered_loads() {
+    let forces: Vec<f64> = (0..9).map(|i| 200.0 + 30.0 * f64::from(i)).collect();
+    let job = weighed_plate("payload_milli", &forces, 1e-3, "");
+    let out = strainbridge(&["payload", job.to_str().unwrap(), "--json"]);
+    assert_eq!(out.status.code(), Some(1), "{}", text(&out.stderr));
+    let result: serde_json::Value = serde_json::from_slice(&out.stdout).unwrap();
+    let findings = result["findings"].as_array().unwrap();
+    let named = findings.iter().any(|f| f["code"] == "readings-below-noise");
+    assert!(named, "{findings:?}");
+}
+
+#[test]
+fn a_gravity_in_millimetres_is_refused_with_its_unit() {
+    let job = weighed_plate("payload_gravity", &[200.0], 1.0, "gravity = 9806.65\n");
+    let out = strainbridge(&["payload", job.to_str().unwrap()]);
+    assert_eq!(out.status.code(), Some(2));
+    let told = text(&out.stderr);
+    assert!(
+        told.contains("payload.gravity") && told.contains("m/s2"),
+        "{told}"
+    );
+}
+
 #[test]
 fn a_support_that_the_deck_lacks_is_refused_with_the_line_of_the_job() {
     let job = on_support("missing_support", "support = 9");

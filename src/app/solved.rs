@@ -174,8 +174,8 @@ fn kept(
     Ok(solved)
 }
 
-/// The first elastic frequency of the structure of a deck, as the job holds it, whose strain another program solved; where the built-in solver can't tell,
-/// a finding says why.
+/// The first elastic frequency of the structure of a deck, as the job holds it, whose strain another program solved; where the built-in
+/// solver can't tell, a finding says why.
 pub fn first_mode_of(work: &mut Work, job: &Job, read: &DeckModel) -> Option<f64> {
     let solved = cases_of_job(job, read).and_then(|cases| {
         let options = SolveOptions {

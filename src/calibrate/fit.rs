@@ -2,7 +2,7 @@
 
 use super::state::State;
 use super::types::{Calibration, Coverage, LeftOut, Task};
-use super::{glued, held_out, runs, shift, undetermined};
+use super::{glued, held_out, runs, shift, stated, undetermined};
 use crate::finding::{Finding, Severity};
 
 /// Share of the runs that may be refused: with more, it is not the runs that are wrong.
@@ -41,11 +41,16 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
     let judged = held_out::judge(&left_out, state.scatter.dof);
     let sensitivity = state.sensitivity(task, judged.factor);
     let undetermined = undetermined::check(task, &state);
-    let shifts = shift::check(task, &state, &sensitivity);
+    let shifts = shift::check(task, &state);
     let mut findings = runs::findings(task, &left_out, &refused);
     findings.extend(statements(task, &state, &judged, &left_out));
     findings.extend(undetermined::findings(task, &undetermined));
-    findings.extend(shift::findings(task, &shifts));
+    // Where the known loads are in a wrong unit or of a wrong sign, every gauge is far from the model for that reason.
+    let wrong_loads = stated::check(task, &state.used);
+    if wrong_loads.is_empty() {
+        findings.extend(shift::findings(task, &shifts));
+    }
+    findings.extend(wrong_loads);
     let signal = state.lefts.iter().map(|l| l.q2).sum::<f64>() / state.lefts.len().max(1) as f64;
     Ok(Calibration {
         sensitivity,
@@ -75,13 +80,25 @@ fn statements(
     let noise = 100.0 * task.noise / signal;
     if state.scatter.dof.is_finite() {
         let scatter = 100.0 * state.scatter.rms();
+        let runs = match repeats(task, &state.used) {
+            true => "runs of one loading scatter",
+            false => "runs scatter about what S makes of their known loads",
+        };
         let message = format!(
-            "runs of one loading scatter by {scatter:.1} % of the strain, noise makes {noise:.2} %: intervals come from the scatter. Runs left \
+            "{runs} by {scatter:.1} % of the strain, noise makes {noise:.2} %: intervals come from the scatter. Runs left \
              out one by one: {} of {} held, with intervals {:.2} times those of the scatter alone",
             coverage.held, coverage.of, coverage.factor
         );
+        let (severity, remedy) = if state.scatter.rms() > NO_CALIBRATION {
+            (
+                Severity::Error,
+                "check the unit of the known loads ([runs] units), their signs, and the zero: what is left is larger than the strain",
+            )
+        } else {
+            (Severity::Info, "")
+        };
         out.push(
-            Finding::new(Severity::Info, "repeat-scatter", "calibration", message, "")
+            Finding::new(severity, "repeat-scatter", "calibration", message, remedy)
                 .with_numbers(scatter / 100.0, noise / 100.0),
         );
     } else if !left_out.is_empty() {
@@ -129,6 +146,16 @@ fn statements(
         );
     }
     out
+}
+
+/// Scatter over the strain from which S explains nothing of the runs: zeros would leave less.
+const NO_CALIBRATION: f64 = 1.0;
+
+/// Whether a loading stands twice among some runs.
+fn repeats(task: &Task, used: &[usize]) -> bool {
+    let group = |r: &usize| task.runs.get(*r).map(|run| run.group);
+    let groups: Vec<usize> = used.iter().filter_map(group).collect();
+    (1..groups.len()).any(|i| groups[..i].contains(&groups[i]))
 }
 
 /// Ratio of learnt to stated model error from which something else is wrong.

@@ -34,28 +34,26 @@ fn one(task: &Task, state: &State, i: usize) -> Option<LeftOut> {
         return None;
     }
     let mut posterior = state.posterior.without(&state.equations[i])?;
-    let others: Vec<Left> = (0..state.used.len())
-        .filter(|j| *j != i)
-        .map(|j| {
-            left(
-                task,
-                &task.runs[state.used[j]],
-                &posterior,
-                &state.equations[j].phi,
-            )
-        })
-        .collect();
-    let scatter = if state.scatter.dof.is_finite() {
-        Scatter::of(&others, state.fitted, &posterior.matrix())
-    } else {
-        Scatter::none(posterior.n)
-    };
-    if state.scatter.dof.is_finite() && !scatter.dof.is_finite() {
-        return None;
-    }
+    // One wrong run may be all the scatter there is: what the others then leave is noise, and the run is held against that.
+    let scatters = state.scatter.dof.is_finite();
     let order = (posterior.n * posterior.k) as f64;
-    if scatter.dof.is_finite() && order.powi(3) * state.used.len() as f64 <= AFFORDABLE {
-        posterior = again(state, i, &scatter)?;
+    let affordable = order.powi(3) * state.used.len() as f64 <= AFFORDABLE;
+    let mut scatter = Scatter::none(posterior.n);
+    // Twice: with a wrong run among them the equations gave the others too little weight at first.
+    let rounds = match (scatters, affordable) {
+        (false, _) => 0,
+        (true, false) => 1,
+        (true, true) => ROUNDS,
+    };
+    for _ in 0..rounds {
+        let others = others_left(task, state, i, &posterior);
+        scatter = Scatter::at_most(&others, state.fitted, &posterior.matrix());
+        if !scatter.dof.is_finite() {
+            return None;
+        }
+        if affordable {
+            posterior = again(state, i, &scatter)?;
+        }
     }
     let dof = scatter.dof;
     let s = sensitivity_of(task, &state.scales, &posterior, &scatter, 1.0);
@@ -115,6 +113,19 @@ fn one(task: &Task, state: &State, i: usize) -> Option<LeftOut> {
         known: run.loads.mean.clone(),
         estimate: found.estimate,
     })
+}
+
+/// Rounds between the scatter of the others and the posterior that it gives.
+const ROUNDS: usize = 2;
+
+/// What the runs other than `i` leave.
+fn others_left(task: &Task, state: &State, i: usize, posterior: &Posterior) -> Vec<Left> {
+    let others = (0..state.used.len()).filter(|j| *j != i);
+    let one = |j: usize| {
+        let run = &task.runs[state.used[j]];
+        left(task, run, posterior, &state.equations[j].phi)
+    };
+    others.map(one).collect()
 }
 
 /// Operations up to which every left-out run gets a posterior of its own with its own scatter: about a second. Beyond, the scatter behind

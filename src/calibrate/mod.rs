@@ -18,6 +18,7 @@ mod runs;
 mod scatter;
 mod shift;
 mod state;
+mod stated;
 mod types;
 mod undetermined;
 

@@ -72,17 +72,41 @@ const STEPS: i32 = 8;
 /// How far the stated error may be off, 1 sd of its natural logarithm: half or double is common.
 const STATED_LN_SD: f64 = 0.7;
 
-/// The relative error of the model that the runs make most probable, near the stated one: maximum of the marginal likelihood of the
-/// readings (each gauge by itself) times a log-normal prior around what was stated.
+/// How probable each gauge's readings are with each relative error of the model that is tried.
+#[derive(Clone, Debug)]
+pub(super) struct ErrorEvidence {
+    stated: ModelError,
+    /// Error, log of its prior, log marginal likelihood by gauge.
+    tried: Vec<(ModelError, f64, Vec<f64>)>,
+}
+
+impl ErrorEvidence {
+    /// The relative error of the model that the readings of all gauges but some make most probable, near the stated one: maximum of the
+    /// marginal likelihood (each gauge by itself) times a log-normal prior around what was stated.
+    pub fn most_probable(&self, without: &[usize]) -> ModelError {
+        let mut best = (f64::NEG_INFINITY, self.stated);
+        for (error, prior, by_gauge) in &self.tried {
+            let kept = by_gauge.iter().enumerate();
+            let kept = kept.filter(|(g, _)| !without.contains(g));
+            let score = prior + kept.map(|(_, v)| v).sum::<f64>();
+            if score > best.0 {
+                best = (score, *error);
+            }
+        }
+        best.1
+    }
+}
+
+/// The evidence of the runs on the model's relative error.
 ///
 /// `variance[r][g]`: variance of the reading of gauge g in run r, S aside; `phi[r]`: its loads of unit size.
-pub(super) fn learn_error(
+pub(super) fn error_evidence(
     model: &ModelPrior,
     scales: &[f64],
     runs: &[&KnownRun],
     phi: &[Vec<f64>],
     variance: &[Vec<f64>],
-) -> ModelError {
+) -> ErrorEvidence {
     let stated = ModelError {
         common: model.uncertainty_rel,
         entry: model.uncertainty_rel,
@@ -92,7 +116,7 @@ pub(super) fn learn_error(
         .map(|g| normal_equations(g, k, runs, phi, variance))
         .collect();
     let step = |i: i32| 2f64.powf(f64::from(i) / 2.0);
-    let mut best = (f64::NEG_INFINITY, stated);
+    let mut tried = Vec::new();
     for i in -STEPS..=STEPS {
         for j in -STEPS..=STEPS {
             let error = ModelError {
@@ -101,13 +125,10 @@ pub(super) fn learn_error(
             };
             let off = |i: i32| 0.5 * (step(i).ln() / STATED_LN_SD).powi(2);
             let rows = rows(model, scales, error);
-            let score = evidence(&rows, &equations) - off(i) - off(j);
-            if score > best.0 {
-                best = (score, error);
-            }
+            tried.push((error, -off(i) - off(j), evidence(&rows, &equations)));
         }
     }
-    best.1
+    ErrorEvidence { stated, tried }
 }
 
 /// What the runs say of one row: `sum phi phi' / v`, `sum phi y / v`.
@@ -139,9 +160,9 @@ fn normal_equations(
     out
 }
 
-/// Log marginal likelihood of the readings, up to what does not depend on the prior:
+/// Log marginal likelihood of the readings by gauge, up to what does not depend on the prior:
 /// `-(ln |P| + ln |P^-1 + A| - d' (P^-1 + A)^-1 d) / 2`, `d = b - A s0`.
-fn evidence(rows: &[RowPrior], equations: &[Normal]) -> f64 {
+fn evidence(rows: &[RowPrior], equations: &[Normal]) -> Vec<f64> {
     let one = |(row, e): (&RowPrior, &Normal)| -> Option<f64> {
         let k = row.mean.len();
         let prior = Precision::of(&row.covariance, k)?;
@@ -158,5 +179,5 @@ fn evidence(rows: &[RowPrior], equations: &[Normal]) -> f64 {
     rows.iter()
         .zip(equations)
         .map(|pair| one(pair).unwrap_or(f64::NEG_INFINITY))
-        .sum()
+        .collect()
 }

@@ -53,7 +53,17 @@ impl Scatter {
     pub fn of(runs: &[Left], fitted: f64, columns: &Matrix) -> Self {
         let n = runs.first().map_or(0, |r| r.residual.len());
         let dof = runs.len() as f64 - fitted;
-        if dof < FEWEST || n == 0 || !exceeds_noise(runs, dof) {
+        if dof < FEWEST || !exceeds_noise(runs, dof) {
+            return Self::none(n);
+        }
+        Self::at_most(runs, fitted, columns)
+    }
+
+    /// As [`Scatter::of`], even where noise alone explains what the runs leave: the scatter that they may have, with its degrees of freedom.
+    pub fn at_most(runs: &[Left], fitted: f64, columns: &Matrix) -> Self {
+        let n = runs.first().map_or(0, |r| r.residual.len());
+        let dof = runs.len() as f64 - fitted;
+        if dof < FEWEST || n == 0 {
             return Self::none(n);
         }
         let mut sample = vec![0.0; n * n];

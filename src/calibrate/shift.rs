@@ -1,10 +1,11 @@
 //! How far each gauge's row moved, and what that looks like.
 
+use super::prior::rows as model_rows;
 use super::state::State;
 use super::types::{GaugeShift, MoveKind, ShiftWord, Task};
 use crate::finding::{Finding, Severity};
 use crate::linalg::precision::Precision;
-use crate::sensitivity::Sensitivity;
+use crate::linalg::spd;
 
 /// Distance from which a shift is worth a word.
 const NOTABLE: f64 = 3.0;
@@ -15,84 +16,207 @@ const DEAD: f64 = 0.1;
 /// Noise sd that the largest reading of a live gauge exceeds.
 const LIVE: f64 = 3.0;
 
-/// Every gauge's shift. The distance is measured with the model's stated error.
-pub(super) fn check(task: &Task, state: &State, calibrated: &Sensitivity) -> Vec<GaugeShift> {
-    let k = task.loads.len();
-    (0..task.gauges.len())
-        .map(|g| {
-            let name = task.gauges[g].clone();
-            let largest = task
-                .runs
-                .iter()
-                .filter_map(|r| r.strain.get(g))
-                .fold(
-                    0.0_f64,
-                    |a, v| if v.is_finite() { a.max(v.abs()) } else { a },
-                );
-            let silent = largest < LIVE * task.noise;
-            let prior = &state.prior[g];
-            if task.model.is_none() {
-                let word = if silent {
-                    ShiftWord::Dead
-                } else {
-                    ShiftWord::None
-                };
-                return GaugeShift {
-                    name,
-                    shift: 0.0,
-                    scale: 1.0,
-                    word,
-                };
-            }
-            let row: Vec<f64> = (0..k)
-                .map(|l| calibrated.values[(g, l)] * state.scales[l])
-                .collect();
-            let moved: Vec<f64> = row.iter().zip(&prior.mean).map(|(a, b)| a - b).collect();
-            let along = |t: &[f64]| {
-                let tt: f64 = t.iter().map(|v| v * v).sum();
-                if tt > 0.0 {
-                    t.iter().zip(&moved).map(|(a, b)| a * b).sum::<f64>() / tt
-                } else {
-                    0.0
-                }
-            };
-            let explained = |t: &[f64]| {
-                let c = along(t);
-                let all: f64 = moved.iter().map(|v| v * v).sum();
-                let left: f64 = moved.iter().zip(t).map(|(m, t)| (m - c * t).powi(2)).sum();
-                if all > 0.0 { 1.0 - left / all } else { 0.0 }
-            };
-            let shift = Precision::of(&prior.covariance, k).map_or(0.0, |p| {
-                let q: f64 = p.apply(&moved).iter().zip(&moved).map(|(a, b)| a * b).sum();
-                (q / k.max(1) as f64).sqrt()
-            });
-            let scale = 1.0 + along(&prior.mean);
-            let moves = task.model.as_ref().map_or(&[][..], |m| &m.moves);
-            let turned = moves.iter().find(|m| m.kind == MoveKind::Turned);
-            let turned: Option<Vec<f64>> =
-                turned.map(|t| (0..k).map(|l| t.change[(g, l)] * state.scales[l]).collect());
-            let expected = prior.mean.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
-            let word = if silent && expected > LIVE * LIVE * task.noise || scale.abs() < DEAD {
-                ShiftWord::Dead
-            } else if shift < NOTABLE {
-                ShiftWord::None
-            } else if scale < 0.0 {
-                ShiftWord::Sign
-            } else if explained(&prior.mean) > EXPLAINED {
-                ShiftWord::Gain
-            } else if turned.is_some_and(|t| explained(&t) > EXPLAINED) {
-                ShiftWord::Angle
-            } else {
-                ShiftWord::Place
-            };
-            GaugeShift {
-                name,
-                shift,
-                scale,
-                word,
-            }
+/// Difference from the row that a cause makes, over the change it makes, up to which the cause explains a row.
+const SAME: f64 = 0.3;
+/// Posterior sd over the change that a cause makes, up to which the runs tell it from none.
+const TOLD: f64 = 0.2;
+
+/// A gauge's row in loads of unit size: as the model has it and as calibrated, with the latter's covariance.
+struct Row {
+    model: Vec<f64>,
+    found: Vec<f64>,
+    covariance: Vec<f64>,
+}
+
+impl Row {
+    fn of(state: &State, g: usize) -> Self {
+        let k = state.scales.len();
+        let order = state.posterior.n * k;
+        let at = |i: usize| (g * k + i / k) * order + g * k + i % k;
+        Self {
+            model: state.prior[g].mean.clone(),
+            found: state.posterior.mean[g * k..(g + 1) * k].to_vec(),
+            covariance: (0..k * k)
+                .map(|i| state.posterior.covariance[at(i)])
+                .collect(),
+        }
+    }
+
+    /// Calibrated row along the model's.
+    fn scale(&self) -> f64 {
+        let own = spd::dot(&self.model, &self.model);
+        if own > 0.0 {
+            spd::dot(&self.found, &self.model) / own
+        } else {
+            1.0
+        }
+    }
+
+    /// Distance of the calibrated row from `wanted`, strain, where the runs tell the two apart and it explains the row.
+    fn explained_by(&self, wanted: &[f64]) -> Option<f64> {
+        let change: Vec<f64> = wanted.iter().zip(&self.model).map(|(w, m)| w - m).collect();
+        let size = spd::dot(&change, &change).sqrt();
+        let mut spread = vec![0.0; change.len()];
+        spd::times(&self.covariance, &change, &mut spread);
+        // Sd of the row along the change.
+        let sd = spd::dot(&spread, &change).max(0.0).sqrt() / size;
+        let off = self.found.iter().zip(wanted).map(|(f, w)| (f - w).powi(2));
+        let off = off.sum::<f64>().sqrt();
+        (size > 0.0 && sd < TOLD * size && off < SAME * size).then_some(off)
+    }
+
+    /// As [`Row::explained_by`] the model's row with its sign turned.
+    fn turned(&self) -> Option<f64> {
+        let turned: Vec<f64> = self.model.iter().map(|v| -v).collect();
+        self.explained_by(&turned)
+    }
+}
+
+/// Every gauge's shift. The distance is measured with the model's error as learnt from the others: not from the gauge itself, nor from those
+/// that something is wrong with, since one turned gauge makes any error of the model probable.
+pub(super) fn check(task: &Task, state: &State) -> Vec<GaugeShift> {
+    let n = task.gauges.len();
+    let Some((model, evidence)) = task.model.as_ref().zip(state.error_evidence.as_ref()) else {
+        return without_model(task);
+    };
+    let rows: Vec<Row> = (0..n).map(|g| Row::of(state, g)).collect();
+    let distance = |g: usize, to: &[f64], without: &[usize]| -> f64 {
+        let error = evidence.most_probable(without);
+        let prior = model_rows(model, &state.scales, error);
+        let moved: Vec<f64> = to.iter().zip(&rows[g].model).map(|(a, b)| a - b).collect();
+        let k = moved.len();
+        Precision::of(&prior[g].covariance, k).map_or(0.0, |p| {
+            (spd::dot(&p.apply(&moved), &moved) / k.max(1) as f64).sqrt()
         })
-        .collect()
+    };
+    // What needs no judgement of the model first.
+    let mut words: Vec<Option<ShiftWord>> = vec![None; n];
+    for (g, row) in rows.iter().enumerate() {
+        let expected = row.model.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
+        let silent = largest(task, g) < LIVE * task.noise;
+        if silent && expected > LIVE * LIVE * task.noise {
+            words[g] = Some(ShiftWord::Dead);
+        }
+    }
+    for (a, b) in exchanged(&rows) {
+        let free = words[a].is_none() && words[b].is_none();
+        let apart = |g: usize, to: usize| distance(g, &rows[to].model, &[a, b]) > NOTABLE;
+        if free && apart(a, b) && apart(b, a) {
+            words[a] = Some(ShiftWord::Exchanged { with: b });
+            words[b] = Some(ShiftWord::Exchanged { with: a });
+        }
+    }
+    for (word, row) in words.iter_mut().zip(&rows) {
+        if word.is_none() && row.scale().abs() < DEAD {
+            *word = Some(ShiftWord::Dead);
+        } else if word.is_none() && row.turned().is_some() {
+            *word = Some(ShiftWord::Sign);
+        }
+    }
+    let mut shifts = vec![0.0; n];
+    loop {
+        let wrong: Vec<usize> = (0..n).filter(|g| words[*g].is_some()).collect();
+        for (g, shift) in shifts.iter_mut().enumerate() {
+            let mut without = wrong.clone();
+            without.push(g);
+            *shift = distance(g, &rows[g].found, &without);
+        }
+        let news = (0..n).filter(|g| words[*g].is_none() && shifts[*g] >= NOTABLE);
+        let news: Vec<usize> = news.collect();
+        // With most gauges far off it is the model's error that is large, not the gauges that are wrong: they are named and stay in it.
+        let stop = news.is_empty() || 2 * (wrong.len() + news.len()) > n;
+        for g in news {
+            words[g] = Some(cause(task, state, &rows[g], g));
+        }
+        if stop {
+            break;
+        }
+    }
+    let all = rows.iter().zip(&words).zip(&shifts).zip(&task.gauges);
+    all.map(|(((row, word), shift), name)| GaugeShift {
+        name: name.clone(),
+        shift: *shift,
+        scale: row.scale(),
+        word: word.unwrap_or(ShiftWord::None),
+    })
+    .collect()
+}
+
+/// Without a model the dead ones alone can be told.
+fn without_model(task: &Task) -> Vec<GaugeShift> {
+    let one = |(g, name): (usize, &String)| GaugeShift {
+        name: name.clone(),
+        shift: 0.0,
+        scale: 1.0,
+        word: match largest(task, g) < LIVE * task.noise {
+            true => ShiftWord::Dead,
+            false => ShiftWord::None,
+        },
+    };
+    task.gauges.iter().enumerate().map(one).collect()
+}
+
+/// Largest reading of a gauge in any run.
+fn largest(task: &Task, g: usize) -> f64 {
+    let readings = task.runs.iter().filter_map(|r| r.strain.get(g));
+    let readings = readings.filter(|v| v.is_finite());
+    readings.fold(0.0, |a, v| a.max(v.abs()))
+}
+
+/// Pairs of gauges whose calibrated rows are each other's model rows, the clearest first.
+fn exchanged(rows: &[Row]) -> Vec<(usize, usize)> {
+    let mut out: Vec<(f64, usize, usize)> = Vec::new();
+    for (a, first) in rows.iter().enumerate() {
+        for (b, second) in rows.iter().enumerate().skip(a + 1) {
+            let off = first.explained_by(&second.model);
+            let Some((x, y)) = off.zip(second.explained_by(&first.model)) else {
+                continue;
+            };
+            // Two turned gauges of a pair above and below look much the same.
+            let turned = first.turned().zip(second.turned());
+            if turned.is_none_or(|(u, v)| x.hypot(y) <= u.hypot(v)) {
+                out.push((x.hypot(y), a, b));
+            }
+        }
+    }
+    out.sort_by(|x, y| x.0.total_cmp(&y.0));
+    out.into_iter().map(|(_, a, b)| (a, b)).collect()
+}
+
+/// What the change of a row that is far off looks like.
+fn cause(task: &Task, state: &State, row: &Row, g: usize) -> ShiftWord {
+    let moved: Vec<f64> = row
+        .found
+        .iter()
+        .zip(&row.model)
+        .map(|(a, b)| a - b)
+        .collect();
+    let explained = |t: &[f64]| {
+        let tt = spd::dot(t, t);
+        let c = if tt > 0.0 {
+            spd::dot(t, &moved) / tt
+        } else {
+            0.0
+        };
+        let left: f64 = moved.iter().zip(t).map(|(m, t)| (m - c * t).powi(2)).sum();
+        let all = spd::dot(&moved, &moved);
+        if all > 0.0 { 1.0 - left / all } else { 0.0 }
+    };
+    let moves = task.model.as_ref().map_or(&[][..], |m| &m.moves);
+    let turned = moves.iter().find(|m| m.kind == MoveKind::Turned);
+    let turned: Option<Vec<f64>> = turned.map(|t| {
+        let scales = state.scales.iter().enumerate();
+        scales.map(|(l, c)| t.change[(g, l)] * c).collect()
+    });
+    if row.scale() < 0.0 {
+        ShiftWord::Sign
+    } else if explained(&row.model) > EXPLAINED {
+        ShiftWord::Gain
+    } else if turned.is_some_and(|t| explained(&t) > EXPLAINED) {
+        ShiftWord::Angle
+    } else {
+        ShiftWord::Place
+    }
 }
 
 /// A finding a notable gauge.
@@ -101,15 +225,24 @@ pub(super) fn findings(task: &Task, shifts: &[GaugeShift]) -> Vec<Finding> {
         .model
         .as_ref()
         .map_or(0.0, |m| 100.0 * m.uncertainty_rel);
-    let notable = shifts.iter().filter(|s| s.word != ShiftWord::None);
+    // Of two exchanged gauges the first speaks for both.
+    let notable = shifts.iter().enumerate().filter(|(g, s)| match s.word {
+        ShiftWord::None => false,
+        ShiftWord::Exchanged { with } => *g < with,
+        _ => true,
+    });
     notable
-        .map(|s| {
-            let name = &s.name;
+        .map(|(_, s)| {
+            let name = match s.word {
+                ShiftWord::Exchanged { with } => format!("{}, {}", s.name, shifts[with].name),
+                _ => s.name.clone(),
+            };
             let (code, severity, looks) = match s.word {
                 ShiftWord::Dead => ("gauge-dead", Severity::Warning, "it reads nothing in any run: dead, or not connected".to_owned()),
                 ShiftWord::Sign => ("gauge-wired-backwards", Severity::Warning, "its sign is turned: wired backwards".to_owned()),
                 ShiftWord::Gain => ("gauge-shifted", Severity::Warning, format!("it looks like a gain of {:.3}", s.scale)),
                 ShiftWord::Angle => ("gauge-shifted", Severity::Warning, "it looks like a turned gauge".to_owned()),
+                ShiftWord::Exchanged { .. } => ("gauges-exchanged", Severity::Warning, "each reads what the model says of the other: exchanged channels, or names".to_owned()),
                 ShiftWord::Place | ShiftWord::None => ("gauge-shifted", Severity::Warning, "it looks like another place than the model's".to_owned()),
             };
             let message = if task.model.is_some() {

@@ -2,7 +2,7 @@
 
 use super::known::correct;
 use super::posterior::{Equation, Posterior, solve};
-use super::prior::{RowPrior, diffuse, learn_error, rows};
+use super::prior::{ErrorEvidence, RowPrior, diffuse, error_evidence, rows};
 use super::scatter::{Left, Scatter};
 use super::types::{KnownRun, ModelError, Task};
 use crate::linalg::Matrix;
@@ -34,6 +34,8 @@ pub(super) struct State {
     pub fitted: f64,
     /// Error of the model as learnt.
     pub model_error: Option<ModelError>,
+    /// What it was learnt from, gauge by gauge.
+    pub error_evidence: Option<ErrorEvidence>,
 }
 
 impl State {
@@ -59,10 +61,11 @@ impl State {
         let mut scatter = Scatter::none(n);
         let mut state: Option<Self> = None;
         for _ in 0..ROUNDS {
-            let model_error = task.model.as_ref().map(|m| {
+            let error_evidence = task.model.as_ref().map(|m| {
                 let variance = variances(task, &runs, &scatter, state.as_ref());
-                learn_error(m, &scales, &runs, &phi, &variance)
+                error_evidence(m, &scales, &runs, &phi, &variance)
             });
+            let model_error = error_evidence.as_ref().map(|e| e.most_probable(&[]));
             let prior = match (&task.model, model_error) {
                 (Some(m), Some(e)) => rows(m, &scales, e),
                 _ => diffuse(n, k, largest),
@@ -117,6 +120,7 @@ impl State {
                 scatter: scatter.clone(),
                 fitted,
                 model_error,
+                error_evidence,
             });
         }
         state

@@ -177,6 +177,11 @@ pub enum ShiftWord {
     Angle,
     /// Neither: it sits elsewhere.
     Place,
+    /// It reads what the model says of another gauge, and that one what it says of this.
+    Exchanged {
+        /// Number of the other.
+        with: usize,
+    },
 }
 
 impl ShiftWord {
@@ -189,6 +194,7 @@ impl ShiftWord {
             Self::Gain => "gain",
             Self::Angle => "angle",
             Self::Place => "place",
+            Self::Exchanged { .. } => "exchanged",
         }
     }
 }
@@ -198,7 +204,8 @@ impl ShiftWord {
 pub struct GaugeShift {
     /// Name.
     pub name: String,
-    /// Distance between model and calibrated row in prior sigmas, root mean square over loads; 0 without a model.
+    /// Distance between model and calibrated row in prior sigmas (with the model's error as the gauges without a word show it, this one left
+    /// out), root mean square over loads; 0 without a model.
     pub shift: f64,
     /// Calibrated row along the model's: 1 where its size was right; 1 without a model.
     pub scale: f64,

@@ -113,6 +113,17 @@ pub fn locate(
     })
 }
 
+/// Whether a run by itself leaves no unknown open.
+pub fn tells(model: &PayloadModel, run: &PayloadRun, spec: &WeighSpec) -> bool {
+    let weights = vec![1.0; model.gauges.len()];
+    let nothing = Located {
+        p: [0.0; 3],
+        covariance: [0.0; 9],
+        reactions: Vec::new(),
+    };
+    solve_run(model, run, spec, Balance::Kept, &weights, &nothing).is_some()
+}
+
 fn climb(
     model: &PayloadModel,
     runs: &[PayloadRun],

@@ -66,6 +66,8 @@ const PRIOR_AS_STATED: f64 = 0.6;
 /// Points of the one-dimensional posterior of a run, and the factor that they reach on either side of the mode.
 const N_GRID: usize = 801;
 const GRID_REACH: f64 = 20.0;
+/// Log of the density under which a point of that posterior counts for nothing: the grid is laid anew over the others.
+const NOTHING: f64 = -30.0;
 /// Gauges whose own estimates are tried as a start of the search, the most probable first.
 const N_STARTS: usize = 5;
 /// Above this probability a gauge counts as used.
@@ -79,20 +81,27 @@ pub(super) const SIGN_SIGMAS: f64 = 3.0;
 ///
 /// Model, gauge i, run j: `p_ij ~ N(F_j, (tau F_j)^2 + (m_i s_ij)^2)`. Where the noise `s_ij` is stated, `m_i` is 1 for a good gauge and
 /// log-uniform above for a bad one; where it is not, `m_i s_ij` is one unknown level a gauge, log-uniform over six decades. The level
-/// belongs to the gauge, so a gauge that disagrees in one run loses its say in all. `F_j` is uniform on `(0, largest]`: a payload pulls
-/// down, a negative one is refused. The joint mode is found by coordinate ascent from every gauge's own estimates; each run's interval
-/// is its posterior with the other runs at the mode.
+/// belongs to the gauge, so a gauge that disagrees in one run loses its say in all. `F_j` is uniform; the search for the joint mode, by
+/// coordinate ascent from every gauge's own estimates, ends at `largest` above, and below at zero less what noise makes of an empty
+/// structure (`doubt`). Each run's interval is its posterior around that mode with the other runs at theirs. It is not cut at zero: what a
+/// payload of zero or more makes of it is `cut_at_zero`.
 ///
-/// Units: those of the estimates. Returns `None` when no gauge has a finite positive estimate.
+/// Units: those of the estimates. Returns `None` when a run has no finite estimate that is possible: runs that say a payload below zero
+/// beyond doubt, or nothing, are not to be handed in, since they would take its say from every gauge.
 pub fn robust_payload(gauges: &[GaugeEstimates], spec: &RobustSpec) -> Option<RobustPayload> {
     let n_runs = gauges.iter().map(|g| g.estimates.len()).max()?;
-    let possible = |p: f64| p.is_finite() && p > 0.0 && p <= spec.largest;
+    let slack: Vec<f64> = (0..n_runs).map(|j| run_doubt(gauges, j)).collect();
+    let own = |g: &GaugeEstimates, j: usize| {
+        let p = g.estimates.get(j).copied().unwrap_or(f64::NAN);
+        let sigma = g
+            .sigma
+            .as_ref()
+            .map_or(0.0, |s| s.get(j).copied().unwrap_or(0.0));
+        let possible = p.is_finite() && p > -SIGN_SIGMAS * sigma && p <= spec.largest;
+        possible.then(|| p.max(-slack[j]))
+    };
     let median = |j: usize| {
-        let mut all: Vec<f64> = gauges
-            .iter()
-            .filter_map(|g| g.estimates.get(j).copied())
-            .filter(|p| possible(*p))
-            .collect();
+        let mut all: Vec<f64> = gauges.iter().filter_map(|g| own(g, j)).collect();
         all.sort_by(f64::total_cmp);
         all.get(all.len() / 2).copied()
     };
@@ -100,14 +109,9 @@ pub fn robust_payload(gauges: &[GaugeEstimates], spec: &RobustSpec) -> Option<Ro
     let mut starts: Vec<(f64, Vec<f64>)> = gauges
         .iter()
         .map(|g| {
-            let own = |j: usize| {
-                g.estimates
-                    .get(j)
-                    .copied()
-                    .filter(|p| possible(*p))
-                    .unwrap_or(medians[j])
-            };
-            let f: Vec<f64> = (0..n_runs).map(own).collect();
+            let f: Vec<f64> = (0..n_runs)
+                .map(|j| own(g, j).unwrap_or(medians[j]))
+                .collect();
             (log_posterior(gauges, spec, &f), f)
         })
         .collect();
@@ -115,15 +119,55 @@ pub fn robust_payload(gauges: &[GaugeEstimates], spec: &RobustSpec) -> Option<Ro
     let mode = starts
         .into_iter()
         .take(N_STARTS)
-        .map(|(_, start)| ascend(gauges, spec, start))
+        .map(|(_, start)| ascend(gauges, spec, &slack, start))
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, f)| f)?;
     let runs = (0..n_runs)
-        .map(|j| run_posterior(gauges, spec, &mode, j))
+        .map(|j| run_posterior(gauges, spec, (&mode, slack[j]), j))
         .collect::<Vec<_>>();
     let centre: Vec<f64> = runs.iter().map(|r| r.value).collect();
     let gauges = gauges.iter().map(|g| verdict(g, spec, &centre)).collect();
     Some(RobustPayload { runs, gauges })
+}
+
+/// Three standard deviations of what gauges with these say together: below zero by no more, an empty structure may have said it. They are
+/// weighed by what each can tell, `1 / s`; so weighed, the mean of `n` has the standard deviation `sqrt(n) / sum(1 / s)`.
+pub(super) fn doubt(sigma: impl Iterator<Item = f64>) -> f64 {
+    let (n, told) = sigma
+        .filter(|s| *s > 0.0 && s.is_finite())
+        .fold((0.0_f64, 0.0), |a, s| (a.0 + 1.0, a.1 + 1.0 / s));
+    if told > 0.0 {
+        SIGN_SIGMAS * n.sqrt() / told
+    } else {
+        0.0
+    }
+}
+
+/// `doubt` of one run; zero where no noise is stated.
+fn run_doubt(gauges: &[GaugeEstimates], j: usize) -> f64 {
+    doubt(gauges.iter().filter_map(|g| {
+        let read = g.estimates.get(j)?.is_finite();
+        g.sigma.as_ref()?.get(j).copied().filter(|_| read)
+    }))
+}
+
+/// Value and 95 % interval of a load that can't be negative, from those of a free one: `max(0, v)` and
+/// `[max(0, low), max(0, v) + (high - v)]`.
+///
+/// A free interval `v -+ h` holds any truth `t >= 0` with 95 %. Cut at zero it still does, since the truth never lies in what was cut off; at
+/// its upper end it is never shorter than `h`, so that it can't end below zero, where a free one ends once in forty empty structures. The
+/// interval misses `t` where `v - h > t` (2.5 %), and where `max(0, v) + h < t`: 2.5 % for `t > h`, never for `t < h`. It holds 97.5 % of
+/// loads below its half width, 95 % of all others, and is the free one where `low` is above zero.
+///
+/// # Reference
+/// The mean of a Gaussian bounded by zero, its empty intervals and undercoverage: G. J. Feldman, R. D. Cousins, Phys. Rev. D 57 (1998) 3873,
+/// section IV B. The construction here is simpler than theirs and covers somewhat more.
+pub(super) fn cut_at_zero(value: f64, [low, high]: [f64; 2]) -> (f64, [f64; 2]) {
+    if !value.is_finite() {
+        return (value, [low, high]);
+    }
+    let cut = value.max(0.0);
+    (cut, [low.max(0.0), cut + (high - value)])
 }
 
 /// Noise level k of a gauge in run j, and the log of its prior.
@@ -192,16 +236,22 @@ fn log_posterior(gauges: &[GaugeEstimates], spec: &RobustSpec, f: &[f64]) -> f64
         .sum()
 }
 
-/// Coordinate ascent in log F with a shrinking step.
-fn ascend(gauges: &[GaugeEstimates], spec: &RobustSpec, mut f: Vec<f64>) -> (f64, Vec<f64>) {
+/// Coordinate ascent with a shrinking step: in log F far from zero, in F within the noise of an empty structure.
+fn ascend(
+    gauges: &[GaugeEstimates],
+    spec: &RobustSpec,
+    slack: &[f64],
+    mut f: Vec<f64>,
+) -> (f64, Vec<f64>) {
     let mut best = log_posterior(gauges, spec, &f);
     let mut step = 0.1;
     while step > 1e-4 {
         let mut moved = false;
         for j in 0..f.len() {
-            for direction in [1.0 + step, 1.0 / (1.0 + step)] {
+            for share in [step, -step / (1.0 + step)] {
                 let old = f[j];
-                f[j] = (old * direction).min(spec.largest);
+                let size = old.abs() + slack[j] / SIGN_SIGMAS;
+                f[j] = (old + share * size).clamp(-slack[j], spec.largest.max(0.0));
                 let value = log_posterior(gauges, spec, &f);
                 if value > best + 1e-12 {
                     best = value;
@@ -218,34 +268,50 @@ fn ascend(gauges: &[GaugeEstimates], spec: &RobustSpec, mut f: Vec<f64>) -> (f64
     (best, f)
 }
 
-/// Mean, sd and 95 % interval of one run on a grid that is fine in log F, the other runs held at the mode.
+/// Mean, sd and 95 % interval of one run around its mode, the other runs held at theirs. The grid is even in `t`, `F = s sinh t`, `s` the noise
+/// of an empty structure: even in F near zero, where F may be below it, and in log F far from it.
 fn run_posterior(
     gauges: &[GaugeEstimates],
     spec: &RobustSpec,
-    mode: &[f64],
+    (mode, slack): (&[f64], f64),
     j: usize,
 ) -> RunPayload {
     let others: Vec<[f64; N_LEVELS]> = gauges
         .iter()
         .map(|g| gauge_terms(g, spec, mode, |k| k != j))
         .collect();
-    let points: Vec<f64> = (0..N_GRID)
-        .map(|i| mode[j] * GRID_REACH.powf(2.0 * i as f64 / (N_GRID - 1) as f64 - 1.0))
-        .take_while(|x| *x <= spec.largest)
-        .collect();
-    // Points are even in log F: the Jacobian F makes the prior flat in F.
-    let log_density: Vec<f64> = points
-        .iter()
-        .map(|x| {
-            let each = gauges.iter().zip(&others).map(|(g, other)| {
-                let own = run_terms(g, spec, j, *x);
-                log_sum(&std::array::from_fn::<f64, N_LEVELS, _>(|k| {
-                    other[k] + own[k]
-                }))
-            });
-            each.sum::<f64>() + x.ln()
-        })
-        .collect();
+    // Without stated noise there is no such size: any far below the mode makes the grid that of log F.
+    let size = (slack / SIGN_SIGMAS)
+        .max(1e-9 * mode[j].abs())
+        .max(f64::MIN_POSITIVE);
+    let log_density = |x: f64| -> f64 {
+        let each = gauges.iter().zip(&others).map(|(g, other)| {
+            let own = run_terms(g, spec, j, x);
+            log_sum(&std::array::from_fn::<f64, N_LEVELS, _>(|k| {
+                other[k] + own[k]
+            }))
+        });
+        each.sum()
+    };
+    let grid = |from: f64, to: f64| -> (Vec<f64>, Vec<f64>) {
+        let t = (0..N_GRID).map(|i| from + (to - from) * i as f64 / (N_GRID - 1) as f64);
+        // The prior is flat in F: a point counts for the stretch of F that it stands for, s cosh t.
+        t.map(|t| (t, size * t.sinh()))
+            .take_while(|(_, x)| *x <= spec.largest)
+            .map(|(t, x)| (x, log_density(x) + (size * t.cosh()).ln()))
+            .unzip()
+    };
+    let middle = (mode[j] / size).asinh();
+    let reach = GRID_REACH.ln();
+    let (points, wide) = grid(middle - reach, middle + reach);
+    // Once more over the points that count: a payload known to a thousandth lies between two of the first grid.
+    let top = wide.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let counts = |l: &f64| *l > top + NOTHING;
+    let first = wide.iter().position(counts).unwrap_or(0);
+    let last = wide.iter().rposition(counts).unwrap_or(0);
+    let edge = |i: usize| points.get(i).map_or(middle, |x| (x / size).asinh());
+    let end = edge((last + 1).min(points.len().saturating_sub(1)));
+    let (points, log_density) = grid(edge(first.saturating_sub(1)), end);
     let top = log_density
         .iter()
         .copied()
@@ -259,15 +325,18 @@ fn run_posterior(
         .map(|(w, x)| w * (x - mean).powi(2))
         .sum::<f64>()
         / total;
+    // A point stands for what lies halfway to its neighbours.
     let quantile = |share: f64| {
-        let mut sum = 0.0;
-        for (w, x) in weights.iter().zip(&points) {
-            sum += w;
-            if sum >= share * total {
-                return *x;
+        let (mut sum, mut before) = (0.0, points.first().copied().unwrap_or(mean));
+        for (i, (w, x)) in weights.iter().zip(&points).enumerate() {
+            let after = points.get(i + 1).map_or(*x, |next| (x + next) / 2.0);
+            if sum + w >= share * total {
+                return before + (after - before) * (share * total - sum) / w;
             }
+            sum += w;
+            before = after;
         }
-        spec.largest
+        before
     };
     RunPayload {
         value: mean,
@@ -323,17 +392,23 @@ pub(super) fn verdict_words(
             .collect::<Vec<_>>()
             .join(", ")
     };
+    // Of an empty structure there is no share to differ by.
+    let apart = |p: &(usize, f64)| {
+        let of = f.get(p.0).copied().unwrap_or(f64::NAN);
+        (of > 0.0).then(|| (p.1 - of).abs() / of)
+    };
     let worst = finite
         .iter()
-        .max_by(|a, b| ((a.1 - f[a.0]).abs() / f[a.0]).total_cmp(&((b.1 - f[b.0]).abs() / f[b.0])));
+        .filter(|p| apart(p).is_some())
+        .max_by(|a, b| apart(a).unwrap_or(0.0).total_cmp(&apart(b).unwrap_or(0.0)));
     let used = probability_good > USED_ABOVE && !negative && !finite.is_empty();
     let reason = if finite.is_empty() {
         "no reading".to_owned()
     } else if used {
-        format!(
-            "agrees within {:.1} %",
-            worst.map_or(0.0, |w| 100.0 * (w.1 - f[w.0]).abs() / f[w.0])
-        )
+        match worst.and_then(apart) {
+            Some(share) if share < 1.0 => format!("agrees within {:.1} %", 100.0 * share),
+            _ => "agrees within its noise".to_owned(),
+        }
     } else if positive && negative {
         format!(
             "changes sign between runs ({}): noise, or a zero that moved, not payload",
@@ -345,7 +420,7 @@ pub(super) fn verdict_words(
             list()
         )
     } else {
-        let (j, p) = worst.copied().unwrap_or((0, f64::NAN));
+        let (j, p) = worst.or(finite.first()).copied().unwrap_or((0, f64::NAN));
         format!(
             "reads {p:.1} where the others agree on {:.1}",
             f.get(j).copied().unwrap_or(f64::NAN)

@@ -1,9 +1,10 @@
 //! A payload weighed by all there is: single gauges, all gauges together, wheel forces; checked by sign and equilibrium.
 
 use super::evidence::{PayloadModel, PayloadRun, Place, Refusal, Support, WeighSpec, WeighedRun};
-use super::locate::{Balance, Located, Location, locate};
+use super::locate::{Balance, Located, Location, locate, tells};
 use super::robust::{
-    GaugeEstimates, GaugeVerdict, RobustSpec, SIGN_SIGMAS, robust_payload, verdict_words,
+    GaugeEstimates, GaugeVerdict, RobustSpec, SIGN_SIGMAS, cut_at_zero, doubt, robust_payload,
+    verdict_words,
 };
 use crate::recovery::NORMAL_95;
 
@@ -22,21 +23,39 @@ const GAUGE_FACTOR_REL: f64 = 0.01;
 const OUT_OF_BALANCE: (f64, f64) = (4.0, 0.05);
 /// A payload outside the region by more standard deviations is refused.
 const OUTSIDE: f64 = 3.0;
-/// A weight is below zero beyond doubt from this many standard deviations on.
-const SURELY: f64 = 2.0;
+/// A weight is below zero beyond doubt from this many standard deviations on: of empty structures one in 700.
+const SURELY: f64 = 3.0;
+/// Standard deviation over the largest estimate under which a gauge counts as exact.
+const EXACT: f64 = 1e-9;
 /// A gauge alone that leaves the weight this uncertain (share, 1 sd) is too weak for the job.
 const WEAK_SHARE: f64 = 1.0 / 3.0;
 
 /// Weighs the payload of every run.
 ///
-/// With a known place and strain alone the posterior of [`robust_payload`]; else [`locate`]. Interval: 95 %. An answer that breaks sign,
-/// region or equilibrium keeps its numbers and says why it is refused.
+/// With a known place and strain alone the posterior of [`robust_payload`]; else [`locate`]. Interval: 95 %, of a payload that can't be negative
+/// (value `max(0, v)`, ends `max(0, low)` and `max(0, v) + high - v`, see `cut_at_zero`). An answer that breaks sign, region or equilibrium
+/// keeps its numbers and says why it is refused. A run is judged by itself: one that has no answer takes no part in those of the others.
 pub fn weigh(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Weighing {
     let n = model.gauges.len();
     let has_strain = runs.iter().any(|r| r.strain.iter().any(|v| v.is_finite()));
     let has_wheels = runs.iter().any(|r| !r.reactions.is_empty());
     if has_strain && !has_wheels && spec.place == Place::Known {
         return by_strain(model, runs, spec);
+    }
+    let told: Vec<bool> = runs.iter().map(|r| tells(model, r, spec)).collect();
+    if told.contains(&false) && told.contains(&true) {
+        let some = runs.iter().zip(&told).filter(|(_, t)| **t);
+        let some: Vec<PayloadRun> = some.map(|(r, _)| r.clone()).collect();
+        let found = weigh(model, &some, spec);
+        let mut weighed = found.runs.into_iter();
+        let of = |(r, t): (&PayloadRun, &bool)| {
+            let found = if *t { weighed.next() } else { None };
+            found.unwrap_or_else(|| undetermined(r, n))
+        };
+        return Weighing {
+            runs: runs.iter().zip(&told).map(of).collect(),
+            gauges: found.gauges,
+        };
     }
     let Some(location) = locate(model, runs, spec, Balance::Kept) else {
         return Weighing {
@@ -122,109 +141,108 @@ fn alone(
         .unzip()
 }
 
+/// What each gauge alone says of a run on the floor, with the model's error for a payload of about this size.
+fn alone_on_floor(
+    model: &PayloadModel,
+    run: &PayloadRun,
+    size: f64,
+    spec: &WeighSpec,
+) -> (Vec<f64>, Vec<f64>) {
+    let p = [size, size * run.shift[0], size * run.shift[1]];
+    let reactions: Vec<f64> = model.floor.as_ref().map_or_else(Vec::new, |floor| {
+        (0..floor.nrows())
+            .map(|w| (0..3).map(|k| floor[(w, k)] * p[k]).sum())
+            .collect()
+    });
+    alone(model, run, run.shift, &reactions, size, spec)
+}
+
 /// Known place, strain alone.
 fn by_strain(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Weighing {
     let n = model.gauges.len();
+    // Each run by itself first: one that says a payload below zero beyond doubt, or nothing, must not make the gauges doubtful that say so
+    // (their noise level is common to all runs).
+    let mut out: Vec<WeighedRun> = Vec::new();
+    let mut judged: Vec<usize> = Vec::new();
     // Sizes for the model's error: from the gauges' median first, then from the answer.
-    let mut sizes: Vec<f64> = runs
-        .iter()
-        .map(|r| {
-            let (e, _) = alone(model, r, r.shift, &[], 0.0, spec);
-            let mut e: Vec<f64> = e
-                .into_iter()
-                .filter(|v| *v > 0.0 && *v <= spec.largest)
-                .collect();
-            e.sort_by(f64::total_cmp);
-            e.get(e.len() / 2).copied().unwrap_or(0.0)
-        })
-        .collect();
+    let mut sizes: Vec<f64> = Vec::new();
+    for (i, run) in runs.iter().enumerate() {
+        let (estimates, estimate_sigma) = alone(model, run, run.shift, &[], 0.0, spec);
+        let possible = |v: &f64| *v > 0.0 && *v <= spec.largest;
+        let mut e: Vec<f64> = estimates.iter().copied().filter(possible).collect();
+        e.sort_by(f64::total_cmp);
+        let size = e.get(e.len() / 2).copied().unwrap_or(0.0);
+        let (estimates, estimate_sigma) = match size > 0.0 {
+            true => alone_on_floor(model, run, size, spec),
+            false => (estimates, estimate_sigma),
+        };
+        let refused = refused_by_itself(&estimates, &estimate_sigma, spec.largest);
+        if refused.is_none() {
+            judged.push(i);
+            sizes.push(size);
+        }
+        let force = match refused {
+            Some(Refusal::Negative { force }) => force,
+            _ => f64::NAN,
+        };
+        out.push(WeighedRun {
+            force,
+            refused,
+            estimates,
+            estimate_sigma,
+            ..undetermined(run, n)
+        });
+    }
     let mut answer = None;
-    let mut singles: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
     for _ in 0..2 {
-        singles = runs
-            .iter()
-            .zip(&sizes)
-            .map(|(r, size)| {
-                let p = [*size, size * r.shift[0], size * r.shift[1]];
-                let reactions: Vec<f64> = model.floor.as_ref().map_or_else(Vec::new, |floor| {
-                    (0..floor.nrows())
-                        .map(|w| (0..3).map(|k| floor[(w, k)] * p[k]).sum())
-                        .collect()
-                });
-                alone(model, r, r.shift, &reactions, *size, spec)
-            })
-            .collect();
-        let gauges: Vec<GaugeEstimates> = (0..n)
-            .map(|g| GaugeEstimates {
-                name: model.gauges[g].clone(),
-                estimates: singles.iter().map(|s| s.0[g]).collect(),
-                sigma: Some(singles.iter().map(|s| s.1[g]).collect()),
-            })
-            .collect();
-        answer = robust_payload(
-            &gauges,
-            &RobustSpec {
-                relative_scatter: spec.model_rel.max(GAUGE_FACTOR_REL),
-                largest: spec.largest,
-            },
-        );
+        for (i, size) in judged.iter().zip(&sizes) {
+            let found = alone_on_floor(model, &runs[*i], size.max(0.0), spec);
+            (out[*i].estimates, out[*i].estimate_sigma) = found;
+        }
+        let of_gauge = |g: usize| GaugeEstimates {
+            name: model.gauges[g].clone(),
+            estimates: judged.iter().map(|i| out[*i].estimates[g]).collect(),
+            sigma: Some(judged.iter().map(|i| out[*i].estimate_sigma[g]).collect()),
+        };
+        let gauges: Vec<GaugeEstimates> = (0..n).map(of_gauge).collect();
+        let robust = RobustSpec {
+            relative_scatter: spec.model_rel.max(GAUGE_FACTOR_REL),
+            largest: spec.largest,
+        };
+        answer = match judged.is_empty() {
+            true => None,
+            false => robust_payload(&gauges, &robust),
+        };
         if let Some(a) = &answer {
             sizes = a.runs.iter().map(|r| r.value).collect();
         }
     }
     let Some(answer) = answer else {
-        // No gauge says a possible payload.
-        let runs = runs
-            .iter()
-            .zip(singles)
-            .map(|(r, (estimates, estimate_sigma))| {
-                let mut finite: Vec<f64> = estimates
-                    .iter()
-                    .copied()
-                    .filter(|v| v.is_finite())
-                    .collect();
-                finite.sort_by(f64::total_cmp);
-                let middle = finite.get(finite.len() / 2).copied();
-                WeighedRun {
-                    force: middle.unwrap_or(f64::NAN),
-                    refused: Some(
-                        middle.map_or(Refusal::Undetermined, |force| Refusal::Negative { force }),
-                    ),
-                    estimates,
-                    estimate_sigma,
-                    ..undetermined(r, n)
-                }
-            })
-            .collect();
+        for i in &judged {
+            out[*i].refused = Some(Refusal::Undetermined);
+        }
         return Weighing {
-            runs,
+            runs: out,
             gauges: Vec::new(),
         };
     };
-    let out: Vec<WeighedRun> = runs
-        .iter()
-        .zip(&answer.runs)
-        .zip(singles)
-        .map(|((run, a), (estimates, estimate_sigma))| {
-            // The model's error as a whole widens what the gauges say between them.
-            let whole = spec.model_rel * a.value;
-            let widen = |edge: f64| {
-                let half = edge - a.value;
-                a.value + half.signum() * half.hypot(NORMAL_95 * whole)
-            };
-            WeighedRun {
-                run: run.run.clone(),
-                force: a.value,
-                sigma: a.sigma.hypot(whole),
-                interval: a.interval.map(widen),
-                shift: run.shift,
-                shift_covariance: [0.0; 4],
-                refused: negative_by_most(&estimates, &estimate_sigma),
-                estimates,
-                estimate_sigma,
-            }
-        })
-        .collect();
+    for (i, a) in judged.iter().zip(&answer.runs) {
+        // The model's error as a whole widens what the gauges say between them.
+        let whole = spec.model_rel * a.value;
+        let widen = |edge: f64| {
+            let half = edge - a.value;
+            a.value + half.signum() * half.hypot(NORMAL_95 * whole)
+        };
+        let run = &mut out[*i];
+        run.sigma = a.sigma.hypot(whole);
+        // With the sizes settled the gauges may say after all what a first look at them left open.
+        run.refused = refused_by_itself(&run.estimates, &run.estimate_sigma, spec.largest);
+        let free = (a.value, a.interval.map(widen));
+        (run.force, run.interval) = match run.refused {
+            None => cut_at_zero(free.0, free.1),
+            Some(_) => free,
+        };
+    }
     let mut gauges = answer.gauges;
     for (g, v) in gauges.iter_mut().enumerate() {
         say_weak(v, g, &out);
@@ -232,25 +250,29 @@ fn by_strain(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
     Weighing { runs: out, gauges }
 }
 
-/// Refused where the gauges, weighed by what each can tell, say a weight below zero beyond doubt.
-fn negative_by_most(estimates: &[f64], sigma: &[f64]) -> Option<Refusal> {
-    let mut pairs: Vec<(f64, f64)> = estimates
-        .iter()
-        .zip(sigma)
-        .filter(|(e, s)| e.is_finite() && **s > 0.0)
-        .map(|(e, s)| (*e, 1.0 / s))
-        .collect();
-    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let total: f64 = pairs.iter().map(|p| p.1).sum();
+/// Why a run can't have an answer, whatever the others say: its gauges, weighed by what each can tell, say a weight below zero beyond doubt, or
+/// none says a possible one.
+fn refused_by_itself(estimates: &[f64], sigma: &[f64], largest: f64) -> Option<Refusal> {
+    let known = |(e, s): &(&f64, &f64)| e.is_finite() && s.is_finite();
+    let pairs = || estimates.iter().zip(sigma).filter(known);
+    // Where no noise is stated all gauges weigh the same.
+    let least = EXACT * pairs().fold(f64::MIN_POSITIVE, |a, p| a.max(p.0.abs()));
+    let possible = |(e, s): (&f64, &f64)| *e > -SIGN_SIGMAS * s && *e <= largest;
+    let mut sorted: Vec<(f64, f64)> = pairs().map(|(e, s)| (*e, 1.0 / s.max(least))).collect();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let total: f64 = sorted.iter().map(|p| p.1).sum();
     let mut sum = 0.0;
-    for (e, w) in &pairs {
+    let middle = sorted.iter().find(|(_, w)| {
         sum += w;
-        if sum >= total / 2.0 {
-            let doubt = 3.0 * pairs.len() as f64 / total / (pairs.len() as f64).sqrt();
-            return (*e < -doubt).then_some(Refusal::Negative { force: *e });
-        }
+        sum >= total / 2.0
+    });
+    let Some((force, _)) = middle.copied() else {
+        return Some(Refusal::Undetermined);
+    };
+    if force < -doubt(pairs().map(|p| *p.1)) {
+        return Some(Refusal::Negative { force });
     }
-    None
+    (!pairs().any(possible)).then_some(Refusal::Undetermined)
 }
 
 fn weighed(
@@ -312,11 +334,16 @@ fn weighed(
             .filter(|s| *s > OUTSIDE)
             .map(|sigmas| Refusal::OutsideRegion { sigmas })
     };
+    let free_interval = [force - NORMAL_95 * sigma, force + NORMAL_95 * sigma];
+    let (force, interval) = match refused {
+        None => cut_at_zero(force, free_interval),
+        Some(_) => (force, free_interval),
+    };
     WeighedRun {
         run: run.run.clone(),
         force,
         sigma,
-        interval: [force - NORMAL_95 * sigma, force + NORMAL_95 * sigma],
+        interval,
         shift,
         shift_covariance,
         refused,
@@ -368,6 +395,7 @@ fn verdicts(model: &PayloadModel, runs: &[WeighedRun], location: &Location) -> V
 fn say_weak(v: &mut GaugeVerdict, g: usize, runs: &[WeighedRun]) {
     let share = runs
         .iter()
+        .filter(|r| r.refused.is_none())
         .filter_map(|r| Some(r.estimate_sigma.get(g)? / r.force.abs()))
         .filter(|s| s.is_finite())
         .fold(f64::INFINITY, f64::min);

@@ -6,6 +6,9 @@ use crate::app::words::short;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity, few};
 use crate::payload::{PayloadRun, Place, Refusal, WeighSpec, WeighedRun, Weighing};
+use crate::recovery::interval::NORMAL_95;
+use crate::recovery::{ErrorModel, Readings, plausible};
+use crate::units::MICROSTRAIN;
 
 /// A share of the weight that an interval leaves open from which the answer says little.
 const VAGUE: f64 = 0.5;
@@ -158,6 +161,40 @@ fn elsewhere(
     }
 }
 
+/// Readings that can't be strain in the unit they are taken for, judged as `recover` does; the impossible ones become no reading.
+pub(super) fn readings(work: &mut Work, task: &Task, parts: &Parts, runs: &mut [PayloadRun]) {
+    let (Some(measured), Some(prepared)) = (&task.job.measured, &parts.prepared) else {
+        return;
+    };
+    let errors = ErrorModel {
+        noise: measured.noise_microstrain * MICROSTRAIN,
+        model_rel: 0.0,
+    };
+    // A run's noise is common to its gauges in that judgement: their mean.
+    let noise_factor = |r: &PayloadRun| {
+        let factors = r.sigma.iter().map(|s| (s / errors.noise).powi(2));
+        let (sum, n) = factors
+            .filter(|f| f.is_finite())
+            .fold((0.0, 0.0_f64), |a, f| (a.0 + f, a.1 + 1.0));
+        if n > 0.0 { sum / n } else { 1.0 }
+    };
+    let read: Vec<Readings> = runs
+        .iter()
+        .filter(|r| !r.strain.is_empty())
+        .map(|r| Readings {
+            run: r.run.clone(),
+            strain: r.strain.clone(),
+            noise_factor: noise_factor(r),
+        })
+        .collect();
+    let (kept, findings) = plausible::check(&prepared.sensitivity, &read, errors);
+    work.findings.extend(findings);
+    let strained = runs.iter_mut().filter(|r| !r.strain.is_empty());
+    for (run, kept) in strained.zip(kept) {
+        run.strain = kept.strain;
+    }
+}
+
 /// What there is to say of every run, and of the gauges that carry nothing.
 pub(super) fn findings(
     work: &mut Work,
@@ -173,7 +210,22 @@ pub(super) fn findings(
             continue;
         }
         let wide = (r.interval[1] - r.interval[0]) / r.force;
-        if wide > VAGUE {
+        if r.interval[0] <= 0.0 {
+            work.findings.push(
+                Finding::new(
+                    Severity::Warning,
+                    "payload-vague",
+                    &r.run,
+                    format!(
+                        "the readings don't tell a payload from none: it is {} {} at most, with 97.5 %",
+                        short(r.interval[1]),
+                        task.job.report_units.force.name
+                    ),
+                    "nothing, where the structure is empty; else gauges where the payload strains it, longer means, or wheel forces",
+                )
+                .with_numbers(r.force / r.sigma, NORMAL_95),
+            );
+        } else if wide > VAGUE {
             work.findings.push(
                 Finding::new(
                     Severity::Warning,

@@ -59,7 +59,9 @@ pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
         wheels: Vec::new(),
     };
     let parts = model::model_of(&mut work, &mut task, use_strain)?;
-    let readings = readings::runs_of(&mut work, &task, &parts.model, use_strain, use_reactions)?;
+    let mut readings =
+        readings::runs_of(&mut work, &task, &parts.model, use_strain, use_reactions)?;
+    judge::readings(&mut work, &task, &parts, &mut readings.runs);
     let runs = &readings.runs;
     let spec = spec_of(&task, &parts, runs);
     let weighing = work.stage("weigh", |_| weigh(&parts.model, runs, &spec));

@@ -2,3 +2,4 @@ mod bridges;
 mod glued;
 mod scatter;
 mod synthetic;
+mod wrong;

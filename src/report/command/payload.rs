@@ -88,12 +88,10 @@ impl Report for Outcome<Weighed> {
                 Some(why) => writeln!(text, "{}: refused: {why}", p.run),
                 None => writeln!(
                     text,
-                    "{}: {:.3} +- {:.3} {} (95 %; {:.1} {}), at {:.3}, {:.3} {}",
+                    "{}: {} ({} {}), at {:.3}, {:.3} {}",
                     p.run,
-                    r.force,
-                    (r.interval[1] - r.interval[0]) / 2.0,
-                    units.force.name,
-                    plain(p.mass),
+                    with_interval(r, units.force.name),
+                    number(plain(p.mass)),
                     units.mass.name,
                     plain(p.position[0]),
                     plain(p.position[1]),
@@ -102,6 +100,17 @@ impl Report for Outcome<Weighed> {
             };
         }
         text
+    }
+}
+
+/// Weight with its 95 % interval, which is no half width where it ends at zero.
+fn with_interval(r: &WeighedRun, unit: &str) -> String {
+    let [low, high] = r.interval;
+    if low > 0.0 {
+        let half = (high - low) / 2.0;
+        format!("{:.3} +- {half:.3} {unit}, 95 %", r.force)
+    } else {
+        format!("{:.3} {unit}, 0 to {high:.3} with 95 %", r.force)
     }
 }
 
@@ -123,7 +132,10 @@ fn line(p: &WeighedPayload) -> String {
         spread[1],
     ];
     let numbers = numbers.map(|n| n.map_or(String::new(), |v| v.to_string()));
-    let refused = p.refused.as_ref().map_or("", |_| "yes");
+    let refused = p
+        .refused
+        .as_deref()
+        .map_or_else(String::new, |why| csv_cell(why).into_owned());
     format!("{},{},{refused}", csv_cell(&p.run), numbers.join(","))
 }
 

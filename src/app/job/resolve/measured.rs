@@ -158,9 +158,7 @@ pub(super) fn ballast(c: &mut Collector, raw: Option<&Spanned<RawBallast>>) -> O
         properties: raw.properties.as_ref().map(|p| p.get_ref().clone()),
         max_mass: c.positive(&raw.max_mass, "ballast.max_mass"),
         run: raw.run.as_ref().map(|r| r.get_ref().clone()),
-        gravity_m_s2: c
-            .positive(&raw.gravity, "ballast.gravity")
-            .unwrap_or(STANDARD_GRAVITY_M_S2),
+        gravity_m_s2: gravity(c, &raw.gravity, "ballast.gravity"),
         line: c.line(section),
     })
 }
@@ -204,9 +202,7 @@ pub(super) fn payload(c: &mut Collector, raw: Option<&Spanned<RawPayload>>) -> O
             &positions,
             PayloadPosition::Known,
         ),
-        gravity_m_s2: c
-            .positive(&raw.gravity, "payload.gravity")
-            .unwrap_or(STANDARD_GRAVITY_M_S2),
+        gravity_m_s2: gravity(c, &raw.gravity, "payload.gravity"),
         weight_in_model: raw.weight_in_model.as_ref().is_none_or(|w| *w.get_ref()),
         region: region(c, &raw.region, "payload.region"),
         use_strain,
@@ -216,6 +212,27 @@ pub(super) fn payload(c: &mut Collector, raw: Option<&Spanned<RawPayload>>) -> O
         nominal_y: c.number(&raw.nominal_y, "payload.nominal_y", "a number", |_| true),
         line: c.line(section),
     })
+}
+
+/// Factor from standard gravity on which a gravity is not in m/s2: that of the Sun is 28 times it, that of Phobos a 1,700th, and nobody weighs
+/// there; mm/s2 make 1,000, km/s2 a 1,000th.
+const NOT_GRAVITY: f64 = 100.0;
+
+/// Gravity, m/s^2 whatever the unit system of the job.
+fn gravity(c: &mut Collector, given: &Option<Spanned<f64>>, key: &str) -> f64 {
+    let stated = c.positive(given, key).unwrap_or(STANDARD_GRAVITY_M_S2);
+    let off = stated / STANDARD_GRAVITY_M_S2;
+    if let Some(value) = given
+        && !(1.0 / NOT_GRAVITY..NOT_GRAVITY).contains(&off)
+    {
+        c.fault(
+            value,
+            key,
+            format!("{stated} m/s2 is {off:.2e} times the gravity of Earth"),
+            "state it in m/s2, whatever the units of the job: gravity = 9.80665",
+        );
+    }
+    stated
 }
 
 pub(super) fn respond(c: &mut Collector, raw: Option<&Spanned<RawRespond>>) -> Respond {
