@@ -46,7 +46,7 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
     findings.extend(statements(task, &state, &judged, &left_out));
     findings.extend(undetermined::findings(task, &undetermined));
     // Where the known loads are in a wrong unit or of a wrong sign, every gauge is far from the model for that reason.
-    let wrong_loads = stated::check(task, &state.used);
+    let wrong_loads = stated::check(task, &state.used, &shift::wrongly_wired(&shifts));
     if wrong_loads.is_empty() {
         findings.extend(shift::findings(task, &shifts));
     }

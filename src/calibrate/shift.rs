@@ -142,6 +142,22 @@ pub(super) fn check(task: &Task, state: &State) -> Vec<GaugeShift> {
     .collect()
 }
 
+/// Gauges whose sign is turned, that are exchanged, or dead, unless they are half of all: then it is rather the loads that are wrong.
+pub(super) fn wrongly_wired(shifts: &[GaugeShift]) -> Vec<usize> {
+    let is = |w: &ShiftWord| {
+        matches!(
+            w,
+            ShiftWord::Sign | ShiftWord::Exchanged { .. } | ShiftWord::Dead
+        )
+    };
+    let out: Vec<usize> = (0..shifts.len()).filter(|g| is(&shifts[*g].word)).collect();
+    if 2 * out.len() < shifts.len() {
+        out
+    } else {
+        Vec::new()
+    }
+}
+
 /// Without a model the dead ones alone can be told.
 fn without_model(task: &Task) -> Vec<GaugeShift> {
     let one = |(g, name): (usize, &String)| GaugeShift {

@@ -23,9 +23,8 @@ const UNKNOWN: f64 = 0.5;
 /// Loads whose strain is some `UNIT` times what the model says, or of the other sign, in most of the gauges.
 ///
 /// By gauge `y_r = sum_l c_l S_l f_rl` is solved for the factors `c_l` by least squares, for one common factor where the runs do not tell the
-/// loads apart; the factor of a load is the median over gauges, each with the weight `|S_l|`, so that some gauges that are wired wrongly do
-/// not make it.
-pub(super) fn check(task: &Task, used: &[usize]) -> Vec<Finding> {
+/// loads apart; the factor of a load is the median over gauges, each with the weight `|S_l|`. Gauges that are `wrongly_wired` have no vote.
+pub(super) fn check(task: &Task, used: &[usize], wrongly_wired: &[usize]) -> Vec<Finding> {
     let Some(model) = &task.model else {
         return Vec::new();
     };
@@ -55,7 +54,10 @@ pub(super) fn check(task: &Task, used: &[usize]) -> Vec<Finding> {
         false => vec![acting.clone()],
     };
     let mut found: Vec<Vec<(f64, f64)>> = vec![Vec::new(); asked.len()];
-    for g in 0..task.gauges.len() {
+    let gauges: Vec<usize> = (0..task.gauges.len())
+        .filter(|g| !wrongly_wired.contains(g))
+        .collect();
+    for &g in &gauges {
         let columns = |r: &KnownRun| -> Vec<f64> {
             let of = |loads: &Vec<usize>| -> f64 {
                 let each = loads
@@ -67,7 +69,7 @@ pub(super) fn check(task: &Task, used: &[usize]) -> Vec<Finding> {
         };
         for (a, factor) in factors(task, &runs, g, columns) {
             let weight = |g: usize| asked[a].iter().map(|l| answer(g, *l).abs()).sum::<f64>();
-            let most = (0..task.gauges.len()).map(weight).fold(0.0, f64::max);
+            let most = gauges.iter().map(|g| weight(*g)).fold(0.0, f64::max);
             if weight(g) > ASKED * most {
                 found[a].push((factor, weight(g)));
             }
