@@ -4,6 +4,7 @@
 use super::held_out::SPANNED;
 use super::types::{KnownRun, Task};
 use crate::finding::{Finding, Severity};
+use crate::linalg::median::weighted_median;
 use crate::linalg::precision::Precision;
 use crate::linalg::spd;
 use crate::units::number;
@@ -80,7 +81,7 @@ pub(super) fn check(task: &Task, used: &[usize], wrongly_wired: &[usize]) -> Vec
         .zip(&mut found)
         .filter_map(|(loads, f)| {
             let names = loads.iter().map(|l| task.loads[*l].name.as_str());
-            Some((names.collect::<Vec<_>>().join(", "), middle(f)?))
+            Some((names.collect::<Vec<_>>().join(", "), weighted_median(f)?))
         })
         .collect();
     let beyond = |c: f64| c.abs() > UNIT || c.abs() < 1.0 / UNIT;
@@ -196,16 +197,4 @@ fn factors(
         .filter(told)
         .map(|(i, b)| (kept[i], b / norms[kept[i]]))
         .collect()
-}
-
-/// Median of values with weights; `None` of none.
-fn middle(values: &mut [(f64, f64)]) -> Option<f64> {
-    values.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let total: f64 = values.iter().map(|v| v.1).sum();
-    let mut sum = 0.0;
-    let found = values.iter().find(|v| {
-        sum += v.1;
-        sum >= total / 2.0
-    });
-    found.map(|v| v.0)
 }

@@ -3,11 +3,13 @@
 //! - [`sparse`]: large symmetric positive definite systems
 //! - [`tall`]: least squares with many rows and few columns
 //! - [`levenberg`]: nonlinear least squares
+//! - [`median`]: the median of values that count unequally
 //! - [`precision`]: the inverse of a dense covariance
 //! - [`tail`]: chances of a value at least as large
 
 pub mod dense;
 pub mod levenberg;
+pub mod median;
 pub mod precision;
 pub mod sparse;
 pub mod spd;

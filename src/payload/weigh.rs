@@ -6,6 +6,7 @@ use super::robust::{
     GaugeEstimates, GaugeVerdict, RobustSpec, SIGN_SIGMAS, cut_at_zero, doubt, robust_payload,
     verdict_words,
 };
+use crate::linalg::median::weighted_median;
 use crate::recovery::NORMAL_95;
 
 /// The answer for all runs.
@@ -258,15 +259,8 @@ fn refused_by_itself(estimates: &[f64], sigma: &[f64], largest: f64) -> Option<R
     // Where no noise is stated all gauges weigh the same.
     let least = EXACT * pairs().fold(f64::MIN_POSITIVE, |a, p| a.max(p.0.abs()));
     let possible = |(e, s): (&f64, &f64)| *e > -SIGN_SIGMAS * s && *e <= largest;
-    let mut sorted: Vec<(f64, f64)> = pairs().map(|(e, s)| (*e, 1.0 / s.max(least))).collect();
-    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let total: f64 = sorted.iter().map(|p| p.1).sum();
-    let mut sum = 0.0;
-    let middle = sorted.iter().find(|(_, w)| {
-        sum += w;
-        sum >= total / 2.0
-    });
-    let Some((force, _)) = middle.copied() else {
+    let mut told: Vec<(f64, f64)> = pairs().map(|(e, s)| (*e, 1.0 / s.max(least))).collect();
+    let Some(force) = weighted_median(&mut told) else {
         return Some(Refusal::Undetermined);
     };
     if force < -doubt(pairs().map(|p| *p.1)) {
