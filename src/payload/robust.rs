@@ -112,7 +112,7 @@ pub fn robust_payload(gauges: &[GaugeEstimates], spec: &RobustSpec) -> Option<Ro
             let f: Vec<f64> = (0..n_runs)
                 .map(|j| own(g, j).unwrap_or(medians[j]))
                 .collect();
-            (log_posterior(gauges, spec, &f), f)
+            (log_posterior(&all_terms(gauges, spec, &f)), f)
         })
         .collect();
     starts.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -200,6 +200,8 @@ fn run_terms(gauge: &GaugeEstimates, spec: &RobustSpec, j: usize, f: f64) -> [f6
             return 0.0;
         }
         let variance = level(gauge, spec, j, k).0.powi(2) + (spec.relative_scatter * f).powi(2);
+        // Without noise at zero load: terms stay finite, so that they can be taken away.
+        let variance = variance.max(1e-200);
         -0.5 * ((p - f).powi(2) / variance + (TAU * variance).ln())
     })
 }
@@ -228,13 +230,19 @@ fn log_sum(terms: &[f64]) -> f64 {
     top + terms.iter().map(|t| (t - top).exp()).sum::<f64>().ln()
 }
 
-/// Log posterior density, flat prior on F.
-fn log_posterior(gauges: &[GaugeEstimates], spec: &RobustSpec, f: &[f64]) -> f64 {
-    gauges
-        .iter()
-        .map(|g| log_sum(&gauge_terms(g, spec, f, |_| true)))
-        .sum()
+/// Log posterior density, flat prior on F, of the terms of every gauge.
+fn log_posterior(terms: &[[f64; N_LEVELS]]) -> f64 {
+    terms.iter().map(|t| log_sum(t)).sum()
 }
+
+/// Terms of every gauge over all runs.
+fn all_terms(gauges: &[GaugeEstimates], spec: &RobustSpec, f: &[f64]) -> Vec<[f64; N_LEVELS]> {
+    let of = |g| gauge_terms(g, spec, f, |_| true);
+    gauges.iter().map(of).collect()
+}
+
+/// Gain of log density under which a step is none: far above rounding, far below what any evidence says.
+const GAIN: f64 = 1e-9;
 
 /// Coordinate ascent with a shrinking step: in log F far from zero, in F within the noise of an empty structure.
 fn ascend(
@@ -243,21 +251,27 @@ fn ascend(
     slack: &[f64],
     mut f: Vec<f64>,
 ) -> (f64, Vec<f64>) {
-    let mut best = log_posterior(gauges, spec, &f);
     let mut step = 0.1;
     while step > 1e-4 {
         let mut moved = false;
+        // Anew for each round: what is added and taken away leaves rounding.
+        let mut terms = all_terms(gauges, spec, &f);
+        let mut best = log_posterior(&terms);
         for j in 0..f.len() {
             for share in [step, -step / (1.0 + step)] {
-                let old = f[j];
-                let size = old.abs() + slack[j] / SIGN_SIGMAS;
-                f[j] = (old + share * size).clamp(-slack[j], spec.largest.max(0.0));
-                let value = log_posterior(gauges, spec, &f);
-                if value > best + 1e-12 {
-                    best = value;
+                let size = f[j].abs() + slack[j] / SIGN_SIGMAS;
+                let there = (f[j] + share * size).clamp(-slack[j], spec.largest.max(0.0));
+                // One run moves: the others' terms stay.
+                let with = |(g, own): (&GaugeEstimates, &[f64; N_LEVELS])| {
+                    let before = run_terms(g, spec, j, f[j]);
+                    let after = run_terms(g, spec, j, there);
+                    std::array::from_fn(|k| own[k] + (after[k] - before[k]))
+                };
+                let tried: Vec<[f64; N_LEVELS]> = gauges.iter().zip(&terms).map(with).collect();
+                let value = log_posterior(&tried);
+                if value > best + GAIN {
+                    (best, terms, f[j]) = (value, tried, there);
                     moved = true;
-                } else {
-                    f[j] = old;
                 }
             }
         }
@@ -265,7 +279,7 @@ fn ascend(
             step *= 0.5;
         }
     }
-    (best, f)
+    (log_posterior(&all_terms(gauges, spec, &f)), f)
 }
 
 /// Mean, sd and 95 % interval of one run around its mode, the other runs held at theirs. The grid is even in `t`, `F = s sinh t`, `s` the noise
