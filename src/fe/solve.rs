@@ -245,8 +245,8 @@ fn solve_group(
         .zip(fields.iter().zip(&forces))
         .map(|(c, (u, f))| (c.subcase, u.as_slice(), f.as_slice()))
         .collect();
-    let equations = model.mpcs.iter().filter(|s| Some(s.sid) == case.mpc);
-    let mpc = equations.into_iter().any(|s| !s.equations.is_empty());
+    let selected = |sid: u32| Some(sid) == case.mpc;
+    let mpc = (model.mpcs.iter()).any(|s| selected(s.sid) && !s.equations.is_empty());
     let reactions = reactions(prepared, &system, &answers, mpc)?;
     if !reactions.is_empty() {
         clock.note(report, "reactions");

@@ -7,5 +7,8 @@ pub const NORMAL_95: f64 = 1.959_963_984_540_054;
 
 /// Factor on sigma of a 95 % interval where sigma is estimated with `dof` degrees of freedom.
 pub fn student_95(dof: f64) -> f64 {
+    if dof.is_infinite() {
+        return NORMAL_95;
+    }
     StudentsT::new(0.0, 1.0, dof.max(1.0)).map_or(NORMAL_95, |t| t.inverse_cdf(0.975))
 }

@@ -92,15 +92,9 @@ const FAR: f64 = 1.0e3;
 fn model_rel(job: &Job, s: Option<&Sensitivity>) -> f64 {
     let measured = job.measured.as_ref();
     let stated = measured.map_or(0.0, |m| m.model_uncertainty_rel);
-    let known = s.and_then(|s| Some((s, s.uncertainty.as_ref()?)));
-    match known.filter(|(_, u)| u.dof.is_finite() || has_covariance(job)) {
-        Some((s, u)) => {
-            let wider = match u.dof.is_finite() {
-                true => student_95(u.dof) / NORMAL_95,
-                false => 1.0,
-            };
-            stated.hypot(wider * s.relative_sd())
-        }
+    let calibrated = s.filter(|_| has_covariance(job));
+    match calibrated.and_then(|s| Some((s, s.uncertainty.as_ref()?))) {
+        Some((s, u)) => stated.hypot(s.relative_sd() * student_95(u.dof) / NORMAL_95),
         None => stated,
     }
 }

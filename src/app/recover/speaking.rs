@@ -46,24 +46,19 @@ pub(super) fn speaking(work: &mut Work, task: &Task, bytes: FileBytes) -> Result
         )));
     }
     let mut record = record.with_columns(used.iter().map(|&g| channel(g)).collect());
-    let given = columns_of_record(&record)?;
-    // Where nothing varies the truck may stand still.
-    let any_signal = given.contains(&Gives::Signal);
-    let silent = |g: &Gives| *g == Gives::Nothing || any_signal && *g == Gives::OneValue;
-    if given.iter().any(silent) {
-        let of = |what: Gives| -> Vec<&str> {
-            let those = used.iter().zip(&given).filter(|(_, g)| **g == what);
-            those.map(|(g, _)| all.gauges[*g].as_str()).collect()
-        };
-        let still = if any_signal {
-            of(Gives::OneValue)
-        } else {
-            vec![]
-        };
-        for (names, what) in [
-            (of(Gives::Nothing), "nothing"),
-            (still, "one and the same value"),
+    let mut given = columns_of_record(&record)?;
+    if !given.contains(&Gives::Signal) {
+        // Where nothing varies the truck may stand still.
+        let parked = given.iter_mut().filter(|g| **g == Gives::OneValue);
+        parked.for_each(|g| *g = Gives::Signal);
+    }
+    if given.iter().any(|g| *g != Gives::Signal) {
+        for (gives, what) in [
+            (Gives::Nothing, "nothing"),
+            (Gives::OneValue, "one and the same value"),
         ] {
+            let those = used.iter().zip(&given).filter(|(_, g)| **g == gives);
+            let names: Vec<&str> = those.map(|(g, _)| all.gauges[*g].as_str()).collect();
             if names.is_empty() {
                 continue;
             }
@@ -75,7 +70,7 @@ pub(super) fn speaking(work: &mut Work, task: &Task, bytes: FileBytes) -> Result
                 "repair the channel, or leave its gauge out: [[correction]] ignore = true",
             ));
         }
-        let mut speaks = given.iter().map(|g| !silent(g));
+        let mut speaks = given.iter().map(|g| *g == Gives::Signal);
         used.retain(|_| speaks.next().unwrap_or(true));
         record = record.with_columns(used.iter().map(|&g| channel(g)).collect());
     }
