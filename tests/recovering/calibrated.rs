@@ -1,7 +1,7 @@
 //! What else runs on a calibrated job: `place` says what its gauges give, `payload` weighs, a gauge that was turned stays turned.
 
-use super::supported::{deck, job, normal};
 use super::folder;
+use super::supported::{deck, job, normal};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::Path;
