@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use strainbridge::series::channels::{Channel, Channels};
 use strainbridge::series::spectrum::Band;
-use strainbridge::vehicle::identify::{Question, identify};
-use strainbridge::vehicle::preset::{Wish, vehicle};
+use strainbridge::vehicle::identify::{IdentifyTask, identify};
+use strainbridge::vehicle::preset::{PresetRequest, vehicle};
 use strainbridge::vehicle::term::UnitNames;
 
 fn main() {
@@ -55,11 +55,11 @@ fn record() -> Channels {
     }
 }
 
-fn question() -> Option<Question> {
-    Some(Question {
-        vehicle: vehicle(&Wish {
+fn task() -> Option<IdentifyTask> {
+    Some(IdentifyTask {
+        vehicle: vehicle(&PresetRequest {
             model: "front2".into(),
-            ..Wish::default()
+            ..PresetRequest::default()
         })
         .ok()?,
         known: BTreeMap::new(),
@@ -80,7 +80,7 @@ fn question() -> Option<Question> {
 
 #[divan::bench]
 fn least_squares(bencher: divan::Bencher) {
-    let (Some(q), r) = (question(), record()) else {
+    let (Some(q), r) = (task(), record()) else {
         return;
     };
     bencher.bench(|| identify(&q, &r, None).map(|id| id.values));

@@ -171,7 +171,7 @@ fn on_frame(
             proof,
             effort: Effort {
                 starts: 4,
-                kicks: if k > 12 { 40 } else { 4 },
+                perturbations: if k > 12 { 40 } else { 4 },
                 seed: 1,
             },
             ..Spec::new(s, k)
@@ -225,11 +225,11 @@ fn anchors(folder: &str) -> Outcome {
         } else {
             [("quick", 4, 4, 0.0), ("proof", 8, 12, 1e10)]
         };
-        for (name, starts, kicks, proof) in efforts {
+        for (name, starts, perturbations, proof) in efforts {
             let spec = Spec {
                 effort: Effort {
                     starts,
-                    kicks,
+                    perturbations,
                     seed: 1,
                 },
                 proof,

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use strainbridge::Faults;
 use strainbridge::placement::Criterion;
 use strainbridge::placement::candidates::{Candidates, Scatter};
-use strainbridge::placement::columns::{Groups, solve};
+use strainbridge::placement::column_generation::{Groups, solve};
 
 const S: Named = Named {
     function: "relax",

@@ -114,15 +114,13 @@ pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<Identified>, Faults> 
     let mut work = Work::of_job(cx, job);
     let records = work.stage("read", |w| read_vehicle(w, job))?;
     let VehicleRecords {
-        question,
+        task,
         data,
         hold_out,
     } = &records;
     let data_name = job.vehicle.as_ref().map_or("", |v| v.data.given.as_str());
     let found = work
-        .stage("identify", |_| {
-            fit_vehicle(question, data, hold_out.as_ref())
-        })
+        .stage("identify", |_| fit_vehicle(task, data, hold_out.as_ref()))
         .map_err(|e| vehicle_fault(job, data_name, &e))?;
     work.findings.extend(found.findings.iter().cloned());
     work.findings.extend(found.verdict());
@@ -131,7 +129,7 @@ pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<Identified>, Faults> 
             keep_every: 1,
             adjust: adjust.to_vec(),
             slow: slow_stretches(&found.vehicle, &found.values, record, adjust),
-            ..Treatment::of(question.band)
+            ..Treatment::of(task.band)
         };
         let motion = motion(&found.vehicle, record, &treatment);
         let motion = motion.map_err(|e| vehicle_fault(job, name, &e))?;
@@ -140,9 +138,9 @@ pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<Identified>, Faults> 
             motion,
         })
     };
-    let unit = &question.units.force;
-    let rows = |name: &str, d: &Driven| load_rows(&found, question.gravity, unit, name, &d.loads);
-    let fitted = drive(data, data_name, &question.corrections)?;
+    let unit = &task.units.force;
+    let rows = |name: &str, d: &Driven| load_rows(&found, task.gravity, unit, name, &d.loads);
+    let fitted = drive(data, data_name, &task.corrections)?;
     let mut loads = rows(data_name, &fitted);
     let named = job.vehicle.as_ref().and_then(|v| v.hold_out.as_ref());
     let held_out = match (hold_out, named) {
@@ -150,7 +148,7 @@ pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<Identified>, Faults> 
             let driven = drive(
                 record,
                 &named.given,
-                &Adjustment::elsewhere(&question.corrections),
+                &Adjustment::elsewhere(&task.corrections),
             )?;
             loads.extend(rows(&named.given, &driven));
             Some(driven)
@@ -160,7 +158,7 @@ pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<Identified>, Faults> 
     let forces = chassis_forces(&found, &fitted.motion);
     let answer = Identified {
         model: found.vehicle.name.clone(),
-        band_hz: [question.band.low_hz, question.band.high_hz],
+        band_hz: [task.band.low_hz, task.band.high_hz],
         parameters: found.parameters.clone(),
         unidentifiable: found.unidentifiable.clone(),
         fit: found.fit.clone(),

@@ -12,19 +12,19 @@ use crate::series::spectrum::Band;
 use crate::series::{Channels, SeriesError};
 use crate::units::{Quantity, find_unit};
 use crate::vehicle::adjustment::Adjustment;
-use crate::vehicle::identify::Question;
+use crate::vehicle::identify::IdentifyTask;
 use crate::vehicle::layout::MassStep;
 use crate::vehicle::motion::VehicleError;
-use crate::vehicle::preset::{PresetError, Wish, vehicle};
+use crate::vehicle::preset::{PresetError, PresetRequest, vehicle};
 use crate::vehicle::term::UnitNames;
 
 /// Band where the job names none, Hz: rigid-body and axle motion of a truck.
 const DEFAULT_BAND_HZ: [f64; 2] = [0.7, 20.0];
 
-/// A question with its records.
+/// A task with its records.
 pub struct VehicleRecords {
     /// What is asked.
-    pub question: Question,
+    pub task: IdentifyTask,
     /// The record to fit.
     pub data: Channels,
     /// The record to judge by.
@@ -58,8 +58,8 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
             "State `band_hz` in [vehicle].",
         ));
     }
-    let wish = wish_of(section);
-    let mut model = vehicle(&wish).map_err(|e| Faults::from(preset_fault(job, section, &e)))?;
+    let request = preset_request(section);
+    let mut model = vehicle(&request).map_err(|e| Faults::from(preset_fault(job, section, &e)))?;
     if let Some(link) = section
         .leaf
         .keys()
@@ -119,7 +119,7 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
         }
     }
     let unit = |q: Quantity| job.units.unit(q).name.to_owned();
-    let question = Question {
+    let task = IdentifyTask {
         vehicle: model,
         known: section.known.clone(),
         bounds: section.bounds.clone(),
@@ -140,7 +140,7 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
         },
     };
     Ok(VehicleRecords {
-        question,
+        task,
         data,
         hold_out,
     })
@@ -176,8 +176,8 @@ pub fn section_of(job: &Job) -> Result<&VehicleJob, Faults> {
 }
 
 /// What a section asks of its vehicle.
-pub fn wish_of(section: &VehicleJob) -> Wish {
-    Wish {
+pub fn preset_request(section: &VehicleJob) -> PresetRequest {
+    PresetRequest {
         model: section.model.clone(),
         terms: section.terms.clone(),
         places: section.places.clone(),

@@ -229,7 +229,7 @@ const TOLD: f64 = 0.7;
 
 impl Glue {
     /// Whether the runs tell it: at least half of the stated variance is gone.
-    pub fn is_told(&self) -> bool {
+    pub fn is_determined(&self) -> bool {
         self.sigma < TOLD * self.stated
     }
 }

@@ -97,7 +97,7 @@ pub fn locate(
     }
     let states: Vec<(Vec<f64>, f64)> = starts
         .into_par_iter()
-        .filter_map(|w| climb(model, runs, spec, balance, w, STEPS[0]))
+        .filter_map(|w| expectation_maximisation(model, runs, spec, balance, w, STEPS[0]))
         .map(|s| (s.weights, s.log_likelihood))
         .collect();
     let (weights, _) = states
@@ -106,7 +106,7 @@ pub fn locate(
             Some(b) if b.1 >= s.1 => Some(b),
             _ => Some(s),
         })?;
-    let end = climb(model, runs, spec, balance, weights, STEPS[1])?;
+    let end = expectation_maximisation(model, runs, spec, balance, weights, STEPS[1])?;
     Some(Location {
         runs: end.runs,
         good: end.good,
@@ -124,7 +124,7 @@ pub fn tells(model: &PayloadModel, run: &PayloadRun, spec: &WeighSpec) -> bool {
     solve_run(model, run, spec, Balance::Kept, &weights, &nothing).is_some()
 }
 
-fn climb(
+fn expectation_maximisation(
     model: &PayloadModel,
     runs: &[PayloadRun],
     spec: &WeighSpec,

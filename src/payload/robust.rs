@@ -119,7 +119,7 @@ pub fn robust_payload(gauges: &[GaugeEstimates], spec: &RobustSpec) -> Option<Ro
     let mode = starts
         .into_iter()
         .take(N_STARTS)
-        .map(|(_, start)| ascend(gauges, spec, &slack, start))
+        .map(|(_, start)| ascend_posterior(gauges, spec, &slack, start))
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, f)| f)?;
     let runs = (0..n_runs)
@@ -245,7 +245,7 @@ fn all_terms(gauges: &[GaugeEstimates], spec: &RobustSpec, f: &[f64]) -> Vec<[f6
 const GAIN: f64 = 1e-9;
 
 /// Coordinate ascent with a shrinking step: in log F far from zero, in F within the noise of an empty structure.
-fn ascend(
+fn ascend_posterior(
     gauges: &[GaugeEstimates],
     spec: &RobustSpec,
     slack: &[f64],

@@ -1,9 +1,9 @@
 //! Where gauges can go: rows, or strain tensors that stand for every angle at a place.
 
-use super::quartic::{self, Form, Trig};
+use super::angle_variance::{self, Form, Trig};
 use rayon::prelude::*;
 
-/// Places handled together by the kernel.
+/// Places handled together by the scan.
 pub const LANES: usize = 8;
 
 /// Angles a gauge may have at a place.
@@ -188,11 +188,11 @@ impl Candidates {
                 self.scatter.angle_sd.powi(2),
                 self.scatter.model_rel.powi(2),
             );
-            let (slope, row) = (quartic::of_slope(form), quartic::of_row(form));
+            let (slope, row) = (angle_variance::of_slope(form), angle_variance::of_row(form));
             v = std::array::from_fn(|i| turn * slope[i] + model * row[i]);
         }
         if let Some(form) = self.scatter.forms.get(place) {
-            let more = quartic::of_row(form);
+            let more = angle_variance::of_row(form);
             v.iter_mut().zip(more).for_each(|(a, b)| *a += b);
         }
         v[0] += self.fixed_variance(place);
@@ -219,9 +219,9 @@ impl Candidates {
 
     /// Standard deviation of a gauge's reading.
     pub fn sd(&self, choice: Choice) -> f64 {
-        quartic::value(
+        angle_variance::value(
             &self.variance(choice.place as usize),
-            &quartic::phases(choice.angle),
+            &angle_variance::phases(choice.angle),
         )
         .sqrt()
     }
@@ -251,7 +251,9 @@ impl Candidates {
                 .map(|l| w * self.blocks[(b * self.k + l) * LANES + lane])
                 .collect();
         }
-        let w = 1.0 / quartic::value(&self.variance(p), &quartic::phases(choice.angle)).sqrt();
+        let w = 1.0
+            / angle_variance::value(&self.variance(p), &angle_variance::phases(choice.angle))
+                .sqrt();
         let (s, c) = choice.angle.sin_cos();
         (0..self.k)
             .map(|l| {

@@ -8,8 +8,8 @@
 //! changes in closed form; the first of them are judged by eigenvalues.
 
 use super::candidates::{Angles, Candidates, Choice};
-use super::kick::{fits, moved};
 use super::layout::Layout;
+use super::perturbation::{fits, moved};
 use super::shortlist::excluder;
 use super::spec::Spec;
 use crate::linalg::spd;
@@ -63,7 +63,7 @@ pub fn best(c: &Candidates, spec: &Spec, layout: &Layout, base: &[f64]) -> Optio
         excludes: &excludes,
     };
     let known: Vec<usize> = (0..layout.gauges.len()).collect();
-    let [starts, kicks] = if many == 1 { [2, 2] } else { [6, 6] };
+    let [starts, perturbations] = if many == 1 { [2, 2] } else { [6, 6] };
     let found: Vec<Option<Found>> = (0..starts)
         .into_par_iter()
         .map(|n| {
@@ -74,11 +74,11 @@ pub fn best(c: &Candidates, spec: &Spec, layout: &Layout, base: &[f64]) -> Optio
             } else {
                 search.moved(&known, known.len(), &mut rng)
             };
-            let mut best = search.climb(first);
-            for _ in 0..kicks {
+            let mut best = search.improve(first);
+            for _ in 0..perturbations {
                 let from = best.as_ref().map_or(&known, |b| &b.rows).clone();
                 let count = 1 + rng.random_range(0..3.min(from.len()));
-                best = better(best, search.climb(search.moved(&from, count, &mut rng)));
+                best = better(best, search.improve(search.moved(&from, count, &mut rng)));
             }
             best
         })
@@ -190,7 +190,7 @@ impl<E: Fn(usize, usize) -> bool> Search<'_, E> {
         fits(rows, slot, i, self.excludes)
     }
 
-    fn climb(&self, mut rows: Vec<usize>) -> Option<Found> {
+    fn improve(&self, mut rows: Vec<usize>) -> Option<Found> {
         let mut now = self
             .value(&self.information(&rows))
             .unwrap_or((f64::NEG_INFINITY, f64::INFINITY));

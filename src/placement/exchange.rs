@@ -1,10 +1,10 @@
 //! From weights to gauges: rounding, then exchange of single gauges until none improves.
 //!
-//! Several starts and kicks, all from a fixed seed.
+//! Several starts and perturbations, all from a fixed seed.
 
-use super::climb::{Climb, List};
+use super::coordinate_exchange::{CoordinateExchange, List};
 use super::relaxed::Active;
-use super::table::Packed;
+use super::variance_table::Packed;
 use crate::linalg::spd;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -16,7 +16,7 @@ pub struct Effort {
     /// Independent starts.
     pub starts: usize,
     /// Kicks of the best layout (a few gauges replaced at random, then exchange) for each start.
-    pub kicks: usize,
+    pub perturbations: usize,
     /// Seed.
     pub seed: u64,
 }
@@ -68,7 +68,7 @@ pub fn search(
             let mut at = improve(&list, &ridge, first)?;
             let mut best = (at.value, at.rows.clone());
             let mut now = at.clone();
-            for _ in 0..effort.kicks {
+            for _ in 0..effort.perturbations {
                 let count = if s < MANY {
                     1 + rng.random_range(0..3.min(s))
                 } else {
@@ -76,8 +76,8 @@ pub fn search(
                 };
                 // A layout a little worse may lead on; how much worse is drawn.
                 let worse = -LENIENT * rng.random_range(f64::MIN_POSITIVE..1.0).ln();
-                if now.kick(&list, count, &mut rng)
-                    && now.climb(&list, prior)
+                if now.perturb(&list, count, &mut rng)
+                    && now.improve(&list, prior)
                     && now.value > at.value - worse
                 {
                     at.copy(&now);
@@ -238,16 +238,16 @@ fn improve<E: Fn(usize, usize) -> bool + Sync>(
     list: &List<E>,
     ridge: &[f64],
     chosen: Vec<usize>,
-) -> Option<Climb> {
-    let mut climb = match Climb::of(list, list.prior, chosen.clone()) {
-        Some(climb) => climb,
+) -> Option<CoordinateExchange> {
+    let mut found = match CoordinateExchange::of(list, list.prior, chosen.clone()) {
+        Some(found) => found,
         None => {
-            let mut climb = Climb::of(list, ridge, chosen)?;
-            climb.climb(list, ridge).then_some(())?;
-            Climb::of(list, list.prior, climb.rows)?
+            let mut found = CoordinateExchange::of(list, ridge, chosen)?;
+            found.improve(list, ridge).then_some(())?;
+            CoordinateExchange::of(list, list.prior, found.rows)?
         }
     };
-    climb.climb(list, list.prior).then_some(climb)
+    found.improve(list, list.prior).then_some(found)
 }
 
 /// The criterion of these rows.
@@ -258,7 +258,7 @@ fn value(active: &Active, prior: &[f64], rows: &[usize]) -> Option<f64> {
     active.criterion.at(&m, active.k).map(|p| p.value)
 }
 
-/// Gauges from which a kick moves more of them.
+/// Gauges from which a perturbation moves more of them.
 const MANY: usize = 20;
-/// Mean loss of the criterion after a kick that is put up with.
+/// Mean loss of the criterion after a perturbation that is put up with.
 const LENIENT: f64 = 0.05;

@@ -1,6 +1,6 @@
 //! How steep the strain is where a gauge can go: what misplacing it, or the length of its grid, does to its reading.
 
-use super::quartic::Form;
+use super::angle_variance::Form;
 use super::sites::{Site, wired};
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::fe::strain_tensor::Surface;

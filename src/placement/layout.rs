@@ -1,16 +1,16 @@
 //! The layout: relaxation, rounding, exchange and the certificate, in one call.
 
+use super::branch_and_bound::{self, Problem, Proof};
 use super::candidates::{Angles, Candidates, Choice};
-use super::columns::{self, Columns, Groups};
-use super::exact::{self, Problem, Proof};
+use super::column_generation::{self, Columns, Groups};
 use super::exchange::Effort;
-use super::kernel::{Priced, Report, price};
 use super::robust;
 use super::shortlist::{
     Found, LIST, around, better, elimination, excluder, list_of, polish, rows_of, run, value_of,
 };
 use super::spacing;
 use super::spec::{Loss, Spec};
+use super::variance_scan::{Priced, Report, price};
 use std::collections::HashMap;
 
 /// A layout with its certificate.
@@ -94,13 +94,13 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
         return Err(PlaceError::TooFewPlaces { gauges: s, places });
     }
     let singular = PlaceError::Singular { gauges: s, loads };
-    let mut col = columns::solve(c, s, &spec.prior, q, &groups, spec.tolerance, &[])
+    let mut col = column_generation::solve(c, s, &spec.prior, q, &groups, spec.tolerance, &[])
         .ok_or_else(|| singular.clone())?;
     let mut upper = col.upper_bound;
     let mut passes = col.passes;
     let quick = Effort {
         starts: if spaced { 4 } else { 2 },
-        kicks: 0,
+        perturbations: 0,
         ..spec.effort
     };
     let mut list = list_of(c, &col, &groups, 0.0);
@@ -117,9 +117,15 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
             );
             let of = spacing::cliques(c.n_places(), &priced, c.positions(), spec.spacing);
             groups = Groups::Cliques(of);
-            let Some(next) =
-                columns::solve(c, s, &spec.prior, q, &groups, spec.tolerance, &col.choices)
-            else {
+            let Some(next) = column_generation::solve(
+                c,
+                s,
+                &spec.prior,
+                q,
+                &groups,
+                spec.tolerance,
+                &col.choices,
+            ) else {
                 break;
             };
             passes += next.passes;
@@ -158,12 +164,12 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
         let known = (gauges.clone(), log_det);
         let effort = Effort {
             starts: 1,
-            kicks: spec.effort.kicks / 4,
+            perturbations: spec.effort.perturbations / 4,
             ..spec.effort
         };
         passes += 1;
         match run(c, spec, &near, &col, effort, Some(&known)) {
-            Some(next) if next.1 > log_det + exact::SAME => (gauges, log_det) = next,
+            Some(next) if next.1 > log_det + branch_and_bound::SAME => (gauges, log_det) = next,
             _ => break,
         }
     }
@@ -174,7 +180,7 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
         Loss::Optimised => robust_of(c, spec, &list, &gauges),
         Loss::Judged => None,
     };
-    let mut proved = robust.is_none() && log_det >= upper - exact::SAME;
+    let mut proved = robust.is_none() && log_det >= upper - branch_and_bound::SAME;
     let (mut alive, mut nodes) = (None, 0);
     if let Some(found) = robust {
         (gauges, log_det) = found;
@@ -242,8 +248,14 @@ fn prove(
     let k = spec.criterion.degree(c.n_loads());
     let floor = elimination(col, k, incumbent);
     let root = &col.relaxed.point.root;
-    let list = price(c, root, floor, Report::EachAngle, exact::MOST_ROWS + 1);
-    if list.len() > exact::MOST_ROWS {
+    let list = price(
+        c,
+        root,
+        floor,
+        Report::EachAngle,
+        branch_and_bound::MOST_ROWS + 1,
+    );
+    if list.len() > branch_and_bound::MOST_ROWS {
         return (None, None);
     }
     let choices: Vec<Choice> = list.iter().map(|p| p.choice).collect();
@@ -277,6 +289,6 @@ fn prove(
         upper,
         work: spec.proof,
     };
-    let proof = exact::prove(&problem, &weights, &excluder(c, spec, &choices));
+    let proof = branch_and_bound::prove(&problem, &weights, &excluder(c, spec, &choices));
     (Some(choices.len()), Some((proof, choices)))
 }

@@ -5,8 +5,8 @@
 //! load sizes). The best layout has the largest `log det M_S`.
 //!
 //! Order of work: [`candidates`] (rows, or strain tensors that stand for all angles at a place), [`relax`] (weights between 0 and 1),
-//! [`columns`] (the same over millions of rows; gives the bound), [`exchange`] (rounding and local search), [`spacing`], [`exact`] (proof of
-//! small problems), [`quality`]; [`robust`] where a gauge may be lost, [`condition`] where errors shall not grow, [`units`] where
+//! [`column_generation`] (the same over millions of rows; gives the bound), [`exchange`] (rounding and local search), [`spacing`],
+//! [`branch_and_bound`] (proof of small problems), [`quality`]; [`robust`] where a gauge may be lost, [`condition`] where errors shall not grow, [`bundles`] where
 //! things have several rows or unlike costs. [`sites`], [`region`] and [`gradient`] make candidates of a model.
 //!
 //! Certificate: for any positive definite `M` and any layout of distinct rows
@@ -14,20 +14,20 @@
 //! of the eigenvalues of `M^-1 M_S` is not below their geometric mean. Where at most one row of a group can be used (one angle a place, one
 //! gauge within a spacing) `T` counts the largest of each group only.
 
+pub mod angle_variance;
+pub mod branch_and_bound;
+pub mod bundles;
 pub mod candidates;
-mod climb;
-pub mod columns;
+pub mod column_generation;
 pub mod condition;
+mod coordinate_exchange;
 pub mod criterion;
-pub mod exact;
 pub mod exchange;
 pub mod gradient;
-pub mod kernel;
-mod kick;
 mod layout;
 mod newton;
+mod perturbation;
 pub mod quality;
-pub mod quartic;
 pub mod region;
 pub mod relax;
 mod relaxed;
@@ -37,8 +37,8 @@ mod shortlist;
 pub mod sites;
 pub mod spacing;
 mod spec;
-mod table;
-pub mod units;
+pub mod variance_scan;
+mod variance_table;
 pub mod wanted;
 
 pub use criterion::Criterion;

@@ -3,7 +3,7 @@
 //! With `h_q` the leverages, losing gauge `q` multiplies `det M` by `1 - h_q`; the search raises `ln det M + ln(1 - max h)`.
 
 use super::exchange::Effort;
-use super::kick::moved;
+use super::perturbation::moved;
 use super::relaxed::Active;
 use crate::linalg::spd;
 use rand::{RngExt, SeedableRng};
@@ -39,12 +39,15 @@ pub fn search(
     excludes: &(impl Fn(usize, usize) -> bool + Sync),
     effort: Effort,
 ) -> Option<(Vec<usize>, f64)> {
-    let (starts, kicks) = if active.k > MANY_LOADS {
+    let (starts, perturbations) = if active.k > MANY_LOADS {
         (2, 2)
     } else {
-        (effort.starts.max(1), effort.kicks.min(MOST_KICKS))
+        (
+            effort.starts.max(1),
+            effort.perturbations.min(MOST_PERTURBATIONS),
+        )
     };
-    // Each start is a climb of its own, then kicks of what it found.
+    // Each start is a search of its own, then perturbations of what it found.
     let found: Vec<Option<(Vec<usize>, f64)>> = (0..starts)
         .into_par_iter()
         .map(|n| {
@@ -54,12 +57,12 @@ pub fn search(
             } else {
                 moved(start, start.len(), active.len(), excludes, &mut rng)
             };
-            let mut best = climb(active, prior, first, excludes);
-            for _ in 0..kicks {
+            let mut best = improve(active, prior, first, excludes);
+            for _ in 0..perturbations {
                 let from = best.as_ref().map_or(start, |b| &b.0);
                 let count = 1 + rng.random_range(0..2);
                 let rows = moved(from, count, active.len(), excludes, &mut rng);
-                let next = climb(active, prior, rows, excludes);
+                let next = improve(active, prior, rows, excludes);
                 best = better(best, next);
             }
             best
@@ -81,9 +84,9 @@ fn better(a: Found, b: Found) -> Found {
 const MANY_LOADS: usize = 12;
 
 /// Kicks of a search; each costs a few sweeps.
-const MOST_KICKS: usize = 20;
+const MOST_PERTURBATIONS: usize = 20;
 
-fn climb(
+fn improve(
     active: &Active,
     prior: &[f64],
     mut rows: Vec<usize>,

@@ -1,12 +1,12 @@
 //! The short list of candidates on which a layout is searched, and the search on it.
 
 use super::candidates::{Angles, Candidates, Choice};
-use super::columns::{Columns, Groups};
+use super::column_generation::{Columns, Groups};
 use super::exchange::{self, Effort};
-use super::kernel::{Priced, Report, price};
 use super::relaxed::Active;
 use super::spacing;
 use super::spec::Spec;
+use super::variance_scan::{Priced, Report, price};
 use crate::linalg::spd;
 use std::collections::{HashMap, HashSet};
 

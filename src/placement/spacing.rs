@@ -1,6 +1,6 @@
 //! Minimum distance between gauges: which places exclude each other, and a bound that knows of it.
 
-use super::kernel::Priced;
+use super::variance_scan::Priced;
 use std::collections::HashMap;
 
 /// Distance of two places.

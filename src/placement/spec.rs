@@ -19,7 +19,7 @@ pub struct Spec {
     /// How hard to search.
     pub effort: Effort,
     /// Floating-point operations, roughly, that a proof by branch and bound may take; 0: none is tried. It is tried where few candidates
-    /// are left that could be in a better layout ([`exact::MOST_ROWS`]).
+    /// are left that could be in a better layout ([`branch_and_bound::MOST_ROWS`]).
     pub proof: f64,
     /// What the loss of a gauge means for the choice.
     pub loss: Loss,
@@ -45,7 +45,7 @@ impl Spec {
             tolerance: 5e-4,
             effort: Effort {
                 starts: 8,
-                kicks: if loads > 12 { 60 } else { 12 },
+                perturbations: if loads > 12 { 60 } else { 12 },
                 seed: 1,
             },
             proof: 1e9,

@@ -1,10 +1,10 @@
+mod bundles;
 mod condition;
 mod region;
-mod units;
 mod workshop;
 
 use super::candidates::{Angles, Candidates, Choice, Scatter};
-use super::{Criterion, Spec, place, quality, quartic};
+use super::{Criterion, Spec, angle_variance, place, quality};
 use crate::linalg::spd;
 use crate::support::bytes as shared;
 use rand::{RngExt, SeedableRng};
@@ -256,20 +256,20 @@ fn continuous_angles_are_certified_over_a_fine_grid_and_not_worse_than_it() {
 #[test]
 fn the_largest_variance_over_all_angles_is_an_upper_bound_of_a_dense_scan() {
     let mut rng = ChaCha8Rng::seed_from_u64(5);
-    let samples: [[f64; 4]; quartic::SAMPLES] = std::array::from_fn(|i| {
-        quartic::phases(std::f64::consts::PI * i as f64 / quartic::SAMPLES as f64)
+    let samples: [[f64; 4]; angle_variance::SAMPLES] = std::array::from_fn(|i| {
+        angle_variance::phases(std::f64::consts::PI * i as f64 / angle_variance::SAMPLES as f64)
     });
     for _ in 0..500 {
         let r: [[f64; 3]; 2] =
             std::array::from_fn(|_| std::array::from_fn(|_| rng.random_range(-1.0..1.0)));
-        let form: quartic::Form = std::array::from_fn(|i| {
+        let form: angle_variance::Form = std::array::from_fn(|i| {
             r.iter()
                 .map(|v| v[[0, 1, 2, 0, 0, 1][i]] * v[[0, 1, 2, 1, 2, 2][i]])
                 .sum()
         });
-        let slope = quartic::of_slope(&form.map(|v| 0.3 * v));
+        let slope = angle_variance::of_slope(&form.map(|v| 0.3 * v));
         let v = [slope[0] + 0.5, slope[1], slope[2], slope[3], slope[4]];
-        let (angle, d) = quartic::largest(&quartic::of_row(&form), &v, &samples);
+        let (angle, d) = angle_variance::largest(&angle_variance::of_row(&form), &v, &samples);
         let ratio = |t: f64| {
             let (s, c) = t.sin_cos();
             let row = [c * c, s * s, s * c];

@@ -1,7 +1,7 @@
 //! Layouts that must have a gauge in each of some groups of places.
 
 use super::candidates::{Angles, Candidates, Choice};
-use super::kick::fits;
+use super::perturbation::fits;
 use super::quality;
 use super::shortlist::excluder;
 use super::spec::Spec;

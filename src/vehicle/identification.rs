@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 /// What is asked.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Question {
+pub struct IdentifyTask {
     /// The model.
     pub vehicle: Vehicle,
     /// Parameters measured elsewhere.

@@ -16,7 +16,7 @@ use super::treatment::{Treatment, VehicleError};
 use crate::series::channels::Channels;
 use crate::series::detrend::rms;
 
-pub use super::identification::{ChannelFit, Estimate, Identification, Question};
+pub use super::identification::{ChannelFit, Estimate, Identification, IdentifyTask};
 
 /// Parameters of the vehicle from a record; a second record, never fitted, judges them.
 ///
@@ -24,21 +24,21 @@ pub use super::identification::{ChannelFit, Estimate, Identification, Question};
 /// [`VehicleError`] when channels are missing, the record is too short, a known parameter is not one of the model's, or no
 /// equation is left.
 pub fn identify(
-    question: &Question,
+    task: &IdentifyTask,
     record: &Channels,
     hold_out: Option<&Channels>,
 ) -> Result<Identification, VehicleError> {
     let treatment = Treatment {
-        adjust: question.corrections.clone(),
-        ..Treatment::of(question.band)
+        adjust: task.corrections.clone(),
+        ..Treatment::of(task.band)
     };
-    let measured = with_measured_sensors(&question.vehicle, record);
+    let measured = with_measured_sensors(&task.vehicle, record);
     let vehicle = resolved(&measured, record, &treatment)?;
     let all = vehicle.parameters();
-    if let Some(name) = question
+    if let Some(name) = task
         .known
         .keys()
-        .chain(question.bounds.keys())
+        .chain(task.bounds.keys())
         .find(|k| all.iter().all(|p| p.name != **k))
     {
         return Err(VehicleError::Known {
@@ -65,7 +65,7 @@ pub fn identify(
     let mut any = false;
     let all_of = record;
     for bodies in vehicle.components() {
-        let part = fit_part(question, &vehicle.part(&bodies), record, &treatment)?;
+        let part = fit_part(task, &vehicle.part(&bodies), record, &treatment)?;
         any |= part.fit.is_some();
         let in_record = |record: &Channels| {
             let adjust = if std::ptr::eq(record, all_of) {
@@ -94,12 +94,12 @@ pub fn identify(
                 blend,
                 judged,
                 &treatment,
-                &declared(question),
+                &declared(task),
             )?
         } else {
             vec![]
         };
-        collect(question, &mut answer, &all, part, held.as_ref(), &floors);
+        collect(task, &mut answer, &all, part, held.as_ref(), &floors);
     }
     if !any {
         return Err(VehicleError::NoEquation(vehicle.name.clone()));
@@ -107,16 +107,16 @@ pub fn identify(
     answer
         .findings
         .extend(check_sides(&all, &answer.values, &answer.sigmas));
-    close_masses(question, &mut answer, record);
+    close_masses(task, &mut answer, record);
     Ok(answer)
 }
 
-fn declared(question: &Question) -> Declared {
+fn declared(task: &IdentifyTask) -> Declared {
     Declared {
-        noise_acc: question.noise_acc,
-        noise_force: question.noise_force,
-        gain: question.gain_tolerance,
-        sync_s: question.sync_tolerance_s,
+        noise_acc: task.noise_acc,
+        noise_force: task.noise_force,
+        gain: task.gain_tolerance,
+        sync_s: task.sync_tolerance_s,
     }
 }
 
@@ -136,11 +136,11 @@ fn with_measured_sensors(vehicle: &Vehicle, record: &Channels) -> Vehicle {
     out
 }
 
-fn allowed(question: &Question, parameters: &[Parameter]) -> Vec<Allowed> {
+fn allowed(task: &IdentifyTask, parameters: &[Parameter]) -> Vec<Allowed> {
     parameters
         .iter()
         .map(
-            |p| match (question.known.get(&p.name), question.bounds.get(&p.name)) {
+            |p| match (task.known.get(&p.name), task.bounds.get(&p.name)) {
                 (Some(v), _) => Allowed::Known(*v),
                 (None, Some([lo, hi])) => Allowed::Within(*lo, *hi),
                 (None, None) if p.positive => Allowed::Within(0.0, f64::INFINITY),
@@ -167,7 +167,7 @@ fn reference(part: &Vehicle, equations: &[Equation], allowed: &[Allowed]) -> Opt
 }
 
 fn fit_part(
-    question: &Question,
+    task: &IdentifyTask,
     part: &Vehicle,
     record: &Channels,
     treatment: &Treatment,
@@ -175,7 +175,7 @@ fn fit_part(
     let names = part.parameters();
     let m = motion(part, record, treatment)?;
     let mut eqs = equations(part, &m);
-    let mut allow = allowed(question, &names);
+    let mut allow = allowed(task, &names);
     let reference = reference(part, &eqs, &allow);
     if let Some(r) = reference {
         allow[r] = Allowed::Known(1.0);
@@ -231,7 +231,7 @@ fn fit_part(
         }
     }
     add_tolerances(
-        question,
+        task,
         part,
         record,
         treatment,
@@ -278,7 +278,7 @@ fn known_enough(eqs: &[Equation], f: &Fit, i: usize, sigma: f64) -> bool {
 
 /// Adds what one standard deviation of each channel's gain and timing does to the parameters.
 fn add_tolerances(
-    question: &Question,
+    task: &IdentifyTask,
     part: &Vehicle,
     record: &Channels,
     treatment: &Treatment,
@@ -294,15 +294,15 @@ fn add_tolerances(
         .filter(|c| record.has(c));
     let mut trials = Vec::new();
     for channel in channels {
-        if question.gain_tolerance > 0.0 {
+        if task.gain_tolerance > 0.0 {
             trials.push(Adjustment {
-                gain: 1.0 + question.gain_tolerance,
+                gain: 1.0 + task.gain_tolerance,
                 ..Adjustment::none(channel)
             });
         }
-        if question.sync_tolerance_s > 0.0 {
+        if task.sync_tolerance_s > 0.0 {
             trials.push(Adjustment {
-                delay_s: question.sync_tolerance_s,
+                delay_s: task.sync_tolerance_s,
                 ..Adjustment::none(channel)
             });
         }
@@ -333,7 +333,7 @@ fn add_tolerances(
 }
 
 /// Compares masses with the mean wheel forces, over the parts whose every wheel is measured.
-fn close_masses(question: &Question, answer: &mut Identification, record: &Channels) {
+fn close_masses(task: &IdentifyTask, answer: &mut Identification, record: &Channels) {
     let v = &answer.vehicle;
     let (mut mass, mut variance, mut force, mut parts) = (0.0, 0.0, 0.0, 0);
     for bodies in v.components() {
@@ -373,7 +373,7 @@ fn close_masses(question: &Question, answer: &mut Identification, record: &Chann
         return;
     }
     if let Some((closure, finding)) =
-        check_mass_closure(mass, variance.max(0.0).sqrt(), force, question.gravity)
+        check_mass_closure(mass, variance.max(0.0).sqrt(), force, task.gravity)
     {
         answer.mass_closure = Some(closure);
         answer.findings.extend(finding);

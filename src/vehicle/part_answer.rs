@@ -4,7 +4,7 @@ use super::adequacy::{ChannelFloor, check_adequacy};
 use super::checks::at_bound;
 use super::fit::Fit;
 use super::identifiability::{absent_sentence, scale_sentence, weak_sentences};
-use super::identification::{ChannelFit, Estimate, Identification, Question};
+use super::identification::{ChannelFit, Estimate, Identification, IdentifyTask};
 use super::layout::{Parameter, Vehicle};
 use super::loads::Blend;
 use super::misfit::channel_misfits;
@@ -27,7 +27,7 @@ pub(super) struct PartAnswer {
 
 /// Puts the answer of a part into the whole.
 pub(super) fn collect(
-    question: &Question,
+    task: &IdentifyTask,
     answer: &mut Identification,
     all: &[Parameter],
     part: PartAnswer,
@@ -36,8 +36,8 @@ pub(super) fn collect(
 ) {
     answer.coverage_factor = answer.coverage_factor.max(part.coverage_factor);
     answer.findings.extend(part.motion.findings.iter().cloned());
-    put_parameters(question, answer, all, &part);
-    put_ratios(question, answer, &part);
+    put_parameters(task, answer, all, &part);
+    put_ratios(task, answer, &part);
     put_unidentifiable(answer, &part);
     if part.fit.is_none() {
         return;
@@ -58,7 +58,7 @@ impl PartAnswer {
 }
 
 fn put_parameters(
-    question: &Question,
+    task: &IdentifyTask,
     answer: &mut Identification,
     all: &[Parameter],
     part: &PartAnswer,
@@ -71,7 +71,7 @@ fn put_parameters(
     let scaled = part.reference.is_none() && part.fit.is_some();
     for (i, p) in part.names.iter().enumerate() {
         let sigma = part.sigma(i);
-        let known = question.known.contains_key(&p.name);
+        let known = task.known.contains_key(&p.name);
         let value = part.values[i];
         answer.values[at[i]] = value;
         answer.sigmas[at[i]] = if known { 0.0 } else { sigma };
@@ -89,7 +89,7 @@ fn put_parameters(
             name: p.name.clone(),
             value: shown,
             sigma: shown.map(|_| if known { 0.0 } else { sigma }),
-            unit: question.units.of(p.quantity),
+            unit: task.units.of(p.quantity),
             identifiable,
             interval: shown.map(|v| if known { [v, v] } else { [v - half, v + half] }),
             known,
@@ -98,9 +98,9 @@ fn put_parameters(
 }
 
 /// Ratios to the reference mass, where no force sets the scale.
-fn put_ratios(question: &Question, answer: &mut Identification, part: &PartAnswer) {
+fn put_ratios(task: &IdentifyTask, answer: &mut Identification, part: &PartAnswer) {
     let Some(r) = part.reference else { return };
-    let units = &question.units;
+    let units = &task.units;
     let reference = &part.names[r].name;
     let finite = |i: &usize| part.values[*i].is_finite();
     for i in (0..part.names.len()).filter(|i| *i != r && finite(i)) {

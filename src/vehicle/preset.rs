@@ -17,7 +17,7 @@ pub const MODELS: [&str; 8] = [
     "oscillator",
 ];
 
-/// What can be wrong with the wish for a vehicle.
+/// What can be wrong with the request for a vehicle.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum PresetError {
     /// No such model.
@@ -50,7 +50,7 @@ pub enum PresetError {
 
 /// What a job says of its vehicle.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Wish {
+pub struct PresetRequest {
     /// Name of the model.
     pub model: String,
     /// Terms in it; empty: a spring and a damper on every link.
@@ -62,7 +62,7 @@ pub struct Wish {
     pub channels: BTreeMap<String, String>,
 }
 
-/// The vehicle of a wish.
+/// The vehicle of a request.
 ///
 /// - `front2`: a_body, a_wheel, f_wheel (thesis 5.1, 5.2); `front_pair`: also `_other`
 /// - `rear3`: a_body, a_mid, a_rear, f_mid, f_rear (thesis 5.3 to 5.5)
@@ -74,8 +74,8 @@ pub struct Wish {
 ///
 /// # Errors
 /// [`PresetError`] when the model, a term or a needed place is unknown.
-pub fn vehicle(wish: &Wish) -> Result<Vehicle, PresetError> {
-    let mut v = match wish.model.as_str() {
+pub fn vehicle(request: &PresetRequest) -> Result<Vehicle, PresetError> {
+    let mut v = match request.model.as_str() {
         "front2" => quarter("front2", &["wheel"], &["f"], &["s"]),
         "rear3" => quarter("rear3", &["mid", "rear"], &["m", "r"], &["sm", "sr"]),
         "front_pair" => {
@@ -86,9 +86,9 @@ pub fn vehicle(wish: &Wish) -> Result<Vehicle, PresetError> {
             );
             one
         }
-        "half" => half(wish),
-        "full2" => full(wish, &["f", "r"])?,
-        "full3" => full(wish, &["f", "m", "r"])?,
+        "half" => half(request),
+        "full2" => full(request, &["f", "r"])?,
+        "full3" => full(request, &["f", "m", "r"])?,
         "rig" => rig(),
         "oscillator" => oscillator(),
         other => {
@@ -97,9 +97,9 @@ pub fn vehicle(wish: &Wish) -> Result<Vehicle, PresetError> {
             });
         }
     };
-    add_terms(&mut v, &wish.terms)?;
+    add_terms(&mut v, &request.terms)?;
     let rename = |name: &mut String| {
-        if let Some(n) = wish.channels.get(name.as_str()) {
+        if let Some(n) = request.channels.get(name.as_str()) {
             *name = n.clone();
         }
     };
@@ -186,7 +186,7 @@ fn join(v: &mut Vehicle, mut other: Vehicle) {
 }
 
 /// Heave and pitch over two axles; without places the wheelbase is the unit of length along x.
-fn half(wish: &Wish) -> Vehicle {
+fn half(request: &PresetRequest) -> Vehicle {
     let mut v = Vehicle {
         name: "half".into(),
         bodies: vec![body("b", Shape::HeavePitch, 0.0, 0.0, true)],
@@ -199,13 +199,13 @@ fn half(wish: &Wish) -> Vehicle {
         .into_iter()
         .enumerate()
     {
-        let wheel = wish.places.get(corner).copied().unwrap_or([x, 0.0]);
-        let spring = wish
+        let wheel = request.places.get(corner).copied().unwrap_or([x, 0.0]);
+        let spring = request
             .places
             .get(&format!("spring_{corner}"))
             .copied()
             .unwrap_or(wheel);
-        let sensor = wish
+        let sensor = request
             .places
             .get(&format!("body_{corner}"))
             .copied()
@@ -230,9 +230,9 @@ fn half(wish: &Wish) -> Vehicle {
 }
 
 /// Heave, pitch and roll over beam axles.
-fn full(wish: &Wish, axles: &[&str]) -> Result<Vehicle, PresetError> {
+fn full(request: &PresetRequest, axles: &[&str]) -> Result<Vehicle, PresetError> {
     let mut v = Vehicle {
-        name: wish.model.clone(),
+        name: request.model.clone(),
         bodies: vec![body("b", Shape::HeavePitchRoll, 0.0, 0.0, true)],
         sensors: vec![],
         wheels: vec![],
@@ -242,11 +242,12 @@ fn full(wish: &Wish, axles: &[&str]) -> Result<Vehicle, PresetError> {
     for (i, axle) in axles.iter().enumerate() {
         let place = |side: &str| {
             let corner = format!("{side}{axle}");
-            wish.places
+            request
+                .places
                 .get(&corner)
                 .copied()
                 .ok_or_else(|| PresetError::Place {
-                    model: wish.model.clone(),
+                    model: request.model.clone(),
                     place: corner.clone(),
                 })
         };
@@ -260,12 +261,12 @@ fn full(wish: &Wish, axles: &[&str]) -> Result<Vehicle, PresetError> {
         ));
         for (side, wheel) in [("l", left), ("r", right)] {
             let corner = format!("{side}{axle}");
-            let spring = wish
+            let spring = request
                 .places
                 .get(&format!("spring_{corner}"))
                 .copied()
                 .unwrap_or(wheel);
-            let sensor = wish
+            let sensor = request
                 .places
                 .get(&format!("body_{corner}"))
                 .copied()

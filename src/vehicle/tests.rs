@@ -1,5 +1,5 @@
-use super::identify::{Identification, Question, identify};
-use super::preset::{Wish, vehicle};
+use super::identify::{Identification, IdentifyTask, identify};
+use super::preset::{PresetRequest, vehicle};
 use super::term::UnitNames;
 use crate::series::channels::Channels;
 use crate::series::csv::read_csv;
@@ -13,14 +13,14 @@ mod shared_cases;
 mod silverbox;
 mod truck_simulator;
 
-fn question(model: &str, terms: &[&str], band: (f64, f64)) -> Question {
-    let wish = Wish {
+fn task(model: &str, terms: &[&str], band: (f64, f64)) -> IdentifyTask {
+    let request = PresetRequest {
         model: model.into(),
         terms: terms.iter().map(|t| (*t).to_owned()).collect(),
-        ..Wish::default()
+        ..PresetRequest::default()
     };
-    Question {
-        vehicle: vehicle(&wish).unwrap(),
+    IdentifyTask {
+        vehicle: vehicle(&request).unwrap(),
         known: BTreeMap::new(),
         bounds: BTreeMap::new(),
         band: Band {

@@ -11,7 +11,7 @@ use strainbridge::reconcile::Verdict;
 use strainbridge::reconcile::motion::{MotionFrame, MotionOutcome};
 use strainbridge::series::channels::{Channel, Channels};
 use strainbridge::series::spectrum::Band;
-use strainbridge::vehicle::preset::{Wish, vehicle};
+use strainbridge::vehicle::preset::{PresetRequest, vehicle};
 use strainbridge::vehicle::term::UnitNames;
 
 /// The frame that a job of the case would make.
@@ -32,14 +32,14 @@ pub fn frame_of(case: &Case) -> MotionFrame {
         Layout::Pair => "front_pair",
         _ => "front2",
     };
-    let wish = Wish {
+    let request = PresetRequest {
         model: model.into(),
         terms: case.terms.clone(),
-        ..Wish::default()
+        ..PresetRequest::default()
     };
     let loose = case.background == Background::Messy;
     MotionFrame {
-        vehicle: vehicle(&wish).unwrap(),
+        vehicle: vehicle(&request).unwrap(),
         bodies: if model == "rear3" {
             vec![0, 1, 2]
         } else {

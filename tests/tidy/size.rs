@@ -20,7 +20,7 @@ const LONGER: &[&str] = &[
     "src/app/reconcile/matrix_frame.rs read",
     "src/payload/locate.rs solve_run",
     "src/placement/layout.rs place",
-    "src/placement/units.rs",
+    "src/placement/bundles.rs",
     "src/reconcile/strain/likelihood.rs",
     "src/respond/rows.rs response_rows",
 ];

@@ -132,7 +132,7 @@ fn layout(n: usize, kept: &[Gauge]) -> Vec<Gauge> {
         }
     }
     spec.effort.starts = 3;
-    spec.effort.kicks = 10;
+    spec.effort.perturbations = 10;
     glued(&truck.model, &sites, &place(&c, &spec).unwrap())
 }
 

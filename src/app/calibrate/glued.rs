@@ -117,7 +117,7 @@ pub(super) fn summary(glued: &AsGlued) -> AsGluedSummary {
         glued.of(kind).map(|m| GlueSummary {
             value: m.value * unit,
             sigma: m.sigma * unit,
-            told: m.is_told(),
+            told: m.is_determined(),
         })
     };
     AsGluedSummary {
@@ -127,7 +127,7 @@ pub(super) fn summary(glued: &AsGlued) -> AsGluedSummary {
         gain: GlueSummary {
             value: glued.gain.value,
             sigma: glued.gain.sigma,
-            told: glued.gain.is_told(),
+            told: glued.gain.is_determined(),
         },
     }
 }

@@ -9,9 +9,9 @@ use crate::app::work::Work;
 use crate::gauge::{Bridge, CornerRows, Gauge, GaugeSpec, Rosette, build};
 use crate::linalg::spd;
 use crate::model::Vec3;
+use crate::placement::bundles::{BundleSpec, Bundles, place_bundles};
 use crate::placement::candidates::{Angles, Choice};
 use crate::placement::sites::axis_of;
-use crate::placement::units::{UnitSpec, Units, place_units};
 use crate::placement::wanted::value;
 use crate::placement::{Layout, PlaceError, Spec, condition, place};
 use std::collections::HashMap;
@@ -48,7 +48,7 @@ pub(super) struct Chosen {
     pub least_condition: Option<f64>,
 }
 
-/// Units at most: memory for their rows.
+/// Bundles at most: memory for their rows.
 const MOST_UNITS: usize = 4_000_000;
 
 /// Whether single gauges of one wiring are all there is to choose.
@@ -246,7 +246,7 @@ fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Ref
             "state a wider `angle_step_deg`, or fewer elements; rosettes, pairs and costs are compared one by one",
         )));
     }
-    let mut units = Units::new(k, positions);
+    let mut units = Bundles::new(k, positions);
     let mut described: Vec<Described> = Vec::new();
     let mut add = |members: Vec<(usize, Choice)>, cost: f64, rosette: bool| {
         let rows: Vec<Vec<f64>> = members
@@ -302,7 +302,7 @@ fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Ref
         }
     }
     let budget = p.budget.unwrap_or(spec.gauges as f64);
-    let spec = UnitSpec {
+    let spec = BundleSpec {
         budget,
         spacing: spec.spacing,
         prior: spec.prior.clone(),
@@ -310,10 +310,10 @@ fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Ref
         tolerance: spec.tolerance,
         effort: spec.effort,
     };
-    let layout = place_units(&units, &spec).map_err(Refused::By)?;
-    let n = layout.units.len();
+    let layout = place_bundles(&units, &spec).map_err(Refused::By)?;
+    let n = layout.bundles.len();
     let mut channels = Vec::new();
-    for (i, &u) in layout.units.iter().enumerate() {
+    for (i, &u) in layout.bundles.iter().enumerate() {
         let d = &described[u];
         for (m, (kind, choice)) in d.members.iter().enumerate() {
             let base = name(i, n);
@@ -335,7 +335,7 @@ fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Ref
         proved: false,
         nodes: 0,
         least_condition: None,
-        cost: Some(layout.units.iter().map(|&u| units.cost[u]).sum()),
+        cost: Some(layout.bundles.iter().map(|&u| units.cost[u]).sum()),
     })
 }
 

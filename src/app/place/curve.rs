@@ -29,7 +29,7 @@ pub(super) fn curve(
             gauges,
             ..spec.clone()
         };
-        spec.effort.kicks = spec.effort.kicks.min(4);
+        spec.effort.perturbations = spec.effort.perturbations.min(4);
         spec.effort.starts = spec.effort.starts.min(4);
         spec.proof *= 0.05;
         let chosen = match choose_once(task, kinds, &spec) {

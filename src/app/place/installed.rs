@@ -63,7 +63,7 @@ pub(super) fn installed(
             gauges: gauges.len(),
             effort: crate::placement::exchange::Effort {
                 starts: 2,
-                kicks: 0,
+                perturbations: 0,
                 seed: 1,
             },
             proof: 0.0,

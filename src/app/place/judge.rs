@@ -15,9 +15,9 @@ use crate::units::Quantity;
 
 /// The standard deviations in job order.
 pub(super) fn in_job_order(mut q: Quality, order: &[usize]) -> Quality {
-    let led = q.sigma.clone();
+    let ordered = q.sigma.clone();
     for (i, &l) in order.iter().enumerate() {
-        q.sigma[l] = led[i];
+        q.sigma[l] = ordered[i];
     }
     q
 }

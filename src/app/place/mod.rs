@@ -52,19 +52,12 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     let given = known::given(work, job)?;
     let mut task = task::task(job, fields, cases, scales, sites, given);
     task.keep(work)?;
-    let (led, led_scales) = task.led();
-    let errors = task.errors_led();
+    let (ordered, scales) = task.nuisance_first();
+    let errors = task.errors_nuisance_first();
     let kinds = work.stage("candidates", |_| {
         let angles = angles(job.candidates.angles);
-        let strain = (led.as_slice(), errors.as_slice());
-        pool::kinds(
-            job,
-            fields.model(),
-            &task.sites,
-            strain,
-            &led_scales,
-            &angles,
-        )
+        let strain = (ordered.as_slice(), errors.as_slice());
+        pool::kinds(job, fields.model(), &task.sites, strain, &scales, &angles)
     });
     let mut spec = task.spec(work);
     let chosen = work.stage("place", |w| choose::choose(w, &task, &kinds, &mut spec))?;

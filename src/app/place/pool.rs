@@ -6,9 +6,9 @@ use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::gauge::Bridge;
 use crate::model::{Model, ShellIx};
+use crate::placement::angle_variance::Form;
 use crate::placement::candidates::{Angles, Candidates, Scatter};
 use crate::placement::gradient::forms;
-use crate::placement::quartic::Form;
 use crate::placement::sites::{Site, bridges, wired};
 use crate::sensitivity::LoadCaseOf;
 

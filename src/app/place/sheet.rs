@@ -6,9 +6,9 @@ use super::task::{Task, by_load};
 use crate::app::job::LoadActs;
 use crate::gauge::{Bridge, Gauge};
 use crate::placement::Role;
+use crate::placement::angle_variance;
 use crate::placement::gradient::forms;
 use crate::placement::quality::{Quality, influence};
-use crate::placement::quartic;
 use crate::placement::sites::Site;
 use crate::sensitivity::LoadCaseOf;
 
@@ -26,8 +26,8 @@ pub(super) fn placed(
     let k = task.cases.len();
     let rows: Vec<Vec<f64>> = chosen.channels.iter().map(|c| c.row.clone()).collect();
     let influence = influence(&rows, prior, k).unwrap_or_default();
-    let (led, scales) = task.led();
-    let steep = steepness(task, chosen, &led, &scales);
+    let (ordered, scales) = task.nuisance_first();
+    let steep = steepness(task, chosen, &ordered, &scales);
     let names: Vec<String> = task.job.loads.iter().map(|l| l.name.clone()).collect();
     chosen
         .channels
@@ -77,7 +77,7 @@ pub(super) fn placed(
 }
 
 /// By channel, the change of its reading with its place, microstrain per length, rms over the expected loads.
-fn steepness(task: &Task, chosen: &Chosen, led: &[LoadCaseOf], scales: &[f64]) -> Vec<f64> {
+fn steepness(task: &Task, chosen: &Chosen, ordered: &[LoadCaseOf], scales: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; chosen.channels.len()];
     for bridge in WIRINGS {
         let (at, sites): (Vec<usize>, Vec<Site>) = chosen
@@ -90,10 +90,10 @@ fn steepness(task: &Task, chosen: &Chosen, led: &[LoadCaseOf], scales: &[f64]) -
         if sites.is_empty() {
             continue;
         }
-        let forms = forms(task.fields.model(), &sites, bridge, led, scales, 1.0);
+        let forms = forms(task.fields.model(), &sites, bridge, ordered, scales, 1.0);
         for (i, form) in at.into_iter().zip(&forms) {
-            let phases = quartic::phases(chosen.channels[i].angle);
-            let square = quartic::value(&quartic::of_row(form), &phases);
+            let phases = angle_variance::phases(chosen.channels[i].angle);
+            let square = angle_variance::value(&angle_variance::of_row(form), &phases);
             out[i] = square.max(0.0).sqrt();
         }
     }

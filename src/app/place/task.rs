@@ -40,7 +40,7 @@ pub(super) struct Task<'a> {
 
 impl<'a> Task<'a> {
     /// Loads in the candidates' order, with their scales.
-    pub fn led(&self) -> (Vec<LoadCaseOf<'a>>, Vec<f64>) {
+    pub fn nuisance_first(&self) -> (Vec<LoadCaseOf<'a>>, Vec<f64>) {
         self.order
             .iter()
             .map(|&l| (self.cases[l].clone(), self.scales[l]))
@@ -48,7 +48,7 @@ impl<'a> Task<'a> {
     }
 
     /// Mesh errors in the candidates' order.
-    pub fn errors_led(&self) -> Vec<LoadCaseOf<'a>> {
+    pub fn errors_nuisance_first(&self) -> Vec<LoadCaseOf<'a>> {
         let order = self.order.iter();
         order.filter_map(|&l| self.errors.get(l).cloned()).collect()
     }
@@ -167,11 +167,11 @@ impl<'a> Task<'a> {
 
     /// Mean over the sites of the squares of the strain tensor by pairs of loads, microstrain squared: what I weighs variances with.
     fn mean_strain(&self) -> Vec<f64> {
-        let (led, scales) = self.led();
-        let k = led.len();
+        let (ordered, scales) = self.nuisance_first();
+        let k = ordered.len();
         let mut l = vec![0.0; k * k];
         for &site in &self.sites {
-            let tensors: Vec<[f64; 3]> = led
+            let tensors: Vec<[f64; 3]> = ordered
                 .iter()
                 .zip(&scales)
                 .map(|(c, f)| {

@@ -11,16 +11,18 @@ use super::motion_job;
 use super::redirect::text_of;
 use crate::app::fault::Faults;
 use crate::app::job::{Job, Vehicle as VehicleJob};
-use crate::app::vehicle::{VehicleRecords, read_vehicle, section_of, vehicle_fault, wish_of};
+use crate::app::vehicle::{
+    VehicleRecords, preset_request, read_vehicle, section_of, vehicle_fault,
+};
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::reconcile::Verdict;
 use crate::reconcile::motion::channel_check::broken_channels;
 use crate::reconcile::motion::{MotionEffect, MotionFrame, MotionOutcome, examine, simulated_gap};
-use crate::vehicle::identify::{Identification, Question, identify};
+use crate::vehicle::identify::{Identification, IdentifyTask, identify};
 use crate::vehicle::layout::Vehicle;
 use crate::vehicle::motion::{Motion, Treatment, motion};
-use crate::vehicle::preset::{NEXT, Wish, add_next, vehicle};
+use crate::vehicle::preset::{NEXT, PresetRequest, add_next, vehicle};
 use crate::vehicle::stretch::slow_stretches;
 
 /// What motion says.
@@ -175,7 +177,7 @@ fn is_dead(effect: &MotionEffect) -> bool {
 
 /// The frame of a job: one side of an axle is compared, the other is a witness where it was measured.
 fn frame(section: &VehicleJob, records: &VehicleRecords) -> MotionFrame {
-    let q = &records.question;
+    let q = &records.task;
     let mut model = q.vehicle.clone();
     let recorded = |name: &str| {
         records.data.has(name) && records.hold_out.as_ref().is_none_or(|h| h.has(name))
@@ -184,11 +186,11 @@ fn frame(section: &VehicleJob, records: &VehicleRecords) -> MotionFrame {
         .iter()
         .all(|c| recorded(section.columns.get(*c).map_or(*c, String::as_str)));
     if section.model == "front2" && witnessed {
-        let wish = Wish {
+        let request = PresetRequest {
             model: "front_pair".into(),
-            ..wish_of(section)
+            ..preset_request(section)
         };
-        if let Ok(pair) = vehicle(&wish) {
+        if let Ok(pair) = vehicle(&request) {
             model = Vehicle {
                 steps: model.steps.clone(),
                 ..pair
@@ -226,7 +228,7 @@ fn frame(section: &VehicleJob, records: &VehicleRecords) -> MotionFrame {
 
 /// The analyst's vehicle as identified, with its motion over the fitted record.
 fn driven(records: &VehicleRecords, found: Identification) -> Option<(Identification, Motion)> {
-    let q = &records.question;
+    let q = &records.task;
     let slow = slow_stretches(&found.vehicle, &found.values, &records.data, &q.corrections);
     let treatment = Treatment {
         adjust: q.corrections.clone(),
@@ -248,7 +250,7 @@ fn wheel_forces(
         // Forces of a vehicle that was fitted to a reading that is none.
         return (vec![], None);
     }
-    let identified = |q: &Question| identify(q, &records.data, records.hold_out.as_ref()).ok();
+    let identified = |q: &IdentifyTask| identify(q, &records.data, records.hold_out.as_ref()).ok();
     let misfits = |id: &Identification| -> Vec<(String, f64)> {
         id.fit
             .iter()
@@ -256,16 +258,16 @@ fn wheel_forces(
             .map(|f| (f.channel.clone(), f.relative_rms))
             .collect()
     };
-    let found = identified(&records.question);
+    let found = identified(&records.task);
     let before = found.as_ref().map(misfits).unwrap_or_default();
     let after = (outcome.verdict == Verdict::Named && repairable(outcome)).then(|| {
-        let q = Question {
+        let q = IdentifyTask {
             vehicle: outcome
                 .after
                 .as_ref()
                 .map_or_else(|| frame.vehicle.clone(), |g| g.vehicle.clone()),
             corrections: outcome.corrections.clone(),
-            ..records.question.clone()
+            ..records.task.clone()
         };
         identified(&q).as_ref().map(misfits).unwrap_or_default()
     });

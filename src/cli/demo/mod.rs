@@ -4,7 +4,7 @@
 mod chapter;
 mod jobs;
 mod page;
-mod yard;
+mod simulated_measurements;
 
 pub(super) use chapter::DECK_NAME;
 
@@ -99,7 +99,7 @@ fn planned(
     folder: &Path,
     work: &mut Work,
     story: &mut Vec<Chapter>,
-) -> Result<Vec<yard::Glued>, Faults> {
+) -> Result<Vec<simulated_measurements::Glued>, Faults> {
     write(folder, "truck.bdf", DECK)?;
     let plan = write(folder, "solve.toml", &jobs::plan(None))?;
     let step = play(work, "solve", folder, "1-solve", &plan)?;
@@ -118,7 +118,7 @@ fn planned(
         &jobs::plan(Some("1-solve/results.op2")),
     )?;
     let step = play(work, "place", folder, "2-place", &place)?;
-    let gauges = yard::Glued::of(&step.result);
+    let gauges = simulated_measurements::Glued::of(&step.result);
     story.push(Chapter {
         folder: "2-place",
         words: format!(
@@ -137,13 +137,15 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
     std::fs::create_dir_all(folder).map_err(|e| unwritable(folder, &e))?;
     let mut story: Vec<Chapter> = Vec::new();
     let gauges = planned(folder, work, &mut story)?;
-    // The truck in the yard stands on uneven ground, its gauge factors scatter, its readings are noisy, and two wires are swapped.
-    let yard = work.stage("drive the truck", |_| yard::drive(&gauges))?;
-    write(folder, "strain.csv", &yard.strain_csv)?;
-    write(folder, "runs.csv", &yard.runs_csv)?;
+    // The truck stands on uneven ground, its gauge factors scatter, its readings are noisy, and two wires are swapped.
+    let measured = work.stage("drive the truck", |_| {
+        simulated_measurements::simulate(&gauges)
+    })?;
+    write(folder, "strain.csv", &measured.strain_csv)?;
+    write(folder, "runs.csv", &measured.runs_csv)?;
     let job = write(folder, "recover.toml", &jobs::recover("strain.csv"))?;
     let step = play(work, "recover", folder, "3-recover", &job)?;
-    let before = yard.error_of(&step.result);
+    let before = measured.error_of(&step.result);
     story.push(Chapter {
         folder: "3-recover",
         words: format!(
@@ -166,7 +168,7 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
         folder: "4-reconcile",
         words: format!(
             "Hidden was {}. Named: {}. Gap on runs never fitted: {:.1} % before, {:.1} % after.",
-            yard.hidden,
+            measured.hidden,
             if named.is_empty() {
                 "nothing".to_owned()
             } else {
@@ -185,7 +187,7 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
     let job = corrected(jobs::recover(strain));
     let job = write(folder, "recover_again.toml", &job)?;
     let step = play(work, "recover", folder, "5-recover-again", &job)?;
-    let after = yard.error_of(&step.result);
+    let after = measured.error_of(&step.result);
     story.push(Chapter {
         folder: "5-recover-again",
         words: format!(
@@ -197,7 +199,7 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
     });
     let job = write(folder, "payload.toml", &corrected(jobs::payload(strain)))?;
     let step = play(work, "payload", folder, "6-payload", &job)?;
-    let off = yard.payload_error_of(&step.result);
+    let off = measured.payload_error_of(&step.result);
     story.push(Chapter {
         folder: "6-payload",
         words: format!(
@@ -230,7 +232,7 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
     Ok(Story {
         steps: story.iter().map(step).collect(),
         named,
-        hidden: yard.hidden.clone(),
+        hidden: measured.hidden.clone(),
         wheel_force_error: BeforeAfter { before, after },
         payload_error: off,
         chapters: story,

@@ -60,7 +60,7 @@ pub struct Rainflow<T = ()> {
 }
 
 /// Who hears of a count under way.
-pub(super) trait Heard<T> {
+pub(super) trait Listener<T> {
     /// What belongs to a sample that has become a reversal.
     fn tag(&mut self, point: Point) -> T;
     /// A cycle has closed: its two reversals, which are not seen again.
@@ -70,7 +70,7 @@ pub(super) trait Heard<T> {
 /// Two functions that hear.
 struct Both<F, G>(F, G);
 
-impl<T, F: FnMut(Point) -> T, G: FnMut(&Reversal<T>, &Reversal<T>)> Heard<T> for Both<F, G> {
+impl<T, F: FnMut(Point) -> T, G: FnMut(&Reversal<T>, &Reversal<T>)> Listener<T> for Both<F, G> {
     #[inline(always)]
     fn tag(&mut self, point: Point) -> T {
         (self.0)(point)
@@ -94,12 +94,12 @@ impl<T> Default for Rainflow<T> {
 impl<T> Rainflow<T> {
     /// Takes the next sample. A value that is not finite is passed over.
     #[inline(always)]
-    pub(super) fn push_tagged(&mut self, point: Point, heard: &mut impl Heard<T>) {
+    pub(super) fn push_tagged(&mut self, point: Point, listener: &mut impl Listener<T>) {
         if !point.value.is_finite() {
             return;
         }
         let Some(latest) = self.latest else {
-            let tag = heard.tag(point);
+            let tag = listener.tag(point);
             self.open.push(Reversal { point, tag });
             self.latest = Some(point);
             return;
@@ -110,8 +110,8 @@ impl<T> Rainflow<T> {
         // The last open reversal is where the present rise or fall began.
         let began = self.open.last().map_or(latest.value, |r| r.point.value);
         if (point.value > latest.value) != (latest.value > began) && latest.value != began {
-            let tag = heard.tag(latest);
-            self.reversal(Reversal { point: latest, tag }, heard);
+            let tag = listener.tag(latest);
+            self.reversal(Reversal { point: latest, tag }, listener);
         }
         self.latest = Some(point);
     }
@@ -124,7 +124,7 @@ impl<T> Rainflow<T> {
         first: usize,
         values: &[f64],
         turns: &mut [u32],
-        heard: &mut impl Heard<T>,
+        listener: &mut impl Listener<T>,
     ) {
         let began = self.open.last().map(|r| r.point.value);
         let under_way = self.latest.zip(began).filter(|(l, b)| l.value != *b);
@@ -144,7 +144,7 @@ impl<T> Rainflow<T> {
         }
         if !moves {
             for (at, &value) in (first..).zip(values) {
-                self.push_tagged(Point { at, value }, heard);
+                self.push_tagged(Point { at, value }, listener);
             }
             return;
         }
@@ -154,8 +154,8 @@ impl<T> Rainflow<T> {
                 Some((at, value)) => Point { at, value },
                 None => latest,
             };
-            let tag = heard.tag(point);
-            self.reversal(Reversal { point, tag }, heard);
+            let tag = listener.tag(point);
+            self.reversal(Reversal { point, tag }, listener);
         }
         if let Some((i, &value)) = values.iter().enumerate().next_back() {
             let at = first + i;
@@ -180,7 +180,7 @@ impl<T> Rainflow<T> {
     }
 
     #[inline(always)]
-    fn reversal(&mut self, d: Reversal<T>, heard: &mut impl Heard<T>) {
+    fn reversal(&mut self, d: Reversal<T>, listener: &mut impl Listener<T>) {
         while let [.., a, b, c] = self.open.as_slice() {
             let [av, bv, cv, dv] = [a, b, c, &d].map(|r| r.point.value);
             // Equal values: the later is the higher.
@@ -189,7 +189,7 @@ impl<T> Rainflow<T> {
             if !(if bv > av { rise } else { fall }) {
                 break;
             }
-            heard.closed(b, c);
+            listener.closed(b, c);
             self.open.truncate(self.open.len() - 2);
         }
         self.open.push(d);

@@ -1,6 +1,6 @@
 //! A tally under way: a load's samples as they come, counted as they are and with noise added.
 
-use super::count::{Heard, Point, Rainflow, Reversal};
+use super::count::{Listener, Point, Rainflow, Reversal};
 use super::counts::Counts;
 use super::law::Law;
 use super::tally::{Extreme, Left, NOISE, Sums, Tally, class, extremes, risen};
@@ -18,8 +18,8 @@ pub struct Counter {
     noisy: [Rainflow; 2],
     /// Loads of the latest sample of the plain count.
     carried: Vec<f64>,
-    /// What the plain count tells.
-    told: Told,
+    /// What the plain count has closed.
+    closed: ClosedCycles,
     levels: Counts<i32>,
     max: Option<Extreme>,
     min: Option<Extreme>,
@@ -35,7 +35,7 @@ struct Tag {
 }
 
 /// Sums over the closed cycles of the plain count.
-struct Told {
+struct ClosedCycles {
     width: f64,
     law: Law,
     kept: Slots,
@@ -51,7 +51,7 @@ struct Slots {
 
 /// Hears of the plain count during a push.
 struct Plain<'a> {
-    told: &'a mut Told,
+    closed: &'a mut ClosedCycles,
     rows: &'a [f64],
     /// Number of the first row.
     first: usize,
@@ -98,7 +98,7 @@ impl Counter {
             plain: Rainflow::default(),
             noisy: [Rainflow::default(), Rainflow::default()],
             carried: vec![f64::NAN; n_loads],
-            told: Told {
+            closed: ClosedCycles {
                 width,
                 law,
                 kept: Slots {
@@ -141,8 +141,8 @@ impl Counter {
             noisy: [0.0; BLOCK],
             turns: [0; BLOCK],
         };
-        let mut heard = Plain {
-            told: &mut self.told,
+        let mut listener = Plain {
+            closed: &mut self.closed,
             rows,
             first,
             carried: &self.carried,
@@ -160,9 +160,9 @@ impl Counter {
             let latest = self.plain.latest();
             self.missing += values.iter().filter(|v| !v.is_finite()).count();
             widest(&mut self.max, &mut self.min, at, values);
-            rises(&mut self.levels, heard.told.width, latest, values);
+            rises(&mut self.levels, listener.closed.width, latest, values);
             self.plain
-                .push_block(at, values, &mut room.turns, &mut heard);
+                .push_block(at, values, &mut room.turns, &mut listener);
             if self.noise > 0.0 {
                 for (w, i) in room.white.iter_mut().zip(at..) {
                     *w = white(self.seed, i as u64);
@@ -176,17 +176,17 @@ impl Counter {
                         *y = v + added * w;
                     }
                     let noisy = room.noisy.get(..values.len()).unwrap_or_default();
-                    let mut heard = Noisy {
-                        law: heard.told.law,
+                    let mut listener = Noisy {
+                        law: listener.closed.law,
                         damage: *damage,
                     };
-                    count.push_block(at, noisy, &mut room.turns, &mut heard);
-                    *damage = heard.damage;
+                    count.push_block(at, noisy, &mut room.turns, &mut listener);
+                    *damage = listener.damage;
                 }
             }
             at += count;
         }
-        for (sum, more) in heard.told.sums.damage.iter_mut().zip(damage).skip(1) {
+        for (sum, more) in listener.closed.sums.damage.iter_mut().zip(damage).skip(1) {
             *sum += more;
         }
         let latest = self.plain.latest().and_then(|p| p.at.checked_sub(first));
@@ -198,13 +198,13 @@ impl Counter {
 
     /// The tally.
     pub fn finish(self) -> Tally {
-        let Told {
+        let ClosedCycles {
             width,
             law,
             mut kept,
             cycles,
             sums,
-        } = self.told;
+        } = self.closed;
         let carried = self.carried;
         let bare = |count: Rainflow| -> Vec<Left> {
             let residue = count.residue(&mut |_| ());
@@ -245,7 +245,7 @@ impl Counter {
     }
 }
 
-impl Heard<Tag> for Plain<'_> {
+impl Listener<Tag> for Plain<'_> {
     #[inline(always)]
     fn tag(&mut self, p: Point) -> Tag {
         let k = self.carried.len();
@@ -253,24 +253,27 @@ impl Heard<Tag> for Plain<'_> {
             p.at.checked_sub(self.first)
                 .and_then(|i| self.rows.get(i * k..(i + 1) * k));
         Tag {
-            class: class(p.value, self.told.width),
-            slot: self.told.kept.keep(row.unwrap_or(self.carried)),
+            class: class(p.value, self.closed.width),
+            slot: self.closed.kept.keep(row.unwrap_or(self.carried)),
         }
     }
 
     #[inline(always)]
     fn closed(&mut self, a: &Reversal<Tag>, b: &Reversal<Tag>) {
         let k = self.carried.len();
-        let told = &mut *self.told;
-        told.cycles.add((a.tag.class, b.tag.class));
-        let (from, to) = (told.kept.row(a.tag.slot, k), told.kept.row(b.tag.slot, k));
+        let closed = &mut *self.closed;
+        closed.cycles.add((a.tag.class, b.tag.class));
+        let (from, to) = (
+            closed.kept.row(a.tag.slot, k),
+            closed.kept.row(b.tag.slot, k),
+        );
         let change = b.point.value - a.point.value;
-        told.sums.add(&told.law, 1.0, change, from, to);
-        told.kept.free.extend([a.tag.slot, b.tag.slot]);
+        closed.sums.add(&closed.law, 1.0, change, from, to);
+        closed.kept.free.extend([a.tag.slot, b.tag.slot]);
     }
 }
 
-impl Heard<()> for Noisy {
+impl Listener<()> for Noisy {
     #[inline(always)]
     fn tag(&mut self, _: Point) {}
 

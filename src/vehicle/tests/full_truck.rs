@@ -71,15 +71,11 @@ fn quarter_models_give_wheel_forces_within_five_per_cent_on_another_road_and_spe
     let (fitted, other) = drives();
     for (q, f, o) in [
         (
-            question("front2", &[], (0.7, 10.0)),
+            task("front2", &[], (0.7, 10.0)),
             front(fitted),
             front(other),
         ),
-        (
-            question("rear3", &[], (0.7, 10.0)),
-            rear(fitted),
-            rear(other),
-        ),
+        (task("rear3", &[], (0.7, 10.0)), rear(fitted), rear(other)),
     ] {
         let id = identify(&q, &f, Some(&o)).unwrap();
         for (wheel, misfit) in wheel_misfits(&id) {
@@ -108,7 +104,7 @@ fn whole(r: &Readings) -> Channels {
 }
 
 /// The truck's places, springs inboard of the wheels and the rear ones near a common trunnion.
-fn full_question(terms: &[&str], high: f64) -> Question {
+fn full_task(terms: &[&str], high: f64) -> IdentifyTask {
     let truck = roll_off();
     let mut places = std::collections::BTreeMap::new();
     for (a, letter) in truck.axles.iter().zip(["f", "m", "r"]) {
@@ -120,15 +116,15 @@ fn full_question(terms: &[&str], high: f64) -> Question {
             );
         }
     }
-    let wish = Wish {
+    let request = PresetRequest {
         model: "full3".into(),
         terms: terms.iter().map(|t| (*t).to_owned()).collect(),
         places,
-        ..Wish::default()
+        ..PresetRequest::default()
     };
-    Question {
-        vehicle: vehicle(&wish).unwrap(),
-        ..question("front2", &[], (0.7, high))
+    IdentifyTask {
+        vehicle: vehicle(&request).unwrap(),
+        ..task("front2", &[], (0.7, high))
     }
 }
 
@@ -137,7 +133,7 @@ fn the_full_model_gives_every_wheel_force_within_two_per_cent_on_another_road_an
     let (fitted, other) = drives();
     // The friction's memory (Dahl) is in no model; friction without memory is.
     for terms in [&[][..], &["k", "c", "coulomb_friction"]] {
-        let q = full_question(terms, 10.0);
+        let q = full_task(terms, 10.0);
         let id = identify(&q, &whole(fitted), Some(&whole(other))).unwrap();
         let misfits = wheel_misfits(&id);
         assert_eq!(misfits.len(), 6);

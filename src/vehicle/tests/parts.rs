@@ -136,7 +136,7 @@ fn a_parameter_against_nature_stops_at_its_bound_and_the_rest_is_fitted_around_i
 #[test]
 fn damping_at_its_bound_is_a_finding() {
     let r = quarter(20_000, 5, [3200.0, 1100.0, 490e3, -3000.0]);
-    let id = identify(&question("front2", &[], (1.0, 15.0)), &r, None).unwrap();
+    let id = identify(&task("front2", &[], (1.0, 15.0)), &r, None).unwrap();
     assert_eq!(id.value("c_s"), Some(0.0));
     assert!(
         id.findings
@@ -147,7 +147,7 @@ fn damping_at_its_bound_is_a_finding() {
 
 #[test]
 fn a_simulated_step_follows_the_closed_form() {
-    let q = question("oscillator", &["k", "c"], (0.0, 1.0));
+    let q = task("oscillator", &["k", "c"], (0.0, 1.0));
     let (m, k, c, f) = (2.0, 800.0, 8.0, 3.0);
     let drive = Drive {
         rate_hz: 200.0,
@@ -175,7 +175,7 @@ fn a_simulated_step_follows_the_closed_form() {
 /// Thesis 4.4: the same motion whether the wheel force or the wheel's motion drives the model.
 #[test]
 fn body_motion_is_the_same_from_wheel_force_and_from_wheel_motion() {
-    let q = question("front2", &["k_s", "c_s", "k3_s"], (0.7, 20.0));
+    let q = task("front2", &["k_s", "c_s", "k3_s"], (0.7, 20.0));
     let values = [3000.0, 1000.0, 5e5, 9e3, 1e8];
     let force: Vec<f64> = integrated(
         &noise(4000, 3),
@@ -214,7 +214,7 @@ fn body_motion_is_the_same_from_wheel_force_and_from_wheel_motion() {
 
 #[test]
 fn a_motion_that_runs_away_is_an_error_with_its_time() {
-    let q = question("oscillator", &["k"], (0.0, 1.0));
+    let q = task("oscillator", &["k"], (0.0, 1.0));
     let drive = Drive {
         rate_hz: 100.0,
         forces: vec![Some(vec![1.0; 2000])],
@@ -260,7 +260,7 @@ fn accelerations_in_g_are_recognised() {
         .iter_mut()
         .filter(|c| c.name.starts_with("a_"))
         .for_each(|c| c.samples.iter_mut().for_each(|v| *v = *v / 9.81 - 1.0));
-    let id = identify(&question("front2", &[], (1.0, 15.0)), &r, None).unwrap();
+    let id = identify(&task("front2", &[], (1.0, 15.0)), &r, None).unwrap();
     let f = id
         .findings
         .iter()
@@ -275,7 +275,7 @@ fn missing_samples_cost_a_finding_not_the_answer() {
     for i in [3000, 3001, 9000, 15_000] {
         r.list[1].samples[i] = f64::NAN;
     }
-    let id = identify(&question("front2", &[], (1.0, 15.0)), &r, None).unwrap();
+    let id = identify(&task("front2", &[], (1.0, 15.0)), &r, None).unwrap();
     for (name, truth) in ["m_b", "m_f", "k_s"].into_iter().zip(TRUCK) {
         assert!(
             (id.value(name).unwrap() / truth - 1.0).abs() < 0.01,
@@ -291,14 +291,14 @@ fn missing_samples_cost_a_finding_not_the_answer() {
 
 #[test]
 fn what_cannot_be_answered_is_refused_with_a_remedy() {
-    let q = question("front2", &[], (0.7, 20.0));
+    let q = task("front2", &[], (0.7, 20.0));
     let short = quarter(2000, 8, TRUCK);
     assert!(matches!(
         identify(&q, &short, None),
         Err(VehicleError::Series(SeriesError::TooShort { .. }))
     ));
     let mut r = quarter(20_000, 8, TRUCK);
-    let wide = Question {
+    let wide = IdentifyTask {
         band: Band {
             low_hz: 0.7,
             high_hz: 260.0,
@@ -309,7 +309,7 @@ fn what_cannot_be_answered_is_refused_with_a_remedy() {
         identify(&wide, &r, None),
         Err(VehicleError::Series(SeriesError::Band { .. }))
     ));
-    let known = Question {
+    let known = IdentifyTask {
         known: [("mb".to_owned(), 1.0)].into(),
         ..q.clone()
     };
@@ -324,29 +324,32 @@ fn what_cannot_be_answered_is_refused_with_a_remedy() {
         identify(&q, &r, None),
         Err(VehicleError::Series(SeriesError::Missing { .. }))
     ));
-    let wish = |model: &str, terms: &[&str]| {
-        vehicle(&Wish {
+    let request = |model: &str, terms: &[&str]| {
+        vehicle(&PresetRequest {
             model: model.into(),
             terms: terms.iter().map(|t| (*t).into()).collect(),
-            ..Wish::default()
+            ..PresetRequest::default()
         })
     };
     assert!(matches!(
-        wish("front3", &[]),
+        request("front3", &[]),
         Err(PresetError::Model { .. })
     ));
     assert!(matches!(
-        wish("front2", &["k_x"]),
+        request("front2", &["k_x"]),
         Err(PresetError::Term { .. })
     ));
-    assert!(matches!(wish("full2", &[]), Err(PresetError::Place { .. })));
+    assert!(matches!(
+        request("full2", &[]),
+        Err(PresetError::Place { .. })
+    ));
 }
 
 #[test]
 fn hold_out_at_another_rate_is_judged_all_the_same() {
     let fitted = quarter(20_000, 9, TRUCK);
     let other = quarter_at(400.0, 9_600, 10, TRUCK);
-    let id = identify(&question("front2", &[], (1.0, 15.0)), &fitted, Some(&other)).unwrap();
+    let id = identify(&task("front2", &[], (1.0, 15.0)), &fitted, Some(&other)).unwrap();
     assert!(
         id.fit
             .iter()
@@ -379,7 +382,7 @@ fn two_sides_of_one_axle_are_compared() {
         name: format!("{}_other", c.name),
         ..c
     }));
-    let id = identify(&question("front_pair", &[], (1.0, 15.0)), &r, None).unwrap();
+    let id = identify(&task("front_pair", &[], (1.0, 15.0)), &r, None).unwrap();
     assert!((id.value("k_s_other").unwrap() / 300e3 - 1.0).abs() < 0.01);
     let named: Vec<&str> = id
         .findings

@@ -73,7 +73,7 @@ fn rig(seed: u64) -> Channels {
 /// The thesis is off by 0.1, 9.7, 2.7 and 0.1 % (Table 4.1).
 #[test]
 fn the_rig_of_chapter_4_gives_all_four_parameters_within_one_per_cent() {
-    let q = question("rig", &[], (3.0, 60.0));
+    let q = task("rig", &[], (3.0, 60.0));
     for seed in [1, 2, 3] {
         let id = identify(&q, &rig(seed), None).unwrap();
         for (name, truth) in [("m_1", M1), ("m_2", M2), ("k_1", K1), ("k_2", K2)] {
@@ -89,7 +89,7 @@ fn the_rig_of_chapter_4_gives_all_four_parameters_within_one_per_cent() {
 fn accelerations_only_give_the_rigs_ratios_once_and_for_all_and_name_the_lost_factor() {
     let mut record = rig(4);
     record.list.retain(|c| c.name != "f_1");
-    let q = question("rig", &[], (3.0, 60.0));
+    let q = task("rig", &[], (3.0, 60.0));
     let first = identify(&q, &record, None).unwrap();
     for (name, truth) in [("k_1/m_2", K1 / M2), ("k_2/m_2", K2 / M2)] {
         let p = first.parameters.iter().find(|p| p.name == name).unwrap();

@@ -37,7 +37,7 @@ fn the_control_case_gives_masses_and_stiffness_within_half_a_per_cent_and_wheel_
         return;
     };
     let id = identify(
-        &question("front2", &["k_s", "c_s"], (0.7, 20.0)),
+        &task("front2", &["k_s", "c_s"], (0.7, 20.0)),
         &data,
         Some(&holdout),
     )
@@ -70,13 +70,13 @@ fn the_right_nonlinear_term_brings_stiffness_and_wheel_force_back() {
             return;
         };
         let without = identify(
-            &question("front2", &["k_s", "c_s"], (0.7, 20.0)),
+            &task("front2", &["k_s", "c_s"], (0.7, 20.0)),
             &data,
             Some(&holdout),
         )
         .unwrap();
         let with = identify(
-            &question("front2", &["k_s", "c_s", term], (0.7, 20.0)),
+            &task("front2", &["k_s", "c_s", term], (0.7, 20.0)),
             &data,
             Some(&holdout),
         )
@@ -101,7 +101,7 @@ fn without_a_wheel_force_ratios_are_told_and_the_lost_factor_is_named() {
         return;
     };
     data.list.retain(|c| !c.name.starts_with("f_"));
-    let q = question("front2", &["k_s", "c_s"], (0.7, 20.0));
+    let q = task("front2", &["k_s", "c_s"], (0.7, 20.0));
     let id = identify(&q, &data, None).unwrap();
     let t = |n: &str| truth["true_params"][n].as_f64().unwrap();
     let ratio = |n: &str| id.parameters.iter().find(|p| p.name == n).unwrap();
@@ -129,7 +129,7 @@ fn without_a_wheel_force_ratios_are_told_and_the_lost_factor_is_named() {
         identify(&q, &data, None).unwrap().parameters,
         "run twice, one answer"
     );
-    let known = Question {
+    let known = IdentifyTask {
         known: [("m_b".to_owned(), t("m_b"))].into(),
         ..q
     };
@@ -142,14 +142,14 @@ fn declared_tolerances_widen_the_intervals() {
     let Some((data, _, _)) = case("dev-d1") else {
         return;
     };
-    let q = question("front2", &["k_s", "c_s"], (0.7, 20.0));
-    let sigma = |q: &Question, n: &str| {
+    let q = task("front2", &["k_s", "c_s"], (0.7, 20.0));
+    let sigma = |q: &IdentifyTask, n: &str| {
         let id = identify(q, &data, None).unwrap();
         let p = id.parameters.into_iter().find(|p| p.name == n).unwrap();
         p.sigma.unwrap() / p.value.unwrap()
     };
     let tight = sigma(&q, "m_b");
-    let loose = Question {
+    let loose = IdentifyTask {
         gain_tolerance: 0.01,
         sync_tolerance_s: 4e-4,
         ..q

@@ -25,7 +25,7 @@ fn record() -> Option<(Channels, Channels)> {
 
 /// Simulation error on the rest in mV, its first 200 samples (start from rest) left out.
 fn held_out_mv(terms: &[&str], fitted: &Channels, rest: &Channels) -> f64 {
-    let q = question("oscillator", terms, (3.0, 200.0));
+    let q = task("oscillator", terms, (3.0, 200.0));
     let start = identify(&q, fitted, None).unwrap();
     let free: Vec<usize> = (0..start.values.len()).collect();
     let mut c = comparison(&q.vehicle, fitted, OPEN, &[]).unwrap();

@@ -1,11 +1,11 @@
-//! A layout that climbs: exchanges of single rows until none gains, and kicks out of the optimum it ends in.
+//! Coordinate exchange: exchanges of single rows until none gains, and perturbations out of the optimum it ends in.
 //!
 //! Exchanging gauge `j` for row `i` multiplies `det M` by `(1 + d_i)(1 - d_j) + d_ij^2` (Fedorov, Theory of Optimal Experiments, 1972,
 //! eq. 3.2.4).
 
 use super::criterion::Criterion;
 use super::relaxed::Active;
-use super::table::{Packed, Table};
+use super::variance_table::{Packed, Table};
 use crate::linalg::spd;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -15,15 +15,15 @@ use std::sync::OnceLock;
 const LEAST_GAIN: f64 = 1e-9;
 /// Share of its determinant under which a block counts as lost by an exchange.
 const LEAST_PART: f64 = 1e-9;
-/// Sweeps after which a climb gives up; it stops by itself long before.
+/// Sweeps after which the search gives up; it stops by itself long before.
 const MAX_SWEEPS: usize = 200;
 /// Exchanges after which rounding in the tables is cleared away.
 const FRESH: usize = 400;
 /// Rounding in the sum of the chosen rows' variances from which the tables are made anew.
 const DRIFT: f64 = 1e-7;
-/// Share of the determinant that an exchange of a kick may cost.
+/// Share of the determinant that an perturbing exchange may cost.
 const ROUGH: f64 = 0.05;
-/// Rows a kick draws for a slot.
+/// Rows a perturbation draws for a slot.
 const DRAWS: usize = 12;
 
 /// What can be chosen from.
@@ -60,7 +60,7 @@ impl<'a, E: Fn(usize, usize) -> bool> List<'a, E> {
 
 /// A layout with what its exchanges need.
 #[derive(Clone)]
-pub(super) struct Climb {
+pub(super) struct CoordinateExchange {
     pub rows: Vec<usize>,
     /// The criterion, under the base it was begun with.
     pub value: f64,
@@ -77,7 +77,7 @@ pub(super) struct Climb {
     swaps: usize,
 }
 
-impl Climb {
+impl CoordinateExchange {
     /// Begins with these rows and `base` as prior information; `None` where that is singular.
     pub fn of<E: Fn(usize, usize) -> bool>(
         list: &List<E>,
@@ -222,7 +222,7 @@ impl Climb {
     }
 
     /// Exchanges single rows until none gains; false where it came upon a layout that is singular.
-    pub fn climb<E: Fn(usize, usize) -> bool>(&mut self, list: &List<E>, base: &[f64]) -> bool {
+    pub fn improve<E: Fn(usize, usize) -> bool>(&mut self, list: &List<E>, base: &[f64]) -> bool {
         for _ in 0..MAX_SWEEPS {
             let mut gained = false;
             for slot in 0..self.rows.len() {
@@ -241,7 +241,7 @@ impl Climb {
     }
 
     /// Puts random rows in place of `count` gauges.
-    pub fn kick<E: Fn(usize, usize) -> bool>(
+    pub fn perturb<E: Fn(usize, usize) -> bool>(
         &mut self,
         list: &List<E>,
         count: usize,

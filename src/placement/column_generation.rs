@@ -4,9 +4,9 @@
 
 use super::candidates::{Angles, Candidates, Choice};
 use super::criterion::Criterion;
-use super::kernel::{Priced, Report, price};
 use super::relax::relax;
 use super::relaxed::{Active, Relaxed};
+use super::variance_scan::{Priced, Report, price};
 use std::collections::{HashMap, HashSet};
 
 /// Which rows share a weight of at most 1.

@@ -1,8 +1,8 @@
 //! Layouts of things with several rows or unlike costs: rosettes, symmetric pairs, bridges that take more work than a single grid.
 //!
-//! A unit `u` has rows `R_u` and a cost `c_u`; layouts spend at most a budget. For any regular `M` the criterion of such a layout is at most
+//! A bundle `u` has rows `R_u` and a cost `c_u`; layouts spend at most a budget. For any regular `M` the criterion of such a layout is at most
 //! `value + q ln((tr(G P) + T) / q)`, `T` the largest `sum t_u tr(R_u G R_u')` with `0 <= t_u <= 1` and `sum t_u c_u` within the budget (a
-//! knapsack filled by price over cost, the last unit in part).
+//! knapsack filled by price over cost, the last bundle in part).
 
 use super::criterion::{Criterion, Point};
 use super::exchange::Effort;
@@ -13,14 +13,14 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-/// All units.
+/// All bundles.
 #[derive(Clone, Debug, Default)]
-pub struct Units {
+pub struct Bundles {
     /// Number of columns.
     pub k: usize,
-    /// Rows over their standard deviations, unit after unit.
+    /// Rows over their standard deviations, bundle after bundle.
     pub rows: Vec<f64>,
-    /// Where each unit's rows begin, in rows; one more than there are units.
+    /// Where each bundle's rows begin, in rows; one more than there are bundles.
     pub start: Vec<u32>,
     /// What each costs.
     pub cost: Vec<f64>,
@@ -30,7 +30,7 @@ pub struct Units {
     pub positions: Vec<[f64; 3]>,
 }
 
-impl Units {
+impl Bundles {
     /// None yet, for `k` columns and these places.
     pub fn new(k: usize, positions: Vec<[f64; 3]>) -> Self {
         Self {
@@ -41,7 +41,7 @@ impl Units {
         }
     }
 
-    /// Adds a unit.
+    /// Adds a bundle.
     pub fn add(&mut self, rows: &[Vec<f64>], cost: f64, seats: [u32; 2]) {
         rows.iter().for_each(|r| self.rows.extend_from_slice(r));
         let last = self.start.last().copied().unwrap_or(0);
@@ -55,12 +55,12 @@ impl Units {
         self.cost.len()
     }
 
-    /// True without units.
+    /// True without bundles.
     pub fn is_empty(&self) -> bool {
         self.cost.is_empty()
     }
 
-    /// Rows of a unit.
+    /// Rows of a bundle.
     pub fn rows_of(&self, u: usize) -> impl Iterator<Item = &[f64]> {
         let (a, b) = (self.start[u] as usize, self.start[u + 1] as usize);
         self.rows[a * self.k..b * self.k].chunks_exact(self.k)
@@ -97,10 +97,10 @@ impl Units {
 
 /// What is asked for.
 #[derive(Clone, Debug)]
-pub struct UnitSpec {
+pub struct BundleSpec {
     /// Costs of a layout add up to this at most.
     pub budget: f64,
-    /// Least distance between places of two units; 0: none.
+    /// Least distance between places of two bundles; 0: none.
     pub spacing: f64,
     /// Prior information.
     pub prior: Vec<f64>,
@@ -112,11 +112,11 @@ pub struct UnitSpec {
     pub effort: Effort,
 }
 
-/// Units chosen.
+/// Bundles chosen.
 #[derive(Clone, Debug)]
-pub struct UnitLayout {
+pub struct BundleLayout {
     /// Which, ascending.
-    pub units: Vec<usize>,
+    pub bundles: Vec<usize>,
     /// The criterion.
     pub log_det: f64,
     /// No layout within the budget has a larger one.
@@ -125,33 +125,33 @@ pub struct UnitLayout {
     pub efficiency_bound: f64,
 }
 
-/// Passes over all units at most.
+/// Passes over all bundles at most.
 const PASSES: usize = 25;
 /// Steps of a relaxation between two passes at most.
 const STEPS: usize = 400;
-/// Units an exchange looks at.
+/// Bundles an exchange looks at.
 const LIST: usize = 500;
-/// Units the relaxation begins with, at least.
+/// Bundles the relaxation begins with, at least.
 const FIRST: usize = 400;
 
 /// The best layout found within the budget, with its bound.
 ///
 /// # Errors
 /// Where no layout within the budget separates the loads, or nothing fits.
-pub fn place_units(units: &Units, spec: &UnitSpec) -> Result<UnitLayout, PlaceError> {
-    let k = units.k;
+pub fn place_bundles(bundles: &Bundles, spec: &BundleSpec) -> Result<BundleLayout, PlaceError> {
+    let k = bundles.k;
     let singular = || PlaceError::Singular {
         gauges: spec.budget as usize,
         loads: k,
     };
-    if units.is_empty() {
+    if bundles.is_empty() {
         return Err(PlaceError::TooFewPlaces {
             gauges: spec.budget as usize,
             places: 0,
         });
     }
-    let relaxed = relax(units, spec).ok_or_else(singular)?;
-    let list = relaxed.list(units);
+    let relaxed = relax(bundles, spec).ok_or_else(singular)?;
+    let list = relaxed.list(bundles);
     let mut best: Option<(Vec<usize>, f64)> = None;
     let mut rng = ChaCha8Rng::seed_from_u64(spec.effort.seed);
     let mut order = relaxed.by_weight();
@@ -170,12 +170,12 @@ pub fn place_units(units: &Units, spec: &UnitSpec) -> Result<UnitLayout, PlaceEr
         let mut chosen = Vec::new();
         let mut spent = 0.0;
         for &u in &order {
-            if fits(units, spec, &chosen, spent, u) {
-                spent += units.cost[u];
+            if fits(bundles, spec, &chosen, spent, u) {
+                spent += bundles.cost[u];
                 chosen.push(u);
             }
         }
-        let Some(found) = improve(units, spec, &list, &relaxed, chosen) else {
+        let Some(found) = improve(bundles, spec, &list, &relaxed, chosen) else {
             continue;
         };
         if best.as_ref().is_none_or(|b| found.1 > b.1) {
@@ -186,8 +186,8 @@ pub fn place_units(units: &Units, spec: &UnitSpec) -> Result<UnitLayout, PlaceEr
     chosen.sort_unstable();
     let upper_bound = relaxed.upper.max(log_det);
     let degree = spec.criterion.degree(k) as f64;
-    Ok(UnitLayout {
-        units: chosen,
+    Ok(BundleLayout {
+        bundles: chosen,
         log_det,
         upper_bound,
         efficiency_bound: ((log_det - upper_bound) / degree).exp(),
@@ -197,15 +197,15 @@ pub fn place_units(units: &Units, spec: &UnitSpec) -> Result<UnitLayout, PlaceEr
 /// Room in a budget that is rounding.
 const CENT: f64 = 1e-9;
 
-fn fits(units: &Units, spec: &UnitSpec, chosen: &[usize], spent: f64, u: usize) -> bool {
-    spent + units.cost[u] <= spec.budget + CENT
-        && chosen.iter().all(|&c| !units.exclude(c, u, spec.spacing))
+fn fits(bundles: &Bundles, spec: &BundleSpec, chosen: &[usize], spent: f64, u: usize) -> bool {
+    spent + bundles.cost[u] <= spec.budget + CENT
+        && chosen.iter().all(|&c| !bundles.exclude(c, u, spec.spacing))
 }
 
 struct Relaxed {
     active: Vec<usize>,
     weights: Vec<f64>,
-    /// Price over cost of every unit.
+    /// Price over cost of every bundle.
     worth: Vec<f64>,
     ridge: Vec<f64>,
     upper: f64,
@@ -220,9 +220,9 @@ impl Relaxed {
         order.into_iter().map(|i| self.active[i]).collect()
     }
 
-    /// The units of the largest worth, and those with weight.
-    fn list(&self, units: &Units) -> Vec<usize> {
-        let mut order: Vec<usize> = (0..units.len()).collect();
+    /// The bundles of the largest worth, and those with weight.
+    fn list(&self, bundles: &Bundles) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..bundles.len()).collect();
         let by = |a: &usize, b: &usize| self.worth[*b].total_cmp(&self.worth[*a]).then(a.cmp(b));
         if order.len() > LIST {
             order.select_nth_unstable_by(LIST - 1, by);
@@ -250,27 +250,27 @@ fn knapsack(items: &mut [(f64, f64)], budget: f64) -> f64 {
     sum
 }
 
-fn point(units: &Units, spec: &UnitSpec, active: &[usize], weights: &[f64]) -> Option<Point> {
+fn point(bundles: &Bundles, spec: &BundleSpec, active: &[usize], weights: &[f64]) -> Option<Point> {
     let mut m = spec.prior.clone();
     for (&u, &w) in active.iter().zip(weights) {
         if w > 0.0 {
-            units.add_to(&mut m, u, w);
+            bundles.add_to(&mut m, u, w);
         }
     }
-    spec.criterion.at(&m, units.k)
+    spec.criterion.at(&m, bundles.k)
 }
 
-fn relax(units: &Units, spec: &UnitSpec) -> Option<Relaxed> {
-    let k = units.k;
+fn relax(bundles: &Bundles, spec: &BundleSpec) -> Option<Relaxed> {
+    let k = bundles.k;
     let degree = spec.criterion.degree(k) as f64;
-    let mut stride = (units.len() / FIRST).max(1);
+    let mut stride = (bundles.len() / FIRST).max(1);
     let mut active: Vec<usize>;
     let mut weights: Vec<f64>;
     loop {
-        active = (0..units.len()).step_by(stride).collect();
-        let all: f64 = active.iter().map(|&u| units.cost[u]).sum();
+        active = (0..bundles.len()).step_by(stride).collect();
+        let all: f64 = active.iter().map(|&u| bundles.cost[u]).sum();
         weights = vec![(spec.budget / all).min(1.0); active.len()];
-        if point(units, spec, &active, &weights).is_some() {
+        if point(bundles, spec, &active, &weights).is_some() {
             break;
         }
         if stride == 1 {
@@ -278,23 +278,23 @@ fn relax(units: &Units, spec: &UnitSpec) -> Option<Relaxed> {
         }
         stride = (stride / 4).max(1);
     }
-    let cheapest = units.cost.iter().copied().fold(f64::INFINITY, f64::min);
+    let cheapest = bundles.cost.iter().copied().fold(f64::INFINITY, f64::min);
     let most = (spec.budget / cheapest).ceil() as usize + 1;
     let mut upper = f64::INFINITY;
     let mut inner = 0.02;
     let mut worth = Vec::new();
     for pass in 0..PASSES {
-        solve(units, spec, &active, &mut weights, inner);
-        let here = point(units, spec, &active, &weights)?;
+        solve(bundles, spec, &active, &mut weights, inner);
+        let here = point(bundles, spec, &active, &weights)?;
         let slope = here.slope(k);
-        worth = (0..units.len())
+        worth = (0..bundles.len())
             .into_par_iter()
             .map_init(
                 || vec![0.0; k],
-                |w, u| units.price(u, &slope, w) / units.cost[u],
+                |w, u| bundles.price(u, &slope, w) / bundles.cost[u],
             )
             .collect::<Vec<f64>>();
-        let mut order: Vec<usize> = (0..units.len()).collect();
+        let mut order: Vec<usize> = (0..bundles.len()).collect();
         let by = |a: &usize, b: &usize| worth[*b].total_cmp(&worth[*a]).then(a.cmp(b));
         let keep = most.max(6 * k + 60).min(order.len());
         if keep < order.len() {
@@ -302,10 +302,10 @@ fn relax(units: &Units, spec: &UnitSpec) -> Option<Relaxed> {
             order.truncate(keep);
         }
         order.sort_by(by);
-        // A dear unit among the best leaves room for fewer: the list holds enough of the cheapest.
+        // A dear bundle among the best leaves room for fewer: the list holds enough of the cheapest.
         let mut items: Vec<(f64, f64)> = order
             .iter()
-            .map(|&u| (worth[u] * units.cost[u], units.cost[u]))
+            .map(|&u| (worth[u] * bundles.cost[u], bundles.cost[u]))
             .collect();
         let top = knapsack(&mut items, spec.budget);
         let trace = spd::trace_of_product(&slope, &spec.prior);
@@ -324,7 +324,7 @@ fn relax(units: &Units, spec: &UnitSpec) -> Option<Relaxed> {
         // New ones begin with a little of everyone's weight.
         let share = 0.1;
         weights.iter_mut().for_each(|w| *w *= 1.0 - share);
-        let cost: f64 = fresh.iter().map(|&u| units.cost[u]).sum();
+        let cost: f64 = fresh.iter().map(|&u| bundles.cost[u]).sum();
         if cost > 0.0 {
             weights.extend(vec![(share * spec.budget / cost).min(1.0); fresh.len()]);
             active.extend(fresh);
@@ -332,7 +332,7 @@ fn relax(units: &Units, spec: &UnitSpec) -> Option<Relaxed> {
     }
     let mut ridge = spec.prior.clone();
     for (&u, &w) in active.iter().zip(&weights) {
-        units.add_to(&mut ridge, u, 1e-3 * w);
+        bundles.add_to(&mut ridge, u, 1e-3 * w);
     }
     Some(Relaxed {
         active,
@@ -343,9 +343,15 @@ fn relax(units: &Units, spec: &UnitSpec) -> Option<Relaxed> {
     })
 }
 
-/// Multiplies weights by worth (Titterington's algorithm), none above 1, until the gap over the active units is `tolerance`.
-fn solve(units: &Units, spec: &UnitSpec, active: &[usize], weights: &mut [f64], tolerance: f64) {
-    let k = units.k;
+/// Multiplies weights by worth (Titterington's algorithm), none above 1, until the gap over the active bundles is `tolerance`.
+fn solve(
+    bundles: &Bundles,
+    spec: &BundleSpec,
+    active: &[usize],
+    weights: &mut [f64],
+    tolerance: f64,
+) {
+    let k = bundles.k;
     let degree = spec.criterion.degree(k) as f64;
     let power = if matches!(spec.criterion, Criterion::Linear(_)) {
         0.5
@@ -354,18 +360,18 @@ fn solve(units: &Units, spec: &UnitSpec, active: &[usize], weights: &mut [f64], 
     };
     let mut work = vec![0.0; k];
     for _ in 0..STEPS {
-        let Some(here) = point(units, spec, active, weights) else {
+        let Some(here) = point(bundles, spec, active, weights) else {
             return;
         };
         let slope = here.slope(k);
         let prices: Vec<f64> = active
             .iter()
-            .map(|&u| units.price(u, &slope, &mut work))
+            .map(|&u| bundles.price(u, &slope, &mut work))
             .collect();
         let mut items: Vec<(f64, f64)> = active
             .iter()
             .zip(&prices)
-            .map(|(&u, &p)| (p, units.cost[u]))
+            .map(|(&u, &p)| (p, bundles.cost[u]))
             .collect();
         let top = knapsack(&mut items, spec.budget);
         let trace = spd::trace_of_product(&slope, &spec.prior);
@@ -376,13 +382,13 @@ fn solve(units: &Units, spec: &UnitSpec, active: &[usize], weights: &mut [f64], 
             .iter()
             .zip(&prices)
             .zip(weights.iter())
-            .map(|((&u, p), w)| w * (p / units.cost[u]).powf(power))
+            .map(|((&u, p), w)| w * (p / bundles.cost[u]).powf(power))
             .collect();
         let spent = |f: f64| -> f64 {
             active
                 .iter()
                 .zip(&target)
-                .map(|(&u, t)| units.cost[u] * (f * t).min(1.0))
+                .map(|(&u, t)| bundles.cost[u] * (f * t).min(1.0))
                 .sum()
         };
         let (mut low, mut high) = (0.0, 1.0);
@@ -408,30 +414,30 @@ const LEAST_GAIN: f64 = 1e-9;
 /// Of the candidates of an exchange, those judged exactly.
 const JUDGED: usize = 24;
 
-/// Fills the budget, then exchanges single units until none gains.
+/// Fills the budget, then exchanges single bundles until none gains.
 fn improve(
-    units: &Units,
-    spec: &UnitSpec,
+    bundles: &Bundles,
+    spec: &BundleSpec,
     list: &[usize],
     relaxed: &Relaxed,
     mut chosen: Vec<usize>,
 ) -> Option<(Vec<usize>, f64)> {
     let information = |chosen: &[usize], base: &[f64]| {
         let mut m = base.to_vec();
-        chosen.iter().for_each(|&u| units.add_to(&mut m, u, 1.0));
+        chosen.iter().for_each(|&u| bundles.add_to(&mut m, u, 1.0));
         m
     };
     let value = |chosen: &[usize], base: &[f64]| {
         spec.criterion
-            .at(&information(chosen, base), units.k)
+            .at(&information(chosen, base), bundles.k)
             .map(|p| p.value)
     };
-    let spent = |chosen: &[usize]| -> f64 { chosen.iter().map(|&u| units.cost[u]).sum() };
+    let spent = |chosen: &[usize]| -> f64 { chosen.iter().map(|&u| bundles.cost[u]).sum() };
     let mut base = &spec.prior;
     if value(&chosen, base).is_none() {
         base = &relaxed.ridge;
     }
-    fill(units, spec, list, base, &mut chosen);
+    fill(bundles, spec, list, base, &mut chosen);
     if value(&chosen, &spec.prior).is_some() {
         base = &spec.prior;
     }
@@ -442,7 +448,7 @@ fn improve(
             let mut rest = chosen.clone();
             rest.swap_remove(slot);
             let cost = spent(&rest);
-            for u in promising(units, spec, list, &relaxed.ridge, &rest, cost) {
+            for u in promising(bundles, spec, list, &relaxed.ridge, &rest, cost) {
                 let mut trial = rest.clone();
                 trial.push(u);
                 if let Some(v) = value(&trial, base)
@@ -454,7 +460,7 @@ fn improve(
             }
             if spent(&chosen) < spec.budget - CENT {
                 let mut more = chosen.clone();
-                fill(units, spec, list, base, &mut more);
+                fill(bundles, spec, list, base, &mut more);
                 if let Some(v) = value(&more, base)
                     && v > now + LEAST_GAIN
                 {
@@ -475,18 +481,18 @@ fn improve(
     value(&chosen, &spec.prior).map(|v| (chosen, v))
 }
 
-/// Units that fit beside `rest`, the most promising first: by `ln det(1 + R M^-1 R')`, its first term where the criterion is not D.
+/// Bundles that fit beside `rest`, the most promising first: by `ln det(1 + R M^-1 R')`, its first term where the criterion is not D.
 fn promising(
-    units: &Units,
-    spec: &UnitSpec,
+    bundles: &Bundles,
+    spec: &BundleSpec,
     list: &[usize],
     ridge: &[f64],
     rest: &[usize],
     spent: f64,
 ) -> Vec<usize> {
-    let k = units.k;
+    let k = bundles.k;
     let mut m = ridge.to_vec();
-    rest.iter().for_each(|&u| units.add_to(&mut m, u, 1.0));
+    rest.iter().for_each(|&u| bundles.add_to(&mut m, u, 1.0));
     let Some(here) = spec.criterion.at(&m, k) else {
         return Vec::new();
     };
@@ -494,9 +500,9 @@ fn promising(
     let mut u = vec![0.0; k];
     let mut keyed: Vec<(f64, usize)> = list
         .iter()
-        .filter(|&&c| fits(units, spec, rest, spent, c))
+        .filter(|&&c| fits(bundles, spec, rest, spent, c))
         .map(|&c| {
-            let rows: Vec<&[f64]> = units.rows_of(c).collect();
+            let rows: Vec<&[f64]> = bundles.rows_of(c).collect();
             let n = rows.len();
             let mut g = vec![0.0; n * n];
             for i in 0..n {
@@ -513,25 +519,36 @@ fn promising(
     keyed.into_iter().map(|x| x.1).collect()
 }
 
-/// Adds the unit that gains most for its cost while one fits.
-fn fill(units: &Units, spec: &UnitSpec, list: &[usize], base: &[f64], chosen: &mut Vec<usize>) {
-    let k = units.k;
+/// Adds the bundle that gains most for its cost while one fits.
+fn fill(
+    bundles: &Bundles,
+    spec: &BundleSpec,
+    list: &[usize],
+    base: &[f64],
+    chosen: &mut Vec<usize>,
+) {
+    let k = bundles.k;
     let mut m = base.to_vec();
-    chosen.iter().for_each(|&u| units.add_to(&mut m, u, 1.0));
-    let mut spent: f64 = chosen.iter().map(|&u| units.cost[u]).sum();
+    chosen.iter().for_each(|&u| bundles.add_to(&mut m, u, 1.0));
+    let mut spent: f64 = chosen.iter().map(|&u| bundles.cost[u]).sum();
     let mut work = vec![0.0; k];
     while let Some(here) = spec.criterion.at(&m, k) {
         let slope = here.slope(k);
         let best = list
             .iter()
-            .filter(|&&u| fits(units, spec, chosen, spent, u))
-            .map(|&u| (units.price(u, &slope, &mut work).ln_1p() / units.cost[u], u))
+            .filter(|&&u| fits(bundles, spec, chosen, spent, u))
+            .map(|&u| {
+                (
+                    bundles.price(u, &slope, &mut work).ln_1p() / bundles.cost[u],
+                    u,
+                )
+            })
             .max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
         let Some((_, u)) = best else {
             return;
         };
-        units.add_to(&mut m, u, 1.0);
-        spent += units.cost[u];
+        bundles.add_to(&mut m, u, 1.0);
+        spent += bundles.cost[u];
         chosen.push(u);
     }
 }

@@ -74,7 +74,7 @@ pub fn largest(f: &Trig, v: &Trig, samples: &[[f64; 4]; SAMPLES]) -> (f64, f64) 
     let mut best = (f64::NEG_INFINITY, 0.0);
     for i in 0..SAMPLES {
         if at[i] >= at[(i + 1) % SAMPLES] && at[i] >= at[(i + SAMPLES - 1) % SAMPLES] {
-            let t = climb(&ratio, step * i as f64, step);
+            let t = local_maximum(&ratio, step * i as f64, step);
             let r = ratio(t);
             if r > best.0 {
                 best = (r, t);
@@ -87,7 +87,7 @@ pub fn largest(f: &Trig, v: &Trig, samples: &[[f64; 4]; SAMPLES]) -> (f64, f64) 
         match first_above(&g, 0.0, std::f64::consts::TAU, 0) {
             None => break,
             Some(u) => {
-                let t = climb(&ratio, u / 2.0, step / 4.0);
+                let t = local_maximum(&ratio, u / 2.0, step / 4.0);
                 if ratio(t) <= best.0 {
                     break;
                 }
@@ -102,7 +102,7 @@ pub fn largest(f: &Trig, v: &Trig, samples: &[[f64; 4]; SAMPLES]) -> (f64, f64) 
 }
 
 /// Golden-section search in `[t - h, t + h]`.
-fn climb(f: &impl Fn(f64) -> f64, t: f64, h: f64) -> f64 {
+fn local_maximum(f: &impl Fn(f64) -> f64, t: f64, h: f64) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let (mut a, mut b) = (t - h, t + h);
     let (mut x, mut y) = (b - GOLDEN * (b - a), a + GOLDEN * (b - a));

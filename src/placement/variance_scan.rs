@@ -1,7 +1,7 @@
 //! The variance pass: `d_i = a_i' M^-1 a_i` of every candidate, the large ones kept.
 
+use super::angle_variance::{self, Form, SAMPLES};
 use super::candidates::{Angles, Candidates, Choice, LANES};
-use super::quartic::{self, Form, SAMPLES};
 use rayon::prelude::*;
 
 /// A candidate and its variance (an upper bound within 1e-7 where the angle is continuous).
@@ -41,9 +41,10 @@ pub fn price(
         Angles::Grid(a) => a.clone(),
         _ => Vec::new(),
     };
-    let phases: Vec<[f64; 4]> = grid.iter().map(|&t| quartic::phases(t)).collect();
-    let samples: [[f64; 4]; SAMPLES] =
-        std::array::from_fn(|i| quartic::phases(std::f64::consts::PI * i as f64 / SAMPLES as f64));
+    let phases: Vec<[f64; 4]> = grid.iter().map(|&t| angle_variance::phases(t)).collect();
+    let samples: [[f64; 4]; SAMPLES] = std::array::from_fn(|i| {
+        angle_variance::phases(std::f64::consts::PI * i as f64 / SAMPLES as f64)
+    });
     let arch = pulp::Arch::new();
     let lists: Vec<Vec<Priced>> = c
         .blocks()
@@ -76,10 +77,10 @@ pub fn price(
                     for lane in 0..lanes {
                         let p = first + lane;
                         let g: Form = std::array::from_fn(|i| forms[i][lane]);
-                        let (f, v) = (quartic::of_row(&g), c.variance(p));
+                        let (f, v) = (angle_variance::of_row(&g), c.variance(p));
                         if grid.is_empty() {
-                            if !quartic::stays_under(&f, &v, threshold, &samples) {
-                                let (angle, d) = quartic::largest(&f, &v, &samples);
+                            if !angle_variance::stays_under(&f, &v, threshold, &samples) {
+                                let (angle, d) = angle_variance::largest(&f, &v, &samples);
                                 if d >= threshold {
                                     out.push(Priced {
                                         d,
@@ -95,7 +96,7 @@ pub fn price(
                         }
                         let mut best: Option<Priced> = None;
                         for (step, cs) in phases.iter().enumerate() {
-                            let d = quartic::value(&f, cs) / quartic::value(&v, cs);
+                            let d = angle_variance::value(&f, cs) / angle_variance::value(&v, cs);
                             if d >= threshold {
                                 let item = Priced {
                                     d,

@@ -1,4 +1,4 @@
-//! The truck in the yard: what its gauges and wheel transducers would have read.
+//! The truck as measured, by simulation: what its gauges and wheel transducers would have read.
 
 use super::chapter::DECK;
 use super::jobs::{NOISE, PAYLOAD, WHEELS};
@@ -49,8 +49,8 @@ impl Glued {
     }
 }
 
-/// What was measured, and the truth that nobody in the yard knows.
-pub(super) struct Yard {
+/// What was measured, and the truth that is hidden from whoever recovers the loads.
+pub(super) struct Simulated {
     pub strain_csv: String,
     pub runs_csv: String,
     /// The effect that was hidden.
@@ -59,7 +59,7 @@ pub(super) struct Yard {
     truth: Vec<(String, Vec<f64>, f64)>,
 }
 
-impl Yard {
+impl Simulated {
     /// Root mean square error of the recovered wheel loads over that of the loads.
     pub(super) fn error_of(&self, result: &Value) -> f64 {
         let (mut off, mut size) = (0.0, 0.0);
@@ -118,7 +118,7 @@ const MICRO: f64 = 1e-6;
 ///
 /// # Errors
 /// Mistakes of the program only: the deck is its own.
-pub(super) fn drive(glued: &[Glued]) -> Result<Yard, Faults> {
+pub(super) fn simulate(glued: &[Glued]) -> Result<Simulated, Faults> {
     let program = |wrong: String| {
         Faults::from(Fault::of(
             "truck.bdf",
@@ -192,7 +192,7 @@ pub(super) fn drive(glued: &[Glued]) -> Result<Yard, Faults> {
         .enumerate()
         .map(|(g, _)| (1.0 + GAIN * normal()) * if g == flipped { -1.0 } else { 1.0 })
         .collect();
-    let mut yard = Yard {
+    let mut simulated = Simulated {
         strain_csv: "run".into(),
         runs_csv: "run,payload_mass,payload_x,payload_y".into(),
         hidden: format!(
@@ -202,10 +202,10 @@ pub(super) fn drive(glued: &[Glued]) -> Result<Yard, Faults> {
         truth: Vec::new(),
     };
     glued.iter().for_each(|g| {
-        let _ = write!(yard.strain_csv, ",{}", g.name);
+        let _ = write!(simulated.strain_csv, ",{}", g.name);
     });
     WHEELS.iter().for_each(|w| {
-        let _ = write!(yard.runs_csv, ",{}.FZ", w.0);
+        let _ = write!(simulated.runs_csv, ",{}.FZ", w.0);
     });
     for (i, (kilogram, dx)) in RUNS.into_iter().enumerate() {
         let run = format!("R{:02}", i + 1);
@@ -214,28 +214,28 @@ pub(super) fn drive(glued: &[Glued]) -> Result<Yard, Faults> {
         let amounts = [-weight, 0.0, weight * dx];
         let heights: Vec<f64> = WHEELS.iter().map(|_| GROUND * normal()).collect();
         let reactions = reactions(&standing, &turns, at, &amounts, &heights);
-        let _ = write!(yard.strain_csv, "\n{run}");
+        let _ = write!(simulated.strain_csv, "\n{run}");
         for (gauge, gain) in gauges.iter().zip(&gains) {
             let strain = superposed(gauge, &standing.contacts, &reactions)
                 + superposed(gauge, &standing.others, &amounts);
             let read = gain * strain / MICRO + NOISE.0 * normal();
-            let _ = write!(yard.strain_csv, ",{read:.2}");
+            let _ = write!(simulated.strain_csv, ",{read:.2}");
         }
         let _ = write!(
-            yard.runs_csv,
+            simulated.runs_csv,
             "\n{run},{kilogram:.1},{:.3},{:.3}",
             (at.x + dx) / KILO,
             at.y / KILO
         );
         for r in &reactions {
-            let _ = write!(yard.runs_csv, ",{:.3}", r / KILO + NOISE.1 * normal());
+            let _ = write!(simulated.runs_csv, ",{:.3}", r / KILO + NOISE.1 * normal());
         }
         let truth = reactions.iter().map(|r| r / KILO).collect();
-        yard.truth.push((run, truth, weight / KILO));
+        simulated.truth.push((run, truth, weight / KILO));
     }
-    yard.strain_csv.push('\n');
-    yard.runs_csv.push('\n');
-    Ok(yard)
+    simulated.strain_csv.push('\n');
+    simulated.runs_csv.push('\n');
+    Ok(simulated)
 }
 
 /// The gauge that reads most under a payload in the middle on flat ground: the one that is wired the wrong way round.
