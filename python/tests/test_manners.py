@@ -66,11 +66,14 @@ def test_a_fork_after_use_works():
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
 def test_ctrl_c_stops_the_work():
+    # A shell's background job ignores Ctrl-C, and so would this process.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     job = sb.Job.read(ROOT / "models" / "truck-shell" / "job.toml")
     timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
     with pytest.raises(KeyboardInterrupt):
         sb.place(job, cache=False)
+    signal.signal(signal.SIGINT, before)
     assert len(sb.place_rows(S, 6).rows) == 6
 
 
