@@ -12,6 +12,7 @@ use super::spacing;
 use super::spec::{Loss, Spec};
 use super::variance_scan::{Priced, Report, price};
 use std::collections::HashMap;
+use std::fmt;
 
 /// A layout with its certificate.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,12 +36,9 @@ pub struct Layout {
 }
 
 /// Why there is no layout.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum PlaceError {
     /// Fewer places than gauges.
-    #[error(
-        "{gauges} gauges are asked for and the candidates hold {places} places: ask for fewer, or widen [candidates]"
-    )]
     TooFewPlaces {
         /// Asked for.
         gauges: usize,
@@ -48,10 +46,6 @@ pub enum PlaceError {
         places: usize,
     },
     /// No layout separates the loads.
-    #[error(
-        "no {gauges} gauges among these candidates separate the {loads} loads: ask for at least {loads} gauges, drop loads that act alike, \
-         or state `expected` for loads with role \"nuisance\""
-    )]
     Singular {
         /// Asked for.
         gauges: usize,
@@ -59,9 +53,6 @@ pub enum PlaceError {
         loads: usize,
     },
     /// The spacing leaves too few places.
-    #[error(
-        "{gauges} gauges do not fit at least {spacing} apart among the candidates: reduce the spacing or the number"
-    )]
     TooTight {
         /// Asked for.
         gauges: usize,
@@ -69,6 +60,37 @@ pub enum PlaceError {
         spacing: f64,
     },
 }
+
+impl PlaceError {
+    /// What is wrong, and what to do.
+    pub fn parts(&self) -> (String, String) {
+        match self {
+            Self::TooFewPlaces { gauges, places } => (
+                format!("{gauges} gauges are asked for and the candidates hold {places} places"),
+                "ask for fewer, or widen [candidates]".to_owned(),
+            ),
+            Self::Singular { gauges, loads } => (
+                format!("no {gauges} gauges among these candidates separate the {loads} loads"),
+                format!(
+                    "ask for at least {loads} gauges, drop loads that act alike, or state `expected` for loads with role \"nuisance\""
+                ),
+            ),
+            Self::TooTight { gauges, spacing } => (
+                format!("{gauges} gauges do not fit at least {spacing} apart among the candidates"),
+                "reduce the spacing or the number".to_owned(),
+            ),
+        }
+    }
+}
+
+impl fmt::Display for PlaceError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (wrong, remedy) = self.parts();
+        write!(f, "{wrong}: {remedy}")
+    }
+}
+
+impl std::error::Error for PlaceError {}
 
 /// The best layout found for `spec`, with the bound that no other can pass.
 ///
