@@ -7,7 +7,6 @@ use numpy::{PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::time::Instant;
-use strainbridge::app::fault::split_message;
 use strainbridge::linalg::{Matrix, dense};
 use strainbridge::placement::candidates::{Candidates, Scatter};
 use strainbridge::placement::{Layout, Spec, place};
@@ -129,7 +128,7 @@ fn layout(
         candidates = candidates.with_positions(p.to_vec());
     }
     let found = place(&candidates, spec).map_err(|e| {
-        let (said, remedy) = split_message(&e);
+        let (said, remedy) = e.parts();
         Faults::from(Fault::of(S.function, "S", said, remedy))
     })?;
     let place_of = |i: usize| found.gauges[i].place as usize;

@@ -54,15 +54,6 @@ impl Fault {
     }
 }
 
-/// What is wrong and what to do: the parts of an error's text before and after its last colon.
-pub fn split_message(error: &impl fmt::Display) -> (String, String) {
-    let text = error.to_string();
-    match text.rsplit_once(": ") {
-        Some((wrong, remedy)) => (wrong.to_owned(), remedy.to_owned()),
-        None => (text, "see the message".to_owned()),
-    }
-}
-
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(

@@ -1,6 +1,6 @@
 //! The vehicle of a job and its records, in the job's units: what `identify` and `reconcile` start from.
 
-use super::fault::{Fault, FaultList, Faults, split_message};
+use super::fault::{Fault, FaultList, Faults};
 use super::job::{ChannelCorrection, Job, NamedFile, Vehicle as VehicleJob};
 use super::work::Work;
 use crate::finding::{Finding, Severity};
@@ -188,7 +188,7 @@ pub fn preset_request(section: &VehicleJob) -> PresetRequest {
 /// A fault at the line of the job for what the vehicle layer refuses.
 pub fn vehicle_fault(job: &Job, file: &str, e: &VehicleError) -> Fault {
     let line = job.vehicle.as_ref().map_or(0, |v| v.line);
-    let (wrong, remedy) = split_message(&e);
+    let (wrong, remedy) = e.parts();
     match e {
         VehicleError::HeldOut(inner) => {
             let hold_out = job.vehicle.as_ref().and_then(|v| v.hold_out.as_ref());
@@ -205,7 +205,7 @@ fn preset_fault(job: &Job, section: &VehicleJob, e: &PresetError) -> Fault {
         PresetError::Term { .. } => "vehicle.terms",
         PresetError::Place { .. } => "vehicle.places",
     };
-    let (wrong, remedy) = split_message(&e);
+    let (wrong, remedy) = e.parts();
     Fault::at(&*job.file, section.line, key, wrong, remedy)
 }
 
@@ -224,7 +224,7 @@ fn read_record(
         read_csv(&bytes, section.sample_rate)
     };
     let mut record = read.map_err(|e| {
-        let (wrong, remedy) = split_message(&e);
+        let (wrong, remedy) = e.parts();
         match &e {
             crate::series::SeriesError::Line { line, what, remedy } => Faults::from(Fault::at(
                 &*named.given,

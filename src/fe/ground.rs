@@ -1,12 +1,11 @@
 //! Springs and bushes that join grids to ground: what they put onto the structure is a reaction.
 
 use super::constraint::{Reduction, State};
-use super::element::ElementRef;
 use super::error::FeError;
 use super::grid_frames::{to_basic, to_local};
 use super::prepared::Prepared;
 use super::scalar_points::carry_to_grids;
-use crate::model::{GridIx, Model};
+use crate::model::{ElementRef, GridIx, Model};
 
 /// What joins a grid to ground.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,5 @@
 //! Reactions: what supports put onto the structure.
 
-use super::element::ElementRef;
 use super::error::FeError;
 use super::grid_frames::{to_basic, to_local};
 use super::ground::{ground_forces, grounds};
@@ -9,7 +8,7 @@ use super::prepared::Prepared;
 use super::system::System;
 use super::unbalanced::{Left, unbalanced};
 use crate::finding::Finding;
-use crate::model::{Model, Vec3};
+use crate::model::{ElementRef, Model, Vec3};
 use rayon::prelude::*;
 use serde::Serialize;
 

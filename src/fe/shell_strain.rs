@@ -1,7 +1,7 @@
 //! Strain of shells from displacements.
 
 use super::ShellField;
-use super::element::shell::{AnyShell, Parts, many_grids, shell_heat, shell_matrices, surfaces};
+use super::element::shell::{AnyShell, Parts, shell_heat, shell_matrices, surfaces};
 use super::error::{FeError, Refusal};
 use super::options::Corners;
 use super::prepared::Prepared;
@@ -122,7 +122,7 @@ fn fill(
                     Some(AnyShell::Many(m)) => m,
                     _ => plain,
                 };
-                let local: Vec<f64> = many_grids(shell).0.iter().flat_map(|g| u[g.us()]).collect();
+                let local: Vec<f64> = shell.all_grids().iter().flat_map(|g| u[g.us()]).collect();
                 centre[at] = m.centre.surfaces(z, &local, &free(None));
                 if let Some(slot) = corners.get_mut(at) {
                     *slot = [[[f64::NAN; 3]; 2]; 4];

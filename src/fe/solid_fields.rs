@@ -1,7 +1,7 @@
 //! Strain of solids from displacements.
 
 use super::SolidField;
-use super::element::solid::{SolidStrain, solid_grids, solid_strain};
+use super::element::solid::{SolidStrain, solid_strain};
 use super::error::{FeError, Refusal};
 use super::prepared::Prepared;
 use super::temperature::Temperatures;
@@ -22,7 +22,7 @@ pub(crate) fn solid_fields(
     let by_solid: Result<Vec<Vec<SolidStrain>>, Refusal> = (0..model.solids.len())
         .into_par_iter()
         .map(|i| {
-            let grids = solid_grids(&model.solids[i]);
+            let grids = model.solids[i].all_grids();
             let fields: Vec<(&[[f64; 6]], Vec<f64>)> = u
                 .iter()
                 .zip(temperatures)

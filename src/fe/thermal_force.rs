@@ -3,7 +3,7 @@
 use super::element::beam::{Interior, beam_end_forces};
 use super::element::rod_thermal_force;
 use super::element::shell::shell_thermal_force;
-use super::element::solid::{solid_grids, solid_thermal_force};
+use super::element::solid::solid_thermal_force;
 use super::error::FeError;
 use super::prepared::Prepared;
 use super::temperature::{Temperatures, beam_expansion};
@@ -23,7 +23,7 @@ pub(crate) fn thermal_forces(
     let solids: Vec<_> = (0..model.solids.len())
         .into_par_iter()
         .map(|i| {
-            let grids = solid_grids(&model.solids[i]);
+            let grids = model.solids[i].all_grids();
             solid_thermal_force(model, i, &t.solid_rise(model, i, &grids))
         })
         .collect();

@@ -1,11 +1,10 @@
 //! Whether the reactions balance what acts, and what it means where they don't.
 
-use super::element::ElementRef;
 use super::error::FeError;
 use super::formulation::{gap_leaves_moment, held_off_axes};
 use super::prepared::Prepared;
 use crate::finding::{Finding, Severity};
-use crate::model::{Model, Spring, Vec3};
+use crate::model::{ElementRef, Model, Spring, Vec3};
 
 /// Share of forces, or moments, that may stay unbalanced: that of a solution whose equations hold to six digits.
 const LIMIT: f64 = 1e-6;

@@ -1,50 +1,12 @@
 //! What hangs at a grid, for messages.
 
-use crate::model::{GridIx, Model};
+use crate::model::{ElementRef, GridIx, Model};
 
 /// Elements with a grid, in words, at most four named.
 pub(crate) fn what_hangs(model: &Model, grid: GridIx) -> String {
-    let mut all: Vec<String> = Vec::new();
-    let has = |list: &[GridIx]| list.contains(&grid);
-    for s in &model.shells {
-        if has(&s.grids[..s.shape.n_corners()]) {
-            all.push(format!("{} {}", s.shape.card(), s.id));
-        }
-    }
-    let solids = model.solids.iter();
-    all.extend(
-        solids
-            .filter(|s| s.grids.contains(&Some(grid)))
-            .map(|s| format!("{} {}", s.shape.card(), s.id)),
-    );
-    for b in model.beams.iter().filter(|b| has(&b.grids)) {
-        all.push(format!(
-            "{} {}",
-            if b.is_beam { "CBEAM" } else { "CBAR" },
-            b.id
-        ));
-    }
-    all.extend(
-        model
-            .rods
-            .iter()
-            .filter(|r| has(&r.grids))
-            .map(|r| format!("rod {}", r.id)),
-    );
-    all.extend(
-        model
-            .bushes
-            .iter()
-            .filter(|b| b.grids.0 == grid || b.grids.1 == Some(grid))
-            .map(|b| format!("CBUSH {}", b.id)),
-    );
-    all.extend(
-        model
-            .springs
-            .iter()
-            .filter(|s| s.ends.iter().flatten().any(|e| e.0 == grid))
-            .map(|s| format!("spring {}", s.id)),
-    );
+    let here = |e: &ElementRef| model.element_grids(*e).contains(&grid);
+    let named = |e: ElementRef| format!("{} {}", model.element_word(e), model.element_id(e));
+    let mut all: Vec<String> = model.elements().filter(here).map(named).collect();
     all.extend(
         model
             .masses
@@ -55,12 +17,6 @@ pub(crate) fn what_hangs(model: &Model, grid: GridIx) -> String {
     for r in &model.rigids {
         if r.kind.grids().contains(&grid) {
             all.push(format!("{} {}", r.kind.card(), r.id));
-        }
-    }
-    for j in &model.joints {
-        let mut motion = j.ends.iter().flat_map(|e| &e.motion);
-        if motion.any(|m| m.0 == grid) {
-            all.push(format!("{} {}", j.card.name(), j.id));
         }
     }
     // The equations of a rigid bush or a weld go by the name of their card, which is listed already.
@@ -74,3 +30,6 @@ pub(crate) fn what_hangs(model: &Model, grid: GridIx) -> String {
         (false, more) => format!("{} and {more} more", all.join(", ")),
     }
 }
+
+#[cfg(test)]
+mod tests;

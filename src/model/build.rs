@@ -291,17 +291,8 @@ impl Model {
             .map(|i| FrameIx(i as u32))
     }
 
-    /// Number of elements: shells, beams, rods, bushes, joints, springs, solids, shear panels, masses and rigid elements.
+    /// Number of elements: those with stiffness, masses and rigid elements.
     pub fn n_elements(&self) -> usize {
-        self.shells.len()
-            + self.beams.len()
-            + self.rods.len()
-            + self.bushes.len()
-            + self.joints.len()
-            + self.springs.len()
-            + self.solids.len()
-            + self.shear_panels.len()
-            + self.masses.len()
-            + self.rigids.len()
+        self.elements().count() + self.masses.len() + self.rigids.len()
     }
 }

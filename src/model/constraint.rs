@@ -205,51 +205,18 @@ impl Builder<'_> {
                 *u = true;
             }
         };
-        m.shells.iter().for_each(|s| {
-            s.grids
-                .iter()
-                .take(s.shape.n_grids())
-                .for_each(|g| mark(*g))
-        });
-        m.beams
-            .iter()
-            .for_each(|b| b.grids.iter().for_each(|g| mark(*g)));
-        m.rods
-            .iter()
-            .for_each(|b| b.grids.iter().for_each(|g| mark(*g)));
-        m.bushes.iter().for_each(|b| {
-            std::iter::once(b.grids.0)
-                .chain(b.grids.1)
-                .for_each(&mut mark)
-        });
-        m.springs
-            .iter()
-            .for_each(|b| b.ends.iter().flatten().for_each(|e| mark(e.0)));
-        m.solids
-            .iter()
-            .for_each(|s| s.grids.iter().flatten().for_each(|g| mark(*g)));
-        m.shear_panels
-            .iter()
-            .for_each(|s| s.grids.iter().for_each(|g| mark(*g)));
+        m.elements()
+            .flat_map(|e| m.element_grids(e))
+            .for_each(&mut mark);
         m.masses.iter().for_each(|c| mark(c.grid));
         m.mpcs
             .iter()
             .flat_map(|s| &s.equations)
             .flat_map(|e| &e.0)
             .for_each(|t| mark(t.0));
-        m.joints
-            .iter()
-            .flat_map(|j| &j.ends)
-            .flat_map(|e| &e.motion)
-            .for_each(|t| mark(t.0));
         m.rigids
             .iter()
             .flat_map(|r| r.kind.grids())
-            .for_each(&mut mark);
-        m.beams
-            .iter()
-            .filter_map(|b| b.warping)
-            .flatten()
             .for_each(&mut mark);
         self.points.iter().copied().for_each(&mut mark);
         let free: Vec<(u32, Place)> = m

@@ -8,6 +8,7 @@ mod build;
 mod connector;
 mod constraint;
 mod curved;
+mod elements;
 mod face;
 mod fault;
 mod frame;
@@ -35,6 +36,7 @@ mod unsupported_cards;
 mod tests;
 
 pub(crate) use curved::{face_edges, face_functions, solid_edges, solid_functions};
+pub(crate) use elements::ElementRef;
 #[cfg(feature = "report")]
 pub(crate) use face::faces as solid_faces;
 pub use fault::*;

@@ -4,6 +4,7 @@ mod ballast;
 mod carrier;
 mod evidence;
 mod locate;
+mod one_run;
 mod robust;
 #[cfg(test)]
 mod tests;

@@ -1,7 +1,8 @@
 //! A payload weighed by all there is: single gauges, all gauges together, wheel forces; checked by sign and equilibrium.
 
 use super::evidence::{PayloadModel, PayloadRun, Place, Refusal, Support, WeighSpec, WeighedRun};
-use super::locate::{Balance, Located, Location, locate, tells};
+use super::locate::{Location, locate, tells};
+use super::one_run::{Balance, Located};
 use super::robust::{
     GaugeEstimates, GaugeVerdict, RobustSpec, SIGN_SIGMAS, cut_at_zero, doubt, robust_payload,
     verdict_words,

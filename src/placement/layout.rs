@@ -12,6 +12,7 @@ use super::spacing;
 use super::spec::{Loss, Spec};
 use super::variance_scan::{Priced, Report, price};
 use std::collections::HashMap;
+use std::fmt;
 
 /// A layout with its certificate.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,12 +36,9 @@ pub struct Layout {
 }
 
 /// Why there is no layout.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum PlaceError {
     /// Fewer places than gauges.
-    #[error(
-        "{gauges} gauges are asked for and the candidates hold {places} places: ask for fewer, or widen [candidates]"
-    )]
     TooFewPlaces {
         /// Asked for.
         gauges: usize,
@@ -48,10 +46,6 @@ pub enum PlaceError {
         places: usize,
     },
     /// No layout separates the loads.
-    #[error(
-        "no {gauges} gauges among these candidates separate the {loads} loads: ask for at least {loads} gauges, drop loads that act alike, \
-         or state `expected` for loads with role \"nuisance\""
-    )]
     Singular {
         /// Asked for.
         gauges: usize,
@@ -59,9 +53,6 @@ pub enum PlaceError {
         loads: usize,
     },
     /// The spacing leaves too few places.
-    #[error(
-        "{gauges} gauges do not fit at least {spacing} apart among the candidates: reduce the spacing or the number"
-    )]
     TooTight {
         /// Asked for.
         gauges: usize,
@@ -70,146 +61,266 @@ pub enum PlaceError {
     },
 }
 
+impl PlaceError {
+    /// What is wrong, and what to do.
+    pub fn parts(&self) -> (String, String) {
+        match self {
+            Self::TooFewPlaces { gauges, places } => (
+                format!("{gauges} gauges are asked for and the candidates hold {places} places"),
+                "ask for fewer, or widen [candidates]".to_owned(),
+            ),
+            Self::Singular { gauges, loads } => (
+                format!("no {gauges} gauges among these candidates separate the {loads} loads"),
+                format!(
+                    "ask for at least {loads} gauges, drop loads that act alike, or state `expected` for loads with role \"nuisance\""
+                ),
+            ),
+            Self::TooTight { gauges, spacing } => (
+                format!("{gauges} gauges do not fit at least {spacing} apart among the candidates"),
+                "reduce the spacing or the number".to_owned(),
+            ),
+        }
+    }
+}
+
+impl fmt::Display for PlaceError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (wrong, remedy) = self.parts();
+        write!(f, "{wrong}: {remedy}")
+    }
+}
+
+impl std::error::Error for PlaceError {}
+
 /// The best layout found for `spec`, with the bound that no other can pass.
 ///
 /// # Errors
 /// Where there are too few places, or the loads can't be separated by that many gauges.
 pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
-    let (loads, s) = (c.n_loads(), spec.gauges);
     // Loads asked for.
-    let k = spec.criterion.degree(loads);
-    let q = &spec.criterion;
+    let k = spec.criterion.degree(c.n_loads());
     let spaced = spec.spacing > 0.0 && !c.positions().is_empty();
-    let mut groups = if spaced || *c.angles() == Angles::Continuous {
-        Groups::Places
-    } else {
-        Groups::Rows
-    };
-    let places = if groups == Groups::Rows {
-        c.n_rows()
-    } else {
-        c.n_places()
-    };
-    if places < s || s == 0 {
-        return Err(PlaceError::TooFewPlaces { gauges: s, places });
-    }
-    let singular = PlaceError::Singular { gauges: s, loads };
-    let mut col = column_generation::solve(c, s, &spec.prior, q, &groups, spec.tolerance, &[])
-        .ok_or_else(|| singular.clone())?;
-    let mut upper = col.upper_bound;
-    let mut passes = col.passes;
+    let mut bound = Bound::of(c, spec, spaced)?;
     let quick = Effort {
         starts: if spaced { 4 } else { 2 },
         perturbations: 0,
         ..spec.effort
     };
-    let mut list = list_of(c, &col, &groups, 0.0);
-    let mut best = run(c, spec, &list, &col, quick, None);
+    let list = list_of(c, &bound.col, &bound.groups, 0.0);
+    let mut best = run(c, spec, &list, &bound.col, quick, None);
     if spaced {
-        for _ in 0..CLIQUE_ROUNDS {
-            let floor = best.as_ref().map_or(0.0, |b| elimination(&col, k, b.1));
-            let priced = price(
-                c,
-                &col.relaxed.point.root,
-                floor,
-                Report::BestOfPlace,
-                usize::MAX,
-            );
-            let of = spacing::cliques(c.n_places(), &priced, c.positions(), spec.spacing);
-            groups = Groups::Cliques(of);
-            let Some(next) = column_generation::solve(
-                c,
-                s,
-                &spec.prior,
-                q,
-                &groups,
-                spec.tolerance,
-                &col.choices,
-            ) else {
-                break;
-            };
-            passes += next.passes;
-            let gained = upper - next.upper_bound;
-            upper = upper.min(next.upper_bound);
-            col = next;
-            list = list_of(c, &col, &groups, 0.0);
-            let found = run(c, spec, &list, &col, quick, best.as_ref());
-            best = better(best, found);
-            if gained < spec.tolerance * k as f64 {
-                break;
-            }
-        }
+        best = tighten(c, spec, &mut bound, quick, best);
     }
-    let none = if spaced {
+    let incumbent = best.ok_or(if spaced {
         PlaceError::TooTight {
-            gauges: s,
+            gauges: spec.gauges,
             spacing: spec.spacing,
         }
     } else {
-        singular
-    };
-    let incumbent = best.ok_or(none)?;
+        singular(c, spec)
+    })?;
     // What can't be in a better layout may be in one that loses less.
     let floor = match spec.loss {
-        Loss::Judged => elimination(&col, k, incumbent.1),
+        Loss::Judged => elimination(&bound.col, k, incumbent.1),
         Loss::Optimised => 0.0,
     };
-    list = list_of(c, &col, &groups, floor);
-    let found = run(c, spec, &list, &col, spec.effort, Some(&incumbent));
-    let (mut gauges, mut log_det) = better(Some(incumbent.clone()), found).unwrap_or(incumbent);
+    let list = list_of(c, &bound.col, &bound.groups, floor);
+    let found = exchange(c, spec, &mut bound, &list, incumbent);
+    let robust = match spec.loss {
+        Loss::Optimised => robust_of(c, spec, &list, &found.0),
+        Loss::Judged => None,
+    };
+    let end = match robust {
+        Some(found) => End::unproved(found),
+        None => certify(c, spec, &mut bound, found),
+    };
+    let (mut gauges, log_det) = end.found;
+    gauges.sort_by(|a, b| a.place.cmp(&b.place).then(a.angle.total_cmp(&b.angle)));
+    // A layout is a lower bound of the best; rounding may leave it above the certificate by as much as the arithmetic.
+    let upper_bound = if end.proved {
+        log_det
+    } else {
+        bound.upper.max(log_det)
+    };
+    let efficiency_bound = ((log_det - upper_bound) / k as f64).exp();
+    Ok(Layout {
+        gauges,
+        log_det,
+        upper_bound,
+        efficiency_bound,
+        proved: end.proved,
+        passes: bound.passes,
+        alive: end.alive,
+        nodes: end.nodes,
+    })
+}
+
+fn singular(c: &Candidates, spec: &Spec) -> PlaceError {
+    PlaceError::Singular {
+        gauges: spec.gauges,
+        loads: c.n_loads(),
+    }
+}
+
+/// The relaxation: what no layout can pass.
+struct Bound {
+    /// Candidates of which a layout has one at most.
+    groups: Groups,
+    /// The relaxation as solved last.
+    col: Columns,
+    /// The least bound so far.
+    upper: f64,
+    /// Passes over all candidates so far.
+    passes: usize,
+}
+
+impl Bound {
+    fn of(c: &Candidates, spec: &Spec, spaced: bool) -> Result<Self, PlaceError> {
+        let groups = if spaced || *c.angles() == Angles::Continuous {
+            Groups::Places
+        } else {
+            Groups::Rows
+        };
+        let places = if groups == Groups::Rows {
+            c.n_rows()
+        } else {
+            c.n_places()
+        };
+        let gauges = spec.gauges;
+        if places < gauges || gauges == 0 {
+            return Err(PlaceError::TooFewPlaces { gauges, places });
+        }
+        let col = relaxed(c, spec, &groups, &[]).ok_or_else(|| singular(c, spec))?;
+        Ok(Self {
+            groups,
+            upper: col.upper_bound,
+            passes: col.passes,
+            col,
+        })
+    }
+}
+
+fn relaxed(c: &Candidates, spec: &Spec, groups: &Groups, warm: &[Choice]) -> Option<Columns> {
+    column_generation::solve(
+        c,
+        spec.gauges,
+        &spec.prior,
+        &spec.criterion,
+        groups,
+        spec.tolerance,
+        warm,
+    )
+}
+
+/// Lowers the bound by sets of places within a spacing of each other, of which a layout has one at most, chosen by their prices; the best
+/// layout met.
+fn tighten(
+    c: &Candidates,
+    spec: &Spec,
+    bound: &mut Bound,
+    quick: Effort,
+    mut best: Option<Found>,
+) -> Option<Found> {
+    let k = spec.criterion.degree(c.n_loads());
+    for _ in 0..CLIQUE_ROUNDS {
+        let floor = best
+            .as_ref()
+            .map_or(0.0, |b| elimination(&bound.col, k, b.1));
+        let priced = price(
+            c,
+            &bound.col.relaxed.point.root,
+            floor,
+            Report::BestOfPlace,
+            usize::MAX,
+        );
+        let of = spacing::cliques(c.n_places(), &priced, c.positions(), spec.spacing);
+        bound.groups = Groups::Cliques(of);
+        let Some(next) = relaxed(c, spec, &bound.groups, &bound.col.choices) else {
+            break;
+        };
+        bound.passes += next.passes;
+        let gained = bound.upper - next.upper_bound;
+        bound.upper = bound.upper.min(next.upper_bound);
+        bound.col = next;
+        let list = list_of(c, &bound.col, &bound.groups, 0.0);
+        let found = run(c, spec, &list, &bound.col, quick, best.as_ref());
+        best = better(best, found);
+        if gained < spec.tolerance * k as f64 {
+            break;
+        }
+    }
+    best
+}
+
+/// The best layout by exchange: within the list, then with the rows whose variance in the layout is largest; its angles polished where they
+/// are continuous.
+fn exchange(
+    c: &Candidates,
+    spec: &Spec,
+    bound: &mut Bound,
+    list: &[Priced],
+    incumbent: Found,
+) -> Found {
+    let found = run(c, spec, list, &bound.col, spec.effort, Some(&incumbent));
+    let mut best = better(Some(incumbent.clone()), found).unwrap_or(incumbent);
     // A list that was cut may lack what this layout lacks.
     let rounds = if list.len() < LIST { 0 } else { ROUNDS };
     for _ in 0..rounds {
-        let near = around(c, spec, &gauges);
-        let known = (gauges.clone(), log_det);
+        let near = around(c, spec, &best.0);
         let effort = Effort {
             starts: 1,
             perturbations: spec.effort.perturbations / 4,
             ..spec.effort
         };
-        passes += 1;
-        match run(c, spec, &near, &col, effort, Some(&known)) {
-            Some(next) if next.1 > log_det + branch_and_bound::SAME => (gauges, log_det) = next,
+        bound.passes += 1;
+        match run(c, spec, &near, &bound.col, effort, Some(&best)) {
+            Some(next) if next.1 > best.1 + branch_and_bound::SAME => best = next,
             _ => break,
         }
     }
     if *c.angles() == Angles::Continuous {
-        (gauges, log_det) = polish(c, spec, gauges, log_det);
+        best = polish(c, spec, best.0, best.1);
     }
-    let robust = match spec.loss {
-        Loss::Optimised => robust_of(c, spec, &list, &gauges),
-        Loss::Judged => None,
-    };
-    let mut proved = robust.is_none() && log_det >= upper - branch_and_bound::SAME;
-    let (mut alive, mut nodes) = (None, 0);
-    if let Some(found) = robust {
-        (gauges, log_det) = found;
-    } else if !proved && spec.proof > 0.0 && *c.angles() != Angles::Continuous {
-        let tried;
-        (alive, tried) = prove(c, spec, &col, &groups, log_det, upper);
-        if let Some((proof, choices)) = tried {
-            (proved, nodes) = (proof.proved, proof.nodes);
-            upper = upper.min(proof.upper);
-            if let Some(best) = proof.best {
-                gauges = best.rows.iter().map(|&i| choices[i]).collect();
-                log_det = best.log_det;
-            }
+    best
+}
+
+/// A layout and what is known of those that could be better.
+struct End {
+    found: Found,
+    proved: bool,
+    alive: Option<usize>,
+    nodes: usize,
+}
+
+impl End {
+    fn unproved(found: Found) -> Self {
+        Self {
+            found,
+            proved: false,
+            alive: None,
+            nodes: 0,
         }
     }
-    gauges.sort_by(|a, b| a.place.cmp(&b.place).then(a.angle.total_cmp(&b.angle)));
-    // A layout is a lower bound of the best; rounding may leave it above the certificate by as much as the arithmetic.
-    upper = if proved { log_det } else { upper.max(log_det) };
-    let efficiency_bound = ((log_det - upper) / k as f64).exp();
-    Ok(Layout {
-        gauges,
-        log_det,
-        upper_bound: upper,
-        efficiency_bound,
-        proved,
-        passes,
-        alive,
-        nodes,
-    })
+}
+
+/// The layout held against the bound, and the proof where the bound leaves room and one is asked for.
+fn certify(c: &Candidates, spec: &Spec, bound: &mut Bound, found: Found) -> End {
+    let mut end = End::unproved(found);
+    end.proved = end.found.1 >= bound.upper - branch_and_bound::SAME;
+    if end.proved || !(spec.proof > 0.0) || *c.angles() == Angles::Continuous {
+        return end;
+    }
+    let (alive, tried) = prove(c, spec, &bound.col, &bound.groups, end.found.1, bound.upper);
+    end.alive = alive;
+    if let Some((proof, choices)) = tried {
+        (end.proved, end.nodes) = (proof.proved, proof.nodes);
+        bound.upper = bound.upper.min(proof.upper);
+        if let Some(best) = proof.best {
+            let gauges = best.rows.iter().map(|&i| choices[i]).collect();
+            end.found = (gauges, best.log_det);
+        }
+    }
+    end
 }
 
 /// The layout near `gauges` that leaves most after the worst loss; `None` where there is none better.

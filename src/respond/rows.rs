@@ -2,7 +2,7 @@
 
 use crate::fe::strain_tensor::Surface;
 use crate::finding::{Finding, Severity};
-use crate::model::{BeamIx, MaterialIx, MaterialKind, Model, ShellIx, ShellKind};
+use crate::model::{Beam, BeamIx, MaterialIx, MaterialKind, Model, ShellIx, ShellKind};
 use crate::sensitivity::LoadCaseOf;
 
 /// A place with stress.
@@ -60,100 +60,143 @@ pub fn response_rows(
     loads: &[LoadCaseOf],
     among: impl Fn(u32) -> bool,
 ) -> (Vec<ResponseRow>, Vec<Finding>) {
-    let mut rows = Vec::new();
-    let (mut anisotropic, mut absent) = (0_usize, 0_usize);
+    let mut formed = Formed::default();
     for (i, shell) in model.shells.iter().enumerate() {
-        if !among(shell.id) {
-            continue;
+        if among(shell.id) {
+            formed.take(shell_rows(model, loads, ShellIx(i as u32), shell.id));
         }
-        let ix = ShellIx(i as u32);
-        let places: Option<Vec<usize>> = loads
+    }
+    for (i, beam) in model.beams.iter().enumerate() {
+        if among(beam.id) {
+            formed.take(beam_rows(model, loads, BeamIx(i as u32), beam));
+        }
+    }
+    let mut rows = formed.rows;
+    rows.retain(|r| r.stress.iter().flatten().all(|v| v.is_finite()));
+    let findings = left_out(formed.anisotropic, formed.absent);
+    (rows, findings)
+}
+
+/// Why an element has no rows.
+enum Without {
+    /// It is not of one isotropic material.
+    Isotropy,
+    /// Some load's case has no strain of it.
+    Strain,
+}
+
+/// Rows so far, and how many elements have none.
+#[derive(Default)]
+struct Formed {
+    rows: Vec<ResponseRow>,
+    anisotropic: usize,
+    absent: usize,
+}
+
+impl Formed {
+    fn take(&mut self, element: Result<Vec<ResponseRow>, Without>) {
+        match element {
+            Ok(rows) => self.rows.extend(rows),
+            Err(Without::Isotropy) => self.anisotropic += 1,
+            Err(Without::Strain) => self.absent += 1,
+        }
+    }
+}
+
+/// Rows of both sides of a shell.
+fn shell_rows(
+    model: &Model,
+    loads: &[LoadCaseOf],
+    ix: ShellIx,
+    element: u32,
+) -> Result<Vec<ResponseRow>, Without> {
+    let places: Option<Vec<usize>> = loads
+        .iter()
+        .map(|l| l.case.shells.elements.binary_search(&ix).ok())
+        .collect();
+    let places = places.ok_or(Without::Strain)?;
+    let (e, g, nu) = shell_material(model, ix)
+        .and_then(|m| isotropic(model, m))
+        .ok_or(Without::Isotropy)?;
+    let side = |surface: Surface| {
+        let strain: Vec<[f64; 3]> = loads
             .iter()
-            .map(|l| l.case.shells.elements.binary_search(&ix).ok())
+            .zip(&places)
+            .map(|(l, row)| {
+                let v = l.case.shells.centre.get(*row);
+                v.map_or([f64::NAN; 3], |v| v[surface.ix()].map(|v| v / l.applied))
+            })
             .collect();
-        let Some(places) = places else {
-            absent += 1;
-            continue;
-        };
-        let Some((e, g, nu)) = shell_material(model, ix).and_then(|m| isotropic(model, m)) else {
-            anisotropic += 1;
-            continue;
-        };
-        for surface in [Surface::Bottom, Surface::Top] {
+        let stress = strain
+            .iter()
+            .map(|[ex, ey, s]| {
+                let plane = e / (1.0 - nu * nu);
+                [plane * (ex + nu * ey), plane * (ey + nu * ex), g * s]
+            })
+            .collect();
+        ResponseRow {
+            place: Place::Shell { shell: ix, surface },
+            element,
+            stress,
+            strain,
+        }
+    };
+    Ok([Surface::Bottom, Surface::Top].map(side).into())
+}
+
+/// Rows of the recovery points of a bar or beam at each of its stations.
+fn beam_rows(
+    model: &Model,
+    loads: &[LoadCaseOf],
+    ix: BeamIx,
+    beam: &Beam,
+) -> Result<Vec<ResponseRow>, Without> {
+    let fields: Option<Vec<&Vec<(f64, [f64; 4])>>> = loads
+        .iter()
+        .map(|l| {
+            let row = l.case.beams.elements.binary_search(&ix).ok()?;
+            l.case.beams.stations.get(row)
+        })
+        .collect();
+    let fields = fields.ok_or(Without::Strain)?;
+    let property = model.beam_properties.get(beam.property.us());
+    let (e, _, _) = property
+        .and_then(|p| isotropic(model, p.material))
+        .ok_or(Without::Isotropy)?;
+    let Some(first) = fields.first() else {
+        return Ok(Vec::new());
+    };
+    let mut rows = Vec::new();
+    for (s, (station, _)) in first.iter().enumerate() {
+        for point in 0..4 {
             let strain: Vec<[f64; 3]> = loads
                 .iter()
-                .zip(&places)
-                .map(|(l, row)| {
-                    let v = l.case.shells.centre.get(*row);
-                    v.map_or([f64::NAN; 3], |v| v[surface.ix()].map(|v| v / l.applied))
-                })
-                .collect();
-            let stress = strain
-                .iter()
-                .map(|[ex, ey, s]| {
-                    let plane = e / (1.0 - nu * nu);
-                    [plane * (ex + nu * ey), plane * (ey + nu * ex), g * s]
+                .zip(&fields)
+                .map(|(l, f)| {
+                    [
+                        f.get(s).map_or(f64::NAN, |v| v.1[point] / l.applied),
+                        0.0,
+                        0.0,
+                    ]
                 })
                 .collect();
             rows.push(ResponseRow {
-                place: Place::Shell { shell: ix, surface },
-                element: shell.id,
-                stress,
+                place: Place::Beam {
+                    beam: ix,
+                    point,
+                    station: *station,
+                },
+                element: beam.id,
+                stress: strain.iter().map(|v| [e * v[0], 0.0, 0.0]).collect(),
                 strain,
             });
         }
     }
-    for (i, beam) in model.beams.iter().enumerate() {
-        if !among(beam.id) {
-            continue;
-        }
-        let ix = BeamIx(i as u32);
-        let fields: Option<Vec<&Vec<(f64, [f64; 4])>>> = loads
-            .iter()
-            .map(|l| {
-                let row = l.case.beams.elements.binary_search(&ix).ok()?;
-                l.case.beams.stations.get(row)
-            })
-            .collect();
-        let Some(fields) = fields else {
-            absent += 1;
-            continue;
-        };
-        let property = model.beam_properties.get(beam.property.us());
-        let Some((e, _, _)) = property.and_then(|p| isotropic(model, p.material)) else {
-            anisotropic += 1;
-            continue;
-        };
-        let Some(first) = fields.first() else {
-            continue;
-        };
-        for (s, (station, _)) in first.iter().enumerate() {
-            for point in 0..4 {
-                let strain: Vec<[f64; 3]> = loads
-                    .iter()
-                    .zip(&fields)
-                    .map(|(l, f)| {
-                        [
-                            f.get(s).map_or(f64::NAN, |v| v.1[point] / l.applied),
-                            0.0,
-                            0.0,
-                        ]
-                    })
-                    .collect();
-                rows.push(ResponseRow {
-                    place: Place::Beam {
-                        beam: ix,
-                        point,
-                        station: *station,
-                    },
-                    element: beam.id,
-                    stress: strain.iter().map(|v| [e * v[0], 0.0, 0.0]).collect(),
-                    strain,
-                });
-            }
-        }
-    }
-    rows.retain(|r| r.stress.iter().flatten().all(|v| v.is_finite()));
+    Ok(rows)
+}
+
+/// What is to be said of elements without rows.
+fn left_out(anisotropic: usize, absent: usize) -> Vec<Finding> {
     let mut findings = Vec::new();
     if anisotropic > 0 {
         findings.push(
@@ -179,7 +222,7 @@ pub fn response_rows(
             .with_numbers(absent as f64, 0.0),
         );
     }
-    (rows, findings)
+    findings
 }
 
 fn shell_material(model: &Model, ix: ShellIx) -> Option<MaterialIx> {

@@ -1,14 +1,11 @@
 //! What can be wrong with a record.
 
-use thiserror::Error;
+use std::fmt;
 
 /// What can be wrong with a record.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum SeriesError {
     /// Two channels differ in length.
-    #[error(
-        "channel `{name}` has {found} samples, `{first}` has {expected}: cut or resample both to one length"
-    )]
     Length {
         /// Offending channel.
         name: String,
@@ -20,7 +17,6 @@ pub enum SeriesError {
         expected: usize,
     },
     /// No channel of this name.
-    #[error("no channel `{name}`; the record holds {}: name it in the job or rename the column", .present.join(", "))]
     Missing {
         /// Wanted name.
         name: String,
@@ -28,7 +24,6 @@ pub enum SeriesError {
         present: Vec<String>,
     },
     /// A line of a table can't be read.
-    #[error("line {line}: {what}: {remedy}")]
     Line {
         /// Line number, from 1.
         line: usize,
@@ -38,9 +33,6 @@ pub enum SeriesError {
         remedy: &'static str,
     },
     /// The time column and the declared sample rate disagree.
-    #[error(
-        "the time column says {found_hz:.6} Hz, the job says {declared_hz:.6} Hz: correct `sample_rate`, or resample the file"
-    )]
     Rate {
         /// From the time column.
         found_hz: f64,
@@ -48,9 +40,6 @@ pub enum SeriesError {
         declared_hz: f64,
     },
     /// The time steps are unequal.
-    #[error(
-        "the time step at line {line} is {found_s:.6} s, elsewhere {expected_s:.6} s: samples are missing or repeated; resample the file to even steps"
-    )]
     UnevenTime {
         /// Line number, from 1.
         line: usize,
@@ -60,12 +49,8 @@ pub enum SeriesError {
         expected_s: f64,
     },
     /// Neither a time column nor a declared rate.
-    #[error("neither a `t` or `time` column nor a `sample_rate`: state one of them")]
     NoRate,
     /// A record shorter than its use needs.
-    #[error(
-        "the record lasts {found_s:.2} s, at least {needed_s:.2} s are needed for a band from {low_hz} Hz: record longer or raise the lower band edge"
-    )]
     TooShort {
         /// Duration.
         found_s: f64,
@@ -74,13 +59,14 @@ pub enum SeriesError {
         /// Lower band edge.
         low_hz: f64,
     },
-    /// A file of a known format that can't be read; the sentence ends with what to do.
-    #[error("{0}")]
-    Broken(String),
+    /// A file of a known format that can't be read.
+    Broken {
+        /// What is wrong.
+        wrong: String,
+        /// What to do.
+        remedy: &'static str,
+    },
     /// Times that do not ascend.
-    #[error(
-        "time {time_s} s at line {line} comes after {before_s} s: samples are out of order or repeated; write each sample once, in order of time"
-    )]
     NotAscending {
         /// Line or sample, from 1.
         line: usize,
@@ -90,18 +76,13 @@ pub enum SeriesError {
         before_s: f64,
     },
     /// A time that is missing or no number.
-    #[error("the time at line {line} is missing: give every sample its time")]
     NoTime {
         /// Line or sample, from 1.
         line: usize,
     },
     /// A file without samples.
-    #[error("it holds no samples, only a header: record again, or leave the file out")]
     Empty,
     /// No sample for most of the record's span.
-    #[error(
-        "{missing} samples are missing between {from_s} s and {to_s} s, more than the record holds: cut the record there, or correct its times"
-    )]
     Hole {
         /// Last time before.
         from_s: f64,
@@ -111,9 +92,6 @@ pub enum SeriesError {
         missing: u64,
     },
     /// A kind of file that this build does not read.
-    #[error(
-        "it is {name}, which this build of strainbridge does not read: take a released binary, build with `--features {feature}`, or export the record as CSV or RPC III"
-    )]
     NotBuilt {
         /// What it is.
         name: &'static str,
@@ -121,15 +99,11 @@ pub enum SeriesError {
         feature: &'static str,
     },
     /// Channels that were not sampled together.
-    #[error(
-        "channels {} were sampled at other times than the rest: bring all to one rate first (`resample` of asammdf does it)", .names.join(", ")
-    )]
     Apart {
         /// Their names.
         names: Vec<String>,
     },
     /// A band that the sampling can't hold.
-    #[error("the band {low_hz} to {high_hz} Hz does not fit a sample rate of {rate_hz} Hz: need 0 < low < high < {:.3} Hz", .rate_hz / 2.0)]
     Band {
         /// Lower edge.
         low_hz: f64,
@@ -139,3 +113,121 @@ pub enum SeriesError {
         rate_hz: f64,
     },
 }
+
+impl SeriesError {
+    /// What is wrong, and what to do.
+    pub fn parts(&self) -> (String, String) {
+        let (wrong, remedy) = match self {
+            Self::Length {
+                name,
+                found,
+                first,
+                expected,
+            } => (
+                format!("channel `{name}` has {found} samples, `{first}` has {expected}"),
+                "cut or resample both to one length",
+            ),
+            Self::Missing { name, present } => (
+                format!(
+                    "no channel `{name}`; the record holds {}",
+                    present.join(", ")
+                ),
+                "name it in the job or rename the column",
+            ),
+            Self::Line { line, what, remedy } => (format!("line {line}: {what}"), *remedy),
+            Self::Rate {
+                found_hz,
+                declared_hz,
+            } => (
+                format!("the time column says {found_hz:.6} Hz, the job says {declared_hz:.6} Hz"),
+                "correct `sample_rate`, or resample the file",
+            ),
+            Self::UnevenTime {
+                line,
+                found_s,
+                expected_s,
+            } => (
+                format!(
+                    "the time step at line {line} is {found_s:.6} s, elsewhere {expected_s:.6} s"
+                ),
+                "samples are missing or repeated; resample the file to even steps",
+            ),
+            Self::NoRate => (
+                "neither a `t` or `time` column nor a `sample_rate`".to_owned(),
+                "state one of them",
+            ),
+            Self::TooShort {
+                found_s,
+                needed_s,
+                low_hz,
+            } => (
+                format!(
+                    "the record lasts {found_s:.2} s, at least {needed_s:.2} s are needed for a band from {low_hz} Hz"
+                ),
+                "record longer or raise the lower band edge",
+            ),
+            Self::Broken { wrong, remedy } => (wrong.clone(), *remedy),
+            Self::NotAscending {
+                line,
+                time_s,
+                before_s,
+            } => (
+                format!("time {time_s} s at line {line} comes after {before_s} s"),
+                "samples are out of order or repeated; write each sample once, in order of time",
+            ),
+            Self::NoTime { line } => (
+                format!("the time at line {line} is missing"),
+                "give every sample its time",
+            ),
+            Self::Empty => (
+                "it holds no samples, only a header".to_owned(),
+                "record again, or leave the file out",
+            ),
+            Self::Hole {
+                from_s,
+                to_s,
+                missing,
+            } => (
+                format!(
+                    "{missing} samples are missing between {from_s} s and {to_s} s, more than the record holds"
+                ),
+                "cut the record there, or correct its times",
+            ),
+            Self::NotBuilt { name, feature } => {
+                let wrong = format!("it is {name}, which this build of strainbridge does not read");
+                let remedy = format!(
+                    "take a released binary, build with `--features {feature}`, or export the record as CSV or RPC III"
+                );
+                return (wrong, remedy);
+            }
+            Self::Apart { names } => (
+                format!(
+                    "channels {} were sampled at other times than the rest",
+                    names.join(", ")
+                ),
+                "bring all to one rate first (`resample` of asammdf does it)",
+            ),
+            Self::Band {
+                low_hz,
+                high_hz,
+                rate_hz,
+            } => {
+                let wrong = format!(
+                    "the band {low_hz} to {high_hz} Hz does not fit a sample rate of {rate_hz} Hz"
+                );
+                let remedy = format!("need 0 < low < high < {:.3} Hz", rate_hz / 2.0);
+                return (wrong, remedy);
+            }
+        };
+        (wrong, remedy.to_owned())
+    }
+}
+
+impl fmt::Display for SeriesError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (wrong, remedy) = self.parts();
+        write!(f, "{wrong}: {remedy}")
+    }
+}
+
+impl std::error::Error for SeriesError {}

@@ -14,9 +14,10 @@ use std::sync::Arc;
 const GROUP: usize = 131_072;
 
 fn broken(e: ParquetError) -> SeriesError {
-    SeriesError::Broken(format!(
-        "it can't be written as Parquet ({e}): report this as an error of the program"
-    ))
+    SeriesError::Broken {
+        wrong: format!("it can't be written as Parquet ({e})"),
+        remedy: "report this as an error of the program",
+    }
 }
 
 /// A file with a column `time` (s, 64 bits) and one a name (32 bits, NaN where nothing was measured), `notes` as its key-value metadata.

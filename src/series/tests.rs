@@ -292,6 +292,30 @@ fn bad_csv_names_the_line_and_the_remedy() {
 }
 
 #[test]
+fn what_to_do_stays_whole_where_names_and_remedies_hold_colons() {
+    let missing = read_csv(b"left: front\n1\n", Some(5.0))
+        .unwrap()
+        .samples("rear: left")
+        .unwrap_err();
+    let (wrong, remedy) = missing.parts();
+    assert!(wrong.contains("`rear: left`") && wrong.contains("left: front"));
+    assert_eq!(remedy, "name it in the job or rename the column");
+    let line = SeriesError::Line {
+        line: 1,
+        what: "no line names the columns".into(),
+        remedy: "begin with a header line: `time` and a name a channel",
+    };
+    assert_eq!(
+        line.parts().1,
+        "begin with a header line: `time` and a name a channel"
+    );
+    assert_eq!(
+        line.to_string(),
+        format!("{}: {}", line.parts().0, line.parts().1)
+    );
+}
+
+#[test]
 fn channels_of_different_length_are_refused_by_name() {
     let list = vec![
         Channel {

@@ -3,7 +3,7 @@
 use super::layout::{Body, Link, Measures, Point, Sensor, Shape, Vehicle, Wheel};
 use super::term::Term;
 use std::collections::BTreeMap;
-use thiserror::Error;
+use std::fmt;
 
 /// Names of the models.
 pub const MODELS: [&str; 8] = [
@@ -18,16 +18,14 @@ pub const MODELS: [&str; 8] = [
 ];
 
 /// What can be wrong with the request for a vehicle.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum PresetError {
     /// No such model.
-    #[error("no vehicle model `{name}`: use one of {}", MODELS.join(", "))]
     Model {
         /// As written.
         name: String,
     },
     /// A term that is unknown or meets no link.
-    #[error("term `{term}` means nothing in model `{model}`: write a coefficient such as {}, or an effect such as `cubic_stiffness`", .examples.join(", "))]
     Term {
         /// As written.
         term: String,
@@ -37,9 +35,6 @@ pub enum PresetError {
         examples: Vec<String>,
     },
     /// A place that the model needs.
-    #[error(
-        "model `{model}` needs the place of `{place}`: add `places = {{ {place} = [x, y] }}` to [vehicle]"
-    )]
     Place {
         /// The model.
         model: String,
@@ -47,6 +42,42 @@ pub enum PresetError {
         place: String,
     },
 }
+
+impl PresetError {
+    /// What is wrong, and what to do.
+    pub fn parts(&self) -> (String, String) {
+        match self {
+            Self::Model { name } => (
+                format!("no vehicle model `{name}`"),
+                format!("use one of {}", MODELS.join(", ")),
+            ),
+            Self::Term {
+                term,
+                model,
+                examples,
+            } => (
+                format!("term `{term}` means nothing in model `{model}`"),
+                format!(
+                    "write a coefficient such as {}, or an effect such as `cubic_stiffness`",
+                    examples.join(", ")
+                ),
+            ),
+            Self::Place { model, place } => (
+                format!("model `{model}` needs the place of `{place}`"),
+                format!("add `places = {{ {place} = [x, y] }}` to [vehicle]"),
+            ),
+        }
+    }
+}
+
+impl fmt::Display for PresetError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (wrong, remedy) = self.parts();
+        write!(f, "{wrong}: {remedy}")
+    }
+}
+
+impl std::error::Error for PresetError {}
 
 /// What a job says of its vehicle.
 #[derive(Clone, Debug, Default, PartialEq)]

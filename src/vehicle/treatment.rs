@@ -3,16 +3,14 @@
 use super::adjustment::Adjustment;
 use crate::series::SeriesError;
 use crate::series::spectrum::Band;
-use thiserror::Error;
+use std::fmt;
 
 /// What stops the acceleration path.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum VehicleError {
     /// The record itself.
-    #[error(transparent)]
-    Series(#[from] SeriesError),
+    Series(SeriesError),
     /// A body whose motion the sensors don't give.
-    #[error("body `{body}` moves in {needed} ways, its accelerometers ({}) give {found}: add accelerometers at other places", .channels.join(", "))]
     Sensors {
         /// The body.
         body: String,
@@ -24,21 +22,65 @@ pub enum VehicleError {
         channels: Vec<String>,
     },
     /// No equation is left.
-    #[error(
-        "no equation of motion of model `{0}` holds measured quantities only: measure wheel forces, or accelerations of the body and its wheels"
-    )]
     NoEquation(String),
     /// The record that judges, not the fitted one.
-    #[error(transparent)]
     HeldOut(Box<VehicleError>),
     /// A known parameter that the model has not.
-    #[error("`{name}` is declared known, but the model's parameters are {}", .present.join(", "))]
     Known {
         /// As written.
         name: String,
         /// Names of the model.
         present: Vec<String>,
     },
+}
+
+impl VehicleError {
+    /// What is wrong, and what to do.
+    pub fn parts(&self) -> (String, String) {
+        let (wrong, remedy) = match self {
+            Self::Series(e) => return e.parts(),
+            Self::HeldOut(e) => return e.parts(),
+            Self::Sensors {
+                body,
+                needed,
+                found,
+                channels,
+            } => (
+                format!(
+                    "body `{body}` moves in {needed} ways, its accelerometers ({}) give {found}",
+                    channels.join(", ")
+                ),
+                "add accelerometers at other places",
+            ),
+            Self::NoEquation(model) => (
+                format!("no equation of motion of model `{model}` holds measured quantities only"),
+                "measure wheel forces, or accelerations of the body and its wheels",
+            ),
+            Self::Known { name, present } => (
+                format!(
+                    "`{name}` is declared known, but the model's parameters are {}",
+                    present.join(", ")
+                ),
+                "write one of these names, or take it out",
+            ),
+        };
+        (wrong, remedy.to_owned())
+    }
+}
+
+impl fmt::Display for VehicleError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (wrong, remedy) = self.parts();
+        write!(f, "{wrong}: {remedy}")
+    }
+}
+
+impl std::error::Error for VehicleError {}
+
+impl From<SeriesError> for VehicleError {
+    fn from(e: SeriesError) -> Self {
+        Self::Series(e)
+    }
 }
 
 /// How channels are treated.

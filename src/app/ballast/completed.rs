@@ -26,19 +26,10 @@ pub(super) fn cards(
 ) -> (Vec<MassCards>, String) {
     let m = &task.read.model;
     let mut grid = m.grids.iter().map(|g| g.id).max().unwrap_or(0);
-    let elements = [
-        m.shells.iter().map(|e| e.id).max(),
-        m.beams.iter().map(|e| e.id).max(),
-        m.rods.iter().map(|e| e.id).max(),
-        m.bushes.iter().map(|e| e.id).max(),
-        m.joints.iter().map(|e| e.id).max(),
-        m.springs.iter().map(|e| e.id).max(),
-        m.solids.iter().map(|e| e.id).max(),
-        m.shear_panels.iter().map(|e| e.id).max(),
-        m.masses.iter().map(|e| e.id).max(),
-        m.rigids.iter().map(|e| e.id).max(),
-    ];
-    let mut element = elements.into_iter().flatten().max().unwrap_or(0);
+    let elements = m.elements().map(|e| m.element_id(e));
+    let others = m.masses.iter().map(|e| e.id);
+    let ids = elements.chain(others).chain(m.rigids.iter().map(|e| e.id));
+    let mut element = ids.max().unwrap_or(0);
     let (mut ids, mut text) = (Vec::new(), String::new());
     for (k, b) in fit.masses.iter().enumerate() {
         let own = MassCards {

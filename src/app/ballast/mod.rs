@@ -8,17 +8,17 @@ pub use answer::{Ballasted, HungMass, Reaction, Together};
 pub use task::CompletedDeck;
 
 use super::context::Context;
-use super::deck::read_model;
+use super::deck::{DeckModel, read_model};
 use super::fault::{Fault, FaultList, Faults};
-use super::job::Job;
 use super::job::runs::read_runs;
+use super::job::{Ballast, Job};
 use super::outcome::{Outcome, StatedUnits};
 use super::wheels::{floor_fault, wheels_of};
 use super::work::Work;
 use crate::fe::floor::solve_standing;
 use crate::finding::{Finding, Severity};
 use crate::model::{GridIx, Vec3};
-use crate::payload::{BallastSpec, Carriers, size_ballast, spread};
+use crate::payload::{BallastFit, BallastSpec, Carriers, size_ballast, spread};
 use crate::units::{Quantity, number};
 use nastran::bdf::{Edits, write_edited};
 use task::{Task, force};
@@ -32,6 +32,70 @@ const ASSUMED_NOISE: f64 = 0.01;
 /// Every fault of the job and its deck; a region that can't hold a mass; a model that already weighs more.
 pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
     let mut work = Work::of_job(cx, job);
+    let (ballast, read) = read_asked(&mut work, job)?;
+    let wheels = wheels_of(job, &read.model)?;
+    let standing = work
+        .stage("solve", |_| {
+            solve_standing(&read.model, wheels.axis, &wheels.grids, &[], None)
+        })
+        .map_err(|e| floor_fault(job, &e))?;
+    let task = Task {
+        job,
+        ballast,
+        read: &read,
+        wheels,
+        standing,
+        gravity: ballast.gravity_m_s2 / job.units.length_m(),
+    };
+    let (run, measured, sigma) = measured(&mut work, &task)?;
+    let carriers = Carriers::of(&read.model, task.wheels.axis, |p| {
+        ballast
+            .properties
+            .as_ref()
+            .is_none_or(|ids| ids.contains(p))
+    });
+    let (region, height) = region(&task, &carriers)?;
+    let before = task.standing.under_weight(&read.model, task.gravity);
+    let lacking: f64 = measured.iter().sum::<f64>() - before.iter().sum::<f64>();
+    let largest = largest(&task, &run, lacking)?;
+    let spec = BallastSpec {
+        masses: ballast.masses,
+        region,
+        largest,
+        sigma: sigma.clone(),
+    };
+    let fit = work.stage("size", |_| {
+        size(&task, &carriers, height, [&before, &measured], &spec)
+    })?;
+    let (cards, text) = completed::cards(&task, &carriers, &fit, height);
+    let mut edits = Edits::default();
+    edits.insert_cards(&read.deck, &text);
+    let edited = write_edited(&read.deck, &edits);
+    let after = work.stage("solve completed deck", |s| {
+        completed::after(s, &task, &edited)
+    })?;
+    answer::judge(&mut work, &task, &run, &measured, &after, &fit, &spec);
+    let sized = answer::Sized {
+        run,
+        measured: &measured,
+        sigma: &sigma,
+        before: &before,
+        after: &after,
+        fit: &fit,
+        cards: &cards,
+        height,
+    };
+    let answer = answer::ballasted(&task, &sized);
+    let deck = CompletedDeck {
+        deck: read.deck,
+        edited,
+    };
+    let answer = answer(deck);
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// What the job asks for, and its deck, whose findings go to the work.
+fn read_asked<'a>(work: &mut Work, job: &'a Job) -> Result<(&'a Ballast, DeckModel), Faults> {
     let missing = |field: &str, example: &str| {
         Faults::from(Fault::of(
             &*job.file,
@@ -63,30 +127,12 @@ pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
         )));
     }
     work.findings.extend(read.findings.iter().cloned());
-    let wheels = wheels_of(job, &read.model)?;
-    let standing = work
-        .stage("solve", |_| {
-            solve_standing(&read.model, wheels.axis, &wheels.grids, &[], None)
-        })
-        .map_err(|e| floor_fault(job, &e))?;
-    let task = Task {
-        job,
-        ballast,
-        read: &read,
-        wheels,
-        standing,
-        gravity: ballast.gravity_m_s2 / job.units.length_m(),
-    };
-    let (run, measured, sigma) = measured(&mut work, &task)?;
-    let carriers = Carriers::of(&read.model, task.wheels.axis, |p| {
-        ballast
-            .properties
-            .as_ref()
-            .is_none_or(|ids| ids.contains(p))
-    });
-    let (region, height) = region(&task, &carriers)?;
-    let before = task.standing.under_weight(&read.model, task.gravity);
-    let lacking: f64 = measured.iter().sum::<f64>() - before.iter().sum::<f64>();
+    Ok((ballast, read))
+}
+
+/// Weight of one mass at most, in job units: as the job says, else all that the model lacks.
+fn largest(task: &Task, run: &str, lacking: f64) -> Result<f64, Faults> {
+    let (job, ballast) = (task.job, task.ballast);
     let largest = ballast
         .max_mass
         .map_or(lacking.max(0.0), |m| m * task.gravity);
@@ -103,65 +149,41 @@ pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
             "take masses out of the deck, or check the units of the runs file",
         )));
     }
-    let mut on_a_line = false;
-    let spec = BallastSpec {
-        masses: ballast.masses,
-        region,
-        largest,
-        sigma: sigma.clone(),
-    };
-    let fit = work.stage("size", |_| {
-        let n = measured.len();
-        let table_failed = std::cell::Cell::new(false);
-        let fit = size_ballast(
-            &before,
-            &measured,
-            |place| match hung(&task, &carriers, place, height, 1.0) {
-                Some(forces) => task.standing.under_forces(&read.model, &forces),
-                None => {
-                    table_failed.set(true);
-                    vec![0.0; n]
-                }
-            },
-            &spec,
-        );
-        on_a_line = table_failed.get();
-        fit
-    });
-    if on_a_line {
+    Ok(largest)
+}
+
+/// Masses that bring the reactions from those `before` to the `measured` ones.
+fn size(
+    task: &Task,
+    carriers: &Carriers,
+    height: f64,
+    [before, measured]: [&[f64]; 2],
+    spec: &BallastSpec,
+) -> Result<BallastFit, Faults> {
+    let model = &task.read.model;
+    let on_a_line = std::cell::Cell::new(false);
+    let fit = size_ballast(
+        before,
+        measured,
+        |place| match hung(task, carriers, place, height, 1.0) {
+            Some(forces) => task.standing.under_forces(model, &forces),
+            None => {
+                on_a_line.set(true);
+                vec![0.0; measured.len()]
+            }
+        },
+        spec,
+    );
+    if on_a_line.get() {
         return Err(Faults::from(Fault::at(
-            &*job.file,
-            ballast.line,
+            &*task.job.file,
+            task.ballast.line,
             "ballast.region",
             "the grids near part of the region lie on a line and can't hold a mass",
             "name properties of both rails in `properties`, or narrow the region",
         )));
     }
-    let (cards, text) = completed::cards(&task, &carriers, &fit, height);
-    let mut edits = Edits::default();
-    edits.insert_cards(&read.deck, &text);
-    let edited = write_edited(&read.deck, &edits);
-    let after = work.stage("solve completed deck", |s| {
-        completed::after(s, &task, &edited)
-    })?;
-    answer::judge(&mut work, &task, &run, &measured, &after, &fit, &spec);
-    let sized = answer::Sized {
-        run,
-        measured: &measured,
-        sigma: &sigma,
-        before: &before,
-        after: &after,
-        fit: &fit,
-        cards: &cards,
-        height,
-    };
-    let answer = answer::ballasted(&task, &sized);
-    let deck = CompletedDeck {
-        deck: read.deck,
-        edited,
-    };
-    let answer = answer(deck);
-    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+    Ok(fit)
 }
 
 /// Name, reactions and their sd in job units of the run asked for, in the order of the wheels.

@@ -7,7 +7,7 @@ pub(in crate::app) use includes::{from_folder, relocated};
 use super::context::Context;
 use super::deck::read_model;
 use super::fault::{Fault, Faults};
-use super::job::{Component, Job, LoadActs};
+use super::job::{Component, Job, JobLoad, LoadActs};
 use super::outcome::{Answer, Outcome, StatedUnits};
 use super::solved::support_of_job;
 use super::work::Work;
@@ -208,12 +208,51 @@ pub fn load_card(model: Option<&Model>, load: &Force, component: Component) -> S
     }
 }
 
+/// The edits that make the deck one of unit loads, and the subcases they write.
 fn edits_of(
     work: &mut Work,
     job: &Job,
     (deck, model, support): (&Deck, &Model, Support),
 ) -> Result<(Edits, Vec<Value>), Faults> {
     let mut edits = Edits::default();
+    drop_unwanted(&mut edits, deck);
+    if drop_relief(&mut edits, job, deck)? > 0 {
+        work.findings.push(Finding::new(
+            Severity::Info,
+            "suport-dropped",
+            "SUPORT",
+            "SUPORT entries are left out: PARAM,INREL,-2 balances what is free by itself, and a held structure needs none",
+            "",
+        ));
+    }
+    let mut case = String::from(
+        "$ Unit loads, one subcase each, in the order of the job\nSTRAIN(FIBER,CENTER) = ALL\n",
+    );
+    select_structure(&mut case, work, deck, support);
+    let mut bulk = String::from("$ Unit loads\nPARAM,POST,-1\n");
+    if support.relief != Relief::None {
+        bulk.push_str("PARAM,INREL,-2\n");
+    }
+    let mut rows = Vec::new();
+    let first = load_ids(deck).into_iter().max().unwrap_or(0).max(1000) + 1;
+    for (sid, l) in (first..).zip(&job.loads) {
+        bulk.push_str(&cards_of(model, l, sid));
+        case.push_str(&format!(
+            "SUBCASE {}\n  LABEL = {}\n  LOAD = {sid}\n",
+            l.number,
+            label(&l.name)
+        ));
+        rows.push(
+            json!({ "subcase": l.number, "load": l.name, "load_set": sid, "applied": l.applied }),
+        );
+    }
+    edits.insert_case_end(deck, &case);
+    edits.insert_cards(deck, &bulk);
+    Ok((edits, rows))
+}
+
+/// Takes out the deck's subcases and what its case control asks for besides, and makes its solution static.
+fn drop_unwanted(edits: &mut Edits, deck: &Deck) {
     edits.remove_subcases(deck);
     edits.remove_case_lines(deck, |l| {
         let stated = l.text.to_ascii_uppercase();
@@ -225,6 +264,10 @@ fn edits_of(
     if deck.sol.is_some_and(|s| s != 101) || (deck.sol.is_none() && deck.sol_text.is_some()) {
         edits.replace_sol(deck, "101\n");
     }
+}
+
+/// Takes out the deck's own inertia relief; how many SUPORT entries that were.
+fn drop_relief(edits: &mut Edits, job: &Job, deck: &Deck) -> Result<usize, Faults> {
     let refused = |e: nastran::bdf::EditError| {
         Faults::from(Fault::of(
             &*job.file,
@@ -233,7 +276,6 @@ fn edits_of(
             "write PARAM and SUPORT entries once, without replication",
         ))
     };
-    let mut dropped = 0;
     for p in deck
         .cards
         .params
@@ -244,22 +286,12 @@ fn edits_of(
     }
     for s in &deck.cards.suports {
         edits.remove_card(deck, s.at).map_err(refused)?;
-        dropped += 1;
     }
-    if dropped > 0 {
-        work.findings.push(Finding::new(
-            Severity::Info,
-            "suport-dropped",
-            "SUPORT",
-            "SUPORT entries are left out: PARAM,INREL,-2 balances what is free by itself, and a held structure needs none",
-            "",
-        ));
-    }
-    let mut next = load_ids(deck).into_iter().max().unwrap_or(0).max(1000) + 1;
-    let mut case = String::from(
-        "$ Unit loads, one subcase each, in the order of the job\nSTRAIN(FIBER,CENTER) = ALL\n",
-    );
-    // Subcases go, and what they select of the structure itself stays.
+    Ok(deck.cards.suports.len())
+}
+
+/// Selects MPC and SPC sets above all subcases: the deck's subcases go, and what they select of the structure itself stays.
+fn select_structure(case: &mut String, work: &mut Work, deck: &Deck, support: Support) {
     let kept: std::collections::BTreeSet<u32> = deck
         .case_control
         .subcases
@@ -286,53 +318,37 @@ fn edits_of(
     if let Some(spc) = support.spc {
         case.push_str(&format!("SPC = {spc}\n"));
     }
-    let mut bulk = String::from("$ Unit loads\nPARAM,POST,-1\n");
-    if support.relief != Relief::None {
-        bulk.push_str("PARAM,INREL,-2\n");
-    }
-    let mut rows = Vec::new();
-    for l in &job.loads {
-        let sid = next;
-        next += 1;
-        match l.acts {
-            LoadActs::AtGrid {
+}
+
+/// Cards of a load as load set `sid`.
+fn cards_of(model: &Model, l: &JobLoad, sid: u32) -> String {
+    match l.acts {
+        LoadActs::AtGrid {
+            grid,
+            component,
+            cid,
+        } => {
+            let card = Force {
+                sid,
                 grid,
-                component,
                 cid,
-            } => {
-                let card = Force {
-                    sid,
-                    grid,
-                    cid,
-                    scale: l.applied.abs(),
-                    n: component.vector(l.applied.signum()),
-                };
-                bulk.push_str(&load_card(Some(model), &card, component));
-            }
-            // A job without a model has no cases.
-            LoadActs::Named => {}
-            LoadActs::Set(set) => {
-                let fields = [
-                    Field::from(sid),
-                    Field::Real(1.0),
-                    Field::Real(l.applied),
-                    Field::from(set),
-                ];
-                bulk.push_str(&format_card("LOAD", &fields));
-            }
+                scale: l.applied.abs(),
+                n: component.vector(l.applied.signum()),
+            };
+            load_card(Some(model), &card, component)
         }
-        case.push_str(&format!(
-            "SUBCASE {}\n  LABEL = {}\n  LOAD = {sid}\n",
-            l.number,
-            label(&l.name)
-        ));
-        rows.push(
-            json!({ "subcase": l.number, "load": l.name, "load_set": sid, "applied": l.applied }),
-        );
+        // A job without a model has no cases.
+        LoadActs::Named => String::new(),
+        LoadActs::Set(set) => {
+            let fields = [
+                Field::from(sid),
+                Field::Real(1.0),
+                Field::Real(l.applied),
+                Field::from(set),
+            ];
+            format_card("LOAD", &fields)
+        }
     }
-    edits.insert_case_end(deck, &case);
-    edits.insert_cards(deck, &bulk);
-    Ok((edits, rows))
 }
 
 /// A load's name as a case control label: one line, 60 characters.

@@ -4,7 +4,7 @@
 pub use super::strain_table::{StrainRows, StrainTable};
 use super::strain_text::strain_from_text;
 use super::types::{Job, NamedFile};
-use crate::app::fault::{Fault, FaultList, Faults, split_message};
+use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::files::{FileBytes, Inputs};
 use crate::series::SeriesError;
 use crate::series::record::{Column, Options, Record, is_format, open_record};
@@ -116,7 +116,7 @@ pub(super) fn open_strain(
 }
 
 pub(super) fn record_fault(file: &str, e: &SeriesError) -> Fault {
-    let (wrong, remedy) = split_message(e);
+    let (wrong, remedy) = e.parts();
     Fault::of(file, "record", wrong, remedy)
 }
 

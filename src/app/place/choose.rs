@@ -206,9 +206,59 @@ struct Described {
     rosette: bool,
 }
 
+/// Units to choose from: their rows and costs, and what each is.
+struct Units<'a> {
+    kinds: &'a [Kind],
+    bundles: Bundles,
+    described: Vec<Described>,
+}
+
+impl Units<'_> {
+    fn add(&mut self, members: Vec<(usize, Choice)>, cost: f64, rosette: bool) {
+        let rows: Vec<Vec<f64>> = members
+            .iter()
+            .map(|(kind, c)| self.kinds[*kind].candidates.row(*c))
+            .collect();
+        let first = members.first().map_or(0, |m| m.1.place);
+        let last = members.last().map_or(0, |m| m.1.place);
+        self.bundles.add(&rows, cost, [first, last]);
+        self.described.push(Described { members, rosette });
+    }
+}
+
+/// Chooses among units within the budget.
 fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Refused> {
+    let units = units_of(task, kinds)?;
+    let budget = task.job.placement.budget.unwrap_or(spec.gauges as f64);
+    let spec = BundleSpec {
+        budget,
+        spacing: spec.spacing,
+        prior: spec.prior.clone(),
+        criterion: spec.criterion.clone(),
+        tolerance: spec.tolerance,
+        effort: spec.effort,
+    };
+    let layout = place_bundles(&units.bundles, &spec).map_err(Refused::By)?;
+    let n = layout.bundles.len();
+    let mut channels = Vec::new();
+    for (i, &u) in layout.bundles.iter().enumerate() {
+        channels.extend(channels_of(task, kinds, &units.described[u], &name(i, n)));
+    }
+    Ok(Chosen {
+        channels,
+        log_det: layout.log_det,
+        upper_bound: layout.upper_bound,
+        efficiency_bound: layout.efficiency_bound,
+        proved: false,
+        nodes: 0,
+        least_condition: None,
+        cost: Some(layout.bundles.iter().map(|&u| units.bundles.cost[u]).sum()),
+    })
+}
+
+/// Every unit that the job's candidates allow: single gauges and rosettes at each site, in pairs where the layout is to be symmetric.
+fn units_of<'a>(task: &Task, kinds: &'a [Kind]) -> Result<Units<'a>, Refused> {
     let p = &task.job.placement;
-    let k = task.cases.len();
     let cost_of = |name: &str, default: f64| {
         let own = p.costs.iter().find(|c| c.0 == name);
         own.map_or(default, |c| c.1)
@@ -227,36 +277,16 @@ fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Ref
     let mates = p.symmetric.map(|axis| Mirror::of(task, &positions, axis));
     // Rosettes need a quarter kind to take their legs from.
     let quarter = kinds.iter().position(|k| k.bridge == Bridge::Quarter);
-    let legs: Option<[f64; 3]> = task.job.candidates.rosette.map(|r| {
-        let r = match r {
-            JobRosette::Rectangular => Rosette::Rectangular,
-            JobRosette::Delta => Rosette::Delta,
-        };
-        r.legs().map(|l| l.1)
-    });
+    let legs = task.job.candidates.rosette.map(legs_of);
     let asked = &task.job.candidates.bridges;
-    let singles = asked.len() * steps.len();
-    let many = task.sites.len() * (singles + if legs.is_some() { 2 } else { 0 });
-    if many > MOST_UNITS {
-        return Err(Refused::Job(Fault::at(
-            &*task.job.file,
-            task.job.candidates.line,
-            "candidates",
-            format!("{many} units to choose from, more than {MOST_UNITS}"),
-            "state a wider `angle_step_deg`, or fewer elements; rosettes, pairs and costs are compared one by one",
-        )));
-    }
-    let mut units = Bundles::new(k, positions);
-    let mut described: Vec<Described> = Vec::new();
-    let mut add = |members: Vec<(usize, Choice)>, cost: f64, rosette: bool| {
-        let rows: Vec<Vec<f64>> = members
-            .iter()
-            .map(|(kind, c)| kinds[*kind].candidates.row(*c))
-            .collect();
-        let first = members.first().map_or(0, |m| m.1.place);
-        let last = members.last().map_or(0, |m| m.1.place);
-        units.add(&rows, cost, [first, last]);
-        described.push(Described { members, rosette });
+    few_enough(
+        task,
+        asked.len() * steps.len() + if legs.is_some() { 2 } else { 0 },
+    )?;
+    let mut units = Units {
+        kinds,
+        bundles: Bundles::new(task.cases.len(), positions),
+        described: Vec::new(),
     };
     let at = |place: usize, angle: f64| Choice {
         place: place as u32,
@@ -288,7 +318,7 @@ fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Ref
             for &angle in &steps {
                 let members = paired(n, angle);
                 let cost = cost_of(kind.name, 1.0) * members.len() as f64;
-                add(members, cost, false);
+                units.add(members, cost, false);
             }
         }
         if let (Some(q), Some(legs)) = (quarter, legs) {
@@ -297,46 +327,51 @@ fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Ref
                 let members: Vec<(usize, Choice)> =
                     legs.iter().flat_map(|l| paired(q, turn + l)).collect();
                 let cost = cost_of("rosette", 3.0) * members.len() as f64 / 3.0;
-                add(members, cost, true);
+                units.add(members, cost, true);
             }
         }
     }
-    let budget = p.budget.unwrap_or(spec.gauges as f64);
-    let spec = BundleSpec {
-        budget,
-        spacing: spec.spacing,
-        prior: spec.prior.clone(),
-        criterion: spec.criterion.clone(),
-        tolerance: spec.tolerance,
-        effort: spec.effort,
+    Ok(units)
+}
+
+/// Angles of a rosette's legs.
+fn legs_of(rosette: JobRosette) -> [f64; 3] {
+    let r = match rosette {
+        JobRosette::Rectangular => Rosette::Rectangular,
+        JobRosette::Delta => Rosette::Delta,
     };
-    let layout = place_bundles(&units, &spec).map_err(Refused::By)?;
-    let n = layout.bundles.len();
-    let mut channels = Vec::new();
-    for (i, &u) in layout.bundles.iter().enumerate() {
-        let d = &described[u];
-        for (m, (kind, choice)) in d.members.iter().enumerate() {
-            let base = name(i, n);
-            let leg = m % 3;
-            let name = match (d.rosette, d.members.len()) {
-                (true, 3) => format!("{base}.{}", ["a", "b", "c"][leg]),
-                (true, _) => format!("{base}{}.{}", ["L", "R"][m % 2], ["a", "b", "c"][m / 2]),
-                (false, 2) => format!("{base}{}", ["L", "R"][m]),
-                (false, _) => base,
-            };
-            channels.extend(channel(task, &kinds[*kind], *choice, name));
-        }
+    r.legs().map(|l| l.1)
+}
+
+/// Refuses candidates whose units, so many a site, would not fit into memory.
+fn few_enough(task: &Task, a_site: usize) -> Result<(), Refused> {
+    let many = task.sites.len() * a_site;
+    if many <= MOST_UNITS {
+        return Ok(());
     }
-    Ok(Chosen {
-        channels,
-        log_det: layout.log_det,
-        upper_bound: layout.upper_bound,
-        efficiency_bound: layout.efficiency_bound,
-        proved: false,
-        nodes: 0,
-        least_condition: None,
-        cost: Some(layout.bundles.iter().map(|&u| units.cost[u]).sum()),
-    })
+    Err(Refused::Job(Fault::at(
+        &*task.job.file,
+        task.job.candidates.line,
+        "candidates",
+        format!("{many} units to choose from, more than {MOST_UNITS}"),
+        "state a wider `angle_step_deg`, or fewer elements; rosettes, pairs and costs are compared one by one",
+    )))
+}
+
+/// Channels of a unit, named after it: `P01`, the sides of a pair `P01L` and `P01R`, the legs of a rosette `P01.a` to `P01.c`.
+fn channels_of(task: &Task, kinds: &[Kind], unit: &Described, base: &str) -> Vec<Channel> {
+    let mut channels = Vec::new();
+    for (m, (kind, choice)) in unit.members.iter().enumerate() {
+        let leg = m % 3;
+        let name = match (unit.rosette, unit.members.len()) {
+            (true, 3) => format!("{base}.{}", ["a", "b", "c"][leg]),
+            (true, _) => format!("{base}{}.{}", ["L", "R"][m % 2], ["a", "b", "c"][m / 2]),
+            (false, 2) => format!("{base}{}", ["L", "R"][m]),
+            (false, _) => base.to_owned(),
+        };
+        channels.extend(channel(task, &kinds[*kind], *choice, name));
+    }
+    channels
 }
 
 /// Partners of sites at a plane through the origin normal to an axis.

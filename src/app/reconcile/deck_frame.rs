@@ -1,22 +1,23 @@
 //! The static frame of a job with a deck: signatures of loads, masses, stiffness and gauge angles from the built-in solver.
 
 use super::background::{Axis, ENTRY_SHARE, background, gradients};
-use super::deck_thermal::{Heated, NOTHING};
+use super::deck_loads::SignatureLoads;
+pub(super) use super::deck_loads::unit;
+use super::deck_thermal::Heated;
 use super::finer::Finer;
 use super::frame_columns::FrameColumns;
-use super::influence::{influence, payload_grid, readings};
-use super::model_part::{ModelPart, facts, nominal_x_m, nominal_y_m};
+use super::influence::{influence, readings};
+use super::model_part::{ModelPart, facts};
 use super::region::Region;
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::{Component, Job, JobLoad, LoadActs, Role};
+use crate::app::job::{Job, JobLoad, LoadActs, Role};
 use crate::app::solved::{support_of_job, unit_loads_kept};
-use crate::app::strain::{Fields, Prepared, lay_gauges, prepare, unit_loads};
+use crate::app::strain::{Fields, Prepared, lay_gauges, prepare};
 use crate::app::work::Work;
 use crate::fe::UnitLoad;
 use crate::finding::{Finding, Severity};
 use crate::gauge::Gauge;
-use crate::model::{GridIx, Model, Vec3};
-use crate::reconcile::strain::{MassSignature, NuisanceLoad, PlaneStrainRow, Wiring};
+use crate::reconcile::strain::{GaugeFacts, PlaneStrainRow, Wiring};
 use crate::units::KILO;
 
 /// The model with everything needed to solve it again.
@@ -52,58 +53,10 @@ pub(super) fn read(
     };
     let gauges = in_order(job, gauges, channels)?;
     let s = FrameColumns::of(job, sensitivity, channels)?;
-    // The same gauges turned: what they read at three angles holds their in-plane strain.
-    let noted = work.findings.len();
-    let mut turned = Vec::new();
-    for degrees in [45.0, 90.0] {
-        let mut other = job.clone();
-        other.gauges.iter_mut().for_each(|g| g.angle_deg += degrees);
-        turned.push(in_order(job, lay_gauges(work, &other, &fields)?, channels)?);
-    }
-    work.findings.truncate(noted);
-    let model = fields.model();
-    let heated = Heated::of(job, model)?;
+    let turned = turned(work, job, &fields, channels)?;
+    let heated = Heated::of(job, fields.model())?;
     let model = &heated.model;
-    let JobLoads {
-        wheels,
-        columns,
-        nuisance,
-    } = job_loads(job, model)?;
-    let mut loads = columns.clone();
-    let components = [
-        Component::FX,
-        Component::FY,
-        Component::MX,
-        Component::MY,
-        Component::MZ,
-    ];
-    let mut other_names = Vec::new();
-    for (name, grid) in &wheels {
-        // A side load that the job has as a nuisance load is no effect that is missing.
-        for c in components
-            .into_iter()
-            .filter(|c| !has_nuisance(job, model, *grid, *c))
-        {
-            other_names.push(format!(
-                "{}_{}",
-                c.name(),
-                name.split('.').next().unwrap_or(name)
-            ));
-            loads.push(unit(job, *grid, c, 1.0));
-        }
-    }
-    let reconcile = job.reconcile.as_ref();
-    let gravity = job.gravity_m_s2();
-    let mut places = Vec::new();
-    for (place, id) in reconcile.iter().flat_map(|r| &r.places) {
-        let grid = grid_of(job, model, *id)?;
-        places.push(place.clone());
-        loads.push(unit(job, grid, Component::FZ, -gravity / KILO));
-    }
-    let first_heat = loads.len();
-    loads.extend(heated.loads());
-    let first_nuisance = loads.len();
-    loads.extend(nuisance.iter().map(|n| n.load.clone()));
+    let asked = SignatureLoads::of(job, &heated)?;
     let support = support_of_job(job, model)?;
     // Signatures come from a mesh half as wide, where that can be made: what the mesh makes is computed, not guessed.
     let laid = [&gauges, &turned[0], &turned[1]];
@@ -112,7 +65,8 @@ pub(super) fn read(
         work.findings.push(mesh_unknown(job, why));
     }
     let finer = finer.ok();
-    let heat = format!("temperature set {:?}", reconcile.map(|r| r.temperature_set));
+    let set = job.reconcile.as_ref().map(|r| r.temperature_set);
+    let heat = format!("temperature set {set:?}");
     let solution = work.stage("solve signatures", |w| match &finer {
         Some(f) => {
             let made = format!("mesh half as wide, {heat}");
@@ -120,112 +74,34 @@ pub(super) fn read(
                 w,
                 (&fields.deck, &made),
                 (&f.refined.model, support),
-                &loads,
+                &asked.loads,
             )
         }
-        None => unit_loads_kept(w, (&fields.deck, &heat), (model, support), &loads),
+        None => unit_loads_kept(w, (&fields.deck, &heat), (model, support), &asked.loads),
     })?;
-    let n_c = columns.len();
-    let [seen, seen_45, seen_90] = match &finer {
+    let n_c = asked.columns.len();
+    let seen = match &finer {
         Some(f) => f.laid.each_ref(),
         None => laid,
     };
-    let table = influence(job, model, seen, &solution, n_c);
-    let at_45 = influence(job, model, seen_45, &solution, n_c);
-    let at_90 = influence(job, model, seen_90, &solution, n_c);
+    let [mut table, at_45, at_90] = seen.map(|g| influence(job, model, g, &solution, n_c));
     let own = work.stage("solve signatures", |w| {
-        unit_loads_kept(w, (&fields.deck, &heat), (model, support), &columns)
+        unit_loads_kept(w, (&fields.deck, &heat), (model, support), &asked.columns)
     })?;
-    let mut base = influence(job, model, &gauges, &own, n_c);
-    let n_g = gauges.len();
-    // S is that of the job: where its results are Nastran's, the built-in solver has the rest.
-    for (c, (_, column)) in s.wanted_columns().iter().enumerate() {
-        for (row, v) in base.chunks_exact_mut(n_c).zip(column) {
-            row[c] = *v;
-        }
-    }
-    let mut table = table;
+    let by_solver = influence(job, model, &gauges, &own, n_c);
+    let base = with_s(&by_solver, &s, n_c);
     let from_results = job.model.as_ref().is_some_and(|m| !m.results.is_empty());
     if from_results && finer.is_none() {
         table.clone_from(&base);
     }
-    let plane = |g: usize| -> PlaneStrainRow {
-        let one = |c: usize| {
-            let i = g * n_c + c;
-            [table[i], at_90[i], 2.0 * at_45[i] - table[i] - at_90[i]]
-        };
-        (0..n_c).map(one).collect()
-    };
-    let column = |c: usize| readings(seen, &solution, c..c + 1);
-    let length_m = job.units.length_m();
-    let place_of = |grid: &GridIx| {
-        let x = model.grids.get(grid.us()).map_or(Vec3::zeros(), |g| g.x);
-        [x[0] * length_m, x[1] * length_m]
-    };
-    let at_grid = payload_grid(job, model).map_or([0.0; 2], |g| place_of(&g));
-    let mut part = ModelPart {
-        gauges: channels.iter().map(|c| facts(job, c)).collect(),
-        load_names: wheels.iter().map(|w| w.0.clone()).collect(),
-        load_positions: Some(wheels.iter().map(|w| place_of(&w.1)).collect()),
-        influence: table.clone(),
-        tensors: (0..n_g).map(plane).collect(),
-        payload_origin: [
-            nominal_x_m(job).unwrap_or(at_grid[0]),
-            nominal_y_m(job).unwrap_or(at_grid[1]),
-        ],
-        ..ModelPart::default()
-    };
-    for (g, laid) in part.gauges.iter_mut().zip(&gauges) {
-        // In-plane strain is in the axes of the gauge itself, its wiring included.
-        g.angle_deg = 0.0;
-        g.wiring = Wiring::Quarter;
-        g.position = Some([0, 1, 2].map(|k| laid.position[k] * length_m));
-    }
-    part.other_loads = other_names
-        .into_iter()
-        .enumerate()
-        .map(|(k, n)| (n, column(n_c + k)))
-        .collect();
-    let first_mass = n_c + part.other_loads.len();
-    part.masses = places
-        .into_iter()
-        .enumerate()
-        .map(|(k, place)| MassSignature {
-            place,
-            per_kg: column(first_mass + k),
-        })
-        .collect();
-    part.nuisance = nuisance
-        .iter()
-        .enumerate()
-        .map(|(k, n)| NuisanceLoad {
-            name: n.name.clone(),
-            per_unit: column(first_nuisance + k)
-                .iter()
-                .map(|v| v / n.applied)
-                .collect(),
-            size: n.size,
-        })
-        .collect();
-    // Microstrain a degree: mechanical strain from the model, and what the gauge shows of heat besides.
+    let column = |c: usize| readings(seen[0], &solution, c..c + 1);
+    let mut part = asked.part(job, model, column);
+    part.gauges = gauge_facts(job, channels, &gauges);
+    part.tensors = plane_strain([&table, &at_45, &at_90], n_c);
+    part.influence = table;
     let apparent: Vec<f64> = channels.iter().map(|c| apparent(job, c)).collect();
-    let mechanical = |load: &Option<UnitLoad>, c: usize| load.as_ref().map(|_| column(c));
-    let even = mechanical(&heated.even, first_heat);
-    let even: Vec<f64> = match even {
-        Some(m) => m.iter().zip(&apparent).map(|(m, a)| m + a).collect(),
-        None => apparent.clone(),
-    };
-    part.thermal_uniform = even.iter().any(|v| v.abs() > NOTHING).then_some(even);
-    let pattern = first_heat + usize::from(heated.even.is_some());
-    let known =
-        |n: &JobNuisance| Some(n.set) == reconcile.map(|r| r.temperature_set) && n.set.is_some();
-    let missing = !nuisance.iter().any(known);
-    part.thermal_gradient = mechanical(&heated.pattern, pattern)
-        .filter(|_| missing)
-        .map(|m| {
-            let besides = apparent.iter().zip(heated.rises(&gauges));
-            m.iter().zip(besides).map(|(m, (a, t))| m + a * t).collect()
-        });
+    [part.thermal_uniform, part.thermal_gradient] =
+        asked.thermal(&heated, &apparent, &heated.rises(&gauges), column);
     let along = gradients(job, model, &gauges, &own, n_c, Axis::Along);
     let across = gradients(job, model, &gauges, &own, n_c, Axis::Across);
     part.scatter = background(
@@ -235,26 +111,79 @@ pub(super) fn read(
         [&along, &across],
     );
     part.per_mm = Some(along);
-    part.as_modelled = finer.is_some().then(|| base.clone());
-    let own = influence(job, model, &gauges, &own, n_c);
+    part.as_modelled = finer.is_some().then_some(base);
     let deck = DeckFrame {
         fields,
         gauges,
-        columns,
-        base: own,
+        columns: asked.columns,
+        base: by_solver,
         regions: vec![],
     };
     part.stiffness = work.stage("solve zones", |_| deck.signatures(job))?;
-    // Tables count in microstrain per unit of the job, as sensitivity.csv does.
+    let described = deck.described(&mut work.inputs, job, channels, &per_job_unit(job))?;
+    part.stiffness.extend(described);
+    Ok((part, deck))
+}
+
+/// The same gauges turned by 45 and by 90 degrees: what they read at three angles holds their in-plane strain.
+fn turned(
+    work: &mut Work,
+    job: &Job,
+    fields: &Fields,
+    channels: &[String],
+) -> Result<Vec<Vec<Gauge>>, Faults> {
+    let noted = work.findings.len();
+    let mut turned = Vec::new();
+    for degrees in [45.0, 90.0] {
+        let mut other = job.clone();
+        other.gauges.iter_mut().for_each(|g| g.angle_deg += degrees);
+        turned.push(in_order(job, lay_gauges(work, &other, fields)?, channels)?);
+    }
+    work.findings.truncate(noted);
+    Ok(turned)
+}
+
+/// Influence with S in the columns of the wanted loads: S is that of the job, and where its results are Nastran's, the built-in solver has
+/// the rest.
+fn with_s(by_solver: &[f64], s: &FrameColumns, n_columns: usize) -> Vec<f64> {
+    let mut base = by_solver.to_vec();
+    for (c, (_, column)) in s.wanted_columns().iter().enumerate() {
+        for (row, v) in base.chunks_exact_mut(n_columns).zip(column) {
+            row[c] = *v;
+        }
+    }
+    base
+}
+
+/// In-plane strain `exx, eyy, gxy` under each gauge, from what it reads at 0, 45 and 90 degrees.
+fn plane_strain([at_0, at_45, at_90]: [&[f64]; 3], n_columns: usize) -> Vec<PlaneStrainRow> {
+    let one = |i: usize| [at_0[i], at_90[i], 2.0 * at_45[i] - at_0[i] - at_90[i]];
+    let rows = (0..at_0.len()).step_by(n_columns.max(1));
+    rows.map(|first| (first..first + n_columns).map(one).collect())
+        .collect()
+}
+
+/// What the job says of the gauges, with their places on the model.
+fn gauge_facts(job: &Job, channels: &[String], gauges: &[Gauge]) -> Vec<GaugeFacts> {
+    let length_m = job.units.length_m();
+    let one = |(channel, laid): (&String, &Gauge)| GaugeFacts {
+        // In-plane strain is in the axes of the gauge itself, its wiring included.
+        angle_deg: 0.0,
+        wiring: Wiring::Quarter,
+        position: Some([0, 1, 2].map(|k| laid.position[k] * length_m)),
+        ..facts(job, channel)
+    };
+    channels.iter().zip(gauges).map(one).collect()
+}
+
+/// Names of the wanted loads, and kN or kN m in a unit of the job: tables count in microstrain per unit of the job, as sensitivity.csv does.
+fn per_job_unit(job: &Job) -> Vec<(String, f64)> {
     let wanted = job.loads.iter().filter(|l| l.role == Role::Wanted);
     let per = |l: &JobLoad| match l.acts {
         LoadActs::AtGrid { component, .. } => KILO / job.units.si(component.quantity()),
         LoadActs::Set(_) | LoadActs::Named => 1.0,
     };
-    let known: Vec<(String, f64)> = wanted.map(|l| (l.name.clone(), per(l))).collect();
-    let described = deck.described(&mut work.inputs, job, channels, &known)?;
-    part.stiffness.extend(described);
-    Ok((part, deck))
+    wanted.map(|l| (l.name.clone(), per(l))).collect()
 }
 
 /// Apparent strain of a channel's wiring, microstrain a degree.
@@ -290,141 +219,6 @@ fn in_order(job: &Job, laid: Vec<Gauge>, channels: &[String]) -> Result<Vec<Gaug
     }
     Faults::check(faults)?;
     Ok(out)
-}
-
-fn grid_of(job: &Job, model: &Model, id: u32) -> Result<GridIx, Faults> {
-    let wrong = || {
-        Faults::from(Fault::of(
-            &*job.file,
-            "grid",
-            format!("the deck has no grid {id}"),
-            "correct the id",
-        ))
-    };
-    model.grid_ix(id).ok_or_else(wrong)
-}
-
-/// `size` kN or kN m at a grid, in the deck's units.
-pub(super) fn unit(job: &Job, grid: GridIx, component: Component, size: f64) -> UnitLoad {
-    let v = Vec3::from(component.vector(size * KILO / job.units.si(component.quantity())));
-    let (force, moment) = if component.is_force() {
-        (v, Vec3::zeros())
-    } else {
-        (Vec3::zeros(), v)
-    };
-    UnitLoad::AtGrid {
-        grid,
-        force,
-        moment,
-    }
-}
-
-/// What the job says of its loads.
-struct JobLoads {
-    /// Name and grid of each load that is asked for.
-    wheels: Vec<(String, GridIx)>,
-    /// Columns of the influence matrix: each of these loads per kN or kN m, then the payload per kg: its weight, and the moments that
-    /// moving it by a metre forward and to the left brings (W dx about y, -W dy about x).
-    columns: Vec<UnitLoad>,
-    nuisance: Vec<JobNuisance>,
-}
-
-/// A nuisance load of the job.
-struct JobNuisance {
-    name: String,
-    /// Of size `applied`.
-    load: UnitLoad,
-    applied: f64,
-    /// One standard deviation, in the units of `applied`.
-    size: f64,
-    /// Its set, where it is one of the deck.
-    set: Option<u32>,
-}
-
-/// The loads as every command has them, in the axes of `cid`; those at the payload's grid are left out, since the runs note the payload.
-fn job_loads(job: &Job, model: &Model) -> Result<JobLoads, Faults> {
-    let mut out = JobLoads {
-        wheels: Vec::new(),
-        columns: Vec::new(),
-        nuisance: Vec::new(),
-    };
-    let mut faults = FaultList::new();
-    if let Some(id) = job.payload_grid() {
-        grid_of(job, model, id)?;
-    }
-    let payload = payload_grid(job, model);
-    for (l, load) in job.loads.iter().zip(unit_loads(job, model)?) {
-        match (&l.acts, l.role) {
-            (LoadActs::AtGrid { grid, component, .. }, Role::Wanted) => {
-                out.wheels.push((l.name.clone(), grid_of(job, model, *grid)?));
-                out.columns.push(scaled(&load, KILO / (l.applied * job.units.si(component.quantity()))));
-            }
-            (LoadActs::Set(sid), Role::Wanted) => faults.push(Fault::at(
-                &*job.file,
-                l.line,
-                "load.load_set",
-                format!("load `{}` is load set {sid}: how much of a set acts in a run, `reconcile` does not read", l.name),
-                "give the load as a grid and a component, or role = \"nuisance\"",
-            )),
-            (LoadActs::AtGrid { grid, .. }, Role::Nuisance) if payload.is_some() && model.grid_ix(*grid) == payload => {}
-            (LoadActs::Named, Role::Wanted) => faults.push(Fault::at(
-                &*job.file,
-                l.line,
-                "load.grid",
-                format!("load `{}` is a name alone: where it acts on the model is not said", l.name),
-                "state `grid` and `component`",
-            )),
-            (acts, Role::Nuisance) => out.nuisance.push(JobNuisance {
-                name: l.name.clone(),
-                load,
-                applied: l.applied,
-                size: l.expected.unwrap_or(l.applied.abs()),
-                set: match acts {
-                    LoadActs::Set(sid) => Some(*sid),
-                    LoadActs::AtGrid { .. } | LoadActs::Named => None,
-                },
-            }),
-        }
-    }
-    Faults::check(faults)?;
-    let weight = job.gravity_m_s2() / KILO;
-    // Without a payload grid its columns stand for nothing and are blanked.
-    let first = out.wheels.first().map_or(GridIx(0), |w| w.1);
-    let at = payload.unwrap_or(first);
-    out.columns.push(unit(job, at, Component::FZ, -weight));
-    out.columns.push(unit(job, at, Component::MY, weight));
-    out.columns.push(unit(job, at, Component::MX, -weight));
-    // Bending is linear in the place: the product term stands for nothing and is blanked.
-    out.columns.push(unit(job, at, Component::MX, -weight));
-    Ok(out)
-}
-
-/// A load times `factor`; sets stay as they are.
-fn scaled(load: &UnitLoad, factor: f64) -> UnitLoad {
-    match load {
-        UnitLoad::AtGrid {
-            grid,
-            force,
-            moment,
-        } => UnitLoad::AtGrid {
-            grid: *grid,
-            force: force * factor,
-            moment: moment * factor,
-        },
-        other => other.clone(),
-    }
-}
-
-/// Has the job a nuisance load of this component at the grid, in the basic frame?
-fn has_nuisance(job: &Job, model: &Model, at: GridIx, component: Component) -> bool {
-    job.loads.iter().any(|l| match l.acts {
-        LoadActs::AtGrid {
-            grid,
-            component: c,
-            cid: 0,
-        } => l.role == Role::Nuisance && c == component && model.grid_ix(grid) == Some(at),
-        _ => false,
-    })
 }
 
 /// No finer mesh was solved: what is assumed instead.

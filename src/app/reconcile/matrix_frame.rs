@@ -5,8 +5,9 @@ use super::frame_columns::FrameColumns;
 use super::model_part::{ModelPart, facts, nominal_x_m, nominal_y_m};
 use super::signature_table::SignatureTable;
 use crate::app::fault::{Fault, Faults};
+use crate::app::files::Inputs;
 use crate::app::job::quantity::quantity_of_name;
-use crate::app::job::{GivenSensitivity, Job, JobLoad, Role};
+use crate::app::job::{GivenSensitivity, Job, JobLoad, NamedFile, Role, Signatures};
 use crate::app::strain::read_given;
 use crate::app::work::Work;
 use crate::reconcile::strain::{
@@ -18,6 +19,14 @@ use crate::units::{KILO, Quantity};
 /// Ratio of the transverse to the axial strain where a table gives the axial one alone: a rail flange in bending.
 const POISSON: f64 = 0.29;
 
+/// Payload columns of the tables: weight, times dx, times dy, times dx dy; each by its names.
+const PAYLOAD_NAMES: [[&str; 2]; N_PAYLOAD_COLUMNS] = [
+    ["b0", ""],
+    ["b_dx", "b_x"],
+    ["b_dy", "b_y"],
+    ["b_dxdy", "b_xy"],
+];
+
 /// Reads everything that `[sensitivity]` names. `channels` are the gauges in the order of the strain file.
 pub(super) fn read(
     work: &mut Work,
@@ -25,79 +34,165 @@ pub(super) fn read(
     given: &GivenSensitivity,
     channels: &[String],
 ) -> Result<ModelPart, Faults> {
-    // The frame counts in kN, kN m, kg and m.
-    let (per_kn, per_knm) = (KILO / given.per.force.si, KILO / given.per.moment.si);
-    let (per_kg, per_m) = (1.0 / given.per.mass.si, 1.0 / given.per.length.si);
     let s = FrameColumns::of(job, read_given(work, job)?, channels)?;
-    let scale = |name: &str| match quantity_of_load(job, name) {
-        Quantity::Moment => per_knm,
-        _ => per_kn,
-    };
     let nuisance = s.nuisance();
-    // Tables name their columns as that of S does.
-    let column_of = |name: &String| {
-        let stated = given.columns.iter().find(|c| c.0 == *name);
-        stated.map_or_else(|| name.clone(), |c| c.1.clone())
-    };
-    let (columns, mut by_column): (Vec<(String, String)>, Vec<Vec<f64>>) = s
-        .wanted_columns()
-        .into_iter()
-        .map(|(name, values)| ((name.clone(), column_of(&name)), values))
-        .unzip();
-    // Payload columns: weight, times dx, times dy, times dx dy.
-    let payload_names = [
-        ["b0", ""],
-        ["b_dx", "b_x"],
-        ["b_dy", "b_y"],
-        ["b_dxdy", "b_xy"],
-    ];
-    let payload_scale = [
-        per_kg,
-        per_kg * per_m,
-        per_kg * per_m,
-        per_kg * per_m * per_m,
-    ];
-    let n = channels.len();
-    let mut payload = vec![vec![0.0; n]; N_PAYLOAD_COLUMNS];
-    if let Some(file) = &given.signatures.payload {
-        let t = SignatureTable::read(&mut work.inputs, job, file, channels)?;
-        for ((column, names), f) in payload.iter_mut().zip(payload_names).zip(payload_scale) {
-            if let Some(name) = names.iter().find(|n| t.has(n)) {
-                *column = t.column(name, f)?;
-            }
-        }
-    }
-    by_column.extend(payload);
-    let n_c = by_column.len();
-    let n_l = columns.len();
-    let influence: Vec<f64> = (0..n)
-        .flat_map(|g| by_column.iter().map(move |c| c[g]))
-        .collect();
+    let wanted = s.wanted_columns();
+    let tables = Tables::of(job, given, channels, &wanted);
+    let mut by_column: Vec<Vec<f64>> = wanted.into_iter().map(|w| w.1).collect();
+    by_column.extend(tables.payload(&mut work.inputs)?);
     let gauges: Vec<GaugeFacts> = channels.iter().map(|name| facts(job, name)).collect();
     let mut part = ModelPart {
         nuisance,
         learnt: s.learnt(),
-        load_names: columns.iter().map(|c| c.0.clone()).collect(),
+        load_names: tables.columns.iter().map(|c| c.0.clone()).collect(),
         payload_origin: [
             nominal_x_m(job).unwrap_or(0.0),
             nominal_y_m(job).unwrap_or(0.0),
         ],
-        influence,
+        influence: (0..channels.len())
+            .flat_map(|g| by_column.iter().map(move |c| c[g]))
+            .collect(),
         ..ModelPart::default()
     };
-    part.tensors = vec![Vec::new(); n];
-    if let Some(file) = &given.signatures.gauge_angle {
-        let t = SignatureTable::read(&mut work.inputs, job, file, channels)?;
-        let mut names: Vec<(String, f64)> = columns
-            .iter()
-            .map(|(name, c)| (c.clone(), scale(name)))
-            .collect();
-        names.extend(
-            payload_names
+    part.tensors = tables.tensors(&mut work.inputs, &gauges, &part.influence)?;
+    part.gauges = gauges;
+    part.other_loads = tables.other_loads(&mut work.inputs)?;
+    [part.thermal_uniform, part.thermal_gradient] = tables.thermal(&mut work.inputs)?;
+    part.masses = tables.masses(&mut work.inputs)?;
+    part.stiffness = tables.stiffness(&mut work.inputs)?;
+    part.stiffness.extend(described::from_tables(
+        &mut work.inputs,
+        job,
+        channels,
+        &tables.loads(),
+        tables.n_columns(),
+    )?);
+    if tables.columns.is_empty() {
+        return Err(Faults::from(Fault::of(
+            &*given.file.given,
+            "columns",
+            "no load column",
+            "give S a column a load",
+        )));
+    }
+    Ok(part)
+}
+
+/// The tables of signatures, and what their columns are.
+struct Tables<'a> {
+    job: &'a Job,
+    signatures: &'a Signatures,
+    channels: &'a [String],
+    /// Name of each load, and of its column: tables name their columns as that of S does.
+    columns: Vec<(String, String)>,
+    /// Factors to kN, kN m, kg and m, in which the frame counts.
+    per_kn: f64,
+    per_knm: f64,
+    per_kg: f64,
+    per_m: f64,
+}
+
+impl<'a> Tables<'a> {
+    fn of(
+        job: &'a Job,
+        given: &'a GivenSensitivity,
+        channels: &'a [String],
+        wanted: &[(String, Vec<f64>)],
+    ) -> Self {
+        let column_of = |name: &String| {
+            let stated = given.columns.iter().find(|c| c.0 == *name);
+            stated.map_or_else(|| name.clone(), |c| c.1.clone())
+        };
+        Self {
+            job,
+            signatures: &given.signatures,
+            channels,
+            columns: wanted
                 .iter()
-                .zip(payload_scale)
+                .map(|(name, _)| (name.clone(), column_of(name)))
+                .collect(),
+            per_kn: KILO / given.per.force.si,
+            per_knm: KILO / given.per.moment.si,
+            per_kg: 1.0 / given.per.mass.si,
+            per_m: 1.0 / given.per.length.si,
+        }
+    }
+
+    /// Columns of the influence matrix.
+    fn n_columns(&self) -> usize {
+        self.columns.len() + N_PAYLOAD_COLUMNS
+    }
+
+    fn read(&self, inputs: &mut Inputs, file: &NamedFile) -> Result<SignatureTable, Faults> {
+        SignatureTable::read(inputs, self.job, file, self.channels)
+    }
+
+    /// Factor of a load's column.
+    fn scale(&self, name: &str) -> f64 {
+        match quantity_of_load(self.job, name) {
+            Quantity::Moment => self.per_knm,
+            _ => self.per_kn,
+        }
+    }
+
+    /// Column and factor of each load.
+    fn loads(&self) -> Vec<(String, f64)> {
+        self.columns
+            .iter()
+            .map(|(name, c)| (c.clone(), self.scale(name)))
+            .collect()
+    }
+
+    /// The same, payload columns after them.
+    fn loads_and_payload(&self) -> Vec<(String, f64)> {
+        let mut names = self.loads();
+        names.extend(
+            PAYLOAD_NAMES
+                .iter()
+                .zip(self.payload_scale())
                 .map(|(n, f)| (n[0].to_owned(), f)),
         );
+        names
+    }
+
+    fn payload_scale(&self) -> [f64; N_PAYLOAD_COLUMNS] {
+        let (per_kg, per_m) = (self.per_kg, self.per_m);
+        [
+            per_kg,
+            per_kg * per_m,
+            per_kg * per_m,
+            per_kg * per_m * per_m,
+        ]
+    }
+
+    /// Payload columns; zeros where the table has none.
+    fn payload(&self, inputs: &mut Inputs) -> Result<Vec<Vec<f64>>, Faults> {
+        let mut payload = vec![vec![0.0; self.channels.len()]; N_PAYLOAD_COLUMNS];
+        if let Some(file) = &self.signatures.payload {
+            let t = self.read(inputs, file)?;
+            let named = PAYLOAD_NAMES.into_iter().zip(self.payload_scale());
+            for (column, (names, f)) in payload.iter_mut().zip(named) {
+                if let Some(name) = names.iter().find(|n| t.has(n)) {
+                    *column = t.column(name, f)?;
+                }
+            }
+        }
+        Ok(payload)
+    }
+
+    /// In-plane strain under each gauge; empty without a table of it.
+    fn tensors(
+        &self,
+        inputs: &mut Inputs,
+        gauges: &[GaugeFacts],
+        influence: &[f64],
+    ) -> Result<Vec<PlaneStrainRow>, Faults> {
+        let n = self.channels.len();
+        let Some(file) = &self.signatures.gauge_angle else {
+            return Ok(vec![PlaneStrainRow::new(); n]);
+        };
+        let t = self.read(inputs, file)?;
+        let names = self.loads_and_payload();
         // Columns as far as the table goes: payload columns may end with b_dx.
         let known: Vec<&(String, f64)> = names
             .iter()
@@ -116,101 +211,96 @@ pub(super) fn read(
                 plane.push([exx[g], eyy[g], gxy[g]]);
             }
         }
-        for (g, plane) in planes.into_iter().enumerate() {
-            part.tensors[g] = match gauges[g].wiring {
-                Wiring::Quarter => plane,
-                // A bridge: its own reading along its axis, with the shear of both sides cancelled.
-                Wiring::Bending => (0..n_l + 2)
-                    .map(|c| part.influence[g * n_c + c])
-                    .map(|a| [a, -POISSON * a, 0.0])
-                    .collect(),
-                Wiring::Shear => Vec::new(),
-            };
-        }
+        let (n_l, n_c) = (self.columns.len(), self.n_columns());
+        let wired = |(g, plane): (usize, PlaneStrainRow)| match gauges[g].wiring {
+            Wiring::Quarter => plane,
+            // A bridge: its own reading along its axis, with the shear of both sides cancelled.
+            Wiring::Bending => (0..n_l + 2)
+                .map(|c| influence[g * n_c + c])
+                .map(|a| [a, -POISSON * a, 0.0])
+                .collect(),
+            Wiring::Shear => Vec::new(),
+        };
+        Ok(planes.into_iter().enumerate().map(wired).collect())
     }
-    part.gauges = gauges;
-    if let Some(file) = &given.signatures.lateral_wheel_loads {
-        let t = SignatureTable::read(&mut work.inputs, job, file, channels)?;
-        for name in t.names().into_iter().filter(|n| !is_nuisance(job, n)) {
-            let column = t.column(&name, scale(&name))?;
-            part.other_loads.push((name, column));
+
+    /// Loads of the wheels that are not asked for, without those that the job has as nuisance loads.
+    fn other_loads(&self, inputs: &mut Inputs) -> Result<Vec<(String, Vec<f64>)>, Faults> {
+        let mut loads = Vec::new();
+        if let Some(file) = &self.signatures.lateral_wheel_loads {
+            let t = self.read(inputs, file)?;
+            let missing = |n: &String| !is_nuisance(self.job, n);
+            for name in t.names().into_iter().filter(missing) {
+                let column = t.column(&name, self.scale(&name))?;
+                loads.push((name, column));
+            }
         }
+        Ok(loads)
     }
-    if let Some(file) = &given.signatures.thermal {
-        let t = SignatureTable::read(&mut work.inputs, job, file, channels)?;
+
+    /// Strain of heat, even and along its gradient; what the job has as a nuisance load is no effect that is missing.
+    fn thermal(&self, inputs: &mut Inputs) -> Result<[Option<Vec<f64>>; 2], Faults> {
+        let Some(file) = &self.signatures.thermal else {
+            return Ok([None, None]);
+        };
+        let t = self.read(inputs, file)?;
         let one = |names: [&str; 2]| {
+            if is_nuisance(self.job, names[0]) {
+                return Ok(None);
+            }
             names
                 .iter()
                 .find(|n| t.has(n))
                 .map(|n| t.column(n, 1.0))
                 .transpose()
         };
-        // What the job has as a nuisance load is no effect that is missing.
-        if !is_nuisance(job, "thermal_uniform") {
-            part.thermal_uniform = one(["thermal_uniform", "uniform"])?;
-        }
-        if !is_nuisance(job, "thermal_gradient") {
-            part.thermal_gradient = one(["thermal_gradient", "gradient"])?;
-        }
+        Ok([
+            one(["thermal_uniform", "uniform"])?,
+            one(["thermal_gradient", "gradient"])?,
+        ])
     }
-    if let Some(file) = &given.signatures.unaccounted_mass {
-        let t = SignatureTable::read(&mut work.inputs, job, file, channels)?;
-        for place in t.names() {
-            part.masses.push(MassSignature {
-                per_kg: t.column(&place, per_kg)?,
-                place,
-            });
-        }
-    }
-    for (zone, file) in &given.signatures.rail_stiffness {
-        let t = SignatureTable::read(&mut work.inputs, job, file, channels)?;
-        let mut change = vec![0.0; n * n_c];
-        let mut names: Vec<(String, f64)> = columns
-            .iter()
-            .map(|(name, c)| (c.clone(), scale(name)))
-            .collect();
-        names.extend(
-            payload_names
-                .iter()
-                .zip(payload_scale)
-                .map(|(n, f)| (n[0].to_owned(), f)),
-        );
-        for (c, (name, f)) in names
-            .iter()
-            .enumerate()
-            .filter(|(_, (name, _))| t.has(name))
-        {
-            for (g, v) in t.column(name, *f)?.into_iter().enumerate() {
-                change[g * n_c + c] = v;
+
+    /// A mass at each place of the table.
+    fn masses(&self, inputs: &mut Inputs) -> Result<Vec<MassSignature>, Faults> {
+        let mut masses = Vec::new();
+        if let Some(file) = &self.signatures.unaccounted_mass {
+            let t = self.read(inputs, file)?;
+            for place in t.names() {
+                masses.push(MassSignature {
+                    per_kg: t.column(&place, self.per_kg)?,
+                    place,
+                });
             }
         }
-        part.stiffness.push(StiffnessSignature {
-            of: StiffnessOf::Zone,
-            place: zone.clone(),
-            at_percent: vec![(1.0, change)],
-            prior_percent: 15.0,
-        });
+        Ok(masses)
     }
-    let known: Vec<(String, f64)> = columns
-        .iter()
-        .map(|(name, c)| (c.clone(), scale(name)))
-        .collect();
-    part.stiffness.extend(described::from_tables(
-        &mut work.inputs,
-        job,
-        channels,
-        &known,
-        n_c,
-    )?);
-    if n_l == 0 {
-        return Err(Faults::from(Fault::of(
-            &*given.file.given,
-            "columns",
-            "no load column",
-            "give S a column a load",
-        )));
+
+    /// Change of the influence matrix by a percent of each zone's stiffness.
+    fn stiffness(&self, inputs: &mut Inputs) -> Result<Vec<StiffnessSignature>, Faults> {
+        let n_c = self.n_columns();
+        let mut stiffness = Vec::new();
+        for (zone, file) in &self.signatures.rail_stiffness {
+            let t = self.read(inputs, file)?;
+            let mut change = vec![0.0; self.channels.len() * n_c];
+            let names = self.loads_and_payload();
+            for (c, (name, f)) in names
+                .iter()
+                .enumerate()
+                .filter(|(_, (name, _))| t.has(name))
+            {
+                for (g, v) in t.column(name, *f)?.into_iter().enumerate() {
+                    change[g * n_c + c] = v;
+                }
+            }
+            stiffness.push(StiffnessSignature {
+                of: StiffnessOf::Zone,
+                place: zone.clone(),
+                at_percent: vec![(1.0, change)],
+                prior_percent: 15.0,
+            });
+        }
+        Ok(stiffness)
     }
-    Ok(part)
 }
 
 /// Has the job a nuisance load of this name?

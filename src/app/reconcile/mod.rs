@@ -5,6 +5,7 @@ mod background;
 mod causes;
 mod corrected;
 mod deck_frame;
+mod deck_loads;
 mod deck_thermal;
 mod described;
 mod extend;

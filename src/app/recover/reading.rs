@@ -1,7 +1,7 @@
 //! A record of any length, a piece at a time: readings, and the loads that a filter makes of them.
 
 use super::sink::Block;
-use crate::app::fault::{Fault, Faults, split_message};
+use crate::app::fault::{Fault, Faults};
 use crate::app::files::FileBytes;
 use crate::app::job::correct::{Channel, column_of};
 use crate::app::job::strain::strain_columns;
@@ -173,7 +173,7 @@ impl Record {
 
 /// The fault of a record that can't be read.
 fn record_fault(file: &str, e: &SeriesError) -> Fault {
-    let (wrong, remedy) = split_message(e);
+    let (wrong, remedy) = e.parts();
     match e {
         SeriesError::Line { line, what, remedy } => {
             Fault::at(file, *line as u32, "row", what, *remedy)

@@ -119,15 +119,7 @@ fn is_modelled(element: u32) -> bool {
 }
 
 fn element_ids(model: &Model) -> BTreeSet<u32> {
-    let mut ids: BTreeSet<u32> = model.shells.iter().map(|e| e.id).collect();
-    ids.extend(model.beams.iter().map(|e| e.id));
-    ids.extend(model.rods.iter().map(|e| e.id));
-    ids.extend(model.bushes.iter().map(|e| e.id));
-    ids.extend(model.joints.iter().map(|e| e.id));
-    ids.extend(model.springs.iter().map(|e| e.id));
-    ids.extend(model.solids.iter().map(|e| e.id));
-    ids.extend(model.shear_panels.iter().map(|e| e.id));
-    ids
+    model.elements().map(|e| model.element_id(e)).collect()
 }
 
 /// A finding for what the file has and the deck lacks: an error where they have nothing in common.

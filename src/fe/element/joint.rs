@@ -2,16 +2,7 @@
 
 use super::ElementMatrix;
 use crate::linalg::{Matrix6, SMatrix};
-use crate::model::{GridIx, Joint};
-
-/// Its grids, each once, ascending.
-pub(crate) fn joint_grids(joint: &Joint) -> Vec<GridIx> {
-    let motion = joint.ends.iter().flat_map(|e| &e.motion);
-    let mut grids: Vec<GridIx> = motion.map(|m| m.0).collect();
-    grids.sort_unstable();
-    grids.dedup();
-    grids
-}
+use crate::model::Joint;
 
 /// Dofs of its grids, a bit each: patches are held by their translations alone.
 pub(crate) fn joint_dofs(joint: &Joint) -> u8 {
@@ -25,7 +16,7 @@ pub(crate) fn joint_stiffness(joint: &Joint) -> ElementMatrix {
     let mut axes = Matrix6::zeros();
     axes.fixed_view_mut::<3, 3>(0, 0).copy_from(&joint.axes);
     axes.fixed_view_mut::<3, 3>(3, 3).copy_from(&joint.axes);
-    let grids = joint_grids(joint);
+    let grids = joint.all_grids();
     let mut blocks = vec![SMatrix::<f64, 6, 6>::zeros(); grids.len()];
     for (end, sign) in joint.ends.iter().zip([-1.0, 1.0]) {
         let mut arm = Matrix6::identity();

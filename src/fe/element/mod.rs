@@ -14,7 +14,6 @@ pub(crate) mod shell;
 pub(crate) mod solid;
 mod spring;
 
-pub(crate) use list::ElementRef;
 pub(crate) use matrix::{ElementMatrix, point_mass};
 pub(crate) use rod::{rod_mass, rod_thermal_force};
 pub(crate) use shear_panel::shear_panel_mass;

@@ -115,9 +115,9 @@ impl Parquet {
         let factor = match meaning {
             Meaning::Instant(worth) => worth,
             Meaning::Number(worth) => {
-                let s = seconds_in(unit).ok_or_else(|| {
-                    let wrong = format!("`{unit}` is no unit of time: give times in s or ms");
-                    SeriesError::Broken(wrong)
+                let s = seconds_in(unit).ok_or_else(|| SeriesError::Broken {
+                    wrong: format!("`{unit}` is no unit of time"),
+                    remedy: "give times in s or ms",
                 })?;
                 worth * s
             }

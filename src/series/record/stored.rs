@@ -23,19 +23,19 @@ pub(super) struct Stored {
 impl Stored {
     /// The binary record of strainbridge; `unit` of its header is stated as the unit of every column without one.
     pub(super) fn binary(bytes: Bytes) -> Result<Self, SeriesError> {
-        let header = binary::read_header((*bytes).as_ref()).map_err(|e| {
-            SeriesError::Broken(format!(
-                "{e}: write the record again as the manual describes it"
-            ))
+        let header = binary::read_header((*bytes).as_ref()).map_err(|e| SeriesError::Broken {
+            wrong: e.to_string(),
+            remedy: "write the record again as the manual describes it",
         })?;
         let unit = match header.unit {
             1e-6 => "um/m",
             1e-3 => "mm/m",
             1.0 => "m/m",
             u => {
-                return Err(SeriesError::Broken(format!(
-                    "one unit of its numbers is {u}: write microstrain (1e-6), 1e-3 or 1"
-                )));
+                return Err(SeriesError::Broken {
+                    wrong: format!("one unit of its numbers is {u}"),
+                    remedy: "write microstrain (1e-6), 1e-3 or 1",
+                });
             }
         };
         let columns = header.names.iter().map(|n| {

@@ -144,7 +144,8 @@ fn numbers<T: DataType, O: Copy>(
 
 /// What is wrong with a file, and what to do.
 pub(super) fn broken(e: ParquetError) -> SeriesError {
-    SeriesError::Broken(format!(
-        "it can't be read as Parquet ({e}): write it again, columns of numbers and one `time` in seconds"
-    ))
+    SeriesError::Broken {
+        wrong: format!("it can't be read as Parquet ({e})"),
+        remedy: "write it again, columns of numbers and one `time` in seconds",
+    }
 }

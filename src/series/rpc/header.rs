@@ -1,7 +1,7 @@
 //! The header of an RPC III file.
 
 use std::collections::BTreeMap;
-use thiserror::Error;
+use std::fmt;
 
 /// Bytes of a header record.
 pub(super) const RECORD: usize = 128;
@@ -55,10 +55,9 @@ pub struct Header {
 }
 
 /// What is wrong with a file.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RpcError {
     /// The bytes end too early.
-    #[error("the file ends after {found} bytes, its header promises {expected}: copy it again")]
     Cut {
         /// Bytes there.
         found: usize,
@@ -66,7 +65,6 @@ pub enum RpcError {
         expected: usize,
     },
     /// A key that can't be done without is missing, or its value can't be.
-    #[error("`{key}` is {found}, expected {expected}: write the file again")]
     Value {
         /// The key.
         key: String,
@@ -76,7 +74,6 @@ pub enum RpcError {
         expected: &'static str,
     },
     /// A kind of file that is not read.
-    #[error("`{key}` = `{found}` is not read: export a time history of integers or reals")]
     Kind {
         /// The key.
         key: &'static str,
@@ -84,6 +81,39 @@ pub enum RpcError {
         found: String,
     },
 }
+
+impl RpcError {
+    /// What is wrong, and what to do.
+    pub fn parts(&self) -> (String, &'static str) {
+        match self {
+            Self::Cut { found, expected } => (
+                format!("the file ends after {found} bytes, its header promises {expected}"),
+                "copy it again",
+            ),
+            Self::Value {
+                key,
+                found,
+                expected,
+            } => (
+                format!("`{key}` is {found}, expected {expected}"),
+                "write the file again",
+            ),
+            Self::Kind { key, found } => (
+                format!("`{key}` = `{found}` is not read"),
+                "export a time history of integers or reals",
+            ),
+        }
+    }
+}
+
+impl fmt::Display for RpcError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (wrong, remedy) = self.parts();
+        write!(f, "{wrong}: {remedy}")
+    }
+}
+
+impl std::error::Error for RpcError {}
 
 /// Whether the bytes begin as an RPC III file.
 pub fn is_rpc(bytes: &[u8]) -> bool {

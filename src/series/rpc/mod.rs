@@ -17,7 +17,8 @@ pub use write::{Target, write_rpc};
 
 impl From<RpcError> for super::error::SeriesError {
     fn from(e: RpcError) -> Self {
-        Self::Broken(e.to_string())
+        let (wrong, remedy) = e.parts();
+        Self::Broken { wrong, remedy }
     }
 }
 

@@ -181,17 +181,11 @@ pub(crate) fn beam_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, R
     })
 }
 
-/// Grids of a beam, then its warping points.
-pub(crate) fn beam_grids(beam: &Beam) -> Vec<GridIx> {
-    let points = beam.warping.into_iter().flatten();
-    beam.grids.into_iter().chain(points).collect()
-}
-
 /// The stiffness `k` of a beam (element frame) with its torsion replaced by that of a bar that warps.
 fn warped(model: &Model, beam: &Beam, k: Matrix12, t: &Matrix12) -> Result<ElementMatrix, Refusal> {
     let (gj, ecw, length) = torsion_of(model, beam)?;
     let torsion = warping_torsion(gj, ecw, length);
-    Ok(warping::assembled(&beam_grids(beam), k, t, &torsion))
+    Ok(warping::assembled(&beam.all_grids(), k, t, &torsion))
 }
 
 /// GJ, E CW and length of a beam that warps.

@@ -63,19 +63,7 @@ impl ManyRows {
 
 /// Grids of a shell: corners, then the mid-side grids there are, each with the number of its side.
 pub(crate) fn many_grids(shell: &Shell) -> (Vec<GridIx>, Vec<usize>) {
-    let n = shell.shape.n_corners();
-    let mut grids = shell.grids[..n].to_vec();
-    let mut sides = Vec::new();
-    if shell.shape.n_grids() > n {
-        for side in 0..n {
-            // The model repeats the first corner of a side that has no grid in its middle.
-            if shell.grids[n + side] != shell.grids[side] {
-                grids.push(shell.grids[n + side]);
-                sides.push(side);
-            }
-        }
-    }
-    (grids, sides)
+    (shell.all_grids(), shell.middles().collect())
 }
 
 /// A corner, a middle of a side or the centre.
@@ -232,7 +220,7 @@ pub(crate) fn many_shell(
         k6rot,
         heat,
     };
-    let outer = 6 * many_grids(shell).0.len();
+    let outer = 6 * shell.all_grids().len();
     let size = outer + 6;
     let mut k = DMatrix::zeros(size, size);
     let mut f = DVector::zeros(size);

@@ -1,7 +1,7 @@
 //! Shells of a model: stiffness, strain rows, mass by corner.
 
 use super::expansion::expansion;
-use super::many::{ManyShell, many_grids, many_shell, over_surface};
+use super::many::{ManyShell, many_shell, over_surface};
 use super::output_frame::output_frame;
 use super::quad4::quad4;
 use super::tria3::tria3;
@@ -142,7 +142,7 @@ pub(crate) fn shell_stiffness(prepared: &Prepared<'_>, i: usize) -> Result<Eleme
         AnyShell::Quad(m) => ElementMatrix::from_rows(&grids[..4], &m.stiffness),
         AnyShell::Tria(m) => ElementMatrix::from_rows(&grids[..3], &m.stiffness),
         AnyShell::Many(m) => ElementMatrix {
-            grids: many_grids(&prepared.model.shells[i]).0,
+            grids: prepared.model.shells[i].all_grids(),
             values: m.stiffness,
         },
     })
@@ -208,7 +208,7 @@ fn densities(model: &Model, property: &crate::model::ShellProperty) -> (f64, f64
 /// Consistent mass of a shell with mid-side grids: its grids and, row by row, their shares, before WTMASS.
 pub(crate) fn many_mass(model: &Model, i: usize) -> (Vec<crate::model::GridIx>, Vec<f64>) {
     let shell = &model.shells[i];
-    let (grids, _) = many_grids(shell);
+    let grids = shell.all_grids();
     let n = grids.len();
     let mut products = vec![0.0; n * n];
     if let Some(property) = model.shell_properties.get(shell.property.us()) {

@@ -13,8 +13,7 @@ mod of_model;
 mod table;
 
 pub(crate) use of_model::{
-    SolidStrain, is_inverted, solid_grids, solid_mass, solid_stiffness, solid_strain,
-    solid_thermal_force,
+    SolidStrain, is_inverted, solid_mass, solid_stiffness, solid_strain, solid_thermal_force,
 };
 
 #[cfg(test)]

@@ -35,11 +35,6 @@ fn folded(solid: &Solid) -> impl Fn(Folded) -> Refusal + '_ {
     }
 }
 
-/// Grids of a solid: corners, then the mid-side grids there are.
-pub(crate) fn solid_grids(solid: &Solid) -> Vec<GridIx> {
-    solid.grids.iter().flatten().copied().collect()
-}
-
 fn input(model: &Model, solid: &Solid) -> Result<SolidInput, Refusal> {
     let n = solid.shape.n_corners();
     let mids: Vec<usize> = (0..20 - n)
@@ -54,7 +49,8 @@ fn input(model: &Model, solid: &Solid) -> Result<SolidInput, Refusal> {
     }
     Ok(SolidInput {
         shape: solid.shape,
-        x: solid_grids(solid)
+        x: solid
+            .all_grids()
             .iter()
             .map(|g| model.grids[g.us()].x)
             .collect(),
@@ -83,7 +79,7 @@ pub(crate) fn solid_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, 
     let solid = &model.solids[i];
     let (input, law) = formed(model, solid)?;
     let k = input.form(&law.g, None).map_err(folded(solid))?.stiffness;
-    let mut out = ElementMatrix::zeros(solid_grids(solid));
+    let mut out = ElementMatrix::zeros(solid.all_grids());
     let n = out.n();
     for a in 0..k.nrows() {
         let row = 6 * (a / 3) + a % 3;
@@ -109,7 +105,7 @@ pub(crate) fn solid_mass(model: &Model, i: usize) -> (Vec<GridIx>, Vec<f64>) {
     match products {
         Some(mut p) if rho != 0.0 => {
             p.iter_mut().for_each(|v| *v *= rho);
-            (solid_grids(solid), p)
+            (solid.all_grids(), p)
         }
         _ => (Vec::new(), Vec::new()),
     }
@@ -139,7 +135,8 @@ pub(crate) fn solid_thermal_force(
         .form(&law.g, Some(&strain))
         .map_err(folded(solid))?
         .force;
-    Ok(solid_grids(solid)
+    Ok(solid
+        .all_grids()
         .into_iter()
         .zip(force.chunks_exact(3).map(Vec3::from_column_slice))
         .collect())
@@ -159,7 +156,7 @@ pub(crate) fn solid_strain(
     let (input, law) = formed(model, solid)?;
     let tables = Tables::of(solid.shape);
     let turn = law.axes.as_ref().map(strain_rotation);
-    let grids = solid_grids(solid);
+    let grids = solid.all_grids();
     let centre = input.at(&tables.centre).map_err(folded(solid))?;
     let sampled: Vec<_> = tables
         .sampling

@@ -4,7 +4,8 @@ use crate::series::error::SeriesError;
 
 /// The error of a file that can't be read.
 pub(super) fn broken(what: impl std::fmt::Display) -> SeriesError {
-    SeriesError::Broken(format!(
-        "it can't be read as MDF4 ({what}): save it as MDF 4.1 with its measuring program or asammdf"
-    ))
+    SeriesError::Broken {
+        wrong: format!("it can't be read as MDF4 ({what})"),
+        remedy: "save it as MDF 4.1 with its measuring program or asammdf",
+    }
 }

@@ -4,7 +4,8 @@ use crate::series::error::SeriesError;
 
 /// The error of a file that can't be read.
 pub(super) fn broken(what: impl std::fmt::Display) -> SeriesError {
-    SeriesError::Broken(format!(
-        "it can't be read as TDMS ({what}): save it again with its measuring program or export it as CSV"
-    ))
+    SeriesError::Broken {
+        wrong: format!("it can't be read as TDMS ({what})"),
+        remedy: "save it again with its measuring program or export it as CSV",
+    }
 }

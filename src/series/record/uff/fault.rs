@@ -4,7 +4,8 @@ use crate::series::error::SeriesError;
 
 /// The error of a file that can't be read.
 pub(super) fn broken(what: impl std::fmt::Display) -> SeriesError {
-    SeriesError::Broken(format!(
-        "it can't be read as a universal file ({what}): export time histories as data sets 58 or 58b on even steps"
-    ))
+    SeriesError::Broken {
+        wrong: format!("it can't be read as a universal file ({what})"),
+        remedy: "export time histories as data sets 58 or 58b on even steps",
+    }
 }

@@ -1,0 +1,123 @@
+//! Elements with stiffness as one list: what all of them have, whatever their kind. Where kinds differ, a `match` names every one of them.
+
+use super::{Beam, GridIx, Joint, Model, Shell, Solid};
+
+/// One element, by its place in the list of its kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ElementRef {
+    Shell(usize),
+    Beam(usize),
+    Rod(usize),
+    Bush(usize),
+    Joint(usize),
+    Spring(usize),
+    Solid(usize),
+    ShearPanel(usize),
+}
+
+impl Model {
+    /// Every element with stiffness, kind by kind.
+    pub(crate) fn elements(&self) -> impl Iterator<Item = ElementRef> + use<> {
+        (0..self.shells.len())
+            .map(ElementRef::Shell)
+            .chain((0..self.beams.len()).map(ElementRef::Beam))
+            .chain((0..self.rods.len()).map(ElementRef::Rod))
+            .chain((0..self.bushes.len()).map(ElementRef::Bush))
+            .chain((0..self.joints.len()).map(ElementRef::Joint))
+            .chain((0..self.springs.len()).map(ElementRef::Spring))
+            .chain((0..self.solids.len()).map(ElementRef::Solid))
+            .chain((0..self.shear_panels.len()).map(ElementRef::ShearPanel))
+    }
+
+    /// Its id.
+    pub(crate) fn element_id(&self, element: ElementRef) -> u32 {
+        match element {
+            ElementRef::Shell(i) => self.shells[i].id,
+            ElementRef::Beam(i) => self.beams[i].id,
+            ElementRef::Rod(i) => self.rods[i].id,
+            ElementRef::Bush(i) => self.bushes[i].id,
+            ElementRef::Joint(i) => self.joints[i].id,
+            ElementRef::Spring(i) => self.springs[i].id,
+            ElementRef::Solid(i) => self.solids[i].id,
+            ElementRef::ShearPanel(i) => self.shear_panels[i].id,
+        }
+    }
+
+    /// Its kind, as messages name it.
+    pub(crate) fn element_word(&self, element: ElementRef) -> &'static str {
+        match element {
+            ElementRef::Shell(i) => self.shells[i].shape.card(),
+            ElementRef::Beam(i) if self.beams[i].is_beam => "CBEAM",
+            ElementRef::Beam(_) => "CBAR",
+            ElementRef::Rod(_) => "rod",
+            ElementRef::Bush(_) => "CBUSH",
+            ElementRef::Joint(i) => self.joints[i].card.name(),
+            ElementRef::Spring(_) => "spring",
+            ElementRef::Solid(i) => self.solids[i].shape.card(),
+            ElementRef::ShearPanel(_) => "CSHEAR",
+        }
+    }
+
+    /// Its grids and scalar points, each once, in the order of its stiffness.
+    pub(crate) fn element_grids(&self, element: ElementRef) -> Vec<GridIx> {
+        match element {
+            ElementRef::Shell(i) => self.shells[i].all_grids(),
+            ElementRef::Beam(i) => self.beams[i].all_grids(),
+            ElementRef::Rod(i) => self.rods[i].grids.to_vec(),
+            ElementRef::Bush(i) => {
+                let (a, b) = self.bushes[i].grids;
+                [Some(a), b].into_iter().flatten().collect()
+            }
+            ElementRef::Joint(i) => self.joints[i].all_grids(),
+            ElementRef::Spring(i) => {
+                let ends = self.springs[i].ends.iter().flatten();
+                let mut grids: Vec<GridIx> = ends.map(|e| e.0).collect();
+                grids.dedup();
+                grids
+            }
+            ElementRef::Solid(i) => self.solids[i].all_grids(),
+            ElementRef::ShearPanel(i) => self.shear_panels[i].grids.to_vec(),
+        }
+    }
+}
+
+impl Shell {
+    /// Sides with a grid in their middle: the model repeats the first corner of a side that has none.
+    pub(crate) fn middles(&self) -> impl Iterator<Item = usize> {
+        let n = self.shape.n_corners();
+        (0..self.shape.n_grids() - n).filter(move |side| self.grids[n + side] != self.grids[*side])
+    }
+
+    /// Corners, then the middles of sides that there are.
+    pub(crate) fn all_grids(&self) -> Vec<GridIx> {
+        let n = self.shape.n_corners();
+        let middles = self.middles().map(|side| self.grids[n + side]);
+        self.grids[..n].iter().copied().chain(middles).collect()
+    }
+}
+
+impl Beam {
+    /// Ends, then the scalar points of its warping.
+    pub(crate) fn all_grids(&self) -> Vec<GridIx> {
+        let points = self.warping.into_iter().flatten();
+        self.grids.into_iter().chain(points).collect()
+    }
+}
+
+impl Joint {
+    /// Grids of both ends, ascending.
+    pub(crate) fn all_grids(&self) -> Vec<GridIx> {
+        let motion = self.ends.iter().flat_map(|e| &e.motion);
+        let mut grids: Vec<GridIx> = motion.map(|m| m.0).collect();
+        grids.sort_unstable();
+        grids.dedup();
+        grids
+    }
+}
+
+impl Solid {
+    /// Corners, then the middles of edges that there are.
+    pub(crate) fn all_grids(&self) -> Vec<GridIx> {
+        self.grids.iter().flatten().copied().collect()
+    }
+}
