@@ -1,0 +1,130 @@
+//! `[[gauge]]`, or a row of a gauge file.
+
+/// Surface of a shell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Surface {
+    /// Z1.
+    Bottom,
+    /// Z2.
+    Top,
+}
+
+impl Surface {
+    /// As in a job and in `strains.csv`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bottom => "bottom",
+            Self::Top => "top",
+        }
+    }
+}
+
+/// How the arms of a gauge are wired.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bridge {
+    /// One grid.
+    Quarter,
+    /// Two grids: this one less the other pair's.
+    HalfBending,
+    /// Four grids: twice this one less twice the other.
+    FullBending,
+    /// Two grids at +45 and -45 degrees: their difference is the shear strain.
+    Shear,
+}
+
+impl Bridge {
+    /// All of them.
+    pub const ALL: [Bridge; 4] = [
+        Self::Quarter,
+        Self::HalfBending,
+        Self::FullBending,
+        Self::Shear,
+    ];
+
+    /// As in a job.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Quarter => "quarter",
+            Self::HalfBending => "half-bending",
+            Self::FullBending => "full-bending",
+            Self::Shear => "shear",
+        }
+    }
+
+    /// From a job or a table; `full` and `half` mean bending.
+    pub fn from_name(name: &str) -> Option<Self> {
+        match name {
+            "full" => Some(Self::FullBending),
+            "half" => Some(Self::HalfBending),
+            _ => Self::ALL.into_iter().find(|b| b.name() == name),
+        }
+    }
+}
+
+/// A rosette's legs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rosette {
+    /// Legs a, b, c at 0, 45, 90 degrees.
+    Rectangular,
+    /// Legs a, b, c at 0, 60, 120 degrees.
+    Delta,
+}
+
+/// Where a gauge sits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GaugePlace {
+    /// At the centre of an element.
+    Element(u32),
+    /// At a point in the axes of `cid`: the nearest surface is taken.
+    Position([f64; 3], u32),
+    /// At a bar or beam: recovery point 0 to 3 (C D E F) at a share of the length from end A.
+    BeamPoint {
+        /// Element id.
+        element: u32,
+        /// 0 to 3: C D E F.
+        point: u8,
+        /// x/xb.
+        station: f64,
+    },
+    /// Not stated: enough for a job whose S is given.
+    Unstated,
+}
+
+/// A gauge.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JobGauge {
+    /// Name: the column of the strain file.
+    pub name: String,
+    /// Where it sits.
+    pub place: GaugePlace,
+    /// Location in job units as the table states it beside the element, where it does: for drawings.
+    pub position: Option<[f64; 3]>,
+    /// Surface.
+    pub surface: Surface,
+    /// Whether the job states the surface (else it is `top`, or the nearest for a position).
+    pub surface_stated: bool,
+    /// Direction to be laid on the surface, basic frame or that of `cid`; `None`: the element x axis.
+    pub direction: Option<[f64; 3]>,
+    /// Coordinate system of the direction.
+    pub cid: u32,
+    /// Angle from that direction, degrees, right-handed about the element normal.
+    pub angle_deg: f64,
+    /// Wiring.
+    pub bridge: Bridge,
+    /// The sum of signed arm strains is divided by this.
+    pub bridge_factor: f64,
+    /// Length over which strain is averaged; 0: at the point.
+    pub grid_length: f64,
+    /// Element and surface of the other pair.
+    pub pair: Option<(u32, Surface)>,
+    /// Three legs instead of one grid.
+    pub rosette: Option<Rosette>,
+    /// Transverse sensitivity Kt, a fraction.
+    pub transverse_sensitivity: f64,
+    /// Free columns of the table, such as `member`.
+    pub member: String,
+    /// File that states it.
+    pub file: String,
+    /// Line there.
+    pub line: u32,
+}
