@@ -13,7 +13,6 @@ const COMMENT: usize = 150;
 const LONGER: &[&str] = &[
     "src/app/ballast/mod.rs ballast",
     "src/app/cases/mod.rs edits_of",
-    "src/app/job/gauges.rs gauge_of_row",
     "src/app/place/choose.rs within_budget",
     "src/app/reconcile/deck_frame.rs read",
     "src/app/reconcile/matrix_frame.rs read",

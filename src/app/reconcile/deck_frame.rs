@@ -8,7 +8,7 @@ use super::influence::{influence, payload_grid, readings};
 use super::model_part::{ModelPart, facts, nominal_x_m, nominal_y_m};
 use super::region::Region;
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::{Component, Job, JobLoad, LoadActs, Role};
+use crate::app::job::{Component, Job, JobLoad, LoadActs, LoadRole};
 use crate::app::solved::{support_of_job, unit_loads_kept};
 use crate::app::strain::{Fields, Prepared, lay_gauges, prepare, unit_loads};
 use crate::app::work::Work;
@@ -246,7 +246,7 @@ pub(super) fn read(
     };
     part.stiffness = work.stage("solve zones", |_| deck.signatures(job))?;
     // Tables count in microstrain per unit of the job, as sensitivity.csv does.
-    let wanted = job.loads.iter().filter(|l| l.role == Role::Wanted);
+    let wanted = job.loads.iter().filter(|l| l.role == LoadRole::Wanted);
     let per = |l: &JobLoad| match l.acts {
         LoadActs::AtGrid { component, .. } => KILO / job.units.si(component.quantity()),
         LoadActs::Set(_) | LoadActs::Named => 1.0,
@@ -355,26 +355,26 @@ fn job_loads(job: &Job, model: &Model) -> Result<JobLoads, Faults> {
     let payload = payload_grid(job, model);
     for (l, load) in job.loads.iter().zip(unit_loads(job, model)?) {
         match (&l.acts, l.role) {
-            (LoadActs::AtGrid { grid, component, .. }, Role::Wanted) => {
+            (LoadActs::AtGrid { grid, component, .. }, LoadRole::Wanted) => {
                 out.wheels.push((l.name.clone(), grid_of(job, model, *grid)?));
                 out.columns.push(scaled(&load, KILO / (l.applied * job.units.si(component.quantity()))));
             }
-            (LoadActs::Set(sid), Role::Wanted) => faults.push(Fault::at(
+            (LoadActs::Set(sid), LoadRole::Wanted) => faults.push(Fault::at(
                 &*job.file,
                 l.line,
                 "load.load_set",
                 format!("load `{}` is load set {sid}: how much of a set acts in a run, `reconcile` does not read", l.name),
                 "give the load as a grid and a component, or role = \"nuisance\"",
             )),
-            (LoadActs::AtGrid { grid, .. }, Role::Nuisance) if payload.is_some() && model.grid_ix(*grid) == payload => {}
-            (LoadActs::Named, Role::Wanted) => faults.push(Fault::at(
+            (LoadActs::AtGrid { grid, .. }, LoadRole::Nuisance) if payload.is_some() && model.grid_ix(*grid) == payload => {}
+            (LoadActs::Named, LoadRole::Wanted) => faults.push(Fault::at(
                 &*job.file,
                 l.line,
                 "load.grid",
                 format!("load `{}` is a name alone: where it acts on the model is not said", l.name),
                 "state `grid` and `component`",
             )),
-            (acts, Role::Nuisance) => out.nuisance.push(JobNuisance {
+            (acts, LoadRole::Nuisance) => out.nuisance.push(JobNuisance {
                 name: l.name.clone(),
                 load,
                 applied: l.applied,
@@ -422,7 +422,7 @@ fn has_nuisance(job: &Job, model: &Model, at: GridIx, component: Component) -> b
             grid,
             component: c,
             cid: 0,
-        } => l.role == Role::Nuisance && c == component && model.grid_ix(grid) == Some(at),
+        } => l.role == LoadRole::Nuisance && c == component && model.grid_ix(grid) == Some(at),
         _ => false,
     })
 }

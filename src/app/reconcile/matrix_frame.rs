@@ -6,7 +6,7 @@ use super::model_part::{ModelPart, facts, nominal_x_m, nominal_y_m};
 use super::signature_table::SignatureTable;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::quantity::quantity_of_name;
-use crate::app::job::{GivenSensitivity, Job, JobLoad, Role};
+use crate::app::job::{GivenSensitivity, Job, JobLoad, LoadRole};
 use crate::app::strain::read_given;
 use crate::app::work::Work;
 use crate::reconcile::strain::{
@@ -217,7 +217,7 @@ pub(super) fn read(
 fn is_nuisance(job: &Job, name: &str) -> bool {
     job.loads
         .iter()
-        .any(|l| l.name == name && l.role == Role::Nuisance)
+        .any(|l| l.name == name && l.role == LoadRole::Nuisance)
 }
 
 /// Force or moment: what a stated load is, else what the name says.

@@ -1,11 +1,12 @@
 //! `[candidates]`.
 
-use super::gauge::{Bridge, Rosette, Surface};
 use super::named_file::NamedFile;
 use super::region::Region;
 use crate::app::job::shapes::Ids;
+use crate::fe::strain_tensor::Surface;
+use crate::gauge::{Bridge, Rosette};
 
-/// The angles of candidates.
+/// The angles of candidates as a job states them: a step, not the angles themselves ([`crate::placement::candidates::Angles`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AngleStep {
     /// Every so many degrees from the element x axis.

@@ -1,8 +1,9 @@
 //! `[[correction]]`.
 
-/// `[[correction]]`: what is known to be wrong with a channel. It reads `sign gain strain + offset`.
+/// `[[correction]]`: all that is known to be wrong with a strain channel ([`crate::reconcile::effect::Correction`] is one step of what a
+/// hypothesis finds). It reads `sign gain strain + offset`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Correction {
+pub struct StrainCorrection {
     /// Channel.
     pub gauge: String,
     /// 1, or -1 where it is wired backwards.

@@ -1,78 +1,12 @@
 //! `[[gauge]]`, or a row of a gauge file.
 
-/// Surface of a shell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Surface {
-    /// Z1.
-    Bottom,
-    /// Z2.
-    Top,
-}
+use crate::fe::strain_tensor::Surface;
+use crate::gauge::{Bridge, Rosette};
 
-impl Surface {
-    /// As in a job and in `strains.csv`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Bottom => "bottom",
-            Self::Top => "top",
-        }
-    }
-}
-
-/// How the arms of a gauge are wired.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bridge {
-    /// One grid.
-    Quarter,
-    /// Two grids: this one less the other pair's.
-    HalfBending,
-    /// Four grids: twice this one less twice the other.
-    FullBending,
-    /// Two grids at +45 and -45 degrees: their difference is the shear strain.
-    Shear,
-}
-
-impl Bridge {
-    /// All of them.
-    pub const ALL: [Bridge; 4] = [
-        Self::Quarter,
-        Self::HalfBending,
-        Self::FullBending,
-        Self::Shear,
-    ];
-
-    /// As in a job.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Quarter => "quarter",
-            Self::HalfBending => "half-bending",
-            Self::FullBending => "full-bending",
-            Self::Shear => "shear",
-        }
-    }
-
-    /// From a job or a table; `full` and `half` mean bending.
-    pub fn from_name(name: &str) -> Option<Self> {
-        match name {
-            "full" => Some(Self::FullBending),
-            "half" => Some(Self::HalfBending),
-            _ => Self::ALL.into_iter().find(|b| b.name() == name),
-        }
-    }
-}
-
-/// A rosette's legs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rosette {
-    /// Legs a, b, c at 0, 45, 90 degrees.
-    Rectangular,
-    /// Legs a, b, c at 0, 60, 120 degrees.
-    Delta,
-}
-
-/// Where a gauge sits.
+/// Where a gauge sits as its user states it: by ids and axes of the deck, or not at all. [`crate::gauge::GaugePlace`] is the same found on a
+/// model.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum GaugePlace {
+pub enum StatedPlace {
     /// At the centre of an element.
     Element(u32),
     /// At a point in the axes of `cid`: the nearest surface is taken.
@@ -96,7 +30,7 @@ pub struct JobGauge {
     /// Name: the column of the strain file.
     pub name: String,
     /// Where it sits.
-    pub place: GaugePlace,
+    pub place: StatedPlace,
     /// Location in job units as the table states it beside the element, where it does: for drawings.
     pub position: Option<[f64; 3]>,
     /// Surface.

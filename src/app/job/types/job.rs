@@ -3,7 +3,7 @@
 use super::ballast::Ballast;
 use super::calibration::CalibrationKeys;
 use super::candidates::Candidates;
-use super::correction::Correction;
+use super::correction::StrainCorrection;
 use super::fleet::Fleet;
 use super::gauge::JobGauge;
 use super::load::{Combination, JobLoad};
@@ -47,7 +47,7 @@ pub struct Job {
     /// `[[combination]]`, in job order.
     pub combinations: Vec<Combination>,
     /// `[[correction]]`, in job order.
-    pub corrections: Vec<Correction>,
+    pub corrections: Vec<StrainCorrection>,
     /// `[[gauge]]`, then those of `[gauges] file`.
     pub gauges: Vec<JobGauge>,
     /// `[gauges] file`.

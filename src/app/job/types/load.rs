@@ -52,7 +52,7 @@ impl Component {
     }
 }
 
-/// What a load is.
+/// What a load is as a job states it, by ids of the deck; [`crate::fe::UnitLoad`] is what a solution takes: vectors in the basic frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LoadActs {
     /// A component at a grid, in the axes of `cid` (0 basic) at that grid.
@@ -70,10 +70,10 @@ pub enum LoadActs {
     Named,
 }
 
-/// Whether a load is asked for.
+/// Whether a load is asked for; what a placed gauge is for is [`crate::placement::Role`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]
-pub enum Role {
+pub enum LoadRole {
     Wanted,
     Nuisance,
 }
@@ -94,7 +94,7 @@ pub struct JobLoad {
     /// Its number in job order, from 1: the subcase that `cases` gives it.
     pub number: u32,
     /// Wanted or nuisance.
-    pub role: Role,
+    pub role: LoadRole,
     /// Prior standard deviation, job units.
     pub expected: Option<f64>,
     /// How much its variance counts in criterion A; default 1.

@@ -1,22 +1,15 @@
 //! `[payload]`.
 
 use super::region::Region;
-
-/// Whether the payload's place is known.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub enum PayloadPosition {
-    Known,
-    Free,
-}
+use crate::payload::Place;
 
 /// `[payload]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Payload {
     /// Grid where it acts.
     pub grid: Option<u32>,
-    /// Known or free.
-    pub position: PayloadPosition,
+    /// Whether its place is known or asked for; default known.
+    pub position: Place,
     /// Gravity, m/s^2 whatever the unit system; default 9.80665.
     pub gravity_m_s2: f64,
     /// The payload's weight acts in the analyst's model.

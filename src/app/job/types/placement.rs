@@ -1,6 +1,6 @@
 //! `[placement]`.
 
-use super::gauge::Bridge;
+use crate::gauge::Bridge;
 use crate::placement::Loss;
 
 /// Gauges of the job that stay.
@@ -14,9 +14,10 @@ pub enum Keep {
     Named(Vec<String>),
 }
 
-/// What placement maximises.
+/// What placement is to maximise, by the word of a job alone: [`crate::placement::Criterion`] holds the columns and weights that it takes there,
+/// and has one form for several of these words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Criterion {
+pub enum Optimality {
     /// Determinant for all loads.
     D,
     /// Determinant for the wanted loads, nuisance loads estimated along.
@@ -31,7 +32,7 @@ pub enum Criterion {
     Condition,
 }
 
-impl Criterion {
+impl Optimality {
     /// As in a job.
     pub fn name(self) -> &'static str {
         match self {
@@ -51,7 +52,7 @@ pub struct Placement {
     /// How many; `None`: twice the number of loads, which the command says.
     pub gauges: Option<usize>,
     /// Criterion; default `Ds` with nuisance loads, else `D`.
-    pub criterion: Criterion,
+    pub criterion: Optimality,
     /// Smallest distance between gauges; default 0.
     pub spacing: f64,
     /// Noise, microstrain; default: that of `[measured]`, else 1.

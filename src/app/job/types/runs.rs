@@ -1,16 +1,9 @@
 //! `[runs]`.
 
 use super::named_file::NamedFile;
+use crate::reconcile::strain::WheelForces;
 use crate::units::ReportUnits;
 use std::collections::BTreeMap;
-
-/// Where wheel forces of the runs file come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub enum WheelForces {
-    Measured,
-    FlatGroundModel,
-}
 
 /// `[runs]`.
 #[derive(Clone, Debug, PartialEq)]

@@ -46,7 +46,7 @@ pub struct Vehicle {
     pub line: u32,
 }
 
-/// A known fault of a channel of `[vehicle]`.
+/// What is known to be wrong with a channel of the records, one of each kind; [`crate::vehicle::adjustment::Adjustment`] joins several.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChannelCorrection {
     /// Reading over truth.
@@ -63,7 +63,7 @@ pub struct ChannelCorrection {
     pub line_hz: Option<f64>,
 }
 
-/// `mass_change` of `[vehicle]`.
+/// `mass_change` of `[vehicle]`, by the name of the body; on a vehicle it is a [`crate::vehicle::layout::MassStep`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct MassChange {
     /// Body, such as `b`.
