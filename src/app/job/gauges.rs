@@ -146,6 +146,23 @@ impl Row<'_> {
         Some([x?, y?, z?])
     }
 
+    /// The direction, whole or not at all: a part of it would be taken for the element x axis.
+    fn direction(&mut self) -> Option<[f64; 3]> {
+        let names = ["dir_x", "dir_y", "dir_z"];
+        let before = self.faults.len();
+        let parts = names.map(|n| self.number(n));
+        let blank = names.iter().zip(parts).find(|(_, p)| p.is_none());
+        if let Some((name, _)) = blank
+            && parts.iter().any(Option::is_some)
+            && self.faults.len() == before
+        {
+            let remedy = "state `dir_x`, `dir_y` and `dir_z`, or leave all three blank";
+            self.fault(name, "no number beside the others".into(), remedy);
+        }
+        let [x, y, z] = parts;
+        Some([x?, y?, z?])
+    }
+
     /// A whole number from `least` up; `what` it is the id of.
     fn id(&mut self, field: &str, what: &str, least: u32) -> Option<u32> {
         let x = self.number(field)?;
@@ -249,7 +266,7 @@ fn place(row: &mut Row, location: &Location, laid: bool, cid: u32) -> StatedPlac
 }
 
 fn gauge_of_row(row: &mut Row, length_m: f64) -> JobGauge {
-    let direction = row.vector(["dir_x", "dir_y", "dir_z"]);
+    let direction = row.direction();
     let location = location(row, length_m);
     let cid = row.id("cid", "coordinate system", 0).unwrap_or(0);
     let surface = row.surface("surface");

@@ -404,6 +404,24 @@ fn a_gauge_table_is_held_to_the_limits_of_a_job() {
     }
 }
 
+/// Half a direction would be taken for the element x axis.
+#[test]
+fn a_direction_in_a_gauge_table_is_whole_or_absent() {
+    for (header, row, at) in [
+        ("dir_x,dir_y,dir_z", "1,0,0", None),
+        ("dir_x,dir_y,dir_z", ",,", None),
+        ("dir_x,dir_y,dir_z", "0,1,", Some("dir_z")),
+        ("dir_x,dir_z", "1,0", Some("dir_y")),
+    ] {
+        let text = format!("name,element,{header}\nA,1,{row}\n");
+        let t = table::read_table("g.csv", &text).unwrap();
+        let mut found = Vec::new();
+        gauges::gauges_from_table(&t, 1.0, &mut found);
+        let fields: Vec<&str> = found.iter().map(|f| f.field.as_str()).collect();
+        assert_eq!(fields, Vec::from_iter(at), "{row}: {found:?}");
+    }
+}
+
 /// An angle that isn't read would be 0.
 #[test]
 fn columns_that_look_like_those_of_a_gauge_table_are_faults() {
