@@ -33,7 +33,7 @@ pub fn wheels_of(job: &Job, model: &Model) -> Result<Wheels, Faults> {
         .loads
         .iter()
         .enumerate()
-        .filter(|(_, l)| l.role == super::job::Role::Wanted)
+        .filter(|(_, l)| l.role == super::job::LoadRole::Wanted)
         .filter_map(|(i, l)| force(l).map(|(g, a)| (i, g, a)))
         .collect();
     let axis = (0..3)
@@ -50,7 +50,7 @@ pub fn wheels_of(job: &Job, model: &Model) -> Result<Wheels, Faults> {
     let has_moment = |id: u32| {
         job.loads.iter().any(|l| {
             matches!(l.acts, LoadActs::AtGrid { grid, component, .. } if grid == id && component.dof() > 2)
-                && l.role == super::job::Role::Wanted
+                && l.role == super::job::LoadRole::Wanted
         })
     };
     for (i, id, _) in wanted

@@ -17,6 +17,31 @@ pub enum Bridge {
     Shear,
 }
 
+impl Bridge {
+    /// All of them.
+    pub const ALL: [Bridge; 4] = [
+        Self::Quarter,
+        Self::HalfBending,
+        Self::FullBending,
+        Self::Shear,
+    ];
+
+    /// The word of files and reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Quarter => "quarter",
+            Self::HalfBending => "half-bending",
+            Self::FullBending => "full-bending",
+            Self::Shear => "shear",
+        }
+    }
+
+    /// From that word.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|b| b.name() == name)
+    }
+}
+
 /// Three grids at one place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rosette {
@@ -41,7 +66,7 @@ impl Rosette {
     }
 }
 
-/// Where a gauge is glued.
+/// Where a gauge is glued, found on the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GaugePlace {
     /// At the centre of a shell.

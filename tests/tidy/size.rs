@@ -10,11 +10,7 @@ const FUNCTION: usize = 120;
 const COMMENT: usize = 150;
 
 /// Files and functions (`path function`) that are longer still; the list only shrinks.
-const LONGER: &[&str] = &[
-    "src/app/job/gauges.rs gauge_of_row",
-    "src/app/job/types.rs",
-    "src/reconcile/strain/likelihood.rs",
-];
+const LONGER: &[&str] = &["src/reconcile/strain/likelihood.rs"];
 
 #[test]
 fn files_and_functions_are_short() {

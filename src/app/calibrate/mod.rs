@@ -12,7 +12,7 @@ pub use outcome::*;
 use super::context::Context;
 use super::fault::{Fault, Faults};
 use super::job::strain::{StrainRows, StrainTable};
-use super::job::{Job, Measured, Reference, Role, Runs};
+use super::job::{Job, LoadRole, Measured, Reference, Runs};
 use super::outcome::{Outcome, StatedUnits};
 use super::reconcile::redirect::text_of;
 use super::strain::{Prepared, load_units, prepare};
@@ -195,7 +195,7 @@ fn prior(
         .iter()
         .map(|l| Load {
             expected: l.expected,
-            wanted: l.role == Role::Wanted,
+            wanted: l.role == LoadRole::Wanted,
             quantity: l.quantity(),
             ..Load::named(&l.name)
         })

@@ -177,10 +177,10 @@ fn missing_ids(job: &Job, model: &Model) -> Vec<Fault> {
     }
     for g in &job.gauges {
         let element = match g.place {
-            job::GaugePlace::Element(e) if model.shell_ix(e).is_none() => {
+            job::StatedPlace::Element(e) if model.shell_ix(e).is_none() => {
                 Some(format!("shell {e}"))
             }
-            job::GaugePlace::BeamPoint { element, .. } if model.beam_ix(element).is_none() => {
+            job::StatedPlace::BeamPoint { element, .. } if model.beam_ix(element).is_none() => {
                 Some(format!("bar or beam {element}"))
             }
             _ => None,

@@ -4,7 +4,7 @@ use super::day::{Day, DayFinding, GaugeDay, LoadDay};
 use super::health::Health;
 use super::judged::{Judged, findings_of};
 use super::recovering::{Part, Recovering, counted};
-use crate::app::job::Correction;
+use crate::app::job::StrainCorrection;
 use crate::app::job::correct::{Channel, channel_of, column_of};
 use crate::app::strain::LoadUnits;
 use crate::finding::Severity;
@@ -46,7 +46,7 @@ pub struct Kernel {
     /// Seconds in the unit of times in tables that state none; `None`: seconds.
     pub time_unit_s: Option<f64>,
     /// What is known to be wrong with channels.
-    pub corrections: Vec<Correction>,
+    pub corrections: Vec<StrainCorrection>,
     /// Microstrain in one of a unit that a file states; `None` where it is no strain.
     pub microstrain_in: fn(&str) -> Option<f64>,
 }

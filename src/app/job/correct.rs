@@ -1,6 +1,6 @@
 //! `[[correction]]` applied to readings: a channel reads `sign gain strain + offset`.
 
-use super::types::{Correction, Job};
+use super::types::{Job, StrainCorrection};
 use crate::finding::{Finding, Severity, few};
 
 /// What turns the readings of a channel into strain.
@@ -30,7 +30,7 @@ impl Channel {
 }
 
 /// What puts the readings of this gauge right.
-pub fn channel_of(corrections: &[Correction], gauge: &str) -> Channel {
+pub fn channel_of(corrections: &[StrainCorrection], gauge: &str) -> Channel {
     let own = corrections.iter().filter(|c| c.gauge == gauge);
     own.fold(
         Channel {
@@ -47,7 +47,7 @@ pub fn channel_of(corrections: &[Correction], gauge: &str) -> Channel {
 }
 
 /// The column that holds the readings of this gauge: another's, where the two are exchanged.
-pub fn column_of<'a>(corrections: &'a [Correction], gauge: &'a str) -> &'a str {
+pub fn column_of<'a>(corrections: &'a [StrainCorrection], gauge: &'a str) -> &'a str {
     corrections
         .iter()
         .find_map(|c| match &c.exchanged_with {
@@ -59,7 +59,7 @@ pub fn column_of<'a>(corrections: &'a [Correction], gauge: &'a str) -> &'a str {
 }
 
 /// What a gauge is turned by beyond its stated angle, degrees.
-pub fn turned_by(corrections: &[Correction], gauge: &str) -> f64 {
+pub fn turned_by(corrections: &[StrainCorrection], gauge: &str) -> f64 {
     let own = corrections.iter().filter(|c| c.gauge == gauge);
     own.filter_map(|c| c.angle_deg).sum()
 }

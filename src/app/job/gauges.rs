@@ -3,12 +3,14 @@
 //! `direction` is `dir_x`, `dir_y`, `dir_z`; `position` is `x`, `y`, `z` in job units, or `x_m`, `y_m`, `z_m` in metres. `gauge`
 //! may stand for `name` and `kind` for `bridge`. Columns that are not known are left alone, but for those that look like one of these.
 
-use super::resolve::{check_gauge, surface_from};
+use super::resolve::{bridge_from, check_gauge, point_from, rosette_from, surface_from};
 use super::suggest;
 use super::table::{Table, read_table};
-use super::types::*;
+use super::types::{Job, JobGauge, StatedPlace};
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::files::Inputs;
+use crate::fe::strain_tensor::Surface;
+use crate::gauge::{Bridge, Rosette};
 
 /// The gauges of `[gauges] file`; faults are added to the list.
 pub(super) fn read_gauge_file(
@@ -46,7 +48,12 @@ pub fn gauges_from_table(t: &Table, length_m: f64, faults: &mut FaultList) -> Ve
     let mut out = Vec::new();
     for row in 0..t.rows.len() {
         let before = faults.len();
-        let gauge = gauge_of_row(t, row, length_m, faults);
+        let mut of_table = Row {
+            table: t,
+            row,
+            faults,
+        };
+        let gauge = gauge_of_row(&mut of_table, length_m);
         if faults.len() == before {
             check_gauge(&gauge, faults);
             out.push(gauge);
@@ -98,135 +105,192 @@ fn misspelt(t: &Table, faults: &mut FaultList) {
     }
 }
 
-fn gauge_of_row(t: &Table, row: usize, length_m: f64, faults: &mut FaultList) -> JobGauge {
-    let line = t.rows.get(row).map_or(0, |r| r.0);
-    let text = |names: &[&str]| -> String {
-        let c = t.column(names);
-        t.rows
-            .get(row)
-            .and_then(|r| r.1.get(c?))
-            .cloned()
-            .unwrap_or_default()
-    };
-    let mut number = |name: &str| -> Option<f64> {
-        let c = t.column(&[name])?;
-        t.number(row, c).unwrap_or_else(|f| {
-            faults.push(f);
+/// A row of a gauge file, with the faults found so far.
+struct Row<'a> {
+    table: &'a Table,
+    row: usize,
+    faults: &'a mut FaultList,
+}
+
+impl Row<'_> {
+    /// Line in the file.
+    fn line(&self) -> u32 {
+        self.table.rows.get(self.row).map_or(0, |r| r.0)
+    }
+
+    /// The field in the first of these columns that exists; empty where none does.
+    fn text(&self, names: &[&str]) -> &str {
+        let row = self.table.rows.get(self.row);
+        let field = |column: usize| row?.1.get(column);
+        let column = self.table.column(names);
+        column.and_then(field).map_or("", String::as_str)
+    }
+
+    fn fault(&mut self, field: &str, wrong: String, remedy: impl Into<String>) {
+        let line = self.line();
+        self.faults
+            .push(Fault::at(&*self.table.file, line, field, wrong, remedy));
+    }
+
+    fn number(&mut self, name: &str) -> Option<f64> {
+        let column = self.table.column(&[name])?;
+        self.table.number(self.row, column).unwrap_or_else(|f| {
+            self.faults.push(f);
             None
         })
-    };
-    let three = |a: Option<f64>, b: Option<f64>, c: Option<f64>| Some([a?, b?, c?]);
-    let direction = three(number("dir_x"), number("dir_y"), number("dir_z"));
-    let metres =
-        three(number("x_m"), number("y_m"), number("z_m")).map(|x| x.map(|v| v / length_m));
-    let position = three(number("x"), number("y"), number("z"));
-    let stated_position = position.is_some();
-    let position = position.or(metres);
-    let (element, element2) = (number("element"), number("element2"));
-    let angle_deg = number("angle_deg").unwrap_or(0.0);
-    let bridge_factor = number("bridge_factor").unwrap_or(1.0);
-    let grid_length = number("grid_length").unwrap_or(0.0);
-    let station = number("station").unwrap_or(0.0);
-    let transverse_sensitivity = number("transverse_sensitivity").unwrap_or(0.0);
-    let cid = number("cid").unwrap_or(0.0) as u32;
-    let mut fault = |field: &str, wrong: String, remedy: String| {
-        faults.push(Fault::at(&*t.file, line, field, wrong, remedy))
-    };
-    let mut id = |field: &str, x: Option<f64>| -> Option<u32> {
-        let x = x?;
-        if x >= 1.0 && x <= f64::from(u32::MAX) && x.fract() == 0.0 {
+    }
+
+    /// A vector in three columns; `None` where one is blank.
+    fn vector(&mut self, names: [&str; 3]) -> Option<[f64; 3]> {
+        let [x, y, z] = names.map(|n| self.number(n));
+        Some([x?, y?, z?])
+    }
+
+    /// The direction, whole or not at all: a part of it would be taken for the element x axis.
+    fn direction(&mut self) -> Option<[f64; 3]> {
+        let names = ["dir_x", "dir_y", "dir_z"];
+        let before = self.faults.len();
+        let parts = names.map(|n| self.number(n));
+        let blank = names.iter().zip(parts).find(|(_, p)| p.is_none());
+        if let Some((name, _)) = blank
+            && parts.iter().any(Option::is_some)
+            && self.faults.len() == before
+        {
+            let remedy = "state `dir_x`, `dir_y` and `dir_z`, or leave all three blank";
+            self.fault(name, "no number beside the others".into(), remedy);
+        }
+        let [x, y, z] = parts;
+        Some([x?, y?, z?])
+    }
+
+    /// A whole number from `least` up; `what` it is the id of.
+    fn id(&mut self, field: &str, what: &str, least: u32) -> Option<u32> {
+        let x = self.number(field)?;
+        if x >= f64::from(least) && x <= f64::from(u32::MAX) && x.fract() == 0.0 {
             return Some(x as u32);
         }
-        fault(
-            field,
-            format!("`{x}` is no element id"),
-            "give a whole number above 0".into(),
-        );
+        let remedy = match least {
+            0 => "give a whole number, 0 for the basic system",
+            _ => "give a whole number above 0",
+        };
+        self.fault(field, format!("`{x}` is no {what} id"), remedy);
         None
-    };
-    let (element, element2) = (id("element", element), id("element2", element2));
-    let mut surface = |field: &str| -> Option<Surface> {
-        let word = text(&[field]);
+    }
+
+    /// What the word in a column means; `None` where it is blank, or unknown: a fault then.
+    fn word<T>(
+        &mut self,
+        names: &[&str],
+        what: &str,
+        from: fn(&str) -> Option<T>,
+        remedy: fn(&str) -> String,
+    ) -> Option<T> {
+        let word = self.text(names);
         if word.is_empty() {
             return None;
         }
-        let s = surface_from(&word);
-        if s.is_none() {
-            fault(
-                field,
-                format!("`{word}` is no surface"),
-                "write `top` (Z2) or `bottom` (Z1)".into(),
-            );
+        let found = from(word);
+        if found.is_none() {
+            let (wrong, remedy) = (format!("`{word}` is no {what}"), remedy(word));
+            self.fault(names.first().unwrap_or(&""), wrong, remedy);
         }
-        s
-    };
-    let (stated, surface2) = (surface("surface"), surface("surface2"));
-    let word = text(&["bridge", "kind"]);
-    let bridge = if word.is_empty() {
-        Some(Bridge::Quarter)
-    } else {
-        Bridge::from_name(&word)
-    };
-    if bridge.is_none() {
-        let names: Vec<&str> = Bridge::ALL.iter().map(|b| b.name()).collect();
-        fault(
-            "bridge",
-            format!("`{word}` is no bridge"),
-            suggest::remedy(&word, names),
-        );
+        found
     }
-    let word = text(&["rosette"]);
-    let rosette = super::resolve::rosette_from(&word);
-    if rosette.is_none() && !word.is_empty() {
-        fault(
-            "rosette",
-            format!("`{word}` is no rosette"),
-            "write `rectangular` or `delta`".into(),
-        );
+
+    fn surface(&mut self, field: &str) -> Option<Surface> {
+        self.word(&[field], "surface", surface_from, |_| {
+            "write `top` (Z2) or `bottom` (Z1)".into()
+        })
     }
-    let word = text(&["point"]);
-    let point = super::resolve::point_from(&word);
-    if point.is_none() && !word.is_empty() {
-        fault(
-            "point",
-            format!("`{word}` is no recovery point"),
-            "write C, D, E or F".into(),
-        );
+
+    fn bridge(&mut self) -> Bridge {
+        let remedy = |word: &str| suggest::remedy(word, Bridge::ALL.map(Bridge::name));
+        self.word(&["bridge", "kind"], "bridge", bridge_from, remedy)
+            .unwrap_or(Bridge::Quarter)
     }
-    let name = text(&["name", "gauge"]);
-    if name.is_empty() {
-        fault("name", "blank".into(), "name every gauge".into());
+
+    fn rosette(&mut self) -> Option<Rosette> {
+        self.word(&["rosette"], "rosette", rosette_from, |_| {
+            "write `rectangular` or `delta`".into()
+        })
     }
-    let place = match (element, point, position) {
-        (Some(element), Some(point), _) => GaugePlace::BeamPoint {
+
+    /// A recovery point of a bar or beam, 0 to 3.
+    fn point(&mut self) -> Option<u8> {
+        self.word(&["point"], "recovery point", point_from, |_| {
+            "write C, D, E or F".into()
+        })
+    }
+
+    fn name(&mut self) -> String {
+        let name = self.text(&["name", "gauge"]).to_owned();
+        if name.is_empty() {
+            self.fault("name", "blank".into(), "name every gauge");
+        }
+        name
+    }
+}
+
+/// A location in job units, as a row states it.
+struct Location {
+    at: Option<[f64; 3]>,
+    /// In job units: where the gauge sits. In metres alone it may only describe it.
+    in_job_units: bool,
+}
+
+/// Columns `x`, `y`, `z` in job units, or `x_m`, `y_m`, `z_m`; `length_m` are the metres in the job's unit of length.
+fn location(row: &mut Row, length_m: f64) -> Location {
+    let metres = row.vector(["x_m", "y_m", "z_m"]);
+    let stated = row.vector(["x", "y", "z"]);
+    Location {
+        at: stated.or(metres.map(|x| x.map(|v| v / length_m))),
+        in_job_units: stated.is_some(),
+    }
+}
+
+/// Where the gauge of a row sits; `laid` is one whose direction or surface the row states.
+fn place(row: &mut Row, location: &Location, laid: bool, cid: u32) -> StatedPlace {
+    let element = row.id("element", "element", 1);
+    let station = row.number("station").unwrap_or(0.0);
+    match (element, row.point(), location.at) {
+        (Some(element), Some(point), _) => StatedPlace::BeamPoint {
             element,
             point,
             station,
         },
-        (Some(e), None, _) => GaugePlace::Element(e),
+        (Some(e), None, _) => StatedPlace::Element(e),
         // Metres beside a gauge of a given S only describe it.
-        (None, _, Some(p)) if direction.is_some() || stated.is_some() || stated_position => {
-            GaugePlace::Position(p, cid)
-        }
-        _ => GaugePlace::Unstated,
-    };
+        (None, _, Some(x)) if laid || location.in_job_units => StatedPlace::Position(x, cid),
+        _ => StatedPlace::Unstated,
+    }
+}
+
+fn gauge_of_row(row: &mut Row, length_m: f64) -> JobGauge {
+    let direction = row.direction();
+    let location = location(row, length_m);
+    let cid = row.id("cid", "coordinate system", 0).unwrap_or(0);
+    let surface = row.surface("surface");
+    let laid = direction.is_some() || surface.is_some();
+    let place = place(row, &location, laid, cid);
+    let element2 = row.id("element2", "element", 1);
+    let surface2 = row.surface("surface2").unwrap_or(Surface::Bottom);
     JobGauge {
-        name,
+        name: row.name(),
         place,
-        position,
-        surface: stated.unwrap_or(Surface::Top),
-        surface_stated: stated.is_some(),
+        position: location.at,
+        surface: surface.unwrap_or(Surface::Top),
+        surface_stated: surface.is_some(),
         direction,
         cid,
-        angle_deg,
-        bridge: bridge.unwrap_or(Bridge::Quarter),
-        bridge_factor,
-        grid_length,
-        pair: element2.map(|e| (e, surface2.unwrap_or(Surface::Bottom))),
-        rosette,
-        transverse_sensitivity,
-        member: text(&["member"]),
-        file: t.file.clone(),
-        line,
+        angle_deg: row.number("angle_deg").unwrap_or(0.0),
+        bridge: row.bridge(),
+        bridge_factor: row.number("bridge_factor").unwrap_or(1.0),
+        grid_length: row.number("grid_length").unwrap_or(0.0),
+        pair: element2.map(|e| (e, surface2)),
+        rosette: row.rosette(),
+        transverse_sensitivity: row.number("transverse_sensitivity").unwrap_or(0.0),
+        member: row.text(&["member"]).to_owned(),
+        file: row.table.file.clone(),
+        line: row.line(),
     }
 }

@@ -64,7 +64,7 @@ impl Job {
         let mut with_moment = self.loads.iter().filter_map(|l| match l.acts {
             LoadActs::AtGrid {
                 grid, component, ..
-            } if !component.is_force() && l.role == Role::Wanted => Some(grid),
+            } if !component.is_force() && l.role == LoadRole::Wanted => Some(grid),
             _ => None,
         });
         payload.grid.or_else(|| {

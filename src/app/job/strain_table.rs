@@ -1,7 +1,7 @@
 //! Measured strain in memory: a row a run or a sample.
 
 use super::correct::{Channel, channel_of, column_of};
-use super::types::Correction;
+use super::types::StrainCorrection;
 
 /// What the rows of a strain file are.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,7 +41,7 @@ impl StrainTable {
     }
 
     /// Gives every column its gauge's name and every reading its gauge's strain.
-    pub(super) fn put_right(&mut self, corrections: &[Correction]) {
+    pub(super) fn put_right(&mut self, corrections: &[StrainCorrection]) {
         if corrections.is_empty() {
             return;
         }

@@ -1,5 +1,8 @@
 use super::*;
 use crate::app::fault::{Fault, Faults};
+use crate::fe::strain_tensor::Surface;
+use crate::gauge::Bridge;
+use crate::reconcile::strain::WheelForces;
 use std::path::PathBuf;
 
 /// A job text parsed and resolved, without any file but the job.
@@ -215,7 +218,7 @@ fn a_job_with_every_key_of_the_contract_is_read() {
     );
     assert_eq!(
         job.placement.criterion,
-        Criterion::Ds,
+        Optimality::Ds,
         "nuisance loads make Ds the default"
     );
     assert_eq!(job.candidates.angles, AngleStep::Continuous);
@@ -223,7 +226,7 @@ fn a_job_with_every_key_of_the_contract_is_read() {
     assert_eq!(job.gauges[0].pair, Some((1305, Surface::Bottom)));
     assert_eq!(
         job.gauges[1].place,
-        GaugePlace::Position([0.1, 2.0, 3.0], 0)
+        StatedPlace::Position([0.1, 2.0, 3.0], 0)
     );
     assert_eq!(
         job.study.unwrap().errors,
@@ -349,7 +352,7 @@ fn gauge_tables_take_the_contracts_columns_and_list_every_fault() {
     let mut found = Vec::new();
     let gauges = gauges::gauges_from_table(&t, 1.0, &mut found);
     assert_eq!(gauges.len(), 1);
-    assert_eq!(gauges[0].place, GaugePlace::Element(12));
+    assert_eq!(gauges[0].place, StatedPlace::Element(12));
     assert_eq!(
         (gauges[0].bridge, gauges[0].bridge_factor, gauges[0].pair),
         (Bridge::HalfBending, 2.0, Some((13, Surface::Bottom)))
@@ -363,6 +366,59 @@ fn gauge_tables_take_the_contracts_columns_and_list_every_fault() {
         (Some(4), "bridge"),
     ] {
         assert!(fields.contains(&expected), "{expected:?} in {fields:?}");
+    }
+}
+
+/// Read as they stand, 1.5 would be system 1 and a station beyond the end that of the end.
+#[test]
+fn a_gauge_table_is_held_to_the_limits_of_a_job() {
+    for (header, good, bad) in [
+        ("cid", ["0", "7"], ["1.5", "-1"]),
+        ("station", ["0", "1"], ["1.5", "-0.1"]),
+        ("transverse_sensitivity", ["-0.4", "0.4"], ["0.5", "3"]),
+    ] {
+        let found = |value: &str| {
+            let text = format!("name,element,point,{header}\nA,1,C,{value}\n");
+            let t = table::read_table("g.csv", &text).unwrap();
+            let mut found = Vec::new();
+            gauges::gauges_from_table(&t, 1.0, &mut found);
+            found
+        };
+        for value in good {
+            let found = found(value);
+            assert!(found.is_empty(), "{header} {value}: {found:?}");
+        }
+        for value in bad {
+            let found = found(value);
+            let named = |f: &Fault| (f.line, &*f.field) == (Some(2), header);
+            assert!(found.iter().any(named), "{header} {value}: {found:?}");
+            // The same in a job.
+            if header != "cid" {
+                let key = format!("gauge.{header}");
+                let job = format!(
+                    "units = \"m-kg-s\"\n[[gauge]]\nname = \"A\"\nelement = 1\npoint = \"C\"\n{header} = {value}\n"
+                );
+                assert!(faults(&job).iter().any(|f| f.field == key), "{key} {value}");
+            }
+        }
+    }
+}
+
+/// Half a direction would be taken for the element x axis.
+#[test]
+fn a_direction_in_a_gauge_table_is_whole_or_absent() {
+    for (header, row, at) in [
+        ("dir_x,dir_y,dir_z", "1,0,0", None),
+        ("dir_x,dir_y,dir_z", ",,", None),
+        ("dir_x,dir_y,dir_z", "0,1,", Some("dir_z")),
+        ("dir_x,dir_z", "1,0", Some("dir_y")),
+    ] {
+        let text = format!("name,element,{header}\nA,1,{row}\n");
+        let t = table::read_table("g.csv", &text).unwrap();
+        let mut found = Vec::new();
+        gauges::gauges_from_table(&t, 1.0, &mut found);
+        let fields: Vec<&str> = found.iter().map(|f| f.field.as_str()).collect();
+        assert_eq!(fields, Vec::from_iter(at), "{row}: {found:?}");
     }
 }
 

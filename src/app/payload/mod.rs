@@ -11,11 +11,11 @@ pub use readings::NetReading;
 
 use super::context::Context;
 use super::fault::{Fault, Faults};
-use super::job::{Job, PayloadPosition};
+use super::job::Job;
 use super::outcome::{Outcome, StatedUnits};
 use super::strain::has_covariance;
 use super::work::Work;
-use crate::payload::{PayloadModel, PayloadRun, Place, WeighSpec, weigh};
+use crate::payload::{PayloadModel, PayloadRun, WeighSpec, weigh};
 use crate::recovery::interval::{NORMAL_95, student_95};
 use crate::sensitivity::Sensitivity;
 use crate::units::factor;
@@ -109,10 +109,6 @@ fn spec_of(task: &Task, parts: &Parts, runs: &[PayloadRun]) -> WeighSpec {
         .as_ref()
         .and_then(|r| Some(r.noise.force? * r.units.force.si / job.report_units.force.si))
         .filter(|s| *s > 0.0);
-    let place = match task.payload.position {
-        PayloadPosition::Known => Place::Known,
-        PayloadPosition::Free => Place::Free,
-    };
     let region = task.payload.region.as_deref().and_then(|r| match r {
         [x, y, ..] => Some([x, y].map(|v| v.map(|v| v * task.length))),
         _ => None,
@@ -127,7 +123,7 @@ fn spec_of(task: &Task, parts: &Parts, runs: &[PayloadRun]) -> WeighSpec {
         })
     });
     WeighSpec {
-        place,
+        place: task.payload.position,
         model_rel: model_rel(job, s),
         reaction_sigma: stated.unwrap_or(readings::ASSUMED_NOISE * largest_reaction),
         largest: match (task.empty.iter().sum::<f64>(), largest_reaction) {

@@ -5,12 +5,13 @@ use crate::app::fault::{Fault, Faults};
 use crate::app::job::runs::{RunRow, read_runs};
 use crate::app::job::strain::{StrainRows, StrainTable};
 use crate::app::job::strain_means::{StrainFile, read_strain_file};
-use crate::app::job::{Measured, NamedFile, PayloadPosition, WheelForces};
+use crate::app::job::{Measured, NamedFile};
 use crate::app::outcome::finite;
 use crate::app::work::Work;
 use crate::app::zeroed::{no_zero_runs, zeros_by_row};
 use crate::finding::{Finding, Severity, few};
-use crate::payload::{PayloadModel, PayloadRun};
+use crate::payload::{PayloadModel, PayloadRun, Place};
+use crate::reconcile::strain::WheelForces;
 use crate::recovery::net::{Net, WEAK, mean_of, net};
 use crate::units::MICROSTRAIN;
 use serde::Serialize;
@@ -159,7 +160,7 @@ fn shifts_and_reactions(
     let mut without: Vec<String> = Vec::new();
     for run in out {
         let row = rows.iter().find(|r| r.run == run.run);
-        let known = task.payload.position == PayloadPosition::Known;
+        let known = task.payload.position == Place::Known;
         if let Some(row) = row.filter(|_| known) {
             for (k, at) in [row.payload_x_m, row.payload_y_m].into_iter().enumerate() {
                 if let Some(at) = at {

@@ -4,9 +4,9 @@ use super::pool::Kind;
 use super::task::{Task, know_the_loads, position};
 use super::wanted::on_wanted;
 use crate::app::fault::{Fault, Faults};
-use crate::app::job::{Criterion as Wanted, Rosette as JobRosette};
+use crate::app::job::Optimality;
 use crate::app::work::Work;
-use crate::gauge::{Bridge, CornerRows, Gauge, GaugeSpec, Rosette, build};
+use crate::gauge::{Bridge, CornerRows, Gauge, GaugeSpec, build};
 use crate::linalg::spd;
 use crate::model::Vec3;
 use crate::placement::bundles::{BundleSpec, Bundles, place_bundles};
@@ -125,7 +125,7 @@ pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Ch
         let wrong = format!("{what} single gauges of one wiring, without pairs, costs or a budget");
         Refused::Job(Fault::at(&*job.file, line, field, wrong, remedy))
     };
-    if job.placement.criterion == Wanted::Condition {
+    if job.placement.criterion == Optimality::Condition {
         return Err(single(
             job.placement.line,
             "placement.criterion",
@@ -146,7 +146,7 @@ pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Ch
 
 /// Puts the layout of least condition number in place of the best one by D, where the job asks for it.
 fn well_conditioned(task: &Task, kind: &Kind, spec: &Spec, layout: &mut Layout) -> Option<f64> {
-    if task.job.placement.criterion != Wanted::Condition {
+    if task.job.placement.criterion != Optimality::Condition {
         return None;
     }
     let k = task.cases.len();
@@ -191,7 +191,7 @@ fn channel(task: &Task, kind: &Kind, choice: Choice, name: String) -> Option<Cha
     let (gauges, _) = build(task.fields.model(), &spec, CornerRows::Absent).ok()?;
     Some(Channel {
         gauge: gauges.into_iter().next()?,
-        bridge: kind.name,
+        bridge: kind.bridge.name(),
         site,
         row: kind.candidates.row(choice),
         sd: kind.candidates.sd(choice),
@@ -277,7 +277,7 @@ fn units_of<'a>(task: &Task, kinds: &'a [Kind]) -> Result<Units<'a>, Refused> {
     let mates = p.symmetric.map(|axis| Mirror::of(task, &positions, axis));
     // Rosettes need a quarter kind to take their legs from.
     let quarter = kinds.iter().position(|k| k.bridge == Bridge::Quarter);
-    let legs = task.job.candidates.rosette.map(legs_of);
+    let legs: Option<[f64; 3]> = task.job.candidates.rosette.map(|r| r.legs().map(|l| l.1));
     let asked = &task.job.candidates.bridges;
     few_enough(
         task,
@@ -312,12 +312,12 @@ fn units_of<'a>(task: &Task, kinds: &'a [Kind]) -> Result<Units<'a>, Refused> {
             out
         };
         for (n, kind) in kinds.iter().enumerate() {
-            if kind.bridge == Bridge::Quarter && !asked.iter().any(|b| b.name() == "quarter") {
+            if kind.bridge == Bridge::Quarter && !asked.contains(&Bridge::Quarter) {
                 continue;
             }
             for &angle in &steps {
                 let members = paired(n, angle);
-                let cost = cost_of(kind.name, 1.0) * members.len() as f64;
+                let cost = cost_of(kind.bridge.name(), 1.0) * members.len() as f64;
                 units.add(members, cost, false);
             }
         }
@@ -332,15 +332,6 @@ fn units_of<'a>(task: &Task, kinds: &'a [Kind]) -> Result<Units<'a>, Refused> {
         }
     }
     Ok(units)
-}
-
-/// Angles of a rosette's legs.
-fn legs_of(rosette: JobRosette) -> [f64; 3] {
-    let r = match rosette {
-        JobRosette::Rectangular => Rosette::Rectangular,
-        JobRosette::Delta => Rosette::Delta,
-    };
-    r.legs().map(|l| l.1)
 }
 
 /// Refuses candidates whose units, so many a site, would not fit into memory.

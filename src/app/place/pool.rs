@@ -1,6 +1,6 @@
 //! Candidates of the job: wirings, angles, scales, what scatters a reading.
 
-use crate::app::job::{AngleStep, Bridge as JobBridge, Job, Role};
+use crate::app::job::{AngleStep, Job, LoadRole};
 use crate::app::strain::left_squared;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
@@ -21,20 +21,8 @@ const ASSUMED_STRAIN: f64 = 100.0;
 pub(super) struct Kind {
     /// As wired.
     pub bridge: Bridge,
-    /// As a job names it.
-    pub name: &'static str,
     /// Its candidates, on all sites.
     pub candidates: Candidates,
-}
-
-/// A wiring of the job in the words of the gauge layer.
-pub(super) fn wiring(b: JobBridge) -> Bridge {
-    match b {
-        JobBridge::Quarter => Bridge::Quarter,
-        JobBridge::HalfBending => Bridge::HalfBending,
-        JobBridge::FullBending => Bridge::FullBending,
-        JobBridge::Shear => Bridge::Shear,
-    }
 }
 
 /// What scatters the readings of a wiring, in microstrain, at these sites.
@@ -42,7 +30,7 @@ pub(in crate::app) fn scatter(
     job: &Job,
     model: &Model,
     sites: &[Site],
-    bridge: JobBridge,
+    bridge: Bridge,
     loads: &[LoadCaseOf],
     scales: &[f64],
 ) -> Scatter {
@@ -54,7 +42,7 @@ pub(in crate::app) fn scatter(
         angle_sd: p.angle_tolerance_deg.to_radians(),
         model_rel: p.model_uncertainty_rel.hypot(p.gauge_factor_rel),
         forms: if variance > 0.0 {
-            forms(model, sites, wiring(bridge), loads, scales, variance)
+            forms(model, sites, bridge, loads, scales, variance)
         } else {
             Vec::new()
         },
@@ -99,18 +87,16 @@ pub(super) fn kinds(
 ) -> Vec<Kind> {
     let mut wirings = job.candidates.bridges.clone();
     // The legs of rosettes are single grids.
-    if job.candidates.rosette.is_some() && !wirings.contains(&JobBridge::Quarter) {
-        wirings.push(JobBridge::Quarter);
+    if job.candidates.rosette.is_some() && !wirings.contains(&Bridge::Quarter) {
+        wirings.push(Bridge::Quarter);
     }
     wirings
         .into_iter()
-        .map(|b| {
-            let mut scatter = scatter(job, model, sites, b, loads, scales);
-            let bridge = wiring(b);
+        .map(|bridge| {
+            let mut scatter = scatter(job, model, sites, bridge, loads, scales);
             add_mesh_error(&mut scatter.forms, sites, bridge, errors, scales);
             Kind {
                 bridge,
-                name: b.name(),
                 candidates: bridges(model, sites, bridge, loads, scales, angles.clone(), scatter),
             }
         })
@@ -131,7 +117,7 @@ pub(in crate::app) fn angles(step: AngleStep) -> Angles {
 /// Loads in the order of the candidates' columns: nuisance loads first.
 pub(in crate::app) fn column_order(job: &Job) -> Vec<usize> {
     let mut order: Vec<usize> = (0..job.loads.len()).collect();
-    order.sort_by_key(|&l| job.loads[l].role == Role::Wanted);
+    order.sort_by_key(|&l| job.loads[l].role == LoadRole::Wanted);
     order
 }
 

@@ -2,7 +2,7 @@
 
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Job, LoadActs, Region};
-use crate::app::strain::{Fields, side};
+use crate::app::strain::Fields;
 use crate::gauge::centre;
 use crate::model::{ShellIx, Vec3};
 use crate::placement::region::{
@@ -67,7 +67,7 @@ pub fn allowed_sites(job: &Job, fields: &Fields, common: &[ShellIx]) -> Result<V
     }
     let sites: Vec<Site> = shells
         .iter()
-        .flat_map(|(ix, _)| rule.surfaces.iter().map(|s| (*ix, side(*s))))
+        .flat_map(|(ix, _)| rule.surfaces.iter().map(|s| (*ix, *s)))
         .collect();
     if sites.is_empty() {
         let wrong =

@@ -79,12 +79,12 @@ pub(super) fn placed(
 /// By channel, the change of its reading with its place, microstrain per length, rms over the expected loads.
 fn steepness(task: &Task, chosen: &Chosen, ordered: &[LoadCaseOf], scales: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; chosen.channels.len()];
-    for bridge in WIRINGS {
+    for bridge in Bridge::ALL {
         let (at, sites): (Vec<usize>, Vec<Site>) = chosen
             .channels
             .iter()
             .enumerate()
-            .filter(|(_, c)| c.bridge == word(bridge))
+            .filter(|(_, c)| c.bridge == bridge.name())
             .map(|(i, c)| (i, task.sites[c.site]))
             .unzip();
         if sites.is_empty() {
@@ -98,22 +98,6 @@ fn steepness(task: &Task, chosen: &Chosen, ordered: &[LoadCaseOf], scales: &[f64
         }
     }
     out
-}
-
-const WIRINGS: [Bridge; 4] = [
-    Bridge::Quarter,
-    Bridge::HalfBending,
-    Bridge::FullBending,
-    Bridge::Shear,
-];
-
-fn word(b: Bridge) -> &'static str {
-    match b {
-        Bridge::Quarter => "quarter",
-        Bridge::HalfBending => "half-bending",
-        Bridge::FullBending => "full-bending",
-        Bridge::Shear => "shear",
-    }
 }
 
 /// The nearest of the job's reference points, else of the grids at which loads act, and the way from there.

@@ -2,7 +2,7 @@
 
 use super::pool::{MICRO, column_order};
 use crate::app::fault::{Fault, Faults};
-use crate::app::job::{Criterion as Wanted, Job, Keep, Role};
+use crate::app::job::{Job, Keep, LoadRole, Optimality};
 use crate::app::strain::{Fields, lay_gauges, left_in_reading, without_strain};
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
@@ -126,8 +126,8 @@ impl<'a> Task<'a> {
         for (l, &from) in self.order.iter().enumerate() {
             // What is known of a load: its expected size, 1 in these columns.
             let load = &job.loads[from];
-            let nuisance = load.role == Role::Nuisance && load.expected.is_some();
-            if nuisance || job.placement.criterion == Wanted::BayesianD {
+            let nuisance = load.role == LoadRole::Nuisance && load.expected.is_some();
+            if nuisance || job.placement.criterion == Optimality::BayesianD {
                 spec.prior[l * k + l] = 1.0;
             }
         }
@@ -150,18 +150,23 @@ impl<'a> Task<'a> {
         let k = self.cases.len();
         let loads = &self.job.loads;
         match self.job.placement.criterion {
-            Wanted::D | Wanted::BayesianD | Wanted::Condition => Criterion::D,
-            Wanted::Ds => Criterion::Ds(loads.iter().filter(|l| l.role == Role::Nuisance).count()),
-            Wanted::A => {
+            Optimality::D | Optimality::BayesianD | Optimality::Condition => Criterion::D,
+            Optimality::Ds => Criterion::Ds(
+                loads
+                    .iter()
+                    .filter(|l| l.role == LoadRole::Nuisance)
+                    .count(),
+            ),
+            Optimality::A => {
                 let mut l = vec![0.0; k * k];
                 for (c, &from) in self.order.iter().enumerate() {
-                    if loads[from].role == Role::Wanted {
+                    if loads[from].role == LoadRole::Wanted {
                         l[c * k + c] = loads[from].weight;
                     }
                 }
                 Criterion::Linear(l)
             }
-            Wanted::I => Criterion::Linear(self.mean_strain()),
+            Optimality::I => Criterion::Linear(self.mean_strain()),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::extended::Corrected;
 use crate::app::job::correct::channel_of;
-use crate::app::job::{Correction as JobCorrection, Job};
+use crate::app::job::{Job, StrainCorrection};
 use crate::reconcile::NamedEffect;
 use crate::reconcile::effect::{Correction, Extension};
 use crate::reconcile::strain::StrainFrame;
@@ -123,7 +123,7 @@ pub(super) fn corrections(
 
 /// Whether the job corrects a channel already.
 fn is_corrected(job: &Job, frame: &StrainFrame, gauge: usize) -> bool {
-    let is_of = |c: &JobCorrection, name: &str| {
+    let is_of = |c: &StrainCorrection, name: &str| {
         c.gauge == name || c.exchanged_with.as_deref() == Some(name)
     };
     let name = frame.gauges.get(gauge).map(|g| g.name.as_str());

@@ -10,7 +10,7 @@ use super::influence::{influence, readings};
 use super::model_part::{ModelPart, facts};
 use super::region::Region;
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::{Job, JobLoad, LoadActs, Role};
+use crate::app::job::{Job, JobLoad, LoadActs, LoadRole};
 use crate::app::solved::{support_of_job, unit_loads_kept};
 use crate::app::strain::{Fields, Prepared, lay_gauges, prepare};
 use crate::app::work::Work;
@@ -178,7 +178,7 @@ fn gauge_facts(job: &Job, channels: &[String], gauges: &[Gauge]) -> Vec<GaugeFac
 
 /// Names of the wanted loads, and kN or kN m in a unit of the job: tables count in microstrain per unit of the job, as sensitivity.csv does.
 fn per_job_unit(job: &Job) -> Vec<(String, f64)> {
-    let wanted = job.loads.iter().filter(|l| l.role == Role::Wanted);
+    let wanted = job.loads.iter().filter(|l| l.role == LoadRole::Wanted);
     let per = |l: &JobLoad| match l.acts {
         LoadActs::AtGrid { component, .. } => KILO / job.units.si(component.quantity()),
         LoadActs::Set(_) | LoadActs::Named => 1.0,

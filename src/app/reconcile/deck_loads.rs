@@ -4,7 +4,7 @@ use super::deck_thermal::{Heated, NOTHING};
 use super::influence::payload_grid;
 use super::model_part::{ModelPart, nominal_x_m, nominal_y_m};
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::{Component, Job, LoadActs, Role};
+use crate::app::job::{Component, Job, LoadActs, LoadRole};
 use crate::app::strain::unit_loads;
 use crate::fe::UnitLoad;
 use crate::model::{GridIx, Model, Vec3};
@@ -230,26 +230,26 @@ fn job_loads(job: &Job, model: &Model) -> Result<JobLoads, Faults> {
     let payload = payload_grid(job, model);
     for (l, load) in job.loads.iter().zip(unit_loads(job, model)?) {
         match (&l.acts, l.role) {
-            (LoadActs::AtGrid { grid, component, .. }, Role::Wanted) => {
+            (LoadActs::AtGrid { grid, component, .. }, LoadRole::Wanted) => {
                 out.wheels.push((l.name.clone(), grid_of(job, model, *grid)?));
                 out.columns.push(scaled(&load, KILO / (l.applied * job.units.si(component.quantity()))));
             }
-            (LoadActs::Set(sid), Role::Wanted) => faults.push(Fault::at(
+            (LoadActs::Set(sid), LoadRole::Wanted) => faults.push(Fault::at(
                 &*job.file,
                 l.line,
                 "load.load_set",
                 format!("load `{}` is load set {sid}: how much of a set acts in a run, `reconcile` does not read", l.name),
                 "give the load as a grid and a component, or role = \"nuisance\"",
             )),
-            (LoadActs::AtGrid { grid, .. }, Role::Nuisance) if payload.is_some() && model.grid_ix(*grid) == payload => {}
-            (LoadActs::Named, Role::Wanted) => faults.push(Fault::at(
+            (LoadActs::AtGrid { grid, .. }, LoadRole::Nuisance) if payload.is_some() && model.grid_ix(*grid) == payload => {}
+            (LoadActs::Named, LoadRole::Wanted) => faults.push(Fault::at(
                 &*job.file,
                 l.line,
                 "load.grid",
                 format!("load `{}` is a name alone: where it acts on the model is not said", l.name),
                 "state `grid` and `component`",
             )),
-            (acts, Role::Nuisance) => out.nuisance.push(JobNuisance {
+            (acts, LoadRole::Nuisance) => out.nuisance.push(JobNuisance {
                 name: l.name.clone(),
                 load,
                 applied: l.applied,
@@ -297,7 +297,7 @@ fn has_nuisance(job: &Job, model: &Model, at: GridIx, component: Component) -> b
             grid,
             component: c,
             cid: 0,
-        } => l.role == Role::Nuisance && c == component && model.grid_ix(grid) == Some(at),
+        } => l.role == LoadRole::Nuisance && c == component && model.grid_ix(grid) == Some(at),
         _ => false,
     })
 }

@@ -7,7 +7,7 @@ use super::signature_table::SignatureTable;
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::Inputs;
 use crate::app::job::quantity::quantity_of_name;
-use crate::app::job::{GivenSensitivity, Job, JobLoad, NamedFile, Role, Signatures};
+use crate::app::job::{GivenSensitivity, Job, JobLoad, LoadRole, NamedFile, Signatures};
 use crate::app::strain::read_given;
 use crate::app::work::Work;
 use crate::reconcile::strain::{
@@ -307,7 +307,7 @@ impl<'a> Tables<'a> {
 fn is_nuisance(job: &Job, name: &str) -> bool {
     job.loads
         .iter()
-        .any(|l| l.name == name && l.role == Role::Nuisance)
+        .any(|l| l.name == name && l.role == LoadRole::Nuisance)
 }
 
 /// Force or moment: what a stated load is, else what the name says.

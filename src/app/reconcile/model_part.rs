@@ -1,6 +1,7 @@
 //! What a model says to a static frame, from a deck or from tables.
 
-use crate::app::job::{Bridge, Job};
+use crate::app::job::Job;
+use crate::gauge::Bridge;
 use crate::reconcile::strain::{
     GaugeFacts, MassSignature, NuisanceLoad, PlaneStrainRow, Scatter, StiffnessSignature, Wiring,
 };

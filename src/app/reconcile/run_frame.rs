@@ -2,12 +2,12 @@
 
 use super::model_part::ModelPart;
 use crate::app::fault::{Fault, FaultList, Faults};
+use crate::app::job::Job;
 use crate::app::job::quantity::quantity_of_name;
 use crate::app::job::runs::{RunRow, read_runs};
-use crate::app::job::{Job, WheelForces as JobWheelForces};
 use crate::app::work::Work;
 use crate::reconcile::Observations;
-use crate::reconcile::strain::{PayloadWeight, StrainFrame, WheelForces, angle_scatter};
+use crate::reconcile::strain::{PayloadWeight, StrainFrame, angle_scatter};
 use crate::units::{KILO, Quantity};
 
 /// Noise of a measured wheel force where the runs file states none: nothing is assumed better than this, kN.
@@ -80,10 +80,7 @@ pub(super) fn frame(
         } else {
             PayloadWeight::Missing
         },
-        wheel_forces: match runs.wheel_forces {
-            JobWheelForces::Measured => WheelForces::Measured,
-            JobWheelForces::FlatGroundModel => WheelForces::FlatGroundModel,
-        },
+        wheel_forces: runs.wheel_forces,
         other_loads: part.other_loads,
         nuisance: part.nuisance,
         thermal_uniform: part.thermal_uniform,

@@ -5,7 +5,7 @@ use super::task::Task;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::runs::{RunRow, read_runs};
 use crate::app::job::table::read_table;
-use crate::app::job::{Component, GivenSensitivity, Job, JobLoad, LoadActs, Role};
+use crate::app::job::{Component, GivenSensitivity, Job, JobLoad, LoadActs, LoadRole};
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity, few};
 use crate::recovery::Readings;
@@ -134,7 +134,7 @@ fn at_grid(task: &Task) -> Option<AtGrid> {
             grid,
             component,
             cid: 0,
-        } if grid == id && l.role == Role::Nuisance => Some(component),
+        } if grid == id && l.role == LoadRole::Nuisance => Some(component),
         _ => None,
     };
     let loads: Vec<(usize, Component)> = job

@@ -4,7 +4,7 @@ use super::mesh::{not_checked, take_out};
 use super::unit_loads::check_places;
 use crate::app::deck::{DeckModel, moduli_and_densities, read_model};
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::{Job, JobLoad, Reference, Role};
+use crate::app::job::{Job, JobLoad, LoadRole, Reference};
 use crate::app::solved::{MODES, cases_of_job, solve_kept};
 use crate::app::work::Work;
 use crate::fe::from_results::{Displacements, ReadOptions, solution_from_file};
@@ -79,7 +79,7 @@ fn of_loads<'a>(job: &Job, cases: impl Iterator<Item = &'a CaseResult>) -> Vec<L
             load: Load {
                 name: l.name.clone(),
                 expected: l.expected,
-                wanted: l.role == Role::Wanted,
+                wanted: l.role == LoadRole::Wanted,
                 quantity: l.quantity(),
             },
             applied: l.applied,

@@ -3,10 +3,9 @@
 use super::Fields;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::correct::turned_by;
-use crate::app::job::{self, Job, JobGauge};
+use crate::app::job::{Job, JobGauge, StatedPlace};
 use crate::app::work::Work;
-use crate::fe::strain_tensor::Surface;
-use crate::gauge::{Bridge, Gauge, GaugePlace, GaugeSpec, Rosette, build, on_unverified_elements};
+use crate::gauge::{Gauge, GaugePlace, GaugeSpec, build, on_unverified_elements};
 use crate::model::{Model, Vec3};
 use crate::sensitivity::NoStrain;
 
@@ -42,14 +41,6 @@ pub fn lay_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<Vec<Gau
             .extend(on_unverified_elements(fields.model(), &gauges));
     }
     Ok(gauges)
-}
-
-/// A side of a job as the solver layer names it.
-pub fn side(s: job::Surface) -> Surface {
-    match s {
-        job::Surface::Top => Surface::Top,
-        job::Surface::Bottom => Surface::Bottom,
-    }
 }
 
 /// A gauge of the job as it is glued: turned as `[[correction]]` says.
@@ -89,12 +80,12 @@ fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
     };
     let mut at = Vec3::zeros();
     let place = match g.place {
-        job::GaugePlace::Element(id) => GaugePlace::Shell(shell(id, "element")?),
-        job::GaugePlace::Position(x, _) => {
+        StatedPlace::Element(id) => GaugePlace::Shell(shell(id, "element")?),
+        StatedPlace::Position(x, _) => {
             at = frame.to_basic(x);
             GaugePlace::Nearest(at)
         }
-        job::GaugePlace::BeamPoint {
+        StatedPlace::BeamPoint {
             element,
             point,
             station,
@@ -105,7 +96,7 @@ fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
             point: usize::from(point),
             station,
         },
-        job::GaugePlace::Unstated => {
+        StatedPlace::Unstated => {
             return Err(fault(
                 "element",
                 format!("gauge `{}` has no place", g.name),
@@ -114,28 +105,20 @@ fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
         }
     };
     let pair = match g.pair {
-        Some((id, s)) => Some((shell(id, "element2")?, side(s))),
+        Some((id, s)) => Some((shell(id, "element2")?, s)),
         None => None,
     };
     Ok(GaugeSpec {
         name: g.name.clone(),
         place,
-        surface: g.surface_stated.then(|| side(g.surface)),
+        surface: g.surface_stated.then_some(g.surface),
         direction: g.direction.map(|d| frame.vector_to_basic(d, at)),
         angle_rad: g.angle_deg.to_radians(),
-        bridge: match g.bridge {
-            job::Bridge::Quarter => Bridge::Quarter,
-            job::Bridge::HalfBending => Bridge::HalfBending,
-            job::Bridge::FullBending => Bridge::FullBending,
-            job::Bridge::Shear => Bridge::Shear,
-        },
+        bridge: g.bridge,
         bridge_factor: g.bridge_factor,
         grid_length: g.grid_length,
         pair,
-        rosette: g.rosette.map(|r| match r {
-            job::Rosette::Rectangular => Rosette::Rectangular,
-            job::Rosette::Delta => Rosette::Delta,
-        }),
+        rosette: g.rosette,
         transverse_sensitivity: g.transverse_sensitivity,
     })
 }

@@ -5,7 +5,7 @@ use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::given_columns::columns_of_given;
 use crate::app::job::quantity::quantity_of_name;
 use crate::app::job::table::read_table;
-use crate::app::job::{Job, JobLoad, Role};
+use crate::app::job::{Job, JobLoad, LoadRole};
 use crate::app::work::Work;
 use crate::linalg::Matrix;
 use crate::sensitivity::{Load, Sensitivity};
@@ -66,7 +66,7 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
         loads.push(Load {
             name: name.clone(),
             expected: stated.and_then(|l| l.expected),
-            wanted: stated.is_none_or(|l| l.role == Role::Wanted),
+            wanted: stated.is_none_or(|l| l.role == LoadRole::Wanted),
             quantity: Some(quantity),
         });
     }

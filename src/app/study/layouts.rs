@@ -2,7 +2,7 @@
 
 use super::pool::{Prepared, on_model};
 use crate::app::fault::{Fault, Faults};
-use crate::app::job::{Criterion, Job, Role, Study};
+use crate::app::job::{Job, LoadRole, Optimality, Study};
 use crate::app::place::{allowed_sites, angles, column_order, scales, scatter};
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity, few};
@@ -132,15 +132,15 @@ fn spec_of(job: &Job, name: &str, n: usize, k: usize, order: &[usize]) -> Spec {
     spec.effort.seed = job.placement.seed;
     for (l, &from) in order.iter().enumerate() {
         let load = job.loads.get(from);
-        if load.is_some_and(|j| j.role == Role::Nuisance && j.expected.is_some()) {
+        if load.is_some_and(|j| j.role == LoadRole::Nuisance && j.expected.is_some()) {
             spec.prior[l * k + l] = 1.0;
         }
     }
-    if name == "Ds" || job.placement.criterion == Criterion::Ds {
+    if name == "Ds" || job.placement.criterion == Optimality::Ds {
         let nuisance = job
             .loads
             .iter()
-            .filter(|l| l.role == Role::Nuisance)
+            .filter(|l| l.role == LoadRole::Nuisance)
             .count();
         spec.criterion = placement::Criterion::Ds(nuisance);
     }
@@ -220,7 +220,7 @@ impl Wide {
         let order = column_order(job);
         let (led, led_scales): (Vec<LoadCaseOf>, Vec<f64>) =
             order.iter().map(|&l| (cases[l].clone(), sizes[l])).unzip();
-        let quarter = crate::app::job::Bridge::Quarter;
+        let quarter = crate::gauge::Bridge::Quarter;
         let scatter = scatter(job, fields.model(), &sites, quarter, &led, &led_scales);
         let candidates = candidates(
             fields.model(),

@@ -1,7 +1,7 @@
 //! Gauges that a study can choose from, with how their rows change when they are turned or shifted.
 
 use crate::app::fault::{Fault, Faults};
-use crate::app::job::{Job, Role, Study};
+use crate::app::job::{Job, LoadRole, Study};
 use crate::app::strain::{Fields, corrected_spec_of, read_fields, read_given};
 use crate::app::work::Work;
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
@@ -50,7 +50,7 @@ pub(super) fn prepare(work: &mut Work, job: &Job, _study: &Study) -> Result<Prep
         .map(|l| Load {
             name: l.name.clone(),
             expected: l.expected,
-            wanted: l.role == Role::Wanted,
+            wanted: l.role == LoadRole::Wanted,
             quantity: l.quantity(),
         })
         .collect();

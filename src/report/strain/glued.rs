@@ -1,7 +1,7 @@
 //! The table of gauges as glued: where each one sits, as the runs say, in columns that a job can name as its gauges.
 
 use crate::app::calibrate::{AsGluedSummary, CalibratedGauge, GlueSummary, GluedGauge};
-use crate::app::job::{GaugePlace, Job};
+use crate::app::job::{Job, StatedPlace};
 use crate::report::csv_cell;
 use std::io::{self, Write};
 
@@ -96,7 +96,7 @@ fn on_bar(job: &Job, name: &str, gain: f64) -> [String; 16] {
     let Some(g) = job.gauges.iter().find(|g| g.name == name) else {
         return cells;
     };
-    if let GaugePlace::BeamPoint {
+    if let StatedPlace::BeamPoint {
         element,
         point,
         station,

@@ -45,7 +45,7 @@ pub(super) fn combinations(c: &mut Collector, raw: &[Spanned<RawCombination>]) -
 pub(super) fn corrections(
     c: &mut Collector,
     raw: &[Spanned<RawChannelCorrection>],
-) -> Vec<Correction> {
+) -> Vec<StrainCorrection> {
     raw.iter()
         .filter_map(|section| {
             let raw = section.get_ref();
@@ -61,7 +61,7 @@ pub(super) fn corrections(
                 "a number",
                 any,
             );
-            Some(Correction {
+            Some(StrainCorrection {
                 gauge: gauge?,
                 sign: sign.unwrap_or(1.0),
                 gain: gain.unwrap_or(1.0),

@@ -3,15 +3,25 @@
 use super::super::faults::Collector;
 use super::super::raw::{RawGauge, RawGauges};
 use super::super::spanned::Spanned;
-use super::super::types::*;
+use super::super::types::{JobGauge, NamedFile, StatedPlace};
 use crate::app::fault::{Fault, FaultList};
+use crate::fe::strain_tensor::Surface;
+use crate::gauge::{Bridge, Rosette};
 
-const SURFACES: [(&str, Surface); 2] = [("top", Surface::Top), ("bottom", Surface::Bottom)];
-const ROSETTES: [(&str, Rosette); 2] = [
+/// Surfaces by their words.
+pub(super) const SURFACES: [(&str, Surface); 2] =
+    [("top", Surface::Top), ("bottom", Surface::Bottom)];
+/// Rosettes by their words.
+pub(super) const ROSETTES: [(&str, Rosette); 2] = [
     ("rectangular", Rosette::Rectangular),
     ("delta", Rosette::Delta),
 ];
 const POINTS: [(&str, u8); 4] = [("C", 0), ("D", 1), ("E", 2), ("F", 3)];
+
+/// Wirings by their names.
+pub(super) fn bridges() -> [(&'static str, Bridge); 4] {
+    Bridge::ALL.map(|b| (b.name(), b))
+}
 
 fn from<T: Copy>(word: &str, choices: &[(&str, T)]) -> Option<T> {
     choices
@@ -23,6 +33,15 @@ fn from<T: Copy>(word: &str, choices: &[(&str, T)]) -> Option<T> {
 /// `top` or `bottom`.
 pub(crate) fn surface_from(word: &str) -> Option<Surface> {
     from(word, &SURFACES)
+}
+
+/// A wiring by its name; in a table `full` and `half` mean bending.
+pub(crate) fn bridge_from(name: &str) -> Option<Bridge> {
+    match name {
+        "full" => Some(Bridge::FullBending),
+        "half" => Some(Bridge::HalfBending),
+        _ => Bridge::from_name(name),
+    }
 }
 
 /// `rectangular` or `delta`.
@@ -59,32 +78,26 @@ fn gauge(c: &mut Collector, section: &Spanned<RawGauge>) -> Option<JobGauge> {
         .point
         .as_ref()
         .and_then(|p| c.choose_at(p, "gauge.point", &POINTS));
-    let station = c.number(
-        &raw.station,
-        "gauge.station",
-        "0 (end A) to 1 (end B)",
-        |x| (0.0..=1.0).contains(&x),
-    );
+    let station = c.number(&raw.station, "gauge.station", STATION, is_station);
     let position = raw.position.as_ref().map(|p| *p.get_ref());
     let place = match (number(&raw.element), position) {
         (Some(element), _) => match point {
-            Some(point) => GaugePlace::BeamPoint {
+            Some(point) => StatedPlace::BeamPoint {
                 element,
                 point,
                 station: station.unwrap_or(0.0),
             },
-            None => GaugePlace::Element(element),
+            None => StatedPlace::Element(element),
         },
-        (None, Some(p)) => GaugePlace::Position(p, cid),
-        (None, None) => GaugePlace::Unstated,
+        (None, Some(p)) => StatedPlace::Position(p, cid),
+        (None, None) => StatedPlace::Unstated,
     };
     let surface = raw
         .surface
         .as_ref()
         .and_then(|s| c.choose_at(s, "gauge.surface", &SURFACES));
     let surface2 = c.choose(&raw.surface2, "gauge.surface2", &SURFACES, Surface::Bottom);
-    let bridges: Vec<(&str, Bridge)> = Bridge::ALL.into_iter().map(|b| (b.name(), b)).collect();
-    let bridge = c.choose(&raw.bridge, "gauge.bridge", &bridges, Bridge::Quarter);
+    let bridge = c.choose(&raw.bridge, "gauge.bridge", &bridges(), Bridge::Quarter);
     let rosette = raw
         .rosette
         .as_ref()
@@ -111,8 +124,8 @@ fn gauge(c: &mut Collector, section: &Spanned<RawGauge>) -> Option<JobGauge> {
             .number(
                 &raw.transverse_sensitivity,
                 "gauge.transverse_sensitivity",
-                "a fraction between -0.5 and 0.5",
-                |x| x.abs() < 0.5,
+                KT,
+                is_kt,
             )
             .unwrap_or(0.0),
         member: String::new(),
@@ -121,6 +134,20 @@ fn gauge(c: &mut Collector, section: &Spanned<RawGauge>) -> Option<JobGauge> {
     };
     check_gauge(&gauge, c.faults);
     Some(gauge)
+}
+
+/// Shares of a bar's length.
+const STATION: &str = "0 (end A) to 1 (end B)";
+
+fn is_station(x: f64) -> bool {
+    (0.0..=1.0).contains(&x)
+}
+
+/// Transverse sensitivities: makers state a few percent.
+const KT: &str = "a fraction between -0.5 and 0.5";
+
+fn is_kt(x: f64) -> bool {
+    x.abs() < 0.5
 }
 
 /// What must hold for a gauge, wherever it is written.
@@ -160,10 +187,24 @@ pub(crate) fn check_gauge(g: &JobGauge, faults: &mut FaultList) {
             "give the gauge's grid length in job units",
         );
     }
+    if let StatedPlace::BeamPoint { station, .. } = g.place
+        && !is_station(station)
+    {
+        let wrong = format!("`{station}`, expected {STATION}");
+        fault("station", &wrong, "give x/xb, a share of the length");
+    }
+    if !is_kt(g.transverse_sensitivity) {
+        let wrong = format!("`{}`, expected {KT}", g.transverse_sensitivity);
+        fault(
+            "transverse_sensitivity",
+            &wrong,
+            "give Kt as a fraction: 0.03 for 3 percent",
+        );
+    }
     let bending = matches!(g.bridge, Bridge::HalfBending | Bridge::FullBending);
     let on_element = matches!(
         g.place,
-        GaugePlace::Element(_) | GaugePlace::BeamPoint { .. }
+        StatedPlace::Element(_) | StatedPlace::BeamPoint { .. }
     );
     if g.pair.is_some() && !bending && g.bridge != Bridge::Shear {
         fault(
@@ -179,7 +220,7 @@ pub(crate) fn check_gauge(g: &JobGauge, faults: &mut FaultList) {
             "drop `bridge` or `rosette`",
         );
     }
-    if matches!(g.place, GaugePlace::Position(..)) && g.pair.is_some() && !on_element {
+    if matches!(g.place, StatedPlace::Position(..)) && g.pair.is_some() && !on_element {
         fault(
             "element2",
             "stands beside a position",

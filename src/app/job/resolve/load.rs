@@ -98,8 +98,11 @@ fn load(
     let role = c.choose(
         &raw.role,
         "load.role",
-        &[("wanted", Role::Wanted), ("nuisance", Role::Nuisance)],
-        Role::Wanted,
+        &[
+            ("wanted", LoadRole::Wanted),
+            ("nuisance", LoadRole::Nuisance),
+        ],
+        LoadRole::Wanted,
     );
     let expected = c.positive(&raw.expected, "load.expected");
     Some(JobLoad {

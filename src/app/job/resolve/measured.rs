@@ -9,6 +9,8 @@ use super::super::spanned::Spanned;
 use super::super::types::*;
 use super::placement::DEFAULT_NOISE_MICROSTRAIN;
 use super::units::units;
+use crate::payload::Place;
+use crate::reconcile::strain::WheelForces;
 use crate::units::{ReportUnits, STANDARD_GRAVITY_M_S2};
 
 /// Elements that `respond` reports where the job says nothing.
@@ -166,10 +168,7 @@ pub(super) fn ballast(c: &mut Collector, raw: Option<&Spanned<RawBallast>>) -> O
 pub(super) fn payload(c: &mut Collector, raw: Option<&Spanned<RawPayload>>) -> Option<Payload> {
     let section = raw?;
     let raw = section.get_ref();
-    let positions = [
-        ("known", PayloadPosition::Known),
-        ("free", PayloadPosition::Free),
-    ];
+    let positions = [("known", Place::Known), ("free", Place::Free)];
     let (mut use_strain, mut use_reactions) = (true, true);
     if let Some(list) = &raw.sources {
         let words: Vec<&str> = list
@@ -196,12 +195,7 @@ pub(super) fn payload(c: &mut Collector, raw: Option<&Spanned<RawPayload>>) -> O
     }
     Some(Payload {
         grid: raw.grid.as_ref().map(|g| *g.get_ref()),
-        position: c.choose(
-            &raw.position,
-            "payload.position",
-            &positions,
-            PayloadPosition::Known,
-        ),
+        position: c.choose(&raw.position, "payload.position", &positions, Place::Known),
         gravity_m_s2: gravity(c, &raw.gravity, "payload.gravity"),
         weight_in_model: raw.weight_in_model.as_ref().is_none_or(|w| *w.get_ref()),
         region: region(c, &raw.region, "payload.region"),

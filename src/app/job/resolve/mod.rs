@@ -10,7 +10,7 @@ mod units;
 mod vehicle;
 
 pub(super) use channel::check_names as check_named;
-pub(super) use gauge::{check_gauge, point_from, rosette_from, surface_from};
+pub(super) use gauge::{bridge_from, check_gauge, point_from, rosette_from, surface_from};
 
 use super::faults::Collector;
 use super::raw::{RawCandidates, RawJob};

@@ -5,6 +5,9 @@ use super::super::raw::{RawCandidates, RawPlacement, RawStudy};
 use super::super::shapes::{NumberOrWord, Texts};
 use super::super::spanned::Spanned;
 use super::super::types::*;
+use super::gauge::{ROSETTES, SURFACES, bridges};
+use crate::fe::strain_tensor::Surface;
+use crate::gauge::Bridge;
 use crate::placement::Loss;
 
 /// Noise of a strain channel where the job says nothing, microstrain.
@@ -12,11 +15,11 @@ pub(super) const DEFAULT_NOISE_MICROSTRAIN: f64 = 1.0;
 /// Angles of candidates where the job says nothing, degrees.
 const DEFAULT_ANGLE_STEP_DEG: f64 = 15.0;
 
-pub(super) fn default_criterion(loads: &[JobLoad]) -> Criterion {
-    if loads.iter().any(|l| l.role == Role::Nuisance) {
-        Criterion::Ds
+pub(super) fn default_criterion(loads: &[JobLoad]) -> Optimality {
+    if loads.iter().any(|l| l.role == LoadRole::Nuisance) {
+        Optimality::Ds
     } else {
-        Criterion::D
+        Optimality::D
     }
 }
 
@@ -45,11 +48,10 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
     out.properties = raw.properties.as_ref().map(|p| p.get_ref().clone());
     out.elements = raw.elements.as_ref().map(|p| p.get_ref().clone());
     if let Some(list) = &raw.surfaces {
-        let choices = [("top", Surface::Top), ("bottom", Surface::Bottom)];
         out.surfaces = list
             .get_ref()
             .iter()
-            .filter_map(|s| c.choose_at(s, "candidates.surfaces", &choices))
+            .filter_map(|s| c.choose_at(s, "candidates.surfaces", &SURFACES))
             .collect();
         out.surfaces.dedup();
         if list.get_ref().is_empty() {
@@ -90,7 +92,7 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
             Texts::One(w) => vec![w.clone()],
             Texts::Many(list) => list.clone(),
         };
-        let choices = Bridge::ALL.map(|b| (b.name(), b));
+        let choices = bridges();
         out.bridges = words
             .into_iter()
             .filter_map(|w| c.choose_at(&Spanned::new(b.span(), w), "candidates.bridge", &choices))
@@ -101,13 +103,10 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
             c.fault(b, "candidates.bridge", wrong, "name `quarter`, for one");
         }
     }
-    out.rosette = raw.rosette.as_ref().and_then(|r| {
-        let choices = [
-            ("rectangular", Rosette::Rectangular),
-            ("delta", Rosette::Delta),
-        ];
-        c.choose_at(r, "candidates.rosette", &choices)
-    });
+    out.rosette = raw
+        .rosette
+        .as_ref()
+        .and_then(|r| c.choose_at(r, "candidates.rosette", &ROSETTES));
     let ids = |s: &Option<Spanned<Ids>>| s.as_ref().map(|v| v.get_ref().clone());
     out.sets = ids(&raw.sets);
     out.exclude_properties = ids(&raw.exclude_properties);
@@ -152,7 +151,7 @@ pub(super) fn placement(
     c: &mut Collector,
     raw: Option<&Spanned<RawPlacement>>,
     measured: Option<&Measured>,
-    criterion: Criterion,
+    criterion: Optimality,
 ) -> Placement {
     // What is stated of the measurement holds for its plan, until the plan says otherwise.
     let noise = measured.map_or(DEFAULT_NOISE_MICROSTRAIN, |m| m.noise_microstrain);
@@ -186,12 +185,12 @@ pub(super) fn placement(
         &raw.criterion,
         "placement.criterion",
         &[
-            Criterion::D,
-            Criterion::Ds,
-            Criterion::A,
-            Criterion::I,
-            Criterion::BayesianD,
-            Criterion::Condition,
+            Optimality::D,
+            Optimality::Ds,
+            Optimality::A,
+            Optimality::I,
+            Optimality::BayesianD,
+            Optimality::Condition,
         ]
         .map(|k| (k.name(), k)),
         criterion,
@@ -218,7 +217,7 @@ pub(super) fn placement(
     out.gauge_factor_rel = c
         .at_least_zero(&raw.gauge_factor_rel, "placement.gauge_factor_rel")
         .unwrap_or(0.0);
-    let bridges = Bridge::ALL.map(|b| (b.name(), b));
+    let bridges = bridges();
     for (name, noise) in &raw.noise_by_bridge {
         let key = "placement.noise_by_bridge";
         let bridge = c.choose_at(name, key, &bridges);

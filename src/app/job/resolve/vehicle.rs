@@ -8,8 +8,8 @@ use super::super::shapes::Texts;
 use super::super::spanned::Spanned;
 use super::super::types::*;
 use super::units::units;
+use crate::gauge::Bridge;
 use crate::units::{ReportUnits, UnitSystem};
-
 use crate::vehicle::adjustment::{Lag, Slip};
 use crate::vehicle::chassis::LeafSeat;
 use crate::vehicle::preset::MODELS;

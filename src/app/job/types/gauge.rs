@@ -1,0 +1,64 @@
+//! `[[gauge]]`, or a row of a gauge file.
+
+use crate::fe::strain_tensor::Surface;
+use crate::gauge::{Bridge, Rosette};
+
+/// Where a gauge sits as its user states it: by ids and axes of the deck, or not at all. [`crate::gauge::GaugePlace`] is the same found on a
+/// model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StatedPlace {
+    /// At the centre of an element.
+    Element(u32),
+    /// At a point in the axes of `cid`: the nearest surface is taken.
+    Position([f64; 3], u32),
+    /// At a bar or beam: recovery point 0 to 3 (C D E F) at a share of the length from end A.
+    BeamPoint {
+        /// Element id.
+        element: u32,
+        /// 0 to 3: C D E F.
+        point: u8,
+        /// x/xb.
+        station: f64,
+    },
+    /// Not stated: enough for a job whose S is given.
+    Unstated,
+}
+
+/// A gauge.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JobGauge {
+    /// Name: the column of the strain file.
+    pub name: String,
+    /// Where it sits.
+    pub place: StatedPlace,
+    /// Location in job units as the table states it beside the element, where it does: for drawings.
+    pub position: Option<[f64; 3]>,
+    /// Surface.
+    pub surface: Surface,
+    /// Whether the job states the surface (else it is `top`, or the nearest for a position).
+    pub surface_stated: bool,
+    /// Direction to be laid on the surface, basic frame or that of `cid`; `None`: the element x axis.
+    pub direction: Option<[f64; 3]>,
+    /// Coordinate system of the direction.
+    pub cid: u32,
+    /// Angle from that direction, degrees, right-handed about the element normal.
+    pub angle_deg: f64,
+    /// Wiring.
+    pub bridge: Bridge,
+    /// The sum of signed arm strains is divided by this.
+    pub bridge_factor: f64,
+    /// Length over which strain is averaged; 0: at the point.
+    pub grid_length: f64,
+    /// Element and surface of the other pair.
+    pub pair: Option<(u32, Surface)>,
+    /// Three legs instead of one grid.
+    pub rosette: Option<Rosette>,
+    /// Transverse sensitivity Kt, a fraction.
+    pub transverse_sensitivity: f64,
+    /// Free columns of the table, such as `member`.
+    pub member: String,
+    /// File that states it.
+    pub file: String,
+    /// Line there.
+    pub line: u32,
+}

@@ -1,0 +1,48 @@
+//! `[measured]`.
+
+use super::named_file::NamedFile;
+
+/// State that is added to make loads totals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reference {
+    /// Loads are changes.
+    None,
+    /// The structure's own weight.
+    Gravity,
+    /// A subcase of the results.
+    Subcase(u32),
+}
+
+/// What is kept from fitting.
+#[derive(Clone, Debug, PartialEq)]
+pub enum HoldOut {
+    /// Nothing.
+    None,
+    /// These runs of the strain file.
+    Runs(Vec<String>),
+    /// A file of its own.
+    File(NamedFile),
+}
+
+/// `[measured]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// Strain file.
+    pub strain: NamedFile,
+    /// Its mean is subtracted.
+    pub zero: Option<NamedFile>,
+    /// Runs of the strain file at which no load acts: the zero is followed through them.
+    pub zero_runs: Vec<String>,
+    /// Changes or totals.
+    pub reference: Reference,
+    /// Noise, microstrain, 1 sd; default 1.
+    pub noise_microstrain: f64,
+    /// Model uncertainty of the predicted strain, 1 sd; default 0.
+    pub model_uncertainty_rel: f64,
+    /// Runs kept from fitting.
+    pub hold_out: HoldOut,
+    /// Seconds in the unit of the column `time`, where the job states it.
+    pub time_unit_s: Option<f64>,
+    /// Line of the job.
+    pub line: u32,
+}

@@ -1,0 +1,46 @@
+//! A job with its defaults filled in and its words checked. Lengths, forces and masses are in the job's units unless a field says so.
+
+mod ballast;
+mod calibration;
+mod candidates;
+mod correction;
+mod fleet;
+mod gauge;
+mod job;
+mod load;
+mod measured;
+mod model;
+mod named_file;
+mod payload;
+mod placement;
+mod reconcile;
+mod recover;
+mod region;
+mod respond;
+mod runs;
+mod sensitivity;
+mod study;
+mod vehicle;
+
+pub use super::shapes::Ids;
+pub use ballast::Ballast;
+pub use calibration::CalibrationKeys;
+pub use candidates::{AngleStep, Candidates, Clearances};
+pub use correction::StrainCorrection;
+pub use fleet::Fleet;
+pub use gauge::{JobGauge, StatedPlace};
+pub use job::Job;
+pub use load::{Combination, Component, JobLoad, LoadActs, LoadRole};
+pub use measured::{HoldOut, Measured, Reference};
+pub use model::ModelFiles;
+pub use named_file::NamedFile;
+pub use payload::Payload;
+pub use placement::{Keep, Optimality, Placement};
+pub use reconcile::{DescribedEffect, EffectSource, Reconcile, ReconcilePath};
+pub use recover::{LoadFile, Recover};
+pub use region::Region;
+pub use respond::Respond;
+pub use runs::{RunNoise, Runs};
+pub use sensitivity::{GivenSensitivity, Signatures};
+pub use study::Study;
+pub use vehicle::{ChannelCorrection, MassChange, Vehicle};

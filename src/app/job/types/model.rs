@@ -1,0 +1,19 @@
+//! `[model]`.
+
+use super::named_file::NamedFile;
+use crate::fe::SupportChoice;
+
+/// `[model]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelFiles {
+    /// The deck, or an OP2 with the mesh.
+    pub deck: NamedFile,
+    /// Result files; empty: the built-in solver computes them.
+    pub results: Vec<NamedFile>,
+    /// What holds the structure.
+    pub support: SupportChoice,
+    /// Line of `support`, or of the section.
+    pub support_line: u32,
+    /// Whether what the mesh makes is taken out of the strain of the built-in solver, and what is left of it weighed.
+    pub mesh_error: bool,
+}

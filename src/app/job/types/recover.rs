@@ -1,0 +1,38 @@
+//! `[recover]`.
+
+/// What `recover` writes beside `loads.csv`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LoadFile {
+    /// `loads.rsp`: the history in RPC III.
+    Rpc,
+    /// `loads.bdf`: FORCE, MOMENT and LOAD, for a history TABLED1.
+    Nastran,
+    /// `rainflow.csv`: cycles and pseudo-damage of the history.
+    Rainflow,
+    /// `loads.parquet`: the history in Parquet.
+    Parquet,
+}
+
+impl LoadFile {
+    /// Whether this build can write it.
+    pub fn is_built(self) -> bool {
+        self != Self::Parquet || cfg!(feature = "parquet")
+    }
+
+    /// All of them, with the words of a job.
+    pub const ALL: [(&'static str, LoadFile); 4] = [
+        ("rpc", Self::Rpc),
+        ("nastran", Self::Nastran),
+        ("rainflow", Self::Rainflow),
+        ("parquet", Self::Parquet),
+    ];
+}
+
+/// `[recover]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recover {
+    /// Files asked for; `None`: all, but for long histories.
+    pub files: Option<Vec<LoadFile>>,
+    /// Power of the load range in pseudo-damage.
+    pub slope: f64,
+}

@@ -1,0 +1,33 @@
+//! `[runs]`.
+
+use super::named_file::NamedFile;
+use crate::reconcile::strain::WheelForces;
+use crate::units::ReportUnits;
+use std::collections::BTreeMap;
+
+/// `[runs]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Runs {
+    /// The file.
+    pub file: NamedFile,
+    /// Load name or `payload_force`, `payload_mass`, `payload_x`, `payload_y` to the column's name.
+    pub columns: BTreeMap<String, String>,
+    /// Units of the file; the report units where not stated.
+    pub units: ReportUnits,
+    /// 1 sd by quantity, in the file's units.
+    pub noise: RunNoise,
+    /// Measured or computed.
+    pub wheel_forces: WheelForces,
+    /// Line of the job.
+    pub line: u32,
+}
+
+/// Noise of the runs file, 1 sd, in its units; `None` where not stated.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[allow(missing_docs)]
+pub struct RunNoise {
+    pub force: Option<f64>,
+    pub moment: Option<f64>,
+    pub mass: Option<f64>,
+    pub length: Option<f64>,
+}

@@ -1,0 +1,35 @@
+//! `[sensitivity]`: S computed elsewhere.
+
+use super::named_file::NamedFile;
+use crate::units::ReportUnits;
+use std::collections::BTreeMap;
+
+/// `[sensitivity]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GivenSensitivity {
+    /// A row a gauge, a column a load.
+    pub file: NamedFile,
+    /// Microstrain per these units.
+    pub per: ReportUnits,
+    /// Load name and column name, in job order; empty: every column is a load of its own name.
+    pub columns: Vec<(String, String)>,
+    /// Signature files.
+    pub signatures: Signatures,
+    /// Covariance of S, as `calibrate` writes it.
+    pub covariance: Option<NamedFile>,
+    /// Line of the job.
+    pub line: u32,
+}
+
+/// Signatures of effects, computed elsewhere.
+#[derive(Clone, Debug, PartialEq, Default)]
+#[allow(missing_docs)]
+pub struct Signatures {
+    pub lateral_wheel_loads: Option<NamedFile>,
+    pub thermal: Option<NamedFile>,
+    pub payload: Option<NamedFile>,
+    pub unaccounted_mass: Option<NamedFile>,
+    pub gauge_angle: Option<NamedFile>,
+    /// Zone to file.
+    pub rail_stiffness: BTreeMap<String, NamedFile>,
+}

@@ -1,0 +1,77 @@
+//! `[vehicle]`.
+
+use super::named_file::NamedFile;
+use crate::vehicle::adjustment::{Lag, Slip};
+use crate::vehicle::chassis::LeafSeat;
+use std::collections::BTreeMap;
+
+/// `[vehicle]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Vehicle {
+    /// `front2`, `rear3`, `front_pair`, `half`, `full2`, `full3`.
+    pub model: String,
+    /// Terms of the analyst's model.
+    pub terms: Vec<String>,
+    /// Record.
+    pub data: NamedFile,
+    /// Held-out record.
+    pub hold_out: Option<NamedFile>,
+    /// Hz; `None`: from the time column.
+    pub sample_rate: Option<f64>,
+    /// Known parameters.
+    pub known: BTreeMap<String, f64>,
+    /// Noise of accelerations, m/s^2, 1 sd.
+    pub noise_acc: Option<f64>,
+    /// Noise of wheel forces, N, 1 sd.
+    pub noise_force: Option<f64>,
+    /// Declared tolerance of gains, a fraction.
+    pub tolerance_gain: Option<f64>,
+    /// Declared tolerance of synchronisation, s.
+    pub tolerance_sync: Option<f64>,
+    /// Band in which to compare, Hz.
+    pub band_hz: Option<[f64; 2]>,
+    /// Channel to column, where the file names them otherwise.
+    pub columns: BTreeMap<String, String>,
+    /// Places (x, y) of wheels (`lf`), springs (`spring_lf`) and body accelerometers (`body_lf`).
+    pub places: BTreeMap<String, [f64; 2]>,
+    /// Limits of parameters.
+    pub bounds: BTreeMap<String, [f64; 2]>,
+    /// Faults of channels that are known.
+    pub corrections: BTreeMap<String, ChannelCorrection>,
+    /// A mass that changes during the record.
+    pub mass_change: Option<MassChange>,
+    /// Leaf springs by link (`s`), whose force is divided between hanger and shackle.
+    pub leaf: BTreeMap<String, LeafSeat>,
+    /// Line of the job.
+    pub line: u32,
+}
+
+/// What is known to be wrong with a channel of the records, one of each kind; [`crate::vehicle::adjustment::Adjustment`] joins several.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChannelCorrection {
+    /// Reading over truth.
+    pub gain: f64,
+    /// How late it reads, s.
+    pub delay_s: f64,
+    /// How much later it reads with every second of a record, millionths.
+    pub clock_ppm: f64,
+    /// Samples lost or written twice, in the fitted record.
+    pub slip: Option<Slip>,
+    /// A low-pass that it alone went through.
+    pub lag: Option<Lag>,
+    /// A mains line on it, Hz.
+    pub line_hz: Option<f64>,
+}
+
+/// `mass_change` of `[vehicle]`, by the name of the body; on a vehicle it is a [`crate::vehicle::layout::MassStep`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct MassChange {
+    /// Body, such as `b`.
+    pub body: String,
+    /// When it begins, s.
+    pub at_s: f64,
+    /// How long it takes, s.
+    pub over_s: f64,
+    /// Whether its weight comes with it (else its inertia alone).
+    pub weight: bool,
+}
