@@ -111,7 +111,7 @@ fn note(scene: &Scene, parts: &[Part], bytes: usize) -> Markup {
             @if !scene.fields.is_empty() { "Colour: the largest principal strain by magnitude, from the centres of the elements. " }
             @if !scene.arrows.is_empty() { "Arrows end where the load acts: green forces, violet moments (right-hand rule); a length compares within a kind. " }
             @if !whole { "The picture is coarser than the model, of the strains drawn together the largest. Nothing was computed on it. "
-                @if matches!(scene.pointing, Pointing::Places(_)) { "Brush and box take elements of the properties that are drawn as they are; the others are picked as a whole. " }
+                @if matches!(scene.pointing, Pointing::Places(_)) { "Brush and box take its elements all the same, by their middles. " }
             }
             span data-role="size" { (drawn) " triangles for " (all) " faces, " (bytes.div_ceil(1000)) " kB of this page." }
         }

@@ -159,10 +159,10 @@ fn a_large_model_is_drawn_coarser_and_its_small_parts_stay_whole() {
     let triangles: usize = parts.iter().map(|p| p.drawn.triangles.len()).sum();
     assert!(triangles <= 120_000 && triangles > 40_000, "{triangles}");
     assert_eq!(area(&model, &parts[0]), 100.0);
-    // Vertices are grids of the model: half a cube is lost at the border at most, 4 cubes' width of 560.
+    // Borders stay where they are: beside the strip's end, a corner that stands twice in one cube, not a square is lost.
     let large = area(&model, &parts[1]);
     let whole = 560.0 * 560.0 - 100.0;
-    assert!(large <= whole && large > 0.96 * whole, "{large}");
+    assert!((large - whole).abs() < 9.0, "{large}");
 }
 
 #[test]
