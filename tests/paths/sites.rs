@@ -6,9 +6,9 @@ use strainbridge::fe::from_results::{ReadOptions, solution_from_file};
 use strainbridge::fe::strain_tensor::Surface;
 use strainbridge::gauge::{Bridge, CornerRows, GaugeSpec, build, moved, reading};
 use strainbridge::model::{Model, ShellIx};
+use strainbridge::placement::angle_variance;
 use strainbridge::placement::candidates::{Angles, Choice, Scatter};
 use strainbridge::placement::gradient::forms;
-use strainbridge::placement::quartic;
 use strainbridge::placement::sites::{Site, axis_of, bridges};
 use strainbridge::sensitivity::{Load, LoadCaseOf};
 
@@ -141,7 +141,10 @@ fn forms_of_misplacement_are_the_changes_of_gauges_moved_along_both_directions()
                     })
                     .sum();
                 let Some(square) = square else { continue };
-                let form = quartic::value(&quartic::of_row(form), &quartic::phases(angle));
+                let form = angle_variance::value(
+                    &angle_variance::of_row(form),
+                    &angle_variance::phases(angle),
+                );
                 // A ten-thousandth: the small share that keeps a direction without neighbours at 0.
                 assert!(
                     (form - square).abs() < 1e-4 * (square + 1e-6),
