@@ -169,7 +169,7 @@ fn mark(m: &Mark) -> Value {
 }
 
 fn field(model: &Model, f: &Field, parts: &[Part]) -> Value {
-    let values = Values::of(model, f.case);
+    let values = Values::of_field(model, &f.values);
     let by_part: Vec<[Vec<f64>; 2]> = parts.iter().map(|p| values.on(p)).collect();
     let all = by_part.iter().flatten().flatten();
     let most = all

@@ -194,6 +194,22 @@ fn a_vertex_takes_the_mean_around_its_grid_and_of_its_grids_the_largest() {
 }
 
 #[test]
+fn numbers_of_shells_reach_the_vertices_without_a_strain() {
+    let model = plate(2, 9);
+    let parts = skin(&model, 1, Finest::FewFields);
+    let given = [2.0, 4.0, 6.0, 8.0].map(|v| [v, f64::NAN]);
+    let values = Values::of_field(&model, &FieldValues::Shells(given.to_vec()));
+    let [bottom, top] = values.on(&parts[0]);
+    // Nine grids in rows of three: a corner has its element's number, a side the mean of two, the middle that of four.
+    let at = |id: u32| {
+        let local = parts[0].grids.iter().position(|g| g.0 + 1 == id).unwrap();
+        bottom[parts[0].drawn.vertex_of[local] as usize]
+    };
+    assert_eq!([at(1), at(2), at(5), at(9)], [2.0, 3.0, 5.0, 8.0]);
+    assert!(top.iter().all(|v| v.is_nan()));
+}
+
+#[test]
 fn the_principal_strain_is_that_of_mohrs_circle() {
     // Pure shear of 2e-3: 1e-3 at 45 degrees. Uniaxial with nu 0.3. Both with the sign of the larger.
     assert!((largest_in_plane([0.0, 0.0, 2e-3]) - 1e-3).abs() < 1e-18);
@@ -250,7 +266,7 @@ fn a_page_of_a_large_model_stays_small() {
     let field = |name: &str| Field {
         name: name.into(),
         unit: "µε".into(),
-        case: &case,
+        values: FieldValues::Strain(&case),
         scale: 1e6,
     };
     let scene = Scene {
