@@ -434,12 +434,12 @@ fn pitching(inertia: f64, seed: u64) -> String {
     use strainbridge::vehicle::simulate::{Drive, simulate};
     const N: usize = 12_000;
     const RATE_HZ: f64 = 200.0;
-    let wish = PresetRequest {
+    let request = PresetRequest {
         model: "half".into(),
         places: BTreeMap::from([("front".into(), [1.5, 0.0]), ("rear".into(), [-2.5, 0.0])]),
         ..PresetRequest::default()
     };
-    let v = vehicle(&wish).unwrap();
+    let v = vehicle(&request).unwrap();
     let known = |name: &str| match name {
         "m_b" => 6000.0,
         "mx_b" => 0.0,

@@ -36,12 +36,12 @@ fn frame(
             .collect();
         Channels::from_list(rate_hz, list).unwrap()
     };
-    let wish = PresetRequest {
+    let request = PresetRequest {
         model: "oscillator".into(),
         terms: vec!["k".into(), "c".into()],
         ..PresetRequest::default()
     };
-    let mut model = vehicle(&wish).unwrap();
+    let mut model = vehicle(&request).unwrap();
     model.sensors[0].measures = measures;
     Some(MotionFrame {
         vehicle: model,
