@@ -1,4 +1,4 @@
-"""Makes the measured data of the examples `quarter_truck`, `frame` and `fleet`: numbers of our own, from models that are written here.
+"""Makes the measured data of the examples `quarter_truck`, `rig`, `frame` and `fleet`: numbers of our own, from models that are written here.
 
 Call it in this folder; it needs numpy. The results stand in the folders already, so that nobody has to call it.
 """
@@ -54,6 +54,56 @@ def write_ride(path, rows):
         f.write("t,a_body,a_wheel,f_wheel\n")
         for t, a, w, force in rows:
             f.write(f"{t:.3f},{a:.3f},{w:.3f},{force:.0f}\n")
+
+
+def shaken(seed, seconds, mass, damping, stiffness, size):
+    """Time, force on the first mass, N, displacements and accelerations of masses that a force of such a size (N rms, 2 to 30 Hz) shakes; 200 Hz."""
+    rate, inner = 200, 20
+    dt = 1.0 / (rate * inner)
+    n = seconds * rate * inner
+    rng = np.random.default_rng(seed)
+    spectrum, hz = np.fft.rfft(rng.normal(0.0, 1.0, n)), np.fft.rfftfreq(n, dt)
+    spectrum[(hz < 2.0) | (hz > 30.0)] = 0.0
+    u = np.fft.irfft(spectrum, n)
+    u *= size / u.std()
+    k = len(mass)
+    a = np.zeros((2 * k, 2 * k))
+    a[:k, k:] = np.eye(k)
+    a[k:, :k], a[k:, k:] = -stiffness / mass[:, None], -damping / mass[:, None]
+    b = np.zeros(2 * k)
+    b[k] = 1.0 / mass[0]
+    x, rows = np.zeros(2 * k), []
+    for i in range(n - 1):
+        if i % inner == 0:
+            rows.append([i * dt, u[i], *x[:k], *(a @ x + b * u[i])[k:]])
+        middle = 0.5 * (u[i] + u[i + 1])
+        p = a @ x + b * u[i]
+        q = a @ (x + 0.5 * dt * p) + b * middle
+        r = a @ (x + 0.5 * dt * q) + b * middle
+        s = a @ (x + dt * r) + b * u[i + 1]
+        x = x + dt / 6.0 * (p + 2.0 * q + 2.0 * r + s)
+    return np.array(rows), rng
+
+
+def oscillator(path, seed, seconds):
+    """2 kg on a spring of 8,000 N/m with 15 N s/m: displacement, m, and force, N."""
+    rows, rng = shaken(seed, seconds, np.array([2.0]), np.array([[15.0]]), np.array([[8000.0]]), 20.0)
+    with open(path, "w") as f:
+        f.write("t,y,u\n")
+        for t, u, y, _ in rows:
+            f.write(f"{t:.3f},{y + rng.normal(0.0, 1e-5):.6f},{u + rng.normal(0.0, 0.1):.2f}\n")
+
+
+def two_masses(path, seed, seconds):
+    """60 kg on 400 kg on the ground, springs of 9e4 and 6e5 N/m, dampers of 700 and 4,000 N s/m: accelerations with gravity, force on the first."""
+    k, c = [9.0e4, 6.0e5], [700.0, 4000.0]
+    chain = lambda v: np.array([[v[0], -v[0]], [-v[0], v[0] + v[1]]])
+    rows, rng = shaken(seed, seconds, np.array([60.0, 400.0]), chain(c), chain(k), 500.0)
+    with open(path, "w") as f:
+        f.write("t,a_1,a_2,f_1\n")
+        for t, u, _, _, a, b in rows:
+            noise = rng.normal(0.0, 1.0, 3) * [0.02, 0.02, 3.0]
+            f.write(f"{t:.3f},{a + 9.81 + noise[0]:.3f},{b + 9.81 + noise[1]:.3f},{u + noise[2]:.1f}\n")
 
 
 LENGTH, HALF_WIDTH, HEIGHT, FLANGE, BAY = 4000.0, 400.0, 200.0, 60.0, 250.0
@@ -128,6 +178,10 @@ if __name__ == "__main__":
     write_ride("quarter_truck/holdout.csv", ride(2, 16, 0.0))
     write_ride("quarter_truck/data_worn.csv", ride(3, 24, 2.0e8))
     write_ride("quarter_truck/holdout_worn.csv", ride(4, 16, 2.0e8))
+    oscillator("rig/oscillator.csv", 6, 20)
+    oscillator("rig/oscillator_holdout.csv", 7, 12)
+    two_masses("rig/rig.csv", 8, 20)
+    two_masses("rig/rig_holdout.csv", 9, 12)
     # `strainbridge sensitivity recover.toml` wrote what the gauges read per newton.
     table = [line.split(",") for line in open("frame/sensitivity.csv").read().split()]
     names, gauges = table[0][1:], [row[0] for row in table[1:]]

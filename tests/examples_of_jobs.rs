@@ -206,3 +206,26 @@ fn calibrations_hold_the_runs_left_out() {
         );
     }
 }
+
+#[test]
+fn masses_springs_and_dampers_of_the_oscillator_and_the_rig_lie_in_their_intervals() {
+    let oscillator = [("m_b", 2.0), ("k_s", 8000.0), ("c_s", 15.0)];
+    let rig = [
+        ("m_1", 60.0),
+        ("m_2", 400.0),
+        ("k_1", 9.0e4),
+        ("c_1", 700.0),
+        ("k_2", 6.0e5),
+        ("c_2", 4000.0),
+    ];
+    for (job, truth) in [("oscillator.toml", &oscillator[..]), ("rig.toml", &rig[..])] {
+        let found = run("identify", "rig", &[job]);
+        for (name, value) in truth {
+            let p = by(&found["parameters"], "name", name)[0];
+            // 95 % intervals of nine parameters: one may be missed by chance, and none by twice its width.
+            let away = (number(&p["value"]) - value).abs();
+            assert!(away < 2.0 * 1.96 * number(&p["sigma"]), "{job}: {p}");
+            assert!(number(&p["sigma"]) < 1e-3 * value, "{job}: {p}");
+        }
+    }
+}

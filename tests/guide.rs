@@ -1,5 +1,8 @@
 //! The guide in `docs/`: every command in a `sh` box is run, in order, in one folder; files that a page names are there afterwards.
 
+#[path = "../nastran/tests/support/mod.rs"]
+mod support;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -103,6 +106,51 @@ fn every_command_of_the_guide_works_and_the_files_it_names_are_written() {
         }
     }
     documented(&folder);
+}
+
+#[test]
+fn an_export_comes_to_a_gauge_plan_in_five_commands_and_three_edited_lines() {
+    let Some(export) = support::shared("nastran/mystran_frame_units") else {
+        return;
+    };
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("first-hour");
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    for file in ["frame.bdf", "frame.op2"] {
+        std::fs::copy(export.join(file), folder.join(file)).unwrap();
+    }
+    let (_, page) = pages().swap_remove(0);
+    let commands = boxes(&page, "sh export").concat();
+    let commands: Vec<&str> = commands.lines().collect();
+    let edits = boxes(&page, "toml edit").concat();
+    assert!(commands.len() <= 5 && edits.lines().count() <= 3, "{page}");
+    let (place, before) = commands.split_last().unwrap();
+    before.iter().for_each(|line| run(line, &folder));
+    edit(&folder.join("job.toml"), &edits);
+    run(place, &folder);
+    let text = std::fs::read_to_string(folder.join("job.out/result.json")).unwrap();
+    let plan: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(plan["gauges"].as_array().unwrap().len(), 60);
+    // As the page says.
+    assert!(plan["efficiency_bound"].as_f64().unwrap() > 0.969);
+    let mut findings = plan["findings"].as_array().unwrap().iter();
+    assert!(findings.any(|f| f["code"] == "loads-weakly-separable"));
+}
+
+/// Each line in place of the job's line of the same key; a new one at the head of `[placement]`.
+fn edit(job: &Path, lines: &str) {
+    let text = std::fs::read_to_string(job).unwrap();
+    let mut text: Vec<&str> = text.lines().collect();
+    let section = text.iter().position(|l| l.starts_with("[placement]"));
+    let section = section.unwrap();
+    for line in lines.lines() {
+        let (key, _) = line.split_once('=').unwrap();
+        match text.iter().skip(section).position(|l| l.starts_with(key)) {
+            Some(k) => text[section + k] = line,
+            None => text.insert(section + 1, line),
+        }
+    }
+    std::fs::write(job, text.join("\n")).unwrap();
 }
 
 /// Whether a documented field, with `*` for any name and for all below where it comes last, is this one.

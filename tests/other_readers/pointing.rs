@@ -50,14 +50,14 @@ fn flat() -> String {
     deck
 }
 
-/// A square tube of 50,000 squares of 10 mm: walls 1 (z = 0), 2 (y = 500), 3 (z = 500), 4 (y = 0), 250 rings of 200 from x = 0;
+/// A square tube of squares of 10 mm: walls 1 (z = 0), 2 (y = 500), 3 (z = 500), 4 (y = 0), rings of 200 from x = 0;
 /// element `1 + 200 i + 50 (wall - 1) + k`.
-fn tube() -> String {
+fn tube(rings: u32) -> String {
     let mut deck = String::from("SOL 101\nCEND\nBEGIN BULK\nMAT1,1,210000.,,.3,7.85-9\n");
     for wall in 1..=4 {
         let _ = writeln!(deck, "PSHELL,{wall},1,2.0,1,,1");
     }
-    for (i, k) in (0..=250).flat_map(|i| (0..200).map(move |k| (i, k))) {
+    for (i, k) in (0..=rings).flat_map(|i| (0..200).map(move |k| (i, k))) {
         let (side, t) = (k / 50, k % 50);
         let [y, z] = [[t, 0], [50, t], [50 - t, 50], [0, 50 - t]][side as usize];
         let _ = writeln!(
@@ -69,7 +69,7 @@ fn tube() -> String {
             10 * z
         );
     }
-    for (i, k) in (0..250).flat_map(|i| (0..200).map(move |k| (i, k))) {
+    for (i, k) in (0..rings).flat_map(|i| (0..200).map(move |k| (i, k))) {
         let (a, b) = (1 + 200 * i + k, 1 + 200 * i + (k + 1) % 200);
         let _ = writeln!(
             deck,
@@ -322,9 +322,19 @@ fn a_gauge_that_is_dragged_is_written_with_the_place_on_the_surface_where_it_was
 #[test]
 fn on_fifty_thousand_elements_brush_and_box_take_what_is_seen_and_a_box_what_is_hidden_where_asked()
 {
-    let dir = folder("tube");
+    picked_on_a_tube(250, 1_000_000);
+}
+
+#[test]
+fn on_eighty_thousand_elements_that_are_drawn_coarser_brush_and_box_take_the_same() {
+    picked_on_a_tube(400, 2_000_000);
+}
+
+/// A stroke, a box and a box through all on a tube of so many rings, whose page has at most so many bytes.
+fn picked_on_a_tube(rings: u32, bytes: u64) {
+    let dir = folder(&format!("tube-{rings}"));
     let deck = dir.join("tube.bdf");
-    std::fs::write(&deck, tube()).unwrap();
+    std::fs::write(&deck, tube(rings)).unwrap();
     let out = dir.join("tube.out");
     let found = strainbridge(&[
         "check",
@@ -332,11 +342,12 @@ fn on_fifty_thousand_elements_brush_and_box_take_what_is_seen_and_a_box_what_is_
         "--out",
         out.to_str().unwrap(),
     ]);
-    assert_eq!(found["decks"][0]["elements"], 50_000);
+    assert_eq!(found["decks"][0]["elements"], 200 * rings);
     let report = out.join("report.html");
-    assert!(std::fs::metadata(&report).unwrap().len() < 1_000_000);
+    assert!(std::fs::metadata(&report).unwrap().len() < bytes);
+    let length = EDGE * f64::from(rings);
     // From above: wall 3 alone is seen. A stroke along its middle, a box about all, a box through all.
-    let all = json!(["drag", [-20, -100, 500], [2520, 600, 500]]);
+    let all = json!(["drag", [-20, -100, 500], [length + 20.0, 600, 500]]);
     let steps = json!([
         ["view", "z"],
         ["state", "forbidden"],
@@ -362,8 +373,8 @@ fn on_fifty_thousand_elements_brush_and_box_take_what_is_seen_and_a_box_what_is_
         // The squares whose middles the stroke passes over: 25th of wall 3 from y = 500, rings 50 to 199.
         let under: Vec<u32> = (50..200).map(|i| 1 + 200 * i + 100 + 24).collect();
         assert!(under.iter().all(|e| brushed.contains(e)), "{brushed:?}");
-        // Nothing but wall 3, and nothing further than the brush and a pixel: 3 pixels of 2620 mm in 1140 or 350.
-        let reach = 3.0 * 3000.0 / if width == 1280 { 1140.0 } else { 350.0 } + EDGE;
+        // Nothing but wall 3, and nothing further than the brush and a pixel: 3 pixels of the length and a fifth in 1140 or 350.
+        let reach = 3.0 * 1.2 * length / if width == 1280 { 1140.0 } else { 350.0 } + EDGE;
         for e in &brushed {
             let (ring, k) = ((e - 1) / 200, (e - 1) % 200);
             assert!((100..150).contains(&k), "{e}");

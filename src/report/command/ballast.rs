@@ -131,6 +131,16 @@ fn page(found: &Outcome<Ballasted>) -> Page {
             ]
         })
         .collect();
+    let (mass, length) = (units.mass.name, units.length.name);
+    let head = [
+        "mass".to_owned(),
+        format!("size, {mass}"),
+        format!("95 %, {mass}"),
+        format!("along, {length}"),
+        format!("95 %, {length}"),
+        format!("across, {length}"),
+        format!("95 %, {length}"),
+    ];
     let sections = vec![
         table_section(
             &format!("Reactions, {}", units.force.name),
@@ -139,8 +149,8 @@ fn page(found: &Outcome<Ballasted>) -> Page {
             "After: the completed deck, read back and solved.",
         ),
         table_section(
-            &format!("Masses, {} and {}", units.mass.name, units.length.name),
-            &["mass", "size", "95 %", "along", "95 %", "across", "95 %"],
+            "Masses",
+            &head.each_ref().map(String::as_str),
             &masses,
             &format!(
                 "Ranges: what the data leave one number when the others are adjusted. Height {} (no influence on a level floor).",

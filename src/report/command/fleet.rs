@@ -287,7 +287,7 @@ fn page(o: &Outcome<Fleet>) -> Page {
     if !by_load.is_empty() {
         sections.push(figure_section(
             "Damage an hour",
-            intervals(&by_load, "damage an hour"),
+            intervals(&by_load, &damage_unit(o)),
             "",
         ));
     }
@@ -328,6 +328,17 @@ fn page(o: &Outcome<Fleet>) -> Page {
     Page::new(&o.title, &lead, &o.findings, sections).on_paper(Paper::Report)
 }
 
+/// Damage an hour: the loads' unit to the power of the slope; where loads have several, that of each.
+fn damage_unit(o: &Fleet) -> String {
+    let mut units = rows(o).map(|(_, l)| l.unit.as_str());
+    let first = units.next().unwrap_or_default();
+    let unit = match units.all(|u| u == first) && !first.is_empty() {
+        true => first,
+        false => "unit of the load",
+    };
+    format!("damage an hour, ({unit})^{}", o.slope)
+}
+
 /// Gauges of a vehicle over its days.
 fn health(v: &VehicleAnswer) -> Section {
     let x: Vec<f64> = (1..=v.days.len()).map(|i| i as f64).collect();
@@ -354,9 +365,9 @@ fn health(v: &VehicleAnswer) -> Section {
     let head = [
         "gauge",
         "dead on",
-        "mean first",
-        "mean last",
-        "noise",
+        "mean first, µε",
+        "mean last, µε",
+        "noise, µε",
         "gain against the others, first",
         "last",
     ];
@@ -382,7 +393,7 @@ fn health(v: &VehicleAnswer) -> Section {
         blocks.push(Block::Figure(lines(
             &drawn,
             "day",
-            "mean reading, microstrain",
+            "mean reading, µε",
             Scale::Linear,
         )));
     }

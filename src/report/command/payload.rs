@@ -145,10 +145,10 @@ fn page(found: &Outcome<Weighed>) -> Page {
     let head = [
         "run".to_owned(),
         format!("weight, {}", units.force.name),
-        "95 %".to_owned(),
+        format!("95 %, {}", units.force.name),
         format!("mass, {}", units.mass.name),
         format!("place, {}", units.length.name),
-        "95 % half axes".to_owned(),
+        format!("95 % half axes, {}", units.length.name),
     ];
     let head = head.each_ref().map(String::as_str);
     let mut sections = vec![table_section(

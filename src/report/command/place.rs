@@ -37,7 +37,7 @@ impl Report for Outcome<Placed> {
             };
             unit(word, length).to_owned()
         })?;
-        let sheet = gluing_sheet_md(&job.title, &self.gauges, model);
+        let sheet = gluing_sheet_md(&job.title, &self.gauges, model, length);
         out.write_bytes("gluing_sheet.md", sheet.as_bytes())?;
         out.write("gauges.vtu", |w| gauges_vtu(w, &self.gauges))?;
         let marks = self.gauges.iter().map(placed_mark).collect();

@@ -12,9 +12,9 @@ use crate::recovery::NORMAL_95;
 use crate::report::csv_cell;
 use crate::report::figure::{GaugePoints, agreement};
 use crate::report::page::{Page, Section, figure_section, number, table_section};
-use crate::report::scene::{Mark, scene_of, scene_section};
+use crate::report::scene::{Field, FieldValues, Mark, scene_of, scene_section};
 use crate::report::write_cells_vtu;
-use crate::respond::{Place, ResponseRow};
+use crate::respond::{Place, ResponseRow, von_mises_history};
 use crate::units::factor;
 use std::fmt::Write as _;
 
@@ -147,10 +147,12 @@ fn sections(r: &Responded) -> Vec<Section> {
         let marks = hottest
             .map(|(i, e)| mark_of_row(fields.model(), &r.field.rows[*i], note(e, unit)))
             .collect();
-        out.push(scene_section(
-            "Hot spots on the model",
-            &scene_of(&r.job, fields, marks),
-        ));
+        let mut scene = scene_of(&r.job, fields, marks);
+        let stress = stress_fields(r, fields.model());
+        if !stress.is_empty() {
+            scene.fields = stress;
+        }
+        out.push(scene_section("Hot spots on the model", &scene));
     }
     if !r.check.rows.is_empty() {
         out.extend(check_sections(r));
@@ -180,6 +182,44 @@ fn note(e: &Element, unit: &str) -> String {
 }
 
 /// An element of a row as a mark of the scene, at the middle of its grids.
+/// Von Mises stress of the shells in the state in which some element is hottest, and the largest of all states.
+fn stress_fields(r: &Responded, model: &Model) -> Vec<Field<'static>> {
+    let f = &r.field;
+    let known = f.peaks.iter().filter(|p| p.von_mises.is_finite());
+    let Some(hottest) = known.max_by(|a, b| a.von_mises.total_cmp(&b.von_mises)) else {
+        return Vec::new();
+    };
+    let state = f.states.get(hottest.at..=hottest.at).unwrap_or_default();
+    let field = |name: String, of_row: &dyn Fn(usize) -> Option<f64>| {
+        let mut shells = vec![[f64::NAN; 2]; model.shells.len()];
+        for (i, row) in f.rows.iter().enumerate() {
+            if let Place::Shell { shell, surface } = row.place
+                && let (Some(slot), Some(v)) = (shells.get_mut(shell.us()), of_row(i))
+            {
+                slot[surface.ix()] = v;
+            }
+        }
+        Field {
+            name,
+            unit: r.stress_unit.to_owned(),
+            values: FieldValues::Shells(shells),
+            scale: factor(r.job.units, r.job.report_units.stress),
+        }
+    };
+    let in_state = |i: usize| {
+        let of_row = von_mises_history(f.rows.get(i)?, state);
+        Some(of_row.first()?.1)
+    };
+    let of_all = |i: usize| f.peaks.get(i).map(|p| p.von_mises);
+    let label = state.first().map_or("", |s| &s.label);
+    let mut out = vec![field(format!("von Mises stress, state {label}"), &in_state)];
+    if f.states.len() > 1 {
+        let name = "von Mises stress, largest of all states".to_owned();
+        out.push(field(name, &of_all));
+    }
+    out
+}
+
 fn mark_of_row(model: &Model, row: &ResponseRow, note: String) -> Mark {
     let at: Vec<_> = grids(model, row)
         .iter()

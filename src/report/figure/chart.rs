@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 pub struct Figure {
     /// What it shows, for screen readers and tests.
     pub label: String,
-    /// By choice: name and traces. A single one is drawn without asking.
+    /// By choice: name and traces. A single one is drawn without asking. `ytitle` of a trace says what its axis is where that differs by choice.
     pub choices: Vec<(String, Vec<Value>)>,
     /// Axes.
     pub layout: Value,

@@ -17,47 +17,53 @@ pub struct CountPoint {
     pub sigma: Vec<f64>,
 }
 
+const EFFICIENCY: &str = "efficiency, %";
+
 /// Sigma of every load, by its unit, and efficiency against the number of gauges.
 pub fn curve(points: &[CountPoint], loads: &[(String, String)]) -> Figure {
     let counts: Vec<usize> = points.iter().map(|p| p.gauges).collect();
     let mut units: Vec<&str> = loads.iter().map(|l| l.1.as_str()).collect();
     units.sort_unstable();
     units.dedup();
-    let line = |name: &str, y: Vec<Value>, shown: &str| {
+    let line = |name: &str, y: Vec<Value>, shown: &str, axis: &str| {
         json!({
-            "type": "scatter", "mode": "lines+markers", "name": name, "x": counts, "y": y,
+            "type": "scatter", "mode": "lines+markers", "name": name, "x": counts, "y": y, "ytitle": axis,
             "hovertemplate": format!("%{{x}} gauges: {shown}<extra>{name}</extra>"),
         })
     };
     let mut choices: Vec<(String, Vec<Value>)> = units
         .iter()
         .map(|unit| {
-            let of_unit = (0..loads.len()).filter(|l| loads[*l].1 == *unit);
-            let traces = of_unit.map(|l| {
-                let y = points.iter().map(|p| short(p.sigma[l])).collect();
-                line(&loads[l].0, y, &format!("%{{y:.4}} {unit}"))
-            });
             let name = if unit.is_empty() {
                 "times the set"
             } else {
                 unit
             };
-            (format!("sigma of the loads, {name}"), traces.collect())
+            let axis = format!("sigma of the loads, {name}");
+            let of_unit = (0..loads.len()).filter(|l| loads[*l].1 == *unit);
+            let traces = of_unit.map(|l| {
+                let y = points.iter().map(|p| short(p.sigma[l])).collect();
+                line(&loads[l].0, y, &format!("%{{y:.4}} {unit}"), &axis)
+            });
+            let traces = traces.collect();
+            (axis, traces)
         })
         .collect();
     let percent = |of: &dyn Fn(&CountPoint) -> f64| shorts(points.iter().map(|p| 100.0 * of(p)));
     choices.push((
-        "efficiency, %".into(),
+        EFFICIENCY.into(),
         vec![
             line(
                 "certified, of the best possible",
                 percent(&|p| p.efficiency),
                 "%{y:.4} %",
+                EFFICIENCY,
             ),
             line(
                 "left after the worst loss of a gauge",
                 percent(&|p| p.after_loss),
                 "%{y:.4} %",
+                EFFICIENCY,
             ),
         ],
     ));

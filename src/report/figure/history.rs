@@ -63,8 +63,16 @@ fn bands(trace: &LoadTrace) -> Vec<Value> {
             "hovertemplate": format!("%{{y:.5}} {unit}"),
         })
     };
+    let axis = match unit.as_str() {
+        "" => "times the set",
+        unit => unit,
+    };
     vec![
-        line("below", &|s| s[0] - half, json!({})),
+        line(
+            "below",
+            &|s| s[0] - half,
+            json!({ "ytitle": format!("{}, {axis}", trace.name) }),
+        ),
         line(
             &format!(
                 "95 % interval of a sample: ± {} {unit}",

@@ -51,6 +51,8 @@ fn a_history_spans_the_extremes_with_their_interval_and_leaves_gaps_out() {
         spans: vec![[-3.0, 0.0, 4.0], [f64::NAN; 3], [1.0, 1.0, 1.0]],
     };
     let figure = history(&[trace]);
+    // The axis says what is drawn on it.
+    assert_eq!(figure.choices[0].1[0]["ytitle"], "A<B, kN");
     let of = |k: usize| &figure.choices[0].1[k]["y"];
     // Interval around the extremes, then the extremes, then the mean.
     assert_eq!(*of(0), json!([-4.0, null, 0.0]));

@@ -72,7 +72,7 @@ function axisOf(layout, traces, key) {
   const values = traces.flatMap((t) => t[key] || []);
   const named = said.type === "category" || values.some((v) => typeof v === "string");
   return {
-    names: named ? [...new Set(values)] : null, title: said.title ? said.title.text : "", range: said.range, log: said.type === "log",
+    names: named ? [...new Set(values)] : null, title: said.title ? said.title.text : (traces.find((t) => t[key + "title"]) || {})[key + "title"] || "", range: said.range, log: said.type === "log",
     zero: said.rangemode === "tozero", at: said.tickvals, upward: key === "y", above: said.side === "top",
   };
 }

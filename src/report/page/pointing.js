@@ -25,10 +25,13 @@ function planning(api) {
       const f = plan.faceOf(e);
       if (f < 0) coarse.add(plan.partOf(e)); else paintFaces(f, f + 1, plan.state[e]);
     }
-    // A part that is drawn coarser has a colour where all of its elements are alike.
+    // Of a part that is drawn coarser each vertex has the colour of its elements; one that has none, that of its neighbour.
     for (const n of coarse) {
-      const all = plan.elementsOf(n), first = plan.state[all[0]], p = mesh.parts[n];
-      paintFaces(p.face, p.face + p.nFaces, all.every((e) => plan.state[e] === first) ? first : 0);
+      const p = mesh.parts[n], inks = plan.coarse.get(n).inks(plan.state), none = TINTS[0];
+      for (let c = p.first; c < p.first + p.count; c += 3) {
+        const of = [0, 1, 2].map((k) => inks[mesh.vertexOf[c + k] - p.vertex]), known = of.find((ink) => ink) || none;
+        of.forEach((ink, k) => api.tint.set(tinted ? ink || known : none, 4 * (c + k)));
+      }
     }
     paint.refill(api.faces.tint, api.tint);
     api.request();
@@ -63,19 +66,40 @@ function planning(api) {
       return mesh.radius[f] < 1.5 * pixel && Math.abs(V.dot(normalOf(mesh, f), normalOf(mesh, g))) > 0.7 &&
         Math.hypot(...V.sub(centreOf(mesh, f), centreOf(mesh, g))) <= mesh.radius[f] + mesh.radius[g] + 1.5 * pixel;
     };
-    return { w, h, at, number, visible };
+    // Of elements that are drawn coarser: the middles too. One is seen where what is drawn there is its part, as far away as it is, or where the
+    // drawn face nearest to it is.
+    const spots = new Map();
+    for (const [n, c] of plan.coarse) {
+      const list = new Float32Array(c.middle.length);
+      for (let e = 0; e < list.length / 3; e++) list.set(camera.project(c.middleOf(e)), 3 * e);
+      spots.set(n, list);
+    }
+    const seenCoarse = (n, e) => {
+      const c = plan.coarse.get(n), list = spots.get(n), x = list[3 * e], y = list[3 * e + 1], g = number(x, y);
+      if (g >= 0 && mesh.part[g] === n) {
+        const hit = onFace(mesh, g, ...camera.ray(x, y)) || centreOf(mesh, g);
+        if (Math.hypot(...V.sub(c.middleOf(e), hit)) <= 0.5 * mesh.radius[g] + 1.5 * camera.pixel(list[3 * e + 2])) return true;
+      }
+      const f = c.face[e];
+      return f >= 0 && number(at[3 * f], at[3 * f + 1]) === f;
+    };
+    return { w, h, at, number, visible, spots, seenCoarse };
   }
   function within(view, x0, y0, x1, y1, inside, through) {
     const found = new Set(), shown = mesh.parts.map((_, n) => api.shownPart(n));
     for (let y = Math.max(0, Math.floor(y0)); y <= Math.min(view.h - 1, y1); y++) for (let x = Math.max(0, Math.floor(x0)); x <= Math.min(view.w - 1, x1); x++) {
       const f = inside(x + 0.5, y + 0.5) ? view.number(x, y) : -1;
-      if (f >= 0) found.add(f);
+      if (f < 0) continue;
+      const e = plan.elementOf(f);
+      if (e >= 0) found.add(e); else if (x % 2 === 0 && y % 2 === 0) found.add(plan.elementUnder(f, camera.ray(x + 0.5, y + 0.5)));
     }
-    for (let f = 0; f < mesh.nFaces; f++) {
-      const x = view.at[3 * f], y = view.at[3 * f + 1];
-      if (x >= x0 && x <= x1 && y >= y0 && y <= y1 && view.at[3 * f + 2] > 0 && inside(x, y) && shown[mesh.part[f]] && (through || view.visible(f))) found.add(f);
+    const over = (at, k) => at[k] >= x0 && at[k] <= x1 && at[k + 1] >= y0 && at[k + 1] <= y1 && at[k + 2] > 0 && inside(at[k], at[k + 1]);
+    for (let f = 0; f < mesh.nFaces; f++) if (over(view.at, 3 * f) && shown[mesh.part[f]] && (through || view.visible(f))) found.add(plan.elementOf(f));
+    for (const [n, at] of view.spots) if (shown[n]) for (let e = 0; e < at.length / 3; e++) {
+      if (over(at, 3 * e) && (through || view.seenCoarse(n, e))) found.add(plan.coarse.get(n).first + e);
     }
-    return [...new Set([...found].map(plan.elementOf).filter((e) => e >= 0))];
+    found.delete(-1);
+    return [...found];
   }
 
   let stroke = null;
@@ -227,12 +251,66 @@ function planning(api) {
   api.plan = plan;
 }
 
-// Shells of the parts. Of a part that is drawn as it is, an element is a face; of another one, all of them are all its faces.
+// Items 0 .. by their key, 0 .. n - 1: a list of each key.
+function grouped(keys, n) {
+  const start = new Int32Array(n + 1), list = new Int32Array(keys.length);
+  for (const k of keys) start[k + 1]++;
+  for (let k = 0; k < n; k++) start[k + 1] += start[k];
+  const next = start.slice();
+  keys.forEach((k, i) => { list[next[k]++] = i; });
+  return (k) => list.subarray(start[k], start[k + 1]);
+}
+
+// Elements of a part that is drawn coarser: their middles, the drawn vertex that each goes with, the drawn face nearest to each.
+function coarseOf(mesh, p, first) {
+  const count = p.elements.length, nv = p.grids.length, middle = new Float32Array(3 * count), vertex = new Int32Array(count), face = new Int32Array(count).fill(-1);
+  for (let e = 0; e < count; e++) {
+    vertex[e] = p.middles[4 * e];
+    for (let k = 0; k < 3; k++) middle[3 * e + k] = p.xyz[3 * vertex[e] + k] + p.middles[4 * e + 1 + k] * mesh.middleStep;
+  }
+  const middleOf = (e) => [middle[3 * e], middle[3 * e + 1], middle[3 * e + 2]], corners = new Int32Array(3 * p.nFaces);
+  for (let f = 0; f < p.nFaces; f++) for (let k = 0; k < 3; k++) corners[3 * f + k] = p.faces[4 * f + k];
+  const elementsAt = grouped(vertex, nv), cornersAt = grouped(corners, nv);
+  // How far an element is from a place on a face: what lies off its plane counts three times.
+  const far = (e, f, place) => {
+    const d = V.sub(middleOf(e), place), off = V.dot(d, normalOf(mesh, f));
+    return V.dot(d, d) + 8 * off * off;
+  };
+  for (let e = 0; e < count; e++) {
+    let least = Infinity;
+    for (const c of cornersAt(vertex[e])) {
+      const f = p.face + Math.floor(c / 3), away = far(e, f, centreOf(mesh, f));
+      if (away < least) { least = away; face[e] = f; }
+    }
+  }
+  // The element nearest to a place on a face.
+  const under = (f, place) => {
+    let best = -1, least = Infinity;
+    for (let k = 0; k < 3; k++) for (const e of elementsAt(mesh.faces[4 * f + k] - p.vertex)) {
+      const away = far(e, f, place);
+      if (away < least) { least = away; best = e; }
+    }
+    return best < 0 ? -1 : first + best;
+  };
+  // By vertex the colour of the strongest state among its elements, the fainter the fewer have it; null where it has none.
+  const inks = (state) => {
+    const n = new Uint32Array(4 * nv);
+    for (let e = 0; e < count; e++) n[4 * vertex[e] + state[first + e]]++;
+    return Array.from({ length: nv }, (_, v) => {
+      const of = n.subarray(4 * v, 4 * v + 4), all = of[0] + of[1] + of[2] + of[3], s = of[3] ? 3 : of[2] ? 2 : of[1] ? 1 : 0;
+      return all ? [...TINTS[s].slice(0, 3), TINTS[s][3] * (0.4 + 0.6 * of[s] / all)] : null;
+    });
+  };
+  return { first, middle, middleOf, face, under, inks };
+}
+
+// Shells of the parts. Of a part that is drawn as it is, an element is a face; of another one, it is known by its middle.
 function elementsOf(mesh) {
-  const ids = [], pids = [], of = [], first = new Map(), properties = new Map();
+  const ids = [], pids = [], of = [], first = new Map(), properties = new Map(), coarse = new Map();
   mesh.parts.forEach((p, n) => {
     if (!p.elements) return;
     first.set(n, ids.length);
+    if (!p.whole) coarse.set(n, coarseOf(mesh, p, ids.length));
     for (let e = 0; e < p.elements.length; e++) {
       const pid = p.properties[e];
       if (!properties.has(pid)) properties.set(pid, { name: p.name.startsWith("shells " + pid) ? p.name : "shells " + pid, elements: [] });
@@ -242,10 +320,9 @@ function elementsOf(mesh) {
       of.push(n);
     }
   });
-  const plan = { ids, pids, properties, state: new Uint8Array(ids.length) };
+  const plan = { ids, pids, properties, coarse, state: new Uint8Array(ids.length) };
   plan.all = () => ids.map((_, e) => e);
   plan.partOf = (e) => of[e];
-  plan.elementsOf = (n) => mesh.parts[n].elements.map((_, k) => first.get(n) + k);
   plan.faceOf = (e) => {
     const p = mesh.parts[of[e]];
     return p.whole ? p.face + e - first.get(of[e]) : -1;
@@ -253,6 +330,11 @@ function elementsOf(mesh) {
   plan.elementOf = (f) => {
     const n = mesh.part[f], p = mesh.parts[n];
     return p.elements && p.whole ? first.get(n) + f - p.face : -1;
+  };
+  // The element of a coarser part that is nearest to where a ray meets its face.
+  plan.elementUnder = (f, ray) => {
+    const of = coarse.get(mesh.part[f]);
+    return of ? of.under(f, onFace(mesh, f, ...ray) || centreOf(mesh, f)) : -1;
   };
   return plan;
 }

@@ -28,7 +28,7 @@ function meshOf(data) {
   const place = (steps) => Float32Array.from(steps, (v, i) => data.origin[i % 3] + v * data.step - middle[i % 3]);
   const parts = data.parts.map((p) => ({
     name: p.name, whole: p.whole, xyz: place(unpack(p.points, 3)), faces: unpack(p.faces, 4), grids: unpack(p.grids, 1),
-    elements: p.elements ? unpack(p.elements, 1) : null, properties: p.elements ? unpack(p.properties, 1) : null,
+    elements: p.elements ? unpack(p.elements, 1) : null, properties: p.elements ? unpack(p.properties, 1) : null, middles: p.middles ? unpack(p.middles, 4) : null,
   }));
   let nv = 0, nf = 0, corners = 0;
   for (const p of parts) {
@@ -39,7 +39,7 @@ function meshOf(data) {
     p.count = corners - p.first;
   }
   const m = {
-    middle, parts, nFaces: nf, xyz: new Float32Array(3 * nv), grids: new Int32Array(nv), faces: new Int32Array(4 * nf), part: new Uint16Array(nf),
+    middle, parts, middleStep: data.middle_step, nFaces: nf, xyz: new Float32Array(3 * nv), grids: new Int32Array(nv), faces: new Int32Array(4 * nf), part: new Uint16Array(nf),
     normal: new Float32Array(3 * nf), centre: new Float32Array(3 * nf), radius: new Float32Array(nf), start: new Int32Array(nf + 1), vertexOf: new Int32Array(corners),
     edges: place(unpack(data.edges, 3)), bars: place(unpack(data.bars, 3)),
   };

@@ -120,11 +120,16 @@ fn chart(traces: &[Value], layout: &Value) -> Picture {
         picture.line([left, at], [right, at], "#e6eaef", 0.15);
         picture.word([left - 1.2, at], [1.0, 0.5], &word);
     }
-    let title = |axis: &Value| axis["title"]["text"].as_str().unwrap_or("").to_owned();
+    let title = |axis: &str| {
+        let [of_all, of_choice] = ["axis", "title"].map(|word| format!("{axis}{word}"));
+        let of_choice = || traces.iter().find_map(|t| t[&of_choice].as_str());
+        let title = layout[&of_all]["title"]["text"].as_str().or_else(of_choice);
+        title.unwrap_or_default().to_owned()
+    };
     let below = [(left + right) / 2.0, picture.size[1]];
-    picture.word(below, [0.5, 1.0], &title(&layout["xaxis"]));
+    picture.word(below, [0.5, 1.0], &title("x"));
     let beside = [0.0, (top + bottom) / 2.0];
-    picture.word_upwards(beside, [0.0, 0.5], &title(&layout["yaxis"]));
+    picture.word_upwards(beside, [0.0, 0.5], &title("y"));
     let bars = series.iter().filter(|s| s.kind == Kind::Bars).count();
     let mut bar = 0;
     for s in &series {

@@ -2,10 +2,12 @@
 
 use super::part::{Drawn, Part};
 use crate::model::{Model, Vec3};
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Halvings of the search for the width of a cell.
 const STEPS: usize = 9;
+/// Two unit vectors of a border's grid add up to this where the border turns by 29 degrees: a corner.
+const TURN: f64 = 0.5;
 
 /// The part with `most` triangles or fewer (never none): whole where it can be, else with its grids gathered in cubes as small as will do.
 pub(super) fn coarsened(model: &Model, part: &Part, most: usize) -> Drawn {
@@ -32,10 +34,11 @@ pub(super) fn coarsened(model: &Model, part: &Part, most: usize) -> Drawn {
     // Widths by powers: from a thousandth of the part to a quarter of it.
     let width = |s: f64| size * 0.001 * 250_f64.powf(s);
     let (mut fine, mut wide) = (0.0, 1.0);
-    let mut best = gathered(part, &at, lo, width(wide));
+    let rank = ranks(part, &at);
+    let mut best = gathered(part, &at, &rank, lo, width(wide));
     for _ in 0..STEPS {
         let middle = 0.5 * (fine + wide);
-        let tried = gathered(part, &at, lo, width(middle));
+        let tried = gathered(part, &at, &rank, lo, width(middle));
         if tried.triangles.len() <= most {
             wide = middle;
             best = tried;
@@ -46,27 +49,67 @@ pub(super) fn coarsened(model: &Model, part: &Part, most: usize) -> Drawn {
     best
 }
 
-/// Grids in cubes of width `h`; the one nearest to the middle of its cube's grids stands for them.
-fn gathered(part: &Part, at: &[Vec3], lo: Vec3, h: f64) -> Drawn {
+/// By grid: 0 inside, 1 on the border of the part (a side that is not shared by two faces), 2 at a corner of the border.
+fn ranks(part: &Part, at: &[Vec3]) -> Vec<u8> {
+    let mut sides: HashMap<[u32; 2], usize> = HashMap::new();
+    for (_, f) in &part.faces {
+        for k in 0..4 {
+            let (a, b) = (f[k], f[(k + 1) % 4]);
+            if a != b {
+                *sides.entry([a.min(b), a.max(b)]).or_insert(0) += 1;
+            }
+        }
+    }
+    // Unit vectors along the border, away from each grid: along a straight line they cancel.
+    let mut along = vec![(Vec3::zeros(), false); at.len()];
+    let mut border: Vec<[u32; 2]> = sides
+        .into_iter()
+        .filter(|s| s.1 != 2)
+        .map(|s| s.0)
+        .collect();
+    border.sort_unstable();
+    for [a, b] in border.into_iter().map(|s| s.map(|g| g as usize)) {
+        let way = (at[b] - at[a]).try_normalize(0.0).unwrap_or_default();
+        along[a] = (along[a].0 + way, true);
+        along[b] = (along[b].0 - way, true);
+    }
+    let rank = |(sum, on_border): &(Vec3, bool)| match on_border {
+        false => 0,
+        true if sum.norm() < TURN => 1,
+        true => 2,
+    };
+    along.iter().map(rank).collect()
+}
+
+/// Grids in cubes of width `h`. The one nearest to the middle of its cube's grids of the highest rank stands for all: borders stay where they are,
+/// so that parts that meet are not torn apart.
+fn gathered(part: &Part, at: &[Vec3], rank: &[u8], lo: Vec3, h: f64) -> Drawn {
     let cube = |x: &Vec3| ((x - lo) / h).map(|v| v.floor() as i64);
-    let mut cubes: BTreeMap<[i64; 3], (Vec3, usize)> = BTreeMap::new();
-    for x in at {
-        let c = cubes.entry(cube(x).into()).or_insert((Vec3::zeros(), 0));
-        c.0 += x;
-        c.1 += 1;
+    let mut cubes: BTreeMap<[i64; 3], (Vec3, usize, u8)> = BTreeMap::new();
+    for (x, rank) in at.iter().zip(rank) {
+        let c = cubes.entry(cube(x).into()).or_insert((Vec3::zeros(), 0, 0));
+        if *rank > c.2 {
+            *c = (Vec3::zeros(), 0, *rank);
+        }
+        if *rank == c.2 {
+            c.0 += x;
+            c.1 += 1;
+        }
     }
     let index: BTreeMap<[i64; 3], u32> = cubes.keys().copied().zip(0..).collect();
     let middles: Vec<Vec3> = cubes.values().map(|c| c.0 / c.1 as f64).collect();
     let mut nearest = vec![(f64::INFINITY, 0_u32); middles.len()];
+    let highest: Vec<u8> = cubes.values().map(|c| c.2).collect();
     let vertex_of: Vec<u32> = at
         .iter()
+        .zip(rank)
         .zip(0..)
-        .map(|(x, grid)| {
+        .map(|((x, rank), grid)| {
             let key: [i64; 3] = cube(x).into();
             let v = index.get(&key).copied().unwrap_or(0);
             let distance = (x - middles[v as usize]).norm_squared();
             let n = &mut nearest[v as usize];
-            if distance < n.0 {
+            if *rank == highest[v as usize] && distance < n.0 {
                 *n = (distance, grid);
             }
             v

@@ -5,13 +5,13 @@ use super::pack::packed_scene;
 use super::part::Part;
 use super::pointing::{result, tools};
 use super::skin::{Finest, skin};
-use super::types::{Pointing, Scene};
+use super::types::{Field, FieldValues, Pointing, Scene};
 use super::view::SceneView;
 use crate::report::figure::embedded;
 use crate::report::page::{Block, Section};
 use maud::{Markup, html};
 
-/// The section. Colour: the largest principal strain by magnitude at the surfaces of shells, at the centre of solids.
+/// The section. Colour of strain: the largest principal one by magnitude at the surfaces of shells, at the centre of solids.
 pub fn scene_section(title: &str, scene: &Scene) -> Section {
     let finest = match scene.pointing {
         Pointing::Places(_) => Finest::Always,
@@ -54,7 +54,7 @@ fn switches(scene: &Scene, parts: &[Part]) -> Markup {
     html! {
         div.controls {
             @if !scene.fields.is_empty() {
-                label { "Strain " select data-role="field" {
+                label { (coloured(scene)) " " select data-role="field" {
                     (options(scene.fields.iter().map(|f| f.name.as_str()).collect()))
                     option value="-1" selected[plain] { "off: colour by property" }
                 } }
@@ -94,6 +94,16 @@ fn switches(scene: &Scene, parts: &[Part]) -> Markup {
     }
 }
 
+/// What the colours are.
+fn coloured(scene: &Scene) -> &'static str {
+    let strain = |f: &Field| matches!(f.values, FieldValues::Strain(_));
+    if scene.fields.iter().all(strain) {
+        "Strain"
+    } else {
+        "Stress"
+    }
+}
+
 fn looking(view: &str) -> String {
     match view {
         "iso" => "from a corner".to_owned(),
@@ -108,10 +118,11 @@ fn note(scene: &Scene, parts: &[Part], bytes: usize) -> Markup {
     html! {
         p.muted {
             @if scene.marks.iter().any(|m| m.axes.is_some()) { "Strokes lie along the axes of the gauges: red on the top (Z2), blue on the bottom (Z1) of the element. " }
-            @if !scene.fields.is_empty() { "Colour: the largest principal strain by magnitude, from the centres of the elements. " }
+            @if scene.fields.iter().any(|f| matches!(f.values, FieldValues::Strain(_))) { "Colour: the largest principal strain by magnitude, from the centres of the elements. " }
+            @if scene.fields.iter().any(|f| matches!(f.values, FieldValues::Shells(_))) { "Colour: " (scene.fields.first().map_or("", |f| f.name.as_str())) ", from the centres of the elements. " }
             @if !scene.arrows.is_empty() { "Arrows end where the load acts: green forces, violet moments (right-hand rule); a length compares within a kind. " }
             @if !whole { "The picture is coarser than the model, of the strains drawn together the largest. Nothing was computed on it. "
-                @if matches!(scene.pointing, Pointing::Places(_)) { "Brush and box take elements of the properties that are drawn as they are; the others are picked as a whole. " }
+                @if matches!(scene.pointing, Pointing::Places(_)) { "Brush and box take its elements all the same, by their middles. " }
             }
             span data-role="size" { (drawn) " triangles for " (all) " faces, " (bytes.div_ceil(1000)) " kB of this page." }
         }

@@ -1,6 +1,6 @@
 //! The scene of a job: the job's unit loads as strain and arrows, gauges, recovered loads.
 
-use super::types::{Arrow, ArrowSet, Field, Mark, Places, Pointing, Scene, Twist};
+use super::types::{Arrow, ArrowSet, Field, FieldValues, Mark, Places, Pointing, Scene, Twist};
 use crate::app::job::{Job, LoadActs};
 use crate::app::place::PlacedGauge;
 use crate::app::strain::{Fields, LoadUnits, Prepared, load_units};
@@ -84,7 +84,7 @@ pub fn fields_of<'a>(job: &Job, fields: &'a Fields) -> Vec<Field<'a>> {
             } else {
                 format!("µε per {}", u.name)
             },
-            case: l.case,
+            values: FieldValues::Strain(l.case),
             scale: 1e6 / l.applied / u.factor,
         })
         .collect()
@@ -200,7 +200,7 @@ pub fn scene_of_solution<'a>(
     let fields = solution.cases.iter().take(MOST_FIELDS).map(|c| Field {
         name: name(c.subcase, &c.label),
         unit: "µε".into(),
-        case: c,
+        values: FieldValues::Strain(c),
         scale: 1e6,
     });
     let arrows = cases.iter().take(MOST_FIELDS).flat_map(|case| {

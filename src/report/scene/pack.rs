@@ -11,6 +11,8 @@ use serde_json::{Value, json};
 
 /// Steps along the longest side of what is drawn: a millionth of it is finer than a pixel, and than a hand glues.
 const GRAIN: f64 = 1_048_576.0;
+/// Steps of the raster in one of the middles of shells that are picked but not drawn one by one: a sixteen thousandth of the longest side.
+const MIDDLE: f64 = 64.0;
 
 /// Where points are counted from, and in what steps.
 struct Raster {
@@ -56,6 +58,7 @@ pub(super) fn packed_scene(
         "box": [three(lo), three(hi)],
         "origin": [lo.x, lo.y, lo.z],
         "step": raster.step,
+        "middle_step": MIDDLE * raster.step,
         "length": scene.length,
         "steps": STEPS,
         "parts": parts.iter().map(|p| part(scene, p, &raster)).collect::<Vec<_>>(),
@@ -106,8 +109,32 @@ fn part(scene: &Scene, p: &Part, raster: &Raster) -> Value {
         let column = |k: usize| packed_deltas(&shells.iter().map(|s| s[k]).collect::<Vec<_>>(), 1);
         out["elements"] = column(0);
         out["properties"] = column(1);
+        if !p.drawn.whole {
+            out["middles"] = middles(model, p, MIDDLE * raster.step);
+        }
     }
     out
+}
+
+/// Where the faces of a part are that is drawn coarser: the drawn vertex nearest to the middle, and the way from there in steps.
+fn middles(model: &Model, p: &Part, step: f64) -> Value {
+    let at = |grid: u32| {
+        let grid = model.grids.get(p.grids[grid as usize].us());
+        grid.map_or_else(Vec3::zeros, |g| g.x)
+    };
+    let row = |corners: &[u32; 4]| {
+        let n = if corners[2] == corners[3] { 3 } else { 4 };
+        let corners = &corners[..n];
+        let middle = corners.iter().map(|g| at(*g)).sum::<Vec3>() / n as f64;
+        let way = |v: u32| middle - at(p.drawn.vertices[v as usize]);
+        let vertices = corners.iter().map(|g| p.drawn.vertex_of[*g as usize]);
+        let nearest = vertices.min_by(|a, b| way(*a).norm().total_cmp(&way(*b).norm()));
+        let vertex = nearest.unwrap_or(0);
+        let [x, y, z] = (way(vertex) / step).map(|v| v.round() as i64).data.0[0];
+        [i64::from(vertex), x, y, z]
+    };
+    let rows: Vec<i64> = p.faces.iter().flat_map(|f| row(&f.1)).collect();
+    packed_deltas(&rows, 4)
 }
 
 /// Ids of a shell and of its property.
@@ -142,7 +169,7 @@ fn mark(m: &Mark) -> Value {
 }
 
 fn field(model: &Model, f: &Field, parts: &[Part]) -> Value {
-    let values = Values::of(model, f.case);
+    let values = Values::of_field(model, &f.values);
     let by_part: Vec<[Vec<f64>; 2]> = parts.iter().map(|p| values.on(p)).collect();
     let all = by_part.iter().flatten().flatten();
     let most = all

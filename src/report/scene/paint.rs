@@ -1,17 +1,31 @@
-//! Strain as numbers at the vertices that are drawn.
+//! Strain and stress as numbers at the vertices that are drawn.
 
 use super::part::{Owner, Part};
+use super::types::FieldValues;
 use crate::fe::CaseResult;
 use crate::fe::strain_tensor::{largest_in_plane, largest_principal};
 use crate::model::Model;
 
-/// Strain by element: the largest principal one by magnitude, signed, at bottom and top; `NaN` where there is none.
+/// Numbers by element at bottom and top, of strain the largest principal one by magnitude, signed; `NaN` where there is none.
 pub(super) struct Values {
     shells: Vec<[f64; 2]>,
     solids: Vec<[f64; 2]>,
 }
 
 impl Values {
+    /// Of a field.
+    pub(super) fn of_field(model: &Model, values: &FieldValues) -> Self {
+        match values {
+            FieldValues::Strain(case) => Self::of(model, case),
+            FieldValues::Shells(of_shells) => {
+                let mut shells = of_shells.clone();
+                shells.resize(model.shells.len(), [f64::NAN; 2]);
+                let solids = vec![[f64::NAN; 2]; model.solids.len()];
+                Self { shells, solids }
+            }
+        }
+    }
+
     /// Of a load case: shells in their plane, solids at their centre (both sides alike).
     pub(super) fn of(model: &Model, case: &CaseResult) -> Self {
         let mut shells = vec![[f64::NAN; 2]; model.shells.len()];

@@ -119,17 +119,26 @@ impl Mark {
     }
 }
 
-/// Strain of a load case: `strain * scale` in `unit`.
+/// What colours the model: `values * scale` in `unit`.
 #[derive(Clone, Debug)]
 pub struct Field<'a> {
     /// Name.
     pub name: String,
     /// Unit of the numbers shown.
     pub unit: String,
-    /// Strain.
-    pub case: &'a CaseResult,
-    /// Number shown per strain.
+    /// Strain, or numbers by element.
+    pub values: FieldValues<'a>,
+    /// Number shown per value.
     pub scale: f64,
+}
+
+/// Where the numbers of a field come from.
+#[derive(Clone, Debug)]
+pub enum FieldValues<'a> {
+    /// The largest principal strain of a load case, by magnitude.
+    Strain(&'a CaseResult),
+    /// Of every shell, at bottom and top; `NaN` where there is none.
+    Shells(Vec<[f64; 2]>),
 }
 
 /// Force or moment.

@@ -87,7 +87,14 @@ fn left_out(answer: &Calibrated) -> Section {
     let note = "Each run recovered by what the other runs taught. Distance of the run in sigmas before the factor.";
     table_section(
         "Runs left out",
-        &["run", "load", "known", "recovered", "unit", "distance"],
+        &[
+            "run",
+            "load",
+            "known",
+            "recovered",
+            "unit",
+            "distance, sigma",
+        ],
         &rows,
         note,
     )

@@ -45,10 +45,10 @@ pub fn strains_page(title: &str, model: &Model, solution: &Solution, findings: &
             "type",
             "place",
             "surface",
-            "largest, any direction",
-            "exx",
-            "eyy",
-            "gxy",
+            "largest in any direction, µε",
+            "exx, µε",
+            "eyy, µε",
+            "gxy, µε",
         ];
         sections.push(Section::new(
             format!("Subcase {}: largest strain", case.subcase),

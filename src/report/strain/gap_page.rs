@@ -43,7 +43,7 @@ pub fn reconcile_page(
             Block::Note("Root mean square over the held-out runs: before and after the named effects; stroke: the floor, what noise and stated uncertainty leave.".into()),
             Block::Folded {
                 summary: format!("{} gauges, µε rms", by_channel.len()),
-                blocks: vec![Block::table(&["gauge", "before", "after", "floor"], listed.collect())],
+                blocks: vec![Block::table(&["gauge", "before, µε", "after, µε", "floor, µε"], listed.collect())],
             },
         ],
     ));

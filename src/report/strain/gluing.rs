@@ -7,35 +7,47 @@ use crate::model::{Model, Vec3};
 use crate::placement::Role;
 use crate::report::page::{Block, Section};
 
-const FRAME: &str = "Positions and directions in the basic frame and in the model's units; the side is the one the arrow `outward` leaves.";
+const FRAME: &str =
+    "Positions and directions in the basic frame; the side is the one the arrow `outward` leaves.";
 const STRAIN: &str =
     "Strain is what the expected loads add up to: choose the amplifier's range above it.";
 const BUDGETS: &str =
     "Budgets are the errors of angle and place that move some load by 5 % of its expected size.";
 const CORNERS: &str = "Distance of each gauge from the corners of its element (grid: distance):";
 
-const HEAD: [&str; 12] = [
-    "gauge",
-    "element",
-    "side",
-    "position",
-    "from",
-    "axis",
-    "outward",
-    "angle seen, deg",
-    "strain, microstrain",
-    "wiring",
-    "budget, deg",
-    "budget, length",
-];
+/// What a column holds, with the unit of length where the deck says it.
+pub(super) fn in_length(word: &str, length: &str) -> String {
+    match length {
+        "" => word.to_owned(),
+        unit => format!("{word}, {unit}"),
+    }
+}
 
-/// The gluing sheet in markdown.
-pub fn gluing_sheet_md(title: &str, placed: &[PlacedGauge], model: &Model) -> String {
+fn head(length: &str) -> [String; 12] {
+    [
+        "gauge".to_owned(),
+        "element".to_owned(),
+        "side".to_owned(),
+        in_length("position", length),
+        in_length("from", length),
+        "axis".to_owned(),
+        "outward".to_owned(),
+        "angle seen, deg".to_owned(),
+        "strain, microstrain".to_owned(),
+        "wiring".to_owned(),
+        "budget, deg".to_owned(),
+        in_length("budget", length),
+    ]
+}
+
+/// The gluing sheet in markdown; `length` is the model's unit.
+pub fn gluing_sheet_md(title: &str, placed: &[PlacedGauge], model: &Model, length: &str) -> String {
+    let head = head(length);
     let mut t = format!("# Gluing sheet: {title}\n\n{FRAME}\n{STRAIN}\n\n{BUDGETS}\n\n");
     t.push_str(&format!(
         "| {} |\n|{}\n",
-        HEAD.join(" | "),
-        "---|".repeat(HEAD.len())
+        head.join(" | "),
+        "---|".repeat(head.len())
     ));
     for p in placed {
         t.push_str(&format!("| {} |\n", row(p).join(" | ")));
@@ -48,7 +60,9 @@ pub fn gluing_sheet_md(title: &str, placed: &[PlacedGauge], model: &Model) -> St
 }
 
 /// The same as a part of a report.
-pub(super) fn gluing_section(placed: &[PlacedGauge], model: &Model) -> Section {
+pub(super) fn gluing_section(placed: &[PlacedGauge], model: &Model, length: &str) -> Section {
+    let head = head(length);
+    let head: Vec<&str> = head.iter().map(String::as_str).collect();
     let far = |p: &PlacedGauge| vec![p.gauge.name.clone(), corners(model, p)];
     let text = |t: &str| Block::Text(t.to_owned());
     Section::new(
@@ -57,10 +71,10 @@ pub(super) fn gluing_section(placed: &[PlacedGauge], model: &Model) -> Section {
             text(FRAME),
             text(STRAIN),
             text(BUDGETS),
-            Block::table(&HEAD, placed.iter().map(row).collect()),
+            Block::table(&head, placed.iter().map(row).collect()),
             text(CORNERS),
             Block::table(
-                &["gauge", "corners of its element"],
+                &["gauge", &in_length("corners of its element", length)],
                 placed.iter().map(far).collect(),
             ),
         ],

@@ -1,6 +1,6 @@
 //! The pages of `sensitivity`, `place` and `recover`.
 
-use super::gluing::gluing_section;
+use super::gluing::{gluing_section, in_length};
 use crate::app::place::PlacedGauge;
 use crate::finding::Finding;
 use crate::report::figure::{
@@ -90,13 +90,14 @@ pub fn place_page(
             "One standard deviation of each load, as the stated noise makes it; efficiency is certified against the best possible layout of that many gauges.",
         ));
     }
+    let [x, y, z] = ["x", "y", "z"].map(|axis| in_length(axis, scene.length));
     let head = [
         "gauge",
         "element",
         "side",
-        "x",
-        "y",
-        "z",
+        x.as_str(),
+        y.as_str(),
+        z.as_str(),
         "angle, deg",
         "seen, deg",
         "leverage",
@@ -105,11 +106,11 @@ pub fn place_page(
     let rows: Vec<Vec<String>> = placed.iter().map(placed_row).collect();
     sections.push(table_section("Gauges", &head, &rows, PLACED));
     sections.push(sensitivity_section(s));
-    sections.push(gluing_section(placed, scene.model));
+    sections.push(gluing_section(placed, scene.model, scene.length));
     Page::new(title, "Gauge layout", findings, sections)
 }
 
-const PLACED: &str = "Places in the basic frame, in the model's length; angles from the x axis of the element, and as seen on that side; strain: the sum under the expected loads.";
+const PLACED: &str = "Places in the basic frame; angles from the x axis of the element, and as seen on that side; strain: the sum under the expected loads.";
 
 fn placed_row(p: &PlacedGauge) -> Vec<String> {
     let x = p.gauge.position;

@@ -30,7 +30,7 @@ pub fn identify_page(
     sections.push(Section::new("Fit", fit(found)));
     sections.push(Section::new(
         "Wheel force",
-        vec![plots(histories, "time, s", "force", Scale::Linear)],
+        vec![plots(histories, "time, s", "force, N", Scale::Linear)],
     ));
     let rows = chassis.iter().map(|f| {
         let sizes = [rms(&f.by_mass), rms(&f.by_springs), f.difference()].map(number);
@@ -38,13 +38,18 @@ pub fn identify_page(
     });
     sections.push(table_section(
         "Chassis force, RMS in the band",
-        &["body", "by mass", "by springs", "difference"],
+        &["body", "by mass, N", "by springs, N", "difference, N"],
         &rows.collect::<Vec<Vec<String>>>(),
         "By mass: inertia times acceleration. By springs: what springs and dampers pass on. Either may be wrong by their difference.",
     ));
     sections.push(Section::new(
         "Spectra",
-        vec![plots(spectra, "frequency, Hz", "density", Scale::LogY)],
+        vec![plots(
+            spectra,
+            "frequency, Hz",
+            "density of force, N²/Hz",
+            Scale::LogY,
+        )],
     ));
     sections.push(restoring_section(restoring));
     Page::new(

@@ -63,6 +63,6 @@ pub fn restoring_curves(found: &Identification, motion: &Motion) -> Vec<Curve> {
 pub fn restoring_section(curves: &[Curve]) -> Section {
     Section::new(
         "Restoring force over stretch (measured: what the motion asks for)",
-        vec![plots(curves, "stretch", "force", Scale::Linear)],
+        vec![plots(curves, "stretch, m", "force, N", Scale::Linear)],
     )
 }
