@@ -50,7 +50,8 @@ fn task(wrong: usize, offset: [f64; 3], gain: f64, seed: u64) -> Task {
             row
         })
         .collect();
-    let runs = pushes().iter().enumerate().map(|(i, f)| KnownRun {
+    let pushes = pushes();
+    let runs = pushes.iter().enumerate().map(|(i, f)| KnownRun {
         run: format!("R{i}"),
         strain: truth
             .iter()
