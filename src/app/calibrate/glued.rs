@@ -10,15 +10,12 @@ use crate::gauge::{CornerRows, Drawn, Offset, centre, reading};
 use crate::linalg::Matrix;
 use crate::model::Model;
 use crate::sensitivity::LoadCaseOf;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// Sd of the tolerance over which a gauge may be looked for.
 const REACH: f64 = 6.0;
 
-/// Half step of the central difference in the angle, radians: the change of a tensor's component over 5 degrees to each side is straight to
-/// half a per cent.
-const ANGLE_STEP: f64 = 5.0 * std::f64::consts::PI / 180.0;
-/// Half step of those in place over the reach of a gauge: within its element and the next.
+/// Half step of the central differences in place over the reach of a gauge: within its element and the next.
 const PLACE_STEP: f64 = 0.5;
 
 /// The job's gauges on its model, free to move.
@@ -141,7 +138,7 @@ pub(super) fn off_drawing(job: &Job, prepared: &Prepared) -> Result<Option<OffDr
     };
     let tolerance = GlueTolerance {
         position: reach,
-        angle_rad: ANGLE_STEP,
+        angle_rad: 0.0,
     };
     let sites = Sites::of(job, prepared, tolerance)?;
     let (n, k) = prepared.sensitivity.values.shape();
@@ -158,9 +155,10 @@ pub(super) fn off_drawing(job: &Job, prepared: &Prepared) -> Result<Option<OffDr
             let (a, b) = (sites.row(g, from)?, sites.row(g, to)?);
             Some(b.iter().zip(&a).map(|(b, a)| (b - a) / span).collect())
         };
-        let (a, x) = (ANGLE_STEP, PLACE_STEP * reach);
+        // A reading is c + a cos(2x) + b sin(2x) of the angle x: 45 degrees either way give its derivative 2 b exactly.
+        let (a, x) = (FRAC_PI_4, PLACE_STEP * reach);
         let changes = [
-            between([0.0, 0.0, -a], [0.0, 0.0, a], 2.0 * a),
+            between([0.0, 0.0, -a], [0.0, 0.0, a], 1.0),
             between([0.0; 3], [0.0, 0.0, FRAC_PI_2], 1.0),
             between([-x, 0.0, 0.0], [x, 0.0, 0.0], 2.0 * x),
             between([0.0, -x, 0.0], [0.0, x, 0.0], 2.0 * x),
