@@ -205,6 +205,11 @@ const GLUED: [[f64; 3]; 6] = [
 
 /// A job of the strip with gauges off their drawing by `share` of [`GLUED`].
 fn strip_job(share: f64) -> String {
+    strip_job_with(&GLUED.map(|off| off.map(|v| share * v)))
+}
+
+/// A job of the strip with gauges off their drawing.
+fn strip_job_with(offsets: &[[f64; 3]; 6]) -> String {
     use std::fmt::Write;
     let mut job = String::from("units = \"mm-t-s\"\n[model]\ndeck = \"strip.bdf\"\n");
     for (name, component) in [
@@ -218,8 +223,8 @@ fn strip_job(share: f64) -> String {
             "[[load]]\nname = \"{name}\"\ngrid = 9001\ncomponent = \"{component}\"\n"
         );
     }
-    for (g, ([x, y, deg], off)) in DRAWN.iter().zip(GLUED).enumerate() {
-        let [along, across, turned] = off.map(|v| share * v);
+    for (g, ([x, y, deg], off)) in DRAWN.iter().zip(offsets).enumerate() {
+        let [along, across, turned] = off;
         let (s, c) = deg.to_radians().sin_cos();
         let (x, y) = (x + along * c - across * s, y + along * s + across * c);
         let _ = write!(
@@ -242,14 +247,12 @@ fn sensitivity(folder: &Path, job: &str, out: &str) -> Vec<Vec<f64>> {
     text.lines().skip(1).map(row).collect()
 }
 
-#[test]
-fn gauges_are_found_where_they_were_glued_and_their_table_makes_the_true_s() {
-    use std::fmt::Write;
-    let folder = scratch("calibrate-as-glued");
-    std::fs::write(folder.join("strip.bdf"), strip()).unwrap();
-    let truth = sensitivity(&folder, &strip_job(1.0), "glued");
-    let drawn = sensitivity(&folder, &strip_job(0.0), "drawn");
-    // Some 300 microstrain at the hottest gauge of each load; noise of 1 microstrain, written here.
+/// Numbers of standard deviation 1.
+const NOISE: [f64; 9] = [0.7, -1.2, 0.3, 1.1, -0.5, -0.9, 1.4, 0.2, -1.0];
+
+/// Strain and known loads of six pushes by the rows `truth`: the sizes of the loads, some 300 microstrain each at its hottest gauge. Noise of 1
+/// microstrain, written here.
+fn write_pushes(folder: &Path, truth: &[Vec<f64>]) -> [f64; 4] {
     let hot = |l: usize| truth.iter().map(|r| r[l].abs()).fold(0.0, f64::max);
     let sizes: [f64; 4] = std::array::from_fn(|l| 300.0 / hot(l));
     let pushes: [[f64; 4]; 6] = [
@@ -260,7 +263,6 @@ fn gauges_are_found_where_they_were_glued_and_their_table_makes_the_true_s() {
         [1.0, -1.0, 0.0, 0.5],
         [-0.5, 0.5, 0.5, 1.0],
     ];
-    let noise = [0.7, -1.2, 0.3, 1.1, -0.5, -0.9, 1.4, 0.2, -1.0];
     let mut strain = "run,G0,G1,G2,G3,G4,G5\n".to_owned();
     let mut runs = "run,bend,side,pull,twist\n".to_owned();
     for (p, push) in pushes.iter().enumerate() {
@@ -269,12 +271,63 @@ fn gauges_are_found_where_they_were_glued_and_their_table_makes_the_true_s() {
         let _ = write!(strain, "P{p}");
         for (g, row) in truth.iter().enumerate() {
             let e: f64 = row.iter().zip(&f).map(|(s, f)| s * f).sum();
-            let _ = write!(strain, ",{}", e + noise[(5 * p + 2 * g) % 9]);
+            let _ = write!(strain, ",{}", e + NOISE[(5 * p + 2 * g) % 9]);
         }
         strain += "\n";
     }
     std::fs::write(folder.join("strain.csv"), strain).unwrap();
     std::fs::write(folder.join("runs.csv"), runs).unwrap();
+    sizes
+}
+
+/// Without a stated tolerance: rows are the drawing's, and one gauge of the strip is turned, displaced, has another gain, or nothing.
+#[test]
+fn a_turned_gauge_is_told_from_a_gain_where_a_model_stands_behind_s() {
+    let folder = scratch("calibrate-turned");
+    std::fs::write(folder.join("strip.bdf"), strip()).unwrap();
+    let job = strip_job(0.0)
+        + "[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 1.0\n[runs]\nfile = \"runs.csv\"\nunits = { force = \"N\", moment = \"N mm\" }\n\
+           [calibration]\nmodel_uncertainty_rel = 0.02\n";
+    let path = folder.join("job.toml");
+    for (name, gauge, off, gain, wanted) in [
+        ("clean", 0, [0.0; 3], 1.0, "none"),
+        ("turned", 0, [0.0, 0.0, 12.0], 1.0, "angle"),
+        ("turned-45", 2, [0.0, 0.0, -15.0], 1.0, "angle"),
+        ("moved", 1, [0.0, 20.0, 0.0], 1.0, "place"),
+        ("gain", 0, [0.0; 3], 0.7, "gain"),
+        ("gain-45", 3, [0.0; 3], 1.4, "gain"),
+    ] {
+        let mut offsets = [[0.0; 3]; 6];
+        offsets[gauge] = off;
+        let mut truth = sensitivity(&folder, &strip_job_with(&offsets), name);
+        // Off by 2 % entry by entry besides, as a model is.
+        for (g, row) in truth.iter_mut().enumerate() {
+            let own = if g == gauge { gain } else { 1.0 };
+            for (l, s) in row.iter_mut().enumerate() {
+                *s *= own * (1.0 + 0.02 * NOISE[(4 * g + 7 * l) % 9]);
+            }
+        }
+        write_pushes(&folder, &truth);
+        std::fs::write(&path, &job).unwrap();
+        let (code, result, said) = run("calibrate", &path, &folder.join("out"));
+        assert_eq!(code, Some(0), "{said}");
+        for g in 0..6 {
+            let word = &result["calibration"]["gauges"][g]["looks_like"];
+            let wanted = if g == gauge { wanted } else { "none" };
+            assert_eq!(word, wanted, "{name}, G{g}: {result}");
+        }
+        // Where it sits is asked for by a tolerance alone.
+        assert!(result["calibration"]["gauges"][gauge]["as_glued"].is_null());
+    }
+}
+
+#[test]
+fn gauges_are_found_where_they_were_glued_and_their_table_makes_the_true_s() {
+    let folder = scratch("calibrate-as-glued");
+    std::fs::write(folder.join("strip.bdf"), strip()).unwrap();
+    let truth = sensitivity(&folder, &strip_job(1.0), "glued");
+    let drawn = sensitivity(&folder, &strip_job(0.0), "drawn");
+    let sizes = write_pushes(&folder, &truth);
     let job = strip_job(0.0)
         + "[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 1.0\n[runs]\nfile = \"runs.csv\"\nunits = { force = \"N\", moment = \"N mm\" }\n\
            [calibration]\nmodel_uncertainty_rel = 0.001\nposition_tolerance = 5.0\nangle_tolerance_deg = 3.0\n";

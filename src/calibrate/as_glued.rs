@@ -81,6 +81,7 @@ pub fn calibrate_as_glued(
         task.model = Some(ModelPrior {
             values,
             moves: moves.collect(),
+            off_drawing: drawn.off_drawing.clone(),
             uncertainty_rel: drawn.uncertainty_rel,
         });
         let calibration = calibrate(&task)?;

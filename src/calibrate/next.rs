@@ -4,6 +4,7 @@ use super::types::Calibration;
 use crate::linalg::spd;
 use crate::recovery::{ErrorModel, Readings, estimate};
 use crate::sensitivity::{Sensitivity, Uncertainty};
+use rayon::prelude::*;
 
 /// A load that could be applied, with what it would buy.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,9 +39,12 @@ pub fn next_runs(calibration: &Calibration, noise: f64, sizes: &[f64]) -> Vec<Ne
     if k > 1 {
         candidates.push(sizes.to_vec());
     }
+    let before: Vec<f64> = (0..k)
+        .map(|l| sigma(s, noise, sizes, l, &strain_covariance(s, known, sizes, l)))
+        .collect();
     let mut out: Vec<NextRun> = candidates
-        .iter()
-        .filter_map(|f| tried(s, known, noise, f, sizes))
+        .par_iter()
+        .filter_map(|f| tried(s, known, noise, f, sizes, &before))
         .collect();
     out.sort_by(|a, b| b.information.total_cmp(&a.information));
     out
@@ -52,13 +56,15 @@ fn tried(
     noise: f64,
     f: &[f64],
     sizes: &[f64],
+    before: &[f64],
 ) -> Option<NextRun> {
     let (n, k) = s.values.shape();
     let order = n * k;
     let mut own = Uncertainty {
         covariance: Vec::new(),
-        scale: 1.0,
-        ..known.clone()
+        scatter: known.scatter.clone(),
+        mean_square: known.mean_square.clone(),
+        ..*known
     }
     .strain_covariance(n, f);
     for g in 0..n {
@@ -91,23 +97,25 @@ fn tried(
     let lower = spd::cholesky(&total, n)?;
     let information = 0.5 * (spd::log_det(&lower, n) - spd::log_det(&spd::cholesky(&own, n)?, n));
     let root = spd::inverse_lower(&lower, n);
-    let mut after = s.clone();
-    let mut covariance = known.covariance.clone();
-    for i in 0..n {
-        let mut row = vec![0.0; order];
-        for (j, column) in columns.iter().enumerate().take(i + 1) {
-            let w = root[i * n + j];
-            row.iter_mut().zip(column).for_each(|(r, c)| *r += w * c);
-        }
-        spd::add_outer(&mut covariance, &row, -1.0);
-    }
-    after.uncertainty = Some(Uncertainty {
-        covariance,
-        ..known.clone()
-    });
+    // Rows of L^-1 A V: the covariance of S after the run is V less the sum of their squares.
+    let rows: Vec<Vec<f64>> = (0..n)
+        .map(|i| {
+            let mut row = vec![0.0; order];
+            for (j, column) in columns.iter().enumerate().take(i + 1) {
+                let w = root[i * n + j];
+                row.iter_mut().zip(column).for_each(|(r, c)| *r += w * c);
+            }
+            row
+        })
+        .collect();
     let (mut load, mut best, mut sigmas) = (0, 0.0, (f64::NAN, f64::NAN));
-    for l in 0..k {
-        let (before, then) = (sigma(s, noise, sizes, l), sigma(&after, noise, sizes, l));
+    for (l, &before) in before.iter().enumerate() {
+        let mut after = strain_covariance(s, known, sizes, l);
+        for row in &rows {
+            let of_load: Vec<f64> = (0..n).map(|g| sizes[l] * row[g * k + l]).collect();
+            spd::add_outer(&mut after, &of_load, -1.0);
+        }
+        let then = sigma(s, noise, sizes, l, &after);
         let gain = before / then;
         if gain > best {
             (load, best, sigmas) = (l, gain, (before, then));
@@ -122,9 +130,42 @@ fn tried(
     })
 }
 
-/// Standard deviation of load `l`, recovered where it acts at its size and no other.
-fn sigma(s: &Sensitivity, noise: f64, sizes: &[f64], l: usize) -> f64 {
-    let size = sizes.get(l).copied().unwrap_or(0.0);
+/// Covariance of the strain that load `l` at its size makes, `n x n`: scatter, and what its column of S is uncertain by.
+fn strain_covariance(s: &Sensitivity, known: &Uncertainty, sizes: &[f64], l: usize) -> Vec<f64> {
+    let (n, k) = s.values.shape();
+    let (order, square) = (n * k, sizes[l] * sizes[l]);
+    let q2 = square * known.mean_square.get(l * k + l).copied().unwrap_or(0.0);
+    let entry = |i: usize| {
+        let at = (i / n * k + l) * order + i % n * k + l;
+        let of_s = known.covariance.get(at).copied().unwrap_or(0.0);
+        square * of_s + q2 * known.scatter.get(i).copied().unwrap_or(0.0)
+    };
+    (0..n * n).map(entry).collect()
+}
+
+/// Standard deviation of load `l`, recovered where it acts at its size and no other; `covariance` is that of its strain, noise left out.
+fn sigma(s: &Sensitivity, noise: f64, sizes: &[f64], l: usize, covariance: &[f64]) -> f64 {
+    let Some(known) = &s.uncertainty else {
+        return f64::NAN;
+    };
+    let size = sizes[l];
+    // Scatter of this loading, in place of scatter of all.
+    let k = sizes.len();
+    let q2 = size * size * known.mean_square.get(l * k + l).copied().unwrap_or(0.0);
+    if !(q2 > 0.0) {
+        return f64::NAN;
+    }
+    let at_its_size = Sensitivity {
+        gauges: s.gauges.clone(),
+        loads: s.loads.clone(),
+        values: s.values.clone(),
+        uncertainty: Some(Uncertainty {
+            covariance: Vec::new(),
+            scatter: covariance.iter().map(|c| c / q2).collect(),
+            mean_square: known.mean_square.clone(),
+            ..*known
+        }),
+    };
     let readings = Readings {
         run: String::new(),
         strain: s.values.column(l).iter().map(|v| v * size).collect(),
@@ -134,5 +175,5 @@ fn sigma(s: &Sensitivity, noise: f64, sizes: &[f64], l: usize) -> f64 {
         noise,
         model_rel: 0.0,
     };
-    estimate(s, &readings, errors).estimate.sigma(l)
+    estimate(&at_its_size, &readings, errors).estimate.sigma(l)
 }

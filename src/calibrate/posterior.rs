@@ -33,6 +33,9 @@ pub(super) fn solve(prior: &[RowPrior], equations: &[Equation]) -> Option<Poster
     let n = prior.len();
     let k = prior.first().map_or(0, |p| p.mean.len());
     let order = n * k;
+    if equations.iter().all(Equation::is_by_gauge) {
+        return solve_by_gauge(prior, equations);
+    }
     let mut information = vec![0.0; order * order];
     let mut right = vec![0.0; order];
     for (g, row) in prior.iter().enumerate() {
@@ -75,6 +78,58 @@ pub(super) fn solve(prior: &[RowPrior], equations: &[Equation]) -> Option<Poster
         mean,
         covariance,
     })
+}
+
+/// As [`solve`] where no errors go across gauges: each row by itself.
+fn solve_by_gauge(prior: &[RowPrior], equations: &[Equation]) -> Option<Posterior> {
+    let n = prior.len();
+    let k = prior.first().map_or(0, |p| p.mean.len());
+    let order = n * k;
+    let mut rows: Vec<(Vec<f64>, Vec<f64>)> = Vec::with_capacity(n);
+    for row in prior {
+        let inverse = Precision::of(&row.covariance, k)?;
+        let information = (0..k * k).map(|i| inverse.entry(i / k, i % k)).collect();
+        rows.push((information, inverse.apply(&row.mean)));
+    }
+    for e in equations {
+        let m = e.gauges.len();
+        for (i, (&g, y)) in e.gauges.iter().zip(&e.y).enumerate() {
+            let variance = e.covariance[i * m + i];
+            if variance.is_nan() || variance <= 0.0 {
+                return None;
+            }
+            let (information, right) = rows.get_mut(g)?;
+            spd::add_outer(information, &e.phi, 1.0 / variance);
+            for (slot, p) in right.iter_mut().zip(&e.phi) {
+                *slot += p * y / variance;
+            }
+        }
+    }
+    let mut out = Posterior {
+        n,
+        k,
+        mean: Vec::with_capacity(order),
+        covariance: vec![0.0; order * order],
+    };
+    for (g, (information, right)) in rows.iter().enumerate() {
+        let found = Precision::of(information, k)?;
+        out.mean.extend(found.apply(right));
+        for l in 0..k {
+            for m in 0..k {
+                out.covariance[(g * k + l) * order + g * k + m] = found.entry(l, m);
+            }
+        }
+    }
+    Some(out)
+}
+
+impl Equation {
+    /// Whether the errors of its readings are independent of each other.
+    fn is_by_gauge(&self) -> bool {
+        let step = self.gauges.len() + 1;
+        let mut entries = self.covariance.iter().enumerate();
+        entries.all(|(at, c)| *c == 0.0 || at % step == 0)
+    }
 }
 
 impl Posterior {
@@ -144,6 +199,9 @@ impl Posterior {
                 let mut row = vec![0.0; order];
                 for (j, column) in columns.iter().enumerate().take(i + 1) {
                     let w = root[i * m + j];
+                    if w == 0.0 {
+                        continue;
+                    }
                     row.iter_mut().zip(column).for_each(|(r, c)| *r += w * c);
                 }
                 row
@@ -154,9 +212,22 @@ impl Posterior {
             for (s, r) in out.mean.iter_mut().zip(row) {
                 *s -= w * r;
             }
-            spd::add_outer(&mut out.covariance, row, 1.0);
+            add_outer_within(&mut out.covariance, row);
         }
         Some(out)
+    }
+}
+
+/// `a += x x'`, where `x` is zero but for a stretch: that of one gauge where errors do not go across gauges.
+fn add_outer_within(a: &mut [f64], x: &[f64]) {
+    let order = x.len();
+    let from = x.iter().position(|v| *v != 0.0).unwrap_or(order);
+    let to = x.iter().rposition(|v| *v != 0.0).map_or(from, |i| i + 1);
+    let stretch = &x[from..to];
+    for (row, &xi) in a.chunks_exact_mut(order.max(1)).skip(from).zip(stretch) {
+        for (v, &xj) in row[from..to].iter_mut().zip(stretch) {
+            *v += xi * xj;
+        }
     }
 }
 

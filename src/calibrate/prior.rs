@@ -1,8 +1,7 @@
 //! Prior of the rows of S: the model with its relative error, or next to nothing.
 
+use super::evidence::{Normal, RowEvidence};
 use super::types::{KnownRun, ModelError, ModelPrior};
-use crate::linalg::precision::Precision;
-use crate::linalg::spd;
 
 /// Prior of one row, in loads of unit size.
 #[derive(Clone, Debug)]
@@ -76,6 +75,8 @@ const STATED_LN_SD: f64 = 0.7;
 #[derive(Clone, Debug)]
 pub(super) struct ErrorEvidence {
     stated: ModelError,
+    /// What the runs say of each gauge's row.
+    pub normals: Vec<Normal>,
     /// Error, log of its prior, log marginal likelihood by gauge.
     tried: Vec<(ModelError, f64, Vec<f64>)>,
 }
@@ -112,72 +113,50 @@ pub(super) fn error_evidence(
         entry: model.uncertainty_rel,
     };
     let (n, k) = model.values.shape();
-    let equations: Vec<Normal> = (0..n)
-        .map(|g| normal_equations(g, k, runs, phi, variance))
+    let normals: Vec<Normal> = (0..n)
+        .map(|g| Normal::of(g, k, runs, phi, variance))
         .collect();
     let step = |i: i32| 2f64.powf(f64::from(i) / 2.0);
+    let drawn: Vec<Vec<f64>> = (0..n)
+        .map(|g| (0..k).map(|l| model.values[(g, l)] * scales[l]).collect())
+        .collect();
+    // The part common to a gauge is one direction more: with what is known of the rest it costs a few products.
+    let of_entry = |j: i32| -> Vec<Option<(f64, f64, f64)>> {
+        let error = ModelError {
+            common: 0.0,
+            entry: stated.entry * step(j),
+        };
+        let rows = rows(model, scales, error);
+        let one = |((row, normal), s): ((&RowPrior, &Normal), &Vec<f64>)| {
+            let e = RowEvidence::of(&row.mean, &row.covariance, normal)?;
+            let (first, second) = e.orders(&[s.as_slice()]);
+            Some((e.log(), *first.first()?, *second.first()?))
+        };
+        rows.iter().zip(&normals).zip(&drawn).map(one).collect()
+    };
+    let by_entry: Vec<_> = (-STEPS..=STEPS).map(|j| (j, of_entry(j))).collect();
     let mut tried = Vec::new();
     for i in -STEPS..=STEPS {
-        for j in -STEPS..=STEPS {
+        for (j, rows) in &by_entry {
             let error = ModelError {
                 common: stated.common * step(i),
-                entry: stated.entry * step(j),
+                entry: stated.entry * step(*j),
             };
             let off = |i: i32| 0.5 * (step(i).ln() / STATED_LN_SD).powi(2);
-            let rows = rows(model, scales, error);
-            tried.push((error, -off(i) - off(j), evidence(&rows, &equations)));
+            let variance = error.common * error.common;
+            let with_common = |row: &Option<(f64, f64, f64)>| {
+                row.map_or(f64::NEG_INFINITY, |(log, first, second)| {
+                    let total = 1.0 + variance * second;
+                    log + 0.5 * (variance * first * first / total - total.ln())
+                })
+            };
+            let by_gauge = rows.iter().map(with_common).collect();
+            tried.push((error, -off(i) - off(*j), by_gauge));
         }
     }
-    ErrorEvidence { stated, tried }
-}
-
-/// What the runs say of one row: `sum phi phi' / v`, `sum phi y / v`.
-struct Normal {
-    matrix: Vec<f64>,
-    right: Vec<f64>,
-}
-
-fn normal_equations(
-    g: usize,
-    k: usize,
-    runs: &[&KnownRun],
-    phi: &[Vec<f64>],
-    variance: &[Vec<f64>],
-) -> Normal {
-    let mut out = Normal {
-        matrix: vec![0.0; k * k],
-        right: vec![0.0; k],
-    };
-    for (r, run) in runs.iter().enumerate() {
-        let Some(y) = run.strain.get(g).filter(|v| v.is_finite()) else {
-            continue;
-        };
-        spd::add_outer(&mut out.matrix, &phi[r], 1.0 / variance[r][g]);
-        for (b, p) in out.right.iter_mut().zip(&phi[r]) {
-            *b += p * y / variance[r][g];
-        }
+    ErrorEvidence {
+        stated,
+        normals,
+        tried,
     }
-    out
-}
-
-/// Log marginal likelihood of the readings by gauge, up to what does not depend on the prior:
-/// `-(ln |P| + ln |P^-1 + A| - d' (P^-1 + A)^-1 d) / 2`, `d = b - A s0`.
-fn evidence(rows: &[RowPrior], equations: &[Normal]) -> Vec<f64> {
-    let one = |(row, e): (&RowPrior, &Normal)| -> Option<f64> {
-        let k = row.mean.len();
-        let prior = Precision::of(&row.covariance, k)?;
-        let total: Vec<f64> = (0..k * k)
-            .map(|i| prior.entry(i / k, i % k) + e.matrix[i])
-            .collect();
-        let posterior = Precision::of(&total, k)?;
-        let mut known = vec![0.0; k];
-        spd::times(&e.matrix, &row.mean, &mut known);
-        let d: Vec<f64> = e.right.iter().zip(&known).map(|(b, a)| b - a).collect();
-        // `log_det` is that of what was inverted: P, and P^-1 + A.
-        Some(0.5 * (spd::dot(&posterior.apply(&d), &d) - prior.log_det() - posterior.log_det()))
-    };
-    rows.iter()
-        .zip(equations)
-        .map(|pair| one(pair).unwrap_or(f64::NEG_INFINITY))
-        .collect()
 }

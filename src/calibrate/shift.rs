@@ -1,5 +1,6 @@
 //! How far each gauge's row moved, and what that looks like.
 
+use super::cause::off_drawing;
 use super::prior::rows as model_rows;
 use super::state::State;
 use super::types::{GaugeShift, MoveKind, ShiftWord, Task};
@@ -106,9 +107,13 @@ pub(super) fn check(task: &Task, state: &State) -> Vec<GaugeShift> {
             words[b] = Some(ShiftWord::Exchanged { with: a });
         }
     }
-    for (word, row) in words.iter_mut().zip(&rows) {
+    for (g, (word, row)) in words.iter_mut().zip(&rows).enumerate() {
         if word.is_none() && row.scale().abs() < DEAD {
-            *word = Some(ShiftWord::Dead);
+            // A gauge glued across may read next to nothing of what it should, and still reads.
+            let error = evidence.most_probable(&[g]);
+            let turned = off_drawing(model, &state.scales, evidence, error, g);
+            let turned = turned.filter(|w| *w == ShiftWord::Angle);
+            *word = Some(turned.unwrap_or(ShiftWord::Dead));
         } else if word.is_none() && row.turned().is_some() {
             *word = Some(ShiftWord::Sign);
         }
@@ -126,7 +131,16 @@ pub(super) fn check(task: &Task, state: &State) -> Vec<GaugeShift> {
         // With most gauges far off it is the model's error that is large, not the gauges that are wrong: they are named and stay in it.
         let stop = news.is_empty() || 2 * (wrong.len() + news.len()) > n;
         for g in news {
-            words[g] = Some(cause(task, state, &rows[g], g));
+            let mut without = wrong.clone();
+            without.push(g);
+            let found = off_drawing(
+                model,
+                &state.scales,
+                evidence,
+                evidence.most_probable(&without),
+                g,
+            );
+            words[g] = Some(cause(task, state, &rows[g], g, found));
         }
         if stop {
             break;
@@ -199,8 +213,18 @@ fn exchanged(rows: &[Row]) -> Vec<(usize, usize)> {
     out.into_iter().map(|(_, a, b)| (a, b)).collect()
 }
 
-/// What the change of a row that is far off looks like.
-fn cause(task: &Task, state: &State, row: &Row, g: usize) -> ShiftWord {
+/// What the change of a row that is far off looks like; `off_drawing`: what the readings say of an angle or a place, where the model knows
+/// what these make.
+fn cause(
+    task: &Task,
+    state: &State,
+    row: &Row,
+    g: usize,
+    off_drawing: Option<ShiftWord>,
+) -> ShiftWord {
+    if let Some(word) = off_drawing.filter(|w| *w != ShiftWord::Undetermined) {
+        return word;
+    }
     let moved: Vec<f64> = row
         .found
         .iter()
@@ -230,6 +254,8 @@ fn cause(task: &Task, state: &State, row: &Row, g: usize) -> ShiftWord {
         ShiftWord::Gain
     } else if turned.is_some_and(|t| explained(&t) > EXPLAINED) {
         ShiftWord::Angle
+    } else if off_drawing.is_some() {
+        ShiftWord::Undetermined
     } else {
         ShiftWord::Place
     }
@@ -259,6 +285,7 @@ pub(super) fn findings(task: &Task, shifts: &[GaugeShift]) -> Vec<Finding> {
                 ShiftWord::Gain => ("gauge-shifted", Severity::Warning, format!("it looks like a gain of {:.3}", s.scale)),
                 ShiftWord::Angle => ("gauge-shifted", Severity::Warning, "it looks like a turned gauge".to_owned()),
                 ShiftWord::Exchanged { .. } => ("gauges-exchanged", Severity::Warning, "each reads what the model says of the other: exchanged channels, or names".to_owned()),
+                ShiftWord::Undetermined => ("gauge-shifted", Severity::Warning, "neither a gain, nor an angle, nor another place is clearly it".to_owned()),
                 ShiftWord::Place | ShiftWord::None => ("gauge-shifted", Severity::Warning, "it looks like another place than the model's".to_owned()),
             };
             let message = if task.model.is_some() {

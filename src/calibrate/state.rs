@@ -143,9 +143,13 @@ pub(super) fn sensitivity_of(
     let (n, k) = (posterior.n, posterior.k);
     let order = n * k;
     let values = Matrix::from_fn(n, k, |g, l| posterior.mean[g * k + l] / scales[l]);
-    let covariance = (0..order * order)
-        .map(|i| posterior.covariance[i] / (scales[(i / order) % k] * scales[(i % order) % k]))
-        .collect();
+    let of_entry: Vec<f64> = (0..order).map(|e| scales[e % k]).collect();
+    let mut covariance = posterior.covariance.clone();
+    for (row, a) in covariance.chunks_exact_mut(order.max(1)).zip(&of_entry) {
+        for (c, b) in row.iter_mut().zip(&of_entry) {
+            *c /= a * b;
+        }
+    }
     Sensitivity {
         gauges: task.gauges.clone(),
         loads: task.loads.clone(),

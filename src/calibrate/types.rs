@@ -47,8 +47,27 @@ pub struct ModelPrior {
     pub values: Matrix,
     /// Ways in which gauges may sit off their drawing; empty where nothing is stated.
     pub moves: Vec<Move>,
+    /// How rows change where gauges are not glued as drawn; `None` where that is not known, as of a table.
+    pub off_drawing: Option<OffDrawing>,
     /// Stated relative error, 1 sd: entry by entry, and common to a gauge.
     pub uncertainty_rel: f64,
+}
+
+/// Changes of rows of gauges that are not glued as drawn, `n x k` each, strain per job unit: what tells a turned or displaced gauge from a
+/// wrong gain. Zeros for a gauge of which they are not known. They say what a shift looks like; how far a gauge may be off is stated by
+/// [`Move`]s.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OffDrawing {
+    /// Per radian, right-handed about the element's normal.
+    pub turned: Matrix,
+    /// At a right angle to the drawing.
+    pub crossed: Matrix,
+    /// Per length along its axis; zeros where strain is known at one place of an element only.
+    pub along: Matrix,
+    /// Per length across it.
+    pub across: Matrix,
+    /// Length over which rows change evenly: about an element.
+    pub reach: f64,
 }
 
 /// How a gauge may sit off its drawing.
@@ -175,8 +194,10 @@ pub enum ShiftWord {
     Gain,
     /// Turned by an angle.
     Angle,
-    /// Neither: it sits elsewhere.
+    /// It sits elsewhere; where the model does not say how rows change with place: neither gain nor angle.
     Place,
+    /// Neither gain, angle nor place is clearly it.
+    Undetermined,
     /// It reads what the model says of another gauge, and that one what it says of this.
     Exchanged {
         /// Number of the other.
@@ -194,6 +215,7 @@ impl ShiftWord {
             Self::Gain => "gain",
             Self::Angle => "angle",
             Self::Place => "place",
+            Self::Undetermined => "undetermined",
             Self::Exchanged { .. } => "exchanged",
         }
     }

@@ -4,14 +4,19 @@ use super::outcome::{AsGluedSummary, CalibratedGauge, GlueSummary, GluedGauge};
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::{CalibrationKeys, Job};
 use crate::app::strain::{Prepared, corrected_spec_of};
-use crate::calibrate::{AsGlued, GlueTolerance, MoveKind};
+use crate::calibrate::{AsGlued, GlueTolerance, MoveKind, OffDrawing};
 use crate::finding::{Finding, Severity, few};
-use crate::gauge::{CornerRows, Drawn, Offset, reading};
+use crate::gauge::{CornerRows, Drawn, Offset, centre, reading};
+use crate::linalg::Matrix;
 use crate::model::Model;
 use crate::sensitivity::LoadCaseOf;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 /// Sd of the tolerance over which a gauge may be looked for.
 const REACH: f64 = 6.0;
+
+/// Half step of the central differences in place over the reach of a gauge: within its element and the next.
+const PLACE_STEP: f64 = 0.5;
 
 /// The job's gauges on its model, free to move.
 pub(super) struct Sites<'a> {
@@ -109,6 +114,66 @@ impl<'a> Sites<'a> {
             gain: glued.gain.value,
         })
     }
+}
+
+/// How the rows change where gauges are not glued as drawn; `None` where S is given, or all gauges sit on bars.
+///
+/// # Errors
+/// As [`Sites::of`].
+pub(super) fn off_drawing(job: &Job, prepared: &Prepared) -> Result<Option<OffDrawing>, Faults> {
+    let model = match &prepared.fields {
+        Some(f) if job.sensitivity.is_none() => f.model(),
+        _ => return Ok(None),
+    };
+    let reaches = prepared.gauges.iter().filter_map(|g| {
+        let shell = model.shells.get(model.shell_ix(g.element)?.us())?;
+        let middle = centre(model, shell)?;
+        let first = model.grids.get(shell.grids.first()?.us())?;
+        Some((first.x - middle).norm())
+    });
+    let mut reaches: Vec<f64> = reaches.collect();
+    reaches.sort_by(f64::total_cmp);
+    let Some(&reach) = reaches.get(reaches.len() / 2) else {
+        return Ok(None);
+    };
+    let tolerance = GlueTolerance {
+        position: reach,
+        angle_rad: 0.0,
+    };
+    let sites = Sites::of(job, prepared, tolerance)?;
+    let (n, k) = prepared.sensitivity.values.shape();
+    let zeros = Matrix::zeros(n, k);
+    let mut out = OffDrawing {
+        turned: zeros.clone(),
+        crossed: zeros.clone(),
+        along: zeros.clone(),
+        across: zeros,
+        reach,
+    };
+    for g in 0..n {
+        let between = |from: [f64; 3], to: [f64; 3], span: f64| -> Option<Vec<f64>> {
+            let (a, b) = (sites.row(g, from)?, sites.row(g, to)?);
+            Some(b.iter().zip(&a).map(|(b, a)| (b - a) / span).collect())
+        };
+        // A reading is c + a cos(2x) + b sin(2x) of the angle x: 45 degrees either way give its derivative 2 b exactly.
+        let (a, x) = (FRAC_PI_4, PLACE_STEP * reach);
+        let changes = [
+            between([0.0, 0.0, -a], [0.0, 0.0, a], 1.0),
+            between([0.0; 3], [0.0, 0.0, FRAC_PI_2], 1.0),
+            between([-x, 0.0, 0.0], [x, 0.0, 0.0], 2.0 * x),
+            between([0.0, -x, 0.0], [0.0, x, 0.0], 2.0 * x),
+        ];
+        let [Some(turned), Some(crossed), Some(along), Some(across)] = changes else {
+            continue;
+        };
+        for l in 0..k {
+            out.turned[(g, l)] = turned[l];
+            out.crossed[(g, l)] = crossed[l];
+            out.along[(g, l)] = along[l];
+            out.across[(g, l)] = across[l];
+        }
+    }
+    Ok(Some(out))
 }
 
 /// What the runs say of each gauge, in job units of length and degrees.

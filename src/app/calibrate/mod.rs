@@ -172,6 +172,7 @@ fn prior(
         let prior = ModelPrior {
             values: prepared.sensitivity.values.clone(),
             moves: Vec::new(),
+            off_drawing: glued::off_drawing(job, &prepared)?,
             uncertainty_rel: job.calibration.model_uncertainty_rel,
         };
         return Ok((prepared, Some(prior)));

@@ -78,7 +78,7 @@ pub struct CalibratedGauge {
     pub shift: f64,
     /// Calibrated row along the model's.
     pub scale: f64,
-    /// `none`, `gain`, `angle`, `place`, `sign`, `dead`.
+    /// `none`, `gain`, `angle`, `place`, `sign`, `dead`, `exchanged`, `undetermined`.
     pub looks_like: &'static str,
     /// Where it sits, as the runs say; null where `[calibration]` states no tolerance.
     pub as_glued: Option<AsGluedSummary>,

@@ -9,7 +9,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-const NOISE: f64 = 1e-6;
+pub(super) const NOISE: f64 = 1e-6;
 const POSITION: f64 = 5.0;
 const ANGLE: f64 = 3.0 * std::f64::consts::PI / 180.0;
 const LENGTH: f64 = 1000.0;
@@ -18,7 +18,7 @@ const POISSON: f64 = 0.3;
 /// Strain at the hottest place of each load of size 1.
 const HOT: f64 = 300e-6;
 
-fn normal(random: &mut ChaCha8Rng) -> f64 {
+pub(super) fn normal(random: &mut ChaCha8Rng) -> f64 {
     let (u, v): (f64, f64) = (
         random.random_range(1e-300..1.0),
         random.random_range(0.0..1.0),
@@ -39,9 +39,9 @@ fn strain(x: f64, y: f64) -> [[f64; 3]; 4] {
 }
 
 /// A gauge as drawn: x, y, angle of its axis.
-type Site = [f64; 3];
+pub(super) type Site = [f64; 3];
 
-fn row(site: Site, [along, across, turned]: [f64; 3]) -> Vec<f64> {
+pub(super) fn row(site: Site, [along, across, turned]: [f64; 3]) -> Vec<f64> {
     let (s, c) = site[2].sin_cos();
     let (x, y) = (
         site[0] + along * c - across * s,
@@ -52,7 +52,7 @@ fn row(site: Site, [along, across, turned]: [f64; 3]) -> Vec<f64> {
     strain(x, y).map(read).to_vec()
 }
 
-fn sites() -> Vec<Site> {
+pub(super) fn sites() -> Vec<Site> {
     let at = |x: f64, y: f64, deg: f64| [x, y, deg.to_radians()];
     vec![
         at(150.0, 30.0, 0.0),
@@ -67,7 +67,7 @@ fn sites() -> Vec<Site> {
 }
 
 /// Six pushes: each load alone, two together.
-fn pushes() -> Vec<[f64; 4]> {
+pub(super) fn pushes() -> Vec<[f64; 4]> {
     let mut out: Vec<[f64; 4]> = (0..4)
         .map(|l| std::array::from_fn(|m| if l == m { 1.0 } else { 0.0 }))
         .collect();
@@ -75,7 +75,7 @@ fn pushes() -> Vec<[f64; 4]> {
     out
 }
 
-fn reading(row: &[f64], f: &[f64; 4]) -> f64 {
+pub(super) fn reading(row: &[f64], f: &[f64; 4]) -> f64 {
     row.iter().zip(f).map(|(s, f)| s * f).sum()
 }
 
@@ -150,6 +150,7 @@ fn trial(seed: u64) -> Trial {
         model: Some(ModelPrior {
             values: drawn.clone(),
             moves: Vec::new(),
+            off_drawing: None,
             uncertainty_rel: MODEL,
         }),
         runs: runs.collect(),

@@ -1,5 +1,7 @@
 mod bridges;
+mod cause;
 mod glued;
+mod next;
 mod scatter;
 mod synthetic;
 mod wrong;

@@ -66,6 +66,7 @@ fn trial(n: usize, k: usize, m: usize, seed: u64) -> Trial {
         model: prior.then(|| ModelPrior {
             values: model.clone(),
             moves: Vec::new(),
+            off_drawing: None,
             uncertainty_rel: 0.05,
         }),
         runs: runs.clone(),

@@ -62,6 +62,7 @@ fn task(times: usize, seed: u64) -> Task {
         model: Some(ModelPrior {
             values: Matrix::from_fn(PLATE.len(), 3, |g, l| 1e-6 * PLATE[g][l]),
             moves: Vec::new(),
+            off_drawing: None,
             uncertainty_rel: 0.1,
         }),
         runs: runs.collect(),

@@ -1,0 +1,86 @@
+//! S of 41 gauges and 9 loads from 40 runs of known load: calibration, and the next known load worth applying.
+//!
+//! Run: `cargo bench --bench calibrate`. Asked: under a second, by noise alone and with repeats that scatter.
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use strainbridge::calibrate::{KnownLoads, KnownRun, ModelPrior, Task, calibrate, next_runs};
+use strainbridge::linalg::Matrix;
+use strainbridge::sensitivity::Load;
+
+fn main() {
+    divan::main();
+}
+
+const GAUGES: usize = 41;
+const LOADS: usize = 9;
+const RUNS: usize = 40;
+const NOISE: f64 = 1e-6;
+const SIZE: f64 = 1e4;
+
+fn normal(random: &mut ChaCha8Rng) -> f64 {
+    let (u, v): (f64, f64) = (
+        random.random_range(1e-300..1.0),
+        random.random_range(0.0..1.0),
+    );
+    (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+}
+
+/// Rows off the model by 5 % common to a gauge and 2 % more; every loading twice, off by `scatter` each time.
+fn task(scatter: f64) -> Task {
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let model = Matrix::from_fn(GAUGES, LOADS, |_, _| 1e-8 * normal(&mut random));
+    let gains: Vec<f64> = (0..GAUGES)
+        .map(|_| 1.0 + 0.05 * normal(&mut random))
+        .collect();
+    let truth = Matrix::from_fn(GAUGES, LOADS, |g, l| {
+        model[(g, l)] * gains[g] * (1.0 + 0.02 * normal(&mut random))
+    });
+    let mut runs = Vec::new();
+    for group in 0..RUNS / 2 {
+        let f: Vec<f64> = (0..LOADS)
+            .map(|_| SIZE * (1.0 + 0.5 * normal(&mut random)))
+            .collect();
+        for _ in 0..2 {
+            let acting: Vec<f64> = f
+                .iter()
+                .map(|f| f * (1.0 + scatter * normal(&mut random)))
+                .collect();
+            let strain = (0..GAUGES).map(|g| {
+                let clean: f64 = (0..LOADS).map(|l| truth[(g, l)] * acting[l]).sum();
+                clean + NOISE * normal(&mut random)
+            });
+            runs.push(KnownRun {
+                run: format!("R{}", runs.len()),
+                strain: strain.collect(),
+                noise_factor: 1.0,
+                loads: KnownLoads::exact(f.clone()),
+                group,
+            });
+        }
+    }
+    Task {
+        gauges: (0..GAUGES).map(|g| format!("G{g}")).collect(),
+        loads: (0..LOADS).map(|l| Load::named(format!("L{l}"))).collect(),
+        noise: NOISE,
+        model: Some(ModelPrior {
+            values: model,
+            moves: Vec::new(),
+            off_drawing: None,
+            uncertainty_rel: 0.05,
+        }),
+        runs,
+        sums: Vec::new(),
+    }
+}
+
+#[divan::bench(args = [0.0, 0.03])]
+fn forty_runs(bencher: divan::Bencher, scatter: f64) {
+    let task = task(scatter);
+    bencher.bench(|| {
+        let found = calibrate(&task).ok()?;
+        next_runs(&found, task.noise, &[SIZE; LOADS])
+            .into_iter()
+            .next()
+    });
+}

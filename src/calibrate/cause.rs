@@ -1,0 +1,115 @@
+//! What the change of one gauge's row looks like: a gain, an angle, a place, or nothing that can be told.
+
+use super::evidence::RowEvidence;
+use super::prior::{ErrorEvidence, rows};
+use super::types::{ModelError, ModelPrior, OffDrawing, ShiftWord};
+use crate::linalg::{Matrix, spd};
+
+/// Natural log of the odds over every rival from which a turned or displaced gauge is named: 150 to 1, "very strong" on the scale of R. E. Kass and
+/// A. E. Raftery, J. Am. Stat. Assoc. 90 (1995) 773. A false name costs more than none.
+const CLEAR: f64 = 5.0;
+/// Sd of a gain that nobody stated: half or double, or reversed.
+const GAIN_SD: f64 = 1.0;
+/// Sd of an angle that nobody stated, degrees: as in `reconcile`, a gauge glued across is as usual a mistake as one glued askew.
+const ANGLE_SD: f64 = 30.0;
+/// Step of the angles that are tried, degrees, and how many to each side of the drawing: up to a gauge glued across.
+const ANGLE_STEP: f64 = 0.05;
+const ANGLES: i32 = 1800;
+
+/// Log marginal likelihoods of a gauge's readings, each with the ordinary error of the model besides.
+struct Rivals {
+    /// Every load by the same factor.
+    gain: f64,
+    /// Turned by some angle.
+    angle: f64,
+    /// Moved along the surface.
+    place: f64,
+    /// Any other row of the same size.
+    other: f64,
+}
+
+/// `Angle` or `Place` where the readings clearly prefer that to a gain, to each other and to any other row, else `Undetermined`; `None` where
+/// the model does not say how the row changes. `error`: that of the model as other gauges show it.
+pub(super) fn off_drawing(
+    model: &ModelPrior,
+    scales: &[f64],
+    evidence: &ErrorEvidence,
+    error: ModelError,
+    g: usize,
+) -> Option<ShiftWord> {
+    let changes = model.off_drawing.as_ref()?;
+    let rivals = Rivals::of(model, changes, scales, evidence, error, g)?;
+    let beats = |own: f64, others: [f64; 3]| others.iter().all(|o| own > o + CLEAR);
+    let Rivals {
+        gain,
+        angle,
+        place,
+        other,
+    } = rivals;
+    Some(if beats(angle, [gain, place, other]) {
+        ShiftWord::Angle
+    } else if beats(place, [gain, angle, other]) {
+        ShiftWord::Place
+    } else {
+        ShiftWord::Undetermined
+    })
+}
+
+impl Rivals {
+    fn of(
+        model: &ModelPrior,
+        changes: &OffDrawing,
+        scales: &[f64],
+        evidence: &ErrorEvidence,
+        error: ModelError,
+        g: usize,
+    ) -> Option<Self> {
+        let k = scales.len();
+        let scaled = |m: &Matrix| -> Vec<f64> { (0..k).map(|l| m[(g, l)] * scales[l]).collect() };
+        let [turned, crossed, along, across] = [
+            &changes.turned,
+            &changes.crossed,
+            &changes.along,
+            &changes.across,
+        ]
+        .map(scaled);
+        // A gauge on a bar, or of a table.
+        if turned.iter().chain(&crossed).all(|v| *v == 0.0) {
+            return None;
+        }
+        let normal = evidence.normals.get(g)?;
+        let prior = rows(model, scales, error).into_iter().nth(g)?;
+        let usual = RowEvidence::of(&prior.mean, &prior.covariance, normal)?;
+        let square = spd::dot(&prior.mean, &prior.mean) / k.max(1) as f64;
+        let mut any = prior.covariance.clone();
+        any.iter_mut().step_by(k + 1).for_each(|v| *v += square);
+        Some(Self {
+            gain: usual.with(&[&prior.mean], GAIN_SD),
+            angle: of_angle(&usual, &turned, &crossed)?,
+            place: usual.with(&[&along, &across], changes.reach),
+            other: RowEvidence::of(&prior.mean, &any, normal)?.log(),
+        })
+    }
+}
+
+/// A row turned by `a` is `s + t sin(2a) / 2 + c sin(a)^2`, `t` its change per radian and `c` that at a right angle: strain is a tensor. Mean of
+/// the likelihood over the angles.
+fn of_angle(usual: &RowEvidence, turned: &[f64], crossed: &[f64]) -> Option<f64> {
+    let (first, second) = usual.orders(&[turned, crossed]);
+    let (&[l, m], &[p, q, _, r]) = (first.as_slice(), second.as_slice()) else {
+        return None;
+    };
+    let mut logs = Vec::new();
+    let mut weights = 0.0;
+    for step in -ANGLES..=ANGLES {
+        let degrees = f64::from(step) * ANGLE_STEP;
+        let angle = degrees.to_radians();
+        let (x, y) = (0.5 * (2.0 * angle).sin(), angle.sin().powi(2));
+        let off = -0.5 * (degrees / ANGLE_SD).powi(2);
+        weights += off.exp();
+        logs.push(off + x * l + y * m - 0.5 * (x * x * p + 2.0 * x * y * q + y * y * r));
+    }
+    let top = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let sum: f64 = logs.iter().map(|v| (v - top).exp()).sum();
+    Some(usual.log() + top + (sum / weights).ln())
+}

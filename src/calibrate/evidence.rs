@@ -1,0 +1,111 @@
+//! How probable the readings of one gauge are with one prior of its row or another.
+
+use super::types::KnownRun;
+use crate::linalg::precision::Precision;
+use crate::linalg::spd;
+
+/// What the runs say of one row, in loads of unit size: `A = sum phi phi' / v` and `b = sum phi y / v`.
+#[derive(Clone, Debug)]
+pub(super) struct Normal {
+    matrix: Vec<f64>,
+    right: Vec<f64>,
+}
+
+impl Normal {
+    /// Of gauge `g`. `variance[r][g]`: variance of its reading in run r, S aside; `phi[r]`: the run's loads.
+    pub fn of(
+        g: usize,
+        k: usize,
+        runs: &[&KnownRun],
+        phi: &[Vec<f64>],
+        variance: &[Vec<f64>],
+    ) -> Self {
+        let mut out = Self {
+            matrix: vec![0.0; k * k],
+            right: vec![0.0; k],
+        };
+        for (r, run) in runs.iter().enumerate() {
+            let Some(y) = run.strain.get(g).filter(|v| v.is_finite()) else {
+                continue;
+            };
+            spd::add_outer(&mut out.matrix, &phi[r], 1.0 / variance[r][g]);
+            for (b, p) in out.right.iter_mut().zip(&phi[r]) {
+                *b += p * y / variance[r][g];
+            }
+        }
+        out
+    }
+}
+
+/// Log marginal likelihood of a gauge's readings where its row is `s + e`, `Cov e = B`, and how it changes with what is added to the row.
+///
+/// With `W = B^-1 + A` and `d = b - A s`, up to what does not depend on the prior, it is `L(0) = (d' W^-1 d - ln |B| - ln |W|) / 2`; a row
+/// that is `s + t + e` makes it `L(t) = L(0) + t' B^-1 W^-1 d - t' B^-1 W^-1 A t / 2`.
+pub(super) struct RowEvidence<'a> {
+    normal: &'a Normal,
+    /// `B^-1` and `W^-1`.
+    prior: Precision,
+    posterior: Precision,
+    /// `B^-1 W^-1 d`.
+    slope: Vec<f64>,
+    /// `L(0)`.
+    log: f64,
+}
+
+impl<'a> RowEvidence<'a> {
+    /// With a row of this mean and covariance; `None` where that is not positive definite.
+    pub fn of(mean: &[f64], covariance: &[f64], normal: &'a Normal) -> Option<Self> {
+        let k = mean.len();
+        let prior = Precision::of(covariance, k)?;
+        let total: Vec<f64> = (0..k * k)
+            .map(|i| prior.entry(i / k, i % k) + normal.matrix[i])
+            .collect();
+        let posterior = Precision::of(&total, k)?;
+        let mut known = vec![0.0; k];
+        spd::times(&normal.matrix, mean, &mut known);
+        let d = normal.right.iter().zip(&known).map(|(b, a)| b - a);
+        let d: Vec<f64> = d.collect();
+        let found = posterior.apply(&d);
+        // `log_det` is that of what was inverted: B, and W.
+        let log = 0.5 * (spd::dot(&found, &d) - prior.log_det() - posterior.log_det());
+        Some(Self {
+            normal,
+            slope: prior.apply(&found),
+            prior,
+            posterior,
+            log,
+        })
+    }
+
+    /// `L(0)`.
+    pub fn log(&self) -> f64 {
+        self.log
+    }
+
+    /// First and second order of `L` in the amounts of some directions `t_i`: `t_i' B^-1 W^-1 d`, and `t_i' B^-1 W^-1 A t_j` by rows.
+    pub fn orders(&self, directions: &[&[f64]]) -> (Vec<f64>, Vec<f64>) {
+        let first = directions.iter().map(|t| spd::dot(t, &self.slope));
+        let mut second = Vec::with_capacity(directions.len() * directions.len());
+        for t in directions {
+            let mut taught = vec![0.0; t.len()];
+            spd::times(&self.normal.matrix, t, &mut taught);
+            let bent = self.prior.apply(&self.posterior.apply(&taught));
+            second.extend(directions.iter().map(|u| spd::dot(u, &bent)));
+        }
+        (first.collect(), second)
+    }
+
+    /// Log marginal likelihood where each direction is added with an independent amount of standard deviation `sd`:
+    /// `L(0) - ln |I + Q| / 2 + l' (I + Q)^-1 l / 2`, `l` and `Q` the first and second order in units of `sd`.
+    pub fn with(&self, directions: &[&[f64]], sd: f64) -> f64 {
+        let n = directions.len();
+        let (first, second) = self.orders(directions);
+        let total: Vec<f64> = (0..n * n)
+            .map(|i| sd * sd * second[i] + if i / n == i % n { 1.0 } else { 0.0 })
+            .collect();
+        let first: Vec<f64> = first.iter().map(|l| sd * l).collect();
+        Precision::of(&total, n).map_or(f64::NEG_INFINITY, |p| {
+            self.log + 0.5 * (spd::dot(&p.apply(&first), &first) - p.log_det())
+        })
+    }
+}
