@@ -21,7 +21,6 @@ const LONGER: &[&str] = &[
     "src/payload/locate.rs solve_run",
     "src/placement/layout.rs place",
     "src/placement/bundles.rs",
-    "src/reconcile/strain/likelihood.rs",
     "src/respond/rows.rs response_rows",
 ];
 
