@@ -4,9 +4,11 @@
 //! - [`tall`]: least squares with many rows and few columns
 //! - [`levenberg`]: nonlinear least squares
 //! - [`median`]: the median of values that count unequally
+//! - [`cholesky`]: the factor of a dense covariance
 //! - [`precision`]: the inverse of a dense covariance
 //! - [`tail`]: chances of a value at least as large
 
+pub mod cholesky;
 pub mod dense;
 pub mod levenberg;
 pub mod median;

@@ -114,7 +114,7 @@ fn solve(
 
 /// As [`fit`] for readings whose errors go together: `covariance` is `n x n` by rows. Beside the fit the sum of squares of what is left,
 /// whitened. `None` where numbers are not finite or the covariance is not positive definite.
-pub(super) fn fit_correlated(
+pub fn fit_correlated(
     s: &Matrix,
     y: &[f64],
     covariance: &[f64],

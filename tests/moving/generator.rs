@@ -40,6 +40,7 @@ pub struct Case {
     pub noise: [f64; 2],
     /// Mass of the measured body.
     pub sprung: f64,
+    pub rate_hz: f64,
 }
 
 pub struct Dice(ChaCha8Rng);
@@ -179,7 +180,14 @@ struct Drive {
     tyres: Vec<Vec<f64>>,
 }
 
-fn drive(m: &Machine, seconds: f64, roughness: f64, delay_s: f64, dice: &mut Dice) -> Drive {
+fn drive(
+    m: &Machine,
+    (seconds, rate_hz): (f64, f64),
+    roughness: f64,
+    delay_s: f64,
+    dice: &mut Dice,
+) -> Drive {
+    let every = (RATE_HZ * SUBSTEPS as f64 / rate_hz).round() as usize;
     let (s, u) = (m.sprung.len(), m.unsprung.len());
     let n = s + u;
     let h = 1.0 / (RATE_HZ * SUBSTEPS as f64);
@@ -226,7 +234,7 @@ fn drive(m: &Machine, seconds: f64, roughness: f64, delay_s: f64, dice: &mut Dic
     for i in 0..steps {
         let t = i as f64 * h;
         let (k1, tyres) = m.rates(&y, &at(2 * i), t);
-        if i % SUBSTEPS == 0 {
+        if i % every == 0 {
             for b in 0..s {
                 out.sprung[b].push(k1[n + b]);
             }
@@ -251,13 +259,13 @@ fn drive(m: &Machine, seconds: f64, roughness: f64, delay_s: f64, dice: &mut Dic
     out
 }
 
-/// x late by `delay` seconds (Catmull-Rom between samples).
+/// x late by `delay` samples (Catmull-Rom between them).
 fn late(x: &[f64], delay: f64) -> Vec<f64> {
     let n = x.len() as isize;
     let at = |i: isize| x[i.clamp(0, n - 1) as usize];
     (0..n)
         .map(|i| {
-            let u = i as f64 - delay * RATE_HZ;
+            let u = i as f64 - delay;
             let k = u.floor();
             let f = u - k;
             let k = k as isize;
@@ -273,7 +281,7 @@ fn late(x: &[f64], delay: f64) -> Vec<f64> {
 pub fn hide_gain(layout: Layout, channel: &str, gain: f64, seed: u64) -> Case {
     let exact = Exact {
         gain: Some((channel.to_owned(), gain)),
-        mass: None,
+        ..Exact::default()
     };
     hide_exactly(layout, "accel_gain", 0, Background::Clean, seed, &exact)
 }
@@ -281,8 +289,8 @@ pub fn hide_gain(layout: Layout, channel: &str, gain: f64, seed: u64) -> Case {
 /// A given share of the body that joins or leaves, clean background.
 pub fn hide_mass_change(layout: Layout, share: f64, seed: u64) -> Case {
     let exact = Exact {
-        gain: None,
         mass: Some(share),
+        ..Exact::default()
     };
     hide_exactly(layout, "mass_change", 0, Background::Clean, seed, &exact)
 }
@@ -292,11 +300,21 @@ pub fn hide_mass_change(layout: Layout, share: f64, seed: u64) -> Case {
 struct Exact {
     gain: Option<(String, f64)>,
     mass: Option<f64>,
+    rate_hz: Option<f64>,
 }
 
 /// Hides `effect` of a size (0: small, 1: middle, 2: large) in a truck drawn from `seed`.
 pub fn hide(layout: Layout, effect: &str, size: usize, background: Background, seed: u64) -> Case {
     hide_exactly(layout, effect, size, background, seed, &Exact::default())
+}
+
+/// A control (nothing hidden) of samples at `rate_hz`, a whole part of 2,000.
+pub fn hide_at(layout: Layout, rate_hz: f64, background: Background, seed: u64) -> Case {
+    let exact = Exact {
+        rate_hz: Some(rate_hz),
+        ..Exact::default()
+    };
+    hide_exactly(layout, "none", 0, background, seed, &exact)
 }
 
 fn hide_exactly(
@@ -308,6 +326,7 @@ fn hide_exactly(
     exact: &Exact,
 ) -> Case {
     let mut dice = Dice::of(seed);
+    let rate_hz = exact.rate_hz.unwrap_or(RATE_HZ);
     let n_wheels = 2;
     let n_sprung = if layout == Layout::Rear { 1 } else { 2 };
     let of = |three: [f64; 3]| three[size];
@@ -489,7 +508,7 @@ fn hide_exactly(
         if !changed {
             machine.laws.iter_mut().for_each(|l| l.drift = 0.0);
         }
-        let run = drive(&machine, seconds, roughness, axle_delay, dice);
+        let run = drive(&machine, (seconds, rate_hz), roughness, axle_delay, dice);
         let signal = |name: &str| -> Vec<f64> {
             match name {
                 "a_body" => run.sprung[0].clone(),
@@ -513,7 +532,7 @@ fn hide_exactly(
                 }
                 let tau: f64 = delay.iter().filter(|d| d.0 == name).map(|d| d.1).sum();
                 if tau != 0.0 {
-                    x = late(&x, tau);
+                    x = late(&x, tau * rate_hz);
                 }
                 let g: f64 = gain.iter().filter(|g| g.0 == name).map(|g| g.1).product();
                 let at = names.iter().position(|n| *n == name);
@@ -546,5 +565,6 @@ fn hide_exactly(
         terms,
         noise,
         sprung: m.sprung[0],
+        rate_hz,
     }
 }

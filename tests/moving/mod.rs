@@ -5,7 +5,7 @@
 pub mod generator;
 pub mod logger;
 
-use generator::{Background, Case, Layout, RATE_HZ};
+use generator::{Background, Case, Layout};
 use std::collections::BTreeMap;
 use strainbridge::reconcile::Verdict;
 use strainbridge::reconcile::motion::{MotionFrame, MotionOutcome};
@@ -25,7 +25,7 @@ pub fn frame_of(case: &Case) -> MotionFrame {
                 samples: samples.clone(),
             })
             .collect();
-        Channels::from_list(RATE_HZ, list).unwrap()
+        Channels::from_list(case.rate_hz, list).unwrap()
     };
     let model = match case.layout {
         Layout::Rear => "rear3",

@@ -2,7 +2,9 @@
 
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
+use crate::reconcile::effect::Extension;
 use crate::reconcile::{Outcome, Verdict};
+use crate::units::number;
 
 /// Notes what is to be known of the verdict.
 pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
@@ -58,6 +60,7 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
             ));
         }
         Verdict::Named => {
+            work.findings.extend(wrong_unit(outcome));
             for r in outcome.rivals.iter().filter(|r| r.indistinguishable) {
                 work.findings.push(
                     Finding::new(
@@ -88,4 +91,24 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
         }
         Verdict::None => {}
     }
+}
+
+/// All wheel loads were noted in another unit than they were read in.
+fn wrong_unit(outcome: &Outcome) -> Option<Finding> {
+    let found = outcome.effects.iter().find_map(|e| match e.extension {
+        Extension::LoadUnit { factor, words } => Some((factor, words)),
+        _ => None,
+    });
+    let (factor, words) = found?;
+    let finding = Finding::new(
+        Severity::Warning,
+        "wheel-loads-unit",
+        "runs",
+        format!(
+            "all wheel loads read {} times what the strain says: {words}?",
+            number(factor)
+        ),
+        "state the unit of the runs file ([runs] units = { force = \"kN\" }), and check the units of S",
+    );
+    Some(finding.with_numbers(factor, 1.0))
 }

@@ -164,8 +164,12 @@ fn effect_found(e: &NamedEffect) -> EffectFound {
     }
 }
 
-/// The size of a fault that has no parameter: -1 for a turned sign, 0 for a channel that says nothing, 1 for an exchange.
+/// The size of an effect that has no parameter: -1 for a turned sign, 0 for a channel that says nothing, 1 for an exchange, the factor of a
+/// wrong unit.
 fn channel_size(e: &NamedEffect) -> Option<f64> {
+    if let Extension::LoadUnit { factor, .. } = e.extension {
+        return Some(factor);
+    }
     let Extension::Channels(list) = &e.extension else {
         return None;
     };

@@ -19,6 +19,7 @@ mod global_scale;
 mod intermittent_channel;
 mod lateral_wheel_loads;
 mod library;
+mod load_unit;
 mod model_discrepancy;
 mod payload_gravity_missing;
 mod payload_offset;

@@ -3,7 +3,7 @@
 use super::covariance::{Selection, covariance};
 use super::frame::StrainFrame;
 use super::prediction::predict;
-use crate::linalg::precision::Precision;
+use crate::linalg::cholesky::Cholesky;
 use crate::linalg::tail::f_tail;
 use crate::reconcile::effect::{Member, SizedAmplitudes};
 use crate::reconcile::outcome::Misfit;
@@ -66,10 +66,7 @@ fn residual(frame: &StrainFrame, members: &[Member<'_>], selection: &Selection) 
 }
 
 fn chi2(cov: &[f64], r: &[f64]) -> f64 {
-    let Some(p) = Precision::of(cov, r.len()) else {
-        return f64::NAN;
-    };
-    p.apply(r).iter().zip(r).map(|(a, b)| a * b).sum()
+    Cholesky::of(cov, r.len()).map_or(f64::NAN, |c| c.chi2(r))
 }
 
 /// Judges `members` with amplitudes of the sizes of `unknown`; `n_parameters` were fitted.

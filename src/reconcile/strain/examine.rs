@@ -6,7 +6,7 @@ use super::frame::StrainFrame;
 use super::judge::{adequacy_of, at_floor, judge};
 use super::likelihood::{Fit, Likelihood};
 use super::own_covariance::best_by_own_covariance;
-use super::validation::validated;
+use super::validation::{Proofs, validated};
 use crate::reconcile::effect::{Candidate, Discrepancy, library};
 use crate::reconcile::outcome::Outcome;
 use crate::reconcile::search::{Breadth, Scored, Scorer, search, search_near, settle};
@@ -139,6 +139,7 @@ fn without_needless_names(
     all: &[Scored<Fit>],
     mut best: Scored<Fit>,
 ) -> Scored<Fit> {
+    let mut proofs = None;
     while best.set.len() > 1 {
         let fewer = |s: &&Scored<Fit>| {
             s.set.len() + 1 == best.set.len()
@@ -150,8 +151,9 @@ fn without_needless_names(
         if left.is_empty() {
             break;
         }
-        let after = validated(frame, candidates, &best).0.after;
-        let no_worse = |s: &&&Scored<Fit>| validated(frame, candidates, s).0.after <= after;
+        let proofs = proofs.get_or_insert_with(|| Proofs::of(frame));
+        let after = validated(proofs, candidates, &best).0.after;
+        let no_worse = |s: &&&Scored<Fit>| validated(proofs, candidates, s).0.after <= after;
         let Some(enough) = left.iter().find(no_worse) else {
             break;
         };

@@ -4,7 +4,7 @@ use super::covariance::{Selection, covariance, read_patterns};
 use super::frame::StrainFrame;
 use super::prediction::predict;
 use super::state::StrainState;
-use crate::linalg::precision::Precision;
+use crate::linalg::cholesky::Cholesky;
 use crate::reconcile::effect::{Member, SizedAmplitudes};
 use crate::reconcile::outcome::{ChannelGap, Gap, GapBasis, GapNumbers};
 
@@ -189,8 +189,12 @@ struct Told<'a> {
     frame: &'a StrainFrame,
     members: &'a [Member<'a>],
     unknown: &'a [SizedAmplitudes],
+    /// The readings of the fit runs, then those of the runs to be judged.
+    both: Selection,
+    /// Covariance of both.
+    joint: Vec<f64>,
     fit: Selection,
-    precision: Precision,
+    factor: Cholesky,
     /// Precision times residual.
     weighted: Vec<f64>,
 }
@@ -202,14 +206,21 @@ impl<'a> Told<'a> {
         unknown: &'a [SizedAmplitudes],
     ) -> Option<Self> {
         let fit = Selection::of_runs(frame, &frame.observations.fit_runs());
-        let precision = Precision::of(&covariance(frame, members, &fit, unknown), fit.len())?;
-        let weighted = precision.apply(&residual(frame, members, &fit));
+        let proof = Selection::of_runs(frame, &frame.observations.proof_runs());
+        let both = Selection([fit.0.as_slice(), &proof.0].concat());
+        let joint = covariance(frame, members, &both, unknown);
+        let rows = joint.chunks_exact(both.len().max(1)).take(fit.len());
+        let of_fit: Vec<f64> = rows.flat_map(|row| &row[..fit.len()]).copied().collect();
+        let factor = Cholesky::of(&of_fit, fit.len())?;
+        let weighted = factor.solve(&residual(frame, members, &fit));
         Some(Self {
             frame,
             members,
             unknown,
+            both,
+            joint,
             fit,
-            precision,
+            factor,
             weighted,
         })
     }
@@ -259,7 +270,7 @@ impl<'a> Told<'a> {
         let columns: Vec<Vec<f64>> = repeats.iter().map(|&p| over_fit(p)).collect();
         for (p, column) in repeats.iter().zip(&columns) {
             mean[*p] = steady[*p] * dot(column, &self.weighted);
-            let told = self.precision.apply(column);
+            let told = self.factor.solve(column);
             for (q, other) in repeats.iter().zip(&columns) {
                 covariance[p * n + q] -= steady[*p] * dot(&told, other) * steady[*q];
             }
@@ -279,18 +290,19 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 /// Readings of one run given the fit runs: mean and covariance (`n x n`) of the residual.
 fn given_fit(told: &Told<'_>, run: &Selection) -> (Vec<f64>, Vec<f64>) {
     let n = run.len();
-    let both = Selection([told.fit.0.as_slice(), &run.0].concat());
-    let joint = covariance(told.frame, told.members, &both, told.unknown);
+    let proof = told.both.0.iter().skip(told.fit.len());
+    let before = proof.take_while(|e| Some(*e) != run.0.first()).count();
+    let (first, width) = (told.fit.len() + before, told.both.len());
     let shared = |i: usize| {
-        let row = (told.fit.len() + i) * both.len();
-        &joint[row..row + told.fit.len()]
+        let row = (first + i) * width;
+        &told.joint[row..row + told.fit.len()]
     };
     let mean = (0..n).map(|i| dot(shared(i), &told.weighted)).collect();
     let mut out = vec![0.0; n * n];
     for i in 0..n {
-        let known = told.precision.apply(shared(i));
+        let known = told.factor.solve(shared(i));
         for j in 0..n {
-            let prior = joint[(told.fit.len() + i) * both.len() + told.fit.len() + j];
+            let prior = told.joint[(first + i) * width + first + j];
             out[i * n + j] = prior - dot(&known, shared(j));
         }
     }
@@ -299,7 +311,7 @@ fn given_fit(told: &Told<'_>, run: &Selection) -> (Vec<f64>, Vec<f64>) {
 
 /// The runs to be judged, given the fit runs, with one model.
 struct Proof<'a> {
-    told: Told<'a>,
+    told: &'a Told<'a>,
     patterns: Patterns,
 }
 
@@ -320,21 +332,15 @@ struct ProofRun<'a> {
 }
 
 impl<'a> Proof<'a> {
-    fn of(
-        frame: &'a StrainFrame,
-        members: &'a [Member<'a>],
-        unknown: &'a [SizedAmplitudes],
-        anew: FoundAnew,
-    ) -> Option<Self> {
-        let told = Told::of(frame, members, unknown)?;
-        Some(Self {
+    fn of(told: &'a Told<'a>, anew: FoundAnew) -> Self {
+        Self {
             patterns: told.patterns(anew),
             told,
-        })
+        }
     }
 
     fn run(&self, own: &StrainFrame, run: usize) -> ProofRun<'_> {
-        let t = &self.told;
+        let t = self.told;
         let all = Selection::of_runs(t.frame, &[run]);
         let on_own = residual(own, t.members, &all);
         let on_finer = residual(t.frame, t.members, &all);
@@ -383,7 +389,7 @@ impl ProofRun<'_> {
                 .flat_map(|&i| used.iter().map(move |&j| (i, j)))
                 .map(|(i, j)| self.spread[i * n + j])
                 .collect();
-            let precision = Precision::of(&block, used.len());
+            let factor = Cholesky::of(&block, used.len());
             let innovation: Vec<f64> = used.iter().map(|&i| self.innovation[i]).collect();
             for &i in &seen {
                 let shared: Vec<f64> = used
@@ -391,11 +397,11 @@ impl ProofRun<'_> {
                     .map(|&j| patterns.between(gauge(i), gauge(j)))
                     .collect();
                 let whole: Vec<f64> = used.iter().map(|&j| self.spread[i * n + j]).collect();
-                let Some(p) = &precision else {
+                let Some(c) = &factor else {
                     floor[i] = self.spread[i * n + i].max(0.0).sqrt();
                     continue;
                 };
-                let (k, k_whole) = (p.apply(&shared), p.apply(&whole));
+                let (k, k_whole) = (c.solve(&shared), c.solve(&whole));
                 left[i] -= dot(&k, &innovation);
                 let rest: Vec<f64> = k_whole.iter().zip(&k).map(|(a, b)| a - b).collect();
                 let spread_of = |v: &[f64]| -> f64 {
@@ -424,21 +430,54 @@ pub fn judged(
     unknown: &[SizedAmplitudes],
     anew: FoundAnew,
 ) -> Option<Judged> {
+    let before = before(finer, &[anew])?.pop()?;
+    judged_after(finer, members, unknown, &[(anew, before)])?.pop()
+}
+
+/// Residuals of the proof runs by the analyst's model, for each of `anew`: the same whatever effects are on.
+pub(super) fn before(finer: &StrainFrame, anew: &[FoundAnew]) -> Option<Vec<Vec<f64>>> {
     let own = finer.as_modelled();
-    let with = Proof::of(finer, members, unknown, anew)?;
-    let without = Proof::of(finer, &[], &[], anew)?;
-    let mut out = Judged::default();
-    for run in finer.observations.proof_runs() {
-        let now = with.run(&own, run);
-        let (after, floor) = now.judged();
-        out.extend(Judged {
-            gauges: now.all.0.iter().map(|e| e.1).collect(),
-            reading: now.all.pick(&finer.observations.values, finer.n_gauges()),
-            before: without.run(&own, run).judged().0,
-            after,
-            floor,
-            mesh: now.mesh,
-        });
-    }
-    Some(out)
+    let told = Told::of(finer, &[], &[])?;
+    let of = |anew: &FoundAnew| {
+        let without = Proof::of(&told, *anew);
+        let runs = finer.observations.proof_runs().into_iter();
+        runs.flat_map(|run| without.run(&own, run).judged().0)
+            .collect()
+    };
+    Some(anew.iter().map(of).collect())
+}
+
+/// As [`judged`], for each way of finding anew with its residuals before.
+pub(super) fn judged_after(
+    finer: &StrainFrame,
+    members: &[Member<'_>],
+    unknown: &[SizedAmplitudes],
+    ways: &[(FoundAnew, Vec<f64>)],
+) -> Option<Vec<Judged>> {
+    let own = finer.as_modelled();
+    let told = Told::of(finer, members, unknown)?;
+    let of = |(anew, before): &(FoundAnew, Vec<f64>)| {
+        let with = Proof::of(&told, *anew);
+        let mut out = Judged::default();
+        for run in finer.observations.proof_runs() {
+            let now = with.run(&own, run);
+            let (after, floor) = now.judged();
+            let from = out.after.len();
+            out.extend(Judged {
+                gauges: now.all.0.iter().map(|e| e.1).collect(),
+                reading: now.all.pick(&finer.observations.values, finer.n_gauges()),
+                before: before
+                    .iter()
+                    .skip(from)
+                    .take(after.len())
+                    .copied()
+                    .collect(),
+                after,
+                floor,
+                mesh: now.mesh,
+            });
+        }
+        out
+    };
+    Some(ways.iter().map(of).collect())
 }

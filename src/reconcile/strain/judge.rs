@@ -10,10 +10,11 @@ use super::next::next_measurement;
 use super::recovered::loads_before_after;
 use super::remains::{remains, sits};
 use super::resampled::wins;
-use super::validation::validated;
+use super::validation::{Proofs, validated};
 use crate::reconcile::effect::{Candidate, Discrepancy, full_id};
 use crate::reconcile::outcome::{Misfit, NamedEffect, Outcome, Rival, Verdict};
 use crate::reconcile::search::Scored;
+use rayon::prelude::*;
 
 /// Rivals within this log evidence can't be told apart: odds below twenty to one.
 const INDISTINGUISHABLE: f64 = 3.0;
@@ -145,7 +146,8 @@ pub(super) fn judge(
         adequacy_of(frame, candidates, best)
     };
     let attempt = named(frame, candidates, best);
-    let (gap, channels) = validated(frame, candidates, best);
+    let proofs = Proofs::of(frame);
+    let (gap, channels) = validated(&proofs, candidates, best);
     let noise = noise_factor(frame, candidates, best);
     let reached = at_floor(&after) && noise <= limit::NOISE;
     let plausible = attempt.iter().all(|e| e.plausible);
@@ -169,11 +171,11 @@ pub(super) fn judge(
     };
     let others = rival_sets(candidates, all, best);
     let rivals: Vec<Rival> = others
-        .iter()
+        .par_iter()
         .map(|s| Rival {
             ids: ids(candidates, &s.set),
             evidence_difference: best.log_evidence - s.log_evidence,
-            gap_after: validated(frame, candidates, s).0.after,
+            gap_after: validated(&proofs, candidates, s).0.after,
             indistinguishable: best.log_evidence - s.log_evidence < INDISTINGUISHABLE,
         })
         .collect();

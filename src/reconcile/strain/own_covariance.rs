@@ -9,6 +9,7 @@ use super::frame::StrainFrame;
 use super::likelihood::{Fit, Likelihood};
 use crate::reconcile::effect::{Candidate, Stage};
 use crate::reconcile::search::{Scored, Scorer, settle};
+use rayon::prelude::*;
 
 /// The best of `contenders`, and of what may stand for members of `found` at the same gauges, each under its own covariance.
 pub(super) fn best_by_own_covariance(
@@ -37,7 +38,8 @@ pub(super) fn best_by_own_covariance(
             members.zip(s.fit.parameters.iter().cloned()).collect();
         Likelihood::new(frame, candidates, &runs, &reference).score(&s.set, Some((&s, None)))
     };
-    let all: Vec<Scored<Fit>> = first.into_iter().filter_map(own).collect();
+    let scored: Vec<Option<Scored<Fit>>> = first.into_par_iter().map(own).collect();
+    let all: Vec<Scored<Fit>> = scored.into_iter().flatten().collect();
     settle(&all, DECISIVE)
 }
 

@@ -1,12 +1,16 @@
 //! Wheel loads recovered from the strain of runs that were not fitted, without and with the effects.
+//!
+//! Solved as `recover` solves readings whose errors go together. The covariance is not that of `recover`: it holds what the effects leave,
+//! their amplitudes in this run and gauges as read with faults in, and follows the noted loads, which `recover` does not have.
 
 use super::covariance::{Selection, covariance, read_patterns};
 use super::frame::StrainFrame;
 use super::prediction::read_all;
 use super::state::{Part, StrainState};
-use crate::linalg::precision::Precision;
+use crate::linalg::Matrix;
 use crate::reconcile::effect::{Member, SizedAmplitudes};
 use crate::reconcile::outcome::LoadShift;
+use crate::recovery::calibrated::fit_correlated;
 
 /// Wheel loads recovered from the strain of each proof run, by generalised least squares, without and with the effects.
 pub fn loads_before_after(
@@ -65,24 +69,15 @@ fn recover(
     // The loads are to be found: their measured values and noise stay out.
     let mut free = frame.clone();
     free.load_noise = 0.0;
-    let p = Precision::of(&covariance(&free, members, &used, unknown), used.len())?;
-    let mut normal = vec![0.0; n_l * n_l];
-    let mut right = vec![0.0; n_l];
-    let here = |l: usize| used.0.iter().map(|e| columns[l][e.1]).collect::<Vec<f64>>();
-    for l in 0..n_l {
-        let w = p.apply(&here(l));
-        for k in 0..n_l {
-            normal[l * n_l + k] = here(k).iter().zip(&w).map(|(a, b)| a * b).sum();
-        }
-        right[l] = r.iter().zip(&w).map(|(a, b)| a * b).sum();
-    }
-    let solved = Precision::of(&normal, n_l)?;
-    Some(
-        solved
-            .apply(&right)
-            .into_iter()
-            .enumerate()
-            .map(|(l, v)| (v, solved.entry(l, l).max(0.0).sqrt()))
-            .collect(),
-    )
+    let covariance = covariance(&free, members, &used, unknown);
+    let s = Matrix::from_fn(used.len(), n_l, |i, l| columns[l][used.0[i].1]);
+    let scale = |l: usize| {
+        let norm = s.column(l).norm();
+        if norm > 0.0 { 1.0 / norm } else { 1.0 }
+    };
+    let scales: Vec<f64> = (0..n_l).map(scale).collect();
+    let (fit, _) = fit_correlated(&s, &r, &covariance, &vec![None; n_l], &scales)?;
+    let sigma = |l: usize| fit.covariance[(l, l)].max(0.0).sqrt();
+    let loads = fit.f.iter().enumerate().map(|(l, v)| (*v, sigma(l)));
+    (fit.rank == n_l).then(|| loads.collect())
 }

@@ -2,11 +2,12 @@
 
 use super::explanation::Explanation;
 use super::frame::StrainFrame;
-use super::gap::{FoundAnew, Judged, judged};
+use super::gap::{FoundAnew, Judged, before, judged_after};
 use super::likelihood::{Fit, Likelihood};
 use crate::reconcile::effect::Candidate;
 use crate::reconcile::outcome::{ChannelGap, Gap, GapBasis};
 use crate::reconcile::search::{Scored, Scorer};
+use rayon::prelude::*;
 
 /// Groups of runs that are left out in turn where no run is held out: each set is fitted as many times.
 const FOLDS: usize = 6;
@@ -14,10 +15,57 @@ const FOLDS: usize = 6;
 /// Residuals judged with amplitudes found anew, and with the loads besides.
 type Both = [Judged; 2];
 
-fn judged_both(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) -> Both {
-    let e = Explanation::of(frame, candidates, scored);
-    [FoundAnew::Amplitudes, FoundAnew::AmplitudesAndLoads]
-        .map(|a| judged(frame, &e.members, &e.unknown, a).unwrap_or_default())
+/// Runs to be judged, with their residuals by the analyst's model.
+struct Proven {
+    frame: StrainFrame,
+    /// Amplitudes found anew; with the loads besides. Empty where the covariance has no factor.
+    ways: Vec<(FoundAnew, Vec<f64>)>,
+}
+
+impl Proven {
+    fn of(frame: StrainFrame) -> Self {
+        let ways = [FoundAnew::Amplitudes, FoundAnew::AmplitudesAndLoads];
+        let before = before(&frame, &ways).unwrap_or_default();
+        Self {
+            ways: ways.into_iter().zip(before).collect(),
+            frame,
+        }
+    }
+
+    fn judged(&self, candidates: &[Candidate], scored: &Scored<Fit>) -> Both {
+        let e = Explanation::of(&self.frame, candidates, scored);
+        let both = judged_after(&self.frame, &e.members, &e.unknown, &self.ways);
+        both.and_then(|b| b.try_into().ok()).unwrap_or_default()
+    }
+}
+
+/// The runs by which sets of effects are judged: those that are held out, else every run in turn. Made once for all sets.
+pub struct Proofs<'a> {
+    frame: &'a StrainFrame,
+    parts: Vec<Proven>,
+}
+
+impl<'a> Proofs<'a> {
+    /// Of the runs of `frame`.
+    pub fn of(frame: &'a StrainFrame) -> Self {
+        if frame.observations.held_out.iter().any(|h| *h) {
+            return Self {
+                frame,
+                parts: vec![Proven::of(frame.clone())],
+            };
+        }
+        let n = frame.n_runs();
+        let folds = FOLDS.min(n);
+        let part = |fold: usize| {
+            let mut part = frame.clone();
+            part.observations.held_out = (0..n).map(|r| r % folds == fold).collect();
+            Proven::of(part)
+        };
+        Self {
+            frame,
+            parts: (0..folds).into_par_iter().map(part).collect(),
+        }
+    }
 }
 
 fn refitted(
@@ -38,15 +86,15 @@ fn refitted(
 /// The gap over all and by gauge: on held-out runs, else every run in turn. Effects of single runs (two exchanged, a wrong note) can't show
 /// on runs that they don't touch: those they touch are judged besides, half of the gauges by what was fitted without it.
 pub fn validated(
-    frame: &StrainFrame,
+    proofs: &Proofs<'_>,
     candidates: &[Candidate],
     scored: &Scored<Fit>,
 ) -> (Gap, Vec<ChannelGap>) {
+    let frame = proofs.frame;
     let held_out = frame.observations.held_out.iter().any(|h| *h);
-    let [mut plain, mut loads_found] = if held_out {
-        judged_both(frame, candidates, scored)
-    } else {
-        in_turn(frame, candidates, scored)
+    let [mut plain, mut loads_found] = match proofs.parts.as_slice() {
+        [one] if held_out => one.judged(candidates, scored),
+        parts => in_turn(parts, candidates, scored),
     };
     let effects = scored.set.iter().filter_map(|&c| candidates.get(c));
     let mut touched: Vec<usize> = effects.flat_map(|c| c.effect.runs()).collect();
@@ -75,17 +123,15 @@ pub fn validated(
     plain.gap(frame, basis, &loads_found)
 }
 
-fn in_turn(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) -> Both {
-    let n = frame.n_runs();
-    let folds = FOLDS.min(n);
+fn in_turn(parts: &[Proven], candidates: &[Candidate], scored: &Scored<Fit>) -> Both {
+    let one = |part: &Proven| {
+        let fitted = refitted(&part.frame, candidates, scored)?;
+        Some(part.judged(candidates, &fitted))
+    };
+    let judged: Vec<Option<Both>> = parts.par_iter().map(one).collect();
     let mut out = Both::default();
-    for fold in 0..folds {
-        let mut part = frame.clone();
-        part.observations.held_out = (0..n).map(|r| r % folds == fold).collect();
-        let Some(fitted) = refitted(&part, candidates, scored) else {
-            continue;
-        };
-        for (all, more) in out.iter_mut().zip(judged_both(&part, candidates, &fitted)) {
+    for part in judged.into_iter().flatten() {
+        for (all, more) in out.iter_mut().zip(part) {
             all.extend(more);
         }
     }
@@ -118,5 +164,7 @@ fn judged_by_halves(
     };
     let mut proof = frame.clone();
     proof.observations.held_out = (0..frame.n_runs()).map(|r| touched.contains(&r)).collect();
-    judged_both(&proof, candidates, &fitted).map(|j| j.half(half))
+    Proven::of(proof)
+        .judged(candidates, &fitted)
+        .map(|j| j.half(half))
 }

@@ -1,0 +1,191 @@
+//! False names on controls: 400 cases in which nothing is hidden, every second one static, the others dynamic.
+//!
+//! `cargo run --release --example reconcile_controls -- [--from 0] [--to 400]` prints a line a case and the share of false names with its
+//! interval (Wilson 1927, 95 %). A case is made of its number alone, so that parts of the sweep can be run one after the other and their
+//! lines joined. Among them are gauges glued 2 mm from their place (one standard deviation), noise 1.5 times or 1/1.5 of what is stated, the
+//! vehicles of all shared cases, records of 200 to 1,000 Hz from four layouts of sensors.
+#![allow(clippy::print_stdout)]
+
+#[path = "../tests/reconcile/hidden/mod.rs"]
+#[allow(dead_code, reason = "controls alone")]
+mod hidden;
+#[path = "../tests/moving/mod.rs"]
+mod moving;
+
+use moving::generator::{Dice, Layout};
+use rayon::prelude::*;
+use std::time::Instant;
+use strainbridge::reconcile::Verdict;
+use strainbridge::reconcile::strain::{Scatter, StrainFrame};
+use strainbridge::reconcile::{motion, strain};
+
+/// Factors of the noise that is stated on the true one.
+const STATED: [f64; 3] = [1.0, 1.0 / 1.5, 1.5];
+/// Standard deviation of a gauge's place along its axis, mm.
+const PLACE_MM: f64 = 2.0;
+/// Lengths over which strain changes by its own size, mm: the width of a rail to the distance of two cross members.
+const CHANGES_MM: [f64; 2] = [100.0, 600.0];
+
+/// What was said of a case.
+struct Said {
+    what: String,
+    verdict: Verdict,
+    names: Vec<String>,
+    seconds: f64,
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().collect();
+    let number = |key: &str, other: usize| {
+        let at = arguments.iter().position(|a| a == key);
+        let text = at.and_then(|i| arguments.get(i + 1));
+        text.map_or(other, |t| t.parse().expect("a whole number"))
+    };
+    let (from, to) = (number("--from", 0), number("--to", 400));
+    let bases = bases();
+    let (mut n, mut wrong, mut unknown) = (0, 0, 0);
+    let cases: Vec<usize> = (from..to).collect();
+    for some in cases.chunks(rayon::current_num_threads()) {
+        let said: Vec<Said> = some.par_iter().map(|c| case(&bases, *c)).collect();
+        for (case, s) in some.iter().zip(&said) {
+            n += 1;
+            wrong += usize::from(s.verdict == Verdict::Named);
+            unknown += usize::from(s.verdict == Verdict::Unknown);
+            println!(
+                "{case} {}: {} {:?} ({:.1} s)",
+                s.what,
+                s.verdict.word(),
+                s.names,
+                s.seconds
+            );
+        }
+    }
+    let [low, high] = wilson(wrong, n);
+    println!(
+        "{n} controls ({from} to {to}): {wrong} false names, {:.2} % ({:.2} to {:.2} %); {unknown} unknown",
+        percent(wrong, n),
+        100.0 * low,
+        100.0 * high
+    );
+}
+
+fn percent(k: usize, n: usize) -> f64 {
+    100.0 * k as f64 / n.max(1) as f64
+}
+
+/// Wilson's interval of a share, 95 %.
+fn wilson(k: usize, n: usize) -> [f64; 2] {
+    const Z: f64 = 1.959_964;
+    let n = n.max(1) as f64;
+    let p = k as f64 / n;
+    let middle = p + Z * Z / (2.0 * n);
+    let half = Z * (p * (1.0 - p) / n + Z * Z / (4.0 * n * n)).sqrt();
+    let scale = 1.0 + Z * Z / n;
+    [(middle - half).max(0.0) / scale, (middle + half) / scale]
+}
+
+/// Frames of the shared static cases, with the name of each.
+fn bases() -> Vec<(String, StrainFrame)> {
+    let folder = hidden::shared().expect("../shared/hidden_effects");
+    let names = (1..=9).map(|k| format!("dev-s{k}"));
+    let there = names.filter(|n| folder.join("static").join(n).is_dir());
+    let read = |n: String| {
+        let frame = hidden::frame_of(&folder.join("static").join(&n));
+        (n, frame)
+    };
+    there.map(read).collect()
+}
+
+fn case(bases: &[(String, StrainFrame)], number: usize) -> Said {
+    let start = Instant::now();
+    let seed = 70_000 + number as u64;
+    let stated = STATED[(number / 2) % STATED.len()];
+    let (what, verdict, names) = if number % 2 == 0 {
+        let (name, base) = &bases[(number / 2) % bases.len()];
+        let placed = (number / 6) % 2 == 0;
+        let outcome = strain::examine(&still(base, seed, stated, placed), &[]);
+        let place = if placed { ", places 2 mm" } else { "" };
+        let names = outcome.effects.into_iter().map(|e| e.id).collect();
+        (
+            format!("static {name}, noise stated {stated:.2}{place}"),
+            outcome.verdict,
+            names,
+        )
+    } else {
+        moved(number, seed, stated)
+    };
+    Said {
+        what,
+        verdict,
+        names,
+        seconds: start.elapsed().as_secs_f64(),
+    }
+}
+
+/// A static control: gains, angles and coefficients off as the generator has them, and places where `placed`.
+fn still(base: &StrainFrame, seed: u64, stated: f64, placed: bool) -> StrainFrame {
+    use hidden::generator::{Background, hide};
+    let mut frame = hide(base, "none", 0.0, Background::Messy, seed).frame;
+    frame.noise *= stated;
+    if !placed {
+        return frame;
+    }
+    let mut dice = Dice::of(seed);
+    let n_c = frame.n_columns();
+    let mut per_mm = frame.influence.clone();
+    let mut moved = frame.clone();
+    for row in per_mm.chunks_exact_mut(n_c) {
+        let length = dice.between(CHANGES_MM[0], CHANGES_MM[1]);
+        row.iter_mut().for_each(|v| *v *= dice.normal() / length);
+    }
+    for (row, slope) in moved
+        .influence
+        .chunks_exact_mut(n_c)
+        .zip(per_mm.chunks_exact(n_c))
+    {
+        let off = PLACE_MM * dice.normal();
+        row.iter_mut().zip(slope).for_each(|(v, s)| *v = off * s);
+    }
+    let change = strain::predict(&moved, &[]);
+    let readings = frame.observations.values.iter_mut().zip(change);
+    readings.for_each(|(v, c)| *v += c);
+    let declared = per_mm.iter().map(|s| PLACE_MM * s).collect();
+    frame.scatter.push(Scatter::Together(declared));
+    frame.per_mm = Some(per_mm);
+    frame
+}
+
+/// A dynamic control.
+fn moved(number: usize, seed: u64, stated: f64) -> (String, Verdict, Vec<String>) {
+    use moving::generator::{Background, hide_at};
+    let layouts = [
+        Layout::Front,
+        Layout::FrontAccelerationsOnly,
+        Layout::Pair,
+        Layout::Rear,
+    ];
+    let rates = [200.0, 250.0, 400.0, 500.0, 1000.0];
+    let (layout, rate) = (
+        layouts[(number / 2) % layouts.len()],
+        rates[(number / 2) % rates.len()],
+    );
+    let background = if (number / 6) % 2 == 0 {
+        Background::Messy
+    } else {
+        Background::Clean
+    };
+    let case = hide_at(layout, rate, background, seed);
+    let mut frame = moving::frame_of(&case);
+    let factor = |sd: Option<f64>| sd.map(|s| s * stated);
+    frame.noise_acc = factor(frame.noise_acc);
+    frame.noise_force = factor(frame.noise_force);
+    let what = format!("dynamic {layout:?} {rate} Hz, {background:?}, noise stated {stated:.2}");
+    match motion::examine(&frame, &[]) {
+        Ok(o) => (
+            what,
+            o.verdict,
+            o.effects.into_iter().map(|e| e.id).collect(),
+        ),
+        Err(e) => (what, Verdict::Unknown, vec![format!("{e:?}")]),
+    }
+}

@@ -1,0 +1,181 @@
+//! The Cholesky factor of a dense covariance: solutions, chi-squares, log-determinant, inverse.
+
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::linalg::cholesky::llt::factor::{
+    LltParams, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,
+};
+use faer::linalg::cholesky::llt::inverse::{inverse, inverse_scratch};
+use faer::{Auto, MatMut, MatRef, Par, Spec};
+
+/// Order from which blocks pay: below it the setting up of blocks takes longer than a plain loop.
+const BLOCKED: usize = 64;
+
+/// `L` of `C = L L'`, and `ln det C`.
+#[derive(Clone, Debug)]
+pub struct Cholesky {
+    n: usize,
+    /// `L` by columns, zero above the diagonal.
+    columns: Vec<f64>,
+    log_det: f64,
+}
+
+impl Cholesky {
+    /// The factor of `covariance` (`n x n` by rows, lower triangle read), or `None` where it is not positive definite.
+    pub fn of(covariance: &[f64], n: usize) -> Option<Self> {
+        if covariance.len() != n * n {
+            return None;
+        }
+        let mut columns = vec![0.0; n * n];
+        for i in 0..n {
+            for j in 0..=i {
+                columns[j * n + i] = covariance[i * n + j];
+            }
+        }
+        if n < BLOCKED {
+            factor_by_columns(&mut columns, n);
+        } else {
+            factor_by_blocks(&mut columns, n)?;
+        }
+        let pivots = || (0..n).map(|i| columns[i * n + i]);
+        if !pivots().all(|p| p > 0.0 && p.is_finite()) {
+            return None;
+        }
+        let log_det = 2.0 * pivots().map(f64::ln).sum::<f64>();
+        Some(Self {
+            n,
+            columns,
+            log_det,
+        })
+    }
+
+    /// Order.
+    pub fn n(&self) -> usize {
+        self.n
+    }
+
+    /// `ln det C`.
+    pub fn log_det(&self) -> f64 {
+        self.log_det
+    }
+
+    /// `C^-1 x`.
+    pub fn solve(&self, x: &[f64]) -> Vec<f64> {
+        let mut out = self.whitened(x);
+        for j in (0..self.n).rev() {
+            let (own, column) = self.column(j);
+            let (head, tail) = out.split_at_mut(j + 1);
+            head[j] = (head[j] - dot(column, tail)) / own;
+        }
+        out
+    }
+
+    /// `x' C^-1 x`.
+    pub fn chi2(&self, x: &[f64]) -> f64 {
+        self.whitened(x).iter().map(|v| v * v).sum()
+    }
+
+    /// `L^-1 x`; what `x` lacks is zero.
+    fn whitened(&self, x: &[f64]) -> Vec<f64> {
+        let mut out = x.to_vec();
+        out.resize(self.n, 0.0);
+        for j in 0..self.n {
+            let (own, column) = self.column(j);
+            let (head, tail) = out.split_at_mut(j + 1);
+            head[j] /= own;
+            let v = head[j];
+            tail.iter_mut().zip(column).for_each(|(t, l)| *t -= v * l);
+        }
+        out
+    }
+
+    /// Pivot `j`, and what stands below it.
+    fn column(&self, j: usize) -> (f64, &[f64]) {
+        let below = &self.columns[j * self.n + j..(j + 1) * self.n];
+        (below[0], &below[1..])
+    }
+
+    /// `C^-1`, `n x n`; `None` where memory doesn't hold it.
+    pub fn inverse(&self) -> Option<Vec<f64>> {
+        let n = self.n;
+        let mut out = vec![0.0; n * n];
+        if n < BLOCKED {
+            let mut unit = vec![0.0; n];
+            for j in 0..n {
+                unit[j] = 1.0;
+                out[j * n..(j + 1) * n].copy_from_slice(&self.solve(&unit));
+                unit[j] = 0.0;
+            }
+            return Some(out);
+        }
+        let mut memory = memory(inverse_scratch::<f64>(n, Par::Seq))?;
+        inverse(
+            MatMut::from_column_major_slice_mut(&mut out, n, n),
+            MatRef::from_column_major_slice(&self.columns, n, n),
+            Par::Seq,
+            MemStack::new(&mut memory),
+        );
+        // The lower triangle is filled.
+        for j in 0..n {
+            for i in j + 1..n {
+                out[i * n + j] = out[j * n + i];
+            }
+        }
+        Some(out)
+    }
+}
+
+fn memory(size: StackReq) -> Option<MemBuffer> {
+    MemBuffer::try_new(size).ok()
+}
+
+/// Replaces the lower triangle of `a`, by columns, by its factor; what is not positive definite leaves pivots that are no numbers.
+fn factor_by_columns(a: &mut [f64], n: usize) {
+    for j in 0..n {
+        let (before, rest) = a.split_at_mut(j * n);
+        let own = &mut rest[j..n];
+        for k in 0..j {
+            let other = &before[k * n + j..(k + 1) * n];
+            let v = other[0];
+            own.iter_mut().zip(other).for_each(|(o, l)| *o -= v * l);
+        }
+        let pivot = own[0].sqrt();
+        own.iter_mut().for_each(|v| *v /= pivot);
+        own[0] = pivot;
+    }
+}
+
+/// The same by blocks; `None` where the matrix is not positive definite or memory doesn't hold what it takes.
+fn factor_by_blocks(a: &mut [f64], n: usize) -> Option<()> {
+    let parameters = Spec::<LltParams, f64>::new(<LltParams as Auto<f64>>::auto());
+    let mut memory = memory(cholesky_in_place_scratch::<f64>(n, Par::Seq, parameters))?;
+    cholesky_in_place(
+        MatMut::from_column_major_slice_mut(a, n, n),
+        LltRegularization::default(),
+        Par::Seq,
+        MemStack::new(&mut memory),
+        parameters,
+    )
+    .ok()?;
+    // What the blocks leave above the diagonal is no part of the factor.
+    for j in 1..n {
+        a[j * n..j * n + j].fill(0.0);
+    }
+    Some(())
+}
+
+/// Sum of products, in eight partial sums that the processor runs side by side.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut lanes = [0.0; 8];
+    let (whole_a, whole_b) = (a.chunks_exact(8), b.chunks_exact(8));
+    let (rest_a, rest_b) = (whole_a.remainder(), whole_b.remainder());
+    for (x, y) in whole_a.zip(whole_b) {
+        for (lane, (u, v)) in lanes.iter_mut().zip(x.iter().zip(y)) {
+            *lane += u * v;
+        }
+    }
+    let rest: f64 = rest_a.iter().zip(rest_b).map(|(x, y)| x * y).sum();
+    lanes.iter().sum::<f64>() + rest
+}
+
+#[cfg(test)]
+mod tests;

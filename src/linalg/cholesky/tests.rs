@@ -1,0 +1,52 @@
+use super::Cholesky;
+
+/// Sizes on both sides of the order from which blocks are used.
+const ORDERS: [usize; 4] = [1, 30, 64, 150];
+
+/// The covariance min(i, j) + 1 of a random walk: L is one everywhere below the diagonal, so det C = 1; its inverse is the second
+/// difference with a last entry of one.
+fn walk(n: usize) -> Vec<f64> {
+    (0..n * n)
+        .map(|k| ((k / n).min(k % n) + 1) as f64)
+        .collect()
+}
+
+#[test]
+fn the_factor_of_a_random_walk_is_that_of_the_closed_form() {
+    for n in ORDERS {
+        let c = Cholesky::of(&walk(n), n).expect("positive definite");
+        assert!(c.log_det().abs() < 1e-10, "{n}");
+        let x: Vec<f64> = (0..n).map(|i| ((i * 7 + 3) % 11) as f64).collect();
+        // L^-1 x are its steps.
+        let steps = |i: usize| x[i] - if i > 0 { x[i - 1] } else { 0.0 };
+        let chi2: f64 = (0..n).map(|i| steps(i).powi(2)).sum();
+        assert!((c.chi2(&x) / chi2 - 1.0).abs() < 1e-12, "{n}");
+        let solved = c.solve(&x);
+        let inverse = c.inverse().expect("memory");
+        for i in 0..n {
+            let next = if i + 1 < n { steps(i + 1) } else { 0.0 };
+            assert!((solved[i] - (steps(i) - next)).abs() < 1e-9, "{n} {i}");
+            for j in 0..n {
+                let closed = match i.abs_diff(j) {
+                    0 if i + 1 == n => 1.0,
+                    0 => 2.0,
+                    1 => -1.0,
+                    _ => 0.0,
+                };
+                assert!((inverse[i * n + j] - closed).abs() < 1e-9, "{n} {i} {j}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_not_positive_definite_or_no_number_has_no_factor() {
+    for n in ORDERS {
+        for spoilt in [-1.0, f64::NAN] {
+            let mut c = walk(n);
+            c[n * n - 1] = spoilt;
+            assert!(Cholesky::of(&c, n).is_none(), "{n} {spoilt}");
+        }
+        assert!(Cholesky::of(&walk(n), n + 1).is_none());
+    }
+}
