@@ -160,6 +160,9 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
     // A list that was cut may lack what this layout lacks.
     let rounds = if list.len() < LIST { 0 } else { ROUNDS };
     for _ in 0..rounds {
+        if spec.stop.is_asked() {
+            break;
+        }
         let near = around(c, spec, &gauges);
         let known = (gauges.clone(), log_det);
         let effort = Effort {
@@ -288,6 +291,7 @@ fn prove(
         incumbent,
         upper,
         work: spec.proof,
+        stop: &spec.stop,
     };
     let proof = branch_and_bound::prove(&problem, &weights, &excluder(c, spec, &choices));
     (Some(choices.len()), Some((proof, choices)))

@@ -17,6 +17,7 @@ use crate::finding::{Finding, Severity};
 use crate::gauge::Gauge;
 use crate::model::{GridIx, Model, Vec3};
 use crate::reconcile::strain::{MassSignature, NuisanceLoad, PlaneStrainRow, Wiring};
+use crate::stop::Stop;
 use crate::units::KILO;
 
 /// The model with everything needed to solve it again.
@@ -28,6 +29,8 @@ pub(super) struct DeckFrame {
     pub(super) base: Vec<f64>,
     /// Small regions whose stiffness is tried.
     pub(super) regions: Vec<Region>,
+    /// Stops the solutions of changed models between two of them.
+    pub(super) stop: Stop,
 }
 
 /// Solves all signatures. `channels` are the gauges in the order of the strain file.
@@ -243,6 +246,7 @@ pub(super) fn read(
         columns,
         base: own,
         regions: vec![],
+        stop: work.cx.progress.stop(),
     };
     part.stiffness = work.stage("solve zones", |_| deck.signatures(job))?;
     // Tables count in microstrain per unit of the job, as sensitivity.csv does.
