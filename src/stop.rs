@@ -36,3 +36,6 @@ impl PartialEq for Stop {
 }
 
 impl Eq for Stop {}
+
+#[cfg(test)]
+mod tests;
