@@ -236,6 +236,7 @@ fn truth(text: &str, gauges: &[Glued], runs: &str) -> StrainFrame {
         })
         .collect();
     StrainFrame {
+        stop: Default::default(),
         observations: Observations {
             channels: gauges.iter().map(|g| g.name.clone()).collect(),
             runs: (1..=rows.len()).map(|r| format!("R{r:02}")).collect(),

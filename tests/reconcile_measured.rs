@@ -61,6 +61,7 @@ fn frame(
         sync_tolerance_s: 0.0,
         corrections: vec![],
         units: UnitNames::si(),
+        stop: Default::default(),
     })
 }
 

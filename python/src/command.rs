@@ -3,7 +3,7 @@
 use crate::fault::{raise, wrong};
 use crate::files::Desk;
 use crate::job::CheckedJob;
-use crate::outcome::{Told, tell, tell_loads};
+use crate::outcome::{Told, tell, tell_learnt, tell_loads};
 use crate::work::{Asked, run};
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,9 @@ type OnJob = fn(&Job, &Context) -> Result<Told, Faults>;
 /// Commands that ask a job alone, and the question of the library behind each.
 const ON_JOB: [(&str, OnJob); 11] = [
     ("ballast", |j, cx| tell(strainbridge::ballast(j, cx)?)),
-    ("calibrate", |j, cx| tell(strainbridge::calibrate(j, cx)?)),
+    ("calibrate", |j, cx| {
+        tell_learnt(strainbridge::calibrate(j, cx)?)
+    }),
     ("cases", |j, cx| tell(strainbridge::cases(j, cx)?)),
     ("identify", |j, cx| tell(strainbridge::identify(j, cx)?)),
     ("payload", |j, cx| tell(strainbridge::payload(j, cx)?)),

@@ -2,14 +2,16 @@
 
 use crate::fault::raise;
 use crate::work::{Asked, run};
-use numpy::PyArray1;
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
+use strainbridge::app::calibrate::Calibrated;
 use strainbridge::app::outcome::Answer;
 use strainbridge::app::recover::Recovered;
 use strainbridge::report::command::{Report, save, unsaved};
+use strainbridge::report::notebook::piece;
 use strainbridge::{Faults, Outcome};
 
 /// What can be asked of an outcome of any type.
@@ -17,9 +19,37 @@ pub(crate) trait Kept: Send {
     /// Writes the files of the command; the text of `result.json`.
     fn save(&self, folder: &Path) -> Result<String, Faults>;
 
+    /// The blocks of its report for a notebook.
+    fn piece(&self) -> String;
+
     /// Names and values of the columns of a record's samples, where it has any.
     fn history(&self) -> Option<Vec<(String, Vec<f64>)>> {
         None
+    }
+
+    /// S, gauges x loads by rows, with its number of loads, as `sensitivity.csv` has it, where it was learnt.
+    fn learnt(&self) -> Option<(Vec<f64>, usize)> {
+        None
+    }
+}
+
+/// S that runs of known load taught.
+struct Learnt(Outcome<Calibrated>);
+
+impl Kept for Learnt {
+    fn save(&self, folder: &Path) -> Result<String, Faults> {
+        save(&self.0, folder)
+    }
+
+    fn piece(&self) -> String {
+        piece(&self.0)
+    }
+
+    fn learnt(&self) -> Option<(Vec<f64>, usize)> {
+        let s = &self.0.sensitivity;
+        let (n, k) = (s.gauges.len(), s.loads.len());
+        let entries = (0..n * k).map(|i| s.values[(i / k, i % k)] * 1e6);
+        Some((entries.collect(), k))
     }
 }
 
@@ -29,6 +59,10 @@ struct Measured(Outcome<Recovered>);
 impl Kept for Measured {
     fn save(&self, folder: &Path) -> Result<String, Faults> {
         save(&self.0, folder)
+    }
+
+    fn piece(&self) -> String {
+        piece(&self.0)
     }
 
     fn history(&self) -> Option<Vec<(String, Vec<f64>)>> {
@@ -58,6 +92,10 @@ where
 {
     fn save(&self, folder: &Path) -> Result<String, Faults> {
         save(self, folder)
+    }
+
+    fn piece(&self) -> String {
+        piece(self)
     }
 }
 
@@ -90,6 +128,11 @@ pub(crate) fn tell_loads(outcome: Outcome<Recovered>) -> Result<Told, Faults> {
     tell_kept(outcome, |o| Box::new(Measured(o)))
 }
 
+/// A learnt S for Python.
+pub(crate) fn tell_learnt(outcome: Outcome<Calibrated>) -> Result<Told, Faults> {
+    tell_kept(outcome, |o| Box::new(Learnt(o)))
+}
+
 fn tell_kept<A: Answer>(
     outcome: Outcome<A>,
     keep: impl FnOnce(Outcome<A>) -> Box<dyn Kept>,
@@ -114,6 +157,24 @@ impl Told {
             kept.save(&folder)
         })?;
         done.map_err(|f| raise(py, f))
+    }
+
+    /// The blocks of its report as HTML for a notebook.
+    fn html(&self, py: Python) -> PyResult<String> {
+        run(py, &Asked::default(), |_| {
+            let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+            kept.piece()
+        })
+    }
+
+    /// S, gauges x loads, microstrain per job unit; `None` where none was learnt.
+    fn learnt<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let found = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let Some((entries, k)) = found.learnt() else {
+            return Ok(None);
+        };
+        let n = entries.len().checked_div(k).unwrap_or(0);
+        PyArray1::from_vec(py, entries).reshape([n, k]).map(Some)
     }
 
     /// Samples of a record by column, `time` first; `None` where no record was measured.

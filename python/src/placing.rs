@@ -7,6 +7,7 @@ use numpy::{PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::time::Instant;
+use strainbridge::app::context::Progress;
 use strainbridge::linalg::{Matrix, dense};
 use strainbridge::placement::candidates::{Candidates, Scatter};
 use strainbridge::placement::{Layout, Spec, place};
@@ -42,10 +43,11 @@ pub(crate) fn place_rows<'py>(
         threads,
         progress: None,
     };
-    let found = run(py, &asked, |_| {
+    let found = run(py, &asked, |heard| {
         let begin = Instant::now();
         let mut spec = Spec::new(n, k);
         spec.spacing = spacing.unwrap_or(0.0);
+        spec.stop = heard.stop();
         if !proof {
             spec.proof = 0.0;
         }

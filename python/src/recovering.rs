@@ -8,12 +8,14 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
 use std::time::Instant;
+use strainbridge::app::context::Progress;
 use strainbridge::finding::Finding;
 use strainbridge::linalg::Matrix;
 use strainbridge::recovery::history::{Filter, SampleLoads};
 use strainbridge::recovery::plausible::LARGEST_STRAIN;
 use strainbridge::recovery::{ErrorModel, Gain, Readings, Recovery, Sums, Widening, recover};
 use strainbridge::sensitivity::{Load, Sensitivity, check_separability};
+use strainbridge::stop::Stop;
 use strainbridge::units::MICROSTRAIN;
 use strainbridge::{Fault, Faults, Severity};
 
@@ -68,9 +70,9 @@ pub(crate) fn recover_rows<'py>(
         threads,
         progress: None,
     };
-    let found = run(py, &asked, |_| {
+    let found = run(py, &asked, |heard| {
         let begin = Instant::now();
-        let found = recovered(rows, k, samples, noise)?;
+        let found = recovered(rows, k, samples, noise, &heard.stop())?;
         Ok((found, begin.elapsed().as_secs_f64()))
     })?;
     let (found, seconds) = found.map_err(|f: Faults| raise(py, f))?;
@@ -112,7 +114,13 @@ fn parts(f: Finding) -> Parts {
 }
 
 /// The loads of readings, `n` a run.
-fn recovered(rows: &[f64], k: usize, samples: &[f64], noise: f64) -> Result<Recovered, Faults> {
+fn recovered(
+    rows: &[f64],
+    k: usize,
+    samples: &[f64],
+    noise: f64,
+    stop: &Stop,
+) -> Result<Recovered, Faults> {
     if !(noise > 0.0 && noise.is_finite()) {
         let remedy = "give one standard deviation of a reading, in the unit of the readings";
         return Err(wrong(S.function, "noise", "it is no positive number", remedy).into());
@@ -133,9 +141,9 @@ fn recovered(rows: &[f64], k: usize, samples: &[f64], noise: f64) -> Result<Reco
     let judged: Vec<f64> = judged_rows(samples, n)
         .flat_map(|(_, row)| row.to_vec())
         .collect();
-    match in_unit(rows, k, samples, noise, unit_of(&judged))? {
+    match in_unit(rows, k, samples, noise, unit_of(&judged), stop)? {
         Some(found) => Ok(found),
-        None => in_unit(rows, k, samples, noise, unit_of(samples))?.ok_or_else(|| {
+        None => in_unit(rows, k, samples, noise, unit_of(samples), stop)?.ok_or_else(|| {
             wrong(
                 S.function,
                 "strain",
@@ -154,6 +162,7 @@ fn in_unit(
     samples: &[f64],
     noise: f64,
     unit: f64,
+    stop: &Stop,
 ) -> Result<Option<Recovered>, Faults> {
     let n = rows.len() / k;
     let s = Sensitivity {
@@ -182,7 +191,7 @@ fn in_unit(
     let (loads, others) = if runs <= MOST_RUNS {
         of_runs(&judged, &half)
     } else {
-        match of_record(&s, samples, unit, errors, &judged)? {
+        match of_record(&s, samples, unit, errors, &judged, stop)? {
             Some(found) => found,
             None => return Ok(None),
         }
@@ -267,6 +276,7 @@ fn of_record(
     unit: f64,
     errors: ErrorModel,
     judged: &Recovery,
+    stop: &Stop,
 ) -> Result<Option<(Vec<f64>, Vec<(usize, Vec<f64>)>)>, Faults> {
     let (n, k) = (s.gauges.len(), s.loads.len());
     let widening: Widening = judged.widening.clone();
@@ -279,6 +289,10 @@ fn of_record(
                 values: Vec::with_capacity(block.len() / n * k),
                 gaps: Vec::new(),
             };
+            // What is not asked for any more is left empty.
+            if stop.is_asked() {
+                return (out, 0);
+            }
             let mut sums = Sums::new(n, k);
             filter.apply(block, unit, &mut out, &mut sums);
             // An infinite reading is none in any unit.

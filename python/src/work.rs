@@ -1,4 +1,5 @@
-//! Work without the interpreter's lock, on threads of its own: Ctrl-C stops it between stages, a bug in it is an exception.
+//! Work without the interpreter's lock, on threads of its own: Ctrl-C stops it between stages and between the cases, runs, files and trials
+//! of one, a bug in it is an exception.
 //!
 //! Every call has its own pool, which ends with it: a process forked from this one finds no threads missing.
 
@@ -7,11 +8,12 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use std::any::Any;
 use std::panic::resume_unwind;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 use strainbridge::app::context::Progress;
+use strainbridge::stop::Stop;
 
 /// Bytes of stack of a working thread, as in the command.
 const STACK: usize = 8 << 20;
@@ -36,7 +38,7 @@ pub(crate) struct Heard {
     stage: Mutex<String>,
     done: AtomicUsize,
     total: AtomicUsize,
-    stop: AtomicBool,
+    stop: Stop,
 }
 
 impl Progress for Heard {
@@ -56,8 +58,8 @@ impl Progress for Heard {
         self.done.fetch_add(parts, Ordering::Relaxed);
     }
 
-    fn is_cancelled(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
+    fn stop(&self) -> Stop {
+        self.stop.clone()
     }
 }
 
@@ -105,7 +107,10 @@ pub(crate) fn run<T: Send>(
         );
         raise(py, fault.into())
     })?;
-    let heard = Heard::default();
+    let heard = Heard {
+        stop: Stop::new(),
+        ..Heard::default()
+    };
     py.detach(|| {
         std::thread::scope(|scope| {
             let (alive, ended) = channel::<()>();
@@ -119,7 +124,7 @@ pub(crate) fn run<T: Send>(
                 if stopped.is_none()
                     && let Err(e) = heard.look(asked)
                 {
-                    heard.stop.store(true, Ordering::Relaxed);
+                    heard.stop.ask();
                     stopped = Some(e);
                 }
             }

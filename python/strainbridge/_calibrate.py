@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-import tempfile
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Iterable, Sequence
 
 import numpy as np
@@ -94,10 +92,9 @@ def calibrate_rows(
         job["sensitivity"] = {"file": "S.csv", "per": {"force": "N"}}
         files["S.csv"] = _table(["gauge", *names], ([gauge, *row] for gauge, row in zip(gauges, rows)))
     outcome = calibrate(Job.from_dict(job, files=files), threads=threads)
-    with tempfile.TemporaryDirectory() as folder:
-        with open(outcome.save(Path(folder)) / "sensitivity.csv", encoding="utf-8", newline="") as file:
-            learnt = [[float(v) for v in row[1:]] for row in list(csv.reader(file))[1:]]
-    return CalibratedRows(np.array(learnt), outcome)
+    learnt = outcome._native.learnt()
+    assert learnt is not None
+    return CalibratedRows(learnt, outcome)
 
 
 def _table(header: list[str], rows: Iterable[Sequence[Any]]) -> bytes:

@@ -3,8 +3,8 @@
 All of them take `threads` (all of the machine where None), `cache` (whether solutions of the built-in solver are kept in the user's cache, as
 the command keeps them) and `progress` (True: a bar of tqdm, where that is installed; or a function, called with stage, parts done and parts in
 all, 0: not known, about twenty times a second). They raise
-:class:`Faults` with every fault of the input, and ``KeyboardInterrupt`` once the work has stopped between two stages. Nothing is written
-before :meth:`Outcome.save`.
+:class:`Faults` with every fault of the input, and ``KeyboardInterrupt`` once the work has stopped: between two stages, or between the load
+cases, runs, files or trials of one. Nothing is written before :meth:`Outcome.save`.
 """
 
 from __future__ import annotations

@@ -100,7 +100,7 @@ class Mesh:
             ImportError: pyvista is not installed.
         """
         try:
-            import pyvista
+            import pyvista  # type: ignore[import-untyped, import-not-found, unused-ignore]
         except ImportError as e:
             raise ImportError("to_pyvista needs pyvista: pip install pyvista") from e
         grid = pyvista.UnstructuredGrid(self.cells, self.celltypes, self.points)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import json
 import tempfile
 from dataclasses import dataclass
@@ -15,9 +14,6 @@ from numpy.typing import NDArray
 from . import _strainbridge as _engine
 from ._mesh import Mesh, read_vtu
 from ._table import Table
-
-#: Rows of a table that are shown in a notebook.
-_SHOWN = 20
 
 
 @dataclass(frozen=True)
@@ -243,29 +239,4 @@ class Outcome(Record):
         raise TypeError("an outcome can't be pickled: save it, or take `to_dict()`")
 
     def _repr_html_(self) -> str:
-        verdict = self._verdict()
-        parts = [f"<p><b>{html.escape(self._keys['command'])}</b></p>"]
-        if verdict:
-            parts.append(f'<p style="color:#b00020"><b>{html.escape(verdict)}</b></p>')
-        parts.append(f"<pre>{html.escape(self.words)}</pre>")
-        parts += [_table_html(name, self._keys[name]) for name in self._tables()]
-        if self.findings:
-            rows = [{"severity": f.severity, "about": f.subject, "message": f.message, "remedy": f.remedy} for f in self.findings]
-            parts.append(_table_html("findings", rows))
-        return "".join(parts)
-
-
-def _table_html(name: str, rows: list[dict[str, Any]]) -> str:
-    columns = list(rows[0])
-    head = "".join(f"<th>{html.escape(c)}</th>" for c in columns)
-    body = "".join("<tr>" + "".join(f"<td>{_cell(r.get(c))}</td>" for c in columns) + "</tr>" for r in rows[:_SHOWN])
-    more = f"<p>{len(rows) - _SHOWN} more</p>" if len(rows) > _SHOWN else ""
-    return f"<p>{html.escape(name)}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{more}"
-
-
-def _cell(value: Any) -> str:
-    if isinstance(value, float):
-        return f"{value:.5g}"
-    if isinstance(value, list):
-        return ", ".join(map(_cell, value))
-    return "" if value is None else html.escape(str(value))
+        return self._native.html()

@@ -95,7 +95,7 @@ def test_an_outcome_that_cannot_be_relied_on_says_so(matrix_folder):
     (matrix_folder / "S.csv").write_text(f"gauge,A.FZ,B.FZ\n{rows}\n")
     out = sb.sensitivity("job.toml")
     assert not out.is_reliable
-    assert "RELIED" in repr(out) and "RELIED" in out._repr_html_()
+    assert "RELIED" in repr(out) and "be relied on" in out._repr_html_()
 
 
 def test_the_text_of_a_dictionary_is_read_back_as_it_was(matrix_folder):

@@ -18,6 +18,9 @@ from strainbridge import _strainbridge as engine
 
 S = np.random.default_rng(0).normal(size=(60, 4))
 
+#: Many errors of a study.
+ERRORS = [{"kind": "relative-uniform", "size": 0.001 * (1 + i)} for i in range(400)]
+
 
 def test_a_bug_is_an_exception_and_the_next_call_works():
     for threads in (None, 1):
@@ -157,6 +160,25 @@ def test_notes_go_to_the_log(caplog, strip_folder):
     assert [r.getMessage() for r in caplog.records] == [f"place: {note}" for note in out.notes]
 
 
+def test_a_long_stage_is_left_between_two_of_its_parts(strip_folder):
+    job = sb.Job.read("job.toml")
+    job.gauge = [{"name": f"{e}", "element": e, "surface": "top", "direction": [1, 0, 0]} for e in (2, 4, 7, 9)]
+    # 400 errors of a second and more each, one stage.
+    job.study = {"layouts": ["given"], "gauges": [4], "errors": ERRORS, "trials": 1_000_000, "seed": 1}
+    told = []
+
+    def stop(stage, done, total):
+        told.append((stage, total))
+        if stage == "repeat":
+            raise KeyboardInterrupt
+
+    begin = time.perf_counter()
+    with pytest.raises(KeyboardInterrupt):
+        sb.study(job, cache=False, progress=stop)
+    assert told[-1] == ("repeat", len(ERRORS))
+    assert time.perf_counter() - begin < 30.0
+
+
 def test_work_stops_between_two_cases():
     begun = []
 
@@ -170,9 +192,14 @@ def test_work_stops_between_two_cases():
     assert len(sb.place_rows(S, 6).rows) == 6
 
 
-def test_stubs_fit_the_package(tmp_path):
+def test_stubs_and_types_fit_the_package(tmp_path):
     needed("mypy")
+    # The engine with its stubs, and the package with the types that its sources state.
+    allowed = Path(__file__).parent / "stubtest.txt"
     done = subprocess.run(
-        [sys.executable, "-m", "mypy.stubtest", "strainbridge._strainbridge", "--ignore-disjoint-bases"], cwd=tmp_path, capture_output=True, text=True
+        [sys.executable, "-m", "mypy.stubtest", "strainbridge", "--ignore-disjoint-bases", "--allowlist", str(allowed)],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == 0, done.stdout + done.stderr

@@ -2,6 +2,7 @@
 
 use super::store::SolutionStore;
 use super::whole_file::{FileBytes, hex, load, load_hashed};
+use crate::stop::Stop;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -84,9 +85,14 @@ pub trait Progress: Sync {
         let _ = parts;
     }
 
-    /// Whether the work is to stop; asked between stages and between load cases.
+    /// The wish to stop, for those below who look at it between the parts of a long computation.
+    fn stop(&self) -> Stop {
+        Stop::default()
+    }
+
+    /// Whether the work is to stop; asked between stages, and between the cases, runs, files and trials of one.
     fn is_cancelled(&self) -> bool {
-        false
+        self.stop().is_asked()
     }
 }
 

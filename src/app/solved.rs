@@ -163,7 +163,13 @@ fn kept(
     };
     let solved = match kept {
         Some(solved) => solved,
-        None => work.stage("solve", |_| solve_displacements(model, cases, options))?,
+        None => {
+            let options = SolveOptions {
+                stop: work.cx.progress.stop(),
+                ..options.clone()
+            };
+            work.stage("solve", |_| solve_displacements(model, cases, &options))?
+        }
     };
     let written = store.as_deref().map(|s| write_solution(s, &key, &solved));
     if let Some(Err(why)) = written {

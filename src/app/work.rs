@@ -64,7 +64,7 @@ impl<'a> Work<'a> {
     /// One fault where whoever hears of progress stops the work.
     pub fn go_on(&self) -> Result<(), Faults> {
         if self.cx.progress.is_cancelled() {
-            return Err(Fault::of("work", "progress", "stopped", "ask again").into());
+            return Err(stopped().into());
         }
         Ok(())
     }
@@ -83,4 +83,9 @@ impl<'a> Work<'a> {
             answer,
         }
     }
+}
+
+/// What is said where whoever hears of progress stops the work.
+pub fn stopped() -> Fault {
+    Fault::of("work", "progress", "stopped", "ask again")
 }

@@ -131,6 +131,8 @@ pub enum FeError {
     },
     /// The model has nothing to solve.
     Empty,
+    /// Whoever asked wants no answer any more.
+    Stopped,
 }
 
 impl FeError {
@@ -235,6 +237,12 @@ impl FeError {
                 nowhere,
                 "no element to solve".to_owned(),
                 "add elements",
+            ),
+            Self::Stopped => one(
+                "model".to_owned(),
+                nowhere,
+                "the work was stopped".to_owned(),
+                "ask again",
             ),
         }
     }

@@ -1,5 +1,7 @@
 //! What is wanted of the solver.
 
+use crate::stop::Stop;
+
 /// Where strain is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Corners {
@@ -29,4 +31,6 @@ pub struct SolveOptions {
     pub heated: HeatedStrain,
     /// Elastic modes wanted beside the static solution, from its factor; 0: none.
     pub modes: usize,
+    /// Ends the work between two steps with [`super::FeError::Stopped`].
+    pub stop: Stop,
 }

@@ -121,6 +121,7 @@ fn displacements(
         if done[first] {
             continue;
         }
+        go_on(options)?;
         let key = |c: &LoadCase| (c.spc, c.mpc, c.relief, enforced_of(model, c));
         let group: Vec<usize> = (first..cases.len())
             .filter(|&i| key(&cases[i]) == key(&cases[first]))
@@ -187,6 +188,7 @@ fn solve_group(
         .zip(&forces)
         .try_for_each(|(column, f)| system.pack(prepared, f.clone(), column))?;
     clock.note(report, "loads");
+    go_on(options)?;
     if report.dofs < n {
         report.dofs = n;
         report.factor_nonzeros = system.symbolic.factor_nonzeros();
@@ -200,6 +202,7 @@ fn solve_group(
         let stiffness = std::mem::take(&mut system.stiffness);
         let factor = system.factor(prepared, mass, stiffness)?;
         clock.note(report, "factor");
+        go_on(options)?;
         report.smallest_pivot = factor.smallest_pivot;
         let sizes: Vec<Option<[f64; 2]>> = columns
             .par_chunks_exact(n)
@@ -207,6 +210,7 @@ fn solve_group(
             .collect();
         let refined = factor.solve_refined(&mut columns, REFINED_ABOVE);
         clock.note(report, "substitute");
+        go_on(options)?;
         for (case, refined) in cases.iter().zip(refined) {
             report.epsilon[0] = report.epsilon[0].max(refined.first);
             report.epsilon[1] = report.epsilon[1].max(refined.last);
@@ -256,6 +260,14 @@ fn solve_group(
         report.reactions.push(reactions);
     }
     Ok(fields)
+}
+
+/// Goes on, or not.
+fn go_on(options: &SolveOptions) -> Result<(), FeError> {
+    match options.stop.is_asked() {
+        true => Err(FeError::Stopped),
+        false => Ok(()),
+    }
 }
 
 /// What is said of a structure whose every dof is held.

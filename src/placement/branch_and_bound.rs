@@ -9,6 +9,7 @@ use super::exchange::Chosen;
 use super::relax::relax;
 use super::relaxed::{Active, Relaxed};
 use crate::linalg::spd;
+use crate::stop::Stop;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
@@ -26,6 +27,8 @@ pub struct Problem<'a> {
     pub upper: f64,
     /// Floating-point operations after which it gives up, roughly; counted, not timed, so that answers don't depend on the machine.
     pub work: f64,
+    /// Cuts it short.
+    pub stop: &'a Stop,
 }
 
 /// What came of it.
@@ -88,7 +91,7 @@ pub fn prove(
         weights: weights.to_vec(),
     }];
     let (mut nodes, mut work) = (0, 0.0);
-    while !open.is_empty() && work < p.work {
+    while !open.is_empty() && work < p.work && !p.stop.is_asked() {
         // Best bound last.
         open.sort_by(|a, b| a.bound.total_cmp(&b.bound).then(a.inside.cmp(&b.inside)));
         let batch = open.split_off(open.len().saturating_sub(BATCH));

@@ -76,6 +76,9 @@ pub fn best(c: &Candidates, spec: &Spec, layout: &Layout, base: &[f64]) -> Optio
             };
             let mut best = search.improve(first);
             for _ in 0..perturbations {
+                if spec.stop.is_asked() {
+                    break;
+                }
                 let from = best.as_ref().map_or(&known, |b| &b.rows).clone();
                 let count = 1 + rng.random_range(0..3.min(from.len()));
                 best = better(best, search.improve(search.moved(&from, count, &mut rng)));

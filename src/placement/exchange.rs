@@ -6,6 +6,7 @@ use super::coordinate_exchange::{CoordinateExchange, List};
 use super::relaxed::Active;
 use super::variance_table::Packed;
 use crate::linalg::spd;
+use crate::stop::Stop;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -40,6 +41,7 @@ pub fn search(
     known: Option<&[usize]>,
     excludes: &(impl Fn(usize, usize) -> bool + Sync),
     effort: Effort,
+    stop: &Stop,
 ) -> Option<Chosen> {
     let ridge = ridge(active, prior, weights);
     let list = List::new(active, prior, excludes);
@@ -69,6 +71,9 @@ pub fn search(
             let mut best = (at.value, at.rows.clone());
             let mut now = at.clone();
             for _ in 0..effort.perturbations {
+                if stop.is_asked() {
+                    break;
+                }
                 let count = if s < MANY {
                     1 + rng.random_range(0..3.min(s))
                 } else {

@@ -266,6 +266,9 @@ fn exchange(
     // A list that was cut may lack what this layout lacks.
     let rounds = if list.len() < LIST { 0 } else { ROUNDS };
     for _ in 0..rounds {
+        if spec.stop.is_asked() {
+            break;
+        }
         let near = around(c, spec, &best.0);
         let effort = Effort {
             starts: 1,
@@ -399,6 +402,7 @@ fn prove(
         incumbent,
         upper,
         work: spec.proof,
+        stop: &spec.stop,
     };
     let proof = branch_and_bound::prove(&problem, &weights, &excluder(c, spec, &choices));
     (Some(choices.len()), Some((proof, choices)))

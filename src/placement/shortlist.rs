@@ -167,6 +167,7 @@ pub(super) fn run(
         start.as_deref(),
         &excludes,
         effort,
+        &spec.stop,
     )?;
     Some((
         found.rows.iter().map(|&i| choices[i]).collect(),

@@ -2,6 +2,7 @@
 
 use super::criterion::Criterion;
 use super::exchange::Effort;
+use crate::stop::Stop;
 
 /// What is asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +24,8 @@ pub struct Spec {
     pub proof: f64,
     /// What the loss of a gauge means for the choice.
     pub loss: Loss,
+    /// Cuts the search short: the layout is the best so far, its certificate holds.
+    pub stop: Stop,
 }
 
 /// Whether a layout is chosen for what is left after the worst loss of one gauge.
@@ -50,6 +53,7 @@ impl Spec {
             },
             proof: 1e9,
             loss: Loss::Judged,
+            stop: Stop::default(),
         }
     }
 }

@@ -6,6 +6,7 @@ mod workshop;
 use super::candidates::{Angles, Candidates, Choice, Scatter};
 use super::{Criterion, Spec, angle_variance, place, quality};
 use crate::linalg::spd;
+use crate::stop::Stop;
 use crate::support::bytes as shared;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -218,6 +219,28 @@ fn bounds_hold_and_layouts_are_proved_the_best_of_all_subsets_on_a_thousand_smal
         }
     }
     assert!(solved > 800, "{solved}");
+}
+
+#[test]
+fn a_search_cut_short_keeps_its_certificate() {
+    let mut rng = ChaCha8Rng::seed_from_u64(31);
+    let mut left_out = 0;
+    for _ in 0..20 {
+        let c = rows_of(&random_rows(&mut rng, 40, 4));
+        let whole = place(&c, &Spec::new(7, 4)).unwrap();
+        let stop = Stop::new();
+        stop.ask();
+        let spec = Spec {
+            stop,
+            ..Spec::new(7, 4)
+        };
+        let cut = place(&c, &spec).unwrap();
+        assert!(cut.log_det <= cut.upper_bound);
+        assert!(whole.log_det <= cut.upper_bound + 1e-9);
+        assert_eq!((cut.gauges.len(), cut.nodes), (7, 0));
+        left_out += whole.nodes;
+    }
+    assert!(left_out > 0, "nothing was left out");
 }
 
 #[test]

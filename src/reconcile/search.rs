@@ -42,6 +42,10 @@ pub trait Scorer {
     fn compatible(&self, a: usize, b: usize) -> bool;
     /// Candidates that differ in nothing that matters share a number: the screen keeps few of each.
     fn kin(&self, candidate: usize) -> usize;
+    /// Whether the search is to stop: what it found is then of no use.
+    fn is_stopped(&self) -> bool {
+        false
+    }
     /// Other forms of the same effect at the same place.
     fn variants(&self, _candidate: usize) -> Vec<usize> {
         Vec::new()
@@ -152,7 +156,7 @@ fn extend<S: Scorer>(
         } else {
             breadth.tries
         };
-        if out.len() >= enough {
+        if out.len() >= enough || scorer.is_stopped() {
             break;
         }
         if base.set.contains(&candidate)
@@ -186,6 +190,9 @@ fn exchange<S: Scorer>(scorer: &mut S, breadth: Breadth, seen: &mut Seen<S::Fit>
         let Some(best) = settle(&all, breadth.decisive) else {
             return;
         };
+        if scorer.is_stopped() {
+            return;
+        }
         if best.set.is_empty() {
             return;
         }

@@ -2,8 +2,10 @@
 
 pub mod command;
 mod csv_cell;
+mod drawing;
 pub mod figure;
 mod mode_blocks;
+pub mod notebook;
 pub mod page;
 #[cfg(feature = "pdf")]
 pub mod pdf;

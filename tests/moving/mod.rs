@@ -60,6 +60,7 @@ pub fn frame_of(case: &Case) -> MotionFrame {
         sync_tolerance_s: if loose { 0.0004 } else { 0.0 },
         corrections: vec![],
         units: UnitNames::si(),
+        stop: Default::default(),
     }
 }
 

@@ -224,6 +224,7 @@ fn gauges_12_and_13_of_the_thesis_are_unfit_for_the_payload_and_no_gain_or_sign_
             .map(move |((_, e), s)| e[run] * s)
     });
     let frame = StrainFrame {
+        stop: Default::default(),
         observations: Observations {
             channels: ESTIMATES.iter().map(|e| e.0.to_owned()).collect(),
             runs: vec!["Run 2".into(), "Run 3".into()],

@@ -43,6 +43,7 @@ fn frame() -> StrainFrame {
         influence.extend([0.0; 4]);
     }
     StrainFrame {
+        stop: Default::default(),
         observations: Observations {
             channels: s.gauges.clone(),
             runs: (1..=RUNS).map(|r| format!("R{r:02}")).collect(),

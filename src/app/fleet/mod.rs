@@ -24,7 +24,7 @@ use super::fault::{Fault, Faults};
 use super::files::FileBytes;
 use super::job::Job;
 use super::outcome::{Outcome, StatedUnits};
-use super::work::Work;
+use super::work::{Work, stopped};
 use crate::finding::{Finding, Severity};
 use crate::series::record::{Options, open_record};
 use day::{Day, FileHead, FileResult};
@@ -174,6 +174,9 @@ fn done(
     let results: Vec<Result<(FileHead, bool), Fault>> = mine
         .par_iter()
         .map(|path| {
+            if progress.is_cancelled() {
+                return Err(stopped());
+            }
             let bytes = source.load_hashed(Path::new(path));
             let done = one(kernel, kept, form, path, bytes);
             progress.advance(1);

@@ -25,6 +25,9 @@ pub(super) fn curve(
     let k = task.cases.len();
     let (mut points, mut left_out): (Vec<CurvePoint>, Vec<usize>) = (Vec::new(), Vec::new());
     for gauges in counts {
+        if spec.stop.is_asked() {
+            break;
+        }
         let mut spec = Spec {
             gauges,
             ..spec.clone()

@@ -60,7 +60,9 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
         pool::kinds(job, fields.model(), &task.sites, strain, &scales, &angles)
     });
     let mut spec = task.spec(work);
-    let chosen = work.stage("place", |w| choose::choose(w, &task, &kinds, &mut spec))?;
+    let chosen = work.stage("place", |w| choose::choose(w, &task, &kinds, &mut spec));
+    work.go_on()?;
+    let chosen = chosen?;
     let rows: Vec<Vec<f64>> = chosen.channels.iter().map(|c| c.row.clone()).collect();
     let Some(quality) =
         judge_rows(&rows, &spec.prior, k).map(|q| judge::in_job_order(q, &task.order))
@@ -94,6 +96,7 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     } else {
         let (points, left_out) =
             work.stage("curve", |_| curve::curve(&task, &kinds, &spec, &units));
+        work.go_on()?;
         work.findings.extend(curve::incomplete(&left_out));
         points
     };

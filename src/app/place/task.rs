@@ -121,6 +121,7 @@ impl<'a> Task<'a> {
         spec.spacing = job.placement.spacing;
         spec.effort.seed = job.placement.seed;
         spec.loss = job.placement.loss;
+        spec.stop = work.cx.progress.stop();
         spec.proof = PROOF;
         spec.criterion = self.criterion();
         for (l, &from) in self.order.iter().enumerate() {

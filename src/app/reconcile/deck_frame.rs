@@ -18,6 +18,7 @@ use crate::fe::UnitLoad;
 use crate::finding::{Finding, Severity};
 use crate::gauge::Gauge;
 use crate::reconcile::strain::{GaugeFacts, PlaneStrainRow, Wiring};
+use crate::stop::Stop;
 use crate::units::KILO;
 
 /// The model with everything needed to solve it again.
@@ -29,6 +30,8 @@ pub(super) struct DeckFrame {
     pub(super) base: Vec<f64>,
     /// Small regions whose stiffness is tried.
     pub(super) regions: Vec<Region>,
+    /// Stops the solutions of changed models between two of them.
+    pub(super) stop: Stop,
 }
 
 /// Solves all signatures. `channels` are the gauges in the order of the strain file.
@@ -118,6 +121,7 @@ pub(super) fn read(
         columns: asked.columns,
         base: by_solver,
         regions: vec![],
+        stop: work.cx.progress.stop(),
     };
     part.stiffness = work.stage("solve zones", |_| deck.signatures(job))?;
     let described = deck.described(&mut work.inputs, job, channels, &per_job_unit(job))?;

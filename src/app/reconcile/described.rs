@@ -142,7 +142,7 @@ impl DeckFrame {
             }
             EffectSource::Signature(_) => self.fields.model().clone(),
         };
-        let solution = solve(job, &model, &self.columns)?;
+        let solution = solve(job, &model, &self.columns, &self.stop)?;
         let now = influence(job, &model, &self.gauges, &solution, self.columns.len());
         Ok(now.iter().zip(&self.base).map(|(a, b)| a - b).collect())
     }

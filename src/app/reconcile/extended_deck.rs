@@ -165,7 +165,7 @@ impl DeckFrame {
                 return Ok(None);
             };
             let weight = unit(job, grid, Component::FZ, -job.gravity_m_s2() / KILO);
-            let solution = solve(job, model, &[weight])?;
+            let solution = solve(job, model, &[weight], &self.stop)?;
             Ok(Some(readings(&self.gauges, &solution, 0..1)))
         };
         let (Some(now), Some(before)) = (strain(&model)?, strain(self.fields.model())?) else {

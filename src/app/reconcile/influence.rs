@@ -7,6 +7,7 @@ use crate::fe::{Solution, SolveOptions, UnitLoad, solve_unit_loads_on};
 use crate::gauge::{Gauge, reading};
 use crate::model::{GridIx, Model};
 use crate::reconcile::strain::N_PAYLOAD_COLUMNS;
+use crate::stop::Stop;
 use crate::units::MICROSTRAIN;
 
 /// Influence of the columns, `n_gauges x n_columns`, those that stand for nothing zero.
@@ -49,10 +50,19 @@ pub(super) fn readings(
 ///
 /// # Errors
 /// What stops the solver.
-pub(super) fn solve(job: &Job, model: &Model, loads: &[UnitLoad]) -> Result<Solution, Faults> {
+pub(super) fn solve(
+    job: &Job,
+    model: &Model,
+    loads: &[UnitLoad],
+    stop: &Stop,
+) -> Result<Solution, Faults> {
     let remedy = "repair the deck, or give S as CSV files in `[sensitivity]`";
     let support = support_of_job(job, model)?;
-    let solved = solve_unit_loads_on(model, support, loads, &SolveOptions::default());
+    let options = SolveOptions {
+        stop: stop.clone(),
+        ..SolveOptions::default()
+    };
+    let solved = solve_unit_loads_on(model, support, loads, &options);
     solved
         .map(|s| s.0)
         .map_err(|e| Faults::from(Fault::of(&*job.file, "model", e.to_string(), remedy)))

@@ -150,7 +150,7 @@ impl DeckFrame {
 
     fn change_of_region(&self, job: &Job, r: &Region, factor: f64) -> Result<Vec<f64>, Faults> {
         let model = softened(self.fields.model(), &r.shells, factor);
-        let solution = solve(job, &model, &self.columns)?;
+        let solution = solve(job, &model, &self.columns, &self.stop)?;
         let now = influence(job, &model, &self.gauges, &solution, self.columns.len());
         Ok(now.iter().zip(&self.base).map(|(a, b)| a - b).collect())
     }

@@ -19,6 +19,7 @@ use crate::finding::{Finding, Severity};
 use crate::reconcile::Verdict;
 use crate::reconcile::motion::channel_check::broken_channels;
 use crate::reconcile::motion::{MotionEffect, MotionFrame, MotionOutcome, examine, simulated_gap};
+use crate::stop::Stop;
 use crate::vehicle::identify::{Identification, IdentifyTask, identify};
 use crate::vehicle::layout::Vehicle;
 use crate::vehicle::motion::{Motion, Treatment, motion};
@@ -32,7 +33,7 @@ use crate::vehicle::stretch::slow_stretches;
 pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
     let section = section_of(job)?;
     let records = work.stage("read", |w| read_vehicle(w, job))?;
-    let mut frame = frame(section, &records);
+    let mut frame = frame(section, &records, work.cx.progress.stop());
     without_dead_hold_out(work, section, &mut frame);
     let frame = frame;
     let only = job
@@ -40,10 +41,9 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
         .as_ref()
         .and_then(|r| r.effects.clone())
         .unwrap_or_default();
-    let outcome = work
-        .stage("search", |_| examine(&frame, &only))
-        .map_err(|e| Faults::from(vehicle_fault(job, &section.data.given, &e)))?;
+    let outcome = work.stage("search", |_| examine(&frame, &only));
     work.go_on()?;
+    let outcome = outcome.map_err(|e| Faults::from(vehicle_fault(job, &section.data.given, &e)))?;
     let (wheel_force, found) =
         work.stage("wheel forces", |_| wheel_forces(&records, &frame, &outcome));
     let identified = found.and_then(|f| driven(&records, f));
@@ -176,7 +176,7 @@ fn is_dead(effect: &MotionEffect) -> bool {
 }
 
 /// The frame of a job: one side of an axle is compared, the other is a witness where it was measured.
-fn frame(section: &VehicleJob, records: &VehicleRecords) -> MotionFrame {
+fn frame(section: &VehicleJob, records: &VehicleRecords, stop: Stop) -> MotionFrame {
     let q = &records.task;
     let mut model = q.vehicle.clone();
     let recorded = |name: &str| {
@@ -223,6 +223,7 @@ fn frame(section: &VehicleJob, records: &VehicleRecords) -> MotionFrame {
         sync_tolerance_s: q.sync_tolerance_s,
         corrections: q.corrections.clone(),
         units: q.units.clone(),
+        stop,
     }
 }
 

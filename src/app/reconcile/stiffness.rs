@@ -92,7 +92,7 @@ impl DeckFrame {
             StiffnessOf::Local => self.with_region(place, factor),
             _ => self.with_zone(job, place, factor)?,
         };
-        let solution = solve(job, &model, &self.columns)?;
+        let solution = solve(job, &model, &self.columns, &self.stop)?;
         let now = influence(job, &model, &self.gauges, &solution, self.columns.len());
         Ok(now.iter().zip(&self.base).map(|(a, b)| a - b).collect())
     }

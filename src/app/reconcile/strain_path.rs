@@ -54,7 +54,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
         .as_ref()
         .and_then(|r| r.effects.clone())
         .unwrap_or_default();
-    let mut outcome = work.stage("search", |_| examine(&frame, &only));
+    let mut outcome = searched(work, &frame, &only)?;
     if let Some(deck) = &mut deck {
         let off = gauges_that_disagree(&outcome);
         if !off.is_empty() {
@@ -62,7 +62,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
             work.go_on()?;
             if !found.is_empty() {
                 frame.stiffness.extend(found);
-                outcome = work.stage("search", |_| examine(&frame, &only));
+                outcome = searched(work, &frame, &only)?;
             }
         }
     }
@@ -73,7 +73,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
                 break;
             }
             work.go_on()?;
-            outcome = work.stage("search", |_| examine(&frame, &only));
+            outcome = searched(work, &frame, &only)?;
         }
     }
     findings(work, &outcome);
@@ -110,6 +110,16 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
         extended_model,
         job: job.clone(),
     })
+}
+
+/// The verdict on the frame.
+///
+/// # Errors
+/// One fault where the work is stopped: the search was cut short then.
+fn searched(work: &mut Work, frame: &StrainFrame, only: &[String]) -> Result<Outcome, Faults> {
+    let outcome = work.stage("search", |_| examine(frame, only));
+    work.go_on()?;
+    Ok(outcome)
 }
 
 fn strain_part(frame: StrainFrame, outcome: Outcome, deck: Option<DeckFrame>) -> StrainPart {

@@ -62,6 +62,7 @@ pub(super) fn of(
     };
     for name in &study.layouts {
         for &n in &counts {
+            work.go_on()?;
             let layout = match (name.as_str(), &wide) {
                 ("given", _) => (n <= prepared.pool.len()).then(|| LayoutOf {
                     name: name.clone(),

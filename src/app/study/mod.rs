@@ -123,18 +123,22 @@ pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
     }
     let layouts = layouts::of(&mut work, job, study, &prepared)?;
     let mut lines: Vec<Line> = Vec::new();
-    work.stage("repeat", |_| {
+    work.stage("repeat", |w| -> Result<(), Faults> {
+        w.cx.progress.parts(layouts.len() * errors.len());
         for l in &layouts {
             for (error, word) in &errors {
+                w.go_on()?;
                 lines.push(Line {
                     layout: l.name.clone(),
                     gauges: l.gauges,
                     error: word.clone(),
                     row: study_layout(&l.pool, &l.members, *error, &spec),
                 });
+                w.cx.progress.advance(1);
             }
         }
-    });
+        Ok(())
+    })?;
     if let Some(s) = &prepared.installed {
         work.findings.extend(check_separability(s));
     }

@@ -17,7 +17,8 @@ use crate::app::outcome::{Answer, Outcome, StatedUnits};
 use crate::app::output::Output;
 use crate::app::work::Work;
 use crate::fe::SolveOptions;
-use crate::report::command::{Report, save};
+use crate::report::command::{Report, save, write_page};
+use crate::report::page::Page;
 use crate::units::UnitSystem;
 use chapter::{Chapter, DECK, Step};
 use serde::Serialize;
@@ -67,8 +68,11 @@ impl Answer for Story {
 
 impl Report for Outcome<Story> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
-        let html = page::page(&self.chapters).to_html();
-        Ok(out.write_bytes("report.html", html.as_bytes())?)
+        write_page(out, self)
+    }
+
+    fn page(&self) -> Option<Page> {
+        Some(page::page(&self.chapters))
     }
 
     fn words(&self) -> String {

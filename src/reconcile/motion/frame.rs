@@ -2,6 +2,7 @@
 
 use crate::series::channels::Channels;
 use crate::series::spectrum::Band;
+use crate::stop::Stop;
 use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::layout::Vehicle;
 use crate::vehicle::term::UnitNames;
@@ -38,6 +39,8 @@ pub struct MotionFrame {
     pub corrections: Vec<Adjustment>,
     /// Names of units.
     pub units: UnitNames,
+    /// Cuts the search short; what it found is then of no use.
+    pub stop: Stop,
 }
 
 impl MotionFrame {

@@ -417,6 +417,10 @@ impl Scorer for MotionScorer<'_> {
         out
     }
 
+    fn is_stopped(&self) -> bool {
+        self.frame.stop.is_asked()
+    }
+
     fn compatible(&self, a: usize, b: usize) -> bool {
         let whole = |c: usize| self.candidates[c].is_upheaval();
         // A filter is late by itself; with a delay of its own, of either sign, it would stand for filters that are not in the library.

@@ -5,6 +5,7 @@
 use crate::reconcile::Observations;
 use crate::reconcile::effect::{Amplitudes, SizedAmplitudes};
 use crate::sensitivity::Uncertainty;
+use crate::stop::Stop;
 
 /// How a gauge's arms are wired, as far as an angle error is concerned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -163,6 +164,8 @@ pub struct StrainFrame {
     pub scatter: Vec<Scatter>,
     /// Where S was calibrated: how far it may be off, microstrain per kN of the wheel loads, and what repeats of one loading scatter by.
     pub learnt: Option<Uncertainty>,
+    /// Cuts the search short; what it found is then of no use.
+    pub stop: Stop,
 }
 
 impl StrainFrame {

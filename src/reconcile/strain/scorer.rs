@@ -19,6 +19,10 @@ impl Scorer for Likelihood<'_> {
         self.additions_to(base)
     }
 
+    fn is_stopped(&self) -> bool {
+        self.frame.stop.is_asked()
+    }
+
     fn compatible(&self, a: usize, b: usize) -> bool {
         let (Some(a), Some(b)) = (self.candidates.get(a), self.candidates.get(b)) else {
             return false;

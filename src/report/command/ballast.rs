@@ -58,7 +58,11 @@ impl Report for Outcome<Ballasted> {
         for (name, bytes) in self.deck.files(&folder) {
             out.write_bytes(&name, &bytes)?;
         }
-        write_page(out, self, page(self))
+        write_page(out, self)
+    }
+
+    fn page(&self) -> Option<Page> {
+        Some(page(self))
     }
 
     fn words(&self) -> String {

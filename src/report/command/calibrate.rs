@@ -8,6 +8,7 @@ use crate::app::outcome::Outcome;
 use crate::app::output::Output;
 use crate::app::strain::covariance_bytes;
 use crate::report::csv_cell;
+use crate::report::page::Page;
 use crate::report::strain::{GLUED_COLUMNS, calibrate_page, glued_csv, sensitivity_csv};
 use crate::units::Quantity;
 use std::fmt::Write as _;
@@ -62,8 +63,12 @@ impl Report for Outcome<Calibrated> {
                 glued_csv(w, &self.job, &self.calibration.gauges, &self.glued)
             })?;
         }
+        write_page(out, self)
+    }
+
+    fn page(&self) -> Option<Page> {
         let page = calibrate_page(&self.job.title, self, &self.findings);
-        write_page(out, self, page)
+        Some(page)
     }
 
     fn words(&self) -> String {

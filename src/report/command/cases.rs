@@ -13,13 +13,17 @@ impl Report for Outcome<UnitLoadDeck> {
         for (name, bytes) in self.edited.files(&folder) {
             out.write_bytes(&name, &bytes)?;
         }
+        write_page(out, self)
+    }
+
+    fn page(&self) -> Option<Page> {
         let page = Page::new(
             &self.title,
             "Unit-load deck: run unit_loads.bdf, then name its OP2 as [model] results",
             &self.findings,
             Vec::new(),
         );
-        write_page(out, self, page)
+        Some(page)
     }
 
     fn words(&self) -> String {

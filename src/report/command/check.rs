@@ -11,7 +11,11 @@ use crate::report::scene::{Places, scene_of_model, scene_section};
 
 impl Report for Outcome<Checked> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
-        write_page(out, self, page(self))
+        write_page(out, self)
+    }
+
+    fn page(&self) -> Option<Page> {
+        Some(page(self))
     }
 
     fn words(&self) -> String {

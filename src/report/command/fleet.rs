@@ -44,7 +44,11 @@ impl Report for Outcome<Fleet> {
         out.write_bytes("from_to.csv", from_to(self).as_bytes())?;
         #[cfg(feature = "parquet")]
         out.write_bytes("fleet.parquet", &super::fleet_parquet::bytes(self)?)?;
-        write_page(out, self, page(self))
+        write_page(out, self)
+    }
+
+    fn page(&self) -> Option<Page> {
+        Some(page(self))
     }
 
     fn words(&self) -> String {

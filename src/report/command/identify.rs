@@ -6,6 +6,7 @@ use crate::app::fault::Faults;
 use crate::app::identify::Identified;
 use crate::app::outcome::Outcome;
 use crate::app::output::Output;
+use crate::report::page::Page;
 use crate::report::vehicle::{
     Curve, identify_page, restoring_curves, write_chassis_forces, write_parameters,
     write_restoring_force, write_wheel_forces,
@@ -40,7 +41,12 @@ impl Report for Outcome<Identified> {
             write("chassis_forces.csv", text)?;
         }
         declare(out)?;
-        let shown = self.held_out.as_ref().unwrap_or(fitted);
+        write_page(out, self)
+    }
+
+    fn page(&self) -> Option<Page> {
+        let found = &self.found;
+        let shown = self.held_out.as_ref().unwrap_or(&self.fitted);
         let page = identify_page(
             &self.job.title,
             found,
@@ -50,7 +56,7 @@ impl Report for Outcome<Identified> {
             &restoring_curves(found, &shown.motion),
             &self.forces,
         );
-        write_page(out, self, page)
+        Some(page)
     }
 
     fn words(&self) -> String {

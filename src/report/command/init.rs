@@ -5,10 +5,15 @@ use crate::app::fault::Faults;
 use crate::app::init::Proposal;
 use crate::app::outcome::Outcome;
 use crate::app::output::Output;
+use crate::report::page::Page;
 
 impl Report for Outcome<Proposal> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         Ok(out.write_bytes(self.job, self.text.as_bytes())?)
+    }
+
+    fn page(&self) -> Option<Page> {
+        None
     }
 
     fn words(&self) -> String {

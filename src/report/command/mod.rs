@@ -33,6 +33,7 @@ pub use recover::RecordFolder;
 use crate::app::fault::{Fault, Faults};
 use crate::app::outcome::{Answer, Outcome, Tables};
 use crate::app::output::Output;
+use crate::report::page::Page;
 use std::path::Path;
 
 /// An outcome that has files and words.
@@ -42,6 +43,9 @@ pub trait Report {
     /// # Errors
     /// The first file that can't be written.
     fn write(&self, out: &mut Output) -> Result<(), Faults>;
+
+    /// Its report; `None` where it has none.
+    fn page(&self) -> Option<Page>;
 
     /// What a person reads of it on a terminal; lines end in line feeds.
     fn words(&self) -> String;

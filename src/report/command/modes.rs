@@ -39,7 +39,11 @@ impl Report for Outcome<Modes> {
         out.write("modes.op2", |w| op2(self, w))?;
         let cases = &self.solution.strain.cases;
         out.write("modes.vtu", |w| write_vtu(&self.model, cases, w))?;
-        write_page(out, self, page(self))
+        write_page(out, self)
+    }
+
+    fn page(&self) -> Option<Page> {
+        Some(page(self))
     }
 
     fn words(&self) -> String {

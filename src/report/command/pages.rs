@@ -1,30 +1,29 @@
 //! `report.html`, `report.pdf` and spreadsheets of an outcome.
 
-use super::mistake;
+use super::{Report, mistake};
 use crate::app::fault::Faults;
 use crate::app::job::Job;
 use crate::app::outcome::{Answer, Outcome};
 use crate::app::output::Output;
-use crate::report::page::Page;
 use crate::report::spreadsheet::{About, Sheet, UnitOf, spreadsheet};
 use crate::units::Quantity;
 
-/// Writes `report.html` and, with the feature `pdf` and where the page is meant for paper, `report.pdf`.
+/// Writes `report.html`, where there is a page, and with the feature `pdf`, where the page is meant for paper, `report.pdf`.
 ///
 /// # Errors
 /// A file that can't be written.
-pub fn write_page<A: Answer>(
-    out: &mut Output,
-    outcome: &Outcome<A>,
-    page: Page,
-) -> Result<(), Faults> {
+pub fn write_page<A: Answer>(out: &mut Output, outcome: &Outcome<A>) -> Result<(), Faults>
+where
+    Outcome<A>: Report,
+{
+    let Some(page) = outcome.page() else {
+        return Ok(());
+    };
     out.write_bytes("report.html", page.to_html().as_bytes())?;
     #[cfg(feature = "pdf")]
     if page.paper != crate::report::page::Paper::None {
         write_paper(out, outcome, &page)?;
     }
-    #[cfg(not(feature = "pdf"))]
-    let _ = outcome;
     Ok(())
 }
 
@@ -32,7 +31,7 @@ pub fn write_page<A: Answer>(
 fn write_paper<A: Answer>(
     out: &mut Output,
     outcome: &Outcome<A>,
-    page: &Page,
+    page: &crate::report::page::Page,
 ) -> Result<(), Faults> {
     use crate::report::pdf::{Origin, write_pdf};
     let inputs: Vec<(String, String)> = outcome

@@ -77,7 +77,11 @@ impl Report for Outcome<Weighed> {
             }
             Ok(())
         })?;
-        write_page(out, self, page(self).on_paper(Paper::Signed))
+        write_page(out, self)
+    }
+
+    fn page(&self) -> Option<Page> {
+        Some(page(self).on_paper(Paper::Signed))
     }
 
     fn words(&self) -> String {

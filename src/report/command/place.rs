@@ -9,7 +9,7 @@ use crate::app::place::{Installed, InstalledQuality, Placed};
 use crate::app::strain::LoadSigma;
 use crate::placement::Role;
 use crate::report::figure::CountPoint;
-use crate::report::page::{Paper, number};
+use crate::report::page::{Page, Paper, number};
 use crate::report::scene::{Places, Pointing, placed_mark, scene_of};
 use crate::report::spreadsheet::gauge_sheets;
 use crate::report::strain::{
@@ -40,6 +40,13 @@ impl Report for Outcome<Placed> {
         let sheet = gluing_sheet_md(&job.title, &self.gauges, model, length);
         out.write_bytes("gluing_sheet.md", sheet.as_bytes())?;
         out.write("gauges.vtu", |w| gauges_vtu(w, &self.gauges))?;
+        write_page(out, self)?;
+        let sheets = gauge_sheets(&self.gauges, model, s, &self.load_sigma, &self.worst_loss);
+        write_book(out, self, job, "gauges.xlsx", &sheets)
+    }
+
+    fn page(&self) -> Option<Page> {
+        let (s, job) = (&self.sensitivity, &self.job);
         let marks = self.gauges.iter().map(placed_mark).collect();
         let mut scene = scene_of(job, &self.fields, marks);
         scene.pointing = Pointing::Places(Places::of(&job.candidates));
@@ -53,9 +60,7 @@ impl Report for Outcome<Placed> {
             &load_sigma(self),
             &how_many(self),
         );
-        write_page(out, self, page.on_paper(Paper::Signed))?;
-        let sheets = gauge_sheets(&self.gauges, model, s, &self.load_sigma, &self.worst_loss);
-        write_book(out, self, job, "gauges.xlsx", &sheets)
+        Some(page.on_paper(Paper::Signed))
     }
 
     fn words(&self) -> String {

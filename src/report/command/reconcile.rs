@@ -1,8 +1,8 @@
 //! Files and words of `reconcile`.
 
 use super::reconcile_extended::write_extended;
-use super::reconcile_motion::{simulated_words, write_motion};
-use super::reconcile_strain::write_strain;
+use super::reconcile_motion::{motion_page, simulated_words, write_motion};
+use super::reconcile_strain::{strain_page, write_strain};
 use super::{Report, write_page};
 use crate::app::fault::Faults;
 use crate::app::outcome::Outcome;
@@ -16,16 +16,20 @@ impl Report for Outcome<Reconciled> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         write_extended(self, out)?;
         if let Some(strain) = &self.strain {
-            write_strain(self, strain, out)?;
+            write_strain(strain, out)?;
         }
         if let Some(motion) = &self.motion {
-            write_motion(self, motion, out)?;
+            write_motion(motion, out)?;
         }
-        if let Some(causes) = &self.causes {
-            let page = causes_page(self, causes);
-            write_page(out, self, page.on_paper(Paper::Report))?;
-        }
-        Ok(())
+        write_page(out, self)
+    }
+
+    fn page(&self) -> Option<Page> {
+        let causes = self.causes.as_ref().map(|c| causes_page(self, c));
+        let motion = || Some(motion_page(self, self.motion.as_ref()?));
+        let strain = || Some(strain_page(self, self.strain.as_ref()?));
+        let page = causes.or_else(motion).or_else(strain)?;
+        Some(page.on_paper(Paper::Report))
     }
 
     fn words(&self) -> String {

@@ -1,6 +1,5 @@
 //! Files of `reconcile` for motion: gap by equation, band, time and amplitude, restoring forces, page.
 
-use super::write_page;
 use crate::app::fault::Faults;
 use crate::app::outcome::Outcome;
 use crate::app::output::Output;
@@ -8,38 +7,39 @@ use crate::app::reconcile::{MotionPart, Reconciled, SimulationFound};
 use crate::reconcile::motion::MotionOutcome;
 use crate::reconcile::motion::gap::EquationGap;
 use crate::report::figure::gap_by_channel;
-use crate::report::page::{Block, Page, Paper, Section, figure_section, number, table_section};
+use crate::report::page::{Block, Page, Section, figure_section, number, table_section};
 use crate::report::vehicle::{restoring_curves, restoring_section, write_restoring_force};
 use std::fmt::Write;
 
-/// Writes the tables and the page.
-pub(super) fn write_motion(
-    outcome: &Outcome<Reconciled>,
-    found: &MotionPart,
-    out: &mut Output,
-) -> Result<(), Faults> {
-    let (table, curves) = match &found.identified {
-        Some((id, moved)) => (
-            write_restoring_force(id, moved),
-            restoring_curves(id, moved),
-        ),
-        None => Default::default(),
+/// Writes the tables.
+pub(super) fn write_motion(found: &MotionPart, out: &mut Output) -> Result<(), Faults> {
+    let table = match &found.identified {
+        Some((id, moved)) => write_restoring_force(id, moved),
+        None => String::new(),
     };
     for (name, text) in gap_tables(&found.outcome) {
         out.write_bytes(name, text.as_bytes())?;
     }
     out.write_bytes("restoring_force.csv", table.as_bytes())?;
+    Ok(())
+}
+
+/// The page.
+pub(super) fn motion_page(outcome: &Outcome<Reconciled>, found: &MotionPart) -> Page {
+    let curves = match &found.identified {
+        Some((id, moved)) => restoring_curves(id, moved),
+        None => Vec::new(),
+    };
     let mut sections = gap_sections(&found.outcome);
     sections.extend(effect_sections(found));
     sections.extend(simulation(found).map(simulation_section));
     sections.push(restoring_section(&curves));
-    let page = Page::new(
+    Page::new(
         &outcome.job.title,
         "Where vehicle model and record disagree, and what is missing",
         &outcome.findings,
         sections,
-    );
-    write_page(out, outcome, page.on_paper(Paper::Report))
+    )
 }
 
 /// What simulation leaves, a line a sensor.

@@ -1,6 +1,5 @@
 //! Files of `reconcile` for strain: gap by gauge, loads before and after, page.
 
-use super::write_page;
 use crate::app::fault::Faults;
 use crate::app::outcome::Outcome;
 use crate::app::output::Output;
@@ -9,19 +8,20 @@ use crate::model::{Model, Vec3};
 use crate::reconcile::strain::StrainFrame;
 use crate::report::csv_cell;
 use crate::report::figure::GaugePoints;
-use crate::report::page::Paper;
+use crate::report::page::Page;
 use crate::report::scene::{Mark, Pointing, Scene, fields_of, mark_of_gap};
 use crate::report::strain::{RunStrain, reconcile_page};
 use std::fmt::Write;
 
-/// Writes `gap.csv`, `loads_before_after.csv` and the page.
-pub(super) fn write_strain(
-    outcome: &Outcome<Reconciled>,
-    found: &StrainPart,
-    out: &mut Output,
-) -> Result<(), Faults> {
+/// Writes `gap.csv` and `loads_before_after.csv`.
+pub(super) fn write_strain(found: &StrainPart, out: &mut Output) -> Result<(), Faults> {
     out.write_bytes("gap.csv", gap_csv(found).as_bytes())?;
     out.write_bytes("loads_before_after.csv", loads_csv(found).as_bytes())?;
+    Ok(())
+}
+
+/// The page.
+pub(super) fn strain_page(outcome: &Outcome<Reconciled>, found: &StrainPart) -> Page {
     let job = &outcome.job;
     let metres = match found.fields {
         Some(_) => job.units.length_m(),
@@ -44,14 +44,13 @@ pub(super) fn write_strain(
         length: job.units.unit(crate::units::Quantity::Length).name,
         pointing: Pointing::Nothing,
     });
-    let page = reconcile_page(
+    reconcile_page(
         &job.title,
         &found.outcome,
         scene.as_ref(),
         &run_strain(&found.frame, &found.predicted),
         &outcome.findings,
-    );
-    write_page(out, outcome, page.on_paper(Paper::Report))
+    )
 }
 
 fn gap_csv(found: &StrainPart) -> String {

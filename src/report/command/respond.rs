@@ -68,13 +68,17 @@ impl Report for Outcome<Responded> {
                 _ => "microstrain".to_owned(),
             })?;
         }
+        write_page(out, self)
+    }
+
+    fn page(&self) -> Option<Page> {
         let page = Page::new(
             &self.job.title,
             "Stress from recovered loads",
             &self.findings,
             sections(self),
         );
-        write_page(out, self, page)
+        Some(page)
     }
 
     fn words(&self) -> String {

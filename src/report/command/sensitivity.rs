@@ -7,6 +7,7 @@ use crate::app::outcome::Outcome;
 use crate::app::output::Output;
 use crate::app::sensitivity::Sensed;
 use crate::app::strain::load_units;
+use crate::report::page::Page;
 use crate::report::scene::scene_of_job;
 use crate::report::strain::{sensitivity_csv, sensitivity_page};
 use crate::sensitivity::Sensitivity;
@@ -16,9 +17,14 @@ impl Report for Outcome<Sensed> {
         let s = &self.prepared.sensitivity;
         out.declare("sensitivity.csv", columns(&self.job, s));
         out.write("sensitivity.csv", |w| sensitivity_csv(w, s))?;
+        write_page(out, self)
+    }
+
+    fn page(&self) -> Option<Page> {
+        let s = &self.prepared.sensitivity;
         let scene = scene_of_job(&self.job, &self.prepared);
         let page = sensitivity_page(&self.job.title, s, scene.as_ref(), &self.findings);
-        write_page(out, self, page)
+        Some(page)
     }
 
     fn words(&self) -> String {

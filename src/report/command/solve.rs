@@ -7,6 +7,7 @@ use crate::app::output::Output;
 use crate::app::solve::SolvedCases;
 use crate::fe::Solution;
 use crate::model::Model;
+use crate::report::page::Page;
 use crate::report::scene::scene_of_solution;
 use crate::report::strain::solution_page;
 use crate::report::{PlannedBlock, planned_blocks, rows_of_block, write_vtu};
@@ -21,9 +22,14 @@ impl Report for Outcome<SolvedCases> {
             ("results.op2", |w| write_op2(model, solution, &plan, w)),
             ("results.vtu", |w| write_vtu(model, &solution.cases, w)),
         )?;
+        write_page(out, self)
+    }
+
+    fn page(&self) -> Option<Page> {
+        let (model, solution) = (&self.deck.model, &self.solution);
         let scene = scene_of_solution(model, &self.cases, solution);
         let page = solution_page(&self.title, solution, &self.report, &scene, &self.findings);
-        write_page(out, self, page)
+        Some(page)
     }
 
     fn words(&self) -> String {

@@ -5,6 +5,7 @@ use crate::app::fault::Faults;
 use crate::app::outcome::Outcome;
 use crate::app::output::Output;
 use crate::app::strains::Strains;
+use crate::report::page::Page;
 use crate::report::strain::strains_page;
 use crate::report::{strains_columns, write_strains};
 
@@ -14,9 +15,13 @@ impl Report for Outcome<Strains> {
         out.write("strains.csv", |mut w| {
             write_strains(&self.model, &self.solution, &mut w).map(|_| ())
         })?;
+        write_page(out, self)
+    }
+
+    fn page(&self) -> Option<Page> {
         let title = format!("Strain of {}", self.given);
         let page = strains_page(&title, &self.model, &self.solution, &self.findings);
-        write_page(out, self, page)
+        Some(page)
     }
 
     fn words(&self) -> String {

@@ -31,7 +31,11 @@ impl Report for Outcome<Studied> {
             }
             Ok(())
         })?;
-        write_page(out, self, page(self))
+        write_page(out, self)
+    }
+
+    fn page(&self) -> Option<Page> {
+        Some(page(self))
     }
 
     fn words(&self) -> String {

@@ -9,6 +9,10 @@ use crate::report::page::{Block, Page, Section};
 
 impl Report for Outcome<Verified> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
+        write_page(out, self)
+    }
+
+    fn page(&self) -> Option<Page> {
         let rows: Vec<Vec<String>> = self
             .differs
             .iter()
@@ -28,7 +32,7 @@ impl Report for Outcome<Verified> {
             &self.findings,
             sections,
         );
-        write_page(out, self, page)
+        Some(page)
     }
 
     fn words(&self) -> String {

@@ -31,8 +31,7 @@ impl Page {
                     h1 { (self.title) }
                     p.muted { (self.lead) }
                     h2 { "Findings" }
-                    (verdict(&findings))
-                    (listed(&findings))
+                    (judged(&findings))
                     (sections)
                     (PreEscaped(scripts))
                 }
@@ -42,7 +41,13 @@ impl Page {
     }
 }
 
-fn block(b: &Block) -> Markup {
+/// Whether the answer can be relied on, and why.
+pub(in crate::report) fn judged(findings: &[&Finding]) -> Markup {
+    html! { (verdict(findings)) (listed(findings)) }
+}
+
+/// A block as a page has it.
+pub(in crate::report) fn block(b: &Block) -> Markup {
     match b {
         Block::Text(t) => html! { p { (t) } },
         Block::Stressed(lead, rest) => html! { p { b { (lead) } " " (rest) } },

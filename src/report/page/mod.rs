@@ -5,3 +5,4 @@ mod html;
 
 pub use crate::units::number;
 pub use block::{Block, Page, Paper, Section, Table, figure_section, table_section};
+pub(in crate::report) use html::{block as block_html, judged};

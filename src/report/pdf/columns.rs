@@ -1,10 +1,9 @@
 //! How a table fits the paper: size of type, upright or across, and where not even that is enough, columns dealt over several tables.
 
+use crate::report::drawing::picture::UPRIGHT;
 use crate::report::page::Table;
 
-/// Width of the text, mm: A4 with margins of 18 mm.
-pub(super) const UPRIGHT: f64 = 174.0;
-/// The same across.
+/// Width of the text on a sheet that is turned, mm.
 const ACROSS: f64 = 261.0;
 /// Millimetres per point of type and character: a little less than half the height of the type, as digits, small letters and the
 /// spaces between them take in the mean.

@@ -1,11 +1,11 @@
 //! What the template is given: the page as JSON, every text made printable.
 
-use super::chart::pictures;
 use super::columns::{Fitted, LONGEST_WORD, fitted, is_numeric};
 use super::glyphs::{breakable, printable, shortened};
-use super::picture::Picture;
-use super::sketch::views;
+use super::shapes::picture_json;
 use crate::finding::{Finding, Severity};
+use crate::report::drawing::picture::Picture;
+use crate::report::drawing::{STROKES, pictures, views};
 use crate::report::page::{Block, Page, Paper, Section, Table, number};
 use serde_json::{Value, json};
 
@@ -138,10 +138,8 @@ fn block(b: &Block) -> Vec<Value> {
     }
 }
 
-const STROKES: &str = "Strokes lie along the axes of the gauges: red on the top (Z2), blue on the bottom (Z1) of the element. The model in three dimensions is in report.html.";
-
 fn drawn(pictures: Vec<Picture>) -> Vec<Value> {
-    let value = |p: Picture| json!({ "kind": "picture", "picture": p.to_json() });
+    let value = |p: Picture| json!({ "kind": "picture", "picture": picture_json(&p) });
     pictures.into_iter().map(value).collect()
 }
 

@@ -1,14 +1,9 @@
 //! A page as PDF, by Typst: its blocks become plain data, which a fixed template lays out. No text of a user is ever read as markup.
 
-mod chart;
 mod columns;
 mod content;
 mod glyphs;
-mod heat;
-mod picture;
-mod scale;
-mod sketch;
-mod traces;
+mod shapes;
 mod world;
 
 pub use content::Origin;

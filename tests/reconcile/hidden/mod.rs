@@ -130,6 +130,7 @@ pub fn frame_of(dir: &Path) -> StrainFrame {
         }
     };
     StrainFrame {
+        stop: Default::default(),
         observations: Observations {
             channels: strain.header[1..].to_vec(),
             runs: strain.rows.iter().map(|r| r[0].clone()).collect(),

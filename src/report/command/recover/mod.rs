@@ -20,6 +20,7 @@ use crate::app::fault::Faults;
 use crate::app::outcome::Outcome;
 use crate::app::output::Output;
 use crate::app::recover::{Recovered, States};
+use crate::report::page::Page;
 
 impl Report for Outcome<Recovered> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
@@ -27,6 +28,13 @@ impl Report for Outcome<Recovered> {
             States::Runs(runs) => runs::write(out, self, runs),
             States::Record(record) => record::write(out, self, record),
         }
+    }
+
+    fn page(&self) -> Option<Page> {
+        Some(match &self.states {
+            States::Runs(runs) => runs::page(self, runs),
+            States::Record(record) => record::page(self, record),
+        })
     }
 
     fn words(&self) -> String {

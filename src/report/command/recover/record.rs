@@ -49,7 +49,7 @@ pub(super) fn write(
         derived(out, outcome, record)?;
     }
     let loads: Vec<HistoryLoad> = record.loads.iter().map(of_history).collect();
-    write_page(out, outcome, page(outcome, record))?;
+    write_page(out, outcome)?;
     let sheets = [
         history_sheet(&loads),
         residual_sheet(&by_gauge(&record.gauges)),
@@ -140,7 +140,8 @@ fn of_history(l: &crate::app::recover::RecordLoad) -> HistoryLoad {
     }
 }
 
-fn page(outcome: &Outcome<Recovered>, record: &RecoveredRecord) -> Page {
+/// The page.
+pub(super) fn page(outcome: &Outcome<Recovered>, record: &RecoveredRecord) -> Page {
     let (job, file) = (&outcome.job, &record.head.file);
     let row = |name: &str, value: String| (name.to_owned(), value);
     let numbers = [

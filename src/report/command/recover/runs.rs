@@ -40,8 +40,8 @@ pub(super) fn write(
         nastran::write_runs(out, outcome, runs)?;
     }
     vtu::write(out, outcome, runs)?;
-    let shown: Vec<RecoveredRun> = runs.recovery.runs.iter().map(|r| shown(runs, r)).collect();
-    write_page(out, outcome, page(outcome, runs, &shown))?;
+    let shown = shown(runs);
+    write_page(out, outcome)?;
     let sheets = [runs_sheet(&shown), residual_sheet(&by_gauge(&runs.gauges))];
     write_book(out, outcome, job, "loads.xlsx", &sheets)
 }
@@ -92,7 +92,12 @@ fn loads_csv(w: &mut dyn Write, runs: &RecoveredRuns) -> std::io::Result<()> {
     Ok(())
 }
 
-fn shown(runs: &RecoveredRuns, r: &RunEstimate) -> RecoveredRun {
+fn shown(runs: &RecoveredRuns) -> Vec<RecoveredRun> {
+    let of = |r| shown_run(runs, r);
+    runs.recovery.runs.iter().map(of).collect()
+}
+
+fn shown_run(runs: &RecoveredRuns, r: &RunEstimate) -> RecoveredRun {
     let loads = runs.units.iter().enumerate().map(|(l, u)| {
         let [low, high] = r.estimate.interval(l);
         (
@@ -107,7 +112,9 @@ fn shown(runs: &RecoveredRuns, r: &RunEstimate) -> RecoveredRun {
     }
 }
 
-fn page(outcome: &Outcome<Recovered>, runs: &RecoveredRuns, shown: &[RecoveredRun]) -> Page {
+/// The page.
+pub(super) fn page(outcome: &Outcome<Recovered>, runs: &RecoveredRuns) -> Page {
+    let shown = shown(runs);
     let (job, s) = (&outcome.job, &outcome.prepared.sensitivity);
     let numbers = vec![
         ("Runs".to_owned(), runs.recovery.runs.len().to_string()),
@@ -121,13 +128,13 @@ fn page(outcome: &Outcome<Recovered>, runs: &RecoveredRuns, shown: &[RecoveredRu
         ),
     ];
     let scene = scene_of_job(job, &outcome.prepared).map(|mut scene| {
-        scene.arrows = run_arrows(job, scene.model, shown, Shown::Interval);
+        scene.arrows = run_arrows(job, scene.model, &shown, Shown::Interval);
         scene.pointing = Pointing::Gauges;
         scene
     });
     let found = OnPage {
         sensitivity: s,
-        runs: shown,
+        runs: &shown,
         points: &points(runs),
         traces: &[],
         by_gauge: &by_gauge(&runs.gauges),

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 /// How a series is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(in crate::report) enum Kind {
     /// Upright bars from the axis.
     Bars,
     /// Points alone.
@@ -17,15 +17,15 @@ pub(super) enum Kind {
 
 /// A series of a figure.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Series {
+pub(in crate::report) struct Series {
     /// Name; empty where it has none.
-    pub(super) name: String,
+    pub(in crate::report) name: String,
     /// How it is drawn.
-    pub(super) kind: Kind,
+    pub(in crate::report) kind: Kind,
     /// `#rrggbb`.
-    pub(super) colour: String,
+    pub(in crate::report) colour: String,
     /// The figure's word for a point.
-    pub(super) symbol: String,
+    pub(in crate::report) symbol: String,
     /// Right and up: numbers or names.
     values: [Vec<Value>; 2],
     /// Below and above a value to the right.
@@ -34,29 +34,29 @@ pub(super) struct Series {
 
 impl Series {
     /// Number of points.
-    pub(super) fn len(&self) -> usize {
+    pub(in crate::report) fn len(&self) -> usize {
         self.values[0].len().min(self.values[1].len())
     }
 
     /// Name on axis `k`, where that has names.
-    pub(super) fn name_at(&self, k: usize, i: usize) -> Option<&str> {
+    pub(in crate::report) fn name_at(&self, k: usize, i: usize) -> Option<&str> {
         self.values[k].get(i)?.as_str()
     }
 
     /// Value on axis `k`.
-    pub(super) fn value_at(&self, k: usize, i: usize) -> Option<f64> {
+    pub(in crate::report) fn value_at(&self, k: usize, i: usize) -> Option<f64> {
         self.values[k].get(i)?.as_f64()
     }
 
     /// Interval about a value to the right.
-    pub(super) fn interval_at(&self, i: usize) -> Option<[f64; 2]> {
+    pub(in crate::report) fn interval_at(&self, i: usize) -> Option<[f64; 2]> {
         let v = self.value_at(0, i)?;
         let [below, above] = &self.errors;
         Some([v - below.get(i)?.as_f64()?, v + above.get(i)?.as_f64()?])
     }
 
     /// What an axis must hold of it: its values, their intervals, the foot of its bars.
-    pub(super) fn reach(&self, k: usize) -> Vec<f64> {
+    pub(in crate::report) fn reach(&self, k: usize) -> Vec<f64> {
         let mut out: Vec<f64> = self.values[k].iter().filter_map(Value::as_f64).collect();
         if k == 0 {
             out.extend(
@@ -73,7 +73,7 @@ impl Series {
 }
 
 /// The series of traces; `colours` in turn for those without.
-pub(super) fn series_of(traces: &[Value], colours: &[&str]) -> Vec<Series> {
+pub(in crate::report) fn series_of(traces: &[Value], colours: &[&str]) -> Vec<Series> {
     let list = |v: &Value| v.as_array().cloned().unwrap_or_default();
     let word = |v: &Value| v.as_str().unwrap_or("").to_owned();
     let mut next = colours.iter().cycle();
@@ -109,7 +109,7 @@ pub(super) fn series_of(traces: &[Value], colours: &[&str]) -> Vec<Series> {
 }
 
 /// Names on axis `k` in the order in which they come; `None` where it has numbers.
-pub(super) fn names_of(series: &[Series], k: usize) -> Option<Vec<String>> {
+pub(in crate::report) fn names_of(series: &[Series], k: usize) -> Option<Vec<String>> {
     let mut names: Vec<String> = Vec::new();
     let mut seen = std::collections::BTreeSet::new();
     for value in series.iter().flat_map(|s| &s.values[k]) {

@@ -2,7 +2,7 @@
 
 /// Linear, or by powers of ten.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Scale {
+pub(in crate::report) struct Scale {
     /// Ends of the values; of their logarithms where `by_powers`.
     ends: [f64; 2],
     /// Where these stand, mm.
@@ -12,7 +12,7 @@ pub(super) struct Scale {
 
 impl Scale {
     /// A scale on which all `values` stand between the places; with a little room at both ends where they are `roomy`.
-    pub(super) fn over(
+    pub(in crate::report) fn over(
         values: impl Iterator<Item = f64>,
         place: [f64; 2],
         by_powers: bool,
@@ -41,7 +41,7 @@ impl Scale {
     }
 
     /// Where a value stands; `None` where it has no place.
-    pub(super) fn at(&self, value: f64) -> Option<f64> {
+    pub(in crate::report) fn at(&self, value: f64) -> Option<f64> {
         let v = if self.by_powers { value.log10() } else { value };
         let share = (v - self.ends[0]) / (self.ends[1] - self.ends[0]);
         let place = self.place[0] + share * (self.place[1] - self.place[0]);
@@ -49,7 +49,7 @@ impl Scale {
     }
 
     /// Round values between the ends, with what is written beside them.
-    pub(super) fn ticks(&self) -> Vec<(f64, String)> {
+    pub(in crate::report) fn ticks(&self) -> Vec<(f64, String)> {
         let [low, high] = self.ends;
         if self.by_powers {
             let step = (((high - low) / 6.0).ceil() as i32).max(1);
@@ -77,7 +77,7 @@ impl Scale {
 }
 
 /// 1, 2 or 5 times a power of ten, at least `x`.
-pub(super) fn round_step(x: f64) -> f64 {
+pub(in crate::report) fn round_step(x: f64) -> f64 {
     let power = 10f64.powf(x.abs().max(1e-300).log10().floor());
     let steps = [1.0, 2.0, 5.0, 10.0].map(|s| s * power);
     steps

@@ -1,8 +1,7 @@
 //! A matrix as colours on paper, with its numbers in the cells where they fit.
 
-use super::columns::UPRIGHT;
-use super::picture::{LONGEST, Picture, Shape};
-use crate::report::page::number;
+use super::picture::{LONGEST, Picture, Shape, UPRIGHT};
+use crate::units::number;
 use serde_json::Value;
 
 /// Rows of one picture, height of a row, and width of a cell that holds its number, mm.
@@ -11,7 +10,7 @@ const ROW: f64 = 4.6;
 const HOLDS: f64 = 12.0;
 
 /// The map in pictures of at most [`ROWS`] rows.
-pub(super) fn heat(map: &Value) -> Vec<Picture> {
+pub(in crate::report) fn heat(map: &Value) -> Vec<Picture> {
     let names = |v: &Value| -> Vec<String> {
         let list = v.as_array().into_iter().flatten();
         list.map(|n| n.as_str().unwrap_or("").to_owned()).collect()

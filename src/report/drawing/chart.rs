@@ -1,8 +1,7 @@
-//! A figure on paper: the traces that the page draws on a screen, drawn here.
+//! A figure as drawings: the traces that the page draws by its script, drawn here.
 
-use super::columns::UPRIGHT;
 use super::heat::heat;
-use super::picture::{FAINT, LONGEST, Picture, Shape};
+use super::picture::{FAINT, LONGEST, Picture, Shape, UPRIGHT};
 use super::scale::Scale;
 use super::traces::{Kind, Series, names_of, series_of};
 use crate::report::figure::Figure;
@@ -21,7 +20,7 @@ const MOST_HIGH: f64 = 190.0;
 const WIDEST: f64 = 20.0;
 
 /// The choices of a figure that are meant for paper, each a picture.
-pub(super) fn pictures(figure: &Figure) -> Vec<Picture> {
+pub(in crate::report) fn pictures(figure: &Figure) -> Vec<Picture> {
     let shown = figure.choices.iter().take(figure.on_paper);
     shown
         .flat_map(|(name, traces)| {

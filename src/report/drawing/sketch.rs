@@ -1,13 +1,11 @@
 //! The model with its gauges as line drawings along the axes of the basic frame.
 
-use super::columns::UPRIGHT;
-use super::glyphs::shortened;
-use super::picture::{INK, Picture, Shape, Word};
+use super::picture::{INK, Picture, Shape, UPRIGHT, Word, shortened};
 use super::scale::round_step;
 use crate::fe::strain_tensor::Surface;
 use crate::model::Vec3;
-use crate::report::page::number;
 use crate::report::scene::{Mark, SceneView};
+use crate::units::number;
 use std::collections::BTreeSet;
 
 /// Highest drawing, and space around it for names, mm.
@@ -20,6 +18,9 @@ const MESH: &str = "#b4bec9";
 /// Half length of the stroke of a gauge, and radius of the largest circle of a gap, mm.
 const STROKE: f64 = 2.2;
 const LARGEST: f64 = 5.0;
+
+/// What is said under a drawing of gauges.
+pub(in crate::report) const STROKES: &str = "Strokes lie along the axes of the gauges: red on the top (Z2), blue on the bottom (Z1) of the element. The model in three dimensions is in report.html.";
 
 /// A direction to look along: which axes run right and up, by sign, and its name.
 struct View {
@@ -52,7 +53,7 @@ const VIEWS: [View; 4] = [
 ];
 
 /// The two drawings that show most, the larger first.
-pub(super) fn views(scene: &SceneView) -> Vec<Picture> {
+pub(in crate::report) fn views(scene: &SceneView) -> Vec<Picture> {
     let ends = scene.lines.iter().flatten().copied();
     let points = ends.chain(scene.marks.iter().map(|m| m.at));
     let mut bounds: Option<[Vec3; 2]> = None;

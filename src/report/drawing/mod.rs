@@ -1,0 +1,17 @@
+//! Figures, and the model with its gauges, as drawings of lines, areas and words: for paper and for pages without a script.
+
+mod chart;
+mod heat;
+pub(super) mod picture;
+mod scale;
+mod sketch;
+mod svg;
+mod traces;
+mod trails;
+
+pub(super) use chart::pictures;
+pub(super) use sketch::{STROKES, views};
+pub(super) use svg::to_svg;
+
+#[cfg(test)]
+mod tests;

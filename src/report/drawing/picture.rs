@@ -1,0 +1,123 @@
+//! Drawings of lines, areas and words, in millimetres from the upper left corner.
+
+/// A drawing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(in crate::report) struct Picture {
+    /// Above it.
+    pub(in crate::report) title: String,
+    /// Under it.
+    pub(in crate::report) caption: String,
+    /// Width and height.
+    pub(in crate::report) size: [f64; 2],
+    /// From the lowest to the topmost.
+    pub(in crate::report) shapes: Vec<Shape>,
+}
+
+/// A part of a drawing.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::report) enum Shape {
+    /// Lines of one pen.
+    Strokes {
+        /// Each through its points.
+        lines: Vec<Vec<[f64; 2]>>,
+        /// Colour, `#rrggbb`.
+        colour: String,
+        /// Width of the pen.
+        pen: f64,
+    },
+    /// An upright rectangle: corner, width and height, filled.
+    Area([f64; 4], String),
+    /// A circle about a point: an outline where the pen is not 0, else filled.
+    Circle {
+        /// Centre.
+        at: [f64; 2],
+        /// Radius.
+        radius: f64,
+        /// Colour, `#rrggbb`.
+        colour: String,
+        /// Width of the pen.
+        pen: f64,
+    },
+    /// Words.
+    Word(Word),
+}
+
+/// Words at a point.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::report) struct Word {
+    /// Where.
+    pub(in crate::report) at: [f64; 2],
+    /// Which part of the words stands there, of their width and height: 0 the beginning, 1 the end.
+    pub(in crate::report) anchor: [f64; 2],
+    /// What.
+    pub(in crate::report) text: String,
+    /// Size of type, points.
+    pub(in crate::report) size: f64,
+    /// Whether they run upwards.
+    pub(in crate::report) upwards: bool,
+}
+
+/// Grey of what stands back.
+pub(in crate::report) const FAINT: &str = "#9aa7b5";
+/// Nearly black.
+pub(in crate::report) const INK: &str = "#1c2530";
+
+/// Width of a drawing, mm: that of the text on A4 with margins of 18 mm.
+pub(in crate::report) const UPRIGHT: f64 = 174.0;
+
+/// Characters of a name in a drawing.
+pub(in crate::report) const LONGEST: usize = 40;
+
+impl Picture {
+    /// A line from `a` to `b`.
+    pub(in crate::report) fn line(&mut self, a: [f64; 2], b: [f64; 2], colour: &str, pen: f64) {
+        self.strokes(vec![vec![a, b]], colour, pen);
+    }
+
+    /// Lines of one pen.
+    pub(in crate::report) fn strokes(&mut self, lines: Vec<Vec<[f64; 2]>>, colour: &str, pen: f64) {
+        self.shapes.push(Shape::Strokes {
+            lines,
+            colour: colour.to_owned(),
+            pen,
+        });
+    }
+
+    /// A circle: an outline of this pen, filled where it is 0.
+    pub(in crate::report) fn circle(&mut self, at: [f64; 2], radius: f64, colour: &str, pen: f64) {
+        self.shapes.push(Shape::Circle {
+            at,
+            radius,
+            colour: colour.to_owned(),
+            pen,
+        });
+    }
+
+    /// Words of 7 points.
+    pub(in crate::report) fn word(&mut self, at: [f64; 2], anchor: [f64; 2], text: &str) {
+        self.shapes.push(Shape::Word(Word {
+            at,
+            anchor,
+            text: shortened(text, LONGEST),
+            size: 7.0,
+            upwards: false,
+        }));
+    }
+
+    /// The same, running upwards.
+    pub(in crate::report) fn word_upwards(&mut self, at: [f64; 2], anchor: [f64; 2], text: &str) {
+        self.word(at, anchor, text);
+        if let Some(Shape::Word(w)) = self.shapes.last_mut() {
+            w.upwards = true;
+        }
+    }
+}
+
+/// At most `most` characters on one line, marked where some are left out.
+pub(in crate::report) fn shortened(text: &str, most: usize) -> String {
+    if text.chars().count() <= most {
+        return text.to_owned();
+    }
+    let kept: String = text.chars().take(most.saturating_sub(1)).collect();
+    format!("{kept}…")
+}

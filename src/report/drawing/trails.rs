@@ -1,0 +1,67 @@
+//! Many short lines joined to few long ones, which take fewer words to draw.
+
+use std::collections::BTreeMap;
+
+type Point = [i64; 2];
+
+/// The same lines: those of two points are joined end to end, straight on where that goes; longer ones stay as they are.
+pub(super) fn trails(lines: Vec<Vec<Point>>) -> Vec<Vec<Point>> {
+    let (short, mut out): (Vec<_>, Vec<_>) = lines.into_iter().partition(|l| l.len() == 2);
+    let ends: Vec<[Point; 2]> = short.iter().map(|l| [l[0], l[1]]).collect();
+    let mut at: BTreeMap<Point, Vec<usize>> = BTreeMap::new();
+    for (i, points) in ends.iter().enumerate() {
+        for p in points {
+            at.entry(*p).or_default().push(i);
+        }
+    }
+    let mut used = vec![false; ends.len()];
+    for (i, [a, b]) in ends.iter().copied().enumerate() {
+        if std::mem::replace(&mut used[i], true) {
+            continue;
+        }
+        let mut trail = vec![a, b];
+        // Onward, and then from the beginning the other way.
+        for _ in 0..2 {
+            while let [.., before, end] = trail[..]
+                && let Some((k, next)) = following(&ends, &at, &used, before, end)
+            {
+                used[k] = true;
+                if is_straight(before, end, next) {
+                    trail.pop();
+                }
+                trail.push(next);
+            }
+            trail.reverse();
+        }
+        out.push(trail);
+    }
+    out
+}
+
+/// A line not yet drawn that begins at `end`, and where it leads: straight on from `before` if there is one.
+fn following(
+    ends: &[[Point; 2]],
+    at: &BTreeMap<Point, Vec<usize>>,
+    used: &[bool],
+    before: Point,
+    end: Point,
+) -> Option<(usize, Point)> {
+    let left = at.get(&end)?.iter().filter(|k| !used[**k]);
+    let left = left.map(|k| {
+        let [p, q] = ends[*k];
+        (*k, if p == end { q } else { p })
+    });
+    let mut any = None;
+    for (k, next) in left {
+        if is_straight(before, end, next) {
+            return Some((k, next));
+        }
+        any = any.or(Some((k, next)));
+    }
+    any
+}
+
+fn is_straight(a: Point, b: Point, c: Point) -> bool {
+    let (u, v) = ([b[0] - a[0], b[1] - a[1]], [c[0] - b[0], c[1] - b[1]]);
+    u[0] * v[1] == u[1] * v[0] && u[0] * v[0] + u[1] * v[1] > 0
+}
