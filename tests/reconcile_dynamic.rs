@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use strainbridge::reconcile::Verdict;
 use strainbridge::reconcile::motion::{MotionFrame, MotionOutcome, examine};
-use strainbridge::vehicle::preset::{Wish, vehicle};
+use strainbridge::vehicle::preset::{PresetRequest, vehicle};
 
 fn shared(case: &str) -> Option<PathBuf> {
     support::shared(&format!("hidden_effects/dynamics/{case}"))
@@ -434,10 +434,10 @@ fn pitching(inertia: f64, seed: u64) -> String {
     use strainbridge::vehicle::simulate::{Drive, simulate};
     const N: usize = 12_000;
     const RATE_HZ: f64 = 200.0;
-    let wish = Wish {
+    let wish = PresetRequest {
         model: "half".into(),
         places: BTreeMap::from([("front".into(), [1.5, 0.0]), ("rear".into(), [-2.5, 0.0])]),
-        ..Wish::default()
+        ..PresetRequest::default()
     };
     let v = vehicle(&wish).unwrap();
     let known = |name: &str| match name {

@@ -10,7 +10,7 @@ use strainbridge::series::channels::{Channel, Channels};
 use strainbridge::series::csv::read_csv;
 use strainbridge::series::spectrum::Band;
 use strainbridge::vehicle::layout::Measures;
-use strainbridge::vehicle::preset::{Wish, vehicle};
+use strainbridge::vehicle::preset::{PresetRequest, vehicle};
 use strainbridge::vehicle::term::UnitNames;
 
 /// One mass on a linear spring and damper, as the analyst has it; `cut` samples are fitted, the rest judges.
@@ -36,10 +36,10 @@ fn frame(
             .collect();
         Channels::from_list(rate_hz, list).unwrap()
     };
-    let wish = Wish {
+    let wish = PresetRequest {
         model: "oscillator".into(),
         terms: vec!["k".into(), "c".into()],
-        ..Wish::default()
+        ..PresetRequest::default()
     };
     let mut model = vehicle(&wish).unwrap();
     model.sensors[0].measures = measures;
