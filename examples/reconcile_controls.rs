@@ -100,9 +100,9 @@ fn case(bases: &[(String, StrainFrame)], number: usize) -> Said {
     let start = Instant::now();
     let seed = 70_000 + number as u64;
     let stated = STATED[(number / 2) % STATED.len()];
-    let (what, verdict, names) = if number % 2 == 0 {
+    let (what, verdict, names) = if number.is_multiple_of(2) {
         let (name, base) = &bases[(number / 2) % bases.len()];
-        let placed = (number / 6) % 2 == 0;
+        let placed = (number / 6).is_multiple_of(2);
         let outcome = strain::examine(&still(base, seed, stated, placed), &[]);
         let place = if placed { ", places 2 mm" } else { "" };
         let names = outcome.effects.into_iter().map(|e| e.id).collect();
@@ -169,7 +169,7 @@ fn moved(number: usize, seed: u64, stated: f64) -> (String, Verdict, Vec<String>
         layouts[(number / 2) % layouts.len()],
         rates[(number / 2) % rates.len()],
     );
-    let background = if (number / 6) % 2 == 0 {
+    let background = if (number / 6).is_multiple_of(2) {
         Background::Messy
     } else {
         Background::Clean
