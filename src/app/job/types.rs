@@ -600,6 +600,8 @@ pub struct Runs {
     pub columns: BTreeMap<String, String>,
     /// Units of the file; the report units where not stated.
     pub units: ReportUnits,
+    /// Quantities whose unit the job states.
+    pub stated_units: Vec<Quantity>,
     /// 1 sd by quantity, in the file's units.
     pub noise: RunNoise,
     /// Measured or computed.
