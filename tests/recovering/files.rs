@@ -1,6 +1,6 @@
 //! Runs in files of their own, and in spreadsheets.
 
-use super::{as_is, loads, recover, table};
+use super::{as_is, load, loads, recover, table};
 use serde_json::Value;
 use std::fmt::Write;
 use std::process::Command;
