@@ -382,3 +382,97 @@ fn a_gauge_that_is_stuck_on_every_day_is_told_with_all_its_days() {
     assert_eq!(gauges.len(), GAUGES);
     assert_eq!(gauges[1]["dead_days"].as_array().unwrap().len(), 20);
 }
+
+#[test]
+fn a_gap_is_a_warning_and_loads_that_no_sample_tells_are_an_error() {
+    let (dir, files) = folder("gaps");
+    // For a while one gauge alone reads, which tells neither load; later 30 lines are missing. As in `recover`.
+    let lost = table_of(1, 4, None, |i, y| {
+        if (200..220).contains(&i) {
+            y[1..].fill(f64::NAN);
+        }
+    });
+    let cut = |(i, _): &(usize, &str)| !(301..331).contains(i);
+    let lines: Vec<&str> = lost.lines().enumerate().filter(cut).map(|l| l.1).collect();
+    std::fs::write(dir.join("T1_4.csv"), lines.join("\n") + "\n").unwrap();
+    let (code, result) = fleet(&dir, "out", &files, &[]);
+    assert_eq!(code, 0, "{result}");
+    let mut found = findings_of(&result, &["warning", "error"]);
+    found.sort();
+    let [[gaps, _, lines], [samples, _, said]] = found.as_slice() else {
+        panic!("{found:?}");
+    };
+    assert_eq!(
+        [gaps.as_str(), samples.as_str()],
+        ["record-gaps", "samples-with-gaps"]
+    );
+    assert!(
+        lines.contains("T1_4.csv: 30 samples are missing in 1 gaps"),
+        "{lines}"
+    );
+    assert!(
+        said.contains("in 50 of 1200 samples") && said.contains("in 50 of them some load is blank"),
+        "{said}"
+    );
+    // Every gauge reads somewhere, two of them nowhere together.
+    let in_turn = table_of(2, 3, None, |i, y| {
+        y.iter_mut()
+            .enumerate()
+            .filter(|(g, _)| i % GAUGES != *g)
+            .for_each(|(_, y)| *y = f64::NAN);
+    });
+    std::fs::write(dir.join("T2_3.csv"), in_turn).unwrap();
+    let (code, result) = fleet(&dir, "out", &files, &[]);
+    assert_eq!(code, 1, "{result}");
+    let errors = findings_of(&result, &["error"]);
+    assert!(
+        errors
+            .iter()
+            .any(|f| f[0] == "loads-without-values" && f[1].starts_with("T2")),
+        "{errors:?}"
+    );
+}
+
+/// The zero of G2 drifts by 12 microstrain over every record of T1, among peaks of hundreds: a fraction of what the loads leave anyway, on no
+/// sample more than a few noises. Over the samples that are judged it is 6 on the mean.
+#[test]
+fn a_drift_hidden_by_peaks_is_found_in_every_record_with_its_mean() {
+    let (dir, files) = folder("drift");
+    let job = JOB.replace("noise_microstrain = 0.001", "noise_microstrain = 1.0");
+    std::fs::write(dir.join("job.toml"), job).unwrap();
+    let mut numbers = Numbers(5);
+    let mut peak = 0.0_f64;
+    for (vehicle, day) in (0..3).flat_map(|v| (1..=20).map(move |d| (v, d))) {
+        let text = table_of(vehicle, day, None, |i, y| {
+            // Even numbers of standard deviation 1.
+            y.iter_mut()
+                .for_each(|y| *y += 3.0_f64.sqrt() * numbers.next());
+            peak = peak.max(y[2].abs());
+            if vehicle == 1 {
+                y[2] += 12.0 * i as f64 / SAMPLES as f64;
+            }
+        });
+        std::fs::write(dir.join(format!("T{vehicle}_{day}.csv")), text).unwrap();
+    }
+    assert!(peak > 300.0, "{peak}");
+    let (_, result) = fleet(&dir, "out", &files, &[]);
+    let found = findings_of(&result, &["warning", "error"]);
+    let suspects: Vec<&[String; 3]> = found.iter().filter(|f| f[0] == "gauge-suspect").collect();
+    let [[_, subject, message]] = suspects.as_slice() else {
+        panic!("{found:?}");
+    };
+    assert_eq!(subject, "T1 G2");
+    assert!(message.contains("20 of 20 records"), "{message}");
+    let size = message.split_once("off by ").unwrap().1;
+    let size: f64 = size.split(' ').next().unwrap().parse().unwrap();
+    // 170 samples of noise 1, and a drift that is not the constant it is taken for: its mean is known to a few tenths.
+    assert!(
+        message.contains("microstrain from") && (size - 6.0).abs() < 1.0,
+        "{message}"
+    );
+    // No vehicle else is blamed, and a drift of a few percent of the peaks is no strain that the loads leave unexplained.
+    assert!(
+        found.iter().all(|f| f[0] != "strain-not-explained"),
+        "{found:?}"
+    );
+}

@@ -3,6 +3,7 @@
 use super::calibrated::estimate;
 use super::errors::ErrorModel;
 use super::types::{Readings, RunEstimate};
+use super::verdict::NOT_SOLVABLE;
 use super::{suspects, unlike};
 use crate::finding::{Finding, Severity};
 use crate::sensitivity::{Sensitivity, Uncertainty};
@@ -31,7 +32,7 @@ pub(super) fn recover(
     findings.extend(unsolved.map(|r| {
         Finding::new(
             Severity::Error,
-            "run-not-solvable",
+            NOT_SOLVABLE,
             &r.estimate.run,
             "the gauges that read in this run don't separate the loads: some of its values are arbitrary",
             "bring the silent gauges back, drop loads, or state `expected` for loads with role \"nuisance\"",

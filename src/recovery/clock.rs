@@ -1,6 +1,7 @@
-//! Whether the time of a record can be in seconds.
+//! Whether the time of a record can be in seconds, and whether it is even.
 
 use crate::finding::{Finding, Severity};
+use crate::series::record::{Clock, Evenness};
 
 /// Step, s, from which a record is slower than any logger of loads that move: 1 Hz.
 const SLOW: f64 = 1.0;
@@ -12,6 +13,44 @@ const ENOUGH: usize = 200;
 /// # Reference
 /// J. von Neumann, Ann. Math. Stat. 12 (1941) 367.
 const SMOOTH: f64 = 0.5;
+
+/// Steps of time that differ, and samples that are missing: neither stops a record. `second` is one of its times' unit, s.
+pub fn irregular(subject: &str, clock: &Clock, second: f64) -> Vec<Finding> {
+    let mut out = Vec::new();
+    if let Evenness::Resampled { largest, .. } = clock.evenness {
+        let rate = clock.rate_hz / second;
+        out.push(
+            Finding::new(
+                Severity::Warning,
+                "record-resampled",
+                subject,
+                format!(
+                    "steps of time differ by up to {:.0} %: samples are interpolated to {rate:.6} Hz",
+                    100.0 * largest
+                ),
+                "record with a steady clock where the loads' peaks matter",
+            )
+            .with_numbers(largest, 0.02),
+        );
+    }
+    if clock.n_gaps > 0 {
+        let first = clock.gaps.first().map_or(0.0, |g| g.from_s * second);
+        out.push(
+            Finding::new(
+                Severity::Warning,
+                "record-gaps",
+                subject,
+                format!(
+                    "{} samples are missing in {} gaps, the first after {first} s: they are left blank",
+                    clock.missing, clock.n_gaps
+                ),
+                "look at the logger",
+            )
+            .with_numbers(clock.missing as f64, 0.0),
+        );
+    }
+    out
+}
 
 /// An error where samples lie `step_s` or more apart and yet follow each other as those of a fast logger do: time in milliseconds.
 /// `readings` are those of one piece, `n` gauges a sample.

@@ -1,9 +1,10 @@
 //! Loads from measured strain: weighted least squares, covariance, and what the residual says of both.
 //!
 //! `eps = S f + e`, with `e` the noise of the readings and the model's own error. One estimate ([`gain`]) serves static states ([`runs`])
-//! and records of any length ([`history`]), so that both have the same intervals. [`residuals`] weighs what no load can make, across the
-//! runs; [`verdict`] judges it, [`outlier`] and [`faults`] name gauges that look wrong, [`determined`] and [`plausible`] say whether
-//! readings and loads can be what they are taken for. [`calibrated`] is the same for a calibrated S, [`suspects`] and [`unlike`] its judges.
+//! and records of any length ([`history`], judged by [`samples`]), so that both have the same intervals. [`residuals`] weighs what no
+//! load can make, across the runs; [`verdict`] judges it, [`outlier`] and [`faults`] name gauges that look wrong, [`determined`] and
+//! [`plausible`] say whether readings and loads can be what they are taken for. [`calibrated`] is the same for a calibrated S,
+//! [`suspects`] and [`unlike`] its judges.
 
 mod by_calibration;
 pub mod calibrated;
@@ -20,6 +21,7 @@ mod outlier;
 pub mod plausible;
 pub mod residuals;
 mod runs;
+mod samples;
 mod solve;
 mod solved;
 mod sums;
@@ -33,11 +35,12 @@ pub use gain::Gain;
 pub use interval::{NORMAL_95, student_95};
 pub use outlier::ALARM;
 pub use runs::recover;
+pub use samples::{Missing, check_gaps, recover_samples};
 pub use solve::*;
 pub use solved::estimate;
 pub use sums::Sums;
 pub use types::*;
-pub use verdict::UNEXPLAINED;
+pub use verdict::{NOT_SOLVABLE, UNEXPLAINED};
 
 #[cfg(test)]
 mod tests;

@@ -59,6 +59,18 @@ pub fn impossible(gauges: &[&str], largest: f64) -> Option<Finding> {
     })
 }
 
+/// The finding on so many readings of a record that are too large to be strain.
+pub fn impossible_in_record(subject: &str, n: u64) -> Finding {
+    Finding::new(
+        Severity::Error,
+        "reading-impossible",
+        subject,
+        format!("{n} readings are too large to be strain: they are taken for no reading"),
+        "check the unit (microstrain is expected), the channel's overload, and the file",
+    )
+    .with_numbers(n as f64, 0.0)
+}
+
 /// Readings that all stay below the noise stated for them.
 fn too_quiet(readings: &[Readings], errors: ErrorModel) -> Option<Finding> {
     let (mut sum, mut n, mut largest) = (0.0, 0_usize, 0.0_f64);

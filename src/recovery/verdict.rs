@@ -14,6 +14,8 @@ use crate::units::MICROSTRAIN;
 
 /// Code of strain that the loads don't explain, beyond doubt.
 pub const UNEXPLAINED: &str = "strain-not-explained";
+/// Code of runs whose gauges don't tell some of the loads.
+pub const NOT_SOLVABLE: &str = "run-not-solvable";
 /// Chance under which a sum of squares counts as larger than stated errors make it.
 const SIGNIFICANT: f64 = 1e-3;
 /// Chance from which it is beyond doubt.
@@ -143,7 +145,7 @@ fn unsolvable(s: &Sensitivity, solved: &Solved) -> Vec<Finding> {
         };
         out.push(Finding::new(
             Severity::Error,
-            "run-not-solvable",
+            NOT_SOLVABLE,
             few(&names),
             format!("{why} {}: these loads are left blank", unseen.join(", ")),
             "bring the silent gauges back, drop loads, or state `expected` for loads with role \"nuisance\"",

@@ -1,6 +1,6 @@
 //! Runs in files of their own, and in spreadsheets.
 
-use super::{as_is, loads, recover, table};
+use super::{as_is, load, loads, recover, table};
 use serde_json::Value;
 use std::fmt::Write;
 use std::process::Command;
@@ -133,4 +133,60 @@ fn a_spreadsheet_of_runs_is_read_as_the_same_table_in_text() {
         done.status.code() == Some(2) && said.contains("unpacked"),
         "{said}"
     );
+}
+
+/// The table of twelve runs, readings in these units, which stand beside the names or in a row below them.
+fn in_units(units: [(&str, f64); 4], below: bool) -> String {
+    let text = table("run", 12, |_, g, v| (v * units[g].1).to_string());
+    let rows = text.split_once('\n').unwrap().1;
+    let word = |g: usize| units[g].0;
+    match below {
+        true => format!(
+            "run,G1,G2,G3,G4\n,{},{},{},{}\n{rows}",
+            word(0),
+            word(1),
+            word(2),
+            word(3)
+        ),
+        false => format!(
+            "run,G1 [{}],G2 ({}),G3 [{}],G4\n{rows}",
+            word(0),
+            word(1),
+            word(2)
+        ),
+    }
+}
+
+#[test]
+fn units_of_run_tables_are_read_as_those_of_records() {
+    let (code, said, plain, _) = recover("units-plain", &table("run", 12, as_is), "");
+    assert_eq!(code, 0, "{said}");
+    let units = [("um/m", 1.0), ("m/m", 1e-6), ("mm/m", 1e-3), ("µm/m", 1.0)];
+    for (name, below) in [("units-row", true), ("units-header", false)] {
+        let (code, said, result, _) = recover(name, &in_units(units, below), "");
+        assert_eq!(code, 0, "{said}");
+        for run in ["R0", "R11"] {
+            for l in ["A", "B"] {
+                let [a, b] = [&plain, &result].map(|r| load(r, run, l)[0]);
+                // Readings were divided and multiplied: the last digit.
+                assert!((a - b).abs() < 1e-9 * a.abs(), "{name} {run} {l}: {a} {b}");
+            }
+        }
+    }
+    // What is no strain is a fault that names gauge, unit and remedy; columns of other things may have any unit.
+    let volts = [("um/m", 1.0), ("mV/V", 1.0), ("um/m", 1.0), ("um/m", 1.0)];
+    for below in [true, false] {
+        let (code, said, _, _) = recover("units-volts", &in_units(volts, below), "");
+        assert_eq!(code, 2, "{said}");
+        assert!(
+            said.contains("G2") && said.contains("`mV/V` is no unit of strain"),
+            "{said}"
+        );
+    }
+    let text = table("run", 12, as_is).replace("G4\n", "G4,temperature [°C]\n");
+    let (head, rows) = text.split_once('\n').unwrap();
+    let rows: String = rows.lines().map(|l| format!("{l},21.5\n")).collect();
+    let (code, said, result, _) = recover("units-other", &format!("{head}\n{rows}"), "");
+    assert_eq!(code, 0, "{said}");
+    assert_eq!(load(&result, "R3", "A"), load(&plain, "R3", "A"));
 }

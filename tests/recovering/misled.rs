@@ -54,3 +54,36 @@ fn a_held_out_run_that_no_file_has_is_a_fault_of_every_command_that_reads_runs()
         .unwrap();
     assert_eq!(checked.status.code(), Some(2));
 }
+
+#[test]
+fn a_gap_blanks_what_it_touches_and_loads_that_no_sample_tells_are_an_error() {
+    // From sample 200 on one gauge alone reads for a while, which tells neither load; from 300 on 30 lines are missing.
+    let lost = |i: usize, g: usize, v: f64| match (i, g) {
+        (200..=219, 1..) => String::new(),
+        _ => v.to_string(),
+    };
+    let text = table("time", 501, lost);
+    let cut = |(i, _): &(usize, &str)| !(301..331).contains(i);
+    let lines: Vec<&str> = text.lines().enumerate().filter(cut).map(|l| l.1).collect();
+    let (code, errors, result, dir) = recover("gaps", &(lines.join("\n") + "\n"), "");
+    assert_eq!(code, 0, "{errors}");
+    let found = codes(&result);
+    for code in ["samples-with-gaps", "record-gaps"] {
+        assert!(found.contains(&code.to_owned()), "{code}: {found:?}");
+    }
+    assert_eq!(result["gaps"], 50);
+    let csv = std::fs::read_to_string(dir.join("job.out/loads.csv")).unwrap();
+    let blank = csv.lines().filter(|l| l.contains(",,")).count();
+    assert_eq!(blank, 50, "{csv}");
+    // Every gauge reads somewhere, two of them nowhere together.
+    let in_turn = |i: usize, g: usize, v: f64| match i % 4 == g {
+        true => v.to_string(),
+        false => String::new(),
+    };
+    let (code, _, result, _) = recover("in-turn", &table("time", 400, in_turn), "");
+    assert_eq!(code, 1, "{result}");
+    assert!(
+        codes(&result).contains(&"loads-without-values".to_owned()),
+        "{result}"
+    );
+}

@@ -1,6 +1,7 @@
 //! Known loads of the runs file: values, their sd, sums, repeats.
 
 use crate::app::fault::{Fault, FaultList, Faults};
+use crate::app::job::column_unit::{known_column, place_of, take_units};
 use crate::app::job::quantity::quantity_of_name;
 use crate::app::job::suggest;
 use crate::app::job::table::{Table, read_table};
@@ -8,7 +9,8 @@ use crate::app::job::{HoldOut, Job, JobLoad, LoadActs, Measured, Runs};
 use crate::app::work::Work;
 use crate::calibrate::KnownLoads;
 use crate::sensitivity::Load;
-use crate::units::{Quantity, factor};
+use crate::series::record::Column;
+use crate::units::{Quantity, Unit, factor};
 
 /// Prior sd of a load that a run leaves unknown, in units of the largest known load of its kind: nothing is known of it.
 const UNKNOWN: f64 = 10.0;
@@ -35,8 +37,9 @@ pub(super) struct KnownRuns {
 struct Stated {
     terms: Vec<(usize, f64)>,
     value: usize,
-    sd: Option<usize>,
-    /// Job units of one unit of the file.
+    /// Column of its sd, and job units of one unit of that.
+    sd: Option<(usize, f64)>,
+    /// Job units of one unit of the column.
     unit: f64,
     /// Sd where no column states it, job units.
     noise: f64,
@@ -58,9 +61,10 @@ pub(super) fn read_known(
         .inputs
         .read_named_text(job, &runs.file)
         .map_err(Faults::from)?;
-    let table = read_table(&runs.file.given, &text)?;
+    let mut table = read_table(&runs.file.given, &text)?;
+    let headers = take_units(&mut table);
     let mut faults = FaultList::new();
-    let Some(key) = table.column(&["run"]) else {
+    let Some(key) = place_of(&table, &headers, "run") else {
         return Err(Fault::at(
             &*table.file,
             1,
@@ -70,7 +74,7 @@ pub(super) fn read_known(
         )
         .into());
     };
-    let stated = stated(job, runs, &table, loads, &mut faults);
+    let stated = stated(job, runs, &table, &headers, loads, &mut faults);
     let repeats: Vec<usize> = job
         .calibration
         .repeats
@@ -263,6 +267,7 @@ fn stated(
     job: &Job,
     runs: &Runs,
     table: &Table,
+    headers: &[Column],
     loads: &[Load],
     faults: &mut FaultList,
 ) -> Vec<Stated> {
@@ -282,27 +287,22 @@ fn stated(
     }
     let mut out = Vec::new();
     for (name, terms) in wanted {
-        let given = runs.columns.get(name).map_or(name, String::as_str);
-        let Some(value) = table.column(&[given]) else {
-            if runs.columns.contains_key(name) {
-                let wrong = format!("`{}` has no column `{given}`", table.file);
-                let remedy = suggest::remedy(given, table.header.iter().map(String::as_str));
-                faults.push(Fault::at(
-                    &*job.file,
-                    runs.line,
-                    format!("runs.columns.{name}"),
-                    wrong,
-                    remedy,
-                ));
-            }
-            continue;
-        };
         let first = terms
             .first()
             .and_then(|t| loads.get(t.0))
             .map_or(name, |l| l.name.as_str());
         let quantity = quantity(job.loads.iter().find(|l| l.name == first), first);
-        let unit = quantity.map_or(1.0, |q| 1.0 / factor(job.units, runs.units.unit(q)));
+        let Some((value, unit)) =
+            known_column(job, runs, table, headers, name, quantity, faults).map(|c| (c.at, c.unit))
+        else {
+            continue;
+        };
+        let given = runs.columns.get(name).map_or(name, String::as_str);
+        let own = [name, given].map(|n| format!("{n}_sd"));
+        let sd = own.iter().find(|n| place_of(table, headers, n).is_some());
+        let sd = sd.and_then(|n| known_column(job, runs, table, headers, n, quantity, faults));
+        let of = |unit: Option<Unit>| unit.map_or(1.0, |u| 1.0 / factor(job.units, u));
+        let of_file = of(quantity.map(|q| runs.units.unit(q)));
         let noise = match quantity {
             Some(Quantity::Force) => runs.noise.force,
             Some(Quantity::Moment) => runs.noise.moment,
@@ -311,9 +311,9 @@ fn stated(
         out.push(Stated {
             terms,
             value,
-            sd: table.column(&[&format!("{name}_sd"), &format!("{given}_sd")]),
-            unit,
-            noise: noise.unwrap_or(0.0) * unit,
+            sd: sd.map(|c| (c.at, of(c.unit))),
+            unit: of(unit),
+            noise: noise.unwrap_or(0.0) * of_file,
         });
     }
     out
@@ -324,11 +324,11 @@ fn cell(table: &Table, row: usize, s: &Stated) -> Result<Option<(f64, f64)>, Fau
     let Some(value) = table.number(row, s.value)? else {
         return Ok(None);
     };
-    let sd = s.sd.map_or(Ok(None), |c| table.number(row, c))?;
-    Ok(Some((
-        value * s.unit,
-        sd.map_or(s.noise, |v| (v * s.unit).abs()),
-    )))
+    let sd = match s.sd {
+        Some((c, unit)) => table.number(row, c)?.map(|v| (v * unit).abs()),
+        None => None,
+    };
+    Ok(Some((value * s.unit, sd.unwrap_or(s.noise))))
 }
 
 /// The largest known value of any quantity; every fault of its cells on the way.

@@ -14,13 +14,14 @@ const BY_CHANCE: [&str; 2] = [GAUGE_SUSPECT, "residual-above-stated-errors"];
 /// Said of a vehicle that stands still all day too: told where most of its records say so.
 const OF_STANDING: [&str; 2] = ["loads-not-determined", "readings-below-noise"];
 /// Said of what all vehicles have in common: logger, number of gauges, stated errors, sizes of loads.
-const OF_ALL: [&str; 6] = [
+const OF_ALL: [&str; 7] = [
     "gauge-missing",
     "load-beyond-expected",
     "no-redundancy",
     "record-gaps",
     "record-resampled",
     "residual-above-stated-errors",
+    "samples-with-gaps",
 ];
 
 /// Records that say the same.

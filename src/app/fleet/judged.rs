@@ -3,7 +3,9 @@
 
 use super::day::DayFinding;
 use crate::finding::{Severity, few};
-use crate::recovery::{ErrorModel, Readings, Recovery, UNEXPLAINED, recover, unlike};
+use crate::recovery::{
+    ErrorModel, NOT_SOLVABLE, Readings, Recovery, UNEXPLAINED, recover_samples, unlike,
+};
 use crate::sensitivity::Sensitivity;
 use std::collections::BTreeMap;
 
@@ -117,14 +119,12 @@ impl Judged {
         for samples in [all, extremes] {
             let readings: Vec<Readings> = samples
                 .into_iter()
-                // Nothing was measured in a gap.
-                .filter(|(_, strain)| strain.iter().any(|v| v.is_finite()))
                 .map(|(i, strain)| Readings::of_sample(time_s(i), strain, noise_factor))
                 .collect();
             if readings.is_empty() {
                 continue;
             }
-            let recovery = recover(s, &readings, errors);
+            let recovery = recover_samples(s, readings, errors);
             let unexplained = recovery.findings.iter().any(|f| f.code == UNEXPLAINED);
             out.push(recovery);
             if unexplained {
@@ -186,9 +186,6 @@ fn findings_of_one(recovery: Recovery) -> Vec<DayFinding> {
     }
     out
 }
-
-/// Code of samples whose gauges don't tell some of the loads.
-const NOT_SOLVABLE: &str = "run-not-solvable";
 
 #[cfg(test)]
 mod tests {

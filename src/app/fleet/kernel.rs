@@ -12,11 +12,11 @@ use crate::linalg::Matrix;
 use crate::recovery::ErrorModel;
 use crate::recovery::clock;
 use crate::recovery::history::{Filter, SampleLoads};
-use crate::recovery::{Sums, UNEXPLAINED, Widening};
+use crate::recovery::{Missing, Sums, UNEXPLAINED, Widening, check_gaps};
 use crate::sensitivity::Sensitivity;
 use crate::series::SeriesError;
 use crate::series::rainflow::{Counter, Law};
-use crate::series::record::{Evenness, Record};
+use crate::series::record::Record;
 use crate::series::still::{Gives, Still};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -63,7 +63,8 @@ impl Kernel {
             Some(unit) if !record.is_time_unit_stated() => unit,
             _ => 1.0,
         };
-        self.check_clock(record, &mut findings)?;
+        let irregular = clock::irregular("time", &record.clock, second);
+        findings.extend(irregular.into_iter().map(DayFinding::from));
         let r = self.prepared(record, &mut findings)?;
         let k = self.sensitivity.loads.len();
         let zero_sigma = r.filter.sigma(&vec![0.0; k]);
@@ -81,6 +82,7 @@ impl Kernel {
         let mut health = Health::new(&r.s);
         let mut judged = Judged::new(r.used.len(), k, record.clock.samples);
         let pieces: Vec<usize> = (0..record.n_pieces()).collect();
+        let mut missing = Missing::new(k);
         let mut parts: Vec<Part> = Vec::new();
         // While some pieces are decoded, the ones before them are counted.
         for group in pieces.chunks(rayon::current_num_threads().max(1)) {
@@ -92,10 +94,13 @@ impl Kernel {
             parts = next.map_err(text)?;
             for part in &mut parts {
                 health.merge(&part.health);
+                missing.merge(&part.missing);
                 judged.merge(std::mem::take(&mut part.judged));
             }
         }
         counted(&mut counters, &parts);
+        let gaps = check_gaps("samples", &r.sensitivity, &missing);
+        findings.extend(gaps.into_iter().map(DayFinding::from));
         let widened = self.judge(
             &r,
             judged,
@@ -157,34 +162,6 @@ impl Kernel {
             &r.typical,
             widening,
         )
-    }
-
-    fn check_clock(&self, record: &Record, findings: &mut Vec<DayFinding>) -> Result<(), String> {
-        let clock = &record.clock;
-        if let Evenness::Resampled { largest, .. } = clock.evenness {
-            findings.push(said(
-                Severity::Warning,
-                "record-resampled",
-                "time",
-                format!(
-                    "steps differ by up to {:.0} %: samples are interpolated to {:.6} Hz",
-                    100.0 * largest,
-                    clock.rate_hz
-                ),
-            ));
-        }
-        if clock.n_gaps > 0 {
-            findings.push(said(
-                Severity::Warning,
-                "record-gaps",
-                "time",
-                format!(
-                    "{} samples are missing in {} gaps",
-                    clock.missing, clock.n_gaps
-                ),
-            ));
-        }
-        Ok(())
     }
 
     /// The gauges that read, and the filter from them.

@@ -2,6 +2,7 @@
 //! structs of [`types`]; [`gauges`], [`strain`] and [`runs`] read the tables a job names; [`schema`] describes
 //! a job to editors.
 
+pub mod column_unit;
 pub mod correct;
 mod faults;
 pub mod gauges;

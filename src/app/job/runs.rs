@@ -1,8 +1,8 @@
 //! The runs file: what else was measured in each run, by the job's names, in SI units.
 
+use super::column_unit::{known_column, place_of, take_units};
 use super::given_columns::columns_of_given;
 use super::quantity::quantity_of_name;
-use super::suggest;
 use super::table::read_table;
 use super::types::{Job, Runs};
 use crate::app::fault::{Fault, FaultList, Faults};
@@ -32,14 +32,15 @@ pub struct RunRow {
 /// The runs of `[runs]`, with the load names that the job (its loads, or the columns of a given S) knows.
 ///
 /// # Errors
-/// Every fault: missing columns, fields that are no numbers, runs named twice.
+/// Every fault: missing columns, units that are none or contradict the job, fields that are no numbers, runs named twice.
 pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunRow>, Faults> {
     let text = inputs
         .read_named_text(job, &runs.file)
         .map_err(Faults::from)?;
-    let t = read_table(&runs.file.given, &text)?;
+    let mut t = read_table(&runs.file.given, &text)?;
+    let headers = take_units(&mut t);
     let mut faults = FaultList::new();
-    let Some(key) = t.column(&["run"]) else {
+    let Some(key) = place_of(&t, &headers, "run") else {
         return Err(Faults::from(Fault::at(
             &*t.file,
             1,
@@ -51,19 +52,8 @@ pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunR
     let mut columns: Vec<(String, usize, f64)> = Vec::new();
     let given = given_loads(inputs, job)?;
     for (name, quantity) in known_columns(job, &given) {
-        let stated = runs.columns.get(&name);
-        let column = stated.unwrap_or(&name);
-        match t.header.iter().position(|h| h == column) {
-            Some(c) => columns.push((name, c, runs.units.unit(quantity).si)),
-            None if stated.is_some() => faults.push(Fault::at(
-                &*job.file,
-                runs.line,
-                format!("runs.columns.{name}"),
-                format!("`{}` has no column `{column}`", t.file),
-                suggest::remedy(column, t.header.iter().map(String::as_str)),
-            )),
-            None => {}
-        }
+        let column = known_column(job, runs, &t, &headers, &name, Some(quantity), &mut faults);
+        columns.extend(column.map(|c| (name, c.at, c.unit.map_or(1.0, |u| u.si))));
     }
     let mut out: Vec<RunRow> = Vec::new();
     for (row, (line, fields)) in t.rows.iter().enumerate() {

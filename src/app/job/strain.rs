@@ -1,11 +1,15 @@
 //! The strain file: a column a gauge in microstrain, a row a run (`run`) or a sample (`time`); or RPC III, Parquet, MDF4, a channel a
 //! gauge. Text is read in [`super::strain_text`], means of long records in [`super::strain_means`].
 
+pub use super::column_unit::microstrain_in;
+use super::column_unit::no_strain;
 pub use super::strain_table::{StrainRows, StrainTable};
 use super::strain_text::strain_from_text;
+use super::table::read_table;
 use super::types::{Job, NamedFile};
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::files::{FileBytes, Inputs};
+use crate::gauge::Rosette;
 use crate::series::SeriesError;
 use crate::series::record::{Column, Options, Record, is_format, open_record};
 use std::collections::HashSet;
@@ -37,24 +41,33 @@ fn strain_as_read(
         return strain_from_record(&named.given, bytes);
     }
     let text = inputs.read_named_text(job, named).map_err(Faults::from)?;
-    strain_from_text(&named.given, &text)
+    strain_from_text(&named.given, &text, &gauge_names(inputs, job))
 }
 
-/// Microstrain in one of a unit, as measuring systems write it.
-pub fn microstrain_in(unit: &str) -> Option<f64> {
-    let word: String = unit
-        .to_lowercase()
-        .chars()
-        .filter(|c| !matches!(c, ' ' | '_' | '-' | '.'))
-        .map(|c| if matches!(c, 'µ' | 'μ') { 'u' } else { c })
-        .collect();
-    match word.as_str() {
-        "" | "microstrain" | "ustrain" | "ue" | "uε" | "um/m" | "ustr" | "us" | "1e6" | "ppm"
-        | "uin/in" => Some(1.0),
-        "strain" | "m/m" | "mm/mm" | "in/in" | "eps" => Some(1e6),
-        "mm/m" | "millistrain" | "mstrain" | "me" => Some(1e3),
-        _ => None,
+/// Names of the job's gauges: those it states, legs of rosettes by theirs, else the rows of a given S; none where neither tells. A table of S
+/// that can't be read is a fault of whoever asks for S.
+fn gauge_names(inputs: &mut Inputs, job: &Job) -> Vec<String> {
+    let mut names = Vec::new();
+    for g in &job.gauges {
+        names.push(g.name.clone());
+        // Both kinds name their legs alike.
+        let legs = g.rosette.iter().flat_map(|_| Rosette::Rectangular.legs());
+        names.extend(legs.map(|(leg, _)| format!("{}.{leg}", g.name)));
     }
+    let given = job.sensitivity.as_ref().filter(|_| names.is_empty());
+    let text = given.and_then(|s| inputs.read_named_text(job, &s.file).ok());
+    if let Some((s, text)) = given.zip(text)
+        && let Ok(table) = read_table(&s.file.given, &text)
+        && let Some(key) = table.column(&["gauge", "name"])
+    {
+        names.extend(
+            table
+                .rows
+                .into_iter()
+                .filter_map(|(_, mut r)| (key < r.len()).then(|| r.swap_remove(key))),
+        );
+    }
+    names
 }
 
 /// Names of a record's columns as `gauges` are called, and microstrain in one of each (1 for columns that are no gauges). A gauge may be
@@ -83,22 +96,14 @@ pub fn strain_columns(
             (c.name.clone(), scale.unwrap_or(1.0))
         } else {
             let full = whole.into_iter().find(|w| known.contains(w.as_str()));
-            (full.unwrap_or_else(|| c.name.clone()), 1.0)
+            let scale = full.as_ref().and_then(|_| microstrain_in(&c.unit));
+            (full.unwrap_or_else(|| c.name.clone()), scale.unwrap_or(1.0))
         };
         names.push(name);
         scales.push(scale);
     }
     Faults::check(faults)?;
     Ok((names, scales))
-}
-
-fn no_strain(file: &str, channel: &str, unit: &str) -> Fault {
-    Fault::of(
-        file,
-        channel,
-        format!("`{unit}` is no unit of strain"),
-        "export it in microstrain (uE, um/m) or strain (m/m)",
-    )
 }
 
 /// A record that is read whole or passed over: its columns of strain, each with its name and microstrain in one of its unit.

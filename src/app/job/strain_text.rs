@@ -1,28 +1,35 @@
 //! Strain in a CSV text: a row a run or a sample.
 
+use super::column_unit::{microstrain_in, no_strain, take_units};
 use super::strain_table::{StrainRows, StrainTable};
 use super::table::{Table, each_part};
 use crate::app::fault::{Fault, FaultList, Faults};
+use crate::series::record::{Column, is_time, seconds_in};
 use std::collections::HashSet;
 
 /// Rows whose fields are in memory at a time.
 const PART: usize = 10_000;
 
-/// The strain in a CSV text.
+/// The strain in a CSV text. Units stand beside the names or in a row below them; none stated is microstrain. A column named as one of
+/// `gauges` in whole is that gauge's; where none are known, every column may be one.
 ///
 /// # Errors
-/// Every fault: no `run` or `time` column, fields that are no numbers, runs named twice, times that don't ascend.
-pub fn strain_from_text(file: &str, text: &str) -> Result<StrainTable, Faults> {
-    let mut reading: Option<Result<Reading, Fault>> = None;
-    each_part(file, text, PART, &mut |part| {
-        let reading = reading.get_or_insert_with(|| Reading::of(&part));
+/// Every fault: no `run` or `time` column, units of gauges that are none of strain, fields that are no numbers, runs named twice, times
+/// that don't ascend.
+pub fn strain_from_text(file: &str, text: &str, gauges: &[String]) -> Result<StrainTable, Faults> {
+    let mut reading: Option<Result<Reading, Faults>> = None;
+    each_part(file, text, PART, &mut |mut part| {
+        let reading = reading.get_or_insert_with(|| {
+            let headers = take_units(&mut part);
+            Reading::of(&part, &headers, gauges)
+        });
         if let Ok(reading) = reading {
             reading.add(&part);
         }
     })?;
     match reading {
         Some(Ok(reading)) => reading.finish(file),
-        Some(Err(fault)) => Err(fault.into()),
+        Some(Err(faults)) => Err(faults),
         None => Err(no_rows(file).into()),
     }
 }
@@ -35,6 +42,24 @@ fn number(t: &Table, row: usize, column: usize, faults: &mut FaultList) -> f64 {
             faults.push(fault);
             f64::NAN
         }
+    }
+}
+
+/// The gauge that a column is named after, and microstrain in one of its unit; `None` where a gauge's unit is none of strain. What looks like
+/// a unit may be part of a name: `SG1 (left)`.
+fn gauge_of<'a>(
+    header: &'a str,
+    column: &'a Column,
+    known: &HashSet<&str>,
+) -> Option<(&'a str, f64)> {
+    let scale = microstrain_in(&column.unit);
+    let is_known = |name: &str| known.contains(name);
+    let is_gauge = is_known(&column.name) || (known.is_empty() && header.ends_with(']'));
+    match scale {
+        _ if is_known(header) && header != column.name => Some((header, scale.unwrap_or(1.0))),
+        Some(scale) => Some((&column.name, scale)),
+        None if is_gauge => None,
+        None => Some((header, 1.0)),
     }
 }
 
@@ -51,7 +76,10 @@ fn no_rows(file: &str) -> Fault {
 /// What has been read so far.
 struct Reading {
     key: usize,
-    columns: Vec<usize>,
+    /// Seconds in one of the times.
+    second: f64,
+    /// Columns of strain, and microstrain in one of each.
+    columns: Vec<(usize, f64)>,
     gauges: Vec<String>,
     is_runs: bool,
     runs: Vec<String>,
@@ -63,23 +91,57 @@ struct Reading {
 }
 
 impl Reading {
-    fn of(t: &Table) -> Result<Self, Fault> {
-        let run = t.column(&["run"]);
-        let time = t.column(&["time", "t", "t_s", "time_s"]);
+    fn of(t: &Table, headers: &[Column], known: &[String]) -> Result<Self, Faults> {
+        let run = headers.iter().position(|c| c.name == "run");
+        let mut times = headers.iter().enumerate();
+        let time = times.find(|(i, c)| is_time(&c.name, *i == 0)).map(|t| t.0);
         let Some(key) = run.or(time) else {
-            return Err(Fault::at(
+            return Err(Faults::from(Fault::at(
                 &*t.file,
                 1,
                 "run",
                 "no column `run` and no column `time`",
                 "add `run` with the runs' names, or `time` in seconds",
-            ));
+            )));
         };
-        let columns: Vec<usize> = (0..t.header.len()).filter(|c| *c != key).collect();
-        let names = columns.iter().filter_map(|c| t.header.get(*c));
+        let unit = headers.get(key).map_or("", |c| c.unit.as_str());
+        let second = match run {
+            Some(_) => 1.0,
+            None => seconds_in(unit).ok_or_else(|| {
+                let wrong = format!("`{unit}` is no unit of time");
+                Faults::from(Fault::at(
+                    &*t.file,
+                    1,
+                    "time",
+                    wrong,
+                    "give times in s or ms",
+                ))
+            })?,
+        };
+        let mut faults = FaultList::new();
+        let known: HashSet<&str> = known.iter().map(String::as_str).collect();
+        let (mut columns, mut gauges) = (Vec::new(), Vec::new());
+        let mut named: HashSet<&str> = HashSet::new();
+        for (c, (header, column)) in t.header.iter().zip(headers).enumerate() {
+            if c == key {
+                continue;
+            }
+            let (name, scale) = gauge_of(header, column, &known).unwrap_or_else(|| {
+                faults.push(no_strain(&t.file, &column.name, &column.unit));
+                (header.as_str(), 1.0)
+            });
+            if !named.insert(name) {
+                let remedy = "give every column its own name";
+                faults.push(Fault::at(&*t.file, 1, name, "column named twice", remedy));
+            }
+            gauges.push(name.to_owned());
+            columns.push((c, scale));
+        }
+        Faults::check(faults)?;
         Ok(Self {
             key,
-            gauges: names.cloned().collect(),
+            second,
+            gauges,
             columns,
             is_runs: run.is_some(),
             runs: Vec::new(),
@@ -94,8 +156,8 @@ impl Reading {
     fn add(&mut self, t: &Table) {
         let faults = &mut self.faults;
         for (row, (line, fields)) in t.rows.iter().enumerate() {
-            for c in &self.columns {
-                self.microstrain.push(number(t, row, *c, faults));
+            for (c, scale) in &self.columns {
+                self.microstrain.push(number(t, row, *c, faults) * scale);
             }
             if self.is_runs {
                 let name = fields.get(self.key).cloned().unwrap_or_default();
@@ -106,7 +168,7 @@ impl Reading {
                 }
                 self.runs.push(name);
             } else {
-                let time = number(t, row, self.key, faults);
+                let time = number(t, row, self.key, faults) * self.second;
                 if self.ascends
                     && let Some(before) = self.times.last()
                     && !(time > *before)

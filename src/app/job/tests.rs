@@ -461,7 +461,7 @@ fn positions_in_metres_become_job_units() {
 
 #[test]
 fn strain_tables_hold_runs_or_samples() {
-    let read = |text: &str| strain_text::strain_from_text("s.csv", text);
+    let read = |text: &str| strain_text::strain_from_text("s.csv", text, &[]);
     let s = read("run,G1,G2\nR1,1.5,\nR2,3,4\n").unwrap();
     assert_eq!(
         s.rows,
@@ -479,7 +479,7 @@ fn strain_tables_hold_runs_or_samples() {
 fn a_long_table_in_parts_is_the_whole_table() {
     let rows = (0..25_001).map(|i| format!("R{i},{i},-{i}\n"));
     let text = format!("run,G1,G2\n{}", rows.collect::<String>());
-    let s = strain_text::strain_from_text("s.csv", &text).unwrap();
+    let s = strain_text::strain_from_text("s.csv", &text, &[]).unwrap();
     assert_eq!(s.n_rows(), 25_001);
     assert!((0..25_001).all(|i| s.row(i) == [i as f64, -(i as f64)]));
 }
@@ -502,4 +502,50 @@ fn without_a_model_a_load_needs_a_name_alone_and_with_one_it_must_act_somewhere(
     let found =
         faults("units = \"m-kg-s\"\n[model]\ndeck = \"d.bdf\"\n[[load]]\nname = \"west\"\n");
     assert!(found.iter().any(|f| f.field == "load.grid"), "{found:?}");
+}
+
+/// The runs of a table, read for a job with these further lines under `[runs]`.
+fn runs_of(table: &str, more: &str) -> Result<Vec<runs::RunRow>, Faults> {
+    let files = crate::app::context::InMemory::default().with("runs.csv", table);
+    let text = format!(
+        "units = \"m-kg-s\"\nreport_units = {{ force = \"kN\" }}\n[[load]]\nname = \"LF.FZ\"\n[[load]]\nname = \"LF.MX\"\n\
+         [calibration]\n[runs]\nfile = \"runs.csv\"\n{more}"
+    );
+    let job = read_text(&text)?;
+    let runs = job.runs.as_ref().unwrap();
+    runs::read_runs(&mut Inputs::of(&files), &job, runs)
+}
+
+#[test]
+fn units_of_a_runs_file_stand_in_its_header_or_below_and_contradict_nothing() {
+    let si = |table: &str, more: &str| {
+        let rows = runs_of(table, more).unwrap_or_else(|f| panic!("{f:?}"));
+        assert_eq!(rows.len(), 1);
+        ["LF.FZ", "LF.MX"].map(|l| rows[0].loads_si[l])
+    };
+    let plain = si("run,LF.FZ,LF.MX\nR1,2,3\n", "");
+    assert_eq!(plain, [2e3, 3.0]);
+    let below = si("run,LF.FZ,LF.MX\n-,N,kN m\nR1,2000,0.003\n", "");
+    let beside = si("run,LF.FZ [N],LF.MX (N*m)\nR1,2000,3\n", "");
+    // 0.003 times a thousand: the last digit.
+    assert!(below[0] == 2e3 && (below[1] - 3.0).abs() < 1e-12);
+    assert_eq!(beside, plain);
+    let named = "columns = { \"LF.FZ\" = \"axle (front)\" }\n";
+    assert_eq!(si("run,axle (front),LF.MX\nR1,2,3\n", named), plain);
+    // What the job states as well must be the same.
+    let stated = "units = { force = \"kN\" }\n";
+    assert_eq!(si("run,LF.FZ [kN],LF.MX\nR1,2,3\n", stated), plain);
+    let fault = |table: &str, more: &str| runs_of(table, more).unwrap_err().into_list().remove(0);
+    let f = fault("run,LF.FZ [N],LF.MX\nR1,2,3\n", stated);
+    let said = f.to_string();
+    assert!(
+        said.starts_with("runs.csv:1: LF.FZ [N]: the column says `N`, the job says `kN`"),
+        "{said}"
+    );
+    let f = fault("run,LF.FZ [kg],LF.MX\nR1,2,3\n", "");
+    let said = f.to_string();
+    assert!(
+        said.contains("`kg` is no unit of force") && said.contains("kN"),
+        "{said}"
+    );
 }

@@ -8,7 +8,7 @@ use crate::app::fault::{Fault, Faults};
 use crate::app::solved::{first_mode_of, support_of_job};
 use crate::app::work::Work;
 use crate::recovery::history::Filter;
-use crate::recovery::{Readings, Recovery, clock, recover};
+use crate::recovery::{Readings, Recovery, clock, recover_samples};
 use crate::sensitivity::Sensitivity;
 use rayon::prelude::*;
 
@@ -40,9 +40,16 @@ pub(super) fn judge(
     for p in 0..spread {
         let (times, values) = record.piece(p * pieces / spread).map_err(Faults::from)?;
         let take = times.len().min(TYPICAL);
-        let each = each.min(take);
-        for i in (0..each).map(|i| i * take / each) {
-            let row = &values[i * n..(i + 1) * n];
+        let row = |i: usize| values.get(i * n..(i + 1) * n).unwrap_or_default();
+        // In a gap there is nothing to judge.
+        let reads = |i: &usize| row(*i).iter().any(|v| v.is_finite());
+        let mut measured: Vec<usize> = (0..take).filter(reads).collect();
+        if measured.is_empty() {
+            measured = (0..take).collect();
+        }
+        let each = each.min(measured.len());
+        for i in (0..each).map(|i| measured[i * measured.len() / each]) {
+            let row = row(i);
             let strain = row.iter().zip(zero).map(|(v, z)| v - z).collect();
             readings.push(Readings::of_sample(times[i], strain, task.noise_factor));
         }
@@ -56,7 +63,7 @@ pub(super) fn judge(
             "write a row a sample",
         )));
     }
-    Ok(recover(s, &readings, task.errors))
+    Ok(recover_samples(s, readings, task.errors))
 }
 
 /// Says where its times look like those of another unit.

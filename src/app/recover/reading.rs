@@ -6,11 +6,11 @@ use crate::app::files::FileBytes;
 use crate::app::job::correct::{Channel, column_of};
 use crate::app::job::strain::strain_columns;
 use crate::app::job::{Job, Measured};
-use crate::finding::{Finding, Severity};
-use crate::recovery::Sums;
+use crate::finding::Finding;
 use crate::recovery::history::{Filter, SampleLoads};
+use crate::recovery::{Sums, clock};
 use crate::series::SeriesError;
-use crate::series::record::{self as series, Clock, Evenness, Options, is_format, open_record};
+use crate::series::record::{self as series, Clock, Options, is_format, open_record};
 use crate::units::MICROSTRAIN;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -139,35 +139,7 @@ impl Record {
 
     /// What is to be known of its times.
     pub fn findings(&self) -> Vec<Finding> {
-        let (clock, mut out) = (self.clock(), Vec::new());
-        let file = self.file.as_str();
-        if let Evenness::Resampled { largest, .. } = clock.evenness {
-            let rate = clock.rate_hz / self.second;
-            out.push(
-                Finding::new(
-                    Severity::Warning,
-                    "record-resampled",
-                    file,
-                    format!("steps of time differ by up to {:.0} %: samples are interpolated to {rate:.6} Hz", 100.0 * largest),
-                    "record with a steady clock where the loads' peaks matter",
-                )
-                .with_numbers(largest, 0.02),
-            );
-        }
-        if clock.n_gaps > 0 {
-            let first = clock.gaps.first().map_or(0.0, |g| g.from_s * self.second);
-            out.push(
-                Finding::new(
-                    Severity::Warning,
-                    "record-gaps",
-                    file,
-                    format!("{} samples are missing in {} gaps, the first after {first} s: they are left blank", clock.missing, clock.n_gaps),
-                    "look at the logger",
-                )
-                .with_numbers(clock.missing as f64, 0.0),
-            );
-        }
-        out
+        clock::irregular(&self.file, self.clock(), self.second)
     }
 }
 

@@ -16,9 +16,8 @@ use crate::app::job::LoadFile;
 use crate::app::outcome::finite;
 use crate::app::work::Work;
 use crate::app::zeroed::no_zero_runs;
-use crate::finding::{Finding, Severity, few};
-use crate::recovery::Sums;
 use crate::recovery::history::Filter;
+use crate::recovery::{Missing, Sums, check_gaps};
 use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
 use rayon::prelude::*;
@@ -77,7 +76,8 @@ pub(super) fn record(
     };
     work.findings
         .extend(files::findings(task.job, &head, &sums));
-    work.findings.extend(gaps(&head, &sensitivity, &sums));
+    work.findings
+        .extend(check_gaps(&head.file, &sensitivity, &Missing::from(&sums)));
     Ok(answer(sensitivity, head, sums, spans, content, damage))
 }
 
@@ -147,55 +147,6 @@ fn stream(
         progress.advance(group.len());
     }
     Ok((sums, spans))
-}
-
-/// What gaps and impossible readings left.
-fn gaps(head: &RecordHead, s: &Sensitivity, sums: &Sums) -> Vec<Finding> {
-    let (file, mut out) = (head.file.as_str(), Vec::new());
-    if sums.gaps > 0 {
-        out.push(
-            Finding::new(
-                Severity::Warning,
-                "samples-with-gaps",
-                file,
-                format!(
-                    "in {} samples some gauge gives nothing: their loads are those of the others, with wider intervals, or blank",
-                    sums.gaps
-                ),
-                "repair the channel, or leave its gauge out: [[correction]] ignore = true",
-            )
-            .with_numbers(sums.gaps as f64, 0.0),
-        );
-    }
-    if sums.impossible > 0 {
-        out.push(
-            Finding::new(
-                Severity::Error,
-                "reading-impossible",
-                file,
-                format!(
-                    "{} readings are too large to be strain: they are taken for no reading",
-                    sums.impossible
-                ),
-                "check the unit (microstrain is expected), the channel's overload, and the file",
-            )
-            .with_numbers(sums.impossible as f64, 0.0),
-        );
-    }
-    let unknown: Vec<&str> = (0..s.loads.len())
-        .filter(|&l| s.loads[l].wanted && sums.known(l) == 0)
-        .map(|l| head.names[l].as_str())
-        .collect();
-    if !unknown.is_empty() {
-        out.push(Finding::new(
-            Severity::Error,
-            "loads-without-values",
-            few(&unknown),
-            "in no sample do the gauges that read tell these loads",
-            "bring the silent gauges back, or drop these loads",
-        ));
-    }
-    out
 }
 
 /// Everything in report units.

@@ -93,7 +93,7 @@ pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
         )));
     };
     let errors = errors(job, study)?;
-    let prepared = pool::prepare(&mut work, job, study)?;
+    let prepared = pool::prepare(&mut work, job)?;
     let loads = &prepared.loads;
     let names: Vec<String> = loads.iter().map(|l| l.name.clone()).collect();
     let units = load_units(job, &names);

@@ -1,8 +1,8 @@
 //! Gauges that a study can choose from, with how their rows change when they are turned or shifted.
 
-use crate::app::fault::{Fault, Faults};
-use crate::app::job::{Job, LoadRole, Study};
-use crate::app::strain::{Fields, corrected_spec_of, read_fields, read_given};
+use crate::app::fault::Faults;
+use crate::app::job::Job;
+use crate::app::strain::{self, Fields, corrected_spec_of, read_fields};
 use crate::app::work::Work;
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::gauge::{Gauge, GaugePlace, GaugeSpec, build, reading};
@@ -22,70 +22,53 @@ pub(super) struct Prepared {
     pub fields: Option<Fields>,
 }
 
-/// Reads S or the model, and lays the job's gauges.
+/// S of the job's gauges by the chain of all commands; the model alone where the job has neither gauges nor S.
 ///
 /// # Errors
 /// Faults of the deck, the results, the gauges.
-pub(super) fn prepare(work: &mut Work, job: &Job, _study: &Study) -> Result<Prepared, Faults> {
-    if job.sensitivity.is_some() {
-        let s = read_given(work, job)?;
-        let pool = (0..s.gauges.len())
+pub(super) fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
+    if job.sensitivity.is_none() && job.gauges.is_empty() {
+        let fields = read_fields(work, job)?;
+        let cases = fields.load_cases(job);
+        return Ok(Prepared {
+            loads: cases.into_iter().map(|c| c.load).collect(),
+            pool: Vec::new(),
+            installed: None,
+            fields: Some(fields),
+        });
+    }
+    let prepared = strain::prepare(work, job)?;
+    let s = prepared.sensitivity;
+    // Beside a given S the model says nothing of gauges turned or moved.
+    let fields = prepared.fields.filter(|_| job.sensitivity.is_none());
+    let row = |g: usize| -> Vec<f64> { s.values.row(g).iter().copied().collect() };
+    let pool = match &fields {
+        None => (0..s.gauges.len())
             .map(|g| PoolGauge {
-                row: s.values.row(g).iter().copied().collect(),
+                row: row(g),
                 turned: None,
                 slope: None,
             })
-            .collect();
-        return Ok(Prepared {
-            loads: s.loads.clone(),
-            pool,
-            installed: Some(s),
-            fields: None,
-        });
-    }
-    let fields = read_fields(work, job)?;
-    let loads: Vec<Load> = job
-        .loads
-        .iter()
-        .map(|l| Load {
-            name: l.name.clone(),
-            expected: l.expected,
-            wanted: l.role == LoadRole::Wanted,
-            quantity: l.quantity(),
-        })
-        .collect();
-    let (mut pool, mut installed) = (Vec::new(), None);
-    if !job.gauges.is_empty() {
-        let specs = crate::app::strain::lay_gauges(work, job, &fields)?;
-        let cases = fields.load_cases(job);
-        let s = crate::sensitivity::from_cases(&specs, &cases).map_err(|m| {
-            Faults::from(Fault::of(
-                &*job.file,
-                "gauge",
-                m.iter()
-                    .map(|m| m.to_string())
-                    .collect::<Vec<_>>()
-                    .join("; "),
-                "move the gauge",
-            ))
-        })?;
-        let mut channel = 0;
-        for g in &job.gauges {
-            let spec = corrected_spec_of(fields.model(), job, g).map_err(Faults::from)?;
-            let n = spec.rosette.map_or(1, |r| r.legs().len());
-            for leg in 0..n {
-                let row: Vec<f64> = s.values.row(channel).iter().copied().collect();
-                pool.push(variants(&fields, job, &cases, &spec, leg, row));
-                channel += 1;
+            .collect(),
+        Some(fields) => {
+            let cases = fields.load_cases(job);
+            let mut pool = Vec::new();
+            for g in &job.gauges {
+                let spec = corrected_spec_of(fields.model(), job, g).map_err(Faults::from)?;
+                let n = spec.rosette.map_or(1, |r| r.legs().len());
+                for leg in 0..n {
+                    let row = row(pool.len());
+                    pool.push(variants(fields, job, &cases, &spec, leg, row));
+                }
             }
+            pool
         }
-        installed = Some(s);
-    }
+    };
     Ok(Prepared {
-        loads,
+        loads: s.loads.clone(),
         pool,
-        installed,
-        fields: Some(fields),
+        installed: Some(s),
+        fields,
     })
 }
 

@@ -102,8 +102,9 @@ fn the_chi_square_of_right_jobs_is_that_of_its_degrees_of_freedom() {
 #[test]
 fn a_gauge_off_by_a_tenth_stops_the_job_or_leaves_intervals_that_cover() {
     let Some(frame) = frame(9) else { return };
-    // With a model uncertainty of 2 % a tenth is five of its sd, and shows less the more the gauge decides by itself: the worst gauge
-    // under a leverage of .8 (.69) covers 83 % in the trials that were not stopped. The aim, 95 %, is missed there.
+    // With a model uncertainty of 2 % a tenth is five of its sd, and shows less the more the gauge decides by itself. Nearly all jobs with a
+    // gauge that matters are stopped; of those few that are not, whose errors hide the gauge's, the worst gauge (leverage .69) covers 83 %.
+    // No rule that knows the readings alone can tell these from right jobs: docs/4-recovering-loads.md has the numbers.
     for (model_rel, least) in [(0.0, 0.9), (0.02, 0.8)] {
         let errors = ErrorModel {
             noise: 1e-6,
@@ -118,11 +119,13 @@ fn a_gauge_off_by_a_tenth_stops_the_job_or_leaves_intervals_that_cover() {
         )
         .unwrap();
         let mut worst = (1.0, 0, 0.0);
+        let mut misled: Vec<f64> = Vec::new();
         for g in 0..20 {
             if gain.leverage[g] >= 0.8 {
                 continue;
             }
             let (mut covered, mut of) = (0, 0);
+            let mut asked = 0;
             for seed in 0..12 {
                 let mut rng = ChaCha8Rng::seed_from_u64(seed);
                 let wrong = Matrix::from_fn(20, 9, |g, l| {
@@ -145,6 +148,7 @@ fn a_gauge_off_by_a_tenth_stops_the_job_or_leaves_intervals_that_cover() {
                     })
                     .collect();
                 let got = recover(&frame.s, &readings, errors);
+                asked += 9 * readings.len();
                 if got.findings.iter().any(|f| f.severity == Severity::Error) {
                     continue;
                 }
@@ -156,6 +160,7 @@ fn a_gauge_off_by_a_tenth_stops_the_job_or_leaves_intervals_that_cover() {
                     }
                 }
             }
+            misled.push(f64::from(of - covered) / asked as f64);
             if of >= 200 {
                 let share = f64::from(covered) / f64::from(of);
                 if share < worst.0 {
@@ -164,5 +169,13 @@ fn a_gauge_off_by_a_tenth_stops_the_job_or_leaves_intervals_that_cover() {
             }
         }
         assert!(worst.0 >= least, "model {model_rel}: {worst:?}");
+        // Of all jobs with that gauge, stopped or not, the intervals that mislead are those of right jobs: a twentieth. The intervals of a
+        // job share its model's errors: their share scatters by .085 from job to job (simulated), the mean over 12 by .025.
+        let most = misled.iter().copied().fold(0.0, f64::max);
+        let mean = misled.iter().sum::<f64>() / misled.len() as f64;
+        assert!(
+            most <= 0.125 && mean <= 0.08,
+            "model {model_rel}: {misled:?}"
+        );
     }
 }

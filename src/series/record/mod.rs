@@ -28,7 +28,9 @@ mod whole;
 pub use clock::{Clock, Evenness};
 pub use even::Record;
 pub use open::{Options, is_format, open_record, read_channels};
-pub use reader::{Block, Bytes, Column, Pick, RecordReader, Sink, Times, name_and_unit};
+pub use reader::{
+    Block, Bytes, Column, Pick, RecordReader, Sink, Times, is_time, name_and_unit, seconds_in,
+};
 pub use span::Gap;
 pub use whole::Whole;
 

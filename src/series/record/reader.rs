@@ -125,7 +125,7 @@ pub fn name_and_unit(header: &str) -> Column {
 }
 
 /// Whether a column of this name, the first of its file or not, is that of time.
-pub(super) fn is_time(name: &str, first: bool) -> bool {
+pub fn is_time(name: &str, first: bool) -> bool {
     let word = name.trim().to_lowercase();
     match word.as_str() {
         "time" | "t" if name != "T" => true,
@@ -143,7 +143,7 @@ pub(super) fn is_time(name: &str, first: bool) -> bool {
 }
 
 /// Seconds in one of a unit of time; none stated means seconds.
-pub(super) fn seconds_in(unit: &str) -> Option<f64> {
+pub fn seconds_in(unit: &str) -> Option<f64> {
     match unit.trim().to_lowercase().as_str() {
         "" | "s" | "sec" | "secs" | "second" | "seconds" | "sek" => Some(1.0),
         "ms" | "msec" | "millisecond" | "milliseconds" => Some(1e-3),

@@ -8,7 +8,7 @@ use super::super::shapes::{NumberOrWord, Texts};
 use super::super::spanned::Spanned;
 use super::super::types::*;
 use super::placement::DEFAULT_NOISE_MICROSTRAIN;
-use super::units::units;
+use super::units::{stated, units};
 use crate::payload::Place;
 use crate::reconcile::strain::WheelForces;
 use crate::units::{ReportUnits, STANDARD_GRAVITY_M_S2};
@@ -121,6 +121,7 @@ pub(super) fn runs(
             .map(|(k, v)| (k.get_ref().clone(), v.get_ref().clone()))
             .collect(),
         units: units(c, raw.units.as_ref(), default, "runs.units"),
+        stated_units: stated(raw.units.as_ref()),
         noise,
         wheel_forces: c.choose(
             &raw.wheel_forces,

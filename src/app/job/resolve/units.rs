@@ -55,3 +55,17 @@ pub(super) fn units(
     one(&raw.stress, Quantity::Stress, &mut out.stress);
     out
 }
+
+/// Quantities of which a unit is stated.
+pub(super) fn stated(raw: Option<&RawUnits>) -> Vec<Quantity> {
+    let Some(raw) = raw else { return Vec::new() };
+    let all = [
+        (&raw.force, Quantity::Force),
+        (&raw.moment, Quantity::Moment),
+        (&raw.length, Quantity::Length),
+        (&raw.mass, Quantity::Mass),
+        (&raw.stress, Quantity::Stress),
+    ];
+    let stated = all.into_iter().filter(|(name, _)| name.is_some());
+    stated.map(|(_, quantity)| quantity).collect()
+}

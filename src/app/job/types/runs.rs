@@ -2,7 +2,7 @@
 
 use super::named_file::NamedFile;
 use crate::reconcile::strain::WheelForces;
-use crate::units::ReportUnits;
+use crate::units::{Quantity, ReportUnits};
 use std::collections::BTreeMap;
 
 /// `[runs]`.
@@ -14,6 +14,8 @@ pub struct Runs {
     pub columns: BTreeMap<String, String>,
     /// Units of the file; the report units where not stated.
     pub units: ReportUnits,
+    /// Quantities whose unit the job states.
+    pub stated_units: Vec<Quantity>,
     /// 1 sd by quantity, in the file's units.
     pub noise: RunNoise,
     /// Measured or computed.

@@ -295,7 +295,7 @@ fn header_of(fields: &[Vec<&[u8]>], mark: DecimalMark) -> Result<usize, SeriesEr
 }
 
 /// Whether these fields are units below a header: as many, none a number, some of them a word.
-fn is_units(fields: &[&[u8]], n: usize, mark: DecimalMark) -> bool {
+pub fn is_units(fields: &[&[u8]], n: usize, mark: DecimalMark) -> bool {
     let word = |f: &[u8]| !f.is_empty() && number(f, mark).is_none() && date::seconds(f).is_none();
     let of_time = |f: &[u8]| {
         let unit = shown(f);
@@ -305,6 +305,6 @@ fn is_units(fields: &[&[u8]], n: usize, mark: DecimalMark) -> bool {
     fields.len() == n
         && fields.iter().any(|f| word(f))
         && fields.iter().all(|f| f.is_empty() || *f == b"-" || word(f))
-        // A row of text is no row of units; one that begins with nothing or says `s` somewhere is.
-        && (fields.first().is_some_and(|f| f.is_empty()) || fields.iter().any(|f| of_time(f)))
+        // A row of text is no row of units; one that begins with nothing or `-`, or says `s` somewhere, is.
+        && (fields.first().is_some_and(|f| f.is_empty() || *f == b"-") || fields.iter().any(|f| of_time(f)))
 }

@@ -7,7 +7,7 @@ mod date;
 mod layout;
 mod text;
 
-pub use layout::Layout;
+pub use layout::{Layout, is_units};
 
 use super::reader::{BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times};
 use crate::series::error::SeriesError;

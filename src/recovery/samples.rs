@@ -1,0 +1,121 @@
+//! What samples of a record say together: runs, but for gaps. A gap blanks what it touches and no more.
+
+use super::errors::ErrorModel;
+use super::plausible;
+use super::runs::recover;
+use super::sums::Sums;
+use super::types::{Readings, Recovery};
+use super::verdict::NOT_SOLVABLE;
+use crate::finding::{Finding, Severity, few};
+use crate::sensitivity::Sensitivity;
+
+/// What recovery makes of samples of a record; samples in which no gauge gave anything say nothing, unless there are no others.
+///
+/// A sample whose gauges don't tell a load is blank there. Whether a load can be had is asked of the whole record ([`check_gaps`]), not of
+/// the samples that happen to be looked at: `run-not-solvable` stays only where none of them tells some load.
+pub fn recover_samples(s: &Sensitivity, samples: Vec<Readings>, errors: ErrorModel) -> Recovery {
+    let reads = |r: &Readings| r.strain.iter().any(|v| v.is_finite());
+    let some = samples.iter().any(reads);
+    let samples: Vec<Readings> = samples.into_iter().filter(|r| !some || reads(r)).collect();
+    let mut recovery = recover(s, &samples, errors);
+    let k = s.loads.len();
+    let tells = |l: usize| {
+        recovery.runs.iter().any(|r| {
+            // By a calibrated S, values of loads that are not told are arbitrary, not blank.
+            let told = s.uncertainty.is_none() || r.rank >= k;
+            told && r.estimate.values.get(l).is_some_and(|v| v.is_finite())
+        })
+    };
+    if (0..k).filter(|l| s.loads[*l].wanted).all(tells) {
+        recovery.findings.retain(|f| f.code != NOT_SOLVABLE);
+    }
+    recovery
+}
+
+/// Samples of a record in which something is missing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Missing {
+    /// Samples in which every gauge read.
+    pub whole: u64,
+    /// Samples in which some gauge gave nothing.
+    pub gaps: u64,
+    /// Readings too large to be strain, taken for none.
+    pub impossible: u64,
+    /// Samples with a gap in which a load is known all the same, by load.
+    pub known_in_gaps: Vec<u64>,
+}
+
+impl From<&Sums> for Missing {
+    fn from(sums: &Sums) -> Self {
+        Self {
+            whole: sums.samples,
+            gaps: sums.gaps,
+            impossible: sums.impossible,
+            known_in_gaps: sums.known_in_gaps.clone(),
+        }
+    }
+}
+
+impl Missing {
+    /// None of no samples, for `k` loads.
+    pub fn new(k: usize) -> Self {
+        Self {
+            known_in_gaps: vec![0; k],
+            ..Self::default()
+        }
+    }
+
+    /// Both together.
+    pub fn merge(&mut self, other: &Self) {
+        self.whole += other.whole;
+        self.gaps += other.gaps;
+        self.impossible += other.impossible;
+        for (a, b) in self.known_in_gaps.iter_mut().zip(&other.known_in_gaps) {
+            *a += b;
+        }
+    }
+}
+
+/// What is to be said of a record's gaps: that there are some, readings that are none, and loads that no sample tells, which is an error.
+pub fn check_gaps(subject: &str, s: &Sensitivity, missing: &Missing) -> Vec<Finding> {
+    let mut out = Vec::new();
+    if missing.gaps > 0 {
+        let known = missing.known_in_gaps.iter().take(s.loads.len());
+        let blank = missing.gaps - known.copied().min().unwrap_or(0).min(missing.gaps);
+        out.push(
+            Finding::new(
+                Severity::Warning,
+                "samples-with-gaps",
+                subject,
+                format!(
+                    "in {} of {} samples some gauge gives nothing: their loads are those of the others, with wider intervals; in {blank} of them \
+                     some load is blank",
+                    missing.gaps,
+                    missing.whole + missing.gaps
+                ),
+                "repair the channel, or leave its gauge out: [[correction]] ignore = true",
+            )
+            .with_numbers(missing.gaps as f64, 0.0),
+        );
+    }
+    if missing.impossible > 0 {
+        out.push(plausible::impossible_in_record(subject, missing.impossible));
+    }
+    let unknown: Vec<&str> = s
+        .loads
+        .iter()
+        .zip(&missing.known_in_gaps)
+        .filter(|(load, known)| load.wanted && missing.whole + **known == 0)
+        .map(|(load, _)| load.name.as_str())
+        .collect();
+    if !unknown.is_empty() {
+        out.push(Finding::new(
+            Severity::Error,
+            "loads-without-values",
+            few(&unknown),
+            "in no sample do the gauges that read tell these loads",
+            "bring the silent gauges back, or drop these loads",
+        ));
+    }
+    out
+}
