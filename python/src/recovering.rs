@@ -13,7 +13,9 @@ use strainbridge::finding::Finding;
 use strainbridge::linalg::Matrix;
 use strainbridge::recovery::history::{Filter, SampleLoads};
 use strainbridge::recovery::plausible::LARGEST_STRAIN;
-use strainbridge::recovery::{ErrorModel, Gain, Readings, Recovery, Sums, Widening, recover};
+use strainbridge::recovery::{
+    ErrorModel, Gain, Readings, Recovery, Sums, Widening, recover, recover_samples,
+};
 use strainbridge::sensitivity::{Load, Sensitivity, check_separability};
 use strainbridge::stop::Stop;
 use strainbridge::units::MICROSTRAIN;
@@ -178,7 +180,11 @@ fn in_unit(
         model_rel: 0.0,
     };
     let runs = samples.len() / n;
-    let judged = recover(&s, &readings(samples, n, unit), errors);
+    let judged = if runs > MOST_RUNS {
+        recover_samples(&s, readings(samples, n, unit), errors)
+    } else {
+        recover(&s, &readings(samples, n, unit), errors)
+    };
     findings.extend(judged.findings.iter().cloned());
     findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     let all: Vec<usize> = (0..n).collect();

@@ -8,6 +8,8 @@ use crate::linalg::{Matrix, spd};
 /// Natural log of the odds over every rival from which a turned or displaced gauge is named: 150 to 1, "very strong" on the scale of R. E. Kass and
 /// A. E. Raftery, J. Am. Stat. Assoc. 90 (1995) 773. A false name costs more than none.
 const CLEAR: f64 = 5.0;
+/// The same from which a gain is said rather than an angle or a place: 7 to 1, "positive" there. A gain is what most often is wrong.
+const GAIN_RATHER: f64 = 2.0;
 /// Sd of a gain that nobody stated: half or double, or reversed.
 const GAIN_SD: f64 = 1.0;
 /// Sd of an angle that nobody stated, degrees: as in `reconcile`, a gauge glued across is as usual a mistake as one glued askew.
@@ -28,8 +30,8 @@ struct Rivals {
     other: f64,
 }
 
-/// `Angle` or `Place` where the readings clearly prefer that to a gain, to each other and to any other row, else `Undetermined`; `None` where
-/// the model does not say how the row changes. `error`: that of the model as other gauges show it.
+/// `Angle` or `Place` where the readings clearly prefer that to a gain, to each other and to any other row, `Gain` where they prefer that to both,
+/// else `Undetermined`; `None` where the model does not say how the row changes. `error`: that of the model as other gauges show it.
 pub(super) fn off_drawing(
     model: &ModelPrior,
     scales: &[f64],
@@ -50,6 +52,8 @@ pub(super) fn off_drawing(
         ShiftWord::Angle
     } else if beats(place, [gain, angle, other]) {
         ShiftWord::Place
+    } else if gain > angle.max(place) + GAIN_RATHER {
+        ShiftWord::Gain
     } else {
         ShiftWord::Undetermined
     })

@@ -222,9 +222,10 @@ fn cause(
     g: usize,
     off_drawing: Option<ShiftWord>,
 ) -> ShiftWord {
-    if let Some(word) = off_drawing.filter(|w| *w != ShiftWord::Undetermined) {
+    if let Some(word @ (ShiftWord::Angle | ShiftWord::Place)) = off_drawing {
         return word;
     }
+    let rather_gain = off_drawing.is_none_or(|w| w == ShiftWord::Gain);
     let moved: Vec<f64> = row
         .found
         .iter()
@@ -248,9 +249,9 @@ fn cause(
         let scales = state.scales.iter().enumerate();
         scales.map(|(l, c)| t.change[(g, l)] * c).collect()
     });
-    if row.scale() < 0.0 {
+    if row.scale() < 0.0 && off_drawing.is_none() {
         ShiftWord::Sign
-    } else if explained(&row.model) > EXPLAINED {
+    } else if rather_gain && explained(&row.model) > EXPLAINED {
         ShiftWord::Gain
     } else if turned.is_some_and(|t| explained(&t) > EXPLAINED) {
         ShiftWord::Angle

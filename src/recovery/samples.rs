@@ -88,7 +88,7 @@ pub fn check_gaps(subject: &str, s: &Sensitivity, missing: &Missing) -> Vec<Find
                 "samples-with-gaps",
                 subject,
                 format!(
-                    "in {} of {} samples some gauge gives nothing: their loads are those of the others, with wider intervals; in {blank} of them \
+                    "in {} of {} samples some gauge gives nothing: their loads are those of the others, with wider intervals; in at least {blank} of them \
                      some load is blank",
                     missing.gaps,
                     missing.whole + missing.gaps

@@ -90,39 +90,6 @@ fn seeded_controls_with_and_without_background_get_no_name() {
 }
 
 #[test]
-fn wheel_loads_in_another_unit_are_named_with_the_factor_of_that_unit() {
-    let Some((base, _)) = case("dev-s1") else {
-        return;
-    };
-    // What is noted of a kilonewton: in newton, in meganewton, in pound-force.
-    for (noted, background) in [
-        (1000.0, Background::Messy),
-        (0.001, Background::Clean),
-        (224.808_943, Background::Messy),
-    ] {
-        let mut frame = hide(&base, "none", 0.0, background, 1000).frame;
-        frame.loads.iter_mut().for_each(|f| *f *= noted);
-        let outcome = examine(&frame, &[]);
-        assert_eq!(
-            named(&outcome),
-            ["load_unit"],
-            "{noted}: {:?}",
-            outcome.best_attempt
-        );
-        let Extension::LoadUnit { factor, .. } = outcome.effects[0].extension else {
-            panic!("{:?}", outcome.effects);
-        };
-        assert!((factor / noted - 1.0).abs() < 1e-6, "{noted}: {factor}");
-        // With the unit put right the gap is what noise and the declared errors leave.
-        assert!(
-            outcome.gap.after < 1.5 * outcome.gap.floor,
-            "{:?}",
-            outcome.gap
-        );
-    }
-}
-
-#[test]
 fn a_drifted_zero_is_found_to_a_few_microstrain_and_a_swap_by_its_two_gauges() {
     let Some((base, _)) = case("dev-s1") else {
         return;

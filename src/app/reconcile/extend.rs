@@ -240,14 +240,10 @@ fn deck_with(job: &Job, deck: &DeckFrame, outcome: &Outcome) -> Edited {
 
 /// Does an effect change what was noted of runs?
 fn changes_notes(e: &Extension) -> bool {
-    use Extension::{LoadScale, LoadUnit, PayloadOffset, RunExchange, RunRecord};
+    use Extension::{LoadScale, PayloadOffset, RunExchange, RunRecord};
     matches!(
         e,
-        PayloadOffset { .. }
-            | LoadScale { .. }
-            | LoadUnit { .. }
-            | RunExchange { .. }
-            | RunRecord { .. }
+        PayloadOffset { .. } | LoadScale { .. } | RunExchange { .. } | RunRecord { .. }
     )
 }
 

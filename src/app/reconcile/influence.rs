@@ -3,7 +3,8 @@
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::Job;
 use crate::app::solved::support_of_job;
-use crate::fe::{Solution, SolveOptions, UnitLoad, solve_unit_loads_on};
+use crate::app::work::stopped;
+use crate::fe::{FeError, Solution, SolveOptions, UnitLoad, solve_unit_loads_on};
 use crate::gauge::{Gauge, reading};
 use crate::model::{GridIx, Model};
 use crate::reconcile::strain::N_PAYLOAD_COLUMNS;
@@ -63,9 +64,10 @@ pub(super) fn solve(
         ..SolveOptions::default()
     };
     let solved = solve_unit_loads_on(model, support, loads, &options);
-    solved
-        .map(|s| s.0)
-        .map_err(|e| Faults::from(Fault::of(&*job.file, "model", e.to_string(), remedy)))
+    solved.map(|s| s.0).map_err(|e| match e {
+        FeError::Stopped => Faults::from(stopped()),
+        e => Faults::from(Fault::of(&*job.file, "model", e.to_string(), remedy)),
+    })
 }
 
 /// Where the payload stands.

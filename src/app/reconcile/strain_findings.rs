@@ -60,7 +60,6 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
             ));
         }
         Verdict::Named => {
-            work.findings.extend(wrong_unit(outcome));
             for r in outcome.rivals.iter().filter(|r| r.indistinguishable) {
                 work.findings.push(
                     Finding::new(
@@ -91,24 +90,4 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
         }
         Verdict::None => {}
     }
-}
-
-/// All wheel loads were noted in another unit than they were read in.
-fn wrong_unit(outcome: &Outcome) -> Option<Finding> {
-    let found = outcome.effects.iter().find_map(|e| match e.extension {
-        Extension::LoadUnit { factor, words } => Some((factor, words)),
-        _ => None,
-    });
-    let (factor, words) = found?;
-    let finding = Finding::new(
-        Severity::Warning,
-        "wheel-loads-unit",
-        "runs",
-        format!(
-            "all wheel loads read {} times what the strain says: {words}?",
-            number(factor)
-        ),
-        "state the unit of the runs file ([runs] units = { force = \"kN\" }), and check the units of S",
-    );
-    Some(finding.with_numbers(factor, 1.0))
 }

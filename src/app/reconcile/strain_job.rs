@@ -8,6 +8,7 @@ use super::extended_loads::{component_word, entries, side_loads};
 use crate::app::job::Job;
 use crate::reconcile::effect::Extension;
 use crate::reconcile::strain::StrainFrame;
+use crate::units::KILO;
 use toml::{Table, Value};
 
 /// Puts the effects into the job's text, a table.
@@ -33,7 +34,13 @@ pub(super) fn edit(table: &mut Table, job: &Job, found: &StrainPart, extended: &
         set(table, "runs", "file", RUNS);
         if let Some(Value::Table(runs)) = table.get_mut("runs") {
             runs.remove("columns");
-            let units = [("force", "kN"), ("mass", "kg"), ("length", "m")];
+            in_units_of_the_extended_file(runs, job);
+            let units = [
+                ("force", "kN"),
+                ("moment", "kN m"),
+                ("mass", "kg"),
+                ("length", "m"),
+            ];
             runs.insert("units".into(), Value::Table(words_of(&units)));
         }
     }
@@ -136,6 +143,30 @@ fn put(table: &mut Table, section: &str, key: &str, value: Value) {
         .or_insert_with(|| Value::Table(Table::new()));
     if let Value::Table(t) = section {
         t.insert(key.into(), value);
+    }
+}
+
+/// The noise of the runs file, stated in its units, in those of the extended file: kN, kN m, kg, m.
+fn in_units_of_the_extended_file(runs: &mut Table, job: &Job) {
+    let (Some(stated), Some(Value::Table(noise))) = (&job.runs, runs.get_mut("noise")) else {
+        return;
+    };
+    let u = &stated.units;
+    let factors = [
+        ("force", u.force.si / KILO),
+        ("moment", u.moment.si / KILO),
+        ("mass", u.mass.si),
+        ("length", u.length.si),
+    ];
+    for (key, factor) in factors {
+        let value = noise.get_mut(key);
+        let number = value.as_ref().and_then(|v| {
+            let whole = || v.as_integer().map(|i| i as f64);
+            v.as_float().or_else(whole)
+        });
+        if let (Some(value), Some(number)) = (value, number) {
+            *value = Value::Float(number * factor);
+        }
     }
 }
 

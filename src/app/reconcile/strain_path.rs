@@ -174,12 +174,8 @@ fn effect_found(e: &NamedEffect) -> EffectFound {
     }
 }
 
-/// The size of an effect that has no parameter: -1 for a turned sign, 0 for a channel that says nothing, 1 for an exchange, the factor of a
-/// wrong unit.
+/// The size of an effect that has no parameter: -1 for a turned sign, 0 for a channel that says nothing, 1 for an exchange.
 fn channel_size(e: &NamedEffect) -> Option<f64> {
-    if let Extension::LoadUnit { factor, .. } = e.extension {
-        return Some(factor);
-    }
     let Extension::Channels(list) = &e.extension else {
         return None;
     };

@@ -96,6 +96,7 @@ pub(super) fn content(
         f.first_mode
             .or_else(|| first_mode_of(work, task.job, &f.deck))
     });
+    work.go_on()?;
     let (Some(first_elastic_mode_hz), Some(fields)) = (first_mode, fields) else {
         return Ok(None);
     };

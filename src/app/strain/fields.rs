@@ -136,6 +136,7 @@ pub fn read_fields(work: &mut Work, job: &Job) -> Result<Fields, Faults> {
         )?;
         work.findings.extend(solved.findings.iter().cloned());
         let mesh_error = take_out(work, job, &deck, &mut solved);
+        work.go_on()?;
         let of_load = (0..job.loads.len()).map(|i| (0, i)).collect();
         return Ok(Fields {
             deck,

@@ -3,11 +3,11 @@ use super::Cholesky;
 /// Sizes on both sides of the order from which blocks are used.
 const ORDERS: [usize; 4] = [1, 30, 64, 150];
 
-/// The covariance min(i, j) + 1 of a random walk: L is one everywhere below the diagonal, so det C = 1; its inverse is the second
-/// difference with a last entry of one.
+/// The covariance 4 (min(i, j) + 1) of a random walk with steps of two: L is two on and below the diagonal, so det C = 4^n; four times its
+/// inverse is the second difference with a last entry of one.
 fn walk(n: usize) -> Vec<f64> {
     (0..n * n)
-        .map(|k| ((k / n).min(k % n) + 1) as f64)
+        .map(|k| 4.0 * ((k / n).min(k % n) + 1) as f64)
         .collect()
 }
 
@@ -15,17 +15,21 @@ fn walk(n: usize) -> Vec<f64> {
 fn the_factor_of_a_random_walk_is_that_of_the_closed_form() {
     for n in ORDERS {
         let c = Cholesky::of(&walk(n), n).expect("positive definite");
-        assert!(c.log_det().abs() < 1e-10, "{n}");
+        let log_det = n as f64 * 4f64.ln();
+        assert!((c.log_det() / log_det - 1.0).abs() < 1e-12, "{n}");
         let x: Vec<f64> = (0..n).map(|i| ((i * 7 + 3) % 11) as f64).collect();
-        // L^-1 x are its steps.
+        // Twice L^-1 x are its steps.
         let steps = |i: usize| x[i] - if i > 0 { x[i - 1] } else { 0.0 };
         let chi2: f64 = (0..n).map(|i| steps(i).powi(2)).sum();
-        assert!((c.chi2(&x) / chi2 - 1.0).abs() < 1e-12, "{n}");
+        assert!((4.0 * c.chi2(&x) / chi2 - 1.0).abs() < 1e-12, "{n}");
         let solved = c.solve(&x);
         let inverse = c.inverse().expect("memory");
         for i in 0..n {
             let next = if i + 1 < n { steps(i + 1) } else { 0.0 };
-            assert!((solved[i] - (steps(i) - next)).abs() < 1e-9, "{n} {i}");
+            assert!(
+                (4.0 * solved[i] - (steps(i) - next)).abs() < 1e-9,
+                "{n} {i}"
+            );
             for j in 0..n {
                 let closed = match i.abs_diff(j) {
                     0 if i + 1 == n => 1.0,
@@ -33,7 +37,10 @@ fn the_factor_of_a_random_walk_is_that_of_the_closed_form() {
                     1 => -1.0,
                     _ => 0.0,
                 };
-                assert!((inverse[i * n + j] - closed).abs() < 1e-9, "{n} {i} {j}");
+                assert!(
+                    (4.0 * inverse[i * n + j] - closed).abs() < 1e-9,
+                    "{n} {i} {j}"
+                );
             }
         }
     }

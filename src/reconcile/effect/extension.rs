@@ -101,13 +101,6 @@ pub enum Extension {
         /// What the scale reads of the true load.
         factor: f64,
     },
-    /// The noted values of all loads divided by a factor, in every run.
-    LoadUnit {
-        /// What is noted of the true loads.
-        factor: f64,
-        /// The unit noted and the one it was read in.
-        words: &'static str,
-    },
     /// Two runs exchange what was noted of them.
     RunExchange {
         /// The runs.

@@ -12,7 +12,6 @@ use super::gauge_swap::GaugeSwap;
 use super::global_scale::GlobalScale;
 use super::intermittent_channel::IntermittentChannel;
 use super::lateral_wheel_loads::LateralWheelLoads;
-use super::load_unit::LoadUnit;
 use super::model_discrepancy::ModelDiscrepancy;
 use super::payload_gravity_missing::PayloadGravityMissing;
 use super::payload_offset::PayloadOffset;
@@ -48,7 +47,7 @@ fn boxed<E: StrainEffect + 'static>(effects: Vec<E>) -> Vec<Box<dyn StrainEffect
         .collect()
 }
 
-const LIBRARY: [Everywhere; 28] = [
+const LIBRARY: [Everywhere; 27] = [
     |f| boxed(ZeroDrift::all(f)),
     |f| boxed(SignFlip::all(f)),
     |f| boxed(GaugeGain::all(f)),
@@ -63,7 +62,6 @@ const LIBRARY: [Everywhere; 28] = [
     |f| boxed(GainDrift::all(f)),
     |f| boxed(CrossSensitivity::all(f)),
     |f| boxed(WheelScale::all(f)),
-    |f| boxed(LoadUnit::all(f)),
     |f| boxed(RunExchange::all(f)),
     |f| boxed(RunRecord::all(f)),
     |f| boxed(PayloadGravityMissing::all(f)),

@@ -19,7 +19,6 @@ mod global_scale;
 mod intermittent_channel;
 mod lateral_wheel_loads;
 mod library;
-mod load_unit;
 mod model_discrepancy;
 mod payload_gravity_missing;
 mod payload_offset;

@@ -185,7 +185,6 @@ fn note(e: &Element, unit: &str) -> String {
     format!("{} {value} ± {half} {unit} in {at}", e.surface)
 }
 
-/// An element of a row as a mark of the scene, at the middle of its grids.
 /// Von Mises stress of the shells in the state in which some element is hottest, and the largest of all states.
 fn stress_fields(r: &Responded, model: &Model) -> Vec<Field<'static>> {
     let f = &r.field;
@@ -224,6 +223,7 @@ fn stress_fields(r: &Responded, model: &Model) -> Vec<Field<'static>> {
     out
 }
 
+/// An element of a row as a mark of the scene, at the middle of its grids.
 fn mark_of_row(model: &Model, row: &ResponseRow, note: String) -> Mark {
     let at: Vec<_> = grids(model, row)
         .iter()
