@@ -288,3 +288,22 @@ fn inside_out_solids_re_entrant_and_folded_quadrilaterals_are_named() {
     assert!(told(&findings, "inverted-solid").subject.ends_with(" 32"));
     assert_eq!(findings.len(), 3);
 }
+
+#[test]
+fn work_that_is_to_stop_gives_no_solution() {
+    let mut b = bar(4);
+    b.card("SPC1,1,123456,1");
+    b.card("FORCE,1,5,,100.,0.,0.,1.");
+    let case = on(Some(1), Relief::None, UnitLoad::Set(1));
+    let options = SolveOptions {
+        stop: strainbridge::stop::Stop::new(),
+        ..SolveOptions::default()
+    };
+    let model = b.model();
+    assert!(solve_cases(&model, std::slice::from_ref(&case), &options).is_ok());
+    options.stop.ask();
+    assert!(matches!(
+        solve_cases(&model, &[case], &options),
+        Err(FeError::Stopped)
+    ));
+}
