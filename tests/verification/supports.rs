@@ -292,8 +292,8 @@ fn inside_out_solids_re_entrant_and_folded_quadrilaterals_are_named() {
 #[test]
 fn work_that_is_to_stop_gives_no_solution() {
     let mut b = bar(4);
-    b.card("SPC1,1,123456,1");
-    b.card("FORCE,1,5,,100.,0.,0.,1.");
+    b.hold("123456", [1]);
+    b.force(5, [0.0, 0.0, 100.0]);
     let case = on(Some(1), Relief::None, UnitLoad::Set(1));
     let options = SolveOptions {
         stop: strainbridge::stop::Stop::new(),
