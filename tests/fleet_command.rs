@@ -434,8 +434,7 @@ fn a_gap_is_a_warning_and_loads_that_no_sample_tells_are_an_error() {
     );
 }
 
-/// The zero of G2 drifts by 12 microstrain over every record of T1, among peaks of hundreds: a fraction of what the loads leave anyway, on no
-/// sample more than a few noises. Over the samples that are judged it is 6 on the mean.
+/// The zero of G2 drifts by 12 microstrain over every record of T1, among peaks of hundreds. Over the samples that are judged it is 6 on the mean.
 #[test]
 fn a_drift_hidden_by_peaks_is_found_in_every_record_with_its_mean() {
     let (dir, files) = folder("drift");
@@ -471,9 +470,6 @@ fn a_drift_hidden_by_peaks_is_found_in_every_record_with_its_mean() {
         message.contains("microstrain from") && (size - 6.0).abs() < 1.0,
         "{message}"
     );
-    // No vehicle else is blamed, and a drift of a few percent of the peaks is no strain that the loads leave unexplained.
-    assert!(
-        found.iter().all(|f| f[0] != "strain-not-explained"),
-        "{found:?}"
-    );
+    // No vehicle else is blamed.
+    assert!(found.iter().all(|f| f[1].starts_with("T1")), "{found:?}");
 }

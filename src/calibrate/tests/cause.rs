@@ -118,7 +118,8 @@ fn a_gain_is_a_gain_and_never_an_angle_or_a_place() {
 fn a_turned_gauge_is_named_so_where_the_pushes_tell() {
     for degrees in [10.0_f64, -10.0, -20.0] {
         let words = words([0.0, 0.0, degrees.to_radians()], 1.0);
-        is_named(&words, ShiftWord::Angle, 80);
+        // Those at 60 and 90 degrees read so little of the bending that a change of theirs may stay within the model's error: two of eight.
+        is_named(&words, ShiftWord::Angle, 70);
     }
 }
 
