@@ -132,9 +132,13 @@ fn an_sd_has_the_unit_of_its_load_and_other_columns_may_have_units_too() {
             let text = std::fs::read_to_string(path).unwrap();
             std::fs::write(folder.join(file), change(file, text)).unwrap();
         }
-        let (code, _, said) = run("calibrate", &folder.join("calibrate.toml"), &folder);
+        let (code, _, said) = run(
+            "calibrate",
+            &folder.join("calibrate.toml"),
+            &folder.join("cal"),
+        );
         assert_eq!(code, Some(0), "{said}");
-        let text = std::fs::read_to_string(folder.join("sensitivity.csv")).unwrap();
+        let text = std::fs::read_to_string(folder.join("cal/sensitivity.csv")).unwrap();
         let row =
             |l: &str| -> Vec<f64> { l.split(',').skip(1).map(|v| v.parse().unwrap()).collect() };
         text.lines().skip(1).flat_map(row).collect::<Vec<f64>>()
