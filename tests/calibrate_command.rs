@@ -121,6 +121,57 @@ fn a_payload_of_which_the_sum_alone_is_known_teaches_too() {
     }
 }
 
+/// The sum of the payloads in newtons between loads in kilonewtons, its sd without a unit of its own; columns that the job names by what
+/// stands before their unit.
+#[test]
+fn an_sd_has_the_unit_of_its_load_and_other_columns_may_have_units_too() {
+    let calibrated = |name: &str, example_of: &str, change: &dyn Fn(&str, String) -> String| {
+        let folder = scratch(name);
+        for file in ["strain.csv", "runs.csv", "calibrate.toml"] {
+            let path = example(example_of).with_file_name(file);
+            let text = std::fs::read_to_string(path).unwrap();
+            std::fs::write(folder.join(file), change(file, text)).unwrap();
+        }
+        let (code, _, said) = run(
+            "calibrate",
+            &folder.join("calibrate.toml"),
+            &folder.join("cal"),
+        );
+        assert_eq!(code, Some(0), "{said}");
+        let text = std::fs::read_to_string(folder.join("cal/sensitivity.csv")).unwrap();
+        let row =
+            |l: &str| -> Vec<f64> { l.split(',').skip(1).map(|v| v.parse().unwrap()).collect() };
+        text.lines().skip(1).flat_map(row).collect::<Vec<f64>>()
+    };
+    let newtons = |file: &str, text: String| match file {
+        "runs.csv" => text
+            .replace(",payload,payload_sd", ",payload [N],payload_sd")
+            .replace(",60,0.2", ",60000,200"),
+        "calibrate.toml" => text.replace("\nunits = { force = \"kN\" }", ""),
+        _ => text,
+    };
+    let units = |file: &str, text: String| match file {
+        "runs.csv" => text.replace("run,lane,speed,", "run,lane [-],speed [km/h],"),
+        _ => text,
+    };
+    for (name, change) in [
+        ("onboard", &newtons as &dyn Fn(&str, String) -> String),
+        ("bridge", &units as &dyn Fn(&str, String) -> String),
+    ] {
+        let plain = calibrated(
+            &format!("calibrate-plain-{name}"),
+            name,
+            &|_: &str, text: String| text,
+        );
+        let other = calibrated(&format!("calibrate-units-{name}"), name, change);
+        assert!(!plain.is_empty() && plain.len() == other.len());
+        for (a, b) in plain.iter().zip(&other) {
+            // Newtons into kilonewtons: the last digits written.
+            assert!((a - b).abs() <= 1e-5 * a.abs().max(1e-3), "{name}: {a} {b}");
+        }
+    }
+}
+
 #[test]
 fn runs_that_do_not_determine_s_are_said_so_and_known_loads_that_are_missing_are_a_fault() {
     let folder = scratch("calibrate-undetermined");

@@ -473,3 +473,28 @@ fn a_drift_hidden_by_peaks_is_found_in_every_record_with_its_mean() {
     // No vehicle else is blamed.
     assert!(found.iter().all(|f| f[1].starts_with("T1")), "{found:?}");
 }
+
+#[test]
+fn a_gauge_named_with_what_looks_like_a_unit_is_read_as_any_other() {
+    let (dir, files) = folder("labels");
+    let files = files[..2].to_vec();
+    let (code, plain) = fleet(&dir, "plain", &files, &[]);
+    assert_eq!(code, 0, "{plain}");
+    let s = std::fs::read_to_string(dir.join("S.csv")).unwrap();
+    std::fs::write(dir.join("S.csv"), s.replace("G0,", "G0 (left),")).unwrap();
+    for (file, header) in files.iter().zip(["G0 (left)", "G0 (left) (um/m)"]) {
+        let text = std::fs::read_to_string(dir.join(file)).unwrap();
+        std::fs::write(dir.join(file), text.replace("G0 [um/m]", header)).unwrap();
+    }
+    let (code, named) = fleet(&dir, "named", &files, &[]);
+    assert_eq!(code, 0, "{named}");
+    assert!(
+        findings_of(&named, &["warning"])
+            .iter()
+            .all(|f| f[0] != "gauge-missing"),
+        "{named}"
+    );
+    let loads = |r: &Value| r["vehicles"][0]["loads"].clone();
+    assert!(loads(&plain).is_array());
+    assert_eq!(loads(&named), loads(&plain));
+}

@@ -5,6 +5,7 @@
 mod number;
 mod plausible;
 mod report;
+mod strain;
 mod system;
 mod unit;
 
@@ -14,6 +15,7 @@ mod tests;
 pub use number::number;
 pub use plausible::*;
 pub use report::*;
+pub use strain::microstrain_in;
 pub use system::*;
 pub use unit::*;
 

@@ -194,6 +194,23 @@ fn the_command_asks_for_the_record_that_separates_two_causes_and_writes_a_page()
         "{next}"
     );
     assert!(folder.join("job.out/report.html").exists());
+    // Columns of causes may have units, beside their names or below.
+    for head in [
+        "run,lowered [-],air_C [degC]",
+        "run,lowered,air_C\n-,-,degC",
+    ] {
+        write("runs.csv", &format!("{head}\nbefore,0,2.0\nafter,1,4.0\n"));
+        let done = std::process::Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+            .args(["reconcile", "--json", "--out"])
+            .arg(folder.join("units"))
+            .arg(folder.join("job.toml"))
+            .output()
+            .expect("the program runs");
+        let said = String::from_utf8_lossy(&done.stderr);
+        assert!(done.status.success(), "{head}: {said}");
+        let other: serde_json::Value = serde_json::from_slice(&done.stdout).expect("valid json");
+        assert_eq!(other["rivals"], result["rivals"], "{head}");
+    }
 }
 
 /// Payload that each gauge alone gives for two runs (kN), thesis tables C.1 and C.2.

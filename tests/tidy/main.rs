@@ -8,7 +8,7 @@ mod size;
 use std::path::{Path, PathBuf};
 
 /// Row of each module of the root crate; imports go strictly downward. `finding` and `linalg` are below all others of row 1:
-/// estimates carry findings, series use linear algebra.
+/// estimates carry findings, series use linear algebra. `units` stand between: columns of series state units.
 const ROWS: [(&str, f64); 22] = [
     ("cli", 10.0),
     ("report", 9.0),
@@ -25,7 +25,7 @@ const ROWS: [(&str, f64); 22] = [
     ("gauge", 4.0),
     ("fe", 3.0),
     ("model", 2.0),
-    ("units", 1.0),
+    ("units", 0.7),
     ("series", 1.0),
     ("estimate", 1.0),
     ("linalg", 0.5),

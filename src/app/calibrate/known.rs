@@ -1,7 +1,7 @@
 //! Known loads of the runs file: values, their sd, sums, repeats.
 
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::column_unit::{known_column, place_of, take_units};
+use crate::app::job::column_unit::{held_twice, known_column, place_of, run_column, take_units};
 use crate::app::job::quantity::quantity_of_name;
 use crate::app::job::suggest;
 use crate::app::job::table::{Table, read_table};
@@ -64,28 +64,35 @@ pub(super) fn read_known(
     let mut table = read_table(&runs.file.given, &text)?;
     let headers = take_units(&mut table);
     let mut faults = FaultList::new();
-    let Some(key) = place_of(&table, &headers, "run") else {
-        return Err(Fault::at(
-            &*table.file,
-            1,
-            "run",
-            "no column `run`",
-            "add a column `run` with the runs' names",
-        )
-        .into());
-    };
+    let key = run_column(&table, &headers)?;
     let stated = stated(job, runs, &table, &headers, loads, &mut faults);
     let repeats: Vec<usize> = job
         .calibration
         .repeats
         .iter()
-        .filter_map(|name| column(job, &table, name, "calibration.repeats", &mut faults))
+        .filter_map(|name| {
+            column(
+                job,
+                &table,
+                &headers,
+                name,
+                "calibration.repeats",
+                &mut faults,
+            )
+        })
         .collect();
     let depends = job.calibration.depends_on.as_ref();
     let depends = depends.and_then(|name| {
         Some((
             name.clone(),
-            column(job, &table, name, "calibration.depends_on", &mut faults)?,
+            column(
+                job,
+                &table,
+                &headers,
+                name,
+                "calibration.depends_on",
+                &mut faults,
+            )?,
         ))
     });
     let name_of = |row: usize| {
@@ -149,19 +156,27 @@ pub(super) fn read_known(
         });
     }
     if out.is_empty() && faults.is_empty() {
-        let names: Vec<&str> = loads.iter().map(|l| l.name.as_str()).collect();
-        faults.push(Fault::of(
-            &*table.file,
-            "run",
-            "no run has both strain and known loads",
-            format!("name its columns after the loads ({}), or map them in [runs] columns; blank: unknown, 0: known to be zero", names.join(", ")),
-        ));
+        faults.push(nothing_known(&table, loads));
     }
     Faults::check(faults)?;
     Ok(KnownRuns {
         runs: out,
         column: depends.map(|(name, _)| (name, values)),
     })
+}
+
+/// The fault of a file with no run that teaches.
+fn nothing_known(table: &Table, loads: &[Load]) -> Fault {
+    let names: Vec<&str> = loads.iter().map(|l| l.name.as_str()).collect();
+    Fault::of(
+        &*table.file,
+        "run",
+        "no run has both strain and known loads",
+        format!(
+            "name its columns after the loads ({}), or map them in [runs] columns; blank: unknown, 0: known to be zero",
+            names.join(", ")
+        ),
+    )
 }
 
 /// A fault for every run whose name stood before.
@@ -235,11 +250,13 @@ fn asked_rows(
 fn column(
     job: &Job,
     table: &Table,
+    headers: &[Column],
     name: &str,
     key: &str,
     faults: &mut FaultList,
 ) -> Option<usize> {
-    let found = table.column(&[name]);
+    faults.extend(held_twice(table, name));
+    let found = place_of(table, headers, name);
     if found.is_none() {
         let wrong = format!("`{}` has no column `{name}`", table.file);
         let remedy = suggest::remedy(name, table.header.iter().map(String::as_str));
@@ -311,7 +328,8 @@ fn stated(
         out.push(Stated {
             terms,
             value,
-            sd: sd.map(|c| (c.at, of(c.unit))),
+            // In the unit of what it is the sd of, unless it states its own.
+            sd: sd.map(|c| (c.at, of(if c.is_stated { c.unit } else { unit }))),
             unit: of(unit),
             noise: noise.unwrap_or(0.0) * of_file,
         });

@@ -6,6 +6,7 @@ use super::judged::{Judged, findings_of};
 use super::recovering::{Part, Recovering, counted};
 use crate::app::job::StrainCorrection;
 use crate::app::job::correct::{Channel, channel_of, column_of};
+use crate::app::job::strain::strain_columns;
 use crate::app::strain::LoadUnits;
 use crate::finding::Severity;
 use crate::linalg::Matrix;
@@ -47,8 +48,6 @@ pub struct Kernel {
     pub time_unit_s: Option<f64>,
     /// What is known to be wrong with channels.
     pub corrections: Vec<StrainCorrection>,
-    /// Microstrain in one of a unit that a file states; `None` where it is no strain.
-    pub microstrain_in: fn(&str) -> Option<f64>,
 }
 
 impl Kernel {
@@ -171,10 +170,23 @@ impl Kernel {
         findings: &mut Vec<DayFinding>,
     ) -> Result<Recovering, String> {
         let all = &self.sensitivity;
+        let read = all
+            .gauges
+            .iter()
+            .map(|g| (g, channel_of(&self.corrections, g)));
+        let wanted: Vec<String> = read
+            .filter(|(_, channel)| !channel.ignore)
+            .map(|(g, _)| column_of(&self.corrections, g).to_owned())
+            .collect();
+        let (names, micro) = strain_columns("record", record.columns(), &wanted).map_err(|e| {
+            let list = e.into_list();
+            let each = list.iter().map(|f| format!("`{}`: {}", f.field, f.wrong));
+            each.collect::<Vec<_>>().join("; ")
+        })?;
         let mut places: HashMap<&str, usize> = HashMap::new();
-        for (c, column) in record.columns().iter().enumerate() {
-            if places.insert(&column.name, c).is_some() && all.gauges.contains(&column.name) {
-                return Err(format!("two columns are named `{}`", column.name));
+        for (c, name) in names.iter().enumerate() {
+            if places.insert(name, c).is_some() && all.gauges.contains(name) {
+                return Err(format!("two columns are named `{name}`"));
             }
         }
         let mut found = Vec::new();
@@ -185,14 +197,9 @@ impl Kernel {
             }
             match places
                 .get(column_of(&self.corrections, name))
-                .and_then(|c| Some((*c, record.columns().get(*c)?)))
+                .and_then(|c| Some((*c, micro.get(*c)?)))
             {
-                Some((c, column)) => {
-                    let micro = (self.microstrain_in)(&column.unit).ok_or_else(|| {
-                        format!("`{}` of `{name}` is no unit of strain", column.unit)
-                    })?;
-                    found.push((g, c, line_of(micro, channel)));
-                }
+                Some((c, micro)) => found.push((g, c, line_of(*micro, channel))),
                 None => findings.push(said(
                     Severity::Warning,
                     "gauge-missing",

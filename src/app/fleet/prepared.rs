@@ -3,7 +3,6 @@
 use super::kernel::Kernel;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::Job;
-use crate::app::job::strain::microstrain_in;
 use crate::app::recover::{reference_strain, zero_of};
 use crate::app::strain::{load_units, prepare, stated_errors};
 use crate::app::work::Work;
@@ -72,7 +71,6 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
         widths,
         time_unit_s: measured.time_unit_s,
         corrections: job.corrections.clone(),
-        microstrain_in,
     })
 }
 

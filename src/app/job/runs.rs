@@ -1,6 +1,6 @@
 //! The runs file: what else was measured in each run, by the job's names, in SI units.
 
-use super::column_unit::{known_column, place_of, take_units};
+use super::column_unit::{known_column, run_column, take_units};
 use super::given_columns::columns_of_given;
 use super::quantity::quantity_of_name;
 use super::table::read_table;
@@ -40,15 +40,7 @@ pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunR
     let mut t = read_table(&runs.file.given, &text)?;
     let headers = take_units(&mut t);
     let mut faults = FaultList::new();
-    let Some(key) = place_of(&t, &headers, "run") else {
-        return Err(Faults::from(Fault::at(
-            &*t.file,
-            1,
-            "run",
-            "no column `run`",
-            "add a column `run` with the runs' names",
-        )));
-    };
+    let key = run_column(&t, &headers)?;
     let mut columns: Vec<(String, usize, f64)> = Vec::new();
     let given = given_loads(inputs, job)?;
     for (name, quantity) in known_columns(job, &given) {

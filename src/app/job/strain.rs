@@ -1,7 +1,6 @@
 //! The strain file: a column a gauge in microstrain, a row a run (`run`) or a sample (`time`); or RPC III, Parquet, MDF4, a channel a
 //! gauge. Text is read in [`super::strain_text`], means of long records in [`super::strain_means`].
 
-pub use super::column_unit::microstrain_in;
 use super::column_unit::no_strain;
 pub use super::strain_table::{StrainRows, StrainTable};
 use super::strain_text::strain_from_text;
@@ -12,6 +11,7 @@ use crate::app::files::{FileBytes, Inputs};
 use crate::gauge::Rosette;
 use crate::series::SeriesError;
 use crate::series::record::{Column, Options, Record, is_format, open_record};
+use crate::units::microstrain_in;
 use std::collections::HashSet;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -38,7 +38,7 @@ fn strain_as_read(
 ) -> Result<StrainTable, Faults> {
     let bytes = inputs.read_named(job, named).map_err(Faults::from)?;
     if is_format(&bytes) {
-        return strain_from_record(&named.given, bytes);
+        return strain_from_record(&named.given, bytes, &gauge_names(inputs, job));
     }
     let text = inputs.read_named_text(job, named).map_err(Faults::from)?;
     strain_from_text(&named.given, &text, &gauge_names(inputs, job))
@@ -46,7 +46,7 @@ fn strain_as_read(
 
 /// Names of the job's gauges: those it states, legs of rosettes by theirs, else the rows of a given S; none where neither tells. A table of S
 /// that can't be read is a fault of whoever asks for S.
-fn gauge_names(inputs: &mut Inputs, job: &Job) -> Vec<String> {
+pub(super) fn gauge_names(inputs: &mut Inputs, job: &Job) -> Vec<String> {
     let mut names = Vec::new();
     for g in &job.gauges {
         names.push(g.name.clone());
@@ -83,21 +83,29 @@ pub fn strain_columns(
     let known: HashSet<&str> = gauges.iter().map(String::as_str).collect();
     let mut faults = FaultList::new();
     let (mut names, mut scales) = (Vec::new(), Vec::new());
+    // `P01 (raw)` beside `P01` is another column.
+    let of_strain = columns.iter().filter(|c| microstrain_in(&c.unit).is_some());
+    let of_strain: HashSet<&str> = of_strain.map(|c| c.name.as_str()).collect();
     for c in columns {
         let whole = [
             format!("{} [{}]", c.name, c.unit),
             format!("{} ({})", c.name, c.unit),
         ];
-        let (name, scale) = if known.contains(c.name.as_str()) {
-            let scale = microstrain_in(&c.unit);
+        let scale = microstrain_in(&c.unit);
+        let is_other = scale.is_none() && of_strain.contains(c.name.as_str());
+        let (name, scale) = if known.contains(c.name.as_str()) && !is_other {
             if scale.is_none() {
                 faults.push(no_strain(file, &c.name, &c.unit));
             }
             (c.name.clone(), scale.unwrap_or(1.0))
         } else {
+            let plain = match is_other {
+                true => format!("{} [{}]", c.name, c.unit),
+                false => c.name.clone(),
+            };
             let full = whole.into_iter().find(|w| known.contains(w.as_str()));
-            let scale = full.as_ref().and_then(|_| microstrain_in(&c.unit));
-            (full.unwrap_or_else(|| c.name.clone()), scale.unwrap_or(1.0))
+            let scale = scale.filter(|_| full.is_some());
+            (full.unwrap_or(plain), scale.unwrap_or(1.0))
         };
         names.push(name);
         scales.push(scale);
@@ -106,16 +114,27 @@ pub fn strain_columns(
     Ok((names, scales))
 }
 
-/// A record that is read whole or passed over: its columns of strain, each with its name and microstrain in one of its unit.
+/// A record that is read whole or passed over: its columns of strain, each with its name, as `gauges` are called, and microstrain in one of
+/// its unit.
 pub(super) fn open_strain(
     file: &str,
     bytes: FileBytes,
+    gauges: &[String],
 ) -> Result<(Record, Vec<(usize, String, f64)>), Faults> {
     let record = open_record(Arc::new(bytes), &Options::default())
         .map_err(|e| Faults::from(record_fault(file, &e)))?;
-    let columns = record.columns().iter().enumerate();
-    let columns = columns
-        .filter_map(|(i, c)| Some((i, c.name.clone(), microstrain_in(&c.unit)?)))
+    let (names, scales) = strain_columns(file, record.columns(), gauges)?;
+    let named = names.into_iter().zip(scales).zip(record.columns());
+    let strain = |((name, scale), c): ((String, f64), &Column)| {
+        let scale = match gauges.contains(&name) {
+            true => Some(scale),
+            false => microstrain_in(&c.unit),
+        };
+        Some((name, scale?))
+    };
+    let columns = named
+        .enumerate()
+        .filter_map(|(i, column)| strain(column).map(|(name, scale)| (i, name, scale)))
         .collect();
     Ok((record, columns))
 }
@@ -126,8 +145,12 @@ pub(super) fn record_fault(file: &str, e: &SeriesError) -> Fault {
 }
 
 /// A whole record as a table; channels whose unit is none of strain are left out.
-fn strain_from_record(file: &str, bytes: FileBytes) -> Result<StrainTable, Faults> {
-    let (record, columns) = open_strain(file, bytes)?;
+fn strain_from_record(
+    file: &str,
+    bytes: FileBytes,
+    gauges: &[String],
+) -> Result<StrainTable, Faults> {
+    let (record, columns) = open_strain(file, bytes, gauges)?;
     let picks: Vec<Option<usize>> = columns.iter().map(|c| Some(c.0)).collect();
     let clock = &record.clock;
     let mut microstrain = Vec::with_capacity(clock.samples.saturating_mul(columns.len()));

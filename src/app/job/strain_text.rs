@@ -1,10 +1,11 @@
 //! Strain in a CSV text: a row a run or a sample.
 
-use super::column_unit::{microstrain_in, no_strain, take_units};
+use super::column_unit::{no_strain, take_units};
 use super::strain_table::{StrainRows, StrainTable};
 use super::table::{Table, each_part};
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::series::record::{Column, is_time, seconds_in};
+use crate::series::record::{Column, is_time, name_and_unit, seconds_in};
+use crate::units::microstrain_in;
 use std::collections::HashSet;
 
 /// Rows whose fields are in memory at a time.
@@ -45,19 +46,46 @@ fn number(t: &Table, row: usize, column: usize, faults: &mut FaultList) -> f64 {
     }
 }
 
+/// What tables of strain hold beside strain, and strain before it is scaled. Single letters are left out: `SG1 (t)` is the top one.
+const OTHER_UNITS: &[&str] = &[
+    "mv/v", "v/v", "uv/v", "µv/v", "mv", "volt", "volts", "kn", "mn", "lbf", "kip", "kgf", "kg",
+    "mm", "cm", "pa", "kpa", "mpa", "gpa", "psi", "n/mm2", "n/mm²", "m/s2", "m/s²", "deg", "°",
+    "°c", "degc", "°f", "%", "hz", "bar", "counts",
+];
+
+/// Which names are whose.
+struct Names<'a> {
+    /// The job's gauges; none where it doesn't tell.
+    known: HashSet<&'a str>,
+    /// Headers of the table.
+    headers: HashSet<&'a str>,
+}
+
 /// The gauge that a column is named after, and microstrain in one of its unit; `None` where a gauge's unit is none of strain. What looks like
 /// a unit may be part of a name: `SG1 (left)`.
-fn gauge_of<'a>(
-    header: &'a str,
-    column: &'a Column,
-    known: &HashSet<&str>,
-) -> Option<(&'a str, f64)> {
+fn gauge_of<'a>(header: &'a str, column: &'a Column, names: &Names) -> Option<(&'a str, f64)> {
     let scale = microstrain_in(&column.unit);
-    let is_known = |name: &str| known.contains(name);
-    let is_gauge = is_known(&column.name) || (known.is_empty() && header.ends_with(']'));
+    let is_known = |name: &str| names.known.contains(name);
+    let beside = name_and_unit(header);
+    let is_below = column.unit != beside.unit;
+    if is_known(header) {
+        // Its own unit, if any, is the one in the row below or a unit of strain in its brackets.
+        return match scale {
+            None if is_below => None,
+            _ => Some((header, scale.unwrap_or(1.0))),
+        };
+    }
+    let is_gauge = if names.known.is_empty() {
+        let unit = column.unit.to_lowercase();
+        is_below || header.ends_with(']') || OTHER_UNITS.contains(&unit.as_str())
+    } else {
+        // `P01 (raw)` beside `P01` is another column.
+        is_known(&beside.name) && !names.headers.contains(beside.name.as_str())
+    };
     match scale {
-        _ if is_known(header) && header != column.name => Some((header, scale.unwrap_or(1.0))),
-        Some(scale) => Some((&column.name, scale)),
+        // What stands in brackets is not what the row of units says.
+        Some(_) if column.name != beside.name && is_known(&beside.name) && is_gauge => None,
+        Some(scale) => Some((column.name.as_str(), scale)),
         None if is_gauge => None,
         None => Some((header, 1.0)),
     }
@@ -119,15 +147,26 @@ impl Reading {
             })?,
         };
         let mut faults = FaultList::new();
-        let known: HashSet<&str> = known.iter().map(String::as_str).collect();
+        let names = Names {
+            known: known.iter().map(String::as_str).collect(),
+            headers: t.header.iter().map(String::as_str).collect(),
+        };
         let (mut columns, mut gauges) = (Vec::new(), Vec::new());
         let mut named: HashSet<&str> = HashSet::new();
         for (c, (header, column)) in t.header.iter().zip(headers).enumerate() {
             if c == key {
                 continue;
             }
-            let (name, scale) = gauge_of(header, column, &known).unwrap_or_else(|| {
-                faults.push(no_strain(&t.file, &column.name, &column.unit));
+            let (name, scale) = gauge_of(header, column, &names).unwrap_or_else(|| {
+                // Beside the name, or else in the row below.
+                let beside = name_and_unit(header);
+                let stated = [&beside.unit, &column.unit];
+                let unit = stated.into_iter().find(|u| microstrain_in(u).is_none());
+                faults.push(no_strain(
+                    &t.file,
+                    &beside.name,
+                    unit.unwrap_or(&column.unit),
+                ));
                 (header.as_str(), 1.0)
             });
             if !named.insert(name) {

@@ -549,3 +549,102 @@ fn units_of_a_runs_file_stand_in_its_header_or_below_and_contradict_nothing() {
         "{said}"
     );
 }
+
+#[test]
+fn labels_rows_of_units_and_noise_of_a_runs_file_are_not_mistaken() {
+    let si = |table: &str, more: &str| {
+        let rows = runs_of(table, more).unwrap_or_else(|f| panic!("{table}: {f:?}"));
+        ["LF.FZ", "LF.MX"].map(|l| rows[rows.len() - 1].loads_si[l])
+    };
+    let plain = [2e3, 3.0];
+    let named = "columns = { \"LF.FZ\" = \"axle (front)\" }\n";
+    let below = "run,axle (front),LF.MX\n-,N,N m\nR1,2000,3\n";
+    assert_eq!(si(below, named), plain);
+    let square = "columns = { \"LF.FZ\" = \"axle [front]\" }\n";
+    assert_eq!(si("run,axle [front],LF.MX\nR1,2,3\n", square), plain);
+    assert_eq!(si("run,LF.FZ,LF.MX\nunit,N,N m\nR1,2000,3\n", ""), plain);
+    // A run without loads is no row of units.
+    let bare = "LF.FZ,LF.MX,run\n,,R0\n2,3,R1\n";
+    assert_eq!(si(bare, ""), plain);
+    assert_eq!(runs_of(bare, "").unwrap().len(), 2);
+    let said = |table: &str, more: &str| runs_of(table, more).unwrap_err()[0].to_string();
+    let stated = format!("{named}units = {{ force = \"kN\" }}\n");
+    for (table, more, wrong) in [
+        (
+            below,
+            stated.as_str(),
+            "the column says `N`, the job says `kN`",
+        ),
+        (
+            "run,LF.FZ,LF.MX\n-,kg,N m\nR1,2,3\n",
+            "",
+            "`kg` is no unit of force",
+        ),
+        (
+            "run,LF.FZ [kg],LF.MX\n-,kN,N m\nR1,2,3\n",
+            "",
+            "`kg` beside the name, `kN` in the row of units below",
+        ),
+        // Noise in kN, or as the column in N?
+        (
+            "run,LF.FZ [N],LF.MX\nR1,2000,3\n",
+            "noise = { force = 50.0 }\n",
+            "runs.noise.force: is 50 in `kN` or",
+        ),
+    ] {
+        let said = said(table, more);
+        assert!(said.contains(wrong), "{said}");
+    }
+    let both = "units = { force = \"N\" }\nnoise = { force = 50.0 }\n";
+    assert_eq!(si("run,LF.FZ [N],LF.MX\nR1,2000,3\n", both), plain);
+}
+
+#[test]
+fn labels_and_units_of_gauges_are_told_apart() {
+    let read = |text: &str, gauges: &[&str]| {
+        let gauges: Vec<String> = gauges.iter().map(|g| (*g).to_owned()).collect();
+        strain_text::strain_from_text("s.csv", text, &gauges)
+    };
+    for gauges in [&["SG1 (left)"][..], &[]] {
+        for (text, microstrain) in [
+            ("run,SG1 (left)\n-,mm/m\nR1,0.5\n", 500.0),
+            ("run,SG1 (left)\nunit,[mm/m]\nR1,0.5\n", 500.0),
+            ("run,SG1 (left) (mm/m)\nR1,0.5\n", 500.0),
+            ("run,SG1 (left)\nR1,0.5\n", 0.5),
+        ] {
+            let t = read(text, gauges).unwrap_or_else(|f| panic!("{text}: {f:?}"));
+            assert_eq!(t.gauges, ["SG1 (left)"], "{text}");
+            assert_eq!(t.microstrain, [microstrain], "{text}");
+        }
+    }
+    // Another column beside the gauge's own.
+    let raw = read("run,P01,P01 (raw)\nR1,0.5,7\n", &["P01"]).unwrap();
+    assert_eq!(raw.gauges, ["P01", "P01 (raw)"]);
+    let column = |name: &str, unit: &str| crate::series::record::Column {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+    };
+    let two = [column("P01", "um/m"), column("P01", "raw")];
+    let (names, scales) = strain::strain_columns("r.mf4", &two, &["P01".to_owned()]).unwrap();
+    assert_eq!(names, ["P01", "P01 [raw]"]);
+    assert_eq!(scales, [1.0, 1.0]);
+    // No strain, whether gauges are known or not.
+    for gauges in [&["G1"][..], &[]] {
+        for text in [
+            "run,G1\n-,mV/V\nR1,1\n",
+            "run,G1 (mV/V)\nR1,1\n",
+            "run,G1 [mV/V]\nR1,1\n",
+        ] {
+            let said = read(text, gauges).unwrap_err()[0].to_string();
+            assert!(said.contains("G1: `mV/V` is no unit of strain"), "{said}");
+        }
+    }
+    let both = read("run,G1 [mV/V]\n-,um/m\nR1,1\n", &["G1"]);
+    assert!(both.unwrap_err()[0].wrong.contains("`mV/V`"));
+    // A run without a reading is no row of units.
+    let bare = read("G1,run\n,R1\n3,R2\n", &["G1"]).unwrap();
+    assert_eq!(
+        bare.rows,
+        strain::StrainRows::Runs(vec!["R1".into(), "R2".into()])
+    );
+}

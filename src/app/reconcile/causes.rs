@@ -2,6 +2,7 @@
 
 use super::answer::{EffectFound, GapFound, Reconciled, RivalFound, SlopeFound};
 use crate::app::fault::{Fault, FaultList, Faults};
+use crate::app::job::column_unit::{held_twice, place_of, run_column, take_units};
 use crate::app::job::table::read_table;
 use crate::app::job::{Job, Reconcile};
 use crate::app::work::Work;
@@ -123,19 +124,14 @@ fn read(
         .inputs
         .read_named_text(job, &runs.file)
         .map_err(Faults::from)?;
-    let t = read_table(&runs.file.given, &text)?;
-    let Some(key) = t.column(&["run"]) else {
-        return Err(Faults::from(Fault::of(
-            &*t.file,
-            "run",
-            "no column `run`",
-            "add a column `run` with the runs' names",
-        )));
-    };
+    let mut t = read_table(&runs.file.given, &text)?;
+    let headers = take_units(&mut t);
+    let key = run_column(&t, &headers)?;
     let mut faults = FaultList::new();
     let mut causes = Vec::new();
     for (name, column) in &reconcile.causes {
-        let Some(c) = t.header.iter().position(|h| h == column) else {
+        faults.extend(held_twice(&t, column));
+        let Some(c) = place_of(&t, &headers, column) else {
             faults.push(Fault::at(
                 &*job.file,
                 reconcile.line,

@@ -30,6 +30,7 @@ pub use even::Record;
 pub use open::{Options, is_format, open_record, read_channels};
 pub use reader::{
     Block, Bytes, Column, Pick, RecordReader, Sink, Times, is_time, name_and_unit, seconds_in,
+    take_unit_below,
 };
 pub use span::Gap;
 pub use whole::Whole;

@@ -1,6 +1,8 @@
 //! Formats whose samples lie on even steps and can be read anywhere: the binary record of strainbridge and RPC III.
 
-use super::reader::{BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times, name_and_unit};
+use super::reader::{
+    BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times, is_unit, name_and_unit,
+};
 use crate::series::error::SeriesError;
 use crate::series::{binary, rpc};
 
@@ -40,8 +42,13 @@ impl Stored {
         };
         let columns = header.names.iter().map(|n| {
             let mut c = name_and_unit(n);
-            if c.unit.is_empty() {
-                c.unit = unit.to_owned();
+            // All numbers are in the file's unit: what is no unit is part of a name, `SG1 (left)`.
+            let is_label = n.trim_end().ends_with(')') && !is_unit(&c.unit);
+            if is_label {
+                n.trim().clone_into(&mut c.name);
+            }
+            if is_label || c.unit.is_empty() {
+                unit.clone_into(&mut c.unit);
             }
             c
         });

@@ -82,6 +82,54 @@ fn tables_as_loggers_write_them_are_one_record() {
 }
 
 #[test]
+fn what_is_no_unit_in_brackets_is_part_of_the_name() {
+    let split = |header: &str| {
+        let c = name_and_unit(header);
+        [c.name, c.unit]
+    };
+    assert_eq!(split("SG1 (left) (um/m)"), ["SG1 (left)", "um/m"]);
+    assert_eq!(split("SG1 [3] [mm/m]"), ["SG1 [3]", "mm/m"]);
+    assert_eq!(split("stress (N/(mm))"), ["stress", "N/(mm)"]);
+    let columns = |text: &str| -> Vec<[String; 2]> {
+        let record = open(text).unwrap_or_else(|e| panic!("{e} in {text}"));
+        let list = record.columns().iter();
+        list.map(|c| [c.name.clone(), c.unit.clone()]).collect()
+    };
+    // A row of units below: a label stays in the name; a unit of the same quantity beside the name goes first.
+    let below = |header: &str, unit: &str| {
+        columns(&format!("time,{header}\ns,{unit}\n0,0.5\n0.1,0.5\n")).remove(0)
+    };
+    assert_eq!(below("SG1 (left)", "mm/m"), ["SG1 (left)", "mm/m"]);
+    assert_eq!(below("SG1 (t)", "[mm/m]"), ["SG1 (t)", "mm/m"]);
+    assert_eq!(below("SG1 [m/m]", "um/m"), ["SG1", "m/m"]);
+    assert_eq!(below("SG1 (left)", "-"), ["SG1", "left"]);
+    assert_eq!(below("SG1", "mm/m"), ["SG1", "mm/m"]);
+    // What such a row is called, where the times stand.
+    for first in ["unit", "Units", "[-]", "-", ""] {
+        let text = format!("time,a\n{first},um/m\n0,1\n0.1,2\n");
+        assert_eq!(
+            columns(&text),
+            [["a".to_owned(), "um/m".to_owned()]],
+            "{first}"
+        );
+    }
+}
+
+#[test]
+fn the_unit_of_a_binary_record_is_that_of_a_name_with_a_label() {
+    let names = ["SG1 (left)".to_owned(), "SG2 [m/m]".to_owned()];
+    let mut bytes = Vec::new();
+    crate::series::binary::write_header(&mut bytes, &names, 2, 0.0, 0.01, 1e-3).unwrap();
+    for v in [0.5_f32; 4] {
+        bytes.extend_from_slice(&v.to_le_bytes());
+    }
+    let record = open_record(Arc::new(bytes), &Options::default()).unwrap();
+    let [a, b] = [0, 1].map(|i: usize| record.columns()[i].clone());
+    assert_eq!([a.name, a.unit], ["SG1 (left)", "mm/m"]);
+    assert_eq!([b.name, b.unit], ["SG2", "m/m"]);
+}
+
+#[test]
 fn names_that_are_numbers_and_empty_names_of_row_numbers_are_no_rows() {
     let record = open(",time,14,15\n0,0.0,1,2\n1,0.5,3,4\n").unwrap();
     let names: Vec<&str> = record.columns().iter().map(|c| c.name.as_str()).collect();

@@ -4,7 +4,9 @@ use super::date;
 use super::text::{Encoding, bare, field_end, is_empty_line, shown};
 use crate::series::error::SeriesError;
 use crate::series::number::{DecimalMark, number};
-use crate::series::record::reader::{Column, is_time, name_and_unit, seconds_in};
+use crate::series::record::reader::{
+    Column, is_time, name_and_unit, seconds_in, states_no_unit, take_unit_below,
+};
 
 /// Lines looked at for the header.
 const MOST_LINES: usize = 200;
@@ -71,11 +73,11 @@ impl Layout {
         let fields: Vec<Vec<&[u8]>> = lines.iter().map(|l| split(&l.text, delimiter)).collect();
         let header = header_of(&fields, mark)?;
         let names = fields.get(header).map_or(&[][..], Vec::as_slice);
+        let mut columns: Vec<Column> = names.iter().map(|f| name_and_unit(&shown(f))).collect();
         let units = fields
             .get(header + 1)
-            .filter(|f| is_units(f, names.len(), mark));
+            .filter(|f| is_units(f, &columns, mark));
         let row = header + 1 + usize::from(units.is_some());
-        let mut columns: Vec<Column> = names.iter().map(|f| name_and_unit(&shown(f))).collect();
         // A delimiter at the end of every line is no column.
         if columns.len() > 1 && columns.last().is_some_and(|c| c.name.is_empty()) {
             let rows = fields.get(row..).unwrap_or_default();
@@ -84,10 +86,8 @@ impl Layout {
             }
         }
         if let Some(units) = units {
-            for (c, unit) in columns.iter_mut().zip(units) {
-                if c.unit.is_empty() {
-                    c.unit = shown(unit).trim_matches(['[', ']', '(', ')']).to_owned();
-                }
+            for ((c, name), unit) in columns.iter_mut().zip(names).zip(units) {
+                take_unit_below(c, &shown(name), &shown(unit));
             }
         }
         let first = fields.get(row).ok_or(SeriesError::Empty)?;
@@ -294,17 +294,24 @@ fn header_of(fields: &[Vec<&[u8]>], mark: DecimalMark) -> Result<usize, SeriesEr
         })
 }
 
-/// Whether these fields are units below a header: as many, none a number, some of them a word.
-pub fn is_units(fields: &[&[u8]], n: usize, mark: DecimalMark) -> bool {
+/// Whether these fields are units below a header: as many as columns, none a number, some of them a word. Where a column `run` names the
+/// rows, a name there makes it one of them.
+pub fn is_units(fields: &[&[u8]], columns: &[Column], mark: DecimalMark) -> bool {
     let word = |f: &[u8]| !f.is_empty() && number(f, mark).is_none() && date::seconds(f).is_none();
+    let states_none = |f: &[u8]| states_no_unit(&shown(f));
     let of_time = |f: &[u8]| {
         let unit = shown(f);
         let unit = unit.trim_matches(['[', ']', '(', ')']);
         !unit.is_empty() && seconds_in(unit).is_some()
     };
-    fields.len() == n
-        && fields.iter().any(|f| word(f))
-        && fields.iter().all(|f| f.is_empty() || *f == b"-" || word(f))
-        // A row of text is no row of units; one that begins with nothing or `-`, or says `s` somewhere, is.
-        && (fields.first().is_some_and(|f| f.is_empty() || *f == b"-") || fields.iter().any(|f| of_time(f)))
+    if fields.len() != columns.len() || !fields.iter().all(|f| f.is_empty() || word(f)) {
+        return false;
+    }
+    if let Some(run) = columns.iter().position(|c| c.name == "run") {
+        let mut others = fields.iter().enumerate().filter(|(at, _)| *at != run);
+        return fields.get(run).is_some_and(|f| states_none(f)) && others.any(|(_, f)| word(f));
+    }
+    // A row of text is no row of units; one that begins with nothing or `-`, or says `s` somewhere, is.
+    fields.iter().any(|f| word(f))
+        && (fields.first().is_some_and(|f| states_none(f)) || fields.iter().any(|f| of_time(f)))
 }
