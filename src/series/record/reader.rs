@@ -162,7 +162,7 @@ pub fn take_unit_below(column: &mut Column, header: &str, below: &str) {
         return;
     }
     let below = below.trim().trim_matches(['[', ']', '(', ')']);
-    if !column.unit.is_empty() {
+    if !states_no_unit(&column.unit) {
         if is_same_quantity(&column.unit, below) {
             return;
         }

@@ -104,6 +104,7 @@ fn what_is_no_unit_in_brackets_is_part_of_the_name() {
     assert_eq!(below("SG1 [m/m]", "um/m"), ["SG1", "m/m"]);
     assert_eq!(below("SG1 (left)", "-"), ["SG1", "left"]);
     assert_eq!(below("SG1", "mm/m"), ["SG1", "mm/m"]);
+    assert_eq!(below("SG1 [-]", "mm/m"), ["SG1", "mm/m"]);
     // What such a row is called, where the times stand.
     for first in ["unit", "Units", "[-]", "-", ""] {
         let text = format!("time,a\n{first},um/m\n0,1\n0.1,2\n");
