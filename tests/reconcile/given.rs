@@ -3,7 +3,7 @@
 use super::hidden;
 use super::hidden::generator::{Background, EFFECTS, UNMODELLED, hide};
 use super::hidden::judge::{Answer, judge};
-use strainbridge::reconcile::effect::{Extension, Member, library};
+use strainbridge::reconcile::effect::{Member, library};
 use strainbridge::reconcile::strain::{FoundAnew, StrainFrame, examine, judged, predict};
 use strainbridge::reconcile::{GapBasis, Outcome, Verdict};
 

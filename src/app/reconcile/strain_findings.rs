@@ -2,9 +2,7 @@
 
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
-use crate::reconcile::effect::Extension;
 use crate::reconcile::{Outcome, Verdict};
-use crate::units::number;
 
 /// Notes what is to be known of the verdict.
 pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
