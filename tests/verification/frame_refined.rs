@@ -5,12 +5,13 @@
 
 use crate::mesh::Bulk;
 use std::collections::HashMap;
+use std::sync::OnceLock;
 use strainbridge::fe::*;
 use strainbridge::model::{GridIx, Model, Vec3};
 
 /// Side of a cell at k = 1, mm.
-const CELL: f64 = 40.0;
-const AXLES: [i32; 3] = [24, 132, 166];
+pub const CELL: f64 = 40.0;
+pub const AXLES: [i32; 3] = [24, 132, 166];
 
 /// Cells and grids of the frame on a lattice of CELL / k.
 struct Frame {
@@ -157,7 +158,26 @@ fn solved(k: i32) -> (Model, Solution) {
     (model, solution)
 }
 
-fn centre(model: &Model, grids: &[GridIx]) -> Vec3 {
+/// Meshes of 40 and 13.3 mm, solved once for all tests that ask.
+pub fn meshes() -> &'static [(Model, Solution); 2] {
+    static MESHES: OnceLock<[(Model, Solution); 2]> = OnceLock::new();
+    MESHES.get_or_init(|| [solved(1), solved(3)])
+}
+
+/// What an element of a coarse mesh and the middle one of the nine in its place have in common: centre and plane.
+pub fn of_place(model: &Model, i: usize) -> ([i64; 3], [u8; 3]) {
+    let s = &model.shells[i];
+    let c = centre(model, &s.grids);
+    let side = model.grids[s.grids[1].us()].x - model.grids[s.grids[0].us()].x;
+    let across = model.grids[s.grids[3].us()].x - model.grids[s.grids[0].us()].x;
+    let n = side.cross(&across);
+    (
+        [c.x, c.y, c.z].map(|v| (v * 100.0).round() as i64),
+        [n.x, n.y, n.z].map(|v| (v.abs() > 1e-6 * n.norm()) as u8),
+    )
+}
+
+pub fn centre(model: &Model, grids: &[GridIx]) -> Vec3 {
     grids[..4]
         .iter()
         .map(|g| model.grids[g.us()].x)
@@ -172,20 +192,10 @@ fn largest(s: &[[f64; 3]; 2]) -> f64 {
 
 #[test]
 fn strain_of_a_40_mm_mesh_is_within_2_percent_of_that_of_13_mm_where_it_is_hot() {
-    let ((coarse, a), (fine, b)) = (solved(1), solved(3));
-    // The middle one of nine fine elements has the centre and the plane of the coarse one.
-    let key = |model: &Model, i: usize| {
-        let s = &model.shells[i];
-        let c = centre(model, &s.grids);
-        let side = model.grids[s.grids[1].us()].x - model.grids[s.grids[0].us()].x;
-        let across = model.grids[s.grids[3].us()].x - model.grids[s.grids[0].us()].x;
-        let n = side.cross(&across);
-        (
-            [c.x, c.y, c.z].map(|v| (v * 100.0).round() as i64),
-            [n.x, n.y, n.z].map(|v| (v.abs() > 1e-6 * n.norm()) as u8),
-        )
-    };
-    let by_place: HashMap<_, usize> = (0..fine.shells.len()).map(|i| (key(&fine, i), i)).collect();
+    let [(coarse, a), (fine, b)] = meshes();
+    let by_place: HashMap<_, usize> = (0..fine.shells.len())
+        .map(|i| (of_place(fine, i), i))
+        .collect();
     let mut all: Vec<f64> = Vec::new();
     for (load, (axle, y)) in AXLES
         .into_iter()
@@ -195,7 +205,7 @@ fn strain_of_a_40_mm_mesh_is_within_2_percent_of_that_of_13_mm_where_it_is_hot()
         let x = f64::from(axle) * CELL;
         let mut hot: Vec<(f64, f64)> = Vec::new();
         for (i, s) in coarse.shells.iter().enumerate() {
-            let c = centre(&coarse, &s.grids);
+            let c = centre(coarse, &s.grids);
             // Farther than 200 mm from the patch of the load.
             let gap = Vec3::new(
                 ((c.x - x).abs() - 120.0).max(0.0),
@@ -203,7 +213,7 @@ fn strain_of_a_40_mm_mesh_is_within_2_percent_of_that_of_13_mm_where_it_is_hot()
                 (c.z - 120.0).max(0.0),
             );
             if gap.norm() > 200.0 {
-                let f = by_place[&key(&coarse, i)];
+                let f = by_place[&of_place(coarse, i)];
                 hot.push((
                     largest(&b.cases[load].shells.centre[f]),
                     largest(&a.cases[load].shells.centre[i]),

@@ -7,6 +7,7 @@ mod connector_faults;
 mod connectors;
 mod coupled_mass;
 mod decks;
+mod frame_calibrated;
 mod frame_refined;
 mod frame_units;
 mod invariants;
