@@ -110,3 +110,4 @@ pub use app::sensitivity::sensitivity;
 pub use app::solve::{solve, solve_deck};
 pub use app::strains::strains;
 pub use app::study::study;
+pub use app::verify::verify;

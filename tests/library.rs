@@ -682,3 +682,43 @@ fn reconcile_has_the_s_that_every_command_has() {
     let stated = 3.0 + 2.5 * (2.1_f64).cos();
     assert!((frame.loads[a] - 1e-6 * stated).abs() < 1e-12);
 }
+
+#[test]
+fn a_folder_is_verified_by_whoever_can_answer_again() {
+    let folder = std::env::temp_dir().join(format!("strainbridge-again-{}", std::process::id()));
+    let (kept, anew) = (folder.join("place"), folder.join("anew"));
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("job.toml"), JOB).unwrap();
+    let deck = folder.join("strip.bdf");
+    std::fs::write(&deck, strip()).unwrap();
+    let disk = strainbridge::Disk;
+    let context = Context::new(&disk);
+    let answer = |main: &std::path::Path, out: &std::path::Path| {
+        let job = Job::read(main, &disk).unwrap();
+        save(&place(&job, &context).unwrap(), out).unwrap();
+    };
+    answer(&folder.join("job.toml"), &kept);
+    let ask = || {
+        let again = |made: &strainbridge::app::verify::Made, main: &std::path::Path| {
+            assert_eq!(made.command, "place");
+            answer(main, &anew);
+            Ok(anew.clone())
+        };
+        strainbridge::verify(&kept, again, &context).unwrap()
+    };
+    let same = ask();
+    assert!(same.differs.is_empty(), "{:?}", same.differs);
+    assert!(same.same.len() > 2 && same.findings.worst().is_none());
+    // Twice as stiff: another input, and half the strain.
+    std::fs::write(&deck, strip().replace("210000.", "420000.")).unwrap();
+    let other = ask();
+    let files: Vec<&str> = other.differs.iter().map(|d| d.file.as_str()).collect();
+    assert!(files.iter().any(|f| f.ends_with("strip.bdf")), "{files:?}");
+    assert!(files.contains(&"result.json"), "{files:?}");
+    assert_eq!(other.findings.worst(), Some(Severity::Error));
+    std::fs::remove_file(folder.join("job.toml")).unwrap();
+    let none = |_: &strainbridge::app::verify::Made, _: &std::path::Path| Ok(anew.clone());
+    let fault = strainbridge::verify(&kept, none, &context).unwrap_err();
+    assert!(fault.to_string().contains("isn't found"), "{fault}");
+    std::fs::remove_dir_all(folder).unwrap();
+}

@@ -8,10 +8,8 @@ use crate::work::{Asked, run};
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
 use strainbridge::app::fleet::{FleetSpec, name::Shard};
-use strainbridge::app::outcome::StatedUnits;
 use strainbridge::app::store::Folder;
 use strainbridge::app::verify;
-use strainbridge::app::work::Work;
 use strainbridge::fe::{HeatedStrain, SolveOptions};
 use strainbridge::{Context, Faults, Job};
 
@@ -128,7 +126,11 @@ fn answer(command: &str, job: Option<&Job>, more: &More, cx: &Context) -> Result
     match (command, job) {
         ("check", _) => tell(strainbridge::check(&more.files, cx)?),
         ("init", _) => tell(strainbridge::init(first, rest, &more.folder, cx)?),
-        ("verify", _) => compared(first, &more.folder, cx),
+        ("verify", _) => tell(strainbridge::verify(
+            first,
+            |_, _| Ok(more.folder.clone()),
+            cx,
+        )?),
         ("strains", _) => tell(strainbridge::strains(first, rest, cx)?),
         ("modes", Some(job)) => tell(strainbridge::modes(job, more.modes, cx)?),
         ("modes", None) => tell(strainbridge::modes_of_deck(first, more.modes, cx)?),
@@ -154,22 +156,9 @@ fn answer(command: &str, job: Option<&Job>, more: &More, cx: &Context) -> Result
 #[pyfunction]
 pub(crate) fn made(py: Python, folder: PathBuf) -> PyResult<(String, PathBuf, Vec<String>)> {
     let made = verify::made(&folder).map_err(|f| raise(py, f.into()))?;
-    let main = verify::main_input(&folder, &made).ok_or_else(|| {
-        let said = "the job or deck that it was made from isn't found";
-        let remedy = "call it from the folder that the command was called from";
-        let name = folder.display().to_string();
-        raise(py, wrong(&name, "inputs", said, remedy).into())
-    })?;
+    let main = verify::main_input(&folder, &made).map_err(|f| raise(py, f.into()))?;
     let results = made.results().iter().map(|r| (*r).to_owned()).collect();
     Ok((made.command, main, results))
-}
-
-/// A folder against another in which the same was made again.
-fn compared(folder: &Path, again: &Path, cx: &Context) -> Result<Told, Faults> {
-    let mut work = Work::new(cx);
-    let found = work.stage("compare", |_| verify::compare(folder, again))?;
-    work.findings.extend(found.findings(folder));
-    tell(work.finish(StatedUnits::default(), found))
 }
 
 /// Removes kept solutions from a folder, that of the user where `None`: its path, how many, and their bytes.

@@ -6,7 +6,7 @@ use super::fault::{Fault, Faults};
 use super::job::Job;
 use super::outcome::{Answer, Outcome, StatedUnits, finite};
 use super::solved::{faults_of, support_of_job};
-use super::strain::corrected_spec_of;
+use super::strain::{corrected_spec_of, not_laid};
 use super::work::Work;
 use crate::fe::{
     LoadCase, ModalSolution, SolveOptions, Support, SupportChoice, solve_modes, support_of,
@@ -152,15 +152,7 @@ fn solved(
         .flat_map(|j| j.gauges.iter().map(move |g| (j, g)));
     for (job, g) in of_job {
         let spec = corrected_spec_of(model, job, g).map_err(Faults::from)?;
-        let laid = build(model, &spec, CornerRows::Present).map_err(|e| {
-            Fault::at(
-                &*g.file,
-                g.line,
-                "gauge",
-                e.to_string(),
-                "correct the gauge",
-            )
-        });
+        let laid = build(model, &spec, CornerRows::Present).map_err(|e| not_laid(g, &e));
         gauges.extend(laid.map_err(Faults::from)?.0);
     }
     let rows = (1..).zip(&solution.modes).zip(&solution.strain.cases);

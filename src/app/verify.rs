@@ -1,8 +1,10 @@
 //! `verify`: a result folder against what its inputs give now, file by file and number by number.
 
+use super::context::Context;
 use super::fault::{Fault, Faults};
 use super::files::Input;
-use super::outcome::Answer;
+use super::outcome::{Answer, Outcome, StatedUnits};
+use super::work::Work;
 use crate::finding::{Finding, Severity};
 use serde::Serialize;
 use serde_json::Value;
@@ -84,23 +86,48 @@ pub fn made(folder: &Path) -> Result<Made, Fault> {
     })
 }
 
+/// A result folder against what its inputs give now.
+///
+/// `again` makes the same answer anew from what the folder says of itself and from the job or deck that it was made from, and returns the folder
+/// where it wrote it. Whoever calls says how: the command starts a process of its own, in which nothing that this one holds can colour the answer.
+///
+/// # Errors
+/// Folders that can't be read, a job or deck that isn't found, and what `again` returns.
+pub fn verify(
+    folder: &Path,
+    again: impl FnOnce(&Made, &Path) -> Result<PathBuf, Faults>,
+    cx: &Context,
+) -> Result<Outcome<Verified>, Faults> {
+    let mut work = Work::new(cx);
+    let made = made(folder)?;
+    let main = main_input(folder, &made)?;
+    let anew = work.stage("recompute", |_| again(&made, &main))?;
+    let found = work.stage("compare", |_| compare(folder, &anew))?;
+    work.findings.extend(found.findings(folder));
+    Ok(work.finish(StatedUnits::default(), found))
+}
+
 /// The job or deck that a folder was made from: as it was given, else beside a folder of the default name.
-pub fn main_input(folder: &Path, made: &Made) -> Option<PathBuf> {
-    let given = PathBuf::from(&made.inputs.first()?.path);
-    let beside = folder
-        .parent()
-        .and_then(|p| Some(p.join(given.file_name()?)));
-    [Some(given), beside]
-        .into_iter()
-        .flatten()
-        .find(|p| p.is_file())
+///
+/// # Errors
+/// A fault where it stands in neither place.
+pub fn main_input(folder: &Path, made: &Made) -> Result<PathBuf, Fault> {
+    let given = made.inputs.first().map(|i| PathBuf::from(&i.path));
+    let beside = |p: &PathBuf| Some(folder.parent()?.join(p.file_name()?));
+    let places = [given.as_ref().and_then(beside), given];
+    let mut places = places.into_iter().rev().flatten();
+    places.find(|p| p.is_file()).ok_or_else(|| {
+        Fault::of(
+            folder.display().to_string(),
+            "inputs",
+            "the job or deck that it was made from isn't found",
+            "call `verify` from the folder that the command was called from",
+        )
+    })
 }
 
 /// Compares a folder with a recomputation of it in another.
-///
-/// # Errors
-/// Folders that can't be read.
-pub fn compare(folder: &Path, again: &Path) -> Result<Verified, Faults> {
+fn compare(folder: &Path, again: &Path) -> Result<Verified, Faults> {
     let (old, new) = (made(folder)?, made(again)?);
     let mut out = Verified::default();
     for (i, input) in old.inputs.iter().enumerate() {
@@ -161,7 +188,7 @@ impl Made {
 
 impl Verified {
     /// An error where anything differs.
-    pub fn findings(&self, folder: &Path) -> Option<Finding> {
+    fn findings(&self, folder: &Path) -> Option<Finding> {
         let first = self.differs.first()?;
         let n = self.differs.len();
         let message = format!(

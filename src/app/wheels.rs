@@ -2,6 +2,8 @@
 
 use super::fault::{Fault, FaultList, Faults};
 use super::job::{Job, JobLoad, LoadActs};
+use super::work::stopped;
+use crate::fe::FeError;
 use crate::fe::floor::FloorError;
 use crate::model::{GridIx, Model};
 
@@ -86,12 +88,12 @@ pub fn wheels_of(job: &Job, model: &Model) -> Result<Wheels, Faults> {
     Ok(out)
 }
 
-/// A floor that can't be had, as a fault of the job's model.
+/// A floor that can't be had, as faults of the job's model.
 pub fn floor_fault(job: &Job, e: &FloorError) -> Faults {
-    Faults::from(Fault::of(
-        &*job.file,
-        "model",
-        e.to_string(),
-        "repair the deck, or correct the wheel loads",
-    ))
+    if matches!(e, FloorError::Solver(FeError::Stopped)) {
+        return stopped().into();
+    }
+    let of = |(wrong, remedy)| Fault::of(&*job.file, "model", wrong, remedy);
+    let unknown = Fault::of(&*job.file, "model", e.to_string(), "repair the deck");
+    Faults::or(e.parts().into_iter().map(of).collect(), unknown)
 }

@@ -4,10 +4,8 @@ use super::arguments::{CleanArguments, VerifyArguments};
 use super::run::{Run, refuse};
 use super::voice::print;
 use crate::app::fault::{Fault, Faults};
-use crate::app::outcome::StatedUnits;
 use crate::app::store::Folder;
-use crate::app::verify::{Made, compare, made, main_input};
-use crate::app::work::Work;
+use crate::app::verify::Made;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
@@ -16,17 +14,13 @@ pub(super) fn verify(a: &VerifyArguments) -> ExitCode {
     let scratch =
         Scratch(std::env::temp_dir().join(format!("strainbridge-verify-{}", std::process::id())));
     Run::of(&a.common, &a.folder).question(a.common.out.as_deref(), |cx| {
-        let mut work = Work::new(cx);
-        let made = made(&a.folder)?;
-        work.stage("recompute", |_| again(&a.folder, &made, &scratch.0))?;
-        let found = work.stage("compare", |_| compare(&a.folder, &scratch.0))?;
-        work.findings.extend(found.findings(&a.folder));
-        Ok(work.finish(StatedUnits::default(), found))
+        let anew = |made: &Made, main: &Path| again(&a.folder, made, main, &scratch.0);
+        crate::app::verify::verify(&a.folder, anew, cx)
     })
 }
 
 /// The command as a process of its own: nothing that this one holds can colour the answer.
-fn again(folder: &Path, made: &Made, out: &Path) -> Result<(), Faults> {
+fn again(folder: &Path, made: &Made, main: &Path, out: &Path) -> Result<PathBuf, Faults> {
     let fault = |wrong: String, remedy: &str| {
         Faults::from(Fault::of(
             folder.display().to_string(),
@@ -35,16 +29,10 @@ fn again(folder: &Path, made: &Made, out: &Path) -> Result<(), Faults> {
             remedy,
         ))
     };
-    let Some(main) = main_input(folder, made) else {
-        return Err(fault(
-            "the job or deck that it was made from isn't found".to_owned(),
-            "call `verify` from the folder that the command was called from",
-        ));
-    };
     let program =
         std::env::current_exe().map_err(|e| fault(e.to_string(), "call it by its path"))?;
     let mut command = Command::new(program);
-    command.arg(&made.command).arg(&main);
+    command.arg(&made.command).arg(main);
     if made.command == "strains" {
         command.args(made.results());
     }
@@ -55,7 +43,7 @@ fn again(folder: &Path, made: &Made, out: &Path) -> Result<(), Faults> {
         .output()
         .map_err(|e| fault(e.to_string(), "call `verify` again"))?;
     if out.join("result.json").is_file() {
-        return Ok(());
+        return Ok(out.to_owned());
     }
     let said = String::from_utf8_lossy(&done.stderr);
     let first = said

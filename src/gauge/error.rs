@@ -1,12 +1,11 @@
 //! Why a gauge can't be laid onto the model.
 
+use std::fmt;
+
 /// Why a gauge can't be laid onto the model.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum GaugeError {
     /// The direction stands on the surface.
-    #[error(
-        "gauge `{gauge}`: its direction is normal to element {element}: give one that lies along the surface"
-    )]
     NormalDirection {
         /// Name.
         gauge: String,
@@ -14,9 +13,6 @@ pub enum GaugeError {
         element: u32,
     },
     /// An element without area.
-    #[error(
-        "gauge `{gauge}`: element {element} has no area: repair the mesh or choose another element"
-    )]
     NoArea {
         /// Name.
         gauge: String,
@@ -24,17 +20,46 @@ pub enum GaugeError {
         element: u32,
     },
     /// No shells.
-    #[error(
-        "gauge `{gauge}`: the model has no shells near which it could sit: name a bar and its recovery point"
-    )]
     NoShells {
         /// Name.
         gauge: String,
     },
     /// An element that is not there.
-    #[error("gauge `{gauge}`: its element is not in the model: check the id")]
     NoElement {
         /// Name.
         gauge: String,
     },
 }
+
+impl GaugeError {
+    /// What is wrong, and what to do.
+    pub fn parts(&self) -> (String, &'static str) {
+        match self {
+            Self::NormalDirection { gauge, element } => (
+                format!("gauge `{gauge}`: its direction is normal to element {element}"),
+                "give a direction that lies along the surface",
+            ),
+            Self::NoArea { gauge, element } => (
+                format!("gauge `{gauge}`: element {element} has no area"),
+                "repair the mesh or choose another element",
+            ),
+            Self::NoShells { gauge } => (
+                format!("gauge `{gauge}`: the model has no shells near which it could sit"),
+                "name a bar and its recovery point",
+            ),
+            Self::NoElement { gauge } => (
+                format!("gauge `{gauge}`: its element is not in the model"),
+                "correct the id",
+            ),
+        }
+    }
+}
+
+impl fmt::Display for GaugeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (wrong, remedy) = self.parts();
+        write!(f, "{wrong}: {remedy}")
+    }
+}
+
+impl std::error::Error for GaugeError {}

@@ -196,13 +196,9 @@ impl<'a> Task<'a> {
 
     /// The refusal of a placement as a fault of the job.
     pub fn refusal(&self, e: &PlaceError) -> Fault {
-        Fault::at(
-            &*self.job.file,
-            self.job.placement.line,
-            "placement",
-            e.to_string(),
-            "change [placement] or [candidates]",
-        )
+        let (wrong, remedy) = e.parts();
+        let line = self.job.placement.line;
+        Fault::at(&*self.job.file, line, "placement", wrong, remedy)
     }
 }
 

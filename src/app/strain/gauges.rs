@@ -5,7 +5,7 @@ use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::correct::turned_by;
 use crate::app::job::{Job, JobGauge, StatedPlace};
 use crate::app::work::Work;
-use crate::gauge::{Gauge, GaugePlace, GaugeSpec, build, on_unverified_elements};
+use crate::gauge::{Gauge, GaugeError, GaugePlace, GaugeSpec, build, on_unverified_elements};
 use crate::model::{Model, Vec3};
 use crate::sensitivity::NoStrain;
 
@@ -24,13 +24,7 @@ pub fn lay_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<Vec<Gau
                     gauges.extend(channels);
                     work.findings.extend(findings);
                 }
-                Err(e) => faults.push(Fault::at(
-                    &*g.file,
-                    g.line,
-                    "gauge",
-                    e.to_string(),
-                    "correct the gauge",
-                )),
+                Err(e) => faults.push(not_laid(g, &e)),
             },
             Err(f) => faults.push(f),
         }
@@ -121,6 +115,12 @@ fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
         rosette: g.rosette,
         transverse_sensitivity: g.transverse_sensitivity,
     })
+}
+
+/// A gauge that can't be laid, as a fault at the line that states it.
+pub fn not_laid(g: &JobGauge, e: &GaugeError) -> Fault {
+    let (wrong, remedy) = e.parts();
+    Fault::at(&*g.file, g.line, "gauge", wrong, remedy)
 }
 
 /// Faults of gauges without strain, at the line that states them.

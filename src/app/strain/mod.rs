@@ -10,7 +10,7 @@ mod units;
 
 pub use covariance::{covariance_bytes, read_covariance};
 pub use fields::{Fields, read_fields};
-pub use gauges::{corrected_spec_of, lay_gauges, without_strain};
+pub use gauges::{corrected_spec_of, lay_gauges, not_laid, without_strain};
 pub use given::read_given;
 pub use mesh::{
     GaugeMeshError, LoadMeshError, coarse_at_gauges, left_in_reading, left_squared, mesh_errors,

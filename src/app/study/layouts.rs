@@ -9,7 +9,7 @@ use crate::finding::{Finding, Severity, few};
 use crate::gauge::GaugeSpec;
 use crate::placement::candidates::{Angles, Candidates, Choice, Scatter};
 use crate::placement::sites::{Site, candidates};
-use crate::placement::{self, Spec, place};
+use crate::placement::{self, PlaceError, Spec, place};
 use crate::sensitivity::{LoadCaseOf, common_shells};
 use crate::study::PoolGauge;
 use rand::{RngExt, SeedableRng};
@@ -148,14 +148,11 @@ fn spec_of(job: &Job, name: &str, n: usize, k: usize, order: &[usize]) -> Spec {
     spec
 }
 
-fn refused(job: &Job, study: &str, e: impl ToString) -> Faults {
-    Faults::from(Fault::at(
-        &*job.file,
-        job.study.as_ref().map_or(0, |s| s.line),
-        format!("study.layouts {study}"),
-        e.to_string(),
-        "ask for another number of gauges, or widen the pool",
-    ))
+fn refused(job: &Job, study: &str, e: &PlaceError) -> Faults {
+    let line = job.study.as_ref().map_or(0, |s| s.line);
+    let (wrong, remedy) = e.parts();
+    let field = format!("study.layouts {study}");
+    Faults::from(Fault::at(&*job.file, line, field, wrong, remedy))
 }
 
 /// The D-optimal part of the job's own gauges.
@@ -187,7 +184,7 @@ fn best_of_pool(job: &Job, prepared: &Prepared, name: &str, n: usize) -> Result<
     });
     let mut spec = spec_of(job, name, n, k, &order);
     spec.spacing = 0.0;
-    let layout = place(&c, &spec).map_err(|e| refused(job, name, e))?;
+    let layout = place(&c, &spec).map_err(|e| refused(job, name, &e))?;
     Ok(LayoutOf {
         name: name.to_owned(),
         gauges: n,
@@ -258,7 +255,7 @@ impl Wide {
         n: usize,
     ) -> Result<LayoutOf, Faults> {
         let spec = spec_of(job, name, n, prepared.loads.len(), &self.order);
-        let layout = place(&self.candidates, &spec).map_err(|e| refused(job, name, e))?;
+        let layout = place(&self.candidates, &spec).map_err(|e| refused(job, name, &e))?;
         let pool: Vec<PoolGauge> = layout
             .gauges
             .iter()

@@ -2,6 +2,7 @@
 
 use crate::linalg::{Matrix, Vector, dense};
 use crate::model::{GridIx, Model, Vec3};
+use std::fmt;
 
 /// How a structure stands: contacts, and the displacement of each under a unit force up at each.
 ///
@@ -39,25 +40,56 @@ pub struct FloorLoad {
 }
 
 /// Why there are no reactions.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum FloorError {
     /// Contacts on a line.
-    #[error(
-        "the {contacts} contacts lie on a line or at a point: they can't carry the weight without falling over; name the wheels on both sides"
-    )]
     OnALine {
         /// How many.
         contacts: usize,
     },
     /// A case without displacements.
-    #[error(
-        "no displacement of the contacts: solve with the built-in solver, or ask for DISPLACEMENT = ALL"
-    )]
     NoDisplacement,
     /// The solver refused.
-    #[error(transparent)]
-    Solver(#[from] crate::fe::FeError),
+    Solver(crate::fe::FeError),
 }
+
+impl FloorError {
+    /// What is wrong, and what to do: of the floor itself, one of it.
+    pub fn parts(&self) -> Vec<(String, String)> {
+        match self {
+            Self::OnALine { contacts } => vec![(
+                format!(
+                    "the {contacts} contacts lie on a line or at a point: they can't carry the weight without falling over"
+                ),
+                "name the wheels on both sides".to_owned(),
+            )],
+            Self::NoDisplacement => vec![(
+                "no displacement of the contacts".to_owned(),
+                "solve with the built-in solver, or ask for DISPLACEMENT = ALL".to_owned(),
+            )],
+            Self::Solver(e) => {
+                let of = |f: crate::fe::Refusal| (format!("{}: {}", f.card, f.reason), f.remedy);
+                e.faults().into_iter().map(of).collect()
+            }
+        }
+    }
+}
+
+impl From<crate::fe::FeError> for FloorError {
+    fn from(e: crate::fe::FeError) -> Self {
+        Self::Solver(e)
+    }
+}
+
+impl fmt::Display for FloorError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parts = self.parts();
+        let lines: Vec<String> = parts.iter().map(|(w, r)| format!("{w}: {r}")).collect();
+        f.write_str(&lines.join("\n"))
+    }
+}
+
+impl std::error::Error for FloorError {}
 
 /// Spread of the contacts across, as a share of their spread along, under which they count as a line.
 const LINE: f64 = 1e-6;
