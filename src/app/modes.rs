@@ -134,15 +134,13 @@ fn solved(
     work.findings.extend(read.findings.iter().cloned());
     Faults::check(read.faults.clone())?;
     let model = &read.model;
+    let options = SolveOptions {
+        stop: work.cx.progress.stop(),
+        ..SolveOptions::default()
+    };
     let solution = work
         .stage("modes", |_| {
-            solve_modes(
-                model,
-                support.spc,
-                model.mpc,
-                count,
-                &SolveOptions::default(),
-            )
+            solve_modes(model, support.spc, model.mpc, count, &options)
         })
         .map_err(|e| faults_of(&e, &read))?;
     work.findings.extend(solution.findings.iter().cloned());

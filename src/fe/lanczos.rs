@@ -6,6 +6,7 @@ use super::prepared::Prepared;
 use super::system::System;
 use crate::linalg::DMatrix;
 use crate::linalg::sparse::Factor;
+use crate::stop::Stop;
 use rayon::prelude::*;
 
 /// Vectors a block: more than any multiplicity that symmetric structures have.
@@ -28,6 +29,17 @@ pub(super) struct Accuracy {
     pub(super) frequency: f64,
     /// Bound on the residual of a pair over its value: the error of a shape is this over the distance to the next value.
     pub(super) residual: f64,
+}
+
+/// What is asked of the modes.
+#[derive(Clone, Copy)]
+pub(super) struct Wanted<'a> {
+    /// How many.
+    pub(super) count: usize,
+    /// How well.
+    pub(super) accuracy: Accuracy,
+    /// Looked at between blocks.
+    pub(super) stop: &'a Stop,
 }
 
 /// A Ritz pair of (K, M).
@@ -100,8 +112,11 @@ pub(super) fn lowest(
     mass: &Mass,
     system: &System,
     factor: &Factor<'_>,
-    (count, accuracy): (usize, Accuracy),
+    wanted: Wanted<'_>,
 ) -> Result<Vec<Pair>, FeError> {
+    let Wanted {
+        count, accuracy, ..
+    } = wanted;
     let n = system.symbolic.n_unknowns();
     let most = (VECTORS_A_MODE * count).max(4 * BLOCK).min(n);
     // P u from unknowns.
@@ -137,18 +152,21 @@ pub(super) fn lowest(
         let size = before + q.len();
         // Entries that tie the new vectors to the last ones are those of `kept`, found while they were made orthogonal.
         let pairs = ritz(&projected);
-        let stop = q.is_empty() || (size > most && before > 0);
+        let last = q.is_empty() || (size > most && before > 0);
         if let Some((values, vectors)) = pairs {
             let found = residuals(&values, &vectors, &kept, count);
-            let enough = values.len() > count || stop;
+            let enough = values.len() > count || last;
             let good = |r: &(f64, f64)| {
                 frequency_error(r.0, r.1) <= accuracy.frequency && r.0 <= accuracy.residual
             };
-            if stop || (enough && found.iter().all(good)) {
+            if last || (enough && found.iter().all(good)) {
                 break Some((values, vectors, found));
             }
-        } else if stop {
+        } else if last {
             break None;
+        }
+        if wanted.stop.is_asked() {
+            return Err(FeError::Stopped);
         }
         block = apply(&f)?;
         basis.extend(q);

@@ -1,7 +1,7 @@
 //! Elastic modes of a free or supported structure.
 
 use super::error::FeError;
-use super::lanczos::{Accuracy, Pair, lowest};
+use super::lanczos::{Accuracy, Pair, Wanted, lowest};
 use super::load_case::{LoadCase, Relief};
 use super::mass::{Mass, MassProperties};
 use super::options::SolveOptions;
@@ -13,6 +13,7 @@ use super::{Solution, SolveReport, Solved};
 use crate::finding::{Finding, Severity, few};
 use crate::linalg::sparse::Factor;
 use crate::model::{Model, Vec3};
+use crate::stop::Stop;
 
 /// Frequencies beside a static solution, which judge whether records are slow: a few parts in ten thousand, whatever lies beside them.
 const BESIDE_STATICS: Accuracy = Accuracy {
@@ -88,8 +89,13 @@ pub fn solve_modes(
     let properties = mass.properties(&x).ok_or(FeError::NoMassToVibrate)?;
     let mut findings = super::formulation::formulations(model);
     findings.extend(super::shape_checks::check_shapes(model));
-    let (pairs, rigid_motions, dofs) =
-        pairs_of(&prepared, &mass, (spc, mpc), count, &mut findings)?;
+    let (pairs, rigid_motions, dofs) = pairs_of(
+        &prepared,
+        &mass,
+        (spc, mpc),
+        (count, &options.stop),
+        &mut findings,
+    )?;
     findings.extend(fewer_than_wanted(pairs.len(), count));
     findings.extend(not_converged(&pairs));
     findings.extend(close_modes(&pairs));
@@ -133,9 +139,15 @@ pub(super) fn frequencies(
     mass: &Mass,
     system: &System,
     factor: &Factor<'_>,
-    count: usize,
+    (count, stop): (usize, &Stop),
 ) -> Result<Vec<f64>, FeError> {
-    let pairs = lowest(prepared, mass, system, factor, (count, BESIDE_STATICS))?;
+    let accuracy = BESIDE_STATICS;
+    let wanted = Wanted {
+        count,
+        accuracy,
+        stop,
+    };
+    let pairs = lowest(prepared, mass, system, factor, wanted)?;
     Ok(pairs.iter().map(|p| p.frequency).collect())
 }
 
@@ -144,7 +156,7 @@ fn pairs_of(
     prepared: &Prepared<'_>,
     mass: &Mass,
     (spc, mpc): (Option<u32>, Option<u32>),
-    count: usize,
+    (count, stop): (usize, &Stop),
     findings: &mut Vec<Finding>,
 ) -> Result<(Vec<Pair>, usize, usize), FeError> {
     let sets = (spc, mpc, [].as_slice());
@@ -158,7 +170,13 @@ fn pairs_of(
     }
     let stiffness = std::mem::take(&mut system.stiffness);
     let factor = system.factor(prepared, mass, stiffness)?;
-    let pairs = lowest(prepared, mass, &system, &factor, (count, ALONE))?;
+    let accuracy = ALONE;
+    let wanted = Wanted {
+        count,
+        accuracy,
+        stop,
+    };
+    let pairs = lowest(prepared, mass, &system, &factor, wanted)?;
     Ok((pairs, rigid_motions, n))
 }
 

@@ -224,7 +224,13 @@ fn solve_group(
         }
         let still = system.reduction.enforced.is_empty() && report.mass.is_some();
         if options.modes > 0 && report.modes.is_empty() && still {
-            report.modes = frequencies(prepared, mass, &system, &factor, options.modes)?;
+            report.modes = frequencies(
+                prepared,
+                mass,
+                &system,
+                &factor,
+                (options.modes, &options.stop),
+            )?;
             clock.note(report, "modes");
         }
     }

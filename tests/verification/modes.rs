@@ -153,3 +153,36 @@ fn a_structure_without_mass_has_no_modes_and_says_so() {
     let error = solve_modes(&b.model(), Some(1), None, 3, &SolveOptions::default()).unwrap_err();
     assert_eq!(error, FeError::NoMassToVibrate);
 }
+
+#[test]
+fn modes_that_are_no_longer_wanted_are_not_looked_for() {
+    let mut b = Bulk::default();
+    b.card("MAT1,1,210000.,,.3,7.85-9");
+    b.card("PBAR,2,1,200.,9000.,4000.,8000.");
+    let ids: Vec<u32> = (0..20)
+        .map(|i| b.grid([50.0 * f64::from(i), 0.0, 0.0]))
+        .collect();
+    for ends in ids.windows(2) {
+        b.card(&format!(
+            "CBAR,{},2,{},{},0.,1.,0.",
+            100 + ends[0],
+            ends[0],
+            ends[1]
+        ));
+    }
+    let stop = strainbridge::stop::Stop::new();
+    let options = SolveOptions {
+        stop: stop.clone(),
+        ..SolveOptions::default()
+    };
+    assert_eq!(
+        solve_modes(&b.model(), None, None, 3, &options)
+            .unwrap()
+            .modes
+            .len(),
+        3
+    );
+    stop.ask();
+    let error = solve_modes(&b.model(), None, None, 3, &options).unwrap_err();
+    assert_eq!(error, FeError::Stopped);
+}

@@ -1,0 +1,89 @@
+"""Long records, one process each: time and peak of resident memory, the file that is read into it among them.
+
+    STRAINBRIDGE=target/release/strainbridge python benches/records.py [FOLDER]
+
+A binary record of 40 gauges with a zero of 300,000 samples as text under `check` (2 million samples), and 41 columns under `recover` (10 million, 1.6 GB;
+its text, 150,000 samples). Seconds are the smaller of two; files lie in the page cache. Needs numpy, and 4 GB of disk.
+"""
+
+import os
+import struct
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from day import LOADS, run
+
+JOB = """units = "m-kg-s"
+report_units = {{ force = "kN" }}
+[sensitivity]
+file = "S.csv"
+per = {{ force = "kN" }}
+{loads}
+[measured]
+{measured}
+noise_microstrain = 1.0
+"""
+
+
+def binary(path, names, samples, random):
+    """Sines with noise, single precision, 500 samples a second."""
+    heads = b"".join(struct.pack("<H", len(n)) + n.encode() for n in names)
+    begin = (56 + len(heads) + 63) // 64 * 64
+    with path.open("wb") as out:
+        out.write(b"STRAINBH" + struct.pack("<IIIIQddd", 1, 4, len(names), begin, samples, 0.0, 1 / 500, 1e-6))
+        out.write(heads + bytes(begin - 56 - len(heads)))
+        phase = random.normal(size=len(names))
+        for first in range(0, samples, 500_000):
+            t = np.arange(first, min(first + 500_000, samples)) / 500
+            block = 100 * np.sin(t[:, None] + phase) + random.normal(size=(len(t), len(names)))
+            out.write(block.astype("<f4").tobytes())
+
+
+def text(path, names, samples, random):
+    """The same as CSV with four decimals."""
+    t = np.arange(samples) / 500
+    block = np.column_stack([t, 100 * np.sin(t[:, None] + random.normal(size=len(names))) + random.normal(size=(samples, len(names)))])
+    np.savetxt(path, block, fmt="%.4f", delimiter=",", header=",".join(["time", *names]), comments="")
+
+
+def job(folder, name, gauges, measured):
+    """A job with six loads and a given S."""
+    random = np.random.default_rng(8)
+    rows = [f"{g}," + ",".join(str(v) for v in random.normal(size=LOADS)) for g in gauges]
+    loads = [f"F{i}" for i in range(LOADS)]
+    (folder / "S.csv").write_text("\n".join(["gauge," + ",".join(loads), *rows, ""]))
+    listed = "\n".join(f'[[load]]\nname = "{n}"\nexpected = 20e3' for n in loads)
+    path = folder / f"{name}.toml"
+    path.write_text(JOB.format(loads=listed, measured=measured))
+    return path
+
+
+def timed(command, path):
+    """A command on a job, twice."""
+    program = os.environ.get("STRAINBRIDGE", "strainbridge")
+    runs = [run([program, command, str(path), "--out", str(path.parent / f"out{i}")], (0, 1)) for i in range(2)]
+    seconds, peak = min(r[0] for r in runs), max(r[2] for r in runs)
+    sizes = sum(f.stat().st_size for f in path.parent.iterdir() if f.suffix in (".bin", ".csv") and f.name != "S.csv")
+    print(f"{command} {path.stem}: {sizes / 1e6:.0f} MB of records, {seconds:.2f} s, peak {peak / 1e6:.0f} MB")
+
+
+if __name__ == "__main__":
+    random = np.random.default_rng(7)
+    for name, gauges, samples, commands in [
+        ("zeroed", 40, 2_000_000, ["check", "recover"]),
+        ("long", 41, 10_000_000, ["recover"]),
+        ("text", 41, 150_000, ["recover"]),
+    ]:
+        with tempfile.TemporaryDirectory(dir=sys.argv[1] if len(sys.argv) > 1 else None) as kept:
+            folder = Path(kept)
+            names = [f"G{g}" for g in range(gauges)]
+            file = folder / f"record.{'csv' if name == 'text' else 'bin'}"
+            (text if name == "text" else binary)(file, names, samples, random)
+            measured = f'strain = "{file.name}"'
+            if name == "zeroed":
+                text(folder / "zero.csv", names, 300_000, random)
+                measured += '\nzero = "zero.csv"'
+            for command in commands:
+                timed(command, job(folder, name, names, measured))
