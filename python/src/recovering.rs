@@ -14,7 +14,8 @@ use strainbridge::linalg::Matrix;
 use strainbridge::recovery::history::{Filter, SampleLoads};
 use strainbridge::recovery::plausible::LARGEST_STRAIN;
 use strainbridge::recovery::{
-    ErrorModel, Gain, Readings, Recovery, Sums, Widening, recover, recover_samples,
+    ErrorModel, Gain, Missing, NOT_SOLVABLE, Readings, Recovery, Sums, Widening, check_gaps,
+    recover, recover_samples,
 };
 use strainbridge::sensitivity::{Load, Sensitivity, check_separability};
 use strainbridge::stop::Stop;
@@ -185,16 +186,19 @@ fn in_unit(
     } else {
         recover(&s, &readings(samples, n, unit), errors)
     };
-    findings.extend(judged.findings.iter().cloned());
-    findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     let all: Vec<usize> = (0..n).collect();
     let whole = Gain::new(&s, &all, errors, 1.0, &judged.typical)
+        .filter(|gain| (0..k).all(|l| gain.is_seen(l)))
         .ok_or_else(|| wrong(S.function, "S", "it can't be solved", "check its numbers"))?;
     let covariance = whole.covariance(&judged.typical, &judged.widening);
     let half: Vec<f64> = (0..k)
         .map(|l| judged.widening.coverage_factor * covariance[l * k + l].max(0.0).sqrt())
         .collect();
-    let (loads, others) = if runs <= MOST_RUNS {
+    let Rows {
+        loads,
+        others,
+        missing,
+    } = if runs <= MOST_RUNS {
         of_runs(&judged, &half)
     } else {
         match of_record(&s, samples, unit, errors, &judged, stop)? {
@@ -202,6 +206,11 @@ fn in_unit(
             None => return Ok(None),
         }
     };
+    // All gauges together tell every load, so that what a row lacks is a gap, few rows or many.
+    let said = judged.findings.into_iter();
+    findings.extend(said.filter(|f| f.code != NOT_SOLVABLE));
+    findings.extend(check_gaps(STRAIN.name, &s, &missing));
+    findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     Ok(Some(Recovered {
         loads,
         half,
@@ -257,8 +266,29 @@ fn readings(samples: &[f64], n: usize, unit: f64) -> Vec<Readings> {
         .collect()
 }
 
+/// Loads of all rows.
+struct Rows {
+    /// `k` a row.
+    loads: Vec<f64>,
+    /// Rows whose intervals have another width, and those widths.
+    others: Vec<(usize, Vec<f64>)>,
+    /// What the rows lack.
+    missing: Missing,
+}
+
 /// Loads of runs as they were judged, and the widths of those that differ from `half`.
-fn of_runs(judged: &Recovery, half: &[f64]) -> (Vec<f64>, Vec<(usize, Vec<f64>)>) {
+fn of_runs(judged: &Recovery, half: &[f64]) -> Rows {
+    let mut missing = Missing::new(half.len());
+    for r in &judged.runs {
+        if r.residual.iter().all(|v| v.is_finite()) {
+            missing.whole += 1;
+            continue;
+        }
+        missing.gaps += 1;
+        for (l, known) in missing.known_in_gaps.iter_mut().enumerate() {
+            *known += u64::from(r.tells(l));
+        }
+    }
     let loads = judged.runs.iter().flat_map(|r| r.estimate.values.clone());
     let others = judged.runs.iter().enumerate().filter_map(|(i, r)| {
         let e = &r.estimate;
@@ -271,7 +301,11 @@ fn of_runs(judged: &Recovery, half: &[f64]) -> (Vec<f64>, Vec<(usize, Vec<f64>)>
             .all(|(a, b)| (a - b).abs() <= 1e-12 * b);
         (!alike).then_some((i, own))
     });
-    (loads.collect(), others.collect())
+    Rows {
+        loads: loads.collect(),
+        others: others.collect(),
+        missing,
+    }
 }
 
 /// Loads of a record, streamed through one estimate, and the widths of samples in which some gauge gives nothing; `None` where a reading is too
@@ -283,12 +317,12 @@ fn of_record(
     errors: ErrorModel,
     judged: &Recovery,
     stop: &Stop,
-) -> Result<Option<(Vec<f64>, Vec<(usize, Vec<f64>)>)>, Faults> {
+) -> Result<Option<Rows>, Faults> {
     let (n, k) = (s.gauges.len(), s.loads.len());
     let widening: Widening = judged.widening.clone();
     let filter = Filter::new(s, vec![0.0; n], errors, 1.0, &judged.typical, widening)
         .ok_or_else(|| wrong(S.function, "S", "it can't be solved", "check its numbers"))?;
-    let blocks: Vec<(SampleLoads, u64)> = samples
+    let blocks: Vec<(SampleLoads, Missing, usize)> = samples
         .par_chunks(BLOCK * n)
         .map(|block| {
             let mut out = SampleLoads {
@@ -297,7 +331,7 @@ fn of_record(
             };
             // What is not asked for any more is left empty.
             if stop.is_asked() {
-                return (out, 0);
+                return (out, Missing::new(k), 0);
             }
             let mut sums = Sums::new(n, k);
             filter.apply(block, unit, &mut out, &mut sums);
@@ -309,14 +343,15 @@ fn of_record(
                     .filter(|v| v.is_finite() && (*v * unit).abs() > LARGEST_STRAIN)
                     .count(),
             };
-            (out, impossible as u64)
+            (out, Missing::from(&sums), impossible)
         })
         .collect();
-    if blocks.iter().any(|b| b.1 > 0) {
+    if blocks.iter().any(|b| b.2 > 0) {
         return Ok(None);
     }
-    let mut others = Vec::new();
-    for (number, (block, _)) in blocks.iter().enumerate() {
+    let (mut others, mut missing) = (Vec::new(), Missing::new(k));
+    for (number, (block, of_block, _)) in blocks.iter().enumerate() {
+        missing.merge(of_block);
         for (at, gain) in &block.gaps {
             let f = &block.values[at * k..][..k];
             let sigma = match gain {
@@ -331,8 +366,12 @@ fn of_record(
         }
     }
     let mut loads = Vec::with_capacity(samples.len() / n * k);
-    for (block, _) in blocks {
+    for (block, ..) in blocks {
         loads.extend_from_slice(&block.values);
     }
-    Ok(Some((loads, others)))
+    Ok(Some(Rows {
+        loads,
+        others,
+        missing,
+    }))
 }

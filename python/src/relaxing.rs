@@ -6,9 +6,11 @@ use crate::work::{Asked, run};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use strainbridge::Faults;
+use strainbridge::app::context::Progress;
 use strainbridge::placement::Criterion;
 use strainbridge::placement::candidates::{Candidates, Scatter};
 use strainbridge::placement::column_generation::{Groups, solve};
+use strainbridge::stop::Stop;
 
 const S: Named = Named {
     function: "relax",
@@ -35,12 +37,20 @@ pub(crate) fn relax<'py>(
         threads,
         progress: None,
     };
-    let found = run(py, &asked, |_| weights(rows, k, n, tolerance))?;
+    let found = run(py, &asked, |heard| {
+        weights(rows, k, n, tolerance, &heard.stop())
+    })?;
     let (weights, value, bound) = found.map_err(|f| raise(py, f))?;
     Ok((PyArray1::from_vec(py, weights), value, bound))
 }
 
-fn weights(rows: &[f64], k: usize, n: usize, tolerance: f64) -> Result<Weighted, Faults> {
+fn weights(
+    rows: &[f64],
+    k: usize,
+    n: usize,
+    tolerance: f64,
+    stop: &Stop,
+) -> Result<Weighted, Faults> {
     let fault = |argument: &str, said: &str, remedy: &str| {
         Faults::from(wrong(S.function, argument, said, remedy))
     };
@@ -74,6 +84,7 @@ fn weights(rows: &[f64], k: usize, n: usize, tolerance: f64) -> Result<Weighted,
         &Groups::Rows,
         tolerance,
         &[],
+        stop,
     );
     let found = found.ok_or_else(|| {
         let said = format!("no {n} of its rows separate the {k} loads");

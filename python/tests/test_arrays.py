@@ -131,6 +131,30 @@ def test_a_record_has_the_loads_of_least_squares_too_and_gaps_take_the_others():
     assert np.isnan(out.loads[123]).any()
 
 
+@pytest.mark.parametrize("rows", [1_999, 2_001])
+def test_gaps_are_said_alike_of_few_rows_and_of_many(rows):
+    rng = np.random.default_rng(12)
+    S = rng.normal(size=(8, 3)) * 20.0
+    strain = rng.normal(0.0, 5.0, (rows, 3)) @ S.T + rng.normal(0.0, 1.0, (rows, 8))
+    whole = sb.recover_rows(S, strain)
+    assert not any("gaps" in f.code for f in whole.findings)
+    # Rows that are not among those judged of a long record, too: one gauge silent, then six of eight, which leaves three loads untold.
+    strain[1_700, 2] = np.nan
+    strain[123, :6] = np.nan
+    out = sb.recover_rows(S, strain)
+    (said,) = (f for f in out.findings if f.code == "samples-with-gaps")
+    assert (said.severity, said.subject, said.measured) == ("warning", "strain", 2.0)
+    assert f"in 2 of {rows} samples" in said.message
+    assert "in at least 1 of them" in said.message
+    assert np.isnan(out.loads).any(axis=1).nonzero()[0].tolist() == [123]
+    assert out.is_reliable
+    strain[:, :6] = np.nan
+    none = sb.recover_rows(S, strain)
+    codes = {f.code for f in none.findings if f.severity == "error"}
+    assert codes == {"loads-without-values"}
+    assert not none.is_reliable
+
+
 def test_intervals_hold_the_truth_nineteen_times_in_twenty():
     rng = np.random.default_rng(7)
     S = rng.normal(size=(8, 3))

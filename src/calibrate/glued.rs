@@ -8,6 +8,7 @@ use super::state::State;
 use super::types::{AsGlued, Glue, ModelPrior, Task};
 use crate::linalg::Matrix;
 use crate::linalg::precision::Precision;
+use crate::linalg::spd::dot;
 
 /// Where each gauge sits as the posterior says; empty without stated moves.
 pub(super) fn as_glued(task: &Task, state: &State) -> Vec<AsGlued> {
@@ -42,7 +43,6 @@ fn one(model: &ModelPrior, state: &State, g: usize, common: f64) -> Option<AsGlu
     let order = state.posterior.n * k;
     let mean = state.posterior.mean.get(g * k..(g + 1) * k)?;
     let left: Vec<f64> = mean.iter().zip(&prior.mean).map(|(m, p)| m - p).collect();
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
     let covariance = |i: usize, j: usize| -> f64 {
         let own = if i == j { sd[i] * sd[i] } else { 0.0 };
         let mut learnt = 0.0;

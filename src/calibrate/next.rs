@@ -21,14 +21,33 @@ pub struct NextRun {
     pub sigma_after: f64,
 }
 
-/// Candidates by information gained, the best first. `sizes`: how large each load would be; every load by itself is tried, and all
-/// together.
-pub fn next_runs(calibration: &Calibration, noise: f64, sizes: &[f64]) -> Vec<NextRun> {
+/// Candidates by information gained, the best first; none where S is not calibrated. `sizes`: how large each load would be; every load by
+/// itself is tried, and all together.
+///
+/// # Errors
+/// Sizes that are not one finite number a load.
+pub fn next_runs(
+    calibration: &Calibration,
+    noise: f64,
+    sizes: &[f64],
+) -> Result<Vec<NextRun>, String> {
     let s = &calibration.sensitivity;
+    let k = s.loads.len();
+    if sizes.len() != k {
+        return Err(format!(
+            "{} sizes are given for {k} loads: give one a load",
+            sizes.len()
+        ));
+    }
+    if let Some((load, size)) = s.loads.iter().zip(sizes).find(|(_, f)| !f.is_finite()) {
+        return Err(format!(
+            "the size of load `{}` is {size}: give a finite number",
+            load.name
+        ));
+    }
     let Some(known) = &s.uncertainty else {
-        return Vec::new();
+        return Ok(Vec::new());
     };
-    let k = sizes.len();
     let mut candidates: Vec<Vec<f64>> = (0..k)
         .map(|l| {
             (0..k)
@@ -47,7 +66,7 @@ pub fn next_runs(calibration: &Calibration, noise: f64, sizes: &[f64]) -> Vec<Ne
         .filter_map(|f| tried(s, known, noise, f, sizes, &before))
         .collect();
     out.sort_by(|a, b| b.information.total_cmp(&a.information));
-    out
+    Ok(out)
 }
 
 fn tried(

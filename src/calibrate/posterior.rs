@@ -168,7 +168,7 @@ impl Posterior {
         project(&columns, gauges, phi, self.k)
     }
 
-    /// The posterior without one of its equations, and that equation's residual there; `None` where the rest does not determine it.
+    /// The posterior without one of its equations; `None` where the rest does not determine it.
     ///
     /// `s' = s - V A' M^-1 (y - A s)`, `V' = V + V A' M^-1 A V`, `M = R - A V A'`.
     pub fn without(&self, e: &Equation) -> Option<Self> {

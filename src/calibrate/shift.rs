@@ -3,7 +3,7 @@
 use super::cause::off_drawing;
 use super::prior::rows as model_rows;
 use super::state::State;
-use super::types::{GaugeShift, MoveKind, ShiftWord, Task};
+use super::types::{GaugeShift, ShiftWord, Task};
 use crate::finding::{Finding, Severity};
 use crate::linalg::precision::Precision;
 use crate::linalg::spd;
@@ -140,7 +140,7 @@ pub(super) fn check(task: &Task, state: &State) -> Vec<GaugeShift> {
                 evidence.most_probable(&without),
                 g,
             );
-            words[g] = Some(cause(task, state, &rows[g], g, found));
+            words[g] = Some(cause(&rows[g], found));
         }
         if stop {
             break;
@@ -214,14 +214,8 @@ fn exchanged(rows: &[Row]) -> Vec<(usize, usize)> {
 }
 
 /// What the change of a row that is far off looks like; `off_drawing`: what the readings say of an angle or a place, where the model knows
-/// what these make.
-fn cause(
-    task: &Task,
-    state: &State,
-    row: &Row,
-    g: usize,
-    off_drawing: Option<ShiftWord>,
-) -> ShiftWord {
+/// what these make. An angle is said by that alone.
+fn cause(row: &Row, off_drawing: Option<ShiftWord>) -> ShiftWord {
     if let Some(word @ (ShiftWord::Angle | ShiftWord::Place)) = off_drawing {
         return word;
     }
@@ -232,29 +226,19 @@ fn cause(
         .zip(&row.model)
         .map(|(a, b)| a - b)
         .collect();
-    let explained = |t: &[f64]| {
-        let tt = spd::dot(t, t);
-        let c = if tt > 0.0 {
-            spd::dot(t, &moved) / tt
-        } else {
-            0.0
-        };
-        let left: f64 = moved.iter().zip(t).map(|(m, t)| (m - c * t).powi(2)).sum();
-        let all = spd::dot(&moved, &moved);
-        if all > 0.0 { 1.0 - left / all } else { 0.0 }
+    // Of the square of the change, what a gain explains.
+    let own = spd::dot(&row.model, &row.model);
+    let all = spd::dot(&moved, &moved);
+    let gain = spd::dot(&row.model, &moved).powi(2);
+    let explained = if own > 0.0 && all > 0.0 {
+        gain / (own * all)
+    } else {
+        0.0
     };
-    let moves = task.model.as_ref().map_or(&[][..], |m| &m.moves);
-    let turned = moves.iter().find(|m| m.kind == MoveKind::Turned);
-    let turned: Option<Vec<f64>> = turned.map(|t| {
-        let scales = state.scales.iter().enumerate();
-        scales.map(|(l, c)| t.change[(g, l)] * c).collect()
-    });
     if row.scale() < 0.0 && off_drawing.is_none() {
         ShiftWord::Sign
-    } else if rather_gain && explained(&row.model) > EXPLAINED {
+    } else if rather_gain && explained > EXPLAINED {
         ShiftWord::Gain
-    } else if turned.is_some_and(|t| explained(&t) > EXPLAINED) {
-        ShiftWord::Angle
     } else if off_drawing.is_some() {
         ShiftWord::Undetermined
     } else {

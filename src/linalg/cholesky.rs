@@ -31,10 +31,12 @@ impl Cholesky {
                 columns[j * n + i] = covariance[i * n + j];
             }
         }
-        if n < BLOCKED {
-            factor_by_columns(&mut columns, n);
-        } else {
-            factor_by_blocks(&mut columns, n)?;
+        match workspace(
+            n,
+            cholesky_in_place_scratch::<f64>(n, Par::Seq, parameters()),
+        ) {
+            Some(mut memory) => factor_by_blocks(&mut columns, n, &mut memory)?,
+            None => factor_by_columns(&mut columns, n),
         }
         let pivots = || (0..n).map(|i| columns[i * n + i]);
         if !pivots().all(|p| p > 0.0 && p.is_finite()) {
@@ -83,6 +85,9 @@ impl Cholesky {
             let (head, tail) = out.split_at_mut(j + 1);
             head[j] /= own;
             let v = head[j];
+            if v == 0.0 {
+                continue;
+            }
             tail.iter_mut().zip(column).for_each(|(t, l)| *t -= v * l);
         }
         out
@@ -94,25 +99,35 @@ impl Cholesky {
         (below[0], &below[1..])
     }
 
-    /// `C^-1`, `n x n`; `None` where memory doesn't hold it.
-    pub fn inverse(&self) -> Option<Vec<f64>> {
+    /// `C^-1`, `n x n`.
+    pub fn inverse(&self) -> Vec<f64> {
+        let n = self.n;
+        match workspace(n, inverse_scratch::<f64>(n, Par::Seq)) {
+            Some(mut memory) => self.inverse_by_blocks(&mut memory),
+            None => self.inverse_by_columns(),
+        }
+    }
+
+    fn inverse_by_columns(&self) -> Vec<f64> {
+        let n = self.n;
+        let mut out = Vec::with_capacity(n * n);
+        let mut unit = vec![0.0; n];
+        for j in 0..n {
+            unit[j] = 1.0;
+            out.extend(self.solve(&unit));
+            unit[j] = 0.0;
+        }
+        out
+    }
+
+    fn inverse_by_blocks(&self, memory: &mut MemBuffer) -> Vec<f64> {
         let n = self.n;
         let mut out = vec![0.0; n * n];
-        if n < BLOCKED {
-            let mut unit = vec![0.0; n];
-            for j in 0..n {
-                unit[j] = 1.0;
-                out[j * n..(j + 1) * n].copy_from_slice(&self.solve(&unit));
-                unit[j] = 0.0;
-            }
-            return Some(out);
-        }
-        let mut memory = memory(inverse_scratch::<f64>(n, Par::Seq))?;
         inverse(
             MatMut::from_column_major_slice_mut(&mut out, n, n),
             MatRef::from_column_major_slice(&self.columns, n, n),
             Par::Seq,
-            MemStack::new(&mut memory),
+            MemStack::new(memory),
         );
         // The lower triangle is filled.
         for j in 0..n {
@@ -120,12 +135,19 @@ impl Cholesky {
                 out[i * n + j] = out[j * n + i];
             }
         }
-        Some(out)
+        out
     }
 }
 
-fn memory(size: StackReq) -> Option<MemBuffer> {
-    MemBuffer::try_new(size).ok()
+/// Memory to work by blocks; `None` where these don't pay, or where there is no room for it: a plain loop takes none.
+fn workspace(n: usize, size: StackReq) -> Option<MemBuffer> {
+    (n >= BLOCKED)
+        .then(|| MemBuffer::try_new(size).ok())
+        .flatten()
+}
+
+fn parameters() -> Spec<LltParams, f64> {
+    Spec::new(<LltParams as Auto<f64>>::auto())
 }
 
 /// Replaces the lower triangle of `a`, by columns, by its factor; what is not positive definite leaves pivots that are no numbers.
@@ -144,16 +166,14 @@ fn factor_by_columns(a: &mut [f64], n: usize) {
     }
 }
 
-/// The same by blocks; `None` where the matrix is not positive definite or memory doesn't hold what it takes.
-fn factor_by_blocks(a: &mut [f64], n: usize) -> Option<()> {
-    let parameters = Spec::<LltParams, f64>::new(<LltParams as Auto<f64>>::auto());
-    let mut memory = memory(cholesky_in_place_scratch::<f64>(n, Par::Seq, parameters))?;
+/// The same by blocks; `None` where the matrix is not positive definite.
+fn factor_by_blocks(a: &mut [f64], n: usize, memory: &mut MemBuffer) -> Option<()> {
     cholesky_in_place(
         MatMut::from_column_major_slice_mut(a, n, n),
         LltRegularization::default(),
         Par::Seq,
-        MemStack::new(&mut memory),
-        parameters,
+        MemStack::new(memory),
+        parameters(),
     )
     .ok()?;
     // What the blocks leave above the diagonal is no part of the factor.
@@ -163,7 +183,7 @@ fn factor_by_blocks(a: &mut [f64], n: usize) -> Option<()> {
     Some(())
 }
 
-/// Sum of products, in eight partial sums that the processor runs side by side.
+/// Sum of products of long vectors, in eight partial sums that the processor runs side by side: twice as many as [`super::spd::dot`].
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut lanes = [0.0; 8];
     let (whole_a, whole_b) = (a.chunks_exact(8), b.chunks_exact(8));

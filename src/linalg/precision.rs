@@ -37,24 +37,14 @@ impl Precision {
         at.flatten().copied().unwrap_or(0.0)
     }
 
-    /// By rows; not numbers where memory doesn't hold it.
+    /// By rows.
     fn inverse(&self) -> &[f64] {
-        self.inverse.get_or_init(|| {
-            let n = self.n();
-            self.factor
-                .inverse()
-                .unwrap_or_else(|| vec![f64::NAN; n * n])
-        })
+        self.inverse.get_or_init(|| self.factor.inverse())
     }
 
     /// `P x`.
     pub fn apply(&self, x: &[f64]) -> Vec<f64> {
         self.factor.solve(x)
-    }
-
-    /// `x' P x`.
-    pub fn quadratic(&self, x: &[f64]) -> f64 {
-        self.factor.chi2(x)
     }
 
     /// `P x` for an `x` given by its few entries (index, value).
@@ -70,21 +60,6 @@ impl Precision {
             }
         }
         out
-    }
-
-    /// `P x`, from rows of the inverse where they are made and most of `x` is zero.
-    pub fn apply_few(&self, x: &[f64]) -> Vec<f64> {
-        let few: Vec<(usize, f64)> = x
-            .iter()
-            .copied()
-            .enumerate()
-            .filter(|e| e.1 != 0.0)
-            .collect();
-        if self.inverse.get().is_some() && few.len() * 2 < x.len() {
-            self.apply_sparse(&few)
-        } else {
-            self.apply(x)
-        }
     }
 
     /// `x' P x` for an `x` given by its few entries.

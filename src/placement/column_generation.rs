@@ -7,6 +7,7 @@ use super::criterion::Criterion;
 use super::relax::relax;
 use super::relaxed::{Active, Relaxed};
 use super::variance_scan::{Priced, Report, price};
+use crate::stop::Stop;
 use std::collections::{HashMap, HashSet};
 
 /// Which rows share a weight of at most 1.
@@ -61,7 +62,8 @@ const FIRST_ROWS: usize = 256;
 /// Passes after which the gap reached is taken.
 const MAX_PASSES: usize = 60;
 
-/// Solves the relaxation for `s` gauges to a gap (per load) of `tolerance`; `None` where no layout has a regular information matrix.
+/// Solves the relaxation for `s` gauges to a gap (per load) of `tolerance`, or to where it is when asked to stop: the bound holds all the
+/// same. `None` where no layout has a regular information matrix.
 pub fn solve(
     c: &Candidates,
     s: usize,
@@ -70,6 +72,7 @@ pub fn solve(
     groups: &Groups,
     tolerance: f64,
     warm: &[Choice],
+    stop: &Stop,
 ) -> Option<Columns> {
     let k = c.n_loads();
     let wanted = criterion.degree(k) as f64;
@@ -115,7 +118,7 @@ pub fn solve(
         let top = top_of(&priced, groups, s, threshold);
         let gap = ((relaxed.prior_trace + top.0) / wanted).ln();
         upper_bound = upper_bound.min(relaxed.value() + wanted * gap);
-        if gap <= tolerance || passes >= MAX_PASSES {
+        if gap <= tolerance || passes >= MAX_PASSES || stop.is_asked() {
             return Some(Columns {
                 active: set.active,
                 choices: set.choices,

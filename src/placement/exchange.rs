@@ -16,7 +16,7 @@ use rayon::prelude::*;
 pub struct Effort {
     /// Independent starts.
     pub starts: usize,
-    /// Kicks of the best layout (a few gauges replaced at random, then exchange) for each start.
+    /// Perturbations of the best layout (a few gauges replaced at random, then exchange) for each start.
     pub perturbations: usize,
     /// Seed.
     pub seed: u64,
@@ -238,7 +238,7 @@ fn complete(
     Some(chosen)
 }
 
-/// Climbs from these rows, regularised by `ridge` first where they alone are singular; `None` where the rows it ends with are.
+/// Exchange from these rows, regularised by `ridge` first where they alone are singular; `None` where the rows it ends with are.
 fn improve<E: Fn(usize, usize) -> bool + Sync>(
     list: &List<E>,
     ridge: &[f64],

@@ -209,6 +209,7 @@ fn relaxed(c: &Candidates, spec: &Spec, groups: &Groups, warm: &[Choice]) -> Opt
         groups,
         spec.tolerance,
         warm,
+        &spec.stop,
     )
 }
 
@@ -223,6 +224,9 @@ fn tighten(
 ) -> Option<Found> {
     let k = spec.criterion.degree(c.n_loads());
     for _ in 0..CLIQUE_ROUNDS {
+        if spec.stop.is_asked() {
+            break;
+        }
         let floor = best
             .as_ref()
             .map_or(0.0, |b| elimination(&bound.col, k, b.1));
@@ -337,7 +341,14 @@ fn robust_of(c: &Candidates, spec: &Spec, list: &[Priced], gauges: &[Choice]) ->
     let active = rows_of(c, spec, &choices);
     let start: Vec<usize> = (0..gauges.len()).collect();
     let excludes = excluder(c, spec, &choices);
-    let found = robust::search(&active, &spec.prior, &start, &excludes, spec.effort)?;
+    let found = robust::search(
+        &active,
+        &spec.prior,
+        &start,
+        &excludes,
+        spec.effort,
+        &spec.stop,
+    )?;
     let gauges: Vec<Choice> = found.0.iter().map(|&i| choices[i]).collect();
     let value = value_of(c, spec, &gauges)?;
     Some((gauges, value))

@@ -6,6 +6,7 @@ use super::exchange::Effort;
 use super::perturbation::moved;
 use super::relaxed::Active;
 use crate::linalg::spd;
+use crate::stop::Stop;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -32,12 +33,14 @@ pub fn after_worst_loss(active: &Active, prior: &[f64], rows: &[usize]) -> Optio
 }
 
 /// The best rows found from `start`, with what is left after their worst loss; `None` where every layout met has a gauge that may not fail.
+/// Asked to stop it gives the best met so far.
 pub fn search(
     active: &Active,
     prior: &[f64],
     start: &[usize],
     excludes: &(impl Fn(usize, usize) -> bool + Sync),
     effort: Effort,
+    stop: &Stop,
 ) -> Option<(Vec<usize>, f64)> {
     let (starts, perturbations) = if active.k > MANY_LOADS {
         (2, 2)
@@ -57,12 +60,15 @@ pub fn search(
             } else {
                 moved(start, start.len(), active.len(), excludes, &mut rng)
             };
-            let mut best = improve(active, prior, first, excludes);
+            let mut best = improve(active, prior, first, excludes, stop);
             for _ in 0..perturbations {
+                if stop.is_asked() {
+                    break;
+                }
                 let from = best.as_ref().map_or(start, |b| &b.0);
                 let count = 1 + rng.random_range(0..2);
                 let rows = moved(from, count, active.len(), excludes, &mut rng);
-                let next = improve(active, prior, rows, excludes);
+                let next = improve(active, prior, rows, excludes, stop);
                 best = better(best, next);
             }
             best
@@ -83,7 +89,7 @@ fn better(a: Found, b: Found) -> Found {
 /// Loads from which the search is short.
 const MANY_LOADS: usize = 12;
 
-/// Kicks of a search; each costs a few sweeps.
+/// Perturbations of a search; each costs a few sweeps.
 const MOST_PERTURBATIONS: usize = 20;
 
 fn improve(
@@ -91,11 +97,15 @@ fn improve(
     prior: &[f64],
     mut rows: Vec<usize>,
     excludes: &(impl Fn(usize, usize) -> bool + Sync),
+    stop: &Stop,
 ) -> Option<(Vec<usize>, f64)> {
     let mut now = after_worst_loss(active, prior, &rows).unwrap_or(f64::NEG_INFINITY);
     for _ in 0..50 {
         let before = now;
         for slot in 0..rows.len() {
+            if stop.is_asked() {
+                break;
+            }
             let rest: Vec<usize> = rows
                 .iter()
                 .enumerate()

@@ -235,10 +235,19 @@ fn a_search_cut_short_keeps_its_certificate() {
             ..Spec::new(7, 4)
         };
         let cut = place(&c, &spec).unwrap();
-        assert!(cut.log_det <= cut.upper_bound);
-        assert!(whole.log_det <= cut.upper_bound + 1e-9);
-        assert_eq!((cut.gauges.len(), cut.nodes), (7, 0));
-        left_out += whole.nodes;
+        // Seven different rows, their determinant from the rows, held against the best there is.
+        let mut chosen: Vec<u32> = cut.gauges.iter().map(|g| g.place).collect();
+        chosen.dedup();
+        assert_eq!((chosen.len(), cut.nodes), (7, 0));
+        let own = log_det(&c, &cut.gauges, &spec.prior);
+        assert!((cut.log_det - own).abs() < 1e-9, "{} {own}", cut.log_det);
+        assert!(whole.proved);
+        assert!(cut.upper_bound >= whole.log_det - 1e-9);
+        let efficiency = ((own - whole.log_det) / 4.0).exp();
+        assert!(cut.efficiency_bound <= efficiency + 1e-9);
+        // One pass is what a bound takes.
+        assert_eq!(cut.passes, 1);
+        left_out += whole.nodes + whole.passes - cut.passes;
     }
     assert!(left_out > 0, "nothing was left out");
 }

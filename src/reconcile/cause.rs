@@ -7,6 +7,7 @@
 use super::observation::Observations;
 use super::outcome::Verdict;
 use crate::linalg::precision::Precision;
+use crate::linalg::spd::dot;
 
 /// Something measured in every run.
 #[derive(Clone, Debug, PartialEq)]
@@ -135,7 +136,6 @@ fn correlation(observations: &Observations, a: &Cause, b: &Cause) -> Option<f64>
         v.iter().map(|x| x - mean).collect()
     };
     let (a, b) = (of(a), of(b));
-    let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(p, q)| p * q).sum::<f64>();
     let size = (dot(&a, &a) * dot(&b, &b)).sqrt();
     (size > 0.0).then(|| dot(&a, &b) / size)
 }

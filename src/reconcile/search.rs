@@ -107,6 +107,9 @@ pub fn search_near<S: Scorer>(
     let mut seen: Seen<S::Fit> = BTreeMap::new();
     seen.insert(Vec::new(), scorer.score(&[], None));
     for old in known {
+        if scorer.is_stopped() {
+            break;
+        }
         seen.entry(old.set.clone())
             .or_insert_with(|| scorer.score(&old.set, Some((old, None))));
     }
@@ -147,6 +150,9 @@ fn extend<S: Scorer>(
     /// Approximate gains below this have not been seen to turn into decisive ones.
     const HOPELESS: f64 = -3.0;
     let mut out = Vec::new();
+    if scorer.is_stopped() {
+        return out;
+    }
     let mut kin_count: BTreeMap<usize, usize> = BTreeMap::new();
     for addition in scorer.screen(base) {
         let candidate = addition.candidate;
@@ -190,13 +196,13 @@ fn exchange<S: Scorer>(scorer: &mut S, breadth: Breadth, seen: &mut Seen<S::Fit>
         let Some(best) = settle(&all, breadth.decisive) else {
             return;
         };
-        if scorer.is_stopped() {
-            return;
-        }
         if best.set.is_empty() {
             return;
         }
         for skip in 0..best.set.len() {
+            if scorer.is_stopped() {
+                return;
+            }
             let mut reduced = best.set.clone();
             reduced.remove(skip);
             let scored = seen
@@ -211,6 +217,9 @@ fn exchange<S: Scorer>(scorer: &mut S, breadth: Breadth, seen: &mut Seen<S::Fit>
                     .map(|m| scorer.variants(*m))
                     .unwrap_or_default()
                 {
+                    if scorer.is_stopped() {
+                        return;
+                    }
                     let mut set = base.set.clone();
                     set.push(other);
                     set.sort_unstable();
@@ -225,3 +234,6 @@ fn exchange<S: Scorer>(scorer: &mut S, breadth: Breadth, seen: &mut Seen<S::Fit>
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,7 @@
 //! Whether the time of a record can be in seconds, and whether it is even.
 
 use crate::finding::{Finding, Severity};
-use crate::series::record::{Clock, Evenness};
+use crate::series::record::{Clock, EVEN, Evenness};
 
 /// Step, s, from which a record is slower than any logger of loads that move: 1 Hz.
 const SLOW: f64 = 1.0;
@@ -30,7 +30,7 @@ pub fn irregular(subject: &str, clock: &Clock, second: f64) -> Vec<Finding> {
                 ),
                 "record with a steady clock where the loads' peaks matter",
             )
-            .with_numbers(largest, 0.02),
+            .with_numbers(largest, EVEN),
         );
     }
     if clock.n_gaps > 0 {

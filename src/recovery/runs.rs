@@ -71,7 +71,11 @@ fn recover_calibrated(
     findings.extend(judged);
     let (residual_rms, gauge_residual_rms, gauge_leverage) = residual_sizes(s.gauges.len(), &runs);
     findings.extend(determined::check(s, &runs));
-    let loads: Vec<Vec<f64>> = runs.iter().map(|r| r.estimate.values.clone()).collect();
+    let told = runs.iter().flat_map(|r| {
+        let values = r.estimate.values.iter().enumerate();
+        values.filter(|(l, _)| r.tells(*l)).map(|(l, v)| (l, *v))
+    });
+    let typical = root_mean_squares(s.loads.len(), told);
     Recovery {
         residual_rms,
         gauge_residual_rms,
@@ -81,7 +85,7 @@ fn recover_calibrated(
             coverage_factor: calibrated::student_95_of(known.dof),
             ..Widening::none()
         },
-        typical: root_mean_squares(s.loads.len(), &loads),
+        typical,
         runs,
     }
 }

@@ -1,6 +1,7 @@
 //! What samples of a record say together: runs, but for gaps. A gap blanks what it touches and no more.
 
 use super::errors::ErrorModel;
+use super::gain::Gain;
 use super::plausible;
 use super::runs::recover;
 use super::sums::Sums;
@@ -12,24 +13,24 @@ use crate::sensitivity::Sensitivity;
 /// What recovery makes of samples of a record; samples in which no gauge gave anything say nothing, unless there are no others.
 ///
 /// A sample whose gauges don't tell a load is blank there. Whether a load can be had is asked of the whole record ([`check_gaps`]), not of
-/// the samples that happen to be looked at: `run-not-solvable` stays only where none of them tells some load.
+/// the samples that happen to be looked at: `run-not-solvable` stays only where all gauges together don't tell a load, which is no gap.
 pub fn recover_samples(s: &Sensitivity, samples: Vec<Readings>, errors: ErrorModel) -> Recovery {
     let reads = |r: &Readings| r.strain.iter().any(|v| v.is_finite());
     let some = samples.iter().any(reads);
     let samples: Vec<Readings> = samples.into_iter().filter(|r| !some || reads(r)).collect();
     let mut recovery = recover(s, &samples, errors);
-    let k = s.loads.len();
-    let tells = |l: usize| {
-        recovery.runs.iter().any(|r| {
-            // By a calibrated S, values of loads that are not told are arbitrary, not blank.
-            let told = s.uncertainty.is_none() || r.rank >= k;
-            told && r.estimate.values.get(l).is_some_and(|v| v.is_finite())
-        })
-    };
-    if (0..k).filter(|l| s.loads[*l].wanted).all(tells) {
+    if recovery.findings.iter().any(|f| f.code == NOT_SOLVABLE) && all_tell(s, errors, &recovery) {
         recovery.findings.retain(|f| f.code != NOT_SOLVABLE);
     }
     recovery
+}
+
+/// Whether all gauges together tell the loads that are asked for.
+fn all_tell(s: &Sensitivity, errors: ErrorModel, recovery: &Recovery) -> bool {
+    let all: Vec<usize> = (0..s.gauges.len()).collect();
+    let wanted = (0..s.loads.len()).filter(|&l| s.loads[l].wanted);
+    Gain::new(s, &all, errors, 1.0, &recovery.typical)
+        .is_some_and(|gain| wanted.into_iter().all(|l| gain.is_seen(l)))
 }
 
 /// Samples of a record in which something is missing.

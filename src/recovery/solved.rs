@@ -22,6 +22,9 @@ pub(super) struct Solved {
     pub typical: Vec<f64>,
 }
 
+/// The estimate of each pattern, and the loads of every run.
+type Estimates = (Vec<Option<Gain>>, Vec<Vec<f64>>);
+
 /// The runs by the gauges that read in them and by their noise, the most frequent first.
 pub(super) fn patterns(n: usize, readings: &[Readings]) -> Vec<Pattern> {
     let mut map: BTreeMap<(Vec<usize>, u64), Vec<usize>> = BTreeMap::new();
@@ -50,10 +53,10 @@ pub(super) fn solve(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) 
     let k = s.loads.len();
     let patterns = patterns(s.gauges.len(), readings);
     let mut typical = vec![0.0; k];
-    let mut last = at_typical(s, readings, errors, &patterns, &typical);
+    let mut last: Estimates = at_typical(s, readings, errors, &patterns, &typical);
     if errors.model_rel > 0.0 {
         for _ in 0..ITERATIONS {
-            typical = root_mean_squares(k, &last.1);
+            typical = root_mean_squares(k, told(&patterns, &last));
             last = at_typical(s, readings, errors, &patterns, &typical);
         }
     }
@@ -87,7 +90,7 @@ fn at_typical(
     errors: ErrorModel,
     patterns: &[Pattern],
     typical: &[f64],
-) -> (Vec<Option<Gain>>, Vec<Vec<f64>>) {
+) -> Estimates {
     let gains: Vec<Option<Gain>> = patterns
         .par_iter()
         .map(|p| Gain::new(s, &p.used, errors, p.noise_factor, typical))
@@ -102,12 +105,28 @@ fn at_typical(
     (gains, loads)
 }
 
-pub(super) fn root_mean_squares(k: usize, loads: &[Vec<f64>]) -> Vec<f64> {
-    (0..k)
-        .map(|l| {
-            let sum: f64 = loads.iter().map(|f| f[l] * f[l]).sum();
-            (sum / loads.len().max(1) as f64).sqrt()
-        })
+/// The loads that readings tell, by number, with their values, of all runs: what the others come to is arbitrary.
+fn told<'a>(
+    patterns: &'a [Pattern],
+    (gains, loads): &'a Estimates,
+) -> impl Iterator<Item = (usize, f64)> + 'a {
+    let of_pattern = patterns.iter().zip(gains);
+    let of_pattern = of_pattern.filter_map(|(p, gain)| Some((p, gain.as_ref()?)));
+    of_pattern.flat_map(|(p, gain)| {
+        let runs = p.runs.iter().flat_map(|&i| loads[i].iter().enumerate());
+        runs.filter(|(l, _)| gain.is_seen(*l)).map(|(l, v)| (l, *v))
+    })
+}
+
+/// Root mean square of each of `k` loads over the values it is told to have, 0 where there are none.
+pub(super) fn root_mean_squares(k: usize, told: impl Iterator<Item = (usize, f64)>) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0_usize); k];
+    for (l, v) in told {
+        sums[l].0 += v * v;
+        sums[l].1 += 1;
+    }
+    let sums = sums.into_iter();
+    sums.map(|(square, n)| (square / n.max(1) as f64).sqrt())
         .collect()
 }
 

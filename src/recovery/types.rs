@@ -51,6 +51,14 @@ pub struct RunEstimate {
     pub rank: usize,
 }
 
+impl RunEstimate {
+    /// Whether the readings tell load `l`; its value is blank or arbitrary where they don't.
+    pub fn tells(&self, l: usize) -> bool {
+        let value = self.estimate.values.get(l);
+        value.is_some_and(|v| v.is_finite()) && self.estimate.sigma(l).is_finite()
+    }
+}
+
 /// All runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recovery {
@@ -66,7 +74,8 @@ pub struct Recovery {
     pub findings: Vec<Finding>,
     /// What the residuals do to the intervals.
     pub widening: Widening,
-    /// Root mean square of each load over the runs: the weights of a stated model error are those at these loads.
+    /// Root mean square of each load over the runs that tell it, 0 where none does: the weights of a stated model error are those at these
+    /// loads.
     pub typical: Vec<f64>,
 }
 

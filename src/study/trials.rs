@@ -1,6 +1,7 @@
 //! Recovery repeated.
 
 use super::error::{ErrorKind, StudyError};
+use crate::linalg::spd::dot;
 use crate::linalg::{Matrix, dense};
 use crate::recovery::{Fit, fit, student_95};
 use crate::units::MICROSTRAIN;
@@ -157,12 +158,12 @@ fn trial(
         .zip(&spec.prior)
         .map(|(f, p)| p.map_or(*f, |sd| sd * normal(&mut random)))
         .collect();
-    let dot = |row: &[f64]| row.iter().zip(&truth).map(|(a, f)| a * f).sum::<f64>();
+    let read = |row: &[f64]| dot(row, &truth);
     let y: Vec<f64> = layout
         .iter()
         .map(|g| {
             let gauge = &pool[*g];
-            let own = dot(&gauge.row);
+            let own = read(&gauge.row);
             match error.kind {
                 ErrorKind::RelativeUniform => {
                     own * (1.0 + error.size * random.random_range(-1.0..=1.0))
@@ -178,12 +179,12 @@ fn trial(
                     let turn = (error.size * normal(&mut random)).to_radians();
                     match &gauge.turned {
                         None => own,
-                        Some([half, full]) => turned(own, dot(half), dot(full), turn),
+                        Some([half, full]) => turned(own, read(half), read(full), turn),
                     }
                 }
                 ErrorKind::Position => {
                     let shift = [normal(&mut random), normal(&mut random)];
-                    let slope = |d: usize| gauge.slope.as_ref().map_or(0.0, |s| dot(&s[d]));
+                    let slope = |d: usize| gauge.slope.as_ref().map_or(0.0, |s| read(&s[d]));
                     own + error.size * (shift[0] * slope(0) + shift[1] * slope(1))
                 }
             }

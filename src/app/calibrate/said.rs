@@ -50,7 +50,10 @@ pub(super) fn next_run(
     let sizes: Vec<Option<f64>> = (0..task.loads.len()).map(size).collect();
     let other = sizes.iter().flatten().copied().fold(0.0, f64::max);
     let sizes: Vec<f64> = sizes.into_iter().map(|s| s.unwrap_or(other)).collect();
-    let best = next_runs(found, task.noise, &sizes).into_iter().next()?;
+    let best = next_runs(found, task.noise, &sizes)
+        .ok()?
+        .into_iter()
+        .next()?;
     let unit = &units[best.load];
     Some(NextRunSummary {
         loads: task

@@ -1,11 +1,16 @@
 //! The next known load against plain formulas of dense matrices.
 
-use super::glued::{NOISE, pushes, reading, row, sites};
+use super::glued::{NOISE, normal, pushes, reading, row, sites};
+use crate::calibrate::posterior::{Equation, solve};
+use crate::calibrate::state::{State, sensitivity_of};
 use crate::calibrate::*;
 use crate::linalg::Matrix;
+use crate::linalg::precision::Precision;
 use crate::recovery::{ErrorModel, Readings, estimate};
 use crate::sensitivity::Load;
 use nalgebra::DMatrix;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
 
 /// Four pushes of the clamped strip, the loads two by two.
 fn calibrated() -> Calibration {
@@ -48,7 +53,7 @@ fn the_next_load_buys_what_its_readings_would_take_from_the_covariance_of_s() {
     let known = s.uncertainty.as_ref().unwrap();
     let (n, k) = s.values.shape();
     let v = DMatrix::from_row_slice(n * k, n * k, &known.covariance);
-    let next = next_runs(&found, NOISE, &sizes);
+    let next = next_runs(&found, NOISE, &sizes).unwrap();
     assert_eq!(next.len(), k + 1);
     assert!(next.is_sorted_by(|a, b| a.information >= b.information));
     for run in next {
@@ -98,5 +103,116 @@ fn the_next_load_buys_what_its_readings_would_take_from_the_covariance_of_s() {
             let (b, t) = ratio(l);
             assert!(b / t <= before / then * (1.0 + 1e-6), "{run:?}: {l}");
         }
+    }
+}
+
+#[test]
+fn sizes_that_are_not_one_a_load_are_said() {
+    let found = calibrated();
+    for sizes in [&[1.0; 3][..], &[1.0; 5], &[1.0, 1.0, 1.0, f64::NAN]] {
+        assert!(next_runs(&found, NOISE, sizes).is_err(), "{sizes:?}");
+    }
+}
+
+/// Share of the strain by which repeats of one loading scatter: in what all gauges read alike, and in each gauge by itself.
+const SCATTER: [f64; 2] = [0.03, 0.01];
+
+/// The six pushes three times each; repeats scatter.
+fn repeated() -> Task {
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let sites = sites();
+    let mut runs = Vec::new();
+    for (group, f) in pushes().into_iter().enumerate() {
+        for _ in 0..3 {
+            let alike = 1.0 + SCATTER[0] * normal(&mut random);
+            let strain = sites.iter().map(|s| {
+                let own = alike + SCATTER[1] * normal(&mut random);
+                own * reading(&row(*s, [0.0; 3]), &f) + NOISE * normal(&mut random)
+            });
+            runs.push(KnownRun {
+                run: format!("R{}", runs.len()),
+                strain: strain.collect(),
+                noise_factor: 1.0,
+                loads: KnownLoads::exact(f.to_vec()),
+                group,
+            });
+        }
+    }
+    Task {
+        gauges: (0..sites.len()).map(|g| format!("G{g}")).collect(),
+        loads: (0..4).map(|l| Load::named(format!("L{l}"))).collect(),
+        noise: NOISE,
+        runs,
+        model: Some(ModelPrior {
+            values: Matrix::from_fn(sites.len(), 4, |g, l| 1.02 * row(sites[g], [0.0; 3])[l]),
+            moves: Vec::new(),
+            off_drawing: None,
+            uncertainty_rel: 0.1,
+        }),
+        sums: Vec::new(),
+    }
+}
+
+#[test]
+fn with_repeats_that_scatter_the_next_load_buys_what_a_refit_with_it_has() {
+    let task = repeated();
+    let all: Vec<usize> = (0..task.runs.len()).collect();
+    let state = State::of(&task, &all).unwrap();
+    let scatter = &state.scatter.covariance;
+    assert!(scatter.iter().any(|c| *c > 0.0), "no scatter was learnt");
+    let found = Calibration {
+        sensitivity: state.sensitivity(&task, 1.0),
+        ..calibrate(&task).unwrap()
+    };
+    let s = &found.sensitivity;
+    let (n, k) = s.values.shape();
+    let sizes = [1.0, 0.5, 2.0, 1.5];
+    let next = next_runs(&found, NOISE, &sizes).unwrap();
+    assert_eq!(next.len(), k + 1);
+    let log_det = |covariance: &[f64]| Precision::of(covariance, n * k).unwrap().log_det();
+    for run in next {
+        // The run as the others are taken, its readings those that S makes, so that the refit changes the covariance alone.
+        let phi: Vec<f64> = run
+            .loads
+            .iter()
+            .zip(&state.scales)
+            .map(|(f, c)| f / c)
+            .collect();
+        let y = state.posterior.predict(&phi);
+        let q2 = y.iter().map(|v| v * v).sum::<f64>() / n as f64;
+        let mut covariance: Vec<f64> = scatter.iter().map(|c| q2 * c).collect();
+        (0..n).for_each(|g| covariance[g * n + g] += NOISE * NOISE);
+        let mut equations = state.equations.clone();
+        equations.push(Equation {
+            gauges: (0..n).collect(),
+            y,
+            phi,
+            covariance,
+        });
+        let refit = solve(&state.prior, &equations).unwrap();
+        let gained = 0.5 * (log_det(&state.posterior.covariance) - log_det(&refit.covariance));
+        assert!(
+            (run.information / gained - 1.0).abs() < 1e-6,
+            "{run:?} {gained}"
+        );
+        let after = sensitivity_of(&task, &state.scales, &refit, &state.scatter, 1.0);
+        let sigma = |s: &crate::sensitivity::Sensitivity| {
+            let l = run.load;
+            let readings = Readings {
+                run: String::new(),
+                strain: s.values.column(l).iter().map(|v| v * sizes[l]).collect(),
+                noise_factor: 1.0,
+            };
+            let errors = ErrorModel {
+                noise: NOISE,
+                model_rel: 0.0,
+            };
+            estimate(s, &readings, errors).estimate.sigma(l)
+        };
+        assert!((run.sigma_before / sigma(s) - 1.0).abs() < 1e-6, "{run:?}");
+        assert!(
+            (run.sigma_after / sigma(&after) - 1.0).abs() < 1e-6,
+            "{run:?}"
+        );
     }
 }

@@ -106,6 +106,9 @@ fn searched(scorer: &mut MotionScorer, null: MotionFit, broken: Vec<BrokenChanne
             } else {
                 search_near(scorer, BREADTH, &near)
             };
+            if scorer.is_stopped() {
+                break;
+            }
             with_aliases(scorer, &mut all, DECISIVE);
             best = settle(&all, DECISIVE);
             let Some(b) = &best else { break };
@@ -138,6 +141,9 @@ fn upheavals(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Scored<MotionFi
         return vec![];
     }
     let tried = |(c, candidate): (usize, &Candidate)| {
+        if scorer.is_stopped() {
+            return None;
+        }
         let fitted = |shape: &Change| {
             if matches!(shape, Change::Clock { .. }) {
                 return fit_of_clock(scorer.frame, scorer.candidates, c, shape);

@@ -33,6 +33,9 @@ pub fn detectable(
     let nominal = fit.pick(&predict(frame, &[]), n_g);
     let mut out = Vec::new();
     for (number, c) in candidates.iter().enumerate() {
+        if frame.stop.is_asked() {
+            break;
+        }
         let effect = c.effect.as_ref();
         let overlaps = effect.gauges().len() > 1 || !effect.runs().is_empty();
         // A form of an effect that scatters besides is seen as the plain one is.

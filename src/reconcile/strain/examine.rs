@@ -40,6 +40,9 @@ pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
             0 => search(&mut likelihood, BREADTH),
             n => search_near(&mut likelihood, BREADTH, &all[..n.min(KEPT)]),
         };
+        if frame.stop.is_asked() {
+            break;
+        }
         let found = settle(&all, DECISIVE).and_then(|found| {
             let contenders = &all[..all.len().min(KEPT)];
             best_by_own_covariance(frame, candidates, &mut likelihood, contenders, &found)
@@ -69,6 +72,7 @@ pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
         fit: Fit::default(),
     };
     let best = best.unwrap_or(empty);
+    let proofs = Proofs::of(frame);
     if is_unmodelled(candidates, &best.set).is_some() {
         // A general form is called upon only where no names come to the floor.
         let likelihood = Likelihood::new(frame, candidates, &fit_runs, &reference);
@@ -84,12 +88,12 @@ pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
         all.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
         all.dedup_by(|a, b| a.set == b.set);
         if let Some(found) = found {
-            return judge(frame, candidates, &all, &found);
+            return judge(&proofs, candidates, &all, &found);
         }
     }
     let best = without_needless_noise(frame, candidates, &all, best);
-    let best = without_needless_names(frame, candidates, &all, best);
-    judge(frame, candidates, &all, &best)
+    let best = without_needless_names(&proofs, candidates, &all, best);
+    judge(&proofs, candidates, &all, &best)
 }
 
 /// The best sets of names alone, found from the best sets with general forms.
@@ -134,24 +138,22 @@ fn without_needless_noise(
 /// The set without names that prove nothing: what is left reaches the floor without them, and runs that it was not fitted on are
 /// predicted no worse.
 fn without_needless_names(
-    frame: &StrainFrame,
+    proofs: &Proofs<'_>,
     candidates: &[Candidate],
     all: &[Scored<Fit>],
     mut best: Scored<Fit>,
 ) -> Scored<Fit> {
-    let mut proofs = None;
     while best.set.len() > 1 {
         let fewer = |s: &&Scored<Fit>| {
             s.set.len() + 1 == best.set.len()
                 && s.set.iter().all(|c| best.set.contains(c))
                 && !named_part(candidates, &s.set).is_empty()
-                && at_floor(&adequacy_of(frame, candidates, s))
+                && at_floor(&adequacy_of(proofs.frame, candidates, s))
         };
         let left: Vec<&Scored<Fit>> = all.iter().filter(fewer).collect();
         if left.is_empty() {
             break;
         }
-        let proofs = proofs.get_or_insert_with(|| Proofs::of(frame));
         let after = validated(proofs, candidates, &best).0.after;
         let no_worse = |s: &&&Scored<Fit>| validated(proofs, candidates, s).0.after <= after;
         let Some(enough) = left.iter().find(no_worse) else {

@@ -5,6 +5,7 @@ use super::frame::StrainFrame;
 use super::prediction::predict;
 use super::state::StrainState;
 use crate::linalg::cholesky::Cholesky;
+use crate::linalg::spd::dot;
 use crate::reconcile::effect::{Member, SizedAmplitudes};
 use crate::reconcile::outcome::{ChannelGap, Gap, GapBasis, GapNumbers};
 
@@ -281,10 +282,6 @@ impl<'a> Told<'a> {
             covariance,
         }
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 /// Readings of one run given the fit runs: mean and covariance (`n x n`) of the residual.

@@ -133,11 +133,12 @@ pub(super) fn adequacy_of(
 }
 
 pub(super) fn judge(
-    frame: &StrainFrame,
+    proofs: &Proofs<'_>,
     candidates: &[Candidate],
     all: &[Scored<Fit>],
     best: &Scored<Fit>,
 ) -> Outcome {
+    let frame = proofs.frame;
     let explained = Explanation::of(frame, candidates, best);
     let before = adequacy(frame, &[], &[], 0);
     let after = if best.set.is_empty() {
@@ -146,8 +147,7 @@ pub(super) fn judge(
         adequacy_of(frame, candidates, best)
     };
     let attempt = named(frame, candidates, best);
-    let proofs = Proofs::of(frame);
-    let (gap, channels) = validated(&proofs, candidates, best);
+    let (gap, channels) = validated(proofs, candidates, best);
     let noise = noise_factor(frame, candidates, best);
     let reached = at_floor(&after) && noise <= limit::NOISE;
     let plausible = attempt.iter().all(|e| e.plausible);
@@ -175,7 +175,7 @@ pub(super) fn judge(
         .map(|s| Rival {
             ids: ids(candidates, &s.set),
             evidence_difference: best.log_evidence - s.log_evidence,
-            gap_after: validated(&proofs, candidates, s).0.after,
+            gap_after: validated(proofs, candidates, s).0.after,
             indistinguishable: best.log_evidence - s.log_evidence < INDISTINGUISHABLE,
         })
         .collect();

@@ -3,6 +3,7 @@
 use super::frame::StrainFrame;
 use super::prediction::read_all;
 use super::state::{Part, StrainState};
+use crate::linalg::spd::dot;
 use crate::reconcile::effect::Member;
 use crate::sensitivity::Uncertainty;
 
@@ -127,8 +128,7 @@ fn carried(uncertainty: &Uncertainty, n: usize, f: &[f64]) -> Vec<f64> {
 /// `sum_k f_k half_g,hk`, `n x n` by rows.
 fn contracted(half: &[f64], n: usize, f: &[f64]) -> Vec<f64> {
     let k = f.len().max(1);
-    let dot = |e: &[f64]| e.iter().zip(f).map(|(a, b)| a * b).sum::<f64>();
-    let out: Vec<f64> = half.chunks_exact(k).map(dot).collect();
+    let out: Vec<f64> = half.chunks_exact(k).map(|e| dot(e, f)).collect();
     if out.len() == n * n {
         out
     } else {

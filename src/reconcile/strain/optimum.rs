@@ -63,7 +63,7 @@ impl Likelihood<'_> {
                         .collect::<Vec<f64>>(),
                 );
             }
-            let weighted: Vec<Vec<f64>> = columns.iter().map(|c| precision.apply_few(c)).collect();
+            let weighted: Vec<Vec<f64>> = columns.iter().map(|c| precision.apply(c)).collect();
             hessian = vec![0.0; n * n];
             let mut gradient = vec![0.0; n];
             for (i, &(m, k, p)) in flat.iter().enumerate() {

@@ -5,6 +5,7 @@ use super::prediction::predict;
 use super::size::{RunPrecision, run_by_run_log_likelihood};
 use super::state::Part;
 use crate::linalg::precision::Precision;
+use crate::linalg::spd::dot;
 use crate::reconcile::effect::{Amplitudes, Discrepancy, Member, Parameter, Stage};
 use crate::reconcile::search::{Addition, Scored};
 use rayon::prelude::*;
@@ -274,7 +275,6 @@ impl Likelihood<'_> {
                 let x = of(&|i| at.get(&i).copied().unwrap_or(0.0));
                 let own: Vec<f64> = run.gauges.iter().map(|&g| pattern[g]).collect();
                 let (wp, wx) = (run.precision.apply(&own), run.precision.apply(&x));
-                let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
                 [
                     dot(&wp, &r),
                     dot(&wp, &x),

@@ -4,6 +4,7 @@
 use super::covariance::{Selection, add_outer, covariance};
 use super::frame::StrainFrame;
 use crate::linalg::precision::Precision;
+use crate::linalg::spd::dot;
 use crate::reconcile::effect::{Amplitudes, Member, SizedAmplitudes};
 
 /// The covariance of each run by itself, without unknown amplitudes.
@@ -94,10 +95,6 @@ impl RunBlock {
         }
         Precision::of(&k, n)
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 /// A pattern with its family, its kind, and the variance of what repeats of it.

@@ -39,19 +39,23 @@ impl Proven {
     }
 }
 
-/// The runs by which sets of effects are judged: those that are held out, else every run in turn. Made once for all sets.
+/// The runs by which sets of effects are judged: those that are held out, else every run in turn. Made once for all sets; none where the
+/// work is to stop.
 pub struct Proofs<'a> {
-    frame: &'a StrainFrame,
+    /// What is judged.
+    pub frame: &'a StrainFrame,
     parts: Vec<Proven>,
 }
 
 impl<'a> Proofs<'a> {
     /// Of the runs of `frame`.
     pub fn of(frame: &'a StrainFrame) -> Self {
+        let going = |_: &usize| !frame.stop.is_asked();
         if frame.observations.held_out.iter().any(|h| *h) {
+            let whole = (!frame.stop.is_asked()).then(|| Proven::of(frame.clone()));
             return Self {
                 frame,
-                parts: vec![Proven::of(frame.clone())],
+                parts: whole.into_iter().collect(),
             };
         }
         let n = frame.n_runs();
@@ -63,7 +67,7 @@ impl<'a> Proofs<'a> {
         };
         Self {
             frame,
-            parts: (0..folds).into_par_iter().map(part).collect(),
+            parts: (0..folds).into_par_iter().filter(going).map(part).collect(),
         }
     }
 }
@@ -108,7 +112,7 @@ pub fn validated(
             .copied()
             .unwrap_or(false)
     });
-    if !touched.is_empty() && held_out {
+    if !touched.is_empty() && held_out && !frame.stop.is_asked() {
         for half in [0, 1] {
             let [a, b] = judged_by_halves(frame, candidates, scored, &touched, half);
             plain.extend(a);
@@ -125,6 +129,9 @@ pub fn validated(
 
 fn in_turn(parts: &[Proven], candidates: &[Candidate], scored: &Scored<Fit>) -> Both {
     let one = |part: &Proven| {
+        if part.frame.stop.is_asked() {
+            return None;
+        }
         let fitted = refitted(&part.frame, candidates, scored)?;
         Some(part.judged(candidates, &fitted))
     };

@@ -4,7 +4,7 @@ use super::super::history::{Filter, SampleLoads};
 use super::super::*;
 use super::{NOISE, frame, gaussian};
 use crate::linalg::Matrix;
-use crate::sensitivity::{Load, Sensitivity};
+use crate::sensitivity::{Load, Sensitivity, Uncertainty};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
@@ -198,4 +198,72 @@ fn a_load_that_the_other_gauges_do_not_tell_is_blank_and_the_rest_is_not() {
     assert!(out.values[3].is_nan() && out.values[5].is_nan());
     assert_eq!((sums.samples, sums.gaps, sums.impossible), (1, 2, 1));
     assert_eq!((sums.known(0), sums.known(1)), (3, 1));
+}
+
+/// Samples of loads A = 1, B = 2, every other one without the one gauge that tells B.
+fn half_without_b(s: &Sensitivity) -> Vec<Readings> {
+    (0..20)
+        .map(|i| {
+            let mut strain: Vec<f64> = (0..3)
+                .map(|g| s.values[(g, 0)] + 2.0 * s.values[(g, 1)])
+                .collect();
+            if i % 2 == 1 {
+                strain[2] = f64::NAN;
+            }
+            Readings::of_sample(f64::from(i), strain, 1.0)
+        })
+        .collect()
+}
+
+#[test]
+fn the_typical_size_of_a_load_is_that_in_the_samples_that_tell_it() {
+    let plain = Sensitivity {
+        gauges: ["1", "2", "3"].map(String::from).to_vec(),
+        loads: ["A", "B"].map(Load::named).to_vec(),
+        values: Matrix::from_row_slice(3, 2, &[1e-3, 0.0, 1e-3, 0.0, 0.0, 1e-3]),
+        uncertainty: None,
+    };
+    let calibrated = Sensitivity {
+        uncertainty: Some(Uncertainty::of_model(
+            &plain.values,
+            0.02,
+            &Matrix::zeros(3, 2),
+        )),
+        ..plain.clone()
+    };
+    for (s, model_rel) in [(plain, 0.02), (calibrated, 0.0)] {
+        let errors = ErrorModel {
+            noise: 1e-6,
+            model_rel,
+        };
+        let got = recover_samples(&s, half_without_b(&s), errors);
+        for (found, truth) in got.typical.iter().zip([1.0, 2.0]) {
+            assert!((found - truth).abs() < 1e-9, "{:?}", got.typical);
+        }
+        // A gap is said of the record, not of the samples looked at.
+        assert!(
+            got.findings.iter().all(|f| f.code != NOT_SOLVABLE),
+            "{:?}",
+            got.findings
+        );
+    }
+}
+
+#[test]
+fn samples_whose_gauges_never_tell_a_load_leave_that_to_the_record_unless_no_gauge_would() {
+    let mut s = Sensitivity {
+        gauges: ["1", "2", "3"].map(String::from).to_vec(),
+        loads: ["A", "B"].map(Load::named).to_vec(),
+        values: Matrix::from_row_slice(3, 2, &[1e-3, 0.0, 1e-3, 0.0, 0.0, 1e-3]),
+        uncertainty: None,
+    };
+    let said = |s: &Sensitivity| {
+        let samples = half_without_b(s).into_iter().skip(1).step_by(2).collect();
+        let got = recover_samples(s, samples, NOISE);
+        assert!(got.runs.iter().all(|r| r.tells(0) && !r.tells(1)));
+        got.findings.iter().any(|f| f.code == NOT_SOLVABLE)
+    };
+    assert!(!said(&s));
+    s.values[(2, 1)] = 0.0;
+    assert!(said(&s));
 }

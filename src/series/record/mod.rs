@@ -25,7 +25,7 @@ mod tile;
 mod uff;
 mod whole;
 
-pub use clock::{Clock, Evenness};
+pub use clock::{Clock, EVEN, Evenness};
 pub use even::Record;
 pub use open::{Options, is_format, open_record, read_channels};
 pub use reader::{
