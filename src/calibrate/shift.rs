@@ -214,7 +214,7 @@ fn exchanged(rows: &[Row]) -> Vec<(usize, usize)> {
 }
 
 /// What the change of a row that is far off looks like; `off_drawing`: what the readings say of an angle or a place, where the model knows
-/// what these make.
+/// what these make. Where it doesn't no place is named, and an angle only by what a stated tolerance lets a turn make.
 fn cause(
     task: &Task,
     state: &State,
@@ -249,16 +249,15 @@ fn cause(
         let scales = state.scales.iter().enumerate();
         scales.map(|(l, c)| t.change[(g, l)] * c).collect()
     });
-    if row.scale() < 0.0 && off_drawing.is_none() {
+    let known = off_drawing.is_some();
+    if row.scale() < 0.0 && !known {
         ShiftWord::Sign
     } else if rather_gain && explained(&row.model) > EXPLAINED {
         ShiftWord::Gain
-    } else if turned.is_some_and(|t| explained(&t) > EXPLAINED) {
+    } else if !known && turned.is_some_and(|t| explained(&t) > EXPLAINED) {
         ShiftWord::Angle
-    } else if off_drawing.is_some() {
-        ShiftWord::Undetermined
     } else {
-        ShiftWord::Place
+        ShiftWord::Undetermined
     }
 }
 
