@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use strainbridge::series::channels::{Channel, Channels};
 use strainbridge::series::spectrum::Band;
+use strainbridge::units::UnitSystem;
 use strainbridge::vehicle::identify::{IdentifyTask, identify};
 use strainbridge::vehicle::preset::{PresetRequest, vehicle};
 use strainbridge::vehicle::term::UnitNames;
@@ -71,7 +72,7 @@ fn task() -> Option<IdentifyTask> {
         gravity: 9.81,
         gain_tolerance: 0.0,
         sync_tolerance_s: 0.0,
-        units: UnitNames::si(),
+        units: UnitNames::from_system(UnitSystem::MKgS),
         noise_acc: None,
         noise_force: None,
         corrections: vec![],

@@ -177,3 +177,42 @@ fn the_chassis_force_is_told_by_mass_by_springs_and_at_the_seats_of_the_leaf() {
         "{error}"
     );
 }
+
+/// The rig hangs on the ground by spring 2: its masses are no load of the shaker. Units are those of the job, on page and in tables.
+#[test]
+fn a_rig_has_no_static_load_and_its_tables_and_page_are_in_the_units_of_the_job() {
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/rig");
+    let here = folder("identify_rig");
+    for file in ["rig.csv", "rig_holdout.csv"] {
+        std::fs::copy(example.join(file), here.join(file)).unwrap();
+    }
+    let job = std::fs::read_to_string(example.join("rig.toml")).unwrap();
+    for (system, force, length) in [("m-kg-s", "N", "m"), ("in-lbf-s", "lbf", "in")] {
+        std::fs::write(here.join("rig.toml"), job.replace("m-kg-s", system)).unwrap();
+        let out = here.join(system);
+        let output = run(&here.join("rig.toml"), &out);
+        let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        for load in result["loads"].as_array().unwrap() {
+            assert_eq!(load["name"], "f_1");
+            assert!(load["value"].is_null() && load["sigma"].is_null(), "{load}");
+            assert!(load["max"].as_f64().unwrap() > 0.0, "{load}");
+        }
+        let tables = &result["tables"];
+        assert_eq!(tables["loads.csv"]["f_1"], force);
+        assert_eq!(tables["restoring_force.csv"]["force_model"], force);
+        assert_eq!(tables["restoring_force.csv"]["stretch"], length);
+        assert_eq!(
+            tables["restoring_force.csv"]["rate"],
+            format!("{length}/s").as_str()
+        );
+        let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+        for label in [
+            format!("force, {force} over time, s"),
+            format!("force, {force} over stretch, {length}"),
+            format!("density of force, {force}²/Hz"),
+            format!("by mass, {force}"),
+        ] {
+            assert!(page.contains(&label), "{system}: {label}");
+        }
+    }
+}

@@ -9,6 +9,7 @@ use strainbridge::reconcile::motion::{MotionFrame, examine, simulated_gap};
 use strainbridge::series::channels::{Channel, Channels};
 use strainbridge::series::csv::read_csv;
 use strainbridge::series::spectrum::Band;
+use strainbridge::units::UnitSystem;
 use strainbridge::vehicle::layout::Measures;
 use strainbridge::vehicle::preset::{PresetRequest, vehicle};
 use strainbridge::vehicle::term::UnitNames;
@@ -60,7 +61,7 @@ fn frame(
         gain_tolerance: 0.0,
         sync_tolerance_s: 0.0,
         corrections: vec![],
-        units: UnitNames::si(),
+        units: UnitNames::from_system(UnitSystem::MKgS),
         stop: Default::default(),
     })
 }

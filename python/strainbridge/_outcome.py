@@ -166,9 +166,16 @@ class Outcome(Record):
         return Path(folder)
 
     def report(self) -> str:
-        """The page of the command, HTML that needs nothing else."""
+        """The page of the command, HTML that needs nothing else.
+
+        Raises:
+            KeyError: the command writes none; a notebook shows what it answers.
+        """
         with tempfile.TemporaryDirectory() as folder:
-            return (self.save(folder) / "report.html").read_text(encoding="utf-8")
+            page = self.save(folder) / "report.html"
+            if not page.exists():
+                raise KeyError(f"`{self._keys['command']}` writes no page")
+            return page.read_text(encoding="utf-8")
 
     def history(self) -> dict[str, NDArray[np.float64]]:
         """Every sample of a record that :func:`strainbridge.recover` was given: ``time`` (s), then of each load its value, ``<load>.low`` and

@@ -48,11 +48,13 @@ def test_other_threads_run_meanwhile():
     done = threading.Event()
     thread = threading.Thread(target=tick)
     thread.start()
-    begin = time.perf_counter()
-    sb.recover_rows(S, strain, threads=1)
-    end = time.perf_counter()
-    done.set()
-    thread.join()
+    try:
+        begin = time.perf_counter()
+        sb.recover_rows(S, strain, threads=1)
+        end = time.perf_counter()
+    finally:
+        done.set()
+        thread.join()
     # Were the lock held, no tick would fall between begin and end.
     assert sum(begin < t < end for t in ticks) >= 3
 
@@ -63,7 +65,12 @@ def test_a_fork_after_use_works():
     expected = sb.place_rows(S, 6).rows.tolist()
     child = os.fork()
     if child == 0:
-        os._exit(0 if sb.place_rows(S, 6).rows.tolist() == expected else 1)
+        # Whatever happens, the child must not go on with the tests.
+        code = 1
+        try:
+            code = 0 if sb.place_rows(S, 6).rows.tolist() == expected else 1
+        finally:
+            os._exit(code)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
 
 
@@ -74,9 +81,12 @@ def test_ctrl_c_stops_the_work():
     job = sb.Job.read(ROOT / "models" / "truck-shell" / "job.toml")
     timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()
-    with pytest.raises(KeyboardInterrupt):
-        sb.place(job, cache=False)
-    signal.signal(signal.SIGINT, before)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            sb.place(job, cache=False)
+    finally:
+        timer.cancel()
+        signal.signal(signal.SIGINT, before)
     assert len(sb.place_rows(S, 6).rows) == 6
 
 

@@ -86,11 +86,17 @@ def test_every_outcome_has_a_piece(name, strip_folder):
     assert read.texts["h3"][0].strip()
 
 
-def test_a_proposal_shows_its_words(strip_folder):
+def test_a_proposal_shows_its_words_and_the_job(strip_folder):
     (strip_folder / "job.toml").unlink()
     out = sb.init("strip.bdf")
     _, read = shown(out)
-    assert read.texts["pre"][0].splitlines()[0] in out.words
+    assert out.words.strip() in [text.strip() for text in read.texts["p"]]
+    out.save(strip_folder)
+    job = (strip_folder / "job.toml").read_text().splitlines()
+    lines = [line for text in read.texts["pre"] for line in text.splitlines()]
+    assert [line for line in job if line not in lines] == []
+    with pytest.raises(KeyError, match="init"):
+        out.report()
 
 
 def test_the_truck_is_small_enough_for_a_notebook():

@@ -8,7 +8,6 @@ use super::vehicle::{VehicleRecords, read_vehicle, vehicle_fault};
 use super::work::Work;
 use crate::series::channels::Channels;
 use crate::series::detrend::rms;
-use crate::units::ReportUnits;
 use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::chassis::{ChassisForce, chassis_forces};
 use crate::vehicle::checks::MassClosure;
@@ -173,7 +172,7 @@ pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<Identified>, Faults> 
         job: job.clone(),
         found,
     };
-    let units = StatedUnits::of(job.units, &ReportUnits::of(job.units));
+    let units = StatedUnits::of_model(job.units);
     Ok(work.finish(units, answer))
 }
 

@@ -13,6 +13,7 @@ use crate::fe::{
 };
 use crate::gauge::{CornerRows, build, reading};
 use crate::model::Model;
+use crate::units::UnitSystem;
 use serde::{Serialize, Serializer};
 use std::path::Path;
 
@@ -53,6 +54,8 @@ pub struct Modes {
     pub rigid_motions: usize,
     /// Names of the gauges, as in `gauge_microstrain`.
     pub gauges: Vec<String>,
+    /// Units of masses: those of the job's system; null for a deck, which doesn't say.
+    pub model_units: StatedUnits,
     /// Mass of the model, WTMASS applied.
     pub mass: Option<f64>,
     /// Unknowns.
@@ -66,6 +69,9 @@ pub struct Modes {
     /// Title of the page.
     #[serde(skip)]
     pub title: String,
+    /// The job's system of units.
+    #[serde(skip)]
+    pub system: Option<UnitSystem>,
 }
 
 impl Answer for Modes {
@@ -169,6 +175,7 @@ fn solved(
                 .collect(),
         })
         .collect();
+    let system = job.map(|j| j.units);
     let title = match job {
         Some(job) => job.title.clone(),
         None => read.given.clone(),
@@ -185,6 +192,8 @@ fn solved(
         dofs: solution.dofs,
         solution,
         title,
+        model_units: system.map_or_else(StatedUnits::default, StatedUnits::of_model),
+        system,
         model: read.model,
     })
 }

@@ -103,6 +103,11 @@ impl StatedUnits {
         ])
     }
 
+    /// Units of numbers in the model's own system.
+    pub fn of_model(system: UnitSystem) -> Self {
+        Self::of(system, &ReportUnits::of(system))
+    }
+
     /// Quantity and unit.
     pub fn list(&self) -> &[(&'static str, String)] {
         &self.0

@@ -15,6 +15,7 @@ use crate::fe::{
 use crate::finding::{Finding, Severity};
 use crate::linalg::sparse::OrderingMethod;
 use crate::model::{Model, Shell};
+use crate::units::UnitSystem;
 use nastran::bdf::Request;
 use nastran::cards::ShellShape;
 use serde::Serialize;
@@ -35,6 +36,8 @@ pub struct SolvedCases {
     pub smallest_pivot: f64,
     /// Nastran's epsilon of the worst case before and after refinement: |u'(f - K u)| / |u'f|.
     pub epsilon: [f64; 2],
+    /// Units of mass, balance and reactions: those of the job's system; null for a deck, which doesn't say.
+    pub model_units: StatedUnits,
     /// By load case: what acts, what inertia takes, what is left.
     pub balance: Vec<Balance>,
     /// Mass and its centre.
@@ -50,6 +53,9 @@ pub struct SolvedCases {
     /// Title of the report.
     #[serde(skip)]
     pub title: String,
+    /// The job's system of units.
+    #[serde(skip)]
+    pub system: Option<UnitSystem>,
     /// The deck's model.
     #[serde(skip)]
     pub deck: DeckModel,
@@ -100,7 +106,8 @@ pub fn solve(
 ) -> Result<Outcome<SolvedCases>, Faults> {
     let mut work = Work::of_job(cx, job);
     let task = work.stage("read", |w| of_job(w, job))?;
-    let answer = solved(&mut work, task, options, title_of(Path::new(&job.file)))?;
+    let title = title_of(Path::new(&job.file));
+    let answer = solved(&mut work, task, options, title, Some(job.units))?;
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
@@ -115,7 +122,7 @@ pub fn solve_deck(
 ) -> Result<Outcome<SolvedCases>, Faults> {
     let mut work = Work::new(cx);
     let task = work.stage("read", |w| of_deck(w, path))?;
-    let answer = solved(&mut work, task, options, title_of(path))?;
+    let answer = solved(&mut work, task, options, title_of(path), None)?;
     Ok(work.finish(StatedUnits::default(), answer))
 }
 
@@ -129,6 +136,7 @@ fn solved(
     task: Task,
     options: SolveOptions,
     title: String,
+    system: Option<UnitSystem>,
 ) -> Result<SolvedCases, Faults> {
     let Task {
         read,
@@ -156,6 +164,7 @@ fn solved(
         ordering: report.ordering,
         smallest_pivot: report.smallest_pivot,
         epsilon: report.epsilon,
+        model_units: system.map_or_else(StatedUnits::default, StatedUnits::of_model),
         balance: report.balance.clone(),
         mass: report.mass.map(|m| MassAndCentre {
             mass: m.mass,
@@ -166,6 +175,7 @@ fn solved(
         elastic_modes_hz: report.modes.clone(),
         peak_memory_bytes: peak_memory(),
         title,
+        system,
         deck: read,
         cases,
         solution,

@@ -118,7 +118,6 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
             }));
         }
     }
-    let unit = |q: Quantity| job.units.unit(q).name.to_owned();
     let task = IdentifyTask {
         vehicle: model,
         known: section.known.clone(),
@@ -133,11 +132,7 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
         noise_acc: section.noise_acc,
         noise_force: section.noise_force,
         corrections: corrections_of(section),
-        units: UnitNames {
-            mass: unit(Quantity::Mass),
-            length: unit(Quantity::Length),
-            force: unit(Quantity::Force),
-        },
+        units: UnitNames::from_system(job.units),
     };
     Ok(VehicleRecords {
         task,

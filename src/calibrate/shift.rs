@@ -214,7 +214,7 @@ fn exchanged(rows: &[Row]) -> Vec<(usize, usize)> {
 }
 
 /// What the change of a row that is far off looks like; `off_drawing`: what the readings say of an angle or a place, where the model knows
-/// what these make. An angle is said by that alone.
+/// what these make. Neither is said by anything else.
 fn cause(row: &Row, off_drawing: Option<ShiftWord>) -> ShiftWord {
     if let Some(word @ (ShiftWord::Angle | ShiftWord::Place)) = off_drawing {
         return word;
@@ -239,10 +239,8 @@ fn cause(row: &Row, off_drawing: Option<ShiftWord>) -> ShiftWord {
         ShiftWord::Sign
     } else if rather_gain && explained > EXPLAINED {
         ShiftWord::Gain
-    } else if off_drawing.is_some() {
-        ShiftWord::Undetermined
     } else {
-        ShiftWord::Place
+        ShiftWord::Undetermined
     }
 }
 

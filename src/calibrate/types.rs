@@ -194,7 +194,7 @@ pub enum ShiftWord {
     Gain,
     /// Turned by an angle.
     Angle,
-    /// It sits elsewhere; where the model does not say how rows change with angle and place: no gain.
+    /// It sits elsewhere.
     Place,
     /// Neither gain, angle nor place is clearly it.
     Undetermined,

@@ -29,7 +29,7 @@ impl Numbering {
     }
 
     /// Grid and dof (0 to 5) of an unknown; `start` is the first unknown of each group.
-    pub(crate) fn dof_of(&self, unknown: usize, start: &[usize]) -> (usize, usize) {
+    pub(super) fn dof_of(&self, unknown: usize, start: &[usize]) -> (usize, usize) {
         let g = start.partition_point(|&s| s <= unknown) - 1;
         let dof = (0..6)
             .filter(|i| self.free[g] >> i & 1 == 1)
@@ -201,7 +201,7 @@ struct Term<'a> {
 }
 
 /// Turns an element's matrix to the displacement frames of its grids.
-pub(crate) fn to_displacement_frames(axes: &[Option<Mat3>], k: &mut ElementMatrix) {
+pub(super) fn to_displacement_frames(axes: &[Option<Mat3>], k: &mut ElementMatrix) {
     let n = k.n();
     for (b, g) in k.grids.iter().enumerate() {
         let Some(r) = &axes[g.us()] else { continue };

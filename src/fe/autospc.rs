@@ -32,7 +32,7 @@ pub(crate) struct Weak {
 
 impl Weak {
     /// The part of a load along the direction, where the load is aimed along it: both at the unknowns.
-    pub(crate) fn aimed(&self, packed: &[f64]) -> f64 {
+    pub(super) fn aimed(&self, packed: &[f64]) -> f64 {
         let pairs = packed.iter().skip(self.first).zip(&self.direction);
         let (along, square) = pairs.fold((0.0, 0.0), |(a, s), (f, d)| (a + f * d, s + f * f));
         let along = f64::abs(along);
@@ -48,7 +48,7 @@ impl Weak {
 ///
 /// With AUTOSPC off, only directions without any stiffness are held: nothing can act on them, and a solver takes its null columns out.
 /// A negative stiffness is none of these: it moves things, and the factor tells whether the rest outweighs it.
-pub(crate) fn weak_unknowns(assembled: &Assembled, autospc: bool) -> Vec<Weak> {
+pub(super) fn weak_unknowns(assembled: &Assembled, autospc: bool) -> Vec<Weak> {
     let limit = if autospc { EPZERO } else { NOTHING };
     let diagonal = assembled.stiffness.diagonal_values(&assembled.symbolic);
     let typical = diagonal.iter().fold(0.0_f64, |a, v| a.max(*v));

@@ -13,7 +13,7 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// Beams that can't be formed.
-pub(crate) fn beam_fields(
+pub(super) fn beam_fields(
     prepared: &Prepared<'_>,
     u: &[Vec<[f64; 6]>],
     between: &[Between<'_>],

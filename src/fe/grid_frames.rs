@@ -31,7 +31,7 @@ pub(crate) fn axes_at(frame: &Frame, x: &Vec3) -> Mat3 {
 }
 
 /// Axes of each grid's displacement frame; `None` for basic.
-pub(crate) fn grid_axes(model: &Model) -> Vec<Option<Mat3>> {
+pub(super) fn grid_axes(model: &Model) -> Vec<Option<Mat3>> {
     let axes = |g: &Grid| match g.cd.0 {
         0 => None,
         _ => model.frames.get(g.cd.us()).map(|f| axes_at(f, &g.x)),
@@ -48,7 +48,7 @@ pub(crate) fn to_basic(axes: &Option<Mat3>, u: [f64; 6]) -> [f64; 6] {
 }
 
 /// Six components from basic to the grid's displacement frame.
-pub(crate) fn to_local(axes: &Option<Mat3>, u: [f64; 6]) -> [f64; 6] {
+pub(super) fn to_local(axes: &Option<Mat3>, u: [f64; 6]) -> [f64; 6] {
     match axes {
         None => u,
         Some(r) => turn(r, u),

@@ -11,7 +11,7 @@ use std::collections::HashMap;
 ///
 /// # Errors
 /// A load along a beam that can't be formed.
-pub(crate) fn load_vector(
+pub(super) fn load_vector(
     model: &Model,
     mass: &Mass,
     set: &LoadSet,

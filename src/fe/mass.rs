@@ -141,7 +141,7 @@ impl Mass {
     }
 
     /// A point mass at an offset from a grid.
-    pub(crate) fn add_point(&mut self, grid: GridIx, m: f64, offset: &Vec3) {
+    pub(super) fn add_point(&mut self, grid: GridIx, m: f64, offset: &Vec3) {
         if *offset == Vec3::zeros() {
             self.point[grid.us()] += m;
         } else {
@@ -181,7 +181,7 @@ impl Mass {
     }
 
     /// Centrifugal forces -m w x (w x r) of a rotation `omega` about `centre`; masses off their grids count where they are.
-    pub(crate) fn centrifugal(&self, x: &[Vec3], centre: &Vec3, omega: &Vec3) -> Vec<[f64; 6]> {
+    pub(super) fn centrifugal(&self, x: &[Vec3], centre: &Vec3, omega: &Vec3) -> Vec<[f64; 6]> {
         let spin = omega.cross_matrix();
         let gradient = -(spin * spin);
         let field: Vec<[f64; 6]> = x

@@ -110,7 +110,7 @@ impl RigidBody {
     }
 
     /// How many motions are free.
-    pub(crate) fn n_free(&self) -> usize {
+    pub(super) fn n_free(&self) -> usize {
         self.basis.ncols()
     }
 
@@ -209,7 +209,7 @@ impl RigidBody {
 
     /// A statically determinate set of translations that holds every free motion: at each step the dof that moves most under
     /// the motions not yet held (QR with row pivoting), which spreads it over far grids. Unknown numbers.
-    pub(crate) fn choose_supports(
+    pub(super) fn choose_supports(
         &self,
         axes: &[Option<Mat3>],
         numbering: &Numbering,
@@ -263,7 +263,7 @@ impl RigidBody {
     ///
     /// # Errors
     /// Another number of dofs than free motions, dofs that are no unknowns, or that leave a motion free.
-    pub(crate) fn given_supports(
+    pub(super) fn given_supports(
         &self,
         axes: &[Option<Mat3>],
         numbering: &Numbering,
@@ -334,7 +334,7 @@ impl RigidBody {
     }
 
     /// A free motion at the unknowns as it is.
-    pub(crate) fn packed_motion(
+    pub(super) fn packed_motion(
         &self,
         axes: &[Option<Mat3>],
         numbering: &Numbering,

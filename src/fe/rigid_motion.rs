@@ -16,7 +16,7 @@ pub(crate) fn rigid(mode: usize, x: &Vec3, centre: &Vec3) -> [f64; 6] {
 }
 
 /// The six motions as columns, rows in the grid's displacement frame.
-pub(crate) fn rigid_matrix(x: &Vec3, centre: &Vec3, axes: &Option<Mat3>) -> Matrix6<f64> {
+pub(super) fn rigid_matrix(x: &Vec3, centre: &Vec3, axes: &Option<Mat3>) -> Matrix6<f64> {
     let mut m = Matrix6::zeros();
     for mode in 0..6 {
         for (i, v) in to_local(axes, rigid(mode, x, centre))

@@ -30,7 +30,7 @@ fn local<const M: usize>(u: &[[f64; 6]], grids: &[GridIx]) -> [f64; M] {
 ///
 /// # Errors
 /// Shells that can't be formed.
-pub(crate) fn shell_fields(
+pub(super) fn shell_fields(
     prepared: &Prepared<'_>,
     u: &[Vec<[f64; 6]>],
     temperatures: &[Option<Temperatures>],

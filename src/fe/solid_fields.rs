@@ -12,7 +12,7 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// Solids that can't be formed.
-pub(crate) fn solid_fields(
+pub(super) fn solid_fields(
     prepared: &Prepared<'_>,
     u: &[Vec<[f64; 6]>],
     temperatures: &[Option<Temperatures>],

@@ -65,7 +65,7 @@ impl Temperatures {
     }
 
     /// The rise of a shell's reference plane at its corners, and the gradient through its thickness.
-    pub(crate) fn shell_rise(&self, shell: &Shell, tref: f64) -> ([f64; 4], f64) {
+    pub(super) fn shell_rise(&self, shell: &Shell, tref: f64) -> ([f64; 4], f64) {
         let corner = |k: usize| shell.grids[k.min(shell.shape.n_corners() - 1)];
         if let Some(ElementTemperature::Plate { mean, gradient }) = self.elements.get(&shell.id) {
             let rise = std::array::from_fn(|k| mean - self.from(corner(k), tref));
@@ -75,7 +75,7 @@ impl Temperatures {
     }
 
     /// The rise of a bar, beam or rod at its ends, and its gradients across.
-    pub(crate) fn line_rise(&self, id: u32, grids: [GridIx; 2], tref: f64) -> LineRise {
+    pub(super) fn line_rise(&self, id: u32, grids: [GridIx; 2], tref: f64) -> LineRise {
         if let Some(ElementTemperature::Line { ends, gradient }) = self.elements.get(&id) {
             let rise = [0, 1].map(|k| ends[k] - self.from(grids[k], tref));
             return (rise, *gradient);
@@ -84,7 +84,7 @@ impl Temperatures {
     }
 
     /// The rise of the grids of solid `i`.
-    pub(crate) fn solid_rise(&self, model: &Model, i: usize, grids: &[GridIx]) -> Vec<f64> {
+    pub(super) fn solid_rise(&self, model: &Model, i: usize, grids: &[GridIx]) -> Vec<f64> {
         let tref = model
             .solid_properties
             .get(model.solids[i].property as usize)
@@ -95,7 +95,7 @@ impl Temperatures {
 }
 
 /// Free thermal strain of beam `i`; `None` where its material is no MAT1.
-pub(crate) fn beam_expansion(model: &Model, i: usize, t: &Temperatures) -> Option<LineStrain> {
+pub(super) fn beam_expansion(model: &Model, i: usize, t: &Temperatures) -> Option<LineStrain> {
     let beam = model.beams.get(i)?;
     let property = model.beam_properties.get(beam.property.us())?;
     let material = model.materials.get(property.material.us())?;

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 ///
 /// # Errors
 /// Elements that can't be formed.
-pub(crate) fn thermal_forces(
+pub(super) fn thermal_forces(
     prepared: &Prepared<'_>,
     t: &Temperatures,
     f: &mut [[f64; 6]],

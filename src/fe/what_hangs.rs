@@ -3,7 +3,7 @@
 use crate::model::{ElementRef, GridIx, Model};
 
 /// Elements with a grid, in words, at most four named.
-pub(crate) fn what_hangs(model: &Model, grid: GridIx) -> String {
+pub(super) fn what_hangs(model: &Model, grid: GridIx) -> String {
     let here = |e: &ElementRef| model.element_grids(*e).contains(&grid);
     let named = |e: ElementRef| format!("{} {}", model.element_word(e), model.element_id(e));
     let mut all: Vec<String> = model.elements().filter(here).map(named).collect();

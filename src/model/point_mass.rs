@@ -8,7 +8,7 @@ use crate::linalg::Matrix6;
 /// Mass matrix about the grid of a rigid body: mass, centre of gravity from the grid, inertia tensor about the centre of gravity.
 ///
 /// M = [[m I, -m [r]x], [m [r]x, J + m (r.r I - r r')]], displacement then rotation.
-pub(crate) fn rigid_body_matrix(mass: f64, r: Vec3, inertia: Mat3) -> Matrix6<f64> {
+pub(super) fn rigid_body_matrix(mass: f64, r: Vec3, inertia: Mat3) -> Matrix6<f64> {
     let cross = Mat3::new(0.0, -r.z, r.y, r.z, 0.0, -r.x, -r.y, r.x, 0.0);
     let mut m = Matrix6::zeros();
     m.fixed_view_mut::<3, 3>(0, 0)

@@ -330,7 +330,7 @@ fn without_stiffness(id: u32, at: Place) -> ShellProperty {
 }
 
 /// Unit normal of a shell's corners: d13 x d24 of a quad, side 12 x side 13 of a triangle; `None` without area.
-pub(crate) fn shell_normal(x: &[Vec3]) -> Option<Vec3> {
+pub(super) fn shell_normal(x: &[Vec3]) -> Option<Vec3> {
     let (u, v) = match x {
         [a, b, c] => (b - a, c - a),
         [a, b, c, d] => (c - a, d - b),

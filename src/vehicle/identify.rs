@@ -332,7 +332,7 @@ fn add_tolerances(
     Ok(())
 }
 
-/// Compares masses with the mean wheel forces, over the parts whose every wheel is measured.
+/// Compares masses with the mean wheel forces, over the parts that rest on their wheels alone, every one of them measured.
 fn close_masses(task: &IdentifyTask, answer: &mut Identification, record: &Channels) {
     let v = &answer.vehicle;
     let (mut mass, mut variance, mut force, mut parts) = (0.0, 0.0, 0.0, 0);
@@ -344,11 +344,7 @@ fn close_masses(task: &IdentifyTask, answer: &mut Identification, record: &Chann
             .map(|w| w.channel.as_str())
             .collect();
         let index = v.masses(&bodies);
-        let grounded = v
-            .links
-            .iter()
-            .any(|l| l.ends.iter().map(|e| e.0).sum::<f64>().abs() > 1e-9);
-        if grounded
+        if !v.rests_on_wheels(&bodies)
             || wheels.is_empty()
             || !index
                 .iter()

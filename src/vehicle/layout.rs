@@ -238,6 +238,16 @@ impl Vehicle {
         own.map(|&b| self.inertia_index(b, 0, 0)).collect()
     }
 
+    /// Whether wheels alone carry the weight of a connected part, the same weight all the time: no link of it reaches the ground, which the
+    /// weights of a link tell that doesn't feel the heave of the whole (their sum is 0), and no mass joins or leaves it.
+    pub fn rests_on_wheels(&self, bodies: &[usize]) -> bool {
+        let own = |l: &&Link| l.ends.iter().any(|e| bodies.contains(&e.1.body));
+        let heave = |l: &Link| l.ends.iter().map(|e| e.0).sum::<f64>();
+        // Weights are small whole numbers, whose sum is exact.
+        let grounded = self.links.iter().filter(own).any(|l| heave(l) != 0.0);
+        !grounded && self.steps.iter().all(|s| !bodies.contains(&s.body))
+    }
+
     /// Index of the parameter M(i, j) of a body that is no witness.
     pub fn inertia_index(&self, body: usize, i: usize, j: usize) -> usize {
         let before: usize = self

@@ -244,11 +244,13 @@ fn scaled_wheel_forces(found: &Identification, motion: &Motion) -> Vec<Vec<f64>>
 }
 
 /// Mean load of each wheel that carries a part of the vehicle alone, (sprung + unsprung mass) g, from identified masses: the
-/// same type as loads recovered from strain, to be compared with them.
+/// same type as loads recovered from strain, to be compared with them. A part that the ground holds, or whose mass changes during the
+/// record, has none.
 pub fn static_loads(found: &Identification, gravity: f64, run: &str) -> LoadEstimate {
     let v = &found.vehicle;
     let mut loads: Vec<(String, f64, Vec<usize>)> = Vec::new();
-    for bodies in v.components() {
+    let parts = v.components().into_iter();
+    for bodies in parts.filter(|b| v.rests_on_wheels(b)) {
         let wheels: Vec<&str> = v
             .wheels
             .iter()

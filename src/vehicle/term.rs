@@ -1,5 +1,7 @@
 //! What a link between two bodies does: force as a sum of terms, each a coefficient times a function of stretch and its rate.
 
+use crate::units::{Quantity as Dimension, UnitSystem};
+
 /// What a coefficient is measured in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
@@ -35,13 +37,19 @@ pub struct UnitNames {
 }
 
 impl UnitNames {
-    /// kg, m, N.
-    pub fn si() -> Self {
+    /// The names of a system of units.
+    pub fn from_system(system: UnitSystem) -> Self {
+        let name = |d: Dimension| system.unit(d).name.to_owned();
         Self {
-            mass: "kg".into(),
-            length: "m".into(),
-            force: "N".into(),
+            mass: name(Dimension::Mass),
+            length: name(Dimension::Length),
+            force: name(Dimension::Force),
         }
+    }
+
+    /// The unit of a speed.
+    pub fn speed(&self) -> String {
+        format!("{}/s", self.length)
     }
 
     /// The unit of a quantity, in words.

@@ -4,6 +4,7 @@ use super::term::UnitNames;
 use crate::series::channels::Channels;
 use crate::series::csv::read_csv;
 use crate::series::spectrum::Band;
+use crate::units::UnitSystem;
 use std::collections::BTreeMap;
 
 mod full_truck;
@@ -30,7 +31,7 @@ fn task(model: &str, terms: &[&str], band: (f64, f64)) -> IdentifyTask {
         gravity: 9.81,
         gain_tolerance: 0.0,
         sync_tolerance_s: 0.0,
-        units: UnitNames::si(),
+        units: UnitNames::from_system(UnitSystem::MKgS),
         noise_acc: None,
         noise_force: None,
         corrections: vec![],

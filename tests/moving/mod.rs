@@ -11,6 +11,7 @@ use strainbridge::reconcile::Verdict;
 use strainbridge::reconcile::motion::{MotionFrame, MotionOutcome};
 use strainbridge::series::channels::{Channel, Channels};
 use strainbridge::series::spectrum::Band;
+use strainbridge::units::UnitSystem;
 use strainbridge::vehicle::preset::{PresetRequest, vehicle};
 use strainbridge::vehicle::term::UnitNames;
 
@@ -59,7 +60,7 @@ pub fn frame_of(case: &Case) -> MotionFrame {
         gain_tolerance: if loose { 0.01 } else { 0.0 },
         sync_tolerance_s: if loose { 0.0004 } else { 0.0 },
         corrections: vec![],
-        units: UnitNames::si(),
+        units: UnitNames::from_system(UnitSystem::MKgS),
         stop: Default::default(),
     }
 }

@@ -6,6 +6,7 @@
 
 #![allow(clippy::print_stderr, reason = "says why it is skipped")]
 
+mod coarse;
 mod exchange;
 #[cfg(feature = "pdf")]
 mod paper;

@@ -13,7 +13,7 @@ const NX: u32 = 20;
 const NY: u32 = 10;
 const EDGE: f64 = 10.0;
 
-fn folder(name: &str) -> PathBuf {
+pub fn folder(name: &str) -> PathBuf {
     let dir = Path::new(env!("CARGO_TARGET_TMPDIR"))
         .join("pointing")
         .join(name);
@@ -106,7 +106,7 @@ expected = 100.0
 const PLACEMENT: &str = "[placement]\ngauges = 6\nspacing = 8.0\n";
 
 /// What the page says after these steps; `None` without Chromium.
-fn planned(report: &Path, width: u32, steps: &Value) -> Option<Value> {
+pub fn planned(report: &Path, width: u32, steps: &Value) -> Option<Value> {
     let plan = report.with_file_name(format!("steps-{width}.json"));
     let text = json!({ "width": width, "touch": width < 600, "steps": steps }).to_string();
     std::fs::write(&plan, text).unwrap();

@@ -11,7 +11,7 @@ use crate::linalg::spd;
 use crate::placement::quality::Quality;
 use crate::placement::{Loss, Spec};
 use crate::sensitivity::Sensitivity;
-use crate::units::Quantity;
+use crate::units::{Quantity, Unit};
 
 /// The standard deviations in job order.
 pub(super) fn in_job_order(mut q: Quality, order: &[usize]) -> Quality {
@@ -130,29 +130,13 @@ fn judge_workshop(work: &mut Work, job: &Job, placed: &[PlacedGauge]) {
             .with_numbers(g.expected_microstrain, STRAIN),
         );
     }
-    let mm = job.units.unit(Quantity::Length).si * 1000.0;
-    let budget = |g: &PlacedGauge| g.position_budget.map_or(f64::INFINITY, |b| b * mm);
-    let tight = placed
-        .iter()
-        .filter(|g| budget(g) < PLACE)
-        .min_by(|a, b| budget(a).total_cmp(&budget(b)));
-    if let Some(g) = tight {
-        let n = placed.iter().filter(|g| budget(g) < PLACE).count();
-        work.findings.push(
-            Finding::new(
-                Severity::Warning,
-                "position-budget-small",
-                &g.name,
-                format!(
-                    "{n} gauges have to be glued within {PLACE} mm, `{}` within {:.2} mm: a load moves by a twentieth of its expected size otherwise",
-                    g.name,
-                    budget(g)
-                ),
-                "state [placement] position_tolerance (1 to 3 mm is usual), so that steep places are avoided",
-            )
-            .with_numbers(budget(g), PLACE),
-        );
-    }
+    let unit = job.units.unit(Quantity::Length);
+    let budgets = placed.iter().map(|g| (&*g.name, g.position_budget));
+    work.findings.extend(check_budgets(
+        budgets,
+        job.placement.position_tolerance,
+        unit,
+    ));
     if job.placement.model_uncertainty_rel == 0.0 {
         work.findings.push(Finding::new(
             Severity::Info,
@@ -162,6 +146,60 @@ fn judge_workshop(work: &mut Work, job: &Job, placed: &[PlacedGauge]) {
             "state model_uncertainty_rel in [placement] or [measured] (0.02 is a good model away from welds)",
         ));
     }
+}
+
+/// Gauges whose place has to be kept better than it will be: than the stated tolerance where that is finer than a rule, else than a rule.
+/// Budgets and tolerance are in `unit`; the remedy is what is left to do.
+fn check_budgets<'a>(
+    budgets: impl Iterator<Item = (&'a str, Option<f64>)>,
+    tolerance: f64,
+    unit: Unit,
+) -> Option<Finding> {
+    let mm = unit.si * 1000.0;
+    let kept = match tolerance > 0.0 {
+        true => PLACE.min(tolerance * mm),
+        false => PLACE,
+    };
+    let tight: Vec<(&str, f64)> = budgets
+        .filter_map(|(name, b)| Some((name, b? * mm)))
+        .filter(|(_, b)| *b < kept)
+        .collect();
+    let (name, least) = tight.iter().min_by(|a, b| a.1.total_cmp(&b.1)).copied()?;
+    let gauges = match tight.len() {
+        1 => "1 gauge has".to_owned(),
+        n => format!("{n} gauges have"),
+    };
+    let message = format!(
+        "{gauges} to be glued within {} mm, `{name}` within {least:.2} mm: a load moves by a twentieth of its expected size otherwise",
+        short(kept)
+    );
+    let remedy = match tolerance > 0.0 {
+        true => "place more gauges, so that each decides less, or state a larger position_tolerance, so that steep places weigh less: what the stated one \
+                 costs is `sigma_as_glued`; a template that keeps a finer one is stated likewise"
+            .to_owned(),
+        false => format!(
+            "state [placement] position_tolerance, {} {} for gauges laid out with a rule, so that steep places are avoided",
+            short(2.0 * PLACE / mm),
+            unit.name
+        ),
+    };
+    let finding = Finding::new(
+        Severity::Warning,
+        "position-budget-small",
+        name,
+        message,
+        remedy,
+    );
+    Some(finding.with_numbers(least, kept))
+}
+
+/// A length above 0 with two digits, rounded down: who keeps it keeps what it stands for.
+fn short(x: f64) -> String {
+    let exponent = x.log10().floor() as i32 - 1;
+    // What binary fractions leave of a whole number of steps is no step less.
+    let steps = (x / 10_f64.powi(exponent) + 1e-6).floor();
+    let number: f64 = format!("{steps}e{exponent}").parse().unwrap_or(x);
+    number.to_string()
 }
 
 /// Findings on the layout.
@@ -222,5 +260,51 @@ pub(super) fn judge_layout(
             )
             .with_numbers(layout.efficiency_bound, 0.9),
         );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::UnitSystem;
+
+    #[test]
+    fn the_remedy_of_a_small_budget_asks_for_what_is_not_done_yet_and_a_finer_tolerance_is_believed()
+     {
+        // Metres: budgets of 0.4 and 3 mm.
+        let unit = UnitSystem::MKgS.unit(Quantity::Length);
+        let found = |tolerance: f64| {
+            let budgets = [("P01", Some(4e-4)), ("P02", Some(3e-3)), ("P03", None)];
+            check_budgets(budgets.into_iter(), tolerance, unit)
+        };
+        let unstated = found(0.0).unwrap();
+        assert_eq!(unstated.subject, "P01");
+        assert!(
+            unstated
+                .message
+                .starts_with("1 gauge has to be glued within 1 mm")
+        );
+        assert!(
+            unstated
+                .remedy
+                .contains("state [placement] position_tolerance, 0.002 m"),
+            "{}",
+            unstated.remedy
+        );
+        let stated = found(2e-3).unwrap();
+        assert!(
+            !stated
+                .remedy
+                .contains("state [placement] position_tolerance"),
+            "{}",
+            stated.remedy
+        );
+        assert!(
+            stated.remedy.starts_with("place more gauges"),
+            "{}",
+            stated.remedy
+        );
+        // Who glues by a template and says so is done.
+        assert!(found(4e-4).is_none());
     }
 }

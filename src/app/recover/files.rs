@@ -60,7 +60,7 @@ pub(super) fn findings(job: &Job, head: &RecordHead, sums: &Sums) -> Vec<Finding
             Severity::Info,
             "history-thinned",
             "loads.csv",
-            format!("loads.csv holds every {}th sample; loads.bin holds all of them (format in README.md)", head.stride),
+            format!("loads.csv holds every {}th sample; loads.bin holds all of them (format: docs/reference/files.md)", head.stride),
             "",
         ));
     }

@@ -146,3 +146,21 @@ fn without_the_change_of_rows_an_angle_is_not_guessed() {
     }];
     assert_ne!(calibrate(&task).unwrap().shifts[0].word, ShiftWord::Angle);
 }
+
+#[test]
+fn without_the_change_of_rows_neither_an_angle_nor_a_place_is_guessed() {
+    let mut undetermined = 0;
+    for off in [[0.0, 0.0, 10_f64.to_radians()], [0.0, 20.0, 0.0]] {
+        for seed in 1..4 {
+            let mut task = task(0, off, 1.0, seed);
+            task.model.as_mut().unwrap().off_drawing = None;
+            let word = calibrate(&task).unwrap().shifts[0].word;
+            assert!(
+                !matches!(word, ShiftWord::Angle | ShiftWord::Place),
+                "{word:?}"
+            );
+            undetermined += u32::from(word == ShiftWord::Undetermined);
+        }
+    }
+    assert!(undetermined > 0);
+}

@@ -4,7 +4,7 @@ use super::ElementMatrix;
 use crate::model::Model;
 
 /// Stiffness of bush `i`, basic frame. The springs act at its location; rigid arms join it to the grids.
-pub(crate) fn bush_stiffness(model: &Model, i: usize) -> ElementMatrix {
+pub(super) fn bush_stiffness(model: &Model, i: usize) -> ElementMatrix {
     let bush = &model.bushes[i];
     let grids: Vec<_> = [Some(bush.grids.0), bush.grids.1]
         .into_iter()

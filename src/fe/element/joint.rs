@@ -5,7 +5,7 @@ use crate::linalg::{Matrix6, SMatrix};
 use crate::model::Joint;
 
 /// Dofs of its grids, a bit each: patches are held by their translations alone.
-pub(crate) fn joint_dofs(joint: &Joint) -> u8 {
+pub(super) fn joint_dofs(joint: &Joint) -> u8 {
     let mut motion = joint.ends.iter().flat_map(|e| &e.motion);
     let turns = motion.any(|(_, m)| m.fixed_view::<6, 3>(0, 3).amax() > 0.0);
     if turns { 0b111_111 } else { 0b000_111 }

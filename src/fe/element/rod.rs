@@ -16,7 +16,7 @@ fn name(rod: &Rod) -> &'static str {
 ///
 /// # Errors
 /// No length; a material that is no MAT1.
-pub(crate) fn rod_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, Refusal> {
+pub(super) fn rod_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, Refusal> {
     let rod = &model.rods[i];
     let refuse = |reason: String, remedy: &str| Refusal {
         card: format!("{} {}", name(rod), rod.id),

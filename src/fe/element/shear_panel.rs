@@ -136,7 +136,7 @@ impl Plane {
 ///
 /// # Errors
 /// Panels whose corners make no convex quadrilateral; a material that is no MAT1; a thickness that is not above zero.
-pub(crate) fn shear_panel_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, Refusal> {
+pub(super) fn shear_panel_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, Refusal> {
     let panel = &model.shear_panels[i];
     let Some(MaterialKind::Isotropic { e, g, nu, .. }) =
         model.materials.get(panel.material.us()).map(|m| m.kind)

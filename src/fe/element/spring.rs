@@ -5,7 +5,7 @@ use crate::fe::grid_frames::to_basic;
 use crate::fe::prepared::Prepared;
 
 /// Stiffness of spring `i`, basic frame; its dofs are those of the grids' displacement frames.
-pub(crate) fn spring_stiffness(prepared: &Prepared<'_>, i: usize) -> ElementMatrix {
+pub(super) fn spring_stiffness(prepared: &Prepared<'_>, i: usize) -> ElementMatrix {
     let spring = &prepared.model.springs[i];
     let mut grids: Vec<_> = spring.ends.iter().flatten().map(|e| e.0).collect();
     grids.dedup();

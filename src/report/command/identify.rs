@@ -8,12 +8,13 @@ use crate::app::outcome::Outcome;
 use crate::app::output::Output;
 use crate::report::page::Page;
 use crate::report::vehicle::{
-    Curve, identify_page, restoring_curves, write_chassis_forces, write_parameters,
-    write_restoring_force, write_wheel_forces,
+    Curve, Curves, identify_page, restoring_curves, restoring_unit, write_chassis_forces,
+    write_parameters, write_restoring_force, write_wheel_forces,
 };
 use crate::series::welch::cross_spectra;
 use crate::vehicle::loads::LoadHistory;
 use crate::vehicle::motion::Motion;
+use crate::vehicle::term::UnitNames;
 use std::fmt::Write;
 
 /// Half width of a 95 % interval over its standard deviation.
@@ -40,7 +41,7 @@ impl Report for Outcome<Identified> {
             let text = write_chassis_forces(&self.forces, &leaves, &fitted.motion);
             write("chassis_forces.csv", text)?;
         }
-        declare(out)?;
+        declare(out, &UnitNames::from_system(self.job.units))?;
         write_page(out, self)
     }
 
@@ -49,11 +50,14 @@ impl Report for Outcome<Identified> {
         let shown = self.held_out.as_ref().unwrap_or(&self.fitted);
         let page = identify_page(
             &self.job.title,
+            &UnitNames::from_system(self.job.units),
             found,
             &self.findings,
-            &history_curves(&shown.loads, &shown.motion),
-            &spectrum_curves(&shown.loads, &shown.motion),
-            &restoring_curves(found, &shown.motion),
+            &Curves {
+                histories: history_curves(&shown.loads, &shown.motion),
+                spectra: spectrum_curves(&shown.loads, &shown.motion),
+                restoring: restoring_curves(found, &shown.motion),
+            },
             &self.forces,
         );
         Some(page)
@@ -92,24 +96,22 @@ impl Report for Outcome<Identified> {
     }
 }
 
-/// States the units of the tables: forces are N, about their means.
-fn declare(out: &mut Output) -> Result<(), Faults> {
+/// States the units of the tables; forces are about their means.
+fn declare(out: &mut Output, units: &UnitNames) -> Result<(), Faults> {
     declare_written(out, "parameters.csv", |c| match c {
         "name" | "unit" | "identifiable" => String::new(),
         _ => "that of column unit".to_owned(),
     })?;
-    let by_time = |c: &str| if c == "time" { "s" } else { "N" }.to_owned();
+    let by_time = |c: &str| match c {
+        "time" => "s".to_owned(),
+        _ => units.force.clone(),
+    };
     for table in ["loads.csv", "loads_hold_out.csv", "chassis_forces.csv"] {
         if out.holds(table) {
             declare_written(out, table, by_time)?;
         }
     }
-    let restoring = |c: &str| match c {
-        "stretch" => "m".to_owned(),
-        "rate" => "m/s".to_owned(),
-        "force_model" | "force_measured" => "N".to_owned(),
-        _ => String::new(),
-    };
+    let restoring = |c: &str| restoring_unit(c, units);
     Ok(declare_written(out, "restoring_force.csv", restoring)?)
 }
 

@@ -5,15 +5,44 @@ use crate::app::fault::Faults;
 use crate::app::init::Proposal;
 use crate::app::outcome::Outcome;
 use crate::app::output::Output;
-use crate::report::page::Page;
+use crate::report::page::{Block, Page, Section};
+
+/// Lines of a block: a notebook cuts longer ones.
+const LINES: usize = 30;
+
+/// Whether a line of a job asks its reader for something.
+fn is_open(line: &str) -> bool {
+    line.contains("# check") || line.contains("# fill in")
+}
+
+fn pieces(lines: &[&str]) -> Vec<Block> {
+    let piece = |part: &[&str]| Block::Lines(part.join("\n"));
+    lines.chunks(LINES).map(piece).collect()
+}
 
 impl Report for Outcome<Proposal> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         Ok(out.write_bytes(self.job, self.text.as_bytes())?)
     }
 
+    /// What a notebook shows; no file is written of it, for a job is read where it stands.
     fn page(&self) -> Option<Page> {
-        None
+        let mut proposed = vec![Block::Text(self.words().trim_end().to_owned())];
+        if !self.loads.is_empty() {
+            proposed.push(Block::Stressed("Loads:".into(), self.loads.join(", ")));
+        }
+        let mut sections = vec![Section::new("Proposal", proposed)];
+        let to_check: Vec<&str> = self.text.lines().filter(|l| is_open(l)).collect();
+        if !to_check.is_empty() {
+            sections.push(Section::new("Yours to check", pieces(&to_check)));
+        }
+        let lines: Vec<&str> = self.text.lines().collect();
+        let whole = Block::Folded {
+            summary: format!("{}, {} lines", self.job, lines.len()),
+            blocks: pieces(&lines),
+        };
+        sections.push(Section::new("The job", vec![whole]));
+        Some(Page::new(self.job, "", &self.findings, sections))
     }
 
     fn words(&self) -> String {
@@ -30,5 +59,37 @@ impl Report for Outcome<Proposal> {
             ),
             false => format!("{what}; gauges can't be placed by it as it is: see the findings\n"),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::outcome::{Findings, Seconds, StatedUnits};
+    use crate::report::notebook::piece;
+
+    #[test]
+    fn a_notebook_shows_the_whole_job_and_the_lines_that_are_to_be_checked() {
+        let rows: Vec<String> = (0..100).map(|i| format!("line_{i} = 1")).collect();
+        let open = "units = \"mm-t-s\"   # check: by Young's moduli";
+        let outcome = Outcome {
+            units: StatedUnits::default(),
+            inputs: Vec::new(),
+            findings: Findings::default(),
+            seconds: Seconds::default(),
+            notes: Vec::new(),
+            answer: Proposal {
+                job: "job.toml",
+                loads: vec!["LF.FZ".into(), "RF.FZ".into()],
+                placeable: true,
+                text: format!("{open}\n{}\n", rows.join("\n")),
+                path: "job.toml".into(),
+            },
+        };
+        let html = piece(&outcome);
+        assert!(rows.iter().all(|r| html.contains(r.as_str())), "{html}");
+        assert_eq!(html.matches("# check: by Young").count(), 2);
+        assert!(html.contains("LF.FZ, RF.FZ") && html.contains("2 loads proposed"));
+        assert!(!html.contains("report.html"), "{html}");
     }
 }

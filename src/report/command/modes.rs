@@ -10,28 +10,52 @@ use crate::report::mode_blocks::rows_of_mode_block;
 use crate::report::page::{Block, Page, Section, number};
 use crate::report::scene::{scene_of_solution, scene_section};
 use crate::report::{planned_blocks, write_vtu};
+use crate::vehicle::term::{Quantity, UnitNames};
 use nastran::op2::{EncodedBlock, Op2Writer};
 use std::io::Write;
 
-/// Columns of modes.csv before those of the gauges, with their units.
-const COLUMNS: [(&str, &str); 12] = [
-    ("mode", ""),
-    ("hz", "1/time"),
-    ("generalised_mass", "job mass"),
-    ("residual", ""),
-    ("frequency_error", ""),
-    ("gap", ""),
-    ("effective_mass_x", "job mass"),
-    ("effective_mass_y", "job mass"),
-    ("effective_mass_z", "job mass"),
-    ("effective_inertia_x", "job mass length^2"),
-    ("effective_inertia_y", "job mass length^2"),
-    ("effective_inertia_z", "job mass length^2"),
+/// What a column counts in.
+#[derive(Clone, Copy)]
+enum In {
+    Numbers,
+    Hertz,
+    Mass,
+    Inertia,
+}
+
+impl In {
+    /// Its unit in words, by the job's units; the deck's own where no job states them.
+    fn unit(self, names: Option<&UnitNames>) -> String {
+        let of = |q: Quantity, otherwise: &str| names.map_or(otherwise.into(), |n| n.of(q));
+        match self {
+            Self::Numbers => String::new(),
+            Self::Hertz => "Hz".to_owned(),
+            Self::Mass => of(Quantity::Mass, "deck's mass"),
+            Self::Inertia => of(Quantity::Inertia, "deck's mass length2"),
+        }
+    }
+}
+
+/// Columns of modes.csv before those of the gauges, with what they count in.
+const COLUMNS: [(&str, In); 12] = [
+    ("mode", In::Numbers),
+    ("hz", In::Hertz),
+    ("generalised_mass", In::Mass),
+    ("residual", In::Numbers),
+    ("frequency_error", In::Numbers),
+    ("gap", In::Numbers),
+    ("effective_mass_x", In::Mass),
+    ("effective_mass_y", In::Mass),
+    ("effective_mass_z", In::Mass),
+    ("effective_inertia_x", In::Inertia),
+    ("effective_inertia_y", In::Inertia),
+    ("effective_inertia_z", In::Inertia),
 ];
 
 impl Report for Outcome<Modes> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
-        let plain = COLUMNS.map(|(c, u)| (c.to_owned(), u.to_owned()));
+        let names = self.system.map(UnitNames::from_system);
+        let plain = COLUMNS.map(|(c, u)| (c.to_owned(), u.unit(names.as_ref())));
         let gauges = self.gauges.iter();
         let of_gauges = gauges.map(|g| (g.clone(), "microstrain".to_owned()));
         out.declare("modes.csv", plain.into_iter().chain(of_gauges));

@@ -10,6 +10,7 @@ use crate::app::output::Output;
 use crate::app::reconcile::{GapFound, Reconciled, effect_in_words};
 use crate::reconcile::{CauseOutcome, CauseSet};
 use crate::report::page::{Page, Paper, table_section};
+use crate::vehicle::term::UnitNames;
 use std::fmt::Write as _;
 
 impl Report for Outcome<Reconciled> {
@@ -19,7 +20,7 @@ impl Report for Outcome<Reconciled> {
             write_strain(strain, out)?;
         }
         if let Some(motion) = &self.motion {
-            write_motion(motion, out)?;
+            write_motion(motion, &UnitNames::from_system(self.job.units), out)?;
         }
         write_page(out, self)
     }

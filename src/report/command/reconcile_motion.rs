@@ -1,5 +1,6 @@
 //! Files of `reconcile` for motion: gap by equation, band, time and amplitude, restoring forces, page.
 
+use super::columns::declare_written;
 use crate::app::fault::Faults;
 use crate::app::outcome::Outcome;
 use crate::app::output::Output;
@@ -8,20 +9,39 @@ use crate::reconcile::motion::MotionOutcome;
 use crate::reconcile::motion::gap::EquationGap;
 use crate::report::figure::gap_by_channel;
 use crate::report::page::{Block, Page, Section, figure_section, number, table_section};
-use crate::report::vehicle::{restoring_curves, restoring_section, write_restoring_force};
+use crate::report::vehicle::{
+    restoring_curves, restoring_section, restoring_unit, write_restoring_force,
+};
+use crate::vehicle::term::UnitNames;
 use std::fmt::Write;
 
-/// Writes the tables.
-pub(super) fn write_motion(found: &MotionPart, out: &mut Output) -> Result<(), Faults> {
+/// Writes the tables; `units` are the job's.
+pub(super) fn write_motion(
+    found: &MotionPart,
+    units: &UnitNames,
+    out: &mut Output,
+) -> Result<(), Faults> {
     let table = match &found.identified {
         Some((id, moved)) => write_restoring_force(id, moved),
         None => String::new(),
     };
     for (name, text) in gap_tables(&found.outcome) {
         out.write_bytes(name, text.as_bytes())?;
+        declare_written(out, name, gap_unit)?;
     }
     out.write_bytes("restoring_force.csv", table.as_bytes())?;
+    declare_written(out, "restoring_force.csv", |c| restoring_unit(c, units))?;
     Ok(())
+}
+
+/// The unit of a column of the tables of gaps; empty: a name, or a share of the measured quantity.
+fn gap_unit(column: &str) -> String {
+    match column {
+        "up_to_hz" => "Hz",
+        "up_to_s" => "s",
+        _ => "",
+    }
+    .to_owned()
 }
 
 /// The page.
@@ -33,7 +53,8 @@ pub(super) fn motion_page(outcome: &Outcome<Reconciled>, found: &MotionPart) -> 
     let mut sections = gap_sections(&found.outcome);
     sections.extend(effect_sections(found));
     sections.extend(simulation(found).map(simulation_section));
-    sections.push(restoring_section(&curves));
+    let units = UnitNames::from_system(outcome.job.units);
+    sections.push(restoring_section(&curves, &units));
     Page::new(
         &outcome.job.title,
         "Where vehicle model and record disagree, and what is missing",

@@ -1,5 +1,6 @@
 //! Files of `reconcile` for strain: gap by gauge, loads before and after, page.
 
+use super::columns::declare_written;
 use crate::app::fault::Faults;
 use crate::app::outcome::Outcome;
 use crate::app::output::Output;
@@ -16,7 +17,15 @@ use std::fmt::Write;
 /// Writes `gap.csv` and `loads_before_after.csv`.
 pub(super) fn write_strain(found: &StrainPart, out: &mut Output) -> Result<(), Faults> {
     out.write_bytes("gap.csv", gap_csv(found).as_bytes())?;
+    declare_written(out, "gap.csv", |c| match c {
+        "gauge" => String::new(),
+        _ => "microstrain".to_owned(),
+    })?;
     out.write_bytes("loads_before_after.csv", loads_csv(found).as_bytes())?;
+    declare_written(out, "loads_before_after.csv", |c| match c {
+        "stated" | "before" | "after" | "sigma" => "that of column unit".to_owned(),
+        _ => String::new(),
+    })?;
     Ok(())
 }
 

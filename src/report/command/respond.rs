@@ -205,7 +205,7 @@ fn stress_fields(r: &Responded, model: &Model) -> Vec<Field<'static>> {
         Field {
             name,
             unit: r.stress_unit.to_owned(),
-            values: FieldValues::Shells(shells),
+            values: FieldValues::Magnitudes(shells),
             scale: factor(r.job.units, r.job.report_units.stress),
         }
     };

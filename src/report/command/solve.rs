@@ -28,7 +28,14 @@ impl Report for Outcome<SolvedCases> {
     fn page(&self) -> Option<Page> {
         let (model, solution) = (&self.deck.model, &self.solution);
         let scene = scene_of_solution(model, &self.cases, solution);
-        let page = solution_page(&self.title, solution, &self.report, &scene, &self.findings);
+        let page = solution_page(
+            &self.title,
+            self.system,
+            solution,
+            &self.report,
+            &scene,
+            &self.findings,
+        );
         Some(page)
     }
 

@@ -87,9 +87,15 @@ fn line(row: &StudiedLayout) -> String {
 
 fn page(found: &Outcome<Studied>) -> Page {
     let loads = found.study.first().map_or(&[][..], |row| &row.loads);
-    let mut header: Vec<String> = ["layout", "gauges", "error", "condition", "mean rms"]
-        .map(str::to_owned)
-        .to_vec();
+    let mut header: Vec<String> = [
+        "layout",
+        "gauges",
+        "error",
+        "condition, scaled",
+        "mean rms error, %",
+    ]
+    .map(str::to_owned)
+    .to_vec();
     let wanted = |row: &StudiedLayout| -> Vec<StudiedLoad> {
         row.loads.iter().filter(|l| l.wanted).cloned().collect()
     };
@@ -104,7 +110,7 @@ fn page(found: &Outcome<Studied>) -> Page {
                 row.gauges.to_string(),
                 row.error.clone(),
                 number(plain(row.condition_number)),
-                format!("{} %", number(100.0 * plain(row.mean_relative_rms))),
+                number(100.0 * plain(row.mean_relative_rms)),
             ];
             cells.extend(wanted(row).iter().map(|l| {
                 let width = HALF_WIDTH * plain(l.sigma);

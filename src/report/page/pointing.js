@@ -158,9 +158,9 @@ function planning(api) {
       move(x, y) {
         const f = api.faceAt(x, y);
         if (f < 0) return;
-        const [eye, along] = camera.ray(x, y), at = onFace(mesh, f, eye, along), n = normalOf(mesh, f);
-        if (!at) return;
-        const side = V.dot(n, along) < 0 ? "top" : "bottom", out = side === "top" ? n : n.map((v) => -v);
+        const [eye, along] = camera.ray(x, y), hit = plan.onSurface(f, eye, along);
+        if (!hit) return;
+        const { at, n } = hit, side = V.dot(n, along) < 0 ? "top" : "bottom", out = side === "top" ? n : n.map((v) => -v);
         // Its axis is laid onto the surface; one that stands on it turns to the element's edge.
         let axis = V.along(stroke.before.along, n, -V.dot(stroke.before.along, n));
         if (Math.hypot(...axis) < 0.1) axis = V.sub(vertexAt(mesh, mesh.faces[4 * f + 1]), vertexAt(mesh, mesh.faces[4 * f]));
@@ -292,6 +292,27 @@ function coarseOf(mesh, p, first) {
     }
     return best < 0 ? -1 : first + best;
   };
+  // Where a ray meets the elements themselves, and their normal there: the plane of three middles about the place on the drawn face. Null
+  // where that is the face, to the raster of the middles, and where the three lie round an edge.
+  const onElements = (f, drawn, from, along) => {
+    const normal = normalOf(mesh, f), list = [];
+    for (let k = 0; k < 3; k++) list.push(...elementsAt(mesh.faces[4 * f + k] - p.vertex));
+    let at = drawn, n = null;
+    for (let pass = 0; pass < 3; pass++) {
+      const near = list.map((e) => [far(e, f, at), middleOf(e)]).sort((a, b) => a[0] - b[0]).slice(0, 12).map((e) => e[1]);
+      if (near.length < 3) return null;
+      const u = V.sub(near[1], near[0]), wide = (q) => Math.hypot(...V.cross(V.unit(u), V.unit(V.sub(q, near[0])))) > 0.5;
+      const third = near.slice(2).find(wide);
+      if (!third) return null;
+      if ([near[0], near[1], third].every((q) => Math.abs(V.dot(V.sub(q, drawn), normal)) <= mesh.middleStep)) return null;
+      const across = V.unit(V.cross(u, V.sub(third, near[0])));
+      n = V.dot(across, normal) < 0 ? across.map((v) => -v) : across;
+      const slope = V.dot(n, along);
+      if (V.dot(n, normal) < 0.7 || Math.abs(slope) < 0.1) return null;
+      at = V.along(from, along, V.dot(V.sub(near[0], from), n) / slope);
+    }
+    return { at, n };
+  };
   // By vertex the colour of the strongest state among its elements, the fainter the fewer have it; null where it has none.
   const inks = (state) => {
     const n = new Uint32Array(4 * nv);
@@ -301,7 +322,7 @@ function coarseOf(mesh, p, first) {
       return all ? [...TINTS[s].slice(0, 3), TINTS[s][3] * (0.4 + 0.6 * of[s] / all)] : null;
     });
   };
-  return { first, middle, middleOf, face, under, inks };
+  return { first, middle, middleOf, face, under, onElements, inks };
 }
 
 // Shells of the parts. Of a part that is drawn as it is, an element is a face; of another one, it is known by its middle.
@@ -335,6 +356,11 @@ function elementsOf(mesh) {
   plan.elementUnder = (f, ray) => {
     const of = coarse.get(mesh.part[f]);
     return of ? of.under(f, onFace(mesh, f, ...ray) || centreOf(mesh, f)) : -1;
+  };
+  // Where a ray that meets a drawn face meets the model, and the normal there.
+  plan.onSurface = (f, from, along) => {
+    const of = coarse.get(mesh.part[f]), at = onFace(mesh, f, from, along);
+    return at && ((of && of.onElements(f, at, from, along)) || { at, n: normalOf(mesh, f) });
   };
   return plan;
 }

@@ -100,8 +100,10 @@ async function scene(figure, data) {
         const [a, b, c] = [0, 1, 2].map((k) => values[mesh.vertexOf[t + k]]);
         if (!Number.isNaN(a + b + c)) list.set([a, b, c], t);
       }
-      ends = side === 2 ? [0, found.most] : [-found.most, found.most];
-      stops = side === 2 ? UNSIGNED : SIGNED;
+      // A magnitude begins at 0, and so does the larger magnitude of both sides.
+      const signed = side !== 2 && data.fields[f].signed;
+      ends = [signed ? -found.most : 0, found.most];
+      stops = signed ? SIGNED : UNSIGNED;
       const ramp = document.createElement("i");
       ramp.style.background = "linear-gradient(to right," + stops.join(",") + ")";
       const word = (t) => Object.assign(document.createElement("span"), { textContent: t });

@@ -1,7 +1,7 @@
 //! What the template is given: the page as JSON, every text made printable.
 
 use super::columns::{Fitted, LONGEST_WORD, fitted, is_numeric};
-use super::glyphs::{breakable, printable, shortened};
+use super::glyphs::{breakable, printable, short_printable};
 use super::shapes::picture_json;
 use crate::finding::{Finding, Severity};
 use crate::report::drawing::picture::Picture;
@@ -43,9 +43,9 @@ pub(super) fn content(page: &Page, origin: &Origin) -> Value {
     json!({
         "title": breakable(&page.title, IN_TEXT),
         "plain_title": printable(&page.title),
-        "running": shortened(&page.title, 80),
+        "running": short_printable(&page.title, 80),
         "lead": printable(&page.lead),
-        "running_lead": shortened(&page.lead, 50),
+        "running_lead": short_printable(&page.lead, 50),
         "program": origin.program,
         "command": origin.command,
         "units": units,

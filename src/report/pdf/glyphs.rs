@@ -1,5 +1,6 @@
 //! The fonts of the pages, and text that they can show.
 
+use crate::report::drawing::picture::shortened;
 use std::sync::OnceLock;
 use typst::foundations::Bytes;
 use typst::text::Font;
@@ -56,11 +57,6 @@ pub(super) fn breakable(text: &str, longest: usize) -> String {
 }
 
 /// At most `most` characters of printable text, marked where some are left out.
-pub(super) fn shortened(text: &str, most: usize) -> String {
-    let text = printable(text);
-    if text.chars().count() <= most {
-        return text;
-    }
-    let kept: String = text.chars().take(most.saturating_sub(1)).collect();
-    format!("{kept}…")
+pub(super) fn short_printable(text: &str, most: usize) -> String {
+    shortened(&printable(text), most)
 }

@@ -1,6 +1,6 @@
 //! A drawing for the template.
 
-use super::glyphs::shortened;
+use super::glyphs::short_printable;
 use crate::report::drawing::picture::{LONGEST, Picture, Shape};
 use serde_json::{Value, json};
 
@@ -8,8 +8,8 @@ use serde_json::{Value, json};
 pub(super) fn picture_json(picture: &Picture) -> Value {
     let shapes: Vec<Value> = picture.shapes.iter().map(shape).collect();
     json!({
-        "title": shortened(&picture.title, 120),
-        "caption": shortened(&picture.caption, 200),
+        "title": short_printable(&picture.title, 120),
+        "caption": short_printable(&picture.caption, 200),
         "width": picture.size[0],
         "height": picture.size[1],
         "shapes": shapes,
@@ -32,7 +32,7 @@ fn shape(s: &Shape) -> Value {
             json!({ "kind": "circle", "at": at, "radius": radius, "colour": colour, "pen": pen })
         }
         Shape::Word(w) => json!({
-            "kind": "word", "at": w.at, "anchor": w.anchor, "text": shortened(&w.text, LONGEST), "size": w.size, "upwards": w.upwards,
+            "kind": "word", "at": w.at, "anchor": w.anchor, "text": short_printable(&w.text, LONGEST), "size": w.size, "upwards": w.upwards,
         }),
     }
 }

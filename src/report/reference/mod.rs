@@ -81,7 +81,7 @@ fn key_page() -> String {
 fn result_page() -> String {
     let mut out = format!("# Fields of `result.json` and columns of tables\n\n{MADE}");
     out.push_str("A dot leads into an object or into each object of a list; `*` stands for any name. `report force` and the like: `units` of the \
-         same file says which. Columns `<load>` and `<gauge>` are named as in the job. Strain is microstrain everywhere. A number that does not exist is null, and an empty \
+         same file says which; `job force` and the like are units of the job's own system. Columns `<load>` and `<gauge>` are named as in the job. Strain is microstrain everywhere. A number that does not exist is null, and an empty \
          cell of a table.\n");
     let (fields, columns) = (fields(), columns());
     let mut commands: Vec<&str> = fields.iter().map(|f| f[0]).collect();

@@ -5,7 +5,7 @@ use super::pack::packed_scene;
 use super::part::Part;
 use super::pointing::{result, tools};
 use super::skin::{Finest, skin};
-use super::types::{Field, FieldValues, Pointing, Scene};
+use super::types::{FieldValues, Pointing, Scene};
 use super::view::SceneView;
 use crate::report::figure::embedded;
 use crate::report::page::{Block, Section};
@@ -51,6 +51,10 @@ fn switches(scene: &Scene, parts: &[Part]) -> Markup {
     };
     // Circles of a gap are seen best on plain grey.
     let plain = scene.marks.iter().any(|m| m.gap.is_some());
+    let signed = match scene.fields.iter().all(|f| f.values.is_signed()) {
+        true => ", signed",
+        false => "",
+    };
     html! {
         div.controls {
             @if !scene.fields.is_empty() {
@@ -59,9 +63,9 @@ fn switches(scene: &Scene, parts: &[Part]) -> Markup {
                     option value="-1" selected[plain] { "off: colour by property" }
                 } }
                 label { "at " select data-role="side" {
-                    option value="2" { "either side, magnitude" }
-                    option value="1" { "top (Z2), signed" }
-                    option value="0" { "bottom (Z1), signed" }
+                    option value="2" { "either side, the larger magnitude" }
+                    option value="1" { "top (Z2)" (signed) }
+                    option value="0" { "bottom (Z1)" (signed) }
                 } }
             }
             @if !scene.arrows.is_empty() {
@@ -96,8 +100,7 @@ fn switches(scene: &Scene, parts: &[Part]) -> Markup {
 
 /// What the colours are.
 fn coloured(scene: &Scene) -> &'static str {
-    let strain = |f: &Field| matches!(f.values, FieldValues::Strain(_));
-    if scene.fields.iter().all(strain) {
+    if scene.fields.iter().all(|f| f.values.is_signed()) {
         "Strain"
     } else {
         "Stress"
@@ -119,10 +122,11 @@ fn note(scene: &Scene, parts: &[Part], bytes: usize) -> Markup {
         p.muted {
             @if scene.marks.iter().any(|m| m.axes.is_some()) { "Strokes lie along the axes of the gauges: red on the top (Z2), blue on the bottom (Z1) of the element. " }
             @if scene.fields.iter().any(|f| matches!(f.values, FieldValues::Strain(_))) { "Colour: the largest principal strain by magnitude, from the centres of the elements. " }
-            @if scene.fields.iter().any(|f| matches!(f.values, FieldValues::Shells(_))) { "Colour: " (scene.fields.first().map_or("", |f| f.name.as_str())) ", from the centres of the elements. " }
+            @if scene.fields.iter().any(|f| matches!(f.values, FieldValues::Magnitudes(_))) { "Colour: " (scene.fields.first().map_or("", |f| f.name.as_str())) ", from the centres of the elements. " }
             @if !scene.arrows.is_empty() { "Arrows end where the load acts: green forces, violet moments (right-hand rule); a length compares within a kind. " }
             @if !whole { "The picture is coarser than the model, of the strains drawn together the largest. Nothing was computed on it. "
                 @if matches!(scene.pointing, Pointing::Places(_)) { "Brush and box take its elements all the same, by their middles. " }
+                @if scene.pointing != Pointing::Nothing && !scene.marks.is_empty() { "A gauge that is dragged is laid onto the elements, by their middles, not onto what is drawn. " }
             }
             span data-role="size" { (drawn) " triangles for " (all) " faces, " (bytes.div_ceil(1000)) " kB of this page." }
         }

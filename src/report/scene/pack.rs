@@ -185,7 +185,9 @@ fn field(model: &Model, f: &Field, parts: &[Part]) -> Value {
             )
         })
         .collect();
-    json!({ "name": f.name, "unit": f.unit, "step": short(most * f.scale / STEPS), "values": packed })
+    json!({
+        "name": f.name, "unit": f.unit, "signed": f.values.is_signed(), "step": short(most * f.scale / STEPS), "values": packed,
+    })
 }
 
 fn arrow(a: &Arrow, scene: &Scene) -> Value {

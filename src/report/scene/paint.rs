@@ -17,7 +17,7 @@ impl Values {
     pub(super) fn of_field(model: &Model, values: &FieldValues) -> Self {
         match values {
             FieldValues::Strain(case) => Self::of(model, case),
-            FieldValues::Shells(of_shells) => {
+            FieldValues::Magnitudes(of_shells) => {
                 let mut shells = of_shells.clone();
                 shells.resize(model.shells.len(), [f64::NAN; 2]);
                 let solids = vec![[f64::NAN; 2]; model.solids.len()];

@@ -198,7 +198,7 @@ fn numbers_of_shells_reach_the_vertices_without_a_strain() {
     let model = plate(2, 9);
     let parts = skin(&model, 1, Finest::FewFields);
     let given = [2.0, 4.0, 6.0, 8.0].map(|v| [v, f64::NAN]);
-    let values = Values::of_field(&model, &FieldValues::Shells(given.to_vec()));
+    let values = Values::of_field(&model, &FieldValues::Magnitudes(given.to_vec()));
     let [bottom, top] = values.on(&parts[0]);
     // Nine grids in rows of three: a corner has its element's number, a side the mean of two, the middle that of four.
     let at = |id: u32| {
@@ -207,6 +207,32 @@ fn numbers_of_shells_reach_the_vertices_without_a_strain() {
     };
     assert_eq!([at(1), at(2), at(5), at(9)], [2.0, 3.0, 5.0, 8.0]);
     assert!(top.iter().all(|v| v.is_nan()));
+}
+
+#[test]
+fn colours_of_magnitudes_begin_at_zero_and_those_of_strain_lie_about_it() {
+    let model = plate(2, 9);
+    let case = bent(&model, |i| i as f64 - 1.5);
+    let stress = FieldValues::Magnitudes(vec![[3.0, 5.0]; 4]);
+    for (values, signed) in [(FieldValues::Strain(&case), true), (stress, false)] {
+        let scene = Scene {
+            model: &model,
+            marks: Vec::new(),
+            fields: vec![Field {
+                name: "A".into(),
+                unit: String::new(),
+                values,
+                scale: 1.0,
+            }],
+            arrows: Vec::new(),
+            length: "mm",
+            pointing: Pointing::Nothing,
+        };
+        let section = scene_section("Model", &scene);
+        let page = Page::new("Plate", "", &[], vec![section]).to_html();
+        assert!(page.contains(&format!("\"signed\":{signed}")));
+        assert_eq!(page.contains("top (Z2), signed"), signed);
+    }
 }
 
 #[test]

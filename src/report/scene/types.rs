@@ -137,8 +137,15 @@ pub struct Field<'a> {
 pub enum FieldValues<'a> {
     /// The largest principal strain of a load case, by magnitude.
     Strain(&'a CaseResult),
-    /// Of every shell, at bottom and top; `NaN` where there is none.
-    Shells(Vec<[f64; 2]>),
+    /// A magnitude of every shell, never negative, at bottom and top; `NaN` where there is none.
+    Magnitudes(Vec<[f64; 2]>),
+}
+
+impl FieldValues<'_> {
+    /// Whether the colours lie about 0; those of magnitudes begin there.
+    pub fn is_signed(&self) -> bool {
+        matches!(self, Self::Strain(_))
+    }
 }
 
 /// Force or moment.

@@ -4,23 +4,27 @@ use crate::fe::{Balance, Reaction, Reactions, Solution, SolveReport};
 use crate::finding::Finding;
 use crate::report::page::{Block, Page, Section, number, table_section};
 use crate::report::scene::{Scene, scene_section};
+use crate::units::{Quantity, UnitSystem};
 
-/// Page of a solution: size of the model and its factor, resultants of applied and inertia loads, first elastic modes.
+/// Page of a solution: size of the model and its factor, resultants of applied and inertia loads, first elastic modes. `system` is that of the
+/// model, where a job states it.
 pub fn solution_page(
     title: &str,
+    system: Option<UnitSystem>,
     solution: &Solution,
     report: &SolveReport,
     scene: &Scene,
     findings: &[Finding],
 ) -> Page {
-    let rows = model_rows(report);
+    let units = Units::of(system);
+    let rows = model_rows(report, &units);
     let mut sections = vec![table_section("Model", &["quantity", "value"], &rows, "")];
     sections.push(scene_section("Loads and strain", scene));
     if !report.balance.is_empty() {
         let rows: Vec<Vec<String>> = report
             .balance
             .iter()
-            .flat_map(|b| balance_rows(solution, b))
+            .flat_map(|b| balance_rows(solution, b, &units))
             .collect();
         let head = [
             "subcase",
@@ -36,13 +40,13 @@ pub fn solution_page(
         sections.push(Section::new(
             "Balance",
             vec![
-                Block::Text("Resultants about the centre of gravity, basic frame, in the deck's units. Inertia loads are mass times the rigid acceleration that the applied loads give; both sum to nothing.".into()),
+                Block::Text("Resultants about the centre of gravity, basic frame. Inertia loads are mass times the rigid acceleration that the applied loads give; both sum to nothing.".into()),
                 Block::table(&head, rows),
             ],
         ));
     }
     if !report.reactions.is_empty() {
-        sections.push(reactions_section(&report.reactions));
+        sections.push(reactions_section(&report.reactions, &units));
     }
     if !report.modes.is_empty() {
         let rows: Vec<Vec<String>> = (1..)
@@ -64,7 +68,7 @@ pub fn solution_page(
 const GRIDS_SHOWN: usize = 12;
 
 /// Resultants of what acts and of the reactions, and the grids that carry most.
-fn reactions_section(all: &[Reactions]) -> Section {
+fn reactions_section(all: &[Reactions], units: &Units) -> Section {
     let mut rows = Vec::new();
     let mut row = |first: String, what: String, six: &[f64; 6]| {
         let mut row = vec![first, what];
@@ -72,26 +76,62 @@ fn reactions_section(all: &[Reactions]) -> Section {
         rows.push(row);
     };
     for r in all {
-        row(r.subcase.to_string(), "acts".into(), &r.applied);
-        row(String::new(), "reactions".into(), &r.total);
+        let of_loads = |what: &str| format!("{what}, {}", units.loads);
+        row(r.subcase.to_string(), of_loads("acts"), &r.applied);
+        row(String::new(), of_loads("reactions"), &r.total);
         let mut grids: Vec<&Reaction> = r.grids.iter().collect();
         let size = |g: &Reaction| g.force[..3].iter().map(|v| v * v).sum::<f64>();
         grids.sort_by(|a, b| size(b).total_cmp(&size(a)));
         for g in grids.into_iter().take(GRIDS_SHOWN) {
-            row(String::new(), format!("grid {}", g.grid), &g.force);
+            row(
+                String::new(),
+                of_loads(&format!("grid {}", g.grid)),
+                &g.force,
+            );
         }
     }
     let head = ["subcase", "", "FX", "FY", "FZ", "MX", "MY", "MZ"];
     Section::new(
         "Reactions",
         vec![
-            Block::Text("Of the supports, basic frame, in the deck's units; resultants about its origin, then the grids that carry most.".into()),
+            Block::Text("Of the supports, basic frame; resultants about its origin, then the grids that carry most.".into()),
             Block::table(&head, rows),
         ],
     )
 }
 
-fn model_rows(report: &SolveReport) -> Vec<Vec<String>> {
+/// Units of the model's numbers in words.
+struct Units {
+    mass: String,
+    length: String,
+    /// Forces, then moments.
+    loads: String,
+    /// Of a translation, then of a rotation.
+    acceleration: String,
+}
+
+impl Units {
+    /// Of a system; the deck's own where none is stated.
+    fn of(system: Option<UnitSystem>) -> Self {
+        let Some(system) = system else {
+            return Self {
+                mass: "deck's unit".into(),
+                length: "deck's unit".into(),
+                loads: "deck's units".into(),
+                acceleration: "deck's units".into(),
+            };
+        };
+        let name = |q: Quantity| system.unit(q).name;
+        Self {
+            mass: name(Quantity::Mass).into(),
+            length: name(Quantity::Length).into(),
+            loads: format!("{}, {}", name(Quantity::Force), name(Quantity::Moment)),
+            acceleration: format!("{}, rad/s2", name(Quantity::Acceleration)),
+        }
+    }
+}
+
+fn model_rows(report: &SolveReport, units: &Units) -> Vec<Vec<String>> {
     let mut rows = vec![
         vec!["Grids".to_owned(), report.grids.to_string()],
         vec!["Unknowns".into(), report.dofs.to_string()],
@@ -106,21 +146,21 @@ fn model_rows(report: &SolveReport) -> Vec<Vec<String>> {
         ],
     ];
     if let Some(m) = &report.mass {
-        rows.push(vec!["Mass".into(), number(m.mass)]);
+        rows.push(vec![format!("Mass, {}", units.mass), number(m.mass)]);
         let cg = [m.cg.x, m.cg.y, m.cg.z].map(number).join(", ");
-        rows.push(vec!["Centre of gravity".into(), cg]);
+        rows.push(vec![format!("Centre of gravity, {}", units.length), cg]);
     }
     rows
 }
 
-fn balance_rows(solution: &Solution, b: &Balance) -> [Vec<String>; 3] {
+fn balance_rows(solution: &Solution, b: &Balance, units: &Units) -> [Vec<String>; 3] {
     let label = solution
         .cases
         .iter()
         .find(|c| c.subcase == b.subcase)
         .map_or("", |c| c.label.as_str());
-    let row = |first: String, what: &str, six: &[f64; 6], last: String| {
-        let mut row = vec![first, what.to_owned()];
+    let row = |first: String, what: String, six: &[f64; 6], last: String| {
+        let mut row = vec![first, what];
         row.extend(six.iter().map(|v| number(*v)));
         row.push(last);
         row
@@ -128,14 +168,19 @@ fn balance_rows(solution: &Solution, b: &Balance) -> [Vec<String>; 3] {
     [
         row(
             format!("{} {label}", b.subcase),
-            "Applied",
+            format!("Applied, {}", units.loads),
             &b.applied,
             String::new(),
         ),
-        row(String::new(), "Inertia", &b.inertia, number(b.residual)),
         row(
             String::new(),
-            "Acceleration",
+            format!("Inertia, {}", units.loads),
+            &b.inertia,
+            number(b.residual),
+        ),
+        row(
+            String::new(),
+            format!("Acceleration, {}", units.acceleration),
             &b.acceleration,
             String::new(),
         ),

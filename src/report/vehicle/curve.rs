@@ -7,7 +7,7 @@ use crate::report::page::Block;
 pub struct Curve {
     /// Load or link name.
     pub name: String,
-    /// Time (s), frequency (Hz) or stretch.
+    /// Time (s), frequency (Hz) or stretch (job length).
     pub x: Vec<f64>,
     /// Recovered.
     pub recovered: Vec<f64>,

@@ -6,8 +6,8 @@ mod restoring;
 mod tables;
 
 pub use curve::Curve;
-pub use page::identify_page;
-pub use restoring::{restoring_curves, restoring_section};
+pub use page::{Curves, identify_page};
+pub use restoring::{restoring_curves, restoring_section, restoring_unit};
 pub use tables::{
     write_chassis_forces, write_parameters, write_restoring_force, write_wheel_forces,
 };

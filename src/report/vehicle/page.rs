@@ -8,17 +8,28 @@ use crate::report::page::{Block, Page, Section, number, table_section};
 use crate::series::detrend::rms;
 use crate::vehicle::chassis::ChassisForce;
 use crate::vehicle::identify::{Estimate, Identification};
+use crate::vehicle::term::UnitNames;
 
-/// Parameters, verdicts, fit, a stretch of wheel force over time, spectra, restoring forces.
+/// What the page draws.
+pub struct Curves {
+    /// Wheel forces over time.
+    pub histories: Vec<Curve>,
+    /// Their spectra.
+    pub spectra: Vec<Curve>,
+    /// Forces of links over their stretch.
+    pub restoring: Vec<Curve>,
+}
+
+/// Parameters, verdicts, fit, a stretch of wheel force over time, spectra, restoring forces; in job units.
 pub fn identify_page(
     title: &str,
+    units: &UnitNames,
     found: &Identification,
     findings: &[Finding],
-    histories: &[Curve],
-    spectra: &[Curve],
-    restoring: &[Curve],
+    curves: &Curves,
     chassis: &[ChassisForce],
 ) -> Page {
+    let force = &units.force;
     let mut sections = vec![parameters(found)];
     if !found.unidentifiable.is_empty() {
         let blocks = found.unidentifiable.iter().cloned().map(Block::Text);
@@ -30,7 +41,12 @@ pub fn identify_page(
     sections.push(Section::new("Fit", fit(found)));
     sections.push(Section::new(
         "Wheel force",
-        vec![plots(histories, "time, s", "force, N", Scale::Linear)],
+        vec![plots(
+            &curves.histories,
+            "time, s",
+            &format!("force, {force}"),
+            Scale::Linear,
+        )],
     ));
     let rows = chassis.iter().map(|f| {
         let sizes = [rms(&f.by_mass), rms(&f.by_springs), f.difference()].map(number);
@@ -38,20 +54,25 @@ pub fn identify_page(
     });
     sections.push(table_section(
         "Chassis force, RMS in the band",
-        &["body", "by mass, N", "by springs, N", "difference, N"],
+        &[
+            "body",
+            &format!("by mass, {force}"),
+            &format!("by springs, {force}"),
+            &format!("difference, {force}"),
+        ],
         &rows.collect::<Vec<Vec<String>>>(),
         "By mass: inertia times acceleration. By springs: what springs and dampers pass on. Either may be wrong by their difference.",
     ));
     sections.push(Section::new(
         "Spectra",
         vec![plots(
-            spectra,
+            &curves.spectra,
             "frequency, Hz",
-            "density of force, N²/Hz",
+            &format!("density of force, {force}²/Hz"),
             Scale::LogY,
         )],
     ));
-    sections.push(restoring_section(restoring));
+    sections.push(restoring_section(&curves.restoring, units));
     Page::new(
         title,
         "Vehicle parameters and wheel loads from accelerations",

@@ -6,6 +6,7 @@ use crate::report::page::Section;
 use crate::vehicle::identify::Identification;
 use crate::vehicle::loads::link_forces;
 use crate::vehicle::motion::Motion;
+use crate::vehicle::term::UnitNames;
 
 /// `-m a` of the body that link `l` alone carries, a value a sample; `None` where others carry it too, or it turns.
 pub fn asked_force(found: &Identification, motion: &Motion, l: usize) -> Option<Vec<f64>> {
@@ -25,12 +26,21 @@ pub fn asked_force(found: &Identification, motion: &Motion, l: usize) -> Option<
     (links.count() == 1).then(|| motion.bodies[body][0].iter().map(|a| -mass * a).collect())
 }
 
-/// Mean force of every link by bins of its stretch: from the model, and as the motion asks for it where that is known.
+/// Links whose forces the record tells: where nothing sets the scale of forces, coefficients are ratios to a mass and no forces.
+pub(super) fn links_told(found: &Identification) -> impl Iterator<Item = usize> + '_ {
+    let v = &found.vehicle;
+    let told = |i: usize| found.scaled[i] && found.values[i].is_finite();
+    let all_told = move |l: &usize| (0..v.links[*l].terms.len()).all(|t| told(v.term_index(*l, t)));
+    (0..v.links.len()).filter(all_told)
+}
+
+/// Mean force of every link that the record tells by bins of its stretch: from the model, and as the motion asks for it where that is known.
 pub fn restoring_curves(found: &Identification, motion: &Motion) -> Vec<Curve> {
     const BINS: usize = 41;
     let forces = link_forces(&found.vehicle, &found.values, motion);
     let mut out = Vec::new();
-    for (l, link) in found.vehicle.links.iter().enumerate() {
+    for l in links_told(found) {
+        let link = &found.vehicle.links[l];
         let d = &motion.stretch[l];
         let asked = asked_force(found, motion, l);
         let largest = d.iter().fold(0.0f64, |a, b| a.max(b.abs()));
@@ -60,9 +70,21 @@ pub fn restoring_curves(found: &Identification, motion: &Motion) -> Vec<Curve> {
 }
 
 /// The curves as a section of a page.
-pub fn restoring_section(curves: &[Curve]) -> Section {
+pub fn restoring_section(curves: &[Curve], units: &UnitNames) -> Section {
+    let stretch = format!("stretch, {}", units.length);
+    let force = format!("force, {}", units.force);
     Section::new(
         "Restoring force over stretch (measured: what the motion asks for)",
-        vec![plots(curves, "stretch, m", "force, N", Scale::Linear)],
+        vec![plots(curves, &stretch, &force, Scale::Linear)],
     )
+}
+
+/// The unit of a column of `restoring_force.csv`; empty: a name or a count.
+pub fn restoring_unit(column: &str, units: &UnitNames) -> String {
+    match column {
+        "stretch" => units.length.clone(),
+        "rate" => units.speed(),
+        "force_model" | "force_measured" => units.force.clone(),
+        _ => String::new(),
+    }
 }

@@ -1,6 +1,6 @@
 //! Tables of an identification.
 
-use super::restoring::asked_force;
+use super::restoring::{asked_force, links_told};
 use crate::vehicle::chassis::{ChassisForce, LeafSeat, split_leaf};
 use crate::vehicle::identify::Identification;
 use crate::vehicle::loads::{LoadHistory, link_forces};
@@ -76,7 +76,8 @@ pub fn write_restoring_force(found: &Identification, motion: &Motion) -> String 
     let mut out = String::from("link,stretch,rate,force_model,force_measured,samples\n");
     let v = &found.vehicle;
     let forces = link_forces(v, &found.values, motion);
-    for (l, link) in v.links.iter().enumerate() {
+    for l in links_told(found) {
+        let link = &v.links[l];
         let (d, r) = (&motion.stretch[l], &motion.rate[l]);
         let largest = |x: &[f64]| x.iter().fold(0.0f64, |a, b| a.max(b.abs()));
         let (dm, rm) = (largest(d), largest(r));

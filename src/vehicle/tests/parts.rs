@@ -8,6 +8,8 @@ use crate::vehicle::checks::check_mass_closure;
 use crate::vehicle::equations::Equation;
 use crate::vehicle::fit::{Allowed, fit};
 use crate::vehicle::interval::spread;
+use crate::vehicle::layout::MassStep;
+use crate::vehicle::loads::static_loads;
 use crate::vehicle::motion::VehicleError;
 use crate::vehicle::preset::PresetError;
 use crate::vehicle::simulate::{Drive, SimulationError, simulate};
@@ -251,6 +253,33 @@ fn the_masses_of_the_thesis_fail_against_its_mean_wheel_forces() {
             .is_none()
     );
     assert!(check_mass_closure(4000.0, 20.0, 3.0, 9.81).is_none());
+}
+
+/// (m_b + m_f) g; a mass that comes on the way leaves no one static load, and none to be weighed against.
+#[test]
+fn the_static_load_of_a_wheel_is_the_weight_of_masses_that_stay() {
+    let record = quarter(20_000, 11, TRUCK);
+    let mut q = task("front2", &[], (1.5, 12.0));
+    let id = identify(&q, &record, None).unwrap();
+    let loads = static_loads(&id, 9.81, "run");
+    let weight = (TRUCK[0] + TRUCK[1]) * 9.81;
+    assert_eq!(loads.names, ["f_wheel"]);
+    assert!(
+        (loads.values[0] - weight).abs() < 3.0 * loads.sigma(0),
+        "{} of {weight}, sigma {}",
+        loads.values[0],
+        loads.sigma(0)
+    );
+    assert!(id.mass_closure.is_some());
+    q.vehicle.steps.push(MassStep {
+        body: 0,
+        at_s: 20.0,
+        over_s: 0.0,
+        gravity: 9.81,
+    });
+    let id = identify(&q, &record, None).unwrap();
+    assert!(static_loads(&id, 9.81, "run").names.is_empty());
+    assert_eq!(id.mass_closure, None);
 }
 
 #[test]

@@ -198,7 +198,7 @@ impl Whole<'_> {
 ///
 /// # Errors
 /// Parts that make no quadrilateral.
-pub(crate) fn many_shell(
+pub(super) fn many_shell(
     model: &Model,
     shell: &Shell,
     property: &ShellProperty,
@@ -305,7 +305,7 @@ const GAUSS: [(f64, f64); 3] = [
 ];
 
 /// Calls with functions (corners, then mid-side grids), area vector and thickness at the points of a rule on the surface.
-pub(crate) fn over_surface(
+pub(super) fn over_surface(
     model: &Model,
     shell: &Shell,
     mut at: impl FnMut(&[[f64; 4]], Vec3, f64),
