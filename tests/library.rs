@@ -682,3 +682,32 @@ fn reconcile_has_the_s_that_every_command_has() {
     let stated = 3.0 + 2.5 * (2.1_f64).cos();
     assert!((frame.loads[a] - 1e-6 * stated).abs() < 1e-12);
 }
+
+/// Stops the work when it begins to solve.
+struct StopsAtSolve(strainbridge::stop::Stop);
+
+impl strainbridge::app::context::Progress for StopsAtSolve {
+    fn begin(&self, stage: &str) {
+        if stage == "solve" {
+            self.0.ask();
+        }
+    }
+
+    fn stop(&self) -> strainbridge::stop::Stop {
+        self.0.clone()
+    }
+}
+
+#[test]
+fn work_that_is_stopped_while_it_solves_says_so_and_blames_no_deck() {
+    let files = files();
+    let job = Job::read("job.toml", &files).unwrap();
+    let stops = StopsAtSolve(strainbridge::stop::Stop::new());
+    let context = Context::new(&files).progress(&stops);
+    let faults = sensitivity(&job, &context).unwrap_err();
+    let first = faults.first().unwrap();
+    assert_eq!(
+        (first.file.as_str(), first.wrong.as_str()),
+        ("work", "stopped")
+    );
+}
