@@ -722,3 +722,32 @@ fn a_folder_is_verified_by_whoever_can_answer_again() {
     assert!(fault.to_string().contains("isn't found"), "{fault}");
     std::fs::remove_dir_all(folder).unwrap();
 }
+
+/// Stops the work when it begins to solve.
+struct StopsAtSolve(strainbridge::stop::Stop);
+
+impl strainbridge::app::context::Progress for StopsAtSolve {
+    fn begin(&self, stage: &str) {
+        if stage == "solve" {
+            self.0.ask();
+        }
+    }
+
+    fn stop(&self) -> strainbridge::stop::Stop {
+        self.0.clone()
+    }
+}
+
+#[test]
+fn work_that_is_stopped_while_it_solves_says_so_and_blames_no_deck() {
+    let files = files();
+    let job = Job::read("job.toml", &files).unwrap();
+    let stops = StopsAtSolve(strainbridge::stop::Stop::new());
+    let context = Context::new(&files).progress(&stops);
+    let faults = sensitivity(&job, &context).unwrap_err();
+    let first = faults.first().unwrap();
+    assert_eq!(
+        (first.file.as_str(), first.wrong.as_str()),
+        ("work", "stopped")
+    );
+}

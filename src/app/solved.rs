@@ -5,7 +5,7 @@ use super::deck::DeckModel;
 use super::fault::{Fault, FaultList, Faults};
 use super::job::Job;
 use super::store::{Key, read_solution, write_solution};
-use super::work::Work;
+use super::work::{Work, stopped};
 use crate::fe::{
     Corners, FeError, LoadCase, Solution, SolveOptions, SolveReport, Solved, Support,
     SupportChoice, UnitLoad, solution_of, solve_displacements, support_of,
@@ -232,8 +232,11 @@ fn identity(work: &mut Work, read: &DeckModel, cases: &[LoadCase], made: &str) -
     text
 }
 
-/// The solver's faults with file and line.
+/// The solver's faults with file and line; that the work was stopped is no fault of the deck.
 pub fn faults_of(error: &FeError, read: &DeckModel) -> Faults {
+    if *error == FeError::Stopped {
+        return stopped().into();
+    }
     let list: FaultList = error
         .faults()
         .into_iter()

@@ -5,7 +5,7 @@ use super::element::ElementMatrix;
 use super::error::{FeError, Refusal};
 use super::prepared::Prepared;
 use crate::linalg::sparse::{BlockGraph, BlockMatrix, DenseTerm, Symbolic};
-use crate::model::{GridIx, Mat3};
+use crate::model::{ElementRef, GridIx, Mat3};
 use rayon::prelude::*;
 
 /// Elements formed at a time: bounds the memory of their matrices.
@@ -113,10 +113,10 @@ pub(crate) fn assemble(
     reduction: &Reduction,
 ) -> Result<Assembled, FeError> {
     let model = prepared.model;
-    let elements = prepared.elements();
+    let elements: Vec<ElementRef> = model.elements().collect();
     let cliques: Vec<Vec<(u32, u8)>> = elements
         .par_iter()
-        .map(|e| reached(reduction, &prepared.grids(*e), prepared.dofs(*e)))
+        .map(|e| reached(reduction, &model.element_grids(*e), prepared.dofs(*e)))
         .collect();
     let mut free = vec![0_u8; model.grids.len()];
     for &(g, bits) in cliques.iter().flatten() {

@@ -69,10 +69,9 @@ pub(super) fn reactions(
     if grounds.is_empty() && !holds.contains(&true) {
         return Ok(Vec::new());
     }
-    let elements: Vec<ElementRef> = prepared
+    let elements: Vec<ElementRef> = model
         .elements()
-        .into_iter()
-        .filter(|e| prepared.grids(*e).iter().any(|g| holds[g.us()]))
+        .filter(|e| model.element_grids(*e).iter().any(|g| holds[g.us()]))
         .collect();
     let internal = internal_forces(prepared, &elements, cases)?;
     let x: Vec<Vec3> = model.grids.iter().map(|g| g.x).collect();

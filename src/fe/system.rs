@@ -308,8 +308,8 @@ impl System {
 /// Grids that belong to the structure: of an element, or tied to it.
 fn touched(prepared: &Prepared<'_>, reduction: &Reduction) -> Vec<bool> {
     let mut touched = vec![false; prepared.model.grids.len()];
-    for element in prepared.elements() {
-        for g in prepared.grids(element) {
+    for element in prepared.model.elements() {
+        for g in prepared.model.element_grids(element) {
             touched[g.us()] = true;
         }
     }
@@ -331,8 +331,8 @@ fn subtract_enforced(
     f: &mut [[f64; 6]],
 ) -> Result<(), FeError> {
     let u0 = reduction.expand(&vec![[0.0; 6]; prepared.model.grids.len()]);
-    for element in prepared.elements() {
-        let grids = prepared.grids(element);
+    for element in prepared.model.elements() {
+        let grids = prepared.model.element_grids(element);
         if grids.iter().all(|g| u0[g.us()] == [0.0; 6]) {
             continue;
         }

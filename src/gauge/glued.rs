@@ -19,6 +19,31 @@ pub struct Offset {
     pub angle_rad: f64,
 }
 
+impl Offset {
+    /// So far along its axis.
+    pub fn along(length: f64) -> Self {
+        Self {
+            along: length,
+            ..Self::default()
+        }
+    }
+
+    /// So far across it.
+    pub fn across(length: f64) -> Self {
+        Self {
+            across: length,
+            ..Self::default()
+        }
+    }
+}
+
+/// Share of a step by which a foot may lie beside the point that was asked for: on a shell that goes on smoothly, at 20 degrees, it is
+/// `sin^2 20`. What lies farther was stopped by an edge.
+const BESIDE: f64 = 1.0 - SMOOTH * SMOOTH;
+
+/// How often a step is halved where edges stop it on both sides.
+const HALVINGS: usize = 8;
+
 /// A gauge on shells as drawn, and the shells that it may sit on.
 #[derive(Clone, Debug)]
 pub struct Drawn<'m> {
@@ -102,5 +127,44 @@ impl<'m> Drawn<'m> {
         };
         let (built, _) = build_by(self.model, &spec, self.corners, |_| Some(foot)).ok()?;
         Some((built.into_iter().next()?, foot.point))
+    }
+
+    /// Change of what `read` gives per unit of length that the gauge is glued off along `way`: the central difference over `step` either way;
+    /// where an edge of the surface stops the gauge on one side, the difference on the other side. `None` where both are stopped however short
+    /// the step, or nothing is read.
+    pub fn slope(
+        &self,
+        way: fn(f64) -> Offset,
+        step: f64,
+        read: impl Fn(&Gauge) -> Option<Vec<f64>>,
+    ) -> Option<Vec<f64>> {
+        // Where it comes to lie along the way, and what it reads there.
+        let end = |asked: f64| -> Option<(f64, Vec<f64>)> {
+            let (gauge, x) = self.glued(way(asked))?;
+            let unit = way(1.0);
+            let axis = self.gauge.direction;
+            let across = self.gauge.normal.cross(&axis);
+            let off = x - self.at;
+            let (a, c) = (off.dot(&axis), off.dot(&across));
+            let beside = (a - unit.along * asked).hypot(c - unit.across * asked);
+            if beside > BESIDE * asked.abs() {
+                return None;
+            }
+            Some((a * unit.along + c * unit.across, read(&gauge)?))
+        };
+        let here = end(0.0)?;
+        (0..HALVINGS).find_map(|n| {
+            let step = step * 0.5_f64.powi(n as i32);
+            let (from, to) = match (end(-step), end(step)) {
+                (None, None) => return None,
+                (from, to) => (
+                    from.unwrap_or_else(|| here.clone()),
+                    to.unwrap_or_else(|| here.clone()),
+                ),
+            };
+            let span = to.0 - from.0;
+            let change = to.1.iter().zip(&from.1).map(|(b, a)| (b - a) / span);
+            Some(change.collect())
+        })
     }
 }

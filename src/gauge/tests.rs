@@ -474,3 +474,37 @@ fn a_moved_gauge_reads_the_slope_of_a_linear_field_along_the_way_it_moves() {
         assert!((change - E[0] * expected).abs() < 1e-12, "{way}: {change}");
     }
 }
+
+#[test]
+fn a_gauge_at_a_free_edge_has_the_slope_of_a_linear_field_as_one_inside_has() {
+    let m = plate(3, 3, 0);
+    // Microstrain per length along x and y of the strain along x, gauges along x.
+    let case = field(&m, CornerRows::Present, |x, _| {
+        [2.0 * x.x - 5.0 * x.y, 0.0, 0.0]
+    });
+    let corner = CornerRows::Present;
+    for at in [
+        [15.0, 15.0],
+        [0.0, 15.0],
+        [30.0, 15.0],
+        [12.0, 0.0],
+        [0.0, 30.0],
+        // Nearer to the edge than the step.
+        [1.0, 29.0],
+    ] {
+        let spec = GaugeSpec {
+            place: GaugePlace::Nearest(Vec3::new(at[0], at[1], 1.0)),
+            surface: Some(Surface::Top),
+            direction: Some(Vec3::x()),
+            ..GaugeSpec::on("g", ShellIx(0))
+        };
+        let (gauges, _) = build(&m, &spec, corner).unwrap();
+        let drawn = Drawn::new(&m, &spec, &gauges[0], corner, 20.0).unwrap();
+        let read = |g: &Gauge| Some(vec![reading(g, &case)?]);
+        let along = drawn.slope(Offset::along, 3.0, read).unwrap();
+        let across = drawn.slope(Offset::across, 3.0, read).unwrap();
+        // Round-off of strain of about 100 over a step of 1.
+        assert!((along[0] - 2.0).abs() < 1e-9, "{at:?}: {along:?}");
+        assert!((across[0] + 5.0).abs() < 1e-9, "{at:?}: {across:?}");
+    }
+}

@@ -3,6 +3,7 @@
 use super::errors::ErrorModel;
 use super::gain::Gain;
 use super::kernel::Samples;
+use super::missing::Missing;
 use super::plausible::LARGEST_STRAIN;
 use super::sums::Sums;
 use super::types::Widening;
@@ -97,12 +98,19 @@ impl Filter {
 
     /// Loads of samples (`n_gauges` readings each, times `to_strain`), appended to `out` and to `sums`.
     pub fn apply(&self, samples: &[f64], to_strain: f64, out: &mut SampleLoads, sums: &mut Sums) {
-        self.recover(samples, to_strain, out, Some(sums));
+        let missing = self.recover(samples, to_strain, out, Some(sums));
+        sums.add_gaps(&missing);
     }
 
-    /// Loads of samples, as [`Filter::apply`], without sums: half the arithmetic.
-    pub fn loads_of(&self, samples: &[f64], to_strain: f64, out: &mut SampleLoads) {
-        self.recover(samples, to_strain, out, None);
+    /// Loads of samples, as [`Filter::apply`], with a count of what is missing in them and without sums: half the arithmetic.
+    pub fn loads_of(
+        &self,
+        samples: &[f64],
+        to_strain: f64,
+        out: &mut SampleLoads,
+        missing: &mut Missing,
+    ) {
+        missing.merge(&self.recover(samples, to_strain, out, None));
     }
 
     fn recover(
@@ -111,7 +119,7 @@ impl Filter {
         to_strain: f64,
         out: &mut SampleLoads,
         mut sums: Option<&mut Sums>,
-    ) {
+    ) -> Missing {
         let (n, k) = (self.n_gauges(), self.n_loads());
         let before = out.values.len() / k.max(1);
         let mut gaps = Vec::new();
@@ -125,6 +133,8 @@ impl Filter {
             gaps: &mut gaps,
             sums: sums.as_deref_mut(),
         });
+        let mut missing = Missing::new(k);
+        missing.whole = (samples.len() / n.max(1) - gaps.len()) as u64;
         for at in gaps {
             let readings = samples.get(at * n..(at + 1) * n).unwrap_or_default();
             let gain = self.with_gap(
@@ -133,9 +143,11 @@ impl Filter {
                 &mut out.values,
                 (before + at) * k,
                 sums.as_deref_mut(),
+                &mut missing,
             );
             out.gaps.push((before + at, gain));
         }
+        missing
     }
 
     /// Loads of a sample in which some gauge gave nothing, from the others; the estimate taken.
@@ -145,24 +157,21 @@ impl Filter {
         to_strain: f64,
         out: &mut [f64],
         at: usize,
-        mut sums: Option<&mut Sums>,
+        sums: Option<&mut Sums>,
+        missing: &mut Missing,
     ) -> Option<Arc<Gain>> {
         let mut strain: Vec<f64> = readings
             .iter()
             .zip(&self.zero)
             .map(|(v, z)| v * to_strain - z)
             .collect();
-        let mut impossible = 0;
         for v in &mut strain {
             if v.abs() > LARGEST_STRAIN {
-                impossible += 1;
+                missing.impossible += 1;
                 *v = f64::NAN;
             }
         }
-        if let Some(sums) = &mut sums {
-            sums.gaps += 1;
-            sums.impossible += impossible;
-        }
+        missing.gaps += 1;
         let used: Vec<usize> = (0..strain.len())
             .filter(|&g| strain[g].is_finite())
             .collect();
@@ -171,6 +180,9 @@ impl Filter {
         for (l, v) in loads.iter().enumerate().filter(|(l, _)| gain.is_seen(*l)) {
             if let Some(slot) = out.get_mut(at + l) {
                 *slot = *v;
+            }
+            if let Some(known) = missing.known_in_gaps.get_mut(l) {
+                *known += 1;
             }
         }
         if let Some(sums) = sums {
@@ -186,7 +198,6 @@ impl Filter {
             sums.max[l] = sums.max[l].max(*v);
             sums.sum[l] += v;
             sums.sum_of_squares[l] += v * v;
-            sums.known_in_gaps[l] += 1;
         }
         for &g in &gain.used {
             let row = self.s.values.row(g);

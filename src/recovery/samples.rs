@@ -2,9 +2,9 @@
 
 use super::errors::ErrorModel;
 use super::gain::Gain;
+use super::missing::Missing;
 use super::plausible;
 use super::runs::recover;
-use super::sums::Sums;
 use super::types::{Readings, Recovery};
 use super::verdict::NOT_SOLVABLE;
 use crate::finding::{Finding, Severity, few};
@@ -31,50 +31,6 @@ fn all_tell(s: &Sensitivity, errors: ErrorModel, recovery: &Recovery) -> bool {
     let wanted = (0..s.loads.len()).filter(|&l| s.loads[l].wanted);
     Gain::new(s, &all, errors, 1.0, &recovery.typical)
         .is_some_and(|gain| wanted.into_iter().all(|l| gain.is_seen(l)))
-}
-
-/// Samples of a record in which something is missing.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Missing {
-    /// Samples in which every gauge read.
-    pub whole: u64,
-    /// Samples in which some gauge gave nothing.
-    pub gaps: u64,
-    /// Readings too large to be strain, taken for none.
-    pub impossible: u64,
-    /// Samples with a gap in which a load is known all the same, by load.
-    pub known_in_gaps: Vec<u64>,
-}
-
-impl From<&Sums> for Missing {
-    fn from(sums: &Sums) -> Self {
-        Self {
-            whole: sums.samples,
-            gaps: sums.gaps,
-            impossible: sums.impossible,
-            known_in_gaps: sums.known_in_gaps.clone(),
-        }
-    }
-}
-
-impl Missing {
-    /// None of no samples, for `k` loads.
-    pub fn new(k: usize) -> Self {
-        Self {
-            known_in_gaps: vec![0; k],
-            ..Self::default()
-        }
-    }
-
-    /// Both together.
-    pub fn merge(&mut self, other: &Self) {
-        self.whole += other.whole;
-        self.gaps += other.gaps;
-        self.impossible += other.impossible;
-        for (a, b) in self.known_in_gaps.iter_mut().zip(&other.known_in_gaps) {
-            *a += b;
-        }
-    }
 }
 
 /// What is to be said of a record's gaps: that there are some, readings that are none, and loads that no sample tells, which is an error.

@@ -1,5 +1,7 @@
 //! Sums over a record.
 
+use super::missing::Missing;
+
 /// Sums over a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sums {
@@ -55,6 +57,15 @@ impl Sums {
         self.samples + self.read_in_gaps.get(g).copied().unwrap_or(0)
     }
 
+    /// Counts what is missing in samples whose sums are in already.
+    pub(super) fn add_gaps(&mut self, missing: &Missing) {
+        self.gaps += missing.gaps;
+        self.impossible += missing.impossible;
+        for (sum, known) in self.known_in_gaps.iter_mut().zip(&missing.known_in_gaps) {
+            *sum += known;
+        }
+    }
+
     /// Both together.
     pub fn merge(&mut self, other: &Self) {
         self.samples += other.samples;
@@ -73,5 +84,16 @@ impl Sums {
         add(&mut self.reading, &other.reading);
         count(&mut self.known_in_gaps, &other.known_in_gaps);
         count(&mut self.read_in_gaps, &other.read_in_gaps);
+    }
+}
+
+impl From<&Sums> for Missing {
+    fn from(sums: &Sums) -> Self {
+        Self {
+            whole: sums.samples,
+            gaps: sums.gaps,
+            impossible: sums.impossible,
+            known_in_gaps: sums.known_in_gaps.clone(),
+        }
     }
 }

@@ -16,6 +16,16 @@ pub enum Quantity {
 }
 
 impl Quantity {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::Force,
+        Self::Moment,
+        Self::Length,
+        Self::Mass,
+        Self::Stress,
+        Self::Acceleration,
+    ];
+
     /// The word a job uses.
     pub fn word(self) -> &'static str {
         match self {
@@ -88,6 +98,7 @@ pub fn find_unit(quantity: Quantity, name: &str) -> Option<Unit> {
     let plain = |s: &str| {
         s.chars()
             .filter(|c| !matches!(c, ' ' | '*' | '.' | '-' | '^'))
+            .map(|c| if c == '²' { '2' } else { c })
             .collect::<String>()
     };
     let wanted = plain(name);

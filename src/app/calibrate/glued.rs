@@ -6,7 +6,7 @@ use crate::app::job::{CalibrationKeys, Job};
 use crate::app::strain::{Prepared, corrected_spec_of};
 use crate::calibrate::{AsGlued, GlueTolerance, MoveKind, OffDrawing};
 use crate::finding::{Finding, Severity, few};
-use crate::gauge::{CornerRows, Drawn, Offset, centre, reading};
+use crate::gauge::{CornerRows, Drawn, Gauge, Offset, centre, reading};
 use crate::linalg::Matrix;
 use crate::model::Model;
 use crate::sensitivity::LoadCaseOf;
@@ -15,7 +15,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 /// Sd of the tolerance over which a gauge may be looked for.
 const REACH: f64 = 6.0;
 
-/// Half step of the central differences in place over the reach of a gauge: within its element and the next.
+/// Half step of the differences in place over the reach of a gauge: within its element and the next.
 const PLACE_STEP: f64 = 0.5;
 
 /// The job's gauges on its model, free to move.
@@ -85,10 +85,20 @@ impl<'a> Sites<'a> {
             across,
             angle_rad,
         })?;
+        self.row_of(&gauge)
+    }
+
+    fn row_of(&self, gauge: &Gauge) -> Option<Vec<f64>> {
         let cases = self.cases.iter();
         cases
-            .map(|l| Some(reading(&gauge, l.case)? / l.applied))
+            .map(|l| Some(reading(gauge, l.case)? / l.applied))
             .collect()
+    }
+
+    /// Change of the row of a gauge per unit of length that it moves along a way; `None` where the surface or its strain doesn't tell.
+    fn slope(&self, gauge: usize, way: fn(f64) -> Offset, step: f64) -> Option<Vec<f64>> {
+        let drawn = self.gauges.get(gauge)?.as_ref()?;
+        drawn.slope(way, step, |g| self.row_of(g))
     }
 
     /// Where a gauge was found; `None` for one on a bar.
@@ -151,21 +161,23 @@ pub(super) fn off_drawing(job: &Job, prepared: &Prepared) -> Result<Option<OffDr
         reach,
     };
     for g in 0..n {
-        let between = |from: [f64; 3], to: [f64; 3], span: f64| -> Option<Vec<f64>> {
-            let (a, b) = (sites.row(g, from)?, sites.row(g, to)?);
-            Some(b.iter().zip(&a).map(|(b, a)| (b - a) / span).collect())
+        let between = |from: f64, to: f64| -> Option<Vec<f64>> {
+            let (a, b) = (
+                sites.row(g, [0.0, 0.0, from])?,
+                sites.row(g, [0.0, 0.0, to])?,
+            );
+            Some(b.iter().zip(&a).map(|(b, a)| b - a).collect())
         };
         // A reading is c + a cos(2x) + b sin(2x) of the angle x: 45 degrees either way give its derivative 2 b exactly.
-        let (a, x) = (FRAC_PI_4, PLACE_STEP * reach);
-        let changes = [
-            between([0.0, 0.0, -a], [0.0, 0.0, a], 1.0),
-            between([0.0; 3], [0.0, 0.0, FRAC_PI_2], 1.0),
-            between([-x, 0.0, 0.0], [x, 0.0, 0.0], 2.0 * x),
-            between([0.0, -x, 0.0], [0.0, x, 0.0], 2.0 * x),
-        ];
-        let [Some(turned), Some(crossed), Some(along), Some(across)] = changes else {
+        let turns = [between(-FRAC_PI_4, FRAC_PI_4), between(0.0, FRAC_PI_2)];
+        let [Some(turned), Some(crossed)] = turns else {
             continue;
         };
+        let ways: [fn(f64) -> Offset; 2] = [Offset::along, Offset::across];
+        let [along, across] = ways.map(|way| {
+            let slope = sites.slope(g, way, PLACE_STEP * reach);
+            slope.unwrap_or_else(|| vec![0.0; k])
+        });
         for l in 0..k {
             out.turned[(g, l)] = turned[l];
             out.crossed[(g, l)] = crossed[l];

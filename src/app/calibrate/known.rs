@@ -1,7 +1,7 @@
 //! Known loads of the runs file: values, their sd, sums, repeats.
 
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::column_unit::{held_twice, known_column, place_of, run_column, take_units};
+use crate::app::job::column_unit::{asked_column, known_column, place_of, run_column, take_units};
 use crate::app::job::quantity::quantity_of_name;
 use crate::app::job::suggest;
 use crate::app::job::table::{Table, read_table};
@@ -247,6 +247,7 @@ fn asked_rows(
     Some(out)
 }
 
+/// The column that a key of `[calibration]` names.
 fn column(
     job: &Job,
     table: &Table,
@@ -255,20 +256,8 @@ fn column(
     key: &str,
     faults: &mut FaultList,
 ) -> Option<usize> {
-    faults.extend(held_twice(table, name));
-    let found = place_of(table, headers, name);
-    if found.is_none() {
-        let wrong = format!("`{}` has no column `{name}`", table.file);
-        let remedy = suggest::remedy(name, table.header.iter().map(String::as_str));
-        faults.push(Fault::at(
-            &*job.file,
-            job.calibration.line,
-            key,
-            wrong,
-            remedy,
-        ));
-    }
-    found
+    let at = (job.calibration.line, key);
+    asked_column(job, at, table, headers, name, faults)
 }
 
 fn quantity(load: Option<&JobLoad>, name: &str) -> Option<Quantity> {
@@ -316,7 +305,9 @@ fn stated(
         };
         let given = runs.columns.get(name).map_or(name, String::as_str);
         let own = [name, given].map(|n| format!("{n}_sd"));
-        let sd = own.iter().find(|n| place_of(table, headers, n).is_some());
+        let sd = own
+            .iter()
+            .find(|n| !matches!(place_of(table, headers, n), Ok(None)));
         let sd = sd.and_then(|n| known_column(job, runs, table, headers, n, quantity, faults));
         let of = |unit: Option<Unit>| unit.map_or(1.0, |u| 1.0 / factor(job.units, u));
         let of_file = of(quantity.map(|q| runs.units.unit(q)));

@@ -5,8 +5,8 @@ use super::health::Health;
 use super::judged::{Judged, findings_of};
 use super::recovering::{Part, Recovering, counted};
 use crate::app::job::StrainCorrection;
-use crate::app::job::correct::{Channel, channel_of, column_of};
-use crate::app::job::strain::strain_columns;
+use crate::app::job::correct::{Channel, channel_of, column_of, columns_wanted};
+use crate::app::job::gauge_column::strain_columns;
 use crate::app::strain::LoadUnits;
 use crate::finding::Severity;
 use crate::linalg::Matrix;
@@ -163,6 +163,11 @@ impl Kernel {
         )
     }
 
+    /// The columns that a record is read for.
+    pub fn wanted(&self) -> Vec<String> {
+        columns_wanted(&self.corrections, &self.sensitivity.gauges)
+    }
+
     /// The gauges that read, and the filter from them.
     fn prepared(
         &self,
@@ -170,36 +175,23 @@ impl Kernel {
         findings: &mut Vec<DayFinding>,
     ) -> Result<Recovering, String> {
         let all = &self.sensitivity;
-        let read = all
-            .gauges
-            .iter()
-            .map(|g| (g, channel_of(&self.corrections, g)));
-        let wanted: Vec<String> = read
-            .filter(|(_, channel)| !channel.ignore)
-            .map(|(g, _)| column_of(&self.corrections, g).to_owned())
-            .collect();
-        let (names, micro) = strain_columns("record", record.columns(), &wanted).map_err(|e| {
+        let columns = strain_columns("record", record.columns(), &self.wanted()).map_err(|e| {
             let list = e.into_list();
             let each = list.iter().map(|f| format!("`{}`: {}", f.field, f.wrong));
             each.collect::<Vec<_>>().join("; ")
         })?;
-        let mut places: HashMap<&str, usize> = HashMap::new();
-        for (c, name) in names.iter().enumerate() {
-            if places.insert(name, c).is_some() && all.gauges.contains(name) {
-                return Err(format!("two columns are named `{name}`"));
-            }
-        }
+        let named = columns.iter().enumerate();
+        let places: HashMap<&str, (usize, f64)> = named
+            .filter_map(|(i, c)| Some((c.name.as_str(), (i, c.microstrain?))))
+            .collect();
         let mut found = Vec::new();
         for (g, name) in all.gauges.iter().enumerate() {
             let channel = channel_of(&self.corrections, name);
             if channel.ignore {
                 continue;
             }
-            match places
-                .get(column_of(&self.corrections, name))
-                .and_then(|c| Some((*c, micro.get(*c)?)))
-            {
-                Some((c, micro)) => found.push((g, c, line_of(*micro, channel))),
+            match places.get(column_of(&self.corrections, name)) {
+                Some(&(c, micro)) => found.push((g, c, line_of(micro, channel))),
                 None => findings.push(said(
                     Severity::Warning,
                     "gauge-missing",

@@ -249,7 +249,7 @@ fn one(
 pub fn day_of(kernel: &Kernel, bytes: FileBytes) -> Result<Day, String> {
     let options = Options {
         declared_hz: None,
-        wanted: kernel.sensitivity.gauges.clone(),
+        wanted: kernel.wanted(),
     };
     let record = open_record(Arc::new(bytes), &options).map_err(|e| e.to_string())?;
     kernel.day(&record)

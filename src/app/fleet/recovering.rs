@@ -4,7 +4,6 @@ use super::health::Health;
 use super::judged::Judged;
 use crate::recovery::Missing;
 use crate::recovery::history::{Filter, SampleLoads};
-use crate::recovery::plausible::LARGEST_STRAIN;
 use crate::sensitivity::Sensitivity;
 use crate::series::SeriesError;
 use crate::series::rainflow::Counter;
@@ -69,25 +68,14 @@ impl Recovering {
             }
             recovered.values.clear();
             recovered.gaps.clear();
-            self.filter.loads_of(&strain, 1.0, &mut recovered);
+            self.filter
+                .loads_of(&strain, 1.0, &mut recovered, &mut part.missing);
             let loads = &mut recovered.values;
             for row in loads.chunks_exact_mut(k) {
                 row.iter_mut().zip(&self.factors).for_each(|(v, f)| *v *= f);
             }
-            let missing = &mut part.missing;
-            missing.whole += (strain.len() / n - recovered.gaps.len()) as u64;
-            missing.gaps += recovered.gaps.len() as u64;
             for row in strain.chunks_exact_mut(n) {
                 row.iter_mut().zip(&self.zero).for_each(|(v, z)| *v -= z);
-            }
-            for (i, gain) in &recovered.gaps {
-                let row = strain.get(i * n..(i + 1) * n).unwrap_or_default();
-                let impossible = row.iter().filter(|v| v.abs() > LARGEST_STRAIN);
-                missing.impossible += impossible.count() as u64;
-                let told = gain.as_deref();
-                for (l, known) in missing.known_in_gaps.iter_mut().enumerate() {
-                    *known += u64::from(told.is_some_and(|g| g.is_seen(l)));
-                }
             }
             part.health.add(&strain, loads);
             part.judged.add(block.first, &strain, loads);

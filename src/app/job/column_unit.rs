@@ -6,7 +6,7 @@ use super::types::{Job, Runs};
 use crate::app::fault::{Fault, FaultList};
 use crate::series::number::DecimalMark;
 use crate::series::record::csv::is_units;
-use crate::series::record::{Column, name_and_unit, take_unit_below};
+use crate::series::record::{Clash, Column, name_and_unit, take_unit_below};
 use crate::units::{Quantity, Unit, find_unit, unit_names};
 
 /// Name and unit of every column; a row of units below the names is taken out of the table. A unit beside the name goes before that row's.
@@ -18,20 +18,60 @@ pub fn take_units(t: &mut Table) -> Vec<Column> {
     });
     if is_row {
         let (_, units) = t.rows.remove(0);
-        for ((c, header), unit) in columns.iter_mut().zip(&t.header).zip(&units) {
-            take_unit_below(c, header, unit);
+        for (c, unit) in columns.iter_mut().zip(&units) {
+            take_unit_below(c, unit);
         }
     }
     columns
 }
 
-/// The column whose header is `name`, or `name` and a unit.
-pub fn place_of(t: &Table, columns: &[Column], name: &str) -> Option<usize> {
-    let whole = t.header.iter().position(|h| h == name);
-    whole
-        .or_else(|| columns.iter().position(|c| c.name == name))
-        // What stands in brackets is not what the row of units says.
-        .or_else(|| t.header.iter().position(|h| name_and_unit(h).name == name))
+/// The column whose header is `name`, or `name` and a unit; `None` where there is none.
+///
+/// # Errors
+/// Several that are `name` and a unit, and none that is `name` alone.
+pub fn place_of(t: &Table, columns: &[Column], name: &str) -> Result<Option<usize>, Fault> {
+    // Last what the row of units makes a label: what stands in brackets is not what that row says.
+    let readings: [fn(&Column) -> &str; 3] = [|c| &c.header.whole, |c| &c.name, |c| &c.header.name];
+    for reading in readings {
+        let mut holding = columns
+            .iter()
+            .enumerate()
+            .filter(|(_, c)| reading(c) == name);
+        let Some((first, _)) = holding.next() else {
+            continue;
+        };
+        return match holding.next() {
+            None => Ok(Some(first)),
+            Some((_, second)) => Err(Fault::at(
+                &*t.file,
+                1,
+                &*second.header.whole,
+                format!("two columns hold `{name}`, with a unit each"),
+                "leave one of them out, or name it in [runs] columns",
+            )),
+        };
+    }
+    Ok(None)
+}
+
+/// The column that the job asks for by `name`, at this line and key; a fault where there is none, or several.
+pub fn asked_column(
+    job: &Job,
+    (line, key): (u32, &str),
+    t: &Table,
+    columns: &[Column],
+    name: &str,
+    faults: &mut FaultList,
+) -> Option<usize> {
+    let missing = || {
+        let wrong = format!("`{}` has no column `{name}`", t.file);
+        let remedy = suggest::remedy(name, t.header.iter().map(String::as_str));
+        Fault::at(&*job.file, line, key, wrong, remedy)
+    };
+    place_of(t, columns, name)
+        .and_then(|at| at.ok_or_else(missing))
+        .map_err(|f| faults.push(f))
+        .ok()
 }
 
 /// The column that names the runs.
@@ -39,24 +79,10 @@ pub fn place_of(t: &Table, columns: &[Column], name: &str) -> Option<usize> {
 /// # Errors
 /// A fault where there is none.
 pub fn run_column(t: &Table, columns: &[Column]) -> Result<usize, Fault> {
-    place_of(t, columns, "run").ok_or_else(|| {
+    place_of(t, columns, "run")?.ok_or_else(|| {
         let remedy = "add a column `run` with the runs' names";
         Fault::at(&*t.file, 1, "run", "no column `run`", remedy)
     })
-}
-
-/// The fault of a name that no header is in whole and several are before their unit.
-pub fn held_twice(t: &Table, name: &str) -> Option<Fault> {
-    let is_whole = t.header.iter().any(|h| h == name);
-    let mut holding = t.header.iter().filter(|h| name_and_unit(h).name == name);
-    let second = holding.nth(1).filter(|_| !is_whole)?;
-    Some(Fault::at(
-        &*t.file,
-        1,
-        second,
-        format!("two columns hold `{name}`, with a unit each"),
-        "leave one of them out, or name it in [runs] columns",
-    ))
 }
 
 /// A column of the runs file with numbers of one quantity, and their unit.
@@ -85,17 +111,12 @@ pub fn known_column(
 ) -> Option<KnownColumn> {
     let given = runs.columns.get(name);
     let wanted = given.map_or(name, String::as_str);
-    let Some(at) = place_of(t, columns, wanted) else {
-        if given.is_some() {
-            faults.push(Fault::at(
-                &*job.file,
-                runs.line,
-                format!("runs.columns.{name}"),
-                format!("`{}` has no column `{wanted}`", t.file),
-                suggest::remedy(wanted, t.header.iter().map(String::as_str)),
-            ));
-        }
-        return None;
+    let key = format!("runs.columns.{name}");
+    let at = match given {
+        Some(_) => asked_column(job, (runs.line, &key), t, columns, wanted, faults)?,
+        None => place_of(t, columns, wanted)
+            .map_err(|f| faults.push(f))
+            .ok()??,
     };
     let of_job = quantity.map(|q| runs.units.unit(q));
     let here = KnownColumn {
@@ -104,18 +125,13 @@ pub fn known_column(
         is_stated: false,
     };
     let (header, stated) = (t.header.get(at)?, columns.get(at)?);
-    if let Some(fault) = held_twice(t, wanted) {
-        faults.push(fault);
-        return Some(here);
-    }
-    if header != wanted && stated.name != wanted {
-        let beside = name_and_unit(header).unit;
-        let wrong = format!(
-            "`{beside}` beside the name, `{}` in the row of units below",
-            stated.unit
-        );
-        let remedy = "correct whichever is wrong, or name the column in [runs] columns";
-        faults.push(Fault::at(&*t.file, 1, header, wrong, remedy));
+    let is_called = header == wanted || stated.name == wanted;
+    if !is_called || stated.clash() == Some(Clash::Size) {
+        let remedy = match is_called {
+            true => "correct whichever is wrong",
+            false => "correct whichever is wrong, or name the column in [runs] columns",
+        };
+        faults.push(Fault::at(&*t.file, 1, header, stated.clash_words(), remedy));
         return Some(here);
     }
     if matches!(stated.unit.as_str(), "" | "-") {
@@ -123,7 +139,7 @@ pub fn known_column(
     }
     // `Axle (front)` is a name where the job says that this is the column's.
     let is_name = header == wanted
-        && name_and_unit(header).unit == stated.unit
+        && stated.header.bracket == stated.unit
         && (given.is_some() || !header.ends_with(']'));
     let Some((quantity, of_job)) = quantity.zip(of_job) else {
         if !is_name && stated.unit != "1" {
@@ -196,14 +212,4 @@ fn noise_in_doubt(
             of_column.name
         ),
     ))
-}
-
-/// The fault of a gauge's unit that is none of strain.
-pub fn no_strain(file: &str, channel: &str, unit: &str) -> Fault {
-    Fault::of(
-        file,
-        channel,
-        format!("`{unit}` is no unit of strain"),
-        "export it in microstrain (uE, um/m) or strain (m/m)",
-    )
 }

@@ -58,6 +58,18 @@ pub fn column_of<'a>(corrections: &'a [StrainCorrection], gauge: &'a str) -> &'a
         .unwrap_or(gauge)
 }
 
+/// The columns that the readings of gauges are taken from: those of ignored ones are not asked for.
+pub fn columns_wanted<'a>(
+    corrections: &[StrainCorrection],
+    gauges: impl IntoIterator<Item = &'a String>,
+) -> Vec<String> {
+    gauges
+        .into_iter()
+        .filter(|g| !channel_of(corrections, g).ignore)
+        .map(|g| column_of(corrections, g).to_owned())
+        .collect()
+}
+
 /// What a gauge is turned by beyond its stated angle, degrees.
 pub fn turned_by(corrections: &[StrainCorrection], gauge: &str) -> f64 {
     let own = corrections.iter().filter(|c| c.gauge == gauge);

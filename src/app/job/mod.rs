@@ -5,6 +5,7 @@
 pub mod column_unit;
 pub mod correct;
 mod faults;
+pub mod gauge_column;
 pub mod gauges;
 pub mod given_columns;
 mod not_a_job;

@@ -1,7 +1,7 @@
 //! What a strain file comes to where only its means count: sums over the rows, of a record passed over once, however long it is.
 
 use super::correct::{Channel, channel_of, column_of};
-use super::strain::{StrainTable, gauge_names, open_strain, read_strain, record_fault};
+use super::strain::{StrainTable, open_strain, read_strain, record_fault, wanted_columns};
 use super::types::{Job, NamedFile};
 use crate::app::fault::Faults;
 use crate::app::files::{FileBytes, Inputs};
@@ -75,7 +75,7 @@ pub fn read_strain_file(
 ) -> Result<StrainFile, Faults> {
     let bytes = inputs.read_named(job, named).map_err(Faults::from)?;
     if is_long_record(&bytes) {
-        let names = gauge_names(inputs, job);
+        let names = wanted_columns(inputs, job);
         means(job, &named.given, bytes, &names).map(StrainFile::Means)
     } else {
         read_strain(inputs, job, named).map(StrainFile::Table)

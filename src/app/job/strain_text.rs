@@ -1,11 +1,11 @@
 //! Strain in a CSV text: a row a run or a sample.
 
-use super::column_unit::{no_strain, take_units};
+use super::column_unit::take_units;
+use super::gauge_column::{no_strain, strain_columns};
 use super::strain_table::{StrainRows, StrainTable};
 use super::table::{Table, each_part};
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::series::record::{Column, is_time, name_and_unit, seconds_in};
-use crate::units::microstrain_in;
+use crate::series::record::{Clash, Column, seconds_in};
 use std::collections::HashSet;
 
 /// Rows whose fields are in memory at a time.
@@ -46,51 +46,6 @@ fn number(t: &Table, row: usize, column: usize, faults: &mut FaultList) -> f64 {
     }
 }
 
-/// What tables of strain hold beside strain, and strain before it is scaled. Single letters are left out: `SG1 (t)` is the top one.
-const OTHER_UNITS: &[&str] = &[
-    "mv/v", "v/v", "uv/v", "µv/v", "mv", "volt", "volts", "kn", "mn", "lbf", "kip", "kgf", "kg",
-    "mm", "cm", "pa", "kpa", "mpa", "gpa", "psi", "n/mm2", "n/mm²", "m/s2", "m/s²", "deg", "°",
-    "°c", "degc", "°f", "%", "hz", "bar", "counts",
-];
-
-/// Which names are whose.
-struct Names<'a> {
-    /// The job's gauges; none where it doesn't tell.
-    known: HashSet<&'a str>,
-    /// Headers of the table.
-    headers: HashSet<&'a str>,
-}
-
-/// The gauge that a column is named after, and microstrain in one of its unit; `None` where a gauge's unit is none of strain. What looks like
-/// a unit may be part of a name: `SG1 (left)`.
-fn gauge_of<'a>(header: &'a str, column: &'a Column, names: &Names) -> Option<(&'a str, f64)> {
-    let scale = microstrain_in(&column.unit);
-    let is_known = |name: &str| names.known.contains(name);
-    let beside = name_and_unit(header);
-    let is_below = column.unit != beside.unit;
-    if is_known(header) {
-        // Its own unit, if any, is the one in the row below or a unit of strain in its brackets.
-        return match scale {
-            None if is_below => None,
-            _ => Some((header, scale.unwrap_or(1.0))),
-        };
-    }
-    let is_gauge = if names.known.is_empty() {
-        let unit = column.unit.to_lowercase();
-        is_below || header.ends_with(']') || OTHER_UNITS.contains(&unit.as_str())
-    } else {
-        // `P01 (raw)` beside `P01` is another column.
-        is_known(&beside.name) && !names.headers.contains(beside.name.as_str())
-    };
-    match scale {
-        // What stands in brackets is not what the row of units says.
-        Some(_) if column.name != beside.name && is_known(&beside.name) && is_gauge => None,
-        Some(scale) => Some((column.name.as_str(), scale)),
-        None if is_gauge => None,
-        None => Some((header, 1.0)),
-    }
-}
-
 fn no_rows(file: &str) -> Fault {
     Fault::at(
         file,
@@ -122,7 +77,7 @@ impl Reading {
     fn of(t: &Table, headers: &[Column], known: &[String]) -> Result<Self, Faults> {
         let run = headers.iter().position(|c| c.name == "run");
         let mut times = headers.iter().enumerate();
-        let time = times.find(|(i, c)| is_time(&c.name, *i == 0)).map(|t| t.0);
+        let time = times.find(|(i, c)| c.is_time(*i == 0)).map(|t| t.0);
         let Some(key) = run.or(time) else {
             return Err(Faults::from(Fault::at(
                 &*t.file,
@@ -132,6 +87,12 @@ impl Reading {
                 "add `run` with the runs' names, or `time` in seconds",
             )));
         };
+        let clashing = headers.get(key).filter(|c| c.clash() == Some(Clash::Size));
+        if let Some(column) = clashing.filter(|_| run.is_none()) {
+            let remedy = "correct whichever is wrong";
+            let wrong = column.clash_words();
+            return Err(Fault::at(&*t.file, 1, "time", wrong, remedy).into());
+        }
         let unit = headers.get(key).map_or("", |c| c.unit.as_str());
         let second = match run {
             Some(_) => 1.0,
@@ -147,34 +108,20 @@ impl Reading {
             })?,
         };
         let mut faults = FaultList::new();
-        let names = Names {
-            known: known.iter().map(String::as_str).collect(),
-            headers: t.header.iter().map(String::as_str).collect(),
-        };
+        let (mut places, mut others) = (Vec::new(), Vec::new());
+        for (c, column) in headers.iter().enumerate().filter(|(c, _)| *c != key) {
+            places.push(c);
+            others.push(column.clone());
+        }
         let (mut columns, mut gauges) = (Vec::new(), Vec::new());
-        let mut named: HashSet<&str> = HashSet::new();
-        for (c, (header, column)) in t.header.iter().zip(headers).enumerate() {
-            if c == key {
-                continue;
+        let found = strain_columns(&t.file, &others, known)?;
+        for ((c, column), found) in places.into_iter().zip(&others).zip(found) {
+            if found.microstrain.is_none() && known.is_empty() {
+                faults.push(no_strain(&t.file, column));
             }
-            let (name, scale) = gauge_of(header, column, &names).unwrap_or_else(|| {
-                // Beside the name, or else in the row below.
-                let beside = name_and_unit(header);
-                let stated = [&beside.unit, &column.unit];
-                let unit = stated.into_iter().find(|u| microstrain_in(u).is_none());
-                faults.push(no_strain(
-                    &t.file,
-                    &beside.name,
-                    unit.unwrap_or(&column.unit),
-                ));
-                (header.as_str(), 1.0)
-            });
-            if !named.insert(name) {
-                let remedy = "give every column its own name";
-                faults.push(Fault::at(&*t.file, 1, name, "column named twice", remedy));
-            }
-            gauges.push(name.to_owned());
-            columns.push((c, scale));
+            gauges.push(found.name);
+            // What is no gauge's is kept as written.
+            columns.push((c, found.microstrain.unwrap_or(1.0)));
         }
         Faults::check(faults)?;
         Ok(Self {

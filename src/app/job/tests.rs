@@ -1,8 +1,10 @@
+use super::gauge_column::{StrainColumn, strain_columns};
 use super::*;
 use crate::app::fault::{Fault, Faults};
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::Bridge;
 use crate::reconcile::strain::WheelForces;
+use crate::series::record::{Column, name_and_unit};
 use std::path::PathBuf;
 
 /// A job text parsed and resolved, without any file but the job.
@@ -620,14 +622,12 @@ fn labels_and_units_of_gauges_are_told_apart() {
     // Another column beside the gauge's own.
     let raw = read("run,P01,P01 (raw)\nR1,0.5,7\n", &["P01"]).unwrap();
     assert_eq!(raw.gauges, ["P01", "P01 (raw)"]);
-    let column = |name: &str, unit: &str| crate::series::record::Column {
-        name: name.to_owned(),
-        unit: unit.to_owned(),
-    };
-    let two = [column("P01", "um/m"), column("P01", "raw")];
-    let (names, scales) = strain::strain_columns("r.mf4", &two, &["P01".to_owned()]).unwrap();
-    assert_eq!(names, ["P01", "P01 [raw]"]);
-    assert_eq!(scales, [1.0, 1.0]);
+    let two = [
+        Column::of_channel("P01", "um/m"),
+        Column::of_channel("P01", "raw"),
+    ];
+    let found = strain_columns("r.mf4", &two, &["P01".to_owned()]).unwrap();
+    assert_eq!(of_gauges(&found), [("P01", Some(1.0)), ("P01 [raw]", None)]);
     // No strain, whether gauges are known or not.
     for gauges in [&["G1"][..], &[]] {
         for text in [
@@ -647,4 +647,135 @@ fn labels_and_units_of_gauges_are_told_apart() {
         bare.rows,
         strain::StrainRows::Runs(vec!["R1".into(), "R2".into()])
     );
+}
+
+fn of_gauges(columns: &[StrainColumn]) -> Vec<(&str, Option<f64>)> {
+    let each = columns.iter();
+    each.map(|c| (c.name.as_str(), c.microstrain)).collect()
+}
+
+/// Names of the columns of a text with this header, and what a 1 in each is in microstrain.
+fn columns_of_text(header: &str, gauges: &[String]) -> Result<Vec<(String, f64)>, Faults> {
+    let ones = header.split(',').map(|_| ",1").collect::<String>();
+    let text = format!("run,{header}\nR1{ones}\n");
+    let table = strain_text::strain_from_text("s.csv", &text, gauges)?;
+    Ok(table.gauges.into_iter().zip(table.microstrain).collect())
+}
+
+#[test]
+fn a_table_and_a_record_give_one_verdict_on_a_header() {
+    let gauges = |list: &[&str]| -> Vec<String> { list.iter().map(|g| (*g).into()).collect() };
+    for (header, wanted, expected) in [
+        (
+            "P01 [um/m],P01 (raw)",
+            &["P01"][..],
+            Some([("P01", 1.0), ("P01 (raw)", 1.0)]),
+        ),
+        (
+            "P01,P02 [mm/m]",
+            &["P01"],
+            Some([("P01", 1.0), ("P02", 1e3)]),
+        ),
+        // The gauge's name holds a bracket, written with a blank or without.
+        (
+            "SG1(left),SG1(right)",
+            &["SG1(left)", "SG1(right)"],
+            Some([("SG1(left)", 1.0), ("SG1(right)", 1.0)]),
+        ),
+        (
+            "SG1 (left),SG1 (t)",
+            &["SG1(left)", "SG1 (t)"],
+            Some([("SG1(left)", 1.0), ("SG1 (t)", 1.0)]),
+        ),
+        (
+            "SG1 (t),SG1 (left)",
+            &[],
+            Some([("SG1 (t)", 1.0), ("SG1 (left)", 1.0)]),
+        ),
+        ("P01 (raw),P01 (kN)", &["P01"], None),
+        ("P01 [um/m],P01 [mm/m]", &["P01"], None),
+    ] {
+        let gauges = gauges(wanted);
+        let columns: Vec<Column> = header.split(',').map(name_and_unit).collect();
+        let of_record = strain_columns("r.csv", &columns, &gauges);
+        let of_text = columns_of_text(header, &gauges);
+        let Some(expected) = expected else {
+            assert!(of_record.is_err() && of_text.is_err(), "{header}");
+            continue;
+        };
+        let of_record = of_record.unwrap_or_else(|f| panic!("{header}: {f:?}"));
+        let named = expected.map(|(name, scale)| (name, Some(scale)));
+        assert_eq!(of_gauges(&of_record), named, "{header}");
+        let of_text = of_text.unwrap_or_else(|f| panic!("{header}: {f:?}"));
+        let named = expected.map(|(name, scale)| (name.to_owned(), scale));
+        assert_eq!(of_text, named, "{header}");
+    }
+}
+
+#[test]
+fn where_no_gauges_are_known_a_unit_of_anything_else_is_no_strain() {
+    for header in ["torque (N m)", "torque (kNm)", "G1 [mV/V]", "way (mm)"] {
+        let said = columns_of_text(header, &[]).unwrap_err()[0].to_string();
+        assert!(said.contains("is no unit of strain"), "{said}");
+        // A record holds other channels too: they are left out.
+        let column = [name_and_unit(header)];
+        let found = strain_columns("r.parquet", &column, &[]).unwrap();
+        assert_eq!(found[0].microstrain, None, "{header}");
+    }
+}
+
+#[test]
+fn units_that_contradict_each_other_are_faults_of_what_is_asked_for() {
+    let read = |text: &str, gauges: &[&str]| {
+        let gauges: Vec<String> = gauges.iter().map(|g| (*g).to_owned()).collect();
+        strain_text::strain_from_text("s.csv", text, &gauges)
+    };
+    let text = "run,G1 [m/m],G2 [um/m]\n-,um/m,microstrain\nR1,1,2\n";
+    for gauges in [&["G1", "G2"][..], &["G1 [m/m]", "G2"], &[]] {
+        let said = read(text, gauges).unwrap_err()[0].to_string();
+        let wrong = "G1 [m/m]: `m/m` beside the name, `um/m` in the row of units below";
+        assert!(said.contains(wrong), "{said}");
+    }
+    let table = read(text, &["G2"]).unwrap();
+    assert_eq!(table.gauges[1], "G2");
+    assert_eq!(table.microstrain[1], 2.0);
+    let said = read("time [s],G1\nms,um/m\n0,1\n1,2\n", &["G1"]).unwrap_err()[0].to_string();
+    assert!(said.contains("`s` beside the name, `ms` in"), "{said}");
+    // A millionth of a meganewton is not a millinewton.
+    for [beside, below] in [["MN", "mN"], ["N", "kN"]] {
+        let table = format!("run,LF.FZ [{beside}],LF.MX\n-,{below},N m\nR1,2,3\n");
+        let named = format!("columns = {{ \"LF.FZ\" = \"LF.FZ [{beside}]\" }}\n");
+        for more in ["", &named] {
+            let said = runs_of(&table, more).unwrap_err()[0].to_string();
+            let wrong = format!("`{beside}` beside the name, `{below}` in the row of units below");
+            assert!(said.contains(&wrong), "{said}");
+        }
+    }
+}
+
+#[test]
+fn a_row_of_units_tells_which_of_two_columns_holds_a_load() {
+    let table = "run,LF.FZ [kN],LF.FZ (raw),LF.MX\n-,kN,V,N m\nR1,2,9,3\n";
+    let rows = runs_of(table, "").unwrap();
+    assert_eq!(rows[0].loads_si["LF.FZ"], 2e3);
+    let twice = "run,LF.FZ [kN],LF.FZ [N],LF.MX\nR1,2,2000,3\n";
+    let said = runs_of(twice, "").unwrap_err()[0].to_string();
+    assert!(said.contains("two columns hold `LF.FZ`"), "{said}");
+}
+
+#[test]
+fn a_channel_that_is_ignored_is_not_asked_for_its_unit() {
+    let files = crate::app::context::InMemory::default()
+        .with("s.csv", "run,G1,G2 [mV/V]\nR1,1,2\nR2,2,3\n");
+    let job = read_text(
+        "units = \"m-kg-s\"\n[model]\ndeck = \"d.bdf\"\n[[load]]\nname = \"a\"\ngrid = 1\ncomponent = \"FZ\"\n[[gauge]]\nname = \"G1\"\nelement = 1\n\
+         [[gauge]]\nname = \"G2\"\nelement = 2\n[measured]\nstrain = \"s.csv\"\n\
+         [[correction]]\ngauge = \"G2\"\nignore = true\n",
+    )
+    .unwrap();
+    let measured = job.measured.as_ref().unwrap();
+    let mut inputs = Inputs::of(&files);
+    let table = strain::read_strain(&mut inputs, &job, &measured.strain).unwrap();
+    assert_eq!(table.gauges, ["G1", "G2"]);
+    assert!(table.row(0)[0] == 1.0 && table.row(0)[1].is_nan());
 }

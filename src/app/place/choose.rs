@@ -1,4 +1,4 @@
-//! The choice: single gauges through the tensors, or units (rosettes, pairs, unlike costs) within a budget.
+//! The choice: single gauges through the tensors, or bundles (rosettes, pairs, unlike costs) within a budget.
 
 use super::pool::Kind;
 use super::task::{Task, know_the_loads, position};
@@ -49,7 +49,7 @@ pub(super) struct Chosen {
 }
 
 /// Bundles at most: memory for their rows.
-const MOST_UNITS: usize = 4_000_000;
+const MOST_BUNDLES: usize = 4_000_000;
 
 /// Whether single gauges of one wiring are all there is to choose.
 pub(super) fn is_plain(task: &Task) -> bool {
@@ -200,20 +200,20 @@ fn channel(task: &Task, kind: &Kind, choice: Choice, name: String) -> Option<Cha
     })
 }
 
-/// A unit in words: wiring, site and angle of each grid or bridge in it; a rosette's legs are three of the quarter kind.
+/// What a bundle is: wiring, site and angle of each grid or bridge in it; a rosette's legs are three of the quarter kind.
 struct Described {
     members: Vec<(usize, Choice)>,
     rosette: bool,
 }
 
-/// Units to choose from: their rows and costs, and what each is.
-struct Units<'a> {
+/// Bundles of rows to choose from, with their costs, and what each is.
+struct DescribedBundles<'a> {
     kinds: &'a [Kind],
     bundles: Bundles,
     described: Vec<Described>,
 }
 
-impl Units<'_> {
+impl DescribedBundles<'_> {
     fn add(&mut self, members: Vec<(usize, Choice)>, cost: f64, rosette: bool) {
         let rows: Vec<Vec<f64>> = members
             .iter()
@@ -226,9 +226,9 @@ impl Units<'_> {
     }
 }
 
-/// Chooses among units within the budget.
+/// Chooses among bundles within the budget.
 fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Refused> {
-    let units = units_of(task, kinds)?;
+    let of_job = bundles_of(task, kinds)?;
     let budget = task.job.placement.budget.unwrap_or(spec.gauges as f64);
     let spec = BundleSpec {
         budget,
@@ -238,11 +238,11 @@ fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Ref
         tolerance: spec.tolerance,
         effort: spec.effort,
     };
-    let layout = place_bundles(&units.bundles, &spec).map_err(Refused::By)?;
+    let layout = place_bundles(&of_job.bundles, &spec).map_err(Refused::By)?;
     let n = layout.bundles.len();
     let mut channels = Vec::new();
     for (i, &u) in layout.bundles.iter().enumerate() {
-        channels.extend(channels_of(task, kinds, &units.described[u], &name(i, n)));
+        channels.extend(channels_of(task, kinds, &of_job.described[u], &name(i, n)));
     }
     Ok(Chosen {
         channels,
@@ -252,12 +252,12 @@ fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Ref
         proved: false,
         nodes: 0,
         least_condition: None,
-        cost: Some(layout.bundles.iter().map(|&u| units.bundles.cost[u]).sum()),
+        cost: Some(layout.bundles.iter().map(|&u| of_job.bundles.cost[u]).sum()),
     })
 }
 
-/// Every unit that the job's candidates allow: single gauges and rosettes at each site, in pairs where the layout is to be symmetric.
-fn units_of<'a>(task: &Task, kinds: &'a [Kind]) -> Result<Units<'a>, Refused> {
+/// Every bundle that the job's candidates allow: single gauges and rosettes at each site, in pairs where the layout is to be symmetric.
+fn bundles_of<'a>(task: &Task, kinds: &'a [Kind]) -> Result<DescribedBundles<'a>, Refused> {
     let p = &task.job.placement;
     let cost_of = |name: &str, default: f64| {
         let own = p.costs.iter().find(|c| c.0 == name);
@@ -283,7 +283,7 @@ fn units_of<'a>(task: &Task, kinds: &'a [Kind]) -> Result<Units<'a>, Refused> {
         task,
         asked.len() * steps.len() + if legs.is_some() { 2 } else { 0 },
     )?;
-    let mut units = Units {
+    let mut bundles = DescribedBundles {
         kinds,
         bundles: Bundles::new(task.cases.len(), positions),
         described: Vec::new(),
@@ -318,7 +318,7 @@ fn units_of<'a>(task: &Task, kinds: &'a [Kind]) -> Result<Units<'a>, Refused> {
             for &angle in &steps {
                 let members = paired(n, angle);
                 let cost = cost_of(kind.bridge.name(), 1.0) * members.len() as f64;
-                units.add(members, cost, false);
+                bundles.add(members, cost, false);
             }
         }
         if let (Some(q), Some(legs)) = (quarter, legs) {
@@ -327,34 +327,34 @@ fn units_of<'a>(task: &Task, kinds: &'a [Kind]) -> Result<Units<'a>, Refused> {
                 let members: Vec<(usize, Choice)> =
                     legs.iter().flat_map(|l| paired(q, turn + l)).collect();
                 let cost = cost_of("rosette", 3.0) * members.len() as f64 / 3.0;
-                units.add(members, cost, true);
+                bundles.add(members, cost, true);
             }
         }
     }
-    Ok(units)
+    Ok(bundles)
 }
 
-/// Refuses candidates whose units, so many a site, would not fit into memory.
+/// Refuses candidates whose bundles, so many a site, would not fit into memory.
 fn few_enough(task: &Task, a_site: usize) -> Result<(), Refused> {
     let many = task.sites.len() * a_site;
-    if many <= MOST_UNITS {
+    if many <= MOST_BUNDLES {
         return Ok(());
     }
     Err(Refused::Job(Fault::at(
         &*task.job.file,
         task.job.candidates.line,
         "candidates",
-        format!("{many} units to choose from, more than {MOST_UNITS}"),
+        format!("{many} gauges, pairs and rosettes to choose from, more than {MOST_BUNDLES}"),
         "state a wider `angle_step_deg`, or fewer elements; rosettes, pairs and costs are compared one by one",
     )))
 }
 
-/// Channels of a unit, named after it: `P01`, the sides of a pair `P01L` and `P01R`, the legs of a rosette `P01.a` to `P01.c`.
-fn channels_of(task: &Task, kinds: &[Kind], unit: &Described, base: &str) -> Vec<Channel> {
+/// Channels of a bundle, named after it: `P01`, the sides of a pair `P01L` and `P01R`, the legs of a rosette `P01.a` to `P01.c`.
+fn channels_of(task: &Task, kinds: &[Kind], bundle: &Described, base: &str) -> Vec<Channel> {
     let mut channels = Vec::new();
-    for (m, (kind, choice)) in unit.members.iter().enumerate() {
+    for (m, (kind, choice)) in bundle.members.iter().enumerate() {
         let leg = m % 3;
-        let name = match (unit.rosette, unit.members.len()) {
+        let name = match (bundle.rosette, bundle.members.len()) {
             (true, 3) => format!("{base}.{}", ["a", "b", "c"][leg]),
             (true, _) => format!("{base}{}.{}", ["L", "R"][m % 2], ["a", "b", "c"][m / 2]),
             (false, 2) => format!("{base}{}", ["L", "R"][m]),

@@ -2,7 +2,7 @@
 
 use super::answer::{EffectFound, GapFound, Reconciled, RivalFound, SlopeFound};
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::column_unit::{held_twice, place_of, run_column, take_units};
+use crate::app::job::column_unit::{asked_column, run_column, take_units};
 use crate::app::job::table::read_table;
 use crate::app::job::{Job, Reconcile};
 use crate::app::work::Work;
@@ -130,15 +130,9 @@ fn read(
     let mut faults = FaultList::new();
     let mut causes = Vec::new();
     for (name, column) in &reconcile.causes {
-        faults.extend(held_twice(&t, column));
-        let Some(c) = place_of(&t, &headers, column) else {
-            faults.push(Fault::at(
-                &*job.file,
-                reconcile.line,
-                format!("reconcile.causes.{name}"),
-                format!("`{}` has no column `{column}`", t.file),
-                "name a column of the runs file",
-            ));
+        let field = format!("reconcile.causes.{name}");
+        let at = (reconcile.line, field.as_str());
+        let Some(c) = asked_column(job, at, &t, &headers, column, &mut faults) else {
             continue;
         };
         let mut values = Vec::new();

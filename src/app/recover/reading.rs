@@ -3,13 +3,13 @@
 use super::sink::Block;
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::FileBytes;
-use crate::app::job::correct::{Channel, column_of};
-use crate::app::job::strain::strain_columns;
+use crate::app::job::correct::{Channel, column_of, columns_wanted};
+use crate::app::job::gauge_column::{StrainColumn, strain_columns};
+use crate::app::job::strain::record_fault;
 use crate::app::job::{Job, Measured};
 use crate::finding::Finding;
 use crate::recovery::history::{Filter, SampleLoads};
 use crate::recovery::{Sums, clock};
-use crate::series::SeriesError;
 use crate::series::record::{self as series, Clock, Options, is_format, open_record};
 use crate::units::MICROSTRAIN;
 use std::ops::ControlFlow;
@@ -21,7 +21,7 @@ pub(super) struct Record {
     file: String,
     /// The gauge that each column holds the readings of, as the job calls it.
     pub names: Vec<String>,
-    /// Microstrain in one unit of each column.
+    /// Microstrain in one unit of each column; not a number where it is no strain.
     micro: Vec<f64>,
     /// Columns that are read, and what puts their readings right.
     columns: Vec<(Option<usize>, Channel)>,
@@ -47,16 +47,17 @@ impl Record {
         let unit_open = !is_format(&bytes);
         let options = Options {
             declared_hz: None,
-            wanted: gauges.to_vec(),
+            wanted: columns_wanted(&job.corrections, gauges),
         };
         let inner = open_record(Arc::new(bytes), &options).map_err(|e| record_fault(file, &e))?;
         let unit_open = unit_open && !inner.is_time_unit_stated();
-        let (names, micro) = strain_columns(file, inner.columns(), gauges)?;
-        let gauge = |n: &String| column_of(&job.corrections, n).to_owned();
+        let columns = strain_columns(file, inner.columns(), &options.wanted)?;
+        let gauge = |c: &StrainColumn| column_of(&job.corrections, &c.name).to_owned();
+        let micro = |c: &StrainColumn| c.microstrain.unwrap_or(f64::NAN);
         Ok(Self {
-            names: names.iter().map(gauge).collect(),
+            names: columns.iter().map(gauge).collect(),
             file: file.to_owned(),
-            micro,
+            micro: columns.iter().map(micro).collect(),
             columns: Vec::new(),
             second: match (unit_open, measured.time_unit_s) {
                 (true, Some(unit)) => unit,
@@ -140,34 +141,6 @@ impl Record {
     /// What is to be known of its times.
     pub fn findings(&self) -> Vec<Finding> {
         clock::irregular(&self.file, self.clock(), self.second)
-    }
-}
-
-/// The fault of a record that can't be read.
-fn record_fault(file: &str, e: &SeriesError) -> Fault {
-    let (wrong, remedy) = e.parts();
-    match e {
-        SeriesError::Line { line, what, remedy } => {
-            Fault::at(file, *line as u32, "row", what, *remedy)
-        }
-        SeriesError::NotAscending { line, .. } | SeriesError::NoTime { line } => {
-            Fault::at(file, *line as u32, "time", wrong, remedy)
-        }
-        SeriesError::Empty => Fault::at(
-            file,
-            1,
-            "rows",
-            "a header and no rows",
-            "write a row a sample",
-        ),
-        SeriesError::NoRate => Fault::at(
-            file,
-            1,
-            "time",
-            "no column `time`",
-            "add a column `time` in seconds",
-        ),
-        _ => Fault::of(file, "record", wrong, remedy),
     }
 }
 

@@ -11,20 +11,10 @@ use super::solid::solid_stiffness;
 use super::spring::spring_stiffness;
 use crate::fe::error::Refusal;
 use crate::fe::prepared::Prepared;
-use crate::model::{ElementRef, GridIx};
+use crate::model::ElementRef;
 
 impl Prepared<'_> {
-    /// Every element with stiffness.
-    pub(crate) fn elements(&self) -> Vec<ElementRef> {
-        self.model.elements().collect()
-    }
-
-    /// Its grids.
-    pub(crate) fn grids(&self, element: ElementRef) -> Vec<GridIx> {
-        self.model.element_grids(element)
-    }
-
-    /// Dofs of its grids that it may give stiffness to, a bit each.
+    /// Dofs of an element's grids that it may give stiffness to, a bit each.
     pub(crate) fn dofs(&self, element: ElementRef) -> u8 {
         match element {
             ElementRef::Solid(_) | ElementRef::ShearPanel(_) => 0b000_111,

@@ -1,7 +1,8 @@
 //! A record on even steps: stored samples, NaN in gaps, interpolated samples where the stored ones are uneven.
 
 use super::clock::{Clock, Evenness, Steps, clock_of, counts};
-use super::reader::{BLOCK, Block, Column, Pick, RecordReader, Sink, Times};
+use super::column::Column;
+use super::reader::{BLOCK, Block, Pick, RecordReader, Sink, Times};
 use crate::series::error::SeriesError;
 use std::ops::ControlFlow;
 

@@ -5,6 +5,7 @@
 //! steps whatever the file held. Nothing is kept of a file but what lists its parts.
 
 mod clock;
+mod column;
 pub mod csv;
 mod even;
 #[cfg(feature = "mdf")]
@@ -26,12 +27,10 @@ mod uff;
 mod whole;
 
 pub use clock::{Clock, EVEN, Evenness};
+pub use column::{Clash, Column, Header, is_time, name_and_unit, seconds_in, take_unit_below};
 pub use even::Record;
 pub use open::{Options, is_format, open_record, read_channels};
-pub use reader::{
-    Block, Bytes, Column, Pick, RecordReader, Sink, Times, is_time, name_and_unit, seconds_in,
-    take_unit_below,
-};
+pub use reader::{Block, Bytes, Pick, RecordReader, Sink, Times};
 pub use span::Gap;
 pub use whole::Whole;
 

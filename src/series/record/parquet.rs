@@ -1,8 +1,8 @@
 //! Parquet: a column a channel, a row a sample; read by parts of row groups, column by column, a page at a time.
 
+use super::column::{Column, is_time, name_and_unit, seconds_in};
 use super::pages::Pages;
-use super::reader::{BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times, is_time};
-use super::reader::{name_and_unit, seconds_in};
+use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
 use super::strip::{Room, Strip, broken};
 use super::tile::Tile;
 use crate::series::error::SeriesError;

@@ -1,8 +1,7 @@
 //! Formats whose samples lie on even steps and can be read anywhere: the binary record of strainbridge and RPC III.
 
-use super::reader::{
-    BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times, is_unit, name_and_unit,
-};
+use super::column::{Column, name_and_unit};
+use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
 use crate::series::error::SeriesError;
 use crate::series::{binary, rpc};
 
@@ -40,18 +39,8 @@ impl Stored {
                 });
             }
         };
-        let columns = header.names.iter().map(|n| {
-            let mut c = name_and_unit(n);
-            // All numbers are in the file's unit: what is no unit is part of a name, `SG1 (left)`.
-            let is_label = n.trim_end().ends_with(')') && !is_unit(&c.unit);
-            if is_label {
-                n.trim().clone_into(&mut c.name);
-            }
-            if is_label || c.unit.is_empty() {
-                unit.clone_into(&mut c.unit);
-            }
-            c
-        });
+        let names = header.names.iter();
+        let columns = names.map(|n| name_and_unit(n).in_file_of(unit));
         Ok(Self {
             columns: columns.collect(),
             bytes,
@@ -62,10 +51,8 @@ impl Stored {
     /// RPC III.
     pub(super) fn rpc(bytes: Bytes) -> Result<Self, SeriesError> {
         let header = rpc::read_header((*bytes).as_ref())?;
-        let columns = header.channels.iter().map(|c| Column {
-            name: c.name.clone(),
-            unit: c.unit.clone(),
-        });
+        let channels = header.channels.iter();
+        let columns = channels.map(|c| Column::of_channel(&c.name, &c.unit));
         Ok(Self {
             columns: columns.collect(),
             bytes,

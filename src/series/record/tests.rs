@@ -101,7 +101,10 @@ fn what_is_no_unit_in_brackets_is_part_of_the_name() {
     };
     assert_eq!(below("SG1 (left)", "mm/m"), ["SG1 (left)", "mm/m"]);
     assert_eq!(below("SG1 (t)", "[mm/m]"), ["SG1 (t)", "mm/m"]);
-    assert_eq!(below("SG1 [m/m]", "um/m"), ["SG1", "m/m"]);
+    // The same unit; another one is a contradiction, and the column is called by neither.
+    assert_eq!(below("SG1 [m/m]", "strain"), ["SG1", "m/m"]);
+    assert_eq!(below("SG1 [m/m]", "um/m"), ["SG1 [m/m]", "um/m"]);
+    assert_eq!(below("F [MN]", "mN"), ["F [MN]", "mN"]);
     assert_eq!(below("SG1 (left)", "-"), ["SG1", "left"]);
     assert_eq!(below("SG1", "mm/m"), ["SG1", "mm/m"]);
     assert_eq!(below("SG1 [-]", "mm/m"), ["SG1", "mm/m"]);
@@ -118,16 +121,46 @@ fn what_is_no_unit_in_brackets_is_part_of_the_name() {
 
 #[test]
 fn the_unit_of_a_binary_record_is_that_of_a_name_with_a_label() {
-    let names = ["SG1 (left)".to_owned(), "SG2 [m/m]".to_owned()];
-    let mut bytes = Vec::new();
-    crate::series::binary::write_header(&mut bytes, &names, 2, 0.0, 0.01, 1e-3).unwrap();
-    for v in [0.5_f32; 4] {
-        bytes.extend_from_slice(&v.to_le_bytes());
+    for (header, name, unit) in [
+        ("SG1 (left)", "SG1 (left)", "mm/m"),
+        ("SG2 [m/m]", "SG2", "m/m"),
+        ("SG3", "SG3", "mm/m"),
+        ("SG3 [-]", "SG3", "mm/m"),
+        // The top, middle, side, hind, inner one: no tonnes, metres, seconds, hours.
+        ("SG4 (t)", "SG4 (t)", "mm/m"),
+        ("SG4 (m)", "SG4 (m)", "mm/m"),
+        ("SG4 (s)", "SG4 (s)", "mm/m"),
+        ("SG4 (h)", "SG4 (h)", "mm/m"),
+        ("SG4 [3]", "SG4 [3]", "mm/m"),
+        ("F [kN]", "F", "kN"),
+        ("V (mV/V)", "V", "mV/V"),
+    ] {
+        let mut bytes = Vec::new();
+        let names = [header.to_owned()];
+        crate::series::binary::write_header(&mut bytes, &names, 2, 0.0, 0.01, 1e-3).unwrap();
+        for v in [0.5_f32; 2] {
+            bytes.extend_from_slice(&v.to_le_bytes());
+        }
+        let record = open_record(Arc::new(bytes), &Options::default()).unwrap();
+        let c = &record.columns()[0];
+        assert_eq!([&*c.name, &*c.unit], [name, unit], "{header}");
     }
-    let record = open_record(Arc::new(bytes), &Options::default()).unwrap();
-    let [a, b] = [0, 1].map(|i: usize| record.columns()[i].clone());
-    assert_eq!([a.name, a.unit], ["SG1 (left)", "mm/m"]);
-    assert_eq!([b.name, b.unit], ["SG2", "m/m"]);
+}
+
+#[test]
+fn a_record_whose_time_has_two_units_is_refused() {
+    for text in [
+        "time [s],P01\nms,um/m\n0,1\n1,2\n",
+        "P01,time [s]\num/m,ms\n1,0\n2,1\n",
+    ] {
+        let wrong = open(text).err().map(|e| e.to_string());
+        assert!(
+            wrong
+                .as_deref()
+                .is_some_and(|w| w.contains("`s` beside the name, `ms` in")),
+            "{wrong:?}"
+        );
+    }
 }
 
 #[test]

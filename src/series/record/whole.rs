@@ -1,6 +1,7 @@
 //! A record in memory as a reader: what small files and formats without parts become.
 
-use super::reader::{BLOCK, Block, Column, Pick, RecordReader, Sink, Times};
+use super::column::Column;
+use super::reader::{BLOCK, Block, Pick, RecordReader, Sink, Times};
 use crate::series::error::SeriesError;
 
 /// Samples a piece.

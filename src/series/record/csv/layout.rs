@@ -4,8 +4,8 @@ use super::date;
 use super::text::{Encoding, bare, field_end, is_empty_line, shown};
 use crate::series::error::SeriesError;
 use crate::series::number::{DecimalMark, number};
-use crate::series::record::reader::{
-    Column, is_time, name_and_unit, seconds_in, states_no_unit, take_unit_below,
+use crate::series::record::column::{
+    Clash, Column, is_time, name_and_unit, seconds_in, states_no_unit, take_unit_below,
 };
 
 /// Lines looked at for the header.
@@ -86,8 +86,8 @@ impl Layout {
             }
         }
         if let Some(units) = units {
-            for ((c, name), unit) in columns.iter_mut().zip(names).zip(units) {
-                take_unit_below(c, &shown(name), &shown(unit));
+            for (c, unit) in columns.iter_mut().zip(units) {
+                take_unit_below(c, &shown(unit));
             }
         }
         let first = fields.get(row).ok_or(SeriesError::Empty)?;
@@ -96,7 +96,7 @@ impl Layout {
         let time = columns
             .iter()
             .enumerate()
-            .position(|(i, c)| is_time(&c.name, i == 0))
+            .position(|(i, c)| c.is_time(i == 0))
             // A date in the first field is the time whatever its name.
             .or(dated.then_some(0));
         let mut layout = Self {
@@ -122,7 +122,15 @@ impl Layout {
     }
 
     fn set_time(&mut self, at: usize, rows: &[Vec<&[u8]>]) -> Result<(), SeriesError> {
-        let unit = self.columns.get(at).map_or("", |c| c.unit.as_str());
+        let column = self.columns.get(at);
+        if let Some(clashing) = column.filter(|c| c.clash() == Some(Clash::Size)) {
+            return Err(SeriesError::Line {
+                line: 1,
+                what: format!("time: {}", clashing.clash_words()),
+                remedy: "correct whichever is wrong",
+            });
+        }
+        let unit = column.map_or("", |c| c.unit.as_str());
         let values = || rows.iter().filter_map(|r| r.get(at)).copied();
         let first = values().next().unwrap_or_default();
         let (kind, digits, factor) = match date::seconds(first) {

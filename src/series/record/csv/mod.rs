@@ -9,7 +9,8 @@ mod text;
 
 pub use layout::{Layout, is_units};
 
-use super::reader::{BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times};
+use super::column::Column;
+use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
 use crate::series::error::SeriesError;
 use crate::series::number::{number, short_number};
 use layout::TimeKind;

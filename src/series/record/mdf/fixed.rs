@@ -3,7 +3,8 @@
 use super::fault::broken;
 use super::field::{Field, values};
 use crate::series::error::SeriesError;
-use crate::series::record::reader::{BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times};
+use crate::series::record::column::Column;
+use crate::series::record::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
 use crate::series::record::tile::Tile;
 use falcon_mdf::blocks::CompressionType;
 use falcon_mdf::data_index::DataBlockInfo;
@@ -87,10 +88,7 @@ impl Group {
             match Field::of(c).filter(|f| f.fits(data, invalidation)) {
                 Some(f) => {
                     fields.push(f);
-                    columns.push(Column {
-                        name: c.name.clone(),
-                        unit: c.unit.clone(),
-                    });
+                    columns.push(Column::of_channel(&c.name, &c.unit));
                 }
                 None => return Ok(None),
             }

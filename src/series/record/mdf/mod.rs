@@ -8,7 +8,8 @@ mod fault;
 mod field;
 mod fixed;
 
-use super::reader::{Bytes, Column, RecordReader, Times};
+use super::column::Column;
+use super::reader::{Bytes, RecordReader, Times};
 use super::whole::Whole;
 use crate::series::error::SeriesError;
 use falcon_mdf::io::{ByteSlice, ByteSource};
@@ -116,10 +117,7 @@ fn whole(file: &Mf4File, group: &ChannelGroup) -> Result<Whole, SeriesError> {
         Ok(samples)
     };
     for c in values(group) {
-        columns.push(Column {
-            name: c.name.clone(),
-            unit: c.unit.clone(),
-        });
+        columns.push(Column::of_channel(&c.name, &c.unit));
         samples.push(decode(c)?);
     }
     let clock = group.channels.iter().find(|c| c.is_time_channel());

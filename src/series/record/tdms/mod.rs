@@ -6,7 +6,8 @@
 mod fault;
 mod segments;
 
-use super::reader::{BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times, is_time};
+use super::column::{Column, is_time};
+use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
 use crate::series::error::SeriesError;
 use fault::broken;
 use segments::{Channel, Kind, Value, channels_of};
@@ -81,10 +82,7 @@ impl Tdms {
             let unit = c
                 .text("unit_string")
                 .or_else(|| c.text("NI_UnitDescription"));
-            columns.push(Column {
-                name,
-                unit: unit.unwrap_or_default().to_owned(),
-            });
+            columns.push(Column::of_channel(&name, unit.unwrap_or_default()));
             channels.push((c, scale));
         }
         if !apart.is_empty() {

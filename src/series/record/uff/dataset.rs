@@ -2,7 +2,7 @@
 
 use super::fault::broken;
 use crate::series::error::SeriesError;
-use crate::series::record::reader::Column;
+use crate::series::record::column::Column;
 
 /// Lines of text before the numbers.
 const HEAD: usize = 11;
@@ -48,6 +48,8 @@ pub enum Samples {
 pub struct Dataset {
     /// Name and unit.
     pub column: Column,
+    /// As the file states it.
+    unit: String,
     /// What may be its name: the first line of its head, the label of its numbers, grid and direction.
     titles: [String; 3],
     /// Time of the first sample, s.
@@ -117,10 +119,11 @@ pub fn datasets(bytes: &[u8]) -> Result<Vec<Dataset>, SeriesError> {
     };
     let title = (0..3).find(|t| tells(*t));
     for (i, d) in out.iter_mut().enumerate() {
-        d.column.name = match title.and_then(|t| d.titles.get(t)) {
+        let name = match title.and_then(|t| d.titles.get(t)) {
             Some(name) => name.clone(),
             None => format!("{}#{}", d.titles.first().map_or("", String::as_str), i + 1),
         };
+        d.column = Column::of_channel(&name, &d.unit);
     }
     Ok(out)
 }
@@ -217,10 +220,8 @@ fn history(
         format!("{}:{direction}", field(5, 41, 51)),
     ];
     Ok(Some(Dataset {
-        column: Column {
-            name: String::new(),
-            unit: told(field(8, 47, 67)).unwrap_or_default(),
-        },
+        column: Column::of_channel("", ""),
+        unit: told(field(8, 47, 67)).unwrap_or_default(),
         titles,
         start_s,
         step_s,

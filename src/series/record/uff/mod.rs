@@ -3,7 +3,8 @@
 mod dataset;
 mod fault;
 
-use super::reader::{BLOCK, Block, Bytes, Column, Pick, RecordReader, Sink, Times};
+use super::column::Column;
+use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
 use crate::series::error::SeriesError;
 use dataset::{Dataset, Samples, datasets};
 use fault::broken;

@@ -1,0 +1,273 @@
+//! What a channel is called and what its numbers are in: headers such as `P01 [um/m]`, rows of units below them, units of a whole file.
+
+use crate::units::{Quantity, find_unit, microstrain_in};
+
+/// A channel of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Its name, without the unit.
+    pub name: String,
+    /// Its unit as the file states it; empty where it doesn't.
+    pub unit: String,
+    /// What the file calls it.
+    pub header: Header,
+    /// The unit that the file states elsewhere than in brackets beside the name: in a row below, for the channel, for all of its numbers.
+    /// Empty where it states none. It is the column's where the brackets are part of a name.
+    pub stated: String,
+}
+
+/// What a file calls a channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Header {
+    /// All of it: `SG1 (left)`.
+    pub whole: String,
+    /// What stands before the last bracket: `SG1`.
+    pub name: String,
+    /// What stands in it, a unit or a label: `left`. Empty where there is none, or the format keeps units apart from names.
+    pub bracket: String,
+}
+
+/// Two units of a column that can't both be right.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clash {
+    /// Of one quantity and different size: `SG1 [m/m]` above `um/m`.
+    Size,
+    /// Of different quantities: `SG1 [mV/V]` above `um/m`.
+    Quantity,
+}
+
+/// Other units than those of time, strain and what a job may name, that tables of strain hold, and strain before it is scaled.
+const OTHER_UNITS: &[&str] = &[
+    "mv/v", "v/v", "uv/v", "µv/v", "mv", "volt", "volts", "kn", "mn", "lbf", "kip", "kgf", "kg",
+    "mm", "cm", "pa", "kpa", "mpa", "gpa", "psi", "n/mm2", "n/mm²", "m/s2", "m/s²", "deg", "°",
+    "°c", "degc", "°f", "%", "hz", "bar", "counts",
+];
+
+impl Header {
+    /// A header of a table, split at its last bracket: `SG1 (left) (um/m)` is `SG1 (left)` and `um/m`.
+    fn of(header: &str) -> Self {
+        let whole = header.trim().trim_matches('"').trim();
+        for (open, close) in [('[', ']'), ('(', ')')] {
+            if let Some(body) = whole.strip_suffix(close)
+                && let Some((name, bracket)) = split_at_bracket(body, open, close)
+            {
+                return Self {
+                    whole: whole.to_owned(),
+                    name: name.trim().to_owned(),
+                    bracket: bracket.trim().to_owned(),
+                };
+            }
+        }
+        Self::plain(whole)
+    }
+
+    /// A name, whatever stands in it.
+    fn plain(name: &str) -> Self {
+        Self {
+            whole: name.to_owned(),
+            name: name.to_owned(),
+            bracket: String::new(),
+        }
+    }
+
+    /// Whether what stands in brackets is a unit of time, strain, a quantity that a job may name, or another that such files hold. A single
+    /// letter in round brackets is none: `SG1 (t)` is the top one.
+    pub fn is_unit(&self) -> bool {
+        let mut letters = self.bracket.chars();
+        let is_letter = letters.next().is_some_and(char::is_alphabetic) && letters.next().is_none();
+        let is_label = is_letter && self.whole.ends_with(')');
+        !is_label && (!sizes(&self.bracket).is_empty() || is_other_unit(&self.bracket))
+    }
+
+    /// Whether both are written alike but for the kind of bracket and the blanks before it: `SG1(left)` and `SG1 (left)`.
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.name == other.name && self.bracket == other.bracket
+    }
+}
+
+/// Name and unit of a header such as `P01 [um/m]` or `a_body (m/s2)`; the last bracket is the unit's: `SG1 (left) (um/m)`.
+pub fn name_and_unit(header: &str) -> Column {
+    let header = Header::of(header);
+    Column {
+        name: header.name.clone(),
+        unit: header.bracket.clone(),
+        header,
+        stated: String::new(),
+    }
+}
+
+impl Column {
+    /// A channel of a format that keeps units apart from names.
+    pub fn of_channel(name: &str, unit: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            header: Header::plain(name),
+            stated: unit.to_owned(),
+        }
+    }
+
+    /// The column in a file all of whose numbers are in one unit: what is no unit in brackets is part of a name, `SG1 (left)`.
+    pub(super) fn in_file_of(mut self, unit: &str) -> Self {
+        if self.header.is_unit() {
+            // A unit of strain beside the name is that of its numbers, whatever the name is.
+            self.stated = match microstrain_in(&self.header.bracket) {
+                Some(_) => self.header.bracket.clone(),
+                None => unit.to_owned(),
+            };
+            return self;
+        }
+        if !states_no_unit(&self.header.bracket) {
+            self.name.clone_from(&self.header.whole);
+        }
+        unit.clone_into(&mut self.unit);
+        unit.clone_into(&mut self.stated);
+        self
+    }
+
+    /// Whether this column, the first of its file or not, is that of time.
+    pub fn is_time(&self, first: bool) -> bool {
+        is_time(&self.name, first)
+            || self.clash() == Some(Clash::Size) && is_time(&self.header.name, first)
+    }
+
+    /// What can't be right of the unit in brackets beside the name and the one stated elsewhere.
+    pub fn clash(&self) -> Option<Clash> {
+        if states_no_unit(&self.header.bracket) || states_no_unit(&self.stated) {
+            return None;
+        }
+        match likeness(&self.header.bracket, &self.stated) {
+            Likeness::Same => None,
+            Likeness::Size => Some(Clash::Size),
+            Likeness::None => self.header.is_unit().then_some(Clash::Quantity),
+        }
+    }
+
+    /// What is wrong with a column whose units clash.
+    pub fn clash_words(&self) -> String {
+        format!(
+            "`{}` beside the name, `{}` in the row of units below",
+            self.header.bracket, self.stated
+        )
+    }
+}
+
+/// Gives a column the unit in the row below its header. The same unit beside the name goes before it; anything else in brackets there is part
+/// of the name, `SG1 (left)`, or a unit that clashes with the one below ([`Column::clash`]).
+pub fn take_unit_below(column: &mut Column, below: &str) {
+    if states_no_unit(below) {
+        return;
+    }
+    let below = below.trim().trim_matches(['[', ']', '(', ')']);
+    below.clone_into(&mut column.stated);
+    if !states_no_unit(&column.unit) {
+        if likeness(&column.unit, below) == Likeness::Same {
+            return;
+        }
+        column.name.clone_from(&column.header.whole);
+    }
+    below.clone_into(&mut column.unit);
+}
+
+/// Whether a field of a row of units states none: blank, `-`, or what such a row is called.
+pub(super) fn states_no_unit(field: &str) -> bool {
+    let word = field.trim().trim_matches(['[', ']', '(', ')']);
+    matches!(
+        word.to_lowercase().as_str(),
+        "" | "-" | "unit" | "units" | "einheit" | "einheiten"
+    )
+}
+
+/// What stands before and after the bracket that a bracket at the end would close; `N/(mm)` is one unit.
+fn split_at_bracket(body: &str, open: char, close: char) -> Option<(&str, &str)> {
+    let mut depth = 0_usize;
+    for (at, c) in body.char_indices().rev() {
+        if c == close {
+            depth += 1;
+        } else if c == open {
+            if depth == 0 {
+                let unit = body.get(at..)?.strip_prefix(open)?;
+                return Some((body.get(..at)?, unit));
+            }
+            depth -= 1;
+        }
+    }
+    None
+}
+
+/// What two words for units have in common.
+#[derive(PartialEq)]
+enum Likeness {
+    /// They mean one unit, as `m/m` and `strain` do.
+    Same,
+    /// They measure one quantity in different sizes, as `MN` and `mN` do.
+    Size,
+    /// Nothing that is known.
+    None,
+}
+
+fn likeness(a: &str, b: &str) -> Likeness {
+    let (of_a, of_b) = (sizes(a), sizes(b));
+    let pairs = of_a.iter().flat_map(|x| of_b.iter().map(move |y| (x, y)));
+    let mut likeness = Likeness::None;
+    for ((quantity, x), (other, y)) in pairs {
+        if quantity == other {
+            // Sizes are products of exact numbers: they agree but for the last digits.
+            if (x - y).abs() <= 1e-12 * x.abs() {
+                return Likeness::Same;
+            }
+            likeness = Likeness::Size;
+        }
+    }
+    match likeness {
+        Likeness::None if a.eq_ignore_ascii_case(b) => Likeness::Same,
+        other => other,
+    }
+}
+
+/// What a word measures as a unit, and its size among the units of that quantity: some words mean several, `us` microstrain and microseconds.
+fn sizes(word: &str) -> Vec<(&'static str, f64)> {
+    if states_no_unit(word) {
+        return Vec::new();
+    }
+    let time = seconds_in(word).map(|s| ("time", s));
+    let strain = microstrain_in(word).map(|m| ("strain", m));
+    let of = |quantity| find_unit(quantity, word).map(|u| (u.quantity.word(), u.si));
+    let others = Quantity::ALL.into_iter().filter_map(of);
+    time.into_iter().chain(strain).chain(others).collect()
+}
+
+fn is_other_unit(word: &str) -> bool {
+    OTHER_UNITS.contains(&word.to_lowercase().as_str())
+}
+
+/// Seconds in one of a unit of time; none stated means seconds.
+pub fn seconds_in(unit: &str) -> Option<f64> {
+    match unit.trim().to_lowercase().as_str() {
+        "" | "s" | "sec" | "secs" | "second" | "seconds" | "sek" => Some(1.0),
+        "ms" | "msec" | "millisecond" | "milliseconds" => Some(1e-3),
+        "us" | "µs" | "μs" | "microseconds" => Some(1e-6),
+        "ns" | "nanoseconds" => Some(1e-9),
+        "min" | "minutes" => Some(60.0),
+        "h" | "hours" => Some(3600.0),
+        _ => None,
+    }
+}
+
+/// Whether a column of this name, the first of its file or not, is that of time.
+pub fn is_time(name: &str, first: bool) -> bool {
+    let word = name.trim().to_lowercase();
+    match word.as_str() {
+        "time" | "t" if name != "T" => true,
+        "t_s" | "time_s" | "zeit" | "timestamp" | "datetime" | "date_time" | "date time"
+        | "date/time" | "datum" | "date" => true,
+        // Measuring programs add the name of the clock: `Time  1 - default sample rate`.
+        _ => {
+            first
+                && (name == "T"
+                    || ["time ", "zeit ", "datum ", "date ", "timestamp "]
+                        .iter()
+                        .any(|w| word.starts_with(w)))
+        }
+    }
+}
