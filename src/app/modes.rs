@@ -13,7 +13,7 @@ use crate::fe::{
 };
 use crate::gauge::{CornerRows, build, reading};
 use crate::model::Model;
-use crate::units::UnitSystem;
+use crate::units::{MICROSTRAIN, UnitSystem};
 use serde::{Serialize, Serializer};
 use std::path::Path;
 
@@ -77,9 +77,6 @@ pub struct Modes {
 impl Answer for Modes {
     const COMMAND: &'static str = "modes";
 }
-
-/// Strain in microstrain.
-const MICRO: f64 = 1e6;
 
 /// The lowest `count` elastic modes of a job's structure on the job's support, with the strain of its gauges.
 ///
@@ -171,7 +168,7 @@ fn solved(
             effective_mass: m.effective_mass,
             gauge_microstrain: gauges
                 .iter()
-                .map(|g| reading(g, case).map(|e| MICRO * e))
+                .map(|g| reading(g, case).map(|e| e / MICROSTRAIN))
                 .collect(),
         })
         .collect();

@@ -7,13 +7,12 @@ use crate::fe::strain_tensor::Surface;
 use crate::gauge::{Bridge, centre};
 use crate::model::{Mat3, Model, ShellIx};
 use crate::sensitivity::LoadCaseOf;
+use crate::units::MICROSTRAIN;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Cosine of the angle beyond which a neighbour lies round a bend: that of PARAM,SNORM's default, 20 degrees.
 const SMOOTH: f64 = 0.939_692_620_785_908_4;
-/// Strain in one microstrain.
-const MICRO: f64 = 1e-6;
 /// Share of the spread of the neighbours under which a direction has none: its gradient is then 0.
 const NO_SPREAD: f64 = 1e-6;
 
@@ -48,7 +47,7 @@ pub fn forms(
             let near = beside(model, &edges, shell);
             let mut form = [0.0; 6];
             for (load, scale) in loads.iter().zip(scales) {
-                let factor = scale / load.applied / MICRO;
+                let factor = scale / load.applied / MICROSTRAIN;
                 let Some(slopes) = slopes(bridge, load, (shell, side), &near) else {
                     continue;
                 };

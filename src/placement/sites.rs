@@ -7,6 +7,7 @@ use crate::fe::{CaseResult, PlaneStrain};
 use crate::gauge::{Bridge, centre, shell_strain, to_side};
 use crate::model::{Model, ShellIx};
 use crate::sensitivity::LoadCaseOf;
+use crate::units::MICROSTRAIN;
 
 /// A place where a gauge can go.
 pub type Site = (ShellIx, Surface);
@@ -60,7 +61,7 @@ pub fn bridges(
     Candidates::from_tensors(k, sites.len(), angles, scatter, |place, out| {
         for (l, load) in loads.iter().enumerate() {
             let strain = wired(bridge, load.case, sites[place]).unwrap_or_default();
-            let factor = scales[l] / load.applied / MICRO;
+            let factor = scales[l] / load.applied / MICROSTRAIN;
             for (c, v) in strain.iter().enumerate() {
                 out[3 * l + c] = v * factor;
             }
@@ -106,6 +107,3 @@ pub fn axis_of(bridge: Bridge, angle: f64) -> f64 {
         _ => angle,
     }
 }
-
-/// Strain in one microstrain.
-const MICRO: f64 = 1e-6;

@@ -3,6 +3,7 @@
 use crate::fe::Solution;
 use crate::fe::strain_rows::{Location, Point, StrainRow, each_row, n_elements};
 use crate::model::Model;
+use crate::units::MICROSTRAIN;
 use rayon::prelude::*;
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -18,9 +19,6 @@ pub fn strains_columns() -> impl Iterator<Item = (&'static str, &'static str)> {
         .split(',')
         .map(move |c| (c, if is_strain(c) { "microstrain" } else { "" }))
 }
-
-/// Microstrain.
-const MICRO: f64 = 1e-6;
 
 /// Elements a piece of text: pieces are made in parallel and written in order.
 const PIECE: usize = 2048;
@@ -86,7 +84,7 @@ fn line(text: &mut String, subcase: u32, row: &StrainRow) {
         Point::Recovery(p) => POINTS.get(p).copied().unwrap_or(""),
     });
     for &strain in row.local.iter().chain(&row.basic) {
-        let v = strain / MICRO;
+        let v = strain / MICROSTRAIN;
         text.push(',');
         if v == 0.0 {
             text.push('0');

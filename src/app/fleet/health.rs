@@ -1,11 +1,10 @@
 //! What the readings of a day say of each gauge.
 
 use super::day::GaugeDay;
+use crate::units::MICROSTRAIN;
 
 /// Every how many samples the residual is looked at: enough of a day for a gain to a thousandth, few enough to cost little.
 const THINNED: usize = 16;
-/// Strain in a microstrain.
-const MICRO: f64 = 1e-6;
 
 /// Gauges whose sums stand in registers at a time: two vectors of four, a line of the cache.
 const TOGETHER: usize = 8;
@@ -204,10 +203,10 @@ impl Sums {
         let (with, own) = (yy - out * yr, yy - 2.0 * out * yr + out * out * rr0);
         GaugeDay {
             name: name.to_owned(),
-            mean: mean / MICRO,
-            sd: variance.sqrt() / MICRO,
-            noise: (self.seconds / self.n_seconds as f64 / 6.0).sqrt() / MICRO,
-            residual: (rr / m).sqrt() / MICRO,
+            mean: mean / MICROSTRAIN,
+            sd: variance.sqrt() / MICROSTRAIN,
+            noise: (self.seconds / self.n_seconds as f64 / 6.0).sqrt() / MICROSTRAIN,
+            residual: (rr / m).sqrt() / MICROSTRAIN,
             gain: with / own,
             missing: self.missing,
         }
@@ -225,7 +224,7 @@ mod tests {
         let swing =
             |g: usize, i: usize| (g + 1) as f64 * if i.is_multiple_of(2) { 1.0 } else { -1.0 };
         let block: Vec<f64> = (0..rows)
-            .flat_map(|i| (0..n).map(move |g| MICRO * (g as f64 + swing(g, i))))
+            .flat_map(|i| (0..n).map(move |g| MICROSTRAIN * (g as f64 + swing(g, i))))
             .collect();
         let loads = vec![0.0; rows];
         let s = vec![vec![1.0]; n];

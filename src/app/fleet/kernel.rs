@@ -19,14 +19,13 @@ use crate::series::SeriesError;
 use crate::series::rainflow::{Counter, Law};
 use crate::series::record::Record;
 use crate::series::still::{Gives, Still};
+use crate::units::MICROSTRAIN;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::ControlFlow;
 
 /// Pieces of a record that are looked at beforehand.
 const LOOKED_AT: usize = 10;
-/// Strain in a microstrain.
-const MICRO: f64 = 1e-6;
 
 /// What all records of a job share.
 pub struct Kernel {
@@ -363,7 +362,7 @@ impl Kernel {
 
 /// Strain from a reading: it times the first, plus the second.
 fn line_of(micro: f64, channel: Channel) -> [f64; 2] {
-    [micro, -channel.offset].map(|v| v * MICRO / channel.factor)
+    [micro, -channel.offset].map(|v| v * MICROSTRAIN / channel.factor)
 }
 
 /// Readings of the first block of some pieces spread over the record, strain.

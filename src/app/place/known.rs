@@ -1,6 +1,5 @@
 //! Gauges of the job as `recover` will read them: by the model, or by the S that was given or calibrated.
 
-use super::pool::MICRO;
 use super::task::Task;
 use crate::app::fault::Faults;
 use crate::app::job::Job;
@@ -9,6 +8,7 @@ use crate::app::work::Work;
 use crate::gauge::Gauge;
 use crate::linalg::spd;
 use crate::sensitivity::{NoStrain, Sensitivity, from_cases};
+use crate::units::MICROSTRAIN;
 
 /// The S of `[sensitivity]`, where the job has one.
 ///
@@ -70,7 +70,7 @@ impl Task<'_> {
     pub fn rows_of(&self, gauges: &[Gauge], s: &Sensitivity, model_rel: f64) -> Rows {
         let noise = self.job.placement.noise_microstrain;
         let row = |g: usize| -> Vec<f64> {
-            let of = |&l: &usize| s.values[(g, l)] * self.scales[l] / MICRO;
+            let of = |&l: &usize| s.values[(g, l)] * self.scales[l] / MICROSTRAIN;
             self.order.iter().map(of).collect()
         };
         let strain: Vec<Vec<f64>> = (0..gauges.len()).map(row).collect();
@@ -104,7 +104,7 @@ impl Task<'_> {
             for (g, a) in at.iter().enumerate() {
                 for (h, b) in at.iter().enumerate() {
                     if let (Some(a), Some(b)) = (a, b) {
-                        w[g * n + h] += c[a * n_own + b] / (MICRO * MICRO);
+                        w[g * n + h] += c[a * n_own + b] / (MICROSTRAIN * MICROSTRAIN);
                     }
                 }
             }

@@ -11,9 +11,8 @@ use crate::placement::candidates::{Angles, Candidates, Scatter};
 use crate::placement::gradient::forms;
 use crate::placement::sites::{Site, bridges, wired};
 use crate::sensitivity::LoadCaseOf;
+use crate::units::MICROSTRAIN;
 
-/// Strain in one microstrain.
-pub(super) const MICRO: f64 = 1e-6;
 /// Strain, microstrain rms over the candidates, that a load without `expected` is taken to cause.
 const ASSUMED_STRAIN: f64 = 100.0;
 
@@ -67,7 +66,7 @@ fn add_mesh_error(
             let Some(strain) = wired(bridge, error.case, site) else {
                 continue;
             };
-            let [x, y, g] = strain.map(|v| v * scale / error.applied / MICRO);
+            let [x, y, g] = strain.map(|v| v * scale / error.applied / MICROSTRAIN);
             let squares = [x * x, y * y, g * g, x * y, x * g, y * g];
             for (f, v) in form.iter_mut().zip(squares) {
                 *f += left_squared() * v;
@@ -147,7 +146,7 @@ pub(in crate::app) fn scales(
             }
             let rms: f64 = if n > 0.0 { f64::sqrt(sum / n) } else { 0.0 };
             if rms > 0.0 {
-                ASSUMED_STRAIN * MICRO / rms
+                ASSUMED_STRAIN * MICROSTRAIN / rms
             } else {
                 1.0
             }

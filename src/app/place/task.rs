@@ -1,6 +1,6 @@
 //! What is to be placed: the job resolved on its model.
 
-use super::pool::{MICRO, column_order};
+use super::pool::column_order;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::{Job, Keep, LoadRole, Optimality};
 use crate::app::strain::{Fields, lay_gauges, left_in_reading, without_strain};
@@ -13,6 +13,7 @@ use crate::placement::region::clear_of;
 use crate::placement::sites::{Site, wired};
 use crate::placement::{Criterion, PlaceError, Spec};
 use crate::sensitivity::{LoadCaseOf, Sensitivity};
+use crate::units::MICROSTRAIN;
 
 /// The task.
 pub(super) struct Task<'a> {
@@ -55,7 +56,7 @@ impl<'a> Task<'a> {
 
     /// Noise of a gauge with what may be left of its mesh error, microstrain, 1 sd.
     pub fn with_mesh_error(&self, gauge: &Gauge, noise: f64) -> f64 {
-        noise.hypot(left_in_reading(gauge, &self.errors, &self.scales) / MICRO)
+        noise.hypot(left_in_reading(gauge, &self.errors, &self.scales) / MICROSTRAIN)
     }
 
     /// Lays the gauges that stay and takes away the sites too close to them.
@@ -183,7 +184,8 @@ impl<'a> Task<'a> {
                 .map(|(c, f)| {
                     let t = wired(Bridge::Quarter, c.case, site).unwrap_or_default();
                     // Engineering shear g: 2 (g/2)^2 is its part of the square of the tensor.
-                    [t[0], t[1], t[2] / std::f64::consts::SQRT_2].map(|v| v * f / c.applied / MICRO)
+                    [t[0], t[1], t[2] / std::f64::consts::SQRT_2]
+                        .map(|v| v * f / c.applied / MICROSTRAIN)
                 })
                 .collect();
             for c in 0..3 {
@@ -266,6 +268,6 @@ pub(super) fn by_load(task: &Task, gauge: &Gauge) -> Vec<f64> {
     task.cases
         .iter()
         .zip(&task.scales)
-        .map(|(c, f)| reading(gauge, c.case).unwrap_or(0.0) * f / c.applied / MICRO)
+        .map(|(c, f)| reading(gauge, c.case).unwrap_or(0.0) * f / c.applied / MICROSTRAIN)
         .collect()
 }

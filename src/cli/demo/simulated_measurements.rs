@@ -8,6 +8,7 @@ use crate::fe::strain_tensor::Surface;
 use crate::fe::{CaseResult, UnitLoad};
 use crate::gauge::{CornerRows, Gauge, GaugeSpec, build, on_refined, reading};
 use crate::model::{GridIx, Model, Vec3};
+use crate::units::MICROSTRAIN;
 use nastran::bdf::{MemoryLoader, read_deck};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -112,7 +113,6 @@ const GAIN: f64 = 0.002;
 const SEED: u64 = 11;
 const GRAVITY: f64 = 9.806_65;
 const KILO: f64 = 1e3;
-const MICRO: f64 = 1e-6;
 
 /// Drives twelve runs.
 ///
@@ -218,7 +218,7 @@ pub(super) fn simulate(glued: &[Glued]) -> Result<Simulated, Faults> {
         for (gauge, gain) in gauges.iter().zip(&gains) {
             let strain = superposed(gauge, &standing.contacts, &reactions)
                 + superposed(gauge, &standing.others, &amounts);
-            let read = gain * strain / MICRO + NOISE.0 * normal();
+            let read = gain * strain / MICROSTRAIN + NOISE.0 * normal();
             let _ = write!(simulated.strain_csv, ",{read:.2}");
         }
         let _ = write!(
