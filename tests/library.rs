@@ -704,7 +704,7 @@ fn work_that_is_stopped_while_it_solves_says_so_and_blames_no_deck() {
     let job = Job::read("job.toml", &files).unwrap();
     let stops = StopsAtSolve(strainbridge::stop::Stop::new());
     let context = Context::new(&files).progress(&stops);
-    let faults = sensitivity(&job, &context).unwrap_err();
+    let faults = sensitivity(&job, &context).err().unwrap();
     let first = faults.first().unwrap();
     assert_eq!(
         (first.file.as_str(), first.wrong.as_str()),
