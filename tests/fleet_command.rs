@@ -498,3 +498,23 @@ fn a_gauge_named_with_what_looks_like_a_unit_is_read_as_any_other() {
     assert!(loads(&plain).is_array());
     assert_eq!(loads(&named), loads(&plain));
 }
+
+#[test]
+fn a_gauge_that_is_ignored_needs_neither_a_zero_nor_a_unit_of_strain() {
+    let (dir, files) = folder("ignored");
+    let files = files[..1].to_vec();
+    let names = (1..GAUGES).map(|g| format!(",G{g}")).collect::<String>();
+    let zeros = ",0".repeat(GAUGES - 1);
+    std::fs::write(
+        dir.join("zero.csv"),
+        format!("time,G0 [mV/V]{names}\n0,1{zeros}\n0.01,2{zeros}\n"),
+    )
+    .unwrap();
+    let job = JOB.replace("[measured]\n", "[measured]\nzero = \"zero.csv\"\n");
+    let ignored = "[[correction]]\ngauge = \"G0\"\nignore = true\n";
+    std::fs::write(dir.join("job.toml"), job + ignored).unwrap();
+    let text = std::fs::read_to_string(dir.join(&files[0])).unwrap();
+    std::fs::write(dir.join(&files[0]), text.replace("G0 [um/m]", "G0 [mV/V]")).unwrap();
+    let (code, result) = fleet(&dir, "out", &files, &[]);
+    assert_eq!(code, 0, "{result}");
+}

@@ -5,7 +5,7 @@
 //! row to row is seen between them, and the readings count with that much more noise.
 
 use super::fault::{Fault, FaultList, Faults};
-use super::job::strain::{StrainRows, StrainTable, read_strain};
+use super::job::strain::{StrainRows, StrainTable, read_strain, wanted_columns};
 use super::job::strain_means::is_long_record;
 use super::job::{HoldOut, Job, Measured, NamedFile};
 use super::recover::zero_of;
@@ -41,7 +41,8 @@ pub(super) fn read_zeroed(
         )
         .into());
     }
-    let mut table = read_strain(&mut work.inputs, job, named)?;
+    let wanted = wanted_columns(&mut work.inputs, job);
+    let mut table = read_strain(&mut work.inputs, job, named, &wanted)?;
     let (zero, effective) = zero_of(work, job, measured, &table.gauges)?;
     let own = 1.0 + effective.map_or(0.0, |n| 1.0 / n);
     let rows = zeros_by_row(work, job, measured, &table)?;
@@ -163,8 +164,10 @@ fn zero_rows(
     {
         let both = [&measured.strain, hold_out];
         files = format!("neither `{}` nor `{}` has a", both[0].given, both[1].given);
+        let wanted = wanted_columns(&mut work.inputs, job);
         for other in both.into_iter().filter(|f| f.given != table.file) {
-            if let StrainRows::Runs(runs) = read_strain(&mut work.inputs, job, other)?.rows {
+            let other = read_strain(&mut work.inputs, job, other, &wanted)?;
+            if let StrainRows::Runs(runs) = other.rows {
                 known.extend(runs);
             }
         }

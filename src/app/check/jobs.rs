@@ -3,6 +3,7 @@
 use super::checked::Checked;
 use crate::app::deck;
 use crate::app::fault::{Fault, Faults};
+use crate::app::job::strain::wanted_columns;
 use crate::app::job::strain_means::{StrainFile, read_strain_file};
 use crate::app::job::suggest;
 use crate::app::job::{self, HoldOut, Job, Measured, NamedFile};
@@ -33,7 +34,8 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
     found.candidates = Some(job.candidates.clone());
     files(work, &job, found, into);
     if let Some(m) = &job.measured {
-        match read_strain_file(&mut work.inputs, &job, &m.strain) {
+        let wanted = wanted_columns(&mut work.inputs, &job);
+        match read_strain_file(&mut work.inputs, &job, &m.strain, &wanted) {
             Ok(file) => {
                 work.findings.extend(gauges_and_strain(&job, file.gauges()));
                 found.faults.extend(zero_faults(work, &job, m, &file));
@@ -41,11 +43,11 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
             Err(f) => found.faults.extend(f),
         }
         if let Some(named) = &m.zero {
-            let read = read_strain_file(&mut work.inputs, &job, named);
+            let read = read_strain_file(&mut work.inputs, &job, named, &wanted);
             found.faults.extend(faults_of(read));
         }
         if let HoldOut::File(named) = &m.hold_out {
-            match read_strain_file(&mut work.inputs, &job, named) {
+            match read_strain_file(&mut work.inputs, &job, named, &wanted) {
                 Ok(file) => {
                     // A run that neither file has was said of the first.
                     let mut more = zero_faults(work, &job, m, &file);

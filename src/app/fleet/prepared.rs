@@ -3,6 +3,7 @@
 use super::kernel::Kernel;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::Job;
+use crate::app::job::correct::channel_of;
 use crate::app::recover::{reference_strain, zero_of};
 use crate::app::strain::{load_units, prepare, stated_errors};
 use crate::app::work::Work;
@@ -28,7 +29,9 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
     work.findings.extend(check_separability(s));
     let (mut zero, effective) = zero_of(work, job, measured, &s.gauges)?;
     // Every record would lack that gauge.
-    if let (Some(named), Some(g)) = (&measured.zero, zero.iter().position(|z| z.is_nan())) {
+    let wanted = |g: &usize| !channel_of(&job.corrections, &s.gauges[*g]).ignore;
+    let blank = (0..zero.len()).filter(wanted).find(|g| zero[*g].is_nan());
+    if let (Some(named), Some(g)) = (&measured.zero, blank) {
         let remedy = "repair the channel of the zero file, or leave its gauge out of the job";
         return Err(Fault::of(&*named.given, &*s.gauges[g], "no zero reading", remedy).into());
     }

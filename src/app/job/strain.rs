@@ -15,7 +15,8 @@ use crate::series::record::{Options, Record, is_format, open_record};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// A whole strain file in memory, its channels put right as `[[correction]]` says. Long histories are better streamed.
+/// A whole strain file in memory, its channels put right as `[[correction]]` says; `wanted`: its [`wanted_columns`]. Long histories are better
+/// streamed.
 ///
 /// # Errors
 /// Every fault: no `run` or `time` column, fields that are no numbers, runs named twice, times that don't ascend.
@@ -23,8 +24,9 @@ pub fn read_strain(
     inputs: &mut Inputs,
     job: &Job,
     named: &NamedFile,
+    wanted: &[String],
 ) -> Result<StrainTable, Faults> {
-    let mut table = strain_as_read(inputs, job, named)?;
+    let mut table = strain_as_read(inputs, job, named, wanted)?;
     table.put_right(&job.corrections);
     Ok(table)
 }
@@ -34,18 +36,19 @@ fn strain_as_read(
     inputs: &mut Inputs,
     job: &Job,
     named: &NamedFile,
+    wanted: &[String],
 ) -> Result<StrainTable, Faults> {
     let bytes = inputs.read_named(job, named).map_err(Faults::from)?;
-    let wanted = wanted_columns(inputs, job);
     if is_format(&bytes) {
-        return strain_from_record(&named.given, bytes, &wanted);
+        return strain_from_record(&named.given, bytes, wanted);
     }
     let text = inputs.read_named_text(job, named).map_err(Faults::from)?;
-    strain_from_text(&named.given, &text, &wanted)
+    strain_from_text(&named.given, &text, wanted)
 }
 
-/// Names of the columns that the readings of the job's gauges are taken from; none where the job doesn't tell its gauges.
-pub(super) fn wanted_columns(inputs: &mut Inputs, job: &Job) -> Vec<String> {
+/// Names of the columns that the readings of the job's gauges are taken from; none where the job doesn't tell its gauges. Where a given S
+/// names them, its whole table is read for it: once a question will do.
+pub fn wanted_columns(inputs: &mut Inputs, job: &Job) -> Vec<String> {
     columns_wanted(&job.corrections, &gauge_names(inputs, job))
 }
 

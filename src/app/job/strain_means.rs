@@ -1,7 +1,7 @@
 //! What a strain file comes to where only its means count: sums over the rows, of a record passed over once, however long it is.
 
 use super::correct::{Channel, channel_of, column_of};
-use super::strain::{StrainTable, open_strain, read_strain, record_fault, wanted_columns};
+use super::strain::{StrainTable, open_strain, read_strain, record_fault};
 use super::types::{Job, NamedFile};
 use crate::app::fault::Faults;
 use crate::app::files::{FileBytes, Inputs};
@@ -64,7 +64,7 @@ pub fn is_long_record(bytes: &FileBytes) -> bool {
     is_format(bytes) || bytes.len() > LARGE && Layout::of(bytes).is_ok_and(|l| l.is_record())
 }
 
-/// A strain file, its channels put right as `[[correction]]` says; of a record the sums.
+/// A strain file, its channels put right as `[[correction]]` says; of a record the sums. `wanted`: its [`super::strain::wanted_columns`].
 ///
 /// # Errors
 /// Every fault of the file.
@@ -72,13 +72,13 @@ pub fn read_strain_file(
     inputs: &mut Inputs,
     job: &Job,
     named: &NamedFile,
+    wanted: &[String],
 ) -> Result<StrainFile, Faults> {
     let bytes = inputs.read_named(job, named).map_err(Faults::from)?;
     if is_long_record(&bytes) {
-        let names = wanted_columns(inputs, job);
-        means(job, &named.given, bytes, &names).map(StrainFile::Means)
+        means(job, &named.given, bytes, wanted).map(StrainFile::Means)
     } else {
-        read_strain(inputs, job, named).map(StrainFile::Table)
+        read_strain(inputs, job, named, wanted).map(StrainFile::Table)
     }
 }
 

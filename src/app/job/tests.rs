@@ -47,7 +47,8 @@ fn every_shared_job_is_read_with_all_files_it_names() {
         let job =
             read_job(&mut inputs, &path).unwrap_or_else(|f| panic!("{}: {f:?}", path.display()));
         if let Some(m) = &job.measured {
-            let strain = strain::read_strain(&mut inputs, &job, &m.strain).unwrap();
+            let wanted = strain::wanted_columns(&mut inputs, &job);
+            let strain = strain::read_strain(&mut inputs, &job, &m.strain, &wanted).unwrap();
             let names: Vec<&String> = job.gauges.iter().map(|g| &g.name).collect();
             assert_eq!(
                 strain.gauges.iter().collect::<Vec<_>>(),
@@ -775,7 +776,8 @@ fn a_channel_that_is_ignored_is_not_asked_for_its_unit() {
     .unwrap();
     let measured = job.measured.as_ref().unwrap();
     let mut inputs = Inputs::of(&files);
-    let table = strain::read_strain(&mut inputs, &job, &measured.strain).unwrap();
+    let wanted = strain::wanted_columns(&mut inputs, &job);
+    let table = strain::read_strain(&mut inputs, &job, &measured.strain, &wanted).unwrap();
     assert_eq!(table.gauges, ["G1", "G2"]);
     assert!(table.row(0)[0] == 1.0 && table.row(0)[1].is_nan());
 }

@@ -3,7 +3,7 @@
 use super::task::Task;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::runs::{RunRow, read_runs};
-use crate::app::job::strain::{StrainRows, StrainTable};
+use crate::app::job::strain::{StrainRows, StrainTable, wanted_columns};
 use crate::app::job::strain_means::{StrainFile, read_strain_file};
 use crate::app::job::{Measured, NamedFile};
 use crate::app::outcome::finite;
@@ -252,13 +252,14 @@ fn strain(
     let Some(measured) = &task.job.measured else {
         return Ok(Vec::new());
     };
+    let wanted = wanted_columns(&mut work.inputs, task.job);
     let file = work.stage("read strain", |s| {
-        read_strain_file(&mut s.inputs, task.job, &measured.strain)
+        read_strain_file(&mut s.inputs, task.job, &measured.strain, &wanted)
     })?;
     let noise = measured.noise_microstrain * MICROSTRAIN;
     let zero: Vec<Option<Net>> = match &measured.zero {
         Some(named) => {
-            let zero = read_strain_file(&mut work.inputs, task.job, named)?;
+            let zero = read_strain_file(&mut work.inputs, task.job, named, &wanted)?;
             means(&zero, model, noise).into_iter().map(Some).collect()
         }
         None => vec![None; model.gauges.len()],

@@ -6,7 +6,7 @@ use super::known_payload;
 use super::task::{Task, columns_of};
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::LoadActs;
-use crate::app::job::strain::{StrainRows, StrainTable, read_strain};
+use crate::app::job::strain::{StrainRows, StrainTable, read_strain, wanted_columns};
 use crate::app::job::strain_means::is_long_record;
 use crate::app::strain::LoadUnits;
 use crate::app::work::Work;
@@ -32,7 +32,8 @@ pub(super) fn solve(work: &mut Work, task: &Task) -> Result<(Vec<Readings>, Reco
         return Err(a_record());
     }
     let table = work.stage("read strain", |x| {
-        read_strain(&mut x.inputs, task.job, named)
+        let wanted = wanted_columns(&mut x.inputs, task.job);
+        read_strain(&mut x.inputs, task.job, named, &wanted)
     })?;
     let StrainRows::Runs(names) = &table.rows else {
         return Err(a_record());

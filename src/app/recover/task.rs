@@ -1,6 +1,7 @@
 //! What runs and records share: measured strain, S, zero and reference, stated errors.
 
 use crate::app::fault::{Fault, Faults};
+use crate::app::job::strain::wanted_columns;
 use crate::app::job::strain_means::read_strain_file;
 use crate::app::job::suggest;
 use crate::app::job::{Job, Measured, NamedFile, Reference};
@@ -129,7 +130,8 @@ pub(in crate::app) fn zero_of(
     let Some(named) = &measured.zero else {
         return Ok((vec![0.0; gauges.len()], None));
     };
-    let file = read_strain_file(&mut work.inputs, job, named)?;
+    let wanted = wanted_columns(&mut work.inputs, job);
+    let file = read_strain_file(&mut work.inputs, job, named, &wanted)?;
     let columns = columns_of(work, named, file.gauges(), gauges);
     let readings = file.readings();
     let mut effective = f64::INFINITY;
