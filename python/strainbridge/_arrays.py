@@ -195,7 +195,8 @@ def strain_along(
 def recover_rows(S: Floats, strain: Floats, noise: float = 1.0, *, threads: int | None = None) -> RecoveredRows:
     """Loads f of every row of strain by least squares, strain = S f + noise, with 95 % intervals.
 
-    Intervals are those of the noise stated, and wider where the residuals are larger than it explains; a finding says so.
+    Intervals are those of the noise stated, and wider where the residuals are larger than it explains; a finding says so. A warning
+    says in how many rows a gauge gives nothing, an error which loads no row tells.
 
     Args:
         S: gauges x loads, float64 in C order, microstrain per unit of load.

@@ -1,8 +1,10 @@
 //! Loss of a gauge, reserved gauges, variances that turn with the gauge.
 
 use super::*;
-use crate::placement::Loss;
+use crate::placement::exchange::Effort;
 use crate::placement::quality::{influence, judge_rows, reserve};
+use crate::placement::relaxed::Active;
+use crate::placement::{Loss, robust};
 
 fn at(place: usize) -> Choice {
     Choice {
@@ -49,6 +51,38 @@ fn layouts_optimised_for_the_worst_loss_are_the_best_of_all_subsets_nearly_alway
         reached += usize::from(after(&own) >= best - 1e-9);
     }
     assert!(reached >= 95, "{reached} of 100");
+}
+
+#[test]
+fn a_stopped_search_for_what_survives_a_loss_keeps_the_layout_it_began_with() {
+    let mut rng = ChaCha8Rng::seed_from_u64(6);
+    let (k, n) = (3, 30);
+    let active = Active {
+        k,
+        criterion: Criterion::D,
+        rows: random_rows(&mut rng, n, k).concat(),
+        group: (0..n as u32).collect(),
+        n_groups: n,
+    };
+    let (prior, start) = (vec![0.0; k * k], [0, 1, 2, 3, 4]);
+    let effort = Effort {
+        starts: 1,
+        perturbations: 12,
+        seed: 1,
+    };
+    let found = |stop: &Stop| {
+        robust::search(&active, &prior, &start, &|i, j| i == j, effort, stop).unwrap()
+    };
+    let stop = Stop::new();
+    let whole = found(&stop);
+    stop.ask();
+    let cut = found(&stop);
+    assert_eq!(cut.0, start);
+    assert_eq!(
+        Some(cut.1),
+        robust::after_worst_loss(&active, &prior, &start)
+    );
+    assert!(whole.1 > cut.1);
 }
 
 #[test]

@@ -73,7 +73,7 @@ pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
     };
     let best = best.unwrap_or(empty);
     let proofs = Proofs::of(frame);
-    if is_unmodelled(candidates, &best.set).is_some() {
+    if is_unmodelled(candidates, &best.set).is_some() && !frame.stop.is_asked() {
         // A general form is called upon only where no names come to the floor.
         let likelihood = Likelihood::new(frame, candidates, &fit_runs, &reference);
         let mut names = likelihood.names_only();

@@ -59,10 +59,11 @@ fn right_jobs_whose_model_errs_alike_in_all_runs_are_not_flagged() {
         below += has("residual-below-stated-errors");
         stopped += i32::from(got.findings.iter().any(|f| f.severity == Severity::Error));
     }
-    // Nominal: .1 % above, one of a million below, .5 % stopped. Above 5, 1 and 12 of 1,000 chance has less than one in a thousand.
+    // Nominal: .1 % above, one of a million below, .1 % stopped (docs/4-recovering-loads.md). Above 5, 1 and 5 of 1,000 chance has less
+    // than one in a thousand.
     assert!(above <= 5, "{above} of {jobs} flagged above");
     assert!(below <= 1, "{below} of {jobs} flagged below");
-    assert!(stopped <= 10, "{stopped} of {jobs} stopped");
+    assert!(stopped <= 5, "{stopped} of {jobs} stopped");
 }
 
 #[test]
@@ -102,9 +103,15 @@ fn the_chi_square_of_right_jobs_is_that_of_its_degrees_of_freedom() {
 #[test]
 fn a_gauge_off_by_a_tenth_stops_the_job_or_leaves_intervals_that_cover() {
     let Some(frame) = frame(9) else { return };
-    // With a model uncertainty of 2 % a tenth is five of its sd, and shows less the more the gauge decides by itself. Nearly all jobs with a
-    // gauge that matters are stopped; of those few that are not, whose errors hide the gauge's, the worst gauge (leverage .69) covers 83 %.
-    // No rule that knows the readings alone can tell these from right jobs: docs/4-recovering-loads.md has the numbers.
+    // With a model uncertainty of 2 % a tenth is five of its sd, and shows less the more the gauge decides by itself. Most jobs with a gauge
+    // that matters are stopped, four of five with the worst one (leverage .73); those that are not cover 84 %: docs/4-recovering-loads.md
+    // has the numbers.
+    let typical: Vec<f64> = (0..9)
+        .map(|l| {
+            let sum: f64 = frame.truth.iter().map(|f| (f[l] * KN).powi(2)).sum();
+            (sum / frame.truth.len() as f64).sqrt()
+        })
+        .collect();
     for (model_rel, least) in [(0.0, 0.9), (0.02, 0.8)] {
         let errors = ErrorModel {
             noise: 1e-6,
@@ -115,7 +122,7 @@ fn a_gauge_off_by_a_tenth_stops_the_job_or_leaves_intervals_that_cover() {
             &(0..20).collect::<Vec<_>>(),
             errors,
             1.0,
-            &[20e3; 9],
+            &typical,
         )
         .unwrap();
         let mut worst = (1.0, 0, 0.0);
