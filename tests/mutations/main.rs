@@ -16,6 +16,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use strainbridge::app::context::{Context, InMemory};
 use strainbridge::app::job::Job;
+use strainbridge::app::job::strain::{read_strain, wanted_columns};
 use strainbridge::app::job::table::read_table;
 use strainbridge::model::Model;
 use strainbridge::series::record::{Options, open_record};
@@ -187,7 +188,8 @@ fn runs(bytes: &[u8]) -> bool {
     };
     let mut inputs = strainbridge::app::files::Inputs::of(&files);
     let named = &job.measured.as_ref().unwrap().strain;
-    strainbridge::app::job::strain::read_strain(&mut inputs, &job, named).is_ok()
+    let wanted = wanted_columns(&mut inputs, &job);
+    read_strain(&mut inputs, &job, named, &wanted).is_ok()
 }
 
 fn samples() -> Vec<(&'static str, Vec<u8>, Reader)> {
