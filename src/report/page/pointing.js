@@ -295,8 +295,13 @@ function coarseOf(mesh, p, first) {
   // Where a ray meets the elements themselves, and their normal there: the plane of three middles about the place on the drawn face. Null
   // where that is the face, to the raster of the middles, and where the three lie round an edge.
   const onElements = (f, drawn, from, along) => {
-    const normal = normalOf(mesh, f), list = [];
-    for (let k = 0; k < 3; k++) list.push(...elementsAt(mesh.faces[4 * f + k] - p.vertex));
+    // An element under the face may go with a vertex of a face beside it.
+    const normal = normalOf(mesh, f), about = new Set(), list = [];
+    for (let k = 0; k < 3; k++) for (const c of cornersAt(mesh.faces[4 * f + k] - p.vertex)) {
+      const g = Math.floor(c / 3);
+      for (let i = 0; i < 3; i++) about.add(corners[3 * g + i]);
+    }
+    for (const v of about) list.push(...elementsAt(v));
     let at = drawn, n = null;
     for (let pass = 0; pass < 3; pass++) {
       const near = list.map((e) => [far(e, f, at), middleOf(e)]).sort((a, b) => a[0] - b[0]).slice(0, 12).map((e) => e[1]);
