@@ -80,7 +80,9 @@ pub fn asked_column(
 /// A fault where there is none.
 pub fn run_column(t: &Table, columns: &[Column]) -> Result<usize, Fault> {
     place_of(t, columns, "run")?.ok_or_else(|| {
-        let remedy = "add a column `run` with the runs' names";
+        let headers = t.header.iter().map(String::as_str);
+        let general = "add a column `run` with the runs' names";
+        let remedy = suggest::header_remedy("run", headers, general);
         Fault::at(&*t.file, 1, "run", "no column `run`", remedy)
     })
 }

@@ -3,6 +3,7 @@
 use super::column_unit::take_units;
 use super::gauge_column::{no_strain, strain_columns};
 use super::strain_table::{StrainRows, StrainTable};
+use super::suggest::header_remedy;
 use super::table::{Table, each_part};
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::series::record::{Clash, Column, seconds_in};
@@ -84,7 +85,11 @@ impl Reading {
                 1,
                 "run",
                 "no column `run` and no column `time`",
-                "add `run` with the runs' names, or `time` in seconds",
+                header_remedy(
+                    "run",
+                    t.header.iter().map(String::as_str),
+                    "add `run` with the runs' names, or `time` in seconds",
+                ),
             )));
         };
         let clashing = headers.get(key).filter(|c| c.clash() == Some(Clash::Size));

@@ -24,6 +24,18 @@ pub fn remedy<'a>(word: &str, names: impl IntoIterator<Item = &'a str> + Clone) 
     }
 }
 
+/// What to do about a table without the column that names its rows: the header that is meant by `word`, else what to do in general.
+pub fn header_remedy<'a>(
+    word: &str,
+    headers: impl IntoIterator<Item = &'a str>,
+    general: &str,
+) -> String {
+    closest(word, headers).map_or_else(
+        || general.to_owned(),
+        |h| format!("{general}: did you mean `{h}` for `{word}`?"),
+    )
+}
+
 /// What to do about gauges without a column: the columns that may be meant, each next to its gauge, else what to do in general. A column that
 /// comes close to several gauges is named for the closest of them alone.
 pub fn column_remedy(gauges: &[&str], columns: &[&str]) -> String {

@@ -755,6 +755,17 @@ fn units_that_contradict_each_other_are_faults_of_what_is_asked_for() {
 }
 
 #[test]
+fn a_column_of_runs_that_is_written_otherwise_is_asked_for() {
+    let said = strain_text::strain_from_text("s.csv", "Run,G1\nR1,2\n", &["G1".to_owned()]);
+    let said = said.unwrap_err()[0].to_string();
+    assert!(said.contains("did you mean `Run` for `run`?"), "{said}");
+    let said = runs_of("Runs,LF.FZ\nR1,2\n", "").unwrap_err()[0].to_string();
+    assert!(said.contains("did you mean `Runs` for `run`?"), "{said}");
+    let said = strain_text::strain_from_text("s.csv", "a,b\n1,2\n", &[]).unwrap_err();
+    assert!(!said[0].to_string().contains("did you mean"), "{said:?}");
+}
+
+#[test]
 fn a_row_of_units_tells_which_of_two_columns_holds_a_load() {
     let table = "run,LF.FZ [kN],LF.FZ (raw),LF.MX\n-,kN,V,N m\nR1,2,9,3\n";
     let rows = runs_of(table, "").unwrap();
