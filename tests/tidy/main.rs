@@ -4,6 +4,7 @@
 mod dependencies;
 mod imports;
 mod size;
+mod words;
 
 use std::path::{Path, PathBuf};
 

@@ -50,7 +50,7 @@ impl Collector<'_> {
                 format!("add `{example}`"),
             );
         }
-        value.as_ref().map(|v| v.get_ref().clone())
+        value.as_ref().map(|v| v.value().clone())
     }
 
     /// A named file.
@@ -61,7 +61,7 @@ impl Collector<'_> {
     /// A named file.
     pub(super) fn named_at(&self, v: &Spanned<String>, key: &str) -> NamedFile {
         NamedFile {
-            given: v.get_ref().clone(),
+            given: v.value().clone(),
             key: key.to_owned(),
             line: self.line(v),
         }
@@ -86,7 +86,7 @@ impl Collector<'_> {
         key: &str,
         choices: &[(&str, T)],
     ) -> Option<T> {
-        let found = choices.iter().find(|c| c.0 == word.get_ref()).map(|c| c.1);
+        let found = choices.iter().find(|c| c.0 == word.value()).map(|c| c.1);
         if found.is_none() {
             let names: Vec<&str> = choices.iter().map(|c| c.0).collect();
             let expected = names
@@ -94,8 +94,8 @@ impl Collector<'_> {
                 .map(|n| format!("`{n}`"))
                 .collect::<Vec<_>>()
                 .join(", ");
-            let wrong = format!("`{}`, expected one of {expected}", word.get_ref());
-            let remedy = match suggest::closest(word.get_ref(), names) {
+            let wrong = format!("`{}`, expected one of {expected}", word.value());
+            let remedy = match suggest::closest(word.value(), names) {
                 Some(n) => format!("did you mean `{n}`?"),
                 None => "use one of these words".to_owned(),
             };
@@ -113,7 +113,7 @@ impl Collector<'_> {
         ok: impl Fn(f64) -> bool,
     ) -> Option<f64> {
         let v = value.as_ref()?;
-        let x = *v.get_ref();
+        let x = *v.value();
         if x.is_finite() && ok(x) {
             return Some(x);
         }
@@ -139,9 +139,9 @@ impl Collector<'_> {
     /// A count of at least 1.
     pub(super) fn count(&mut self, value: &S<u32>, key: &str) -> Option<usize> {
         let v = value.as_ref()?;
-        if *v.get_ref() == 0 {
+        if *v.value() == 0 {
             self.fault(v, key, "`0`, expected 1 or more", "correct the number");
         }
-        Some(*v.get_ref() as usize)
+        Some(*v.value() as usize)
     }
 }

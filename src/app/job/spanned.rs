@@ -22,7 +22,7 @@ impl<T> Spanned<T> {
     }
 
     /// The value.
-    pub(super) fn get_ref(&self) -> &T {
+    pub(super) fn value(&self) -> &T {
         self.0.get_ref()
     }
 
@@ -34,7 +34,7 @@ impl<T> Spanned<T> {
 
 impl Borrow<str> for Spanned<String> {
     fn borrow(&self) -> &str {
-        self.get_ref()
+        self.value()
     }
 }
 

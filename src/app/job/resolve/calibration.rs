@@ -22,13 +22,13 @@ pub(super) fn calibration(
         line: 0,
     };
     let Some(section) = raw else { return out };
-    let raw = section.get_ref();
+    let raw = section.value();
     let words = |list: &Spanned<Vec<Spanned<String>>>| -> Vec<String> {
-        list.get_ref().iter().map(|w| w.get_ref().clone()).collect()
+        list.value().iter().map(|w| w.value().clone()).collect()
     };
     out.runs = raw.runs.as_ref().map(words);
     out.repeats = raw.repeats.as_ref().map(words).unwrap_or_default();
-    out.depends_on = raw.depends_on.as_ref().map(|w| w.get_ref().clone());
+    out.depends_on = raw.depends_on.as_ref().map(|w| w.value().clone());
     let key = "calibration.model_uncertainty_rel";
     if let Some(rel) = c.positive(&raw.model_uncertainty_rel, key) {
         out.model_uncertainty_rel = rel;

@@ -11,10 +11,10 @@ pub(super) fn combinations(c: &mut Collector, raw: &[Spanned<RawCombination>]) -
     let mut out: Vec<Combination> = Vec::new();
     for section in raw {
         let terms: Vec<(String, f64)> = section
-            .get_ref()
+            .value()
             .terms
             .iter()
-            .map(|(name, factor)| (name.get_ref().clone(), *factor.get_ref()))
+            .map(|(name, factor)| (name.value().clone(), *factor.value()))
             .collect();
         if terms.is_empty() {
             let remedy = "name loads and factors: terms = { \"LF.FZ\" = 1, \"RF.FZ\" = 1 }";
@@ -24,7 +24,7 @@ pub(super) fn combinations(c: &mut Collector, raw: &[Spanned<RawCombination>]) -
             let wrong = "a factor is no finite number";
             c.fault(section, "combination.terms", wrong, "write a number");
         }
-        let name = &section.get_ref().name;
+        let name = &section.value().name;
         let Some(name) = c.require(name, section, "combination.name", "name = \"total\"") else {
             continue;
         };
@@ -48,7 +48,7 @@ pub(super) fn corrections(
 ) -> Vec<StrainCorrection> {
     raw.iter()
         .filter_map(|section| {
-            let raw = section.get_ref();
+            let raw = section.value();
             let gauge = c.require(&raw.gauge, section, "correction.gauge", "gauge = \"P05\"");
             let sign = c.number(&raw.sign, "correction.sign", "1 or -1", |x| x.abs() == 1.0);
             let gain = c.number(&raw.gain, "correction.gain", "a number other than 0", |x| {
@@ -66,9 +66,9 @@ pub(super) fn corrections(
                 sign: sign.unwrap_or(1.0),
                 gain: gain.unwrap_or(1.0),
                 offset_microstrain: offset.unwrap_or(0.0),
-                exchanged_with: raw.exchanged_with.as_ref().map(|s| s.get_ref().clone()),
+                exchanged_with: raw.exchanged_with.as_ref().map(|s| s.value().clone()),
                 angle_deg: c.number(&raw.angle_deg, "correction.angle_deg", "a number", any),
-                ignore: raw.ignore.as_ref().is_some_and(|v| *v.get_ref()),
+                ignore: raw.ignore.as_ref().is_some_and(|v| *v.value()),
                 line: c.line(section),
             })
         })

@@ -57,12 +57,12 @@ pub(crate) fn point_from(word: &str) -> Option<u8> {
 pub(super) fn gauge_file(c: &mut Collector, raw: Option<&Spanned<RawGauges>>) -> Option<NamedFile> {
     let section = raw?;
     c.require(
-        &section.get_ref().file,
+        &section.value().file,
         section,
         "gauges.file",
         "file = \"gauges.csv\"",
     )?;
-    c.named(&section.get_ref().file, "gauges.file")
+    c.named(&section.value().file, "gauges.file")
 }
 
 pub(super) fn gauges(c: &mut Collector, raw: &[Spanned<RawGauge>]) -> Vec<JobGauge> {
@@ -70,16 +70,16 @@ pub(super) fn gauges(c: &mut Collector, raw: &[Spanned<RawGauge>]) -> Vec<JobGau
 }
 
 fn gauge(c: &mut Collector, section: &Spanned<RawGauge>) -> Option<JobGauge> {
-    let raw = section.get_ref();
+    let raw = section.value();
     let name = c.require(&raw.name, section, "gauge.name", "name = \"14\"");
-    let number = |v: &Option<Spanned<u32>>| v.as_ref().map(|v| *v.get_ref());
+    let number = |v: &Option<Spanned<u32>>| v.as_ref().map(|v| *v.value());
     let cid = number(&raw.cid).unwrap_or(0);
     let point = raw
         .point
         .as_ref()
         .and_then(|p| c.choose_at(p, "gauge.point", &POINTS));
     let station = c.number(&raw.station, "gauge.station", STATION, is_station);
-    let position = raw.position.as_ref().map(|p| *p.get_ref());
+    let position = raw.position.as_ref().map(|p| *p.value());
     let place = match (number(&raw.element), position) {
         (Some(element), _) => match point {
             Some(point) => StatedPlace::BeamPoint {
@@ -108,13 +108,13 @@ fn gauge(c: &mut Collector, section: &Spanned<RawGauge>) -> Option<JobGauge> {
         position,
         surface: surface.unwrap_or(Surface::Top),
         surface_stated: surface.is_some(),
-        direction: raw.direction.as_ref().map(|d| *d.get_ref()),
+        direction: raw.direction.as_ref().map(|d| *d.value()),
         cid,
         angle_deg: c
             .number(&raw.angle_deg, "gauge.angle_deg", "a number", |_| true)
             .unwrap_or(0.0),
         bridge,
-        bridge_factor: raw.bridge_factor.as_ref().map_or(1.0, |b| *b.get_ref()),
+        bridge_factor: raw.bridge_factor.as_ref().map_or(1.0, |b| *b.value()),
         grid_length: c
             .at_least_zero(&raw.grid_length, "gauge.grid_length")
             .unwrap_or(0.0),

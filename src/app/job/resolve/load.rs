@@ -11,7 +11,7 @@ use crate::fe::SupportChoice;
 
 pub(super) fn model(c: &mut Collector, raw: Option<&Spanned<RawModel>>) -> Option<ModelFiles> {
     let section = raw?;
-    let raw = section.get_ref();
+    let raw = section.value();
     c.require(&raw.deck, section, "model.deck", "deck = \"truck.bdf\"")?;
     let results = raw
         .results
@@ -26,7 +26,7 @@ pub(super) fn model(c: &mut Collector, raw: Option<&Spanned<RawModel>>) -> Optio
             Some(s) => c.line(s),
             None => c.line(section),
         },
-        mesh_error: raw.mesh_error.as_ref().is_some_and(|m| *m.get_ref()),
+        mesh_error: raw.mesh_error.as_ref().is_some_and(|m| *m.value()),
     })
 }
 
@@ -35,7 +35,7 @@ fn support(c: &mut Collector, raw: &S<NumberOrWord>) -> SupportChoice {
     let Some(at) = raw else {
         return SupportChoice::Deck;
     };
-    match at.get_ref() {
+    match at.value() {
         NumberOrWord::Word(w) if w == "deck" => return SupportChoice::Deck,
         NumberOrWord::Word(w) if w == "free" => return SupportChoice::Free,
         NumberOrWord::Number(n) if n.fract() == 0.0 && *n >= 1.0 && *n <= f64::from(u32::MAX) => {
@@ -89,7 +89,7 @@ fn load(
     number: u32,
     behind: Behind,
 ) -> Option<JobLoad> {
-    let raw = section.get_ref();
+    let raw = section.value();
     let name = c.require(&raw.name, section, "load.name", "name = \"LF.FZ\"");
     let acts = acts(c, section, behind);
     let applied = c.number(&raw.applied, "load.applied", "a number other than 0", |x| {
@@ -110,7 +110,7 @@ fn load(
         acts: acts?,
         applied: applied.unwrap_or(1.0),
         result: c.named(&raw.result, "load.result"),
-        subcase: raw.subcase.as_ref().map(|s| *s.get_ref()),
+        subcase: raw.subcase.as_ref().map(|s| *s.value()),
         number,
         role,
         expected,
@@ -120,7 +120,7 @@ fn load(
 }
 
 fn acts(c: &mut Collector, section: &Spanned<RawLoad>, behind: Behind) -> Option<LoadActs> {
-    let raw = section.get_ref();
+    let raw = section.value();
     let only_with_grid = |c: &mut Collector, key: &str, at: &Spanned<u32>| {
         c.fault(
             at,
@@ -139,9 +139,9 @@ fn acts(c: &mut Collector, section: &Spanned<RawLoad>, behind: Behind) -> Option
                 Component::ALL.into_iter().map(|k| (k.name(), k)).collect();
             let component = c.choose_at(word.as_ref()?, "load.component", &choices)?;
             Some(LoadActs::AtGrid {
-                grid: *g.get_ref(),
+                grid: *g.value(),
                 component,
-                cid: raw.cid.as_ref().map_or(0, |v| *v.get_ref()),
+                cid: raw.cid.as_ref().map_or(0, |v| *v.value()),
             })
         }
         (None, Some(set)) => {
@@ -156,7 +156,7 @@ fn acts(c: &mut Collector, section: &Spanned<RawLoad>, behind: Behind) -> Option
                     "drop it, or give `grid` instead of `load_set`",
                 );
             }
-            Some(LoadActs::Set(*set.get_ref()))
+            Some(LoadActs::Set(*set.value()))
         }
         (Some(_), Some(set)) => {
             c.fault(

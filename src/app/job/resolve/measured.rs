@@ -25,8 +25,8 @@ pub(super) fn measured(
     fleet: Option<&Spanned<RawFleet>>,
 ) -> Option<Measured> {
     let section = raw?;
-    let raw = section.get_ref();
-    let reference = match raw.reference.as_ref().map(|r| (r, r.get_ref())) {
+    let raw = section.value();
+    let reference = match raw.reference.as_ref().map(|r| (r, r.value())) {
         None => Reference::None,
         Some((_, NumberOrWord::Number(n))) if *n >= 1.0 && n.fract() == 0.0 => {
             Reference::Subcase(*n as u32)
@@ -39,7 +39,7 @@ pub(super) fn measured(
             Reference::None
         }
     };
-    let hold_out = match raw.hold_out.as_ref().map(|h| (h, h.get_ref())) {
+    let hold_out = match raw.hold_out.as_ref().map(|h| (h, h.value())) {
         None => HoldOut::None,
         Some((_, Texts::Many(runs))) => HoldOut::Runs(runs.clone()),
         Some((at, Texts::One(file))) => HoldOut::File(NamedFile {
@@ -69,8 +69,8 @@ pub(super) fn measured(
         c.fault(at, "measured.zero_runs", wrong, "state one of the two");
     }
     let zero_runs = raw.zero_runs.as_ref().map_or_else(Vec::new, |list| {
-        let names = list.get_ref().iter();
-        names.map(|w| w.get_ref().clone()).collect()
+        let names = list.value().iter();
+        names.map(|w| w.value().clone()).collect()
     });
     Some(Measured {
         strain,
@@ -98,7 +98,7 @@ pub(super) fn runs(
     default: ReportUnits,
 ) -> Option<Runs> {
     let section = raw?;
-    let raw = section.get_ref();
+    let raw = section.value();
     c.require(&raw.file, section, "runs.file", "file = \"runs.csv\"")?;
     let noise = raw
         .noise
@@ -118,7 +118,7 @@ pub(super) fn runs(
         columns: raw
             .columns
             .iter()
-            .map(|(k, v)| (k.get_ref().clone(), v.get_ref().clone()))
+            .map(|(k, v)| (k.value().clone(), v.value().clone()))
             .collect(),
         units: units(c, raw.units.as_ref(), default, "runs.units"),
         stated_units: stated(raw.units.as_ref()),
@@ -135,7 +135,7 @@ pub(super) fn runs(
 
 fn region(c: &mut Collector, raw: &S<Vec<[f64; 2]>>, key: &str) -> Option<Region> {
     let value = raw.as_ref()?;
-    let axes = value.get_ref();
+    let axes = value.value();
     if !(2..=3).contains(&axes.len()) {
         c.fault(
             value,
@@ -154,13 +154,13 @@ fn region(c: &mut Collector, raw: &S<Vec<[f64; 2]>>, key: &str) -> Option<Region
 
 pub(super) fn ballast(c: &mut Collector, raw: Option<&Spanned<RawBallast>>) -> Option<Ballast> {
     let section = raw?;
-    let raw = section.get_ref();
+    let raw = section.value();
     Some(Ballast {
         masses: c.count(&raw.masses, "ballast.masses").unwrap_or(1),
         region: region(c, &raw.region, "ballast.region"),
-        properties: raw.properties.as_ref().map(|p| p.get_ref().clone()),
+        properties: raw.properties.as_ref().map(|p| p.value().clone()),
         max_mass: c.positive(&raw.max_mass, "ballast.max_mass"),
-        run: raw.run.as_ref().map(|r| r.get_ref().clone()),
+        run: raw.run.as_ref().map(|r| r.value().clone()),
         gravity_m_s2: gravity(c, &raw.gravity, "ballast.gravity"),
         line: c.line(section),
     })
@@ -168,12 +168,12 @@ pub(super) fn ballast(c: &mut Collector, raw: Option<&Spanned<RawBallast>>) -> O
 
 pub(super) fn payload(c: &mut Collector, raw: Option<&Spanned<RawPayload>>) -> Option<Payload> {
     let section = raw?;
-    let raw = section.get_ref();
+    let raw = section.value();
     let positions = [("known", Place::Known), ("free", Place::Free)];
     let (mut use_strain, mut use_reactions) = (true, true);
     if let Some(list) = &raw.sources {
         let words: Vec<&str> = list
-            .get_ref()
+            .value()
             .iter()
             .filter_map(|w| {
                 c.choose_at(
@@ -185,7 +185,7 @@ pub(super) fn payload(c: &mut Collector, raw: Option<&Spanned<RawPayload>>) -> O
             .collect();
         use_strain = words.contains(&"strain");
         use_reactions = words.contains(&"reactions");
-        if list.get_ref().is_empty() {
+        if list.value().is_empty() {
             c.fault(
                 list,
                 "payload.use",
@@ -195,14 +195,14 @@ pub(super) fn payload(c: &mut Collector, raw: Option<&Spanned<RawPayload>>) -> O
         }
     }
     Some(Payload {
-        grid: raw.grid.as_ref().map(|g| *g.get_ref()),
+        grid: raw.grid.as_ref().map(|g| *g.value()),
         position: c.choose(&raw.position, "payload.position", &positions, Place::Known),
         gravity_m_s2: gravity(c, &raw.gravity, "payload.gravity"),
-        weight_in_model: raw.weight_in_model.as_ref().is_none_or(|w| *w.get_ref()),
+        weight_in_model: raw.weight_in_model.as_ref().is_none_or(|w| *w.value()),
         region: region(c, &raw.region, "payload.region"),
         use_strain,
         use_reactions,
-        unloaded: raw.unloaded.as_ref().map(|r| r.get_ref().clone()),
+        unloaded: raw.unloaded.as_ref().map(|r| r.value().clone()),
         nominal_x: c.number(&raw.nominal_x, "payload.nominal_x", "a number", |_| true),
         nominal_y: c.number(&raw.nominal_y, "payload.nominal_y", "a number", |_| true),
         line: c.line(section),
@@ -238,8 +238,8 @@ pub(super) fn respond(c: &mut Collector, raw: Option<&Spanned<RawRespond>>) -> R
         line: 0,
     };
     let Some(section) = raw else { return out };
-    let raw = section.get_ref();
-    out.elements = raw.elements.as_ref().map(|e| e.get_ref().clone());
+    let raw = section.value();
+    out.elements = raw.elements.as_ref().map(|e| e.value().clone());
     out.hottest = c
         .count(&raw.hottest, "respond.hottest")
         .unwrap_or(DEFAULT_HOTTEST);
@@ -249,9 +249,9 @@ pub(super) fn respond(c: &mut Collector, raw: Option<&Spanned<RawRespond>>) -> R
 }
 
 pub(super) fn recover(c: &mut Collector, raw: Option<&Spanned<RawRecover>>) -> Recover {
-    let raw = raw.map(Spanned::get_ref);
+    let raw = raw.map(Spanned::value);
     let files = raw.and_then(|r| r.files.as_ref()).map(|list| {
-        let words = list.get_ref().iter();
+        let words = list.value().iter();
         words
             .filter_map(|w| c.choose_at(w, "recover.files", &LoadFile::ALL))
             .collect()
@@ -269,7 +269,7 @@ pub(super) fn recover(c: &mut Collector, raw: Option<&Spanned<RawRecover>>) -> R
 
 pub(super) fn fleet(c: &mut Collector, raw: Option<&Spanned<RawFleet>>) -> Option<Fleet> {
     let section = raw?;
-    let raw = section.get_ref();
+    let raw = section.value();
     c.require(
         &raw.file_name,
         section,

@@ -43,18 +43,18 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
         line: 0,
     };
     let Some(section) = raw else { return out };
-    let raw = section.get_ref();
+    let raw = section.value();
     out.line = c.line(section);
-    out.properties = raw.properties.as_ref().map(|p| p.get_ref().clone());
-    out.elements = raw.elements.as_ref().map(|p| p.get_ref().clone());
+    out.properties = raw.properties.as_ref().map(|p| p.value().clone());
+    out.elements = raw.elements.as_ref().map(|p| p.value().clone());
     if let Some(list) = &raw.surfaces {
         out.surfaces = list
-            .get_ref()
+            .value()
             .iter()
             .filter_map(|s| c.choose_at(s, "candidates.surfaces", &SURFACES))
             .collect();
         out.surfaces.dedup();
-        if list.get_ref().is_empty() {
+        if list.value().is_empty() {
             c.fault(
                 list,
                 "candidates.surfaces",
@@ -63,7 +63,7 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
             );
         }
     }
-    match raw.angle_step_deg.as_ref().map(|a| (a, a.get_ref())) {
+    match raw.angle_step_deg.as_ref().map(|a| (a, a.value())) {
         None => {}
         Some((_, NumberOrWord::Number(x))) if *x > 0.0 && *x <= 180.0 => {
             out.angles = AngleStep::Degrees(*x)
@@ -88,7 +88,7 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
         .at_least_zero(&raw.grid_length, "candidates.grid_length")
         .unwrap_or(0.0);
     if let Some(b) = &raw.bridge {
-        let words = match b.get_ref() {
+        let words = match b.value() {
             Texts::One(w) => vec![w.clone()],
             Texts::Many(list) => list.clone(),
         };
@@ -107,7 +107,7 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
         .rosette
         .as_ref()
         .and_then(|r| c.choose_at(r, "candidates.rosette", &ROSETTES));
-    let ids = |s: &Option<Spanned<Ids>>| s.as_ref().map(|v| v.get_ref().clone());
+    let ids = |s: &Option<Spanned<Ids>>| s.as_ref().map(|v| v.value().clone());
     out.sets = ids(&raw.sets);
     out.exclude_properties = ids(&raw.exclude_properties);
     out.exclude_elements = ids(&raw.exclude_elements);
@@ -133,7 +133,7 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
 /// Boxes of two or three ranges, each low before high.
 fn boxes(c: &mut Collector, raw: &Option<Spanned<Vec<Vec<[f64; 2]>>>>, key: &str) -> Vec<Region> {
     let Some(list) = raw else { return Vec::new() };
-    for b in list.get_ref() {
+    for b in list.value() {
         let ranges = (2..=3).contains(&b.len());
         if !ranges || b.iter().any(|[low, high]| !(low <= high)) {
             c.fault(
@@ -144,7 +144,7 @@ fn boxes(c: &mut Collector, raw: &Option<Spanned<Vec<Vec<[f64; 2]>>>>, key: &str
             );
         }
     }
-    list.get_ref().clone()
+    list.value().clone()
 }
 
 pub(super) fn placement(
@@ -178,7 +178,7 @@ pub(super) fn placement(
         line: 0,
     };
     let Some(section) = raw else { return out };
-    let raw = section.get_ref();
+    let raw = section.value();
     out.line = c.line(section);
     out.gauges = c.count(&raw.gauges, "placement.gauges");
     out.criterion = c.choose(
@@ -210,7 +210,7 @@ pub(super) fn placement(
             "placement.model_uncertainty_rel",
         )
         .unwrap_or(model);
-    out.seed = raw.seed.as_ref().map_or(1, |s| *s.get_ref());
+    out.seed = raw.seed.as_ref().map_or(1, |s| *s.value());
     out.position_tolerance = c
         .at_least_zero(&raw.position_tolerance, "placement.position_tolerance")
         .unwrap_or(0.0);
@@ -241,7 +241,7 @@ pub(super) fn placement(
         &[("judge", Loss::Judged), ("optimise", Loss::Optimised)],
         Loss::Judged,
     );
-    out.keep = match raw.keep.as_ref().map(Spanned::get_ref) {
+    out.keep = match raw.keep.as_ref().map(Spanned::value) {
         None => Keep::None,
         Some(Texts::One(w)) if w == "all" => Keep::All,
         Some(Texts::One(w)) => Keep::Named(vec![w.clone()]),
@@ -252,9 +252,9 @@ pub(super) fn placement(
         .as_ref()
         .and_then(|s| c.choose_at(s, "placement.symmetric", &[("x", 0), ("y", 1), ("z", 2)]));
     out.curve = raw.curve.as_ref().map_or_else(Vec::new, |n| {
-        n.get_ref().0.iter().map(|n| *n as usize).collect()
+        n.value().0.iter().map(|n| *n as usize).collect()
     });
-    out.reserve = raw.reserve.as_ref().map_or(0, |n| *n.get_ref() as usize);
+    out.reserve = raw.reserve.as_ref().map_or(0, |n| *n.value() as usize);
     out.references = raw
         .references
         .iter()
@@ -265,7 +265,7 @@ pub(super) fn placement(
 
 pub(super) fn study(c: &mut Collector, raw: Option<&Spanned<RawStudy>>) -> Option<Study> {
     let section = raw?;
-    let raw = section.get_ref();
+    let raw = section.value();
     let layouts = match &raw.layouts {
         Some(l) => {
             let choices = [
@@ -274,7 +274,7 @@ pub(super) fn study(c: &mut Collector, raw: Option<&Spanned<RawStudy>>) -> Optio
                 ("D", "D"),
                 ("Ds", "Ds"),
             ];
-            l.get_ref()
+            l.value()
                 .iter()
                 .filter_map(|w| c.choose_at(w, "study.layouts", &choices))
                 .map(str::to_owned)
@@ -285,13 +285,13 @@ pub(super) fn study(c: &mut Collector, raw: Option<&Spanned<RawStudy>>) -> Optio
     let mut errors = Vec::new();
     for e in &raw.errors {
         let kind = c.require(
-            &e.get_ref().kind,
+            &e.value().kind,
             e,
             "study.errors.kind",
             "kind = \"relative-uniform\"",
         );
-        let size = c.at_least_zero(&e.get_ref().size, "study.errors.size");
-        if e.get_ref().size.is_none() {
+        let size = c.at_least_zero(&e.value().size, "study.errors.size");
+        if e.value().size.is_none() {
             c.fault(
                 e,
                 "study.errors.size",
@@ -306,11 +306,11 @@ pub(super) fn study(c: &mut Collector, raw: Option<&Spanned<RawStudy>>) -> Optio
     Some(Study {
         layouts,
         gauges: raw.gauges.as_ref().map_or_else(Vec::new, |g| {
-            g.get_ref().0.iter().map(|n| *n as usize).collect()
+            g.value().0.iter().map(|n| *n as usize).collect()
         }),
         errors,
         trials: c.count(&raw.trials, "study.trials").unwrap_or(1000),
-        seed: raw.seed.as_ref().map_or(1, |s| *s.get_ref()),
+        seed: raw.seed.as_ref().map_or(1, |s| *s.value()),
         line: c.line(section),
     })
 }

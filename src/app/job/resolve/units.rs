@@ -35,15 +35,15 @@ pub(super) fn units(
     let mut one = |name: &S<String>, quantity: Quantity, to: &mut Unit| {
         let Some(name) = name else { return };
         let key = format!("{section}.{}", quantity.word());
-        match find_unit(quantity, name.get_ref()) {
+        match find_unit(quantity, name.value()) {
             Some(u) => *to = u,
             None => {
-                let wrong = format!("`{}` is no unit of {}", name.get_ref(), quantity.word());
+                let wrong = format!("`{}` is no unit of {}", name.value(), quantity.word());
                 c.fault(
                     name,
                     &key,
                     wrong,
-                    suggest::remedy(name.get_ref(), unit_names(quantity)),
+                    suggest::remedy(name.value(), unit_names(quantity)),
                 );
             }
         }

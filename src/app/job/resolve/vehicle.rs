@@ -18,7 +18,7 @@ use crate::vehicle::preset::MODELS;
 fn correction(c: &mut Collector, channel: &str, r: &RawCorrection) -> ChannelCorrection {
     let key = |k: &str| format!("vehicle.corrections.{channel}.{k}");
     let gain = match r.gain.as_ref() {
-        Some(g) if *g.get_ref() == 0.0 || !g.get_ref().is_finite() => {
+        Some(g) if *g.value() == 0.0 || !g.value().is_finite() => {
             c.fault(
                 g,
                 &key("gain"),
@@ -27,7 +27,7 @@ fn correction(c: &mut Collector, channel: &str, r: &RawCorrection) -> ChannelCor
             );
             1.0
         }
-        Some(g) => *g.get_ref(),
+        Some(g) => *g.value(),
         None => 1.0,
     };
     let mut number = |v: &S<f64>, k: &str| c.number(v, &key(k), "a finite number", |_| true);
@@ -49,16 +49,16 @@ fn correction(c: &mut Collector, channel: &str, r: &RawCorrection) -> ChannelCor
         (None, None) => None,
     };
     let order = match r.low_pass_order.as_ref() {
-        Some(o) if !matches!(*o.get_ref(), 1 | 2) => {
+        Some(o) if !matches!(*o.value(), 1 | 2) => {
             c.fault(
                 o,
                 &key("low_pass_order"),
-                format!("`{}`, expected 1 or 2", o.get_ref()),
+                format!("`{}`, expected 1 or 2", o.value()),
                 "write 1, or 2 for Butterworth's",
             );
             1
         }
-        Some(o) => *o.get_ref(),
+        Some(o) => *o.value(),
         None => 1,
     };
     let time_s = c.at_least_zero(&r.low_pass_s, &key("low_pass_s"));
@@ -74,14 +74,14 @@ fn correction(c: &mut Collector, channel: &str, r: &RawCorrection) -> ChannelCor
 
 pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> Option<Vehicle> {
     let section = raw?;
-    let raw = section.get_ref();
+    let raw = section.value();
     let model = c.require(&raw.model, section, "vehicle.model", "model = \"front2\"");
     c.choose(&raw.model, "vehicle.model", &MODELS.map(|m| (m, ())), ());
     let data = c.require(&raw.data, section, "vehicle.data", "data = \"data.csv\"");
     let noise = raw.noise.as_ref();
     let tolerance = raw.tolerance.as_ref();
     let band_hz = raw.band_hz.as_ref().and_then(|b| {
-        let [low, high] = *b.get_ref();
+        let [low, high] = *b.value();
         if 0.0 <= low && low < high {
             return Some([low, high]);
         }
@@ -115,17 +115,17 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
             body: m
                 .body
                 .as_ref()
-                .map_or_else(|| "b".to_owned(), |b| b.get_ref().clone()),
+                .map_or_else(|| "b".to_owned(), |b| b.value().clone()),
             at_s: at,
             over_s: c
                 .at_least_zero(&m.over_s, "vehicle.mass_change.over_s")
                 .unwrap_or(0.0),
-            weight: m.weight.as_ref().is_none_or(|w| *w.get_ref()),
+            weight: m.weight.as_ref().is_none_or(|w| *w.value()),
         })
     });
     let mut leaf = std::collections::BTreeMap::new();
     for (link, r) in &raw.leaf {
-        let key = |k: &str| format!("vehicle.leaf.{}.{k}", link.get_ref());
+        let key = |k: &str| format!("vehicle.leaf.{}.{k}", link.value());
         for (value, k) in [
             (&r.hanger_to_axle, "hanger_to_axle"),
             (&r.axle_to_shackle, "axle_to_shackle"),
@@ -149,13 +149,13 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
                 .unwrap_or(0.0)
                 .to_radians(),
         };
-        leaf.insert(link.get_ref().clone(), seat);
+        leaf.insert(link.value().clone(), seat);
     }
     model.as_ref().zip(data.as_ref())?;
     Some(Vehicle {
         model: model?,
         terms: raw.terms.as_ref().map_or_else(Vec::new, |t| {
-            t.get_ref().iter().map(|w| w.get_ref().clone()).collect()
+            t.value().iter().map(|w| w.value().clone()).collect()
         }),
         data: c.named(&raw.data, "vehicle.data")?,
         hold_out: c.named(&raw.hold_out, "vehicle.hold_out"),
@@ -181,13 +181,13 @@ pub(super) fn reconcile(
     raw: Option<&Spanned<RawReconcile>>,
 ) -> Option<Reconcile> {
     let section = raw?;
-    let raw = section.get_ref();
+    let raw = section.value();
     c.require(&raw.path, section, "reconcile.path", "path = \"static\"");
     let paths = [
         ("static", ReconcilePath::Static),
         ("dynamic", ReconcilePath::Dynamic),
     ];
-    let effects = match raw.effects.as_ref().map(|e| (e, e.get_ref())) {
+    let effects = match raw.effects.as_ref().map(|e| (e, e.value())) {
         None => None,
         Some((_, Texts::Many(list))) => Some(list.clone()),
         Some((at, Texts::One(word))) => {
@@ -218,7 +218,7 @@ pub(super) fn reconcile(
         thermal_microstrain_per_degc: raw
             .thermal
             .iter()
-            .map(|(k, v)| (k.get_ref().clone(), *v))
+            .map(|(k, v)| (k.value().clone(), *v))
             .collect(),
         temperature_set: raw.temperature_set,
         effects,
@@ -233,7 +233,7 @@ pub(super) fn reconcile(
 
 /// A hypothesis of the user's own: by a table or by an edit of the deck.
 fn described(c: &mut Collector, entry: &Spanned<RawEffect>) -> Option<DescribedEffect> {
-    let raw = entry.get_ref();
+    let raw = entry.value();
     c.require(
         &raw.id,
         entry,
@@ -283,7 +283,7 @@ fn described(c: &mut Collector, entry: &Spanned<RawEffect>) -> Option<DescribedE
     } else {
         1.0
     };
-    let id = raw.id.as_ref().map(|i| i.get_ref().clone())?;
+    let id = raw.id.as_ref().map(|i| i.value().clone())?;
     Some(DescribedEffect {
         id,
         source,
@@ -298,7 +298,7 @@ pub(super) fn sensitivity(
     system: UnitSystem,
 ) -> Option<GivenSensitivity> {
     let section = raw?;
-    let raw = section.get_ref();
+    let raw = section.value();
     c.require(
         &raw.file,
         section,
@@ -343,7 +343,7 @@ pub(super) fn sensitivity(
         ),
         columns: columns
             .into_iter()
-            .map(|(k, v)| (k.get_ref().clone(), v.get_ref().clone()))
+            .map(|(k, v)| (k.value().clone(), v.value().clone()))
             .collect(),
         signatures,
         covariance: c.named(&raw.covariance, "sensitivity.covariance"),
