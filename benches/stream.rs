@@ -87,6 +87,6 @@ fn recover_six_loads(bencher: divan::Bencher) {
             loads.gaps.clear();
             filter.apply(v, h.unit, &mut loads, &mut sums);
         });
-        sums.samples
+        sums.missing.whole
     });
 }

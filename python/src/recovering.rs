@@ -14,8 +14,8 @@ use strainbridge::linalg::Matrix;
 use strainbridge::recovery::history::{Filter, SampleLoads};
 use strainbridge::recovery::plausible::LARGEST_STRAIN;
 use strainbridge::recovery::{
-    ErrorModel, Gain, Missing, NOT_SOLVABLE, Readings, Recovery, Sums, Widening, check_gaps,
-    recover, recover_samples,
+    ErrorModel, Gain, Missing, NOT_SOLVABLE, Readings, Recovery, Widening, check_gaps, recover,
+    recover_samples,
 };
 use strainbridge::sensitivity::{Load, Sensitivity, check_separability};
 use strainbridge::stop::Stop;
@@ -333,17 +333,17 @@ fn of_record(
             if stop.is_asked() {
                 return (out, Missing::new(k), 0);
             }
-            let mut sums = Sums::new(n, k);
-            filter.apply(block, unit, &mut out, &mut sums);
+            let mut missing = Missing::new(k);
+            filter.loads_of(block, unit, &mut out, &mut missing);
             // An infinite reading is none in any unit.
-            let impossible = match sums.impossible {
+            let impossible = match missing.impossible {
                 0 => 0,
                 _ => block
                     .iter()
                     .filter(|v| v.is_finite() && (*v * unit).abs() > LARGEST_STRAIN)
                     .count(),
             };
-            (out, Missing::from(&sums), impossible)
+            (out, missing, impossible)
         })
         .collect();
     if blocks.iter().any(|b| b.2 > 0) {

@@ -99,7 +99,7 @@ impl Filter {
     /// Loads of samples (`n_gauges` readings each, times `to_strain`), appended to `out` and to `sums`.
     pub fn apply(&self, samples: &[f64], to_strain: f64, out: &mut SampleLoads, sums: &mut Sums) {
         let missing = self.recover(samples, to_strain, out, Some(sums));
-        sums.add_gaps(&missing);
+        sums.missing.merge(&missing);
     }
 
     /// Loads of samples, as [`Filter::apply`], with a count of what is missing in them and without sums: half the arithmetic.

@@ -56,7 +56,6 @@ impl pulp::WithSimd for Samples<'_> {
             if count < LANES || !all_finite(simd, &f) {
                 self.set_apart(number * LANES, count, &mut y, &mut f);
             } else if let Some(sums) = &mut self.sums {
-                sums.samples += LANES as u64;
                 extremes(sums, simd, &f);
             }
             if let Some(sums) = &mut self.sums {
@@ -110,7 +109,6 @@ impl Samples<'_> {
             let whole = lane < count && f.chunks_exact(LANES).all(|f| f[lane].is_finite());
             if whole {
                 let Some(sums) = &mut self.sums else { continue };
-                sums.samples += 1;
                 for (l, f) in f.chunks_exact(LANES).enumerate() {
                     sums.min[l] = sums.min[l].min(f[lane]);
                     sums.max[l] = sums.max[l].max(f[lane]);

@@ -22,6 +22,11 @@ impl Missing {
         }
     }
 
+    /// How many samples there are.
+    pub fn samples(&self) -> u64 {
+        self.whole + self.gaps
+    }
+
     /// Both together.
     pub fn merge(&mut self, other: &Self) {
         self.whole += other.whole;

@@ -48,7 +48,7 @@ pub fn check_gaps(subject: &str, s: &Sensitivity, missing: &Missing) -> Vec<Find
                     "in {} of {} samples some gauge gives nothing: their loads are those of the others, with wider intervals; in at least {blank} of them \
                      some load is blank",
                     missing.gaps,
-                    missing.whole + missing.gaps
+                    missing.samples()
                 ),
                 "repair the channel, or leave its gauge out: [[correction]] ignore = true",
             )

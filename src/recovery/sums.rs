@@ -5,12 +5,8 @@ use super::missing::Missing;
 /// Sums over a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sums {
-    /// Samples in which every gauge read.
-    pub samples: u64,
-    /// Samples in which some gauge gave nothing: their loads are those of the others, where these tell them.
-    pub gaps: u64,
-    /// Readings too large to be strain, taken for none.
-    pub impossible: u64,
+    /// Samples, and what is missing in them: where some gauge gives nothing, loads are those of the others, as far as these tell them.
+    pub missing: Missing,
     /// Smallest of each load.
     pub min: Vec<f64>,
     /// Largest of each load.
@@ -19,8 +15,6 @@ pub struct Sums {
     pub sum: Vec<f64>,
     /// Sum of squares of each load.
     pub sum_of_squares: Vec<f64>,
-    /// Samples with a gap in which a load is known all the same.
-    pub known_in_gaps: Vec<u64>,
     /// Sum of squared residuals by gauge, strain^2.
     pub residual: Vec<f64>,
     /// Sum of squared readings by gauge, strain^2.
@@ -33,14 +27,11 @@ impl Sums {
     /// Nothing yet, for `n` gauges and `k` loads.
     pub fn new(n: usize, k: usize) -> Self {
         Self {
-            samples: 0,
-            gaps: 0,
-            impossible: 0,
+            missing: Missing::new(k),
             min: vec![f64::INFINITY; k],
             max: vec![f64::NEG_INFINITY; k],
             sum: vec![0.0; k],
             sum_of_squares: vec![0.0; k],
-            known_in_gaps: vec![0; k],
             residual: vec![0.0; n],
             reading: vec![0.0; n],
             read_in_gaps: vec![0; n],
@@ -49,28 +40,18 @@ impl Sums {
 
     /// Samples in which load `l` is known.
     pub fn known(&self, l: usize) -> u64 {
-        self.samples + self.known_in_gaps.get(l).copied().unwrap_or(0)
+        let in_gaps = self.missing.known_in_gaps.get(l);
+        self.missing.whole + in_gaps.copied().unwrap_or(0)
     }
 
     /// Samples in which gauge `g` read.
     pub fn read(&self, g: usize) -> u64 {
-        self.samples + self.read_in_gaps.get(g).copied().unwrap_or(0)
-    }
-
-    /// Counts what is missing in samples whose sums are in already.
-    pub(super) fn add_gaps(&mut self, missing: &Missing) {
-        self.gaps += missing.gaps;
-        self.impossible += missing.impossible;
-        for (sum, known) in self.known_in_gaps.iter_mut().zip(&missing.known_in_gaps) {
-            *sum += known;
-        }
+        self.missing.whole + self.read_in_gaps.get(g).copied().unwrap_or(0)
     }
 
     /// Both together.
     pub fn merge(&mut self, other: &Self) {
-        self.samples += other.samples;
-        self.gaps += other.gaps;
-        self.impossible += other.impossible;
+        self.missing.merge(&other.missing);
         let add = |a: &mut Vec<f64>, b: &[f64]| a.iter_mut().zip(b).for_each(|(x, y)| *x += y);
         let count = |a: &mut Vec<u64>, b: &[u64]| a.iter_mut().zip(b).for_each(|(x, y)| *x += y);
         let fold = |a: &mut Vec<f64>, b: &[f64], pick: fn(f64, f64) -> f64| {
@@ -82,18 +63,6 @@ impl Sums {
         add(&mut self.sum_of_squares, &other.sum_of_squares);
         add(&mut self.residual, &other.residual);
         add(&mut self.reading, &other.reading);
-        count(&mut self.known_in_gaps, &other.known_in_gaps);
         count(&mut self.read_in_gaps, &other.read_in_gaps);
-    }
-}
-
-impl From<&Sums> for Missing {
-    fn from(sums: &Sums) -> Self {
-        Self {
-            whole: sums.samples,
-            gaps: sums.gaps,
-            impossible: sums.impossible,
-            known_in_gaps: sums.known_in_gaps.clone(),
-        }
     }
 }

@@ -291,7 +291,7 @@ impl Kernel {
             .collect();
         let noise = self.errors.noise;
         if noise > 0.0
-            && sums.samples > 0
+            && sums.missing.whole > 0
             && sums
                 .reading
                 .iter()

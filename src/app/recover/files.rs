@@ -89,7 +89,7 @@ fn quantised(head: &RecordHead, sums: &Sums) -> Finding {
         .iter()
         .map(|t| format!("{} {} {}", t.name, short(t.scale()), t.unit))
         .collect();
-    let samples = sums.samples + sums.gaps;
+    let samples = sums.missing.samples();
     let repeated: u64 = (0..head.n_loads()).map(|l| samples - sums.known(l)).sum();
     let gaps = if repeated > 0 {
         format!("; {repeated} numbers that were not measured repeat the one before")
@@ -134,6 +134,6 @@ fn left_out(job: &Job, head: &RecordHead, sums: &Sums) -> Option<Finding> {
             "the record is long: these files are written only where they are asked for",
             "name them in [recover] files",
         )
-        .with_numbers((sums.samples + sums.gaps) as f64, MOST_ROWS as f64),
+        .with_numbers(sums.missing.samples() as f64, MOST_ROWS as f64),
     )
 }

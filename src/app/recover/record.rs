@@ -17,7 +17,7 @@ use crate::app::outcome::finite;
 use crate::app::work::Work;
 use crate::app::zeroed::no_zero_runs;
 use crate::recovery::history::Filter;
-use crate::recovery::{Missing, Sums, check_gaps};
+use crate::recovery::{Sums, check_gaps};
 use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
 use rayon::prelude::*;
@@ -64,7 +64,7 @@ pub(super) fn record(
     });
     sink.begin(&head)?;
     let (sums, spans) = stream(work, &record, &head, sink)?;
-    sink.end(sums.samples + sums.gaps)?;
+    sink.end(sums.missing.samples())?;
     let slope = task.job.recover.slope;
     let damage = match head.files.contains(&LoadFile::Rainflow) {
         true => {
@@ -77,7 +77,7 @@ pub(super) fn record(
     work.findings
         .extend(files::findings(task.job, &head, &sums));
     work.findings
-        .extend(check_gaps(&head.file, &sensitivity, &Missing::from(&sums)));
+        .extend(check_gaps(&head.file, &sensitivity, &sums.missing));
     Ok(answer(sensitivity, head, sums, spans, content, damage))
 }
 
@@ -188,13 +188,13 @@ fn answer(
         leverage: whole.leverage[g],
     });
     let [from, to] = spans.time();
-    let samples = sums.samples + sums.gaps;
+    let samples = sums.missing.samples();
     RecoveredRecord {
         loads: loads.collect(),
         residual_rms_microstrain: residual / MICROSTRAIN,
         gauges: gauges.collect(),
         samples,
-        gaps: sums.gaps,
+        gaps: sums.missing.gaps,
         duration_s: to - from,
         sample_rate_hz: finite(samples.saturating_sub(1) as f64 / (to - from)),
         content,

@@ -54,7 +54,7 @@ fn a_streamed_record_gives_what_the_same_samples_give_as_runs() {
             assert!((sigma[l] / r.estimate.sigma(l) - 1.0).abs() < 1e-9);
         }
     }
-    assert_eq!((sums.samples, sums.gaps), (12, 0));
+    assert_eq!((sums.missing.whole, sums.missing.gaps), (12, 0));
     let rms = (sums.residual.iter().sum::<f64>() / (12.0 * 11.0)).sqrt();
     assert!((rms - got.residual_rms).abs() < 1e-12);
 }
@@ -161,8 +161,8 @@ fn whole_blocks_give_what_single_samples_give_and_a_gap_spoils_its_sample_alone(
             assert!((a - b).abs() < 1e-12 * b.abs().max(1.0), "{i}: {a} {b}");
         }
     }
-    assert_eq!((sums.samples, sums.gaps), (76, 1));
-    assert_eq!((together.samples, together.gaps), (76, 1));
+    assert_eq!((sums.missing.whole, sums.missing.gaps), (76, 1));
+    assert_eq!((together.missing.whole, together.missing.gaps), (76, 1));
     assert_eq!(out.gaps.iter().map(|g| g.0).collect::<Vec<_>>(), [40]);
     for (a, b) in sums.residual.iter().zip(&together.residual) {
         assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
@@ -196,7 +196,14 @@ fn a_load_that_the_other_gauges_do_not_tell_is_blank_and_the_rest_is_not() {
     }
     assert!((out.values[1] - 2.0).abs() < 1e-12);
     assert!(out.values[3].is_nan() && out.values[5].is_nan());
-    assert_eq!((sums.samples, sums.gaps, sums.impossible), (1, 2, 1));
+    assert_eq!(
+        (
+            sums.missing.whole,
+            sums.missing.gaps,
+            sums.missing.impossible
+        ),
+        (1, 2, 1)
+    );
     assert_eq!((sums.known(0), sums.known(1)), (3, 1));
 }
 
