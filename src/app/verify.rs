@@ -114,8 +114,8 @@ pub fn verify(
 pub fn main_input(folder: &Path, made: &Made) -> Result<PathBuf, Fault> {
     let given = made.inputs.first().map(|i| PathBuf::from(&i.path));
     let beside = |p: &PathBuf| Some(folder.parent()?.join(p.file_name()?));
-    let places = [given.as_ref().and_then(beside), given];
-    let mut places = places.into_iter().rev().flatten();
+    let beside = given.as_ref().and_then(beside);
+    let mut places = [given, beside].into_iter().flatten();
     places.find(|p| p.is_file()).ok_or_else(|| {
         Fault::of(
             folder.display().to_string(),

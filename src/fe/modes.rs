@@ -141,10 +141,9 @@ pub(super) fn frequencies(
     factor: &Factor<'_>,
     (count, stop): (usize, &Stop),
 ) -> Result<Vec<f64>, FeError> {
-    let accuracy = BESIDE_STATICS;
     let wanted = Wanted {
         count,
-        accuracy,
+        accuracy: BESIDE_STATICS,
         stop,
     };
     let pairs = lowest(prepared, mass, system, factor, wanted)?;
@@ -170,10 +169,9 @@ fn pairs_of(
     }
     let stiffness = std::mem::take(&mut system.stiffness);
     let factor = system.factor(prepared, mass, stiffness)?;
-    let accuracy = ALONE;
     let wanted = Wanted {
         count,
-        accuracy,
+        accuracy: ALONE,
         stop,
     };
     let pairs = lowest(prepared, mass, &system, &factor, wanted)?;
