@@ -7,7 +7,7 @@ use crate::calibrate::*;
 use crate::linalg::Matrix;
 use crate::linalg::precision::Precision;
 use crate::recovery::{ErrorModel, Readings, estimate};
-use crate::sensitivity::Load;
+use crate::sensitivity::{Load, Sensitivity};
 use nalgebra::DMatrix;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -45,6 +45,20 @@ fn calibrated() -> Calibration {
     calibrate(&task).unwrap()
 }
 
+/// Sigma of load `l` recovered from the readings of that load alone, of its size.
+fn sigma_of(s: &Sensitivity, sizes: &[f64], l: usize) -> f64 {
+    let readings = Readings {
+        run: String::new(),
+        strain: s.values.column(l).iter().map(|v| v * sizes[l]).collect(),
+        noise_factor: 1.0,
+    };
+    let errors = ErrorModel {
+        noise: NOISE,
+        model_rel: 0.0,
+    };
+    estimate(s, &readings, errors).estimate.sigma(l)
+}
+
 #[test]
 fn the_next_load_buys_what_its_readings_would_take_from_the_covariance_of_s() {
     let found = calibrated();
@@ -74,16 +88,7 @@ fn the_next_load_buys_what_its_readings_would_take_from_the_covariance_of_s() {
         let sigma = |covariance: Vec<f64>, l: usize| {
             let mut s = s.clone();
             s.uncertainty.as_mut().unwrap().covariance = covariance;
-            let readings = Readings {
-                run: String::new(),
-                strain: s.values.column(l).iter().map(|v| v * sizes[l]).collect(),
-                noise_factor: 1.0,
-            };
-            let errors = ErrorModel {
-                noise: NOISE,
-                model_rel: 0.0,
-            };
-            estimate(&s, &readings, errors).estimate.sigma(l)
+            sigma_of(&s, &sizes, l)
         };
         let ratio = |l: usize| {
             let then: Vec<f64> = after.transpose().iter().copied().collect();
@@ -196,19 +201,7 @@ fn with_repeats_that_scatter_the_next_load_buys_what_a_refit_with_it_has() {
             "{run:?} {gained}"
         );
         let after = sensitivity_of(&task, &state.scales, &refit, &state.scatter, 1.0);
-        let sigma = |s: &crate::sensitivity::Sensitivity| {
-            let l = run.load;
-            let readings = Readings {
-                run: String::new(),
-                strain: s.values.column(l).iter().map(|v| v * sizes[l]).collect(),
-                noise_factor: 1.0,
-            };
-            let errors = ErrorModel {
-                noise: NOISE,
-                model_rel: 0.0,
-            };
-            estimate(s, &readings, errors).estimate.sigma(l)
-        };
+        let sigma = |s: &Sensitivity| sigma_of(s, &sizes, run.load);
         assert!((run.sigma_before / sigma(s) - 1.0).abs() < 1e-6, "{run:?}");
         assert!(
             (run.sigma_after / sigma(&after) - 1.0).abs() < 1e-6,
