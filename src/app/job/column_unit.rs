@@ -46,7 +46,7 @@ pub fn place_of(t: &Table, columns: &[Column], name: &str) -> Result<Option<usiz
                 &*t.file,
                 1,
                 &*second.header.whole,
-                format!("two columns hold `{name}`, with a unit each"),
+                format!("two columns hold `{name}`"),
                 "leave one of them out, or name it in [runs] columns",
             )),
         };

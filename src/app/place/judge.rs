@@ -5,6 +5,7 @@ use super::outcome::PlacedGauge;
 use super::task::Task;
 use crate::app::job::Job;
 use crate::app::strain::{LoadSigma, load_units};
+use crate::app::words::short;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::linalg::spd;
@@ -191,15 +192,6 @@ fn check_budgets<'a>(
         remedy,
     );
     Some(finding.with_numbers(least, kept))
-}
-
-/// A length above 0 with two digits, rounded down: who keeps it keeps what it stands for.
-fn short(x: f64) -> String {
-    let exponent = x.log10().floor() as i32 - 1;
-    // What binary fractions leave of a whole number of steps is no step less.
-    let steps = (x / 10_f64.powi(exponent) + 1e-6).floor();
-    let number: f64 = format!("{steps}e{exponent}").parse().unwrap_or(x);
-    number.to_string()
 }
 
 /// Findings on the layout.
