@@ -19,15 +19,10 @@ RATE, GAUGES, LOADS = 500, 40, 6
 GROUP = 500_000
 
 JOB = """units = "m-kg-s"
-report_units = {{ force = "kN" }}
+report_units = { force = "kN" }
 [sensitivity]
 file = "S.csv"
-per = {{ force = "kN" }}
-{loads}
-[measured]
-noise_microstrain = 1.0
-[fleet]
-file_name = "{{vehicle}}_{{day}}.{ending}"
+per = { force = "kN" }
 """
 
 PLAIN = {
@@ -81,13 +76,19 @@ def written(folder, ending, samples):
         file = asammdf.MDF(version="4.10")
         file.append(signals)
         file.save(path, overwrite=True)
-    random = np.random.default_rng(8)
-    s = random.normal(size=(LOADS, GAUGES))
-    rows = [f"{n}," + ",".join(str(v) for v in s[:, g]) for g, n in enumerate(names)]
+    fleet = f'[measured]\nnoise_microstrain = 1.0\n[fleet]\nfile_name = "{{vehicle}}_{{day}}.{ending}"\n'
+    job(folder / f"{ending}.toml", names, fleet)
+    return path
+
+
+def job(path, gauges, sections):
+    """A job with six loads and these sections, and the S of its gauges beside it."""
+    s = np.random.default_rng(8).normal(size=(LOADS, len(gauges)))
+    rows = [f"{n}," + ",".join(str(v) for v in s[:, g]) for g, n in enumerate(gauges)]
     loads = [f"F{i}" for i in range(LOADS)]
-    (folder / "S.csv").write_text("\n".join(["gauge," + ",".join(loads), *rows, ""]))
+    (path.parent / "S.csv").write_text("\n".join(["gauge," + ",".join(loads), *rows, ""]))
     listed = "\n".join(f'[[load]]\nname = "{n}"\nexpected = 20e3' for n in loads)
-    (folder / f"{ending}.toml").write_text(JOB.format(loads=listed, ending=ending))
+    path.write_text(f"{JOB}{listed}\n{sections}")
     return path
 
 

@@ -13,18 +13,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from day import LOADS, run
-
-JOB = """units = "m-kg-s"
-report_units = {{ force = "kN" }}
-[sensitivity]
-file = "S.csv"
-per = {{ force = "kN" }}
-{loads}
-[measured]
-{measured}
-noise_microstrain = 1.0
-"""
+from day import job, run
 
 
 def binary(path, names, samples, random):
@@ -48,18 +37,6 @@ def text(path, names, samples, random):
     np.savetxt(path, block, fmt="%.4f", delimiter=",", header=",".join(["time", *names]), comments="")
 
 
-def job(folder, name, gauges, measured):
-    """A job with six loads and a given S."""
-    random = np.random.default_rng(8)
-    rows = [f"{g}," + ",".join(str(v) for v in random.normal(size=LOADS)) for g in gauges]
-    loads = [f"F{i}" for i in range(LOADS)]
-    (folder / "S.csv").write_text("\n".join(["gauge," + ",".join(loads), *rows, ""]))
-    listed = "\n".join(f'[[load]]\nname = "{n}"\nexpected = 20e3' for n in loads)
-    path = folder / f"{name}.toml"
-    path.write_text(JOB.format(loads=listed, measured=measured))
-    return path
-
-
 def timed(command, path):
     """A command on a job, twice."""
     program = os.environ.get("STRAINBRIDGE", "strainbridge")
@@ -81,9 +58,9 @@ if __name__ == "__main__":
             names = [f"G{g}" for g in range(gauges)]
             file = folder / f"record.{'csv' if name == 'text' else 'bin'}"
             (text if name == "text" else binary)(file, names, samples, random)
-            measured = f'strain = "{file.name}"'
+            measured = f'[measured]\nnoise_microstrain = 1.0\nstrain = "{file.name}"\n'
             if name == "zeroed":
                 text(folder / "zero.csv", names, 300_000, random)
-                measured += '\nzero = "zero.csv"'
+                measured += 'zero = "zero.csv"\n'
             for command in commands:
-                timed(command, job(folder, name, names, measured))
+                timed(command, job(folder / f"{name}.toml", names, measured))

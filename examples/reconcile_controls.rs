@@ -1,9 +1,10 @@
 //! False names on controls: 400 cases in which nothing is hidden, every second one static, the others dynamic.
 //!
 //! `cargo run --release --example reconcile_controls -- [--from 0] [--to 400]` prints a line a case and the share of false names with its
-//! interval (Wilson 1927, 95 %); a case that can't be judged is counted apart, and the exit code is then 1. A case is made of its number alone, so that parts of the sweep can be run one after the other and their
-//! lines joined. Among them are gauges glued 2 mm from their place (one standard deviation), noise 1.5 times or 1/1.5 of what is stated, the
-//! vehicles of all shared cases, records of 200 to 1,000 Hz from four layouts of sensors.
+//! interval (Wilson 1927, 95 %). A case that can't be judged is counted apart, and the exit code is then 1. A case is made of its number
+//! alone, so that parts of the sweep can be run one after the other and their lines joined. Among them are gauges glued 2 mm from their place
+//! (one standard deviation), noise 1.5 times or 1/1.5 of what is stated, the vehicles of all shared cases, records of 200 to 1,000 Hz from
+//! four layouts of sensors.
 #![allow(clippy::print_stdout)]
 
 #[path = "../tests/reconcile/hidden/mod.rs"]
