@@ -6,6 +6,7 @@ use crate::job::CheckedJob;
 use crate::outcome::{Told, tell, tell_learnt, tell_loads};
 use crate::work::{Asked, run};
 use pyo3::prelude::*;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use strainbridge::app::fleet::{FleetSpec, name::Shard};
 use strainbridge::app::store::Folder;
@@ -47,6 +48,7 @@ struct More {
     modes: usize,
     heated: HeatedStrain,
     shard: Option<Shard>,
+    digests: BTreeMap<String, String>,
 }
 
 /// Names of the commands that [`ask`] knows.
@@ -66,7 +68,7 @@ pub(crate) fn schema() -> String {
 
 /// The outcome of a command.
 #[pyfunction]
-#[pyo3(signature = (command, job=None, *, files=Vec::new(), folder=PathBuf::new(), modes=0, total_strain=false, shard=None, threads=None, cache=true, progress=None))]
+#[pyo3(signature = (command, job=None, *, files=Vec::new(), folder=PathBuf::new(), modes=0, total_strain=false, shard=None, digests=BTreeMap::new(), threads=None, cache=true, progress=None))]
 pub(crate) fn ask(
     py: Python,
     command: &str,
@@ -76,6 +78,7 @@ pub(crate) fn ask(
     modes: usize,
     total_strain: bool,
     shard: Option<&str>,
+    digests: BTreeMap<String, String>,
     threads: Option<usize>,
     cache: bool,
     progress: Option<Py<PyAny>>,
@@ -90,6 +93,7 @@ pub(crate) fn ask(
             false => HeatedStrain::Mechanical,
         },
         shard,
+        digests,
     };
     let (none, job) = (Desk::default(), job.map(Bound::get));
     let store = cache.then(Folder::of_user);
@@ -141,6 +145,7 @@ fn answer(command: &str, job: Option<&Job>, more: &More, cx: &Context) -> Result
                 files: more.files.clone(),
                 shard: more.shard,
                 folder: more.folder.clone(),
+                digests: more.digests.clone(),
             };
             tell(strainbridge::fleet(job, &spec, cx)?)
         }

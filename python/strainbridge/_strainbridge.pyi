@@ -81,6 +81,7 @@ def ask(
     modes: int = 0,
     total_strain: bool = False,
     shard: str | None = None,
+    digests: Mapping[str, str] = ...,
     threads: int | None = None,
     cache: bool = True,
     progress: Callable[[str, int, int], object] | None = None,

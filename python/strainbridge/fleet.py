@@ -50,14 +50,17 @@ def program() -> str:
 
 
 def part(job: AnyJob, files: Sequence[str], out: str, threads: int | None = None) -> list[dict[str, str]]:
-    """Does some files and returns path, status and message of each: a pure function of its arguments but for the results kept in `out`."""
+    """Does some files and returns path, status, message and SHA-256 of each: a pure function of its arguments but for the results kept in `out`."""
     files = [str(f) for f in files]
     if not files:
         return []
-    # The answer of a task goes to a folder of its own; what counts is kept under `out/days`, which all tasks share.
-    with tempfile.TemporaryDirectory() as own:
-        answer = _call(job, files, own, out, threads)
-    return [{k: f[k] for k in ("path", "status", "message")} for f in answer["files"]]
+    # What counts is kept under `out/days`, which all tasks share.
+    if _in_process():
+        answer: Mapping[str, Any] = _asked(job, files, out, threads)
+    else:
+        with tempfile.TemporaryDirectory() as own:
+            answer = _command(job, files, own, out, threads)
+    return [{k: f[k] for k in ("path", "status", "message", "sha256")} for f in answer["files"]]
 
 
 def merge(job: AnyJob, out: str | Path) -> Mapping[str, Any]:
@@ -99,31 +102,72 @@ def run(
         tasks = [listed[i : i + FILES_A_TASK] for i in range(0, len(listed), FILES_A_TASK)]
         n = len(tasks)
         futures = client.map(part, [job] * n, tasks, [out] * n, [threads or 1] * n, pure=False, retries=3)
-        # What a task that failed for good leaves undone is done here, or raises here.
-        client.gather(futures, errors="skip")
-    # Files whose results were kept by workers are not decoded again.
-    return _call(job, listed, out, out, threads, progress=progress)
+        # What a task that failed for good leaves undone is done here, or raises here. Files that workers did are not read again.
+        done = [f for some in client.gather(futures, errors="skip") for f in some]
+        digests = {f["path"]: f["sha256"] for f in done if f["sha256"]}
+    else:
+        digests = {}
+    return _call(job, listed, out, out, threads, progress=progress, digests=digests)
+
+
+def _in_process() -> bool:
+    """Whether the engine of the package does the work."""
+    return _engine is not None and not os.environ.get("STRAINBRIDGE")
 
 
 def _call(
-    job: AnyJob, files: Sequence[str], out: str, kept: str, threads: int | None, shard: str | None = None, progress: Any = None
+    job: AnyJob,
+    files: Sequence[str],
+    out: str,
+    kept: str,
+    threads: int | None,
+    shard: str | None = None,
+    progress: Any = None,
+    digests: Mapping[str, str] = {},
 ) -> Mapping[str, Any]:
-    if _engine is None or os.environ.get("STRAINBRIDGE"):
-        return _command(job, files, out, kept, threads, shard)
-    with shown(progress) as told:
-        asked = _engine.ask("fleet", job_of(job)._checked(), files=files, folder=kept, shard=shard, threads=threads, progress=told)
-    outcome = Outcome(asked)
+    if not _in_process():
+        return _command(job, files, out, kept, threads, shard, digests)
+    outcome = _asked(job, files, kept, threads, shard, progress, digests)
     outcome.save(out)
     return outcome
 
 
-def _command(job: AnyJob, files: Sequence[str], out: str, kept: str, threads: int | None, shard: str | None) -> dict[str, Any]:
+def _asked(
+    job: AnyJob,
+    files: Sequence[str],
+    kept: str,
+    threads: int | None,
+    shard: str | None = None,
+    progress: Any = None,
+    digests: Mapping[str, str] = {},
+) -> Outcome:
+    with shown(progress) as told:
+        asked = _engine.ask(
+            "fleet", job_of(job)._checked(), files=files, folder=kept, shard=shard, digests=digests, threads=threads, progress=told
+        )
+    return Outcome(asked)
+
+
+def _command(
+    job: AnyJob,
+    files: Sequence[str],
+    out: str,
+    kept: str,
+    threads: int | None,
+    shard: str | None = None,
+    digests: Mapping[str, str] = {},
+) -> dict[str, Any]:
     path = str(getattr(job, "path", job))
     more = ["--threads", str(threads)] if threads else []
     more += ["--kept", kept] if kept != out else []
     more += ["--shard", shard] if shard else []
-    call = [program(), "fleet", path, *files, "--out", out, "--json", *more]
-    done = subprocess.run(call, capture_output=True, text=True, check=False)
+    with tempfile.TemporaryDirectory() as own:
+        if digests:
+            listed = Path(own, "digests.txt")
+            listed.write_text("".join(f"{digest}  {file}\n" for file, digest in digests.items() if "\n" not in file), encoding="utf-8")
+            more += ["--digests", str(listed)]
+        call = [program(), "fleet", path, *files, "--out", out, "--json", *more]
+        done = subprocess.run(call, capture_output=True, text=True, check=False)
     if done.returncode not in (0, 1):
         raise FleetError(done.stderr.strip())
     answer: dict[str, Any] = json.loads(done.stdout)

@@ -93,6 +93,32 @@ def test_a_worker_that_dies_half_way_costs_nothing(sixty, cluster):
     assert {f.status for f in result.files} == {"done"}
 
 
+class Leaving:
+    """A client that takes the records away when its workers are done."""
+
+    def __init__(self, client, files):
+        self.client, self.files = client, files
+
+    def map(self, *arguments, **more):
+        return self.client.map(*arguments, **more)
+
+    def gather(self, futures, errors):
+        done = self.client.gather(futures, errors=errors)
+        for file in self.files:
+            os.remove(file)
+        return done
+
+
+def test_the_caller_reads_no_record_that_a_worker_did(sixty, cluster, tmp_path):
+    folder, files, _ = sixty
+    some = [shutil.copy(f, tmp_path) for f in files[::7]]
+    here = sb.fleet.run(folder / "job.toml", some, tmp_path / "here")
+    spread = sb.fleet.run(folder / "job.toml", some, tmp_path / "spread", client=Leaving(cluster, some))
+    assert not any(map(os.path.exists, some))
+    assert {f.status for f in spread.files} == {"done"} == {f.status for f in here.files}
+    assert (tmp_path / "spread" / "fleet.csv").read_bytes() == (tmp_path / "here" / "fleet.csv").read_bytes()
+
+
 def test_four_shards_in_any_order_write_the_same_bytes(sixty):
     folder, files, here = sixty
     counts = [len(sb.fleet.run(folder / "job.toml", files[::-1], folder / "shards", shard=f"{n}/4").files) for n in (3, 1, 4, 2)]

@@ -1,7 +1,8 @@
 //! What the change of one gauge's row looks like: a gain, an angle, a place, or nothing that can be told.
 
 use super::evidence::RowEvidence;
-use super::prior::{ErrorEvidence, rows};
+use super::model_error::ErrorEvidence;
+use super::prior::rows;
 use super::types::{ModelError, ModelPrior, OffDrawing, ShiftWord};
 use crate::linalg::{Matrix, spd};
 
@@ -82,7 +83,7 @@ impl Rivals {
             return None;
         }
         let normal = evidence.normals.get(g)?;
-        let prior = rows(model, scales, error).into_iter().nth(g)?;
+        let prior = rows(model, scales, &vec![error.into(); g + 1]).pop()?;
         let usual = RowEvidence::of(&prior.mean, &prior.covariance, normal)?;
         let square = spd::dot(&prior.mean, &prior.mean) / k.max(1) as f64;
         let mut any = prior.covariance.clone();

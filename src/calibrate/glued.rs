@@ -12,13 +12,14 @@ use crate::linalg::spd::dot;
 
 /// Where each gauge sits as the posterior says; empty without stated moves.
 pub(super) fn as_glued(task: &Task, state: &State) -> Vec<AsGlued> {
-    let (Some(model), Some(error)) = (&task.model, state.model_error) else {
+    let Some(model) = &task.model else {
         return Vec::new();
     };
     if model.moves.is_empty() {
         return Vec::new();
     }
-    let all = (0..task.gauges.len()).map(|g| one(model, state, g, error.common));
+    let gauges = state.row_errors.iter().enumerate();
+    let all = gauges.map(|(g, error)| one(model, state, g, error.common));
     all.collect::<Option<Vec<_>>>().unwrap_or_default()
 }
 

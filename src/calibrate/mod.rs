@@ -14,6 +14,7 @@ mod fit;
 mod glued;
 mod held_out;
 mod known;
+mod model_error;
 mod next;
 mod posterior;
 mod prior;

@@ -83,7 +83,7 @@ pub(super) fn check(task: &Task, state: &State) -> Vec<GaugeShift> {
     let rows: Vec<Row> = (0..n).map(|g| Row::of(state, g)).collect();
     let distance = |g: usize, to: &[f64], without: &[usize]| -> f64 {
         let error = evidence.most_probable(without);
-        let prior = model_rows(model, &state.scales, error);
+        let prior = model_rows(model, &state.scales, &vec![error.into(); n]);
         let moved: Vec<f64> = to.iter().zip(&rows[g].model).map(|(a, b)| a - b).collect();
         let k = moved.len();
         Precision::of(&prior[g].covariance, k).map_or(0.0, |p| {

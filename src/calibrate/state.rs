@@ -1,8 +1,9 @@
 //! One fit of all used runs: posterior of S, error of the model, scatter of repeats and corrected loads in turn.
 
 use super::known::correct;
+use super::model_error::{ErrorEvidence, error_evidence};
 use super::posterior::{Equation, Posterior, solve};
-use super::prior::{ErrorEvidence, RowPrior, diffuse, error_evidence, rows};
+use super::prior::{RowError, RowPrior, diffuse, rows};
 use super::scatter::{Left, Scatter};
 use super::types::{KnownRun, ModelError, Task};
 use crate::linalg::Matrix;
@@ -34,6 +35,8 @@ pub(super) struct State {
     pub fitted: f64,
     /// Error of the model as learnt.
     pub model_error: Option<ModelError>,
+    /// That of each gauge; empty without a model.
+    pub row_errors: Vec<RowError>,
     /// What it was learnt from, gauge by gauge.
     pub error_evidence: Option<ErrorEvidence>,
 }
@@ -65,8 +68,8 @@ impl State {
                 let variance = variances(task, &runs, &scatter, state.as_ref());
                 error_evidence(m, &scales, &runs, &phi, &variance)
             });
-            let model_error = error_evidence.as_ref().map(|e| e.most_probable(&[]));
-            let prior = match (&task.model, model_error) {
+            let row_errors = error_evidence.as_ref().map(ErrorEvidence::by_gauge);
+            let prior = match (&task.model, &row_errors) {
                 (Some(m), Some(e)) => rows(m, &scales, e),
                 _ => diffuse(n, k, largest),
             };
@@ -119,7 +122,8 @@ impl State {
                 lefts,
                 scatter: scatter.clone(),
                 fitted,
-                model_error,
+                model_error: error_evidence.as_ref().map(|e| e.most_probable(&[])),
+                row_errors: row_errors.unwrap_or_default(),
                 error_evidence,
             });
         }

@@ -1,8 +1,9 @@
 //! Arguments as the user types them.
 
-use crate::app::fleet::name::Shard;
+use crate::app::fleet::{digests_of, name::Shard};
 use crate::app::init::Purpose;
 use crate::fe::{HeatedStrain, SolveOptions};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
@@ -174,9 +175,17 @@ pub struct FleetArguments {
     /// Folder where the results of single files are kept, for tasks that share one (default: that of --out)
     #[arg(long, value_name = "DIR")]
     pub kept: Option<PathBuf>,
+    /// What `sha256sum` lists of the records: one that is listed and whose result is kept is not read again
+    #[arg(long, value_name = "FILE", value_parser = digests)]
+    pub digests: Option<BTreeMap<String, String>>,
     /// What every command is asked
     #[command(flatten)]
     pub common: CommonArguments,
+}
+
+fn digests(path: &str) -> Result<BTreeMap<String, String>, String> {
+    let text = std::fs::read_to_string(path).map_err(|e| format!("can't be read: {e}"))?;
+    digests_of(&text)
 }
 
 fn shard(text: &str) -> Result<Shard, String> {

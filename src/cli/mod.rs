@@ -42,6 +42,7 @@ pub fn run(arguments: Arguments) -> ExitCode {
                 folder: a.kept.unwrap_or(folder),
                 files: a.files,
                 shard: a.shard,
+                digests: a.digests.unwrap_or_default(),
             };
             run.job_into(&a.job, &answer, |job, cx| app::fleet::fleet(job, &spec, cx))
         }

@@ -4,6 +4,7 @@ use super::day::{Day, DayHead, FileHead, FileResult};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -50,6 +51,23 @@ pub fn digest(parts: &[&str]) -> String {
         hash.update(part.as_bytes());
     }
     hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
+}
+
+/// SHA-256 by path, as `sha256sum` lists them: the digest, a blank, a blank or an asterisk, the path.
+///
+/// # Errors
+/// The first line that is none.
+pub fn digests_of(text: &str) -> Result<BTreeMap<String, String>, String> {
+    let line = |(i, line): (usize, &str)| {
+        let parts = line.split_once([' ']).and_then(|(digest, rest)| {
+            let path = rest.strip_prefix([' ', '*'])?;
+            let is_digest = digest.len() == 64 && digest.bytes().all(|b| b.is_ascii_hexdigit());
+            (is_digest && !path.is_empty()).then(|| (path.to_owned(), digest.to_ascii_lowercase()))
+        });
+        parts.ok_or_else(|| format!("line {} is no line of `sha256sum`", i + 1))
+    };
+    let lines = text.lines().enumerate().filter(|l| !l.1.trim().is_empty());
+    lines.map(line).collect()
 }
 
 impl KeptDays {
@@ -154,5 +172,33 @@ impl KeptDays {
         }
         held.files.sort_by(|a, b| a.path.cmp(&b.path));
         Ok(held)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_of_sha256sum_are_read_and_others_refused() {
+        // FIPS 180-4: of nothing, and of `abc`.
+        let (nothing, abc) = (
+            "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855",
+            "BA7816BF8F01CFEA414140DE5DAE2223B00361A396177A9CB410FF61F20015AD",
+        );
+        let text = format!("{nothing}  data/T1 a.csv\r\n\n{abc} *T2.parquet\n");
+        let read = digests_of(&text).unwrap();
+        assert_eq!(read.len(), 2);
+        assert_eq!(read["data/T1 a.csv"], nothing);
+        assert_eq!(read["T2.parquet"], abc.to_lowercase());
+        for wrong in [
+            "T1.csv",
+            "12ab  T1.csv",
+            &format!("{nothing}T1.csv"),
+            &format!("{nothing}  "),
+        ] {
+            let said = digests_of(&format!("{nothing}  a\n{wrong}\n")).unwrap_err();
+            assert!(said.contains("line 2"), "{said}");
+        }
     }
 }

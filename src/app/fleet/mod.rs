@@ -16,6 +16,7 @@ mod outcome;
 mod prepared;
 mod recovering;
 
+pub use kept::digests_of;
 pub use outcome::{FileAnswer, Fleet, GaugeHistory, VehicleAnswer, VehicleLoadAnswer};
 pub use prepared::kernel_of;
 
@@ -33,6 +34,7 @@ use kernel::Kernel;
 use merge::{Status, sorted, vehicle};
 use name::{NameForm, Shard};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -45,6 +47,8 @@ pub struct FleetSpec {
     pub shard: Option<Shard>,
     /// The output folder, where the results of single files are kept.
     pub folder: PathBuf,
+    /// SHA-256 of records by path, as another process read them just now: one whose result is kept is not read again.
+    pub digests: BTreeMap<String, String>,
 }
 
 /// Loads, cycles, damage and faults of many records, by vehicle.
@@ -177,8 +181,14 @@ fn done(
             if progress.is_cancelled() {
                 return Err(stopped());
             }
-            let bytes = source.load_hashed(Path::new(path));
-            let done = one(kernel, kept, form, path, bytes);
+            let digest = spec.digests.get(*path);
+            let done = match digest.and_then(|d| kept.head(path, d)) {
+                Some(before) => Ok((before, true)),
+                None => {
+                    let bytes = source.load_hashed(Path::new(path));
+                    one(kernel, kept, form, path, bytes)
+                }
+            };
             progress.advance(1);
             done
         })

@@ -1,0 +1,243 @@
+//! How far the model is off, as the readings of the known runs say: an error of all gauges, and each gauge's own.
+
+use super::evidence::{Normal, RowEvidence};
+use super::prior::{FLOORS, RowError, RowPrior, rows};
+use super::types::{KnownRun, ModelError, ModelPrior};
+use rayon::prelude::*;
+
+/// Steps from the stated error, in factors of the square root of two, that are tried.
+const STEPS: i32 = 8;
+/// How far the stated error may be off, 1 sd of its natural logarithm: half or double is common.
+const STATED_LN_SD: f64 = 0.7;
+/// Degrees of freedom of Student's distribution over the gauges: most rows of a model are better than its error says, and a few, where strain
+/// changes fast, are off by several times as much. Four is the usual choice where few data can't tell it.
+///
+/// # Reference
+/// K. L. Lange, R. J. A. Little, J. M. G. Taylor, J. Am. Stat. Assoc. 84 (1989) 881.
+const FREEDOM: f64 = 4.0;
+/// Steps of a gauge's own error from that of all, in factors of the square root of two, that are tried.
+const OWN_STEPS: std::ops::RangeInclusive<i32> = -3..=6;
+
+/// A factor on the relative error: that of a step.
+fn factor(step: i32) -> f64 {
+    2_f64.powf(f64::from(step) / 2.0)
+}
+
+/// How probable each gauge's readings are with each relative error of the model that is tried.
+#[derive(Clone, Debug)]
+pub(super) struct ErrorEvidence {
+    stated: ModelError,
+    /// What the runs say of each gauge's row.
+    pub normals: Vec<Normal>,
+    tried: Vec<Tried>,
+}
+
+/// One relative error of the model.
+#[derive(Clone, Debug)]
+struct Tried {
+    error: ModelError,
+    /// Log of its prior.
+    prior: f64,
+    by_gauge: Vec<Own>,
+}
+
+/// A gauge, given the error of all.
+#[derive(Clone, Debug)]
+struct Own {
+    /// Log marginal likelihood of its readings.
+    log: f64,
+    /// Its error: mean variance over all that it may be, each as probable as the readings make it.
+    error: RowError,
+}
+
+impl ErrorEvidence {
+    /// The relative error of the model that the readings of all gauges but some make most probable, near the stated one: maximum of the
+    /// marginal likelihood (each gauge by itself) times a log-normal prior around what was stated.
+    pub fn most_probable(&self, without: &[usize]) -> ModelError {
+        self.best(without).map_or(self.stated, |t| t.error)
+    }
+
+    /// The error of each gauge, given the most probable one of all.
+    pub fn by_gauge(&self) -> Vec<RowError> {
+        match self.best(&[]) {
+            Some(t) => t.by_gauge.iter().map(|own| own.error).collect(),
+            None => vec![self.stated.into(); self.normals.len()],
+        }
+    }
+
+    fn best(&self, without: &[usize]) -> Option<&Tried> {
+        let score = |t: &Tried| {
+            let kept = t.by_gauge.iter().enumerate();
+            let kept = kept.filter(|(g, _)| !without.contains(g));
+            t.prior + kept.map(|(_, own)| own.log).sum::<f64>()
+        };
+        let mut best: Option<(f64, &Tried)> = None;
+        for t in &self.tried {
+            let score = score(t);
+            if best.is_none_or(|b| score > b.0) {
+                best = Some((score, t));
+            }
+        }
+        best.map(|b| b.1)
+    }
+}
+
+/// The evidence of the runs on the model's relative error.
+///
+/// A gauge's error is that of all times a factor of its own, and goes with the entries or with the row ([`FLOORS`]), each as probable
+/// beforehand; its readings are as probable as the mean over these makes them.
+///
+/// `variance[r][g]`: variance of the reading of gauge g in run r, S aside; `phi[r]`: its loads of unit size.
+pub(super) fn error_evidence(
+    model: &ModelPrior,
+    scales: &[f64],
+    runs: &[&KnownRun],
+    phi: &[Vec<f64>],
+    variance: &[Vec<f64>],
+) -> ErrorEvidence {
+    let stated = ModelError {
+        common: model.uncertainty_rel,
+        entry: model.uncertainty_rel,
+    };
+    let (n, k) = model.values.shape();
+    let normals: Vec<Normal> = (0..n)
+        .map(|g| Normal::of(g, k, runs, phi, variance))
+        .collect();
+    let tables: Vec<Table> = (0..FLOORS.len())
+        .into_par_iter()
+        .map(|floor| Table::of(model, scales, &normals, floor))
+        .collect();
+    let own = own_steps();
+    let steps: Vec<(i32, i32)> = (-STEPS..=STEPS)
+        .flat_map(|common| (-STEPS..=STEPS).map(move |entry| (common, entry)))
+        .collect();
+    let tried = steps.into_par_iter().map(|(common, entry)| {
+        let off = |step: i32| 0.5 * (factor(step).ln() / STATED_LN_SD).powi(2);
+        let error = ModelError {
+            common: stated.common * factor(common),
+            entry: stated.entry * factor(entry),
+        };
+        Tried {
+            error,
+            prior: -off(common) - off(entry),
+            by_gauge: (0..n)
+                .map(|g| of_gauge(&tables, &own, error, [common, entry], g))
+                .collect(),
+        }
+    });
+    ErrorEvidence {
+        tried: tried.collect(),
+        stated,
+        normals,
+    }
+}
+
+/// Each step of a gauge's own error with the log of its probability: Student's distribution of unit variance is a normal one whose variance `v`
+/// has the density `v^(-FREEDOM / 2 - 1) exp(-(FREEDOM - 2) / (2 v))`; times `v`, that of `ln v`.
+fn own_steps() -> Vec<(i32, f64)> {
+    let log = |step: i32| {
+        let v = factor(step).powi(2);
+        -0.5 * FREEDOM * v.ln() - 0.5 * (FREEDOM - 2.0) / v
+    };
+    let total = OWN_STEPS.map(|step| log(step).exp()).sum::<f64>().ln();
+    OWN_STEPS.map(|step| (step, log(step) - total)).collect()
+}
+
+/// Gauge `g`, where the error of all is that of some steps.
+fn of_gauge(
+    tables: &[Table],
+    own: &[(i32, f64)],
+    error: ModelError,
+    [common, entry]: [i32; 2],
+    g: usize,
+) -> Own {
+    let floors = (tables.len() as f64).ln();
+    let log = |table: &Table, (step, log): (i32, f64)| {
+        log - floors + table.log(common + step, entry + step, g)
+    };
+    let logs: Vec<Vec<f64>> = tables
+        .iter()
+        .map(|t| own.iter().map(|o| log(t, *o)).collect())
+        .collect();
+    let largest = logs.iter().flatten().copied();
+    let largest = largest.fold(f64::NEG_INFINITY, f64::max);
+    let weight = |log: &f64| {
+        if largest.is_finite() {
+            (log - largest).exp()
+        } else {
+            0.0
+        }
+    };
+    let total: f64 = logs.iter().flatten().map(weight).sum();
+    // Mean square of the gauge's own factor, by floor.
+    let mut squares = [0.0; FLOORS.len()];
+    for (square, logs) in squares.iter_mut().zip(&logs) {
+        let each = logs.iter().zip(own);
+        let each = each.map(|(log, (step, _))| weight(log) / total * factor(*step).powi(2));
+        *square = if total > 0.0 {
+            each.sum()
+        } else {
+            1.0 / FLOORS.len() as f64
+        };
+    }
+    Own {
+        log: largest + total.ln(),
+        error: RowError {
+            common: error.common * squares.iter().sum::<f64>().sqrt(),
+            entries: squares.map(|square| error.entry * square.sqrt()),
+        },
+    }
+}
+
+/// Log marginal likelihoods of each gauge's readings with one of the floors, for all steps that the error of all and a gauge's own make together.
+struct Table {
+    logs: Vec<f64>,
+    gauges: usize,
+}
+
+impl Table {
+    const LEAST: i32 = -STEPS + *OWN_STEPS.start();
+    const MOST: i32 = STEPS + *OWN_STEPS.end();
+
+    fn of(model: &ModelPrior, scales: &[f64], normals: &[Normal], floor: usize) -> Self {
+        let stated = model.uncertainty_rel;
+        let (n, k) = model.values.shape();
+        let drawn: Vec<Vec<f64>> = (0..n)
+            .map(|g| (0..k).map(|l| model.values[(g, l)] * scales[l]).collect())
+            .collect();
+        let mut logs = Vec::new();
+        for entry in Self::LEAST..=Self::MOST {
+            let mut error = RowError {
+                common: 0.0,
+                entries: [0.0; FLOORS.len()],
+            };
+            error.entries[floor] = stated * factor(entry);
+            let rows = rows(model, scales, &vec![error; n]);
+            // The part common to a gauge is one direction more: with what is known of the rest it costs a few products.
+            let one = |((row, normal), s): ((&RowPrior, &Normal), &Vec<f64>)| {
+                let e = RowEvidence::of(&row.mean, &row.covariance, normal)?;
+                let (first, second) = e.orders(&[s.as_slice()]);
+                Some((e.log(), *first.first()?, *second.first()?))
+            };
+            let all: Vec<_> = rows.iter().zip(normals).zip(&drawn).map(one).collect();
+            for common in Self::LEAST..=Self::MOST {
+                let variance = (stated * factor(common)).powi(2);
+                logs.extend(all.iter().map(|row| {
+                    row.map_or(f64::NEG_INFINITY, |(log, first, second)| {
+                        let total = 1.0 + variance * second;
+                        log + 0.5 * (variance * first * first / total - total.ln())
+                    })
+                }));
+            }
+        }
+        Self { logs, gauges: n }
+    }
+
+    /// That of gauge `g`.
+    fn log(&self, common: i32, entry: i32, g: usize) -> f64 {
+        let place = |step: i32| (step - Self::LEAST) as usize;
+        let tries = place(Self::MOST) + 1;
+        let at = (place(entry) * tries + place(common)) * self.gauges + g;
+        self.logs.get(at).copied().unwrap_or(f64::NEG_INFINITY)
+    }
+}
