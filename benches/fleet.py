@@ -57,7 +57,7 @@ if __name__ == "__main__":
         best = {}
         for turn in range(2):
             for workers in (1, 2):
-                with distributed.LocalCluster(workers, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
+                with distributed.LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
                     with distributed.Client(cluster) as client:
                         client.wait_for_workers(workers)
                         client.run(os.getpid)

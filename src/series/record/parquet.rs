@@ -165,7 +165,12 @@ impl Parquet {
         };
         let group = self.metadata.row_groups().get(group).ok_or_else(cut)?;
         let chunk = group.columns().get(leaf).ok_or_else(cut)?;
-        if chunk.compressed_size() < 0 || chunk.data_page_offset() < 0 {
+        let places = [
+            chunk.dictionary_page_offset(),
+            Some(chunk.data_page_offset()),
+            Some(chunk.compressed_size()),
+        ];
+        if places.into_iter().flatten().any(|n| n < 0) {
             return Err(cut());
         }
         let rows = usize::try_from(group.num_rows()).map_err(|_| cut())?;
