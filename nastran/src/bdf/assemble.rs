@@ -320,8 +320,10 @@ impl<'a, 'b> Assembler<'a, 'b> {
             self.spans.clear();
             return;
         };
-        for _ in 0..n {
-            if let Err(what) = replicate::spend(self.budget, &template) {
+        // A count that asks for more than there is room for is a wrong count: no card is made of it.
+        let n = match replicate::spend(self.budget, &template, n) {
+            Ok(()) => n,
+            Err(what) => {
                 note_fault(
                     &mut self.part.faults,
                     Fault {
@@ -331,8 +333,10 @@ impl<'a, 'b> Assembler<'a, 'b> {
                         what,
                     },
                 );
-                break;
+                0
             }
+        };
+        for _ in 0..n {
             if let Err(what) = template.advance() {
                 note_fault(
                     &mut self.part.faults,

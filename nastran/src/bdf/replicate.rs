@@ -26,10 +26,10 @@ pub(super) fn count(head: &[u8]) -> Option<usize> {
     }
 }
 
-/// Takes the memory of one more card off the budget.
-pub(super) fn spend(budget: &AtomicUsize, template: &Template) -> Result<(), Wrong> {
+/// Takes the memory of `n` more cards off the budget: of all or of none.
+pub(super) fn spend(budget: &AtomicUsize, template: &Template, n: usize) -> Result<(), Wrong> {
     let cost = 200 + 16 * template.card.len().max(template.steps.len());
-    if take(budget, cost) {
+    if take(budget, n.saturating_mul(cost)) {
         return Ok(());
     }
     Err(Wrong::TooManyReplicated {

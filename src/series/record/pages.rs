@@ -151,18 +151,24 @@ mod tests {
     use super::*;
     use crate::series::record::{Options, open_record, read_channels};
     use parquet::data_type::{DoubleType, FloatType};
-    use parquet::file::properties::WriterProperties;
+    use parquet::file::properties::{WriterProperties, WriterPropertiesBuilder};
     use parquet::file::writer::SerializedFileWriter;
     use parquet::schema::parser::parse_message_type;
     use std::sync::Arc;
 
     /// Even samples of one channel, every seventh missing, values in streams of bytes.
     fn split(n: i16) -> Vec<u8> {
-        let schema = "message m { required double time; optional float g; }";
-        let schema = Arc::new(parse_message_type(schema).unwrap());
         let properties = WriterProperties::builder()
             .set_dictionary_enabled(false)
-            .set_encoding(Encoding::BYTE_STREAM_SPLIT)
+            .set_encoding(Encoding::BYTE_STREAM_SPLIT);
+        written(n, properties)
+    }
+
+    /// The same with these properties.
+    fn written(n: i16, properties: WriterPropertiesBuilder) -> Vec<u8> {
+        let schema = "message m { required double time; optional float g; }";
+        let schema = Arc::new(parse_message_type(schema).unwrap());
+        let properties = properties
             .set_data_page_row_count_limit(100)
             .set_write_batch_size(50)
             .build();
@@ -198,13 +204,15 @@ mod tests {
 
     #[test]
     fn a_damaged_byte_anywhere_is_an_answer_or_an_error() {
-        let whole = split(60);
-        for at in 0..whole.len() {
-            for flip in [0x01, 0x10, 0xff] {
-                let mut bytes = whole.clone();
-                bytes[at] ^= flip;
-                if let Ok(record) = open_record(Arc::new(bytes), &Options::default()) {
-                    let _ = read_channels(&record);
+        // The second with dictionaries, whose places may be negative in a damaged file.
+        for whole in [split(60), written(60, WriterProperties::builder())] {
+            for at in 0..whole.len() {
+                for flip in [0x01, 0x10, 0xff] {
+                    let mut bytes = whole.clone();
+                    bytes[at] ^= flip;
+                    if let Ok(record) = open_record(Arc::new(bytes), &Options::default()) {
+                        let _ = read_channels(&record);
+                    }
                 }
             }
         }
