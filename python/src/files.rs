@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use strainbridge::Disk;
 use strainbridge::app::context::{Files, InMemory};
-use strainbridge::app::files::FileBytes;
+use strainbridge::app::files::{FileBytes, Opened};
 
 /// The disk with files from memory before it.
 #[derive(Clone, Debug, Default)]
@@ -18,12 +18,12 @@ impl Files for Desk {
         }
     }
 
-    fn load_hashed(&self, path: &Path) -> std::io::Result<(FileBytes, String)> {
+    fn open_hashed(&self, path: &Path) -> std::io::Result<(Opened, String)> {
         match self.0.get(path) {
             Some(bytes) => InMemory::default()
                 .with(path, bytes.clone())
-                .load_hashed(path),
-            None => Disk.load_hashed(path),
+                .open_hashed(path),
+            None => Disk.open_hashed(path),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What a question is asked in: where files come from, where solutions are kept, who hears of progress and may stop the work.
 
 use super::store::SolutionStore;
-use super::whole_file::{FileBytes, hex, load, load_hashed};
+use super::whole_file::{FileBytes, Opened, hex, load, open_hashed};
 use crate::stop::Stop;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -16,14 +16,14 @@ pub trait Files: Sync {
     /// Those of the system; [`std::io::ErrorKind::NotFound`] where there is none.
     fn load(&self, path: &Path) -> std::io::Result<FileBytes>;
 
-    /// The bytes of a file and their SHA-256, hexadecimal.
+    /// A file opened, and the SHA-256 of its bytes, hexadecimal.
     ///
     /// # Errors
     /// As [`Files::load`].
-    fn load_hashed(&self, path: &Path) -> std::io::Result<(FileBytes, String)> {
+    fn open_hashed(&self, path: &Path) -> std::io::Result<(Opened, String)> {
         let bytes = self.load(path)?;
         let hash = hex(&Sha256::digest(&*bytes));
-        Ok((bytes, hash))
+        Ok((Opened::Whole(bytes), hash))
     }
 }
 
@@ -36,8 +36,8 @@ impl Files for Disk {
         load(path)
     }
 
-    fn load_hashed(&self, path: &Path) -> std::io::Result<(FileBytes, String)> {
-        load_hashed(path)
+    fn open_hashed(&self, path: &Path) -> std::io::Result<(Opened, String)> {
+        open_hashed(path)
     }
 }
 

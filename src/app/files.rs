@@ -5,7 +5,7 @@ use super::fault::Fault;
 use super::file_read::FileRead;
 use super::job::{Job, NamedFile};
 use super::sheet::{csv_of_sheet, is_sheet};
-pub use super::whole_file::FileBytes;
+pub use super::whole_file::{FileBytes, Opened};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;

@@ -1,13 +1,17 @@
-//! A whole file into memory, and what can go wrong on the way.
+//! A whole file into memory, or in parts, and what can go wrong on the way.
 //!
 //! Files are read, not mapped: a mapped file that another program shortens ends this one by a signal, and one that it rewrites
 //! gives half old and half new numbers. Reading costs a copy, a third of a second a gigabyte.
 
+use crate::series::record::{Parts, Source, is_read_in_parts};
 use sha2::{Digest, Sha256};
 use std::fs::{File, Metadata};
-use std::io::{Error, ErrorKind, Read};
-use std::path::Path;
-use std::sync::Arc;
+use std::io::{Error, ErrorKind, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
+
+/// Bytes handed over to be hashed at a time: they are still in the processor's cache.
+const PART: usize = 1 << 20;
 
 /// Bytes of a file, in memory: what another program does to the file meanwhile changes nothing.
 #[derive(Clone)]
@@ -48,41 +52,158 @@ pub fn load(path: &Path) -> std::io::Result<FileBytes> {
     Ok(bytes.into())
 }
 
-/// Bytes of a file and their SHA-256, formed on a thread of its own while the rest is read.
+/// A file that is open.
+pub enum Opened {
+    /// Its bytes, in memory.
+    Whole(FileBytes),
+    /// One whose format is [read in parts](is_read_in_parts).
+    Parts(Arc<InParts>),
+}
+
+impl Opened {
+    /// As a record is opened from.
+    pub fn source(&self) -> Source {
+        match self {
+            Self::Whole(bytes) => Source::Memory(Arc::new(bytes.clone())),
+            Self::Parts(file) => Source::File(file.clone()),
+        }
+    }
+
+    /// What was read is of one state of the file.
+    ///
+    /// # Errors
+    /// Of kind [`ErrorKind::ResourceBusy`] where it was written to since it was opened.
+    pub fn check(&self) -> std::io::Result<()> {
+        match self {
+            Self::Whole(_) => Ok(()),
+            Self::Parts(file) if differs(&file.before, &std::fs::metadata(&file.path)?) => {
+                Err(ErrorKind::ResourceBusy.into())
+            }
+            Self::Parts(_) => Ok(()),
+        }
+    }
+}
+
+/// A file that is read part by part, each part by whoever needs it.
+pub struct InParts {
+    path: PathBuf,
+    before: Metadata,
+    /// Open files that nobody reads from at the moment: a place to read from belongs to each.
+    idle: Mutex<Vec<File>>,
+}
+
+impl InParts {
+    fn idle(&self) -> MutexGuard<'_, Vec<File>> {
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Parts for InParts {
+    fn size(&self) -> u64 {
+        self.before.len()
+    }
+
+    fn read_at(&self, from: u64, out: &mut [u8]) -> std::io::Result<()> {
+        let idle = self.idle().pop();
+        let mut file = match idle {
+            Some(file) => file,
+            None => File::open(&self.path)?,
+        };
+        file.seek(SeekFrom::Start(from))?;
+        file.read_exact(out)?;
+        self.idle().push(file);
+        Ok(())
+    }
+}
+
+/// A file opened, and its SHA-256, formed on a thread of its own while the rest is read.
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_hashed(path: &Path) -> std::io::Result<(FileBytes, String)> {
-    /// Bytes handed over at a time: they are still in the processor's cache.
-    const PART: usize = 1 << 20;
+pub fn open_hashed(path: &Path) -> std::io::Result<(Opened, String)> {
+    // Before it is opened: opening a pipe waits for its writer.
+    check_kind(&std::fs::metadata(path)?)?;
+    let mut file = File::open(path)?;
+    let before = file.metadata()?;
+    check_kind(&before)?;
+    let mut begin = Vec::new();
+    (&mut file).take(8).read_to_end(&mut begin)?;
+    if !is_read_in_parts(&begin) {
+        return load_hashed(path).map(|(bytes, hash)| (Opened::Whole(bytes), hash));
+    }
+    file.seek(SeekFrom::Start(0))?;
+    let hash = std::thread::scope(|s| {
+        // Parts go round: one is read while another is hashed.
+        let (send, parts) = mpsc::channel::<Vec<u8>>();
+        let (back, idle) = mpsc::sync_channel(2);
+        (0..2).for_each(|_| drop(back.send(Vec::new())));
+        let hashing = s.spawn(move || {
+            let mut hash = Sha256::new();
+            for part in parts {
+                hash.update(&part);
+                drop(back.send(part));
+            }
+            hex(&hash.finalize())
+        });
+        let mut left = before.len();
+        while left > 0 {
+            let mut part = idle.recv().unwrap_or_default();
+            part.resize(PART.min(usize::try_from(left).unwrap_or(PART)), 0);
+            file.read_exact(&mut part).map_err(cut_meanwhile)?;
+            left -= part.len() as u64;
+            drop(send.send(part));
+        }
+        drop(send);
+        hashing.join().map_err(stopped)
+    })?;
+    if differs(&before, &file.metadata()?) {
+        return Err(ErrorKind::ResourceBusy.into());
+    }
+    let parts = InParts {
+        path: path.to_owned(),
+        before,
+        idle: Mutex::new(vec![file]),
+    };
+    Ok((Opened::Parts(Arc::new(parts)), hash))
+}
+
+/// Bytes of a file and their SHA-256.
+fn load_hashed(path: &Path) -> std::io::Result<(FileBytes, String)> {
     let (mut file, before, room) = opened(path)?;
     let size = usize::try_from(before.len()).map_err(|_| ErrorKind::OutOfMemory)?;
     // There was room; zeros cost nothing that the system has not written yet.
     drop(room);
     let mut bytes = vec![0; size];
     let hash = std::thread::scope(|s| {
-        let (send, parts) = std::sync::mpsc::channel::<&[u8]>();
+        let (send, parts) = mpsc::channel::<&[u8]>();
         let hashing = s.spawn(move || {
             let mut hash = Sha256::new();
             parts.iter().for_each(|part| hash.update(part));
             hex(&hash.finalize())
         });
         for part in bytes.chunks_mut(PART) {
-            file.read_exact(part).map_err(|e| match e.kind() {
-                ErrorKind::UnexpectedEof => ErrorKind::ResourceBusy.into(),
-                _ => e,
-            })?;
+            file.read_exact(part).map_err(cut_meanwhile)?;
             // It is received as long as the other thread lives.
             let _ = send.send(part);
         }
         drop(send);
-        let stopped = |_| Error::other("the thread of the digest has stopped");
         hashing.join().map_err(stopped)
     })?;
     if differs(&before, &file.metadata()?) {
         return Err(ErrorKind::ResourceBusy.into());
     }
     Ok((bytes.into(), hash))
+}
+
+fn cut_meanwhile(e: Error) -> Error {
+    match e.kind() {
+        ErrorKind::UnexpectedEof => ErrorKind::ResourceBusy.into(),
+        _ => e,
+    }
+}
+
+fn stopped(_: Box<dyn std::any::Any + Send>) -> Error {
+    Error::other("the thread of the digest has stopped")
 }
 
 /// A digest as it is written.
@@ -147,10 +268,36 @@ mod tests {
         for bytes in [vec![], vec![7_u8; 3_000_000]] {
             std::fs::write(&path, &bytes).unwrap();
             assert!(*load(&path).unwrap() == *bytes);
-            let (read, hash) = load_hashed(&path).unwrap();
-            assert!(*read == *bytes);
+            let (read, hash) = open_hashed(&path).unwrap();
+            assert!(matches!(read, Opened::Whole(_)));
+            assert!(**read.source().whole().unwrap() == *bytes);
             assert_eq!(hash, hex(&Sha256::digest(&bytes)));
         }
+        std::fs::remove_file(&path).unwrap();
+    }
+
+    #[cfg(feature = "parquet")]
+    #[test]
+    fn a_file_in_parts_has_the_digest_of_the_whole_and_is_refused_once_it_changed() {
+        let path = scratch("parts");
+        let bytes: Vec<u8> = b"PAR1"
+            .iter()
+            .copied()
+            .chain((0..3_000_000_u32).map(|i| i as u8))
+            .collect();
+        std::fs::write(&path, &bytes).unwrap();
+        let (read, hash) = open_hashed(&path).unwrap();
+        assert_eq!(hash, hex(&Sha256::digest(&bytes)));
+        let Opened::Parts(file) = &read else {
+            panic!("read whole")
+        };
+        let mut part = [0; 5];
+        file.read_at(2_000_000, &mut part).unwrap();
+        assert_eq!(part, bytes[2_000_000..2_000_005]);
+        assert!(file.read_at(bytes.len() as u64 - 2, &mut part).is_err());
+        assert!(read.check().is_ok());
+        std::fs::write(&path, &bytes[..100]).unwrap();
+        assert_eq!(read.check().unwrap_err().kind(), ErrorKind::ResourceBusy);
         std::fs::remove_file(&path).unwrap();
     }
 

@@ -22,12 +22,12 @@ pub use prepared::kernel_of;
 
 use super::context::Context;
 use super::fault::{Fault, Faults};
-use super::files::FileBytes;
+use super::files::Opened;
 use super::job::Job;
 use super::outcome::{Outcome, StatedUnits};
 use super::work::{Work, stopped};
 use crate::finding::{Finding, Severity};
-use crate::series::record::{Options, open_record};
+use crate::series::record::{Options, open_source};
 use day::{Day, FileHead, FileResult};
 use kept::{KeptDays, digest};
 use kernel::Kernel;
@@ -36,7 +36,6 @@ use name::{NameForm, Shard};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// What is asked of a fleet.
 #[derive(Clone, Debug, Default)]
@@ -185,8 +184,8 @@ fn done(
             let done = match digest.and_then(|d| kept.head(path, d)) {
                 Some(before) => Ok((before, true)),
                 None => {
-                    let bytes = source.load_hashed(Path::new(path));
-                    one(kernel, kept, form, path, bytes)
+                    let opened = source.open_hashed(Path::new(path));
+                    one(kernel, kept, form, path, opened)
                 }
             };
             progress.advance(1);
@@ -210,7 +209,7 @@ fn one(
     kept: &KeptDays,
     form: &NameForm,
     path: &str,
-    bytes: std::io::Result<(FileBytes, String)>,
+    opened: std::io::Result<(Opened, String)>,
 ) -> Result<(FileHead, bool), Fault> {
     let named = form.read(path);
     let mut file = FileResult {
@@ -220,7 +219,7 @@ fn one(
         day: named.as_ref().map_or(String::new(), |n| n.day.clone()),
         result: Err(String::new()),
     };
-    let (bytes, hash) = match bytes {
+    let (opened, hash) = match opened {
         Ok(read) => read,
         Err(e) => {
             file.result = Err(format!("it can't be read: {e}"));
@@ -235,7 +234,7 @@ fn one(
     if let Some(before) = kept.head(path, &file.sha256) {
         return Ok((before, true));
     }
-    file.result = day_of(kernel, bytes);
+    file.result = day_of(kernel, &opened);
     kept.put(&file).map_err(|e| {
         let remedy = "choose another folder with --out";
         Fault::of(
@@ -252,15 +251,20 @@ fn one(
     ))
 }
 
-/// What the bytes of a record come to.
+/// What a record comes to.
 ///
 /// # Errors
 /// Why they come to nothing.
-pub fn day_of(kernel: &Kernel, bytes: FileBytes) -> Result<Day, String> {
+pub fn day_of(kernel: &Kernel, opened: &Opened) -> Result<Day, String> {
     let options = Options {
         declared_hz: None,
         wanted: kernel.wanted(),
     };
-    let record = open_record(Arc::new(bytes), &options).map_err(|e| e.to_string())?;
-    kernel.day(&record)
+    let record = open_source(opened.source(), &options).map_err(|e| e.to_string());
+    let day = record.and_then(|record| kernel.day(&record));
+    // Whatever was read of a file that changed meanwhile is worth nothing.
+    opened
+        .check()
+        .map_err(|e| format!("it can't be read: {e}"))?;
+    day
 }

@@ -16,6 +16,7 @@ mod pages;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod reader;
+mod source;
 mod span;
 mod stored;
 #[cfg(feature = "parquet")]
@@ -29,8 +30,9 @@ mod whole;
 pub use clock::{Clock, EVEN, Evenness};
 pub use column::{Clash, Column, Header, is_time, name_and_unit, seconds_in, take_unit_below};
 pub use even::Record;
-pub use open::{Options, is_format, open_record, read_channels};
+pub use open::{Options, is_format, open_record, open_source, read_channels};
 pub use reader::{Block, Bytes, Pick, RecordReader, Sink, Times};
+pub use source::{Parts, Source, is_read_in_parts};
 pub use span::Gap;
 pub use whole::Whole;
 

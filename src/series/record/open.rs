@@ -3,6 +3,7 @@
 use super::csv::Csv;
 use super::even::Record;
 use super::reader::{Bytes, RecordReader};
+use super::source::{Source, is_read_in_parts};
 use super::stored::Stored;
 use super::tdms::{Tdms, is_tdms};
 use super::uff::{Uff, is_uff};
@@ -31,6 +32,29 @@ pub fn open_record(bytes: Bytes, options: &Options) -> Result<Record, SeriesErro
     Record::new(reader, options.declared_hz)
 }
 
+/// As [`open_record`], of bytes that need not be in memory: of a file that is [read in parts](is_read_in_parts) what is decoded alone is read.
+///
+/// # Errors
+/// As [`open_record`]; a file that can't be read.
+pub fn open_source(source: Source, options: &Options) -> Result<Record, SeriesError> {
+    let unreadable = |e: std::io::Error| SeriesError::Broken {
+        wrong: format!("it can't be read ({e})"),
+        remedy: "check the path and the disk",
+    };
+    if let Source::File(file) = &source {
+        let mut begin = [0; 4];
+        let known = begin
+            .len()
+            .min(usize::try_from(file.size()).unwrap_or(usize::MAX));
+        let begin = begin.get_mut(..known).unwrap_or_default();
+        file.read_at(0, begin).map_err(unreadable)?;
+        if is_read_in_parts(begin) {
+            return Record::new(parquet(source)?, options.declared_hz);
+        }
+    }
+    open_record(source.whole().map_err(unreadable)?, options)
+}
+
 /// Whether the bytes begin as one of the formats of records, and are no table of text.
 pub fn is_format(bytes: &[u8]) -> bool {
     binary::is_record(bytes)
@@ -51,7 +75,7 @@ fn reader_of(bytes: Bytes, options: &Options) -> Result<Box<dyn RecordReader>, S
         return Ok(Box::new(Stored::rpc(bytes)?));
     }
     if begin.starts_with(b"PAR1") {
-        return parquet(bytes);
+        return parquet(Source::Memory(bytes));
     }
     if begin.starts_with(b"MDF ") || begin.starts_with(b"UnFinMF") {
         return mdf(bytes, &options.wanted);
@@ -66,12 +90,12 @@ fn reader_of(bytes: Bytes, options: &Options) -> Result<Box<dyn RecordReader>, S
 }
 
 #[cfg(feature = "parquet")]
-fn parquet(bytes: Bytes) -> Result<Box<dyn RecordReader>, SeriesError> {
-    Ok(Box::new(super::parquet::Parquet::new(bytes)?))
+fn parquet(source: Source) -> Result<Box<dyn RecordReader>, SeriesError> {
+    Ok(Box::new(super::parquet::Parquet::new(source)?))
 }
 
 #[cfg(not(feature = "parquet"))]
-fn parquet(_: Bytes) -> Result<Box<dyn RecordReader>, SeriesError> {
+fn parquet(_: Source) -> Result<Box<dyn RecordReader>, SeriesError> {
     Err(SeriesError::NotBuilt {
         name: "a Parquet file",
         feature: "parquet",

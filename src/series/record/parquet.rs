@@ -3,6 +3,7 @@
 use super::column::{Column, is_time, name_and_unit, seconds_in};
 use super::pages::Pages;
 use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
+use super::source::Source;
 use super::strip::{Room, Strip, broken};
 use super::tile::Tile;
 use crate::series::error::SeriesError;
@@ -22,7 +23,7 @@ const PIECE: usize = 262_144;
 
 /// A Parquet file as a record.
 pub struct Parquet {
-    bytes: Bytes,
+    whole: Arc<Whole>,
     metadata: ParquetMetaData,
     columns: Vec<Column>,
     /// Leaf of the file and the worth of one stored unit, a column each.
@@ -50,10 +51,10 @@ impl Parquet {
     ///
     /// # Errors
     /// A file that is cut off or damaged.
-    pub fn new(bytes: Bytes) -> Result<Self, SeriesError> {
-        let whole = Whole::of(&bytes);
+    pub fn new(source: Source) -> Result<Self, SeriesError> {
+        let whole = Arc::new(Whole::of(source));
         let metadata = ParquetMetaDataReader::new()
-            .parse_and_finish(&whole)
+            .parse_and_finish(&*whole)
             .map_err(broken)?;
         let schema = metadata.file_metadata().schema_descr();
         let mut time: Option<(usize, Meaning, String, bool)> = None;
@@ -91,7 +92,7 @@ impl Parquet {
         }
         let rows = pieces.iter().map(|p| p.2).sum();
         let mut file = Self {
-            bytes,
+            whole,
             metadata,
             columns,
             leaves,
@@ -174,8 +175,8 @@ impl Parquet {
             return Err(cut());
         }
         let rows = usize::try_from(group.num_rows()).map_err(|_| cut())?;
-        let whole = Arc::new(Whole::of(&self.bytes));
-        let pages = SerializedPageReader::new(whole, chunk, rows, None).map_err(broken)?;
+        let pages =
+            SerializedPageReader::new(self.whole.clone(), chunk, rows, None).map_err(broken)?;
         let descriptor = self.descriptor(leaf);
         let pages = Pages::of(pages, &descriptor);
         let mut reader = get_column_reader(descriptor, Box::new(pages));
@@ -324,9 +325,9 @@ fn skip(reader: &mut ColumnReader, rows: usize) -> Result<(), SeriesError> {
     skipped.map(|_| ()).map_err(broken)
 }
 
-/// The bytes of the file as this library asks for them: a page is a part of them, not a copy.
+/// The bytes of the file as this library asks for them: of a file in memory a page is a part of it, not a copy.
 struct Whole {
-    bytes: Bytes,
+    source: Source,
     shared: bytes::Bytes,
 }
 
@@ -340,43 +341,67 @@ impl AsRef<[u8]> for Owner {
 }
 
 impl Whole {
-    fn of(bytes: &Bytes) -> Self {
-        Self {
-            bytes: bytes.clone(),
-            shared: bytes::Bytes::from_owner(Owner(bytes.clone())),
-        }
+    fn of(source: Source) -> Self {
+        let shared = match &source {
+            Source::Memory(bytes) => bytes::Bytes::from_owner(Owner(bytes.clone())),
+            Source::File(_) => bytes::Bytes::new(),
+        };
+        Self { source, shared }
     }
 
-    fn from(&self, start: u64) -> Result<&[u8], ParquetError> {
-        let bytes: &[u8] = (*self.bytes).as_ref();
-        usize::try_from(start)
-            .ok()
-            .and_then(|s| bytes.get(s..))
-            .ok_or_else(|| ParquetError::EOF(format!("byte {start} lies beyond the end")))
+    /// Bytes from `start` on, at most so many; all of these where `all`.
+    fn taken(&self, start: u64, most: usize, all: bool) -> Result<bytes::Bytes, ParquetError> {
+        let left = self
+            .source
+            .size()
+            .checked_sub(start)
+            .ok_or_else(|| ParquetError::EOF(format!("byte {start} lies beyond the end")))?;
+        let length = most.min(usize::try_from(left).unwrap_or(usize::MAX));
+        if all && length < most {
+            return Err(ParquetError::EOF("the file ends early".into()));
+        }
+        match &self.source {
+            Source::Memory(_) => {
+                let start = start as usize;
+                Ok(self.shared.slice(start..start + length))
+            }
+            Source::File(file) => {
+                let mut out = vec![0; length];
+                file.read_at(start, &mut out)
+                    .map_err(|e| ParquetError::General(e.to_string()))?;
+                Ok(out.into())
+            }
+        }
     }
 }
 
 impl Length for Whole {
     fn len(&self) -> u64 {
-        (*self.bytes).as_ref().len() as u64
+        self.source.size()
     }
 }
 
-/// Reads on from a place.
+/// Reads on from a place: the header of a page.
 struct Reading {
-    bytes: Bytes,
-    at: usize,
+    whole: Arc<Whole>,
+    at: u64,
+    ahead: bytes::Bytes,
 }
 
 impl std::io::Read for Reading {
     fn read(&mut self, out: &mut [u8]) -> std::io::Result<usize> {
-        let bytes: &[u8] = (*self.bytes).as_ref();
-        let rest = bytes.get(self.at..).unwrap_or_default();
-        let n = rest.len().min(out.len());
-        for (slot, b) in out.iter_mut().zip(rest) {
+        /// Bytes fetched at a time: a header with its statistics.
+        const AHEAD: usize = 512;
+        if self.ahead.is_empty() {
+            let more = self.whole.taken(self.at, AHEAD.max(out.len()), false);
+            self.ahead = more.map_err(std::io::Error::other)?;
+            self.at += self.ahead.len() as u64;
+        }
+        let n = self.ahead.len().min(out.len());
+        let taken = self.ahead.split_to(n);
+        for (slot, b) in out.iter_mut().zip(&taken) {
             *slot = *b;
         }
-        self.at += n;
         Ok(n)
     }
 }
@@ -385,18 +410,18 @@ impl ChunkReader for Whole {
     type T = Reading;
 
     fn get_read(&self, start: u64) -> Result<Self::T, ParquetError> {
-        self.from(start)?;
+        self.taken(start, 0, true)?;
         Ok(Reading {
-            bytes: self.bytes.clone(),
-            at: start as usize,
+            whole: Arc::new(Self {
+                source: self.source.clone(),
+                shared: self.shared.clone(),
+            }),
+            at: start,
+            ahead: bytes::Bytes::new(),
         })
     }
 
     fn get_bytes(&self, start: u64, length: usize) -> Result<bytes::Bytes, ParquetError> {
-        let rest = self.from(start)?;
-        let taken = rest
-            .get(..length)
-            .ok_or_else(|| ParquetError::EOF("the file ends early".into()))?;
-        Ok(self.shared.slice_ref(taken))
+        self.taken(start, length, true)
     }
 }

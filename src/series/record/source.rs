@@ -1,0 +1,56 @@
+//! Where the bytes of a record come from.
+
+use super::reader::Bytes;
+use std::sync::Arc;
+
+/// A file that is read part by part, by many threads at a time.
+pub trait Parts: Send + Sync {
+    /// Its length in bytes.
+    fn size(&self) -> u64;
+
+    /// Fills `out` with the bytes from number `from` on.
+    ///
+    /// # Errors
+    /// Those of the system; [`std::io::ErrorKind::UnexpectedEof`] where it is shorter.
+    fn read_at(&self, from: u64, out: &mut [u8]) -> std::io::Result<()>;
+}
+
+/// The bytes of a record.
+#[derive(Clone)]
+pub enum Source {
+    /// All of them in memory.
+    Memory(Bytes),
+    /// In a file: what is decoded is read, and nothing kept.
+    File(Arc<dyn Parts>),
+}
+
+impl Source {
+    /// Its length in bytes.
+    pub fn size(&self) -> u64 {
+        match self {
+            Self::Memory(bytes) => (**bytes).as_ref().len() as u64,
+            Self::File(file) => file.size(),
+        }
+    }
+
+    /// All bytes, in memory.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub fn whole(self) -> std::io::Result<Bytes> {
+        match self {
+            Self::Memory(bytes) => Ok(bytes),
+            Self::File(file) => {
+                let size = usize::try_from(file.size());
+                let mut out = vec![0; size.map_err(|_| std::io::ErrorKind::OutOfMemory)?];
+                file.read_at(0, &mut out)?;
+                Ok(Arc::new(out))
+            }
+        }
+    }
+}
+
+/// Whether a file that begins with these bytes is read part by part.
+pub fn is_read_in_parts(begin: &[u8]) -> bool {
+    cfg!(feature = "parquet") && begin.starts_with(b"PAR1")
+}
