@@ -399,13 +399,27 @@ fn a_load_or_a_payload_that_nothing_weighs_is_a_fault_of_its_line() {
         t.replace("terms = { west = 1,", "terms = { west = 1e308,")
     });
     refuses(&to, &["calibrate", "calibrate.toml"], "combination.terms");
+    let to = copied("noise_of_job", "bridge");
+    edit(&to, "calibrate.toml", |t| {
+        t.replace("noise_microstrain = 0.05", "noise_microstrain = 1e300")
+    });
+    let (exit, _, errors) = judged(&to, &["calibrate", "calibrate.toml"]);
+    assert!(exit == 2 && errors.contains("1e300"), "{errors}");
+    assert!(!errors.contains("0000000"), "{errors}");
 }
 
 #[test]
-fn reactions_in_another_unit_hang_no_hundreds_of_tonnes_on_a_carrier() {
+fn wheel_forces_in_another_unit_are_asked_for() {
     let to = copied("ballast", "frame");
     edit(&to, "empty.csv", |t| scaled(t, None, 1e3));
     asks(&to, &["ballast", "ballast.toml"], "ballast-beyond-model");
+    let reconcile = ["reconcile", "reconcile.toml"];
+    edit(&to, "runs.csv", |t| {
+        ["N.FZ", "L.FZ", "R.FZ"]
+            .iter()
+            .fold(t.to_owned(), |t, c| scaled(&t, Some(c), 1e3))
+    });
+    asks(&to, &reconcile, "model-far-above-readings");
 }
 
 #[test]

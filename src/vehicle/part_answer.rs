@@ -197,7 +197,7 @@ fn put_fit(
                 .extend(check_adequacy(channel, told, shares, on_told));
             answer
                 .findings
-                .extend(check_noise(channel, shares[0], on_told));
+                .extend(check_noise(channel, f.noise / size, on_told));
         }
         answer.fit.push(ChannelFit {
             channel: channel.clone(),
