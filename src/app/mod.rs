@@ -18,6 +18,7 @@ pub mod half_written;
 pub mod identify;
 pub mod init;
 pub mod job;
+mod job_deck;
 mod manifest;
 pub mod modes;
 pub mod outcome;

@@ -4,6 +4,7 @@ use super::context::Context;
 use super::deck::{DeckModel, read_model};
 use super::fault::{Fault, Faults};
 use super::job::Job;
+use super::job_deck::read_deck;
 use super::outcome::{Answer, Outcome, StatedUnits, finite};
 use super::solved::{faults_of, support_of_job};
 use super::strain::{corrected_spec_of, not_laid};
@@ -92,11 +93,7 @@ pub fn modes(job: &Job, count: usize, cx: &Context) -> Result<Outcome<Modes>, Fa
             "name the deck: [model] deck = \"model.bdf\"",
         )));
     };
-    let read = work
-        .stage("read model", |w| {
-            read_model(&mut w.inputs, &job.folder, &files.deck.given)
-        })
-        .map_err(Faults::from)?;
+    let read = work.stage("read model", |w| read_deck(w, job, files))?;
     let support = support_of_job(job, &read.model)?;
     let units = StatedUnits::of(job.units, &job.report_units);
     let answer = solved(&mut work, read, support, (count, Some(job)))?;
@@ -116,6 +113,8 @@ pub fn modes_of_deck(path: &Path, count: usize, cx: &Context) -> Result<Outcome<
             read_model(&mut w.inputs, Path::new(""), &given)
         })
         .map_err(Faults::from)?;
+    work.findings.extend(read.findings.iter().cloned());
+    Faults::check(read.faults.clone())?;
     let support = support_of(&read.model, SupportChoice::Deck).map_err(|e| {
         Faults::from(Fault::of(
             &*given,
@@ -134,8 +133,6 @@ fn solved(
     support: Support,
     (count, job): (usize, Option<&Job>),
 ) -> Result<Modes, Faults> {
-    work.findings.extend(read.findings.iter().cloned());
-    Faults::check(read.faults.clone())?;
     let model = &read.model;
     let options = SolveOptions {
         stop: work.cx.progress.stop(),

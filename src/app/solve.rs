@@ -4,6 +4,7 @@ use super::context::Context;
 use super::deck::{DeckModel, read_model};
 use super::fault::{Fault, Faults};
 use super::job::Job;
+use super::job_deck::read_deck;
 use super::outcome::{Answer, Outcome, StatedUnits};
 pub use super::solved::MODES;
 use super::solved::{cases_of_job, solve_kept, support_of_job};
@@ -193,9 +194,7 @@ fn of_job(work: &mut Work, job: &Job) -> Result<Task, Faults> {
         )
         .into());
     };
-    let read = read_model(&mut work.inputs, &job.folder, &files.deck.given)?;
-    work.findings.extend(read.findings.iter().cloned());
-    Faults::check(read.faults.clone())?;
+    let read = read_deck(work, job, files)?;
     let support = support_of_job(job, &read.model)?;
     let cases = cases_of_job(job, &read)?;
     Ok(Task {

@@ -2,6 +2,7 @@
 
 use super::fault::{Fault, FaultList, Faults};
 use super::job::{ChannelCorrection, Job, NamedFile, Vehicle as VehicleJob};
+use super::words::short;
 use super::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::series::csv::read_csv;
@@ -111,6 +112,7 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
                     Kind::Other
                 }
             };
+            possible(&named.given, record, |name| used(name) != Kind::Other)?;
             let findings = check_channels(record, gravity, used);
             work.findings.extend(findings.into_iter().map(|f| Finding {
                 subject: format!("{}: {}", named.given, f.subject),
@@ -139,6 +141,31 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
         data,
         hold_out,
     })
+}
+
+/// No acceleration or force of a vehicle is larger in any system of units.
+const LARGEST_SAMPLE: f64 = 1e15;
+
+/// Samples of the channels used that can be readings.
+///
+/// # Errors
+/// One fault a channel with samples that can't.
+fn possible(file: &str, record: &Channels, used: impl Fn(&str) -> bool) -> Result<(), Faults> {
+    let huge = |v: &f64| v.abs() > LARGEST_SAMPLE;
+    let channels = record.list.iter().filter(|c| used(&c.name));
+    let faults: FaultList = channels
+        .filter_map(|c| {
+            let at = c.samples.iter().position(huge)?;
+            let wrong = format!(
+                "sample {} reads {}: no acceleration and no force is so large",
+                at + 1,
+                short(c.samples[at])
+            );
+            let remedy = "leave the field blank where the logger gave nothing";
+            Some(Fault::of(file, c.name.clone(), wrong, remedy))
+        })
+        .collect();
+    Faults::check(faults)
 }
 
 /// Known faults of channels.

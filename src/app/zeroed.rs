@@ -11,6 +11,7 @@ use super::job::{HoldOut, Job, Measured, NamedFile};
 use super::recover::zero_of;
 use super::work::Work;
 use crate::finding::{Finding, Severity};
+use crate::recovery::{ErrorModel, Readings, plausible};
 use crate::units::MICROSTRAIN;
 
 /// A strain table less its zero.
@@ -60,6 +61,40 @@ pub(super) fn read_zeroed(
         table,
         noise_factor,
     })
+}
+
+/// Readings less their zero, judged as `recover` judges its own: what is no strain becomes no reading, and findings say so.
+pub(super) fn judged(
+    work: &mut Work,
+    measured: &Measured,
+    gauges: &[String],
+    readings: &[Readings],
+) -> Vec<Readings> {
+    let errors = ErrorModel {
+        noise: measured.noise_microstrain * MICROSTRAIN,
+        model_rel: 0.0,
+    };
+    let (kept, findings) = plausible::check(gauges, readings, errors);
+    work.findings.extend(findings);
+    kept
+}
+
+/// Whether any reading is left to learn from.
+///
+/// # Errors
+/// One fault where there is none.
+pub(super) fn some_left(file: &str, readings: &[Readings]) -> Result<(), Faults> {
+    let mut all = readings.iter().flat_map(|r| &r.strain);
+    if all.any(|v| v.is_finite()) {
+        return Ok(());
+    }
+    Err(Fault::of(
+        file,
+        "strain",
+        "no gauge of the job has a reading that is strain",
+        "state readings in microstrain (strain times 1e6), a column a gauge",
+    )
+    .into())
 }
 
 /// The zero that belongs to each row of a table.

@@ -34,7 +34,7 @@ pub(super) fn check(task: &Task, state: &State) -> Vec<Undetermined> {
     .collect()
 }
 
-/// `LF.FZ - 0.5 RF.FZ`.
+/// `LF.FZ - 0.5 RF.FZ`; all loads where the shares are no numbers.
 pub(super) fn formula(task: &Task, u: &Undetermined) -> String {
     let mut out = String::new();
     for (load, t) in task
@@ -55,6 +55,10 @@ pub(super) fn formula(task: &Task, u: &Undetermined) -> String {
             format!("{:.2} ", t.abs())
         };
         out.push_str(&format!("{sign}{size}{}", load.name));
+    }
+    if out.is_empty() {
+        let names: Vec<&str> = task.loads.iter().map(|l| l.name.as_str()).collect();
+        out = names.join(", ");
     }
     out
 }

@@ -3,15 +3,26 @@
 use super::types::RunEstimate;
 use crate::finding::{Finding, Severity, few};
 use crate::sensitivity::Sensitivity;
+use crate::units::number;
 
 /// Half width of the interval over the largest load of the kind (or `expected`) from which a load counts as unknown.
 const WIDE: f64 = 0.5;
 /// Ratio to `expected` (1 sd) above which a size or a unit is wrong.
 const FAR_BEYOND: f64 = 10.0;
+/// The same from which it is an error: between units that are mistaken for each other lies a factor of 1000, and who states a size knows it
+/// to better than a tenth of that.
+const OTHER_UNIT: f64 = 100.0;
 
 /// Findings on loads that the gauges don't tell, and on loads much larger than expected.
 pub fn check(s: &Sensitivity, runs: &[RunEstimate]) -> Vec<Finding> {
-    let mut out = beyond_expected(s, runs);
+    let values = move |l: usize| {
+        runs.iter()
+            .filter_map(move |r| r.estimate.values.get(l).copied())
+    };
+    let loads = s.loads.iter().enumerate();
+    let mut out: Vec<Finding> = loads
+        .filter_map(|(l, load)| beyond_expected(&load.name, load.expected, values(l)))
+        .collect();
     out.extend(undetermined(s, runs));
     out
 }
@@ -52,33 +63,28 @@ fn undetermined(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> {
     )
 }
 
-/// Loads many times larger than `expected`.
-fn beyond_expected(s: &Sensitivity, runs: &[RunEstimate]) -> Vec<Finding> {
-    let with_size = s
-        .loads
-        .iter()
-        .enumerate()
-        .filter_map(|(l, load)| Some((l, load, load.expected.filter(|e| *e > 0.0)?)));
-    with_size
-        .filter_map(|(l, load, expected)| {
-            let largest = runs
-                .iter()
-                .filter_map(|r| r.estimate.values.get(l).map(|v| v.abs()))
-                .fold(0.0, f64::max);
-            let ratio = largest / expected;
-            (ratio > FAR_BEYOND).then(|| {
-                Finding::new(
-                    Severity::Warning,
-                    "load-beyond-expected",
-                    &load.name,
-                    format!(
-                        "load `{}` comes out up to {ratio:.0} times its `expected` size",
-                        load.name
-                    ),
-                    "check `applied`, units of the strain file, and `expected`",
-                )
-                .with_numbers(ratio, FAR_BEYOND)
-            })
-        })
-        .collect()
+/// The finding on a load many times larger than `expected` in some state.
+pub fn beyond_expected(
+    load: &str,
+    expected: Option<f64>,
+    values: impl Iterator<Item = f64>,
+) -> Option<Finding> {
+    let expected = expected.filter(|e| *e > 0.0)?;
+    let ratio = values.map(f64::abs).fold(0.0, f64::max) / expected;
+    let severity = match ratio {
+        r if r > OTHER_UNIT => Severity::Error,
+        r if r > FAR_BEYOND => Severity::Warning,
+        _ => return None,
+    };
+    let times = number(ratio);
+    Some(
+        Finding::new(
+            severity,
+            "load-beyond-expected",
+            load,
+            format!("load `{load}` comes out up to {times} times its `expected` size"),
+            "check `applied`, units of the strain file or of the table of loads, and `expected`",
+        )
+        .with_numbers(ratio, FAR_BEYOND),
+    )
 }

@@ -3,11 +3,16 @@
 use super::errors::ErrorModel;
 use super::types::Readings;
 use crate::finding::{Finding, Severity, few};
-use crate::sensitivity::Sensitivity;
-use crate::units::MICROSTRAIN;
+use crate::units::{MICROSTRAIN, number};
 
 /// Strain that no reading exceeds: gauges for large elongation end at a fifth of it, and metals break before.
 pub const LARGEST_STRAIN: f64 = 1.0;
+/// Strain that no gauge on a structure follows: foil gauges end at 3 to 5 %, those for tests beyond yield at 10 to 20 %, and what S says
+/// holds of small strain only. Readings beyond it are kept, and said to be wrong.
+///
+/// # Reference
+/// Micro-Measurements, Tech Note TN-505, Strain Gage Selection, strain range by gauge series (EA 3 to 5 %, EP 10 to 20 %).
+pub const GAUGES_END: f64 = 0.05;
 /// Root mean square of all readings, in noise sd, below which they can't be readings of a gauge with that noise: of `n` readings of
 /// noise alone it is 1 +- 0.7 / sqrt(n).
 const TOO_QUIET: f64 = 0.3;
@@ -16,30 +21,56 @@ const UNRESOLVED: f64 = 1e-3 * MICROSTRAIN;
 /// Readings from which their root mean square says that: eight of noise alone are so quiet once in 1,900 jobs (chi-square below 0.72).
 const FEW: usize = 8;
 
-/// The readings without those that are no strain, and findings on them.
+/// The readings without those that are no strain, and findings on them: what every command asks of the strain it reads. Readings are less
+/// their zero, in the order of `gauges`.
 pub fn check(
-    s: &Sensitivity,
+    gauges: &[String],
     readings: &[Readings],
     errors: ErrorModel,
 ) -> (Vec<Readings>, Vec<Finding>) {
     let mut readings = readings.to_vec();
-    let mut largest = vec![0.0_f64; s.gauges.len()];
-    let mut findings = Vec::new();
+    let (mut impossible_of, mut beyond_of) = (vec![0.0_f64; gauges.len()], vec![0.0; gauges.len()]);
     for r in &mut readings {
-        for (v, most) in r.strain.iter_mut().zip(&mut largest) {
+        let most = impossible_of.iter_mut().zip(&mut beyond_of);
+        for (v, (impossible, beyond)) in r.strain.iter_mut().zip(most) {
             if v.abs() > LARGEST_STRAIN {
-                *most = most.max(v.abs());
+                *impossible = impossible.max(v.abs());
                 *v = f64::NAN;
+            } else if v.abs() > GAUGES_END {
+                *beyond = v.abs().max(*beyond);
             }
         }
     }
-    let named = s.gauges.iter().zip(&largest).filter(|(_, v)| **v > 0.0);
-    let names: Vec<&str> = named.map(|(g, _)| g.as_str()).collect();
-    if let Some(finding) = impossible(&names, largest.iter().copied().fold(0.0, f64::max)) {
-        findings.push(finding);
-    }
+    let named = |largest: &[f64]| -> (Vec<&str>, f64) {
+        let some = gauges.iter().zip(largest).filter(|(_, v)| **v > 0.0);
+        let names = some.map(|(g, _)| g.as_str()).collect();
+        (names, largest.iter().copied().fold(0.0, f64::max))
+    };
+    let mut findings = Vec::new();
+    let (names, largest) = named(&impossible_of);
+    findings.extend(impossible(&names, largest));
+    let (names, largest) = named(&beyond_of);
+    findings.extend(beyond_gauges(&names, largest));
     findings.extend(too_quiet(&readings, errors));
     (readings, findings)
+}
+
+/// The finding on readings beyond what gauges follow; `None` without gauges.
+fn beyond_gauges(gauges: &[&str], largest: f64) -> Option<Finding> {
+    (!gauges.is_empty()).then(|| {
+        Finding::new(
+            Severity::Error,
+            "reading-beyond-gauges",
+            few(gauges),
+            format!(
+                "readings of up to {} microstrain are more than strain gauges follow and than S holds for: the unit of the readings is not \
+                 microstrain, or the channel is overloaded",
+                number(largest / MICROSTRAIN)
+            ),
+            "state readings in microstrain (strain times 1e6); leave an overloaded channel out: [[correction]] ignore = true",
+        )
+        .with_numbers(largest / MICROSTRAIN, GAUGES_END / MICROSTRAIN)
+    })
 }
 
 /// The finding on readings too large to be strain; `None` without gauges.
@@ -94,7 +125,7 @@ fn too_quiet(readings: &[Readings], errors: ErrorModel) -> Option<Finding> {
                 "no reading stands out of the noise: the largest is {:.1e} microstrain, the noise stated is {} microstrain. The unit of \
                  the readings is not microstrain, or nothing acted, or the logger gave nothing",
                 largest / MICROSTRAIN,
-                errors.noise / MICROSTRAIN
+                number(errors.noise / MICROSTRAIN)
             ),
             "state readings in microstrain (strain times 1e6), or the noise that these gauges have",
         )

@@ -15,7 +15,7 @@ use crate::sensitivity::{Sensitivity, Uncertainty};
 /// # Reference
 /// R. T. Birge, Phys. Rev. 40 (1932) 207; A. C. Aitken, Proc. R. Soc. Edinburgh 55 (1935) 42.
 pub fn recover(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Recovery {
-    let (readings, mut findings) = plausible::check(s, readings, errors);
+    let (readings, mut findings) = plausible::check(&s.gauges, readings, errors);
     if let Some(known) = &s.uncertainty {
         return recover_calibrated(s, &readings, errors, known, findings);
     }

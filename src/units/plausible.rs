@@ -8,6 +8,19 @@ pub const MODULUS_LIMITS_GPA: [f64; 2] = [1.0, 1000.0];
 /// Limits of a plausible density, kg/m^3: from foam cores to tungsten.
 pub const DENSITY_LIMITS: [f64; 2] = [20.0, 25_000.0];
 
+/// The largest size, SI units, that a quantity of a structure's loads has: the weight of the heaviest ships and buildings is a few times
+/// 1e9 N, on arms of up to ten kilometres. A number beyond it stands in another unit or is none. Load sets count in times the set.
+pub fn largest_size(quantity: Option<Quantity>) -> f64 {
+    match quantity {
+        Some(Quantity::Force) | None => 1e11,
+        Some(Quantity::Moment) => 1e15,
+        Some(Quantity::Mass) => 1e10,
+        Some(Quantity::Length) => 1e4,
+        Some(Quantity::Stress) => 1e12,
+        Some(Quantity::Acceleration) => 1e7,
+    }
+}
+
 /// Findings where PARAM,UNITSYS, Young's moduli or densities (id, value; densities times WTMASS) contradict the declared system.
 ///
 /// Dummy materials exist in honest decks: some implausible values are a warning, all of them an error; for densities still a warning,

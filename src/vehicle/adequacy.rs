@@ -8,6 +8,7 @@ use super::motion::{Treatment, VehicleError, motion};
 use crate::finding::{Finding, Severity};
 use crate::series::channels::Channels;
 use crate::series::detrend::rms;
+use crate::units::number;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -39,6 +40,8 @@ pub struct ChannelFloor {
     pub channel: String,
     /// RMS expected.
     pub expected: f64,
+    /// What noise alone makes of it.
+    pub noise: f64,
     /// The most.
     pub limit: f64,
 }
@@ -123,9 +126,27 @@ pub fn channel_floors(
         .map(|(i, (channel, ..))| ChannelFloor {
             channel: channel.clone(),
             expected: of(i, 1.0, 1.0),
+            noise: noise[i],
             limit: of(i, NOISE_FACTOR, TOLERANCE_SD),
         })
         .collect())
+}
+
+/// Share of a channel's reading that noise leaves, from which nothing is read at all.
+const DROWNED: f64 = 1.0;
+
+/// Error where a channel reads less than the stated noise leaves of it, `share` of what it reads.
+pub fn check_noise(channel: &str, share: f64, on: &str) -> Option<Finding> {
+    (share >= DROWNED).then(|| {
+        let message = format!(
+            "What `{channel}` reads in the band is less than the stated noise leaves of it ({on} data, {} times that): nothing can be learnt \
+             from it. Its unit is not the one it is taken for, its noise is stated too large, or nothing moved.",
+            number(share)
+        );
+        let remedy = "State the unit beside the channel's name, `f_wheel [kN]`, or the noise that the sensor has.";
+        let code = "readings-below-noise";
+        Finding::new(Severity::Error, code, channel, message, remedy).with_numbers(share, DROWNED)
+    })
 }
 
 /// Error where the misfit of a channel is far above its floor.

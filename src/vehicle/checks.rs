@@ -2,6 +2,7 @@
 
 use super::layout::Parameter;
 use crate::finding::{Finding, Severity};
+use crate::units::number;
 use serde::Serialize;
 
 /// Identified mass against weighed mass.
@@ -124,7 +125,7 @@ pub fn at_bound(name: &str, bound: f64, is_damping: bool) -> Finding {
         Severity::Warning,
         "parameter-at-bound",
         name,
-        format!("`{name}` ended at its bound {bound}. {what}"),
+        format!("`{name}` ended at its bound {}. {what}", number(bound)),
         remedy,
     )
     .with_numbers(bound, bound)

@@ -1,6 +1,6 @@
 //! The answer of one connected part of a vehicle, and how it joins the whole.
 
-use super::adequacy::{ChannelFloor, check_adequacy};
+use super::adequacy::{ChannelFloor, check_adequacy, check_noise};
 use super::checks::at_bound;
 use super::fit::Fit;
 use super::identifiability::{absent_sentence, scale_sentence, weak_sentences};
@@ -195,6 +195,9 @@ fn put_fit(
             answer
                 .findings
                 .extend(check_adequacy(channel, told, shares, on_told));
+            answer
+                .findings
+                .extend(check_noise(channel, f.noise / size, on_told));
         }
         answer.fit.push(ChannelFit {
             channel: channel.clone(),

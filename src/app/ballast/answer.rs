@@ -175,6 +175,39 @@ fn together(task: &Task, sized: &Sized) -> Together {
     }
 }
 
+/// Weight of the masses over that of the model from which a unit is wrong: the lightest structures carry some tens of times what they
+/// weigh, and a unit that is mistaken for another makes a thousand.
+const FAR_BEYOND: f64 = 100.0;
+
+/// The finding on masses that no structure of the model's mass carries. A model without mass says nothing of it.
+pub(super) fn far_beyond(
+    task: &Task,
+    run: &str,
+    before: &[f64],
+    fit: &BallastFit,
+) -> Option<Finding> {
+    let own: f64 = before.iter().sum();
+    let hung: f64 = fit.masses.iter().map(|m| m.weight).sum();
+    let in_words = |weight: f64| number(weight / task.gravity * mass(task.job));
+    let times = hung / own;
+    (own > 0.0 && times > FAR_BEYOND).then(|| {
+        Finding::new(
+            Severity::Error,
+            "ballast-beyond-model",
+            run,
+            format!(
+                "the masses weigh {} times what the model weighs: {} against {} {}",
+                number(times),
+                in_words(hung),
+                in_words(own),
+                task.job.report_units.mass.name
+            ),
+            "check the unit of the reactions ([runs] units), `units` of the job, and the densities of the deck",
+        )
+        .with_numbers(times, FAR_BEYOND)
+    })
+}
+
 /// Misfit of a reaction above which the masses do not explain it, of the measured value.
 const MATCHED: f64 = 0.02;
 

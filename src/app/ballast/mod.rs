@@ -8,10 +8,11 @@ pub use answer::{Ballasted, HungMass, Reaction, Together};
 pub use task::CompletedDeck;
 
 use super::context::Context;
-use super::deck::{DeckModel, read_model};
+use super::deck::DeckModel;
 use super::fault::{Fault, FaultList, Faults};
 use super::job::runs::read_runs;
 use super::job::{Ballast, Job};
+use super::job_deck::read_deck;
 use super::outcome::{Outcome, StatedUnits};
 use super::wheels::{floor_fault, wheels_of};
 use super::work::Work;
@@ -75,6 +76,8 @@ pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
         completed::after(s, &task, &edited)
     })?;
     answer::judge(&mut work, &task, &run, &measured, &after, &fit, &spec);
+    work.findings
+        .extend(answer::far_beyond(&task, &run, &before, &fit));
     let sized = answer::Sized {
         run,
         measured: &measured,
@@ -114,10 +117,7 @@ fn read_asked<'a>(work: &mut Work, job: &'a Job) -> Result<(&'a Ballast, DeckMod
         .model
         .as_ref()
         .ok_or_else(|| missing("model", "name the deck: [model] deck = \"model.bdf\""))?;
-    let read = work.stage("read model", |s| {
-        read_model(&mut s.inputs, &job.folder, &files.deck.given)
-    })?;
-    Faults::check(read.faults.clone())?;
+    let read = work.stage("read model", |s| read_deck(s, job, files))?;
     if read.deck.sources.is_empty() {
         return Err(Faults::from(Fault::of(
             &*job.file,
@@ -126,7 +126,6 @@ fn read_asked<'a>(work: &mut Work, job: &'a Job) -> Result<(&'a Ballast, DeckMod
             "name the deck",
         )));
     }
-    work.findings.extend(read.findings.iter().cloned());
     Ok((ballast, read))
 }
 

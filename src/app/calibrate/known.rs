@@ -43,6 +43,8 @@ struct Stated {
     unit: f64,
     /// Sd where no column states it, job units.
     noise: f64,
+    /// What it measures, and SI units of one unit of the column.
+    size: (Option<Quantity>, f64),
 }
 
 /// The runs that teach, with their loads.
@@ -323,6 +325,7 @@ fn stated(
             sd: sd.map(|c| (c.at, of(if c.is_stated { c.unit } else { unit }))),
             unit: of(unit),
             noise: noise.unwrap_or(0.0) * of_file,
+            size: (quantity, unit.map_or(1.0, |u| u.si)),
         });
     }
     out
@@ -330,7 +333,7 @@ fn stated(
 
 /// Value and sd of a quantity in a row, job units; `None` where it is blank.
 fn cell(table: &Table, row: usize, s: &Stated) -> Result<Option<(f64, f64)>, Fault> {
-    let Some(value) = table.number(row, s.value)? else {
+    let Some(value) = table.size(row, s.value, s.size)? else {
         return Ok(None);
     };
     let sd = match s.sd {

@@ -17,9 +17,10 @@ use super::outcome::{Outcome, StatedUnits};
 use super::reconcile::redirect::text_of;
 use super::strain::{Prepared, load_units, prepare};
 use super::work::Work;
-use super::zeroed::{Zeroed, read_zeroed};
+use super::zeroed::{Zeroed, judged, read_zeroed, some_left};
 use crate::calibrate::{KnownRun, ModelPrior, Task, calibrate_as_glued};
 use crate::linalg::Matrix;
+use crate::recovery::Readings;
 use crate::sensitivity::{Load, Sensitivity};
 use crate::units::MICROSTRAIN;
 
@@ -55,6 +56,16 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
         &prepared.sensitivity.loads,
     )?;
     let strain = readings(job, measured, &table, &prepared)?;
+    let rows = strain.into_iter().zip(names).zip(&noise_factor);
+    let read: Vec<Readings> = rows
+        .map(|((strain, run), noise_factor)| Readings {
+            run: run.clone(),
+            strain,
+            noise_factor: *noise_factor,
+        })
+        .collect();
+    let strain = judged(&mut work, measured, &prepared.sensitivity.gauges, &read);
+    some_left(&table.file, &strain)?;
     let task = Task {
         gauges: prepared.sensitivity.gauges.clone(),
         loads: prepared.sensitivity.loads.clone(),
@@ -65,7 +76,7 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
             .iter()
             .map(|k| KnownRun {
                 run: names[k.row].clone(),
-                strain: strain[k.row].clone(),
+                strain: strain[k.row].strain.clone(),
                 noise_factor: noise_factor[k.row],
                 loads: k.loads.clone(),
                 group: k.group,

@@ -5,9 +5,9 @@ mod includes;
 pub(in crate::app) use includes::{from_folder, relocated};
 
 use super::context::Context;
-use super::deck::read_model;
 use super::fault::{Fault, Faults};
 use super::job::{Component, Job, JobLoad, LoadActs};
+use super::job_deck::read_deck;
 use super::outcome::{Answer, Outcome, StatedUnits};
 use super::solved::support_of_job;
 use super::work::Work;
@@ -111,10 +111,7 @@ pub fn cases(job: &Job, cx: &Context) -> Result<Outcome<UnitLoadDeck>, Faults> {
             "name the loads, one [[load]] each",
         ));
     }
-    let read = work.stage("read deck", |s| {
-        read_model(&mut s.inputs, &job.folder, &files.deck.given)
-    })?;
-    Faults::check(read.faults)?;
+    let read = work.stage("read deck", |s| read_deck(s, job, files))?;
     if read.deck.sources.is_empty() {
         return Err(fault(
             "model.deck",

@@ -1,19 +1,18 @@
 //! A job: its own faults, then the files it names.
 
 use super::checked::Checked;
-use crate::app::deck;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::strain::wanted_columns;
 use crate::app::job::strain_means::{StrainFile, read_strain_file};
 use crate::app::job::suggest;
 use crate::app::job::{self, HoldOut, Job, Measured, NamedFile};
+use crate::app::job_deck::against_units;
 use crate::app::outcome::StatedUnits;
 use crate::app::solved::{support_finding, support_of_job};
 use crate::app::work::Work;
 use crate::app::zeroed::{no_zero_runs, zeros_by_row};
 use crate::finding::{Finding, Severity, few};
 use crate::model::Model;
-use crate::units::check_units;
 use std::path::Path;
 
 /// Looks into a file: of a folder, as named.
@@ -87,7 +86,7 @@ fn files(work: &mut Work, job: &Job, found: &mut Checked, into: Look) {
             }
         }
         if let Some(model) = found.decks.get(before).and_then(|d| d.model.as_ref()) {
-            work.findings.extend(units_of(job, model));
+            work.findings.extend(against_units(job, model));
             match support_of_job(job, model) {
                 Ok(support) => work.findings.push(support_finding(&m.deck.given, support)),
                 Err(faults) => found.faults.extend(faults.into_list()),
@@ -127,17 +126,6 @@ fn other_files(job: &Job) -> Vec<&NamedFile> {
     }
     out.extend(&job.respond.loads);
     out
-}
-
-/// Contradictions between the job's units and the deck.
-fn units_of(job: &Job, model: &Model) -> Vec<Finding> {
-    let (moduli, densities) = deck::moduli_and_densities(model);
-    check_units(
-        job.units,
-        model.params.unitsys.as_deref(),
-        &moduli,
-        &densities,
-    )
 }
 
 /// Grids, elements and sets that the job names and the deck lacks.

@@ -7,6 +7,9 @@ use super::suggest;
 use super::types::NamedFile;
 use crate::app::fault::{Fault, FaultList};
 
+/// No quantity of a job is larger in any system of units; the square of one that is smaller stays a number.
+const LARGEST: f64 = 1e30;
+
 /// The job's text and the faults found in it so far.
 pub(super) struct Collector<'a> {
     pub file: &'a str,
@@ -104,7 +107,7 @@ impl Collector<'_> {
         found
     }
 
-    /// A number that must be finite and pass `ok`, which `expected` puts in words.
+    /// A number that must be finite, no larger than [`LARGEST`] and pass `ok`, which `expected` puts in words.
     pub(super) fn number(
         &mut self,
         value: &S<f64>,
@@ -114,15 +117,14 @@ impl Collector<'_> {
     ) -> Option<f64> {
         let v = value.as_ref()?;
         let x = *v.value();
-        if x.is_finite() && ok(x) {
-            return Some(x);
-        }
-        self.fault(
-            v,
-            key,
-            format!("`{x}`, expected {expected}"),
-            "correct the number",
-        );
+        let wrong = match x {
+            x if x.is_finite() && x.abs() > LARGEST => {
+                format!("`{x:e}` is beyond {LARGEST:e}, which no quantity reaches in any unit")
+            }
+            x if x.is_finite() && ok(x) => return Some(x),
+            x => format!("`{x}`, expected {expected}"),
+        };
+        self.fault(v, key, wrong, "correct the number");
         None
     }
 

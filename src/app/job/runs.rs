@@ -32,7 +32,8 @@ pub struct RunRow {
 /// The runs of `[runs]`, with the load names that the job (its loads, or the columns of a given S) knows.
 ///
 /// # Errors
-/// Every fault: missing columns, units that are none or contradict the job, fields that are no numbers, runs named twice.
+/// Every fault: missing columns, units that are none or contradict the job, fields that are no numbers or none of their
+/// quantity, runs named twice.
 pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunRow>, Faults> {
     let text = inputs
         .read_named_text(job, &runs.file)
@@ -41,11 +42,14 @@ pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunR
     let headers = take_units(&mut t);
     let mut faults = FaultList::new();
     let key = run_column(&t, &headers)?;
-    let mut columns: Vec<(String, usize, f64)> = Vec::new();
+    let mut columns: Vec<(String, usize, (Option<Quantity>, f64))> = Vec::new();
     let given = given_loads(inputs, job)?;
     for (name, quantity) in known_columns(job, &given) {
         let column = known_column(job, runs, &t, &headers, &name, Some(quantity), &mut faults);
-        columns.extend(column.map(|c| (name, c.at, c.unit.map_or(1.0, |u| u.si))));
+        columns.extend(column.map(|c| {
+            let si = c.unit.map_or(1.0, |u| u.si);
+            (name, c.at, (Some(quantity), si))
+        }));
     }
     let mut out: Vec<RunRow> = Vec::new();
     for (row, (line, fields)) in t.rows.iter().enumerate() {
@@ -65,9 +69,9 @@ pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunR
             line: *line,
             ..RunRow::default()
         };
-        for (name, c, si) in &columns {
-            let x = match t.number(row, *c) {
-                Ok(Some(x)) => x * si,
+        for (name, c, unit) in &columns {
+            let x = match t.size(row, *c, *unit) {
+                Ok(Some(x)) => x * unit.1,
                 Ok(None) => continue,
                 Err(f) => {
                     faults.push(f);

@@ -3,6 +3,7 @@
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::series::cell::unguarded;
 use crate::series::number::{DecimalMark, number};
+use crate::units::{Quantity, largest_size, number as in_words};
 
 /// Header and rows of a CSV file, fields trimmed.
 #[derive(Clone, Debug, PartialEq)]
@@ -171,6 +172,35 @@ impl Table {
                     "write a number with a decimal point",
                 ))
             }
+        }
+    }
+
+    /// The number in a field that counts in units of `si` SI units of a quantity of loads or payloads; blank gives `None`.
+    ///
+    /// # Errors
+    /// A fault where the field is no finite number, or one that this quantity can't be.
+    pub fn size(
+        &self,
+        row: usize,
+        column: usize,
+        (quantity, si): (Option<Quantity>, f64),
+    ) -> Result<Option<f64>, Fault> {
+        let value = self.number(row, column)?;
+        let most = largest_size(quantity);
+        match value {
+            Some(x) if (x * si).abs() > most => {
+                let line = self.rows.get(row).map_or(0, |r| r.0);
+                let name = self.header.get(column).map_or("", String::as_str);
+                let word = quantity.map_or("factor of a load set", Quantity::word);
+                let wrong = format!(
+                    "{} is no {word} of a structure: {} is the most in this unit",
+                    in_words(x),
+                    in_words(most / si)
+                );
+                let remedy = "correct the number, or the unit of its column";
+                Err(Fault::at(&*self.file, line, name, wrong, remedy))
+            }
+            value => Ok(value),
         }
     }
 }

@@ -4,10 +4,11 @@ use super::model::Parts;
 use super::task::Task;
 use crate::app::words::short;
 use crate::app::work::Work;
+use crate::app::zeroed::judged;
 use crate::finding::{Finding, Severity, few};
 use crate::payload::{PayloadRun, Place, Refusal, WeighSpec, WeighedRun, Weighing};
+use crate::recovery::Readings;
 use crate::recovery::interval::NORMAL_95;
-use crate::recovery::{ErrorModel, Readings, plausible};
 use crate::units::MICROSTRAIN;
 
 /// A share of the weight that an interval leaves open from which the answer says little.
@@ -166,13 +167,10 @@ pub(super) fn readings(work: &mut Work, task: &Task, parts: &Parts, runs: &mut [
     let (Some(measured), Some(prepared)) = (&task.job.measured, &parts.prepared) else {
         return;
     };
-    let errors = ErrorModel {
-        noise: measured.noise_microstrain * MICROSTRAIN,
-        model_rel: 0.0,
-    };
+    let noise = measured.noise_microstrain * MICROSTRAIN;
     // A run's noise is common to its gauges in that judgement: their mean.
     let noise_factor = |r: &PayloadRun| {
-        let factors = r.sigma.iter().map(|s| (s / errors.noise).powi(2));
+        let factors = r.sigma.iter().map(|s| (s / noise).powi(2));
         let (sum, n) = factors
             .filter(|f| f.is_finite())
             .fold((0.0, 0.0_f64), |a, f| (a.0 + f, a.1 + 1.0));
@@ -187,8 +185,7 @@ pub(super) fn readings(work: &mut Work, task: &Task, parts: &Parts, runs: &mut [
             noise_factor: noise_factor(r),
         })
         .collect();
-    let (kept, findings) = plausible::check(&prepared.sensitivity, &read, errors);
-    work.findings.extend(findings);
+    let kept = judged(work, measured, &prepared.sensitivity.gauges, &read);
     let strained = runs.iter_mut().filter(|r| !r.strain.is_empty());
     for (run, kept) in strained.zip(kept) {
         run.strain = kept.strain;

@@ -1,10 +1,10 @@
 //! How gauges and wheels answer to the payload: from the deck, or from the tables of `[sensitivity]`.
 
 use super::task::Task;
-use crate::app::deck::read_model;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::table::read_table;
 use crate::app::job::{Component, Job, LoadActs};
+use crate::app::job_deck::read_deck;
 use crate::app::solved::{stands_on_wheels, support_of_job, unit_loads_kept};
 use crate::app::strain::{Fields, Prepared, has_covariance, prepare};
 use crate::app::wheels::{floor_fault, wheels_of};
@@ -67,12 +67,7 @@ pub(super) fn model_of(
                     "name the deck: [model] deck = \"model.bdf\"",
                 )));
             };
-            let read = work
-                .stage("read model", |s| {
-                    read_model(&mut s.inputs, &task.job.folder, &files.deck.given)
-                })
-                .map_err(Faults::from)?;
-            Faults::check(read.faults)?;
+            let read = work.stage("read model", |s| read_deck(s, task.job, files))?;
             let model = standing(work, task, &read.model, None)?;
             Ok(Parts {
                 model,

@@ -5,6 +5,10 @@ use crate::finding::{Finding, Severity};
 use crate::reconcile::Verdict;
 use crate::reconcile::motion::MotionOutcome;
 use crate::reconcile::motion::gap::Proof;
+use crate::units::number;
+
+/// Share of the measured quantity that noise and tolerances leave, from which nothing is compared at all.
+const DROWNED: f64 = 1.0;
 
 /// Notes what is to be known of the verdict.
 pub(super) fn findings(work: &mut Work, outcome: &MotionOutcome) {
@@ -21,6 +25,23 @@ pub(super) fn findings(work: &mut Work, outcome: &MotionOutcome) {
                 outcome.next_measurement.clone(),
             )
             .with_numbers(outcome.reduced_chi2[1], 1.0),
+        );
+    }
+    let floor = outcome.gap.floor;
+    if floor >= DROWNED {
+        work.findings.push(
+            Finding::new(
+                Severity::Error,
+                "readings-below-noise",
+                "vehicle.data",
+                format!(
+                    "The stated noise and tolerances leave {} times what was measured: model and record can't be compared. A channel is not in \
+                     the unit that is taken, its noise is stated too large, or nothing moved.",
+                    number(floor)
+                ),
+                "State the unit beside the channel's name, `f_wheel [kN]`, or the noise that the sensors have.",
+            )
+            .with_numbers(floor, DROWNED),
         );
     }
     let said = work.findings.iter().any(|f| f.code == "no-hold-out");

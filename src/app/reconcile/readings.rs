@@ -2,11 +2,13 @@
 
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::strain::{StrainRows, StrainTable};
-use crate::app::job::{HoldOut, Job, Reference};
+use crate::app::job::{HoldOut, Job, Measured, Reference};
 use crate::app::work::Work;
-use crate::app::zeroed::read_zeroed;
+use crate::app::zeroed::{Zeroed, judged, read_zeroed, some_left};
 use crate::finding::{Finding, Severity};
 use crate::reconcile::Observations;
+use crate::recovery::Readings;
+use crate::units::MICROSTRAIN;
 
 /// Readings of the strain file and of a held-out file, runs by name.
 pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, Faults> {
@@ -27,7 +29,10 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
             "write reference = \"none\", and the loads of [runs] as changes from that state",
         )));
     }
-    let table = read_zeroed(work, job, measured, &measured.strain)?.table;
+    let Zeroed {
+        table,
+        mut noise_factor,
+    } = read_zeroed(work, job, measured, &measured.strain)?;
     let runs_of = |t: &StrainTable| match &t.rows {
         StrainRows::Runs(runs) => Ok(runs.clone()),
         StrainRows::Times(_) => {
@@ -51,7 +56,11 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
         _ => vec![false; out.runs.len()],
     };
     if let HoldOut::File(named) = &measured.hold_out {
-        let kept = read_zeroed(work, job, measured, named)?.table;
+        let Zeroed {
+            table: kept,
+            noise_factor: own,
+        } = read_zeroed(work, job, measured, named)?;
+        noise_factor.extend(own);
         if kept.gauges != out.channels {
             return Err(Faults::from(Fault::of(
                 &*kept.file,
@@ -83,5 +92,38 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
             "keep a third of the runs with `hold_out`",
         ));
     }
+    judge(work, measured, &table.file, &noise_factor, &mut out)?;
     Ok(out)
+}
+
+/// Readings that can't be strain in the unit they are taken for, judged as `recover` does; the impossible ones become no reading.
+///
+/// # Errors
+/// One fault where no reading is left.
+fn judge(
+    work: &mut Work,
+    measured: &Measured,
+    file: &str,
+    noise_factor: &[f64],
+    observations: &mut Observations,
+) -> Result<(), Faults> {
+    let width = observations.channels.len().max(1);
+    let rows = observations.values.chunks(width).zip(noise_factor);
+    let readings: Vec<Readings> = rows
+        .zip(&observations.runs)
+        .map(|((row, noise_factor), run)| Readings {
+            run: run.clone(),
+            strain: row.iter().map(|v| v * MICROSTRAIN).collect(),
+            noise_factor: *noise_factor,
+        })
+        .collect();
+    let kept = judged(work, measured, &observations.channels, &readings);
+    some_left(file, &kept)?;
+    let strain = kept.iter().flat_map(|r| &r.strain);
+    for (v, kept) in observations.values.iter_mut().zip(strain) {
+        if kept.is_nan() {
+            *v = f64::NAN;
+        }
+    }
+    Ok(())
 }

@@ -3,11 +3,37 @@
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::reconcile::{Outcome, Verdict};
+use crate::units::number;
+
+/// Gap over readings, and over its floor, from which numbers are in another unit: the model makes ten times what was read, and no effect of
+/// the library does that.
+const OTHER_UNIT: f64 = 10.0;
+
+/// The finding on a model that makes far more than was read.
+fn far_above_readings(outcome: &Outcome) -> Option<Finding> {
+    let gap = &outcome.gap;
+    let far = gap.before > OTHER_UNIT && gap.before > OTHER_UNIT * gap.floor;
+    far.then(|| {
+        Finding::new(
+            Severity::Error,
+            "model-far-above-readings",
+            "runs",
+            format!(
+                "the noted loads and payloads make {} times the strain that was read: a column of the runs file, or the readings, are in \
+                 another unit, and no effect found here means anything",
+                number(gap.before)
+            ),
+            "state the units of the runs file: [runs] units = { force = \"N\" }, or beside a column's name; readings count in microstrain",
+        )
+        .with_numbers(gap.before, OTHER_UNIT)
+    })
+}
 
 /// Notes what is to be known of the verdict.
 pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
     /// A stated noise is known to 15 %: what the readings show beyond is told.
     const NOISE_KNOWN: f64 = 1.15;
+    work.findings.extend(far_above_readings(outcome));
     if outcome.noise_factor > NOISE_KNOWN {
         work.findings.push(
             Finding::new(

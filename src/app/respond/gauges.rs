@@ -14,6 +14,8 @@ use serde::Serialize;
 
 /// Residual over measured rms of a gauge from which its prediction is poor.
 const POOR: f64 = 0.1;
+/// The same from which the loads explain next to nothing of what it measured: no error of a model makes so much.
+const MISSED: f64 = 0.5;
 
 /// One gauge over all states, microstrain.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -118,7 +120,6 @@ pub(super) fn check(
         out.states.push(state.label.clone());
         out.pairs.push(of_state);
     }
-    let mut poor: Vec<&str> = Vec::new();
     for (name, pairs) in s.gauges.iter().zip(&pairs) {
         if pairs.is_empty() {
             continue;
@@ -142,24 +143,42 @@ pub(super) fn check(
             residual_rms: rms(&|p| p.1 - p.0),
             correlation: finite(cov / (vp * vm).sqrt()),
         };
-        if row.residual_rms > POOR * row.measured_rms
-            && row.residual_rms > 3.0 * measured.noise_microstrain
-        {
-            poor.push(name);
-        }
         out.rows.push(row);
     }
-    if !poor.is_empty() {
-        work.findings.push(
-            Finding::new(
-                Severity::Warning,
-                "prediction-poor",
-                few(&poor),
-                "the recovered loads do not reproduce what these gauges measured to 10 %: stress near them is as uncertain",
-                "run `reconcile`",
-            )
-            .with_numbers(poor.len() as f64, 0.0),
-        );
-    }
+    work.findings
+        .extend(judge(&out.rows, measured.noise_microstrain));
     Ok(out)
+}
+
+/// Whether the loads reproduce what the gauges measured.
+fn judge(rows: &[GaugeCheck], noise_microstrain: f64) -> Option<Finding> {
+    let beyond = |share: f64| -> Vec<&str> {
+        let off = rows.iter().filter(|r| {
+            r.residual_rms > share * r.measured_rms && r.residual_rms > 3.0 * noise_microstrain
+        });
+        off.map(|r| r.name.as_str()).collect()
+    };
+    let missed = beyond(MISSED);
+    if 2 * missed.len() > rows.len() {
+        let finding = Finding::new(
+            Severity::Error,
+            "prediction-poor",
+            few(&missed),
+            "the loads leave more than half of what most gauges measured: they are in another unit, of other runs, or of another model, and so \
+             is the stress",
+            "check the unit of the table of loads against `report_units`, and the names of its runs; then run `reconcile`",
+        );
+        return Some(finding.with_numbers(missed.len() as f64, rows.len() as f64 / 2.0));
+    }
+    let poor = beyond(POOR);
+    (!poor.is_empty()).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "prediction-poor",
+            few(&poor),
+            "the recovered loads do not reproduce what these gauges measured to 10 %: stress near them is as uncertain",
+            "run `reconcile`",
+        )
+        .with_numbers(poor.len() as f64, 0.0)
+    })
 }

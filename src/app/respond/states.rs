@@ -2,13 +2,14 @@
 
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::table::{Table, each_part};
-use crate::app::job::{Job, NamedFile};
+use crate::app::job::{Job, JobLoad, NamedFile};
 use crate::app::recover::recovered_runs;
 use crate::app::strain::{LoadUnits, Prepared, load_units};
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
-use crate::recovery::NORMAL_95;
+use crate::recovery::{NORMAL_95, beyond_expected};
 use crate::respond::{LoadState, Spread};
+use crate::units::Quantity;
 
 /// Rows of the table whose fields are in memory at a time.
 const PART: usize = 10_000;
@@ -65,7 +66,7 @@ fn from_table(work: &mut Work, job: &Job, named: &NamedFile) -> Result<Vec<LoadS
     let mut states = Vec::new();
     let mut blank = 0_usize;
     each_part(&named.given, &text, PART, &mut |part| {
-        let columns = columns.get_or_insert_with(|| Columns::of(&part, &names, &mut faults));
+        let columns = columns.get_or_insert_with(|| Columns::of(&part, job, &names, &mut faults));
         for row in 0..part.rows.len() {
             match columns.state(&part, row, &units, &mut faults) {
                 Some(state) => states.push(state),
@@ -94,6 +95,11 @@ fn from_table(work: &mut Work, job: &Job, named: &NamedFile) -> Result<Vec<LoadS
             .with_numbers(blank as f64, 0.0),
         );
     }
+    for (l, load) in job.loads.iter().enumerate() {
+        let values = states.iter().filter_map(|s| s.values.get(l).copied());
+        let found = beyond_expected(&load.name, load.expected, values);
+        work.findings.extend(found);
+    }
     let exact = columns.map_or_else(Vec::new, |c| c.without_interval);
     work.findings.push(Finding::new(
         Severity::Info,
@@ -114,14 +120,19 @@ struct Columns {
     key: usize,
     /// Of each load its value and its interval.
     loads: Vec<(usize, Option<(usize, usize)>)>,
+    /// Of each load what it measures, and SI units of one report unit.
+    sizes: Vec<(Option<Quantity>, f64)>,
     without_interval: Vec<String>,
 }
 
 impl Columns {
-    fn of(t: &Table, names: &[String], faults: &mut FaultList) -> Self {
+    fn of(t: &Table, job: &Job, names: &[String], faults: &mut FaultList) -> Self {
+        let unit = |l: &JobLoad| l.report_unit(&job.report_units).map_or(1.0, |u| u.si);
+        let sizes = job.loads.iter().map(|l| (l.quantity(), unit(l)));
         let mut out = Self {
             key: t.column(&["run", "time", "t", "state"]).unwrap_or(0),
             loads: Vec::new(),
+            sizes: sizes.collect(),
             without_interval: Vec::new(),
         };
         for name in names {
@@ -153,17 +164,17 @@ impl Columns {
         units: &[LoadUnits],
         faults: &mut FaultList,
     ) -> Option<LoadState> {
-        let mut number = |c: usize| {
-            t.number(row, c).unwrap_or_else(|f| {
+        let mut number = |c: usize, size: (Option<Quantity>, f64)| {
+            t.size(row, c, size).unwrap_or_else(|f| {
                 faults.push(f);
                 None
             })
         };
         let (mut values, mut sigma) = (Vec::new(), Vec::new());
-        for ((c, interval), u) in self.loads.iter().zip(units) {
-            values.push(number(*c)? / u.factor);
+        for (((c, interval), u), size) in self.loads.iter().zip(units).zip(&self.sizes) {
+            values.push(number(*c, *size)? / u.factor);
             sigma.push(match interval {
-                Some((low, high)) => match (number(*low), number(*high)) {
+                Some((low, high)) => match (number(*low, *size), number(*high, *size)) {
                     (Some(l), Some(h)) => (h - l) / (2.0 * NORMAL_95) / u.factor,
                     _ => 0.0,
                 },

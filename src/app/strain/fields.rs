@@ -2,9 +2,10 @@
 
 use super::mesh::{not_checked, take_out};
 use super::unit_loads::check_places;
-use crate::app::deck::{DeckModel, moduli_and_densities, read_model};
+use crate::app::deck::DeckModel;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Job, JobLoad, LoadRole, Reference};
+use crate::app::job_deck::read_deck;
 use crate::app::solved::{MODES, cases_of_job, solve_kept};
 use crate::app::work::Work;
 use crate::fe::from_results::{Displacements, ReadOptions, solution_from_file};
@@ -12,7 +13,6 @@ use crate::fe::{CaseResult, Solution, SolveOptions};
 use crate::gauge::CornerRows;
 use crate::model::Model;
 use crate::sensitivity::{Load, LoadCaseOf};
-use crate::units::check_units;
 use nastran::results::ResultsFile;
 use std::collections::BTreeSet;
 
@@ -109,20 +109,7 @@ pub fn read_fields(work: &mut Work, job: &Job) -> Result<Fields, Faults> {
             "name the loads to be recovered, one [[load]] each",
         )));
     }
-    let deck = work
-        .stage("read model", |s| {
-            read_model(&mut s.inputs, &job.folder, &files.deck.given)
-        })
-        .map_err(Faults::from)?;
-    Faults::check(deck.faults.clone())?;
-    work.findings.extend(deck.findings.iter().cloned());
-    let (moduli, densities) = moduli_and_densities(&deck.model);
-    work.findings.extend(check_units(
-        job.units,
-        deck.model.params.unitsys.as_deref(),
-        &moduli,
-        &densities,
-    ));
+    let deck = work.stage("read model", |s| read_deck(s, job, files))?;
     if files.results.is_empty() {
         let cases = cases_of_job(job, &deck)?;
         let (mut solved, report) = solve_kept(

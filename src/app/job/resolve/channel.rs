@@ -7,6 +7,9 @@ use super::super::suggest;
 use super::super::types::*;
 use crate::app::fault::{Fault, FaultList};
 
+/// No factor of a sum of loads is larger: between the smallest and the largest unit that a job may name lie nine powers of ten.
+const LARGEST_FACTOR: f64 = 1e12;
+
 pub(super) fn combinations(c: &mut Collector, raw: &[Spanned<RawCombination>]) -> Vec<Combination> {
     let mut out: Vec<Combination> = Vec::new();
     for section in raw {
@@ -20,8 +23,11 @@ pub(super) fn combinations(c: &mut Collector, raw: &[Spanned<RawCombination>]) -
             let remedy = "name loads and factors: terms = { \"LF.FZ\" = 1, \"RF.FZ\" = 1 }";
             c.fault(section, "combination.terms", "no terms", remedy);
         }
-        if terms.iter().any(|t| !t.1.is_finite()) {
-            let wrong = "a factor is no finite number";
+        if terms
+            .iter()
+            .any(|t| t.1.is_nan() || t.1.abs() > LARGEST_FACTOR)
+        {
+            let wrong = "a factor is no finite number, or beyond 1e12";
             c.fault(section, "combination.terms", wrong, "write a number");
         }
         let name = &section.value().name;

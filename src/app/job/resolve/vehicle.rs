@@ -14,6 +14,9 @@ use crate::vehicle::adjustment::{Lag, Slip};
 use crate::vehicle::chassis::LeafSeat;
 use crate::vehicle::preset::MODELS;
 
+/// No known parameter of a vehicle is larger in any system of units: the stiffness of a steel block is some 1e12 N/m.
+const LARGEST_KNOWN: f64 = 1e15;
+
 /// Known faults of a channel.
 fn correction(c: &mut Collector, channel: &str, r: &RawCorrection) -> ChannelCorrection {
     let key = |k: &str| format!("vehicle.corrections.{channel}.{k}");
@@ -150,6 +153,15 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
                 .to_radians(),
         };
         leaf.insert(link.value().clone(), seat);
+    }
+    let none = |v: &f64| v.is_nan() || v.abs() > LARGEST_KNOWN;
+    for (name, v) in raw.known.iter().filter(|(_, v)| none(v)) {
+        c.fault(
+            section,
+            &format!("vehicle.known.{name}"),
+            format!("`{v:e}` is no mass, stiffness or damping of a vehicle"),
+            "correct the number; it counts in the units of the job",
+        );
     }
     model.as_ref().zip(data.as_ref())?;
     Some(Vehicle {

@@ -1,0 +1,32 @@
+//! The deck of a job, held against the units that the job states: one place for every command that reads one.
+
+use super::deck::{DeckModel, moduli_and_densities, read_model};
+use super::fault::Faults;
+use super::job::{Job, ModelFiles};
+use super::work::Work;
+use crate::finding::Finding;
+use crate::model::Model;
+use crate::units::check_units;
+
+/// The deck of a job; what is worth knowing of it, and what contradicts the job's units, goes to the work.
+///
+/// # Errors
+/// Every fault of the deck.
+pub(super) fn read_deck(
+    work: &mut Work,
+    job: &Job,
+    files: &ModelFiles,
+) -> Result<DeckModel, Faults> {
+    let read = read_model(&mut work.inputs, &job.folder, &files.deck.given)?;
+    work.findings.extend(read.findings.iter().cloned());
+    Faults::check(read.faults.clone())?;
+    work.findings.extend(against_units(job, &read.model));
+    Ok(read)
+}
+
+/// Contradictions between the job's units and its deck.
+pub(super) fn against_units(job: &Job, model: &Model) -> Vec<Finding> {
+    let (moduli, densities) = moduli_and_densities(model);
+    let unitsys = model.params.unitsys.as_deref();
+    check_units(job.units, unitsys, &moduli, &densities)
+}
