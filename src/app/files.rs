@@ -161,6 +161,11 @@ impl<'a> Inputs<'a> {
         Some(entry.2.finish()).filter(|hex| !hex.is_empty())
     }
 
+    /// Where the files stand.
+    pub fn paths(&self) -> Vec<PathBuf> {
+        self.entries.iter().map(|e| e.1.clone()).collect()
+    }
+
     /// The list, hashes finished.
     pub fn list(&mut self) -> Vec<Input> {
         self.entries

@@ -121,13 +121,15 @@ impl Kernel {
                     tally: c.finish(),
                 });
         let leverage = &r.filter.whole().leverage;
+        // A time without readings does no damage that is counted.
+        let known = missing.whole + missing.known_in_gaps.iter().max().copied().unwrap_or(0);
         let mut gauges = health.days(&r.sensitivity.gauges, leverage);
         gauges.extend(r.silent.iter().map(|name| GaugeDay::silent(name)));
         let place = |g: &GaugeDay| self.sensitivity.gauges.iter().position(|n| *n == g.name);
         gauges.sort_by_key(place);
         Ok(Day {
             rate_hz: record.clock.rate_hz / second,
-            hours: record.clock.duration_s() * second / 3600.0,
+            hours: known as f64 / record.clock.rate_hz * second / 3600.0,
             missing: record.clock.missing,
             loads: loads.collect(),
             gauges,
