@@ -376,7 +376,8 @@ fn a_record_that_has_the_name_of_an_output_is_not_written_over() {
     let fault = &said["faults"][0];
     assert_eq!(fault["field"], "output", "{said}");
     assert!(
-        fault["file"].as_str().unwrap().ends_with("fleet.csv") && fault["remedy"].to_string().contains("--out"),
+        fault["file"].as_str().unwrap().ends_with("fleet.csv")
+            && fault["remedy"].to_string().contains("--out"),
         "{said}"
     );
     assert_eq!(std::fs::read(dir.join("fleet.csv")).unwrap(), before);

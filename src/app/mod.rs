@@ -20,6 +20,7 @@ pub mod init;
 pub mod job;
 mod manifest;
 pub mod modes;
+mod named_results;
 pub mod outcome;
 pub mod output;
 pub mod payload;

@@ -4,6 +4,7 @@ use super::context::Context;
 use super::deck::{DeckModel, read_model};
 use super::fault::{Fault, Faults};
 use super::job::Job;
+use super::named_results::{Absent, check_named};
 use super::outcome::{Answer, Outcome, StatedUnits, finite};
 use super::solved::{faults_of, support_of_job};
 use super::strain::{corrected_spec_of, not_laid};
@@ -92,6 +93,7 @@ pub fn modes(job: &Job, count: usize, cx: &Context) -> Result<Outcome<Modes>, Fa
             "name the deck: [model] deck = \"model.bdf\"",
         )));
     };
+    check_named(&work, job, Absent::Refused)?;
     let read = work
         .stage("read model", |w| {
             read_model(&mut w.inputs, &job.folder, &files.deck.given)

@@ -4,6 +4,7 @@ use super::context::Context;
 use super::deck::{DeckModel, read_model};
 use super::fault::{Fault, Faults};
 use super::job::Job;
+use super::named_results::{Absent, check_named};
 use super::outcome::{Answer, Outcome, StatedUnits};
 pub use super::solved::MODES;
 use super::solved::{cases_of_job, solve_kept, support_of_job};
@@ -193,6 +194,7 @@ fn of_job(work: &mut Work, job: &Job) -> Result<Task, Faults> {
         )
         .into());
     };
+    check_named(work, job, Absent::Refused)?;
     let read = read_model(&mut work.inputs, &job.folder, &files.deck.given)?;
     work.findings.extend(read.findings.iter().cloned());
     Faults::check(read.faults.clone())?;

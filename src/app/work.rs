@@ -76,6 +76,7 @@ impl<'a> Work<'a> {
     /// The outcome: the answer with everything that was collected.
     pub fn finish<A>(mut self, units: StatedUnits, answer: A) -> Outcome<A> {
         self.note_seconds("total", self.began.elapsed().as_secs_f64());
+        self.findings.extend(self.inputs.findings());
         // The worst first; the order of stages within a severity.
         self.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
         Outcome {

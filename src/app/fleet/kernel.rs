@@ -4,6 +4,7 @@ use super::day::{Day, DayFinding, GaugeDay, LoadDay};
 use super::health::Health;
 use super::judged::{Judged, findings_of};
 use super::recovering::{Part, Recovering, counted};
+use crate::app::files::may_be_cut;
 use crate::app::job::StrainCorrection;
 use crate::app::job::correct::{Channel, channel_of, column_of, columns_wanted};
 use crate::app::job::gauge_column::strain_columns;
@@ -63,6 +64,8 @@ impl Kernel {
         };
         let irregular = clock::irregular("time", &record.clock, second);
         findings.extend(irregular.into_iter().map(DayFinding::from));
+        let cut = record.left_out().map(|_| may_be_cut("last line"));
+        findings.extend(cut.map(DayFinding::from));
         let r = self.prepared(record, &mut findings)?;
         let k = self.sensitivity.loads.len();
         let zero_sigma = r.filter.sigma(&vec![0.0; k]);
