@@ -64,10 +64,11 @@ impl<'a> Inputs<'a> {
             let done = Hashing::Done(f.sha256.clone());
             (f.given.clone(), f.path.clone(), done)
         };
+        let unsure = read.iter().filter(|f| f.unsure);
         Self {
             files,
             entries: read.iter().map(entry).collect(),
-            unsure: BTreeSet::new(),
+            unsure: unsure.map(|f| f.given.clone()).collect(),
         }
     }
 
@@ -79,6 +80,7 @@ impl<'a> Inputs<'a> {
                 given: given.clone(),
                 path: path.clone(),
                 sha256: hashing.finish(),
+                unsure: self.unsure.contains(given),
             })
             .collect()
     }
