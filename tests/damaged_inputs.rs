@@ -125,6 +125,80 @@ fn a_job_whose_results_are_cut_names_the_cut() {
     }
 }
 
+#[test]
+fn strains_and_init_on_a_cut_deck_end_with_2() {
+    let Some(shared) = shared() else { return };
+    let folder = scratch("cut_decks");
+    let out = folder.join("out").display().to_string();
+    let cut = folder.join("cut.bdf").display().to_string();
+    for (set, deck, op2) in [
+        ("mystran_frame_units", "frame.bdf", "frame.op2"),
+        ("msc_plate", "plate.bdf", "plate.op2"),
+        ("msc_contact_plate", "contact.bdf", "contact.op2"),
+        ("msc64_two_cases", "d173.bdf", "d173.op2"),
+    ] {
+        let bytes = std::fs::read(shared.join(set).join(deck)).unwrap();
+        let op2 = shared.join(set).join(op2).display().to_string();
+        for percent in [60, 80, 95] {
+            let part = &bytes[..bytes.len() * percent / 100];
+            let lines = part.iter().rposition(|b| *b == b'\n').unwrap() + 1;
+            // Within a line, and at the end of one.
+            for part in [part, &part[..lines]] {
+                std::fs::write(&cut, part).unwrap();
+                let lacks_elements =
+                    set == "mystran_frame_units" || set == "msc_contact_plate" && percent < 90;
+                if part.len() == lines && !lacks_elements {
+                    continue;
+                }
+                for command in ["strains", "init"] {
+                    let done = strainbridge(&[command, &cut, &op2, "--out", &out]);
+                    let said = String::from_utf8_lossy(&done.stderr);
+                    assert_eq!(
+                        done.status.code(),
+                        Some(2),
+                        "{command} {set} {percent} %: {said}"
+                    );
+                    assert!(
+                        said.contains("ENDDATA"),
+                        "{command} {set} {percent} %: {said}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn init_recommends_place_where_that_ends_without_an_error_alone() {
+    let Some(shared) = shared() else { return };
+    for (set, names) in [
+        ("msc64_two_cases", &["d173.bdf", "d173.op2"][..]),
+        ("msc_buckling_tabs", &["sbuckl2a.bdf", "sbuckl2a.op2"][..]),
+        ("msc_buckling_tabs", &["sbuckl2a.bdf"][..]),
+    ] {
+        let folder = scratch("init_place");
+        let out = folder.display().to_string();
+        let files: Vec<String> = names
+            .iter()
+            .map(|n| shared.join(set).join(n).display().to_string())
+            .collect();
+        let mut arguments = vec!["init"];
+        arguments.extend(files.iter().map(String::as_str));
+        arguments.extend(["--out", &out]);
+        let done = strainbridge(&arguments);
+        let said = String::from_utf8_lossy(&done.stderr);
+        assert_eq!(done.status.code(), Some(0), "{names:?}: {said}");
+        if String::from_utf8_lossy(&done.stdout).contains("then run") {
+            let job = folder.join("job.toml").display().to_string();
+            let placed = strainbridge(&["place", &job]);
+            let said = String::from_utf8_lossy(&placed.stderr);
+            assert_eq!(placed.status.code(), Some(0), "{names:?}: {said}");
+        } else {
+            assert!(said.contains("separate the"), "{names:?}: {said}");
+        }
+    }
+}
+
 /// The first grid and the first shell that the texts of a deck's folder name.
 fn ids(deck: &Path) -> Option<[u32; 2]> {
     let texts: Vec<String> = files(deck.parent()?, &["bdf", "dat", "nas", "inc"])
@@ -155,7 +229,7 @@ fn job_of_all(deck: &Path, results: &str) -> String {
          [candidates]\n[placement]\ngauges = 2\nspacing = 0.05\nnoise_microstrain = 1.0\n\
          [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 1.0\n\
          [runs]\nfile = \"runs.csv\"\nunits = {{ force = \"N\", mass = \"t\" }}\nnoise = {{ force = 1.0 }}\n\
-         [payload]\ngrid = {grid}\nposition = \"known\"\n[respond]\nhottest = 3\n\
+         [ballast]\nmasses = 1\nregion = [[0.0, 1.0], [0.0, 1.0]]\nrun = \"R1\"\n[payload]\ngrid = {grid}\nposition = \"known\"\n[respond]\nhottest = 3\n\
          [study]\nlayouts = [\"D\"]\ngauges = [1]\nerrors = [{{ kind = \"relative-uniform\", size = 0.1 }}]\ntrials = 10\nseed = 1\n\
          [reconcile]\npath = \"static\"\n"
     )
@@ -164,9 +238,12 @@ fn job_of_all(deck: &Path, results: &str) -> String {
 /// `STRAINBRIDGE_ALL_CUTS` (`.ci/long`): every OP2 of the set at 5, 10 .. 95 %; else a few of the smaller ones at three places.
 #[test]
 fn no_command_on_a_job_whose_results_are_cut_ends_with_0() {
-    const COMMANDS: [&str; 9] = [
+    const COMMANDS: [&str; 12] = [
         "check",
         "cases",
+        "solve",
+        "modes",
+        "ballast",
         "sensitivity",
         "place",
         "recover",
@@ -191,7 +268,7 @@ fn no_command_on_a_job_whose_results_are_cut_ends_with_0() {
         let Some(deck) = deck else { continue };
         let bytes = std::fs::read(&op2).unwrap();
         let has_shells = ids(&deck).is_some();
-        // On these every command but `cases` comes to the results; on others some end at what the deck lacks before.
+        // On these every command comes to the results; on others some end at what the deck lacks before.
         let comes_there = has_shells && bytes.len() <= 60_000 && taken < 4;
         if !all && !comes_there {
             continue;
@@ -205,20 +282,16 @@ fn no_command_on_a_job_whose_results_are_cut_ends_with_0() {
             )
             .unwrap();
             for command in COMMANDS {
-                // The deck that `cases` writes is for a run to come: it reads no results.
-                if command == "cases" && percent > 5 {
-                    continue;
-                }
                 let done = strainbridge(&[command, job.to_str().unwrap(), "--no-cache"]);
                 let said = String::from_utf8_lossy(&done.stderr);
                 let code = done.status.code();
                 assert!(
-                    matches!(code, Some(1 | 2)) || command == "cases" && code == Some(0),
+                    matches!(code, Some(1 | 2)),
                     "{command} on {} at {percent} %: {:?}\n{said}",
                     op2.display(),
                     done.status
                 );
-                if has_shells && command != "cases" {
+                if has_shells {
                     let is_named = said.contains("cut short");
                     assert!(
                         is_named || !comes_there,
@@ -293,8 +366,9 @@ fn a_missing_include_of_case_or_executive_control_stops_every_command() {
     ] {
         let deck = folder.join(name);
         std::fs::write(&deck, text).unwrap();
-        for command in ["check", "solve"] {
-            let done = strainbridge(&[command, deck.to_str().unwrap()]);
+        for command in ["check", "solve", "strains", "init"] {
+            let out = folder.join("out").display().to_string();
+            let done = strainbridge(&[command, deck.to_str().unwrap(), "--out", &out]);
             let said = String::from_utf8_lossy(&done.stderr);
             assert_eq!(done.status.code(), Some(2), "{command} {name}: {said}");
             assert!(said.contains("gone.inc"), "{command} {name}: {said}");

@@ -265,6 +265,124 @@ fn what_is_broken_is_said_and_nothing_else_is_lost() {
     assert_eq!(result["vehicles"][0]["files"], 19);
 }
 
+/// Changes one kept result.
+fn spoil(dir: &Path, out: &str, change: impl Fn(String) -> String) {
+    let mut kept: Vec<PathBuf> = std::fs::read_dir(dir.join(out).join("days"))
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .filter(|p| p.extension().is_some_and(|e| e == "json"))
+        .collect();
+    kept.sort();
+    let text = std::fs::read_to_string(&kept[0]).unwrap();
+    let other = change(text.clone());
+    assert_ne!(text, other);
+    std::fs::write(&kept[0], other).unwrap();
+}
+
+#[test]
+fn a_merge_knows_which_parts_are_missing() {
+    let (dir, files) = folder("parts");
+    let (code, _) = fleet(&dir, "out", &files, &["--shard", "1/2"]);
+    assert_eq!(code, 0);
+    let (code, result) = fleet(&dir, "out", &[], &[]);
+    assert_eq!(code, 1, "{result}");
+    let errors = findings_of(&result, &["error"]);
+    let [[name, subject, message]] = errors.as_slice() else {
+        panic!("{errors:?}");
+    };
+    assert_eq!(name, "fleet-records-missing");
+    // Every second record in the order of their names.
+    assert!(subject.starts_with("T0_10.csv"), "{subject}");
+    assert!(
+        message.contains("of 60 records")
+            && message.contains(" 30 have")
+            && message.contains("shard 2/2"),
+        "{message}"
+    );
+    let (code, _) = fleet(&dir, "out", &files, &["--shard", "2/2"]);
+    assert_eq!(code, 0);
+    let (code, result) = fleet(&dir, "out", &[], &[]);
+    assert_eq!(code, 0, "{result}");
+}
+
+#[test]
+fn a_kept_result_that_was_cut_or_changed_is_an_error_of_the_merge_and_done_anew_by_a_run() {
+    let (dir, files) = folder("spoilt");
+    let (code, whole) = fleet(&dir, "out", &files, &[]);
+    assert_eq!(code, 0, "{whole}");
+    let changes: [fn(String) -> String; 2] = [
+        |text| text[..500].to_owned(),
+        |text| text.replacen("\"value\":", "\"value\":9", 1),
+    ];
+    for change in changes {
+        spoil(&dir, "out", change);
+        let (code, result) = fleet(&dir, "out", &[], &[]);
+        assert_eq!(code, 1, "{result}");
+        let errors = findings_of(&result, &["error"]);
+        assert!(
+            errors
+                .iter()
+                .any(|f| f[0] == "fleet-result-damaged" && f[1].contains("days")),
+            "{errors:?}"
+        );
+        let (code, again) = fleet(&dir, "out", &files, &[]);
+        assert_eq!(code, 0, "{again}");
+        assert_eq!(again["vehicles"], whole["vehicles"]);
+        assert_eq!(fleet(&dir, "out", &[], &[]).0, 0);
+    }
+}
+
+#[test]
+fn a_blank_hour_is_no_hour_of_work() {
+    let (dir, files) = folder("blank");
+    let text = table_of(0, 1, None, |i, y| {
+        if i >= SAMPLES / 2 {
+            y.fill(f64::NAN);
+        }
+    });
+    std::fs::write(dir.join("T0_1.csv"), text).unwrap();
+    let (_, result) = fleet(&dir, "out", &files[..1], &[]);
+    let hours = result["vehicles"][0]["hours"].as_f64().unwrap();
+    // Half of the samples, a hundred a second.
+    let expected = (SAMPLES / 2) as f64 / 100.0 / 3600.0;
+    assert!((hours / expected - 1.0).abs() < 1e-9, "{hours} {expected}");
+}
+
+#[test]
+fn a_knee_that_says_nothing_or_can_not_be_is_a_fault_at_its_line() {
+    let (dir, files) = folder("knee");
+    for (key, field) in [
+        ("slope_below_knee = 9.0", "fleet.slope_below_knee"),
+        ("knee_range = 1e308", "fleet.knee_range"),
+    ] {
+        std::fs::write(dir.join("job.toml"), format!("{JOB}{key}\n")).unwrap();
+        let (code, said) = fleet(&dir, "out", &files[..1], &[]);
+        assert_eq!(code, 2, "{said}");
+        let fault = &said["faults"][0];
+        assert_eq!(fault["field"], field, "{said}");
+        assert_eq!(fault["line"], JOB.lines().count() + 1, "{said}");
+    }
+}
+
+#[test]
+fn a_record_that_has_the_name_of_an_output_is_not_written_over() {
+    let (dir, files) = folder("own");
+    std::fs::rename(dir.join(&files[0]), dir.join("fleet.csv")).unwrap();
+    let job = JOB.replace("{vehicle}_{day}.csv", "{vehicle}e{day}.csv");
+    std::fs::write(dir.join("job.toml"), job).unwrap();
+    let before = std::fs::read(dir.join("fleet.csv")).unwrap();
+    let (code, said) = fleet(&dir, ".", &["fleet.csv".to_owned()], &[]);
+    assert_eq!(code, 2, "{said}");
+    let fault = &said["faults"][0];
+    assert_eq!(fault["field"], "output", "{said}");
+    assert!(
+        fault["file"].as_str().unwrap().ends_with("fleet.csv")
+            && fault["remedy"].to_string().contains("--out"),
+        "{said}"
+    );
+    assert_eq!(std::fs::read(dir.join("fleet.csv")).unwrap(), before);
+}
+
 #[test]
 fn what_fleet_can_not_do_is_said() {
     let (dir, files) = folder("refused");

@@ -144,23 +144,55 @@ fn notes_of(deck: &Deck, given: &str) -> Vec<Finding> {
 
 /// The faults of a deck's cards.
 pub fn deck_faults(deck: &Deck) -> FaultList {
-    deck.faults
-        .iter()
-        .map(|f| {
-            let field = match (f.card.as_str(), f.field) {
-                ("", _) => "deck".to_owned(),
-                (card, None) => card.to_owned(),
-                (card, Some(field)) => format!("{card} {}", field.name),
-            };
-            Fault::at(
-                deck.path(f.at),
-                f.at.line,
-                field,
-                f.what.message(),
-                f.what.remedy(),
-            )
-        })
-        .collect()
+    deck.faults.iter().map(|f| fault_of(deck, f)).collect()
+}
+
+fn fault_of(deck: &Deck, f: &nastran::bdf::Fault) -> Fault {
+    let field = match (f.card.as_str(), f.field) {
+        ("", _) => "deck".to_owned(),
+        (card, None) => card.to_owned(),
+        (card, Some(field)) => format!("{card} {}", field.name),
+    };
+    Fault::at(
+        deck.path(f.at),
+        f.at.line,
+        field,
+        f.what.message(),
+        f.what.remedy(),
+    )
+}
+
+impl DeckModel {
+    /// Faults that say that part of the deck was not read: it is cut, or an INCLUDE is not there. Where no ENDDATA tells its end, what
+    /// its cards refer to in vain may be part of what was cut.
+    pub fn incomplete(&self) -> FaultList {
+        let cut = self.deck.faults.iter().filter(|f| f.what.is_incomplete());
+        let mut faults: FaultList = cut.map(|f| fault_of(&self.deck, f)).collect();
+        if faults.is_empty() && self.ends_open() && !self.faults.is_empty() {
+            faults.push(self.open_end("it has faults"));
+            faults.extend(self.faults.iter().cloned());
+        }
+        faults
+    }
+
+    /// A fault where results hold elements that this deck lacks, and no ENDDATA tells that it is whole.
+    pub fn cut_beside(&self, findings: &[Finding]) -> Option<Fault> {
+        let lacking = findings.iter().find(|f| f.code == "element-not-in-deck")?;
+        self.ends_open().then(|| self.open_end(&lacking.message))
+    }
+
+    fn open_end(&self, and: &str) -> Fault {
+        Fault::of(
+            &*self.given,
+            "ENDDATA",
+            format!("the deck ends without ENDDATA, and {and}: it may be cut"),
+            "copy the deck again, or close it with ENDDATA",
+        )
+    }
+
+    fn ends_open(&self) -> bool {
+        !self.deck.sources.is_empty() && !self.deck.counts.contains_key("ENDDATA")
+    }
 }
 
 /// Errors become faults; notes become findings, one a kind.

@@ -11,4 +11,6 @@ pub struct FileRead {
     pub path: PathBuf,
     /// SHA-256 of its bytes, hexadecimal.
     pub sha256: String,
+    /// Whether it is a table whose last line may be cut.
+    pub unsure: bool,
 }

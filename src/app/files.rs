@@ -6,7 +6,11 @@ use super::file_read::FileRead;
 use super::job::{Job, NamedFile};
 use super::sheet::{csv_of_sheet, is_sheet};
 pub use super::whole_file::{FileBytes, Opened};
+use crate::finding::{Finding, Severity};
+use crate::series::record::csv::unsure_end;
+use crate::series::record::is_format;
 use sha2::{Digest, Sha256};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 
@@ -23,6 +27,8 @@ pub struct Input {
 pub struct Inputs<'a> {
     files: &'a dyn Files,
     entries: Vec<(String, PathBuf, Hashing)>,
+    /// Tables named by the job whose last line may be cut.
+    unsure: BTreeSet<String>,
 }
 
 enum Hashing {
@@ -48,6 +54,7 @@ impl<'a> Inputs<'a> {
         Self {
             files,
             entries: Vec::new(),
+            unsure: BTreeSet::new(),
         }
     }
 
@@ -57,9 +64,11 @@ impl<'a> Inputs<'a> {
             let done = Hashing::Done(f.sha256.clone());
             (f.given.clone(), f.path.clone(), done)
         };
+        let unsure = read.iter().filter(|f| f.unsure);
         Self {
             files,
             entries: read.iter().map(entry).collect(),
+            unsure: unsure.map(|f| f.given.clone()).collect(),
         }
     }
 
@@ -71,6 +80,7 @@ impl<'a> Inputs<'a> {
                 given: given.clone(),
                 path: path.clone(),
                 sha256: hashing.finish(),
+                unsure: self.unsure.contains(given),
             })
             .collect()
     }
@@ -127,8 +137,9 @@ impl<'a> Inputs<'a> {
     /// # Errors
     /// A fault at the line of the job that names it.
     pub fn read_named(&mut self, job: &Job, named: &NamedFile) -> Result<FileBytes, Fault> {
-        self.read(&job.folder, &named.given)
-            .map_err(|f| at_job_line(job, named, f))
+        let read = self.read(&job.folder, &named.given);
+        self.note_end(&named.given, read.as_ref().ok());
+        read.map_err(|f| at_job_line(job, named, f))
     }
 
     /// Text of a file that a job names.
@@ -136,8 +147,26 @@ impl<'a> Inputs<'a> {
     /// # Errors
     /// A fault at the line of the job that names it, or at the line that isn't text.
     pub fn read_named_text(&mut self, job: &Job, named: &NamedFile) -> Result<String, Fault> {
-        self.read_text(&job.folder, &named.given)
-            .map_err(|f| at_job_line(job, named, f))
+        let text = self.read_text(&job.folder, &named.given);
+        self.note_end(&named.given, text.as_ref().ok());
+        text.map_err(|f| at_job_line(job, named, f))
+    }
+
+    /// Notes a table whose last line may be cut.
+    fn note_end(&mut self, given: &str, read: Option<&impl AsRef<[u8]>>) {
+        let name = given.to_ascii_lowercase();
+        let is_table = [".csv", ".tsv", ".txt"].iter().any(|e| name.ends_with(e));
+        if let Some(bytes) = read.filter(|_| is_table)
+            && !is_format(bytes.as_ref())
+            && unsure_end(bytes.as_ref()).is_some()
+        {
+            self.unsure.insert(given.to_owned());
+        }
+    }
+
+    /// A warning for each table whose last line may be cut.
+    pub fn findings(&self) -> Vec<Finding> {
+        self.unsure.iter().map(|f| may_be_cut(f)).collect()
     }
 
     /// Notes a file that was read by other means, so that it is listed.
@@ -161,6 +190,11 @@ impl<'a> Inputs<'a> {
         Some(entry.2.finish()).filter(|hex| !hex.is_empty())
     }
 
+    /// Where the files stand.
+    pub fn paths(&self) -> Vec<PathBuf> {
+        self.entries.iter().map(|e| e.1.clone()).collect()
+    }
+
     /// The list, hashes finished.
     pub fn list(&mut self) -> Vec<Input> {
         self.entries
@@ -171,6 +205,17 @@ impl<'a> Inputs<'a> {
             })
             .collect()
     }
+}
+
+/// The finding of a table, or a record, whose last line may be cut.
+pub(super) fn may_be_cut(file: &str) -> Finding {
+    Finding::new(
+        Severity::Warning,
+        "table-may-be-cut",
+        file,
+        "its last line has no end, and its last number may have lost digits: a record is read without that line, any other table with it",
+        "copy the file again if it is cut; else end its last line",
+    )
 }
 
 fn at_job_line(job: &Job, named: &NamedFile, f: Fault) -> Fault {
@@ -184,6 +229,11 @@ fn at_job_line(job: &Job, named: &NamedFile, f: Fault) -> Fault {
             f.remedy,
         ),
     }
+}
+
+/// The fault, at its line of the job, of a file that can't be read.
+pub(super) fn unreadable_at(job: &Job, named: &NamedFile, e: &std::io::Error) -> Fault {
+    at_job_line(job, named, unreadable(&named.given, e))
 }
 
 fn unreadable(given: &str, e: &std::io::Error) -> Fault {

@@ -24,6 +24,12 @@ impl Manifest {
         Self(text.lines().filter_map(entry).collect())
     }
 
+    /// The files of a command.
+    pub(super) fn names_of(&self, command: &str) -> BTreeSet<String> {
+        let own = self.0.iter().filter(|e| e.0 == command);
+        own.map(|e| e.1.clone()).collect()
+    }
+
     /// Puts what a command writes now in place of what it wrote before; files that it wrote and that nobody writes now.
     pub(super) fn replace(&mut self, command: &str, names: &[String]) -> Vec<PathBuf> {
         let (before, others): (BTreeSet<_>, BTreeSet<_>) = std::mem::take(&mut self.0)

@@ -21,6 +21,7 @@ pub mod job;
 mod job_deck;
 mod manifest;
 pub mod modes;
+mod named_results;
 pub mod outcome;
 pub mod output;
 pub mod payload;

@@ -5,6 +5,7 @@ use super::deck::{DeckModel, read_model};
 use super::fault::{Fault, Faults};
 use super::job::Job;
 use super::job_deck::read_deck;
+use super::named_results::{Absent, check_named};
 use super::outcome::{Answer, Outcome, StatedUnits, finite};
 use super::solved::{faults_of, support_of_job};
 use super::strain::{corrected_spec_of, not_laid};
@@ -93,6 +94,7 @@ pub fn modes(job: &Job, count: usize, cx: &Context) -> Result<Outcome<Modes>, Fa
             "name the deck: [model] deck = \"model.bdf\"",
         )));
     };
+    check_named(&work, job, Absent::Refused)?;
     let read = work.stage("read model", |w| read_deck(w, job, files))?;
     let support = support_of_job(job, &read.model)?;
     let units = StatedUnits::of(job.units, &job.report_units);

@@ -6,6 +6,7 @@ use crate::units::{ReportUnits, UnitSystem};
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 /// Counts up when a key of `result.json` changes its meaning.
 pub const SCHEMA: u32 = 1;
@@ -23,6 +24,8 @@ pub struct Outcome<A> {
     pub units: StatedUnits,
     /// Every file that was read.
     pub inputs: Vec<Input>,
+    /// Where they stand, and other files that the answer came from: what is written never replaces one.
+    pub sources: Vec<PathBuf>,
     /// What is to be known of the answer, the worst first.
     pub findings: Findings,
     /// Seconds by stage.

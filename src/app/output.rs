@@ -1,10 +1,11 @@
 //! Writing: files appear under their names only when all of them are complete.
 
-use super::fault::Fault;
+use super::fault::{Fault, Faults};
 use super::half_written;
 use super::manifest::{self, Manifest};
 use super::outcome::Tables;
 use super::whole_file::{FileBytes, load};
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -155,11 +156,34 @@ impl Output {
         self.write(name, |w| w.write_all(bytes))
     }
 
-    /// Renames every file to its name, and removes what the command wrote into the folder before and doesn't write now.
+    /// Refuses names under which other bytes stand that the answer came from: written over, they would give another answer the next time.
     ///
     /// # Errors
-    /// A fault for the first that can't be renamed.
-    pub fn commit(mut self, command: &str) -> Result<(), Fault> {
+    /// A fault for each.
+    pub fn check_spared(&self, sources: &[PathBuf]) -> Result<(), Faults> {
+        let sources = stored(sources);
+        let is_source = |p: &&(PathBuf, PathBuf)| {
+            let target = std::fs::canonicalize(&p.1);
+            target.is_ok_and(|t| sources.contains(&t)) && !is_same(&p.0, &p.1)
+        };
+        let fault = |p: &(PathBuf, PathBuf)| {
+            Fault::of(
+                p.1.display().to_string(),
+                "output",
+                "the command has read this file, and would write its own over it",
+                "choose another folder with `--out`, or give the input another name",
+            )
+        };
+        Faults::check(self.pending.iter().filter(is_source).map(fault).collect())
+    }
+
+    /// Renames every file to its name, and removes what the command wrote into the folder before and doesn't write now; none of `sources`.
+    ///
+    /// # Errors
+    /// Faults of [`Output::check_spared`]; one for the first file that can't be renamed.
+    pub fn commit(mut self, command: &str, sources: &[PathBuf]) -> Result<(), Faults> {
+        self.check_spared(sources)?;
+        let sources = stored(sources);
         let names: Vec<String> = self
             .pending
             .iter()
@@ -170,8 +194,11 @@ impl Output {
         self.write_bytes(manifest::NAME, written.text().as_bytes())?;
         self.rename_all()?;
         for name in gone {
+            let path = self.folder.join(name);
             // One that is gone already is no loss.
-            let _ = std::fs::remove_file(self.folder.join(name));
+            if std::fs::canonicalize(&path).is_ok_and(|p| !sources.contains(&p)) {
+                let _ = std::fs::remove_file(path);
+            }
         }
         Ok(())
     }
@@ -197,6 +224,18 @@ impl Drop for Output {
             half_written::forget(part);
         }
     }
+}
+
+/// Whether two files hold the same bytes.
+fn is_same(a: &Path, b: &Path) -> bool {
+    let size = |p: &Path| std::fs::metadata(p).map(|m| m.len()).ok();
+    size(a) == size(b) && matches!((load(a), load(b)), (Ok(a), Ok(b)) if *a == *b)
+}
+
+/// The files as the system knows them, links followed; those that stand in no folder (in memory) are left out.
+fn stored(paths: &[PathBuf]) -> BTreeSet<PathBuf> {
+    let known = paths.iter().map(std::fs::canonicalize);
+    known.filter_map(Result::ok).collect()
 }
 
 fn fill_file(

@@ -5,6 +5,7 @@ use super::deck::{DeckModel, read_model};
 use super::fault::{Fault, Faults};
 use super::job::Job;
 use super::job_deck::read_deck;
+use super::named_results::{Absent, check_named};
 use super::outcome::{Answer, Outcome, StatedUnits};
 pub use super::solved::MODES;
 use super::solved::{cases_of_job, solve_kept, support_of_job};
@@ -194,6 +195,7 @@ fn of_job(work: &mut Work, job: &Job) -> Result<Task, Faults> {
         )
         .into());
     };
+    check_named(work, job, Absent::Refused)?;
     let read = read_deck(work, job, files)?;
     let support = support_of_job(job, &read.model)?;
     let cases = cases_of_job(job, &read)?;

@@ -47,7 +47,8 @@ pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome
     let mut work = Work::new(cx);
     let given = deck.display().to_string();
     let deck = work.stage("deck", |s| read_model(&mut s.inputs, Path::new(""), &given))?;
-    work.findings.extend(deck.findings);
+    Faults::check(deck.incomplete())?;
+    work.findings.extend(deck.findings.iter().cloned());
     // Without elements nothing can be placed. Else the run was possible, and a fault elsewhere (an unused set, say) is worth a warning.
     if deck.model.shells.is_empty() && deck.model.beams.is_empty() {
         Faults::check(deck.faults.clone())?;
@@ -85,6 +86,9 @@ pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome
     let mut solution = work.stage("strain", |_| {
         solution_from_results(&deck.model, &named, &options)
     });
+    if let Some(cut) = deck.cut_beside(&solution.findings) {
+        return Err(cut.into());
+    }
     work.findings.append(&mut solution.findings);
     let silent = without_normal_strain(&deck.model, &solution.cases);
     if !silent.is_empty() {

@@ -3,6 +3,7 @@
 use super::context::Context;
 use super::fault::{Fault, Faults};
 use super::files::Input;
+use super::manifest::Manifest;
 use super::outcome::{Answer, Outcome, StatedUnits};
 use super::work::Work;
 use crate::finding::{Finding, Severity};
@@ -100,6 +101,7 @@ pub fn verify(
 ) -> Result<Outcome<Verified>, Faults> {
     let mut work = Work::new(cx);
     let made = made(folder)?;
+    work.sources.push(folder.join("result.json"));
     let main = main_input(folder, &made)?;
     let anew = work.stage("recompute", |_| again(&made, &main))?;
     let found = work.stage("compare", |_| compare(folder, &anew))?;
@@ -140,7 +142,12 @@ fn compare(folder: &Path, again: &Path) -> Result<Verified, Faults> {
             now.map_or("not read", |n| &n.sha256),
         );
     }
-    let (ours, theirs) = (names(folder)?, names(again)?);
+    // A folder may hold files of other commands; one without a manifest tells nothing of whose they are.
+    let ours = match Manifest::read(folder).names_of(&old.command) {
+        own if own.is_empty() => names(folder)?,
+        own => own,
+    };
+    let theirs = names(again)?;
     for name in ours.union(&theirs) {
         let read = |f: &Path| std::fs::read(f.join(name)).ok();
         match (read(folder), read(again)) {

@@ -6,6 +6,7 @@ use super::files::Inputs;
 use super::job::Job;
 use super::outcome::{Findings, Outcome, Seconds, StatedUnits};
 use crate::finding::Finding;
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// A question on its way to its answer.
@@ -18,6 +19,8 @@ pub struct Work<'a> {
     pub findings: Vec<Finding>,
     /// What is worth knowing of the way, and no part of the answer.
     pub notes: Vec<String>,
+    /// Files that were read and are not listed among the inputs.
+    pub sources: Vec<PathBuf>,
     seconds: Seconds,
     began: Instant,
 }
@@ -30,6 +33,7 @@ impl<'a> Work<'a> {
             inputs: Inputs::of(cx.files),
             findings: Vec::new(),
             notes: Vec::new(),
+            sources: Vec::new(),
             seconds: Seconds::default(),
             began: Instant::now(),
         }
@@ -72,10 +76,17 @@ impl<'a> Work<'a> {
     /// The outcome: the answer with everything that was collected.
     pub fn finish<A>(mut self, units: StatedUnits, answer: A) -> Outcome<A> {
         self.note_seconds("total", self.began.elapsed().as_secs_f64());
+        self.findings.extend(self.inputs.findings());
         // The worst first; the order of stages within a severity.
         self.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
         Outcome {
             units,
+            sources: self
+                .inputs
+                .paths()
+                .into_iter()
+                .chain(self.sources)
+                .collect(),
             inputs: self.inputs.list(),
             findings: Findings(self.findings),
             seconds: self.seconds,

@@ -146,6 +146,7 @@ impl Run {
                 None => {
                     let mut out = Output::begin(&into)?;
                     outcome.write(&mut out)?;
+                    out.check_spared(&outcome.sources)?;
                     out.rename_all()?;
                     unsaved(&outcome)?
                 }

@@ -111,13 +111,19 @@ pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
     if spaced {
         best = tighten(c, spec, &mut bound, quick, best);
     }
-    let incumbent = best.ok_or(if spaced {
-        PlaceError::TooTight {
-            gauges: spec.gauges,
-            spacing: spec.spacing,
+    let incumbent = best.ok_or_else(|| {
+        // Fewer gauges than loads are not to be told that they stand too close.
+        let anywhere = Spec {
+            spacing: 0.0,
+            ..spec.clone()
+        };
+        match spaced && run(c, &anywhere, &list, &bound.col, quick, None).is_some() {
+            true => PlaceError::TooTight {
+                gauges: spec.gauges,
+                spacing: spec.spacing,
+            },
+            false => singular(c, spec),
         }
-    } else {
-        singular(c, spec)
     })?;
     // What can't be in a better layout may be in one that loses less.
     let floor = match spec.loss {

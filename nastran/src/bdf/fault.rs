@@ -100,6 +100,31 @@ pub enum Wrong {
 }
 
 impl Wrong {
+    /// Whether part of the deck was not read: it is cut, or an INCLUDE leads nowhere.
+    pub fn is_incomplete(&self) -> bool {
+        match self {
+            Self::CutShort
+            | Self::IncludeNotFound { .. }
+            | Self::IncludeCycle { .. }
+            | Self::IncludeDepth { .. }
+            | Self::IncludeCount { .. }
+            | Self::IncludeName { .. } => true,
+            Self::Missing
+            | Self::NotInteger { .. }
+            | Self::NotReal { .. }
+            | Self::IntegerForReal { .. }
+            | Self::NotDofs { .. }
+            | Self::OutOfRange { .. }
+            | Self::NotOneOf { .. }
+            | Self::NotACard { .. }
+            | Self::Orphan { .. }
+            | Self::Replication { .. }
+            | Self::TooManyReplicated { .. }
+            | Self::NotADeck
+            | Self::Statement { .. } => false,
+        }
+    }
+
     /// The text that was found, where there is one.
     pub fn found(&self) -> Option<&str> {
         match self {

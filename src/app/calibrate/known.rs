@@ -65,6 +65,7 @@ pub(super) fn read_known(
         .map_err(Faults::from)?;
     let mut table = read_table(&runs.file.given, &text)?;
     let headers = take_units(&mut table);
+    table.check_rows()?;
     let mut faults = FaultList::new();
     let key = run_column(&table, &headers)?;
     let stated = stated(job, runs, &table, &headers, loads, &mut faults);

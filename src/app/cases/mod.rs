@@ -8,6 +8,7 @@ use super::context::Context;
 use super::fault::{Fault, Faults};
 use super::job::{Component, Job, JobLoad, LoadActs};
 use super::job_deck::read_deck;
+use super::named_results::{Absent, check_named};
 use super::outcome::{Answer, Outcome, StatedUnits};
 use super::solved::support_of_job;
 use super::work::Work;
@@ -111,6 +112,8 @@ pub fn cases(job: &Job, cx: &Context) -> Result<Outcome<UnitLoadDeck>, Faults> {
             "name the loads, one [[load]] each",
         ));
     }
+    // Those of the deck that is written here come of a run that is still to be made.
+    check_named(&work, job, Absent::ToCome)?;
     let read = work.stage("read deck", |s| read_deck(s, job, files))?;
     if read.deck.sources.is_empty() {
         return Err(fault(

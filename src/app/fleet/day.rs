@@ -98,7 +98,7 @@ impl GaugeDay {
 pub struct Day {
     /// Samples a second.
     pub rate_hz: f64,
-    /// Span of the record, hours.
+    /// Time of the samples that give a load, hours.
     pub hours: f64,
     /// Samples missing in gaps.
     pub missing: usize,
@@ -130,7 +130,7 @@ pub struct FileResult {
 pub struct DayHead {
     /// Samples a second.
     pub rate_hz: f64,
-    /// Span of the record, hours.
+    /// Time of the samples that give a load, hours.
     pub hours: f64,
     /// Samples missing in gaps.
     pub missing: usize,

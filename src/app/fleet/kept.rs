@@ -1,6 +1,8 @@
 //! Results of single files, kept in the output folder by what they depend on.
 
+use super::asked::{ASKED, Asked};
 use super::day::{Day, DayHead, FileHead, FileResult};
+use crate::app::whole_file::hex;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -11,7 +13,9 @@ use std::path::{Path, PathBuf};
 /// Folder of the kept results within the output folder.
 pub const FOLDER: &str = "days";
 /// Counts up when what is kept changes its meaning.
-const FORM: u32 = 3;
+const FORM: u32 = 4;
+/// What stands before the digest of a kept result, which ends its file.
+const SEAL: &[u8] = b",\"content\":\"";
 
 /// A kept result; `D` is what is read of its day.
 #[derive(Serialize, Deserialize)]
@@ -28,6 +32,23 @@ struct Kept<D> {
     failed: Option<String>,
 }
 
+/// Whose a kept result is: what can be told of one of another form.
+#[derive(Deserialize)]
+struct Stamp {
+    form: u32,
+    version: String,
+    job: String,
+}
+
+/// What a file of the folder is.
+enum Found {
+    Own(FileHead),
+    /// Of another job, version or form.
+    Other,
+    /// It can't be read, or holds something else than was written.
+    Damaged,
+}
+
 /// Kept results of one job.
 pub struct KeptDays {
     folder: PathBuf,
@@ -39,8 +60,33 @@ pub struct KeptDays {
 pub struct Held {
     /// Files of this job, by path.
     pub files: Vec<FileHead>,
-    /// Results of another job, version or form, and files that can't be read.
+    /// Results of another job, version or form.
     pub others: usize,
+    /// Paths of kept results that can't be read, or hold something else than was written.
+    pub damaged: Vec<String>,
+    /// Records that runs of this job were asked for.
+    pub asked: Vec<Asked>,
+}
+
+/// A kept result with its digest at its end, JSON as before.
+fn sealed(mut json: Vec<u8>) -> Vec<u8> {
+    let seal = hex(&Sha256::digest(&json));
+    json.pop();
+    json.extend_from_slice(SEAL);
+    json.extend_from_slice(seal.as_bytes());
+    json.extend_from_slice(b"\"}");
+    json
+}
+
+/// The bytes, where their digest is that of what was written.
+fn unsealed(bytes: &[u8]) -> Option<&[u8]> {
+    let body = bytes.len().checked_sub(SEAL.len() + 64 + 2)?;
+    let (body, seal) = bytes.split_at_checked(body)?;
+    let mut hash = Sha256::new();
+    hash.update(body);
+    hash.update(b"}");
+    let own = seal.strip_prefix(SEAL)?.strip_suffix(b"\"}")?;
+    (own == hex(&hash.finalize()).as_bytes()).then_some(bytes)
 }
 
 /// SHA-256, hexadecimal.
@@ -50,7 +96,7 @@ pub fn digest(parts: &[&str]) -> String {
         hash.update((part.len() as u64).to_le_bytes());
         hash.update(part.as_bytes());
     }
-    hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
+    hex(&hash.finalize())
 }
 
 /// SHA-256 by path, as `sha256sum` lists them: the digest, a blank, a blank or an asterisk, the path.
@@ -115,10 +161,23 @@ impl KeptDays {
     }
 
     fn read<D: DeserializeOwned>(&self, bytes: &[u8]) -> Option<Kept<D>> {
-        let kept: Kept<D> = serde_json::from_slice(bytes).ok()?;
-        let own =
-            kept.form == FORM && kept.version == env!("CARGO_PKG_VERSION") && kept.job == self.job;
-        own.then_some(kept)
+        let kept: Kept<D> = serde_json::from_slice(unsealed(bytes)?).ok()?;
+        self.is_own(kept.form, &kept.version, &kept.job)
+            .then_some(kept)
+    }
+
+    fn is_own(&self, form: u32, version: &str, job: &str) -> bool {
+        form == FORM && version == env!("CARGO_PKG_VERSION") && job == self.job
+    }
+
+    fn found(&self, bytes: &[u8]) -> Found {
+        let Ok(stamp) = serde_json::from_slice::<Stamp>(bytes) else {
+            return Found::Damaged;
+        };
+        if !self.is_own(stamp.form, &stamp.version, &stamp.job) {
+            return Found::Other;
+        }
+        self.head_of(bytes).map_or(Found::Damaged, Found::Own)
     }
 
     /// Keeps the result of a file; another run may do the same at the same time, the file is whole at any moment.
@@ -137,17 +196,67 @@ impl KeptDays {
             done: file.result.as_ref().ok().cloned(),
             failed: file.result.as_ref().err().cloned(),
         };
-        let bytes = serde_json::to_vec(&kept).map_err(std::io::Error::other)?;
+        let bytes = sealed(serde_json::to_vec(&kept).map_err(std::io::Error::other)?);
+        self.write(&self.place(&file.sha256, &file.path), &bytes)
+    }
+
+    fn write(&self, place: &Path, bytes: &[u8]) -> std::io::Result<()> {
         std::fs::create_dir_all(&self.folder)?;
-        let place = self.place(&file.sha256, &file.path);
         // Processes of other machines and containers that share the folder may have this one's number.
         let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
         let nanos = now.map_or(0, |t| t.as_nanos());
         let part = place.with_extension(format!("{}-{nanos}.part", std::process::id()));
         let mut out = std::fs::File::create(&part)?;
-        out.write_all(&bytes)?;
+        out.write_all(bytes)?;
         drop(out);
-        std::fs::rename(&part, &place)
+        std::fs::rename(&part, place)
+    }
+
+    /// Keeps what a run is asked for, before it begins: a merge knows by it what is missing. Where it stands.
+    ///
+    /// # Errors
+    /// Those of the system.
+    pub fn put_asked(&self, files: &[String], parts: usize) -> std::io::Result<PathBuf> {
+        let asked = Asked {
+            job: self.job.clone(),
+            parts,
+            files: files.to_vec(),
+            place: String::new(),
+        };
+        let bytes = serde_json::to_vec(&asked).map_err(std::io::Error::other)?;
+        let name = hex(&Sha256::digest(&bytes));
+        let name = format!("{}.{ASKED}", name.get(..32).unwrap_or(&name));
+        let place = self.folder.join(name);
+        // All parts of a whole are asked for the same.
+        match std::fs::read(&place) {
+            Ok(there) if there == bytes => {}
+            _ => self.write(&place, &bytes)?,
+        }
+        if parts > 1 {
+            self.remove_contained(&asked, &place)?;
+        }
+        Ok(place)
+    }
+
+    /// Removes what earlier runs of this job were asked for, where `asked` holds all of it.
+    fn remove_contained(&self, asked: &Asked, place: &Path) -> std::io::Result<()> {
+        for entry in std::fs::read_dir(&self.folder)? {
+            let path = entry?.path();
+            if path == place || path.extension().is_none_or(|e| e != ASKED) {
+                continue;
+            }
+            // One that another run has removed meanwhile is gone as it should be.
+            let bytes = std::fs::read(&path).unwrap_or_default();
+            if serde_json::from_slice(&bytes).is_ok_and(|a: Asked| asked.holds(&a)) {
+                let _ = std::fs::remove_file(path);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether something is kept of a file.
+    pub fn holds(&self, file: &FileHead) -> bool {
+        self.place(&file.sha256, &file.path).is_file()
     }
 
     /// All that the folder holds of this job, without the days themselves.
@@ -164,12 +273,24 @@ impl KeptDays {
         for entry in entries {
             let path = entry?.path();
             if path.extension().is_some_and(|e| e == "json") {
-                match self.head_of(&std::fs::read(&path)?) {
-                    Some(file) => held.files.push(file),
-                    None => held.others += 1,
+                match self.found(&std::fs::read(&path)?) {
+                    Found::Own(file) => held.files.push(file),
+                    Found::Other => held.others += 1,
+                    Found::Damaged => held.damaged.push(path.display().to_string()),
+                }
+            } else if path.extension().is_some_and(|e| e == ASKED) {
+                match serde_json::from_slice::<Asked>(&std::fs::read(&path)?) {
+                    Ok(asked) if asked.job != self.job => {}
+                    Ok(asked) => held.asked.push(Asked {
+                        place: path.display().to_string(),
+                        ..asked
+                    }),
+                    Err(_) => held.damaged.push(path.display().to_string()),
                 }
             }
         }
+        held.damaged.sort();
+        held.asked.sort_by(|a, b| a.place.cmp(&b.place));
         held.files.sort_by(|a, b| a.path.cmp(&b.path));
         Ok(held)
     }
@@ -178,6 +299,22 @@ impl KeptDays {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_kept_result_of_which_any_byte_was_changed_or_cut_is_none() {
+        let json = br#"{"form":4,"max":1.25,"name":"A.FZ"}"#.to_vec();
+        let whole = sealed(json.clone());
+        assert_eq!(unsealed(&whole), Some(&whole[..]));
+        let read: serde_json::Value = serde_json::from_slice(&whole).unwrap();
+        assert_eq!(read["max"], 1.25);
+        assert_eq!(unsealed(&json), None);
+        for i in 0..whole.len() {
+            assert_eq!(unsealed(&whole[..i]), None, "{i}");
+            let mut other = whole.clone();
+            other[i] ^= 1;
+            assert_eq!(unsealed(&other), None, "{i}");
+        }
+    }
 
     #[test]
     fn lines_of_sha256sum_are_read_and_others_refused() {

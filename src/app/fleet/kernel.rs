@@ -4,6 +4,7 @@ use super::day::{Day, DayFinding, GaugeDay, LoadDay};
 use super::health::Health;
 use super::judged::{Judged, findings_of};
 use super::recovering::{Part, Recovering, counted};
+use crate::app::files::may_be_cut;
 use crate::app::job::StrainCorrection;
 use crate::app::job::correct::{Channel, channel_of, column_of, columns_wanted};
 use crate::app::job::gauge_column::strain_columns;
@@ -63,6 +64,8 @@ impl Kernel {
         };
         let irregular = clock::irregular("time", &record.clock, second);
         findings.extend(irregular.into_iter().map(DayFinding::from));
+        let cut = record.left_out().map(|_| may_be_cut("last line"));
+        findings.extend(cut.map(DayFinding::from));
         let r = self.prepared(record, &mut findings)?;
         let k = self.sensitivity.loads.len();
         let zero_sigma = r.filter.sigma(&vec![0.0; k]);
@@ -121,13 +124,15 @@ impl Kernel {
                     tally: c.finish(),
                 });
         let leverage = &r.filter.whole().leverage;
+        // A time without readings does no damage that is counted.
+        let known = missing.whole + missing.known_in_gaps.iter().max().copied().unwrap_or(0);
         let mut gauges = health.days(&r.sensitivity.gauges, leverage);
         gauges.extend(r.silent.iter().map(|name| GaugeDay::silent(name)));
         let place = |g: &GaugeDay| self.sensitivity.gauges.iter().position(|n| *n == g.name);
         gauges.sort_by_key(place);
         Ok(Day {
             rate_hz: record.clock.rate_hz / second,
-            hours: record.clock.duration_s() * second / 3600.0,
+            hours: known as f64 / record.clock.rate_hz * second / 3600.0,
             missing: record.clock.missing,
             loads: loads.collect(),
             gauges,

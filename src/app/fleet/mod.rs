@@ -4,6 +4,7 @@
 //! depends on, so that a second run does what is new alone and many machines can share one folder; [`merge`] joins the days of a
 //! vehicle exactly.
 
+mod asked;
 pub mod day;
 mod found;
 mod health;
@@ -77,6 +78,7 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
     let (files, reused) = if spec.files.is_empty() {
         held(&mut work, &kept, &spec.folder)?
     } else {
+        work.sources.extend(spec.files.iter().cloned());
         work.stage("records", |w| done(w, &kernel, &kept, &form, spec))?
     };
     let (vehicles, status) = work.stage("merge", |w| merged(w, &kept, &files))?;
@@ -135,7 +137,12 @@ fn held(work: &mut Work, kept: &KeptDays, folder: &Path) -> Result<(Vec<FileHead
         ))
     })?;
     if held.files.is_empty() {
-        let wrong = "no results of this job are kept there";
+        let wrong = match held.damaged.first() {
+            None => "no results of this job are kept there".to_owned(),
+            Some(path) => format!(
+                "`{path}` is cut or was changed, and no other result of this job is kept there"
+            ),
+        };
         let remedy = "name the records to be done, or the folder of an earlier run with --out";
         return Err(Fault::of(&*shown, "days", wrong, remedy).into());
     }
@@ -151,6 +158,17 @@ fn held(work: &mut Work, kept: &KeptDays, folder: &Path) -> Result<(Vec<FileHead
             "remove them where they are no longer wanted",
         ));
     }
+    work.findings.extend(held.damaged.iter().map(|path| {
+        Finding::new(
+            Severity::Error,
+            "fleet-result-damaged",
+            path,
+            "this kept result is cut, or was changed after it was written: it counts for nothing",
+            "run the records again into this folder, then remove it if it is still there",
+        )
+    }));
+    let missing = held.asked.iter().filter_map(|a| a.missing(&held.files));
+    work.findings.extend(missing);
     let n = held.files.len();
     Ok((held.files, n))
 }
@@ -172,6 +190,9 @@ fn done(
         .filter(|(i, _)| spec.shard.is_none_or(|s| s.holds(*i)))
         .map(|p| p.1)
         .collect();
+    let asked = kept
+        .put_asked(&paths, spec.shard.map_or(1, |s| s.of))
+        .map_err(|e| not_kept(&spec.folder.display().to_string(), &e))?;
     let (source, progress) = (work.cx.files, work.cx.progress);
     progress.parts(mine.len());
     let results: Vec<Result<(FileHead, bool), Fault>> = mine
@@ -199,6 +220,10 @@ fn done(
         let (file, was_kept) = result?;
         reused += usize::from(was_kept);
         files.push(file);
+    }
+    // Of a part, the others are still to come.
+    if spec.shard.is_none() && files.iter().all(|f| kept.holds(f)) {
+        let _ = std::fs::remove_file(asked);
     }
     Ok((files, reused))
 }
@@ -235,20 +260,17 @@ fn one(
         return Ok((before, true));
     }
     file.result = day_of(kernel, &opened);
-    kept.put(&file).map_err(|e| {
-        let remedy = "choose another folder with --out";
-        Fault::of(
-            path,
-            "output",
-            format!("its result can't be kept ({e})"),
-            remedy,
-        )
-    })?;
+    kept.put(&file).map_err(|e| not_kept(path, &e))?;
     // What is read back is what a later run would read, to the last digit: a merge of kept results has the same bytes.
     Ok((
         kept.head(path, &file.sha256).unwrap_or_else(|| file.into()),
         false,
     ))
+}
+
+fn not_kept(path: &str, e: &std::io::Error) -> Fault {
+    let wrong = format!("its result can't be kept ({e})");
+    Fault::of(path, "output", wrong, "choose another folder with --out")
 }
 
 /// What a record comes to.
@@ -266,5 +288,17 @@ pub fn day_of(kernel: &Kernel, opened: &Opened) -> Result<Day, String> {
     opened
         .check()
         .map_err(|e| format!("it can't be read: {e}"))?;
-    day
+    let day = day?;
+    let is_number = |l: &&day::LoadDay| {
+        let sums = &l.tally.sums;
+        let [a, b, c] = sums.damage;
+        (a + b + c + sums.scatter).is_finite()
+    };
+    match day.loads.iter().find(|l| !is_number(l)) {
+        None => Ok(day),
+        Some(l) => Err(format!(
+            "the damage of load {} is larger than numbers can be: report it in a larger unit, or state a lower slope",
+            l.name
+        )),
+    }
 }

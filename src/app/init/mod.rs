@@ -65,6 +65,7 @@ pub fn init(
     let deck = work.stage("read deck", |s| {
         read_model(&mut s.inputs, Path::new(""), &given)
     })?;
+    Faults::check(deck.incomplete())?;
     if deck.model.grids.is_empty() {
         let none = Fault::of(
             &*given,
@@ -190,6 +191,9 @@ fn read_strained(
                     "give an OP2, punch or HDF5 file of a static run",
                 )
             })?;
+        if let Some(cut) = deck.cut_beside(&solution.findings) {
+            return Err(cut.into());
+        }
         // What a file lacks is said by the job, which leaves it out then.
         let findings = solution.findings.iter();
         let said =

@@ -5,7 +5,6 @@ use super::round::round;
 use super::text::{JOB, JobPlan};
 use crate::app::context::{Context, Files};
 use crate::app::deck::without_dots;
-use crate::app::fault::Faults;
 use crate::app::files::FileBytes;
 use crate::app::job::Job;
 use crate::app::place::place;
@@ -42,7 +41,7 @@ impl Verdict {
     }
 }
 
-/// The first of the proposals that `place` answers, even if with doubts of its own that it will tell; else the first.
+/// The first of the proposals that `place` answers without an error of its own, even if with doubts that it will tell; else the first.
 pub(super) fn first_that_places(cx: &Context, plan: &JobPlan, proposals: &[Proposal]) -> Verdict {
     if plan.deck.model.grids.len() > MOST_GRIDS {
         return Verdict {
@@ -55,20 +54,16 @@ pub(super) fn first_that_places(cx: &Context, plan: &JobPlan, proposals: &[Propo
         Some(_) => cx.clone(),
         None => cx.clone().store(&Memory::default()),
     };
-    let mut first_fault = None;
+    let mut first_why = None;
     for trial in trials(plan, proposals).take(MOST_TRIALS) {
         match try_place(&cx, &trial) {
             Ok(()) => return answer(&trial),
-            Err(faults) => first_fault = first_fault.or(Some(faults)),
+            Err(why) => first_why = first_why.or(Some(why)),
         }
     }
-    let why = first_fault
-        .as_ref()
-        .and_then(|f| f.iter().next())
-        .map_or_else(
-            || "neither subcases with loads nor points where loads could act were found".to_owned(),
-            |f| format!("{}: {}", f.wrong, f.remedy),
-        );
+    let why = first_why.unwrap_or_else(|| {
+        "neither subcases with loads nor points where loads could act were found".to_owned()
+    });
     Verdict {
         finding: Some(Finding::new(
             Severity::Warning,
@@ -120,7 +115,8 @@ fn trials<'a>(
     whole.chain(fewer)
 }
 
-fn try_place(cx: &Context, trial: &JobPlan) -> Result<(), Faults> {
+/// Whether `place` answers; else why not.
+fn try_place(cx: &Context, trial: &JobPlan) -> Result<(), String> {
     let path = trial.folder.join(JOB);
     // Whether loads can be told apart shows with four angles a place; the certificate of many is for `place`.
     let trial = JobPlan {
@@ -137,7 +133,21 @@ fn try_place(cx: &Context, trial: &JobPlan) -> Result<(), Faults> {
         store: cx.store.clone(),
         progress: cx.progress,
     };
-    place(&Job::read(&path, &files)?, &cx).map(|_| ())
+    let placed = Job::read(&path, &files).and_then(|job| place(&job, &cx));
+    let said = |wrong: &str, remedy: &str| format!("{wrong}: {remedy}");
+    match placed {
+        Err(faults) => Err(faults
+            .iter()
+            .next()
+            .map_or_else(String::new, |f| said(&f.wrong, &f.remedy))),
+        Ok(placed) => {
+            let mut findings = placed.findings.iter();
+            match findings.find(|f| f.severity == Severity::Error) {
+                Some(f) => Err(said(&f.message, &f.remedy)),
+                None => Ok(()),
+            }
+        }
+    }
 }
 
 /// The files of a context and a job that isn't written yet.

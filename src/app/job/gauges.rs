@@ -24,7 +24,8 @@ pub(super) fn read_gauge_file(
     let table = inputs
         .read_named_text(job, named)
         .map_err(Faults::from)
-        .and_then(|t| read_table(&named.given, &t));
+        .and_then(|t| read_table(&named.given, &t))
+        .and_then(|t| Ok(t.check_rows().map(|()| t)?));
     match table {
         Ok(t) => gauges_from_table(&t, job.units.length_m(), faults),
         Err(f) => {

@@ -40,6 +40,7 @@ pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunR
         .map_err(Faults::from)?;
     let mut t = read_table(&runs.file.given, &text)?;
     let headers = take_units(&mut t);
+    t.check_rows()?;
     let mut faults = FaultList::new();
     let key = run_column(&t, &headers)?;
     let mut columns: Vec<(String, usize, (Option<Quantity>, f64))> = Vec::new();

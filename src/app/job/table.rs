@@ -141,6 +141,24 @@ fn with_point(field: &str, mark: DecimalMark) -> String {
 }
 
 impl Table {
+    /// Refuses a header without rows, which says nothing.
+    ///
+    /// # Errors
+    /// A fault where there is no row.
+    pub fn check_rows(&self) -> Result<(), Fault> {
+        let remedy = "write a row an entry";
+        match self.rows.is_empty() {
+            true => Err(Fault::at(
+                &*self.file,
+                1,
+                "rows",
+                "a header and no rows",
+                remedy,
+            )),
+            false => Ok(()),
+        }
+    }
+
     /// Index of the first of these columns that exists.
     pub fn column(&self, names: &[&str]) -> Option<usize> {
         names

@@ -126,6 +126,7 @@ fn read(
         .map_err(Faults::from)?;
     let mut t = read_table(&runs.file.given, &text)?;
     let headers = take_units(&mut t);
+    t.check_rows()?;
     let key = run_column(&t, &headers)?;
     let mut faults = FaultList::new();
     let mut causes = Vec::new();

@@ -6,6 +6,7 @@ use crate::app::deck::DeckModel;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Job, JobLoad, LoadRole, Reference};
 use crate::app::job_deck::read_deck;
+use crate::app::named_results::results_fault;
 use crate::app::solved::{MODES, cases_of_job, solve_kept};
 use crate::app::work::Work;
 use crate::fe::from_results::{Displacements, ReadOptions, solution_from_file};
@@ -155,15 +156,7 @@ pub fn read_fields(work: &mut Work, job: &Job) -> Result<Fields, Faults> {
             ResultsFile::read(&bytes, &named.given)
                 .map(|file| solution_from_file(&deck.model, &named.given, &file, &options))
         });
-        let solution = solution.map_err(|e| {
-            Faults::from(Fault::at(
-                &*job.file,
-                named.line,
-                &*named.key,
-                e.to_string(),
-                "give an OP2, punch or HDF5 file of a static run",
-            ))
-        })?;
+        let solution = solution.map_err(|e| results_fault(job, named, &e))?;
         work.findings.extend(solution.findings.iter().cloned());
         solutions.push(solution);
     }

@@ -22,6 +22,7 @@ pub use units::{LoadSigma, LoadUnits, load_units};
 use super::fault::{Fault, Faults};
 use super::job::correct::noted;
 use super::job::{Job, Measured};
+use super::named_results::{Absent, check_named};
 use super::outcome::finite;
 use super::work::Work;
 use crate::finding::{Finding, Severity};
@@ -71,7 +72,10 @@ pub fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
                 let gauges = lay_gauges(work, job, &fields)?;
                 (Some(fields), gauges)
             }
-            _ => (None, Vec::new()),
+            _ => {
+                check_named(work, job, Absent::Refused)?;
+                (None, Vec::new())
+            }
         };
         Prepared {
             sensitivity,

@@ -75,6 +75,7 @@ mod tests {
         let outcome = Outcome {
             units: StatedUnits::default(),
             inputs: Vec::new(),
+            sources: Vec::new(),
             findings: Findings::default(),
             seconds: Seconds::default(),
             notes: Vec::new(),

@@ -74,7 +74,7 @@ pub fn finish<A: Answer>(outcome: &Outcome<A>, mut out: Output) -> Result<String
         .to_json(out.tables())
         .map_err(|e| mistake("result.json", &e))?;
     out.write_bytes("result.json", json.as_bytes())?;
-    out.commit(A::COMMAND)?;
+    out.commit(A::COMMAND, &outcome.sources)?;
     Ok(json)
 }
 

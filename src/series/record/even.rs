@@ -67,6 +67,11 @@ impl Record {
         }
     }
 
+    /// The last line of the file, where it may be cut and is left out.
+    pub fn left_out(&self) -> Option<usize> {
+        self.reader.left_out()
+    }
+
     /// Its columns, in file order.
     pub fn columns(&self) -> &[Column] {
         self.reader.columns()

@@ -87,6 +87,10 @@ pub trait RecordReader: Send + Sync {
             ControlFlow::Break(())
         })
     }
+    /// The last line of the file, where it may be cut and is left out.
+    fn left_out(&self) -> Option<usize> {
+        None
+    }
     /// Rows of a piece, where they are known without decoding it.
     fn rows(&self, _piece: usize) -> Option<usize> {
         None

@@ -252,7 +252,7 @@ fn missing_samples_are_gaps_and_not_invented() {
         .enumerate()
         .filter(|(n, _)| !(201..251).contains(n) && *n != 301);
     let kept: Vec<&str> = kept.map(|l| l.1).collect();
-    let record = open(&kept.join("\n")).unwrap();
+    let record = open(&(kept.join("\n") + "\n")).unwrap();
     let clock = &record.clock;
     assert_eq!(
         (clock.samples, clock.rows, clock.missing, clock.n_gaps),

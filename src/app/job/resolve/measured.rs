@@ -267,6 +267,9 @@ pub(super) fn recover(c: &mut Collector, raw: Option<&Spanned<RawRecover>>) -> R
     }
 }
 
+/// Largest load range of a knee: no structure bears it in any unit, and its power of 20 is still a number.
+const LARGEST_KNEE: f64 = 1e12;
+
 pub(super) fn fleet(c: &mut Collector, raw: Option<&Spanned<RawFleet>>) -> Option<Fleet> {
     let section = raw?;
     let raw = section.value();
@@ -282,9 +285,22 @@ pub(super) fn fleet(c: &mut Collector, raw: Option<&Spanned<RawFleet>>) -> Optio
         "a number from 1 to 40",
         |x| (1.0..=40.0).contains(&x),
     );
+    if let (Some(slope), None) = (&raw.slope_below_knee, &raw.knee_range) {
+        c.fault(
+            slope,
+            "fleet.slope_below_knee",
+            "there is no `knee_range` below which it would hold",
+            "add `knee_range`, or leave it out",
+        );
+    }
     Some(Fleet {
         file_name: c.named(&raw.file_name, "fleet.file_name")?,
-        knee_range: c.positive(&raw.knee_range, "fleet.knee_range"),
+        knee_range: c.number(
+            &raw.knee_range,
+            "fleet.knee_range",
+            "a number above 0 and at most 1e12",
+            |x| x > 0.0 && x <= LARGEST_KNEE,
+        ),
         slope_below_knee: slope.unwrap_or(f64::INFINITY),
     })
 }

@@ -14,6 +14,8 @@ use crate::placement::Loss;
 pub(super) const DEFAULT_NOISE_MICROSTRAIN: f64 = 1.0;
 /// Angles of candidates where the job says nothing, degrees.
 const DEFAULT_ANGLE_STEP_DEG: f64 = 15.0;
+/// Least step of angles: a tenth of what gauges are glued to. Every place is tried at each angle, and "continuous" takes the best of all.
+const LEAST_ANGLE_STEP_DEG: f64 = 0.1;
 
 pub(super) fn default_criterion(loads: &[JobLoad]) -> Optimality {
     if loads.iter().any(|l| l.role == LoadRole::Nuisance) {
@@ -65,7 +67,7 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
     }
     match raw.angle_step_deg.as_ref().map(|a| (a, a.value())) {
         None => {}
-        Some((_, NumberOrWord::Number(x))) if *x > 0.0 && *x <= 180.0 => {
+        Some((_, NumberOrWord::Number(x))) if (LEAST_ANGLE_STEP_DEG..=180.0).contains(x) => {
             out.angles = AngleStep::Degrees(*x)
         }
         Some((_, NumberOrWord::Word(w))) if w == "continuous" => out.angles = AngleStep::Continuous,
@@ -74,8 +76,9 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
                 NumberOrWord::Number(x) => x.to_string(),
                 NumberOrWord::Word(w) => w.clone(),
             };
-            let wrong =
-                format!("`{found}`, expected degrees above 0 and up to 180, or \"continuous\"");
+            let wrong = format!(
+                "`{found}`, expected degrees from {LEAST_ANGLE_STEP_DEG} to 180, or \"continuous\""
+            );
             c.fault(
                 at,
                 "candidates.angle_step_deg",

@@ -4,9 +4,11 @@
 //! header, a row of units after it, units in the header, quoted fields; times in seconds, in a stated unit, or as date and time.
 
 mod date;
+mod end;
 mod layout;
 mod text;
 
+pub use end::unsure_end;
 pub use layout::{Layout, is_units};
 
 use super::column::Column;
@@ -27,6 +29,8 @@ pub struct Csv {
     columns: Vec<Column>,
     /// Field of each column.
     fields: Vec<usize>,
+    /// Where the last line begins, if it was left out.
+    left_out: Option<usize>,
 }
 
 impl Csv {
@@ -36,9 +40,10 @@ impl Csv {
     /// No header, a header without rows, a time column in a unit that is none of time.
     pub fn new(bytes: Bytes) -> Result<Self, SeriesError> {
         let layout = Layout::of((*bytes).as_ref())?;
-        let pieces = layout
-            .encoding
-            .pieces((*bytes).as_ref(), layout.start, PIECE);
+        let left_out = unsure_end((*bytes).as_ref()).filter(|at| *at > layout.start);
+        let whole = (*bytes).as_ref();
+        let whole = left_out.and_then(|at| whole.get(..at)).unwrap_or(whole);
+        let pieces = layout.encoding.pieces(whole, layout.start, PIECE);
         let (fields, columns) = layout
             .columns
             .iter()
@@ -52,6 +57,7 @@ impl Csv {
             pieces,
             columns,
             fields,
+            left_out,
         })
     }
 
@@ -89,6 +95,11 @@ impl RecordReader for Csv {
             },
             None => Times::None { samples: None },
         }
+    }
+
+    fn left_out(&self) -> Option<usize> {
+        let before = (*self.bytes).as_ref().get(..self.left_out?)?;
+        Some(self.layout.encoding.lines(before) + 1)
     }
 
     fn n_pieces(&self) -> usize {

@@ -24,6 +24,14 @@ impl Encoding {
         }
     }
 
+    /// Bytes of an end of line.
+    pub fn unit(self) -> usize {
+        match self {
+            Self::Bytes => 1,
+            Self::Utf16Le | Self::Utf16Be => 2,
+        }
+    }
+
     /// The text as bytes that hold ASCII as such.
     pub fn text(self, raw: &[u8]) -> Cow<'_, [u8]> {
         let unit = match self {

@@ -1,0 +1,74 @@
+//! What runs into a folder were asked for, and what of it is missing when their results are merged.
+
+use super::day::FileHead;
+use super::name::Shard;
+use crate::finding::{Finding, Severity, few};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+
+/// Ends the names of these files in the folder of the kept results.
+pub const ASKED: &str = "asked";
+
+/// What a run was asked for; all parts of a whole are asked for the same.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Asked {
+    /// Digest of the job and of every file it stands on.
+    pub job: String,
+    /// Into how many parts the whole was divided.
+    pub parts: usize,
+    /// All records of the whole, sorted.
+    pub files: Vec<String>,
+    /// Where this stands.
+    #[serde(skip)]
+    pub place: String,
+}
+
+impl Asked {
+    /// Whether it asks for all that another of the same job asks for.
+    pub fn holds(&self, other: &Self) -> bool {
+        let own = |f: &String| self.files.binary_search(f).is_ok();
+        self.job == other.job && other.files.iter().all(own)
+    }
+
+    /// An error that names the records, and the parts, of which nothing is kept.
+    pub fn missing(&self, held: &[FileHead]) -> Option<Finding> {
+        let held: BTreeSet<&str> = held.iter().map(|f| f.path.as_str()).collect();
+        let is_missing = |f: &(usize, &String)| !held.contains(f.1.as_str());
+        let missing: Vec<(usize, &String)> =
+            self.files.iter().enumerate().filter(is_missing).collect();
+        let paths: Vec<&str> = missing.iter().map(|m| m.1.as_str()).collect();
+        let of = self.parts;
+        let lacks = |number: &usize| {
+            let shard = Shard {
+                number: *number,
+                of,
+            };
+            missing.iter().any(|m| shard.holds(m.0))
+        };
+        let parts: Vec<String> = (1..=of)
+            .filter(lacks)
+            .map(|n| format!("{n}/{of}"))
+            .collect();
+        let in_parts = match of {
+            0 | 1 => String::new(),
+            _ => format!(" (shard {})", few(&parts)),
+        };
+        (!missing.is_empty()).then(|| {
+            Finding::new(
+                Severity::Error,
+                "fleet-records-missing",
+                few(&paths),
+                format!(
+                    "of {} records that were to be done {} have no kept result{in_parts}: their hours and damage are not in this merge",
+                    self.files.len(),
+                    missing.len()
+                ),
+                format!(
+                    "run them into this folder; where they are no longer wanted, remove `{}`",
+                    self.place
+                ),
+            )
+            .with_numbers(missing.len() as f64, 0.0)
+        })
+    }
+}

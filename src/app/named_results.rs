@@ -1,0 +1,50 @@
+//! Result files that a job names.
+
+use super::fault::{Fault, FaultList, Faults};
+use super::files::unreadable_at;
+use super::job::{Job, NamedFile};
+use super::work::Work;
+use nastran::results::{ResultsError, ResultsFile};
+
+/// Results that are not there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Absent {
+    /// The job is wrong.
+    Refused,
+    /// The run that writes them is still to come.
+    ToCome,
+}
+
+/// Refuses results that the job names and that are cut or damaged, for questions that have no use for them: the job is wrong all the same.
+/// They don't count as read.
+///
+/// # Errors
+/// A fault for each; also for those that are not there, where they have to be.
+pub fn check_named(work: &Work, job: &Job, absent: Absent) -> Result<(), Faults> {
+    let mut faults = FaultList::new();
+    for named in job.model.iter().flat_map(|m| &m.results) {
+        let path = job.folder.join(&named.given);
+        let is_there = match work.inputs.load(&path) {
+            Ok(bytes) => ResultsFile::read(&bytes, &named.given)
+                .map(drop)
+                .map_err(|e| results_fault(job, named, &e)),
+            Err(e) if absent == Absent::ToCome && e.kind() == std::io::ErrorKind::NotFound => {
+                Ok(())
+            }
+            Err(e) => Err(unreadable_at(job, named, &e)),
+        };
+        faults.extend(is_there.err());
+    }
+    Faults::check(faults)
+}
+
+/// The fault of results that can't be read.
+pub fn results_fault(job: &Job, named: &NamedFile, e: &ResultsError) -> Fault {
+    Fault::at(
+        &*job.file,
+        named.line,
+        &*named.key,
+        e.to_string(),
+        "give an OP2, punch or HDF5 file of a static run",
+    )
+}

@@ -1,0 +1,145 @@
+//! Whether the last line of a table is whole.
+
+use super::text::{Encoding, field_end};
+
+/// Lines before the last that tell how its last field would be written.
+const TELLING: usize = 8;
+
+/// Where the last line begins, if it has no end of line while others have one, and may be cut within its last field: `131.9` cut is
+/// `131.`, `131` or nothing.
+///
+/// It is taken for whole where its last field has as many characters after the point as those before it. Fewer fields than in the line
+/// before are for others to refuse; two lines, of which the first may be the header, tell nothing.
+pub fn unsure_end(bytes: &[u8]) -> Option<usize> {
+    let (encoding, begin) = Encoding::of(bytes);
+    let mut starts = vec![last_line(encoding, bytes, bytes.len())];
+    while let Some(at) = starts.last().copied().filter(|at| *at > begin)
+        && starts.len() <= TELLING
+    {
+        starts.push(last_line(encoding, bytes, at - encoding.unit()));
+    }
+    let mut ends = vec![bytes.len()];
+    ends.extend(starts.iter().copied());
+    let lines: Vec<Vec<u8>> = starts
+        .iter()
+        .zip(ends)
+        .map(|(from, to)| {
+            encoding
+                .text(bytes.get(*from..to).unwrap_or_default())
+                .into_owned()
+        })
+        .collect();
+    let (last, before) = lines.split_first()?;
+    let previous = before.first().filter(|_| before.len() > 1)?;
+    let blank = last.iter().all(|b| b.is_ascii_whitespace());
+    if blank || last.first() == Some(&b'#') || matches!(last.last(), Some(b'\r' | b'\n')) {
+        return None;
+    }
+    // Commas may stand in numbers beside the others.
+    let divides = |d: &u8| previous.contains(d);
+    let delimiter = [b';', b'\t'].into_iter().find(divides).unwrap_or(b',');
+    let (n, own) = last_field(last, delimiter);
+    if n < last_field(previous, delimiter).0 {
+        return None;
+    }
+    // Of a few rows the first line may be the header.
+    let rows = before.get(..before.len().min(TELLING) - 1)?;
+    let alike = |line: &Vec<u8>| {
+        let (fields, field) = last_field(line, delimiter);
+        fields == n && after_point(field) == after_point(own)
+    };
+    let whole = after_point(own) != Some(0) && after_point(own).is_some() && rows.iter().all(alike);
+    // A delimiter that ends every line.
+    let closed = own.is_empty() && rows.iter().all(|r| last_field(r, delimiter) == (n, own));
+    (!whole && !closed).then_some(*starts.first()?)
+}
+
+/// Where the line begins that ends before `end`.
+fn last_line(encoding: Encoding, bytes: &[u8], end: usize) -> usize {
+    let unit = encoding.unit();
+    let begin = Encoding::of(bytes).1;
+    let text = bytes.get(begin..end).unwrap_or_default();
+    match encoding {
+        Encoding::Bytes => memchr::memrchr(b'\n', text).map_or(begin, |n| begin + n + 1),
+        Encoding::Utf16Le | Encoding::Utf16Be => {
+            let mut pairs = text.chunks_exact(unit);
+            let is_end = |pair: &[u8]| encoding.lines(pair) == 1;
+            pairs
+                .rposition(is_end)
+                .map_or(begin, |n| begin + unit * (n + 1))
+        }
+    }
+}
+
+/// Number of fields of a line, and the last of them.
+fn last_field(line: &[u8], delimiter: u8) -> (usize, &[u8]) {
+    let (mut n, mut rest) = (1, line);
+    loop {
+        let end = field_end(rest, delimiter);
+        let (field, after) = rest.split_at_checked(end).unwrap_or((rest, &[]));
+        match after.split_first() {
+            Some((d, next)) if *d == delimiter => (n, rest) = (n + 1, next),
+            _ => return (n, field.trim_ascii()),
+        }
+    }
+}
+
+/// Characters after the decimal point or comma; `None` where there is none.
+fn after_point(field: &[u8]) -> Option<usize> {
+    let at = field.iter().rposition(|b| matches!(b, b'.' | b','))?;
+    Some(field.len() - at - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(rows: &[&str]) -> String {
+        let mut text = "time,A [um/m],B [um/m]\n".to_owned();
+        rows.iter().for_each(|r| text += &format!("{r}\n"));
+        text
+    }
+
+    #[test]
+    fn a_last_number_that_was_cut_is_not_taken_for_whole() {
+        let text = table(&["0.00,1.5,130.2", "0.01,1.6,128.4", "0.02,1.7,131.9"]);
+        let start = text.rfind("0.02").unwrap();
+        assert_eq!(unsure_end(text.as_bytes()), None);
+        // The line end alone is missing.
+        assert_eq!(unsure_end(&text.as_bytes()[..text.len() - 1]), None);
+        for less in 2..=6 {
+            let cut = &text.as_bytes()[..text.len() - less];
+            assert_eq!(unsure_end(cut), Some(start), "{less}");
+        }
+        // Fields are missing: the reader says so.
+        let cut = &text.as_bytes()[..text.len() - 7];
+        assert_eq!(unsure_end(cut), None);
+        let returns = text.replace('\n', "\r\n");
+        assert_eq!(unsure_end(&returns.as_bytes()[..returns.len() - 1]), None);
+        assert!(unsure_end(&returns.as_bytes()[..returns.len() - 3]).is_some());
+    }
+
+    #[test]
+    fn numbers_of_any_length_can_not_be_told_from_cut_ones() {
+        let text = table(&["0,1.5,130", "1,1.6,128.45", "2,1.7,131.9"]);
+        assert!(unsure_end(&text.as_bytes()[..text.len() - 1]).is_some());
+        let semicolons = "run;A;B\nR1;1,5;2,25;\nR2;1,5;2,35;\nR3;1,5;2,45;";
+        assert_eq!(unsure_end(semicolons.as_bytes()), None);
+        for nothing in ["", "\n", "a", "time,A\n0,1", "# only\n# comments\n# here"] {
+            assert_eq!(unsure_end(nothing.as_bytes()), None, "{nothing}");
+        }
+    }
+
+    #[test]
+    fn text_of_two_bytes_a_character_is_judged_alike() {
+        let text = table(&["0.00,1.5,130.2", "0.01,1.6,128.4", "0.02,1.7,131."]);
+        let mut bytes = vec![0xff, 0xfe];
+        text.trim_end()
+            .encode_utf16()
+            .for_each(|u| bytes.extend(u.to_le_bytes()));
+        let start = 2 + 2 * text.rfind("0.02").unwrap();
+        assert_eq!(unsure_end(&bytes), Some(start));
+        bytes.extend([b'\n', 0]);
+        assert_eq!(unsure_end(&bytes), None);
+    }
+}

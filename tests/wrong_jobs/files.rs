@@ -1,0 +1,225 @@
+//! Jobs of `examples/` whose files are cut, replaced or of a header alone.
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// A copy of a folder of `examples/`.
+fn copy_of(folder: &str, name: &str) -> PathBuf {
+    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let to = Path::new(env!("CARGO_TARGET_TMPDIR")).join("copies");
+    let (from, to) = (from.join(folder), to.join(name));
+    let _ = std::fs::remove_dir_all(&to);
+    std::fs::create_dir_all(&to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_file() {
+            std::fs::copy(&path, to.join(path.file_name().unwrap())).unwrap();
+        }
+    }
+    to
+}
+
+/// Exit code and standard error of a call in a folder.
+fn call(folder: &Path, arguments: &[&str]) -> (i32, String) {
+    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .args(arguments)
+        .arg("--no-cache")
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    let error = String::from_utf8_lossy(&done.stderr).into_owned();
+    (done.status.code().unwrap_or(-1), error)
+}
+
+/// Puts one text for another in a file.
+fn edit(file: &Path, from: &str, to: &str) {
+    let text = std::fs::read_to_string(file).unwrap();
+    assert!(text.contains(from), "{from} in {text}");
+    std::fs::write(file, text.replace(from, to)).unwrap();
+}
+
+#[test]
+fn no_output_is_written_over_what_the_command_has_read() {
+    let dir = copy_of("fleet", "own_inputs");
+    let job = dir.join("fleet.toml");
+    std::fs::rename(dir.join("s_wheels.csv"), dir.join("sensitivity.csv")).unwrap();
+    std::fs::rename(dir.join("A_2026-05-01.csv"), dir.join("loads.csv")).unwrap();
+    edit(&job, "s_wheels.csv", "sensitivity.csv");
+    edit(&job, "A_2026-05-01.csv", "loads.csv");
+    for (command, name) in [("sensitivity", "sensitivity.csv"), ("recover", "loads.csv")] {
+        let before = std::fs::read(dir.join(name)).unwrap();
+        let count = || std::fs::read_dir(&dir).unwrap().count();
+        let files = count();
+        for out in [".", "../own_inputs"] {
+            let (code, said) = call(&dir, &[command, "fleet.toml", "--out", out]);
+            assert_eq!(code, 2, "{said}");
+            assert!(said.contains(name) && said.contains("--out"), "{said}");
+        }
+        assert_eq!(std::fs::read(dir.join(name)).unwrap(), before);
+        assert_eq!(count(), files, "nothing is left behind");
+        let (code, said) = call(&dir, &[command, "fleet.toml", "--out", "elsewhere"]);
+        assert_eq!(code, 0, "{said}");
+        std::fs::remove_dir_all(dir.join("elsewhere")).unwrap();
+    }
+}
+
+#[test]
+fn a_folder_of_two_commands_is_verified_by_the_files_of_the_last() {
+    let dir = copy_of("frame", "two_commands");
+    for command in ["sensitivity", "recover"] {
+        let (code, said) = call(&dir, &[command, "recover.toml"]);
+        assert_eq!(code, 0, "{said}");
+    }
+    let (code, said) = call(&dir, &["verify", "recover.out"]);
+    assert_eq!(code, 0, "{said}");
+    std::fs::remove_file(dir.join("recover.out/loads.csv")).unwrap();
+    let (code, said) = call(&dir, &["verify", "recover.out"]);
+    assert_eq!(code, 1, "{said}");
+    // What it would replace is what it verifies.
+    let (code, said) = call(&dir, &["verify", "recover.out", "--out", "recover.out"]);
+    assert_eq!(code, 2, "{said}");
+}
+
+#[test]
+fn a_table_whose_last_number_may_be_cut_is_said_and_a_record_is_read_without_it() {
+    let dir = copy_of("fleet", "cut_record");
+    let record = dir.join("A_2026-05-01.csv");
+    let whole = std::fs::read(&record).unwrap();
+    let samples = || -> u64 {
+        let text = std::fs::read_to_string(dir.join("out/result.json")).unwrap();
+        let result: Value = serde_json::from_str(&text).unwrap();
+        result["samples"].as_u64().unwrap()
+    };
+    let recover = ["recover", "fleet.toml", "--out", "out"];
+    let (code, said) = call(&dir, &recover);
+    assert_eq!(code, 0, "{said}");
+    assert!(!said.contains("table-may-be-cut"), "{said}");
+    let all = samples();
+    for less in [2, 3, 6] {
+        std::fs::write(&record, &whole[..whole.len() - less]).unwrap();
+        let (_, said) = call(&dir, &recover);
+        assert!(said.contains("table-may-be-cut"), "{less}: {said}");
+        assert_eq!(samples(), all - 1, "{less}");
+        let (_, said) = call(
+            &dir,
+            &["fleet", "fleet.toml", "A_2026-05-01.csv", "--out", "f"],
+        );
+        assert!(said.contains("table-may-be-cut"), "{less}: {said}");
+    }
+    // The end of the line alone: its numbers are whole.
+    std::fs::write(&record, &whole[..whole.len() - 1]).unwrap();
+    let (_, said) = call(&dir, &recover);
+    assert!(!said.contains("table-may-be-cut"), "{said}");
+    assert_eq!(samples(), all);
+    let dir = copy_of("frame", "cut_runs");
+    let strain = std::fs::read(dir.join("strain.csv")).unwrap();
+    std::fs::write(dir.join("strain.csv"), &strain[..strain.len() - 2]).unwrap();
+    let (code, said) = call(&dir, &["recover", "recover.toml"]);
+    assert!(code < 2 && said.contains("table-may-be-cut"), "{said}");
+}
+
+#[test]
+fn steps_of_angles_below_a_tenth_of_a_degree_are_refused_at_their_line() {
+    let dir = copy_of("frame", "angles");
+    for step in ["1e-9", "0.05"] {
+        let job = dir.join("place.toml");
+        let text = std::fs::read_to_string(&job).unwrap();
+        let line = 1 + text
+            .lines()
+            .position(|l| l.starts_with("angle_step_deg"))
+            .unwrap();
+        let from = text.lines().nth(line - 1).unwrap();
+        edit(&job, from, &format!("angle_step_deg = {step}"));
+        let (code, said) = call(&dir, &["place", "place.toml"]);
+        assert_eq!(code, 2, "{said}");
+        assert!(
+            said.contains(&format!("place.toml:{line}: candidates.angle_step_deg")),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn fewer_gauges_than_loads_are_not_told_that_they_stand_too_close() {
+    let dir = copy_of("frame", "few_gauges");
+    let job = dir.join("place.toml");
+    edit(&job, "gauges = 12", "gauges = 5");
+    edit(&job, "spacing = 100.0", "spacing = 0.001");
+    let (code, said) = call(&dir, &["place", "place.toml"]);
+    assert_eq!(code, 1, "{said}");
+    assert!(said.contains("loads-not-separable"), "{said}");
+    assert!(!said.contains("do not fit"), "{said}");
+}
+
+#[test]
+fn a_table_of_a_header_alone_is_refused_by_every_command_that_reads_it() {
+    let dir = copy_of("frame", "no_rows");
+    let cut = |name: &str| {
+        let text = std::fs::read_to_string(dir.join(name)).unwrap();
+        let header = text.lines().next().unwrap().to_owned();
+        std::fs::write(dir.join(name), header + "\n").unwrap();
+    };
+    let refused = |command: &str, job: &str, name: &str| {
+        let (code, said) = call(&dir, &[command, job, "--out", "out"]);
+        assert_eq!(code, 2, "{command} {job}: {said}");
+        assert!(
+            said.contains(name) && said.contains("a header and no rows"),
+            "{command} {job}: {said}"
+        );
+    };
+    cut("runs.csv");
+    for (command, job) in [
+        ("payload", "payload.toml"),
+        ("study", "study.toml"),
+        ("check", "payload.toml"),
+    ] {
+        refused(command, job, "runs.csv");
+    }
+    cut("gauges.csv");
+    for command in ["check", "solve", "cases", "sensitivity", "modes", "recover"] {
+        refused(command, "recover.toml", "gauges.csv");
+    }
+}
+
+#[test]
+fn results_that_a_job_names_are_opened_by_those_that_have_no_use_for_them() {
+    let dir = copy_of("frame", "named_results");
+    let (code, said) = call(&dir, &["solve", "place.toml", "--out", "solved"]);
+    assert_eq!(code, 0, "{said}");
+    let whole = std::fs::read(dir.join("solved/results.op2")).unwrap();
+    std::fs::write(dir.join("cut.op2"), &whole[..whole.len() * 3 / 5]).unwrap();
+    for name in ["cut.op2", "nope.op2"] {
+        for job in ["place.toml", "ballast.toml"] {
+            std::fs::copy(
+                Path::new(env!("CARGO_MANIFEST_DIR"))
+                    .join("examples/frame")
+                    .join(job),
+                dir.join(job),
+            )
+            .unwrap();
+            let deck = "deck = \"frame.bdf\"\n";
+            edit(
+                &dir.join(job),
+                deck,
+                &format!("{deck}results = [\"{name}\"]\n"),
+            );
+        }
+        for (command, job) in [
+            ("solve", "place.toml"),
+            ("modes", "place.toml"),
+            ("cases", "place.toml"),
+            ("ballast", "ballast.toml"),
+        ] {
+            let (code, said) = call(&dir, &[command, job, "--out", "out"]);
+            // The run that writes the results of `cases` is still to come.
+            let expected = if (command, name) == ("cases", "nope.op2") {
+                0
+            } else {
+                2
+            };
+            assert_eq!(code, expected, "{command} {name}: {said}");
+            assert!(expected == 0 || said.contains(name), "{command}: {said}");
+        }
+    }
+}
