@@ -2,19 +2,11 @@
 
 use super::deck_frame::DeckFrame;
 use super::influence::{influence, solve};
-use super::signature_table::SignatureTable;
+use super::signature_table::{SignatureTable, TableColumn};
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::Inputs;
 use crate::app::job::{DescribedEffect, EffectSource, Job, NamedFile};
 use crate::reconcile::strain::{StiffnessOf, StiffnessSignature};
-
-/// A column of a frame that a table may give.
-pub(super) struct TableColumn {
-    /// Its names: that of the column of S, then that of the load.
-    pub(super) names: Vec<String>,
-    /// From the table's unit to microstrain per unit of the frame.
-    pub(super) factor: f64,
-}
 
 /// The hypothesis of this id.
 pub(super) fn effect_of<'a>(job: &'a Job, id: &str) -> Option<&'a DescribedEffect> {

@@ -1,9 +1,9 @@
 //! The static frame of a job whose S and signatures are given as CSV files.
 
-use super::described::{self, TableColumn};
+use super::described;
 use super::frame_columns::FrameColumns;
 use super::model_part::{ModelPart, facts, nominal_x_m, nominal_y_m};
-use super::signature_table::SignatureTable;
+use super::signature_table::{SignatureTable, TableColumn};
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::Inputs;
 use crate::app::job::quantity::quantity_of_name;

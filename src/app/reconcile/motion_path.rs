@@ -101,7 +101,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
         motion: Some(MotionPart {
             sits: sits.first().map_or_else(
                 || "no equation can be compared".to_owned(),
-                |s| format!("largest in {}", s.words()),
+                |s| format!("the gap is largest in {}", s.words()),
             ),
             sits_at: sits,
             sits_after: outcome.after.as_ref().map_or_else(Vec::new, gap_sits),

@@ -191,7 +191,7 @@ fn where_section(found: &MotionPart) -> Section {
         "worst stretch, s: %",
         "worst size of the motion, times its rms: %",
     ];
-    let mut blocks = vec![Block::Text(format!("The gap is {}.", found.sits))];
+    let mut blocks = vec![Block::Text(format!("{}.", found.sits))];
     if !found.sits_at.is_empty() {
         blocks.push(Block::table(&head, rows(&found.sits_at)));
     }
