@@ -312,6 +312,72 @@ fn free_play_a_quadratic_damper_and_a_spring_that_changes_are_named() {
 }
 
 #[test]
+fn a_spring_that_stiffens_on_one_side_or_on_both_is_named_with_its_rate() {
+    for (effect, share) in [("quadratic_stiffness", 0.2), ("progressive_leaf", 0.5)] {
+        let (s, o) = examined(Layout::Front, effect, 2, Background::Clean);
+        assert_eq!(s, Score::Exact, "{effect}: {:?}", o.best_attempt);
+        // This share of the linear rate at 20 mm; the rate itself lies between 400 and 530 kN/m.
+        let rate = o.effects[0].size[0].abs() * 0.02 / share;
+        assert!((380e3..560e3).contains(&rate), "{effect}: {rate}");
+        // One size has one variance: its sigma squared.
+        let [sigma, variance] = [o.effects[0].sigma[0], o.covariance[0][0]];
+        assert!((variance / (sigma * sigma) - 1.0).abs() < 1e-6, "{effect}");
+    }
+}
+
+/// The word is for what no parameter was fitted to: without a second record neither the page nor the result says it.
+#[test]
+fn without_a_second_record_nothing_is_called_held_out_and_the_page_goes_from_verdict_to_notes() {
+    let Some(folder) = shared("dev-d3") else {
+        return;
+    };
+    let here = Path::new(env!("CARGO_TARGET_TMPDIR")).join("dynamic_no_hold_out");
+    let _ = std::fs::remove_dir_all(&here);
+    std::fs::create_dir_all(&here).unwrap();
+    let text = std::fs::read_to_string(folder.join("job.toml")).unwrap();
+    let kept = text.lines().filter(|l| !l.starts_with("hold_out"));
+    let absolute = |l: &str| l.replace("\"data.csv\"", &format!("{:?}", folder.join("data.csv")));
+    let text: Vec<String> = kept.map(absolute).collect();
+    std::fs::write(here.join("job.toml"), text.join("\n")).unwrap();
+    let out = here.join("out");
+    let r = run("reconcile", &here.join("job.toml"), &out);
+    assert_eq!(r["verdict"], "named", "{}", r["best_attempt"]);
+    assert_eq!(r["gap"]["judged_by"], "cross-validated");
+    assert_eq!(r["simulation"]["judged_by"], "fitted");
+    let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+    for text in [r.to_string(), page.clone()] {
+        let text = text.to_lowercase();
+        assert!(!text.contains("held-out") && !text.contains("held out"));
+    }
+    in_order(&page);
+    // When, at which frequency and at which size of the motion; what was added has a path, an old and a new value.
+    let sits = &r["sits_at"][0];
+    for key in ["band_hz", "time_s", "size_over_rms"] {
+        let at = |edge: &str| sits[key][edge].as_f64().unwrap();
+        assert!(at("from") < at("to") && at("least") <= at("gap"), "{sits}");
+    }
+    let added = &r["added"][0];
+    assert_eq!(added["effect"], "cubic_stiffness");
+    assert!(added["path"].as_str().unwrap().contains("[vehicle] terms"));
+    assert_eq!(added["old"], "none");
+}
+
+/// Verdict, where, what was added, gap, scatter; the rest behind.
+fn in_order(page: &str) {
+    let at = |title: &str| page.find(&format!("<h2>{title}</h2>"));
+    let places = [
+        "Verdict",
+        "Where the gap sits",
+        "What was added",
+        "Gap before and after",
+        "Scatter before and after",
+        "What remains",
+    ]
+    .map(|t| at(t).unwrap_or_else(|| panic!("no heading {t}")));
+    assert!(places.is_sorted(), "{places:?}");
+}
+
+#[test]
 fn controls_are_left_alone_on_clean_and_messy_backgrounds() {
     for background in [Background::Clean, Background::Messy] {
         for layout in [Layout::Front, Layout::Rear] {

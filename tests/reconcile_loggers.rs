@@ -289,6 +289,9 @@ fn a_dead_accelerometer_is_told_by_the_command_without_a_made_up_gap() {
         assert!(r["gap"][key].is_null(), "{key}: {}", r["gap"]);
     }
     assert!(r["extended_model"].is_null());
+    let findings = r["findings"].as_array().unwrap();
+    let not_in = findings.iter().find(|f| f["code"] == "effect-not-in-model");
+    assert_eq!(not_in.unwrap()["subject"], "dead_channel:a_body");
     let said = std::fs::read_to_string(folder.join("out/report.html")).unwrap();
     assert!(said.contains("No equation can be compared without"));
 }

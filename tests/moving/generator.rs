@@ -66,6 +66,9 @@ struct Law {
     k: f64,
     c: f64,
     k3: f64,
+    /// Times the square of the stretch, and times the stretch and its size.
+    k2: f64,
+    kp: f64,
     friction: f64,
     fade: f64,
     stop: f64,
@@ -128,6 +131,8 @@ impl Machine {
             let pull = stiffness * (d - d.clamp(-l.play, l.play))
                 + l.c * v
                 + l.k3 * d * d * d
+                + l.k2 * d * d
+                + l.kp * d * d.abs()
                 + l.friction * (v / l.fade).tanh()
                 + l.stop * over
                 + l.ca * v.abs()
@@ -358,6 +363,8 @@ fn hide_exactly(
             k: dice.between(400e3, 530e3),
             c: dice.between(6e3, 10e3),
             k3: 0.0,
+            k2: 0.0,
+            kp: 0.0,
             friction: 0.0,
             fade: 0.005,
             stop: 0.0,
@@ -423,6 +430,9 @@ fn hide_exactly(
                 law.c = of([2e3, 5e3, 9e3]);
             }
             "cubic_stiffness" => law.k3 = of([4e7, 1.2e8, 3.2e8]),
+            // At a stretch of 20 mm these shares of the linear rate; a square that reaches it would push the other way.
+            "quadratic_stiffness" => law.k2 = of([0.05, 0.1, 0.2]) * k / 0.02,
+            "progressive_leaf" => law.kp = of([0.1, 0.25, 0.5]) * k / 0.02,
             "coulomb_friction" => {
                 law.friction = of([150.0, 450.0, 1000.0]);
                 law.fade = [0.003, 0.006, 0.01][dice.pick(3)];

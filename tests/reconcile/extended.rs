@@ -130,21 +130,50 @@ struct Found {
 
 /// A case in which `effect` is hidden, reconciled on the first half of its runs.
 fn found(effect: &str, size: f64, seed: u64) -> Option<Found> {
+    let name = format!("extended_{effect}_{seed}");
+    found_in(&name, (effect, size, seed), |_, _| String::new())
+}
+
+/// The same in a folder of this name; `besides` may change the case and write files beside it, what it returns goes to the job's end.
+fn found_in(
+    name: &str,
+    (effect, size, seed): (&str, f64, u64),
+    besides: impl FnOnce(&mut StrainFrame, &Path) -> String,
+) -> Option<Found> {
     let shared = hidden::shared()?.join("static/dev-s1");
-    let base = doubled(&hidden::frame_of(&shared));
-    let case = hide(&base, effect, size, Background::Clean, seed);
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("extended_{effect}_{seed}"));
+    let once = hidden::frame_of(&shared);
+    let n = once.n_runs();
+    // What is wrong with the note of one run is nothing to prove on others.
+    let of_runs = effect.starts_with("run_");
+    let base = if of_runs { once } else { doubled(&once) };
+    let mut case = hide(&base, effect, size, Background::Clean, seed);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = std::fs::remove_dir_all(&folder);
-    let n = base.n_runs() / 2;
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let more = besides(&mut case.frame, &folder);
     write_runs(&case.frame, 0..n, &folder);
-    write_runs(&case.frame, n..2 * n, &folder.join("new"));
+    write_runs(&case.frame, n..base.n_runs(), &folder.join("new"));
     let job = write_job(&case.frame, &shared, &folder);
+    let text = std::fs::read_to_string(&job).expect("the job");
+    std::fs::write(&job, text + &more).expect("written");
     let (_, result) = run("reconcile", &job, &folder.join("out"));
     Some(Found {
         result,
         folder,
         frame: case.frame,
     })
+}
+
+/// The extended job; the effect is named.
+fn extended(found: &Found, effect: &str) -> PathBuf {
+    let r = &found.result;
+    assert_eq!(
+        r["verdict"], "named",
+        "{effect}: {} {}",
+        r["best_attempt"], r["remains"]
+    );
+    let path = r["extended_model"].as_str();
+    PathBuf::from(path.unwrap_or_else(|| panic!("{effect}: {}", r["findings"])))
 }
 
 fn assert_nothing_left(effect: &str, result: &Value) {
@@ -258,18 +287,222 @@ fn a_fault_of_a_channel_is_a_correction_of_the_extended_job() {
 /// A note of one run may be wrong in several ways: the extended model holds the one that was found.
 #[test]
 fn the_note_that_was_wrong_is_the_one_that_is_put_right() {
-    for seed in [41, 42, 43, 44] {
+    let seeds = [41, 42, 43, 44];
+    let mut named = 0;
+    for seed in seeds {
         let Some(found) = found("run_record", 0.8, seed) else {
             return;
         };
-        let r = &found.result;
-        if r["verdict"] != "named" {
+        if found.result["verdict"] != "named" {
             continue;
         }
-        let extended = PathBuf::from(r["extended_model"].as_str().expect("a job"));
+        named += 1;
+        let extended = extended(&found, "run_record");
         let again = run("reconcile", &extended, &found.folder.join("again"));
         assert_nothing_left("run_record", &again.1);
+        // What was noted of the run, and what stands there now.
+        let added = &found.result["added"][0];
+        assert!(
+            added["path"]
+                .as_str()
+                .is_some_and(|p| p.starts_with("runs_extended.csv: run R"))
+        );
+        assert_ne!(added["old"], added["new"], "{added}");
     }
+    // A mass that is 80 % too large in one loaded run of ten is many times the noise of any seed.
+    assert!(2 * named >= seeds.len(), "{named} of {}", seeds.len());
+}
+
+/// Faults of a channel that no entry undoes leave it out, in all runs to come as well; notes are put right in the runs at hand.
+#[test]
+fn the_extended_model_holds_channels_that_come_and_go_and_notes_that_are_wrong() {
+    for (effect, size, seed) in [
+        ("gain_drift", 0.5, 61),
+        ("cross_sensitivity", 0.5, 62),
+        ("intermittent_channel", 1.0, 63),
+        ("saturated_channel", 0.3, 64),
+        ("wheel_scale", 25.0, 65),
+        ("run_exchange", 1.0, 66),
+    ] {
+        let Some(found) = found(effect, size, seed) else {
+            return;
+        };
+        let job = extended(&found, effect);
+        let again = run("reconcile", &job, &found.folder.join("again"));
+        assert_nothing_left(effect, &again.1);
+        if matches!(effect, "wheel_scale" | "run_exchange") {
+            continue;
+        }
+        let new = with_new_runs(&found, &job);
+        let unseen = run("reconcile", &new, &found.folder.join("unseen"));
+        assert_nothing_left(&format!("{effect}, new runs"), &unseen.1);
+    }
+}
+
+/// Adds 0.8 of a change of S that is like none of the library, and writes it as a table whose columns bear the names that `named` makes of
+/// those of S.
+fn own_hypothesis(
+    frame: &mut StrainFrame,
+    folder: &Path,
+    named: impl Fn(&str) -> String,
+) -> String {
+    let mut numbers = super::strips::Numbers(3);
+    let (n_g, n_l, n_c) = (frame.n_gauges(), frame.n_loads(), frame.n_columns());
+    let change: Vec<f64> = (0..n_g * n_l)
+        .map(|i| 0.17 * numbers.next() * frame.influence[i / n_l * n_c + i % n_l].abs())
+        .collect();
+    let names: Vec<String> = frame.load_names.iter().map(|n| named(n)).collect();
+    let mut table = format!("gauge,{}\n", names.join(","));
+    for (g, row) in change.chunks_exact(n_l).enumerate() {
+        let cells: Vec<String> = row.iter().map(|v| format!("{v:.9}")).collect();
+        let _ = writeln!(table, "{},{}", frame.gauges[g].name, cells.join(","));
+    }
+    for file in ["own.csv", "other.csv"] {
+        std::fs::write(folder.join(file), &table).expect("written");
+        // The other one is turned upside down: nothing like it is there.
+        let lines: Vec<&str> = table.lines().collect();
+        let cells = |l: &&str| {
+            l.split_once(',')
+                .map(|c| c.1.to_owned())
+                .unwrap_or_default()
+        };
+        let upside_down: Vec<String> = (lines[1..].iter())
+            .zip(lines[1..].iter().rev())
+            .map(|(own, other)| {
+                let gauge = own.split(',').next().unwrap_or_default();
+                format!("{gauge},{}", cells(other))
+            })
+            .collect();
+        table = format!("{}\n{}\n", lines[0], upside_down.join("\n"));
+    }
+    for r in 0..frame.n_runs() {
+        for g in 0..n_g {
+            let loads = &frame.loads[r * n_l..(r + 1) * n_l];
+            let row = &change[g * n_l..(g + 1) * n_l];
+            let strain: f64 = row.iter().zip(loads).map(|(a, f)| a * f).sum();
+            frame.observations.values[r * n_g + g] += 0.8 * strain;
+        }
+    }
+    "[[reconcile.effect]]\nid = \"bracket_loose\"\nsignature = \"own.csv\"\nprior = 1.0\n\
+     [[reconcile.effect]]\nid = \"other_bracket\"\nsignature = \"other.csv\"\nprior = 1.0\n"
+        .to_owned()
+}
+
+#[test]
+fn a_table_of_ones_own_goes_into_s_and_leaves_the_job_the_others_stay() {
+    let as_load = |load: &str| load.to_owned();
+    let as_column = |load: &str| format!("FZ_{}", load.trim_end_matches(".FZ"));
+    let spellings: [(&str, &dyn Fn(&str) -> String); 2] =
+        [("load", &as_load), ("column", &as_column)];
+    for (spelling, named) in spellings {
+        let name = format!("extended_own_{spelling}");
+        let Some(found) = found_in(&name, ("none", 0.0, 71), |f, d| own_hypothesis(f, d, named))
+        else {
+            return;
+        };
+        assert_eq!(
+            found.result["named"],
+            serde_json::json!(["bracket_loose"]),
+            "{spelling}: {}",
+            found.result["best_attempt"]
+        );
+        let effect = &found.result["effects"][0];
+        let number = |key: &str| effect[key].as_f64().expect("a number");
+        // Four standard deviations: the noise is one draw.
+        assert!(
+            (number("size") - 0.8).abs() < 4.0 * number("sigma"),
+            "{effect}"
+        );
+        let job = extended(&found, spelling);
+        let text = std::fs::read_to_string(&job).expect("the extended job");
+        let table: toml::Table = text.parse().expect("valid toml");
+        let left = table["reconcile"]["effect"].as_array().expect("effects");
+        let ids: Vec<&str> = left.iter().filter_map(|e| e["id"].as_str()).collect();
+        assert_eq!(ids, ["other_bracket"]);
+        // Tables beside S go on naming their columns as S does.
+        assert_eq!(
+            table["sensitivity"]["columns"]["RR.FZ"].as_str(),
+            Some("FZ_RR")
+        );
+        let again = run("reconcile", &job, &found.folder.join("again"));
+        assert_nothing_left(spelling, &again.1);
+        let new = with_new_runs(&found, &job);
+        let unseen = run("reconcile", &new, &found.folder.join("unseen"));
+        assert_nothing_left(&format!("{spelling}, new runs"), &unseen.1);
+    }
+}
+
+/// An effect is accepted; in the runs after it the gauge that reads most is found with its sign turned, and that is accepted too.
+#[test]
+fn two_effects_are_accepted_one_after_the_other() {
+    let Some(mut found) = found("rail_stiffness", 20.0, 18) else {
+        return;
+    };
+    let first = extended(&found, "rail_stiffness");
+    let frame = &mut found.frame;
+    let (n_g, n) = (frame.n_gauges(), frame.n_runs());
+    let values = &mut frame.observations.values;
+    let size = |g: &usize| (0..n).map(|r| values[r * n_g + g].powi(2)).sum::<f64>();
+    let g = (0..n_g)
+        .max_by(|a, b| size(a).total_cmp(&size(b)))
+        .expect("a gauge");
+    (0..n).for_each(|r| values[r * n_g + g] *= -1.0);
+    let turned = format!("sign_flip:{}", frame.gauges[g].name);
+    write_runs(frame, n / 2..n, &found.folder.join("new"));
+    let second = with_new_runs(&found, &first);
+    let (_, result) = run("reconcile", &second, &found.folder.join("second"));
+    assert_eq!(
+        result["named"],
+        serde_json::json!([turned]),
+        "{}",
+        result["best_attempt"]
+    );
+    let third = PathBuf::from(result["extended_model"].as_str().expect("a job"));
+    let (_, last) = run("reconcile", &third, &found.folder.join("third"));
+    assert_nothing_left("both", &last);
+}
+
+/// The word is for runs that were never used: where none are, neither the page nor the result says it. The page tells its story in order.
+#[test]
+fn without_hold_out_nothing_is_called_held_out_and_the_page_goes_from_verdict_to_notes() {
+    let Some(found) = found("sign_flip", 1.0, 81) else {
+        return;
+    };
+    let text = std::fs::read_to_string(found.folder.join("job.toml")).expect("the job");
+    let mut job: toml::Table = text.parse().expect("valid toml");
+    let measured = job["measured"].as_table_mut().expect("[measured]");
+    measured.remove("hold_out");
+    let path = found.folder.join("all_runs.toml");
+    std::fs::write(&path, toml::to_string(&job).expect("toml")).expect("written");
+    let out = found.folder.join("all_runs");
+    let (_, result) = run("reconcile", &path, &out);
+    assert_eq!(result["verdict"], "named", "{}", result["best_attempt"]);
+    assert_eq!(result["gap"]["basis"], "cross-validated");
+    assert!(result["reduced_chi2"].get("held_out").is_none());
+    let page = std::fs::read_to_string(out.join("report.html")).expect("the page");
+    for text in [result.to_string(), page.clone()] {
+        let text = text.to_lowercase();
+        assert!(!text.contains("held-out") && !text.contains("held out"));
+    }
+    let at = |title: &str| page.find(&format!("<h2>{title}</h2>"));
+    let places = [
+        "Verdict",
+        "Where the gap sits",
+        "What was added",
+        "Gap before and after",
+        "Scatter before and after",
+        "The gap on the model",
+        "What remains",
+    ]
+    .map(|t| at(t).unwrap_or_else(|| panic!("no heading {t}")));
+    assert!(places.is_sorted(), "{places:?}");
+    let added = &result["added"][0];
+    assert_eq!([&added["old"], &added["new"]], ["1", "-1"], "{added}");
+    assert!(
+        added["path"]
+            .as_str()
+            .is_some_and(|p| p.contains("[[correction]]"))
+    );
 }
 
 /// Ground that is not flat is no model of the structure: nothing is written, and it is said why.

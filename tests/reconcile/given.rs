@@ -232,3 +232,46 @@ fn a_payload_moved_in_the_runs_strains_as_the_offset_that_was_found() {
         assert!((a - b).abs() < 1e-9 * size, "{a} {b}");
     }
 }
+
+#[test]
+fn a_gauge_that_sits_elsewhere_is_named_where_the_gradient_along_it_is_known() {
+    let Some((base, _)) = case("dev-s1") else {
+        return;
+    };
+    let mut frame = hide(&base, "none", 0.0, Background::Clean, 310).frame;
+    // Two per cent of the influence a millimetre, of either sign: like no gain and no angle.
+    let mut numbers = super::strips::Numbers(11);
+    let along = frame.influence.iter().map(|a| 0.02 * numbers.next() * a);
+    frame.per_mm = Some(along.collect());
+    let n_g = frame.n_gauges();
+    let clean = predict(&frame, &[]);
+    let strength = |g: usize| {
+        clean
+            .iter()
+            .skip(g)
+            .step_by(n_g)
+            .map(|v| v * v)
+            .sum::<f64>()
+    };
+    let strongest = (0..n_g)
+        .max_by(|a, b| strength(*a).total_cmp(&strength(*b)))
+        .expect("a gauge");
+    let name = format!("gauge_position:{}", frame.gauges[strongest].name);
+    let all = library(&frame, std::slice::from_ref(&name));
+    let effect = all
+        .iter()
+        .find(|c| c.effect.id() == "gauge_position")
+        .expect("the effect")
+        .effect
+        .as_ref();
+    let parameters = &[20.0][..];
+    let moved = predict(&frame, &[Member { effect, parameters }]);
+    let values = frame.observations.values.iter_mut();
+    values
+        .zip(moved.iter().zip(&clean))
+        .for_each(|(v, (a, b))| *v += a - b);
+    let outcome = examine(&frame, &[]);
+    assert_eq!(named(&outcome), [name], "{:?}", outcome.best_attempt);
+    let (size, sigma) = (outcome.effects[0].size[0], outcome.effects[0].sigma[0]);
+    assert!((size - 20.0).abs() < 4.0 * sigma, "{size} +- {sigma}");
+}

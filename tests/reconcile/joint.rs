@@ -52,3 +52,61 @@ fn a_joint_of_half_its_stiffness_is_named_and_the_extended_deck_strains_as_the_t
     run("solve", &extended);
     run("recover", &extended);
 }
+
+/// Half of its stiffness is the root of a quarter: the user's own hypothesis at half of its size. The bushes stand in a file of their own.
+#[test]
+fn an_edit_of_ones_own_goes_into_the_deck_through_its_includes_and_leaves_the_job() {
+    let (folder, write) = workplace("reconcile_own_edit");
+    write("true/deck.bdf", &Mesh(3).deck(0.5, None));
+    write("true/job.toml", &Mesh(3).job(""));
+    let truth = sensitivity(&run("sensitivity", &folder.join("true/job.toml")));
+    let [strain, runs] = measured(&truth, |_| vec![0.0; GAUGES.len()]);
+    write("model/strain.csv", &strain);
+    write("model/runs.csv", &runs);
+    let deck = Mesh(1).deck(1.0, None);
+    let is_bush = |l: &&str| l.starts_with("CBUSH") || l.starts_with("PBUSH");
+    let (bushes, others): (Vec<&str>, Vec<&str>) = deck.lines().partition(is_bush);
+    write("model/bushes.inc", &(bushes.join("\n") + "\n"));
+    let others = others.join("\n");
+    let main = others.replace("ENDDATA", "INCLUDE 'bushes.inc'\nENDDATA\n");
+    write("model/deck.bdf", &main);
+    let own = "effects = [\"bush_loose\", \"sign_flip\"]\n[[reconcile.effect]]\nid = \"bush_loose\"\n\
+        edit = { cbush = 9002, stiffness_scale = 0.25 }\nprior = 1.0\n";
+    write("model/job.toml", &Mesh(1).job(&format!("{MEASURED}{own}")));
+    let out = run("reconcile", &folder.join("model/job.toml"));
+    let found = result(&out);
+    assert_eq!(
+        found["named"],
+        serde_json::json!(["bush_loose"]),
+        "{}",
+        found["best_attempt"]
+    );
+    let number = |key: &str| found["effects"][0][key].as_f64().expect("a number");
+    // The mesh leaves a hundredth.
+    assert!(
+        (number("size") - 0.5).abs() < 3.0 * number("sigma").max(0.01),
+        "{}",
+        number("size")
+    );
+    let lines = std::fs::read_to_string(out.join("deck_extended.bdf")).expect("the deck");
+    let lines: Vec<&str> = lines.lines().collect();
+    for card in ["CBUSH", "PBUSH"] {
+        let noted = lines
+            .windows(2)
+            .any(|w| w[0].starts_with("$ reconcile: joint 9002") && w[1].starts_with(card));
+        assert!(noted, "{card}");
+    }
+    assert!(lines.iter().any(|l| l.starts_with("$ was: INCLUDE")));
+    assert!(!lines.iter().any(|l| l.starts_with("INCLUDE")));
+    let added = &found["added"][0];
+    assert!(
+        added["path"]
+            .as_str()
+            .is_some_and(|p| p.contains("PBUSH of CBUSH 9002"))
+    );
+    let extended = out.join("job_extended.toml");
+    let text = std::fs::read_to_string(&extended).expect("the extended job");
+    assert!(!text.contains("id = \"bush_loose\""), "{text}");
+    let again = result(&run("reconcile", &extended));
+    assert_eq!(again["verdict"], "none", "{}", again["best_attempt"]);
+}

@@ -1,10 +1,12 @@
 //! What `reconcile` answers: one type, whether strain, motion or causes were compared. What one of them alone has is `None` for the others.
 
+use super::added::Added;
 use super::extended::ExtendedModel;
 use crate::app::job::Job;
 use crate::app::outcome::Answer;
 use crate::app::strain::Fields;
 use crate::reconcile::motion::gap::Proof;
+use crate::reconcile::motion::sits::GapSits;
 use crate::reconcile::motion::{MotionFrame, MotionOutcome, SimulatedGap};
 use crate::reconcile::strain::StrainFrame;
 use crate::reconcile::{CauseOutcome, GapNumbers, Misfit, Outcome as StrainOutcome, Verdict};
@@ -54,6 +56,8 @@ pub struct Reconciled {
     /// Causes measured in every run, weighed.
     #[serde(skip)]
     pub causes: Option<CauseOutcome>,
+    /// What was added to the model: path, old and new value.
+    pub added: Vec<Added>,
     /// The job with the named effects in it; `None` where nothing was named or an effect can't be put into it.
     pub extended_model: Option<ExtendedModel>,
     /// The job.
@@ -173,7 +177,7 @@ pub struct ReducedChi2 {
     pub before: f64,
     /// What was fitted, effects in.
     pub after: f64,
-    /// Held-out runs, effects in; strain alone.
+    /// Held-out runs, effects in; strain alone, and only where runs were held out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub held_out: Option<f64>,
 }
@@ -215,6 +219,9 @@ pub struct StrainPart {
     /// What the model predicts as it was given, microstrain, `n_runs x n_gauges`.
     #[serde(skip)]
     pub predicted: Vec<f64>,
+    /// The same with the named effects (or best attempt) in, but for what differs from run to run.
+    #[serde(skip)]
+    pub predicted_after: Vec<f64>,
     /// Deck and strain fields; `None` where S was given.
     #[serde(skip)]
     pub fields: Option<Fields>,
@@ -223,6 +230,14 @@ pub struct StrainPart {
 /// What only motion has.
 #[derive(Serialize)]
 pub struct MotionPart {
+    /// Where the gap of the analyst's model is largest, in words.
+    pub sits: String,
+    /// By equation: in which band, when and at which size of the motion it is largest.
+    pub sits_at: Vec<GapSits>,
+    /// The same with the named effects (or best attempt) in.
+    pub sits_after: Vec<GapSits>,
+    /// Joint covariance of the sizes of the named set (or best attempt), by rows.
+    pub covariance: Vec<Vec<f64>>,
     /// Measured wheel forces: what `identify` leaves over.
     pub wheel_force: Vec<WheelMisfit>,
     /// Both models simulated; `None` where nothing was named.
@@ -238,7 +253,7 @@ pub struct MotionPart {
     pub identified: Option<(Identification, Motion)>,
 }
 
-/// Misfit of a measured wheel force on held-out data, as a share of its RMS.
+/// Misfit of a measured wheel force where `identify` judges it, as a share of its RMS.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WheelMisfit {
     /// Channel.
@@ -253,7 +268,7 @@ pub struct WheelMisfit {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Simulation {
-    /// Both models over the held-out data.
+    /// Both models over the record that judges.
     Done(SimulationFound),
     /// Why it can't be done.
     NotDone {
@@ -272,11 +287,13 @@ impl Simulation {
     }
 }
 
-/// Both models simulated over the held-out data.
+/// Both models simulated over the held-out record, else over the fitted one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SimulationFound {
     /// What is measured by it.
-    pub metric: &'static str,
+    pub metric: String,
+    /// What both models were simulated on.
+    pub judged_by: Proof,
     /// By sensor.
     pub channels: Vec<SimulatedRow>,
     /// Parameters of the named model.
@@ -321,7 +338,11 @@ impl From<SimulatedGap> for SimulationFound {
             by_simulation,
         };
         Self {
-            metric: "RMS of measured less simulated on held-out data, in the unit of the channel; both models fitted by simulation",
+            metric: format!(
+                "RMS of measured less simulated on {}, in the unit of the channel; both models fitted by simulation",
+                found.judged_by.words()
+            ),
+            judged_by: found.judged_by,
             channels: found.channels.into_iter().map(row).collect(),
             parameters: found.parameters.into_iter().map(parameter).collect(),
         }

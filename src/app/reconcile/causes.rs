@@ -44,7 +44,7 @@ pub(super) fn answer(
         best_attempt: None,
         rivals: rivals(&outcome),
         gap: GapFound {
-            metric: "RMS(reading - prediction) / RMS(reading) over held-out runs, from the mean of the others, each channel over its range"
+            metric: "RMS(reading - prediction) / RMS(reading), cross-validated: every run in turn from the mean of the others, each channel over its range"
                 .to_owned(),
             before,
             after: best.map_or(before, |b| b.gap),
@@ -61,6 +61,7 @@ pub(super) fn answer(
         strain: None,
         motion: None,
         causes: Some(outcome),
+        added: Vec::new(),
         extended_model: None,
         job: job.clone(),
     })

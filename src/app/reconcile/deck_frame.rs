@@ -9,6 +9,7 @@ use super::frame_columns::FrameColumns;
 use super::influence::{influence, readings};
 use super::model_part::{ModelPart, facts};
 use super::region::Region;
+use super::signature_table::TableColumn;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Job, JobLoad, LoadActs, LoadRole};
 use crate::app::solved::{support_of_job, unit_loads_kept};
@@ -181,13 +182,17 @@ fn gauge_facts(job: &Job, channels: &[String], gauges: &[Gauge]) -> Vec<GaugeFac
 }
 
 /// Names of the wanted loads, and kN or kN m in a unit of the job: tables count in microstrain per unit of the job, as sensitivity.csv does.
-fn per_job_unit(job: &Job) -> Vec<(String, f64)> {
+fn per_job_unit(job: &Job) -> Vec<TableColumn> {
     let wanted = job.loads.iter().filter(|l| l.role == LoadRole::Wanted);
     let per = |l: &JobLoad| match l.acts {
         LoadActs::AtGrid { component, .. } => KILO / job.units.si(component.quantity()),
         LoadActs::Set(_) | LoadActs::Named => 1.0,
     };
-    wanted.map(|l| (l.name.clone(), per(l))).collect()
+    let column = |l: &JobLoad| TableColumn {
+        names: vec![l.name.clone()],
+        factor: per(l),
+    };
+    wanted.map(column).collect()
 }
 
 /// Apparent strain of a channel's wiring, microstrain a degree.

@@ -2,14 +2,27 @@
 
 use super::deck_frame::DeckFrame;
 use super::influence::{influence, solve};
-use super::signature_table::SignatureTable;
+use super::signature_table::{SignatureTable, TableColumn};
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::Inputs;
 use crate::app::job::{DescribedEffect, EffectSource, Job, NamedFile};
 use crate::reconcile::strain::{StiffnessOf, StiffnessSignature};
 
-/// The columns of a frame that a table may give: name, and factor from the table's unit to microstrain per unit of the frame.
-pub(super) type Columns = [(String, f64)];
+/// The hypothesis of this id.
+pub(super) fn effect_of<'a>(job: &'a Job, id: &str) -> Option<&'a DescribedEffect> {
+    effects(job).iter().find(|e| e.id == id)
+}
+
+/// Factor of a thickness or a stiffness at a size: one at none, that of the job at one. A thickness lies on the straight line through both, a
+/// stiffness on the power, so that twice the softening is half of a half. `None` for a table.
+pub(super) fn factor_at(source: &EffectSource, size: f64) -> Option<f64> {
+    match source {
+        EffectSource::Thickness { factor, .. } => Some(1.0 + size * (factor - 1.0)),
+        EffectSource::Bush { factor, .. } if *factor > 0.0 => Some(factor.powf(size)),
+        EffectSource::Bush { factor, .. } => Some(1.0 + size * (factor - 1.0)),
+        EffectSource::Signature(_) => None,
+    }
+}
 
 /// The hypotheses of `[[reconcile.effect]]`, in job order.
 pub(super) fn effects(job: &Job) -> &[DescribedEffect] {
@@ -26,7 +39,7 @@ pub(super) fn from_tables(
     inputs: &mut Inputs,
     job: &Job,
     channels: &[String],
-    columns: &Columns,
+    columns: &[TableColumn],
     n_columns: usize,
 ) -> Result<Vec<StiffnessSignature>, Faults> {
     let one = |e: &DescribedEffect| match &e.source {
@@ -59,26 +72,25 @@ fn from_table(
     job: &Job,
     file: &NamedFile,
     channels: &[String],
-    columns: &Columns,
+    columns: &[TableColumn],
     n_columns: usize,
 ) -> Result<Vec<f64>, Faults> {
     let t = SignatureTable::read(inputs, job, file, channels)?;
     let mut change = vec![0.0; channels.len() * n_columns];
-    let known: Vec<(usize, &(String, f64))> = columns
-        .iter()
-        .enumerate()
-        .filter(|(_, c)| t.has(&c.0))
+    let named = |c: &TableColumn| Some((c.names.iter().find(|n| t.has(n))?.clone(), c.factor));
+    let known: Vec<(usize, (String, f64))> = (columns.iter().enumerate())
+        .filter_map(|(k, c)| Some((k, named(c)?)))
         .collect();
     if known.is_empty() {
         return Err(Faults::from(Fault::of(
             &*file.given,
             "header",
             "no column bears the name of a load",
-            "give a column a load, named as in S",
+            "give a column a load, named as the load or as its column of S",
         )));
     }
     for (c, (name, factor)) in known {
-        for (g, v) in t.column(name, *factor)?.into_iter().enumerate() {
+        for (g, v) in t.column(&name, factor)?.into_iter().enumerate() {
             if let Some(cell) = change.get_mut(g * n_columns + c) {
                 *cell = v;
             }
@@ -97,7 +109,7 @@ impl DeckFrame {
         inputs: &mut Inputs,
         job: &Job,
         channels: &[String],
-        columns: &Columns,
+        columns: &[TableColumn],
     ) -> Result<Vec<StiffnessSignature>, Faults> {
         let n = self.columns.len();
         let mut out = Vec::new();
@@ -106,19 +118,19 @@ impl DeckFrame {
                 EffectSource::Signature(file) => {
                     from_table(inputs, job, file, channels, columns, n)?
                 }
-                edit => self.edited(job, e, edit)?,
+                _ => self.described_change(job, e, 1.0)?,
             };
             out.push(signature(e, change));
         }
         Ok(out)
     }
 
-    /// Change of the influence matrix by an edit of the deck.
-    fn edited(
+    /// Change of the influence matrix by an edit of the deck at a size.
+    pub(super) fn described_change(
         &self,
         job: &Job,
         e: &DescribedEffect,
-        edit: &EffectSource,
+        size: f64,
     ) -> Result<Vec<f64>, Faults> {
         let lacks = |what: String| {
             Faults::from(Fault::at(
@@ -129,16 +141,17 @@ impl DeckFrame {
                 "correct the id",
             ))
         };
-        let model = match edit {
-            EffectSource::Thickness { property, factor } => {
-                let scaled = self.with_properties(|id| id == *property, *factor);
+        let factor = factor_at(&e.source, size).unwrap_or(1.0);
+        let model = match &e.source {
+            EffectSource::Thickness { property, .. } => {
+                let scaled = self.with_properties(|id| id == *property, factor);
                 scaled.ok_or_else(|| lacks(format!("PSHELL {property}")))?
             }
-            EffectSource::Bush { element, factor } => {
+            EffectSource::Bush { element, .. } => {
                 if !self.fields.model().bushes.iter().any(|b| b.id == *element) {
                     return Err(lacks(format!("CBUSH {element}")));
                 }
-                self.with_joint(&element.to_string(), *factor)
+                self.with_joint(&element.to_string(), factor)
             }
             EffectSource::Signature(_) => self.fields.model().clone(),
         };

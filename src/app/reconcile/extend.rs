@@ -2,12 +2,13 @@
 
 use super::corrected::{Weight, corrections};
 use super::deck_frame::DeckFrame;
+use super::described::effect_of;
 use super::extended::{ExtendedModel, ExtendedS};
 use super::extended_deck::NamedStiffness;
 use super::extended_loads::side_loads;
 use super::redirect::text_of;
 use crate::app::fault::Faults;
-use crate::app::job::Job;
+use crate::app::job::{EffectSource, Job};
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::reconcile::effect::{Correction, Extension, Nuisance};
@@ -15,7 +16,6 @@ use crate::reconcile::strain::{
     N_PAYLOAD_COLUMNS, StiffnessOf, StrainFrame, StrainState, corrected_readings, extended_state,
 };
 use crate::reconcile::{NamedEffect, Outcome};
-use crate::units::KILO;
 
 /// File name of the job.
 const JOB: &str = "job_extended.toml";
@@ -27,8 +27,11 @@ fn out_of_reach(job: &Job, e: &NamedEffect, deck: Option<&DeckFrame>) -> Option<
         (Extension::Channels(list), Some(_)) if list.iter().any(|(_, c)| moved(c)) => {
             Some("another place of the gauge: change it in the list of gauges")
         }
-        (Extension::LocalStiffness { .. } | Extension::Described { .. }, Some(_)) => {
+        (Extension::LocalStiffness { .. }, Some(_)) => {
             Some("a change of a region of the deck that no property bounds")
+        }
+        (Extension::Described { id, .. }, Some(_)) if !is_edit(job, id) => {
+            Some("a table of strain, which no card of the deck makes: describe it as an `edit`")
         }
         (
             Extension::NuisanceLoads {
@@ -64,6 +67,11 @@ fn out_of_reach(job: &Job, e: &NamedEffect, deck: Option<&DeckFrame>) -> Option<
         (Extension::Nothing, _) => Some("no effect of the library"),
         _ => None,
     }
+}
+
+/// Is the hypothesis an edit of the deck?
+fn is_edit(job: &Job, id: &str) -> bool {
+    effect_of(job, id).is_some_and(|e| !matches!(e.source, EffectSource::Signature(_)))
 }
 
 /// The extended model; `None`, with a finding for each effect that can't be put into it, where there is one.
@@ -226,6 +234,9 @@ fn deck_with(job: &Job, deck: &DeckFrame, outcome: &Outcome) -> Edited {
             Extension::JointStiffness { place, percent } => {
                 stiffness.push((StiffnessOf::Joint, place.clone(), *percent))
             }
+            Extension::Described { id, size } => {
+                stiffness.push((StiffnessOf::Described, id.clone(), *size))
+            }
             Extension::Mass { place, kilogram } => masses.push((place.clone(), *kilogram)),
             _ => {}
         }
@@ -282,7 +293,7 @@ fn sensitivity_with(
     })
 }
 
-/// Columns of loads that were left out, with their usual size in the units of the job (forces count in kN in the column: so do degrees).
+/// Columns of loads that were left out, with their usual size in kN and kN m; degrees count as kN do.
 fn nuisance(frame: &StrainFrame, effects: &[NamedEffect]) -> Vec<(String, Vec<f64>, f64)> {
     let mut out = Vec::new();
     for e in effects {
@@ -308,7 +319,7 @@ fn nuisance(frame: &StrainFrame, effects: &[NamedEffect]) -> Vec<(String, Vec<f6
             } else {
                 usual.max(largest)
             };
-            out.extend(pattern(name).map(|p| (name.clone(), p, size * KILO)));
+            out.extend(pattern(name).map(|p| (name.clone(), p, size)));
         }
     }
     out

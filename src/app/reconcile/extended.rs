@@ -96,14 +96,6 @@ pub struct ExtendedS {
     pub changed: bool,
     /// Loads that the job knows besides: name, microstrain per unit by gauge.
     pub known: Vec<(String, Vec<f64>)>,
-    /// Loads that were left out: name, microstrain per unit by gauge, usual size.
+    /// Loads that were left out: name, microstrain per kN or kN m (or degree) by gauge, usual size in these.
     pub left_out: Vec<(String, Vec<f64>, f64)>,
-}
-
-impl ExtendedS {
-    /// Names and columns of the loads besides, those that were left out last.
-    pub fn besides(&self) -> impl Iterator<Item = (&String, &Vec<f64>)> {
-        let left_out = self.left_out.iter().map(|n| (&n.0, &n.1));
-        self.known.iter().map(|n| (&n.0, &n.1)).chain(left_out)
-    }
 }

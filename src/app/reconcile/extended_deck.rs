@@ -1,13 +1,14 @@
 //! The analyst's deck with named effects in it.
 
 use super::deck_frame::{DeckFrame, unit};
+use super::described::effect_of;
 use super::extended::DECK;
 use super::extended_loads::{SideLoad, cards};
 use super::influence::{readings, solve};
 use super::one_file::one_file;
 use super::stiffness::factor;
 use crate::app::fault::Faults;
-use crate::app::job::{Component, Job};
+use crate::app::job::{Component, EffectSource, Job};
 use crate::model::Model;
 use crate::reconcile::strain::StiffnessOf;
 use crate::units::KILO;
@@ -33,11 +34,24 @@ impl DeckFrame {
         }
         let mut edits = Edits::default();
         for (of, place, percent) in stiffness {
-            let factor = factor(*of, *percent);
+            let factor = factor(job, *of, place, *percent)?;
             match of {
                 StiffnessOf::Joint => self.change_joint(&mut edits, place, factor)?,
-                StiffnessOf::Zone => self.change_zone(&mut edits, job, place, factor)?,
-                StiffnessOf::Local | StiffnessOf::Described => return None,
+                StiffnessOf::Zone => {
+                    let ids = job.reconcile.as_ref()?.zones.get(place)?;
+                    let words = format!("zone {place}");
+                    self.change_thickness(&mut edits, &words, |id| ids.contains(id), factor)?;
+                }
+                StiffnessOf::Described => match effect_of(job, place)?.source {
+                    EffectSource::Thickness { property, .. } => {
+                        self.change_thickness(&mut edits, place, |id| id == property, factor)?;
+                    }
+                    EffectSource::Bush { element, .. } => {
+                        self.change_joint(&mut edits, &element.to_string(), factor)?;
+                    }
+                    EffectSource::Signature(_) => return None,
+                },
+                StiffnessOf::Local => return None,
             }
         }
         self.add_masses(&mut edits, job, masses)?;
@@ -50,14 +64,16 @@ impl DeckFrame {
         one_file(deck, write_edited(deck, &edits))
     }
 
-    fn change_zone(&self, edits: &mut Edits, job: &Job, zone: &str, factor: f64) -> Option<()> {
+    /// Scales the thickness of the shell properties `wanted`.
+    fn change_thickness(
+        &self,
+        edits: &mut Edits,
+        words: &str,
+        wanted: impl Fn(u32) -> bool,
+        factor: f64,
+    ) -> Option<()> {
         let deck = &self.fields.deck.deck;
-        let ids = job.reconcile.as_ref()?.zones.get(zone)?;
-        let named = deck
-            .cards
-            .pshells
-            .iter()
-            .filter(|p| ids.contains(p.card.id));
+        let named = deck.cards.pshells.iter().filter(|p| wanted(p.card.id));
         for p in named {
             let c = &p.card;
             let scaled = |v: Option<f64>| v.map(|v| v * factor);
@@ -78,7 +94,7 @@ impl DeckFrame {
                 .replace_card(
                     deck,
                     p.at,
-                    &(noted(&format!("zone {zone}: thickness times {factor:.4}"))
+                    &(noted(&format!("{words}: thickness times {factor:.4}"))
                         + &format_card("PSHELL", &fields)),
                 )
                 .ok()?;

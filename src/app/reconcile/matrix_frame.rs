@@ -3,7 +3,7 @@
 use super::described;
 use super::frame_columns::FrameColumns;
 use super::model_part::{ModelPart, facts, nominal_x_m, nominal_y_m};
-use super::signature_table::SignatureTable;
+use super::signature_table::{SignatureTable, TableColumn};
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::Inputs;
 use crate::app::job::quantity::quantity_of_name;
@@ -64,7 +64,7 @@ pub(super) fn read(
         &mut work.inputs,
         job,
         channels,
-        &tables.loads(),
+        &tables.described(),
         tables.n_columns(),
     )?);
     if tables.columns.is_empty() {
@@ -155,14 +155,17 @@ impl<'a> Tables<'a> {
         names
     }
 
+    /// What a table of the user's own may give: a column by its name in S or by that of its load.
+    fn described(&self) -> Vec<TableColumn> {
+        let one = |(name, column): &(String, String)| TableColumn {
+            names: vec![column.clone(), name.clone()],
+            factor: self.scale(name),
+        };
+        self.columns.iter().map(one).collect()
+    }
+
     fn payload_scale(&self) -> [f64; N_PAYLOAD_COLUMNS] {
-        let (per_kg, per_m) = (self.per_kg, self.per_m);
-        [
-            per_kg,
-            per_kg * per_m,
-            per_kg * per_m,
-            per_kg * per_m * per_m,
-        ]
+        payload_scale(self.per_kg, self.per_m)
     }
 
     /// Payload columns; zeros where the table has none.
@@ -310,8 +313,18 @@ fn is_nuisance(job: &Job, name: &str) -> bool {
         .any(|l| l.name == name && l.role == LoadRole::Nuisance)
 }
 
+/// Factors of the payload's columns, weight, times dx, times dy, times dx dy, from a table's units to the frame's kg and m.
+pub(super) fn payload_scale(per_kg: f64, per_m: f64) -> [f64; N_PAYLOAD_COLUMNS] {
+    [
+        per_kg,
+        per_kg * per_m,
+        per_kg * per_m,
+        per_kg * per_m * per_m,
+    ]
+}
+
 /// Force or moment: what a stated load is, else what the name says.
-fn quantity_of_load(job: &Job, name: &str) -> Quantity {
+pub(super) fn quantity_of_load(job: &Job, name: &str) -> Quantity {
     let stated = job.loads.iter().find(|l| l.name == name);
     stated
         .and_then(JobLoad::quantity)

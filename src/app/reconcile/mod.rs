@@ -1,5 +1,7 @@
 //! `reconcile`: where simulation and measurement disagree, which effect is missing, and the model with the effect in it.
 
+mod added;
+mod added_motion;
 mod answer;
 mod background;
 mod causes;
@@ -10,6 +12,7 @@ mod deck_thermal;
 mod described;
 mod extend;
 pub mod extended;
+pub mod extended_columns;
 mod extended_deck;
 mod extended_job;
 mod extended_loads;
@@ -35,6 +38,7 @@ mod strain_job;
 mod strain_path;
 mod words;
 
+pub use added::Added;
 pub use answer::*;
 pub use extended_job::extended_job;
 pub use words::effect_in_words;

@@ -51,7 +51,7 @@ pub(super) fn findings(work: &mut Work, outcome: &MotionOutcome) {
             "no-hold-out",
             "vehicle.hold_out",
             format!(
-                "No record was held out: gaps are those of {}.",
+                "There is no `hold_out` to judge by: gaps are those of {}.",
                 outcome.judged_by.words()
             ),
             "Name a record of another stretch of road as `hold_out` in [vehicle].",

@@ -1,5 +1,6 @@
 //! Motion: record and vehicle, verdict, extended job.
 
+use super::added_motion::added_to_motion;
 use super::answer::{
     DetectableSize, EffectFound, GapFound, MotionPart, Reconciled, ReducedChi2, RivalFound,
     Simulation, SizeFound, WheelMisfit, first,
@@ -18,6 +19,7 @@ use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::reconcile::Verdict;
 use crate::reconcile::motion::channel_check::broken_channels;
+use crate::reconcile::motion::sits::gap_sits;
 use crate::reconcile::motion::{MotionEffect, MotionFrame, MotionOutcome, examine, simulated_gap};
 use crate::stop::Stop;
 use crate::vehicle::identify::{Identification, IdentifyTask, identify};
@@ -56,6 +58,10 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
     });
     findings(work, &outcome);
     let can_state = motion_job::can_state(&outcome);
+    let lost = outcome.effects.iter().filter(|e| is_lost(e));
+    let why = "what such a channel should have read nobody knows, and no correction brings it back: repair it and drive again";
+    let lost = lost.map(|e| effect_not_in_model(&e.id, why));
+    work.findings.extend(lost);
     if named && !can_state {
         let ids: Vec<&str> = outcome.effects.iter().map(|e| e.id.as_str()).collect();
         let why = "a channel has several slips, low-passes or lines, and [vehicle] corrections states one of each";
@@ -66,6 +72,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
         true => Some(ExtendedModel::of(motion_job::JOB, text_of(work, job)?)),
         false => None,
     };
+    let added = added_to_motion(&frame, &outcome, extended_model.as_ref());
     let list = |effects: &[MotionEffect]| effects.iter().map(effect_found).collect();
     let [before, after] = outcome.reduced_chi2;
     let size = |s: &crate::reconcile::motion::outcome::Smallest| DetectableSize {
@@ -73,6 +80,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
         size: s.size,
         unit: s.unit.clone(),
     };
+    let sits = outcome.before.as_ref().map_or_else(Vec::new, gap_sits);
     Ok(Reconciled {
         verdict: outcome.verdict,
         named: outcome.effects.iter().map(|e| e.id.clone()).collect(),
@@ -91,6 +99,13 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
         detectable: Some(outcome.smallest.iter().map(size).collect()),
         strain: None,
         motion: Some(MotionPart {
+            sits: sits.first().map_or_else(
+                || "no equation can be compared".to_owned(),
+                |s| format!("the gap is largest in {}", s.words()),
+            ),
+            sits_at: sits,
+            sits_after: outcome.after.as_ref().map_or_else(Vec::new, gap_sits),
+            covariance: outcome.covariance.clone(),
             wheel_force,
             simulation,
             outcome,
@@ -98,6 +113,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
             identified,
         }),
         causes: None,
+        added,
         extended_model,
         job: job.clone(),
     })
@@ -165,10 +181,12 @@ fn without_dead_hold_out(work: &mut Work, section: &VehicleJob, frame: &mut Moti
 
 /// A dead channel can't be put right by a model.
 fn repairable(outcome: &MotionOutcome) -> bool {
-    outcome
-        .effects
-        .iter()
-        .all(|e| !is_dead(e) && !e.id.starts_with("saturated_channel"))
+    !outcome.effects.iter().any(is_lost)
+}
+
+/// Is it a channel whose readings are none, or end at a stop?
+fn is_lost(effect: &MotionEffect) -> bool {
+    is_dead(effect) || effect.id.starts_with("saturated_channel")
 }
 
 fn is_dead(effect: &MotionEffect) -> bool {

@@ -88,7 +88,7 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
             Severity::Warning,
             "no-hold-out",
             &*table.file,
-            "no run is held out: the gap is cross-validated, every run in turn judged by what the others tell",
+            "[measured] has no `hold_out`: the gap is cross-validated, every run in turn judged by what the others tell",
             "keep a third of the runs with `hold_out`",
         ));
     }

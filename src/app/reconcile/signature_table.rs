@@ -5,6 +5,14 @@ use crate::app::files::Inputs;
 use crate::app::job::table::{Table, read_table};
 use crate::app::job::{Job, NamedFile};
 
+/// A column of a frame that a table may give.
+pub(super) struct TableColumn {
+    /// Its names: that of the column of S, then that of the load.
+    pub(super) names: Vec<String>,
+    /// From the table's unit to microstrain per unit of the frame.
+    pub(super) factor: f64,
+}
+
 /// Columns of numbers over gauges.
 pub(super) struct SignatureTable {
     table: Table,

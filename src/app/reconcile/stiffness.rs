@@ -1,6 +1,7 @@
 //! Signatures of a stiffness that may be wrong: the changed model solved again.
 
 use super::deck_frame::DeckFrame;
+use super::described::{effect_of, factor_at};
 use super::influence::{influence, solve};
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::Job;
@@ -19,11 +20,13 @@ const JOINT_PRIOR: f64 = 70.0;
 /// Bushes of a deck that names none: more of them are springs of something else.
 const MOST_JOINTS: usize = 12;
 
-/// Factor of a stiffness at a size: a zone counts in percent, a joint in its natural log times 100.
-pub(super) fn factor(of: StiffnessOf, percent: f64) -> f64 {
+/// Factor of a stiffness at a size: a zone counts in percent, a joint in its natural log times 100, an edit of the user's own in its own
+/// size; `None` for a table, which is no stiffness of the deck.
+pub(super) fn factor(job: &Job, of: StiffnessOf, place: &str, size: f64) -> Option<f64> {
     match of {
-        StiffnessOf::Joint | StiffnessOf::Local => (percent / 100.0).exp(),
-        StiffnessOf::Zone | StiffnessOf::Described => 1.0 + percent / 100.0,
+        StiffnessOf::Joint | StiffnessOf::Local => Some((size / 100.0).exp()),
+        StiffnessOf::Zone => Some(1.0 + size / 100.0),
+        StiffnessOf::Described => factor_at(&effect_of(job, place)?.source, size),
     }
 }
 
@@ -86,11 +89,14 @@ impl DeckFrame {
         place: &str,
         percent: f64,
     ) -> Result<Vec<f64>, Faults> {
-        let factor = factor(of, percent);
+        if let (StiffnessOf::Described, Some(e)) = (of, effect_of(job, place)) {
+            return self.described_change(job, e, percent);
+        }
+        let factor = factor(job, of, place, percent).unwrap_or(1.0);
         let model = match of {
             StiffnessOf::Joint => self.with_joint(place, factor),
             StiffnessOf::Local => self.with_region(place, factor),
-            _ => self.with_zone(job, place, factor)?,
+            StiffnessOf::Zone | StiffnessOf::Described => self.with_zone(job, place, factor)?,
         };
         let solution = solve(job, &model, &self.columns, &self.stop)?;
         let now = influence(job, &model, &self.gauges, &solution, self.columns.len());

@@ -53,7 +53,7 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
                 "gap-unexplained",
                 "model",
                 format!(
-                    "there is a gap that nothing in the library closes: {}",
+                    "there is a gap, and no effect of the library is named for it: {}",
                     outcome.remains
                 ),
                 outcome.next_measurement.clone(),

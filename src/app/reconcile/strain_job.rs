@@ -4,8 +4,10 @@ use super::answer::StrainPart;
 use super::corrected::entry;
 use super::deck_thermal;
 use super::extended::{DECK, ExtendedModel, ExtendedS, PAYLOAD, RUNS, SENSITIVITY, STRAIN};
+use super::extended_columns::{expected, sensitivity_columns};
 use super::extended_loads::{component_word, entries, side_loads};
 use crate::app::job::Job;
+use crate::reconcile::NamedEffect;
 use crate::reconcile::effect::Extension;
 use crate::reconcile::strain::StrainFrame;
 use crate::units::KILO;
@@ -21,7 +23,7 @@ pub(super) fn edit(table: &mut Table, job: &Job, found: &StrainPart, extended: &
         list.extend(extended.corrections.iter().map(entry));
     });
     if let Some(s) = &extended.sensitivity {
-        edit_sensitivity(table, &found.frame.load_names, s);
+        edit_sensitivity(table, job, &found.frame, s);
     }
     if let Some(fields) = &found.fields {
         let side = side_loads(job, effects);
@@ -55,23 +57,50 @@ pub(super) fn edit(table: &mut Table, job: &Job, found: &StrainPart, extended: &
     if extended.deck.is_some() {
         set(table, "model", "deck", DECK);
     }
+    let accepted: Vec<&str> = effects.iter().filter_map(described).collect();
+    drop_accepted(table, &accepted);
+}
+
+/// The id of a hypothesis of the user's own.
+fn described(e: &NamedEffect) -> Option<&str> {
+    match &e.extension {
+        Extension::Described { id, .. } => Some(id),
+        _ => None,
+    }
+}
+
+/// Takes hypotheses that are in the model now out of `[reconcile]`.
+fn drop_accepted(table: &mut Table, accepted: &[&str]) {
+    let Some(Value::Table(section)) = table.get_mut("reconcile") else {
+        return;
+    };
+    let is_one = |v: Option<&Value>| {
+        v.and_then(Value::as_str)
+            .is_some_and(|id| accepted.contains(&id))
+    };
+    if let Some(Value::Array(list)) = section.get_mut("effect") {
+        list.retain(|e| !is_one(e.get("id")));
+        if list.is_empty() {
+            section.remove("effect");
+        }
+    }
+    if let Some(Value::Array(list)) = section.get_mut("effects") {
+        list.retain(|e| !is_one(Some(e)));
+        if list.is_empty() {
+            // An empty list is that of all effects.
+            section.remove("effects");
+        }
+    }
 }
 
 /// S, the payload's signature and nuisance loads of a job in matrix form.
-fn edit_sensitivity(table: &mut Table, load_names: &[String], s: &ExtendedS) {
+fn edit_sensitivity(table: &mut Table, job: &Job, frame: &StrainFrame, s: &ExtendedS) {
     set(table, "sensitivity", "file", SENSITIVITY);
     if let Some(Value::Table(section)) = table.get_mut("sensitivity") {
-        // The extended files count in kN, kN m and kg.
-        let per = words_of(&[
-            ("force", "kN"),
-            ("moment", "kN m"),
-            ("mass", "kg"),
-            ("length", "m"),
-        ]);
-        section.insert("per".into(), Value::Table(per));
-        let names = load_names.iter().chain(s.besides().map(|n| n.0));
-        let columns: Table = names
-            .map(|n| (n.clone(), Value::String(n.clone())))
+        // Names and units stay those of the job, which its other tables share.
+        let columns: Table = sensitivity_columns(job, frame, s)
+            .into_iter()
+            .map(|c| (c.load, Value::String(c.column)))
             .collect();
         section.insert("columns".into(), Value::Table(columns));
         if s.changed
@@ -91,7 +120,8 @@ fn edit_sensitivity(table: &mut Table, load_names: &[String], s: &ExtendedS) {
                 Value::String(component_word(name).into()),
             );
             t.insert("role".into(), Value::String("nuisance".into()));
-            t.insert("expected".into(), Value::Float(*size));
+            let size = expected(job, name, *size);
+            t.insert("expected".into(), Value::Float(size));
             list.push(Value::Table(t));
         }
     });

@@ -1,21 +1,24 @@
 //! Strain: frame, verdict, extended model.
 
+use super::added::added_to_strain;
 use super::answer::{
     DetectableSize, EffectFound, GapFound, Reconciled, ReducedChi2, RivalFound, SizeFound,
     StrainGap, StrainPart, first,
 };
 use super::deck_frame::{self, DeckFrame};
+use super::described::effect_of;
 use super::local::gauges_that_disagree;
 use super::readings::observations;
 use super::run_frame::frame;
+use super::stiffness::factor;
 use super::strain_findings::findings;
 use super::{causes, extend, matrix_frame};
 use crate::app::fault::{Fault, Faults};
-use crate::app::job::Job;
+use crate::app::job::{EffectSource, Job};
 use crate::app::work::Work;
 use crate::reconcile::effect::{Correction, Extension};
-use crate::reconcile::strain::{StiffnessOf, StrainFrame, examine, predict};
-use crate::reconcile::{NamedEffect, Outcome, Verdict};
+use crate::reconcile::strain::{StiffnessOf, StrainFrame, examine, predict, predicted_with};
+use crate::reconcile::{GapBasis, NamedEffect, Outcome, Verdict};
 
 /// What strain says.
 ///
@@ -81,6 +84,13 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
         Verdict::Named => extend::extended(job, work, &frame, &outcome, deck.as_ref())?,
         _ => None,
     };
+    let added = added_to_strain(
+        job,
+        &frame,
+        &outcome.effects,
+        extended_model.as_ref(),
+        deck.as_ref(),
+    );
     let list = |effects: &[NamedEffect]| effects.iter().map(effect_found).collect();
     let [before, after, held_out] = outcome.reduced_chi2;
     let size = |d: &crate::reconcile::Detectable| DetectableSize {
@@ -99,7 +109,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
         reduced_chi2: Some(ReducedChi2 {
             before,
             after,
-            held_out: Some(held_out),
+            held_out: (outcome.gap.basis == GapBasis::HeldOut).then_some(held_out),
         }),
         remains: Some(outcome.remains.clone()),
         next_measurement: outcome.next_measurement.clone(),
@@ -107,6 +117,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
         strain: Some(strain_part(frame, outcome, deck)),
         motion: None,
         causes: None,
+        added,
         extended_model,
         job: job.clone(),
     })
@@ -133,6 +144,7 @@ fn strain_part(frame: StrainFrame, outcome: Outcome, deck: Option<DeckFrame>) ->
         gauges_off: outcome.gauges_off.clone(),
         runs_off: outcome.runs_off.clone(),
         predicted: predict(&frame, &[]),
+        predicted_after: predicted_with(&frame, &outcome.best_attempt),
         outcome,
         frame,
         fields: deck.map(|d| d.fields),
@@ -186,6 +198,16 @@ fn channel_size(e: &NamedEffect) -> Option<f64> {
     }
 }
 
+/// Is it a thickness that changes?
+fn is_thickness(job: &Job, of: StiffnessOf, place: &str) -> bool {
+    match of {
+        StiffnessOf::Zone => true,
+        StiffnessOf::Joint | StiffnessOf::Local => false,
+        StiffnessOf::Described => effect_of(job, place)
+            .is_some_and(|e| matches!(e.source, EffectSource::Thickness { .. })),
+    }
+}
+
 /// Solutions at a size that was found: the second is at the size to a few thousandths.
 const RESOLVED: usize = 2;
 
@@ -197,17 +219,21 @@ fn resolve_stiffness(
     frame: &mut StrainFrame,
     outcome: &Outcome,
 ) -> Result<bool, Faults> {
-    /// Percent of stiffness: nearer to a known size the interpolation is exact.
-    const NEAR: f64 = 1.0;
+    /// Share of stiffness: nearer to a known size the interpolation is exact.
+    const NEAR: f64 = 0.01;
     /// A thickness can't be taken away.
-    const LEAST: f64 = -80.0;
+    const LEAST: f64 = 0.2;
     let mut added = false;
     for e in &outcome.best_attempt {
         let (of, place, percent) = match &e.extension {
             Extension::ZoneStiffness { place, percent } => (StiffnessOf::Zone, place, percent),
             Extension::JointStiffness { place, percent } => (StiffnessOf::Joint, place, percent),
             Extension::LocalStiffness { place, percent } => (StiffnessOf::Local, place, percent),
+            Extension::Described { id, size } => (StiffnessOf::Described, id, size),
             _ => continue,
+        };
+        let Some(now) = factor(job, of, place, *percent) else {
+            continue;
         };
         let Some(signature) = frame
             .stiffness
@@ -216,12 +242,11 @@ fn resolve_stiffness(
         else {
             continue;
         };
-        let known = signature
-            .at_percent
-            .iter()
-            .any(|p| (p.0 - percent).abs() < NEAR);
-        let thickness = of == StiffnessOf::Zone;
-        if known || percent.abs() < NEAR || (thickness && *percent < LEAST) {
+        let mut known = signature.at_percent.iter().map(|p| p.0).chain([0.0]);
+        let near = known.any(|size| {
+            factor(job, of, place, size).is_some_and(|then| (now / then - 1.0).abs() < NEAR)
+        });
+        if near || now.is_nan() || now < LEAST && is_thickness(job, of, place) {
             continue;
         }
         let change = work.stage("solve zones", |_| {

@@ -77,3 +77,44 @@ impl ChannelFault for RosetteLegs {
         )
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::RosetteLegs;
+    use crate::reconcile::effect::channel_fault::ChannelFault;
+    use crate::reconcile::effect::{Correction, Extension};
+
+    /// The exchanges, one after the other, give every channel its own leg back.
+    #[test]
+    fn the_exchanges_undo_every_order_of_the_legs() {
+        let names: Vec<String> = ["A", "B", "C"].map(String::from).to_vec();
+        let orders: [&[usize]; 6] = [
+            &[1, 0],
+            &[1, 0, 2],
+            &[0, 2, 1],
+            &[2, 1, 0],
+            &[1, 2, 0],
+            &[2, 0, 1],
+        ];
+        for order in orders {
+            let legs = RosetteLegs {
+                order: order.to_vec(),
+            };
+            let Extension::Channels(steps) = legs.extension(&names, &[]) else {
+                panic!("{order:?}: no corrections");
+            };
+            let mut read = order.to_vec();
+            for (a, correction) in steps {
+                let Correction::ExchangedWith(b) = correction else {
+                    panic!("{order:?}: {correction:?}");
+                };
+                let at = |name: &String| names.iter().position(|n| n == name).expect("a leg");
+                read.swap(at(&a), at(&b));
+            }
+            assert!(
+                read.iter().enumerate().all(|(k, leg)| k == *leg),
+                "{order:?}"
+            );
+        }
+    }
+}

@@ -280,6 +280,7 @@ impl Problem {
                     .collect(),
             })
             .collect();
+        let covariance = self.covariance_of_sizes(assembled, parts, &s);
         let mut left = self.design.residual(&values);
         for (k, c) in self.extra.iter().enumerate() {
             let x = s.x[self.free.len() + k];
@@ -293,6 +294,7 @@ impl Problem {
             sigmas,
             free: self.free,
             sizes,
+            covariance,
             chi2: s.chi2,
             penalty: s.penalty,
             log_det: self.log_det,
@@ -307,6 +309,61 @@ impl Problem {
             left: Arc::new(left),
             values,
         }
+    }
+}
+
+impl Problem {
+    /// Joint covariance of the sizes of all parts: that of the columns, taken to the sizes by their derivatives. A turned sign has none.
+    fn covariance_of_sizes(
+        &self,
+        assembled: &Assembled,
+        parts: &[Part],
+        s: &Solved,
+    ) -> Vec<Vec<f64>> {
+        let n = self.column_of.len();
+        let columns_of = |of: ColumnOf| (0..n).filter(move |&k| self.column_of[k] == of);
+        let derivatives = |(p, part): (usize, &Part)| -> Vec<Vec<(usize, f64)>> {
+            let fault = |d: f64| {
+                let first = columns_of(ColumnOf::Fault(p)).next();
+                vec![first.map(|k| (k, d)).into_iter().collect()]
+            };
+            match &part.shape {
+                // The size is the gain, 1 / fault.
+                Change::Gain { .. } => fault(-1.0 / (part.fault * part.fault)),
+                Change::Delay { .. }
+                | Change::Clock { .. }
+                | Change::Slip { .. }
+                | Change::Lag { .. } => fault(part.shape.stated()),
+                Change::Line { .. } => {
+                    let squares = columns_of(ColumnOf::Line(p)).map(|k| s.x[k] * s.x[k]);
+                    let size = squares.sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
+                    vec![
+                        columns_of(ColumnOf::Line(p))
+                            .map(|k| (k, s.x[k] / size))
+                            .collect(),
+                    ]
+                }
+                Change::Flip { .. } => vec![Vec::new()],
+                Change::Terms { .. } | Change::Links(_) | Change::Step(_) | Change::Swap { .. } => {
+                    let own = assembled.own[p].iter();
+                    own.map(|&i| {
+                        columns_of(ColumnOf::Parameter(i))
+                            .map(|k| (k, 1.0))
+                            .collect()
+                    })
+                    .collect()
+                }
+            }
+        };
+        let all: Vec<Vec<(usize, f64)>> = parts.iter().enumerate().flat_map(derivatives).collect();
+        let entry = |a: &[(usize, f64)], b: &[(usize, f64)]| -> f64 {
+            a.iter()
+                .flat_map(|(i, u)| b.iter().map(move |(k, v)| u * v * s.covariance[*i][*k]))
+                .sum()
+        };
+        all.iter()
+            .map(|a| all.iter().map(|b| entry(a, b)).collect())
+            .collect()
     }
 }
 

@@ -24,6 +24,8 @@ pub struct MotionFit {
     pub free: Vec<usize>,
     /// Sizes of each effect's parameters, with one sd.
     pub sizes: Vec<Vec<[f64; 2]>>,
+    /// Joint covariance of all of them in this order, by rows.
+    pub covariance: Vec<Vec<f64>>,
     /// Squared residual over its covariance, the balance of weight included.
     pub chi2: f64,
     /// Squared nuisance over its prior.

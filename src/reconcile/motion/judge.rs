@@ -123,6 +123,10 @@ pub(super) fn judged(
     } else {
         broken.iter().map(broken_effect).collect()
     };
+    let covariance = match broken.is_empty() {
+        true => best.fit.covariance.clone(),
+        false => vec![],
+    };
     let rivals = rivals(scorer, &best, &all);
     let left = shares_left(&before.fitted, &after.fitted);
     let chi = [before.reduced_chi2, after.reduced_chi2];
@@ -135,6 +139,7 @@ pub(super) fn judged(
             vec![]
         },
         best_attempt: attempt,
+        covariance,
         corrections: stated(frame, &best.fit.parts),
         remains: remains(verdict, chi, left, judged_by, after.proof.as_ref()),
         next_measurement: next_measurement(scorer, verdict, &rivals),

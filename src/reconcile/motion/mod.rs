@@ -4,6 +4,7 @@
 //! - [`response`], [`noise`], [`gls`]: how sensor noise enters, and least squares that respects it
 //! - [`change`], [`candidate`], [`effect`]: the library; [`fit`]: a set of effects fitted; [`scorer`]: its evidence
 //! - [`unexplained_background`]: what nothing explains; [`gap`]: how much is left on other data; [`examine`]: the verdict
+//! - [`sits`]: where, when and at which size a gap is largest
 //! - [`simulated`]: what was named, by simulation
 
 pub mod alias;
@@ -38,6 +39,7 @@ pub mod response;
 pub mod scorer;
 mod sentences;
 pub mod simulated;
+pub mod sits;
 mod sound;
 pub mod unexplained_background;
 mod zeros;

@@ -44,6 +44,8 @@ pub struct MotionOutcome {
     pub effects: Vec<MotionEffect>,
     /// What came closest.
     pub best_attempt: Vec<MotionEffect>,
+    /// Joint covariance of the sizes of what came closest, effects in order, by rows; empty where the channel itself says what is wrong.
+    pub covariance: Vec<Vec<f64>>,
     /// Corrections of channels with the named effects in: those of the job and those found.
     pub corrections: Vec<Adjustment>,
     /// Other explanations, nearest first.

@@ -3,6 +3,7 @@
 use super::floor::NOISE_FACTOR;
 use super::gap::{Proof, RecordGap};
 use super::scorer::MotionScorer;
+use super::sits::gap_sits;
 use crate::reconcile::outcome::{Rival, Verdict};
 
 /// What remains and where it sits; `chi` and `left` are before, after (and floor).
@@ -13,18 +14,8 @@ pub(super) fn remains(
     proof: Proof,
     gap: Option<&RecordGap>,
 ) -> String {
-    let worst = gap.and_then(|g| {
-        g.equations
-            .iter()
-            .max_by(|a, b| (a.gap / a.floor.max(1e-12)).total_cmp(&(b.gap / b.floor.max(1e-12))))
-    });
-    let place = worst.map_or_else(String::new, |e| {
-        let band = e.by_band.iter().max_by(|a, b| a[1].total_cmp(&b[1]));
-        let up_to = band.map_or_else(String::new, |b| {
-            format!(", most of it in the band up to {:.1} Hz", b[0])
-        });
-        format!(" Largest in `{}`{up_to}.", e.name)
-    });
+    let worst = gap.and_then(|g| gap_sits(g).into_iter().next());
+    let place = worst.map_or_else(String::new, |w| format!(" Largest in {}.", w.words()));
     let noise = NOISE_FACTOR * NOISE_FACTOR;
     let state = match verdict {
         Verdict::Named if chi[1] < noise => "What is left is at the floor of sensor noise.",
@@ -38,7 +29,10 @@ pub(super) fn remains(
     };
     let judged = match proof {
         Proof::HeldOut => String::new(),
-        p => format!(" No record was held out: gaps are those of {}.", p.words()),
+        p => format!(
+            " There is no `hold_out` to judge by: gaps are those of {}.",
+            p.words()
+        ),
     };
     format!(
         "{state} Left on the fitted record: {:.2} % of the measured quantity, noise and tolerances {:.2} %.{place}{judged}",

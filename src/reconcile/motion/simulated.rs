@@ -1,10 +1,11 @@
-//! The named model by the error of simulation: parameters found anew by simulating the fitted record, judged by simulating the held-out one.
+//! The named model by the error of simulation: parameters found anew by simulating the fitted record, judged by simulating
+//! the held-out one, where there is one.
 //!
 //! The search compares equations, which are linear in what it looks for; a simulation has no measured motion on its right-hand side, so
 //! neither sensor noise in the regressors nor stretch integrated twice can hide what is wrong. The analyst's model is treated alike.
 
 use super::frame::MotionFrame;
-use super::gap::RecordGap;
+use super::gap::{Proof, RecordGap};
 use super::outcome::MotionOutcome;
 use crate::series::channels::Channels;
 use crate::series::detrend::rms;
@@ -21,7 +22,7 @@ const FORGOTTEN: usize = 200;
 /// Integration steps a sample, the first that does not run away.
 const STEPS: [usize; 2] = [2, 8];
 
-/// Error of simulation of one sensor on held-out data, RMS in its unit.
+/// Error of simulation of one sensor, RMS in its unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulatedChannel {
     /// Channel.
@@ -41,6 +42,8 @@ pub struct SimulatedGap {
     pub channels: Vec<SimulatedChannel>,
     /// Parameters of the named model: name, by regression, by simulation.
     pub parameters: Vec<(String, f64, f64)>,
+    /// What both were simulated on: the held-out record, else the fitted one itself.
+    pub judged_by: Proof,
 }
 
 /// Simulates both models; the reason where that can't be done.
@@ -68,6 +71,10 @@ pub fn simulated_gap(frame: &MotionFrame, outcome: &MotionOutcome) -> Result<Sim
         parameters: (two.free.iter())
             .map(|&i| (names[i].name.clone(), after.values[i], two.values[i]))
             .collect(),
+        judged_by: match frame.hold_out {
+            Some(_) => Proof::HeldOut,
+            None => Proof::Fitted,
+        },
     })
 }
 

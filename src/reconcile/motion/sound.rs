@@ -72,7 +72,7 @@ pub(super) fn outcome_of_dead(
     let remains = match compared.as_slice() {
         [] if is_fitted => {
             format!(
-                "The held-out record says nothing of the equations that {names} does not enter: there is no gap to state."
+                "The record that judges says nothing of the equations that {names} does not enter: there is no gap to state."
             )
         }
         [] => format!("No equation can be compared without {names}: there is no gap to state."),
@@ -86,6 +86,7 @@ pub(super) fn outcome_of_dead(
         verdict: Verdict::Named,
         best_attempt: effects.clone(),
         effects,
+        covariance: vec![],
         corrections: frame.corrections.clone(),
         rivals: vec![],
         evidence: 0.0,

@@ -1,39 +1,51 @@
 //! What a model and readings are with named effects in them: what the extended model holds.
 
 use super::frame::StrainFrame;
+use super::prediction::predict;
 use super::state::StrainState;
-use crate::reconcile::effect::{Correction, Extension, Member, full_id, library};
+use crate::reconcile::effect::{Candidate, Correction, Extension, Member, full_id, library};
 use crate::reconcile::outcome::NamedEffect;
 
 /// The model with the effects of structure and loads in it: influence, and what acts in every run.
 pub fn extended_state(frame: &StrainFrame, effects: &[NamedEffect]) -> StrainState {
+    let candidates = candidates(frame, effects);
+    StrainState::with(frame, &members(frame, effects, &candidates))
+}
+
+/// What the model predicts with the effects in it, channels as they read, microstrain, `n_runs x n_gauges`; what differs from run to run is
+/// not in it.
+pub fn predicted_with(frame: &StrainFrame, effects: &[NamedEffect]) -> Vec<f64> {
+    let candidates = candidates(frame, effects);
+    predict(frame, &members(frame, effects, &candidates))
+}
+
+fn candidates(frame: &StrainFrame, effects: &[NamedEffect]) -> Vec<Candidate> {
+    if effects.is_empty() {
+        return Vec::new();
+    }
     let ids: Vec<String> = effects.iter().map(|e| e.id.clone()).collect();
-    let candidates = library(frame, &ids);
-    let mut chosen = Vec::new();
-    for e in effects {
-        // An effect may have several forms: the one with as many parameters, that makes the same of them.
-        let same = |c: &&crate::reconcile::effect::Candidate| {
+    library(frame, &ids)
+}
+
+/// The effects as members. An effect may have several forms: the one with as many parameters, that makes the same of them.
+fn members<'a>(
+    frame: &StrainFrame,
+    effects: &'a [NamedEffect],
+    candidates: &'a [Candidate],
+) -> Vec<Member<'a>> {
+    let member = |e: &'a NamedEffect| {
+        let of = |c: &&Candidate| {
             let parameters = e.size.get(..c.effect.parameters().len());
             full_id(c.effect.as_ref()) == e.id
                 && parameters.is_some_and(|p| c.effect.extension(frame, p) == e.extension)
         };
-        if let Some(c) = candidates.iter().find(same) {
-            chosen.push((
-                c.effect.as_ref(),
-                e.size
-                    .get(..c.effect.parameters().len())
-                    .unwrap_or_default(),
-            ));
-        }
-    }
-    let members: Vec<Member<'_>> = chosen
-        .iter()
-        .map(|(effect, p)| Member {
-            effect: *effect,
-            parameters: p,
+        let c = candidates.iter().find(of)?;
+        Some(Member {
+            effect: c.effect.as_ref(),
+            parameters: e.size.get(..c.effect.parameters().len())?,
         })
-        .collect();
-    StrainState::with(frame, &members)
+    };
+    effects.iter().filter_map(member).collect()
 }
 
 /// Readings with faults of channels undone, `n_runs x n_gauges`, and the strain of masses that came aboard after the zero was taken off

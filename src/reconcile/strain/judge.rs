@@ -8,7 +8,7 @@ use super::likelihood::Fit;
 use super::neighbours::neighbours_that_fail;
 use super::next::next_measurement;
 use super::recovered::loads_before_after;
-use super::remains::{remains, sits};
+use super::remains::{Withheld, remains, sits};
 use super::resampled::wins;
 use super::validation::{Proofs, validated};
 use crate::reconcile::effect::{Candidate, Discrepancy, full_id};
@@ -169,6 +169,14 @@ pub(super) fn judge(
         (false, true) if plausible && unmodelled.is_none() && falls => Verdict::Named,
         _ => Verdict::Unknown,
     };
+    let withheld = (verdict == Verdict::Unknown).then(|| Withheld {
+        implausible: (attempt.iter().filter(|e| !e.plausible))
+            .map(|e| e.id.clone())
+            .collect(),
+        no_fall: (!attempt.is_empty() && !falls).then_some([gap.before, gap.after]),
+        noise: (noise > limit::NOISE).then_some(noise),
+        is_told: unmodelled.is_some(),
+    });
     let others = rival_sets(candidates, all, best);
     let rivals: Vec<Rival> = others
         .par_iter()
@@ -213,7 +221,13 @@ pub(super) fn judge(
         gauges_off_before: worst_first(&before.gauges, limit::PART),
         gauges_off: worst_first(&after.gauges, limit::PART),
         runs_off: worst_first(&after.runs, limit::PART),
-        remains: remains(frame, &explained.members, &after, unmodelled),
+        remains: remains(
+            frame,
+            &explained.members,
+            &after,
+            unmodelled,
+            withheld.as_ref(),
+        ),
         next_measurement: next,
         detectable: detectable(frame, candidates, hint.map_or(&[], |h| h.set.as_slice())),
     }

@@ -45,6 +45,7 @@ impl Report for Outcome<Reconciled> {
             let _ = writeln!(text, "left: {}", strain.outcome.remains);
         }
         if let Some(motion) = &self.motion {
+            let _ = writeln!(text, "where: {}", motion.sits);
             text.push_str(&simulated_words(motion));
             let _ = writeln!(text, "{}", motion.outcome.remains);
         }

@@ -1,8 +1,10 @@
 //! Files of the extended model.
 
 use crate::app::fault::Faults;
+use crate::app::job::Job;
 use crate::app::output::Output;
 use crate::app::reconcile::extended::{DECK, ExtendedS, PAYLOAD, RUNS, SENSITIVITY, STRAIN};
+use crate::app::reconcile::extended_columns::{payload_factors, sensitivity_columns};
 use crate::app::reconcile::{Reconciled, extended_job};
 use crate::reconcile::strain::StrainFrame;
 use crate::report::csv_cell;
@@ -20,9 +22,9 @@ pub(super) fn write_extended(found: &Reconciled, out: &mut Output) -> Result<(),
             write(STRAIN, strain_csv(frame, readings))?;
         }
         if let Some(s) = &extended.sensitivity {
-            write(SENSITIVITY, sensitivity_csv(frame, s))?;
+            write(SENSITIVITY, sensitivity_csv(&found.job, frame, s))?;
             if s.changed {
-                write(PAYLOAD, payload_csv(frame, &s.influence))?;
+                write(PAYLOAD, payload_csv(&found.job, frame, &s.influence))?;
             }
         }
         if let Some(columns) = &extended.runs {
@@ -63,39 +65,28 @@ fn strain_csv(frame: &StrainFrame, values: &[f64]) -> String {
     out
 }
 
-fn sensitivity_csv(frame: &StrainFrame, s: &ExtendedS) -> String {
-    let names: Vec<_> = frame
-        .load_names
-        .iter()
-        .chain(s.besides().map(|n| n.0))
-        .map(|n| csv_cell(n))
-        .collect();
+fn sensitivity_csv(job: &Job, frame: &StrainFrame, s: &ExtendedS) -> String {
+    let columns = sensitivity_columns(job, frame, s);
+    let names: Vec<_> = columns.iter().map(|c| csv_cell(&c.column)).collect();
     let mut out = format!("gauge,{}\n", names.join(","));
     for (g, gauge) in frame.gauges.iter().enumerate() {
-        let row = s
-            .influence
-            .iter()
-            .skip(g * frame.n_columns())
-            .take(frame.n_loads());
-        let more = s.besides().filter_map(|n| n.1.get(g));
-        let cells: Vec<String> = row.chain(more).map(|v| format!("{v:.9e}")).collect();
+        let row = columns.iter().filter_map(|c| c.values.get(g));
+        let cells: Vec<String> = row.map(|v| format!("{v:.9e}")).collect();
         let _ = writeln!(out, "{},{}", csv_cell(&gauge.name), cells.join(","));
     }
     out
 }
 
-fn payload_csv(frame: &StrainFrame, influence: &[f64]) -> String {
+fn payload_csv(job: &Job, frame: &StrainFrame, influence: &[f64]) -> String {
+    let factors = payload_factors(job);
     let mut out = String::from("gauge,b0,b_dx,b_dy,b_dxdy\n");
     for (gauge, row) in frame
         .gauges
         .iter()
         .zip(influence.chunks_exact(frame.n_columns()))
     {
-        let cells: Vec<String> = row
-            .iter()
-            .skip(frame.n_loads())
-            .map(|v| format!("{v:.9e}"))
-            .collect();
+        let columns = row.iter().skip(frame.n_loads()).zip(factors);
+        let cells: Vec<String> = columns.map(|(v, f)| format!("{:.9e}", v / f)).collect();
         let _ = writeln!(out, "{},{}", csv_cell(&gauge.name), cells.join(","));
     }
     out

@@ -1,14 +1,19 @@
 //! Files of `reconcile` for motion: gap by equation, band, time and amplitude, restoring forces, page.
 
 use super::columns::declare_written;
+use super::reconcile_strain::added_rows;
 use crate::app::fault::Faults;
 use crate::app::outcome::Outcome;
 use crate::app::output::Output;
 use crate::app::reconcile::{MotionPart, Reconciled, SimulationFound};
-use crate::reconcile::motion::MotionOutcome;
 use crate::reconcile::motion::gap::EquationGap;
+use crate::reconcile::motion::sits::{GapSits, Stretch};
+use crate::reconcile::motion::{MotionEffect, MotionOutcome};
+use crate::reconcile::{Rival, Verdict};
+use crate::report::covariance::covariance_block;
 use crate::report::figure::gap_by_channel;
-use crate::report::page::{Block, Page, Section, figure_section, number, table_section};
+use crate::report::page::{Block, Page, Section, number, table_section};
+use crate::report::strain::ADDED;
 use crate::report::vehicle::{
     restoring_curves, restoring_section, restoring_unit, write_restoring_force,
 };
@@ -50,9 +55,24 @@ pub(super) fn motion_page(outcome: &Outcome<Reconciled>, found: &MotionPart) -> 
         Some((id, moved)) => restoring_curves(id, moved),
         None => Vec::new(),
     };
-    let mut sections = gap_sections(&found.outcome);
-    sections.extend(effect_sections(found));
-    sections.extend(simulation(found).map(simulation_section));
+    let mut sections = vec![
+        verdict_section(outcome, found),
+        where_section(found),
+        added_section(outcome, found),
+        gap_section(&found.outcome),
+    ];
+    sections.extend(scatter_section(found));
+    sections.extend(rival_section(&found.outcome));
+    sections.push(Section::new(
+        "What remains",
+        vec![
+            Block::Text(found.outcome.remains.clone()),
+            Block::Stressed(
+                "Next measurement:".into(),
+                found.outcome.next_measurement.clone(),
+            ),
+        ],
+    ));
     let units = UnitNames::from_system(outcome.job.units);
     sections.push(restoring_section(&curves, &units));
     Page::new(
@@ -132,8 +152,102 @@ fn gap_tables(outcome: &MotionOutcome) -> [(&'static str, String); 4] {
     ]
 }
 
-/// Verdict, and the gap by equation.
-fn gap_sections(outcome: &MotionOutcome) -> Vec<Section> {
+fn verdict_section(outcome: &Outcome<Reconciled>, found: &MotionPart) -> Section {
+    let words = match found.outcome.verdict {
+        Verdict::Named => format!(
+            "An effect is missing in the model, and it is named: {}.",
+            outcome.named.join(", ")
+        ),
+        Verdict::None => "Model and record agree within noise and declared tolerances.".into(),
+        Verdict::Unknown => "There is a gap, and nothing in the library closes it.".into(),
+        Verdict::BelowDetectability => {
+            "There is a hint of an effect, too small for this record to name.".into()
+        }
+    };
+    let verdict = format!("{}.", found.outcome.verdict.word());
+    Section::new("Verdict", vec![Block::Stressed(verdict, words)])
+}
+
+/// By equation: in which band, when and at which size of the motion the gap is largest, before and after.
+fn where_section(found: &MotionPart) -> Section {
+    let stretch = |s: &Option<Stretch>| match s {
+        Some(s) => format!("{:.2} to {:.2}: {:.2}", s.from, s.to, 100.0 * s.gap),
+        None => "-".into(),
+    };
+    let rows = |list: &[GapSits]| -> Vec<Vec<String>> {
+        let row = |s: &GapSits| {
+            let at = [&s.band_hz, &s.time_s, &s.size_over_rms].map(stretch);
+            [s.equation.clone(), format!("{:.2}", 100.0 * s.gap)]
+                .into_iter()
+                .chain(at)
+                .collect()
+        };
+        list.iter().map(row).collect()
+    };
+    let head = [
+        "equation",
+        "gap, %",
+        "worst band, Hz: %",
+        "worst stretch, s: %",
+        "worst size of the motion, times its rms: %",
+    ];
+    let mut blocks = vec![Block::Text(format!("{}.", found.sits))];
+    if !found.sits_at.is_empty() {
+        blocks.push(Block::table(&head, rows(&found.sits_at)));
+    }
+    if !found.sits_after.is_empty() && !found.outcome.best_attempt.is_empty() {
+        blocks.push(Block::Folded {
+            summary: "the same with the effects in".into(),
+            blocks: vec![Block::table(&head, rows(&found.sits_after))],
+        });
+    }
+    Section::new("Where the gap sits", blocks)
+}
+
+/// Effects with their sizes, how sure they are together, and where they stand in the extended job.
+fn added_section(outcome: &Outcome<Reconciled>, found: &MotionPart) -> Section {
+    let attempt = &found.outcome.best_attempt;
+    if attempt.is_empty() {
+        let nothing = Block::Text("Nothing: no effect is named.".into());
+        return Section::new(ADDED, vec![nothing]);
+    }
+    let row = |e: &MotionEffect| {
+        let sizes: Vec<String> = e
+            .size
+            .iter()
+            .zip(&e.sigma)
+            .map(|(v, s)| format!("{v:.5e} +- {s:.1e}"))
+            .collect();
+        vec![e.id.clone(), sizes.join(", "), e.unit.clone()]
+    };
+    let head = ["effect", "size and its sigma", "unit"];
+    let mut blocks = vec![Block::table(&head, attempt.iter().map(row).collect())];
+    let added = added_rows(outcome);
+    blocks.push(match (found.outcome.verdict, added.is_empty()) {
+        (Verdict::Named, false) => {
+            Block::table(&["effect", "path", "old value", "new value"], added)
+        }
+        (Verdict::Named, true) => {
+            Block::Text("No extended model is written: the findings say why.".into())
+        }
+        _ => Block::Text("The best attempt; it is not named, and nothing was added.".into()),
+    });
+    let names = attempt.iter().flat_map(|e| {
+        let name = |k: usize| match e.size.len() {
+            1 => e.id.clone(),
+            _ => format!("{} ({})", e.id, k + 1),
+        };
+        (0..e.size.len()).map(name).collect::<Vec<_>>()
+    });
+    blocks.extend(covariance_block(
+        &names.collect::<Vec<_>>(),
+        &found.covariance.concat(),
+    ));
+    Section::new(ADDED, blocks)
+}
+
+/// The gap by equation, before and after.
+fn gap_section(outcome: &MotionOutcome) -> Section {
     // Gap before, after, floor, percent.
     let gaps: Vec<(String, [f64; 3])> = equations(outcome)
         .map(|(e, after)| {
@@ -148,60 +262,47 @@ fn gap_sections(outcome: &MotionOutcome) -> Vec<Section> {
             std::iter::once(name.clone()).chain(cells).collect()
         })
         .collect();
-    let verdict = format!("{}.", outcome.verdict.word());
-    vec![
-        Section::new(
-            "Verdict",
-            vec![
-                Block::Stressed(verdict, outcome.remains.clone()),
-                Block::Stressed("Next measurement:".into(), outcome.next_measurement.clone()),
-            ],
-        ),
-        figure_section(
-            "Gap before and after",
-            gap_by_channel(&gaps, "% of the measured quantity,"),
-            &format!(
+    Section::new(
+        "Gap before and after",
+        vec![
+            Block::Figure(gap_by_channel(&gaps, "% of the measured quantity,")),
+            Block::Note(format!(
                 "On {}, by equation of motion; stroke: the floor.",
                 outcome.judged_by.words()
+            )),
+            Block::table(
+                &[
+                    "equation",
+                    "before, % of the measured quantity",
+                    "after",
+                    "floor",
+                ],
+                rows,
             ),
-        ),
-        table_section(
-            "Gap by equation, % of the measured quantity",
-            &["equation", "before", "after", "floor"],
-            &rows,
-            "",
-        ),
-    ]
+        ],
+    )
 }
 
-/// Effects, other explanations, wheel forces.
-fn effect_sections(found: &MotionPart) -> [Section; 3] {
-    let effects: Vec<Vec<String>> = found
-        .outcome
-        .best_attempt
-        .iter()
-        .map(|e| {
-            let sizes: Vec<String> = e
-                .size
-                .iter()
-                .zip(&e.sigma)
-                .map(|(v, s)| format!("{v:.5e} +- {s:.1e}"))
-                .collect();
-            vec![e.id.clone(), sizes.join(", "), e.unit.clone()]
-        })
-        .collect();
-    let rivals: Vec<Vec<String>> = found
-        .outcome
-        .rivals
-        .iter()
-        .map(|r| {
-            vec![
-                r.ids.join(" + "),
-                format!("{:.1}", r.evidence_difference),
-                format!("{:.2}", 100.0 * r.gap_after),
-            ]
-        })
-        .collect();
+/// What simulation and measured wheel forces leave, before and after.
+fn scatter_section(found: &MotionPart) -> Option<Section> {
+    let mut blocks = Vec::new();
+    if let Some(s) = simulation(found) {
+        let cells = s.channels.iter().map(|c| {
+            let values = [c.measured_rms, c.before, c.after].map(number);
+            std::iter::once(c.channel.clone()).chain(values).collect()
+        });
+        let head = [
+            "simulated channel",
+            "measured",
+            "error before",
+            "error after",
+        ];
+        blocks.push(Block::table(&head, cells.collect()));
+        blocks.push(Block::Note(format!(
+            "{}; parameters are those that simulate the fitted record best.",
+            s.metric
+        )));
+    }
     let forces: Vec<Vec<String>> = found
         .wheel_force
         .iter()
@@ -213,32 +314,22 @@ fn effect_sections(found: &MotionPart) -> [Section; 3] {
             ]
         })
         .collect();
-    [
-        table_section("Effects", &["effect", "size", "unit"], &effects, ""),
-        table_section(
-            "Other explanations",
-            &["effects", "log evidence behind", "gap after, %"],
-            &rivals,
-            "",
-        ),
-        table_section(
-            "Wheel force, % left over",
-            &["channel", "before", "after"],
-            &forces,
-            "",
-        ),
-    ]
+    if !forces.is_empty() {
+        let head = ["wheel force", "left over before, %", "after, %"];
+        blocks.push(Block::table(&head, forces));
+    }
+    (!blocks.is_empty()).then(|| Section::new("Scatter before and after", blocks))
 }
 
-fn simulation_section(s: &SimulationFound) -> Section {
-    let cells = s.channels.iter().map(|c| {
-        let values = [c.measured_rms, c.before, c.after].map(number);
-        std::iter::once(c.channel.clone()).chain(values).collect()
-    });
-    table_section(
-        "Simulated held-out data, RMS in the unit of the channel",
-        &["channel", "measured", "error before", "error after"],
-        &cells.collect::<Vec<Vec<String>>>(),
-        "Both models with the parameters that simulate the fitted record best.",
-    )
+fn rival_section(outcome: &MotionOutcome) -> Option<Section> {
+    let row = |r: &Rival| {
+        vec![
+            r.ids.join(" + "),
+            format!("{:.1}", r.evidence_difference),
+            format!("{:.2}", 100.0 * r.gap_after),
+        ]
+    };
+    let rivals: Vec<Vec<String>> = outcome.rivals.iter().map(row).collect();
+    let head = ["effects", "log evidence behind", "gap after, %"];
+    (!rivals.is_empty()).then(|| table_section("Other explanations", &head, &rivals, ""))
 }

@@ -4,14 +4,14 @@ use super::columns::declare_written;
 use crate::app::fault::Faults;
 use crate::app::outcome::Outcome;
 use crate::app::output::Output;
-use crate::app::reconcile::{Reconciled, StrainPart};
+use crate::app::reconcile::{Added, Reconciled, StrainPart};
 use crate::model::{Model, Vec3};
 use crate::reconcile::strain::StrainFrame;
 use crate::report::csv_cell;
 use crate::report::figure::GaugePoints;
 use crate::report::page::Page;
 use crate::report::scene::{Mark, Pointing, Scene, fields_of, mark_of_gap};
-use crate::report::strain::{RunStrain, reconcile_page};
+use crate::report::strain::{GapReport, RunStrain, reconcile_page};
 use std::fmt::Write;
 
 /// Writes `gap.csv` and `loads_before_after.csv`.
@@ -53,13 +53,23 @@ pub(super) fn strain_page(outcome: &Outcome<Reconciled>, found: &StrainPart) -> 
         length: job.units.unit(crate::units::Quantity::Length).name,
         pointing: Pointing::Nothing,
     });
-    reconcile_page(
-        &job.title,
-        &found.outcome,
-        scene.as_ref(),
-        &run_strain(&found.frame, &found.predicted),
-        &outcome.findings,
-    )
+    reconcile_page(&GapReport {
+        title: &job.title,
+        outcome: &found.outcome,
+        added: added_rows(outcome),
+        scene: scene.as_ref(),
+        strain: &run_strain(found),
+        findings: &outcome.findings,
+    })
+}
+
+/// What was added to the model: effect, path, old and new value.
+pub(super) fn added_rows(found: &Reconciled) -> Vec<Vec<String>> {
+    let row = |a: &Added| {
+        let cells = [&a.effect, &a.path, &a.old, &a.new];
+        cells.map(String::clone).to_vec()
+    };
+    found.added.iter().map(row).collect()
 }
 
 fn gap_csv(found: &StrainPart) -> String {
@@ -99,32 +109,42 @@ fn loads_csv(found: &StrainPart) -> String {
     text
 }
 
-/// Measured and predicted strain of the runs, by the model as it was given.
-fn run_strain(frame: &StrainFrame, predicted: &[f64]) -> RunStrain {
+/// Measured and predicted strain of the runs, by the model as it was given and with the effects in.
+fn run_strain(found: &StrainPart) -> RunStrain {
+    let frame = &found.frame;
     let o = &frame.observations;
-    let n = frame.n_gauges();
     let held = |run: &usize| o.held_out.get(*run).copied().unwrap_or(false);
     let (held_out, used): (Vec<usize>, Vec<usize>) = (0..frame.n_runs()).partition(held);
-    let points = (0..n)
-        .map(|g| {
-            let pairs = [&used, &held_out].map(|runs| -> Vec<(f64, f64)> {
-                let of = |r: &usize| (predicted[r * n + g], o.value(*r, g));
-                runs.iter().map(of).collect()
-            });
-            let square = |p: &(f64, f64)| (p.1 - p.0).powi(2);
-            let known: Vec<f64> = pairs.iter().flatten().map(square).collect();
-            let known: Vec<f64> = known.into_iter().filter(|v| v.is_finite()).collect();
-            GaugePoints {
-                name: o.channels.get(g).cloned().unwrap_or_default(),
-                residual: (known.iter().sum::<f64>() / known.len().max(1) as f64).sqrt(),
-                points: pairs,
-            }
-        })
-        .collect();
+    let points = |predicted: &[f64]| gauge_points(frame, predicted, [&used, &held_out]);
     let names = |runs: &[usize]| runs.iter().map(|r| o.runs[*r].clone()).collect();
     RunStrain {
-        points,
+        before: points(&found.predicted),
+        after: points(&found.predicted_after),
         used: names(&used),
         held_out: names(&held_out),
     }
+}
+
+fn gauge_points(
+    frame: &StrainFrame,
+    predicted: &[f64],
+    kinds: [&Vec<usize>; 2],
+) -> Vec<GaugePoints> {
+    let o = &frame.observations;
+    let n = frame.n_gauges();
+    let one = |g: usize| {
+        let pairs = kinds.map(|runs| -> Vec<(f64, f64)> {
+            let of = |r: &usize| (predicted[r * n + g], o.value(*r, g));
+            runs.iter().map(of).collect()
+        });
+        let square = |p: &(f64, f64)| (p.1 - p.0).powi(2);
+        let known: Vec<f64> = pairs.iter().flatten().map(square).collect();
+        let known: Vec<f64> = known.into_iter().filter(|v| v.is_finite()).collect();
+        GaugePoints {
+            name: o.channels.get(g).cloned().unwrap_or_default(),
+            residual: (known.iter().sum::<f64>() / known.len().max(1) as f64).sqrt(),
+            points: pairs,
+        }
+    };
+    (0..n).map(one).collect()
 }

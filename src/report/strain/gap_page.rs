@@ -1,65 +1,65 @@
 //! The page of `reconcile` on static strain.
 
 use crate::finding::Finding;
+use crate::reconcile::effect::Extension;
 use crate::reconcile::{NamedEffect, Outcome, Verdict};
+use crate::report::covariance::covariance_block;
 use crate::report::figure::{GaugePoints, agreement, gap_by_channel};
-use crate::report::page::{Block, Page, Section, figure_section, number, table_section};
+use crate::report::page::{Block, Page, Section, number, table_section};
 use crate::report::scene::{Scene, scene_section};
 
-/// Strain of the runs as the given model predicts it.
+/// Heading over what was added to the model.
+pub const ADDED: &str = "What was added";
+
+/// Strain of the runs as the model predicts it, as it was given and with the effects in.
 #[derive(Default)]
 pub struct RunStrain {
-    /// By gauge: runs used, runs held out.
-    pub points: Vec<GaugePoints>,
+    /// By gauge: runs used, runs held out; the model as it was given.
+    pub before: Vec<GaugePoints>,
+    /// The same with the effects in.
+    pub after: Vec<GaugePoints>,
     /// Names of the runs used.
     pub used: Vec<String>,
     /// Names of those held out.
     pub held_out: Vec<String>,
 }
 
-/// The page: verdict, where the gap sits, what was named, what else would explain it, loads before and after, what remains.
-pub fn reconcile_page(
-    title: &str,
-    outcome: &Outcome,
-    scene: Option<&Scene>,
-    strain: &RunStrain,
-    findings: &[Finding],
-) -> Page {
-    let mut sections = vec![Section::new("Verdict", verdict(outcome))];
-    let by_channel: Vec<(String, [f64; 3])> = outcome
-        .channels
-        .iter()
-        .map(|c| (c.channel.clone(), [c.before, c.after, c.floor]))
-        .collect();
-    let listed = by_channel.iter().map(|(name, gap)| {
-        let cells = gap.iter().map(|v| number(*v));
-        std::iter::once(name.clone()).chain(cells).collect()
-    });
-    sections.push(Section::new(
-        "Where the gap sits",
-        vec![
-            Block::Text(format!("{}.", outcome.sits)),
-            Block::Figure(gap_by_channel(&by_channel, "µε")),
-            Block::Note("Root mean square over the held-out runs: before and after the named effects; stroke: the floor, what noise and stated uncertainty leave.".into()),
-            Block::Folded {
-                summary: format!("{} gauges, µε rms", by_channel.len()),
-                blocks: vec![Block::table(&["gauge", "before, µε", "after, µε", "floor, µε"], listed.collect())],
-            },
-        ],
-    ));
-    if let Some(scene) = scene {
+/// What the page is made of.
+pub struct GapReport<'a> {
+    /// Title of the job.
+    pub title: &'a str,
+    /// What was found.
+    pub outcome: &'a Outcome,
+    /// What was added: effect, path, old and new value; empty where there is no extended model.
+    pub added: Vec<Vec<String>>,
+    /// The gap on the model.
+    pub scene: Option<&'a Scene<'a>>,
+    /// Strain of the runs.
+    pub strain: &'a RunStrain,
+    /// Findings.
+    pub findings: &'a [Finding],
+}
+
+/// The page: verdict, where the gap sits, what was added, gap and scatter before and after, the gap on the model; notes behind.
+pub fn reconcile_page(report: &GapReport<'_>) -> Page {
+    let outcome = report.outcome;
+    let mut sections = vec![
+        Section::new("Verdict", verdict(outcome)),
+        Section::new(
+            "Where the gap sits",
+            vec![Block::Text(format!("{}.", outcome.sits))],
+        ),
+        added_section(outcome, &report.added),
+        gap_section(outcome),
+    ];
+    sections.extend(scatter_section(report.strain, outcome));
+    if let Some(scene) = report.scene {
         let mut section = scene_section("The gap on the model", scene);
-        section.blocks.push(Block::Note("Area of a circle: what the model misses at that gauge in the held-out runs, orange before, blue after.".into()));
+        section.blocks.push(Block::Note(format!(
+            "Area of a circle: what the model misses at that gauge in the {} runs, orange before, blue after.",
+            outcome.gap.basis.words()
+        )));
         sections.push(section);
-    }
-    if !strain.points.is_empty() {
-        let kinds = ["runs used for fitting", "held-out runs"];
-        let runs: [&[String]; 2] = [&strain.used, &strain.held_out];
-        sections.push(figure_section(
-            "Measured against predicted strain",
-            agreement(&strain.points, kinds, runs),
-            "Prediction of the model as it was given, before any effect.",
-        ));
     }
     if !outcome.rivals.is_empty() {
         sections.push(rivals(outcome));
@@ -117,11 +117,120 @@ pub fn reconcile_page(
         }],
     ));
     Page::new(
-        title,
+        report.title,
         "Where simulation and measurement disagree, and what is missing",
-        findings,
+        report.findings,
         sections,
     )
+}
+
+/// The named effects (or best attempt) with their sizes, how sure they are together, and where they stand in the extended model.
+fn added_section(outcome: &Outcome, added: &[Vec<String>]) -> Section {
+    if outcome.best_attempt.is_empty() {
+        let nothing = Block::Text("Nothing: no effect is named.".into());
+        return Section::new(ADDED, vec![nothing]);
+    }
+    let rows = outcome.best_attempt.iter().map(effect).collect();
+    let head = ["effect", "size", "sigma", "unit", "plausible"];
+    let mut blocks = vec![Block::table(&head, rows)];
+    blocks.push(match (outcome.verdict, added.is_empty()) {
+        (Verdict::Named, false) => Block::table(
+            &["effect", "path", "old value", "new value"],
+            added.to_vec(),
+        ),
+        (Verdict::Named, true) => {
+            Block::Text("No extended model is written: the findings say why.".into())
+        }
+        _ => Block::Text("The best attempt; it is not named, and nothing was added.".into()),
+    });
+    blocks.extend(covariance_block(&sizes(outcome), &outcome.covariance));
+    Section::new(ADDED, blocks)
+}
+
+/// Name of every size of the set, in the order of its covariance. Amplitudes of runs have sizes, and no place in it.
+fn sizes(outcome: &Outcome) -> Vec<String> {
+    let n = outcome.covariance.len().isqrt();
+    let of = |e: &NamedEffect| {
+        let name = |k: usize| match e.size.len() {
+            1 => e.id.clone(),
+            _ => format!("{} ({})", e.id, k + 1),
+        };
+        (0..e.size.len()).map(name).collect::<Vec<_>>()
+    };
+    let has_parameters = |e: &&NamedEffect| !matches!(e.extension, Extension::NuisanceLoads { .. });
+    let named = outcome.best_attempt.iter().filter(has_parameters);
+    let names: Vec<String> = named.flat_map(of).collect();
+    match names.len() == n {
+        true => names,
+        false => (1..=n).map(|k| format!("parameter {k}")).collect(),
+    }
+}
+
+fn gap_section(outcome: &Outcome) -> Section {
+    let by_channel: Vec<(String, [f64; 3])> = outcome
+        .channels
+        .iter()
+        .map(|c| (c.channel.clone(), [c.before, c.after, c.floor]))
+        .collect();
+    let listed = by_channel.iter().map(|(name, gap)| {
+        let cells = gap.iter().map(|v| number(*v));
+        std::iter::once(name.clone()).chain(cells).collect()
+    });
+    Section::new(
+        "Gap before and after",
+        vec![
+            Block::Text(gap_words(outcome)),
+            Block::Figure(gap_by_channel(&by_channel, "µε")),
+            Block::Note(format!(
+                "Root mean square over the {} runs: before and after the named effects; stroke: the floor, what noise and stated uncertainty leave.",
+                outcome.gap.basis.words()
+            )),
+            Block::Folded {
+                summary: format!("{} gauges, µε rms", by_channel.len()),
+                blocks: vec![Block::table(
+                    &["gauge", "before, µε", "after, µε", "floor, µε"],
+                    listed.collect(),
+                )],
+            },
+        ],
+    )
+}
+
+/// Measured against predicted strain, before and after.
+fn scatter_section(strain: &RunStrain, outcome: &Outcome) -> Option<Section> {
+    if strain.before.is_empty() {
+        return None;
+    }
+    let kinds = ["runs used for fitting", "held-out runs"];
+    let runs: [&[String]; 2] = [&strain.used, &strain.held_out];
+    let mut rows = Vec::new();
+    for (k, kind) in kinds.into_iter().enumerate() {
+        let scatter = [&strain.before, &strain.after].map(|p| scatter_of(p, k));
+        if let [Some(before), Some(after)] = scatter {
+            rows.push(vec![kind.to_owned(), number(before), number(after)]);
+        }
+    }
+    let mut blocks = vec![
+        Block::table(&["", "before, µε rms", "after, µε rms"], rows),
+        Block::Figure(agreement(&strain.before, kinds, runs)),
+        Block::Note("Measured against predicted strain: the model as it was given.".into()),
+    ];
+    if !outcome.best_attempt.is_empty() {
+        blocks.push(Block::Figure(agreement(&strain.after, kinds, runs)));
+        blocks.push(Block::Note(
+            "The same with the effects in, but for what differs from run to run.".into(),
+        ));
+    }
+    Some(Section::new("Scatter before and after", blocks))
+}
+
+/// Root mean square of measured less predicted strain of one kind of runs; `None` where there are none.
+fn scatter_of(points: &[GaugePoints], kind: usize) -> Option<f64> {
+    let all = points.iter().filter_map(|g| g.points.get(kind)).flatten();
+    let square = |p: &(f64, f64)| (p.1 - p.0).powi(2);
+    let squares: Vec<f64> = all.map(square).filter(|v| v.is_finite()).collect();
+    let n = squares.len();
+    (n > 0).then(|| (squares.iter().sum::<f64>() / n as f64).sqrt())
 }
 
 fn verdict(outcome: &Outcome) -> Vec<Block> {
@@ -135,17 +244,25 @@ fn verdict(outcome: &Outcome) -> Vec<Block> {
             "There is a hint of an effect, too small for these runs to name. The best attempt:"
         }
     };
-    let g = &outcome.gap;
-    let percent = |v: f64| format!("{:.2} %", 100.0 * v);
     let mut out = vec![Block::Stressed(
         format!("{}.", outcome.verdict.word()),
         words.into(),
     )];
     if !outcome.best_attempt.is_empty() {
-        let rows = outcome.best_attempt.iter().map(effect).collect();
-        let head = ["effect", "size", "sigma", "unit", "plausible"];
-        out.push(Block::table(&head, rows));
+        let ids: Vec<&str> = outcome.best_attempt.iter().map(|e| e.id.as_str()).collect();
+        out.push(Block::Text(format!(
+            "{}. When the runs are drawn anew it stays ahead in {} of 100 drawings.",
+            ids.join(", "),
+            outcome.wins
+        )));
     }
+    out
+}
+
+/// The gap before and after, made alike.
+fn gap_words(outcome: &Outcome) -> String {
+    let g = &outcome.gap;
+    let percent = |v: f64| format!("{:.2} %", 100.0 * v);
     let mut gap = format!(
         "Gap on {} runs, RMS(reading − model) / RMS(reading): {} before, {} after, floor {}; {:.0} % of what can be closed is closed.",
         g.basis.words(),
@@ -168,14 +285,7 @@ fn verdict(outcome: &Outcome) -> Vec<Block> {
             percent(mesh)
         ));
     }
-    if !outcome.best_attempt.is_empty() {
-        gap.push_str(&format!(
-            " When the runs are drawn anew it stays ahead in {} of 100 drawings.",
-            outcome.wins
-        ));
-    }
-    out.push(Block::Text(gap));
-    out
+    gap
 }
 
 fn effect(e: &NamedEffect) -> Vec<String> {

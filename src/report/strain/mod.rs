@@ -12,7 +12,7 @@ mod tables;
 
 pub use calibrate_page::calibrate_page;
 pub use fields::strains_page;
-pub use gap_page::{RunStrain, reconcile_page};
+pub use gap_page::{ADDED, GapReport, RunStrain, reconcile_page};
 pub use glued::{COLUMNS as GLUED_COLUMNS, glued_csv};
 pub use gluing::gluing_sheet_md;
 pub use pages::{HowMany, Recovered, RecoveredRun, place_page, recover_page, sensitivity_page};
