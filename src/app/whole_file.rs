@@ -7,8 +7,9 @@ use crate::series::record::{Parts, Source, is_read_in_parts};
 use sha2::{Digest, Sha256};
 use std::fs::{File, Metadata};
 use std::io::{Error, ErrorKind, Read, Seek, SeekFrom};
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, mpsc};
 
 /// Bytes handed over to be hashed at a time: they are still in the processor's cache.
 const PART: usize = 1 << 20;
@@ -69,33 +70,30 @@ impl Opened {
         }
     }
 
-    /// What was read is of one state of the file.
+    /// What was read is all that was asked for, of one state of the file.
     ///
     /// # Errors
-    /// Of kind [`ErrorKind::ResourceBusy`] where it was written to since it was opened.
+    /// Of kind [`ErrorKind::ResourceBusy`] where it was written to since it was opened; where a part could not be read.
     pub fn check(&self) -> std::io::Result<()> {
-        match self {
-            Self::Whole(_) => Ok(()),
-            Self::Parts(file) if differs(&file.before, &std::fs::metadata(&file.path)?) => {
-                Err(ErrorKind::ResourceBusy.into())
-            }
-            Self::Parts(_) => Ok(()),
+        let Self::Parts(file) = self else {
+            return Ok(());
+        };
+        if file.failed.load(Ordering::Relaxed) {
+            return Err(Error::other("a part of it could not be read"));
         }
+        if differs(&file.before, &file.file.metadata()?) {
+            return Err(ErrorKind::ResourceBusy.into());
+        }
+        Ok(())
     }
 }
 
-/// A file that is read part by part, each part by whoever needs it.
+/// A file that is read part by part, each part by whoever needs it: always the file that was opened, whatever its path becomes.
 pub struct InParts {
-    path: PathBuf,
+    file: File,
     before: Metadata,
-    /// Open files that nobody reads from at the moment: a place to read from belongs to each.
-    idle: Mutex<Vec<File>>,
-}
-
-impl InParts {
-    fn idle(&self) -> MutexGuard<'_, Vec<File>> {
-        self.idle.lock().unwrap_or_else(PoisonError::into_inner)
-    }
+    /// A part of it could not be read.
+    failed: AtomicBool,
 }
 
 impl Parts for InParts {
@@ -104,16 +102,32 @@ impl Parts for InParts {
     }
 
     fn read_at(&self, from: u64, out: &mut [u8]) -> std::io::Result<()> {
-        let idle = self.idle().pop();
-        let mut file = match idle {
-            Some(file) => file,
-            None => File::open(&self.path)?,
-        };
-        file.seek(SeekFrom::Start(from))?;
-        file.read_exact(out)?;
-        self.idle().push(file);
-        Ok(())
+        let read = filled(&self.file, from, out);
+        if read.is_err() {
+            self.failed.store(true, Ordering::Relaxed);
+        }
+        read
     }
+}
+
+/// Fills `out` from a place of a file, many threads at a time.
+fn filled(file: &File, mut from: u64, mut out: &mut [u8]) -> std::io::Result<()> {
+    while !out.is_empty() {
+        #[cfg(windows)]
+        let read = std::os::windows::fs::FileExt::seek_read(file, out, from);
+        #[cfg(unix)]
+        let read = std::os::unix::fs::FileExt::read_at(file, out, from);
+        match read {
+            Ok(0) => return Err(ErrorKind::UnexpectedEof.into()),
+            Ok(n) => {
+                out = out.get_mut(n..).unwrap_or_default();
+                from += n as u64;
+            }
+            Err(e) if e.kind() == ErrorKind::Interrupted => {}
+            Err(e) => return Err(e),
+        }
+    }
+    Ok(())
 }
 
 /// A file opened, and its SHA-256, formed on a thread of its own while the rest is read.
@@ -160,9 +174,9 @@ pub fn open_hashed(path: &Path) -> std::io::Result<(Opened, String)> {
         return Err(ErrorKind::ResourceBusy.into());
     }
     let parts = InParts {
-        path: path.to_owned(),
+        file,
         before,
-        idle: Mutex::new(vec![file]),
+        failed: AtomicBool::new(false),
     };
     Ok((Opened::Parts(Arc::new(parts)), hash))
 }
@@ -294,10 +308,11 @@ mod tests {
         let mut part = [0; 5];
         file.read_at(2_000_000, &mut part).unwrap();
         assert_eq!(part, bytes[2_000_000..2_000_005]);
-        assert!(file.read_at(bytes.len() as u64 - 2, &mut part).is_err());
         assert!(read.check().is_ok());
         std::fs::write(&path, &bytes[..100]).unwrap();
         assert_eq!(read.check().unwrap_err().kind(), ErrorKind::ResourceBusy);
+        assert!(file.read_at(2_000_000, &mut part).is_err());
+        assert_eq!(read.check().unwrap_err().kind(), ErrorKind::Other);
         std::fs::remove_file(&path).unwrap();
     }
 

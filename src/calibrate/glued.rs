@@ -19,7 +19,15 @@ pub(super) fn as_glued(task: &Task, state: &State) -> Vec<AsGlued> {
         return Vec::new();
     }
     let gauges = state.row_errors.iter().enumerate();
-    let all = gauges.map(|(g, error)| one(model, state, g, error.common));
+    // What is stated of a gain is the error common to all gauges; the prior of each is its own.
+    let stated = state
+        .model_error
+        .map_or(model.uncertainty_rel, |e| e.common);
+    let all = gauges.map(|(g, error)| {
+        let mut glued = one(model, state, g, error.common)?;
+        glued.gain.stated = stated;
+        Some(glued)
+    });
     all.collect::<Option<Vec<_>>>().unwrap_or_default()
 }
 

@@ -1,6 +1,7 @@
 //! Runs left out one by one: their loads recovered by what the others taught, held against what is known.
 
 use super::posterior::{Equation, Posterior, solve};
+use super::prior::{RowPrior, rows};
 use super::scatter::{Left, Scatter};
 use super::state::{State, left, sensitivity_of};
 use super::types::{Coverage, LeftOut, Task};
@@ -33,7 +34,25 @@ fn one(task: &Task, state: &State, i: usize) -> Option<LeftOut> {
     if task.model.is_none() && !others_span(state, i) {
         return None;
     }
-    let mut posterior = state.posterior.without(&state.equations[i])?;
+    // Each gauge's own error of the model is learnt of the others too: with it the run would lie nearer than a new one does.
+    let prior = task.model.as_ref().zip(state.error_evidence.as_ref());
+    let prior = prior.map_or_else(
+        || state.prior.clone(),
+        |(model, evidence)| {
+            let runs: Vec<_> = state
+                .used
+                .iter()
+                .filter_map(|r| task.runs.get(*r))
+                .collect();
+            let errors = evidence.by_gauge_without(i, &runs, model, &state.scales);
+            rows(model, &state.scales, &errors)
+        },
+    );
+    let plain = state.equations.iter().all(Equation::is_by_gauge);
+    let mut posterior = match plain {
+        true => solve(&prior, &without(&state.equations, i))?,
+        false => state.posterior.without(&state.equations[i])?,
+    };
     // One wrong run may be all the scatter there is: what the others then leave is noise, and the run is held against that.
     let scatters = state.scatter.dof.is_finite();
     let order = (posterior.n * posterior.k) as f64;
@@ -52,7 +71,7 @@ fn one(task: &Task, state: &State, i: usize) -> Option<LeftOut> {
             return None;
         }
         if affordable {
-            posterior = again(state, i, &scatter)?;
+            posterior = again(state, &prior, i, &scatter)?;
         }
     }
     let dof = scatter.dof;
@@ -132,8 +151,14 @@ fn others_left(task: &Task, state: &State, i: usize, posterior: &Posterior) -> V
 /// the covariance of S (not that of the run) keeps the run's own share.
 const AFFORDABLE: f64 = 1e9;
 
+/// All but one.
+fn without(equations: &[Equation], i: usize) -> Vec<Equation> {
+    let others = equations.iter().enumerate().filter(|(j, _)| *j != i);
+    others.map(|(_, e)| e.clone()).collect()
+}
+
 /// The posterior of the other runs with the scatter that they show without run `i`.
-fn again(state: &State, i: usize, scatter: &Scatter) -> Option<Posterior> {
+fn again(state: &State, prior: &[RowPrior], i: usize, scatter: &Scatter) -> Option<Posterior> {
     let n = state.posterior.n;
     let others = (0..state.equations.len()).filter(|j| *j != i);
     let equations: Vec<Equation> = others
@@ -155,7 +180,7 @@ fn again(state: &State, i: usize, scatter: &Scatter) -> Option<Posterior> {
             }
         })
         .collect();
-    solve(&state.prior, &equations)
+    solve(prior, &equations)
 }
 
 /// Whether the other runs' loads span what this run's do.

@@ -29,6 +29,8 @@ pub(super) struct ErrorEvidence {
     stated: ModelError,
     /// What the runs say of each gauge's row.
     pub normals: Vec<Normal>,
+    /// By run: its loads, and the variance of each gauge's reading.
+    by_run: Vec<(Vec<f64>, Vec<f64>)>,
     tried: Vec<Tried>,
 }
 
@@ -65,6 +67,46 @@ impl ErrorEvidence {
         }
     }
 
+    /// As [`ErrorEvidence::by_gauge`] without run `left` of `runs`, those that this was made of; the error of all stays.
+    pub fn by_gauge_without(
+        &self,
+        left: usize,
+        runs: &[&KnownRun],
+        model: &ModelPrior,
+        scales: &[f64],
+    ) -> Vec<RowError> {
+        let (n, k) = model.values.shape();
+        let kept = |i: &usize| *i != left;
+        let others: Vec<&KnownRun> = (0..runs.len()).filter(kept).map(|i| runs[i]).collect();
+        let (phi, variance): (Vec<_>, Vec<_>) = (0..self.by_run.len())
+            .filter(kept)
+            .map(|i| self.by_run[i].clone())
+            .unzip();
+        let normals: Vec<Normal> = (0..n)
+            .map(|g| Normal::of(g, k, &others, &phi, &variance))
+            .collect();
+        let (error, own) = (self.most_probable(&[]), own_steps());
+        let logs_of = |floor: usize, step: i32| -> Vec<f64> {
+            let mut row = RowError {
+                common: error.common * factor(step),
+                entries: [0.0; FLOORS.len()],
+            };
+            row.entries[floor] = error.entry * factor(step);
+            let rows = rows(model, scales, &vec![row; n]);
+            let log = |(row, normal): (&RowPrior, &Normal)| {
+                let evidence = RowEvidence::of(&row.mean, &row.covariance, normal);
+                evidence.map_or(f64::NEG_INFINITY, |e| e.log())
+            };
+            rows.iter().zip(&normals).map(log).collect()
+        };
+        let all: Vec<Vec<Vec<f64>>> = (0..FLOORS.len())
+            .map(|floor| own.iter().map(|o| logs_of(floor, o.0)).collect())
+            .collect();
+        (0..n)
+            .map(|g| of_gauge(&own, error, |floor, i| all[floor][i][g]).error)
+            .collect()
+    }
+
     fn best(&self, without: &[usize]) -> Option<&Tried> {
         let score = |t: &Tried| {
             let kept = t.by_gauge.iter().enumerate();
@@ -74,7 +116,7 @@ impl ErrorEvidence {
         let mut best: Option<(f64, &Tried)> = None;
         for t in &self.tried {
             let score = score(t);
-            if best.is_none_or(|b| score > b.0) {
+            if score > best.map_or(f64::NEG_INFINITY, |b| b.0) {
                 best = Some((score, t));
             }
         }
@@ -121,7 +163,12 @@ pub(super) fn error_evidence(
             error,
             prior: -off(common) - off(entry),
             by_gauge: (0..n)
-                .map(|g| of_gauge(&tables, &own, error, [common, entry], g))
+                .map(|g| {
+                    of_gauge(&own, error, |floor, i| {
+                        let step = own[i].0;
+                        tables[floor].log(common + step, entry + step, g)
+                    })
+                })
                 .collect(),
         }
     });
@@ -129,6 +176,7 @@ pub(super) fn error_evidence(
         tried: tried.collect(),
         stated,
         normals,
+        by_run: phi.iter().cloned().zip(variance.iter().cloned()).collect(),
     }
 }
 
@@ -143,21 +191,16 @@ fn own_steps() -> Vec<(i32, f64)> {
     OWN_STEPS.map(|step| (step, log(step) - total)).collect()
 }
 
-/// Gauge `g`, where the error of all is that of some steps.
-fn of_gauge(
-    tables: &[Table],
-    own: &[(i32, f64)],
-    error: ModelError,
-    [common, entry]: [i32; 2],
-    g: usize,
-) -> Own {
-    let floors = (tables.len() as f64).ln();
-    let log = |table: &Table, (step, log): (i32, f64)| {
-        log - floors + table.log(common + step, entry + step, g)
-    };
-    let logs: Vec<Vec<f64>> = tables
-        .iter()
-        .map(|t| own.iter().map(|o| log(t, *o)).collect())
+/// A gauge, where the error of all is this one; `log`: log marginal likelihood of its readings with a floor and a step of its own error.
+fn of_gauge(own: &[(i32, f64)], error: ModelError, log: impl Fn(usize, usize) -> f64) -> Own {
+    let floors = (FLOORS.len() as f64).ln();
+    let steps = || own.iter().enumerate();
+    let logs: Vec<Vec<f64>> = (0..FLOORS.len())
+        .map(|floor| {
+            steps()
+                .map(|(i, (_, prior))| prior - floors + log(floor, i))
+                .collect()
+        })
         .collect();
     let largest = logs.iter().flatten().copied();
     let largest = largest.fold(f64::NEG_INFINITY, f64::max);
@@ -169,7 +212,7 @@ fn of_gauge(
         }
     };
     let total: f64 = logs.iter().flatten().map(weight).sum();
-    // Mean square of the gauge's own factor, by floor.
+    // Mean square of the gauge's own factor, by floor, times how probable the floor is.
     let mut squares = [0.0; FLOORS.len()];
     for (square, logs) in squares.iter_mut().zip(&logs) {
         let each = logs.iter().zip(own);

@@ -125,7 +125,7 @@ fn solve_by_gauge(prior: &[RowPrior], equations: &[Equation]) -> Option<Posterio
 
 impl Equation {
     /// Whether the errors of its readings are independent of each other.
-    fn is_by_gauge(&self) -> bool {
+    pub fn is_by_gauge(&self) -> bool {
         let step = self.gauges.len() + 1;
         let mut entries = self.covariance.iter().enumerate();
         entries.all(|(at, c)| *c == 0.0 || at % step == 0)

@@ -51,8 +51,8 @@ pub(super) fn diffuse(n: usize, k: usize, largest_strain: f64) -> Vec<RowPrior> 
     vec![row; n]
 }
 
-/// With a model: `common^2 s s' + entry^2 diag(s^2) + sum sd^2 t t'` a row, `s` the row, `t` its change with each move of the gauge, and the
-/// errors those of the gauge.
+/// With a model: `common^2 s s' + sum entry^2 diag(max(s^2, floor^2 q^2)) + sum sd^2 t t'` a row, `s` the row, `q` its root mean square, `t` its
+/// change with each move of the gauge, the first sum over [`FLOORS`], and the errors those of the gauge.
 pub(super) fn rows(model: &ModelPrior, scales: &[f64], errors: &[RowError]) -> Vec<RowPrior> {
     let (n, k) = model.values.shape();
     let all: f64 = (0..n)

@@ -105,6 +105,9 @@ pub fn digest(parts: &[&str]) -> String {
 /// The first line that is none.
 pub fn digests_of(text: &str) -> Result<BTreeMap<String, String>, String> {
     let line = |(i, line): (usize, &str)| {
+        // A name with a backslash is written with two, and a backslash before the digest says so.
+        let unescaped = line.strip_prefix('\\').map(|l| l.replace("\\\\", "\\"));
+        let line = unescaped.as_deref().unwrap_or(line);
         let parts = line.split_once([' ']).and_then(|(digest, rest)| {
             let path = rest.strip_prefix([' ', '*'])?;
             let is_digest = digest.len() == 64 && digest.bytes().all(|b| b.is_ascii_hexdigit());

@@ -260,6 +260,12 @@ fn one(
         return Ok((before, true));
     }
     file.result = day_of(kernel, &opened);
+    // Whatever was read of a file that changed meanwhile, or could not be read to its end, is worth nothing and not kept: it is tried again.
+    if let Err(e) = opened.check() {
+        file.sha256 = String::new();
+        file.result = Err(format!("it can't be read: {e}"));
+        return Ok((file.into(), false));
+    }
     kept.put(&file).map_err(|e| not_kept(path, &e))?;
     // What is read back is what a later run would read, to the last digit: a merge of kept results has the same bytes.
     Ok((
@@ -282,13 +288,8 @@ pub fn day_of(kernel: &Kernel, opened: &Opened) -> Result<Day, String> {
         declared_hz: None,
         wanted: kernel.wanted(),
     };
-    let record = open_source(opened.source(), &options).map_err(|e| e.to_string());
-    let day = record.and_then(|record| kernel.day(&record));
-    // Whatever was read of a file that changed meanwhile is worth nothing.
-    opened
-        .check()
-        .map_err(|e| format!("it can't be read: {e}"))?;
-    let day = day?;
+    let record = open_source(opened.source(), &options).map_err(|e| e.to_string())?;
+    let day = kernel.day(&record)?;
     let is_number = |l: &&day::LoadDay| {
         let sums = &l.tally.sums;
         let [a, b, c] = sums.damage;
