@@ -13,7 +13,7 @@ use crate::model::{MaterialIx, MaterialKind};
 use crate::model::{Model, Shell, ShellKind, ShellPropertyIx, Vec3};
 use crate::reconcile::effect::{Correction, Extension};
 use crate::reconcile::strain::{StiffnessOf, StiffnessSignature, StrainFrame, StrainState};
-use crate::reconcile::{NamedEffect, Outcome, Verdict};
+use crate::reconcile::{NamedEffect, Outcome, SmoothAt, Verdict};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -25,6 +25,12 @@ const PRIOR: f64 = 70.0;
 const BUDGET: usize = 2_000_000;
 /// Fewest and most regions solved in the first look.
 const LOOKS: [usize; 2] = [6, 32];
+/// Radii of the first look, of the gauges' distance.
+const WIDTHS: [f64; 3] = [0.35, 1.2, 3.0];
+/// Of the wide regions, one for as many small ones.
+const WIDER: usize = 3;
+/// A region is one of as many shells as it holds, at least: more are the structure, no place in it.
+const FEW: usize = 4;
 /// Regions that are moved, widened and narrowed, by shares of their radius.
 const REFINED: usize = 2;
 /// Each finer.
@@ -47,14 +53,19 @@ pub(super) fn gauges_that_disagree(outcome: &Outcome) -> Vec<String> {
     let at_fault: Vec<&String> = outcome
         .best_attempt
         .iter()
-        .filter_map(reads_otherwise)
+        .flat_map(read_otherwise)
         .collect();
     if outcome.verdict != Verdict::Unknown && at_fault.len() < 2 {
         return vec![];
     }
     let mut out: Vec<String> = Vec::new();
     let off = outcome.gauges_off_before.iter().map(|m| &m.name);
-    for name in at_fault.into_iter().chain(off) {
+    // Where a curve stands in for names: where it leaves one most clearly.
+    let mut curve: Vec<&SmoothAt> = outcome.smooth.iter().collect();
+    let clear = |s: &SmoothAt| (s.factor - 1.0).abs() / s.sd.max(f64::MIN_POSITIVE);
+    curve.sort_by(|a, b| clear(b).total_cmp(&clear(a)));
+    let curve = curve.into_iter().map(|s| &s.gauge);
+    for name in at_fault.into_iter().chain(off).chain(curve) {
         if !out.contains(name) && out.len() < GAUGES {
             out.push(name.clone());
         }
@@ -62,17 +73,18 @@ pub(super) fn gauges_that_disagree(outcome: &Outcome) -> Vec<String> {
     out
 }
 
-/// The gauge of which an effect says that it reads another strain.
-fn reads_otherwise(e: &NamedEffect) -> Option<&String> {
+/// The gauges of which an effect says that they read another strain, those of a card too.
+fn read_otherwise(e: &NamedEffect) -> Vec<&String> {
     let Extension::Channels(list) = &e.extension else {
-        return None;
+        return vec![];
     };
-    match list.as_slice() {
-        [(name, Correction::Gain(_) | Correction::AngleDeg(_) | Correction::PositionMm(_))] => {
-            Some(name)
-        }
-        _ => None,
-    }
+    let of_strain = |c: &&(String, Correction)| {
+        matches!(
+            c.1,
+            Correction::Gain(_) | Correction::AngleDeg(_) | Correction::PositionMm(_)
+        )
+    };
+    list.iter().filter(of_strain).map(|c| &c.0).collect()
 }
 
 impl DeckFrame {
@@ -320,9 +332,24 @@ impl<'a> Ground<'a> {
         out
     }
 
-    /// Regions of a third of the gauges' distance round the gauges that disagree.
+    /// Regions of a third of the gauges' distance round the gauges that disagree, then fewer that are wider: a section of a member that is
+    /// weaker over several gauges is found by growing no small region.
     fn first_regions(&self, n: usize) -> Vec<Region> {
-        let radius = (0.35 * self.apart).max(1.2 * self.element);
+        let mut out: Vec<Region> = Vec::new();
+        for (k, width) in WIDTHS.into_iter().enumerate() {
+            let most = if k == 0 { n } else { n / WIDER };
+            for r in self.regions_of((width * self.apart).max(1.2 * self.element), most) {
+                let small = r.shells.len() * FEW <= self.middles.len();
+                if (k == 0 || small) && out.iter().all(|o| o.shells != r.shells) {
+                    out.push(r);
+                }
+            }
+        }
+        out
+    }
+
+    /// At most `n` regions of this radius round the gauges that disagree.
+    fn regions_of(&self, radius: f64, n: usize) -> Vec<Region> {
         let close = |i: &usize| {
             let m = self.middles.get(*i);
             m.is_some_and(|m| self.off.iter().any(|p| (p - m).norm() <= self.apart))

@@ -127,6 +127,7 @@ fn strain_part(frame: StrainFrame, outcome: Outcome, deck: Option<DeckFrame>) ->
     StrainPart {
         wins_of_100: outcome.wins,
         noise_factor: outcome.noise_factor,
+        smooth: outcome.smooth.clone(),
         covariance: outcome.covariance.chunks(n).map(<[f64]>::to_vec).collect(),
         sits: outcome.sits.clone(),
         gauges_off_before: outcome.gauges_off_before.clone(),
