@@ -1,7 +1,7 @@
 //! What is said of the best set of effects: named or not, and what else could be.
 
 use super::adequacy::{Adequacy, adequacy, deviate_estimated};
-use super::detect::detectable;
+use super::detect::{INDISTINGUISHABLE, detectable};
 use super::explanation::{Explanation, discrepancy, ids, is_unmodelled, named_part};
 use super::frame::StrainFrame;
 use super::gap::rms;
@@ -18,8 +18,6 @@ use crate::reconcile::outcome::{Misfit, NamedEffect, Outcome, Rival, Verdict};
 use crate::reconcile::search::Scored;
 use rayon::prelude::*;
 
-/// Rivals within this log evidence can't be told apart: odds below twenty to one.
-pub(super) const INDISTINGUISHABLE: f64 = 3.0;
 /// Rivals beyond this log evidence are not worth naming.
 const WORTH_NAMING: f64 = 25.0;
 

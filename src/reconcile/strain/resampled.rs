@@ -1,9 +1,9 @@
 //! How often a set of effects wins when the runs are drawn anew.
 
 use super::covariance::Selection;
+use super::detect::INDISTINGUISHABLE;
 use super::explanation::Explanation;
 use super::frame::StrainFrame;
-use super::judge::INDISTINGUISHABLE;
 use super::likelihood::Fit;
 use super::prediction::predict;
 use super::size::RunBlocks;

@@ -1,9 +1,8 @@
 //! A smooth error of the model against the best set of names: alone, and in the place of some of them.
 
-use super::detect::DECISIVE;
+use super::detect::{DECISIVE, INDISTINGUISHABLE};
 use super::explanation::{discrepancy, named_part};
 use super::frame::StrainFrame;
-use super::judge::INDISTINGUISHABLE;
 use super::likelihood::{Fit, Likelihood};
 use crate::reconcile::effect::{Candidate, Discrepancy};
 use crate::reconcile::outcome::SmoothAt;
