@@ -210,6 +210,8 @@ pub struct Outcome {
     pub effects: Vec<NamedEffect>,
     /// What would have been named, had it reached the floor, been decisive or plausible.
     pub best_attempt: Vec<NamedEffect>,
+    /// The names that a smooth error of the model explains as well as; empty where none does.
+    pub replaced: Vec<NamedEffect>,
     /// Other explanations, nearest first.
     pub rivals: Vec<Rival>,
     /// Log evidence of the named set (or best attempt) less that of no effect.

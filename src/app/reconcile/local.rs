@@ -13,7 +13,7 @@ use crate::model::{MaterialIx, MaterialKind};
 use crate::model::{Model, Shell, ShellKind, ShellPropertyIx, Vec3};
 use crate::reconcile::effect::{Correction, Extension};
 use crate::reconcile::strain::{StiffnessOf, StiffnessSignature, StrainFrame, StrainState};
-use crate::reconcile::{NamedEffect, Outcome, SmoothAt, Verdict};
+use crate::reconcile::{NamedEffect, Outcome, Verdict};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -50,22 +50,15 @@ struct Tried {
 
 /// Gauges round which a region is looked for: where nothing explains the gap, or several gauges would each be at fault; none otherwise.
 pub(super) fn gauges_that_disagree(outcome: &Outcome) -> Vec<String> {
-    let at_fault: Vec<&String> = outcome
-        .best_attempt
-        .iter()
-        .flat_map(read_otherwise)
-        .collect();
+    // Where a smooth error of the model stands in for names, those that the names blame.
+    let attempt = outcome.best_attempt.iter().chain(&outcome.replaced);
+    let at_fault: Vec<&String> = attempt.flat_map(read_otherwise).collect();
     if outcome.verdict != Verdict::Unknown && at_fault.len() < 2 {
         return vec![];
     }
     let mut out: Vec<String> = Vec::new();
     let off = outcome.gauges_off_before.iter().map(|m| &m.name);
-    // Where a curve stands in for names: where it leaves one most clearly.
-    let mut curve: Vec<&SmoothAt> = outcome.smooth.iter().collect();
-    let clear = |s: &SmoothAt| (s.factor - 1.0).abs() / s.sd.max(f64::MIN_POSITIVE);
-    curve.sort_by(|a, b| clear(b).total_cmp(&clear(a)));
-    let curve = curve.into_iter().map(|s| &s.gauge);
-    for name in at_fault.into_iter().chain(off).chain(curve) {
+    for name in at_fault.into_iter().chain(off) {
         if !out.contains(name) && out.len() < GAUGES {
             out.push(name.clone());
         }

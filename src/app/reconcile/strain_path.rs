@@ -203,7 +203,7 @@ fn resolve_stiffness(
     /// A thickness can't be taken away.
     const LEAST: f64 = -80.0;
     let mut added = false;
-    for e in &outcome.best_attempt {
+    for e in outcome.best_attempt.iter().chain(&outcome.replaced) {
         let (of, place, percent) = match &e.extension {
             Extension::ZoneStiffness { place, percent } => (StiffnessOf::Zone, place, percent),
             Extension::JointStiffness { place, percent } => (StiffnessOf::Joint, place, percent),

@@ -3,7 +3,7 @@
 use super::detect::DECISIVE;
 use super::explanation::{is_unmodelled, named_part};
 use super::frame::StrainFrame;
-use super::judge::{adequacy_of, at_floor, judge};
+use super::judge::{adequacy_of, at_floor, judge, named};
 use super::likelihood::{Fit, Likelihood};
 use super::own_covariance::best_by_own_covariance;
 use super::smooth::smooth_instead;
@@ -107,12 +107,16 @@ fn judged_beside_smooth(
     let Some(smooth) = smooth_instead(proofs.frame, candidates, &best) else {
         return judge(proofs, candidates, &all, &best);
     };
+    let replaced = named(proofs.frame, candidates, &best);
     if all.iter().all(|s| s.set != best.set) {
         all.push(best);
     }
     all.push(smooth.clone());
     all.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
-    judge(proofs, candidates, &all, &smooth)
+    Outcome {
+        replaced,
+        ..judge(proofs, candidates, &all, &smooth)
+    }
 }
 
 /// The best sets of names alone, found from the best sets with general forms.

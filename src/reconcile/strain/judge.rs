@@ -48,7 +48,12 @@ pub(super) fn at_floor(a: &Adequacy) -> bool {
     inside(a.fit, a.n_fit) && held && parts
 }
 
-fn named(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) -> Vec<NamedEffect> {
+/// The effects of a set with their sizes, noise left out.
+pub(super) fn named(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    scored: &Scored<Fit>,
+) -> Vec<NamedEffect> {
     let mut out = Vec::new();
     for (m, &c) in scored.set.iter().enumerate() {
         let Some(candidate) = candidates
@@ -228,6 +233,7 @@ pub(super) fn judge(
             Vec::new()
         },
         best_attempt: attempt,
+        replaced: Vec::new(),
         rivals,
         evidence: best.log_evidence - null_evidence,
         wins: won.first().copied().unwrap_or(0),
