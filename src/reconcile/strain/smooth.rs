@@ -4,7 +4,7 @@ use super::detect::{DECISIVE, INDISTINGUISHABLE};
 use super::explanation::{discrepancy, named_part};
 use super::frame::StrainFrame;
 use super::likelihood::{Fit, Likelihood};
-use crate::reconcile::effect::{Candidate, Discrepancy};
+use crate::reconcile::effect::{Candidate, Discrepancy, Extension};
 use crate::reconcile::outcome::SmoothAt;
 use crate::reconcile::search::{Addition, Scored, Scorer, settle};
 
@@ -72,7 +72,12 @@ pub(super) fn smooth_instead(
     let found = Likelihood::new(frame, candidates, &runs, &reference)
         .score(&found.set, Some((&found, None)))?;
     let saved = DECISIVE * (best.set.len() as f64 - found.set.len() as f64);
-    (best.log_evidence - found.log_evidence < saved.max(INDISTINGUISHABLE)).then_some(found)
+    // One factor for all gauges is a curve itself: another curve near it is no rival unless it explains more.
+    let only_scale = (names.iter().filter(|c| !found.set.contains(c)))
+        .filter_map(|&c| candidates.get(c))
+        .all(|c| matches!(c.effect.extension(frame, &[]), Extension::Scale(_)));
+    let margin = if only_scale { 0.0 } else { INDISTINGUISHABLE };
+    (best.log_evidence - found.log_evidence < saved.max(margin)).then_some(found)
 }
 
 fn reference_of(s: &Scored<Fit>) -> Vec<(usize, Vec<f64>)> {
