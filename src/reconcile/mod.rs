@@ -15,6 +15,6 @@ pub use cause::{Cause, CauseOutcome, CauseSet, weigh_causes};
 pub use observation::Observations;
 pub use outcome::{
     ChannelGap, Detectable, Gap, GapBasis, GapNumbers, LoadShift, Misfit, NamedEffect, Outcome,
-    Rival, Verdict,
+    Rival, SmoothAt, Verdict,
 };
 pub use search::{Addition, Breadth, Scored, Scorer, search, search_near, settle};

@@ -185,6 +185,22 @@ pub struct Misfit {
     pub deviate: f64,
 }
 
+/// The factor by which a smooth error of the model is off at a gauge.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SmoothAt {
+    /// Gauge.
+    pub gauge: String,
+    /// Its place, metres.
+    pub place_m: [f64; 3],
+    /// The load; `None` where all loads share the factor.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load: Option<String>,
+    /// Strain over what the model predicts.
+    pub factor: f64,
+    /// One standard deviation of it.
+    pub sd: f64,
+}
+
 /// Everything.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
@@ -194,6 +210,8 @@ pub struct Outcome {
     pub effects: Vec<NamedEffect>,
     /// What would have been named, had it reached the floor, been decisive or plausible.
     pub best_attempt: Vec<NamedEffect>,
+    /// The names that a smooth error of the model explains as well as; empty where none does.
+    pub replaced: Vec<NamedEffect>,
     /// Other explanations, nearest first.
     pub rivals: Vec<Rival>,
     /// Log evidence of the named set (or best attempt) less that of no effect.
@@ -204,6 +222,8 @@ pub struct Outcome {
     pub covariance: Vec<f64>,
     /// Noise that the readings show over the stated one; 1 where the stated one holds.
     pub noise_factor: f64,
+    /// The curve of a smooth error of the model, where one explains these data as well as any names; empty otherwise.
+    pub smooth: Vec<SmoothAt>,
     /// Gap.
     pub gap: Gap,
     /// Where the gap sits, in words.

@@ -116,3 +116,41 @@ fn a_turned_sign_is_found_on_a_deck_whose_mesh_makes_two_percent_and_nothing_els
     let gap = |of: &Value, key: &str| of["gap"][key].as_f64().expect("a gap");
     assert!((gap(&again, "before") / gap(&found, "after") - 1.0).abs() < 0.01);
 }
+
+#[test]
+fn a_zone_that_the_job_does_not_name_is_no_set_of_gauges_and_cards() {
+    let Some(dir) = hidden::shared() else {
+        return;
+    };
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("reconcile_no_zones");
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    for entry in std::fs::read_dir(dir.join("deck/dev-f1")).expect("the case") {
+        let path = entry.expect("an entry").path();
+        if let (true, Some(name)) = (path.is_file(), path.file_name()) {
+            std::fs::copy(&path, folder.join(name)).expect("a copy");
+        }
+    }
+    let job = folder.join("job.toml");
+    let text = std::fs::read_to_string(&job).expect("the job");
+    let kept: Vec<&str> = text.lines().filter(|l| !l.starts_with("zones =")).collect();
+    assert!(kept.len() < text.lines().count());
+    std::fs::write(&job, kept.join("\n")).expect("the job without zones");
+    let out = folder.join("out");
+    let done = run("reconcile", &job, &out);
+    assert!(
+        done.status.success(),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
+    let found = result(&out);
+    // A plate 1.5 m long is 15 % thicker: a region there, or nothing that is named; three gauges and a card are none of it.
+    let named = found["named"].as_array().expect("a list");
+    let region = |n: &Value| {
+        n.as_str()
+            .is_some_and(|n| n.starts_with("local_stiffness:"))
+    };
+    assert!(named.iter().all(region), "{named:?}");
+    let verdict = if named.is_empty() { "unknown" } else { "named" };
+    assert_eq!(found["verdict"], verdict, "{}", found["remains"]);
+}

@@ -8,4 +8,5 @@ mod hidden;
 mod joint;
 mod local;
 mod real;
+mod smooth;
 mod strips;

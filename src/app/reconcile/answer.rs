@@ -9,7 +9,9 @@ use crate::reconcile::motion::gap::Proof;
 use crate::reconcile::motion::sits::GapSits;
 use crate::reconcile::motion::{MotionFrame, MotionOutcome, SimulatedGap};
 use crate::reconcile::strain::StrainFrame;
-use crate::reconcile::{CauseOutcome, GapNumbers, Misfit, Outcome as StrainOutcome, Verdict};
+use crate::reconcile::{
+    CauseOutcome, GapNumbers, Misfit, Outcome as StrainOutcome, SmoothAt, Verdict,
+};
 use crate::vehicle::identify::Identification;
 use crate::vehicle::motion::Motion;
 use serde::{Serialize, Serializer};
@@ -200,6 +202,9 @@ pub struct StrainPart {
     pub wins_of_100: usize,
     /// Noise that the readings show over the stated one.
     pub noise_factor: f64,
+    /// The curve of a smooth error of the model, where one explains these data as well as any names.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub smooth: Vec<SmoothAt>,
     /// Joint covariance of the parameters of the named set (or best attempt), by rows.
     pub covariance: Vec<Vec<f64>>,
     /// Where the gap sits, in words.

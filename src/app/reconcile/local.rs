@@ -25,6 +25,12 @@ const PRIOR: f64 = 70.0;
 const BUDGET: usize = 2_000_000;
 /// Fewest and most regions solved in the first look.
 const LOOKS: [usize; 2] = [6, 32];
+/// Radii of the first look, of the gauges' distance.
+const WIDTHS: [f64; 3] = [0.35, 1.2, 3.0];
+/// Of the wide regions, one for as many small ones.
+const WIDER: usize = 3;
+/// A region is one of as many shells as it holds, at least: more are the structure, no place in it.
+const FEW: usize = 4;
 /// Regions that are moved, widened and narrowed, by shares of their radius.
 const REFINED: usize = 2;
 /// Each finer.
@@ -44,11 +50,9 @@ struct Tried {
 
 /// Gauges round which a region is looked for: where nothing explains the gap, or several gauges would each be at fault; none otherwise.
 pub(super) fn gauges_that_disagree(outcome: &Outcome) -> Vec<String> {
-    let at_fault: Vec<&String> = outcome
-        .best_attempt
-        .iter()
-        .filter_map(reads_otherwise)
-        .collect();
+    // Where a smooth error of the model stands in for names, those that the names blame.
+    let attempt = outcome.best_attempt.iter().chain(&outcome.replaced);
+    let at_fault: Vec<&String> = attempt.flat_map(read_otherwise).collect();
     if outcome.verdict != Verdict::Unknown && at_fault.len() < 2 {
         return vec![];
     }
@@ -62,17 +66,18 @@ pub(super) fn gauges_that_disagree(outcome: &Outcome) -> Vec<String> {
     out
 }
 
-/// The gauge of which an effect says that it reads another strain.
-fn reads_otherwise(e: &NamedEffect) -> Option<&String> {
+/// The gauges of which an effect says that they read another strain, those of a card too.
+fn read_otherwise(e: &NamedEffect) -> Vec<&String> {
     let Extension::Channels(list) = &e.extension else {
-        return None;
+        return vec![];
     };
-    match list.as_slice() {
-        [(name, Correction::Gain(_) | Correction::AngleDeg(_) | Correction::PositionMm(_))] => {
-            Some(name)
-        }
-        _ => None,
-    }
+    let of_strain = |c: &&(String, Correction)| {
+        matches!(
+            c.1,
+            Correction::Gain(_) | Correction::AngleDeg(_) | Correction::PositionMm(_)
+        )
+    };
+    list.iter().filter(of_strain).map(|c| &c.0).collect()
 }
 
 impl DeckFrame {
@@ -320,9 +325,24 @@ impl<'a> Ground<'a> {
         out
     }
 
-    /// Regions of a third of the gauges' distance round the gauges that disagree.
+    /// Regions of a third of the gauges' distance round the gauges that disagree, then fewer that are wider: a section of a member that is
+    /// weaker over several gauges is found by growing no small region.
     fn first_regions(&self, n: usize) -> Vec<Region> {
-        let radius = (0.35 * self.apart).max(1.2 * self.element);
+        let mut out: Vec<Region> = Vec::new();
+        for (k, width) in WIDTHS.into_iter().enumerate() {
+            let most = if k == 0 { n } else { n / WIDER };
+            for r in self.regions_of((width * self.apart).max(1.2 * self.element), most) {
+                let small = r.shells.len() * FEW <= self.middles.len();
+                if (k == 0 || small) && out.iter().all(|o| o.shells != r.shells) {
+                    out.push(r);
+                }
+            }
+        }
+        out
+    }
+
+    /// At most `n` regions of this radius round the gauges that disagree.
+    fn regions_of(&self, radius: f64, n: usize) -> Vec<Region> {
         let close = |i: &usize| {
             let m = self.middles.get(*i);
             m.is_some_and(|m| self.off.iter().any(|p| (p - m).norm() <= self.apart))

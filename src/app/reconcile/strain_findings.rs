@@ -2,7 +2,7 @@
 
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
-use crate::reconcile::{Outcome, Verdict};
+use crate::reconcile::{Outcome, SmoothAt, Verdict};
 use crate::units::number;
 
 /// Gap over readings, and over its floor, from which numbers are in another unit: the model makes ten times what was read, and no effect of
@@ -45,6 +45,9 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
             )
             .with_numbers(outcome.noise_factor, NOISE_KNOWN),
         );
+    }
+    if !outcome.smooth.is_empty() {
+        work.findings.push(smooth(outcome));
     }
     match outcome.verdict {
         Verdict::Unknown => work.findings.push(
@@ -114,4 +117,33 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
         }
         Verdict::None => {}
     }
+}
+
+/// The curve in words: from the least factor to the greatest.
+fn smooth(outcome: &Outcome) -> Finding {
+    let by_factor = |a: &&SmoothAt, b: &&SmoothAt| a.factor.total_cmp(&b.factor);
+    let at = |s: Option<&SmoothAt>| {
+        s.map_or(String::new(), |s| {
+            let load = s
+                .load
+                .as_ref()
+                .map_or(String::new(), |l| format!(" under {l}"));
+            format!("{:.3} +- {:.3} at {}{load}", s.factor, 1.96 * s.sd, s.gauge)
+        })
+    };
+    let farthest = (outcome.smooth.iter())
+        .map(|s| (s.factor - 1.0).abs())
+        .fold(0.0, f64::max);
+    Finding::new(
+        Severity::Warning,
+        "smooth",
+        "model",
+        format!(
+            "the model is off by a factor that changes smoothly from place to place, from {} to {}: no single effect explains these runs clearly better",
+            at(outcome.smooth.iter().min_by(by_factor)),
+            at(outcome.smooth.iter().max_by(by_factor)),
+        ),
+        "compare mesh, sections, supports and load paths with the structure where the factor leaves one, or add gauges between these places",
+    )
+    .with_numbers(farthest, 0.0)
 }

@@ -138,6 +138,7 @@ fn strain_part(frame: StrainFrame, outcome: Outcome, deck: Option<DeckFrame>) ->
     StrainPart {
         wins_of_100: outcome.wins,
         noise_factor: outcome.noise_factor,
+        smooth: outcome.smooth.clone(),
         covariance: outcome.covariance.chunks(n).map(<[f64]>::to_vec).collect(),
         sits: outcome.sits.clone(),
         gauges_off_before: outcome.gauges_off_before.clone(),
@@ -224,7 +225,7 @@ fn resolve_stiffness(
     /// A thickness can't be taken away.
     const LEAST: f64 = 0.2;
     let mut added = false;
-    for e in &outcome.best_attempt {
+    for e in outcome.best_attempt.iter().chain(&outcome.replaced) {
         let (of, place, percent) = match &e.extension {
             Extension::ZoneStiffness { place, percent } => (StiffnessOf::Zone, place, percent),
             Extension::JointStiffness { place, percent } => (StiffnessOf::Joint, place, percent),

@@ -20,6 +20,7 @@ use super::run_exchange::RunExchange;
 use super::run_record::RunRecord;
 use super::saturated_channel::SaturatedChannel;
 use super::sign_flip::SignFlip;
+use super::smooth_error::SmoothError;
 use super::stiffness::Stiffness;
 use super::thermal::Thermal;
 use super::unaccounted_mass::UnaccountedMass;
@@ -103,8 +104,13 @@ pub fn library(frame: &StrainFrame, only: &[String]) -> Vec<Candidate> {
                 .map(|effect| Candidate { effect, log_prior }),
         );
     }
+    let n = out.len();
+    // One more hypothesis, shared by its lengths and amplitudes; that it competes costs no name a part of its weight.
+    let smooth = boxed(SmoothError::all(frame));
+    let log_prior = -((n_groups + 1.0) * smooth.len().max(1) as f64).ln();
+    let smooth = smooth.into_iter();
+    out.extend(smooth.map(|effect| Candidate { effect, log_prior }));
     if let Some(learnt) = &frame.learnt {
-        let n = out.len();
         for c in &mut out {
             // What one or two gauges do is like no load; what many do may be what a load makes.
             let dof = match c.effect.gauges().len() {

@@ -27,6 +27,7 @@ mod run_exchange;
 mod run_record;
 mod saturated_channel;
 mod sign_flip;
+mod smooth_error;
 mod stiffness;
 mod thermal;
 mod unaccounted_mass;
@@ -38,6 +39,7 @@ pub use amplitude::{Amplitudes, SizedAmplitudes};
 pub use extension::{Correction, Extension, Noted, Nuisance};
 pub use library::{Candidate, library};
 pub use model_discrepancy::ModelDiscrepancy;
+pub use smooth_error::SmoothError;
 
 use crate::reconcile::strain::{Part, StrainFrame, StrainState};
 
@@ -80,13 +82,15 @@ pub enum Discrepancy {
     Noise(&'static str),
     /// A form that is in no model and no channel of the library.
     Form(&'static str),
+    /// A smooth error of the model: it joins no set while names are searched, and competes with the best of them.
+    Smooth(&'static str),
 }
 
 impl Discrepancy {
     /// Its words.
     pub fn words(self) -> &'static str {
         match self {
-            Self::Noise(words) | Self::Form(words) => words,
+            Self::Noise(words) | Self::Form(words) | Self::Smooth(words) => words,
         }
     }
 }
@@ -118,6 +122,10 @@ pub trait StrainEffect: Send + Sync {
     }
     /// For a general form of discrepancy that is no effect of the library: what it says of the gap.
     fn discrepancy(&self) -> Option<Discrepancy> {
+        None
+    }
+    /// The effect where it is a smooth error of the model.
+    fn smooth(&self) -> Option<&SmoothError> {
         None
     }
     /// Where it acts.

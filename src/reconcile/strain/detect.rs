@@ -18,6 +18,9 @@ const FALSE_NAMES: f64 = 0.01;
 pub const DECISIVE: f64 = 4.605_170_185_988_091;
 const _: () = assert!(FALSE_NAMES * 100.0 == 1.0);
 
+/// Rivals within this log evidence can't be told apart: odds below twenty to one.
+pub(super) const INDISTINGUISHABLE: f64 = 3.0;
+
 /// Sizes at which the expected gain of evidence pays for the effect's prior weight, its width and [`DECISIVE`].
 /// Of effects that may sit at many places which overlap (stretches of a card, notes of a run), those of `also` alone are listed.
 pub fn detectable(

@@ -3,9 +3,10 @@
 use super::detect::DECISIVE;
 use super::explanation::{is_unmodelled, named_part};
 use super::frame::StrainFrame;
-use super::judge::{adequacy_of, at_floor, judge};
+use super::judge::{adequacy_of, at_floor, judge, named};
 use super::likelihood::{Fit, Likelihood};
 use super::own_covariance::best_by_own_covariance;
+use super::smooth::smooth_instead;
 use super::validation::{Proofs, validated};
 use crate::reconcile::effect::{Candidate, Discrepancy, library};
 use crate::reconcile::outcome::Outcome;
@@ -88,12 +89,34 @@ pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
         all.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
         all.dedup_by(|a, b| a.set == b.set);
         if let Some(found) = found {
-            return judge(&proofs, candidates, &all, &found);
+            return judged_beside_smooth(&proofs, candidates, all, found);
         }
     }
     let best = without_needless_noise(frame, candidates, &all, best);
     let best = without_needless_names(&proofs, candidates, &all, best);
-    judge(&proofs, candidates, &all, &best)
+    judged_beside_smooth(&proofs, candidates, all, best)
+}
+
+/// Judges `best`, or the smooth error of the model that explains as much.
+fn judged_beside_smooth(
+    proofs: &Proofs<'_>,
+    candidates: &[Candidate],
+    mut all: Vec<Scored<Fit>>,
+    best: Scored<Fit>,
+) -> Outcome {
+    let Some(smooth) = smooth_instead(proofs.frame, candidates, &best) else {
+        return judge(proofs, candidates, &all, &best);
+    };
+    let replaced = named(proofs.frame, candidates, &best);
+    if all.iter().all(|s| s.set != best.set) {
+        all.push(best);
+    }
+    all.push(smooth.clone());
+    all.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+    Outcome {
+        replaced,
+        ..judge(proofs, candidates, &all, &smooth)
+    }
 }
 
 /// The best sets of names alone, found from the best sets with general forms.

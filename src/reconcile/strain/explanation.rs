@@ -55,7 +55,7 @@ pub fn named_part(candidates: &[Candidate], set: &[usize]) -> Vec<usize> {
 /// Does a set hold a general form that no name stands for?
 pub fn is_unmodelled(candidates: &[Candidate], set: &[usize]) -> Option<&'static str> {
     set.iter().find_map(|&c| match discrepancy(candidates, c) {
-        Some(Discrepancy::Form(words)) => Some(words),
+        Some(Discrepancy::Form(words) | Discrepancy::Smooth(words)) => Some(words),
         _ => None,
     })
 }

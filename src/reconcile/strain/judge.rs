@@ -1,23 +1,23 @@
 //! What is said of the best set of effects: named or not, and what else could be.
 
 use super::adequacy::{Adequacy, adequacy, deviate_estimated};
-use super::detect::detectable;
+use super::detect::{INDISTINGUISHABLE, detectable};
 use super::explanation::{Explanation, discrepancy, ids, is_unmodelled, named_part};
 use super::frame::StrainFrame;
+use super::gap::rms;
 use super::likelihood::Fit;
 use super::neighbours::neighbours_that_fail;
 use super::next::next_measurement;
 use super::recovered::loads_before_after;
 use super::remains::{Withheld, remains, sits};
-use super::resampled::wins;
+use super::resampled::{DRAWINGS, wins};
+use super::smooth::{curve, is_smooth};
 use super::validation::{Proofs, validated};
-use crate::reconcile::effect::{Candidate, Discrepancy, full_id};
+use crate::reconcile::effect::{Candidate, Discrepancy, StrainEffect, full_id};
 use crate::reconcile::outcome::{Misfit, NamedEffect, Outcome, Rival, Verdict};
 use crate::reconcile::search::Scored;
 use rayon::prelude::*;
 
-/// Rivals within this log evidence can't be told apart: odds below twenty to one.
-const INDISTINGUISHABLE: f64 = 3.0;
 /// Rivals beyond this log evidence are not worth naming.
 const WORTH_NAMING: f64 = 25.0;
 
@@ -48,7 +48,12 @@ pub(super) fn at_floor(a: &Adequacy) -> bool {
     inside(a.fit, a.n_fit) && held && parts
 }
 
-fn named(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) -> Vec<NamedEffect> {
+/// The effects of a set with their sizes, noise left out.
+pub(super) fn named(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    scored: &Scored<Fit>,
+) -> Vec<NamedEffect> {
     let mut out = Vec::new();
     for (m, &c) in scored.set.iter().enumerate() {
         let Some(candidate) = candidates
@@ -58,6 +63,10 @@ fn named(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) ->
             continue;
         };
         let effect = candidate.effect.as_ref();
+        if effect.smooth().is_some() {
+            out.push(smooth_found(frame, candidates, scored, effect));
+            continue;
+        }
         let parameters = scored.fit.parameters.get(m).cloned().unwrap_or_default();
         let described = effect.parameters();
         let mut size = parameters.clone();
@@ -97,6 +106,25 @@ fn named(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) ->
         });
     }
     out
+}
+
+/// A smooth error with the root mean square of what its factors are off by, and of their deviations.
+fn smooth_found(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    scored: &Scored<Fit>,
+    effect: &dyn StrainEffect,
+) -> NamedEffect {
+    let curve = curve(frame, candidates, scored);
+    NamedEffect {
+        id: full_id(effect),
+        place: None,
+        size: vec![rms(curve.iter().map(|c| c.factor - 1.0))],
+        sigma: vec![rms(curve.iter().map(|c| c.sd))],
+        unit: "1",
+        plausible: true,
+        extension: effect.extension(frame, &[]),
+    }
 }
 
 fn worst_first(parts: &[Misfit], limit: f64) -> Vec<Misfit> {
@@ -161,7 +189,20 @@ pub(super) fn judge(
         .max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence));
     let hinted = hint.is_some_and(|s| s.log_evidence > null_evidence.max(best.log_evidence));
     let together = neighbours_that_fail(frame, &attempt);
-    let unmodelled = is_unmodelled(candidates, &best.set).or(together.as_deref());
+    let others = rival_sets(candidates, all, best);
+    let mut contest = vec![best];
+    contest.extend(
+        others
+            .iter()
+            .copied()
+            .chain(null)
+            .filter(|s| s.set != best.set),
+    );
+    let won = wins(frame, candidates, &contest);
+    let seldom = seldom_ahead(candidates, &contest, &won);
+    let unmodelled = is_unmodelled(candidates, &best.set)
+        .or(together.as_deref())
+        .or(seldom.as_deref());
     let falls = gap.after < gap.before;
     let verdict = match (attempt.is_empty(), reached) {
         (true, true) if hinted => Verdict::BelowDetectability,
@@ -177,7 +218,6 @@ pub(super) fn judge(
         noise: (noise > limit::NOISE).then_some(noise),
         is_told: unmodelled.is_some(),
     });
-    let others = rival_sets(candidates, all, best);
     let rivals: Vec<Rival> = others
         .par_iter()
         .map(|s| Rival {
@@ -192,14 +232,7 @@ pub(super) fn judge(
         None if verdict == Verdict::Unknown => look_again(&after),
         None => "none needed".into(),
     };
-    let mut contest = vec![best];
-    contest.extend(
-        others
-            .iter()
-            .copied()
-            .chain(null)
-            .filter(|s| s.set != best.set),
-    );
+    let is_curve = best.set.iter().any(|c| is_smooth(candidates, *c));
     Outcome {
         verdict,
         effects: if verdict == Verdict::Named {
@@ -208,10 +241,17 @@ pub(super) fn judge(
             Vec::new()
         },
         best_attempt: attempt,
+        replaced: Vec::new(),
         rivals,
         evidence: best.log_evidence - null_evidence,
-        wins: wins(frame, candidates, &contest),
-        covariance: best.fit.covariance.clone(),
+        wins: won.first().copied().unwrap_or(0),
+        // The coefficients of a curve say nothing by themselves: `smooth` has what they make.
+        covariance: if is_curve {
+            Vec::new()
+        } else {
+            best.fit.covariance.clone()
+        },
+        smooth: curve(frame, candidates, best),
         noise_factor: noise,
         gap,
         sits: sits(&channels, &worst_first(&before.gauges, limit::PART)),
@@ -231,6 +271,34 @@ pub(super) fn judge(
         next_measurement: next,
         detectable: detectable(frame, candidates, hint.map_or(&[], |h| h.set.as_slice())),
     }
+}
+
+/// That the first set is ahead in fewer than half of the drawings of runs, and what is ahead in the others, in words.
+fn seldom_ahead(
+    candidates: &[Candidate],
+    contest: &[&Scored<Fit>],
+    won: &[usize],
+) -> Option<String> {
+    let first = contest.first()?;
+    let names = ids(candidates, &first.set);
+    if names.is_empty() || won.first().is_none_or(|w| 2 * w >= DRAWINGS) {
+        return None;
+    }
+    let mut others: Vec<(usize, String)> = (contest.iter().zip(won).skip(1))
+        .filter(|o| *o.1 > 0)
+        .map(|(s, w)| match ids(candidates, &s.set).join(" + ") {
+            none if none.is_empty() => (*w, "no effect at all".to_owned()),
+            some => (*w, some),
+        })
+        .collect();
+    others.sort_by_key(|o| std::cmp::Reverse(o.0));
+    let told: Vec<String> = others.iter().map(|(w, s)| format!("{s} in {w}")).collect();
+    Some(format!(
+        "{} explains most, but stays ahead in {} of {DRAWINGS} drawings of the runs; {}",
+        names.join(" + "),
+        won.first().copied().unwrap_or(0),
+        told.join(", ")
+    ))
 }
 
 /// What to measure where no effect of the library comes near: is it the gauges or the runs?
@@ -257,12 +325,14 @@ fn rival_sets<'a>(
 ) -> Vec<&'a Scored<Fit>> {
     const MOST: usize = 5;
     let own = named_part(candidates, &best.set);
+    // Beside a curve, which can take many shapes, sets of any number of names stand.
+    let curved = own.iter().any(|c| is_smooth(candidates, *c));
     let other = |s: &&Scored<Fit>| {
         let named = named_part(candidates, &s.set);
         !named.is_empty()
             && is_unmodelled(candidates, &s.set).is_none()
             && named != own
-            && named.len() <= own.len().max(1)
+            && (curved || named.len() <= own.len().max(1))
             && best.log_evidence - s.log_evidence < WORTH_NAMING
     };
     let mut out: Vec<&Scored<Fit>> = all.iter().filter(other).collect();

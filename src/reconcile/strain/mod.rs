@@ -24,6 +24,7 @@ mod resampled;
 mod scorer;
 mod screen;
 mod size;
+mod smooth;
 mod state;
 mod tolerance;
 mod validation;

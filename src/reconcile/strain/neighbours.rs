@@ -6,6 +6,8 @@ use crate::reconcile::outcome::NamedEffect;
 
 /// A gauge is a neighbour within this many usual distances from gauge to nearest gauge.
 const NEAR: f64 = 2.5;
+/// From as many faults of gauges and cards on, cards count as well: one card beside one gauge is an amplifier and a gauge.
+const WITH_CARDS: usize = 3;
 /// Gains that bridges and amplifiers are wired wrong by lie outside of this; within, strain that goes another way looks the same.
 const GAIN: [f64; 2] = [0.5, 1.5];
 
@@ -30,16 +32,24 @@ pub fn neighbours_that_fail(frame: &StrainFrame, effects: &[NamedEffect]) -> Opt
             ));
         }
     }
-    let off: Vec<usize> = effects
-        .iter()
-        .filter_map(|e| reads_otherwise(frame, e))
-        .collect();
+    let mut at: Vec<Vec<usize>> = effects.iter().map(|e| reads_otherwise(frame, e)).collect();
+    at.retain(|gauges| !gauges.is_empty());
+    if at.len() < WITH_CARDS {
+        at.retain(|gauges| gauges.len() == 1);
+    }
+    let of = |(e, gauges): (usize, &Vec<usize>)| gauges.iter().map(|g| (e, *g)).collect::<Vec<_>>();
+    let mut off: Vec<(usize, usize)> = at.iter().enumerate().flat_map(of).collect();
+    off.sort_unstable_by_key(|o| o.1);
+    off.dedup_by_key(|o| o.1);
     let near = NEAR * usual_distance(frame)?;
-    let close = |a: usize, b: usize| a != b && distance(frame, a, b).is_some_and(|d| d <= near);
+    // A card alone is a card, however near its gauges lie to each other.
+    let close = |a: &(usize, usize), b: &(usize, usize)| {
+        a.0 != b.0 && distance(frame, a.1, b.1).is_some_and(|d| d <= near)
+    };
     let together: Vec<&str> = off
         .iter()
-        .filter(|a| off.iter().any(|b| close(**a, *b)))
-        .map(|&g| frame.gauges[g].name.as_str())
+        .filter(|a| off.iter().any(|b| close(a, b)))
+        .map(|o| frame.gauges[o.1].name.as_str())
         .collect();
     (together.len() > 1).then(|| {
         format!(
@@ -50,20 +60,20 @@ pub fn neighbours_that_fail(frame: &StrainFrame, effects: &[NamedEffect]) -> Opt
     })
 }
 
-/// The gauge of an effect that says one gauge reads another strain: by some gain, at another angle or place.
-fn reads_otherwise(frame: &StrainFrame, e: &NamedEffect) -> Option<usize> {
+/// The gauges of an effect that says they read another strain: by some gain, at another angle or place.
+fn reads_otherwise(frame: &StrainFrame, e: &NamedEffect) -> Vec<usize> {
     let Extension::Channels(list) = &e.extension else {
-        return None;
+        return Vec::new();
     };
-    let [(name, correction)] = list.as_slice() else {
-        return None;
-    };
-    let may_be_strain = match correction {
+    let may_be_strain = |correction: &Correction| match correction {
         Correction::Gain(gain) => *gain > GAIN[0] && *gain < GAIN[1],
         Correction::AngleDeg(_) | Correction::PositionMm(_) => true,
         _ => false,
     };
-    may_be_strain.then(|| frame.gauges.iter().position(|g| g.name == *name))?
+    let of_strain = list.iter().filter(|c| may_be_strain(&c.1));
+    of_strain
+        .filter_map(|(name, _)| frame.gauges.iter().position(|g| g.name == *name))
+        .collect()
 }
 
 /// Whether an effect is one of channels that read a share more or less, or of another direction, place or neighbour.

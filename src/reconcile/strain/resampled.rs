@@ -1,6 +1,7 @@
 //! How often a set of effects wins when the runs are drawn anew.
 
 use super::covariance::Selection;
+use super::detect::INDISTINGUISHABLE;
 use super::explanation::Explanation;
 use super::frame::StrainFrame;
 use super::likelihood::Fit;
@@ -10,18 +11,36 @@ use crate::reconcile::effect::Candidate;
 use crate::reconcile::search::Scored;
 
 /// Drawings: a share of wins is then known to five in a hundred.
-const DRAWINGS: usize = 100;
+pub(super) const DRAWINGS: usize = 100;
 
-/// Of 100 drawings of as many runs with replacement, those in which `sets[0]` stays ahead of all others: its log evidence then is that of
+/// Of 100 drawings of as many runs with replacement, by set those in which it is ahead of all others: its log evidence then is that of
 /// all runs, each run's own log density counted as often as the run is drawn. Parameters and sizes stay as fitted; correlation between
-/// runs is left out, but for what the full evidence holds of it.
-pub fn wins(frame: &StrainFrame, candidates: &[Candidate], sets: &[&Scored<Fit>]) -> usize {
+/// runs is left out, but for what the full evidence holds of it. Sets that no drawing could tell from the first (their densities differ by less
+/// than odds of twenty to one over all runs together) win for it; runs that effects of the first alone touch are in every drawing, since
+/// without them nothing is to be seen of these effects.
+pub fn wins(frame: &StrainFrame, candidates: &[Candidate], sets: &[&Scored<Fit>]) -> Vec<usize> {
     let runs = frame.observations.fit_runs();
+    let members = sets.first().map_or(&[][..], |s| &s.set);
+    let touched: Vec<usize> = (members.iter().filter_map(|&c| candidates.get(c)))
+        .flat_map(|c| c.effect.runs())
+        .filter_map(|r| runs.iter().position(|k| *k == r))
+        .collect();
+    let free: Vec<usize> = (0..runs.len()).filter(|k| !touched.contains(k)).collect();
     let by_run: Vec<Vec<f64>> = sets
         .iter()
         .map(|s| densities(frame, candidates, s, &runs))
         .collect();
     let mut numbers = Numbers(1);
+    let alike = |k: usize| {
+        let (Some(a), Some(b)) = (by_run.first(), by_run.get(k)) else {
+            return false;
+        };
+        let apart = a.iter().zip(b).map(|(x, y)| (x - y).abs()).sum::<f64>();
+        a.len() == b.len() && apart < INDISTINGUISHABLE
+    };
+    let stands_for: Vec<usize> = (0..sets.len())
+        .map(|k| if alike(k) { 0 } else { k })
+        .collect();
     let ahead = |counts: &[usize]| {
         let evidence = |(s, by_run): (&&Scored<Fit>, &Vec<f64>)| {
             let drawn: f64 = by_run
@@ -32,20 +51,25 @@ pub fn wins(frame: &StrainFrame, candidates: &[Candidate], sets: &[&Scored<Fit>]
             s.log_evidence + drawn
         };
         let all: Vec<f64> = sets.iter().zip(&by_run).map(evidence).collect();
-        all.first()
-            .is_some_and(|first| all.iter().skip(1).all(|e| e < first))
+        let best = (0..all.len()).max_by(|a, b| all[*a].total_cmp(&all[*b]))?;
+        stands_for.get(best).copied()
     };
-    (0..DRAWINGS)
-        .filter(|_| {
-            let mut counts = vec![0usize; runs.len()];
-            for _ in 0..runs.len() {
-                if let Some(n) = counts.get_mut(numbers.below(runs.len())) {
-                    *n += 1;
-                }
+    let mut won = vec![0; sets.len()];
+    for _ in 0..DRAWINGS {
+        let mut counts: Vec<usize> = (0..runs.len())
+            .map(|k| usize::from(touched.contains(&k)))
+            .collect();
+        for _ in 0..free.len() {
+            let drawn = free.get(numbers.below(free.len()));
+            if let Some(n) = drawn.and_then(|k| counts.get_mut(*k)) {
+                *n += 1;
             }
-            ahead(&counts)
-        })
-        .count()
+        }
+        if let Some(n) = ahead(&counts).and_then(|k| won.get_mut(k)) {
+            *n += 1;
+        }
+    }
+    won
 }
 
 /// By run: log density of its readings with the set on, less constants.

@@ -53,8 +53,10 @@ impl Likelihood<'_> {
             .par_iter()
             .enumerate()
             .map(|(c, candidate)| {
-                let form = matches!(candidate.effect.discrepancy(), Some(Discrepancy::Form(_)));
-                if base.set.contains(&c) || (form && this.names_only) {
+                let general = candidate.effect.discrepancy();
+                let form = matches!(general, Some(Discrepancy::Form(_)));
+                let smooth = matches!(general, Some(Discrepancy::Smooth(_)));
+                if base.set.contains(&c) || smooth || (form && this.names_only) {
                     return None;
                 }
                 let (gain, parameters, sizes) = match candidate.effect.amplitudes(this.frame) {

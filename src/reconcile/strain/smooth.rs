@@ -1,0 +1,144 @@
+//! A smooth error of the model against the best set of names: alone, and in the place of some of them.
+
+use super::detect::{DECISIVE, INDISTINGUISHABLE};
+use super::explanation::{discrepancy, named_part};
+use super::frame::StrainFrame;
+use super::likelihood::{Fit, Likelihood};
+use crate::reconcile::effect::{Candidate, Discrepancy, Extension};
+use crate::reconcile::outcome::SmoothAt;
+use crate::reconcile::search::{Addition, Scored, Scorer, settle};
+
+/// Lengths and amplitudes that are tried with every part of the names, of those that did best.
+const KEPT: usize = 2;
+
+/// Whether a candidate is a smooth error of the model.
+pub(super) fn is_smooth(candidates: &[Candidate], c: usize) -> bool {
+    matches!(discrepancy(candidates, c), Some(Discrepancy::Smooth(_)))
+}
+
+/// The smooth error, with as few of the names of `best` as it needs, where it explains these runs as well as all of them do: its log evidence
+/// is at most [`INDISTINGUISHABLE`] behind, or behind by less than the names that it saves must each raise ([`DECISIVE`]).
+///
+/// `ln p(y | lengths, a) = -(r' C^-1 r + theta' theta / a^2) / 2 - ln det(C) / 2 - ln det(a^2 H) / 2`, H the Hessian at the best theta: what a
+/// curve that can take many shapes explains costs as many data as shapes.
+pub(super) fn smooth_instead(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    best: &Scored<Fit>,
+) -> Option<Scored<Fit>> {
+    let names = named_part(candidates, &best.set);
+    let smooth: Vec<usize> = (0..candidates.len())
+        .filter(|c| is_smooth(candidates, *c))
+        .collect();
+    if names.is_empty() || smooth.is_empty() || frame.stop.is_asked() {
+        return None;
+    }
+    let runs = frame.observations.fit_runs();
+    let reference = reference_of(best);
+    let mut likelihood = Likelihood::new(frame, candidates, &runs, &reference);
+    let best = likelihood.score(&best.set, Some((best, None)))?;
+    let mut tried: Vec<Scored<Fit>> = Vec::new();
+    let mut ranked = smooth.clone();
+    for without in parts(&names) {
+        // All names away or one: every length and amplitude; what lies between: those that did best.
+        let whole = without.len() == names.len() || without.len() == 1;
+        let some = if whole { smooth.len() } else { KEPT };
+        for &s in ranked.iter().take(some) {
+            if frame.stop.is_asked() {
+                return None;
+            }
+            let kept = best.set.iter().copied().filter(|c| !without.contains(c));
+            let mut set: Vec<usize> = kept.chain([s]).collect();
+            set.sort_unstable();
+            let n = candidates.get(s).map_or(0, |c| c.effect.parameters().len());
+            let start = Addition {
+                candidate: s,
+                gain: 0.0,
+                parameters: vec![0.0; n],
+                sizes: Vec::new(),
+            };
+            tried.extend(likelihood.score(&set, Some((&best, Some(&start)))));
+        }
+        let most = |s: &usize| {
+            let own = tried.iter().filter(|t| t.set.contains(s));
+            own.map(|t| t.log_evidence)
+                .fold(f64::NEG_INFINITY, f64::max)
+        };
+        ranked.sort_by(|a, b| most(b).total_cmp(&most(a)));
+    }
+    let found = settle(&tried, DECISIVE)?;
+    // Each under the covariance of its own prediction, as sets of names are compared.
+    let reference = reference_of(&found);
+    let found = Likelihood::new(frame, candidates, &runs, &reference)
+        .score(&found.set, Some((&found, None)))?;
+    let saved = DECISIVE * (best.set.len() as f64 - found.set.len() as f64);
+    // One factor for all gauges is a curve itself: another curve near it is no rival unless it explains more.
+    let only_scale = (names.iter().filter(|c| !found.set.contains(c)))
+        .filter_map(|&c| candidates.get(c))
+        .all(|c| matches!(c.effect.extension(frame, &[]), Extension::Scale(_)));
+    let margin = if only_scale { 0.0 } else { INDISTINGUISHABLE };
+    (best.log_evidence - found.log_evidence < saved.max(margin)).then_some(found)
+}
+
+fn reference_of(s: &Scored<Fit>) -> Vec<(usize, Vec<f64>)> {
+    let parameters = s.fit.parameters.iter().cloned();
+    s.set.iter().copied().zip(parameters).collect()
+}
+
+/// All parts of `names` but the empty one: the whole first, then single ones, then the rest.
+fn parts(names: &[usize]) -> Vec<Vec<usize>> {
+    let of = |bits: usize| -> Vec<usize> {
+        let set = names.iter().enumerate();
+        set.filter(|(i, _)| bits >> i & 1 == 1)
+            .map(|n| *n.1)
+            .collect()
+    };
+    let mut out: Vec<Vec<usize>> = (1..1usize << names.len().min(8)).map(of).collect();
+    out.sort_by_key(|p| match p.len() {
+        n if n == names.len() => 0,
+        n => n,
+    });
+    out
+}
+
+/// The curve of the smooth error in a set: at every gauge, for all loads or for each.
+pub(super) fn curve(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    scored: &Scored<Fit>,
+) -> Vec<SmoothAt> {
+    let mut first = 0;
+    for (&c, parameters) in scored.set.iter().zip(&scored.fit.parameters) {
+        let Some(smooth) = candidates.get(c).and_then(|c| c.effect.smooth()) else {
+            first += parameters.len();
+            continue;
+        };
+        let (n, width) = (parameters.len(), scored.fit.covariance.len().isqrt());
+        let own = |k: usize| (first + k / n) * width + first + k % n;
+        let cell = |k: usize| scored.fit.covariance.get(own(k)).copied().unwrap_or(0.0);
+        let covariance: Vec<f64> = (0..n * n).map(cell).collect();
+        let mut columns: Vec<(usize, Option<String>)> = vec![(0, None)];
+        if smooth.is_by_load() {
+            let payload = "payload".to_owned();
+            let loads = frame.load_names.iter().cloned().chain([payload]);
+            columns = loads.map(Some).enumerate().collect();
+            columns.truncate(smooth.n_factors());
+        }
+        let at = |(column, load): &(usize, Option<String>)| {
+            let gauges = frame.gauges.iter().enumerate();
+            let one = |(g, f): (usize, &super::frame::GaugeFacts)| {
+                let (factor, sd) = smooth.factor(g, *column, parameters, &covariance);
+                Some(SmoothAt {
+                    gauge: f.name.clone(),
+                    place_m: f.position?,
+                    load: load.clone(),
+                    factor,
+                    sd,
+                })
+            };
+            gauges.filter_map(one).collect::<Vec<SmoothAt>>()
+        };
+        return columns.iter().flat_map(at).collect();
+    }
+    Vec::new()
+}
