@@ -204,6 +204,34 @@ fn of_a_record_check_says_what_recover_says() {
 }
 
 #[test]
+fn the_record_of_a_zero_may_hold_what_a_record_may_hold() {
+    let folder = example("zero", "fleet");
+    let zero = "noise_microstrain = 0.1\nzero = \"zero.csv\"\n";
+    let job = RECORD.replace("noise_microstrain = 0.1\n", zero);
+    std::fs::write(folder.join("job.toml"), job).unwrap();
+    let readings = ",1".repeat(12);
+    let header: Vec<String> = (1..=12).map(|g| format!(",P{g:02}")).collect();
+    let rows: String = (0..20)
+        .map(|i| format!("{}{readings}\n", f64::from(i) * 0.05))
+        .collect();
+    let text = format!("time{}\n{rows}", header.concat());
+    std::fs::write(folder.join("zero.csv"), text).unwrap();
+    let damages: [(Damage, Option<bool>); 5] = [
+        (("nothing", &|t| t.as_bytes().to_vec()), Some(true)),
+        (("NaN", &|t| with_field(t, 3, "NaN")), Some(true)),
+        (
+            ("lines before the header", &|t| {
+                format!("Measured by 7\n\n{t}").into_bytes()
+            }),
+            Some(true),
+        ),
+        (("a word", &|t| with_field(t, 3, "abc")), Some(false)),
+        (("a header", &|t| lines(t, 1)), Some(false)),
+    ];
+    agree(&folder, "job.toml", "recover", "zero.csv", &damages);
+}
+
+#[test]
 fn loads_and_gauges_are_counted_where_they_were_read() {
     let folder = example("counted", "fleet");
     std::fs::write(folder.join("job.toml"), RECORD).unwrap();
@@ -339,6 +367,7 @@ fn fleet_says_of_a_gauge_without_a_row_of_s_what_recover_says() {
         .args(["fleet", "fleet.toml", "A_2026-05-01.csv", "--out", "out"])
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&done.stderr);
+    let said = [done.stdout, done.stderr].concat();
+    let said = String::from_utf8_lossy(&said);
     assert!(said.contains("strain-without-gauge"), "{said}");
 }

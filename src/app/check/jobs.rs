@@ -31,6 +31,7 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
     found.candidates = Some(job.candidates.clone());
     files(work, &job, found, into);
     let mut faults = std::mem::take(&mut found.faults);
+    let before = std::mem::take(&mut work.findings);
     let s = job.sensitivity.as_ref().and_then(|_| {
         let read = given_as_asked(work, &job);
         kept(read, &mut faults)
@@ -65,6 +66,8 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
         format!("{} {} {}", f.code, f.subject, f.message)
     });
     found.faults = faults;
+    let of_job = std::mem::replace(&mut work.findings, before);
+    work.findings.extend(of_job);
 }
 
 /// What was read; faults are added to the list.

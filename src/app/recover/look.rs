@@ -27,14 +27,17 @@ pub(in crate::app) fn look(
         mesh_error: Vec::new(),
     };
     // A model's reference state takes a solution.
-    let whole = job.model.is_none() && !prepared.sensitivity.loads.is_empty();
-    let task = match whole {
-        true => task_of(work, job, measured, &prepared),
-        false => without_reference(work, job, measured, &prepared),
+    let known = match job.model.is_none() && !prepared.sensitivity.loads.is_empty() {
+        true => Known::S,
+        false => Known::Names,
+    };
+    let task = match known {
+        Known::S => task_of(work, job, measured, &prepared),
+        Known::Names => without_reference(work, job, measured, &prepared),
     };
     let faults_of = |read: Result<(), Faults>| read.err().map_or_else(Vec::new, Faults::into_list);
     let first = match task {
-        Ok(task) => return faults_of(readings(work, &task, whole)),
+        Ok(task) => return faults_of(readings(work, &task, known)),
         Err(faults) => faults,
     };
     // What is wrong with the readings is said beside what is wrong with their zero.
@@ -42,16 +45,25 @@ pub(in crate::app) fn look(
     (bare.zero, bare.reference) = (None, Reference::None);
     let mut faults = first.into_list();
     match without_reference(work, job, &bare, &prepared) {
-        Ok(task) => faults.extend(faults_of(readings(work, &task, false))),
+        Ok(task) => faults.extend(faults_of(readings(work, &task, Known::Names))),
         Err(more) => faults.extend(more),
     }
     faults
 }
 
-/// Reads and judges; `whole` where the readings are all that loads are recovered from, and S is at hand.
-fn readings(work: &mut Work, task: &Task, whole: bool) -> Result<(), Faults> {
+/// What is at hand of S.
+#[derive(Clone, Copy, PartialEq)]
+enum Known {
+    /// All that loads are recovered with.
+    S,
+    /// The names of its gauges.
+    Names,
+}
+
+/// Reads and judges.
+fn readings(work: &mut Work, task: &Task, known: Known) -> Result<(), Faults> {
     let s = &task.prepared.sensitivity;
-    if whole {
+    if known == Known::S {
         // A job that is reconciled lists loads that only the runs file tells apart.
         if task.job.reconcile.is_none() {
             work.findings.extend(check_separability(&s.unconditioned()));
@@ -65,9 +77,14 @@ fn readings(work: &mut Work, task: &Task, whole: bool) -> Result<(), Faults> {
         let (readings, _) = runs::read(work, task)?;
         (s.clone(), readings)
     };
+    if task.job.sensitivity.is_none() && task.job.model.is_none() {
+        // What is calibrated alone may be any signal.
+        work.findings.retain(|f| f.code != "reading-impossible");
+        return Ok(());
+    }
     let (_, found) = plausible::check(&s, &readings, task.errors);
     // The strain of a reference state that is not in them may be all there is.
-    let all = whole || task.measured.reference == Reference::None;
+    let all = known == Known::S || task.measured.reference == Reference::None;
     let holds = |code: &str| all || code != "readings-below-noise";
     work.findings
         .extend(found.into_iter().filter(|f| holds(f.code)));

@@ -3,7 +3,7 @@
 use super::answer::RecoveredRuns;
 use super::combined::{Listed, listed};
 use super::known_payload::{self, KnownLoads};
-use super::task::{Task, columns_of};
+use super::task::{Task, columns_of, no_gauge_column};
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::LoadActs;
 use crate::app::job::strain::{StrainRows, StrainTable, read_strain, record_fault, wanted_columns};
@@ -54,13 +54,7 @@ pub(super) fn read(work: &mut Work, task: &Task) -> Result<(Vec<Readings>, Known
     };
     let columns = columns_of(work, named, &table.gauges, &s.gauges);
     if columns.iter().all(Option::is_none) {
-        return Err(Faults::from(Fault::at(
-            &*named.given,
-            1,
-            "gauge",
-            "no column is named after a gauge of the job",
-            "name the columns after the gauges",
-        )));
+        return Err(no_gauge_column(task.job, &named.given).into());
     }
     let zeros = zeros_by_row(work, task.job, task.measured, &table)?;
     let mut readings = readings_of(&table, names, &columns, task, zeros.as_ref());
