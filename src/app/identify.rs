@@ -11,7 +11,9 @@ use crate::series::detrend::rms;
 use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::chassis::{ChassisForce, chassis_forces};
 use crate::vehicle::checks::MassClosure;
-use crate::vehicle::identify::{ChannelFit, Estimate, Identification, identify as fit_vehicle};
+use crate::vehicle::identify::{
+    ChannelFit, Estimate, Identification, check_records, identify as fit_vehicle,
+};
 use crate::vehicle::loads::{LoadHistory, static_loads, wheel_force_history};
 use crate::vehicle::motion::{Motion, Treatment, motion};
 use crate::vehicle::stretch::slow_stretches;
@@ -103,6 +105,17 @@ pub struct ChassisForceOf {
     pub rms_difference: f64,
     /// Unit in words.
     pub unit: String,
+}
+
+/// Reads the vehicle and its records as [`identify`] does and begins with them, as far as nothing is fitted; the parameters are dropped.
+///
+/// # Errors
+/// Every fault of the job and its records.
+pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
+    let records = read_vehicle(work, job)?;
+    let data_name = job.vehicle.as_ref().map_or("", |v| v.data.given.as_str());
+    check_records(&records.task, &records.data, records.hold_out.as_ref())
+        .map_err(|e| vehicle_fault(job, data_name, &e).into())
 }
 
 /// Vehicle parameters and wheel loads from accelerations.

@@ -5,6 +5,7 @@
 
 mod arms;
 mod beam;
+mod beside;
 mod build;
 mod error;
 mod glued;
@@ -16,6 +17,7 @@ mod surface;
 mod unverified;
 
 pub use arms::{Arm, Gauge, Spot, reading, shell_strain};
+pub use beside::{Beside, beside_beam, beside_shell};
 pub use build::{CornerRows, build};
 pub use error::GaugeError;
 pub use glued::{Drawn, Offset};

@@ -63,6 +63,35 @@ fn undetermined(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> {
     )
 }
 
+/// The same of gauges that are planned: `sigma` by load, in the unit of S, against the largest `expected` load of the kind. Both are one standard
+/// deviation: runs will have loads of twice that, and intervals are as much wider than `sigma`. A kind for which no size is stated is left alone.
+pub fn check_planned(s: &Sensitivity, sigma: &[f64]) -> Option<Finding> {
+    let mut out: Vec<(&str, f64)> = Vec::new();
+    for (load, sigma) in s.loads.iter().zip(sigma).filter(|(l, _)| l.wanted) {
+        let alike = s
+            .loads
+            .iter()
+            .filter(|m| m.wanted && m.quantity == load.quantity);
+        let largest = alike.filter_map(|m| m.expected).fold(0.0, f64::max);
+        let width = sigma / largest;
+        if largest > 0.0 && width > WIDE {
+            out.push((&load.name, width));
+        }
+    }
+    let worst = out.iter().map(|o| o.1).max_by(f64::total_cmp)?;
+    let names: Vec<&str> = out.iter().map(|o| o.0).collect();
+    Some(
+        Finding::new(
+            Severity::Error,
+            "loads-not-determined",
+            few(&names),
+            "the standard deviation planned for these loads is more than half the largest `expected` load: the gauges will not tell them",
+            "place more gauges, state the noise that they have, or drop loads",
+        )
+        .with_numbers(worst, WIDE),
+    )
+}
+
 /// The finding on a load many times larger than `expected` in some state.
 pub fn beyond_expected(
     load: &str,

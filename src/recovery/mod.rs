@@ -31,7 +31,7 @@ mod types;
 pub mod unlike;
 pub mod verdict;
 
-pub use determined::beyond_expected;
+pub use determined::{beyond_expected, check_planned};
 pub use errors::ErrorModel;
 pub use gain::Gain;
 pub use interval::{NORMAL_95, student_95};

@@ -28,24 +28,8 @@ pub fn identify(
     record: &Channels,
     hold_out: Option<&Channels>,
 ) -> Result<Identification, VehicleError> {
-    let treatment = Treatment {
-        adjust: task.corrections.clone(),
-        ..Treatment::of(task.band)
-    };
-    let measured = with_measured_sensors(&task.vehicle, record);
-    let vehicle = resolved(&measured, record, &treatment)?;
+    let (treatment, vehicle) = begun(task, record)?;
     let all = vehicle.parameters();
-    if let Some(name) = task
-        .known
-        .keys()
-        .chain(task.bounds.keys())
-        .find(|k| all.iter().all(|p| p.name != **k))
-    {
-        return Err(VehicleError::Known {
-            name: name.clone(),
-            present: all.iter().map(|p| p.name.clone()).collect(),
-        });
-    }
     let mut answer = Identification {
         values: vec![f64::NAN; all.len()],
         sigmas: vec![f64::NAN; all.len()],
@@ -164,6 +148,49 @@ fn reference(part: &Vehicle, equations: &[Equation], allowed: &[Allowed]) -> Opt
     let mut bodies: Vec<usize> = (0..part.bodies.len()).collect();
     bodies.sort_by_key(|&b| !part.bodies[b].sprung);
     part.masses(&bodies).into_iter().find(|&i| occurs(i))
+}
+
+/// Whether [`identify`] can begin with these records: their channels, rate and length, and the parameters that the task names.
+///
+/// # Errors
+/// As [`identify`].
+pub fn check_records(
+    task: &IdentifyTask,
+    record: &Channels,
+    hold_out: Option<&Channels>,
+) -> Result<(), VehicleError> {
+    let (treatment, vehicle) = begun(task, record)?;
+    let elsewhere = Treatment {
+        adjust: Adjustment::elsewhere(&treatment.adjust),
+        ..treatment.clone()
+    };
+    for bodies in vehicle.components() {
+        let part = vehicle.part(&bodies);
+        motion(&part, record, &treatment)?;
+        if let Some(held) = hold_out {
+            motion(&part, held, &elsewhere).map_err(|e| VehicleError::HeldOut(Box::new(e)))?;
+        }
+    }
+    Ok(())
+}
+
+/// How the record is treated, and the vehicle with the sensors that it has.
+fn begun(task: &IdentifyTask, record: &Channels) -> Result<(Treatment, Vehicle), VehicleError> {
+    let treatment = Treatment {
+        adjust: task.corrections.clone(),
+        ..Treatment::of(task.band)
+    };
+    let measured = with_measured_sensors(&task.vehicle, record);
+    let vehicle = resolved(&measured, record, &treatment)?;
+    let all = vehicle.parameters();
+    let mut named = task.known.keys().chain(task.bounds.keys());
+    match named.find(|k| all.iter().all(|p| p.name != **k)) {
+        Some(name) => Err(VehicleError::Known {
+            name: name.clone(),
+            present: all.iter().map(|p| p.name.clone()).collect(),
+        }),
+        None => Ok((treatment, vehicle)),
+    }
 }
 
 fn fit_part(

@@ -1,18 +1,21 @@
-//! A job: its own faults, then the files it names.
+//! A job: its own faults, the files it names, and what the commands read of them, by their own readers.
 
 use super::checked::Checked;
-use crate::app::fault::{Fault, Faults};
-use crate::app::job::strain::wanted_columns;
-use crate::app::job::strain_means::{StrainFile, read_strain_file};
-use crate::app::job::suggest;
-use crate::app::job::{self, HoldOut, Job, Measured, NamedFile};
+use crate::app::fault::{Fault, FaultList, Faults};
+use crate::app::job::strain::stated_readings;
+use crate::app::job::{self, GivenSensitivity, HoldOut, Job, Measured, NamedFile};
 use crate::app::job_deck::against_units;
 use crate::app::outcome::StatedUnits;
 use crate::app::solved::{support_finding, support_of_job};
+use crate::app::strain::{given_as_asked, off_their_elements};
 use crate::app::work::Work;
-use crate::app::zeroed::{no_zero_runs, zeros_by_row};
-use crate::finding::{Finding, Severity, few};
+use crate::app::zeroed::read_zeroed;
+use crate::app::{identify, reconcile, recover, respond};
+use crate::finding::Finding;
+use crate::linalg::Matrix;
 use crate::model::Model;
+use crate::sensitivity::Sensitivity;
+use std::collections::HashSet;
 use std::path::Path;
 
 /// Looks into a file: of a folder, as named.
@@ -24,55 +27,123 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
         Err(f) => return found.faults.extend(f),
     };
     found.units = StatedUnits::of(job.units, &job.report_units);
-    found.jobs.push(format!(
-        "job `{given}`: {} loads, {} gauges, units {}",
-        job.loads.len(),
-        job.gauges.len(),
-        job.units.name()
-    ));
     found.candidates = Some(job.candidates.clone());
     files(work, &job, found, into);
+    let mut faults = std::mem::take(&mut found.faults);
+    let before = std::mem::take(&mut work.findings);
+    let s = job.sensitivity.as_ref().and_then(|_| {
+        let read = given_as_asked(work, &job);
+        kept(read, &mut faults)
+    });
+    let gauges = gauges_of(work, &job, s.as_ref(), &mut faults);
+    found.jobs.push(format!(
+        "job `{given}`: {} loads, {} gauges, units {}",
+        s.as_ref().map_or(job.loads.len(), |s| s.loads.len()),
+        match (&s, job.gauges.len()) {
+            (None, stated @ 1..) => stated,
+            _ => gauges.len(),
+        },
+        job.units.name()
+    ));
     if let Some(m) = &job.measured {
-        let wanted = wanted_columns(&mut work.inputs, &job);
-        match read_strain_file(&mut work.inputs, &job, &m.strain, &wanted) {
-            Ok(file) => {
-                work.findings.extend(gauges_and_strain(&job, file.gauges()));
-                found.faults.extend(zero_faults(work, &job, m, &file));
-            }
-            Err(f) => found.faults.extend(f),
-        }
-        if let Some(named) = &m.zero {
-            let read = read_strain_file(&mut work.inputs, &job, named, &wanted);
-            found.faults.extend(faults_of(read));
-        }
-        if let HoldOut::File(named) = &m.hold_out {
-            match read_strain_file(&mut work.inputs, &job, named, &wanted) {
-                Ok(file) => {
-                    // A run that neither file has was said of the first.
-                    let mut more = zero_faults(work, &job, m, &file);
-                    more.retain(|f| !found.faults.contains(f));
-                    found.faults.extend(more);
-                }
-                Err(f) => found.faults.extend(f),
-            }
-        }
+        faults.extend(measured(work, &job, m, s.as_ref(), &gauges));
+    }
+    if let Some((given, _)) = job.sensitivity.as_ref().zip(s.as_ref()) {
+        faults.extend(signatures(work, &job, given, &gauges));
     }
     if let Some(r) = &job.runs {
-        let read = job::runs::read_runs(&mut work.inputs, &job, r);
-        found.faults.extend(faults_of(read));
+        kept(job::runs::read_runs(&mut work.inputs, &job, r), &mut faults);
+    }
+    if job.vehicle.is_some() {
+        kept(identify::look(work, &job), &mut faults);
+    }
+    kept(respond::look(work, &job), &mut faults);
+    kept(reconcile::look(work, &job), &mut faults);
+    // Two commands say the same of one file.
+    each_once(&mut faults, ToString::to_string);
+    each_once(&mut work.findings, |f| {
+        format!("{} {} {}", f.code, f.subject, f.message)
+    });
+    found.faults = faults;
+    let of_job = std::mem::replace(&mut work.findings, before);
+    work.findings.extend(of_job);
+}
+
+/// What was read; faults are added to the list.
+fn kept<T>(read: Result<T, Faults>, faults: &mut FaultList) -> Option<T> {
+    read.map_err(|f| faults.extend(f)).ok()
+}
+
+/// Keeps the first of those that are called alike.
+fn each_once<T>(list: &mut Vec<T>, called: impl Fn(&T) -> String) {
+    let mut seen = HashSet::with_capacity(list.len());
+    list.retain(|entry| seen.insert(called(entry)));
+}
+
+/// Names of the readings: those of a given S, of the gauges that the job states, of the strain file.
+fn gauges_of(
+    work: &mut Work,
+    job: &Job,
+    s: Option<&Sensitivity>,
+    faults: &mut FaultList,
+) -> Vec<String> {
+    if let Some(s) = s {
+        return s.gauges.clone();
+    }
+    let stated = stated_readings(job);
+    match &job.measured {
+        Some(m) if stated.is_empty() => {
+            kept(recover::gauges_of_file(work, job, m), faults).unwrap_or_default()
+        }
+        _ => stated,
     }
 }
 
-/// What stands in the way of following the zero through the runs of a strain file.
-fn zero_faults(work: &mut Work, job: &Job, m: &Measured, file: &StrainFile) -> Vec<Fault> {
-    match file {
-        StrainFile::Table(table) => faults_of(zeros_by_row(work, job, m, table)),
-        StrainFile::Means(means) => faults_of(no_zero_runs(job, m, &means.file)),
+/// What is wrong with measured strain, its zero, and the runs that are held out in a file of their own.
+fn measured(
+    work: &mut Work,
+    job: &Job,
+    m: &Measured,
+    s: Option<&Sensitivity>,
+    gauges: &[String],
+) -> FaultList {
+    let s = s.cloned().unwrap_or_else(|| Sensitivity {
+        gauges: gauges.to_vec(),
+        loads: Vec::new(),
+        values: Matrix::zeros(gauges.len(), 0),
+        uncertainty: None,
+    });
+    // Where not even the names can be had, that is a fault already.
+    let mut faults = match gauges.is_empty() {
+        true => FaultList::new(),
+        false => recover::look(work, job, m, s),
+    };
+    if let HoldOut::File(named) = &m.hold_out {
+        kept(read_zeroed(work, job, m, named), &mut faults);
     }
+    faults
 }
 
-fn faults_of<T>(read: Result<T, Faults>) -> Vec<Fault> {
-    read.err().map_or_else(Vec::new, Faults::into_list)
+/// What is wrong with the signatures beside a given S, of the gauges that are measured.
+fn signatures(
+    work: &mut Work,
+    job: &Job,
+    given: &GivenSensitivity,
+    gauges: &[String],
+) -> FaultList {
+    let mut faults = FaultList::new();
+    if given.signatures != job::Signatures::default() && job.reconcile.is_none() {
+        let mut unread = FaultList::new();
+        let file = job.measured.as_ref();
+        let file = file.and_then(|m| kept(recover::gauges_of_file(work, job, m), &mut unread));
+        let is_measured = |g: &&String| file.as_ref().is_none_or(|f| f.contains(g));
+        let names: Vec<String> = gauges.iter().filter(is_measured).cloned().collect();
+        kept(
+            reconcile::look_at_signatures(work, job, given, &names),
+            &mut faults,
+        );
+    }
+    faults
 }
 
 /// Opens every file that the job names; decks and results are looked into.
@@ -87,6 +158,7 @@ fn files(work: &mut Work, job: &Job, found: &mut Checked, into: Look) {
         }
         if let Some(model) = found.decks.get(before).and_then(|d| d.model.as_ref()) {
             work.findings.extend(against_units(job, model));
+            work.findings.extend(off_their_elements(model, job));
             match support_of_job(job, model) {
                 Ok(support) => work.findings.push(support_finding(&m.deck.given, support)),
                 Err(faults) => found.faults.extend(faults.into_list()),
@@ -197,49 +269,4 @@ fn lacks(file: &str, line: u32, field: &str, what: &str, name: &str) -> Fault {
         format!("`{name}`: the deck has no {what}"),
         "correct the id, or name the deck of these results",
     )
-}
-
-/// Gauges without a column and columns without a gauge.
-fn gauges_and_strain(job: &Job, columns: &[String]) -> Vec<Finding> {
-    let names: Vec<&str> = job.gauges.iter().map(|g| g.name.as_str()).collect();
-    let unknown: Vec<&str> = columns
-        .iter()
-        .map(String::as_str)
-        .filter(|c| !names.contains(c))
-        .collect();
-    let silent: Vec<&str> = names
-        .iter()
-        .copied()
-        .filter(|n| !columns.iter().any(|c| c == n))
-        .collect();
-    let mut out = Vec::new();
-    let mut note = |code, what: &str, list: &[&str], remedy: &str| {
-        if !list.is_empty() {
-            let message = format!("{} {what}: {}", list.len(), few(list));
-            out.push(Finding::new(
-                Severity::Warning,
-                code,
-                "measured.strain",
-                message,
-                remedy,
-            ));
-        }
-    };
-    // A rosette's legs have columns of their own, `<name>.a` and so on; where S is given its table names the gauges.
-    let told = !job.gauges.is_empty() && job.gauges.iter().all(|g| g.rosette.is_none());
-    if told {
-        note(
-            "gauge-without-strain",
-            "gauges have no column in the strain file",
-            &silent,
-            &suggest::column_remedy(&silent, &unknown),
-        );
-        note(
-            "strain-without-gauge",
-            "columns of the strain file belong to no gauge",
-            &unknown,
-            "add the gauges, or drop the columns",
-        );
-    }
-    out
 }

@@ -8,6 +8,7 @@ use crate::app::files::may_be_cut;
 use crate::app::job::StrainCorrection;
 use crate::app::job::correct::{Channel, channel_of, column_of, columns_wanted};
 use crate::app::job::gauge_column::strain_columns;
+use crate::app::recover::strain_without_gauge;
 use crate::app::strain::LoadUnits;
 use crate::finding::Severity;
 use crate::linalg::Matrix;
@@ -184,6 +185,12 @@ impl Kernel {
             let each = list.iter().map(|f| format!("`{}`: {}", f.field, f.wrong));
             each.collect::<Vec<_>>().join("; ")
         })?;
+        let names: Vec<String> = columns
+            .iter()
+            .map(|c| column_of(&self.corrections, &c.name).to_owned())
+            .collect();
+        let unknown = strain_without_gauge("", &names, &all.gauges);
+        findings.extend(unknown.map(DayFinding::from));
         let named = columns.iter().enumerate();
         let places: HashMap<&str, (usize, f64)> = named
             .filter_map(|(i, c)| Some((c.name.as_str(), (i, c.microstrain?))))

@@ -6,7 +6,7 @@ use super::gauge_column::strain_columns;
 pub use super::strain_table::{StrainRows, StrainTable};
 use super::strain_text::strain_from_text;
 use super::table::read_table;
-use super::types::{Job, NamedFile};
+use super::types::{Job, JobGauge, NamedFile};
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::{FileBytes, Inputs};
 use crate::gauge::Rosette;
@@ -50,6 +50,19 @@ fn strain_as_read(
 /// names them, its whole table is read for it: once a question will do.
 pub fn wanted_columns(inputs: &mut Inputs, job: &Job) -> Vec<String> {
     columns_wanted(&job.corrections, &gauge_names(inputs, job))
+}
+
+/// What the readings of the job's stated gauges are called: those of a rosette by its legs.
+pub fn stated_readings(job: &Job) -> Vec<String> {
+    let names = |g: &JobGauge| match g.rosette {
+        Some(r) => r
+            .legs()
+            .iter()
+            .map(|(leg, _)| format!("{}.{leg}", g.name))
+            .collect(),
+        None => vec![g.name.clone()],
+    };
+    job.gauges.iter().flat_map(names).collect()
 }
 
 /// Names of the job's gauges: those it states, legs of rosettes by theirs, else the rows of a given S; none where neither tells. A table of S

@@ -75,10 +75,14 @@ pub fn read_strain_file(
     wanted: &[String],
 ) -> Result<StrainFile, Faults> {
     let bytes = inputs.read_named(job, named).map_err(Faults::from)?;
+    let record = |bytes| means(job, &named.given, bytes, wanted).map(StrainFile::Means);
     if is_long_record(&bytes) {
-        means(job, &named.given, bytes, wanted).map(StrainFile::Means)
-    } else {
-        read_strain(inputs, job, named, wanted).map(StrainFile::Table)
+        return record(bytes);
+    }
+    // A short record is a table too, unless it holds what only records may: words for no reading, dates, lines before its header.
+    match read_strain(inputs, job, named, wanted) {
+        Err(_) if Layout::of(&bytes).is_ok_and(|l| l.is_record()) => record(bytes),
+        read => read.map(StrainFile::Table),
     }
 }
 

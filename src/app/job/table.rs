@@ -4,6 +4,7 @@ use crate::app::fault::{Fault, FaultList, Faults};
 use crate::series::cell::unguarded;
 use crate::series::number::{DecimalMark, number};
 use crate::units::{Quantity, largest_size, number as in_words};
+use std::collections::HashMap;
 
 /// Header and rows of a CSV file, fields trimmed.
 #[derive(Clone, Debug, PartialEq)]
@@ -164,6 +165,23 @@ impl Table {
         names
             .iter()
             .find_map(|n| self.header.iter().position(|h| h == n))
+    }
+
+    /// Faults of names that stand in two rows of a column; `what` they are the names of.
+    pub fn rows_named_twice(&self, column: usize, what: &str) -> FaultList {
+        let mut seen: HashMap<&str, u32> = HashMap::with_capacity(self.rows.len());
+        let mut faults = FaultList::new();
+        for (line, fields) in &self.rows {
+            let name = fields.get(column).map_or("", String::as_str);
+            let before = *seen.entry(name).or_insert(*line);
+            if before != *line && !name.is_empty() {
+                let wrong =
+                    format!("{what} `{name}` has a row in line {before} and one in line {line}");
+                let remedy = "keep the row that is right";
+                faults.push(Fault::at(&*self.file, *line, what, wrong, remedy));
+            }
+        }
+        faults
     }
 
     /// The number in a field; blank gives `None`.

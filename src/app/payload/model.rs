@@ -342,7 +342,7 @@ fn given(work: &mut Work, task: &mut Task, use_strain: bool) -> Result<Parts, Fa
             .map_err(Faults::from)?;
         let table = read_table(&file.given, &text)?;
         let key = table.column(&["gauge", "name"]).unwrap_or(0);
-        let mut faults = FaultList::new();
+        let mut faults: FaultList = table.rows_named_twice(key, "gauge");
         // Microstrain per mass (and length) of the table to strain per report force (and length).
         let mass = job.report_units.mass.si / tables.per.mass.si;
         let length = job.report_units.length.si / tables.per.length.si;

@@ -27,6 +27,7 @@ use super::strain::{
 use super::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::placement::quality::{judge_rows, reserve};
+use crate::recovery::check_planned;
 use crate::sensitivity::{Sensitivity, check_separability, common_shells};
 
 /// Gauges for the loads of a job: chosen from its candidates with a certificate, beside the installed ones where it has some.
@@ -91,6 +92,10 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     work.findings.extend(check_separability(&s));
     judge::judge_layout(work, job, &chosen, &quality, &spec, &gauges, k);
     let recovered = judge::chosen_as_recovered(&task, &spec, &chosen.channels);
+    let load_sigma = judge::sigma_rows(job, &s, recovered.as_deref(), &quality, &task.scales);
+    let in_job_units = load_sigma.iter().zip(&units);
+    let planned: Vec<f64> = in_job_units.map(|(l, u)| l.sigma / u.factor).collect();
+    work.findings.extend(check_planned(&s, &planned));
     let how_many = if job.placement.curve.is_empty() {
         Vec::new()
     } else {
@@ -113,7 +118,7 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
             places: task.sites.len(),
             rows: kinds.iter().map(|k| k.candidates.n_rows()).sum(),
         },
-        load_sigma: judge::sigma_rows(job, &s, recovered.as_deref(), &quality, &task.scales),
+        load_sigma,
         worst_loss: WorstLoss {
             gauge: gauges[quality.worst].gauge.name.clone(),
             leverage: quality.leverage[quality.worst],

@@ -182,7 +182,7 @@ fn gauge_facts(job: &Job, channels: &[String], gauges: &[Gauge]) -> Vec<GaugeFac
 }
 
 /// Names of the wanted loads, and kN or kN m in a unit of the job: tables count in microstrain per unit of the job, as sensitivity.csv does.
-fn per_job_unit(job: &Job) -> Vec<TableColumn> {
+pub(super) fn per_job_unit(job: &Job) -> Vec<TableColumn> {
     let wanted = job.loads.iter().filter(|l| l.role == LoadRole::Wanted);
     let per = |l: &JobLoad| match l.acts {
         LoadActs::AtGrid { component, .. } => KILO / job.units.si(component.quantity()),

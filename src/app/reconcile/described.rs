@@ -58,6 +58,24 @@ pub(super) fn from_tables(
     effects(job).iter().map(one).collect()
 }
 
+/// Reads the tables of the hypotheses and drops them.
+///
+/// # Errors
+/// Tables that can't be read, gauges that a table lacks.
+pub(super) fn look(
+    inputs: &mut Inputs,
+    job: &Job,
+    channels: &[String],
+    columns: &Columns,
+) -> Result<(), Faults> {
+    for e in effects(job) {
+        if let EffectSource::Signature(file) = &e.source {
+            from_table(inputs, job, file, channels, columns, columns.len())?;
+        }
+    }
+    Ok(())
+}
+
 fn signature(e: &DescribedEffect, change: Vec<f64>) -> StiffnessSignature {
     StiffnessSignature {
         of: StiffnessOf::Described,

@@ -45,7 +45,7 @@ pub use words::effect_in_words;
 
 use super::context::Context;
 use super::fault::Faults;
-use super::job::{Job, ReconcilePath};
+use super::job::{GivenSensitivity, Job, ReconcilePath};
 use super::outcome::{Outcome, StatedUnits};
 use super::work::Work;
 
@@ -61,4 +61,28 @@ pub fn reconcile(job: &Job, cx: &Context) -> Result<Outcome<Reconciled>, Faults>
         ReconcilePath::Dynamic => motion_path::answer(job, &mut work)?,
     };
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// Reads what a `[reconcile]` compares, as far as no model is solved for it, and drops it.
+///
+/// # Errors
+/// Faults of the job and of the files it names.
+pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
+    match job.reconcile.as_ref().map(|r| r.path) {
+        Some(ReconcilePath::Static) => strain_path::look(job, work),
+        Some(ReconcilePath::Dynamic) | None => Ok(()),
+    }
+}
+
+/// Reads the signatures beside a given S for these gauges, as every search for a missing effect does, and drops them.
+///
+/// # Errors
+/// Tables that can't be read, gauges that a table lacks.
+pub(super) fn look_at_signatures(
+    work: &mut Work,
+    job: &Job,
+    given: &GivenSensitivity,
+    gauges: &[String],
+) -> Result<(), Faults> {
+    matrix_frame::read(work, job, given, gauges).map(|_| ())
 }

@@ -31,7 +31,7 @@ impl SignatureTable {
         let text = inputs.read_named_text(job, named).map_err(Faults::from)?;
         let table = read_table(&named.given, &text)?;
         let key = table.column(&["gauge", "name"]).unwrap_or(0);
-        let mut faults = FaultList::new();
+        let mut faults: FaultList = table.rows_named_twice(key, "gauge");
         let mut rows = Vec::with_capacity(gauges.len());
         for gauge in gauges {
             match table.rows.iter().position(|r| r.1.get(key) == Some(gauge)) {

@@ -12,7 +12,7 @@ use super::readings::observations;
 use super::run_frame::frame;
 use super::stiffness::factor;
 use super::strain_findings::findings;
-use super::{causes, extend, matrix_frame};
+use super::{causes, described, extend, matrix_frame};
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::{EffectSource, Job};
 use crate::app::work::Work;
@@ -121,6 +121,26 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
         extended_model,
         job: job.clone(),
     })
+}
+
+/// Reads what is compared, as [`answer`] does, as far as no model is solved.
+///
+/// # Errors
+/// Faults of the job and of the files it names.
+pub(super) fn look(job: &Job, work: &mut Work) -> Result<(), Faults> {
+    let observations = observations(job, work)?;
+    let channels = observations.channels.clone();
+    match (&job.sensitivity, &job.model) {
+        (Some(given), _) => {
+            let part = matrix_frame::read(work, job, given, &channels)?;
+            frame(job, work, observations, part).map(|_| ())
+        }
+        (None, Some(_)) => {
+            let columns = deck_frame::per_job_unit(job);
+            described::look(&mut work.inputs, job, &channels, &columns)
+        }
+        (None, None) => Ok(()),
+    }
 }
 
 /// The verdict on the frame.

@@ -28,7 +28,20 @@ pub(super) fn judge(
     s: &Sensitivity,
     zero: &[f64],
 ) -> Result<Recovery, Faults> {
-    let n = s.gauges.len();
+    let readings = spread_readings(task, record, zero)?;
+    Ok(recover_samples(s, readings, task.errors))
+}
+
+/// Readings of samples spread over the record, less `zero`.
+///
+/// # Errors
+/// A piece that can't be read, a record without rows.
+pub(super) fn spread_readings(
+    task: &Task,
+    record: &Record,
+    zero: &[f64],
+) -> Result<Vec<Readings>, Faults> {
+    let n = record.n_columns();
     let pieces = record.n_pieces();
     let mut readings: Vec<Readings> = Vec::new();
     let spread = pieces.min(10);
@@ -63,7 +76,7 @@ pub(super) fn judge(
             "write a row a sample",
         )));
     }
-    Ok(recover_samples(s, readings, task.errors))
+    Ok(readings)
 }
 
 /// Says where its times look like those of another unit.

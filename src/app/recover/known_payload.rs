@@ -185,7 +185,7 @@ fn signature(
     let key = table.column(&["gauge", "name"]).unwrap_or(0);
     let (kg, m) = (given.per.mass.si, given.per.length.si);
     let scale = [1.0, 1.0 / m, 1.0 / m, 1.0 / (m * m)].map(|per_m| MICROSTRAIN * per_m / kg);
-    let mut faults = FaultList::new();
+    let mut faults: FaultList = table.rows_named_twice(key, "gauge");
     let mut out = Vec::new();
     for gauge in &task.prepared.sensitivity.gauges {
         let mut b = [0.0; 4];

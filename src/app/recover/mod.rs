@@ -11,6 +11,7 @@ mod files;
 mod history;
 mod judged;
 mod known_payload;
+mod look;
 mod reading;
 mod record;
 mod runs;
@@ -26,8 +27,9 @@ pub use answer::{
 pub use damage::LoadDamage;
 pub use files::rpc_targets;
 pub use history::{History, HistoryRow};
+pub(super) use look::{gauges_of_file, look};
 pub use sink::{Block, RecordHead, RecordSink, Sample, Samples};
-pub(super) use task::{reference_strain, zero_of};
+pub(super) use task::{reference_strain, strain_without_gauge, zero_of};
 pub use trace::{Span, Spans};
 
 use super::context::Context;
@@ -38,8 +40,6 @@ use super::strain::{Conditioning, Prepared, prepare};
 use super::work::Work;
 use crate::recovery::{Readings, Recovery};
 use crate::sensitivity::check_separability;
-use crate::series::record::csv::Layout;
-use crate::series::record::is_format;
 
 /// Loads of the runs or the record of a job with their intervals. Every sample of a record stays in memory ([`RecoveredRecord::history`]);
 /// [`recover_into`] hands them on instead.
@@ -72,7 +72,7 @@ pub fn recover_into(
     let task = task::task_of(&mut work, job, measured, &prepared)?;
     work.findings.extend(task::changes(measured));
     let bytes = work.inputs.read_named(job, &measured.strain)?;
-    let states = if is_format(&bytes) || Layout::of(&bytes).is_ok_and(|l| l.is_record()) {
+    let states = if reading::is_record(&bytes) {
         let record = work.stage("stream", |w| record::record(w, &task, bytes, sink))?;
         States::Record(Box::new(record))
     } else {

@@ -9,11 +9,18 @@ use crate::app::job::strain::record_fault;
 use crate::app::job::{Job, Measured};
 use crate::finding::Finding;
 use crate::recovery::history::{Filter, SampleLoads};
+use crate::recovery::plausible::LARGEST_STRAIN;
 use crate::recovery::{Sums, clock};
+use crate::series::record::csv::Layout;
 use crate::series::record::{self as series, Clock, Options, is_format, open_record};
 use crate::units::MICROSTRAIN;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+
+/// Whether a strain file is read as a record, a sample a row, rather than as runs.
+pub(super) fn is_record(bytes: &FileBytes) -> bool {
+    is_format(bytes) || Layout::of(bytes).is_ok_and(|l| l.is_record())
+}
 
 /// A record whose columns are read as strain.
 pub(super) struct Record {
@@ -130,6 +137,18 @@ impl Record {
         let mut values = Vec::new();
         self.each(i, |strain| values.extend_from_slice(strain))?;
         Ok((self.times(i), values))
+    }
+
+    /// How many readings of a piece, less `zero`, are too large to be strain.
+    pub fn impossible(&self, i: usize, zero: &[f64]) -> Result<u64, Fault> {
+        let mut n = 0;
+        self.each(i, |strain| {
+            for row in strain.chunks_exact(zero.len().max(1)) {
+                let large = |(v, z): &(&f64, &f64)| (**v - **z).abs() > LARGEST_STRAIN;
+                n += row.iter().zip(zero).filter(large).count() as u64;
+            }
+        })?;
+        Ok(n)
     }
 
     fn times(&self, i: usize) -> Vec<f64> {

@@ -4,7 +4,7 @@ use super::answer::{Content, GaugeResidual, RecordLoad, RecoveredRecord};
 use super::combined::{Listed, listed};
 use super::damage::{LoadDamage, about_damage, damage};
 use super::files;
-use super::judged::{check_times, content, judge};
+use super::judged::{check_times, content, judge, spread_readings};
 use super::reading::{Record, block};
 use super::sink::{Block, RecordHead, RecordSink};
 use super::speaking::{Speaking, speaking};
@@ -17,7 +17,7 @@ use crate::app::outcome::finite;
 use crate::app::work::Work;
 use crate::app::zeroed::no_zero_runs;
 use crate::recovery::history::Filter;
-use crate::recovery::{Sums, check_gaps};
+use crate::recovery::{Gain, Readings, Sums, check_gaps, plausible};
 use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
 use rayon::prelude::*;
@@ -81,6 +81,49 @@ pub(super) fn record(
     Ok(answer(sensitivity, head, sums, spans, content, damage))
 }
 
+/// Reads the whole record as it is recovered, without S: S of the gauges that read, and readings of samples spread over it.
+///
+/// # Errors
+/// A record that can't be read.
+pub(super) fn look(
+    work: &mut Work,
+    task: &Task,
+    bytes: FileBytes,
+) -> Result<(Sensitivity, Vec<Readings>), Faults> {
+    no_zero_runs(task.job, task.measured, &task.measured.strain.given)?;
+    let Speaking {
+        record,
+        sensitivity,
+        zero,
+    } = speaking(work, task, bytes)?;
+    let (all, unloaded): (Vec<usize>, _) = (
+        (0..sensitivity.gauges.len()).collect(),
+        vec![0.0; sensitivity.loads.len()],
+    );
+    let gain = Gain::new(
+        &sensitivity,
+        &all,
+        task.errors,
+        task.noise_factor,
+        &unloaded,
+    );
+    if gain.is_none() && !unloaded.is_empty() {
+        return Err(unusable(task).into());
+    }
+    check_times(work, &record)?;
+    let readings = spread_readings(task, &record, &zero)?;
+    work.go_on()?;
+    let impossible = (0..record.n_pieces())
+        .into_par_iter()
+        .map(|i| record.impossible(i, &zero))
+        .sum::<Result<u64, Fault>>()?;
+    if impossible > 0 {
+        let found = plausible::impossible_in_record(record.file(), impossible);
+        work.findings.push(found);
+    }
+    Ok((sensitivity, readings))
+}
+
 /// The estimate of every sample, its weights and intervals judged on samples spread over the record.
 fn filter(
     work: &mut Work,
@@ -100,16 +143,24 @@ fn filter(
         &judged.typical,
         judged.widening,
     );
-    let mut filter = filter.ok_or_else(|| {
-        Fault::of(
-            record.file(),
-            "sensitivity",
-            "S holds numbers that are not finite",
-            "check the results of the unit loads",
-        )
-    })?;
+    let mut filter = filter.ok_or_else(|| unusable(task))?;
     filter.combine(combinations);
     Ok(filter)
+}
+
+/// The fault of an S that no estimate can be formed of.
+fn unusable(task: &Task) -> Fault {
+    let file = match (&task.job.sensitivity, &task.job.model) {
+        (Some(given), _) => &*given.file.given,
+        (None, Some(model)) => &*model.deck.given,
+        (None, None) => &*task.job.file,
+    };
+    Fault::of(
+        file,
+        "sensitivity",
+        "S holds numbers that are not finite, or too large to reckon with",
+        "check the table of S, or the results of the unit loads",
+    )
 }
 
 /// Recovers the record piece by piece, in parallel, and hands the loads on; the sums over it.

@@ -2,21 +2,23 @@
 
 use super::answer::RecoveredRuns;
 use super::combined::{Listed, listed};
-use super::known_payload;
-use super::task::{Task, columns_of};
+use super::known_payload::{self, KnownLoads};
+use super::task::{Task, columns_of, no_gauge_column};
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::LoadActs;
-use crate::app::job::strain::{StrainRows, StrainTable, read_strain, wanted_columns};
+use crate::app::job::strain::{StrainRows, StrainTable, read_strain, record_fault, wanted_columns};
 use crate::app::job::strain_means::is_long_record;
+use crate::app::sheet::is_sheet;
 use crate::app::strain::LoadUnits;
 use crate::app::work::Work;
 use crate::app::zeroed::{RowZeros, zeros_by_row};
 use crate::finding::{Finding, Severity};
 use crate::recovery::{NORMAL_95, Readings, Recovery, recover};
+use crate::series::record::csv::{Layout, has_bare_returns};
 use crate::units::MICROSTRAIN;
 
-/// Reads the strain of the runs and recovers their loads.
-pub(super) fn solve(work: &mut Work, task: &Task) -> Result<(Vec<Readings>, Recovery), Faults> {
+/// Readings of the runs, less their zeros and the strain of loads that are known, and these loads.
+pub(super) fn read(work: &mut Work, task: &Task) -> Result<(Vec<Readings>, KnownLoads), Faults> {
     let s = &task.prepared.sensitivity;
     let named = &task.measured.strain;
     let a_record = || {
@@ -34,23 +36,36 @@ pub(super) fn solve(work: &mut Work, task: &Task) -> Result<(Vec<Readings>, Reco
     let table = work.stage("read strain", |x| {
         let wanted = wanted_columns(&mut x.inputs, task.job);
         read_strain(&mut x.inputs, task.job, named, &wanted)
-    })?;
+    });
+    let looks_like_record = match &table {
+        Ok(t) => matches!(t.rows, StrainRows::Times(_)),
+        Err(_) => has_bare_returns(&bytes),
+    };
+    // It was not taken for a record because of its layout.
+    if looks_like_record
+        && !is_sheet(&bytes)
+        && let Err(e) = Layout::of(&bytes)
+    {
+        return Err(record_fault(&named.given, &e).into());
+    }
+    let table = table?;
     let StrainRows::Runs(names) = &table.rows else {
         return Err(a_record());
     };
     let columns = columns_of(work, named, &table.gauges, &s.gauges);
     if columns.iter().all(Option::is_none) {
-        return Err(Faults::from(Fault::at(
-            &*named.given,
-            1,
-            "gauge",
-            "no column is named after a gauge of the job",
-            "name the columns after the gauges",
-        )));
+        return Err(no_gauge_column(task.job, &named.given).into());
     }
     let zeros = zeros_by_row(work, task.job, task.measured, &table)?;
     let mut readings = readings_of(&table, names, &columns, task, zeros.as_ref());
     let known = known_payload::take_out(work, task, &mut readings)?;
+    Ok((readings, known))
+}
+
+/// Reads the strain of the runs and recovers their loads.
+pub(super) fn solve(work: &mut Work, task: &Task) -> Result<(Vec<Readings>, Recovery), Faults> {
+    let s = &task.prepared.sensitivity;
+    let (readings, known) = read(work, task)?;
     let mut recovery = work.stage("recover", |_| recover(s, &readings, task.errors));
     for (run, loads) in recovery.runs.iter_mut().zip(&known) {
         for (l, value) in loads {

@@ -1,7 +1,7 @@
 //! The gauges of a record that read, and S of them.
 
 use super::reading::Record;
-use super::task::{Task, columns_of};
+use super::task::{Task, columns_of, no_gauge_column};
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::FileBytes;
 use crate::app::job::correct::channel_of;
@@ -37,13 +37,7 @@ pub(super) fn speaking(work: &mut Work, task: &Task, bytes: FileBytes) -> Result
         .filter(|&g| found[g].is_some() && task.zero[g].is_finite() && !channel(g).1.ignore)
         .collect();
     if used.is_empty() {
-        return Err(Faults::from(Fault::at(
-            file,
-            1,
-            "gauge",
-            "no column is named after a gauge of the job",
-            "name the columns after the gauges",
-        )));
+        return Err(no_gauge_column(task.job, file).into());
     }
     let mut record = record.with_columns(used.iter().map(|&g| channel(g)).collect());
     let mut given = columns_of_record(&record)?;

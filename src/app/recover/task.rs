@@ -15,6 +15,7 @@ use crate::gauge::reading;
 use crate::model::Model;
 use crate::recovery::ErrorModel;
 use crate::units::MICROSTRAIN;
+use std::collections::HashSet;
 
 /// What runs and records share.
 pub(super) struct Task<'a> {
@@ -60,13 +61,22 @@ pub(super) fn task_of<'a>(
     measured: &'a Measured,
     prepared: &'a Prepared,
 ) -> Result<Task<'a>, Faults> {
-    let (mut zero, n_zero) = zero_of(work, job, measured, &prepared.sensitivity.gauges)?;
-    for (z, r) in zero
-        .iter_mut()
-        .zip(reference_strain(job, measured, prepared)?)
-    {
+    let mut task = without_reference(work, job, measured, prepared)?;
+    let reference = reference_strain(job, measured, prepared)?;
+    for (z, r) in task.zero.iter_mut().zip(reference) {
         *z -= r;
     }
+    Ok(task)
+}
+
+/// The same, the strain of the reference state left out of the readings.
+pub(super) fn without_reference<'a>(
+    work: &mut Work,
+    job: &'a Job,
+    measured: &'a Measured,
+    prepared: &'a Prepared,
+) -> Result<Task<'a>, Faults> {
+    let (zero, n_zero) = zero_of(work, job, measured, &prepared.sensitivity.gauges)?;
     Ok(Task {
         job,
         measured,
@@ -75,6 +85,21 @@ pub(super) fn task_of<'a>(
         zero,
         noise_factor: 1.0 + n_zero.map_or(0.0, |n| 1.0 / n),
     })
+}
+
+/// The fault of a strain file none of whose columns is a gauge's; where a table of S alone names the gauges, either may be meant.
+pub(super) fn no_gauge_column(job: &Job, file: &str) -> Fault {
+    let (wrong, remedy) = match &job.sensitivity {
+        Some(s) if job.gauges.is_empty() => (
+            format!("no column is named after a gauge of `{}`", s.file.given),
+            "call the gauges alike in both tables",
+        ),
+        _ => (
+            "no column is named after a gauge of the job".to_owned(),
+            "name the columns after the gauges",
+        ),
+    };
+    Fault::at(file, 1, "gauge", wrong, remedy)
 }
 
 /// Where a gauge's column stands; `None`: it has none.
@@ -88,35 +113,47 @@ pub(super) fn columns_of(
         .iter()
         .map(|g| header.iter().position(|h| h == g))
         .collect();
-    let mut note = |code, list: Vec<&str>, message: &str, remedy: &str| {
-        if !list.is_empty() {
-            work.findings.push(Finding::new(
-                Severity::Warning,
-                code,
-                list.join(", "),
-                format!("`{}`: {message}", named.given),
-                remedy,
-            ));
-        }
-    };
     let silent = gauges.iter().zip(&columns).filter(|(_, c)| c.is_none());
     let silent: Vec<&str> = silent.map(|(g, _)| g.as_str()).collect();
-    let unknown = header.iter().filter(|h| !gauges.contains(h));
-    let unknown: Vec<&str> = unknown.map(String::as_str).collect();
+    let unknown = unknown_columns(header, gauges);
     let remedy = suggest::column_remedy(&silent, &unknown);
-    note(
-        "gauge-without-strain",
-        silent,
-        "gauges without a column are left out",
-        &remedy,
-    );
-    note(
-        "strain-without-gauge",
-        unknown,
-        "columns that belong to no gauge are left out",
-        "add the gauges, or drop the columns",
-    );
+    if !silent.is_empty() {
+        work.findings.push(Finding::new(
+            Severity::Warning,
+            "gauge-without-strain",
+            silent.join(", "),
+            format!("`{}`: gauges without a column are left out", named.given),
+            remedy,
+        ));
+    }
+    let of_file = format!("`{}`: ", named.given);
+    work.findings
+        .extend(strain_without_gauge(&of_file, header, gauges));
     columns
+}
+
+fn unknown_columns<'a>(header: &'a [String], gauges: &[String]) -> Vec<&'a str> {
+    let known: HashSet<&String> = gauges.iter().collect();
+    let unknown = header.iter().filter(|h| !known.contains(h));
+    unknown.map(String::as_str).collect()
+}
+
+/// A warning of columns of strain that S has no row for; `of_file` goes before its message.
+pub(in crate::app) fn strain_without_gauge(
+    of_file: &str,
+    header: &[String],
+    gauges: &[String],
+) -> Option<Finding> {
+    let unknown = unknown_columns(header, gauges);
+    (!unknown.is_empty()).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "strain-without-gauge",
+            unknown.join(", "),
+            format!("{of_file}columns that belong to no gauge are left out"),
+            "add the gauges, or drop the columns",
+        )
+    })
 }
 
 /// The zero readings, strain by gauge, and the effective number of samples behind them; zeros and `None` without a file. Not a number for a

@@ -30,6 +30,17 @@ pub fn respond(job: &Job, cx: &Context) -> Result<Outcome<Responded>, Faults> {
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
+/// Reads the table of loads that the job names, as `respond` does, and drops it.
+///
+/// # Errors
+/// A table that can't be read, or that lacks a load.
+pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
+    let loads = job.respond.loads.as_ref();
+    loads.map_or(Ok(()), |named| {
+        states::from_table(work, job, named).map(|_| ())
+    })
+}
+
 fn responded(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
     let calibrated = has_covariance(job) && job.model.is_some();
     if job.sensitivity.is_some() && !calibrated {

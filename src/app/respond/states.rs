@@ -54,7 +54,11 @@ pub(super) fn read(
 }
 
 /// Columns `<load>`, and where there `<load>.low`, `<load>.high`, in report units, as `recover` writes them.
-fn from_table(work: &mut Work, job: &Job, named: &NamedFile) -> Result<Vec<LoadState>, Faults> {
+pub(super) fn from_table(
+    work: &mut Work,
+    job: &Job,
+    named: &NamedFile,
+) -> Result<Vec<LoadState>, Faults> {
     let text = work
         .inputs
         .read_named_text(job, named)

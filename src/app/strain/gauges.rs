@@ -4,10 +4,16 @@ use super::Fields;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::correct::turned_by;
 use crate::app::job::{Job, JobGauge, StatedPlace};
+use crate::app::words::short;
 use crate::app::work::Work;
-use crate::gauge::{Gauge, GaugeError, GaugePlace, GaugeSpec, build, on_unverified_elements};
+use crate::finding::{Finding, Severity};
+use crate::gauge::{
+    Gauge, GaugeError, GaugePlace, GaugeSpec, beside_beam, beside_shell, build,
+    on_unverified_elements,
+};
 use crate::model::{Model, Vec3};
 use crate::sensitivity::NoStrain;
+use crate::units::Quantity;
 
 /// Channels of the job's gauges, in job order; findings go to the work.
 ///
@@ -30,11 +36,56 @@ pub fn lay_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<Vec<Gau
         }
     }
     Faults::check(faults)?;
+    for finding in off_their_elements(fields.model(), job) {
+        // Who lays the gauges twice says it once.
+        if !work.findings.contains(&finding) {
+            work.findings.push(finding);
+        }
+    }
     if job.model.as_ref().is_some_and(|m| m.results.is_empty()) {
         work.findings
             .extend(on_unverified_elements(fields.model(), &gauges));
     }
     Ok(gauges)
+}
+
+/// Gauges whose stated point lies farther from their stated element than that is large: one of the two is wrong. Their strain is that of the
+/// element.
+pub fn off_their_elements(model: &Model, job: &Job) -> Vec<Finding> {
+    let beside = |g: &JobGauge, x: Vec3| match g.place {
+        StatedPlace::Element(id) => beside_shell(model, model.shell_ix(id)?, x),
+        StatedPlace::BeamPoint { element, .. } => beside_beam(model, model.beam_ix(element)?, x),
+        StatedPlace::Position(..) | StatedPlace::Unstated => None,
+    };
+    let unit = job.units.unit(Quantity::Length).name;
+    let of = |g: &JobGauge| {
+        let x = g.position?;
+        // The point may be meant in the axes of `cid`, as the direction is.
+        let frame = model.frames.get(model.frame_ix(g.cid)?.us())?;
+        let found = [Vec3::from(x), frame.to_basic(x)]
+            .into_iter()
+            .filter_map(|x| beside(g, x))
+            .min_by(|a, b| a.distance.total_cmp(&b.distance))?;
+        let element = match g.place {
+            StatedPlace::Element(id) | StatedPlace::BeamPoint { element: id, .. } => id,
+            StatedPlace::Position(..) | StatedPlace::Unstated => return None,
+        };
+        (found.distance > found.size).then(|| {
+            Finding::new(
+                Severity::Error,
+                "point-off-element",
+                &g.name,
+                format!(
+                    "{}:{}: the point stated for gauge `{}` lies {} {unit} from its element {element}, which is {} {unit} large: the strain is \
+                     that of the element",
+                    g.file, g.line, g.name, short(found.distance), short(found.size)
+                ),
+                "correct the point or the element, or state one of the two alone",
+            )
+            .with_numbers(found.distance, found.size)
+        })
+    };
+    job.gauges.iter().filter_map(of).collect()
 }
 
 /// A gauge of the job as it is glued: turned as `[[correction]]` says.

@@ -40,6 +40,7 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
             "name the gauges in a column `gauge`",
         )));
     };
+    faults.extend(table.rows_named_twice(key, "gauge"));
     let header = table.header.iter().enumerate();
     let header = header.filter(|(i, _)| *i != key).map(|(_, h)| h.clone());
     let columns = columns_of_given(job, given, header);

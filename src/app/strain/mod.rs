@@ -10,7 +10,7 @@ mod units;
 
 pub use covariance::{covariance_bytes, read_covariance};
 pub use fields::{Fields, read_fields};
-pub use gauges::{corrected_spec_of, lay_gauges, not_laid, without_strain};
+pub use gauges::{corrected_spec_of, lay_gauges, not_laid, off_their_elements, without_strain};
 pub use given::read_given;
 pub use mesh::{
     GaugeMeshError, LoadMeshError, coarse_at_gauges, left_in_reading, left_squared, mesh_errors,
@@ -50,21 +50,8 @@ pub struct Prepared {
 /// Every fault on the way.
 pub fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
     work.findings.extend(noted(job));
-    let turned = job.corrections.iter().find(|c| c.angle_deg.is_some());
-    if let (Some(c), true) = (turned, job.sensitivity.is_some()) {
-        return Err(Faults::from(Fault::at(
-            &*job.file,
-            c.line,
-            "correction.angle_deg",
-            format!(
-                "S is given, so the row of gauge `{}` can't be turned",
-                c.gauge
-            ),
-            "turn it in the table of [sensitivity], or give a [model]",
-        )));
-    }
     let prepared = if job.sensitivity.is_some() {
-        let sensitivity = read_given(work, job)?;
+        let sensitivity = given_as_asked(work, job)?;
         // A calibrated S stands beside its model, whose fields are wanted for responses and pictures.
         let (fields, gauges) = match &job.model {
             Some(_) if has_covariance(job) => {
@@ -101,6 +88,26 @@ pub fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
         }
     };
     Ok(prepared)
+}
+
+/// S from the table of `[sensitivity]`, where nothing of it is to be turned.
+///
+/// # Errors
+/// As [`read_given`]; gauges that the job turns.
+pub fn given_as_asked(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
+    if let Some(c) = job.corrections.iter().find(|c| c.angle_deg.is_some()) {
+        return Err(Faults::from(Fault::at(
+            &*job.file,
+            c.line,
+            "correction.angle_deg",
+            format!(
+                "S is given, so the row of gauge `{}` can't be turned",
+                c.gauge
+            ),
+            "turn it in the table of [sensitivity], or give a [model]",
+        )));
+    }
+    read_given(work, job)
 }
 
 /// What `[measured]` states of errors: those of the model stand in the uncertainty of S where that has one.

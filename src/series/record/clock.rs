@@ -217,6 +217,12 @@ fn stored(
         let rate = declared_hz.ok_or(SeriesError::NoRate);
         return if rows == 0 {
             Err(SeriesError::Empty)
+        } else if rows == 1 && declared_hz.is_none() {
+            Err(SeriesError::Line {
+                line: reader.line(0, 0, 0),
+                what: "one sample: nothing tells the time between samples".into(),
+                remedy: "give two rows or more, or name the column of a single state `run`",
+            })
         } else {
             let steps = Steps {
                 spans,

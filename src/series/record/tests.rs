@@ -38,7 +38,12 @@ fn tables_as_loggers_write_them_are_one_record() {
             .encode_utf16()
             .flat_map(u16::to_le_bytes)
             .collect();
-    let texts: [&[u8]; 10] = [
+    let bare: Vec<u16> = "time;P01 [µm/m];P02\n0,0;1,5;-2\n0,1;2,5;\n0,2;3,5;4\n"
+        .encode_utf16()
+        .collect();
+    let low_first: Vec<u8> = bare.iter().flat_map(|u| u.to_le_bytes()).collect();
+    let high_first: Vec<u8> = bare.iter().flat_map(|u| u.to_be_bytes()).collect();
+    let texts: [&[u8]; 16] = [
         // As it should be; with byte order mark and CRLF; quoted, as pandas writes with QUOTE_ALL; a decimal comma and tabs.
         b"time,P01 [um/m],P02\n0.0,1.5,-2\n0.1,2.5,NaN\n0.2,3.5,4\n",
         b"\xef\xbb\xbfTime,P01 [um/m],P02\r\n0.0,1.5,-2\r\n0.1,2.5,\r\n0.2,3.5,4\r\n",
@@ -52,6 +57,14 @@ fn tables_as_loggers_write_them_are_one_record() {
         b"time [ms],P01 [um/m],P02\n0,1.5,-2\n100,2.5,n/a\n200,3.5,4\n",
         b",P01 [um/m],P02\n2026-05-01 12:00:00.0,1.5,-2\n2026-05-01 12:00:00.1,2.5,\n2026-05-01 12:00:00.2,3.5,4\n",
         &utf16,
+        // UTF-16 that doesn't say so; date and time in two columns, across midnight; time of day, of twelve hours too; a date whose day can't be a
+        // month.
+        &low_first,
+        &high_first,
+        b"Date,Time,P01 [um/m],P02\n2026-05-01,23:59:59.9,1.5,-2\n2026-05-02,00:00:00.0,2.5,\n2026-05-02,00:00:00.1,3.5,4\n",
+        b"Time,P01 [um/m],P02\n11:59:59.9,1.5,-2\n12:00:00.0,2.5,\n12:00:00.1,3.5,4\n",
+        b"Time;P01 [um/m];P02\n12:59:59.9 PM;1.5;-2\n1:00:00.0 PM;2.5;\n1:00:00.1 PM;3.5;4\n",
+        b"Time,P01 [um/m],P02\n5/31/2026 11:59:59.9 AM,1.5,-2\n5/31/2026 12:00:00.0 PM,2.5,\n5/31/2026 12:00:00.1 PM,3.5,4\n",
     ];
     for text in texts {
         let shown = String::from_utf8_lossy(text);
@@ -199,6 +212,16 @@ fn faults_of_a_table_name_their_line() {
             "{text}"
         );
     }
+    // Time of day alone doesn't tell the next day; day and month that could be exchanged; line ends of old Macintosh programs.
+    assert_eq!(line("time,a\n23:59:59,1\n00:00:00,1\n00:00:01,1\n"), 3);
+    assert_eq!(
+        line("time,a\n5/1/2026 1:00:00 PM,1\n5/1/2026 1:00:01 PM,1\n"),
+        2
+    );
+    let returns = open("time,a\r0,1\r1,1\r").err().map(|e| e.to_string());
+    assert!(returns.is_some_and(|e| e.contains("carriage return")));
+    // One sample has no rate, and has a time.
+    assert_eq!(line("time,a\n0,1\n"), 2);
     for text in ["time,a\n", "time,a", ""] {
         assert!(open(text).is_err(), "{text}");
     }

@@ -60,6 +60,12 @@ pub(super) fn corrections(
             let gain = c.number(&raw.gain, "correction.gain", "a number other than 0", |x| {
                 x != 0.0
             });
+            let other = raw.exchanged_with.as_ref().map(|s| s.value());
+            if other.is_some() && other == gauge.as_ref() {
+                let wrong = "a channel can't be exchanged with itself";
+                let remedy = "name the other channel, or leave `exchanged_with` out";
+                c.fault(section, "correction.exchanged_with", wrong, remedy);
+            }
             let any = |_: f64| true;
             let offset = c.number(
                 &raw.offset_microstrain,

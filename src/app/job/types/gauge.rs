@@ -31,7 +31,7 @@ pub struct JobGauge {
     pub name: String,
     /// Where it sits.
     pub place: StatedPlace,
-    /// Location in job units as the table states it beside the element, where it does: for drawings.
+    /// Location in job units as the table states it beside the element, where it does: for drawings, and held against the element.
     pub position: Option<[f64; 3]>,
     /// Surface.
     pub surface: Surface,

@@ -1,34 +1,67 @@
-//! Date and time in one field.
+//! Dates and times of day, in one field or in two.
 
 /// Seconds since 1970 of a date with a time: `2026-05-01 12:00:00.002`, `2026-05-01T12:00:00,002Z`, `01.05.2026 12:00:00`,
-/// `2026/05/01 12:00:00`. A time zone other than `Z` is refused, so are dates whose day and month could be exchanged (`05/01/2026`).
+/// `2026/05/01 12:00:00`, `5/31/2026 1:05:09 PM`. A time zone other than `Z` is refused, so are dates whose day and month could be exchanged
+/// (`05/01/2026`).
 pub fn seconds(field: &[u8]) -> Option<f64> {
     let text = std::str::from_utf8(field).ok()?.trim();
     let (date, time) = text.split_once([' ', 'T'])?;
-    let (y, m, d) = if let Some((d, rest)) = date.split_once('.') {
-        let (m, y) = rest.split_once('.')?;
-        (y, m, d)
-    } else {
-        let mark = if date.contains('/') { '/' } else { '-' };
-        let (y, rest) = date.split_once(mark)?;
-        let (m, d) = rest.split_once(mark)?;
-        (y, m, d)
+    let of_day = seconds_of_day(time.trim().trim_end_matches('Z'))?;
+    Some(days_of(date)? as f64 * DAY + of_day)
+}
+
+/// Seconds since 1970 of a date in one field and a time of day in the other.
+pub fn beside(one: &[u8], other: &[u8]) -> Option<f64> {
+    let date = |field: &[u8]| days_of(std::str::from_utf8(field).ok()?.trim());
+    let both =
+        |date_in: &[u8], time_in: &[u8]| Some(date(date_in)? as f64 * DAY + of_day(time_in)?);
+    both(one, other).or_else(|| both(other, one))
+}
+
+/// Seconds since midnight of a time of day with its seconds: `12:00:00.002`, `1:05:09 PM`. Of two numbers nobody knows whether they are hours
+/// and minutes.
+pub fn of_day(field: &[u8]) -> Option<f64> {
+    let text = std::str::from_utf8(field).ok()?.trim();
+    let parts = text.split(':').count();
+    (parts == 3).then(|| seconds_of_day(text))?
+}
+
+/// Seconds of a day.
+const DAY: f64 = 86_400.0;
+
+/// Days since 1970.
+fn days_of(date: &str) -> Option<i64> {
+    let mark = ['.', '/', '-'].into_iter().find(|m| date.contains(*m))?;
+    let mut parts = date.split(mark);
+    let [a, b, c] = [parts.next()?, parts.next()?, parts.next()?];
+    let [x, y, z] = [whole(a)?, whole(b)?, whole(c)?];
+    let (year, month, day) = match (mark, a.len(), c.len()) {
+        ('.', _, 4) => (z, y, x),
+        ('/' | '-', 4, _) => (x, y, z),
+        // Which of the two is the month shows where the other can't be one.
+        ('/', _, 4) if y > 12 => (z, x, y),
+        ('/', _, 4) if x > 12 || x == y => (z, y, x),
+        _ => return None,
     };
-    if y.len() != 4 {
-        return None;
-    }
-    let whole = |t: &str| {
-        (!t.is_empty() && t.len() <= 4 && t.bytes().all(|b| b.is_ascii_digit()))
-            .then(|| t.parse::<i64>().ok())?
+    let is_date = parts.next().is_none() && (1..=12).contains(&month) && (1..=31).contains(&day);
+    is_date.then(|| days(year, month, day))
+}
+
+/// Hours, minutes and seconds (none stated: 0), of twelve hours where `AM` or `PM` stands behind them.
+fn seconds_of_day(time: &str) -> Option<f64> {
+    let time = time.trim();
+    let half = time
+        .len()
+        .checked_sub(2)
+        .and_then(|at| time.split_at_checked(at));
+    let (time, noon) = match half {
+        Some((t, m)) if m.eq_ignore_ascii_case("AM") => (t.trim_end(), Some(0)),
+        Some((t, m)) if m.eq_ignore_ascii_case("PM") => (t.trim_end(), Some(12)),
+        _ => (time, None),
     };
-    let (y, m, d) = (whole(y)?, whole(m)?, whole(d)?);
-    if !(1..=12).contains(&m) || !(1..=31).contains(&d) {
-        return None;
-    }
-    let time = time.trim().trim_end_matches('Z');
     let mut parts = time.split(':');
-    let (h, min) = (whole(parts.next()?)?, whole(parts.next()?)?);
-    let s: f64 = match parts.next() {
+    let (hour, minute) = (whole(parts.next()?)?, whole(parts.next()?)?);
+    let second: f64 = match parts.next() {
         Some(t)
             if t.bytes()
                 .all(|b| b.is_ascii_digit() || b == b'.' || b == b',') =>
@@ -38,10 +71,20 @@ pub fn seconds(field: &[u8]) -> Option<f64> {
         Some(_) => return None,
         None => 0.0,
     };
-    if parts.next().is_some() || h > 23 || min > 59 || s >= 61.0 {
+    let hour = match noon {
+        Some(noon) => (1..=12).contains(&hour).then_some(hour % 12 + noon)?,
+        None => hour,
+    };
+    if parts.next().is_some() || hour > 23 || minute > 59 || second >= 61.0 {
         return None;
     }
-    Some((days(y, m, d) * 86_400 + h * 3600 + min * 60) as f64 + s)
+    Some((hour * 3600 + minute * 60) as f64 + second)
+}
+
+/// A whole number of four digits at most.
+fn whole(text: &str) -> Option<i64> {
+    let is_short = !text.is_empty() && text.len() <= 4;
+    (is_short && text.bytes().all(|b| b.is_ascii_digit())).then(|| text.parse().ok())?
 }
 
 /// Decimals of the seconds.
@@ -84,6 +127,16 @@ mod tests {
             "2026/05/01 12:00:00.25",
         ] {
             assert_eq!(seconds(text.as_bytes()), Some(noon + 0.25), "{text}");
+        }
+        for text in ["5/31/2026 1:05:09.5 PM", "31/5/2026 13:05:09.5"] {
+            let may = f64::from((56 * 365 + 14 + 150) * 86_400 + 47_109);
+            assert_eq!(seconds(text.as_bytes()), Some(may + 0.5), "{text}");
+        }
+        assert_eq!(beside(b"2026-05-01", b"12:00:00"), Some(noon));
+        assert_eq!(beside(b"12:00:00 pm", b"01.05.2026"), Some(noon));
+        assert_eq!(of_day(b"12:00:30,25 AM"), Some(30.25));
+        for text in ["12:30", "13:00:00 PM", "0:00:00 AM", "24:00:00", "1.5"] {
+            assert_eq!(of_day(text.as_bytes()), None, "{text}");
         }
         assert_eq!(decimals(b"2026-05-01 12:00:00.250"), 3);
         for text in [

@@ -1,7 +1,7 @@
 //! How a table is laid out: what divides fields, which lines come first, where its times are.
 
 use super::date;
-use super::text::{Encoding, bare, field_end, is_empty_line, shown};
+use super::text::{Encoding, bare, field_end, has_bare_returns, is_empty_line, shown};
 use crate::series::error::SeriesError;
 use crate::series::number::{DecimalMark, number};
 use crate::series::record::column::{
@@ -25,6 +25,16 @@ pub enum TimeKind {
     Date {
         /// Those of the first row, s since 1970.
         epoch_s: f64,
+    },
+    /// One of date and time of day; the next field holds the other.
+    DateBeside {
+        /// Those of the first row, s since 1970.
+        epoch_s: f64,
+    },
+    /// Time of day.
+    OfDay {
+        /// That of the first row, s.
+        first_s: f64,
     },
 }
 
@@ -67,6 +77,13 @@ impl Layout {
     /// No header, a header without rows, times in an unknown unit.
     pub fn of(bytes: &[u8]) -> Result<Self, SeriesError> {
         let (encoding, begin) = Encoding::of(bytes);
+        if has_bare_returns(bytes) {
+            return Err(SeriesError::Line {
+                line: 1,
+                what: "its lines end with a carriage return alone".into(),
+                remedy: "save it with the line ends of Windows (CR LF) or Unix (LF)",
+            });
+        }
         let lines = first_lines(encoding, bytes, begin);
         let delimiter = delimiter_of(&lines);
         let mark = DecimalMark::beside(delimiter);
@@ -92,13 +109,7 @@ impl Layout {
         }
         let first = fields.get(row).ok_or(SeriesError::Empty)?;
         let start = lines.get(row).map_or(bytes.len(), |l| l.from);
-        let dated = first.first().is_some_and(|f| date::seconds(f).is_some());
-        let time = columns
-            .iter()
-            .enumerate()
-            .position(|(i, c)| c.is_time(i == 0))
-            // A date in the first field is the time whatever its name.
-            .or(dated.then_some(0));
+        let time = time_field(&columns, first, mark);
         let mut layout = Self {
             encoding,
             delimiter,
@@ -114,6 +125,15 @@ impl Layout {
             layout.set_time(at, rows)?;
         }
         Ok(layout)
+    }
+
+    /// Whether this field is no channel: the time, or the part of it that stands in a field of its own.
+    pub fn is_of_time(&self, field: usize) -> bool {
+        match self.time {
+            Some((at, TimeKind::DateBeside { .. })) => field == at || field == at + 1,
+            Some((at, _)) => field == at,
+            None => false,
+        }
     }
 
     /// Whether rows have times rather than names of runs: a column of time, and none called `run`.
@@ -133,10 +153,30 @@ impl Layout {
         let unit = column.map_or("", |c| c.unit.as_str());
         let values = || rows.iter().filter_map(|r| r.get(at)).copied();
         let first = values().next().unwrap_or_default();
-        let (kind, digits, factor) = match date::seconds(first) {
-            Some(epoch_s) => {
-                let digits = values().map(date::decimals).max().unwrap_or(0);
-                (TimeKind::Date { epoch_s }, digits, 1.0)
+        let next = rows.first().and_then(|r| r.get(at + 1)).copied();
+        let dated = date::seconds(first).map(|epoch_s| TimeKind::Date { epoch_s });
+        let dated = dated.or_else(|| {
+            let epoch_s = date::beside(first, next?)?;
+            Some(TimeKind::DateBeside { epoch_s })
+        });
+        let dated = dated.or_else(|| {
+            let first_s = date::of_day(first)?;
+            Some(TimeKind::OfDay { first_s })
+        });
+        let (kind, digits, factor) = match dated {
+            Some(kind) => {
+                let both = |r: &Vec<&[u8]>| {
+                    let of = |i: usize| r.get(i).map_or(0, |f| date::decimals(f));
+                    match kind {
+                        TimeKind::DateBeside { .. }
+                            if r.get(at).is_some_and(|f| !f.contains(&b':')) =>
+                        {
+                            of(at + 1)
+                        }
+                        _ => of(at),
+                    }
+                };
+                (kind, rows.iter().map(both).max().unwrap_or(0), 1.0)
             }
             None => {
                 let factor = seconds_in(unit).ok_or_else(|| SeriesError::Line {
@@ -148,15 +188,33 @@ impl Layout {
                 (TimeKind::Number { factor }, digits, factor)
             }
         };
-        self.unit_stated = !unit.is_empty();
+        self.unit_stated = !unit.is_empty() || matches!(kind, TimeKind::OfDay { .. });
         self.rounding_s = 0.5 * factor * 10_f64.powi(-(digits.min(300) as i32));
-        if matches!(kind, TimeKind::Date { .. }) {
+        if matches!(kind, TimeKind::Date { .. } | TimeKind::DateBeside { .. }) {
             // Seconds since 1970 in 64 bits are good to a quarter of a microsecond.
             self.rounding_s += 2.5e-7;
         }
         self.time = Some((at, kind));
         Ok(())
     }
+}
+
+/// The field of the times: of those that are called so the first that holds one, else a date in the first field, whatever its name. Of a date and
+/// a time of day in two fields the first.
+fn time_field(columns: &[Column], row: &[&[u8]], mark: DecimalMark) -> Option<usize> {
+    let field = |i: usize| row.get(i).copied().unwrap_or_default();
+    let pair = |i: usize| date::beside(field(i), field(i + 1)).is_some();
+    let named = || (0..columns.len()).filter(|i| columns[*i].is_time(*i == 0));
+    if let Some(at) = named().find(|i| pair(*i) || i.checked_sub(1).is_some_and(pair)) {
+        return if pair(at) {
+            Some(at)
+        } else {
+            at.checked_sub(1)
+        };
+    }
+    let found = named().find(|i| holds_value(field(*i), mark));
+    let dated = pair(0) || date::seconds(field(0)).is_some();
+    found.or_else(|| named().next()).or(dated.then_some(0))
 }
 
 /// Decimals of a number as written: `1.50e-3` has five.
@@ -244,7 +302,12 @@ fn split(line: &[u8], delimiter: u8) -> Vec<&[u8]> {
 
 /// Whether a field holds a number or a date.
 fn holds_value(field: &[u8], mark: DecimalMark) -> bool {
-    number(field, mark).is_some_and(f64::is_finite) || date::seconds(field).is_some()
+    number(field, mark).is_some_and(f64::is_finite) || is_moment(field)
+}
+
+/// Whether a field holds a date and time, or a time of day.
+fn is_moment(field: &[u8]) -> bool {
+    date::seconds(field).is_some() || date::of_day(field).is_some()
 }
 
 /// The line that names the columns: of the lines before the first row, the first with as many fields as the row.
@@ -305,7 +368,7 @@ fn header_of(fields: &[Vec<&[u8]>], mark: DecimalMark) -> Result<usize, SeriesEr
 /// Whether these fields are units below a header: as many as columns, none a number, some of them a word. Where a column `run` names the
 /// rows, a name there makes it one of them.
 pub fn is_units(fields: &[&[u8]], columns: &[Column], mark: DecimalMark) -> bool {
-    let word = |f: &[u8]| !f.is_empty() && number(f, mark).is_none() && date::seconds(f).is_none();
+    let word = |f: &[u8]| !f.is_empty() && number(f, mark).is_none() && !is_moment(f);
     let states_none = |f: &[u8]| states_no_unit(&shown(f));
     let of_time = |f: &[u8]| {
         let unit = shown(f);

@@ -1,7 +1,8 @@
 //! Tables as loggers, measuring programs and spreadsheets write them, read a piece at a time.
 //!
 //! Comma, semicolon or tab between fields, a decimal comma beside the last two; UTF-8, UTF-16 or an eight-bit code; lines before the
-//! header, a row of units after it, units in the header, quoted fields; times in seconds, in a stated unit, or as date and time.
+//! header, a row of units after it, units in the header, quoted fields; times in seconds, in a stated unit, as date and time in one column or
+//! in two that follow each other, or as time of day within one day.
 
 mod date;
 mod end;
@@ -10,6 +11,7 @@ mod text;
 
 pub use end::unsure_end;
 pub use layout::{Layout, is_units};
+pub use text::has_bare_returns;
 
 use super::column::Column;
 use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
@@ -48,7 +50,7 @@ impl Csv {
             .columns
             .iter()
             .enumerate()
-            .filter(|(i, c)| Some(*i) != layout.time.map(|t| t.0) && !c.name.is_empty())
+            .filter(|(i, c)| !layout.is_of_time(*i) && !c.name.is_empty())
             .map(|(i, c)| (i, c.clone()))
             .unzip();
         Ok(Self {
@@ -88,8 +90,8 @@ impl RecordReader for Csv {
             Some((_, kind)) => Times::Stored {
                 rounding_s: self.layout.rounding_s,
                 epoch_s: match kind {
-                    TimeKind::Date { epoch_s } => Some(epoch_s),
-                    TimeKind::Number { .. } => None,
+                    TimeKind::Date { epoch_s } | TimeKind::DateBeside { epoch_s } => Some(epoch_s),
+                    TimeKind::Number { .. } | TimeKind::OfDay { .. } => None,
                 },
                 unit_stated: self.layout.unit_stated,
             },
@@ -194,6 +196,30 @@ impl RecordReader for Csv {
     }
 }
 
+/// Seconds from the first row to the date or time of day at the beginning of `rest`, and the length of the field.
+fn moment(rest: &[u8], delimiter: u8, kind: TimeKind) -> Result<(f64, usize), Wrong> {
+    let used = text::field_end(rest, delimiter);
+    let shown = text::bare(rest.get(..used).unwrap_or_default());
+    let found = match kind {
+        TimeKind::Date { epoch_s } => date::seconds(shown).map(|s| s - epoch_s),
+        TimeKind::DateBeside { epoch_s } => {
+            let next = rest.get(used + 1..).unwrap_or_default();
+            let next = next.get(..text::field_end(next, delimiter));
+            date::beside(shown, text::bare(next.unwrap_or_default())).map(|s| s - epoch_s)
+        }
+        TimeKind::OfDay { first_s } => date::of_day(shown).map(|s| s - first_s),
+        TimeKind::Number { .. } => None,
+    };
+    match found {
+        Some(s) => Ok((s, used)),
+        None if shown.is_empty() => Ok((f64::NAN, used)),
+        None => Err((
+            format!("`{}` is no date and time", String::from_utf8_lossy(shown)),
+            "write it as in the first row, such as 2026-05-01 12:00:00.002",
+        )),
+    }
+}
+
 /// What is wrong with a row, and what to do.
 type Wrong = (String, &'static str);
 
@@ -261,18 +287,7 @@ impl Parser<'_> {
         let time = self.layout.time.filter(|t| t.0 == field).map(|t| t.1);
         let factor = match time {
             Some(TimeKind::Number { factor }) => factor,
-            Some(TimeKind::Date { epoch_s }) => {
-                let used = text::field_end(rest, delimiter);
-                let shown = text::bare(rest.get(..used).unwrap_or_default());
-                return match date::seconds(shown) {
-                    Some(s) => Ok((s - epoch_s, used)),
-                    None if shown.is_empty() => Ok((f64::NAN, used)),
-                    None => Err((
-                        format!("`{}` is no date and time", String::from_utf8_lossy(shown)),
-                        "write it as in the first row, such as 2026-05-01 12:00:00.002",
-                    )),
-                };
-            }
+            Some(kind) => return moment(rest, delimiter, kind),
             None => 1.0,
         };
         let before = rest.iter().take_while(|b| **b == b' ').count();

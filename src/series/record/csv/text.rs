@@ -20,7 +20,26 @@ impl Encoding {
             [0xef, 0xbb, 0xbf, ..] => (Self::Bytes, 3),
             [0xff, 0xfe, ..] => (Self::Utf16Le, 2),
             [0xfe, 0xff, ..] => (Self::Utf16Be, 2),
-            _ => (Self::Bytes, 0),
+            _ => (Self::by_zeros(bytes), 0),
+        }
+    }
+
+    /// The coding of text without a byte order mark: one byte of each pair is zero in UTF-16, none is in the others.
+    fn by_zeros(bytes: &[u8]) -> Self {
+        /// Characters looked at, and how many of four must be ASCII or Latin.
+        const BEGINNING: usize = 64;
+        const OF_FOUR: usize = 3;
+        let beginning = bytes.chunks_exact(2).take(BEGINNING);
+        let pairs = beginning.len();
+        let [first, second] = [0, 1].map(|i| {
+            let pairs = beginning.clone();
+            pairs.filter(|pair| pair.get(i) == Some(&0)).count()
+        });
+        let most = |n: usize| pairs >= 2 && 4 * n >= OF_FOUR * pairs;
+        match (first, second) {
+            (0, n) if most(n) => Self::Utf16Le,
+            (n, 0) if most(n) => Self::Utf16Be,
+            _ => Self::Bytes,
         }
     }
 
@@ -88,6 +107,20 @@ impl Encoding {
         }
         out
     }
+}
+
+/// Whether the lines of a file end with a carriage return alone, as old Macintosh programs write them.
+pub fn has_bare_returns(bytes: &[u8]) -> bool {
+    /// Bytes looked at: the first lines of any table.
+    const BEGINNING: usize = 1 << 20;
+    let beginning = bytes.get(..BEGINNING).unwrap_or(bytes);
+    let (encoding, _) = Encoding::of(bytes);
+    let of = |end: u8| match encoding {
+        Encoding::Bytes => memchr::memchr(end, beginning).is_some(),
+        Encoding::Utf16Le => beginning.chunks_exact(2).any(|b| b == [end, 0]),
+        Encoding::Utf16Be => beginning.chunks_exact(2).any(|b| b == [0, end]),
+    };
+    !of(b'\n') && of(b'\r')
 }
 
 /// Whether a line holds nothing or a comment.

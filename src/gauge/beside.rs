@@ -1,0 +1,41 @@
+//! A point that is stated beside the element of a gauge: how far apart the two are.
+
+use super::surface::{corners, foot_on, to_side};
+use crate::fe::strain_tensor::Surface;
+use crate::model::{BeamIx, Model, ShellIx, Vec3};
+
+/// How far a point lies from an element, and how large the element is, model units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beside {
+    /// From the nearest point of the element's reference surface or axis.
+    pub distance: f64,
+    /// Its longest side or diagonal, and its faces' or recovery points' distance from there.
+    pub size: f64,
+}
+
+/// Of a shell; `None` where it has no area.
+pub fn beside_shell(model: &Model, ix: ShellIx, x: Vec3) -> Option<Beside> {
+    let shell = model.shells.get(ix.us())?;
+    let p = corners(model, shell)?;
+    let pairs = p.iter().flat_map(|a| p.iter().map(move |b| (a - b).norm()));
+    let sides = [Surface::Bottom, Surface::Top].map(|s| to_side(model, shell, s).abs());
+    Some(Beside {
+        distance: foot_on(model, ix, x)?.distance,
+        size: pairs.fold(0.0, f64::max) + sides[0].max(sides[1]),
+    })
+}
+
+/// Of a bar or beam.
+pub fn beside_beam(model: &Model, ix: BeamIx, x: Vec3) -> Option<Beside> {
+    let beam = model.beams.get(ix.us())?;
+    let end = |i: usize| Some(model.grids.get(beam.grids[i].us())?.x + beam.offsets[i]);
+    let (a, along) = (end(0)?, end(1)? - end(0)?);
+    let share = (x - a).dot(&along) / along.norm_squared();
+    let sections = &model.beam_properties.get(beam.property.us())?.sections;
+    let recovery = sections.iter().flat_map(|s| s.1.recovery.iter());
+    let depth = recovery.map(|[y, z]| y.hypot(*z)).fold(0.0, f64::max);
+    Some(Beside {
+        distance: (x - a - along * share.clamp(0.0, 1.0)).norm(),
+        size: along.norm() + depth,
+    })
+}

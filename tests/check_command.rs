@@ -1,0 +1,373 @@
+//! `check JOB` agrees with the commands: what one of them refuses or can't rely on, it says, and it refuses nothing that they read.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// A job of loads in a record of the fleet's form, whose S is given.
+const RECORD: &str = "units = \"m-kg-s\"\nreport_units = { force = \"kN\", moment = \"kN m\" }\n\
+                      [sensitivity]\nfile = \"s_wheels.csv\"\nper = { force = \"kN\" }\n\
+                      [measured]\nstrain = \"A_2026-05-01.csv\"\nnoise_microstrain = 0.1\n";
+
+/// A copy of an example.
+fn example(name: &str, of: &str) -> PathBuf {
+    let to = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("check_command")
+        .join(name);
+    let _ = std::fs::remove_dir_all(&to);
+    std::fs::create_dir_all(&to).unwrap();
+    let from = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("examples")
+        .join(of);
+    for file in std::fs::read_dir(from).unwrap() {
+        let file = file.unwrap();
+        if file.file_type().unwrap().is_file() {
+            std::fs::copy(file.path(), to.join(file.file_name())).unwrap();
+        }
+    }
+    to
+}
+
+/// Exit code and words of a command on a job.
+fn ask(command: &str, job: &Path) -> (i32, String) {
+    let mut asked = Command::new(env!("CARGO_BIN_EXE_strainbridge"));
+    asked.arg(command).arg(job);
+    if command != "check" {
+        asked.arg("--out").arg(job.with_extension(command));
+    }
+    let done = asked.output().unwrap();
+    let said = [done.stdout, done.stderr].concat();
+    let said = String::from_utf8_lossy(&said).into_owned();
+    (done.status.code().unwrap(), said)
+}
+
+/// What is done to a file of a job.
+type Damage<'a> = (&'a str, &'a dyn Fn(&str) -> Vec<u8>);
+
+/// Whether an answer can be relied on, by the command and by `check`, after each damage to `file`: both the same, and `good` where stated.
+fn agree(folder: &Path, job: &str, command: &str, file: &str, damages: &[(Damage, Option<bool>)]) {
+    let (job, file) = (folder.join(job), folder.join(file));
+    let whole = std::fs::read_to_string(&file).unwrap();
+    for ((name, damage), good) in damages {
+        std::fs::write(&file, damage(&whole)).unwrap();
+        let (done, said) = ask(command, &job);
+        let (checked, found) = ask("check", &job);
+        assert_eq!(
+            done == 0,
+            checked == 0,
+            "{name}: {command} {done}, check {checked}\n{said}\n{found}"
+        );
+        if let Some(good) = good {
+            assert_eq!(done == 0, *good, "{name}: {command} {done}\n{said}");
+        }
+    }
+    std::fs::write(&file, whole).unwrap();
+}
+
+/// The text with the field in this column of its third line replaced.
+fn with_field(text: &str, column: usize, field: &str) -> Vec<u8> {
+    let lines = text.lines().enumerate().map(|(i, line)| {
+        let mut fields: Vec<&str> = line.split(',').collect();
+        if i == 2 {
+            fields[column] = field;
+        }
+        fields.join(",") + "\n"
+    });
+    lines.collect::<String>().into_bytes()
+}
+
+/// The text with all numbers of these columns times `factor`.
+fn times(text: &str, columns: std::ops::Range<usize>, factor: f64) -> Vec<u8> {
+    let lines = text.lines().map(|line| {
+        let fields = line
+            .split(',')
+            .enumerate()
+            .map(|(i, f)| match f.parse::<f64>() {
+                Ok(x) if columns.contains(&i) => (x * factor).to_string(),
+                _ => f.to_owned(),
+            });
+        fields.collect::<Vec<_>>().join(",") + "\n"
+    });
+    lines.collect::<String>().into_bytes()
+}
+
+/// The first lines of a text.
+fn lines(text: &str, n: usize) -> Vec<u8> {
+    text.split_inclusive('\n')
+        .take(n)
+        .collect::<String>()
+        .into_bytes()
+}
+
+#[test]
+fn of_a_record_check_says_what_recover_says() {
+    let folder = example("record", "fleet");
+    std::fs::write(folder.join("job.toml"), RECORD).unwrap();
+    let dated = |t: &str| {
+        let rows = t.lines().enumerate().map(|(i, line)| match i {
+            0 => format!("{line}\n"),
+            _ => {
+                let (time, rest) = line.split_once(',').unwrap();
+                let s: f64 = time.parse().unwrap();
+                format!("2026-05-01 12:00:{s:06.3},{rest}\n")
+            }
+        });
+        rows.collect::<String>().into_bytes()
+    };
+    let damages: [(Damage, Option<bool>); 17] = [
+        (("nothing", &|t| t.as_bytes().to_vec()), Some(true)),
+        (("NaN", &|t| with_field(t, 3, "NaN")), Some(true)),
+        (("#N/A", &|t| with_field(t, 3, "#N/A")), Some(true)),
+        (("NA", &|t| with_field(t, 3, "NA")), Some(true)),
+        (("null", &|t| with_field(t, 3, "null")), Some(true)),
+        (("dates", &dated), Some(true)),
+        (
+            ("UTF-16", &|t| {
+                let units = "\u{feff}".encode_utf16().chain(t.encode_utf16());
+                units.flat_map(u16::to_le_bytes).collect()
+            }),
+            Some(true),
+        ),
+        (
+            ("Latin-1", &|t| {
+                let text = t.replacen("P01,", "P01 [?m/m],", 1).into_bytes();
+                let latin = |b| if b == b'?' { 0xb5 } else { b };
+                text.into_iter().map(latin).collect()
+            }),
+            Some(true),
+        ),
+        (
+            ("lines before the header", &|t| {
+                format!("Measured by 7\nRate: 20 Hz\n\n{t}").into_bytes()
+            }),
+            Some(true),
+        ),
+        (("a word", &|t| with_field(t, 3, "abc")), Some(false)),
+        (("one row", &|t| lines(t, 2)), Some(false)),
+        (("a header", &|t| lines(t, 1)), Some(false)),
+        (
+            ("carriage returns", &|t| t.replace('\n', "\r").into_bytes()),
+            Some(false),
+        ),
+        (("milliseconds", &|t| times(t, 0..1, 1000.0)), None),
+        (
+            ("strain, not microstrain", &|t| times(t, 1..13, 1e-6)),
+            Some(false),
+        ),
+        (("too large", &|t| times(t, 1..13, 1e300)), Some(false)),
+        (
+            ("one too large", &|t| with_field(t, 3, "1e308")),
+            Some(false),
+        ),
+    ];
+    agree(&folder, "job.toml", "recover", "A_2026-05-01.csv", &damages);
+    let (_, said) = {
+        let whole = std::fs::read_to_string(folder.join("A_2026-05-01.csv")).unwrap();
+        std::fs::write(folder.join("A_2026-05-01.csv"), lines(&whole, 2)).unwrap();
+        let said = ask("recover", &folder.join("job.toml"));
+        std::fs::write(folder.join("A_2026-05-01.csv"), whole).unwrap();
+        said
+    };
+    assert!(
+        said.contains("one sample") && !said.contains("no column"),
+        "{said}"
+    );
+    let twice = |t: &str| {
+        let third = t.lines().nth(2).unwrap();
+        format!("{t}{third}\n").into_bytes()
+    };
+    let of_s: [(Damage, Option<bool>); 4] = [
+        (("a word in S", &|t| with_field(t, 1, "abc")), Some(false)),
+        (("a gauge twice", &twice), Some(false)),
+        (
+            ("a load twice", &|t| {
+                t.replacen("R.FZ", "L.FZ", 1).into_bytes()
+            }),
+            Some(false),
+        ),
+        (
+            ("too large for S", &|t| with_field(t, 1, "1e308")),
+            Some(false),
+        ),
+    ];
+    agree(&folder, "job.toml", "recover", "s_wheels.csv", &of_s);
+    std::fs::write(
+        folder.join("s_wheels.csv"),
+        twice(&std::fs::read_to_string(folder.join("s_wheels.csv")).unwrap()),
+    )
+    .unwrap();
+    let (code, said) = ask("check", &folder.join("job.toml"));
+    assert_eq!(code, 2);
+    assert!(
+        said.contains("s_wheels.csv:14:") && said.contains("line 3 and one in line 14"),
+        "{said}"
+    );
+}
+
+#[test]
+fn the_record_of_a_zero_may_hold_what_a_record_may_hold() {
+    let folder = example("zero", "fleet");
+    let zero = "noise_microstrain = 0.1\nzero = \"zero.csv\"\n";
+    let job = RECORD.replace("noise_microstrain = 0.1\n", zero);
+    std::fs::write(folder.join("job.toml"), job).unwrap();
+    let readings = ",1".repeat(12);
+    let header: Vec<String> = (1..=12).map(|g| format!(",P{g:02}")).collect();
+    let rows: String = (0..20)
+        .map(|i| format!("{}{readings}\n", f64::from(i) * 0.05))
+        .collect();
+    let text = format!("time{}\n{rows}", header.concat());
+    std::fs::write(folder.join("zero.csv"), text).unwrap();
+    let damages: [(Damage, Option<bool>); 5] = [
+        (("nothing", &|t| t.as_bytes().to_vec()), Some(true)),
+        (("NaN", &|t| with_field(t, 3, "NaN")), Some(true)),
+        (
+            ("lines before the header", &|t| {
+                format!("Measured by 7\n\n{t}").into_bytes()
+            }),
+            Some(true),
+        ),
+        (("a word", &|t| with_field(t, 3, "abc")), Some(false)),
+        (("a header", &|t| lines(t, 1)), Some(false)),
+    ];
+    agree(&folder, "job.toml", "recover", "zero.csv", &damages);
+}
+
+#[test]
+fn loads_and_gauges_are_counted_where_they_were_read() {
+    let folder = example("counted", "fleet");
+    std::fs::write(folder.join("job.toml"), RECORD).unwrap();
+    let (code, said) = ask("check", &folder.join("job.toml"));
+    assert_eq!(code, 0, "{said}");
+    // The header of s_wheels.csv names three, its rows twelve.
+    assert!(said.contains("3 loads, 12 gauges"), "{said}");
+}
+
+#[test]
+fn of_a_vehicle_check_says_what_identify_says() {
+    let folder = example("vehicle", "quarter_truck");
+    let twice = |t: &str| {
+        let rows: String = t.split_inclusive('\n').skip(1).collect();
+        format!("{t}{rows}").into_bytes()
+    };
+    let unsorted = |t: &str| {
+        let mut list: Vec<&str> = t.split_inclusive('\n').collect();
+        list.swap(100, 2000);
+        list.concat().into_bytes()
+    };
+    let damages: [(Damage, Option<bool>); 7] = [
+        (("nothing", &|t| t.as_bytes().to_vec()), Some(true)),
+        (("repeated", &twice), Some(false)),
+        (("unsorted", &unsorted), Some(false)),
+        (("short", &|t| lines(t, 12)), Some(false)),
+        (("cut", &|t| t.as_bytes()[..t.len() - 12].to_vec()), None),
+        (("a header", &|t| lines(t, 1)), Some(false)),
+        (("a word", &|t| with_field(t, 1, "abc")), Some(false)),
+    ];
+    agree(&folder, "identify.toml", "identify", "data.csv", &damages);
+}
+
+#[test]
+fn of_runs_check_says_what_respond_and_reconcile_say() {
+    let folder = example("runs", "frame");
+    let job = std::fs::read_to_string(folder.join("respond.toml")).unwrap();
+    let loads = job.replace("hottest = 10", "hottest = 10\nloads = \"loads.csv\"");
+    std::fs::write(folder.join("loads.toml"), loads).unwrap();
+    let header = "run,N.FZ,L.FZ,R.FZ,payload.FZ,payload.MX,payload.MY\n";
+    std::fs::write(
+        folder.join("loads.csv"),
+        format!("{header}a,1,1,1,0,0,0\nb,1,2,3,0,0,0\n"),
+    )
+    .unwrap();
+    let table: [(Damage, Option<bool>); 3] = [
+        (("nothing", &|t| t.as_bytes().to_vec()), Some(true)),
+        (("a word", &|t| with_field(t, 2, "abc")), Some(false)),
+        (
+            ("no load", &|t| t.replacen("R.FZ", "X.FZ", 1).into_bytes()),
+            Some(false),
+        ),
+    ];
+    agree(&folder, "loads.toml", "respond", "loads.csv", &table);
+    let signature: [(Damage, Option<bool>); 3] = [
+        (("nothing", &|t| t.as_bytes().to_vec()), Some(true)),
+        (("a word", &|t| with_field(t, 1, "abc")), Some(false)),
+        (("a gauge less", &|t| lines(t, 12)), Some(false)),
+    ];
+    agree(
+        &folder,
+        "reconcile_matrix.toml",
+        "reconcile",
+        "s_payload.csv",
+        &signature,
+    );
+    // A hypothesis of the user's own whose table is not there.
+    let matrix = std::fs::read_to_string(folder.join("reconcile_matrix.toml")).unwrap();
+    let own = "\n[[reconcile.effect]]\nid = \"own\"\nsignature = \"own.csv\"\nprior = 1\n";
+    let job = folder.join("own.toml");
+    std::fs::write(&job, matrix + own).unwrap();
+    assert_eq!((ask("reconcile", &job).0, ask("check", &job).0), (2, 2));
+}
+
+#[test]
+fn a_point_away_from_the_element_beside_it_is_an_error_that_names_gauge_and_distance() {
+    let folder = example("point", "frame");
+    let job = folder.join("recover.toml");
+    let gauges = std::fs::read_to_string(folder.join("gauges.csv")).unwrap();
+    let (code, said) = ask("check", &job);
+    assert_eq!(code, 0, "{said}");
+    assert!(gauges.contains(",1125,-430,3,"), "{gauges}");
+    let moved = gauges.replacen(",1125,-430,3,", ",112500,-430,3,", 1);
+    std::fs::write(folder.join("gauges.csv"), moved).unwrap();
+    for command in ["check", "sensitivity"] {
+        let (code, said) = ask(command, &job);
+        assert_eq!(code, 1, "{command}: {said}");
+        // From the edge of the element, within 125 mm of its middle, to the point.
+        let at = said.find("lies 111").unwrap_or_else(|| panic!("{said}"));
+        assert!(
+            said[..at].contains("gauges.csv:2") && said.contains("`P01`"),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn a_layout_that_will_not_tell_its_loads_is_an_error() {
+    let folder = example("planned", "frame");
+    let job = folder.join("place.toml");
+    let text = std::fs::read_to_string(&job).unwrap();
+    assert_eq!(ask("place", &job).0, 0);
+    let noisy = text.replace("noise_microstrain = 0.5", "noise_microstrain = 10000");
+    std::fs::write(&job, noisy).unwrap();
+    let (code, said) = ask("place", &job);
+    assert_eq!(code, 1, "{said}");
+    assert!(said.contains("loads-not-determined"), "{said}");
+}
+
+#[test]
+fn a_channel_is_not_exchanged_with_itself() {
+    let folder = example("exchanged", "fleet");
+    let own = "[[correction]]\ngauge = \"P01\"\nexchanged_with = \"P01\"\n";
+    std::fs::write(folder.join("job.toml"), format!("{RECORD}{own}")).unwrap();
+    let (code, said) = ask("check", &folder.join("job.toml"));
+    assert!(
+        code == 2 && said.contains("correction.exchanged_with"),
+        "{said}"
+    );
+}
+
+#[test]
+fn fleet_says_of_a_gauge_without_a_row_of_s_what_recover_says() {
+    let folder = example("no_row", "fleet");
+    let s = std::fs::read_to_string(folder.join("s_wheels.csv")).unwrap();
+    let less: String = s.split_inclusive('\n').take(12).collect();
+    std::fs::write(folder.join("s_wheels.csv"), less).unwrap();
+    std::fs::write(folder.join("job.toml"), RECORD).unwrap();
+    let (_, said) = ask("recover", &folder.join("job.toml"));
+    assert!(said.contains("[strain-without-gauge] P12"), "{said}");
+    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .current_dir(&folder)
+        .args(["fleet", "fleet.toml", "A_2026-05-01.csv", "--out", "out"])
+        .output()
+        .unwrap();
+    let said = [done.stdout, done.stderr].concat();
+    let said = String::from_utf8_lossy(&said);
+    assert!(said.contains("strain-without-gauge"), "{said}");
+}
