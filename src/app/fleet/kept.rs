@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// Folder of the kept results within the output folder.
 pub const FOLDER: &str = "days";
 /// Counts up when what is kept changes its meaning.
-const FORM: u32 = 3;
+const FORM: u32 = 4;
 
 /// A kept result; `D` is what is read of its day.
 #[derive(Serialize, Deserialize)]

@@ -266,25 +266,3 @@ pub(super) fn recover(c: &mut Collector, raw: Option<&Spanned<RawRecover>>) -> R
         slope: slope.unwrap_or(DEFAULT_SLOPE),
     }
 }
-
-pub(super) fn fleet(c: &mut Collector, raw: Option<&Spanned<RawFleet>>) -> Option<Fleet> {
-    let section = raw?;
-    let raw = section.value();
-    c.require(
-        &raw.file_name,
-        section,
-        "fleet.file_name",
-        "file_name = \"{vehicle}_{day}.parquet\"",
-    )?;
-    let slope = c.number(
-        &raw.slope_below_knee,
-        "fleet.slope_below_knee",
-        "a number from 1 to 40",
-        |x| (1.0..=40.0).contains(&x),
-    );
-    Some(Fleet {
-        file_name: c.named(&raw.file_name, "fleet.file_name")?,
-        knee_range: c.positive(&raw.knee_range, "fleet.knee_range"),
-        slope_below_knee: slope.unwrap_or(f64::INFINITY),
-    })
-}
