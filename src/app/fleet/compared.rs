@@ -80,8 +80,11 @@ impl Reference {
         let own = self.loads.get(load)?;
         let (mut alike, mut all) = (0.0, 0.0);
         for (day, done) in days {
-            let gauges = reading(day);
-            let nested = gauges.is_subset(&self.gauges) || gauges.is_superset(&self.gauges);
+            let own = day.gauges.iter().filter(|g| g.sd.is_finite());
+            let (n, shared) = own.fold((0, 0), |(n, shared), g| {
+                (n + 1, shared + usize::from(self.gauges.contains(&g.name)))
+            });
+            let nested = shared == n || shared == self.gauges.len();
             all += done;
             alike += if nested { *done } else { 0.0 };
         }
@@ -130,11 +133,11 @@ impl Compared {
             absent.push((wanted.line, "fleet.reference", what));
         }
         for kind in self.mission.iter().flat_map(MissionSums::without_records) {
-            let what = format!("day of the mission's kind `{}`", kind.name);
+            let what = format!("a day of the mission's kind `{}`", kind.name);
             absent.push((kind.line, "fleet.mission", what));
         }
         let remedy = "correct vehicle and day, or name the records too";
-        let wrong = |what: &str| format!("no record that counts is a {what}");
+        let wrong = |what: &str| format!("no record that counts is {what}");
         if is_all && !absent.is_empty() {
             let faults = absent.iter();
             let faults =

@@ -1,6 +1,6 @@
 //! `zero_drift`: a gauge whose zero moves over the days of a vehicle, by the words of `reconcile`.
 
-use super::outcome::{GaugeHistory, VehicleAnswer};
+use super::outcome::{GaugeHistory, VehicleAnswer, gain_changes};
 use crate::finding::{Finding, Severity};
 use crate::linalg::tail::student_tail;
 use crate::recovery::{ALARM, ErrorModel};
@@ -17,6 +17,8 @@ struct Trend {
     moved: f64,
     /// Of the days about the line, microstrain.
     scatter: f64,
+    /// What noise and the model's error may move it, microstrain.
+    small: f64,
     /// Number of the first and last day.
     ends: [usize; 2],
     /// What of it stands in the gauge's residual, over the root of its share there: largest for the gauge that moves (Cauchy and Schwarz), whose
@@ -56,13 +58,18 @@ fn trend(g: &GaugeHistory, errors: &ErrorModel, gauges: usize) -> Option<Trend> 
     (by_chance < ALARM && moved.abs() > small).then(|| Trend {
         moved,
         scatter,
+        small,
         ends: [first, last],
         weight: moved.abs() * (1.0 - leverage.unwrap_or(0.0)).max(0.0).sqrt(),
     })
 }
 
-/// The gauge of a vehicle whose zero moves most, where one does.
+/// The gauge of a vehicle whose zero moves most, where one does. A gain that changed moves the means of all gauges with the loads' mean: where one
+/// did, that is told alone.
 pub(super) fn drift(v: &VehicleAnswer, errors: &ErrorModel) -> Option<Finding> {
+    if v.gauges.iter().any(|g| gain_changes(v, g).is_some()) {
+        return None;
+    }
     let trends = v.gauges.iter();
     let moving: Vec<(&GaugeHistory, Trend)> = trends
         .filter_map(|g| Some((g, trend(g, errors, v.gauges.len())?)))
@@ -88,6 +95,6 @@ pub(super) fn drift(v: &VehicleAnswer, errors: &ErrorModel) -> Option<Finding> {
             ),
             "balance it again, and look at its cover and cable; then see whether another gauge moves too",
         )
-        .with_numbers(t.moved, t.scatter),
+        .with_numbers(t.moved, t.small),
     )
 }

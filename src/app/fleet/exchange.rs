@@ -36,7 +36,7 @@ impl Exchange {
             ),
             "exchange their columns, or their plugs: [[correction]] exchanged_with; loads of these days are wrong until then",
         )
-        .with_numbers(before, after)
+        .with_numbers(after, before / BETTER)
     }
 }
 

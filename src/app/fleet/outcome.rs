@@ -389,7 +389,7 @@ fn history(name: &str, days: &[GaugeDay], names: &[String]) -> GaugeHistory {
 }
 
 /// A gain that is far from what it was before, from one day on.
-fn gain_changes(v: &VehicleAnswer, g: &GaugeHistory) -> Option<Finding> {
+pub(super) fn gain_changes(v: &VehicleAnswer, g: &GaugeHistory) -> Option<Finding> {
     let known: Vec<(usize, f64)> = g
         .gain
         .iter()
