@@ -173,7 +173,7 @@ fn plain(p: &Path) -> PathBuf {
 }
 
 /// A path from a folder to a file, with forward slashes; absolute where there is no relative one.
-pub(in crate::app) fn from_folder(folder: &Path, file: &Path) -> String {
+pub(crate) fn from_folder(folder: &Path, file: &Path) -> String {
     let full = |p: &Path| {
         std::path::absolute(p)
             .map(|p| plain(&p))

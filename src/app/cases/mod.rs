@@ -2,7 +2,8 @@
 
 mod includes;
 
-pub(in crate::app) use includes::{from_folder, relocated};
+pub(crate) use includes::from_folder;
+pub(in crate::app) use includes::relocated;
 
 use super::context::Context;
 use super::fault::{Fault, Faults};

@@ -40,6 +40,12 @@ pub struct GaugeDay {
     /// Its reading over what the loads recovered from all gauges predict for it, by least squares.
     #[serde(deserialize_with = "number")]
     pub gain: f64,
+    /// Mean of its reading less what the other gauges predict for it, microstrain.
+    #[serde(deserialize_with = "number")]
+    pub offset: f64,
+    /// Its share in its own prediction: of an error of it, `1 - leverage` stands in its residual.
+    #[serde(deserialize_with = "number")]
+    pub leverage: f64,
     /// Samples without a reading.
     pub missing: u64,
 }
@@ -88,6 +94,8 @@ impl GaugeDay {
             noise: f64::NAN,
             residual: f64::NAN,
             gain: f64::NAN,
+            offset: f64::NAN,
+            leverage: f64::NAN,
             missing: u64::MAX,
         }
     }

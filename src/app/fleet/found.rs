@@ -3,6 +3,7 @@
 use super::day::{DayFinding, FileHead};
 use super::judged::OF_SAMPLES;
 use super::merge::Status;
+use super::name::by_day;
 use crate::finding::explain::code;
 use crate::finding::{Finding, Severity};
 use crate::recovery::{ALARM, GAUGE_SUSPECT, UNEXPLAINED};
@@ -29,6 +30,7 @@ struct Alike<'a> {
     n: usize,
     /// Whether one of them holds strain that is beyond doubt not explained.
     certain: bool,
+    day: &'a str,
     path: &'a str,
     first: &'a DayFinding,
 }
@@ -53,9 +55,14 @@ pub(super) fn of_records(files: &[FileHead], status: &[Status]) -> Vec<Finding> 
             let alike = grouped.entry((&f.code, vehicle, subject)).or_insert(Alike {
                 n: 0,
                 certain: false,
+                day: &file.day,
                 path: &file.path,
                 first: f,
             });
+            // Of one vehicle the first is that of the first day, on which it began.
+            if !vehicle.is_empty() && by_day(&file.day, alike.day).is_lt() {
+                (alike.day, alike.path, alike.first) = (&file.day, &file.path, f);
+            }
             alike.n += 1;
             alike.certain |= certain;
         }
@@ -127,6 +134,7 @@ mod tests {
             let alike = Alike {
                 n,
                 certain,
+                day: "",
                 path: "",
                 first: &first,
             };

@@ -208,6 +208,8 @@ impl Sums {
             noise: (self.seconds / self.n_seconds as f64 / 6.0).sqrt() / MICROSTRAIN,
             residual: (rr / m).sqrt() / MICROSTRAIN,
             gain: with / own,
+            offset: out * r / m / MICROSTRAIN,
+            leverage,
             missing: self.missing,
         }
     }

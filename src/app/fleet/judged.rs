@@ -101,6 +101,11 @@ impl Judged {
         }
     }
 
+    /// The samples spread over the record, strain less zero.
+    pub fn spread(&self) -> Vec<Vec<f64>> {
+        self.spread.values().cloned().collect()
+    }
+
     /// What recovery makes of all of them, and, where the loads explain these, of the extremes alone: among two hundred a single wrong one may
     /// drown. None where no gauge reads.
     pub fn recovered(

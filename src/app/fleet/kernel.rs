@@ -1,6 +1,7 @@
 //! One record to what is kept of it: no file, no printing; as many threads as the pool it runs in.
 
 use super::day::{Day, DayFinding, GaugeDay, LoadDay};
+use super::exchange::exchanged;
 use super::health::Health;
 use super::judged::{Judged, findings_of};
 use super::recovering::{Part, Recovering, counted};
@@ -150,10 +151,17 @@ impl Kernel {
         time_s: impl Fn(usize) -> f64,
         findings: &mut Vec<DayFinding>,
     ) -> Option<Filter> {
+        let samples = judged.spread();
         let judgements = judged.recovered(&r.sensitivity, self.errors, self.noise_factor, time_s);
         let widening = judgements.first()?.widening.clone();
         let found = findings_of(judgements);
         let explained = found.iter().all(|f| f.code != UNEXPLAINED);
+        let named = |f: &DayFinding| f.code == "gauges-exchanged";
+        if !explained && !found.iter().any(named) {
+            let rows = samples.iter().map(Vec::as_slice);
+            let pair = exchanged(&r.sensitivity, rows, self.errors.noise);
+            findings.extend(pair.map(|e| e.finding(&r.sensitivity.gauges).into()));
+        }
         findings.extend(found);
         if !explained || widening == Widening::none() {
             return None;

@@ -1,8 +1,10 @@
 //! Days of a vehicle, one after the other, as one.
 
+use super::compared::Reference;
 use super::day::{Day, FileHead, GaugeDay, LoadDay};
 use super::name::by_day;
-use crate::series::rainflow::{DamageInterval, Tally, damage_interval};
+use crate::series::rainflow::{DamageInterval, DamageParts, Ratio, Tally};
+use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What became of a file.
@@ -35,6 +37,30 @@ impl Status {
     }
 }
 
+/// Where a number comes from: a sample of a record.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SampleOf {
+    /// The day.
+    pub day: String,
+    /// Path of the record.
+    pub path: String,
+    /// Digest of its bytes.
+    pub sha256: String,
+    /// Seconds from the record's first sample.
+    pub seconds: f64,
+}
+
+/// The record of a day.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RecordOf {
+    /// Its path.
+    pub path: String,
+    /// Digest of its bytes.
+    pub sha256: String,
+    /// Hours of it.
+    pub hours: f64,
+}
+
 /// A load of a vehicle over all its days.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VehicleLoad {
@@ -46,8 +72,10 @@ pub struct VehicleLoad {
     pub tally: Tally,
     /// Damage with its interval.
     pub damage: DamageInterval,
-    /// Day of the largest and of the smallest value.
-    pub extreme_days: [String; 2],
+    /// Its damage over that of the reference day, an hour of each.
+    pub to_reference: Option<Ratio>,
+    /// Where the largest and the smallest value stand.
+    pub extremes: [Option<SampleOf>; 2],
     /// Damage of each day by itself, in their order.
     pub by_day: Vec<f64>,
 }
@@ -59,6 +87,8 @@ pub struct Vehicle {
     pub name: String,
     /// Its days, in order.
     pub days: Vec<String>,
+    /// Their records, in order.
+    pub records: Vec<RecordOf>,
     /// Hours of all days.
     pub hours: f64,
     /// Loads, in the order of the job.
@@ -109,14 +139,14 @@ pub fn sorted(files: &[FileHead]) -> (BTreeMap<&str, Vec<&FileHead>>, Vec<Status
 }
 
 /// The errors of all days together: where they differ (a gauge that died), by the share of damage that each day did.
-fn errors(days: &[(&str, &LoadDay)], first: &LoadDay) -> LoadDay {
+fn errors(days: &[(&FileHead, &Day, &LoadDay)], first: &LoadDay) -> LoadDay {
     let weight = |d: &LoadDay| d.tally.sums.damage.first().copied().unwrap_or(0.0);
-    let total: f64 = days.iter().map(|(_, d)| weight(d)).sum();
+    let total: f64 = days.iter().map(|(.., d)| weight(d)).sum();
     if !(total > 0.0) {
         return first.clone();
     }
     let mean = |of: &dyn Fn(&LoadDay) -> f64| -> f64 {
-        days.iter().map(|(_, d)| weight(d) / total * of(d)).sum()
+        days.iter().map(|(.., d)| weight(d) / total * of(d)).sum()
     };
     let entry = |i: usize| mean(&|d| d.scale.get(i).copied().unwrap_or(0.0));
     LoadDay {
@@ -126,48 +156,64 @@ fn errors(days: &[(&str, &LoadDay)], first: &LoadDay) -> LoadDay {
     }
 }
 
-/// A vehicle from its days in order, each with its name.
-pub fn vehicle(name: &str, list: &[(&str, Day)]) -> Vehicle {
+/// Where the largest (smallest) value of a load stands: of equal ones, the first.
+fn extreme(days: &[(&FileHead, &Day, &LoadDay)], larger: bool) -> Option<SampleOf> {
+    let of = |t: &Tally| if larger { t.max } else { t.min };
+    let found = days
+        .iter()
+        .filter_map(|(file, day, load)| Some((file, day, of(&load.tally)?)));
+    let best = found.reduce(|a, b| {
+        let (x, y) = (a.2.value, b.2.value);
+        if (y > x) == larger && y != x { b } else { a }
+    });
+    best.map(|(file, day, e)| SampleOf {
+        day: file.day.clone(),
+        path: file.path.clone(),
+        sha256: file.sha256.clone(),
+        seconds: e.at as f64 / day.rate_hz,
+    })
+}
+
+/// A vehicle from its days in order, each with its file.
+pub(super) fn vehicle(
+    name: &str,
+    list: &[(&FileHead, Day)],
+    reference: Option<&Reference>,
+) -> Vehicle {
     // Loads of the first day; a job that has changed has other results, so they are those of every day.
     let first = list
         .first()
         .map(|f| f.1.loads.as_slice())
         .unwrap_or_default();
+    let hours: f64 = list.iter().map(|f| f.1.hours).sum();
     let mut loads = Vec::new();
     for (l, load) in first.iter().enumerate() {
-        let of_load: Vec<_> = list
+        let of_load: Vec<(&FileHead, &Day, &LoadDay)> = list
             .iter()
-            .filter_map(|(f, d)| Some((*f, d.loads.get(l).filter(|x| x.name == load.name)?)))
+            .filter_map(|(f, d)| {
+                let of_day = d.loads.get(l).filter(|x| x.name == load.name)?;
+                Some((*f, d, of_day))
+            })
             .collect();
-        let tallies: Vec<&Tally> = of_load.iter().map(|d| &d.1.tally).collect();
+        let tallies: Vec<&Tally> = of_load.iter().map(|d| &d.2.tally).collect();
         let Some(tally) = Tally::joined(&tallies) else {
             continue;
         };
-        let of = |larger: bool| {
-            let value = |t: &Tally| if larger { t.max } else { t.min }.map(|e| e.value);
-            let found = of_load
-                .iter()
-                .filter_map(|(day, x)| Some((day, value(&x.tally)?)));
-            let best = found.reduce(|a, b| {
-                if (b.1 > a.1) == larger && b.1 != a.1 {
-                    b
-                } else {
-                    a
-                }
-            });
-            best.map_or(String::new(), |b| (*b.0).to_owned())
-        };
-        let damage_of = |t: &Tally, from: &LoadDay| damage_interval(t, &from.scale, from.noise);
+        let damage_of = |t: &Tally, from: &LoadDay| DamageParts::of(t, &from.scale, from.noise);
+        let by_day: Vec<f64> = of_load
+            .iter()
+            .map(|(.., x)| damage_of(&x.tally, x).interval().value)
+            .collect();
+        let all = damage_of(&tally, &errors(&of_load, load));
+        let done: Vec<(&Day, f64)> = of_load.iter().map(|d| d.1).zip(by_day.clone()).collect();
         loads.push(VehicleLoad {
             name: load.name.clone(),
             unit: load.unit.clone(),
-            damage: damage_of(&tally, &errors(&of_load, load)),
+            damage: all.interval(),
+            to_reference: reference.and_then(|r| r.to(name, &load.name, &all, hours, &done)),
             tally,
-            extreme_days: [of(true), of(false)],
-            by_day: of_load
-                .iter()
-                .map(|(_, x)| damage_of(&x.tally, x).value)
-                .collect(),
+            extremes: [true, false].map(|larger| extreme(&of_load, larger)),
+            by_day,
         });
     }
     let names: BTreeSet<&str> = list
@@ -184,10 +230,16 @@ pub fn vehicle(name: &str, list: &[(&str, Day)]) -> Vehicle {
             (name.to_owned(), days.collect())
         })
         .collect();
+    let record = |(file, day): &(&FileHead, Day)| RecordOf {
+        path: file.path.clone(),
+        sha256: file.sha256.clone(),
+        hours: day.hours,
+    };
     Vehicle {
         name: name.to_owned(),
-        days: list.iter().map(|f| f.0.to_owned()).collect(),
-        hours: list.iter().map(|f| f.1.hours).sum(),
+        days: list.iter().map(|f| f.0.day.clone()).collect(),
+        records: list.iter().map(record).collect(),
+        hours,
         loads,
         gauges,
     }

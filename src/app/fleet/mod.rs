@@ -5,31 +5,40 @@
 //! vehicle exactly.
 
 mod asked;
+mod compared;
 pub mod day;
+mod drift;
+mod exchange;
 mod found;
 mod health;
 mod judged;
 pub mod kept;
 pub mod kernel;
 pub mod merge;
+mod mission;
 pub mod name;
 mod outcome;
 mod prepared;
 mod recovering;
 
+pub use compared::ReferenceAnswer;
 pub use kept::digests_of;
+pub use merge::{RecordOf, SampleOf};
+pub use mission::{KindAnswer, MissionAnswer, MissionLoad};
 pub use outcome::{FileAnswer, Fleet, GaugeHistory, VehicleAnswer, VehicleLoadAnswer};
 pub use prepared::kernel_of;
 
 use super::context::Context;
 use super::fault::{Fault, Faults};
 use super::files::Opened;
-use super::job::Job;
+use super::job::{Fleet as FleetKeys, Job};
 use super::outcome::{Outcome, StatedUnits};
 use super::work::{Work, stopped};
 use crate::finding::{Finding, Severity};
 use crate::series::record::{Options, open_source};
+use compared::{Compared, check_targets};
 use day::{Day, FileHead, FileResult};
+use drift::drift;
 use kept::{KeptDays, digest};
 use kernel::Kernel;
 use merge::{Status, sorted, vehicle};
@@ -74,6 +83,13 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
         ))
     })?;
     let kernel = kernel_of(&mut work, job)?;
+    let loads: Vec<&str> = kernel
+        .sensitivity
+        .loads
+        .iter()
+        .map(|l| l.name.as_str())
+        .collect();
+    check_targets(&job.file, section, &loads)?;
     let kept = KeptDays::new(&spec.folder, job_digest(&mut work));
     let (files, reused) = if spec.files.is_empty() {
         held(&mut work, &kept, &spec.folder)?
@@ -81,29 +97,51 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
         work.sources.extend(spec.files.iter().cloned());
         work.stage("records", |w| done(w, &kernel, &kept, &form, spec))?
     };
-    let (vehicles, status) = work.stage("merge", |w| merged(w, &kept, &files))?;
-    let answer = Fleet::of(job, &kernel, vehicles, &files, &status, reused);
+    let Merged {
+        vehicles,
+        status,
+        compared,
+    } = work.stage("merge", |w| merged(w, &kept, &files, &job.file, section))?;
+    if spec.shard.is_none() {
+        let is_all = spec.files.is_empty();
+        let absent = compared.check(&job.file, section, is_all)?;
+        work.findings.extend(absent);
+    }
+    let answer = Fleet::of(job, &kernel, vehicles, &files, &status, compared, reused);
     work.findings.extend(answer.findings(&files, &status));
+    let drifts = answer.vehicles.iter();
+    work.findings
+        .extend(drifts.filter_map(|v| drift(v, &kernel.errors)));
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
-/// Vehicles by name, and the status of every file. The days of one vehicle are in memory at a time.
+/// What the days come to.
+struct Merged {
+    vehicles: Vec<VehicleAnswer>,
+    status: Vec<Status>,
+    compared: Compared,
+}
+
+/// Vehicles by name, the status of every file, and what damage is held against. The days of one vehicle are in memory at a time.
 ///
 /// # Errors
-/// A kept result that is gone; one fault where the work is stopped.
+/// A kept result that is gone; a day of two kinds of the mission; one fault where the work is stopped.
 fn merged(
     work: &mut Work,
     kept: &KeptDays,
     files: &[FileHead],
-) -> Result<(Vec<VehicleAnswer>, Vec<Status>), Faults> {
+    job: &str,
+    keys: &FleetKeys,
+) -> Result<Merged, Faults> {
     let (by_vehicle, status) = sorted(files);
+    let mut compared = Compared::of(keys, kept, &by_vehicle);
     let mut vehicles = Vec::with_capacity(by_vehicle.len());
     for (name, list) in by_vehicle {
         work.go_on()?;
-        let days: Result<Vec<(&str, Day)>, Fault> = list
+        let days: Result<Vec<(&FileHead, Day)>, Fault> = list
             .par_iter()
             .map(|file| match kept.day(file) {
-                Some(day) => Ok((file.day.as_str(), day)),
+                Some(day) => Ok((*file, day)),
                 None => Err(Fault::of(
                     &*file.path,
                     "days",
@@ -112,10 +150,21 @@ fn merged(
                 )),
             })
             .collect();
-        vehicles.push(VehicleAnswer::of(vehicle(name, &days?)));
+        let days = days?;
+        if let Some(mission) = &mut compared.mission {
+            for (file, day) in &days {
+                mission.add(job, file, day)?;
+            }
+        }
+        let v = vehicle(name, &days, compared.reference.as_ref());
+        vehicles.push(VehicleAnswer::of(v, keys));
     }
     VehicleAnswer::compare(&mut vehicles);
-    Ok((vehicles, status))
+    Ok(Merged {
+        vehicles,
+        status,
+        compared,
+    })
 }
 
 /// A digest of the job and of all that it stands on: every file read so far.

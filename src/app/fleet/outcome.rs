@@ -1,13 +1,15 @@
 //! The answer of `fleet`.
 
+use super::compared::{Compared, ReferenceAnswer};
 use super::day::{DayFinding, FileHead, GaugeDay};
 use super::found::of_records;
 use super::kernel::Kernel;
-use super::merge::{Status, Vehicle, VehicleLoad};
-use crate::app::job::Job;
+use super::merge::{RecordOf, SampleOf, Status, Vehicle, VehicleLoad};
+use super::mission::{MissionAnswer, MissionSums};
+use crate::app::job::{Fleet as FleetKeys, Job};
 use crate::app::outcome::Answer;
 use crate::finding::{Finding, Severity};
-use crate::series::rainflow::DamageInterval;
+use crate::series::rainflow::{DamageInterval, Ratio};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -27,10 +29,14 @@ pub struct VehicleLoadAnswer {
     pub max: Option<f64>,
     /// Day of the largest value.
     pub max_day: String,
+    /// Its record and its time there.
+    pub max_at: Option<SampleOf>,
     /// Smallest value.
     pub min: Option<f64>,
     /// Day of the smallest value.
     pub min_day: String,
+    /// Its record and its time there.
+    pub min_at: Option<SampleOf>,
     /// Cycles; those of the residue count half.
     pub cycles: f64,
     /// Damage, the bias of noise taken off.
@@ -51,6 +57,10 @@ pub struct VehicleLoadAnswer {
     pub sigma_bias: f64,
     /// Damage an hour over that of all vehicles together.
     pub relative: f64,
+    /// Damage an hour over that of the reference day.
+    pub to_reference: Option<Ratio>,
+    /// Damage over the target's.
+    pub to_target: Option<Ratio>,
     /// Damage of each day by itself.
     pub by_day: Vec<f64>,
     /// Width of a class.
@@ -80,6 +90,11 @@ pub struct GaugeHistory {
     pub noise: Vec<Option<f64>>,
     /// Gain against what the other gauges predict, each day.
     pub gain: Vec<Option<f64>>,
+    /// Mean reading less what the other gauges predict, each day, microstrain.
+    pub offset: Vec<Option<f64>>,
+    /// Its share in its own prediction, each day.
+    #[serde(skip)]
+    pub leverage: Vec<f64>,
 }
 
 /// A vehicle.
@@ -91,6 +106,8 @@ pub struct VehicleAnswer {
     pub files: usize,
     /// Their days, in order.
     pub days: Vec<String>,
+    /// Their records, in order: what the numbers of each day come from.
+    pub records: Vec<RecordOf>,
     /// Hours of them.
     pub hours: f64,
     /// Loads, in the order of the job.
@@ -151,6 +168,10 @@ pub struct Fleet {
     pub slope: f64,
     /// Vehicles by name.
     pub vehicles: Vec<VehicleAnswer>,
+    /// The day whose damage an hour is 1, where the job names one that is there.
+    pub reference: Option<ReferenceAnswer>,
+    /// Damage of the mission that the job mixes.
+    pub mission: Option<MissionAnswer>,
     /// Files by path.
     pub files: Vec<FileAnswer>,
     /// How many results were kept from an earlier run.
@@ -164,7 +185,7 @@ impl Answer for Fleet {
 
 impl VehicleAnswer {
     /// What is told of a vehicle; [`VehicleAnswer::compare`] sees the others.
-    pub(super) fn of(v: Vehicle) -> Self {
+    pub(super) fn of(v: Vehicle, keys: &FleetKeys) -> Self {
         Self {
             files: v.days.len(),
             hours: v.hours,
@@ -173,7 +194,12 @@ impl VehicleAnswer {
                 .iter()
                 .map(|(name, days)| history(name, days, &v.days))
                 .collect(),
-            loads: v.loads.into_iter().map(VehicleLoadAnswer::of).collect(),
+            loads: v
+                .loads
+                .into_iter()
+                .map(|l| VehicleLoadAnswer::of(l, keys))
+                .collect(),
+            records: v.records,
             name: v.name,
             days: v.days,
         }
@@ -196,7 +222,7 @@ impl VehicleAnswer {
 }
 
 impl VehicleLoadAnswer {
-    fn of(l: VehicleLoad) -> Self {
+    fn of(l: VehicleLoad, keys: &FleetKeys) -> Self {
         let DamageInterval {
             value,
             low,
@@ -207,12 +233,16 @@ impl VehicleLoadAnswer {
             sigma_noise,
             sigma_bias,
         } = l.damage;
-        let [max_day, min_day] = l.extreme_days;
+        let [max_at, min_at] = l.extremes;
+        let day = |at: &Option<SampleOf>| at.as_ref().map_or(String::new(), |s| s.day.clone());
+        let target = keys.target.iter().find(|t| t.load == l.name);
         Self {
             max: l.tally.max.map(|e| e.value),
-            max_day,
+            max_day: day(&max_at),
+            max_at,
             min: l.tally.min.map(|e| e.value),
-            min_day,
+            min_day: day(&min_at),
+            min_at,
             cycles: l.tally.n_cycles(),
             damage: value,
             damage_low: low,
@@ -223,6 +253,8 @@ impl VehicleLoadAnswer {
             sigma_noise,
             sigma_bias,
             relative: f64::NAN,
+            to_reference: l.to_reference,
+            to_target: target.map(|t| Ratio { value, low, high }.times(1.0 / t.damage)),
             by_day: l.by_day,
             width: l.tally.width,
             range_pairs: l.tally.range_pairs(),
@@ -235,6 +267,12 @@ impl VehicleLoadAnswer {
 }
 
 impl Fleet {
+    /// Every load of every vehicle.
+    pub fn rows(&self) -> impl Iterator<Item = (&VehicleAnswer, &VehicleLoadAnswer)> {
+        let vehicles = self.vehicles.iter();
+        vehicles.flat_map(|v| v.loads.iter().map(move |l| (v, l)))
+    }
+
     /// The answer of merged vehicles.
     pub(super) fn of(
         job: &Job,
@@ -242,6 +280,7 @@ impl Fleet {
         vehicles: Vec<VehicleAnswer>,
         files: &[FileHead],
         status: &[Status],
+        compared: Compared,
         reused: usize,
     ) -> Self {
         let mut listed: Vec<FileAnswer> = files
@@ -268,6 +307,8 @@ impl Fleet {
             title: job.title.clone(),
             slope: kernel.law.slope,
             vehicles,
+            reference: compared.reference.map(|r| r.answer),
+            mission: compared.mission.as_ref().and_then(MissionSums::answer),
             files: listed,
             reused,
         }
@@ -342,11 +383,13 @@ fn history(name: &str, days: &[GaugeDay], names: &[String]) -> GaugeHistory {
         mean: days.iter().map(|d| finite(d.mean)).collect(),
         noise: days.iter().map(|d| finite(d.noise)).collect(),
         gain: days.iter().map(|d| finite(d.gain)).collect(),
+        offset: days.iter().map(|d| finite(d.offset)).collect(),
+        leverage: days.iter().map(|d| d.leverage).collect(),
     }
 }
 
 /// A gain that is far from what it was before, from one day on.
-fn gain_changes(v: &VehicleAnswer, g: &GaugeHistory) -> Option<Finding> {
+pub(super) fn gain_changes(v: &VehicleAnswer, g: &GaugeHistory) -> Option<Finding> {
     let known: Vec<(usize, f64)> = g
         .gain
         .iter()

@@ -253,6 +253,26 @@ pub(super) struct RawFleet {
     pub file_name: S<String>,
     pub knee_range: S<f64>,
     pub slope_below_knee: S<f64>,
+    pub reference: S<RawReferenceDay>,
+    pub target: BTreeMap<Spanned<String>, Spanned<f64>>,
+    pub mission: Vec<Spanned<RawMission>>,
+    pub mission_hours: S<f64>,
+}
+
+#[derive(Deserialize, JsonSchema, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawReferenceDay {
+    pub vehicle: S<String>,
+    pub day: S<String>,
+}
+
+#[derive(Deserialize, JsonSchema, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawMission {
+    pub name: S<String>,
+    pub share: S<f64>,
+    pub days: Vec<Spanned<String>>,
+    pub vehicles: Vec<Spanned<String>>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

@@ -36,11 +36,7 @@ fn written(fleet: &Fleet) -> Result<Vec<u8>, ParquetError> {
     let properties = WriterProperties::builder()
         .set_created_by("strainbridge".into())
         .build();
-    let rows: Vec<_> = fleet
-        .vehicles
-        .iter()
-        .flat_map(|v| v.loads.iter().map(move |l| (v, l)))
-        .collect();
+    let rows: Vec<_> = fleet.rows().collect();
     let mut out = Vec::new();
     let mut file = SerializedFileWriter::new(&mut out, schema, Arc::new(properties))?;
     let mut group = file.next_row_group()?;

@@ -130,6 +130,7 @@ fn table(t: &Table) -> Markup {
     let shown = Table {
         head: t.head.clone(),
         rows: t.rows.iter().take(MOST_ROWS).cloned().collect(),
+        links: t.links.clone(),
     };
     let n = t.rows.len();
     html! {

@@ -1,8 +1,10 @@
 //! What a page is made of. Plain text throughout: each rendering escapes it in its own way.
 
+use crate::app::cases::from_folder;
 use crate::finding::Finding;
 use crate::report::figure::Figure;
 use crate::report::scene::SceneView;
+use std::path::Path;
 
 /// A report: title, findings, then the sections.
 #[derive(Clone, Debug)]
@@ -45,6 +47,18 @@ impl Page {
     /// The same page, for paper too.
     pub fn on_paper(self, paper: Paper) -> Self {
         Self { paper, ..self }
+    }
+
+    /// The page as it lies in `folder`: paths of linked files lead from there.
+    pub fn beside(mut self, folder: &Path) -> Self {
+        for block in self.sections.iter_mut().flat_map(|s| &mut s.blocks) {
+            if let Block::Table(t) = block {
+                for link in &mut t.links {
+                    link.path = from_folder(folder, Path::new(&link.path));
+                }
+            }
+        }
+        self
     }
 
     /// The findings, the worst first, else in the order of the stages.
@@ -108,7 +122,16 @@ impl Block {
         Self::Table(Table {
             head: head.iter().map(|h| (*h).to_owned()).collect(),
             rows,
+            links: Vec::new(),
         })
+    }
+
+    /// The same table with cells that lead to files; another block as it is.
+    pub fn linked(self, links: Vec<CellLink>) -> Self {
+        match self {
+            Self::Table(t) => Self::Table(Table { links, ..t }),
+            other => other,
+        }
     }
 
     /// Names and their values, without a heading line.
@@ -125,6 +148,21 @@ pub struct Table {
     pub head: Vec<String>,
     /// Cells.
     pub rows: Vec<Vec<String>>,
+    /// Cells that lead to a file.
+    pub links: Vec<CellLink>,
+}
+
+/// A cell that leads to a file; on paper its words alone.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CellLink {
+    /// Row, from 0.
+    pub row: usize,
+    /// Column, from 0.
+    pub column: usize,
+    /// Path of the file, from the working folder; [`Page::beside`] makes it one from the folder of the page.
+    pub path: String,
+    /// What is shown where the cell is pointed at.
+    pub title: String,
 }
 
 /// A part that is a table with a note under it.

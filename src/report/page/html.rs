@@ -74,10 +74,36 @@ fn table(t: &Table) -> Markup {
         div.scroll {
             table {
                 @if !t.head.is_empty() { tr { @for h in &t.head { th { (h) } } } }
-                @for row in &t.rows { tr { @for cell in row { td { (cell) } } } }
+                @for (r, row) in t.rows.iter().enumerate() {
+                    tr { @for (c, cell) in row.iter().enumerate() { td { (linked(t, r, c, cell)) } } }
+                }
             }
         }
     }
+}
+
+/// A cell, as a link where it leads to a file.
+fn linked(t: &Table, row: usize, column: usize, cell: &str) -> Markup {
+    // Links stand in the order of their rows.
+    let first = t.links.partition_point(|l| l.row < row);
+    let mut of_row = t.links.iter().skip(first).take_while(|l| l.row == row);
+    match of_row.find(|l| l.column == column) {
+        Some(l) => html! { a href=(reference(&l.path)) title=(l.title) { (cell) } },
+        None => html! { (cell) },
+    }
+}
+
+/// A path as a reference of a page: what has a meaning there by its number.
+fn reference(path: &str) -> String {
+    let plain = |b: u8| b.is_ascii_alphanumeric() || b"-_.~/".contains(&b);
+    let mut out = String::new();
+    for b in path.replace('\\', "/").bytes() {
+        match plain(b) {
+            true => out.push(char::from(b)),
+            false => out.push_str(&format!("%{b:02X}")),
+        }
+    }
+    out
 }
 
 /// Whether the answer can be relied on, and how much there is to say of it.

@@ -121,6 +121,7 @@ fn a_table_turns_the_sheet_before_it_is_cut_and_repeats_its_first_column_then() 
         crate::report::page::Table {
             head,
             rows: rows(3, columns, cell),
+            links: Vec::new(),
         }
     };
     let narrow = columns::fitted(&table(4, "1"));

@@ -1,6 +1,7 @@
 //! Damage with an interval that holds over one day and over many.
 
 use super::tally::{NOISE, Tally};
+use serde::Serialize;
 
 /// Half width of a 95 % interval over one standard deviation.
 const NORMAL_95: f64 = 1.959_963_984_540_054;
@@ -28,59 +29,199 @@ pub struct DamageInterval {
     pub sigma_bias: f64,
 }
 
-/// The damage of a tally with its interval; `scale` is the covariance of the errors of this load's row of the gain,
-/// `f = (1 + C) f_true`, row-major, `n_loads x n_loads`; `noise` is the standard deviation of a sample.
-///
-/// The bias is found by counting with more noise: damage at one, two and three times the noise, a parabola through them, and its value at
-/// none (Cook and Stefanski's simulation extrapolation). The straight line through the first two bounds what the parabola may err.
-/// The ends are those of the logarithm: errors of scale multiply the damage.
-///
-/// # Reference
-/// J.R. Cook, L.A. Stefanski, Simulation-extrapolation estimation in parametric measurement error models, JASA 89 (1994) 1314-1328.
+/// Damage, or a weighted sum of damages, with its errors apart: what two of them have in common is known by its kind.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DamageParts {
+    /// Damage, the bias of noise taken off; less than none where noise makes all of it.
+    pub value: f64,
+    /// Damage as counted.
+    pub counted: f64,
+    /// Change of the damage with the error of scale of each load.
+    pub by_load: Vec<f64>,
+    /// Covariance of these errors, row-major, `n_loads x n_loads`.
+    pub scale: Vec<f64>,
+    /// Variance from the scatter of noise.
+    pub noise: f64,
+    /// Standard deviation of the bias that was taken off.
+    pub sigma_bias: f64,
+}
+
+/// What two damages have in common beside the bias of noise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shared {
+    /// Share of the first whose errors of S are those of the second.
+    pub scale: f64,
+    /// Whether the cycles of the second are among those of the first.
+    pub cycles: bool,
+}
+
+/// A number with its 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Ratio {
+    /// The number.
+    pub value: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// The damage of a tally with its interval: [`DamageParts::of`] and [`DamageParts::interval`].
 pub fn damage_interval(tally: &Tally, scale: &[f64], noise: f64) -> DamageInterval {
-    let sums = tally.sums_with_residue();
-    let [once, twice, thrice] = sums.damage;
-    debug_assert_eq!(NOISE, [1.0, 2.0, 3.0]);
-    let (value, line) = if noise > 0.0 {
-        // Lagrange's polynomials of the points 1, 2, 3 (and 1, 2) at 0.
-        (3.0 * once - 3.0 * twice + thrice, 2.0 * once - twice)
-    } else {
-        (once, once)
+    DamageParts::of(tally, scale, noise).interval()
+}
+
+/// `sum of a_l c(l, m) b_m`.
+fn product(a: &[f64], b: &[f64], c: impl Fn(usize, usize) -> f64) -> f64 {
+    let row = |(l, a): (usize, &f64)| {
+        let of_row: f64 = b.iter().enumerate().map(|(m, b)| c(l, m) * b).sum();
+        a * of_row
     };
-    let g = &sums.by_load;
-    let of_s: f64 = scale
-        .chunks_exact(g.len().max(1))
-        .zip(g)
-        .map(|(row, a)| a * row.iter().zip(g).map(|(c, b)| c * b).sum::<f64>())
-        .sum();
-    // The added noise is the same at both levels but for its size, sqrt(3) and sqrt(8) of the noise there is; in the parabola it
-    // counts (-3 sqrt(3) + sqrt(8))^2 times the scatter that the noise itself makes.
-    let added = (8.0_f64.sqrt() - 3.0 * 3.0_f64.sqrt()).powi(2);
-    let of_noise = noise * noise * sums.scatter * (1.0 + if noise > 0.0 { added } else { 0.0 });
-    let sigma_bias = (value - line).abs();
-    let mut out = DamageInterval {
-        value: value.max(0.0),
-        low: 0.0,
-        high: 0.0,
-        counted: once,
-        noise_bias: once - value,
-        sigma_s: of_s.max(0.0).sqrt(),
-        sigma_noise: of_noise.sqrt(),
-        sigma_bias,
-    };
-    let sigma = (of_s.max(0.0) + of_noise + sigma_bias * sigma_bias).sqrt();
-    if value > 0.0 {
-        let factor = (NORMAL_95 * sigma / value).exp();
-        out.low = value / factor;
-        out.high = value * factor;
-    } else {
-        // Noise makes all of it: no more is known than that it is less than was counted, but for the error of scale.
-        let share = if once > 0.0 {
-            of_s.max(0.0).sqrt() / once
+    a.iter().enumerate().map(row).sum()
+}
+
+impl DamageParts {
+    /// Those of a tally; `scale` is the covariance of the errors of this load's row of the gain, `f = (1 + C) f_true`, row-major,
+    /// `n_loads x n_loads`; `noise` is the standard deviation of a sample.
+    ///
+    /// The bias is found by counting with more noise: damage at one, two and three times the noise, a parabola through them, and its value at
+    /// none (Cook and Stefanski's simulation extrapolation). The straight line through the first two bounds what the parabola may err.
+    ///
+    /// # Reference
+    /// J.R. Cook, L.A. Stefanski, Simulation-extrapolation estimation in parametric measurement error models, JASA 89 (1994) 1314-1328.
+    pub fn of(tally: &Tally, scale: &[f64], noise: f64) -> Self {
+        let sums = tally.sums_with_residue();
+        let [once, twice, thrice] = sums.damage;
+        debug_assert_eq!(NOISE, [1.0, 2.0, 3.0]);
+        let (value, line) = if noise > 0.0 {
+            // Lagrange's polynomials of the points 1, 2, 3 (and 1, 2) at 0.
+            (3.0 * once - 3.0 * twice + thrice, 2.0 * once - twice)
         } else {
-            0.0
+            (once, once)
         };
-        out.high = once * (NORMAL_95 * share).exp();
+        // The added noise is the same at both levels but for its size, sqrt(3) and sqrt(8) of the noise there is; in the parabola it
+        // counts (-3 sqrt(3) + sqrt(8))^2 times the scatter that the noise itself makes.
+        let added = (8.0_f64.sqrt() - 3.0 * 3.0_f64.sqrt()).powi(2);
+        Self {
+            value,
+            counted: once,
+            noise: noise * noise * sums.scatter * (1.0 + if noise > 0.0 { added } else { 0.0 }),
+            sigma_bias: (value - line).abs(),
+            by_load: sums.by_load,
+            scale: scale.to_vec(),
+        }
     }
-    out
+
+    /// Adds `weight` times another: errors of S and the bias of noise are the same in both, their scatter is not. Where the covariances of S
+    /// differ (a gauge that died), each counts by its share of the damage.
+    pub fn add(&mut self, weight: f64, other: &Self) {
+        let [own, new] = [self.counted, weight * other.counted];
+        let share = if own + new > 0.0 {
+            new / (own + new)
+        } else {
+            0.5
+        };
+        self.by_load.resize(other.by_load.len(), 0.0);
+        if self.scale.len() == other.scale.len() {
+            let both = self.scale.iter_mut().zip(&other.scale);
+            both.for_each(|(a, b)| *a += share * (b - *a));
+        } else {
+            self.scale.clone_from(&other.scale);
+        }
+        self.value += weight * other.value;
+        self.counted += new;
+        let both = self.by_load.iter_mut().zip(&other.by_load);
+        both.for_each(|(a, b)| *a += weight * b);
+        self.noise += weight * weight * other.noise;
+        self.sigma_bias += weight * other.sigma_bias;
+    }
+
+    fn covariance(&self, l: usize, m: usize) -> f64 {
+        let at = l * self.by_load.len() + m;
+        self.scale.get(at).copied().unwrap_or(0.0)
+    }
+
+    /// Variance from the errors of S.
+    fn of_s(&self) -> f64 {
+        let c = |l, m| self.covariance(l, m);
+        product(&self.by_load, &self.by_load, c).max(0.0)
+    }
+
+    /// With its interval, whose ends are those of the logarithm: errors of scale multiply the damage.
+    pub fn interval(&self) -> DamageInterval {
+        let (value, of_s) = (self.value, self.of_s());
+        let mut out = DamageInterval {
+            value: value.max(0.0),
+            low: 0.0,
+            high: 0.0,
+            counted: self.counted,
+            noise_bias: self.counted - value,
+            sigma_s: of_s.sqrt(),
+            sigma_noise: self.noise.sqrt(),
+            sigma_bias: self.sigma_bias,
+        };
+        let sigma = (of_s + self.noise + self.sigma_bias * self.sigma_bias).sqrt();
+        if value > 0.0 {
+            let factor = (NORMAL_95 * sigma / value).exp();
+            out.low = value / factor;
+            out.high = value * factor;
+        } else {
+            // Noise makes all of it: no more is known than that it is less than was counted, but for the error of scale.
+            let share = if self.counted > 0.0 {
+                of_s.sqrt() / self.counted
+            } else {
+                0.0
+            };
+            out.high = self.counted * (NORMAL_95 * share).exp();
+        }
+        out
+    }
+
+    /// This damage over another. With `a = by_load / value` of each, C the covariances of S and X the smaller of the two, entry by entry, the
+    /// logarithm of the ratio has the variance
+    /// `a_1' C_1 a_1 + a_2' C_2 a_2 - 2 w a_1' X a_2 + n_1 / d_1^2 + n_2 / d_2^2 - 2 n_2 / (d_1 d_2) + (b_1 / d_1 - b_2 / d_2)^2`,
+    /// w the share that has the same S; n the variances of noise, of which the last counts where the second is a part of the first; b the sigmas of
+    /// the bias of noise, which is the same in both. (Of two estimates by least squares the one from more gauges has the smaller variance, which
+    /// is their covariance: Hausman.) `None` where noise makes all of one.
+    ///
+    /// # Reference
+    /// J.A. Hausman, Specification tests in econometrics, Econometrica 46 (1978) 1251-1271, lemma 2.1.
+    pub fn over(&self, other: &Self, shared: Shared) -> Option<Ratio> {
+        let (d1, d2) = (self.value, other.value);
+        if !(d1 > 0.0 && d2 > 0.0) {
+            return None;
+        }
+        let smaller = |l, m| {
+            let (a, b): (f64, f64) = (self.covariance(l, m), other.covariance(l, m));
+            if a * b > 0.0 {
+                a.signum() * a.abs().min(b.abs())
+            } else {
+                0.0
+            }
+        };
+        let common = product(&self.by_load, &other.by_load, smaller) / (d1 * d2);
+        let of_s = self.of_s() / (d1 * d1) + other.of_s() / (d2 * d2) - 2.0 * shared.scale * common;
+        let both = if shared.cycles { other.noise } else { 0.0 };
+        let noise = self.noise / (d1 * d1) + other.noise / (d2 * d2) - 2.0 * both / (d1 * d2);
+        let bias = self.sigma_bias / d1 - other.sigma_bias / d2;
+        let variance = of_s.max(0.0) + noise.max(0.0) + bias * bias;
+        let factor = (NORMAL_95 * variance.sqrt()).exp();
+        let value = d1 / d2;
+        Some(Ratio {
+            value,
+            low: value / factor,
+            high: value * factor,
+        })
+    }
+}
+
+impl Ratio {
+    /// The number and its ends times a factor.
+    pub fn times(self, factor: f64) -> Self {
+        Self {
+            value: self.value * factor,
+            low: self.low * factor,
+            high: self.high * factor,
+        }
+    }
 }

@@ -20,7 +20,7 @@ pub mod tally;
 pub use count::{Cycle, Point, Rainflow, Reversal, half_cycles};
 pub use counter::Counter;
 pub use damage::{Bin, Damage};
-pub use interval::{DamageInterval, damage_interval};
+pub use interval::{DamageInterval, DamageParts, Ratio, Shared, damage_interval};
 pub use law::{Knee, Law};
 pub use tally::{Extreme, Tally};
 

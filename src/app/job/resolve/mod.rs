@@ -2,6 +2,7 @@
 
 mod calibration;
 mod channel;
+mod fleet;
 mod gauge;
 mod load;
 mod measured;
@@ -73,7 +74,7 @@ pub(super) fn resolve_job(
         runs: measured::runs(&mut c, raw.runs.as_ref(), report_units),
         ballast: measured::ballast(&mut c, raw.ballast.as_ref()),
         payload: measured::payload(&mut c, raw.payload.as_ref()),
-        fleet: measured::fleet(&mut c, raw.fleet.as_ref()),
+        fleet: fleet::fleet(&mut c, raw.fleet.as_ref()),
         recover: measured::recover(&mut c, raw.recover.as_ref()),
         respond: measured::respond(&mut c, raw.respond.as_ref()),
         study: placement::study(&mut c, raw.study.as_ref()),

@@ -27,7 +27,7 @@ pub use ballast::Ballast;
 pub use calibration::CalibrationKeys;
 pub use candidates::{AngleStep, Candidates, Clearances};
 pub use correction::StrainCorrection;
-pub use fleet::Fleet;
+pub use fleet::{Fleet, MissionKind, ReferenceDay, TargetDamage};
 pub use gauge::{JobGauge, StatedPlace};
 pub use job::Job;
 pub use load::{Combination, Component, JobLoad, LoadActs, LoadRole};

@@ -1,0 +1,100 @@
+//! `zero_drift`: a gauge whose zero moves over the days of a vehicle, by the words of `reconcile`.
+
+use super::outcome::{GaugeHistory, VehicleAnswer, gain_changes};
+use crate::finding::{Finding, Severity};
+use crate::linalg::tail::student_tail;
+use crate::recovery::{ALARM, ErrorModel};
+use crate::units::MICROSTRAIN;
+
+/// Days from which a trend is told from scatter: a line through fewer has no scatter to speak of.
+const DAYS: usize = 5;
+/// Sigmas of the model's error by which the loads of a day may move the mean of a right gauge.
+const OF_MODEL: f64 = 3.0;
+
+/// A line through the offsets of a gauge by the number of the day.
+struct Trend {
+    /// From the first to the last day, microstrain.
+    moved: f64,
+    /// Of the days about the line, microstrain.
+    scatter: f64,
+    /// What noise and the model's error may move it, microstrain.
+    small: f64,
+    /// Number of the first and last day.
+    ends: [usize; 2],
+    /// What of it stands in the gauge's residual, over the root of its share there: largest for the gauge that moves (Cauchy and Schwarz), whose
+    /// movement others show too.
+    weight: f64,
+}
+
+/// The line by least squares; `None` where it does not rise out of the scatter, with a chance of [`ALARM`] over `gauges`, or not out of noise and
+/// the model's error.
+fn trend(g: &GaugeHistory, errors: &ErrorModel, gauges: usize) -> Option<Trend> {
+    let known = g.offset.iter().enumerate();
+    let known: Vec<(usize, f64)> = known.filter_map(|(i, v)| Some((i, (*v)?))).collect();
+    let n = known.len() as f64;
+    let (first, last) = (known.first()?.0, known.last()?.0);
+    if known.len() < DAYS {
+        return None;
+    }
+    let mean_x = known.iter().map(|k| k.0 as f64).sum::<f64>() / n;
+    let mean_y = known.iter().map(|k| k.1).sum::<f64>() / n;
+    let (mut xx, mut xy) = (0.0, 0.0);
+    for (x, y) in &known {
+        let dx = *x as f64 - mean_x;
+        xx += dx * dx;
+        xy += dx * (y - mean_y);
+    }
+    let slope = xy / xx;
+    let left = |k: &(usize, f64)| k.1 - mean_y - slope * (k.0 as f64 - mean_x);
+    let squares: f64 = known.iter().map(|k| left(k).powi(2)).sum();
+    let scatter = (squares / (n - 2.0)).sqrt();
+    let moved = slope * (last - first) as f64;
+    let t = slope.abs() / (scatter / xx.sqrt()).max(f64::MIN_POSITIVE);
+    let means = g.mean.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let noise = errors.noise / MICROSTRAIN;
+    let small = noise.max(OF_MODEL * errors.model_rel * means);
+    let by_chance = 2.0 * gauges as f64 * student_tail(t, n - 2.0);
+    let leverage = g.leverage.get(last).copied().filter(|h| h.is_finite());
+    (by_chance < ALARM && moved.abs() > small).then(|| Trend {
+        moved,
+        scatter,
+        small,
+        ends: [first, last],
+        weight: moved.abs() * (1.0 - leverage.unwrap_or(0.0)).max(0.0).sqrt(),
+    })
+}
+
+/// The gauge of a vehicle whose zero moves most, where one does. A gain that changed moves the means of all gauges with the loads' mean: where one
+/// did, that is told alone.
+pub(super) fn drift(v: &VehicleAnswer, errors: &ErrorModel) -> Option<Finding> {
+    if v.gauges.iter().any(|g| gain_changes(v, g).is_some()) {
+        return None;
+    }
+    let trends = v.gauges.iter();
+    let moving: Vec<(&GaugeHistory, Trend)> = trends
+        .filter_map(|g| Some((g, trend(g, errors, v.gauges.len())?)))
+        .collect();
+    let worst = moving.iter();
+    let (g, t) = worst.max_by(|a, b| a.1.weight.total_cmp(&b.1.weight))?;
+    let [first, last] = t.ends.map(|i| v.days.get(i).map_or("", String::as_str));
+    let others = match moving.len() {
+        1 => String::new(),
+        n => format!(
+            "; {} others move less, as they do where one draws the loads along",
+            n - 1
+        ),
+    };
+    Some(
+        Finding::new(
+            Severity::Warning,
+            "zero_drift",
+            format!("{} {}", v.name, g.name),
+            format!(
+                "its zero against the other gauges moves by {:.1} microstrain from {first} to {last}, in a line about which days scatter by {:.1}{others}",
+                t.moved, t.scatter
+            ),
+            "balance it again, and look at its cover and cable; then see whether another gauge moves too",
+        )
+        .with_numbers(t.moved, t.small),
+    )
+}

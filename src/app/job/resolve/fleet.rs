@@ -1,0 +1,137 @@
+//! `[fleet]`: names of records, S-N line, what damage is held against.
+
+use super::super::faults::Collector;
+use super::super::raw::{RawFleet, RawMission};
+use super::super::spanned::Spanned;
+use super::super::types::*;
+use std::collections::BTreeSet;
+
+/// How far shares may be from 1 in sum: three of .333 are meant as thirds. They are divided by their sum.
+const ROUNDED: f64 = 0.002;
+
+/// Largest load range of a knee: no structure bears it in any unit, and its power of 20 is still a number.
+const LARGEST_KNEE: f64 = 1e12;
+
+pub(super) fn fleet(c: &mut Collector, raw: Option<&Spanned<RawFleet>>) -> Option<Fleet> {
+    let section = raw?;
+    let raw = section.value();
+    c.require(
+        &raw.file_name,
+        section,
+        "fleet.file_name",
+        "file_name = \"{vehicle}_{day}.parquet\"",
+    )?;
+    let slope = c.number(
+        &raw.slope_below_knee,
+        "fleet.slope_below_knee",
+        "a number from 1 to 40",
+        |x| (1.0..=40.0).contains(&x),
+    );
+    if let (Some(slope), None) = (&raw.slope_below_knee, &raw.knee_range) {
+        c.fault(
+            slope,
+            "fleet.slope_below_knee",
+            "there is no `knee_range` below which it would hold",
+            "add `knee_range`, or leave it out",
+        );
+    }
+    let hours = c.positive(&raw.mission_hours, "fleet.mission_hours");
+    Some(Fleet {
+        file_name: c.named(&raw.file_name, "fleet.file_name")?,
+        knee_range: c.number(
+            &raw.knee_range,
+            "fleet.knee_range",
+            "a number above 0 and at most 1e12",
+            |x| x > 0.0 && x <= LARGEST_KNEE,
+        ),
+        slope_below_knee: slope.unwrap_or(f64::INFINITY),
+        reference: reference(c, raw),
+        target: target(c, raw),
+        mission: mission(c, raw),
+        mission_hours: hours.unwrap_or(1.0),
+    })
+}
+
+fn reference(c: &mut Collector, raw: &RawFleet) -> Option<ReferenceDay> {
+    let section = raw.reference.as_ref()?;
+    let example = "reference = { vehicle = \"T1\", day = \"2026-05-01\" }";
+    let named = section.value();
+    let vehicle = c.require(&named.vehicle, section, "fleet.reference.vehicle", example);
+    let day = c.require(&named.day, section, "fleet.reference.day", example);
+    Some(ReferenceDay {
+        vehicle: vehicle?,
+        day: day?,
+        line: c.line(section),
+    })
+}
+
+fn target(c: &mut Collector, raw: &RawFleet) -> Vec<TargetDamage> {
+    let mut out = Vec::new();
+    for (load, damage) in &raw.target {
+        let value = *damage.value();
+        if !(value.is_finite() && value > 0.0) {
+            let wrong = format!("`{value}`, expected a number above 0");
+            c.fault(damage, "fleet.target", wrong, "correct the number");
+        }
+        out.push(TargetDamage {
+            load: load.value().clone(),
+            damage: value,
+            line: c.line(load),
+        });
+    }
+    out
+}
+
+fn mission(c: &mut Collector, raw: &RawFleet) -> Vec<MissionKind> {
+    let mut out: Vec<MissionKind> = Vec::new();
+    for section in &raw.mission {
+        out.extend(kind(c, section));
+    }
+    let mut names = BTreeSet::new();
+    for (k, section) in out.iter().zip(&raw.mission) {
+        if !names.insert(&k.name) {
+            let wrong = format!("`{}` stands twice", k.name);
+            let remedy = "give every kind of days its own name";
+            c.fault(section, "fleet.mission.name", wrong, remedy);
+        }
+    }
+    if out.len() == raw.mission.len()
+        && let Some(first) = raw.mission.first()
+    {
+        let sum: f64 = out.iter().map(|k| k.share).sum();
+        if (sum - 1.0).abs() > ROUNDED {
+            let wrong = format!("the shares sum to {sum:.4}, expected 1");
+            let remedy = "state what the rest of the hours is, or correct the shares";
+            c.fault(first, "fleet.mission.share", wrong, remedy);
+        }
+        out.iter_mut().for_each(|k| k.share /= sum);
+    }
+    out
+}
+
+fn kind(c: &mut Collector, section: &Spanned<RawMission>) -> Option<MissionKind> {
+    let raw = section.value();
+    let name = c.require(&raw.name, section, "fleet.mission.name", "name = \"road\"");
+    c.require(&raw.share, section, "fleet.mission.share", "share = 0.6");
+    let share = c.number(
+        &raw.share,
+        "fleet.mission.share",
+        "a number above 0, 1 at most",
+        |x| x > 0.0 && x <= 1.0,
+    );
+    if raw.days.is_empty() && raw.vehicles.is_empty() {
+        let wrong = "neither days nor vehicles are named";
+        let remedy = "add `days = [\"2026-05-*\"]` or `vehicles = [\"T1\"]`";
+        c.fault(section, "fleet.mission.days", wrong, remedy);
+    }
+    let texts = |list: &[Spanned<String>]| -> Vec<String> {
+        list.iter().map(|t| t.value().clone()).collect()
+    };
+    Some(MissionKind {
+        name: name?,
+        share: share?,
+        days: texts(&raw.days),
+        vehicles: texts(&raw.vehicles),
+        line: c.line(section),
+    })
+}

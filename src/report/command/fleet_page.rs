@@ -1,0 +1,340 @@
+//! The report of `fleet`.
+
+use crate::app::fleet::{Fleet, MissionAnswer, SampleOf, VehicleAnswer, VehicleLoadAnswer};
+use crate::app::outcome::Outcome;
+use crate::report::figure::{Line, Scale, intervals, lines};
+use crate::report::page::{Block, CellLink, Page, Paper, Section, figure_section};
+use crate::series::rainflow::Ratio;
+use crate::units::number;
+
+/// Files listed on the page; `result.json` has all.
+const LISTED: usize = 500;
+/// Vehicles with figures of their own.
+const DRAWN: usize = 12;
+/// Digits of a digest on the page; pointed at, it shows all.
+const SHORT: usize = 16;
+
+/// The report.
+pub(super) fn page(o: &Outcome<Fleet>) -> Page {
+    let hours: f64 = o.vehicles.iter().map(|v| v.hours).sum();
+    let lead = format!(
+        "Fleet: {} vehicles, {} files, {} hours; S-N slope {}",
+        o.vehicles.len(),
+        o.files.len(),
+        number(hours),
+        o.slope
+    );
+    let mut sections = vec![vehicles(o)];
+    sections.extend(compared(o));
+    sections.extend(o.mission.as_ref().map(mission));
+    let mut by_load: Vec<(String, Vec<(String, [f64; 3])>)> = Vec::new();
+    for (v, l) in o.rows() {
+        let row = (
+            v.name.clone(),
+            [l.damage_low, l.damage, l.damage_high].map(|d| d / v.hours),
+        );
+        match by_load.iter_mut().find(|g| g.0 == l.load) {
+            Some(group) => group.1.push(row),
+            None => by_load.push((l.load.clone(), vec![row])),
+        }
+    }
+    for (_, list) in &mut by_load {
+        list.sort_by(|a, b| b.1[1].total_cmp(&a.1[1]));
+    }
+    if !by_load.is_empty() {
+        sections.push(figure_section(
+            "Damage an hour",
+            intervals(&by_load, &damage_unit(o)),
+            "",
+        ));
+    }
+    for v in o.vehicles.iter().take(DRAWN) {
+        sections.extend([days(v, o.slope), health(v)]);
+    }
+    if let Some(left) = o.vehicles.len().checked_sub(DRAWN + 1) {
+        let text = format!("{} more vehicles are in result.json.", left + 1);
+        sections.push(Section::new("Other vehicles", vec![Block::Text(text)]));
+    }
+    sections.push(files(o));
+    Page::new(&o.title, &lead, &o.findings, sections).on_paper(Paper::Report)
+}
+
+/// Damage an hour: the loads' unit to the power of the slope; where loads have several, that of each.
+fn damage_unit(o: &Fleet) -> String {
+    let mut units = o.rows().map(|(_, l)| l.unit.as_str());
+    let first = units.next().unwrap_or_default();
+    let unit = match units.all(|u| u == first) && !first.is_empty() {
+        true => first,
+        false => "unit of the load",
+    };
+    format!("damage an hour, ({unit})^{}", o.slope)
+}
+
+/// Gauges of a vehicle over its days.
+fn health(v: &VehicleAnswer) -> Section {
+    let x: Vec<f64> = (1..=v.days.len()).map(|i| i as f64).collect();
+    let plain =
+        |list: &[Option<f64>]| -> Vec<f64> { list.iter().map(|v| v.unwrap_or(f64::NAN)).collect() };
+    let groups: Vec<(String, [Vec<f64>; 2])> = v
+        .gauges
+        .iter()
+        .map(|g| (g.name.clone(), [plain(&g.mean), plain(&g.offset)]))
+        .collect();
+    let drawn: Vec<(String, Vec<Line>)> = groups
+        .iter()
+        .map(|(name, [mean, offset])| {
+            let line = |name, y| Line { name, x: &x, y };
+            let lines = [
+                line("mean", mean),
+                line("less what the others predict", offset),
+            ];
+            (name.clone(), Vec::from(lines))
+        })
+        .collect();
+    let head = [
+        "gauge",
+        "dead on",
+        "mean first, µε",
+        "mean last, µε",
+        "noise, µε",
+        "gain against the others, first",
+        "last",
+    ];
+    let ends = |list: &[Option<f64>]| {
+        let of = |x: Option<Option<f64>>| x.flatten().map_or(String::new(), number);
+        (of(list.first().copied()), of(list.last().copied()))
+    };
+    let rows: Vec<Vec<String>> = v
+        .gauges
+        .iter()
+        .map(|g| {
+            let ((m0, m1), (n0, _), (g0, g1)) = (ends(&g.mean), ends(&g.noise), ends(&g.gain));
+            let dead = match g.dead_days.as_slice() {
+                [] => String::new(),
+                [one] => one.clone(),
+                [first, rest @ ..] => format!("{first} and {} more", rest.len()),
+            };
+            vec![g.name.clone(), dead, m0, m1, n0, g0, g1]
+        })
+        .collect();
+    let mut blocks = vec![Block::table(&head, rows)];
+    if x.len() > 1 && !drawn.is_empty() {
+        blocks.push(Block::Figure(lines(
+            &drawn,
+            "day",
+            "mean reading, µε",
+            Scale::Linear,
+        )));
+    }
+    Section::new(format!("Gauges of {} over its days", v.name), blocks)
+}
+
+fn link(row: usize, column: usize, path: &str, sha256: &str) -> CellLink {
+    CellLink {
+        row,
+        column,
+        path: path.to_owned(),
+        title: format!("{path}, sha256 {sha256}"),
+    }
+}
+
+fn time_of(at: &SampleOf) -> String {
+    format!("{}, {:.3} s", at.day, at.seconds)
+}
+
+/// A number with its interval; nothing where there is none.
+fn ratio(r: Option<Ratio>) -> String {
+    r.map_or(String::new(), |r| {
+        let [value, low, high] = [r.value, r.low, r.high].map(number);
+        format!("{value} ({low} to {high})")
+    })
+}
+
+/// Damage against the reference day and the targets; `None` where the job states neither.
+fn compared(o: &Outcome<Fleet>) -> Option<Section> {
+    if o.rows()
+        .all(|(_, l)| l.to_reference.is_none() && l.to_target.is_none())
+    {
+        return None;
+    }
+    let head = [
+        "vehicle",
+        "load",
+        "damage an hour, reference 1",
+        "share of the target",
+    ];
+    let cells = |(v, l): (&VehicleAnswer, &VehicleLoadAnswer)| {
+        let (a, b) = (ratio(l.to_reference), ratio(l.to_target));
+        vec![v.name.clone(), l.load.clone(), a, b]
+    };
+    let all: Vec<Vec<String>> = o.rows().map(cells).collect();
+    let mut blocks = vec![Block::table(&head, all)];
+    if let Some(r) = &o.reference {
+        let row = vec![
+            r.vehicle.clone(),
+            r.day.clone(),
+            r.path.clone(),
+            short(&r.sha256),
+        ];
+        let head = ["reference", "day", "record", "sha256 begins"];
+        let links = vec![link(0, 2, &r.path, &r.sha256)];
+        blocks.push(Block::table(&head, vec![row]).linked(links));
+    }
+    blocks.push(Block::Note(
+        "95 % intervals. The error of S is that of the reference too, and is left out as far as it is the same.".to_owned(),
+    ));
+    Some(Section::new("Damage against reference and target", blocks))
+}
+
+fn short(sha256: &str) -> String {
+    sha256.get(..SHORT).unwrap_or_default().to_owned()
+}
+
+fn mission(m: &MissionAnswer) -> Section {
+    let kinds = m.kinds.iter().map(|k| {
+        let share = number(k.share);
+        vec![k.name.clone(), share, k.files.to_string(), number(k.hours)]
+    });
+    let head = ["kind of days", "share", "files", "hours measured"];
+    let kinds = Block::table(&head, kinds.collect());
+    let mut head = vec!["load", "damage", "low", "high"];
+    let by_kind: Vec<String> = m
+        .kinds
+        .iter()
+        .map(|k| format!("an hour of {}", k.name))
+        .collect();
+    head.extend(by_kind.iter().map(String::as_str));
+    let loads = m.loads.iter().map(|l| {
+        let numbers = [l.damage, l.damage_low, l.damage_high];
+        let numbers = numbers
+            .into_iter()
+            .chain(l.by_kind.iter().copied())
+            .map(number);
+        std::iter::once(l.load.clone()).chain(numbers).collect()
+    });
+    let loads = Block::table(&head, loads.collect());
+    let note = "The interval (95 %) holds the errors of measurement: that of S, the same every day, and noise. How much days of one kind differ \
+                is sigma_days in result.json, and no part of it.";
+    let statement = Block::Text(m.statement.clone());
+    Section::new(
+        "Mission",
+        vec![statement, kinds, loads, Block::Note(note.to_owned())],
+    )
+}
+
+/// What each day of a vehicle did, with the record it comes from.
+fn days(v: &VehicleAnswer, slope: f64) -> Section {
+    let mut head = vec![
+        "day".to_owned(),
+        "record".to_owned(),
+        "sha256 begins".to_owned(),
+        "hours".to_owned(),
+    ];
+    let damage = |l: &VehicleLoadAnswer| format!("damage by {}, ({})^{slope}", l.load, l.unit);
+    head.extend(v.loads.iter().map(damage));
+    let listed = v.days.iter().zip(&v.records).take(LISTED).enumerate();
+    let (mut all, mut links) = (Vec::new(), Vec::new());
+    for (row, (day, record)) in listed {
+        let (path, sha256) = (record.path.clone(), short(&record.sha256));
+        let mut cells = vec![day.clone(), path, sha256, number(record.hours)];
+        let of_day =
+            |l: &VehicleLoadAnswer| l.by_day.get(row).map_or(String::new(), |d| number(*d));
+        cells.extend(v.loads.iter().map(of_day));
+        all.push(cells);
+        links.extend([1, 2].map(|column| link(row, column, &record.path, &record.sha256)));
+    }
+    let head: Vec<&str> = head.iter().map(String::as_str).collect();
+    let mut blocks = vec![Block::table(&head, all).linked(links)];
+    if v.days.len() > LISTED {
+        blocks.push(Block::Note("All days are in result.json.".to_owned()));
+    }
+    Section::new(format!("Days of {}", v.name), blocks)
+}
+
+/// Every load of every vehicle.
+fn vehicles(o: &Outcome<Fleet>) -> Section {
+    let head = [
+        "vehicle",
+        "files",
+        "hours",
+        "load",
+        "unit",
+        "max",
+        "on",
+        "min",
+        "on",
+        "damage",
+        "low",
+        "high",
+        "damage an hour, mean 1",
+    ];
+    let at = |at: &Option<SampleOf>| at.as_ref().map_or(String::new(), time_of);
+    let cells = |(v, l): (&VehicleAnswer, &VehicleLoadAnswer)| {
+        vec![
+            v.name.clone(),
+            v.files.to_string(),
+            number(v.hours),
+            l.load.clone(),
+            l.unit.clone(),
+            number(l.max.unwrap_or(f64::NAN)),
+            at(&l.max_at),
+            number(l.min.unwrap_or(f64::NAN)),
+            at(&l.min_at),
+            number(l.damage),
+            number(l.damage_low),
+            number(l.damage_high),
+            number(l.relative),
+        ]
+    };
+    let note = "Damage is the sum of ranges to the power of the slope, in that power of the load's unit; it compares, it is no life. \
+                Cycles are counted by four points, days of a vehicle one after the other as if they were one record; what closes no cycle \
+                counts half, as ASTM E1049 has it. The interval (95 %) holds the error of S, which is the same every day, the scatter of noise, \
+                which averages out, and what is left of the bias of noise, which is taken off.";
+    let all: Vec<Vec<String>> = o.rows().map(cells).collect();
+    let links = o.rows().enumerate().flat_map(|(row, (_, l))| {
+        let ends = [(6, &l.max_at), (8, &l.min_at)];
+        ends.into_iter().filter_map(move |(column, at)| {
+            let at = at.as_ref()?;
+            Some(link(row, column, &at.path, &at.sha256))
+        })
+    });
+    let table = Block::table(&head, all).linked(links.collect());
+    Section::new("Vehicles", vec![table, Block::Note(note.to_owned())])
+}
+
+/// The records and what became of them.
+fn files(o: &Outcome<Fleet>) -> Section {
+    let listed = o.files.iter().take(LISTED).map(|f| {
+        let digest = f.sha256.get(..16).unwrap_or_default().to_owned();
+        let hours = f.hours.map_or(String::new(), number);
+        vec![
+            f.path.clone(),
+            f.vehicle.clone(),
+            f.day.clone(),
+            f.status.to_owned(),
+            f.words(),
+            hours,
+            digest,
+        ]
+    });
+    let head = [
+        "file",
+        "vehicle",
+        "day",
+        "status",
+        "why",
+        "hours",
+        "sha256 begins",
+    ];
+    let listed: Vec<Vec<String>> = listed.collect();
+    let note = if o.files.len() > LISTED {
+        "All files are in fleet_files.csv."
+    } else {
+        "A file name leads to the record; pointed at, it shows the whole digest."
+    };
+    let links = o.files.iter().take(LISTED).enumerate();
+    let links = links.map(|(row, f)| link(row, 0, &f.path, &f.sha256));
+    let table = Block::table(&head, listed).linked(links.collect());
+    let blocks = vec![table, Block::Note(note.to_owned())];
+    Section::new("Files", blocks)
+}

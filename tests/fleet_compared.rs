@@ -1,0 +1,379 @@
+//! What `fleet` holds damage against (a reference day, a target, a mission), where its numbers come from, and gauges over days, on waves whose
+//! damage is known in closed form.
+
+use serde_json::Value;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const GAUGES: usize = 6;
+/// Microstrain per kN.
+const S: [[f64; 2]; GAUGES] = [
+    [10.0, 1.0],
+    [-8.0, 3.0],
+    [2.0, 9.0],
+    [1.0, -11.0],
+    [6.0, 6.0],
+    [4.0, -5.0],
+];
+/// Samples of a period: peak and valley are samples.
+const PERIOD: usize = 40;
+/// Periods of a record of two waves of different length.
+const PERIODS: usize = 30;
+const SLOPE: i32 = 5;
+
+const JOB: &str = r#"units = "m-kg-s"
+report_units = { force = "kN", moment = "kN m" }
+[sensitivity]
+file = "S.csv"
+per = { force = "kN" }
+[[load]]
+name = "A.FZ"
+expected = 20000.0
+[[load]]
+name = "B.FZ"
+expected = 20000.0
+[measured]
+noise_microstrain = 0.001
+model_uncertainty_rel = 0.02
+[fleet]
+file_name = "{vehicle}_{day}.csv"
+"#;
+
+/// A record at 100 Hz: load A a cosine of this amplitude, B one of 0.7 of it and twice the frequency. `change` may wrong the readings.
+fn record(amplitude: f64, periods: usize, change: impl Fn(usize, &mut [f64; GAUGES])) -> String {
+    let mut text = String::from("time");
+    (0..GAUGES).for_each(|g| write!(text, ",G{g} [um/m]").unwrap());
+    text.push('\n');
+    for i in 0..=periods * PERIOD {
+        let turn = std::f64::consts::TAU * i as f64 / PERIOD as f64;
+        let f = [amplitude * turn.cos(), 0.7 * amplitude * (2.0 * turn).cos()];
+        let mut y = S.map(|row| row[0] * f[0] + row[1] * f[1]);
+        change(i, &mut y);
+        write!(text, "{:.2}", i as f64 * 0.01).unwrap();
+        y.iter().for_each(|v| write!(text, ",{v:.6}").unwrap());
+        text.push('\n');
+    }
+    text
+}
+
+/// From peak to peak: a period is a cycle of twice the amplitude.
+fn damage(amplitude: f64, periods: usize) -> f64 {
+    periods as f64 * (2.0 * amplitude).powi(SLOPE)
+}
+
+/// A sample lasts a hundredth of a second.
+fn hours(periods: usize) -> f64 {
+    (periods * PERIOD + 1) as f64 * 0.01 / 3600.0
+}
+
+fn folder(name: &str, job: &str, records: &[(&str, String)]) -> PathBuf {
+    let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("fleet_compared_{name}"));
+    let _ = std::fs::remove_dir_all(&dir);
+    std::fs::create_dir_all(&dir).unwrap();
+    std::fs::write(dir.join("job.toml"), format!("{JOB}{job}")).unwrap();
+    let mut s = String::from("gauge,A.FZ,B.FZ\n");
+    for (g, row) in S.iter().enumerate() {
+        writeln!(s, "G{g},{},{}", row[0], row[1]).unwrap();
+    }
+    std::fs::write(dir.join("S.csv"), s).unwrap();
+    for (file, text) in records {
+        std::fs::write(dir.join(file), text).unwrap();
+    }
+    dir
+}
+
+fn fleet(dir: &Path, files: &[&str], more: &[&str]) -> (i32, Value) {
+    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .current_dir(dir)
+        .args(["fleet", "job.toml"])
+        .args(files)
+        .args(["--out", "out", "--json"])
+        .args(more)
+        .output()
+        .unwrap();
+    let error = String::from_utf8_lossy(&done.stderr).into_owned();
+    let json = serde_json::from_slice(&done.stdout).unwrap_or(Value::String(error));
+    (done.status.code().unwrap(), json)
+}
+
+fn number(v: &Value) -> f64 {
+    v.as_f64().unwrap_or_else(|| panic!("{v}"))
+}
+
+/// The stated noise of 1e-4 kN is added, twice and three times, to tell its bias: it moves each range of 4 kN and more by some 3e-5, its fifth power by
+/// 2e-4.
+fn is_close(a: f64, b: f64) {
+    assert!((a / b - 1.0).abs() < 1e-3, "{a} {b}");
+}
+
+fn right(_: usize, _: &mut [f64; GAUGES]) {}
+
+#[test]
+fn a_factor_on_every_load_is_that_factor_to_the_slope_and_the_error_of_s_leaves_the_ratio() {
+    let job = "reference = { vehicle = \"T1\", day = \"1\" }\ntarget = { \"A.FZ\" = 1e6 }\n";
+    let records = [
+        ("T1_1.csv", record(4.0, PERIODS, right)),
+        ("T2_1.csv", record(6.0, PERIODS, right)),
+        ("T3_1.csv", record(4.0, PERIODS, right)),
+        ("T3_2.csv", record(6.0, PERIODS, |_, y| y[4] = 7.0)),
+    ];
+    let dir = folder("factor", job, &records);
+    let files = records.each_ref().map(|r| r.0);
+    let (code, result) = fleet(&dir, &files, &[]);
+    assert_eq!(code, 0, "{result}");
+    assert_eq!(result["reference"]["path"], "T1_1.csv");
+    let load = |v: usize, l: usize| &result["vehicles"][v]["loads"][l];
+    let ratio = |v, l| ["value", "low", "high"].map(|k| number(&load(v, l)["to_reference"][k]));
+    for l in 0..2 {
+        // The reference is itself, without any doubt.
+        assert!(ratio(0, l).iter().all(|r| (r - 1.0).abs() < 1e-9));
+        let [value, low, high] = ratio(1, l);
+        is_close(value, 1.5_f64.powi(SLOPE));
+        assert!(low <= value && value <= high);
+        // 2 % of S on every gauge is several per cent of the damage: none of it is left.
+        let own = load(1, l);
+        let width = number(&own["damage_high"]) / number(&own["damage_low"]);
+        assert!(width > 1.05, "{width}");
+        assert!(high / low < 1.001, "{low} {high}");
+        // Fewer gauges on one day: what they know less is not common.
+        let [_, low, high] = ratio(2, l);
+        assert!(high / low > 1.001, "{low} {high}");
+    }
+    is_close(
+        number(&load(0, 0)["to_target"]["value"]),
+        damage(4.0, PERIODS) / 1e6,
+    );
+    let share = &load(1, 0)["to_target"];
+    is_close(
+        number(&share["high"]),
+        number(&load(1, 0)["damage_high"]) / 1e6,
+    );
+    assert!(load(1, 1)["to_target"].is_null());
+    let table = std::fs::read_to_string(dir.join("out/fleet_relative.csv")).unwrap();
+    assert_eq!(table.lines().count(), 7);
+    // Known columns first, and no others.
+    let table = std::fs::read_to_string(dir.join("out/fleet.csv")).unwrap();
+    assert!(table.starts_with("vehicle,files,hours,load,max,min,damage,damage_low,damage_high\n"));
+}
+
+#[test]
+fn a_mission_is_the_damage_an_hour_of_its_kinds_by_their_shares() {
+    let job = "mission_hours = 1000\n\
+               [[fleet.mission]]\nname = \"road\"\nshare = 0.75\ndays = [\"road*\"]\n\
+               [[fleet.mission]]\nname = \"yard\"\nshare = 0.25\ndays = [\"yard1\"]\nvehicles = [\"T*\"]\n";
+    let records = [
+        ("T1_road1.csv", record(2.0, 20, right)),
+        ("T1_road2.csv", record(2.0, 40, right)),
+        ("T2_road1.csv", record(3.0, 30, right)),
+        ("T2_yard1.csv", record(5.0, 25, right)),
+        ("T2_other.csv", record(9.0, 20, right)),
+    ];
+    let dir = folder("mission", job, &records);
+    let files = records.each_ref().map(|r| r.0);
+    let (code, result) = fleet(&dir, &files, &[]);
+    assert_eq!(code, 0, "{result}");
+    let mission = &result["mission"];
+    assert!(
+        mission["statement"]
+            .as_str()
+            .unwrap()
+            .contains("extrapolation")
+    );
+    assert_eq!(
+        (&mission["kinds"][0]["files"], &mission["kinds"][1]["files"]),
+        (&3.into(), &1.into())
+    );
+    let road = (damage(2.0, 60) + damage(3.0, 30)) / (hours(20) + hours(40) + hours(30));
+    let yard = damage(5.0, 25) / hours(25);
+    let load = &mission["loads"][0];
+    is_close(
+        number(&load["damage"]),
+        1000.0 * (0.75 * road + 0.25 * yard),
+    );
+    is_close(number(&load["by_kind"][0]), road);
+    is_close(number(&load["by_kind"][1]), yard);
+    // B has two cycles a period, 0.7 as large.
+    let of_b = 2.0 * 0.7_f64.powi(SLOPE);
+    is_close(
+        number(&mission["loads"][1]["damage"]),
+        of_b * number(&load["damage"]),
+    );
+    // The error of S is the same on all days: the mission is as uncertain as a day of it, not less.
+    let own = &result["vehicles"][0]["loads"][0];
+    let share = |v: &Value| number(&v["sigma_s"]) / number(&v["damage"]);
+    is_close(share(load), share(own));
+    assert!(number(&load["damage_low"]) < number(&load["damage"]));
+    // One day of yard: how much such days differ is unknown.
+    assert!(load["sigma_days"].is_null());
+    assert!(dir.join("out/fleet_mission.csv").exists());
+}
+
+#[test]
+fn days_that_are_not_there_and_shares_that_are_not_one_are_faults() {
+    let records = [("T1_1.csv", record(4.0, 20, right))];
+    let kind = |name: &str, share: f64, days: &str| {
+        format!("[[fleet.mission]]\nname = \"{name}\"\nshare = {share}\ndays = [\"{days}\"]\n")
+    };
+    for (job, code, word) in [
+        (
+            "reference = { vehicle = \"T1\", day = \"2\" }\n".to_owned(),
+            1,
+            "fleet.reference",
+        ),
+        (
+            kind("a", 0.5, "1") + &kind("b", 0.5, "2"),
+            1,
+            "fleet.mission",
+        ),
+        (
+            kind("a", 0.5, "1") + &kind("b", 0.4, "2"),
+            2,
+            "shares sum to 0.9",
+        ),
+        (
+            kind("a", 0.5, "1") + &kind("b", 0.5, "*"),
+            2,
+            "of the kinds",
+        ),
+        (
+            kind("a", 0.5, "1") + &kind("a", 0.5, "2"),
+            2,
+            "stands twice",
+        ),
+        ("target = { \"C.FZ\" = 1.0 }\n".to_owned(), 2, "C.FZ"),
+        ("target = { \"A.FZ\" = 0.0 }\n".to_owned(), 2, "above 0"),
+    ] {
+        let dir = folder("absent", &job, &records);
+        let (got, said) = fleet(&dir, &["T1_1.csv"], &[]);
+        assert_eq!(got, code, "{job}: {said}");
+        assert!(said.to_string().contains(word), "{job}: {said}");
+        if code == 1 {
+            // All that the folder holds was asked: the job names what is not there.
+            assert_eq!(fleet(&dir, &[], &[]).0, 2, "{job}");
+            // Another part may have it.
+            assert_eq!(
+                fleet(&dir, &["T1_1.csv"], &["--shard", "1/2"]).0,
+                0,
+                "{job}"
+            );
+        }
+    }
+}
+
+#[test]
+fn extremes_have_their_time_and_every_day_its_record() {
+    let spike = |at: usize, size: f64| {
+        move |i: usize, y: &mut [f64; GAUGES]| {
+            // A wave of A alone, a quarter of a period long, which the loads explain.
+            if (at..at + 10).contains(&i) {
+                let more = size * (std::f64::consts::PI * (i - at) as f64 / 10.0).sin();
+                y.iter_mut().zip(S).for_each(|(y, s)| *y += s[0] * more);
+            }
+        }
+    };
+    // Samples 415 and 395 to 405 are peaks of the wave anyway: the sum peaks where the cosine is 1.
+    let records = [
+        ("T1_9.csv", record(4.0, PERIODS, spike(435, 6.0))),
+        ("T1_10.csv", record(4.0, PERIODS, spike(455, -6.0))),
+    ];
+    let dir = folder("times", "", &records);
+    let (code, result) = fleet(&dir, &["T1_9.csv", "T1_10.csv"], &[]);
+    assert_eq!(code, 0, "{result}");
+    let v = &result["vehicles"][0];
+    let load = &v["loads"][0];
+    for (end, path, day, seconds) in [
+        // Peak at sample 440 with the half wave at its middle; valley at sample 460.
+        ("max_at", "T1_9.csv", "9", 4.4),
+        ("min_at", "T1_10.csv", "10", 4.6),
+    ] {
+        let at = &load[end];
+        assert_eq!((&at["path"], &at["day"]), (&path.into(), &day.into()));
+        assert!((number(&at["seconds"]) - seconds).abs() < 1e-9, "{at}");
+        let file = result["files"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .find(|f| f["path"] == path);
+        assert_eq!(file.unwrap()["sha256"], at["sha256"]);
+    }
+    assert!(
+        (number(&load["max"]) - 10.0).abs() < 1e-4 && (number(&load["min"]) + 10.0).abs() < 1e-4
+    );
+    let page = std::fs::read_to_string(dir.join("out/report.html")).unwrap();
+    for record in v["records"].as_array().unwrap() {
+        let path = record["path"].as_str().unwrap();
+        let sha256 = record["sha256"].as_str().unwrap();
+        assert_eq!(sha256.len(), 64);
+        assert!(page.contains(&format!("href=\"../{path}\"")), "{path}");
+        assert!(page.contains(sha256), "{sha256}");
+    }
+    assert!(page.contains("9, 4.400 s"));
+}
+
+/// Of a record.
+const SAMPLES: usize = PERIODS * PERIOD + 1;
+
+/// The `i`th of even numbers between -1 and 1 (splitmix64).
+fn between(i: usize) -> f64 {
+    let mut z = (i as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+}
+
+/// Findings with this code: subject and message.
+fn found(result: &Value, code: &str) -> Vec<[String; 2]> {
+    let list = result["findings"].as_array().unwrap();
+    let of = list.iter().filter(|f| f["code"] == code);
+    of.map(|f| ["subject", "message"].map(|k| f[k].as_str().unwrap().into()))
+        .collect()
+}
+
+#[test]
+fn a_zero_that_moves_over_the_days_and_exchanged_channels_are_named_with_their_days() {
+    let names: Vec<(String, String)> = (1..=2)
+        .flat_map(|v| (1..=12_u32).map(move |d| (v, d)))
+        .map(|(v, d)| {
+            // A right gauge reads noise too, the same in every run of the test.
+            let text = record(4.0 + f64::from(d % 3), PERIODS, |i, y| {
+                for (g, y) in y.iter_mut().enumerate() {
+                    *y += 1.7 * between(((v * 100 + d) as usize * SAMPLES + i) * GAUGES + g);
+                }
+                match (v, d) {
+                    (1, _) => y[2] += 1.5 * f64::from(d),
+                    (_, 9..=10) => y.swap(0, 3),
+                    _ => {}
+                }
+            });
+            (format!("T{v}_{d}.csv"), text)
+        })
+        .collect();
+    let records: Vec<(&str, String)> = names.iter().map(|n| (n.0.as_str(), n.1.clone())).collect();
+    let dir = folder("health", "", &records);
+    let job = std::fs::read_to_string(dir.join("job.toml")).unwrap();
+    let job = job.replace("noise_microstrain = 0.001", "noise_microstrain = 1.0");
+    std::fs::write(dir.join("job.toml"), job).unwrap();
+    let files: Vec<&str> = records.iter().map(|r| r.0).collect();
+    let (_, result) = fleet(&dir, &files, &[]);
+    let drifts = found(&result, "zero_drift");
+    let [[subject, message]] = drifts.as_slice() else {
+        panic!("{drifts:?}");
+    };
+    assert_eq!(subject, "T1 G2");
+    // Eleven days at 1.5; S and noise leave the mean of 75 samples a few tenths.
+    let moved = message.split_once("moves by ").unwrap().1;
+    let moved: f64 = moved.split(' ').next().unwrap().parse().unwrap();
+    assert!((moved - 16.5).abs() < 1.0, "{message}");
+    assert!(message.contains("from 1 to 12"), "{message}");
+    let swaps = found(&result, "gauge_swap");
+    let [[subject, message]] = swaps.as_slice() else {
+        panic!("{swaps:?}");
+    };
+    assert_eq!(subject, "T2 G0, G3");
+    // The day it began, not the first by the alphabet.
+    assert!(
+        message.contains("2 of 12 records, the first T2_9.csv"),
+        "{message}"
+    );
+}
