@@ -1,7 +1,7 @@
 //! The whole calibration: one fit of all runs, runs left out, contradicting ones refused, then words.
 
 use super::state::State;
-use super::types::{Calibration, Coverage, LeftOut, Task};
+use super::types::{Calibration, Coverage, LeftOut, ModelError, Task};
 use super::{glued, held_out, runs, shift, stated, undetermined};
 use crate::finding::{Finding, Severity};
 
@@ -42,11 +42,15 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
     let sensitivity = state.sensitivity(task, judged.factor);
     let undetermined = undetermined::check(task, &state);
     let shifts = shift::check(task, &state);
+    let wrongly_wired = shift::wrongly_wired(&shifts);
+    // A gauge that is wired backwards says nothing of the model.
+    let model_error = state.error_evidence.as_ref();
+    let model_error = model_error.map(|e| e.most_probable(&wrongly_wired));
     let mut findings = runs::findings(task, &left_out, &refused);
-    findings.extend(statements(task, &state, &judged, &left_out));
+    findings.extend(statements(task, &state, model_error, &judged, &left_out));
     findings.extend(undetermined::findings(task, &undetermined));
     // Where the known loads are in a wrong unit or of a wrong sign, every gauge is far from the model for that reason.
-    let wrong_loads = stated::check(task, &state.used, &shift::wrongly_wired(&shifts));
+    let wrong_loads = stated::check(task, &state.used, &wrongly_wired);
     if wrong_loads.is_empty() {
         findings.extend(shift::findings(task, &shifts));
     }
@@ -54,7 +58,7 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
     let signal = state.lefts.iter().map(|l| l.q2).sum::<f64>() / state.lefts.len().max(1) as f64;
     Ok(Calibration {
         sensitivity,
-        model_error: state.model_error,
+        model_error,
         shifts,
         as_glued: glued::as_glued(task, &state),
         repeat_scatter_rel: state.scatter.dof.is_finite().then(|| state.scatter.rms()),
@@ -71,6 +75,7 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
 fn statements(
     task: &Task,
     state: &State,
+    model_error: Option<ModelError>,
     coverage: &Coverage,
     left_out: &[LeftOut],
 ) -> Vec<Finding> {
@@ -123,7 +128,7 @@ fn statements(
             "add runs; repeats of one loading are the cheapest",
         ));
     }
-    if let (Some(model), Some(e)) = (&task.model, state.model_error) {
+    if let (Some(model), Some(e)) = (&task.model, model_error) {
         let message = format!(
             "the model's rows are off by {:.1} % common to a gauge and {:.1} % entry by entry; stated: {:.1} %",
             100.0 * e.common,

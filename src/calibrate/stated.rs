@@ -9,9 +9,9 @@ use crate::linalg::precision::Precision;
 use crate::linalg::spd;
 use crate::units::number;
 
-/// Ratio of strain to what the model makes of the loads from which a unit is wrong: units differ by 1000 (N, kN), or 9.81 times that; a model
-/// whose strain is off by thirty is none.
-const UNIT: f64 = 30.0;
+/// Ratio of strain to what the model makes of the loads from which a unit is wrong: units of force differ by 4.45 (pounds), 9.81 (kilograms)
+/// and 1000. Below it may be the model; whose error is stated to be larger has a larger ratio, four of its sd.
+const UNIT: f64 = 2.5;
 /// Ratio under which a sign is wrong: -1 with a third of it lost to errors, other loads and other gauges.
 const SIGN: f64 = -1.0 / 3.0;
 /// Standard deviations from which a gauge tells a load.
@@ -21,7 +21,7 @@ const ASKED: f64 = 0.1;
 /// Share of a load's size from which its sd makes it unknown.
 const UNKNOWN: f64 = 0.5;
 
-/// Loads whose strain is some `UNIT` times what the model says, or of the other sign, in most of the gauges.
+/// Loads whose strain is some [`UNIT`] times what the model says, or of the other sign, in most of the gauges.
 ///
 /// By gauge `y_r = sum_l c_l S_l f_rl` is solved for the factors `c_l` by least squares, for one common factor where the runs do not tell the
 /// loads apart; the factor of a load is the median over gauges, each with the weight `|S_l|`. Gauges that are `wrongly_wired` have no vote.
@@ -84,10 +84,11 @@ pub(super) fn check(task: &Task, used: &[usize], wrongly_wired: &[usize]) -> Vec
             Some((names.collect::<Vec<_>>().join(", "), weighted_median(f)?))
         })
         .collect();
-    let beyond = |c: f64| c.abs() > UNIT || c.abs() < 1.0 / UNIT;
-    let (unit, rest): (Vec<_>, Vec<_>) = of.into_iter().partition(|(_, c)| beyond(*c));
+    let unit = UNIT.max(1.0 + 4.0 * model.uncertainty_rel);
+    let beyond = |c: f64| c.abs() > unit || c.abs() < 1.0 / unit;
+    let (other, rest): (Vec<_>, Vec<_>) = of.into_iter().partition(|(_, c)| beyond(*c));
     let sign: Vec<(String, f64)> = rest.into_iter().filter(|(_, c)| *c < SIGN).collect();
-    [wrong_unit(&unit), wrong_sign(&sign)]
+    [wrong_unit(&other, unit), wrong_sign(&sign)]
         .into_iter()
         .flatten()
         .collect()
@@ -103,7 +104,7 @@ fn list(loads: &[(String, f64)]) -> (String, String) {
     (names.join(", "), each.join("; "))
 }
 
-fn wrong_unit(loads: &[(String, f64)]) -> Option<Finding> {
+fn wrong_unit(loads: &[(String, f64)], limit: f64) -> Option<Finding> {
     let (names, each) = list(loads);
     let first = loads.first()?;
     let finding = Finding::new(
@@ -116,7 +117,7 @@ fn wrong_unit(loads: &[(String, f64)]) -> Option<Finding> {
         ),
         "state the unit of the runs file ([runs] units = { force = \"kN\" }), and check `applied` and the units of the job",
     );
-    Some(finding.with_numbers(first.1, UNIT))
+    Some(finding.with_numbers(first.1, limit))
 }
 
 fn wrong_sign(loads: &[(String, f64)]) -> Option<Finding> {

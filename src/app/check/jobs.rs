@@ -11,7 +11,6 @@ use crate::app::strain::{given_as_asked, off_their_elements};
 use crate::app::work::Work;
 use crate::app::zeroed::read_zeroed;
 use crate::app::{identify, reconcile, recover, respond};
-use crate::finding::Finding;
 use crate::linalg::Matrix;
 use crate::model::Model;
 use crate::sensitivity::Sensitivity;

@@ -66,7 +66,7 @@ pub(super) fn look(
     inputs: &mut Inputs,
     job: &Job,
     channels: &[String],
-    columns: &Columns,
+    columns: &[TableColumn],
 ) -> Result<(), Faults> {
     for e in effects(job) {
         if let EffectSource::Signature(file) = &e.source {

@@ -82,7 +82,7 @@ fn readings(work: &mut Work, task: &Task, known: Known) -> Result<(), Faults> {
         work.findings.retain(|f| f.code != "reading-impossible");
         return Ok(());
     }
-    let (_, found) = plausible::check(&s, &readings, task.errors);
+    let (_, found) = plausible::check(&s.gauges, &readings, task.errors);
     // The strain of a reference state that is not in them may be all there is.
     let all = known == Known::S || task.measured.reference == Reference::None;
     let holds = |code: &str| all || code != "readings-below-noise";

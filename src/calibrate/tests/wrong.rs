@@ -108,7 +108,13 @@ fn a_run_whose_load_has_the_wrong_sign_is_named_and_not_used() {
 #[test]
 fn known_loads_in_another_unit_are_an_error_that_asks_for_the_unit() {
     for times in [1, 3] {
-        for factors in [[1e-3, 1e-3, 1e-6], [1e3, 1e3, 1e6], [1.0, 1.0, 1e-3]] {
+        for factors in [
+            [1e-3, 1e-3, 1e-6],
+            [1e3, 1e3, 1e6],
+            [1.0, 1.0, 1e-3],
+            [4.448, 4.448, 4.448],
+            [1.0 / 9.81, 1.0, 1.0],
+        ] {
             let mut task = task(times, 4);
             for run in &mut task.runs {
                 for (f, c) in run.loads.mean.iter_mut().zip(factors) {
