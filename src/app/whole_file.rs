@@ -284,7 +284,8 @@ mod tests {
             assert!(*load(&path).unwrap() == *bytes);
             let (read, hash) = open_hashed(&path).unwrap();
             assert!(matches!(read, Opened::Whole(_)));
-            assert!(**read.source().whole().unwrap() == *bytes);
+            let whole = read.source().whole().unwrap();
+            assert!((*whole).as_ref() == bytes.as_slice());
             assert_eq!(hash, hex(&Sha256::digest(&bytes)));
         }
         std::fs::remove_file(&path).unwrap();
