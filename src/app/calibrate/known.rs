@@ -8,6 +8,7 @@ use crate::app::job::table::{Table, read_table};
 use crate::app::job::{HoldOut, Job, JobLoad, LoadActs, Measured, Runs};
 use crate::app::work::Work;
 use crate::calibrate::KnownLoads;
+use crate::finding::{Finding, Severity};
 use crate::sensitivity::Load;
 use crate::series::record::Column;
 use crate::units::{Quantity, Unit, factor};
@@ -110,7 +111,7 @@ pub(super) fn read_known(
     let largest = largest_known(&table, &stated, loads.len(), &mut faults);
     let held_out = |run: &str| matches!(&measured.hold_out, HoldOut::Runs(list) if list.iter().any(|r| r == run));
     let (mut out, mut groups): (Vec<Known>, Vec<Vec<String>>) = (Vec::new(), Vec::new());
-    let mut values = Vec::new();
+    let (mut values, mut partly) = (Vec::new(), Vec::new());
     for (row, run) in strain.iter().enumerate() {
         let Some(at) = (0..table.rows.len()).find(|i| name_of(*i) == run) else {
             continue;
@@ -128,6 +129,11 @@ pub(super) fn read_known(
                 let line = table.rows.get(at).map_or(0, |r| r.0);
                 let wrong = format!("run `{run}` is to teach and its loads are not known");
                 faults.push(Fault::at(&*table.file, line, "run", wrong, "fill in its loads (0 where there is none), or drop it from `[calibration] runs`"));
+            } else if stated
+                .iter()
+                .any(|s| matches!(cell(&table, at, s), Ok(Some(_))))
+            {
+                partly.push(run);
             }
             continue;
         };
@@ -162,10 +168,29 @@ pub(super) fn read_known(
         faults.push(nothing_known(&table, loads));
     }
     Faults::check(faults)?;
+    work.findings.extend(partly_known(&table.file, &partly));
     Ok(KnownRuns {
         runs: out,
         column: depends.map(|(name, _)| (name, values)),
     })
+}
+
+/// The finding on runs of which some loads are known and others neither by themselves nor in a sum: they teach nothing.
+fn partly_known(file: &str, runs: &[&String]) -> Option<Finding> {
+    let first = runs.first()?;
+    let others = match runs.len() - 1 {
+        0 => String::new(),
+        n => format!(" and {n} more"),
+    };
+    Some(Finding::new(
+        Severity::Warning,
+        "run-partly-known",
+        file,
+        format!(
+            "run `{first}`{others}: some loads are known and others blank; such runs are left out"
+        ),
+        "fill in what is blank (0 where nothing acted), with its sd where it is estimated, or state a sum in [[combination]]",
+    ))
 }
 
 /// The fault of a file with no run that teaches.
