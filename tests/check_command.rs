@@ -209,10 +209,12 @@ fn the_record_of_a_zero_may_hold_what_a_record_may_hold() {
     let zero = "noise_microstrain = 0.1\nzero = \"zero.csv\"\n";
     let job = RECORD.replace("noise_microstrain = 0.1\n", zero);
     std::fs::write(folder.join("job.toml"), job).unwrap();
-    let readings = ",1".repeat(12);
     let header: Vec<String> = (1..=12).map(|g| format!(",P{g:02}")).collect();
     let rows: String = (0..20)
-        .map(|i| format!("{}{readings}\n", f64::from(i) * 0.05))
+        .map(|i| {
+            let readings = if i % 2 == 0 { ",0.01" } else { ",-0.01" };
+            format!("{}{}\n", f64::from(i) * 0.05, readings.repeat(12))
+        })
         .collect();
     let text = format!("time{}\n{rows}", header.concat());
     std::fs::write(folder.join("zero.csv"), text).unwrap();

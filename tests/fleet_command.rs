@@ -612,8 +612,16 @@ fn a_gauge_named_with_what_looks_like_a_unit_is_read_as_any_other() {
             .all(|f| f[0] != "gauge-missing"),
         "{named}"
     );
-    let loads = |r: &Value| r["vehicles"][0]["loads"].clone();
-    assert!(loads(&plain).is_array());
+    // But for the digests of the records, which are other files.
+    let loads = |r: &Value| {
+        let mut loads = r["vehicles"][0]["loads"].clone();
+        for load in loads.as_array_mut().unwrap() {
+            load["max_at"]["sha256"].take();
+            load["min_at"]["sha256"].take();
+        }
+        loads
+    };
+    assert!(!loads(&plain).as_array().unwrap().is_empty());
     assert_eq!(loads(&named), loads(&plain));
 }
 

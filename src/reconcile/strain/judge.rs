@@ -281,7 +281,12 @@ fn seldom_ahead(
 ) -> Option<String> {
     let first = contest.first()?;
     let names = ids(candidates, &first.set);
-    if names.is_empty() || won.first().is_none_or(|w| 2 * w >= DRAWINGS) {
+    // A name stands in every drawing whose winner holds it: where one of several comes and goes with the runs, the others are none the worse.
+    let stands = |c: &usize| {
+        let holding = contest.iter().zip(won).filter(|(s, _)| s.set.contains(c));
+        2 * holding.map(|(_, w)| w).sum::<usize>() >= DRAWINGS
+    };
+    if names.is_empty() || first.set.iter().any(stands) {
         return None;
     }
     let mut others: Vec<(usize, String)> = (contest.iter().zip(won).skip(1))
