@@ -7,6 +7,8 @@ use crate::units::number;
 
 /// Half width of the interval over the largest load of the kind (or `expected`) from which a load counts as unknown.
 const WIDE: f64 = 0.5;
+/// Planned standard deviation over the expected load from which noise or loads are stated in another unit.
+const HOPELESS: f64 = 10.0;
 /// Ratio to `expected` (1 sd) above which a size or a unit is wrong.
 const FAR_BEYOND: f64 = 10.0;
 /// The same from which it is an error: between units that are mistaken for each other lies a factor of 1000, and who states a size knows it
@@ -65,6 +67,7 @@ fn undetermined(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> {
 
 /// The same of gauges that are planned: `sigma` by load, in the unit of S, against the largest `expected` load of the kind. Both are one standard
 /// deviation: runs will have loads of twice that, and intervals are as much wider than `sigma`. A kind for which no size is stated is left alone.
+/// An error from [`HOPELESS`] on: a guessed size may be too small by some times, not by more.
 pub fn check_planned(s: &Sensitivity, sigma: &[f64]) -> Option<Finding> {
     let mut out: Vec<(&str, f64)> = Vec::new();
     for (load, sigma) in s.loads.iter().zip(sigma).filter(|(l, _)| l.wanted) {
@@ -79,10 +82,14 @@ pub fn check_planned(s: &Sensitivity, sigma: &[f64]) -> Option<Finding> {
         }
     }
     let worst = out.iter().map(|o| o.1).max_by(f64::total_cmp)?;
+    let severity = match worst {
+        w if w > HOPELESS => Severity::Error,
+        _ => Severity::Warning,
+    };
     let names: Vec<&str> = out.iter().map(|o| o.0).collect();
     Some(
         Finding::new(
-            Severity::Error,
+            severity,
             "loads-not-determined",
             few(&names),
             "the standard deviation planned for these loads is more than half the largest `expected` load: the gauges will not tell them",

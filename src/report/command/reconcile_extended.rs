@@ -97,6 +97,9 @@ fn runs_csv(frame: &StrainFrame, columns: &[f64]) -> String {
     let [at_x, at_y] = frame.payload_origin;
     let (n_l, n_c) = (frame.n_loads(), frame.n_columns());
     let names: Vec<_> = frame.load_names.iter().map(|n| csv_cell(n)).collect();
+    // Without its weight in the model all columns of the payload are zero, and what was noted stands.
+    let mut rows = columns.chunks_exact(n_c.max(1));
+    let is_weighed = rows.any(|row| row.get(n_l).is_some_and(|m| *m > 0.0));
     let mut out = format!("run,payload_mass,payload_x,payload_y,{}\n", names.join(","));
     for (r, (run, row)) in frame
         .observations
@@ -106,9 +109,10 @@ fn runs_csv(frame: &StrainFrame, columns: &[f64]) -> String {
         .enumerate()
     {
         let noted = frame.payload.get(r).copied().unwrap_or([0.0; 3]);
-        // Columns of the payload are its mass times 1, x, y; without its weight in the model, what was noted stands.
+        // Columns of the payload are its mass times 1, x, y.
         let [mass, x, y] = match row.get(n_l..n_l + 3) {
             Some([m, mx, my]) if *m > 0.0 => [*m, mx / m, my / m],
+            Some(_) if is_weighed => [0.0; 3],
             _ => noted,
         };
         let loads: Vec<String> = row.iter().take(n_l).map(|f| format!("{f:.6}")).collect();
