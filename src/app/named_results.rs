@@ -44,7 +44,7 @@ pub fn results_fault(job: &Job, named: &NamedFile, e: &ResultsError) -> Fault {
         &*job.file,
         named.line,
         &*named.key,
-        e.to_string(),
+        format!("`{}`: {e}", named.given),
         "give an OP2, punch or HDF5 file of a static run",
     )
 }
