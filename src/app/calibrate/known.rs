@@ -100,11 +100,8 @@ pub(super) fn read_known(
         ))
     });
     let name_of = |row: usize| {
-        table
-            .rows
-            .get(row)
-            .and_then(|r| r.1.get(key))
-            .map_or("", String::as_str)
+        let cell = table.rows.get(row).and_then(|r| r.1.get(key));
+        cell.map_or("", String::as_str)
     };
     faults.extend(named_twice(&table, key));
     let asked = asked_rows(job, &table, key, strain, &mut faults);
