@@ -83,7 +83,7 @@ impl Rivals {
             return None;
         }
         let normal = evidence.normals.get(g)?;
-        let prior = rows(model, scales, &vec![error.into(); g + 1]).pop()?;
+        let prior = rows(model, scales, [(g, error.into())]).pop()?;
         let usual = RowEvidence::of(&prior.mean, &prior.covariance, normal)?;
         let square = spd::dot(&prior.mean, &prior.mean) / k.max(1) as f64;
         let mut any = prior.covariance.clone();

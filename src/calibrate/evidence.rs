@@ -28,12 +28,25 @@ impl Normal {
             let Some(y) = run.strain.get(g).filter(|v| v.is_finite()) else {
                 continue;
             };
-            spd::add_outer(&mut out.matrix, &phi[r], 1.0 / variance[r][g]);
-            for (b, p) in out.right.iter_mut().zip(&phi[r]) {
-                *b += p * y / variance[r][g];
-            }
+            out.add(&phi[r], *y, 1.0 / variance[r][g]);
         }
         out
+    }
+
+    /// The same without a reading `y` at loads `phi`; a blank one is not in it.
+    pub fn without(&self, phi: &[f64], y: f64, variance: f64) -> Self {
+        let mut out = self.clone();
+        if y.is_finite() {
+            out.add(phi, y, -1.0 / variance);
+        }
+        out
+    }
+
+    fn add(&mut self, phi: &[f64], y: f64, weight: f64) {
+        spd::add_outer(&mut self.matrix, phi, weight);
+        for (b, p) in self.right.iter_mut().zip(phi) {
+            *b += p * y * weight;
+        }
     }
 }
 

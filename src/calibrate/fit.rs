@@ -60,7 +60,7 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
         sensitivity,
         model_error,
         shifts,
-        as_glued: glued::as_glued(task, &state),
+        as_glued: glued::as_glued(task, &state, model_error),
         repeat_scatter_rel: state.scatter.dof.is_finite().then(|| state.scatter.rms()),
         noise_rel: task.noise / signal.sqrt(),
         left_out,

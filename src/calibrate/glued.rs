@@ -5,30 +5,27 @@
 //! `E = K (m - r0)`, `Cov = C - K D' C + K V K'` with `K = C D (D' C D + E_e)^-1`, C the prior of `u`.
 
 use super::state::State;
-use super::types::{AsGlued, Glue, ModelPrior, Task};
+use super::types::{AsGlued, Glue, ModelError, ModelPrior, Task};
 use crate::linalg::Matrix;
 use crate::linalg::precision::Precision;
 use crate::linalg::spd::dot;
 
-/// Where each gauge sits as the posterior says; empty without stated moves.
-pub(super) fn as_glued(task: &Task, state: &State) -> Vec<AsGlued> {
-    let Some(model) = &task.model else {
+/// Where each gauge sits as the posterior says; empty without stated moves. `all`: error of the model as learnt of all gauges.
+pub(super) fn as_glued(task: &Task, state: &State, all: Option<ModelError>) -> Vec<AsGlued> {
+    let (Some(model), Some(all)) = (&task.model, all) else {
         return Vec::new();
     };
     if model.moves.is_empty() {
         return Vec::new();
     }
     let gauges = state.row_errors.iter().enumerate();
-    // What is stated of a gain is the error common to all gauges; the prior of each is its own.
-    let stated = state
-        .model_error
-        .map_or(model.uncertainty_rel, |e| e.common);
-    let all = gauges.map(|(g, error)| {
+    let glued = gauges.map(|(g, error)| {
         let mut glued = one(model, state, g, error.common)?;
-        glued.gain.stated = stated;
+        // Its own error was learnt from its readings: it is not what was known before.
+        glued.gain.stated = all.common;
         Some(glued)
     });
-    all.collect::<Option<Vec<_>>>().unwrap_or_default()
+    glued.collect::<Option<Vec<_>>>().unwrap_or_default()
 }
 
 fn one(model: &ModelPrior, state: &State, g: usize, common: f64) -> Option<AsGlued> {

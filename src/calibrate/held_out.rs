@@ -34,29 +34,22 @@ fn one(task: &Task, state: &State, i: usize) -> Option<LeftOut> {
     if task.model.is_none() && !others_span(state, i) {
         return None;
     }
-    // Each gauge's own error of the model is learnt of the others too: with it the run would lie nearer than a new one does.
-    let prior = task.model.as_ref().zip(state.error_evidence.as_ref());
-    let prior = prior.map_or_else(
-        || state.prior.clone(),
-        |(model, evidence)| {
-            let runs: Vec<_> = state
-                .used
-                .iter()
-                .filter_map(|r| task.runs.get(*r))
-                .collect();
-            let errors = evidence.by_gauge_without(i, &runs, model, &state.scales);
-            rows(model, &state.scales, &errors)
-        },
-    );
-    let plain = state.equations.iter().all(Equation::is_by_gauge);
-    let mut posterior = match plain {
-        true => solve(&prior, &without(&state.equations, i))?,
-        false => state.posterior.without(&state.equations[i])?,
+    let order = (state.posterior.n * state.posterior.k) as f64;
+    let affordable = order.powi(3) * state.used.len() as f64 <= AFFORDABLE;
+    let cheap = affordable || state.equations.iter().all(Equation::is_by_gauge);
+    // Each gauge's own error of the model is learnt of the others alone too: learnt of this run as well, it lies nearer than a new one does.
+    let learnt = task.model.as_ref().zip(state.error_evidence.as_ref());
+    let learnt = learnt.filter(|_| cheap).map(|(model, evidence)| {
+        let errors = evidence.by_gauge_without(i, &run.strain, model, &state.scales);
+        rows(model, &state.scales, errors.into_iter().enumerate())
+    });
+    let prior = learnt.as_deref().unwrap_or(&state.prior);
+    let mut posterior = match learnt {
+        Some(_) => again(state, prior, i, &state.scatter_used)?,
+        None => state.posterior.without(&state.equations[i])?,
     };
     // One wrong run may be all the scatter there is: what the others then leave is noise, and the run is held against that.
     let scatters = state.scatter.dof.is_finite();
-    let order = (posterior.n * posterior.k) as f64;
-    let affordable = order.powi(3) * state.used.len() as f64 <= AFFORDABLE;
     let mut scatter = Scatter::none(posterior.n);
     // Twice: with a wrong run among them the equations gave the others too little weight at first.
     let rounds = match (scatters, affordable) {
@@ -71,7 +64,7 @@ fn one(task: &Task, state: &State, i: usize) -> Option<LeftOut> {
             return None;
         }
         if affordable {
-            posterior = again(state, &prior, i, &scatter)?;
+            posterior = again(state, prior, i, &scatter)?;
         }
     }
     let dof = scatter.dof;
@@ -151,13 +144,7 @@ fn others_left(task: &Task, state: &State, i: usize, posterior: &Posterior) -> V
 /// the covariance of S (not that of the run) keeps the run's own share.
 const AFFORDABLE: f64 = 1e9;
 
-/// All but one.
-fn without(equations: &[Equation], i: usize) -> Vec<Equation> {
-    let others = equations.iter().enumerate().filter(|(j, _)| *j != i);
-    others.map(|(_, e)| e.clone()).collect()
-}
-
-/// The posterior of the other runs with the scatter that they show without run `i`.
+/// The posterior of the other runs with this scatter.
 fn again(state: &State, prior: &[RowPrior], i: usize, scatter: &Scatter) -> Option<Posterior> {
     let n = state.posterior.n;
     let others = (0..state.equations.len()).filter(|j| *j != i);

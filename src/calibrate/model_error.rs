@@ -67,23 +67,20 @@ impl ErrorEvidence {
         }
     }
 
-    /// As [`ErrorEvidence::by_gauge`] without run `left` of `runs`, those that this was made of; the error of all stays.
+    /// As [`ErrorEvidence::by_gauge`] without run number `left` of those that this was made of, whose readings are `strain`; the error of all
+    /// stays.
     pub fn by_gauge_without(
         &self,
         left: usize,
-        runs: &[&KnownRun],
+        strain: &[f64],
         model: &ModelPrior,
         scales: &[f64],
     ) -> Vec<RowError> {
-        let (n, k) = model.values.shape();
-        let kept = |i: &usize| *i != left;
-        let others: Vec<&KnownRun> = (0..runs.len()).filter(kept).map(|i| runs[i]).collect();
-        let (phi, variance): (Vec<_>, Vec<_>) = (0..self.by_run.len())
-            .filter(kept)
-            .map(|i| self.by_run[i].clone())
-            .unzip();
-        let normals: Vec<Normal> = (0..n)
-            .map(|g| Normal::of(g, k, &others, &phi, &variance))
+        let n = self.normals.len();
+        let (phi, variance) = &self.by_run[left];
+        let readings = strain.iter().zip(variance);
+        let normals: Vec<Normal> = (self.normals.iter().zip(readings))
+            .map(|(normal, (y, v))| normal.without(phi, *y, *v))
             .collect();
         let (error, own) = (self.most_probable(&[]), own_steps());
         let logs_of = |floor: usize, step: i32| -> Vec<f64> {
@@ -92,7 +89,7 @@ impl ErrorEvidence {
                 entries: [0.0; FLOORS.len()],
             };
             row.entries[floor] = error.entry * factor(step);
-            let rows = rows(model, scales, &vec![row; n]);
+            let rows = rows(model, scales, (0..n).map(|g| (g, row)));
             let log = |(row, normal): (&RowPrior, &Normal)| {
                 let evidence = RowEvidence::of(&row.mean, &row.covariance, normal);
                 evidence.map_or(f64::NEG_INFINITY, |e| e.log())
@@ -255,7 +252,7 @@ impl Table {
                 entries: [0.0; FLOORS.len()],
             };
             error.entries[floor] = stated * factor(entry);
-            let rows = rows(model, scales, &vec![error; n]);
+            let rows = rows(model, scales, (0..n).map(|g| (g, error)));
             // The part common to a gauge is one direction more: with what is known of the rest it costs a few products.
             let one = |((row, normal), s): ((&RowPrior, &Normal), &Vec<f64>)| {
                 let e = RowEvidence::of(&row.mean, &row.covariance, normal)?;

@@ -53,14 +53,18 @@ pub(super) fn diffuse(n: usize, k: usize, largest_strain: f64) -> Vec<RowPrior> 
 
 /// With a model: `common^2 s s' + sum entry^2 diag(max(s^2, floor^2 q^2)) + sum sd^2 t t'` a row, `s` the row, `q` its root mean square, `t` its
 /// change with each move of the gauge, the first sum over [`FLOORS`], and the errors those of the gauge.
-pub(super) fn rows(model: &ModelPrior, scales: &[f64], errors: &[RowError]) -> Vec<RowPrior> {
+pub(super) fn rows(
+    model: &ModelPrior,
+    scales: &[f64],
+    errors: impl IntoIterator<Item = (usize, RowError)>,
+) -> Vec<RowPrior> {
     let (n, k) = model.values.shape();
     let all: f64 = (0..n)
         .flat_map(|g| (0..k).map(move |l| (g, l)))
         .map(|(g, l)| (model.values[(g, l)] * scales[l]).powi(2))
         .sum::<f64>()
         / (n * k).max(1) as f64;
-    let row = |(g, error): (usize, &RowError)| {
+    let row = |(g, error): (usize, RowError)| {
         let s: Vec<f64> = (0..k).map(|l| model.values[(g, l)] * scales[l]).collect();
         let own = s.iter().map(|v| v * v).sum::<f64>() / k.max(1) as f64;
         let own = own.max(SMALL_ROW * SMALL_ROW * all);
@@ -86,5 +90,5 @@ pub(super) fn rows(model: &ModelPrior, scales: &[f64], errors: &[RowError]) -> V
             covariance,
         }
     };
-    errors.iter().enumerate().take(n).map(row).collect()
+    errors.into_iter().map(row).collect()
 }

@@ -83,10 +83,11 @@ pub(super) fn check(task: &Task, state: &State) -> Vec<GaugeShift> {
     let rows: Vec<Row> = (0..n).map(|g| Row::of(state, g)).collect();
     let distance = |g: usize, to: &[f64], without: &[usize]| -> f64 {
         let error = evidence.most_probable(without);
-        let prior = model_rows(model, &state.scales, &vec![error.into(); n]);
+        let prior = model_rows(model, &state.scales, [(g, error.into())]).pop();
         let moved: Vec<f64> = to.iter().zip(&rows[g].model).map(|(a, b)| a - b).collect();
         let k = moved.len();
-        Precision::of(&prior[g].covariance, k).map_or(0.0, |p| {
+        let precision = prior.and_then(|p| Precision::of(&p.covariance, k));
+        precision.map_or(0.0, |p| {
             (spd::dot(&p.apply(&moved), &moved) / k.max(1) as f64).sqrt()
         })
     };

@@ -5,7 +5,7 @@ use super::model_error::{ErrorEvidence, error_evidence};
 use super::posterior::{Equation, Posterior, solve};
 use super::prior::{RowError, RowPrior, diffuse, rows};
 use super::scatter::{Left, Scatter};
-use super::types::{KnownRun, ModelError, Task};
+use super::types::{KnownRun, Task};
 use crate::linalg::Matrix;
 use crate::sensitivity::{Sensitivity, Uncertainty, mean_square};
 
@@ -33,9 +33,7 @@ pub(super) struct State {
     pub q2_used: Vec<f64>,
     /// Runs' worth of freedom that the fit took from each gauge.
     pub fitted: f64,
-    /// Error of the model as learnt.
-    pub model_error: Option<ModelError>,
-    /// That of each gauge; empty without a model.
+    /// Error of the model in each gauge's row, as learnt; empty without a model.
     pub row_errors: Vec<RowError>,
     /// What it was learnt from, gauge by gauge.
     pub error_evidence: Option<ErrorEvidence>,
@@ -70,7 +68,7 @@ impl State {
             });
             let row_errors = error_evidence.as_ref().map(ErrorEvidence::by_gauge);
             let prior = match (&task.model, &row_errors) {
-                (Some(m), Some(e)) => rows(m, &scales, e),
+                (Some(m), Some(e)) => rows(m, &scales, e.iter().copied().enumerate()),
                 _ => diffuse(n, k, largest),
             };
             let mean: Vec<Vec<f64>> = match &state {
@@ -122,7 +120,6 @@ impl State {
                 lefts,
                 scatter: scatter.clone(),
                 fitted,
-                model_error: error_evidence.as_ref().map(|e| e.most_probable(&[])),
                 row_errors: row_errors.unwrap_or_default(),
                 error_evidence,
             });
