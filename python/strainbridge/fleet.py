@@ -19,6 +19,7 @@ import os
 import shutil
 import subprocess
 import tempfile
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Iterable, Mapping, Sequence
 
@@ -54,18 +55,19 @@ def part(job: AnyJob, files: Sequence[str], out: str, threads: int | None = None
     files = [str(f) for f in files]
     if not files:
         return []
-    # What counts is kept under `out/days`, which all tasks share.
+    # What counts is kept under `out/days`, which all tasks share; the answer of a part is not.
+    task = _Task(job, files, out, threads)
     if _in_process():
-        answer: Mapping[str, Any] = _asked(job, files, out, threads)
+        answer: Mapping[str, Any] = task.by_engine()
     else:
         with tempfile.TemporaryDirectory() as own:
-            answer = _command(job, files, own, out, threads)
+            answer = task.by_command(own)
     return [{k: f[k] for k in ("path", "status", "message", "sha256")} for f in answer["files"]]
 
 
 def merge(job: AnyJob, out: str | Path) -> Mapping[str, Any]:
     """The result of everything that `out` holds of this job; `fleet.csv`, `fleet.parquet` and the report are written there."""
-    return _call(job, [], str(out), str(out), None)
+    return _saved(_Task(job, [], str(out)), str(out))
 
 
 def run(
@@ -97,7 +99,8 @@ def run(
     listed = sorted({str(f) for f in files})
     if shard is not None:
         number, _, of = shard.partition("/")
-        return _call(job, listed, os.path.join(out, f"shard-{number}-of-{of}"), out, threads, shard, progress)
+        return _saved(_Task(job, listed, out, threads, shard, progress), os.path.join(out, f"shard-{number}-of-{of}"))
+    digests: dict[str, str] = {}
     if client is not None:
         tasks = [listed[i : i + FILES_A_TASK] for i in range(0, len(listed), FILES_A_TASK)]
         n = len(tasks)
@@ -105,9 +108,7 @@ def run(
         # What a task that failed for good leaves undone is done here, or raises here. Files that workers did are not read again.
         done = [f for some in client.gather(futures, errors="skip") for f in some]
         digests = {f["path"]: f["sha256"] for f in done if f["sha256"]}
-    else:
-        digests = {}
-    return _call(job, listed, out, out, threads, progress=progress, digests=digests)
+    return _saved(_Task(job, listed, out, threads, progress=progress, digests=digests), out)
 
 
 def _in_process() -> bool:
@@ -115,60 +116,56 @@ def _in_process() -> bool:
     return _engine is not None and not os.environ.get("STRAINBRIDGE")
 
 
-def _call(
-    job: AnyJob,
-    files: Sequence[str],
-    out: str,
-    kept: str,
-    threads: int | None,
-    shard: str | None = None,
-    progress: Any = None,
-    digests: Mapping[str, str] = {},
-) -> Mapping[str, Any]:
+@dataclass(frozen=True)
+class _Task:
+    """What is asked: the files, and the folder `kept` of the results of single files."""
+
+    job: AnyJob
+    files: Sequence[str]
+    kept: str
+    threads: int | None = None
+    shard: str | None = None
+    progress: Any = None
+    digests: Mapping[str, str] = field(default_factory=dict)
+
+    def by_engine(self) -> Outcome:
+        with shown(self.progress) as told:
+            return Outcome(
+                _engine.ask(
+                    "fleet",
+                    job_of(self.job)._checked(),
+                    files=self.files,
+                    folder=self.kept,
+                    shard=self.shard,
+                    digests=self.digests,
+                    threads=self.threads,
+                    progress=told,
+                )
+            )
+
+    def by_command(self, out: str) -> dict[str, Any]:
+        path = str(getattr(self.job, "path", self.job))
+        more = ["--threads", str(self.threads)] if self.threads else []
+        more += ["--kept", self.kept] if self.kept != out else []
+        more += ["--shard", self.shard] if self.shard else []
+        with tempfile.TemporaryDirectory() as own:
+            if self.digests:
+                listed = Path(own, "digests.txt")
+                lines = [f"{digest}  {file}\n" for file, digest in self.digests.items() if "\n" not in file]
+                listed.write_text("".join(lines), encoding="utf-8")
+                more += ["--digests", str(listed)]
+            call = [program(), "fleet", path, *self.files, "--out", out, "--json", *more]
+            done = subprocess.run(call, capture_output=True, text=True, check=False)
+        if done.returncode not in (0, 1):
+            raise FleetError(done.stderr.strip())
+        answer: dict[str, Any] = json.loads(done.stdout)
+        return answer
+
+
+def _saved(task: _Task, out: str) -> Mapping[str, Any]:
+    """The answer, its files written into `out`."""
     if not _in_process():
-        return _command(job, files, out, kept, threads, shard, digests)
-    outcome = _asked(job, files, kept, threads, shard, progress, digests)
+        return task.by_command(out)
+    outcome = task.by_engine()
     outcome.save(out)
     return outcome
-
-
-def _asked(
-    job: AnyJob,
-    files: Sequence[str],
-    kept: str,
-    threads: int | None,
-    shard: str | None = None,
-    progress: Any = None,
-    digests: Mapping[str, str] = {},
-) -> Outcome:
-    with shown(progress) as told:
-        asked = _engine.ask(
-            "fleet", job_of(job)._checked(), files=files, folder=kept, shard=shard, digests=digests, threads=threads, progress=told
-        )
-    return Outcome(asked)
-
-
-def _command(
-    job: AnyJob,
-    files: Sequence[str],
-    out: str,
-    kept: str,
-    threads: int | None,
-    shard: str | None = None,
-    digests: Mapping[str, str] = {},
-) -> dict[str, Any]:
-    path = str(getattr(job, "path", job))
-    more = ["--threads", str(threads)] if threads else []
-    more += ["--kept", kept] if kept != out else []
-    more += ["--shard", shard] if shard else []
-    with tempfile.TemporaryDirectory() as own:
-        if digests:
-            listed = Path(own, "digests.txt")
-            listed.write_text("".join(f"{digest}  {file}\n" for file, digest in digests.items() if "\n" not in file), encoding="utf-8")
-            more += ["--digests", str(listed)]
-        call = [program(), "fleet", path, *files, "--out", out, "--json", *more]
-        done = subprocess.run(call, capture_output=True, text=True, check=False)
-    if done.returncode not in (0, 1):
-        raise FleetError(done.stderr.strip())
-    answer: dict[str, Any] = json.loads(done.stdout)
-    return answer
