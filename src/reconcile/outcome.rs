@@ -216,7 +216,7 @@ pub struct Outcome {
     pub rivals: Vec<Rival>,
     /// Log evidence of the named set (or best attempt) less that of no effect.
     pub evidence: f64,
-    /// Of 100 drawings of the runs, those in which it stays ahead of every rival and of no effect.
+    /// Of 100 drawings of the runs, those whose best set holds every one of its names.
     pub wins: usize,
     /// Joint covariance of the parameters of the named set (or best attempt), effects in order, by rows.
     pub covariance: Vec<f64>,
@@ -242,6 +242,9 @@ pub struct Outcome {
     pub runs_off: Vec<Misfit>,
     /// What remains, in words; where it sits and how it grows.
     pub remains: String,
+    /// What the model predicts with the named set (or best attempt) in it, channels as they read, microstrain, `n_runs x n_gauges`; what
+    /// differs from run to run is not in it.
+    pub predicted: Vec<f64>,
     /// What would separate the first two explanations.
     pub next_measurement: String,
     /// Smallest sizes that would have been seen.

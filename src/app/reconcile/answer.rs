@@ -198,7 +198,7 @@ pub struct DetectableSize {
 /// What only strain has.
 #[derive(Serialize)]
 pub struct StrainPart {
-    /// Of 100 drawings of the runs, those in which the named set stays ahead.
+    /// Of 100 drawings of the runs, those whose best set holds every name.
     pub wins_of_100: usize,
     /// Noise that the readings show over the stated one.
     pub noise_factor: f64,

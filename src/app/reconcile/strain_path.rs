@@ -17,7 +17,7 @@ use crate::app::fault::{Fault, Faults};
 use crate::app::job::{EffectSource, Job};
 use crate::app::work::Work;
 use crate::reconcile::effect::{Correction, Extension};
-use crate::reconcile::strain::{StiffnessOf, StrainFrame, examine, predict, predicted_with};
+use crate::reconcile::strain::{StiffnessOf, StrainFrame, examine, predict};
 use crate::reconcile::{GapBasis, NamedEffect, Outcome, Verdict};
 
 /// What strain says.
@@ -165,7 +165,7 @@ fn strain_part(frame: StrainFrame, outcome: Outcome, deck: Option<DeckFrame>) ->
         gauges_off: outcome.gauges_off.clone(),
         runs_off: outcome.runs_off.clone(),
         predicted: predict(&frame, &[]),
-        predicted_after: predicted_with(&frame, &outcome.best_attempt),
+        predicted_after: outcome.predicted.clone(),
         outcome,
         frame,
         fields: deck.map(|d| d.fields),

@@ -1,7 +1,6 @@
 //! What a model and readings are with named effects in them: what the extended model holds.
 
 use super::frame::StrainFrame;
-use super::prediction::predict;
 use super::state::StrainState;
 use crate::reconcile::effect::{Candidate, Correction, Extension, Member, full_id, library};
 use crate::reconcile::outcome::NamedEffect;
@@ -10,13 +9,6 @@ use crate::reconcile::outcome::NamedEffect;
 pub fn extended_state(frame: &StrainFrame, effects: &[NamedEffect]) -> StrainState {
     let candidates = candidates(frame, effects);
     StrainState::with(frame, &members(frame, effects, &candidates))
-}
-
-/// What the model predicts with the effects in it, channels as they read, microstrain, `n_runs x n_gauges`; what differs from run to run is
-/// not in it.
-pub fn predicted_with(frame: &StrainFrame, effects: &[NamedEffect]) -> Vec<f64> {
-    let candidates = candidates(frame, effects);
-    predict(frame, &members(frame, effects, &candidates))
 }
 
 fn candidates(frame: &StrainFrame, effects: &[NamedEffect]) -> Vec<Candidate> {

@@ -8,10 +8,11 @@ use super::gap::rms;
 use super::likelihood::Fit;
 use super::neighbours::neighbours_that_fail;
 use super::next::next_measurement;
+use super::prediction::predict;
 use super::recovered::loads_before_after;
 use super::remains::{Withheld, remains, sits};
-use super::resampled::{DRAWINGS, wins};
 use super::smooth::{curve, is_smooth};
+use super::standing::Standing;
 use super::validation::{Proofs, validated};
 use crate::reconcile::effect::{Candidate, Discrepancy, StrainEffect, full_id};
 use crate::reconcile::outcome::{Misfit, NamedEffect, Outcome, Rival, Verdict};
@@ -160,6 +161,23 @@ pub(super) fn adequacy_of(
     adequacy(frame, &e.members, &e.unknown, n_parameters)
 }
 
+/// How far a set comes, and the noise that it takes over the stated one.
+fn reach(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    scored: &Scored<Fit>,
+    before: &Adequacy,
+) -> (Adequacy, f64) {
+    let after = if scored.set.is_empty() {
+        before.clone()
+    } else {
+        adequacy_of(frame, candidates, scored)
+    };
+    (after, noise_factor(frame, candidates, scored))
+}
+
+/// What is said of the best set. Names of it that do not stand when the runs are drawn anew are not named, and neither fit nor gap has them;
+/// that the floor is reached with them still speaks for the others.
 pub(super) fn judge(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
@@ -167,17 +185,20 @@ pub(super) fn judge(
     best: &Scored<Fit>,
 ) -> Outcome {
     let frame = proofs.frame;
-    let explained = Explanation::of(frame, candidates, best);
     let before = adequacy(frame, &[], &[], 0);
-    let after = if best.set.is_empty() {
-        before.clone()
-    } else {
-        adequacy_of(frame, candidates, best)
+    let (after, noise) = reach(frame, candidates, best, &before);
+    let reached = at_floor(&after) && noise <= limit::NOISE;
+    let rivals = rival_sets(candidates, all, best);
+    let standing = Standing::of(frame, candidates, all, best, &rivals);
+    let fewer = standing.fewer(frame, candidates, best);
+    let best = fewer.as_ref().unwrap_or(best);
+    let explained = Explanation::of(frame, candidates, best);
+    let (after, noise) = match fewer {
+        Some(_) => reach(frame, candidates, best, &before),
+        None => (after, noise),
     };
     let attempt = named(frame, candidates, best);
     let (gap, channels) = validated(proofs, candidates, best);
-    let noise = noise_factor(frame, candidates, best);
-    let reached = at_floor(&after) && noise <= limit::NOISE;
     let plausible = attempt.iter().all(|e| e.plausible);
     let null = all.iter().find(|s| s.set.is_empty());
     let null_evidence = null.map_or(0.0, |s| s.log_evidence);
@@ -188,26 +209,16 @@ pub(super) fn judge(
         })
         .max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence));
     let hinted = hint.is_some_and(|s| s.log_evidence > null_evidence.max(best.log_evidence));
-    let together = neighbours_that_fail(frame, &attempt);
-    let others = rival_sets(candidates, all, best);
-    let mut contest = vec![best];
-    contest.extend(
-        others
-            .iter()
-            .copied()
-            .chain(null)
-            .filter(|s| s.set != best.set),
-    );
-    let won = wins(frame, candidates, &contest);
-    let seldom = seldom_ahead(candidates, &contest, &won);
-    let unmodelled = is_unmodelled(candidates, &best.set)
-        .or(together.as_deref())
-        .or(seldom.as_deref());
+    let unmodelled = is_unmodelled(candidates, &best.set);
+    let seldom = standing.doubt.clone().filter(|_| standing.is_none());
+    let doubt = neighbours_that_fail(frame, &attempt).or(seldom);
     let falls = gap.after < gap.before;
     let verdict = match (attempt.is_empty(), reached) {
         (true, true) if hinted => Verdict::BelowDetectability,
         (true, true) => Verdict::None,
-        (false, true) if plausible && unmodelled.is_none() && falls => Verdict::Named,
+        (false, true) if plausible && unmodelled.is_none() && doubt.is_none() && falls => {
+            Verdict::Named
+        }
         _ => Verdict::Unknown,
     };
     let withheld = (verdict == Verdict::Unknown).then(|| Withheld {
@@ -216,9 +227,15 @@ pub(super) fn judge(
             .collect(),
         no_fall: (!attempt.is_empty() && !falls).then_some([gap.before, gap.after]),
         noise: (noise > limit::NOISE).then_some(noise),
+        doubt,
         is_told: unmodelled.is_some(),
     });
-    let rivals: Vec<Rival> = others
+    let next = match rivals.first().copied().or(hint) {
+        Some(s) => next_measurement(frame, &explained, &Explanation::of(frame, candidates, s)),
+        None if verdict == Verdict::Unknown => look_again(&after),
+        None => "none needed".into(),
+    };
+    let rivals: Vec<Rival> = rivals
         .par_iter()
         .map(|s| Rival {
             ids: ids(candidates, &s.set),
@@ -227,11 +244,13 @@ pub(super) fn judge(
             indistinguishable: best.log_evidence - s.log_evidence < INDISTINGUISHABLE,
         })
         .collect();
-    let next = match others.first().copied().or(hint) {
-        Some(s) => next_measurement(frame, &explained, &Explanation::of(frame, candidates, s)),
-        None if verdict == Verdict::Unknown => look_again(&after),
-        None => "none needed".into(),
-    };
+    let left = remains(
+        frame,
+        &explained.members,
+        &after,
+        unmodelled,
+        withheld.as_ref(),
+    );
     let is_curve = best.set.iter().any(|c| is_smooth(candidates, *c));
     Outcome {
         verdict,
@@ -244,7 +263,7 @@ pub(super) fn judge(
         replaced: Vec::new(),
         rivals,
         evidence: best.log_evidence - null_evidence,
-        wins: won.first().copied().unwrap_or(0),
+        wins: standing.wins(&named_part(candidates, &best.set)),
         // The coefficients of a curve say nothing by themselves: `smooth` has what they make.
         covariance: if is_curve {
             Vec::new()
@@ -261,49 +280,14 @@ pub(super) fn judge(
         gauges_off_before: worst_first(&before.gauges, limit::PART),
         gauges_off: worst_first(&after.gauges, limit::PART),
         runs_off: worst_first(&after.runs, limit::PART),
-        remains: remains(
-            frame,
-            &explained.members,
-            &after,
-            unmodelled,
-            withheld.as_ref(),
-        ),
+        remains: match standing.doubt.filter(|_| fewer.is_some()) {
+            Some(unsure) => format!("{left}; {unsure}"),
+            None => left,
+        },
+        predicted: predict(frame, &explained.members),
         next_measurement: next,
         detectable: detectable(frame, candidates, hint.map_or(&[], |h| h.set.as_slice())),
     }
-}
-
-/// That the first set is ahead in fewer than half of the drawings of runs, and what is ahead in the others, in words.
-fn seldom_ahead(
-    candidates: &[Candidate],
-    contest: &[&Scored<Fit>],
-    won: &[usize],
-) -> Option<String> {
-    let first = contest.first()?;
-    let names = ids(candidates, &first.set);
-    // A name stands in every drawing whose winner holds it: where one of several comes and goes with the runs, the others are none the worse.
-    let stands = |c: &usize| {
-        let holding = contest.iter().zip(won).filter(|(s, _)| s.set.contains(c));
-        2 * holding.map(|(_, w)| w).sum::<usize>() >= DRAWINGS
-    };
-    if names.is_empty() || first.set.iter().any(stands) {
-        return None;
-    }
-    let mut others: Vec<(usize, String)> = (contest.iter().zip(won).skip(1))
-        .filter(|o| *o.1 > 0)
-        .map(|(s, w)| match ids(candidates, &s.set).join(" + ") {
-            none if none.is_empty() => (*w, "no effect at all".to_owned()),
-            some => (*w, some),
-        })
-        .collect();
-    others.sort_by_key(|o| std::cmp::Reverse(o.0));
-    let told: Vec<String> = others.iter().map(|(w, s)| format!("{s} in {w}")).collect();
-    Some(format!(
-        "{} explains most, but stays ahead in {} of {DRAWINGS} drawings of the runs; {}",
-        names.join(" + "),
-        won.first().copied().unwrap_or(0),
-        told.join(", ")
-    ))
 }
 
 /// What to measure where no effect of the library comes near: is it the gauges or the runs?

@@ -25,6 +25,7 @@ mod scorer;
 mod screen;
 mod size;
 mod smooth;
+mod standing;
 mod state;
 mod tolerance;
 mod validation;
@@ -33,7 +34,7 @@ pub use adequacy::{Adequacy, adequacy, deviate};
 pub use covariance::{Selection, covariance, read_patterns};
 pub use detect::DECISIVE;
 pub use examine::{examine, examine_with};
-pub use extended::{corrected_readings, extended_state, predicted_with};
+pub use extended::{corrected_readings, extended_state};
 pub use frame::{
     GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, NuisanceLoad, PayloadWeight, PlaneStrainRow,
     Scatter, StiffnessOf, StiffnessSignature, StrainFrame, WheelForces, Wiring,

@@ -31,16 +31,31 @@ pub(super) fn best_by_own_covariance(
     if first.iter().all(|s| s.set != found.set) {
         first.push(found.clone());
     }
-    let runs = frame.observations.fit_runs();
-    let own = |s: Scored<Fit>| {
-        let members = s.set.iter().copied();
-        let reference: Vec<(usize, Vec<f64>)> =
-            members.zip(s.fit.parameters.iter().cloned()).collect();
-        Likelihood::new(frame, candidates, &runs, &reference).score(&s.set, Some((&s, None)))
-    };
+    let own = |s: Scored<Fit>| under_own_covariance(frame, candidates, &s.set, &s);
     let scored: Vec<Option<Scored<Fit>>> = first.into_par_iter().map(own).collect();
     let all: Vec<Scored<Fit>> = scored.into_iter().flatten().collect();
     settle(&all, DECISIVE)
+}
+
+/// A set under the covariance of the prediction that its members make with the parameters that they have in `near`.
+pub(super) fn under_own_covariance(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    set: &[usize],
+    near: &Scored<Fit>,
+) -> Option<Scored<Fit>> {
+    let reference = reference_of(near);
+    let reference: Vec<(usize, Vec<f64>)> = (reference.into_iter())
+        .filter(|(c, _)| set.contains(c))
+        .collect();
+    let runs = frame.observations.fit_runs();
+    Likelihood::new(frame, candidates, &runs, &reference).score(set, Some((near, None)))
+}
+
+/// Members with their parameters.
+pub(super) fn reference_of(s: &Scored<Fit>) -> Vec<(usize, Vec<f64>)> {
+    let parameters = s.fit.parameters.iter().cloned();
+    s.set.iter().copied().zip(parameters).collect()
 }
 
 /// Sets in which a fault of one or two channels takes the place of all that `set` says of those channels alone.

@@ -18,6 +18,8 @@ pub struct Withheld {
     pub no_fall: Option<[f64; 2]>,
     /// Its noise over the stated one where that is more than noise stated too small.
     pub noise: Option<f64>,
+    /// What speaks against its names: neighbours that fail together, drawings of the runs.
+    pub doubt: Option<String>,
     /// What it takes is told already: a form that is no effect of the library.
     pub is_told: bool,
 }
@@ -25,7 +27,7 @@ pub struct Withheld {
 impl Withheld {
     /// What speaks against the set itself.
     fn reasons(&self) -> Vec<String> {
-        let mut out = Vec::new();
+        let mut out: Vec<String> = self.doubt.iter().cloned().collect();
         if !self.implausible.is_empty() {
             out.push(format!(
                 "the size of {} is none that occurs",
@@ -203,6 +205,10 @@ mod tests {
             noise: Some(2.5),
             ..Withheld::default()
         };
+        let doubt = Withheld {
+            doubt: Some("three neighbours".into()),
+            ..Withheld::default()
+        };
         let told = Withheld {
             is_told: true,
             ..Withheld::default()
@@ -211,6 +217,7 @@ mod tests {
             (implausible, "zero_drift:G01"),
             (no_fall, "1.00 % before, 2.00 % after"),
             (noise, "2.50 times"),
+            (doubt, "three neighbours"),
             (told, "no effect of the library"),
             (Withheld::default(), "together"),
         ] {

@@ -4,6 +4,7 @@ use super::detect::{DECISIVE, INDISTINGUISHABLE};
 use super::explanation::{discrepancy, named_part};
 use super::frame::StrainFrame;
 use super::likelihood::{Fit, Likelihood};
+use super::own_covariance::{reference_of, under_own_covariance};
 use crate::reconcile::effect::{Candidate, Discrepancy, Extension};
 use crate::reconcile::outcome::SmoothAt;
 use crate::reconcile::search::{Addition, Scored, Scorer, settle};
@@ -16,7 +17,8 @@ pub(super) fn is_smooth(candidates: &[Candidate], c: usize) -> bool {
     matches!(discrepancy(candidates, c), Some(Discrepancy::Smooth(_)))
 }
 
-/// The smooth error, with as few of the names of `best` as it needs, where it explains these runs as well as all of them do: its log evidence
+/// The smooth error, with as few of the names of `best` as it needs, where it leads what is left without it and explains these runs as well as
+/// all of them do: its log evidence
 /// is at most [`INDISTINGUISHABLE`] behind, or behind by less than the names that it saves must each raise ([`DECISIVE`]).
 ///
 /// `ln p(y | lengths, a) = -(r' C^-1 r + theta' theta / a^2) / 2 - ln det(C) / 2 - ln det(a^2 H) / 2`, H the Hessian at the best theta: what a
@@ -68,9 +70,14 @@ pub(super) fn smooth_instead(
     }
     let found = settle(&tried, DECISIVE)?;
     // Each under the covariance of its own prediction, as sets of names are compared.
-    let reference = reference_of(&found);
-    let found = Likelihood::new(frame, candidates, &runs, &reference)
-        .score(&found.set, Some((&found, None)))?;
+    let found = under_own_covariance(frame, candidates, &found.set, &found)?;
+    // A curve that leads nothing explains nothing, however near it comes to the names.
+    let rest = found.set.iter().copied();
+    let rest: Vec<usize> = rest.filter(|c| !is_smooth(candidates, *c)).collect();
+    let without = under_own_covariance(frame, candidates, &rest, &found)?;
+    if found.log_evidence < without.log_evidence + DECISIVE {
+        return None;
+    }
     let saved = DECISIVE * (best.set.len() as f64 - found.set.len() as f64);
     // One factor for all gauges is a curve itself: another curve near it is no rival unless it explains more.
     let only_scale = (names.iter().filter(|c| !found.set.contains(c)))
@@ -78,11 +85,6 @@ pub(super) fn smooth_instead(
         .all(|c| matches!(c.effect.extension(frame, &[]), Extension::Scale(_)));
     let margin = if only_scale { 0.0 } else { INDISTINGUISHABLE };
     (best.log_evidence - found.log_evidence < saved.max(margin)).then_some(found)
-}
-
-fn reference_of(s: &Scored<Fit>) -> Vec<(usize, Vec<f64>)> {
-    let parameters = s.fit.parameters.iter().cloned();
-    s.set.iter().copied().zip(parameters).collect()
 }
 
 /// All parts of `names` but the empty one: the whole first, then single ones, then the rest.
@@ -93,7 +95,7 @@ fn parts(names: &[usize]) -> Vec<Vec<usize>> {
             .map(|n| *n.1)
             .collect()
     };
-    let mut out: Vec<Vec<usize>> = (1..1usize << names.len().min(8)).map(of).collect();
+    let mut out: Vec<Vec<usize>> = (1..1usize << names.len()).map(of).collect();
     out.sort_by_key(|p| match p.len() {
         n if n == names.len() => 0,
         n => n,
