@@ -2,11 +2,13 @@
 
 use super::deck_frame::DeckFrame;
 use super::described::effect_of;
-use super::extended::{DECK, ExtendedModel, PAYLOAD, RUNS, SENSITIVITY, STRAIN};
+use super::extended::{Corrected, DECK, ExtendedModel, PAYLOAD, RUNS, SENSITIVITY, STRAIN};
+use super::extended_loads::sizes_by_component;
 use super::stiffness::factor;
+use crate::app::job::correct::{channel_of, turned_by};
 use crate::app::job::{EffectSource, Job};
 use crate::reconcile::NamedEffect;
-use crate::reconcile::effect::{Correction, Extension, Noted};
+use crate::reconcile::effect::{Correction, Extension, Noted, Nuisance};
 use crate::reconcile::strain::{StiffnessOf, StrainFrame};
 use crate::units::number;
 use serde::Serialize;
@@ -87,7 +89,11 @@ impl Held<'_> {
                 vec![self.in_job("[payload] weight_in_model", "false", "true".into())]
             }
             Extension::Scale(factor) => vec![match self.deck {
-                Some(_) => self.in_job("[[correction]] of every gauge, gain", "1", number(*factor)),
+                Some(_) => self.in_job(
+                    "[[correction]] of every gauge, gain",
+                    "times 1",
+                    format!("times {}", number(*factor)),
+                ),
                 None => at(
                     format!("{SENSITIVITY}: every entry"),
                     "times 1",
@@ -102,13 +108,19 @@ impl Held<'_> {
             Extension::RunExchange { runs } => vec![at(
                 format!("{RUNS}: rows {}", runs.join(" and ")),
                 "as noted",
-                "exchanged".into(),
+                "loads and payload exchanged".into(),
             )],
             Extension::RunRecord { run, noted, .. } => self.record(run, *noted),
-            Extension::NuisanceLoads { loads, .. } => {
+            Extension::NuisanceLoads { source, loads, .. } => {
                 let names: Vec<&str> = loads.iter().map(|l| l.0.as_str()).collect();
-                let sizes: Vec<String> = e.size.iter().map(|s| number(*s)).collect();
-                let found = format!("nuisance loads, found {} {} rms", sizes.join(", "), e.unit);
+                let sizes = match source {
+                    Nuisance::SideLoads => sizes_by_component(&e.size),
+                    _ => {
+                        let list: Vec<String> = e.size.iter().map(|s| number(*s)).collect();
+                        format!("{} {}", list.join(", "), e.unit)
+                    }
+                };
+                let found = format!("nuisance loads, found {sizes} rms");
                 vec![self.in_job(&format!("[[load]] {}", names.join(", ")), "none", found)]
             }
             Extension::Nothing => Vec::new(),
@@ -120,36 +132,105 @@ impl Held<'_> {
     }
 
     fn channel(&self, gauge: &str, correction: &Correction) -> Place {
-        let (key, old, new) = match correction {
-            Correction::Sign => ("sign", "1", "-1".into()),
-            Correction::Gain(gain) => ("gain", "1", number(*gain)),
-            Correction::Offset(offset) => ("offset_microstrain", "0", number(*offset)),
-            Correction::ExchangedWith(other) => ("exchanged_with", "none", other.clone()),
-            Correction::AngleDeg(by) if self.deck.is_some() => ("angle_deg", "0", number(*by)),
-            Correction::AngleDeg(by) => {
-                return at(
-                    format!("{SENSITIVITY}: row {gauge}"),
-                    "as drawn",
-                    format!("turned by {} degrees", number(*by)),
-                );
+        let in_s = |what: String| at(format!("{SENSITIVITY}: row {gauge}"), "as drawn", what);
+        let turned = matches!(correction, Correction::AngleDeg(_));
+        match correction {
+            Correction::AngleDeg(by) if self.deck.is_none() => {
+                in_s(format!("turned by {} degrees", number(*by)))
             }
-            Correction::PositionMm(by) => {
-                return at(
-                    format!("{SENSITIVITY}: row {gauge}"),
-                    "as drawn",
-                    format!("moved by {} mm", number(*by)),
-                );
+            Correction::PositionMm(by) => in_s(format!("moved by {} mm", number(*by))),
+            _ if self.extended.readings.is_some() && !turned => {
+                let (key, new) = key_of(correction);
+                at(
+                    format!("{STRAIN}: column {gauge}"),
+                    "as read",
+                    format!("put right by {key} {new}"),
+                )
             }
-            Correction::Ignore => ("ignore", "false", "true".into()),
-        };
-        match self.extended.readings {
-            Some(_) => at(
-                format!("{STRAIN}: column {gauge}"),
-                "as read",
-                format!("put right by {key} {new}"),
-            ),
-            None => self.in_job(&format!("[[correction]] of {gauge}, {key}"), old, new),
+            _ => self.entry(gauge, correction),
         }
+    }
+
+    /// What the entry of a channel holds that undoes `correction`, and what those of the job held.
+    fn entry(&self, gauge: &str, correction: &Correction) -> Place {
+        // A fault that acts before an exchange stands with the channel it is exchanged with.
+        let has = |c: &&Corrected, name: &str| {
+            c.gauge == name || c.exchanged_with.as_deref() == Some(name)
+        };
+        let list = self.extended.corrections.iter();
+        let of_either = list
+            .clone()
+            .find(|c| c.exchanged_with.is_some() && has(c, gauge));
+        let partner = of_either.and_then(|c| match c.gauge == gauge {
+            true => c.exchanged_with.as_deref(),
+            false => Some(c.gauge.as_str()),
+        });
+        let names = [Some(gauge), partner].into_iter().flatten();
+        let (_, found) = key_of(correction);
+        for name in names {
+            let Some(c) = list.clone().find(|c| c.gauge == name) else {
+                continue;
+            };
+            let before = channel_of(&self.job.corrections, name);
+            let is_first = !self.job.corrections.iter().any(|c| c.gauge == name);
+            // Several entries of a channel: their factors are multiplied, their offsets and angles added.
+            let with = |key: &str, [old, new, both]: [f64; 3]| {
+                let new = match is_first {
+                    true => number(new),
+                    false => format!(
+                        "{} in a further entry, {} together",
+                        number(new),
+                        number(both)
+                    ),
+                };
+                self.in_job(
+                    &format!("[[correction]] of {name}, {key}"),
+                    &number(old),
+                    new,
+                )
+            };
+            let sign = |v: f64| 1f64.copysign(v);
+            let (f, o, turn) = (
+                before.factor,
+                before.offset,
+                turned_by(&self.job.corrections, name),
+            );
+            match correction {
+                Correction::Sign if c.factor < 0.0 => {
+                    return with("sign", [sign(f), -1.0, -sign(f)]);
+                }
+                Correction::Gain(_) if c.ignore => {
+                    let key = format!("[[correction]] of {name}, ignore");
+                    return self.in_job(&key, "false", "true".into());
+                }
+                Correction::Gain(_) if c.factor.abs() != 1.0 => {
+                    let (old, new) = (f.abs(), c.factor.abs());
+                    return with("gain", [old, new, old * new]);
+                }
+                Correction::Offset(_) if c.offset_microstrain != 0.0 => {
+                    let new = c.offset_microstrain;
+                    return with("offset_microstrain", [o, new, o + new]);
+                }
+                Correction::AngleDeg(_) if c.angle_deg != 0.0 => {
+                    return with("angle_deg", [turn, c.angle_deg, turn + c.angle_deg]);
+                }
+                _ => {}
+            }
+        }
+        let (key, old) = match correction {
+            Correction::ExchangedWith(_) => ("exchanged_with", "none"),
+            Correction::Ignore => ("ignore", "false"),
+            // Two effects that undo each other: no entry is left of them.
+            Correction::Sign
+            | Correction::Gain(_)
+            | Correction::Offset(_)
+            | Correction::AngleDeg(_)
+            | Correction::PositionMm(_) => {
+                let why = format!("as it was: {found} is undone by another effect");
+                return self.in_job(&format!("[[correction]] of {gauge}"), "as it is", why);
+            }
+        };
+        self.in_job(&format!("[[correction]] of {gauge}, {key}"), old, found)
     }
 
     /// Properties of the deck with their old and new values; of a given S the size alone.
@@ -183,11 +264,18 @@ impl Held<'_> {
 
     fn mass(&self, place: &str, kilogram: f64) -> Vec<Place> {
         let new = format!("{} kg", number(kilogram));
-        let strain = self.in_job(
-            "[[correction]] of every gauge, offset_microstrain",
-            "0",
-            format!("strain of {new} at {place}"),
-        );
+        let of_mass = format!("strain of {new} at {place}");
+        let strain = match self.extended.readings {
+            Some(_) => at(
+                format!("{STRAIN}: every column"),
+                "as read",
+                format!("less the {of_mass}"),
+            ),
+            None => {
+                let key = "[[correction]] of every gauge, offset_microstrain";
+                self.in_job(key, "as it is", format!("more by the {of_mass}"))
+            }
+        };
         let card = self
             .deck
             .map(|_| at(format!("{DECK}: CONM2 at {place}"), "none", new));
@@ -218,7 +306,7 @@ impl Held<'_> {
     /// What was noted of a run, and what stands there now.
     fn record(&self, run: &str, noted: Noted) -> Vec<Place> {
         let frame = self.frame;
-        let (n_l, n_c) = (frame.n_loads(), frame.n_columns());
+        let n_l = frame.n_loads();
         let row = frame.observations.runs.iter().position(|r| r == run);
         let now = self.extended.runs.as_ref();
         let (Some(r), Some(now)) = (row, now) else {
@@ -227,11 +315,12 @@ impl Held<'_> {
         let load = |l: usize| {
             let name = frame.load_names.get(l)?;
             let old = frame.loads.get(r * n_l + l)?;
-            let new = now.get(r * n_c + l)?;
+            let new = now.loads.get(r * n_l + l)?;
+            let unit = load_unit(frame.is_moment(l));
             Some(at(
                 format!("{RUNS}: run {run}, {name}"),
-                &number(*old),
-                number(*new),
+                &format!("{} {unit}", number(*old)),
+                format!("{} {unit}", number(*new)),
             ))
         };
         match noted {
@@ -239,7 +328,7 @@ impl Held<'_> {
             Noted::Loads => (0..n_l).filter_map(load).collect(),
             Noted::Mass => {
                 let old = frame.payload.get(r).map_or(0.0, |p| p[0]);
-                let new = now.get(r * n_c + n_l).copied().unwrap_or(old);
+                let new = now.payload.get(r).map_or(old, |p| p[0]);
                 let path = format!("{RUNS}: run {run}, payload_mass");
                 vec![at(
                     path,
@@ -248,6 +337,26 @@ impl Held<'_> {
                 )]
             }
         }
+    }
+}
+
+/// The key of a job that says what is wrong with a channel, and what was found of it.
+fn key_of(correction: &Correction) -> (&'static str, String) {
+    match correction {
+        Correction::Sign => ("sign", "-1".into()),
+        Correction::Gain(gain) => ("gain", number(*gain)),
+        Correction::Offset(offset) => ("offset_microstrain", number(*offset)),
+        Correction::ExchangedWith(other) => ("exchanged_with", other.clone()),
+        Correction::AngleDeg(by) => ("angle_deg", number(*by)),
+        Correction::PositionMm(by) => ("position", format!("{} mm", number(*by))),
+        Correction::Ignore => ("ignore", "true".into()),
+    }
+}
+
+fn load_unit(is_moment: bool) -> &'static str {
+    match is_moment {
+        true => "kN m",
+        false => "kN",
     }
 }
 

@@ -121,6 +121,26 @@ pub(super) fn corrections(
     Some(undo.iter().enumerate().filter_map(entry).collect())
 }
 
+/// Corrections of the gauges of a deck that are turned, which no reading written anew can hold.
+pub(super) fn turned(effects: &[NamedEffect], has_deck: bool) -> Vec<Corrected> {
+    let lists = effects.iter().filter_map(|e| match &e.extension {
+        Extension::Channels(list) if has_deck => Some(list),
+        _ => None,
+    });
+    let one = |(gauge, correction): &(String, Correction)| match correction {
+        Correction::AngleDeg(by) => Some(Corrected {
+            gauge: gauge.clone(),
+            factor: 1.0,
+            offset_microstrain: 0.0,
+            exchanged_with: None,
+            angle_deg: *by,
+            ignore: false,
+        }),
+        _ => None,
+    };
+    lists.flatten().filter_map(one).collect()
+}
+
 /// Whether the job corrects a channel already.
 fn is_corrected(job: &Job, frame: &StrainFrame, gauge: usize) -> bool {
     let is_of = |c: &StrainCorrection, name: &str| {

@@ -1,9 +1,9 @@
 //! What the named effects of strain change: readings, S, what acts in the runs, the deck.
 
-use super::corrected::{Weight, corrections};
+use super::corrected::{Weight, corrections, turned};
 use super::deck_frame::DeckFrame;
 use super::described::effect_of;
-use super::extended::{ExtendedModel, ExtendedS};
+use super::extended::{ExtendedModel, ExtendedRuns, ExtendedS};
 use super::extended_deck::NamedStiffness;
 use super::extended_loads::side_loads;
 use super::redirect::text_of;
@@ -11,9 +11,10 @@ use crate::app::fault::Faults;
 use crate::app::job::{EffectSource, Job};
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
-use crate::reconcile::effect::{Correction, Extension, Nuisance};
+use crate::reconcile::effect::{Correction, Extension, Noted, Nuisance};
 use crate::reconcile::strain::{
-    N_PAYLOAD_COLUMNS, StiffnessOf, StrainFrame, StrainState, corrected_readings, extended_state,
+    N_PAYLOAD_COLUMNS, PayloadWeight, StiffnessOf, StrainFrame, StrainState, corrected_readings,
+    extended_state,
 };
 use crate::reconcile::{NamedEffect, Outcome};
 
@@ -134,15 +135,20 @@ pub(super) fn extended(
         return Ok(None);
     }
     let noted = others.iter().any(|e| changes_notes(&e.extension));
+    let (readings, corrections) = match corrections {
+        Some(entries) => (None, entries),
+        None => (
+            corrected_readings(frame, effects)
+                .map(|values| less_gains(values, frame, effects, weights.as_deref())),
+            turned(effects, deck.is_some()),
+        ),
+    };
     Ok(Some(ExtendedModel {
         deck: deck_bytes,
-        readings: match &corrections {
-            Some(_) => None,
-            None => corrected_readings(frame, effects),
-        },
-        corrections: corrections.unwrap_or_default(),
+        readings,
+        corrections,
         sensitivity,
-        runs: noted.then_some(state.columns),
+        runs: noted.then(|| runs_with(frame, &others, &state)),
         nominal_x_m: match moved {
             Moved::Origin { x_m } => Some(x_m),
             Moved::Not | Moved::Signature { .. } | Moved::InNotes => None,
@@ -171,6 +177,28 @@ fn weights_in(
         }
     }
     Ok(out)
+}
+
+/// Readings less what the weights of named masses gain by the deck that is written.
+fn less_gains(
+    mut values: Vec<f64>,
+    frame: &StrainFrame,
+    effects: &[NamedEffect],
+    weights: Option<&[Weight]>,
+) -> Vec<f64> {
+    for e in effects {
+        let Extension::Mass { place, kilogram } = &e.extension else {
+            continue;
+        };
+        let own = weights.iter().flat_map(|w| w.iter());
+        for (_, gains) in own.filter(|w| w.0 == *place) {
+            for row in values.chunks_exact_mut(frame.n_gauges().max(1)) {
+                let cells = row.iter_mut().zip(gains);
+                cells.for_each(|(cell, per_kg)| *cell -= kilogram * per_kg);
+            }
+        }
+    }
+    values
 }
 
 /// Where a payload that stands elsewhere than noted is moved.
@@ -256,6 +284,57 @@ fn changes_notes(e: &Extension) -> bool {
         e,
         PayloadOffset { .. } | LoadScale { .. } | RunExchange { .. } | RunRecord { .. }
     )
+}
+
+/// What is noted of the runs with `effects` in them, whose `state` says what acts.
+fn runs_with(frame: &StrainFrame, effects: &[NamedEffect], state: &StrainState) -> ExtendedRuns {
+    let (n_l, n_c) = (frame.n_loads(), frame.n_columns().max(1));
+    let rows = || state.columns.chunks_exact(n_c);
+    // Columns of the payload are its mass times 1, x, y.
+    let acting = |row: &[f64]| match row.get(n_l..n_l + 3) {
+        Some([m, mx, my]) if *m > 0.0 => [*m, mx / m, my / m],
+        _ => [0.0; 3],
+    };
+    let weighs = |e: &NamedEffect| matches!(e.extension, Extension::PayloadWeight);
+    let acts = frame.payload_weight == PayloadWeight::InModel || effects.iter().any(weighs);
+    ExtendedRuns {
+        loads: rows()
+            .flat_map(|row| row.iter().take(n_l))
+            .copied()
+            .collect(),
+        payload: match acts {
+            true => rows().map(acting).collect(),
+            false => payload_noted(frame, effects),
+        },
+    }
+}
+
+/// The payload of every run with what was noted wrong of it put right, where its weight acts nowhere and no column tells of it.
+fn payload_noted(frame: &StrainFrame, effects: &[NamedEffect]) -> Vec<[f64; 3]> {
+    let at = |run: &String| frame.observations.runs.iter().position(|r| r == run);
+    let mut out = frame.payload.clone();
+    for e in effects {
+        match &e.extension {
+            Extension::RunExchange { runs: [a, b] } => {
+                if let (Some(a), Some(b)) = (at(a), at(b))
+                    && a.max(b) < out.len()
+                {
+                    out.swap(a, b);
+                }
+            }
+            Extension::RunRecord {
+                run,
+                noted: Noted::Mass,
+                size,
+            } => {
+                if let Some([mass, ..]) = at(run).and_then(|r| out.get_mut(r)) {
+                    *mass += size;
+                }
+            }
+            _ => {}
+        }
+    }
+    out
 }
 
 /// S with effects in it and with the loads that were left out; `None` where it stays as it is.

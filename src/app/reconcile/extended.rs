@@ -37,8 +37,8 @@ pub struct ExtendedModel {
     pub nominal_x_m: Option<f64>,
     /// S, where it is given and changes.
     pub sensitivity: Option<ExtendedS>,
-    /// What acts, `n_runs x n_columns`: wheel loads, then payload mass times 1, dx, dy, dx dy; where it changes.
-    pub runs: Option<Vec<f64>>,
+    /// What is noted of the runs, where it changes.
+    pub runs: Option<ExtendedRuns>,
 }
 
 impl ExtendedModel {
@@ -85,6 +85,15 @@ pub struct Corrected {
     pub angle_deg: f64,
     /// Whether it is left out.
     pub ignore: bool,
+}
+
+/// What is noted of the runs, with effects in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExtendedRuns {
+    /// Wheel loads, kN and kN m, `n_runs x n_loads`.
+    pub loads: Vec<f64>,
+    /// Payload by run: mass, kg, distance in x and in y from its nominal place, m.
+    pub payload: Vec<[f64; 3]>,
 }
 
 /// S with effects in it.

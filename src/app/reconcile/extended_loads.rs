@@ -5,7 +5,7 @@ use crate::app::job::{Component, Job, LoadActs};
 use crate::reconcile::NamedEffect;
 use crate::reconcile::effect::{Extension, Nuisance};
 use crate::reconcile::strain::StrainFrame;
-use crate::units::KILO;
+use crate::units::{KILO, number};
 use nastran::bdf::{Field, format_card};
 use toml::{Table, Value};
 
@@ -65,6 +65,19 @@ pub(super) fn side_loads(job: &Job, effects: &[NamedEffect]) -> Vec<SideLoad> {
         }
     }
     out
+}
+
+/// Sizes of side loads, one a component, in words.
+pub(super) fn sizes_by_component(sizes: &[f64]) -> String {
+    let word = |(c, size): (&Component, &f64)| {
+        let unit = match c.is_force() {
+            true => "kN",
+            false => "kN m",
+        };
+        format!("{} {} {unit}", c.name(), number(*size))
+    };
+    let list: Vec<String> = COMPONENTS.iter().zip(sizes).map(word).collect();
+    list.join(", ")
 }
 
 /// The component that a load's name begins or ends with; `FZ` where it has none (a temperature).

@@ -3,7 +3,9 @@
 use crate::app::fault::Faults;
 use crate::app::job::Job;
 use crate::app::output::Output;
-use crate::app::reconcile::extended::{DECK, ExtendedS, PAYLOAD, RUNS, SENSITIVITY, STRAIN};
+use crate::app::reconcile::extended::{
+    DECK, ExtendedRuns, ExtendedS, PAYLOAD, RUNS, SENSITIVITY, STRAIN,
+};
 use crate::app::reconcile::extended_columns::{payload_factors, sensitivity_columns};
 use crate::app::reconcile::{Reconciled, extended_job};
 use crate::reconcile::strain::StrainFrame;
@@ -27,8 +29,8 @@ pub(super) fn write_extended(found: &Reconciled, out: &mut Output) -> Result<(),
                 write(PAYLOAD, payload_csv(&found.job, frame, &s.influence))?;
             }
         }
-        if let Some(columns) = &extended.runs {
-            write(RUNS, runs_csv(frame, columns))?;
+        if let Some(noted) = &extended.runs {
+            write(RUNS, runs_csv(frame, noted))?;
         }
     }
     if let Some(bytes) = &extended.deck {
@@ -92,30 +94,16 @@ fn payload_csv(job: &Job, frame: &StrainFrame, influence: &[f64]) -> String {
     out
 }
 
-/// What acts in each run of the extended model, as a runs file.
-fn runs_csv(frame: &StrainFrame, columns: &[f64]) -> String {
+/// What is noted of the runs of the extended model, as a runs file.
+fn runs_csv(frame: &StrainFrame, noted: &ExtendedRuns) -> String {
     let [at_x, at_y] = frame.payload_origin;
-    let (n_l, n_c) = (frame.n_loads(), frame.n_columns());
     let names: Vec<_> = frame.load_names.iter().map(|n| csv_cell(n)).collect();
-    // Without its weight in the model all columns of the payload are zero, and what was noted stands.
-    let mut rows = columns.chunks_exact(n_c.max(1));
-    let is_weighed = rows.any(|row| row.get(n_l).is_some_and(|m| *m > 0.0));
     let mut out = format!("run,payload_mass,payload_x,payload_y,{}\n", names.join(","));
-    for (r, (run, row)) in frame
-        .observations
-        .runs
-        .iter()
-        .zip(columns.chunks_exact(n_c.max(1)))
-        .enumerate()
-    {
-        let noted = frame.payload.get(r).copied().unwrap_or([0.0; 3]);
-        // Columns of the payload are its mass times 1, x, y.
-        let [mass, x, y] = match row.get(n_l..n_l + 3) {
-            Some([m, mx, my]) if *m > 0.0 => [*m, mx / m, my / m],
-            Some(_) if is_weighed => [0.0; 3],
-            _ => noted,
-        };
-        let loads: Vec<String> = row.iter().take(n_l).map(|f| format!("{f:.6}")).collect();
+    let n_l = frame.n_loads();
+    let runs = frame.observations.runs.iter().zip(&noted.payload);
+    for (r, (run, [mass, x, y])) in runs.enumerate() {
+        let row = noted.loads.iter().skip(r * n_l).take(n_l);
+        let loads: Vec<String> = row.map(|f| format!("{f:.6}")).collect();
         let _ = writeln!(
             out,
             "{},{mass:.6},{:.6},{:.6},{}",
