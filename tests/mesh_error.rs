@@ -422,3 +422,79 @@ fn uniform_strain_beside_rods_has_no_mesh_error() {
         );
     }
 }
+
+struct NoFiles;
+
+impl nastran::bdf::Loader for NoFiles {
+    fn load(&mut self, _: &nastran::bdf::IncludeRequest) -> Result<nastran::bdf::Loaded, String> {
+        Err("no include here".to_owned())
+    }
+}
+
+/// Large meshes are divided round the gauges alone: what that changes at a gauge against what dividing the whole mesh changes there.
+#[test]
+fn a_mesh_divided_round_a_gauge_says_what_one_divided_everywhere_says() {
+    use strainbridge::fe::{SolveOptions, Support, UnitLoad, solve_unit_loads_on};
+    use strainbridge::gauge::change_by_refining;
+    use strainbridge::model::{Model, RefinedModel, ShellIx, Vec3};
+    let frame = Frame::new(1);
+    let deck = nastran::bdf::read_deck("frame.bdf", frame.deck().into_bytes(), &mut NoFiles);
+    let (model, faults) = Model::from_deck(&deck);
+    assert!(faults.is_empty(), "{faults:?}");
+    let support = Support {
+        spc: Some(1),
+        relief: strainbridge::fe::Relief::None,
+    };
+    let loads: Vec<UnitLoad> = LOADS
+        .into_iter()
+        .map(|(component, side)| {
+            let axis = ["FX", "FY", "FZ"]
+                .iter()
+                .position(|c| *c == component)
+                .unwrap();
+            let mut force = Vec3::zeros();
+            force[axis] = EXPECTED;
+            UnitLoad::AtGrid {
+                grid: model.grid_ix(900_001 + side as u32).unwrap(),
+                force,
+                moment: Vec3::zeros(),
+            }
+        })
+        .collect();
+    let solve = |m: &Model| {
+        solve_unit_loads_on(m, support, &loads, &SolveOptions::default())
+            .unwrap()
+            .0
+    };
+    let coarse = solve(&model);
+    let change = |fine: &RefinedModel| {
+        let refined = solve(&fine.model);
+        let pairs: Vec<_> = coarse.cases.iter().zip(&refined.cases).collect();
+        change_by_refining(&model, fine, &pairs)
+    };
+    let whole = change(&model.refined().unwrap());
+    let cells = middle();
+    for rows in [1, 2, 4, 6, 10] {
+        let (mut off, mut all) = (0.0, 0.0);
+        for cell in cells.iter().step_by(9) {
+            let shell = frame.cells.iter().position(|c| c == cell).unwrap();
+            let part = model.shells_near(&[ShellIx(shell as u32)], rows);
+            let part = change(&model.refined_at(&part).unwrap());
+            for (part, whole) in part.iter().zip(&whole) {
+                let strains = |c: &strainbridge::fe::CaseResult| c.shells.centre[shell];
+                let pairs = strains(part)
+                    .into_iter()
+                    .flatten()
+                    .zip(strains(whole).into_iter().flatten());
+                for (p, w) in pairs {
+                    off += (p - w) * (p - w);
+                    all += w * w;
+                }
+            }
+        }
+        println!(
+            "{rows} rows: {:.3} of the change is missed",
+            (off / all as f64).sqrt()
+        );
+    }
+}

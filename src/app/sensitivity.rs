@@ -6,7 +6,7 @@ use super::job::{AngleStep, Job};
 use super::outcome::{Answer, Outcome, StatedUnits};
 use super::place::allowed_sites;
 use super::strain::{
-    Conditioning, GaugeMeshError, Prepared, lay_gauges, load_units, mesh_errors, prepare,
+    Conditioning, GaugeMeshError, Prepared, WantedAt, lay_gauges, load_units, mesh_errors, prepare,
     read_fields, without_strain,
 };
 use super::work::Work;
@@ -70,7 +70,7 @@ pub fn sensitivity(job: &Job, cx: &Context) -> Result<Outcome<Sensed>, Faults> {
 
 /// S of every candidate: each allowed surface at each angle of the grid (every 15 degrees where the job says continuous).
 fn of_candidates(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
-    let fields = read_fields(work, job)?;
+    let fields = read_fields(work, job, WantedAt::Anywhere)?;
     let cases = fields.load_cases(job);
     let (common, findings) = common_shells(&cases);
     work.findings.extend(findings);

@@ -1,5 +1,6 @@
 //! From a model and loads, or from a result file, to strain fields.
 
+mod adjoint;
 mod applied;
 mod assembly;
 mod autospc;
@@ -46,6 +47,7 @@ mod unbalanced;
 mod unsupported_cards;
 mod what_hangs;
 
+pub use adjoint::{Adjoint, StrainTerm};
 pub use error::{FeError, FreeDof, Refusal};
 pub use load_case::{LoadCase, Relief, loads_of_subcase, relief_of};
 pub use mass::MassProperties;

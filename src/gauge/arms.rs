@@ -2,7 +2,7 @@
 
 use crate::fe::shell_frame::ShellPlace;
 use crate::fe::strain_tensor::Surface;
-use crate::fe::{CaseResult, PlaneStrain};
+use crate::fe::{CaseResult, PlaneStrain, StrainTerm};
 use crate::model::{BeamIx, ShellIx, Vec3};
 
 /// Where an arm takes its strain.
@@ -73,6 +73,24 @@ impl Gauge {
             Surface::Bottom => -self.normal,
         }
     }
+}
+
+/// The shells' part of what a gauge reads, for [`crate::fe::Adjoint`]; a bar's arm has none.
+pub fn strain_terms(gauge: &Gauge) -> Vec<StrainTerm> {
+    let term = |arm: &Arm| match arm.spot {
+        Spot::Shell {
+            shell,
+            surface,
+            place,
+        } => Some(StrainTerm {
+            shell,
+            surface,
+            place,
+            coefficient: arm.coefficient,
+        }),
+        Spot::Beam { .. } | Spot::BeamAxis { .. } => None,
+    };
+    gauge.arms.iter().filter_map(term).collect()
 }
 
 /// What a gauge reads in a load case, strain; `None` where the case has no strain at one of its spots.

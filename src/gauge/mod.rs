@@ -16,7 +16,7 @@ mod spec;
 mod surface;
 mod unverified;
 
-pub use arms::{Arm, Gauge, Spot, reading, shell_strain};
+pub use arms::{Arm, Gauge, Spot, reading, shell_strain, strain_terms};
 pub use beside::{Beside, beside_beam, beside_shell};
 pub use build::{CornerRows, build};
 pub use error::GaugeError;

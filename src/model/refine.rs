@@ -7,30 +7,36 @@ use nastran::cards::{CoordKind, Dofs, ShellShape};
 use nastran::place::Place;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A model whose shells are divided in four, and where each went.
+/// A model whose shells, all or some, are divided in four, and where each went.
 #[derive(Clone, Debug)]
 pub struct RefinedModel {
     /// The finer model. Load sets that act on elements are left out: they would have to be divided too. New grids have the mean
     /// temperature of their side or shell.
     pub model: Model,
     /// By shell of the coarse model: the shells it was divided into. Child k of a quadrilateral has its corner k, child k of a
-    /// triangle (k < 3) too; a triangle's fourth is the middle one.
+    /// triangle (k < 3) too; a triangle's fourth is the middle one. Four times itself where it was not divided.
     pub children: Vec<[ShellIx; 4]>,
 }
 
 impl Model {
-    /// Every shell divided in four at the middles of its sides; `None` where that would tear the mesh or leave it as it is: shells with
-    /// mid-side grids, no shells at all, and what else stands on a side of a shell in a displacement frame of its own.
+    /// Every shell divided in four at the middles of its sides: [`Model::refined_at`] all of them.
+    pub fn refined(&self) -> Option<RefinedModel> {
+        self.refined_at(&vec![true; self.shells.len()])
+    }
+
+    /// The shells that `divided` marks, by index, divided in four at the middles of their sides; `None` where that would tear the mesh or
+    /// leave it as it is: a marked shell with mid-side grids, none marked, and what else stands on a side of a marked shell in a displacement
+    /// frame of its own.
     ///
     /// Grids keep their index, so loads, masses and rigid elements stay where they are. New grids lie on the straight sides: a curved
     /// surface keeps its facets. They are constrained where both ends of their side are, by PS as by SPC sets. Bars, rods, shear panels
-    /// and solids stay as they are; where one of them goes along a side of a shell, the new grid there moves as the mean of the ends does,
-    /// linear as the edges of those elements and of the shell itself were.
-    pub fn refined(&self) -> Option<RefinedModel> {
-        if !self.can_be_refined() {
+    /// and solids stay as they are, and so do shells that are not marked; where one of them goes along a side of a marked shell, the new grid
+    /// there moves as the mean of the ends does, linear as the edges of those elements and of the shell itself were.
+    pub fn refined_at(&self, divided: &[bool]) -> Option<RefinedModel> {
+        if !self.can_be_refined(divided) {
             return None;
         }
-        let ties = self.sides_of_others()?;
+        let ties = self.sides_of_others(divided)?;
         let mut builder = Builder {
             grids: self.grids.clone(),
             middles: BTreeMap::new(),
@@ -39,23 +45,29 @@ impl Model {
             ties,
             tied: BTreeSet::new(),
         };
-        let mut shells = Vec::with_capacity(self.shells.len().checked_mul(4)?);
+        let n_divided = divided.iter().filter(|d| **d).count();
+        let mut shells = Vec::with_capacity(self.shells.len() + n_divided.checked_mul(3)?);
         let mut children = Vec::with_capacity(self.shells.len());
         let mut next_id = self.shells.last()?.id;
-        for shell in &self.shells {
-            let parts = builder.divide(shell)?;
-            let mut here = [ShellIx(0); 4];
-            for (slot, (grids, thickness)) in here.iter_mut().zip(parts) {
+        for (shell, is_divided) in self.shells.iter().zip(divided) {
+            let first = ShellIx(u32::try_from(shells.len()).ok()?);
+            let whole = [(shell.grids, shell.thickness)];
+            let quarters = is_divided.then(|| builder.divide(shell));
+            let parts = match &quarters {
+                Some(parts) => parts.as_ref()?.as_slice(),
+                None => &whole,
+            };
+            for (grids, thickness) in parts {
                 next_id = next_id.checked_add(1)?;
-                *slot = ShellIx(u32::try_from(shells.len()).ok()?);
                 shells.push(Shell {
                     id: next_id,
-                    grids,
-                    thickness,
+                    grids: *grids,
+                    thickness: *thickness,
                     ..*shell
                 });
             }
-            children.push(here);
+            let of_quarter = |k: u32| ShellIx(first.0 + if *is_divided { k } else { 0 });
+            children.push([0, 1, 2, 3].map(of_quarter));
         }
         let temperatures = self
             .temperatures
@@ -79,6 +91,29 @@ impl Model {
             ..self.clone()
         };
         Some(RefinedModel { model, children })
+    }
+
+    /// By index whether a shell is one of `of` or within `rows` rows of elements of one, next to each other by a grid.
+    pub fn shells_near(&self, of: &[ShellIx], rows: usize) -> Vec<bool> {
+        let mut near = vec![false; self.shells.len()];
+        let mut touched = vec![false; self.grids.len()];
+        let corners = |i: usize| {
+            let shell = self.shells.get(i).into_iter();
+            shell.flat_map(|s| s.grids.iter().take(s.shape.n_corners()))
+        };
+        let mut next: Vec<usize> = of.iter().map(|s| s.us()).collect();
+        next.retain(|i| *i < near.len());
+        for row in 0..=rows {
+            if row > 0 {
+                let meets = |i: &usize| !near[*i] && corners(*i).any(|g| touched[g.us()]);
+                next = (0..near.len()).filter(meets).collect();
+            }
+            for &i in &next {
+                near[i] = true;
+                corners(i).for_each(|g| touched[g.us()] = true);
+            }
+        }
+        near
     }
 
     /// Load sets that act at grids and by inertia alone.
@@ -173,24 +208,27 @@ impl Model {
         (sets, mpc)
     }
 
-    fn can_be_refined(&self) -> bool {
+    fn can_be_refined(&self, divided: &[bool]) -> bool {
         let plain = |s: &Shell| {
             use ShellShape::{Quad4, QuadR, Tria3, TriaR};
             matches!(s.shape, Quad4 | QuadR | Tria3 | TriaR)
         };
-        !self.shells.is_empty() && self.shells.iter().all(plain)
+        let mut marked = self.shells.iter().zip(divided).filter(|s| *s.1);
+        divided.len() == self.shells.len()
+            && divided.contains(&true)
+            && marked.all(|(s, _)| plain(s))
     }
 
-    /// Sides of shells along which another element goes. `None` where the ends of one don't share a rectangular displacement frame.
-    fn sides_of_others(&self) -> Option<BTreeSet<(GridIx, GridIx)>> {
-        let mut sides = BTreeSet::new();
-        for s in &self.shells {
-            let n = s.shape.n_corners();
-            for i in 0..n {
-                sides.insert(side(s.grids[i], s.grids[(i + 1) % n]));
-            }
-        }
-        let mut out = BTreeSet::new();
+    /// Sides of marked shells along which another element or a shell that is not marked goes. `None` where the ends of one don't share a
+    /// rectangular displacement frame.
+    fn sides_of_others(&self, divided: &[bool]) -> Option<BTreeSet<(GridIx, GridIx)>> {
+        let of_shells = |marked: bool| -> BTreeSet<(GridIx, GridIx)> {
+            let shells = self.shells.iter().zip(divided);
+            let shells = shells.filter(|(_, d)| **d == marked).map(|(s, _)| s);
+            shells.flat_map(sides_of).collect()
+        };
+        let sides = of_shells(true);
+        let mut out: BTreeSet<_> = of_shells(false).intersection(&sides).copied().collect();
         let mut all_of = |grids: &[GridIx]| {
             for (i, a) in grids.iter().enumerate() {
                 let pairs = grids[i + 1..].iter().map(|b| side(*a, *b));
@@ -216,6 +254,11 @@ impl Model {
 
 fn side(a: GridIx, b: GridIx) -> (GridIx, GridIx) {
     (a.min(b), a.max(b))
+}
+
+fn sides_of(s: &Shell) -> impl Iterator<Item = (GridIx, GridIx)> {
+    let n = s.shape.n_corners();
+    (0..n).map(move |i| side(s.grids[i], s.grids[(i + 1) % n]))
 }
 
 struct Builder {

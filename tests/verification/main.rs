@@ -2,6 +2,7 @@
 
 #![allow(clippy::print_stderr, reason = "numbers for the tables in docs")]
 
+mod adjoint;
 mod balance;
 mod connector_faults;
 mod connectors;

@@ -21,8 +21,8 @@ use super::fault::{Fault, Faults};
 use super::job::Job;
 use super::outcome::{Outcome, StatedUnits, finite};
 use super::strain::{
-    Conditioning, Fields, GaugeMeshError, LoadSigma, coarse_at_gauges, load_units, mesh_errors,
-    read_fields, without_strain,
+    Conditioning, Fields, GaugeMeshError, LoadSigma, WantedAt, coarse_at_gauges, load_units,
+    mesh_errors, read_fields, without_strain,
 };
 use super::work::Work;
 use crate::finding::{Finding, Severity};
@@ -36,7 +36,7 @@ use crate::sensitivity::{Sensitivity, check_separability, common_shells};
 /// Every fault of the job and of the files it names; a layout that nothing fits.
 pub fn place(job: &Job, cx: &Context) -> Result<Outcome<Placed>, Faults> {
     let mut work = Work::of_job(cx, job);
-    let fields = read_fields(&mut work, job)?;
+    let fields = read_fields(&mut work, job, WantedAt::Anywhere)?;
     let answer = placed(&mut work, job, &fields)?;
     let answer = answer.with(fields, job);
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))

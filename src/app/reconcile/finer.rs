@@ -14,7 +14,7 @@ impl Finer {
     /// # Errors
     /// Why no finer mesh was made.
     pub(super) fn of(model: &Model, laid: [&Vec<Gauge>; 3]) -> Result<Self, String> {
-        let refined = refined_mesh(model)?;
+        let refined = refined_mesh(model, laid.first().map(|g| g.as_slice()))?;
         let lost = || "a gauge is on no part of the divided mesh".to_owned();
         let on = |gauges: &Vec<Gauge>| -> Option<Vec<Gauge>> {
             gauges

@@ -4,7 +4,9 @@ use crate::app::fault::{Fault, Faults};
 use crate::app::job::Job;
 use crate::app::solved::support_of_job;
 use crate::app::work::stopped;
-use crate::fe::{FeError, Solution, SolveOptions, UnitLoad, solve_unit_loads_on};
+use crate::fe::{
+    Adjoint, FeError, Solution, SolveOptions, StrainTerm, UnitLoad, solve_unit_loads_on,
+};
 use crate::gauge::{Gauge, reading};
 use crate::model::{GridIx, Model};
 use crate::reconcile::strain::N_PAYLOAD_COLUMNS;
@@ -20,15 +22,20 @@ pub(super) fn influence(
     n_columns: usize,
 ) -> Vec<f64> {
     let mut out = readings(gauges, solution, 0..n_columns);
+    blank_payload(job, model, &mut out, n_columns);
+    out
+}
+
+/// Sets the columns of an influence matrix that stand for nothing to zero.
+pub(super) fn blank_payload(job: &Job, model: &Model, influence: &mut [f64], n_columns: usize) {
     let blank = if payload_grid(job, model).is_some() {
         1
     } else {
         N_PAYLOAD_COLUMNS
     };
-    for row in out.chunks_exact_mut(n_columns.max(1)) {
+    for row in influence.chunks_exact_mut(n_columns.max(1)) {
         row.iter_mut().rev().take(blank).for_each(|v| *v = 0.0);
     }
-    out
 }
 
 /// Microstrain per unit of each case of `range`, `n_gauges x n_cases` by rows; NaN where there is no strain.
@@ -57,17 +64,41 @@ pub(super) fn solve(
     loads: &[UnitLoad],
     stop: &Stop,
 ) -> Result<Solution, Faults> {
-    let remedy = "repair the deck, or give S as CSV files in `[sensitivity]`";
     let support = support_of_job(job, model)?;
-    let options = SolveOptions {
+    let solved = solve_unit_loads_on(model, support, loads, &until(stop));
+    solved.map(|s| s.0).map_err(|e| of_solver(job, &e))
+}
+
+/// Displacements of the model under these loads and for these readings.
+///
+/// # Errors
+/// What stops the solver.
+pub(super) fn adjoint<'a>(
+    job: &Job,
+    model: &'a Model,
+    loads: &[UnitLoad],
+    readings: &[Vec<StrainTerm>],
+    stop: &Stop,
+) -> Result<Adjoint<'a>, Faults> {
+    let support = support_of_job(job, model)?;
+    let solved = Adjoint::solve(model, support, loads, readings, &until(stop));
+    solved.map_err(|e| of_solver(job, &e))
+}
+
+fn until(stop: &Stop) -> SolveOptions {
+    SolveOptions {
         stop: stop.clone(),
         ..SolveOptions::default()
-    };
-    let solved = solve_unit_loads_on(model, support, loads, &options);
-    solved.map(|s| s.0).map_err(|e| match e {
+    }
+}
+
+/// What stopped the solver.
+pub(super) fn of_solver(job: &Job, e: &FeError) -> Faults {
+    let remedy = "repair the deck, or give S as CSV files in `[sensitivity]`";
+    match e {
         FeError::Stopped => Faults::from(stopped()),
         e => Faults::from(Fault::of(&*job.file, "model", e.to_string(), remedy)),
-    })
+    }
 }
 
 /// Where the payload stands.

@@ -1,19 +1,22 @@
 //! Small regions of shells whose stiffness may be wrong, looked for round gauges that disagree: a crack, a loose joint, a missing patch.
 //!
-//! A region is the shells within a radius of one of them, all its moduli times one factor. Regions round the gauges that disagree are solved
-//! at half their stiffness and ranked by what one amplitude of each takes of the residual; the best are moved, widened and narrowed, and the
-//! best of those stand beside the library's effects.
+//! A region is the shells within a radius of one of them, all its moduli times one factor. Regions round the gauges that disagree are ranked by
+//! what one amplitude of each takes of the residual, their signatures to first order from adjoint solutions (one factor for all); the best are
+//! moved, widened and narrowed, those that lead are solved at half their stiffness, and the best of these stand beside the library's effects.
 
 use super::deck_frame::DeckFrame;
-use super::influence::{influence, solve};
+use super::influence::{adjoint, blank_payload, influence, of_solver, solve};
 use super::region::Region;
 use crate::app::fault::Faults;
 use crate::app::job::Job;
+use crate::fe::Adjoint;
+use crate::gauge::strain_terms;
 use crate::model::{MaterialIx, MaterialKind};
 use crate::model::{Model, Shell, ShellKind, ShellPropertyIx, Vec3};
 use crate::reconcile::effect::{Correction, Extension};
 use crate::reconcile::strain::{StiffnessOf, StiffnessSignature, StrainFrame, StrainState};
 use crate::reconcile::{NamedEffect, Outcome, Verdict};
+use crate::units::MICROSTRAIN;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -21,10 +24,12 @@ use std::collections::BTreeMap;
 const HALF: f64 = -69.314_718_055_994_53;
 /// Prior sd of a region's stiffness, natural log times 100: known to a factor of two, as a joint's.
 const PRIOR: f64 = 70.0;
-/// Grids that the solutions of all regions may have together: minutes on two cores.
-const BUDGET: usize = 2_000_000;
-/// Fewest and most regions solved in the first look.
-const LOOKS: [usize; 2] = [6, 32];
+/// Grids that the solutions of the regions that lead may have together: a minute on two cores.
+const BUDGET: usize = 1_000_000;
+/// Regions of a look.
+const LOOKS: usize = 32;
+/// Gauges whose readings a look counts, those that disagree first: each is a further right-hand side.
+const COUNTED: usize = 64;
 /// Radii of the first look, of the gauges' distance.
 const WIDTHS: [f64; 3] = [0.35, 1.2, 3.0];
 /// Of the wide regions, one for as many small ones.
@@ -35,12 +40,13 @@ const FEW: usize = 4;
 const REFINED: usize = 2;
 /// Each finer.
 const STEPS: [f64; 3] = [0.9, 0.5, 0.3];
-/// Regions that stand beside the library.
+/// Regions that stand beside the library, and most of those that are solved to find them.
 const KEPT: usize = 4;
+const LEADING: usize = 2 * KEPT;
 /// Gauges that are looked round, worst first.
 const GAUGES: usize = 8;
 
-/// A region with what halving its stiffness does to the influence matrix.
+/// A region with what halving its stiffness does to the influence matrix, to first order or solved.
 struct Tried {
     region: Region,
     change: Vec<f64>,
@@ -91,47 +97,41 @@ impl DeckFrame {
         let Some(ground) = Ground::of(self.fields.model(), self, frame, off) else {
             return Ok(vec![]);
         };
-        let n = (BUDGET / ground.model.grids.len().max(1)).clamp(LOOKS[0], LOOKS[1]);
-        let first = ground.first_regions(n);
         let residual = Residual::of(frame);
-        let try_all = |regions: Vec<Region>| -> Result<Vec<Tried>, Faults> {
-            let tried = regions.into_par_iter().map(|region| {
-                let change = self.change_of_region(job, &region, (HALF / 100.0).exp())?;
-                let takes = residual.takes(frame, &change);
-                Ok(Tried {
-                    region,
-                    change,
-                    takes,
-                })
-            });
-            let mut out: Vec<Tried> = tried.collect::<Result<_, Faults>>()?;
-            out.sort_by(|a, b| b.takes.total_cmp(&a.takes));
-            Ok(out)
+        let adjoint = self.adjoint(job, &ground)?;
+        let tried = |(region, change): (Region, Vec<f64>)| Tried {
+            takes: residual.takes(frame, &change),
+            region,
+            change,
         };
-        let mut all = try_all(first)?;
+        let look = |regions: Vec<Region>| -> Result<Vec<Tried>, Faults> {
+            let changes = adjoint.by_halving(job, &regions)?;
+            Ok(regions.into_iter().zip(changes).map(tried).collect())
+        };
+        let mut all = best_first(look(ground.first_regions(LOOKS))?);
         for step in STEPS {
             let near: Vec<Region> = all
                 .iter()
                 .take(REFINED)
-                .flat_map(|t| ground.near(&t.region, step, n))
+                .flat_map(|t| ground.near(&t.region, step, LOOKS))
                 .collect();
             let mut fresh: Vec<Region> = Vec::new();
             for r in near {
                 let known = all.iter().any(|t| t.region.shells == r.shells)
                     || fresh.iter().any(|f| f.shells == r.shells);
-                if !known && fresh.len() < n {
+                if !known && fresh.len() < LOOKS {
                     fresh.push(r);
                 }
             }
-            all.extend(try_all(fresh)?);
-            all.sort_by(|a, b| b.takes.total_cmp(&a.takes));
+            all.extend(look(fresh)?);
+            all = best_first(all);
         }
-        let mut kept: Vec<Tried> = Vec::new();
-        for t in all {
-            if kept.len() < KEPT && kept.iter().all(|k| k.region.place != t.region.place) {
-                kept.push(t);
-            }
-        }
+        let n = (BUDGET / ground.model.grids.len().max(1)).clamp(KEPT, LEADING);
+        let leading = elsewhere(all, n).into_par_iter().map(|t| {
+            let change = self.change_of_region(job, &t.region, (HALF / 100.0).exp())?;
+            Ok(tried((t.region, change)))
+        });
+        let kept = elsewhere(best_first(leading.collect::<Result<_, Faults>>()?), KEPT);
         self.regions = kept.iter().map(|t| t.region.clone()).collect();
         Ok(kept
             .into_iter()
@@ -142,6 +142,24 @@ impl DeckFrame {
                 prior_percent: PRIOR,
             })
             .collect())
+    }
+
+    /// Displacements under the job's loads and for what the gauges read.
+    fn adjoint(&self, job: &Job, ground: &Ground<'_>) -> Result<Readings<'_>, Faults> {
+        let mut counted: Vec<usize> = (0..self.gauges.len()).collect();
+        counted.sort_by(|a, b| ground.far(*a).total_cmp(&ground.far(*b)));
+        counted.truncate(COUNTED);
+        let terms: Vec<_> = counted
+            .iter()
+            .map(|g| self.gauges.get(*g).map_or_else(Vec::new, strain_terms))
+            .collect();
+        let adjoint = adjoint(job, self.fields.model(), &self.columns, &terms, &self.stop)?;
+        Ok(Readings {
+            adjoint,
+            counted,
+            n_gauges: self.gauges.len(),
+            n_columns: self.columns.len(),
+        })
     }
 
     /// The model with the moduli of the region at `place` times `factor`; unchanged where there is no such region.
@@ -159,6 +177,55 @@ impl DeckFrame {
         let now = influence(job, &model, &self.gauges, &solution, self.columns.len());
         Ok(now.iter().zip(&self.base).map(|(a, b)| a - b).collect())
     }
+}
+
+/// Adjoint solutions of the gauges that count.
+struct Readings<'a> {
+    adjoint: Adjoint<'a>,
+    counted: Vec<usize>,
+    n_gauges: usize,
+    n_columns: usize,
+}
+
+impl Readings<'_> {
+    /// What halving the stiffness of each region does to the influence matrix, to first order; gauges that are not counted change by nothing.
+    fn by_halving(&self, job: &Job, regions: &[Region]) -> Result<Vec<Vec<f64>>, Faults> {
+        let sets: Vec<&[usize]> = regions.iter().map(|r| r.shells.as_slice()).collect();
+        let changes = self
+            .adjoint
+            .changes(&sets)
+            .map_err(|e| of_solver(job, &e))?;
+        let half = (HALF / 100.0).exp() - 1.0;
+        let n_c = self.n_columns;
+        let spread = |rows: Vec<f64>| {
+            let mut out = vec![0.0; self.n_gauges * n_c];
+            for (row, g) in rows.chunks_exact(n_c.max(1)).zip(&self.counted) {
+                let cells = out.iter_mut().skip(g * n_c);
+                cells
+                    .zip(row)
+                    .for_each(|(o, c)| *o = half * c / MICROSTRAIN);
+            }
+            blank_payload(job, self.adjoint.model(), &mut out, n_c);
+            out
+        };
+        Ok(changes.into_iter().map(spread).collect())
+    }
+}
+
+fn best_first(mut all: Vec<Tried>) -> Vec<Tried> {
+    all.sort_by(|a, b| b.takes.total_cmp(&a.takes));
+    all
+}
+
+/// The first `n` at places of their own.
+fn elsewhere(all: Vec<Tried>, n: usize) -> Vec<Tried> {
+    let mut out: Vec<Tried> = Vec::new();
+    for t in all {
+        if out.len() < n && out.iter().all(|k| k.region.place != t.region.place) {
+            out.push(t);
+        }
+    }
+    out
 }
 
 /// The model with shells' moduli times `factor`: properties and materials of their own behind all others.
@@ -250,6 +317,8 @@ struct Ground<'a> {
     model: &'a Model,
     /// Middles of the shells.
     middles: Vec<Vec3>,
+    /// Places of all gauges.
+    places: Vec<Vec3>,
     /// Places of the gauges that disagree.
     off: Vec<Vec3>,
     /// Usual distance from gauge to gauge, at least three elements.
@@ -281,10 +350,20 @@ impl<'a> Ground<'a> {
         Some(Self {
             model,
             middles,
+            places,
             off,
             apart,
             element,
         })
+    }
+
+    /// Distance of a gauge from the nearest that disagrees.
+    fn far(&self, gauge: usize) -> f64 {
+        let Some(at) = self.places.get(gauge) else {
+            return f64::INFINITY;
+        };
+        let far = self.off.iter().map(|p| (p - at).norm());
+        far.fold(f64::INFINITY, f64::min)
     }
 
     fn region(&self, centre: Vec3, radius: f64) -> Option<Region> {

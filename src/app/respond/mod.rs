@@ -11,7 +11,7 @@ use super::context::Context;
 use super::fault::{Fault, Faults};
 use super::job::{self, Job};
 use super::outcome::{Outcome, StatedUnits};
-use super::strain::{Prepared, has_covariance, prepare, read_fields};
+use super::strain::{Prepared, WantedAt, has_covariance, prepare, read_fields};
 use super::work::Work;
 use crate::finding::{Finding, Severity, few};
 use crate::model::{GridIx, Model};
@@ -59,7 +59,7 @@ fn responded(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
                 values: crate::linalg::Matrix::zeros(0, job.loads.len()),
                 uncertainty: None,
             },
-            fields: Some(read_fields(work, job)?),
+            fields: Some(read_fields(work, job, WantedAt::Anywhere)?),
             gauges: Vec::new(),
             mesh_error: Vec::new(),
         }

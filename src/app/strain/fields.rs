@@ -1,6 +1,6 @@
 //! The job's model and the strain of its unit loads, from result files or from the built-in solver.
 
-use super::mesh::{not_checked, take_out};
+use super::mesh::{WantedAt, not_checked, take_out};
 use super::unit_loads::check_places;
 use crate::app::deck::DeckModel;
 use crate::app::fault::{Fault, FaultList, Faults};
@@ -89,11 +89,11 @@ fn of_loads<'a>(job: &Job, cases: impl Iterator<Item = &'a CaseResult>) -> Vec<L
         .collect()
 }
 
-/// Reads the model and finds the case of every load.
+/// Reads the model and finds the case of every load; strain without what the mesh makes, where the job asks for that, is made `at` these places.
 ///
 /// # Errors
 /// Faults of the deck, unreadable results, loads without a case.
-pub fn read_fields(work: &mut Work, job: &Job) -> Result<Fields, Faults> {
+pub fn read_fields(work: &mut Work, job: &Job, at: WantedAt) -> Result<Fields, Faults> {
     let Some(files) = &job.model else {
         return Err(Faults::from(Fault::of(
             &*job.file,
@@ -123,7 +123,7 @@ pub fn read_fields(work: &mut Work, job: &Job) -> Result<Fields, Faults> {
             },
         )?;
         work.findings.extend(solved.findings.iter().cloned());
-        let mesh_error = take_out(work, job, &deck, &mut solved);
+        let mesh_error = take_out(work, job, &deck, (&mut solved, at));
         work.go_on()?;
         let of_load = (0..job.loads.len()).map(|i| (0, i)).collect();
         return Ok(Fields {

@@ -7,19 +7,23 @@
 //! # Reference
 //! L. F. Richardson, Phil. Trans. R. Soc. A 210 (1911) 307.
 
+use super::gauges::corrected_spec_of;
 use crate::app::deck::DeckModel;
 use crate::app::job::{Job, Measured};
 use crate::app::solved::{support_of_job, unit_loads_kept};
 use crate::app::work::Work;
 use crate::fe::{CaseResult, ShellField, Solution};
 use crate::finding::{Finding, Severity};
-use crate::gauge::{Gauge, change_by_refining, reading};
-use crate::model::{Model, RefinedModel};
+use crate::gauge::{CornerRows, Gauge, Spot, build, change_by_refining, reading};
+use crate::model::{Model, RefinedModel, ShellIx};
 use crate::sensitivity::{LoadCaseOf, Sensitivity, Uncertainty};
 use serde::Serialize;
 
-/// Beyond this many shells four times as many would take their time.
+/// Beyond this many shells four times as many would take their time: those round the gauges are divided alone.
 const MOST_SHELLS: usize = 20_000;
+/// Rows of elements round a gauge's that are divided with it: what is farther off changes the strain there little (Saint-Venant).
+/// docs/reference/verification.md has what more and fewer rows leave.
+const ROWS: usize = 6;
 /// The error of a mesh over what halving its width changes. Richardson's 4/3 overshoots where the finer mesh meets a corner or the thickness
 /// of the shell; on open, closed and kicked frames of 40 mm against 13 mm this leaves least (docs/reference/verification.md).
 const WHOLE: f64 = 1.2;
@@ -54,21 +58,60 @@ pub struct LoadMeshError {
     pub mesh_error_rel: Option<f64>,
 }
 
-/// The model on a mesh half as wide.
+/// Where the strain is wanted without what the mesh makes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WantedAt {
+    /// At the job's gauges: a large mesh is divided round them alone.
+    Gauges,
+    /// Wherever a gauge might be laid.
+    Anywhere,
+}
+
+/// The model on a mesh half as wide: everywhere up to [`MOST_SHELLS`], beyond it in [`ROWS`] rows of elements round `gauges`, where these are
+/// known.
 ///
 /// # Errors
 /// Why none was made, in words.
-pub fn refined_mesh(model: &Model) -> Result<RefinedModel, String> {
+pub fn refined_mesh(model: &Model, gauges: Option<&[Gauge]>) -> Result<RefinedModel, String> {
     let n = model.shells.len();
-    if n > MOST_SHELLS {
+    let divided = match gauges {
+        _ if n <= MOST_SHELLS => vec![true; n],
+        Some(gauges) => model.shells_near(&shells_under(gauges), ROWS),
+        None => {
+            return Err(format!(
+                "the model has {n} shells, and beyond {MOST_SHELLS} four times as many are not solved"
+            ));
+        }
+    };
+    let marked = divided.iter().filter(|d| **d).count();
+    if marked > MOST_SHELLS {
         return Err(format!(
-            "the model has {n} shells, and beyond {MOST_SHELLS} four times as many are not solved"
+            "{marked} of {n} shells lie round the gauges, and beyond {MOST_SHELLS} four times as many are not solved"
         ));
     }
-    model.refined().ok_or_else(|| {
+    model.refined_at(&divided).ok_or_else(|| {
         "the mesh can't be divided (shells with mid-side grids, bars or solids along shells in displacement frames of their own, or no shells)"
             .to_owned()
     })
+}
+
+/// Shells that gauges read.
+fn shells_under(gauges: &[Gauge]) -> Vec<ShellIx> {
+    let arms = gauges.iter().flat_map(|g| &g.arms);
+    let shells = arms.filter_map(|arm| match arm.spot {
+        Spot::Shell { shell, .. } => Some(shell),
+        _ => None,
+    });
+    shells.collect()
+}
+
+/// The job's gauges as far as they can be laid; who reads them says which can't.
+fn gauges_of(job: &Job, model: &Model) -> Vec<Gauge> {
+    let laid = job.gauges.iter().filter_map(|g| {
+        let spec = corrected_spec_of(model, job, g).ok()?;
+        Some(build(model, &spec, CornerRows::Absent).ok()?.0)
+    });
+    laid.flatten().collect()
 }
 
 /// Takes the mesh error out of the strain of a job's unit loads, and gives it: by load, strain on the deck's mesh less the limit. `None`
@@ -77,12 +120,12 @@ pub(super) fn take_out(
     work: &mut Work,
     job: &Job,
     deck: &DeckModel,
-    solution: &mut Solution,
+    (solution, at): (&mut Solution, WantedAt),
 ) -> Option<Vec<CaseResult>> {
     if !job.model.as_ref().is_some_and(|m| m.mesh_error) {
         return None;
     }
-    match finer(work, job, deck, solution) {
+    match finer(work, job, deck, (solution, at)) {
         Ok(changes) => {
             let errors: Vec<CaseResult> = changes.into_iter().map(|c| times(c, -WHOLE)).collect();
             for (case, error) in solution.cases.iter_mut().zip(&errors) {
@@ -114,13 +157,16 @@ fn finer(
     work: &mut Work,
     job: &Job,
     deck: &DeckModel,
-    solution: &Solution,
+    (solution, at): (&Solution, WantedAt),
 ) -> Result<Vec<CaseResult>, String> {
     let of_fault = |f: crate::app::fault::Faults| {
         f.first()
             .map_or_else(String::new, |f| format!("{}: {}", f.field, f.wrong))
     };
-    let refined = work.stage("refine", |_| refined_mesh(&deck.model))?;
+    let refined = work.stage("refine", |_| {
+        let gauges = (at == WantedAt::Gauges).then(|| gauges_of(job, &deck.model));
+        refined_mesh(&deck.model, gauges.as_deref())
+    })?;
     let support = support_of_job(job, &deck.model).map_err(of_fault)?;
     let loads = super::unit_loads::unit_loads(job, &deck.model).map_err(of_fault)?;
     let fine = work

@@ -13,8 +13,8 @@ pub use fields::{Fields, read_fields};
 pub use gauges::{corrected_spec_of, lay_gauges, not_laid, off_their_elements, without_strain};
 pub use given::read_given;
 pub use mesh::{
-    GaugeMeshError, LoadMeshError, coarse_at_gauges, left_in_reading, left_squared, mesh_errors,
-    refined_mesh,
+    GaugeMeshError, LoadMeshError, WantedAt, coarse_at_gauges, left_in_reading, left_squared,
+    mesh_errors, refined_mesh,
 };
 pub use unit_loads::unit_loads;
 pub use units::{LoadSigma, LoadUnits, load_units};
@@ -55,7 +55,7 @@ pub fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
         // A calibrated S stands beside its model, whose fields are wanted for responses and pictures.
         let (fields, gauges) = match &job.model {
             Some(_) if has_covariance(job) => {
-                let fields = read_fields(work, job)?;
+                let fields = read_fields(work, job, WantedAt::Gauges)?;
                 let gauges = lay_gauges(work, job, &fields)?;
                 (Some(fields), gauges)
             }
@@ -71,7 +71,7 @@ pub fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
             mesh_error: Vec::new(),
         }
     } else {
-        let fields = read_fields(work, job)?;
+        let fields = read_fields(work, job, WantedAt::Gauges)?;
         let gauges = lay_gauges(work, job, &fields)?;
         let mut sensitivity = from_cases(&gauges, &fields.load_cases(job))
             .map_err(|missing| without_strain(job, &missing))?;

@@ -2,7 +2,7 @@
 
 use crate::app::fault::Faults;
 use crate::app::job::Job;
-use crate::app::strain::{self, Fields, corrected_spec_of, read_fields};
+use crate::app::strain::{self, Fields, WantedAt, corrected_spec_of, read_fields};
 use crate::app::work::Work;
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::gauge::{Gauge, GaugePlace, GaugeSpec, build, reading};
@@ -28,7 +28,7 @@ pub(super) struct Prepared {
 /// Faults of the deck, the results, the gauges.
 pub(super) fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
     if job.sensitivity.is_none() && job.gauges.is_empty() {
-        let fields = read_fields(work, job)?;
+        let fields = read_fields(work, job, WantedAt::Anywhere)?;
         let cases = fields.load_cases(job);
         return Ok(Prepared {
             loads: cases.into_iter().map(|c| c.load).collect(),

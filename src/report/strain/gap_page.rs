@@ -251,7 +251,7 @@ fn verdict(outcome: &Outcome) -> Vec<Block> {
     if !outcome.best_attempt.is_empty() {
         let ids: Vec<&str> = outcome.best_attempt.iter().map(|e| e.id.as_str()).collect();
         out.push(Block::Text(format!(
-            "{}. When the runs are drawn anew it stays ahead in {} of 100 drawings.",
+            "{}. When the runs are drawn anew, {} of 100 drawings hold every name of it.",
             ids.join(", "),
             outcome.wins
         )));
