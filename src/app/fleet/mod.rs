@@ -28,7 +28,7 @@ pub use mission::{KindAnswer, MissionAnswer, MissionLoad};
 pub use outcome::{FileAnswer, Fleet, GaugeHistory, VehicleAnswer, VehicleLoadAnswer};
 pub use prepared::kernel_of;
 
-use super::context::Context;
+use super::context::{Context, Files};
 use super::fault::{Fault, Faults};
 use super::files::Opened;
 use super::job::{Fleet as FleetKeys, Job};
@@ -56,7 +56,8 @@ pub struct FleetSpec {
     pub shard: Option<Shard>,
     /// The output folder, where the results of single files are kept.
     pub folder: PathBuf,
-    /// SHA-256 of records by path, as another process read them just now: one whose result is kept is not read again.
+    /// SHA-256 of records by path, as another process read them: one whose result is kept is not read again, as long as its size and the time of
+    /// its last change are those at which it was done. One that is out of reach here is what that process read.
     pub digests: BTreeMap<String, String>,
 }
 
@@ -90,7 +91,7 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
         .map(|l| l.name.as_str())
         .collect();
     check_targets(&job.file, section, &loads)?;
-    let kept = KeptDays::new(&spec.folder, job_digest(&mut work));
+    let kept = KeptDays::new(&spec.folder, job_digest(&mut work, job, section));
     let (files, reused) = if spec.files.is_empty() {
         held(&mut work, &kept, &spec.folder)?
     } else {
@@ -167,10 +168,14 @@ fn merged(
     })
 }
 
-/// A digest of the job and of all that it stands on: every file read so far.
-fn job_digest(work: &mut Work) -> String {
+/// A digest of what a record of the job depends on beside its bytes: what the job says of single records, and every other file read so far.
+fn job_digest(work: &mut Work, job: &Job, keys: &FleetKeys) -> String {
     let read = work.inputs.files_read();
-    let parts: Vec<&str> = read.iter().map(|f| f.sha256.as_str()).collect();
+    let others = read.iter().filter(|f| f.path != Path::new(&job.file));
+    let others = others.map(|f| f.sha256.as_str());
+    let parts: Vec<&str> = std::iter::once(keys.of_records.as_str())
+        .chain(others)
+        .collect();
     digest(&parts)
 }
 
@@ -250,13 +255,11 @@ fn done(
             if progress.is_cancelled() {
                 return Err(stopped());
             }
-            let digest = spec.digests.get(*path);
-            let done = match digest.and_then(|d| kept.head(path, d)) {
+            let told = spec.digests.get(*path);
+            let told = told.and_then(|d| kept.head(path, d));
+            let done = match told.filter(|before| is_as_then(source, before)) {
                 Some(before) => Ok((before, true)),
-                None => {
-                    let opened = source.open_hashed(Path::new(path));
-                    one(kernel, kept, form, path, opened)
-                }
+                None => one(kernel, kept, form, path, source),
             };
             progress.advance(1);
             done
@@ -277,18 +280,30 @@ fn done(
     Ok((files, reused))
 }
 
+/// Whether a file is in the state in which it was done, as far as can be told without reading it; one that is out of reach is taken to be.
+fn is_as_then(source: &dyn Files, before: &FileHead) -> bool {
+    match source.stamp(Path::new(&before.path)) {
+        Ok(now) => before.stamp == Some(now),
+        Err(_) => true,
+    }
+}
+
 /// The result of one file, and whether it was kept.
 fn one(
     kernel: &Kernel,
     kept: &KeptDays,
     form: &NameForm,
     path: &str,
-    opened: std::io::Result<(Opened, String)>,
+    source: &dyn Files,
 ) -> Result<(FileHead, bool), Fault> {
+    // Before it is read: what changes it afterwards changes this too.
+    let stamp = source.stamp(Path::new(path)).ok();
+    let opened = source.open_hashed(Path::new(path));
     let named = form.read(path);
     let mut file = FileResult {
         path: path.to_owned(),
         sha256: String::new(),
+        stamp,
         vehicle: named.as_ref().map_or(String::new(), |n| n.vehicle.clone()),
         day: named.as_ref().map_or(String::new(), |n| n.day.clone()),
         result: Err(String::new()),
@@ -305,7 +320,9 @@ fn one(
         file.result = Err("its name is not of the form that [fleet] file_name states".to_owned());
         return Ok((file.into(), false));
     }
-    if let Some(before) = kept.head(path, &file.sha256) {
+    // What failed is tried again: a build that reads more formats may be at it now.
+    let before = kept.head(path, &file.sha256);
+    if let Some(before) = before.filter(|b| b.result.is_ok()) {
         return Ok((before, true));
     }
     file.result = day_of(kernel, &opened);
