@@ -463,6 +463,9 @@ fn a_record_that_was_replaced_counts_as_it_is_now() {
             let (code, result) = fleet(&dir, files, &[]);
             assert_eq!(code, 0, "{result}");
             assert_eq!(result["files"].as_array().unwrap().len(), 8, "{result}");
+            let is_new = amplitude > 5.0 && !files.is_empty();
+            let told = found(&result, "fleet-record-replaced");
+            assert_eq!(told.len(), usize::from(is_new), "{result}");
             for (i, v) in (1..).zip(result["vehicles"].as_array().unwrap()) {
                 let expected = damage(amplitude + 0.01 * f64::from(i), PERIODS);
                 is_close(number(&v["loads"][0]["damage"]), expected);

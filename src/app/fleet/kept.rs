@@ -139,11 +139,15 @@ impl KeptDays {
             .join(format!("{}.json", key.get(..32).unwrap_or(&key)))
     }
 
+    /// What became of a file with this path when it was done last, whatever its bytes were, where it is kept.
+    pub fn latest(&self, path: &str) -> Option<FileHead> {
+        let bytes = std::fs::read(self.place(path)).ok()?;
+        self.head_of(&bytes).filter(|f| f.path == path)
+    }
+
     /// What became of a file with these bytes and this path, where it is kept.
     pub fn head(&self, path: &str, sha256: &str) -> Option<FileHead> {
-        let bytes = std::fs::read(self.place(path)).ok()?;
-        self.head_of(&bytes)
-            .filter(|f| f.path == path && f.sha256 == sha256)
+        self.latest(path).filter(|f| f.sha256 == sha256)
     }
 
     /// The day of a file that [`KeptDays::head`] knows.

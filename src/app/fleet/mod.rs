@@ -34,7 +34,7 @@ use super::files::Opened;
 use super::job::{Fleet as FleetKeys, Job};
 use super::outcome::{Outcome, StatedUnits};
 use super::work::{Work, stopped};
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::series::record::{Options, open_source};
 use compared::{Compared, check_targets};
 use day::{Day, FileHead, FileResult};
@@ -249,7 +249,7 @@ fn done(
         .map_err(|e| not_kept(&spec.folder.display().to_string(), &e))?;
     let (source, progress) = (work.cx.files, work.cx.progress);
     progress.parts(mine.len());
-    let results: Vec<Result<(FileHead, bool), Fault>> = mine
+    let results: Vec<Result<(FileHead, Came), Fault>> = mine
         .par_iter()
         .map(|path| {
             if progress.is_cancelled() {
@@ -258,7 +258,7 @@ fn done(
             let told = spec.digests.get(*path);
             let told = told.and_then(|d| kept.head(path, d));
             let done = match told.filter(|before| is_as_then(source, before)) {
-                Some(before) => Ok((before, true)),
+                Some(before) => Ok((before, Came::Kept)),
                 None => one(kernel, kept, form, path, source),
             };
             progress.advance(1);
@@ -267,12 +267,17 @@ fn done(
         .collect();
     work.go_on()?;
     let mut files = Vec::new();
-    let mut reused = 0;
+    let (mut reused, mut replaced) = (0, Vec::new());
     for result in results {
-        let (file, was_kept) = result?;
-        reused += usize::from(was_kept);
+        let (file, came) = result?;
+        match came {
+            Came::Kept => reused += 1,
+            Came::Replacing => replaced.push(file.path.clone()),
+            Came::New => {}
+        }
         files.push(file);
     }
+    work.findings.extend(told_replaced(&replaced));
     // Of a part, the others are still to come.
     if spec.shard.is_none() && files.iter().all(|f| kept.holds(f)) {
         let _ = std::fs::remove_file(asked);
@@ -288,14 +293,36 @@ fn is_as_then(source: &dyn Files, before: &FileHead) -> bool {
     }
 }
 
-/// The result of one file, and whether it was kept.
+/// Whether a result was kept, or is new, or stands in place of that of other bytes under the same path.
+enum Came {
+    Kept,
+    New,
+    Replacing,
+}
+
+/// That results were replaced: of a record that was written anew, or of another that has the same path from another folder.
+fn told_replaced(paths: &[String]) -> Option<Finding> {
+    let n = paths.len();
+    (n > 0).then(|| {
+        Finding::new(
+            Severity::Info,
+            "fleet-record-replaced",
+            few(paths),
+            format!("{n} records hold other bytes than when they were done before under the same path: they were done anew, and count as they are now"),
+            "nothing, where they were written anew; records of another folder need paths of their own",
+        )
+        .with_numbers(n as f64, 0.0)
+    })
+}
+
+/// The result of one file, and how it came.
 fn one(
     kernel: &Kernel,
     kept: &KeptDays,
     form: &NameForm,
     path: &str,
     source: &dyn Files,
-) -> Result<(FileHead, bool), Fault> {
+) -> Result<(FileHead, Came), Fault> {
     // Before it is read: what changes it afterwards changes this too.
     let stamp = source.stamp(Path::new(path)).ok();
     let opened = source.open_hashed(Path::new(path));
@@ -312,31 +339,32 @@ fn one(
         Ok(read) => read,
         Err(e) => {
             file.result = Err(format!("it can't be read: {e}"));
-            return Ok((file.into(), false));
+            return Ok((file.into(), Came::New));
         }
     };
     file.sha256 = hash;
     if named.is_none() {
         file.result = Err("its name is not of the form that [fleet] file_name states".to_owned());
-        return Ok((file.into(), false));
+        return Ok((file.into(), Came::New));
     }
     // What failed is tried again: a build that reads more formats may be at it now.
-    let before = kept.head(path, &file.sha256);
-    if let Some(before) = before.filter(|b| b.result.is_ok()) {
-        return Ok((before, true));
-    }
+    let came = match kept.latest(path) {
+        Some(before) if before.sha256 != file.sha256 => Came::Replacing,
+        Some(before) if before.result.is_ok() => return Ok((before, Came::Kept)),
+        _ => Came::New,
+    };
     file.result = day_of(kernel, &opened);
     // Whatever was read of a file that changed meanwhile, or could not be read to its end, is worth nothing and not kept: it is tried again.
     if let Err(e) = opened.check() {
         file.sha256 = String::new();
         file.result = Err(format!("it can't be read: {e}"));
-        return Ok((file.into(), false));
+        return Ok((file.into(), Came::New));
     }
     kept.put(&file).map_err(|e| not_kept(path, &e))?;
     // What is read back is what a later run would read, to the last digit: a merge of kept results has the same bytes.
     Ok((
         kept.head(path, &file.sha256).unwrap_or_else(|| file.into()),
-        false,
+        came,
     ))
 }
 
