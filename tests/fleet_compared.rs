@@ -84,11 +84,15 @@ fn folder(name: &str, job: &str, records: &[(&str, String)]) -> PathBuf {
 }
 
 fn fleet(dir: &Path, files: &[&str], more: &[&str]) -> (i32, Value) {
+    fleet_into(dir, "out", files, more)
+}
+
+fn fleet_into(dir: &Path, out: &str, files: &[&str], more: &[&str]) -> (i32, Value) {
     let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
         .current_dir(dir)
         .args(["fleet", "job.toml"])
         .args(files)
-        .args(["--out", "out", "--json"])
+        .args(["--out", out, "--json"])
         .args(more)
         .output()
         .unwrap();
@@ -376,4 +380,212 @@ fn a_zero_that_moves_over_the_days_and_exchanged_channels_are_named_with_their_d
         message.contains("2 of 12 records, the first T2_9.csv"),
         "{message}"
     );
+}
+
+/// Writes what `sha256sum` lists of the records of a result.
+fn list_digests(dir: &Path, result: &Value) {
+    let files = result["files"].as_array().unwrap();
+    let line = |f: &Value| ["sha256", "path"].map(|k| f[k].as_str().unwrap().to_owned());
+    let lines = files.iter().map(|f| line(f).join("  ") + "\n");
+    std::fs::write(dir.join("digests.txt"), lines.collect::<String>()).unwrap();
+}
+
+#[test]
+fn what_damage_is_held_against_is_changed_without_a_record() {
+    let records = [
+        ("T1_1.csv", record(4.0, PERIODS, right)),
+        ("T1_2.csv", record(5.0, PERIODS, right)),
+        ("T2_1.csv", record(6.0, PERIODS, right)),
+    ];
+    let dir = folder("changed", "", &records);
+    let files = records.each_ref().map(|r| r.0);
+    let (code, result) = fleet(&dir, &files, &[]);
+    assert_eq!(code, 0, "{result}");
+    list_digests(&dir, &result);
+    let kinds = |share: f64, days: &str| {
+        format!("[[fleet.mission]]\nname = \"{days}\"\nshare = {share}\ndays = [\"{days}\"]\n")
+    };
+    let mission =
+        |a: f64| "mission_hours = 50\n".to_owned() + &kinds(a, "1") + &kinds(1.0 - a, "2");
+    let tables = ["fleet.csv", "fleet_relative.csv", "fleet_mission.csv"];
+    for (i, job) in [
+        "reference = { vehicle = \"T1\", day = \"1\" }\n".to_owned(),
+        "reference = { vehicle = \"T2\", day = \"1\" }\n".to_owned(),
+        "target = { \"A.FZ\" = 1e6 }\n".to_owned(),
+        mission(0.5),
+        mission(0.25) + "# Of other commands.\n[respond]\nhottest = 3\n",
+    ]
+    .iter()
+    .enumerate()
+    {
+        std::fs::write(dir.join("job.toml"), format!("title = \"{i}\"\n{JOB}{job}")).unwrap();
+        let fresh = format!("fresh{i}");
+        let (code, anew) = fleet_into(&dir, &fresh, &files, &[]);
+        assert_eq!(code, 0, "{job}: {anew}");
+        // The records are out of reach: what was kept of them is all there is.
+        let away = dir.join("away");
+        std::fs::create_dir_all(&away).unwrap();
+        for f in files {
+            std::fs::rename(dir.join(f), away.join(f)).unwrap();
+        }
+        for (files, more) in [(&files[..], &["--digests", "digests.txt"][..]), (&[], &[])] {
+            let (code, kept) = fleet(&dir, files, more);
+            assert_eq!(code, 0, "{job}: {kept}");
+            assert_eq!(kept["vehicles"], anew["vehicles"], "{job}");
+            assert_eq!(kept["mission"], anew["mission"], "{job}");
+            for table in tables {
+                let [a, b] =
+                    ["out", &fresh].map(|out| std::fs::read(dir.join(out).join(table)).ok());
+                assert_eq!(a, b, "{job}: {table}");
+            }
+        }
+        for f in files {
+            std::fs::rename(away.join(f), dir.join(f)).unwrap();
+        }
+    }
+    // What a record is counted by is another matter.
+    std::fs::write(dir.join("job.toml"), format!("{JOB}[recover]\nslope = 4\n")).unwrap();
+    assert_eq!(fleet(&dir, &[], &[]).0, 2);
+}
+
+#[test]
+fn a_record_that_was_replaced_counts_as_it_is_now() {
+    let names: Vec<String> = (1..=8).map(|v| format!("T{v}_1.csv")).collect();
+    let files: Vec<&str> = names.iter().map(String::as_str).collect();
+    let dir = folder("replaced", "", &[]);
+    for amplitude in [4.0, 6.0] {
+        // A copy of another vehicle's bytes would not count.
+        for (i, file) in (1..).zip(&files) {
+            let text = record(amplitude + 0.01 * f64::from(i), PERIODS, right);
+            std::fs::write(dir.join(file), text).unwrap();
+        }
+        for files in [&files[..], &[]] {
+            let (code, result) = fleet(&dir, files, &[]);
+            assert_eq!(code, 0, "{result}");
+            assert_eq!(result["files"].as_array().unwrap().len(), 8, "{result}");
+            let is_new = amplitude > 5.0 && !files.is_empty();
+            let told = found(&result, "fleet-record-replaced");
+            assert_eq!(told.len(), usize::from(is_new), "{result}");
+            for (i, v) in (1..).zip(result["vehicles"].as_array().unwrap()) {
+                let expected = damage(amplitude + 0.01 * f64::from(i), PERIODS);
+                is_close(number(&v["loads"][0]["damage"]), expected);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_digest_of_another_state_of_the_record_is_not_taken() {
+    let dir = folder("stale", "", &[("T1_1.csv", record(4.0, 30, right))]);
+    let path = dir.join("T1_1.csv");
+    let more = ["--digests", "digests.txt"];
+    let (_, first) = fleet(&dir, &["T1_1.csv"], &[]);
+    list_digests(&dir, &first);
+    // Longer.
+    std::fs::write(&path, record(4.0, 40, right)).unwrap();
+    let (code, second) = fleet(&dir, &["T1_1.csv"], &more);
+    assert_eq!(code, 0, "{second}");
+    assert_ne!(second["files"][0]["sha256"], first["files"][0]["sha256"]);
+    is_close(
+        number(&second["vehicles"][0]["loads"][0]["damage"]),
+        damage(4.0, 40),
+    );
+    list_digests(&dir, &second);
+    // As long, and later: two gauges exchanged.
+    let text = record(4.0, 40, right);
+    let other = text.replacen("G0 [um/m],G1 [um/m]", "G1 [um/m],G0 [um/m]", 1);
+    assert!(other != text && other.len() == text.len());
+    std::fs::write(&path, other).unwrap();
+    let later = std::time::SystemTime::now() + std::time::Duration::from_secs(10);
+    let file = std::fs::File::options().write(true).open(&path).unwrap();
+    file.set_modified(later).unwrap();
+    let (_, third) = fleet(&dir, &["T1_1.csv"], &more);
+    assert_ne!(third["files"][0]["sha256"], second["files"][0]["sha256"]);
+}
+
+#[test]
+fn shares_may_be_rounded_to_three_digits_and_no_further() {
+    let dir = folder("shares", "", &[("T1_1.csv", record(4.0, 20, right))]);
+    for (share, n, is_refused) in [
+        ("0.333", 3, false),
+        ("0.167", 6, false),
+        ("0.083", 12, false),
+        ("0.33", 3, true),
+        ("0.475", 2, true),
+        // Each within rounding of a fortieth and two per cent off together.
+        ("0.0245", 40, true),
+    ] {
+        let kind = |i: usize| {
+            format!("[[fleet.mission]]\nname = \"{i}\"\nshare = {share}\ndays = [\"{i}\"]\n")
+        };
+        let job = JOB.to_owned() + &(1..=n).map(kind).collect::<String>();
+        std::fs::write(dir.join("job.toml"), job).unwrap();
+        let (code, said) = fleet(&dir, &["T1_1.csv"], &[]);
+        // The other kinds have no day.
+        assert_eq!(code, if is_refused { 2 } else { 1 }, "{share}: {said}");
+        let is_said = said.to_string().contains("shares sum");
+        assert_eq!(is_said, is_refused, "{share}: {said}");
+    }
+}
+
+#[test]
+fn a_fault_of_a_kind_stands_at_its_line_whatever_is_wrong_with_those_before() {
+    let nameless = "[[fleet.mission]]\nshare = 0.4\ndays = [\"3\"]\n";
+    let kind = "[[fleet.mission]]\nname = \"a\"\nshare = 0.3\ndays = [\"1\"]\n";
+    let dir = folder("lines", &format!("{nameless}{kind}{kind}"), &[]);
+    let (code, said) = fleet(&dir, &["T1_1.csv"], &[]);
+    assert_eq!(code, 2, "{said}");
+    let faults = said["faults"].as_array().unwrap();
+    let twice = |f: &&Value| f["wrong"].to_string().contains("stands twice");
+    let line = JOB.lines().count() + 3 + 4 + 1;
+    assert_eq!(faults.iter().find(twice).unwrap()["line"], line, "{said}");
+}
+
+#[test]
+fn what_failed_is_tried_again() {
+    // Another build may read the format that this one lacks; the answer to the same build is the same.
+    let dir = folder(
+        "failed",
+        "",
+        &[("T1_1.csv", "time,X\n0,1\n1,2\n".to_owned())],
+    );
+    for _ in 0..2 {
+        let (code, result) = fleet(&dir, &["T1_1.csv"], &[]);
+        assert_eq!(code, 1, "{result}");
+        assert_eq!(result["files"][0]["status"], "failed", "{result}");
+        let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+            .current_dir(&dir)
+            .args(["fleet", "job.toml", "T1_1.csv", "--out", "out"])
+            .output()
+            .unwrap();
+        let words = String::from_utf8(done.stdout).unwrap();
+        assert!(words.contains("0 kept from before"), "{words}");
+    }
+}
+
+#[test]
+fn two_records_of_one_day_are_an_error_and_a_copy_is_not() {
+    let records = [
+        ("T1_1_am.csv", record(4.0, PERIODS, right)),
+        ("T1_1_pm.csv", record(6.0, PERIODS, right)),
+        ("T1_2_am.csv", record(5.0, PERIODS, right)),
+        ("T1_2_pm.csv", record(5.0, PERIODS, right)),
+    ];
+    let dir = folder("twice", "", &records);
+    let job = JOB.replace("{vehicle}_{day}", "{vehicle}_{day}_{any}");
+    std::fs::write(dir.join("job.toml"), &job).unwrap();
+    let files = records.each_ref().map(|r| r.0);
+    let (code, result) = fleet(&dir, &files, &[]);
+    assert_eq!(code, 1, "{result}");
+    let subjects = |code| found(&result, code).into_iter().map(|f| f[0].clone());
+    assert!(subjects("fleet-day-twice").eq(["T1_1_pm.csv"]), "{result}");
+    assert!(
+        subjects("fleet-second-copy").eq(["T1_2_pm.csv"]),
+        "{result}"
+    );
+    assert_eq!(fleet(&dir, &files[2..], &[]).0, 0);
+    // With what tells them apart in the day both count.
+    std::fs::write(dir.join("job.toml"), JOB).unwrap();
+    let (code, result) = fleet(&dir, &files[..2], &[]);
+    assert_eq!((code, &result["vehicles"][0]["files"]), (0, &2.into()));
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use strainbridge::Disk;
 use strainbridge::app::context::{Files, InMemory};
-use strainbridge::app::files::{FileBytes, Opened};
+use strainbridge::app::files::{FileBytes, Opened, Stamp};
 
 /// The disk with files from memory before it.
 #[derive(Clone, Debug, Default)]
@@ -24,6 +24,16 @@ impl Files for Desk {
                 .with(path, bytes.clone())
                 .open_hashed(path),
             None => Disk.open_hashed(path),
+        }
+    }
+
+    fn stamp(&self, path: &Path) -> std::io::Result<Stamp> {
+        match self.0.get(path) {
+            Some(bytes) => Ok(Stamp {
+                size: bytes.len() as u64,
+                written_ns: None,
+            }),
+            None => Disk.stamp(path),
         }
     }
 }

@@ -166,6 +166,21 @@ def test_a_second_run_decodes_nothing(sixty):
     assert more.vehicles[0].files == 21
 
 
+def test_what_damage_is_held_against_redoes_no_record(sixty, cluster, tmp_path):
+    folder, files, here = sixty
+    shutil.copytree(folder / "here", tmp_path / "kept")
+    job = sb.Job.read(folder / "job.toml")
+    job.fleet.reference = {"vehicle": "T0", "day": "01"}
+    sb.fleet.run(job, files, tmp_path / "fresh")
+    for client in (None, cluster):
+        result = sb.fleet.run(job, files, tmp_path / "kept", client=client)
+        assert "60" in result.words and "kept" in result.words
+        assert len(list((tmp_path / "kept" / "days").glob("*.json"))) == 60
+        assert (tmp_path / "kept" / "fleet.csv").read_bytes() == here
+        relative = [(tmp_path / out / "fleet_relative.csv").read_bytes() for out in ("kept", "fresh")]
+        assert relative[0] == relative[1]
+
+
 def test_what_is_broken_is_reported_on_workers_too(sixty, cluster, tmp_path):
     folder, files, _ = sixty
     for file in [*files, folder / "S.csv", folder / "job.toml"]:

@@ -1,7 +1,7 @@
 //! What a question is asked in: where files come from, where solutions are kept, who hears of progress and may stop the work.
 
 use super::store::SolutionStore;
-use super::whole_file::{FileBytes, Opened, hex, load, open_hashed};
+use super::whole_file::{FileBytes, Opened, Stamp, hex, load, open_hashed};
 use crate::stop::Stop;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -25,6 +25,18 @@ pub trait Files: Sync {
         let hash = hex(&Sha256::digest(&*bytes));
         Ok((Opened::Whole(bytes), hash))
     }
+
+    /// The state of a file.
+    ///
+    /// # Errors
+    /// As [`Files::load`].
+    fn stamp(&self, path: &Path) -> std::io::Result<Stamp> {
+        let size = self.load(path)?.len() as u64;
+        Ok(Stamp {
+            size,
+            written_ns: None,
+        })
+    }
 }
 
 /// The file system.
@@ -38,6 +50,10 @@ impl Files for Disk {
 
     fn open_hashed(&self, path: &Path) -> std::io::Result<(Opened, String)> {
         open_hashed(path)
+    }
+
+    fn stamp(&self, path: &Path) -> std::io::Result<Stamp> {
+        Ok(Stamp::from(&std::fs::metadata(path)?))
     }
 }
 

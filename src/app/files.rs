@@ -5,7 +5,7 @@ use super::fault::Fault;
 use super::file_read::FileRead;
 use super::job::{Job, NamedFile};
 use super::sheet::{csv_of_sheet, is_sheet};
-pub use super::whole_file::{FileBytes, Opened};
+pub use super::whole_file::{FileBytes, Opened, Stamp};
 use crate::finding::{Finding, Severity};
 use crate::series::record::csv::unsure_end;
 use crate::series::record::is_format;

@@ -4,12 +4,14 @@
 //! gives half old and half new numbers. Reading costs a copy, a third of a second a gigabyte.
 
 use crate::series::record::{Parts, Source, is_read_in_parts};
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fs::{File, Metadata};
 use std::io::{Error, ErrorKind, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, mpsc};
+use std::time::UNIX_EPOCH;
 
 /// Bytes handed over to be hashed at a time: they are still in the processor's cache.
 const PART: usize = 1 << 20;
@@ -254,9 +256,29 @@ fn check_kind(meta: &Metadata) -> std::io::Result<()> {
     }
 }
 
+/// What the system says of the state of a file: it differs where the file was written to, and costs no reading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Stamp {
+    /// Its length in bytes.
+    pub size: u64,
+    /// When it was written to last, in nanoseconds since 1970; `None` where nobody keeps that.
+    pub written_ns: Option<u64>,
+}
+
+impl From<&Metadata> for Stamp {
+    fn from(meta: &Metadata) -> Self {
+        let since = meta.modified().ok();
+        let since = since.and_then(|t| t.duration_since(UNIX_EPOCH).ok());
+        Self {
+            size: meta.len(),
+            written_ns: since.and_then(|t| u64::try_from(t.as_nanos()).ok()),
+        }
+    }
+}
+
 /// Whether a file was written to between two looks, as far as its size and its clock tell.
 fn differs(before: &Metadata, after: &Metadata) -> bool {
-    before.len() != after.len() || before.modified().ok() != after.modified().ok()
+    Stamp::from(before) != Stamp::from(after)
 }
 
 /// Memory that can be had without swapping; `None` where the system doesn't say it in `/proc/meminfo`.

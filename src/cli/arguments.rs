@@ -175,7 +175,7 @@ pub struct FleetArguments {
     /// Folder where the results of single files are kept, for tasks that share one (default: that of --out)
     #[arg(long, value_name = "DIR")]
     pub kept: Option<PathBuf>,
-    /// What `sha256sum` lists of the records: one that is listed and whose result is kept is not read again
+    /// What `sha256sum` lists of the records: one that is listed and whose result is kept is not read again while its size and time are the same
     #[arg(long, value_name = "FILE", value_parser = digests)]
     pub digests: Option<BTreeMap<String, String>>,
     /// What every command is asked

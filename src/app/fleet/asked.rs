@@ -12,7 +12,7 @@ pub const ASKED: &str = "asked";
 /// What a run was asked for; all parts of a whole are asked for the same.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Asked {
-    /// Digest of the job and of every file it stands on.
+    /// Digest of what a record of the job depends on beside its bytes.
     pub job: String,
     /// Into how many parts the whole was divided.
     pub parts: usize,

@@ -1,5 +1,6 @@
 //! What is kept of one file: a few kilobytes that merge to the result of a vehicle.
 
+use crate::app::whole_file::Stamp;
 use crate::finding::Finding;
 use crate::series::rainflow::Tally;
 use crate::series::rainflow::absent::number;
@@ -125,6 +126,8 @@ pub struct FileResult {
     pub path: String,
     /// Digest of its bytes; empty where it can't be read.
     pub sha256: String,
+    /// As it was when they were read.
+    pub stamp: Option<Stamp>,
     /// The vehicle.
     pub vehicle: String,
     /// The day.
@@ -153,6 +156,8 @@ pub struct FileHead {
     pub path: String,
     /// Digest of its bytes; empty where it can't be read.
     pub sha256: String,
+    /// As it was when they were read.
+    pub stamp: Option<Stamp>,
     /// The vehicle.
     pub vehicle: String,
     /// The day.
@@ -166,6 +171,7 @@ impl From<FileResult> for FileHead {
         Self {
             path: file.path,
             sha256: file.sha256,
+            stamp: file.stamp,
             vehicle: file.vehicle,
             day: file.day,
             result: file.result.map(|d| DayHead {

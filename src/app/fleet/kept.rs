@@ -2,7 +2,7 @@
 
 use super::asked::{ASKED, Asked};
 use super::day::{Day, DayHead, FileHead, FileResult};
-use crate::app::whole_file::hex;
+use crate::app::whole_file::{Stamp, hex};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 /// Folder of the kept results within the output folder.
 pub const FOLDER: &str = "days";
 /// Counts up when what is kept changes its meaning.
-const FORM: u32 = 4;
+const FORM: u32 = 5;
 /// What stands before the digest of a kept result, which ends its file.
 const SEAL: &[u8] = b",\"content\":\"";
 
@@ -22,10 +22,12 @@ const SEAL: &[u8] = b",\"content\":\"";
 struct Kept<D> {
     form: u32,
     version: String,
-    /// Digest of the job and of every file it stands on.
+    /// Digest of what a record of the job depends on beside its bytes.
     job: String,
     path: String,
     sha256: String,
+    /// As the file was when its bytes were read.
+    stamp: Option<Stamp>,
     vehicle: String,
     day: String,
     done: Option<D>,
@@ -34,7 +36,7 @@ struct Kept<D> {
 
 /// Whose a kept result is: what can be told of one of another form.
 #[derive(Deserialize)]
-struct Stamp {
+struct Whose {
     form: u32,
     version: String,
     job: String,
@@ -128,25 +130,32 @@ impl KeptDays {
         }
     }
 
-    /// Where the result of a file is kept: by its bytes, its name, the job and the version.
-    fn place(&self, sha256: &str, name: &str) -> PathBuf {
+    /// Where the result of a file is kept: by its name, the job and the version. What a file came to takes the place of what an earlier state of it
+    /// came to: a merge, which reads no record, could not tell which of two is that of today.
+    fn place(&self, name: &str) -> PathBuf {
         let version = concat!(env!("CARGO_PKG_VERSION"), " days");
-        let key = digest(&[version, &FORM.to_string(), &self.job, sha256, name]);
+        let key = digest(&[version, &FORM.to_string(), &self.job, name]);
         self.folder
             .join(format!("{}.json", key.get(..32).unwrap_or(&key)))
     }
 
+    /// What became of a file with this path when it was done last, whatever its bytes were, where it is kept.
+    pub fn latest(&self, path: &str) -> Option<FileHead> {
+        let bytes = std::fs::read(self.place(path)).ok()?;
+        self.head_of(&bytes).filter(|f| f.path == path)
+    }
+
     /// What became of a file with these bytes and this path, where it is kept.
     pub fn head(&self, path: &str, sha256: &str) -> Option<FileHead> {
-        let bytes = std::fs::read(self.place(sha256, path)).ok()?;
-        self.head_of(&bytes)
-            .filter(|f| f.path == path && f.sha256 == sha256)
+        self.latest(path).filter(|f| f.sha256 == sha256)
     }
 
     /// The day of a file that [`KeptDays::head`] knows.
     pub fn day(&self, file: &FileHead) -> Option<Day> {
-        let bytes = std::fs::read(self.place(&file.sha256, &file.path)).ok()?;
-        self.read(&bytes)?.done
+        let bytes = std::fs::read(self.place(&file.path)).ok()?;
+        let kept: Kept<Day> = self.read(&bytes)?;
+        kept.done
+            .filter(|_| kept.path == file.path && kept.sha256 == file.sha256)
     }
 
     fn head_of(&self, bytes: &[u8]) -> Option<FileHead> {
@@ -154,6 +163,7 @@ impl KeptDays {
         Some(FileHead {
             path: kept.path,
             sha256: kept.sha256,
+            stamp: kept.stamp,
             vehicle: kept.vehicle,
             day: kept.day,
             result: match (kept.done, kept.failed) {
@@ -174,10 +184,10 @@ impl KeptDays {
     }
 
     fn found(&self, bytes: &[u8]) -> Found {
-        let Ok(stamp) = serde_json::from_slice::<Stamp>(bytes) else {
+        let Ok(whose) = serde_json::from_slice::<Whose>(bytes) else {
             return Found::Damaged;
         };
-        if !self.is_own(stamp.form, &stamp.version, &stamp.job) {
+        if !self.is_own(whose.form, &whose.version, &whose.job) {
             return Found::Other;
         }
         self.head_of(bytes).map_or(Found::Damaged, Found::Own)
@@ -194,13 +204,14 @@ impl KeptDays {
             job: self.job.clone(),
             path: file.path.clone(),
             sha256: file.sha256.clone(),
+            stamp: file.stamp,
             vehicle: file.vehicle.clone(),
             day: file.day.clone(),
             done: file.result.as_ref().ok().cloned(),
             failed: file.result.as_ref().err().cloned(),
         };
         let bytes = sealed(serde_json::to_vec(&kept).map_err(std::io::Error::other)?);
-        self.write(&self.place(&file.sha256, &file.path), &bytes)
+        self.write(&self.place(&file.path), &bytes)
     }
 
     fn write(&self, place: &Path, bytes: &[u8]) -> std::io::Result<()> {
@@ -257,9 +268,9 @@ impl KeptDays {
         Ok(())
     }
 
-    /// Whether something is kept of a file.
+    /// Whether something is kept of a file that was read.
     pub fn holds(&self, file: &FileHead) -> bool {
-        self.place(&file.sha256, &file.path).is_file()
+        !file.sha256.is_empty() && self.place(&file.path).is_file()
     }
 
     /// All that the folder holds of this job, without the days themselves.
@@ -305,7 +316,7 @@ mod tests {
 
     #[test]
     fn a_kept_result_of_which_any_byte_was_changed_or_cut_is_none() {
-        let json = br#"{"form":4,"max":1.25,"name":"A.FZ"}"#.to_vec();
+        let json = br#"{"form":5,"max":1.25,"name":"A.FZ"}"#.to_vec();
         let whole = sealed(json.clone());
         assert_eq!(unsealed(&whole), Some(&whole[..]));
         let read: serde_json::Value = serde_json::from_slice(&whole).unwrap();

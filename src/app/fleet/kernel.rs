@@ -4,7 +4,7 @@ use super::day::{Day, DayFinding, GaugeDay, LoadDay};
 use super::exchange::exchanged;
 use super::health::Health;
 use super::judged::{Judged, findings_of};
-use super::recovering::{Part, Recovering, counted};
+use super::recovering::{Part, Recovering, UnderWay, counted};
 use crate::app::files::may_be_cut;
 use crate::app::job::StrainCorrection;
 use crate::app::job::correct::{Channel, channel_of, column_of, columns_wanted};
@@ -50,6 +50,8 @@ pub struct Kernel {
     pub time_unit_s: Option<f64>,
     /// What is known to be wrong with channels.
     pub corrections: Vec<StrainCorrection>,
+    /// Records that are being recovered.
+    pub(super) under_way: UnderWay,
 }
 
 impl Kernel {
@@ -84,11 +86,13 @@ impl Kernel {
             .collect();
         let mut health = Health::new(&r.s);
         let mut judged = Judged::new(r.used.len(), k, record.clock.samples);
-        let pieces: Vec<usize> = (0..record.n_pieces()).collect();
+        let here = self.under_way.begin();
+        let mut pieces = 0..record.n_pieces();
         let mut missing = Missing::new(k);
         let mut parts: Vec<Part> = Vec::new();
         // While some pieces are decoded, the ones before them are counted.
-        for group in pieces.chunks(rayon::current_num_threads().max(1)) {
+        while !pieces.is_empty() {
+            let group: Vec<usize> = pieces.by_ref().take(here.pieces()).collect();
             let decode = || group.par_iter().map(|p| r.part(record, *p));
             let (next, ()) = rayon::join(
                 || decode().collect::<Result<_, _>>(),

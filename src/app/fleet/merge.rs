@@ -14,8 +14,10 @@ pub enum Status {
     Done,
     /// It can't be read, or loads can't be had of it.
     Failed(String),
-    /// Another file is the same day, or holds the same bytes.
+    /// Another file holds the same bytes.
     Copy(String),
+    /// Another file is the same day, and holds other bytes.
+    Second(String),
 }
 
 impl Status {
@@ -24,7 +26,7 @@ impl Status {
         match self {
             Self::Done => "done",
             Self::Failed(_) => "failed",
-            Self::Copy(_) => "copy",
+            Self::Copy(_) | Self::Second(_) => "copy",
         }
     }
 
@@ -32,7 +34,7 @@ impl Status {
     pub fn message(&self) -> &str {
         match self {
             Self::Done => "",
-            Self::Failed(m) | Self::Copy(m) => m,
+            Self::Failed(m) | Self::Copy(m) | Self::Second(m) => m,
         }
     }
 }
@@ -120,7 +122,7 @@ pub fn sorted(files: &[FileHead]) -> (BTreeMap<&str, Vec<&FileHead>>, Vec<Status
                 *slot = Status::Copy(format!("the same bytes as {first}, which counts"));
             }
             (Ok(_), None, Some(first)) => {
-                *slot = Status::Copy(format!(
+                *slot = Status::Second(format!(
                     "another file of {} on {}: {first} counts",
                     file.vehicle, file.day
                 ));

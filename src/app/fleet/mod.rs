@@ -28,13 +28,13 @@ pub use mission::{KindAnswer, MissionAnswer, MissionLoad};
 pub use outcome::{FileAnswer, Fleet, GaugeHistory, VehicleAnswer, VehicleLoadAnswer};
 pub use prepared::kernel_of;
 
-use super::context::Context;
+use super::context::{Context, Files};
 use super::fault::{Fault, Faults};
 use super::files::Opened;
 use super::job::{Fleet as FleetKeys, Job};
 use super::outcome::{Outcome, StatedUnits};
 use super::work::{Work, stopped};
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::series::record::{Options, open_source};
 use compared::{Compared, check_targets};
 use day::{Day, FileHead, FileResult};
@@ -56,7 +56,8 @@ pub struct FleetSpec {
     pub shard: Option<Shard>,
     /// The output folder, where the results of single files are kept.
     pub folder: PathBuf,
-    /// SHA-256 of records by path, as another process read them just now: one whose result is kept is not read again.
+    /// SHA-256 of records by path, as another process read them: one whose result is kept is not read again, as long as its size and the time of
+    /// its last change are those at which it was done. One that is out of reach here is what that process read.
     pub digests: BTreeMap<String, String>,
 }
 
@@ -90,7 +91,7 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
         .map(|l| l.name.as_str())
         .collect();
     check_targets(&job.file, section, &loads)?;
-    let kept = KeptDays::new(&spec.folder, job_digest(&mut work));
+    let kept = KeptDays::new(&spec.folder, job_digest(&mut work, job, section));
     let (files, reused) = if spec.files.is_empty() {
         held(&mut work, &kept, &spec.folder)?
     } else {
@@ -167,10 +168,14 @@ fn merged(
     })
 }
 
-/// A digest of the job and of all that it stands on: every file read so far.
-fn job_digest(work: &mut Work) -> String {
+/// A digest of what a record of the job depends on beside its bytes: what the job says of single records, and every other file read so far.
+fn job_digest(work: &mut Work, job: &Job, keys: &FleetKeys) -> String {
     let read = work.inputs.files_read();
-    let parts: Vec<&str> = read.iter().map(|f| f.sha256.as_str()).collect();
+    let others = read.iter().filter(|f| f.path != Path::new(&job.file));
+    let others = others.map(|f| f.sha256.as_str());
+    let parts: Vec<&str> = std::iter::once(keys.of_records.as_str())
+        .chain(others)
+        .collect();
     digest(&parts)
 }
 
@@ -244,19 +249,17 @@ fn done(
         .map_err(|e| not_kept(&spec.folder.display().to_string(), &e))?;
     let (source, progress) = (work.cx.files, work.cx.progress);
     progress.parts(mine.len());
-    let results: Vec<Result<(FileHead, bool), Fault>> = mine
+    let results: Vec<Result<(FileHead, Came), Fault>> = mine
         .par_iter()
         .map(|path| {
             if progress.is_cancelled() {
                 return Err(stopped());
             }
-            let digest = spec.digests.get(*path);
-            let done = match digest.and_then(|d| kept.head(path, d)) {
-                Some(before) => Ok((before, true)),
-                None => {
-                    let opened = source.open_hashed(Path::new(path));
-                    one(kernel, kept, form, path, opened)
-                }
+            let told = spec.digests.get(*path);
+            let told = told.and_then(|d| kept.head(path, d));
+            let done = match told.filter(|before| is_as_then(source, before)) {
+                Some(before) => Ok((before, Came::Kept)),
+                None => one(kernel, kept, form, path, source),
             };
             progress.advance(1);
             done
@@ -264,12 +267,17 @@ fn done(
         .collect();
     work.go_on()?;
     let mut files = Vec::new();
-    let mut reused = 0;
+    let (mut reused, mut replaced) = (0, Vec::new());
     for result in results {
-        let (file, was_kept) = result?;
-        reused += usize::from(was_kept);
+        let (file, came) = result?;
+        match came {
+            Came::Kept => reused += 1,
+            Came::Replacing => replaced.push(file.path.clone()),
+            Came::New => {}
+        }
         files.push(file);
     }
+    work.findings.extend(told_replaced(&replaced));
     // Of a part, the others are still to come.
     if spec.shard.is_none() && files.iter().all(|f| kept.holds(f)) {
         let _ = std::fs::remove_file(asked);
@@ -277,18 +285,52 @@ fn done(
     Ok((files, reused))
 }
 
-/// The result of one file, and whether it was kept.
+/// Whether a file is in the state in which it was done, as far as can be told without reading it; one that is out of reach is taken to be.
+fn is_as_then(source: &dyn Files, before: &FileHead) -> bool {
+    match source.stamp(Path::new(&before.path)) {
+        Ok(now) => before.stamp == Some(now),
+        Err(_) => true,
+    }
+}
+
+/// Whether a result was kept, or is new, or stands in place of that of other bytes under the same path.
+enum Came {
+    Kept,
+    New,
+    Replacing,
+}
+
+/// That results were replaced: of a record that was written anew, or of another that has the same path from another folder.
+fn told_replaced(paths: &[String]) -> Option<Finding> {
+    let n = paths.len();
+    (n > 0).then(|| {
+        Finding::new(
+            Severity::Info,
+            "fleet-record-replaced",
+            few(paths),
+            format!("{n} records hold other bytes than when they were done before under the same path: they were done anew, and count as they are now"),
+            "nothing, where they were written anew; records of another folder need paths of their own",
+        )
+        .with_numbers(n as f64, 0.0)
+    })
+}
+
+/// The result of one file, and how it came.
 fn one(
     kernel: &Kernel,
     kept: &KeptDays,
     form: &NameForm,
     path: &str,
-    opened: std::io::Result<(Opened, String)>,
-) -> Result<(FileHead, bool), Fault> {
+    source: &dyn Files,
+) -> Result<(FileHead, Came), Fault> {
+    // Before it is read: what changes it afterwards changes this too.
+    let stamp = source.stamp(Path::new(path)).ok();
+    let opened = source.open_hashed(Path::new(path));
     let named = form.read(path);
     let mut file = FileResult {
         path: path.to_owned(),
         sha256: String::new(),
+        stamp,
         vehicle: named.as_ref().map_or(String::new(), |n| n.vehicle.clone()),
         day: named.as_ref().map_or(String::new(), |n| n.day.clone()),
         result: Err(String::new()),
@@ -297,29 +339,32 @@ fn one(
         Ok(read) => read,
         Err(e) => {
             file.result = Err(format!("it can't be read: {e}"));
-            return Ok((file.into(), false));
+            return Ok((file.into(), Came::New));
         }
     };
     file.sha256 = hash;
     if named.is_none() {
         file.result = Err("its name is not of the form that [fleet] file_name states".to_owned());
-        return Ok((file.into(), false));
+        return Ok((file.into(), Came::New));
     }
-    if let Some(before) = kept.head(path, &file.sha256) {
-        return Ok((before, true));
-    }
+    // What failed is tried again: a build that reads more formats may be at it now.
+    let came = match kept.latest(path) {
+        Some(before) if before.sha256 != file.sha256 => Came::Replacing,
+        Some(before) if before.result.is_ok() => return Ok((before, Came::Kept)),
+        _ => Came::New,
+    };
     file.result = day_of(kernel, &opened);
     // Whatever was read of a file that changed meanwhile, or could not be read to its end, is worth nothing and not kept: it is tried again.
     if let Err(e) = opened.check() {
         file.sha256 = String::new();
         file.result = Err(format!("it can't be read: {e}"));
-        return Ok((file.into(), false));
+        return Ok((file.into(), Came::New));
     }
     kept.put(&file).map_err(|e| not_kept(path, &e))?;
     // What is read back is what a later run would read, to the last digit: a merge of kept results has the same bytes.
     Ok((
         kept.head(path, &file.sha256).unwrap_or_else(|| file.into()),
-        false,
+        came,
     ))
 }
 

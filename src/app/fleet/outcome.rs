@@ -330,6 +330,12 @@ impl Fleet {
                     "fleet-second-copy",
                     "keep one file a day",
                 ),
+                // Its hours and damage were asked for, and are missing.
+                Status::Second(_) => (
+                    Severity::Error,
+                    "fleet-day-twice",
+                    "keep one file a day; where both count, let {day} in [fleet] file_name take in what tells them apart",
+                ),
             };
             out.push(Finding::new(
                 severity,

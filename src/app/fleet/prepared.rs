@@ -1,6 +1,7 @@
 //! The kernel of a job: S, zero, errors, classes.
 
 use super::kernel::Kernel;
+use super::recovering::UnderWay;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::Job;
 use crate::app::job::correct::channel_of;
@@ -74,6 +75,7 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
         widths,
         time_unit_s: measured.time_unit_s,
         corrections: job.corrections.clone(),
+        under_way: UnderWay::default(),
     })
 }
 

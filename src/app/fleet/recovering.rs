@@ -10,6 +10,37 @@ use crate::series::rainflow::Counter;
 use crate::series::record::Record;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// How many records are being recovered at the moment.
+#[derive(Default)]
+pub(super) struct UnderWay(AtomicUsize);
+
+/// One of them, until it is dropped.
+pub(super) struct Here<'a>(&'a AtomicUsize);
+
+impl UnderWay {
+    /// One more.
+    pub fn begin(&self) -> Here<'_> {
+        self.0.fetch_add(1, Ordering::Relaxed);
+        Here(&self.0)
+    }
+}
+
+impl Here<'_> {
+    /// How many pieces of the record may be in memory at a time: as many as threads for one alone, its share of them among others. So what all
+    /// records hold together goes with the number of threads, not with its square. What comes out does not depend on it.
+    pub fn pieces(&self) -> usize {
+        let records = self.0.load(Ordering::Relaxed).max(1);
+        rayon::current_num_threads().div_ceil(records).max(1)
+    }
+}
+
+impl Drop for Here<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
+    }
+}
 
 /// A record being recovered: the gauges of it that read.
 pub(super) struct Recovering {
@@ -93,4 +124,25 @@ pub(super) fn counted(counters: &mut [Counter], parts: &[Part]) {
             c.push(&part.loads);
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn records_share_the_threads_among_them() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(8);
+        pool.build().unwrap().install(|| {
+            let all = UnderWay::default();
+            let first = all.begin();
+            assert_eq!(first.pieces(), 8);
+            let others: Vec<Here> = (0..7).map(|_| all.begin()).collect();
+            assert_eq!(first.pieces(), 1);
+            let more = all.begin();
+            assert_eq!(more.pieces(), 1);
+            drop(others);
+            assert_eq!(first.pieces(), 4);
+        });
+    }
 }

@@ -6,8 +6,16 @@ use super::super::spanned::Spanned;
 use super::super::types::*;
 use std::collections::BTreeSet;
 
-/// How far shares may be from 1 in sum: three of .333 are meant as thirds. They are divided by their sum.
-const ROUNDED: f64 = 0.002;
+/// How far a share may be from what is meant, written with three digits: three of .333 are thirds, six of .167 sixths. Rounding alone moves the
+/// sum by no more than this times their number.
+const ROUNDED: f64 = 0.0005;
+/// How far shares may be from 1 in sum however many they are: they are divided by their sum, and more would no longer be the job's shares.
+const ROUNDED_IN_SUM: f64 = 0.01;
+
+/// Keys of the section that damage is held against: no record is counted otherwise for them.
+const OF_MERGE: [&str; 4] = ["reference", "target", "mission", "mission_hours"];
+/// What no record is counted by: the title, and sections that other commands alone ask.
+const OF_OTHERS: [&str; 5] = ["title", "ballast", "reconcile", "respond", "study"];
 
 /// Largest load range of a knee: no structure bears it in any unit, and its power of 20 is still a number.
 const LARGEST_KNEE: f64 = 1e12;
@@ -49,7 +57,20 @@ pub(super) fn fleet(c: &mut Collector, raw: Option<&Spanned<RawFleet>>) -> Optio
         target: target(c, raw),
         mission: mission(c, raw),
         mission_hours: hours.unwrap_or(1.0),
+        of_records: of_records(c.text),
     })
+}
+
+/// The job, its keys in order, without comments, without what damage is held against and what no record is counted by.
+fn of_records(text: &str) -> String {
+    let Ok(mut job) = text.parse::<toml::Table>() else {
+        return text.to_owned();
+    };
+    job.retain(|key, _| !OF_OTHERS.contains(&key));
+    if let Some(toml::Value::Table(section)) = job.get_mut("fleet") {
+        section.retain(|key, _| !OF_MERGE.contains(&key));
+    }
+    format!("{job:?}")
 }
 
 fn reference(c: &mut Collector, raw: &RawFleet) -> Option<ReferenceDay> {
@@ -84,22 +105,23 @@ fn target(c: &mut Collector, raw: &RawFleet) -> Vec<TargetDamage> {
 
 fn mission(c: &mut Collector, raw: &RawFleet) -> Vec<MissionKind> {
     let mut out: Vec<MissionKind> = Vec::new();
-    for section in &raw.mission {
-        out.extend(kind(c, section));
-    }
     let mut names = BTreeSet::new();
-    for (k, section) in out.iter().zip(&raw.mission) {
-        if !names.insert(&k.name) {
+    for section in &raw.mission {
+        let Some(k) = kind(c, section) else { continue };
+        if !names.insert(k.name.clone()) {
             let wrong = format!("`{}` stands twice", k.name);
             let remedy = "give every kind of days its own name";
             c.fault(section, "fleet.mission.name", wrong, remedy);
         }
+        out.push(k);
     }
     if out.len() == raw.mission.len()
         && let Some(first) = raw.mission.first()
     {
         let sum: f64 = out.iter().map(|k| k.share).sum();
-        if (sum - 1.0).abs() > ROUNDED {
+        let rounding = (ROUNDED * out.len() as f64).min(ROUNDED_IN_SUM);
+        // .4995 and .5 are one unit of the last digit away, but for the last bits of their sum.
+        if (sum - 1.0).abs() > rounding + 1e-9 {
             let wrong = format!("the shares sum to {sum:.4}, expected 1");
             let remedy = "state what the rest of the hours is, or correct the shares";
             c.fault(first, "fleet.mission.share", wrong, remedy);

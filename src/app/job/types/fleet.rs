@@ -19,6 +19,8 @@ pub struct Fleet {
     pub mission: Vec<MissionKind>,
     /// Hours of the mission.
     pub mission_hours: f64,
+    /// The job but for what damage is held against and what other commands ask: on so much of it a single record depends.
+    pub of_records: String,
 }
 
 /// A day of a vehicle.
