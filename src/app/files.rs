@@ -10,7 +10,7 @@ use crate::finding::{Finding, Severity};
 use crate::series::record::csv::unsure_end;
 use crate::series::record::is_format;
 use sha2::{Digest, Sha256};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 
@@ -29,7 +29,12 @@ pub struct Inputs<'a> {
     entries: Vec<(String, PathBuf, Hashing)>,
     /// Tables named by the job whose last line may be cut.
     unsure: BTreeSet<String>,
+    /// Tables that were read, so that a question that comes back to one reads what it read before.
+    kept: BTreeMap<PathBuf, FileBytes>,
 }
+
+/// Bytes of tables that are kept at most: tables of runs and gauges are far smaller, records far larger.
+const KEPT: usize = 32 << 20;
 
 enum Hashing {
     Running(JoinHandle<String>),
@@ -55,6 +60,7 @@ impl<'a> Inputs<'a> {
             files,
             entries: Vec::new(),
             unsure: BTreeSet::new(),
+            kept: BTreeMap::new(),
         }
     }
 
@@ -69,6 +75,7 @@ impl<'a> Inputs<'a> {
             files,
             entries: read.iter().map(entry).collect(),
             unsure: unsure.map(|f| f.given.clone()).collect(),
+            kept: BTreeMap::new(),
         }
     }
 
@@ -99,9 +106,22 @@ impl<'a> Inputs<'a> {
     /// A fault of the file itself where it can't be read.
     pub fn read(&mut self, base: &Path, given: &str) -> Result<FileBytes, Fault> {
         let path = base.join(given);
+        if let Some(bytes) = self.kept.get(&path) {
+            return Ok(bytes.clone());
+        }
         let bytes = self.files.load(&path).map_err(|e| unreadable(given, &e))?;
+        self.keep(given, &path, &bytes);
         self.record(given, path, &bytes);
         Ok(bytes)
+    }
+
+    /// Keeps a table while there is room.
+    fn keep(&mut self, given: &str, path: &Path, bytes: &FileBytes) {
+        let held: usize = self.kept.values().map(|b| b.len()).sum();
+        let fits = held.saturating_add(bytes.len()) <= KEPT;
+        if fits && (is_table(given) || is_sheet(bytes)) && !is_format(bytes) {
+            self.kept.insert(path.to_owned(), bytes.clone());
+        }
     }
 
     /// Text of the file `given`, which is relative to `base`; a byte order mark is dropped, a spreadsheet is turned into the CSV text
@@ -154,9 +174,7 @@ impl<'a> Inputs<'a> {
 
     /// Notes a table whose last line may be cut.
     fn note_end(&mut self, given: &str, read: Option<&impl AsRef<[u8]>>) {
-        let name = given.to_ascii_lowercase();
-        let is_table = [".csv", ".tsv", ".txt"].iter().any(|e| name.ends_with(e));
-        if let Some(bytes) = read.filter(|_| is_table)
+        if let Some(bytes) = read.filter(|_| is_table(given))
             && !is_format(bytes.as_ref())
             && unsure_end(bytes.as_ref()).is_some()
         {
@@ -205,6 +223,12 @@ impl<'a> Inputs<'a> {
             })
             .collect()
     }
+}
+
+/// Whether a file is a table of text, by its name.
+fn is_table(given: &str) -> bool {
+    let name = given.to_ascii_lowercase();
+    [".csv", ".tsv", ".txt"].iter().any(|e| name.ends_with(e))
 }
 
 /// The finding of a table, or a record, whose last line may be cut.
@@ -274,4 +298,37 @@ fn sha256_hex(bytes: &[u8]) -> String {
         .iter()
         .map(|b| format!("{b:02x}"))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// Counts how often it is asked.
+    struct Counted(AtomicUsize, Vec<u8>);
+
+    impl Files for Counted {
+        fn load(&self, _: &Path) -> std::io::Result<FileBytes> {
+            self.0.fetch_add(1, Ordering::Relaxed);
+            Ok(self.1.clone().into())
+        }
+    }
+
+    #[test]
+    fn a_table_is_loaded_once_and_what_is_no_table_or_too_large_is_not_kept() {
+        for (given, size, loads) in [
+            ("runs.csv", 100, 1),
+            ("model.op2", 100, 3),
+            ("record.csv", KEPT + 1, 3),
+        ] {
+            let files = Counted(AtomicUsize::new(0), vec![b'1'; size]);
+            let mut inputs = Inputs::of(&files);
+            for _ in 0..3 {
+                assert_eq!(inputs.read(Path::new("a"), given).unwrap().len(), size);
+            }
+            assert_eq!(files.0.load(Ordering::Relaxed), loads, "{given}");
+            assert_eq!(inputs.list().len(), 1);
+        }
+    }
 }

@@ -38,6 +38,9 @@ pub fn check_named(work: &Work, job: &Job, absent: Absent) -> Result<(), Faults>
     Faults::check(faults)
 }
 
+/// What to do where results can't be read.
+pub const RESULTS_REMEDY: &str = "give an OP2, punch or HDF5 file of a static run";
+
 /// The fault of results that can't be read.
 pub fn results_fault(job: &Job, named: &NamedFile, e: &ResultsError) -> Fault {
     Fault::at(
@@ -45,6 +48,6 @@ pub fn results_fault(job: &Job, named: &NamedFile, e: &ResultsError) -> Fault {
         named.line,
         &*named.key,
         format!("`{}`: {e}", named.given),
-        "give an OP2, punch or HDF5 file of a static run",
+        RESULTS_REMEDY,
     )
 }

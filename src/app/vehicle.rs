@@ -217,6 +217,10 @@ pub fn vehicle_fault(job: &Job, file: &str, e: &VehicleError) -> Fault {
             vehicle_fault(job, hold_out.map_or(file, |h| &h.given), inner)
         }
         VehicleError::Series(_) => Fault::of(file, "record", wrong, remedy),
+        VehicleError::Bounds { name, .. } => {
+            let key = format!("vehicle.bounds.{name}");
+            Fault::at(&*job.file, line, key, wrong, remedy)
+        }
         _ => Fault::at(&*job.file, line, "vehicle", wrong, remedy),
     }
 }

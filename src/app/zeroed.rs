@@ -63,7 +63,8 @@ pub(super) fn read_zeroed(
     })
 }
 
-/// Readings less their zero, judged as `recover` judges its own: what is no strain becomes no reading, and findings say so.
+/// Readings less their zero, judged as `recover` judges its own: what is no strain becomes no reading, and findings say so, once of the
+/// same gauges.
 pub(super) fn judged(
     work: &mut Work,
     measured: &Measured,
@@ -75,7 +76,12 @@ pub(super) fn judged(
         model_rel: 0.0,
     };
     let (kept, findings) = plausible::check(gauges, readings, errors);
-    work.findings.extend(findings);
+    for finding in findings {
+        let said = |f: &Finding| f.code == finding.code && f.subject == finding.subject;
+        if !work.findings.iter().any(said) {
+            work.findings.push(finding);
+        }
+    }
     kept
 }
 

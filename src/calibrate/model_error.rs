@@ -15,7 +15,8 @@ const STATED_LN_SD: f64 = 0.7;
 /// # Reference
 /// K. L. Lange, R. J. A. Little, J. M. G. Taylor, J. Am. Stat. Assoc. 84 (1989) 881.
 const FREEDOM: f64 = 4.0;
-/// Steps of a gauge's own error from that of all, in factors of the square root of two, that are tried.
+/// Steps of a gauge's own error from that of all, in factors of the square root of two, that are tried: 0.35 to 8 times. With [`FREEDOM`] of four a
+/// gauge's error is smaller than that once in 300 gauges, and larger once in 8,000.
 const OWN_STEPS: std::ops::RangeInclusive<i32> = -3..=6;
 
 /// A factor on the relative error: that of a step.

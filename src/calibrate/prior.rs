@@ -15,7 +15,8 @@ pub(super) struct RowPrior {
 const DIFFUSE: f64 = 100.0;
 /// Share of a row's root mean square below which an entry's error no longer falls with the entry. The first where errors go with the entries
 /// themselves, as those of a stiffness do: an entry that is zero in the model is not known exactly. The second where they go with all the strain
-/// around the gauge, as what a mesh leaves does.
+/// around the gauge, as what a mesh leaves does: of entries that scatter like a Gaussian one in twelve lies below the first floor and near half
+/// lie below the second, whose errors are then alike.
 pub(super) const FLOORS: [f64; 2] = [0.1, 0.6];
 /// A row's root mean square below this share of that of all rows says nothing of how near to zero its entries are.
 const SMALL_ROW: f64 = 0.1;

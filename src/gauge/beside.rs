@@ -11,6 +11,8 @@ pub struct Beside {
     pub distance: f64,
     /// Its longest side or diagonal, and its faces' or recovery points' distance from there.
     pub size: f64,
+    /// How far its faces or recovery points lie from there; `None` for a bar that states none.
+    pub faces: Option<f64>,
 }
 
 /// Of a shell; `None` where it has no area.
@@ -22,6 +24,7 @@ pub fn beside_shell(model: &Model, ix: ShellIx, x: Vec3) -> Option<Beside> {
     Some(Beside {
         distance: foot_on(model, ix, x)?.distance,
         size: pairs.fold(0.0, f64::max) + sides[0].max(sides[1]),
+        faces: Some(sides[0].max(sides[1])),
     })
 }
 
@@ -37,5 +40,6 @@ pub fn beside_beam(model: &Model, ix: BeamIx, x: Vec3) -> Option<Beside> {
     Some(Beside {
         distance: (x - a - along * share.clamp(0.0, 1.0)).norm(),
         size: along.norm() + depth,
+        faces: Some(depth).filter(|d| *d > 0.0),
     })
 }

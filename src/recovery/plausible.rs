@@ -8,11 +8,20 @@ use crate::units::{MICROSTRAIN, number};
 /// Strain that no reading exceeds: gauges for large elongation end at a fifth of it, and metals break before.
 pub const LARGEST_STRAIN: f64 = 1.0;
 /// Strain that no gauge on a structure follows: foil gauges end at 3 to 5 %, those for tests beyond yield at 10 to 20 %, and what S says
-/// holds of small strain only. Readings beyond it are kept, and said to be wrong.
+/// holds of small strain only. Readings beyond it are kept, and said to be doubtful: one channel that is overloaded, or a part that yields.
 ///
 /// # Reference
 /// Micro-Measurements, Tech Note TN-505, Strain Gage Selection, strain range by gauge series (EA 3 to 5 %, EP 10 to 20 %).
 pub const GAUGES_END: f64 = 0.05;
+/// Strain that no metal of a structure reaches whole: S355 breaks at 22 %, EN AW-6082-T6 at 8 to 10 %, and the gauges for largest elongation end
+/// there too. Readings beyond it are no strain of the structure.
+///
+/// # Reference
+/// EN 10025-2 (2019), table 7; EN 755-2 (2016).
+const METAL_ENDS: f64 = 0.2;
+/// Strain that half of the readings exceed only where their unit is another: metals yield at 0.1 to 0.5 %, and beyond it S, which is linear,
+/// says nothing.
+const MOST_BELOW: f64 = 0.01;
 /// Root mean square of all readings, in noise sd, below which they can't be readings of a gauge with that noise: of `n` readings of
 /// noise alone it is 1 +- 0.7 / sqrt(n).
 const TOO_QUIET: f64 = 0.3;
@@ -50,26 +59,40 @@ pub fn check(
     let (names, largest) = named(&impossible_of);
     findings.extend(impossible(&names, largest));
     let (names, largest) = named(&beyond_of);
-    findings.extend(beyond_gauges(&names, largest));
+    findings.extend(beyond_gauges(&names, largest, median(&readings)));
     findings.extend(too_quiet(&readings, errors));
     (readings, findings)
 }
 
-/// The finding on readings beyond what gauges follow; `None` without gauges.
-fn beyond_gauges(gauges: &[&str], largest: f64) -> Option<Finding> {
+/// Half of all readings are smaller, signs dropped; 0 without readings.
+fn median(readings: &[Readings]) -> f64 {
+    let all = readings.iter().flat_map(|r| &r.strain);
+    let mut sizes: Vec<f64> = all.map(|v| v.abs()).filter(|v| v.is_finite()).collect();
+    let middle = sizes.len() / 2;
+    match middle < sizes.len() {
+        true => *sizes.select_nth_unstable_by(middle, f64::total_cmp).1,
+        false => 0.0,
+    }
+}
+
+/// The finding on readings beyond what gauges follow, of all of which half are below `median`; `None` without gauges.
+fn beyond_gauges(gauges: &[&str], largest: f64, median: f64) -> Option<Finding> {
+    let (severity, what, limit) = if largest > METAL_ENDS || median > MOST_BELOW {
+        let what = "are no strain of a metal that S holds for: the unit of the readings is not microstrain, or the channel is overloaded";
+        (Severity::Error, what, METAL_ENDS)
+    } else {
+        let what = "are more than strain gauges follow and than S holds for: the channel is overloaded, or the part yields there";
+        (Severity::Warning, what, GAUGES_END)
+    };
     (!gauges.is_empty()).then(|| {
         Finding::new(
-            Severity::Error,
+            severity,
             "reading-beyond-gauges",
             few(gauges),
-            format!(
-                "readings of up to {} microstrain are more than strain gauges follow and than S holds for: the unit of the readings is not \
-                 microstrain, or the channel is overloaded",
-                number(largest / MICROSTRAIN)
-            ),
+            format!("readings of up to {} microstrain {what}", number(largest / MICROSTRAIN)),
             "state readings in microstrain (strain times 1e6); leave an overloaded channel out: [[correction]] ignore = true",
         )
-        .with_numbers(largest / MICROSTRAIN, GAUGES_END / MICROSTRAIN)
+        .with_numbers(largest / MICROSTRAIN, limit / MICROSTRAIN)
     })
 }
 

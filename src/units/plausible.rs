@@ -9,13 +9,14 @@ pub const MODULUS_LIMITS_GPA: [f64; 2] = [1.0, 1000.0];
 pub const DENSITY_LIMITS: [f64; 2] = [20.0, 25_000.0];
 
 /// The largest size, SI units, that a quantity of a structure's loads has: the weight of the heaviest ships and buildings is a few times
-/// 1e9 N, on arms of up to ten kilometres. A number beyond it stands in another unit or is none. Load sets count in times the set.
+/// 1e9 N, on arms of up to ten kilometres. Lengths are coordinates too, whose origin may lie where a survey has it: northings reach 1e7 m. A
+/// number beyond it stands in another unit or is none. Load sets count in times the set.
 pub fn largest_size(quantity: Option<Quantity>) -> f64 {
     match quantity {
         Some(Quantity::Force) | None => 1e11,
         Some(Quantity::Moment) => 1e15,
         Some(Quantity::Mass) => 1e10,
-        Some(Quantity::Length) => 1e4,
+        Some(Quantity::Length) => 1e8,
         Some(Quantity::Stress) => 1e12,
         Some(Quantity::Acceleration) => 1e7,
     }

@@ -97,3 +97,10 @@ fn the_likely_system_is_one_that_the_check_accepts_and_none_where_none_is() {
         UnitSystem::from_unitsys("MN-MM")
     );
 }
+
+#[test]
+fn a_coordinate_of_a_survey_is_a_length_of_a_structure_and_one_beyond_the_earth_is_none() {
+    // A quarter of the meridian, 10,002 km, is the largest northing; the earth's circumference is 4e7 m.
+    let most = largest_size(Some(Quantity::Length));
+    assert!(most > 1.001e7 && most < 1e9);
+}

@@ -126,6 +126,7 @@ fn allowed(task: &IdentifyTask, parameters: &[Parameter]) -> Vec<Allowed> {
         .map(
             |p| match (task.known.get(&p.name), task.bounds.get(&p.name)) {
                 (Some(v), _) => Allowed::Known(*v),
+                (None, Some([lo, hi])) if p.positive => Allowed::Within(lo.max(0.0), *hi),
                 (None, Some([lo, hi])) => Allowed::Within(*lo, *hi),
                 (None, None) if p.positive => Allowed::Within(0.0, f64::INFINITY),
                 (None, None) => Allowed::Free,
@@ -184,10 +185,20 @@ fn begun(task: &IdentifyTask, record: &Channels) -> Result<(Treatment, Vehicle),
     let vehicle = resolved(&measured, record, &treatment)?;
     let all = vehicle.parameters();
     let mut named = task.known.keys().chain(task.bounds.keys());
-    match named.find(|k| all.iter().all(|p| p.name != **k)) {
-        Some(name) => Err(VehicleError::Known {
+    if let Some(name) = named.find(|k| all.iter().all(|p| p.name != **k)) {
+        return Err(VehicleError::Known {
             name: name.clone(),
             present: all.iter().map(|p| p.name.clone()).collect(),
+        });
+    }
+    let against_nature = |p: &&Parameter| {
+        let high = task.bounds.get(&p.name).map(|b| b[1]);
+        p.positive && high.is_some_and(|high| high <= 0.0)
+    };
+    match all.iter().find(against_nature) {
+        Some(p) => Err(VehicleError::Bounds {
+            name: p.name.clone(),
+            high: task.bounds.get(&p.name).map_or(0.0, |b| b[1]),
         }),
         None => Ok((treatment, vehicle)),
     }

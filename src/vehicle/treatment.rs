@@ -32,6 +32,13 @@ pub enum VehicleError {
         /// Names of the model.
         present: Vec<String>,
     },
+    /// Limits without a value that nature allows.
+    Bounds {
+        /// The parameter.
+        name: String,
+        /// Its upper limit.
+        high: f64,
+    },
 }
 
 impl VehicleError {
@@ -56,6 +63,12 @@ impl VehicleError {
                 format!("no equation of motion of model `{model}` holds measured quantities only"),
                 "measure wheel forces, or accelerations of the body and its wheels",
             ),
+            Self::Bounds { name, high } => {
+                return (
+                    format!("`{name}` is positive by nature, and its upper limit is {high}"),
+                    "write [low, high] with a high above 0, or leave the parameter free".to_owned(),
+                );
+            }
             Self::Known { name, present } => (
                 format!(
                     "`{name}` is declared known, but the model's parameters are {}",

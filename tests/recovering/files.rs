@@ -190,3 +190,42 @@ fn units_of_run_tables_are_read_as_those_of_records() {
     assert_eq!(code, 0, "{said}");
     assert_eq!(load(&result, "R3", "A"), load(&plain, "R3", "A"));
 }
+
+#[test]
+fn a_rosette_of_a_given_s_reads_by_its_legs() {
+    let strain = table("run", 8, as_is);
+    let (exit, said, single, dir) = recover("rosette", &strain, "");
+    assert_eq!(exit, 0, "{said}");
+    for file in ["S.csv", "strain.csv"] {
+        let text = std::fs::read_to_string(dir.join(file)).unwrap();
+        let legs = [("G1", "R.a"), ("G2", "R.b"), ("G3", "R.c")];
+        let text = legs.iter().fold(text, |t, (g, leg)| t.replace(g, leg));
+        std::fs::write(dir.join(file), text).unwrap();
+    }
+    let job = std::fs::read_to_string(dir.join("job.toml")).unwrap();
+    let gauges = "[[gauge]]\nname = \"G4\"\n[[gauge]]\nname = \"R\"\nrosette = \"rectangular\"\n";
+    std::fs::write(dir.join("job.toml"), format!("{job}{gauges}")).unwrap();
+    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .arg("recover")
+        .arg(dir.join("job.toml"))
+        .arg("--out")
+        .arg(dir.join("legs"))
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert_eq!(done.status.code(), Some(0), "{said}");
+    let text = std::fs::read_to_string(dir.join("legs/result.json")).unwrap();
+    let legs: Value = serde_json::from_str(&text).unwrap();
+    for run in 0..8 {
+        for name in ["A", "B"] {
+            let [own, own_sigma] = load(&legs, &format!("R{run}"), name);
+            let [value, sigma] = load(&single, &format!("R{run}"), name);
+            // Gauges stand in another order: rounding alone.
+            assert!(
+                (own - value).abs() < 1e-9 * value.abs().max(1.0),
+                "{run} {name}"
+            );
+            assert!((own_sigma - sigma).abs() < 1e-9 * sigma, "{run} {name}");
+        }
+    }
+}

@@ -275,3 +275,126 @@ fn every_command_that_reads_a_job_s_deck_judges_its_modulus() {
         asks(&to, &[command, job], "units-modulus");
     }
 }
+
+#[test]
+fn limits_of_a_vehicle_that_leave_no_value_are_faults_and_open_ones_change_nothing() {
+    let identify = ["identify", "identify.toml"];
+    let stated = "noise = { acc = 0.02, force = 60.0 }";
+    let with = |key: &str| {
+        let to = copied("limits", "quarter_truck");
+        edit(&to, "identify.toml", |t| {
+            t.replace(stated, &format!("{stated}\n{key}"))
+        });
+        to
+    };
+    for limits in [
+        "[nan, 1e6]",
+        "[0.0, nan]",
+        "[1e6, 1e3]",
+        "[1e6, 1e6]",
+        "[-1e308, 1e308]",
+        "[inf, inf]",
+        // Negative stiffness is against nature.
+        "[-1e7, -1e6]",
+    ] {
+        let to = with(&format!("bounds = {{ k_s = {limits} }}"));
+        refuses(&to, &identify, "vehicle.bounds.k_s: ");
+    }
+    let to = with("places = { lf = [nan, 0.0] }");
+    refuses(&to, &identify, "vehicle.places.lf: ");
+    let parameters = |to: &Path| {
+        let (exit, _, errors) = judged(to, &identify);
+        let text = std::fs::read(to.join("judged.out/result.json")).unwrap();
+        let result: Value = serde_json::from_slice(&text).unwrap();
+        assert!(result["parameters"].is_array(), "{errors}");
+        (exit, result["parameters"].clone())
+    };
+    let free = parameters(&copied("no_limits", "quarter_truck"));
+    for limits in ["[0.0, inf]", "[-inf, inf]", "[-1e9, 1e9]"] {
+        let to = with(&format!("bounds = {{ k_s = {limits} }}"));
+        assert_eq!(parameters(&to), free, "{limits}");
+    }
+}
+
+#[test]
+fn strain_beside_a_table_of_loads_is_judged_too() {
+    let to = copied("beside_loads", "frame");
+    let (exit, _, errors) = judged(&to, &["recover", "recover.toml"]);
+    assert_eq!(exit, 0, "{errors}");
+    std::fs::copy(to.join("judged.out/loads.csv"), to.join("loads.csv")).unwrap();
+    edit(&to, "respond.toml", |t| {
+        t.replace("[respond]", "[respond]\nloads = \"loads.csv\"")
+    });
+    let loads = std::fs::read_to_string(to.join("loads.csv")).unwrap();
+    edit(&to, "loads.csv", |t| with_number(t, 3, "L.FZ.high", "-1e6"));
+    refuses(&to, &["respond", "respond.toml"], "loads.csv:3: L.FZ.low: ");
+    std::fs::write(to.join("loads.csv"), loads).unwrap();
+    let strain = std::fs::read_to_string(to.join("strain.csv")).unwrap();
+    for (factor, code) in [
+        (1e-6, "readings-below-noise"),
+        (1e3, "reading-beyond-gauges"),
+        (1e9, "reading-impossible"),
+    ] {
+        std::fs::write(to.join("strain.csv"), scaled(&strain, None, factor)).unwrap();
+        asks(&to, &["respond", "respond.toml"], code);
+    }
+}
+
+#[test]
+fn one_reading_beyond_five_per_cent_is_doubtful_and_one_beyond_twenty_is_no_strain_of_a_metal() {
+    for (number, severity) in [
+        ("49000", None),
+        ("60000", Some("warning")),
+        ("210000", Some("error")),
+    ] {
+        let to = copied("one_reading", "frame");
+        edit(&to, "strain.csv", |t| with_number(t, 3, "P01", number));
+        let (_, codes, errors) = judged(&to, &["check", "recover.toml"]);
+        let found = codes.iter().find(|c| c.contains(" reading-beyond-gauges "));
+        let severity_of = |c: &String| c.split(' ').next().map(str::to_owned);
+        assert_eq!(
+            found.and_then(severity_of).as_deref(),
+            severity,
+            "{number} {codes:?}\n{errors}"
+        );
+    }
+}
+
+/// Element 19 of the frame ends at x = 1250 mm and is 260 mm large; its plate is 6 mm thick, and P01 sits on its face.
+#[test]
+fn a_point_beside_its_element_is_doubtful_beyond_its_tolerance_and_wrong_beyond_its_size() {
+    let tolerant = "\n[placement]\nposition_tolerance = 10.0\n";
+    for (x, more, severity) in [
+        ("1254", "", None),
+        ("1270", "", Some("warning")),
+        ("1270", tolerant, None),
+        ("1600", tolerant, Some("error")),
+        ("112500", "", Some("error")),
+    ] {
+        let to = copied("point", "frame");
+        edit(&to, "gauges.csv", |t| with_number(t, 2, "x", x));
+        edit(&to, "recover.toml", |t| format!("{t}\n# x = {x}\n{more}"));
+        let (_, codes, errors) = judged(&to, &["check", "recover.toml"]);
+        let found = codes.iter().find(|c| c.contains(" point-off-element P01"));
+        let severity_of = |c: &String| c.split(' ').next().map(str::to_owned);
+        assert_eq!(
+            found.and_then(severity_of).as_deref(),
+            severity,
+            "{x} {codes:?}\n{errors}"
+        );
+    }
+}
+
+#[test]
+fn ballast_of_a_structure_without_density_is_held_against_its_weight_in_steel() {
+    let to = copied("ballast_without_density", "frame");
+    edit(&to, "frame.bdf", |t| {
+        let lumps = "CONM2,9001,180,,1.-4\nCONM2,9002,71,,1.-4\nCONM2,9003,156,,1.-4";
+        t.replace("2.1+5,,0.3,7.85-9", &format!("2.1+5,,0.3\n{lumps}"))
+    });
+    let ballast = ["ballast", "ballast.toml"];
+    let (exit, codes, errors) = judged(&to, &ballast);
+    assert_eq!(exit, 0, "{codes:?}\n{errors}");
+    edit(&to, "empty.csv", |t| scaled(t, None, 1e3));
+    asks(&to, &ballast, "ballast-beyond-model");
+}

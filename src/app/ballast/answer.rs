@@ -179,24 +179,47 @@ fn together(task: &Task, sized: &Sized) -> Together {
 /// weigh, and a unit that is mistaken for another makes a thousand.
 const FAR_BEYOND: f64 = 100.0;
 
-/// The finding on masses that no structure of the model's mass carries. A model without mass says nothing of it.
+/// Density of steel, kg/m^3: of what carries a ballast, the heaviest that is common.
+const STEEL_KG_M3: f64 = 7850.0;
+
+/// What the structure weighs in steel, job units, where no property of it has mass; 0 where one has. Lumped masses are no measure of what it
+/// carries: an accelerometer may be all that has mass.
+fn in_steel(task: &Task) -> f64 {
+    let mut structure = task.read.model.clone();
+    structure.masses.clear();
+    if structure.weight().mass > 0.0 {
+        return 0.0;
+    }
+    let units = task.job.units;
+    let density = STEEL_KG_M3 * units.length_m().powi(3) / units.mass_kg();
+    structure.params.wtmass = 1.0;
+    structure.materials.iter_mut().for_each(|m| m.rho = density);
+    structure.weight().mass * task.gravity
+}
+
+/// The finding on masses that no structure of the model's mass carries.
 pub(super) fn far_beyond(
     task: &Task,
     run: &str,
     before: &[f64],
     fit: &BallastFit,
 ) -> Option<Finding> {
-    let own: f64 = before.iter().sum();
+    let steel = in_steel(task);
+    let own = before.iter().sum::<f64>().max(0.0) + steel;
     let hung: f64 = fit.masses.iter().map(|m| m.weight).sum();
     let in_words = |weight: f64| number(weight / task.gravity * mass(task.job));
     let times = hung / own;
+    let weighs = match steel > 0.0 {
+        true => "would weigh in steel",
+        false => "weighs",
+    };
     (own > 0.0 && times > FAR_BEYOND).then(|| {
         Finding::new(
             Severity::Error,
             "ballast-beyond-model",
             run,
             format!(
-                "the masses weigh {} times what the model weighs: {} against {} {}",
+                "the masses weigh {} times what the model {weighs}: {} against {} {}",
                 number(times),
                 in_words(hung),
                 in_words(own),

@@ -14,6 +14,7 @@ mod trial;
 use super::context::Context;
 use super::deck::{DeckModel, moduli_and_densities, read_model};
 use super::fault::{Fault, Faults};
+use super::named_results::RESULTS_REMEDY;
 use super::outcome::{Answer, Outcome, StatedUnits};
 use super::work::Work;
 use crate::fe::from_results::{Displacements, ReadOptions, solution_from_file};
@@ -183,14 +184,7 @@ fn read_strained(
                 ResultsFile::read(&bytes, &name)
                     .map(|f| solution_from_file(&deck.model, &name, &f, &options))
             })
-            .map_err(|e| {
-                Fault::of(
-                    &*name,
-                    "results",
-                    e.to_string(),
-                    "give an OP2, punch or HDF5 file of a static run",
-                )
-            })?;
+            .map_err(|e| Fault::of(&*name, "results", e.to_string(), RESULTS_REMEDY))?;
         if let Some(cut) = deck.cut_beside(&solution.findings) {
             return Err(cut.into());
         }

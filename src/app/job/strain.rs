@@ -9,7 +9,6 @@ use super::table::read_table;
 use super::types::{Job, JobGauge, NamedFile};
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::{FileBytes, Inputs};
-use crate::gauge::Rosette;
 use crate::series::SeriesError;
 use crate::series::record::{Options, Record, is_format, open_record};
 use std::ops::ControlFlow;
@@ -54,27 +53,28 @@ pub fn wanted_columns(inputs: &mut Inputs, job: &Job) -> Vec<String> {
 
 /// What the readings of the job's stated gauges are called: those of a rosette by its legs.
 pub fn stated_readings(job: &Job) -> Vec<String> {
-    let names = |g: &JobGauge| match g.rosette {
-        Some(r) => r
-            .legs()
-            .iter()
-            .map(|(leg, _)| format!("{}.{leg}", g.name))
-            .collect(),
+    job.gauges.iter().flat_map(readings_of).collect()
+}
+
+/// What the readings of a gauge are called: those of a rosette by its legs.
+pub fn readings_of(g: &JobGauge) -> Vec<String> {
+    let leg = |leg: &str| format!("{}.{leg}", g.name);
+    match g.rosette {
+        Some(r) => r.legs().iter().map(|(name, _)| leg(name)).collect(),
         None => vec![g.name.clone()],
-    };
-    job.gauges.iter().flat_map(names).collect()
+    }
 }
 
 /// Names of the job's gauges: those it states, legs of rosettes by theirs, else the rows of a given S; none where neither tells. A table of S
 /// that can't be read is a fault of whoever asks for S.
 fn gauge_names(inputs: &mut Inputs, job: &Job) -> Vec<String> {
-    let mut names = Vec::new();
-    for g in &job.gauges {
-        names.push(g.name.clone());
-        // Both kinds name their legs alike.
-        let legs = g.rosette.iter().flat_map(|_| Rosette::Rectangular.legs());
-        names.extend(legs.map(|(leg, _)| format!("{}.{leg}", g.name)));
-    }
+    let mut names: Vec<String> = job.gauges.iter().map(|g| g.name.clone()).collect();
+    // A rosette is called by its own name too where S comes from a table.
+    names.extend(
+        stated_readings(job)
+            .into_iter()
+            .filter(|r| job.gauges.iter().all(|g| g.name != *r)),
+    );
     let given = job.sensitivity.as_ref().filter(|_| names.is_empty());
     let text = given.and_then(|s| inputs.read_named_text(job, &s.file).ok());
     if let Some((s, text)) = given.zip(text)
@@ -89,6 +89,21 @@ fn gauge_names(inputs: &mut Inputs, job: &Job) -> Vec<String> {
         );
     }
     names
+}
+
+/// The fault of a strain file none of whose columns is a gauge's; where a table of S alone names the gauges, either may be meant.
+pub fn no_gauge_column(job: &Job, file: &str) -> Fault {
+    let (wrong, remedy) = match &job.sensitivity {
+        Some(s) if job.gauges.is_empty() => (
+            format!("no column is named after a gauge of `{}`", s.file.given),
+            "call the gauges alike in both tables",
+        ),
+        _ => (
+            "no column is named after a gauge of the job".to_owned(),
+            "name the columns after the gauges",
+        ),
+    };
+    Fault::at(file, 1, "gauge", wrong, remedy)
 }
 
 /// A record that is read whole or passed over: its columns of strain, each with its name, as `gauges` are called, and microstrain in one of

@@ -3,7 +3,7 @@
 use super::task::Task;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::runs::{RunRow, read_runs};
-use crate::app::job::strain::{StrainRows, StrainTable, wanted_columns};
+use crate::app::job::strain::{StrainRows, StrainTable, no_gauge_column, wanted_columns};
 use crate::app::job::strain_means::{StrainFile, read_strain_file};
 use crate::app::job::{Measured, NamedFile};
 use crate::app::outcome::finite;
@@ -266,13 +266,7 @@ fn strain(
     };
     let all = means(&file, model, noise);
     if all.iter().all(|v| !v.value.is_finite()) {
-        return Err(Faults::from(Fault::at(
-            &*measured.strain.given,
-            1,
-            "gauge",
-            "no column is named after a gauge of the job",
-            "name the columns after the gauges",
-        )));
+        return Err(no_gauge_column(task.job, &measured.strain.given).into());
     }
     let runs = if let StrainFile::Table(table) = &file
         && let StrainRows::Runs(names) = &table.rows

@@ -112,11 +112,14 @@ pub(super) fn look(
     }
     check_times(work, &record)?;
     let readings = spread_readings(task, &record, &zero)?;
-    work.go_on()?;
-    let impossible = (0..record.n_pieces())
-        .into_par_iter()
-        .map(|i| record.impossible(i, &zero))
-        .sum::<Result<u64, Fault>>()?;
+    let mut impossible = 0;
+    in_groups(work, &record, &mut |group| {
+        let pieces = group.par_iter();
+        impossible += pieces
+            .map(|&i| record.impossible(i, &zero))
+            .sum::<Result<u64, Fault>>()?;
+        Ok(())
+    })?;
     if impossible > 0 {
         let found = plausible::impossible_in_record(record.file(), impossible);
         work.findings.push(found);
@@ -173,15 +176,11 @@ fn stream(
     head: &RecordHead,
     sink: &mut dyn RecordSink,
 ) -> Result<(Sums, Spans), Faults> {
-    let progress = work.cx.progress;
-    progress.parts(record.n_pieces());
     let filter = &head.filter;
     let mut sums = Sums::new(filter.n_gauges(), filter.n_loads());
     let mut spans = Spans::new(filter.n_loads());
     let mut first = 0;
-    let pieces: Vec<usize> = (0..record.n_pieces()).collect();
-    for group in pieces.chunks(GROUP) {
-        work.go_on()?;
+    in_groups(work, record, &mut |group| {
         let done: Result<Vec<(Block, Sums)>, Fault> = group
             .par_iter()
             .map(|&i| block(record, filter, i))
@@ -194,10 +193,29 @@ fn stream(
             first += block.times.len();
             blocks.push(block);
         }
-        sink.take(blocks)?;
+        Ok(sink.take(blocks)?)
+    })?;
+    Ok((sums, spans))
+}
+
+/// Hands over the pieces of a record group by group, and tells of them, while it is wanted.
+///
+/// # Errors
+/// What `take` refuses; one fault where the work is stopped.
+fn in_groups(
+    work: &Work,
+    record: &Record,
+    take: &mut dyn FnMut(&[usize]) -> Result<(), Faults>,
+) -> Result<(), Faults> {
+    let progress = work.cx.progress;
+    progress.parts(record.n_pieces());
+    let pieces: Vec<usize> = (0..record.n_pieces()).collect();
+    for group in pieces.chunks(GROUP) {
+        work.go_on()?;
+        take(group)?;
         progress.advance(group.len());
     }
-    Ok((sums, spans))
+    Ok(())
 }
 
 /// Everything in report units.

@@ -3,10 +3,12 @@
 use super::answer::RecoveredRuns;
 use super::combined::{Listed, listed};
 use super::known_payload::{self, KnownLoads};
-use super::task::{Task, columns_of, no_gauge_column};
+use super::task::{Task, columns_of};
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::LoadActs;
-use crate::app::job::strain::{StrainRows, StrainTable, read_strain, record_fault, wanted_columns};
+use crate::app::job::strain::{
+    StrainRows, StrainTable, no_gauge_column, read_strain, record_fault, wanted_columns,
+};
 use crate::app::job::strain_means::is_long_record;
 use crate::app::sheet::is_sheet;
 use crate::app::strain::LoadUnits;

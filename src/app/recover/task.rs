@@ -87,21 +87,6 @@ pub(super) fn without_reference<'a>(
     })
 }
 
-/// The fault of a strain file none of whose columns is a gauge's; where a table of S alone names the gauges, either may be meant.
-pub(super) fn no_gauge_column(job: &Job, file: &str) -> Fault {
-    let (wrong, remedy) = match &job.sensitivity {
-        Some(s) if job.gauges.is_empty() => (
-            format!("no column is named after a gauge of `{}`", s.file.given),
-            "call the gauges alike in both tables",
-        ),
-        _ => (
-            "no column is named after a gauge of the job".to_owned(),
-            "name the columns after the gauges",
-        ),
-    };
-    Fault::at(file, 1, "gauge", wrong, remedy)
-}
-
 /// Where a gauge's column stands; `None`: it has none.
 pub(super) fn columns_of(
     work: &mut Work,

@@ -1,20 +1,23 @@
 //! Predicted against measured strain at the installed gauges.
 
 use crate::app::fault::Faults;
-use crate::app::job::strain::StrainRows;
+use crate::app::job::strain::{StrainRows, StrainTable};
+use crate::app::job::strain_means::is_long_record;
 use crate::app::job::{Job, Reference};
 use crate::app::outcome::finite;
 use crate::app::strain::Prepared;
 use crate::app::work::Work;
-use crate::app::zeroed::read_zeroed;
+use crate::app::zeroed::{Zeroed, judged, read_zeroed};
 use crate::finding::{Finding, Severity, few};
+use crate::recovery::Readings;
 use crate::respond::LoadState;
 use crate::units::MICROSTRAIN;
 use serde::Serialize;
 
 /// Residual over measured rms of a gauge from which its prediction is poor.
 const POOR: f64 = 0.1;
-/// The same from which the loads explain next to nothing of what it measured: no error of a model makes so much.
+/// The same from which the loads explain next to nothing of what it measured: a model is off by some tens of per cent at its worst gauges, and
+/// loads of another run, or in pounds for newtons (a residual of .78 or 3.4) or in another power of ten, leave more than half at most gauges.
 const MISSED: f64 = 0.5;
 
 /// One gauge over all states, microstrain.
@@ -64,7 +67,20 @@ pub(super) fn check(
     else {
         return Ok(out);
     };
-    let table = read_zeroed(work, job, measured, &measured.strain)?.table;
+    let bytes = work.inputs.read_named(job, &measured.strain)?;
+    if is_long_record(&bytes) {
+        work.findings.push(not_compared(
+            "the strain file is a long record: predicted and measured strain are not compared",
+            "name means of runs in [measured] strain, and their loads in [respond] loads",
+        ));
+        return Ok(out);
+    }
+    let Zeroed {
+        table,
+        noise_factor,
+    } = read_zeroed(work, job, measured, &measured.strain)?;
+    let read = readings(&table, &noise_factor, &s.gauges);
+    let read = judged(work, measured, &s.gauges, &read);
     // The row of the strain table that belongs to each state: by name, or by order where there are as many samples.
     let row_of: Vec<Option<usize>> = match &table.rows {
         StrainRows::Runs(names) => states
@@ -84,10 +100,7 @@ pub(super) fn check(
             .collect(),
     };
     if row_of.iter().all(Option::is_none) {
-        work.findings.push(Finding::new(
-            Severity::Info,
-            "gauges-not-compared",
-            "gauges",
+        work.findings.push(not_compared(
             "no row of the strain file belongs to a load state: predicted and measured strain are not compared",
             "name runs alike in both tables",
         ));
@@ -98,7 +111,7 @@ pub(super) fn check(
     for (state, row) in states.iter().zip(&row_of) {
         let Some(row) = row else { continue };
         let mut of_state = Vec::new();
-        for (g, name) in s.gauges.iter().enumerate() {
+        for g in 0..s.gauges.len() {
             let predicted = state
                 .values
                 .iter()
@@ -106,12 +119,7 @@ pub(super) fn check(
                 .map(|(l, f)| s.values[(g, l)] * f)
                 .sum::<f64>()
                 / MICROSTRAIN;
-            let read = table
-                .gauges
-                .iter()
-                .position(|h| h == name)
-                .and_then(|c| table.row(*row).get(c).copied())
-                .unwrap_or(f64::NAN);
+            let read = read.get(*row).map_or(f64::NAN, |r| r.strain[g]) / MICROSTRAIN;
             if read.is_finite() {
                 pairs[g].push((predicted, read));
             }
@@ -148,6 +156,33 @@ pub(super) fn check(
     work.findings
         .extend(judge(&out.rows, measured.noise_microstrain));
     Ok(out)
+}
+
+/// Says that gauges take no part.
+fn not_compared(why: &str, remedy: &str) -> Finding {
+    Finding::new(Severity::Info, "gauges-not-compared", "gauges", why, remedy)
+}
+
+/// What the gauges of S read in each row, strain; not a number for a gauge without a column.
+fn readings(table: &StrainTable, noise_factor: &[f64], gauges: &[String]) -> Vec<Readings> {
+    let column = |g: &String| table.gauges.iter().position(|h| h == g);
+    let columns: Vec<Option<usize>> = gauges.iter().map(column).collect();
+    let of_row = |(i, noise_factor): (usize, &f64)| {
+        let row = table.row(i);
+        let reading = |c: &Option<usize>| c.and_then(|c| row.get(c)).copied();
+        let strain = columns.iter().map(reading);
+        Readings {
+            run: match &table.rows {
+                StrainRows::Runs(names) => names.get(i).cloned().unwrap_or_default(),
+                StrainRows::Times(times) => times.get(i).map(f64::to_string).unwrap_or_default(),
+            },
+            strain: strain
+                .map(|v| v.unwrap_or(f64::NAN) * MICROSTRAIN)
+                .collect(),
+            noise_factor: *noise_factor,
+        }
+    };
+    noise_factor.iter().enumerate().map(of_row).collect()
 }
 
 /// Whether the loads reproduce what the gauges measured.

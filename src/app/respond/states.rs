@@ -175,15 +175,26 @@ impl Columns {
             })
         };
         let (mut values, mut sigma) = (Vec::new(), Vec::new());
+        let mut reversed = None;
         for (((c, interval), u), size) in self.loads.iter().zip(units).zip(&self.sizes) {
             values.push(number(*c, *size)? / u.factor);
             sigma.push(match interval {
                 Some((low, high)) => match (number(*low, *size), number(*high, *size)) {
-                    (Some(l), Some(h)) => (h - l) / (2.0 * NORMAL_95) / u.factor,
+                    (Some(l), Some(h)) => {
+                        reversed = reversed.or((l > h).then_some(*low));
+                        (h - l) / (2.0 * NORMAL_95) / u.factor
+                    }
                     _ => 0.0,
                 },
                 None => 0.0,
             });
+        }
+        if let Some(low) = reversed {
+            let line = t.rows.get(row).map_or(0, |r| r.0);
+            let name = t.header.get(low).map_or("", String::as_str);
+            let remedy = "take the table as `recover` wrote it";
+            let wrong = "the low end of this interval is above its high end";
+            faults.push(Fault::at(&*t.file, line, name, wrong, remedy));
         }
         let label = t.rows.get(row).and_then(|r| r.1.get(self.key));
         Some(LoadState {

@@ -12,6 +12,7 @@ use crate::gauge::{
     on_unverified_elements,
 };
 use crate::model::{Model, Vec3};
+use crate::recovery::NORMAL_95;
 use crate::sensitivity::NoStrain;
 use crate::units::Quantity;
 
@@ -49,8 +50,23 @@ pub fn lay_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<Vec<Gau
     Ok(gauges)
 }
 
-/// Gauges whose stated point lies farther from their stated element than that is large: one of the two is wrong. Their strain is that of the
-/// element.
+/// How well a point of a drawing is read and rounded, m: a gauge and its tabs are some 5 mm wide.
+const READ_OFF_M: f64 = 5e-3;
+
+/// How far from its element a gauge's point may be stated, job units, beside the element's faces: as far as the job says that gauges may sit
+/// from their drawing, with 95 %, and what reading a drawing leaves.
+fn point_tolerance(job: &Job) -> f64 {
+    let in_mm = job.reconcile.as_ref().and_then(|r| r.position_tolerance_mm);
+    let stated = [
+        job.placement.position_tolerance,
+        job.calibration.position_tolerance,
+        in_mm.unwrap_or(0.0) * 1e-3 / job.units.length_m(),
+    ];
+    NORMAL_95 * stated.into_iter().fold(0.0, f64::max) + READ_OFF_M / job.units.length_m()
+}
+
+/// Gauges whose stated point lies beside their stated element: one of the two is wrong, beyond doubt where they are farther from each other
+/// than the element is large. Their strain is that of the element.
 pub fn off_their_elements(model: &Model, job: &Job) -> Vec<Finding> {
     let beside = |g: &JobGauge, x: Vec3| match g.place {
         StatedPlace::Element(id) => beside_shell(model, model.shell_ix(id)?, x),
@@ -58,6 +74,7 @@ pub fn off_their_elements(model: &Model, job: &Job) -> Vec<Finding> {
         StatedPlace::Position(..) | StatedPlace::Unstated => None,
     };
     let unit = job.units.unit(Quantity::Length).name;
+    let tolerance = point_tolerance(job);
     let of = |g: &JobGauge| {
         let x = g.position?;
         // The point may be meant in the axes of `cid`, as the direction is.
@@ -70,9 +87,15 @@ pub fn off_their_elements(model: &Model, job: &Job) -> Vec<Finding> {
             StatedPlace::Element(id) | StatedPlace::BeamPoint { element: id, .. } => id,
             StatedPlace::Position(..) | StatedPlace::Unstated => return None,
         };
-        (found.distance > found.size).then(|| {
+        // A bar that states no recovery points doesn't say how deep it is.
+        let near = found.faces.map_or(found.size, |faces| faces + tolerance);
+        let (severity, limit) = match found.distance > found.size.max(near) {
+            true => (Severity::Error, found.size.max(near)),
+            false => (Severity::Warning, near),
+        };
+        (found.distance > limit).then(|| {
             Finding::new(
-                Severity::Error,
+                severity,
                 "point-off-element",
                 &g.name,
                 format!(
@@ -82,7 +105,7 @@ pub fn off_their_elements(model: &Model, job: &Job) -> Vec<Finding> {
                 ),
                 "correct the point or the element, or state one of the two alone",
             )
-            .with_numbers(found.distance, found.size)
+            .with_numbers(found.distance, limit)
         })
     };
     job.gauges.iter().filter_map(of).collect()

@@ -4,6 +4,7 @@ use super::covariance::read_covariance;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::given_columns::columns_of_given;
 use crate::app::job::quantity::quantity_of_name;
+use crate::app::job::strain::readings_of;
 use crate::app::job::table::read_table;
 use crate::app::job::{Job, JobLoad, LoadRole};
 use crate::app::work::Work;
@@ -76,32 +77,7 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
         .iter()
         .map(|r| r.1.get(key).cloned().unwrap_or_default())
         .collect();
-    let order: Vec<(String, usize)> = if job.gauges.is_empty() {
-        names
-            .iter()
-            .cloned()
-            .enumerate()
-            .map(|(i, n)| (n, i))
-            .collect()
-    } else {
-        job.gauges
-            .iter()
-            .filter_map(|g| match names.iter().position(|n| *n == g.name) {
-                Some(i) => Some((g.name.clone(), i)),
-                None => {
-                    let wrong = format!("gauge `{}` has no row in `{}`", g.name, table.file);
-                    faults.push(Fault::at(
-                        &*g.file,
-                        g.line,
-                        "gauge",
-                        wrong,
-                        "add its row, or drop the gauge",
-                    ));
-                    None
-                }
-            })
-            .collect()
-    };
+    let order = rows_of(job, &table.file, &names, &mut faults);
     let mut values = Matrix::zeros(order.len(), loads.len());
     for (r, (_, row)) in order.iter().enumerate() {
         for (l, (c, f)) in at.iter().enumerate() {
@@ -134,4 +110,37 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
         values,
         uncertainty,
     })
+}
+
+/// Readings of the job's gauges with their rows in the table of S, whose rows bear these names; all rows for a job that states no gauges.
+fn rows_of(
+    job: &Job,
+    file: &str,
+    names: &[String],
+    faults: &mut FaultList,
+) -> Vec<(String, usize)> {
+    if job.gauges.is_empty() {
+        return names.iter().cloned().zip(0..).collect();
+    }
+    let mut out = Vec::new();
+    for g in &job.gauges {
+        // A table may have a row for a rosette as one channel.
+        let readings = match names.contains(&g.name) {
+            true => vec![g.name.clone()],
+            false => readings_of(g),
+        };
+        for reading in readings {
+            match names.iter().position(|n| *n == reading) {
+                Some(row) => out.push((reading, row)),
+                None => faults.push(Fault::at(
+                    &*g.file,
+                    g.line,
+                    "gauge",
+                    format!("gauge `{reading}` has no row in `{file}`"),
+                    "add its row, or drop the gauge",
+                )),
+            }
+        }
+    }
+    out
 }

@@ -13,6 +13,7 @@ use crate::units::{ReportUnits, UnitSystem};
 use crate::vehicle::adjustment::{Lag, Slip};
 use crate::vehicle::chassis::LeafSeat;
 use crate::vehicle::preset::MODELS;
+use std::collections::BTreeMap;
 
 /// No known parameter of a vehicle is larger in any system of units: the stiffness of a steel block is some 1e12 N/m.
 const LARGEST_KNOWN: f64 = 1e15;
@@ -113,7 +114,9 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
         .map(|(channel, r)| (channel.clone(), correction(c, channel, r)))
         .collect();
     let mass_change = raw.mass_change.as_ref().and_then(|m| {
-        let at = c.require(&m.at_s, section, "vehicle.mass_change.at_s", "at_s = 30.0")?;
+        let at_key = "vehicle.mass_change.at_s";
+        c.require(&m.at_s, section, at_key, "at_s = 30.0")?;
+        let at = c.number(&m.at_s, at_key, "a finite number", |_| true)?;
         Some(MassChange {
             body: m
                 .body
@@ -126,8 +129,37 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
             weight: m.weight.as_ref().is_none_or(|w| *w.value()),
         })
     });
-    let mut leaf = std::collections::BTreeMap::new();
-    for (link, r) in &raw.leaf {
+    let leaf = seats(c, section);
+    numbers(c, section);
+    model.as_ref().zip(data.as_ref())?;
+    Some(Vehicle {
+        model: model?,
+        terms: raw.terms.as_ref().map_or_else(Vec::new, |t| {
+            t.value().iter().map(|w| w.value().clone()).collect()
+        }),
+        data: c.named(&raw.data, "vehicle.data")?,
+        hold_out: c.named(&raw.hold_out, "vehicle.hold_out"),
+        sample_rate,
+        known: raw.known.clone(),
+        noise_acc,
+        noise_force,
+        tolerance_gain: gain,
+        tolerance_sync: sync,
+        band_hz,
+        columns: raw.columns.clone(),
+        places: raw.places.clone(),
+        bounds: raw.bounds.clone(),
+        corrections,
+        mass_change,
+        leaf,
+        line: c.line(section),
+    })
+}
+
+/// Where the axles sit on their leaf springs, by link.
+fn seats(c: &mut Collector, section: &Spanned<RawVehicle>) -> BTreeMap<String, LeafSeat> {
+    let mut leaf = BTreeMap::new();
+    for (link, r) in &section.value().leaf {
         let key = |k: &str| format!("vehicle.leaf.{}.{k}", link.value());
         for (value, k) in [
             (&r.hanger_to_axle, "hanger_to_axle"),
@@ -154,6 +186,12 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
         };
         leaf.insert(link.value().clone(), seat);
     }
+    leaf
+}
+
+/// Refuses known parameters, limits and places that no vehicle has.
+fn numbers(c: &mut Collector, section: &Spanned<RawVehicle>) {
+    let raw = section.value();
     let none = |v: &f64| v.is_nan() || v.abs() > LARGEST_KNOWN;
     for (name, v) in raw.known.iter().filter(|(_, v)| none(v)) {
         c.fault(
@@ -163,29 +201,34 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
             "correct the number; it counts in the units of the job",
         );
     }
-    model.as_ref().zip(data.as_ref())?;
-    Some(Vehicle {
-        model: model?,
-        terms: raw.terms.as_ref().map_or_else(Vec::new, |t| {
-            t.value().iter().map(|w| w.value().clone()).collect()
-        }),
-        data: c.named(&raw.data, "vehicle.data")?,
-        hold_out: c.named(&raw.hold_out, "vehicle.hold_out"),
-        sample_rate,
-        known: raw.known.clone(),
-        noise_acc,
-        noise_force,
-        tolerance_gain: gain,
-        tolerance_sync: sync,
-        band_hz,
-        columns: raw.columns.clone(),
-        places: raw.places.clone(),
-        bounds: raw.bounds.clone(),
-        corrections,
-        mass_change,
-        leaf,
-        line: c.line(section),
-    })
+    for (name, [low, high]) in &raw.bounds {
+        // An infinite limit is none.
+        let none = |v: f64, open: f64| v.is_nan() || v != open && v.abs() > LARGEST_KNOWN;
+        let wrong = if none(*low, f64::NEG_INFINITY) || none(*high, f64::INFINITY) {
+            format!(
+                "[{low:e}, {high:e}] are no limits of a mass, stiffness or damping of a vehicle"
+            )
+        } else if low >= high {
+            format!("[{low}, {high}] leaves nothing between its limits")
+        } else {
+            continue;
+        };
+        c.fault(
+            section,
+            &format!("vehicle.bounds.{name}"),
+            wrong,
+            "write [low, high] in the units of the job, such as [0.0, 1e6]; `inf` where there is no limit; what is known exactly stands in `known`",
+        );
+    }
+    let far = |x: &f64| !(x.abs() <= LARGEST_KNOWN);
+    for (place, _) in raw.places.iter().filter(|p| p.1.iter().any(far)) {
+        c.fault(
+            section,
+            &format!("vehicle.places.{place}"),
+            "no place on a vehicle",
+            "write [x, y] in the job's unit of length",
+        );
+    }
 }
 
 pub(super) fn reconcile(

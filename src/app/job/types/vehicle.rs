@@ -18,11 +18,11 @@ pub struct Vehicle {
     pub hold_out: Option<NamedFile>,
     /// Hz; `None`: from the time column.
     pub sample_rate: Option<f64>,
-    /// Known parameters.
+    /// Known parameters, units of the job.
     pub known: BTreeMap<String, f64>,
-    /// Noise of accelerations, m/s^2, 1 sd.
+    /// Noise of accelerations, units of the job, 1 sd.
     pub noise_acc: Option<f64>,
-    /// Noise of wheel forces, N, 1 sd.
+    /// Noise of wheel forces, units of the job, 1 sd.
     pub noise_force: Option<f64>,
     /// Declared tolerance of gains, a fraction.
     pub tolerance_gain: Option<f64>,
@@ -32,9 +32,9 @@ pub struct Vehicle {
     pub band_hz: Option<[f64; 2]>,
     /// Channel to column, where the file names them otherwise.
     pub columns: BTreeMap<String, String>,
-    /// Places (x, y) of wheels (`lf`), springs (`spring_lf`) and body accelerometers (`body_lf`).
+    /// Places (x, y) of wheels (`lf`), springs (`spring_lf`) and body accelerometers (`body_lf`), job unit of length.
     pub places: BTreeMap<String, [f64; 2]>,
-    /// Limits of parameters.
+    /// Limits of parameters, units of the job; an infinite one is none.
     pub bounds: BTreeMap<String, [f64; 2]>,
     /// Faults of channels that are known.
     pub corrections: BTreeMap<String, ChannelCorrection>,
