@@ -342,7 +342,7 @@ mod tests {
         std::fs::write(&path, vec![1_u8; SIZE]).unwrap();
         let stop = AtomicBool::new(false);
         let cuts = AtomicUsize::new(0);
-        let (mut whole, mut refused, mut cut_meanwhile) = (0, 0, 0);
+        let (mut whole, mut refused, mut met) = (0, 0, 0);
         std::thread::scope(|s| {
             s.spawn(|| {
                 let mut next = 1_u8;
@@ -363,7 +363,7 @@ mod tests {
             for _ in 0..100 {
                 let before = cuts.load(Ordering::Relaxed);
                 let loaded = load(&path);
-                cut_meanwhile += usize::from(cuts.load(Ordering::Relaxed) > before);
+                met += usize::from(cuts.load(Ordering::Relaxed) > before);
                 match loaded {
                     Ok(bytes) => {
                         let first = bytes.first().copied();
@@ -379,7 +379,7 @@ mod tests {
             stop.store(true, Ordering::Relaxed);
         });
         std::fs::remove_file(&path).unwrap();
-        assert!(cut_meanwhile > 0, "no cut fell into a reading");
+        assert!(met > 0, "no cut fell into a reading");
         assert!(whole + refused == 100 && refused > 0, "{whole} {refused}");
     }
 }

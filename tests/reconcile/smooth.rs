@@ -1,12 +1,12 @@
 //! A beam of our own under point loads: a model that is off by a smooth factor gets no name, effects of the library keep theirs.
 
-use super::hidden::generator::normal;
+use super::hidden::plain_frame;
+use crate::drawn::normal;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use strainbridge::reconcile::effect::{Member, library};
 use strainbridge::reconcile::strain::{
-    GaugeFacts, PayloadWeight, StiffnessOf, StiffnessSignature, StrainFrame, WheelForces, Wiring,
-    examine, predict,
+    GaugeFacts, StiffnessOf, StiffnessSignature, StrainFrame, Wiring, examine, predict,
 };
 use strainbridge::reconcile::{Observations, Outcome, Verdict};
 
@@ -48,39 +48,24 @@ fn beam(seed: u64, dumb: &[usize]) -> StrainFrame {
     let names = |letter: &str, n: usize| (1..=n).map(|k| format!("{letter}{k:02}")).collect();
     let channels: Vec<String> = names("G", GAUGES);
     let loads = (0..RUNS * LOADS.len()).map(|_| rng.random_range(1.0..9.0));
+    let observations = Observations {
+        runs: names("R", RUNS),
+        values: vec![0.0; RUNS * GAUGES],
+        held_out: (0..RUNS).map(|r| r >= RUNS - HELD_OUT).collect(),
+        channels: channels.clone(),
+    };
+    let gauges = channels
+        .into_iter()
+        .enumerate()
+        .map(|(g, name)| GaugeFacts {
+            name,
+            wiring: Wiring::Quarter,
+            angle_deg: 0.0,
+            position: Some([place(g), 0.0, 0.0]),
+        })
+        .collect();
+    let load_names = (1..=LOADS.len()).map(|k| format!("P{k}.FZ")).collect();
     let mut frame = StrainFrame {
-        stop: Default::default(),
-        observations: Observations {
-            runs: names("R", RUNS),
-            values: vec![0.0; RUNS * GAUGES],
-            held_out: (0..RUNS).map(|r| r >= RUNS - HELD_OUT).collect(),
-            channels: channels.clone(),
-        },
-        gauges: channels
-            .into_iter()
-            .enumerate()
-            .map(|(g, name)| GaugeFacts {
-                name,
-                wiring: Wiring::Quarter,
-                angle_deg: 0.0,
-                position: Some([place(g), 0.0, 0.0]),
-            })
-            .collect(),
-        load_names: (1..=LOADS.len()).map(|k| format!("P{k}.FZ")).collect(),
-        moments: Vec::new(),
-        load_positions: None,
-        tensors: vec![Vec::new(); GAUGES],
-        per_mm: None,
-        loads: loads.collect(),
-        payload: vec![[0.0; 3]; RUNS],
-        payload_origin: [0.0; 2],
-        payload_weight: PayloadWeight::InModel,
-        wheel_forces: WheelForces::Measured,
-        other_loads: Vec::new(),
-        nuisance: Vec::new(),
-        thermal_uniform: None,
-        thermal_gradient: None,
-        masses: Vec::new(),
         stiffness: vec![StiffnessSignature {
             of: StiffnessOf::Zone,
             place: "Z".into(),
@@ -88,12 +73,8 @@ fn beam(seed: u64, dumb: &[usize]) -> StrainFrame {
             prior_percent: 15.0,
         }],
         noise: 1.5,
-        load_noise: 0.0,
         model_rel: 0.01,
-        as_modelled: None,
-        scatter: Vec::new(),
-        learnt: None,
-        influence,
+        ..plain_frame(observations, gauges, load_names, influence, loads.collect())
     };
     frame.observations.values = predict(&frame, &[]);
     for v in &mut frame.observations.values {

@@ -1,31 +1,13 @@
 //! `check JOB` agrees with the commands: what one of them refuses or can't rely on, it says, and it refuses nothing that they read.
 
-use std::path::{Path, PathBuf};
+use super::copies::copy_of;
+use std::path::Path;
 use std::process::Command;
 
 /// A job of loads in a record of the fleet's form, whose S is given.
 const RECORD: &str = "units = \"m-kg-s\"\nreport_units = { force = \"kN\", moment = \"kN m\" }\n\
                       [sensitivity]\nfile = \"s_wheels.csv\"\nper = { force = \"kN\" }\n\
                       [measured]\nstrain = \"A_2026-05-01.csv\"\nnoise_microstrain = 0.1\n";
-
-/// A copy of an example.
-fn example(name: &str, of: &str) -> PathBuf {
-    let to = Path::new(env!("CARGO_TARGET_TMPDIR"))
-        .join("check_command")
-        .join(name);
-    let _ = std::fs::remove_dir_all(&to);
-    std::fs::create_dir_all(&to).unwrap();
-    let from = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("examples")
-        .join(of);
-    for file in std::fs::read_dir(from).unwrap() {
-        let file = file.unwrap();
-        if file.file_type().unwrap().is_file() {
-            std::fs::copy(file.path(), to.join(file.file_name())).unwrap();
-        }
-    }
-    to
-}
 
 /// Exit code and words of a command on a job.
 fn ask(command: &str, job: &Path) -> (i32, String) {
@@ -120,7 +102,7 @@ fn lines(text: &str, n: usize) -> Vec<u8> {
 
 #[test]
 fn of_a_record_check_says_what_recover_says() {
-    let folder = example("record", "fleet");
+    let folder = copy_of("fleet", "check_record");
     std::fs::write(folder.join("job.toml"), RECORD).unwrap();
     let dated = |t: &str| {
         let rows = t.lines().enumerate().map(|(i, line)| match i {
@@ -221,7 +203,7 @@ fn of_a_record_check_says_what_recover_says() {
 
 #[test]
 fn the_record_of_a_zero_may_hold_what_a_record_may_hold() {
-    let folder = example("zero", "fleet");
+    let folder = copy_of("fleet", "check_zero");
     let zero = "noise_microstrain = 0.1\nzero = \"zero.csv\"\n";
     let job = RECORD.replace("noise_microstrain = 0.1\n", zero);
     std::fs::write(folder.join("job.toml"), job).unwrap();
@@ -257,7 +239,7 @@ fn the_record_of_a_zero_may_hold_what_a_record_may_hold() {
 
 #[test]
 fn loads_and_gauges_are_counted_where_they_were_read() {
-    let folder = example("counted", "fleet");
+    let folder = copy_of("fleet", "check_counted");
     std::fs::write(folder.join("job.toml"), RECORD).unwrap();
     let (code, said) = ask("check", &folder.join("job.toml"));
     assert_eq!(code, 0, "{said}");
@@ -267,7 +249,7 @@ fn loads_and_gauges_are_counted_where_they_were_read() {
 
 #[test]
 fn of_a_vehicle_check_says_what_identify_says() {
-    let folder = example("vehicle", "quarter_truck");
+    let folder = copy_of("quarter_truck", "check_vehicle");
     let twice = |t: &str| {
         let rows: String = t.split_inclusive('\n').skip(1).collect();
         format!("{t}{rows}").into_bytes()
@@ -306,7 +288,7 @@ fn of_a_vehicle_check_says_what_identify_says() {
 
 #[test]
 fn of_runs_check_says_what_respond_and_reconcile_say() {
-    let folder = example("runs", "frame");
+    let folder = copy_of("frame", "check_runs");
     let job = std::fs::read_to_string(folder.join("respond.toml")).unwrap();
     let loads = job.replace("hottest = 10", "hottest = 10\nloads = \"loads.csv\"");
     std::fs::write(folder.join("loads.toml"), loads).unwrap();
@@ -359,7 +341,7 @@ fn of_runs_check_says_what_respond_and_reconcile_say() {
 
 #[test]
 fn a_point_away_from_the_element_beside_it_is_an_error_that_names_gauge_and_distance() {
-    let folder = example("point", "frame");
+    let folder = copy_of("frame", "check_point");
     let job = folder.join("recover.toml");
     let gauges = std::fs::read_to_string(folder.join("gauges.csv")).unwrap();
     let (code, said) = ask("check", &job);
@@ -381,7 +363,7 @@ fn a_point_away_from_the_element_beside_it_is_an_error_that_names_gauge_and_dist
 
 #[test]
 fn a_layout_that_will_not_tell_its_loads_is_an_error() {
-    let folder = example("planned", "frame");
+    let folder = copy_of("frame", "check_planned");
     let job = folder.join("place.toml");
     let text = std::fs::read_to_string(&job).unwrap();
     assert_eq!(ask("place", &job).0, 0);
@@ -394,7 +376,7 @@ fn a_layout_that_will_not_tell_its_loads_is_an_error() {
 
 #[test]
 fn a_channel_is_not_exchanged_with_itself() {
-    let folder = example("exchanged", "fleet");
+    let folder = copy_of("fleet", "check_exchanged");
     let own = "[[correction]]\ngauge = \"P01\"\nexchanged_with = \"P01\"\n";
     std::fs::write(folder.join("job.toml"), format!("{RECORD}{own}")).unwrap();
     let (code, said) = ask("check", &folder.join("job.toml"));
@@ -406,7 +388,7 @@ fn a_channel_is_not_exchanged_with_itself() {
 
 #[test]
 fn fleet_says_of_a_gauge_without_a_row_of_s_what_recover_says() {
-    let folder = example("no_row", "fleet");
+    let folder = copy_of("fleet", "check_no_row");
     let s = std::fs::read_to_string(folder.join("s_wheels.csv")).unwrap();
     let less: String = s.split_inclusive('\n').take(12).collect();
     std::fs::write(folder.join("s_wheels.csv"), less).unwrap();
