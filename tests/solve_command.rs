@@ -343,10 +343,11 @@ fn recover_takes_the_solution_of_sensitivity_and_warns_of_content_near_the_first
     let run = |command: &str| {
         let done = strainbridge(&[command, path.to_str().unwrap()]);
         let err = text(&done.stderr);
-        assert!(
-            matches!(done.status.code(), Some(0 | 1)),
-            "{command}: {err}"
-        );
+        // Three gauges read in a proportion that no load makes.
+        let is_wrong = command == "recover";
+        let code = i32::from(is_wrong);
+        assert_eq!(done.status.code(), Some(code), "{command}: {err}");
+        assert_eq!(err.contains("[strain-not-explained]"), is_wrong, "{err}");
         err
     };
     assert!(!run("sensitivity").contains("taken from those kept"));

@@ -80,11 +80,13 @@ fn record_ends(bytes: &[u8]) -> Vec<usize> {
 
 #[test]
 fn a_file_cut_after_any_record_or_within_one_is_read_as_far_as_it_goes() {
+    let mut read = 0;
     for (path, bytes) in files(120_000) {
         let whole = read_all(&bytes);
         for end in record_ends(&bytes) {
             for cut in [end, end.saturating_sub(3), end.saturating_sub(9)] {
                 let rows = read_all(&bytes[..cut.min(bytes.len())]);
+                read += usize::from(rows > 0);
                 assert!(
                     rows <= whole,
                     "{}: cut at {cut} gives more than the whole file",
@@ -93,10 +95,12 @@ fn a_file_cut_after_any_record_or_within_one_is_read_as_far_as_it_goes() {
             }
         }
     }
+    assert!(read > 0 || support::shared("nastran").is_none());
 }
 
 #[test]
 fn a_large_file_cut_after_any_record_keeps_the_blocks_before_it() {
+    let mut kept = 0;
     for (path, bytes) in files(20_000_000) {
         let whole = Op2::read(&bytes).unwrap().blocks.len();
         let ends = record_ends(&bytes);
@@ -112,11 +116,13 @@ fn a_large_file_cut_after_any_record_keeps_the_blocks_before_it() {
                 path.display()
             );
             before = n;
+            kept += n;
             if let Some(last) = n.checked_sub(1) {
                 let _ = op2.rows(last);
             }
         }
     }
+    assert!(kept > 0 || support::shared("nastran").is_none());
 }
 
 #[test]

@@ -146,6 +146,7 @@ fn every_block_of_the_shared_files_that_can_be_written_comes_back() {
                         .rows(0)
                         .unwrap_or_else(|e| panic!("{}: {e}", path.display()));
                     assert_eq!(got.ids, rows.ids, "{}", path.display());
+                    assert_eq!(got.values.len(), rows.values.len());
                     let same =
                         |a: &f64, b: &f64| *a as f32 == *b as f32 || (a.is_nan() && b.is_nan());
                     assert!(

@@ -115,9 +115,10 @@ def matrix_folder(tmp_path, monkeypatch):
 
 @pytest.fixture(scope="session")
 def command():
-    """The command: that named by STRAINBRIDGE_COMMAND, else the one built here; skipped without."""
+    """The command: that named by STRAINBRIDGE_COMMAND, else the one built here; skipped without, but where STRAINBRIDGE_TESTS is `required`."""
     found = os.environ.get("STRAINBRIDGE_COMMAND") or ROOT / "target" / "debug" / "strainbridge"
     if not Path(found).is_file():
+        assert os.environ.get("STRAINBRIDGE_TESTS") != "required", f"no command at {found}, and required"
         pytest.skip("the command is not built: cargo build")
 
     def run(*arguments: object, ok: tuple[int, ...] = (0,)) -> dict:

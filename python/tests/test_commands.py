@@ -96,6 +96,7 @@ def test_a_fleet_is_that_of_the_command(matrix_folder, command, monkeypatch):
 def test_every_command_is_a_function():
     from strainbridge import _strainbridge
 
+    assert {"place", "recover", "solve"} <= set(_strainbridge.commands())
     assert all(hasattr(sb, name) for name in _strainbridge.commands())
     assert callable(sb.verify) and callable(sb.clean) and callable(sb.fleet.run)
 

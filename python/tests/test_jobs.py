@@ -81,6 +81,8 @@ def test_an_outcome_has_numbers_findings_and_words(strip_folder, tmp_path):
     assert np.linalg.norm(gauge.direction) == pytest.approx(1.0)
     assert plan["log_det"] == plan.log_det
     assert plan.is_reliable and "RELIED" not in repr(plan)
+    # No spacing and no uncertainty of the model are stated.
+    assert {f.code for f in plan.findings} >= {"model-uncertainty-unstated", "no-spacing"}
     for f in plan.findings:
         assert f.severity in ("info", "warning", "error") and f.code and f.text
     html = plan._repr_html_()

@@ -164,9 +164,13 @@ def test_a_bar_is_drawn_where_tqdm_is_installed(monkeypatch):
         sb.check(ROOT / "models" / "truck-shell" / "job.toml", progress=True)
 
 
-def test_notes_go_to_the_log(caplog, strip_folder):
+def test_notes_go_to_the_log(caplog, strip_folder, monkeypatch):
+    monkeypatch.setenv("STRAINBRIDGE_CACHE", str(strip_folder / "kept"))
+    sb.place("job.toml")
     with caplog.at_level("DEBUG", logger="strainbridge"):
         out = sb.place("job.toml")
+    # The solution of the first is taken, which is a note.
+    assert len(out.notes) == 1
     assert [r.getMessage() for r in caplog.records] == [f"place: {note}" for note in out.notes]
 
 

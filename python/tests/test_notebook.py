@@ -53,6 +53,7 @@ def test_a_layout_is_shown_as_its_report_shows_it(strip_folder):
     assert read.texts["h4"] == [t for t in report.texts["h2"] if t != "Findings"]
     cells = read.texts["td"]
     assert [g.name for g in out.gauges if g.name not in cells] == []
+    assert any("<" not in f.message for f in out.findings)
     assert all(f.message.rstrip(".") in page.replace("&quot;", '"').replace("&amp;", "&") for f in out.findings if "<" not in f.message)
     # The strip with its gauges, and S as a map.
     assert page.count("<svg") >= 2

@@ -357,19 +357,23 @@ mod tests {
 
     #[test]
     fn a_file_that_is_cut_and_written_anew_while_it_is_read_gives_one_of_its_states_or_an_error() {
-        use std::sync::atomic::{AtomicBool, Ordering};
+        use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
         const SIZE: usize = 8 << 20;
         const PAUSE: std::time::Duration = std::time::Duration::from_millis(1);
         let path = scratch("changing");
         std::fs::write(&path, vec![1_u8; SIZE]).unwrap();
         let stop = AtomicBool::new(false);
-        let (mut whole, mut refused) = (0, 0);
+        let cuts = AtomicUsize::new(0);
+        let (mut whole, mut refused, mut met) = (0, 0, 0);
         std::thread::scope(|s| {
             s.spawn(|| {
                 let mut next = 1_u8;
                 while !stop.load(Ordering::Relaxed) {
                     next = next.wrapping_add(1);
                     let mut file = File::create(&path).unwrap();
+                    // Cut: nothing of the state before is left, and what is written next is a part of the whole.
+                    assert_eq!(file.metadata().unwrap().len(), 0);
+                    cuts.fetch_add(1, Ordering::Relaxed);
                     for _ in 0..8 {
                         file.write_all(&vec![next; SIZE / 8]).unwrap();
                         std::thread::sleep(PAUSE);
@@ -379,7 +383,10 @@ mod tests {
                 }
             });
             for _ in 0..100 {
-                match load(&path) {
+                let before = cuts.load(Ordering::Relaxed);
+                let loaded = load(&path);
+                met += usize::from(cuts.load(Ordering::Relaxed) > before);
+                match loaded {
                     Ok(bytes) => {
                         let first = bytes.first().copied();
                         assert!(bytes.iter().all(|b| Some(*b) == first));
@@ -394,6 +401,7 @@ mod tests {
             stop.store(true, Ordering::Relaxed);
         });
         std::fs::remove_file(&path).unwrap();
+        assert!(met > 0, "no cut fell into a reading");
         assert!(whole + refused == 100 && refused > 0, "{whole} {refused}");
     }
 }

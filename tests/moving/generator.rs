@@ -40,6 +40,8 @@ pub struct Case {
     pub noise: [f64; 2],
     /// Mass of the measured body.
     pub sprung: f64,
+    /// Linear rate of the spring at which the effect sits.
+    pub spring: f64,
     pub rate_hz: f64,
 }
 
@@ -575,6 +577,7 @@ fn hide_exactly(
         terms,
         noise,
         sprung: m.sprung[0],
+        spring: k,
         rate_hz,
     }
 }

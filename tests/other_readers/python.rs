@@ -1,20 +1,12 @@
 //! Runs a script of `tests/python`.
 
-use crate::support::count_skip;
+use crate::support::skip;
 use serde_json::Value;
 use std::process::Command;
 use std::sync::Mutex;
 
 /// One browser at a time: they draw in software.
 static BROWSER: Mutex<()> = Mutex::new(());
-
-/// Says and counts what is absent; with `STRAINBRIDGE_TESTS=required` it fails the test.
-fn skip(absent: &str) {
-    let required = std::env::var("STRAINBRIDGE_TESTS").is_ok_and(|v| v == "required");
-    assert!(!required, "{absent}, and required");
-    eprintln!("skipped: {absent}");
-    count_skip(absent);
-}
 
 /// The JSON object that a script prints; `None`, said and counted, where Python, a package or the browser is absent.
 pub fn read_by(script: &str, arguments: &[&str]) -> Option<Value> {

@@ -126,6 +126,24 @@ struct Found {
     folder: PathBuf,
     /// The case.
     frame: StrainFrame,
+    /// What was hidden and where.
+    truth: Vec<String>,
+}
+
+impl Found {
+    /// Asserts that what was hidden is named, or named as one of several that the readings can't tell apart and are listed as such.
+    fn assert_named(&self, effect: &str) {
+        let r = &self.result;
+        let said = format!("{effect} {:?}: {} {}", self.truth, r["named"], r["rivals"]);
+        assert_eq!(r["verdict"], "named", "{said} {}", r["remains"]);
+        let rivals = r["rivals"].as_array().expect("rivals");
+        let alike = |t: &String| {
+            let mut alike = rivals.iter().filter(|r| r["indistinguishable"] == true);
+            alike.any(|r| r["id"] == t.as_str())
+        };
+        let is_named = r["named"] == serde_json::json!(self.truth);
+        assert!(is_named || self.truth.iter().all(alike), "{said}");
+    }
 }
 
 /// A case in which `effect` is hidden, reconciled on the first half of its runs.
@@ -161,6 +179,7 @@ fn found_in(
         result,
         folder,
         frame: case.frame,
+        truth: case.truth,
     })
 }
 
@@ -234,11 +253,8 @@ fn the_extended_model_holds_every_kind_of_effect_on_runs_never_seen_too() {
         let Some(found) = found(effect, size, seed) else {
             return;
         };
-        let r = &found.result;
-        let named = r["named"].as_array().expect("names");
-        assert_eq!(r["verdict"], "named", "{effect} {seed}: {}", r["gap"]);
-        let extended = r["extended_model"].as_str();
-        let extended = PathBuf::from(extended.unwrap_or_else(|| panic!("{effect}: {named:?}")));
+        found.assert_named(effect);
+        let extended = extended(&found, effect);
         let again = run("reconcile", &extended, &found.folder.join("again"));
         assert_nothing_left(effect, &again.1);
         let (code, loads) = run("recover", &extended, &found.folder.join("recover"));
@@ -252,28 +268,57 @@ fn the_extended_model_holds_every_kind_of_effect_on_runs_never_seen_too() {
 /// Faults of channels are `[[correction]]` entries; readings stay those of the job.
 #[test]
 fn a_fault_of_a_channel_is_a_correction_of_the_extended_job() {
+    enum Is {
+        /// This number within this much.
+        About(f64, f64),
+        True,
+        /// The other channel of the exchange.
+        Other,
+    }
     for (effect, size, key, value) in [
-        ("sign_flip", 1.0, "sign", Some(-1.0)),
-        ("gauge_gain", 0.7, "gain", Some(0.7)),
-        ("zero_drift", 80.0, "offset_microstrain", None),
-        ("gauge_swap", 1.0, "exchanged_with", None),
-        ("dead_channel", 1.0, "ignore", None),
+        ("sign_flip", 1.0, "sign", Is::About(-1.0, 0.0)),
+        // Noise of a gauge among the better three quarters: some per cent of its reading.
+        ("gauge_gain", 0.7, "gain", Is::About(0.7, 0.07)),
+        // Noise of 2 microstrain over seven runs, four standard deviations, and forces that are not exact.
+        (
+            "zero_drift",
+            80.0,
+            "offset_microstrain",
+            Is::About(80.0, 6.0),
+        ),
+        ("gauge_swap", 1.0, "exchanged_with", Is::Other),
+        ("dead_channel", 1.0, "ignore", Is::True),
     ] {
         let Some(found) = found(effect, size, 31) else {
             return;
         };
-        let extended = found.result["extended_model"].as_str().expect("a job");
+        found.assert_named(effect);
+        let extended = extended(&found, effect);
         let text = std::fs::read_to_string(extended).expect("the extended job");
         let job: toml::Table = text.parse().expect("valid toml");
         let list = job["correction"].as_array().expect("corrections");
-        let entry = list.iter().find(|c| c.get(key).is_some());
-        let entry = entry.unwrap_or_else(|| panic!("{effect}: {list:?}"));
+        let [entry] = list.as_slice() else {
+            panic!("{effect}: {list:?}");
+        };
+        let place = found.truth[0].split(':').nth(1).expect("a place");
+        let (gauge, other) = place.split_once('+').unwrap_or((place, ""));
+        assert_eq!(entry["gauge"].as_str(), Some(gauge), "{effect}: {entry}");
         let number = entry[key]
             .as_float()
             .or(entry[key].as_integer().map(|i| i as f64));
-        if let (Some(v), Some(number)) = (value, number) {
-            // Noise of a gauge among the better three quarters: some per cent of its reading.
-            assert!((number / v - 1.0).abs() < 0.1, "{effect}: {entry}");
+        match value {
+            Is::About(v, apart) => {
+                let number = number.unwrap_or_else(|| panic!("{effect}: {entry}"));
+                // A zero may have moved either way.
+                let number = if effect == "zero_drift" {
+                    number.abs()
+                } else {
+                    number
+                };
+                assert!((number - v).abs() <= apart, "{effect}: {entry}");
+            }
+            Is::True => assert_eq!(entry[key].as_bool(), Some(true), "{effect}"),
+            Is::Other => assert_eq!(entry[key].as_str(), Some(other), "{effect}"),
         }
         assert!(
             job["measured"]["strain"]
@@ -287,16 +332,12 @@ fn a_fault_of_a_channel_is_a_correction_of_the_extended_job() {
 /// A note of one run may be wrong in several ways: the extended model holds the one that was found.
 #[test]
 fn the_note_that_was_wrong_is_the_one_that_is_put_right() {
-    let seeds = [41, 42, 43, 44];
-    let mut named = 0;
-    for seed in seeds {
+    for seed in [41, 42, 43, 44] {
         let Some(found) = found("run_record", 0.8, seed) else {
             return;
         };
-        if found.result["verdict"] != "named" {
-            continue;
-        }
-        named += 1;
+        // A mass that is 80 % too large in one loaded run of ten is many times the noise of any seed.
+        found.assert_named("run_record");
         let extended = extended(&found, "run_record");
         let again = run("reconcile", &extended, &found.folder.join("again"));
         assert_nothing_left("run_record", &again.1);
@@ -307,10 +348,12 @@ fn the_note_that_was_wrong_is_the_one_that_is_put_right() {
                 .as_str()
                 .is_some_and(|p| p.starts_with("runs_extended.csv: run R"))
         );
-        assert_ne!(added["old"], added["new"], "{added}");
+        // What is put in is the mass as it was before, noted / 1.8: of 2400 kg four standard deviations are a twentieth.
+        let words = |key: &str| added[key].as_str().unwrap_or_default();
+        let number = |key: &str| words(key).strip_suffix(" kg")?.parse::<f64>().ok();
+        let [old, new] = ["old", "new"].map(|k| number(k).unwrap_or_else(|| panic!("{added}")));
+        assert!((1.8 * new / old - 1.0).abs() < 0.05, "{added}");
     }
-    // A mass that is 80 % too large in one loaded run of ten is many times the noise of any seed.
-    assert!(2 * named >= seeds.len(), "{named} of {}", seeds.len());
 }
 
 /// Faults of a channel that no entry undoes leave it out, in all runs to come as well; notes are put right in the runs at hand.
@@ -327,6 +370,18 @@ fn the_extended_model_holds_channels_that_come_and_go_and_notes_that_are_wrong()
         let Some(found) = found(effect, size, seed) else {
             return;
         };
+        if effect == "cross_sensitivity" {
+            // The gauge and its neighbour sit alike, left and right: half of the other's reading on top is 1.5 of its own.
+            let gauge = found.truth[0].split(':').nth(1).expect("a gauge");
+            let named = &found.result["named"];
+            let [leak, gain] = ["cross_sensitivity", "gauge_gain"].map(|e| format!("{e}:{gauge}"));
+            assert!(
+                *named == serde_json::json!([leak]) || *named == serde_json::json!([gain]),
+                "{named}"
+            );
+        } else {
+            found.assert_named(effect);
+        }
         let job = extended(&found, effect);
         let again = run("reconcile", &job, &found.folder.join("again"));
         assert_nothing_left(effect, &again.1);
@@ -346,7 +401,7 @@ fn own_hypothesis(
     folder: &Path,
     named: impl Fn(&str) -> String,
 ) -> String {
-    let mut numbers = super::strips::Numbers(3);
+    let mut numbers = crate::drawn::Numbers(3);
     let (n_g, n_l, n_c) = (frame.n_gauges(), frame.n_loads(), frame.n_columns());
     let change: Vec<f64> = (0..n_g * n_l)
         .map(|i| 0.17 * numbers.next() * frame.influence[i / n_l * n_c + i % n_l].abs())
@@ -476,7 +531,7 @@ fn without_hold_out_nothing_is_called_held_out_and_the_page_goes_from_verdict_to
     std::fs::write(&path, toml::to_string(&job).expect("toml")).expect("written");
     let out = found.folder.join("all_runs");
     let (_, result) = run("reconcile", &path, &out);
-    assert_eq!(result["verdict"], "named", "{}", result["best_attempt"]);
+    assert_eq!(result["named"], serde_json::json!(found.truth));
     assert_eq!(result["gap"]["basis"], "cross-validated");
     assert!(result["reduced_chi2"].get("held_out").is_none());
     let page = std::fs::read_to_string(out.join("report.html")).expect("the page");

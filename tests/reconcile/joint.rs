@@ -1,7 +1,7 @@
 //! A joint half as stiff as modelled, hidden in a structure of our own, found through the solver and put into the deck. The readings
 //! come from a mesh three times as fine, in which the middle bush has half its stiffness.
 
-use super::strips::{GAUGES, MEASURED, Mesh, measured, result, run, sensitivity, workplace};
+use super::strips::{GAUGES, MEASURED, Mesh, ends, measured, result, run, sensitivity, workplace};
 
 #[test]
 fn a_joint_of_half_its_stiffness_is_named_and_the_extended_deck_strains_as_the_true_structure() {
@@ -24,11 +24,10 @@ fn a_joint_of_half_its_stiffness_is_named_and_the_extended_deck_strains_as_the_t
     );
     // Natural log times 100 of one half.
     let number = |key: &str| found["effects"][0][key].as_f64().expect("a number");
-    assert!(
-        (number("size") + 69.3).abs() < 3.0 * number("sigma").max(1.0),
-        "{}",
-        number("size")
-    );
+    let (size, sigma) = (number("size"), number("sigma"));
+    // The mesh leaves a hundredth. Bushes carry what goes from strip to strip: their stiffness is told to a tenth.
+    assert!((size + 69.3).abs() < 3.0 * sigma.max(1.0), "{size} {sigma}");
+    assert!(sigma < 10.0, "{sigma}");
     assert!(
         found["gap"]["explained_share"].as_f64().expect("a share") > 0.7,
         "{}",
@@ -50,7 +49,9 @@ fn a_joint_of_half_its_stiffness_is_named_and_the_extended_deck_strains_as_the_t
     )));
     assert!(after < 0.15 * before, "{before} {after}");
     run("solve", &extended);
-    run("recover", &extended);
+    // What the mesh leaves is more than the half per cent that is stated of the model, and the loads are not told to be right.
+    let (_, said) = ends("recover", &extended, 1);
+    assert!(said.contains("error [strain-not-explained]"), "{said}");
 }
 
 /// Half of its stiffness is the root of a quarter: the user's own hypothesis at half of its size. The bushes stand in a file of their own.
@@ -82,12 +83,10 @@ fn an_edit_of_ones_own_goes_into_the_deck_through_its_includes_and_leaves_the_jo
         found["best_attempt"]
     );
     let number = |key: &str| found["effects"][0][key].as_f64().expect("a number");
-    // The mesh leaves a hundredth.
-    assert!(
-        (number("size") - 0.5).abs() < 3.0 * number("sigma").max(0.01),
-        "{}",
-        number("size")
-    );
+    let (size, sigma) = (number("size"), number("sigma"));
+    // The mesh leaves a hundredth; a tenth of the stiffness, as above, is .07 of this size.
+    assert!((size - 0.5).abs() < 3.0 * sigma.max(0.01), "{size} {sigma}");
+    assert!(sigma < 0.07, "{sigma}");
     let lines = std::fs::read_to_string(out.join("deck_extended.bdf")).expect("the deck");
     let lines: Vec<&str> = lines.lines().collect();
     for card in ["CBUSH", "PBUSH"] {

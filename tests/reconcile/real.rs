@@ -1,10 +1,8 @@
 //! Reconcile on measured records: a bridge whose support was lowered, and the puzzle of two gauges on a truck.
 
-use super::hidden;
+use super::hidden::{self, plain_frame};
 use std::path::Path;
-use strainbridge::reconcile::strain::{
-    GaugeFacts, PayloadWeight, StrainFrame, WheelForces, Wiring, examine,
-};
+use strainbridge::reconcile::strain::{GaugeFacts, PayloadWeight, StrainFrame, Wiring, examine};
 use strainbridge::reconcile::{Cause, Observations, Verdict, weigh_causes};
 
 /// Columns of a record by name, rows in time.
@@ -240,49 +238,33 @@ fn gauges_12_and_13_of_the_thesis_are_unfit_for_the_payload_and_no_gain_or_sign_
             .zip(&per_kn)
             .map(move |((_, e), s)| e[run] * s)
     });
+    let observations = Observations {
+        channels: ESTIMATES.iter().map(|e| e.0.to_owned()).collect(),
+        runs: vec!["Run 2".into(), "Run 3".into()],
+        values: readings.collect(),
+        held_out: vec![false; 2],
+    };
+    let gauges = ESTIMATES
+        .iter()
+        .map(|e| GaugeFacts {
+            name: e.0.to_owned(),
+            wiring: Wiring::Bending,
+            angle_deg: 0.0,
+            position: None,
+        })
+        .collect();
+    let load_names = vec!["payload".into()];
+    let influence = per_kn
+        .iter()
+        .flat_map(|s| [*s, 0.0, 0.0, 0.0, 0.0])
+        .collect();
+    let loads = ON_THE_TRUCK.to_vec();
     let frame = StrainFrame {
-        stop: Default::default(),
-        observations: Observations {
-            channels: ESTIMATES.iter().map(|e| e.0.to_owned()).collect(),
-            runs: vec!["Run 2".into(), "Run 3".into()],
-            values: readings.collect(),
-            held_out: vec![false; 2],
-        },
-        gauges: ESTIMATES
-            .iter()
-            .map(|e| GaugeFacts {
-                name: e.0.to_owned(),
-                wiring: Wiring::Bending,
-                angle_deg: 0.0,
-                position: None,
-            })
-            .collect(),
-        moments: Vec::new(),
-        load_names: vec!["payload".into()],
-        load_positions: None,
-        influence: per_kn
-            .iter()
-            .flat_map(|s| [*s, 0.0, 0.0, 0.0, 0.0])
-            .collect(),
-        tensors: vec![Vec::new(); ESTIMATES.len()],
-        per_mm: None,
-        loads: ON_THE_TRUCK.to_vec(),
-        payload: vec![[0.0; 3]; 2],
-        payload_origin: [0.0; 2],
         payload_weight: PayloadWeight::Missing,
-        wheel_forces: WheelForces::Measured,
-        nuisance: Vec::new(),
-        other_loads: Vec::new(),
-        thermal_uniform: None,
-        thermal_gradient: None,
-        masses: Vec::new(),
-        stiffness: Vec::new(),
         noise: 2.0,
         load_noise: 0.5,
         model_rel: 0.1,
-        as_modelled: None,
-        scatter: Vec::new(),
-        learnt: None,
+        ..plain_frame(observations, gauges, load_names, influence, loads)
     };
     let outcome = examine(&frame, &[]);
     // Estimates of 281 and -381 kN in one run, -940 and -2599 in the next: of no fixed ratio to the load, so no gain, sign or angle.

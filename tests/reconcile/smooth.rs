@@ -1,11 +1,12 @@
 //! A beam of our own under point loads: a model that is off by a smooth factor gets no name, effects of the library keep theirs.
 
+use super::hidden::plain_frame;
+use crate::drawn::normal;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use strainbridge::reconcile::effect::{Member, library};
 use strainbridge::reconcile::strain::{
-    GaugeFacts, PayloadWeight, StiffnessOf, StiffnessSignature, StrainFrame, WheelForces, Wiring,
-    examine, predict,
+    GaugeFacts, StiffnessOf, StiffnessSignature, StrainFrame, Wiring, examine, predict,
 };
 use strainbridge::reconcile::{Observations, Outcome, Verdict};
 
@@ -16,11 +17,6 @@ const RUNS: usize = 14;
 const HELD_OUT: usize = 3;
 /// Gauges of a zone, whose strain is in proportion to one over its stiffness.
 const ZONE: std::ops::Range<usize> = 9..14;
-
-fn normal(rng: &mut ChaCha8Rng) -> f64 {
-    let (u, v): (f64, f64) = (rng.random::<f64>().max(1e-300), rng.random());
-    (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
-}
 
 fn place(gauge: usize) -> f64 {
     0.4 + 7.2 * gauge as f64 / (GAUGES - 1) as f64
@@ -52,39 +48,24 @@ fn beam(seed: u64, dumb: &[usize]) -> StrainFrame {
     let names = |letter: &str, n: usize| (1..=n).map(|k| format!("{letter}{k:02}")).collect();
     let channels: Vec<String> = names("G", GAUGES);
     let loads = (0..RUNS * LOADS.len()).map(|_| rng.random_range(1.0..9.0));
+    let observations = Observations {
+        runs: names("R", RUNS),
+        values: vec![0.0; RUNS * GAUGES],
+        held_out: (0..RUNS).map(|r| r >= RUNS - HELD_OUT).collect(),
+        channels: channels.clone(),
+    };
+    let gauges = channels
+        .into_iter()
+        .enumerate()
+        .map(|(g, name)| GaugeFacts {
+            name,
+            wiring: Wiring::Quarter,
+            angle_deg: 0.0,
+            position: Some([place(g), 0.0, 0.0]),
+        })
+        .collect();
+    let load_names = (1..=LOADS.len()).map(|k| format!("P{k}.FZ")).collect();
     let mut frame = StrainFrame {
-        stop: Default::default(),
-        observations: Observations {
-            runs: names("R", RUNS),
-            values: vec![0.0; RUNS * GAUGES],
-            held_out: (0..RUNS).map(|r| r >= RUNS - HELD_OUT).collect(),
-            channels: channels.clone(),
-        },
-        gauges: channels
-            .into_iter()
-            .enumerate()
-            .map(|(g, name)| GaugeFacts {
-                name,
-                wiring: Wiring::Quarter,
-                angle_deg: 0.0,
-                position: Some([place(g), 0.0, 0.0]),
-            })
-            .collect(),
-        load_names: (1..=LOADS.len()).map(|k| format!("P{k}.FZ")).collect(),
-        moments: Vec::new(),
-        load_positions: None,
-        tensors: vec![Vec::new(); GAUGES],
-        per_mm: None,
-        loads: loads.collect(),
-        payload: vec![[0.0; 3]; RUNS],
-        payload_origin: [0.0; 2],
-        payload_weight: PayloadWeight::InModel,
-        wheel_forces: WheelForces::Measured,
-        other_loads: Vec::new(),
-        nuisance: Vec::new(),
-        thermal_uniform: None,
-        thermal_gradient: None,
-        masses: Vec::new(),
         stiffness: vec![StiffnessSignature {
             of: StiffnessOf::Zone,
             place: "Z".into(),
@@ -92,12 +73,8 @@ fn beam(seed: u64, dumb: &[usize]) -> StrainFrame {
             prior_percent: 15.0,
         }],
         noise: 1.5,
-        load_noise: 0.0,
         model_rel: 0.01,
-        as_modelled: None,
-        scatter: Vec::new(),
-        learnt: None,
-        influence,
+        ..plain_frame(observations, gauges, load_names, influence, loads.collect())
     };
     frame.observations.values = predict(&frame, &[]);
     for v in &mut frame.observations.values {
@@ -128,7 +105,10 @@ fn smooth_factor(rng: &mut ChaCha8Rng, sd: f64) -> Vec<f64> {
 
 #[test]
 fn a_model_that_is_off_by_a_smooth_factor_is_unknown_smooth_and_its_curve_is_the_truth() {
-    for (sd, seed) in [(0.05, 1), (0.05, 2), (0.1, 3), (0.1, 4)] {
+    const SEEDS: u64 = 10;
+    let mut followed = 0;
+    let both = |seed| [(0.05, seed), (0.1, seed)];
+    for (sd, seed) in (1..=SEEDS).flat_map(both) {
         let mut frame = beam(seed, &[]);
         let mut rng = ChaCha8Rng::seed_from_u64(100 + seed);
         let factor = smooth_factor(&mut rng, sd);
@@ -137,7 +117,11 @@ fn a_model_that_is_off_by_a_smooth_factor_is_unknown_smooth_and_its_curve_is_the
         }
         let outcome = examine(&frame, &[]);
         let said = format!("{sd} {seed}: {:?} {:?}", ids(&outcome), outcome.remains);
-        assert_eq!(outcome.verdict, Verdict::Unknown, "{said}");
+        assert_ne!(outcome.verdict, Verdict::Named, "{said}");
+        if outcome.verdict != Verdict::Unknown {
+            continue;
+        }
+        followed += 1;
         assert_eq!(outcome.best_attempt.last().expect("a curve").id, "smooth");
         for at in outcome.smooth.iter().filter(|s| s.load.is_none()) {
             let gauge = frame.gauges.iter().position(|g| g.name == at.gauge);
@@ -148,17 +132,26 @@ fn a_model_that_is_off_by_a_smooth_factor_is_unknown_smooth_and_its_curve_is_the
         }
         assert!(!outcome.smooth.is_empty(), "{said}");
     }
+    // A curve drawn at random may by chance be as good as straight, within the 1 % of the model: one in ten at most.
+    assert!(
+        10 * followed >= 9 * 2 * SEEDS,
+        "{followed} of {}",
+        2 * SEEDS
+    );
 }
 
 #[test]
 fn effects_of_the_library_keep_their_names_beside_a_curve_that_could_follow_them() {
-    for (id, size) in [
+    // Each five times and more the noise or what a model of 1 % leaves, at many gauges or in many runs.
+    let effects = [
         ("global_scale", 12.0),
         ("rail_stiffness:Z", -18.0),
         ("zero_drift:G07", 40.0),
         ("wheel_scale:P2", 20.0),
-    ] {
-        let mut frame = beam(11, &[]);
+    ];
+    let with = |seed| effects.map(|(id, size)| (id, size, seed));
+    for (id, size, seed) in (11..15).flat_map(with) {
+        let mut frame = beam(seed, &[]);
         let right = predict(&frame, &[]);
         let only = library(&frame, &[id.to_owned()]);
         let effect = only
@@ -178,17 +171,20 @@ fn effects_of_the_library_keep_their_names_beside_a_curve_that_could_follow_them
             .zip(moved)
             .for_each(|(v, d)| *v += d);
         let outcome = examine(&frame, &[]);
-        assert_eq!(ids(&outcome), [id], "{}", outcome.remains);
-        assert!(outcome.smooth.is_empty(), "{id}");
-        assert!(outcome.wins >= 50, "{id} {}", outcome.wins);
+        assert_eq!(ids(&outcome), [id], "{seed}: {}", outcome.remains);
+        // Four standard deviations: the noise is one draw of sixteen.
+        let (found, sigma) = (outcome.effects[0].size[0], outcome.effects[0].sigma[0]);
+        assert!((found - size).abs() < 4.0 * sigma, "{id} {seed}: {found}");
+        assert!(outcome.smooth.is_empty(), "{id} {seed}");
+        assert!(outcome.wins >= 50, "{id} {seed}: {}", outcome.wins);
     }
 }
 
 #[test]
 fn a_beam_without_an_effect_has_no_curve() {
-    for seed in 20..24 {
+    for seed in 20..30 {
         let outcome = examine(&beam(seed, &[]), &[]);
-        assert_ne!(outcome.verdict, Verdict::Unknown, "{}", outcome.remains);
+        assert_eq!(outcome.verdict, Verdict::None, "{}", outcome.remains);
         assert!(ids(&outcome).is_empty() && outcome.smooth.is_empty());
     }
 }
@@ -208,10 +204,14 @@ fn exact_aliases_win_drawings_of_runs_together() {
         outcome.remains
     );
     assert!(outcome.wins >= 50, "{}", outcome.wins);
-    let alias = |id: &str| id == "card_gain:G05-G08" || id == "card_gain:G05-G09";
-    let other = outcome
-        .rivals
-        .iter()
-        .find(|r| r.ids.iter().any(|id| alias(id)));
-    assert!(other.is_some(), "its alias is a rival");
+    let other = if named == ["card_gain:G05-G08"] {
+        "card_gain:G05-G09"
+    } else {
+        "card_gain:G05-G08"
+    };
+    let rival = outcome.rivals.iter().find(|r| r.ids == [other]);
+    assert!(
+        rival.is_some_and(|r| r.indistinguishable),
+        "its alias is a rival"
+    );
 }

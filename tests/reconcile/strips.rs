@@ -1,6 +1,7 @@
 //! A small structure of our own with decks and jobs on any mesh: two strips of plate (1000 x 100 x 5 mm, steel) side by side, tied by
 //! three bushes; forces across the plates at six places, gauges on the top.
 
+use crate::drawn::Numbers;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -136,32 +137,21 @@ pub const LOADS: [(&str, (usize, usize, usize)); 6] = [
     ("F", (2, 2, 20)),
 ];
 
-/// Numbers between -1 and 1 that repeat (a linear congruential generator, Knuth's constants).
-pub struct Numbers(pub u64);
-
-impl Numbers {
-    pub fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
+/// The folder that a command wrote, which has no error to tell.
+pub fn run(command: &str, job: &Path) -> PathBuf {
+    ends(command, job, 0).0
 }
 
-pub fn run(command: &str, job: &Path) -> PathBuf {
+/// The folder that a command wrote and what it said; it ends with this code.
+pub fn ends(command: &str, job: &Path, code: i32) -> (PathBuf, String) {
     let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
         .arg(command)
         .arg(job)
         .output()
         .expect("the program runs");
-    let code = done.status.code();
-    assert!(
-        code.is_some_and(|c| c < 2),
-        "{command}: {}",
-        String::from_utf8_lossy(&done.stderr)
-    );
-    job.with_extension("out")
+    let said = String::from_utf8_lossy(&done.stderr).into_owned();
+    assert_eq!(done.status.code(), Some(code), "{command}: {said}");
+    (job.with_extension("out"), said)
 }
 
 /// S of a folder's job, microstrain per N, gauges by loads.

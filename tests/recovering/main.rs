@@ -3,6 +3,8 @@
 //! Two loads A and B, four gauges; strain is made here from S, so every expected load is known.
 
 mod calibrated;
+#[path = "../drawn/mod.rs"]
+mod drawn;
 mod files;
 mod misled;
 mod supported;

@@ -1,5 +1,6 @@
 //! Intervals on a structure that its deck holds: S by the built-in solver on the supports, 2,000 seeded trials of runs and of samples.
 
+use crate::drawn::Numbers;
 use std::fmt::Write;
 use strainbridge::app::context::InMemory;
 use strainbridge::recovery::history::{Filter, SampleLoads};
@@ -65,24 +66,13 @@ pub(super) fn job() -> String {
     text
 }
 
-/// Sum of twelve even draws less six: normal but for the far tails.
-pub(super) fn normal(state: &mut u64) -> f64 {
-    let mut next = || {
-        *state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (*state >> 11) as f64 / (1_u64 << 53) as f64
-    };
-    (0..12).map(|_| next()).sum::<f64>() - 6.0
-}
-
 fn trials(s: &Sensitivity, errors: ErrorModel) -> Vec<(Vec<f64>, Vec<f64>)> {
-    let mut state = 19;
+    let mut numbers = Numbers(19);
     let trial = |_| {
-        let f: Vec<f64> = s.loads.iter().map(|_| 50.0 * normal(&mut state)).collect();
+        let f: Vec<f64> = s.loads.iter().map(|_| 50.0 * numbers.normal()).collect();
         let strain = s.values.row_iter().map(|row| {
             let own: f64 = row.iter().zip(&f).map(|(s, f)| s * f).sum();
-            own + errors.noise * normal(&mut state)
+            own + errors.noise * numbers.normal()
         });
         let strain = strain.collect();
         (f, strain)
@@ -177,7 +167,7 @@ fn record(change: impl Fn(&mut [f64])) -> InMemory {
     let sensed =
         strainbridge::sensitivity(&read, &Context::new(&files)).unwrap_or_else(|f| panic!("{f:?}"));
     let s = &sensed.prepared.sensitivity;
-    let mut state = 23;
+    let mut numbers = Numbers(23);
     let mut table = format!("time,{}\n", s.gauges.join(","));
     for i in 0..2000 {
         let t = f64::from(i) / 1000.0;
@@ -185,7 +175,7 @@ fn record(change: impl Fn(&mut [f64])) -> InMemory {
         let f = [wave(100.0), wave(7.0), 0.5 * wave(3.0), wave(1.0)];
         let made = s.values.row_iter().map(|row| {
             let own: f64 = row.iter().zip(&f).map(|(s, f)| s * f).sum();
-            1e6 * own + normal(&mut state)
+            1e6 * own + numbers.normal()
         });
         let mut readings: Vec<f64> = made.collect();
         change(&mut readings);

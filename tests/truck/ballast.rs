@@ -164,5 +164,6 @@ fn section_6_4_eleven_gauges_as_poor_as_the_thesis_end_in_exit_code_1_and_say_wh
     );
     assert_eq!(code, 1, "{err}");
     assert!(err.contains("gauges"), "{err}");
-    assert!(result["condition_number"].as_f64().is_none_or(|c| c > 50.0));
+    let condition = result["condition_number"].as_f64().unwrap();
+    assert!(condition > 50.0, "{condition}");
 }

@@ -20,6 +20,8 @@ mod running_gear;
 mod shell_frame;
 
 mod ballast;
+#[path = "../drawn/mod.rs"]
+mod drawn;
 mod gauges;
 mod model_bias;
 mod nuisance;

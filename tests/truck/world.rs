@@ -135,7 +135,6 @@ impl Lot {
         self.0.random_range(low..high)
     }
     pub fn normal(&mut self) -> f64 {
-        let (u, v) = (self.between(1e-300, 1.0), self.between(0.0, 1.0));
-        (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+        crate::drawn::normal(&mut self.0)
     }
 }

@@ -2,8 +2,9 @@
 //!
 //! Four hundred trials; `STRAINBRIDGE_TRIALS=2000` for as many as it takes to see a per cent of coverage.
 
+use crate::drawn::normal;
 use crate::frame_refined::{AXLES, CELL, centre, meshes, of_place};
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -20,14 +21,6 @@ const LOAD: f64 = 2e4;
 /// What the truth is off by, as stated: common to a gauge, entry by entry.
 const COMMON: f64 = 0.05;
 const ENTRY: f64 = 0.02;
-
-fn normal(random: &mut ChaCha8Rng) -> f64 {
-    let (u, v): (f64, f64) = (
-        random.random_range(1e-300..1.0),
-        random.random_range(0.0..1.0),
-    );
-    (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
-}
 
 /// S of twelve gauges along the x axis of their elements, on the coarse mesh and at the same places of the fine one: strain per newton.
 /// Gauges by pivoting: the hottest that the ones before don't explain, six of them and six again.

@@ -8,6 +8,8 @@ mod connector_faults;
 mod connectors;
 mod coupled_mass;
 mod decks;
+#[path = "../drawn/mod.rs"]
+mod drawn;
 mod frame_calibrated;
 mod frame_refined;
 mod frame_units;

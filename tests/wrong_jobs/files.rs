@@ -1,24 +1,9 @@
 //! Jobs of `examples/` whose files are cut, replaced or of a header alone.
 
+use super::copies::{copy_of, edit};
 use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
-
-/// A copy of a folder of `examples/`.
-fn copy_of(folder: &str, name: &str) -> PathBuf {
-    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
-    let to = Path::new(env!("CARGO_TARGET_TMPDIR")).join("copies");
-    let (from, to) = (from.join(folder), to.join(name));
-    let _ = std::fs::remove_dir_all(&to);
-    std::fs::create_dir_all(&to).unwrap();
-    for entry in std::fs::read_dir(from).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_file() {
-            std::fs::copy(&path, to.join(path.file_name().unwrap())).unwrap();
-        }
-    }
-    to
-}
 
 /// Exit code and standard error of a call in a folder.
 fn call(folder: &Path, arguments: &[&str]) -> (i32, String) {
@@ -32,21 +17,14 @@ fn call(folder: &Path, arguments: &[&str]) -> (i32, String) {
     (done.status.code().unwrap_or(-1), error)
 }
 
-/// Puts one text for another in a file.
-fn edit(file: &Path, from: &str, to: &str) {
-    let text = std::fs::read_to_string(file).unwrap();
-    assert!(text.contains(from), "{from} in {text}");
-    std::fs::write(file, text.replace(from, to)).unwrap();
-}
-
 #[test]
 fn no_output_is_written_over_what_the_command_has_read() {
     let dir = copy_of("fleet", "own_inputs");
     let job = dir.join("fleet.toml");
     std::fs::rename(dir.join("s_wheels.csv"), dir.join("sensitivity.csv")).unwrap();
     std::fs::rename(dir.join("A_2026-05-01.csv"), dir.join("loads.csv")).unwrap();
-    edit(&job, "s_wheels.csv", "sensitivity.csv");
-    edit(&job, "A_2026-05-01.csv", "loads.csv");
+    edit(&job, |t| t.replace("s_wheels.csv", "sensitivity.csv"));
+    edit(&job, |t| t.replace("A_2026-05-01.csv", "loads.csv"));
     for (command, name) in [("sensitivity", "sensitivity.csv"), ("recover", "loads.csv")] {
         let before = std::fs::read(dir.join(name)).unwrap();
         let count = || std::fs::read_dir(&dir).unwrap().count();
@@ -116,7 +94,8 @@ fn a_table_whose_last_number_may_be_cut_is_said_and_a_record_is_read_without_it(
     let strain = std::fs::read(dir.join("strain.csv")).unwrap();
     std::fs::write(dir.join("strain.csv"), &strain[..strain.len() - 2]).unwrap();
     let (code, said) = call(&dir, &["recover", "recover.toml"]);
-    assert!(code < 2 && said.contains("table-may-be-cut"), "{said}");
+    assert_eq!(code, 0, "{said}");
+    assert!(said.contains("table-may-be-cut"), "{said}");
 }
 
 #[test]
@@ -130,7 +109,9 @@ fn steps_of_angles_below_a_tenth_of_a_degree_are_refused_at_their_line() {
             .position(|l| l.starts_with("angle_step_deg"))
             .unwrap();
         let from = text.lines().nth(line - 1).unwrap();
-        edit(&job, from, &format!("angle_step_deg = {step}"));
+        edit(&job, |t| {
+            t.replace(from, &format!("angle_step_deg = {step}"))
+        });
         let (code, said) = call(&dir, &["place", "place.toml"]);
         assert_eq!(code, 2, "{said}");
         assert!(
@@ -144,8 +125,8 @@ fn steps_of_angles_below_a_tenth_of_a_degree_are_refused_at_their_line() {
 fn fewer_gauges_than_loads_are_not_told_that_they_stand_too_close() {
     let dir = copy_of("frame", "few_gauges");
     let job = dir.join("place.toml");
-    edit(&job, "gauges = 12", "gauges = 5");
-    edit(&job, "spacing = 100.0", "spacing = 0.001");
+    edit(&job, |t| t.replace("gauges = 12", "gauges = 5"));
+    edit(&job, |t| t.replace("spacing = 100.0", "spacing = 0.001"));
     let (code, said) = call(&dir, &["place", "place.toml"]);
     assert_eq!(code, 1, "{said}");
     assert!(said.contains("loads-not-separable"), "{said}");
@@ -199,11 +180,9 @@ fn results_that_a_job_names_are_opened_by_those_that_have_no_use_for_them() {
             )
             .unwrap();
             let deck = "deck = \"frame.bdf\"\n";
-            edit(
-                &dir.join(job),
-                deck,
-                &format!("{deck}results = [\"{name}\"]\n"),
-            );
+            edit(&dir.join(job), |t| {
+                t.replace(deck, &format!("{deck}results = [\"{name}\"]\n"))
+            });
         }
         for (command, job) in [
             ("solve", "place.toml"),

@@ -1,4 +1,6 @@
-//! Jobs with something wrong in them end in an error or a fault that names it.
+//! Jobs with something wrong in them end in an error or a fault that names it, by their commands and by `check` alike.
 
+mod check;
+mod copies;
 mod files;
 mod units;

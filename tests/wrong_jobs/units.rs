@@ -1,36 +1,9 @@
 //! Jobs of `examples/` whose numbers are in other units than stated: nothing is answered without an error.
 
+use super::copies::{copy_of, edit};
 use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
-
-/// Makes a copy of a folder of `examples/` under a name of its own.
-fn copied(name: &str, folder: &str) -> PathBuf {
-    let to = Path::new(env!("CARGO_TARGET_TMPDIR"))
-        .join("wrong_units")
-        .join(name);
-    let _ = std::fs::remove_dir_all(&to);
-    std::fs::create_dir_all(&to).unwrap();
-    let from = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("examples")
-        .join(folder);
-    for entry in std::fs::read_dir(from).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_file() {
-            std::fs::copy(&path, to.join(path.file_name().unwrap())).unwrap();
-        }
-    }
-    to
-}
-
-/// Changes a file of a folder.
-fn edit(folder: &Path, file: &str, change: impl Fn(&str) -> String) {
-    let path = folder.join(file);
-    let text = std::fs::read_to_string(&path).unwrap();
-    let changed = change(&text);
-    assert_ne!(text, changed, "{file}");
-    std::fs::write(path, changed).unwrap();
-}
 
 /// A table with the numbers of a column, or of all but the first, times a factor.
 fn scaled(text: &str, column: Option<&str>, factor: f64) -> String {
@@ -62,7 +35,7 @@ fn with_number(text: &str, line: usize, column: &str, number: &str) -> String {
     lines.collect()
 }
 
-/// Runs a command in a folder: exit code, codes of its findings with their severity and subject, standard error.
+/// Runs a command in a folder: exit code, its findings (severity, code, subject, message and remedy), standard error.
 fn judged(folder: &Path, arguments: &[&str]) -> (i32, Vec<String>, String) {
     let out = folder.join("judged.out");
     let _ = std::fs::remove_dir_all(&out);
@@ -80,20 +53,26 @@ fn judged(folder: &Path, arguments: &[&str]) -> (i32, Vec<String>, String) {
     let word = |f: &Value, key: &str| f[key].as_str().unwrap_or_default().to_owned();
     let codes = findings
         .iter()
-        .map(|f| [word(f, "severity"), word(f, "code"), word(f, "subject")].join(" "))
+        .map(|f| {
+            ["severity", "code", "subject", "message", "remedy"]
+                .map(|key| word(f, key))
+                .join(" ")
+        })
         .collect();
     let errors = String::from_utf8_lossy(&done.stderr).into_owned();
     (done.status.code().unwrap_or(-1), codes, errors)
 }
 
-/// Asserts an exit code of 1 with an error of this code.
-fn asks(folder: &Path, arguments: &[&str], code: &str) {
-    let (exit, codes, errors) = judged(folder, arguments);
+/// Asserts an exit code of 1 with an error that begins with this code and subject, and names the unit or where it is stated.
+fn asks(folder: &Path, arguments: &[&str], error: &str, unit: &str) {
+    let (exit, findings, errors) = judged(folder, arguments);
     assert_eq!(exit, 1, "{arguments:?}\n{errors}");
-    let head = format!("error {code} ");
+    let head = format!("error {error}");
     assert!(
-        codes.iter().any(|c| c.starts_with(&head)),
-        "{arguments:?} {codes:?}"
+        findings
+            .iter()
+            .any(|f| f.starts_with(&head) && f.contains(unit)),
+        "{arguments:?} {findings:?}"
     );
 }
 
@@ -114,25 +93,30 @@ fn every_command_that_reads_strain_asks_for_its_unit() {
         ("bridge", "calibrate", "calibrate.toml", "strain.csv"),
     ] {
         // The bridge reads 34 microstrain at most: a thousand times that is still strain.
-        let large = if folder == "bridge" { 1e4 } else { 1e3 };
-        for (factor, code) in [
-            (1e-6, "readings-below-noise"),
-            (large, "reading-beyond-gauges"),
+        let (large, gauge) = if folder == "bridge" {
+            (1e4, "B1,")
+        } else {
+            (1e3, "P01,")
+        };
+        let beyond = format!("reading-beyond-gauges {gauge}");
+        for (factor, error) in [
+            (1e-6, "readings-below-noise measured.strain"),
+            (large, beyond.as_str()),
         ] {
-            let to = copied("strain", folder);
-            edit(&to, strain, |t| scaled(t, None, factor));
-            asks(&to, &[command, job], code);
+            let to = copy_of(folder, "units_strain");
+            edit(&to.join(strain), |t| scaled(t, None, factor));
+            asks(&to, &[command, job], error, "readings in microstrain");
         }
     }
     for (folder, command, job, strain) in [
         ("frame", "reconcile", "reconcile.toml", "strain_wired.csv"),
         ("bridge", "calibrate", "calibrate.toml", "strain.csv"),
     ] {
-        let to = copied("no_strain", folder);
-        edit(&to, strain, |t| scaled(t, None, 1e9));
+        let to = copy_of(folder, "units_no_strain");
+        edit(&to.join(strain), |t| scaled(t, None, 1e9));
         refuses(&to, &[command, job], strain);
     }
-    let to = copied("fleet", "fleet");
+    let to = copy_of("fleet", "units_fleet");
     let records = [
         "A_2026-05-01.csv",
         "A_2026-05-02.csv",
@@ -140,13 +124,14 @@ fn every_command_that_reads_strain_asks_for_its_unit() {
         "B_2026-05-02.csv",
     ];
     for record in records {
-        edit(&to, record, |t| scaled(t, None, 1e3));
+        edit(&to.join(record), |t| scaled(t, None, 1e3));
     }
-    let (exit, codes, errors) = judged(
-        &to,
-        &[["fleet", "fleet.toml"].as_slice(), &records].concat(),
-    );
-    assert_eq!(exit, 1, "{codes:?}\n{errors}");
+    let fleet = [["fleet", "fleet.toml"].as_slice(), &records].concat();
+    for (vehicle, first) in [("A", records[0]), ("B", records[2])] {
+        let error = format!("reading-beyond-gauges {vehicle} P01,");
+        asks(&to, &fleet, &error, &format!("the first {first}: "));
+        asks(&to, &fleet, &error, "readings in microstrain");
+    }
 }
 
 #[test]
@@ -162,19 +147,19 @@ fn a_load_or_a_payload_that_nothing_weighs_is_a_fault_of_its_line() {
     ] {
         for number in ["1e308", "-1e200"] {
             let line = if file == "empty.csv" { 2 } else { 3 };
-            let to = copied("runs", folder);
-            edit(&to, file, |t| with_number(t, line, column, number));
+            let to = copy_of(folder, "units_runs");
+            edit(&to.join(file), |t| with_number(t, line, column, number));
             let command = job.strip_suffix(".toml").unwrap();
             refuses(&to, &[command, job], &format!("{file}:{line}: {column}: "));
         }
     }
-    let to = copied("factor", "bridge");
-    edit(&to, "calibrate.toml", |t| {
+    let to = copy_of("bridge", "units_factor");
+    edit(&to.join("calibrate.toml"), |t| {
         t.replace("terms = { west = 1,", "terms = { west = 1e308,")
     });
     refuses(&to, &["calibrate", "calibrate.toml"], "combination.terms");
-    let to = copied("noise_of_job", "bridge");
-    edit(&to, "calibrate.toml", |t| {
+    let to = copy_of("bridge", "units_noise_of_job");
+    edit(&to.join("calibrate.toml"), |t| {
         t.replace("noise_microstrain = 0.05", "noise_microstrain = 1e300")
     });
     let (exit, _, errors) = judged(&to, &["calibrate", "calibrate.toml"]);
@@ -184,41 +169,52 @@ fn a_load_or_a_payload_that_nothing_weighs_is_a_fault_of_its_line() {
 
 #[test]
 fn wheel_forces_in_another_unit_are_asked_for() {
-    let to = copied("ballast", "frame");
-    edit(&to, "empty.csv", |t| scaled(t, None, 1e3));
-    asks(&to, &["ballast", "ballast.toml"], "ballast-beyond-model");
+    let to = copy_of("frame", "units_ballast");
+    edit(&to.join("empty.csv"), |t| scaled(t, None, 1e3));
+    let ballast = ["ballast", "ballast.toml"];
+    asks(&to, &ballast, "ballast-beyond-model empty", "[runs] units");
     let reconcile = ["reconcile", "reconcile.toml"];
-    edit(&to, "runs.csv", |t| {
+    edit(&to.join("runs.csv"), |t| {
         ["N.FZ", "L.FZ", "R.FZ"]
             .iter()
             .fold(t.to_owned(), |t, c| scaled(&t, Some(c), 1e3))
     });
-    asks(&to, &reconcile, "model-far-above-readings");
+    asks(
+        &to,
+        &reconcile,
+        "model-far-above-readings runs",
+        "[runs] units",
+    );
 }
 
 #[test]
 fn loads_of_another_unit_give_no_stress_without_an_error() {
-    let to = copied("respond", "frame");
+    let to = copy_of("frame", "units_respond");
     let (exit, _, errors) = judged(&to, &["recover", "recover.toml"]);
     assert_eq!(exit, 0, "{errors}");
     std::fs::copy(to.join("judged.out/loads.csv"), to.join("loads.csv")).unwrap();
-    edit(&to, "respond.toml", |t| {
+    edit(&to.join("respond.toml"), |t| {
         t.replace("[respond]", "[respond]\nloads = \"loads.csv\"")
     });
     let respond = ["respond", "respond.toml"];
     let (exit, _, errors) = judged(&to, &respond);
     assert_eq!(exit, 0, "{errors}");
     let table = std::fs::read_to_string(to.join("loads.csv")).unwrap();
-    edit(&to, "loads.csv", |t| with_number(t, 3, "L.FZ", "1e308"));
+    edit(&to.join("loads.csv"), |t| {
+        with_number(t, 3, "L.FZ", "1e308")
+    });
     refuses(&to, &respond, "loads.csv:3: L.FZ: ");
     std::fs::write(to.join("loads.csv"), scaled(&table, None, 1e3)).unwrap();
-    asks(&to, &respond, "load-beyond-expected");
+    for load in ["N.FZ", "L.FZ", "R.FZ"] {
+        let error = format!("load-beyond-expected {load} ");
+        asks(&to, &respond, &error, "table of loads");
+    }
     std::fs::write(to.join("loads.csv"), &table).unwrap();
-    edit(&to, "respond.toml", |t| {
+    edit(&to.join("respond.toml"), |t| {
         let kilo = "force = \"kN\", moment = \"kN m\"";
         t.replace(kilo, "force = \"N\", moment = \"N m\"")
     });
-    asks(&to, &respond, "prediction-poor");
+    asks(&to, &respond, "prediction-poor P01,", "`report_units`");
 }
 
 #[test]
@@ -227,41 +223,50 @@ fn channels_that_read_less_than_their_noise_tell_nothing_of_a_vehicle() {
     let identify = ["identify", "identify.toml"];
     for column in [Some("f_wheel"), None] {
         let factor = if column.is_some() { 1e-3 } else { 1e-6 };
-        let to = copied("channels", quarter);
+        let to = copy_of(quarter, "units_channels");
         for file in ["data.csv", "holdout.csv"] {
-            edit(&to, file, |t| scaled(t, column, factor));
+            edit(&to.join(file), |t| scaled(t, column, factor));
         }
-        asks(&to, &identify, "readings-below-noise");
+        for channel in ["f_wheel", "a_wheel"] {
+            let error = format!("readings-below-noise {channel} ");
+            asks(&to, &identify, &error, "State the unit");
+        }
     }
-    let to = copied("noise", quarter);
+    let to = copy_of(quarter, "units_noise");
     let stated = "noise = { acc = 0.02, force = 60.0 }";
-    edit(&to, "identify.toml", |t| {
+    edit(&to.join("identify.toml"), |t| {
         t.replace(stated, "noise = { acc = 2000.0, force = 6e7 }")
     });
-    asks(&to, &identify, "readings-below-noise");
-    let to = copied("known", quarter);
-    edit(&to, "identify.toml", |t| {
+    for channel in ["f_wheel", "a_body", "a_wheel"] {
+        let error = format!("readings-below-noise {channel} ");
+        asks(&to, &identify, &error, "the noise that the sensor has");
+    }
+    let to = copy_of(quarter, "units_known");
+    edit(&to.join("identify.toml"), |t| {
         t.replace(stated, &format!("{stated}\nknown = {{ m_b = 1e308 }}"))
     });
     refuses(&to, &identify, "vehicle.known.m_b");
-    let to = copied("huge_sample", quarter);
-    edit(&to, "data.csv", |t| with_number(t, 9, "a_wheel", "1e308"));
+    let to = copy_of(quarter, "units_huge_sample");
+    edit(&to.join("data.csv"), |t| {
+        with_number(t, 9, "a_wheel", "1e308")
+    });
     refuses(&to, &identify, "a_wheel");
-    let to = copied("compared", quarter);
+    let to = copy_of(quarter, "units_compared");
     for file in ["data_worn.csv", "holdout_worn.csv"] {
-        edit(&to, file, |t| scaled(t, Some("f_wheel"), 1e-3));
+        edit(&to.join(file), |t| scaled(t, Some("f_wheel"), 1e-3));
     }
     asks(
         &to,
         &["reconcile", "reconcile.toml"],
-        "readings-below-noise",
+        "readings-below-noise vehicle.data ",
+        "State the unit",
     );
 }
 
 #[test]
 fn every_command_that_reads_a_job_s_deck_judges_its_modulus() {
-    let to = copied("modulus", "frame");
-    edit(&to, "frame.bdf", |t| {
+    let to = copy_of("frame", "units_modulus");
+    edit(&to.join("frame.bdf"), |t| {
         t.replace("MAT1,1,2.1+5", "MAT1,1,1.+30")
     });
     for (command, job) in [
@@ -272,7 +277,12 @@ fn every_command_that_reads_a_job_s_deck_judges_its_modulus() {
         ("payload", "payload.toml"),
         ("sensitivity", "place.toml"),
     ] {
-        asks(&to, &[command, job], "units-modulus");
+        asks(
+            &to,
+            &[command, job],
+            "units-modulus material 1 ",
+            "`mm-t-s`",
+        );
     }
 }
 

@@ -27,6 +27,14 @@ pub fn shared(path: &str) -> Option<PathBuf> {
     None
 }
 
+/// Says and counts that a program or a package is absent; with `STRAINBRIDGE_TESTS=required` it fails the test.
+pub fn skip(absent: &str) {
+    let required = std::env::var("STRAINBRIDGE_TESTS").is_ok_and(|v| v == "required");
+    assert!(!required, "{absent}, and required");
+    eprintln!("skipped: {absent}");
+    count_skip(absent);
+}
+
 /// Writes what a test is skipped for into the file that `STRAINBRIDGE_SKIPPED` names.
 pub fn count_skip(absent: &str) {
     let list = std::env::var("STRAINBRIDGE_SKIPPED").ok();

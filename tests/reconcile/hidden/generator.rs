@@ -4,6 +4,7 @@
 //! background of a messy case is 1 % of gain scatter, 1 degree of placement scatter (the model error that the job declares) and
 //! influence coefficients that are off by a fraction of a percent each, as on another mesh.
 
+use crate::drawn::normal;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use strainbridge::reconcile::effect::{Member, StrainEffect, library};
@@ -72,12 +73,6 @@ pub const UNMODELLED: [&str; 7] = [
     "warm_spot",
     "loose_joint",
 ];
-
-/// A standard normal number.
-fn normal(rng: &mut ChaCha8Rng) -> f64 {
-    let (u, v): (f64, f64) = (rng.random::<f64>().max(1e-300), rng.random());
-    (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
-}
 
 fn pick<T: Copy>(rng: &mut ChaCha8Rng, from: &[T]) -> T {
     from[rng.random_range(0..from.len())]

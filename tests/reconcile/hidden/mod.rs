@@ -51,6 +51,45 @@ impl Table {
     }
 }
 
+/// A frame of wheel forces alone: strain = `influence` (gauges by loads and four payload columns) times `loads` (runs by loads); noise of a
+/// microstrain, forces and model exact.
+pub fn plain_frame(
+    observations: Observations,
+    gauges: Vec<GaugeFacts>,
+    load_names: Vec<String>,
+    influence: Vec<f64>,
+    loads: Vec<f64>,
+) -> StrainFrame {
+    StrainFrame {
+        stop: Default::default(),
+        tensors: vec![Vec::new(); gauges.len()],
+        payload: vec![[0.0; 3]; observations.runs.len()],
+        observations,
+        gauges,
+        moments: Vec::new(),
+        load_names,
+        load_positions: None,
+        influence,
+        per_mm: None,
+        loads,
+        payload_origin: [0.0; 2],
+        payload_weight: PayloadWeight::InModel,
+        wheel_forces: WheelForces::Measured,
+        other_loads: Vec::new(),
+        nuisance: Vec::new(),
+        thermal_uniform: None,
+        thermal_gradient: None,
+        masses: Vec::new(),
+        stiffness: Vec::new(),
+        noise: 1.0,
+        load_noise: 0.0,
+        model_rel: 0.0,
+        as_modelled: None,
+        scatter: Vec::new(),
+        learnt: None,
+    }
+}
+
 /// The frame of a case folder in matrix form.
 pub fn frame_of(dir: &Path) -> StrainFrame {
     let meta: serde_json::Value =
@@ -129,36 +168,30 @@ pub fn frame_of(dir: &Path) -> StrainFrame {
             prior_percent: 15.0,
         }
     };
-    StrainFrame {
-        stop: Default::default(),
-        observations: Observations {
-            channels: strain.header[1..].to_vec(),
-            runs: strain.rows.iter().map(|r| r[0].clone()).collect(),
-            values: strain
-                .rows
-                .iter()
-                .flat_map(|r| r[1..].iter().map(|v| v.parse::<f64>().expect("a reading")))
-                .collect(),
-            held_out: strain
-                .rows
-                .iter()
-                .map(|r| held.contains(&r[0].as_str()))
-                .collect(),
-        },
-        gauges: facts,
-        moments: Vec::new(),
-        load_names: vertical.header[1..]
+    let observations = Observations {
+        channels: strain.header[1..].to_vec(),
+        runs: strain.rows.iter().map(|r| r[0].clone()).collect(),
+        values: strain
+            .rows
             .iter()
-            .map(|h| format!("{}.FZ", h.trim_start_matches("FZ_")))
+            .flat_map(|r| r[1..].iter().map(|v| v.parse::<f64>().expect("a reading")))
             .collect(),
-        load_positions: None,
-        influence,
+        held_out: strain
+            .rows
+            .iter()
+            .map(|r| held.contains(&r[0].as_str()))
+            .collect(),
+    };
+    let load_names = vertical.header[1..]
+        .iter()
+        .map(|h| format!("{}.FZ", h.trim_start_matches("FZ_")))
+        .collect();
+    let loads = (0..runs.rows.len())
+        .flat_map(|r| (3..3 + n_l).map(move |c| (r, c)))
+        .map(|(r, c)| runs.number(r, c))
+        .collect();
+    StrainFrame {
         tensors,
-        per_mm: None,
-        loads: (0..runs.rows.len())
-            .flat_map(|r| (3..3 + n_l).map(move |c| (r, c)))
-            .map(|(r, c)| runs.number(r, c))
-            .collect(),
         payload: kg
             .iter()
             .zip(&x)
@@ -179,7 +212,6 @@ pub fn frame_of(dir: &Path) -> StrainFrame {
             .iter()
             .map(|h| (h.clone(), other.column(h)))
             .collect(),
-        nuisance: Vec::new(),
         thermal_uniform: Some(thermal.column("thermal_uniform")),
         thermal_gradient: Some(thermal.column("thermal_gradient")),
         masses: mass.header[1..]
@@ -193,8 +225,6 @@ pub fn frame_of(dir: &Path) -> StrainFrame {
         noise: number("strain_noise_ue"),
         load_noise: number("fz_noise_kN"),
         model_rel: number("model_uncertainty_rel"),
-        as_modelled: None,
-        scatter: Vec::new(),
-        learnt: None,
+        ..plain_frame(observations, facts, load_names, influence, loads)
     }
 }

@@ -1,10 +1,11 @@
 //! What `fleet` holds damage against (a reference day, a target, a mission), where its numbers come from, and gauges over days, on waves whose
 //! damage is known in closed form.
 
+use super::drawn::Splitmix;
+use super::program::{self, scratch};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 const GAUGES: usize = 6;
 /// Microstrain per kN.
@@ -68,9 +69,7 @@ fn hours(periods: usize) -> f64 {
 }
 
 fn folder(name: &str, job: &str, records: &[(&str, String)]) -> PathBuf {
-    let dir = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("fleet_compared_{name}"));
-    let _ = std::fs::remove_dir_all(&dir);
-    std::fs::create_dir_all(&dir).unwrap();
+    let dir = scratch(&format!("compared_{name}"));
     std::fs::write(dir.join("job.toml"), format!("{JOB}{job}")).unwrap();
     let mut s = String::from("gauge,A.FZ,B.FZ\n");
     for (g, row) in S.iter().enumerate() {
@@ -84,21 +83,7 @@ fn folder(name: &str, job: &str, records: &[(&str, String)]) -> PathBuf {
 }
 
 fn fleet(dir: &Path, files: &[&str], more: &[&str]) -> (i32, Value) {
-    fleet_into(dir, "out", files, more)
-}
-
-fn fleet_into(dir: &Path, out: &str, files: &[&str], more: &[&str]) -> (i32, Value) {
-    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
-        .current_dir(dir)
-        .args(["fleet", "job.toml"])
-        .args(files)
-        .args(["--out", out, "--json"])
-        .args(more)
-        .output()
-        .unwrap();
-    let error = String::from_utf8_lossy(&done.stderr).into_owned();
-    let json = serde_json::from_slice(&done.stdout).unwrap_or(Value::String(error));
-    (done.status.code().unwrap(), json)
+    program::fleet(dir, "out", files, more)
 }
 
 fn number(v: &Value) -> f64 {
@@ -318,12 +303,9 @@ fn extremes_have_their_time_and_every_day_its_record() {
 /// Of a record.
 const SAMPLES: usize = PERIODS * PERIOD + 1;
 
-/// The `i`th of even numbers between -1 and 1 (splitmix64).
+/// The `i`th of even numbers between -1 and 1.
 fn between(i: usize) -> f64 {
-    let mut z = (i as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    Splitmix((i as u64).wrapping_mul(Splitmix::STEP)).next()
 }
 
 /// Findings with this code: subject and message.
@@ -420,7 +402,7 @@ fn what_damage_is_held_against_is_changed_without_a_record() {
     {
         std::fs::write(dir.join("job.toml"), format!("title = \"{i}\"\n{JOB}{job}")).unwrap();
         let fresh = format!("fresh{i}");
-        let (code, anew) = fleet_into(&dir, &fresh, &files, &[]);
+        let (code, anew) = program::fleet(&dir, &fresh, &files, &[]);
         assert_eq!(code, 0, "{job}: {anew}");
         // The records are out of reach: what was kept of them is all there is.
         let away = dir.join("away");

@@ -1,0 +1,7 @@
+//! `fleet` as a user runs it.
+
+mod command;
+mod compared;
+#[path = "../drawn/mod.rs"]
+mod drawn;
+mod program;

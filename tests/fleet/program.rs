@@ -1,0 +1,31 @@
+//! Runs the program on records in a folder of their own.
+
+use serde_json::Value;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// An empty folder for one test.
+pub fn scratch(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+        .join("fleet")
+        .join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// Exit code of `fleet job.toml` on these files, and its result; what it said where it gave none.
+pub fn fleet(dir: &Path, out: &str, files: &[impl AsRef<OsStr>], more: &[&str]) -> (i32, Value) {
+    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .current_dir(dir)
+        .args(["fleet", "job.toml"])
+        .args(files)
+        .args(["--out", out, "--json"])
+        .args(more)
+        .output()
+        .unwrap();
+    let error = String::from_utf8_lossy(&done.stderr).into_owned();
+    let json = serde_json::from_slice(&done.stdout).unwrap_or(Value::String(error));
+    (done.status.code().unwrap(), json)
+}
