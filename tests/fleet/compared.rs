@@ -6,6 +6,7 @@ use super::program::{self, scratch};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 const GAUGES: usize = 6;
 /// Microstrain per kN.

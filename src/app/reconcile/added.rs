@@ -175,19 +175,15 @@ impl Held<'_> {
             let is_first = !self.job.corrections.iter().any(|c| c.gauge == name);
             // Several entries of a channel: their factors are multiplied, their offsets and angles added.
             let with = |key: &str, [old, new, both]: [f64; 3]| {
-                let new = match is_first {
-                    true => number(new),
-                    false => format!(
-                        "{} in a further entry, {} together",
-                        number(new),
-                        number(both)
-                    ),
+                let text = |v: f64| match key {
+                    "sign" => format!("{v:.0}"),
+                    _ => number(v),
                 };
-                self.in_job(
-                    &format!("[[correction]] of {name}, {key}"),
-                    &number(old),
-                    new,
-                )
+                let new = match is_first {
+                    true => text(new),
+                    false => format!("{} in a further entry, {} together", text(new), text(both)),
+                };
+                self.in_job(&format!("[[correction]] of {name}, {key}"), &text(old), new)
             };
             let sign = |v: f64| 1f64.copysign(v);
             let (f, o, turn) = (
