@@ -408,3 +408,31 @@ fn ballast_of_a_structure_without_density_is_held_against_its_weight_in_steel() 
     edit(&to, "empty.csv", |t| scaled(t, None, 1e3));
     asks(&to, &ballast, "ballast-beyond-model");
 }
+
+#[test]
+fn loads_beside_a_long_record_are_answered_without_a_comparison() {
+    let to = copied("beside_record", "frame");
+    let (exit, _, errors) = judged(&to, &["recover", "recover.toml"]);
+    assert_eq!(exit, 0, "{errors}");
+    std::fs::copy(to.join("judged.out/loads.csv"), to.join("loads.csv")).unwrap();
+    edit(&to, "respond.toml", |t| {
+        t.replace("[respond]", "[respond]\nloads = \"loads.csv\"")
+    });
+    edit(&to, "strain.csv", |t| {
+        let (header, rows) = t.split_once('\n').unwrap();
+        let readings = rows.lines().next().unwrap().split_once(',').unwrap().1;
+        let mut record = header.replacen("run", "time", 1) + "\n";
+        // Beyond 16 MB a record is passed over, not read whole.
+        for i in 0.. {
+            if record.len() > 17 << 20 {
+                break;
+            }
+            record += &format!("{:.2},{readings}\n", f64::from(i) * 0.01);
+        }
+        record
+    });
+    let (exit, codes, errors) = judged(&to, &["respond", "respond.toml"]);
+    assert_eq!(exit, 0, "{codes:?}\n{errors}");
+    let said = |c: &String| c.contains(" gauges-not-compared ");
+    assert!(codes.iter().any(said), "{codes:?}");
+}
