@@ -432,6 +432,7 @@ fn init_writes_a_job_for_a_purpose_whose_only_faults_are_files_to_be_named() {
         let path = dir.join("job.toml");
         let checked = strainbridge(&["check", path.to_str().unwrap(), "--json"]);
         let said: serde_json::Value = serde_json::from_slice(&checked.stdout).unwrap();
+        assert!(!said["faults"].as_array().unwrap().is_empty());
         for fault in said["faults"].as_array().unwrap() {
             let wrong = fault.as_str().unwrap();
             let to_be_named = ["no such file", "payload.grid"];

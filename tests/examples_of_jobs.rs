@@ -49,6 +49,7 @@ const PAYLOADS: [(f64, f64, f64); 9] = [
 #[test]
 fn the_carrier_s_unit_loads_are_in_balance_and_its_gauges_told_apart() {
     let solved = run("solve", "frame", &["place.toml"]);
+    assert!(!solved["balance"].as_array().unwrap().is_empty());
     for case in solved["balance"].as_array().unwrap() {
         assert!(number(&case["residual"]) < 1e-9, "{case}");
     }
@@ -97,6 +98,7 @@ fn recovered_wheel_forces_hold_those_of_statics() {
 #[test]
 fn the_payload_is_weighed_and_found() {
     let weighed = run("payload", "frame", &["payload.toml"]);
+    assert_eq!(weighed["payload"].as_array().unwrap().len(), PAYLOADS.len());
     for (answer, (mass, x, y)) in weighed["payload"].as_array().unwrap().iter().zip(PAYLOADS) {
         // Four standard deviations of 27 answers.
         let off = (number(&answer["mass"]) - mass) / number(&answer["mass_sigma"]);
@@ -123,6 +125,7 @@ fn stress_and_study_answer_for_the_same_runs() {
     let hot = run("respond", "frame", &["respond.toml"]);
     assert_eq!(hot["states"], 9);
     // The gauges' own strain is predicted to the noise that was put on it.
+    assert!(!hot["gauges"].as_array().unwrap().is_empty());
     for g in hot["gauges"].as_array().unwrap() {
         assert!(number(&g["residual_rms_microstrain"]) < 1.5, "{g}");
     }

@@ -192,6 +192,7 @@ fn a_rig_has_no_static_load_and_its_tables_and_page_are_in_the_units_of_the_job(
         let out = here.join(system);
         let output = run(&here.join("rig.toml"), &out);
         let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert!(!result["loads"].as_array().unwrap().is_empty());
         for load in result["loads"].as_array().unwrap() {
             assert_eq!(load["name"], "f_1");
             assert!(load["value"].is_null() && load["sigma"].is_null(), "{load}");

@@ -107,6 +107,7 @@ fn the_planned_sigma_is_the_recovered_one_at_the_expected_loads() {
     let answer = recover(&job, &Context::new(&files)).unwrap();
     let got = answer.runs().unwrap();
     assert_eq!(got.loads.len(), 2);
+    assert_eq!(placed.load_sigma.len(), 2);
     for (planned, got) in placed.load_sigma.iter().zip(&got.loads) {
         let value = got.value;
         assert!((value - 10.0).abs() < 1e-6, "{value}");
@@ -385,6 +386,7 @@ fn loads_of_a_record_stay_in_memory_sample_by_sample() {
     for (i, row) in history.rows().enumerate() {
         assert!((row.time - i as f64 * 0.1).abs() < 1e-9);
         let [a, b] = loads(i);
+        assert_eq!(row.loads.len(), 3);
         for (load, truth) in row.loads.iter().zip([a, b, a + b]) {
             let [value, low, high] = load.unwrap();
             assert!((value - truth * 1e-3).abs() < 1e-9 && low < value && value < high);
@@ -439,6 +441,7 @@ fn a_gauge_that_the_zero_file_lacks_has_no_part_in_the_loads() {
         .with("job.toml", job);
     let job = Job::read("job.toml", &files).unwrap();
     let answer = recover(&job, &Context::new(&files)).unwrap();
+    assert_eq!(answer.runs().unwrap().loads.len(), 5 * 3);
     for (i, of_run) in answer.runs().unwrap().loads.chunks(3).enumerate() {
         let [a, b] = loads(i).map(|v| v * 1e-3);
         for (load, truth) in of_run.iter().zip([a, b]) {
@@ -625,6 +628,7 @@ fn a_gauge_that_is_known_to_be_turned_is_turned_in_modes_too() {
     let (drawn, turned) = (strain("drawn.toml"), strain("turned.toml"));
     let size = drawn.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
     assert!(size > 0.0);
+    assert_eq!(drawn.len(), turned.len());
     for (a, b) in drawn.iter().zip(&turned) {
         assert!((a - b).abs() < 1e-9 * size, "{a} {b}");
     }

@@ -244,6 +244,7 @@ fn entries(folder: &Path) -> Vec<[f64; 4]> {
     run(folder, "sensitivity", "fine.toml");
     let [coarse, limit, fine] = ["coarse.toml", "with.toml", "fine.toml"].map(|j| rows(folder, j));
     let mut out = Vec::new();
+    assert!(!with["mesh_error"].as_array().unwrap().is_empty());
     for gauge in with["mesh_error"].as_array().unwrap() {
         let name = gauge["name"].as_str().unwrap().rsplit_once('_').unwrap().0;
         let scaled = |rows: &BTreeMap<String, Vec<f64>>| -> Vec<f64> {
@@ -332,6 +333,7 @@ fn loads_are_recovered_better_without_the_mesh_error_and_intervals_hold_them() {
         std::fs::write(folder.join(&name), text).unwrap();
         let answer = run(&folder, "recover", &name);
         let (mut sum, mut held, mut n) = (0.0, 0, 0);
+        assert!(!answer["loads"].as_array().unwrap().is_empty());
         for (load, row) in answer["loads"].as_array().unwrap().iter().enumerate() {
             let (run, l) = (load / LOADS.len(), load % LOADS.len());
             let (component, side) = LOADS[l];

@@ -79,6 +79,7 @@ fn shared_cases_get_their_names_and_identify_runs_the_extended_job() {
             "{case}"
         );
         // What the effect did to a simulation of the held-out road goes to the level of sensor noise.
+        assert!(!r["simulation"]["channels"].as_array().unwrap().is_empty());
         for c in r["simulation"]["channels"].as_array().unwrap() {
             let [measured, before, after] =
                 ["measured_rms", "before", "after"].map(|k| c[k].as_f64().unwrap());

@@ -129,6 +129,7 @@ fn one_run_threads_shards_and_a_merge_of_what_is_kept_write_the_same_bytes() {
         findings_of(&result, &["warning", "error"]).is_empty(),
         "{result}"
     );
+    assert!(!result["files"].as_array().unwrap().is_empty());
     for file in result["files"].as_array().unwrap() {
         assert_eq!(file["findings"], Value::Array(vec![]), "{file}");
     }
@@ -140,6 +141,7 @@ fn one_run_threads_shards_and_a_merge_of_what_is_kept_write_the_same_bytes() {
     );
     assert_eq!(rows.count(), 6);
     // The largest load of each vehicle, from the loads that the strain was made of.
+    assert!(!result["vehicles"].as_array().unwrap().is_empty());
     for (v, vehicle) in result["vehicles"].as_array().unwrap().iter().enumerate() {
         assert_eq!(vehicle["files"], 20);
         for l in 0..2 {
@@ -412,6 +414,7 @@ fn a_record_whose_strain_the_loads_do_not_explain_is_an_error_that_names_it() {
     assert_eq!(all.iter().filter(suspects).count(), 1, "{all:?}");
     // Each with its record, and with no other.
     let wrong = ["T0_4.csv", "T1_5.csv", "T1_9.csv", "T2_7.csv"];
+    assert!(!result["files"].as_array().unwrap().is_empty());
     for file in result["files"].as_array().unwrap() {
         let found = file["findings"].as_array().unwrap();
         let error = found.iter().any(|f| f["code"] == "strain-not-explained");

@@ -291,6 +291,7 @@ fn extremes_have_their_time_and_every_day_its_record() {
         (number(&load["max"]) - 10.0).abs() < 1e-4 && (number(&load["min"]) + 10.0).abs() < 1e-4
     );
     let page = std::fs::read_to_string(dir.join("out/report.html")).unwrap();
+    assert!(!v["records"].as_array().unwrap().is_empty());
     for record in v["records"].as_array().unwrap() {
         let path = record["path"].as_str().unwrap();
         let sha256 = record["sha256"].as_str().unwrap();

@@ -141,6 +141,7 @@ fn our_reader_gets_back_the_loads_of_every_run_from_force_moment_and_load() {
     let c = &read.cards;
     assert_eq!((c.forces.len(), c.moments.len(), c.loads.len()), (2, 1, 2));
     for (load, i) in c.loads.iter().zip([10, 200]) {
+        assert_eq!(load.card.terms.len(), truth(i).len());
         for (part, expected) in load.card.terms.iter().zip(truth(i)) {
             near("run", load.card.scale * part.0, expected, 1e-6 * 300.0);
         }
@@ -226,7 +227,7 @@ fn rpc3_file_and_pynastran_read_the_history_that_recover_writes() {
         assert_eq!(card[0], ["FORCE", "FORCE", "MOMENT"][l]);
         assert_eq!(number(&card[1]), [3.0, 11.0, 13.0][l]);
         let [times, values] = [0, 1].map(|i| numbers(&bdf["tables"][&table][i]));
-        assert_eq!(times.len(), N);
+        assert_eq!((times.len(), values.len()), (N, N));
         for (i, (t, v)) in times.iter().zip(&values).enumerate() {
             near("time", *t, i as f64 * DT, 1e-8);
             near("table", *v, truth(i)[l], 1e-6 * 300.0);

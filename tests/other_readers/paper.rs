@@ -138,6 +138,7 @@ fn plan_and_payload_on_paper_state_inputs_units_and_the_numbers_of_result_json_a
     }
     let signed = ["Made by", "Checked by", "Name", "Date", "Signature"];
     let mut rows = vec!["Gluing sheet".to_owned(), SHOWN.to_owned()];
+    assert!(!placed["gauges"].as_array().unwrap().is_empty());
     for g in placed["gauges"].as_array().unwrap() {
         let [x, y, z] = [0, 1, 2].map(|k| tenth(&g["position"][k]));
         let (name, side) = (g["name"].as_str().unwrap(), g["surface"].as_str().unwrap());
@@ -187,6 +188,7 @@ fn a_reconciliation_on_paper_holds_the_verdict_its_effects_and_what_else_would_e
     let Some(papers) = read(&paths) else {
         return;
     };
+    assert_eq!(papers.len(), results.len());
     for (paper, result) in papers.iter().zip(&results) {
         let mut words = vec![result["verdict"].as_str().unwrap()];
         words.push(result["next_measurement"].as_str().unwrap());

@@ -302,6 +302,7 @@ fn a_gauge_that_is_dragged_is_written_with_the_place_on_the_surface_where_it_was
         let moved = sensitivity(&dir, "[gauges]\nfile = \"gauges.csv\"\n");
         let there = sensitivity(&dir, &stated);
         let most = there.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
+        assert!(most > 0.0 && moved.len() == there.len());
         for (a, b) in moved.iter().zip(&there) {
             assert!((a - b).abs() < 0.02 * most, "{moved:?} {there:?}");
         }

@@ -115,6 +115,7 @@ fn pynastran_and_meshio_read_what_solve_writes() {
             .iter()
             .flat_map(list)
             .collect();
+        assert_eq!(ids.len(), strain.len(), "{name}");
         for (id, row) in ids.iter().zip(strain) {
             let at = model
                 .shells

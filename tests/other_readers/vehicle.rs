@@ -52,7 +52,9 @@ fn accelerations_in_rpc_iii_parquet_and_mdf4_give_the_parameters_of_the_table() 
         endings.push("mf4");
     }
     for ending in endings {
-        for (got, e) in identified(&dir, &text, ending).iter().zip(&expected) {
+        let read = identified(&dir, &text, ending);
+        assert!(!expected.is_empty() && read.len() == expected.len());
+        for (got, e) in read.iter().zip(&expected) {
             assert_eq!(got["name"], e["name"]);
             let [a, b, sigma] = [&got["value"], &e["value"], &e["sigma"]].map(|v| v.as_f64());
             let (Some(a), Some(b)) = (a, b) else {

@@ -330,6 +330,7 @@ fn a_layout_for_the_worst_loss_keeps_more_after_it_and_the_curve_falls() {
     let (header, rows) = csv(&folder.join("out/gluing_sheet.csv"));
     let col = |n: &str| header.iter().position(|h| h == n).unwrap();
     let load = col("range_LF.FZ_microstrain");
+    assert_eq!(rows.len(), gauges(&plain).len());
     for (row, g) in rows.iter().zip(gauges(&plain)) {
         assert!(
             row[col("from_grid")].starts_with("front (9001)")

@@ -101,6 +101,7 @@ fn a_known_multiple_of_a_load_comes_back_from_the_files_own_strain() {
     let column = |name: &str| head.iter().position(|h| h == name).unwrap();
     let mut names = String::from("run");
     let mut values = String::from("R1");
+    assert!(!placed.result["gauges"].as_array().unwrap().is_empty());
     for g in placed.result["gauges"].as_array().unwrap() {
         let is = |r: &Vec<String>, name: &str, what: &str| r[column(name)] == what;
         let element = g["element"].as_u64().unwrap().to_string();

@@ -401,7 +401,7 @@ fn own_hypothesis(
     folder: &Path,
     named: impl Fn(&str) -> String,
 ) -> String {
-    let mut numbers = crate::drawn::Numbers(3);
+    let mut numbers = hidden::drawn::Numbers(3);
     let (n_g, n_l, n_c) = (frame.n_gauges(), frame.n_loads(), frame.n_columns());
     let change: Vec<f64> = (0..n_g * n_l)
         .map(|i| 0.17 * numbers.next() * frame.influence[i / n_l * n_c + i % n_l].abs())

@@ -240,7 +240,7 @@ fn a_gauge_that_sits_elsewhere_is_named_where_the_gradient_along_it_is_known() {
     };
     let mut frame = hide(&base, "none", 0.0, Background::Clean, 310).frame;
     // Two per cent of the influence a millimetre, of either sign: like no gain and no angle.
-    let mut numbers = crate::drawn::Numbers(11);
+    let mut numbers = hidden::drawn::Numbers(11);
     let along = frame.influence.iter().map(|a| 0.02 * numbers.next() * a);
     frame.per_mm = Some(along.collect());
     let n_g = frame.n_gauges();

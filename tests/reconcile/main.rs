@@ -1,8 +1,6 @@
 //! Find the gap, name the missing effect, add it, show the gap shrink: cases whose effect is known.
 
 mod deck;
-#[path = "../drawn/mod.rs"]
-mod drawn;
 mod extended;
 mod given;
 mod heat;

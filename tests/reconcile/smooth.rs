@@ -1,7 +1,7 @@
 //! A beam of our own under point loads: a model that is off by a smooth factor gets no name, effects of the library keep theirs.
 
+use super::hidden::drawn::normal;
 use super::hidden::plain_frame;
-use crate::drawn::normal;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use strainbridge::reconcile::effect::{Member, library};

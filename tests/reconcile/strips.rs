@@ -1,7 +1,7 @@
 //! A small structure of our own with decks and jobs on any mesh: two strips of plate (1000 x 100 x 5 mm, steel) side by side, tied by
 //! three bushes; forces across the plates at six places, gauges on the top.
 
-use crate::drawn::Numbers;
+use super::hidden::drawn::Numbers;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -139,7 +139,9 @@ fn a_sum_of_loads_has_the_interval_of_their_covariance() {
             .map(|v| v.parse().unwrap())
             .collect()
     };
-    for (x, y) in numbers(&csv, 3).iter().zip(numbers(&record, 3)) {
+    let [runs, samples] = [numbers(&csv, 3), numbers(&record, 3)];
+    assert!(!runs.is_empty() && runs.len() == samples.len());
+    for (x, y) in runs.iter().zip(&samples) {
         assert!((x - y).abs() < 1e-5 * x.abs().max(1.0), "{x} {y}");
     }
 }
@@ -165,7 +167,9 @@ fn channels_are_put_right_in_runs_and_in_records() {
             let fields = text.lines().skip(1).flat_map(|l| l.split(',').skip(1));
             fields.map(|v| v.parse().unwrap()).collect()
         };
-        for (x, y) in numbers(&read(&right)).iter().zip(numbers(&read(&dir))) {
+        let [right, put_right] = [&right, &dir].map(|d| numbers(&read(d)));
+        assert!(!right.is_empty() && right.len() == put_right.len());
+        for (x, y) in right.iter().zip(&put_right) {
             assert!((x - y).abs() < 1e-4 * x.abs().max(1.0), "{key}: {x} {y}");
         }
     }

@@ -4,7 +4,7 @@
 //! background of a messy case is 1 % of gain scatter, 1 degree of placement scatter (the model error that the job declares) and
 //! influence coefficients that are off by a fraction of a percent each, as on another mesh.
 
-use crate::drawn::normal;
+use super::drawn::normal;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use strainbridge::reconcile::effect::{Member, StrainEffect, library};

@@ -3,6 +3,9 @@
 #[path = "../../../nastran/tests/support/mod.rs"]
 mod support;
 
+#[path = "../../drawn/mod.rs"]
+pub mod drawn;
+
 pub mod generator;
 pub mod judge;
 
