@@ -20,6 +20,7 @@ mod finer;
 mod frame_columns;
 mod influence;
 mod local;
+mod local_ground;
 mod matrix_frame;
 mod model_part;
 mod motion_findings;

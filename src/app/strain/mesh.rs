@@ -7,7 +7,7 @@
 //! # Reference
 //! L. F. Richardson, Phil. Trans. R. Soc. A 210 (1911) 307.
 
-use super::gauges::corrected_spec_of;
+use super::specs::corrected_spec_of;
 use crate::app::deck::DeckModel;
 use crate::app::job::{Job, Measured};
 use crate::app::solved::{support_of_job, unit_loads_kept};

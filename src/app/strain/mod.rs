@@ -5,17 +5,19 @@ mod fields;
 mod gauges;
 mod given;
 mod mesh;
+mod specs;
 mod unit_loads;
 mod units;
 
 pub use covariance::{covariance_bytes, read_covariance};
 pub use fields::{Fields, read_fields};
-pub use gauges::{corrected_spec_of, lay_gauges, not_laid, off_their_elements, without_strain};
+pub use gauges::{lay_gauges, not_laid, off_their_elements, without_strain};
 pub use given::read_given;
 pub use mesh::{
     GaugeMeshError, LoadMeshError, WantedAt, coarse_at_gauges, left_in_reading, left_squared,
     mesh_errors, refined_mesh,
 };
+pub use specs::corrected_spec_of;
 pub use unit_loads::unit_loads;
 pub use units::{LoadSigma, LoadUnits, load_units};
 
