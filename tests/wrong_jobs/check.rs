@@ -1,6 +1,6 @@
 //! `check JOB` agrees with the commands: what one of them refuses or can't rely on, it says, and it refuses nothing that they read.
 
-use super::copies::copy_of;
+use super::copies::copied;
 use std::path::Path;
 use std::process::Command;
 
@@ -102,7 +102,7 @@ fn lines(text: &str, n: usize) -> Vec<u8> {
 
 #[test]
 fn of_a_record_check_says_what_recover_says() {
-    let folder = copy_of("fleet", "check_record");
+    let folder = copied("check_record", "fleet");
     std::fs::write(folder.join("job.toml"), RECORD).unwrap();
     let dated = |t: &str| {
         let rows = t.lines().enumerate().map(|(i, line)| match i {
@@ -203,7 +203,7 @@ fn of_a_record_check_says_what_recover_says() {
 
 #[test]
 fn the_record_of_a_zero_may_hold_what_a_record_may_hold() {
-    let folder = copy_of("fleet", "check_zero");
+    let folder = copied("check_zero", "fleet");
     let zero = "noise_microstrain = 0.1\nzero = \"zero.csv\"\n";
     let job = RECORD.replace("noise_microstrain = 0.1\n", zero);
     std::fs::write(folder.join("job.toml"), job).unwrap();
@@ -239,7 +239,7 @@ fn the_record_of_a_zero_may_hold_what_a_record_may_hold() {
 
 #[test]
 fn loads_and_gauges_are_counted_where_they_were_read() {
-    let folder = copy_of("fleet", "check_counted");
+    let folder = copied("check_counted", "fleet");
     std::fs::write(folder.join("job.toml"), RECORD).unwrap();
     let (code, said) = ask("check", &folder.join("job.toml"));
     assert_eq!(code, 0, "{said}");
@@ -249,7 +249,7 @@ fn loads_and_gauges_are_counted_where_they_were_read() {
 
 #[test]
 fn of_a_vehicle_check_says_what_identify_says() {
-    let folder = copy_of("quarter_truck", "check_vehicle");
+    let folder = copied("check_vehicle", "quarter_truck");
     let twice = |t: &str| {
         let rows: String = t.split_inclusive('\n').skip(1).collect();
         format!("{t}{rows}").into_bytes()
@@ -288,7 +288,7 @@ fn of_a_vehicle_check_says_what_identify_says() {
 
 #[test]
 fn of_runs_check_says_what_respond_and_reconcile_say() {
-    let folder = copy_of("frame", "check_runs");
+    let folder = copied("check_runs", "frame");
     let job = std::fs::read_to_string(folder.join("respond.toml")).unwrap();
     let loads = job.replace("hottest = 10", "hottest = 10\nloads = \"loads.csv\"");
     std::fs::write(folder.join("loads.toml"), loads).unwrap();
@@ -341,7 +341,7 @@ fn of_runs_check_says_what_respond_and_reconcile_say() {
 
 #[test]
 fn a_point_away_from_the_element_beside_it_is_an_error_that_names_gauge_and_distance() {
-    let folder = copy_of("frame", "check_point");
+    let folder = copied("check_point", "frame");
     let job = folder.join("recover.toml");
     let gauges = std::fs::read_to_string(folder.join("gauges.csv")).unwrap();
     let (code, said) = ask("check", &job);
@@ -363,7 +363,7 @@ fn a_point_away_from_the_element_beside_it_is_an_error_that_names_gauge_and_dist
 
 #[test]
 fn a_layout_that_will_not_tell_its_loads_is_an_error() {
-    let folder = copy_of("frame", "check_planned");
+    let folder = copied("check_planned", "frame");
     let job = folder.join("place.toml");
     let text = std::fs::read_to_string(&job).unwrap();
     assert_eq!(ask("place", &job).0, 0);
@@ -376,7 +376,7 @@ fn a_layout_that_will_not_tell_its_loads_is_an_error() {
 
 #[test]
 fn a_channel_is_not_exchanged_with_itself() {
-    let folder = copy_of("fleet", "check_exchanged");
+    let folder = copied("check_exchanged", "fleet");
     let own = "[[correction]]\ngauge = \"P01\"\nexchanged_with = \"P01\"\n";
     std::fs::write(folder.join("job.toml"), format!("{RECORD}{own}")).unwrap();
     let (code, said) = ask("check", &folder.join("job.toml"));
@@ -388,7 +388,7 @@ fn a_channel_is_not_exchanged_with_itself() {
 
 #[test]
 fn fleet_says_of_a_gauge_without_a_row_of_s_what_recover_says() {
-    let folder = copy_of("fleet", "check_no_row");
+    let folder = copied("check_no_row", "fleet");
     let s = std::fs::read_to_string(folder.join("s_wheels.csv")).unwrap();
     let less: String = s.split_inclusive('\n').take(12).collect();
     std::fs::write(folder.join("s_wheels.csv"), less).unwrap();

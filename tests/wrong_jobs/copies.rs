@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// A copy of a folder of `examples/`, its files alone, under a name that no other test has.
-pub fn copy_of(folder: &str, name: &str) -> PathBuf {
+pub fn copied(name: &str, folder: &str) -> PathBuf {
     let from = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("examples")
         .join(folder);
@@ -21,10 +21,11 @@ pub fn copy_of(folder: &str, name: &str) -> PathBuf {
     to
 }
 
-/// Changes a file, which it has to do.
-pub fn edit(file: &Path, change: impl Fn(&str) -> String) {
-    let text = std::fs::read_to_string(file).unwrap();
+/// Changes a file of a folder, which it has to do.
+pub fn edit(folder: &Path, file: &str, change: impl Fn(&str) -> String) {
+    let path = folder.join(file);
+    let text = std::fs::read_to_string(&path).unwrap();
     let changed = change(&text);
-    assert_ne!(text, changed, "{}", file.display());
-    std::fs::write(file, changed).unwrap();
+    assert_ne!(text, changed, "{file}");
+    std::fs::write(path, changed).unwrap();
 }

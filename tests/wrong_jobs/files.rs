@@ -1,6 +1,6 @@
 //! Jobs of `examples/` whose files are cut, replaced or of a header alone.
 
-use super::copies::{copy_of, edit};
+use super::copies::{copied, edit};
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
@@ -19,12 +19,15 @@ fn call(folder: &Path, arguments: &[&str]) -> (i32, String) {
 
 #[test]
 fn no_output_is_written_over_what_the_command_has_read() {
-    let dir = copy_of("fleet", "own_inputs");
-    let job = dir.join("fleet.toml");
+    let dir = copied("own_inputs", "fleet");
     std::fs::rename(dir.join("s_wheels.csv"), dir.join("sensitivity.csv")).unwrap();
     std::fs::rename(dir.join("A_2026-05-01.csv"), dir.join("loads.csv")).unwrap();
-    edit(&job, |t| t.replace("s_wheels.csv", "sensitivity.csv"));
-    edit(&job, |t| t.replace("A_2026-05-01.csv", "loads.csv"));
+    edit(&dir, "fleet.toml", |t| {
+        t.replace("s_wheels.csv", "sensitivity.csv")
+    });
+    edit(&dir, "fleet.toml", |t| {
+        t.replace("A_2026-05-01.csv", "loads.csv")
+    });
     for (command, name) in [("sensitivity", "sensitivity.csv"), ("recover", "loads.csv")] {
         let before = std::fs::read(dir.join(name)).unwrap();
         let count = || std::fs::read_dir(&dir).unwrap().count();
@@ -44,7 +47,7 @@ fn no_output_is_written_over_what_the_command_has_read() {
 
 #[test]
 fn a_folder_of_two_commands_is_verified_by_the_files_of_the_last() {
-    let dir = copy_of("frame", "two_commands");
+    let dir = copied("two_commands", "frame");
     for command in ["sensitivity", "recover"] {
         let (code, said) = call(&dir, &[command, "recover.toml"]);
         assert_eq!(code, 0, "{said}");
@@ -61,7 +64,7 @@ fn a_folder_of_two_commands_is_verified_by_the_files_of_the_last() {
 
 #[test]
 fn a_table_whose_last_number_may_be_cut_is_said_and_a_record_is_read_without_it() {
-    let dir = copy_of("fleet", "cut_record");
+    let dir = copied("cut_record", "fleet");
     let record = dir.join("A_2026-05-01.csv");
     let whole = std::fs::read(&record).unwrap();
     let samples = || -> u64 {
@@ -90,7 +93,7 @@ fn a_table_whose_last_number_may_be_cut_is_said_and_a_record_is_read_without_it(
     let (_, said) = call(&dir, &recover);
     assert!(!said.contains("table-may-be-cut"), "{said}");
     assert_eq!(samples(), all);
-    let dir = copy_of("frame", "cut_runs");
+    let dir = copied("cut_runs", "frame");
     let strain = std::fs::read(dir.join("strain.csv")).unwrap();
     std::fs::write(dir.join("strain.csv"), &strain[..strain.len() - 2]).unwrap();
     let (code, said) = call(&dir, &["recover", "recover.toml"]);
@@ -100,7 +103,7 @@ fn a_table_whose_last_number_may_be_cut_is_said_and_a_record_is_read_without_it(
 
 #[test]
 fn steps_of_angles_below_a_tenth_of_a_degree_are_refused_at_their_line() {
-    let dir = copy_of("frame", "angles");
+    let dir = copied("angles", "frame");
     for step in ["1e-9", "0.05"] {
         let job = dir.join("place.toml");
         let text = std::fs::read_to_string(&job).unwrap();
@@ -109,7 +112,7 @@ fn steps_of_angles_below_a_tenth_of_a_degree_are_refused_at_their_line() {
             .position(|l| l.starts_with("angle_step_deg"))
             .unwrap();
         let from = text.lines().nth(line - 1).unwrap();
-        edit(&job, |t| {
+        edit(&dir, "place.toml", |t| {
             t.replace(from, &format!("angle_step_deg = {step}"))
         });
         let (code, said) = call(&dir, &["place", "place.toml"]);
@@ -123,10 +126,13 @@ fn steps_of_angles_below_a_tenth_of_a_degree_are_refused_at_their_line() {
 
 #[test]
 fn fewer_gauges_than_loads_are_not_told_that_they_stand_too_close() {
-    let dir = copy_of("frame", "few_gauges");
-    let job = dir.join("place.toml");
-    edit(&job, |t| t.replace("gauges = 12", "gauges = 5"));
-    edit(&job, |t| t.replace("spacing = 100.0", "spacing = 0.001"));
+    let dir = copied("few_gauges", "frame");
+    edit(&dir, "place.toml", |t| {
+        t.replace("gauges = 12", "gauges = 5")
+    });
+    edit(&dir, "place.toml", |t| {
+        t.replace("spacing = 100.0", "spacing = 0.001")
+    });
     let (code, said) = call(&dir, &["place", "place.toml"]);
     assert_eq!(code, 1, "{said}");
     assert!(said.contains("loads-not-separable"), "{said}");
@@ -135,7 +141,7 @@ fn fewer_gauges_than_loads_are_not_told_that_they_stand_too_close() {
 
 #[test]
 fn a_table_of_a_header_alone_is_refused_by_every_command_that_reads_it() {
-    let dir = copy_of("frame", "no_rows");
+    let dir = copied("no_rows", "frame");
     let cut = |name: &str| {
         let text = std::fs::read_to_string(dir.join(name)).unwrap();
         let header = text.lines().next().unwrap().to_owned();
@@ -165,7 +171,7 @@ fn a_table_of_a_header_alone_is_refused_by_every_command_that_reads_it() {
 
 #[test]
 fn results_that_a_job_names_are_opened_by_those_that_have_no_use_for_them() {
-    let dir = copy_of("frame", "named_results");
+    let dir = copied("named_results", "frame");
     let (code, said) = call(&dir, &["solve", "place.toml", "--out", "solved"]);
     assert_eq!(code, 0, "{said}");
     let whole = std::fs::read(dir.join("solved/results.op2")).unwrap();
@@ -180,7 +186,7 @@ fn results_that_a_job_names_are_opened_by_those_that_have_no_use_for_them() {
             )
             .unwrap();
             let deck = "deck = \"frame.bdf\"\n";
-            edit(&dir.join(job), |t| {
+            edit(&dir, job, |t| {
                 t.replace(deck, &format!("{deck}results = [\"{name}\"]\n"))
             });
         }

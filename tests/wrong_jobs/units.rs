@@ -1,6 +1,6 @@
 //! Jobs of `examples/` whose numbers are in other units than stated: nothing is answered without an error.
 
-use super::copies::{copy_of, edit};
+use super::copies::{copied, edit};
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
@@ -63,16 +63,42 @@ fn judged(folder: &Path, arguments: &[&str]) -> (i32, Vec<String>, String) {
     (done.status.code().unwrap_or(-1), codes, errors)
 }
 
-/// Asserts an exit code of 1 with an error that begins with this code and subject, and names the unit or where it is stated.
-fn asks(folder: &Path, arguments: &[&str], error: &str, unit: &str) {
+/// What an error says of the unit, or of where it is stated: of one code one of these.
+const SAYS: [(&str, &[&str]); 8] = [
+    (
+        "readings-below-noise",
+        &[
+            "state readings in microstrain",
+            "State the unit beside the channel's name",
+        ],
+    ),
+    ("reading-beyond-gauges", &["state readings in microstrain"]),
+    ("reading-impossible", &["microstrain is expected"]),
+    ("ballast-beyond-model", &["[runs] units"]),
+    ("model-far-above-readings", &["[runs] units"]),
+    (
+        "load-beyond-expected",
+        &["units of the strain file or of the table of loads"],
+    ),
+    (
+        "prediction-poor",
+        &["table of loads against `report_units`"],
+    ),
+    ("units-modulus", &["`units` of the job"]),
+];
+
+/// Asserts an exit code of 1 with an error that begins with this code, its subject where stated, and says what `SAYS` says of it.
+fn asks(folder: &Path, arguments: &[&str], error: &str) {
     let (exit, findings, errors) = judged(folder, arguments);
     assert_eq!(exit, 1, "{arguments:?}\n{errors}");
+    let code = error.split(' ').next().unwrap();
+    let of_code = SAYS.iter().find(|s| s.0 == code);
+    let (_, says) = of_code.unwrap_or_else(|| panic!("{code} is not in SAYS"));
     let head = format!("error {error}");
+    let mut of_code = findings.iter().filter(|f| f.starts_with(&head));
     assert!(
-        findings
-            .iter()
-            .any(|f| f.starts_with(&head) && f.contains(unit)),
-        "{arguments:?} {findings:?}"
+        of_code.any(|f| says.iter().any(|s| f.contains(s))),
+        "{arguments:?} {error} {findings:?}"
     );
 }
 
@@ -93,30 +119,25 @@ fn every_command_that_reads_strain_asks_for_its_unit() {
         ("bridge", "calibrate", "calibrate.toml", "strain.csv"),
     ] {
         // The bridge reads 34 microstrain at most: a thousand times that is still strain.
-        let (large, gauge) = if folder == "bridge" {
-            (1e4, "B1,")
-        } else {
-            (1e3, "P01,")
-        };
-        let beyond = format!("reading-beyond-gauges {gauge}");
-        for (factor, error) in [
-            (1e-6, "readings-below-noise measured.strain"),
-            (large, beyond.as_str()),
+        let large = if folder == "bridge" { 1e4 } else { 1e3 };
+        for (factor, code) in [
+            (1e-6, "readings-below-noise"),
+            (large, "reading-beyond-gauges"),
         ] {
-            let to = copy_of(folder, "units_strain");
-            edit(&to.join(strain), |t| scaled(t, None, factor));
-            asks(&to, &[command, job], error, "readings in microstrain");
+            let to = copied("strain", folder);
+            edit(&to, strain, |t| scaled(t, None, factor));
+            asks(&to, &[command, job], code);
         }
     }
     for (folder, command, job, strain) in [
         ("frame", "reconcile", "reconcile.toml", "strain_wired.csv"),
         ("bridge", "calibrate", "calibrate.toml", "strain.csv"),
     ] {
-        let to = copy_of(folder, "units_no_strain");
-        edit(&to.join(strain), |t| scaled(t, None, 1e9));
+        let to = copied("no_strain", folder);
+        edit(&to, strain, |t| scaled(t, None, 1e9));
         refuses(&to, &[command, job], strain);
     }
-    let to = copy_of("fleet", "units_fleet");
+    let to = copied("fleet", "fleet");
     let records = [
         "A_2026-05-01.csv",
         "A_2026-05-02.csv",
@@ -124,13 +145,21 @@ fn every_command_that_reads_strain_asks_for_its_unit() {
         "B_2026-05-02.csv",
     ];
     for record in records {
-        edit(&to.join(record), |t| scaled(t, None, 1e3));
+        edit(&to, record, |t| scaled(t, None, 1e3));
     }
     let fleet = [["fleet", "fleet.toml"].as_slice(), &records].concat();
-    for (vehicle, first) in [("A", records[0]), ("B", records[2])] {
-        let error = format!("reading-beyond-gauges {vehicle} P01,");
-        asks(&to, &fleet, &error, &format!("the first {first}: "));
-        asks(&to, &fleet, &error, "readings in microstrain");
+    for vehicle in ["A", "B"] {
+        asks(
+            &to,
+            &fleet,
+            &format!("reading-beyond-gauges {vehicle} P01,"),
+        );
+    }
+    // The first record of each is named.
+    let (_, findings, _) = judged(&to, &fleet);
+    for first in [records[0], records[2]] {
+        let named = format!("the first {first}: ");
+        assert!(findings.iter().any(|f| f.contains(&named)), "{findings:?}");
     }
 }
 
@@ -147,19 +176,19 @@ fn a_load_or_a_payload_that_nothing_weighs_is_a_fault_of_its_line() {
     ] {
         for number in ["1e308", "-1e200"] {
             let line = if file == "empty.csv" { 2 } else { 3 };
-            let to = copy_of(folder, "units_runs");
-            edit(&to.join(file), |t| with_number(t, line, column, number));
+            let to = copied("runs", folder);
+            edit(&to, file, |t| with_number(t, line, column, number));
             let command = job.strip_suffix(".toml").unwrap();
             refuses(&to, &[command, job], &format!("{file}:{line}: {column}: "));
         }
     }
-    let to = copy_of("bridge", "units_factor");
-    edit(&to.join("calibrate.toml"), |t| {
+    let to = copied("factor", "bridge");
+    edit(&to, "calibrate.toml", |t| {
         t.replace("terms = { west = 1,", "terms = { west = 1e308,")
     });
     refuses(&to, &["calibrate", "calibrate.toml"], "combination.terms");
-    let to = copy_of("bridge", "units_noise_of_job");
-    edit(&to.join("calibrate.toml"), |t| {
+    let to = copied("noise_of_job", "bridge");
+    edit(&to, "calibrate.toml", |t| {
         t.replace("noise_microstrain = 0.05", "noise_microstrain = 1e300")
     });
     let (exit, _, errors) = judged(&to, &["calibrate", "calibrate.toml"]);
@@ -169,52 +198,47 @@ fn a_load_or_a_payload_that_nothing_weighs_is_a_fault_of_its_line() {
 
 #[test]
 fn wheel_forces_in_another_unit_are_asked_for() {
-    let to = copy_of("frame", "units_ballast");
-    edit(&to.join("empty.csv"), |t| scaled(t, None, 1e3));
-    let ballast = ["ballast", "ballast.toml"];
-    asks(&to, &ballast, "ballast-beyond-model empty", "[runs] units");
+    let to = copied("ballast", "frame");
+    edit(&to, "empty.csv", |t| scaled(t, None, 1e3));
+    asks(
+        &to,
+        &["ballast", "ballast.toml"],
+        "ballast-beyond-model empty ",
+    );
     let reconcile = ["reconcile", "reconcile.toml"];
-    edit(&to.join("runs.csv"), |t| {
+    edit(&to, "runs.csv", |t| {
         ["N.FZ", "L.FZ", "R.FZ"]
             .iter()
             .fold(t.to_owned(), |t, c| scaled(&t, Some(c), 1e3))
     });
-    asks(
-        &to,
-        &reconcile,
-        "model-far-above-readings runs",
-        "[runs] units",
-    );
+    asks(&to, &reconcile, "model-far-above-readings runs ");
 }
 
 #[test]
 fn loads_of_another_unit_give_no_stress_without_an_error() {
-    let to = copy_of("frame", "units_respond");
+    let to = copied("respond", "frame");
     let (exit, _, errors) = judged(&to, &["recover", "recover.toml"]);
     assert_eq!(exit, 0, "{errors}");
     std::fs::copy(to.join("judged.out/loads.csv"), to.join("loads.csv")).unwrap();
-    edit(&to.join("respond.toml"), |t| {
+    edit(&to, "respond.toml", |t| {
         t.replace("[respond]", "[respond]\nloads = \"loads.csv\"")
     });
     let respond = ["respond", "respond.toml"];
     let (exit, _, errors) = judged(&to, &respond);
     assert_eq!(exit, 0, "{errors}");
     let table = std::fs::read_to_string(to.join("loads.csv")).unwrap();
-    edit(&to.join("loads.csv"), |t| {
-        with_number(t, 3, "L.FZ", "1e308")
-    });
+    edit(&to, "loads.csv", |t| with_number(t, 3, "L.FZ", "1e308"));
     refuses(&to, &respond, "loads.csv:3: L.FZ: ");
     std::fs::write(to.join("loads.csv"), scaled(&table, None, 1e3)).unwrap();
     for load in ["N.FZ", "L.FZ", "R.FZ"] {
-        let error = format!("load-beyond-expected {load} ");
-        asks(&to, &respond, &error, "table of loads");
+        asks(&to, &respond, &format!("load-beyond-expected {load} "));
     }
     std::fs::write(to.join("loads.csv"), &table).unwrap();
-    edit(&to.join("respond.toml"), |t| {
+    edit(&to, "respond.toml", |t| {
         let kilo = "force = \"kN\", moment = \"kN m\"";
         t.replace(kilo, "force = \"N\", moment = \"N m\"")
     });
-    asks(&to, &respond, "prediction-poor P01,", "`report_units`");
+    asks(&to, &respond, "prediction-poor P01,");
 }
 
 #[test]
@@ -223,50 +247,45 @@ fn channels_that_read_less_than_their_noise_tell_nothing_of_a_vehicle() {
     let identify = ["identify", "identify.toml"];
     for column in [Some("f_wheel"), None] {
         let factor = if column.is_some() { 1e-3 } else { 1e-6 };
-        let to = copy_of(quarter, "units_channels");
+        let to = copied("channels", quarter);
         for file in ["data.csv", "holdout.csv"] {
-            edit(&to.join(file), |t| scaled(t, column, factor));
+            edit(&to, file, |t| scaled(t, column, factor));
         }
         for channel in ["f_wheel", "a_wheel"] {
-            let error = format!("readings-below-noise {channel} ");
-            asks(&to, &identify, &error, "State the unit");
+            asks(&to, &identify, &format!("readings-below-noise {channel} "));
         }
     }
-    let to = copy_of(quarter, "units_noise");
+    let to = copied("noise", quarter);
     let stated = "noise = { acc = 0.02, force = 60.0 }";
-    edit(&to.join("identify.toml"), |t| {
+    edit(&to, "identify.toml", |t| {
         t.replace(stated, "noise = { acc = 2000.0, force = 6e7 }")
     });
     for channel in ["f_wheel", "a_body", "a_wheel"] {
-        let error = format!("readings-below-noise {channel} ");
-        asks(&to, &identify, &error, "the noise that the sensor has");
+        asks(&to, &identify, &format!("readings-below-noise {channel} "));
     }
-    let to = copy_of(quarter, "units_known");
-    edit(&to.join("identify.toml"), |t| {
+    let to = copied("known", quarter);
+    edit(&to, "identify.toml", |t| {
         t.replace(stated, &format!("{stated}\nknown = {{ m_b = 1e308 }}"))
     });
     refuses(&to, &identify, "vehicle.known.m_b");
-    let to = copy_of(quarter, "units_huge_sample");
-    edit(&to.join("data.csv"), |t| {
-        with_number(t, 9, "a_wheel", "1e308")
-    });
+    let to = copied("huge_sample", quarter);
+    edit(&to, "data.csv", |t| with_number(t, 9, "a_wheel", "1e308"));
     refuses(&to, &identify, "a_wheel");
-    let to = copy_of(quarter, "units_compared");
+    let to = copied("compared", quarter);
     for file in ["data_worn.csv", "holdout_worn.csv"] {
-        edit(&to.join(file), |t| scaled(t, Some("f_wheel"), 1e-3));
+        edit(&to, file, |t| scaled(t, Some("f_wheel"), 1e-3));
     }
     asks(
         &to,
         &["reconcile", "reconcile.toml"],
         "readings-below-noise vehicle.data ",
-        "State the unit",
     );
 }
 
 #[test]
 fn every_command_that_reads_a_job_s_deck_judges_its_modulus() {
-    let to = copy_of("frame", "units_modulus");
-    edit(&to.join("frame.bdf"), |t| {
+    let to = copied("modulus", "frame");
+    edit(&to, "frame.bdf", |t| {
         t.replace("MAT1,1,2.1+5", "MAT1,1,1.+30")
     });
     for (command, job) in [
@@ -277,12 +296,7 @@ fn every_command_that_reads_a_job_s_deck_judges_its_modulus() {
         ("payload", "payload.toml"),
         ("sensitivity", "place.toml"),
     ] {
-        asks(
-            &to,
-            &[command, job],
-            "units-modulus material 1 ",
-            "`mm-t-s`",
-        );
+        asks(&to, &[command, job], "units-modulus material 1 ");
     }
 }
 
