@@ -18,8 +18,9 @@ pub struct Dependence {
 /// Slope of recovered over known sum of the left-out runs against the column (a value a run of the task; NaN: blank).
 ///
 /// What the others taught of S has the column in it too. With `Z` the known loads of each run over their sum, whose factors the calibration
-/// fits, `H = Z (Z'Z)^-1 Z'`, a left-out run's ratio is off by `((I - H) (slope x + e))_r / (1 - H_rr)`: times `1 - H_rr` it is a residual of
-/// least squares, and the slope is that of these residuals against `(I - H) x`, of which `R - rank Z - 1` are free.
+/// fits, `H = Z (Z'Z)^-1 Z'` and `h = H_rr`, the others make `1 - h + h u` of a left-out run's ratio `u` theirs: `(u - 1) (1 - h) / (1 - h + h u)` is
+/// a residual of least squares with the run in it, and the slope is that of these residuals against `(I - H) x`, of which `R - rank Z - 1`
+/// are free.
 ///
 /// `None` where none is free, or where the column does not change but with the loads.
 ///
@@ -54,9 +55,13 @@ pub fn depends_on(task: &Task, left_out: &[LeftOut], column: &[f64]) -> Option<D
         }
         out
     };
-    let own = |r: usize| 1.0 - (0..rank).map(|i| d.u[(r, i)].powi(2)).sum::<f64>();
+    let residual = |r: usize| {
+        let own = 1.0 - (0..rank).map(|i| d.u[(r, i)].powi(2)).sum::<f64>();
+        let off = points[r].1;
+        off * own / (1.0 + (1.0 - own) * off)
+    };
     let column: Vec<f64> = points.iter().map(|p| p.0).collect();
-    let residuals: Vec<f64> = (0..n).map(|r| points[r].1 * own(r)).collect();
+    let residuals: Vec<f64> = (0..n).map(residual).collect();
     let (x, y) = (left(&column), left(&residuals));
     let sxx: f64 = x.iter().map(|x| x * x).sum();
     let all: f64 = column.iter().map(|x| x * x).sum();
