@@ -608,3 +608,137 @@ fn few_repeats_do_not_hide_channels_that_were_exchanged() {
         );
     }
 }
+
+/// Writes a job without a model, its strain and its runs.
+fn write_job(folder: &Path, job: &str, runs: &str, strain: &str) -> PathBuf {
+    for (name, text) in [
+        ("job.toml", job),
+        ("runs.csv", runs),
+        ("strain.csv", strain),
+    ] {
+        std::fs::write(folder.join(name), text).unwrap();
+    }
+    folder.join("job.toml")
+}
+
+#[test]
+fn an_sd_that_is_none_is_a_fault_of_its_field_for_check_too() {
+    const JOB: &str = "units = \"m-kg-s\"\nreport_units = { force = \"kN\" }\n[[load]]\nname = \"jack\"\n\
+                       [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.5\n[runs]\nfile = \"runs.csv\"\n";
+    const STRAIN: &str = "run,C1,C2\nA,10.1,20.2\nB,20.1,40.3\nC,30.2,60.1\n";
+    for sd in ["-0.2", "1e300"] {
+        let folder = scratch("calibrate-sd");
+        let runs = format!("run,jack,jack_sd\nA,10,0.1\nB,20,{sd}\nC,30,0.1\n");
+        let job = write_job(&folder, JOB, &runs, STRAIN);
+        let (code, _, said) = run("calibrate", &job, &folder.join("out"));
+        assert_eq!(code, Some(2), "{said}");
+        assert!(
+            said.contains("runs.csv:3") && said.contains("jack_sd"),
+            "{said}"
+        );
+        let (code, _, of_check) = run("check", &job, &folder.join("checked"));
+        assert_eq!(code, Some(2), "{of_check}");
+        assert!(of_check.contains("jack_sd"), "{of_check}");
+    }
+}
+
+#[test]
+fn legs_of_a_rosette_teach_where_no_model_stands_behind_s() {
+    let folder = scratch("calibrate-rosette");
+    let job = "units = \"m-kg-s\"\nreport_units = { force = \"kN\" }\n[[load]]\nname = \"jack\"\n\
+               [[gauge]]\nname = \"C1\"\nelement = 1\n[[gauge]]\nname = \"R1\"\nelement = 2\nrosette = \"rectangular\"\n\
+               [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.5\n[runs]\nfile = \"runs.csv\"\n";
+    let strain = "run,C1,R1.a,R1.b,R1.c\nA,10.1,20.2,5.1,-4.2\nB,20.1,40.3,10.2,-8.1\nC,30.2,60.1,14.9,-12.1\n";
+    let job = write_job(&folder, job, "run,jack\nA,10\nB,20\nC,30\n", strain);
+    let (code, result, said) = run("calibrate", &job, &folder.join("out"));
+    assert_eq!(code, Some(0), "{said}");
+    let gauges = result["calibration"]["gauges"].as_array().unwrap();
+    let names: Vec<&str> = gauges.iter().map(|g| g["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["C1", "R1.a", "R1.b", "R1.c"]);
+}
+
+/// Strain of a lift: microstrain a kN and a kN m about y, four gauges.
+fn lift(kg: f64, x: f64, wiggle: f64) -> String {
+    const ROWS: [[f64; 2]; 4] = [[12.0, 3.0], [9.0, -4.0], [11.0, 1.5], [10.0, -2.5]];
+    let weight = kg * 9.80665e-3;
+    let one = |(i, [own, turn]): (usize, [f64; 2])| {
+        let scatter = wiggle * (f64::from(u32::try_from(i).unwrap()) - 1.5);
+        format!(",{:.4}", weight * (own + turn * x) + scatter)
+    };
+    ROWS.into_iter().enumerate().map(one).collect()
+}
+
+#[test]
+fn payloads_of_known_mass_and_place_teach_and_then_every_lift_is_weighed() {
+    let folder = scratch("calibrate-payload");
+    let job = "units = \"m-kg-s\"\nreport_units = { force = \"kN\" }\n[[load]]\nname = \"payload\"\n\
+               [[load]]\nname = \"payload.MY\"\nrole = \"wanted\"\n[payload]\nposition = \"free\"\nregion = [[-3.0, 3.0], [-1.0, 1.0]]\n\
+               [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.2\n[runs]\nfile = \"runs.csv\"\n";
+    let known = [
+        (500.0, -1.0),
+        (500.0, 1.0),
+        (1000.0, 0.0),
+        (1500.0, 0.5),
+        (2000.0, -0.5),
+        (800.0, 1.5),
+    ];
+    let unknown = [(1234.0, 0.3), (1800.0, -0.8)];
+    let (mut runs, mut strain) = (
+        "run,payload_mass,payload_x\n".to_owned(),
+        "run,G1,G2,G3,G4\n".to_owned(),
+    );
+    for (i, (kg, x)) in known.iter().enumerate() {
+        let _ = writeln!(runs, "W{i},{kg},{x}");
+        let wiggle = if i % 2 == 0 { 0.1 } else { -0.1 };
+        let _ = writeln!(strain, "W{i}{}", lift(*kg, *x, wiggle));
+    }
+    for (i, (kg, x)) in unknown.iter().enumerate() {
+        let _ = writeln!(strain, "L{i}{}", lift(*kg, *x, 0.05));
+    }
+    let job = write_job(&folder, job, &runs, &strain);
+    let (code, result, said) = run("calibrate", &job, &folder.join("cal"));
+    assert_eq!(code, Some(0), "{said}");
+    assert_eq!(result["calibration"]["runs"], 6);
+    let calibrated = folder.join("cal/calibrated.toml");
+    let (code, result, said) = run("recover", &calibrated, &folder.join("loads"));
+    assert_eq!(code, Some(0), "{said}");
+    for (i, (kg, x)) in unknown.iter().enumerate() {
+        let weight = kg * 9.80665e-3;
+        for (name, truth) in [("payload", weight), ("payload.MY", weight * x)] {
+            let (value, sigma) = load(&result, &format!("L{i}"), name);
+            assert!(
+                (value - truth).abs() < 3.0 * sigma,
+                "{name}: {value} +- {sigma}, {truth}"
+            );
+            assert!(sigma < 0.05 * weight, "{name}: {sigma}");
+        }
+    }
+    let (code, result, said) = run("payload", &calibrated, &folder.join("weighed"));
+    assert_eq!(code, Some(0), "{said}");
+    for (i, (kg, _)) in unknown.iter().enumerate() {
+        let all = result["payload"].as_array().unwrap();
+        let one = all.iter().find(|p| p["run"] == format!("L{i}")).unwrap();
+        let number = |key: &str| one[key].as_f64().unwrap();
+        assert!(
+            (number("mass") - kg).abs() < 4.0 * number("mass_sigma"),
+            "{one}"
+        );
+        assert!(number("mass_sigma") < 0.05 * kg, "{one}");
+    }
+}
+
+#[test]
+fn a_payload_that_no_load_of_the_job_is_can_t_be_taken_for_the_others() {
+    let folder = scratch("calibrate-payload-unnamed");
+    let job = "units = \"m-kg-s\"\nreport_units = { force = \"kN\" }\n[[load]]\nname = \"jack\"\n\
+               [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.5\n[runs]\nfile = \"runs.csv\"\n";
+    let runs = "run,jack,payload_mass\nA,10,0\nB,20,500\nC,30,0\n";
+    let strain = "run,C1,C2\nA,10.1,20.2\nB,20.1,40.3\nC,30.2,60.1\n";
+    let job = write_job(&folder, job, runs, strain);
+    let (code, _, said) = run("calibrate", &job, &folder.join("out"));
+    assert_eq!(code, Some(2), "{said}");
+    assert!(
+        said.contains("runs.csv:3") && said.contains("payload_mass"),
+        "{said}"
+    );
+}

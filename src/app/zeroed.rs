@@ -85,6 +85,31 @@ pub(super) fn judged(
     kept
 }
 
+/// Whether readings are strain by what the job says of S: with a model or a given S. What S is learnt from alone may be any signal.
+pub(super) fn reads_strain(job: &Job) -> bool {
+    job.model.is_some() || job.sensitivity.is_some()
+}
+
+/// As [`judged`], of a job that may have no S yet: its readings are held against their noise alone.
+pub(super) fn judged_to_learn(
+    work: &mut Work,
+    job: &Job,
+    measured: &Measured,
+    gauges: &[String],
+    readings: Vec<Readings>,
+) -> Vec<Readings> {
+    if reads_strain(job) {
+        return judged(work, measured, gauges, &readings);
+    }
+    let errors = ErrorModel {
+        noise: measured.noise_microstrain * MICROSTRAIN,
+        model_rel: 0.0,
+    };
+    work.findings
+        .extend(plausible::check_signal(&readings, errors));
+    readings
+}
+
 /// Whether any reading is left to learn from.
 ///
 /// # Errors
@@ -155,19 +180,25 @@ pub(super) fn zeros_by_row(
     let mut at = zero_rows(work, job, measured, table, names)?;
     at.sort_unstable();
     at.dedup();
-    let drift = drift_variance(table, &at, measured.noise_microstrain);
+    let drift = Drift::of(table, &at, measured.noise_microstrain);
+    let step = (drift.walk + drift.steady).sqrt();
     let noise = measured.noise_microstrain * measured.noise_microstrain;
     let (mut zero, mut noise_factor) = (Vec::new(), Vec::new());
     for i in 0..names.len() {
         let others: Vec<usize> = at.iter().copied().filter(|a| *a != i).collect();
-        let Between { weights, wander } = between(if others.is_empty() { &at } else { &others }, i);
+        let Between {
+            weights,
+            wander,
+            outside,
+        } = between(if others.is_empty() { &at } else { &others }, i);
         let of = |g: usize| -> f64 {
             let parts = weights.iter().map(|(a, w)| w * table.row(*a)[g]);
             parts.sum()
         };
         zero.push((0..table.gauges.len()).map(of).collect());
         let of_zero: f64 = weights.iter().map(|(_, w)| w * w).sum();
-        noise_factor.push(1.0 + of_zero + drift * wander / noise);
+        let gone = drift.steady * (outside * outside);
+        noise_factor.push(1.0 + of_zero + (drift.walk * wander + gone) / noise);
     }
     work.findings.push(
         Finding::new(
@@ -177,11 +208,11 @@ pub(super) fn zeros_by_row(
             format!(
                 "the zero is followed through {} runs without load; it wanders by {:.2} microstrain from run to run (rms over gauges)",
                 at.len(),
-                drift.sqrt()
+                step
             ),
             "",
         )
-        .with_numbers(drift.sqrt(), measured.noise_microstrain),
+        .with_numbers(step, measured.noise_microstrain),
     );
     Ok(Some(RowZeros { zero, noise_factor }))
 }
@@ -260,6 +291,8 @@ pub(super) fn no_zero_runs(job: &Job, measured: &Measured, file: &str) -> Result
 struct Between {
     weights: Vec<(usize, f64)>,
     wander: f64,
+    /// Steps over which a steady drift goes on unseen: none between two rows.
+    outside: f64,
 }
 
 fn between(at: &[usize], i: usize) -> Between {
@@ -272,33 +305,88 @@ fn between(at: &[usize], i: usize) -> Between {
             Between {
                 weights: vec![(a, 1.0 - w), (b, w)],
                 wander: from * to / (from + to),
+                outside: 0.0,
             }
         }
         (Some(&a), None) | (None, Some(&a)) => Between {
             weights: vec![(a, 1.0)],
             wander: steps(a),
+            outside: steps(a),
         },
         (None, None) => Between {
             weights: Vec::new(),
             wander: 0.0,
+            outside: 0.0,
         },
     }
 }
 
-/// Variance of a gauge's zero from one row to the next, mean over gauges, microstrain^2: differences between one zero run and the next less
-/// what their noise makes.
-fn drift_variance(table: &StrainTable, at: &[usize], noise: f64) -> f64 {
-    let (mut sum, mut count) = (0.0, 0.0);
-    for pair in at.windows(2) {
-        let rows = table.row(pair[0]).iter().zip(table.row(pair[1]));
-        for (a, b) in rows.filter(|(a, b)| a.is_finite() && b.is_finite()) {
-            sum += ((b - a).powi(2) - 2.0 * noise * noise) / (pair[1] - pair[0]) as f64;
-            count += 1.0;
+/// How zeros move from one row to the next, mean squares over gauges, microstrain^2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Drift {
+    /// Variance of a walk.
+    walk: f64,
+    /// Square of a steady change, which a straight line between two zeros follows; 0 where two zeros alone don't tell it from a walk.
+    steady: f64,
+}
+
+impl Drift {
+    /// From the differences between one zero run and the next, `d_j` over `t_j` rows, of which noise makes `2 s^2`.
+    ///
+    /// A steady change is `u = sum d_j / T`, `T = sum t_j`; what is left of it is a walk: `E (d_j - u t_j)^2 = walk (t_j - t_j^2 / T) + s^2 (2 - 2
+    /// (t_j / T) e_j + 2 (t_j / T)^2)`, `e_j` how many ends of the whole stretch the difference has, and `E u^2 = steady + walk / T + 2 s^2 /
+    /// T^2`.
+    fn of(table: &StrainTable, at: &[usize], noise: f64) -> Self {
+        let noise = noise * noise;
+        let (mut walk, mut free) = (0.0, 0.0);
+        let mut slopes = Vec::new();
+        // One difference alone.
+        let (mut alone, mut count) = (0.0, 0.0);
+        for g in 0..table.gauges.len() {
+            let read = |a: &usize| Some((*a as f64, table.row(*a).get(g).copied()?));
+            let zeros: Vec<(f64, f64)> = (at.iter().filter_map(read))
+                .filter(|z| z.1.is_finite())
+                .collect();
+            let steps: Vec<(f64, f64)> = zeros
+                .windows(2)
+                .map(|z| (z[1].0 - z[0].0, z[1].1 - z[0].1))
+                .collect();
+            let total: f64 = steps.iter().map(|s| s.0).sum();
+            if steps.len() < 2 {
+                for (t, d) in steps {
+                    alone += (d * d - 2.0 * noise) / t;
+                    count += 1.0;
+                }
+                continue;
+            }
+            let slope = steps.iter().map(|s| s.1).sum::<f64>() / total;
+            for (j, (t, d)) in steps.iter().enumerate() {
+                let share = t / total;
+                let ends = f64::from(u8::from(j == 0)) + f64::from(u8::from(j + 1 == steps.len()));
+                let of_noise = noise * (2.0 - 2.0 * share * ends + 2.0 * share * share);
+                walk += ((d - slope * t).powi(2) - of_noise) / t;
+                free += 1.0 - share;
+            }
+            slopes.push((slope, total));
+        }
+        if free <= 0.0 {
+            let walk = if count > 0.0 {
+                (alone / count).max(0.0)
+            } else {
+                0.0
+            };
+            return Self { walk, steady: 0.0 };
+        }
+        let walk = (walk / free).max(0.0);
+        let squares = slopes
+            .iter()
+            .map(|(u, total)| u * u - walk / total - 2.0 * noise / (total * total));
+        Self {
+            walk,
+            steady: (squares.sum::<f64>() / slopes.len() as f64).max(0.0),
         }
     }
-    if count > 0.0 {
-        (sum / count).max(0.0)
-    } else {
-        0.0
-    }
 }
+
+#[cfg(test)]
+mod tests;

@@ -2,6 +2,7 @@
 
 use super::types::{LeftOut, Task};
 use crate::linalg::tail::student_tail;
+use crate::linalg::{Matrix, dense};
 
 /// Change of the scale with a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,44 +15,69 @@ pub struct Dependence {
     pub chance: f64,
 }
 
-/// Straight line through recovered over known sum of the left-out runs against the column (a value a run of the task; NaN: blank).
-/// `None` with fewer than three of them, or where the column does not change.
+/// Slope of recovered over known sum of the left-out runs against the column (a value a run of the task; NaN: blank).
+///
+/// What the others taught of S has the column in it too. With `Z` the known loads of each run over their sum, whose factors the calibration
+/// fits, `H = Z (Z'Z)^-1 Z'` and `h = H_rr`, the others make `1 - h + h u` of a left-out run's ratio `u` theirs: `(u - 1) (1 - h) / (1 - h + h u)` is
+/// a residual of least squares with the run in it, and the slope is that of these residuals against `(I - H) x`, of which `R - rank Z - 1`
+/// are free.
+///
+/// `None` where none is free, or where the column does not change but with the loads.
+///
+/// # Reference
+/// R. D. Cook, S. Weisberg, Residuals and Influence in Regression (1982), section 2.2 (left-out residuals), 2.3.2 (added variables).
 pub fn depends_on(task: &Task, left_out: &[LeftOut], column: &[f64]) -> Option<Dependence> {
-    let point = |l: &LeftOut| -> Option<(f64, f64)> {
+    let wanted: Vec<usize> = (0..task.loads.len())
+        .filter(|l| task.loads[*l].wanted)
+        .collect();
+    let sum = |f: &[f64]| wanted.iter().map(|l| f[*l]).sum::<f64>();
+    let point = |l: &LeftOut| -> Option<(f64, f64, Vec<f64>)> {
         let x = column.get(l.number).copied().filter(|x| x.is_finite())?;
-        let wanted = |f: &[f64]| {
-            f.iter()
-                .zip(&task.loads)
-                .filter(|(_, l)| l.wanted)
-                .map(|(f, _)| f)
-                .sum::<f64>()
-        };
-        let known = wanted(&l.known);
-        (known != 0.0).then(|| (x, wanted(&l.estimate.values) / known))
+        let known = sum(&l.known);
+        let shares = wanted.iter().map(|i| l.known[*i] / known).collect();
+        (known != 0.0).then(|| (x, sum(&l.estimate.values) / known - 1.0, shares))
     };
-    let points: Vec<(f64, f64)> = left_out.iter().filter_map(point).collect();
-    let n = points.len() as f64;
-    if points.len() < 3 {
+    let points: Vec<(f64, f64, Vec<f64>)> = left_out.iter().filter_map(point).collect();
+    let n = points.len();
+    if n < 3 {
         return None;
     }
-    let (mx, my) = (
-        points.iter().map(|p| p.0).sum::<f64>() / n,
-        points.iter().map(|p| p.1).sum::<f64>() / n,
-    );
-    let sxx: f64 = points.iter().map(|p| (p.0 - mx).powi(2)).sum();
-    if !(sxx > 0.0) {
+    let shares = Matrix::from_fn(n, wanted.len(), |r, l| points[r].2[l]);
+    let d = dense::svd(&shares)?;
+    let limit = d.s.first().copied().unwrap_or(0.0) * dense::RANK_TOLERANCE;
+    let rank = d.s.iter().filter(|s| **s > limit).count();
+    let free = n.checked_sub(rank + 1).filter(|f| *f > 0)? as f64;
+    let left = |v: &[f64]| -> Vec<f64> {
+        let mut out = v.to_vec();
+        for i in 0..rank {
+            let along: f64 = (0..n).map(|r| d.u[(r, i)] * v[r]).sum();
+            (0..n).for_each(|r| out[r] -= along * d.u[(r, i)]);
+        }
+        out
+    };
+    let residual = |r: usize| {
+        let own = 1.0 - (0..rank).map(|i| d.u[(r, i)].powi(2)).sum::<f64>();
+        let off = points[r].1;
+        off * own / (1.0 + (1.0 - own) * off)
+    };
+    let column: Vec<f64> = points.iter().map(|p| p.0).collect();
+    let residuals: Vec<f64> = (0..n).map(residual).collect();
+    let (x, y) = (left(&column), left(&residuals));
+    let sxx: f64 = x.iter().map(|x| x * x).sum();
+    let all: f64 = column.iter().map(|x| x * x).sum();
+    if !(sxx > all * CHANGES) {
         return None;
     }
-    let slope_rel = points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum::<f64>() / sxx;
-    let left: f64 = points
-        .iter()
-        .map(|p| (p.1 - my - slope_rel * (p.0 - mx)).powi(2))
-        .sum();
-    let sigma = (left / (n - 2.0) / sxx).sqrt();
-    let chance = (2.0 * student_tail((slope_rel / sigma).abs(), n - 2.0)).min(1.0);
+    let slope_rel = x.iter().zip(&y).map(|(x, y)| x * y).sum::<f64>() / sxx;
+    let rest = x.iter().zip(&y).map(|(x, y)| (y - slope_rel * x).powi(2));
+    let sigma = (rest.sum::<f64>() / free / sxx).sqrt();
+    let chance = (2.0 * student_tail((slope_rel / sigma).abs(), free)).min(1.0);
     Some(Dependence {
         slope_rel,
         sigma,
         chance,
     })
 }
+
+/// Share of a column's square from which what the loads leave of it is no rounding.
+const CHANGES: f64 = 1e-12;

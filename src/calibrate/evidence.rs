@@ -1,6 +1,6 @@
 //! How probable the readings of one gauge are with one prior of its row or another.
 
-use super::types::KnownRun;
+use super::given_others::ByGauge;
 use crate::linalg::precision::Precision;
 use crate::linalg::spd;
 
@@ -12,23 +12,17 @@ pub(super) struct Normal {
 }
 
 impl Normal {
-    /// Of gauge `g`. `variance[r][g]`: variance of its reading in run r, S aside; `phi[r]`: the run's loads.
-    pub fn of(
-        g: usize,
-        k: usize,
-        runs: &[&KnownRun],
-        phi: &[Vec<f64>],
-        variance: &[Vec<f64>],
-    ) -> Self {
+    /// Of gauge `g`.
+    pub fn of(g: usize, k: usize, runs: &[ByGauge]) -> Self {
         let mut out = Self {
             matrix: vec![0.0; k * k],
             right: vec![0.0; k],
         };
-        for (r, run) in runs.iter().enumerate() {
-            let Some(y) = run.strain.get(g).filter(|v| v.is_finite()) else {
+        for run in runs {
+            let Some(y) = run.y.get(g).filter(|v| v.is_finite()) else {
                 continue;
             };
-            out.add(&phi[r], *y, 1.0 / variance[r][g]);
+            out.add(&run.phi, *y, 1.0 / run.variance[g]);
         }
         out
     }

@@ -21,29 +21,23 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
     if task.gauges.is_empty() || task.loads.is_empty() || readings.count() == 0 {
         return Err("there is no run with known loads and strain".to_owned());
     }
-    let mut used: Vec<usize> = (0..task.runs.len()).collect();
-    let most = (MOST_REFUSED * used.len() as f64).floor() as usize;
-    let mut refused: Vec<(usize, LeftOut)> = Vec::new();
-    let (state, left_out) = loop {
-        let state = State::of(task, &used)
-            .ok_or("the readings or the known loads hold numbers that are no numbers")?;
-        let left_out = held_out::leave_out(task, &state);
-        match held_out::contradicting(&left_out).filter(|_| refused.len() < most) {
-            Some(run) => {
-                used.retain(|r| *r != run);
-                if let Some(out) = left_out.into_iter().find(|l| l.number == run) {
-                    refused.push((run, out));
-                }
-            }
-            None => break (state, left_out),
-        }
-    };
+    let mut fitted = Fitted::of(task, &[])?;
+    let mut shifts = shift::check(task, &fitted.state);
+    let mut wrongly_wired = shift::wrongly_wired(&shifts);
+    if task.model.is_some() && !wrongly_wired.is_empty() {
+        // A gauge that is wired backwards says nothing of the model.
+        fitted = Fitted::of(task, &wrongly_wired)?;
+        shifts = shift::check(task, &fitted.state);
+        wrongly_wired = shift::wrongly_wired(&shifts);
+    }
+    let Fitted {
+        state,
+        left_out,
+        refused,
+    } = fitted;
     let judged = held_out::judge(&left_out, state.scatter.dof);
     let sensitivity = state.sensitivity(task, judged.factor);
     let undetermined = undetermined::check(task, &state);
-    let shifts = shift::check(task, &state);
-    let wrongly_wired = shift::wrongly_wired(&shifts);
-    // A gauge that is wired backwards says nothing of the model.
     let model_error = state.error_evidence.as_ref();
     let model_error = model_error.map(|e| e.most_probable(&wrongly_wired));
     let mut findings = runs::findings(task, &left_out, &refused);
@@ -71,6 +65,42 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
     })
 }
 
+/// A fit of the runs that don't contradict each other.
+struct Fitted {
+    state: State,
+    left_out: Vec<LeftOut>,
+    /// The others, with their numbers.
+    refused: Vec<(usize, LeftOut)>,
+}
+
+impl Fitted {
+    /// One contradicting run is refused after the other; see [`State::of`] on `wrongly_wired`.
+    fn of(task: &Task, wrongly_wired: &[usize]) -> Result<Self, String> {
+        let mut used: Vec<usize> = (0..task.runs.len()).collect();
+        let most = (MOST_REFUSED * used.len() as f64).floor() as usize;
+        let mut refused: Vec<(usize, LeftOut)> = Vec::new();
+        loop {
+            let state = State::of(task, &used, wrongly_wired)
+                .ok_or("the readings or the known loads hold numbers that are no numbers")?;
+            let left_out = held_out::leave_out(task, &state);
+            match held_out::contradicting(&left_out).filter(|_| refused.len() < most) {
+                Some(run) => {
+                    used.retain(|r| *r != run);
+                    let out = left_out.into_iter().find(|l| l.number == run);
+                    refused.extend(out.map(|out| (run, out)));
+                }
+                None => {
+                    return Ok(Self {
+                        state,
+                        left_out,
+                        refused,
+                    });
+                }
+            }
+        }
+    }
+}
+
 /// Sentences on scatter, coverage and the model's error.
 fn statements(
     task: &Task,
@@ -89,8 +119,15 @@ fn statements(
             true => "runs of one loading scatter",
             false => "runs scatter about what S makes of their known loads",
         };
+        let common = match state.scatter.common {
+            0.0 => String::new(),
+            c => format!(
+                " ({:.0} % of its square is common to repeats, which tell that much less)",
+                100.0 * c
+            ),
+        };
         let message = format!(
-            "{runs} by {scatter:.1} % of the strain, noise makes {noise:.2} %: intervals come from the scatter. Runs left \
+            "{runs} by {scatter:.1} % of the strain{common}, noise makes {noise:.2} %: intervals come from the scatter. Runs left \
              out one by one: {} of {} held, with intervals {:.2} times those of the scatter alone",
             coverage.held, coverage.of, coverage.factor
         );

@@ -31,7 +31,7 @@ pub(super) fn leave_out(task: &Task, state: &State) -> Vec<LeftOut> {
 fn one(task: &Task, state: &State, i: usize) -> Option<LeftOut> {
     let number = *state.used.get(i)?;
     let run = task.runs.get(number)?;
-    if task.model.is_none() && !others_span(state, i) {
+    if task.model.is_none() && !others_span(state, &[i]) {
         return None;
     }
     let order = (state.posterior.n * state.posterior.k) as f64;
@@ -40,13 +40,23 @@ fn one(task: &Task, state: &State, i: usize) -> Option<LeftOut> {
     // Each gauge's own error of the model is learnt of the others alone too: learnt of this run as well, it lies nearer than a new one does.
     let learnt = task.model.as_ref().zip(state.error_evidence.as_ref());
     let learnt = learnt.filter(|_| cheap).map(|(model, evidence)| {
-        let errors = evidence.by_gauge_without(i, &run.strain, model, &state.scales);
+        let wrong = &state.wrongly_wired;
+        let errors = evidence.by_gauge_without(i, model, &state.scales, wrong);
         rows(model, &state.scales, errors.into_iter().enumerate())
     });
     let prior = learnt.as_deref().unwrap_or(&state.prior);
-    let mut posterior = match learnt {
-        Some(_) => again(state, prior, i, &state.scatter_used)?,
-        None => state.posterior.without(&state.equations[i])?,
+    // Repeats that have something in common with it would tell that of this run too, as they will not of others.
+    let group: Vec<usize> = (0..state.used.len())
+        .filter(|j| task.runs[state.used[*j]].group == run.group)
+        .collect();
+    let with_repeats = cheap
+        && state.scatter.common > 0.0
+        && group.len() > 1
+        && (task.model.is_some() || others_span(state, &group));
+    let out = if with_repeats { group } else { vec![i] };
+    let mut posterior = match learnt.is_some() || with_repeats {
+        true => again(state, prior, &out, &state.scatter_used)?,
+        false => state.posterior.without(&state.equations[i])?,
     };
     // One wrong run may be all the scatter there is: what the others then leave is noise, and the run is held against that.
     let scatters = state.scatter.dof.is_finite();
@@ -58,13 +68,13 @@ fn one(task: &Task, state: &State, i: usize) -> Option<LeftOut> {
         (true, true) => ROUNDS,
     };
     for _ in 0..rounds {
-        let others = others_left(task, state, i, &posterior);
+        let others = others_left(task, state, &out, &posterior);
         scatter = Scatter::at_most(&others, state.fitted, &posterior.matrix());
         if !scatter.dof.is_finite() {
             return None;
         }
         if affordable {
-            posterior = again(state, prior, i, &scatter)?;
+            posterior = again(state, prior, &out, &scatter)?;
         }
     }
     let dof = scatter.dof;
@@ -130,9 +140,9 @@ fn one(task: &Task, state: &State, i: usize) -> Option<LeftOut> {
 /// Rounds between the scatter of the others and the posterior that it gives.
 const ROUNDS: usize = 2;
 
-/// What the runs other than `i` leave.
-fn others_left(task: &Task, state: &State, i: usize, posterior: &Posterior) -> Vec<Left> {
-    let others = (0..state.used.len()).filter(|j| *j != i);
+/// What the runs other than `out` leave.
+fn others_left(task: &Task, state: &State, out: &[usize], posterior: &Posterior) -> Vec<Left> {
+    let others = (0..state.used.len()).filter(|j| !out.contains(j));
     let one = |j: usize| {
         let run = &task.runs[state.used[j]];
         left(task, run, posterior, &state.equations[j].phi)
@@ -145,17 +155,19 @@ fn others_left(task: &Task, state: &State, i: usize, posterior: &Posterior) -> V
 /// correlated. No finding says so: the left-out run is judged a little too near to the others, and intervals that are applied don't change.
 const AFFORDABLE: f64 = 1e9;
 
-/// The posterior of the other runs with this scatter.
-fn again(state: &State, prior: &[RowPrior], i: usize, scatter: &Scatter) -> Option<Posterior> {
+/// The posterior of the runs other than `out` with this scatter.
+fn again(state: &State, prior: &[RowPrior], out: &[usize], scatter: &Scatter) -> Option<Posterior> {
     let n = state.posterior.n;
-    let others = (0..state.equations.len()).filter(|j| *j != i);
+    let others = (0..state.equations.len()).filter(|j| !out.contains(j));
     let equations: Vec<Equation> = others
         .map(|j| {
             let (e, q2) = (&state.equations[j], state.q2_used[j]);
             let m = e.gauges.len();
+            let times = |s: &Scatter| q2 * s.design(state.repeats[j]);
+            let (new, old) = (times(scatter), times(&state.scatter_used));
             let change = |at: usize| {
                 let entry = e.gauges[at / m] * n + e.gauges[at % m];
-                q2 * (scatter.covariance[entry] - state.scatter_used.covariance[entry])
+                new * scatter.covariance[entry] - old * state.scatter_used.covariance[entry]
             };
             Equation {
                 covariance: e
@@ -171,16 +183,16 @@ fn again(state: &State, prior: &[RowPrior], i: usize, scatter: &Scatter) -> Opti
     solve(prior, &equations)
 }
 
-/// Whether the other runs' loads span what this run's do.
-fn others_span(state: &State, i: usize) -> bool {
+/// Whether the other runs' loads span what those of `out` do.
+fn others_span(state: &State, out: &[usize]) -> bool {
     let k = state.scales.len();
-    let rank = |skip: Option<usize>| {
+    let rank = |skip: &[usize]| {
         let mut gram = vec![0.0; k * k];
         for (_, e) in state
             .equations
             .iter()
             .enumerate()
-            .filter(|(j, _)| Some(*j) != skip)
+            .filter(|(j, _)| !skip.contains(j))
         {
             spd::add_outer(&mut gram, &e.phi, 1.0);
         }
@@ -188,7 +200,7 @@ fn others_span(state: &State, i: usize) -> bool {
         let top = all.last().copied().unwrap_or(0.0);
         all.iter().filter(|v| **v > SPANNED * top).count()
     };
-    rank(Some(i)) == rank(None)
+    rank(out) == rank(&[])
 }
 
 /// Share of the largest eigenvalue of the loads' squares from which a combination counts as applied.

@@ -11,6 +11,7 @@ mod cause;
 mod dependence;
 mod evidence;
 mod fit;
+mod given_others;
 mod glued;
 mod held_out;
 mod known;

@@ -1,8 +1,9 @@
 //! How far the model is off, as the readings of the known runs say: an error of all gauges, and each gauge's own.
 
 use super::evidence::{Normal, RowEvidence};
+use super::given_others::ByGauge;
 use super::prior::{FLOORS, RowError, RowPrior, rows};
-use super::types::{KnownRun, ModelError, ModelPrior};
+use super::types::{ModelError, ModelPrior};
 use rayon::prelude::*;
 
 /// Steps from the stated error, in factors of the square root of two, that are tried.
@@ -30,8 +31,8 @@ pub(super) struct ErrorEvidence {
     stated: ModelError,
     /// What the runs say of each gauge's row.
     pub normals: Vec<Normal>,
-    /// By run: its loads, and the variance of each gauge's reading.
-    by_run: Vec<(Vec<f64>, Vec<f64>)>,
+    /// By run, gauge by gauge.
+    by_run: Vec<ByGauge>,
     tried: Vec<Tried>,
 }
 
@@ -60,37 +61,46 @@ impl ErrorEvidence {
         self.best(without).map_or(self.stated, |t| t.error)
     }
 
-    /// The error of each gauge, given the most probable one of all.
-    pub fn by_gauge(&self) -> Vec<RowError> {
-        match self.best(&[]) {
-            Some(t) => t.by_gauge.iter().map(|own| own.error).collect(),
-            None => vec![self.stated.into(); self.normals.len()],
-        }
+    /// The error of each gauge, given the most probable one of all gauges but those in `without`; of these themselves, given that of all.
+    pub fn by_gauge(&self, without: &[usize]) -> Vec<RowError> {
+        let (all, others) = (self.best(&[]), self.best(without));
+        let one = |g: usize| {
+            let error = if without.contains(&g) { all } else { others };
+            error.map_or(self.stated.into(), |t| t.by_gauge[g].error)
+        };
+        (0..self.normals.len()).map(one).collect()
     }
 
-    /// As [`ErrorEvidence::by_gauge`] without run number `left` of those that this was made of, whose readings are `strain`; the error of all
-    /// stays.
+    /// As [`ErrorEvidence::by_gauge`] without run number `left` of those that this was made of; the error of all gauges stays.
     pub fn by_gauge_without(
         &self,
         left: usize,
-        strain: &[f64],
         model: &ModelPrior,
         scales: &[f64],
+        without: &[usize],
     ) -> Vec<RowError> {
         let n = self.normals.len();
-        let (phi, variance) = &self.by_run[left];
-        let readings = strain.iter().zip(variance);
+        let run = &self.by_run[left];
+        let readings = run.y.iter().zip(&run.variance);
         let normals: Vec<Normal> = (self.normals.iter().zip(readings))
-            .map(|(normal, (y, v))| normal.without(phi, *y, *v))
+            .map(|(normal, (y, v))| normal.without(&run.phi, *y, *v))
             .collect();
-        let (error, own) = (self.most_probable(&[]), own_steps());
+        let own = own_steps();
+        let errors: Vec<ModelError> = {
+            let (all, others) = (self.most_probable(&[]), self.most_probable(without));
+            let of = |g: usize| if without.contains(&g) { all } else { others };
+            (0..n).map(of).collect()
+        };
         let logs_of = |floor: usize, step: i32| -> Vec<f64> {
-            let mut row = RowError {
-                common: error.common * factor(step),
-                entries: [0.0; FLOORS.len()],
+            let row = |g: usize| {
+                let mut row = RowError {
+                    common: errors[g].common * factor(step),
+                    entries: [0.0; FLOORS.len()],
+                };
+                row.entries[floor] = errors[g].entry * factor(step);
+                (g, row)
             };
-            row.entries[floor] = error.entry * factor(step);
-            let rows = rows(model, scales, (0..n).map(|g| (g, row)));
+            let rows = rows(model, scales, (0..n).map(row));
             let log = |(row, normal): (&RowPrior, &Normal)| {
                 let evidence = RowEvidence::of(&row.mean, &row.covariance, normal);
                 evidence.map_or(f64::NEG_INFINITY, |e| e.log())
@@ -101,7 +111,7 @@ impl ErrorEvidence {
             .map(|floor| own.iter().map(|o| logs_of(floor, o.0)).collect())
             .collect();
         (0..n)
-            .map(|g| of_gauge(&own, error, |floor, i| all[floor][i][g]).error)
+            .map(|g| of_gauge(&own, errors[g], |floor, i| all[floor][i][g]).error)
             .collect()
     }
 
@@ -127,22 +137,18 @@ impl ErrorEvidence {
 /// A gauge's error is that of all times a factor of its own, and goes with the entries or with the row ([`FLOORS`]), each as probable
 /// beforehand; its readings are as probable as the mean over these makes them.
 ///
-/// `variance[r][g]`: variance of the reading of gauge g in run r, S aside; `phi[r]`: its loads of unit size.
+/// `runs`: each with loads of unit size.
 pub(super) fn error_evidence(
     model: &ModelPrior,
     scales: &[f64],
-    runs: &[&KnownRun],
-    phi: &[Vec<f64>],
-    variance: &[Vec<f64>],
+    runs: Vec<ByGauge>,
 ) -> ErrorEvidence {
     let stated = ModelError {
         common: model.uncertainty_rel,
         entry: model.uncertainty_rel,
     };
     let (n, k) = model.values.shape();
-    let normals: Vec<Normal> = (0..n)
-        .map(|g| Normal::of(g, k, runs, phi, variance))
-        .collect();
+    let normals: Vec<Normal> = (0..n).map(|g| Normal::of(g, k, &runs)).collect();
     let tables: Vec<Table> = (0..FLOORS.len())
         .into_par_iter()
         .map(|floor| Table::of(model, scales, &normals, floor))
@@ -174,7 +180,7 @@ pub(super) fn error_evidence(
         tried: tried.collect(),
         stated,
         normals,
-        by_run: phi.iter().cloned().zip(variance.iter().cloned()).collect(),
+        by_run: runs,
     }
 }
 

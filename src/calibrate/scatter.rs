@@ -2,6 +2,8 @@
 
 use crate::linalg::tail::chi_square_tail;
 use crate::linalg::{Matrix, dense, spd};
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
+use std::collections::BTreeMap;
 
 /// Scatter over gauges in units of the run's root mean square strain.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,6 +14,9 @@ pub(super) struct Scatter {
     pub dof: f64,
     /// Those behind it in a pattern that no loads make: shrunk towards what all such patterns have in common.
     pub dof_outside: f64,
+    /// Share of its variance that repeats of one loading have in common: what S does not make of that loading, or what is peculiar to it (a
+    /// truck's axles, a lane's place). Zero where repeats differ from each other as much as from S.
+    pub common: f64,
 }
 
 /// What one run leaves.
@@ -23,6 +28,8 @@ pub(super) struct Left {
     pub q2: f64,
     /// Variance of each reading that is explained otherwise: noise, errors of the loads.
     pub explained: Vec<f64>,
+    /// Runs with the same number are repeats of each other.
+    pub group: usize,
 }
 
 /// Chance under which residuals count as larger than noise makes them.
@@ -37,7 +44,17 @@ impl Scatter {
             covariance: vec![0.0; n * n],
             dof: f64::INFINITY,
             dof_outside: f64::INFINITY,
+            common: 0.0,
         }
+    }
+
+    /// Factor on the covariance of each of `repeats` runs of one group, with which they tell of S, counted as independent, what they tell
+    /// together: exact where they are of one loading and nothing but scatter counts.
+    ///
+    /// # Reference
+    /// L. Kish, Survey Sampling (1965), eq. 5.4.1: the design effect `1 + (m - 1) rho`.
+    pub fn design(&self, repeats: usize) -> f64 {
+        1.0 + (repeats.max(1) - 1) as f64 * self.common
     }
 
     /// From what runs leave; `fitted` is the number of runs' worth of freedom that the fit of S took from each gauge, `columns` those of S
@@ -66,26 +83,15 @@ impl Scatter {
         if dof < FEWEST || n == 0 {
             return Self::none(n);
         }
-        let mut sample = vec![0.0; n * n];
-        let mut weight = vec![0.0; n * n];
-        let mut explained = 0.0;
-        for r in runs.iter().filter(|r| r.q2 > 0.0) {
-            for g in (0..n).filter(|&g| r.residual[g].is_finite()) {
-                for h in (0..n).filter(|&h| r.residual[h].is_finite()) {
-                    sample[g * n + h] += r.residual[g] * r.residual[h] / r.q2;
-                    weight[g * n + h] += 1.0;
-                }
-                explained += r.explained[g] / r.q2;
-            }
-        }
-        let runs_left = dof / runs.len() as f64;
-        for (s, w) in sample.iter_mut().zip(&weight) {
-            *s /= (w * runs_left).max(FEWEST);
-        }
+        let Sample {
+            covariance: sample,
+            dof,
+            common,
+            explained,
+        } = Sample::of(runs, n, dof);
         let trace: f64 = (0..n).map(|g| sample[g * n + g]).sum();
         // Noise stands in the residuals too; it is counted beside the scatter.
-        let readings: f64 = (0..n).map(|g| weight[g * n + g]).sum();
-        let noise_share = explained / readings.max(1.0) * n as f64 / trace;
+        let noise_share = explained * n as f64 / trace;
         let keep = (1.0 - noise_share).max(LEAST_KEPT);
         let shrink = shrinkage(&sample, n, dof);
         let target = target(&sample, columns, dof);
@@ -97,6 +103,8 @@ impl Scatter {
             covariance,
             dof,
             dof_outside: dof_of_shrunk(dof, shrink, outside),
+            // Noise is no part of what repeats have in common.
+            common: (common / keep).min(1.0),
         }
     }
 
@@ -105,6 +113,139 @@ impl Scatter {
         let n = (self.covariance.len() as f64).sqrt().round() as usize;
         let trace: f64 = (0..n).map(|g| self.covariance[g * n + g]).sum();
         (trace / n.max(1) as f64).sqrt()
+    }
+}
+
+/// What runs leave, in units of their root mean square strain.
+struct Sample {
+    /// Covariance over gauges of what one run leaves, `n x n`.
+    covariance: Vec<f64>,
+    /// Degrees of freedom behind it.
+    dof: f64,
+    /// Share of it that repeats have in common.
+    common: f64,
+    /// Mean of the variance that is explained otherwise.
+    explained: f64,
+}
+
+/// Sums of products about the means of groups, and of these means times their runs.
+struct Squares {
+    within: Vec<f64>,
+    between: Vec<f64>,
+}
+
+impl Sample {
+    /// With groups whose runs leave more alike than chance makes them it is a sum of the two variances, that within groups and that between
+    /// them, each with its own degrees of freedom; else the runs are independent. `dof`: runs less what the fit of S took.
+    ///
+    /// `W = SS_within / (R - G)`, `M = SS_between / (G - fitted)`, `C = W + (M - W) / m`, `m` the runs of a group.
+    ///
+    /// # Reference
+    /// S. R. Searle, G. Casella, C. E. McCulloch, Variance Components (1992), chapter 3 (analysis of variance, one way); degrees of freedom
+    /// of the sum: F. E. Satterthwaite, Biometrics Bulletin 2 (1946) 110.
+    fn of(runs: &[Left], n: usize, dof: f64) -> Self {
+        let kept: Vec<&Left> = runs.iter().filter(|r| r.q2 > 0.0).collect();
+        let (mut explained, mut readings) = (0.0, 0.0_f64);
+        let mut weight = vec![0.0; n * n];
+        for r in &kept {
+            for g in (0..n).filter(|&g| r.residual[g].is_finite()) {
+                for h in (0..n).filter(|&h| r.residual[h].is_finite()) {
+                    weight[g * n + h] += 1.0;
+                }
+                explained += r.explained[g] / r.q2;
+                readings += 1.0;
+            }
+        }
+        let explained = explained / readings.max(1.0);
+        let all = kept.len() as f64;
+        // Of a pair of gauges, by how many of the runs have both.
+        let scaled = |squares: &[f64], dof: f64| -> Vec<f64> {
+            let share = |w: f64| (w * dof / all).max(FEWEST.min(dof));
+            let pairs = squares.iter().zip(&weight);
+            pairs.map(|(s, w)| s / share(*w)).collect()
+        };
+        let dof = dof * all / runs.len().max(1) as f64;
+        let Squares { within, between } = Squares::of(&kept, n);
+        let total: Vec<f64> = within.iter().zip(&between).map(|(w, b)| w + b).collect();
+        let independent = |covariance: Vec<f64>| Self {
+            covariance,
+            dof,
+            common: 0.0,
+            explained,
+        };
+        let mut sizes: BTreeMap<usize, f64> = BTreeMap::new();
+        kept.iter()
+            .for_each(|r| *sizes.entry(r.group).or_default() += 1.0);
+        let groups = sizes.len() as f64;
+        let (of_within, of_between) = (all - groups, dof - (all - groups));
+        if of_within < 1.0 || of_between < FEWEST || groups < 2.0 {
+            return independent(scaled(&total, dof));
+        }
+        let within = scaled(&within, of_within);
+        let between = scaled(&between, of_between);
+        let trace = |c: &[f64]| (0..n).map(|g| c[g * n + g]).sum::<f64>();
+        let (w, m) = (trace(&within), trace(&between));
+        // Gauges scatter together: as many independent ones as their covariance has directions.
+        let patterns = trace(&total).powi(2) / total.iter().map(|v| v * v).sum::<f64>();
+        let chance = FisherSnedecor::new(of_between * patterns, of_within * patterns)
+            .map_or(1.0, |f| f.sf(m / w));
+        if !(chance < ALIKE) {
+            return independent(scaled(&total, dof));
+        }
+        let squares: f64 = sizes.values().map(|s| s * s).sum();
+        let repeats = (all - squares / all) / (groups - 1.0);
+        let (a, b) = (1.0 - 1.0 / repeats, 1.0 / repeats);
+        let sum = a * w + b * m;
+        Self {
+            covariance: within
+                .iter()
+                .zip(&between)
+                .map(|(w, m)| a * w + b * m)
+                .collect(),
+            dof: sum * sum / ((a * w).powi(2) / of_within + (b * m).powi(2) / of_between),
+            common: b * (m - w) / sum,
+            explained,
+        }
+    }
+}
+
+/// Chance of repeats that leave so much alike, where they are independent, under which they are not.
+const ALIKE: f64 = 0.05;
+
+impl Squares {
+    fn of(runs: &[&Left], n: usize) -> Self {
+        let mut out = Self {
+            within: vec![0.0; n * n],
+            between: vec![0.0; n * n],
+        };
+        let mut groups: BTreeMap<usize, Vec<Vec<f64>>> = BTreeMap::new();
+        for r in runs {
+            let unit = r.residual.iter().map(|e| e / r.q2.sqrt()).collect();
+            groups.entry(r.group).or_default().push(unit);
+        }
+        let mean = |members: &[Vec<f64>], g: usize| {
+            let read = members.iter().map(|e| e[g]).filter(|e| e.is_finite());
+            let (sum, count) = read.fold((0.0, 0.0), |a, e| (a.0 + e, a.1 + 1.0));
+            (sum / count, count)
+        };
+        let add = |to: &mut [f64], e: &[f64]| {
+            for (row, a) in to.chunks_exact_mut(n.max(1)).zip(e) {
+                for (v, b) in row.iter_mut().zip(e) {
+                    let product = a * b;
+                    *v += if product.is_finite() { product } else { 0.0 };
+                }
+            }
+        };
+        for members in groups.values() {
+            let means: Vec<(f64, f64)> = (0..n).map(|g| mean(members, g)).collect();
+            for e in members {
+                let off: Vec<f64> = e.iter().zip(&means).map(|(e, m)| e - m.0).collect();
+                add(&mut out.within, &off);
+            }
+            let root: Vec<f64> = means.iter().map(|(m, count)| m * count.sqrt()).collect();
+            add(&mut out.between, &root);
+        }
+        out
     }
 }
 

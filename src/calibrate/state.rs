@@ -1,11 +1,12 @@
 //! One fit of all used runs: posterior of S, error of the model, scatter of repeats and corrected loads in turn.
 
+use super::given_others;
 use super::known::correct;
-use super::model_error::{ErrorEvidence, error_evidence};
+use super::model_error::{ErrorEvidence, error_evidence as learn_error};
 use super::posterior::{Equation, Posterior, solve};
-use super::prior::{RowError, RowPrior, diffuse, rows};
+use super::prior::{FLOORS, RowError, RowPrior, diffuse, rows};
 use super::scatter::{Left, Scatter};
-use super::types::{KnownRun, Task};
+use super::types::{KnownRun, ModelPrior, Task};
 use crate::linalg::Matrix;
 use crate::sensitivity::{Sensitivity, Uncertainty, mean_square};
 
@@ -31,17 +32,21 @@ pub(super) struct State {
     pub scatter_used: Scatter,
     /// See `scatter_used`.
     pub q2_used: Vec<f64>,
+    /// By used run: how many runs are repeats of it, itself among them.
+    pub repeats: Vec<usize>,
     /// Runs' worth of freedom that the fit took from each gauge.
     pub fitted: f64,
     /// Error of the model in each gauge's row, as learnt; empty without a model.
     pub row_errors: Vec<RowError>,
     /// What it was learnt from, gauge by gauge.
     pub error_evidence: Option<ErrorEvidence>,
+    /// Gauges that are wired wrongly: they say nothing of the model.
+    pub wrongly_wired: Vec<usize>,
 }
 
 impl State {
-    /// The fit; `None` where numbers are not finite.
-    pub fn of(task: &Task, used: &[usize]) -> Option<Self> {
+    /// The fit, in which gauges that are `wrongly_wired` say nothing of the model's error; `None` where numbers are not finite.
+    pub fn of(task: &Task, used: &[usize], wrongly_wired: &[usize]) -> Option<Self> {
         let runs: Vec<&KnownRun> = used.iter().filter_map(|&r| task.runs.get(r)).collect();
         let (n, k) = (task.gauges.len(), task.loads.len());
         let scales = load_scales(task, &runs);
@@ -50,51 +55,34 @@ impl State {
             .flat_map(|r| &r.strain)
             .filter(|v| v.is_finite())
             .fold(0.0_f64, |a, v| a.max(v.abs()));
-        let first = |r: &KnownRun| -> Vec<f64> {
-            r.loads
-                .mean
-                .iter()
-                .zip(&scales)
-                .map(|(f, c)| f / c)
-                .collect()
-        };
-        let mut phi: Vec<Vec<f64>> = runs.iter().map(|r| first(r)).collect();
+        let alike = |r: &&KnownRun| runs.iter().filter(|o| o.group == r.group).count();
+        let repeats: Vec<usize> = runs.iter().map(alike).collect();
         let mut scatter = Scatter::none(n);
         let mut state: Option<Self> = None;
         for _ in 0..ROUNDS {
-            let error_evidence = task.model.as_ref().map(|m| {
-                let variance = variances(task, &runs, &scatter, state.as_ref());
-                error_evidence(m, &scales, &runs, &phi, &variance)
-            });
-            let row_errors = error_evidence.as_ref().map(ErrorEvidence::by_gauge);
+            let mean: Vec<Vec<f64>> = match (&state, &task.model) {
+                (Some(s), _) => rows_of(&s.posterior),
+                (None, Some(m)) => drawn(m, &scales),
+                (None, None) => vec![vec![0.0; k]; n],
+            };
+            let mut freedom = 0.0;
+            let (mut equations, mut by_gauge) = (Vec::new(), Vec::new());
+            for (i, run) in runs.iter().enumerate() {
+                let so_far = state.as_ref();
+                let times = so_far.map(|s| s.lefts[i].q2 * scatter.design(repeats[i]));
+                let made = equation(task, run, &scales, &mean, &scatter, times)?;
+                freedom += made.freedom / made.equation.gauges.len().max(1) as f64;
+                by_gauge.push(given_others::by_gauge(&made.equation, &made.spread, &mean));
+                equations.push(made.equation);
+            }
+            let error_evidence = task.model.as_ref();
+            let error_evidence = error_evidence.map(|m| learn_error(m, &scales, by_gauge));
+            let row_errors = error_evidence.as_ref();
+            let row_errors = row_errors.map(|e| e.by_gauge(wrongly_wired));
             let prior = match (&task.model, &row_errors) {
                 (Some(m), Some(e)) => rows(m, &scales, e.iter().copied().enumerate()),
                 _ => diffuse(n, k, largest),
             };
-            let mean: Vec<Vec<f64>> = match &state {
-                Some(s) => s
-                    .posterior
-                    .mean
-                    .chunks_exact(k)
-                    .map(<[f64]>::to_vec)
-                    .collect(),
-                None => prior.iter().map(|p| p.mean.clone()).collect(),
-            };
-            let mut equations = Vec::new();
-            let mut freedom = 0.0;
-            for (i, run) in runs.iter().enumerate() {
-                let (equation, taken) = equation(
-                    task,
-                    run,
-                    &scales,
-                    &mean,
-                    &scatter,
-                    state.as_ref().map(|s| s.lefts[i].q2),
-                )?;
-                phi[i].clone_from(&equation.phi);
-                freedom += taken / equation.gauges.len().max(1) as f64;
-                equations.push(equation);
-            }
             let posterior = solve(&prior, &equations)?;
             let lefts: Vec<Left> = runs
                 .iter()
@@ -112,6 +100,7 @@ impl State {
             state = Some(Self {
                 scatter_used,
                 q2_used,
+                repeats: repeats.clone(),
                 used: used.to_vec(),
                 scales: scales.clone(),
                 prior,
@@ -122,6 +111,7 @@ impl State {
                 fitted,
                 row_errors: row_errors.unwrap_or_default(),
                 error_evidence,
+                wrongly_wired: wrongly_wired.to_vec(),
             });
         }
         state
@@ -189,39 +179,40 @@ fn load_scales(task: &Task, runs: &[&KnownRun]) -> Vec<f64> {
     found.into_iter().map(|f| f.unwrap_or(other)).collect()
 }
 
-/// Variance of each reading besides S, by run and gauge: noise, scatter and the loads' own error so far.
-fn variances(
-    task: &Task,
-    runs: &[&KnownRun],
-    scatter: &Scatter,
-    state: Option<&State>,
-) -> Vec<Vec<f64>> {
-    let n = task.gauges.len();
-    (0..runs.len())
-        .map(|r| {
-            let mut own = vec![task.noise * task.noise * runs[r].noise_factor; n];
-            let Some(state) = state else { return own };
-            let e = &state.equations[r];
-            for (i, &g) in e.gauges.iter().enumerate() {
-                own[g] = own[g].max(e.covariance[i * e.gauges.len() + i]);
-            }
-            for (g, v) in own.iter_mut().enumerate() {
-                *v = v.max(state.lefts[r].q2 * scatter.covariance[g * n + g]);
-            }
-            own
-        })
-        .collect()
+/// Rows of S by gauge.
+fn rows_of(posterior: &Posterior) -> Vec<Vec<f64>> {
+    let rows = posterior.mean.chunks_exact(posterior.k.max(1));
+    rows.map(<[f64]>::to_vec).collect()
 }
 
-/// A run as an equation, and the readings' worth of freedom that the correction of its loads takes.
+/// Rows of the model by gauge, as drawn, in loads of unit size.
+fn drawn(model: &ModelPrior, scales: &[f64]) -> Vec<Vec<f64>> {
+    let none = RowError {
+        common: 0.0,
+        entries: [0.0; FLOORS.len()],
+    };
+    let all = rows(model, scales, (0..model.values.nrows()).map(|g| (g, none)));
+    all.into_iter().map(|row| row.mean).collect()
+}
+
+/// What a run says of S.
+struct Made {
+    equation: Equation,
+    /// Readings' worth of freedom that the correction of its loads takes.
+    freedom: f64,
+    /// Part of the equation's covariance that the loads' own error makes.
+    spread: Vec<f64>,
+}
+
+/// A run as an equation, with `times` the scatter.
 fn equation(
     task: &Task,
     run: &KnownRun,
     scales: &[f64],
     mean: &[Vec<f64>],
     scatter: &Scatter,
-    q2: Option<f64>,
-) -> Option<(Equation, f64)> {
+    times: Option<f64>,
+) -> Option<Made> {
     let n = task.gauges.len();
     let gauges: Vec<usize> = (0..n)
         .filter(|&g| run.strain.get(g).is_some_and(|v| v.is_finite()))
@@ -231,26 +222,24 @@ fn equation(
     let mut own = vec![0.0; m * m];
     for (i, g) in gauges.iter().enumerate() {
         for (j, h) in gauges.iter().enumerate() {
-            own[i * m + j] = q2.unwrap_or(0.0) * scatter.covariance[g * n + h];
+            own[i * m + j] = times.unwrap_or(0.0) * scatter.covariance[g * n + h];
         }
         own[i * m + i] += noise;
     }
     let y: Vec<f64> = gauges.iter().map(|&g| run.strain[g]).collect();
     let s: Vec<Vec<f64>> = gauges.iter().map(|&g| mean[g].clone()).collect();
     let corrected = correct(&run.loads, scales, &s, &y, &own)?;
-    Some((
-        Equation {
+    let covariance = own.iter().zip(&corrected.spread);
+    Some(Made {
+        equation: Equation {
             y: y.iter().zip(&corrected.shift).map(|(y, d)| y + d).collect(),
-            covariance: own
-                .iter()
-                .zip(&corrected.spread)
-                .map(|(a, b)| a + b)
-                .collect(),
+            covariance: covariance.map(|(a, b)| a + b).collect(),
             phi: corrected.phi,
             gauges,
         },
-        corrected.freedom,
-    ))
+        freedom: corrected.freedom,
+        spread: corrected.spread,
+    })
 }
 
 /// What a run leaves at loads `phi`.
@@ -267,6 +256,7 @@ pub(super) fn left(task: &Task, run: &KnownRun, posterior: &Posterior, phi: &[f6
             .collect(),
         q2: predicted.iter().map(|p| p * p).sum::<f64>() / n.max(1) as f64,
         explained: vec![noise.max(f64::MIN_POSITIVE); n],
+        group: run.group,
     }
 }
 

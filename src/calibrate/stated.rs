@@ -9,9 +9,10 @@ use crate::linalg::precision::Precision;
 use crate::linalg::spd;
 use crate::units::number;
 
-/// Ratio of strain to what the model makes of the loads from which a unit is wrong: units of force differ by 4.45 (pounds), 9.81 (kilograms)
-/// and 1000. Below it may be the model; whose error is stated to be larger has a larger ratio, four of its sd.
-const UNIT: f64 = 2.5;
+/// Ratio of strain to what the model makes of the loads from which a unit is wrong: units of force differ by 4.448 (pounds read as newtons),
+/// 9.81 (kilograms) and 1000, and a model may take a tenth off the first. Below it may be the model, badly scaled (a wall of half the thickness
+/// or less), which honest runs put right; one whose error is stated to be larger has a larger ratio, four of its sd.
+const UNIT: f64 = 4.0;
 /// Ratio under which a sign is wrong: -1 with a third of it lost to errors, other loads and other gauges.
 const SIGN: f64 = -1.0 / 3.0;
 /// Standard deviations from which a gauge tells a load.

@@ -60,8 +60,14 @@ pub fn check(
     findings.extend(impossible(&names, largest));
     let (names, largest) = named(&beyond_of);
     findings.extend(beyond_gauges(&names, largest, median(&readings)));
-    findings.extend(too_quiet(&readings, errors));
+    findings.extend(too_quiet(&readings, errors, UNRESOLVED));
     (readings, findings)
+}
+
+/// Findings on readings of which nothing but their noise says what they measure, as where S is learnt from them alone: any signal will do, in
+/// any unit, that stands out of the noise stated for it.
+pub fn check_signal(readings: &[Readings], errors: ErrorModel) -> Vec<Finding> {
+    too_quiet(readings, errors, 0.0).into_iter().collect()
 }
 
 /// Half of all readings are smaller, signs dropped; 0 without readings.
@@ -125,8 +131,8 @@ pub fn impossible_in_record(subject: &str, n: u64) -> Finding {
     .with_numbers(n as f64, 0.0)
 }
 
-/// Readings that all stay below the noise stated for them.
-fn too_quiet(readings: &[Readings], errors: ErrorModel) -> Option<Finding> {
+/// Readings that all stay below the noise stated for them, or below what can be `resolved`.
+fn too_quiet(readings: &[Readings], errors: ErrorModel, resolved: f64) -> Option<Finding> {
     let (mut sum, mut n, mut largest) = (0.0, 0_usize, 0.0_f64);
     for r in readings {
         let noise = errors.noise_variance(r.noise_factor);
@@ -138,7 +144,7 @@ fn too_quiet(readings: &[Readings], errors: ErrorModel) -> Option<Finding> {
     }
     let rms = (sum / n.max(1) as f64).sqrt();
     let quiet = n >= FEW && errors.noise > 0.0 && rms < TOO_QUIET;
-    let unresolved = n > 0 && largest < UNRESOLVED;
+    let unresolved = n > 0 && largest < resolved;
     (quiet || unresolved).then(|| {
         Finding::new(
             Severity::Error,

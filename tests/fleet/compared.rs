@@ -2,7 +2,7 @@
 //! damage is known in closed form.
 
 use super::drawn::Splitmix;
-use super::program::scratch;
+use super::program::{self, scratch};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -84,21 +84,7 @@ fn folder(name: &str, job: &str, records: &[(&str, String)]) -> PathBuf {
 }
 
 fn fleet(dir: &Path, files: &[&str], more: &[&str]) -> (i32, Value) {
-    fleet_into(dir, "out", files, more)
-}
-
-fn fleet_into(dir: &Path, out: &str, files: &[&str], more: &[&str]) -> (i32, Value) {
-    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
-        .current_dir(dir)
-        .args(["fleet", "job.toml"])
-        .args(files)
-        .args(["--out", out, "--json"])
-        .args(more)
-        .output()
-        .unwrap();
-    let error = String::from_utf8_lossy(&done.stderr).into_owned();
-    let json = serde_json::from_slice(&done.stdout).unwrap_or(Value::String(error));
-    (done.status.code().unwrap(), json)
+    program::fleet(dir, "out", files, more)
 }
 
 fn number(v: &Value) -> f64 {

@@ -1,5 +1,6 @@
 //! Known loads of the runs file: values, their sd, sums, repeats.
 
+use super::payloads::add_columns;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::column_unit::{asked_column, known_column, place_of, run_column, take_units};
 use crate::app::job::quantity::quantity_of_name;
@@ -38,8 +39,8 @@ pub(super) struct KnownRuns {
 struct Stated {
     terms: Vec<(usize, f64)>,
     value: usize,
-    /// Column of its sd, and job units of one unit of that.
-    sd: Option<(usize, f64)>,
+    /// Column of its sd, job units of one unit of that, and SI units.
+    sd: Option<(usize, f64, f64)>,
     /// Job units of one unit of the column.
     unit: f64,
     /// Sd where no column states it, job units.
@@ -55,18 +56,19 @@ struct Stated {
 pub(super) fn read_known(
     work: &mut Work,
     job: &Job,
-    runs: &Runs,
-    measured: &Measured,
+    (runs, measured): (&Runs, &Measured),
     strain: &[String],
     loads: &[Load],
+    origin: [f64; 2],
 ) -> Result<KnownRuns, Faults> {
     let text = work
         .inputs
         .read_named_text(job, &runs.file)
         .map_err(Faults::from)?;
     let mut table = read_table(&runs.file.given, &text)?;
-    let headers = take_units(&mut table);
+    let mut headers = take_units(&mut table);
     table.check_rows()?;
+    let payloads = add_columns(work, (job, runs), &mut table, &mut headers, loads, origin)?;
     let mut faults = FaultList::new();
     let key = run_column(&table, &headers)?;
     let stated = stated(job, runs, &table, &headers, loads, &mut faults);
@@ -108,7 +110,7 @@ pub(super) fn read_known(
     let largest = largest_known(&table, &stated, loads.len(), &mut faults);
     let held_out = |run: &str| matches!(&measured.hold_out, HoldOut::Runs(list) if list.iter().any(|r| r == run));
     let (mut out, mut groups): (Vec<Known>, Vec<Vec<String>>) = (Vec::new(), Vec::new());
-    let (mut values, mut partly) = (Vec::new(), Vec::new());
+    let (mut values, mut partly, mut teaching) = (Vec::new(), Vec::new(), Vec::new());
     for (row, run) in strain.iter().enumerate() {
         let Some(at) = (0..table.rows.len()).find(|i| name_of(*i) == run) else {
             continue;
@@ -155,12 +157,14 @@ pub(super) fn read_known(
                 Err(f) => faults.push(f),
             }
         }
+        teaching.push(at);
         out.push(Known {
             row,
             loads: known,
             group,
         });
     }
+    faults.extend(payloads.and_then(|p| p.unaccounted(job, &table, &teaching)));
     if out.is_empty() && faults.is_empty() {
         faults.push(nothing_known(&table, loads));
     }
@@ -345,7 +349,10 @@ fn stated(
             terms,
             value,
             // In the unit of what it is the sd of, unless it states its own.
-            sd: sd.map(|c| (c.at, of(if c.is_stated { c.unit } else { unit }))),
+            sd: sd.map(|c| {
+                let unit = if c.is_stated { c.unit } else { unit };
+                (c.at, of(unit), unit.map_or(1.0, |u| u.si))
+            }),
             unit: of(unit),
             noise: noise.unwrap_or(0.0) * of_file,
             size: (quantity, unit.map_or(1.0, |u| u.si)),
@@ -354,13 +361,34 @@ fn stated(
     out
 }
 
+/// A standard deviation in a field whose unit has `si` SI units; `None` where it is blank.
+///
+/// # Errors
+/// A fault where it is no number, below zero, or more than this quantity can be.
+pub(super) fn sd_in(
+    table: &Table,
+    row: usize,
+    column: usize,
+    of: (Option<Quantity>, f64),
+) -> Result<Option<f64>, Fault> {
+    let sd = table.size(row, column, of)?;
+    let Some(v) = sd.filter(|v| *v < 0.0) else {
+        return Ok(sd);
+    };
+    let line = table.rows.get(row).map_or(0, |r| r.0);
+    let name = table.header.get(column).map_or("", String::as_str);
+    let wrong = format!("a standard deviation of {v} is below zero");
+    let remedy = "write how well the load is known, 1 sd; blank: as well as `[runs] noise` says";
+    Err(Fault::at(&*table.file, line, name, wrong, remedy))
+}
+
 /// Value and sd of a quantity in a row, job units; `None` where it is blank.
 fn cell(table: &Table, row: usize, s: &Stated) -> Result<Option<(f64, f64)>, Fault> {
     let Some(value) = table.size(row, s.value, s.size)? else {
         return Ok(None);
     };
     let sd = match s.sd {
-        Some((c, unit)) => table.number(row, c)?.map(|v| (v * unit).abs()),
+        Some((c, unit, si)) => sd_in(table, row, c, (s.size.0, si))?.map(|v| v * unit),
         None => None,
     };
     Ok(Some((value * s.unit, sd.unwrap_or(s.noise))))

@@ -4,6 +4,7 @@ mod glued;
 mod job_file;
 mod known;
 mod outcome;
+mod payloads;
 mod said;
 
 pub use job_file::calibrated_job;
@@ -11,13 +12,13 @@ pub use outcome::*;
 
 use super::context::Context;
 use super::fault::{Fault, Faults};
-use super::job::strain::{StrainRows, StrainTable};
-use super::job::{Job, LoadRole, Measured, Reference, Runs};
+use super::job::strain::{StrainRows, StrainTable, stated_readings};
+use super::job::{Job, JobLoad, LoadRole, Measured, Reference, Runs};
 use super::outcome::{Outcome, StatedUnits};
 use super::reconcile::redirect::text_of;
-use super::strain::{Prepared, load_units, prepare};
+use super::strain::{Prepared, given_as_asked, load_units, prepare};
 use super::work::Work;
-use super::zeroed::{Zeroed, judged, read_zeroed, some_left};
+use super::zeroed::{Zeroed, judged_to_learn, read_zeroed, reads_strain, some_left};
 use crate::calibrate::{KnownRun, ModelPrior, Task, calibrate_as_glued};
 use crate::linalg::Matrix;
 use crate::recovery::Readings;
@@ -31,41 +32,13 @@ use crate::units::MICROSTRAIN;
 pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults> {
     let mut work = Work::of_job(cx, job);
     let (measured, runs) = sections(job)?;
-    let Zeroed {
-        table,
-        noise_factor,
-    } = work.stage("read strain", |w| {
-        read_zeroed(w, job, measured, &measured.strain)
-    })?;
-    let StrainRows::Runs(names) = &table.rows else {
-        return Err(Fault::of(
-            &*measured.strain.given,
-            "time",
-            "a record can't be read as runs",
-            "write a row a run, its name in a column `run`",
-        )
-        .into());
-    };
-    let (prepared, prior) = prior(&mut work, job, &table)?;
-    let known = known::read_known(
-        &mut work,
-        job,
-        runs,
-        measured,
-        names,
-        &prepared.sensitivity.loads,
-    )?;
-    let strain = readings(job, measured, &table, &prepared)?;
-    let rows = strain.into_iter().zip(names).zip(&noise_factor);
-    let read: Vec<Readings> = rows
-        .map(|((strain, run), noise_factor)| Readings {
-            run: run.clone(),
-            strain,
-            noise_factor: *noise_factor,
-        })
-        .collect();
-    let strain = judged(&mut work, measured, &prepared.sensitivity.gauges, &read);
-    some_left(&table.file, &strain)?;
+    let zeroed = work.stage("read strain", |w| strain_of_runs(w, job, measured))?;
+    let (prepared, prior) = prior(&mut work, job, &zeroed.table)?;
+    let s = &prepared.sensitivity;
+    let origin = payload_place(job, &prepared);
+    let (known, strain) = read(&mut work, job, (measured, runs), &zeroed, s, origin)?;
+    let names = names_of(&zeroed.table);
+    let noise_factor = &zeroed.noise_factor;
     let task = Task {
         gauges: prepared.sensitivity.gauges.clone(),
         loads: prepared.sensitivity.loads.clone(),
@@ -138,6 +111,90 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
+/// Reads what [`calibrate`] learns from, as far as no model is solved for it, and drops it: of a job that is to be calibrated, as its section says
+/// or as nothing else can be done with it.
+///
+/// # Errors
+/// Every fault of these files.
+pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
+    let (Some(measured), Some(runs)) = (&job.measured, &job.runs) else {
+        return Ok(());
+    };
+    let alone = !reads_strain(job) && job.vehicle.is_none() && !job.loads.is_empty();
+    if job.calibration.line == 0 && !alone {
+        return Ok(());
+    }
+    let zeroed = strain_of_runs(work, job, measured)?;
+    let s = match &job.sensitivity {
+        Some(_) => given_as_asked(work, job)?,
+        None => stated_alone(job, &zeroed.table),
+    };
+    read(work, job, (measured, runs), &zeroed, &s, [0.0; 2]).map(|_| ())
+}
+
+/// Runs of strain less their zero.
+///
+/// # Errors
+/// Those of the file; a record.
+fn strain_of_runs(work: &mut Work, job: &Job, measured: &Measured) -> Result<Zeroed, Faults> {
+    let zeroed = read_zeroed(work, job, measured, &measured.strain)?;
+    match &zeroed.table.rows {
+        StrainRows::Runs(_) => Ok(zeroed),
+        _ => Err(Fault::of(
+            &*measured.strain.given,
+            "time",
+            "a record can't be read as runs",
+            "write a row a run, its name in a column `run`",
+        )
+        .into()),
+    }
+}
+
+/// Names of the rows.
+fn names_of(table: &StrainTable) -> &[String] {
+    match &table.rows {
+        StrainRows::Runs(names) => names,
+        _ => &[],
+    }
+}
+
+/// Known loads, and the strain of all rows by gauge of `s`, judged.
+///
+/// # Errors
+/// Faults of the files; no reading at all.
+fn read(
+    work: &mut Work,
+    job: &Job,
+    (measured, runs): (&Measured, &Runs),
+    zeroed: &Zeroed,
+    s: &Sensitivity,
+    origin: [f64; 2],
+) -> Result<(known::KnownRuns, Vec<Readings>), Faults> {
+    let names = names_of(&zeroed.table);
+    let known = known::read_known(work, job, (runs, measured), names, &s.loads, origin)?;
+    let strain = readings(job, measured, &zeroed.table, &s.gauges)?;
+    let rows = strain.into_iter().zip(names).zip(&zeroed.noise_factor);
+    let read = rows.map(|((strain, run), noise_factor)| Readings {
+        run: run.clone(),
+        strain,
+        noise_factor: *noise_factor,
+    });
+    let read = read.collect();
+    let strain = judged_to_learn(work, job, measured, &s.gauges, read);
+    some_left(&zeroed.table.file, &strain)?;
+    Ok((known, strain))
+}
+
+/// Place in plan, m, of the grid where the payload acts; zeros without a model.
+fn payload_place(job: &Job, prepared: &Prepared) -> [f64; 2] {
+    let model = prepared.fields.as_ref().map(|f| f.model());
+    let grid = model.zip(job.payload_grid()).and_then(|(model, id)| {
+        let at = model.grids.get(model.grid_ix(id)?.us())?;
+        Some([at.x[0], at.x[1]].map(|x| x * job.units.length_m()))
+    });
+    grid.unwrap_or([0.0; 2])
+}
+
 /// What calibration can't do without.
 fn sections(job: &Job) -> Result<(&Measured, &Runs), Faults> {
     let lacks = |section: &str, remedy: &str| {
@@ -197,29 +254,8 @@ fn prior(
         )
         .into());
     }
-    let gauges: Vec<String> = if job.gauges.is_empty() {
-        table.gauges.clone()
-    } else {
-        job.gauges.iter().map(|g| g.name.clone()).collect()
-    };
-    let loads: Vec<Load> = job
-        .loads
-        .iter()
-        .map(|l| Load {
-            expected: l.expected,
-            wanted: l.role == LoadRole::Wanted,
-            quantity: l.quantity(),
-            ..Load::named(&l.name)
-        })
-        .collect();
-    let sensitivity = Sensitivity {
-        values: Matrix::zeros(gauges.len(), loads.len()),
-        gauges,
-        loads,
-        uncertainty: None,
-    };
     let prepared = Prepared {
-        sensitivity,
+        sensitivity: stated_alone(job, table),
         fields: None,
         gauges: Vec::new(),
         mesh_error: Vec::new(),
@@ -227,12 +263,34 @@ fn prior(
     Ok((prepared, None))
 }
 
+/// Gauges and loads that the job states, gauges of the strain file where it states none; S is not known.
+fn stated_alone(job: &Job, table: &StrainTable) -> Sensitivity {
+    let stated = stated_readings(job);
+    let gauges = match stated.is_empty() {
+        true => table.gauges.clone(),
+        false => stated,
+    };
+    let load = |l: &JobLoad| Load {
+        expected: l.expected,
+        wanted: l.role == LoadRole::Wanted,
+        quantity: l.quantity(),
+        ..Load::named(&l.name)
+    };
+    let loads: Vec<Load> = job.loads.iter().map(load).collect();
+    Sensitivity {
+        values: Matrix::zeros(gauges.len(), loads.len()),
+        gauges,
+        loads,
+        uncertainty: None,
+    }
+}
+
 /// Strain of every row of the table by gauge.
 fn readings(
     job: &Job,
     measured: &Measured,
     table: &StrainTable,
-    prepared: &Prepared,
+    gauges: &[String],
 ) -> Result<Vec<Vec<f64>>, Faults> {
     if measured.reference != Reference::None {
         let wrong = "known loads are changes from the state at which the gauges read zero";
@@ -245,8 +303,8 @@ fn readings(
         )
         .into());
     }
-    let gauges = prepared.sensitivity.gauges.iter();
     let columns: Vec<Option<usize>> = gauges
+        .iter()
         .map(|g| table.gauges.iter().position(|h| h == g))
         .collect();
     if columns.iter().all(Option::is_none) {

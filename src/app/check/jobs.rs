@@ -10,7 +10,7 @@ use crate::app::solved::{support_finding, support_of_job};
 use crate::app::strain::{given_as_asked, off_their_elements};
 use crate::app::work::Work;
 use crate::app::zeroed::read_zeroed;
-use crate::app::{identify, reconcile, recover, respond};
+use crate::app::{calibrate, identify, reconcile, recover, respond};
 use crate::linalg::Matrix;
 use crate::model::Model;
 use crate::sensitivity::Sensitivity;
@@ -58,6 +58,7 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
     }
     kept(respond::look(work, &job), &mut faults);
     kept(reconcile::look(work, &job), &mut faults);
+    kept(calibrate::look(work, &job), &mut faults);
     // Two commands say the same of one file.
     each_once(&mut faults, ToString::to_string);
     each_once(&mut work.findings, |f| {

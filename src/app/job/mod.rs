@@ -10,6 +10,7 @@ pub mod gauges;
 pub mod given_columns;
 mod not_a_job;
 mod parse;
+pub mod payload_loads;
 mod picked;
 pub mod quantity;
 mod raw;

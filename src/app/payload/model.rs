@@ -2,8 +2,9 @@
 
 use super::task::Task;
 use crate::app::fault::{Fault, FaultList, Faults};
+use crate::app::job::payload_loads::part_of;
 use crate::app::job::table::read_table;
-use crate::app::job::{Component, Job, LoadActs};
+use crate::app::job::{Component, GivenSensitivity, Job, LoadActs, NamedFile};
 use crate::app::job_deck::read_deck;
 use crate::app::solved::{stands_on_wheels, support_of_job, unit_loads_kept};
 use crate::app::strain::{Fields, Prepared, has_covariance, prepare};
@@ -16,7 +17,7 @@ use crate::gauge::reading;
 use crate::linalg::Matrix;
 use crate::model::{GridIx, Model, Vec3};
 use crate::payload::PayloadModel;
-use crate::sensitivity::check_separability;
+use crate::sensitivity::{Sensitivity, check_separability};
 use crate::units::MICROSTRAIN;
 
 /// The model of the payload with what the report draws.
@@ -326,51 +327,27 @@ fn given(work: &mut Work, task: &mut Task, use_strain: bool) -> Result<Parts, Fa
     task.nominal = [to_si(task.payload.nominal_x), to_si(task.payload.nominal_y)];
     let n = s.gauges.len();
     let mut payload = Matrix::zeros(n, 3);
+    let mut on_wheels = true;
     if use_strain {
-        let Some(file) = &tables.signatures.payload else {
-            return Err(Faults::from(Fault::at(
-                &*job.file,
-                tables.line,
-                "sensitivity.signatures.payload",
-                "the job gives S without the payload's signature",
-                "name its table: signatures = { payload = \"B_payload.csv\" } with columns gauge, b0, b_dx, b_dy",
-            )));
-        };
-        let text = work
-            .inputs
-            .read_named_text(job, file)
-            .map_err(Faults::from)?;
-        let table = read_table(&file.given, &text)?;
-        let key = table.column(&["gauge", "name"]).unwrap_or(0);
-        let mut faults: FaultList = table.rows_named_twice(key, "gauge");
-        // Microstrain per mass (and length) of the table to strain per report force (and length).
-        let mass = job.report_units.mass.si / tables.per.mass.si;
-        let length = job.report_units.length.si / tables.per.length.si;
-        for (g, name) in s.gauges.iter().enumerate() {
-            let Some(row) = table.rows.iter().position(|r| r.1.get(key) == Some(name)) else {
-                faults.push(Fault::of(
-                    &*file.given,
-                    "gauge",
-                    format!("no row for gauge `{name}`"),
-                    "give every gauge a row",
-                ));
-                continue;
-            };
-            for (k, column) in ["b0", "b_dx", "b_dy"].into_iter().enumerate() {
-                let Some(c) = table.column(&[column]) else {
-                    continue;
-                };
-                match table.number(row, c) {
-                    Ok(v) => {
-                        let per = MICROSTRAIN * mass / task.weight_of_mass;
-                        payload[(g, k)] =
-                            v.unwrap_or(0.0) * per * if k == 0 { 1.0 } else { length };
-                    }
-                    Err(f) => faults.push(f),
-                }
+        let own = calibrated_columns(task, s);
+        match (&tables.signatures.payload, own) {
+            (Some(file), _) => payload = signature(work, task, tables, file, s)?,
+            (None, Some(own)) => {
+                payload = in_report_units(task, &own);
+                // Runs of known payload taught all that it does to the structure, wheels included.
+                on_wheels = !vertical.is_empty();
+            }
+            (None, None) => {
+                return Err(Faults::from(Fault::at(
+                    &*job.file,
+                    tables.line,
+                    "sensitivity.signatures.payload",
+                    "the job gives S without the payload's signature",
+                    "name its table: signatures = { payload = \"B_payload.csv\" } with columns gauge, b0, b_dx, b_dy; or calibrate with payloads of \
+                     known mass and a [[load]] name = \"payload\"",
+                )));
             }
         }
-        Faults::check(faults)?;
     }
     let model = PayloadModel {
         gauges: if use_strain {
@@ -386,11 +363,76 @@ fn given(work: &mut Work, task: &mut Task, use_strain: bool) -> Result<Parts, Fa
         } else {
             Matrix::zeros(0, 3)
         },
-        floor: None,
+        floor: (!on_wheels).then(|| Matrix::zeros(0, 3)),
         arms: None,
     };
     Ok(Parts {
         model,
         prepared: Some(prepared),
     })
+}
+
+/// Columns of `p = (F, F dx, F dy)`, strain per job unit, of a calibrated S that has loads of the payload; `None` without its weight.
+fn calibrated_columns(task: &Task, s: &Sensitivity) -> Option<Matrix> {
+    let job = task.job;
+    let part = |l: usize| part_of(job, &s.loads[l].name).filter(|_| has_covariance(job));
+    let mut out = Matrix::zeros(s.gauges.len(), 3);
+    let mut weighs = false;
+    for l in 0..s.loads.len() {
+        let Some(parts) = part(l) else { continue };
+        weighs |= parts[0] != 0.0;
+        for (k, sign) in parts.into_iter().enumerate().filter(|p| p.1 != 0.0) {
+            for g in 0..s.gauges.len() {
+                out[(g, k)] = sign * s.values[(g, l)];
+            }
+        }
+    }
+    weighs.then_some(out)
+}
+
+/// Strain per report force, and per report force and length of shift, of the table of the payload's signature.
+fn signature(
+    work: &mut Work,
+    task: &Task,
+    tables: &GivenSensitivity,
+    file: &NamedFile,
+    s: &Sensitivity,
+) -> Result<Matrix, Faults> {
+    let job = task.job;
+    let mut payload = Matrix::zeros(s.gauges.len(), 3);
+    let text = work
+        .inputs
+        .read_named_text(job, file)
+        .map_err(Faults::from)?;
+    let table = read_table(&file.given, &text)?;
+    let key = table.column(&["gauge", "name"]).unwrap_or(0);
+    let mut faults: FaultList = table.rows_named_twice(key, "gauge");
+    // Microstrain per mass (and length) of the table to strain per report force (and length).
+    let mass = job.report_units.mass.si / tables.per.mass.si;
+    let length = job.report_units.length.si / tables.per.length.si;
+    for (g, name) in s.gauges.iter().enumerate() {
+        let Some(row) = table.rows.iter().position(|r| r.1.get(key) == Some(name)) else {
+            faults.push(Fault::of(
+                &*file.given,
+                "gauge",
+                format!("no row for gauge `{name}`"),
+                "give every gauge a row",
+            ));
+            continue;
+        };
+        for (k, column) in ["b0", "b_dx", "b_dy"].into_iter().enumerate() {
+            let Some(c) = table.column(&[column]) else {
+                continue;
+            };
+            match table.number(row, c) {
+                Ok(v) => {
+                    let per = MICROSTRAIN * mass / task.weight_of_mass;
+                    payload[(g, k)] = v.unwrap_or(0.0) * per * if k == 0 { 1.0 } else { length };
+                }
+                Err(f) => faults.push(f),
+            }
+        }
+    }
+    Faults::check(faults)?;
+    Ok(payload)
 }

@@ -58,7 +58,9 @@ pub(super) fn runs_of(
         Some(runs) => read_runs(&mut work.inputs, job, runs)?,
         None => Vec::new(),
     };
-    let reactions = use_reactions && believed(work, task, use_strain);
+    // Without wheels there is nothing to believe.
+    let asked = use_reactions && !(use_strain && task.wheels.is_empty());
+    let reactions = asked && believed(work, task, use_strain);
     if !use_strain && !reactions {
         return Err(Faults::from(Fault::at(
             &*job.file,

@@ -9,6 +9,7 @@ use crate::app::job::strain::{read_strain, wanted_columns};
 use crate::app::job::{Job, Measured, Reference};
 use crate::app::strain::Prepared;
 use crate::app::work::Work;
+use crate::app::zeroed::reads_strain;
 use crate::recovery::plausible;
 use crate::sensitivity::{Sensitivity, check_separability};
 
@@ -77,12 +78,13 @@ fn readings(work: &mut Work, task: &Task, known: Known) -> Result<(), Faults> {
         let (readings, _) = runs::read(work, task)?;
         (s.clone(), readings)
     };
-    if task.job.sensitivity.is_none() && task.job.model.is_none() {
-        // What is calibrated alone may be any signal.
-        work.findings.retain(|f| f.code != "reading-impossible");
-        return Ok(());
-    }
-    let (_, found) = plausible::check(&s.gauges, &readings, task.errors);
+    let found = match reads_strain(task.job) {
+        true => plausible::check(&s.gauges, &readings, task.errors).1,
+        false => {
+            work.findings.retain(|f| f.code != "reading-impossible");
+            plausible::check_signal(&readings, task.errors)
+        }
+    };
     // The strain of a reference state that is not in them may be all there is.
     let all = known == Known::S || task.measured.reference == Reference::None;
     let holds = |code: &str| all || code != "readings-below-noise";

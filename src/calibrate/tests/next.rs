@@ -162,7 +162,7 @@ fn repeated() -> Task {
 fn with_repeats_that_scatter_the_next_load_buys_what_a_refit_with_it_has() {
     let task = repeated();
     let all: Vec<usize> = (0..task.runs.len()).collect();
-    let state = State::of(&task, &all).unwrap();
+    let state = State::of(&task, &all, &[]).unwrap();
     let scatter = &state.scatter.covariance;
     assert!(scatter.iter().any(|c| *c > 0.0), "no scatter was learnt");
     let found = Calibration {

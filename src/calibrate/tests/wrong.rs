@@ -219,3 +219,46 @@ fn a_gauge_whose_gain_is_off_is_judged_by_the_error_of_the_others() {
         assert_eq!(s.word, wanted, "{s:?}");
     }
 }
+
+#[test]
+fn a_model_of_a_third_of_the_strain_is_put_right_by_the_runs_and_not_refused() {
+    let mut task = task(3, 10);
+    if let Some(model) = &mut task.model {
+        model.values /= 3.0;
+    }
+    let c = calibrate(&task).unwrap();
+    assert_eq!(severe(&c, "known-loads-unit"), None, "{:?}", c.findings);
+}
+
+#[test]
+fn a_gauge_wired_backwards_says_nothing_of_how_far_the_rows_of_others_may_be_off() {
+    // The torque acts in no run: what is known of its column is the prior.
+    let mut wired = task(1, 11);
+    wired.runs.truncate(2);
+    let wrong = 1;
+    wired
+        .runs
+        .iter_mut()
+        .for_each(|r| r.strain[wrong] = -r.strain[wrong]);
+    let mut without = wired.clone();
+    without.gauges.remove(wrong);
+    without.runs.iter_mut().for_each(|r| {
+        r.strain.remove(wrong);
+    });
+    if let Some(model) = &mut without.model {
+        model.values = model.values.clone().remove_row(wrong);
+    }
+    let (all, rest) = (calibrate(&wired).unwrap(), calibrate(&without).unwrap());
+    assert_eq!(all.shifts[wrong].word, ShiftWord::Sign);
+    let torque = |c: &Calibration, g: usize| {
+        let order = c.sensitivity.gauges.len() * 3;
+        let at = g * 3 + 2;
+        let known = c.sensitivity.uncertainty.as_ref().unwrap();
+        known.covariance[at * order + at].sqrt()
+    };
+    for (g, of_all) in [(4, 5), (5, 6), (6, 7)].map(|(r, a)| (r, torque(&all, a))) {
+        let ratio = of_all / torque(&rest, g);
+        // Steps of the errors that are tried are the square root of two.
+        assert!((0.85..1.18).contains(&ratio), "{g}: {ratio}");
+    }
+}

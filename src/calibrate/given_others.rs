@@ -1,0 +1,63 @@
+//! What each gauge reads in a run whose loads are known with an error: given what the others read.
+
+use super::posterior::Equation;
+use crate::linalg::precision::Precision;
+use crate::linalg::spd;
+
+/// One run, gauge by gauge.
+#[derive(Clone, Debug)]
+pub(super) struct ByGauge {
+    /// Loads of unit size.
+    pub phi: Vec<f64>,
+    /// Reading by gauge at these loads; NaN where there is none.
+    pub y: Vec<f64>,
+    /// Its variance, S aside.
+    pub variance: Vec<f64>,
+}
+
+/// A run's readings by gauge. `spread`: the part of the covariance of `e` that the loads' own error makes, which is common to the gauges. Of a
+/// lorry whose sum alone is known each gauge by itself says next to nothing; with the others, which say where it stands, nearly as much as
+/// of known loads:
+///
+/// `y_g + sum_h P_gh (y_h - s_h phi) / P_gg` over the other gauges, variance `1 / P_gg`, `P` the inverse of spread and own variances.
+///
+/// `s`: rows of S by gauge so far, `n` of them.
+///
+/// # Reference
+/// J. Besag, J. R. Stat. Soc. B 36 (1974) 192, section 4 (conditional distributions of a normal scheme, and their product as a likelihood).
+pub(super) fn by_gauge(e: &Equation, spread: &[f64], s: &[Vec<f64>]) -> ByGauge {
+    let (n, m) = (s.len(), e.gauges.len());
+    let mut out = ByGauge {
+        phi: e.phi.clone(),
+        y: vec![f64::NAN; n],
+        variance: vec![f64::INFINITY; n],
+    };
+    for (i, &g) in e.gauges.iter().enumerate() {
+        out.y[g] = e.y[i];
+        out.variance[g] = e.covariance[i * m + i];
+    }
+    if spread.iter().all(|v| *v == 0.0) {
+        return out;
+    }
+    let on_diagonal = |at: usize| at / m.max(1) == at % m.max(1);
+    let both: Vec<f64> = (0..m * m)
+        .map(|at| match on_diagonal(at) {
+            true => e.covariance[at],
+            false => spread[at],
+        })
+        .collect();
+    let Some(inverse) = Precision::of(&both, m) else {
+        return out;
+    };
+    let left: Vec<f64> = (e.gauges.iter().zip(&e.y))
+        .map(|(g, y)| y - spd::dot(&s[*g], &e.phi))
+        .collect();
+    for (i, &g) in e.gauges.iter().enumerate() {
+        let own = inverse.entry(i, i);
+        let others = (0..m).filter(|j| *j != i);
+        let others: f64 = others.map(|j| inverse.entry(i, j) * left[j]).sum();
+        out.y[g] += others / own;
+        out.variance[g] = 1.0 / own;
+    }
+    out
+}

@@ -1,0 +1,269 @@
+//! Runs alike: what they have in common, runs weighed by sums alone, a column that the loads depend on. Truth is drawn; coverage and width are held.
+
+use crate::calibrate::*;
+use crate::linalg::Matrix;
+use crate::recovery::{ErrorModel, Readings, estimate};
+use crate::sensitivity::{Load, Sensitivity};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+
+const NOISE: f64 = 0.1e-6;
+const GAUGES: usize = 8;
+
+fn normal(random: &mut ChaCha8Rng) -> f64 {
+    let (u, v): (f64, f64) = (
+        random.random_range(1e-300..1.0),
+        random.random_range(0.0..1.0),
+    );
+    (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+}
+
+/// Two lanes of a bridge: strain of each gauge a kN.
+fn lanes(random: &mut ChaCha8Rng) -> Matrix {
+    Matrix::from_fn(GAUGES, 2, |g, l| {
+        let near = if l == 0 { GAUGES - g } else { g + 1 };
+        1e-7 * (0.2 + near as f64 / GAUGES as f64) * (1.0 + 0.1 * normal(random))
+    })
+}
+
+fn task(k: usize, runs: Vec<KnownRun>, model: Option<ModelPrior>) -> Task {
+    Task {
+        gauges: (0..GAUGES).map(|g| format!("G{g}")).collect(),
+        loads: (0..k).map(|l| Load::named(format!("L{l}"))).collect(),
+        noise: NOISE,
+        model,
+        runs,
+        sums: vec![vec![1.0; k]],
+    }
+}
+
+/// Values of one more run with their sigma and the half width of the interval: each load, then the sum.
+fn weighed(s: &Sensitivity, strain: Vec<f64>) -> Vec<[f64; 3]> {
+    let readings = Readings {
+        run: "new".into(),
+        strain,
+        noise_factor: 1.0,
+    };
+    let errors = ErrorModel {
+        noise: NOISE,
+        model_rel: 0.0,
+    };
+    let e = estimate(s, &readings, errors).estimate;
+    let k = s.loads.len();
+    let one = |value: f64, sigma: f64| [value, sigma, sigma * e.coverage_factor];
+    let mut out: Vec<[f64; 3]> = (0..k).map(|l| one(e.values[l], e.sigma(l))).collect();
+    let all: f64 = e.covariance.iter().sum();
+    out.push(one(e.values.iter().sum(), all.sqrt()));
+    out
+}
+
+/// What weighing came to, by load and sum.
+#[derive(Debug)]
+struct Tally {
+    /// Share of the 95 % intervals that held.
+    held: f64,
+    /// Sd of the error over the stated sigma, both root mean squares.
+    ratio: f64,
+    /// Mean half width.
+    half: f64,
+}
+
+fn tally(trials: &[Vec<[f64; 3]>], which: usize) -> Tally {
+    let all = || trials.iter().filter_map(|t| t.get(which));
+    let n = all().count() as f64;
+    let square = |i: usize| all().map(|t| t[i] * t[i]).sum::<f64>();
+    Tally {
+        held: all().filter(|t| t[0].abs() <= t[2]).count() as f64 / n,
+        ratio: (square(0) / square(1)).sqrt(),
+        half: all().map(|t| t[2]).sum::<f64>() / n,
+    }
+}
+
+/// Six loadings of a bridge, five passages of each: a loading stands aside of its lane by a place of its own, which moves `aside` (1 sd, of the
+/// strain) from one lane's pattern to the other's; passages of it by `passage`. One more truck is weighed. Whether the job says which are
+/// alike is asked by `told`.
+fn passages(aside: f64, passage: f64, told: bool, seed: u64) -> Vec<[f64; 3]> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let s = lanes(&mut random);
+    let strain = |f: [f64; 2], off: f64, random: &mut ChaCha8Rng| -> Vec<f64> {
+        let moved = [f[0] - off, f[1] + off];
+        (0..GAUGES)
+            .map(|g| (0..2).map(|l| s[(g, l)] * moved[l]).sum::<f64>() + NOISE * normal(random))
+            .collect()
+    };
+    let mut runs = Vec::new();
+    for group in 0..6 {
+        let weight = random.random_range(150.0..400.0);
+        let west = f64::from(group) / 5.0;
+        let f = [weight * west, weight * (1.0 - west)];
+        let of_group = aside * weight * normal(&mut random);
+        for _ in 0..5 {
+            let off = of_group + passage * weight * normal(&mut random);
+            runs.push(KnownRun {
+                run: format!("R{}", runs.len()),
+                strain: strain(f, off, &mut random),
+                noise_factor: 1.0,
+                loads: KnownLoads::exact(f.to_vec()),
+                group: if told { group as usize } else { runs.len() },
+            });
+        }
+    }
+    let weight = random.random_range(150.0..400.0);
+    let west = random.random_range(0.0..1.0);
+    let f = [weight * west, weight * (1.0 - west)];
+    let off = weight * aside.hypot(passage) * normal(&mut random);
+    let read = strain(f, off, &mut random);
+    let c = calibrate(&task(2, runs, None)).unwrap();
+    let truth = [f[0], f[1], weight];
+    let found = weighed(&c.sensitivity, read);
+    found
+        .iter()
+        .zip(truth)
+        .map(|([v, sigma, half], f)| [(v - f) / weight, sigma / weight, half / weight])
+        .collect()
+}
+
+fn all_passages(aside: f64, passage: f64, told: bool) -> Vec<Vec<[f64; 3]>> {
+    (0..400)
+        .into_par_iter()
+        .map(|seed| passages(aside, passage, told, seed))
+        .collect()
+}
+
+#[test]
+fn with_repeats_named_intervals_hold_where_a_loading_stands_aside_of_its_lane() {
+    let told = all_passages(0.03, 0.005, true);
+    let untold = all_passages(0.03, 0.005, false);
+    for load in 0..2 {
+        let (with, without) = (tally(&told, load), tally(&untold, load));
+        // Three sd of a binomial of 400, 3.3 %.
+        assert!((0.915..0.985).contains(&with.held), "{with:?} {without:?}");
+        assert!(without.held < 0.915, "{with:?} {without:?}");
+    }
+}
+
+#[test]
+fn repeats_that_have_nothing_in_common_tell_as_much_as_any_other_runs() {
+    let told = all_passages(0.0, 0.03, true);
+    let untold = all_passages(0.0, 0.03, false);
+    for load in 0..2 {
+        let (with, without) = (tally(&told, load), tally(&untold, load));
+        assert!((0.915..0.985).contains(&with.held), "{with:?} {without:?}");
+        // One trial in twenty takes chance for something in common.
+        assert!(with.half < 1.1 * without.half, "{with:?} {without:?}");
+        assert!((0.8..1.2).contains(&with.ratio), "{with:?}");
+    }
+}
+
+/// Loads of three bays of which a scale says the sum, to `sd`.
+fn by_sum(total: f64, sd: f64) -> KnownLoads {
+    const WIDE: f64 = 300.0;
+    let d = WIDE * WIDE;
+    let whole = 3.0 * d + sd * sd;
+    let covariance = (0..9).map(|i| if i % 4 == 0 { d } else { 0.0 } - d * d / whole);
+    KnownLoads {
+        mean: vec![d * total / whole; 3],
+        covariance: covariance.collect(),
+    }
+}
+
+#[test]
+fn runs_weighed_by_their_sum_alone_teach_with_intervals_as_wide_as_their_errors() {
+    let trial = |seed: u64| -> Vec<[f64; 3]> {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let model = Matrix::from_fn(GAUGES, 3, |_, _| 1e-6 * normal(&mut random));
+        let gains: Vec<f64> = (0..GAUGES)
+            .map(|_| 1.0 + 0.03 * normal(&mut random))
+            .collect();
+        let s = Matrix::from_fn(GAUGES, 3, |g, l| {
+            model[(g, l)] * gains[g] * (1.0 + 0.02 * normal(&mut random))
+        });
+        let draw = |random: &mut ChaCha8Rng| [(); 3].map(|()| random.random_range(0.0..30.0));
+        let read = |f: [f64; 3], random: &mut ChaCha8Rng| -> Vec<f64> {
+            let row = |g: usize| (0..3).map(|l| s[(g, l)] * f[l]).sum::<f64>();
+            (0..GAUGES)
+                .map(|g| row(g) + NOISE * normal(random))
+                .collect()
+        };
+        let runs = (0..16).map(|i| {
+            let f = draw(&mut random);
+            let total: f64 = f.iter().sum::<f64>() + 0.1 * normal(&mut random);
+            KnownRun {
+                run: format!("R{i}"),
+                strain: read(f, &mut random),
+                noise_factor: 1.0,
+                loads: by_sum(total, 0.1),
+                group: i,
+            }
+        });
+        let runs = runs.collect();
+        let prior = ModelPrior {
+            values: model.clone(),
+            moves: Vec::new(),
+            off_drawing: None,
+            uncertainty_rel: 0.1,
+        };
+        let c = calibrate(&task(3, runs, Some(prior))).unwrap();
+        let f = draw(&mut random);
+        let found = weighed(&c.sensitivity, read(f, &mut random));
+        let truth = [f[0], f[1], f[2], f.iter().sum()];
+        let each = found.iter().zip(truth);
+        each.map(|([v, sigma, half], f)| [v - f, *sigma, *half])
+            .collect()
+    };
+    let trials: Vec<Vec<[f64; 3]>> = (0..200).into_par_iter().map(trial).collect();
+    // Each load, which the model tells from the others, and the sum.
+    for which in 0..4 {
+        let found = tally(&trials, which);
+        // Three sd of a binomial of 200, 4.6 %.
+        assert!((0.904..=0.996).contains(&found.held), "{which}: {found:?}");
+        assert!((0.8..1.2).contains(&found.ratio), "{which}: {found:?}");
+    }
+}
+
+/// Error of the slope of sixteen passages of two lanes, and its sigma.
+fn slope_of(slope: f64, seed: u64) -> [f64; 2] {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let s = lanes(&mut random);
+    let (mut runs, mut column) = (Vec::new(), Vec::new());
+    for i in 0..16 {
+        let f = if i % 2 == 0 {
+            [220.0, 0.0]
+        } else {
+            [0.0, 220.0]
+        };
+        // Both lanes at one mean speed: a slope is a share of what loads are at the mean.
+        let speed = 20.0 + 4.0 * f64::from(i / 2) * 2.0;
+        let size = (1.0 + slope * (speed - 48.0)) * (1.0 + 0.02 * normal(&mut random));
+        let row = |g: usize| (0..2).map(|l| s[(g, l)] * f[l] * size).sum::<f64>();
+        column.push(speed);
+        runs.push(KnownRun {
+            run: format!("R{i}"),
+            strain: (0..GAUGES)
+                .map(|g| row(g) + NOISE * normal(&mut random))
+                .collect(),
+            noise_factor: 1.0,
+            loads: KnownLoads::exact(f.to_vec()),
+            group: (i % 2) as usize,
+        });
+    }
+    let task = task(2, runs, None);
+    let c = calibrate(&task).unwrap();
+    let found = depends_on(&task, &c.left_out, &column).unwrap();
+    [found.slope_rel - slope, found.sigma]
+}
+
+#[test]
+fn the_sigma_of_a_slope_is_what_slopes_scatter_by() {
+    for slope in [0.0, 0.002, 0.004] {
+        let trials: Vec<[f64; 2]> = (0..300)
+            .into_par_iter()
+            .map(|seed| slope_of(slope, seed))
+            .collect();
+        let square = |i: usize| trials.iter().map(|t| t[i] * t[i]).sum::<f64>();
+        let ratio = (square(0) / square(1)).sqrt();
+        // Of 300 trials a ratio is known to 4 %.
+        assert!((0.8..1.2).contains(&ratio), "{slope}: {ratio}");
+    }
+}
