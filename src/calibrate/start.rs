@@ -1,11 +1,12 @@
 //! S to begin with where no model gives one: from the runs whose loads are known.
 
-use super::held_out::SPANNED;
 use super::posterior::{Equation, Posterior, solve};
 use super::prior::RowPrior;
 use super::types::{KnownRun, Task};
 use crate::linalg::spd;
 
+/// Share of the largest eigenvalue of the loads' squares from which a combination counts as applied.
+pub(super) const SPANNED: f64 = 1e-6;
 /// Share of a load's size from which its sd makes it unknown.
 pub(super) const UNKNOWN: f64 = 0.5;
 

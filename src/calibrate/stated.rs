@@ -1,8 +1,7 @@
 //! Known loads against what the model makes of them: a wrong unit, a wrong sign. A prior that is off by such a factor must not be learnt from:
 //! all that the loads cause would count as scatter of the runs.
 
-use super::held_out::SPANNED;
-use super::start::is_known;
+use super::start::{SPANNED, is_known};
 use super::types::{KnownRun, Task};
 use crate::finding::{Finding, Severity};
 use crate::linalg::median::weighted_median;
