@@ -671,7 +671,7 @@ fn lift(kg: f64, x: f64, wiggle: f64) -> String {
 #[test]
 fn payloads_of_known_mass_and_place_teach_and_then_every_lift_is_weighed() {
     let folder = scratch("calibrate-payload");
-    let job = "units = \"m-kg-s\"\nreport_units = { force = \"kN\" }\n[[load]]\nname = \"payload\"\n\
+    let job = "units = \"m-kg-s\"\nreport_units = { force = \"kN\", moment = \"kN m\" }\n[[load]]\nname = \"payload\"\n\
                [[load]]\nname = \"payload.MY\"\nrole = \"wanted\"\n[payload]\nposition = \"free\"\nregion = [[-3.0, 3.0], [-1.0, 1.0]]\n\
                [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.2\n[runs]\nfile = \"runs.csv\"\n";
     let known = [

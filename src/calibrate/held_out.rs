@@ -3,6 +3,7 @@
 use super::posterior::{Equation, Posterior, solve};
 use super::prior::{RowPrior, rows};
 use super::scatter::{Left, Scatter};
+use super::start::SPANNED;
 use super::state::{State, left, sensitivity_of};
 use super::types::{Coverage, LeftOut, Task};
 use crate::linalg::spd;
@@ -202,9 +203,6 @@ fn others_span(state: &State, out: &[usize]) -> bool {
     };
     rank(out) == rank(&[])
 }
-
-/// Share of the largest eigenvalue of the loads' squares from which a combination counts as applied.
-pub(super) const SPANNED: f64 = 1e-6;
 
 /// `x' C^-1 x`, with scales of the entries evened out first.
 fn mahalanobis(covariance: &[f64], x: &[f64]) -> Option<f64> {

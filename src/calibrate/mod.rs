@@ -22,6 +22,7 @@ mod prior;
 mod runs;
 mod scatter;
 mod shift;
+mod start;
 mod state;
 mod stated;
 mod types;

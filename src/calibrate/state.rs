@@ -6,6 +6,7 @@ use super::model_error::{ErrorEvidence, error_evidence as learn_error};
 use super::posterior::{Equation, Posterior, solve};
 use super::prior::{FLOORS, RowError, RowPrior, diffuse, rows};
 use super::scatter::{Left, Scatter};
+use super::start::from_known;
 use super::types::{KnownRun, ModelPrior, Task};
 use crate::linalg::Matrix;
 use crate::sensitivity::{Sensitivity, Uncertainty, mean_square};
@@ -63,7 +64,10 @@ impl State {
             let mean: Vec<Vec<f64>> = match (&state, &task.model) {
                 (Some(s), _) => rows_of(&s.posterior),
                 (None, Some(m)) => drawn(m, &scales),
-                (None, None) => vec![vec![0.0; k]; n],
+                (None, None) => {
+                    let begun = from_known(task, &runs, &scales, &diffuse(n, k, largest));
+                    begun.map_or_else(|| vec![vec![0.0; k]; n], |s| rows_of(&s))
+                }
             };
             let mut freedom = 0.0;
             let (mut equations, mut by_gauge) = (Vec::new(), Vec::new());

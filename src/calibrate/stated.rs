@@ -1,7 +1,7 @@
 //! Known loads against what the model makes of them: a wrong unit, a wrong sign. A prior that is off by such a factor must not be learnt from:
 //! all that the loads cause would count as scatter of the runs.
 
-use super::held_out::SPANNED;
+use super::start::{SPANNED, is_known};
 use super::types::{KnownRun, Task};
 use crate::finding::{Finding, Severity};
 use crate::linalg::median::weighted_median;
@@ -19,8 +19,6 @@ const SIGN: f64 = -1.0 / 3.0;
 const TOLD: f64 = 5.0;
 /// Share of the largest answer of any gauge to a load from which a gauge is asked about it.
 const ASKED: f64 = 0.1;
-/// Share of a load's size from which its sd makes it unknown.
-const UNKNOWN: f64 = 0.5;
 
 /// Loads whose strain is some [`UNIT`] times what the model says, or of the other sign, in most of the gauges.
 ///
@@ -37,13 +35,8 @@ pub(super) fn check(task: &Task, used: &[usize], wrongly_wired: &[usize]) -> Vec
         each.flatten().fold(0.0_f64, |a, f| a.max(f.abs()))
     };
     let sizes: Vec<f64> = (0..k).map(size).collect();
-    let known = |r: &&KnownRun| {
-        (0..k).all(|l| {
-            let variance = r.loads.covariance.get(l * k + l).copied().unwrap_or(0.0);
-            variance.sqrt() <= UNKNOWN * sizes[l]
-        })
-    };
-    let runs: Vec<&KnownRun> = all.iter().copied().filter(known).collect();
+    let known = all.iter().copied().filter(|r| is_known(r, &sizes));
+    let runs: Vec<&KnownRun> = known.collect();
     let acting: Vec<usize> = (0..k).filter(|l| sizes[*l] > 0.0).collect();
     if acting.is_empty() {
         return Vec::new();

@@ -1,6 +1,6 @@
 //! Combinations of loads that no run has shown: known from the model only, or not at all.
 
-use super::held_out::SPANNED;
+use super::start::SPANNED;
 use super::state::State;
 use super::types::{Task, Undetermined};
 use crate::finding::{Finding, Severity};

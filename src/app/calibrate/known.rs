@@ -72,34 +72,17 @@ pub(super) fn read_known(
     let mut faults = FaultList::new();
     let key = run_column(&table, &headers)?;
     let stated = stated(job, runs, &table, &headers, loads, &mut faults);
-    let repeats: Vec<usize> = job
-        .calibration
-        .repeats
-        .iter()
-        .filter_map(|name| {
-            column(
-                job,
-                &table,
-                &headers,
-                name,
-                "calibration.repeats",
-                &mut faults,
-            )
-        })
-        .collect();
+    let place = |name: &str, key: &str, faults: &mut FaultList| {
+        column(job, &table, &headers, name, key, faults)
+    };
+    let mut repeats = Vec::new();
+    for name in &job.calibration.repeats {
+        repeats.extend(place(name, "calibration.repeats", &mut faults));
+    }
     let depends = job.calibration.depends_on.as_ref();
     let depends = depends.and_then(|name| {
-        Some((
-            name.clone(),
-            column(
-                job,
-                &table,
-                &headers,
-                name,
-                "calibration.depends_on",
-                &mut faults,
-            )?,
-        ))
+        let at = place(name, "calibration.depends_on", &mut faults)?;
+        Some((name.clone(), at))
     });
     let name_of = |row: usize| {
         let cell = table.rows.get(row).and_then(|r| r.1.get(key));
@@ -142,10 +125,11 @@ pub(super) fn read_known(
                 .map(|c| table.rows[at].1.get(*c).cloned().unwrap_or_default())
                 .collect()
         };
-        let alike = if repeats.is_empty() {
-            known.mean.iter().map(|f| format!("{f:.6e}")).collect()
-        } else {
-            cells(&repeats)
+        let alike = match cells(&repeats) {
+            _ if repeats.is_empty() => known.mean.iter().map(|f| format!("{f:.6e}")).collect(),
+            // Nothing is said of it: like no other.
+            blank if blank.iter().all(String::is_empty) => vec![String::new(), run.clone()],
+            stated => stated,
         };
         let group = groups.iter().position(|g| *g == alike).unwrap_or_else(|| {
             groups.push(alike);
@@ -361,34 +345,13 @@ fn stated(
     out
 }
 
-/// A standard deviation in a field whose unit has `si` SI units; `None` where it is blank.
-///
-/// # Errors
-/// A fault where it is no number, below zero, or more than this quantity can be.
-pub(super) fn sd_in(
-    table: &Table,
-    row: usize,
-    column: usize,
-    of: (Option<Quantity>, f64),
-) -> Result<Option<f64>, Fault> {
-    let sd = table.size(row, column, of)?;
-    let Some(v) = sd.filter(|v| *v < 0.0) else {
-        return Ok(sd);
-    };
-    let line = table.rows.get(row).map_or(0, |r| r.0);
-    let name = table.header.get(column).map_or("", String::as_str);
-    let wrong = format!("a standard deviation of {v} is below zero");
-    let remedy = "write how well the load is known, 1 sd; blank: as well as `[runs] noise` says";
-    Err(Fault::at(&*table.file, line, name, wrong, remedy))
-}
-
 /// Value and sd of a quantity in a row, job units; `None` where it is blank.
 fn cell(table: &Table, row: usize, s: &Stated) -> Result<Option<(f64, f64)>, Fault> {
     let Some(value) = table.size(row, s.value, s.size)? else {
         return Ok(None);
     };
     let sd = match s.sd {
-        Some((c, unit, si)) => sd_in(table, row, c, (s.size.0, si))?.map(|v| v * unit),
+        Some((c, unit, si)) => table.sd(row, c, (s.size.0, si))?.map(|v| v * unit),
         None => None,
     };
     Ok(Some((value * s.unit, sd.unwrap_or(s.noise))))

@@ -144,7 +144,7 @@ fn weight_sd(
     let noise = noise.map(|n| n * runs.units.unit(quantity).si * newtons);
     let mut one = |row: usize| {
         let stated = column.and_then(|(at, si)| {
-            let read = super::known::sd_in(table, row, at, (Some(quantity), si));
+            let read = table.sd(row, at, (Some(quantity), si));
             read.map_err(|f| faults.push(f)).ok()?.map(|v| v * si)
         });
         stated.map(|v| v * newtons).or(noise)

@@ -211,6 +211,27 @@ impl Table {
         }
     }
 
+    /// The standard deviation in a field that counts as [`Table::size`] does; blank gives `None`.
+    ///
+    /// # Errors
+    /// A fault where it is no number, below zero, or more than this quantity can be.
+    pub fn sd(
+        &self,
+        row: usize,
+        column: usize,
+        of: (Option<Quantity>, f64),
+    ) -> Result<Option<f64>, Fault> {
+        let sd = self.size(row, column, of)?;
+        let Some(v) = sd.filter(|v| *v < 0.0) else {
+            return Ok(sd);
+        };
+        let line = self.rows.get(row).map_or(0, |r| r.0);
+        let name = self.header.get(column).map_or("", String::as_str);
+        let wrong = format!("a standard deviation of {v} is below zero");
+        let remedy = "write how well it is known, 1 sd; blank: as well as `[runs] noise` says";
+        Err(Fault::at(&*self.file, line, name, wrong, remedy))
+    }
+
     /// The number in a field that counts in units of `si` SI units of a quantity of loads or payloads; blank gives `None`.
     ///
     /// # Errors

@@ -168,57 +168,79 @@ fn by_sum(total: f64, sd: f64) -> KnownLoads {
     }
 }
 
-#[test]
-fn runs_weighed_by_their_sum_alone_teach_with_intervals_as_wide_as_their_errors() {
-    let trial = |seed: u64| -> Vec<[f64; 3]> {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let model = Matrix::from_fn(GAUGES, 3, |_, _| 1e-6 * normal(&mut random));
-        let gains: Vec<f64> = (0..GAUGES)
-            .map(|_| 1.0 + 0.03 * normal(&mut random))
-            .collect();
-        let s = Matrix::from_fn(GAUGES, 3, |g, l| {
-            model[(g, l)] * gains[g] * (1.0 + 0.02 * normal(&mut random))
-        });
-        let draw = |random: &mut ChaCha8Rng| [(); 3].map(|()| random.random_range(0.0..30.0));
-        let read = |f: [f64; 3], random: &mut ChaCha8Rng| -> Vec<f64> {
-            let row = |g: usize| (0..3).map(|l| s[(g, l)] * f[l]).sum::<f64>();
-            (0..GAUGES)
-                .map(|g| row(g) + NOISE * normal(random))
-                .collect()
-        };
-        let runs = (0..16).map(|i| {
-            let f = draw(&mut random);
-            let total: f64 = f.iter().sum::<f64>() + 0.1 * normal(&mut random);
-            KnownRun {
-                run: format!("R{i}"),
-                strain: read(f, &mut random),
-                noise_factor: 1.0,
-                loads: by_sum(total, 0.1),
-                group: i,
-            }
-        });
-        let runs = runs.collect();
-        let prior = ModelPrior {
-            values: model.clone(),
-            moves: Vec::new(),
-            off_drawing: None,
-            uncertainty_rel: 0.1,
-        };
-        let c = calibrate(&task(3, runs, Some(prior))).unwrap();
-        let f = draw(&mut random);
-        let found = weighed(&c.sensitivity, read(f, &mut random));
-        let truth = [f[0], f[1], f[2], f.iter().sum()];
-        let each = found.iter().zip(truth);
-        each.map(|([v, sigma, half], f)| [v - f, *sigma, *half])
+/// Sixteen runs of three bays weighed by their sum alone, with a model behind S or, without, four more that are weighed bay by bay; then one to
+/// be weighed.
+fn by_sums(with_model: bool, seed: u64) -> Vec<[f64; 3]> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let model = Matrix::from_fn(GAUGES, 3, |_, _| 1e-6 * normal(&mut random));
+    let gains: Vec<f64> = (0..GAUGES)
+        .map(|_| 1.0 + 0.03 * normal(&mut random))
+        .collect();
+    let s = Matrix::from_fn(GAUGES, 3, |g, l| {
+        model[(g, l)] * gains[g] * (1.0 + 0.02 * normal(&mut random))
+    });
+    let draw = |random: &mut ChaCha8Rng| [(); 3].map(|()| random.random_range(0.0..30.0));
+    let read = |f: [f64; 3], random: &mut ChaCha8Rng| -> Vec<f64> {
+        let row = |g: usize| (0..3).map(|l| s[(g, l)] * f[l]).sum::<f64>();
+        (0..GAUGES)
+            .map(|g| row(g) + NOISE * normal(random))
             .collect()
     };
-    let trials: Vec<Vec<[f64; 3]>> = (0..200).into_par_iter().map(trial).collect();
-    // Each load, which the model tells from the others, and the sum.
-    for which in 0..4 {
-        let found = tally(&trials, which);
-        // Three sd of a binomial of 200, 4.6 %.
-        assert!((0.904..=0.996).contains(&found.held), "{which}: {found:?}");
-        assert!((0.8..1.2).contains(&found.ratio), "{which}: {found:?}");
+    let run = |i: usize, strain: Vec<f64>, loads: KnownLoads| KnownRun {
+        run: format!("R{i}"),
+        strain,
+        noise_factor: 1.0,
+        loads,
+        group: i,
+    };
+    let mut runs = Vec::new();
+    let bays = [
+        [20.0, 0.0, 0.0],
+        [0.0, 20.0, 0.0],
+        [0.0, 0.0, 20.0],
+        [10.0; 3],
+    ];
+    for f in bays.into_iter().filter(|_| !with_model) {
+        let strain = read(f, &mut random);
+        runs.push(run(runs.len(), strain, KnownLoads::exact(f.to_vec())));
+    }
+    for _ in 0..16 {
+        let f = draw(&mut random);
+        let total: f64 = f.iter().sum::<f64>() + 0.1 * normal(&mut random);
+        let strain = read(f, &mut random);
+        runs.push(run(runs.len(), strain, by_sum(total, 0.1)));
+    }
+    let prior = ModelPrior {
+        values: model.clone(),
+        moves: Vec::new(),
+        off_drawing: None,
+        uncertainty_rel: 0.1,
+    };
+    let c = calibrate(&task(3, runs, with_model.then_some(prior))).unwrap();
+    let f = draw(&mut random);
+    let found = weighed(&c.sensitivity, read(f, &mut random));
+    let truth = [f[0], f[1], f[2], f.iter().sum()];
+    let each = found.iter().zip(truth);
+    each.map(|([v, sigma, half], f)| [v - f, *sigma, *half])
+        .collect()
+}
+
+#[test]
+fn runs_weighed_by_their_sum_alone_teach_with_intervals_as_wide_as_their_errors() {
+    for with_model in [true, false] {
+        let trials: Vec<Vec<[f64; 3]>> = (0..200)
+            .into_par_iter()
+            .map(|seed| by_sums(with_model, seed))
+            .collect();
+        // Each load, and the sum.
+        for which in 0..4 {
+            let found = tally(&trials, which);
+            // Three sd of a binomial of 200, 4.6 %.
+            let held = (0.904..=0.996).contains(&found.held);
+            assert!(held, "{with_model} {which}: {found:?}");
+            let as_wide = (0.8..1.2).contains(&found.ratio);
+            assert!(as_wide, "{with_model} {which}: {found:?}");
+        }
     }
 }
 
