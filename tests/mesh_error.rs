@@ -480,7 +480,7 @@ fn a_mesh_divided_round_a_gauge_says_what_one_divided_everywhere_says() {
         }
         println!(
             "{rows} rows: {:.3} of the change is missed",
-            (off / all as f64).sqrt()
+            (off / all).sqrt()
         );
     }
 }
