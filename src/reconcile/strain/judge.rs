@@ -8,6 +8,7 @@ use super::gap::rms;
 use super::likelihood::Fit;
 use super::neighbours::neighbours_that_fail;
 use super::next::next_measurement;
+use super::own_covariance::under_own_covariance;
 use super::prediction::predict;
 use super::recovered::loads_before_after;
 use super::remains::{Withheld, remains, sits};
@@ -188,7 +189,7 @@ pub(super) fn judge(
     let before = adequacy(frame, &[], &[], 0);
     let (after, noise) = reach(frame, candidates, best, &before);
     let reached = at_floor(&after) && noise <= limit::NOISE;
-    let rivals = rival_sets(candidates, all, best);
+    let rivals = rival_sets(frame, candidates, all, best);
     let standing = Standing::of(frame, candidates, all, best, &rivals);
     let fewer = standing.fewer(frame, candidates, best);
     let best = fewer.as_ref().unwrap_or(best);
@@ -230,7 +231,7 @@ pub(super) fn judge(
         doubt,
         is_told: unmodelled.is_some(),
     });
-    let next = match rivals.first().copied().or(hint) {
+    let next = match rivals.first().or(hint) {
         Some(s) => next_measurement(frame, &explained, &Explanation::of(frame, candidates, s)),
         None if verdict == Verdict::Unknown => look_again(&after),
         None => "none needed".into(),
@@ -306,25 +307,37 @@ fn look_again(after: &Adequacy) -> String {
     )
 }
 
-/// Other sets of at most the same number of effects, nearest first, that do not contain the best one.
-fn rival_sets<'a>(
+/// Other sets of at most the same number of effects, nearest first, that do not contain the best one; each under its own covariance, as the
+/// best one is.
+fn rival_sets(
+    frame: &StrainFrame,
     candidates: &[Candidate],
-    all: &'a [Scored<Fit>],
+    all: &[Scored<Fit>],
     best: &Scored<Fit>,
-) -> Vec<&'a Scored<Fit>> {
+) -> Vec<Scored<Fit>> {
     const MOST: usize = 5;
+    /// Of twice as many, since under their own covariance they come in another order.
+    const TRIED: usize = 2 * MOST;
     let own = named_part(candidates, &best.set);
     // Beside a curve, which can take many shapes, sets of any number of names stand.
     let curved = own.iter().any(|c| is_smooth(candidates, *c));
+    let is_near = |s: &Scored<Fit>| best.log_evidence - s.log_evidence < WORTH_NAMING;
     let other = |s: &&Scored<Fit>| {
         let named = named_part(candidates, &s.set);
         !named.is_empty()
             && is_unmodelled(candidates, &s.set).is_none()
             && named != own
             && (curved || named.len() <= own.len().max(1))
-            && best.log_evidence - s.log_evidence < WORTH_NAMING
+            && is_near(s)
     };
-    let mut out: Vec<&Scored<Fit>> = all.iter().filter(other).collect();
+    let near: Vec<&Scored<Fit>> = all.iter().filter(other).take(TRIED).collect();
+    let alone = |s: &&Scored<Fit>| under_own_covariance(frame, candidates, &s.set, s);
+    let mut out: Vec<Scored<Fit>> = near
+        .par_iter()
+        .map(|s| alone(s).unwrap_or_else(|| (*s).clone()))
+        .collect();
+    out.retain(is_near);
+    out.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
     out.truncate(MOST);
     out
 }

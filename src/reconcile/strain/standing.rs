@@ -25,7 +25,7 @@ impl Standing {
         candidates: &[Candidate],
         all: &[Scored<Fit>],
         best: &Scored<Fit>,
-        rivals: &[&Scored<Fit>],
+        rivals: &[Scored<Fit>],
     ) -> Self {
         let names = named_part(candidates, &best.set);
         let others = best.set.iter().copied().filter(|c| !names.contains(c));
@@ -36,7 +36,7 @@ impl Standing {
             _ => None,
         };
         let mut contest = vec![best];
-        contest.extend(rivals.iter().copied().filter(|s| s.set != best.set));
+        contest.extend(rivals.iter().filter(|s| s.set != best.set));
         for none in [known(&[]), known(&noise).or(scored.as_ref())] {
             contest.extend(none.filter(|s| contest.iter().all(|k| k.set != s.set)));
         }
