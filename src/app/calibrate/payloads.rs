@@ -19,8 +19,10 @@ const STATES: [(&str, Quantity); 2] = [
 
 /// Payloads of the runs file.
 pub(super) struct Payloads {
-    /// By row of the table: weight, N, and whether a load of the job is its.
+    /// By row of the table: weight, N, and line of the file.
     weights: Vec<(f64, u32)>,
+    /// The column that states them.
+    column: &'static str,
     /// Whether the job has loads that are the payload's.
     taught: bool,
 }
@@ -91,6 +93,7 @@ pub(super) fn add_columns(
     let weights = rows.iter().map(|r| (weight(r).unwrap_or(0.0), r.line));
     Ok(Some(Payloads {
         weights: weights.collect(),
+        column: states.0,
         taught,
     }))
 }
@@ -165,7 +168,7 @@ impl Payloads {
         Some(Fault::at(
             &*table.file,
             line,
-            STATES[0].0,
+            self.column,
             "a run of known loads carries a payload, and no load of the job is its",
             "add its weight as a load: [[load]] name = \"payload\", and where its place varies \"payload.MY\" (weight times x) and \"payload.MX\" \
              (less weight times y); with a model, loads at `[payload] grid`. Known mass and place make their columns",
