@@ -18,6 +18,13 @@ pub struct RefinedModel {
     pub children: Vec<[ShellIx; 4]>,
 }
 
+impl RefinedModel {
+    /// Whether every shell was divided.
+    pub fn is_whole(&self) -> bool {
+        self.children.iter().all(|c| c[0] != c[1])
+    }
+}
+
 impl Model {
     /// Every shell divided in four at the middles of its sides: [`Model::refined_at`] all of them.
     pub fn refined(&self) -> Option<RefinedModel> {

@@ -81,7 +81,8 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
         .s_of(&all)
         .map_err(|missing| without_strain(job, &missing))?;
     let mesh_error = mesh_errors(&all, &s, &task.errors);
-    work.findings.extend(coarse_at_gauges(&all, &mesh_error));
+    work.findings
+        .extend(coarse_at_gauges(&all, &mesh_error, fields.mesh_left()));
     let names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
     let units = load_units(job, &names);
     let gauges = sheet::placed(&task, &chosen, &spec.prior, &quality, &validation);

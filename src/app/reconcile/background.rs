@@ -14,6 +14,9 @@ const ANGLE_DEG: f64 = 0.5;
 /// Of what halving the mesh changed, this much may still be to come, 1 sd. Where strain is smooth a third of it is (errors fall with the
 /// square of the width), at a point load or a corner as much again.
 const STILL_TO_COME: f64 = 1.0;
+/// The same where the mesh was divided round the gauges alone, which sees two thirds of the whole in open rails; single coefficients err besides as where
+/// no finer mesh was solved.
+const STILL_TO_COME_IN_PART: f64 = 1.5;
 /// Where no finer mesh was solved: share of the stated model uncertainty that single coefficients have besides the common factor.
 pub(super) const ENTRY_SHARE: f64 = 0.5;
 
@@ -51,12 +54,12 @@ pub(super) fn gradients(
     out
 }
 
-/// Errors of one standard deviation: angle, place, mesh. `own` is the influence on the analyst's own mesh where a finer one was solved,
-/// `per_mm` the gradients along and across. None for a model that is stated to be exact.
+/// Errors of one standard deviation: angle, place, mesh. `own` is the influence on the analyst's own mesh where a finer one was solved, with
+/// whether that is finer everywhere; `per_mm` the gradients along and across. None for a model that is stated to be exact.
 pub(super) fn background(
     job: &Job,
     part: &ModelPart,
-    own: Option<&Vec<f64>>,
+    own: Option<(&Vec<f64>, bool)>,
     per_mm: [&Vec<f64>; 2],
 ) -> Vec<Scatter> {
     let model_rel = job
@@ -86,18 +89,21 @@ pub(super) fn background(
             gradient.iter().map(|v| place * v).collect(),
         ));
     }
-    out.push(match own {
+    if let Some((own, is_whole)) = own {
         // The remainder has the pattern of what was found: loads that cancel in the strain cancel in its error.
-        Some(own) => {
-            let rest = part.influence.iter().zip(own);
-            Scatter::Together(rest.map(|(a, own)| STILL_TO_COME * (a - own)).collect())
-        }
-        None => Scatter::Single(
-            part.influence
-                .iter()
-                .map(|a| ENTRY_SHARE * model_rel * a)
-                .collect(),
-        ),
-    });
+        let still = match is_whole {
+            true => STILL_TO_COME,
+            false => STILL_TO_COME_IN_PART,
+        };
+        let rest = part.influence.iter().zip(own);
+        out.push(Scatter::Together(
+            rest.map(|(a, own)| still * (a - own)).collect(),
+        ));
+    }
+    if own.is_none_or(|(_, is_whole)| !is_whole) {
+        let entries = part.influence.iter();
+        let each = entries.map(|a| ENTRY_SHARE * model_rel * a).collect();
+        out.push(Scatter::Single(each));
+    }
     out
 }

@@ -111,7 +111,7 @@ pub(super) fn read(
     part.scatter = background(
         job,
         &part,
-        finer.is_some().then_some(&base),
+        finer.as_ref().map(|f| (&base, f.refined.is_whole())),
         [&along, &across],
     );
     part.per_mm = Some(along);

@@ -1,6 +1,6 @@
 //! The job's model and the strain of its unit loads, from result files or from the built-in solver.
 
-use super::mesh::{WantedAt, not_checked, take_out};
+use super::mesh::{MeshError, WantedAt, not_checked, take_out};
 use super::unit_loads::check_places;
 use crate::app::deck::DeckModel;
 use crate::app::fault::{Fault, FaultList, Faults};
@@ -25,9 +25,8 @@ pub struct Fields {
     pub solutions: Vec<Solution>,
     /// By load: solution, case.
     of_load: Vec<(usize, usize)>,
-    /// By load of the job, the mesh error that was taken out of `solutions`: strain on the deck's mesh less the limit. `None` where that was
-    /// not computed.
-    pub mesh_error: Option<Vec<CaseResult>>,
+    /// The mesh error that was taken out of `solutions`, by load of the job. `None` where that was not computed.
+    pub mesh_error: Option<MeshError>,
     /// First elastic frequency of the structure as the job holds it, cycles per unit of time; `None` where another program solved it.
     pub first_mode: Option<f64>,
 }
@@ -46,7 +45,12 @@ impl Fields {
 
     /// Every load with the mesh error in its case, job order; empty where that was not computed.
     pub fn mesh_cases<'a>(&'a self, job: &Job) -> Vec<LoadCaseOf<'a>> {
-        of_loads(job, self.mesh_error.iter().flatten())
+        of_loads(job, self.mesh_error.iter().flat_map(|e| &e.cases))
+    }
+
+    /// Share of the mesh error that may be left; 0 where it was not computed.
+    pub fn mesh_left(&self) -> f64 {
+        self.mesh_error.as_ref().map_or(0.0, |e| e.left)
     }
 
     /// A case by its subcase id.

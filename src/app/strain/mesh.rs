@@ -20,16 +20,19 @@ use crate::sensitivity::{LoadCaseOf, Sensitivity, Uncertainty};
 use serde::Serialize;
 
 /// Beyond this many shells four times as many would take their time: those round the gauges are divided alone.
-const MOST_SHELLS: usize = 20_000;
-/// Rows of elements round a gauge's that are divided with it: what is farther off changes the strain there little (Saint-Venant).
-/// docs/reference/verification.md has what more and fewer rows leave.
-const ROWS: usize = 6;
+const MOST_SHELLS: usize = 40_000;
+/// Rows of elements round a gauge's that are divided with it, the first that [`MOST_SHELLS`] allows: the error that a mesh makes farther off and
+/// sends to the gauge (a rail that twists too little) is not seen, a third of the whole in open rails with ten rows
+/// (docs/reference/verification.md).
+const ROWS: [usize; 4] = [10, 8, 6, 4];
 /// The error of a mesh over what halving its width changes. Richardson's 4/3 overshoots where the finer mesh meets a corner or the thickness
 /// of the shell; on open, closed and kicked frames of 40 mm against 13 mm this leaves least (docs/reference/verification.md).
 const WHOLE: f64 = 1.2;
 /// Share of the error that may be left once it is taken out, 1 sd, of each entry of S by itself and of the pattern as a whole: where errors
 /// fall with the width itself two thirds are left, which is 1.96 of these.
 const LEFT: f64 = 1.0 / 3.0;
+/// The same where the mesh was divided round the gauges alone: what that doesn't see comes on top, half of what it sees.
+const LEFT_IN_PART: f64 = 0.5;
 /// Beyond this a gauge's mesh error is more than angle, place and gauge factor of a gauge glued with care make together.
 const LARGE: f64 = 0.05;
 /// Entries of S, beyond which their covariance would take more than 128 MB: the rest of the error is then not weighed.
@@ -58,6 +61,14 @@ pub struct LoadMeshError {
     pub mesh_error_rel: Option<f64>,
 }
 
+/// What the mesh made of the strain of the unit loads.
+pub struct MeshError {
+    /// By load: strain on the deck's mesh less the limit.
+    pub cases: Vec<CaseResult>,
+    /// Share of it that may be left once it is taken out, 1 sd, of each entry of S by itself and of the pattern as a whole.
+    pub left: f64,
+}
+
 /// Where the strain is wanted without what the mesh makes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WantedAt {
@@ -67,28 +78,30 @@ pub enum WantedAt {
     Anywhere,
 }
 
-/// The model on a mesh half as wide: everywhere up to [`MOST_SHELLS`], beyond it in [`ROWS`] rows of elements round `gauges`, where these are
+/// The model on a mesh half as wide: everywhere up to [`MOST_SHELLS`], beyond it in [`ROWS`] of elements round `gauges`, where these are
 /// known.
 ///
 /// # Errors
 /// Why none was made, in words.
 pub fn refined_mesh(model: &Model, gauges: Option<&[Gauge]>) -> Result<RefinedModel, String> {
     let n = model.shells.len();
-    let divided = match gauges {
-        _ if n <= MOST_SHELLS => vec![true; n],
-        Some(gauges) => model.shells_near(&shells_under(gauges), ROWS),
-        None => {
+    let count = |divided: &Vec<bool>| divided.iter().filter(|d| **d).count();
+    let divided = if n <= MOST_SHELLS {
+        vec![true; n]
+    } else {
+        let Some(gauges) = gauges else {
             return Err(format!(
                 "the model has {n} shells, and beyond {MOST_SHELLS} four times as many are not solved"
             ));
-        }
+        };
+        let shells = shells_under(gauges);
+        let mut near = ROWS.iter().map(|rows| model.shells_near(&shells, *rows));
+        near.find(|d| count(d) <= MOST_SHELLS).ok_or_else(|| {
+            format!(
+                "the gauges stand on so many of {n} shells that more than {MOST_SHELLS} lie round them, and four times as many are not solved"
+            )
+        })?
     };
-    let marked = divided.iter().filter(|d| **d).count();
-    if marked > MOST_SHELLS {
-        return Err(format!(
-            "{marked} of {n} shells lie round the gauges, and beyond {MOST_SHELLS} four times as many are not solved"
-        ));
-    }
     model.refined_at(&divided).ok_or_else(|| {
         "the mesh can't be divided (shells with mid-side grids, bars or solids along shells in displacement frames of their own, or no shells)"
             .to_owned()
@@ -121,17 +134,17 @@ pub(super) fn take_out(
     job: &Job,
     deck: &DeckModel,
     (solution, at): (&mut Solution, WantedAt),
-) -> Option<Vec<CaseResult>> {
+) -> Option<MeshError> {
     if !job.model.as_ref().is_some_and(|m| m.mesh_error) {
         return None;
     }
     match finer(work, job, deck, (solution, at)) {
-        Ok(changes) => {
-            let errors: Vec<CaseResult> = changes.into_iter().map(|c| times(c, -WHOLE)).collect();
-            for (case, error) in solution.cases.iter_mut().zip(&errors) {
+        Ok((changes, left)) => {
+            let cases: Vec<CaseResult> = changes.into_iter().map(|c| times(c, -WHOLE)).collect();
+            for (case, error) in solution.cases.iter_mut().zip(&cases) {
                 subtract(&mut case.shells, &error.shells);
             }
-            Some(errors)
+            Some(MeshError { cases, left })
         }
         Err(why) => {
             work.findings
@@ -152,13 +165,13 @@ pub(super) fn not_checked(why: &str) -> Finding {
     )
 }
 
-/// By load, the strain on a mesh half as wide less that on the deck's.
+/// By load, the strain on a mesh half as wide less that on the deck's; and the share of the error that may be left.
 fn finer(
     work: &mut Work,
     job: &Job,
     deck: &DeckModel,
     (solution, at): (&Solution, WantedAt),
-) -> Result<Vec<CaseResult>, String> {
+) -> Result<(Vec<CaseResult>, f64), String> {
     let of_fault = |f: crate::app::fault::Faults| {
         f.first()
             .map_or_else(String::new, |f| format!("{}: {}", f.field, f.wrong))
@@ -176,9 +189,14 @@ fn finer(
         })
         .map_err(of_fault)?;
     let pairs: Vec<_> = solution.cases.iter().zip(&fine.cases).collect();
-    Ok(work.stage("mesh error", |_| {
+    let left = match refined.is_whole() {
+        true => LEFT,
+        false => LEFT_IN_PART,
+    };
+    let changes = work.stage("mesh error", |_| {
         change_by_refining(&deck.model, &refined, &pairs)
-    }))
+    });
+    Ok((changes, left))
 }
 
 /// A strain field times a number.
@@ -201,7 +219,7 @@ fn subtract(from: &mut ShellField, what: &ShellField) {
     }
 }
 
-/// What may be left of the mesh error in a reading, 1 sd, strain: root of the sum of squares over loads of the size `scales`.
+/// What may be left of the error of a mesh that was divided everywhere in a reading, 1 sd, strain: root of the sum of squares over loads of the size `scales`.
 pub fn left_in_reading(gauge: &Gauge, errors: &[LoadCaseOf], scales: &[f64]) -> f64 {
     let of = |(e, f): (&LoadCaseOf, &f64)| {
         let strain = reading(gauge, e.case).unwrap_or(0.0);
@@ -210,7 +228,7 @@ pub fn left_in_reading(gauge: &Gauge, errors: &[LoadCaseOf], scales: &[f64]) -> 
     (left_squared() * errors.iter().zip(scales).map(of).sum::<f64>()).sqrt()
 }
 
-/// Share of the mesh error that may be left once it is taken out, squared: its own part and that of the pattern.
+/// Share of it that may be left once it is taken out, squared: its own part and that of the pattern.
 pub fn left_squared() -> f64 {
     2.0 * LEFT * LEFT
 }
@@ -251,7 +269,7 @@ pub fn mesh_errors(
 }
 
 /// Says where the mesh is too coarse for the gauges on it.
-pub fn coarse_at_gauges(gauges: &[Gauge], errors: &[GaugeMeshError]) -> Option<Finding> {
+pub fn coarse_at_gauges(gauges: &[Gauge], errors: &[GaugeMeshError], left: f64) -> Option<Finding> {
     let mut large: Vec<(&Gauge, f64)> = gauges
         .iter()
         .zip(errors)
@@ -279,7 +297,7 @@ pub fn coarse_at_gauges(gauges: &[Gauge], errors: &[GaugeMeshError]) -> Option<F
                 "the deck's mesh is too coarse at {n} of {} gauges: it reads {}{more}. This is taken out of S, and {:.0} % of it counts as not known",
                 gauges.len(),
                 named.join(", "),
-                100.0 * LEFT
+                100.0 * left
             ),
             "refine the deck around these elements, elements half as wide leave a quarter of it; or move the gauges",
         )
@@ -294,7 +312,7 @@ pub(super) fn uncertainty(
     measured: Option<&Measured>,
     gauges: &[Gauge],
     s: &Sensitivity,
-    errors: &[LoadCaseOf],
+    (errors, left_share): (&[LoadCaseOf], f64),
 ) -> Option<Uncertainty> {
     let measured = measured?;
     let (n, k) = s.values.shape();
@@ -316,7 +334,7 @@ pub(super) fn uncertainty(
     }
     let left = crate::linalg::Matrix::from_fn(n, k, |g, l| {
         let error = reading(&gauges[g], errors[l].case).unwrap_or(0.0);
-        LEFT * error / errors[l].applied
+        left_share * error / errors[l].applied
     });
     Some(Uncertainty::of_model(
         &s.values,

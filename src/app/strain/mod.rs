@@ -79,9 +79,16 @@ pub fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
             .map_err(|missing| without_strain(job, &missing))?;
         let errors = fields.mesh_cases(job);
         let measured = job.measured.as_ref();
-        sensitivity.uncertainty = mesh::uncertainty(work, measured, &gauges, &sensitivity, &errors);
+        sensitivity.uncertainty = mesh::uncertainty(
+            work,
+            measured,
+            &gauges,
+            &sensitivity,
+            (&errors, fields.mesh_left()),
+        );
         let mesh_error = mesh_errors(&gauges, &sensitivity, &errors);
-        work.findings.extend(coarse_at_gauges(&gauges, &mesh_error));
+        work.findings
+            .extend(coarse_at_gauges(&gauges, &mesh_error, fields.mesh_left()));
         Prepared {
             sensitivity,
             fields: Some(fields),
