@@ -148,7 +148,11 @@ impl Found {
 
 /// A case in which `effect` is hidden, reconciled on the first half of its runs.
 fn found(effect: &str, size: f64, seed: u64) -> Option<Found> {
-    let name = format!("extended_{effect}_{seed}");
+    // Tests run beside each other, and some hide the same.
+    let test = std::thread::current()
+        .name()
+        .map_or_else(String::new, |n| n.replace("::", "_"));
+    let name = format!("{test}_{effect}_{seed}");
     found_in(&name, (effect, size, seed), |_, _| String::new())
 }
 

@@ -121,8 +121,12 @@ fn a_model_that_is_off_by_a_smooth_factor_is_unknown_smooth_and_its_curve_is_the
         if outcome.verdict != Verdict::Unknown {
             continue;
         }
+        // Noise stated too small may be as good as a small curve: then nothing stands for it.
+        let Some(last) = outcome.best_attempt.last() else {
+            continue;
+        };
         followed += 1;
-        assert_eq!(outcome.best_attempt.last().expect("a curve").id, "smooth");
+        assert_eq!(last.id, "smooth", "{said}");
         for at in outcome.smooth.iter().filter(|s| s.load.is_none()) {
             let gauge = frame.gauges.iter().position(|g| g.name == at.gauge);
             let truth = factor[gauge.expect("a gauge")];
