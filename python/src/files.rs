@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use strainbridge::Disk;
-use strainbridge::app::context::{Files, InMemory};
+use strainbridge::app::context::Files;
 use strainbridge::app::files::{FileBytes, Opened, Stamp};
 
 /// The disk with files from memory before it.
@@ -18,12 +18,10 @@ impl Files for Desk {
         }
     }
 
-    fn open_hashed(&self, path: &Path) -> std::io::Result<(Opened, String)> {
+    fn open(&self, path: &Path) -> std::io::Result<Opened> {
         match self.0.get(path) {
-            Some(bytes) => InMemory::default()
-                .with(path, bytes.clone())
-                .open_hashed(path),
-            None => Disk.open_hashed(path),
+            Some(bytes) => Ok(Opened::Whole(FileBytes::from(bytes.clone()))),
+            None => Disk.open(path),
         }
     }
 

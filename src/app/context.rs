@@ -1,9 +1,8 @@
 //! What a question is asked in: where files come from, where solutions are kept, who hears of progress and may stop the work.
 
 use super::store::SolutionStore;
-use super::whole_file::{FileBytes, Opened, Stamp, hex, load, open_hashed};
+use super::whole_file::{FileBytes, Opened, Stamp, load, open};
 use crate::stop::Stop;
-use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,14 +15,12 @@ pub trait Files: Sync {
     /// Those of the system; [`std::io::ErrorKind::NotFound`] where there is none.
     fn load(&self, path: &Path) -> std::io::Result<FileBytes>;
 
-    /// A file opened, and the SHA-256 of its bytes, hexadecimal.
+    /// A file opened.
     ///
     /// # Errors
     /// As [`Files::load`].
-    fn open_hashed(&self, path: &Path) -> std::io::Result<(Opened, String)> {
-        let bytes = self.load(path)?;
-        let hash = hex(&Sha256::digest(&*bytes));
-        Ok((Opened::Whole(bytes), hash))
+    fn open(&self, path: &Path) -> std::io::Result<Opened> {
+        self.load(path).map(Opened::Whole)
     }
 
     /// The state of a file.
@@ -48,8 +45,8 @@ impl Files for Disk {
         load(path)
     }
 
-    fn open_hashed(&self, path: &Path) -> std::io::Result<(Opened, String)> {
-        open_hashed(path)
+    fn open(&self, path: &Path) -> std::io::Result<Opened> {
+        open(path)
     }
 
     fn stamp(&self, path: &Path) -> std::io::Result<Stamp> {

@@ -7,13 +7,13 @@ use crate::series::record::{Parts, Source, is_read_in_parts};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fs::{File, Metadata};
-use std::io::{Error, ErrorKind, Read, Seek, SeekFrom};
+use std::io::{Error, ErrorKind, Read};
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, mpsc};
 use std::time::UNIX_EPOCH;
 
-/// Bytes handed over to be hashed at a time: they are still in the processor's cache.
+/// Bytes hashed at a time: they are still in the processor's cache.
 const PART: usize = 1 << 20;
 
 /// Bytes of a file, in memory: what another program does to the file meanwhile changes nothing.
@@ -70,6 +70,27 @@ impl Opened {
             Self::Whole(bytes) => Source::Memory(Arc::new(bytes.clone())),
             Self::Parts(file) => Source::File(file.clone()),
         }
+    }
+
+    /// SHA-256 of its bytes, hexadecimal.
+    ///
+    /// # Errors
+    /// Of kind [`ErrorKind::ResourceBusy`] where it was shortened since it was opened; where a part could not be read.
+    pub fn sha256(&self) -> std::io::Result<String> {
+        let file = match self {
+            Self::Whole(bytes) => return Ok(hex(&Sha256::digest(&**bytes))),
+            Self::Parts(file) => file,
+        };
+        let (mut hash, size) = (Sha256::new(), file.size());
+        let (mut part, mut from) = (vec![0; PART], 0);
+        while from < size {
+            let n = PART.min(usize::try_from(size - from).unwrap_or(PART));
+            let part = part.get_mut(..n).unwrap_or_default();
+            filled(&file.file, from, part).map_err(cut_meanwhile)?;
+            hash.update(part);
+            from += n as u64;
+        }
+        Ok(hex(&hash.finalize()))
     }
 
     /// What was read is all that was asked for, of one state of the file.
@@ -132,11 +153,11 @@ fn filled(file: &File, mut from: u64, mut out: &mut [u8]) -> std::io::Result<()>
     Ok(())
 }
 
-/// A file opened, and its SHA-256, formed on a thread of its own while the rest is read.
+/// A file opened, in memory where its format is not [read in parts](is_read_in_parts).
 ///
 /// # Errors
 /// As [`load`].
-pub fn open_hashed(path: &Path) -> std::io::Result<(Opened, String)> {
+pub fn open(path: &Path) -> std::io::Result<Opened> {
     // Before it is opened: opening a pipe waits for its writer.
     check_kind(&std::fs::metadata(path)?)?;
     let mut file = File::open(path)?;
@@ -145,70 +166,13 @@ pub fn open_hashed(path: &Path) -> std::io::Result<(Opened, String)> {
     let mut begin = Vec::new();
     (&mut file).take(8).read_to_end(&mut begin)?;
     if !is_read_in_parts(&begin) {
-        return load_hashed(path).map(|(bytes, hash)| (Opened::Whole(bytes), hash));
+        return load(path).map(Opened::Whole);
     }
-    file.seek(SeekFrom::Start(0))?;
-    let hash = std::thread::scope(|s| {
-        // Parts go round: one is read while another is hashed.
-        let (send, parts) = mpsc::channel::<Vec<u8>>();
-        let (back, idle) = mpsc::sync_channel(2);
-        (0..2).for_each(|_| drop(back.send(Vec::new())));
-        let hashing = s.spawn(move || {
-            let mut hash = Sha256::new();
-            for part in parts {
-                hash.update(&part);
-                drop(back.send(part));
-            }
-            hex(&hash.finalize())
-        });
-        let mut left = before.len();
-        while left > 0 {
-            let mut part = idle.recv().unwrap_or_default();
-            part.resize(PART.min(usize::try_from(left).unwrap_or(PART)), 0);
-            file.read_exact(&mut part).map_err(cut_meanwhile)?;
-            left -= part.len() as u64;
-            drop(send.send(part));
-        }
-        drop(send);
-        hashing.join().map_err(stopped)
-    })?;
-    if differs(&before, &file.metadata()?) {
-        return Err(ErrorKind::ResourceBusy.into());
-    }
-    let parts = InParts {
+    Ok(Opened::Parts(Arc::new(InParts {
         file,
         before,
         failed: AtomicBool::new(false),
-    };
-    Ok((Opened::Parts(Arc::new(parts)), hash))
-}
-
-/// Bytes of a file and their SHA-256.
-fn load_hashed(path: &Path) -> std::io::Result<(FileBytes, String)> {
-    let (mut file, before, room) = opened(path)?;
-    let size = usize::try_from(before.len()).map_err(|_| ErrorKind::OutOfMemory)?;
-    // There was room; zeros cost nothing that the system has not written yet.
-    drop(room);
-    let mut bytes = vec![0; size];
-    let hash = std::thread::scope(|s| {
-        let (send, parts) = mpsc::channel::<&[u8]>();
-        let hashing = s.spawn(move || {
-            let mut hash = Sha256::new();
-            parts.iter().for_each(|part| hash.update(part));
-            hex(&hash.finalize())
-        });
-        for part in bytes.chunks_mut(PART) {
-            file.read_exact(part).map_err(cut_meanwhile)?;
-            // It is received as long as the other thread lives.
-            let _ = send.send(part);
-        }
-        drop(send);
-        hashing.join().map_err(stopped)
-    })?;
-    if differs(&before, &file.metadata()?) {
-        return Err(ErrorKind::ResourceBusy.into());
-    }
-    Ok((bytes.into(), hash))
+    })))
 }
 
 fn cut_meanwhile(e: Error) -> Error {
@@ -216,10 +180,6 @@ fn cut_meanwhile(e: Error) -> Error {
         ErrorKind::UnexpectedEof => ErrorKind::ResourceBusy.into(),
         _ => e,
     }
-}
-
-fn stopped(_: Box<dyn std::any::Any + Send>) -> Error {
-    Error::other("the thread of the digest has stopped")
 }
 
 /// A digest as it is written.
@@ -304,7 +264,8 @@ mod tests {
         for bytes in [vec![], vec![7_u8; 3_000_000]] {
             std::fs::write(&path, &bytes).unwrap();
             assert!(*load(&path).unwrap() == *bytes);
-            let (read, hash) = open_hashed(&path).unwrap();
+            let read = open(&path).unwrap();
+            let hash = read.sha256().unwrap();
             assert!(matches!(read, Opened::Whole(_)));
             let whole = read.source().whole().unwrap();
             assert!((*whole).as_ref() == bytes.as_slice());
@@ -323,7 +284,8 @@ mod tests {
             .chain((0..3_000_000_u32).map(|i| i as u8))
             .collect();
         std::fs::write(&path, &bytes).unwrap();
-        let (read, hash) = open_hashed(&path).unwrap();
+        let read = open(&path).unwrap();
+        let hash = read.sha256().unwrap();
         assert_eq!(hash, hex(&Sha256::digest(&bytes)));
         let Opened::Parts(file) = &read else {
             panic!("read whole")

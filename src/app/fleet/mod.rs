@@ -325,7 +325,7 @@ fn one(
 ) -> Result<(FileHead, Came), Fault> {
     // Before it is read: what changes it afterwards changes this too.
     let stamp = source.stamp(Path::new(path)).ok();
-    let opened = source.open_hashed(Path::new(path));
+    let opened = source.open(Path::new(path));
     let named = form.read(path);
     let mut file = FileResult {
         path: path.to_owned(),
@@ -335,30 +335,45 @@ fn one(
         day: named.as_ref().map_or(String::new(), |n| n.day.clone()),
         result: Err(String::new()),
     };
-    let (opened, hash) = match opened {
-        Ok(read) => read,
-        Err(e) => {
-            file.result = Err(format!("it can't be read: {e}"));
-            return Ok((file.into(), Came::New));
+    let unread = |mut file: FileResult, e: &std::io::Error| {
+        file.sha256 = String::new();
+        file.result = Err(format!("it can't be read: {e}"));
+        Ok((file.into(), Came::New))
+    };
+    let opened = match opened {
+        Ok(opened) => opened,
+        Err(e) => return unread(file, &e),
+    };
+    let before = kept.latest(path);
+    let (hash, result) = match (&named, &before) {
+        (None, _) => {
+            let wrong = "its name is not of the form that [fleet] file_name states";
+            (opened.sha256(), Some(Err(wrong.to_owned())))
+        }
+        (Some(_), Some(_)) => (opened.sha256(), None),
+        // Nothing is kept of it, so that it is done whatever its digest is: while that is formed.
+        (Some(_), None) => {
+            let (hash, day) = rayon::join(|| opened.sha256(), || day_of(kernel, &opened));
+            (hash, Some(day))
         }
     };
-    file.sha256 = hash;
-    if named.is_none() {
-        file.result = Err("its name is not of the form that [fleet] file_name states".to_owned());
-        return Ok((file.into(), Came::New));
+    match hash {
+        Ok(hash) => file.sha256 = hash,
+        Err(e) => return unread(file, &e),
     }
     // What failed is tried again: a build that reads more formats may be at it now.
-    let came = match kept.latest(path) {
+    let came = match before.filter(|_| named.is_some()) {
         Some(before) if before.sha256 != file.sha256 => Came::Replacing,
         Some(before) if before.result.is_ok() => return Ok((before, Came::Kept)),
         _ => Came::New,
     };
-    file.result = day_of(kernel, &opened);
+    file.result = result.unwrap_or_else(|| day_of(kernel, &opened));
+    if named.is_none() {
+        return Ok((file.into(), Came::New));
+    }
     // Whatever was read of a file that changed meanwhile, or could not be read to its end, is worth nothing and not kept: it is tried again.
     if let Err(e) = opened.check() {
-        file.sha256 = String::new();
-        file.result = Err(format!("it can't be read: {e}"));
-        return Ok((file.into(), Came::New));
+        return unread(file, &e);
     }
     kept.put(&file).map_err(|e| not_kept(path, &e))?;
     // What is read back is what a later run would read, to the last digit: a merge of kept results has the same bytes.

@@ -14,8 +14,8 @@ const ANGLE_DEG: f64 = 0.5;
 /// Of what halving the mesh changed, this much may still be to come, 1 sd. Where strain is smooth a third of it is (errors fall with the
 /// square of the width), at a point load or a corner as much again.
 const STILL_TO_COME: f64 = 1.0;
-/// The same where the mesh was divided round the gauges alone, which sees two thirds of the whole in open rails; single coefficients err besides as where
-/// no finer mesh was solved.
+/// The same where the mesh was divided round the gauges alone, which sees two thirds of the whole in open rails; single coefficients err besides
+/// as where no finer mesh was solved.
 const STILL_TO_COME_IN_PART: f64 = 1.5;
 /// Where no finer mesh was solved: share of the stated model uncertainty that single coefficients have besides the common factor.
 pub(super) const ENTRY_SHARE: f64 = 0.5;

@@ -219,7 +219,8 @@ fn subtract(from: &mut ShellField, what: &ShellField) {
     }
 }
 
-/// What may be left of the error of a mesh that was divided everywhere in a reading, 1 sd, strain: root of the sum of squares over loads of the size `scales`.
+/// What may be left of the error of a mesh that was divided everywhere in a reading, 1 sd, strain: root of the sum of squares over loads of the
+/// size `scales`.
 pub fn left_in_reading(gauge: &Gauge, errors: &[LoadCaseOf], scales: &[f64]) -> f64 {
     let of = |(e, f): (&LoadCaseOf, &f64)| {
         let strain = reading(gauge, e.case).unwrap_or(0.0);
