@@ -363,6 +363,7 @@ impl Fleet {
                 }
                 out.extend(gain_changes(v, g));
             }
+            out.extend(v.loads.iter().filter_map(|l| mostly_noise(&v.name, l)));
         }
         out
     }
@@ -433,5 +434,22 @@ pub(super) fn gain_changes(v: &VehicleAnswer, g: &GaugeHistory) -> Option<Findin
             "look at its lead wires, amplifier and glue",
         )
         .with_numbers(is - was, OFF)
+    })
+}
+
+/// Says that what noise makes of the ranges is most of the damage that was counted.
+fn mostly_noise(vehicle: &str, l: &VehicleLoadAnswer) -> Option<Finding> {
+    /// Of the damage counted.
+    const MOST: f64 = 0.5;
+    let share = l.noise_bias / l.damage_counted;
+    (share > MOST).then(|| {
+        let message = format!(
+            "{:.0} % of the damage that was counted is made by noise, and is taken off by what more noise makes: the rest is known as well as its interval says",
+            100.0 * share
+        );
+        let remedy = "filter the record below the noise, or place gauges that read this load better";
+        let subject = format!("{vehicle} {}", l.load);
+        Finding::new(Severity::Warning, "damage-of-noise", subject, message, remedy)
+            .with_numbers(share, MOST)
     })
 }

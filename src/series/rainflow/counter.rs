@@ -329,13 +329,26 @@ fn widest(max: &mut Option<Extreme>, min: &mut Option<Extreme>, first: usize, va
 /// Counts the rises of samples through borders of classes, that from the latest one before them included.
 #[inline(always)]
 fn rises(levels: &mut Counts<i32>, width: f64, latest: Option<Point>, values: &[f64]) {
+    // Within a class, its borders left out by more than rounding, nothing is counted and nothing divided.
+    let within = |class: i32| {
+        let [low, high] = [f64::from(class) * width, (f64::from(class) + 1.0) * width];
+        let rounding = 1e-9 * width + 4.0 * f64::EPSILON * low.abs().max(high.abs());
+        [low + rounding, high - rounding]
+    };
     let mut before = latest.map(|p| class(p.value, width));
-    for value in values.iter().filter(|v| v.is_finite()) {
-        let here = class(*value, width);
+    let [mut low, mut high] = before.map_or([f64::NAN; 2], within);
+    for &value in values {
+        if (value > low) & (value < high) || !value.is_finite() {
+            continue;
+        }
+        let here = class(value, width);
         if let Some(before) = before.filter(|b| here > *b) {
             risen(before, here).for_each(|border| levels.add(border));
         }
-        before = Some(here);
+        if before != Some(here) {
+            before = Some(here);
+            [low, high] = within(here);
+        }
     }
 }
 

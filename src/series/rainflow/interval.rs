@@ -55,6 +55,9 @@ pub struct Shared {
     pub cycles: bool,
 }
 
+/// Share of the bias of noise that may be wrong, 1 sd.
+const OFF: f64 = 0.15;
+
 /// A number with its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Ratio {
@@ -84,8 +87,11 @@ impl DamageParts {
     /// Those of a tally; `scale` is the covariance of the errors of this load's row of the gain, `f = (1 + C) f_true`, row-major,
     /// `n_loads x n_loads`; `noise` is the standard deviation of a sample.
     ///
-    /// The bias is found by counting with more noise: damage at one, two and three times the noise, a parabola through them, and its value at
-    /// none (Cook and Stefanski's simulation extrapolation). The straight line through the first two bounds what the parabola may err.
+    /// The bias is found by counting with more noise: damage at one, two and three times the noise, a parabola through its logarithms, and its
+    /// value at none (Cook and Stefanski's simulation extrapolation). Of the damage itself a parabola ends above what was counted where noise makes
+    /// half of it, since damage grows with a power of the noise there. The straight line through the first two bounds what it may err, and
+    /// [`OFF`] of the bias: on sines and on Gaussian loads of slopes 5 and 9 with noise of .5 to 15 % of the range it ended within 20 % of the
+    /// damage without noise, where up to seven times that was counted.
     ///
     /// # Reference
     /// J.R. Cook, L.A. Stefanski, Simulation-extrapolation estimation in parametric measurement error models, JASA 89 (1994) 1314-1328.
@@ -93,9 +99,10 @@ impl DamageParts {
         let sums = tally.sums_with_residue();
         let [once, twice, thrice] = sums.damage;
         debug_assert_eq!(NOISE, [1.0, 2.0, 3.0]);
-        let (value, line) = if noise > 0.0 {
-            // Lagrange's polynomials of the points 1, 2, 3 (and 1, 2) at 0.
-            (3.0 * once - 3.0 * twice + thrice, 2.0 * once - twice)
+        let (value, line) = if noise > 0.0 && once > 0.0 && twice > 0.0 {
+            // Lagrange's polynomials of the points 1, 2, 3 (and 1, 2) at 0. Noise makes ranges wider: without it there is no more.
+            let at_none = (once / twice).powi(3) * thrice;
+            (at_none.min(once), (once / twice * once).min(once))
         } else {
             (once, once)
         };
@@ -106,7 +113,7 @@ impl DamageParts {
             value,
             counted: once,
             noise: noise * noise * sums.scatter * (1.0 + if noise > 0.0 { added } else { 0.0 }),
-            sigma_bias: (value - line).abs(),
+            sigma_bias: (value - line).abs().max(OFF * (once - value)),
             by_load: sums.by_load,
             scale: scale.to_vec(),
         }
