@@ -117,7 +117,17 @@ fn a_model_that_is_off_by_a_smooth_factor_is_unknown_smooth_and_its_curve_is_the
         }
         let outcome = examine(&frame, &[]);
         let said = format!("{sd} {seed}: {:?} {:?}", ids(&outcome), outcome.remains);
-        assert_ne!(outcome.verdict, Verdict::Named, "{said}");
+        if outcome.verdict == Verdict::Named {
+            // A curve drawn at random may be one factor and nothing more, within what noise and the model's 1 % leave.
+            let mean = factor.iter().sum::<f64>() / GAUGES as f64;
+            let off = factor.iter().map(|f| (f / mean - 1.0).powi(2)).sum::<f64>();
+            let off = (off / GAUGES as f64).sqrt();
+            assert!(
+                ids(&outcome) == ["global_scale"] && off < 0.02,
+                "{said} {off}"
+            );
+            continue;
+        }
         if outcome.verdict != Verdict::Unknown {
             continue;
         }

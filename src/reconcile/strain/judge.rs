@@ -193,6 +193,9 @@ pub(super) fn judge(
     let standing = Standing::of(frame, candidates, all, best, &rivals);
     let fewer = standing.fewer(frame, candidates, best);
     let best = fewer.as_ref().unwrap_or(best);
+    // As its rivals are.
+    let alone = under_own_covariance(frame, candidates, &best.set, best);
+    let level = alone.map_or(best.log_evidence, |s| s.log_evidence);
     let explained = Explanation::of(frame, candidates, best);
     let (after, noise) = match fewer {
         Some(_) => reach(frame, candidates, best, &before),
@@ -240,9 +243,9 @@ pub(super) fn judge(
         .par_iter()
         .map(|s| Rival {
             ids: ids(candidates, &s.set),
-            evidence_difference: best.log_evidence - s.log_evidence,
+            evidence_difference: level - s.log_evidence,
             gap_after: validated(proofs, candidates, s).0.after,
-            indistinguishable: best.log_evidence - s.log_evidence < INDISTINGUISHABLE,
+            indistinguishable: level - s.log_evidence < INDISTINGUISHABLE,
         })
         .collect();
     let left = remains(
