@@ -8,7 +8,7 @@ use super::gap::rms;
 use super::likelihood::Fit;
 use super::neighbours::neighbours_that_fail;
 use super::next::next_measurement;
-use super::own_covariance::under_own_covariance;
+use super::own_covariance::{under_own_covariance, with_members};
 use super::prediction::predict;
 use super::recovered::loads_before_after;
 use super::remains::{Withheld, remains, sits};
@@ -334,11 +334,21 @@ fn rival_sets(
             && is_near(s)
     };
     let near: Vec<&Scored<Fit>> = all.iter().filter(other).take(TRIED).collect();
-    let alone = |s: &&Scored<Fit>| under_own_covariance(frame, candidates, &s.set, s);
-    let mut out: Vec<Scored<Fit>> = near
-        .par_iter()
-        .map(|s| alone(s).unwrap_or_else(|| (*s).clone()))
+    // What the best set takes of noise stands for no name: a rival may take it, too.
+    let besides: Vec<usize> = (best.set.iter().copied())
+        .filter(|c| !own.contains(c))
         .collect();
+    let alike = |s: &&Scored<Fit>| {
+        let alone = under_own_covariance(frame, candidates, &s.set, s);
+        let mut set = named_part(candidates, &s.set);
+        set.extend(&besides);
+        set.sort_unstable();
+        let beside = (set != s.set).then(|| with_members(frame, candidates, &set, s));
+        let better = |a: &Scored<Fit>, b: &Scored<Fit>| a.log_evidence.total_cmp(&b.log_evidence);
+        let both = alone.into_iter().chain(beside.flatten());
+        both.max_by(better).unwrap_or_else(|| (*s).clone())
+    };
+    let mut out: Vec<Scored<Fit>> = near.par_iter().map(alike).collect();
     out.retain(is_near);
     out.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
     out.truncate(MOST);

@@ -52,6 +52,19 @@ pub(super) fn under_own_covariance(
     Likelihood::new(frame, candidates, &runs, &reference).score(set, Some((near, None)))
 }
 
+/// A set that holds more than `near`, fitted from the start, under the covariance of what `near` has of it.
+pub(super) fn with_members(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    set: &[usize],
+    near: &Scored<Fit>,
+) -> Option<Scored<Fit>> {
+    let runs = frame.observations.fit_runs();
+    let mut reference = reference_of(near);
+    reference.retain(|(c, _)| set.contains(c));
+    Likelihood::new(frame, candidates, &runs, &reference).score(set, None)
+}
+
 /// Members with their parameters.
 pub(super) fn reference_of(s: &Scored<Fit>) -> Vec<(usize, Vec<f64>)> {
     let parameters = s.fit.parameters.iter().cloned();
