@@ -190,12 +190,19 @@ pub(super) fn judge(
     let (after, noise) = reach(frame, candidates, best, &before);
     let reached = at_floor(&after) && noise <= limit::NOISE;
     let rivals = rival_sets(frame, candidates, all, best);
-    let standing = Standing::of(frame, candidates, all, best, &rivals);
+    // As its rivals are.
+    let level = |s: &Scored<Fit>| {
+        under_own_covariance(frame, candidates, &s.set, s)
+            .map_or(s.log_evidence, |own| own.log_evidence)
+    };
+    let alike = Scored {
+        log_evidence: level(best),
+        ..best.clone()
+    };
+    let standing = Standing::of(frame, candidates, all, &alike, &rivals);
     let fewer = standing.fewer(frame, candidates, best);
     let best = fewer.as_ref().unwrap_or(best);
-    // As its rivals are.
-    let alone = under_own_covariance(frame, candidates, &best.set, best);
-    let level = alone.map_or(best.log_evidence, |s| s.log_evidence);
+    let level = fewer.as_ref().map_or(alike.log_evidence, level);
     let explained = Explanation::of(frame, candidates, best);
     let (after, noise) = match fewer {
         Some(_) => reach(frame, candidates, best, &before),

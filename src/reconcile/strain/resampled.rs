@@ -13,76 +13,66 @@ use crate::reconcile::search::Scored;
 /// Drawings: a share of wins is then known to five in a hundred.
 pub(super) const DRAWINGS: usize = 100;
 
-/// Of 100 drawings of as many runs with replacement, by set those in which it is ahead of all others: its log evidence then is that of
-/// all runs, each run's own log density counted as often as the run is drawn. Parameters and sizes stay as fitted; correlation between
-/// runs is left out, but for what the full evidence holds of it. Runs that the effects of any set alone touch are in every drawing, since
+/// Of 100 drawings of as many runs with replacement, by set those in which it is ahead of all others; where one is ahead that no drawing could
+/// tell from the first (their densities differ by less than odds of twenty to one over all runs together), the first is. The log evidence of a
+/// set is then that of all runs, each run's own log density counted as often as the run is drawn. Parameters and sizes stay as fitted; correlation
+/// between runs is left out, but for what the full evidence holds of it. Runs that the effects of any set alone touch are in every drawing, since
 /// without them nothing is to be seen of these effects.
-pub(super) struct Drawings {
-    /// By set.
-    pub won: Vec<usize>,
-    /// The same where sets that no drawing could tell from the first (their densities differ by less than odds of twenty to one over all runs
-    /// together) win for it.
-    pub told: Vec<usize>,
-}
-
-impl Drawings {
-    /// Of some sets, the best first.
-    pub fn of(frame: &StrainFrame, candidates: &[Candidate], sets: &[&Scored<Fit>]) -> Self {
-        let runs = frame.observations.fit_runs();
-        let members = sets.iter().flat_map(|s| &s.set);
-        let touched: Vec<usize> = (members.filter_map(|&c| candidates.get(c)))
-            .flat_map(|c| c.effect.runs())
-            .filter_map(|r| runs.iter().position(|k| *k == r))
-            .collect();
-        let free: Vec<usize> = (0..runs.len()).filter(|k| !touched.contains(k)).collect();
-        let by_run: Vec<Vec<f64>> = sets
-            .iter()
-            .map(|s| densities(frame, candidates, s, &runs))
-            .collect();
-        let mut numbers = Numbers(1);
-        let alike = |k: usize| {
-            let (Some(a), Some(b)) = (by_run.first(), by_run.get(k)) else {
-                return false;
-            };
-            let apart = a.iter().zip(b).map(|(x, y)| (x - y).abs()).sum::<f64>();
-            a.len() == b.len() && apart < INDISTINGUISHABLE
+pub(super) fn drawings_won(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    sets: &[&Scored<Fit>],
+) -> Vec<usize> {
+    let runs = frame.observations.fit_runs();
+    let members = sets.iter().flat_map(|s| &s.set);
+    let touched: Vec<usize> = (members.filter_map(|&c| candidates.get(c)))
+        .flat_map(|c| c.effect.runs())
+        .filter_map(|r| runs.iter().position(|k| *k == r))
+        .collect();
+    let free: Vec<usize> = (0..runs.len()).filter(|k| !touched.contains(k)).collect();
+    let by_run: Vec<Vec<f64>> = sets
+        .iter()
+        .map(|s| densities(frame, candidates, s, &runs))
+        .collect();
+    let mut numbers = Numbers(1);
+    let alike = |k: usize| {
+        let (Some(a), Some(b)) = (by_run.first(), by_run.get(k)) else {
+            return false;
         };
-        let stands_for: Vec<usize> = (0..sets.len())
-            .map(|k| if alike(k) { 0 } else { k })
+        let apart = a.iter().zip(b).map(|(x, y)| (x - y).abs()).sum::<f64>();
+        a.len() == b.len() && apart < INDISTINGUISHABLE
+    };
+    let stands_for: Vec<usize> = (0..sets.len())
+        .map(|k| if alike(k) { 0 } else { k })
+        .collect();
+    let ahead = |counts: &[usize]| {
+        let evidence = |(s, by_run): (&&Scored<Fit>, &Vec<f64>)| {
+            let drawn: f64 = by_run
+                .iter()
+                .zip(counts)
+                .map(|(d, n)| d * (*n as f64 - 1.0))
+                .sum();
+            s.log_evidence + drawn
+        };
+        let all: Vec<f64> = sets.iter().zip(&by_run).map(evidence).collect();
+        (0..all.len()).max_by(|a, b| all[*a].total_cmp(&all[*b]))
+    };
+    let mut won = vec![0; sets.len()];
+    for _ in 0..DRAWINGS {
+        let mut counts: Vec<usize> = (0..runs.len())
+            .map(|k| usize::from(touched.contains(&k)))
             .collect();
-        let ahead = |counts: &[usize]| {
-            let evidence = |(s, by_run): (&&Scored<Fit>, &Vec<f64>)| {
-                let drawn: f64 = by_run
-                    .iter()
-                    .zip(counts)
-                    .map(|(d, n)| d * (*n as f64 - 1.0))
-                    .sum();
-                s.log_evidence + drawn
-            };
-            let all: Vec<f64> = sets.iter().zip(&by_run).map(evidence).collect();
-            (0..all.len()).max_by(|a, b| all[*a].total_cmp(&all[*b]))
-        };
-        let mut out = Self {
-            won: vec![0; sets.len()],
-            told: vec![0; sets.len()],
-        };
-        for _ in 0..DRAWINGS {
-            let mut counts: Vec<usize> = (0..runs.len())
-                .map(|k| usize::from(touched.contains(&k)))
-                .collect();
-            for _ in 0..free.len() {
-                let drawn = free.get(numbers.below(free.len()));
-                if let Some(n) = drawn.and_then(|k| counts.get_mut(*k)) {
-                    *n += 1;
-                }
-            }
-            if let Some(k) = ahead(&counts) {
-                out.won[k] += 1;
-                out.told[stands_for[k]] += 1;
+        for _ in 0..free.len() {
+            let drawn = free.get(numbers.below(free.len()));
+            if let Some(n) = drawn.and_then(|k| counts.get_mut(*k)) {
+                *n += 1;
             }
         }
-        out
+        if let Some(k) = ahead(&counts) {
+            won[stands_for[k]] += 1;
+        }
     }
+    won
 }
 
 /// By run: log density of its readings with the set on, less constants.

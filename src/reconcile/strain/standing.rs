@@ -4,7 +4,7 @@ use super::explanation::{ids, is_unmodelled, named_part};
 use super::frame::StrainFrame;
 use super::likelihood::Fit;
 use super::own_covariance::under_own_covariance;
-use super::resampled::{DRAWINGS, Drawings};
+use super::resampled::{DRAWINGS, drawings_won};
 use crate::reconcile::effect::Candidate;
 use crate::reconcile::search::Scored;
 
@@ -40,9 +40,9 @@ impl Standing {
         for none in [known(&[]), known(&noise).or(scored.as_ref())] {
             contest.extend(none.filter(|s| contest.iter().all(|k| k.set != s.set)));
         }
-        let drawings = Drawings::of(frame, candidates, &contest);
+        let won = drawings_won(frame, candidates, &contest);
         let holds = |c: &usize| {
-            let holding = contest.iter().zip(&drawings.told);
+            let holding = contest.iter().zip(&won);
             let holding = holding.filter(|(s, _)| s.set.contains(c));
             holding.map(|(_, won)| won).sum::<usize>()
         };
@@ -51,7 +51,7 @@ impl Standing {
         let doubt = if standing.len() == names.len() {
             None
         } else if standing.is_empty() {
-            Some(seldom_ahead(candidates, &contest, &drawings.told))
+            Some(seldom_ahead(candidates, &contest, &won))
         } else {
             let unsure = names.iter().filter(|c| !standing.contains(c));
             let told =
@@ -66,7 +66,7 @@ impl Standing {
         Self {
             names: standing,
             doubt,
-            contest: sets.zip(drawings.won).collect(),
+            contest: sets.zip(won).collect(),
         }
     }
 
