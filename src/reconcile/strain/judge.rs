@@ -8,7 +8,7 @@ use super::gap::rms;
 use super::likelihood::Fit;
 use super::neighbours::neighbours_that_fail;
 use super::next::next_measurement;
-use super::own_covariance::{under_own_covariance, with_members};
+use super::own_covariance::{own_evidence, under_own_covariance, with_members};
 use super::prediction::predict;
 use super::recovered::loads_before_after;
 use super::remains::{Withheld, remains, sits};
@@ -191,10 +191,7 @@ pub(super) fn judge(
     let reached = at_floor(&after) && noise <= limit::NOISE;
     let rivals = rival_sets(frame, candidates, all, best);
     // As its rivals are.
-    let level = |s: &Scored<Fit>| {
-        under_own_covariance(frame, candidates, &s.set, s)
-            .map_or(s.log_evidence, |own| own.log_evidence)
-    };
+    let level = |s: &Scored<Fit>| own_evidence(frame, candidates, s);
     let alike = Scored {
         log_evidence: level(best),
         ..best.clone()

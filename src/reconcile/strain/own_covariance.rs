@@ -52,6 +52,12 @@ pub(super) fn under_own_covariance(
     Likelihood::new(frame, candidates, &runs, &reference).score(set, Some((near, None)))
 }
 
+/// Log evidence of a set under its own covariance.
+pub(super) fn own_evidence(frame: &StrainFrame, candidates: &[Candidate], s: &Scored<Fit>) -> f64 {
+    let own = under_own_covariance(frame, candidates, &s.set, s);
+    own.map_or(s.log_evidence, |own| own.log_evidence)
+}
+
 /// A set that holds more than `near`, fitted from the start, under the covariance of what `near` has of it.
 pub(super) fn with_members(
     frame: &StrainFrame,
