@@ -20,21 +20,34 @@ pub const MODES: usize = 10;
 /// What holds the structure of a job under its unit loads.
 ///
 /// # Errors
-/// An SPC set that the deck lacks; several that its subcases select.
+/// An SPC set that the deck lacks; several that its subcases select; one that moves grids.
 pub fn support_of_job(job: &Job, model: &Model) -> Result<Support, Faults> {
     let (wanted, line) = job
         .model
         .as_ref()
         .map_or((SupportChoice::Deck, 0), |m| (m.support, m.support_line));
-    support_of(model, wanted).map_err(|e| {
-        Faults::from(Fault::at(
-            &*job.file,
-            line,
-            "model.support",
-            e.to_string(),
-            "write support = \"free\", or the id of the SPC set that holds the structure while gauges are read",
-        ))
-    })
+    let fault =
+        |wrong: String, remedy: &str| Fault::at(&*job.file, line, "model.support", wrong, remedy);
+    let support = support_of(model, wanted).map_err(|e| {
+        let remedy = "write support = \"free\", or the id of the SPC set that holds the structure while gauges are read";
+        Faults::from(fault(e.to_string(), remedy))
+    })?;
+    match moved_by(model, support) {
+        None => Ok(support),
+        Some((sid, grid, by)) => Err(Faults::from(fault(
+            format!(
+                "SPC set {sid} moves grid {grid} by {by}: the strain of that goes with no load, and would stand in every column of S"
+            ),
+            "hold it at 0, or name another set; `solve` of the deck takes displacements that its subcases enforce",
+        ))),
+    }
+}
+
+/// The first displacement other than zero that a support enforces: SPC set, grid, size.
+fn moved_by(model: &Model, support: Support) -> Option<(u32, u32, f64)> {
+    let set = model.spcs.iter().find(|s| Some(s.sid) == support.spc)?;
+    let (grid, _, by) = set.terms.iter().find(|t| t.2 != 0.0)?;
+    Some((set.sid, model.grids.get(grid.us())?.id, *by))
 }
 
 /// Which support it is, for `check` and `init`.

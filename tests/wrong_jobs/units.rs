@@ -306,6 +306,28 @@ fn every_command_that_reads_a_job_s_deck_judges_its_modulus() {
 }
 
 #[test]
+fn a_support_that_moves_is_refused_where_unit_loads_are_asked() {
+    let to = copied("moving_support", "frame");
+    let held = |by: &str| format!("SPC1,7,123456,1\nSPC,7,2,3,{by}\nENDDATA");
+    edit(&to, "frame.bdf", |t| t.replace("ENDDATA", &held("0.01")));
+    edit(&to, "recover.toml", |t| {
+        t.replace("support = \"free\"", "support = 7")
+    });
+    for command in ["sensitivity", "recover"] {
+        refuses(
+            &to,
+            &[command, "recover.toml"],
+            "model.support: SPC set 7 moves grid 2",
+        );
+    }
+    edit(&to, "frame.bdf", |t| {
+        t.replace("SPC,7,2,3,0.01", "SPC,7,2,3,0.0")
+    });
+    let (exit, _, errors) = judged(&to, &["sensitivity", "recover.toml"]);
+    assert!(exit < 2, "{errors}");
+}
+
+#[test]
 fn limits_of_a_vehicle_that_leave_no_value_are_faults_and_open_ones_change_nothing() {
     let identify = ["identify", "identify.toml"];
     let stated = "noise = { acc = 0.02, force = 60.0 }";
