@@ -176,7 +176,7 @@ fn levels_are_rises_through_borders_sample_by_sample_on_borders_too() {
             .into_iter()
             .map(|(border, n)| (border, n as usize))
             .collect();
-        assert!(expected.len() > load, "{load}: {expected:?}");
+        assert!(!expected.is_empty(), "{load}");
         assert_eq!(found, expected.into_iter().collect::<Vec<_>>(), "{load}");
     }
 }
