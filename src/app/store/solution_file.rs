@@ -4,7 +4,7 @@
 
 use super::key::Key;
 use crate::fe::{Balance, MassProperties, Reaction, Reactions, SolveReport, Solved};
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, explain};
 use crate::linalg::Matrix6;
 use crate::linalg::sparse::OrderingMethod;
 use crate::model::Vec3;
@@ -93,22 +93,6 @@ fn reals(out: &mut Vec<u8>, values: &[f64]) {
         .for_each(|v| out.extend_from_slice(&v.to_le_bytes()));
 }
 
-/// Codes of findings that the solver gives.
-const CODES: &[&str] = &[
-    "autospc",
-    "tied-to-ground",
-    "load-is-inertia-only",
-    "formulation",
-    "inaccurate-solution",
-    "contradicting-spc",
-    "every-dof-held",
-    "folded-quad",
-    "inverted-solid",
-    "load-into-support",
-    "no-load",
-    "re-entrant-quad",
-];
-
 /// `None` for bytes that are no solution of this hash, number of grids and of cases.
 pub(super) fn decode(bytes: &[u8], Key(hash): &Key, grids: usize, cases: usize) -> Option<Solved> {
     let (body, sum) = bytes.split_at_checked(bytes.len().checked_sub(32)?)?;
@@ -170,8 +154,7 @@ pub(super) fn decode(bytes: &[u8], Key(hash): &Key, grids: usize, cases: usize) 
             1 => Severity::Warning,
             _ => Severity::Error,
         };
-        let code = at.text()?;
-        let code = CODES.iter().find(|c| **c == code)?;
+        let code = explain::code(&at.text()?)?.code;
         let (subject, message, remedy) = (at.text()?, at.text()?, at.text()?);
         let [measured, limit] = at.array()?;
         let there = |v: f64| (!v.is_nan()).then_some(v);

@@ -1,6 +1,7 @@
 use super::Key;
 use super::solution_file::{decode, encode};
 use crate::fe::{Balance, MassProperties, Reaction, Reactions, SolveReport, Solved};
+use crate::finding::explain::codes;
 use crate::finding::{Finding, Severity};
 use crate::linalg::Matrix6;
 use crate::linalg::sparse::OrderingMethod;
@@ -55,6 +56,17 @@ fn a_kept_solution_comes_back_bit_by_bit() {
     assert_eq!(back.displacements, s.displacements);
     assert_eq!(back.report, s.report);
     assert_eq!(back.findings, s.findings);
+}
+
+#[test]
+fn findings_of_every_code_come_back() {
+    let hash = Key([7; 32]);
+    for code in codes() {
+        let mut s = solved();
+        s.findings = vec![Finding::new(Severity::Warning, code.code, "a", "b", "c")];
+        let back = decode(&encode(&s, &hash), &hash, 7, 3);
+        assert_eq!(back.expect(code.code).findings, s.findings);
+    }
 }
 
 #[test]
