@@ -69,6 +69,7 @@ pub fn model_of_deck(inputs: &mut Inputs, base: &Path, given: &str, bytes: &[u8]
     let mut findings = notes_of(&deck, given);
     let file_of = |f: &ModelFault| deck.path(f.at).to_owned();
     sort_out(&model_faults, &file_of, &mut faults, &mut findings, given);
+    faults.extend(mass_beyond(&model, given));
     DeckModel {
         given: given.to_owned(),
         deck,
@@ -77,6 +78,20 @@ pub fn model_of_deck(inputs: &mut Inputs, base: &Path, given: &str, bytes: &[u8]
         faults,
         findings,
     }
+}
+
+/// The fault of a model whose mass or centre of gravity is more than numbers can be.
+fn mass_beyond(model: &Model, given: &str) -> Option<Fault> {
+    let weight = model.weight();
+    let numbers = [weight.mass, weight.cg.x, weight.cg.y, weight.cg.z];
+    (!numbers.iter().all(|v| v.is_finite())).then(|| {
+        Fault::of(
+            given,
+            "mass",
+            "the mass of the model, or its centre of gravity, is more than numbers can be",
+            "look for a density, thickness, area or CONM2 with an exponent too many",
+        )
+    })
 }
 
 /// The model in the geometry blocks of an OP2.

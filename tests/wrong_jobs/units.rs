@@ -306,6 +306,25 @@ fn every_command_that_reads_a_job_s_deck_judges_its_modulus() {
 }
 
 #[test]
+fn a_deck_whose_mass_is_more_than_numbers_can_be_is_a_fault_of_every_command() {
+    for (name, from, to) in [
+        ("thick", "PSHELL,1,1,6.,1,,1", "PSHELL,1,1,1.+308,1,,1"),
+        ("dense", "0.3,7.85-9", "0.3,1.+308"),
+        ("heavy", "ENDDATA", "CONM2,9001,180,,1.+308\nENDDATA"),
+    ] {
+        let folder = copied(&format!("mass_{name}"), "frame");
+        edit(&folder, "frame.bdf", |t| t.replace(from, to));
+        for command in ["check", "sensitivity"] {
+            refuses(
+                &folder,
+                &[command, "recover.toml"],
+                "mass: the mass of the model",
+            );
+        }
+    }
+}
+
+#[test]
 fn a_support_that_moves_is_refused_where_unit_loads_are_asked() {
     let to = copied("moving_support", "frame");
     let held = |by: &str| format!("SPC1,7,123456,1\nSPC,7,2,3,{by}\nENDDATA");
