@@ -22,6 +22,33 @@ pub(super) struct Zeroed {
     pub noise_factor: Vec<f64>,
 }
 
+impl Zeroed {
+    /// What these gauges read in each row, strain; not a number for a gauge without a column.
+    pub fn readings(&self, gauges: &[String]) -> Vec<Readings> {
+        let table = &self.table;
+        let column = |g: &String| table.gauges.iter().position(|h| h == g);
+        let columns: Vec<Option<usize>> = gauges.iter().map(column).collect();
+        let of_row = |(i, noise_factor): (usize, &f64)| {
+            let row = table.row(i);
+            let reading = |c: &Option<usize>| c.and_then(|c| row.get(c)).copied();
+            let strain = columns.iter().map(reading);
+            Readings {
+                run: match &table.rows {
+                    StrainRows::Runs(names) => names.get(i).cloned().unwrap_or_default(),
+                    StrainRows::Times(times) => {
+                        times.get(i).map(f64::to_string).unwrap_or_default()
+                    }
+                },
+                strain: strain
+                    .map(|v| v.unwrap_or(f64::NAN) * MICROSTRAIN)
+                    .collect(),
+                noise_factor: *noise_factor,
+            }
+        };
+        self.noise_factor.iter().enumerate().map(of_row).collect()
+    }
+}
+
 /// A strain file of the job less its zero.
 ///
 /// # Errors

@@ -12,7 +12,7 @@ pub use outcome::*;
 
 use super::context::Context;
 use super::fault::{Fault, Faults};
-use super::job::strain::{StrainRows, StrainTable, stated_readings};
+use super::job::strain::{StrainRows, StrainTable, no_gauge_column, stated_readings};
 use super::job::{Job, JobLoad, LoadRole, Measured, Reference, Runs};
 use super::outcome::{Outcome, StatedUnits};
 use super::reconcile::redirect::text_of;
@@ -172,14 +172,8 @@ fn read(
 ) -> Result<(known::KnownRuns, Vec<Readings>), Faults> {
     let names = names_of(&zeroed.table);
     let known = known::read_known(work, job, (runs, measured), names, &s.loads, origin)?;
-    let strain = readings(job, measured, &zeroed.table, &s.gauges)?;
-    let rows = strain.into_iter().zip(names).zip(&zeroed.noise_factor);
-    let read = rows.map(|((strain, run), noise_factor)| Readings {
-        run: run.clone(),
-        strain,
-        noise_factor: *noise_factor,
-    });
-    let read = read.collect();
+    check_readings(job, measured, &zeroed.table, &s.gauges)?;
+    let read = zeroed.readings(&s.gauges);
     let strain = judged_to_learn(work, job, measured, &s.gauges, read);
     some_left(&zeroed.table.file, &strain)?;
     Ok((known, strain))
@@ -285,13 +279,16 @@ fn stated_alone(job: &Job, table: &StrainTable) -> Sensitivity {
     }
 }
 
-/// Strain of every row of the table by gauge.
-fn readings(
+/// That known loads are changes from zero, and that the strain file has a gauge.
+///
+/// # Errors
+/// Another reference; no column named after a gauge.
+fn check_readings(
     job: &Job,
     measured: &Measured,
     table: &StrainTable,
     gauges: &[String],
-) -> Result<Vec<Vec<f64>>, Faults> {
+) -> Result<(), Faults> {
     if measured.reference != Reference::None {
         let wrong = "known loads are changes from the state at which the gauges read zero";
         return Err(Fault::at(
@@ -303,26 +300,10 @@ fn readings(
         )
         .into());
     }
-    let columns: Vec<Option<usize>> = gauges
-        .iter()
-        .map(|g| table.gauges.iter().position(|h| h == g))
-        .collect();
-    if columns.iter().all(Option::is_none) {
-        return Err(Fault::at(
-            &*measured.strain.given,
-            1,
-            "gauge",
-            "no column is named after a gauge of the job",
-            "name the columns after the gauges",
-        )
-        .into());
+    match gauges.iter().any(|g| table.gauges.contains(g)) {
+        true => Ok(()),
+        false => Err(no_gauge_column(job, &measured.strain.given).into()),
     }
-    let of_row = |i: usize| -> Vec<f64> {
-        let row = table.row(i);
-        let reading = |c: &Option<usize>| c.and_then(|c| row.get(c)).copied().unwrap_or(f64::NAN);
-        columns.iter().map(|c| reading(c) * MICROSTRAIN).collect()
-    };
-    Ok((0..table.n_rows()).map(of_row).collect())
 }
 
 /// Coefficients of the job's combinations; where it names none, the sum of all wanted loads, whose interval is to hold all the same.

@@ -1,15 +1,14 @@
 //! Predicted against measured strain at the installed gauges.
 
 use crate::app::fault::Faults;
-use crate::app::job::strain::{StrainRows, StrainTable};
+use crate::app::job::strain::StrainRows;
 use crate::app::job::strain_means::is_long_record;
 use crate::app::job::{Job, Reference};
 use crate::app::outcome::finite;
 use crate::app::strain::Prepared;
 use crate::app::work::Work;
-use crate::app::zeroed::{Zeroed, judged, read_zeroed};
+use crate::app::zeroed::{judged, read_zeroed};
 use crate::finding::{Finding, Severity, few};
-use crate::recovery::Readings;
 use crate::respond::LoadState;
 use crate::units::MICROSTRAIN;
 use serde::Serialize;
@@ -75,12 +74,9 @@ pub(super) fn check(
         ));
         return Ok(out);
     }
-    let Zeroed {
-        table,
-        noise_factor,
-    } = read_zeroed(work, job, measured, &measured.strain)?;
-    let read = readings(&table, &noise_factor, &s.gauges);
-    let read = judged(work, measured, &s.gauges, &read);
+    let zeroed = read_zeroed(work, job, measured, &measured.strain)?;
+    let table = &zeroed.table;
+    let read = judged(work, measured, &s.gauges, &zeroed.readings(&s.gauges));
     // The row of the strain table that belongs to each state: by name, or by order where there are as many samples.
     let row_of: Vec<Option<usize>> = match &table.rows {
         StrainRows::Runs(names) => states
@@ -161,28 +157,6 @@ pub(super) fn check(
 /// Says that gauges take no part.
 fn not_compared(why: &str, remedy: &str) -> Finding {
     Finding::new(Severity::Info, "gauges-not-compared", "gauges", why, remedy)
-}
-
-/// What the gauges of S read in each row, strain; not a number for a gauge without a column.
-fn readings(table: &StrainTable, noise_factor: &[f64], gauges: &[String]) -> Vec<Readings> {
-    let column = |g: &String| table.gauges.iter().position(|h| h == g);
-    let columns: Vec<Option<usize>> = gauges.iter().map(column).collect();
-    let of_row = |(i, noise_factor): (usize, &f64)| {
-        let row = table.row(i);
-        let reading = |c: &Option<usize>| c.and_then(|c| row.get(c)).copied();
-        let strain = columns.iter().map(reading);
-        Readings {
-            run: match &table.rows {
-                StrainRows::Runs(names) => names.get(i).cloned().unwrap_or_default(),
-                StrainRows::Times(times) => times.get(i).map(f64::to_string).unwrap_or_default(),
-            },
-            strain: strain
-                .map(|v| v.unwrap_or(f64::NAN) * MICROSTRAIN)
-                .collect(),
-            noise_factor: *noise_factor,
-        }
-    };
-    noise_factor.iter().enumerate().map(of_row).collect()
 }
 
 /// Whether the loads reproduce what the gauges measured.
