@@ -3,8 +3,8 @@
 use crate::finding::{Finding, Severity};
 use crate::series::record::{Clock, EVEN, Evenness};
 
-/// Step, s, from which a record is slower than any logger of loads that move: 1 Hz.
-const SLOW: f64 = 1.0;
+/// Step, s, from which a record is slower than any logger of loads that move: 2 Hz. Half a millisecond is that of a logger of 2 kHz.
+const SLOW: f64 = 0.5;
 /// Samples under which a few readings noted by hand look alike.
 const ENOUGH: usize = 200;
 /// Mean square of steps over variance (2 for samples that have nothing to do with each other): below it the logger was far faster than
@@ -106,6 +106,7 @@ mod tests {
     fn milliseconds_are_asked_for_where_two_seconds_apart_samples_follow_each_other() {
         let found = check(2.0, &wave(100.0), 1).expect("a finding");
         assert_eq!(found.severity, Severity::Error);
+        assert!(check(0.5, &wave(100.0), 1).is_some(), "2 kHz");
     }
 
     #[test]
