@@ -1,7 +1,7 @@
 //! `fleet` as a user runs it: records of three vehicles in small tables, S given.
 
 use super::drawn::Splitmix;
-use super::program::{self, scratch};
+use super::program::{self, JOB, scratch};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -64,25 +64,6 @@ fn table_of(
     }
     text
 }
-
-const JOB: &str = r#"title = "Three trucks"
-units = "m-kg-s"
-report_units = { force = "kN", moment = "kN m" }
-[sensitivity]
-file = "S.csv"
-per = { force = "kN" }
-[[load]]
-name = "A.FZ"
-expected = 20000.0
-[[load]]
-name = "B.FZ"
-expected = 20000.0
-[measured]
-noise_microstrain = 0.001
-model_uncertainty_rel = 0.02
-[fleet]
-file_name = "{vehicle}_{day}.csv"
-"#;
 
 /// A folder with job and sixty records of three vehicles.
 fn folder(name: &str) -> (PathBuf, Vec<String>) {

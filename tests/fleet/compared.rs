@@ -2,7 +2,7 @@
 //! damage is known in closed form.
 
 use super::drawn::Splitmix;
-use super::program::{self, scratch};
+use super::program::{self, JOB, scratch};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -23,24 +23,6 @@ const PERIOD: usize = 40;
 /// Periods of a record of two waves of different length.
 const PERIODS: usize = 30;
 const SLOPE: i32 = 5;
-
-const JOB: &str = r#"units = "m-kg-s"
-report_units = { force = "kN", moment = "kN m" }
-[sensitivity]
-file = "S.csv"
-per = { force = "kN" }
-[[load]]
-name = "A.FZ"
-expected = 20000.0
-[[load]]
-name = "B.FZ"
-expected = 20000.0
-[measured]
-noise_microstrain = 0.001
-model_uncertainty_rel = 0.02
-[fleet]
-file_name = "{vehicle}_{day}.csv"
-"#;
 
 /// A record at 100 Hz: load A a cosine of this amplitude, B one of 0.7 of it and twice the frequency. `change` may wrong the readings.
 fn record(amplitude: f64, periods: usize, change: impl Fn(usize, &mut [f64; GAUGES])) -> String {

@@ -5,6 +5,25 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// Two loads, S from a table.
+pub const JOB: &str = r#"units = "m-kg-s"
+report_units = { force = "kN", moment = "kN m" }
+[sensitivity]
+file = "S.csv"
+per = { force = "kN" }
+[[load]]
+name = "A.FZ"
+expected = 20000.0
+[[load]]
+name = "B.FZ"
+expected = 20000.0
+[measured]
+noise_microstrain = 0.001
+model_uncertainty_rel = 0.02
+[fleet]
+file_name = "{vehicle}_{day}.csv"
+"#;
+
 /// An empty folder for one test.
 pub fn scratch(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
