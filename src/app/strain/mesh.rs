@@ -89,12 +89,12 @@ pub fn refined_mesh(model: &Model, gauges: Option<&[Gauge]>) -> Result<RefinedMo
     let divided = if n <= MOST_SHELLS {
         vec![true; n]
     } else {
-        let Some(gauges) = gauges else {
+        let shells = shells_under(gauges.unwrap_or_default());
+        if shells.is_empty() {
             return Err(format!(
-                "the model has {n} shells, and beyond {MOST_SHELLS} four times as many are not solved"
+                "the model has {n} shells, beyond {MOST_SHELLS} four times as many are not solved, and no shell is known to bear a gauge"
             ));
-        };
-        let shells = shells_under(gauges);
+        }
         let mut near = ROWS.iter().map(|rows| model.shells_near(&shells, *rows));
         near.find(|d| count(d) <= MOST_SHELLS).ok_or_else(|| {
             format!(
