@@ -145,6 +145,7 @@ fn a_model_that_is_off_by_a_smooth_factor_is_unknown_smooth_and_its_curve_is_the
         }
         assert!(!outcome.smooth.is_empty(), "{said}");
     }
+    // A curve of 5 % may lead by less than odds of a hundred to one, and then is none: that is asked of it so that it names nothing falsely.
     let curves = 2 * SEEDS - straight;
     assert!(
         10 * followed >= 8 * curves && 2 * followed > 2 * SEEDS,

@@ -1,5 +1,6 @@
 //! Runs alike: what they have in common, runs weighed by sums alone, a column that the loads depend on. Truth is drawn; coverage and width are held.
 
+use super::glued::normal;
 use crate::calibrate::*;
 use crate::linalg::Matrix;
 use crate::recovery::{ErrorModel, Readings, estimate};
@@ -10,14 +11,6 @@ use rayon::prelude::*;
 
 const NOISE: f64 = 0.1e-6;
 const GAUGES: usize = 8;
-
-fn normal(random: &mut ChaCha8Rng) -> f64 {
-    let (u, v): (f64, f64) = (
-        random.random_range(1e-300..1.0),
-        random.random_range(0.0..1.0),
-    );
-    (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
-}
 
 /// Two lanes of a bridge: strain of each gauge a kN.
 fn lanes(random: &mut ChaCha8Rng) -> Matrix {
