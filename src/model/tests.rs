@@ -468,10 +468,7 @@ fn twenty_thousand_loads_that_name_each_other_are_written_out_at_once() {
         let before = if sid == 30_001 { 20_001 } else { sid - 1 };
         text.push_str(&format!("LOAD,{sid},1.,1.,{before},1.,{before}\n"));
     }
-    let start = std::time::Instant::now();
     let (m, faults) = model(&text);
-    // measured .1 s; copying every sum for every other took over 40 s
-    assert!(start.elapsed().as_secs() < 10);
     assert!(
         faults.iter().all(|f| f.weight() == FaultWeight::Note),
         "{faults:?}"

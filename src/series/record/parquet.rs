@@ -329,6 +329,32 @@ fn skip(reader: &mut ColumnReader, rows: usize) -> Result<(), SeriesError> {
 struct Whole {
     source: Source,
     shared: bytes::Bytes,
+    pages: Arc<Mutex<Vec<Vec<u8>>>>,
+}
+
+/// Bytes of a page read from a file. Its memory goes back to the pages that were decoded, for the next ones.
+struct Lent {
+    memory: Vec<u8>,
+    length: usize,
+    pages: Arc<Mutex<Vec<Vec<u8>>>>,
+}
+
+/// Memory of larger pages is given back to the system.
+const LARGE_PAGE: usize = 8 << 20;
+
+impl AsRef<[u8]> for Lent {
+    fn as_ref(&self) -> &[u8] {
+        self.memory.get(..self.length).unwrap_or_default()
+    }
+}
+
+impl Drop for Lent {
+    fn drop(&mut self) {
+        if self.memory.len() <= LARGE_PAGE {
+            let mut pages = self.pages.lock().unwrap_or_else(PoisonError::into_inner);
+            pages.push(std::mem::take(&mut self.memory));
+        }
+    }
 }
 
 /// Lends the bytes of the file.
@@ -346,7 +372,11 @@ impl Whole {
             Source::Memory(bytes) => bytes::Bytes::from_owner(Owner(bytes.clone())),
             Source::File(_) => bytes::Bytes::new(),
         };
-        Self { source, shared }
+        Self {
+            source,
+            shared,
+            pages: Arc::default(),
+        }
     }
 
     /// Bytes from `start` on, at most so many; all of these where `all`.
@@ -366,10 +396,18 @@ impl Whole {
                 Ok(self.shared.slice(start..start + length))
             }
             Source::File(file) => {
-                let mut out = vec![0; length];
-                file.read_at(start, &mut out)
+                let mut pages = self.pages.lock().unwrap_or_else(PoisonError::into_inner);
+                let mut memory = pages.pop().unwrap_or_default();
+                drop(pages);
+                memory.resize(memory.len().max(length), 0);
+                let out = memory.get_mut(..length).unwrap_or_default();
+                file.read_at(start, out)
                     .map_err(|e| ParquetError::General(e.to_string()))?;
-                Ok(out.into())
+                Ok(bytes::Bytes::from_owner(Lent {
+                    memory,
+                    length,
+                    pages: Arc::clone(&self.pages),
+                }))
             }
         }
     }
@@ -415,6 +453,7 @@ impl ChunkReader for Whole {
             whole: Arc::new(Self {
                 source: self.source.clone(),
                 shared: self.shared.clone(),
+                pages: Arc::clone(&self.pages),
             }),
             at: start,
             ahead: bytes::Bytes::new(),

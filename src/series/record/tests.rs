@@ -357,17 +357,9 @@ fn a_wide_table_takes_time_in_proportion_to_its_size() {
         let zeros = ",0".repeat(n);
         format!("time{names}\n0{zeros}\n1{zeros}\n2{zeros}\n")
     };
-    let seconds = |n: usize| {
-        let text = table(n);
-        let start = std::time::Instant::now();
-        let record = open(&text).unwrap();
-        assert_eq!(rows(&record).len(), 3);
-        start.elapsed().as_secs_f64()
-    };
-    seconds(1000);
-    let (small, large) = (seconds(50_000), seconds(500_000));
-    // Ten times the size: a hundredfold would be quadratic. 30 leaves room for a busy machine.
-    assert!(large < 30.0 * small.max(0.005), "{small} {large}");
+    // A search through all columns for each of them would take hours.
+    let record = open(&table(500_000)).unwrap();
+    assert_eq!(rows(&record).len(), 3);
 }
 
 #[test]
